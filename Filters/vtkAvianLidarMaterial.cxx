@@ -26,6 +26,7 @@
 #include "vtkStringArray.h"
 
 #include <algorithm>
+#include <cctype>
 #include <iterator>
 #include <limits>
 #include <string>
@@ -202,14 +203,14 @@ std::string CheckCells(vtkPolyData* surface)
   return std::string();
 }
 
-// The kernel says "kd + ks is 1.2"; the properties are Kd and Ks.
+// The kernel says "kd + ks is 1.2" or "roughness is 2"; the properties are Kd, Ks, Roughness.
 std::string NameProperties(std::string problem)
 {
   for (std::size_t i = 0; i < problem.size(); ++i)
   {
-    if (problem[i] == 'k' && (i == 0 || problem[i - 1] == ' '))
+    if (i == 0 || (problem[i] == 'k' && problem[i - 1] == ' '))
     {
-      problem[i] = 'K';
+      problem[i] = static_cast<char>(std::toupper(problem[i]));
     }
   }
   return problem;
@@ -280,6 +281,7 @@ vtkAvianLidarMaterial::vtkAvianLidarMaterial()
   , Kd(0.146)
   , Ks(0.054)
   , Kp(112.0)
+  , Roughness(0.0)
   , ObjectId(-1)
   , BlockNamePattern("*")
 {
@@ -363,7 +365,7 @@ int vtkAvianLidarMaterial::RequestData(
       what.ObjectId = this->ObjectId;
       what.ObjectName = this->NameOfObject;
       what.MaterialName = "Custom";
-      what.Coefficients = { this->Kd, this->Ks, this->Kp };
+      what.Coefficients = { this->Kd, this->Ks, this->Kp, this->Roughness };
       if (named)
       {
         what.MaterialName = named->name;
@@ -420,6 +422,7 @@ void vtkAvianLidarMaterial::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "Kd: " << this->Kd << "\n";
   os << indent << "Ks: " << this->Ks << "\n";
   os << indent << "Kp: " << this->Kp << "\n";
+  os << indent << "Roughness: " << this->Roughness << "\n";
   os << indent << "ObjectId: " << this->ObjectId << "\n";
   os << indent << "NameOfObject: " << this->NameOfObject << "\n";
   os << indent << "BlockNamePattern: " << this->BlockNamePattern << "\n";

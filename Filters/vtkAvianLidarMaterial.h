@@ -5,7 +5,7 @@
  *
  * **Input** (port 0): vtkPolyData, or a composite (vtkMultiBlockDataSet, vtkPartitionedDataSet,
  * vtkPartitionedDataSetCollection) whose leaves are vtkPolyData. **Output**: the same, shallow
- * copies with these cell arrays, one component each, always all five, so that appending such
+ * copies with these cell arrays, one component each, always all six, so that appending such
  * surfaces never loses one:
  *
  * - `object_id` (int): see ObjectId
@@ -13,6 +13,7 @@
  * - `kd` (double, unit 1): diffuse coefficient (paper, Eq. 6)
  * - `ks` (double, unit 1): specular coefficient (paper, Eq. 7)
  * - `kp` (double, unit 1): glossiness, the exponent of the specular lobe (paper, Eq. 7)
+ * - `roughness` (double, rad): standard deviation of the slope of its facets (Oren and Nayar 1994)
  *
  * Field data of each leaf: `material_names`, the materials that are there already or the four
  * standard ones, with another one put behind them when it is used; and `object_names`, one value:
@@ -24,11 +25,11 @@
  * In a composite, only blocks that fit BlockNamePattern get the material; the others are passed on
  * as they are, so that one filter after the other can name the materials of a scene.
  *
- * **Bad input**: coefficients that are negative, not finite, kd + ks > 1 or kp > 1e6, an unknown
- * material, an ObjectId below -1, a chosen leaf that is not vtkPolyData: an error, empty output. A
- * pattern that fits no block: one warning. Empty surfaces are legal. The coefficients are those of
- * "Research on Ground Object Echo Simulation of Avian Lidar", Photonics 2024, 11(2), 153, Table 1,
- * and of Material.
+ * **Bad input**: coefficients that are negative, not finite, kd + ks > 1, kp > 1e6 or roughness >
+ * pi/2, an unknown material, an ObjectId below -1, a chosen leaf that is not vtkPolyData: an error,
+ * empty output. A pattern that fits no block: one warning. Empty surfaces are legal. The
+ * coefficients are those of "Research on Ground Object Echo Simulation of Avian Lidar", Photonics
+ * 2024, 11(2), 153, Table 1, and of Material.
  *
  * @sa vtkAvianLidarCollisionTree, vtkAvianLidarEchoFilter, vtkAvianLidarSceneReader
  */
@@ -67,7 +68,7 @@ public:
    * The material: one of the paper's Table 1 (kd, ks, kp: wall 0.146, 0.054, 112; glass 0.020,
    * 0.852, 8046; metal 0.075, 0.634, 6803; wood 0.107, 0.100, 82); one that only scatters, at
    * 905 nm (kd: concrete 0.3104, asphalt 0.1298, grass 0.2204, of the USGS Spectral Library 7;
-   * plumage 0.3, assumed); or custom, which takes Kd, Ks and Kp. Default MATERIAL_WALL.
+   * plumage 0.3, assumed); or custom, which takes Kd, Ks, Kp and Roughness. Default MATERIAL_WALL.
    */
   vtkSetMacro(Material, int);
   vtkGetMacro(Material, int);
@@ -85,9 +86,9 @@ public:
   ///@{
   /**
    * What a value of Material stands for, without an execution: its name; where its numbers are
-   * from, "assumed" where nobody measured them; a coefficient by its number (0 kd, 1 ks, 2 kp); and
-   * a colour to look at (red, green, blue, 0 to 1). For MATERIAL_CUSTOM and unknown values null,
-   * not a number, or false, and the colour stays as it is.
+   * from, "assumed" where nobody measured them; a coefficient by its number (0 kd, 1 ks, 2 kp, 3
+   * roughness); and a colour to look at (red, green, blue, 0 to 1). For MATERIAL_CUSTOM and unknown
+   * values null, not a number, or false, and the colour stays as it is.
    */
   static const char* GetMaterialName(int material);
   static const char* GetMaterialSource(int material);
@@ -122,6 +123,15 @@ public:
    */
   vtkSetMacro(Kp, double);
   vtkGetMacro(Kp, double);
+  ///@}
+
+  ///@{
+  /**
+   * Roughness of a custom material, rad, within [0, pi/2]: the standard deviation of the slope of
+   * its facets, which reflectance model OrenNayar of the echo filter uses. Default 0, even.
+   */
+  vtkSetMacro(Roughness, double);
+  vtkGetMacro(Roughness, double);
   ///@}
 
   ///@{
@@ -166,6 +176,7 @@ protected:
   double Kd;
   double Ks;
   double Kp;
+  double Roughness;
   int ObjectId;
   std::string NameOfObject;
   std::string BlockNamePattern;

@@ -52,7 +52,8 @@ public:
   {
     REFLECTANCE_MODEL_LAMBERT_BLINN_PHONG = 0,
     REFLECTANCE_MODEL_PHONG = 1,
-    REFLECTANCE_MODEL_MICROFACET = 2
+    REFLECTANCE_MODEL_MICROFACET = 2,
+    REFLECTANCE_MODEL_OREN_NAYAR = 3
   };
 
   enum BatchCollisionDetectionType
@@ -167,8 +168,10 @@ public:
   ///@{
   /**
    * How a surface reflects: REFLECTANCE_MODEL_LAMBERT_BLINN_PHONG (Eq. 5-8, the paper),
-   * REFLECTANCE_MODEL_PHONG or REFLECTANCE_MODEL_MICROFACET (the peers of Fig. 10; formulas in
-   * Documentation/reflectance.md). Default: REFLECTANCE_MODEL_LAMBERT_BLINN_PHONG.
+   * REFLECTANCE_MODEL_PHONG or REFLECTANCE_MODEL_MICROFACET (the peers of Fig. 10), or
+   * REFLECTANCE_MODEL_OREN_NAYAR: rough surfaces, which return light also at grazing incidence
+   * (roughness of their materials; formulas in Documentation/reflectance.md). Default:
+   * REFLECTANCE_MODEL_LAMBERT_BLINN_PHONG.
    */
   vtkSetMacro(ReflectanceModel, int);
   vtkGetMacro(ReflectanceModel, int);
@@ -181,6 +184,7 @@ public:
   {
     this->SetReflectanceModel(REFLECTANCE_MODEL_MICROFACET);
   }
+  void SetReflectanceModelToOrenNayar() { this->SetReflectanceModel(REFLECTANCE_MODEL_OREN_NAYAR); }
   ///@}
 
   ///@{

@@ -22,8 +22,9 @@ from ._cloud import field_values
 from ._pipeline import Error, Progress, file_name, is_current, text_of, update
 from ._properties import choices, choose, get_property, property_names, set_properties, set_property
 
-# Names of a material's coefficients, which are those of cell arrays.
+# Names of a material's coefficients, which are those of cell arrays; those behind the first three may be left out.
 COEFFICIENTS = tuple(filter(None, map(_wrapped.vtkAvianLidarMaterial.GetCoefficientName, range(100))))
+_NUMBERS = range(3, len(COEFFICIENTS) + 1)
 _ALL = ", ".join(COEFFICIENTS)
 
 Material = Union[str, Sequence[float], Sequence[str], np.ndarray]
@@ -130,7 +131,7 @@ def _painter(surfaces, material: Optional[Material], name: Optional[str]):
     elif material is not None:
         try:
             numbers = [float(value) for value in material]
-            if len(numbers) != len(COEFFICIENTS):
+            if len(numbers) not in _NUMBERS:
                 raise ValueError
         except (TypeError, ValueError):
             raise TypeError(f"material is {material!r}, expected a name ({', '.join(materials())}), the coefficients "
@@ -146,11 +147,11 @@ _ONE = ([(0, 0, 0), (1, 0, 0), (0, 1, 0)], [(0, 1, 2)])
 
 
 def materials() -> Dict[str, Tuple[float, ...]]:
-    """The materials that are known by name, each with its coefficients (kd, ks, kp): diffuse, specular, glossiness; pure
-    numbers (paper, Eq. 6 and 7).
+    """The materials that are known by name, each with its coefficients: diffuse, specular, glossiness, pure numbers (paper,
+    Eq. 6 and 7), and those that `vtkAvianLidarMaterial` has besides, as its `GetCoefficientName` numbers them.
 
     >>> materials()["Wall"]
-    (0.146, 0.054, 112.0)
+    (0.146, 0.054, 112.0, 0.0)
     """
     known = choices(_wrapped.vtkAvianLidarMaterial, "Material")
     return {name: tuple(_wrapped.vtkAvianLidarMaterial.GetMaterialCoefficient(value, k) for k in range(len(COEFFICIENTS)))
@@ -171,7 +172,7 @@ def _paint_triangles(data, material, name: Optional[str]) -> vtkPolyData:
     except (TypeError, ValueError):
         raise TypeError(f"materials of the triangles are neither names nor rows ({_ALL}) alone") from None
     number = data.GetNumberOfCells() if isinstance(data, vtkPolyData) else None
-    if number is None or values.shape not in ((number,), (number, len(COEFFICIENTS))):
+    if number is None or values.shape[:1] != (number,) or values.shape[1:] not in ((), *((n,) for n in _NUMBERS)):
         raise ValueError(f"materials of the shape {values.shape} for {number or 'a composite of'} triangles, expected one name "
                          f"or one row ({_ALL}) for each triangle of one mesh")
     if values.ndim == 1:
@@ -188,7 +189,7 @@ def _paint_triangles(data, material, name: Optional[str]) -> vtkPolyData:
     painted = vtkPolyData()
     painted.ShallowCopy(_painter(data, "Wall", name).GetOutputDataObject(0))
     cells, ids = painted.GetCellData(), numbers.reshape(-1).astype(np.int32)
-    for key, column in (("material_id", ids), *((key, rows[ids, i]) for i, key in enumerate(COEFFICIENTS))):
+    for key, column in (("material_id", ids), *((key, row[ids]) for key, row in zip(COEFFICIENTS, rows.T))):
         array = numpy_to_vtk(np.ascontiguousarray(column), deep=True)
         array.SetName(key)
         cells.AddArray(array)
@@ -291,9 +292,9 @@ class Scene:
                   (.lidarscene.json) or a mapping with the keys of one; vtkPolyData or a composite of it; a VTK algorithm,
                   which is run; n rows of x, y, z, with `faces`; or a pair of both, as for `mesh`
         faces     m rows of three indices into the points
-        material  a name (`materials()`), or the coefficients (kd, ks, kp), pure numbers; of one mesh also a sequence of m
-                  names or m rows of coefficients, one for each triangle. Default: what the surfaces have; else `Wall`,
-                  of VTK data with a warning
+        material  a name (`materials()`), or the coefficients (kd, ks, kp, ...; those behind kp may be left out); of one
+                  mesh also a sequence of m names or m rows of coefficients, one for each triangle. Default: what the
+                  surfaces have; else `Wall`, of VTK data with a warning
         name      of the object; default: what the surfaces have, the name of a mesh file
         scale     of a mesh file: metres of its unit (0.001: millimetres), a number or one for each axis; default 1
         up_axis   of a mesh file: "y" or "z", the axis that points up; default: y for glTF, FBX and some more, else z

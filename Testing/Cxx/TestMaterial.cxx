@@ -142,11 +142,13 @@ void TestCustomAndNames()
   filter->SetKd(0.3);
   filter->SetKs(0.7); // the sum is exactly allowed
   filter->SetKp(1e6);
+  filter->SetRoughness(0.4);
   filter->SetObjectId(7);
   filter->SetNameOfObject("mirror");
   filter->Update();
   auto* output = vtkPolyData::SafeDownCast(filter->GetOutputDataObject(0));
-  Check(Cells(output, "kd") == 0.3 && Cells(output, "ks") == 0.7 && Cells(output, "kp") == 1e6,
+  Check(Cells(output, "kd") == 0.3 && Cells(output, "ks") == 0.7 && Cells(output, "kp") == 1e6 &&
+      Cells(output, "roughness") == 0.4,
     "custom coefficients");
   Check(Cells(output, "material_id") == 4 && Text(output, "material_names", 4) == "Custom",
     "custom is material 4");
@@ -284,6 +286,8 @@ void TestBadInput()
     { "kp", [](Filter* f) { f->SetKp(-1.0); } },
     { "kp", [](Filter* f) { f->SetKp(1.1e6); } },
     { "kp", [&](Filter* f) { f->SetKp(nan); } },
+    { "Roughness is", [](Filter* f) { f->SetRoughness(1.6); } },
+    { "Roughness is", [](Filter* f) { f->SetRoughness(-0.1); } },
   };
   for (const auto& c : cases)
   {

@@ -79,8 +79,9 @@ inline Case drawCase(geometrytest::Numbers& random, double near, double mostUnit
   c.settings.beamSamples = BeamSampleSource::Cells;
   c.settings.returnMode = ReturnMode::RangeUnits;
   c.settings.attenuationCoefficient = random() * 1e-3;
-  c.settings.reflectanceModel = static_cast<ReflectanceModel>(random.index(3));
-  c.material = { random(0.01, 0.5), random(0.0, 0.5), random.logUniform(1.0, 1e6) };
+  c.settings.reflectanceModel = static_cast<ReflectanceModel>(random.index(4));
+  c.material = { random(0.01, 0.5), random(0.0, 0.5), random.logUniform(1.0, 1e6),
+    random(0.0, 0.5 * Pi) };
   return c;
 }
 
@@ -99,6 +100,13 @@ inline Real reflected(const Case& c, const Material& m, Real b)
       const Real sine2 = std::sin(b) * std::sin(b);
       const Real d = a2 / (a2 * cosine * cosine + sine2);
       return m.kd * cosine + m.ks * d * d * cosine / std::sqrt(a2 + (1 - a2) * cosine * cosine);
+    }
+    case ReflectanceModel::OrenNayar:
+    {
+      const Real s2 = Real(m.roughness) * m.roughness;
+      const Real even = 1 - Real(0.5) * s2 / (s2 + Real(0.33L));
+      const Real rough = Real(0.45L) * s2 / (s2 + Real(0.09L));
+      return m.kd * (even * cosine + rough * std::sin(b) * std::sin(b)) + m.ks * lobe;
     }
     case ReflectanceModel::LambertBlinnPhong:
       break;

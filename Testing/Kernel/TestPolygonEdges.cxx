@@ -228,7 +228,7 @@ TEST(PolygonEdges, ScenesOfBoxes)
     settings.returnMode = ReturnMode::RangeUnits;
     settings.attenuationCoefficient = 1e-3;
     settings.numberOfReflections = 2;
-    settings.reflectanceModel = static_cast<ReflectanceModel>(random.index(3));
+    settings.reflectanceModel = static_cast<ReflectanceModel>(random.index(4));
     ScanSetup setup = makeSetup(scene, sensor, settings);
     const ScanBeams beam = oneBeam(Vec3(1.0, random(-0.25, 0.25), random(-0.25, 0.25)));
     const ScanResult one = runScan(setup, beam);

@@ -128,7 +128,7 @@ TEST(PolygonLimits, NoProfileAndNoLobeTakesVeryManyNodes)
       scene.triangle(a, b, corner(), material, static_cast<int>(i));
     }
     EchoSettings settings = integrating();
-    settings.reflectanceModel = static_cast<ReflectanceModel>(k % 3);
+    settings.reflectanceModel = static_cast<ReflectanceModel>(k % 4);
     const Nodes nodes = nodesOf(makeSetup(scene, sensor, settings));
     most = std::max(most, nodes.count);
     for (Material& material : scene.materials)

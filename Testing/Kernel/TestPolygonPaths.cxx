@@ -353,7 +353,7 @@ TEST(PolygonPaths, NoUnitLosesMoreByPathsThanTheReportSays)
     settings.returnMode = ReturnMode::RangeUnits;
     settings.lightEnergyConstraint = false;
     settings.attenuationCoefficient = k % 2 ? 1e-3 : 0.0;
-    settings.reflectanceModel = static_cast<ReflectanceModel>(random.index(3));
+    settings.reflectanceModel = static_cast<ReflectanceModel>(random.index(4));
     ScanSetup setup = makeSetup(facingWalls(random), sensor, settings);
     const std::map<double, double> all = unitsOf(runScan(setup, oneBeam()));
     const double strongest = strongestOf(all);

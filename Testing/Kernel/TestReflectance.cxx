@@ -17,7 +17,7 @@ using namespace avianlidar;
 namespace
 {
 constexpr ReflectanceModel models[] = { ReflectanceModel::LambertBlinnPhong,
-  ReflectanceModel::Phong, ReflectanceModel::Microfacet };
+  ReflectanceModel::Phong, ReflectanceModel::Microfacet, ReflectanceModel::OrenNayar };
 constexpr ReflectanceModel paper = ReflectanceModel::LambertBlinnPhong;
 const Material wall{ 0.146, 0.054, 112.0 };
 const Material glass{ 0.020, 0.852, 8046.0 };
@@ -164,7 +164,7 @@ TEST(Reflectance, MonostaticGeometryIsTheGeneralOne)
     {
       for (const double k : { 1.0, 112.0, 1e6 })
       {
-        const Material material{ 0.3, 0.6, k };
+        const Material material{ 0.3, 0.6, k, 0.4 };
         const Vec3 in = incidentAt(angle);
         const double general =
           reflectance(model, material, reflectionGeometry(in, -in, up)).total();
@@ -199,7 +199,8 @@ TEST(Reflectance, EveryModelIsBoundedByItsCoefficients)
     const auto u = uniformPair(2, 0, n, RandomPurpose::Rays);
     const auto v = uniformPair(2, 1, n, RandomPurpose::Rays);
     const Material material{ u[0] * u[1], u[0] * (1.0 - u[1]),
-      std::pow(1e6, v[0]) * (v[1] < 0.05 ? 0.0 : 1.0) };
+      std::pow(1e6, v[0]) * (v[1] < 0.05 ? 0.0 : 1.0),
+      0.5 * Pi * uniformPair(2, 5, n, RandomPurpose::Rays)[0] };
     Vec3 normal = randomDirection(n, 2);
     const Vec3 in = randomDirection(n, 3);
     normal = glm::dot(normal, in) > 0.0 ? -normal : normal;
@@ -264,6 +265,60 @@ TEST(Reflectance, MicrofacetLobeIsReciprocal)
   EXPECT_NEAR(
     specularReflectance(ReflectanceModel::Microfacet, wall, reflectionGeometry(-a, b, up)),
     specularReflectance(ReflectanceModel::Microfacet, wall, reflectionGeometry(-b, a, up)), 1e-15);
+}
+
+TEST(Reflectance, OrenNayarByItsFormula)
+{
+  for (const double roughness : { 0.0, 0.1, 0.35, 0.7, 1.5 })
+  {
+    Material rough = wall;
+    rough.roughness = roughness;
+    const double s2 = roughness * roughness;
+    const double even = 1.0 - 0.5 * s2 / (s2 + 0.33);
+    const double facets = 0.45 * s2 / (s2 + 0.09);
+    for (const double ti : { 0.0, 0.1, 0.5, 1.2, 1.55 })
+    {
+      for (const double to : { 0.0, 0.3, 1.1, 1.55 })
+      {
+        for (const double azimuth : { 0.0, 0.2, 2.0, Pi })
+        {
+          const auto f = reflectance(ReflectanceModel::OrenNayar, rough,
+            reflectionGeometry(incidentAt(ti), outgoingAt(to, azimuth), up));
+          // The mirror direction has the azimuth 0: around the normal the two lie pi - azimuth
+          // apart.
+          const double expected = wall.kd * std::cos(ti) *
+            (even +
+              facets * std::max(0.0, std::cos(Pi - azimuth)) * std::sin(std::max(ti, to)) *
+                std::tan(std::min(ti, to)));
+          EXPECT_NEAR(f.diffuse, expected, 1e-13) << ti << ' ' << to << ' ' << azimuth;
+          EXPECT_EQ(f.specular,
+            reflectance(
+              paper, rough, reflectionGeometry(incidentAt(ti), outgoingAt(to, azimuth), up))
+              .specular);
+        }
+      }
+    }
+    // Grazing, straight back: kd B is left.
+    EXPECT_NEAR(reflectance(ReflectanceModel::OrenNayar, rough, monostaticGeometry(1e-9)).diffuse,
+      wall.kd * facets, 1e-9);
+  }
+}
+
+TEST(Reflectance, NoIncidenceIsBrighterThanWhatIsSaid)
+{
+  for (std::uint64_t n = 0; n < 20000; ++n)
+  {
+    const auto u = uniformPair(7, 0, n, RandomPurpose::Rays);
+    const auto v = uniformPair(7, 1, n, RandomPurpose::Rays);
+    const Material material{ 0.4, 0.3, std::pow(1e6, v[0]), 0.5 * Pi * v[1] };
+    for (const ReflectanceModel model : models)
+    {
+      const Reflectance most = mostStraightBack(model, material, u[0]);
+      const Reflectance f = reflectance(model, material, monostaticGeometry(u[0] * u[1]));
+      ASSERT_LE(f.diffuse, most.diffuse * (1.0 + 1e-12));
+      ASSERT_LE(f.specular, most.specular * (1.0 + 1e-12));
+    }
+  }
 }
 
 TEST(Reflectance, PeersPeakLikeThePaper)

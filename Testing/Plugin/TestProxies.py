@@ -99,6 +99,7 @@ CONTRACT = {
         "Kd": "",
         "Ks": "",
         "Kp": "",
+        "Roughness": "radians",
         "ObjectId": "",
         "ObjectName": "",
         "BlockNamePattern": "",
@@ -210,7 +211,8 @@ CHOICES = {
 }
 OTHER_NAMES = {"MeteorologicalVisibility": "Visibility"}  # of the class, where a proxy cannot have the same
 SCALED = {"BeamwidthMilliradians": ("HalfBeamwidth", 2000)}  # a property of the class in another unit
-MIXED = ("Frames (deg, m)", "Origin: latitude, longitude, height (deg, deg, m)")  # groups of more than one unit
+# Groups of more than one unit.
+MIXED = ("Frames (deg, m)", "Material (pure numbers, rad)", "Origin: latitude, longitude, height (deg, deg, m)")
 OUTPUTS = {
     "AvianLidarBeamSource": ["Beams", "Rays"],
     "AvianLidarAirport16": ["Beams", "Rays"],

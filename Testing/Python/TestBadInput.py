@@ -5,6 +5,7 @@ import numpy as np
 import vtk
 
 from avianlidar import vtkAvianLidar as al
+from avianlidar._scene import COEFFICIENTS
 from badinput import bad_beams, bad_properties, bad_surfaces, bad_tree_properties, beams, field, surfaces
 from echotools import Messages, box, scan, sensor
 
@@ -135,7 +136,7 @@ for data in (no_beams, spoilt):
     assert echo.GetOutput().GetNumberOfPoints() == 0
 
 # Suspicious: surfaces without coefficients are Wall, said once per scene.
-plain = surfaces(lambda data: [data.GetCellData().RemoveArray(name) for name in ("kd", "ks", "kp")])
+plain = surfaces(lambda data: [data.GetCellData().RemoveArray(name) for name in COEFFICIENTS])
 echo, wall = scan(plain), scan(surfaces())
 heard = Messages(echo)
 for seed in (0, 1):

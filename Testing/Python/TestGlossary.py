@@ -7,6 +7,7 @@ import unittest
 
 import avianlidar as al
 from avianlidar import vtkAvianLidar as wrapped
+from avianlidar._scene import COEFFICIENTS
 from helpertools import WALL
 
 SOURCE = pathlib.Path(os.environ["AVIANLIDAR_SOURCE_DIR"])
@@ -50,7 +51,7 @@ class Glossary(unittest.TestCase):
     def test_every_name_is_there(self):
         header = (SOURCE / "Filters" / "Private" / "Common" / "vtkAvianLidarNames.h").read_text(encoding="utf-8")
         units = dict(re.findall(r'constexpr Name \w+\{ "(\w+)", "([^"]*)" \};', header))
-        others = {"kd", "ks", "kp"}.union(*(cloud.fields for cloud in outputs()))
+        others = set(COEFFICIENTS).union(*(cloud.fields for cloud in outputs()))
         self.assertGreater(len(NAMED), 90)
         for name, unit in NAMED.items():
             with self.subTest(name=name):

@@ -13,6 +13,7 @@ import warnings
 
 import numpy as np
 from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.vtkCommonDataModel import vtkPolyData
 
 import avianlidar as al
 from avianlidar import _display, _sight
@@ -97,6 +98,9 @@ class Sources(unittest.TestCase):
         for key, column in (("kd", 0), ("ks", 1), ("kp", 2)):
             self.assertEqual(cells(scene, key).tolist(), rows[:, column].tolist(), key)
         self.assertEqual(len(set(cells(scene, "material_id"))), 3)
+        self.assertEqual(set(cells(scene, "roughness")), {0})
+        rough = np.column_stack([rows, np.linspace(0, 1.5, 12)])
+        self.assertEqual(cells(al.Scene(*WALL, material=rough), "roughness").tolist(), rough[:, 3].tolist())
         scene = al.Scene(*WALL, material=["wall", "Wall"] * 6)
         self.assertEqual(len(set(cells(scene, "material_id"))), 1)
         count = 20000  # rows that all differ are no work
@@ -106,6 +110,26 @@ class Sources(unittest.TestCase):
         self.assertEqual(al.Scene(self.stl, material=["Wood"] * 12).number_of_triangles, 12)
         self.assertTrue(same(al.Scan(al.Scene(*WALL, material=["Metal"] * 12), noise=False).echoes,
                              al.Scan(al.Scene(*WALL, material="Metal"), noise=False).echoes))
+
+    def test_rough_ground_is_seen_farther(self):
+        ground = ([(-9, 1, 0), (9, 1, 0), (9, 5000, 0), (-9, 5000, 0)], [(0, 1, 2), (0, 2, 3)])
+        # At 80 degrees of incidence; half the beam's width changes the cosine by 0.06 %.
+        sensor = al.Sensor("Airport16", channel_elevations=[-10.0], azimuth_range=(0, 0.1), half_beamwidth=1e-4,
+                           position=(0, 0, 10), lower_energy_limit=1e-12)
+
+        def energies(scene):
+            return al.Scan(scene, sensor, reflectance_model="OrenNayar", number_of_reflections=1, noise=False,
+                           attenuation_coefficient=0).echoes["return_energy"]
+
+        for slope in (0.0, 0.52):
+            scene = al.Scene(*ground, material=(0.2, 0, 1, slope))
+            even, facets = 1 - 0.5 * slope**2 / (slope**2 + 0.33), 0.45 * slope**2 / (slope**2 + 0.09)
+            expected = 3.6e-4 * 0.2 * (even * np.sin(np.radians(10)) + facets * np.cos(np.radians(10)) ** 2)
+            np.testing.assert_allclose(energies(scene), [expected], rtol=3e-3)
+            bare = vtkPolyData()  # a surface without the array is even
+            bare.DeepCopy(scene.surfaces.GetBlock(0))
+            bare.GetCellData().RemoveArray("roughness")
+            self.assertEqual(np.array_equal(energies(al.Scene(bare)), energies(scene)), slope == 0.0)
 
     def test_errors_say_what_is_expected(self):
         text = OUTPUT / "text.stl"

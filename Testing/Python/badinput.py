@@ -198,7 +198,7 @@ bad_properties = [
     ("BeamSamples", 2),
     ("AttenuationCoefficient", -1e-9),
     ("AttenuationCoefficient", INF),
-    ("ReflectanceModel", 3),
+    ("ReflectanceModel", 4),
     ("NumberOfReflections", 0),
     ("NumberOfReflections", 3),
     ("LightEnergyFraction", -1e-9),

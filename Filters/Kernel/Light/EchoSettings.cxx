@@ -80,7 +80,7 @@ const std::vector<EchoSetting>& echoSettings()
     row<&S::seed>("Seed", "seed", -1.0 - most, most, "an int", ""),
     row<&S::attenuationCoefficient>("AttenuationCoefficient", "attenuation_coefficient", 0.0,
       MaximumAttenuation, "0 to 1e30 1/m", "1/m", false),
-    row<&S::reflectanceModel>("ReflectanceModel", "reflectance_model", 0.0, 2.0, "0 to 2"),
+    row<&S::reflectanceModel>("ReflectanceModel", "reflectance_model", 0.0, 3.0, "0 to 3"),
     row<&S::numberOfReflections>(
       "NumberOfReflections", "number_of_reflections", 1.0, 2.0, "1 or 2"),
     toggle<&S::beamConstraint>("BeamConstraint", "beam_constraint"),

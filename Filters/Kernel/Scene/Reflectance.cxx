@@ -49,7 +49,8 @@ std::string namesOfCoefficients()
   std::string names;
   for (const MaterialCoefficient& coefficient : MaterialCoefficients)
   {
-    names += (names.empty() ? "" : ", ") + std::string(coefficient.name);
+    names +=
+      coefficient.isOptional ? "" : (names.empty() ? "" : ", ") + std::string(coefficient.name);
   }
   return names;
 }
@@ -97,6 +98,7 @@ ReflectionGeometry reflectionGeometry(
     g.sin2Half = 0.0;
     g.cosDifference = 0.0;
   }
+  g.roughTerm = roughTermOf(g.cosIncidence, g.cosOutgoing, -glm::dot(incident, outgoing));
   return g;
 }
 
@@ -111,6 +113,22 @@ Reflectance reflectanceBound(ReflectanceModel model, const Material& material, d
   return withModel(model, [&](auto m) { return m.bound(material, cosIncidence); });
 }
 
+Reflectance mostStraightBack(ReflectanceModel model, const Material& material, double mostCosine)
+{
+  Reflectance most = reflectance(model, material, monostaticGeometry(mostCosine));
+  if (model == ReflectanceModel::OrenNayar)
+  {
+    // A rough surface is brightest at an angle, where A c + B (1 - c^2) is largest.
+    const OrenNayar::Shares by = OrenNayar::sharesOf(material);
+    if (by.even < 2.0 * by.rough * mostCosine)
+    {
+      const double brightest = 0.5 * by.even / by.rough;
+      most.diffuse = reflectance(model, material, monostaticGeometry(brightest)).diffuse;
+    }
+  }
+  return most;
+}
+
 double apertureGain(const Material& material)
 {
   return material.albedo() * std::max(1.0, 0.5 * (material.kp + 1.0)) / Pi;
@@ -120,10 +138,5 @@ double lobeWidth2(const Material& material)
 {
   // cos^kp(2 b) is about exp(-2 kp b^2); a^2 of Microfacet is 1/(2 kp + 1).
   return material.ks > 0.0 ? 1.0 / (2.0 * material.kp + 1.0) : 0.0;
-}
-
-bool hasSameLobe(const Material& one, const Material& two)
-{
-  return one.kp == two.kp && (one.ks > 0.0) == (two.ks > 0.0) && (one.kd > 0.0) == (two.kd > 0.0);
 }
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file Reflectance.h
- * @brief Share of a ray's energy that a surface sends into a given direction, by three models.
+ * @brief Share of a ray's energy that a surface sends into a given direction, by four models.
  *
  * All models keep the paper's radiometry: f has no 1/pi and no solid angle, and its specular lobe
  * peaks at ks. Let delta be the angle between the outgoing direction and the mirror direction of
@@ -17,6 +17,11 @@
  *   a^2 = 2/(exponent + 2)), G = 2 ci co/(co A(ci) + ci A(co)), A(c) = sqrt(a^2 + (1 - a^2) c^2).
  *   The Fresnel term tends to kd + ks, the whole reflectance of the material, and takes from the
  *   diffuse component what it gives to the lobe.
+ * - OrenNayar: f_d = kd cos theta_i (A + B max(0, cos dphi) sin alpha tan beta), alpha the larger
+ *   and beta the smaller of theta_i and theta_o, dphi between the two around the normal, A = 1 -
+ *   s^2/(2 s^2 + 0.66), B = 0.45 s^2/(s^2 + 0.09), s the roughness; f_s as LambertBlinnPhong.
+ *   Straight back kd (A cos theta_i + B sin^2 theta_i): grazing, kd B is left, where a surface
+ *   that is not rough returns nothing.
  *
  * Each model is written once, as a type with inline functions of plain doubles without branches:
  * single values and loops over lanes call the same.
@@ -25,11 +30,14 @@
  * 1975). Phong: the modified, reciprocal model of Lafortune and Willems (report CW197, K.U.
  * Leuven, 1994). Microfacet: Cook and Torrance (ACM TOG 1(1), 1982) with the distribution and the
  * height-correlated masking of Trowbridge-Reitz/GGX (Walter et al., EGSR 2007; Heitz, JCGT 3(2),
- * 2014) and Schlick's Fresnel term (1994).
+ * 2014) and Schlick's Fresnel term (1994). OrenNayar: Oren and Nayar, Generalization of Lambert's
+ * reflectance model, SIGGRAPH '94, the qualitative model (their Eq. 30).
  * Differs: LambertBlinnPhong is in three dimensions. The paper's max{0, cos^kp} taken literally
  * has a false glint at grazing incidence for even kp. Phong is scaled to the paper's peak.
- * Microfacet leaves out the factor 1/(4 cos theta_o) of the distribution, as Eq. 7 does.
- * Valid: kp from 0 to 1e6. In every model 0 <= f_d <= kd, f_s >= 0 and f_d + f_s <= kd + ks.
+ * Microfacet leaves out the factor 1/(4 cos theta_o) of the distribution, as Eq. 7 does. OrenNayar
+ * leaves out light that facets send to each other, as its authors' Eq. 30 does.
+ * Valid: kp from 0 to 1e6; roughness up to pi/2 (its authors measured up to 40 degrees). In every
+ * model 0 <= f_d <= kd, f_s >= 0 and f_d + f_s <= kd + ks.
  * Test: TestReflectance.cxx.
  */
 #ifndef avianlidar_Reflectance_h
@@ -52,6 +60,8 @@ struct Material
   double kd = 0.146; ///< diffuse, >= 0
   double ks = 0.054; ///< specular, >= 0, kd + ks <= 1
   double kp = 112.0; ///< glossiness, in [0, 1e6]
+  /// Standard deviation of the slope of its facets, rad, in [0, pi/2]; OrenNayar alone uses it.
+  double roughness = 0.0;
 
   /// Largest share of a ray's energy that the surface returns.
   AVIANLIDAR_ALWAYS_INLINE double albedo() const { return this->kd + this->ks; }
@@ -61,29 +71,36 @@ struct Material
   bool isMatt() const { return this->kd > 0.0; }
   bool operator==(const Material& other) const
   {
-    return this->kd == other.kd && this->ks == other.ks && this->kp == other.kp;
+    return this->kd == other.kd && this->ks == other.ks && this->kp == other.kp &&
+      this->roughness == other.roughness;
   }
   bool operator!=(const Material& other) const { return !(*this == other); }
 };
 
-/// A coefficient as seen by all code except the models of reflectance: a pure number, at least 0.
+/// A coefficient as seen by all code except the models of reflectance: at least 0.
 struct MaterialCoefficient
 {
   const char* name; ///< name of its cell array and key in scene files
+  const char* unit; ///< "1": a pure number
   double Material::*member;
   double most;
   bool isShare;         ///< a share of the energy; all shares add up to at most 1
   const char* expected; ///< in words
   /// True if a scene file must give it, given the coefficients before it.
   bool (*isNeeded)(const Material&);
+  bool isOptional; ///< surfaces without its cell array have the default of Material
 };
 
 /// In the order in which messages name them.
 inline constexpr MaterialCoefficient MaterialCoefficients[] = {
-  { "kd", &Material::kd, 1.0, true, "at least 0", [](const Material&) { return true; } },
-  { "ks", &Material::ks, 1.0, true, "at least 0", [](const Material&) { return false; } },
-  { "kp", &Material::kp, 1e6, false, "from 0 to 1e6",
-    [](const Material& material) { return material.isGlossy(); } },
+  { "kd", "1", &Material::kd, 1.0, true, "at least 0", [](const Material&) { return true; },
+    false },
+  { "ks", "1", &Material::ks, 1.0, true, "at least 0", [](const Material&) { return false; },
+    false },
+  { "kp", "1", &Material::kp, 1e6, false, "from 0 to 1e6",
+    [](const Material& material) { return material.isGlossy(); }, false },
+  { "roughness", "rad", &Material::roughness, 0.5 * Pi, false, "from 0 to pi/2 rad",
+    [](const Material&) { return false; }, true },
 };
 
 /// Materials of samples, for loops over lanes.
@@ -99,45 +116,47 @@ public:
   }
   void fill(std::size_t begin, std::size_t end, const Material& m)
   {
-    const double values[] = { m.kd, m.ks, m.kp };
-    for (std::size_t k = 0; k < std::size(values); ++k)
+    for (std::size_t k = 0; k < std::size(this->Lanes); ++k)
     {
-      std::fill(this->Lanes[k].begin() + begin, this->Lanes[k].begin() + end, values[k]);
+      std::fill(this->Lanes[k].begin() + begin, this->Lanes[k].begin() + end,
+        m.*MaterialCoefficients[k].member);
     }
   }
   struct View
   {
-    const double *kd, *ks, *kp;
+    const double *kd, *ks, *kp, *roughness;
     AVIANLIDAR_ALWAYS_INLINE Material operator[](std::size_t i) const
     {
-      return { this->kd[i], this->ks[i], this->kp[i] };
+      return { this->kd[i], this->ks[i], this->kp[i], this->roughness[i] };
     }
   };
   View view() const
   {
-    return { this->Lanes[0].data(), this->Lanes[1].data(), this->Lanes[2].data() };
+    return { this->Lanes[0].data(), this->Lanes[1].data(), this->Lanes[2].data(),
+      this->Lanes[3].data() };
   }
   Material operator[](std::size_t i) const { return this->view()[i]; }
 
 private:
-  std::vector<double> Lanes[3];
+  std::vector<double> Lanes[std::size(MaterialCoefficients)];
 };
 
 /// Empty if the material is usable; otherwise a sentence that names the value and what was
 /// expected. A sum kd + ks that exceeds 1 by less than 1e-12 passes: it is a rounded 1.
 std::string checkMaterial(const Material& material);
 
-/// "kd, ks, kp"
+/// "kd, ks, kp": those whose cell arrays a surface must have, or none.
 std::string namesOfCoefficients();
 
-/// "kd 0.146, ks 0.054, kp 112"
+/// "kd 0.146, ks 0.054, kp 112, roughness 0"
 std::string textOf(const Material& material);
 
 enum class ReflectanceModel
 {
   LambertBlinnPhong = 0,
   Phong = 1,
-  Microfacet = 2
+  Microfacet = 2,
+  OrenNayar = 3
 };
 
 /// The angles at one reflection; cosines are not cut off.
@@ -149,7 +168,16 @@ struct ReflectionGeometry
   double sin2Lobe = 0.0;      ///< sin^2 delta, accurate for small delta
   double sin2Half = 0.0;      ///< sin^2 theta_h
   double cosDifference = 1.0; ///< cos theta_d
+  double roughTerm = 0.0;     ///< max(0, cos dphi) sin alpha tan beta (OrenNayar)
 };
+
+/// roughTerm. @param cosBetween between the two directions, both away from the surface
+AVIANLIDAR_ALWAYS_INLINE double roughTermOf(
+  double cosIncidence, double cosOutgoing, double cosBetween)
+{
+  const double sines = lanes::larger(cosBetween - cosIncidence * cosOutgoing, 0.0);
+  return sines / lanes::larger(lanes::larger(cosIncidence, cosOutgoing), 1e-300);
+}
 
 /// @param incident unit, travelling towards the surface @param outgoing unit, away from it
 /// @param normal unit, on the side of the incident ray's origin
@@ -163,13 +191,14 @@ AVIANLIDAR_ALWAYS_INLINE ReflectionGeometry monostaticGeometry(double cosInciden
   const double sineSquared = lanes::larger((1.0 - cosIncidence) * (1.0 + cosIncidence), 0.0);
   const double sin2Lobe = 4.0 * sineSquared * cosIncidence * cosIncidence;
   return { cosIncidence, cosIncidence, cosIncidence * cosIncidence - sineSquared,
-    lanes::smaller(sin2Lobe, 1.0), lanes::smaller(sineSquared, 1.0), 1.0 };
+    lanes::smaller(sin2Lobe, 1.0), lanes::smaller(sineSquared, 1.0), 1.0,
+    sineSquared / lanes::larger(cosIncidence, 1e-300) };
 }
 
 /// Geometry of a reflection into the mirror direction of the incident ray: delta = 0.
 AVIANLIDAR_ALWAYS_INLINE ReflectionGeometry mirrorGeometry(double cosIncidence)
 {
-  return { cosIncidence, cosIncidence, 1.0, 0.0, 0.0, cosIncidence };
+  return { cosIncidence, cosIncidence, 1.0, 0.0, 0.0, cosIncidence, 0.0 };
 }
 
 /// Mirror direction of the incident ray, unit for unit arguments.
@@ -250,9 +279,38 @@ struct Microfacet
     return { m.kd * lanes::unit(cosIncidence), m.kd + m.ks };
   }
 };
+
+struct OrenNayar
+{
+  /// A and B.
+  struct Shares
+  {
+    double even;
+    double rough;
+  };
+  AVIANLIDAR_ALWAYS_INLINE static Shares sharesOf(Material m)
+  {
+    const double s2 = m.roughness * m.roughness;
+    return { 1.0 - 0.5 * s2 / (s2 + 0.33), 0.45 * s2 / (s2 + 0.09) };
+  }
+  AVIANLIDAR_ALWAYS_INLINE static Reflectance of(Material m, ReflectionGeometry g)
+  {
+    const Shares by = sharesOf(m);
+    const double c = lanes::unit(g.cosIncidence);
+    return { m.kd * lanes::smaller(c * (by.even + by.rough * g.roughTerm), 1.0),
+      LambertBlinnPhong::of(m, g).specular };
+  }
+  AVIANLIDAR_ALWAYS_INLINE static Reflectance bound(Material m, double cosIncidence)
+  {
+    // cos theta_i sin alpha tan beta is at most sin theta_i.
+    const Shares by = sharesOf(m);
+    const double c = lanes::unit(cosIncidence);
+    return { m.kd * lanes::smaller(c * by.even + by.rough * std::sqrt(1.0 - c * c), 1.0), m.ks };
+  }
+};
 /// @}
 
-/// f(model), model a value of one of the three types.
+/// f(model), model a value of one of the four types.
 template <class F>
 AVIANLIDAR_ALWAYS_INLINE auto withModel(ReflectanceModel model, F f)
 {
@@ -262,6 +320,8 @@ AVIANLIDAR_ALWAYS_INLINE auto withModel(ReflectanceModel model, F f)
       return f(Phong());
     case ReflectanceModel::Microfacet:
       return f(Microfacet());
+    case ReflectanceModel::OrenNayar:
+      return f(OrenNayar());
     case ReflectanceModel::LambertBlinnPhong:
       break;
   }
@@ -282,6 +342,9 @@ inline double specularReflectance(
 /// The largest f_d and f_s over all outgoing directions at this incidence (upper bounds; each on
 /// its own).
 Reflectance reflectanceBound(ReflectanceModel model, const Material& material, double cosIncidence);
+
+/// The largest f_d and f_s straight back over all angles of incidence whose cosine is at most this.
+Reflectance mostStraightBack(ReflectanceModel model, const Material& material, double mostCosine);
 
 /**
  * f as collected by a receiver of aperture `aperture` (m^2) at distance `distance` (m): f_d A/(pi
@@ -312,9 +375,6 @@ double apertureGain(const Material& material);
 /// Square of the angle of incidence at which the specular lobe has fallen to e^-1, rad2; 0 if there
 /// is none.
 double lobeWidth2(const Material& material);
-
-/// True if the lobes of two materials have the same shape, and both or neither have each component.
-bool hasSameLobe(const Material& one, const Material& two);
 }
 
 #endif

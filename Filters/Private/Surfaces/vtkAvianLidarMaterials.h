@@ -20,7 +20,8 @@ void AddCoefficients(vtkCellData* cells, vtkIdType count, const F& materialOf)
 {
   for (const avianlidar::MaterialCoefficient& coefficient : avianlidar::MaterialCoefficients)
   {
-    auto array = vtkAvianLidarArrays::Make<vtkDoubleArray>({ coefficient.name, "1" }, count);
+    auto array =
+      vtkAvianLidarArrays::Make<vtkDoubleArray>({ coefficient.name, coefficient.unit }, count);
     for (vtkIdType i = 0; i < count; ++i)
     {
       const avianlidar::Material& material = materialOf(i);

@@ -32,13 +32,13 @@ inline constexpr NamedMaterial NamedMaterials[] = {
   { "Metal", { 0.075, 0.634, 6803.0 }, { 0.60, 0.63, 0.68 }, Paper },
   { "Wood", { 0.107, 0.100, 82.0 }, { 0.62, 0.44, 0.27 }, Paper },
   // Kokaly et al. 2017, doi:10.3133/ds1035. Spectra tell no lobe: the reflectance is taken as
-  // diffuse.
-  { "Concrete", { 0.3104, 0.0, 1.0 }, { 0.66, 0.66, 0.64 },
-    "USGS Spectral Library 7, 905 nm: Concrete GDS375 light grey road" },
-  { "Asphalt", { 0.1298, 0.0, 1.0 }, { 0.25, 0.25, 0.27 },
-    "USGS Spectral Library 7, 905 nm: Asphalt GDS376 black road, old" },
-  { "Grass", { 0.2204, 0.0, 1.0 }, { 0.36, 0.55, 0.25 },
-    "USGS Spectral Library 7, 905 nm: Cheatgrass ANPC1 field" },
+  // diffuse. No roughness of such ground was found.
+  { "Concrete", { 0.3104, 0.0, 1.0, 0.35 }, { 0.66, 0.66, 0.64 },
+    "USGS Spectral Library 7, 905 nm: Concrete GDS375 light grey road; roughness assumed" },
+  { "Asphalt", { 0.1298, 0.0, 1.0, 0.52 }, { 0.25, 0.25, 0.27 },
+    "USGS Spectral Library 7, 905 nm: Asphalt GDS376 black road, old; roughness assumed" },
+  { "Grass", { 0.2204, 0.0, 1.0, 0.7 }, { 0.36, 0.55, 0.25 },
+    "USGS Spectral Library 7, 905 nm: Cheatgrass ANPC1 field; roughness assumed" },
   // No number of plumage at 905 nm was found.
   { "Plumage", { 0.3, 0.0, 1.0 }, { 0.45, 0.38, 0.33 }, "assumed" },
 };

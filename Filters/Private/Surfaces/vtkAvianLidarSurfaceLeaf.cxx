@@ -202,8 +202,15 @@ std::string vtkAvianLidarSurfaceLeaf::Check(const vtkAvianLidarSurfaceArrays& a)
       return wrong;
     }
   }
-  const auto absent = std::count(std::begin(a.coefficients), std::end(a.coefficients), nullptr);
-  if (absent != 0 && absent != std::size(a.coefficients))
+  bool somePresent = false;
+  bool someAbsent = false;
+  for (std::size_t k = 0; k < std::size(a.coefficients); ++k)
+  {
+    somePresent = somePresent || a.coefficients[k];
+    someAbsent =
+      someAbsent || !(a.coefficients[k] || avianlidar::MaterialCoefficients[k].isOptional);
+  }
+  if (somePresent && someAbsent)
   {
     return "of the cell arrays " + avianlidar::namesOfCoefficients() +
       " only some are there, expected all or none";

@@ -97,12 +97,16 @@ class vtkAvianLidarMaterialColumns
 {
 public:
   explicit vtkAvianLidarMaterialColumns(const vtkAvianLidarSurfaceArrays& arrays);
-  /// In place: with materials returned by value, loops over cells take twice as long.
+  /// In place: with materials returned by value, loops over cells take twice as long. A coefficient
+  /// without an array stays as it is.
   void Read(vtkIdType cell, avianlidar::Material& material) const
   {
     for (std::size_t k = 0; k < std::size(this->Columns); ++k)
     {
-      material.*avianlidar::MaterialCoefficients[k].member = this->Columns[k][cell];
+      if (this->Columns[k])
+      {
+        material.*avianlidar::MaterialCoefficients[k].member = this->Columns[k][cell];
+      }
     }
   }
 

@@ -84,9 +84,8 @@ double PolygonQuadrature::mostReturnedBy(
   std::uint32_t triangle, double height, double mostInverse) const
 {
   const Material& material = this->Setup.materials[triangle];
-  // All models fall with the angle of incidence, and so does the aperture with the range.
-  const Reflectance f = reflectance(this->Setup.settings.reflectanceModel, material,
-    monostaticGeometry(std::min(1.0, height * mostInverse)));
+  const Reflectance f = mostStraightBack(
+    this->Setup.settings.reflectanceModel, material, std::min(1.0, height * mostInverse));
   return throughAperture(f, material, this->Setup.sensor.receiverAperture, 1.0 / mostInverse)
     .total();
 }

@@ -276,7 +276,10 @@ AVIANLIDAR_ALWAYS_INLINE double throughputOf(const ConnectionLanes& h, std::size
   const Material second = h.material[b];
   const double cosBack = h.cosine[b];
   const bool gathers = h.aperture > 0.0;
-  const ReflectionGeometry out{ h.cosine[a], h.cosOut[i], 1.0, 0.0, 0.0, h.differenceOne[i] };
+  const auto roughTerm = [](double in, double out, double difference)
+  { return roughTermOf(in, out, 2.0 * difference * difference - 1.0); };
+  const ReflectionGeometry out{ h.cosine[a], h.cosOut[i], 1.0, 0.0, 0.0, h.differenceOne[i],
+    roughTerm(h.cosine[a], h.cosOut[i], h.differenceOne[i]) };
   const double diffuse = h.weight[i] * Model::of(first, out).diffuse;
   // Through an aperture: the solid angle under which P1 sees the part of the surface that fills
   // the cone around P2, over pi.
@@ -284,7 +287,8 @@ AVIANLIDAR_ALWAYS_INLINE double throughputOf(const ConnectionLanes& h, std::size
   const double form = h.cosOut[i] * h.cosIn[i] * lit / (Pi * h.length[i] * h.length[i]);
   const double received = first.diffuseAlbedo() * lanes::smaller(h.weight[i] * form, 1.0);
   const ReflectionGeometry back{ gathers ? cosBack : h.cosIn[i], cosBack, h.cosLobe[i],
-    h.sin2Lobe[i], h.sin2Half[i], h.differenceTwo[i] };
+    h.sin2Lobe[i], h.sin2Half[i], h.differenceTwo[i],
+    roughTerm(h.cosIn[i], cosBack, h.differenceTwo[i]) };
   const double returned =
     throughAperture(Model::of(second, back), second, h.aperture, h.range[b]).total();
   return h.share * (gathers ? received : diffuse) * returned *
