@@ -32,13 +32,14 @@
  * `pulse_width`, `frequency`, `sampling_interval`, `range_gate`, `noise_photon_rate`,
  * `lower_energy_limit`, `upper_energy_limit`, `receiver_aperture`, `receiver_model`, `wavelength`,
  * `receiver_efficiency`, `filter_bandwidth`, `background_radiance`, `amplifier_noise`,
- * `excess_noise_factor`, `false_alarms_per_scan`, `dynamic_range`, `display_length`; where there is
- * a table, `channel_elevations` with one value per channel; and `revolution`, the number of the
- * revolution that these beams are of; with sway `sway_amplitude` and `sway_frequency`, with jitter
- * `encoder_jitter`, with either `motion_seed`; with the photon receiver `assumed`, the names of
- * those values in use that nobody has measured, and so with any receiver whose file assumes some.
- * With the photon receiver `lower_energy_limit` and `upper_energy_limit` are those that follow from
- * it.
+ * `excess_noise_factor`, `false_alarms_per_scan`, `dynamic_range`, `range_noise`,
+ * `range_noise_exponent`, `range_noise_floor`, `range_walk`, `range_quantum`, `display_length`;
+ * where there is a table, `channel_elevations` with one value per channel; and `revolution`, the
+ * number of the revolution that these beams are of; with sway `sway_amplitude` and
+ * `sway_frequency`, with jitter `encoder_jitter`, with either `motion_seed`; with the photon
+ * receiver `assumed`, the names of those values in use that nobody has measured, and so with any
+ * receiver whose file assumes some. With the photon receiver `lower_energy_limit` and
+ * `upper_energy_limit` are those that follow from it.
  *
  * **Receivers.** `EnergyLimits` is the paper's: an echo is what exceeds a limit in joules, and its
  * radiometry has no fall with the square of the range unless `ReceiverAperture` is set: a wall at 3
@@ -523,6 +524,52 @@ public:
 
   ///@{
   /**
+   * Standard deviation b of the ranges of returns at a signal-to-noise ratio of 1, metres, 0 to
+   * 1e9. It is sqrt(a^2 + b^2/S^p), S about the ratio, a RangeNoiseFloor, p RangeNoiseExponent
+   * (Documentation/sensors.md); b depends on the pulse: 0.649 range units for a pulse of one unit.
+   * Drawn where the echo filter has Noise; then echoes have `distance_std_error`. Photon receiver.
+   * Default 0: ranges are exact, as in the paper.
+   */
+  vtkSetMacro(RangeNoise, double);
+  vtkGetMacro(RangeNoise, double);
+  ///@}
+
+  ///@{
+  /**
+   * Power p of the signal-to-noise ratio by which the variance of ranges falls, 0 to 10. Photon
+   * receiver. Default 2.
+   */
+  vtkSetMacro(RangeNoiseExponent, double);
+  vtkGetMacro(RangeNoiseExponent, double);
+  ///@}
+
+  ///@{
+  /**
+   * Standard deviation a of the ranges of the strongest echoes, metres, 0 to 1e9. Default 0.
+   */
+  vtkSetMacro(RangeNoiseFloor, double);
+  vtkGetMacro(RangeNoiseFloor, double);
+  ///@}
+
+  ///@{
+  /**
+   * How far beyond its place an echo at the lower limit is said to be, metres, 0 to 1e9: the walk
+   * of a leading edge, which falls with the energy. Default 0.
+   */
+  vtkSetMacro(RangeWalk, double);
+  vtkGetMacro(RangeWalk, double);
+  ///@}
+
+  ///@{
+  /**
+   * Ranges are multiples of this, metres, 0 (exact) to 1e9. Default 0.
+   */
+  vtkSetMacro(RangeQuantum, double);
+  vtkGetMacro(RangeQuantum, double);
+  ///@}
+
+  ///@{
+  /**
    * False alarms expected in a whole scan of empty sky, over all its pieces, above 0, at most 1e8
    * and less than a tenth of its range units. Photon receiver. A warning says where a real receiver
    * would have ten times as many, as noise of few electrons is not Gaussian. Default 1.
@@ -611,6 +658,11 @@ protected:
   double ExcessNoiseFactor = 3.0;
   double FalseAlarmsPerScan = 1.0;
   double DynamicRange = 40.0;
+  double RangeNoise = 0.0;
+  double RangeNoiseExponent = 2.0;
+  double RangeNoiseFloor = 0.0;
+  double RangeWalk = 0.0;
+  double RangeQuantum = 0.0;
   double DisplayLength = 1000.0;
   std::string Description;
   /// Properties that a file calls assumed, in snake case, and their values.

@@ -165,7 +165,7 @@ void vtkAvianLidarEchoFilter::Trace(const std::array<vtkPolyData*, 3>& outputs)
   in.TracedRays = static_cast<double>(result.raysTraced);
   in.TracedBeams = static_cast<double>(result.beamsTraced);
   this->Moved->TouchedBeams = static_cast<double>(result.beamsTouched);
-  vtkAvianLidarEchoOutput::FillEchoes(result, in.Beams, outputs[0]);
+  vtkAvianLidarEchoOutput::FillEchoes(result, in.Beams, in.Setup.noise, outputs[0]);
   vtkAvianLidarEchoOutput::FillReport(result, in.Beams, in.Setup.noise, outputs[1]);
   if (this->ReportMovers)
   {

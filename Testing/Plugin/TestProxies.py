@@ -52,6 +52,11 @@ BEAM_SOURCE = {
     "ExcessNoiseFactor": "",
     "FalseAlarmsPerScan": "",
     "DynamicRange": "decibels",
+    "RangeNoise": "metres",
+    "RangeNoiseExponent": "",
+    "RangeNoiseFloor": "metres",
+    "RangeWalk": "metres",
+    "RangeQuantum": "metres",
     "DisplayLength": "metres",
 }
 # What an execution leaves for scripts, and the unit in the tooltip.

@@ -222,7 +222,7 @@ report_units = {
     "": "beam_id laser_id status skipped",
 }
 field_units = {
-    "m": "position display_length range_gate perceivable_range",
+    "m": "position display_length range_gate perceivable_range range_noise range_noise_floor range_walk range_quantum",
     "deg": "orientation minimum_elevation elevation_step azimuth_range azimuth_step",
     "rad": "half_beamwidth",
     "Hz": "rotation_rate frequency noise_photon_rate",

@@ -37,7 +37,8 @@ enum class RandomPurpose : std::uint32_t
   FlockPlaces = 12,   ///< likewise, where in a flock it flies
   RareNoise = 13,     ///< which units have a rare deviate
   Cells = 14,         ///< of jittered rays; the pattern's number replaces the beam's
-  Mirrors = 15        ///< of rays over mirrors
+  Mirrors = 15,       ///< of rays over mirrors
+  RangeNoise = 16     ///< of the range of a return, by its strongest unit
 };
 
 /// Two independent uniform doubles in the open interval (0, 1), 53 bits each.

@@ -203,6 +203,7 @@ void BeamEchoes::finish(
     {
       echo = echoOf(ret);
     }
+    echo.range = this->Receiver.measured(ret, echo.range);
     echo.energyReceived = ret.energyReceived;
     echo.energy = ret.energy;
     echo.returnEnergy = ret.returnEnergy;

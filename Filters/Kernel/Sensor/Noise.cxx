@@ -210,6 +210,7 @@ NoisePlan planNoise(const Sensor& sensor, bool enabled, bool inFull)
   NoisePlan plan;
   plan.gateUnits = unitsInsideGate(sensor.samplingInterval, sensor.rangeGate);
   plan.photonEnergy = sensor.photonEnergy();
+  plan.ofRanges = enabled;
   if (sensor.receiverModel == ReceiverModel::Photons)
   {
     if (enabled)
@@ -342,6 +343,13 @@ double BeamNoise::deviate(double below, double above) const
 {
   return above < 0.5 ? Root2 * bm::erfc_inv(2.0 * above, DoublePolicy())
                      : -Root2 * bm::erfc_inv(2.0 * below, DoublePolicy());
+}
+
+double BeamNoise::rangeDeviate(std::int64_t unit) const
+{
+  const double u = uniformPair(this->Seed, this->Beam, static_cast<std::uint64_t>(unit),
+    RandomPurpose::RangeNoise, this->Revolution)[0];
+  return this->deviate(u, 1.0 - u);
 }
 
 double BeamNoise::place(std::int64_t unit) const

@@ -43,6 +43,7 @@ namespace avianlidar
 struct NoisePlan
 {
   bool active = false;       ///< false: no noise, or none that matters
+  bool ofRanges = false;     ///< ranges have theirs (RangeErrors.h)
   double meanPhotons = 0.0;  ///< b tau_s, in one unit
   double photonEnergy = 0.0; ///< J
   std::int64_t gateUnits = 0;
@@ -94,6 +95,9 @@ public:
 
   /// Noise energy of a unit, J; 0 outside the gate. @param light what the unit receives, J
   double energy(std::int64_t unit, double light = 0.0);
+
+  /// A standard normal deviate for the range of a return, by its strongest unit.
+  double rangeDeviate(std::int64_t unit) const;
 
   /// Where in a unit its noise arrives, as a share of the unit: uniform in (0, 1).
   double place(std::int64_t unit) const;

@@ -16,7 +16,8 @@ double perceivedEnergy(double received, double lower, double upper)
 
 BeamReceiver::BeamReceiver(const Sensor& sensor, const NoisePlan& noise, std::int32_t seed,
   ReturnMode mode, std::int32_t revolution, std::function<bool()> wanted)
-  : UnitLength(sensor.rangeUnitLength())
+  : Errors(sensor, noise.ofRanges)
+  , UnitLength(sensor.rangeUnitLength())
   , Lower(sensor.lowerEnergyLimit)
   , Upper(sensor.upperEnergyLimit)
   , Plan(noise)
@@ -106,6 +107,17 @@ double BeamReceiver::rangeOf(const Return& run, RangeUnitAccumulator& accumulato
     2.0 * this->UnitLength * static_cast<double>(this->Units[run.firstUnit].index);
   const WeightedSum sum = sumShares(shares, accumulator.pathLengths().data(), reference);
   return sum.energy > 0.0 ? 0.5 * (reference + sum.moment / sum.energy) : this->rangeOfNoise(run);
+}
+
+double BeamReceiver::measured(const Return& run, double range) const
+{
+  if (this->Mode == ReturnMode::RangeUnits)
+  {
+    return range;
+  }
+  const std::int64_t unit = this->Units[run.strongestUnit].index;
+  return this->Errors.measured(
+    range, run.energyReceived, this->Errors.hasNoise() ? this->Noise.rangeDeviate(unit) : 0.0);
 }
 
 double BeamReceiver::rangeOfNoise(const Return& run) const

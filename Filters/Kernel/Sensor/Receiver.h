@@ -20,6 +20,7 @@
 #define avianlidar_Receiver_h
 
 #include "Noise.h"
+#include "RangeErrors.h"
 #include "RangeUnits.h"
 #include "Sensor.h"
 
@@ -84,6 +85,10 @@ public:
   /// RangeUnits. @param accumulator of the beam's paths
   double rangeOf(const Return& run, RangeUnitAccumulator& accumulator) const;
 
+  /// What the receiver says of a range of that return, m: noise, walk, quantum (RangeErrors.h). In
+  /// the mode RangeUnits the range itself.
+  double measured(const Return& run, double range) const;
+
   /// True if units without paths may be perceived: then no beam can be left out.
   bool mayAlarm() const { return this->Plan.active; }
 
@@ -105,6 +110,7 @@ private:
   double rangeOfNoise(const Return& run) const;
   double centreOf(std::int64_t unit) const;
 
+  RangeErrors Errors;
   double UnitLength;
   double Lower;
   double Upper;

@@ -15,31 +15,43 @@ const std::vector<SensorField>& sensorFields()
   constexpr double AboveZero = std::numeric_limits<double>::denorm_min();
   static const std::vector<SensorField> all = {
     { "half_beamwidth", "rad", &Sensor::halfBeamwidth, 1e-9, MaximumHalfBeamwidth,
-      "1e-9 to pi/3 rad (60 degrees)", false }, // sampling is exact from 1e-9 on
-    { "pulse_energy", "J", &Sensor::pulseEnergy, 1e-50, MaximumEnergy, "1e-50 to 1e50 J", false },
-    { "sampling_interval", "s", &Sensor::samplingInterval, 1e-30, 1e20, "1e-30 to 1e20 s", false },
+      "1e-9 to pi/3 rad (60 degrees)", NeededOf::All }, // sampling is exact from 1e-9 on
+    { "pulse_energy", "J", &Sensor::pulseEnergy, 1e-50, MaximumEnergy, "1e-50 to 1e50 J",
+      NeededOf::All },
+    { "sampling_interval", "s", &Sensor::samplingInterval, 1e-30, 1e20, "1e-30 to 1e20 s",
+      NeededOf::All },
     { "pulse_width", "s", &Sensor::pulseWidth, 0.0, 1e23, "0 s to 1000 times sampling_interval",
-      false },
-    { "frequency", "Hz", &Sensor::frequency, 1.0, 1e30, "1 to 1e30 Hz", false },
+      NeededOf::All },
+    { "frequency", "Hz", &Sensor::frequency, 1.0, 1e30, "1 to 1e30 Hz", NeededOf::All },
     { "range_gate", "m", &Sensor::rangeGate, AboveZero, MaximumRangeGate,
-      "more than 0 and at most 1e30 m", false },
-    { "noise_photon_rate", "Hz", &Sensor::noisePhotonRate, 0.0, 1e50, "0 to 1e50 Hz", false },
+      "more than 0 and at most 1e30 m", NeededOf::All },
+    { "noise_photon_rate", "Hz", &Sensor::noisePhotonRate, 0.0, 1e50, "0 to 1e50 Hz",
+      NeededOf::All },
     { "lower_energy_limit", "J", &Sensor::lowerEnergyLimit, 0.0, MaximumEnergy, "0 to 1e50 J",
-      false },
+      NeededOf::All },
     { "upper_energy_limit", "J", &Sensor::upperEnergyLimit, 0.0, MaximumEnergy,
-      "lower_energy_limit to 1e50 J", false },
-    { "receiver_aperture", "m2", &Sensor::receiverAperture, 0.0, 1e20, "0 to 1e20 m2", false },
+      "lower_energy_limit to 1e50 J", NeededOf::All },
+    { "receiver_aperture", "m2", &Sensor::receiverAperture, 0.0, 1e20, "0 to 1e20 m2",
+      NeededOf::All },
     { "receiver_efficiency", "1", &Sensor::receiverEfficiency, AboveZero, 1.0,
-      "more than 0 and at most 1", true },
-    { "filter_bandwidth", "nm", &Sensor::filterBandwidth, 0.0, 1e6, "0 to 1e6 nm", true },
+      "more than 0 and at most 1", NeededOf::Photons },
+    { "filter_bandwidth", "nm", &Sensor::filterBandwidth, 0.0, 1e6, "0 to 1e6 nm",
+      NeededOf::Photons },
     { "background_radiance", "W/(m2 sr nm)", &Sensor::backgroundRadiance, 0.0, 1e10,
-      "0 to 1e10 W/(m2 sr nm)", true },
+      "0 to 1e10 W/(m2 sr nm)", NeededOf::Photons },
     { "amplifier_noise", "1", &Sensor::amplifierNoise, 0.0, 1e20, "0, or 1e-3 to 1e20 electrons",
-      true },
-    { "excess_noise_factor", "1", &Sensor::excessNoiseFactor, 1.0, 1e6, "1 to 1e6", true }
+      NeededOf::Photons },
+    { "excess_noise_factor", "1", &Sensor::excessNoiseFactor, 1.0, 1e6, "1 to 1e6",
+      NeededOf::Photons },
+    { "range_noise", "m", &Sensor::rangeNoise, 0.0, 1e9, "0 to 1e9 m", NeededOf::None },
+    { "range_noise_exponent", "1", &Sensor::rangeNoiseExponent, 0.0, 10.0, "0 to 10",
+      NeededOf::None },
+    { "range_noise_floor", "m", &Sensor::rangeNoiseFloor, 0.0, 1e9, "0 to 1e9 m", NeededOf::None },
+    { "range_walk", "m", &Sensor::rangeWalk, 0.0, 1e9, "0 to 1e9 m", NeededOf::None },
+    { "range_quantum", "m", &Sensor::rangeQuantum, 0.0, 1e9, "0 to 1e9 m", NeededOf::None }
   };
   constexpr std::size_t choices = 2; // profile and receiver model
-  static_assert(memberCount<Sensor>() == 15 + choices, "is the new member a row of the table?");
+  static_assert(memberCount<Sensor>() == 20 + choices, "is the new member a row of the table?");
   return all;
 }
 

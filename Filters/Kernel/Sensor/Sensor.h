@@ -70,6 +70,13 @@ struct Sensor
   double amplifierNoise = 60.0;     ///< n_a, electrons rms in a range unit, 0 to 1e20
   double excessNoiseFactor = 3.0;   ///< F, 1 to 1e6
 
+  // Errors of ranges (RangeErrors.h); the paper's receiver has none.
+  double rangeNoise = 0.0;         ///< b, m, standard deviation at a signal-to-noise ratio of 1
+  double rangeNoiseExponent = 2.0; ///< p, 0 to 10
+  double rangeNoiseFloor = 0.0;    ///< a, m, standard deviation of the strongest echoes
+  double rangeWalk = 0.0;          ///< m, at the lower limit
+  double rangeQuantum = 0.0;       ///< m, step of the ranges; 0: none
+
   /// Energy of one photon, J.
   double photonEnergy() const { return PlanckConstant * this->frequency; }
 
@@ -84,6 +91,14 @@ struct Sensor
   double rangeUnitLength() const { return 0.5 * SpeedOfLight * this->samplingInterval; }
 };
 
+/// Which beams must say a number of the sensor; of others it is the default.
+enum class NeededOf
+{
+  All,
+  Photons, ///< those of a photon receiver
+  None
+};
+
 /// A number of the sensor, for all that goes through them: checks, keys, field data, files.
 struct SensorField
 {
@@ -92,7 +107,7 @@ struct SensorField
   double Sensor::*member;
   double least, most;
   const char* expected; ///< the range in words, also where it depends on other fields
-  bool ofPhotons;       ///< the photon receiver's alone
+  NeededOf neededOf;
 };
 
 /// All numbers of the sensor; profile and receiver model are choices.

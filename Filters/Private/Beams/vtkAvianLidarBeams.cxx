@@ -31,12 +31,13 @@ std::string ReadSensor(vtkFieldData* fields, avianlidar::Sensor& sensor)
       "' is missing or not a finite number; expected one value" +
       " (vtkAvianLidarBeamSource writes it)";
   };
-  // @param ofPhotons what a photon receiver has besides
-  const auto readNumbers = [&](bool ofPhotons) -> std::string
+  using avianlidar::NeededOf;
+  const auto readNumbers = [&](NeededOf of) -> std::string
   {
     for (const avianlidar::SensorField& field : avianlidar::sensorFields())
     {
-      if (field.ofPhotons == ofPhotons &&
+      const bool isThere = fields && fields->GetAbstractArray(field.name);
+      if (field.neededOf == of && (isThere || of != NeededOf::None) &&
         !vtkAvianLidarArrays::GetFieldValue(
           fields, { field.name, field.unit }, sensor.*field.member))
       {
@@ -45,7 +46,12 @@ std::string ReadSensor(vtkFieldData* fields, avianlidar::Sensor& sensor)
     }
     return {};
   };
-  std::string wrong = readNumbers(false);
+  std::string wrong = readNumbers(NeededOf::All);
+  if (!wrong.empty())
+  {
+    return wrong;
+  }
+  wrong = readNumbers(NeededOf::None);
   if (!wrong.empty())
   {
     return wrong;
@@ -72,7 +78,7 @@ std::string ReadSensor(vtkFieldData* fields, avianlidar::Sensor& sensor)
   sensor.receiverModel = static_cast<avianlidar::ReceiverModel>(static_cast<int>(model));
   if (sensor.receiverModel == avianlidar::ReceiverModel::Photons)
   {
-    wrong = readNumbers(true);
+    wrong = readNumbers(NeededOf::Photons);
     if (!wrong.empty())
     {
       return wrong;

@@ -90,7 +90,7 @@ const char* const vtkAvianLidarCoverageStatusNames[CoverageShares::Statuses] = {
 void vtkAvianLidarFillClutter(
   const avianlidar::ScanResult& still, const vtkAvianLidarBeams& beams, vtkPolyData* clutter)
 {
-  vtkAvianLidarEchoOutput::FillEchoes(still, beams, clutter);
+  vtkAvianLidarEchoOutput::FillEchoes(still, beams, {}, clutter);
   clutter->GetPointData()->AddArray(Arrays::MakeOf<vtkDoubleArray>(
     Arrays::DetectionProbability, avianlidar::shareOfScans(beams.sensor, still.echoes)));
 }

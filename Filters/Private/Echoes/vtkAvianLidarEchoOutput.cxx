@@ -126,8 +126,8 @@ void SetSettings(const avianlidar::EchoSettings& s, vtkFieldData* fields)
 }
 
 //------------------------------------------------------------------------------
-void vtkAvianLidarEchoOutput::FillEchoes(
-  const avianlidar::ScanResult& result, const vtkAvianLidarBeams& beams, vtkPolyData* echoes)
+void vtkAvianLidarEchoOutput::FillEchoes(const avianlidar::ScanResult& result,
+  const vtkAvianLidarBeams& beams, const avianlidar::NoisePlan& noise, vtkPolyData* echoes)
 {
   const std::vector<Echo>& all = result.echoes;
   SetVertices(echoes, static_cast<vtkIdType>(all.size()),
@@ -151,6 +151,12 @@ void vtkAvianLidarEchoOutput::FillEchoes(
   Add<vtkDoubleArray>(echoes, names::Intensity,
     [&](std::size_t i) { return IntensityOf(all[i].energy, beams.sensor); });
   Add<vtkDoubleArray>(echoes, names::Distance, [&](std::size_t i) { return all[i].range; });
+  const avianlidar::RangeErrors errors(beams.sensor, noise.ofRanges);
+  if (errors.hasNoise())
+  {
+    Add<vtkDoubleArray>(echoes, names::DistanceStdError,
+      [&](std::size_t i) { return errors.deviation(all[i].energyReceived); });
+  }
   const auto beamOf = [&](std::size_t i) { return result.beamOfEcho[i]; };
   AddBeamArrays(beams, echoes, beamOf);
   Add<vtkDoubleArray>(

@@ -17,9 +17,9 @@ class vtkPolyData;
 
 namespace vtkAvianLidarEchoOutput
 {
-/// One vertex per return, with all its arrays.
-void FillEchoes(
-  const avianlidar::ScanResult& result, const vtkAvianLidarBeams& beams, vtkPolyData* echoes);
+/// One vertex per return, with all its arrays. @param noise of the scan
+void FillEchoes(const avianlidar::ScanResult& result, const vtkAvianLidarBeams& beams,
+  const avianlidar::NoisePlan& noise, vtkPolyData* echoes);
 
 /**
  * A vertex for each beam, in their order: at its strongest return, or at the display length, m.

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "RangeErrors.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace avianlidar
+{
+RangeErrors::RangeErrors(const Sensor& sensor, bool noise)
+  : Instrument(sensor)
+  , Receiver(sensor)
+{
+  if (sensor.receiverModel != ReceiverModel::Photons)
+  {
+    this->Instrument.rangeNoise = 0.0; // no ratio of signal to noise is known
+  }
+  this->Noise = noise && (this->Instrument.rangeNoise > 0.0 || sensor.rangeNoiseFloor > 0.0);
+}
+
+double RangeErrors::deviation(double energy) const
+{
+  const Sensor& sensor = this->Instrument;
+  if (!this->Noise)
+  {
+    return 0.0;
+  }
+  double ofSignal = 0.0;
+  if (sensor.rangeNoise > 0.0)
+  {
+    const double electrons = this->Receiver.electronsPerJoule * energy;
+    const double ratio = (electrons - this->Receiver.deviation(electrons)) /
+      this->Receiver.deviation(0.25 * electrons);
+    ofSignal = sensor.rangeNoise * std::pow(std::max(1.0, ratio), -0.5 * sensor.rangeNoiseExponent);
+  }
+  return std::hypot(sensor.rangeNoiseFloor, ofSignal);
+}
+
+double RangeErrors::measured(double range, double energy, double normal) const
+{
+  const Sensor& sensor = this->Instrument;
+  if (sensor.rangeWalk > 0.0)
+  {
+    range += sensor.rangeWalk * std::min(1.0, sensor.lowerEnergyLimit / energy);
+  }
+  if (this->Noise)
+  {
+    range += this->deviation(energy) * normal;
+  }
+  if (sensor.rangeQuantum > 0.0)
+  {
+    range = sensor.rangeQuantum * std::round(range / sensor.rangeQuantum);
+  }
+  return std::max(0.0, range);
+}
+}

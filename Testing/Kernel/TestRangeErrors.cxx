@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What a receiver makes of ranges: standard deviation, walk, quantum; off by default.
+#include "EchoTestScene.h"
+#include "RangeErrors.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <set>
+
+using namespace avianlidar;
+using namespace echotest;
+
+namespace
+{
+Sensor photons()
+{
+  Sensor sensor;
+  sensor.receiverModel = ReceiverModel::Photons;
+  sensor.receiverAperture = 0.00785;
+  sensor.lowerEnergyLimit = 1e-16;
+  sensor.upperEnergyLimit = 1.0;
+  return sensor;
+}
+
+/// Energy at which the strongest unit gets so many electrons, J.
+double energyOf(const Sensor& sensor, double electrons)
+{
+  return electrons / PhotonReceiver(sensor).electronsPerJoule;
+}
+}
+
+TEST(RangeErrors, DeviationByItsFormula)
+{
+  Sensor sensor = photons();
+  sensor.rangeNoise = 0.486;
+  sensor.rangeNoiseFloor = 0.01;
+  const PhotonReceiver receiver(sensor);
+  for (const double exponent : { 0.0, 1.1, 2.0 })
+  {
+    sensor.rangeNoiseExponent = exponent;
+    const RangeErrors errors(sensor, true);
+    for (const double n : { 600.0, 2000.0, 1e6 })
+    {
+      const double dark = receiver.darkVariance;
+      const double ratio = (n - std::sqrt(dark + 3.0 * n)) / std::sqrt(dark + 0.75 * n);
+      EXPECT_NEAR(errors.deviation(energyOf(sensor, n)),
+        std::sqrt(1e-4 + 0.486 * 0.486 / std::pow(ratio, exponent)), 1e-12);
+    }
+    // Not more than the noise of a ratio of 1, also where nothing is left of the signal.
+    EXPECT_NEAR(errors.deviation(energyOf(sensor, 1.0)), std::hypot(0.01, 0.486), 1e-12);
+  }
+}
+
+TEST(RangeErrors, TheFactorOfAPulseOfOneUnit)
+{
+  // Centroid of two units with the shares s and 1 - s: its error in units, times the strongest.
+  constexpr int steps = 100000;
+  double sum = 0.0;
+  for (int i = 0; i < steps; ++i)
+  {
+    const double s = (i + 0.5) / steps;
+    const double most = std::max(s, 1.0 - s);
+    sum += ((1.0 - s) * (1.0 - s) + s * s) * most * most / steps;
+  }
+  EXPECT_NEAR(std::sqrt(sum), 0.649, 5e-4);
+}
+
+TEST(RangeErrors, WalkAndQuantum)
+{
+  Sensor sensor = photons();
+  EXPECT_EQ(RangeErrors(sensor, true).measured(123.456, 1e-12, 2.0), 123.456); // none by default
+  sensor.rangeWalk = 0.3;
+  const double low = sensor.lowerEnergyLimit;
+  EXPECT_NEAR(RangeErrors(sensor, true).measured(100.0, low, 0.0), 100.3, 1e-12);
+  EXPECT_NEAR(RangeErrors(sensor, true).measured(100.0, 10.0 * low, 0.0), 100.03, 1e-12);
+  sensor.rangeQuantum = 0.25;
+  EXPECT_EQ(RangeErrors(sensor, true).measured(100.0, low, 0.0), 100.25);
+  sensor.rangeNoise = 7.0; // of a photon receiver alone
+  sensor.receiverModel = ReceiverModel::EnergyLimits;
+  EXPECT_EQ(RangeErrors(sensor, true).deviation(low), 0.0);
+  sensor.rangeNoiseFloor = 1.0;
+  EXPECT_EQ(RangeErrors(sensor, true).measured(100.0, low, 2.0), 102.25);
+  EXPECT_EQ(RangeErrors(sensor, false).measured(100.0, low, 2.0), 100.25);
+  EXPECT_EQ(RangeErrors(sensor, true).measured(1.0, low, -5.0), 0.0); // no range is negative
+}
+
+TEST(RangeErrors, OfAScan)
+{
+  // A wall; beams that differ by noise alone.
+  Scene scene;
+  scene.plate({ 100.0, 0.0, 0.0 }, { 0.0, 50.0, 0.0 }, { 0.0, 0.0, 50.0 }, Material());
+  Sensor sensor = photons();
+  const auto rangesOf = [&](bool noise, std::int32_t seed)
+  {
+    EchoSettings settings;
+    settings.noise = noise;
+    settings.seed = seed;
+    settings.numberOfReflections = 1;
+    ScanBeams beams = oneBeam();
+    for (std::uint64_t id = 1; id < 2000; ++id)
+    {
+      beams.ids.push_back(id);
+      beams.origins.push_back(beams.origins[0]);
+      beams.directions.push_back(beams.directions[0]);
+    }
+    std::vector<double> ranges;
+    for (const Echo& echo : runScan(makeSetup(scene, sensor, settings), beams).echoes)
+    {
+      if (echo.objectId >= 0)
+      {
+        ranges.push_back(echo.range);
+      }
+    }
+    EXPECT_EQ(ranges.size(), 2000u);
+    return ranges;
+  };
+  const std::vector<double> exact = rangesOf(true, 0);
+  EXPECT_EQ(std::set<double>(exact.begin(), exact.end()).size(), 1u);
+  sensor.rangeNoiseFloor = 0.2;
+  const std::vector<double> noisy = rangesOf(true, 0);
+  double sum = 0.0;
+  double squares = 0.0;
+  for (std::size_t i = 0; i < noisy.size(); ++i)
+  {
+    const double error = noisy[i] - exact[i];
+    sum += error;
+    squares += error * error;
+  }
+  EXPECT_NEAR(sum / 2000.0, 0.0, 4.0 * 0.2 / std::sqrt(2000.0));
+  EXPECT_NEAR(std::sqrt(squares / 2000.0), 0.2, 4.0 * 0.2 / std::sqrt(4000.0));
+  EXPECT_EQ(noisy, rangesOf(true, 0));
+  EXPECT_NE(noisy, rangesOf(true, 1));
+  EXPECT_EQ(exact, rangesOf(false, 0));
+}
+
+TEST(RangeErrors, BadValuesAreNamed)
+{
+  for (double Sensor::*member : { &Sensor::rangeNoise, &Sensor::rangeNoiseExponent,
+         &Sensor::rangeNoiseFloor, &Sensor::rangeWalk, &Sensor::rangeQuantum })
+  {
+    Sensor bad = photons();
+    bad.*member = -1.0;
+    EXPECT_NE(checkSensor(bad).find(sensorField(member).name), std::string::npos);
+  }
+}
