@@ -79,7 +79,7 @@ class RangeNoise(unittest.TestCase):
             order = np.argsort(np.argsort(score)) + 1.0
             n, m = alarm.sum(), (~alarm).sum()
             auc = (order[alarm].sum() - n * (n + 1) / 2) / (n * m)
-            self.assertLess(abs(auc - 0.5), 0.03, auc)
+            self.assertLess(abs(auc - 0.5), 0.02, auc)
 
     def test_quantum_and_walk(self):
         places = np.linspace(-1, 1, 50)
