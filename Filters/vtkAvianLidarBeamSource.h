@@ -524,9 +524,10 @@ public:
 
   ///@{
   /**
-   * Standard deviation b of the ranges of returns at a signal-to-noise ratio of 1, metres, 0 to
-   * 1e9. It is sqrt(a^2 + b^2/S^p), S about the ratio, a RangeNoiseFloor, p RangeNoiseExponent
-   * (Documentation/sensors.md); b depends on the pulse: 0.649 range units for a pulse of one unit.
+   * Standard deviation b of the ranges of returns at S = 1, metres, 0 to 1e9. It is sqrt(a^2 +
+   * b^2/S^p), S the signal-to-noise ratio of a pulse's flanks (twice that of strong light;
+   * Documentation/sensors.md), a RangeNoiseFloor, p RangeNoiseExponent. It belongs to a pulse and a
+   * SamplingInterval and does not follow them: 0.649 range units for a pulse of one unit.
    * Drawn where the echo filter has Noise; then echoes have `distance_std_error`. Photon receiver.
    * Default 0: ranges are exact, as in the paper.
    */
@@ -562,7 +563,7 @@ public:
 
   ///@{
   /**
-   * Ranges are multiples of this, metres, 0 (exact) to 1e9. Default 0.
+   * Ranges are multiples of this, metres, 0 (exact) or 1e-9 to 1e9. Default 0.
    */
   vtkSetMacro(RangeQuantum, double);
   vtkGetMacro(RangeQuantum, double);

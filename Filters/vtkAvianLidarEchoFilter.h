@@ -110,7 +110,7 @@
  * `preset` overrode it, with the preset's value), but for Visibility, of which
  * `attenuation_coefficient` tells what the air was, and NumberOfThreads, MaximumCacheSize,
  * ReportMovers, Controller and ErrorsAsData, which change no echo; `avian_lidar_version`,
- * `scene_checksum` (geometry and materials), `noise_modelled` (0 if noise was skipped) with
+ * `scene_checksum` (geometry and materials), `noise_modelled` (0 if noise of energies was skipped) with
  * `noise_bound` J (no range unit receives more than this from skipped noise),
  * `light_energy_constraint_bound` J (no range unit loses more), `secondary_reflections_modelled` (0
  * if not asked for, or if none can matter), `further_reflections_bound` J (what paths over more

@@ -374,8 +374,7 @@ int vtkAvianLidarMaterial::RequestData(
       const std::string badMaterial = avianlidar::checkMaterial(what.Coefficients);
       if (!badMaterial.empty())
       {
-        return "Material: " + NameProperties(badMaterial) + " (values of the cell arrays " +
-          avianlidar::namesOfCoefficients() + ")";
+        return "Material: " + NameProperties(badMaterial);
       }
       const std::string badNames = CheckNames(input);
       if (!badNames.empty())

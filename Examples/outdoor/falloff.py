@@ -199,7 +199,7 @@ def simulated(plane, elevations, step=360.0 / 1024):
     corners = [middle + 500 * (i * across + j * along) for i, j in ((-1, -1), (1, -1), (1, 1), (-1, 1))]
     scene = al.Scene()
     scene.add((np.array(corners), [(0, 1, 2), (0, 2, 3)]), material=(0.3, 0.0, 0.0), name="plane")
-    sensor = al.Sensor("Automotive16", azimuth_step=step, channel_elevations=list(elevations), range_noise=0)
+    sensor = al.Sensor("Automotive16", azimuth_step=step, channel_elevations=list(elevations), range_noise=0, range_noise_floor=0)
     echoes = al.Scan(scene, sensor, attenuation_coefficient=AIR).echoes
     return echoes["distance_m"], echoes["return_energy"], np.asarray(echoes["beam_id"], int) % len(elevations)
 

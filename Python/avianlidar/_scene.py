@@ -25,7 +25,7 @@ from ._properties import choices, choose, get_property, property_names, set_prop
 # Names of a material's coefficients, which are those of cell arrays; those behind the first three may be left out.
 COEFFICIENTS = tuple(filter(None, map(_wrapped.vtkAvianLidarMaterial.GetCoefficientName, range(100))))
 _NUMBERS = range(3, len(COEFFICIENTS) + 1)
-_ALL = ", ".join(COEFFICIENTS)
+_ALL = f"{', '.join(COEFFICIENTS[:_NUMBERS[0]])}, and optionally {', '.join(COEFFICIENTS[_NUMBERS[0]:])}"
 
 Material = Union[str, Sequence[float], Sequence[str], np.ndarray]
 

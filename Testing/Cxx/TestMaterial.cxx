@@ -278,14 +278,14 @@ void TestBadInput()
     { "Material", [](Filter* f) { f->SetMaterial(9); } },
     { "Material", [](Filter* f) { f->SetMaterial(-1); } },
     { "ObjectId", [](Filter* f) { f->SetObjectId(-2); } },
-    { "kd", [](Filter* f) { f->SetKd(-0.1); } },
-    { "kd", [&](Filter* f) { f->SetKd(nan); } },
-    { "ks", [](Filter* f) { f->SetKs(-0.1); } },
-    { "ks", [&](Filter* f) { f->SetKs(nan); } },
-    { "kd", [](Filter* f) { f->SetKs(0.9); } }, // 0.146 + 0.9 > 1
-    { "kp", [](Filter* f) { f->SetKp(-1.0); } },
-    { "kp", [](Filter* f) { f->SetKp(1.1e6); } },
-    { "kp", [&](Filter* f) { f->SetKp(nan); } },
+    { "Kd is", [](Filter* f) { f->SetKd(-0.1); } },
+    { "Kd is", [&](Filter* f) { f->SetKd(nan); } },
+    { "Ks is", [](Filter* f) { f->SetKs(-0.1); } },
+    { "Ks is", [&](Filter* f) { f->SetKs(nan); } },
+    { "Kd + Ks is", [](Filter* f) { f->SetKs(0.9); } }, // 0.146 + 0.9 > 1
+    { "Kp is", [](Filter* f) { f->SetKp(-1.0); } },
+    { "Kp is", [](Filter* f) { f->SetKp(1.1e6); } },
+    { "Kp is", [&](Filter* f) { f->SetKp(nan); } },
     { "Roughness is", [](Filter* f) { f->SetRoughness(1.6); } },
     { "Roughness is", [](Filter* f) { f->SetRoughness(-0.1); } },
   };

@@ -47,6 +47,11 @@ TEST(RangeErrors, DeviationByItsFormula)
       EXPECT_NEAR(errors.deviation(energyOf(sensor, n)),
         std::sqrt(1e-4 + 0.486 * 0.486 / std::pow(ratio, exponent)), 1e-12);
     }
+    // A saturated receiver knows no more than one at its upper limit.
+    sensor.upperEnergyLimit = energyOf(sensor, 2000.0);
+    EXPECT_EQ(RangeErrors(sensor, true).deviation(energyOf(sensor, 1e6)),
+      errors.deviation(energyOf(sensor, 2000.0)));
+    sensor.upperEnergyLimit = 1.0;
     // Not more than the noise of a ratio of 1, also where nothing is left of the signal.
     EXPECT_NEAR(errors.deviation(energyOf(sensor, 1.0)), std::hypot(0.01, 0.486), 1e-12);
   }
@@ -82,7 +87,12 @@ TEST(RangeErrors, WalkAndQuantum)
   sensor.rangeNoiseFloor = 1.0;
   EXPECT_EQ(RangeErrors(sensor, true).measured(100.0, low, 2.0), 102.25);
   EXPECT_EQ(RangeErrors(sensor, false).measured(100.0, low, 2.0), 100.25);
-  EXPECT_EQ(RangeErrors(sensor, true).measured(1.0, low, -5.0), 0.0); // no range is negative
+  // No range is negative or beyond the gate.
+  EXPECT_EQ(RangeErrors(sensor, true).measured(1.0, low, -5.0), 3.75);
+  EXPECT_EQ(
+    RangeErrors(sensor, true).measured(sensor.rangeGate - 1.0, low, 3.0), sensor.rangeGate - 2.25);
+  sensor.rangeNoiseFloor = 1e9;
+  EXPECT_EQ(RangeErrors(sensor, true).measured(1.0, low, 1.0), 0.0);
 }
 
 TEST(RangeErrors, OfAScan)
@@ -136,11 +146,17 @@ TEST(RangeErrors, OfAScan)
 
 TEST(RangeErrors, BadValuesAreNamed)
 {
+  Sensor fine = photons();
+  fine.rangeQuantum = 1e-310; // multiples of it would overflow
+  EXPECT_NE(checkSensor(fine).find("range_quantum"), std::string::npos);
   for (double Sensor::*member : { &Sensor::rangeNoise, &Sensor::rangeNoiseExponent,
          &Sensor::rangeNoiseFloor, &Sensor::rangeWalk, &Sensor::rangeQuantum })
   {
-    Sensor bad = photons();
-    bad.*member = -1.0;
-    EXPECT_NE(checkSensor(bad).find(sensorField(member).name), std::string::npos);
+    for (const double value : { -1.0, 1.1e9, HUGE_VAL, std::nan("") })
+    {
+      Sensor bad = photons();
+      bad.*member = value;
+      EXPECT_NE(checkSensor(bad).find(sensorField(member).name), std::string::npos) << value;
+    }
   }
 }

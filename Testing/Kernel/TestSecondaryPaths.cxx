@@ -181,15 +181,17 @@ TEST(SecondaryPaths, AConnectionEndsOnASideThatLooksToTheLidar)
 namespace
 {
 /// The path from P1 to P2 through an aperture; both surfaces are diffuse with kd = 0.2 and 0.5.
-double throughApertureEnergy(
-  const Vec3& p1, const Vec3& n1, const Vec3& p2, const Vec3& n2, double aperture)
+double throughApertureEnergy(const Vec3& p1, const Vec3& n1, const Vec3& p2, const Vec3& n2,
+  double aperture, double roughness = 0.0)
 {
   Scene scene;
-  square(scene, p1, n1, { 0.2, 0.0, 0.0 }, 0.01);
-  square(scene, p2, n2, { 0.5, 0.0, 0.0 }, 0.01);
+  square(scene, p1, n1, { 0.2, 0.0, 0.0, roughness }, 0.01);
+  square(scene, p2, n2, { 0.5, 0.0, 0.0, roughness }, 0.01);
   Sensor sensor = openSensor();
   sensor.receiverAperture = aperture;
-  TwoRays beam(scene, pathSettings(1), sensor);
+  EchoSettings settings = pathSettings(1);
+  settings.reflectanceModel = ReflectanceModel::OrenNayar; // Lambert's, not rough
+  TwoRays beam(scene, settings, sensor);
   beam.hit(0, 0, p1, n1);
   beam.hit(1, 1, p2, n2);
   for (const SecondaryPath& path : beam.collect())
@@ -230,5 +232,18 @@ TEST(SecondaryPaths, ThroughAnApertureTheFormFactor)
     const double energy =
       1.8e-4 * 0.2 * std::min(1.0, form) * 0.5 * cosBack * aperture / (Pi * range * range);
     EXPECT_NEAR(throughApertureEnergy(p1, n1, p2, n2, aperture), energy, 1e-9 * energy);
+    // Rough surfaces: P1 and P2 send more than Lambert's there, or less.
+    const auto unlikeLambert = [](const Vec3& in, const Vec3& out, const Vec3& normal)
+    {
+      return reflectance(ReflectanceModel::OrenNayar, { 1.0, 0.0, 0.0, 0.8 },
+               reflectionGeometry(in, out, normal))
+               .diffuse /
+        -glm::dot(in, normal);
+    };
+    const double first = unlikeLambert(glm::normalize(p1), step / length, n1);
+    const double second = unlikeLambert(step / length, -p2 / range, n2);
+    const double rough =
+      energy / std::min(1.0, form) * std::min(1.0, std::min(1.0, form) * first) * second;
+    EXPECT_NEAR(throughApertureEnergy(p1, n1, p2, n2, aperture, 0.8), rough, 1e-9 * rough);
   }
 }

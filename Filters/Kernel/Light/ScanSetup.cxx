@@ -126,6 +126,8 @@ void includeMovers(ScanSetup& setup)
 void planModel(ScanSetup& setup)
 {
   setup.noise = planNoise(setup.sensor, setup.settings.noise, setup.settings.fullModel);
+  setup.noise.ofRanges =
+    setup.noise.ofRanges && setup.settings.returnMode != ReturnMode::RangeUnits;
   setup.needs = needsOf(setup);
 }
 }

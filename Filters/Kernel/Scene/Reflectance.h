@@ -65,8 +65,6 @@ struct Material
 
   /// Largest share of a ray's energy that the surface returns.
   AVIANLIDAR_ALWAYS_INLINE double albedo() const { return this->kd + this->ks; }
-  /// Largest share that it returns diffusely.
-  AVIANLIDAR_ALWAYS_INLINE double diffuseAlbedo() const { return this->kd; }
   bool isGlossy() const { return this->ks > 0.0; }
   bool isMatt() const { return this->kd > 0.0; }
   bool operator==(const Material& other) const
@@ -99,7 +97,8 @@ inline constexpr MaterialCoefficient MaterialCoefficients[] = {
     false },
   { "kp", "1", &Material::kp, 1e6, false, "from 0 to 1e6",
     [](const Material& material) { return material.isGlossy(); }, false },
-  { "roughness", "rad", &Material::roughness, 0.5 * Pi, false, "from 0 to pi/2 rad",
+  // A pi/2 of single precision passes.
+  { "roughness", "rad", &Material::roughness, 0.5 * Pi + 1e-7, false, "from 0 to pi/2 rad",
     [](const Material&) { return false; }, true },
 };
 
@@ -228,7 +227,8 @@ AVIANLIDAR_ALWAYS_INLINE double lobe(double cosine, double sineSquared, double e
 }
 
 /// @name The models.
-/// f_d and f_s, and the largest of each over all outgoing directions at an incidence.
+/// f_d and f_s, the largest of each over all outgoing directions at an incidence, and f_d/(kd cos
+/// theta_i), by which a surface differs from Lambert's.
 /// @{
 struct LambertBlinnPhong
 {
@@ -240,6 +240,7 @@ struct LambertBlinnPhong
   {
     return { m.kd * lanes::unit(cosIncidence), m.ks };
   }
+  AVIANLIDAR_ALWAYS_INLINE static double unlikeLambert(Material, ReflectionGeometry) { return 1.0; }
 };
 
 struct Phong
@@ -254,15 +255,20 @@ struct Phong
     const double c = lanes::unit(cosIncidence);
     return { m.kd * c, m.ks * c };
   }
+  AVIANLIDAR_ALWAYS_INLINE static double unlikeLambert(Material, ReflectionGeometry) { return 1.0; }
 };
 
 struct Microfacet
 {
+  /// Schlick's rise from normal (0) to grazing (1) difference angle.
+  AVIANLIDAR_ALWAYS_INLINE static double riseOf(ReflectionGeometry g)
+  {
+    const double fall = 1.0 - lanes::unit(g.cosDifference);
+    return (fall * fall) * (fall * fall) * fall;
+  }
   AVIANLIDAR_ALWAYS_INLINE static Reflectance of(Material m, ReflectionGeometry g)
   {
-    // Schlick's rise from normal (0) to grazing (1) difference angle.
-    const double fall = 1.0 - lanes::unit(g.cosDifference);
-    const double rise = (fall * fall) * (fall * fall) * fall;
+    const double rise = riseOf(g);
     const double ci = g.cosIncidence;
     const double co = g.cosOutgoing;
     const double a2 = 1.0 / (2.0 * m.kp + 1.0);
@@ -277,6 +283,10 @@ struct Microfacet
   AVIANLIDAR_ALWAYS_INLINE static Reflectance bound(Material m, double cosIncidence)
   {
     return { m.kd * lanes::unit(cosIncidence), m.kd + m.ks };
+  }
+  AVIANLIDAR_ALWAYS_INLINE static double unlikeLambert(Material, ReflectionGeometry g)
+  {
+    return 1.0 - riseOf(g);
   }
 };
 
@@ -293,11 +303,15 @@ struct OrenNayar
     const double s2 = m.roughness * m.roughness;
     return { 1.0 - 0.5 * s2 / (s2 + 0.33), 0.45 * s2 / (s2 + 0.09) };
   }
-  AVIANLIDAR_ALWAYS_INLINE static Reflectance of(Material m, ReflectionGeometry g)
+  AVIANLIDAR_ALWAYS_INLINE static double unlikeLambert(Material m, ReflectionGeometry g)
   {
     const Shares by = sharesOf(m);
+    return by.even + by.rough * g.roughTerm;
+  }
+  AVIANLIDAR_ALWAYS_INLINE static Reflectance of(Material m, ReflectionGeometry g)
+  {
     const double c = lanes::unit(g.cosIncidence);
-    return { m.kd * lanes::smaller(c * (by.even + by.rough * g.roughTerm), 1.0),
+    return { m.kd * lanes::smaller(c * unlikeLambert(m, g), 1.0),
       LambertBlinnPhong::of(m, g).specular };
   }
   AVIANLIDAR_ALWAYS_INLINE static Reflectance bound(Material m, double cosIncidence)

@@ -27,7 +27,8 @@ double RangeErrors::deviation(double energy) const
   double ofSignal = 0.0;
   if (sensor.rangeNoise > 0.0)
   {
-    const double electrons = this->Receiver.electronsPerJoule * energy;
+    const double electrons =
+      this->Receiver.electronsPerJoule * std::min(energy, sensor.upperEnergyLimit);
     const double ratio = (electrons - this->Receiver.deviation(electrons)) /
       this->Receiver.deviation(0.25 * electrons);
     ofSignal = sensor.rangeNoise * std::pow(std::max(1.0, ratio), -0.5 * sensor.rangeNoiseExponent);
@@ -46,10 +47,14 @@ double RangeErrors::measured(double range, double energy, double normal) const
   {
     range += this->deviation(energy) * normal;
   }
+  // Nothing is recorded before the pulse or beyond the gate; what lay at either would pile up
+  // there.
+  range = std::abs(range);
+  range = range > sensor.rangeGate ? std::max(0.0, 2.0 * sensor.rangeGate - range) : range;
   if (sensor.rangeQuantum > 0.0)
   {
     range = sensor.rangeQuantum * std::round(range / sensor.rangeQuantum);
   }
-  return std::max(0.0, range);
+  return range;
 }
 }

@@ -48,7 +48,7 @@ const std::vector<SensorField>& sensorFields()
       NeededOf::None },
     { "range_noise_floor", "m", &Sensor::rangeNoiseFloor, 0.0, 1e9, "0 to 1e9 m", NeededOf::None },
     { "range_walk", "m", &Sensor::rangeWalk, 0.0, 1e9, "0 to 1e9 m", NeededOf::None },
-    { "range_quantum", "m", &Sensor::rangeQuantum, 0.0, 1e9, "0 to 1e9 m", NeededOf::None }
+    { "range_quantum", "m", &Sensor::rangeQuantum, 0.0, 1e9, "0, or 1e-9 to 1e9 m", NeededOf::None }
   };
   constexpr std::size_t choices = 2; // profile and receiver model
   static_assert(memberCount<Sensor>() == 20 + choices, "is the new member a row of the table?");
@@ -100,6 +100,10 @@ std::string checkSensor(const Sensor& s)
   if (s.amplifierNoise > 0.0 && s.amplifierNoise < 1e-3)
   {
     return wrong(sensorField(&Sensor::amplifierNoise));
+  }
+  if (s.rangeQuantum > 0.0 && s.rangeQuantum < 1e-9)
+  {
+    return wrong(sensorField(&Sensor::rangeQuantum));
   }
   return s.receiverModel == ReceiverModel::Photons ? checkPhotonReceiver(s) : std::string();
 }

@@ -212,8 +212,8 @@ std::string vtkAvianLidarSurfaceLeaf::Check(const vtkAvianLidarSurfaceArrays& a)
   }
   if (somePresent && someAbsent)
   {
-    return "of the cell arrays " + avianlidar::namesOfCoefficients() +
-      " only some are there, expected all or none";
+    return "of a material's cell arrays only some are there, expected all of " +
+      avianlidar::namesOfCoefficients() + " or none of a material";
   }
   std::vector<vtkDataArray*> arrays = a.Numbers();
   arrays.push_back(a.ghosts);

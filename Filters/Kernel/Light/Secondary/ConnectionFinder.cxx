@@ -282,10 +282,11 @@ AVIANLIDAR_ALWAYS_INLINE double throughputOf(const ConnectionLanes& h, std::size
     roughTerm(h.cosine[a], h.cosOut[i], h.differenceOne[i]) };
   const double diffuse = h.weight[i] * Model::of(first, out).diffuse;
   // Through an aperture: the solid angle under which P1 sees the part of the surface that fills
-  // the cone around P2, over pi.
+  // the cone around P2, over pi. P1 sends out no more than its kd.
   const double lit = h.range[b] * h.range[b] * h.solidAngle / lanes::larger(cosBack, 1e-300);
   const double form = h.cosOut[i] * h.cosIn[i] * lit / (Pi * h.length[i] * h.length[i]);
-  const double received = first.diffuseAlbedo() * lanes::smaller(h.weight[i] * form, 1.0);
+  const double received = first.kd *
+    lanes::smaller(lanes::smaller(h.weight[i] * form, 1.0) * Model::unlikeLambert(first, out), 1.0);
   const ReflectionGeometry back{ gathers ? cosBack : h.cosIn[i], cosBack, h.cosLobe[i],
     h.sin2Lobe[i], h.sin2Half[i], h.differenceTwo[i],
     roughTerm(h.cosIn[i], cosBack, h.differenceTwo[i]) };
