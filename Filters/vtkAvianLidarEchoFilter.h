@@ -110,8 +110,8 @@
  * `preset` overrode it, with the preset's value), but for Visibility, of which
  * `attenuation_coefficient` tells what the air was, and NumberOfThreads, MaximumCacheSize,
  * ReportMovers, Controller and ErrorsAsData, which change no echo; `avian_lidar_version`,
- * `scene_checksum` (geometry and materials), `noise_modelled` (0 if noise of energies was skipped) with
- * `noise_bound` J (no range unit receives more than this from skipped noise),
+ * `scene_checksum` (geometry and materials), `noise_modelled` (0 if noise of energies was skipped)
+ * with `noise_bound` J (no range unit receives more than this from skipped noise),
  * `light_energy_constraint_bound` J (no range unit loses more), `secondary_reflections_modelled` (0
  * if not asked for, or if none can matter), `further_reflections_bound` J (what paths over more
  * than NumberOfReflections return of a beam at most), `perceivable_range` m (from there on a
