@@ -30,6 +30,7 @@ set(avianlidar_python_files
   _scan.py
   _scene.py
   _sensor.py
+  _sheet.py
   _sight.py
   _suffixes.py
   _verbs.py

@@ -18,7 +18,7 @@ import tempfile
 
 HERE = pathlib.Path(__file__).resolve().parent
 DOCUMENTATION = HERE.parent / "Documentation"
-sys.path[:0] = [str(HERE / folder) for folder in ("common", "airport", "birds", "corridor", "coverage", "materials",
+sys.path[:0] = [str(HERE / folder) for folder in ("common", "airport", "birds", "corridor", "coverage", "materials", "measured",
                                                   "notebook", "outdoor", "paper", "reflections", "room", "sequence")]
 import airport  # noqa: E402
 import airport_search  # noqa: E402
@@ -38,6 +38,7 @@ import ranges  # noqa: E402
 import render_notebook  # noqa: E402
 import room  # noqa: E402
 import screenshots  # noqa: E402
+import predicted_measured  # noqa: E402
 import second_reflection  # noqa: E402
 
 # Name of the run, what runs, its arguments, {picture: name in Documentation/images}.
@@ -70,6 +71,7 @@ DATA_RUNS = (
     ("room", room, [], {"errors": "room-errors", "xt32-clouds": "room-xt32-clouds", "xt32-ranges": "room-xt32-ranges",
                         "pandar40p-clouds": "room-pandar40p-clouds", "xt32-intensity": "room-xt32-intensity"}),
     ("detail", detail, [], {}),
+    ("measured", predicted_measured, [], {"ground": "measured-ground"}),
     ("falloff", falloff, [], {"signal": "falloff-signal", "beams": "falloff-beams"}),
     ("materials", check_fit, [], {"silver-metallic-paint": "materials-silver-metallic-paint"}),
 )

@@ -144,8 +144,11 @@ void vtkAvianLidarBeamSource::TakeProperties(const vtkAvianLidarBeamSource& pres
 void vtkAvianLidarBeamSource::TakePreset(const char* name)
 {
   vtkNew<vtkAvianLidarBeamSource> preset;
-  vtkInternals::Apply(vtkAvianLidarSensorFile::Preset(name), *preset);
-  if (preset->ReceiverModel == RECEIVER_MODEL_PHOTONS)
+  const vtkAvianLidarSensorFile file = vtkAvianLidarSensorFile::Preset(name);
+  vtkInternals::Apply(file, *preset);
+  const auto& known = vtkInternals::PhotonSensors();
+  if (std::any_of(known.begin(), known.end(),
+        [&](const vtkAvianLidarSensorFile& one) { return one.name == file.name; }))
   {
     preset->Assumed.clear(); // known by their values
   }

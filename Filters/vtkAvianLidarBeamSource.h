@@ -32,7 +32,8 @@
  * `pulse_width`, `frequency`, `sampling_interval`, `range_gate`, `noise_photon_rate`,
  * `lower_energy_limit`, `upper_energy_limit`, `receiver_aperture`, `receiver_model`, `wavelength`,
  * `receiver_efficiency`, `filter_bandwidth`, `background_radiance`, `amplifier_noise`,
- * `excess_noise_factor`, `false_alarms_per_scan`, `dynamic_range`, `range_noise`,
+ * `excess_noise_factor`, `false_alarms_per_scan`, `dynamic_range`, `sunlight`,
+ * `sun_azimuth`, `sun_elevation`, `overlap_range`, `defocus_range`, `range_noise`,
  * `range_noise_exponent`, `range_noise_floor`, `range_walk`, `range_quantum`, `display_length`;
  * where there is a table, `channel_elevations` with one value per channel; and `revolution`, the
  * number of the revolution that these beams are of; with sway `sway_amplitude` and
@@ -524,6 +525,54 @@ public:
 
   ///@{
   /**
+   * Spectral irradiance of the sun on a surface that faces it, at the sensor's wavelength, watts
+   * per square metre and nanometre, 0 to 1e10 (clear noon: about 0.7 at 905 nm). Above 0, each beam
+   * has the background of what it looks at: the sky's BackgroundRadiance, and of surfaces their
+   * reflectance times that and the sun's light; its noise and, where it is brighter than the sky,
+   * its threshold follow (Documentation/sensors.md), and echoes have `seen_radiance`. Photon
+   * receiver. Default 0: all beams look at BackgroundRadiance.
+   */
+  vtkSetMacro(Sunlight, double);
+  vtkGetMacro(Sunlight, double);
+  ///@}
+
+  ///@{
+  /**
+   * Where the sun stands: degrees from north, clockwise, -360 to 360. With Sunlight. Default 180,
+   * south.
+   */
+  vtkSetMacro(SunAzimuth, double);
+  vtkGetMacro(SunAzimuth, double);
+  ///@}
+
+  ///@{
+  /**
+   * How high the sun stands: degrees above the horizon, -90 to 90. With Sunlight. Default 45.
+   */
+  vtkSetMacro(SunElevation, double);
+  vtkGetMacro(SunElevation, double);
+  ///@}
+
+  ///@{
+  /**
+   * Range r_o, metres, 0 to 1e9, of the overlap of beam and view: 1 - exp(-(r/r_o)^2) of the light
+   * from the range r lies in the view. Default 0: all of it.
+   */
+  vtkSetMacro(OverlapRange, double);
+  vtkGetMacro(OverlapRange, double);
+  ///@}
+
+  ///@{
+  /**
+   * Range r_d, metres, 0 to 1e9, at which half of the image of a spot falls on the detector, as it
+   * is out of focus: 1/(1 + (r_d/r)^2) of the light from the range r. Default 0: all of it.
+   */
+  vtkSetMacro(DefocusRange, double);
+  vtkGetMacro(DefocusRange, double);
+  ///@}
+
+  ///@{
+  /**
    * Standard deviation b of the ranges of returns at S = 1, metres, 0 to 1e9. It is sqrt(a^2 +
    * b^2/S^p), S the signal-to-noise ratio of a pulse's flanks (twice that of strong light;
    * Documentation/sensors.md), a RangeNoiseFloor, p RangeNoiseExponent. It belongs to a pulse and a
@@ -593,8 +642,9 @@ public:
    * Set LowerEnergyLimit and UpperEnergyLimit (DynamicRange above it) of a sensor that is known by
    * a line of a data sheet: it sees a Lambertian surface that fills the beam until `range` in
    * metres, `reflectance` its reflectance (above 0, at most 1), `attenuation` that of the air in
-   * 1/m. Needs ReceiverAperture; for RECEIVER_MODEL_ENERGY_LIMITS. A value outside its range is an
-   * error and changes nothing.
+   * 1/m. One point is a guess: from one of a sheet's points the others were predicted up to 39 %
+   * wrong (Documentation/sensors.md, Fitted to a sheet). Needs ReceiverAperture; for
+   * RECEIVER_MODEL_ENERGY_LIMITS. A value outside its range is an error and changes nothing.
    */
   void SetLimitsFromDataSheet(double range, double reflectance, double attenuation = 0.0);
 
@@ -659,6 +709,11 @@ protected:
   double ExcessNoiseFactor = 3.0;
   double FalseAlarmsPerScan = 1.0;
   double DynamicRange = 40.0;
+  double Sunlight = 0.0;
+  double SunAzimuth = 180.0;
+  double SunElevation = 45.0;
+  double OverlapRange = 0.0;
+  double DefocusRange = 0.0;
   double RangeNoise = 0.0;
   double RangeNoiseExponent = 2.0;
   double RangeNoiseFloor = 0.0;

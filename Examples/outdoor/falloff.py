@@ -191,6 +191,24 @@ def own_gain(distance, signal, scale, top):
     return np.exp(x), np.exp(y - y.max())
 
 
+def near_range(distance, gain):
+    """Overlap and defocus range (m) of a sensor (Documentation/sensors.md) fitted to its own gain up to its largest, with a level
+    of its own, and the rms of what is left, of the level."""
+    from scipy.optimize import least_squares
+    there = distance <= distance[np.argmax(gain)]
+    r, y = distance[there], gain[there]
+
+    def off(x):
+        overlap, defocus, level = np.exp(x)
+        return level * -np.expm1(-(r / overlap) ** 2) / (1 + (defocus / r) ** 2) - y
+
+    half = r[np.argmax(y >= 0.5)]
+    best = min((least_squares(off, np.log([part * half, (1 - part) * half, 1.0]), bounds=(np.log([1e-3, 1e-3, 0.5]), np.log([1e3, 1e3, 2])))
+                for part in (0.1, 0.5, 0.9)), key=lambda found: found.cost)
+    overlap, defocus, level = np.exp(best.x)
+    return overlap, defocus, np.sqrt(np.mean(best.fun**2)) / level
+
+
 def simulated(plane, elevations, step=360.0 / 1024):
     """Range, energy and beam of what a photon receiver gets from the whole plane by beams of these elevations."""
     across = np.cross(plane.normal, np.eye(3)[np.argmin(np.abs(plane.normal))])
@@ -271,13 +289,16 @@ def number(found):
 
 
 def tables(studies):
-    planes, beams, scales = [], [], []
+    planes, beams, scales, near = [], [], [], []
     at = (2.5, 5.0, 10.0, 15.0, 20.0, 30.0)
     for one in studies:
         if one.gain:
             x, y = one.gain
             scales.append((one.frame.name, f"{x[np.argmax(y >= FULL)]:.1f}",
                            *(f"{np.interp(r, x, y):.2f}" if x[0] <= r <= x[-1] else "-" for r in at)))
+            if y[0] < 0.5:  # else no near range is seen
+                overlap, defocus, rms = near_range(x, y)
+                near.append((one.frame.name, f"{x[0]:.1f} to {x[np.argmax(y)]:.1f}", f"{overlap:.2f}", f"{defocus:.2f}", f"{rms:.3f}"))
         if not one.planes:
             planes.append((one.frame.name, "none long enough", *["-"] * 7))
         for plane, windows in one.planes:
@@ -292,6 +313,7 @@ def tables(studies):
     return {"falloff-planes": markdown(("sensor", "plane", "points", "from (m)", "to (m)", "n", "n of the reflectivity",
                                         "n simulated", "beams alone"), planes),
             "falloff-scales": markdown(("sensor", f"{FULL:g} from (m)", *(f"at {r:g} m" for r in at)), scales),
+            "falloff-near": markdown(("sensor", "ranges (m)", "`overlap_range` (m)", "`defocus_range` (m)", "rms left"), near),
             "falloff-beams": markdown(("sensor", "plane", "elevation (deg)", "points", "from (m)", "to (m)", "n",
                                        "n simulated"), beams)}
 

@@ -191,6 +191,7 @@ const char* wordsFor(const std::string& name)
     { "label_share", "energy of object_id" },
     { "photoelectrons", "of its range unit" },
     { "signal_to_noise", "of its range unit" },
+    { "seen_radiance", "of what its beam looks at" },
     { "distance_std_error", "of the receiver's noise" },
     { "azimuth", "from north, clockwise" },
     { "vertical_angle", "from the horizon, up" },

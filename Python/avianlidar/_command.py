@@ -55,9 +55,10 @@ VERBS = {
                "and pictures are in a folder beside it.", """\
   avianlidar report hongqiao.coverage.json -o report.html
 """),
-    "sensors": ("sensors that are known by name", "Sensors that are known by name; with a name, that one.", """\
+    "sensors": ("sensors that are known by name", "Sensors that are known by name; with a name, that one; with --fit, a receiver fitted to the points of a sheet.", """\
   avianlidar sensors
   avianlidar sensors VLP-16
+  avianlidar sensors --fit my.lidarsensor.json -o fitted.lidarsensor.json
 """),
     "materials": ("materials that are known by name", "Materials that are known by name, with their coefficients: kd (diffuse), "
                   "ks (specular), kp (glossiness).", """\
@@ -140,6 +141,9 @@ def parser() -> Parser:
     verb["convert"].add_argument("file", type=pathlib.Path, help=f"a cloud: {READ}")
     verb["convert"].add_argument("out", type=pathlib.Path, help=f"file: {WRITTEN}")
     verb["sensors"].add_argument("name", nargs="?", help="one of them, or a .lidarsensor.json file")
+    verb["sensors"].add_argument("--fit", metavar="FILE", help="a sensor file with a sheet, or a name: its receiver fitted to all "
+                                 "points of the sheet; needs SciPy")
+    _out(verb["sensors"], "file: the sensor with the fitted receiver (.lidarsensor.json)", required=False)
 
     sequence = verb["sequence"]
     sequence.add_argument("scenario", help="a scenario file, or the manifest.json of another sequence")

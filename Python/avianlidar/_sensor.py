@@ -112,12 +112,32 @@ class Sensor(PropertyOwner):
     def _repr_html_(self) -> str:
         return _display.page(self, _display.sensor_rows, lambda axes: _display.draw_pattern(self, axes))
 
+    def fit(self, points=None):
+        """Fit the receiver to all points of its maker's sheet: sets `receiver_aperture` and, where points differ in light,
+        `filter_bandwidth`, of a photon receiver; needs SciPy.
+
+        points  mappings with `range` (m), `reflectance` (above 0, at most 1), `source` (a text), and, if known, `probability` of
+                being seen (default 0.5, assumed), `light` on the board (klx, default 0) and `board`, its width (m; default:
+                one for all points is fitted). Default: those of the sensor's file (`sheet.points`)
+
+        What is found: `numbers`, `board` (m), and of each point `predicted` (m), `residuals` and `left_out` (relative errors of
+        its range, with it in the fit and without), and `bar`, the largest of them: what ranges by this receiver are good for.
+        ValueError: a point is not as it should be, or the sensor has no aperture.
+
+        >>> Sensor("Search905").fit([{"range": 300, "reflectance": 0.1, "source": "mine"}]).bar < 1e-6
+        True
+        """
+        from ._sheet import fit
+        found = fit(self, points)
+        self.set(receiver_model="Photons", **found.numbers)
+        return found
+
     @property
     def description(self) -> Dict[str, Any]:
         """What the file of the preset says: `name`, what it is (`comment`), its documents (`source`), and as far as it
         has them the maker's numbers that no property has (`data_sheet`) and those of the properties (`values`), each with
-        `value`, `unit` and `source`, which begins with "assumed" where nobody measured it. Properties that were changed
-        later are not.
+        `value`, `unit` and `source`, which begins with "assumed" where nobody measured it, and what is seen by its `sheet`.
+        Properties that were changed later are not.
 
         >>> Sensor("VLP-16").description["values"]["wavelength"]
         {'value': 903.0, 'unit': 'nm', 'source': 'user manual'}

@@ -225,12 +225,35 @@ def convert(options) -> None:
 
 def sensors(options) -> None:
     from . import Sensor, _display
+    if options.fit:
+        _fit(options)
+        return
     if options.name:
         _table(_display.sensor_rows(Sensor(options.name)).items())
         return
     all_rows = {name: _display.sensor_rows(Sensor(name)) for name in Sensor.presets()}
     keys = [key for key in next(iter(all_rows.values())) if key not in ("position", "what")]
     _table([("name", *keys), *((name, *(rows.get(key, "") for key in keys)) for name, rows in all_rows.items())])
+
+
+def _fit(options) -> None:
+    from . import Sensor
+    from ._sheet import HALF, write
+    sensor = Sensor(options.fit)
+    description = sensor.description
+    found = sensor.fit()
+    points = description["sheet"]["points"]
+    _table([("reflectance", "light (klx)", "seen with", "range of the sheet (m)", "fitted (m)", "off", "off if left out", "source"),
+            *((f"{point['reflectance']:g}", f"{point.get('light', 0):g}", f"{point.get('probability', HALF):g}"
+               + ("" if "probability" in point else ", assumed"), f"{point['range']:g}", f"{predicted:.1f}", f"{100 * off:+.1f} %",
+               "-" if left != left else f"{100 * left:+.1f} %", point["source"])
+              for point, predicted, off, left in zip(points, found.predicted, found.residuals, found.left_out))])
+    print(*(f"{name} {value:.4g}" for name, value in found.numbers.items()),
+          *([f"board of the maker {found.board:.3g} m"] if found.board == found.board else []), sep=", ")
+    print(f"ranges by this receiver are good for {100 * found.bar:.0f} %")
+    if options.out:
+        write(description, found, str(options.out))
+        print(options.out)
 
 
 def materials(_) -> None:

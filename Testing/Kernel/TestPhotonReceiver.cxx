@@ -93,7 +93,7 @@ int countTargets(const Sensor& sensor, double electrons, int scans)
     units.add(
       { 2.0 * (target + random(0.0, 1.0) * length), electrons / receiver.electronsPerJoule });
     units.accumulate();
-    beam.receive(scan, units.units());
+    beam.receive(scan, units.units(), sensor.backgroundRadiance);
     bool perceived = false;
     for (const Return& found : beam.returns())
     {

@@ -50,7 +50,7 @@ public:
       this->Accumulator.add({ 2.0 * echo.range, echo.energy });
     }
     this->Accumulator.accumulate();
-    this->Receiver.receive(beam, this->Accumulator.units());
+    this->Receiver.receive(beam, this->Accumulator.units(), Sensor().backgroundRadiance);
     this->Returns = this->Receiver.returns();
     for (Return& ret : this->Returns)
     {
@@ -294,7 +294,7 @@ TEST(ReceiverNoise, FalseAlarmsLieAnywhereInTheirUnit)
           EXPECT_EQ(same[r].range, returns[r].range);
         }
       }
-      next.receive(beam, {});
+      next.receive(beam, {}, sensor.backgroundRadiance);
       for (const Return& one : next.returns())
       {
         nextPlaces.push_back(one.range - std::floor(one.range));
@@ -344,12 +344,12 @@ TEST(ReceiverNoise, AReceiverThatIsNoLongerWantedStopsAndGoesOnLater)
   const NoisePlan plan = planNoise(sensor, true);
   int asked = 0;
   BeamReceiver receiver(sensor, plan, 0, ReturnMode::All, 0, [&asked]() { return ++asked != 3; });
-  EXPECT_THROW(receiver.receive(0, {}), WorkStopped);
+  EXPECT_THROW(receiver.receive(0, {}, sensor.backgroundRadiance), WorkStopped);
   EXPECT_EQ(asked, 3);
-  receiver.receive(0, {});
+  receiver.receive(0, {}, sensor.backgroundRadiance);
   EXPECT_GT(asked, 6);
   BeamReceiver whole(sensor, plan, 0, ReturnMode::All);
-  whole.receive(0, {});
+  whole.receive(0, {}, sensor.backgroundRadiance);
   ASSERT_EQ(receiver.returns().size(), whole.returns().size());
   EXPECT_EQ(receiver.returns().back().range, whole.returns().back().range);
 }

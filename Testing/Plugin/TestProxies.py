@@ -56,6 +56,11 @@ BEAM_SOURCE = {
     "RangeNoiseExponent": "",
     "RangeNoiseFloor": "metres",
     "RangeWalk": "metres",
+    "Sunlight": "W/(m2 nm)",
+    "SunAzimuth": "degrees",
+    "SunElevation": "degrees",
+    "OverlapRange": "metres",
+    "DefocusRange": "metres",
     "RangeQuantum": "metres",
     "DisplayLength": "metres",
 }
@@ -476,6 +481,7 @@ class TestProxies(unittest.TestCase):
             "decibels": "dB",
             "electrons": "electrons",
             "W/(m2 sr nm)": "W/(m2 sr nm)",
+            "W/(m2 nm)": "W/(m2 nm)",
             "1/m": "1/m",
             "MiB": "MiB",
         }

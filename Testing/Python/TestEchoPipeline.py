@@ -222,8 +222,8 @@ report_units = {
     "": "beam_id laser_id status skipped",
 }
 field_units = {
-    "m": "position display_length range_gate perceivable_range range_noise range_noise_floor range_walk range_quantum",
-    "deg": "orientation minimum_elevation elevation_step azimuth_range azimuth_step",
+    "m": "position display_length range_gate perceivable_range range_noise range_noise_floor range_walk range_quantum overlap_range defocus_range",
+    "deg": "sun_azimuth sun_elevation orientation minimum_elevation elevation_step azimuth_range azimuth_step",
     "rad": "half_beamwidth",
     "Hz": "rotation_rate frequency noise_photon_rate",
     "s": "firing_interval pulse_width sampling_interval",
@@ -232,6 +232,7 @@ field_units = {
     "m2": "receiver_aperture",
     "nm": "wavelength filter_bandwidth",
     "W/(m2 sr nm)": "background_radiance",
+    "W/(m2 nm)": "sunlight",
     "dB": "dynamic_range",
     "1/m": "attenuation_coefficient",
 }

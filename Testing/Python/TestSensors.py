@@ -50,7 +50,7 @@ class Manuals(unittest.TestCase):
                 self.assertIn(name, said["comment"])
                 # What nobody told is assumed, and printed with every scan.
                 assumed = {key for key, entry in said["values"].items() if entry["source"].startswith("assumed")}
-                self.assertLessEqual({"pulse_energy", "pulse_width", "receiver_aperture"}, assumed)
+                self.assertLessEqual({"pulse_energy", "pulse_width"} | (set() if "sheet" in said else {"receiver_aperture"}), assumed)
                 self.assertEqual(set(sensor.beams.fields["assumed"]), assumed)
                 self.assertFalse({"wavelength", "channel_elevations", "channel_firing_times"} & assumed)
         sensor.pulse_energy = 1e-6
@@ -62,18 +62,35 @@ class Manuals(unittest.TestCase):
         for name in REAL:
             with self.subTest(name):
                 sensor = al.Sensor(name)
+                if "sheet" in sensor.description:
+                    continue
                 sheet = sensor.description["data_sheet"]
                 limits = sensor.lower_energy_limit, sensor.upper_energy_limit
                 sensor.algorithm.SetLimitsFromDataSheet(*(sheet[f"detection_{key}"]["value"] for key in ("range", "reflectance")))
                 np.testing.assert_allclose(limits, (sensor.lower_energy_limit, sensor.upper_energy_limit), rtol=1e-5)
 
     def test_a_wall_is_seen_to_the_range_of_the_data_sheet(self):
+        sheet = al.Sensor("PandarXT-32").description["data_sheet"]
         for at, seen in ((0.97, True), (1.03, False)):
-            y = at * 40
+            y = at * sheet["detection_range"]["value"]
             corners = [(-9, y, -9), (9, y, -9), (9, y, 9), (-9, y, 9)]
-            scan = al.Scan(al.Scene((corners, [(0, 1, 2), (0, 2, 3)]), material=(0.1, 0, 0)),
-                           al.Sensor("OS1-64", directions=[(0, 1, 0)]), noise=False, attenuation_coefficient=0.0)
+            scan = al.Scan(al.Scene((corners, [(0, 1, 2), (0, 2, 3)]), material=(sheet["detection_reflectance"]["value"], 0, 0)),
+                           al.Sensor("PandarXT-32", directions=[(0, 1, 0)]), noise=False, attenuation_coefficient=0.0)
             self.assertEqual(scan.echoes.number_of_points > 0, seen, at)
+
+    def test_fitted_receivers_are_those_of_their_sheets(self):
+        """What a file says of its fit is what the fit gives again, and no fit is better than its bar."""
+        fitted = [name for name in al.Sensor.presets() if "bar" in al.Sensor(name).description.get("sheet", {})]
+        self.assertIn("OS1_64", fitted)
+        for name in fitted:
+            with self.subTest(name):
+                sensor = al.Sensor(name)
+                said, aperture = sensor.description["sheet"], sensor.receiver_aperture
+                found = sensor.fit()
+                np.testing.assert_allclose(found.residuals, said["residuals"], atol=2e-3)
+                self.assertAlmostEqual(found.numbers["receiver_aperture"] / aperture, 1, delta=0.01)
+                self.assertAlmostEqual(found.bar, said["bar"], delta=5e-3)
+                self.assertTrue(all(point["source"] for point in said["points"]))
 
     @unittest.skipUnless(DATA, "AVIANLIDAR_DATA_DIR is empty")
     def test_patterns_are_those_of_real_frames(self):

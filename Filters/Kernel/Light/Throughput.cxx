@@ -77,6 +77,10 @@ void Throughput::measure(const ScanSetup& setup, const BeamSamples& samples)
         setup.sensor.receiverAperture,
         { samples.cosine.data() + begin, samples.range.data() + begin,
           this->reflected.data() + begin, end - begin });
+      for (std::uint32_t i = begin; setup.sensor.losesNearRange() && i < end; ++i)
+      {
+        this->reflected[i] *= setup.sensor.nearRangeShare(samples.range[i]);
+      }
       for (std::uint32_t i = begin; i < end; ++i)
       {
         this->directSum += samples.weight[i] * this->reflected[i];

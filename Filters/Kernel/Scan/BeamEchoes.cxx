@@ -154,7 +154,7 @@ BeamEchoes::BeamEchoes(const ScanSetup& setup, BeamLighting& lighting, BeamRecei
 void BeamEchoes::receive(
   std::uint64_t beam, LitBeam* keep, std::vector<Echo>& echoes, BeamReport& report)
 {
-  this->Receiver.receive(beam, this->Lighting.units().units());
+  this->Receiver.receive(beam, this->Lighting.units().units(), this->Lighting.radiance());
   const auto echoOf = [&](const Return& ret)
   {
     LitBeam::KnownReturn known = this->unitsOf(ret);
@@ -172,7 +172,7 @@ void BeamEchoes::receive(
 bool BeamEchoes::receiveAgain(
   std::uint64_t beam, const LitBeam& known, std::vector<Echo>& echoes, BeamReport& report)
 {
-  this->Receiver.receive(beam, known.units);
+  this->Receiver.receive(beam, known.units, known.radiance);
   const auto isKnown = [&](const Return& ret) { return !ret.hasLight || this->find(known, ret); };
   const std::vector<Return>& returns = this->Receiver.returns();
   const Return* strongest = this->Receiver.strongest();
@@ -204,6 +204,7 @@ void BeamEchoes::finish(
       echo = echoOf(ret);
     }
     echo.range = this->Receiver.measured(ret, echo.range);
+    echo.background = this->Receiver.radiance();
     echo.energyReceived = ret.energyReceived;
     echo.energy = ret.energy;
     echo.returnEnergy = ret.returnEnergy;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "BeamLighting.h"
 
+#include "Background.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -27,9 +29,14 @@ bool BeamLighting::light(std::size_t beam, BeamTrace& trace)
   this->Paths.clear();
   this->Energies.clear();
   this->Units.clear();
+  this->Radiance = this->Setup.sensor.backgroundRadiance;
   if (!this->placeSamples(beam, trace))
   {
     return false;
+  }
+  if (this->Lit && this->Setup.sensor.seesDaylight())
+  {
+    this->Radiance = radianceSeen(this->Setup, *this->Lit, this->Beams.origins[beam]);
   }
   if (!this->Lit)
   {

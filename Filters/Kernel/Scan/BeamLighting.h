@@ -66,6 +66,8 @@ public:
   double errorOf(std::int64_t unit, std::uint32_t paths);
   /// True if a direct echo arrives beyond the gate, and nothing inside.
   bool isBeyondGate() const;
+  /// Radiance that the beam looks at, W/(m2 sr nm) (Background.h).
+  double radiance() const { return this->Radiance; }
   double lost() const { return this->Lost; }              ///< J, see BeamReport
   std::uint32_t skipped() const { return this->Skipped; } ///< see BeamReport
 
@@ -113,6 +115,7 @@ private:
   std::vector<double> Energies; ///< energies of the direct echoes, J
   std::vector<SecondaryPath> Paths;
   double Unplaced = 0.0; ///< J, see PolygonQuadrature::dropped()
+  double Radiance = 0.0;
   double Lost = 0.0;
   std::uint32_t Skipped = 0;
 };

@@ -47,6 +47,7 @@ void BeamSimulator::lightBeam(
   {
     trace.lit = std::make_unique<LitBeam>();
     trace.lit->units = this->Lighting.units().units();
+    trace.lit->radiance = this->Lighting.radiance();
     trace.lit->beyondGate = this->Lighting.isBeyondGate();
     trace.lit->lost = this->Lighting.lost();
     trace.lit->skipped = this->Lighting.skipped();

@@ -30,7 +30,8 @@ struct Echo
   int materialId = -1;
   double labelShare = 0.0; ///< the largest share
   double incidenceAngle =
-    0.0; ///< rad, energy-weighted mean at the last surface; NaN for a false alarm
+    0.0;                   ///< rad, energy-weighted mean at the last surface; NaN for a false alarm
+  double background = 0.0; ///< radiance that its beam looks at, W/(m2 sr nm)
   double secondaryShare = 0.0; ///< share of the energy that came over two reflections
 };
 #pragma GCC diagnostic pop

@@ -38,6 +38,7 @@ struct LitBeam
   };
   std::vector<RangeUnit> units;
   std::vector<KnownReturn> returns;
+  double radiance = 0.0;     ///< see BeamLighting::radiance()
   bool beyondGate = false;   ///< see BeamLighting::isBeyondGate()
   double lost = 0.0;         ///< J, see BeamReport
   std::uint32_t skipped = 0; ///< see BeamReport

@@ -61,6 +61,20 @@ double PhotonReceiver::detectionProbability(double electrons, double threshold) 
   return 0.5 * std::erfc((threshold - electrons) / (Root2 * this->deviation(electrons)));
 }
 
+Sensor lookingAt(const Sensor& sensor, double radiance)
+{
+  Sensor there = sensor;
+  if (radiance == sensor.backgroundRadiance)
+  {
+    return there;
+  }
+  there.backgroundRadiance = radiance;
+  there.lowerEnergyLimit *=
+    std::max(1.0, PhotonReceiver(there).deviation(0.0) / PhotonReceiver(sensor).deviation(0.0));
+  there.upperEnergyLimit = std::max(there.upperEnergyLimit, there.lowerEnergyLimit);
+  return there;
+}
+
 double perceptionProbability(const Sensor& sensor, const PhotonReceiver& receiver, double energy)
 {
   if (sensor.receiverModel == ReceiverModel::Photons)
@@ -184,7 +198,8 @@ double energyFromTarget(
   const double gathered = sensor.receiverAperture > 0.0
     ? std::min(1.0, reflectance * sensor.receiverAperture / (Pi * range2))
     : reflectance;
-  return sensor.pulseEnergy * met * gathered * std::exp(-2.0 * attenuation * range);
+  return sensor.pulseEnergy * met * gathered * sensor.nearRangeShare(range) *
+    std::exp(-2.0 * attenuation * range);
 }
 
 std::string checkPhotonReceiver(const Sensor& s)

@@ -53,6 +53,11 @@ struct PhotonReceiver
   double detectionProbability(double electrons, double threshold) const;
 };
 
+/// The sensor in a beam that looks at another radiance than its sky's: background, and where that
+/// is brighter the lower limit, which stays at the same number of standard deviations of the noise,
+/// so that bright walls raise no more false alarms than the sky. @param radiance W/(m2 sr nm)
+Sensor lookingAt(const Sensor& sensor, double radiance);
+
 /// Probability that a range unit that receives so much light is perceived: by the noise of a photon
 /// receiver, else 0 or 1 by the limit. @param receiver of the sensor @param energy J
 double perceptionProbability(const Sensor& sensor, const PhotonReceiver& receiver, double energy);

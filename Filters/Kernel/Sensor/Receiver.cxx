@@ -16,7 +16,9 @@ double perceivedEnergy(double received, double lower, double upper)
 
 BeamReceiver::BeamReceiver(const Sensor& sensor, const NoisePlan& noise, std::int32_t seed,
   ReturnMode mode, std::int32_t revolution, std::function<bool()> wanted)
-  : Errors(sensor, noise.ofRanges)
+  : Instrument(sensor)
+  , Radiance(sensor.backgroundRadiance)
+  , Errors(sensor, noise.ofRanges)
   , UnitLength(sensor.rangeUnitLength())
   , Lower(sensor.lowerEnergyLimit)
   , Upper(sensor.upperEnergyLimit)
@@ -28,12 +30,27 @@ BeamReceiver::BeamReceiver(const Sensor& sensor, const NoisePlan& noise, std::in
 {
 }
 
-void BeamReceiver::receive(std::uint64_t beam, const std::vector<RangeUnit>& units)
+void BeamReceiver::receive(std::uint64_t beam, const std::vector<RangeUnit>& units, double radiance)
 {
+  if (radiance != this->Radiance)
+  {
+    this->lookAt(radiance);
+  }
   this->Noise.begin(this->Plan, this->Seed, beam, this->Revolution);
   this->collectUnits(units);
   this->formReturns();
   this->select();
+}
+
+void BeamReceiver::lookAt(double radiance)
+{
+  const Sensor there = lookingAt(this->Instrument, radiance);
+  const bool ofRanges = this->Plan.ofRanges;
+  this->Radiance = radiance;
+  this->Lower = there.lowerEnergyLimit;
+  this->Plan = planNoise(there, this->Plan.active);
+  this->Plan.ofRanges = ofRanges;
+  this->Errors = RangeErrors(there, ofRanges);
 }
 
 void BeamReceiver::collectUnits(const std::vector<RangeUnit>& units)

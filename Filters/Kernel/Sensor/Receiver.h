@@ -78,8 +78,12 @@ public:
   BeamReceiver(const Sensor& sensor, const NoisePlan& noise, std::int32_t seed, ReturnMode mode,
     std::int32_t revolution = 0, std::function<bool()> wanted = {});
 
-  /// Receive a beam. @param units in which light arrives, ascending
-  void receive(std::uint64_t beam, const std::vector<RangeUnit>& units);
+  /// Receive a beam. @param units in which light arrives, ascending @param radiance that the beam
+  /// looks at, W/(m2 sr nm)
+  void receive(std::uint64_t beam, const std::vector<RangeUnit>& units, double radiance);
+
+  /// The radiance that the last beam looked at, W/(m2 sr nm).
+  double radiance() const { return this->Radiance; }
 
   /// The range of a return, m. Return::range holds it for returns without light, and in the mode
   /// RangeUnits. @param accumulator of the beam's paths
@@ -103,6 +107,7 @@ public:
   const Return* strongest() const { return this->HasReturn ? &this->Strongest : nullptr; }
 
 private:
+  void lookAt(double radiance);
   void collectUnits(const std::vector<RangeUnit>& units);
   double noiseOf(std::int64_t unit, double light);
   void formReturns();
@@ -110,6 +115,8 @@ private:
   double rangeOfNoise(const Return& run) const;
   double centreOf(std::int64_t unit) const;
 
+  Sensor Instrument; ///< before the sky
+  double Radiance;
   RangeErrors Errors;
   double UnitLength;
   double Lower;

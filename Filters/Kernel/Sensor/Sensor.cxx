@@ -43,6 +43,12 @@ const std::vector<SensorField>& sensorFields()
       NeededOf::Photons },
     { "excess_noise_factor", "1", &Sensor::excessNoiseFactor, 1.0, 1e6, "1 to 1e6",
       NeededOf::Photons },
+    { "sunlight", "W/(m2 nm)", &Sensor::sunlight, 0.0, 1e10, "0 to 1e10 W/(m2 nm)",
+      NeededOf::None },
+    { "sun_azimuth", "deg", &Sensor::sunAzimuth, -360.0, 360.0, "-360 to 360 deg", NeededOf::None },
+    { "sun_elevation", "deg", &Sensor::sunElevation, -90.0, 90.0, "-90 to 90 deg", NeededOf::None },
+    { "overlap_range", "m", &Sensor::overlapRange, 0.0, 1e9, "0 to 1e9 m", NeededOf::None },
+    { "defocus_range", "m", &Sensor::defocusRange, 0.0, 1e9, "0 to 1e9 m", NeededOf::None },
     { "range_noise", "m", &Sensor::rangeNoise, 0.0, 1e9, "0 to 1e9 m", NeededOf::None },
     { "range_noise_exponent", "1", &Sensor::rangeNoiseExponent, 0.0, 10.0, "0 to 10",
       NeededOf::None },
@@ -51,7 +57,7 @@ const std::vector<SensorField>& sensorFields()
     { "range_quantum", "m", &Sensor::rangeQuantum, 0.0, 1e9, "0, or 1e-9 to 1e9 m", NeededOf::None }
   };
   constexpr std::size_t choices = 2; // profile and receiver model
-  static_assert(memberCount<Sensor>() == 20 + choices, "is the new member a row of the table?");
+  static_assert(memberCount<Sensor>() == 25 + choices, "is the new member a row of the table?");
   return all;
 }
 
@@ -60,6 +66,15 @@ const SensorField& sensorField(double Sensor::*member)
   const std::vector<SensorField>& all = sensorFields();
   return *std::find_if(
     all.begin(), all.end(), [=](const SensorField& field) { return field.member == member; });
+}
+
+double Sensor::nearRangeShare(double range) const
+{
+  const double overlap = this->overlapRange > 0.0
+    ? -std::expm1(-(range / this->overlapRange) * (range / this->overlapRange))
+    : 1.0;
+  const double image = this->defocusRange > 0.0 ? this->defocusRange / range : 0.0;
+  return overlap / (1.0 + image * image);
 }
 
 std::string checkSensor(const Sensor& s)

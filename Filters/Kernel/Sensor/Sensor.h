@@ -70,6 +70,15 @@ struct Sensor
   double amplifierNoise = 60.0;     ///< n_a, electrons rms in a range unit, 0 to 1e20
   double excessNoiseFactor = 3.0;   ///< F, 1 to 1e6
 
+  // Daylight by what a beam looks at (Background.h); 0: all look at the background radiance.
+  double sunlight = 0.0;      ///< E, W/(m^2 nm), of the sun on what faces it, 0 to 1e10
+  double sunAzimuth = 180.0;  ///< of the sun, deg from north, clockwise
+  double sunElevation = 45.0; ///< deg, -90 to 90
+
+  // What a receiver loses of near echoes, see nearRangeShare(); 0: nothing.
+  double overlapRange = 0.0; ///< m, at which 1 - 1/e of the beam lies in its view
+  double defocusRange = 0.0; ///< m, at which half of a spot's blurred image is on the detector
+
   // Errors of ranges (RangeErrors.h); the paper's receiver has none.
   double rangeNoise = 0.0;         ///< b, m, standard deviation at a signal-to-noise ratio of 1
   double rangeNoiseExponent = 2.0; ///< p, 0 to 10
@@ -86,6 +95,19 @@ struct Sensor
     const double sine = std::sin(0.5 * this->halfBeamwidth);
     return 4.0 * Pi * sine * sine;
   }
+
+  /// True if what a beam looks at decides on its background.
+  bool seesDaylight() const
+  {
+    return this->receiverModel == ReceiverModel::Photons && this->sunlight > 0.0;
+  }
+
+  /// True if it receives less of near echoes than of far ones.
+  bool losesNearRange() const { return this->overlapRange > 0.0 || this->defocusRange > 0.0; }
+
+  /// Share of the light from a range, m, that reaches the detector: (1 - exp(-(r/r_o)^2))/(1 +
+  /// (r_d/r)^2), r_o the range of overlap, r_d that of defocus.
+  double nearRangeShare(double range) const;
 
   /// Length of one range unit, m: c tau_s / 2.
   double rangeUnitLength() const { return 0.5 * SpeedOfLight * this->samplingInterval; }

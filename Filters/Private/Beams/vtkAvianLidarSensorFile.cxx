@@ -41,7 +41,7 @@ vtkAvianLidarSensorFile::Entry EntryOf(const std::string& name, const JsonNode& 
 vtkAvianLidarSensorFile Parse(const Json& json, const std::string& file)
 {
   const JsonNode root(json, "", file);
-  root.RequireKeys({ "format", "name", "comment", "source", "data_sheet", "values" });
+  root.RequireKeys({ "format", "name", "comment", "source", "data_sheet", "sheet", "values" });
   if (root.Get("format").String() != "lidarsensor 1")
   {
     root.Get("format").Fail("must be \"lidarsensor 1\"");
@@ -63,6 +63,10 @@ vtkAvianLidarSensorFile Parse(const Json& json, const std::string& file)
     {
       EntryOf(name, node); // none of the beam source's
     }
+  }
+  if (root.Has("sheet"))
+  {
+    root.Get("sheet").Members(); // read by who fits the receiver to it
   }
   for (const auto& [name, node] : root.Get("values").Members())
   {

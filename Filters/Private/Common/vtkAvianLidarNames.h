@@ -107,6 +107,7 @@ constexpr Name ReturnEnergy{ "return_energy", "J" };
 constexpr Name EnergyStdError{ "energy_std_error", "J" };
 constexpr Name Photoelectrons{ "photoelectrons", "1" };
 constexpr Name SignalToNoise{ "signal_to_noise", "1" };
+constexpr Name SeenRadiance{ "seen_radiance", "W/(m2 sr nm)" };
 constexpr Name DistanceStdError{ "distance_std_error", "m" };
 constexpr Name Intensity{ "intensity", "1" };
 constexpr Name Distance{ "distance_m", "m" };

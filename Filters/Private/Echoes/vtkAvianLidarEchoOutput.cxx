@@ -141,21 +141,28 @@ void vtkAvianLidarEchoOutput::FillEchoes(const avianlidar::ScanResult& result,
     echoes, names::EnergyStdError, [&](std::size_t i) { return all[i].energyStdError; });
   if (beams.sensor.receiverModel == avianlidar::ReceiverModel::Photons)
   {
-    const avianlidar::PhotonReceiver receiver(beams.sensor);
-    const auto electronsOf = [&](std::size_t i)
-    { return receiver.electronsPerJoule * all[i].energyReceived; };
+    const auto receiverOf = [&](std::size_t i)
+    { return avianlidar::PhotonReceiver(lookingAt(beams.sensor, all[i].background)); };
+    const double perJoule = avianlidar::PhotonReceiver(beams.sensor).electronsPerJoule;
+    const auto electronsOf = [&](std::size_t i) { return perJoule * all[i].energyReceived; };
     Add<vtkDoubleArray>(echoes, names::Photoelectrons, electronsOf);
     Add<vtkDoubleArray>(echoes, names::SignalToNoise,
-      [&](std::size_t i) { return receiver.signalToNoise(electronsOf(i)); });
+      [&](std::size_t i) { return receiverOf(i).signalToNoise(electronsOf(i)); });
+  }
+  if (beams.sensor.seesDaylight())
+  {
+    Add<vtkDoubleArray>(
+      echoes, names::SeenRadiance, [&](std::size_t i) { return all[i].background; });
   }
   Add<vtkDoubleArray>(echoes, names::Intensity,
     [&](std::size_t i) { return IntensityOf(all[i].energy, beams.sensor); });
   Add<vtkDoubleArray>(echoes, names::Distance, [&](std::size_t i) { return all[i].range; });
-  const avianlidar::RangeErrors errors(beams.sensor, noise.ofRanges);
-  if (errors.hasNoise())
+  const auto errorsOf = [&](double radiance)
+  { return avianlidar::RangeErrors(lookingAt(beams.sensor, radiance), noise.ofRanges); };
+  if (errorsOf(beams.sensor.backgroundRadiance).hasNoise())
   {
     Add<vtkDoubleArray>(echoes, names::DistanceStdError,
-      [&](std::size_t i) { return errors.deviation(all[i].energyReceived); });
+      [&](std::size_t i) { return errorsOf(all[i].background).deviation(all[i].energyReceived); });
   }
   const auto beamOf = [&](std::size_t i) { return result.beamOfEcho[i]; };
   AddBeamArrays(beams, echoes, beamOf);

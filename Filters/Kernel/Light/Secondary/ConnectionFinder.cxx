@@ -341,5 +341,9 @@ void connectionThroughputs(const ScanSetup& setup, const SecondaryBeam& beam,
       beam.samples.range.data(), beam.direct.reflected.data(), materials.view(),
       1.0 / beam.samples.rays, setup.sensor.receiverAperture, setup.sensor.solidAngle() },
     throughputs.data(), connections.size());
+  for (std::size_t i = 0; setup.sensor.losesNearRange() && i < connections.size(); ++i)
+  {
+    throughputs[i] *= setup.sensor.nearRangeShare(beam.samples.range[connections.two[i]]);
+  }
 }
 }

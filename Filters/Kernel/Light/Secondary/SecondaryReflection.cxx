@@ -94,9 +94,11 @@ double SecondaryReflection::mirrorThroughput(const Beam& beam, const MirrorPath&
   const double direct = !beam.trace.searched.empty()
     ? throughAperture(
         reflectance(model, first, monostaticGeometry(path.cosine)), first, aperture, path.rangeOne)
-        .total()
+        .total() *
+      this->Setup.sensor.nearRangeShare(path.rangeOne)
     : beam.direct.reflected[path.one];
-  return f1 * f2 * secondaryScale(this->Setup, first, second, path.cosine, direct) * path.weight;
+  return f1 * f2 * this->Setup.sensor.nearRangeShare(path.range) *
+    secondaryScale(this->Setup, first, second, path.cosine, direct) * path.weight;
 }
 
 /// What each path could bring back.

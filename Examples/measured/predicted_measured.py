@@ -1,0 +1,201 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""What is predicted of lidars that one can buy, beside what was measured: sheets, the near range, where ground ends, noise of ranges.
+
+    /usr/bin/python3 Examples/measured/predicted_measured.py --data DATA       # default: AVIANLIDAR_DATA_DIR
+
+Leaves tables (Markdown, CSV) and a picture. Documentation/results/predicted-measured.md says what each comparison knew before, and has
+them all, also those that fail. PYTHONPATH has to name the Python package (`cat build/paraview/python-path`).
+"""
+import os
+import pathlib
+import sys
+
+import numpy as np
+
+import avianlidar as al
+
+HERE = pathlib.Path(__file__).resolve().parent
+sys.path[:0] = [str(HERE.parent / "common"), str(HERE.parent / "outdoor")]
+import falloff  # noqa: E402
+import running  # noqa: E402
+import tables  # noqa: E402
+
+GOOD = 0.1      # of a point of a sheet that was left out
+ENDS = 0.25     # of the range where ground ends
+DARK = 20.0     # reflectivity up to which a point of the ground is ground: brighter ones are paint and things
+MODELS = ("LambertBlinnPhong", "OrenNayar")
+NAMED = ("Asphalt", "Concrete", "Grass")
+FRAMES = (("VLP-16", "lidar_vlp16_mrpt/vlp16.pcd", "VLP16"), ("Pandar40P", "lidar_room/pandar40p.pcd", "Pandar40P"),
+          ("PandarXT-32", "lidar_room/xt32.pcd", "PandarXT32"), ("Helios-16P", "lidar_outdoor/helios16p_frame0.pcd", "Helios16P"),
+          ("OS0-32", "lidar_ouster/os0_32.pcd", ""), ("OS1-32", "lidar_ouster/os1_32.pcd", "OS1_64"),
+          ("OS2-32", "lidar_ouster/os2_32.pcd", ""))
+
+
+def verdict(fine):
+    return "yes" if fine else "**no**"
+
+
+def sheets():
+    """Each point of a sheet, predicted by a receiver fitted to the others."""
+    rows = []
+    for name in al.Sensor.presets():
+        sensor = al.Sensor(name)
+        points = sensor.description.get("sheet", {}).get("points", [])
+        if len(points) < 2:
+            continue
+        found = sensor.fit()
+        for point, off, left in zip(points, found.residuals, found.left_out):
+            trust = point["source"].split(":")[0]
+            rows.append((name, f"{point['reflectance']:g}", f"{point.get('light', 0):g}", f"{point.get('probability', 0.5):g}",
+                         f"{point['range']:g}", trust, f"{100 * off:+.0f} %", f"{100 * left:+.0f} %", f"± {100 * found.bar:.0f} %",
+                         verdict(abs(left) <= GOOD)))
+    return ("sensor", "reflectance", "light (klx)", "seen with", "range (m)", "source", "fitted to all", "left out", "bar of the sensor",
+            f"within {100 * GOOD:.0f} %"), rows
+
+
+def ground_of(data):
+    """Planes of ground of the VLP-16's frame: (plane, distances, cosines, reflectivity in %, rings)."""
+    frame = falloff.FRAMES[-1]
+    cloud = al.load_cloud(data / frame.file)
+    points = np.array(cloud.points, float)
+    used = np.linalg.norm(points, axis=1) > falloff.NEAREST
+    points, ring, shown = points[used], np.array(cloud["laser_id"], int)[used], np.array(cloud[frame.field], float)[used]
+    distance = np.linalg.norm(points, axis=1)
+    for plane in falloff.find_planes(points, ring):
+        on = plane.points[shown[plane.points] <= DARK]
+        if plane.kind == "ground":
+            yield plane, distance[on], np.abs(points[on] @ plane.normal) / distance[on], shown[on], ring[on]
+
+
+def fitted_ground(cosine, reflectivity):
+    """kd and roughness (rad) of the ground by Oren and Nayar, to medians of bins of the cosine; and the rms left, of the medians."""
+    from scipy.optimize import least_squares
+    bins = np.round(cosine / 0.02).astype(int)
+    x, y = np.array([(cosine[bins == b].mean(), np.median(reflectivity[bins == b]) / 100) for b in np.unique(bins)
+                     if (bins == b).sum() >= 20]).T
+
+    def model(kd, s):
+        return kd * ((1 - 0.5 * s**2 / (s**2 + 0.33)) * x + 0.45 * s**2 / (s**2 + 0.09) * (1 - x**2))
+
+    best = least_squares(lambda p: model(*p) / y - 1, (0.2, 0.6), bounds=((0.01, 0), (1, 0.5 * np.pi)))
+    return *best.x, np.sqrt(np.mean(best.fun**2)), x, y
+
+
+def end_of(plane, material, model):
+    """The range (m) to which VLP16 sees the whole plane, without noise."""
+    across = np.cross(plane.normal, np.eye(3)[np.argmin(np.abs(plane.normal))])
+    across /= np.linalg.norm(across)
+    along, middle = np.cross(plane.normal, across), plane.normal * plane.distance
+    corners = [middle + 200 * (i * across + j * along) for i, j in ((-1, -1), (1, -1), (1, 1), (-1, 1))]
+    echoes = al.Scan(al.Scene(corners, [(0, 1, 2), (0, 2, 3)], material=material), al.Sensor("VLP16"), reflectance_model=model,
+                     attenuation_coefficient=falloff.AIR, noise=False).echoes
+    return float(echoes["distance_m"].max())
+
+
+def ground(data):
+    """Where the ground of the VLP-16's frame ends, and where that of the preset does; the fit of its roughness."""
+    planes = list(ground_of(data))
+    cosine, shown = (np.concatenate([one[k] for one in planes]) for k in (2, 3))
+    kd, roughness, rms, x, y = fitted_ground(cosine, shown)
+    materials = [(name, model, name, model) for name in NAMED for model in MODELS]
+    materials.append(("fitted to its reflectivity", "OrenNayar", (kd, 0, 1, roughness), "OrenNayar"))
+    rows = []
+    for plane, distance, *_ in planes:
+        tilt = np.degrees(np.arccos(abs(plane.normal[2])))
+        real = float(np.percentile(distance, 99.5))
+        for name, model, material, of in materials:
+            end = end_of(plane, material, of)
+            rows.append((f"{plane.distance:.2f}", f"{tilt:.1f}", name, model, f"{real:.1f}", f"{end:.1f}", f"{end / real:.2f}",
+                         verdict(abs(end / real - 1) <= ENDS)))
+    header = ("height (m)", "tilt (deg)", "ground", "model", "measured end (m)", "predicted end (m)", "ratio", f"within {100 * ENDS:.0f} %")
+    return header, rows, (kd, roughness, rms, x, y)
+
+
+def noise_of_ranges(points, ring):
+    """Standard deviations (m) of ranges along rings on planes: of second differences of five neighbours and more, by plane."""
+    distance = np.linalg.norm(points, axis=1)
+    azimuth = np.arctan2(points[:, 0], points[:, 1])
+    found = []
+    for plane in falloff.find_planes(points, ring):
+        # The range at which the beam meets the plane is known: what is left is noise, and the plane's own shape, which is slow.
+        off = distance - plane.distance / np.maximum((points / distance[:, None]) @ plane.normal, 1e-3)
+        second = []
+        for one in np.unique(ring[plane.points]):
+            on = plane.points[ring[plane.points] == one]
+            on = on[np.argsort(azimuth[on])]
+            step = np.diff(azimuth[on])
+            near = step < 3 * np.median(step) if len(step) else step
+            second.append(np.diff(off[on], 2)[near[1:] & near[:-1]] if len(on) > 2 else np.zeros(0))
+        second = np.concatenate(second)
+        cosine = np.median((points[plane.points] / distance[plane.points, None]) @ plane.normal)
+        if len(second) >= 100 and cosine > 0.1:
+            found.append((1.4826 * np.median(np.abs(second)) / np.sqrt(6), len(second), float(np.median(distance[plane.points]))))
+    return found
+
+
+def ranges(data):
+    """Noise of ranges on the planes of each frame, and what the maker's sheet or our sensor file says."""
+    rows = []
+    for name, file, preset in FRAMES:
+        cloud = al.load_cloud(data / file)
+        points, ring = np.array(cloud.points, float), np.array(cloud["laser_id"], int)
+        used = np.linalg.norm(points, axis=1) > falloff.NEAREST
+        found = noise_of_ranges(points[used], ring[used])
+        sheet = al.Sensor(preset).description["data_sheet"] if preset else {}
+        said = sheet.get("range_repeatability", sheet.get("range_accuracy", {})).get("value", np.nan)
+        quantum = sheet.get("range_resolution", {}).get("value", np.nan)
+        if not found:
+            rows.append((name, "-", "no plane", "-", f"{100 * said:.1f}", "-"))
+            continue
+        sigma = np.array([one[0] for one in found])
+        rows.append((name, len(found), f"{100 * sigma.min():.2f} to {100 * sigma.max():.2f}",
+                     f"{100 * quantum:.2f}" if quantum == quantum else "-", f"{100 * said:.1f}" if said == said else "not in a file here",
+                     verdict(sigma.max() <= said) if said == said else "-"))
+    return ("frame", "planes", "measured deviation (cm)", "step of the sheet (cm)", "the sheet's accuracy (cm)", "not larger"), rows
+
+
+def picture(fit, folder):
+    import matplotlib
+    matplotlib.use("Agg")
+    from matplotlib import pyplot
+    kd, s, _, x, y = fit
+    figure, axis = pyplot.subplots(figsize=(6, 3.6), layout="constrained")
+    axis.plot(x, 100 * y, "o", label="VLP-16's frame, medians")
+    at = np.linspace(0, x.max() * 1.05, 100)
+    axis.plot(at, 100 * kd * ((1 - 0.5 * s**2 / (s**2 + 0.33)) * at + 0.45 * s**2 / (s**2 + 0.09) * (1 - at**2)),
+              label=f"Oren and Nayar: kd {kd:.2f}, roughness {s:.2f} rad")
+    axis.plot(at, 100 * y[-1] / x[-1] * at, "--", label="matt, through the steepest")
+    axis.set(xlabel="cosine of incidence", ylabel="reflectivity (%)", ylim=(0, None), xlim=(0, None))
+    axis.legend()
+    figure.savefig(folder / "ground.png", dpi=110)
+
+
+def arguments(argv=None):
+    parser = running.Parser(description=__doc__.split("\n\n")[0])
+    parser.add_argument("--data", type=pathlib.Path, default=os.environ.get("AVIANLIDAR_DATA_DIR"), help="the data folder")
+    parser.add_argument("--out", type=pathlib.Path, default=pathlib.Path("build/measured"))
+    options = parser.parse_args(argv)
+    missing = [file for _, file, _ in FRAMES if not (pathlib.Path(options.data or "") / file).is_file()]
+    if missing:
+        parser.error(f"there is no file {pathlib.Path(options.data or '') / missing[0]}")
+    return options
+
+
+def main(argv=None):
+    options = arguments(argv)
+    header, rows, fit = ground(options.data)
+    found = {"measured-sheets": sheets(), "measured-ground": (header, rows), "measured-ranges": ranges(options.data),
+             "measured-fit": (("kd", "roughness (rad)", "rms left"), [[f"{value:.3f}" for value in fit[:3]]])}
+    for name, (header, rows) in found.items():
+        tables.write(options.out, name, falloff.markdown(header, rows).rstrip())
+        print(falloff.markdown(header, rows))
+    picture(fit, options.out)
+    return found
+
+
+if __name__ == "__main__":
+    try:
+        main()
+    except (al.Error, OSError, ValueError) as error:
+        sys.exit(f"predicted_measured.py: {error}")

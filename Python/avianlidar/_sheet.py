@@ -1,0 +1,186 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""A receiver fitted to all points of its maker's sheet.
+
+A sheet says at which range a board of a reflectance is seen with which probability, in which light. One number fits none of them:
+by 1/r^2 a board of 80 % is seen 2.83 times as far as one of 10 %, sheets say 1.7 to 2.5. A board at R fills min(1, w^2/(Omega R^2))
+of the beam, w its width; it gives n = eta E rho A/(pi R^2 h nu) electrons for what it fills, and, lit by the sun, its daylight as
+background. It is seen with the probability that n and Gaussian noise exceed the threshold (Documentation/sensors.md). Fitted are, as
+far as the points tell them: the aperture A (how much light), the filter's bandwidth (how much daylight, also that of a view wider than the beam) and, where no point has it,
+the width of the board, which is not the receiver's but unknown. SciPy's least squares, over logarithms of ranges.
+"""
+from __future__ import annotations
+
+import dataclasses
+import json
+from typing import Any, Dict, List, Optional, Sequence, Tuple
+
+import numpy as np
+
+# Spectral irradiance of daylight over its illuminance, W/(m2 nm) for 100 klx, by wavelength in nm. Second-hand: read off the
+# reference spectrum ASTM G173-03 (global, 37 degrees), which has some 109 klx.
+DAYLIGHT = ((532, 1.40), (650, 1.40), (785, 1.05), (850, 0.83), (905, 0.70), (1064, 0.59), (1550, 0.25))
+HALF = 0.5  # probability of a point that says none: assumed
+UNITS = {"range": "m", "probability": "1", "reflectance": "1", "light": "klx", "board": "m"}
+MOST = {"range": 1e6, "probability": 0.9999, "reflectance": 1.0, "light": 1000.0, "board": 1e4}
+
+
+@dataclasses.dataclass
+class Fit:
+    """A receiver fitted to a sheet.
+
+    numbers    receiver_aperture (m2; with the assumed energy of the pulse) and, where points differ in light,
+               filter_bandwidth (nm; with a view as wide as the beam)
+    board      width of the makers' board, m: the points' or, if they have none, fitted; nan where no two reflectances tell it
+    predicted  the range of each point by the fit, m
+    residuals  predicted over the sheet's range, less 1
+    left_out   the same where that point had no part in the fit; nan where the others do not tell all that is fitted
+    bar        what ranges by this receiver are good for, relative: the largest of |residuals| and |left_out|
+    """
+    numbers: Dict[str, float]
+    board: float
+    predicted: List[float]
+    residuals: List[float]
+    left_out: List[float]
+    bar: float
+
+
+def check(points: Sequence[Dict[str, Any]]) -> None:
+    """ValueError that names what is wrong with a sheet's points."""
+    if not points:
+        raise ValueError("the sheet has no points, expected at least one of range, reflectance, source")
+    for i, point in enumerate(points):
+        for key in ("range", "reflectance", "source"):
+            if key not in point:
+                raise ValueError(f"sheet.points[{i}]: {key} is missing")
+        for key, most in MOST.items():
+            value = point.get(key, most)
+            least = 0.0 if key == "light" else 1e-4
+            if isinstance(value, bool) or not isinstance(value, (int, float)) or not least <= value <= most:
+                raise ValueError(f"sheet.points[{i}].{key} is {value!r}, expected {least:g} to {most:g} {UNITS[key]}")
+
+
+def irradiance(light: float, wavelength: float) -> float:
+    """Spectral irradiance, W/(m2 nm), of daylight of so many klx at a wavelength, nm."""
+    return 0.01 * light * float(np.interp(wavelength, [row[0] for row in DAYLIGHT], [row[1] for row in DAYLIGHT]))
+
+
+class Receiver:
+    """What the fit needs of a sensor (Documentation/sensors.md has the formulas)."""
+
+    def __init__(self, sensor):
+        from scipy.special import erfcinv
+        half = float(sensor.half_beamwidth)
+        self.solid_angle = 4 * np.pi * np.sin(0.5 * half) ** 2
+        self.wavelength = float(sensor.wavelength)
+        self.interval = float(sensor.sampling_interval)
+        photon = 6.62607015e-34 * 299792458.0 / (1e-9 * self.wavelength)
+        self.per_joule = float(sensor.receiver_efficiency) / photon
+        self.pulse_energy = float(sensor.pulse_energy)
+        self.dark = float(sensor.amplifier_noise) ** 2
+        self.background = self.per_joule * self.solid_angle * self.interval
+        self.excess = float(sensor.excess_noise_factor)
+        self.overlap, self.defocus = float(sensor.overlap_range), float(sensor.defocus_range)
+        units = sensor.beams.number_of_points * np.floor(2 * float(sensor.range_gate) / (299792458.0 * self.interval))
+        self.factor = float(np.sqrt(2) * erfcinv(2 * float(sensor.false_alarms_per_scan) / units))
+
+    def excess_of(self, distance, point: Dict[str, Any], aperture: float, bandwidth: float, board: float):
+        """By how many deviations of the noise what a board gives exceeds the threshold. @param distance m, one or many"""
+        distance = np.asarray(distance, dtype=float)
+        rho = point["reflectance"]
+        filled = np.minimum(1.0, board**2 / (self.solid_angle * distance**2)) if np.isfinite(board) else 1.0
+        near = (1 - np.exp(-(distance / self.overlap) ** 2) if self.overlap else 1.0) / (1 + (self.defocus / distance) ** 2)
+        signal = self.per_joule * self.pulse_energy * filled * near * np.minimum(1.0, rho * aperture / (np.pi * distance**2))
+        radiance = filled * rho * irradiance(point.get("light", 0.0), self.wavelength) / np.pi
+        dark = self.dark + self.excess * self.background * bandwidth * radiance * aperture
+        return (signal - self.factor * np.sqrt(dark)) / np.sqrt(dark + self.excess * signal)
+
+    def range(self, point: Dict[str, Any], *numbers: float) -> float:
+        """The largest range, m, at which a point's board is seen with its probability."""
+        from scipy.special import erfcinv
+        wanted = -np.sqrt(2) * erfcinv(2 * point.get("probability", HALF))
+        x = np.linspace(np.log(point["range"]) - 5, np.log(point["range"]) + 5, 1001)
+        over = self.excess_of(np.exp(x), point, *numbers) - wanted
+        seen = np.flatnonzero(over > 0)
+        if not len(seen) or seen[-1] == len(x) - 1:
+            return float(np.exp(x[0] if not len(seen) else x[-1]))
+        k = seen[-1]
+        return float(np.exp(x[k] + (x[k + 1] - x[k]) * over[k] / (over[k] - over[k + 1])))
+
+
+def _fitted(receiver: Receiver, points, start: Tuple[float, float]) -> Tuple[float, float, float]:
+    """Aperture (m2), bandwidth (nm), board (m). @param start the first two before the fit"""
+    from scipy.optimize import least_squares
+    boards = sorted({point["board"] for point in points if "board" in point})
+    frees = ["aperture"]  # in the order in which they need points
+    if len({point.get("light", 0.0) for point in points}) > 1 and len(points) > 1:
+        frees.append("bandwidth")
+    if not boards and len({point["reflectance"] for point in points}) > 1 and len(points) > len(frees):
+        frees.append("board")
+    farthest = max(point["range"] for point in points)
+    size = farthest * np.sqrt(receiver.solid_angle)  # of a board that just fills the beam there
+    best: Tuple[float, Tuple[float, float, float]] = (np.inf, (*start, np.nan))
+    for width in (0.3 * size, 0.6 * size, 1.2 * size) if "board" in frees else (boards[0] if boards else np.nan,):
+        value = {"aperture": start[0], "bandwidth": start[1], "board": width}
+
+        def off(x, names):
+            at = {**value, **dict(zip(names, np.exp(x)))}
+            return [np.log(receiver.range(point, *at.values()) / point["range"]) for point in points]
+
+        for names in (frees[:1], frees):  # the aperture first: the others start where it is right
+            found = least_squares(off, [np.log(value[name]) for name in names], args=(names,), diff_step=1e-4)
+            value = {**value, **dict(zip(names, np.exp(found.x)))}
+        if found.cost < best[0]:
+            best = found.cost, (float(value["aperture"]), float(value["bandwidth"]), float(value["board"]))
+    return best[1]
+
+
+def fit(sensor, points: Optional[Sequence[Dict[str, Any]]] = None) -> Fit:
+    """Fit a sensor's receiver to points of a sheet; the sensor is not changed. See `Sensor.fit`."""
+    points = sensor.description.get("sheet", {}).get("points", []) if points is None else list(points)
+    check(points)
+    if sensor.receiver_aperture <= 0:
+        raise ValueError("receiver_aperture is 0, expected more than 0 m2: without it nothing falls with the range")
+    receiver = Receiver(sensor)
+    start = float(sensor.receiver_aperture), max(float(sensor.filter_bandwidth), 1e-3)
+    numbers = _fitted(receiver, points, start)
+    predicted = [receiver.range(point, *numbers) for point in points]
+    left_out = []
+    for i, point in enumerate(points):
+        others = points[:i] + points[i + 1:]
+        tells_light = len({other.get("light", 0.0) for other in others}) > 1 or len({p.get("light", 0.0) for p in points}) == 1
+        left_out.append(receiver.range(point, *_fitted(receiver, others, start)) / point["range"] - 1 if others and tells_light
+                        else float("nan"))
+    residuals = [value / point["range"] - 1 for value, point in zip(predicted, points)]
+    bar = float(np.nanmax(np.abs([*residuals, *left_out])))
+    lights = len({point.get("light", 0.0) for point in points}) > 1
+    return Fit({"receiver_aperture": numbers[0], **({"filter_bandwidth": numbers[1]} if lights else {})}, numbers[2], predicted,
+               residuals, left_out, bar)
+
+
+def write(description: Dict[str, Any], found: Fit, file: str) -> None:
+    """The sensor file with the fitted numbers, the residuals and the bar."""
+    number = len(description["sheet"]["points"])
+    for name, value in found.numbers.items():
+        unit = {"receiver_aperture": "m2", "filter_bandwidth": "nm"}[name]
+        description["values"][name] = {"value": float(f"{value:.6g}"), "unit": unit,
+                                       "source": f"fitted to the {number} points of the sheet"}
+    description["sheet"]["residuals"] = [float(f"{value:.3g}") for value in found.residuals]
+    description["sheet"]["bar"] = float(f"{found.bar:.3g}")
+    if np.isfinite(found.board):
+        description["sheet"]["board"] = float(f"{found.board:.3g}")
+    with open(file, "w", encoding="utf-8") as out:
+        out.write(_text(description) + "\n")
+
+
+def _text(value, indent: int = 0) -> str:
+    """JSON with a line for each mapping of plain values."""
+    rows = isinstance(value, list) and value and all(isinstance(one, dict) for one in value)
+    plain = isinstance(value, dict) and not any(isinstance(one, dict) or (isinstance(one, list) and one and isinstance(one[0], dict))
+                                                for one in value.values())
+    if not rows and (not isinstance(value, dict) or (plain and indent)):
+        return json.dumps(value, ensure_ascii=False)
+    pad = "  " * (indent + 1)
+    parts = [_text(one, indent + 1) for one in value] if rows else \
+        [f"{json.dumps(key)}: {_text(one, indent + 1)}" for key, one in value.items()]
+    left, right = ("[", "]") if rows else ("{", "}")
+    return f"{left}\n" + ",\n".join(pad + part for part in parts) + f"\n{'  ' * indent}{right}"

@@ -1,0 +1,105 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""Receivers fitted to the points of a sheet: numbers that are known come back, boards at the fitted ranges are seen as often as the
+sheet says when they are simulated, and bad sheets are named."""
+import json
+import pathlib
+import subprocess
+import sys
+import tempfile
+import unittest
+
+import numpy as np
+
+import avianlidar as al
+from avianlidar import _sheet
+
+HALF = 2e-3  # rad
+
+
+def sensor(**settings):
+    return al.Sensor("Automotive16", **{"half_beamwidth": HALF, "range_gate": 600.0, "overlap_range": 0, "defocus_range": 0,
+                                        "background_radiance": 0, "range_noise": 0, "range_noise_floor": 0, **settings})
+
+
+def points(receiver, numbers, *rows):
+    """Points of a sheet of rows (reflectance, probability, light). @param numbers of Receiver.range()"""
+    made = [{"reflectance": rho, "probability": p, "light": light, "range": 100.0, "source": "made"} for rho, p, light in rows]
+    return [{**point, "range": receiver.range(point, *numbers)} for point in made]
+
+
+class Sheets(unittest.TestCase):
+
+    def test_known_numbers_come_back(self):
+        start = sensor()
+        numbers = 3e-4, 40.0, 0.6
+        rows = [(0.1, 0.5, 0), (0.8, 0.5, 0), (0.1, 0.9, 100), (0.8, 0.5, 100), (0.8, 0.9, 100)]
+        found = _sheet.fit(start, points(_sheet.Receiver(start), numbers, *rows))
+        np.testing.assert_allclose([*found.numbers.values(), found.board], numbers, rtol=0.01)
+        self.assertLess(found.bar, 1e-3)
+        # Of one number one point is enough, and none can be left out.
+        one = _sheet.fit(start, points(_sheet.Receiver(start), (3e-4, 10.0, np.nan), (0.1, 0.5, 0)))
+        self.assertAlmostEqual(one.numbers["receiver_aperture"] / 3e-4, 1, delta=1e-3)
+        self.assertTrue(np.isnan(one.left_out[0]) and np.isnan(one.board))
+
+    def test_boards_are_seen_as_often_when_simulated(self):
+        """2,000 beams on a board at a fitted range, in the dark and in the sun."""
+        start = sensor()
+        receiver = _sheet.Receiver(start)
+        numbers = 3e-4, 60.0, 0.5
+        for rho, p, light in ((0.1, 0.9, 0), (0.8, 0.5, 0), (0.8, 0.9, 100), (0.3, 0.5, 100)):
+            with self.subTest(reflectance=rho, light=light):
+                board = points(receiver, numbers, (rho, p, light))[0]
+                half = 0.5 * numbers[2]
+                x = board["range"]
+                scene = al.Scene([(x, -half, -half), (x, half, -half), (x, half, half), (x, -half, half)],
+                                 [(0, 1, 2), (0, 2, 3)], material=(rho, 0, 1))
+                count = start.beams.number_of_points
+                looking = sensor(directions=np.tile([1.0, 0, 0], (count, 1)), receiver_aperture=numbers[0], pulse_width=0,
+                                 filter_bandwidth=numbers[1], sun_azimuth=270, sun_elevation=0,
+                                 sunlight=_sheet.irradiance(light, start.wavelength))
+                echoes = al.Scan(scene, looking, attenuation_coefficient=0, number_of_reflections=1).echoes
+                seen = (echoes["object_id"] >= 0).sum() / count
+                # The simulated board is not quite what fills so much of the beam: 2 % of the signal.
+                self.assertAlmostEqual(seen, p, delta=0.05)
+
+    def test_what_is_wrong_is_named(self):
+        good = {"range": 100, "reflectance": 0.1, "source": "x"}
+        for bad, words in (({**good, "range": -1}, "points[0].range is -1, expected 0.0001 to 1e+06 m"),
+                           ({**good, "reflectance": 2}, "points[0].reflectance is 2"), ({**good, "probability": 1}, "probability is 1"),
+                           ({**good, "light": "much"}, "light is 'much'"), ({"range": 1, "source": "x"}, "reflectance is missing")):
+            with self.assertRaisesRegex(ValueError, words.replace("[", r"\[").replace("]", r"\]").replace("+", r"\+")):
+                sensor().fit([bad])
+        with self.assertRaisesRegex(ValueError, "no points"):
+            sensor().fit()
+        with self.assertRaisesRegex(ValueError, "receiver_aperture is 0"):
+            al.Sensor("Airport16").fit([good])
+
+    def test_the_command_writes_a_sensor(self):
+        start = sensor()
+        sheet = points(_sheet.Receiver(start), (3e-4, 10.0, 0.6), (0.1, 0.5, 0), (0.1, 0.9, 0), (0.8, 0.5, 0), (0.8, 0.9, 0))
+        with tempfile.TemporaryDirectory() as folder:
+            made, fitted = (pathlib.Path(folder) / f"{name}.lidarsensor.json" for name in ("made", "fitted"))
+            description = al.Sensor("Automotive16").description
+            description["values"]["half_beamwidth"]["value"] = HALF
+            description["values"]["range_gate"]["value"] = 600.0
+            description["values"]["background_radiance"]["value"] = 0.0
+            made.write_text(json.dumps({**description, "sheet": {"points": sheet}}), encoding="utf-8")
+            run = subprocess.run([sys.executable, "-m", "avianlidar", "sensors", "--fit", str(made), "-o", str(fitted)],
+                                 capture_output=True, text=True)
+            self.assertEqual(run.returncode, 0, run.stderr)
+            self.assertIn("ranges by this receiver are good for 0 %", run.stdout)
+            of = al.Sensor(fitted)
+            self.assertAlmostEqual(of.receiver_aperture / 3e-4, 1, delta=0.01)
+            self.assertLess(of.description["sheet"]["bar"], 0.01)
+            self.assertEqual(len(of.description["sheet"]["residuals"]), 4)
+            try:
+                import jsonschema
+            except ImportError:
+                return
+            schema = pathlib.Path(__file__).parents[2] / "Filters" / "Sensors" / "lidarsensor.schema.json"
+            jsonschema.validate(of.description, json.loads(schema.read_text(encoding="utf-8")))
+
+
+if __name__ == "__main__":
+    unittest.main()
