@@ -16,6 +16,7 @@ vtk_module_wrap_python(
 
 # The wrapping makes the extension module only; the package, with helpers in Python, is made here.
 set(avianlidar_python_files
+  __init__.py
   __main__.py
   _cloud.py
   _command.py
@@ -55,7 +56,7 @@ set(avianlidar_python_package "${AVIANLIDAR_PYTHON_BUILD_DIR}/avianlidar")
 # Modules that have moved since would still be found in a build tree.
 file(GLOB old "${avianlidar_python_package}/*.py")
 file(REMOVE_RECURSE "${avianlidar_python_package}/apps" ${old})
-configure_file("${PROJECT_SOURCE_DIR}/Python/avianlidar/__init__.py.in" "${avianlidar_python_package}/__init__.py" @ONLY)
+configure_file("${PROJECT_SOURCE_DIR}/Python/avianlidar/_version.py.in" "${avianlidar_python_package}/_version.py" @ONLY)
 foreach (file IN LISTS avianlidar_python_files)
   configure_file("${PROJECT_SOURCE_DIR}/Python/avianlidar/${file}" "${avianlidar_python_package}/${file}" COPYONLY)
   get_filename_component(folder "${file}" DIRECTORY)
@@ -63,7 +64,7 @@ foreach (file IN LISTS avianlidar_python_files)
     DESTINATION "${AVIANLIDAR_PYTHON_DESTINATION}/avianlidar/${folder}"
     COMPONENT python)
 endforeach ()
-set(avianlidar_python_generated "${avianlidar_python_package}/__init__.py")
+set(avianlidar_python_generated "${avianlidar_python_package}/_version.py")
 
 # Type stubs of the wrapped module, by VTK's own generator, which imports the module. ParaView's VTK brings it, Debian's
 # VTK 9.1 does not.

@@ -24,7 +24,8 @@ import traceback
 from vtkmodules.vtkIOXML import vtkXMLPolyDataWriter
 
 from avianlidar._disk import only_run, write_whole
-from avianlidar._ranks import Ranks, as_json, digest_of, version
+from avianlidar._ranks import Ranks, as_json, digest_of
+from avianlidar._version import __version__
 from avianlidar.vtkAvianLidar import vtkAvianLidarBeamSource, vtkAvianLidarCollisionTree, vtkAvianLidarEchoFilter
 
 HERE = pathlib.Path(__file__).resolve().parent
@@ -61,12 +62,12 @@ def values_of(fields):
 
 def plan(options, scene_digest):
     """All scans as {name: parameters}; those that differ in the air alone stand together."""
-    scans, made_by = {}, version()
+    scans = {}
     for preset, position, seed, attenuation in itertools.product(
             options.preset, options.position, options.seed, options.attenuation):
         parameters = {"scene": options.scene.name, "scene_digest": scene_digest, "preset": preset,
                       "position": position, "seed": seed, "attenuation_coefficient": attenuation,
-                      "rays_per_beam": options.rays, "avian_lidar_version": made_by}
+                      "rays_per_beam": options.rays, "avian_lidar_version": __version__}
         short = hashlib.sha256(as_json(parameters)).hexdigest()[:10]
         place = "_".join(f"{coordinate:g}" for coordinate in position)
         scans[f"{preset}_at_{place}_seed_{seed}_air_{attenuation:g}_{short}"] = parameters

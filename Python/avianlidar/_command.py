@@ -110,7 +110,7 @@ def _threads(verb) -> None:
 
 def parser() -> Parser:
     """The command's arguments."""
-    from . import __version__
+    from ._version import __version__
     raw = argparse.RawDescriptionHelpFormatter
     whole = Parser(prog="avianlidar", description="Simulates what a bird-watching lidar receives.", formatter_class=raw,
                    epilog="examples:\n" + "".join(examples.splitlines(True)[0] for _, _, examples in VERBS.values()))

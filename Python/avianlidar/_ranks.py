@@ -12,9 +12,8 @@ from vtkmodules.vtkCommonCore import vtkDataArray, vtkIntArray
 from vtkmodules.vtkCommonDataModel import vtkPolyData
 from vtkmodules.vtkParallelCore import vtkCommunicator, vtkMultiProcessController
 
-from . import vtkAvianLidar as _wrapped
 from ._cloud import as_numpy, field_values
-from ._pipeline import Error, update
+from ._pipeline import Error
 from ._scene import COEFFICIENTS
 
 
@@ -100,12 +99,3 @@ def digest_of_arrays(data: vtkPolyData) -> str:
             digest.update(as_numpy(array).tobytes() if numbers else
                           json.dumps([array.GetValue(k) for k in range(array.GetNumberOfValues())]).encode())
     return digest.hexdigest()
-
-
-def version() -> str:
-    """Of the filters: the echoes of no beam name it, too."""
-    lidar = _wrapped.vtkAvianLidarEchoFilter()
-    lidar.SetInputData(0, vtkPolyData())
-    lidar.SetSurfacesData(vtkPolyData())
-    update(lidar)
-    return field_values(lidar.GetOutput())["avian_lidar_version"][0]

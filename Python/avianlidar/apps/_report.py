@@ -14,7 +14,7 @@ import numpy as np
 from .._cloud import field_values
 from .._disk import only_run, write_whole
 from .._pipeline import Error
-from .._ranks import version
+from .._version import __version__
 from . import _pictures as pictures
 from . import reach, siting
 from ._json import load_json
@@ -324,7 +324,7 @@ class Report:
             statuses=list(zip(first.coverage.status_names, pictures.STATUS_COLOURS)),
             scene={"name": pathlib.Path(self.plan["scene"]).name, "comment": _lines(self.scene.get("comment")),
                    "attribution": _lines(self.scene.get("attribution"))},
-            files=folder.name, version=version(), json=json.dumps(_shown(asked), indent=1, ensure_ascii=False))
+            files=folder.name, version=__version__, json=json.dumps(_shown(asked), indent=1, ensure_ascii=False))
 
 
 def _lines(value: Any) -> List[str]:

@@ -22,10 +22,11 @@ from .._cloud import Cloud, as_numpy, field_values
 from .._disk import only_run, read_regular, synchronize, write_whole
 from .._pipeline import Error, Updates, callers_level, update
 from .._properties import in_snake_case, set_properties
-from .._ranks import Ranks, as_json, digest_of, digest_of_arrays, version
+from .._ranks import Ranks, as_json, digest_of, digest_of_arrays
 from .._scan import Scan
 from .._scene import Scene, load_scene, mesh, mover
 from .._sensor import Sensor
+from .._version import __version__
 from ._json import check_json, load_json, naming
 from ._labels import BIRD, FIRST_BIRD, FIRST_OBJECT, LAST_ID, classes_of, configuration, relabel
 
@@ -381,7 +382,7 @@ class Sequence:
                  "sensor": {**self.sensor.properties(), "beams": digest_of_arrays(self.at_rest.beams.data)},
                  "scan": self.scan.properties()}
         found = {f"{part}.{name}": _short(value) for part, values in parts.items() for name, value in values.items() if name not in no_bit}
-        return {"version": version(), "scene": digest_of(self.scene.tree.GetOutput()), **found}
+        return {"version": __version__, "scene": digest_of(self.scene.tree.GetOutput()), **found}
 
     def write(self, folder, ranks: Optional[Ranks] = None, progress: Optional[Progress] = None) -> Dict[str, Any]:
         """Make what is missing of `folder`/sequences/NN, then manifest.json and datasheet.md; returns the manifest.
@@ -489,7 +490,7 @@ class Sequence:
         scenario = _with_files(self.scenario, lambda name: os.path.relpath(name, out))
         assumed = beams.fields.get("assumed", ())
         return {"scenario": scenario, "scene_digest": digest_of(self.scene.tree.GetOutput()),
-                "avian_lidar_version": version(), "beams": beams.number_of_points,
+                "avian_lidar_version": __version__, "beams": beams.number_of_points,
                 "assumed": [assumed] if isinstance(assumed, str) else list(assumed)}
 
 

@@ -32,7 +32,8 @@ from .._coverage import Coverage, places_of
 from .._disk import read_regular, write_whole
 from .._files import save
 from .._pipeline import Error, Updates, callers_level, update
-from .._ranks import Ranks, as_json, digest_of, digest_of_arrays, version
+from .._ranks import Ranks, as_json, digest_of, digest_of_arrays
+from .._version import __version__
 from ._json import load_json, naming
 
 # Places in strips and approaches. Source: none; after obstacle limitation surfaces of ICAO Annex 14, simplified.
@@ -497,7 +498,7 @@ def _files(cover: Coverage, sites, places, inputs, folder) -> List[pathlib.Path]
     home.mkdir(parents=True, exist_ok=True)
     update(cover.scene.tree)
     table = hashlib.sha256(read_regular(cover.species_file_name)).hexdigest() if cover.species_file_name else ""
-    known = [digest_of(cover.scene.tree.GetOutput()), version(), digest_of_arrays(cover.sensor.beams.data), inputs, table]
+    known = [digest_of(cover.scene.tree.GetOutput()), __version__, digest_of_arrays(cover.sensor.beams.data), inputs, table]
     common = hashlib.sha256(as_json(known) + places.tobytes())
     names = []
     for site in sites:

@@ -25,8 +25,8 @@ from ._plot import hue_colors, plot_map, plot_range_image
 from ._scan import Scan
 from ._scene import Scene, load_scene, materials, mesh, mover
 from ._sensor import Sensor
+from ._version import __version__
 from .apps._sequence import Sequence
 
-__version__ = "@PROJECT_VERSION@"
 __all__ = ["Cloud", "Coverage", "Error", "Scan", "Scene", "Sensor", "Sequence", "hue_colors", "load_cloud", "load_scene",
            "materials", "mesh", "mover", "places_of", "plot_map", "plot_range_image", "save", "vtkAvianLidar"]
