@@ -33,9 +33,6 @@ namespace avianlidar
 /// geometric progression) would otherwise make a list instead of a tree.
 constexpr std::uint32_t MaximumRuleDepth = 96;
 
-/// No tree of triangles that 32 bits count is deeper.
-constexpr std::uint32_t MaximumTreeDepth = MaximumRuleDepth + 32;
-
 /// A node that is still to be divided.
 struct DraftEntry
 {

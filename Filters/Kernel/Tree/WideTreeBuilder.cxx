@@ -264,33 +264,4 @@ WideTree buildWideTree(const WideTreeInput& input, const TriangleBoxes& scene, P
   team.loop(pending.size(), 1, placePart);
   return tree;
 }
-
-WideTree buildWideTree(const CollisionTree& tree, ParallelTeam& team)
-{
-  if (tree.nodes.empty())
-  {
-    return {};
-  }
-  const TriangleBoxes scene = makeTriangleBoxes(*tree.mesh, team);
-  std::vector<LaneBox> boxes(tree.nodes.size());
-  // Children come after their parents.
-  for (std::size_t i = tree.nodes.size(); i-- > 0;)
-  {
-    const TreeNode& node = tree.nodes[i];
-    boxes[i].clear();
-    if (!node.isLeaf())
-    {
-      boxes[i].include(boxes[node.first]);
-      boxes[i].include(boxes[node.first + 1]);
-    }
-    for (std::uint32_t k = 0; k < node.count; ++k)
-    {
-      boxes[i].include(scene.boxes[tree.order[node.first + k]]);
-    }
-  }
-  std::vector<WideTreeCost> costs(tree.nodes.size() / 2 + 1);
-  const WideTreeInput input{ tree.nodes.data(), boxes.data(), costs.data() };
-  input.setCosts(0, static_cast<std::uint32_t>(tree.nodes.size()));
-  return buildWideTree(input, scene, team);
-}
 }

@@ -44,9 +44,6 @@ struct WideTreeInput
 /// @return empty if there are no triangles, or `keepGoing` returned false
 WideTree buildWideTree(const WideTreeInput& input, const TriangleBoxes& scene, ParallelTeam& team,
   const KeepGoing& keepGoing = {});
-
-/// The same for an existing tree, of which only nodes and order are used.
-WideTree buildWideTree(const CollisionTree& tree, ParallelTeam& team);
 }
 
 #endif
