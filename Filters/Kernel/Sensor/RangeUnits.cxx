@@ -163,6 +163,11 @@ void RangeUnitAccumulator::clear()
 {
   this->Lengths.clear();
   this->Energies.clear();
+  this->clearUnits();
+}
+
+void RangeUnitAccumulator::clearUnits()
+{
   this->Units.clear();
   this->EnergyBeyondGate = 0.0;
   this->Narrow = false;
@@ -200,11 +205,7 @@ PulseLanes RangeUnitAccumulator::pulses() const
 
 void RangeUnitAccumulator::accumulate()
 {
-  this->Units.clear();
-  this->EnergyBeyondGate = 0.0;
-  this->Narrow = false;
-  this->Requests = 0;
-  this->ByFirst.clear();
+  this->clearUnits();
   const std::size_t count = this->Lengths.size();
   for (std::vector<double>* v : { &this->Begins, &this->Widths, &this->Firsts, &this->Lasts })
   {

@@ -114,6 +114,7 @@ private:
     double energy = 0.0;
     std::uint32_t paths = 0;
   };
+  void clearUnits();
   PulseLanes pulses() const;
   void accumulateNarrow(double lowest, std::uint32_t window);
   void takeCells(std::int64_t lowest, std::uint32_t window);
