@@ -9,7 +9,6 @@
 #include "Private/vtkAvianLidarCloudFields.h"
 #include "vtkAvianLidarNames.h"
 #include "vtkAvianLidarText.h"
-#include "vtkAvianLidarVersion.h"
 
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
@@ -287,7 +286,7 @@ public:
     this->Output.colours = this->Points.HasColours();
     this->Output.simulated = IsSimulated(input);
     this->Output.sourceId = self->SourceId;
-    this->Output.software = std::string("avian-lidar ") + vtkAvianLidarVersion();
+    this->Output.software = "avian-lidar " AVIANLIDAR_VERSION;
     this->TakeExtraBytes();
     this->Place();
     this->Output.point = [this](std::int64_t i)

@@ -166,9 +166,9 @@ void BeamLighting::collectPaths(std::size_t beam, BeamTrace& trace)
   // A strip of cells lies about its mean range.
   const double nearest =
     this->Cells ? (1.0 - MostOfRange) * this->Lit->nearest : this->Lit->nearest;
-  SecondaryReflection::Beam paths{ this->Beams.ids[beam], samples, this->throughputOfStarts(),
-    strata ? &this->Sampler.strata : nullptr, *trace.secondary, std::ref(scene), nearest,
-    &this->Wanted };
+  SecondaryReflection::Beam paths{ this->Beams.ids[beam], samples,
+    this->raysAreLit() ? this->OfLit : this->OfStarts, strata ? &this->Sampler.strata : nullptr,
+    *trace.secondary, std::ref(scene), nearest, &this->Wanted };
   const std::uint64_t id = this->Beams.ids[beam];
   const auto regions = [&](MirrorRegions& found)
   {

@@ -78,10 +78,6 @@ private:
   bool mayBePerceived(double most, double ofPaths);
   bool isSkipped(double most, double farthest, double nearest);
   void startFrom(const BeamSamples& rays);
-  const Throughput& throughputOfStarts() const
-  {
-    return this->raysAreLit() ? this->OfLit : this->OfStarts;
-  }
   double mostOfPaths() const;
   void reflectAgain(std::size_t beam, BeamTrace& trace, double most);
   void collectPaths(std::size_t beam, BeamTrace& trace);

@@ -6,7 +6,6 @@
 #include "vtkAvianLidarArrays.h"
 #include "vtkAvianLidarCells.h"
 #include "vtkAvianLidarModelNotes.h"
-#include "vtkAvianLidarVersion.h"
 
 #include "vtkDoubleArray.h"
 #include "vtkIdTypeArray.h"
@@ -278,7 +277,7 @@ void vtkAvianLidarEchoOutput::FillFields(const avianlidar::ScanSetup& setup, int
   fields->PassData(beamFields);
   names::SetFieldInteger(fields, { "preset", "1" }, preset);
   SetSettings(setup.settings, fields);
-  names::SetFieldStrings(fields, { "avian_lidar_version", "" }, { vtkAvianLidarVersion() });
+  names::SetFieldStrings(fields, { "avian_lidar_version", "" }, { AVIANLIDAR_VERSION });
   auto checksum = names::Make<vtkTypeUInt64Array>({ "scene_checksum", "" }, 1);
   const std::uint64_t parts[] = { sceneChecksum, movers.checksum };
   checksum->SetValue(
