@@ -21,11 +21,9 @@
 #include "vtkStreamingDemandDrivenPipeline.h"
 
 #include <algorithm>
-#include <array>
 #include <cctype>
 #include <cmath>
 #include <exception>
-#include <stdexcept>
 #include <string>
 
 namespace

@@ -5,7 +5,6 @@
 #include "VolumeTree.h"
 #include "vtkAvianLidarAbort.h"
 #include "vtkAvianLidarArrays.h"
-#include "vtkAvianLidarNames.h"
 #include "vtkAvianLidarRanks.h"
 #include "vtkAvianLidarSurfaceExchange.h"
 #include "vtkAvianLidarSurfaces.h"

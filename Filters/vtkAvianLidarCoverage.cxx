@@ -30,7 +30,6 @@
 #include "vtkStreamingDemandDrivenPipeline.h"
 #include "vtkTable.h"
 
-#include <algorithm>
 #include <array>
 #include <vector>
 

@@ -11,7 +11,6 @@
 #include "vtkObjectFactory.h"
 #include "vtkPointSet.h"
 
-#include <algorithm>
 #include <cmath>
 
 namespace fields = vtkAvianLidarCloudFields;

@@ -13,7 +13,6 @@
 
 #include <cmath>
 #include <limits>
-#include <memory>
 
 namespace fields = vtkAvianLidarCloudFields;
 namespace formats = avianlidar::formats;

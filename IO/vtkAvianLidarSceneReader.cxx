@@ -23,7 +23,6 @@
 
 #include <vtksys/SystemTools.hxx>
 
-#include <exception>
 #include <new>
 
 vtkStandardNewMacro(vtkAvianLidarSceneReader);

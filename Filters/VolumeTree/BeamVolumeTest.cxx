@@ -4,6 +4,7 @@
 #include "TriangleTest.h"
 
 #include <algorithm>
+#include <limits>
 
 namespace avianlidar
 {

@@ -8,7 +8,6 @@
 #include <vtksys/SystemTools.hxx>
 
 #include <algorithm>
-#include <cmath>
 #include <cstdint>
 #include <cstdlib>
 #include <filesystem>

@@ -10,7 +10,6 @@
 
 #include <cmath>
 #include <cstdlib>
-#include <sstream>
 #include <vector>
 
 namespace avianlidar

@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cstring>
-#include <limits>
 
 // This file is compiled once for every instruction set.
 #undef HWY_TARGET_INCLUDE

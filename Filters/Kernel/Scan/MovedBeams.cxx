@@ -7,8 +7,6 @@
 #include "PhotonReceiver.h"
 
 #include <algorithm>
-#include <array>
-#include <atomic>
 #include <cmath>
 #include <limits>
 

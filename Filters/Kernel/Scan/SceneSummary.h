@@ -17,7 +17,6 @@
 #include "ScanSetup.h"
 
 #include <cstdint>
-#include <vector>
 
 namespace avianlidar
 {

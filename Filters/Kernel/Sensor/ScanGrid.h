@@ -19,7 +19,6 @@
 #ifndef avianlidar_ScanGrid_h
 #define avianlidar_ScanGrid_h
 
-#include <cstddef>
 #include <vector>
 
 namespace avianlidar

@@ -37,7 +37,6 @@
 #include "BeamRays.h"
 
 #include <cstddef>
-#include <cstdint>
 #include <vector>
 
 namespace avianlidar

@@ -31,9 +31,7 @@
 #include "Traversal.h"
 #include "WideTree.h"
 
-#include <algorithm>
 #include <cstdint>
-#include <vector>
 
 namespace avianlidar
 {

@@ -28,7 +28,6 @@
 #include "TriangleBoxes.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstdint>
 #include <limits>
 

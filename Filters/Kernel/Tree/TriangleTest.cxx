@@ -2,6 +2,7 @@
 #include "TriangleTest.h"
 
 #include <algorithm>
+#include <limits>
 
 namespace avianlidar
 {

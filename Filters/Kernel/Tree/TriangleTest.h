@@ -52,7 +52,6 @@
 
 #include <cstdint>
 #include <cstring>
-#include <limits>
 
 namespace avianlidar
 {

@@ -13,7 +13,6 @@
 #include "vtkPolyData.h"
 #include "vtkTypeUInt64Array.h"
 
-#include <algorithm>
 #include <cmath>
 #include <optional>
 #include <utility>

@@ -2,7 +2,6 @@
 #include "CellLanes.h"
 
 #include <algorithm>
-#include <cstring>
 
 // This file is compiled once for every instruction set.
 #undef HWY_TARGET_INCLUDE
