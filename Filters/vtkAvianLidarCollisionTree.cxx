@@ -185,7 +185,7 @@ bool vtkAvianLidarCollisionTree::MakeTree(const vtkAvianLidarRanks& ranks, vtkDa
       if (!in.Fits(in.Next.checksum, options))
       {
         in.Tree = avianlidar::buildVolumeTree(
-          in.Next.mesh, options, vtkAvianLidarAbort::KeepGoing(this, 0.0, 1.0), threads);
+          in.Next.mesh, options, vtkAvianLidarAbort::KeepGoing(this), threads);
         in.Builds += in.Tree != nullptr;
       }
       vtkAvianLidarAbort::Require(in.Tree != nullptr);

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkAvianLidarCloudWriter.h"
 
-#include "Private/CloudData.h"
 #include "vtkAvianLidarAbort.h"
 #include "vtkAvianLidarGuard.h"
 #include "vtkAvianLidarText.h"
@@ -45,13 +44,6 @@ int vtkAvianLidarCloudWriter::FillInputPortInformation(int, vtkInformation* info
 }
 
 //------------------------------------------------------------------------------
-bool vtkAvianLidarCloudWriter::KeepGoing(double progress)
-{
-  this->UpdateProgress(progress);
-  return !vtkAvianLidarAbort::Wanted(this);
-}
-
-//------------------------------------------------------------------------------
 void vtkAvianLidarCloudWriter::WriteData()
 {
   auto* input = vtkPointSet::SafeDownCast(this->GetInput());
@@ -69,15 +61,12 @@ void vtkAvianLidarCloudWriter::WriteData()
     {
       throw std::runtime_error(failed);
     }
-    if (vtkAvianLidarAbort::Wanted(this))
-    {
-      throw avianlidar::Aborted();
-    }
+    vtkAvianLidarAbort::StopIfWanted(this);
     this->WriteCloud(input);
     this->SetErrorCode(vtkErrorCode::NoError);
     this->UpdateProgress(1.0);
   }
-  catch (const avianlidar::Aborted&)
+  catch (const avianlidar::WorkStopped&)
   {
   }
   catch (const std::bad_alloc&)

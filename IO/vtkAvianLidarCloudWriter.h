@@ -62,9 +62,6 @@ protected:
   /// Writes the input to FileName; what is wrong is an exception.
   virtual void WriteCloud(vtkPointSet* input) = 0;
 
-  /// Says how far it is; false if the user wants to stop.
-  bool KeepGoing(double progress);
-
   char* FileName;
   char* GivenFileName;
 

@@ -4,6 +4,7 @@
 #include "GeodeticFrame.h"
 #include "Private/GeoJsonFormat.h"
 #include "Private/vtkAvianLidarCloudFields.h"
+#include "vtkAvianLidarAbort.h"
 #include "vtkAvianLidarArrays.h"
 
 #include "vtkDataArray.h"
@@ -148,7 +149,7 @@ void vtkAvianLidarGeoJSONWriter::WriteCloud(vtkPointSet* input)
   output.description = "Echoes of a lidar; heights are metres above the WGS84 ellipsoid";
 
   formats::OutputFile file(this->FileName);
-  formats::writeGeoJson(file, output, [this](double p) { return this->KeepGoing(p); });
+  formats::writeGeoJson(file, output, vtkAvianLidarAbort::KeepGoing(this));
   file.commit();
 }
 

@@ -4,6 +4,7 @@
 #include "Private/KittiFormat.h"
 #include "Private/SemanticLabels.h"
 #include "Private/vtkAvianLidarCloudFields.h"
+#include "vtkAvianLidarAbort.h"
 #include "vtkAvianLidarNames.h"
 #include "vtkAvianLidarText.h"
 
@@ -114,7 +115,7 @@ void vtkAvianLidarKITTIWriter::WriteCloud(vtkPointSet* input)
                       ".label, such as .bin");
   }
   formats::writeKitti(
-    file, labels ? &*labels : nullptr, output, [this](double p) { return this->KeepGoing(p); });
+    file, labels ? &*labels : nullptr, output, vtkAvianLidarAbort::KeepGoing(this));
   if (labels)
   {
     formats::OutputFile::commitBoth(*labels, file);

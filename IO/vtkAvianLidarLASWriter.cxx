@@ -7,6 +7,7 @@
 #include "Private/ReadCloud.h"
 #include "Private/SemanticLabels.h"
 #include "Private/vtkAvianLidarCloudFields.h"
+#include "vtkAvianLidarAbort.h"
 #include "vtkAvianLidarNames.h"
 #include "vtkAvianLidarText.h"
 
@@ -299,7 +300,7 @@ public:
 
   double Write()
   {
-    const formats::KeepGoing keepGoing = [this](double p) { return this->Self->KeepGoing(p); };
+    const auto keepGoing = vtkAvianLidarAbort::KeepGoing(this->Self);
     formats::OutputFile file(this->Self->FileName);
     const formats::LasMeasure measure = formats::measureLas(this->Output, keepGoing);
     const double bound =

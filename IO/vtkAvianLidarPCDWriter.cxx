@@ -4,6 +4,7 @@
 #include "Private/OrganisedCells.h"
 #include "Private/PcdFormat.h"
 #include "Private/vtkAvianLidarCloudFields.h"
+#include "vtkAvianLidarAbort.h"
 #include "vtkAvianLidarArrays.h"
 
 #include "vtkDataArray.h"
@@ -186,7 +187,7 @@ void vtkAvianLidarPCDWriter::WriteCloud(vtkPointSet* input)
     formats::toText(fields::ToNotes(input), std::numeric_limits<std::size_t>::max(), cut);
 
   formats::OutputFile file(this->FileName);
-  formats::writePcd(file, output, [this](double p) { return this->KeepGoing(p); });
+  formats::writePcd(file, output, vtkAvianLidarAbort::KeepGoing(this));
   file.commit();
 }
 

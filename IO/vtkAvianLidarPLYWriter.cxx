@@ -3,6 +3,7 @@
 
 #include "Private/PlyFormat.h"
 #include "Private/vtkAvianLidarCloudFields.h"
+#include "vtkAvianLidarAbort.h"
 
 #include "vtkCellArray.h"
 #include "vtkDataArray.h"
@@ -95,7 +96,7 @@ void vtkAvianLidarPLYWriter::WriteCloud(vtkPointSet* input)
 
   formats::OutputFile file(this->FileName);
   formats::writePly(file, output, static_cast<std::uint64_t>(input->GetNumberOfPoints()), faces,
-    [this](double p) { return this->KeepGoing(p); });
+    vtkAvianLidarAbort::KeepGoing(this));
   file.commit();
 }
 

@@ -138,13 +138,6 @@ int vtkAvianLidarPointCloudReader::RequestInformation(
 }
 
 //------------------------------------------------------------------------------
-bool vtkAvianLidarPointCloudReader::KeepGoing(double progress)
-{
-  this->UpdateProgress(progress);
-  return !vtkAvianLidarAbort::Wanted(this);
-}
-
-//------------------------------------------------------------------------------
 int vtkAvianLidarPointCloudReader::RequestData(
   vtkInformation*, vtkInformationVector**, vtkInformationVector* outputVector)
 {
@@ -163,14 +156,10 @@ int vtkAvianLidarPointCloudReader::RequestData(
       {
         return {};
       }
+      vtkAvianLidarAbort::StopIfWanted(this);
       try
       {
-        if (vtkAvianLidarAbort::Wanted(this))
-        {
-          throw avianlidar::Aborted();
-        }
-        Cloud cloud =
-          formats::readCloud(this->FileName, [this](double p) { return this->KeepGoing(p); });
+        Cloud cloud = formats::readCloud(this->FileName, vtkAvianLidarAbort::KeepGoing(this));
         Place(cloud, this->LocalCoordinates, output->GetFieldData());
         vtkAvianLidarCloudFields::ToPolyData(cloud, output);
         const bool simulated = output->GetPointData()->HasArray(names::Energy.name) != 0;
@@ -178,10 +167,9 @@ int vtkAvianLidarPointCloudReader::RequestData(
           simulated ? names::Energy.name : names::Intensity.name);
         return {};
       }
-      catch (const avianlidar::Aborted&)
+      catch (const avianlidar::WorkStopped&)
       {
-        output->Initialize();
-        return {};
+        throw;
       }
       catch (const std::bad_alloc&)
       {

@@ -104,8 +104,6 @@ protected:
 private:
   vtkAvianLidarPointCloudReader(const vtkAvianLidarPointCloudReader&) = delete;
   void operator=(const vtkAvianLidarPointCloudReader&) = delete;
-
-  bool KeepGoing(double progress);
 };
 
 #endif

@@ -175,13 +175,6 @@ int vtkAvianLidarSceneReader::RequestInformation(
 }
 
 //------------------------------------------------------------------------------
-bool vtkAvianLidarSceneReader::KeepGoing(double progress)
-{
-  this->UpdateProgress(progress);
-  return !vtkAvianLidarAbort::Wanted(this);
-}
-
-//------------------------------------------------------------------------------
 int vtkAvianLidarSceneReader::RequestData(
   vtkInformation*, vtkInformationVector**, vtkInformationVector* outputVector)
 {
@@ -198,13 +191,10 @@ int vtkAvianLidarSceneReader::RequestData(
       const int piece = info->Has(vtkStreamingDemandDrivenPipeline::UPDATE_PIECE_NUMBER())
         ? info->Get(vtkStreamingDemandDrivenPipeline::UPDATE_PIECE_NUMBER())
         : 0;
+      vtkAvianLidarAbort::StopIfWanted(this);
       try
       {
-        if (vtkAvianLidarAbort::Wanted(this))
-        {
-          throw avianlidar::Aborted();
-        }
-        const auto progress = [this](double share) { return this->KeepGoing(share); };
+        const auto progress = vtkAvianLidarAbort::KeepGoing(this);
         BuiltScene built = piece == 0 ? BuildScene(this->FileName, progress, this->Text)
                                       : OutlineScene(this->FileName, progress, this->Text);
         if (!built.warnings.empty())
@@ -214,11 +204,6 @@ int vtkAvianLidarSceneReader::RequestData(
         AddFieldData(built, output->GetFieldData());
         AddBlocks(built, piece > 0, output);
         this->UpdateProgress(1.0);
-        return {};
-      }
-      catch (const avianlidar::Aborted&)
-      {
-        output->Initialize();
         return {};
       }
       catch (const std::bad_alloc&)

@@ -96,8 +96,6 @@ private:
   vtkAvianLidarSceneReader(const vtkAvianLidarSceneReader&) = delete;
   void operator=(const vtkAvianLidarSceneReader&) = delete;
 
-  bool KeepGoing(double progress);
-
   char* FileName = nullptr;
   std::string Text;
 };

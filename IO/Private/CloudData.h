@@ -6,7 +6,7 @@
 #ifndef AvianLidarCloudData_h
 #define AvianLidarCloudData_h
 
-#include "Aborted.h"
+#include "ParallelLoop.h"
 #include "Scalars.h"
 
 #include <array>
@@ -27,20 +27,17 @@ public:
   using std::runtime_error::runtime_error;
 };
 
-/// Takes how far the work is, 0 to 1; false: stop.
-using KeepGoing = std::function<bool(double)>;
-
 /// Points between two calls of KeepGoing.
 constexpr std::int64_t PointsPerBlock = 16384;
 
-/// Says how far point `done` of `all` is, between two shares of the whole; throws Aborted.
+/// Says how far point `done` of `all` is, between two shares of the whole; throws WorkStopped.
 inline void goOn(
   const KeepGoing& keepGoing, std::int64_t done, std::int64_t all, double from, double to)
 {
   if (done % PointsPerBlock == 0 && keepGoing &&
     !keepGoing(from + (to - from) * static_cast<double>(done) / static_cast<double>(all)))
   {
-    throw Aborted();
+    throw WorkStopped();
   }
 }
 

@@ -211,7 +211,7 @@ std::vector<Feature> ReadFeatures(OGRLayer& layer, const FootprintOptions& optio
   {
     if (!keepGoing())
     {
-      throw Aborted();
+      throw WorkStopped();
     }
     const OGRGeometry* geometry = source->GetGeometryRef();
     if (!geometry || !Passes(*source, options.filters))
@@ -349,7 +349,7 @@ std::vector<Part> Raise(const std::vector<Feature>& features, const Object& obje
   {
     if (!keepGoing())
     {
-      throw Aborted();
+      throw WorkStopped();
     }
     const std::vector<Polygon> regions = GetRegions(features[i], options, counts);
     if (regions.empty())

@@ -19,7 +19,8 @@ namespace avianlidar::scene
  * the ellipsoid's curve). Triangles carry scene material ids.
  *
  * Notes on what was repaired, skipped or assumed are added to `notes`. Throws Error where the file
- * cannot be read, no feature is left, or one has no height; Aborted where keepGoing returns false.
+ * cannot be read, no feature is left, or one has no height; WorkStopped where keepGoing returns
+ * false.
  */
 std::vector<Part> ReadFootprints(const Object& object, const Scene& scene,
   std::vector<std::string>& notes, const std::function<bool()>& keepGoing);

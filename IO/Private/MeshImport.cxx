@@ -203,7 +203,7 @@ Mesh ReadAssimpMesh(const std::string& file, const std::function<bool()>& keepGo
   }
   if (!keepGoing())
   {
-    throw Aborted();
+    throw WorkStopped();
   }
   if (!scene || !scene->mRootNode)
   {

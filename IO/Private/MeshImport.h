@@ -19,7 +19,7 @@ namespace avianlidar::scene
  * of the file. Triangles carry indices in materialNames, which never carry colours.
  *
  * Throws Error where the file cannot be read, holds no triangle, or has a coordinate that is not
- * finite; Aborted where keepGoing returns false.
+ * finite; WorkStopped where keepGoing returns false.
  */
 Mesh ReadMesh(const std::string& file, const std::function<bool()>& keepGoing);
 

@@ -52,7 +52,7 @@ void takeCompressed(
     }
     if (keepGoing && !keepGoing(static_cast<double>(f + 1) / header.fields.size()))
     {
-      throw Aborted();
+      throw WorkStopped();
     }
   }
 }

@@ -236,7 +236,7 @@ void AddParts(
     const auto keepGoing = [&progress, done] { return progress(done); };
     if (!keepGoing())
     {
-      throw Aborted();
+      throw WorkStopped();
     }
     const auto fail = [&](const std::string& reason) {
       throw Error(scene.file + ": " + object.key + FileKey(object) + object.file + ": " + reason);
@@ -247,10 +247,6 @@ void AddParts(
       {
         built.parts.push_back(std::move(part));
       }
-    }
-    catch (const Aborted&)
-    {
-      throw;
     }
     catch (const std::runtime_error& e) // Error or MemoryError
     {

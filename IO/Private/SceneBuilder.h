@@ -34,7 +34,7 @@ BuiltScene OutlineScene(const std::string& file, const std::function<bool(double
 /**
  * Read all of a scene, each mesh file once; `text`, if not empty, stands for the contents of the
  * file. `progress` gets the share that is done, and returns
- * whether to go on. Throws Error (file, key and reason) or Aborted.
+ * whether to go on. Throws Error (file, key and reason) or WorkStopped.
  */
 BuiltScene BuildScene(const std::string& file, const std::function<bool(double)>& progress,
   const std::string& text = {});

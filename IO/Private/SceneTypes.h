@@ -9,8 +9,8 @@
 #ifndef AvianLidarSceneTypes_h
 #define AvianLidarSceneTypes_h
 
-#include "Aborted.h"
 #include "FileError.h"
+#include "ParallelLoop.h"
 #include "Reflectance.h"
 
 #include <array>

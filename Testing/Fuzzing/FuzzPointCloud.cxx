@@ -41,7 +41,7 @@ bool hasTooMany(const std::uint8_t* data, std::size_t size)
 
 Cloud read(const CloudFormat& format, const std::uint8_t* data, std::size_t size)
 {
-  const KeepGoing keepGoing = [](double progress)
+  const avianlidar::KeepGoing keepGoing = [](double progress)
   {
     if (!(progress >= 0.0 && progress <= 1.0))
     {

@@ -28,7 +28,7 @@ inline bool Wanted(vtkAlgorithm* algorithm)
 
 /// Reports a part of the algorithm's progress, and asks. @param from progress when the work begins
 /// @param to when it is done
-inline avianlidar::KeepGoing KeepGoing(vtkAlgorithm* algorithm, double from, double to)
+inline avianlidar::KeepGoing KeepGoing(vtkAlgorithm* algorithm, double from = 0.0, double to = 1.0)
 {
   return [algorithm, from, to](double fraction)
   {
