@@ -154,7 +154,8 @@ void vtkAvianLidarPCDWriter::WriteCloud(vtkPointSet* input)
 {
   formats::PcdOutput output;
   output.ascii = this->FileType == FILE_TYPE_ASCII;
-  output.fields = fields::TableFields(this, input, this->Precision == PRECISION_SINGLE);
+  output.fields =
+    fields::TableFields(this, this->FileName, input, this->Precision == PRECISION_SINGLE);
   if (vtkDataArray* colours = fields::FindColours(input))
   {
     output.fields.push_back(ColourField(colours));

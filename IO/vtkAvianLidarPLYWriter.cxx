@@ -63,7 +63,8 @@ void vtkAvianLidarPLYWriter::WriteCloud(vtkPointSet* input)
 {
   formats::TableOutput output;
   output.ascii = this->FileType == FILE_TYPE_ASCII;
-  output.fields = fields::TableFields(this, input, this->Precision == PRECISION_SINGLE);
+  output.fields =
+    fields::TableFields(this, this->FileName, input, this->Precision == PRECISION_SINGLE);
   vtkDataArray* colours = fields::FindColours(input);
   vtkPointData* data = input->GetPointData();
   for (int i = 0; i < data->GetNumberOfArrays(); ++i)

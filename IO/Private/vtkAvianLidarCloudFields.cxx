@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkAvianLidarCloudFields.h"
 
-#include "../vtkAvianLidarCloudWriter.h"
 #include "GeodeticFrame.h"
 #include "vtkAvianLidarArrays.h"
 #include "vtkAvianLidarCells.h"
@@ -257,16 +256,16 @@ std::vector<Field> AllFields(vtkPointSet* input)
 }
 
 //------------------------------------------------------------------------------
-std::vector<Field> TableFields(vtkAvianLidarCloudWriter* writer, vtkPointSet* input, bool single)
+std::vector<Field> TableFields(
+  vtkObject* writer, const char* fileName, vtkPointSet* input, bool single)
 {
   constexpr double noticeable = 1e-3; // m
   const double rounding = single ? RoundingOf(input) : 0.0;
   if (rounding > noticeable)
   {
     vtkWarningWithObjectMacro(writer,
-      "" << vtkAvianLidarText(writer->GetFileName())
-         << ": single precision moves coordinates by up to " << rounding
-         << " m so far from the origin: set Precision to Double.");
+      "" << vtkAvianLidarText(fileName) << ": single precision moves coordinates by up to "
+         << rounding << " m so far from the origin: set Precision to Double.");
   }
   std::string left;
   std::vector<Field> all;
@@ -304,8 +303,7 @@ std::vector<Field> TableFields(vtkAvianLidarCloudWriter* writer, vtkPointSet* in
   if (!left.empty())
   {
     vtkWarningWithObjectMacro(writer,
-      "" << vtkAvianLidarText(
-              std::string(writer->GetFileName()) + " is without the point arrays " + left)
+      "" << vtkAvianLidarText(std::string(fileName) + " is without the point arrays " + left)
          << ": another field of the file has the name.");
   }
   return all;

@@ -18,9 +18,9 @@
 #include <vector>
 
 class vtkAbstractArray;
-class vtkAvianLidarCloudWriter;
 class vtkDataArray;
 class vtkFieldData;
+class vtkObject;
 class vtkPointSet;
 class vtkPolyData;
 class vtkStringArray;
@@ -54,7 +54,8 @@ std::vector<Field> AllFields(vtkPointSet* input);
 /// x, y, z (as floats with `single`), intensity as float, and all other fields, their names as
 /// words and integers of 64 bits as doubles. The writer warns of what is left out, as another has
 /// its name, and of coordinates that are rounded by 1 mm or more.
-std::vector<Field> TableFields(vtkAvianLidarCloudWriter* writer, vtkPointSet* input, bool single);
+std::vector<Field> TableFields(
+  vtkObject* writer, const char* fileName, vtkPointSet* input, bool single);
 
 /// Value i of an array, or `otherwise` where there is no array. It must be finite.
 double ValueOf(vtkDataArray* array, std::int64_t i, double otherwise);

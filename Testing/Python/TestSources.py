@@ -88,6 +88,13 @@ for path in files("Filters", ".h", ".cxx"):
     used = of_io.intersection(names_in(read(path)))
     assert not used, f"{path} includes {used} of IO"
 
+# What the classes of IO share knows none of them.
+classes_of_io = of_io - {os.path.basename(path) for path in files("IO/Private", ".h")}
+assert "vtkAvianLidarCloudWriter.h" in classes_of_io
+for path in files("IO/Private", ".h", ".cxx"):
+    used = classes_of_io.intersection(names_in(read(path)))
+    assert not used, f"{path} includes {used}, a class of IO"
+
 # The Python package's modules import each other in no circle, also where functions import.
 modules = {re.sub(r"(\.__init__)?\.py(\.in)?$", "", os.path.relpath(path, "Python").replace("/", ".")): path
            for path in files("Python/avianlidar", ".py", ".py.in")}
