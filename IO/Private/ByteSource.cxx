@@ -58,16 +58,4 @@ void FileSource::read(std::uint64_t offset, std::uint64_t count, unsigned char* 
     throw FormatError("it cannot be read to its end");
   }
 }
-
-void MemorySource::read(std::uint64_t offset, std::uint64_t count, unsigned char* into)
-{
-  if (!this->holds(offset, count))
-  {
-    cutShort();
-  }
-  if (count > 0)
-  {
-    std::memcpy(into, this->Data + offset, count);
-  }
-}
 }

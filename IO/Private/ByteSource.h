@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file ByteSource.h
- * @brief Bytes to read from, of a known length: a file, or memory. Nothing beyond the end is given
- * out.
+ * @brief Bytes to read from, of a known length: a file. Nothing beyond the end is given out.
  */
 #ifndef AvianLidarByteSource_h
 #define AvianLidarByteSource_h
@@ -44,22 +43,6 @@ public:
 private:
   std::ifstream Stream;
   std::uint64_t Size = 0;
-};
-
-class MemorySource : public ByteSource
-{
-public:
-  MemorySource(const unsigned char* data, std::uint64_t size)
-    : Data(data)
-    , Size(size)
-  {
-  }
-  std::uint64_t size() const override { return this->Size; }
-  void read(std::uint64_t offset, std::uint64_t count, unsigned char* into) override;
-
-private:
-  const unsigned char* Data;
-  std::uint64_t Size;
 };
 
 /// Calls record(i, bytes) for each of `count` records of `length` bytes; they must lie inside.

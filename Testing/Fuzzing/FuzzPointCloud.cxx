@@ -25,6 +25,29 @@ using namespace avianlidar::formats;
   std::abort();
 }
 
+class MemorySource : public ByteSource
+{
+public:
+  MemorySource(const std::uint8_t* data, std::uint64_t size)
+    : Data(data)
+    , Size(size)
+  {
+  }
+  std::uint64_t size() const override { return this->Size; }
+  void read(std::uint64_t offset, std::uint64_t count, unsigned char* into) override
+  {
+    if (!this->holds(offset, count))
+    {
+      throw FormatError("the file ends before its data do");
+    }
+    std::copy_n(this->Data + offset, count, into);
+  }
+
+private:
+  const std::uint8_t* Data;
+  std::uint64_t Size;
+};
+
 /// A LAZ file of a few bytes may say that it has any number of points: those are not looked at.
 bool hasTooMany(const std::uint8_t* data, std::size_t size)
 {
