@@ -165,8 +165,7 @@ std::string ReadPoses(vtkFieldData* fields, Mover& mover)
   if (nPositions == 0)
   {
     return "field data 'pose_position' is missing or empty, expected a position (x, y, z in "
-           "metres) "
-           "for each pose";
+           "metres) for each pose";
   }
   mover.always = nTimes == 0;
   if (nTimes != nPositions && !(mover.always && nPositions == 1))
@@ -279,6 +278,54 @@ void TakeTriangles(const avianlidar::TriangleMesh& all, std::size_t begin, std::
     mover.mesh.triangles.push_back(corners);
   }
 }
+
+/// The movers, triangulated. @param triangulated what the leaves point to @return what is wrong
+std::string TakeLeaves(vtkDataObject* input, bool named, std::vector<Leaf>& leaves,
+  std::vector<vtkSmartPointer<vtkPolyData>>& triangulated)
+{
+  std::string problem;
+  leaves = Collect(input, problem);
+  for (Leaf& leaf : leaves)
+  {
+    const std::string wrong = leaf.Check(vtkAvianLidarSurfaceArrays(leaf.data));
+    if (!problem.empty() || !wrong.empty())
+    {
+      return problem.empty() ? leaf.Message(wrong) : problem;
+    }
+    vtkFieldData* const fields = leaf.data->GetFieldData();
+    if (named && fields->HasArray(BlockName.name))
+    {
+      auto* name = vtkStringArray::SafeDownCast(fields->GetAbstractArray(BlockName.name));
+      leaf.name = name->GetValue(0);
+    }
+    triangulated.push_back(leaf.Triangulated());
+    leaf.data = triangulated.back();
+  }
+  return problem;
+}
+
+/// The mover of leaf `k` of the merged ones. @return what is wrong with it
+std::string ReadMover(vtkPolyData* poly, const vtkAvianLidarSurfaces& merged, std::size_t k,
+  int shift, const std::vector<int>& materialOf, Mover& mover)
+{
+  const auto& leaf = merged.leaves[k];
+  std::vector<std::uint32_t> parts;
+  std::string wrong = ReadPoses(poly->GetFieldData(), mover);
+  wrong = wrong.empty() ? ReadFlaps(poly->GetFieldData(), mover) : wrong;
+  wrong = wrong.empty() ? ReadParts(poly, leaf.end - leaf.begin, mover.flaps.size(), parts) : wrong;
+  if (wrong.empty())
+  {
+    TakeTriangles(*merged.mesh, leaf.begin, leaf.end, parts, mover);
+    for (std::size_t t = leaf.begin; t < leaf.end; ++t)
+    {
+      mover.materials.push_back(merged.materials[t]);
+      mover.objectIds.push_back(merged.objectIds[t] + shift);
+      mover.materialIds.push_back(materialOf[merged.materialIds[t]]);
+    }
+    wrong = avianlidar::prepareMover(mover);
+  }
+  return wrong;
+}
 }
 
 //------------------------------------------------------------------------------
@@ -367,26 +414,9 @@ std::string vtkAvianLidarMovers::ReadAll(
   this->objectNames = surfaces.objectNames;
   this->objectClasses = surfaces.objectClasses;
   this->materialNames = surfaces.materialNames;
-  std::string problem;
-  std::vector<Leaf> leaves = Collect(input, problem);
+  std::vector<Leaf> leaves;
   std::vector<vtkSmartPointer<vtkPolyData>> triangulated;
-  for (Leaf& leaf : leaves)
-  {
-    const std::string wrong = leaf.Check(vtkAvianLidarSurfaceArrays(leaf.data));
-    problem = problem.empty() && !wrong.empty() ? leaf.Message(wrong) : problem;
-    if (!problem.empty())
-    {
-      return problem;
-    }
-    if (named && leaf.data->GetFieldData()->HasArray(BlockName.name))
-    {
-      leaf.name =
-        vtkStringArray::SafeDownCast(leaf.data->GetFieldData()->GetAbstractArray(BlockName.name))
-          ->GetValue(0);
-    }
-    triangulated.push_back(leaf.Triangulated());
-    leaf.data = triangulated.back();
-  }
+  const std::string problem = TakeLeaves(input, named, leaves, triangulated);
   if (!problem.empty() || leaves.empty())
   {
     return problem;
@@ -404,11 +434,10 @@ std::string vtkAvianLidarMovers::ReadAll(
   {
     for (std::size_t id = 0; id < more.size(); ++id)
     {
-      const std::size_t place = id + static_cast<std::size_t>(shift);
       if (!more[id].empty())
       {
-        all.resize(std::max(all.size(), place + 1));
-        all[place] = more[id];
+        all.resize(std::max(all.size(), id + shift + 1));
+        all[id + shift] = more[id];
       }
     }
   };
@@ -432,26 +461,8 @@ std::string vtkAvianLidarMovers::ReadAll(
   std::vector<Mover> all;
   for (std::size_t k = 0; k < leaves.size(); ++k)
   {
-    const std::size_t begin = merged.leaves[k].begin;
-    const std::size_t end = merged.leaves[k].end;
     Mover mover;
-    std::vector<std::uint32_t> parts;
-    vtkFieldData* const fields = leaves[k].data->GetFieldData();
-    std::string wrong = ReadPoses(fields, mover);
-    wrong = wrong.empty() ? ReadFlaps(fields, mover) : wrong;
-    wrong =
-      wrong.empty() ? ReadParts(leaves[k].data, end - begin, mover.flaps.size(), parts) : wrong;
-    if (wrong.empty())
-    {
-      TakeTriangles(*merged.mesh, begin, end, parts, mover);
-      for (std::size_t t = begin; t < end; ++t)
-      {
-        mover.materials.push_back(merged.materials[t]);
-        mover.objectIds.push_back(merged.objectIds[t] + shift);
-        mover.materialIds.push_back(materialOf[merged.materialIds[t]]);
-      }
-      wrong = avianlidar::prepareMover(mover);
-    }
+    const std::string wrong = ReadMover(leaves[k].data, merged, k, shift, materialOf, mover);
     if (!wrong.empty())
     {
       return leaves[k].Message(wrong);
