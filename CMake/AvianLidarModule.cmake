@@ -158,3 +158,4 @@ vtk_module_link(AvianLidar::AvianLidar
     nlohmann_json::nlohmann_json)
 vtk_module_definitions(AvianLidar::AvianLidar
   PRIVATE "AVIANLIDAR_VERSION=\"${PROJECT_VERSION}\"")
+target_compile_options(AvianLidar PRIVATE -Wall -Wextra -Wshadow)

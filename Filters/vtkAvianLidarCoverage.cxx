@@ -301,7 +301,7 @@ int vtkAvianLidarCoverage::RequestData(
       vtkAvianLidarRevolutions::NoteTime(request, outputVector);
       vtkInformation* info = outputVector->GetInformationObject(0);
       const int piece = info->Get(Pipeline::UPDATE_PIECE_NUMBER());
-      const bool done = this->PrepareBeams(ranks, beams) && this->PrepareTargets(ranks) &&
+      const bool evaluated = this->PrepareBeams(ranks, beams) && this->PrepareTargets(ranks) &&
         this->PreparePlaces(ranks, vtkDataSet::GetData(inputVector[2]), info) &&
         this->PrepareSurfaces(ranks, surfaces) && this->PrepareTree(ranks, surfaces) &&
         this->View(ranks, piece == 0, clutter) && this->Evaluate(ranks, output, table);
@@ -314,7 +314,7 @@ int vtkAvianLidarCoverage::RequestData(
         }
         return {};
       };
-      if (done && in.GoOn(ranks.Together(this, makeFields)))
+      if (evaluated && in.GoOn(ranks.Together(this, makeFields)))
       {
         return 1;
       }

@@ -194,9 +194,9 @@ std::string vtkAvianLidarSurfaceLeaf::Check(const vtkAvianLidarSurfaceArrays& a)
   {
     return names::NotNumeric("cell array", a.notNumeric);
   }
-  for (const names::Name& name : names::SurfaceTexts)
+  for (const names::Name& text : names::SurfaceTexts)
   {
-    const std::string wrong = names::CheckText(this->data->GetFieldData(), name);
+    const std::string wrong = names::CheckText(this->data->GetFieldData(), text);
     if (!wrong.empty())
     {
       return wrong;
