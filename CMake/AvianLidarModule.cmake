@@ -103,6 +103,7 @@ set(private_sources
 vtk_module_add_module(AvianLidar::AvianLidar
   CLASSES ${classes}
   NOWRAP_HEADERS Filters/vtkAvianLidarDeprecatedSettings.h Filters/vtkAvianLidarErrorsAsData.h
+    Filters/vtkAvianLidarFilePath.h
   SOURCES ${private_sources})
 
 include("${CMAKE_CURRENT_LIST_DIR}/AvianLidarSourcesWithJson.cmake")

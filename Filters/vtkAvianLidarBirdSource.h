@@ -27,6 +27,7 @@
 #define vtkAvianLidarBirdSource_h
 
 #include "vtkAvianLidarErrorsAsData.h"
+#include "vtkAvianLidarFilePath.h"
 #include "vtkAvianLidarModule.h" // For export macro
 #include "vtkPolyDataAlgorithm.h"
 
@@ -53,15 +54,7 @@ public:
    * A table of species of your own (CSV, columns as in Filters/Birds/species.csv), which comes
    * before the built-in one. Default: none.
    */
-  virtual void SetSpeciesFileName(VTK_FILEPATH const std::string& name)
-  {
-    if (name != this->SpeciesFileName)
-    {
-      this->SpeciesFileName = name;
-      this->Modified();
-    }
-  }
-  VTK_FILEPATH virtual std::string GetSpeciesFileName() { return this->SpeciesFileName; }
+  vtkAvianLidarFilePathMacro(SpeciesFileName);
   ///@}
 
   ///@{

@@ -57,6 +57,7 @@
 #ifndef vtkAvianLidarCoverage_h
 #define vtkAvianLidarCoverage_h
 
+#include "vtkAvianLidarFilePath.h"
 #include "vtkAvianLidarModule.h" // For export macro
 #include "vtkAvianLidarScanFilter.h"
 
@@ -121,15 +122,7 @@ public:
   /**
    * A table of species of your own, as for vtkAvianLidarBirdSource. Default: none.
    */
-  virtual void SetSpeciesFileName(VTK_FILEPATH const std::string& name)
-  {
-    if (name != this->SpeciesFileName)
-    {
-      this->SpeciesFileName = name;
-      this->Modified();
-    }
-  }
-  VTK_FILEPATH virtual std::string GetSpeciesFileName() { return this->SpeciesFileName; }
+  vtkAvianLidarFilePathMacro(SpeciesFileName);
   ///@}
 
   ///@{

@@ -61,6 +61,7 @@
 #define vtkAvianLidarTracks_h
 
 #include "vtkAvianLidarErrorsAsData.h"
+#include "vtkAvianLidarFilePath.h"
 #include "vtkAvianLidarModule.h" // For export macro
 #include "vtkMultiBlockDataSetAlgorithm.h"
 
@@ -105,15 +106,7 @@ public:
    * s, and m in the scene's coordinates, or degrees and m above the WGS84 ellipsoid. Lines that
    * begin with # are comments. A track has at least two poses; its times rise. Default: none.
    */
-  virtual void SetFileName(VTK_FILEPATH const std::string& name)
-  {
-    if (name != this->FileName)
-    {
-      this->FileName = name;
-      this->Modified();
-    }
-  }
-  VTK_FILEPATH virtual std::string GetFileName() { return this->FileName; }
+  vtkAvianLidarFilePathMacro(FileName);
   ///@}
 
   ///@{
@@ -140,15 +133,7 @@ public:
    * A table of species of your own (CSV, columns as in Filters/Birds/species.csv), which comes
    * before the built-in one. Default: none.
    */
-  virtual void SetSpeciesFileName(VTK_FILEPATH const std::string& name)
-  {
-    if (name != this->SpeciesFileName)
-    {
-      this->SpeciesFileName = name;
-      this->Modified();
-    }
-  }
-  VTK_FILEPATH virtual std::string GetSpeciesFileName() { return this->SpeciesFileName; }
+  vtkAvianLidarFilePathMacro(SpeciesFileName);
   ///@}
 
   ///@{
