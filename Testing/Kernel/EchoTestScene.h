@@ -122,6 +122,19 @@ inline ScanBeams oneBeam(const Vec3& direction = { 1.0, 0.0, 0.0 }, const Vec3& 
   return beams;
 }
 
+/// Beams along x that differ in their ids, so in their rays.
+inline ScanBeams alike(int count)
+{
+  ScanBeams beams;
+  for (int i = 0; i < count; ++i)
+  {
+    beams.ids.push_back(i);
+    beams.origins.emplace_back(0.0);
+    beams.directions.emplace_back(1.0, 0.0, 0.0);
+  }
+  return beams;
+}
+
 inline ScanResult runScan(const ScanSetup& setup, const ScanBeams& beams, int threads = 1)
 {
   TraceCache cache;

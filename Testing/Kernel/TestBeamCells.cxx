@@ -167,19 +167,6 @@ Scene specks(int count, double edge)
   }
   return scene;
 }
-
-/// Beams along x that differ in their ids, so in their rays.
-ScanBeams alike(int count)
-{
-  ScanBeams beams;
-  for (int i = 0; i < count; ++i)
-  {
-    beams.ids.push_back(i);
-    beams.origins.emplace_back(0.0);
-    beams.directions.emplace_back(1.0, 0.0, 0.0);
-  }
-  return beams;
-}
 }
 
 TEST(BeamCells, WhatNoRayOfTheGridMeetsIsTheSameReused)

@@ -13,19 +13,6 @@ using namespace echotest;
 
 namespace
 {
-/// Beams along x that differ by their random numbers alone.
-ScanBeams alike(int count)
-{
-  ScanBeams beams;
-  for (int i = 0; i < count; ++i)
-  {
-    beams.ids.push_back(i);
-    beams.origins.push_back(Vec3(0.0));
-    beams.directions.push_back(Vec3(1.0, 0.0, 0.0));
-  }
-  return beams;
-}
-
 /// Of beams half a radian wide about the mirror and its image.
 Sensor mirrorSensor()
 {
