@@ -120,6 +120,10 @@ void vtkAvianLidarBeamSource::TakeProperties(const vtkAvianLidarBeamSource& pres
   take(this->ChannelAzimuthOffsets, preset.ChannelAzimuthOffsets);
   take(this->ChannelFiringTimes, preset.ChannelFiringTimes);
   take(this->BlankedSectors, preset.BlankedSectors);
+  take(this->PrismWedgeAngles, preset.PrismWedgeAngles);
+  take(this->PrismRefractiveIndices, preset.PrismRefractiveIndices);
+  take(this->PrismRotationRates, preset.PrismRotationRates);
+  take(this->PrismPhases, preset.PrismPhases);
   take(this->BeamProfile, preset.BeamProfile);
   take(this->NumberOfRevolutions, preset.NumberOfRevolutions);
   take(this->StepsPerRevolution, preset.StepsPerRevolution);
@@ -260,6 +264,12 @@ void vtkAvianLidarBeamSource::SetNumberOfChannelElevations(int number)
 }
 
 //------------------------------------------------------------------------------
+int vtkAvianLidarBeamSource::GetNumberOfPrisms() const
+{
+  return static_cast<int>(this->PrismWedgeAngles.size());
+}
+
+//------------------------------------------------------------------------------
 int vtkAvianLidarBeamSource::GetNumberOfChannelElevations() const
 {
   return static_cast<int>(this->ChannelElevations.size());
@@ -374,6 +384,12 @@ avianlidar::ScanPattern vtkAvianLidarBeamSource::vtkInternals::PatternOf(const S
   pattern.azimuthOffsets = self.ChannelAzimuthOffsets;
   pattern.firingTimes = self.ChannelFiringTimes;
   pattern.blankedSectors = self.BlankedSectors;
+  pattern.prisms.wedgeAngles = self.PrismWedgeAngles;
+  pattern.prisms.refractiveIndices = self.PrismRefractiveIndices;
+  pattern.prisms.rotationRates = self.PrismRotationRates;
+  pattern.prisms.phases = self.PrismPhases;
+  pattern.prisms.axisElevation = self.PrismAxisElevation;
+  pattern.prisms.axisRotationRate = self.PrismAxisRotationRate;
   pattern.azimuthStart = self.AzimuthRange[0];
   pattern.azimuthEnd = self.AzimuthRange[1];
   pattern.azimuthStep = self.AzimuthStep;
@@ -423,6 +439,11 @@ std::string vtkAvianLidarBeamSource::vtkInternals::CheckProperties(const Source&
       return error;
     }
   }
+  if (self.GetNumberOfPrisms() > 0 && !self.Table && self.EncoderJitter != 0.0)
+  {
+    return avianlidar::valueError(
+      "EncoderJitter", self.EncoderJitter, "0 with prisms, whose beams have no columns by azimuth");
+  }
   const std::string badClock = avianlidar::checkClock(ClockOf(self), PatternOf(self));
   if (!badClock.empty())
   {
@@ -449,7 +470,10 @@ void vtkAvianLidarBeamSource::vtkInternals::AddSensor(
         fields->AddArray(Arrays::MakeOf<vtkDoubleArray>(name, self.*table));
       }
     }
-    SetVector(fields, Arrays::AzimuthRange, self.AzimuthRange, 2);
+    if (self.GetNumberOfPrisms() == 0)
+    {
+      SetVector(fields, Arrays::AzimuthRange, self.AzimuthRange, 2);
+    }
   }
   Arrays::SetFieldInteger(fields, Arrays::BeamProfile, self.BeamProfile);
   Arrays::SetFieldInteger(fields, Arrays::NumberOfRevolutions, self.NumberOfRevolutions);
@@ -459,8 +483,7 @@ void vtkAvianLidarBeamSource::vtkInternals::AddSensor(
   Arrays::SetFieldValue(fields, Arrays::Wavelength, WavelengthOf(self));
   for (const Scalar& scalar : Scalars())
   {
-    if ((!scalar.onlyWith || self.*scalar.onlyWith != 0.0) &&
-      !(self.Table && OfPattern(scalar.name)))
+    if ((!scalar.onlyWith || self.*scalar.onlyWith != 0.0) && !IsUnused(self, scalar.name))
     {
       Arrays::SetFieldValue(fields, scalar.name, self.*scalar.property);
     }
@@ -561,6 +584,7 @@ void vtkAvianLidarBeamSource::PrintSelf(ostream& os, vtkIndent indent)
     os << (i == 0 ? ": " : " ") << this->ChannelElevations[i];
   }
   os << "\n";
+  os << indent << "NumberOfPrisms: " << this->GetNumberOfPrisms() << "\n";
   os << indent << "Beams: " << (this->Table ? this->Table->directions.size() : 0) << "\n";
   os << indent << "AzimuthRange: " << this->AzimuthRange[0] << " " << this->AzimuthRange[1] << "\n";
   os << indent << "BeamwidthMilliradians: " << this->BeamwidthMilliradians << "\n";

@@ -35,7 +35,8 @@
  * `excess_noise_factor`, `false_alarms_per_scan`, `dynamic_range`, `sunlight`,
  * `sun_azimuth`, `sun_elevation`, `overlap_range`, `defocus_range`, `range_noise`,
  * `range_noise_exponent`, `range_noise_floor`, `range_walk`, `range_quantum`, `display_length`;
- * where there is a table, `channel_elevations` with one value per channel; and `revolution`, the
+ * where there is a table, `channel_elevations` with one value per channel; with prisms theirs
+ * (GetNumberOfPrisms()), without `azimuth_range` and `azimuth_step`; and `revolution`, the
  * number of the revolution that these beams are of; with sway `sway_amplitude` and
  * `sway_frequency`, with jitter `encoder_jitter`, with either `motion_seed`; with the photon
  * receiver `assumed`, the names of those values in use that nobody has measured, and so with any
@@ -56,6 +57,15 @@
  * * FiringInterval. All channels of a column share its azimuth: the turn of the rotor between the
  * firings of one column is not modelled.
  *
+ * **Prisms.** Where a sensor has rotating prisms (GetNumberOfPrisms()), its pattern does not
+ * repeat: a scan is a window of 1 / RotationRate seconds, revolution k the one from k /
+ * RotationRate on, and each has directions of its own. Lasers fire on and on, one after the other
+ * in the same order, at FiringInterval; a column is one firing of each: timestamp = column *
+ * channels * FiringInterval + slot * FiringInterval. Elevations and azimuth offsets of the channels
+ * are those of their light before the prisms. AzimuthRange and AzimuthStep are not used, and not in
+ * the field data. Light is refracted at each face by Snell's law; that it leaves some millimetres
+ * beside the axis is not modelled.
+ *
  * **Time.** The source is time-aware. Revolution k (any int) lasts from k / RotationRate to (k + 1)
  * / RotationRate seconds, and has its k / RotationRate in the timestamps. It publishes the steps to
  * play, (k + j / StepsPerRevolution) / RotationRate for NumberOfRevolutions revolutions (TIME_STEPS
@@ -65,8 +75,8 @@
  * what stood at the last step before it, whether or not that is played (a time less than 1e-9 of a
  * step before one is that step's). A time whose revolution is not an int is an error. As long
  * as no time has been asked for there is the whole of revolution 0; later, where a request names
- * none, what VTK keeps of the request before: its time. Without sway and jitter all revolutions
- * have the same values but `timestamp`.
+ * none, what VTK keeps of the request before: its time. Without sway, jitter and prisms all
+ * revolutions have the same values but `timestamp`.
  *
  * **Mast sway and encoder jitter.** A mast sways in the wind and tilts the sensor about both
  * horizontal axes; the encoder of the rotor gives each column an error of its azimuth. Both are off
@@ -166,14 +176,27 @@ public:
   ///@}
 
   /**
-   * The same from a file (`.lidarsensor.json`, see the page on sensors). Three tables are of files
+   * The same from a file (`.lidarsensor.json`, see the page on sensors). Some numbers are of files
    * alone, and field data where they are given: `channel_azimuth_offsets` (deg, one per channel:
    * its beam's azimuth less the column's), `channel_firing_times` (s, one per channel, since the
    * column begins, instead of FiringInterval) and `blanked_sectors` (deg, pairs: columns from the
-   * one azimuth until before the other have no beams). @return false, with an
-   * error that names the file and the key, where it is not one: then nothing changes.
+   * one azimuth until before the other have no beams), and the prisms of GetNumberOfPrisms().
+   * @return false, with an error that names the file and the key, where it is not one: then nothing
+   * changes.
    */
   bool LoadSensor(VTK_FILEPATH const char* fileName);
+
+  /**
+   * Number of rotating prisms that steer the beams, at most 3; 0, the default: none. A file sets
+   * them, a value for each: `prism_wedge_angles` (deg, -60 to 60; above 0 light leaves by the
+   * inclined face, below 0 it enters by it), `prism_refractive_indices` (1 to 4),
+   * `prism_rotation_rates` (Hz, -1e6 to 1e6; above 0 clockwise as the sensor sees it) and
+   * `prism_phases` (deg, -360 to 360; where it deflects to at time 0: 0 is up, 90 right; default
+   * 0); and of their axis `prism_axis_elevation` (deg, -90 to 90, default 0) and
+   * `prism_axis_rotation_rate` (Hz, -1e6 to 1e6, about the vertical, clockwise seen from above,
+   * default 0). At time 0 the axis points to the sensor's front.
+   */
+  int GetNumberOfPrisms() const;
 
   /// The same of a file's text, as GetDescription() has it; errors name it "the text".
   bool LoadSensorText(const char* text);
@@ -302,8 +325,8 @@ public:
 
   ///@{
   /**
-   * Sweeps over the azimuth range (turns, when that is the full circle) per second in hertz, 1e-20
-   * to 1e20. Default 0.5.
+   * Sweeps over the azimuth range (turns, when that is the full circle) per second in hertz, with
+   * prisms scans per second, 1e-20 to 1e20. Default 0.5.
    */
   vtkSetMacro(RotationRate, double);
   vtkGetMacro(RotationRate, double);
@@ -311,7 +334,8 @@ public:
 
   ///@{
   /**
-   * Time between two firings of a column in seconds, at least 0; all firings of a column have to
+   * Time between two firings of a column in seconds, at least 0 (above 0 with prisms, whose columns
+   * follow each other without a pause); all firings of a column have to
    * fit into the column's time 1 / (columns * RotationRate). Default 30e-6.
    */
   vtkSetMacro(FiringInterval, double);
@@ -361,7 +385,7 @@ public:
   /**
    * Jitter of the encoder: the rms of the error of a column's azimuth in degrees, 0 to 10. It is a
    * normal deviate, the same for all channels of a column, another one for each column and each
-   * revolution. Default 0: none.
+   * revolution. With prisms 0. Default 0: none.
    */
   vtkSetMacro(EncoderJitter, double);
   vtkGetMacro(EncoderJitter, double);
@@ -679,6 +703,12 @@ protected:
   std::vector<double> ChannelAzimuthOffsets;
   std::vector<double> ChannelFiringTimes;
   std::vector<double> BlankedSectors; ///< from, to, from, to, ...
+  std::vector<double> PrismWedgeAngles;
+  std::vector<double> PrismRefractiveIndices;
+  std::vector<double> PrismRotationRates;
+  std::vector<double> PrismPhases;
+  double PrismAxisElevation = 0.0;
+  double PrismAxisRotationRate = 0.0;
   double AzimuthRange[2] = { 0.0, 360.0 };
   double AzimuthStep = 0.375;
   double HalfBeamwidth = 5.6e-3;

@@ -113,6 +113,21 @@ std::vector<std::int64_t> beamsOf(const ScanPattern& pattern, const ScanPart& pa
     }
     return beams;
   }
+  if (!pattern.prisms.none())
+  {
+    const double end = static_cast<double>(shown) / (part.steps * pattern.rotationRate); // s
+    for (std::int64_t column = part.piece; column < columns; column += part.pieces)
+    {
+      for (int channel = 0; channel < channels; ++channel)
+      {
+        if (shown == part.steps || columnTime(pattern, column) + firingTime(pattern, channel) < end)
+        {
+          beams.push_back(column * channels + channel);
+        }
+      }
+    }
+    return beams;
+  }
   // Column c begins when c/columns of the revolution is over; whole numbers, so that none is early.
   for (std::int64_t column = part.piece; column * part.steps < shown * columns;
        column += part.pieces)

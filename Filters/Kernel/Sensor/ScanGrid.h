@@ -9,7 +9,8 @@
  *    north stays in one piece.
  * 2. They do not (the sensor is tilted), but every channel is known and has the same number of
  *    beams: rows are channels, sorted by mean elevation; columns count the beams of a channel in
- *    the order given.
+ *    the order given. With rotating prisms that is a row for each laser and a column for each of
+ *    its firings: no picture.
  * 3. Neither: there is no grid.
  *
  * Source: none.

@@ -64,11 +64,31 @@ void takeAngles(ScanBeam& beam)
   beam.elevation = std::atan2(beam.direction[2], horizontal) / RadiansPerDegree;
 }
 
+/// Time of a column with prisms, s.
+double periodOf(const ScanPattern& pattern)
+{
+  return numberOfChannels(pattern) * pattern.firingInterval;
+}
+
+/// Of light before the prisms, in the frame of their axis.
+std::array<double, 3> enterOf(const ScanPattern& pattern, int channel)
+{
+  double se, ce, sa, ca;
+  sinCosDegrees(channelElevation(pattern, channel), se, ce);
+  sinCosDegrees(pattern.azimuthOffsets.empty() ? 0.0 : pattern.azimuthOffsets[channel], sa, ca);
+  return { { ce * sa, ce * ca, se } };
+}
+
 double columnCount(const ScanPattern& pattern)
 {
   if (pattern.table)
   {
     return static_cast<double>(pattern.table->directions.size());
+  }
+  if (!pattern.prisms.none())
+  {
+    const double columns = 1.0 / (pattern.rotationRate * periodOf(pattern));
+    return std::floor(columns * (1.0 + 1e-12) + 1e-9); // in spite of rounding
   }
   const double steps = (pattern.azimuthEnd - pattern.azimuthStart) / pattern.azimuthStep;
   return std::max(1.0, std::ceil(steps - 1e-9)); // the start is in, however short the range
@@ -114,8 +134,24 @@ std::string checkElevations(const ScanPattern& pattern)
   return std::string();
 }
 
+std::string checkNumberOfBeams(const ScanPattern& pattern, const char* by)
+{
+  const double beams = columnCount(pattern) * numberOfChannels(pattern);
+  if (!(beams <= MaximumBeams))
+  {
+    const std::string expected = std::string("at most 1e9 (") + by + " or " +
+      (pattern.elevations.empty() ? "NumberOfChannels)" : "NumberOfChannelElevations)");
+    return valueError("the number of beams", beams, expected.c_str());
+  }
+  return std::string();
+}
+
 std::string checkAzimuths(const ScanPattern& pattern)
 {
+  if (!pattern.prisms.none())
+  {
+    return std::string();
+  }
   if (!(std::abs(pattern.azimuthStart) <= 360.0))
   {
     return valueError(
@@ -131,14 +167,7 @@ std::string checkAzimuths(const ScanPattern& pattern)
   {
     return valueError("AzimuthStep", pattern.azimuthStep, "an angle above 0 degrees");
   }
-  const double beams = columnCount(pattern) * numberOfChannels(pattern);
-  if (!(beams <= MaximumBeams))
-  {
-    return valueError("the number of beams", beams,
-      pattern.elevations.empty() ? "at most 1e9 (AzimuthStep or NumberOfChannels)"
-                                 : "at most 1e9 (AzimuthStep or NumberOfChannelElevations)");
-  }
-  return std::string();
+  return checkNumberOfBeams(pattern, "AzimuthStep");
 }
 
 std::string wrongSize(const char* name, std::size_t size, int channels)
@@ -203,6 +232,52 @@ std::string checkTables(const ScanPattern& pattern)
   return std::string();
 }
 
+/// Of a pattern whose tables are good.
+std::string checkTrain(const ScanPattern& pattern)
+{
+  const PrismTrain& train = pattern.prisms;
+  if (train.none())
+  {
+    return train.refractiveIndices.empty() && train.rotationRates.empty() && train.phases.empty() &&
+        train.axisElevation == 0.0 && train.axisRotationRate == 0.0
+      ? std::string()
+      : "PrismWedgeAngles is empty, expected one angle for each prism, as other numbers of prisms "
+        "are given";
+  }
+  if (!pattern.blankedSectors.empty())
+  {
+    return "BlankedSectors has values, expected none with prisms, whose beams have no columns by "
+           "azimuth";
+  }
+  std::vector<std::array<double, 3>> enters;
+  for (int channel = 0; channel < numberOfChannels(pattern); ++channel)
+  {
+    enters.push_back(enterOf(pattern, channel));
+  }
+  return checkPrisms(train, enters);
+}
+
+/// Of a pattern with prisms and a good rate.
+std::string checkPeriod(const ScanPattern& pattern)
+{
+  if (!(pattern.firingInterval > 0.0 && std::isfinite(pattern.firingInterval)))
+  {
+    return valueError("FiringInterval", pattern.firingInterval, "a time above 0 s with prisms");
+  }
+  const double scan = 1.0 / pattern.rotationRate;
+  if (!(columnCount(pattern) >= 1.0))
+  {
+    std::ostringstream text;
+    text << "FiringInterval is " << pattern.firingInterval << " s, so the "
+         << numberOfChannels(pattern) << " firings of a column take " << periodOf(pattern)
+         << " s, expected at most the " << scan << " s that RotationRate leaves to a scan";
+    return text.str();
+  }
+  const std::string bad = checkNumberOfBeams(pattern, "FiringInterval, RotationRate");
+  return bad.empty() && !pattern.firingTimes.empty() ? checkFiringTimes(pattern, periodOf(pattern))
+                                                     : bad;
+}
+
 /// Of a table of beams.
 std::string checkTimes(const ScanPattern& pattern)
 {
@@ -230,6 +305,10 @@ std::string checkClock(const ScanPattern& pattern)
   if (pattern.table)
   {
     return checkTimes(pattern);
+  }
+  if (!pattern.prisms.none())
+  {
+    return checkPeriod(pattern);
   }
   if (!(pattern.firingInterval >= 0.0 && std::isfinite(pattern.firingInterval)))
   {
@@ -318,6 +397,12 @@ double firingTime(const ScanPattern& pattern, int channel)
     : pattern.firingTimes[channel];
 }
 
+double columnTime(const ScanPattern& pattern, std::int64_t column)
+{
+  return pattern.prisms.none() ? column / (columnCount(pattern) * pattern.rotationRate)
+                               : static_cast<double>(column) * periodOf(pattern);
+}
+
 bool isBlanked(const ScanPattern& pattern, std::int64_t column)
 {
   const double azimuth = pattern.azimuthStart + column * pattern.azimuthStep;
@@ -353,7 +438,7 @@ std::string checkPattern(const ScanPattern& pattern)
   {
     return checkClock(pattern);
   }
-  for (auto check : { checkElevations, checkAzimuths, checkTables, checkClock })
+  for (auto check : { checkElevations, checkAzimuths, checkTables, checkTrain, checkClock })
   {
     std::string bad = check(pattern);
     if (!bad.empty())
@@ -364,8 +449,9 @@ std::string checkPattern(const ScanPattern& pattern)
   return std::string();
 }
 
-ScanGenerator::ScanGenerator(const ScanPattern& pattern)
+ScanGenerator::ScanGenerator(const ScanPattern& pattern, int revolution)
   : Pattern(pattern)
+  , Start(revolution / pattern.rotationRate)
   , Channels(numberOfChannels(pattern))
   , Columns(numberOfColumns(pattern))
   , Beams(numberOfBeams(pattern))
@@ -400,11 +486,27 @@ ScanBeam ScanGenerator::tableBeam(std::size_t index) const
   return result;
 }
 
+ScanBeam ScanGenerator::prismBeam(std::int64_t index) const
+{
+  ScanBeam result;
+  result.channel = static_cast<int>(index % this->Channels);
+  result.time =
+    columnTime(this->Pattern, this->column(index)) + firingTime(this->Pattern, result.channel);
+  result.direction = this->toScene(
+    steer(this->Pattern.prisms, this->Start, result.time, enterOf(this->Pattern, result.channel)));
+  takeAngles(result);
+  return result;
+}
+
 ScanBeam ScanGenerator::beam(std::int64_t index) const
 {
   if (this->Pattern.table)
   {
     return this->tableBeam(static_cast<std::size_t>(index));
+  }
+  if (!this->Pattern.prisms.none())
+  {
+    return this->prismBeam(index);
   }
   const std::int64_t column = this->column(index);
   const int channel = static_cast<int>(index % this->Channels);

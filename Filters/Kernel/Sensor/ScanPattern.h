@@ -14,15 +14,19 @@
  *
  * Source: paper, Fig. 1 and Sec. 5.3.
  * Differs: with an odd number of channels the staggered order has steps of C/2 rounded up. Tables
- * of azimuth offsets and firing times, and sectors without beams, as data sheets have them. A table
- * of any beams instead of columns and channels.
+ * of azimuth offsets and firing times, and sectors without beams, as data sheets have them.
+ * Rotating prisms (Prisms.h) instead of the rotor: a scan is a window of 1 / RotationRate seconds,
+ * in which the lasers fire on and on; a column is one firing of each, and the next scan goes on
+ * where the last one ended. A table of any beams instead of all of these.
  * Valid: multiples of 90 degrees are exact. All channels of a column share its azimuth: the
  * rotor's motion between the firings of one column is not modelled (at most FiringInterval * C *
  * RotationRate of the azimuth range).
- * Test: TestScanPattern.cxx.
+ * Test: TestScanPattern.cxx, TestPrisms.cxx.
  */
 #ifndef avianlidar_ScanPattern_h
 #define avianlidar_ScanPattern_h
+
+#include "Prisms.h"
 
 #include <array>
 #include <cstdint>
@@ -66,6 +70,10 @@ struct ScanPattern
   std::vector<double> firingTimes;
   /// Optional pairs, deg: columns from the one azimuth until before the other do not fire.
   std::vector<double> blankedSectors;
+  /// Optional: instead of the columns by azimuth. Elevations and azimuth offsets are those of the
+  /// lasers' light before the prisms, in the frame of their axis; a column takes channels times
+  /// firingInterval.
+  PrismTrain prisms;
   /// Optional: these beams, each a column of one channel, instead of all of the above but angles
   /// and rate.
   std::shared_ptr<const BeamTable> table;
@@ -78,7 +86,7 @@ struct ScanBeam
   int channel;                     ///< index of the channel
   double azimuth;                  ///< deg, in [0, 360), in the scene's frame
   double elevation;                ///< deg, in the scene's frame
-  double time;                     ///< s since the start of the scan
+  double time;                     ///< s since the start of its scan
   std::array<double, 3> origin{};  ///< m from the sensor's position, in the scene's frame
 };
 
@@ -86,7 +94,7 @@ struct ScanBeam
 int numberOfChannels(const ScanPattern& pattern);
 
 /// Number of columns: azimuths start, start + step, ... below the end (a last one within 1e-9 steps
-/// of it is out, but not the first).
+/// of it is out, but not the first); with prisms as many as a scan has time for.
 std::int64_t numberOfColumns(const ScanPattern& pattern);
 
 /// Number of beams: columns times channels, whether or not a column fires.
@@ -101,6 +109,9 @@ int firingSlot(int channel, int channels);
 
 /// Firing of a channel since its column began, s.
 double firingTime(const ScanPattern& pattern, int channel);
+
+/// Start of a column since the start of the scan, s.
+double columnTime(const ScanPattern& pattern, std::int64_t column);
 
 /// True if a column does not fire.
 bool isBlanked(const ScanPattern& pattern, std::int64_t column);
@@ -119,7 +130,8 @@ void sinCosDegrees(double degrees, double& sine, double& cosine);
 class ScanGenerator
 {
 public:
-  explicit ScanGenerator(const ScanPattern& pattern);
+  /// @param revolution number of the scan: with prisms each has directions of its own
+  explicit ScanGenerator(const ScanPattern& pattern, int revolution = 0);
 
   std::int64_t size() const { return this->Beams; }
 
@@ -138,8 +150,10 @@ public:
 private:
   std::array<double, 3> toScene(const std::array<double, 3>& local) const;
   ScanBeam tableBeam(std::size_t index) const;
+  ScanBeam prismBeam(std::int64_t index) const;
 
   ScanPattern Pattern;
+  double Start; ///< s since time 0
   int Channels;
   std::int64_t Columns;
   std::int64_t Beams;

@@ -43,14 +43,17 @@ struct vtkAvianLidarBeamSource::vtkInternals
     double Source::*onlyWith = nullptr;
   };
   static const std::vector<Scalar>& Scalars();
-  // Those that mean nothing for a table of beams.
-  static bool OfPattern(const vtkAvianLidarArrays::Name& name)
+  // Those that mean nothing for a table of beams, or for prisms.
+  static bool IsUnused(const Source& self, const vtkAvianLidarArrays::Name& name)
   {
     const std::string word = name.name;
-    return word == vtkAvianLidarArrays::MinimumElevation.name ||
+    const bool ofColumns = word == vtkAvianLidarArrays::AzimuthStep.name;
+    const bool ofPattern = ofColumns || word == vtkAvianLidarArrays::MinimumElevation.name ||
       word == vtkAvianLidarArrays::ElevationStep.name ||
-      word == vtkAvianLidarArrays::AzimuthStep.name ||
-      word == vtkAvianLidarArrays::FiringInterval.name;
+      word == vtkAvianLidarArrays::FiringInterval.name ||
+      word == vtkAvianLidarArrays::PrismAxisElevation.name ||
+      word == vtkAvianLidarArrays::PrismAxisRotationRate.name;
+    return self.Table ? ofPattern : ofColumns && self.GetNumberOfPrisms() > 0;
   }
 
   // The same of its tables.
@@ -61,7 +64,11 @@ struct vtkAvianLidarBeamSource::vtkInternals
       all = { { vtkAvianLidarArrays::ChannelElevations, &Source::ChannelElevations },
         { vtkAvianLidarArrays::ChannelAzimuthOffsets, &Source::ChannelAzimuthOffsets },
         { vtkAvianLidarArrays::ChannelFiringTimes, &Source::ChannelFiringTimes },
-        { vtkAvianLidarArrays::BlankedSectors, &Source::BlankedSectors } };
+        { vtkAvianLidarArrays::BlankedSectors, &Source::BlankedSectors },
+        { vtkAvianLidarArrays::PrismWedgeAngles, &Source::PrismWedgeAngles },
+        { vtkAvianLidarArrays::PrismRefractiveIndices, &Source::PrismRefractiveIndices },
+        { vtkAvianLidarArrays::PrismRotationRates, &Source::PrismRotationRates },
+        { vtkAvianLidarArrays::PrismPhases, &Source::PrismPhases } };
     return all;
   }
 

@@ -67,7 +67,7 @@ void vtkAvianLidarScanArrays::FillBeams(const avianlidar::ScanPattern& pattern,
   auto elevations = Arrays::Make<vtkDoubleArray>(Arrays::VerticalAngle, size);
   auto timestamps = Arrays::Make<vtkDoubleArray>(Arrays::Timestamp, size);
   const double start = revolution / pattern.rotationRate; // s
-  const avianlidar::ScanGenerator generator(pattern);
+  const avianlidar::ScanGenerator generator(pattern, revolution);
   for (vtkIdType i = 0; i < size; ++i)
   {
     const avianlidar::ScanBeam beam = generator.beam(beams[i]);

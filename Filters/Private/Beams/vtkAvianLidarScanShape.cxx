@@ -37,7 +37,7 @@ vtkAvianLidarPassedKey* Shape()
 void vtkAvianLidarScanShape::Publish(const avianlidar::ScanPattern& pattern, vtkInformation* output)
 {
   Shape()->Remove(output);
-  if (pattern.table || !avianlidar::checkPattern(pattern).empty())
+  if (pattern.table || !pattern.prisms.none() || !avianlidar::checkPattern(pattern).empty())
   {
     return;
   }

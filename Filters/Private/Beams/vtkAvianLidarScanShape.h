@@ -19,8 +19,8 @@ class vtkInformation;
 
 namespace vtkAvianLidarScanShape
 {
-/// In RequestInformation of the sensor: publish the pattern, unless it is bad
-/// or a table of beams.
+/// In RequestInformation of the sensor: publish the pattern, unless it is bad,
+/// a table of beams or one of prisms, whose beams form no grid.
 void Publish(const avianlidar::ScanPattern& pattern, vtkInformation* output);
 
 /// In RequestInformation of a filter: what its input does not know, its output does not either.

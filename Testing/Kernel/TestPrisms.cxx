@@ -1,0 +1,402 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Rotating prisms: the paraxial formula for thin ones, exact refraction against a ray trace by
+// angles and rotations, and scans as windows of time.
+#include "Prisms.h"
+#include "ScanClock.h"
+#include "ScanPattern.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <random>
+
+namespace
+{
+using namespace avianlidar;
+using Real = long double;
+using Wide = std::array<Real, 3>;
+
+constexpr Real Pi = 3.14159265358979323846264338327950288L;
+constexpr Real Degree = Pi / 180;
+
+Wide cross(const Wide& a, const Wide& b)
+{
+  return { { a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0] } };
+}
+
+Real dot(const Wide& a, const Wide& b)
+{
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+/// Rodrigues' rotation about an axis of any length.
+Wide turned(const Wide& v, const Wide& axis, Real angle)
+{
+  const Real length = std::sqrt(dot(axis, axis));
+  const Wide k{ { axis[0] / length, axis[1] / length, axis[2] / length } };
+  const Wide kv = cross(k, v);
+  Wide result;
+  for (int i = 0; i < 3; ++i)
+  {
+    result[i] =
+      v[i] * std::cos(angle) + kv[i] * std::sin(angle) + k[i] * dot(k, v) * (1 - std::cos(angle));
+  }
+  return result;
+}
+
+/// Snell's law by angles: the ray is turned about the normal of the plane of incidence.
+Wide refracted(const Wide& d, const Wide& normal, Real before, Real behind)
+{
+  const Wide axis = cross(normal, d);
+  const Real sine = std::sqrt(dot(axis, axis));
+  if (sine < 1e-18L)
+  {
+    return d;
+  }
+  const Real incidence = std::atan2(sine, dot(d, normal));
+  return turned(d, axis, std::asin(before / behind * std::sin(incidence)) - incidence);
+}
+
+/// Light through prisms whose faces are turned one by one.
+Wide traced(const PrismTrain& train, Real time, Wide d)
+{
+  const Wide forward{ { 0, 1, 0 } };
+  for (std::size_t i = 0; i < train.wedgeAngles.size(); ++i)
+  {
+    const Real phase = train.phases.empty() ? 0 : train.phases[i];
+    const Real angle = 2 * Pi * train.rotationRates[i] * time + phase * Degree;
+    // The inclined face of a prism whose thick end is up leans by the wedge angle about x; then the
+    // prism turns about y, clockwise as seen along it: a right-handed rotation.
+    const Wide leaning = turned(forward, { { 1, 0, 0 } }, -train.wedgeAngles[i] * Degree);
+    const Wide inclined = turned(leaning, forward, angle);
+    const bool enters = train.wedgeAngles[i] < 0;
+    d = refracted(d, enters ? inclined : forward, 1, train.refractiveIndices[i]);
+    d = refracted(d, enters ? forward : inclined, train.refractiveIndices[i], 1);
+  }
+  return d;
+}
+
+/// The lidar of Brazeal et al. 2021.
+ScanPattern twoPrisms()
+{
+  ScanPattern pattern;
+  pattern.channels = 1;
+  pattern.rotationRate = 10.0;
+  pattern.firingInterval = 1e-5;
+  pattern.prisms.wedgeAngles = { 18.0, -18.0 };
+  pattern.prisms.refractiveIndices = { 1.5095, 1.5095 };
+  pattern.prisms.rotationRates = { -4664.0 / 60.0, 7294.0 / 60.0 };
+  return pattern;
+}
+
+/// From the axis y, deg.
+double angleOf(const std::array<double, 3>& d)
+{
+  return std::atan2(std::hypot(d[0], d[2]), d[1]) / static_cast<double>(Degree);
+}
+
+TEST(Prisms, OneDeflectsByTheClosedFormTowardsItsThickEnd)
+{
+  for (const double wedge : { 1e-6, 1.0, 18.0, 35.0 })
+  {
+    for (const double index : { 1.0, 1.33, 1.5095 })
+    {
+      PrismTrain train;
+      train.refractiveIndices = { index };
+      train.rotationRates = { 0.0 };
+      train.phases = { 0.0 };
+      const Real a = wedge * Degree;
+      train.wedgeAngles = { wedge };
+      const auto leaving = steer(train, 0.0, 0.0, { { 0.0, 1.0, 0.0 } });
+      const Real left = std::asin(index * std::sin(a)) - a;
+      EXPECT_NEAR(std::atan2(leaving[2], leaving[1]), static_cast<double>(left), 1e-15);
+      EXPECT_EQ(leaving[0], 0.0);
+      train.wedgeAngles = { -wedge };
+      const auto entering = steer(train, 0.0, 0.0, { { 0.0, 1.0, 0.0 } });
+      const Real entered = std::asin(index * std::sin(a - std::asin(std::sin(a) / index)));
+      EXPECT_NEAR(std::atan2(entering[2], entering[1]), static_cast<double>(entered), 1e-15);
+      train.phases = { 90.0 };
+      const auto right = steer(train, 0.0, 0.0, { { 0.0, 1.0, 0.0 } });
+      EXPECT_NEAR(std::atan2(right[0], right[1]), static_cast<double>(entered), 1e-15);
+      EXPECT_EQ(right[2], 0.0);
+    }
+  }
+}
+
+TEST(Prisms, ThinOnesDrawTheRoseOfTheParaxialFormula)
+{
+  // Two equal prisms: r(t) = 2 (n - 1) a cos((w1 - w2) t / 2), turning at (w1 + w2) / 2.
+  PrismTrain train;
+  train.wedgeAngles = { 0.05, -0.05 };
+  train.refractiveIndices = { 1.5, 1.5 };
+  train.rotationRates = { 7.0, -3.0 };
+  const double thin = 0.5 * 0.05 * static_cast<double>(Degree);
+  int petals = 0;
+  double before = 0.0, last = 0.0;
+  for (int i = 0; i < 10000; ++i)
+  {
+    const double t = 1e-4 * i;
+    const auto d = steer(train, 0.0, t, { { 0.0, 1.0, 0.0 } });
+    const double two = 2.0 * static_cast<double>(Pi) * t;
+    EXPECT_NEAR(d[0], thin * (std::sin(7.0 * two) + std::sin(-3.0 * two)), 2e-6 * thin);
+    EXPECT_NEAR(d[2], thin * (std::cos(7.0 * two) + std::cos(-3.0 * two)), 2e-6 * thin);
+    const double radius = std::hypot(d[0], d[2]);
+    EXPECT_NEAR(radius, 2.0 * thin * std::abs(std::cos(5.0 * two)), 4e-6 * thin);
+    petals += i > 1 && last > before && last > radius ? 1 : 0;
+    before = last;
+    last = radius;
+  }
+  EXPECT_EQ(petals, 9); // of |7 - -3| in a second; the first begins at its tip
+}
+
+TEST(Prisms, ThickOnesRefractAsARayTraceByAnglesDoes)
+{
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+  int passed = 0;
+  double difference = 0.0, paraxial = 0.0;
+  for (int k = 0; k < 20000; ++k)
+  {
+    PrismTrain train;
+    const int prisms = 1 + k % 3;
+    for (int i = 0; i < prisms; ++i)
+    {
+      train.wedgeAngles.push_back(25.0 * uniform(random));
+      train.refractiveIndices.push_back(1.5 + 0.3 * uniform(random));
+      train.rotationRates.push_back(120.0 * uniform(random));
+      train.phases.push_back(360.0 * uniform(random));
+    }
+    const double time = 5.0 * (1.0 + uniform(random));
+    const Real a = 5 * uniform(random) * Degree, e = 5 * uniform(random) * Degree;
+    const Wide enters{ { std::cos(e) * std::sin(a), std::cos(e) * std::cos(a), std::sin(e) } };
+    const std::array<double, 3> narrow{ { static_cast<double>(enters[0]),
+      static_cast<double>(enters[1]), static_cast<double>(enters[2]) } };
+    const Wide expected = traced(train, time, enters);
+    if (!(expected[1] > 0.1L)) // NaN where light is totally reflected
+    {
+      EXPECT_TRUE(std::isnan(static_cast<double>(expected[1])) || expected[1] > 0.0L);
+      continue;
+    }
+    const auto d = steer(train, 0.0, time, narrow);
+    for (int i = 0; i < 3; ++i)
+    {
+      difference = std::max(difference, std::abs(d[i] - static_cast<double>(expected[i])));
+    }
+    double thin = 0.0;
+    for (const double wedge : train.wedgeAngles)
+    {
+      thin += 0.5 * std::abs(wedge);
+    }
+    paraxial = std::max(paraxial, std::abs(angleOf(d)) - thin);
+    ++passed;
+  }
+  EXPECT_GT(passed, 19000);
+  EXPECT_LT(difference, 2e-11); // 240 turns a second for 10 s are rounded to 1e-13 turns
+  EXPECT_GT(paraxial, 5.0);     // deg: the paraxial formula is another one
+}
+
+TEST(Prisms, LightThatDoesNotPassIsAnError)
+{
+  PrismTrain train;
+  train.wedgeAngles = { 45.0 };
+  train.refractiveIndices = { 1.5 };
+  train.rotationRates = { 1.0 };
+  EXPECT_NE(checkPrisms(train, { { { 0.0, 1.0, 0.0 } } }).find("the light of channel 0 is totally"),
+    std::string::npos);
+  EXPECT_THROW(steer(train, 0.0, 0.0, { { 0.0, 1.0, 0.0 } }), std::runtime_error);
+  EXPECT_NE(checkPrisms(train, { { { 0.0, -1.0, 0.0 } } }), ""); // from behind
+  train.wedgeAngles = { 41.0 };
+  EXPECT_EQ(checkPrisms(train, { { { 0.0, 1.0, 0.0 } } }), "");
+}
+
+TEST(Prisms, TwoOfEighteenDegreesFillTheFieldOfViewOfTheirLidar)
+{
+  const ScanPattern pattern = twoPrisms();
+  ASSERT_EQ(checkPattern(pattern), "");
+  double most = 0.0, least = 90.0;
+  for (const int revolution : { 0, 1, 2, 3, 4, 5, 6, 7, 8, 9 })
+  {
+    const ScanGenerator scan(pattern, revolution);
+    ASSERT_EQ(scan.size(), 10000);
+    for (std::int64_t i = 0; i < scan.size(); ++i)
+    {
+      most = std::max(most, angleOf(scan.beam(i).direction));
+      least = std::min(least, angleOf(scan.beam(i).direction));
+    }
+  }
+  EXPECT_NEAR(2.0 * most, 38.4, 0.4); // deg, the maker's
+  EXPECT_LT(least, 0.1);
+}
+
+TEST(Prisms, AScanGoesOnWhereTheLastOneEnded)
+{
+  ScanPattern pattern = twoPrisms();
+  ScanPattern longer = pattern;
+  longer.rotationRate = 0.5;
+  const ScanGenerator all(longer);
+  ASSERT_EQ(all.size(), 200000);
+  double difference = 0.0;
+  for (const int revolution : { 0, 1, 7, 19 })
+  {
+    const ScanGenerator scan(pattern, revolution);
+    for (std::int64_t i = 0; i < scan.size(); i += 13)
+    {
+      const ScanBeam one = scan.beam(i), same = all.beam(10000 * revolution + i);
+      EXPECT_NEAR(one.time + 0.1 * revolution, same.time, 1e-12);
+      EXPECT_GT(one.time, -1e-15);
+      EXPECT_LT(one.time, 0.1);
+      for (int k = 0; k < 3; ++k)
+      {
+        difference = std::max(difference, std::abs(one.direction[k] - same.direction[k]));
+      }
+    }
+  }
+  EXPECT_LT(difference, 1e-11);
+  // Another window, other directions; before time 0, too.
+  for (const int revolution : { -3, 1, 2 })
+  {
+    const auto a = ScanGenerator(pattern).beam(0).direction;
+    const auto b = ScanGenerator(pattern, revolution).beam(0).direction;
+    EXPECT_GT(std::hypot(a[0] - b[0], a[2] - b[2]), 0.05) << revolution;
+  }
+  // Whole turns in a window: all are alike.
+  pattern.prisms.rotationRates = { -50.0, 70.0 };
+  for (const int revolution : { -2000000000, -3, 1, 2000000000 })
+  {
+    const auto a = ScanGenerator(pattern).beam(77).direction;
+    const auto b = ScanGenerator(pattern, revolution).beam(77).direction;
+    EXPECT_NEAR(a[0], b[0], 1e-5) << revolution;
+  }
+}
+
+TEST(Prisms, LasersAxisAndOrientation)
+{
+  ScanPattern pattern = twoPrisms();
+  pattern.elevations = { -1.0, 0.0, 1.0 };
+  pattern.azimuthOffsets = { 0.0, 0.5, 0.0 };
+  pattern.prisms.refractiveIndices = { 1.0, 1.0 }; // glass as air: lasers alone
+  pattern.prisms.axisElevation = 30.0;
+  pattern.prisms.axisRotationRate = 2.5; // 90 deg in a scan
+  ASSERT_EQ(checkPattern(pattern), "");
+  EXPECT_EQ(numberOfColumns(pattern), 3333); // 10,000 firings of three, 10 us left over
+  EXPECT_EQ(numberOfFirings(pattern), 9999);
+  const ScanGenerator scan(pattern);
+  for (const std::int64_t column : { 0, 1000, 3332 })
+  {
+    const ScanBeam low = scan.beam(3 * column), high = scan.beam(3 * column + 2);
+    EXPECT_NEAR(low.elevation, 29.0, 1e-9);
+    EXPECT_NEAR(high.elevation, 31.0, 1e-9);
+    EXPECT_NEAR(high.azimuth, 900.0 * high.time, 1e-9);
+    EXPECT_EQ(high.channel, 2);
+    EXPECT_NEAR(low.time, 3e-5 * column, 1e-15);
+    EXPECT_NEAR(scan.beam(3 * column + 1).time - low.time, 2e-5, 1e-15); // staggered: 0, 2, 1
+  }
+  // The whole sensor upside down and about.
+  const ScanBeam plain = scan.beam(4);
+  pattern.yaw = 90.0;
+  pattern.roll = 180.0;
+  const auto d = ScanGenerator(pattern).beam(4).direction;
+  EXPECT_NEAR(d[0], plain.direction[1], 1e-15);
+  EXPECT_NEAR(d[1], plain.direction[0], 1e-15);
+  EXPECT_NEAR(d[2], -plain.direction[2], 1e-15);
+  pattern.firingTimes = { 0.0, 0.0, 0.0 };
+  ASSERT_EQ(checkPattern(pattern), "");
+  EXPECT_EQ(ScanGenerator(pattern).beam(5).time, ScanGenerator(pattern).beam(3).time);
+}
+
+TEST(Prisms, StepsAndPiecesShowEachBeamOnce)
+{
+  ScanPattern pattern = twoPrisms();
+  pattern.channels = 3;
+  pattern.elevationStep = 0.1;
+  ASSERT_EQ(checkPattern(pattern), "");
+  const ScanGenerator scan(pattern);
+  for (const int steps : { 1, 2, 7, 100 })
+  {
+    for (const int step : { 0, steps / 2, steps - 1 })
+    {
+      std::vector<int> shown(static_cast<std::size_t>(scan.size()), 0);
+      for (int piece = 0; piece < 4; ++piece)
+      {
+        for (const std::int64_t beam : beamsOf(pattern, { piece, 4, step, steps }))
+        {
+          ++shown[static_cast<std::size_t>(beam)];
+        }
+      }
+      const double end = 0.1 * (step + 1) / steps;
+      for (std::int64_t i = 0; i < scan.size(); ++i)
+      {
+        ASSERT_EQ(shown[static_cast<std::size_t>(i)], scan.beam(i).time < end ? 1 : 0)
+          << i << " of step " << step << " of " << steps;
+      }
+    }
+  }
+}
+
+TEST(Prisms, BadValuesAreNamed)
+{
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  struct Case
+  {
+    void (*spoil)(ScanPattern&, double);
+    double value;
+    const char* names;
+  };
+  const Case cases[] = {
+    { [](ScanPattern& p, double v) { p.prisms.wedgeAngles[1] = v; }, 61.0,
+      "PrismWedgeAngles is 61" },
+    { [](ScanPattern& p, double v) { p.prisms.wedgeAngles[1] = v; }, nan, "PrismWedgeAngles is" },
+    { [](ScanPattern& p, double v) { p.prisms.refractiveIndices[0] = v; }, 0.9,
+      "PrismRefractiveIndices is 0.9" },
+    { [](ScanPattern& p, double v) { p.prisms.refractiveIndices.push_back(v); }, 1.5,
+      "PrismRefractiveIndices has 3 values, expected one for each of the 2 prisms" },
+    { [](ScanPattern& p, double v) { p.prisms.rotationRates[0] = v; }, 2e6,
+      "PrismRotationRates is 2000000" },
+    { [](ScanPattern& p, double v) { p.prisms.rotationRates.resize(1, v); }, 0.0,
+      "PrismRotationRates has 1 values" },
+    { [](ScanPattern& p, double v) {
+       p.prisms.phases = { v, 0.0 };
+     },
+      -361.0, "PrismPhases is -361" },
+    { [](ScanPattern& p, double v) { p.prisms.phases = { v }; }, 0.0, "PrismPhases has 1 values" },
+    { [](ScanPattern& p, double v) { p.prisms.axisElevation = v; }, 91.0,
+      "PrismAxisElevation is 91" },
+    { [](ScanPattern& p, double v) { p.prisms.axisRotationRate = v; }, nan,
+      "PrismAxisRotationRate is" },
+    { [](ScanPattern& p, double v) { p.prisms.wedgeAngles.resize(4, v); }, 1.0,
+      "PrismWedgeAngles has 4 values, expected at most 3" },
+    { [](ScanPattern& p, double) { p.prisms.wedgeAngles.clear(); }, 0.0,
+      "PrismWedgeAngles is empty" },
+    { [](ScanPattern& p, double v) { p.prisms.wedgeAngles.assign(2, v); }, 45.0,
+      "the light of channel 0 is totally reflected" },
+    { [](ScanPattern& p, double v) {
+       p.blankedSectors = { 0.0, v };
+     },
+      90.0, "BlankedSectors has values, expected none with prisms" },
+    { [](ScanPattern& p, double v) { p.firingInterval = v; }, 0.0, "FiringInterval is 0" },
+    { [](ScanPattern& p, double v) { p.firingInterval = v; }, 0.11,
+      "FiringInterval is 0.11 s, so the 1 firings of a column take 0.11 s" },
+    { [](ScanPattern& p, double v) { p.firingInterval = v; }, 1e-11,
+      "the number of beams is 1000" },
+    { [](ScanPattern& p, double v) { p.rotationRate = v; }, 0.0, "RotationRate is 0" },
+    { [](ScanPattern& p, double v) { p.firingTimes = { v }; }, 2e-5, "ChannelFiringTimes is 2.0" },
+    { [](ScanPattern& p, double v) { p.channels = static_cast<int>(v); }, 0.0,
+      "NumberOfChannels is 0" },
+  };
+  for (const Case& c : cases)
+  {
+    ScanPattern pattern = twoPrisms();
+    c.spoil(pattern, c.value);
+    EXPECT_NE(checkPattern(pattern).find(c.names), std::string::npos)
+      << c.names << ": " << checkPattern(pattern);
+  }
+  ScanPattern pattern = twoPrisms();
+  pattern.azimuthStep = 0.0; // no matter
+  EXPECT_EQ(checkPattern(pattern), "");
+  pattern.firingInterval = 0.1;
+  EXPECT_EQ(checkPattern(pattern), "");
+  EXPECT_EQ(numberOfColumns(pattern), 1);
+}
+}
