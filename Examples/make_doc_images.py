@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
 """Runs the examples and brings their pictures and tables into Documentation/: airport.md, birds.md,
-collision-detection.md, corridor.md, coverage.md, echoes.md, paper.md, python.md, sequences.md, time.md and, where AVIANLIDAR_DATA_DIR
+collision-detection.md, corridor.md, coverage.md, echoes.md, paper.md, python.md, sensors.md, sequences.md, time.md and, where AVIANLIDAR_DATA_DIR
 names the folder of their data, results/reality.md, results/falloff.md and results/materials.md say what a run of what is
 committed gives. Where AVIANLIDAR_SCENES_DIR names the scenes that the build makes of them, more reflections are followed in
 those, too.
@@ -19,7 +19,7 @@ import tempfile
 HERE = pathlib.Path(__file__).resolve().parent
 DOCUMENTATION = HERE.parent / "Documentation"
 sys.path[:0] = [str(HERE / folder) for folder in ("common", "airport", "birds", "corridor", "coverage", "materials", "measured",
-                                                  "notebook", "outdoor", "paper", "reflections", "room", "sequence")]
+                                                  "notebook", "outdoor", "paper", "reflections", "room", "sensors", "sequence")]
 import airport  # noqa: E402
 import airport_search  # noqa: E402
 import airport_time  # noqa: E402
@@ -33,6 +33,7 @@ import falloff  # noqa: E402
 import labels  # noqa: E402
 import more_reflections  # noqa: E402
 import paper  # noqa: E402
+import patterns  # noqa: E402
 import protocol  # noqa: E402
 import ranges  # noqa: E402
 import render_notebook  # noqa: E402
@@ -62,6 +63,7 @@ RUNS = (
     ("coverage", screenshots, [], {"head": "coverage-report", "maps": "coverage-maps", "reasons": "coverage-reasons",
                                    "section": "coverage-section", "sites": "coverage-sites"}),
     ("ranges", ranges, [], {"ranges": "coverage-ranges"}),
+    ("patterns", patterns, [], {"prisms": "sensors-prisms", "rotors": "sensors-rotors"}),
     ("sequence", labels, [], {"labels": "sequences-labels"}),
     ("notebook", render_notebook, [], {"energy-image": "python-range-image", "map": "python-map"}),
 )

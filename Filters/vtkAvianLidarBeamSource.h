@@ -158,7 +158,8 @@ public:
    *
    * The others are lidars that can be bought, with the pattern, wavelength and range of their
    * manuals; what these do not tell is assumed (`assumed` in the field data). Their receiver is
-   * EnergyLimits with an aperture, whose lower limit sees what the manual says that it sees.
+   * EnergyLimits with an aperture, whose lower limit sees what the manual says that it sees. Mid40,
+   * Avia and Mid360 have rotating prisms (GetNumberOfPrisms()); of Mid360 the pattern is assumed.
    */
   void SetPresetToAirport16() { this->TakePreset("Airport16"); }
   void SetPresetToAirport32() { this->TakePreset("Airport32"); }
@@ -173,6 +174,11 @@ public:
   void SetPresetToPandarXT32() { this->TakePreset("PandarXT32"); }
   void SetPresetToOS1_64() { this->TakePreset("OS1_64"); }
   void SetPresetToHelios16P() { this->TakePreset("Helios16P"); }
+  void SetPresetToOS0_128() { this->TakePreset("OS0_128"); }
+  void SetPresetToOS2_128() { this->TakePreset("OS2_128"); }
+  void SetPresetToMid40() { this->TakePreset("Mid40"); }
+  void SetPresetToAvia() { this->TakePreset("Avia"); }
+  void SetPresetToMid360() { this->TakePreset("Mid360"); }
   ///@}
 
   /**

@@ -91,7 +91,7 @@ class Sensor(PropertyOwner):
         """Names of the sensors that are known.
 
         >>> print(*Sensor.presets())
-        Airport16 Airport32 Automotive16 CorridorC16 HDL32E Helios16P OS1_64 Pandar40P PandarXT32 Search1550 Search905 VLP16 VLP32C
+        Airport16 Airport32 Automotive16 Avia CorridorC16 HDL32E Helios16P Mid360 Mid40 OS0_128 OS1_64 OS2_128 Pandar40P PandarXT32 Search1550 Search905 VLP16 VLP32C
         """
         return tuple(choices(_wrapped.vtkAvianLidarBeamSource, "Preset"))
 

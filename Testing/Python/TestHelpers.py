@@ -60,8 +60,9 @@ class Properties(unittest.TestCase):
                             self.assertRegex(value.__doc__, "metres|degrees|radians|seconds|hertz|joules|square|electrons|decibels")
 
     def test_presets_and_choices(self):
-        self.assertEqual(al.Sensor.presets(), ("Airport16", "Airport32", "Automotive16", "CorridorC16", "HDL32E", "Helios16P",
-                                               "OS1_64", "Pandar40P", "PandarXT32", "Search1550", "Search905", "VLP16", "VLP32C"))
+        self.assertEqual(al.Sensor.presets(), ("Airport16", "Airport32", "Automotive16", "Avia", "CorridorC16", "HDL32E",
+                                               "Helios16P", "Mid360", "Mid40", "OS0_128", "OS1_64", "OS2_128", "Pandar40P",
+                                               "PandarXT32", "Search1550", "Search905", "VLP16", "VLP32C"))
         for preset in al.Sensor.presets():
             source = wrapped.vtkAvianLidarBeamSource()
             getattr(source, "SetPresetTo" + preset)()

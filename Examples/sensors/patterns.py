@@ -1,0 +1,143 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""Patterns of the sensors that are built in, as pictures, and how much of their field of view those with rotating prisms cover.
+
+    PYTHONPATH=$(cat build/paraview/python-path) /usr/bin/python3 Examples/sensors/patterns.py --out build/patterns
+
+The share is that of the directions in the field of view that lie in a beam, within its half-beamwidth; the field of view are the
+directions within MARGIN of a beam of the first LONG seconds. Directions are drawn evenly by solid angle.
+"""
+import argparse
+import io
+import pathlib
+
+import numpy as np
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.collections import EllipseCollection
+from matplotlib.figure import Figure
+from PIL import Image
+from scipy.spatial import cKDTree
+
+import avianlidar as al
+
+PRISMS = ("Mid40", "Avia", "Mid360")
+ASSUMED = {"Mid40": "", "Avia": "prisms assumed", "Mid360": "pattern assumed"}
+WINDOWS = (0.1, 0.5, 2.0)  # s, shown
+TIMES = (0.1, 0.2, 0.5, 1.0, 2.0, 5.0)  # s, in the table
+LONG = 5.0  # s
+MARGIN = 0.5  # deg
+DRAWN = 40000  # directions
+SEED = 1
+WIDE = 6.0  # deg of azimuth that are shown of rotors
+COLUMNS = 5
+
+
+def window(sensor, number):
+    """Directions and times (s) of a scan."""
+    sensor.algorithm.UpdateTimeStep(number / sensor.rotation_rate)
+    beams = al.Cloud(sensor.algorithm.GetOutput())
+    return np.array(beams["direction"]), 1e-6 * np.array(beams["timestamp"])
+
+
+def directions_until(sensor, seconds):
+    """Of all beams fired before."""
+    number = int(round(seconds * sensor.rotation_rate))
+    return np.concatenate([window(sensor, scan)[0] for scan in range(number)])
+
+
+def angles(directions):
+    """Azimuth, within 180 of north, and elevation, deg."""
+    return (np.degrees(np.arctan2(directions[:, 0], directions[:, 1])), np.degrees(np.arcsin(np.clip(directions[:, 2], -1.0, 1.0))))
+
+
+def coverage(sensor, times=TIMES):
+    """Shares of the field of view that are covered after `times`, and the field of view: solid angle (sr), azimuths and
+    elevations (deg)."""
+    beams = directions_until(sensor, LONG)
+    azimuth, elevation = angles(beams)
+    random = np.random.default_rng(SEED)
+    low, high = np.sin(np.radians([elevation.min() - MARGIN, elevation.max() + MARGIN]))
+    least, most = np.radians([azimuth.min() - MARGIN, azimuth.max() + MARGIN])
+    up, about = random.uniform(low, high, DRAWN), random.uniform(least, most, DRAWN)
+    drawn = np.column_stack([np.sqrt(1 - up * up) * np.sin(about), np.sqrt(1 - up * up) * np.cos(about), up])
+    chord = 2 * np.sin(np.radians(MARGIN) / 2)
+    drawn = drawn[cKDTree(beams).query(drawn, distance_upper_bound=chord)[0] < chord]
+    solid = (high - low) * (most - least) * len(drawn) / DRAWN
+    chord = 2 * np.sin(sensor.half_beamwidth / 2)
+    per_second = len(beams) / LONG
+    shares = [np.mean(cKDTree(beams[:int(round(time * per_second))]).query(drawn, distance_upper_bound=chord)[0] < chord) for time in times]
+    return np.array(shares), solid, (azimuth.min(), azimuth.max()), (elevation.min(), elevation.max())
+
+
+def table():
+    lines = ["| | azimuths | elevations | " + " | ".join(f"{time:g} s" for time in TIMES) + " |",
+             "|---|---:|---:|" + "---:|" * len(TIMES)]
+    for name in PRISMS:
+        shares, _, azimuths, elevations = coverage(al.Sensor(name))
+        lines.append(f"| `{name}` | {azimuths[0]:.1f} to {azimuths[1]:.1f}° | {elevations[0]:.1f} to {elevations[1]:.1f}° | " +
+                     " | ".join(f"{100 * share:.0f} %" for share in shares) + " |")
+    return "\n".join(lines).replace("-", "−").replace("|−−−", "|---").replace("−−:", "--:").replace("---−", "----") + "\n"
+
+
+def save(figure, file):
+    """In a few greys: small files."""
+    image = io.BytesIO()
+    figure.savefig(image, dpi=100)
+    Image.open(image).convert("L").quantize(16).save(file, optimize=True)
+
+
+def draw_prisms(file):
+    figure = Figure(figsize=(10.5, 11.0), layout="constrained")
+    FigureCanvasAgg(figure)
+    for name, row in zip(PRISMS, figure.subplots(len(PRISMS), len(WINDOWS))):
+        sensor = al.Sensor(name)
+        for seconds, axes in zip(WINDOWS, row):
+            azimuth, elevation = angles(directions_until(sensor, seconds))
+            axes.plot(azimuth, elevation, ",", color="k", alpha=1.0 if seconds < 0.2 else 0.5)
+            axes.set(aspect="equal" if name != "Mid360" else "auto", title=f"{name}, {seconds:g} s")
+            axes.tick_params(labelsize=8)
+            if axes is row[0]:
+                axes.set_ylabel(f"elevation, deg\n{ASSUMED[name]}".strip())
+    for axes in row:
+        axes.set_xlabel("azimuth, deg from the front")
+    save(figure, file)
+
+
+def draw_rotors(file):
+    """Beams as wide as they are, of a few columns."""
+    names = [name for name in al.Sensor.presets() if name not in PRISMS]
+    figure = Figure(figsize=(12.0, 9.5), layout="constrained")
+    FigureCanvasAgg(figure)
+    panels = np.ravel(figure.subplots(-(-len(names) // COLUMNS), COLUMNS))
+    for name, axes in zip(names, panels):
+        sensor = al.Sensor(name)
+        azimuth, elevation = angles(window(sensor, 0)[0])
+        near = np.abs(azimuth) < WIDE
+        wide = np.full(near.sum(), 2 * np.degrees(sensor.half_beamwidth))
+        axes.add_collection(EllipseCollection(wide, wide, np.zeros(len(wide)), units="xy", transOffset=axes.transData,
+                                              offsets=np.column_stack([azimuth[near], elevation[near]]), facecolor="0.6",
+                                              edgecolor="k", linewidth=0.3))
+        axes.set(xlim=(-WIDE / 2, WIDE / 2), ylim=(elevation.min() - 1, elevation.max() + 1))
+        axes.set_title(f"{name}: {len(azimuth):,} beams", fontsize=9)
+        axes.tick_params(labelsize=8)
+    for axes in panels[len(names):]:
+        axes.set_axis_off()
+    figure.supxlabel("azimuth, deg from the front", fontsize=9)
+    figure.supylabel("elevation, deg", fontsize=9)
+    save(figure, file)
+
+
+def main(arguments=None):
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--out", type=pathlib.Path, default=pathlib.Path("build/patterns"), help="folder, default build/patterns")
+    options = parser.parse_args(arguments)
+    options.out.mkdir(parents=True, exist_ok=True)
+    draw_prisms(options.out / "prisms.png")
+    draw_rotors(options.out / "rotors.png")
+    text = table()
+    (options.out / "patterns-coverage.md").write_text(text, encoding="utf-8")
+    print(text)
+
+
+if __name__ == "__main__":
+    main()
