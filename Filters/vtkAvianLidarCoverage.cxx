@@ -20,6 +20,7 @@
 #include "vtkDataObjectTypes.h"
 #include "vtkDataSet.h"
 #include "vtkExecutive.h"
+#include "vtkFieldData.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
@@ -59,6 +60,13 @@ struct vtkAvianLidarCoverage::vtkTargets
   avianlidar::CoverageSurvey Survey;
   avianlidar::SurveyRules Rules;
   double TracedPlaces = 0.0;
+  bool Warned = false; ///< that scans differ
+
+  /// Whether the next scan has other beams. @param beams of one scan
+  static bool ScansDiffer(vtkPolyData* beams)
+  {
+    return beams->GetFieldData()->HasArray(vtkAvianLidarArrays::PrismWedgeAngles.name);
+  }
 
   /// All that decides a bit of the results, but for what the superclass has compared.
   static vtkAvianLidarRanks::Settings SettingsOf(const vtkAvianLidarCoverage& self, bool hasPlaces);
@@ -316,6 +324,14 @@ int vtkAvianLidarCoverage::RequestData(
       };
       if (evaluated && in.GoOn(ranks.Together(this, makeFields)))
       {
+        const bool differ = vtkTargets::ScansDiffer(beams) && this->NumberOfScans > 1;
+        if (differ && !this->Targets->Warned && piece == 0)
+        {
+          vtkWarningMacro("Input port 0 (beams): rotating prisms give each scan other beams, and "
+                          "track_probability takes all NumberOfScans for the one that is here. "
+                          "detection_probability is right.");
+        }
+        this->Targets->Warned = differ;
         return 1;
       }
       for (vtkDataObject* made : outputs)

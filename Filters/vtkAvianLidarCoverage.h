@@ -26,15 +26,17 @@
  *
  * Output port 0: vtkImageData, or the places with all they have. Point arrays (float unless said):
  * `detection_probability` of one scan; `track_probability` that RequiredDetections of NumberOfScans
- * scans detect it (independent scans: a bird that shows the same side for long is seen more often
- * or less); `photoelectrons` in a beam that holds all of the bird, of the mean effective area (0
- * without a photon receiver and where no clear beam reaches the place); `beams_per_scan` (int:
- * whose cones hold it, at most 255); `status` (unsigned char; the first that holds, but for a bird
- * that is partly in a beam and seen though no beam holds the place): 0 outside the range gate, 1
- * above all beams, 2 below them, 3 between beams, 4 shadowed, 5 in clutter, 6 too weak (probability
- * below 0.1), 7 seen; `minimum_effective_area` m2, the mean effective area of which half would be
- * detected (infinite where nothing is). Field data: `status_names`, `species`, `effective_area` m2,
- * what was set here in snake case, and all that vtkAvianLidarEchoFilter writes.
+ * scans detect it (independent scans with the same beams: a bird that shows the same side for long
+ * is seen more often or less, and of rotating prisms, which give each scan other beams, a warning
+ * says that the one at hand stands for all); `photoelectrons` in a beam that holds all of the bird,
+ * of the mean effective area (0 without a photon receiver and where no clear beam reaches the
+ * place); `beams_per_scan` (int: whose cones hold it, at most 255); `status` (unsigned char; the
+ * first that holds, but for a bird that is partly in a beam and seen though no beam holds the
+ * place): 0 outside the range gate, 1 above all beams, 2 below them, 3 between beams, 4 shadowed, 5
+ * in clutter, 6 too weak (probability below 0.1), 7 seen; `minimum_effective_area` m2, the mean
+ * effective area of which half would be detected (infinite where nothing is). Field data:
+ * `status_names`, `species`, `effective_area` m2, what was set here in snake case, and all that
+ * vtkAvianLidarEchoFilter writes.
  *
  * Output port 1: vtkTable, one row per region, species and height band, then for all bands and all
  * regions: `region`, `species`, `height_from`, `height_to` m, `places`, `detection_probability` and

@@ -55,7 +55,8 @@ def assumptions(plans: List[Plan]) -> List[Dict[str, Any]]:
     photons = [int(beams["receiver_model"]) == 1 for beams in fields]
     for facts, concerned in ((COMMON, [True] * len(plans)), (PHOTONS, photons), (LIMITS, [not p for p in photons])):
         for name, words, unit, factor in facts if any(concerned) else ():
-            cells = [(f"{factor * float(beams[name]):.4g}", name in plan.assumed) if this else ("–", False)
+            cells = [(f"{factor * float(beams[name]):.4g}", name in plan.assumed) if this and name in beams and
+                     not (name == "number_of_channels" and "prism_wedge_angles" in beams) else ("–", False)
                      for plan, beams, this in zip(plans, fields, concerned)]
             rows.append({"words": words, "unit": unit, "cells": cells})
     return rows

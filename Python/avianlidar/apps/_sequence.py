@@ -180,8 +180,11 @@ class Sequence:
         settings["noise"] = False
         self.at_rest = Sensor(**sensor)
         with naming(f"{self.file}: scan"):
-            self.clutter = Clutter(Scan(self.scene, self.at_rest, **settings),
-                                   float(self.scenario.get("near_clutter_distance", 15.0)))
+            self._still = Scan(self.scene, self.at_rest, **settings)
+            self._look_at_rest()
+
+    def _look_at_rest(self) -> None:
+        self.clutter = Clutter(self._still, float(self.scenario.get("near_clutter_distance", 15.0)))
 
     def __len__(self) -> int:
         """Number of sequences."""
@@ -282,9 +285,13 @@ class Sequence:
             blocks.SetBlock(k, block)
         self.scan.movers = blocks
         algorithm, rate = self.scan.algorithm, self.sensor.rotation_rate
-        with Updates(algorithm) as again:
+        differ = self.sensor.algorithm.GetNumberOfPrisms() > 0  # beams, from scan to scan
+        with Updates(algorithm) as again, Updates(self._still.algorithm) as look:
             for k in self.span(number):
                 again(lambda: algorithm.UpdateTimeStep(k / rate))
+                if differ:
+                    look(lambda: self._still.algorithm.UpdateTimeStep(k / rate))
+                    self._look_at_rest()
                 yield k, self.scan, species
 
     def truth(self, k: int, species: Dict[int, str]) -> List[List[Any]]:

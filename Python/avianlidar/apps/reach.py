@@ -23,6 +23,7 @@ from .._sensor import Sensor
 from ._maps import Plan
 
 RANGES = 48
+NEAR = 200  # beams, of a pattern without columns, that say how far it reaches to the sides at an elevation
 BIRDS = 400  # at each range
 SEED = 1
 LEAST = 0.005  # share that still counts as detected, to find where ranges end
@@ -63,10 +64,22 @@ def band(sensor: Sensor) -> Tuple[float, float]:
     return float(up.min()), float(up.max())
 
 
+def _azimuths(directions: np.ndarray, elevations: np.ndarray, random: np.random.Generator) -> np.ndarray:
+    """Evenly between the outermost of the NEAR beams that are nearest to each elevation, rad: of a pattern without columns."""
+    up = np.arcsin(np.clip(directions[:, 2], -1.0, 1.0))
+    order = np.argsort(up, kind="stable")
+    about = np.arctan2(directions[order, 0], directions[order, 1])
+    count = min(NEAR, len(about))
+    first = np.clip(np.searchsorted(up[order], elevations) - count // 2, 0, len(about) - count)
+    near = about[first[:, None] + np.arange(count)]
+    return random.uniform(near.min(axis=1), near.max(axis=1))
+
+
 def within_beams(sensor: Sensor, species: str = "herring gull", ranges: Optional[Sequence[float]] = None, birds: int = BIRDS,
                  **settings: Any) -> Reach:
     """Birds in the band of a sensor, which is taken to stand level: elevations evenly between its lowest and its highest beam,
-    azimuths about its beams, drawn with a fixed seed. Without surfaces, so without shadows and clutter.
+    azimuths about its beams (with rotating prisms evenly between the leftmost and the rightmost beam at that elevation, and one
+    scan is the first), drawn with a fixed seed. Without surfaces, so without shadows and clutter.
 
     ranges    m; default RANGES of them to where next to nothing is detected
     birds     at each range
@@ -79,8 +92,11 @@ def within_beams(sensor: Sensor, species: str = "herring gull", ranges: Optional
     cover = Coverage(Scene(), sensor).set(**{**settings, "species": species, "clutter": False})
     random = np.random.default_rng(SEED)
     up = np.radians(random.uniform(*band(sensor), birds))
-    of = directions[random.integers(len(directions), size=birds)]
-    about = np.arctan2(of[:, 0], of[:, 1]) + np.radians(random.uniform(-0.5, 0.5, birds) * sensor.azimuth_step)
+    if sensor.algorithm.GetNumberOfPrisms() > 0:
+        about = _azimuths(directions, up, random)
+    else:
+        of = directions[random.integers(len(directions), size=birds)]
+        about = np.arctan2(of[:, 0], of[:, 1]) + np.radians(random.uniform(-0.5, 0.5, birds) * sensor.azimuth_step)
     lines = np.column_stack([np.sin(about) * np.cos(up), np.cos(about) * np.cos(up), np.sin(up)])
 
     def at(distances: np.ndarray) -> Tuple[np.ndarray, np.ndarray]:
@@ -141,7 +157,8 @@ def advice(plan: Plan, detected_to: float) -> Optional[Dict[str, Any]]:
     needed = max(math.degrees(math.atan2(row["above"], 0.5 * row["to"])) for row in near)
     ways: List[Dict[str, Any]] = []
     sensor = plan.sensor
-    regular = not sensor.channel_elevations and sensor._beams is None and sensor.elevation_step > 0.0 and not any(sensor.orientation)
+    regular = (not sensor.channel_elevations and sensor._beams is None and sensor.elevation_step > 0.0 and
+               not any(sensor.orientation) and not sensor.algorithm.GetNumberOfPrisms())
     if needed > high and needed < 90.0 and regular:
         number = sensor.number_of_channels
         more = number + math.ceil((needed - high) / sensor.elevation_step - 1e-9)
