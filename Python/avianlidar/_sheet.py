@@ -11,6 +11,7 @@ the width of the board, which is not the receiver's but unknown. SciPy's least s
 from __future__ import annotations
 
 import dataclasses
+import itertools
 import json
 from typing import Any, Dict, List, Optional, Sequence, Tuple
 
@@ -19,6 +20,7 @@ import numpy as np
 # Spectral irradiance of daylight over its illuminance, W/(m2 nm) for 100 klx, by wavelength in nm. Second-hand: read off the
 # reference spectrum ASTM G173-03 (global, 37 degrees), which has some 109 klx.
 DAYLIGHT = ((532, 1.40), (650, 1.40), (785, 1.05), (850, 0.83), (905, 0.70), (1064, 0.59), (1550, 0.25))
+APERTURE = 1e-4  # m2, at which fits begin
 HALF = 0.5  # probability of a point that says none: assumed
 UNITS = {"range": "m", "probability": "1", "reflectance": "1", "light": "klx", "board": "m"}
 MOST = {"range": 1e6, "probability": 0.9999, "reflectance": 1.0, "light": 1000.0, "board": 1e4}
@@ -118,9 +120,11 @@ def _fitted(receiver: Receiver, points, start: Tuple[float, float]) -> Tuple[flo
         frees.append("board")
     farthest = max(point["range"] for point in points)
     size = farthest * np.sqrt(receiver.solid_angle)  # of a board that just fills the beam there
-    best: Tuple[float, Tuple[float, float, float]] = (np.inf, (*start, np.nan))
-    for width in (0.3 * size, 0.6 * size, 1.2 * size) if "board" in frees else (boards[0] if boards else np.nan,):
-        value = {"aperture": start[0], "bandwidth": start[1], "board": width}
+    best: Tuple[float, Tuple[float, float, float]] = (np.inf, (start[0], start[1], np.nan))
+    widths = (0.3 * size, 0.6 * size, 1.2 * size) if "board" in frees else (boards[0] if boards else np.nan,)
+    # Starts do not depend on the numbers that are fitted: a fit of a fitted sensor is the same.
+    for width, bandwidth in itertools.product(widths, (1.0, 30.0, 1000.0) if "bandwidth" in frees else (start[1],)):
+        value = {"aperture": APERTURE, "bandwidth": bandwidth, "board": width}
 
         def off(x, names):
             at = {**value, **dict(zip(names, np.exp(x)))}

@@ -36,6 +36,7 @@ PHOTONS = (("receiver_aperture", "area of the receiver's aperture", "cm²", 1e4)
            ("filter_bandwidth", "bandwidth of the filter", "nm", 1.0),
            ("background_radiance", "radiance of the sky", "W/(m² sr nm)", 1.0),
            ("amplifier_noise", "noise of the amplifier, electrons", "", 1.0), ("excess_noise_factor", "excess noise factor", "", 1.0),
+           ("range_noise_floor", "noise of ranges of strong echoes", "cm", 100.0),
            ("false_alarms_per_scan", "false alarms in a scan", "", 1.0), ("dynamic_range", "dynamic range", "dB", 1.0))
 LIMITS = (("lower_energy_limit", "lower energy limit", "J", 1.0), ("upper_energy_limit", "upper energy limit", "J", 1.0))
 
