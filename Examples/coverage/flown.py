@@ -15,14 +15,15 @@ import sys
 
 import numpy as np
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
-from vtkmodules.vtkCommonDataModel import vtkPolyData
+from vtkmodules.vtkCommonCore import vtkPoints
+from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData
 
 import avianlidar as al
 from avianlidar import siting
 from avianlidar.vtkAvianLidar import vtkAvianLidarBirdSource
 
 PHASES = 32
-TOGETHER = 250  # birds in a scan, few enough that hardly one stands before another
+TOGETHER = 250  # birds in a scan
 FIRST = 100000  # object id
 SPEED_OF_LIGHT = 299792458.0
 
@@ -54,37 +55,90 @@ def placed(bird, number, position, heading):
     return mover
 
 
+def apart(places, positions, reach=1.0):
+    """Groups of at most TOGETHER places, none of whose birds stands before another as seen from one of the positions: lists of
+    numbers, the nearest first. @param reach of a bird, m"""
+    ways = places[:, None] - np.asarray(positions)
+    ranges = np.linalg.norm(ways, axis=2)
+    ways, angles = ways / ranges[:, :, None], np.arcsin(np.minimum(1.0, reach / ranges))
+    groups = []
+    for number in np.argsort(ranges.min(axis=1), kind="stable"):
+        for group in groups:
+            cosines = (ways[group] * ways[number]).sum(axis=2)
+            if len(group) < TOGETHER and np.all(np.arccos(np.clip(cosines, -1.0, 1.0)) > angles[group] + angles[number]):
+                group.append(number)
+                break
+        else:
+            groups.append([number])
+    return groups
+
+
+def near(beams, places, position, half_beamwidth, reach=1.0):
+    """The beams that a bird at one of the places may be in: vtkPolyData. @param reach of a bird, m"""
+    directions = vtk_to_numpy(beams.GetPointData().GetArray("direction"))
+    wanted = np.zeros(len(directions), dtype=bool)
+    for way in places - position:
+        away = np.linalg.norm(way)
+        wanted |= directions @ (way / away) >= math.cos(math.asin(min(1.0, reach / away)) + half_beamwidth)
+    found, points, vertices = vtkPolyData(), vtkPoints(), vtkCellArray()
+    numbers = np.flatnonzero(wanted)
+    points.SetData(numpy_to_vtk(vtk_to_numpy(beams.GetPoints().GetData())[numbers], deep=True))
+    for i in range(len(numbers)):
+        vertices.InsertNextCell(1, [i])
+    found.SetPoints(points)
+    found.SetVerts(vertices)
+    for i in range(beams.GetPointData().GetNumberOfArrays()):
+        whole = beams.GetPointData().GetArray(i)
+        part = whole.NewInstance()
+        part.SetName(whole.GetName())
+        part.SetNumberOfComponents(whole.GetNumberOfComponents())
+        part.SetNumberOfTuples(len(numbers))
+        vtk_to_numpy(part)[:] = vtk_to_numpy(whole)[numbers]
+        found.GetPointData().AddArray(part)
+    found.GetFieldData().ShallowCopy(beams.GetFieldData())
+    return found
+
+
 def fly(scene, sensor, places, scans, species, air, rays, seed=0, say=lambda done: None):
     """@return of each place the share of scans in which its bird had an echo, and the mean of the probabilities that the
-    mover report expects. @param air attenuation coefficient, 1/m"""
+    mover report expects. @param sensor or several that look at the same bird, of which one must see it @param air attenuation
+    coefficient, 1/m"""
     random = np.random.default_rng(seed)
     birds = birds_of(species)
-    scan = al.Scan(scene, sensor, rays_per_beam=rays, attenuation_coefficient=air, number_of_reflections=1)
-    position = np.array(sensor.position)
-    unit = SPEED_OF_LIGHT * sensor.sampling_interval / 2
+    sensors = sensor if isinstance(sensor, (list, tuple)) else [sensor]
+    looking = [al.Scan(scene, one, rays_per_beam=rays, attenuation_coefficient=air, number_of_reflections=1) for one in sensors]
+    positions = [np.array(one.position) for one in sensors]
+    unit = SPEED_OF_LIGHT * sensors[0].sampling_interval / 2
     seen, expected = np.zeros(len(places)), np.zeros(len(places))
-    sensor.algorithm.Update()
-    beams = sensor.algorithm.GetOutput()
-    for first in range(0, len(places), TOGETHER):
-        numbers = range(first, min(first + TOGETHER, len(places)))
+    for one in sensors:
+        one.algorithm.Update()
+    done = 0
+    for numbers in apart(places, positions):
+        lit = [near(one.algorithm.GetOutput(), places[numbers], position, one.half_beamwidth)
+               for one, position in zip(sensors, positions)]
         for number in range(scans):
             movers = []
             for i in numbers:
-                way = places[i] - position
+                way = places[i] - positions[0]
                 away = 1.0 + (random.uniform() - 0.5) * unit / np.linalg.norm(way)
-                movers.append(placed(birds[random.integers(PHASES)], i, position + away * way, random.uniform(0, 2 * math.pi)))
-            turned = vtkPolyData()  # the noise of another revolution
-            turned.ShallowCopy(beams)
-            revolution = numpy_to_vtk(np.array([number + 1], dtype=np.int32), deep=True)
-            revolution.SetName("revolution")
-            turned.GetFieldData().AddArray(revolution)
-            scan.algorithm.SetInputData(0, turned)
-            scan.movers = movers
-            report = scan.mover_report
-            ids = report["object_id"] - FIRST
-            seen[ids] += report["number_of_echoes"] > 0
-            expected[ids] += report["detection_probability"]
-        say(numbers[-1] + 1)
+                movers.append(placed(birds[random.integers(PHASES)], i, positions[0] + away * way, random.uniform(0, 2 * math.pi)))
+            found, missed = np.zeros(len(places), dtype=bool), np.ones(len(places))
+            for scan, beams in zip(looking, lit):
+                turned = vtkPolyData()  # the noise of another revolution
+                turned.ShallowCopy(beams)
+                revolution = numpy_to_vtk(np.array([number + 1], dtype=np.int32), deep=True)
+                revolution.SetName("revolution")
+                turned.GetFieldData().AddArray(revolution)
+                scan.algorithm.SetInputData(0, turned)
+                scan.movers = movers
+                report = scan.mover_report
+                ids = report["object_id"] - FIRST
+                found[ids] |= report["number_of_echoes"] > 0
+                missed[ids] *= 1.0 - report["detection_probability"]
+            seen += found
+            expected += 1.0 - missed
+        done += len(numbers)
+        say(done)
     return seen / scans, expected / scans
 
 

@@ -20,6 +20,7 @@ import avianlidar as al
 from avianlidar import siting
 
 import flown
+import flown_sensors
 
 HERE = pathlib.Path(__file__).resolve().parent
 AIRPORT = HERE.parent / "airport" / "scene" / "hongqiao.lidarscene.json"
@@ -131,6 +132,7 @@ def main():
     parser.add_argument("--scenes", type=pathlib.Path, required=True, help="folder with .lidarscene.json files")
     parser.add_argument("--flown", type=pathlib.Path, help="what flown.py left")
     parser.add_argument("--flown-scans", type=int, default=100)
+    parser.add_argument("--flown-sensors", type=pathlib.Path, help="what flown_sensors.py left")
     parser.add_argument("--page", type=pathlib.Path, required=True)
     options = parser.parse_args()
     lines = ["# Coverage: what it costs, and what it says", "",
@@ -174,6 +176,9 @@ def main():
                   f"{np.count_nonzero((p > 0.01) & (p < 0.99))} places that are neither certain nor hopeless "
                   f"{100 * np.mean((np.abs(seen - p) > 3 * np.sqrt(p * (1 - p) / options.flown_scans))[(p > 0.01) & (p < 0.99)]):.1f} % "
                   "are beyond three standard errors."]
+    if options.flown_sensors:
+        lines += ["", "For sensors of narrow and of wide beams, in free space: azimuths, elevations of 0 to 10 degrees and distances from 5 m to where birds "
+                  "are no longer seen are uniform (`Examples/coverage/flown_sensors.py`).", "", *flown_sensors.lines_of(options.flown_sensors)]
     options.page.write_text("\n".join(lines) + "\n", encoding="utf-8")
 
 
