@@ -403,6 +403,7 @@ vtkAvianLidarRanks::Settings vtkAvianLidarCoverage::vtkTargets::SettingsOf(
     all.Add("HeightLimits", limit);
   }
   all.Add("StrikeHeightWeights", self.StrikeHeightWeights);
+  all.Add("PoseProbabilities", self.PoseProbabilities);
   return all;
 }
 
@@ -424,7 +425,11 @@ bool vtkAvianLidarCoverage::PreparePlaces(
       {
         if (count != static_cast<double>(this->Targets->Survey.size()))
         {
-          avianlidar::requireMemory(count, "places", BytesPerPlace * count);
+          const double poses = this->PoseProbabilities
+            ? static_cast<double>(this->Targets->Wanted.front().Views->poses)
+            : 0.0;
+          avianlidar::requireMemory(
+            count, "places", (BytesPerPlace + sizeof(float) * poses) * count);
         }
       };
       const auto take = [&]() -> std::string
@@ -508,22 +513,28 @@ bool vtkAvianLidarCoverage::Evaluate(
     [&]() -> std::string
     {
       sums.sums.resize(sums.species.size() * sums.Cells());
-      vtkAvianLidarPlaceArrays arrays(static_cast<vtkIdType>(targets.Places.Size()));
+      vtkAvianLidarPlaceArrays arrays(static_cast<vtkIdType>(targets.Places.Size()),
+        this->PoseProbabilities ? static_cast<int>(targets.Wanted.front().Views->poses) : 0);
       const std::size_t count = targets.Wanted.size();
       const double share = (1.0 - ViewShare) / static_cast<double>(count);
       for (std::size_t t = 0; t < count; ++t)
       {
         const vtkAvianLidarBirdTargets::Target& bird = targets.Wanted[t];
         avianlidar::CoverageSurvey::EachPlace setArrays;
+        avianlidar::CoverageSurvey::PosesOf posesOf;
         if (t == 0)
         {
           setArrays = [&](std::size_t k, const avianlidar::CoverageValue& value, double track)
           { arrays.Set(static_cast<vtkIdType>(k), value, track); };
+          if (this->PoseProbabilities)
+          {
+            posesOf = [&](std::size_t k) { return arrays.PosesOf(k); };
+          }
         }
         vtkAvianLidarAbort::Require(targets.Survey.evaluate(
-          { bird.Area, this->Reflectance, bird.Poses }, targets.Rules, in.Threads,
+          { bird.Area, this->Reflectance, bird.Views }, targets.Rules, in.Threads,
           vtkAvianLidarAbort::KeepGoing(this, ViewShare + t * share, ViewShare + (t + 1) * share),
-          setArrays, sums.sums.data() + t * sums.Cells()));
+          setArrays, sums.sums.data() + t * sums.Cells(), posesOf));
       }
       if (vtkDataSet* points = targets.Places.GetPoints())
       {
@@ -581,6 +592,7 @@ void vtkAvianLidarCoverage::MakeFields(vtkFieldData* beamFields, vtkFieldData* f
   Arrays::SetFieldInteger(fields, { "required_detections", "1" }, this->RequiredDetections);
   Arrays::SetFieldInteger(fields, { "number_of_scans", "1" }, this->NumberOfScans);
   Arrays::SetFieldInteger(fields, { "strike_height_weights", "1" }, this->StrikeHeightWeights);
+  Arrays::SetFieldInteger(fields, { "pose_probabilities", "1" }, this->PoseProbabilities);
 }
 
 double vtkAvianLidarCoverage::StrikeHeightDensity(double height)
@@ -612,4 +624,5 @@ void vtkAvianLidarCoverage::PrintSelf(ostream& os, vtkIndent indent)
   os << " m\n";
   os << indent << "StrikeHeightWeights: " << this->StrikeHeightWeights << "\n";
   os << indent << "AllSpecies: " << this->AllSpecies << "\n";
+  os << indent << "PoseProbabilities: " << this->PoseProbabilities << "\n";
 }

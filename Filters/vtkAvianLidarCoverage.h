@@ -12,10 +12,11 @@
  * the result is that of a fresh run, bit for bit. Clutter is that of the scan without noise that
  * vtkAvianLidarEchoFilter makes with the same properties, with one echo per range unit.
  *
- * Where the border of a beam crosses the bird, the beam has a share of it; the bird's depth spreads
- * its echo over range units. Pulses' noise is independent, the bird the same within a scan. A
- * surface hides the whole bird or nothing of it. See Documentation/coverage.md. It says nothing
- * about real birds: no measured ranges of birds are known for this kind of lidar.
+ * A beam receives the light of that part of the bird's silhouette that it covers, whichever of both
+ * is wider; the part's depth spreads its echo over range units. Pulses' noise is independent, the
+ * bird the same within a scan. A surface hides the whole bird or nothing of it. See
+ * Documentation/coverage.md. It says nothing about real birds: no measured ranges of birds are
+ * known for this kind of lidar.
  *
  * Input ports 0, beams, and 1, surfaces: see vtkAvianLidarEchoFilter. All beams of one sensor: they
  * begin at one point. Whatever piece is asked for, all of them are.
@@ -34,9 +35,11 @@
  * first that holds, but for a bird that is partly in a beam and seen though no beam holds the
  * place): 0 outside the range gate, 1 above all beams, 2 below them, 3 between beams, 4 shadowed, 5
  * in clutter, 6 too weak (probability below 0.1), 7 seen; `minimum_effective_area` m2, the mean
- * effective area of which half would be detected (infinite where nothing is). Field data:
- * `status_names`, `species`, `effective_area` m2, what was set here in snake case, and all that
- * vtkAvianLidarEchoFilter writes.
+ * effective area of which half would be detected if they lay in the beams as a whole (infinite
+ * where nothing is); with PoseProbabilities `pose_probabilities` of one scan (a component for each
+ * pose: 16 headings for each of 5 wing phases, of gliding birds 80 headings, each pose equally
+ * likely; without a species 1). Field data: `status_names`, `species`, `effective_area` m2, what
+ * was set here in snake case, and all that vtkAvianLidarEchoFilter writes.
  *
  * Output port 1: vtkTable, one row per region, species and height band, then for all bands and all
  * regions: `region`, `species`, `height_from`, `height_to` m, `places`, `detection_probability` and
@@ -112,9 +115,9 @@ public:
   ///@{
   /**
    * Species of the bird, one of the table that ships (starling, kestrel, pigeon, crow, herring
-   * gull, Canada goose; all numbers assumed) or of SpeciesFileName. Its effective areas are those
-   * of headings and wing phases with equal probability, seen from the side at 3 degrees of
-   * elevation. Empty: a target that always shows EffectiveArea. Default: herring gull.
+   * gull, Canada goose; all numbers assumed) or of SpeciesFileName. Headings and wing phases are
+   * equally likely; it is seen from the elevation of its place. Empty: a target that always shows
+   * EffectiveArea. Default: herring gull.
    */
   vtkSetMacro(Species, std::string);
   vtkGetMacro(Species, std::string);
@@ -138,9 +141,9 @@ public:
 
   ///@{
   /**
-   * Mean effective area of the target, m2, 0 to 1e6. 0: that of the species; otherwise the
-   * species' areas are scaled to it. Needed without a species; 0.018 is the standard avian optical
-   * target, about a crow. Default: 0.
+   * Mean effective area of the target from the side at 3 degrees of elevation, m2, 0 to 1e6. 0:
+   * that of the species; otherwise the whole bird is scaled to it. Needed without a species; 0.018
+   * is the standard avian optical target, about a crow. Default: 0.
    */
   vtkSetMacro(EffectiveArea, double);
   vtkGetMacro(EffectiveArea, double);
@@ -220,6 +223,18 @@ public:
 
   ///@{
   /**
+   * Whether the point array `pose_probabilities` is made: of the bird in each of its poses, by the
+   * heading from north, so that what several sensors see of one bird is compared pose by pose: the
+   * probability that one of them detects it is the mean over poses of 1 - product (1 - p).
+   * Default: off.
+   */
+  vtkSetMacro(PoseProbabilities, bool);
+  vtkGetMacro(PoseProbabilities, bool);
+  vtkBooleanMacro(PoseProbabilities, bool);
+  ///@}
+
+  ///@{
+  /**
    * Connect the places (port 2).
    */
   void SetPlacesConnection(vtkAlgorithmOutput* output) { this->SetInputConnection(2, output); }
@@ -258,6 +273,7 @@ protected:
   std::vector<double> HeightLimits = { 0.0, 15.0, 30.0, 60.0, 150.0 };
   bool StrikeHeightWeights = false;
   bool AllSpecies = false;
+  bool PoseProbabilities = false;
 
 private:
   vtkAvianLidarCoverage(const vtkAvianLidarCoverage&) = delete;

@@ -98,7 +98,7 @@ class Coverage(SceneAndSensor):
 
     def __getitem__(self, name: str) -> np.ndarray:
         """`detection_probability`, `track_probability`, `photoelectrons`, `beams_per_scan`, `minimum_effective_area` (m2)
-        or `status`: of an image by z, y, x."""
+        or `status`: of an image by z, y, x. `pose_probabilities`, where they are asked for, have a last axis of poses."""
         data = self.data
         array = data.GetPointData().GetArray(name)
         if array is None:
@@ -106,7 +106,7 @@ class Coverage(SceneAndSensor):
             known = [points.GetArrayName(i) for i in range(points.GetNumberOfArrays())]
             raise KeyError(f"there is no array {name!r}; known are {', '.join(known)}")
         values = as_numpy(array)
-        return values.reshape(data.GetDimensions()[::-1]) if isinstance(data, vtkImageData) else values
+        return values.reshape(data.GetDimensions()[::-1] + values.shape[1:]) if isinstance(data, vtkImageData) else values
 
     @property
     def status_names(self) -> List[str]:

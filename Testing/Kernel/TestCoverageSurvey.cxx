@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Surveys against place by place, what is found again after a change, and sums that no number of
 // threads changes.
+#include "BirdViews.h"
 #include "CoverageSurvey.h"
 #include "PhotonReceiver.h"
 #include "ScanTestTown.h"
@@ -59,7 +60,13 @@ struct Town
   }
 };
 
-const SurveyTarget Gull{ 0.03, 0.3, { { 0.5, 0.2, 0.1 }, { 1.5, 0.3, 0.2 } } };
+std::shared_ptr<const TargetViews> gullOf(double size)
+{
+  const BirdShape shape({ "gull", 0.95, 0.60, 1.35, 0.20, false, 12.5 });
+  return std::make_shared<const TargetViews>(birdViews(shape.scaled(size), false, 0.03));
+}
+
+const SurveyTarget Gull{ 0.03, 0.3, gullOf(1.0) };
 const SurveyRules Rules{ 2, 3, true, { 0.0, 15.0, 30.0 } };
 
 std::vector<CoverageShares> sumsOf(CoverageSurvey& survey, const SurveyTarget& target,
@@ -92,7 +99,7 @@ TEST(CoverageSurvey, IsThatOfEachPlaceAndSumsThoseWithARegion)
 
   const Coverage coverage(site.setup, site.beams, Vec3(0.0, 0.0, 1.0), site.still);
   const CoverageTarget target(site.setup.sensor, site.setup.settings.attenuationCoefficient,
-    Gull.area, Gull.reflectance, Gull.poses, coverage.mostBeams());
+    Gull.area, Gull.reflectance, *Gull.views, coverage);
   std::vector<CoverageSight> sights(around.points.size());
   ASSERT_TRUE(coverage.look(around.places.at, sights.size(), 1, {}, sights.data()));
   std::vector<CoverageShares> wanted(8);
@@ -177,12 +184,18 @@ TEST(CoverageSurvey, KeepsNoTargetForAnother)
   const Around around(2000);
   CoverageSurvey survey;
   ASSERT_TRUE(site.look(survey, around));
+  std::vector<std::shared_ptr<const TargetViews>> others;
+  for (int i = 0; i < 20; ++i)
+  {
+    others.push_back(gullOf(1.0 + 0.1 * i));
+  }
   for (int round = 0; round < 2; ++round)
   {
     for (int i = 0; i < 20; ++i) // more than are kept
     {
       SurveyTarget target = Gull;
-      (i % 2 == 0 ? target.area : target.poses[0].horizontal) *= 1.0 + 0.1 * i;
+      target.area *= i % 2 == 0 ? 1.0 + 0.1 * i : 1.0;
+      target.views = i % 2 == 0 ? target.views : others[i];
       CoverageSurvey fresh;
       ASSERT_TRUE(site.look(fresh, around));
       expectSame(sumsOf(survey, target), sumsOf(fresh, target));

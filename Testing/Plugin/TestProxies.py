@@ -167,6 +167,7 @@ CONTRACT = {
         "HeightLimits": "metres",
         "StrikeHeightWeights": "",
         "AllSpecies": "",
+        "PoseProbabilities": "",
         "Preset": "",
         "RaysPerBeam": "",
         "Seed": "",

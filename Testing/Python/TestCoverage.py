@@ -15,6 +15,7 @@ from vtkmodules.vtkFiltersCore import vtkPassThrough
 import avianlidar as al
 import exampletools
 import flown
+import flown_sensors
 from avianlidar import siting
 from avianlidar.vtkAvianLidar import vtkAvianLidarCoverage
 
@@ -292,23 +293,66 @@ class Work(unittest.TestCase):
         ghostly.GetPointGhostArray().SetValue(0, 1)
         self.assertEqual(al.Coverage(scene, sensor, places=ghostly).table[-1]["places"], 1)
 
-    def test_beams_narrower_than_the_bird(self):
-        """A bird fills the beams of a near sensor: no beam receives more than of a wall of its reflectance."""
-        sensor = al.Sensor("Automotive16")
-        places = [np.array([r * math.sin(a), r * math.cos(a), r * math.tan(math.radians(1.0))])  # none before another
-                  for r, a in zip(np.repeat((10.0, 20.0, 40.0, 60.0, 90.0), 3), np.linspace(0.0, 6.0, 15))]
-        cover = al.Coverage(al.Scene(NOTHING, material="Wall"), sensor, places=places, species="Canada goose", visibility=0.0,
-                            attenuation_coefficient=AIR)
-        p = cover["detection_probability"].astype(float)
-        seen, expected = flown.fly(al.Scene(NOTHING, material="Wall"), sensor, np.array(places), 20, "Canada goose", AIR, rays=400)
-        print(f"narrow beams: {p.round(2)}, flown {expected.round(2)}")
-        self.assertTrue(np.all(p[:12] > 0.95))
-        self.assertLess(np.abs(p - expected)[:12].max(), 0.05)
-        self.assertTrue(np.all(p[12:] > 0.6) and np.all(p[12:] < expected[12:]))  # the body is more compact than a normal law
-        # Twice the area is needed half as much: no cap hides it.
+    def test_beams_wider_and_narrower_than_the_bird(self):
+        """A gull on the axis of a beam that is narrower than itself is seen; everywhere else as often as coverage states."""
+        for name, place in (("VLP16", (0.0, 35.0 * math.cos(math.radians(1.0)), 35.0 * math.sin(math.radians(1.0)))),
+                            ("Automotive16", (0.0, 90.0 * math.cos(math.radians(1.0)), 90.0 * math.sin(math.radians(1.0))))):
+            places = np.array([place])
+            species = "Canada goose" if name == "Automotive16" else "herring gull"
+            p = flown_sensors.stated(al.Sensor(name), species, places)[0]
+            self.assertGreater(p, 0.9, name)
+            _, expected = flown.fly(al.Scene(NOTHING, material="Wall"), al.Sensor(name), places, 60, species, AIR, 400)
+            self.assertAlmostEqual(p, expected[0], delta=0.05, msg=name)
+        for name, species in (("VLP16", "herring gull"), ("OS1_64", "Canada goose"), ("Automotive16", "starling"),
+                              ("Search905", "herring gull")):
+            row = flown_sensors.compare(name, species, flown_sensors.flights(name, species, 150, 10), 10)
+            print(row)
+            self.assertGreater(row["between"], 10, (name, species))
+            self.assertLess(abs(row["bias"]), 0.025, (name, species))
+            self.assertLess(abs(row["expected"] - row["stated"]), 0.02, (name, species))
+            self.assertLessEqual(row["outside_99.73_percent"], 0.03, (name, species))
+
+    def test_minimum_effective_area_is_that_of_the_species(self):
+        cover = al.Coverage(al.Scene(NOTHING, material="Wall"), al.Sensor("Search905"), places=[(0, 400, 15), (0, 900, 15)],
+                            species="Canada goose")
         least = cover["minimum_effective_area"].copy()
-        cover.effective_area = 1.0
-        np.testing.assert_allclose(cover["minimum_effective_area"], least, rtol=1e-3)
+        cover.effective_area = 0.07  # a larger bird is deeper, too
+        np.testing.assert_allclose(cover["minimum_effective_area"], least, rtol=0.1)
+
+    def test_several_sensors_and_the_same_bird(self):
+        scene = al.Scene(NOTHING, material="Wall")
+        sensor, sites = al.Sensor("Search905"), np.array([(0.0, 0.0, 0.0), (700.0, 0.0, 0.0)])
+        random = np.random.default_rng(3)
+        places = np.column_stack([350 + random.uniform(-60, 60, 100), random.uniform(350, 500, 100), random.uniform(8, 40, 100)])
+        alone, by_pose = [], []
+        for site in sites:
+            sensor.position = tuple(site)
+            cover = al.Coverage(scene, sensor, places=places, species="herring gull", visibility=0.0, attenuation_coefficient=AIR)
+            alone.append(cover["detection_probability"].copy())
+            cover.pose_probabilities = True
+            poses = cover["pose_probabilities"]
+            self.assertEqual(poses.shape, (100, 80))
+            np.testing.assert_allclose(poses.mean(axis=1), alone[-1], atol=0.012)
+            by_pose.append(poses)
+        stated = 1.0 - np.prod([1.0 - poses for poses in by_pose], axis=0).mean(axis=1)
+        independent = 1.0 - (1.0 - alone[0]) * (1.0 - alone[1])
+        sensors = [al.Sensor("Search905", position=tuple(site)) for site in sites]
+        seen, expected = flown.fly(scene, sensors, places, 12, "herring gull", AIR, 400)
+        print(f"two sensors: {stated.mean():.3f}, independent {independent.mean():.3f}, flown {seen.mean():.3f}, {expected.mean():.3f}")
+        self.assertLess(abs(stated.mean() - expected.mean()), 0.015)
+        self.assertGreater(abs(independent.mean() - expected.mean()), 2 * abs(stated.mean() - expected.mean()))
+        image = al.Coverage(scene, sensor, bounds=(0, 100, 300, 340, 10, 20), spacing=(20, 20, 10), pose_probabilities=True, gliding=True)
+        self.assertEqual(image["pose_probabilities"].shape, (2, 3, 6, 80))
+        point = al.Coverage(scene, sensor, places=[(0, 300, 10)], species="", effective_area=0.03, pose_probabilities=True)
+        self.assertEqual(point["pose_probabilities"].size, 1)
+        weights = np.full((1, len(places)), 1.0 / len(places))
+        value = siting.value_of_same_birds(scene, sensor, sites, places, ["herring gull"], weights, visibility=0.0,
+                                           attenuation_coefficient=AIR)
+        self.assertAlmostEqual(value, stated.mean(), delta=1e-5)
+        with self.assertRaisesRegex(ValueError, "weights have the shape"):
+            siting.value_of_same_birds(scene, sensor, sites, places, ["herring gull"], weights[:, 1:])
+        with self.assertRaisesRegex(ValueError, "sites have the shape"):
+            siting.value_of_same_birds(scene, sensor, sites[0], places, ["herring gull"], weights)
 
     def test_places_of_any_kind(self):
         scene, sensor = al.Scene(WALL, material="Wall"), al.Sensor("Search905")

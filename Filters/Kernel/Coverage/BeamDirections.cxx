@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace avianlidar
 {
@@ -43,49 +44,12 @@ std::size_t placeOf(double u, std::size_t side)
   const double place = 0.5 * (u + 1.0) * static_cast<double>(side);
   return std::min(side - 1, static_cast<std::size_t>(std::max(0.0, place)));
 }
-}
-
-BeamDirections::BeamDirections(
-  const std::vector<Vec3>& directions, double halfBeamwidth, double margin)
-  : Side(static_cast<std::size_t>(std::clamp(2.0 / halfBeamwidth, 4.0, MostCells)))
-{
-  this->Axes.reserve(directions.size());
-  for (const Vec3& direction : directions)
-  {
-    this->Axes.push_back(unitVector(direction));
-  }
-  this->Begins.assign(6 * this->Side * this->Side + 1, 0);
-  for (const Vec3& axis : this->Axes)
-  {
-    this->forEachCell(
-      axis, halfBeamwidth + margin, [&](std::size_t cell) { ++this->Begins[cell + 1]; });
-  }
-  for (std::size_t cell = 1; cell < this->Begins.size(); ++cell)
-  {
-    this->Most = std::max<std::size_t>(this->Most, this->Begins[cell]);
-    this->Begins[cell] += this->Begins[cell - 1];
-  }
-  this->Beams.resize(this->Begins.back());
-  std::vector<std::uint32_t> next(this->Begins.begin(), this->Begins.end() - 1);
-  for (std::uint32_t beam = 0; beam < this->Axes.size(); ++beam)
-  {
-    this->forEachCell(this->Axes[beam], halfBeamwidth + margin,
-      [&](std::size_t cell) { this->Beams[next[cell]++] = beam; });
-  }
-}
-
-std::size_t BeamDirections::cellOf(const Vec3& direction) const
-{
-  const OnCube at = onCube(direction);
-  return (static_cast<std::size_t>(at.face) * this->Side + placeOf(at.v, this->Side)) * this->Side +
-    placeOf(at.u, this->Side);
-}
 
 /// f(cell) for the cells that a cone may meet.
 template <class F>
-void BeamDirections::forEachCell(const Vec3& axis, double halfBeamwidth, F f) const
+void forEachCell(std::size_t side, const Vec3& axis, double halfBeamwidth, F f)
 {
-  const double size = 2.0 / static_cast<double>(this->Side);
+  const double size = 2.0 / static_cast<double>(side);
   // No point of a cell is farther than this from its middle: on a face, angles are smaller than
   // distances.
   const double cell = 0.5 * size * std::sqrt(2.0);
@@ -100,7 +64,7 @@ void BeamDirections::forEachCell(const Vec3& axis, double halfBeamwidth, F f) co
       continue;
     }
     // The cone's section with the face lies in a square about the axis, unless it is too oblique.
-    std::size_t range[4] = { 0, this->Side - 1, 0, this->Side - 1 };
+    std::size_t range[4] = { 0, side - 1, 0, side - 1 };
     const double reach = angle + halfBeamwidth;
     if (reach < 1.4)
     {
@@ -113,10 +77,10 @@ void BeamDirections::forEachCell(const Vec3& axis, double halfBeamwidth, F f) co
       {
         continue;
       }
-      range[0] = placeOf(u - wide, this->Side);
-      range[1] = placeOf(u + wide, this->Side);
-      range[2] = placeOf(v - wide, this->Side);
-      range[3] = placeOf(v + wide, this->Side);
+      range[0] = placeOf(u - wide, side);
+      range[1] = placeOf(u + wide, side);
+      range[2] = placeOf(v - wide, side);
+      range[3] = placeOf(v + wide, side);
     }
     const double least = std::cos(std::min(Pi, halfBeamwidth + cell));
     for (std::size_t j = range[2]; j <= range[3]; ++j)
@@ -127,10 +91,57 @@ void BeamDirections::forEachCell(const Vec3& axis, double halfBeamwidth, F f) co
           (static_cast<double>(j) + 0.5) * size - 1.0));
         if (glm::dot(middle, axis) >= least)
         {
-          f((static_cast<std::size_t>(face) * this->Side + j) * this->Side + i);
+          f((static_cast<std::size_t>(face) * side + j) * side + i);
         }
       }
     }
   }
+}
+}
+
+BeamDirections::BeamDirections(
+  const std::vector<Vec3>& directions, double halfBeamwidth, const std::vector<double>& margins)
+{
+  this->Axes.reserve(directions.size());
+  for (const Vec3& direction : directions)
+  {
+    this->Axes.push_back(unitVector(direction));
+  }
+  for (const double margin : margins)
+  {
+    const double size = margins.size() > 1 ? std::max(halfBeamwidth, margin) : halfBeamwidth;
+    const auto side = static_cast<std::size_t>(std::clamp(2.0 / size, 4.0, MostCells));
+    this->fill(this->Grids.emplace_back(Grid{ margin, side, {}, {} }), halfBeamwidth);
+  }
+  const std::vector<std::uint32_t>& begins = this->Grids[0].begins;
+  for (std::size_t cell = 1; cell < begins.size(); ++cell)
+  {
+    this->Most = std::max<std::size_t>(this->Most, begins[cell] - begins[cell - 1]);
+  }
+}
+
+void BeamDirections::fill(Grid& grid, double halfBeamwidth) const
+{
+  grid.begins.assign(6 * grid.side * grid.side + 1, 0);
+  for (const Vec3& axis : this->Axes)
+  {
+    forEachCell(grid.side, axis, halfBeamwidth + grid.margin,
+      [&](std::size_t cell) { ++grid.begins[cell + 1]; });
+  }
+  std::partial_sum(grid.begins.begin(), grid.begins.end(), grid.begins.begin());
+  grid.beams.resize(grid.begins.back());
+  std::vector<std::uint32_t> next(grid.begins.begin(), grid.begins.end() - 1);
+  for (std::uint32_t beam = 0; beam < this->Axes.size(); ++beam)
+  {
+    forEachCell(grid.side, this->Axes[beam], halfBeamwidth + grid.margin,
+      [&](std::size_t cell) { grid.beams[next[cell]++] = beam; });
+  }
+}
+
+std::size_t BeamDirections::cellOf(const Vec3& direction, std::size_t side)
+{
+  const OnCube at = onCube(direction);
+  return (static_cast<std::size_t>(at.face) * side + placeOf(at.v, side)) * side +
+    placeOf(at.u, side);
 }
 }

@@ -14,10 +14,27 @@ namespace avianlidar
 namespace
 {
 constexpr std::size_t PlacesOfBlock = 4096;
-/// rad: half of a bird at 100 m.
-constexpr double WideMargin = 6e-3;
+/// rad beyond the border of a beam, in which beams are looked for: where targets are far, nearer,
+/// and very near.
+constexpr double Margins[] = { 4e-3, 4e-2, 0.4 };
 /// Probabilities that are known this well are not looked at more closely.
 constexpr double Negligible = 0.004;
+
+/// Half the angle, rad, at which a target appears. @param reach m, from its middle
+double angleOf(double reach, double range)
+{
+  return std::asin(std::min(1.0, reach / range));
+}
+
+std::vector<double> marginsFor(double halfBeamwidth)
+{
+  std::vector<double> margins;
+  for (const double margin : Margins)
+  {
+    margins.push_back(std::min(margin, Pi / 3.0 - halfBeamwidth));
+  }
+  return margins;
+}
 
 double elevationOf(const Vec3& direction, const Vec3& up)
 {
@@ -43,14 +60,11 @@ Coverage::Coverage(const ScanSetup& setup, const ScanBeams& beams, const Vec3& u
   : Setup(setup)
   , Beams(beams)
   , Up(up)
-  , Margin(std::min(
-      std::max(setup.sensor.halfBeamwidth, WideMargin), Pi / 3.0 - setup.sensor.halfBeamwidth))
   , Directions(directions ? std::move(directions)
-                          : std::make_shared<const BeamDirections>(
-                              beams.directions, setup.sensor.halfBeamwidth, this->Margin))
+                          : std::make_shared<const BeamDirections>(beams.directions,
+                              setup.sensor.halfBeamwidth, marginsFor(setup.sensor.halfBeamwidth)))
   , Most(static_cast<int>(std::clamp<std::size_t>(this->Directions->mostNear(), 1, 255)))
   , CosineHeld(std::cos(setup.sensor.halfBeamwidth))
-  , CosineNear(std::cos(setup.sensor.halfBeamwidth + this->Margin))
   , Lowest(std::numeric_limits<double>::infinity())
   , Highest(-std::numeric_limits<double>::infinity())
   , ClutterBegins(beams.size() + 1, 0)
@@ -116,10 +130,12 @@ CoverageSight Coverage::sightOf(const Vec3& to, BeamTracer& tracer) const
     sight.status =
       elevation > this->Highest ? CoverageStatus::AboveBand : CoverageStatus::BelowBand;
   }
-  this->Directions->forEachNear(to / range,
+  const double reach = std::min(angleOf(WidestTarget, range), this->Directions->largestMargin());
+  const double cosineNear = std::cos(this->Setup.sensor.halfBeamwidth + reach);
+  this->Directions->forEachNear(to / range, reach,
     [&](std::uint32_t, double cosine)
     {
-      sight.isNear = sight.isNear || cosine >= this->CosineNear;
+      sight.isNear = sight.isNear || cosine >= cosineNear;
       sight.beams += cosine >= this->CosineHeld && sight.beams < 255 ? 1 : 0;
     });
   sight.status = sight.beams > 0 ? CoverageStatus::Seen : sight.status;
@@ -152,18 +168,23 @@ bool Coverage::look(const PlaceAt& placeAt, std::size_t count, int threads,
 }
 
 CoverageTarget::CoverageTarget(const Sensor& sensor, double air, double meanArea, double reflected,
-  const std::vector<TargetPose>& poses, int mostBeams)
+  const TargetViews& views, const Coverage& coverage)
   : attenuation(air)
   , area(meanArea)
   , reflectance(reflected)
   , electronsPerJoule(sensor.receiverModel == ReceiverModel::Photons
         ? PhotonReceiver(sensor).electronsPerJoule
         : 0.0)
-  , law(sensor, poses, mostBeams)
+  , law(sensor, views, coverage.lowest(), coverage.highest(), coverage.mostBeams())
+  , headings(views.headings)
 {
-  for (int beams = 0; beams <= std::clamp(mostBeams, 1, 255); ++beams)
+  for (std::size_t view = 0; view < this->law.views(); ++view)
   {
-    this->halfEnergies.push_back(this->law.energyFor(0.5, beams));
+    std::vector<double>& half = this->halfEnergies.emplace_back();
+    for (int beams = 0; beams <= std::clamp(coverage.mostBeams(), 1, 255); ++beams)
+    {
+      half.push_back(this->law.energyFor(0.5, beams, view));
+    }
   }
 }
 
@@ -175,25 +196,30 @@ struct Coverage::PlacedTarget
   Vec3 direction; ///< unit vector
   double filling; ///< of a target that fills the beam
   double energy;  ///< where the beam holds all of the target
+  DetectionLaw::Between elevation;
 
-  /// Where the energy lies in the tables of the law.
-  double step() const { return this->target.law.stepOf(std::min(this->energy, this->filling)); }
+  double probability(double step, int beams) const
+  {
+    return this->target.law.probabilityAt(step, beams, this->elevation);
+  }
 
   /// Fill in what so many beams that hold all of the target detect.
-  void fill(CoverageValue& value, double step, int beams) const
+  void fill(CoverageValue& value, int beams) const
   {
-    value.probability = this->target.law.probabilityAt(step, beams);
+    const double received = std::min(this->energy, this->filling);
+    value.probability = this->target.law.probability(received, beams, this->elevation);
     value.photoelectrons = this->target.electronsPerJoule * this->energy;
     if (beams > 0)
     {
-      const std::vector<double>& half = this->target.halfEnergies;
+      const std::size_t view = this->elevation.below + (this->elevation.share > 0.5 ? 1 : 0);
+      const std::vector<double>& half = this->target.halfEnergies[view];
       value.leastArea = this->target.area / this->energy *
         half[std::min(half.size() - 1, static_cast<std::size_t>(beams))];
     }
   }
 };
 
-/// The beams that reach a target and are not in clutter there; of too many the nearest.
+/// The beams that may light a target and are not in clutter there; of too many the nearest.
 struct Coverage::NearBeams
 {
   struct Beam
@@ -230,29 +256,29 @@ Coverage::PlacedTarget Coverage::placed(const CoverageTarget& target, const Vec3
   const double filling = energyFromTarget(
     sensor, range, std::numeric_limits<double>::infinity(), target.reflectance, target.attenuation);
   return { target, range, to / range, filling,
-    filling * target.area / (sensor.solidAngle() * range * range) };
+    filling * target.area / (sensor.solidAngle() * range * range),
+    target.law.betweenAt(elevationOf(to, this->Up)) };
 }
 
 /// True if no number of beams detects the target, and none that may be near is in clutter.
 bool Coverage::isHopeless(const PlacedTarget& at, double step) const
 {
   return this->Setup.sensor.beamProfile != BeamProfile::Gaussian &&
-    at.target.law.probabilityAt(step, this->Most) < Negligible &&
+    at.target.law.reach() < this->Directions->leastMargin() * at.range &&
+    at.probability(step, this->Most) < Negligible &&
     !this->HasClutter[this->Directions->cellOf(at.direction)];
 }
 
 Coverage::NearBeams Coverage::clearBeams(const PlacedTarget& at) const
 {
-  // Beams whose borders the target does not reach hold all of it, or nothing. The cosines are off
-  // by less than the cube of the angles.
+  // Beams whose borders the target does not reach hold all of it, or nothing.
   const double halfBeamwidth = this->Setup.sensor.halfBeamwidth;
-  const double reach = std::min(at.target.law.reach() / at.range, this->Margin);
-  const double change = reach * std::sin(halfBeamwidth);
-  const double bend = 0.5 * reach * reach * this->CosineHeld;
-  const double within = reach < halfBeamwidth ? this->CosineHeld - bend + change : 1.0;
-  const double beyond = this->CosineHeld - bend - change;
+  const double reach =
+    std::min(angleOf(at.target.law.reach(), at.range), this->Directions->largestMargin());
+  const double within = reach < halfBeamwidth ? std::cos(halfBeamwidth - reach) : 1.0;
+  const double beyond = std::cos(halfBeamwidth + reach);
   NearBeams near;
-  this->Directions->forEachNear(at.direction,
+  this->Directions->forEachNear(at.direction, reach,
     [&](std::uint32_t beam, double cosine)
     {
       const bool isHeld = cosine >= this->CosineHeld;
@@ -266,44 +292,41 @@ Coverage::NearBeams Coverage::clearBeams(const PlacedTarget& at) const
   return near;
 }
 
-/// True if it does not matter how much of the target the beams hold whose borders cross it.
+/// True if it does not matter how much of the target the beams light whose borders cross it.
 bool Coverage::isCertain(const PlacedTarget& at, double step, const NearBeams& near) const
 {
   const int all = static_cast<int>(near.count);
   return this->Setup.sensor.beamProfile != BeamProfile::Gaussian &&
     (near.whole >= all ||
-      at.target.law.probabilityAt(step, all) - at.target.law.probabilityAt(step, near.whole) <
-        Negligible);
+      (all <= at.target.law.mostBeams() &&
+        at.probability(step, all) - at.probability(step, near.whole) < Negligible));
 }
 
-/// A beam near a place, and where the place lies in it.
-BeamAtTarget Coverage::beamAt(
-  std::uint32_t beam, double cosine, const Vec3& direction, double range) const
+/// Replace what beams that hold all of a target detect by what they do of the parts that they
+/// light.
+void Coverage::share(
+  const PlacedTarget& at, const NearBeams& near, double* ofPoses, CoverageValue& value) const
 {
   const Sensor& sensor = this->Setup.sensor;
-  const Vec3 off = this->Directions->axis(beam) - cosine * direction;
-  const double vertical =
-    std::min(1.0, std::fabs(glm::dot(off, this->Up)) / std::max(glm::length(off), 1e-300));
-  const double u = std::min(1.0, (1.0 - cosine) / (1.0 - this->CosineHeld));
-  return {
-    range * std::sin(sensor.halfBeamwidth), range * std::sqrt(std::max(0.0, 1.0 - cosine * cosine)),
-    std::sqrt(1.0 - vertical * vertical), vertical,
-    sensor.beamProfile == BeamProfile::Gaussian ? 2.0 * std::exp(-2.0 * u) / -std::expm1(-2.0) : 1.0
-  };
-}
-
-/// Replace what beams that hold all of a target detect by what they do with their shares of it.
-void Coverage::share(const PlacedTarget& at, const NearBeams& near, CoverageValue& value) const
-{
+  // As in Silhouette.h.
+  const Vec3 across = glm::cross(at.direction, this->Up);
+  const Vec3 right =
+    glm::dot(across, across) > 0.0 ? unitVector(across) : Vec3(this->Up.y, this->Up.z, this->Up.x);
+  const Vec3 up = glm::cross(right, at.direction);
   std::array<BeamAtTarget, DetectionLaw::MostBeams> beams;
   double irradiance = 0.0; // of the beams that hold the place
   for (std::size_t b = 0; b < near.count; ++b)
   {
     const auto& [number, cosine] = near.beams[b];
-    beams[b] = this->beamAt(number, cosine, at.direction, at.range);
-    irradiance += cosine >= this->CosineHeld ? beams[b].irradiance : 0.0;
+    const Vec3 axis = at.range * this->Directions->axis(number);
+    beams[b] = { at.range * std::sin(sensor.halfBeamwidth), glm::dot(axis, right),
+      glm::dot(axis, up), sensor.beamProfile };
+    irradiance += cosine >= this->CosineHeld
+      ? beams[b].irradiance(beams[b].x * beams[b].x + beams[b].y * beams[b].y)
+      : 0.0;
   }
-  value.probability = at.target.law.probability(at.energy, at.filling, beams.data(), near.count);
+  value.probability = at.target.law.probability(
+    at.energy, at.filling, beams.data(), near.count, at.elevation, ofPoses);
   if (near.clear > 0)
   {
     irradiance /= std::min<double>(near.clear, near.count);
@@ -312,46 +335,79 @@ void Coverage::share(const PlacedTarget& at, const NearBeams& near, CoverageValu
   }
 }
 
-CoverageValue Coverage::valueAt(
-  const Vec3& place, const CoverageSight& sight, const CoverageTarget& target) const
+/// What is detected at a place that a beam is near and no surface hides. @param ofPoses each 0; or
+/// null
+CoverageValue Coverage::valueOf(
+  const PlacedTarget& at, const CoverageSight& sight, double* ofPoses) const
 {
   CoverageValue value;
-  value.status = sight.status;
   value.beams = sight.beams;
-  if (!sight.isNear || sight.isHidden)
-  {
-    return value;
-  }
-  const CoverageStatus missed = sight.beams > 0 ? CoverageStatus::TooWeak : sight.status;
-  const PlacedTarget at = this->placed(target, place);
+  value.status = sight.beams > 0 ? CoverageStatus::TooWeak : sight.status;
   if (!(at.energy > 0.0))
   {
-    value.status = missed;
     return value;
   }
-  const double step = at.step();
+  const double step = at.target.law.stepOf(at.energy); // a bound: parts receive no more
   if (sight.beams > 0 && this->isHopeless(at, step))
   {
-    at.fill(value, step, sight.beams);
-    value.status = missed;
+    at.fill(value, sight.beams);
+    if (ofPoses)
+    {
+      at.target.law.ofPoses(at.energy, sight.beams, at.elevation, ofPoses);
+    }
     return value;
   }
   const NearBeams near = this->clearBeams(at);
   if (near.count > 0)
   {
-    at.fill(value, step, near.clear);
-    if (!this->isCertain(at, step, near))
+    at.fill(value, near.clear);
+    if (ofPoses || !this->isCertain(at, step, near))
     {
-      this->share(at, near, value);
+      this->share(at, near, ofPoses, value);
     }
   }
   if (value.probability >= WeakProbability)
   {
     value.status = CoverageStatus::Seen;
   }
-  else if (sight.beams > 0)
+  else if (sight.beams > 0 && near.clear == 0)
   {
-    value.status = near.clear > 0 ? CoverageStatus::TooWeak : CoverageStatus::InClutter;
+    value.status = CoverageStatus::InClutter;
+  }
+  return value;
+}
+
+CoverageValue Coverage::valueAt(
+  const Vec3& place, const CoverageSight& sight, const CoverageTarget& target, float* ofPoses) const
+{
+  const std::size_t poses = ofPoses ? target.law.poses() : 0;
+  std::fill_n(ofPoses, poses, 0.0F);
+  if (!sight.isNear || sight.isHidden)
+  {
+    CoverageValue value;
+    value.status = sight.status;
+    value.beams = sight.beams;
+    return value;
+  }
+  const PlacedTarget at = this->placed(target, place);
+  if (!ofPoses)
+  {
+    return this->valueOf(at, sight, nullptr);
+  }
+  // By the heading from the line of sight; between two, linearly, by the heading from north.
+  std::vector<double> found(poses, 0.0);
+  const CoverageValue value = this->valueOf(at, sight, found.data());
+  const std::size_t headings = target.headings;
+  const double turn = std::atan2(at.direction.x, at.direction.y) / (2.0 * Pi);
+  const double shift = (1.0 - turn) * static_cast<double>(headings); // 0.5 to 1.5 turns
+  const auto whole = static_cast<std::size_t>(shift);
+  const double share = shift - static_cast<double>(whole);
+  for (std::size_t i = 0; i < poses; ++i)
+  {
+    const std::size_t first = i - i % headings;
+    const double low = found[first + (i + whole) % headings];
+    const double next = found[first + (i + whole + 1) % headings];
+    ofPoses[i] = static_cast<float>(low + share * (next - low));
   }
   return value;
 }

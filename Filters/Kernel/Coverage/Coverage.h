@@ -7,13 +7,13 @@
  * A place is seen by the beams whose cones hold its direction, if no surface stands between (one
  * descent of the tree). A beam is in clutter there if one of the range units that the target's echo
  * may share, were it a point, holds a perceived echo of a surface. The others detect the target
- * with the probability of DetectionLaw.h; near the border of a beam by the share of the target that
- * it holds. Lines of sight are found once; another target, air, receiver or clutter traces nothing.
+ * with the probability of DetectionLaw.h, each by the part of the target that it lights. Lines of
+ * sight are found once; another target, air, receiver or clutter traces nothing.
  *
  * Source: none.
  * Differs: a surface hides the whole target or nothing of it, as it does its middle.
- * Valid: beams of one origin. A target that reaches farther from its middle than the larger of a
- * beam's radius and 6 mrad is cut there.
+ * Valid: beams of one origin. Beams farther from a target's middle than WidestTarget or 0.4 rad do
+ * not light it. Of more beams than DetectionLaw::MostBeams the nearest count.
  * Test: TestCoverage.cxx.
  */
 #ifndef avianlidar_Coverage_h
@@ -47,11 +47,15 @@ enum class CoverageStatus : std::uint8_t
 
 constexpr double WeakProbability = 0.1;
 
+/// m, from its middle: nothing of a target beyond is looked for. The widest bird that flies spans
+/// 3.5 m.
+constexpr double WidestTarget = 2.0;
+
 /// What geometry alone says of a place.
 struct CoverageSight
 {
   CoverageStatus status = CoverageStatus::OutsideGate; ///< Seen where nothing forbids it
-  bool isNear = false;                                 ///< whether the margin of a beam reaches it
+  bool isNear = false;                                 ///< whether a beam may light a target there
   bool isHidden = false;  ///< whether a surface stands before it; looked for where it is near
   std::uint8_t beams = 0; ///< whose cones hold it, at most 255
 };
@@ -69,20 +73,25 @@ struct CoverageValue
   double leastArea = std::numeric_limits<double>::infinity();
 };
 
+class Coverage;
+
 /// A target that a sensor looks for through the air.
 struct CoverageTarget
 {
   /// @param attenuation 1/m @param area mean effective area (silhouette weighted by cosine), m^2
-  /// @param reflectance 0 to 1 @param poses equally likely @param mostBeams that hold a place
+  /// @param reflectance 0 to 1 @param views areas relative to the mean @param coverage says which
+  /// beams there are
   CoverageTarget(const Sensor& sensor, double attenuation, double area, double reflectance,
-    const std::vector<TargetPose>& poses, int mostBeams);
+    const TargetViews& views, const Coverage& coverage);
 
   double attenuation;
   double area;
   double reflectance;
   double electronsPerJoule; ///< 0 without a photon receiver
   DetectionLaw law;
-  std::vector<double> halfEnergies; ///< J, at which half are detected, by number of beams
+  /// J, at which half are detected, by elevation of the law, then number of beams.
+  std::vector<std::vector<double>> halfEnergies;
+  std::size_t headings; ///< of the views
 };
 
 /// The place of a number, m.
@@ -106,14 +115,19 @@ public:
     CoverageSight* sights) const;
 
   /// What a target is at a place.
-  CoverageValue valueAt(
-    const Vec3& place, const CoverageSight& sight, const CoverageTarget& target) const;
+  /// @param ofPoses takes the probability of each pose, of targets that head the same way wherever
+  /// the sensor stands (see TargetViews::headings); may be null
+  CoverageValue valueAt(const Vec3& place, const CoverageSight& sight, const CoverageTarget& target,
+    float* ofPoses = nullptr) const;
 
   const ScanSetup& setup() const { return this->Setup; }
   const std::shared_ptr<const BeamDirections>& directions() const { return this->Directions; }
 
-  /// No place is near more beams; at least 1.
+  /// No place farther away than WidestTarget over the least margin is near more beams; at least 1.
   int mostBeams() const { return this->Most; }
+
+  double lowest() const { return this->Lowest; }   ///< elevation of the band, rad
+  double highest() const { return this->Highest; } ///< rad
 
 private:
   struct PlacedTarget;
@@ -124,18 +138,17 @@ private:
   bool isHopeless(const PlacedTarget& at, double step) const;
   NearBeams clearBeams(const PlacedTarget& at) const;
   bool isCertain(const PlacedTarget& at, double step, const NearBeams& near) const;
-  void share(const PlacedTarget& at, const NearBeams& near, CoverageValue& value) const;
-  BeamAtTarget beamAt(std::uint32_t beam, double cosine, const Vec3& direction, double range) const;
+  void share(
+    const PlacedTarget& at, const NearBeams& near, double* ofPoses, CoverageValue& value) const;
+  CoverageValue valueOf(const PlacedTarget& at, const CoverageSight& sight, double* ofPoses) const;
   bool isInClutter(std::uint32_t beam, double range) const;
 
   const ScanSetup& Setup;
   const ScanBeams& Beams;
   const Vec3 Up;
-  const double Margin; ///< rad, beyond a beam's border
   std::shared_ptr<const BeamDirections> Directions;
   int Most;
   double CosineHeld;                      ///< of the half-beamwidth
-  double CosineNear;                      ///< of that and the margin
   double Lowest;                          ///< elevations of the band, rad
   double Highest;                         ///< rad
   std::vector<std::size_t> ClutterBegins; ///< of each beam

@@ -83,34 +83,31 @@ const CoverageTarget& CoverageSurvey::targetOf(const SurveyTarget& wanted)
 {
   const Sensor& sensor = this->Covered->setup().sensor;
   const double air = this->Covered->setup().settings.attenuationCoefficient;
-  const int mostBeams = this->Covered->mostBeams();
-  std::vector<double> of = { air, wanted.reflectance, wanted.area, static_cast<double>(mostBeams),
-    static_cast<double>(sensor.receiverModel) };
+  std::vector<double> of = { air, wanted.reflectance, wanted.area,
+    static_cast<double>(this->Covered->mostBeams()), this->Covered->lowest(),
+    this->Covered->highest(), static_cast<double>(sensor.receiverModel) };
   for (const SensorField& field : sensorFields())
   {
     of.push_back(sensor.*field.member);
   }
-  for (const TargetPose& pose : wanted.poses)
-  {
-    of.insert(of.end(), { pose.area, pose.horizontal, pose.vertical, pose.depth });
-  }
-  const auto found = std::find_if(
-    this->Targets.begin(), this->Targets.end(), [&](const auto& kept) { return kept.first == of; });
+  const auto found = std::find_if(this->Targets.begin(), this->Targets.end(),
+    [&](const KeptTarget& kept) { return kept.views == wanted.views && kept.numbers == of; });
   if (found != this->Targets.end())
   {
-    return *found->second;
+    return *found->target;
   }
   auto target = std::make_unique<const CoverageTarget>(
-    sensor, air, wanted.area, wanted.reflectance, wanted.poses, mostBeams);
+    sensor, air, wanted.area, wanted.reflectance, *wanted.views, *this->Covered);
   if (this->Targets.size() >= MostTargets)
   {
     this->Targets.erase(this->Targets.begin());
   }
-  return *this->Targets.emplace_back(std::move(of), std::move(target)).second;
+  this->Targets.push_back({ std::move(of), wanted.views, std::move(target) });
+  return *this->Targets.back().target;
 }
 
 bool CoverageSurvey::evaluate(const SurveyTarget& wanted, const SurveyRules& rules, int threads,
-  const KeepGoing& keepGoing, const EachPlace& each, CoverageShares* sums)
+  const KeepGoing& keepGoing, const EachPlace& each, CoverageShares* sums, const PosesOf& posesOf)
 {
   const CoverageTarget* target = this->Covered ? &this->targetOf(wanted) : nullptr;
   std::vector<std::map<std::size_t, CoverageShares>> ofBlock(
@@ -121,8 +118,9 @@ bool CoverageSurvey::evaluate(const SurveyTarget& wanted, const SurveyRules& rul
     for (std::size_t k = begin; k < end; ++k)
     {
       const Vec3 place = this->Places.at(k);
-      const CoverageValue value = target ? this->Covered->valueAt(place, this->Sights[k], *target)
-                                         : CoverageValue{ CoverageStatus::BetweenBeams };
+      const CoverageValue value = target
+        ? this->Covered->valueAt(place, this->Sights[k], *target, posesOf ? posesOf(k) : nullptr)
+        : CoverageValue{ CoverageStatus::BetweenBeams };
       const double track = value.probability > 0.0
         ? trackProbability(value.probability, rules.requiredDetections, rules.scans)
         : 0.0;

@@ -21,7 +21,6 @@
 #include <functional>
 #include <memory>
 #include <string>
-#include <utility>
 #include <vector>
 
 namespace avianlidar
@@ -43,7 +42,7 @@ struct SurveyTarget
 {
   double area; ///< mean effective area, m^2
   double reflectance;
-  std::vector<TargetPose> poses;
+  std::shared_ptr<const TargetViews> views; ///< areas relative to the mean
 };
 
 /// How places are judged and summed.
@@ -67,6 +66,9 @@ public:
   using EachPlace =
     std::function<void(std::size_t place, const CoverageValue& value, double track)>;
 
+  /// Where the probabilities of a place's poses go, see Coverage::valueAt().
+  using PosesOf = std::function<float*(std::size_t place)>;
+
   /// Look at places. All that is given must outlive the next evaluate(). @param beams of one
   /// origin, or none @param still see Coverage @param geometry hash of the surfaces @return false
   /// if keepGoing returned false
@@ -76,7 +78,8 @@ public:
   /// What is detected of a target at these places. @param sums by region, then height band: added
   /// to @return as above; the sums are as before then
   bool evaluate(const SurveyTarget& target, const SurveyRules& rules, int threads,
-    const KeepGoing& keepGoing, const EachPlace& each, CoverageShares* sums);
+    const KeepGoing& keepGoing, const EachPlace& each, CoverageShares* sums,
+    const PosesOf& posesOf = {});
 
   std::size_t size() const { return this->Sights.size(); } ///< places that are kept
 
@@ -92,8 +95,14 @@ private:
   std::unique_ptr<Coverage> Covered; ///< null without beams
   std::uint64_t DirectionsOf = 0;    ///< hash of what its BeamDirections depend on
   std::size_t Traced = 0;
-  /// The last targets, each after what it depends on.
-  std::vector<std::pair<std::vector<double>, std::unique_ptr<const CoverageTarget>>> Targets;
+  /// A target after what it depends on.
+  struct KeptTarget
+  {
+    std::vector<double> numbers;
+    std::shared_ptr<const TargetViews> views;
+    std::unique_ptr<const CoverageTarget> target;
+  };
+  std::vector<KeptTarget> Targets; ///< the last ones
 };
 
 /// In which share of scans with noise each echo of a scan without is perceived.

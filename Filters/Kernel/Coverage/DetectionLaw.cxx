@@ -6,21 +6,31 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <numeric>
+#include <utility>
 
 namespace avianlidar
 {
 namespace
 {
 /// Places in half a range unit over which the mean is taken.
-constexpr int PlacesInHalfUnit = 15;
-/// Of these, the middle one of so many where beams hold shares.
-constexpr std::size_t EachPlace = 3;
+constexpr int PlacesInHalfUnit = 20;
+/// Places in a whole one where beams light parts.
+constexpr int PlacesOfParts = 10;
+/// A pose stands for those around it. Their energies differ: a normal distribution of this standard
+/// deviation of the logarithm, in the quantiles (k + 0.5)/PlacesOfParts, one for each place.
+constexpr double SpreadOfEnergies = 0.15;
+constexpr double Quantiles[PlacesOfParts] = { 0.1257, -1.0364, 0.6745, -1.6449, 0.3853, -0.3853,
+  1.6449, -0.6745, 1.0364, -0.1257 };
+/// Parts that change the probability of a pose by less are not looked at.
+constexpr double NegligiblePart = 0.004;
 /// A normal distribution ends here.
 constexpr double Deviations = 3.0;
-/// Depths of poses are rounded to as many.
+/// Standard deviations of depth are rounded to as many, up to this share of the target's reach.
 constexpr std::size_t DepthClasses = 9;
+constexpr double DeepestOfReach = 0.6;
 /// Of more units only as many are looked at, each for its neighbours.
 constexpr double MostUnits = 64.0;
 /// J: in place of a lower limit of 0.
@@ -100,53 +110,35 @@ double missedBy(
 }
 }
 
-double shareHeld(const BeamAtTarget& beam, const TargetPose& pose)
+TargetViews viewsOf(TargetPoses poses, double reach)
 {
-  const double h = beam.horizontal * pose.horizontal;
-  const double v = beam.vertical * pose.vertical;
-  const double along = std::sqrt(h * h + v * v); // towards the beam's axis
-  const double hAcross = beam.vertical * pose.horizontal;
-  const double vAcross = beam.horizontal * pose.vertical;
-  const double across = std::sqrt(hAcross * hAcross + vAcross * vAcross);
-  const auto below = [](double distance, double deviation)
-  {
-    constexpr double far = 4.0; // deviations: 3e-5 beyond
-    return distance >= far * deviation ? 1.0
-      : distance <= -far * deviation   ? 0.0
-                                       : 0.5 * std::erfc(-distance / (deviation * Root2));
-  };
-  // The disc as a rectangle that is as wide along, and holds as much of a wide distribution.
-  const double width = 0.25 * Pi * beam.radius;
-  return (below(beam.radius - beam.distance, along) - below(-beam.radius - beam.distance, along)) *
-    (below(width, across) - below(-width, across));
+  TargetViews views;
+  views.reach = reach;
+  views.poses = poses.size();
+  views.from = [all = std::move(poses)](double) { return all; };
+  return views;
 }
 
 DetectionLaw::DetectionLaw(
-  const Sensor& sensor, const std::vector<TargetPose>& poses, int mostBeams)
+  const Sensor& sensor, const TargetViews& views, double lowest, double highest, int mostBeams)
   : Most(std::clamp(mostBeams, 1, MostBeams))
-  , Reach(0.0)
-  , Poses(poses)
-  , Table(this->Most * Points, 0.0)
   , Limit(std::max(sensor.lowerEnergyLimit, LeastLimit))
+  , UnitLength(sensor.rangeUnitLength())
+  , Reach(views.reach)
+  , Deepest(DeepestOfReach * views.reach)
+  , Lowest(views.step * std::floor(lowest / views.step))
+  , Step(views.step)
 {
-  for (const TargetPose& pose : poses)
-  {
-    this->Reach = std::max(this->Reach, Deviations * std::max(pose.horizontal, pose.vertical));
-  }
   const PhotonReceiver receiver(sensor);
   const double width = sensor.pulseWidth / sensor.samplingInterval;
-  double deepest = 0.0; // units
-  for (const TargetPose& pose : poses)
-  {
-    deepest = std::max(deepest, pose.depth / sensor.rangeUnitLength());
-  }
-  const std::size_t classes = deepest > 0.0 ? DepthClasses : 1;
-  const int places = width > 0.0 || deepest > 0.0 ? PlacesInHalfUnit : 1;
-  this->Missed.assign(classes, MissedTable(places, std::vector<double>(Points)));
+  const std::size_t classes = this->Deepest > 0.0 ? DepthClasses : 1;
+  const int places = width > 0.0 || this->Deepest > 0.0 ? PlacesInHalfUnit : 1;
+  this->Missed.assign(
+    classes, std::vector<std::vector<double>>(places, std::vector<double>(Points)));
   for (std::size_t depth = 0; depth < classes; ++depth)
   {
-    const double deviation =
-      deepest * static_cast<double>(depth) / static_cast<double>(DepthClasses - 1);
+    const double deviation = this->Deepest / this->UnitLength * static_cast<double>(depth) /
+      static_cast<double>(DepthClasses - 1);
     for (int place = 0; place < places; ++place)
     {
       // The second half of a unit is as the first.
@@ -159,23 +151,35 @@ DetectionLaw::DetectionLaw(
       }
     }
   }
-  const auto classOf = [&](const TargetPose& pose)
+  const double steps = std::ceil((highest - this->Lowest) / this->Step);
+  for (int view = 0; view <= std::max(0.0, steps); ++view)
   {
-    return deepest > 0.0
-      ? static_cast<std::size_t>(std::lround(
-          pose.depth / sensor.rangeUnitLength() / deepest * static_cast<double>(DepthClasses - 1)))
-      : 0;
-  };
-  for (const TargetPose& pose : poses)
-  {
-    this->DepthOf.push_back(classOf(pose));
+    this->Views.push_back(views.from(this->Lowest + view * this->Step));
+    this->tabulate(this->Views.back());
   }
-  const double weight = 1.0 / (static_cast<double>(poses.size()) * places);
-  for (std::size_t i = 0; i < poses.size(); ++i)
+  for (std::size_t i = 0; i < this->poses(); ++i)
   {
-    const double shift = std::log10(poses[i].area) * PointsPerDecade;
-    for (const std::vector<double>& missedAt : this->Missed[this->DepthOf[i]])
+    // Evenly between 0 and 1, in any part of the poses, too.
+    constexpr double golden = 0.6180339887498949;
+    const double turned = golden * (static_cast<double>(i) + 0.5);
+    this->Thresholds.push_back(turned - std::floor(turned));
+  }
+}
+
+void DetectionLaw::tabulate(const TargetPoses& poses)
+{
+  std::vector<double>& table = this->Tables.emplace_back(this->Most * Points, 0.0);
+  std::vector<Received>& whole = this->Whole.emplace_back();
+  const std::size_t places = this->Missed[0].size();
+  const double weight = 1.0 / static_cast<double>(poses.size() * places);
+  for (const Silhouette& pose : poses)
+  {
+    const double shiftOfPose = std::log10(pose.all().area) * PointsPerDecade;
+    whole.push_back(this->received(pose.all().area, pose.all()));
+    for (std::size_t place = 0; place < places; ++place)
     {
+      const std::vector<double>& missedAt = this->Missed[whole.back().spread][place];
+      const double shift = shiftOfPose + this->spreadAt(place % PlacesOfParts);
       for (std::size_t k = 0; k < Points; ++k)
       {
         const double missed = between(missedAt.data(), Points, static_cast<double>(k) + shift);
@@ -183,21 +187,36 @@ DetectionLaw::DetectionLaw(
         for (int beams = 1; beams <= this->Most; ++beams)
         {
           byAll *= missed;
-          this->Table[(beams - 1) * Points + k] += weight * (1.0 - byAll);
+          table[(beams - 1) * Points + k] += weight * (1.0 - byAll);
         }
       }
     }
   }
-  for (double& p : this->Table)
+  for (double& p : table)
   {
     p = std::min(1.0, p); // rounding of the sums
   }
 }
 
-double DetectionLaw::probabilityAt(double step, int beams) const
+DetectionLaw::Between DetectionLaw::betweenAt(double elevation) const
 {
-  return beams > 0 ? between(&this->Table[(std::min(beams, this->Most) - 1) * Points], Points, step)
-                   : 0.0;
+  const double at = std::clamp(
+    (elevation - this->Lowest) / this->Step, 0.0, static_cast<double>(this->Views.size() - 1));
+  const auto below = static_cast<std::size_t>(at);
+  return { below, at - static_cast<double>(below) };
+}
+
+double DetectionLaw::probabilityAt(double step, int beams, const Between& at) const
+{
+  if (beams < 1)
+  {
+    return 0.0;
+  }
+  const auto row = static_cast<std::size_t>(std::min(beams, this->Most) - 1) * Points;
+  const double p = between(&this->Tables[at.below][row], Points, step);
+  return at.share > 0.0
+    ? p + at.share * (between(&this->Tables[at.below + 1][row], Points, step) - p)
+    : p;
 }
 
 double DetectionLaw::stepOf(double energy) const
@@ -205,46 +224,142 @@ double DetectionLaw::stepOf(double energy) const
   return (std::log10(energy / this->Limit) - FirstDecade) * PointsPerDecade;
 }
 
-double DetectionLaw::probability(
-  double energy, double most, const BeamAtTarget* beams, std::size_t count) const
+DetectionLaw::Received DetectionLaw::received(double energy, const LitPart& lit) const
 {
-  const std::size_t used = std::min<std::size_t>(count, MostBeams);
-  double sum = 0.0;
-  double cases = 0.0;
-  for (std::size_t i = 0; i < this->Poses.size(); ++i)
-  {
-    const TargetPose& pose = this->Poses[i];
-    std::array<double, MostBeams> steps; // of beams that hold some of it
-    std::size_t holding = 0;
-    for (std::size_t b = 0; b < used; ++b)
-    {
-      const double held =
-        beams[b].irradiance * std::min(most, energy * pose.area * shareHeld(beams[b], pose));
-      if (held > 0.0)
-      {
-        steps[holding++] = this->stepOf(held);
-      }
-    }
-    const MissedTable& tables = this->Missed[this->DepthOf[i]];
-    for (std::size_t place = std::min(EachPlace / 2, tables.size() - 1); place < tables.size();
-         place += EachPlace)
-    {
-      double byAll = 1.0;
-      for (std::size_t b = 0; b < holding; ++b)
-      {
-        byAll *= between(tables[place].data(), Points, steps[b]);
-      }
-      sum += 1.0 - byAll;
-      cases += 1.0;
-    }
-  }
-  return sum / cases;
+  const double spread = this->Deepest > 0.0
+    ? std::min(1.0, lit.spread / this->Deepest) * static_cast<double>(DepthClasses - 1)
+    : 0.0;
+  return { this->stepOf(energy), static_cast<std::size_t>(spread + 0.5),
+    lit.depth / this->UnitLength };
 }
 
-double DetectionLaw::energyFor(double wanted, int beams) const
+/// What a quantile of the energies around a pose adds to its own, in steps.
+double DetectionLaw::spreadAt(std::size_t quantile) const
+{
+  constexpr double steps = SpreadOfEnergies * PointsPerDecade / 2.302585092994046;
+  return this->Deepest > 0.0 ? steps * Quantiles[quantile] : 0.0;
+}
+
+/// Probability that a beam perceives nothing. @param place of the target's middle in its unit
+/// @param shift of the energy, in steps
+double DetectionLaw::missed(const Received& beam, double place, double shift) const
+{
+  const auto& tables = this->Missed[beam.spread];
+  const double at = place + beam.depth;
+  const double inUnit = at - std::floor(at);
+  const double half = std::min(inUnit, 1.0 - inUnit);
+  const auto number = static_cast<std::size_t>(2.0 * half * static_cast<double>(tables.size()));
+  return between(tables[std::min(number, tables.size() - 1)].data(), Points, beam.step + shift);
+}
+
+/// Probability that one of the beams perceives something, mean over places in the unit. @param
+/// whole number of further beams that hold all of the target @param all what they receive
+double DetectionLaw::detected(
+  const Received* parts, std::size_t count, const Received& all, std::size_t whole) const
+{
+  double missed = 0.0;
+  for (int place = 0; place < PlacesOfParts; ++place)
+  {
+    const double at = (place + 0.5) / PlacesOfParts;
+    const double shift = this->spreadAt(place);
+    double byAll = 1.0;
+    if (whole > 0)
+    {
+      const double byOne = this->missed(all, at, shift);
+      for (std::size_t b = 0; b < whole; ++b)
+      {
+        byAll *= byOne;
+      }
+    }
+    for (std::size_t b = 0; b < count; ++b)
+    {
+      byAll *= this->missed(parts[b], at, shift);
+    }
+    missed += byAll;
+  }
+  return 1.0 - missed / PlacesOfParts;
+}
+
+/// The elevation from which a pose is seen, between two.
+std::size_t DetectionLaw::viewOf(std::size_t pose, const Between& at) const
+{
+  return at.below + (this->Thresholds[pose] < at.share ? 1 : 0);
+}
+
+double DetectionLaw::probability(double energy, double most, const BeamAtTarget* beams,
+  std::size_t count, const Between& at, double* ofPoses) const
+{
+  const std::size_t used = std::min<std::size_t>(count, MostBeams);
+  std::array<double, MostBeams> away; // m, beyond the border
+  for (std::size_t b = 0; b < used; ++b)
+  {
+    away[b] = std::hypot(beams[b].x, beams[b].y) - beams[b].radius;
+  }
+  const double stepOfAll = std::log10(energy) * PointsPerDecade;
+  const double mostStep = this->stepOf(most);
+  double sum = 0.0;
+  for (std::size_t i = 0; i < this->poses(); ++i)
+  {
+    const std::size_t view = this->viewOf(i, at);
+    const Silhouette& shown = this->Views[view][i];
+    std::array<std::uint8_t, MostBeams> crossing;
+    std::size_t crossings = 0;
+    std::size_t whole = 0;
+    for (std::size_t b = 0; b < used; ++b)
+    {
+      if (beams[b].profile == BeamProfile::Uniform && away[b] <= -shown.reach())
+      {
+        ++whole;
+      }
+      else if (away[b] < shown.reach())
+      {
+        crossing[crossings++] = static_cast<std::uint8_t>(b);
+      }
+    }
+    Received all = this->Whole[view][i];
+    all.step = std::min(mostStep, all.step + stepOfAll);
+    double p = whole > 0 ? this->detected(nullptr, 0, all, whole) : 0.0;
+    // Beams that hold all of it receive no less than those that hold a part.
+    if (crossings > 0 &&
+      (beams[0].profile != BeamProfile::Uniform ||
+        this->detected(nullptr, 0, all, whole + crossings) - p > NegligiblePart))
+    {
+      std::array<Received, MostBeams> parts;
+      std::size_t lit = 0;
+      for (std::size_t c = 0; c < crossings; ++c)
+      {
+        const LitPart part = shown.litBy(beams[crossing[c]]);
+        if (part.area > 0.0)
+        {
+          parts[lit++] = this->received(std::min(most, energy * part.area), part);
+        }
+      }
+      p = this->detected(parts.data(), lit, all, whole);
+    }
+    if (ofPoses)
+    {
+      ofPoses[i] = p;
+    }
+    sum += p;
+  }
+  return sum / static_cast<double>(this->poses());
+}
+
+void DetectionLaw::ofPoses(double energy, int beams, const Between& at, double* probabilities) const
+{
+  for (std::size_t i = 0; i < this->poses(); ++i)
+  {
+    Received all = this->Whole[this->viewOf(i, at)][i];
+    all.step += std::log10(energy) * PointsPerDecade;
+    const auto whole = static_cast<std::size_t>(std::clamp(beams, 0, this->Most));
+    probabilities[i] = this->detected(nullptr, 0, all, whole);
+  }
+}
+
+double DetectionLaw::energyFor(double wanted, int beams, std::size_t view) const
 {
   const double* const table =
-    &this->Table[static_cast<std::size_t>(std::clamp(beams, 1, this->Most) - 1) * Points];
+    &this->Tables[view][static_cast<std::size_t>(std::clamp(beams, 1, this->Most) - 1) * Points];
   const double* const above = std::lower_bound(table, table + Points, wanted);
   if (beams < 1 || above == table + Points)
   {

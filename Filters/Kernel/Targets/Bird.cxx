@@ -191,6 +191,17 @@ BirdShape::BirdShape(const BirdSpecies& species)
   this->wingThickness = Thickness * this->wingChord;
 }
 
+BirdShape BirdShape::scaled(double factor) const
+{
+  BirdShape shape = *this;
+  for (double* length : { &shape.bodyDiameter, &shape.bodyLength, &shape.wingLength,
+         &shape.wingChord, &shape.wingThickness })
+  {
+    *length *= factor;
+  }
+  return shape;
+}
+
 double wingAngle(double phase, bool gliding)
 {
   return gliding ? Gliding : Flapping * std::sin(2.0 * Pi * phase);

@@ -61,6 +61,9 @@ struct BirdShape
   double wingLength;    ///< of one wing, m
   double wingChord;     ///< m
   double wingThickness; ///< m
+
+  /// All lengths times a factor.
+  BirdShape scaled(double factor) const;
 };
 
 /// Angle of the wings above the body's plane, rad. @param phase of the wingbeat, 1 is a whole one

@@ -16,21 +16,6 @@ namespace avianlidar
 {
 namespace
 {
-/// What is shown, and where: second moments of its place about the center, weighted by it.
-struct SideShown
-{
-  double area = 0.0;       ///< m^2
-  double horizontal = 0.0; ///< m^4, across the line of sight
-  double vertical = 0.0;   ///< m^4, likewise
-  double depth = 0.0;      ///< m^4, along it
-};
-
-/// Mean of the square of a linear function over a triangle that has these values at its corners.
-double meanSquare(double a, double b, double c)
-{
-  return (a * a + b * b + c * c + (a + b + c) * (a + b + c)) / 12.0;
-}
-
 /// The cone about the sphere of an object. @return false if there is none, or a wide one
 bool frameOf(const Vec3& center, double radius, const Vec3& observer, BeamFrame& frame)
 {
@@ -45,17 +30,16 @@ bool frameOf(const Vec3& center, double radius, const Vec3& observer, BeamFrame&
   return half > 0.0 && half < Pi / 3.0;
 }
 
-SideShown shownOf(const std::shared_ptr<const TriangleMesh>& mesh, const Vec3& center,
-  double radius, const Vec3& observer)
+/// The sum over visible polygons; NaN if there are too many.
+double shownOf(const std::shared_ptr<const TriangleMesh>& mesh, const Vec3& center, double radius,
+  const Vec3& observer)
 {
-  const SideShown nothing{ std::numeric_limits<double>::quiet_NaN() };
+  constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
   BeamFrame frame;
   if (!frameOf(center, radius, observer, frame))
   {
-    return nothing;
+    return unknown;
   }
-  const Vec3 to = center - observer;
-  const double distance = safeLength(to);
   CollisionTree tree;
   tree.mesh = mesh;
   constexpr std::size_t few = 16; // pieces of a few triangles may be more than three times as many
@@ -68,13 +52,9 @@ SideShown shownOf(const std::shared_ptr<const TriangleMesh>& mesh, const Vec3& c
   const SeenByBeam found = finder.find(seen);
   if (found != SeenByBeam::Polygons)
   {
-    return found == SeenByBeam::Nothing ? SideShown() : nothing;
+    return found == SeenByBeam::Nothing ? 0.0 : unknown;
   }
-  const Vec3 axis = to / distance;
-  const Vec3 across = glm::cross(axis, Vec3(0.0, 0.0, 1.0));
-  const Vec3 right = glm::dot(across, across) > 0.0 ? unitVector(across) : frame.e1;
-  const Vec3 up = glm::cross(right, axis);
-  SideShown sum;
+  double sum = 0.0;
   seen->forEach(
     [&](const PlaneSurface& surface, const PlaneRing& ring)
     {
@@ -87,29 +67,7 @@ SideShown shownOf(const std::shared_ptr<const TriangleMesh>& mesh, const Vec3& c
       const double away = safeLength(frame.direction(middle.x, middle.y));
       const double range = away / surface.inverse.at(middle);
       const double solidAngle = ring.area() * frame.tanHalf * frame.tanHalf / (away * away * away);
-      const double area = range * range * solidAngle * (std::fabs(surface.height) / range);
-      sum.area += area;
-      // Where on the object, by a fan of triangles about the middle.
-      const auto placeOf = [&](const PlanePoint& p)
-      {
-        const Vec3 d = frame.direction(p.x, p.y);
-        const double far = safeLength(d) / surface.inverse.at(p);
-        return Vec3(distance * glm::dot(d, right), distance * glm::dot(d, up), far - distance);
-      };
-      const Vec3 m = placeOf(middle);
-      for (int i = 0; i < ring.size; ++i)
-      {
-        const PlanePoint& p = ring.corners[i];
-        const PlanePoint& q = ring.corners[(i + 1) % ring.size];
-        const double part = 0.5 *
-          std::fabs((p.x - middle.x) * (q.y - middle.y) - (q.x - middle.x) * (p.y - middle.y));
-        const double share = area * part / ring.area();
-        const Vec3 a = placeOf(p);
-        const Vec3 b = placeOf(q);
-        sum.horizontal += share * meanSquare(m.x, a.x, b.x);
-        sum.vertical += share * meanSquare(m.y, a.y, b.y);
-        sum.depth += share * meanSquare(m.z, a.z, b.z);
-      }
+      sum += range * range * solidAngle * (std::fabs(surface.height) / range);
     });
   return sum;
 }
@@ -211,7 +169,7 @@ double effectiveArea(const std::shared_ptr<const TriangleMesh>& mesh, const Vec3
   double radius, const Vec3& observer, const std::function<bool()>& wanted)
 {
   const double exact = mesh->size() <= MostTrianglesExact
-    ? shownOf(mesh, center, radius, observer).area
+    ? shownOf(mesh, center, radius, observer)
     : std::numeric_limits<double>::quiet_NaN();
   BeamFrame frame;
   if (!std::isnan(exact) || !frameOf(center, radius, observer, frame))
@@ -227,16 +185,16 @@ double effectiveArea(const std::shared_ptr<const TriangleMesh>& mesh, const Vec3
   return AreaByRays(tree, frame).sum(wanted);
 }
 
-BirdAreas effectiveAreas(const BirdShape& shape, bool gliding)
+double meanEffectiveArea(const BirdShape& shape, bool gliding)
 {
   // The left is as the right: half a turn holds all headings.
   constexpr int headings = 24;
   constexpr int phases = 24;
-  constexpr int parts = 24;
   const double radius = 0.5 * shape.bodyLength + shape.bodyDiameter + shape.wingLength;
   const double distance = 1000.0 * radius;
   const double elevation = 3.0 * Pi / 180.0;
-  std::vector<SideShown> all;
+  double sum = 0.0;
+  int count = 0;
   for (int phase = 0; phase < (gliding ? 1 : phases); ++phase)
   {
     const auto bird =
@@ -247,32 +205,10 @@ BirdAreas effectiveAreas(const BirdShape& shape, bool gliding)
       const Vec3 observer = distance *
         Vec3(std::cos(elevation) * std::sin(angle), std::cos(elevation) * std::cos(angle),
           -std::sin(elevation));
-      all.push_back(shownOf(bird, Vec3(0.0), radius, observer));
+      sum += shownOf(bird, Vec3(0.0), radius, observer);
+      ++count;
     }
   }
-  std::sort(all.begin(), all.end(),
-    [](const SideShown& a, const SideShown& b)
-    { return std::isnan(b.area) ? !std::isnan(a.area) : a.area < b.area; });
-  BirdAreas result{};
-  for (const SideShown& shown : all)
-  {
-    result.mean += shown.area / static_cast<double>(all.size());
-  }
-  const std::size_t each = all.size() / parts;
-  for (std::size_t part = 0; part < parts; ++part)
-  {
-    SideShown sum;
-    for (std::size_t i = part * each; i < (part + 1) * each; ++i)
-    {
-      sum.area += all[i].area;
-      sum.horizontal += all[i].horizontal;
-      sum.vertical += all[i].vertical;
-      sum.depth += all[i].depth;
-    }
-    result.poses.push_back(
-      { sum.area / (static_cast<double>(each) * result.mean), std::sqrt(sum.horizontal / sum.area),
-        std::sqrt(sum.vertical / sum.area), std::sqrt(sum.depth / sum.area) });
-  }
-  return result;
+  return sum / count;
 }
 }

@@ -21,13 +21,11 @@
 #define avianlidar_EffectiveArea_h
 
 #include "Bird.h"
-#include "DetectionLaw.h"
 #include "TriangleMesh.h"
 
 #include <cstddef>
 #include <functional>
 #include <memory>
-#include <vector>
 
 namespace avianlidar
 {
@@ -39,14 +37,9 @@ constexpr std::size_t MostTrianglesExact = 1000;
 double effectiveArea(const std::shared_ptr<const TriangleMesh>& mesh, const Vec3& center,
   double radius, const Vec3& observer, const std::function<bool()>& wanted = {});
 
-/// Effective areas of a bird in flight, seen from the side at 3 degrees of elevation: heading and
-/// wing phase uniform. All NaN if one is not known.
-struct BirdAreas
-{
-  double mean;                   ///< m^2
-  std::vector<TargetPose> poses; ///< 24, equally likely, by rising area
-};
-BirdAreas effectiveAreas(const BirdShape& shape, bool gliding);
+/// Mean effective area, m^2, of a bird in flight, seen from the side at 3 degrees of elevation:
+/// heading and wing phase uniform. NaN if one of them is not known.
+double meanEffectiveArea(const BirdShape& shape, bool gliding);
 }
 
 #endif

@@ -141,6 +141,7 @@ constexpr Name DetectionProbability{ "detection_probability", "1" };
 
 // Coverage (point data, field data, and columns of the table).
 constexpr Name TrackProbability{ "track_probability", "1" };
+constexpr Name PoseProbabilities{ "pose_probabilities", "1" };
 constexpr Name BeamsPerScan{ "beams_per_scan", "1" };
 constexpr Name MinimumEffectiveArea{ "minimum_effective_area", "m2" };
 constexpr Name StatusNames{ "status_names", "" };

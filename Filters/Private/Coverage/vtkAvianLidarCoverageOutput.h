@@ -28,7 +28,8 @@ class vtkTable;
 class vtkAvianLidarPlaceArrays
 {
 public:
-  explicit vtkAvianLidarPlaceArrays(vtkIdType places)
+  /// @param poses whose probabilities are wanted; 0: none
+  vtkAvianLidarPlaceArrays(vtkIdType places, int poses)
     : Probability(
         vtkAvianLidarArrays::Make<vtkFloatArray>(vtkAvianLidarArrays::DetectionProbability, places))
     , Tracked(
@@ -40,6 +41,19 @@ public:
     , Held(vtkAvianLidarArrays::Make<vtkIntArray>(vtkAvianLidarArrays::BeamsPerScan, places))
     , Status(vtkAvianLidarArrays::Make<vtkUnsignedCharArray>(vtkAvianLidarArrays::Status, places))
   {
+    if (poses > 0)
+    {
+      this->Poses = vtkAvianLidarArrays::Make<vtkFloatArray>(
+        vtkAvianLidarArrays::PoseProbabilities, places, poses);
+      this->Poses->Fill(0.0);
+    }
+  }
+
+  /// Where the probabilities of a place's poses go.
+  float* PosesOf(std::size_t place)
+  {
+    return this->Poses->GetPointer(
+      static_cast<vtkIdType>(place) * this->Poses->GetNumberOfComponents());
   }
 
   void Set(vtkIdType place, const avianlidar::CoverageValue& value, double track)
@@ -60,10 +74,14 @@ public:
     points->AddArray(this->Held);
     points->AddArray(this->LeastArea);
     points->AddArray(this->Status);
+    if (this->Poses)
+    {
+      points->AddArray(this->Poses);
+    }
   }
 
 private:
-  vtkSmartPointer<vtkFloatArray> Probability, Tracked, Electrons, LeastArea;
+  vtkSmartPointer<vtkFloatArray> Probability, Tracked, Electrons, LeastArea, Poses;
   vtkSmartPointer<vtkIntArray> Held;
   vtkSmartPointer<vtkUnsignedCharArray> Status;
 };

@@ -1,25 +1,51 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkAvianLidarBirdTargets.h"
 
+#include "BirdViews.h"
+#include "EffectiveArea.h"
 #include "vtkAvianLidarBirds.h"
 
 #include <algorithm>
+#include <cmath>
 #include <tuple>
+#include <utility>
+
+namespace
+{
+/// Sizes of one bird that are kept: sites are compared for birds that are larger or smaller.
+constexpr std::size_t MostSizes = 8;
+}
 
 //------------------------------------------------------------------------------
-const avianlidar::BirdAreas& vtkAvianLidarBirdTargets::AreasOf(
-  const avianlidar::BirdSpecies& species, bool gliding)
+const vtkAvianLidarBirdTargets::Target& vtkAvianLidarBirdTargets::TargetOf(
+  const avianlidar::BirdSpecies& species, bool gliding, double area)
 {
-  const auto shapeOf = [](const avianlidar::BirdSpecies& s)
-  { return std::tie(s.mass, s.length, s.span, s.wingArea, s.passerine); };
-  auto& known = this->Known[gliding ? 1 : 0];
-  auto found = known.find(species.name);
-  if (found == known.end() || shapeOf(found->second.first) != shapeOf(species))
+  const auto numbersOf = [](const avianlidar::BirdSpecies& s)
+  { return std::tie(s.name, s.mass, s.length, s.span, s.wingArea, s.passerine); };
+  const avianlidar::BirdShape shape(species);
+  auto bird = std::find_if(this->Known.begin(), this->Known.end(),
+    [&](const Bird& known)
+    { return known.Gliding == gliding && numbersOf(known.Species) == numbersOf(species); });
+  if (bird == this->Known.end())
   {
-    auto areas = avianlidar::effectiveAreas(avianlidar::BirdShape(species), gliding);
-    found = known.insert_or_assign(species.name, std::make_pair(species, std::move(areas))).first;
+    this->Known.push_back({ species, gliding, avianlidar::meanEffectiveArea(shape, gliding), {} });
+    bird = this->Known.end() - 1;
   }
-  return found->second.second;
+  const double wanted = area > 0.0 ? area : bird->MeanArea;
+  const auto found = std::find_if(bird->Sizes.begin(), bird->Sizes.end(),
+    [&](const Target& size) { return size.Area == wanted; });
+  if (found != bird->Sizes.end())
+  {
+    return *found;
+  }
+  if (bird->Sizes.size() >= MostSizes)
+  {
+    bird->Sizes.erase(bird->Sizes.begin());
+  }
+  auto views = std::make_shared<const avianlidar::TargetViews>(
+    avianlidar::birdViews(shape.scaled(std::sqrt(wanted / bird->MeanArea)), gliding, wanted));
+  bird->Sizes.push_back({ species.name, wanted, std::move(views) });
+  return bird->Sizes.back();
 }
 
 //------------------------------------------------------------------------------
@@ -30,13 +56,11 @@ std::vector<vtkAvianLidarBirdTargets::Target> vtkAvianLidarBirdTargets::Choose(
   std::vector<Target> targets;
   const auto known = vtkAvianLidarBirds::KnownSpecies(speciesFileName);
   const auto add = [&](const avianlidar::BirdSpecies& bird, double wanted)
-  {
-    const avianlidar::BirdAreas& areas = this->AreasOf(bird, gliding);
-    targets.push_back({ bird.name, wanted > 0.0 ? wanted : areas.mean, areas.poses });
-  };
+  { targets.push_back(this->TargetOf(bird, gliding, wanted)); };
   if (species.empty())
   {
-    targets.push_back({ "", area, { { 1.0 } } });
+    this->Point.Area = area;
+    targets.push_back(this->Point);
   }
   else
   {

@@ -1,17 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file vtkAvianLidarBirdTargets.h
- * @brief Birds as targets of a lidar: their effective areas by pose. Not installed.
+ * @brief Birds as targets of a lidar: what they show of themselves from all sides. Not installed.
  */
 #ifndef vtkAvianLidarBirdTargets_h
 #define vtkAvianLidarBirdTargets_h
 
 #include "Bird.h"
-#include "EffectiveArea.h"
+#include "DetectionLaw.h"
 
-#include <map>
+#include <memory>
 #include <string>
-#include <utility>
 #include <vector>
 
 class vtkAvianLidarBirdTargets
@@ -21,7 +20,7 @@ public:
   {
     std::string Name; ///< empty without a species
     double Area;      ///< mean effective area, m^2
-    std::vector<avianlidar::TargetPose> Poses;
+    std::shared_ptr<const avianlidar::TargetViews> Views;
   };
 
   /// The targets that are wanted, the one shown first. Throws std::runtime_error that names the
@@ -31,10 +30,21 @@ public:
     bool gliding, double area, bool all);
 
 private:
-  const avianlidar::BirdAreas& AreasOf(const avianlidar::BirdSpecies& species, bool gliding);
+  /// Kept from execution to execution.
+  struct Bird
+  {
+    avianlidar::BirdSpecies Species;
+    bool Gliding;
+    double MeanArea; ///< of the species, m^2
+    std::vector<Target> Sizes;
+  };
+  const Target& TargetOf(const avianlidar::BirdSpecies& species, bool gliding, double area);
 
-  /// What was found so far, for flapping and gliding birds.
-  std::map<std::string, std::pair<avianlidar::BirdSpecies, avianlidar::BirdAreas>> Known[2];
+  std::vector<Bird> Known;
+  /// Without a species.
+  Target Point{ "", 0.0,
+    std::make_shared<const avianlidar::TargetViews>(
+      avianlidar::viewsOf({ avianlidar::Silhouette() })) };
 };
 
 #endif

@@ -106,6 +106,11 @@ class Sites:
         members = [site for network in first for site in network.sites]
         self.near = np.array(list(dict.fromkeys([*self.order[:NEAR], *members])))
         self.networks = self._search(self.found[self.near], self.weights, first)
+        points, weights, _ = self._draw()
+        with self.ranks.together():
+            self.of_same_birds = [siting.value_of_same_birds(self.plan.scene, self.plan.sensor, self.positions[list(network.sites)],
+                                                             points, list(self.mix), weights, **self.settings)
+                                  for network in self.networks]
         return self
 
     def _tell(self, what: str, done: int, total: int) -> None:
@@ -190,8 +195,10 @@ class Sites:
 
     def gain(self) -> List[Dict[str, Any]]:
         """A row for each number of sensors."""
-        return [{"sensors": len(n.sites), "value": n.value, "ranks of the sites": " ".join(str(self.rank_of(i)) for i in n.sites),
-                 "sites": "; ".join(f"{x:g} {y:g} {z:g}" for x, y, z in self.positions[list(n.sites)])} for n in self.networks]
+        return [{"sensors": len(n.sites), "value": n.value, "value of the same birds": same,
+                 "ranks of the sites": " ".join(str(self.rank_of(i)) for i in n.sites),
+                 "sites": "; ".join(f"{x:g} {y:g} {z:g}" for x, y, z in self.positions[list(n.sites)])}
+                for n, same in zip(self.networks, self.of_same_birds)]
 
     def robustness(self, changes: List[Change]) -> List[Dict[str, Any]]:
         """A row for each kind of change and number of sensors: draws, how often another network wins, and by how much more at

@@ -48,6 +48,7 @@ MOST_CANDIDATES = 100_000
 SAME_PLACE = 1e-3  # m: candidates whose coordinates are the same to this are one
 RUN = 64  # edges of an outline in one box
 PAIRS = 1 << 18  # of points and edges that are looked at together
+SAME_BIRDS = 20_000  # places whose poses are held together: 6 MB a sensor
 
 
 @dataclasses.dataclass(frozen=True)
@@ -521,6 +522,45 @@ def values_of(found: np.ndarray, weights: np.ndarray) -> np.ndarray:
     if found.shape[1:] != weights.shape:
         raise ValueError(f"weights have the shape {weights.shape}, expected that of each site's coverage, {found.shape[1:]}")
     return np.array([np.vdot(site.astype(float), weights) for site in found])
+
+
+def value_of_same_birds(scene, sensor, sites, places, species: Sequence[str], weights: np.ndarray, **settings: Any) -> float:
+    """The weighted share that at least one of the sites detects in one scan if all of them look at the same bird: its heading
+    and wing phase are kept from sensor to sensor. Beside it stands value_of, for which each sensor has a bird of its own. Without
+    clutter unless `clutter` is on.
+
+    sensor    a Sensor; it is moved, and put back
+    sites     n x 3, m: of the network
+    places    m x 3, m
+    species   by name
+    weights   species x places, from weights_of
+    settings  properties of Coverage, for example visibility=10e3 (m)
+
+    @throws ValueError that names the argument, Error of Coverage
+    """
+    sites, places = np.asarray(sites, dtype=float), np.asarray(places, dtype=float)
+    if sites.ndim != 2 or sites.shape[1] != 3 or not np.isfinite(sites).all():
+        raise ValueError(f"sites have the shape {sites.shape}, expected n x 3 finite coordinates in metres")
+    if weights.shape != (len(species), len(places)):
+        raise ValueError(f"weights have the shape {weights.shape}, expected species x places, {(len(species), len(places))}")
+    before, value = sensor.position, 0.0
+    cover = Coverage(scene, sensor, clutter=False, number_of_threads=1)
+    cover.set(**settings)
+    cover.pose_probabilities = True
+    try:
+        for first in range(0, len(places), SAME_BIRDS):
+            part = slice(first, first + SAME_BIRDS)
+            cover.places = places[part]
+            for name, weight in zip(species, weights[:, part]):
+                cover.species = name
+                missed = np.ones((len(weight), 1), dtype=np.float32)  # places x poses
+                for site in sites:
+                    sensor.position = tuple(site)
+                    missed = missed * (1.0 - cover["pose_probabilities"].reshape(len(weight), -1))
+                value += float(np.vdot(weight, 1.0 - missed.mean(axis=1, dtype=float)))
+    finally:
+        sensor.position = before
+    return value
 
 
 def value_of(found: np.ndarray, weights: np.ndarray, sites: Sequence[int]) -> float:

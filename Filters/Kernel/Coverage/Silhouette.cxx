@@ -1,0 +1,276 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Silhouette.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+namespace avianlidar
+{
+namespace
+{
+/// Pixels along the longer side, and samples along a pixel.
+constexpr int LongerSide = 96;
+constexpr int SamplesOfPixel = 3;
+/// Images, each half as fine as the one before.
+constexpr int MostImages = 5;
+/// A beam's radius holds so many pixels, or more.
+constexpr double RadiusInPixels = 3.5;
+/// Of the finest image so many are enough.
+constexpr double LeastRadiusInPixels = 1.0;
+
+struct Sample
+{
+  float depth = std::numeric_limits<float>::infinity();
+  float cosine = 0.0F;
+};
+
+/// Samples of the nearest surface in the cells of a rectangle.
+struct Canvas
+{
+  double left, below, step; ///< m
+  int columns, rows;
+  std::vector<Sample> samples;
+
+  /// Draw a triangle. @param p right, up and depth of its corners, m
+  void draw(const std::array<Vec3, 3>& p, double cosine)
+  {
+    // Depth is a linear function of the place.
+    const double x1 = p[1].x - p[0].x, y1 = p[1].y - p[0].y;
+    const double x2 = p[2].x - p[0].x, y2 = p[2].y - p[0].y;
+    const double twice = x1 * y2 - x2 * y1;
+    if (!(std::fabs(twice) > 0.0))
+    {
+      return;
+    }
+    const double z1 = p[1].z - p[0].z, z2 = p[2].z - p[0].z;
+    const double zx = (z1 * y2 - z2 * y1) / twice;
+    const double zy = (x1 * z2 - x2 * z1) / twice;
+    const auto [low, high] = std::minmax({ p[0].y, p[1].y, p[2].y });
+    const int first = std::max(0, static_cast<int>(std::ceil((low - this->below) / this->step)));
+    const int last =
+      std::min(this->rows - 1, static_cast<int>(std::floor((high - this->below) / this->step)));
+    for (int row = first; row <= last; ++row)
+    {
+      const double y = this->below + row * this->step;
+      double from = std::numeric_limits<double>::infinity();
+      double to = -from;
+      for (int i = 0; i < 3; ++i)
+      {
+        const Vec3& a = p[i];
+        const Vec3& b = p[(i + 1) % 3];
+        if (std::min(a.y, b.y) <= y && y <= std::max(a.y, b.y))
+        {
+          const double x = a.y == b.y ? b.x : a.x + (y - a.y) / (b.y - a.y) * (b.x - a.x);
+          from = std::min({ from, x, a.y == b.y ? a.x : x });
+          to = std::max({ to, x, a.y == b.y ? a.x : x });
+        }
+      }
+      const int begin = std::max(0, static_cast<int>(std::ceil((from - this->left) / this->step)));
+      const int end =
+        std::min(this->columns - 1, static_cast<int>(std::floor((to - this->left) / this->step)));
+      for (int column = begin; column <= end; ++column)
+      {
+        const double x = this->left + column * this->step;
+        const auto depth = static_cast<float>(p[0].z + zx * (x - p[0].x) + zy * (y - p[0].y));
+        Sample& sample = this->samples[static_cast<std::size_t>(row) * this->columns + column];
+        if (depth < sample.depth)
+        {
+          sample = { depth, static_cast<float>(cosine) };
+        }
+      }
+    }
+  }
+};
+
+/// Draw a mesh, its points given by right, up and depth.
+void drawMesh(const TriangleMesh& mesh, const std::vector<Vec3>& points, Canvas& canvas)
+{
+  for (const auto& t : mesh.triangles)
+  {
+    const std::array<Vec3, 3> p = { points[t[0]], points[t[1]], points[t[2]] };
+    const Vec3 normal = glm::cross(p[1] - p[0], p[2] - p[0]);
+    const double length = safeLength(normal);
+    if (length > 0.0)
+    {
+      canvas.draw(p, std::fabs(normal.z) / length);
+    }
+  }
+}
+
+LitPart partOf(double area, double depth, double square)
+{
+  const double mean = depth / area;
+  return { area, mean, std::sqrt(std::max(0.0, square / area - mean * mean)) };
+}
+
+/// exp(-2u) for u from 0 to 2, off by less than 1e-3 of it.
+float gaussian(float u)
+{
+  const float x = 0.125F * u; // -2u is 16 times this
+  float e = 1.0F - x * (1.0F - x * (0.5F - x * (1.0F / 6.0F)));
+  for (int k = 0; k < 4; ++k)
+  {
+    e *= e;
+  }
+  return e;
+}
+}
+
+Silhouette::Silhouette()
+  : Silhouette(1.0)
+{
+}
+
+Silhouette::Silhouette(double area)
+  : All{ area, 0.0, 0.0 }
+{
+}
+
+Silhouette::Silhouette(const TriangleMesh& mesh, const Vec3& view, double unit)
+{
+  const Vec3 right = unitVector(glm::cross(view, Vec3(0.0, 0.0, 1.0)));
+  const Vec3 up = glm::cross(right, view);
+  std::vector<Vec3> points;
+  Vec3 low(std::numeric_limits<double>::infinity());
+  Vec3 high(-low);
+  for (const Vec3& p : mesh.points)
+  {
+    points.emplace_back(glm::dot(p, right), glm::dot(p, up), glm::dot(p, view));
+    low = glm::min(low, points.back());
+    high = glm::max(high, points.back());
+    this->Reach = std::max(this->Reach, std::hypot(points.back().x, points.back().y));
+  }
+  Image fine;
+  fine.pixel = std::max(high.x - low.x, high.y - low.y) / LongerSide;
+  if (!(fine.pixel > 0.0) || !std::isfinite(fine.pixel))
+  {
+    const bool isEmpty = points.empty() || std::isfinite(fine.pixel);
+    this->All.area = isEmpty ? 0.0 : std::numeric_limits<double>::quiet_NaN();
+    return;
+  }
+  // Whole pixels of the coarsest image.
+  constexpr int whole = 1 << (MostImages - 1);
+  const auto pixelsOf = [&](double length) {
+    return whole * std::max(1, static_cast<int>(std::ceil(length / (whole * fine.pixel) - 1e-9)));
+  };
+  fine.columns = pixelsOf(high.x - low.x);
+  fine.rows = pixelsOf(high.y - low.y);
+  fine.left = 0.5 * (low.x + high.x - (fine.columns - 1) * fine.pixel);
+  fine.below = 0.5 * (low.y + high.y - (fine.rows - 1) * fine.pixel);
+  Canvas canvas{ 0.0, 0.0, fine.pixel / SamplesOfPixel, SamplesOfPixel * fine.columns,
+    SamplesOfPixel * fine.rows, {} };
+  canvas.left = fine.left - 0.5 * fine.pixel + 0.5 * canvas.step;
+  canvas.below = fine.below - 0.5 * fine.pixel + 0.5 * canvas.step;
+  canvas.samples.resize(static_cast<std::size_t>(canvas.columns) * canvas.rows);
+  drawMesh(mesh, points, canvas);
+  fine.pixels.resize(static_cast<std::size_t>(fine.columns) * fine.rows);
+  const double each = canvas.step * canvas.step / unit;
+  double area = 0.0, depth = 0.0, square = 0.0;
+  for (int row = 0; row < canvas.rows; ++row)
+  {
+    for (int column = 0; column < canvas.columns; ++column)
+    {
+      const Sample& s = canvas.samples[static_cast<std::size_t>(row) * canvas.columns + column];
+      if (s.cosine > 0.0F)
+      {
+        Sums& pixel = fine.pixels[static_cast<std::size_t>(row / SamplesOfPixel) * fine.columns +
+          column / SamplesOfPixel];
+        const double shown = each * s.cosine;
+        pixel.area += static_cast<float>(shown);
+        pixel.depth += static_cast<float>(shown * s.depth);
+        pixel.square += static_cast<float>(shown * s.depth * s.depth);
+        area += shown;
+        depth += shown * s.depth;
+        square += shown * s.depth * s.depth;
+      }
+    }
+  }
+  this->All = area > 0.0 ? partOf(area, depth, square) : LitPart();
+  this->Images.push_back(std::move(fine));
+  while (this->Images.size() < MostImages)
+  {
+    this->Images.push_back(halved(this->Images.back()));
+  }
+}
+
+Silhouette::Image Silhouette::halved(const Image& fine)
+{
+  Image coarse{ 2.0 * fine.pixel, fine.left + 0.5 * fine.pixel, fine.below + 0.5 * fine.pixel,
+    fine.columns / 2, fine.rows / 2, {} };
+  coarse.pixels.resize(static_cast<std::size_t>(coarse.columns) * coarse.rows);
+  for (int row = 0; row < 2 * coarse.rows; ++row)
+  {
+    for (int column = 0; column < 2 * coarse.columns; ++column)
+    {
+      const Sums& from = fine.pixels[static_cast<std::size_t>(row) * fine.columns + column];
+      Sums& to = coarse.pixels[static_cast<std::size_t>(row / 2) * coarse.columns + column / 2];
+      to.area += from.area;
+      to.depth += from.depth;
+      to.square += from.square;
+    }
+  }
+  return coarse;
+}
+
+LitPart Silhouette::litBy(const BeamAtTarget& beam) const
+{
+  const double away2 = beam.x * beam.x + beam.y * beam.y;
+  if (this->Images.empty())
+  {
+    return away2 <= beam.radius * beam.radius
+      ? LitPart{ this->All.area * beam.irradiance(away2), 0.0, 0.0 }
+      : LitPart();
+  }
+  auto image = this->Images.rbegin();
+  while (image + 1 != this->Images.rend() && RadiusInPixels * image->pixel > beam.radius)
+  {
+    ++image;
+  }
+  const double radius = std::max(beam.radius, LeastRadiusInPixels * image->pixel);
+  // The share of a pixel changes linearly with the square of its distance, from 1 half a pixel
+  // within the border to 0 half a pixel beyond it; so the disc holds its area.
+  const double radius2 = radius * radius;
+  const double edge = radius * image->pixel;
+  const auto rangeOf = [&](double middle, double first, int count, int& begin, int& end)
+  {
+    const double reach = std::sqrt(radius2 + edge);
+    const auto indexOf = [&](double place)
+    { return static_cast<int>(std::clamp<double>((place - first) / image->pixel, -1.0, count)); };
+    begin = std::max(0, indexOf(middle - reach));
+    end = std::min(count, indexOf(middle + reach) + 1);
+  };
+  int left, right, below, above;
+  rangeOf(beam.x, image->left, image->columns, left, right);
+  rangeOf(beam.y, image->below, image->rows, below, above);
+  const bool isGaussian = beam.profile == BeamProfile::Gaussian;
+  const auto perEdge = static_cast<float>(0.5 / edge);
+  const auto perRadius2 = static_cast<float>(1.0 / radius2);
+  const auto limit = static_cast<float>(radius2);
+  Sums sum;
+  for (int row = below; row < above; ++row)
+  {
+    const auto y = static_cast<float>(image->below + row * image->pixel - beam.y);
+    const Sums* pixel = &image->pixels[static_cast<std::size_t>(row) * image->columns + left];
+    auto x = static_cast<float>(image->left + left * image->pixel - beam.x);
+    for (int column = left; column < right; ++column, ++pixel)
+    {
+      const float away = x * x + y * y;
+      float share = std::clamp(0.5F + (limit - away) * perEdge, 0.0F, 1.0F);
+      share *= isGaussian ? gaussian(away * perRadius2) : 1.0F;
+      sum.area += share * pixel->area;
+      sum.depth += share * pixel->depth;
+      sum.square += share * pixel->square;
+      x += static_cast<float>(image->pixel);
+    }
+  }
+  if (!(sum.area > 0.0F))
+  {
+    return {};
+  }
+  LitPart lit = partOf(sum.area, sum.depth, sum.square);
+  lit.area *= beam.radius * beam.radius / radius2 * beam.irradiance(0.0);
+  return lit;
+}
+}

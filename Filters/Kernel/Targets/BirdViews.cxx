@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "BirdViews.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace avianlidar
+{
+namespace
+{
+constexpr double ElevationStep = 4.0 * RadiansPerDegree;
+/// A direction is not taken nearer to the vertical than this.
+constexpr double Steepest = 89.9 * RadiansPerDegree;
+}
+
+TargetViews birdViews(const BirdShape& shape, bool gliding, double meanArea)
+{
+  const std::size_t phases = gliding ? 1 : BirdPhases;
+  const std::size_t headings = gliding ? GlidingHeadings : BirdHeadings;
+  std::vector<TriangleMesh> birds;
+  for (std::size_t phase = 0; phase < phases; ++phase)
+  {
+    // Up and down the wings pass the same angles.
+    const double beat = 0.5 * (static_cast<double>(phase) + 0.5) / static_cast<double>(phases);
+    birds.push_back(wholeBird(shape, wingAngle(beat - 0.25, gliding)));
+  }
+  const double wide = 0.5 * shape.bodyDiameter + shape.wingLength;
+  TargetViews views;
+  // The body's polyhedron is longer than the ellipsoid by some per cent.
+  views.reach = std::hypot(std::max(wide, 0.6 * shape.bodyLength), shape.wingChord);
+  views.step = ElevationStep;
+  views.poses = phases * headings;
+  views.headings = headings;
+  views.from = [=](double elevation)
+  {
+    const double up = std::clamp(elevation, -Steepest, Steepest);
+    TargetPoses poses;
+    for (std::size_t phase = 0; phase < phases; ++phase)
+    {
+      for (std::size_t k = 0; k < headings; ++k)
+      {
+        // The bird heads north; one of heading h seen to the north is one that heads north, seen
+        // along -h.
+        const double shift = (static_cast<double>(phase) + 0.5) / static_cast<double>(phases);
+        const double heading =
+          2.0 * Pi * (static_cast<double>(k) + shift) / static_cast<double>(headings);
+        poses.emplace_back(birds[phase],
+          Vec3(-std::cos(up) * std::sin(heading), std::cos(up) * std::cos(heading), std::sin(up)),
+          meanArea);
+      }
+    }
+    return poses;
+  };
+  return views;
+}
+}

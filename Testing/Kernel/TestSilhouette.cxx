@@ -1,0 +1,184 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Silhouettes against closed forms, exact effective areas, and rays cast one by one.
+#include "Bird.h"
+#include "EffectiveArea.h"
+#include "Silhouette.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <random>
+
+using namespace avianlidar;
+
+namespace
+{
+const BirdShape SeenGull({ "gull", 0.95, 0.60, 1.35, 0.20, false, 12.5 });
+const Vec3 SeenAlong = glm::normalize(Vec3(0.6, 0.75, 0.1));
+
+TriangleMesh plateOfSlope(double width, double height, double slope)
+{
+  const double w = 0.5 * width;
+  const double h = 0.5 * height;
+  TriangleMesh mesh;
+  mesh.points = { { -w, -w * slope, -h }, { w, w * slope, -h }, { w, w * slope, h },
+    { -w, -w * slope, h } };
+  mesh.triangles = { { 0, 1, 2 }, { 0, 2, 3 } };
+  return mesh;
+}
+
+/// What a parallel ray through a place across the view meets: cosine of incidence and depth.
+struct RayHit
+{
+  double cosine = 0.0;
+  double depth = 1e9;
+};
+
+RayHit castRay(const TriangleMesh& mesh, const Vec3& view, double x, double y)
+{
+  const Vec3 right = glm::normalize(glm::cross(view, Vec3(0.0, 0.0, 1.0)));
+  const Vec3 origin = x * right + y * glm::cross(right, view);
+  RayHit met;
+  for (std::uint32_t t = 0; t < mesh.size(); ++t)
+  {
+    const Vec3 a = mesh.corner(t, 0) - origin;
+    const Vec3 b = mesh.corner(t, 1) - origin;
+    const Vec3 c = mesh.corner(t, 2) - origin;
+    const double ab = glm::dot(view, glm::cross(a, b));
+    const double bc = glm::dot(view, glm::cross(b, c));
+    const double ca = glm::dot(view, glm::cross(c, a));
+    if ((ab > 0 && bc > 0 && ca > 0) || (ab < 0 && bc < 0 && ca < 0))
+    {
+      const Vec3 normal = glm::normalize(glm::cross(b - a, c - a));
+      const double depth = glm::dot(normal, a) / glm::dot(normal, view);
+      if (depth < met.depth)
+      {
+        met = { std::fabs(glm::dot(normal, view)), depth };
+      }
+    }
+  }
+  return met;
+}
+}
+
+TEST(Silhouette, OfAPlateIsItsAreaTimesTheSquareOfTheCosine)
+{
+  for (const double slope : { 0.0, 0.5, 1.0 })
+  {
+    const double width = 0.8;
+    const double height = 0.3;
+    const Silhouette shown(plateOfSlope(width, height, slope), Vec3(0.0, 1.0, 0.0), 2.0);
+    const double cosine = 1.0 / std::sqrt(1.0 + slope * slope);
+    EXPECT_NEAR(shown.all().area, 0.5 * width * height * cosine, 2e-3 * width * height);
+    EXPECT_NEAR(shown.all().depth, 0.0, 2e-3);
+    EXPECT_NEAR(shown.all().spread, slope * width / std::sqrt(12.0), 2e-3);
+    EXPECT_NEAR(shown.reach(), 0.5 * std::hypot(width, height), 1e-12);
+    // A beam that the plate fills, and one that sees its right end alone.
+    const LitPart filled = shown.litBy({ 0.1, 0.05, 0.0 });
+    EXPECT_NEAR(filled.area, 0.5 * Pi * 0.01 * cosine, 0.02 * Pi * 0.01);
+    EXPECT_NEAR(filled.depth, slope * 0.05, 2e-3);
+    EXPECT_NEAR(filled.spread, slope * 0.05, 4e-3);
+    EXPECT_NEAR(shown.litBy({ 0.5, 0.8, 0.0 }).depth, slope * 0.35, 0.01 + 0.02 * slope);
+    EXPECT_EQ(shown.litBy({ 0.5, 1.0, 0.0 }).area, 0.0);
+  }
+}
+
+TEST(Silhouette, OfBirdsIsTheirEffectiveArea)
+{
+  std::mt19937_64 random(5);
+  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+  double sum = 0.0;
+  for (int k = 0; k < 30; ++k)
+  {
+    const auto bird = std::make_shared<TriangleMesh>(wholeBird(SeenGull, 0.6 * uniform(random)));
+    const Vec3 d = glm::normalize(Vec3(uniform(random), uniform(random), 0.2 * uniform(random)));
+    const double wanted = effectiveArea(bird, Vec3(0.0), 0.9, -900.0 * d);
+    const double found = Silhouette(*bird, d, 1.0).all().area;
+    EXPECT_NEAR(found, wanted, 0.02 * wanted + 5e-5);
+    sum += found / wanted / 30.0;
+  }
+  EXPECT_NEAR(sum, 1.0, 4e-3);
+}
+
+TEST(Silhouette, ABeamLightsWhatRaysInItMeet)
+{
+  const TriangleMesh bird = wholeBird(SeenGull, 0.3);
+  const Silhouette shown(bird, SeenAlong, 1.0);
+  std::mt19937_64 random(8);
+  std::uniform_real_distribution<double> uniform(0.0, 1.0);
+  // Rays that meet it, of a lattice.
+  struct Ray
+  {
+    double x, y;
+    RayHit met;
+  };
+  constexpr double step = 0.004;
+  std::vector<Ray> rays;
+  for (double x = -0.8; x < 0.8; x += step)
+  {
+    for (double y = -0.5; y < 0.5; y += step)
+    {
+      const RayHit met = castRay(bird, SeenAlong, x, y);
+      if (met.cosine > 0.0)
+      {
+        rays.push_back({ x, y, met });
+      }
+    }
+  }
+  for (const BeamProfile profile : { BeamProfile::Uniform, BeamProfile::Gaussian })
+  {
+    for (const double radius : { 0.03, 0.08, 0.2, 0.6, 2.0 })
+    {
+      double bias = 0.0;
+      constexpr int Beams = 40;
+      for (int k = 0; k < Beams; ++k)
+      {
+        const double away = std::min(0.5, radius + 0.1) * uniform(random);
+        const double angle = 2.0 * Pi * uniform(random);
+        const BeamAtTarget beam{ radius, away * std::cos(angle), away * std::sin(angle), profile };
+        double area = 0.0;
+        double depth = 0.0;
+        for (const Ray& ray : rays)
+        {
+          const double r2 = std::pow(ray.x - beam.x, 2) + std::pow(ray.y - beam.y, 2);
+          const double lit =
+            r2 < radius * radius ? step * step * ray.met.cosine * beam.irradiance(r2) : 0.0;
+          area += lit;
+          depth += lit * ray.met.depth;
+        }
+        const LitPart lit = shown.litBy(beam);
+        const double scale = std::min(Pi * radius * radius, shown.all().area);
+        EXPECT_NEAR(lit.area, area, 0.12 * scale) << radius;
+        if (area > 0.2 * scale)
+        {
+          EXPECT_NEAR(lit.depth, depth / area, 0.03) << radius;
+        }
+        bias += (lit.area - area) / scale / Beams;
+      }
+      EXPECT_NEAR(bias, 0.0, 0.03) << radius;
+    }
+  }
+}
+
+TEST(Silhouette, OfAPointIsInOrOut)
+{
+  const Silhouette point(0.7);
+  EXPECT_EQ(point.litBy({ 1.0, 0.99, 0.0 }).area, 0.7);
+  EXPECT_EQ(point.litBy({ 1.0, 0.0, 1.01 }).area, 0.0);
+  EXPECT_NEAR(point.litBy({ 1.0, 0.0, 0.0, BeamProfile::Gaussian }).area,
+    0.7 * 2.0 / -std::expm1(-2.0), 1e-12);
+  EXPECT_EQ(point.reach(), 0.0);
+}
+
+TEST(Silhouette, OfNothingAndOfBeamsBeyondMeasure)
+{
+  EXPECT_EQ(Silhouette(TriangleMesh(), SeenAlong, 1.0).all().area, 0.0);
+  TriangleMesh none = plateOfSlope(1.0, 1.0, 0.0);
+  none.points[0].x = NAN;
+  EXPECT_FALSE(Silhouette(none, SeenAlong, 1.0).all().area > 0.0);
+  const Silhouette shown(plateOfSlope(1.0, 1.0, 0.0), Vec3(0.0, 1.0, 0.0), 1.0);
+  EXPECT_NEAR(shown.litBy({ 1e12, 0.0, 0.0 }).area, 1.0, 1e-2);
+  EXPECT_EQ(shown.litBy({ 1e-3, 1e15, -1e15 }).area, 0.0);
+  EXPECT_NEAR(shown.litBy({ 1e-6, 0.0, 0.0 }).area, Pi * 1e-12, 0.05 * Pi * 1e-12);
+}
