@@ -16,7 +16,7 @@ import flown
 
 AIR = 8.9e-5  # 1/m
 # m, about as far as a gull, a goose and a starling are detected
-REACH = {"VLP16": (55, 60, 40), "OS1_64": (65, 70, 50), "Pandar40P": (180, 220, 110), "Automotive16": (150, 175, 95),
+REACH = {"VLP16": (55, 60, 40), "OS1_64": (80, 95, 60), "Pandar40P": (180, 220, 110), "Automotive16": (150, 175, 95),
          "Airport16": (130, 180, 60), "Search905": (850, 1000, 550)}
 SPECIES = ("herring gull", "Canada goose", "starling")
 NEAREST = 5.0  # m

@@ -316,7 +316,7 @@ TEST(Coverage, AGaussianBeamReachesFartherOnItsAxis)
       gaussian.values(place, gaussian.target(0.03), gaussian.look(place))[0];
     const CoverageValue wanted =
       uniform.values(place, uniform.target(gain * 0.03), uniform.look(place))[0];
-    EXPECT_NEAR(found.probability, wanted.probability, 0.02) << range; // fewer places in the unit
+    EXPECT_NEAR(found.probability, wanted.probability, 0.01) << range;
     EXPECT_NEAR(found.photoelectrons, wanted.photoelectrons, 1e-6 * wanted.photoelectrons);
     EXPECT_NEAR(found.leastArea, wanted.leastArea / gain, 1e-6 * wanted.leastArea);
     EXPECT_LE(found.probability, before + 0.01);

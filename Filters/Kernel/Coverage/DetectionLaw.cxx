@@ -17,13 +17,13 @@ namespace
 {
 /// Places in half a range unit over which the mean is taken.
 constexpr int PlacesInHalfUnit = 20;
-/// Places in a whole one where beams light parts.
-constexpr int PlacesOfParts = 10;
+/// Places in a whole one where beams light parts: middles of every fifth of those.
+constexpr int PlacesOfParts = 8;
 /// A pose stands for those around it. Their energies differ: a normal distribution of this standard
 /// deviation of the logarithm, in the quantiles (k + 0.5)/PlacesOfParts, one for each place.
 constexpr double SpreadOfEnergies = 0.15;
-constexpr double Quantiles[PlacesOfParts] = { 0.1257, -1.0364, 0.6745, -1.6449, 0.3853, -0.3853,
-  1.6449, -0.6745, 1.0364, -0.1257 };
+constexpr double Quantiles[PlacesOfParts] = { 1.5341, -0.4888, -0.8871, -0.1570, 0.1570, 0.8871,
+  0.4888, -1.5341 };
 /// Parts that change the probability of a pose by less are not looked at.
 constexpr double NegligiblePart = 0.004;
 /// A normal distribution ends here.
