@@ -672,7 +672,7 @@ public:
    * Set LowerEnergyLimit and UpperEnergyLimit (DynamicRange above it) of a sensor that is known by
    * a line of a data sheet: it sees a Lambertian surface that fills the beam until `range` in
    * metres, `reflectance` its reflectance (above 0, at most 1), `attenuation` that of the air in
-   * 1/m. One point is a guess: from one of a sheet's points the others were predicted up to 39 %
+   * 1/m. One point is a guess: from one of a sheet's points the others were predicted up to 43 %
    * wrong (Documentation/sensors.md, Fitted to a sheet). Needs ReceiverAperture; for
    * RECEIVER_MODEL_ENERGY_LIMITS. A value outside its range is an error and changes nothing.
    */

@@ -69,8 +69,9 @@
  * (that share), `incidence_angle` deg (energy-weighted, at the last surface; NaN for a false
  * alarm), `secondary_share` (of the energy, over two reflections: above 0.5 a ghost); with a photon
  * receiver `photoelectrons` and `signal_to_noise`, of the same range unit as `energy_received`;
- * where ranges have noise, `distance_std_error` m, its standard deviation (of the receiver alone,
- * not of the sampling).
+ * with its sunlight `seen_radiance` W/(m2 sr nm), the daylight that the beam looks at, which the
+ * noise of the others follows; where ranges have noise, `distance_std_error` m, its standard
+ * deviation (of the receiver alone, not of the sampling).
  *
  * Output port 1, beam report: one vertex per beam at its strongest return (else at
  * `display_length`, 1000 m without it). Point arrays `beam_id`, `laser_id`, `azimuth` 0.01 deg,

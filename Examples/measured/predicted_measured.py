@@ -48,8 +48,9 @@ def sheets():
         for point, off, left in zip(points, found.residuals, found.left_out):
             trust = point["source"].split(":")[0]
             rows.append((name, f"{point['reflectance']:g}", f"{point.get('light', 0):g}", f"{point.get('probability', 0.5):g}",
-                         f"{point['range']:g}", trust, f"{100 * off:+.0f} %", f"{100 * left:+.0f} %", f"± {100 * found.bar:.0f} %",
-                         verdict(abs(left) <= GOOD)))
+                         f"{point['range']:g}", trust, f"{100 * off:+.0f} %", *((
+                             f"{100 * left:+.0f} %", f"± {100 * found.bar:.0f} %", verdict(abs(left) <= GOOD)) if left == left else
+                             ("cannot be", "not known", "-"))))
     return ("sensor", "reflectance", "light (klx)", "seen with", "range (m)", "source", "fitted to all", "left out", "bar of the sensor",
             f"within {100 * GOOD:.0f} %"), rows
 

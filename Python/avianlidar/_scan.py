@@ -195,7 +195,7 @@ class Scan(SceneAndSensor):
         And what the report says of each beam: `status`, `candidates`, `nodes_visited`, `rays_traced`, `skipped`,
         `skipped_bound` (J).
 
-        For a tilted sensor columns and rows are firings and channels.
+        For a tilted sensor, and one with rotating prisms, columns and rows are firings and channels.
         """
         self.update()
         numbered, echoes = vtkPolyData(), self.algorithm.GetOutput(0)
@@ -206,6 +206,10 @@ class Scan(SceneAndSensor):
         image = _wrapped.vtkAvianLidarRangeImage()
         image.SetInputData(0, numbered)
         image.SetInputConnection(1, self.algorithm.GetOutputPort(1))
+        fields = self.report.fields
+        if "prism_wedge_angles" in fields:
+            image.SetRows(int(fields["number_of_channels"]))
+            image.SetColumns(self.report.number_of_points // int(fields["number_of_channels"]))
         update(image)
         data = image.GetOutput()
         columns, rows, _ = data.GetDimensions()

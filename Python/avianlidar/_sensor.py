@@ -121,11 +121,12 @@ class Sensor(PropertyOwner):
                 one for all points is fitted). Default: those of the sensor's file (`sheet.points`)
 
         What is found: `numbers`, `board` (m), and of each point `predicted` (m), `residuals` and `left_out` (relative errors of
-        its range, with it in the fit and without), and `bar`, the largest of them: what ranges by this receiver are good for.
+        its range, with it in the fit and without), and `bar`, the largest of them: what ranges by this receiver are good for (nan:
+        no point can be left out, and nobody knows).
         ValueError: a point is not as it should be, or the sensor has no aperture.
 
-        >>> Sensor("Search905").fit([{"range": 300, "reflectance": 0.1, "source": "mine"}]).bar < 1e-6
-        True
+        >>> Sensor("Search905").fit([{"range": 300, "reflectance": 0.1, "source": "mine"}]).predicted
+        [300.0]
         """
         from ._sheet import fit
         found = fit(self, points)

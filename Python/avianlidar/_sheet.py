@@ -2,27 +2,28 @@
 """A receiver fitted to all points of its maker's sheet.
 
 A sheet says at which range a board of a reflectance is seen with which probability, in which light. One number fits none of them:
-by 1/r^2 a board of 80 % is seen 2.83 times as far as one of 10 %, sheets say 1.7 to 2.5. A board at R fills min(1, w^2/(Omega R^2))
-of the beam, w its width; it gives n = eta E rho A/(pi R^2 h nu) electrons for what it fills, and, lit by the sun, its daylight as
-background. It is seen with the probability that n and Gaussian noise exceed the threshold (Documentation/sensors.md). Fitted are, as
+by 1/r^2 a board of 80 % is seen 2.83 times as far as one of 10 %, sheets say 1.7 to 2.5. A board at R fills f = min(1, w^2/(Omega R^2))
+of the beam, w its width, (1 - exp(-2 f))/(1 - exp(-2)) of a Gaussian one; it gives n = eta E rho A/(pi R^2 h nu) electrons for what it fills, and, lit by sky and sun, its daylight as
+background, beside the sky past it: the sensor's `background_radiance` in 100 klx, less in less light. It is seen with the probability that n and Gaussian noise exceed the threshold (Documentation/sensors.md). Fitted are, as
 far as the points tell them: the aperture A (how much light), the filter's bandwidth (how much daylight, also that of a view wider than the beam) and, where no point has it,
-the width of the board, which is not the receiver's but unknown. SciPy's least squares, over logarithms of ranges.
+the width of the boards without one, which is not the receiver's but unknown. SciPy's least squares, over logarithms of ranges.
 """
 from __future__ import annotations
 
 import dataclasses
 import itertools
 import json
+import numbers
 from typing import Any, Dict, List, Optional, Sequence, Tuple
 
 import numpy as np
 
-# Spectral irradiance of daylight over its illuminance, W/(m2 nm) for 100 klx, by wavelength in nm. Second-hand: read off the
+# Spectral irradiance of the sun over the illuminance, W/(m2 nm) for 100 klx, by wavelength in nm; beyond, that of the nearest. Second-hand: read off the
 # reference spectrum ASTM G173-03 (global, 37 degrees), which has some 109 klx.
 DAYLIGHT = ((532, 1.40), (650, 1.40), (785, 1.05), (850, 0.83), (905, 0.70), (1064, 0.59), (1550, 0.25))
 APERTURE = 1e-4  # m2, at which fits begin
 HALF = 0.5  # probability of a point that says none: assumed
-UNITS = {"range": "m", "probability": "1", "reflectance": "1", "light": "klx", "board": "m"}
+UNITS = {"range": " m", "probability": "", "reflectance": "", "light": " klx", "board": " m"}
 MOST = {"range": 1e6, "probability": 0.9999, "reflectance": 1.0, "light": 1000.0, "board": 1e4}
 
 
@@ -32,11 +33,12 @@ class Fit:
 
     numbers    receiver_aperture (m2; with the assumed energy of the pulse) and, where points differ in light,
                filter_bandwidth (nm; with a view as wide as the beam)
-    board      width of the makers' board, m: the points' or, if they have none, fitted; nan where no two reflectances tell it
+    board      fitted width of the boards of which the points do not tell it, m; nan where nothing tells it: they fill the beam
     predicted  the range of each point by the fit, m
     residuals  predicted over the sheet's range, less 1
     left_out   the same where that point had no part in the fit; nan where the others do not tell all that is fitted
-    bar        what ranges by this receiver are good for, relative: the largest of |residuals| and |left_out|
+    bar        what ranges by this receiver are good for, relative: the largest of |residuals| and |left_out|; nan where no point
+               could be left out
     """
     numbers: Dict[str, float]
     board: float
@@ -48,17 +50,24 @@ class Fit:
 
 def check(points: Sequence[Dict[str, Any]]) -> None:
     """ValueError that names what is wrong with a sheet's points."""
-    if not points:
+    if isinstance(points, (str, dict)) or not points:
         raise ValueError("the sheet has no points, expected at least one of range, reflectance, source")
     for i, point in enumerate(points):
+        if not isinstance(point, dict):
+            raise ValueError(f"sheet.points[{i}] is {point!r}, expected range, reflectance, source by name")
         for key in ("range", "reflectance", "source"):
             if key not in point:
                 raise ValueError(f"sheet.points[{i}]: {key} is missing")
+        for key in point:
+            if key not in (*MOST, "source"):
+                raise ValueError(f"sheet.points[{i}]: {key} is not known, expected {', '.join((*MOST, 'source'))}")
+        if not isinstance(point["source"], str):
+            raise ValueError(f"sheet.points[{i}].source is {point['source']!r}, expected a text")
         for key, most in MOST.items():
             value = point.get(key, most)
             least = 0.0 if key == "light" else 1e-4
-            if isinstance(value, bool) or not isinstance(value, (int, float)) or not least <= value <= most:
-                raise ValueError(f"sheet.points[{i}].{key} is {value!r}, expected {least:g} to {most:g} {UNITS[key]}")
+            if isinstance(value, bool) or not isinstance(value, numbers.Real) or not least <= value <= most:
+                raise ValueError(f"sheet.points[{i}].{key} is {value!r}, expected {least:g} to {most:g}{UNITS[key]}")
 
 
 def irradiance(light: float, wavelength: float) -> float:
@@ -74,6 +83,7 @@ class Receiver:
         half = float(sensor.half_beamwidth)
         self.solid_angle = 4 * np.pi * np.sin(0.5 * half) ** 2
         self.wavelength = float(sensor.wavelength)
+        self.gaussian = int(sensor.algorithm.GetBeamProfile()) == 1
         self.interval = float(sensor.sampling_interval)
         photon = 6.62607015e-34 * 299792458.0 / (1e-9 * self.wavelength)
         self.per_joule = float(sensor.receiver_efficiency) / photon
@@ -81,6 +91,7 @@ class Receiver:
         self.dark = float(sensor.amplifier_noise) ** 2
         self.background = self.per_joule * self.solid_angle * self.interval
         self.excess = float(sensor.excess_noise_factor)
+        self.sky = 0.01 * float(sensor.background_radiance)  # for each klx
         self.overlap, self.defocus = float(sensor.overlap_range), float(sensor.defocus_range)
         units = sensor.beams.number_of_points * np.floor(2 * float(sensor.range_gate) / (299792458.0 * self.interval))
         self.factor = float(np.sqrt(2) * erfcinv(2 * float(sensor.false_alarms_per_scan) / units))
@@ -88,13 +99,18 @@ class Receiver:
     def excess_of(self, distance, point: Dict[str, Any], aperture: float, bandwidth: float, board: float):
         """By how many deviations of the noise what a board gives exceeds the threshold. @param distance m, one or many"""
         distance = np.asarray(distance, dtype=float)
-        rho = point["reflectance"]
-        filled = np.minimum(1.0, board**2 / (self.solid_angle * distance**2)) if np.isfinite(board) else 1.0
+        rho, light, board = point["reflectance"], point.get("light", 0.0), point.get("board", board)
+        filled = np.minimum(1.0, board**2 / (self.solid_angle * distance**2)) if np.isfinite(board) else np.ones_like(distance)
+        if self.gaussian:  # cut at 1/e2; a disc of the board's area
+            filled = -np.expm1(-2 * filled) / -np.expm1(-2)
         near = (1 - np.exp(-(distance / self.overlap) ** 2) if self.overlap else 1.0) / (1 + (self.defocus / distance) ** 2)
         signal = self.per_joule * self.pulse_energy * filled * near * np.minimum(1.0, rho * aperture / (np.pi * distance**2))
-        radiance = filled * rho * irradiance(point.get("light", 0.0), self.wavelength) / np.pi
-        dark = self.dark + self.excess * self.background * bandwidth * radiance * aperture
-        return (signal - self.factor * np.sqrt(dark)) / np.sqrt(dark + self.excess * signal)
+        sky = self.sky * light
+        board_radiance = rho * (sky + irradiance(light, self.wavelength) / np.pi)
+        before_sky, dark = (self.dark + self.excess * self.background * bandwidth * aperture * radiance
+                            for radiance in (sky, filled * board_radiance + (1 - filled) * sky))
+        threshold = self.factor * np.sqrt(np.maximum(before_sky, dark))  # never below that of the sky
+        return (signal - threshold) / np.sqrt(dark + self.excess * signal)
 
     def range(self, point: Dict[str, Any], *numbers: float) -> float:
         """The largest range, m, at which a point's board is seen with its probability."""
@@ -109,19 +125,25 @@ class Receiver:
         return float(np.exp(x[k] + (x[k + 1] - x[k]) * over[k] / (over[k] - over[k + 1])))
 
 
+def _told(points) -> List[str]:
+    """What these points tell, in the order in which it needs points."""
+    found = ["aperture"]
+    if len({point.get("light", 0.0) for point in points}) > 1 and len(points) > 1:
+        found.append("bandwidth")
+    unknown = [point for point in points if "board" not in point]
+    if len({point["reflectance"] for point in unknown}) > 1 and len(points) > len(found):
+        found.append("board")
+    return found
+
+
 def _fitted(receiver: Receiver, points, start: Tuple[float, float]) -> Tuple[float, float, float]:
     """Aperture (m2), bandwidth (nm), board (m). @param start the first two before the fit"""
     from scipy.optimize import least_squares
-    boards = sorted({point["board"] for point in points if "board" in point})
-    frees = ["aperture"]  # in the order in which they need points
-    if len({point.get("light", 0.0) for point in points}) > 1 and len(points) > 1:
-        frees.append("bandwidth")
-    if not boards and len({point["reflectance"] for point in points}) > 1 and len(points) > len(frees):
-        frees.append("board")
+    frees = _told(points)
     farthest = max(point["range"] for point in points)
     size = farthest * np.sqrt(receiver.solid_angle)  # of a board that just fills the beam there
     best: Tuple[float, Tuple[float, float, float]] = (np.inf, (start[0], start[1], np.nan))
-    widths = (0.3 * size, 0.6 * size, 1.2 * size) if "board" in frees else (boards[0] if boards else np.nan,)
+    widths = (0.3 * size, 0.6 * size, 1.2 * size) if "board" in frees else (np.nan,)
     # Starts do not depend on the numbers that are fitted: a fit of a fitted sensor is the same.
     for width, bandwidth in itertools.product(widths, (1.0, 30.0, 1000.0) if "bandwidth" in frees else (start[1],)):
         value = {"aperture": APERTURE, "bandwidth": bandwidth, "board": width}
@@ -151,11 +173,10 @@ def fit(sensor, points: Optional[Sequence[Dict[str, Any]]] = None) -> Fit:
     left_out = []
     for i, point in enumerate(points):
         others = points[:i] + points[i + 1:]
-        tells_light = len({other.get("light", 0.0) for other in others}) > 1 or len({p.get("light", 0.0) for p in points}) == 1
-        left_out.append(receiver.range(point, *_fitted(receiver, others, start)) / point["range"] - 1 if others and tells_light
-                        else float("nan"))
+        left_out.append(receiver.range(point, *_fitted(receiver, others, start)) / point["range"] - 1
+                        if others and _told(others) == _told(points) else float("nan"))
     residuals = [value / point["range"] - 1 for value, point in zip(predicted, points)]
-    bar = float(np.nanmax(np.abs([*residuals, *left_out])))
+    bar = float(np.nanmax(np.abs([*residuals, *left_out]))) if np.isfinite(left_out).any() else float("nan")
     lights = len({point.get("light", 0.0) for point in points}) > 1
     return Fit({"receiver_aperture": numbers[0], **({"filter_bandwidth": numbers[1]} if lights else {})}, numbers[2], predicted,
                residuals, left_out, bar)
@@ -167,11 +188,13 @@ def write(description: Dict[str, Any], found: Fit, file: str) -> None:
     for name, value in found.numbers.items():
         unit = {"receiver_aperture": "m2", "filter_bandwidth": "nm"}[name]
         description["values"][name] = {"value": float(f"{value:.6g}"), "unit": unit,
-                                       "source": f"fitted to the {number} points of the sheet"}
+                                       "source": f"assumed with the others: fitted to the {number} points of the sheet"}
+    description["values"]["receiver_model"] = {"value": 1, "unit": "1", "source": "assumed: photons, by the fit"}
     description["sheet"]["residuals"] = [float(f"{value:.3g}") for value in found.residuals]
-    description["sheet"]["bar"] = float(f"{found.bar:.3g}")
-    if np.isfinite(found.board):
-        description["sheet"]["board"] = float(f"{found.board:.3g}")
+    for key, value in (("bar", found.bar), ("board", found.board)):
+        description["sheet"].pop(key, None)
+        if np.isfinite(value):
+            description["sheet"][key] = float(f"{value:.3g}")
     with open(file, "w", encoding="utf-8") as out:
         out.write(_text(description) + "\n")
 

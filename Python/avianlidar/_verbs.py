@@ -226,8 +226,12 @@ def convert(options) -> None:
 def sensors(options) -> None:
     from . import Sensor, _display
     if options.fit:
+        if options.name:
+            raise ValueError(f"sensors: {options.name} and --fit {options.fit}, expected one of them")
         _fit(options)
         return
+    if options.out:
+        raise ValueError(f"sensors: -o {options.out} is where a fitted sensor goes, expected --fit FILE, too")
     if options.name:
         _table(_display.sensor_rows(Sensor(options.name)).items())
         return
@@ -250,7 +254,8 @@ def _fit(options) -> None:
               for point, predicted, off, left in zip(points, found.predicted, found.residuals, found.left_out))])
     print(*(f"{name} {value:.4g}" for name, value in found.numbers.items()),
           *([f"board of the maker {found.board:.3g} m"] if found.board == found.board else []), sep=", ")
-    print(f"ranges by this receiver are good for {100 * found.bar:.0f} %")
+    print(f"ranges by this receiver are good for {100 * found.bar:.0f} %" if found.bar == found.bar else
+          "what ranges by this receiver are good for is not known: no point can be left out of the fit")
     if options.out:
         write(description, found, str(options.out))
         print(options.out)

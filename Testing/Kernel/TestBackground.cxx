@@ -94,6 +94,39 @@ TEST(Background, OfPlatesByClosedForm)
   }
 }
 
+TEST(Background, GroundThatIsFaintToTheLaserCounts)
+{
+  // Level ground, 2 m below, seen at 0.4 degrees: over many range units.
+  Scene scene;
+  scene.plate({ 0.0, 0.0, -2.0 }, { 5000.0, 0.0, 0.0 }, { 0.0, 5000.0, 0.0 }, { 0.3, 0.0, 0.0 });
+  Sensor sensor = noonSensor();
+  sensor.halfBeamwidth = 1e-3;
+  sensor.backgroundRadiance = 0.01; // the ground is brighter
+  ASSERT_EQ(setPhotonLimits(sensor, 20.0, 40.0, 2000.0), "");
+  const double angle = 0.4 * RadiansPerDegree;
+  ScanBeams beams = manyBeams(2000);
+  beams.directions.assign(2000, { std::cos(angle), 0.0, -std::sin(angle) });
+  for (const bool constraint : { false, true })
+  {
+    EchoSettings settings = noisySettings();
+    settings.lightEnergyConstraint = constraint;
+    const ScanSetup setup = makeSetup(scene, sensor, settings);
+    for (const double energy : { 1e-15, 1e-6 })
+    {
+      ScanSetup faint = setup;
+      faint.sensor.pulseEnergy = energy;
+      finishSetup(faint);
+      // Of false alarms, too: all echoes of the beam look at the same.
+      const auto echoes = runScan(faint, beams).echoes;
+      EXPECT_GT(echoes.size(), 0u);
+      for (const Echo& echo : echoes)
+      {
+        EXPECT_NEAR(echo.background, 0.3 * (0.01 + 0.5 * Sun / Pi), 1e-6);
+      }
+    }
+  }
+}
+
 TEST(Background, NoiseOfEchoesFollows)
 {
   const Sensor sensor = noonSensor();

@@ -192,6 +192,9 @@ class Use(unittest.TestCase):
         image.SetRows(6)
         image.Update()
         self.assertIn(image.GetOutput().GetDimensions()[:2], ((4000, 6), (4001, 7)))
+        own = scan.range_image()
+        self.assertEqual(own["distance_m"].shape, (6, 4000))
+        self.assertEqual(np.isfinite(own["distance_m"]).sum(), scan.echoes.number_of_points)
 
     def test_pcd_files_are_lists(self):
         scan = al.Scan(al.Scene(WALL), al.Sensor("Mid40"), noise=False, rays_per_beam=16)

@@ -37,10 +37,14 @@ class Sheets(unittest.TestCase):
         found = _sheet.fit(start, points(_sheet.Receiver(start), numbers, *rows))
         np.testing.assert_allclose([*found.numbers.values(), found.board], numbers, rtol=0.01)
         self.assertLess(found.bar, 1e-3)
+        # Boards that points tell are theirs.
+        own = [{**point, "board": board} for point, board in zip(points(_sheet.Receiver(start), (3e-4, 10.0, 2.0), *rows[:2]), (0.5, 2.0))]
+        own = [{**point, "range": _sheet.Receiver(start).range(point, 3e-4, 10.0, np.nan)} for point in own]
+        self.assertAlmostEqual(_sheet.fit(start, own).numbers["receiver_aperture"] / 3e-4, 1, delta=1e-3)
         # Of one number one point is enough, and none can be left out.
         one = _sheet.fit(start, points(_sheet.Receiver(start), (3e-4, 10.0, np.nan), (0.1, 0.5, 0)))
         self.assertAlmostEqual(one.numbers["receiver_aperture"] / 3e-4, 1, delta=1e-3)
-        self.assertTrue(np.isnan(one.left_out[0]) and np.isnan(one.board))
+        self.assertTrue(np.isnan(one.left_out[0]) and np.isnan(one.board) and np.isnan(one.bar))
 
     def test_boards_are_seen_as_often_when_simulated(self):
         """2,000 beams on a board at a fitted range, in the dark and in the sun."""
@@ -63,11 +67,34 @@ class Sheets(unittest.TestCase):
                 # The simulated board is not quite what fills so much of the beam: 2 % of the signal.
                 self.assertAlmostEqual(seen, p, delta=0.05)
 
+    def test_presets_see_the_boards_of_their_sheets(self):
+        """Each fitted preset as it is shipped, on the boards of its own points at the fitted ranges."""
+        for name in al.Sensor.presets():
+            sensor = al.Sensor(name)
+            if "sheet" not in sensor.description:
+                continue
+            found = sensor.fit()
+            share = 1000 / sensor.beams.number_of_points
+            for point, x in zip(sensor.description["sheet"]["points"], found.predicted):
+                with self.subTest(name, reflectance=point["reflectance"], light=point.get("light", 0)):
+                    light, half = point.get("light", 0), 0.5 * found.board
+                    scene = al.Scene([(x, -half, -half), (x, half, -half), (x, half, half), (x, -half, half)],
+                                     [(0, 1, 2), (0, 2, 3)], material=(point["reflectance"], 0, 1))
+                    looking = al.Sensor(name, directions=np.tile([1.0, 0, 0], (1000, 1)), sun_azimuth=270, sun_elevation=0,
+                                        sunlight=_sheet.irradiance(light, sensor.wavelength), range_noise=0,
+                                        background_radiance=0.01 * light * sensor.background_radiance,
+                                        false_alarms_per_scan=share * sensor.false_alarms_per_scan)
+                    echoes = al.Scan(scene, looking, attenuation_coefficient=0, number_of_reflections=1).echoes
+                    # The board is a square, the fit takes a disc of its area: up to 10 % of the signal where it just fills the beam.
+                    self.assertAlmostEqual((echoes["object_id"] >= 0).sum() / 1000, point.get("probability", 0.5), delta=0.13)
+
     def test_what_is_wrong_is_named(self):
         good = {"range": 100, "reflectance": 0.1, "source": "x"}
         for bad, words in (({**good, "range": -1}, "points[0].range is -1, expected 0.0001 to 1e+06 m"),
                            ({**good, "reflectance": 2}, "points[0].reflectance is 2"), ({**good, "probability": 1}, "probability is 1"),
-                           ({**good, "light": "much"}, "light is 'much'"), ({"range": 1, "source": "x"}, "reflectance is missing")):
+                           ({**good, "light": "much"}, "light is 'much'"), ({"range": 1, "source": "x"}, "reflectance is missing"),
+                           ({**good, "ligth": 100}, "ligth is not known"), ({**good, "source": 7}, "source is 7, expected a text"),
+                           ("range", "points[0] is 'range'")):
             with self.assertRaisesRegex(ValueError, words.replace("[", r"\[").replace("]", r"\]").replace("+", r"\+")):
                 sensor().fit([bad])
         with self.assertRaisesRegex(ValueError, "no points"):

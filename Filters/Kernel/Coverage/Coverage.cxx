@@ -361,9 +361,13 @@ CoverageValue Coverage::valueOf(
   if (near.count > 0)
   {
     at.fill(value, near.clear);
-    if (ofPoses || !this->isCertain(at, step, near))
+    if (!this->isCertain(at, step, near))
     {
       this->share(at, near, ofPoses, value);
+    }
+    else if (ofPoses)
+    {
+      at.target.law.ofPoses(at.energy, near.clear, at.elevation, ofPoses);
     }
   }
   if (value.probability >= WeakProbability)

@@ -13,6 +13,7 @@
  * Differs: the paper has one rate of noise photons. Shadows are not searched for: a surface that
  * faces the sun counts as lit, and one that looks sideways sees as much sky as one that looks up.
  * Valid: for matt surfaces; a mirror shows the sun where it is.
+ * Faint polygons are not dropped with sunlight (PolygonQuadrature.h): they count here.
  * Test: TestBackground.cxx.
  */
 #ifndef avianlidar_Background_h

@@ -284,7 +284,7 @@ MoverSight MovedBeams::sightOf(
   this->Units.clear();
   this->addLightOf(touch.firstTriangle, end, lighting);
   this->Units.accumulate();
-  const Sensor& sensor = this->Setup.sensor;
+  const Sensor sensor = lookingAt(this->Setup.sensor, lighting.radiance());
   const PhotonReceiver receiver(sensor);
   double missed = 1.0;
   for (const RangeUnit& unit : this->Units.units())

@@ -48,6 +48,7 @@ void BeamReceiver::lookAt(double radiance)
   const bool ofRanges = this->Plan.ofRanges;
   this->Radiance = radiance;
   this->Lower = there.lowerEnergyLimit;
+  this->Upper = there.upperEnergyLimit;
   this->Plan = planNoise(there, this->Plan.active);
   this->Plan.ofRanges = ofRanges;
   this->Errors = RangeErrors(there, ofRanges);

@@ -135,7 +135,8 @@ PolygonQuadrature::Bounds PolygonQuadrature::boundsOf(
 void PolygonQuadrature::drop()
 {
   this->Dropped = 0.0;
-  if (!dropsFaintPaths(this->Setup.settings))
+  // What is faint to the laser may be bright in the sun.
+  if (!dropsFaintPaths(this->Setup.settings) || this->Setup.sensor.seesDaylight())
   {
     return;
   }
