@@ -125,8 +125,8 @@ class Sensor(PropertyOwner):
         no point can be left out, and nobody knows).
         ValueError: a point is not as it should be, or the sensor has no aperture.
 
-        >>> Sensor("Search905").fit([{"range": 300, "reflectance": 0.1, "source": "mine"}]).predicted
-        [300.0]
+        >>> round(Sensor("Search905").fit([{"range": 300, "reflectance": 0.1, "source": "mine"}]).predicted[0])
+        300
         """
         from ._sheet import fit
         found = fit(self, points)
