@@ -40,6 +40,7 @@ import render_notebook  # noqa: E402
 import room  # noqa: E402
 import screenshots  # noqa: E402
 import predicted_measured  # noqa: E402
+import quadcopter  # noqa: E402
 import second_reflection  # noqa: E402
 
 # Name of the run, what runs, its arguments, {picture: name in Documentation/images}.
@@ -65,6 +66,7 @@ RUNS = (
     ("ranges", ranges, [], {"ranges": "coverage-ranges"}),
     ("patterns", patterns, [], {"prisms": "sensors-prisms", "rotors": "sensors-rotors"}),
     ("sequence", labels, [], {"labels": "sequences-labels"}),
+    ("quadcopter", quadcopter, [], {"points": "measured-quadcopter"}),
     ("notebook", render_notebook, [], {"energy-image": "python-range-image", "map": "python-map"}),
 )
 

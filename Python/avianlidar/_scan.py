@@ -206,10 +206,10 @@ class Scan(SceneAndSensor):
         image = _wrapped.vtkAvianLidarRangeImage()
         image.SetInputData(0, numbered)
         image.SetInputConnection(1, self.algorithm.GetOutputPort(1))
-        fields = self.report.fields
-        if "prism_wedge_angles" in fields:
-            image.SetRows(int(fields["number_of_channels"]))
-            image.SetColumns(self.report.number_of_points // int(fields["number_of_channels"]))
+        report = self.report
+        if "prism_wedge_angles" in report.fields:
+            image.SetRows(int(report.fields["number_of_channels"]))
+            image.SetColumns(report.number_of_points // image.GetRows())
         update(image)
         data = image.GetOutput()
         columns, rows, _ = data.GetDimensions()

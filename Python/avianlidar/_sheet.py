@@ -66,7 +66,7 @@ def check(points: Sequence[Dict[str, Any]]) -> None:
         for key, most in MOST.items():
             value = point.get(key, most)
             least = 0.0 if key == "light" else 1e-4
-            if isinstance(value, bool) or not isinstance(value, numbers.Real) or not least <= value <= most:
+            if isinstance(value, bool) or not isinstance(value, numbers.Real) or not least <= float(value) <= most:
                 raise ValueError(f"sheet.points[{i}].{key} is {value!r}, expected {least:g} to {most:g}{UNITS[key]}")
 
 
