@@ -252,7 +252,9 @@ LitPart Silhouette::litBy(const BeamAtTarget& beam) const
   for (int row = below; row < above; ++row)
   {
     const auto y = static_cast<float>(image->below + row * image->pixel - beam.y);
-    const Sums* pixel = &image->pixels[static_cast<std::size_t>(row) * image->columns + left];
+    // Past the last one where the beam lies beside the image.
+    const Sums* pixel =
+      image->pixels.data() + static_cast<std::size_t>(row) * image->columns + left;
     auto x = static_cast<float>(image->left + left * image->pixel - beam.x);
     for (int column = left; column < right; ++column, ++pixel)
     {
