@@ -3,6 +3,7 @@
 #include "Bird.h"
 #include "EffectiveArea.h"
 #include "MoverReport.h"
+#include "PhotonReceiver.h"
 #include "ScanTestTown.h"
 
 #include <gtest/gtest.h>
@@ -255,6 +256,40 @@ TEST(MovedBeams, AUnitAtTheLimitIsNoEchoAndNotProbable)
     EXPECT_EQ(report.energy, energy);
     EXPECT_EQ(report.probability, c.echoes);
   }
+}
+
+TEST(MovedBeams, ASunlitWallBehindAMoverMakesItLessProbable)
+{
+  // A plate in front of the sky, or of a white wall in the sun: the same light, more noise.
+  Scene plate;
+  plate.plate(Vec3(100.0, 0.0, 0.0), Vec3(0.0, 0.1, 0.0), Vec3(0.0, 0.0, 0.1), Wall, 1);
+  Scene wall;
+  wall.plate(
+    Vec3(200.0, 0.0, 0.0), Vec3(0.0, 50.0, 0.0), Vec3(0.0, 0.0, 50.0), { 0.9, 0.0, 1.0 }, 2);
+  Sensor sensor;
+  sensor.receiverModel = ReceiverModel::Photons;
+  sensor.receiverAperture = 0.00785;
+  sensor.pulseWidth = 0.0;
+  sensor.sunlight = 0.7;
+  sensor.sunAzimuth = 270.0; // behind the lidar
+  ASSERT_EQ(setPhotonLimits(sensor, 1.0, 40.0, 2000.0), "");
+  EchoSettings settings;
+  settings.numberOfReflections = 1;
+  ScanBeams beams = timed(oneBeam(), 0.0);
+  const auto probabilityBefore = [&](const Scene& scene)
+  {
+    ScanSetup setup = makeSetup(scene, sensor, settings);
+    setMovers(setup, { moverOf(plate) });
+    const ScanResult result = runScan(setup, beams);
+    return reportMovers(setup, beams, result.sights, 1).at(0).probability;
+  };
+  // As bright as half of what is seen before the sky needs.
+  for (sensor.pulseEnergy = 1e-9; probabilityBefore(Scene()) < 0.5;)
+  {
+    sensor.pulseEnergy *= 1.1;
+  }
+  EXPECT_LT(probabilityBefore(Scene()), 0.9);
+  EXPECT_LT(probabilityBefore(wall), 0.1);
 }
 
 TEST(MovedBeams, TwoPartsThatFlapCloseAndOpenALid)
