@@ -240,8 +240,8 @@ TEST(Coverage, MoreAreaLightOrBeamsSeeNoLess)
   }
   EXPECT_GT(seen, 30);
 
-  // Nor does it matter whether the probabilities of the poses are asked for; their mean is the
-  // same.
+  // Nor does it matter whether the probabilities of the poses are asked for; their mean is about
+  // the same: one is tabulated.
   const CoverageTarget target = site.target(0.03, 0.3, 1.0, GullViews);
   std::vector<float> poses(target.law.poses());
   for (std::size_t i = 0; i < places.size(); ++i)
@@ -249,7 +249,7 @@ TEST(Coverage, MoreAreaLightOrBeamsSeeNoLess)
     const double p = site.coverage.valueAt(places[i], sights[i], target, poses.data()).probability;
     EXPECT_EQ(p, usual[i].probability);
     const double sum = std::accumulate(poses.begin(), poses.end(), 0.0);
-    EXPECT_NEAR(sum / static_cast<double>(poses.size()), p, 2e-3);
+    EXPECT_NEAR(sum / static_cast<double>(poses.size()), p, 0.015);
   }
 }
 
