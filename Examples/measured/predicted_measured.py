@@ -69,27 +69,24 @@ def ground_of(data):
             yield plane, distance[on], np.abs(points[on] @ plane.normal) / distance[on], shown[on], ring[on]
 
 
+def rough(kd, s, cosine):
+    """What a rough surface returns straight back (Documentation/reflectance.md, OrenNayar)."""
+    return kd * ((1 - 0.5 * s**2 / (s**2 + 0.33)) * cosine + 0.45 * s**2 / (s**2 + 0.09) * (1 - cosine**2))
+
+
 def fitted_ground(cosine, reflectivity):
     """kd and roughness (rad) of the ground by Oren and Nayar, to medians of bins of the cosine; and the rms left, of the medians."""
     from scipy.optimize import least_squares
     bins = np.round(cosine / 0.02).astype(int)
     x, y = np.array([(cosine[bins == b].mean(), np.median(reflectivity[bins == b]) / 100) for b in np.unique(bins)
                      if (bins == b).sum() >= 20]).T
-
-    def model(kd, s):
-        return kd * ((1 - 0.5 * s**2 / (s**2 + 0.33)) * x + 0.45 * s**2 / (s**2 + 0.09) * (1 - x**2))
-
-    best = least_squares(lambda p: model(*p) / y - 1, (0.2, 0.6), bounds=((0.01, 0), (1, 0.5 * np.pi)))
+    best = least_squares(lambda p: rough(*p, x) / y - 1, (0.2, 0.6), bounds=((0.01, 0), (1, 0.5 * np.pi)))
     return *best.x, np.sqrt(np.mean(best.fun**2)), x, y
 
 
 def end_of(plane, material, model):
     """The range (m) to which VLP16 sees the whole plane, without noise."""
-    across = np.cross(plane.normal, np.eye(3)[np.argmin(np.abs(plane.normal))])
-    across /= np.linalg.norm(across)
-    along, middle = np.cross(plane.normal, across), plane.normal * plane.distance
-    corners = [middle + 200 * (i * across + j * along) for i, j in ((-1, -1), (1, -1), (1, 1), (-1, 1))]
-    echoes = al.Scan(al.Scene(corners, [(0, 1, 2), (0, 2, 3)], material=material), al.Sensor("VLP16"), reflectance_model=model,
+    echoes = al.Scan(al.Scene(falloff.square_on(plane, 200), material=material), al.Sensor("VLP16"), reflectance_model=model,
                      attenuation_coefficient=falloff.AIR, noise=False).echoes
     return float(echoes["distance_m"].max())
 
@@ -164,8 +161,7 @@ def picture(fit, folder):
     figure, axis = pyplot.subplots(figsize=(6, 3.6), layout="constrained")
     axis.plot(x, 100 * y, "o", label="VLP-16's frame, medians")
     at = np.linspace(0, x.max() * 1.05, 100)
-    axis.plot(at, 100 * kd * ((1 - 0.5 * s**2 / (s**2 + 0.33)) * at + 0.45 * s**2 / (s**2 + 0.09) * (1 - at**2)),
-              label=f"Oren and Nayar: kd {kd:.2f}, roughness {s:.2f} rad")
+    axis.plot(at, 100 * rough(kd, s, at), label=f"Oren and Nayar: kd {kd:.2f}, roughness {s:.2f} rad")
     axis.plot(at, 100 * y[-1] / x[-1] * at, "--", label="matt, through the steepest")
     axis.set(xlabel="cosine of incidence", ylabel="reflectivity (%)", ylim=(0, None), xlim=(0, None))
     axis.legend()

@@ -209,14 +209,19 @@ def near_range(distance, gain):
     return overlap, defocus, np.sqrt(np.mean(best.fun**2)) / level
 
 
-def simulated(plane, elevations, step=360.0 / 1024):
-    """Range, energy and beam of what a photon receiver gets from the whole plane by beams of these elevations."""
+def square_on(plane, half):
+    """Points and triangles of a square of a plane, around its foot. @param half of its side, m"""
     across = np.cross(plane.normal, np.eye(3)[np.argmin(np.abs(plane.normal))])
     across /= np.linalg.norm(across)
     along, middle = np.cross(plane.normal, across), plane.normal * plane.distance
-    corners = [middle + 500 * (i * across + j * along) for i, j in ((-1, -1), (1, -1), (1, 1), (-1, 1))]
+    corners = [middle + half * (i * across + j * along) for i, j in ((-1, -1), (1, -1), (1, 1), (-1, 1))]
+    return np.array(corners), [(0, 1, 2), (0, 2, 3)]
+
+
+def simulated(plane, elevations, step=360.0 / 1024):
+    """Range, energy and beam of what a photon receiver gets from the whole plane by beams of these elevations."""
     scene = al.Scene()
-    scene.add((np.array(corners), [(0, 1, 2), (0, 2, 3)]), material=(0.3, 0.0, 0.0), name="plane")
+    scene.add(square_on(plane, 500), material=(0.3, 0.0, 0.0), name="plane")
     sensor = al.Sensor("Automotive16", azimuth_step=step, channel_elevations=list(elevations), range_noise=0, range_noise_floor=0)
     echoes = al.Scan(scene, sensor, attenuation_coefficient=AIR).echoes
     return echoes["distance_m"], echoes["return_energy"], np.asarray(echoes["beam_id"], int) % len(elevations)

@@ -18,6 +18,8 @@ from typing import Any, Dict, List, Optional, Sequence, Tuple
 
 import numpy as np
 
+from ._disk import write_whole
+
 # Spectral irradiance of the sun over the illuminance, W/(m2 nm) for 100 klx, by wavelength in nm; beyond, that of the nearest. Second-hand: read off the
 # reference spectrum ASTM G173-03 (global, 37 degrees), which has some 109 klx.
 DAYLIGHT = ((532, 1.40), (650, 1.40), (785, 1.05), (850, 0.83), (905, 0.70), (1064, 0.59), (1550, 0.25))
@@ -166,6 +168,9 @@ def fit(sensor, points: Optional[Sequence[Dict[str, Any]]] = None) -> Fit:
     check(points)
     if sensor.receiver_aperture <= 0:
         raise ValueError("receiver_aperture is 0, expected more than 0 m2: without it nothing falls with the range")
+    for i, point in enumerate(points):
+        if point["range"] > sensor.range_gate:
+            raise ValueError(f"sheet.points[{i}].range is {point['range']!r}, expected at most range_gate, {sensor.range_gate:g} m")
     receiver = Receiver(sensor)
     start = float(sensor.receiver_aperture), max(float(sensor.filter_bandwidth), 1e-3)
     numbers = _fitted(receiver, points, start)
@@ -182,8 +187,8 @@ def fit(sensor, points: Optional[Sequence[Dict[str, Any]]] = None) -> Fit:
                residuals, left_out, bar)
 
 
-def write(description: Dict[str, Any], found: Fit, file: str) -> None:
-    """The sensor file with the fitted numbers, the residuals and the bar."""
+def write(description: Dict[str, Any], found: Fit, file) -> None:
+    """The sensor file with the fitted numbers, the residuals and the bar; what was there stays until all of it is written."""
     number = len(description["sheet"]["points"])
     for name, value in found.numbers.items():
         unit = {"receiver_aperture": "m2", "filter_bandwidth": "nm"}[name]
@@ -195,8 +200,7 @@ def write(description: Dict[str, Any], found: Fit, file: str) -> None:
         description["sheet"].pop(key, None)
         if np.isfinite(value):
             description["sheet"][key] = float(f"{value:.3g}")
-    with open(file, "w", encoding="utf-8") as out:
-        out.write(_text(description) + "\n")
+    write_whole(file, (_text(description) + "\n").encode())
 
 
 def _text(value, indent: int = 0) -> str:

@@ -243,6 +243,9 @@ def sensors(options) -> None:
 def _fit(options) -> None:
     from . import Sensor
     from ._sheet import HALF, write
+    from ._writers import check_target
+    if options.out:
+        check_target(options.out)
     sensor = Sensor(options.fit)
     description = sensor.description
     found = sensor.fit()
@@ -257,7 +260,7 @@ def _fit(options) -> None:
     print(f"ranges by this receiver are good for {100 * found.bar:.0f} %" if found.bar == found.bar else
           "what ranges by this receiver are good for is not known: no point can be left out of the fit")
     if options.out:
-        write(description, found, str(options.out))
+        write(description, found, options.out)
         print(options.out)
 
 

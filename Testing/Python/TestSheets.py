@@ -97,6 +97,8 @@ class Sheets(unittest.TestCase):
                            ("range", "points[0] is 'range'")):
             with self.assertRaisesRegex(ValueError, words.replace("[", r"\[").replace("]", r"\]").replace("+", r"\+")):
                 sensor().fit([bad])
+        with self.assertRaisesRegex(ValueError, "range is 700, expected at most range_gate, 600 m"):
+            sensor().fit([{**good, "range": 700}])
         with self.assertRaisesRegex(ValueError, "no points"):
             sensor().fit()
         with self.assertRaisesRegex(ValueError, "receiver_aperture is 0"):
@@ -116,6 +118,12 @@ class Sheets(unittest.TestCase):
                                  capture_output=True, text=True)
             self.assertEqual(run.returncode, 0, run.stderr)
             self.assertIn("ranges by this receiver are good for 0 %", run.stdout)
+            # Over itself: a fit of what is fitted is the same.
+            before = fitted.read_text(encoding="utf-8")
+            again = [sys.executable, "-m", "avianlidar", "sensors", "--fit", str(fitted), "-o", str(fitted)]
+            self.assertEqual(subprocess.run(again, capture_output=True).returncode, 0)
+            self.assertEqual(fitted.read_text(encoding="utf-8"), before)
+            self.assertEqual(sorted(path.name for path in made.parent.iterdir()), sorted((made.name, fitted.name)))
             of = al.Sensor(fitted)
             self.assertAlmostEqual(of.receiver_aperture / 3e-4, 1, delta=0.01)
             self.assertLess(of.description["sheet"]["bar"], 0.01)
