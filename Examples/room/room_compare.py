@@ -29,11 +29,11 @@ class Simulated:
     incidence: np.ndarray
 
 
-def beams_of(scan, half_beamwidth):
+def beams_of(scan, half_beamwidth, sensor=SENSOR):
     """The sensor's beams as a script makes them: a vertex with a direction for each, the sensor as field data."""
     beams = room_surface.cloud(np.tile(scan.origin, (len(scan.range), 1)), {"direction": scan.directions()})
-    gate = max(SENSOR["range_gate"], 1.2 * np.nanmax(scan.range))
-    for name, value in {**SENSOR, "range_gate": gate, "half_beamwidth": half_beamwidth}.items():
+    gate = max(sensor["range_gate"], 1.2 * np.nanmax(scan.range))
+    for name, value in {**sensor, "range_gate": gate, "half_beamwidth": half_beamwidth}.items():
         array = vtkDoubleArray()
         array.SetName(name)
         array.InsertNextValue(value)
@@ -41,7 +41,8 @@ def beams_of(scan, half_beamwidth):
     return beams
 
 
-def echo_filter(scan, corners, region=None, kd=None, half_beamwidth=SENSOR["half_beamwidth"], rays=100, threads=0):
+def echo_filter(scan, corners, region=None, kd=None, half_beamwidth=SENSOR["half_beamwidth"], rays=100, threads=0,
+                sensor=SENSOR):
     """The scan's beams on the triangles, not yet updated: the last return, as a real one is the farther of two."""
     count, none = len(corners), np.zeros(len(corners))
     surface = room_surface.surface_data(corners, {
@@ -49,7 +50,7 @@ def echo_filter(scan, corners, region=None, kd=None, half_beamwidth=SENSOR["half
         "material_id": np.full(count, 4, np.int32), "kd": np.full(count, KD) if kd is None else kd,
         "ks": none, "kp": none})
     lidar = vtkAvianLidarEchoFilter()
-    lidar.SetInputData(0, beams_of(scan, half_beamwidth))
+    lidar.SetInputData(0, beams_of(scan, half_beamwidth, sensor))
     lidar.SetSurfacesData(surface)
     lidar.SetRaysPerBeam(rays)
     lidar.SetNumberOfReflections(1)

@@ -11,7 +11,8 @@ from vtkmodules.vtkIOXML import vtkXMLPolyDataReader
 
 EXAMPLES = os.path.join(os.environ["AVIANLIDAR_SOURCE_DIR"], "Examples")
 OUTPUT = os.environ["AVIANLIDAR_TEST_OUTPUT_DIR"]
-for folder in ("common", "airport", "birds", "corridor", "coverage", "materials", "outdoor", "paper", "reflections", "room", "accuracy_speed"):
+for folder in ("common", "airport", "birds", "corridor", "coverage", "materials", "measured", "outdoor", "paper", "reflections", "room",
+               "accuracy_speed"):
     sys.path.insert(0, os.path.join(EXAMPLES, folder))
 
 
