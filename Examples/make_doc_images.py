@@ -75,7 +75,7 @@ DATA_RUNS = (
     ("room", room, [], {"errors": "room-errors", "xt32-clouds": "room-xt32-clouds", "xt32-ranges": "room-xt32-ranges",
                         "pandar40p-clouds": "room-pandar40p-clouds", "xt32-intensity": "room-xt32-intensity"}),
     ("detail", detail, [], {}),
-    ("measured", predicted_measured, [], {"ground": "measured-ground"}),
+    ("measured", predicted_measured, [], {"ground": "measured-ground", "least": "measured-least"}),
     ("falloff", falloff, [], {"signal": "falloff-signal", "beams": "falloff-beams"}),
     ("materials", check_fit, [], {"silver-metallic-paint": "materials-silver-metallic-paint"}),
 )

@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""What is predicted of lidars that one can buy, beside what was measured: sheets, the near range, where ground ends, noise of ranges.
+"""What is predicted of lidars that one can buy, beside what was measured: sheets, the near range, where ground ends, noise of ranges,
+false alarms, the least reflectance, what frames and their simulations lack.
 
     /usr/bin/python3 Examples/measured/predicted_measured.py --data DATA       # default: AVIANLIDAR_DATA_DIR
 
@@ -16,8 +17,11 @@ import numpy as np
 import avianlidar as al
 
 HERE = pathlib.Path(__file__).resolve().parent
-sys.path[:0] = [str(HERE.parent / "common"), str(HERE.parent / "outdoor")]
+sys.path[:0] = [str(HERE.parent / "common"), str(HERE.parent / "outdoor"), str(HERE.parent / "room"), str(HERE)]
 import falloff  # noqa: E402
+import frames  # noqa: E402
+import lacks  # noqa: E402
+import room  # noqa: E402
 import running  # noqa: E402
 import tables  # noqa: E402
 
@@ -26,14 +30,6 @@ ENDS = 0.25     # of the range where ground ends
 DARK = 20.0     # reflectivity up to which a point of the ground is ground: brighter ones are paint and things
 MODELS = ("LambertBlinnPhong", "OrenNayar")
 NAMED = ("Asphalt", "Concrete", "Grass")
-FRAMES = (("VLP-16", "lidar_vlp16_mrpt/vlp16.pcd", "VLP16"), ("Pandar40P", "lidar_room/pandar40p.pcd", "Pandar40P"),
-          ("PandarXT-32", "lidar_room/xt32.pcd", "PandarXT32"), ("Helios-16P", "lidar_outdoor/helios16p_frame0.pcd", "Helios16P"),
-          ("OS0-32", "lidar_ouster/os0_32.pcd", ""), ("OS1-32", "lidar_ouster/os1_32.pcd", "OS1_64"),
-          ("OS2-32", "lidar_ouster/os2_32.pcd", ""))
-
-
-def verdict(fine):
-    return "yes" if fine else "**no**"
 
 
 def sheets():
@@ -49,7 +45,7 @@ def sheets():
             trust = point["source"].split(":")[0]
             rows.append((name, f"{point['reflectance']:g}", f"{point.get('light', 0):g}", f"{point.get('probability', 0.5):g}",
                          f"{point['range']:g}", trust, f"{100 * off:+.0f} %", *((
-                             f"{100 * left:+.0f} %", f"± {100 * found.bar:.0f} %", verdict(abs(left) <= GOOD)) if left == left else
+                             f"{100 * left:+.0f} %", f"± {100 * found.bar:.0f} %", frames.verdict(abs(left) <= GOOD)) if left == left else
                              ("cannot be", "not known", "-"))))
     return ("sensor", "reflectance", "light (klx)", "seen with", "range (m)", "source", "fitted to all", "left out", "bar of the sensor",
             f"within {100 * GOOD:.0f} %"), rows
@@ -105,7 +101,7 @@ def ground(data):
         for name, model, material, of in materials:
             end = end_of(plane, material, of)
             rows.append((f"{plane.distance:.2f}", f"{tilt:.1f}", name, model, f"{real:.1f}", f"{end:.1f}", f"{end / real:.2f}",
-                         verdict(abs(end / real - 1) <= ENDS)))
+                         frames.verdict(abs(end / real - 1) <= ENDS)))
     header = ("height (m)", "tilt (deg)", "ground", "model", "measured end (m)", "predicted end (m)", "ratio", f"within {100 * ENDS:.0f} %")
     return header, rows, (kd, roughness, rms, x, y)
 
@@ -135,8 +131,9 @@ def noise_of_ranges(points, ring):
 def ranges(data):
     """Noise of ranges on the planes of each frame, and what the maker's sheet or our sensor file says."""
     rows = []
-    for name, file, preset in FRAMES:
-        cloud = al.load_cloud(data / file)
+    for frame in frames.FRAMES:
+        name, preset = frame.name, frame.preset
+        cloud = al.load_cloud(data / frame.file)
         points, ring = np.array(cloud.points, float), np.array(cloud["laser_id"], int)
         used = np.linalg.norm(points, axis=1) > falloff.NEAREST
         found = noise_of_ranges(points[used], ring[used])
@@ -149,7 +146,7 @@ def ranges(data):
         sigma = np.array([one[0] for one in found])
         rows.append((name, len(found), f"{100 * sigma.min():.2f} to {100 * sigma.max():.2f}",
                      f"{100 * quantum:.2f}" if quantum == quantum else "-", f"{100 * said:.1f}" if said == said else "not in a file here",
-                     verdict(sigma.max() <= said) if said == said else "-"))
+                     frames.verdict(sigma.max() <= said) if said == said else "-"))
     return ("frame", "planes", "measured deviation (cm)", "step of the sheet (cm)", "the sheet's accuracy (cm)", "not larger"), rows
 
 
@@ -168,12 +165,23 @@ def picture(fit, folder):
     figure.savefig(folder / "ground.png", dpi=110)
 
 
+def of_room(data):
+    """Tables of the room's lidars, and of all frames that need its surfaces (frames.py, lacks.py)."""
+    options = room.arguments(["--data", str(data), "--no-pictures", "--only-main"])
+    one, result = room.Room(options), room.Result()
+    for sensor in options.sensors:
+        room.study(one, sensor, options, result)
+    alarms, empty = frames.false_alarms(data, one)
+    return {"measured-alarms": alarms, "measured-empty": empty, "measured-room": lacks.room_results(one, result),
+            "measured-units": lacks.units(data, one), "measured-indoors": lacks.indoors(data, one, result)}
+
+
 def arguments(argv=None):
     parser = running.Parser(description=__doc__.split("\n\n")[0])
     parser.add_argument("--data", type=pathlib.Path, default=os.environ.get("AVIANLIDAR_DATA_DIR"), help="the data folder")
     parser.add_argument("--out", type=pathlib.Path, default=pathlib.Path("build/measured"))
     options = parser.parse_args(argv)
-    missing = [file for _, file, _ in FRAMES if not (pathlib.Path(options.data or "") / file).is_file()]
+    missing = [frame.file for frame in frames.FRAMES if not (pathlib.Path(options.data or "") / frame.file).is_file()]
     if missing:
         parser.error(f"there is no file {pathlib.Path(options.data or '') / missing[0]}")
     return options
@@ -183,11 +191,13 @@ def main(argv=None):
     options = arguments(argv)
     header, rows, fit = ground(options.data)
     found = {"measured-sheets": sheets(), "measured-ground": (header, rows), "measured-ranges": ranges(options.data),
-             "measured-fit": (("kd", "roughness (rad)", "rms left"), [[f"{value:.3f}" for value in fit[:3]]])}
+             "measured-least": frames.least_reflectance(options.data), "measured-outdoors": lacks.outdoors(options.data),
+             **of_room(options.data), "measured-fit": (("kd", "roughness (rad)", "rms left"), [[f"{value:.3f}" for value in fit[:3]]])}
     for name, (header, rows) in found.items():
         tables.write(options.out, name, falloff.markdown(header, rows).rstrip())
         print(falloff.markdown(header, rows))
     picture(fit, options.out)
+    frames.picture(options.data, options.out)
     return found
 
 
