@@ -124,6 +124,7 @@ void vtkAvianLidarBeamSource::TakeProperties(const vtkAvianLidarBeamSource& pres
   take(this->PrismRefractiveIndices, preset.PrismRefractiveIndices);
   take(this->PrismRotationRates, preset.PrismRotationRates);
   take(this->PrismPhases, preset.PrismPhases);
+  take(this->BeamOutline, preset.BeamOutline);
   take(this->BeamProfile, preset.BeamProfile);
   take(this->NumberOfRevolutions, preset.NumberOfRevolutions);
   take(this->StepsPerRevolution, preset.StepsPerRevolution);
@@ -352,6 +353,7 @@ std::string vtkAvianLidarBeamSource::vtkInternals::SensorOf(
       sensor.*scalar.sensor = self.*scalar.property;
     }
   }
+  sensor.beamOutline = static_cast<avianlidar::BeamOutline>(self.BeamOutline);
   sensor.beamProfile = static_cast<avianlidar::BeamProfile>(self.BeamProfile);
   sensor.receiverModel = static_cast<avianlidar::ReceiverModel>(self.ReceiverModel);
   std::string error = avianlidar::checkSensor(sensor);
@@ -475,6 +477,7 @@ void vtkAvianLidarBeamSource::vtkInternals::AddSensor(
       SetVector(fields, Arrays::AzimuthRange, self.AzimuthRange, 2);
     }
   }
+  Arrays::SetFieldInteger(fields, Arrays::BeamOutline, self.BeamOutline);
   Arrays::SetFieldInteger(fields, Arrays::BeamProfile, self.BeamProfile);
   Arrays::SetFieldInteger(fields, Arrays::NumberOfRevolutions, self.NumberOfRevolutions);
   Arrays::SetFieldInteger(fields, Arrays::StepsPerRevolution, self.StepsPerRevolution);
@@ -578,16 +581,19 @@ void vtkAvianLidarBeamSource::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "Orientation: " << this->Orientation[0] << " " << this->Orientation[1] << " "
      << this->Orientation[2] << "\n";
   os << indent << "NumberOfChannels: " << this->NumberOfChannels << "\n";
-  os << indent << "NumberOfChannelElevations: " << this->ChannelElevations.size();
-  for (std::size_t i = 0; i < this->ChannelElevations.size(); ++i)
+  for (const auto& [name, table] : vtkInternals::Tables())
   {
-    os << (i == 0 ? ": " : " ") << this->ChannelElevations[i];
+    os << indent << NameProperties(name.name) << ": (" << (this->*table).size() << ")";
+    for (const double value : this->*table)
+    {
+      os << " " << value;
+    }
+    os << "\n";
   }
-  os << "\n";
-  os << indent << "NumberOfPrisms: " << this->GetNumberOfPrisms() << "\n";
   os << indent << "Beams: " << (this->Table ? this->Table->directions.size() : 0) << "\n";
   os << indent << "AzimuthRange: " << this->AzimuthRange[0] << " " << this->AzimuthRange[1] << "\n";
   os << indent << "BeamwidthMilliradians: " << this->BeamwidthMilliradians << "\n";
+  os << indent << "BeamOutline: " << this->BeamOutline << "\n";
   os << indent << "BeamProfile: " << this->BeamProfile << "\n";
   os << indent << "NumberOfRevolutions: " << this->NumberOfRevolutions << "\n";
   os << indent << "StepsPerRevolution: " << this->StepsPerRevolution << "\n";

@@ -27,7 +27,8 @@
  *
  * **Field data** of both ports: every property in snake case, one tuple each, in the property's
  * unit: `position`, `orientation`, `number_of_channels`, `minimum_elevation`, `elevation_step`,
- * `azimuth_range`, `azimuth_step`, `half_beamwidth`, `beam_profile`, `rotation_rate`,
+ * `azimuth_range`, `azimuth_step`, `half_beamwidth`, `half_beamwidth_across`,
+ * `beam_outline`, `beam_rotation`, `beam_profile`, `gaussian_truncation`, `rotation_rate`,
  * `firing_interval`, `number_of_revolutions`, `steps_per_revolution`, `pulse_energy`,
  * `pulse_width`, `frequency`, `sampling_interval`, `range_gate`, `noise_photon_rate`,
  * `lower_energy_limit`, `upper_energy_limit`, `receiver_aperture`, `receiver_model`, `wavelength`,
@@ -127,6 +128,13 @@ public:
   {
     BEAM_PROFILE_UNIFORM = 0,
     BEAM_PROFILE_GAUSSIAN = 1
+  };
+
+  /// Values of BeamOutline.
+  enum BeamOutlines
+  {
+    BEAM_OUTLINE_ELLIPSE = 0,
+    BEAM_OUTLINE_RECTANGLE = 1
   };
 
   /// Values of ReceiverModel.
@@ -301,8 +309,8 @@ public:
 
   ///@{
   /**
-   * Half of the beam's full opening angle in radians, 1e-9 to pi/3 (60 degrees).
-   * Default 5.6e-3.
+   * Half of the beam's full opening angle in radians, 1e-9 to pi/3 (60 degrees), or 0.1 if the beam
+   * is not round. Default 5.6e-3.
    */
   vtkSetMacro(HalfBeamwidth, double);
   vtkGetMacro(HalfBeamwidth, double);
@@ -320,13 +328,55 @@ public:
 
   ///@{
   /**
-   * Radial distribution of the energy within the beam: uniform in solid angle (the paper), or
-   * Gaussian, falling to 1/e^2 at the half-beamwidth and cut there. Default BEAM_PROFILE_UNIFORM.
+   * Outline of the beam in the plane across its axis: an ellipse (with HalfBeamwidthAcross 0 a
+   * disc, the paper's), or a rectangle (with 0 a square). Default BEAM_OUTLINE_ELLIPSE.
+   */
+  vtkSetMacro(BeamOutline, int);
+  vtkGetMacro(BeamOutline, int);
+  void SetBeamOutlineToEllipse() { this->SetBeamOutline(BEAM_OUTLINE_ELLIPSE); }
+  void SetBeamOutlineToRectangle() { this->SetBeamOutline(BEAM_OUTLINE_RECTANGLE); }
+  ///@}
+
+  ///@{
+  /**
+   * Half of the opening angle across the direction in which HalfBeamwidth is measured, in radians,
+   * 1e-9 to 0.1, and 1/1000 to 1000 times HalfBeamwidth. Default 0: as wide as there. The energy of
+   * a beam that is not round is uniform over the plane across its axis, or Gaussian there.
+   */
+  vtkSetMacro(HalfBeamwidthAcross, double);
+  vtkGetMacro(HalfBeamwidthAcross, double);
+  ///@}
+
+  ///@{
+  /**
+   * How far the direction in which HalfBeamwidth is measured is turned from the horizontal of the
+   * sensor (see SetOrientation()) upwards, on the right of someone who looks along the beam, in
+   * degrees, -360 to 360. A beam straight up has no horizontal: it is turned from a direction of
+   * its own. Default 0: HalfBeamwidth is measured across, HalfBeamwidthAcross upwards.
+   */
+  vtkSetMacro(BeamRotation, double);
+  vtkGetMacro(BeamRotation, double);
+  ///@}
+
+  ///@{
+  /**
+   * Distribution of the energy within the beam: uniform in solid angle (the paper), or Gaussian,
+   * cut at the outline (see GaussianTruncation). Default BEAM_PROFILE_UNIFORM.
    */
   vtkSetMacro(BeamProfile, int);
   vtkGetMacro(BeamProfile, int);
   void SetBeamProfileToUniform() { this->SetBeamProfile(BEAM_PROFILE_UNIFORM); }
   void SetBeamProfileToGaussian() { this->SetBeamProfile(BEAM_PROFILE_GAUSSIAN); }
+  ///@}
+
+  ///@{
+  /**
+   * Where the Gaussian profile is cut: half-beamwidths over its radii of 1/e^2, a pure number, 0.1
+   * to 3. Default 1: it falls to 1/e^2 at the half-beamwidth; with 1.5 to 1.1 %. A data sheet
+   * that says the 1/e^2 angle w goes with HalfBeamwidth = 1.5 w then.
+   */
+  vtkSetMacro(GaussianTruncation, double);
+  vtkGetMacro(GaussianTruncation, double);
   ///@}
 
   ///@{
@@ -719,7 +769,11 @@ protected:
   double AzimuthStep = 0.375;
   double HalfBeamwidth = 5.6e-3;
   double BeamwidthMilliradians = 0.0;
+  int BeamOutline = BEAM_OUTLINE_ELLIPSE;
+  double HalfBeamwidthAcross = 0.0;
+  double BeamRotation = 0.0;
   int BeamProfile = BEAM_PROFILE_UNIFORM;
+  double GaussianTruncation = 1.0;
   double RotationRate = 0.5;
   double FiringInterval = 30e-6;
   int NumberOfRevolutions = 1;

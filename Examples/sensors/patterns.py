@@ -4,7 +4,7 @@
 
     PYTHONPATH=$(cat build/paraview/python-path) /usr/bin/python3 Examples/sensors/patterns.py --out build/patterns
 
-The share is that of the directions in the field of view that lie in a beam, within its half-beamwidth; the field of view are the
+The share is that of the directions in the field of view that lie in a beam; the field of view are the
 directions within MARGIN of a beam of the first LONG seconds. Directions are drawn evenly by solid angle.
 """
 import argparse
@@ -50,6 +50,23 @@ def angles(directions):
     return (np.degrees(np.arctan2(directions[:, 0], directions[:, 1])), np.degrees(np.arcsin(np.clip(directions[:, 2], -1.0, 1.0))))
 
 
+def first_beams(sensor, beams, drawn):
+    """Of each direction the number of the first beam that holds it, or inf. Beams are upright ellipses."""
+    half = np.array([sensor.half_beamwidth, sensor.half_beamwidth_across or sensor.half_beamwidth])
+    near = cKDTree(drawn).query_ball_point(beams, 2 * np.sin(half.max() / 2))
+    beam = np.repeat(np.arange(len(beams)), [len(one) for one in near])
+    direction = np.concatenate([np.array(one, dtype=int) for one in near])
+    axis = beams[beam]
+    right = np.cross(axis, [0.0, 0.0, 1.0])
+    right /= np.linalg.norm(right, axis=1)[:, None]
+    away = drawn[direction] / np.sum(drawn[direction] * axis, axis=1)[:, None]
+    place = np.column_stack([np.sum(away * right, axis=1), np.sum(away * np.cross(right, axis), axis=1)]) / np.tan(half)
+    held = np.sum(place**2, axis=1) <= 1
+    first = np.full(len(drawn), np.inf)
+    np.minimum.at(first, direction[held], beam[held])
+    return first
+
+
 def coverage(sensor, times=TIMES):
     """Shares of the field of view that are covered after `times`, and the field of view: solid angle (sr), azimuths and
     elevations (deg)."""
@@ -63,9 +80,8 @@ def coverage(sensor, times=TIMES):
     chord = 2 * np.sin(np.radians(MARGIN) / 2)
     drawn = drawn[cKDTree(beams).query(drawn, distance_upper_bound=chord)[0] < chord]
     solid = (high - low) * (most - least) * len(drawn) / DRAWN
-    chord = 2 * np.sin(sensor.half_beamwidth / 2)
-    per_second = len(beams) / LONG
-    shares = [np.mean(cKDTree(beams[:int(round(time * per_second))]).query(drawn, distance_upper_bound=chord)[0] < chord) for time in times]
+    first = first_beams(sensor, beams, drawn)
+    shares = [np.mean(first < round(time * len(beams) / LONG)) for time in times]
     return np.array(shares), solid, (azimuth.min(), azimuth.max()), (elevation.min(), elevation.max())
 
 

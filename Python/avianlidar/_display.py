@@ -105,6 +105,8 @@ def sensor_rows(sensor) -> Dict[str, Any]:
     rows.update({"position": "({:g}, {:g}, {:g}) m".format(*sensor.position), "wavelength": value("wavelength", "nm"),
                  "range gate": value("range_gate", "m"), "pulse energy": value("pulse_energy", "\u00b5J", 1e6),
                  "full beam width": value("half_beamwidth", "mrad", 2e3), "rate": value("rotation_rate", "Hz")})
+    if sensor.half_beamwidth_across:
+        rows["full beam width"] += " by " + value("half_beamwidth_across", "mrad", 2e3)
     if assumed:
         rows["assumed"] = ", ".join(assumed)
     said = sensor.description

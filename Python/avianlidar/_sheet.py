@@ -3,7 +3,7 @@
 
 A sheet says at which range a board of a reflectance is seen with which probability, in which light. One number fits none of them:
 by 1/r^2 a board of 80 % is seen 2.83 times as far as one of 10 %, sheets say 1.7 to 2.5. A board at R fills f = min(1, w^2/(Omega R^2))
-of the beam, w its width, (1 - exp(-2 f))/(1 - exp(-2)) of a Gaussian one; it gives n = eta E rho A/(pi R^2 h nu) electrons for what it fills, and, lit by sky and sun, its daylight as
+of a round beam, w its width, (1 - exp(-2 k^2 f))/(1 - exp(-2 k^2)) of a Gaussian one, k its truncation; it gives n = eta E rho A/(pi R^2 h nu) electrons for what it fills, and, lit by sky and sun, its daylight as
 background, beside the sky past it: the sensor's `background_radiance` in 100 klx, less in less light. It is seen with the probability that n and Gaussian noise exceed the threshold (Documentation/sensors.md). Fitted are, as
 far as the points tell them: the aperture A (how much light), the filter's bandwidth (how much daylight, also that of a view wider than the beam) and, where no point has it,
 the width of the boards without one, which is not the receiver's but unknown. SciPy's least squares, over logarithms of ranges.
@@ -77,15 +77,48 @@ def irradiance(light: float, wavelength: float) -> float:
     return 0.01 * light * float(np.interp(wavelength, [row[0] for row in DAYLIGHT], [row[1] for row in DAYLIGHT]))
 
 
+def solid_angle_of(sensor) -> float:
+    """Solid angle of a sensor's beams, sr."""
+    half, across = float(sensor.half_beamwidth), float(sensor.half_beamwidth_across)
+    if int(sensor.algorithm.GetBeamOutline()) == 1:
+        return 4 * half * (across or half)
+    return np.pi * half * across if across else 4 * np.pi * np.sin(0.5 * half) ** 2
+
+
+def share_on_board(sensor, tangent):
+    """Share of a beam's energy that falls on a square board, upright and centred. @param tangent of the angle at which the board's
+    side appears, one or many. Beams are not turned here. A round one, whose border may cut the board's corners, counts as a disc of
+    its area."""
+    tangent = np.asarray(tangent, dtype=float)
+    half, across = float(sensor.half_beamwidth), float(sensor.half_beamwidth_across)
+    fall = 2 * float(sensor.gaussian_truncation) ** 2 if int(sensor.algorithm.GetBeamProfile()) == 1 else 0.0
+    rectangle = int(sensor.algorithm.GetBeamOutline()) == 1
+    if not rectangle and not across:
+        filled = np.minimum(1.0, tangent**2 / solid_angle_of(sensor))
+        return np.expm1(-fall * filled) / np.expm1(-fall) if fall else filled
+    from scipy.special import erf
+    nodes, weights = np.polynomial.legendre.leggauss(64)
+
+    def within(u, v):  # of the plane, in half-widths
+        x = nodes * u[..., None]
+        height = np.minimum(1.0 if rectangle else np.sqrt(1 - x * x), v[..., None])
+        root = np.sqrt(fall)
+        light = np.exp(-fall * x * x) * erf(root * height) / root if fall else height
+        return u * (weights * light).sum(axis=-1)
+
+    ones = np.ones_like(tangent)
+    return within(*(np.minimum(1.0, 0.5 * tangent / np.tan(width)) for width in (half, across or half))) / within(ones, ones)
+
+
 class Receiver:
     """What the fit needs of a sensor (Documentation/sensors.md has the formulas)."""
 
     def __init__(self, sensor):
         from scipy.special import erfcinv
-        half = float(sensor.half_beamwidth)
-        self.solid_angle = 4 * np.pi * np.sin(0.5 * half) ** 2
+        self.solid_angle = solid_angle_of(sensor)
         self.wavelength = float(sensor.wavelength)
-        self.gaussian = int(sensor.algorithm.GetBeamProfile()) == 1
+        self.tangents = np.geomspace(1e-8, 10, 4000)  # of boards
+        self.shares = share_on_board(sensor, self.tangents)
         self.interval = float(sensor.sampling_interval)
         photon = 6.62607015e-34 * 299792458.0 / (1e-9 * self.wavelength)
         self.per_joule = float(sensor.receiver_efficiency) / photon
@@ -102,9 +135,7 @@ class Receiver:
         """By how many deviations of the noise what a board gives exceeds the threshold. @param distance m, one or many"""
         distance = np.asarray(distance, dtype=float)
         rho, light, board = point["reflectance"], point.get("light", 0.0), point.get("board", board)
-        filled = np.minimum(1.0, board**2 / (self.solid_angle * distance**2)) if np.isfinite(board) else np.ones_like(distance)
-        if self.gaussian:  # cut at 1/e2; a disc of the board's area
-            filled = -np.expm1(-2 * filled) / -np.expm1(-2)
+        filled = np.interp(board / distance, self.tangents, self.shares) if np.isfinite(board) else np.ones_like(distance)
         near = (1 - np.exp(-(distance / self.overlap) ** 2) if self.overlap else 1.0) / (1 + (self.defocus / distance) ** 2)
         signal = self.per_joule * self.pulse_energy * filled * near * np.minimum(1.0, rho * aperture / (np.pi * distance**2))
         sky = self.sky * light

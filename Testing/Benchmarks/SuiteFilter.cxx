@@ -155,7 +155,7 @@ struct Stages
     BeamRays rays;
     for (const std::uint64_t id : this->beams.ids)
     {
-      sampleBeam(0, id, 100, 5.6e-3, BeamProfile::Uniform, Sampling::Stratified, &strata, rays);
+      sampleBeam(0, id, 100, { 5.6e-3, BeamProfile::Uniform }, Sampling::Stratified, &strata, rays);
     }
   }
   void light(int threads)

@@ -236,7 +236,7 @@ struct Touched
 
   Touched(const ScanSetup& setup, const ScanBeams& beams)
   {
-    BeamSampler sampler(setup.settings.sampling, setup.settings.raysPerBeam);
+    BeamSampler sampler(setup.sensor, setup.settings.sampling, setup.settings.raysPerBeam);
     MovedBeams moved(setup, beams, sampler, {}, false);
     moved.find(0, beams.size());
     for (std::size_t b = 0; b < beams.size(); ++b)

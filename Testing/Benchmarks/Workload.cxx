@@ -33,8 +33,9 @@ Workload makeWorkload(const Scene& scene, const BeamAxes& axes)
       work.frames.push_back(makeBeamFrame(scene.apex,
         Vec3(beam.direction[0], beam.direction[1], beam.direction[2]), axes.halfBeamwidth));
       work.rays.emplace_back();
-      sampleBeam(0, static_cast<std::uint64_t>(b), axes.raysPerBeam, axes.halfBeamwidth,
-        BeamProfile::Uniform, Sampling::Stratified, &strata, work.rays.back());
+      sampleBeam(0, static_cast<std::uint64_t>(b), axes.raysPerBeam,
+        { axes.halfBeamwidth, BeamProfile::Uniform }, Sampling::Stratified, &strata,
+        work.rays.back());
     }
   }
   for (std::size_t i = 0; i < work.size(); ++i)

@@ -317,7 +317,7 @@ void TestPrint()
   source->SetChannelElevation(2, 2.25);
   std::ostringstream text;
   source->Print(text);
-  Check(text.str().find("NumberOfChannelElevations: 3: -1.5 0 2.25\n") != std::string::npos,
+  Check(text.str().find("ChannelElevations: (3) -1.5 0 2.25\n") != std::string::npos,
     "the table is printed");
 }
 

@@ -76,11 +76,15 @@ class SeenInCells
 {
 public:
   explicit SeenInCells(const ScanSetup& setup)
-    : Setup(setup)
-    , Finder(*setup.tree, 100, MostTrianglesOfCells)
+    : SeenInCells(
+        setup, makeBeamFrame(Vec3(0.0), Vec3(1.0, 0.0, 0.0), BeamWidth(setup.sensor.halfBeamwidth)))
   {
-    const BeamFrame frame =
-      makeBeamFrame(Vec3(0.0), Vec3(1.0, 0.0, 0.0), BeamWidth(setup.sensor.halfBeamwidth));
+  }
+
+  SeenInCells(const ScanSetup& setup, const BeamFrame& frame)
+    : Setup(setup)
+    , Finder(*setup.tree, 0, MostTrianglesOfCells)
+  {
     std::vector<std::uint32_t> all(setup.tree->mesh->triangles.size());
     std::iota(all.begin(), all.end(), 0u);
     this->Finder.begin(frame);

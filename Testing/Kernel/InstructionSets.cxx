@@ -323,7 +323,7 @@ void writeHits(Writer& out, const Case& c, const CollisionTree& tree, std::size_
   for (std::size_t i = 0; i < c.beams.size(); i += c.beams.size() / numberOfBeams)
   {
     tracer.setBeam(makeBeamFrame(c.beams.origins[i], c.beams.directions[i], c.halfBeamwidth));
-    sampleBeam(5, i, numberOfRays, c.halfBeamwidth, BeamProfile::Uniform, Sampling::Stratified,
+    sampleBeam(5, i, numberOfRays, { c.halfBeamwidth, BeamProfile::Uniform }, Sampling::Stratified,
       &strata, rays);
     tracer.trace(rays, mode, hits);
     for (const Hit& hit : hits)

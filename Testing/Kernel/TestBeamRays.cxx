@@ -46,7 +46,7 @@ double meanOver(std::uint64_t beams, std::size_t count, double t, BeamProfile pr
   double sum = 0.0;
   for (std::uint64_t beam = 0; beam < beams; ++beam)
   {
-    sampleBeam(3, beam, count, t, profile, sampling, &strata, rays);
+    sampleBeam(3, beam, count, { t, profile }, sampling, &strata, rays);
     for (std::size_t n = 0; n < count; ++n)
     {
       sum += value(rays.x[n], rays.y[n]);
@@ -70,7 +70,7 @@ double chiSquare(double t, BeamProfile profile, Sampling sampling, std::size_t c
   BeamRays rays;
   for (std::uint64_t beam = 0; beam < total / count; ++beam)
   {
-    sampleBeam(11, beam, count, t, profile, sampling, &strata, rays);
+    sampleBeam(11, beam, count, { t, profile }, sampling, &strata, rays);
     for (std::size_t n = 0; n < count; ++n)
     {
       const Polar p = polar(rays, n, t);
@@ -121,7 +121,7 @@ TEST(BeamRays, EveryRayLiesInTheCone)
         const StrataPartition strata(count);
         for (const Sampling sampling : { Sampling::MonteCarlo, Sampling::Stratified })
         {
-          sampleBeam(0, 5, count, t, profile, sampling, &strata, rays);
+          sampleBeam(0, 5, count, { t, profile }, sampling, &strata, rays);
           ASSERT_EQ(rays.size(), count);
           for (std::size_t n = 0; n < count; ++n)
           {
@@ -138,7 +138,7 @@ TEST(BeamRays, RadiusIsExactAtEveryBeamwidth)
   BeamRays rays;
   for (const double t : halfBeamwidths)
   {
-    sampleBeam(4, 9, 1000, t, BeamProfile::Uniform, Sampling::MonteCarlo, nullptr, rays);
+    sampleBeam(4, 9, 1000, { t, BeamProfile::Uniform }, Sampling::MonteCarlo, nullptr, rays);
     for (std::size_t n = 0; n < rays.size(); ++n)
     {
       const long double v = uniformPair(4, 9, n, RandomPurpose::Rays)[0];
@@ -282,7 +282,7 @@ TEST(BeamRays, StratifiedBeatsMonteCarloSixfoldAtAnEdge)
       const double edge = 2.0 * place[0] - 1.0;
       const double turn = 2.0 * Pi * place[1];
       const double share = (std::acos(edge) - edge * std::sqrt(1.0 - edge * edge)) / Pi;
-      sampleBeam(1, beam, 100, 1e-3, BeamProfile::Uniform, sampling, &strata, rays);
+      sampleBeam(1, beam, 100, { 1e-3, BeamProfile::Uniform }, sampling, &strata, rays);
       int beyond = 0;
       for (std::size_t n = 0; n < 100; ++n)
       {
@@ -300,8 +300,8 @@ TEST(BeamRays, Deterministic)
 {
   BeamRays a;
   BeamRays b;
-  sampleBeam(1, 2, 50, 0.01, BeamProfile::Uniform, Sampling::MonteCarlo, nullptr, a);
-  sampleBeam(1, 2, 60, 0.01, BeamProfile::Uniform, Sampling::MonteCarlo, nullptr, b);
+  sampleBeam(1, 2, 50, { 0.01, BeamProfile::Uniform }, Sampling::MonteCarlo, nullptr, a);
+  sampleBeam(1, 2, 60, { 0.01, BeamProfile::Uniform }, Sampling::MonteCarlo, nullptr, b);
   EXPECT_TRUE(std::equal(a.x.begin(), a.x.end(), b.x.begin()));
 }
 
@@ -310,10 +310,10 @@ TEST(BeamRays, StrataThatDoNotFitAreRefused)
   BeamRays rays;
   const StrataPartition strata(10);
   EXPECT_THROW(
-    sampleBeam(0, 0, 11, 0.01, BeamProfile::Uniform, Sampling::Stratified, &strata, rays),
+    sampleBeam(0, 0, 11, { 0.01, BeamProfile::Uniform }, Sampling::Stratified, &strata, rays),
     std::invalid_argument);
   EXPECT_THROW(
-    sampleBeam(0, 0, 11, 0.01, BeamProfile::Uniform, Sampling::Stratified, nullptr, rays),
+    sampleBeam(0, 0, 11, { 0.01, BeamProfile::Uniform }, Sampling::Stratified, nullptr, rays),
     std::invalid_argument);
   EXPECT_THROW(StrataPartition(0), std::invalid_argument);
 }
@@ -390,7 +390,7 @@ TEST(BeamRays, PatternsTogetherFillEveryCellEvenly)
   for (std::size_t p = 0; p < PatternsOfRays; ++p)
   {
     BeamRays pattern;
-    samplePattern(5, p, PatternsOfRays, half, BeamProfile::Uniform, strata, pattern);
+    samplePattern(5, p, PatternsOfRays, { half, BeamProfile::Uniform }, strata, pattern);
     ASSERT_EQ(pattern.size(), count);
     for (std::size_t n = 0; n < count; ++n)
     {
@@ -421,7 +421,7 @@ TEST(BeamRays, TurnedRaysStayInTheBeam)
   BeamRays pattern;
   BeamRays turned;
   const StrataPartition strata(500);
-  samplePattern(0, 3, PatternsOfRays, 0.01, BeamProfile::Gaussian, strata, pattern);
+  samplePattern(0, 3, PatternsOfRays, { 0.01, BeamProfile::Gaussian }, strata, pattern);
   for (std::size_t k = 0; k < 1000; ++k)
   {
     const double turns = uniformPair(1, 0, k, RandomPurpose::Turns)[0];

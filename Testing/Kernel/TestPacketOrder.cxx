@@ -21,7 +21,7 @@ BeamRays stratifiedRays(std::uint64_t beam, std::size_t count)
 {
   const StrataPartition strata(count);
   BeamRays rays;
-  sampleBeam(0, beam, count, 0.01, BeamProfile::Uniform, Sampling::Stratified, &strata, rays);
+  sampleBeam(0, beam, count, { 0.01, BeamProfile::Uniform }, Sampling::Stratified, &strata, rays);
   return rays;
 }
 

@@ -216,7 +216,7 @@ TEST(Receiver, RangeOnATiltedPlane)
   const std::size_t count = 1000001; // standard error 2.5e-7, relative
   const StrataPartition strata(count);
   BeamRays rays;
-  sampleBeam(0, 0, count, t, BeamProfile::Uniform, Sampling::Stratified, &strata, rays);
+  sampleBeam(0, 0, count, { t, BeamProfile::Uniform }, Sampling::Stratified, &strata, rays);
   std::vector<Pulse> echoes;
   for (std::size_t n = 0; n < count; ++n)
   {

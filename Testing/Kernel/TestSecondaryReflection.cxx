@@ -100,8 +100,8 @@ TEST(SecondaryReflection, AnOpenVIsMetByItsShareOfTheCone)
   constexpr std::size_t count = 1000000;
   const StrataPartition strata(count);
   BeamRays rays;
-  sampleBeam(
-    0, 0, count, frame.halfBeamwidth, BeamProfile::Uniform, Sampling::Stratified, &strata, rays);
+  sampleBeam(0, 0, count, { frame.halfBeamwidth, BeamProfile::Uniform }, Sampling::Stratified,
+    &strata, rays);
   OneBeamTracer tracer(*tree);
   tracer.setBeam(frame);
   std::vector<Hit> hits;

@@ -126,29 +126,64 @@ TEST(Silhouette, ABeamLightsWhatRaysInItMeet)
       }
     }
   }
-  for (const BeamProfile profile : { BeamProfile::Uniform, BeamProfile::Gaussian })
+  struct Shape
+  {
+    double ratio; ///< of the sides
+    bool isRectangle;
+    BeamProfile profile;
+    double truncation;
+  };
+  for (const Shape& shape : { Shape{ 1.0, false, BeamProfile::Uniform, 1.0 },
+         { 1.0, false, BeamProfile::Gaussian, 1.0 }, { 1.0, false, BeamProfile::Gaussian, 2.0 },
+         { 0.3, false, BeamProfile::Uniform, 1.0 }, { 0.3, false, BeamProfile::Gaussian, 1.5 },
+         { 0.4, true, BeamProfile::Uniform, 1.0 }, { 0.4, true, BeamProfile::Gaussian, 1.0 } })
   {
     for (const double radius : { 0.03, 0.08, 0.2, 0.6, 2.0 })
     {
+      if (radius * shape.ratio < 0.02)
+      {
+        continue;
+      }
       double bias = 0.0;
       constexpr int Beams = 40;
       for (int k = 0; k < Beams; ++k)
       {
         const double away = std::min(0.5, radius + 0.1) * uniform(random);
         const double angle = 2.0 * Pi * uniform(random);
-        const BeamAtTarget beam{ radius, away * std::cos(angle), away * std::sin(angle), profile };
+        const double turn = 2.0 * Pi * uniform(random);
+        BeamAtTarget beam{ radius, away * std::cos(angle), away * std::sin(angle), shape.profile };
+        beam.across = shape.ratio * radius;
+        beam.cosine = std::cos(turn);
+        beam.sine = std::sin(turn);
+        beam.isRectangle = shape.isRectangle;
+        const double fall = 2.0 * shape.truncation * shape.truncation;
+        const double side = std::sqrt(fall); // of exp(-side^2 u^2), u from -1 to 1
+        const double mean = shape.isRectangle
+          ? std::pow(0.5 * std::sqrt(Pi) * std::erf(side) / side, 2)
+          : -std::expm1(-fall) / fall;
+        beam.fall = fall;
+        beam.most = 1.0 / mean;
+        const bool isUniform = shape.profile == BeamProfile::Uniform;
         double area = 0.0;
         double depth = 0.0;
         for (const Ray& ray : rays)
         {
-          const double r2 = std::pow(ray.x - beam.x, 2) + std::pow(ray.y - beam.y, 2);
-          const double lit =
-            r2 < radius * radius ? step * step * ray.met.cosine * beam.irradiance(r2) : 0.0;
+          const double x = ray.x - beam.x;
+          const double y = ray.y - beam.y;
+          const double u = (std::cos(turn) * x + std::sin(turn) * y) / radius;
+          const double v = (std::cos(turn) * y - std::sin(turn) * x) / (shape.ratio * radius);
+          const double light =
+            shape.profile == BeamProfile::Gaussian ? std::exp(-fall * (u * u + v * v)) / mean : 1.0;
+          const bool isLit =
+            shape.isRectangle ? std::max(std::fabs(u), std::fabs(v)) < 1.0 : u * u + v * v < 1.0;
+          const double lit = isLit ? step * step * ray.met.cosine * light : 0.0;
           area += lit;
           depth += lit * ray.met.depth;
         }
         const LitPart lit = shown.litBy(beam);
-        const double scale = std::min(Pi * radius * radius, shown.all().area);
+        const double scale = (isUniform ? 1.0 : std::max(1.0, 0.5 * beam.most)) *
+          std::min(
+            (shape.isRectangle ? 4.0 : Pi) * shape.ratio * radius * radius, shown.all().area);
         EXPECT_NEAR(lit.area, area, 0.12 * scale) << radius;
         if (area > 0.2 * scale)
         {

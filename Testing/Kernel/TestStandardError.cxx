@@ -40,7 +40,7 @@ double coverage(Sampling sampling, bool plain,
   constexpr int beams = 4000;
   for (std::uint64_t beam = 0; beam < beams; ++beam)
   {
-    sampleBeam(2, beam, RayCount, 1e-3, BeamProfile::Uniform, sampling, &strata, rays);
+    sampleBeam(2, beam, RayCount, { 1e-3, BeamProfile::Uniform }, sampling, &strata, rays);
     estimator.begin();
     double sum = 0.0;
     for (std::size_t n = 0; n < RayCount; ++n)
@@ -176,7 +176,7 @@ TEST(StandardError, SmallSamplesHoldTheTruth)
       constexpr int beams = 10000;
       for (std::uint64_t beam = 0; beam < beams; ++beam)
       {
-        sampleBeam(5, beam, rays, 1e-3, BeamProfile::Uniform, sampling, &strata, sample);
+        sampleBeam(5, beam, rays, { 1e-3, BeamProfile::Uniform }, sampling, &strata, sample);
         const auto holds = [&](const auto& energyOf, bool plane, double truth)
         {
           estimator.begin();
@@ -224,7 +224,8 @@ TEST(StandardError, VarianceHasNoBias)
     constexpr int beams = 60000;
     for (std::uint64_t beam = 0; beam < beams; ++beam)
     {
-      sampleBeam(4, beam, count, 1e-3, BeamProfile::Uniform, Sampling::Stratified, &strata, rays);
+      sampleBeam(
+        4, beam, count, { 1e-3, BeamProfile::Uniform }, Sampling::Stratified, &strata, rays);
       estimator.begin();
       double total = 0.0;
       for (std::size_t n = 0; n < count; ++n)

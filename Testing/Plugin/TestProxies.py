@@ -25,7 +25,11 @@ BEAM_SOURCE = {
     "AzimuthStep": "degrees",
     "HalfBeamwidth": "radians",
     "BeamwidthMilliradians": "milliradians",
+    "HalfBeamwidthAcross": "radians",
+    "BeamOutline": "",
+    "BeamRotation": "degrees",
     "BeamProfile": "",
+    "GaussianTruncation": "",
     "RotationRate": "hertz",
     "FiringInterval": "seconds",
     "NumberOfRevolutions": "",
@@ -205,6 +209,7 @@ CONTRACT = {
 INTERNAL = "ErrorsAsData"
 CHOICES = {
     "Preset": ["Custom", "Draft", "Standard", "Reference"],
+    "BeamOutline": ["Ellipse", "Rectangle"],
     "BeamProfile": ["Uniform", "Gaussian"],
     "ReceiverModel": ["EnergyLimits", "Photons"],
     "Material": ["Wall", "Glass", "Metal", "Wood", "Concrete", "Asphalt", "Grass", "Plumage", "Custom"],

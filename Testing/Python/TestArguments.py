@@ -84,7 +84,7 @@ ARRAY = ("text", "wide", "short")
 FINITE = ARRAY + ("nan", "infinite")
 WHOLE = FINITE + ("fraction", "huge")
 ONE = ("text", "two", "nan", "infinite")
-SENSOR = """half_beamwidth beam_profile pulse_energy pulse_width frequency sampling_interval range_gate noise_photon_rate
+SENSOR = """half_beamwidth half_beamwidth_across beam_outline beam_rotation beam_profile gaussian_truncation pulse_energy pulse_width frequency sampling_interval range_gate noise_photon_rate
 lower_energy_limit upper_energy_limit receiver_aperture display_length""".split()
 OF_BEAMS = [("point", "direction", FINITE), ("point", "reported_direction", FINITE), ("point", "beam_id", WHOLE), ("point", "laser_id", WHOLE),
             ("point", "azimuth", FINITE), ("point", "vertical_angle", FINITE), ("point", "timestamp", FINITE),

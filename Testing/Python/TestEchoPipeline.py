@@ -223,8 +223,8 @@ report_units = {
 }
 field_units = {
     "m": "position display_length range_gate perceivable_range range_noise range_noise_floor range_walk range_quantum overlap_range defocus_range",
-    "deg": "sun_azimuth sun_elevation orientation minimum_elevation elevation_step azimuth_range azimuth_step",
-    "rad": "half_beamwidth",
+    "deg": "beam_rotation sun_azimuth sun_elevation orientation minimum_elevation elevation_step azimuth_range azimuth_step",
+    "rad": "half_beamwidth half_beamwidth_across",
     "Hz": "rotation_rate frequency noise_photon_rate",
     "s": "firing_interval pulse_width sampling_interval",
     "J": "pulse_energy lower_energy_limit upper_energy_limit noise_bound light_energy_constraint_bound further_reflections_bound "

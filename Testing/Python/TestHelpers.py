@@ -24,7 +24,7 @@ SCENE = os.path.join(os.environ["AVIANLIDAR_SOURCE_DIR"], "Examples", "airport",
 
 
 # Properties of the sensor without a unit.
-COUNTS = {"number_of_channels", "beam_profile", "number_of_revolutions", "steps_per_revolution", "receiver_model",
+COUNTS = {"number_of_channels", "beam_outline", "beam_profile", "gaussian_truncation", "number_of_revolutions", "steps_per_revolution", "receiver_model",
           "receiver_efficiency", "excess_noise_factor", "false_alarms_per_scan", "range_noise_exponent", "motion_seed"}
 
 

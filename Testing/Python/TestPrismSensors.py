@@ -102,7 +102,7 @@ class Windows(unittest.TestCase):
         sensor = vtkAvianLidar.vtkAvianLidarBeamSource()
         sensor.SetPresetToMid360()
         self.assertEqual(sensor.GetNumberOfPrisms(), 2)
-        self.assertIn("NumberOfPrisms: 2", str(sensor))
+        self.assertIn("PrismWedgeAngles: (2) 26.4 -26.4\n", str(sensor))
         sensor.SetPresetToAirport16()
         self.assertEqual(sensor.GetNumberOfPrisms(), 0)
 
@@ -146,10 +146,15 @@ class FieldsOfView(unittest.TestCase):
         drawn = np.column_stack([np.sqrt(1 - up ** 2) * np.cos(about), up, np.sqrt(1 - up ** 2) * np.sin(about)])
         seen, shares = np.zeros(3000, dtype=bool), []
         for number in range(10):
-            near = drawn @ window(sensor, number)["direction"].T
-            seen |= near.max(axis=1) >= np.cos(sensor.half_beamwidth)
+            axis = window(sensor, number)["direction"]
+            right = np.cross(axis, [0, 0, 1])
+            right /= np.linalg.norm(right, axis=1)[:, None]
+            ahead = drawn @ axis.T
+            place = [drawn @ across.T / ahead / np.tan(half) for across, half in (
+                (right, sensor.half_beamwidth), (np.cross(right, axis), sensor.half_beamwidth_across))]
+            seen |= np.any((place[0]**2 + place[1]**2 <= 1) & (ahead > 0), axis=1)
             shares.append(seen.mean())
-        # 10,000 discs of 0.8 mrad have 5.7 % of the area, and overlap.
+        # 10,000 ellipses with the area of discs of 0.8 mrad have 5.7 % of the field's, and overlap.
         self.assertTrue(0.03 < shares[0] < 0.057, shares[0])
         self.assertGreater(shares[-1], 7 * shares[0])
         self.assertTrue(all(np.diff(shares) >= 0))

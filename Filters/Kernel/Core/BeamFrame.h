@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file BeamFrame.h
- * @brief A beam: apex, axis, half-beamwidth, and the orthonormal frame about its axis.
+ * @brief A beam: apex, axis, half-beamwidth, and the orthogonal frame about its axis.
  *
  * A ray of the beam is a point (x, y) of the beam's own plane at unit distance, in units of
  * tan(theta0.5). Its direction is axis + tan(theta0.5) (x e1 + y e2), not normalised, and x^2 +
- * y^2 <= 1.
+ * y^2 <= 1. In a round beam e2 is a unit vector. In others it is as much shorter as the beam is
+ * narrower there: an ellipse is the unit disc, too, and a rectangle the square in it. The cone of
+ * the half-beamwidth holds them all.
  *
  * Source: frame of Duff et al., "Building an Orthonormal Basis, Revisited", JCGT 6(1), 2017.
  * Differs: the axis is normalised twice, so that it is a unit vector to the last bits.
@@ -17,6 +19,9 @@
 #define avianlidar_BeamFrame_h
 
 #include "Vector.h"
+
+#include <algorithm>
+#include <cmath>
 
 namespace avianlidar
 {
@@ -30,13 +35,18 @@ struct BeamFrame
   double tanHalf = 0.0;
   double sinHalf = 0.0;
   double cosHalf = 1.0;
+  double flatness2 = 1.0; ///< squared length of e2
+  bool isRectangle = false;
 
-  /// Components of a vector along e1, e2 (divided by tan(theta0.5)) and the axis.
+  /// x and y of a vector's direction, both times its component along the axis, and that.
   Vec3 toPlane(const Vec3& v) const
   {
-    return { glm::dot(v, this->e1) / this->tanHalf, glm::dot(v, this->e2) / this->tanHalf,
-      glm::dot(v, this->axis) };
+    return { glm::dot(v, this->e1) / this->tanHalf,
+      glm::dot(v, this->e2) / (this->tanHalf * this->flatness2), glm::dot(v, this->axis) };
   }
+
+  /// Squared tangent of the angle of a ray from the axis, over that of the half-beamwidth.
+  double radius2(double x, double y) const { return x * x + this->flatness2 * (y * y); }
 
   /// Direction of the ray (x, y), not normalised: its component along the axis is 1.
   Vec3 direction(double x, double y) const
@@ -44,11 +54,13 @@ struct BeamFrame
     return this->axis + this->tanHalf * (x * this->e1 + y * this->e2);
   }
 
-  /// True if the point at `v` from the apex lies in the closed cone.
+  /// True if the point at `v` from the apex lies in the beam, its outline included.
   bool contains(const Vec3& v) const
   {
     const Vec3 p = this->toPlane(v);
-    return p.z > 0.0 && p.x * p.x + p.y * p.y <= p.z * p.z;
+    const double square =
+      this->isRectangle ? 2.0 * std::max(p.x * p.x, p.y * p.y) : p.x * p.x + p.y * p.y;
+    return p.z > 0.0 && square <= p.z * p.z;
   }
 };
 
@@ -56,6 +68,12 @@ struct BeamFrame
 struct BeamWidth
 {
   double half, tangent, sine, cosine;
+  bool isRound = true;
+  // Of beams that are not:
+  bool isRectangle = false;
+  double flatness = 1.0;    ///< tangents along e2 over those along e1, at most 1
+  double turn = 0.0;        ///< rad, of e1 from the horizontal towards `up`
+  Vec3 up{ 0.0, 0.0, 1.0 }; ///< unit vector, at right angles to the horizontal
   explicit BeamWidth(double halfBeamwidth)
     : half(halfBeamwidth)
     , tangent(std::tan(halfBeamwidth))
@@ -64,6 +82,21 @@ struct BeamWidth
   {
   }
 };
+
+/// Turn e1 and e2 of a frame to the axes of a beam that is not round. Looking along a beam that
+/// points up or down, e1 stays as it is before it is turned.
+inline void setAxes(const BeamWidth& width, BeamFrame& frame)
+{
+  const Vec3 across = glm::cross(frame.axis, width.up);
+  const Vec3 right = glm::dot(across, across) > 1e-24 ? unitVector(across) : frame.e1;
+  const Vec3 up = glm::cross(right, frame.axis);
+  const double cosine = std::cos(width.turn);
+  const double sine = std::sin(width.turn);
+  frame.e1 = cosine * right + sine * up;
+  frame.e2 = width.flatness * (cosine * up - sine * right);
+  frame.flatness2 = width.flatness * width.flatness;
+  frame.isRectangle = width.isRectangle;
+}
 
 /// Frame of a beam; `direction` need not be normalised but must be finite and not zero (checked by
 /// the caller).
@@ -79,6 +112,10 @@ inline BeamFrame makeBeamFrame(const Vec3& origin, const Vec3& direction, const 
   const double b = n.x * n.y * a;
   frame.e1 = { 1.0 + sign * n.x * n.x * a, sign * b, -sign * n.x };
   frame.e2 = { b, sign + n.y * n.y * a, -n.y };
+  if (!width.isRound)
+  {
+    setAxes(width, frame);
+  }
   frame.halfBeamwidth = width.half;
   frame.tanHalf = width.tangent;
   frame.sinHalf = width.sine;

@@ -60,11 +60,13 @@ Coverage::Coverage(const ScanSetup& setup, const ScanBeams& beams, const Vec3& u
   : Setup(setup)
   , Beams(beams)
   , Up(up)
+  , Shape(setup.sensor)
+  , HalfBeamwidth(this->Shape.width().half)
   , Directions(directions ? std::move(directions)
                           : std::make_shared<const BeamDirections>(beams.directions,
-                              setup.sensor.halfBeamwidth, marginsFor(setup.sensor.halfBeamwidth)))
+                              this->HalfBeamwidth, marginsFor(this->HalfBeamwidth)))
   , Most(static_cast<int>(std::clamp<std::size_t>(this->Directions->mostNear(), 1, 255)))
-  , CosineHeld(std::cos(setup.sensor.halfBeamwidth))
+  , CosineHeld(std::cos(this->HalfBeamwidth))
   , Lowest(std::numeric_limits<double>::infinity())
   , Highest(-std::numeric_limits<double>::infinity())
   , ClutterBegins(beams.size() + 1, 0)
@@ -72,8 +74,8 @@ Coverage::Coverage(const ScanSetup& setup, const ScanBeams& beams, const Vec3& u
   for (const Vec3& direction : beams.directions)
   {
     const double elevation = elevationOf(direction, up);
-    this->Lowest = std::min(this->Lowest, elevation - setup.sensor.halfBeamwidth);
-    this->Highest = std::max(this->Highest, elevation + setup.sensor.halfBeamwidth);
+    this->Lowest = std::min(this->Lowest, elevation - this->HalfBeamwidth);
+    this->Highest = std::max(this->Highest, elevation + this->HalfBeamwidth);
   }
   const double length = setup.sensor.rangeUnitLength();
   for (std::size_t e = 0; e < still.echoes.size(); ++e)
@@ -111,6 +113,18 @@ bool Coverage::isInClutter(std::uint32_t beam, double range) const
   return next != end && *next <= last;
 }
 
+/// Whether a beam holds a direction. @param cosine of the angle from its axis
+bool Coverage::holds(std::uint32_t beam, const Vec3& direction, double cosine) const
+{
+  return cosine >= this->CosineHeld &&
+    (this->Shape.isRound() || this->frameOf(beam).contains(direction));
+}
+
+BeamFrame Coverage::frameOf(std::uint32_t beam) const
+{
+  return makeBeamFrame(Vec3(0.0), this->Directions->axis(beam), this->Shape.width());
+}
+
 CoverageSight Coverage::sightOf(const Vec3& to, BeamTracer& tracer) const
 {
   CoverageSight sight;
@@ -131,12 +145,13 @@ CoverageSight Coverage::sightOf(const Vec3& to, BeamTracer& tracer) const
       elevation > this->Highest ? CoverageStatus::AboveBand : CoverageStatus::BelowBand;
   }
   const double reach = std::min(angleOf(WidestTarget, range), this->Directions->largestMargin());
-  const double cosineNear = std::cos(this->Setup.sensor.halfBeamwidth + reach);
-  this->Directions->forEachNear(to / range, reach,
-    [&](std::uint32_t, double cosine)
+  const double cosineNear = std::cos(this->HalfBeamwidth + reach);
+  const Vec3 direction = to / range;
+  this->Directions->forEachNear(direction, reach,
+    [&](std::uint32_t beam, double cosine)
     {
       sight.isNear = sight.isNear || cosine >= cosineNear;
-      sight.beams += cosine >= this->CosineHeld && sight.beams < 255 ? 1 : 0;
+      sight.beams += sight.beams < 255 && this->holds(beam, direction, cosine) ? 1 : 0;
     });
   sight.status = sight.beams > 0 ? CoverageStatus::Seen : sight.status;
   sight.isHidden =
@@ -226,6 +241,7 @@ struct Coverage::NearBeams
   {
     std::uint32_t number;
     double cosine; ///< of the angle from its axis
+    bool isHeld;   ///< it holds the place
   };
   Beam beams[DetectionLaw::MostBeams]; ///< not initialised: this is made for each place
   std::size_t count = 0;
@@ -272,7 +288,7 @@ bool Coverage::isHopeless(const PlacedTarget& at, double step) const
 Coverage::NearBeams Coverage::clearBeams(const PlacedTarget& at) const
 {
   // Beams whose borders the target does not reach hold all of it, or nothing.
-  const double halfBeamwidth = this->Setup.sensor.halfBeamwidth;
+  const double halfBeamwidth = this->HalfBeamwidth;
   const double reach =
     std::min(angleOf(at.target.law.reach(), at.range), this->Directions->largestMargin());
   const double within = reach < halfBeamwidth ? std::cos(halfBeamwidth - reach) : 1.0;
@@ -281,12 +297,12 @@ Coverage::NearBeams Coverage::clearBeams(const PlacedTarget& at) const
   this->Directions->forEachNear(at.direction, reach,
     [&](std::uint32_t beam, double cosine)
     {
-      const bool isHeld = cosine >= this->CosineHeld;
+      const bool isHeld = this->holds(beam, at.direction, cosine);
       if ((isHeld || cosine > beyond) && !this->isInClutter(beam, at.range))
       {
         near.clear += isHeld;
-        near.whole += isHeld && (cosine > within || !(reach > 0.0));
-        near.add({ beam, cosine });
+        near.whole += isHeld && ((this->Shape.isRound() && cosine > within) || !(reach > 0.0));
+        near.add({ beam, cosine, isHeld });
       }
     });
   return near;
@@ -300,6 +316,28 @@ bool Coverage::isCertain(const PlacedTarget& at, double step, const NearBeams& n
     (near.whole >= all ||
       (all <= at.target.law.mostBeams() &&
         at.probability(step, all) - at.probability(step, near.whole) < Negligible));
+}
+
+/// Set what beams have that are not round, or have another Gaussian.
+void Coverage::shapeBeam(
+  std::uint32_t beam, const Vec3& right, const Vec3& up, double range, BeamAtTarget& at) const
+{
+  const double k = this->Setup.sensor.gaussianTruncation;
+  at.fall = 2.0 * k * k;
+  at.most = this->Shape.mostDensity();
+  if (this->Shape.isRound())
+  {
+    return;
+  }
+  const BeamFrame frame = this->frameOf(beam);
+  const BeamWidth& width = this->Shape.width();
+  const double x = glm::dot(frame.e1, right);
+  const double y = glm::dot(frame.e1, up);
+  at.isRectangle = width.isRectangle;
+  at.radius = range * width.tangent * (width.isRectangle ? BeamShape::HalfSide : 1.0);
+  at.across = at.radius * width.flatness;
+  at.cosine = x / std::hypot(x, y);
+  at.sine = y / std::hypot(x, y);
 }
 
 /// Replace what beams that hold all of a target detect by what they do of the parts that they
@@ -317,13 +355,12 @@ void Coverage::share(
   double irradiance = 0.0; // of the beams that hold the place
   for (std::size_t b = 0; b < near.count; ++b)
   {
-    const auto& [number, cosine] = near.beams[b];
+    const auto& [number, cosine, isHeld] = near.beams[b];
     const Vec3 axis = at.range * this->Directions->axis(number);
     beams[b] = { at.range * std::sin(sensor.halfBeamwidth), glm::dot(axis, right),
       glm::dot(axis, up), sensor.beamProfile };
-    irradiance += cosine >= this->CosineHeld
-      ? beams[b].irradiance(beams[b].x * beams[b].x + beams[b].y * beams[b].y)
-      : 0.0;
+    this->shapeBeam(number, right, up, at.range, beams[b]);
+    irradiance += isHeld ? beams[b].irradiance() : 0.0;
   }
   value.probability = at.target.law.probability(
     at.energy, at.filling, beams.data(), near.count, at.elevation, ofPoses);

@@ -20,6 +20,7 @@
 #define avianlidar_Coverage_h
 
 #include "BeamDirections.h"
+#include "BeamShape.h"
 #include "DetectionLaw.h"
 #include "Scan.h"
 
@@ -57,14 +58,14 @@ struct CoverageSight
   CoverageStatus status = CoverageStatus::OutsideGate; ///< Seen where nothing forbids it
   bool isNear = false;                                 ///< whether a beam may light a target there
   bool isHidden = false;  ///< whether a surface stands before it; looked for where it is near
-  std::uint8_t beams = 0; ///< whose cones hold it, at most 255
+  std::uint8_t beams = 0; ///< that hold it, at most 255
 };
 
 /// What is detected at a place.
 struct CoverageValue
 {
   CoverageStatus status = CoverageStatus::OutsideGate;
-  int beams = 0;            ///< whose cones hold the place
+  int beams = 0;            ///< that hold the place
   double probability = 0.0; ///< of detection in one scan
   double photoelectrons =
     0.0; ///< in a beam that holds all of the target; 0 without a photon receiver
@@ -133,6 +134,10 @@ private:
   struct PlacedTarget;
   struct NearBeams;
 
+  bool holds(std::uint32_t beam, const Vec3& direction, double cosine) const;
+  BeamFrame frameOf(std::uint32_t beam) const;
+  void shapeBeam(
+    std::uint32_t beam, const Vec3& right, const Vec3& up, double range, BeamAtTarget& at) const;
   CoverageSight sightOf(const Vec3& to, BeamTracer& tracer) const;
   PlacedTarget placed(const CoverageTarget& target, const Vec3& place) const;
   bool isHopeless(const PlacedTarget& at, double step) const;
@@ -146,6 +151,8 @@ private:
   const ScanSetup& Setup;
   const ScanBeams& Beams;
   const Vec3 Up;
+  const BeamShape Shape;
+  const double HalfBeamwidth; ///< rad, of the cone that holds the beam
   std::shared_ptr<const BeamDirections> Directions;
   int Most;
   double CosineHeld;                      ///< of the half-beamwidth

@@ -293,7 +293,7 @@ double DetectionLaw::probability(double energy, double most, const BeamAtTarget*
   std::array<double, MostBeams> away; // m, beyond the border
   for (std::size_t b = 0; b < used; ++b)
   {
-    away[b] = std::hypot(beams[b].x, beams[b].y) - beams[b].radius;
+    away[b] = beams[b].beyond();
   }
   const double stepOfAll = std::log10(energy) * PointsPerDecade;
   const double mostStep = this->stepOf(most);

@@ -214,36 +214,104 @@ Silhouette::Image Silhouette::halved(const Image& fine)
   return coarse;
 }
 
+/// The coarsest image that is fine enough for a beam.
+const Silhouette::Image& Silhouette::imageFor(const BeamAtTarget& beam) const
+{
+  auto image = this->Images.rbegin();
+  while (image + 1 != this->Images.rend() && RadiusInPixels * image->pixel > beam.across)
+  {
+    ++image;
+  }
+  return *image;
+}
+
+/// Pixels [begin, end) of a row or column within a reach of a place.
+void Silhouette::rangeOf(
+  double place, double reach, double first, double pixel, int count, int& begin, int& end)
+{
+  const auto indexOf = [&](double at)
+  { return static_cast<int>(std::clamp<double>((at - first) / pixel, -1.0, count)); };
+  begin = std::max(0, indexOf(place - reach));
+  end = std::min(count, indexOf(place + reach) + 1);
+}
+
+/// The same as litBy() for any beam.
+LitPart Silhouette::litByOther(const BeamAtTarget& beam) const
+{
+  const Image& image = this->imageFor(beam);
+  BeamAtTarget wide = beam;
+  wide.radius = std::max(beam.radius, LeastRadiusInPixels * image.pixel);
+  wide.across = std::max(beam.across, LeastRadiusInPixels * image.pixel);
+  const auto reachOf = [&](double along, double beside)
+  {
+    const double a = std::fabs(along * wide.radius);
+    const double b = std::fabs(beside * wide.across);
+    return image.pixel + (beam.isRectangle ? a + b : std::hypot(a, b));
+  };
+  int left, right, below, above;
+  rangeOf(
+    beam.x, reachOf(beam.cosine, beam.sine), image.left, image.pixel, image.columns, left, right);
+  rangeOf(
+    beam.y, reachOf(beam.sine, beam.cosine), image.below, image.pixel, image.rows, below, above);
+  // The share of a pixel changes linearly from half a pixel within the border to half a pixel
+  // beyond.
+  const auto within = [&](double length, double square)
+  { return std::clamp(0.5 + length / image.pixel * (1.0 - std::sqrt(square)), 0.0, 1.0); };
+  const auto shareOf = [&](const Squares& at)
+  {
+    if (beam.isRectangle)
+    {
+      return within(wide.radius, at.along) * within(wide.across, at.beside);
+    }
+    const double slope = 2.0 *
+      std::sqrt(at.along / (wide.radius * wide.radius) + at.beside / (wide.across * wide.across));
+    return slope > 0.0 ? std::clamp(0.5 + (1.0 - at.sum()) / (slope * image.pixel), 0.0, 1.0) : 1.0;
+  };
+  double area = 0.0, depth = 0.0, square = 0.0;
+  for (int row = below; row < above; ++row)
+  {
+    for (int column = left; column < right; ++column)
+    {
+      const Squares at = wide.squaresOf(
+        image.left + column * image.pixel - beam.x, image.below + row * image.pixel - beam.y);
+      const double share = shareOf(at) * wide.irradiance(at.sum());
+      const Sums& pixel = image.pixels[static_cast<std::size_t>(row) * image.columns + column];
+      area += share * pixel.area;
+      depth += share * pixel.depth;
+      square += share * pixel.square;
+    }
+  }
+  if (!(area > 0.0))
+  {
+    return {};
+  }
+  LitPart lit = partOf(area, depth, square);
+  lit.area *= beam.radius * beam.across / (wide.radius * wide.across);
+  return lit;
+}
+
 LitPart Silhouette::litBy(const BeamAtTarget& beam) const
 {
   const double away2 = beam.x * beam.x + beam.y * beam.y;
   if (this->Images.empty())
   {
-    return away2 <= beam.radius * beam.radius
-      ? LitPart{ this->All.area * beam.irradiance(away2), 0.0, 0.0 }
-      : LitPart();
+    const bool isHeld = beam.isRound() ? away2 <= beam.radius * beam.radius : beam.beyond() <= 0.0;
+    return isHeld ? LitPart{ this->All.area * beam.irradiance(), 0.0, 0.0 } : LitPart();
   }
-  auto image = this->Images.rbegin();
-  while (image + 1 != this->Images.rend() && RadiusInPixels * image->pixel > beam.radius)
+  if (!beam.isUsual())
   {
-    ++image;
+    return this->litByOther(beam);
   }
+  const Image* const image = &this->imageFor(beam);
   const double radius = std::max(beam.radius, LeastRadiusInPixels * image->pixel);
   // The share of a pixel changes linearly with the square of its distance, from 1 half a pixel
   // within the border to 0 half a pixel beyond it; so the disc holds its area.
   const double radius2 = radius * radius;
   const double edge = radius * image->pixel;
-  const auto rangeOf = [&](double middle, double first, int count, int& begin, int& end)
-  {
-    const double reach = std::sqrt(radius2 + edge);
-    const auto indexOf = [&](double place)
-    { return static_cast<int>(std::clamp<double>((place - first) / image->pixel, -1.0, count)); };
-    begin = std::max(0, indexOf(middle - reach));
-    end = std::min(count, indexOf(middle + reach) + 1);
-  };
+  const double reach = std::sqrt(radius2 + edge);
   int left, right, below, above;
-  rangeOf(beam.x, image->left, image->columns, left, right);
-  rangeOf(beam.y, image->below, image->rows, below, above);
+  rangeOf(beam.x, reach, image->left, image->pixel, image->columns, left, right);
+  rangeOf(beam.y, reach, image->below, image->pixel, image->rows, below, above);
   const bool isGaussian = beam.profile == BeamProfile::Gaussian;
   const auto perEdge = static_cast<float>(0.5 / edge);
   const auto perRadius2 = static_cast<float>(1.0 / radius2);

@@ -7,7 +7,8 @@
  *
  * The image is drawn from afar, with a depth buffer, by 3 x 3 samples for each pixel: mutual shadow
  * is in it. Coarser images are sums of its pixels; a beam takes the coarsest of which its radius
- * spans RadiusInPixels, so that any beam costs some fifty pixels.
+ * spans RadiusInPixels, so that a round beam costs some fifty pixels, and others as many times that
+ * as they are longer than wide.
  *
  * Source: none.
  * Valid: beams of more than 0.02 of the longer side; narrower ones count as so wide, with their
@@ -22,24 +23,66 @@
 #include "TriangleMesh.h"
 #include "Vector.h"
 
+#include <algorithm>
+#include <cmath>
 #include <vector>
 
 namespace avianlidar
 {
+struct Squares
+{
+  double along, beside;
+  double sum() const { return this->along + this->beside; }
+  double most() const { return std::max(this->along, this->beside); }
+};
+
 /// A beam at a target, in the plane across the line of sight through the target's middle.
 struct BeamAtTarget
 {
-  double radius; ///< m
+  double radius; ///< m, of an ellipse or rectangle half its longer side
   double x, y;   ///< of the beam's axis from the middle, m to the right and up
   BeamProfile profile = BeamProfile::Uniform;
+  // Of beams that are not round, or have another Gaussian:
+  double across = radius; ///< m, half the shorter side
+  double cosine = 1.0;    ///< of the turn of the longer one, from the right upwards
+  double sine = 0.0;
+  bool isRectangle = false;
+  double fall = 2.0;                     ///< the Gaussian is exp(-fall s), s see squareOf()
+  double most = 2.0 / -std::expm1(-2.0); ///< its irradiance on the axis, over the beam's mean
 
-  /// Irradiance at a squared distance, m^2, from the axis, over the beam's mean; also beyond its
-  /// border.
-  double irradiance(double distance2) const
+  bool isRound() const { return !this->isRectangle && this->across == this->radius; }
+
+  /// Round, and uniform or 1/e^2 at the border.
+  bool isUsual() const { return this->isRound() && this->fall == 2.0; }
+
+  /// Squares of the coordinates of a place along the sides, each over that of half the side.
+  /// @param right, above m from the axis
+  Squares squaresOf(double right, double above) const
   {
-    return this->profile == BeamProfile::Gaussian
-      ? 2.0 * std::exp(-2.0 * distance2 / (this->radius * this->radius)) / -std::expm1(-2.0)
-      : 1.0;
+    const double along = (this->cosine * right + this->sine * above) / this->radius;
+    const double beside = (this->cosine * above - this->sine * right) / this->across;
+    return { along * along, beside * beside };
+  }
+
+  /// How far the middle lies beyond the border, m, or less; negative: how far within, or less far.
+  double beyond() const
+  {
+    if (this->isRound())
+    {
+      return std::hypot(this->x, this->y) - this->radius;
+    }
+    const Squares at = this->squaresOf(this->x, this->y);
+    return this->across * (std::sqrt(this->isRectangle ? at.most() : at.sum()) - 1.0);
+  }
+
+  /// Irradiance at the middle, over the beam's mean; also beyond its border.
+  double irradiance() const { return this->irradiance(this->squaresOf(this->x, this->y).sum()); }
+
+  /// The same at a place. @param square sum of its squares
+  double irradiance(double square) const
+  {
+    return this->profile == BeamProfile::Gaussian ? this->most * std::exp(-this->fall * square)
+                                                  : 1.0;
   }
 };
 
@@ -86,6 +129,10 @@ private:
     std::vector<Sums> pixels; ///< row by row
   };
   static Image halved(const Image& fine);
+  const Image& imageFor(const BeamAtTarget& beam) const;
+  static void rangeOf(
+    double place, double reach, double first, double pixel, int count, int& begin, int& end);
+  LitPart litByOther(const BeamAtTarget& beam) const;
 
   LitPart All;
   double Reach = 0.0;        ///< m

@@ -44,6 +44,7 @@ struct PlaneAxes
 {
   Vec3 e1, e2, axis; ///< e1 and e2 times tan(theta0.5)
   double tangent2;
+  double perFlatness2; ///< 1/BeamFrame::flatness2
 };
 }
 }
@@ -158,7 +159,7 @@ HWY_INLINE EightMask hasPart(const Side& one, const Side& two, const Side& three
 HWY_INLINE EightMask isInDisc(const Three& corner, Eight z, const PlaneAxes& plane)
 {
   const Eight x = dot(corner, plane.e1);
-  const Eight y = dot(corner, plane.e2);
+  const Eight y = hn::Mul(dot(corner, plane.e2), all(plane.perFlatness2));
   const Eight reach = hn::Mul(all(plane.tangent2), z);
   return hn::Le(hn::Add(hn::Mul(x, x), hn::Mul(y, y)), hn::Mul(reach, reach));
 }
@@ -221,7 +222,8 @@ void setUpLanes(const PlaneAxes& plane, EightTriangles& t)
     const Eight farthest2 = hn::Max(dot(a, a), hn::Max(dot(b, b), dot(c, c)));
     store(hn::Div(all(1.0), hn::Sqrt(farthest2)), t.leastInverse, i);
     store(hn::Div(hn::Abs(height), hn::Sqrt(dot(n, n))), t.height, i);
-    const Eight depths = hn::Mul(hn::Mul(za, zb), hn::Mul(zc, all(plane.tangent2)));
+    const double flatness = std::sqrt(1.0 / plane.perFlatness2);
+    const Eight depths = hn::Mul(hn::Mul(za, zb), hn::Mul(zc, all(plane.tangent2 * flatness)));
     const Eight area = hn::Div(hn::Mul(all(0.25), hn::Abs(determinant)), depths);
     store(area, t.area, i);
   }
@@ -319,8 +321,8 @@ void BeamTriangles::setUp(const std::uint32_t* triangles, std::size_t count)
   findNormals(t);
   const BeamFrame& frame = this->Frame;
   HWY_DYNAMIC_DISPATCH(setUpLanes)
-  ({ frame.tanHalf * frame.e1, frame.tanHalf * frame.e2, frame.axis,
-     frame.tanHalf * frame.tanHalf },
+  ({ frame.tanHalf * frame.e1, frame.tanHalf * frame.e2, frame.axis, frame.tanHalf * frame.tanHalf,
+     1.0 / frame.flatness2 },
     t);
   if (this->Surfaces.size() < this->Count + LaneCount)
   {

@@ -3,11 +3,11 @@
  * @file BeamTriangles.h
  * @brief The triangles that enter a beam's disc, set up in the beam's plane, nearest first.
  *
- * In the beam's plane (BeamFrame.h) the cone is the unit disc, a triangle the intersection of the
- * half-planes of its edge functions (TriangleTest.h), and 1/z of its plane an affine function, z
- * the distance along the axis. Triangles are set up eight at a time, in SIMD lanes. Two triangles
- * with consecutive numbers that form a convex quadrilateral in one plane, but for the rounding of
- * scene coordinates, are one surface.
+ * In the beam's plane (BeamFrame.h) the beam lies in the unit disc; a triangle is the intersection
+ * of the half-planes of its edge functions (TriangleTest.h), and 1/z of its plane an affine
+ * function, z the distance along the axis. Triangles are set up eight at a time, in SIMD lanes. Two
+ * triangles with consecutive numbers that form a convex quadrilateral in one plane, but for the
+ * rounding of scene coordinates, are one surface.
  *
  * Source: Pineda, "A Parallel Algorithm for Polygon Rasterization", SIGGRAPH 1988, for half-planes.
  * Differs: the plane is across a beam's axis, and has the unit disc instead of pixels.

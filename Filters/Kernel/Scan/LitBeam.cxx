@@ -20,7 +20,8 @@ bool takeOver(LightKey& key, const ScanSetup& setup)
   std::vector<double> numbers = { setup.largestReflectance, needs.perceivableRange,
     needs.secondaryReflections ? 1.0 : 0.0, needs.secondaryBound, needs.furtherBound,
     needs.lightEnergyBound, needs.skippedEnergyBound, needs.missedDetailEnergy,
-    static_cast<double>(sensor.beamProfile), static_cast<double>(sensor.receiverModel) };
+    static_cast<double>(sensor.beamProfile), static_cast<double>(sensor.beamOutline),
+    static_cast<double>(sensor.receiverModel), sensor.up.x, sensor.up.y, sensor.up.z };
   for (const SensorField& field : sensorFields())
   {
     numbers.push_back(sensor.*field.member);

@@ -109,7 +109,7 @@ MovedBeams::MovedBeams(const ScanSetup& setup, const ScanBeams& beams, BeamSampl
   std::function<bool()> wanted, bool sights)
   : Setup(setup)
   , Beams(beams)
-  , Width(setup.sensor.halfBeamwidth)
+  , Width(BeamShape(setup.sensor).width())
   , Sampler(sampler)
   , Wanted(std::move(wanted))
   , Sights(sights)
@@ -280,7 +280,8 @@ MoverSight MovedBeams::sightOf(
   const std::size_t end = touch.firstTriangle + mover.mesh.size();
   const Vec3 to = touch.pose.position - frame.origin;
   MoverSight sight{ touch.mover, 0, 0.0, 0.0,
-    std::atan2(safeLength(glm::cross(frame.axis, to)), glm::dot(frame.axis, to)) };
+    std::atan2(safeLength(glm::cross(frame.axis, to)), glm::dot(frame.axis, to)), false };
+  sight.held = this->Width.isRound ? sight.offAxis <= this->Width.half : frame.contains(to);
   this->Units.clear();
   this->addLightOf(touch.firstTriangle, end, lighting);
   this->Units.accumulate();

@@ -117,7 +117,8 @@ public:
     const std::uint32_t rays = tracedRaysOf(setup.settings);
     while (cache.samplers.size() < this->Workers.size())
     {
-      cache.samplers.push_back(std::make_unique<BeamSampler>(setup.settings.sampling, rays));
+      cache.samplers.push_back(
+        std::make_unique<BeamSampler>(setup.sensor, setup.settings.sampling, rays));
     }
   }
 

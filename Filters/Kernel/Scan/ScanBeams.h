@@ -96,6 +96,7 @@ struct MoverSight
   double energy;      ///< J, of its strongest range unit
   double probability; ///< that a unit is perceived for this light alone
   double offAxis;     ///< rad, from the beam's axis to the mover
+  bool held;          ///< its position lies in the beam
 };
 }
 

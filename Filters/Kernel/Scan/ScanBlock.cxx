@@ -25,11 +25,12 @@ void addCounters(const TraceCounters& more, TraceCounters& sum)
 
 ScanBlock::ScanBlock(const ScanSetup& setup, const ScanBeams& beams, BeamSampler& sampler)
   : Setup(setup)
-  , Width(setup.sensor.halfBeamwidth)
+  , Width(BeamShape(setup.sensor).width())
   , Beams(beams)
   , Sampler(sampler)
   , Tracer(*setup.tree)
-  , Polygons(*setup.tree, mostTrianglesIntegrated(setup.settings), MostTrianglesOfCells)
+  , Polygons(*setup.tree, this->Width.isRound ? mostTrianglesIntegrated(setup.settings) : 0,
+      MostTrianglesOfCells)
   , Quadrature(setup)
   , Cells(setup)
 {
@@ -208,8 +209,7 @@ const BeamRays& ScanBlock::raysOf(std::size_t beam)
   Slot& slot = this->slotOf(beam);
   if (slot.rays.size() == 0)
   {
-    this->Sampler.draw(
-      this->Setup.sensor, this->Setup.settings.seed, this->Beams.ids[beam], slot.rays);
+    this->Sampler.draw(this->Setup.settings.seed, this->Beams.ids[beam], slot.rays);
   }
   return slot.rays;
 }

@@ -146,16 +146,17 @@ std::uint64_t checksumOf(const ScanBeams& beams)
 std::uint64_t traceKey(const ScanSetup& setup)
 {
   // The others are energies, times and limits, or decide what is traced on from hits.
-  static_assert(memberCount<Sensor>() == 27 && memberCount<EchoSettings>() == 16,
+  static_assert(memberCount<Sensor>() == 32 && memberCount<EchoSettings>() == 16,
     "do a beam's rays depend on the new member? Then it belongs to the key");
   const Sensor& sensor = setup.sensor;
   const EchoSettings& s = setup.settings;
   const bool cells = s.beamSamples == BeamSampleSource::Cells;
   const double numbers[] = { sensor.halfBeamwidth, static_cast<double>(sensor.beamProfile),
-    static_cast<double>(s.beamSamples), static_cast<double>(s.sampling),
-    static_cast<double>(s.raysPerBeam), static_cast<double>(s.seed),
-    cells ? sensor.samplingInterval : 0.0, cells ? sensor.pulseWidth : 0.0,
-    cells ? sensor.rangeGate : 0.0 };
+    sensor.gaussianTruncation, static_cast<double>(sensor.beamOutline), sensor.halfBeamwidthAcross,
+    sensor.beamRotation, sensor.up.x, sensor.up.y, sensor.up.z, static_cast<double>(s.beamSamples),
+    static_cast<double>(s.sampling), static_cast<double>(s.raysPerBeam),
+    static_cast<double>(s.seed), cells ? sensor.samplingInterval : 0.0,
+    cells ? sensor.pulseWidth : 0.0, cells ? sensor.rangeGate : 0.0 };
   const std::uint64_t objects =
     cells ? hashOf(setup.objectIds.data(), setup.objectIds.size() * sizeof(int), 0) : 0;
   return hashOf(

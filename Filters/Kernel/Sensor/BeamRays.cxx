@@ -26,23 +26,24 @@ std::size_t cellsInsideRing(std::size_t cells)
 class PlaneRadius
 {
 public:
-  explicit PlaneRadius(double halfBeamwidth)
-    : SinQuarter(std::sin(0.5 * halfBeamwidth))
-    , InverseTangent(1.0 / std::tan(halfBeamwidth))
-    , Within(-std::expm1(-2.0))
+  explicit PlaneRadius(const RadialProfile& profile)
+    : SinQuarter(std::sin(0.5 * profile.halfBeamwidth))
+    , InverseTangent(1.0 / std::tan(profile.halfBeamwidth))
+    , PerFall(0.5 / (profile.truncation * profile.truncation))
+    , Within(-std::expm1(-1.0 / PerFall))
   {
   }
 
   /// tan theta / tan theta0.5 at sin^2(theta/2) = u sin^2(theta0.5/2), where u = (1 - cos
-  /// theta)/(1 - cos theta0.5) is the share itself, or for the Gaussian profile -1/2 ln(1 - v (1 -
-  /// e^-2)).
+  /// theta)/(1 - cos theta0.5) is the share itself, or for the Gaussian profile -ln(1 - v (1 -
+  /// e^(-2 k^2)))/(2 k^2).
   template <BeamProfile Profile>
   AVIANLIDAR_ALWAYS_INLINE double of(double v) const
   {
     double u = v;
     if constexpr (Profile == BeamProfile::Gaussian)
     {
-      const double q = -0.5 * lanes::logOneMinus(v * this->Within);
+      const double q = -this->PerFall * lanes::logOneMinus(v * this->Within);
       u = q < 1.0 ? q : 1.0;
     }
     const double s = std::sqrt(u) * this->SinQuarter;
@@ -56,6 +57,7 @@ public:
 private:
   double SinQuarter;
   double InverseTangent;
+  double PerFall; ///< 1/(2 k^2)
   double Within;
 };
 
@@ -191,36 +193,36 @@ std::size_t StrataPartition::raysInCell(std::size_t cell) const
   return cell < last ? 2 : this->NumberOfRays - 2 * last;
 }
 
-double rayDensity(BeamProfile profile, double halfBeamwidth, double radius2)
+double rayDensity(const RadialProfile& profile, double radius2)
 {
-  if (profile == BeamProfile::Uniform)
+  if (profile.profile == BeamProfile::Uniform)
   {
     return 1.0;
   }
-  const double half = std::sin(0.5 * halfBeamwidth);
-  const double tangent = std::tan(halfBeamwidth);
+  const double half = std::sin(0.5 * profile.halfBeamwidth);
+  const double tangent = std::tan(profile.halfBeamwidth);
+  const double fall = 2.0 * profile.truncation * profile.truncation;
   const double tan2 = tangent * tangent * radius2;
   const double length = std::sqrt(1.0 + tan2);
   const double u = tan2 / (length * (1.0 + length)) / (2.0 * half * half);
-  return 2.0 * std::exp(-2.0 * std::min(1.0, u)) / -std::expm1(-2.0);
+  return fall * std::exp(-fall * std::min(1.0, u)) / -std::expm1(-fall);
 }
 
 void sampleBeam(std::int32_t seed, std::uint64_t beam, std::size_t numberOfRays,
-  double halfBeamwidth, BeamProfile profile, Sampling sampling, const StrataPartition* strata,
-  BeamRays& rays)
+  const RadialProfile& profile, Sampling sampling, const StrataPartition* strata, BeamRays& rays)
 {
   const bool stratified = sampling == Sampling::Stratified;
   if (stratified && (!strata || strata->numberOfRays() != numberOfRays))
   {
     throw std::invalid_argument("strata do not fit the number of rays");
   }
-  drawAll({ seed, beam, RandomPurpose::Rays, PlaneRadius(halfBeamwidth),
+  drawAll({ seed, beam, RandomPurpose::Rays, PlaneRadius(profile),
             stratified ? &strata->rayCells() : nullptr },
-    profile, numberOfRays, rays);
+    profile.profile, numberOfRays, rays);
 }
 
 void samplePattern(std::int32_t seed, std::size_t pattern, std::size_t patterns,
-  double halfBeamwidth, BeamProfile profile, const StrataPartition& strata, BeamRays& rays)
+  const RadialProfile& profile, const StrataPartition& strata, BeamRays& rays)
 {
   StrataPartition::RayCells cells = strata.rayCells();
   for (std::size_t n = 0; n < cells.v0.size(); ++n)
@@ -232,7 +234,7 @@ void samplePattern(std::int32_t seed, std::size_t pattern, std::size_t patterns,
     cells.dv[n] /= static_cast<double>(patterns);
     cells.v0[n] += cells.dv[n] * static_cast<double>((odd * pattern + first) % patterns);
   }
-  drawAll({ seed, pattern, RandomPurpose::Patterns, PlaneRadius(halfBeamwidth), &cells }, profile,
+  drawAll({ seed, pattern, RandomPurpose::Patterns, PlaneRadius(profile), &cells }, profile.profile,
     strata.numberOfRays(), rays);
 }
 

@@ -5,7 +5,8 @@
  *
  * Source: paper, Sec. 2.1, Eq. 1-3; cells after Beckers and Beckers, Computational Geometry 45(7),
  * 2012.
- * Differs: stratified rays and the Gaussian profile are added. A ray's radius comes from
+ * Differs: stratified rays and the Gaussian profile are added (for beams that are not round see
+ * BeamShape.h). A ray's radius comes from
  * sin^2(theta/2), not from 1 - cos theta.
  * Valid: half-beamwidth from 1e-9 rad to pi/3, where radii are exact to a few units of round-off.
  * The sum over rays has no bias for any N.
@@ -76,24 +77,31 @@ private:
   RayCells Lanes;
 };
 
+/// How rays of a disc are distributed along its radius.
+struct RadialProfile
+{
+  double halfBeamwidth; ///< rad
+  BeamProfile profile = BeamProfile::Uniform;
+  double truncation = 1.0; ///< k of a Gaussian one
+};
+
 /// Density of the rays at a place of the beam's plane, over its mean, per solid angle: 1 in a
-/// uniform beam; 2 e^-2u/(1 - e^-2) in a Gaussian one, u the share of the solid angle nearer the
-/// axis.
+/// uniform beam; 2 k^2 e^(-2 k^2 u)/(1 - e^(-2 k^2)) in a Gaussian one, u the share of the solid
+/// angle nearer the axis.
 /// @param radius2 x^2 + y^2, in [0, 1]
-double rayDensity(BeamProfile profile, double halfBeamwidth, double radius2);
+double rayDensity(const RadialProfile& profile, double radius2);
 
 /// Draw the rays of beam `beam`, in loops over lanes: about 3 ns a ray. `strata` is used (and must
 /// fit `numberOfRays`) for Sampling::Stratified only. Accurate for half-beamwidths from 1e-9 rad to
 /// pi/3. Deterministic in (seed, beam, ray).
 void sampleBeam(std::int32_t seed, std::uint64_t beam, std::size_t numberOfRays,
-  double halfBeamwidth, BeamProfile profile, Sampling sampling, const StrataPartition* strata,
-  BeamRays& rays);
+  const RadialProfile& profile, Sampling sampling, const StrataPartition* strata, BeamRays& rays);
 
 /// Draw the rays of one of `patterns` (a power of 2) patterns. In each, a ray may lie anywhere in
 /// its cell. Over all of them it comes once into each of `patterns` parts of its cell's range of
 /// radii, so that means over many beams have next to no error of the patterns.
 void samplePattern(std::int32_t seed, std::size_t pattern, std::size_t patterns,
-  double halfBeamwidth, BeamProfile profile, const StrataPartition& strata, BeamRays& rays);
+  const RadialProfile& profile, const StrataPartition& strata, BeamRays& rays);
 
 /// The rays of a pattern turned about the axis, by a share of a full turn. About 0.3 ns a ray.
 void turnRays(const BeamRays& pattern, double turns, BeamRays& rays);

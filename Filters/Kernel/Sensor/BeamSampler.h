@@ -20,6 +20,7 @@
 #define avianlidar_BeamSampler_h
 
 #include "BeamRays.h"
+#include "BeamShape.h"
 #include "StandardError.h"
 
 #include <cstdint>
@@ -34,18 +35,19 @@ constexpr std::uint32_t MostRaysOfAPattern = 512;
 class BeamSampler
 {
 public:
-  BeamSampler(Sampling sampling, std::uint32_t rays);
+  BeamSampler(const Sensor& sensor, Sampling sampling, std::uint32_t rays);
   BeamSampler(const BeamSampler&) = delete;
   BeamSampler& operator=(const BeamSampler&) = delete;
 
   /// The rays of a beam.
-  void draw(const Sensor& sensor, std::int32_t seed, std::uint64_t beam, BeamRays& rays);
+  void draw(std::int32_t seed, std::uint64_t beam, BeamRays& rays);
 
   StrataPartition strata;
   StandardErrorEstimator error;
 
 private:
-  Sampling Method;
+  const BeamShape Shape;
+  const Sampling Method;
   std::vector<BeamRays> Patterns; ///< empty until one is needed
 };
 }

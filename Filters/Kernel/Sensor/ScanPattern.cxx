@@ -32,14 +32,14 @@ Matrix multiply(const Matrix& a, const Matrix& b)
   return product;
 }
 
-Matrix orientation(const ScanPattern& pattern)
+Matrix orientation(double yawDegrees, double pitchDegrees, double rollDegrees)
 {
   double s, c;
-  sinCosDegrees(pattern.yaw, s, c);
+  sinCosDegrees(yawDegrees, s, c);
   const Matrix yaw{ { { c, s, 0.0 }, { -s, c, 0.0 }, { 0.0, 0.0, 1.0 } } };
-  sinCosDegrees(pattern.pitch, s, c);
+  sinCosDegrees(pitchDegrees, s, c);
   const Matrix pitch{ { { 1.0, 0.0, 0.0 }, { 0.0, c, -s }, { 0.0, s, c } } };
-  sinCosDegrees(pattern.roll, s, c);
+  sinCosDegrees(rollDegrees, s, c);
   const Matrix roll{ { { c, 0.0, s }, { 0.0, 1.0, 0.0 }, { -s, 0.0, c } } };
   return multiply(multiply(yaw, pitch), roll);
 }
@@ -428,6 +428,12 @@ std::int64_t numberOfFirings(const ScanPattern& pattern)
   return columns * numberOfChannels(pattern);
 }
 
+Vec3 upOf(double yaw, double pitch, double roll)
+{
+  const Matrix turned = orientation(yaw, pitch, roll);
+  return { turned[0][2], turned[1][2], turned[2][2] };
+}
+
 std::string checkPattern(const ScanPattern& pattern)
 {
   if (!std::isfinite(pattern.yaw) || !std::isfinite(pattern.pitch) || !std::isfinite(pattern.roll))
@@ -456,7 +462,7 @@ ScanGenerator::ScanGenerator(const ScanPattern& pattern, int revolution)
   , Columns(numberOfColumns(pattern))
   , Beams(numberOfBeams(pattern))
   , Tilted(pattern.pitch != 0.0 || pattern.roll != 0.0)
-  , Rotation(orientation(pattern))
+  , Rotation(orientation(pattern.yaw, pattern.pitch, pattern.roll))
 {
 }
 

@@ -27,6 +27,7 @@
 #define avianlidar_ScanPattern_h
 
 #include "Prisms.h"
+#include "Vector.h"
 
 #include <array>
 #include <cstdint>
@@ -122,6 +123,9 @@ std::int64_t numberOfFirings(const ScanPattern& pattern);
 /// The first bad value in words ("AzimuthStep is 0, expected ..."), or an empty string when the
 /// pattern is good.
 std::string checkPattern(const ScanPattern& pattern);
+
+/// What is up for a sensor, in scene coordinates. @param yaw, pitch, roll deg, as in ScanPattern
+Vec3 upOf(double yaw, double pitch, double roll);
 
 /// Sine and cosine of an angle in degrees; exact at multiples of 90.
 void sinCosDegrees(double degrees, double& sine, double& cosine);

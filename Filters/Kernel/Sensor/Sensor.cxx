@@ -16,6 +16,12 @@ const std::vector<SensorField>& sensorFields()
   static const std::vector<SensorField> all = {
     { "half_beamwidth", "rad", &Sensor::halfBeamwidth, 1e-9, MaximumHalfBeamwidth,
       "1e-9 to pi/3 rad (60 degrees)", NeededOf::All }, // sampling is exact from 1e-9 on
+    { "gaussian_truncation", "1", &Sensor::gaussianTruncation, 0.1, 3.0, "0.1 to 3",
+      NeededOf::None },
+    { "half_beamwidth_across", "rad", &Sensor::halfBeamwidthAcross, 0.0,
+      MaximumHalfBeamwidthNotRound, "0 (round), or 1e-9 to 0.1 rad", NeededOf::None },
+    { "beam_rotation", "deg", &Sensor::beamRotation, -360.0, 360.0, "-360 to 360 deg",
+      NeededOf::None },
     { "pulse_energy", "J", &Sensor::pulseEnergy, 1e-50, MaximumEnergy, "1e-50 to 1e50 J",
       NeededOf::All },
     { "sampling_interval", "s", &Sensor::samplingInterval, 1e-30, 1e20, "1e-30 to 1e20 s",
@@ -56,8 +62,8 @@ const std::vector<SensorField>& sensorFields()
     { "range_walk", "m", &Sensor::rangeWalk, 0.0, 1e9, "0 to 1e9 m", NeededOf::None },
     { "range_quantum", "m", &Sensor::rangeQuantum, 0.0, 1e9, "0, or 1e-9 to 1e9 m", NeededOf::None }
   };
-  constexpr std::size_t choices = 2; // profile and receiver model
-  static_assert(memberCount<Sensor>() == 25 + choices, "is the new member a row of the table?");
+  constexpr std::size_t others = 4; // profile, outline, receiver model, and what is up
+  static_assert(memberCount<Sensor>() == 28 + others, "is the new member a row of the table?");
   return all;
 }
 
@@ -66,6 +72,21 @@ const SensorField& sensorField(double Sensor::*member)
   const std::vector<SensorField>& all = sensorFields();
   return *std::find_if(
     all.begin(), all.end(), [=](const SensorField& field) { return field.member == member; });
+}
+
+double Sensor::solidAngle() const
+{
+  if (this->hasRoundBeam())
+  {
+    const double sine = std::sin(0.5 * this->halfBeamwidth);
+    return 4.0 * Pi * sine * sine;
+  }
+  const double one = std::tan(this->halfBeamwidth);
+  const double two = this->halfBeamwidthAcross > 0.0 ? std::tan(this->halfBeamwidthAcross) : one;
+  const double squares = one * one + two * two;
+  return this->beamOutline == BeamOutline::Rectangle
+    ? 4.0 * std::atan(one * two / std::sqrt(1.0 + squares))
+    : Pi * one * two * (1.0 - 0.375 * squares); // to the second order
 }
 
 double Sensor::nearRangeShare(double range) const
@@ -93,6 +114,23 @@ std::string checkSensor(const Sensor& s)
   {
     return valueError(
       "beam_profile", static_cast<int>(s.beamProfile), "0 (uniform) or 1 (Gaussian)");
+  }
+  if (s.beamOutline != BeamOutline::Ellipse && s.beamOutline != BeamOutline::Rectangle)
+  {
+    return valueError(
+      "beam_outline", static_cast<int>(s.beamOutline), "0 (ellipse) or 1 (rectangle)");
+  }
+  if (!s.hasRoundBeam() && s.halfBeamwidth > MaximumHalfBeamwidthNotRound)
+  {
+    return valueError(
+      "half_beamwidth", s.halfBeamwidth, "at most 0.1 rad of a beam that is not round");
+  }
+  const double ratio = s.halfBeamwidthAcross / s.halfBeamwidth;
+  if (s.halfBeamwidthAcross > 0.0 &&
+    (s.halfBeamwidthAcross < 1e-9 || ratio < 1.0 / MaximumBeamRatio || ratio > MaximumBeamRatio))
+  {
+    return valueError("half_beamwidth_across", s.halfBeamwidthAcross,
+      "0 (round), or 1e-9 to 0.1 rad and 1/1000 to 1000 times half_beamwidth");
   }
   if (s.receiverModel != ReceiverModel::EnergyLimits && s.receiverModel != ReceiverModel::Photons)
   {

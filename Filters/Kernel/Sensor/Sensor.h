@@ -4,8 +4,8 @@
  * @brief The instrument: all of its values on which an echo depends, and their check.
  *
  * Source: paper, Table 2; defaults of Sec. 5.3.
- * Differs: the Gaussian profile, the receiver's aperture and the photon receiver are added; the
- * defaults, uniform, 0 and the limits, are the paper's.
+ * Differs: the Gaussian profile, beams that are not round, the receiver's aperture and the photon
+ * receiver are added; the defaults, uniform, round, 0 and the limits, are the paper's.
  * Valid: the ranges of sensorFields(), far beyond any instrument.
  * Test: TestScanReport.cxx, TestStabilityErrors.cxx (bad values are named).
  */
@@ -20,12 +20,20 @@
 
 namespace avianlidar
 {
-/// Radial distribution of the emitted energy inside the cone.
+/// Distribution of the emitted energy inside the beam.
 enum class BeamProfile
 {
-  Uniform = 0, ///< uniform in solid angle (paper, Eq. 3)
-  /// exp(-2u), u = (1-cos theta)/(1-cos theta0.5): 1/e^2 at the half-beamwidth, cut there.
+  Uniform = 0, ///< uniform in solid angle (paper, Eq. 3); see BeamShape.h for beams not round
+  /// exp(-2 k^2 u), u = (1-cos theta)/(1-cos theta0.5), k the truncation: by default 1/e^2 at the
+  /// half-beamwidth, cut there.
   Gaussian = 1
+};
+
+/// Outline of the beam in the plane across its axis.
+enum class BeamOutline
+{
+  Ellipse = 0, ///< a disc, if both half-beamwidths are one
+  Rectangle = 1
 };
 
 /// What turns energies into echoes.
@@ -40,9 +48,11 @@ constexpr double PlanckConstant = 6.626e-34; // J s, the value of the paper's Ta
 
 // Limits of sensorFields(), all far beyond any instrument and far within the range of doubles:
 // products and squares of energies and lengths neither overflow nor vanish.
-constexpr double MaximumHalfBeamwidth = Pi / 3.0; // rad; wider than 60 degrees is not a beam
-constexpr double MaximumEnergy = 1e50;            // J, of the pulse and of the limits
-constexpr double MaximumRangeGate = 1e30;         // m, as far as coordinates go
+constexpr double MaximumHalfBeamwidth = Pi / 3.0;    // rad; wider than 60 degrees is not a beam
+constexpr double MaximumHalfBeamwidthNotRound = 0.1; // rad; both of them
+constexpr double MaximumBeamRatio = 1000.0;          // of the two
+constexpr double MaximumEnergy = 1e50;               // J, of the pulse and of the limits
+constexpr double MaximumRangeGate = 1e30;            // m, as far as coordinates go
 
 /// Range units inside the gate at most: their numbers stay exact in double precision.
 constexpr double MaximumGateUnits = 4503599627370496.0; // 2^52
@@ -52,6 +62,11 @@ struct Sensor
 {
   double halfBeamwidth = 5.6e-3; ///< rad, 1e-9 to pi/3
   BeamProfile beamProfile = BeamProfile::Uniform;
+  double gaussianTruncation = 1.0; ///< half-beamwidths over the Gaussian's 1/e^2 radii, 0.1 to 3
+  BeamOutline beamOutline = BeamOutline::Ellipse;
+  double halfBeamwidthAcross = 0.0;  ///< rad, across the first one, 1e-9 to 0.1; 0: the same
+  double beamRotation = 0.0;         ///< deg, of the first one from the horizontal, towards `up`
+  Vec3 up{ 0.0, 0.0, 1.0 };          ///< of the sensor, unit vector in scene coordinates
   double pulseEnergy = 3.6e-4;       ///< Qs, J, 1e-50 to 1e50
   double pulseWidth = 5e-9;          ///< tau_e, s, >= 0 and <= 1000 tau_s
   double frequency = 3.313e14;       ///< nu, Hz, 1 to 1e30
@@ -89,12 +104,15 @@ struct Sensor
   /// Energy of one photon, J.
   double photonEnergy() const { return PlanckConstant * this->frequency; }
 
-  /// Solid angle of the cone, sr.
-  double solidAngle() const
+  /// True if the beam is a cone.
+  bool hasRoundBeam() const
   {
-    const double sine = std::sin(0.5 * this->halfBeamwidth);
-    return 4.0 * Pi * sine * sine;
+    return this->beamOutline == BeamOutline::Ellipse &&
+      (this->halfBeamwidthAcross == 0.0 || this->halfBeamwidthAcross == this->halfBeamwidth);
   }
+
+  /// Solid angle of the beam, sr; of an ellipse within 1e-4 of it.
+  double solidAngle() const;
 
   /// True if what a beam looks at decides on its background.
   bool seesDaylight() const

@@ -24,9 +24,8 @@ std::vector<MoverReport> reportMovers(const ScanSetup& setup, const ScanBeams& b
     MoverReport& report = reports[sight.mover];
     const MoverSight*& known = best[sight.mover];
     report.touched = true;
-    const bool held = sight.offAxis <= setup.sensor.halfBeamwidth;
-    report.beams += held;
-    if (held || sight.energy > 0.0)
+    report.beams += sight.held;
+    if (sight.held || sight.energy > 0.0)
     {
       met[sight.mover][0] = std::min(met[sight.mover][0], beams.times[sight.beam]);
       met[sight.mover][1] = std::max(met[sight.mover][1], beams.times[sight.beam]);

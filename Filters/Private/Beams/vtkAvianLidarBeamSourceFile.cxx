@@ -36,6 +36,9 @@ const std::vector<vtkAvianLidarBeamSource::vtkInternals::Scalar>& vtkAvianLidarB
     { Arrays::PrismAxisRotationRate, &Source::PrismAxisRotationRate, nullptr,
       &Source::PrismAxisRotationRate },
     ofSensor(&Source::HalfBeamwidth, &Sensor::halfBeamwidth),
+    ofSensor(&Source::HalfBeamwidthAcross, &Sensor::halfBeamwidthAcross),
+    ofSensor(&Source::BeamRotation, &Sensor::beamRotation),
+    ofSensor(&Source::GaussianTruncation, &Sensor::gaussianTruncation),
     ofSensor(&Source::PulseEnergy, &Sensor::pulseEnergy),
     ofSensor(&Source::PulseWidth, &Sensor::pulseWidth),
     ofSensor(&Source::Frequency, &Sensor::frequency),
@@ -179,6 +182,10 @@ void vtkAvianLidarBeamSource::vtkInternals::Apply(const vtkAvianLidarSensorFile&
     {
       self.NumberOfChannels = whole(Arrays::NumberOfChannels);
     }
+    else if (is(Arrays::BeamOutline))
+    {
+      self.BeamOutline = whole(Arrays::BeamOutline);
+    }
     else if (is(Arrays::BeamProfile))
     {
       self.BeamProfile = whole(Arrays::BeamProfile);
@@ -233,6 +240,7 @@ std::vector<double> vtkAvianLidarBeamSource::vtkInternals::ValuesOf(
   }
   return { name == Arrays::Wavelength.name    ? WavelengthOf(self)
       : name == Arrays::NumberOfChannels.name ? self.NumberOfChannels
+      : name == Arrays::BeamOutline.name      ? self.BeamOutline
       : name == Arrays::BeamProfile.name      ? self.BeamProfile
                                               : self.ReceiverModel };
 }

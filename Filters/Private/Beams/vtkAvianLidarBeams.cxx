@@ -3,6 +3,7 @@
 
 #include "Hash.h"
 #include "Scan.h"
+#include "ScanPattern.h"
 #include "vtkAvianLidarArrays.h"
 #include "vtkAvianLidarIdRuns.h"
 
@@ -21,6 +22,28 @@ namespace
 {
 using avianlidar::Vec3;
 using Outcome = vtkAvianLidarRanks::Outcome;
+
+/// What is up for the sensor, if its beams are not round and say its orientation.
+std::string ReadUp(vtkFieldData* fields, avianlidar::Sensor& sensor)
+{
+  const char* const name = vtkAvianLidarArrays::Orientation.name;
+  if (sensor.hasRoundBeam() || !fields || !fields->GetAbstractArray(name))
+  {
+    return {};
+  }
+  vtkDataArray* angles = fields->GetArray(name);
+  std::string wrong = vtkAvianLidarArrays::CheckShape(angles, "field data", 3, 1);
+  if (wrong.empty())
+  {
+    Vec3 a;
+    angles->GetTuple(0, &a.x);
+    wrong = avianlidar::isFinite(a) ? std::string()
+                                    : std::string("field data '") + name +
+        "' is not finite, expected yaw, pitch and roll in degrees";
+    sensor.up = avianlidar::upOf(a.x, a.y, a.z);
+  }
+  return wrong;
+}
 
 std::string ReadSensor(vtkFieldData* fields, avianlidar::Sensor& sensor)
 {
@@ -66,6 +89,19 @@ std::string ReadSensor(vtkFieldData* fields, avianlidar::Sensor& sensor)
   }
   sensor.beamProfile =
     profile == 0.0 ? avianlidar::BeamProfile::Uniform : avianlidar::BeamProfile::Gaussian;
+  double outline = 0.0; // of beams that do not say: round
+  wrong = vtkAvianLidarArrays::ReadFieldValue(fields, vtkAvianLidarArrays::BeamOutline, outline);
+  if (!wrong.empty() || (outline != 0.0 && outline != 1.0))
+  {
+    return wrong.empty() ? "field data 'beam_outline' is neither 0 (ellipse) nor 1 (rectangle)"
+                         : wrong;
+  }
+  sensor.beamOutline = static_cast<avianlidar::BeamOutline>(static_cast<int>(outline));
+  wrong = ReadUp(fields, sensor);
+  if (!wrong.empty())
+  {
+    return wrong;
+  }
   double model = 0.0; // of beams that do not say: the paper's
   wrong = vtkAvianLidarArrays::ReadFieldValue(fields, vtkAvianLidarArrays::ReceiverModel, model);
   if (!wrong.empty() || (model != 0.0 && model != 1.0))
@@ -227,6 +263,7 @@ std::string ReadIds(vtkPolyData* input, avianlidar::ScanBeams& beams)
 std::uint64_t HashOf(const avianlidar::Sensor& sensor, std::int32_t revolution)
 {
   std::vector<double> values = { static_cast<double>(sensor.beamProfile),
+    static_cast<double>(sensor.beamOutline), sensor.up.x, sensor.up.y, sensor.up.z,
     static_cast<double>(sensor.receiverModel), static_cast<double>(revolution) };
   for (const avianlidar::SensorField& field : avianlidar::sensorFields())
   {

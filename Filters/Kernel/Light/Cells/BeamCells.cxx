@@ -62,17 +62,27 @@ double areaInDisc(double x, double y, double width)
   return areaInDisc(ring);
 }
 
-bool isInDisc(const CellRays& rays, int i)
+bool isInBeam(const BeamShape& shape, const CellRays& rays, int i)
 {
-  const double x = rays.x[i];
-  const double y = rays.y[i];
-  return x * x + y * y <= 1.0;
+  return shape.holds(static_cast<double>(rays.x[i]), static_cast<double>(rays.y[i]));
+}
+
+/// Area of the rectangle's half-side within a square that does not cross an axis.
+double areaInRectangle(double x, double y, double width)
+{
+  const auto within = [&](double from)
+  {
+    const double inner = std::min(std::fabs(from), std::fabs(from + width));
+    return std::clamp(BeamShape::HalfSide - inner, 0.0, width);
+  };
+  return within(x) * within(y);
 }
 }
 
 BeamCells::BeamCells(const ScanSetup& setup)
   : Setup(setup)
   , Density(densityOfCells(setup.settings.raysPerBeam))
+  , Shape(setup.sensor)
   , Strips(setup)
   , Seen(*setup.tree)
 {
@@ -81,17 +91,24 @@ BeamCells::BeamCells(const ScanSetup& setup)
     for (std::uint32_t k = 0; k < side * side; ++k)
     {
       const double width = 2.0 / side;
-      this->Areas.push_back(areaInDisc(width * (k % side) - 1.0, width * (k / side) - 1.0, width));
+      this->Areas.push_back(
+        this->areaOf(width * (k % side) - 1.0, width * (k / side) - 1.0, width));
     }
   }
 }
 
-/// Area of a cell in the disc. All beams have the same cells, and few are smaller than these.
+/// Area of a square in the beam.
+double BeamCells::areaOf(double x, double y, double width) const
+{
+  return this->Shape.width().isRectangle ? areaInRectangle(x, y, width) : areaInDisc(x, y, width);
+}
+
+/// Area of a cell in the beam. All beams have the same cells, and few are smaller than these.
 double BeamCells::areaOf(int level, std::uint32_t column, std::uint32_t row) const
 {
   const std::uint32_t side = 1u << 2 * level;
   const double width = 2.0 / side;
-  return level > 2 ? areaInDisc(width * column - 1.0, width * row - 1.0, width)
+  return level > 2 ? this->areaOf(width * column - 1.0, width * row - 1.0, width)
                    : this->Areas[(level == 1 ? 0 : 16) + row * side + column];
 }
 
@@ -100,7 +117,7 @@ void BeamCells::begin(std::uint64_t beam, const BeamFrame& frame)
   this->Beam = beam;
   this->Frame = frame;
   this->Tangent2 = frame.tanHalf * frame.tanHalf;
-  this->ShareOfArea = this->Tangent2 / this->Setup.sensor.solidAngle();
+  this->ShareOfArea = this->Shape.shareOfArea();
   this->TooMany = false;
   this->Objects.clear();
   this->Large.clear();
@@ -276,7 +293,7 @@ void BeamCells::setSurfaces()
     }
     this->HasObjects = this->HasObjects || s.share > 0.0f;
     const double x = perFoot * w.x / w.z;
-    const double y = perFoot * w.y / w.z;
+    const double y = perFoot / this->Frame.flatness2 * w.y / w.z;
     const bool isIn = std::fabs(x) < 2.0 && std::fabs(y) < 2.0;
     s.foot[0] = isIn ? static_cast<float>(x) : Nowhere;
     s.foot[1] = isIn ? static_cast<float>(y) : Nowhere;
@@ -290,7 +307,7 @@ void BeamCells::divideAll(bool plans)
   this->Plans = plans;
   this->Whole.resize(this->All->size());
   std::iota(this->Whole.begin(), this->Whole.end(), 0u);
-  this->divide({ 0, 0, 0, 0.0f, -1.0, -1.0, 2.0, Pi },
+  this->divide({ 0, 0, 0, 0.0f, -1.0, -1.0, 2.0, this->Shape.area() },
     { this->Whole.data(), static_cast<std::uint32_t>(this->Whole.size()) });
 }
 
@@ -443,7 +460,7 @@ std::unique_ptr<CellSamples> BeamCells::find(const std::uint32_t* triangles)
     CellRays& block = this->Blocks[b];
     for (int i = 0; i < CellLanes; ++i)
     {
-      block.seen[i] = isInDisc(block, i) ? *ray++ : -1;
+      block.seen[i] = isInBeam(this->Shape, block, i) ? *ray++ : -1;
     }
     this->TooMany = !this->Strips.add(block, this->Shares[b]);
   }
@@ -578,7 +595,7 @@ void BeamCells::plan(const CellRays& block, double share)
   this->Shares.push_back(share);
   for (int i = 0; i < CellLanes; ++i)
   {
-    if (isInDisc(block, i))
+    if (isInBeam(this->Shape, block, i))
     {
       this->Rays.x.push_back(block.x[i]);
       this->Rays.y.push_back(block.y[i]);
@@ -606,7 +623,7 @@ void BeamCells::trace(const Cell& cell, List list, int blocks)
         this->place(cell, k, blocks, pull, block);
         for (int i = 0; i < CellLanes; ++i)
         {
-          rays += isInDisc(block, i) ? 1.0 : 0.0;
+          rays += isInBeam(this->Shape, block, i) ? 1.0 : 0.0;
         }
       }
     }
@@ -629,7 +646,8 @@ void BeamCells::trace(const Cell& cell, List list, int blocks)
     for (int i = 0; i < CellLanes && met < list.count; ++i)
     {
       const std::int32_t seen = block.seen[i];
-      if (seen >= 0 && seen != first && this->MetIn[seen] != this->Traced && isInDisc(block, i))
+      if (seen >= 0 && seen != first && this->MetIn[seen] != this->Traced &&
+        isInBeam(this->Shape, block, i))
       {
         this->MetIn[seen] = this->Traced;
         ++met;

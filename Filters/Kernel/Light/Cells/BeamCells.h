@@ -29,6 +29,7 @@
 
 #include "BeamFrame.h"
 #include "BeamRays.h"
+#include "BeamShape.h"
 #include "BeamTriangles.h"
 #include "CellLanes.h"
 #include "RangeStrips.h"
@@ -84,7 +85,7 @@ private:
     std::uint32_t column, row; ///< of 4^level
     float occluder;            ///< 1/z of what covers it, scaled; 0: nothing does
     double x, y, width;        ///< corner and side, in half-beamwidths
-    double area;               ///< of its part in the disc
+    double area;               ///< of its part in the beam
   };
   struct List
   {
@@ -106,6 +107,7 @@ private:
   void addPart(std::uint32_t triangle);
   void sumObjects();
   float smallShareOf(int id) const;
+  double areaOf(double x, double y, double width) const;
   double areaOf(int level, std::uint32_t column, std::uint32_t row) const;
   void divideAll(bool plans);
   void divide(const Cell& cell, List list);
@@ -118,6 +120,7 @@ private:
 
   const ScanSetup& Setup;
   const CellDensity Density;
+  const BeamShape Shape;
   std::vector<double> Areas; ///< of the cells of the first two levels
   std::vector<float> Jitter; ///< places of rays in a block, in their spacing
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "RangeStrips.h"
 
-#include "BeamRays.h"
 #include "KeySort.h"
 #include "Multiversion.h"
 
@@ -71,20 +70,32 @@ struct Block
   int lone;                                           ///< rays without a neighbour within the rim
 };
 
-AVIANLIDAR_MULTIVERSION void weigh(
-  const CellRays& rays, double tangent2, double share, Block& block)
+/// What the places of rays in the beam's plane mean.
+struct PlaneScales
 {
+  double tangent2, flatness2; ///< BeamFrame.h
+  double most;                ///< of |x| and |y|
+  bool isRound;
+};
+
+AVIANLIDAR_MULTIVERSION void weigh(
+  const CellRays& rays, const PlaneScales& scales, double share, Block& block)
+{
+  const PlaneScales s = scales;
 #pragma omp simd
   for (int i = 0; i < CellLanes; ++i)
   {
     block.x[i] = rays.x[i];
     block.y[i] = rays.y[i];
     block.surface[i] = rays.seen[i];
-    const double radius2 = block.x[i] * block.x[i] + block.y[i] * block.y[i];
-    const double secant2 = 1.0 + tangent2 * radius2;
+    const double x2 = block.x[i] * block.x[i];
+    const double y2 = block.y[i] * block.y[i];
+    const double secant2 = 1.0 + s.tangent2 * (x2 + s.flatness2 * y2);
     const double secant = std::sqrt(secant2);
+    const bool isIn =
+      (x2 + y2 <= 1.0) & (std::fabs(block.x[i]) <= s.most) & (std::fabs(block.y[i]) <= s.most);
     block.secant[i] = secant;
-    block.weight[i] = radius2 <= 1.0 ? share / (secant2 * secant) : 0.0;
+    block.weight[i] = isIn ? share / (s.isRound ? secant2 * secant : 1.0) : 0.0;
     block.key[i] = -1.0;
     block.unit[i] = -1.0;
   }
@@ -237,14 +248,16 @@ RangeStrips::RangeStrips(const ScanSetup& setup)
   , UnitLength(setup.sensor.rangeUnitLength())
   , Gate(setup.sensor.rangeGate + UnitLength + 0.5 * SpeedOfLight * setup.sensor.pulseWidth)
   , Offset(0.5 * setup.sensor.pulseWidth / setup.sensor.samplingInterval)
+  , Shape(setup.sensor)
 {
 }
 
 void RangeStrips::begin(const BeamFrame& frame, const std::vector<const BeamSurface*>& surfaces)
 {
   this->Tangent2 = frame.tanHalf * frame.tanHalf;
+  this->Flatness2 = frame.flatness2;
   this->Uneven = this->Setup.sensor.beamProfile == BeamProfile::Gaussian ||
-    this->Tangent2 > NarrowBeam * NarrowBeam;
+    (this->Shape.isRound() && this->Tangent2 > NarrowBeam * NarrowBeam);
   this->All = &surfaces;
   this->Of.assign(surfaces.size(), None);
   this->Visible.clear();
@@ -313,8 +326,7 @@ bool RangeStrips::addWhole(
   const double half = 0.5 * width;
   const double reach = half * (std::fabs(s.inverse.x) + std::fabs(s.inverse.y));
   const double inverse = s.inverse.at(middle);
-  const double radius2 = middle.x * middle.x + middle.y * middle.y;
-  const double secant2 = 1.0 + this->Tangent2 * radius2;
+  const double secant2 = this->secant2At(middle);
   const double secant = std::sqrt(secant2);
   const double bend = this->Tangent2 * width; // of the secant, more than its change
   const double first = numberAt(*of, (1.0 - bend) * secant / (inverse + reach));
@@ -328,10 +340,16 @@ bool RangeStrips::addWhole(
   }
   const double number = std::clamp(first - of->least, 0.0, of->count - 1.0);
   Strip& sum = this->sumOf(of->first + number + (side < 0.0 ? of->count : 0.0));
-  const double weight = share / (secant2 * secant);
+  const double weight = share / (this->Shape.isRound() ? secant2 * secant : 1.0);
   sum.weight += weight;
   sum.moment += weight * secant / inverse;
   return true;
+}
+
+/// Squared distance over that along the axis.
+double RangeStrips::secant2At(const PlanePoint& p) const
+{
+  return 1.0 + this->Tangent2 * (p.x * p.x + this->Flatness2 * (p.y * p.y));
 }
 
 /// Add what moves over a diagonal.
@@ -347,14 +365,16 @@ void RangeStrips::addHalves(std::size_t strip, double variance)
 bool RangeStrips::add(const CellRays& rays, double share)
 {
   Block block;
-  weigh(rays, this->Tangent2, share, block);
+  const bool isRectangle = this->Shape.width().isRectangle;
+  weigh(rays,
+    { this->Tangent2, this->Flatness2, isRectangle ? BeamShape::HalfSide : 1.0,
+      this->Shape.isRound() },
+    share, block);
   if (this->Setup.sensor.beamProfile == BeamProfile::Gaussian)
   {
     for (int i = 0; i < CellLanes; ++i)
     {
-      const double radius2 = block.x[i] * block.x[i] + block.y[i] * block.y[i];
-      block.weight[i] *=
-        rayDensity(BeamProfile::Gaussian, this->Setup.sensor.halfBeamwidth, radius2);
+      block.weight[i] *= this->Shape.density(block.x[i], block.y[i]);
     }
   }
   std::int32_t last = -1;
@@ -411,7 +431,7 @@ bool RangeStrips::add(const CellRays& rays, double share)
 void RangeStrips::addVariance(std::uint32_t surface, const PlanePoint& at, double variance)
 {
   const SurfaceStrips& s = this->Visible[this->Of[surface]];
-  const double secant = std::sqrt(1.0 + this->Tangent2 * (at.x * at.x + at.y * at.y));
+  const double secant = std::sqrt(this->secant2At(at));
   const double number =
     std::clamp(numberAt(s, secant / s.inverse.at(at)) - s.least, 0.0, s.count - 1.0);
   const double half = s.diagonal.at(at) < 0.0 ? s.count : 0.0;

@@ -20,6 +20,7 @@
 
 #include "BeamFrame.h"
 #include "BeamSamples.h"
+#include "BeamShape.h"
 #include "BeamTriangles.h"
 #include "CellLanes.h"
 #include "RangeUnits.h"
@@ -103,14 +104,17 @@ private:
   };
   const SurfaceStrips* stripsOf(std::uint32_t surface);
   Strip& sumOf(double number);
+  double secant2At(const PlanePoint& p) const;
   void addHalves(std::size_t strip, double variance);
 
   const ScanSetup& Setup;
   const double UnitLength; ///< m
   const double Gate;       ///< m: nothing beyond is received
   const double Offset; ///< from a border of a unit to where a pulse begins to enter it, in units
+  const BeamShape Shape;
   double Tangent2 = 0.0;
-  bool Uneven = false; ///< rays of a cell have unlike weights
+  double Flatness2 = 1.0; ///< BeamFrame::flatness2
+  bool Uneven = false;    ///< rays of a cell have unlike weights
   const std::vector<const BeamSurface*>* All = nullptr;
   std::vector<std::uint32_t> Of;      ///< place of each surface in Visible
   std::vector<SurfaceStrips> Visible; ///< in the order of their keys

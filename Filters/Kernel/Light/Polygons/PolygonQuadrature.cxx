@@ -113,8 +113,7 @@ PolygonQuadrature::Bounds PolygonQuadrature::boundsOf(
     bounds.returned = std::max(bounds.returned,
       this->mostReturnedBy(surface.other, surface.height, bounds.extent.mostInverse));
   }
-  const double gaussian = sensor.beamProfile == BeamProfile::Gaussian ? 2.4 : 1.0;
-  const double dense = Surely * gaussian * this->Rule.shareOfArea();
+  const double dense = Surely * this->Rule.mostDensity() * this->Rule.shareOfArea();
   const double area = ring.area();
   bounds.share = std::min(1.0, dense * area);
   // A unit gets what lies in a strip across the gradient, whose sides are curved.

@@ -69,25 +69,27 @@ AVIANLIDAR_ALWAYS_INLINE double uncertainOf(
 }
 
 /// Mean of q^2 over a chord, weighted by the beam's profile.
-double meanSquare(const DiscPolygon::Chord& chord, BeamProfile profile)
+double meanSquare(const DiscPolygon::Chord& chord, const RadialProfile& profile)
 {
   const double a = chord.low;
   const double b = chord.high;
   const double plain = (a * a + a * b + b * b) / 3.0;
   constexpr double narrow = 1e-3;
-  if (profile == BeamProfile::Uniform || !(b - a > narrow))
+  if (profile.profile == BeamProfile::Uniform || !(b - a > narrow))
   {
     return plain;
   }
-  // exp(-2 q^2)
-  const double root = 0.62665706865775006; // sqrt(pi/8)
-  const double all = root * (std::erf(std::sqrt(2.0) * b) - std::erf(std::sqrt(2.0) * a));
-  return 0.25 * (1.0 - (b * std::exp(-2.0 * b * b) - a * std::exp(-2.0 * a * a)) / all);
+  // exp(-s^2 q^2)
+  const double s = std::sqrt(2.0) * profile.truncation;
+  const double all = std::sqrt(0.25 * Pi) / s * (std::erf(s * b) - std::erf(s * a));
+  return 0.5 / (s * s) *
+    (1.0 - (b * std::exp(-s * s * b * b) - a * std::exp(-s * s * a * a)) / all);
 }
 }
 
 PolygonRule::PolygonRule(const ScanSetup& setup)
   : Setup(setup)
+  , Shape(setup.sensor)
   , UnitLength(setup.sensor.rangeUnitLength())
   , PulseLength(0.5 * SpeedOfLight * setup.sensor.pulseWidth)
   , LastBorder(setup.sensor.rangeGate + UnitLength + PulseLength)
@@ -98,9 +100,8 @@ PolygonRule::PolygonRule(const ScanSetup& setup)
   constexpr double same = 1e-9; // of a unit
   const double apart = std::fabs(this->Offsets[0] - this->Offsets[1]);
   this->NumberOfOffsets = apart < same || apart > 1.0 - same ? 1 : 2;
-  const double tangent = std::tan(setup.sensor.halfBeamwidth);
-  this->Tangent2 = tangent * tangent;
-  this->ShareOfArea = this->Tangent2 / setup.sensor.solidAngle();
+  this->Tangent2 = this->Shape.width().tangent * this->Shape.width().tangent;
+  this->ShareOfArea = this->Shape.shareOfArea();
 }
 
 double PolygonRule::Current::inverse(double p) const
@@ -184,8 +185,7 @@ double PolygonRule::placeOf(double range) const
   const auto placeAt = [&](double radius2)
   { return (std::sqrt(1.0 + this->Tangent2 * radius2) * inverse - now.base) * now.inverseSlope; };
   const double near = std::clamp(placeAt(0.5), this->Disc.least(), this->Disc.most());
-  return placeAt(
-    near * near + meanSquare(this->Disc.chordAt(near), this->Setup.sensor.beamProfile));
+  return placeAt(near * near + meanSquare(this->Disc.chordAt(near), this->Shape.profile()));
 }
 
 void PolygonRule::findBorders()
@@ -279,10 +279,7 @@ double PolygonRule::shareOf(double area, double radius2) const
 {
   const double secant2 = 1.0 + this->Tangent2 * radius2;
   const double share = area * this->ShareOfArea / (secant2 * std::sqrt(secant2));
-  return this->Setup.sensor.beamProfile == BeamProfile::Uniform ? share
-                                                                : share *
-      rayDensity(
-        this->Setup.sensor.beamProfile, this->Setup.sensor.halfBeamwidth, std::min(1.0, radius2));
+  return share * rayDensity(this->Shape.profile(), std::min(1.0, radius2));
 }
 
 /// @param range of what arrives with it, m @param inverse of its own range, 1/m
@@ -355,7 +352,9 @@ void PolygonRule::placeNodes(std::size_t part, double uncertain)
 double PolygonRule::fallOfDisc(bool lobe) const
 {
   const double width2 = lobe ? this->Now.width2 : 0.0;
-  const double density = this->Setup.sensor.beamProfile == BeamProfile::Gaussian ? 2.0 : 0.0;
+  const RadialProfile& profile = this->Shape.profile();
+  const double density =
+    profile.profile == BeamProfile::Gaussian ? 2.0 * profile.truncation * profile.truncation : 0.0;
   return density + (width2 > 0.0 ? this->Tangent2 / width2 : 0.0) + this->Tangent2;
 }
 
@@ -437,7 +436,7 @@ void PolygonRule::placeRules(double from, double to, double uncertain)
         const double high = strip.upper.at(p);
         // At borders of units all of the chord arrives together, as these suppose.
         const double range =
-          this->rangeAt(p, p * p + meanSquare({ low, high }, this->Setup.sensor.beamProfile));
+          this->rangeAt(p, p * p + meanSquare({ low, high }, this->Shape.profile()));
         double together = 0.0;
         this->divideAtLobe(low, high, 0.0, this->Across);
         for (const Piece& part : this->Across)

@@ -25,6 +25,7 @@
 #define avianlidar_PolygonRule_h
 
 #include "BeamSamples.h"
+#include "BeamShape.h"
 #include "DiscPolygon.h"
 #include "ScanSetup.h"
 #include "VisiblePolygons.h"
@@ -63,6 +64,9 @@ public:
 
   /// Share of the pulse that falls onto an area at the centre of the disc, of a uniform profile.
   double shareOfArea() const { return this->ShareOfArea; }
+
+  /// Most density of the profile, over that of a uniform one.
+  double mostDensity() const { return this->Shape.mostDensity(); }
 
   /// What bounds a polygon.
   struct Extent
@@ -123,6 +127,7 @@ private:
   double uncertainty(double from, double to) const;
 
   const ScanSetup& Setup;
+  const BeamShape Shape;    ///< round
   const double UnitLength;  ///< m
   const double PulseLength; ///< m of range
   const double LastBorder;  ///< m: nothing beyond is received

@@ -54,6 +54,7 @@ AVIANLIDAR_MULTIVERSION void facingPartners(const RayHits& rayHits, std::size_t 
 
 ConnectionFinder::ConnectionFinder(const ScanSetup& setup)
   : Setup(setup)
+  , Shape(setup.sensor)
 {
 }
 
@@ -206,18 +207,15 @@ void ConnectionFinder::chooseShifts(std::uint64_t beam, std::uint32_t rays, std:
   }
 }
 
-/// Uniform solid angle that a ray stands for, over the cone's: where rays are denser they stand for
+/// Uniform solid angle that a ray stands for, over the beam's: where rays are denser they stand for
 /// less.
 double ConnectionFinder::solidAngleShare(const SecondaryScene& scene, std::uint32_t ray) const
 {
-  const Sensor& sensor = this->Setup.sensor;
-  if (sensor.beamProfile == BeamProfile::Uniform)
+  if (this->Setup.sensor.beamProfile == BeamProfile::Uniform)
   {
     return 1.0; // wherever the ray is
   }
-  const double x = scene.rays.x[ray];
-  const double y = scene.rays.y[ray];
-  return 1.0 / rayDensity(sensor.beamProfile, sensor.halfBeamwidth, x * x + y * y);
+  return 1.0 / this->Shape.density(scene.rays.x[ray], scene.rays.y[ray]);
 }
 
 /// The sum over the M connections of a ray of weight times value estimates the mean of the value

@@ -22,6 +22,7 @@
 #ifndef avianlidar_ConnectionFinder_h
 #define avianlidar_ConnectionFinder_h
 
+#include "BeamShape.h"
 #include "ScanSetup.h"
 #include "SecondaryBeam.h"
 
@@ -49,6 +50,7 @@ private:
   void lookAtPairs(const BeamSamples& hits, const SampleGeometry& geometry);
 
   const ScanSetup& Setup;
+  const BeamShape Shape;
   std::vector<std::uint32_t> Shifts;
   std::vector<char> Taken;
   std::vector<std::uint32_t> HitOfRay;

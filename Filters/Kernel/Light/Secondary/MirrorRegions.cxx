@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "MirrorRegions.h"
 
-#include "BeamRays.h"
 #include "BeamTracer.h"
 #include "Multiversion.h"
 #include "Random.h"
@@ -82,6 +81,7 @@ AVIANLIDAR_MULTIVERSION void findFacing(
 
 MirrorRegions::MirrorRegions(const ScanSetup& setup)
   : Setup(setup)
+  , Shape(setup.sensor)
 {
 }
 
@@ -108,7 +108,7 @@ void MirrorRegions::begin(
   this->Beam = beam;
   this->Frame = frame;
   this->Seen = &seen;
-  this->ShareOfArea = frame.tanHalf * frame.tanHalf / this->Setup.sensor.solidAngle();
+  this->ShareOfArea = this->Shape.shareOfArea();
   this->Surfaces.clear();
   this->Facets.clear();
   for (const PlaneSurface& s : seen.surfaces)
@@ -134,7 +134,7 @@ void MirrorRegions::begin(
       });
     return;
   }
-  const double dense = this->Setup.sensor.beamProfile == BeamProfile::Gaussian ? 2.4 : 1.0;
+  const double dense = this->Shape.mostDensity();
   std::size_t polygon = 0;
   seen.forEach(
     [&](const PlaneSurface&, const PlaneRing& ring)
@@ -352,7 +352,7 @@ bool MirrorRegions::imageOf(const Surface& one, const Surface& two, Image& image
   const double tangent2 = this->Frame.tanHalf * this->Frame.tanHalf;
   const PlaneLine shift = -2.0 * (one.along + one.height * image.w);
   image.x = PlaneLine{ 1.0, 0.0, 0.0 } + (one.along.x / tangent2) * shift;
-  image.y = PlaneLine{ 0.0, 1.0, 0.0 } + (one.along.y / tangent2) * shift;
+  image.y = PlaneLine{ 0.0, 1.0, 0.0 } + (one.along.y / (tangent2 * this->Frame.flatness2)) * shift;
   image.z = PlaneLine{ 0.0, 0.0, 1.0 } + one.along.z * shift;
   return true;
 }
@@ -393,7 +393,6 @@ void MirrorRegions::placeIn(std::size_t first, std::size_t end, std::vector<Mirr
   const double least = end - first > 1 ? static_cast<double>(FewRegions) : 1.0;
   const auto pairs = static_cast<std::uint32_t>(std::max(least, std::round(0.5 * samples)));
   const std::uint32_t count = 2 * pairs;
-  const Sensor& sensor = this->Setup.sensor;
   const double tangent2 = this->Frame.tanHalf * this->Frame.tanHalf;
   std::size_t region = first;
   int part = 2;
@@ -434,16 +433,14 @@ void MirrorRegions::placeIn(std::size_t first, std::size_t end, std::vector<Mirr
     const PlanePoint side{ a.x + across * (b.x - a.x), a.y + across * (b.y - a.y) };
     const PlanePoint ray{ corners[0].x + out * (side.x - corners[0].x),
       corners[0].y + out * (side.y - corners[0].y) };
-    const double radius2 = ray.x * ray.x + ray.y * ray.y;
-    const double secant2 = 1.0 + tangent2 * radius2;
+    const double secant2 = 1.0 + tangent2 * this->Frame.radius2(ray.x, ray.y);
     MirrorPath path;
     path.start = this->Start;
     path.one = this->Stratum + k / 2;
-    if (radius2 <= 1.0 && this->findPath(this->Regions[region], ray, path))
+    if (this->Shape.holds(ray.x, ray.y) && this->findPath(this->Regions[region], ray, path))
     {
-      path.weight = area / count * this->ShareOfArea *
-        rayDensity(sensor.beamProfile, sensor.halfBeamwidth, radius2) /
-        (secant2 * std::sqrt(secant2));
+      path.weight = area / count * this->ShareOfArea * this->Shape.density(ray.x, ray.y) /
+        (this->Shape.isRound() ? secant2 * std::sqrt(secant2) : 1.0);
       paths.push_back(path);
     }
   }
@@ -473,7 +470,7 @@ bool MirrorRegions::findPath(const Region& region, const PlanePoint& p, MirrorPa
     return false;
   }
   const PlanePoint place{ q.x / q.z, q.y / q.z };
-  if (!(place.x * place.x + place.y * place.y <= 1.0))
+  if (!this->Shape.holds(place.x, place.y))
   {
     return false;
   }

@@ -25,6 +25,7 @@
 #define avianlidar_MirrorRegions_h
 
 #include "BeamSamples.h"
+#include "BeamShape.h"
 #include "ScanSetup.h"
 #include "SecondaryTrace.h"
 #include "VisiblePolygons.h"
@@ -109,6 +110,7 @@ private:
   bool findPath(const Region& region, const PlanePoint& p, MirrorPath& path);
 
   const ScanSetup& Setup;
+  const BeamShape Shape;
   std::vector<Surface> Surfaces;
   std::vector<Facet> Facets;   ///< by surface
   std::vector<Vec3> Points;    ///< corners of all facets, as BeamFrame::toPlane()

@@ -1,0 +1,458 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Beams that are not round: rays, frames, energies. Oracles: closed forms, integrals by midpoints,
+// rays that are drawn and tested without the kernel.
+#include "BeamSampler.h"
+#include "CellTestScene.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <random>
+
+using namespace celltest;
+
+namespace
+{
+struct Shape
+{
+  BeamOutline outline;
+  double along, across; ///< rad
+  double rotation;      ///< deg
+  BeamProfile profile;
+  double truncation;
+};
+
+const Shape Shapes[] = {
+  { BeamOutline::Ellipse, 5e-3, 1e-3, 0.0, BeamProfile::Uniform, 1.0 },
+  { BeamOutline::Ellipse, 1e-3, 4e-3, 30.0, BeamProfile::Uniform, 1.0 },
+  { BeamOutline::Ellipse, 5e-3, 1e-3, -70.0, BeamProfile::Gaussian, 1.0 },
+  { BeamOutline::Ellipse, 5e-3, 2e-3, 15.0, BeamProfile::Gaussian, 2.5 },
+  { BeamOutline::Ellipse, 5e-3, 0.0, 0.0, BeamProfile::Gaussian, 0.5 },
+  { BeamOutline::Rectangle, 5e-3, 1e-3, 0.0, BeamProfile::Uniform, 1.0 },
+  { BeamOutline::Rectangle, 1e-3, 3e-3, 40.0, BeamProfile::Uniform, 1.0 },
+  { BeamOutline::Rectangle, 4e-3, 0.0, 10.0, BeamProfile::Uniform, 1.0 },
+  { BeamOutline::Rectangle, 5e-3, 1e-3, -20.0, BeamProfile::Gaussian, 1.0 },
+  { BeamOutline::Rectangle, 5e-3, 2e-3, 90.0, BeamProfile::Gaussian, 3.0 },
+};
+
+Sensor sensorOf(const Shape& s)
+{
+  Sensor sensor = openSensor(s.along);
+  sensor.beamOutline = s.outline;
+  sensor.halfBeamwidthAcross = s.across;
+  sensor.beamRotation = s.rotation;
+  sensor.beamProfile = s.profile;
+  sensor.gaussianTruncation = s.truncation;
+  return sensor;
+}
+
+double acrossOf(const Shape& s)
+{
+  return s.across > 0.0 ? s.across : s.along;
+}
+
+/// Whether the outline holds a place, in half-widths.
+bool isInside(const Shape& s, double u, double v)
+{
+  return s.outline == BeamOutline::Rectangle ? std::max(std::fabs(u), std::fabs(v)) <= 1.0
+                                             : u * u + v * v <= 1.0;
+}
+
+/// Irradiance there, not normalised.
+double lightAt(const Shape& s, double u, double v)
+{
+  return s.profile == BeamProfile::Gaussian
+    ? std::exp(-2.0 * s.truncation * s.truncation * (u * u + v * v))
+    : 1.0;
+}
+
+/// Share of the energy where a function of the place is true.
+template <class F>
+double shareWhere(const Shape& s, F isCounted)
+{
+  constexpr int steps = 1500;
+  double all = 0.0;
+  double counted = 0.0;
+  for (int i = 0; i < steps; ++i)
+  {
+    for (int k = 0; k < steps; ++k)
+    {
+      const double u = (2.0 * i + 1.0) / steps - 1.0;
+      const double v = (2.0 * k + 1.0) / steps - 1.0;
+      const double light = isInside(s, u, v) ? lightAt(s, u, v) : 0.0;
+      all += light;
+      counted += isCounted(u, v) ? light : 0.0;
+    }
+  }
+  return counted / all;
+}
+
+/// Right and up in the half-widths of a beam along x, with the horizontal right at -y.
+struct Place
+{
+  double u, v;
+};
+
+Place placeOf(const Shape& s, const Vec3& direction)
+{
+  const double right = -direction.y / direction.x;
+  const double up = direction.z / direction.x;
+  const double turn = s.rotation * Degree;
+  return { (std::cos(turn) * right + std::sin(turn) * up) / std::tan(s.along),
+    (std::cos(turn) * up - std::sin(turn) * right) / std::tan(acrossOf(s)) };
+}
+
+BeamFrame frameOf(const Shape& s, const Vec3& direction = { 1.0, 0.0, 0.0 })
+{
+  return makeBeamFrame(Vec3(0.0), direction, BeamShape(sensorOf(s)).width());
+}
+
+/// The rays of many beams.
+std::vector<Place> draw(const Shape& s, Sampling sampling, std::uint32_t count)
+{
+  BeamSampler sampler(sensorOf(s), sampling, count);
+  const BeamFrame frame = frameOf(s);
+  std::vector<Place> all;
+  BeamRays rays;
+  for (std::uint64_t beam = 0; beam < 40000 / count; ++beam)
+  {
+    sampler.draw(5, beam, rays);
+    for (std::size_t n = 0; n < count; ++n)
+    {
+      all.push_back(placeOf(s, frame.direction(rays.x[n], rays.y[n])));
+    }
+  }
+  return all;
+}
+}
+
+TEST(BeamShape, RaysFollowOutlineAndProfile)
+{
+  for (const Shape& s : Shapes)
+  {
+    for (const auto& [sampling, count] : { std::pair{ Sampling::MonteCarlo, 100u },
+           { Sampling::Stratified, 100u }, { Sampling::Stratified, 1000u } })
+    {
+      const std::vector<Place> rays = draw(s, sampling, count);
+      for (const double limit : { -0.6, -0.2, 0.1, 0.5 })
+      {
+        double byU = 0.0, byV = 0.0, byBoth = 0.0;
+        for (const Place& p : rays)
+        {
+          ASSERT_TRUE(isInside(s, (1.0 - 1e-12) * p.u, (1.0 - 1e-12) * p.v));
+          byU += p.u < limit;
+          byV += p.v < limit;
+          byBoth += p.u + p.v < limit;
+        }
+        const auto all = static_cast<double>(rays.size());
+        EXPECT_NEAR(byU / all, shareWhere(s, [=](double u, double) { return u < limit; }), 8e-3);
+        EXPECT_NEAR(byV / all, shareWhere(s, [=](double, double v) { return v < limit; }), 8e-3);
+        EXPECT_NEAR(
+          byBoth / all, shareWhere(s, [=](double u, double v) { return u + v < limit; }), 8e-3);
+      }
+    }
+  }
+}
+
+TEST(BeamShape, DensityIsOneOnAverage)
+{
+  for (const Shape& s : Shapes)
+  {
+    const BeamShape shape(sensorOf(s));
+    constexpr int steps = 1000;
+    double sum = 0.0;
+    double area = 0.0;
+    double most = 0.0;
+    for (int i = 0; i < steps * steps; ++i)
+    {
+      const double x = (2.0 * (i % steps) + 1.0) / steps - 1.0;
+      const double y = (2.0 * (i / steps) + 1.0) / steps - 1.0;
+      if (shape.holds(x, y))
+      {
+        area += 4.0 / steps / steps;
+        sum += shape.density(x, y) * 4.0 / steps / steps;
+        most = std::max(most, shape.density(x, y));
+      }
+    }
+    EXPECT_NEAR(area, shape.area(), 8e-3);
+    EXPECT_NEAR(sum / area, 1.0, 4e-3);
+    EXPECT_LE(most, shape.mostDensity());
+    EXPECT_GT(most, 0.99 * shape.mostDensity());
+    EXPECT_NEAR(shape.shareOfArea() * shape.area(), 1.0, shape.isRound() ? 1e-4 : 1e-15);
+  }
+}
+
+TEST(BeamShape, SolidAngleIsThatOfTheOutline)
+{
+  for (Shape s : Shapes)
+  {
+    for (const double wider : { 1.0, 20.0 })
+    {
+      s.along *= wider;
+      s.across *= wider;
+      if (s.outline == BeamOutline::Ellipse && s.across == 0.0)
+      {
+        continue;
+      }
+      const double a = std::tan(s.along);
+      const double b = std::tan(acrossOf(s));
+      constexpr int steps = 2000;
+      double sum = 0.0;
+      for (int i = 0; i < steps * steps; ++i)
+      {
+        const double u = (2.0 * (i % steps) + 1.0) / steps - 1.0;
+        const double v = (2.0 * (i / steps) + 1.0) / steps - 1.0;
+        sum += isInside(s, u, v)
+          ? 4.0 * a * b / steps / steps * std::pow(1.0 + a * a * u * u + b * b * v * v, -1.5)
+          : 0.0;
+      }
+      EXPECT_NEAR(sensorOf(s).solidAngle() / sum, 1.0, 3e-4) << wider;
+    }
+  }
+}
+
+TEST(BeamShape, AxesAreTurnedFromTheHorizontal)
+{
+  std::mt19937_64 random(3);
+  std::normal_distribution<double> normal;
+  for (const Shape& s : Shapes)
+  {
+    const BeamShape shape(sensorOf(s));
+    for (int k = 0; k < 20 && !shape.isRound(); ++k)
+    {
+      const Vec3 direction(normal(random), normal(random), normal(random));
+      const BeamFrame frame = frameOf(s, direction);
+      const Vec3 axis = unitVector(direction);
+      const Vec3 right = unitVector(glm::cross(axis, Vec3(0.0, 0.0, 1.0)));
+      const Vec3 up = glm::cross(right, axis);
+      const double turn = s.rotation * Degree;
+      const Vec3 along = std::cos(turn) * right + std::sin(turn) * up;
+      const Vec3 across = std::cos(turn) * up - std::sin(turn) * right;
+      for (const double u : { -1.3, -0.999, 0.2, 0.9 })
+      {
+        for (const double v : { -0.3, 0.45, 1.001 })
+        {
+          const Vec3 ray =
+            7.0 * (axis + u * std::tan(s.along) * along + v * std::tan(acrossOf(s)) * across);
+          EXPECT_EQ(frame.contains(ray), isInside(s, u, v)) << u << " " << v;
+          const Vec3 p = frame.toPlane(ray);
+          EXPECT_LT(safeLength(7.0 * frame.direction(p.x / p.z, p.y / p.z) - ray), 1e-14 * 7.0);
+          EXPECT_EQ(shape.holds(p.x / p.z, p.y / p.z), isInside(s, u, v));
+          const double tangent = safeLength(glm::cross(axis, ray)) / glm::dot(axis, ray);
+          EXPECT_NEAR(frame.tanHalf * frame.tanHalf * frame.radius2(p.x / p.z, p.y / p.z),
+            tangent * tangent, 1e-12 * tangent * tangent);
+        }
+      }
+    }
+  }
+}
+
+TEST(BeamShape, AxesFollowTheSensor)
+{
+  // A sensor that lies on its side: what was horizontal stands upright.
+  Sensor sensor = sensorOf(Shapes[0]);
+  sensor.up = { 0.0, 1.0, 0.0 };
+  const BeamFrame lying = makeBeamFrame(Vec3(0.0), { 1.0, 0.0, 0.0 }, BeamShape(sensor).width());
+  EXPECT_NEAR(std::fabs(lying.e1.z), 1.0, 1e-15);
+  // Straight up there is no horizontal: a frame all the same.
+  sensor.up = { 0.0, 0.0, 1.0 };
+  const BeamFrame above = makeBeamFrame(Vec3(0.0), { 0.0, 0.0, 1.0 }, BeamShape(sensor).width());
+  EXPECT_NEAR(glm::dot(above.e1, above.e1), 1.0, 1e-15);
+  EXPECT_NEAR(glm::dot(above.e1, above.e2), 0.0, 1e-15);
+  EXPECT_NEAR(glm::dot(above.e2, above.e2), above.flatness2, 1e-15);
+}
+
+TEST(BeamShape, APlaneReturnsAll)
+{
+  Scene scene;
+  scene.plate(Vec3(100.0, 0.0, 0.0), Vec3(0.0, 5.0, 0.0), Vec3(0.0, 0.0, 5.0), Matt, 1);
+  for (const Shape& s : Shapes)
+  {
+    const Sensor sensor = sensorOf(s);
+    // The mean cosine is 1 - tan^2/2 there.
+    const double truth = sensor.pulseEnergy * Matt.kd;
+    EXPECT_NEAR(received(scene, sensor, byRays(300)), truth, 2e-5 * truth);
+    for (const Scene& wall : { scene, fineWall(30) })
+    {
+      const Echo echo = onlyEcho(wall, sensor, inCells());
+      const bool isUniform = s.profile == BeamProfile::Uniform;
+      EXPECT_NEAR(echo.returnEnergy, truth,
+        isUniform ? 2e-5 * truth : 2e-5 * truth + 4.0 * echo.energyStdError);
+      EXPECT_LT(echo.energyStdError, 0.02 * truth);
+    }
+  }
+}
+
+TEST(BeamShape, AnEdgeCutsAShare)
+{
+  // A plate that ends along a line, in any direction, at some distance from the axis.
+  for (const Shape& s : Shapes)
+  {
+    const Sensor sensor = sensorOf(s);
+    const double a = std::tan(s.along);
+    const double b = std::tan(acrossOf(s));
+    const double turn = s.rotation * Degree;
+    for (const double angle : { 0.0, 50.0, 90.0, 200.0 })
+    {
+      for (const double at : { -0.4, 0.1, 0.7 })
+      {
+        // In half-widths the edge is cos u + sin v = at; the plate lies beyond.
+        const double nu = std::cos(angle * Degree) / a;
+        const double nv = std::sin(angle * Degree) / b;
+        const double n = std::hypot(nu, nv);
+        const Vec3 along(0.0, -std::cos(turn), std::sin(turn));
+        const Vec3 across(0.0, std::sin(turn), std::cos(turn));
+        const Vec3 out = (nu * along + nv * across) / n;
+        const Vec3 side = (nu * across - nv * along) / n;
+        Scene scene;
+        fine(scene, Vec3(100.0, 0.0, 0.0) + (100.0 * at / n + 3.0) * out, 3.0 * out, 3.0 * side, 12,
+          Matt, 1);
+        const double truth = sensor.pulseEnergy * Matt.kd *
+          shareWhere(s,
+            [=](double u, double v)
+            { return std::cos(angle * Degree) * u + std::sin(angle * Degree) * v > at; });
+        const ScanResult cells = runScan(makeSetup(scene, sensor, inCells(400)), alike(40));
+        double mean = 0.0;
+        double variance = 0.0;
+        for (const Echo& echo : cells.echoes)
+        {
+          mean += echo.returnEnergy / 40.0;
+          variance += echo.energyStdError * echo.energyStdError / 40.0;
+        }
+        const double one = sensor.pulseEnergy * Matt.kd;
+        EXPECT_NEAR(mean, truth, 1.5e-3 * one + 4.0 * std::sqrt(variance / 40.0))
+          << s.rotation << " " << angle << " " << at;
+        EXPECT_LT(std::sqrt(variance), 0.03 * one);
+        EXPECT_NEAR(received(scene, sensor, byRays(20000)), truth, 6e-3 * one);
+      }
+    }
+  }
+}
+
+namespace
+{
+/// Where a ray from the origin along (1, y, z) meets a triangle, as 1/x; 0: nowhere.
+double meets(const TriangleMesh& mesh, const std::array<std::uint32_t, 3>& t, const Vec3& d)
+{
+  const Vec3 a = mesh.points[t[0]];
+  const Vec3 e = mesh.points[t[1]] - a;
+  const Vec3 f = mesh.points[t[2]] - a;
+  const Vec3 p = glm::cross(d, f);
+  const double det = glm::dot(e, p);
+  const double u = -glm::dot(a, p) / det;
+  const Vec3 q = glm::cross(-a, e);
+  const double v = glm::dot(d, q) / det;
+  const double x = glm::dot(f, q) / det;
+  return u >= 0.0 && v >= 0.0 && u + v <= 1.0 && x > 0.0 ? 1.0 / x : 0.0;
+}
+}
+
+TEST(BeamShape, CellsAreTheMeanOfManyRays)
+{
+  // What each object of a crowded beam returns, against rays that all triangles are tested with.
+  std::mt19937_64 random(12);
+  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+  for (const Shape& s : Shapes)
+  {
+    const Scene scene = clutter(7);
+    const double a = std::tan(s.along);
+    const double b = std::tan(acrossOf(s));
+    const double turn = s.rotation * Degree;
+    std::vector<double> truth(101, 0.0);
+    double all = 0.0;
+    for (int ray = 0; ray < 20000; ++ray)
+    {
+      const double u = uniform(random);
+      const double v = uniform(random);
+      const double light = isInside(s, u, v) ? lightAt(s, u, v) : 0.0;
+      all += light;
+      const double right = std::cos(turn) * a * u - std::sin(turn) * b * v;
+      const double up = std::sin(turn) * a * u + std::cos(turn) * b * v;
+      double nearest = 0.0;
+      int object = -1;
+      for (std::size_t t = 0; t < scene.mesh->triangles.size() && light > 0.0; ++t)
+      {
+        const double met = meets(*scene.mesh, scene.mesh->triangles[t], { 1.0, -right, up });
+        object = met > nearest ? scene.objects[t] : object;
+        nearest = std::max(nearest, met);
+      }
+      if (object >= 0)
+      {
+        truth[object] += light;
+      }
+    }
+    const ScanSetup setup = makeSetup(scene, sensorOf(s), inCells(400));
+    const SeenInCells seen(setup, frameOf(s));
+    for (int object = 0; object <= 100; ++object)
+    {
+      EXPECT_NEAR(seen.ofObject(object), truth[object] / all, 0.012) << object;
+    }
+  }
+}
+
+TEST(BeamShape, PathsOverTwoReflectionsAreTheSameByCellsAndRays)
+{
+  // Two mirrors at right angles send light back; two matt walls some of it.
+  for (const Material& material : { Metal, Matt })
+  {
+    for (const Shape& s : { Shapes[1], Shapes[3], Shapes[6], Shapes[8] })
+    {
+      Scene scene;
+      const double half = std::sqrt(0.5);
+      fine(scene, Vec3(50.0 - half, half, 0.0), Vec3(half, -half, 0.0), Vec3(0.0, 0.0, 1.0), 8,
+        material, 1);
+      fine(scene, Vec3(50.0 - half, -half, 0.0), Vec3(half, half, 0.0), Vec3(0.0, 0.0, 1.0), 8,
+        material, 2);
+      EchoSettings cells = inCells(400);
+      EchoSettings rays = byRays(4000);
+      cells.numberOfReflections = rays.numberOfReflections = 2;
+      const auto mean = [&](const EchoSettings& settings)
+      { return receivedFrom(runScan(makeSetup(scene, sensorOf(s), settings), alike(30))) / 30.0; };
+      const double byCells = mean(cells);
+      EXPECT_NEAR(byCells / mean(rays), 1.0, 0.03);
+      cells.numberOfReflections = 1;
+      EXPECT_GT(byCells, 1.02 * mean(cells)); // they are there
+    }
+  }
+}
+
+TEST(BeamShape, RoundBeamsStayAsTheyWere)
+{
+  Sensor sensor;
+  sensor.halfBeamwidthAcross = sensor.halfBeamwidth;
+  EXPECT_TRUE(sensor.hasRoundBeam());
+  EXPECT_TRUE(BeamShape(sensor).isRound());
+  EXPECT_EQ(BeamShape(sensor).density(0.3, 0.4), 1.0);
+  // Among them wide ones, uniform in solid angle.
+  sensor.halfBeamwidth = sensor.halfBeamwidthAcross = 1.0;
+  sensor.halfBeamwidthAcross = 0.0;
+  EXPECT_EQ(checkSensor(sensor), "");
+}
+
+TEST(BeamShape, BadShapesAreNamed)
+{
+  const auto errorOf = [](auto change)
+  {
+    Sensor sensor;
+    change(sensor);
+    return checkSensor(sensor);
+  };
+  EXPECT_EQ(errorOf([](Sensor& s) { s.halfBeamwidthAcross = 0.25; }),
+    "half_beamwidth_across is 0.25, expected 0 (round), or 1e-9 to 0.1 rad");
+  EXPECT_EQ(errorOf([](Sensor& s) { s.halfBeamwidthAcross = 1e-8; }),
+    "half_beamwidth_across is 1e-08, expected 0 (round), or 1e-9 to 0.1 rad and 1/1000 to 1000 "
+    "times half_beamwidth");
+  EXPECT_EQ(errorOf(
+              [](Sensor& s)
+              {
+                s.beamOutline = BeamOutline::Rectangle;
+                s.halfBeamwidth = 0.5;
+              }),
+    "half_beamwidth is 0.5, expected at most 0.1 rad of a beam that is not round");
+  EXPECT_EQ(errorOf([](Sensor& s) { s.gaussianTruncation = 4.0; }),
+    "gaussian_truncation is 4, expected 0.1 to 3");
+  EXPECT_EQ(errorOf([](Sensor& s) { s.beamOutline = static_cast<BeamOutline>(2); }),
+    "beam_outline is 2, expected 0 (ellipse) or 1 (rectangle)");
+  EXPECT_EQ(errorOf([](Sensor& s) { s.beamRotation = std::numeric_limits<double>::quiet_NaN(); }),
+    "beam_rotation is nan, expected -360 to 360 deg");
+}
