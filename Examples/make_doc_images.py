@@ -24,6 +24,7 @@ import airport  # noqa: E402
 import airport_search  # noqa: E402
 import airport_time  # noqa: E402
 import attenuation  # noqa: E402
+import beam_shapes  # noqa: E402
 import birds  # noqa: E402
 import birds_over_airport  # noqa: E402
 import check_fit  # noqa: E402
@@ -64,6 +65,7 @@ RUNS = (
     ("coverage", screenshots, [], {"head": "coverage-report", "maps": "coverage-maps", "reasons": "coverage-reasons",
                                    "section": "coverage-section", "sites": "coverage-sites"}),
     ("ranges", ranges, [], {"ranges": "coverage-ranges"}),
+    ("shapes", beam_shapes, [], {"shapes": "beams-shapes"}),
     ("patterns", patterns, [], {"prisms": "sensors-prisms", "rotors": "sensors-rotors"}),
     ("sequence", labels, [], {"labels": "sequences-labels"}),
     ("quadcopter", quadcopter, [], {"points": "measured-quadcopter"}),

@@ -17,7 +17,8 @@ import flown
 AIR = 8.9e-5  # 1/m
 # m, about as far as a gull, a goose and a starling are detected
 REACH = {"VLP16": (55, 60, 40), "OS1_64": (80, 95, 60), "Pandar40P": (180, 220, 110), "Automotive16": (150, 175, 95),
-         "Airport16": (130, 180, 60), "Search905": (850, 1000, 550)}
+         "Airport16": (130, 180, 60), "Search905": (850, 1000, 550), "Avia": (130, 160, 90)}
+ASIDE = {"Avia": 35.0}  # deg from the front, of those that do not look all around
 SPECIES = ("herring gull", "Canada goose", "starling")
 NEAREST = 5.0  # m
 NOTHING = (np.zeros((0, 3)), np.zeros((0, 3), dtype=int))
@@ -27,6 +28,8 @@ def places_for(sensor, species, count, seed=0):
     """Places, count x 3, m: azimuth, elevation and distance are uniform."""
     random = np.random.default_rng(seed)
     azimuth, elevation = random.uniform(0, 2 * np.pi, count), np.radians(random.uniform(0, 10, count))
+    if sensor in ASIDE:
+        azimuth = np.radians(ASIDE[sensor]) * (azimuth / np.pi - 1)
     away = random.uniform(NEAREST, REACH[sensor][SPECIES.index(species)], count)
     return away[:, None] * np.column_stack([np.cos(elevation) * np.sin(azimuth), np.cos(elevation) * np.cos(azimuth),
                                             np.sin(elevation)])

@@ -117,7 +117,7 @@ def fly(sensor, windows, light, seed):
     first = random.integers(len(windows))
     for i, at in enumerate(distance):
         beams = windows[(first + i) % len(windows)]
-        near = np.flatnonzero(beams @ middle > np.cos(np.arctan(0.8 * ACROSS / at) + 2e-3))
+        near = np.flatnonzero(beams @ middle > np.cos(np.arctan(0.8 * ACROSS / at) + 3e-3))
         if not len(near):
             seen.append(0)
             continue
