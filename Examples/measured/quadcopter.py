@@ -168,7 +168,7 @@ def draw(flights, folder):
 
 def main(argv=None):
     parser = running.Parser(description=__doc__.split("\n\n")[0])
-    parser.add_argument("--flights", type=running.whole(2, 10000), default=60, help="in each light, default 60")
+    parser.add_argument("--flights", type=running.whole(2, 10000), default=40, help="in each light, default 40")
     parser.add_argument("--out", type=pathlib.Path, default=pathlib.Path("build/quadcopter"))
     options = parser.parse_args(argv)
     bar = al.Sensor("Avia").description["sheet"]["bar"]
