@@ -89,6 +89,7 @@ def fitted(bar):
     """An Avia whose receiver is fitted to its sheet; its ranges times 1 + bar."""
     sensor = al.Sensor("Avia")
     points = [{**point, "range": point["range"] * (1 + bar)} for point in sensor.description["sheet"]["points"]]
+    sensor.set(range_gate=max(sensor.range_gate, max(point["range"] for point in points)))
     sensor.fit(points)
     return sensor
 
