@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The nearest point: brute force on clouds of every shape, and few distances taken on all of them.
+// The nearest point: brute force on clouds of every shape, ties among them, and few distances taken
+// on all of them.
 #include "PointTree.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <limits>
+#include <map>
 #include <random>
 #include <string>
+#include <tuple>
 
 using namespace avianlidar;
 
@@ -64,13 +67,21 @@ std::vector<Cloud> cloudsOf(std::size_t count)
   return clouds;
 }
 
-double bruteForce(const std::vector<Vec3>& points, const Vec3& place)
+/// Square of the distance, then the place: the least is the nearest of all.
+using Found = std::tuple<double, double, double, double>;
+
+Found found(double square, const Vec3& point)
 {
-  double least = std::numeric_limits<double>::infinity();
+  return { square, point.x, point.y, point.z };
+}
+
+Found bruteForce(const std::vector<Vec3>& points, const Vec3& place)
+{
+  Found least = found(std::numeric_limits<double>::infinity(), Vec3(0.0));
   for (const Vec3& point : points)
   {
     const Vec3 way = place - point;
-    least = std::min(least, way.x * way.x + way.y * way.y + way.z * way.z);
+    least = std::min(least, found(way.x * way.x + way.y * way.y + way.z * way.z, point));
   }
   return least;
 }
@@ -89,13 +100,52 @@ TEST(PointTree, IsBruteForceToTheLastBit)
         for (std::size_t i = 0; i < from.points.size(); i += 1 + from.points.size() / 50)
         {
           const Vec3 place = from.points[i];
-          ASSERT_EQ(tree.nearestSquare(place), bruteForce(to.points, place))
+          const PointTree::Nearest nearest = tree.nearest(place);
+          ASSERT_EQ(
+            found(nearest.square, tree.points()[nearest.index]), bruteForce(to.points, place))
             << from.name << " to " << to.name;
+          ASSERT_EQ(tree.nearestSquare(place), nearest.square);
         }
       }
     }
   }
   EXPECT_EQ(PointTree({}).nearestSquare(Vec3(0.0)), std::numeric_limits<double>::infinity());
+}
+
+TEST(PointTree, ChoosesAmongEquallyNearPoints)
+{
+  // Whole numbers, each place several times: every distance is exact, and many are equal.
+  std::mt19937_64 random(5);
+  std::uniform_int_distribution<int> side(-3, 3);
+  std::vector<Vec3> points;
+  for (int i = 0; i < 900; ++i)
+  {
+    points.push_back(Vec3(side(random), side(random), i % 3 ? side(random) : 0));
+  }
+  std::vector<Vec3> others = points;
+  std::shuffle(others.begin(), others.end(), random);
+  const PointTree tree(points);
+  const PointTree other(others);
+  std::map<std::tuple<double, double, double>, std::size_t> indices;
+  for (int x = -8; x <= 8; ++x)
+  {
+    for (int y = -8; y <= 8; ++y)
+    {
+      for (int z = -8; z <= 8; ++z)
+      {
+        const Vec3 place(0.5 * x, 0.5 * y, 0.5 * z);
+        const PointTree::Nearest nearest = tree.nearest(place);
+        const Vec3 point = tree.points()[nearest.index];
+        ASSERT_EQ(found(nearest.square, point), bruteForce(points, place));
+        ASSERT_EQ(point, other.points()[other.nearest(place).index]);
+        // One index for all points in a place, whatever is asked for.
+        ASSERT_EQ(
+          indices.emplace(std::tuple(point.x, point.y, point.z), nearest.index).first->second,
+          nearest.index);
+      }
+    }
+  }
+  EXPECT_GT(indices.size(), 200u);
 }
 
 TEST(PointTree, TakesFewDistancesOnEveryCloud)

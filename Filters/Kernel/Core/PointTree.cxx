@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <tuple>
 #include <utility>
 
 namespace avianlidar
@@ -20,8 +21,23 @@ double squareOf(const Vec3& v)
 struct PointTree::Search
 {
   const Vec3 place;
-  double least = std::numeric_limits<double>::infinity();
+  const std::vector<Vec3>& points;
+  Nearest found{ std::numeric_limits<double>::infinity(), 0 };
   std::size_t taken = 0;
+
+  // Whether one of the points from `index` on may be preferred to what is found, if none is nearer
+  // than `square` or has lower coordinates than `low`. So boxes full of points in one place are
+  // passed by.
+  bool improves(double square, const Vec3& low, std::size_t index) const
+  {
+    if (square != this->found.square)
+    {
+      return square < this->found.square;
+    }
+    const Vec3& best = this->points[this->found.index];
+    return std::tie(low.x, low.y, low.z, index) <
+      std::tie(best.x, best.y, best.z, this->found.index);
+  }
 
   double squareTo(const Box& box) const
   {
@@ -64,9 +80,9 @@ void PointTree::build(std::size_t node, Range range)
   this->build(2 * node + 2, { middle, range.end });
 }
 
-double PointTree::nearestSquare(const Vec3& place, std::size_t* taken) const
+PointTree::Nearest PointTree::nearest(const Vec3& place, std::size_t* taken) const
 {
-  Search search{ place };
+  Search search{ place, this->Points };
   if (!this->Points.empty())
   {
     this->search(0, { 0, this->Points.size() }, search);
@@ -75,16 +91,30 @@ double PointTree::nearestSquare(const Vec3& place, std::size_t* taken) const
   {
     *taken += search.taken;
   }
-  return search.least;
+  return search.found;
 }
 
 void PointTree::search(std::size_t node, Range range, Search& search) const
 {
   if (range.end - range.begin <= LeafSize)
   {
+    Nearest best = search.found;
+    bool tied = false; // a rare case, kept apart as this loop takes most of the time
     for (std::size_t i = range.begin; i < range.end; ++i)
     {
-      search.least = std::min(search.least, squareOf(search.place - this->Points[i]));
+      const double square = squareOf(search.place - this->Points[i]);
+      tied |= square == best.square;
+      best.index = square < best.square ? i : best.index;
+      best.square = std::min(best.square, square);
+    }
+    search.found = best;
+    for (std::size_t i = range.begin; tied && i < range.end; ++i)
+    {
+      const double square = squareOf(search.place - this->Points[i]);
+      if (search.improves(square, this->Points[i], i))
+      {
+        search.found = { square, i };
+      }
     }
     search.taken += range.end - range.begin;
     return;
@@ -99,11 +129,11 @@ void PointTree::search(std::size_t node, Range range, Search& search) const
     std::swap(near, far);
     std::swap(toNear, toFar);
   }
-  if (toNear < search.least)
+  if (search.improves(toNear, this->Boxes[near.first].low, near.second.begin))
   {
     this->search(near.first, near.second, search);
   }
-  if (toFar < search.least)
+  if (search.improves(toFar, this->Boxes[far.first].low, far.second.begin))
   {
     this->search(far.first, far.second, search);
   }
