@@ -4,12 +4,14 @@
 #include "ParallelLoop.h"
 #include "PointTree.h"
 #include "ScanBeams.h"
+#include "ValueError.h"
 #include "vtkAvianLidarAbort.h"
 #include "vtkAvianLidarArrays.h"
 #include "vtkAvianLidarGather.h"
 #include "vtkAvianLidarRanks.h"
 
 #include "vtkDoubleArray.h"
+#include "vtkIdTypeArray.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
 #include "vtkMultiProcessController.h"
@@ -59,13 +61,15 @@ std::string CheckCloud(vtkPointSet* cloud, int port)
   return std::string();
 }
 
-// Distances of the points of one cloud to the nearest of another, and of those on all ranks the
-// largest and the root mean square.
+// The nearest points of another cloud to the points of one, and of the distances on all ranks the
+// largest, the root mean square and the density-aware mean.
 struct Direction
 {
   vtkSmartPointer<vtkDoubleArray> Distances;
+  vtkNew<vtkIdTypeArray> Nearest; // one number for each place, on all ranks the same
   double Largest = 0.0;
   double RootMeanSquare = 0.0;
+  double DensityAware = 0.0;
 };
 
 avianlidar::Vec3 PointOf(vtkPointSet* cloud, vtkIdType i)
@@ -86,13 +90,14 @@ avianlidar::PointTree TreeOf(vtkPointSet* cloud)
 }
 
 // Moves the progress of `filter` from `start` to `start` + 0.5.
-Direction Measure(vtkPointSet* from, vtkPointSet* to, vtkAlgorithm* filter, double start)
+void Measure(
+  vtkPointSet* from, vtkPointSet* to, vtkAlgorithm* filter, double start, Direction& result)
 {
   constexpr vtkIdType block = 16384;
   const vtkIdType size = from->GetNumberOfPoints();
   const avianlidar::PointTree tree = TreeOf(to);
-  Direction result;
   result.Distances = Arrays::Make<vtkDoubleArray>(Arrays::NearestDistance, size);
+  result.Nearest->SetNumberOfValues(size);
   for (vtkIdType i = 0; i < size; ++i)
   {
     if (i % block == 0)
@@ -103,25 +108,44 @@ Direction Measure(vtkPointSet* from, vtkPointSet* to, vtkAlgorithm* filter, doub
         throw avianlidar::WorkStopped{};
       }
     }
-    result.Distances->SetValue(i, std::sqrt(tree.nearestSquare(PointOf(from, i))));
+    const auto nearest = tree.nearest(PointOf(from, i));
+    result.Distances->SetValue(i, std::sqrt(nearest.square));
+    result.Nearest->SetValue(i, static_cast<vtkIdType>(nearest.index));
   }
-  return result;
 }
 
-// The largest and the root mean square of the distances on all ranks. All ranks must call it.
-void Summarize(const vtkAvianLidarRanks& ranks, Direction& direction)
+// The numbers of all ranks from the distances of this one. All ranks must call it.
+// @param others the number of points of the other cloud on all ranks
+void Summarize(
+  const vtkAvianLidarRanks& ranks, vtkIdType others, double alpha, Direction& direction)
 {
+  vtkSmartPointer<vtkIdTypeArray> nearest = direction.Nearest;
+  if (!ranks.Alone())
+  {
+    nearest = vtkSmartPointer<vtkIdTypeArray>::New();
+    ranks.Gather(direction.Nearest, nearest);
+  }
+  std::vector<vtkIdType> counts(static_cast<std::size_t>(others));
+  for (vtkIdType i = 0; i < nearest->GetNumberOfValues(); ++i)
+  {
+    ++counts[static_cast<std::size_t>(nearest->GetValue(i))];
+  }
   const double* values = direction.Distances->GetPointer(0);
   const vtkIdType size = direction.Distances->GetNumberOfTuples();
   double sum = 0.0;
+  double densityAware = 0.0;
   for (vtkIdType i = 0; i < size; ++i)
   {
     sum += values[i] * values[i];
     direction.Largest = std::max(direction.Largest, values[i]);
+    const auto place = static_cast<std::size_t>(direction.Nearest->GetValue(i));
+    densityAware += 1.0 - std::exp(-alpha * values[i]) / static_cast<double>(counts[place]);
   }
   direction.Largest = ranks.Largest(direction.Largest);
   sum = ranks.Sum(sum);
-  direction.RootMeanSquare = std::sqrt(sum / ranks.Sum(static_cast<double>(size)));
+  const double number = ranks.Sum(static_cast<double>(size));
+  direction.RootMeanSquare = std::sqrt(sum / number);
+  direction.DensityAware = ranks.Sum(densityAware) / number;
 }
 
 // An empty piece of a comparison that another piece has as a whole.
@@ -139,6 +163,7 @@ vtkCxxSetObjectMacro(vtkAvianLidarCloudComparison, Controller, vtkMultiProcessCo
 
 //------------------------------------------------------------------------------
 vtkAvianLidarCloudComparison::vtkAvianLidarCloudComparison()
+  : ChamferAlpha(1.0)
 {
   this->SetController(vtkMultiProcessController::GetGlobalController());
   this->SetNumberOfInputPorts(Ports);
@@ -161,6 +186,9 @@ void vtkAvianLidarCloudComparison::ForgetResult()
   this->HausdorffReferenceToSimulated = nan;
   this->RMSESimulatedToReference = nan;
   this->RMSEReferenceToSimulated = nan;
+  this->DensityAwareChamferDistance = nan;
+  this->DensityAwareChamferSimulatedToReference = nan;
+  this->DensityAwareChamferReferenceToSimulated = nan;
 }
 
 //------------------------------------------------------------------------------
@@ -229,6 +257,10 @@ int vtkAvianLidarCloudComparison::RequestData(
         {
           vtkAvianLidarAbort::StopIfWanted(this);
           std::string problem;
+          if (!(this->ChamferAlpha >= 1e-6 && this->ChamferAlpha <= 1e6))
+          {
+            problem = avianlidar::valueError("ChamferAlpha", this->ChamferAlpha, "1e-6 to 1e6 1/m");
+          }
           for (int port = 0; port < Ports && problem.empty(); ++port)
           {
             clouds[port] = vtkPointSet::GetData(inputVector[port]);
@@ -236,9 +268,12 @@ int vtkAvianLidarCloudComparison::RequestData(
           }
           return problem;
         });
-      if (read != Outcome::Done)
+      vtkAvianLidarRanks::Settings settings;
+      settings.Add("ChamferAlpha", this->ChamferAlpha);
+      const Outcome agreed = read == Outcome::Done ? ranks.AgreeOn(this, settings) : read;
+      if (agreed != Outcome::Done)
       {
-        return read == Outcome::Failed ? 0 : 1;
+        return agreed == Outcome::Failed ? 0 : 1;
       }
       for (int port = 0; port < Ports; ++port)
       {
@@ -265,23 +300,28 @@ int vtkAvianLidarCloudComparison::RequestData(
               return NameOf(port) + " has no points: the distance to nothing is not defined";
             }
           }
-          directions[0] = Measure(clouds[0], whole[1], this, 0.0);
-          directions[1] = Measure(clouds[1], whole[0], this, 0.5);
+          Measure(clouds[0], whole[1], this, 0.0, directions[0]);
+          Measure(clouds[1], whole[0], this, 0.5, directions[1]);
           return {};
         });
       if (measured != Outcome::Done)
       {
         return measured == Outcome::Failed ? 0 : 1; // stopped: empty and valid
       }
-      for (Direction& direction : directions)
+      for (int port = 0; port < Ports; ++port)
       {
-        Summarize(ranks, direction);
+        const vtkIdType others = whole[1 - port]->GetNumberOfPoints();
+        Summarize(ranks, others, this->ChamferAlpha, directions[port]);
       }
       this->HausdorffSimulatedToReference = directions[0].Largest;
       this->HausdorffReferenceToSimulated = directions[1].Largest;
       this->HausdorffDistance = std::max(directions[0].Largest, directions[1].Largest);
       this->RMSESimulatedToReference = directions[0].RootMeanSquare;
       this->RMSEReferenceToSimulated = directions[1].RootMeanSquare;
+      this->DensityAwareChamferSimulatedToReference = directions[0].DensityAware;
+      this->DensityAwareChamferReferenceToSimulated = directions[1].DensityAware;
+      this->DensityAwareChamferDistance =
+        0.5 * (directions[0].DensityAware + directions[1].DensityAware);
 
       const int asked = std::max(0, request->Get(vtkExecutive::FROM_OUTPUT_PORT()));
       const bool nothing = ranks.Alone() &&
@@ -312,6 +352,11 @@ void vtkAvianLidarCloudComparison::AddResult(vtkFieldData* fields) const
     fields, Arrays::HausdorffReferenceToSimulated, this->HausdorffReferenceToSimulated);
   Arrays::SetFieldValue(fields, Arrays::RMSESimulatedToReference, this->RMSESimulatedToReference);
   Arrays::SetFieldValue(fields, Arrays::RMSEReferenceToSimulated, this->RMSEReferenceToSimulated);
+  Arrays::SetFieldValue(fields, Arrays::ChamferDistance, this->DensityAwareChamferDistance);
+  Arrays::SetFieldValue(
+    fields, Arrays::ChamferSimulatedToReference, this->DensityAwareChamferSimulatedToReference);
+  Arrays::SetFieldValue(
+    fields, Arrays::ChamferReferenceToSimulated, this->DensityAwareChamferReferenceToSimulated);
 }
 
 //------------------------------------------------------------------------------
@@ -325,4 +370,12 @@ void vtkAvianLidarCloudComparison::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "HausdorffReferenceToSimulated: " << this->HausdorffReferenceToSimulated << "\n";
   os << indent << "RMSESimulatedToReference: " << this->RMSESimulatedToReference << "\n";
   os << indent << "RMSEReferenceToSimulated: " << this->RMSEReferenceToSimulated << "\n";
+  os << indent << "DensityAwareChamferDistance: " << this->DensityAwareChamferDistance << "\n";
+  os << indent
+     << "DensityAwareChamferSimulatedToReference: " << this->DensityAwareChamferSimulatedToReference
+     << "\n";
+  os << indent
+     << "DensityAwareChamferReferenceToSimulated: " << this->DensityAwareChamferReferenceToSimulated
+     << "\n";
+  os << indent << "ChamferAlpha: " << this->ChamferAlpha << "\n";
 }

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class vtkAvianLidarCloudComparison
- * @brief How alike two point clouds are: Hausdorff distance and root mean square error, both ways.
+ * @brief How alike two point clouds are: Hausdorff distance, root mean square error and
+ * density-aware Chamfer distance, both ways.
  *
  * **Input port 0**: the simulated cloud, **input port 1**: the reference (the actual scan); any
  * vtkPointSet, in the same coordinates. **Output ports 0 and 1**: shallow copies of the two with
@@ -13,11 +14,25 @@
  * - RMSE (paper, Eq. 20): sqrt(sum of d^2 over the points of one cloud / its number of points). The
  * paper sums over the actual cloud but divides by the number of simulated points; here each
  * direction is divided by the number of points that it sums over, and both are given. Eq. 20 so
- * corrected is the one from reference to simulated.
+ * corrected is the one from reference to simulated;
+ * - density-aware Chamfer distance (DCD; Wu et al., "Density-aware Chamfer Distance as a
+ * Comprehensive Metric for Point Cloud Completion", NeurIPS 2021, arXiv:2111.12702; the equation
+ * second-hand): the mean of the two directions, of which the one from S to R is the mean over S of
+ * 1 - exp(-alpha d) / n. There n is the number of points of S that have the same nearest place of
+ * R. All are within [0, 1]; 0 says that each point of either cloud has a point of the other in its
+ * place, and for itself. A direction is at least 1 - (number of places in the cloud that it leads
+ * to) / (number of points that it starts from), so a cloud with several points in a place is not 0
+ * from itself. The authors' program differs: it has squares of distances, and a factor for
+ * different numbers of points.
  *
- * The numbers are there as getters and as field data of both outputs (double, m):
- * `hausdorff_distance`, `hausdorff_simulated_to_reference`, `hausdorff_reference_to_simulated`,
- * `rmse_simulated_to_reference`, `rmse_reference_to_simulated`.
+ * Points in the same place are one place. Of equally near places the one with the least x, then y,
+ * then z is the nearest, so the order of points does not matter.
+ *
+ * The numbers are there as getters and as field data of both outputs: `hausdorff_distance`,
+ * `hausdorff_simulated_to_reference`, `hausdorff_reference_to_simulated`,
+ * `rmse_simulated_to_reference`, `rmse_reference_to_simulated` (double, m),
+ * `density_aware_chamfer_distance`, `density_aware_chamfer_simulated_to_reference`,
+ * `density_aware_chamfer_reference_to_simulated` (double, 1).
  *
  * Distances are Euclidean, in double precision (a relative error of a few 1e-16, and the rounding
  * of the coordinates). One thread; the same bits always. Outliers,
@@ -26,13 +41,14 @@
  *
  * **Pieces.** MPI ranks that execute together have one piece of each cloud each: every rank
  * measures its own points against the other cloud of all ranks, and passes on its own points alone.
- * The distances are those of one process, the two RMSE to the rounding of their sums; the numbers
+ * The distances are those of one process, RMSE and DCD to the rounding of their sums; the numbers
  * are on all ranks. Otherwise both clouds are asked for as a whole, and of several pieces the first
  * has all points, the others have field data alone.
  *
- * **Bad input**: a cloud without points (the distance to nothing is not defined) or with
- * coordinates that are not finite or beyond 1e30 m is an error that names port and point; both
- * outputs are empty and the getters give NaN. After an abort, too.
+ * **Bad input**: an alpha out of its range or other than on other ranks is an error; a cloud
+ * without points (the distance to nothing is not defined) or with coordinates that are not finite
+ * or beyond 1e30 m is an error that names port and point; both outputs are empty and the getters
+ * give NaN. After an abort, too.
  *
  * @sa vtkAvianLidarPointCloudReader
  */
@@ -76,6 +92,27 @@ public:
 
   ///@{
   /**
+   * Result of the last execution, a pure number within [0, 1], 0 for the most alike: the
+   * density-aware Chamfer distance (see the class), and its two directions, of which it is the
+   * mean. NaN before the first.
+   */
+  vtkGetMacro(DensityAwareChamferDistance, double);
+  vtkGetMacro(DensityAwareChamferSimulatedToReference, double);
+  vtkGetMacro(DensityAwareChamferReferenceToSimulated, double);
+  ///@}
+
+  ///@{
+  /**
+   * Alpha of the density-aware Chamfer distance, per metre, 1e-6 to 1e6: at a distance of 1 / alpha
+   * a nearest point counts for 1 / e of one in the same place. Default 1 (assumed, for scans in
+   * metres: clouds of the paper are scaled to a size of about 1, second-hand, with another alpha).
+   */
+  vtkSetMacro(ChamferAlpha, double);
+  vtkGetMacro(ChamferAlpha, double);
+  ///@}
+
+  ///@{
+  /**
    * The processes that may work together. Default: the global controller when the filter was
    * made; null: this process works alone.
    */
@@ -109,6 +146,10 @@ private:
   double HausdorffReferenceToSimulated;
   double RMSESimulatedToReference;
   double RMSEReferenceToSimulated;
+  double DensityAwareChamferDistance;
+  double DensityAwareChamferSimulatedToReference;
+  double DensityAwareChamferReferenceToSimulated;
+  double ChamferAlpha;
 };
 
 #endif

@@ -111,6 +111,7 @@ def test_comparison(beams, tree, echoes):
     same = simple.AvianLidarCloudComparison(Simulated=echoes, Reference=echoes)
     same.UpdatePipeline()
     assert same.FieldData["hausdorff_distance"].GetRange() == (0, 0)
+    assert same.FieldData["density_aware_chamfer_distance"].GetRange() == (0, 0)
     other = simple.AvianLidarEchoFilter(Beams=beams, Surfaces=tree, Seed=1)
     compared = simple.AvianLidarCloudComparison(Simulated=other, Reference=echoes)
     compared.UpdatePipeline()
@@ -118,6 +119,11 @@ def test_comparison(beams, tree, echoes):
     assert numpy.any(fetch(compared)["nearest_distance"] > 0)
     compared.UpdatePipelineInformation()
     assert compared.HausdorffDistance == compared.FieldData["hausdorff_distance"].GetRange()[0]
+    near = compared.DensityAwareChamferDistance
+    assert 0 < near == compared.FieldData["density_aware_chamfer_distance"].GetRange()[0]
+    compared.ChamferAlpha = 100
+    compared.UpdatePipeline()
+    assert near < compared.FieldData["density_aware_chamfer_distance"].GetRange()[0] <= 1
 
 
 def test_relighting(echoes):

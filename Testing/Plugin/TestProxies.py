@@ -69,7 +69,7 @@ BEAM_SOURCE = {
     "DisplayLength": "metres",
 }
 # What an execution leaves for scripts, and the unit in the tooltip.
-RESULTS = {"result in metres": "metres", "result, a count": "count"}
+RESULTS = {"result in metres": "metres", "result, a count": "count", "result, a pure number": ""}
 CONTRACT = {
     "AvianLidarBeamSource": BEAM_SOURCE,
     "AvianLidarAirport16": BEAM_SOURCE,
@@ -198,6 +198,10 @@ CONTRACT = {
         "HausdorffReferenceToSimulated": "result in metres",
         "RMSESimulatedToReference": "result in metres",
         "RMSEReferenceToSimulated": "result in metres",
+        "ChamferAlpha": "1/m",
+        "DensityAwareChamferDistance": "result, a pure number",
+        "DensityAwareChamferSimulatedToReference": "result, a pure number",
+        "DensityAwareChamferReferenceToSimulated": "result, a pure number",
     },
     "AvianLidarSceneReader": {"FileName": ""},
     "AvianLidarPointCloudReader": {"FileName": "", "LocalCoordinates": ""},

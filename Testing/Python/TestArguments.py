@@ -231,7 +231,7 @@ class Arguments(unittest.TestCase):
             "Material": ({"Material": 4}, [surfaces()]), "HSBColorMap": ({"UseFieldDataRange": False}, [report().GetOutput(0)]),
             "GeodeticTransform": ({"UseFieldDataOrigin": False}, [echoes()]),
             "GeoJSONWriter": ({"UseFieldDataLimit": False}, [echoes()]),
-            "Tracks": ({}, [])}
+            "Tracks": ({}, []), "CloudComparison": ({}, [report().GetOutput(0), echoes()])}
         tried = 0
         for name, (settings, inputs) in setups.items():
             wrapped = getattr(al, "vtkAvianLidar" + name)

@@ -175,6 +175,9 @@ constexpr Name HausdorffSimulatedToReference{ "hausdorff_simulated_to_reference"
 constexpr Name HausdorffReferenceToSimulated{ "hausdorff_reference_to_simulated", "m" };
 constexpr Name RMSESimulatedToReference{ "rmse_simulated_to_reference", "m" };
 constexpr Name RMSEReferenceToSimulated{ "rmse_reference_to_simulated", "m" };
+constexpr Name ChamferDistance{ "density_aware_chamfer_distance", "1" };
+constexpr Name ChamferSimulatedToReference{ "density_aware_chamfer_simulated_to_reference", "1" };
+constexpr Name ChamferReferenceToSimulated{ "density_aware_chamfer_reference_to_simulated", "1" };
 }
 
 #endif
