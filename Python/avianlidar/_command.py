@@ -29,7 +29,7 @@ VERBS = {
   avianlidar info echoes.las
 """),
     "compare": ("how far two clouds are apart", "Distances between the nearest points of two clouds: Hausdorff and root mean "
-                "square (paper, Eq. 19 and 20).", """\
+                "square (paper, Eq. 19 and 20), density-aware Chamfer distance.", """\
   avianlidar compare simulated.las measured.pcd
   avianlidar compare simulated.las measured.pcd -o distances.vtp
 """),

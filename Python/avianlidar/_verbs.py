@@ -206,8 +206,12 @@ def compare(options) -> None:
     _table([("distance of nearest points (m)", there, back),
             ("root mean square", f"{measure.GetRMSESimulatedToReference():.6g}", f"{measure.GetRMSEReferenceToSimulated():.6g}"),
             ("largest", f"{measure.GetHausdorffSimulatedToReference():.6g}", f"{measure.GetHausdorffReferenceToSimulated():.6g}"),
+            ("density-aware Chamfer distance (1)", f"{measure.GetDensityAwareChamferSimulatedToReference():.6g}",
+             f"{measure.GetDensityAwareChamferReferenceToSimulated():.6g}"),
             ("number of points", *(cloud.number_of_points for cloud in clouds))])
     print(f"Hausdorff distance: {measure.GetHausdorffDistance():.6g} m")
+    print(f"density-aware Chamfer distance: {measure.GetDensityAwareChamferDistance():.6g} "
+          f"(alpha = {measure.GetChamferAlpha():g} 1/m)")
     if options.out:
         save(Cloud(measure.GetOutputDataObject(0)), options.out)
         print(f"{options.out}: {options.a.name} with nearest_distance (m)")

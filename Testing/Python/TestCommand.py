@@ -98,6 +98,7 @@ class Verbs(unittest.TestCase):
         self.assertEqual((code, errors), (0, []))
         distance = float(re.search(r"Hausdorff distance: (\S+) m", "\n".join(lines)).group(1))
         self.assertLess(distance, 2e-4)  # LAS counts in 0.1 mm
+        self.assertRegex("\n".join(lines), r"density-aware Chamfer distance: \S+ \(alpha = 1 1/m\)")
         self.assertAlmostEqual(al.load_cloud(OUTPUT / "distances.vtp")["nearest_distance"].max(), distance, delta=1e-9)
 
     def test_csv_is_read_back(self):
