@@ -86,7 +86,7 @@ def spread_of(errors):
 
 
 def clouds(simulated, real):
-    """Hausdorff distance and RMSE (paper, Eq. 19, 20) both ways, m."""
+    """Hausdorff distance and RMSE (paper, Eq. 19, 20) both ways, m; density-aware Chamfer distance, 1."""
     comparison = vtkAvianLidarCloudComparison()
     comparison.SetInputData(0, room_surface.cloud(simulated))
     comparison.SetInputData(1, room_surface.cloud(real))
@@ -94,6 +94,7 @@ def clouds(simulated, real):
     return {"hausdorff": comparison.GetHausdorffDistance(),
             "hausdorff_rs": comparison.GetHausdorffReferenceToSimulated(),
             "hausdorff_sr": comparison.GetHausdorffSimulatedToReference(),
+            "density_aware_chamfer": comparison.GetDensityAwareChamferDistance(),
             "rmse_rs": comparison.GetRMSEReferenceToSimulated(), "rmse_sr": comparison.GetRMSESimulatedToReference()}
 
 

@@ -37,9 +37,9 @@ def errors(rows, names):
 def clouds(rows, names):
     return markdown(
         ["held out", "points", "real", "simulated", "RMSE, real to simulated (m)", "RMSE, simulated to real (m)",
-         "Hausdorff (m)"],
+         "Hausdorff (m)", "density-aware Chamfer"],
         [[names[r["sensor"]], r["what"], r["real"], r["simulated"], f"{r['rmse_rs']:.3f}",
-          f"{r['rmse_sr']:.3f}", f"{r['hausdorff']:.2f}"] for r in rows])
+          f"{r['rmse_sr']:.3f}", f"{r['hausdorff']:.2f}", f"{r['density_aware_chamfer']:.2f}"] for r in rows])
 
 
 def parts(rows, names):
