@@ -26,8 +26,10 @@
  * data, one number each, all needed:
  * `half_beamwidth` rad, `beam_profile`, `pulse_energy` J, `pulse_width` s, `frequency` Hz,
  * `sampling_interval` s, `range_gate` m, `noise_photon_rate` Hz, `lower_energy_limit` J,
- * `upper_energy_limit` J, `receiver_aperture` m2. Optional: `display_length` m, and
- * `revolution`, a whole number of 32 bits, 0 if it is missing: noise of each revolution is its own.
+ * `upper_energy_limit` J, `receiver_aperture` m2. Optional: `display_length` m, the
+ * other numbers of a vtkAvianLidarBeamSource (of beams that are not round `orientation`, too, which
+ * turns them), and `revolution`, a whole number of 32 bits, 0 if it is missing: noise of each
+ * revolution is its own.
  *
  * Input port 1, surfaces: vtkPolyData or a composite of it, as for vtkAvianLidarCollisionTree; best
  * its output. Whatever the piece of the beams, a process alone asks for all surfaces, as anything

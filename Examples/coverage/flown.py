@@ -114,7 +114,7 @@ def fly(scene, sensor, places, scans, species, air, rays, seed=0, say=lambda don
         one.algorithm.Update()
     done = 0
     for numbers in apart(places, positions):
-        lit = [near(one.algorithm.GetOutput(), places[numbers], position, math.hypot(one.half_beamwidth, one.half_beamwidth_across))
+        lit = [near(one.algorithm.GetOutput(), places[numbers], position, math.sqrt(2) * max(one.half_beamwidth, one.half_beamwidth_across))
                for one, position in zip(sensors, positions)]
         for number in range(scans):
             movers = []

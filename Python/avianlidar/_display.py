@@ -107,6 +107,11 @@ def sensor_rows(sensor) -> Dict[str, Any]:
                  "full beam width": value("half_beamwidth", "mrad", 2e3), "rate": value("rotation_rate", "Hz")})
     if sensor.half_beamwidth_across:
         rows["full beam width"] += " by " + value("half_beamwidth_across", "mrad", 2e3)
+    outline = ("", "rectangle")[sensor.algorithm.GetBeamOutline()]
+    shape = [outline, f"turned by {sensor.beam_rotation:g} deg" if sensor.beam_rotation else "",
+             f"Gaussian, cut at {sensor.gaussian_truncation:g} radii of 1/e2" if sensor.algorithm.GetBeamProfile() == 1 else ""]
+    if any(shape):
+        rows["beam"] = ", ".join(filter(None, shape))
     if assumed:
         rows["assumed"] = ", ".join(assumed)
     said = sensor.description

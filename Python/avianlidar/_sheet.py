@@ -80,22 +80,27 @@ def irradiance(light: float, wavelength: float) -> float:
 def solid_angle_of(sensor) -> float:
     """Solid angle of a sensor's beams, sr."""
     half, across = float(sensor.half_beamwidth), float(sensor.half_beamwidth_across)
+    one, two = np.tan(half), np.tan(across or half)
     if int(sensor.algorithm.GetBeamOutline()) == 1:
-        return 4 * half * (across or half)
-    return np.pi * half * across if across else 4 * np.pi * np.sin(0.5 * half) ** 2
+        return 4 * np.arctan(one * two / np.sqrt(1 + one**2 + two**2))
+    return np.pi * one * two * (1 - 0.375 * (one**2 + two**2)) if across else 4 * np.pi * np.sin(0.5 * half) ** 2
 
 
 def share_on_board(sensor, tangent):
     """Share of a beam's energy that falls on a square board, upright and centred. @param tangent of the angle at which the board's
-    side appears, one or many. Beams are not turned here. A round one, whose border may cut the board's corners, counts as a disc of
+    side appears, one or many. A round one, whose border may cut the board's corners, counts as a disc of
     its area."""
     tangent = np.asarray(tangent, dtype=float)
     half, across = float(sensor.half_beamwidth), float(sensor.half_beamwidth_across)
+    if sensor.beam_rotation % 180 == 90:
+        half, across = across or half, half
     fall = 2 * float(sensor.gaussian_truncation) ** 2 if int(sensor.algorithm.GetBeamProfile()) == 1 else 0.0
     rectangle = int(sensor.algorithm.GetBeamOutline()) == 1
     if not rectangle and not across:
         filled = np.minimum(1.0, tangent**2 / solid_angle_of(sensor))
         return np.expm1(-fall * filled) / np.expm1(-fall) if fall else filled
+    if sensor.beam_rotation % 90:
+        raise ValueError(f"beam_rotation is {sensor.beam_rotation!r}, expected a multiple of 90 deg to fit boards that stand upright")
     from scipy.special import erf
     nodes, weights = np.polynomial.legendre.leggauss(64)
 
@@ -158,21 +163,20 @@ class Receiver:
         return float(np.exp(x[k] + (x[k + 1] - x[k]) * over[k] / (over[k] - over[k + 1])))
 
 
-def _told(points) -> List[str]:
-    """What these points tell, in the order in which it needs points."""
+def _told(points, spare: int = 1) -> List[str]:
+    """What these points tell, in the order in which it needs points; the boards only where so many more stay to be missed."""
     found = ["aperture"]
     if len({point.get("light", 0.0) for point in points}) > 1 and len(points) > 1:
         found.append("bandwidth")
     unknown = [point for point in points if "board" not in point]
-    if len({point["reflectance"] for point in unknown}) > 1 and len(points) > len(found):
+    if len({point["reflectance"] for point in unknown}) > 1 and len(points) > len(found) + spare:
         found.append("board")
     return found
 
 
-def _fitted(receiver: Receiver, points, start: Tuple[float, float]) -> Tuple[float, float, float]:
-    """Aperture (m2), bandwidth (nm), board (m). @param start the first two before the fit"""
+def _fitted(receiver: Receiver, points, start: Tuple[float, float], frees: List[str]) -> Tuple[float, float, float]:
+    """Aperture (m2), bandwidth (nm), board (m). @param start the first two before the fit @param frees what is fitted"""
     from scipy.optimize import least_squares
-    frees = _told(points)
     farthest = max(point["range"] for point in points)
     size = farthest * np.sqrt(receiver.solid_angle)  # of a board that just fills the beam there
     best: Tuple[float, Tuple[float, float, float]] = (np.inf, (start[0], start[1], np.nan))
@@ -204,13 +208,14 @@ def fit(sensor, points: Optional[Sequence[Dict[str, Any]]] = None) -> Fit:
             raise ValueError(f"sheet.points[{i}].range is {point['range']!r}, expected at most range_gate, {sensor.range_gate:g} m")
     receiver = Receiver(sensor)
     start = float(sensor.receiver_aperture), max(float(sensor.filter_bandwidth), 1e-3)
-    numbers = _fitted(receiver, points, start)
+    frees = _told(points)
+    numbers = _fitted(receiver, points, start, frees)
     predicted = [receiver.range(point, *numbers) for point in points]
     left_out = []
     for i, point in enumerate(points):
         others = points[:i] + points[i + 1:]
-        left_out.append(receiver.range(point, *_fitted(receiver, others, start)) / point["range"] - 1
-                        if others and _told(others) == _told(points) else float("nan"))
+        left_out.append(receiver.range(point, *_fitted(receiver, others, start, frees)) / point["range"] - 1
+                        if others and frees in (["aperture"], _told(others, 0)) else float("nan"))
     residuals = [value / point["range"] - 1 for value, point in zip(predicted, points)]
     bar = float(np.nanmax(np.abs([*residuals, *left_out]))) if np.isfinite(left_out).any() else float("nan")
     lights = len({point.get("light", 0.0) for point in points}) > 1

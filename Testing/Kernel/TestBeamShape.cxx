@@ -252,8 +252,10 @@ TEST(BeamShape, AxesFollowTheSensor)
   // A sensor that lies on its side: what was horizontal stands upright.
   Sensor sensor = sensorOf(Shapes[0]);
   sensor.up = { 0.0, 1.0, 0.0 };
+  sensor.beamRotation = 30.0;
   const BeamFrame lying = makeBeamFrame(Vec3(0.0), { 1.0, 0.0, 0.0 }, BeamShape(sensor).width());
-  EXPECT_NEAR(std::fabs(lying.e1.z), 1.0, 1e-15);
+  // To its right is z.
+  EXPECT_LT(safeLength(lying.e1 - Vec3(0.0, 0.5, std::sqrt(0.75))), 1e-15);
   // Straight up there is no horizontal: a frame all the same.
   sensor.up = { 0.0, 0.0, 1.0 };
   const BeamFrame above = makeBeamFrame(Vec3(0.0), { 0.0, 0.0, 1.0 }, BeamShape(sensor).width());
@@ -416,17 +418,21 @@ TEST(BeamShape, PathsOverTwoReflectionsAreTheSameByCellsAndRays)
   }
 }
 
-TEST(BeamShape, RoundBeamsStayAsTheyWere)
+TEST(BeamShape, TwoEqualHalfBeamwidthsAreARoundBeam)
 {
-  Sensor sensor;
-  sensor.halfBeamwidthAcross = sensor.halfBeamwidth;
-  EXPECT_TRUE(sensor.hasRoundBeam());
-  EXPECT_TRUE(BeamShape(sensor).isRound());
-  EXPECT_EQ(BeamShape(sensor).density(0.3, 0.4), 1.0);
-  // Among them wide ones, uniform in solid angle.
-  sensor.halfBeamwidth = sensor.halfBeamwidthAcross = 1.0;
-  sensor.halfBeamwidthAcross = 0.0;
-  EXPECT_EQ(checkSensor(sensor), "");
+  const Scene scene = clutter(3);
+  Sensor sensor = openSensor();
+  for (const BeamProfile profile : { BeamProfile::Uniform, BeamProfile::Gaussian })
+  {
+    sensor.beamProfile = profile;
+    sensor.halfBeamwidthAcross = 0.0;
+    const double round = received(scene, sensor, inCells());
+    sensor.halfBeamwidthAcross = sensor.halfBeamwidth;
+    EXPECT_EQ(received(scene, sensor, inCells()), round);
+    // Nearly the same beam by the other way.
+    sensor.halfBeamwidthAcross = 0.9999 * sensor.halfBeamwidth;
+    EXPECT_NEAR(received(scene, sensor, inCells(400)) / round, 1.0, 0.02);
+  }
 }
 
 TEST(BeamShape, BadShapesAreNamed)
@@ -438,9 +444,9 @@ TEST(BeamShape, BadShapesAreNamed)
     return checkSensor(sensor);
   };
   EXPECT_EQ(errorOf([](Sensor& s) { s.halfBeamwidthAcross = 0.25; }),
-    "half_beamwidth_across is 0.25, expected 0 (round), or 1e-9 to 0.1 rad");
+    "half_beamwidth_across is 0.25, expected 0 (the same), or 1e-9 to 0.1 rad");
   EXPECT_EQ(errorOf([](Sensor& s) { s.halfBeamwidthAcross = 1e-8; }),
-    "half_beamwidth_across is 1e-08, expected 0 (round), or 1e-9 to 0.1 rad and 1/1000 to 1000 "
+    "half_beamwidth_across is 1e-08, expected 0 (the same), or 1e-9 to 0.1 rad and 1/1000 to 1000 "
     "times half_beamwidth");
   EXPECT_EQ(errorOf(
               [](Sensor& s)

@@ -77,7 +77,7 @@ class Sheets(unittest.TestCase):
             share = 1000 / sensor.beams.number_of_points
             for point, x in zip(sensor.description["sheet"]["points"], found.predicted):
                 with self.subTest(name, reflectance=point["reflectance"], light=point.get("light", 0)):
-                    light, half = point.get("light", 0), 0.5 * found.board
+                    light, half = point.get("light", 0), 0.5 * found.board if np.isfinite(found.board) else 50
                     scene = al.Scene([(x, -half, -half), (x, half, -half), (x, half, half), (x, -half, half)],
                                      [(0, 1, 2), (0, 2, 3)], material=(point["reflectance"], 0, 1))
                     looking = al.Sensor(name, directions=np.tile([1.0, 0, 0], (1000, 1)), sun_azimuth=270, sun_elevation=0,

@@ -51,9 +51,9 @@ bool CoverageSurvey::look(const ScanSetup& setup, const ScanBeams& beams, const 
   this->Traced = 0;
   const BeamShape shape(setup.sensor);
   const std::uint64_t directionsOf = hashOfBeams(beams.directions, shape.width().half, 0);
-  const double outline[] = { static_cast<double>(setup.sensor.beamOutline),
-    setup.sensor.halfBeamwidthAcross, setup.sensor.beamRotation, setup.sensor.up.x,
-    setup.sensor.up.y, setup.sensor.up.z };
+  const double outline[] = { setup.sensor.halfBeamwidth,
+    static_cast<double>(setup.sensor.beamOutline), setup.sensor.halfBeamwidthAcross,
+    setup.sensor.beamRotation, setup.sensor.up.x, setup.sensor.up.y, setup.sensor.up.z };
   // In order: of an exclusive or, parts that are equal would leave nothing.
   const std::uint64_t parts[] = { directionsOf, places.hash, geometry,
     hashOf(outline, sizeof(outline), 0) };

@@ -56,9 +56,14 @@ BeamShape::BeamShape(const Sensor& sensor)
   this->Width.up = sensor.up;
   this->Profile.halfBeamwidth = Flat;
   this->ShareOfArea = 1.0 / this->area();
+  const double k = sensor.gaussianTruncation;
+  if (!isRectangle && sensor.beamProfile == BeamProfile::Gaussian)
+  {
+    this->Fall = 2.0 * k * k;
+    this->PerMean = this->MostDensity = this->Fall / -std::expm1(-this->Fall);
+  }
   if (isRectangle && sensor.beamProfile == BeamProfile::Gaussian)
   {
-    const double k = sensor.gaussianTruncation;
     const double perMean = 2.0 * Diagonal * k / (std::sqrt(Pi) * std::erf(Diagonal * k));
     this->Profile.profile = BeamProfile::Uniform; // before fit()
     this->Truncation = k;

@@ -11,7 +11,7 @@
  *
  * Source: none.
  * Valid: any sensor that checkSensor() accepts. At 0.1 rad a beam uniform over its plane is 1.5 %
- * brighter at its rim, per solid angle, than one uniform in that.
+ * brighter at its rim (3 % at the corners of a square), per solid angle, than one uniform in that.
  * Test: TestBeamShape.cxx.
  */
 #ifndef avianlidar_BeamShape_h
@@ -52,8 +52,8 @@ public:
   /// Density of the energy over that of a uniform profile.
   double density(double x, double y) const
   {
-    return this->Width.isRectangle ? this->PerMean * std::exp(-this->Fall * (x * x + y * y))
-                                   : rayDensity(this->Profile, x * x + y * y);
+    return this->isRound() ? rayDensity(this->Profile, x * x + y * y)
+                           : this->PerMean * std::exp(-this->Fall * (x * x + y * y));
   }
 
   /// The largest density, or more.
@@ -72,7 +72,7 @@ private:
   double ShareOfArea;
   double MostDensity;
   double Truncation = 0.0; ///< k of a Gaussian in a rectangle; 0: it is uniform
-  double Fall = 0.0;       ///< 4 k^2
+  double Fall = 0.0;       ///< of a Gaussian, over x^2 + y^2; 0: it is uniform
   double PerMean = 1.0;    ///< 1 over the mean of exp()
 };
 }

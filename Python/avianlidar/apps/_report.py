@@ -29,7 +29,7 @@ OTHER_PLACES = 1 << 40  # to a seed: that the share at the best site is not of t
 # Numbers of a sensor that a reader should know: property, words, unit, what one unit of the property is in it.
 COMMON = (("number_of_channels", "beams above one another", "", 1.0), ("azimuth_step", "step in azimuth", "°", 1.0),
           ("rotation_rate", "scans a second", "", 1.0), ("half_beamwidth", "half beamwidth", "mrad", 1e3),
-          ("half_beamwidth_across", "half beamwidth across (0: round)", "mrad", 1e3),
+          ("half_beamwidth_across", "half beamwidth across (0: the same)", "mrad", 1e3),
           ("pulse_energy", "energy of a pulse", "mJ", 1e3), ("pulse_width", "length of a pulse", "ns", 1e9),
           ("wavelength", "wavelength", "nm", 1.0), ("range_gate", "range gate", "m", 1.0))
 PHOTONS = (("receiver_aperture", "area of the receiver's aperture", "cm²", 1e4),
