@@ -56,6 +56,7 @@ set(private_sources
   Filters/Private/Echoes/vtkAvianLidarEchoOutput.cxx
   Filters/Private/Echoes/vtkAvianLidarImageArrays.cxx
   Filters/Private/Echoes/vtkAvianLidarImageBeams.cxx
+  Filters/Private/Echoes/vtkAvianLidarMedia.cxx
   Filters/Private/Echoes/vtkAvianLidarModelNotes.cxx
   Filters/Private/Coverage/vtkAvianLidarCoverageOutput.cxx
   Filters/Private/Coverage/vtkAvianLidarPlaces.cxx
@@ -117,6 +118,7 @@ foreach(built_in IN ITEMS
   Sensors/Automotive16.lidarsensor.json
   Sensors/Avia.lidarsensor.json
   Sensors/CorridorC16.lidarsensor.json
+  Media/media.json
   Sensors/HDL32E.lidarsensor.json
   Sensors/Helios16P.lidarsensor.json
   Sensors/Mid360.lidarsensor.json

@@ -19,7 +19,8 @@ import tempfile
 HERE = pathlib.Path(__file__).resolve().parent
 DOCUMENTATION = HERE.parent / "Documentation"
 sys.path[:0] = [str(HERE / folder) for folder in ("common", "airport", "birds", "corridor", "coverage", "materials", "measured",
-                                                  "notebook", "outdoor", "paper", "reflections", "room", "sensors", "sequence")]
+                                                  "notebook", "outdoor", "paper", "reflections", "room", "sensors", "sequence",
+                                                  "weather")]
 import airport  # noqa: E402
 import airport_search  # noqa: E402
 import airport_time  # noqa: E402
@@ -43,6 +44,7 @@ import screenshots  # noqa: E402
 import predicted_measured  # noqa: E402
 import quadcopter  # noqa: E402
 import second_reflection  # noqa: E402
+import weather  # noqa: E402
 
 # Name of the run, what runs, its arguments, {picture: name in Documentation/images}.
 RUNS = (
@@ -69,6 +71,7 @@ RUNS = (
     ("patterns", patterns, [], {"prisms": "sensors-prisms", "rotors": "sensors-rotors"}),
     ("sequence", labels, [], {"labels": "sequences-labels"}),
     ("quadcopter", quadcopter, [], {"points": "measured-quadcopter"}),
+    ("weather", weather, [], {"weather": "weather"}),
     ("notebook", render_notebook, [], {"energy-image": "python-range-image", "map": "python-map"}),
 )
 

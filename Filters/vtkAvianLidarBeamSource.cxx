@@ -126,6 +126,7 @@ void vtkAvianLidarBeamSource::TakeProperties(const vtkAvianLidarBeamSource& pres
   take(this->PrismPhases, preset.PrismPhases);
   take(this->BeamOutline, preset.BeamOutline);
   take(this->BeamProfile, preset.BeamProfile);
+  take(this->ThresholdLaw, preset.ThresholdLaw);
   take(this->NumberOfRevolutions, preset.NumberOfRevolutions);
   take(this->StepsPerRevolution, preset.StepsPerRevolution);
   take(this->MotionSeed, preset.MotionSeed);
@@ -356,6 +357,7 @@ std::string vtkAvianLidarBeamSource::vtkInternals::SensorOf(
   sensor.beamOutline = static_cast<avianlidar::BeamOutline>(self.BeamOutline);
   sensor.beamProfile = static_cast<avianlidar::BeamProfile>(self.BeamProfile);
   sensor.receiverModel = static_cast<avianlidar::ReceiverModel>(self.ReceiverModel);
+  sensor.thresholdLaw = static_cast<avianlidar::ThresholdLaw>(self.ThresholdLaw);
   std::string error = avianlidar::checkSensor(sensor);
   if (error.rfind("frequency is", 0) == 0)
   {
@@ -483,6 +485,7 @@ void vtkAvianLidarBeamSource::vtkInternals::AddSensor(
   Arrays::SetFieldInteger(fields, Arrays::StepsPerRevolution, self.StepsPerRevolution);
   Arrays::SetFieldInteger(fields, Arrays::Revolution, revolution);
   Arrays::SetFieldInteger(fields, Arrays::ReceiverModel, self.ReceiverModel);
+  Arrays::SetFieldInteger(fields, Arrays::ThresholdLaw, self.ThresholdLaw);
   Arrays::SetFieldValue(fields, Arrays::Wavelength, WavelengthOf(self));
   for (const Scalar& scalar : Scalars())
   {
@@ -599,6 +602,7 @@ void vtkAvianLidarBeamSource::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "StepsPerRevolution: " << this->StepsPerRevolution << "\n";
   os << indent << "MotionSeed: " << this->MotionSeed << "\n";
   os << indent << "ReceiverModel: " << this->ReceiverModel << "\n";
+  os << indent << "ThresholdLaw: " << this->ThresholdLaw << "\n";
   os << indent << "Wavelength: " << this->GetWavelength() << "\n";
   for (const vtkInternals::Scalar& scalar : vtkInternals::Scalars())
   {

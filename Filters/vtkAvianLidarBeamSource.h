@@ -31,7 +31,8 @@
  * `beam_outline`, `beam_rotation`, `beam_profile`, `gaussian_truncation`, `rotation_rate`,
  * `firing_interval`, `number_of_revolutions`, `steps_per_revolution`, `pulse_energy`,
  * `pulse_width`, `frequency`, `sampling_interval`, `range_gate`, `noise_photon_rate`,
- * `lower_energy_limit`, `upper_energy_limit`, `receiver_aperture`, `receiver_model`, `wavelength`,
+ * `lower_energy_limit`, `upper_energy_limit`, `receiver_aperture`, `receiver_model`,
+ * `threshold_law`, `wavelength`,
  * `receiver_efficiency`, `filter_bandwidth`, `background_radiance`, `amplifier_noise`,
  * `excess_noise_factor`, `false_alarms_per_scan`, `dynamic_range`, `sunlight`,
  * `sun_azimuth`, `sun_elevation`, `overlap_range`, `defocus_range`, `range_noise`,
@@ -142,6 +143,13 @@ public:
   {
     RECEIVER_MODEL_ENERGY_LIMITS = 0,
     RECEIVER_MODEL_PHOTONS = 1
+  };
+
+  /// Values of ThresholdLaw.
+  enum ThresholdLaws
+  {
+    THRESHOLD_LAW_FIXED = 0,
+    THRESHOLD_LAW_FOLLOWS_AIR = 1
   };
 
   ///@{
@@ -377,6 +385,19 @@ public:
    */
   vtkSetMacro(GaussianTruncation, double);
   vtkGetMacro(GaussianTruncation, double);
+  ///@}
+
+  ///@{
+  /**
+   * What a photon receiver's threshold does where the air sends light back: THRESHOLD_LAW_FIXED (it
+   * stays; near the sensor the air itself becomes echoes), or THRESHOLD_LAW_FOLLOWS_AIR: the mean
+   * of the air's light is taken off, and the threshold lies as many standard deviations of its
+   * noise above as without air. It follows haze, fog and rain. Default: THRESHOLD_LAW_FOLLOWS_AIR.
+   */
+  vtkSetMacro(ThresholdLaw, int);
+  vtkGetMacro(ThresholdLaw, int);
+  void SetThresholdLawToFixed() { this->SetThresholdLaw(THRESHOLD_LAW_FIXED); }
+  void SetThresholdLawToFollowsAir() { this->SetThresholdLaw(THRESHOLD_LAW_FOLLOWS_AIR); }
   ///@}
 
   ///@{
@@ -774,6 +795,7 @@ protected:
   double BeamRotation = 0.0;
   int BeamProfile = BEAM_PROFILE_UNIFORM;
   double GaussianTruncation = 1.0;
+  int ThresholdLaw = THRESHOLD_LAW_FOLLOWS_AIR;
   double RotationRate = 0.5;
   double FiringInterval = 30e-6;
   int NumberOfRevolutions = 1;

@@ -588,6 +588,7 @@ void vtkAvianLidarCoverage::MakeFields(vtkFieldData* beamFields, vtkFieldData* f
   Arrays::SetFieldInteger(fields, { "gliding", "1" }, this->Gliding);
   Arrays::SetFieldValue(fields, { "reflectance", "1" }, this->Reflectance);
   Arrays::SetFieldValue(fields, { "visibility", "m" }, this->Visibility);
+  this->AddAirTo(fields);
   Arrays::SetFieldInteger(fields, { "clutter", "1" }, this->Clutter);
   Arrays::SetFieldInteger(fields, { "required_detections", "1" }, this->RequiredDetections);
   Arrays::SetFieldInteger(fields, { "number_of_scans", "1" }, this->NumberOfScans);

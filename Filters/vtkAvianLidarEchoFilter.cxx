@@ -146,6 +146,7 @@ bool vtkAvianLidarEchoFilter::Scan(const vtkAvianLidarRanks& ranks, vtkFieldData
       {
         vtkAvianLidarEchoOutput::FillFields(in.Setup, this->Preset, beamFields, this->Moved->Movers,
           in.Exchange.Fields, in.Scene, output->GetFieldData());
+        this->AddAirTo(output->GetFieldData());
       }
       return {};
     });

@@ -67,7 +67,8 @@
  * bound of the error instead, see BeamSamples); `intensity` (0 to 255, linear in the dynamic
  * range); `distance_m`; `beam_id` (vtkIdType), `laser_id` (int), `azimuth` 0.01 deg,
  * `vertical_angle` deg, `timestamp` us; `return_number`, `number_of_returns` (int); `object_id`,
- * `material_id` (int, of the largest share of the energy; -1 for a false alarm), `label_share`
+ * `material_id` (int, of the largest share of the energy; -1 for a false alarm; -2 and -1 for what the
+ * air returns), `label_share`
  * (that share), `incidence_angle` deg (energy-weighted, at the last surface; NaN for a false
  * alarm), `secondary_share` (of the energy, over two reflections: above 0.5 a ghost); with a photon
  * receiver `photoelectrons` and `signal_to_noise`, of the same range unit as `energy_received`;

@@ -6,6 +6,8 @@
 #include "Propagation.h"
 #include "ValueError.h"
 #include "vtkAvianLidarAbort.h"
+#include "vtkAvianLidarArrays.h"
+#include "vtkAvianLidarMedia.h"
 #include "vtkAvianLidarRevolutions.h"
 #include "vtkAvianLidarScanFilterInternals.h"
 #include "vtkAvianLidarText.h"
@@ -27,12 +29,14 @@ using Pipeline = vtkStreamingDemandDrivenPipeline;
 
 /// All that decides a bit of the results. @param air the attenuation coefficient, of no account
 /// where the visibility says it
-vtkAvianLidarRanks::Settings SettingsOf(
-  const avianlidar::EchoSettings& s, int preset, double visibility, double air)
+vtkAvianLidarRanks::Settings SettingsOf(const avianlidar::EchoSettings& s, int preset,
+  double visibility, double air, bool backscatter, double rain)
 {
   vtkAvianLidarRanks::Settings all;
   all.Add("Preset", preset);
   all.Add("Visibility", visibility);
+  all.Add("AirBackscatter", backscatter);
+  all.Add("RainRate", rain);
   for (const avianlidar::EchoSetting& setting : avianlidar::echoSettings())
   {
     const bool isAir = setting.name == std::string("attenuation_coefficient");
@@ -54,7 +58,8 @@ const std::vector<vtkAvianLidarScanFilter::vtkInternals::Property>& vtkAvianLida
     { "RaysPerBeam", &Self::RaysPerBeam }, { "BeamSamples", &Self::BeamSamples },
     { "Sampling", &Self::Sampling }, { "Seed", &Self::Seed },
     { "AttenuationCoefficient", &Self::AttenuationCoefficient, " 1/m" },
-    { "Visibility", &Self::Visibility, " m" }, { "ReflectanceModel", &Self::ReflectanceModel },
+    { "Visibility", &Self::Visibility, " m" }, { "AirBackscatter", &Self::AirBackscatter },
+    { "RainRate", &Self::RainRate, " mm/h" }, { "ReflectanceModel", &Self::ReflectanceModel },
     { "NumberOfReflections", &Self::NumberOfReflections },
     { "BeamConstraint", &Self::BeamConstraint },
     { "LightEnergyConstraint", &Self::LightEnergyConstraint },
@@ -201,7 +206,30 @@ std::string vtkAvianLidarScanFilter::PrepareSettings()
     s.attenuationCoefficient = avianlidar::attenuationOfVisibility(
       this->Visibility, avianlidar::SpeedOfLight / this->Internals->Setup.sensor.frequency);
   }
+  std::vector<avianlidar::Medium>& media = this->Internals->Setup.media;
+  media.clear();
   std::string problem;
+  if (!(this->RainRate >= 0.0 && this->RainRate <= avianlidar::MaximumRainRate))
+  {
+    problem = avianlidar::valueError("RainRate", this->RainRate, "0 to 500 mm/h");
+  }
+  else
+  {
+    if (this->AirBackscatter && this->Visibility > 0.0)
+    {
+      media.push_back(vtkAvianLidarMedia::HazeOf(this->Visibility, s.attenuationCoefficient));
+    }
+    if (this->RainRate > 0.0)
+    {
+      media.push_back(vtkAvianLidarMedia::RainOf(this->RainRate));
+      s.attenuationCoefficient += media.back().extinction;
+    }
+  }
+  if (!media.empty() && !(this->Internals->Setup.sensor.receiverAperture > 0.0))
+  {
+    problem = "air that scatters (AirBackscatter, RainRate) needs beams of a sensor with a "
+              "receiver_aperture above 0, expected such a one";
+  }
   if (!(this->Visibility >= 0.0 && this->Visibility <= 1e9) ||
     (this->Visibility > 0.0 && !(s.attenuationCoefficient <= 1e30)))
   {
@@ -225,6 +253,14 @@ std::string vtkAvianLidarScanFilter::PrepareSettings()
     problem = "MaximumCacheSize is negative, expected at least 0 MiB";
   }
   return problem;
+}
+
+//------------------------------------------------------------------------------
+void vtkAvianLidarScanFilter::AddAirTo(vtkFieldData* fields) const
+{
+  vtkAvianLidarArrays::SetFieldInteger(
+    fields, vtkAvianLidarArrays::AirBackscatter, this->AirBackscatter);
+  vtkAvianLidarArrays::SetFieldValue(fields, vtkAvianLidarArrays::RainRate, this->RainRate);
 }
 
 //------------------------------------------------------------------------------
@@ -260,7 +296,8 @@ bool vtkAvianLidarScanFilter::PrepareBeams(const vtkAvianLidarRanks& ranks, vtkP
     });
   return in.GoOn(read) &&
     in.GoOn(ranks.AgreeOn(this,
-      SettingsOf(in.Setup.settings, this->Preset, this->Visibility, this->AttenuationCoefficient)));
+      SettingsOf(in.Setup.settings, this->Preset, this->Visibility, this->AttenuationCoefficient,
+        this->AirBackscatter, this->RainRate)));
 }
 
 //------------------------------------------------------------------------------

@@ -167,6 +167,29 @@ public:
 
   ///@{
   /**
+   * Whether the air of Visibility sends light back, by its extinction-to-backscatter ratio: 18.8 sr
+   * of fog (a visibility up to 1000 m), 50 sr of haze (assumed). It needs a sensor with an
+   * aperture; what a receiver makes of it is its threshold law
+   * (vtkAvianLidarBeamSource::SetThresholdLaw()). Of no account where Visibility is 0. Default:
+   * off.
+   */
+  vtkSetMacro(AirBackscatter, bool);
+  vtkGetMacro(AirBackscatter, bool);
+  vtkBooleanMacro(AirBackscatter, bool);
+  ///@}
+
+  ///@{
+  /**
+   * Rain rate in millimetres per hour, 0 to 500. Rain weakens light in addition to the air and
+   * sends it back, drop by drop, as Marshall and Palmer distribute them, each like twice its area
+   * (geometric optics), with 20 sr (assumed). Default: 0, none.
+   */
+  vtkSetMacro(RainRate, double);
+  vtkGetMacro(RainRate, double);
+  ///@}
+
+  ///@{
+  /**
    * How a surface reflects: REFLECTANCE_MODEL_LAMBERT_BLINN_PHONG (Eq. 5-8, the paper),
    * REFLECTANCE_MODEL_PHONG or REFLECTANCE_MODEL_MICROFACET (the peers of Fig. 10), or
    * REFLECTANCE_MODEL_OREN_NAYAR: rough surfaces, which return light also at grazing incidence
@@ -376,6 +399,9 @@ protected:
   int RequestInformation(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
   int RequestUpdateExtent(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
 
+  // Whether air and rain send light back, as field data.
+  void AddAirTo(vtkFieldData* fields) const;
+
   // Passes of an execution, by all ranks together; false ends it.
   bool PrepareBeams(const vtkAvianLidarRanks& ranks, vtkPolyData* input);
   bool PrepareSurfaces(const vtkAvianLidarRanks& ranks, vtkDataObject* input);
@@ -388,6 +414,8 @@ protected:
   int Seed = 0;
   double AttenuationCoefficient = 3.5e-5;
   double Visibility = 0.0;
+  bool AirBackscatter = false;
+  double RainRate = 0.0;
   int ReflectanceModel = REFLECTANCE_MODEL_LAMBERT_BLINN_PHONG;
   int NumberOfReflections = 2;
   bool BeamConstraint = true;

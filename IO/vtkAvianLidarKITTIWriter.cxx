@@ -98,7 +98,7 @@ void vtkAvianLidarKITTIWriter::WriteCloud(vtkPointSet* input)
       const int id = fields::IntegerOf(object, i, -1);
       return byMaterial ? formats::labelOfMaterial(fields::IntegerOf(material, i, -1))
         : id >= 0 && id < static_cast<int>(classes.size()) ? classes[id]
-                                                           : 0;
+                                                           : formats::labelWithoutObject(id).kitti;
     };
     output.instance = [=](std::int64_t i)
     {

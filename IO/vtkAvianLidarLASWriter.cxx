@@ -120,8 +120,8 @@ public:
     point.scanAngle = fields::ValueOf(this->ScanAngle, i, angle);
     const int object = fields::IntegerOf(this->Object, i, -1);
     const bool known = object >= 0 && object < static_cast<int>(this->Classes.size());
-    point.classification =
-      fields::IntegerOf(this->Classification, i, known ? this->Classes[object] : 1);
+    point.classification = fields::IntegerOf(this->Classification, i,
+      known ? this->Classes[object] : formats::labelWithoutObject(object).las);
     point.flags = fields::IntegerOf(this->Flags, i, this->CommonFlags);
     point.userData = fields::IntegerOf(this->UserData, i, 0);
     point.sourceId = fields::IntegerOf(this->PointSource, i, this->SourceId);

@@ -45,6 +45,7 @@ constexpr Entry Table[] = {
   { "vehicle", { 1, 20 } },    // other-vehicle
   { "aircraft", { 1, 20 } },   //
   { "bird", { 1, 99 } },       // other-object
+  { "air", { 7, 1 } },         // outlier: fog, rain
 };
 }
 
@@ -56,6 +57,12 @@ SemanticLabel labelOfClass(const std::string& objectClass)
   const auto found = std::find_if(std::begin(Table), std::end(Table),
     [&](const Entry& entry) { return word == entry.objectClass; });
   return found == std::end(Table) ? SemanticLabel{ 1, 0 } : found->label;
+}
+
+SemanticLabel labelWithoutObject(int objectId)
+{
+  constexpr int air = -2;
+  return objectId == air ? labelOfClass("air") : SemanticLabel{ 1, 0 };
 }
 
 int labelOfMaterial(int materialId)

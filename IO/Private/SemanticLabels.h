@@ -21,6 +21,10 @@ struct SemanticLabel
 /// that is not in the table.
 SemanticLabel labelOfClass(const std::string& objectClass);
 
+/// The label of echoes without an object: of air that sends light back (object_id -2) those of the
+/// class "air", else 1 and 0.
+SemanticLabel labelWithoutObject(int objectId);
+
 /// Label of SemanticKITTI's free range for a material: 300 + its id, 0 for none.
 int labelOfMaterial(int materialId);
 }

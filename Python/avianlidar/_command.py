@@ -100,6 +100,32 @@ def _settings(verb, part: str, example: str) -> None:
                       help=f"a property of the {part}, for example {example}; may be given many times")
 
 
+WEATHER = "fog:V or haze:V (visibility, m), rain:R (mm/h); several together; the air sends light back then"
+
+
+def weather(words) -> List[Any]:
+    """Settings of a scan or of coverage by words of `--weather`.
+
+    >>> weather(["fog:800", "rain:10"])
+    [('visibility', 800.0), ('air_backscatter', True), ('rain_rate', 10.0)]
+    """
+    found: List[Any] = []
+    for word in words or ():
+        kind, colon, number = word.partition(":")
+        try:
+            value = float(number)
+        except ValueError:
+            value = math.nan
+        if kind not in ("fog", "haze", "rain") or not value > 0 or not math.isfinite(value):
+            raise ValueError(f"weather {word!r}, expected {WEATHER.partition(';')[0]}")
+        found += [("rain_rate", value)] if kind == "rain" else [("visibility", value), ("air_backscatter", True)]
+    return found
+
+
+def _weather(verb) -> None:
+    verb.add_argument("--weather", nargs="+", metavar="KIND:NUMBER", help=WEATHER)
+
+
 def _out(verb, what: str, **options: Any) -> None:
     verb.add_argument("-o", "--out", type=pathlib.Path, help=what, **{"required": True, **options})
 
@@ -132,6 +158,7 @@ def parser() -> Parser:
     _out(scan, f"file: {WRITTEN}; .png is a picture of the range image; may be given many times", action="append")
     _settings(scan, "sensor", "range_gate=800")
     _settings(scan, "scan", "rays_per_beam=400")
+    _weather(scan)
     _threads(scan)
 
     verb["info"].add_argument("file", type=pathlib.Path, help="a scene, mesh, cloud, sensor, plan or scenario")
@@ -151,6 +178,7 @@ def parser() -> Parser:
     _out(sequence, "folder")
     _settings(sequence, "sensor", "range_gate=800")
     _settings(sequence, "scan", "rays_per_beam=400")
+    _weather(sequence)
     _threads(sequence)
 
     for name in ("coverage", "siting", "report"):
@@ -158,6 +186,7 @@ def parser() -> Parser:
         _out(verb[name], "file: .html" if name == "report" else "folder")
         _settings(verb[name], "sensor", "range_gate=3000")
         _settings(verb[name], "coverage", "species=crow")
+        _weather(verb[name])
         if name != "coverage":
             verb[name].add_argument("--siting-set", action="append", default=[], type=_value, metavar="NAME=VALUE",
                                     help="a part of the plan's siting, for example spacing=100; files are named from the plan's folder")
@@ -176,6 +205,9 @@ def main(argv: Optional[List[str]] = None) -> int:
     try:
         with warnings.catch_warnings():
             warnings.showwarning = lambda message, *_, **__: _verbs.warn(str(message))
+            part = "scan_set" if hasattr(options, "scan_set") else "coverage_set"
+            if getattr(options, "weather", None):
+                setattr(options, part, [*weather(options.weather), *getattr(options, part)])
             getattr(_verbs, options.verb)(options)
             sys.stdout.flush()
         code = 0

@@ -76,8 +76,11 @@ def _check_outs(options) -> None:
 
 def _alarms(cloud) -> str:
     """How many echoes no surface has given."""
-    number = int((cloud["object_id"] == -1).sum()) if "object_id" in cloud else 0
-    return f", {number} of them a false alarm of the noise (object_id -1)" if number else ""
+    said = ""
+    for number, words in ((-1, "a false alarm of the noise"), (-2, "of the air")):
+        found = int((cloud["object_id"] == number).sum()) if "object_id" in cloud else 0
+        said += f", {found} of them {words} (object_id {number})" if found else ""
+    return said
 
 
 def scan(options) -> None:

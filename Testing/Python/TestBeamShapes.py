@@ -1,7 +1,12 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Beams that are not round, at the shipped airport: echoes against rays that NumPy draws and a locator of VTK follows; coverage against birds
 that fly; field data, files, orientation."""
+import json
 import math
+import os
+import pathlib
+import sys
+import tempfile
 import unittest
 
 import numpy as np
@@ -11,6 +16,9 @@ from vtkmodules.vtkCommonDataModel import vtkStaticCellLocator
 
 import avianlidar as al
 import scenetools as st
+
+sys.path.insert(0, os.path.join(os.environ["AVIANLIDAR_SOURCE_DIR"], "Examples", "coverage"))
+import flown  # noqa: E402
 
 SHAPES = ({"half_beamwidth": 8e-3, "half_beamwidth_across": 2e-3}, {"half_beamwidth": 2e-3, "half_beamwidth_across": 8e-3, "beam_rotation": 30},
           {"half_beamwidth": 8e-3, "half_beamwidth_across": 3e-3, "beam_outline": "Rectangle", "beam_rotation": -20},
@@ -95,6 +103,47 @@ class Airport(unittest.TestCase):
                 self.assertLess(abs(off[lit].mean()), 3.5 * np.sqrt(np.sum(errors[lit]**2)) / lit.sum() + 2e-4)
 
 
+class Coverage(unittest.TestCase):
+    NOTHING = al.Scene(np.zeros((0, 3)), np.zeros((0, 3), dtype=int), material="Wall")
+
+    def test_birds_are_seen_as_often_as_is_stated(self):
+        random = np.random.default_rng(4)
+        for shape in ({"half_beamwidth": 3e-3, "half_beamwidth_across": 1e-3, "beam_rotation": 35},
+                      {"half_beamwidth": 1e-3, "half_beamwidth_across": 3e-3, "beam_outline": "Rectangle", "beam_rotation": -20},
+                      {"half_beamwidth": 4e-3, "half_beamwidth_across": 2e-3, "beam_profile": "Gaussian", "gaussian_truncation": 1.5}):
+            sensor = al.Sensor("Search905", azimuth_step=0.75, pulse_energy=3e-5, **shape)
+            azimuth, elevation = random.uniform(0, 2 * np.pi, 150), np.radians(random.uniform(0.5, 5, 150))
+            away = random.uniform(150, 450, 150)
+            places = away[:, None] * np.column_stack([np.cos(elevation) * np.sin(azimuth), np.cos(elevation) * np.cos(azimuth),
+                                                      np.sin(elevation)])
+            cover = al.Coverage(self.NOTHING, sensor, places=places, species="herring gull", visibility=0, attenuation_coefficient=8.9e-5)
+            stated = cover["detection_probability"].astype(float)
+            seen, _ = flown.fly(self.NOTHING, sensor, places, 6, "herring gull", 8.9e-5, 400)
+            with self.subTest(**shape):
+                self.assertGreater(np.count_nonzero((stated > 0.05) & (stated < 0.95)), 30)
+                error = np.sqrt(np.mean(stated * (1 - stated)) / 6 / len(places)) + 0.01
+                self.assertLess(abs(np.mean(seen - stated)), 3 * error)
+
+    def test_what_is_kept_follows_every_number(self):
+        random = np.random.default_rng(5)
+        places = np.column_stack([random.uniform(-300, 300, (500, 2)), random.uniform(5, 40, 500)])
+        sensor = al.Sensor("Airport16", receiver_aperture=0.01, half_beamwidth=5e-4, half_beamwidth_across=8e-3)
+        kept = al.Coverage(self.NOTHING, sensor, places=places, species="herring gull")
+        kept["detection_probability"]
+        for name, value in (("half_beamwidth", 4e-3), ("half_beamwidth_across", 6e-3), ("beam_rotation", 50), ("beam_outline", "Rectangle"),
+                            ("orientation", (0, 0, 90)), ("beam_profile", "Gaussian"), ("gaussian_truncation", 2)):
+            sensor.set(**{name: value})
+            new = al.Coverage(self.NOTHING, sensor, places=places, species="herring gull")
+            for array in ("detection_probability", "beams_per_scan", "status"):
+                np.testing.assert_array_equal(kept[array], new[array], f"{array} after {name}")
+
+    def test_the_truncation_of_a_gaussian_is_nothing_to_a_uniform_beam(self):
+        places = np.random.default_rng(6).uniform((-80, 10, 1), (80, 80, 12), (400, 3))
+        found = [al.Coverage(self.NOTHING, al.Sensor("VLP16", gaussian_truncation=k), places=places, species="herring gull")[
+            "detection_probability"] for k in (1, 2)]
+        np.testing.assert_array_equal(*found)
+
+
 class Sensors(unittest.TestCase):
     def test_shapes_are_in_field_data_and_files(self):
         sensor = al.Sensor("Airport16", half_beamwidth=2e-3, half_beamwidth_across=1e-3, beam_outline="Rectangle", beam_rotation=20,
@@ -102,6 +151,15 @@ class Sensors(unittest.TestCase):
         fields = sensor.beams.fields
         self.assertEqual([float(fields[name]) for name in ("half_beamwidth_across", "beam_outline", "beam_rotation", "gaussian_truncation")],
                          [1e-3, 1, 20, 2])
+        with tempfile.TemporaryDirectory() as folder:
+            file = pathlib.Path(folder) / "mine.lidarsensor.json"
+            file.write_text(json.dumps({"format": "lidarsensor 1", "name": "Mine", "values": {
+                name: {"value": float(fields[name]), "unit": unit, "source": "made"} for name, unit in (
+                    ("half_beamwidth", "rad"), ("half_beamwidth_across", "rad"), ("beam_outline", "1"), ("beam_rotation", "deg"),
+                    ("beam_profile", "1"), ("gaussian_truncation", "1"))}}))
+            read = al.Sensor(file).beams.fields
+            for name in ("half_beamwidth_across", "beam_outline", "beam_rotation", "gaussian_truncation", "beam_profile"):
+                self.assertEqual(float(read[name]), float(fields[name]))
         avia = al.Sensor("Avia")
         self.assertAlmostEqual(2 * math.degrees(avia.half_beamwidth_across), 0.28, places=4)
         self.assertIn("beam_outline", avia.beams.fields["assumed"])

@@ -233,6 +233,7 @@ field_units = {
     "nm": "wavelength filter_bandwidth",
     "W/(m2 sr nm)": "background_radiance",
     "W/(m2 nm)": "sunlight",
+    "mm/h": "rain_rate",
     "dB": "dynamic_range",
     "1/m": "attenuation_coefficient",
 }

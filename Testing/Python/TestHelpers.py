@@ -24,7 +24,7 @@ SCENE = os.path.join(os.environ["AVIANLIDAR_SOURCE_DIR"], "Examples", "airport",
 
 
 # Properties of the sensor without a unit.
-COUNTS = {"number_of_channels", "beam_outline", "beam_profile", "gaussian_truncation", "number_of_revolutions", "steps_per_revolution", "receiver_model",
+COUNTS = {"number_of_channels", "beam_outline", "beam_profile", "gaussian_truncation", "threshold_law", "number_of_revolutions", "steps_per_revolution", "receiver_model",
           "receiver_efficiency", "excess_noise_factor", "false_alarms_per_scan", "range_noise_exponent", "motion_seed"}
 
 
@@ -122,7 +122,7 @@ class Properties(unittest.TestCase):
             (TypeError, "pulse_energy", lambda: al.Sensor(pulse_enrgy=1)),
             (TypeError, "pulse_energy", lambda: al.Sensor(PulseEnrgy=1)),
             (TypeError, "rays_per_beam", lambda: scan.set(seed=9, ray_per_beam=1)),
-            (TypeError, "known are attenuation_coefficient, .*rays_per_beam", lambda: scan.set(colour=1)),
+            (TypeError, "known are air_backscatter, .*rays_per_beam", lambda: scan.set(colour=1)),
             (AttributeError, "return_mode", lambda: setattr(scan, "return_moed", "First")),
             (AttributeError, "rays_per_beam", lambda: scan.ray_per_beam),
             (ValueError, "'Airport16'", lambda: al.Sensor("Airprot16")),

@@ -38,7 +38,8 @@ enum class RandomPurpose : std::uint32_t
   RareNoise = 13,     ///< which units have a rare deviate
   Cells = 14,         ///< of jittered rays; the pattern's number replaces the beam's
   Mirrors = 15,       ///< of rays over mirrors
-  RangeNoise = 16     ///< of the range of a return, by its strongest unit
+  RangeNoise = 16,    ///< of the range of a return, by its strongest unit
+  Drops = 17          ///< of rain, by range unit
 };
 
 /// Two independent uniform doubles in the open interval (0, 1), 53 bits each.

@@ -61,12 +61,12 @@ Coverage::Coverage(const ScanSetup& setup, const ScanBeams& beams, const Vec3& u
   , Beams(beams)
   , Up(up)
   , Shape(setup.sensor)
-  , HalfBeamwidth(this->Shape.width().half)
   , Directions(directions ? std::move(directions)
                           : std::make_shared<const BeamDirections>(beams.directions,
-                              this->HalfBeamwidth, marginsFor(this->HalfBeamwidth)))
+                              this->Shape.width().half, marginsFor(this->Shape.width().half)))
+  , Air(setup.sensor, setup.media, setup.settings.attenuationCoefficient)
   , Most(static_cast<int>(std::clamp<std::size_t>(this->Directions->mostNear(), 1, 255)))
-  , CosineHeld(std::cos(this->HalfBeamwidth))
+  , CosineHeld(std::cos(this->Shape.width().half))
   , Lowest(std::numeric_limits<double>::infinity())
   , Highest(-std::numeric_limits<double>::infinity())
   , ClutterBegins(beams.size() + 1, 0)
@@ -74,8 +74,8 @@ Coverage::Coverage(const ScanSetup& setup, const ScanBeams& beams, const Vec3& u
   for (const Vec3& direction : beams.directions)
   {
     const double elevation = elevationOf(direction, up);
-    this->Lowest = std::min(this->Lowest, elevation - this->HalfBeamwidth);
-    this->Highest = std::max(this->Highest, elevation + this->HalfBeamwidth);
+    this->Lowest = std::min(this->Lowest, elevation - this->Shape.width().half);
+    this->Highest = std::max(this->Highest, elevation + this->Shape.width().half);
   }
   const double length = setup.sensor.rangeUnitLength();
   for (std::size_t e = 0; e < still.echoes.size(); ++e)
@@ -145,7 +145,7 @@ CoverageSight Coverage::sightOf(const Vec3& to, BeamTracer& tracer) const
       elevation > this->Highest ? CoverageStatus::AboveBand : CoverageStatus::BelowBand;
   }
   const double reach = std::min(angleOf(WidestTarget, range), this->Directions->largestMargin());
-  const double cosineNear = std::cos(this->HalfBeamwidth + reach);
+  const double cosineNear = std::cos(this->Shape.width().half + reach);
   const Vec3 direction = to / range;
   this->Directions->forEachNear(direction, reach,
     [&](std::uint32_t beam, double cosine)
@@ -209,8 +209,10 @@ struct Coverage::PlacedTarget
   const CoverageTarget& target;
   double range;   ///< m
   Vec3 direction; ///< unit vector
+  Vec3 right, up; ///< across it, unit vectors, as in Silhouette.h
   double filling; ///< of a target that fills the beam
   double energy;  ///< where the beam holds all of the target
+  double growth;  ///< of the threshold by the air: energies are those over it
   DetectionLaw::Between elevation;
 
   double probability(double step, int beams) const
@@ -223,7 +225,7 @@ struct Coverage::PlacedTarget
   {
     const double received = std::min(this->energy, this->filling);
     value.probability = this->target.law.probability(received, beams, this->elevation);
-    value.photoelectrons = this->target.electronsPerJoule * this->energy;
+    value.photoelectrons = this->target.electronsPerJoule * this->energy * this->growth;
     if (beams > 0)
     {
       const std::size_t view = this->elevation.below + (this->elevation.share > 0.5 ? 1 : 0);
@@ -240,8 +242,8 @@ struct Coverage::NearBeams
   struct Beam
   {
     std::uint32_t number;
-    double cosine; ///< of the angle from its axis
-    bool isHeld;   ///< it holds the place
+    double nearness; ///< larger: nearer
+    bool isHeld;     ///< it holds the place
   };
   Beam beams[DetectionLaw::MostBeams]; ///< not initialised: this is made for each place
   std::size_t count = 0;
@@ -256,8 +258,8 @@ struct Coverage::NearBeams
       return;
     }
     Beam* farthest = std::min_element(this->beams, this->beams + this->count,
-      [](const Beam& a, const Beam& b) { return a.cosine < b.cosine; });
-    if (farthest->cosine < beam.cosine)
+      [](const Beam& a, const Beam& b) { return a.nearness < b.nearness; });
+    if (farthest->nearness < beam.nearness)
     {
       *farthest = beam;
     }
@@ -271,9 +273,20 @@ Coverage::PlacedTarget Coverage::placed(const CoverageTarget& target, const Vec3
   const double range = safeLength(to);
   const double filling = energyFromTarget(
     sensor, range, std::numeric_limits<double>::infinity(), target.reflectance, target.attenuation);
-  return { target, range, to / range, filling,
-    filling * target.area / (sensor.solidAngle() * range * range),
-    target.law.betweenAt(elevationOf(to, this->Up)) };
+  double growth = 1.0;
+  if (this->Air.any() && sensor.followsAir())
+  {
+    const PhotonReceiver receiver(sensor);
+    const double air = this->Air.mean(static_cast<std::int64_t>(range / sensor.rangeUnitLength()));
+    growth = receiver.growthInAir(receiver.electronsPerJoule * air);
+  }
+  const double energy = filling * target.area / (sensor.solidAngle() * range * range);
+  const Vec3 direction = to / range;
+  const Vec3 across = glm::cross(direction, this->Up);
+  const Vec3 right =
+    glm::dot(across, across) > 0.0 ? unitVector(across) : Vec3(this->Up.y, this->Up.z, this->Up.x);
+  return { target, range, direction, right, glm::cross(right, direction), filling / growth,
+    energy / growth, growth, target.law.betweenAt(elevationOf(to, this->Up)) };
 }
 
 /// True if no number of beams detects the target, and none that may be near is in clutter.
@@ -288,7 +301,7 @@ bool Coverage::isHopeless(const PlacedTarget& at, double step) const
 Coverage::NearBeams Coverage::clearBeams(const PlacedTarget& at) const
 {
   // Beams whose borders the target does not reach hold all of it, or nothing.
-  const double halfBeamwidth = this->HalfBeamwidth;
+  const double halfBeamwidth = this->Shape.width().half;
   const double reach =
     std::min(angleOf(at.target.law.reach(), at.range), this->Directions->largestMargin());
   const double within = reach < halfBeamwidth ? std::cos(halfBeamwidth - reach) : 1.0;
@@ -298,11 +311,14 @@ Coverage::NearBeams Coverage::clearBeams(const PlacedTarget& at) const
     [&](std::uint32_t beam, double cosine)
     {
       const bool isHeld = this->holds(beam, at.direction, cosine);
-      if ((isHeld || cosine > beyond) && !this->isInClutter(beam, at.range))
+      // The cone of a beam that is not round holds more than the beam.
+      const double away = this->Shape.isRound() ? 0.0 : this->beamAt(at, beam).beyond();
+      const bool isNear = isHeld || (cosine > beyond && away < at.target.law.reach());
+      if (isNear && !this->isInClutter(beam, at.range))
       {
         near.clear += isHeld;
         near.whole += isHeld && ((this->Shape.isRound() && cosine > within) || !(reach > 0.0));
-        near.add({ beam, cosine, isHeld });
+        near.add({ beam, this->Shape.isRound() ? cosine : -away, isHeld });
       }
     });
   return near;
@@ -318,26 +334,32 @@ bool Coverage::isCertain(const PlacedTarget& at, double step, const NearBeams& n
         at.probability(step, all) - at.probability(step, near.whole) < Negligible));
 }
 
-/// Set what beams have that are not round, or have another Gaussian.
-void Coverage::shapeBeam(
-  std::uint32_t beam, const Vec3& right, const Vec3& up, double range, BeamAtTarget& at) const
+/// A beam in the plane across the line of sight to a target, right and up as in Silhouette.h.
+BeamAtTarget Coverage::beamAt(const PlacedTarget& at, std::uint32_t beam) const
 {
-  const double k = this->Setup.sensor.gaussianTruncation;
-  at.fall = 2.0 * k * k;
-  at.most = this->Shape.mostDensity();
+  const Sensor& sensor = this->Setup.sensor;
+  const Vec3 axis = at.range * this->Directions->axis(beam);
+  BeamAtTarget found{ at.range * std::sin(sensor.halfBeamwidth), glm::dot(axis, at.right),
+    glm::dot(axis, at.up), sensor.beamProfile };
+  if (sensor.beamProfile == BeamProfile::Gaussian)
+  {
+    found.fall = 2.0 * sensor.gaussianTruncation * sensor.gaussianTruncation;
+    found.most = this->Shape.mostDensity();
+  }
   if (this->Shape.isRound())
   {
-    return;
+    return found;
   }
   const BeamFrame frame = this->frameOf(beam);
   const BeamWidth& width = this->Shape.width();
-  const double x = glm::dot(frame.e1, right);
-  const double y = glm::dot(frame.e1, up);
-  at.isRectangle = width.isRectangle;
-  at.radius = range * width.tangent * (width.isRectangle ? BeamShape::HalfSide : 1.0);
-  at.across = at.radius * width.flatness;
-  at.cosine = x / std::hypot(x, y);
-  at.sine = y / std::hypot(x, y);
+  const double x = glm::dot(frame.e1, at.right);
+  const double y = glm::dot(frame.e1, at.up);
+  found.isRectangle = width.isRectangle;
+  found.radius = at.range * width.tangent * (width.isRectangle ? BeamShape::HalfSide : 1.0);
+  found.across = found.radius * width.flatness;
+  found.cosine = x / std::hypot(x, y);
+  found.sine = y / std::hypot(x, y);
+  return found;
 }
 
 /// Replace what beams that hold all of a target detect by what they do of the parts that they
@@ -345,22 +367,12 @@ void Coverage::shapeBeam(
 void Coverage::share(
   const PlacedTarget& at, const NearBeams& near, double* ofPoses, CoverageValue& value) const
 {
-  const Sensor& sensor = this->Setup.sensor;
-  // As in Silhouette.h.
-  const Vec3 across = glm::cross(at.direction, this->Up);
-  const Vec3 right =
-    glm::dot(across, across) > 0.0 ? unitVector(across) : Vec3(this->Up.y, this->Up.z, this->Up.x);
-  const Vec3 up = glm::cross(right, at.direction);
   std::array<BeamAtTarget, DetectionLaw::MostBeams> beams;
   double irradiance = 0.0; // of the beams that hold the place
   for (std::size_t b = 0; b < near.count; ++b)
   {
-    const auto& [number, cosine, isHeld] = near.beams[b];
-    const Vec3 axis = at.range * this->Directions->axis(number);
-    beams[b] = { at.range * std::sin(sensor.halfBeamwidth), glm::dot(axis, right),
-      glm::dot(axis, up), sensor.beamProfile };
-    this->shapeBeam(number, right, up, at.range, beams[b]);
-    irradiance += isHeld ? beams[b].irradiance() : 0.0;
+    beams[b] = this->beamAt(at, near.beams[b].number);
+    irradiance += near.beams[b].isHeld ? beams[b].irradiance() : 0.0;
   }
   value.probability = at.target.law.probability(
     at.energy, at.filling, beams.data(), near.count, at.elevation, ofPoses);

@@ -203,6 +203,11 @@ void BeamEchoes::finish(
     {
       echo = echoOf(ret);
     }
+    else if (ret.air > 0.5 * ret.returnEnergy)
+    {
+      echo.objectId = ObjectOfAir;
+      echo.labelShare = std::min(1.0, ret.air / ret.returnEnergy);
+    }
     echo.range = this->Receiver.measured(ret, echo.range);
     echo.background = this->Receiver.radiance();
     echo.energyReceived = ret.energyReceived;

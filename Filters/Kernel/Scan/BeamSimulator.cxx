@@ -11,7 +11,8 @@ BeamSimulator::BeamSimulator(const ScanSetup& setup, const ScanBeams& beams, boo
   , KeepsLight(keepsLight && (setup.noise.active || setup.movers))
   , Block(setup, beams, sampler)
   , Receiver(setup.sensor, setup.noise, setup.settings.seed, setup.settings.returnMode,
-      setup.revolution, wanted)
+      setup.revolution, wanted,
+      AirEcho(setup.sensor, setup.media, setup.settings.attenuationCoefficient))
   , Lighting(setup, beams, this->Block, sampler, this->Receiver, std::move(wanted))
   , Echoes(setup, this->Lighting, this->Receiver)
 {

@@ -54,6 +54,9 @@ public:
 
   /// Light beams also where bounds show that nothing of them can be perceived: for those who look
   /// at lighting().
+  /// What the air sends back.
+  const AirEcho& air() const { return this->Receiver.air(); }
+
   void lightAll() { this->Lighting.lightAll(); }
 
   /// What the beam lit last received.

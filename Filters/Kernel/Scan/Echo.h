@@ -13,6 +13,9 @@
 
 namespace avianlidar
 {
+/// Object of what the air returned.
+constexpr int ObjectOfAir = -2;
+
 // Echoes are compared as bytes: none may be without a member.
 #pragma GCC diagnostic push
 #pragma GCC diagnostic error "-Wpadded"
@@ -26,7 +29,7 @@ struct Echo
   double energyStdError = 0.0; ///< J, of energyReceived; NaN below 8 rays
   int returnNumber = 1;
   int numberOfReturns = 1;
-  int objectId = -1; ///< object of the largest share of the energy; -1 for a false alarm
+  int objectId = -1; ///< object of the largest share of the energy; -1 for a false alarm, -2: air
   int materialId = -1;
   double labelShare = 0.0; ///< the largest share
   double incidenceAngle =

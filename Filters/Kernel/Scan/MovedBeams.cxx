@@ -291,7 +291,8 @@ MoverSight MovedBeams::sightOf(
   for (const RangeUnit& unit : this->Units.units())
   {
     sight.energy = std::max(sight.energy, unit.energy);
-    missed *= 1.0 - perceptionProbability(sensor, receiver, unit.energy);
+    missed *= 1.0 -
+      perceptionProbability(sensor, receiver, unit.energy, this->Simulator->air().mean(unit.index));
   }
   sight.probability = 1.0 - missed;
   return sight;

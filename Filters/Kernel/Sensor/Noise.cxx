@@ -40,7 +40,6 @@ constexpr double BoundUnits = 1e15;
 /// Share of the units without a false alarm that have no rare deviate; theirs are below
 /// CommonDeviate: P(z < 3) = 0.99865, among all units.
 constexpr double CommonShare = 0.9986;
-constexpr double CommonDeviate = 3.0;
 
 struct GammaRatios
 {

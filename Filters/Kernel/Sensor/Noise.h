@@ -66,6 +66,8 @@ struct NoisePlan
 
 /// Energies below this share of Qlow change nothing: noise bounded by it is skipped.
 constexpr double NegligibleNoiseShare = 1e-9;
+/// Deviates of Gaussian noise above this are rare (BeamNoise::isRare()).
+constexpr double CommonDeviate = 3.0;
 constexpr double MaximumMeanPhotons = 1e12;
 constexpr double MaximumFalseAlarmsPerBeam = 1e6;
 constexpr double MaximumFalseAlarmsPerScan = 1e8;

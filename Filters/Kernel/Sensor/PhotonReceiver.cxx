@@ -56,9 +56,9 @@ double PhotonReceiver::signalToNoise(double electrons) const
   return electrons / this->deviation(electrons);
 }
 
-double PhotonReceiver::detectionProbability(double electrons, double threshold) const
+double PhotonReceiver::detectionProbability(double electrons, double threshold, double air) const
 {
-  return 0.5 * std::erfc((threshold - electrons) / (Root2 * this->deviation(electrons)));
+  return 0.5 * std::erfc((threshold - electrons) / (Root2 * this->deviation(electrons + air)));
 }
 
 Sensor lookingAt(const Sensor& sensor, double radiance)
@@ -75,12 +75,14 @@ Sensor lookingAt(const Sensor& sensor, double radiance)
   return there;
 }
 
-double perceptionProbability(const Sensor& sensor, const PhotonReceiver& receiver, double energy)
+double perceptionProbability(
+  const Sensor& sensor, const PhotonReceiver& receiver, double energy, double air)
 {
   if (sensor.receiverModel == ReceiverModel::Photons)
   {
-    return receiver.detectionProbability(
-      receiver.electronsPerJoule * energy, receiver.electronsPerJoule * sensor.lowerEnergyLimit);
+    const double ofAir = sensor.followsAir() ? receiver.electronsPerJoule * air : 0.0;
+    return receiver.detectionProbability(receiver.electronsPerJoule * energy,
+      receiver.electronsPerJoule * sensor.lowerEnergyLimit * receiver.growthInAir(ofAir), ofAir);
   }
   return energy > sensor.lowerEnergyLimit ? 1.0 : 0.0;
 }

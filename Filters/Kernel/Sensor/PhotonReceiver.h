@@ -29,6 +29,7 @@
 
 #include "Sensor.h"
 
+#include <cmath>
 #include <string>
 
 namespace avianlidar
@@ -50,7 +51,14 @@ struct PhotonReceiver
   double signalToNoise(double electrons) const;
 
   /// Probability that a unit that gets n electrons on average is perceived. @param threshold n_T
-  double detectionProbability(double electrons, double threshold) const;
+  /// @param air electrons of air, whose mean is taken off and whose noise stays
+  double detectionProbability(double electrons, double threshold, double air = 0.0) const;
+
+  /// By how much a threshold that follows the air grows where the air makes so many electrons.
+  double growthInAir(double air) const
+  {
+    return std::sqrt(1.0 + this->excess * air / this->darkVariance);
+  }
 };
 
 /// The sensor in a beam that looks at another radiance than its sky's: background, and where that
@@ -59,8 +67,10 @@ struct PhotonReceiver
 Sensor lookingAt(const Sensor& sensor, double radiance);
 
 /// Probability that a range unit that receives so much light is perceived: by the noise of a photon
-/// receiver, else 0 or 1 by the limit. @param receiver of the sensor @param energy J
-double perceptionProbability(const Sensor& sensor, const PhotonReceiver& receiver, double energy);
+/// receiver, else 0 or 1 by the limit. @param receiver of the sensor @param energy J @param air
+/// mean of what the air sends back there, J: it matters where the threshold follows it
+double perceptionProbability(
+  const Sensor& sensor, const PhotonReceiver& receiver, double energy, double air = 0.0);
 
 /// How many times the false alarms of Gaussian noise single electrons would raise above the
 /// sensor's limit, about.

@@ -3,8 +3,11 @@
 
 #include "LaneSums.h"
 #include "ParallelLoop.h"
+#include "PhotonReceiver.h"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <utility>
 
 namespace avianlidar
@@ -14,8 +17,22 @@ double perceivedEnergy(double received, double lower, double upper)
   return received > lower ? std::min(received, upper) : 0.0;
 }
 
+namespace
+{
+/// By how much an energy raises the variance of noise, 1/J, over what it is in the dark.
+double perAirOf(const Sensor& sensor)
+{
+  if (!sensor.followsAir())
+  {
+    return 0.0;
+  }
+  const PhotonReceiver receiver(sensor);
+  return receiver.excess * receiver.electronsPerJoule / receiver.darkVariance;
+}
+}
+
 BeamReceiver::BeamReceiver(const Sensor& sensor, const NoisePlan& noise, std::int32_t seed,
-  ReturnMode mode, std::int32_t revolution, std::function<bool()> wanted)
+  ReturnMode mode, std::int32_t revolution, std::function<bool()> wanted, AirEcho air)
   : Instrument(sensor)
   , Radiance(sensor.backgroundRadiance)
   , Errors(sensor, noise.ofRanges)
@@ -23,11 +40,53 @@ BeamReceiver::BeamReceiver(const Sensor& sensor, const NoisePlan& noise, std::in
   , Lower(sensor.lowerEnergyLimit)
   , Upper(sensor.upperEnergyLimit)
   , Plan(noise)
+  , Air(std::move(air))
+  , FollowsAir(sensor.followsAir())
+  , PerAir(perAirOf(sensor))
   , Seed(seed)
   , Revolution(revolution)
   , Mode(mode)
   , Wanted(std::move(wanted))
 {
+  if (this->Air.any())
+  {
+    this->planAir();
+  }
+}
+
+/// Find the units in which the air alone may be perceived, and from where on drops matter there. A
+/// brighter background than the sensor's raises what is needed.
+void BeamReceiver::planAir()
+{
+  constexpr double counts = 0.01; // of a unit's variance: from there on drops are drawn
+  for (std::int64_t unit = 0; unit < this->Air.units(); ++unit)
+  {
+    const double mean = this->Air.mean(unit);
+    const double variance = this->Plan.darkVariance + this->Plan.varianceOfEnergy * mean;
+    const bool hasDrops = this->Plan.active && this->Air.variance(unit) > counts * variance;
+    if (hasDrops || (!this->FollowsAir && mean > 1e-6 * this->Lower))
+    {
+      this->AirLooked = unit + 1;
+    }
+  }
+  for (std::int64_t unit = 0; unit < this->AirLooked && this->Plan.gaussian; ++unit)
+  {
+    // x + 3 sqrt(variance + varianceOfEnergy x) is the limit.
+    const double mean = this->Air.mean(unit);
+    const double variance = this->Plan.darkVariance + this->Plan.varianceOfEnergy * mean;
+    const double limit = this->FollowsAir ? this->lowerIn(mean) : this->Lower - mean;
+    const double square = CommonDeviate * CommonDeviate;
+    const double half = limit + 0.5 * square * this->Plan.varianceOfEnergy;
+    const double rest = limit * limit - square * variance;
+    this->Air.setLeast(
+      unit, limit > 0.0 && rest > 0.0 ? rest / (half + std::sqrt(half * half - rest)) : -Infinity);
+  }
+}
+
+/// The lower limit of a unit, J. @param air mean of what the air sends back, J
+double BeamReceiver::lowerIn(double air) const
+{
+  return this->FollowsAir ? this->Lower * std::sqrt(1.0 + this->PerAir * air) : this->Lower;
 }
 
 void BeamReceiver::receive(std::uint64_t beam, const std::vector<RangeUnit>& units, double radiance)
@@ -37,7 +96,8 @@ void BeamReceiver::receive(std::uint64_t beam, const std::vector<RangeUnit>& uni
     this->lookAt(radiance);
   }
   this->Noise.begin(this->Plan, this->Seed, beam, this->Revolution);
-  this->collectUnits(units);
+  this->Beam = beam;
+  this->Air.any() ? this->collectInAir(units) : this->collectUnits(units);
   this->formReturns();
   this->select();
 }
@@ -52,6 +112,7 @@ void BeamReceiver::lookAt(double radiance)
   this->Plan = planNoise(there, this->Plan.active);
   this->Plan.ofRanges = ofRanges;
   this->Errors = RangeErrors(there, ofRanges);
+  this->PerAir = perAirOf(there);
 }
 
 void BeamReceiver::collectUnits(const std::vector<RangeUnit>& units)
@@ -66,6 +127,8 @@ void BeamReceiver::collectUnits(const std::vector<RangeUnit>& units)
       received->index = unit.index;
       received->energy = unit.energy;
       received->paths = unit.paths;
+      received->lower = this->Lower;
+      received->upper = this->Upper;
       ++received;
     }
     return;
@@ -77,7 +140,7 @@ void BeamReceiver::collectUnits(const std::vector<RangeUnit>& units)
     for (; alarm != alarms.end() && (all || *alarm < index); ++alarm)
     {
       const double noise = this->noiseOf(*alarm, 0.0);
-      this->Units.push_back({ *alarm, noise, noise, 0 });
+      this->Units.push_back({ *alarm, noise, noise, 0, 0.0, this->Lower, this->Upper });
     }
   };
   for (const RangeUnit& unit : units)
@@ -90,9 +153,66 @@ void BeamReceiver::collectUnits(const std::vector<RangeUnit>& units)
       continue;
     }
     const double noise = this->noiseOf(unit.index, unit.energy);
-    this->Units.push_back({ unit.index, unit.energy + noise, noise, unit.paths });
+    this->Units.push_back(
+      { unit.index, unit.energy + noise, noise, unit.paths, 0.0, this->Lower, this->Upper });
   }
   addAlarmsBefore(0, true);
+}
+
+/// The same through air that sends light back.
+void BeamReceiver::collectInAir(const std::vector<RangeUnit>& units)
+{
+  this->Units.clear();
+  const auto& alarms = this->Noise.alarms();
+  auto alarm = alarms.begin();
+  auto lit = units.begin();
+  std::int64_t next = 0; // of those in which the air alone may be perceived
+  constexpr std::int64_t none = std::numeric_limits<std::int64_t>::max();
+  while (next < this->AirLooked || lit != units.end() || alarm != alarms.end())
+  {
+    const std::int64_t index = std::min({ next < this->AirLooked ? next : none,
+      lit != units.end() ? lit->index : none, alarm != alarms.end() ? *alarm : none });
+    const bool isAlarm = alarm != alarms.end() && *alarm == index;
+    const bool isLit = lit != units.end() && lit->index == index;
+    this->addInAir(index, isLit ? lit->energy : 0.0, isLit ? lit->paths : 0, isAlarm);
+    alarm += isAlarm ? 1 : 0;
+    lit += isLit ? 1 : 0;
+    next = std::max(next, index + 1);
+  }
+}
+
+/// Add a unit, unless noise and drops are too common for it to be perceived.
+void BeamReceiver::addInAir(std::int64_t index, double light, std::uint32_t paths, bool alarm)
+{
+  const bool gaussian = this->Plan.gaussian;
+  const double mean = this->Air.mean(index);
+  double beyond = 0.0;
+  if (this->Plan.active && index < this->AirLooked)
+  {
+    const auto drawn = [&](bool all)
+    { return this->Air.beyondMean(this->Seed, this->Beam, index, this->Revolution, all); };
+    beyond = drawn(light > 0.0 || alarm || !gaussian);
+    if (!std::isfinite(beyond))
+    {
+      if (!this->Noise.isRare(index))
+      {
+        return;
+      }
+      beyond = drawn(true);
+    }
+  }
+  const double all = light + std::max(0.0, mean + beyond);
+  const double off = this->FollowsAir ? mean : 0.0;
+  const double lower = this->lowerIn(mean);
+  const double most = all - off +
+    CommonDeviate * std::sqrt(this->Plan.darkVariance + this->Plan.varianceOfEnergy * all);
+  if (gaussian && !alarm && !(most > lower) && !this->Noise.isRare(index))
+  {
+    return;
+  }
+  const double noise = this->Plan.active ? this->noiseOf(index, all) : 0.0;
+  this->Units.push_back(
+    { index, all - off + noise, noise, paths, all - light - off, lower, this->Upper - off });
 }
 
 double BeamReceiver::noiseOf(std::int64_t unit, double light)
@@ -133,9 +253,11 @@ double BeamReceiver::measured(const Return& run, double range) const
   {
     return range;
   }
-  const std::int64_t unit = this->Units[run.strongestUnit].index;
-  return this->Errors.measured(
-    range, run.energyReceived, this->Errors.hasNoise() ? this->Noise.rangeDeviate(unit) : 0.0);
+  const ReceivedUnit& unit = this->Units[run.strongestUnit];
+  // Noise of the air makes an echo count for less.
+  const double share = unit.lower > this->Lower ? this->Lower / unit.lower : 1.0;
+  return this->Errors.measured(range, run.energyReceived * share,
+    this->Errors.hasNoise() ? this->Noise.rangeDeviate(unit.index) : 0.0);
 }
 
 double BeamReceiver::rangeOfNoise(const Return& run) const
@@ -160,7 +282,7 @@ void BeamReceiver::formReturns()
   for (std::size_t u = 0; u < this->Units.size(); ++u)
   {
     const ReceivedUnit& unit = this->Units[u];
-    if (!(unit.energy > this->Lower))
+    if (!(unit.energy > unit.lower) || !(unit.upper >= unit.lower))
     {
       continue;
     }
@@ -175,6 +297,7 @@ void BeamReceiver::formReturns()
     Return& run = this->Returns.back();
     run.lastUnit = u + 1;
     run.returnEnergy += unit.energy;
+    run.air += unit.air;
     run.hasLight = run.hasLight || unit.paths > 0;
     if (unit.energy > this->Units[run.strongestUnit].energy)
     {
@@ -184,8 +307,9 @@ void BeamReceiver::formReturns()
   for (std::size_t r = 0; r < this->Returns.size(); ++r)
   {
     Return& run = this->Returns[r];
-    run.energyReceived = this->Units[run.strongestUnit].energy;
-    run.energy = perceivedEnergy(run.energyReceived, this->Lower, this->Upper);
+    const ReceivedUnit& strongest = this->Units[run.strongestUnit];
+    run.energyReceived = strongest.energy;
+    run.energy = perceivedEnergy(run.energyReceived, strongest.lower, strongest.upper);
     if (single || !run.hasLight)
     {
       run.range =

@@ -9,6 +9,12 @@
  * in its unit (BeamNoise::place()): a run of false alarms lies at the mean of these places,
  * weighted with the energies of the units.
  *
+ * Where the air scatters (AirEcho.h), each unit of the beam receives of it. A threshold that
+ * follows the air takes off its mean, n_air, and lies as many deviations of the noise above it as
+ * without: n_T (1 + F n_air/sigma0^2)^(1/2). So every unit has the same probability of a false
+ * alarm, and what is left are echoes of surfaces and what drops return beyond their mean. A fixed
+ * one takes nothing off. Either way all light counts for saturation.
+ *
  * Source: paper, Sec. 2.4, Eq. 10-12.
  * Differs: the paper's literal reading, one point per perceived range unit at its centre, is
  * ReturnMode::RangeUnits.
@@ -19,6 +25,7 @@
 #ifndef avianlidar_Receiver_h
 #define avianlidar_Receiver_h
 
+#include "AirEcho.h"
 #include "Noise.h"
 #include "RangeErrors.h"
 #include "RangeUnits.h"
@@ -51,7 +58,10 @@ struct ReceivedUnit
   std::int64_t index = 0;  ///< m
   double energy = 0.0;     ///< Qrec, J, noise included
   double noise = 0.0;      ///< Qn, J
-  std::uint32_t paths = 0; ///< with a share in it; 0 for a false alarm
+  std::uint32_t paths = 0; ///< with a share in it; 0 for a false alarm, or the air alone
+  double air = 0.0;        ///< J of the energy that the air sent back
+  double lower = 0.0;      ///< limits of this unit, J
+  double upper = 0.0;
 };
 
 struct Return
@@ -62,7 +72,8 @@ struct Return
   double energyReceived = 0.0;   ///< Qrec of the strongest unit (Eq. 10), J
   double energy = 0.0;           ///< Qen of the strongest unit (Eq. 12), J
   double returnEnergy = 0.0;     ///< sum of Qrec over the run, J
-  bool hasLight = false;         ///< a path has a share in it, not noise alone
+  bool hasLight = false;         ///< a path has a share in it, not noise or air alone
+  double air = 0.0;              ///< sum over the run of what the air sent back, J
   double range = 0.0;            ///< m; see rangeOf()
   /// In the beam, from 1, nearest first, counted before the choice of ReturnMode.
   int returnNumber = 1;
@@ -75,8 +86,9 @@ class BeamReceiver
 public:
   /// @param wanted called every 512 units for which noise is drawn, over all beams; if it returns
   /// false, WorkStopped is thrown
+  /// @param air what it sends back
   BeamReceiver(const Sensor& sensor, const NoisePlan& noise, std::int32_t seed, ReturnMode mode,
-    std::int32_t revolution = 0, std::function<bool()> wanted = {});
+    std::int32_t revolution = 0, std::function<bool()> wanted = {}, AirEcho air = {});
 
   /// Receive a beam. @param units in which light arrives, ascending @param radiance that the beam
   /// looks at, W/(m2 sr nm)
@@ -94,7 +106,10 @@ public:
   double measured(const Return& run, double range) const;
 
   /// True if units without paths may be perceived: then no beam can be left out.
-  bool mayAlarm() const { return this->Plan.active; }
+  bool mayAlarm() const { return this->Plan.active || this->Air.any(); }
+
+  /// What the air sends back.
+  const AirEcho& air() const { return this->Air; }
 
   /// Units with paths or false alarms, ascending, perceived or not; without those whose light is
   /// faint and whose noise is not rare.
@@ -108,7 +123,11 @@ public:
 
 private:
   void lookAt(double radiance);
+  void planAir();
+  double lowerIn(double air) const;
   void collectUnits(const std::vector<RangeUnit>& units);
+  void collectInAir(const std::vector<RangeUnit>& units);
+  void addInAir(std::int64_t index, double light, std::uint32_t paths, bool alarm);
   double noiseOf(std::int64_t unit, double light);
   void formReturns();
   void select();
@@ -122,6 +141,11 @@ private:
   double Lower;
   double Upper;
   NoisePlan Plan;
+  AirEcho Air;
+  bool FollowsAir;
+  double PerAir;              ///< 1/J
+  std::int64_t AirLooked = 0; ///< units in which the air alone may be perceived
+  std::uint64_t Beam = 0;
   std::int32_t Seed;
   std::int32_t Revolution;
   ReturnMode Mode;

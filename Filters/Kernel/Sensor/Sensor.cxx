@@ -19,7 +19,7 @@ const std::vector<SensorField>& sensorFields()
     { "gaussian_truncation", "1", &Sensor::gaussianTruncation, 0.1, 3.0, "0.1 to 3",
       NeededOf::None },
     { "half_beamwidth_across", "rad", &Sensor::halfBeamwidthAcross, 0.0,
-      MaximumHalfBeamwidthNotRound, "0 (round), or 1e-9 to 0.1 rad", NeededOf::None },
+      MaximumHalfBeamwidthNotRound, "0 (the same), or 1e-9 to 0.1 rad", NeededOf::None },
     { "beam_rotation", "deg", &Sensor::beamRotation, -360.0, 360.0, "-360 to 360 deg",
       NeededOf::None },
     { "pulse_energy", "J", &Sensor::pulseEnergy, 1e-50, MaximumEnergy, "1e-50 to 1e50 J",
@@ -62,7 +62,7 @@ const std::vector<SensorField>& sensorFields()
     { "range_walk", "m", &Sensor::rangeWalk, 0.0, 1e9, "0 to 1e9 m", NeededOf::None },
     { "range_quantum", "m", &Sensor::rangeQuantum, 0.0, 1e9, "0, or 1e-9 to 1e9 m", NeededOf::None }
   };
-  constexpr std::size_t others = 4; // profile, outline, receiver model, and what is up
+  constexpr std::size_t others = 5; // profile, outline, receiver model, threshold law, what is up
   static_assert(memberCount<Sensor>() == 28 + others, "is the new member a row of the table?");
   return all;
 }
@@ -130,12 +130,17 @@ std::string checkSensor(const Sensor& s)
     (s.halfBeamwidthAcross < 1e-9 || ratio < 1.0 / MaximumBeamRatio || ratio > MaximumBeamRatio))
   {
     return valueError("half_beamwidth_across", s.halfBeamwidthAcross,
-      "0 (round), or 1e-9 to 0.1 rad and 1/1000 to 1000 times half_beamwidth");
+      "0 (the same), or 1e-9 to 0.1 rad and 1/1000 to 1000 times half_beamwidth");
   }
   if (s.receiverModel != ReceiverModel::EnergyLimits && s.receiverModel != ReceiverModel::Photons)
   {
     return valueError(
       "receiver_model", static_cast<int>(s.receiverModel), "0 (energy limits) or 1 (photons)");
+  }
+  if (s.thresholdLaw != ThresholdLaw::Fixed && s.thresholdLaw != ThresholdLaw::FollowsAir)
+  {
+    return valueError(
+      "threshold_law", static_cast<int>(s.thresholdLaw), "0 (fixed) or 1 (follows the air)");
   }
   if (s.pulseWidth > 1000.0 * s.samplingInterval)
   {

@@ -43,6 +43,13 @@ enum class ReceiverModel
   Photons = 1       ///< limits that follow from light and electronics, see PhotonReceiver.h
 };
 
+/// What air that scatters does to the threshold of a photon receiver.
+enum class ThresholdLaw
+{
+  Fixed = 0,     ///< nothing
+  FollowsAir = 1 ///< mean of the air's echo, plus so many deviations of the noise as without it
+};
+
 constexpr double SpeedOfLight = 299792458.0; // m/s, exact
 constexpr double PlanckConstant = 6.626e-34; // J s, the value of the paper's Table 2
 
@@ -79,6 +86,7 @@ struct Sensor
 
   // The photon receiver; the defaults are assumed.
   ReceiverModel receiverModel = ReceiverModel::EnergyLimits;
+  ThresholdLaw thresholdLaw = ThresholdLaw::FollowsAir; ///< of photons
   double receiverEfficiency = 0.4;  ///< eta, electrons per photon at the aperture, > 0, <= 1
   double filterBandwidth = 10.0;    ///< nm, 0 to 1e6
   double backgroundRadiance = 0.05; ///< L, W/(m^2 sr nm), 0 to 1e10
@@ -113,6 +121,13 @@ struct Sensor
 
   /// Solid angle of the beam, sr; of an ellipse within 1e-4 of it.
   double solidAngle() const;
+
+  /// True if the mean of the air's echo is taken off.
+  bool followsAir() const
+  {
+    return this->receiverModel == ReceiverModel::Photons &&
+      this->thresholdLaw == ThresholdLaw::FollowsAir;
+  }
 
   /// True if what a beam looks at decides on its background.
   bool seesDaylight() const

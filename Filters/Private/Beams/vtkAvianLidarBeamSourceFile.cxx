@@ -190,6 +190,10 @@ void vtkAvianLidarBeamSource::vtkInternals::Apply(const vtkAvianLidarSensorFile&
     {
       self.BeamProfile = whole(Arrays::BeamProfile);
     }
+    else if (is(Arrays::ThresholdLaw))
+    {
+      self.ThresholdLaw = whole(Arrays::ThresholdLaw);
+    }
     else if (is(Arrays::ReceiverModel))
     {
       self.ReceiverModel = whole(Arrays::ReceiverModel);
@@ -242,6 +246,7 @@ std::vector<double> vtkAvianLidarBeamSource::vtkInternals::ValuesOf(
       : name == Arrays::NumberOfChannels.name ? self.NumberOfChannels
       : name == Arrays::BeamOutline.name      ? self.BeamOutline
       : name == Arrays::BeamProfile.name      ? self.BeamProfile
+      : name == Arrays::ThresholdLaw.name     ? self.ThresholdLaw
                                               : self.ReceiverModel };
 }
 

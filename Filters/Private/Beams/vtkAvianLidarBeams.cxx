@@ -111,6 +111,14 @@ std::string ReadSensor(vtkFieldData* fields, avianlidar::Sensor& sensor)
       : wrong;
   }
   sensor.receiverModel = static_cast<avianlidar::ReceiverModel>(static_cast<int>(model));
+  double law = 1.0; // of beams that do not say
+  wrong = vtkAvianLidarArrays::ReadFieldValue(fields, vtkAvianLidarArrays::ThresholdLaw, law);
+  if (!wrong.empty() || (law != 0.0 && law != 1.0))
+  {
+    return wrong.empty() ? "field data 'threshold_law' is neither 0 (fixed) nor 1 (follows the air)"
+                         : wrong;
+  }
+  sensor.thresholdLaw = static_cast<avianlidar::ThresholdLaw>(static_cast<int>(law));
   if (sensor.receiverModel == avianlidar::ReceiverModel::Photons)
   {
     wrong = readNumbers(NeededOf::Photons);
@@ -264,7 +272,8 @@ std::uint64_t HashOf(const avianlidar::Sensor& sensor, std::int32_t revolution)
 {
   std::vector<double> values = { static_cast<double>(sensor.beamProfile),
     static_cast<double>(sensor.beamOutline), sensor.up.x, sensor.up.y, sensor.up.z,
-    static_cast<double>(sensor.receiverModel), static_cast<double>(revolution) };
+    static_cast<double>(sensor.receiverModel), static_cast<double>(sensor.thresholdLaw),
+    static_cast<double>(revolution) };
   for (const avianlidar::SensorField& field : avianlidar::sensorFields())
   {
     values.push_back(sensor.*field.member);

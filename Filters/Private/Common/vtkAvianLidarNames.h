@@ -32,7 +32,10 @@ constexpr Name VerticalAngle{ "vertical_angle", "deg" };
 constexpr Name Timestamp{ "timestamp", "us" };
 
 // The sensor (field data of the beams, one value each), besides sensorFields() (Sensor.h).
+constexpr Name AirBackscatter{ "air_backscatter", "1" };
+constexpr Name RainRate{ "rain_rate", "mm/h" };
 constexpr Name BeamOutline{ "beam_outline", "1" };
+constexpr Name ThresholdLaw{ "threshold_law", "1" };
 constexpr Name BeamProfile{ "beam_profile", "1" };
 constexpr Name LowerEnergyLimit{ "lower_energy_limit", "J" };
 constexpr Name UpperEnergyLimit{ "upper_energy_limit", "J" };

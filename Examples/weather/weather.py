@@ -1,0 +1,85 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""One airport in clear air, in fog and in rain, as Search905 receives it: echoes of surfaces, points of drops, and how far a gull is seen.
+
+    PYTHONPATH=$(cat build/paraview/python-path) /usr/bin/python3 Examples/weather/weather.py --out build/weather
+"""
+import argparse
+import pathlib
+import warnings
+
+import numpy as np
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+
+import avianlidar as al
+from avianlidar import reach
+
+HERE = pathlib.Path(__file__).resolve().parent
+SCENE = HERE.parent / "airport" / "scene" / "hongqiao.lidarscene.json"
+SENSOR, SPECIES = "Search905", "herring gull"
+WEATHER = (
+    ("clear, 23 km", {"visibility": 23e3, "air_backscatter": True}),
+    ("haze, 5 km", {"visibility": 5e3, "air_backscatter": True}),
+    ("fog, 1 km", {"visibility": 1e3, "air_backscatter": True}),
+    ("fog, 200 m", {"visibility": 200, "air_backscatter": True}),
+    ("rain, 1 mm/h", {"visibility": 23e3, "air_backscatter": True, "rain_rate": 1}),
+    ("rain, 10 mm/h", {"visibility": 10e3, "air_backscatter": True, "rain_rate": 10}),
+    ("rain, 50 mm/h", {"visibility": 5e3, "air_backscatter": True, "rain_rate": 50}),
+)
+SHOWN = ("clear, 23 km", "fog, 1 km", "rain, 10 mm/h")
+WIDE = 900.0  # m, that the picture shows to each side
+
+
+def scan(scene, weather):
+    sensor = al.Sensor(SENSOR, position=scene.lidar_position)
+    return al.Scan(scene, sensor, **weather).echoes
+
+
+def row(name, weather, echoes):
+    objects, away = np.array(echoes["object_id"]), np.array(echoes["distance_m"])
+    air = away[objects == -2]
+    found = reach.within_beams(al.Sensor(SENSOR), SPECIES, **weather)
+    to = found.to(0.5)
+    return (f"| {name} | {(objects >= 0).sum():,} | {len(air):,} | " + (f"{air.max():.0f} m" if len(air) else "–") + " | " +
+            (f"{float(f'{to:.2g}'):g} m" if to else "–") + " |")
+
+
+def draw(axes, name, scene, echoes):
+    objects, points = np.array(echoes["object_id"]), np.array(echoes.points)
+    at = points[:, :2] - np.array(scene.lidar_position)[:2]
+    for wanted, colour, size in ((objects == -2, "C0", 0.05), (objects >= 0, "k", 1.5)):
+        axes.plot(*at[wanted].T, ",", color=colour) if size < 1 else axes.plot(*at[wanted].T, ".", color=colour, markersize=size)
+    axes.plot(0, 0, "r^", markersize=5)
+    axes.set(xlim=(-WIDE, WIDE), ylim=(-WIDE, WIDE), aspect="equal")
+    drops = f", {(objects == -2).sum():,} of drops" if (objects == -2).any() else ""
+    axes.set_title(f"{name}\n{(objects >= 0).sum():,} echoes of surfaces{drops}", fontsize=9)
+    axes.tick_params(labelsize=8)
+
+
+def main(arguments=None):
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--out", type=pathlib.Path, default=pathlib.Path("build/weather"), help="folder, default build/weather")
+    options = parser.parse_args(arguments)
+    options.out.mkdir(parents=True, exist_ok=True)
+    warnings.simplefilter("ignore", RuntimeWarning)  # weather without an echo is expected
+    scene = al.load_scene(SCENE)
+    figure = Figure(figsize=(12.0, 4.4), layout="constrained")
+    FigureCanvasAgg(figure)
+    panels = iter(figure.subplots(1, len(SHOWN)))
+    lines = ["| weather | echoes of surfaces | points of the air | the last of them | half of the gulls, to |", "|---|---:|---:|---:|---:|"]
+    for name, weather in WEATHER:
+        echoes = scan(scene, weather)
+        lines.append(row(name, weather, echoes))
+        if name in SHOWN:
+            draw(next(panels), name, scene, echoes)
+    figure.supxlabel("east of the lidar, m", fontsize=9)
+    figure.supylabel("north, m", fontsize=9)
+    figure.savefig(options.out / "weather.png", dpi=90)
+    text = "\n".join(lines) + "\n"
+    (options.out / "weather-gulls.md").write_text(text, encoding="utf-8")
+    print(text)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file Medium.h
+ * @brief Air that scatters light back: what fills it, by extinction and backscatter.
+ *
+ * A medium weakens light by its extinction mu, and sends back mu/S of it per metre and steradian, S
+ * its extinction-to-backscatter ratio. Droplets of fog are so many that their number does not
+ * matter. Drops of rain are few: their diameters are exponential, N(D) = N0 exp(-Lambda D), N0 =
+ * 8000/(m3 mm), Lambda = 4.1 R^-0.21/mm, R the rain rate in mm/h, and each scatters as its
+ * cross-section, twice its area.
+ *
+ * Source: J. S. Marshall and W. McK. Palmer, The Distribution of Raindrops with Size, Journal of
+ * Meteorology 5, 1948; geometric optics.
+ * Differs: the paper's air only attenuates.
+ * Valid: single scattering; a medium fills the whole scene.
+ * Test: TestMedium.cxx.
+ */
+#ifndef avianlidar_Medium_h
+#define avianlidar_Medium_h
+
+#include <string>
+
+namespace avianlidar
+{
+struct Medium
+{
+  double extinction = 0.0;       ///< mu, 1/m, 0 to 1e30
+  double backscatterRatio = 1.0; ///< S, sr, 1e-3 to 1e9
+  double drops = 0.0;            ///< 1/m^3, of exponential diameters; 0: beyond number
+
+  /// mu/S, 1/(m sr).
+  double backscatter() const { return this->extinction / this->backscatterRatio; }
+};
+
+/// Squared energy of a drop, on average, over the square of its mean: E[D^4]/E[D^2]^2 of
+/// exponential diameters.
+constexpr double SquareOfDrops = 6.0;
+
+/// Rain of so many mm/h, above 0. @param backscatterRatio sr
+Medium rainOf(double rate, double backscatterRatio);
+
+/// Largest rain rate, mm/h; the law of Marshall and Palmer is from rates up to 23.
+constexpr double MaximumRainRate = 500.0;
+
+/// Empty, or a sentence that names the value and what was expected.
+std::string checkMedium(const Medium& medium);
+}
+
+#endif

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file AirEcho.h
+ * @brief What the air sends back in each range unit of a beam: its mean, and how drops change it.
+ *
+ * Media that fill the scene return, in the unit from R1 to R2, E sum(mu/S) times the integral over
+ * R of O(R) min(A/R^2, 2 pi) exp(-2 mu_all R): A the aperture, O what reaches the detector of the
+ * near range, mu_all the extinction of all air. Drops are a Poisson number in the unit's part of
+ * the beam's cone, and the energy of each is exponential in its diameter (Medium.h): up to FewDrops
+ * are drawn one by one, more are a gamma distribution of the same mean and variance.
+ *
+ * Source: the lidar equation, single scattering, e.g. U. Wandinger, in: Lidar, Springer, 2005.
+ * Differs: the paper's air sends nothing back.
+ * Valid: the pulse is short against the unit; the beam is evenly lit as far as drops are concerned.
+ * Integrals are right to 1e-6. Units beyond a million are without air.
+ * Test: TestAirEcho.cxx, TestWeather.py.
+ */
+#ifndef avianlidar_AirEcho_h
+#define avianlidar_AirEcho_h
+
+#include "Medium.h"
+#include "Sensor.h"
+
+#include <cstdint>
+#include <vector>
+
+namespace avianlidar
+{
+class AirEcho
+{
+public:
+  /// No echo.
+  AirEcho() = default;
+
+  /// @param attenuation of all air, that of the media included, 1/m
+  AirEcho(const Sensor& sensor, const std::vector<Medium>& media, double attenuation);
+
+  /// Whether the air sends anything back.
+  bool any() const { return !this->Means.empty(); }
+
+  /// Units [0, count) are known; in others there is none.
+  std::int64_t units() const { return static_cast<std::int64_t>(this->Means.size()); }
+
+  /// Mean energy in a unit, J.
+  double mean(std::int64_t unit) const
+  {
+    return unit >= 0 && unit < this->units() ? this->Means[static_cast<std::size_t>(unit)] : 0.0;
+  }
+
+  /// Variance of a unit's energy by its drops, J^2.
+  double variance(std::int64_t unit) const;
+
+  /// Note from where on drops may matter. @param least J beyond the mean of the unit
+  void setLeast(std::int64_t unit, double least);
+
+  /// What the drops of a unit return beyond their mean, J: the same for the same numbers. @param
+  /// all false: negative infinity may stand for less than what setLeast() was told
+  double beyondMean(std::int32_t seed, std::uint64_t beam, std::int64_t unit,
+    std::int32_t revolution, bool all) const;
+
+  /// Up to so many drops in a unit, on average, are drawn one by one.
+  static constexpr double FewDrops = 40.0;
+
+private:
+  std::vector<double> Means; ///< of units, J
+  std::vector<double> Quiet; ///< probabilities that drops do not matter
+  double OfDrops = 0.0;      ///< share of the means that drops return
+  double Drops = 0.0;        ///< 1/m^3
+  double SolidAngle = 0.0;   ///< sr
+  double UnitLength = 0.0;   ///< m
+  double dropsIn(std::int64_t unit) const;
+};
+}
+
+#endif

@@ -1,0 +1,376 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Air that sends light back: a table calculated by hand, closed forms, and scans of air against
+// counts by std::poisson_distribution.
+#include "AirEcho.h"
+#include "PhotonReceiver.h"
+#include "Receiver.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <vector>
+
+using namespace avianlidar;
+
+namespace
+{
+struct Instrument
+{
+  double energy, wavelength, halfBeamwidth, aperture, efficiency, radiance, bandwidth, beams, gate;
+};
+
+const Instrument Search905{ 3.6e-4, 905e-9, 5.6e-3, 0.0078539816, 0.4, 0.05, 10.0, 15360.0,
+  4000.0 };
+const Instrument Search1550{ 1e-3, 1550e-9, 3e-3, 0.0176714587, 0.3, 0.01, 10.0, 53088.0, 4000.0 };
+const Instrument Automotive16{ 4e-7, 905e-9, 1.5e-3, 0.0004908739, 0.4, 0.05, 20.0, 64000.0,
+  300.0 };
+
+Sensor sensorOf(const Instrument& of)
+{
+  Sensor sensor;
+  sensor.receiverModel = ReceiverModel::Photons;
+  sensor.pulseEnergy = of.energy;
+  sensor.frequency = SpeedOfLight / of.wavelength;
+  sensor.halfBeamwidth = of.halfBeamwidth;
+  sensor.receiverAperture = of.aperture;
+  sensor.receiverEfficiency = of.efficiency;
+  sensor.backgroundRadiance = of.radiance;
+  sensor.filterBandwidth = of.bandwidth;
+  sensor.rangeGate = of.gate;
+  EXPECT_EQ(setPhotonLimits(sensor, 1.0, 40.0, of.beams), "");
+  return sensor;
+}
+
+/// Of the table: mu = 3.912/V without the law of wavelengths.
+Medium airOf(double visibility, double ratio)
+{
+  return { 3.912 / visibility, ratio, 0.0 };
+}
+
+/// The law by 20,000 midpoints.
+double byMidpoints(const Sensor& sensor, const Medium& air, double from, double to)
+{
+  constexpr int steps = 20000;
+  double sum = 0.0;
+  for (int i = 0; i < steps; ++i)
+  {
+    const double r = from + (i + 0.5) / steps * (to - from);
+    sum += sensor.nearRangeShare(r) * std::min(sensor.receiverAperture / (r * r), 2.0 * Pi) *
+      std::exp(-2.0 * air.extinction * r);
+  }
+  return sensor.pulseEnergy * air.backscatter() * sum * (to - from) / steps;
+}
+
+double tail(double z)
+{
+  return 0.5 * std::erfc(z / std::sqrt(2.0));
+}
+
+/// Points of so many beams through nothing but air, by unit.
+std::vector<double> pointsOf(
+  const Sensor& sensor, const AirEcho& air, int beams, std::vector<double>* runs = nullptr)
+{
+  BeamReceiver receiver(sensor, planNoise(sensor, true), 7, ReturnMode::RangeUnits, 0, {}, air);
+  std::vector<double> counts;
+  for (int beam = 0; beam < beams; ++beam)
+  {
+    receiver.receive(static_cast<std::uint64_t>(beam), {}, sensor.backgroundRadiance);
+    for (const Return& one : receiver.returns())
+    {
+      const auto unit = static_cast<std::size_t>(receiver.units()[one.strongestUnit].index);
+      counts.resize(std::max(counts.size(), unit + 1), 0.0);
+      counts[unit] += 1.0;
+      if (runs)
+      {
+        runs->push_back(one.air / one.returnEnergy);
+      }
+    }
+  }
+  return counts;
+}
+
+double sum(const std::vector<double>& values)
+{
+  double all = 0.0;
+  for (const double value : values)
+  {
+    all += value;
+  }
+  return all;
+}
+}
+
+TEST(Medium, RainIsThatOfMarshallAndPalmer)
+{
+  const double rows[][3] = { { 1.0, 1951.0, 3.647e-4 }, { 5.0, 2736.0, 1.005e-3 },
+    { 10.0, 3165.0, 1.556e-3 }, { 25.0, 3836.0, 2.771e-3 }, { 50.0, 4437.0, 4.288e-3 } };
+  for (const auto& [rate, drops, extinction] : rows)
+  {
+    const Medium rain = rainOf(rate, 20.0);
+    EXPECT_NEAR(rain.drops, drops, 0.5);
+    EXPECT_NEAR(rain.extinction / extinction, 1.0, 3e-4);
+    // Twice the cross-sections of the drops, and their mean square, by midpoints over diameters.
+    const double fall = 4.1 * std::pow(rate, -0.21);
+    double areas = 0.0, squares = 0.0, number = 0.0;
+    for (double d = 0.0005; d < 20.0; d += 0.001)
+    {
+      const double count = 8000.0 * std::exp(-fall * d) * 0.001;
+      const double area = 0.25 * Pi * d * d * 1e-6;
+      number += count;
+      areas += 2.0 * count * area;
+      squares += count * area * area;
+    }
+    EXPECT_NEAR(areas / rain.extinction, 1.0, 1e-4);
+    EXPECT_NEAR(squares / number * 4.0 * number * number / (areas * areas), SquareOfDrops, 1e-2);
+  }
+}
+
+TEST(Medium, BadOnesAreNamed)
+{
+  EXPECT_EQ(checkMedium({ 0.5, 20.0, 0.0 }), "");
+  EXPECT_EQ(checkMedium({ -1.0, 20.0, 0.0 }), "extinction is -1, expected 0 to 1e30 1/m");
+  EXPECT_EQ(checkMedium({ 1.0, 0.0, 0.0 }), "backscatter_ratio is 0, expected 1e-3 to 1e9 sr");
+}
+
+TEST(AirEcho, TheTableHolds)
+{
+  struct Row
+  {
+    Instrument of;
+    double visibility, ratio, electrons[4], airTo, gullTo;
+  };
+  const Row rows[] = {
+    { Search905, 23000.0, 50.0, { 5166.4, 1269.8, 306.8, 131.8 }, 136.8, 650.9 },
+    { Search905, 5000.0, 50.0, { 22353.7, 5167.6, 1104.8, 419.9 }, 247.7, 553.5 },
+    { Search905, 1000.0, 18.8, { 217380.9, 36748.9, 4201.3, 853.9 }, 317.4, 345.9 },
+    { Search905, 200.0, 18.8, { 227325.3, 8036.6, 40.2, 0.4 }, 144.3, 152.5 },
+    { Search1550, 23000.0, 50.0, { 41477.1, 10194.0, 2463.2, 1058.2 }, 461.3, 1551.1 },
+    { Search1550, 1000.0, 18.8, { 1745202.0, 295031.0, 33729.5, 6855.4 }, 516.8, 570.7 },
+    { Automotive16, 1000.0, 18.8, { 15.1, 2.6, 0.3, 0.1 }, 12.4, 115.0 },
+  };
+  for (const Row& row : rows)
+  {
+    const Sensor sensor = sensorOf(row.of);
+    const PhotonReceiver receiver(sensor);
+    const Medium air = airOf(row.visibility, row.ratio);
+    const AirEcho echo(sensor, { air }, air.extinction);
+    const double length = sensor.rangeUnitLength();
+    for (int k = 0; k < 4; ++k)
+    {
+      const double r = k == 0 ? 50.0 : 100.0 * k;
+      const double n =
+        receiver.electronsPerJoule * byMidpoints(sensor, air, r - 0.5 * length, r + 0.5 * length);
+      EXPECT_NEAR(n, row.electrons[k], std::max(0.051, 1e-3 * row.electrons[k])) << r;
+    }
+    const double threshold = receiver.electronsPerJoule * sensor.lowerEnergyLimit;
+    double airTo = 0.0;
+    double gullTo = 0.0;
+    for (std::int64_t unit = 0; unit < unitsInsideGate(5e-9, sensor.rangeGate); ++unit)
+    {
+      const double middle = length * (static_cast<double>(unit) + 0.5);
+      const double n = receiver.electronsPerJoule * echo.mean(unit);
+      airTo = n > threshold ? middle : airTo;
+      const double gull =
+        receiver.electronsPerJoule * energyFromTarget(sensor, middle, 0.03, 0.3, air.extinction);
+      gullTo = gull > threshold * receiver.growthInAir(n) ? middle : gullTo;
+    }
+    EXPECT_NEAR(airTo, row.airTo, length + 0.05);
+    EXPECT_NEAR(gullTo, row.gullTo, length + 0.05);
+  }
+}
+
+TEST(AirEcho, UnitsAreIntegralsOfTheLaw)
+{
+  Sensor sensor = sensorOf(Search905);
+  for (const double overlap : { 0.0, 6.0 })
+  {
+    sensor.overlapRange = overlap;
+    for (const double extinction : { 1e-5, 4e-3, 0.3, 20.0 })
+    {
+      const Medium air{ extinction, 30.0, 0.0 };
+      const AirEcho echo(sensor, { air }, extinction);
+      for (const std::int64_t unit : { 1, 2, 10, 300 })
+      {
+        const double from = sensor.rangeUnitLength() * static_cast<double>(unit);
+        const double truth = byMidpoints(sensor, air, from, from + sensor.rangeUnitLength());
+        EXPECT_NEAR(echo.mean(unit), truth, 2e-6 * truth + 1e-300) << unit << " " << extinction;
+      }
+      // Nearest, an aperture gathers no more than half of all.
+      const double first = byMidpoints(sensor, air, 0.0, sensor.rangeUnitLength());
+      EXPECT_NEAR(echo.mean(0), first, 1e-4 * first);
+      EXPECT_LT(echo.mean(0), sensor.pulseEnergy * 2.0 * Pi / 30.0);
+    }
+  }
+  EXPECT_FALSE(AirEcho(sensor, {}, 0.1).any());
+  sensor.receiverAperture = 0.0;
+  EXPECT_FALSE(AirEcho(sensor, { { 0.1, 20.0, 0.0 } }, 0.1).any());
+}
+
+TEST(AirEcho, AFogThatExtinguishesTheBeamCalibratesACeilometer)
+{
+  // Integrated backscatter over r^2: exp(-2 mu R0)/(2 S).
+  Sensor sensor = sensorOf(Search905);
+  sensor.samplingInterval = 1e-10;
+  sensor.pulseWidth = 0.0;
+  sensor.rangeGate = 400.0;
+  for (const double extinction : { 0.05, 0.2 })
+  {
+    const AirEcho echo(sensor, { { extinction, 18.8, 0.0 } }, extinction);
+    const double length = sensor.rangeUnitLength();
+    double all = 0.0;
+    const auto first = static_cast<std::int64_t>(std::ceil(1.0 / length));
+    for (std::int64_t unit = first; unit < echo.units(); ++unit)
+    {
+      const double r = length * static_cast<double>(unit);
+      all += echo.mean(unit) * r * (r + length) / (sensor.pulseEnergy * sensor.receiverAperture);
+    }
+    const double from = length * static_cast<double>(first);
+    EXPECT_NEAR(all / (std::exp(-2.0 * extinction * from) / (2.0 * 18.8)), 1.0, 1e-3);
+  }
+}
+
+TEST(AirEcho, FalseAlarmsInFogAreThoseOfItsNoise)
+{
+  Sensor sensor = sensorOf(Search905);
+  EXPECT_EQ(setPhotonLimits(sensor, 3000.0, 40.0, 15360.0), "");
+  const PhotonReceiver receiver(sensor);
+  const Medium air = airOf(1000.0, 18.8);
+  const AirEcho echo(sensor, { air }, air.extinction);
+  const double k = sensor.lowerEnergyLimit * receiver.electronsPerJoule / receiver.deviation(0.0);
+  constexpr int beams = 3000;
+  const auto units = static_cast<double>(unitsInsideGate(5e-9, sensor.rangeGate));
+  // A threshold that follows leaves all units alike.
+  const std::vector<double> follows = pointsOf(sensor, echo, beams);
+  const double expected = beams * units * tail(k);
+  EXPECT_NEAR(sum(follows), expected, 3.0 * std::sqrt(expected));
+  sensor.thresholdLaw = ThresholdLaw::Fixed;
+  std::vector<double> ofAir;
+  const std::vector<double> fixed = pointsOf(sensor, echo, beams, &ofAir);
+  double truth = 0.0;
+  double variance = 0.0;
+  std::size_t last = 0; // where the air is as likely perceived as not
+  for (std::int64_t unit = 0; unit < static_cast<std::int64_t>(units); ++unit)
+  {
+    const double n = receiver.electronsPerJoule * echo.mean(unit);
+    const double p =
+      tail((receiver.electronsPerJoule * sensor.lowerEnergyLimit - n) / receiver.deviation(n));
+    truth += beams * p;
+    variance += beams * p * (1.0 - p);
+    last = p > 0.5 ? static_cast<std::size_t>(unit) : last;
+  }
+  EXPECT_NEAR(sum(fixed), truth, 3.0 * std::sqrt(variance));
+  EXPECT_NEAR(fixed[last], 0.5 * beams, 0.2 * beams);
+  EXPECT_GT(std::count_if(ofAir.begin(), ofAir.end(), [](double share) { return share > 0.5; }),
+    0.95 * static_cast<double>(ofAir.size()));
+}
+
+TEST(AirEcho, DropsAreACompoundPoissonLaw)
+{
+  const Sensor sensor = sensorOf(Search905);
+  const Medium rain = rainOf(10.0, 20.0);
+  const AirEcho echo(sensor, { rain }, rain.extinction);
+  std::mt19937_64 random(3);
+  for (const std::int64_t unit : { 2, 8, 14, 40, 200 })
+  {
+    const double length = sensor.rangeUnitLength();
+    const double near = length * static_cast<double>(unit);
+    const double far = near + length;
+    const double number =
+      rain.drops * sensor.solidAngle() * (far * far * far - near * near * near) / 3.0;
+    constexpr int draws = 20000;
+    double mean = 0.0, square = 0.0, high = 0.0, theirs = 0.0;
+    const double mean0 = echo.mean(unit);
+    const double limit = 1.5 * std::sqrt(SquareOfDrops / number); // over the mean, relative
+    std::poisson_distribution<int> poisson(number);
+    std::exponential_distribution<double> diameter(1.0);
+    for (int beam = 0; beam < draws; ++beam)
+    {
+      const double beyond =
+        echo.beyondMean(1, static_cast<std::uint64_t>(beam), unit, 0, true) / mean0;
+      mean += beyond / draws;
+      square += beyond * beyond / draws;
+      high += beyond > limit ? 1.0 / draws : 0.0;
+      double all = 0.0;
+      for (int drop = poisson(random); drop > 0; --drop)
+      {
+        const double d = diameter(random);
+        all += 0.5 * d * d;
+      }
+      theirs += all / number - 1.0 > limit ? 1.0 / draws : 0.0;
+    }
+    const double variance = SquareOfDrops / number;
+    EXPECT_NEAR(mean, 0.0, 4.0 * std::sqrt(variance / draws)) << unit;
+    EXPECT_NEAR(square / variance, 1.0, 0.15) << unit;
+    EXPECT_NEAR(echo.variance(unit) / (variance * mean0 * mean0), 1.0, 1e-9);
+    EXPECT_NEAR(high, theirs, 0.01) << unit; // of a gamma distribution, in part
+  }
+}
+
+TEST(AirEcho, RainMakesPointsByItsLawWhetherAllIsDrawnOrNot)
+{
+  const Sensor sensor = sensorOf(Search905);
+  const PhotonReceiver receiver(sensor);
+  const Medium rain = rainOf(10.0, 20.0);
+  const AirEcho echo(sensor, { rain }, rain.extinction);
+  constexpr int beams = 400;
+  std::vector<double> ofAir;
+  const std::vector<double> points = pointsOf(sensor, echo, beams, &ofAir);
+  // Every unit, by the numbers of the beams.
+  const NoisePlan plan = planNoise(sensor, true);
+  std::vector<double> all(points.size(), 0.0);
+  for (int beam = 0; beam < beams; ++beam)
+  {
+    BeamNoise noise;
+    noise.begin(plan, 7, static_cast<std::uint64_t>(beam), 0);
+    for (std::size_t unit = 0; unit < 500; ++unit)
+    {
+      const auto u = static_cast<std::int64_t>(unit);
+      const double beyond = echo.beyondMean(7, static_cast<std::uint64_t>(beam), u, 0, true);
+      const double drawn = std::max(0.0, echo.mean(u) + beyond);
+      const double energy = drawn - echo.mean(u) + noise.energy(u, drawn);
+      const double lower =
+        sensor.lowerEnergyLimit * receiver.growthInAir(receiver.electronsPerJoule * echo.mean(u));
+      const bool isBlind = sensor.upperEnergyLimit - echo.mean(u) < lower;
+      all[std::min(unit, all.size() - 1)] += energy > lower && !isBlind ? 1.0 : 0.0;
+    }
+  }
+  std::size_t looked = 0;
+  for (std::size_t unit = 0; unit < points.size(); ++unit)
+  {
+    const auto u = static_cast<std::int64_t>(unit);
+    const double n = receiver.electronsPerJoule * echo.mean(u);
+    const double noise = receiver.deviation(n) / receiver.electronsPerJoule;
+    if (echo.variance(u) > 0.0101 * noise * noise)
+    {
+      EXPECT_EQ(points[unit], all[unit]) << unit;
+      looked = unit;
+    }
+  }
+  EXPECT_GT(looked, 200u);
+  EXPECT_GT(sum(points), 20.0 * beams); // a hundred metres of rain are full of points
+  EXPECT_LT(sum({ points.begin() + static_cast<std::ptrdiff_t>(looked), points.end() }), 10.0);
+}
+
+TEST(AirEcho, NearAirBlinds)
+{
+  // Where the air alone is above the upper limit nothing is perceived.
+  Sensor sensor = sensorOf(Search905);
+  const Medium air = airOf(200.0, 18.8);
+  const AirEcho echo(sensor, { air }, air.extinction);
+  BeamReceiver receiver(sensor, planNoise(sensor, false), 7, ReturnMode::All, 0, {}, echo);
+  std::int64_t blind = 0;
+  while (echo.mean(blind) > sensor.upperEnergyLimit)
+  {
+    ++blind;
+  }
+  EXPECT_GT(blind, 5);
+  const double wall = 0.5 * sensor.upperEnergyLimit;
+  receiver.receive(1, { { blind - 3, wall, 1 } }, sensor.backgroundRadiance);
+  EXPECT_TRUE(receiver.returns().empty());
+  receiver.receive(1, { { blind + 20, wall, 1 } }, sensor.backgroundRadiance);
+  ASSERT_EQ(receiver.returns().size(), 1u);
+  EXPECT_NEAR(receiver.returns()[0].energyReceived, wall, 1e-12 * wall);
+  EXPECT_LE(receiver.returns()[0].energy, sensor.upperEnergyLimit - echo.mean(blind + 20));
+}

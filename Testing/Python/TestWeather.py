@@ -1,0 +1,174 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Air that sends light back: the lidar equation at the filter's own range units by SciPy's quadrature, its noise over many beams, walls and
+birds behind it, coverage, labels, and what is said of it."""
+import math
+import os
+import pathlib
+import subprocess
+import sys
+import tempfile
+import unittest
+
+import numpy as np
+from scipy import integrate, stats
+
+import avianlidar as al
+
+LIGHT, PLANCK = 299792458.0, 6.626e-34  # the constants of the receiver
+NOTHING = al.Scene(np.zeros((0, 3)), np.zeros((0, 3), dtype=int), material="Wall")
+FOG = {"visibility": 1000, "air_backscatter": True}
+
+
+def extinction(visibility, wavelength):
+    """Kruse's law with Kim's exponents."""
+    km = visibility / 1000
+    exponent = 1.6 if km > 50 else 1.3 if km > 6 else 0.16 * km + 0.34 if km > 1 else km - 0.5 if km > 0.5 else 0
+    return 3.912 / visibility * (wavelength / 550) ** -exponent
+
+
+def electrons_of_air(sensor, unit, mu, ratio):
+    """The lidar equation, in a range unit."""
+    length = LIGHT * sensor.sampling_interval / 2
+    value, _ = integrate.quad(lambda r: np.exp(-2 * mu * r) / r**2, unit * length, (unit + 1) * length, epsrel=1e-10)
+    energy = sensor.pulse_energy * mu / ratio * sensor.receiver_aperture * value
+    return energy * sensor.receiver_efficiency * 1e-9 * sensor.wavelength / (PLANCK * LIGHT)
+
+
+def looking(name="Search905", beams=1, **settings):
+    return al.Sensor(name, directions=np.tile([0.0, 1.0, 0.0], (beams, 1)), rotation_rate=1e-2, **settings)
+
+
+def per_joule(sensor):
+    return sensor.receiver_efficiency * 1e-9 * sensor.wavelength / (PLANCK * LIGHT)
+
+
+class Law(unittest.TestCase):
+    def test_means_are_those_of_the_lidar_equation(self):
+        for name in ("Search905", "Search1550", "Automotive16"):
+            for visibility, ratio in ((23e3, 50), (1000, 18.8), (200, 18.8)):
+                sensor = looking(name, receiver_model="EnergyLimits", lower_energy_limit=0, upper_energy_limit=1e9, noise_photon_rate=0)
+                echoes = al.Scan(NOTHING, sensor, noise=False, return_mode="RangeUnits", visibility=visibility, air_backscatter=True).echoes
+                units = np.floor(np.array(echoes["distance_m"]) / (LIGHT * sensor.sampling_interval / 2)).astype(int)
+                found = dict(zip(units, np.array(echoes["energy_received"]) * per_joule(sensor)))
+                for unit in (2, 66, 133, 260):
+                    truth = electrons_of_air(sensor, unit, extinction(visibility, sensor.wavelength), ratio)
+                    self.assertAlmostEqual(found[unit] / truth, 1, delta=1e-3)
+
+    def test_noise_over_many_beams(self):
+        beams = 4000
+        sensor = looking(beams=beams, threshold_law="Fixed", dynamic_range=200, false_alarms_per_scan=1)
+        for weather, mu, ratio, relative in (
+                (FOG, extinction(1000, 905), 18.8, 0.0), ({"rain_rate": 10, "attenuation_coefficient": 0}, 1.5556e-3, 20, 6 / 2355)):
+            echoes = al.Scan(NOTHING, sensor, return_mode="RangeUnits", **weather).echoes
+            unit = 133
+            here = np.floor(np.array(echoes["distance_m"]) / (LIGHT * 2.5e-9)).astype(int) == unit
+            n = np.array(echoes["energy_received"])[here] * per_joule(sensor)
+            self.assertEqual(len(n), beams)
+            mean = electrons_of_air(sensor, unit, mu, ratio)
+            background = per_joule(sensor) * 0.05 * 10 * 4 * np.pi * np.sin(2.8e-3)**2 * sensor.receiver_aperture * 5e-9
+            variance = 3 * (mean + background) + 60**2 + relative * mean**2
+            self.assertAlmostEqual((n.mean() - mean) / np.sqrt(variance / beams), 0, delta=4)
+            self.assertAlmostEqual(n.var() / variance, 1, delta=0.12)
+
+    def test_walls_behind_are_weakened(self):
+        wall = al.Scene([(-9, 80, -9), (9, 80, -9), (9, 80, 9), (-9, 80, 9)], [(0, 1, 2), (0, 2, 3)], material=(0.5, 0, 1))
+        sensor = looking()
+        clear = al.Scan(wall, sensor, noise=False, attenuation_coefficient=0).echoes["return_energy"]
+        for weather, mu in ((FOG, extinction(1000, 905)), ({"rain_rate": 25, "attenuation_coefficient": 0}, 2.7708e-3)):
+            echoes = al.Scan(wall, sensor, noise=False, **weather).echoes
+            self.assertEqual(len(echoes["return_energy"]), 1)  # the threshold follows
+            self.assertAlmostEqual(echoes["return_energy"][0] / clear[0] / math.exp(-160 * mu), 1, delta=1e-3)
+        fixed = al.Scan(wall, looking(threshold_law="Fixed"), noise=False, return_mode="RangeUnits", **FOG).echoes
+        self.assertIn(-2, fixed["object_id"])
+
+    def test_rain_is_drawn_anew_in_each_scan_and_alike_by_any_threads(self):
+        arrays = []
+        for threads, revolution in ((1, 0), (2, 0), (2, 1)):
+            sensor = looking(beams=300)
+            sensor.algorithm.UpdateTimeStep(revolution / sensor.rotation_rate)
+            scan = al.Scan(NOTHING, sensor, rain_rate=10, number_of_threads=threads)
+            scan.algorithm.UpdateTimeStep(revolution / sensor.rotation_rate)
+            echoes = al.Cloud(scan.algorithm.GetOutput())
+            arrays.append(np.array(echoes["energy_received"]))
+        np.testing.assert_array_equal(arrays[0], arrays[1])
+        self.assertFalse(np.array_equal(arrays[1], arrays[2]))
+
+
+class Coverage(unittest.TestCase):
+    def test_a_target_in_fog_is_seen_with_its_probability(self):
+        sensor = al.Sensor("Search905")
+        mu, threshold = extinction(1000, 905), float(sensor.beams.fields["lower_energy_limit"]) * per_joule(sensor)
+        elevation = math.radians(1.5)
+        ranges = np.arange(150.2, 420, 5)
+        places = ranges[:, None] * np.array([[0, math.cos(elevation), math.sin(elevation)]])
+        cover = al.Coverage(NOTHING, sensor, places=places, species="", effective_area=0.03, reflectance=0.3, **FOG)
+        found = cover["detection_probability"].astype(float)
+        background = per_joule(sensor) * 0.05 * 10 * 4 * np.pi * np.sin(2.8e-3)**2 * sensor.receiver_aperture * 5e-9
+        dark = 3 * background + 60**2
+        for r, p in zip(ranges, found):
+            air = electrons_of_air(sensor, int(r / (LIGHT * 2.5e-9)), mu, 18.8)
+            shown = per_joule(sensor) * sensor.pulse_energy * 0.03 / (np.pi * 5.6e-3**2 * r**2) * \
+                0.3 * sensor.receiver_aperture / (np.pi * r**2) * np.exp(-2 * mu * r)
+            limit = threshold * np.sqrt(1 + 3 * air / dark)
+            # The pulse is as long as a unit: its share in the better of two is evenly 0.5 to 1.
+            shares = np.linspace(0.5, 1, 101)
+            better = [1 - stats.norm.cdf((limit - s * shown) / np.sqrt(dark + 3 * (air + s * shown))) for s in shares]
+            other = [1 - stats.norm.cdf((limit - (1 - s) * shown) / np.sqrt(dark + 3 * (air + (1 - s) * shown))) for s in shares]
+            truth = np.mean(1 - (1 - np.array(better)) * (1 - np.array(other)))
+            self.assertAlmostEqual(p, truth, delta=0.03)
+        self.assertTrue(0.1 < found.mean() < 0.9)
+
+    def test_less_is_seen_in_worse_weather(self):
+        places = np.column_stack([np.zeros(60), np.linspace(50, 900, 60), np.linspace(50, 900, 60) * 0.026])
+        means = [al.Coverage(NOTHING, al.Sensor("Search905"), places=places, species="herring gull", **weather)[
+            "detection_probability"].mean() for weather in ({}, {"air_backscatter": True}, {"visibility": 5000, "air_backscatter": True}, FOG,
+                                                            {"visibility": 200, "air_backscatter": True})]
+        self.assertTrue(np.all(np.diff(means) < 0), means)
+        self.assertGreater(means[0], 1.5 * means[3])
+
+
+class Labels(unittest.TestCase):
+    def test_points_of_rain_are_known_as_such(self):
+        echoes = al.Scan(NOTHING, looking(beams=100), rain_rate=20).echoes
+        air = np.array(echoes["object_id"]) == -2
+        self.assertGreater(air.sum(), 500)
+        self.assertTrue(np.all(np.array(echoes["material_id"])[air] == -1))
+        self.assertTrue(np.all(np.array(echoes["label_share"])[air] > 0.5))
+        self.assertEqual(float(echoes.fields["rain_rate"]), 20)
+        self.assertEqual(int(echoes.fields["air_backscatter"]), 0)
+        with tempfile.TemporaryDirectory() as folder:
+            al.save(echoes, pathlib.Path(folder) / "rain.las")
+            self.assertEqual(set(np.array(al.load_cloud(pathlib.Path(folder) / "rain.las")["classification"])[air]), {7})
+            al.save(echoes, pathlib.Path(folder) / "rain.bin")
+            self.assertEqual(set((np.fromfile(pathlib.Path(folder) / "rain.label", np.uint32) & 0xffff)[air]), {1})
+
+
+class Words(unittest.TestCase):
+    def test_what_is_wrong_is_named(self):
+        for settings, words in (({"rain_rate": -1}, "RainRate is -1, expected 0 to 500 mm/h"), ({"rain_rate": math.nan}, "RainRate is nan"),
+                                ({"rain_rate": 501}, "RainRate is 501")):
+            with self.assertRaisesRegex(al.Error, words):
+                al.Scan(NOTHING, looking(), **settings).echoes
+        with self.assertRaisesRegex(al.Error, "needs beams of a sensor with a receiver_aperture above 0"):
+            al.Scan(NOTHING, al.Sensor("Airport16"), rain_rate=1).echoes
+        scan = al.Scan(NOTHING, looking(), rain_rate=501)
+        with self.assertRaises(al.Error):
+            scan.echoes
+        self.assertGreater(len(scan.set(rain_rate=50).echoes["object_id"]), 0)  # the next good input works
+
+    def test_weather_on_the_command_line(self):
+        scene = os.path.join(os.environ["AVIANLIDAR_SOURCE_DIR"], "Examples", "airport", "scene", "hongqiao.lidarscene.json")
+        with tempfile.TemporaryDirectory() as folder:
+            def run(*words):
+                return subprocess.run([sys.executable, "-m", "avianlidar", "scan", scene, "--sensor", "Search905", "--sensor-set",
+                                       "azimuth_step=6", "-o", os.path.join(folder, "a.vtp"), "--weather", *words],
+                                      capture_output=True, text=True, check=False)
+            said = run("fog:2000", "rain:5")
+            self.assertEqual(said.returncode, 0, said.stderr)
+            self.assertIn("of the air (object_id -2)", said.stdout)
+            for wrong in ("snow:3", "fog", "fog:-1", "rain:x"):
+                self.assertIn(f"weather '{wrong}', expected fog:V or haze:V (visibility, m), rain:R (mm/h)", run(wrong).stderr)
+
+
+if __name__ == "__main__":
+    unittest.main()
