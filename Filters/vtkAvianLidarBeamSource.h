@@ -26,17 +26,7 @@
  * `beam_id`, `laser_id` and `timestamp` as cell data.
  *
  * **Field data** of both ports: every property in snake case, one tuple each, in the property's
- * unit: `position`, `orientation`, `number_of_channels`, `minimum_elevation`, `elevation_step`,
- * `azimuth_range`, `azimuth_step`, `half_beamwidth`, `half_beamwidth_across`,
- * `beam_outline`, `beam_rotation`, `beam_profile`, `gaussian_truncation`, `rotation_rate`,
- * `firing_interval`, `number_of_revolutions`, `steps_per_revolution`, `pulse_energy`,
- * `pulse_width`, `frequency`, `sampling_interval`, `range_gate`, `noise_photon_rate`,
- * `lower_energy_limit`, `upper_energy_limit`, `receiver_aperture`, `receiver_model`,
- * `threshold_law`, `wavelength`,
- * `receiver_efficiency`, `filter_bandwidth`, `background_radiance`, `amplifier_noise`,
- * `excess_noise_factor`, `false_alarms_per_scan`, `dynamic_range`, `sunlight`,
- * `sun_azimuth`, `sun_elevation`, `overlap_range`, `defocus_range`, `range_noise`,
- * `range_noise_exponent`, `range_noise_floor`, `range_walk`, `range_quantum`, `display_length`;
+ * unit, and `wavelength`; not those of sway, jitter and tables that are not used;
  * where there is a table, `channel_elevations` with one value per channel; with prisms theirs
  * (GetNumberOfPrisms()), without `azimuth_range` and `azimuth_step`; and `revolution`, the
  * number of the revolution that these beams are of; with sway `sway_amplitude` and
@@ -88,14 +78,12 @@
  * SetSwayAmplitude() and SetEncoderJitter(). The beams then differ in each revolution.
  *
  * **Pieces.** Any number of pieces is served; columns are dealt to them in turn (column c to piece
- * c mod pieces), so that each has its share of what is crowded, and all
- * pieces together are the whole scan.
+ * c mod pieces), and all pieces together are the whole scan.
  *
  * **Bad values** (not finite, outside the range that the property states, a column too short for
  * its firings) are an error that names the property, with both outputs empty; so are more beams
- * than there is memory for, which is estimated first. Setters keep what
- * they are given; the check is made when the source executes. Beams do not depend on the number of
- * threads or pieces: the same bits.
+ * than there is memory for. Setters keep what they are given; the check is made when the source
+ * executes. Beams are the same bits for any number of threads and pieces.
  *
  * A new object is the 16-channel airport lidar of the paper's Sec. 5.3, see SetPresetToAirport16().
  *
@@ -166,16 +154,14 @@ public:
    * limits are 2e-6 and 6.25e-5 J, the frequency is 3.313e14 Hz and noise arrives at 20e3 photons
    * per second.
    *
-   * Three have a photon receiver, whose numbers are assumed. `Search905`: transmitter and pattern
-   * of Airport16, aperture of 100 mm, daylight. `Search1550`: 32 channels from 0 degrees up in
-   * steps of 0.1875 degrees, 0.217 degrees in azimuth (1659 x 32 beams), 1e-3 J, 3e-3 rad, 150 mm.
-   * `Automotive16`: 16 channels from -15 to +15 degrees, 4000 columns, 10 Hz, 4e-7 J, 1.5e-3 rad,
-   * 25 mm, gate 300 m.
+   * Three have a photon receiver, whose numbers are assumed: `Search905` (transmitter and pattern
+   * of Airport16), `Search1550` and `Automotive16`.
    *
    * The others are lidars that can be bought, with the pattern, wavelength and range of their
-   * manuals; what these do not tell is assumed (`assumed` in the field data). Their receiver is
-   * EnergyLimits with an aperture, whose lower limit sees what the manual says that it sees. Mid40,
-   * Avia and Mid360 have rotating prisms (GetNumberOfPrisms()); of Mid360 the pattern is assumed.
+   * manuals; what these do not tell is assumed (`assumed` in the field data). Those of Ouster and
+   * Livox have photon receivers fitted to their sheets, the others limits that see what the manual
+   * says. Mid40, Avia and Mid360 have rotating prisms (GetNumberOfPrisms()); of Mid360 the pattern
+   * is assumed.
    */
   void SetPresetToAirport16() { this->TakePreset("Airport16"); }
   void SetPresetToAirport32() { this->TakePreset("Airport32"); }
@@ -441,19 +427,13 @@ public:
   ///@{
   /**
    * Sway of the mast: the rms of its tilt about each of the two horizontal axes in degrees, 0 to 10
-   * (1 mrad is 0.0573 degrees). The tilt is a narrow-band random motion around SwayFrequency and
-   * stays below 5.7 times its rms. The sensor turns about its own position; that it moves with the
-   * top of the mast is not modelled. Default 0: none.
+   * (1 mrad is 0.0573 degrees), default 0, none; and its frequency in hertz, 1e-6 to 1e6, default
+   * 0.5 (assumed). The tilt is a narrow-band random motion, 20 % to each side of that, and stays
+   * below 5.7 times its rms. The sensor turns about its own position; that it moves with the top of
+   * the mast is not modelled.
    */
   vtkSetMacro(SwayAmplitude, double);
   vtkGetMacro(SwayAmplitude, double);
-  ///@}
-
-  ///@{
-  /**
-   * Frequency of the sway in hertz, 1e-6 to 1e6; the motion fills a band of 20 % to each side.
-   * Default 0.5 (assumed). Without sway not used.
-   */
   vtkSetMacro(SwayFrequency, double);
   vtkGetMacro(SwayFrequency, double);
   ///@}
@@ -582,17 +562,12 @@ public:
 
   ///@{
   /**
-   * Electrons per photon at the aperture eta, optics and detector together, above 0, at most 1.
-   * Photon receiver. Default 0.4 (assumed).
+   * Electrons per photon at the aperture eta, optics and detector together, above 0, at most 1,
+   * default 0.4 (assumed), and the width of the optical filter in nanometres, 0 to 1e6, default 10
+   * (assumed). Photon receiver.
    */
   vtkSetMacro(ReceiverEfficiency, double);
   vtkGetMacro(ReceiverEfficiency, double);
-  ///@}
-
-  ///@{
-  /**
-   * Width of the optical filter in nanometres, 0 to 1e6. Photon receiver. Default 10 (assumed).
-   */
   vtkSetMacro(FilterBandwidth, double);
   vtkGetMacro(FilterBandwidth, double);
   ///@}
@@ -609,17 +584,12 @@ public:
 
   ///@{
   /**
-   * Noise of the amplifier n_a, electrons rms in a range unit, 0 or 1e-3 to 1e20. Photon receiver.
-   * Default 60 (assumed).
+   * Noise of the amplifier n_a, electrons rms in a range unit, 0 or 1e-3 to 1e20, default 60
+   * (assumed), and the excess noise factor F of the avalanche, 1 to 1e6, default 3 (assumed).
+   * Photon receiver.
    */
   vtkSetMacro(AmplifierNoise, double);
   vtkGetMacro(AmplifierNoise, double);
-  ///@}
-
-  ///@{
-  /**
-   * Excess noise factor F of the avalanche, 1 to 1e6. Photon receiver. Default 3 (assumed).
-   */
   vtkSetMacro(ExcessNoiseFactor, double);
   vtkGetMacro(ExcessNoiseFactor, double);
   ///@}
@@ -639,35 +609,23 @@ public:
 
   ///@{
   /**
-   * Where the sun stands: degrees from north, clockwise, -360 to 360. With Sunlight. Default 180,
-   * south.
+   * Where the sun stands, with Sunlight: degrees from north, clockwise, -360 to 360, default 180
+   * (south), and degrees above the horizon, -90 to 90, default 45.
    */
   vtkSetMacro(SunAzimuth, double);
   vtkGetMacro(SunAzimuth, double);
-  ///@}
-
-  ///@{
-  /**
-   * How high the sun stands: degrees above the horizon, -90 to 90. With Sunlight. Default 45.
-   */
   vtkSetMacro(SunElevation, double);
   vtkGetMacro(SunElevation, double);
   ///@}
 
   ///@{
   /**
-   * Range r_o, metres, 0 to 1e9, of the overlap of beam and view: 1 - exp(-(r/r_o)^2) of the light
-   * from the range r lies in the view. Default 0: all of it.
+   * What is lost of near echoes, metres, 0 to 1e9: 1 - exp(-(r/r_o)^2) of the light from the range
+   * r lies in the view, r_o OverlapRange, and 1/(1 + (r_d/r)^2) of that falls on the detector, r_d
+   * DefocusRange: of a spot that is out of focus. Default 0: nothing is lost.
    */
   vtkSetMacro(OverlapRange, double);
   vtkGetMacro(OverlapRange, double);
-  ///@}
-
-  ///@{
-  /**
-   * Range r_d, metres, 0 to 1e9, at which half of the image of a spot falls on the detector, as it
-   * is out of focus: 1/(1 + (r_d/r)^2) of the light from the range r. Default 0: all of it.
-   */
   vtkSetMacro(DefocusRange, double);
   vtkGetMacro(DefocusRange, double);
   ///@}
@@ -687,17 +645,12 @@ public:
 
   ///@{
   /**
-   * Power p of the signal-to-noise ratio by which the variance of ranges falls, 0 to 10. Photon
-   * receiver. Default 2.
+   * Power p of the signal-to-noise ratio by which the variance of ranges falls, 0 to 10, default 2,
+   * of a photon receiver; and the standard deviation a of the ranges of the strongest echoes,
+   * metres, 0 to 1e9, default 0.
    */
   vtkSetMacro(RangeNoiseExponent, double);
   vtkGetMacro(RangeNoiseExponent, double);
-  ///@}
-
-  ///@{
-  /**
-   * Standard deviation a of the ranges of the strongest echoes, metres, 0 to 1e9. Default 0.
-   */
   vtkSetMacro(RangeNoiseFloor, double);
   vtkGetMacro(RangeNoiseFloor, double);
   ///@}
@@ -705,16 +658,11 @@ public:
   ///@{
   /**
    * How far beyond its place an echo at the lower limit is said to be, metres, 0 to 1e9: the walk
-   * of a leading edge, which falls with the energy. Default 0.
+   * of a leading edge, which falls with the energy; and the step of ranges, metres, 0 (exact) or
+   * 1e-9 to 1e9. Default 0.
    */
   vtkSetMacro(RangeWalk, double);
   vtkGetMacro(RangeWalk, double);
-  ///@}
-
-  ///@{
-  /**
-   * Ranges are multiples of this, metres, 0 (exact) or 1e-9 to 1e9. Default 0.
-   */
   vtkSetMacro(RangeQuantum, double);
   vtkGetMacro(RangeQuantum, double);
   ///@}

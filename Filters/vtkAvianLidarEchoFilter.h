@@ -67,14 +67,13 @@
  * bound of the error instead, see BeamSamples); `intensity` (0 to 255, linear in the dynamic
  * range); `distance_m`; `beam_id` (vtkIdType), `laser_id` (int), `azimuth` 0.01 deg,
  * `vertical_angle` deg, `timestamp` us; `return_number`, `number_of_returns` (int); `object_id`,
- * `material_id` (int, of the largest share of the energy; -1 for a false alarm; -2 and -1 for what the
- * air returns), `label_share`
- * (that share), `incidence_angle` deg (energy-weighted, at the last surface; NaN for a false
- * alarm), `secondary_share` (of the energy, over two reflections: above 0.5 a ghost); with a photon
- * receiver `photoelectrons` and `signal_to_noise`, of the same range unit as `energy_received`;
- * with its sunlight `seen_radiance` W/(m2 sr nm), the daylight that the beam looks at, which the
- * noise of the others follows; where ranges have noise, `distance_std_error` m, its standard
- * deviation (of the receiver alone, not of the sampling).
+ * `material_id` (int, of the largest share of the energy; -1 for a false alarm; -2 and -1 for what
+ * the air returns), `label_share` (that share), `incidence_angle` deg (energy-weighted, at the last
+ * surface; NaN for a false alarm), `secondary_share` (of the energy, over two reflections: above
+ * 0.5 a ghost); with a photon receiver `photoelectrons` and `signal_to_noise`, of the same range
+ * unit as `energy_received`; with its sunlight `seen_radiance` W/(m2 sr nm), the daylight that the
+ * beam looks at, which the noise of the others follows; where ranges have noise,
+ * `distance_std_error` m, its standard deviation (of the receiver alone, not of the sampling).
  *
  * Output port 1, beam report: one vertex per beam at its strongest return (else at
  * `display_length`, 1000 m without it). Point arrays `beam_id`, `laser_id`, `azimuth` 0.01 deg,

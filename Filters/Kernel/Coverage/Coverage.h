@@ -15,8 +15,8 @@
  * Valid: beams of one origin. Beams farther from a target's middle than WidestTarget or 0.4 rad do
  * not light it. Of more beams than DetectionLaw::MostBeams those count whose axes, or where they
  * are not round whose borders, are nearest. A threshold that follows the air divides energies by
- * its growth there: probabilities are right within 0.03, and exact at 0.5. Test: TestCoverage.cxx,
- * TestBeamShapes.py, TestWeather.py.
+ * its growth: probabilities are right within 0.03.
+ * Test: TestCoverage.cxx, TestBeamShapes.py, TestWeather.py.
  */
 #ifndef avianlidar_Coverage_h
 #define avianlidar_Coverage_h
