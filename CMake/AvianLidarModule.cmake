@@ -104,6 +104,7 @@ set(private_sources
 vtk_module_add_module(AvianLidar::AvianLidar
   CLASSES ${classes}
   NOWRAP_HEADERS Filters/vtkAvianLidarDeprecatedSettings.h Filters/vtkAvianLidarErrorsAsData.h
+    Filters/vtkAvianLidarSensorPresets.h
     Filters/vtkAvianLidarFilePath.h
   SOURCES ${private_sources})
 

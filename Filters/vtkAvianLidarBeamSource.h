@@ -19,8 +19,7 @@
  * - `timestamp` (double, us): time of firing since the start of the scan
  * - `reported_direction` (double, 3 components): only with sway or jitter, see below
  *
- * `azimuth` and `vertical_angle` are those of the direction in the scene, the orientation of the
- * sensor included.
+ * `azimuth` and `vertical_angle` are those of the direction in the scene.
  *
  * **Output port 1** (vtkPolyData): the same rays as lines of `DisplayLength`, to look at, with
  * `beam_id`, `laser_id` and `timestamp` as cell data.
@@ -40,9 +39,8 @@
  * km is as bright as one at 50 m. `Photons` counts electrons (see SetReceiverModel()): use it where
  * it matters how far small things are seen.
  *
- * Units are attached to the arrays (vtkDataArray::UNITS_LABEL): "1" for pure numbers, that is
- * ratios, counts and choices; none for the identifiers `beam_id`, `laser_id`, `revolution` and
- * `motion_seed`.
+ * Units are attached to the arrays (vtkDataArray::UNITS_LABEL): "1" for ratios, counts and choices;
+ * none for the identifiers `beam_id`, `laser_id`, `revolution` and `motion_seed`.
  *
  * **Clock.** Within a column the channels fire in the staggered order of Fig. 1b, 0, C/2, 1, C/2 +
  * 1, ... (for an odd C, C/2 is rounded up), so timestamp = column / (columns * RotationRate) + slot
@@ -51,31 +49,25 @@
  *
  * **Prisms.** Where a sensor has rotating prisms (GetNumberOfPrisms()), its pattern does not
  * repeat: a scan is a window of 1 / RotationRate seconds, revolution k the one from k /
- * RotationRate on, and each has directions of its own. Lasers fire on and on, one after the other
- * in the same order, at FiringInterval; a column is one firing of each: timestamp = column *
- * channels * FiringInterval + slot * FiringInterval. Elevations and azimuth offsets of the channels
- * are those of their light before the prisms. AzimuthRange and AzimuthStep are not used, and not in
- * the field data. Light is refracted at each face by Snell's law; that it leaves some millimetres
- * beside the axis is not modelled.
+ * RotationRate on. Lasers fire on and on, one after the other in the same order, at FiringInterval;
+ * a column is one firing of each. Elevations and azimuth offsets of the channels are those of their
+ * light before the prisms. AzimuthRange and AzimuthStep are not used, and not in the field data.
  *
  * **Time.** The source is time-aware. Revolution k (any int) lasts from k / RotationRate to (k + 1)
  * / RotationRate seconds, and has its k / RotationRate in the timestamps. It publishes the steps to
  * play, (k + j / StepsPerRevolution) / RotationRate for NumberOfRevolutions revolutions (TIME_STEPS
- * and TIME_RANGE; where there is one step alone, as by default, only the range 0 to 0): at step j
- * the beams are there that were fired before the share (j + 1) / StepsPerRevolution of the
- * revolution is over, so the last step of each has the whole scan. Any other time is served too:
- * what stood at the last step before it, whether or not that is played (a time less than 1e-9 of a
- * step before one is that step's). A time whose revolution is not an int is an error. As long
- * as no time has been asked for there is the whole of revolution 0; later, where a request names
- * none, what VTK keeps of the request before: its time. Without sway, jitter and prisms all
- * revolutions have the same values but `timestamp`.
+ * and TIME_RANGE; of one step alone only the range 0 to 0): at step j the beams are there that were
+ * fired before the share (j + 1) / StepsPerRevolution of the revolution is over. Any other time is
+ * served by what stood at the last step before it (less than 1e-9 of a step before one it is that
+ * step's); a time whose revolution is not an int is an error. As long as no time has been asked for
+ * there is the whole of revolution 0. Without sway, jitter and prisms all revolutions have the same
+ * values but `timestamp`.
  *
- * **Mast sway and encoder jitter.** A mast sways in the wind and tilts the sensor about both
- * horizontal axes; the encoder of the rotor gives each column an error of its azimuth. Both are off
- * by default. The sensor knows of neither: with one of them on, `direction` is where the beam
- * really points, at its own timestamp, and `reported_direction`, `azimuth` and `vertical_angle` are
- * what the sensor reports; echoes lie along `reported_direction`. Port 1 shows the real rays. See
- * SetSwayAmplitude() and SetEncoderJitter(). The beams then differ in each revolution.
+ * **Mast sway and encoder jitter**, both off by default: a mast tilts the sensor about both
+ * horizontal axes, the encoder gives each column an error of its azimuth. The sensor knows of
+ * neither: `direction` is where the beam really points, at its own timestamp, and
+ * `reported_direction`, `azimuth` and `vertical_angle` are what the sensor reports; echoes lie
+ * along `reported_direction`. Port 1 shows the real rays. The beams then differ in each revolution.
  *
  * **Pieces.** Any number of pieces is served; columns are dealt to them in turn (column c to piece
  * c mod pieces), and all pieces together are the whole scan.
@@ -94,6 +86,7 @@
 
 #include "vtkAvianLidarErrorsAsData.h"
 #include "vtkAvianLidarModule.h" // For export macro
+#include "vtkAvianLidarSensorPresets.h"
 #include "vtkPolyDataAlgorithm.h"
 
 #include <functional> // For std::function
@@ -163,34 +156,16 @@ public:
    * says. Mid40, Avia and Mid360 have rotating prisms (GetNumberOfPrisms()); of Mid360 the pattern
    * is assumed.
    */
-  void SetPresetToAirport16() { this->TakePreset("Airport16"); }
-  void SetPresetToAirport32() { this->TakePreset("Airport32"); }
-  void SetPresetToCorridorC16() { this->TakePreset("CorridorC16"); }
-  void SetPresetToSearch905() { this->TakePreset("Search905"); }
-  void SetPresetToSearch1550() { this->TakePreset("Search1550"); }
-  void SetPresetToAutomotive16() { this->TakePreset("Automotive16"); }
-  void SetPresetToVLP16() { this->TakePreset("VLP16"); }
-  void SetPresetToVLP32C() { this->TakePreset("VLP32C"); }
-  void SetPresetToHDL32E() { this->TakePreset("HDL32E"); }
-  void SetPresetToPandar40P() { this->TakePreset("Pandar40P"); }
-  void SetPresetToPandarXT32() { this->TakePreset("PandarXT32"); }
-  void SetPresetToOS1_64() { this->TakePreset("OS1_64"); }
-  void SetPresetToHelios16P() { this->TakePreset("Helios16P"); }
-  void SetPresetToOS0_128() { this->TakePreset("OS0_128"); }
-  void SetPresetToOS2_128() { this->TakePreset("OS2_128"); }
-  void SetPresetToMid40() { this->TakePreset("Mid40"); }
-  void SetPresetToAvia() { this->TakePreset("Avia"); }
-  void SetPresetToMid360() { this->TakePreset("Mid360"); }
+  vtkAvianLidarSensorPresetsMacro();
   ///@}
 
   /**
-   * The same from a file (`.lidarsensor.json`, see the page on sensors). Some numbers are of files
-   * alone, and field data where they are given: `channel_azimuth_offsets` (deg, one per channel:
-   * its beam's azimuth less the column's), `channel_firing_times` (s, one per channel, since the
-   * column begins, instead of FiringInterval) and `blanked_sectors` (deg, pairs: columns from the
-   * one azimuth until before the other have no beams), and the prisms of GetNumberOfPrisms().
-   * @return false, with an error that names the file and the key, where it is not one: then nothing
-   * changes.
+   * The same from a file (`.lidarsensor.json`, see the page on sensors). Of files alone, and field
+   * data where they are given, are `channel_azimuth_offsets` (deg, of a channel's beam from the
+   * column), `channel_firing_times` (s, since the column begins, instead of FiringInterval),
+   * `blanked_sectors` (deg, pairs: no beams from the one azimuth until before the other), and the
+   * prisms of GetNumberOfPrisms(). @return false, with an error that names the file and the key,
+   * where it is not one: then nothing changes.
    */
   bool LoadSensor(VTK_FILEPATH const char* fileName);
 
@@ -273,10 +248,9 @@ public:
 
   ///@{
   /**
-   * Optional table: the elevation of each channel in degrees, within [-90, 90], in any order. A
-   * table that is not empty replaces NumberOfChannels, MinimumElevation and ElevationStep. New
-   * entries are 0; an index outside the table is an error, and so is a table for which there is no
-   * memory: the one that stands is kept. Default: empty.
+   * Optional table: the elevation of each channel in degrees, within [-90, 90], in any order; it
+   * replaces NumberOfChannels, MinimumElevation and ElevationStep. New entries are 0; an index
+   * outside the table is an error, and so is a table for which there is no memory. Default: empty.
    */
   void SetNumberOfChannelElevations(int number);
   int GetNumberOfChannelElevations() const;
@@ -333,9 +307,9 @@ public:
 
   ///@{
   /**
-   * Half of the opening angle across the direction in which HalfBeamwidth is measured, in radians,
-   * 1e-9 to 0.1, and 1/1000 to 1000 times HalfBeamwidth. Default 0: as wide as there. The energy of
-   * a beam that is not round is uniform over the plane across its axis, or Gaussian there.
+   * Half of the opening angle across the direction of HalfBeamwidth in radians, 1e-9 to 0.1, and
+   * 1/1000 to 1000 times that. Default 0: as wide as there. The energy of a beam that is not round
+   * is uniform over the plane across its axis, or Gaussian there.
    */
   vtkSetMacro(HalfBeamwidthAcross, double);
   vtkGetMacro(HalfBeamwidthAcross, double);
@@ -343,10 +317,9 @@ public:
 
   ///@{
   /**
-   * How far the direction in which HalfBeamwidth is measured is turned from the horizontal of the
-   * sensor (see SetOrientation()) upwards, on the right of someone who looks along the beam, in
-   * degrees, -360 to 360. A beam straight up has no horizontal: it is turned from a direction of
-   * its own. Default 0: HalfBeamwidth is measured across, HalfBeamwidthAcross upwards.
+   * Turn of the direction of HalfBeamwidth from the horizontal of the sensor (of a beam straight up
+   * from a direction of its own) upwards, on the right of someone who looks along the beam, in
+   * degrees, -360 to 360. Default 0.
    */
   vtkSetMacro(BeamRotation, double);
   vtkGetMacro(BeamRotation, double);
@@ -366,8 +339,7 @@ public:
   ///@{
   /**
    * Where the Gaussian profile is cut: half-beamwidths over its radii of 1/e^2, a pure number, 0.1
-   * to 3. Default 1: it falls to 1/e^2 at the half-beamwidth; with 1.5 to 1.1 %. A data sheet
-   * that says the 1/e^2 angle w goes with HalfBeamwidth = 1.5 w then.
+   * to 3. Default 1: it falls to 1/e^2 at the half-beamwidth.
    */
   vtkSetMacro(GaussianTruncation, double);
   vtkGetMacro(GaussianTruncation, double);
@@ -376,9 +348,8 @@ public:
   ///@{
   /**
    * What a photon receiver's threshold does where the air sends light back: THRESHOLD_LAW_FIXED (it
-   * stays; near the sensor the air itself becomes echoes), or THRESHOLD_LAW_FOLLOWS_AIR: the mean
-   * of the air's light is taken off, and the threshold lies as many standard deviations of its
-   * noise above as without air. It follows haze, fog and rain. Default: THRESHOLD_LAW_FOLLOWS_AIR.
+   * stays; near the sensor the air becomes echoes), or THRESHOLD_LAW_FOLLOWS_AIR, the default: the
+   * mean of that light is taken off, and as many standard deviations of its noise lie above.
    */
   vtkSetMacro(ThresholdLaw, int);
   vtkGetMacro(ThresholdLaw, int);
@@ -417,8 +388,7 @@ public:
   ///@{
   /**
    * In how many steps playing shows a revolution, at least 1 and at most the number of columns.
-   * With more than 1 the scan sweeps: each step has the beams fired until its end. As long as
-   * no time has been asked for all beams are there. Default 1.
+   * With more than 1 the scan sweeps: each step has the beams fired until its end. Default 1.
    */
   vtkSetMacro(StepsPerRevolution, int);
   vtkGetMacro(StepsPerRevolution, int);
@@ -427,13 +397,19 @@ public:
   ///@{
   /**
    * Sway of the mast: the rms of its tilt about each of the two horizontal axes in degrees, 0 to 10
-   * (1 mrad is 0.0573 degrees), default 0, none; and its frequency in hertz, 1e-6 to 1e6, default
-   * 0.5 (assumed). The tilt is a narrow-band random motion, 20 % to each side of that, and stays
-   * below 5.7 times its rms. The sensor turns about its own position; that it moves with the top of
-   * the mast is not modelled.
+   * (1 mrad is 0.0573 degrees). The tilt is a narrow-band random motion around SwayFrequency and
+   * stays below 5.7 times its rms. The sensor turns about its own position; that it moves with the
+   * top of the mast is not modelled. Default 0: none.
    */
   vtkSetMacro(SwayAmplitude, double);
   vtkGetMacro(SwayAmplitude, double);
+  ///@}
+
+  ///@{
+  /**
+   * Frequency of the sway in hertz, 1e-6 to 1e6; the motion fills a band of 20 % to each side.
+   * Default 0.5 (assumed). Without sway not used.
+   */
   vtkSetMacro(SwayFrequency, double);
   vtkGetMacro(SwayFrequency, double);
   ///@}
@@ -548,11 +524,10 @@ public:
   /**
    * What turns energies into echoes. RECEIVER_MODEL_ENERGY_LIMITS, the default, is the paper's:
    * LowerEnergyLimit, UpperEnergyLimit, NoisePhotonRate. RECEIVER_MODEL_PHOTONS: an energy Q at the
-   * aperture makes eta Q/(h nu) electrons; daylight, amplifier and avalanche add Gaussian noise of
-   * variance F (n + n_b) + n_a^2 to a range unit; the mean of the background is removed. The lower
-   * limit is k standard deviations of an empty unit, k such that a scan of empty sky has
-   * FalseAlarmsPerScan; LowerEnergyLimit, UpperEnergyLimit and NoisePhotonRate are then not used,
-   * and ReceiverAperture must be above 0.
+   * aperture, which must be above 0, makes eta Q/(h nu) electrons; a range unit has Gaussian noise
+   * of variance F (n + n_b) + n_a^2, the mean of the background is removed. The lower limit is k
+   * standard deviations of an empty unit, k such that a scan of empty sky has FalseAlarmsPerScan;
+   * the three numbers of the other are not used.
    */
   vtkSetMacro(ReceiverModel, int);
   vtkGetMacro(ReceiverModel, int);
@@ -562,12 +537,17 @@ public:
 
   ///@{
   /**
-   * Electrons per photon at the aperture eta, optics and detector together, above 0, at most 1,
-   * default 0.4 (assumed), and the width of the optical filter in nanometres, 0 to 1e6, default 10
-   * (assumed). Photon receiver.
+   * Electrons per photon at the aperture eta, optics and detector together, above 0, at most 1.
+   * Photon receiver. Default 0.4 (assumed).
    */
   vtkSetMacro(ReceiverEfficiency, double);
   vtkGetMacro(ReceiverEfficiency, double);
+  ///@}
+
+  ///@{
+  /**
+   * Width of the optical filter in nanometres, 0 to 1e6. Photon receiver. Default 10 (assumed).
+   */
   vtkSetMacro(FilterBandwidth, double);
   vtkGetMacro(FilterBandwidth, double);
   ///@}
@@ -584,24 +564,28 @@ public:
 
   ///@{
   /**
-   * Noise of the amplifier n_a, electrons rms in a range unit, 0 or 1e-3 to 1e20, default 60
-   * (assumed), and the excess noise factor F of the avalanche, 1 to 1e6, default 3 (assumed).
-   * Photon receiver.
+   * Noise of the amplifier n_a, electrons rms in a range unit, 0 or 1e-3 to 1e20. Photon receiver.
+   * Default 60 (assumed).
    */
   vtkSetMacro(AmplifierNoise, double);
   vtkGetMacro(AmplifierNoise, double);
+  ///@}
+
+  ///@{
+  /**
+   * Excess noise factor F of the avalanche, 1 to 1e6. Photon receiver. Default 3 (assumed).
+   */
   vtkSetMacro(ExcessNoiseFactor, double);
   vtkGetMacro(ExcessNoiseFactor, double);
   ///@}
 
   ///@{
   /**
-   * Spectral irradiance of the sun on a surface that faces it, at the sensor's wavelength, watts
-   * per square metre and nanometre, 0 to 1e10 (clear noon: about 0.7 at 905 nm). Above 0, each beam
-   * has the background of what it looks at: the sky's BackgroundRadiance, and of surfaces their
-   * reflectance times that and the sun's light; its noise and, where it is brighter than the sky,
-   * its threshold follow (Documentation/sensors.md), and echoes have `seen_radiance`. Photon
-   * receiver. Default 0: all beams look at BackgroundRadiance.
+   * Spectral irradiance of the sun on a surface that faces it, watts per square metre and
+   * nanometre, 0 to 1e10 (clear noon: about 0.7 at 905 nm). Above 0, each beam has the background
+   * of what it looks at, sky or lit surfaces; its noise and, where it is brighter than the sky, its
+   * threshold follow (Documentation/sensors.md), and echoes have `seen_radiance`. Photon receiver.
+   * Default 0.
    */
   vtkSetMacro(Sunlight, double);
   vtkGetMacro(Sunlight, double);
@@ -609,23 +593,35 @@ public:
 
   ///@{
   /**
-   * Where the sun stands, with Sunlight: degrees from north, clockwise, -360 to 360, default 180
-   * (south), and degrees above the horizon, -90 to 90, default 45.
+   * Where the sun stands: degrees from north, clockwise, -360 to 360. With Sunlight. Default 180,
+   * south.
    */
   vtkSetMacro(SunAzimuth, double);
   vtkGetMacro(SunAzimuth, double);
+  ///@}
+
+  ///@{
+  /**
+   * How high the sun stands: degrees above the horizon, -90 to 90. With Sunlight. Default 45.
+   */
   vtkSetMacro(SunElevation, double);
   vtkGetMacro(SunElevation, double);
   ///@}
 
   ///@{
   /**
-   * What is lost of near echoes, metres, 0 to 1e9: 1 - exp(-(r/r_o)^2) of the light from the range
-   * r lies in the view, r_o OverlapRange, and 1/(1 + (r_d/r)^2) of that falls on the detector, r_d
-   * DefocusRange: of a spot that is out of focus. Default 0: nothing is lost.
+   * Range r_o, metres, 0 to 1e9, of the overlap of beam and view: 1 - exp(-(r/r_o)^2) of the light
+   * from the range r lies in the view. Default 0: all of it.
    */
   vtkSetMacro(OverlapRange, double);
   vtkGetMacro(OverlapRange, double);
+  ///@}
+
+  ///@{
+  /**
+   * Range r_d, metres, 0 to 1e9, at which half of the image of a spot falls on the detector, as it
+   * is out of focus: 1/(1 + (r_d/r)^2) of the light from the range r. Default 0: all of it.
+   */
   vtkSetMacro(DefocusRange, double);
   vtkGetMacro(DefocusRange, double);
   ///@}
@@ -633,11 +629,10 @@ public:
   ///@{
   /**
    * Standard deviation b of the ranges of returns at S = 1, metres, 0 to 1e9. It is sqrt(a^2 +
-   * b^2/S^p), S the signal-to-noise ratio of a pulse's flanks (twice that of strong light;
-   * Documentation/sensors.md), a RangeNoiseFloor, p RangeNoiseExponent. It belongs to a pulse and a
-   * SamplingInterval and does not follow them: 0.649 range units for a pulse of one unit.
-   * Drawn where the echo filter has Noise; then echoes have `distance_std_error`. Photon receiver.
-   * Default 0: ranges are exact, as in the paper.
+   * b^2/S^p), S the signal-to-noise ratio of a pulse's flanks (Documentation/sensors.md), a
+   * RangeNoiseFloor, p RangeNoiseExponent; it belongs to a pulse and a SamplingInterval (0.649
+   * range units for a pulse of one unit). Drawn where the echo filter has Noise; then echoes have
+   * `distance_std_error`. Photon receiver. Default 0: ranges are exact, as in the paper.
    */
   vtkSetMacro(RangeNoise, double);
   vtkGetMacro(RangeNoise, double);
@@ -645,33 +640,43 @@ public:
 
   ///@{
   /**
-   * Power p of the signal-to-noise ratio by which the variance of ranges falls, 0 to 10, default 2,
-   * of a photon receiver; and the standard deviation a of the ranges of the strongest echoes,
-   * metres, 0 to 1e9, default 0.
+   * Power p of the signal-to-noise ratio by which the variance of ranges falls, 0 to 10. Photon
+   * receiver. Default 2.
    */
   vtkSetMacro(RangeNoiseExponent, double);
   vtkGetMacro(RangeNoiseExponent, double);
+  ///@}
+
+  ///@{
+  /**
+   * Standard deviation a of the ranges of the strongest echoes, metres, 0 to 1e9. Default 0.
+   */
   vtkSetMacro(RangeNoiseFloor, double);
   vtkGetMacro(RangeNoiseFloor, double);
   ///@}
 
   ///@{
   /**
-   * How far beyond its place an echo at the lower limit is said to be, metres, 0 to 1e9: the walk
-   * of a leading edge, which falls with the energy; and the step of ranges, metres, 0 (exact) or
-   * 1e-9 to 1e9. Default 0.
+   * Walk of a leading edge: how far beyond its place an echo at the lower limit is said to be,
+   * metres, 0 to 1e9. It falls with the energy. Default 0.
    */
   vtkSetMacro(RangeWalk, double);
   vtkGetMacro(RangeWalk, double);
+  ///@}
+
+  ///@{
+  /**
+   * Ranges are multiples of this, metres, 0 (exact) or 1e-9 to 1e9. Default 0.
+   */
   vtkSetMacro(RangeQuantum, double);
   vtkGetMacro(RangeQuantum, double);
   ///@}
 
   ///@{
   /**
-   * False alarms expected in a whole scan of empty sky, over all its pieces, above 0, at most 1e8
-   * and less than a tenth of its range units. Photon receiver. A warning says where a real receiver
-   * would have ten times as many, as noise of few electrons is not Gaussian. Default 1.
+   * False alarms expected in a whole scan of empty sky, above 0, at most 1e8 and less than a tenth
+   * of its range units. Photon receiver. A warning says where a real one would have ten times as
+   * many, as noise of few electrons is not Gaussian. Default 1.
    */
   vtkSetMacro(FalseAlarmsPerScan, double);
   vtkGetMacro(FalseAlarmsPerScan, double);
@@ -679,21 +684,19 @@ public:
 
   ///@{
   /**
-   * From the lower limit to the upper one, beyond which the receiver is saturated, in decibels of
-   * electrons (10 log10), 0 to 1000. Photon receiver, and SetLimitsFromDataSheet(). Default 40
-   * (assumed).
+   * From the lower limit to the upper one, where the receiver saturates, in decibels of electrons
+   * (10 log10), 0 to 1000. Photon receiver, and SetLimitsFromDataSheet(). Default 40 (assumed).
    */
   vtkSetMacro(DynamicRange, double);
   vtkGetMacro(DynamicRange, double);
   ///@}
 
   /**
-   * Set LowerEnergyLimit and UpperEnergyLimit (DynamicRange above it) of a sensor that is known by
-   * a line of a data sheet: it sees a Lambertian surface that fills the beam until `range` in
-   * metres, `reflectance` its reflectance (above 0, at most 1), `attenuation` that of the air in
-   * 1/m. One point is a guess: from one of a sheet's points the others were predicted up to 43 %
-   * wrong (Documentation/sensors.md, Fitted to a sheet). Needs ReceiverAperture; for
-   * RECEIVER_MODEL_ENERGY_LIMITS. A value outside its range is an error and changes nothing.
+   * Set LowerEnergyLimit and UpperEnergyLimit (DynamicRange above it) by a line of a data sheet:
+   * the sensor sees a Lambertian surface of `reflectance` (above 0, at most 1) that fills the beam
+   * until `range` in metres, through air of `attenuation` in 1/m. One point is a guess: others of
+   * its sheet were predicted up to 43 % wrong (Documentation/sensors.md, Fitted to a sheet). Needs
+   * ReceiverAperture; for RECEIVER_MODEL_ENERGY_LIMITS. A bad value changes nothing.
    */
   void SetLimitsFromDataSheet(double range, double reflectance, double attenuation = 0.0);
 

@@ -13,7 +13,7 @@
  * Meteorology 5, 1948; geometric optics.
  * Differs: the paper's air only attenuates.
  * Valid: single scattering; a medium fills the whole scene.
- * Test: TestMedium.cxx.
+ * Test: TestAirEcho.cxx.
  */
 #ifndef avianlidar_Medium_h
 #define avianlidar_Medium_h

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file vtkAvianLidarSensorPresets.h
+ * @brief Setters of vtkAvianLidarBeamSource for the sensors that are built in, one for each file in
+ * Filters/Sensors.
+ */
+#ifndef vtkAvianLidarSensorPresets_h
+#define vtkAvianLidarSensorPresets_h
+
+/// Called in the public part of the class, which has TakePreset().
+#define vtkAvianLidarSensorPresetsMacro() \
+  void SetPresetToAirport16()             \
+  {                                       \
+    this->TakePreset("Airport16");        \
+  }                                       \
+  void SetPresetToAirport32()             \
+  {                                       \
+    this->TakePreset("Airport32");        \
+  }                                       \
+  void SetPresetToCorridorC16()           \
+  {                                       \
+    this->TakePreset("CorridorC16");      \
+  }                                       \
+  void SetPresetToSearch905()             \
+  {                                       \
+    this->TakePreset("Search905");        \
+  }                                       \
+  void SetPresetToSearch1550()            \
+  {                                       \
+    this->TakePreset("Search1550");       \
+  }                                       \
+  void SetPresetToAutomotive16()          \
+  {                                       \
+    this->TakePreset("Automotive16");     \
+  }                                       \
+  void SetPresetToVLP16()                 \
+  {                                       \
+    this->TakePreset("VLP16");            \
+  }                                       \
+  void SetPresetToVLP32C()                \
+  {                                       \
+    this->TakePreset("VLP32C");           \
+  }                                       \
+  void SetPresetToHDL32E()                \
+  {                                       \
+    this->TakePreset("HDL32E");           \
+  }                                       \
+  void SetPresetToPandar40P()             \
+  {                                       \
+    this->TakePreset("Pandar40P");        \
+  }                                       \
+  void SetPresetToPandarXT32()            \
+  {                                       \
+    this->TakePreset("PandarXT32");       \
+  }                                       \
+  void SetPresetToOS1_64()                \
+  {                                       \
+    this->TakePreset("OS1_64");           \
+  }                                       \
+  void SetPresetToHelios16P()             \
+  {                                       \
+    this->TakePreset("Helios16P");        \
+  }                                       \
+  void SetPresetToOS0_128()               \
+  {                                       \
+    this->TakePreset("OS0_128");          \
+  }                                       \
+  void SetPresetToOS2_128()               \
+  {                                       \
+    this->TakePreset("OS2_128");          \
+  }                                       \
+  void SetPresetToMid40()                 \
+  {                                       \
+    this->TakePreset("Mid40");            \
+  }                                       \
+  void SetPresetToAvia()                  \
+  {                                       \
+    this->TakePreset("Avia");             \
+  }                                       \
+  void SetPresetToMid360()                \
+  {                                       \
+    this->TakePreset("Mid360");           \
+  }
+
+#endif
