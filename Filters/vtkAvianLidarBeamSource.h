@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class vtkAvianLidarBeamSource
- * @brief The sensor: the beams of a rotating multichannel avian lidar.
+ * @brief The sensor: the beams of a rotating multichannel avian lidar; a new one is Airport16.
  *
  * Everything that belongs to the instrument (scan pattern, beam, pulse, receiver; paper, Table 2)
  * is a property of this source and travels with the beams as field data. No input. The paper is
@@ -77,8 +77,6 @@
  * than there is memory for. Setters keep what they are given; the check is made when the source
  * executes. Beams are the same bits for any number of threads and pieces.
  *
- * A new object is the 16-channel airport lidar of the paper's Sec. 5.3, see SetPresetToAirport16().
- *
  * @sa vtkAvianLidarEchoFilter, vtkAvianLidarRangeImage
  */
 #ifndef vtkAvianLidarBeamSource_h
@@ -97,7 +95,6 @@
 
 class vtkPolyData;
 struct vtkAvianLidarSensorFile;
-
 class VTKAVIANLIDAR_EXPORT vtkAvianLidarBeamSource : public vtkPolyDataAlgorithm
 {
 public:
