@@ -130,7 +130,8 @@ def draw_rotors(file):
         azimuth, elevation = angles(window(sensor, 0)[0])
         near = np.abs(azimuth) < WIDE
         wide = np.full(near.sum(), 2 * np.degrees(sensor.half_beamwidth))
-        axes.add_collection(EllipseCollection(wide, wide, np.zeros(len(wide)), units="xy", transOffset=axes.transData,
+        high = np.full(near.sum(), 2 * np.degrees(sensor.half_beamwidth_across or sensor.half_beamwidth))
+        axes.add_collection(EllipseCollection(wide, high, np.zeros(len(wide)), units="xy", transOffset=axes.transData,
                                               offsets=np.column_stack([azimuth[near], elevation[near]]), facecolor="0.6",
                                               edgecolor="k", linewidth=0.3))
         axes.set(xlim=(-WIDE / 2, WIDE / 2), ylim=(elevation.min() - 1, elevation.max() + 1))

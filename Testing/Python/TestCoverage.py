@@ -351,6 +351,8 @@ class Work(unittest.TestCase):
         self.assertAlmostEqual(value, stated.mean(), delta=1e-5)
         with self.assertRaisesRegex(ValueError, "weights have the shape"):
             siting.value_of_same_birds(scene, sensor, sites, places, ["herring gull"], weights[:, 1:])
+        with self.assertRaisesRegex(ValueError, "weights have -1 among them"):
+            siting.value_of_same_birds(scene, sensor, sites, places, ["herring gull"], np.where(weights == weights.max(), -1, weights))
         with self.assertRaisesRegex(ValueError, "sites have the shape"):
             siting.value_of_same_birds(scene, sensor, sites[0], places, ["herring gull"], weights)
 

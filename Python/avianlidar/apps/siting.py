@@ -543,6 +543,8 @@ def value_of_same_birds(scene, sensor, sites, places, species: Sequence[str], we
         raise ValueError(f"sites have the shape {sites.shape}, expected n x 3 finite coordinates in metres")
     if weights.shape != (len(species), len(places)):
         raise ValueError(f"weights have the shape {weights.shape}, expected species x places, {(len(species), len(places))}")
+    if not (np.isfinite(weights).all() and np.min(weights, initial=0.0) >= 0):
+        raise ValueError(f"weights have {np.min(weights):g} among them, expected finite numbers of at least 0")
     before, value = sensor.position, 0.0
     cover = Coverage(scene, sensor, clutter=False, number_of_threads=1)
     cover.set(**settings)
