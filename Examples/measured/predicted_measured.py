@@ -28,6 +28,7 @@ import tables  # noqa: E402
 GOOD = 0.1      # of a point of a sheet that was left out
 ENDS = 0.25     # of the range where ground ends
 DARK = 20.0     # reflectivity up to which a point of the ground is ground: brighter ones are paint and things
+FALLS = 0.3     # standard error of an exponent from which on it says nothing
 MODELS = ("LambertBlinnPhong", "OrenNayar")
 NAMED = ("Asphalt", "Concrete", "Grass")
 
@@ -104,6 +105,19 @@ def ground(data):
                          frames.verdict(abs(end / real - 1) <= ENDS)))
     header = ("height (m)", "tilt (deg)", "ground", "model", "measured end (m)", "predicted end (m)", "ratio", f"within {100 * ENDS:.0f} %")
     return header, rows, (kd, roughness, rms, x, y)
+
+
+def walls(data):
+    """The exponent by which signal falls with range on walls, matt, beyond the near range, and that of a simulation of them."""
+    rows = []
+    for frame in falloff.FRAMES:
+        for plane, windows in falloff.study(frame, data / frame.file).planes if frame.field == "signal" else ():
+            if plane.kind == "wall":
+                (_, found), _, (_, model) = windows[-1]  # where the sensor receives in full, if the plane reaches so far
+                off, error = found[0] - model[0], found[1]
+                rows.append((frame.name, f"{plane.distance:.1f}", f"{found[2]:.1f} to {found[3]:.1f}", falloff.number(model),
+                             falloff.number(found), frames.verdict(abs(off) <= 3 * error) if error < FALLS else "too few to say"))
+    return ("frame", "wall (m)", "ranges (m)", "predicted n", "measured n", "within three standard errors"), rows
 
 
 def noise_of_ranges(points, ring):
@@ -191,7 +205,7 @@ def main(argv=None):
     options = arguments(argv)
     header, rows, fit = ground(options.data)
     found = {"measured-sheets": sheets(), "measured-ground": (header, rows), "measured-ranges": ranges(options.data),
-             "measured-least": frames.least_reflectance(options.data), "measured-outdoors": lacks.outdoors(options.data),
+             "measured-walls": walls(options.data), "measured-least": frames.least_reflectance(options.data), "measured-outdoors": lacks.outdoors(options.data),
              **of_room(options.data), "measured-fit": (("kd", "roughness (rad)", "rms left"), [[f"{value:.3f}" for value in fit[:3]]])}
     for name, (header, rows) in found.items():
         tables.write(options.out, name, falloff.markdown(header, rows).rstrip())
