@@ -584,6 +584,8 @@ void vtkAvianLidarBeamSource::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "Orientation: " << this->Orientation[0] << " " << this->Orientation[1] << " "
      << this->Orientation[2] << "\n";
   os << indent << "NumberOfChannels: " << this->NumberOfChannels << "\n";
+  os << indent << "NumberOfChannelElevations: " << this->ChannelElevations.size() << "\n";
+  os << indent << "NumberOfPrisms: " << this->GetNumberOfPrisms() << "\n";
   for (const auto& [name, table] : vtkInternals::Tables())
   {
     os << indent << NameProperties(name.name) << ": (" << (this->*table).size() << ")";

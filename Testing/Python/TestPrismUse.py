@@ -31,7 +31,12 @@ class Use(unittest.TestCase):
         lines = np.column_stack([random.uniform(-0.3, 0.3, 2000), np.ones(2000), random.uniform(-0.3, 0.3, 2000)])
         lines /= np.linalg.norm(lines, axis=1)[:, None]
         beams = np.array(sensor.beams["direction"])
-        held = np.sum(lines @ beams.T >= np.cos(sensor.half_beamwidth), axis=1)
+        right = np.cross(beams, [0, 0, 1])
+        right /= np.linalg.norm(right, axis=1)[:, None]
+        ahead = lines @ beams.T
+        squares = sum((lines @ across.T / ahead / np.tan(half))**2 for across, half in (
+            (right, sensor.half_beamwidth), (np.cross(right, beams), sensor.half_beamwidth_across)))
+        held = np.sum((squares <= 1) & (ahead > 0), axis=1)
         cover = al.Coverage(al.Scene(WALL), sensor, places=5.0 * lines)
         cover.set(clutter=False)
         with self.assertWarnsRegex(RuntimeWarning, "track_probability takes all NumberOfScans for the one that is here"):
@@ -40,7 +45,7 @@ class Use(unittest.TestCase):
             warnings.simplefilter("error", RuntimeWarning)
             cover.set(number_of_scans=1, required_detections=1)
             np.testing.assert_array_equal(cover["track_probability"], cover["detection_probability"])
-        near = np.abs((lines @ beams.T).max(axis=1) - np.cos(sensor.half_beamwidth)) < 1e-10
+        near = np.min(np.abs(squares - 1), axis=1) < 1e-9
         np.testing.assert_array_equal(np.array(cover["beams_per_scan"])[~near], np.minimum(held, 255)[~near])
         self.assertGreater((held > 0).mean(), 0.03)
 
