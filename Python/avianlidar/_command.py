@@ -10,7 +10,7 @@ import re
 import sys
 import traceback
 import warnings
-from typing import Any, List, Optional
+from typing import Any, Dict, List, Optional
 
 from ._suffixes import READERS, WRITERS, listed
 
@@ -110,6 +110,7 @@ def weather(words) -> List[Any]:
     [('visibility', 800.0), ('air_backscatter', True), ('rain_rate', 10.0)]
     """
     found: List[Any] = []
+    known: Dict[str, str] = {}
     for word in words or ():
         kind, colon, number = word.partition(":")
         try:
@@ -118,6 +119,10 @@ def weather(words) -> List[Any]:
             value = math.nan
         if kind not in ("fog", "haze", "rain") or not value > 0 or not math.isfinite(value):
             raise ValueError(f"weather {word!r}, expected {WEATHER.partition(';')[0]}")
+        name = "rain rate" if kind == "rain" else "visibility"
+        if name in known:
+            raise ValueError(f"weather {word!r} after {known[name]!r}, expected one {name}")
+        known[name] = word
         found += [("rain_rate", value)] if kind == "rain" else [("visibility", value), ("air_backscatter", True)]
     return found
 

@@ -168,6 +168,7 @@ class Words(unittest.TestCase):
             self.assertIn("of the air (object_id -2)", said.stdout)
             for wrong in ("snow:3", "fog", "fog:-1", "rain:x"):
                 self.assertIn(f"weather '{wrong}', expected fog:V or haze:V (visibility, m), rain:R (mm/h)", run(wrong).stderr)
+            self.assertIn("weather 'haze:5000' after 'fog:800', expected one visibility", run("fog:800", "rain:1", "haze:5000").stderr)
 
 
 if __name__ == "__main__":

@@ -54,10 +54,10 @@ public:
 
   /// Light beams also where bounds show that nothing of them can be perceived: for those who look
   /// at lighting().
+  void lightAll() { this->Lighting.lightAll(); }
+
   /// What the air sends back.
   const AirEcho& air() const { return this->Receiver.air(); }
-
-  void lightAll() { this->Lighting.lightAll(); }
 
   /// What the beam lit last received.
   const BeamLighting& lighting() const { return this->Lighting; }

@@ -79,6 +79,7 @@ AirEcho::AirEcho(const Sensor& sensor, const std::vector<Medium>& media, double 
     }
     this->Means.push_back(energy);
   }
+  this->Quiet.resize(this->Means.size(), 0.0);
 }
 
 /// Drops in a unit, on average.
@@ -98,7 +99,6 @@ double AirEcho::variance(std::int64_t unit) const
 
 void AirEcho::setLeast(std::int64_t unit, double least)
 {
-  this->Quiet.resize(this->Means.size(), 0.0);
   const double mean = this->OfDrops * this->mean(unit);
   const double shape = this->dropsIn(unit) / SquareOfDrops;
   this->Quiet[static_cast<std::size_t>(unit)] =

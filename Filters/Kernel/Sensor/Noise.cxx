@@ -195,13 +195,17 @@ void planGaussian(const Sensor& sensor, NoisePlan& plan)
   plan.alarmProbability = 0.5 * std::erfc(k / Root2);
   plan.quietProbability = 0.5 * std::erfc(-k / Root2);
   plan.falseAlarmsPerBeam = plan.alarmProbability * static_cast<double>(plan.gateUnits);
-  // light + CommonDeviate sqrt(dark + varianceOfEnergy light) = limit
-  const double limit = sensor.lowerEnergyLimit;
-  const double square = CommonDeviate * CommonDeviate;
-  const double half = limit + 0.5 * square * plan.varianceOfEnergy;
-  const double rest = limit * limit - square * plan.darkVariance;
-  plan.faintLight = rest > 0.0 ? (1.0 - 1e-9) * rest / (half + std::sqrt(half * half - rest)) : 0.0;
+  plan.faintLight = leastLight(sensor.lowerEnergyLimit, plan.darkVariance, plan.varianceOfEnergy);
 }
+}
+
+double leastLight(double limit, double dark, double perEnergy)
+{
+  const double square = CommonDeviate * CommonDeviate;
+  const double half = limit + 0.5 * square * perEnergy;
+  const double rest = limit * limit - square * dark;
+  return limit > 0.0 && rest > 0.0 ? (1.0 - 1e-9) * rest / (half + std::sqrt(half * half - rest))
+                                   : -std::numeric_limits<double>::infinity();
 }
 
 NoisePlan planNoise(const Sensor& sensor, bool enabled, bool inFull)

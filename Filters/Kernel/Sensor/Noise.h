@@ -80,6 +80,12 @@ NoisePlan planNoise(const Sensor& sensor, bool enabled, bool inFull = false);
 /// expected.
 std::string checkNoise(const NoisePlan& plan, std::uint64_t beams);
 
+/// Light that just reaches a limit with a deviate of CommonDeviate, J: x with x + CommonDeviate
+/// (dark + perEnergy x)^(1/2) = limit. -Infinity if the noise of no light may. @param dark variance
+/// without light, J^2
+/// @param perEnergy what it grows by, J
+double leastLight(double limit, double dark, double perEnergy);
+
 /// Noise of one beam. Reusable without allocation; one per thread.
 class BeamNoise
 {

@@ -3,7 +3,6 @@
 
 #include "LaneSums.h"
 #include "ParallelLoop.h"
-#include "PhotonReceiver.h"
 
 #include <algorithm>
 #include <cmath>
@@ -17,20 +16,6 @@ double perceivedEnergy(double received, double lower, double upper)
   return received > lower ? std::min(received, upper) : 0.0;
 }
 
-namespace
-{
-/// By how much an energy raises the variance of noise, 1/J, over what it is in the dark.
-double perAirOf(const Sensor& sensor)
-{
-  if (!sensor.followsAir())
-  {
-    return 0.0;
-  }
-  const PhotonReceiver receiver(sensor);
-  return receiver.excess * receiver.electronsPerJoule / receiver.darkVariance;
-}
-}
-
 BeamReceiver::BeamReceiver(const Sensor& sensor, const NoisePlan& noise, std::int32_t seed,
   ReturnMode mode, std::int32_t revolution, std::function<bool()> wanted, AirEcho air)
   : Instrument(sensor)
@@ -42,7 +27,7 @@ BeamReceiver::BeamReceiver(const Sensor& sensor, const NoisePlan& noise, std::in
   , Plan(noise)
   , Air(std::move(air))
   , FollowsAir(sensor.followsAir())
-  , PerAir(perAirOf(sensor))
+  , Photons(sensor)
   , Seed(seed)
   , Revolution(revolution)
   , Mode(mode)
@@ -71,22 +56,19 @@ void BeamReceiver::planAir()
   }
   for (std::int64_t unit = 0; unit < this->AirLooked && this->Plan.gaussian; ++unit)
   {
-    // x + 3 sqrt(variance + varianceOfEnergy x) is the limit.
     const double mean = this->Air.mean(unit);
     const double variance = this->Plan.darkVariance + this->Plan.varianceOfEnergy * mean;
     const double limit = this->FollowsAir ? this->lowerIn(mean) : this->Lower - mean;
-    const double square = CommonDeviate * CommonDeviate;
-    const double half = limit + 0.5 * square * this->Plan.varianceOfEnergy;
-    const double rest = limit * limit - square * variance;
-    this->Air.setLeast(
-      unit, limit > 0.0 && rest > 0.0 ? rest / (half + std::sqrt(half * half - rest)) : -Infinity);
+    this->Air.setLeast(unit, leastLight(limit, variance, this->Plan.varianceOfEnergy));
   }
 }
 
 /// The lower limit of a unit, J. @param air mean of what the air sends back, J
 double BeamReceiver::lowerIn(double air) const
 {
-  return this->FollowsAir ? this->Lower * std::sqrt(1.0 + this->PerAir * air) : this->Lower;
+  return this->FollowsAir
+    ? this->Lower * this->Photons.growthInAir(this->Photons.electronsPerJoule * air)
+    : this->Lower;
 }
 
 void BeamReceiver::receive(std::uint64_t beam, const std::vector<RangeUnit>& units, double radiance)
@@ -97,7 +79,7 @@ void BeamReceiver::receive(std::uint64_t beam, const std::vector<RangeUnit>& uni
   }
   this->Noise.begin(this->Plan, this->Seed, beam, this->Revolution);
   this->Beam = beam;
-  this->Air.any() ? this->collectInAir(units) : this->collectUnits(units);
+  this->collectUnits(units);
   this->formReturns();
   this->select();
 }
@@ -112,13 +94,13 @@ void BeamReceiver::lookAt(double radiance)
   this->Plan = planNoise(there, this->Plan.active);
   this->Plan.ofRanges = ofRanges;
   this->Errors = RangeErrors(there, ofRanges);
-  this->PerAir = perAirOf(there);
+  this->Photons = PhotonReceiver(there);
 }
 
 void BeamReceiver::collectUnits(const std::vector<RangeUnit>& units)
 {
   this->Units.clear();
-  if (!this->Plan.active)
+  if (!this->mayAlarm())
   {
     this->Units.resize(units.size());
     ReceivedUnit* received = this->Units.data();
@@ -135,36 +117,6 @@ void BeamReceiver::collectUnits(const std::vector<RangeUnit>& units)
   }
   const auto& alarms = this->Noise.alarms();
   auto alarm = alarms.begin();
-  const auto addAlarmsBefore = [&](std::int64_t index, bool all)
-  {
-    for (; alarm != alarms.end() && (all || *alarm < index); ++alarm)
-    {
-      const double noise = this->noiseOf(*alarm, 0.0);
-      this->Units.push_back({ *alarm, noise, noise, 0, 0.0, this->Lower, this->Upper });
-    }
-  };
-  for (const RangeUnit& unit : units)
-  {
-    addAlarmsBefore(unit.index, false);
-    const bool isAlarm = alarm != alarms.end() && *alarm == unit.index;
-    alarm += isAlarm ? 1 : 0;
-    if (unit.energy < this->Plan.faintLight && !isAlarm && !this->Noise.isRare(unit.index))
-    {
-      continue;
-    }
-    const double noise = this->noiseOf(unit.index, unit.energy);
-    this->Units.push_back(
-      { unit.index, unit.energy + noise, noise, unit.paths, 0.0, this->Lower, this->Upper });
-  }
-  addAlarmsBefore(0, true);
-}
-
-/// The same through air that sends light back.
-void BeamReceiver::collectInAir(const std::vector<RangeUnit>& units)
-{
-  this->Units.clear();
-  const auto& alarms = this->Noise.alarms();
-  auto alarm = alarms.begin();
   auto lit = units.begin();
   std::int64_t next = 0; // of those in which the air alone may be perceived
   constexpr std::int64_t none = std::numeric_limits<std::int64_t>::max();
@@ -174,7 +126,12 @@ void BeamReceiver::collectInAir(const std::vector<RangeUnit>& units)
       lit != units.end() ? lit->index : none, alarm != alarms.end() ? *alarm : none });
     const bool isAlarm = alarm != alarms.end() && *alarm == index;
     const bool isLit = lit != units.end() && lit->index == index;
-    this->addInAir(index, isLit ? lit->energy : 0.0, isLit ? lit->paths : 0, isAlarm);
+    const double light = isLit ? lit->energy : 0.0;
+    if (isAlarm || this->Air.mean(index) > 0.0 || !(light < this->Plan.faintLight) ||
+      this->Noise.isRare(index))
+    {
+      this->addUnit(index, light, isLit ? lit->paths : 0, isAlarm);
+    }
     alarm += isAlarm ? 1 : 0;
     lit += isLit ? 1 : 0;
     next = std::max(next, index + 1);
@@ -182,7 +139,7 @@ void BeamReceiver::collectInAir(const std::vector<RangeUnit>& units)
 }
 
 /// Add a unit, unless noise and drops are too common for it to be perceived.
-void BeamReceiver::addInAir(std::int64_t index, double light, std::uint32_t paths, bool alarm)
+void BeamReceiver::addUnit(std::int64_t index, double light, std::uint32_t paths, bool alarm)
 {
   const bool gaussian = this->Plan.gaussian;
   const double mean = this->Air.mean(index);

@@ -27,6 +27,7 @@
 
 #include "AirEcho.h"
 #include "Noise.h"
+#include "PhotonReceiver.h"
 #include "RangeErrors.h"
 #include "RangeUnits.h"
 #include "Sensor.h"
@@ -126,8 +127,7 @@ private:
   void planAir();
   double lowerIn(double air) const;
   void collectUnits(const std::vector<RangeUnit>& units);
-  void collectInAir(const std::vector<RangeUnit>& units);
-  void addInAir(std::int64_t index, double light, std::uint32_t paths, bool alarm);
+  void addUnit(std::int64_t index, double light, std::uint32_t paths, bool alarm);
   double noiseOf(std::int64_t unit, double light);
   void formReturns();
   void select();
@@ -143,7 +143,7 @@ private:
   NoisePlan Plan;
   AirEcho Air;
   bool FollowsAir;
-  double PerAir;              ///< 1/J
+  PhotonReceiver Photons;
   std::int64_t AirLooked = 0; ///< units in which the air alone may be perceived
   std::uint64_t Beam = 0;
   std::int32_t Seed;
