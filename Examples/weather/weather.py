@@ -41,7 +41,7 @@ def row(name, weather, echoes):
     air = away[objects == -2]
     found = reach.within_beams(al.Sensor(SENSOR), SPECIES, **weather)
     to = found.to(0.5)
-    return (f"| {name} | {(objects >= 0).sum():,} | {len(air):,} | " + (f"{air.max():.0f} m" if len(air) else "–") + " | " +
+    return (f"| {name} | {(objects >= 0).sum():,} | {len(air):,} | {(objects == -1).sum():,} | " + (f"{air.max():.0f} m" if len(air) else "–") + " | " +
             (f"{float(f'{to:.2g}'):g} m" if to else "–") + " |")
 
 
@@ -67,7 +67,8 @@ def main(arguments=None):
     figure = Figure(figsize=(12.0, 4.4), layout="constrained")
     FigureCanvasAgg(figure)
     panels = iter(figure.subplots(1, len(SHOWN)))
-    lines = ["| weather | echoes of surfaces | points of the air | the last of them | half of the gulls, to |", "|---|---:|---:|---:|---:|"]
+    lines = ["| weather | echoes of surfaces | points of the air | of noise | the last of the air | half of the gulls, to |",
+             "|---|---:|---:|---:|---:|---:|"]
     for name, weather in WEATHER:
         echoes = scan(scene, weather)
         lines.append(row(name, weather, echoes))
