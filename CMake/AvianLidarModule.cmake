@@ -11,6 +11,7 @@ set(classes
   Filters/vtkAvianLidarGeodeticTransform
   Filters/vtkAvianLidarHSBColorMap
   Filters/vtkAvianLidarMaterial
+  Filters/vtkAvianLidarMedium
   Filters/vtkAvianLidarRangeImage
   Filters/vtkAvianLidarScanFilter
   Filters/vtkAvianLidarSensorReader
@@ -34,6 +35,7 @@ set(private_sources
   Filters/Private/Common/vtkAvianLidarGuard.cxx
   Filters/Private/Common/vtkAvianLidarIdRuns.cxx
   Filters/Private/Common/vtkAvianLidarRanks.cxx
+  Filters/Private/Surfaces/vtkAvianLidarMedia.cxx
   Filters/Private/Surfaces/vtkAvianLidarSurfaceExchange.cxx
   Filters/Private/Surfaces/vtkAvianLidarSurfaceIds.cxx
   Filters/Private/Surfaces/vtkAvianLidarSurfaceLeaf.cxx
@@ -56,7 +58,6 @@ set(private_sources
   Filters/Private/Echoes/vtkAvianLidarEchoOutput.cxx
   Filters/Private/Echoes/vtkAvianLidarImageArrays.cxx
   Filters/Private/Echoes/vtkAvianLidarImageBeams.cxx
-  Filters/Private/Echoes/vtkAvianLidarMedia.cxx
   Filters/Private/Echoes/vtkAvianLidarModelNotes.cxx
   Filters/Private/Coverage/vtkAvianLidarCoverageOutput.cxx
   Filters/Private/Coverage/vtkAvianLidarPlaces.cxx

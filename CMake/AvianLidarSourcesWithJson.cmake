@@ -4,6 +4,8 @@
 set(sources_with_json
   Filters/Private/Beams/vtkAvianLidarSensorFile.cxx
   Filters/Private/Common/JsonNode.cxx
+  Filters/Private/Surfaces/vtkAvianLidarMedia.cxx
+  Filters/vtkAvianLidarMedium.cxx
   IO/Private/AssimpFileLook.cxx
   IO/Private/CloudNotes.cxx
   IO/Private/Footprints.cxx

@@ -27,6 +27,10 @@ namespace
 using Outcome = vtkAvianLidarRanks::Outcome;
 using Pipeline = vtkStreamingDemandDrivenPipeline;
 
+constexpr char NoAperture[] =
+  "air that scatters (AirBackscatter, RainRate, media) needs beams of a "
+  "sensor with a receiver_aperture above 0, expected such a one";
+
 /// All that decides a bit of the results. @param air the attenuation coefficient, of no account
 /// where the visibility says it
 vtkAvianLidarRanks::Settings SettingsOf(const avianlidar::EchoSettings& s, int preset,
@@ -227,8 +231,7 @@ std::string vtkAvianLidarScanFilter::PrepareSettings()
   }
   if (!media.empty() && !(this->Internals->Setup.sensor.receiverAperture > 0.0))
   {
-    problem = "air that scatters (AirBackscatter, RainRate) needs beams of a sensor with a "
-              "receiver_aperture above 0, expected such a one";
+    problem = NoAperture;
   }
   if (!(this->Visibility >= 0.0 && this->Visibility <= 1e9) ||
     (this->Visibility > 0.0 && !(s.attenuationCoefficient <= 1e30)))
@@ -256,11 +259,58 @@ std::string vtkAvianLidarScanFilter::PrepareSettings()
 }
 
 //------------------------------------------------------------------------------
+std::string vtkAvianLidarScanFilter::PlaceMedia()
+{
+  vtkInternals& in = *this->Internals;
+  const avianlidar::Sensor& sensor = in.Setup.sensor;
+  if (in.MediaOf != in.Surfaces.media || in.MediaFor != sensor.frequency)
+  {
+    in.Media.clear();
+    for (const std::string& text : in.Surfaces.media)
+    {
+      in.Media.push_back(
+        vtkAvianLidarMedia::Read(text, avianlidar::SpeedOfLight / sensor.frequency));
+    }
+    in.MediaOf = in.Surfaces.media;
+    in.MediaFor = sensor.frequency;
+  }
+  in.Setup.placedMedia.clear();
+  for (const avianlidar::PlacedMedium& placed : in.Media)
+  {
+    if (placed.volume.velocity != avianlidar::Vec3(0.0) && in.Beams.beams.size() > 0 &&
+      !in.Beams.isTimed)
+    {
+      return "Input port 0 (beams), point array 'timestamp' is missing, expected the time in "
+             "microseconds at which each beam meets the media that move (input port 1)";
+    }
+    if (placed.volume.shape == avianlidar::MediumShape::Everywhere)
+    {
+      in.Setup.media.push_back(placed.medium);
+      in.Setup.settings.attenuationCoefficient += placed.medium.extinction;
+    }
+    else
+    {
+      in.Setup.placedMedia.push_back(placed);
+    }
+  }
+  return in.Media.empty() || sensor.receiverAperture > 0.0 ? std::string() : NoAperture;
+}
+
+//------------------------------------------------------------------------------
 void vtkAvianLidarScanFilter::AddAirTo(vtkFieldData* fields) const
 {
   vtkAvianLidarArrays::SetFieldInteger(
     fields, vtkAvianLidarArrays::AirBackscatter, this->AirBackscatter);
   vtkAvianLidarArrays::SetFieldValue(fields, vtkAvianLidarArrays::RainRate, this->RainRate);
+  std::vector<std::string> media;
+  for (const std::string& text : this->Internals->Surfaces.media)
+  {
+    media.push_back(vtkAvianLidarMedia::InWords(text));
+  }
+  if (!media.empty())
+  {
+    vtkAvianLidarArrays::SetFieldStrings(fields, vtkAvianLidarArrays::Media, media);
+  }
 }
 
 //------------------------------------------------------------------------------
@@ -349,6 +399,10 @@ void vtkAvianLidarScanFilter::SummarizeSurfaces(vtkDataObject* input, bool warn)
   in.Setup.materialIds = in.Surfaces.materialIds;
   in.Summary.follow(in.Setup);
   in.Scene = in.Summary.checksum(in.Geometry);
+  for (const std::string& medium : in.Surfaces.media)
+  {
+    in.Scene = avianlidar::hashOf(medium.data(), medium.size(), in.Scene);
+  }
   if (in.Warnings.IsNew(input, in.Geometry, in.Surfaces.warning) && warn)
   {
     vtkWarningMacro("Input port 1, " << vtkAvianLidarText(in.Surfaces.warning));
@@ -363,6 +417,11 @@ bool vtkAvianLidarScanFilter::PrepareTree(const vtkAvianLidarRanks& ranks, vtkDa
   return in.GoOn(ranks.Together(this,
     [&]() -> std::string
     {
+      const std::string problem = this->PlaceMedia();
+      if (!problem.empty())
+      {
+        return problem;
+      }
       this->FindTree(input);
       if (!in.Setup.tree)
       {

@@ -400,6 +400,7 @@ protected:
   int RequestUpdateExtent(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
 
   // Whether air and rain send light back, as field data.
+  std::string PlaceMedia();
   void AddAirTo(vtkFieldData* fields) const;
 
   // Passes of an execution, by all ranks together; false ends it.

@@ -18,8 +18,8 @@ using namespace avianlidar;
 using Real = long double;
 using Wide = std::array<Real, 3>;
 
-constexpr Real Pi = 3.14159265358979323846264338327950288L;
-constexpr Real Degree = Pi / 180;
+constexpr Real RealPi = 3.14159265358979323846264338327950288L;
+constexpr Real Degree = RealPi / 180;
 
 Wide cross(const Wide& a, const Wide& b)
 {
@@ -66,7 +66,7 @@ Wide traced(const PrismTrain& train, Real time, Wide d)
   for (std::size_t i = 0; i < train.wedgeAngles.size(); ++i)
   {
     const Real phase = train.phases.empty() ? 0 : train.phases[i];
-    const Real angle = 2 * Pi * train.rotationRates[i] * time + phase * Degree;
+    const Real angle = 2 * RealPi * train.rotationRates[i] * time + phase * Degree;
     // The inclined face of a prism whose thick end is up leans by the wedge angle about x; then the
     // prism turns about y, clockwise as seen along it: a right-handed rotation.
     const Wide leaning = turned(forward, { { 1, 0, 0 } }, -train.wedgeAngles[i] * Degree);
@@ -139,7 +139,7 @@ TEST(Prisms, ThinOnesDrawTheRoseOfTheParaxialFormula)
   {
     const double t = 1e-4 * i;
     const auto d = steer(train, 0.0, t, { { 0.0, 1.0, 0.0 } });
-    const double two = 2.0 * static_cast<double>(Pi) * t;
+    const double two = 2.0 * static_cast<double>(RealPi) * t;
     EXPECT_NEAR(d[0], thin * (std::sin(7.0 * two) + std::sin(-3.0 * two)), 2e-6 * thin);
     EXPECT_NEAR(d[2], thin * (std::cos(7.0 * two) + std::cos(-3.0 * two)), 2e-6 * thin);
     const double radius = std::hypot(d[0], d[2]);

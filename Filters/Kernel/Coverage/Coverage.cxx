@@ -271,13 +271,22 @@ Coverage::PlacedTarget Coverage::placed(const CoverageTarget& target, const Vec3
   const Sensor& sensor = this->Setup.sensor;
   const Vec3 to = place - this->Beams.origins[0];
   const double range = safeLength(to);
-  const double filling = energyFromTarget(
+  double filling = energyFromTarget(
     sensor, range, std::numeric_limits<double>::infinity(), target.reflectance, target.attenuation);
+  const auto unit = static_cast<std::int64_t>(range / sensor.rangeUnitLength());
+  double air = this->Air.mean(unit);
+  if (!this->Setup.placedMedia.empty())
+  {
+    BeamAir along(sensor, this->Setup.settings.attenuationCoefficient, this->Setup.media,
+      this->Setup.placedMedia);
+    along.beginRay(this->Beams.origins[0], to / range, 0.0);
+    filling *= along.transmission(range);
+    air = along.followed(this->Air, unit);
+  }
   double growth = 1.0;
-  if (this->Air.any() && sensor.followsAir())
+  if (air > 0.0 && sensor.followsAir())
   {
     const PhotonReceiver receiver(sensor);
-    const double air = this->Air.mean(static_cast<std::int64_t>(range / sensor.rangeUnitLength()));
     growth = receiver.growthInAir(receiver.electronsPerJoule * air);
   }
   const double energy = filling * target.area / (sensor.solidAngle() * range * range);

@@ -48,6 +48,9 @@ struct BeamSamples
   std::vector<double> cosine;     ///< of incidence, in [0, 1]
   std::vector<double> weight;     ///< share of the pulse's energy that arrives there
 
+  /// Columns of the air that its rays lie in (BeamAir.h), bits; empty: all of each sample.
+  std::vector<std::uint64_t> columns;
+
   std::uint32_t rays = 0;                                   ///< N of the beam, with and without hit
   bool coplanar = false;                                    ///< all lie on one plane
   double nearest = std::numeric_limits<double>::infinity(); ///< m
@@ -74,6 +77,7 @@ struct BeamSamples
   {
     return sizeof(BeamSamples) + sizeof(Surface) * this->surfaces.capacity() +
       sizeof(std::uint32_t) * this->ray.capacity() +
+      sizeof(std::uint64_t) * this->columns.capacity() +
       sizeof(double) * (this->range.capacity() + this->cosine.capacity() + this->weight.capacity());
   }
 };

@@ -24,6 +24,7 @@
 #include "CollisionTree.h"
 #include "EchoSettings.h"
 #include "Medium.h"
+#include "MediumVolume.h"
 #include "Mover.h"
 #include "Noise.h"
 #include "Sensor.h"
@@ -80,8 +81,9 @@ struct ScanSetup
   /// What moves; null: nothing. Largest reflectance and gain are of these, too.
   std::shared_ptr<const std::vector<Mover>> movers;
   Sensor sensor;
-  EchoSettings settings;     ///< attenuation that of all air, the media's included
-  std::vector<Medium> media; ///< air that scatters
+  EchoSettings settings;                 ///< attenuation that of all air, the media's included
+  std::vector<Medium> media;             ///< air that scatters and fills the scene
+  std::vector<PlacedMedium> placedMedia; ///< that do not fill it
   NoisePlan noise;
   std::int32_t revolution = 0; ///< of the sensor; each has noise of its own
   ModelNeeds needs;

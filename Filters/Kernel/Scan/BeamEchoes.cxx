@@ -154,7 +154,8 @@ BeamEchoes::BeamEchoes(const ScanSetup& setup, BeamLighting& lighting, BeamRecei
 void BeamEchoes::receive(
   std::uint64_t beam, LitBeam* keep, std::vector<Echo>& echoes, BeamReport& report)
 {
-  this->Receiver.receive(beam, this->Lighting.units().units(), this->Lighting.radiance());
+  this->Receiver.receive(
+    beam, this->Lighting.units().units(), this->Lighting.radiance(), &this->Lighting.air());
   const auto echoOf = [&](const Return& ret)
   {
     LitBeam::KnownReturn known = this->unitsOf(ret);
@@ -172,7 +173,10 @@ void BeamEchoes::receive(
 bool BeamEchoes::receiveAgain(
   std::uint64_t beam, const LitBeam& known, std::vector<Echo>& echoes, BeamReport& report)
 {
-  this->Receiver.receive(beam, known.units, known.radiance);
+  BeamAir& air = this->Lighting.air();
+  air.beginEverywhere();
+  air.setOpen(known.firstTaken, known.open);
+  this->Receiver.receive(beam, known.units, known.radiance, &air);
   const auto isKnown = [&](const Return& ret) { return !ret.hasLight || this->find(known, ret); };
   const std::vector<Return>& returns = this->Receiver.returns();
   const Return* strongest = this->Receiver.strongest();
@@ -203,7 +207,11 @@ void BeamEchoes::finish(
     {
       echo = echoOf(ret);
     }
-    else if (ret.air > 0.5 * ret.returnEnergy)
+    if (ret.leaves > 0.0)
+    {
+      this->addLeaves(ret, echo);
+    }
+    if (!ret.hasLight && ret.air > std::max(0.5 * ret.returnEnergy, ret.leaves))
     {
       echo.objectId = ObjectOfAir;
       echo.labelShare = std::min(1.0, ret.air / ret.returnEnergy);
@@ -236,6 +244,23 @@ void BeamEchoes::finish(
   report.status = strongest->energyReceived >= this->Setup.sensor.upperEnergyLimit
     ? BeamStatus::Saturated
     : BeamStatus::Echo;
+}
+
+/// Take what leaves return into the range of an echo of a surface, and into its label.
+void BeamEchoes::addLeaves(const Return& ret, Echo& echo) const
+{
+  const double share = std::clamp(ret.leaves / ret.returnEnergy, 0.0, 1.0);
+  if (ret.hasLight)
+  {
+    echo.range += share * (ret.rangeOfLeaves - echo.range);
+    echo.labelShare *= 1.0 - share;
+  }
+  if (share > (ret.hasLight ? echo.labelShare : 0.5))
+  {
+    echo.objectId = ret.medium;
+    echo.materialId = -1;
+    echo.labelShare = share;
+  }
 }
 
 /// What is known of a return; null: nothing.

@@ -136,6 +136,7 @@ private:
   template <class F>
   void finish(F echoOf, bool beyondGate, bool meets, std::vector<Echo>& echoes, BeamReport& report);
   Echo echoOfLight(const Return& ret);
+  void addLeaves(const Return& ret, Echo& echo) const;
   LitBeam::KnownReturn unitsOf(const Return& ret) const;
   const LitBeam::KnownReturn* find(const LitBeam& known, const Return& ret) const;
 

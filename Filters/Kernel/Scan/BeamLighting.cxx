@@ -19,6 +19,7 @@ BeamLighting::BeamLighting(const ScanSetup& setup, const ScanBeams& beams, ScanB
   , Secondary(setup)
   , Quadrature(setup)
   , Units(setup.sensor.samplingInterval, setup.sensor.pulseWidth, setup.sensor.rangeGate)
+  , Air(setup.sensor, setup.settings.attenuationCoefficient, setup.media, setup.placedMedia)
 {
 }
 
@@ -30,6 +31,7 @@ bool BeamLighting::light(std::size_t beam, BeamTrace& trace)
   this->Energies.clear();
   this->Units.clear();
   this->Radiance = this->Setup.sensor.backgroundRadiance;
+  this->beginAir(beam);
   if (!this->placeSamples(beam, trace))
   {
     return false;
@@ -40,7 +42,7 @@ bool BeamLighting::light(std::size_t beam, BeamTrace& trace)
   }
   if (!this->Lit)
   {
-    return this->Receiver.mayAlarm();
+    return this->Receiver.mayAlarm() || this->Air.returnsLight();
   }
   this->OfLit.measure(this->Setup, *this->Lit);
   const double most = this->Setup.sensor.pulseEnergy *
@@ -94,8 +96,44 @@ bool BeamLighting::placeNodes(std::size_t beam)
   return true;
 }
 
+/// Begin the air along the beam.
+void BeamLighting::beginAir(std::size_t beam)
+{
+  if (!this->Setup.placedMedia.empty())
+  {
+    this->Air.begin(this->Block.frameOf(beam), this->Beams.timeOf(beam));
+  }
+  else
+  {
+    this->Air.beginEverywhere();
+  }
+}
+
+/// Weaken direct echoes by media that do not fill the scene. @return their sum, J
+double BeamLighting::passMedia(double sum)
+{
+  if (!this->Air.isLocal())
+  {
+    return sum;
+  }
+  const BeamSamples& samples = *this->Lit;
+  sum = 0.0;
+  for (std::size_t i = 0; i < samples.size(); ++i)
+  {
+    this->Energies[i] *=
+      this->Air.transmission(samples.range[i], samples.columns.empty() ? 0 : samples.columns[i]);
+    sum += this->Energies[i];
+  }
+  return sum;
+}
+
 void BeamLighting::fillUnits()
 {
+  if (this->Receiver.air().any() || this->Air.isLocal())
+  {
+    this->Air.take({ this->Lit->range.data(), this->Lit->weight.data(),
+      this->Lit->columns.empty() ? nullptr : this->Lit->columns.data(), this->Lit->size() });
+  }
   this->Units.add(this->Lit->range.data(), this->Energies.data(), this->Energies.size());
   for (const SecondaryPath& path : this->Paths)
   {
@@ -180,6 +218,10 @@ void BeamLighting::collectPaths(std::size_t beam, BeamTrace& trace)
     traced = true;
     return this->Block.tracerOf(beam);
   };
+  if (this->Air.isLocal())
+  {
+    paths.air = &this->Air;
+  }
   if (byRegions)
   {
     paths.regions = std::ref(regions);
@@ -206,7 +248,8 @@ bool BeamLighting::mayBePerceived(double most, double ofPaths)
   {
     return false;
   }
-  const double sum = directEnergies(this->Setup, samples, this->OfLit, this->Energies);
+  const double sum =
+    this->passMedia(directEnergies(this->Setup, samples, this->OfLit, this->Energies));
   if (drops)
   {
     if (this->raysAreLit()) // nodes of an integral are not paths
@@ -224,7 +267,7 @@ bool BeamLighting::isSkipped(double most, double farthest, double nearest)
 {
   // The report says what arrives beyond the gate.
   const bool perceivable = this->LightsAll || this->Receiver.mayAlarm() ||
-    !(most < SurelyBelow * this->Setup.sensor.lowerEnergyLimit) ||
+    this->Air.returnsLight() || !(most < SurelyBelow * this->Setup.sensor.lowerEnergyLimit) ||
     !(this->Units.lastUnitOf(farthest) < static_cast<double>(this->Units.gateUnits()));
   if (!perceivable)
   {

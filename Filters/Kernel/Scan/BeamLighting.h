@@ -25,6 +25,7 @@
 #ifndef avianlidar_BeamLighting_h
 #define avianlidar_BeamLighting_h
 
+#include "BeamAir.h"
 #include "BeamTrace.h"
 #include "PolygonQuadrature.h"
 #include "RangeUnits.h"
@@ -66,6 +67,8 @@ public:
   double errorOf(std::int64_t unit, std::uint32_t paths);
   /// True if a direct echo arrives beyond the gate, and nothing inside.
   bool isBeyondGate() const;
+  /// The air along it.
+  BeamAir& air() { return this->Air; }
   /// Radiance that the beam looks at, W/(m2 sr nm) (Background.h).
   double radiance() const { return this->Radiance; }
   double lost() const { return this->Lost; }              ///< J, see BeamReport
@@ -82,6 +85,8 @@ private:
   void reflectAgain(std::size_t beam, BeamTrace& trace, double most);
   void collectPaths(std::size_t beam, BeamTrace& trace);
   void dropFaintPaths();
+  void beginAir(std::size_t beam);
+  double passMedia(double sum);
   void fillUnits();
   double errorOfMirrors(const RangeShares& shares) const;
   double errorOfRays(const RangeShares& shares, bool filled);
@@ -95,6 +100,7 @@ private:
   SecondaryReflection Secondary;
   PolygonQuadrature Quadrature;
   RangeUnitAccumulator Units;
+  BeamAir Air;
   bool LightsAll = false;
 
   // The beam being lit.

@@ -8,7 +8,7 @@ namespace avianlidar
 BeamSimulator::BeamSimulator(const ScanSetup& setup, const ScanBeams& beams, bool keepsLight,
   BeamSampler& sampler, std::function<bool()> wanted)
   : Beams(beams)
-  , KeepsLight(keepsLight && (setup.noise.active || setup.movers))
+  , KeepsLight(keepsLight && (setup.noise.active || setup.movers) && setup.placedMedia.empty())
   , Block(setup, beams, sampler)
   , Receiver(setup.sensor, setup.noise, setup.settings.seed, setup.settings.returnMode,
       setup.revolution, wanted,
@@ -49,6 +49,8 @@ void BeamSimulator::lightBeam(
     trace.lit = std::make_unique<LitBeam>();
     trace.lit->units = this->Lighting.units().units();
     trace.lit->radiance = this->Lighting.radiance();
+    trace.lit->open = this->Lighting.air().open();
+    trace.lit->firstTaken = this->Lighting.air().firstTaken();
     trace.lit->beyondGate = this->Lighting.isBeyondGate();
     trace.lit->lost = this->Lighting.lost();
     trace.lit->skipped = this->Lighting.skipped();

@@ -56,8 +56,11 @@ public:
   /// at lighting().
   void lightAll() { this->Lighting.lightAll(); }
 
-  /// What the air sends back.
-  const AirEcho& air() const { return this->Receiver.air(); }
+  /// What the air of the beam lit last sends back in a unit, of what a threshold may follow, J.
+  double followedIn(std::int64_t unit)
+  {
+    return this->Receiver.followedIn(this->Lighting.air(), unit);
+  }
 
   /// What the beam lit last received.
   const BeamLighting& lighting() const { return this->Lighting; }

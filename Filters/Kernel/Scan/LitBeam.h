@@ -38,6 +38,8 @@ struct LitBeam
   };
   std::vector<RangeUnit> units;
   std::vector<KnownReturn> returns;
+  std::vector<double> open; ///< see BeamAir::open()
+  std::int64_t firstTaken = 0;
   double radiance = 0.0;     ///< see BeamLighting::radiance()
   bool beyondGate = false;   ///< see BeamLighting::isBeyondGate()
   double lost = 0.0;         ///< J, see BeamReport
@@ -46,7 +48,7 @@ struct LitBeam
   std::size_t bytes() const
   {
     return sizeof(LitBeam) + this->units.capacity() * sizeof(RangeUnit) +
-      this->returns.capacity() * sizeof(KnownReturn);
+      this->returns.capacity() * sizeof(KnownReturn) + this->open.capacity() * sizeof(double);
   }
 };
 

@@ -292,7 +292,7 @@ MoverSight MovedBeams::sightOf(
   {
     sight.energy = std::max(sight.energy, unit.energy);
     missed *= 1.0 -
-      perceptionProbability(sensor, receiver, unit.energy, this->Simulator->air().mean(unit.index));
+      perceptionProbability(sensor, receiver, unit.energy, this->Simulator->followedIn(unit.index));
   }
   sight.probability = 1.0 - missed;
   return sight;
@@ -308,6 +308,7 @@ void MovedBeams::simulate(
   this->One.ids[0] = this->Beams.ids[beam];
   this->One.origins[0] = this->Beams.origins[beam];
   this->One.directions[0] = this->Beams.directions[beam];
+  this->One.times.assign(1, this->Beams.timeOf(beam));
   this->Trace[0] = BeamTrace{};
   if (!this->Simulator)
   {

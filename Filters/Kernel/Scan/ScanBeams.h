@@ -29,9 +29,10 @@ struct ScanBeams
   std::vector<std::uint64_t> ids; ///< unique; key of the beam's random numbers
   std::vector<Vec3> origins;      ///< m, coordinates of at most MaximumCoordinate
   std::vector<Vec3> directions;   ///< finite, not zero; need not be normalised
-  std::vector<double> times;      ///< s, when each is fired; used, and needed, with movers alone
-  std::uint64_t checksum = 0;     ///< checksumOf(); 0: not computed yet
+  std::vector<double> times;  ///< s, when each is fired; used, and needed, where something moves
+  std::uint64_t checksum = 0; ///< checksumOf(); 0: not computed yet
   std::size_t size() const { return this->ids.size(); }
+  double timeOf(std::size_t beam) const { return this->times.empty() ? 0.0 : this->times[beam]; }
 };
 
 /// Empty if a beam can start there; otherwise what is wrong and what was expected.

@@ -169,7 +169,8 @@ bool ScanBlock::end()
   const BeamFrame& frame = this->frameOf(beam);
   std::unique_ptr<VisiblePolygons> polygons;
   const SeenByBeam seen = this->Polygons.find(polygons);
-  if (seen == SeenByBeam::Polygons && this->Quadrature.fits(*polygons))
+  if (seen == SeenByBeam::Polygons && !this->meetsBorders(frame) &&
+    this->Quadrature.fits(*polygons))
   {
     trace.view = std::move(polygons);
     return true;
@@ -191,6 +192,19 @@ bool ScanBlock::end()
   }
   return seeCells(this->Cells.find(this->Beams.ids[beam], frame, candidates), trace) &&
     this->Setup.settings.numberOfReflections == 1;
+}
+
+/// True if a bounded medium at rest may lie in part of a beam: samples of polygons do not say in
+/// which part of the beam they lie.
+bool ScanBlock::meetsBorders(const BeamFrame& frame) const
+{
+  const std::vector<PlacedMedium>& media = this->Setup.placedMedia;
+  return std::any_of(media.begin(), media.end(),
+    [&](const PlacedMedium& placed)
+    {
+      return placed.volume.isBounded() && placed.volume.velocity == Vec3(0.0) &&
+        mayMeet(placed.volume, frame, this->Setup.sensor.rangeGate, 0.0);
+    });
 }
 
 const BeamFrame& ScanBlock::frameOf(std::size_t beam)
@@ -231,6 +245,14 @@ void ScanBlock::makeHits(
   this->Finder.find(*this->Setup.tree->mesh, this->frameOf(beam), this->raysOf(beam), triangles,
     *trace.hits, this->Geometry);
   this->GeometryBeam = beam;
+  if (!this->Setup.placedMedia.empty())
+  {
+    const BeamRays& rays = this->raysOf(beam);
+    for (const std::uint32_t ray : trace.hits->ray)
+    {
+      trace.hits->columns.push_back(BeamAir::columnAt(rays.x[ray], rays.y[ray]));
+    }
+  }
 }
 
 const BeamSamples& ScanBlock::pathStartsOf(std::size_t beam, BeamTrace& trace)

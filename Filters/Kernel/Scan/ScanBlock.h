@@ -83,6 +83,7 @@ private:
   static constexpr std::size_t NoBeam = static_cast<std::size_t>(-1);
 
   Slot& slotOf(std::size_t beam) { return this->Slots[beam - this->First]; }
+  bool meetsBorders(const BeamFrame& frame) const;
   bool lacksStarts(const BeamTrace& trace) const;
   void traceCells();
   void traceRays(std::size_t beam);

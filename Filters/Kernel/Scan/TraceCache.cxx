@@ -157,8 +157,21 @@ std::uint64_t traceKey(const ScanSetup& setup)
     static_cast<double>(s.sampling), static_cast<double>(s.raysPerBeam),
     static_cast<double>(s.seed), cells ? sensor.samplingInterval : 0.0,
     cells ? sensor.pulseWidth : 0.0, cells ? sensor.rangeGate : 0.0 };
-  const std::uint64_t objects =
-    cells ? hashOf(setup.objectIds.data(), setup.objectIds.size() * sizeof(int), 0) : 0;
+  // Where media are; and that there are some.
+  std::vector<double> places;
+  for (const PlacedMedium& placed : setup.placedMedia)
+  {
+    const MediumVolume& volume = placed.volume;
+    const bool isStill = volume.isBounded() && volume.velocity == Vec3(0.0);
+    places.push_back(isStill ? 1.0 : 0.0);
+    if (isStill)
+    {
+      places.insert(
+        places.end(), { volume.centre.x, volume.centre.y, volume.centre.z, volume.radius() });
+    }
+  }
+  const std::uint64_t objects = hashOf(places.data(), places.size() * sizeof(double),
+    cells ? hashOf(setup.objectIds.data(), setup.objectIds.size() * sizeof(int), 0) : 0);
   return hashOf(
     numbers, sizeof(numbers), hashOf(&setup.tree->checksum, sizeof(setup.tree->checksum), objects));
 }

@@ -7,12 +7,13 @@
  * its extinction-to-backscatter ratio. Droplets of fog are so many that their number does not
  * matter. Drops of rain are few: their diameters are exponential, N(D) = N0 exp(-Lambda D), N0 =
  * 8000/(m3 mm), Lambda = 4.1 R^-0.21/mm, R the rain rate in mm/h, and each scatters as its
- * cross-section, twice its area.
+ * cross-section, twice its area. Leaves of a tree are few, too, and of one size. Drops are others
+ * in each scan, leaves as far as the wind moves them.
  *
  * Source: J. S. Marshall and W. McK. Palmer, The Distribution of Raindrops with Size, Journal of
  * Meteorology 5, 1948; geometric optics.
  * Differs: the paper's air only attenuates.
- * Valid: single scattering; a medium fills the whole scene.
+ * Valid: single scattering. Where a medium is: MediumVolume.h.
  * Test: TestAirEcho.cxx.
  */
 #ifndef avianlidar_Medium_h
@@ -26,18 +27,26 @@ struct Medium
 {
   double extinction = 0.0;       ///< mu, 1/m, 0 to 1e30
   double backscatterRatio = 1.0; ///< S, sr, 1e-3 to 1e9
-  double drops = 0.0;            ///< 1/m^3, of exponential diameters; 0: beyond number
+  double drops = 0.0;            ///< or leaves, 1/m^3; 0: beyond number
+  /// Mean square of a drop's energy over the square of its mean: SquareOfDrops, or 1 of leaves.
+  double squareOfDrops = 6.0;
+  double renewed = 1.0;   ///< share of the drops that are others in the next scan, 0 to 1
+  bool isFollowed = true; ///< by a threshold that follows the air; trees are not
+  int objectId = -2;      ///< of what it returns, ObjectOfAir for air
+  /// Light comes back through the gaps that let it in, as between leaves, which are larger than the
+  /// paths lie apart: it is weakened once, not twice.
+  bool sharesGaps = false;
 
   /// mu/S, 1/(m sr).
   double backscatter() const { return this->extinction / this->backscatterRatio; }
 };
 
-/// Squared energy of a drop, on average, over the square of its mean: E[D^4]/E[D^2]^2 of
-/// exponential diameters.
+/// E[D^4]/E[D^2]^2 of exponential diameters.
 constexpr double SquareOfDrops = 6.0;
 
-/// Rain of so many mm/h, above 0. @param backscatterRatio sr
-Medium rainOf(double rate, double backscatterRatio);
+/// Rain of so many mm/h, above 0. @param backscatterRatio sr @param perVolume N0, 1/(m^3 mm) @param
+/// fall Lambda at 1 mm/h, 1/mm
+Medium rainOf(double rate, double backscatterRatio, double perVolume = 8000.0, double fall = 4.1);
 
 /// Largest rain rate, mm/h; the law of Marshall and Palmer is from rates up to 23.
 constexpr double MaximumRainRate = 500.0;

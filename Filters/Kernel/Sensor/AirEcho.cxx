@@ -5,7 +5,6 @@
 #include "Random.h"
 #include "RangeUnits.h"
 
-#include <boost/math/quadrature/gauss.hpp>
 #include <boost/math/special_functions/gamma.hpp>
 
 #include <algorithm>
@@ -16,36 +15,7 @@ namespace avianlidar
 {
 namespace
 {
-constexpr double MostUnits = 1e6;
-
-/// Panels of a rule grow by this, and none is longer than so many lengths of extinction, there and
-/// back.
-constexpr double Growth = 1.5;
-constexpr double LongestPanel = 2.0;
-
-/// Light that has been weakened so far is gone, as an exponent.
-constexpr double NothingLeft = 700.0;
-
-/// Integral over the ranges from one to another, m, of what the aperture gathers. @param reach m:
-/// nearer, it gathers half of all
-double gathered(const Sensor& sensor, double attenuation, double from, double to, double reach)
-{
-  const auto at = [&](double r)
-  {
-    return sensor.nearRangeShare(r) * std::min(sensor.receiverAperture / (r * r), 2.0 * Pi) *
-      std::exp(-2.0 * attenuation * r);
-  };
-  const double longest = LongestPanel / std::max(1e-300, 2.0 * attenuation);
-  double sum = 0.0;
-  for (double begin = from; begin < to && 2.0 * attenuation * begin < NothingLeft;)
-  {
-    double end = begin < reach ? reach : Growth * begin;
-    end = std::min({ end, begin + longest, to });
-    sum += boost::math::quadrature::gauss<double, 10>::integrate(at, begin, end);
-    begin = end;
-  }
-  return sum;
-}
+constexpr std::uint64_t DrawsOfUnit = 256;
 }
 
 AirEcho::AirEcho(const Sensor& sensor, const std::vector<Medium>& media, double attenuation)
@@ -65,14 +35,18 @@ AirEcho::AirEcho(const Sensor& sensor, const std::vector<Medium>& media, double 
     return;
   }
   this->OfDrops /= all;
-  const double reach = std::sqrt(sensor.receiverAperture / (2.0 * Pi));
+  const auto light = [&](double r)
+  {
+    return sensor.nearRangeShare(r) * std::min(sensor.receiverAperture / (r * r), 2.0 * Pi) *
+      std::exp(-2.0 * attenuation * r);
+  };
   const double count = std::min(
     MostUnits, static_cast<double>(unitsInsideGate(sensor.samplingInterval, sensor.rangeGate)));
   for (double unit = 0.0; unit < count; unit += 1.0)
   {
     const double energy = sensor.pulseEnergy * all *
-      gathered(
-        sensor, attenuation, unit * this->UnitLength, (unit + 1.0) * this->UnitLength, reach);
+      airIntegral(
+        sensor, unit * this->UnitLength, (unit + 1.0) * this->UnitLength, 2.0 * attenuation, light);
     if (!(energy > 0.0))
     {
       break;
@@ -105,37 +79,68 @@ void AirEcho::setLeast(std::int64_t unit, double least)
     mean > 0.0 && least > -mean ? 1.0 - gammaTail(shape, shape * (1.0 + least / mean)) : 0.0;
 }
 
-double AirEcho::beyondMean(
-  std::int32_t seed, std::uint64_t beam, std::int64_t unit, std::int32_t revolution, bool all) const
+double AirEcho::beyondMean(std::int32_t seed, std::uint64_t beam, std::int64_t unit,
+  std::int32_t revolution, bool all, double open) const
 {
-  const double mean = this->OfDrops * this->mean(unit);
-  const double drops = this->dropsIn(unit);
+  const double mean = open * this->OfDrops * this->mean(unit);
+  const double drops = open * this->dropsIn(unit);
   if (!(mean > 0.0))
   {
     return 0.0;
   }
-  constexpr std::uint64_t draws = 256; // of a unit
-  const auto first = draws * static_cast<std::uint64_t>(unit);
+  const auto number = static_cast<std::uint64_t>(unit);
+  if (!all && open == 1.0 && drops > FewDrops &&
+    uniformPair(seed, beam, DrawsOfUnit * number, RandomPurpose::Drops, revolution)[0] <
+      this->Quiet[static_cast<std::size_t>(unit)])
+  {
+    return -std::numeric_limits<double>::infinity();
+  }
+  return mean * dropsBeyondMean(seed, beam, number, revolution, drops, Medium{});
+}
+
+namespace
+{
+/// The drops of one scan.
+double drawnDrops(std::int32_t seed, std::uint64_t beam, std::uint64_t number,
+  std::int32_t revolution, double drops, double square)
+{
+  const std::uint64_t first = DrawsOfUnit * number;
   const auto u = uniformPair(seed, beam, first, RandomPurpose::Drops, revolution);
-  if (drops > FewDrops)
+  if (drops > AirEcho::FewDrops)
   {
     // Shape a, scale 1/a of the mean.
-    const double shape = drops / SquareOfDrops;
-    if (!all && u[0] < this->Quiet[static_cast<std::size_t>(unit)])
-    {
-      return -std::numeric_limits<double>::infinity();
-    }
-    return mean * (boost::math::gamma_p_inv(shape, u[0]) / shape - 1.0);
+    const double shape = drops / square;
+    return boost::math::gamma_p_inv(shape, u[0]) / shape - 1.0;
   }
-  const auto number = static_cast<std::uint64_t>(
-    std::min<double>(draws - 1, poissonQuantile(drops, u[0], 1.0 - u[0])));
+  const auto count = static_cast<std::uint64_t>(
+    std::min<double>(DrawsOfUnit - 1, poissonQuantile(drops, u[0], 1.0 - u[0])));
+  if (square == 1.0)
+  {
+    return static_cast<double>(count) / drops - 1.0;
+  }
   double squares = 0.0; // of diameters, over their mean
-  for (std::uint64_t k = 1; k <= number; ++k)
+  for (std::uint64_t k = 1; k <= count; ++k)
   {
     const double d =
       std::log(uniformPair(seed, beam, first + k, RandomPurpose::Drops, revolution)[0]);
     squares += 0.5 * d * d;
   }
-  return mean * (squares / drops - 1.0);
+  return squares / drops - 1.0;
+}
+}
+
+double dropsBeyondMean(std::int32_t seed, std::uint64_t beam, std::uint64_t number,
+  std::int32_t revolution, double drops, const Medium& medium)
+{
+  const auto draw = [&](std::int32_t scan, double share)
+  {
+    return share > 0.0 && drops > 0.0
+      ? share * drawnDrops(seed, beam, number, scan, share * drops, medium.squareOfDrops)
+      : 0.0;
+  };
+  // Those that stay are the same in every scan.
+  constexpr std::int32_t always = -1;
+  const double renewed = draw(revolution, medium.renewed);
+  return medium.renewed < 1.0 ? renewed + draw(always, 1.0 - medium.renewed) : renewed;
 }
 }

@@ -21,11 +21,46 @@
 #include "Medium.h"
 #include "Sensor.h"
 
+#include <boost/math/quadrature/gauss.hpp>
+
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <vector>
 
 namespace avianlidar
 {
+/// Integral of f over the ranges from one to another, m, which falls no faster than 1/r^2, but for
+/// the range up to which an aperture gathers half of all, and exp(-decay r). @param decay 1/m
+template <class F>
+double airIntegral(const Sensor& sensor, double from, double to, double decay, F f)
+{
+  // Panels grow by this, and none is longer than so many lengths of extinction, there and back.
+  constexpr double growth = 1.5;
+  constexpr double longestPanel = 2.0;
+  constexpr double nothingLeft = 700.0; // as an exponent
+  const double reach = std::sqrt(sensor.receiverAperture / (2.0 * Pi));
+  const double longest = longestPanel / std::max(1e-300, decay);
+  double sum = 0.0;
+  for (double begin = from; begin < to && decay * begin < nothingLeft;)
+  {
+    const double end = std::min({ begin < reach ? reach : growth * begin, begin + longest, to });
+    // Where a panel is short against its range a rule of few points does as well.
+    constexpr double isShort = 0.05;
+    sum += end - begin < isShort * std::min(begin, longest)
+      ? boost::math::quadrature::gauss<double, 3>::integrate(f, begin, end)
+      : boost::math::quadrature::gauss<double, 10>::integrate(f, begin, end);
+    begin = end;
+  }
+  return sum;
+}
+
+/// What drops or leaves return beyond their mean, over that: a compound Poisson law. @param drops
+/// on average @param number of the unit, or one that no other has @param medium whose squareOfDrops
+/// and `renewed` count
+double dropsBeyondMean(std::int32_t seed, std::uint64_t beam, std::uint64_t number,
+  std::int32_t revolution, double drops, const Medium& medium);
+
 class AirEcho
 {
 public:
@@ -54,12 +89,15 @@ public:
   void setLeast(std::int64_t unit, double least);
 
   /// What the drops of a unit return beyond their mean, J: the same for the same numbers. @param
-  /// all false: negative infinity may stand for less than what setLeast() was told
+  /// all false: negative infinity may stand for less than what setLeast() was told @param open
+  /// share of the pulse that no nearer surface has met
   double beyondMean(std::int32_t seed, std::uint64_t beam, std::int64_t unit,
-    std::int32_t revolution, bool all) const;
+    std::int32_t revolution, bool all, double open = 1.0) const;
 
   /// Up to so many drops in a unit, on average, are drawn one by one.
   static constexpr double FewDrops = 40.0;
+
+  static constexpr double MostUnits = 1e6;
 
 private:
   std::vector<double> Means; ///< of units, J

@@ -11,6 +11,12 @@
 
 namespace avianlidar
 {
+namespace
+{
+/// Of a unit's variance: from there on drops are drawn.
+constexpr double DropsCount = 0.01;
+}
+
 double perceivedEnergy(double received, double lower, double upper)
 {
   return received > lower ? std::min(received, upper) : 0.0;
@@ -43,12 +49,11 @@ BeamReceiver::BeamReceiver(const Sensor& sensor, const NoisePlan& noise, std::in
 /// brighter background than the sensor's raises what is needed.
 void BeamReceiver::planAir()
 {
-  constexpr double counts = 0.01; // of a unit's variance: from there on drops are drawn
   for (std::int64_t unit = 0; unit < this->Air.units(); ++unit)
   {
     const double mean = this->Air.mean(unit);
     const double variance = this->Plan.darkVariance + this->Plan.varianceOfEnergy * mean;
-    const bool hasDrops = this->Plan.active && this->Air.variance(unit) > counts * variance;
+    const bool hasDrops = this->Plan.active && this->Air.variance(unit) > DropsCount * variance;
     if (hasDrops || (!this->FollowsAir && mean > 1e-6 * this->Lower))
     {
       this->AirLooked = unit + 1;
@@ -71,8 +76,10 @@ double BeamReceiver::lowerIn(double air) const
     : this->Lower;
 }
 
-void BeamReceiver::receive(std::uint64_t beam, const std::vector<RangeUnit>& units, double radiance)
+void BeamReceiver::receive(
+  std::uint64_t beam, const std::vector<RangeUnit>& units, double radiance, BeamAir* along)
 {
+  this->Along = along;
   if (radiance != this->Radiance)
   {
     this->lookAt(radiance);
@@ -100,7 +107,8 @@ void BeamReceiver::lookAt(double radiance)
 void BeamReceiver::collectUnits(const std::vector<RangeUnit>& units)
 {
   this->Units.clear();
-  if (!this->mayAlarm())
+  const bool isLocal = this->Along && this->Along->isLocal();
+  if (!this->mayAlarm() && !isLocal)
   {
     this->Units.resize(units.size());
     ReceivedUnit* received = this->Units.data();
@@ -118,23 +126,74 @@ void BeamReceiver::collectUnits(const std::vector<RangeUnit>& units)
   const auto& alarms = this->Noise.alarms();
   auto alarm = alarms.begin();
   auto lit = units.begin();
-  std::int64_t next = 0; // of those in which the air alone may be perceived
   constexpr std::int64_t none = std::numeric_limits<std::int64_t>::max();
-  while (next < this->AirLooked || lit != units.end() || alarm != alarms.end())
+  const auto lookedFrom = [&](std::int64_t unit) {
+    return isLocal ? this->Along->nextLooked(unit) : unit < this->AirLooked ? unit : none;
+  };
+  std::int64_t next = lookedFrom(0); // of those in which the air alone may be perceived
+  while (next < none || lit != units.end() || alarm != alarms.end())
   {
-    const std::int64_t index = std::min({ next < this->AirLooked ? next : none,
-      lit != units.end() ? lit->index : none, alarm != alarms.end() ? *alarm : none });
+    const std::int64_t index = std::min(
+      { next, lit != units.end() ? lit->index : none, alarm != alarms.end() ? *alarm : none });
     const bool isAlarm = alarm != alarms.end() && *alarm == index;
     const bool isLit = lit != units.end() && lit->index == index;
     const double light = isLit ? lit->energy : 0.0;
-    if (isAlarm || this->Air.mean(index) > 0.0 || !(light < this->Plan.faintLight) ||
+    if (isAlarm || isLocal || this->Air.mean(index) > 0.0 || !(light < this->Plan.faintLight) ||
       this->Noise.isRare(index))
     {
       this->addUnit(index, light, isLit ? lit->paths : 0, isAlarm);
     }
     alarm += isAlarm ? 1 : 0;
     lit += isLit ? 1 : 0;
-    next = std::max(next, index + 1);
+    next = next == none ? none : lookedFrom(std::max(next, index + 1));
+  }
+}
+
+/// The mean, J, of the air's light that a threshold may follow.
+double BeamReceiver::followedNow(std::int64_t unit)
+{
+  return this->Along ? this->followedIn(*this->Along, unit) : this->Air.mean(unit);
+}
+
+/// What media that do not fill the scene, and what is with them, return in a unit. @param beyond
+/// the mean, J, of those that a threshold follows @param received gets the light of the others
+void BeamReceiver::drawLocal(std::int64_t unit, double& beyond, ReceivedUnit& received)
+{
+  double all = 0.0;
+  const std::vector<BeamAir::Share>& shares = this->Along->sharesOf(unit);
+  for (const BeamAir::Share& share : shares)
+  {
+    all += share.mean;
+  }
+  const double variance = this->Plan.darkVariance + this->Plan.varianceOfEnergy * all;
+  double most = 0.0;
+  for (const BeamAir::Share& share : shares)
+  {
+    const Medium& medium = this->Along->mediumAt(share.medium);
+    const double ofDrops =
+      share.drops > 0.0 ? share.mean * share.mean * medium.squareOfDrops / share.drops : 0.0;
+    double energy = share.mean;
+    if (this->Plan.active && ofDrops > DropsCount * variance)
+    {
+      const auto number = static_cast<std::uint64_t>(unit) +
+        static_cast<std::uint64_t>(AirEcho::MostUnits) * share.medium;
+      energy = std::max(0.0,
+        share.mean *
+          (1.0 +
+            dropsBeyondMean(
+              this->Seed, this->Beam, number, this->Revolution, share.drops, medium)));
+    }
+    if (medium.isFollowed)
+    {
+      beyond += energy - share.mean;
+      continue;
+    }
+    received.leaves += energy;
+    if (energy > most)
+    {
+      most = energy;
+      received.medium = medium.objectId;
+    }
   }
 }
 
@@ -142,12 +201,19 @@ void BeamReceiver::collectUnits(const std::vector<RangeUnit>& units)
 void BeamReceiver::addUnit(std::int64_t index, double light, std::uint32_t paths, bool alarm)
 {
   const bool gaussian = this->Plan.gaussian;
-  const double mean = this->Air.mean(index);
+  const double mean = this->followedNow(index);
   double beyond = 0.0;
-  if (this->Plan.active && index < this->AirLooked)
+  ReceivedUnit unit;
+  if (this->Along && this->Along->isLocal())
   {
+    this->drawLocal(index, beyond, unit);
+    light += unit.leaves;
+  }
+  else if (this->Plan.active && index < this->AirLooked)
+  {
+    const double open = this->Along ? this->Along->open(index) : 1.0;
     const auto drawn = [&](bool all)
-    { return this->Air.beyondMean(this->Seed, this->Beam, index, this->Revolution, all); };
+    { return this->Air.beyondMean(this->Seed, this->Beam, index, this->Revolution, all, open); };
     beyond = drawn(light > 0.0 || alarm || !gaussian);
     if (!std::isfinite(beyond))
     {
@@ -168,8 +234,14 @@ void BeamReceiver::addUnit(std::int64_t index, double light, std::uint32_t paths
     return;
   }
   const double noise = this->Plan.active ? this->noiseOf(index, all) : 0.0;
-  this->Units.push_back(
-    { index, all - off + noise, noise, paths, all - light - off, lower, this->Upper - off });
+  unit.index = index;
+  unit.energy = all - off + noise;
+  unit.noise = noise;
+  unit.paths = paths;
+  unit.air = all - light - off;
+  unit.lower = lower;
+  unit.upper = this->Upper - off;
+  this->Units.push_back(unit);
 }
 
 double BeamReceiver::noiseOf(std::int64_t unit, double light)
@@ -255,6 +327,13 @@ void BeamReceiver::formReturns()
     run.lastUnit = u + 1;
     run.returnEnergy += unit.energy;
     run.air += unit.air;
+    if (unit.leaves > 0.0)
+    {
+      const double at = static_cast<double>(unit.index) + this->Noise.place(unit.index);
+      run.rangeOfLeaves = (run.leaves * run.rangeOfLeaves + unit.leaves * at * this->UnitLength) /
+        (run.leaves + unit.leaves);
+      run.leaves += unit.leaves;
+    }
     run.hasLight = run.hasLight || unit.paths > 0;
     if (unit.energy > this->Units[run.strongestUnit].energy)
     {
@@ -266,6 +345,13 @@ void BeamReceiver::formReturns()
     Return& run = this->Returns[r];
     const ReceivedUnit& strongest = this->Units[run.strongestUnit];
     run.energyReceived = strongest.energy;
+    double most = 0.0;
+    for (std::size_t u = run.firstUnit; u < run.lastUnit; ++u)
+    {
+      const ReceivedUnit& unit = this->Units[u];
+      run.medium = unit.leaves > most ? unit.medium : run.medium;
+      most = std::max(most, unit.leaves);
+    }
     run.energy = perceivedEnergy(run.energyReceived, strongest.lower, strongest.upper);
     if (single || !run.hasLight)
     {

@@ -13,7 +13,9 @@
  * follows the air takes off its mean, n_air, and lies as many deviations of the noise above it as
  * without: n_T (1 + F n_air/sigma0^2)^(1/2). So every unit has the same probability of a false
  * alarm, and what is left are echoes of surfaces and what drops return beyond their mean. A fixed
- * one takes nothing off. Either way all light counts for saturation.
+ * one takes nothing off. Either way all light counts for saturation. Leaves of trees are not
+ * followed: what they return is light as that of surfaces. Behind a surface there is as much less
+ * of the air's light as the surface has met of the pulse.
  *
  * Source: paper, Sec. 2.4, Eq. 10-12.
  * Differs: the paper's literal reading, one point per perceived range unit at its centre, is
@@ -26,6 +28,7 @@
 #define avianlidar_Receiver_h
 
 #include "AirEcho.h"
+#include "BeamAir.h"
 #include "Noise.h"
 #include "PhotonReceiver.h"
 #include "RangeErrors.h"
@@ -61,6 +64,8 @@ struct ReceivedUnit
   double noise = 0.0;      ///< Qn, J
   std::uint32_t paths = 0; ///< with a share in it; 0 for a false alarm, or the air alone
   double air = 0.0;        ///< J of the energy that the air sent back
+  double leaves = 0.0;     ///< J of the energy from media that no threshold follows
+  int medium = -1;         ///< object of the one of these that returns most
   double lower = 0.0;      ///< limits of this unit, J
   double upper = 0.0;
 };
@@ -75,6 +80,9 @@ struct Return
   double returnEnergy = 0.0;     ///< sum of Qrec over the run, J
   bool hasLight = false;         ///< a path has a share in it, not noise or air alone
   double air = 0.0;              ///< sum over the run of what the air sent back, J
+  double leaves = 0.0;           ///< the same of media that no threshold follows
+  int medium = -1;               ///< object of the one of these in the unit with most of it
+  double rangeOfLeaves = 0.0;    ///< m, mean of the places of their light
   double range = 0.0;            ///< m; see rangeOf()
   /// In the beam, from 1, nearest first, counted before the choice of ReturnMode.
   int returnNumber = 1;
@@ -92,8 +100,9 @@ public:
     std::int32_t revolution = 0, std::function<bool()> wanted = {}, AirEcho air = {});
 
   /// Receive a beam. @param units in which light arrives, ascending @param radiance that the beam
-  /// looks at, W/(m2 sr nm)
-  void receive(std::uint64_t beam, const std::vector<RangeUnit>& units, double radiance);
+  /// looks at, W/(m2 sr nm) @param along the air of that beam; null: nothing takes of the air
+  void receive(std::uint64_t beam, const std::vector<RangeUnit>& units, double radiance,
+    BeamAir* along = nullptr);
 
   /// The radiance that the last beam looked at, W/(m2 sr nm).
   double radiance() const { return this->Radiance; }
@@ -112,6 +121,12 @@ public:
   /// What the air sends back.
   const AirEcho& air() const { return this->Air; }
 
+  /// The mean, J, of the air's light in a unit of a beam that a threshold may follow.
+  double followedIn(BeamAir& along, std::int64_t unit) const
+  {
+    return along.followed(this->Air, unit);
+  }
+
   /// Units with paths or false alarms, ascending, perceived or not; without those whose light is
   /// faint and whose noise is not rare.
   const std::vector<ReceivedUnit>& units() const { return this->Units; }
@@ -126,6 +141,8 @@ private:
   void lookAt(double radiance);
   void planAir();
   double lowerIn(double air) const;
+  double followedNow(std::int64_t unit);
+  void drawLocal(std::int64_t unit, double& beyond, ReceivedUnit& received);
   void collectUnits(const std::vector<RangeUnit>& units);
   void addUnit(std::int64_t index, double light, std::uint32_t paths, bool alarm);
   double noiseOf(std::int64_t unit, double light);
@@ -146,6 +163,7 @@ private:
   PhotonReceiver Photons;
   std::int64_t AirLooked = 0; ///< units in which the air alone may be perceived
   std::uint64_t Beam = 0;
+  BeamAir* Along = nullptr; ///< of that beam
   std::int32_t Seed;
   std::int32_t Revolution;
   ReturnMode Mode;

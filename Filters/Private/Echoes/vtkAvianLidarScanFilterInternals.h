@@ -32,8 +32,11 @@ struct vtkAvianLidarScanFilter::vtkInternals
   avianlidar::TraceCache Cache;
   vtkAvianLidarBeams Beams;
   vtkAvianLidarSurfaces Surfaces;
-  vtkAvianLidarSurfaceExchange Exchange; ///< of surfaces between ranks
-  avianlidar::SceneSummary Summary;      ///< of them
+  vtkAvianLidarSurfaceExchange Exchange;       ///< of surfaces between ranks
+  std::vector<avianlidar::PlacedMedium> Media; ///< of the surfaces
+  std::vector<std::string> MediaOf;            ///< their texts
+  double MediaFor = 0.0;                       ///< Hz, of the laser
+  avianlidar::SceneSummary Summary;            ///< of them
   std::shared_ptr<const avianlidar::CollisionTree> OwnTree;
   vtkAvianLidarContent::State State; ///< of the surfaces merged last
   const void* MergedBy = nullptr;    ///< ranks that they were of; null: alone

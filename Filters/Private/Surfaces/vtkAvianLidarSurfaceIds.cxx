@@ -2,6 +2,7 @@
 #include "vtkAvianLidarSurfaceIds.h"
 
 #include "vtkAvianLidarMaterials.h"
+#include "vtkAvianLidarMedia.h"
 #include "vtkAvianLidarNames.h"
 
 #include "vtkCellData.h"
@@ -43,7 +44,7 @@ bool IdsAreUsable(const std::vector<Leaf>& leaves)
   for (const Leaf& leaf : leaves)
   {
     vtkDataArray* ids = leaf.data->GetCellData()->GetArray(vtkAvianLidarArrays::ObjectId.name);
-    if (leaf.data->GetNumberOfCells() == 0)
+    if (leaf.data->GetNumberOfCells() == 0 || vtkAvianLidarMedia::IsMedium(leaf.data))
     {
       continue;
     }
@@ -114,6 +115,17 @@ int vtkAvianLidarSurfaceIds::AddObject(
   this->SetClass(global,
     TextOfObject(poly->GetFieldData(), vtkAvianLidarArrays::ObjectClasses.name, local, rank));
   return global;
+}
+
+int vtkAvianLidarSurfaceIds::AddMedium(const std::string& name, int wanted)
+{
+  const int id =
+    this->KeepObjectIds && wanted >= 0 ? wanted : static_cast<int>(this->ObjectNames.size());
+  this->ObjectNames.resize(std::max(this->ObjectNames.size(), static_cast<std::size_t>(id) + 1));
+  this->ObjectNames[id] = name;
+  this->ObjectClasses.resize(this->ObjectNames.size());
+  this->ObjectClasses[id] = "vegetation";
+  return id;
 }
 
 void vtkAvianLidarSurfaceIds::SetClass(int global, const std::string& objectClass)

@@ -38,6 +38,10 @@ public:
   int AddObject(
     const vtkAvianLidarSurfaceLeaf& leaf, vtkPolyData* poly, int local, std::size_t rank);
 
+  /// Id in the scene of a medium that is an object. @param wanted taken where ids are kept; -1: a
+  /// new one
+  int AddMedium(const std::string& name, int wanted);
+
   /// Id in the scene of a material of a leaf. @param local its id there, negative if it has none
   int MaterialOf(vtkPolyData* poly, int local);
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkAvianLidarSurfaces.h"
 
+#include "vtkAvianLidarMedia.h"
+
 //------------------------------------------------------------------------------
 vtkAvianLidarSurfaces vtkAvianLidarSurfaces::MergedAgain() const
 {
@@ -12,6 +14,15 @@ vtkAvianLidarSurfaces vtkAvianLidarSurfaces::MergedAgain() const
   for (const int id : this->objectIds)
   {
     used[id] = 1;
+  }
+  for (const std::string& medium : this->media)
+  {
+    int id = -1;
+    std::string name;
+    if (vtkAvianLidarMedia::IsObject(medium, id, name) && id >= 0)
+    {
+      used[id] = 1;
+    }
   }
   for (std::size_t id = 0; id < used.size(); ++id)
   {

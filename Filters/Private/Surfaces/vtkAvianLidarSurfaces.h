@@ -36,6 +36,7 @@ struct vtkAvianLidarSurfaces
   std::vector<std::string> objectNames;                     ///< by object id
   std::vector<std::string> objectClasses;                   ///< likewise; empty: none brings any
   std::vector<std::string> materialNames;                   ///< by material id
+  std::vector<std::string> media; ///< texts (vtkAvianLidarMedia.h), which are no surfaces
   /// What a leaf held when its triangles were taken, to see what a change leaves as it was.
   struct LeafState
   {

@@ -5,6 +5,8 @@
 #include "ParallelLoop.h"
 #include "vtkAvianLidarCells.h"
 #include "vtkAvianLidarMaterials.h"
+#include "vtkAvianLidarMedia.h"
+#include "vtkAvianLidarNames.h"
 #include "vtkAvianLidarSurfaceIds.h"
 #include "vtkAvianLidarSurfaceLeaf.h"
 #include "vtkAvianLidarSurfaceState.h"
@@ -12,6 +14,7 @@
 #include "vtkFieldData.h"
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
+#include "vtkStringArray.h"
 #include "vtkUnsignedCharArray.h"
 #include "vtkVariant.h"
 
@@ -94,6 +97,7 @@ public:
       }
       state.end = this->Materials.size();
     }
+    this->AddMedia(leaves);
     this->FindWarnings(leaves);
     this->Finish(known);
     this->WarnOfSize();
@@ -120,6 +124,45 @@ private:
     const auto first = std::find_if(
       wrong.begin(), wrong.end(), [](const std::string& text) { return !text.empty(); });
     return first == wrong.end() || this->Fail(leaves[first - wrong.begin()], *first);
+  }
+
+  /// Media are no surfaces. They come by themselves, or with surfaces that were merged before.
+  void AddMedia(const std::vector<Leaf>& leaves)
+  {
+    for (const Leaf& leaf : leaves)
+    {
+      try
+      {
+        const std::string own = vtkAvianLidarMedia::TextOf(leaf.data, leaf.name);
+        if (!own.empty())
+        {
+          auto* names = vtkStringArray::SafeDownCast(
+            leaf.data->GetFieldData()->GetAbstractArray(vtkAvianLidarArrays::ObjectNames.name));
+          this->AddMedium(vtkAvianLidarMedia::WithObject(
+            own, names && names->GetNumberOfValues() == 1 ? names->GetValue(0) : leaf.name, -1));
+        }
+        auto* others = vtkStringArray::SafeDownCast(
+          leaf.data->GetFieldData()->GetAbstractArray(vtkAvianLidarArrays::Media.name));
+        for (vtkIdType i = 0; others && i < others->GetNumberOfValues(); ++i)
+        {
+          this->AddMedium(others->GetValue(i));
+        }
+      }
+      catch (const std::exception& error)
+      {
+        this->Fail(leaf, error.what());
+        return;
+      }
+    }
+  }
+
+  void AddMedium(const std::string& text)
+  {
+    int id = -1;
+    std::string name;
+    const bool isObject = vtkAvianLidarMedia::IsObject(text, id, name);
+    this->Result.media.push_back(
+      isObject ? vtkAvianLidarMedia::WithObject(text, name, this->Ids.AddMedium(name, id)) : text);
   }
 
   /// Room for all leaves at once: growing to the size of each in turn would copy all before it.
@@ -204,7 +247,7 @@ private:
     vtkIdType points = 0;
     for (const Leaf& leaf : leaves)
     {
-      points += leaf.data->GetNumberOfPoints();
+      points += vtkAvianLidarMedia::IsMedium(leaf.data) ? 0 : leaf.data->GetNumberOfPoints();
     }
     if (points > 0 && this->ObjectIds.empty())
     {
@@ -270,6 +313,10 @@ private:
     }
     vtkPolyData* poly = asItIs ? leaf.data : made.Get();
     const vtkIdType cells = poly->GetNumberOfPolys();
+    if (vtkAvianLidarMedia::IsMedium(leaf.data))
+    {
+      return true;
+    }
     if (cells == 0)
     {
       this->Ids.AddEmptyLeaf(leaf);

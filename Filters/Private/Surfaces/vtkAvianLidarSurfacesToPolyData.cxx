@@ -47,5 +47,9 @@ vtkSmartPointer<vtkPolyData> vtkAvianLidarSurfaces::ToPolyData(vtkFieldData* fie
     Arrays::SetFieldStrings(poly->GetFieldData(), Arrays::ObjectClasses, this->objectClasses);
   }
   Arrays::SetFieldStrings(poly->GetFieldData(), Arrays::MaterialNames, this->materialNames);
+  if (!this->media.empty())
+  {
+    Arrays::SetFieldStrings(poly->GetFieldData(), Arrays::Media, this->media);
+  }
   return poly;
 }

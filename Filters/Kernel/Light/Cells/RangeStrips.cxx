@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "RangeStrips.h"
 
+#include "BeamAir.h"
+
 #include "KeySort.h"
 #include "Multiversion.h"
 
@@ -249,6 +251,7 @@ RangeStrips::RangeStrips(const ScanSetup& setup)
   , Gate(setup.sensor.rangeGate + UnitLength + 0.5 * SpeedOfLight * setup.sensor.pulseWidth)
   , Offset(0.5 * setup.sensor.pulseWidth / setup.sensor.samplingInterval)
   , Shape(setup.sensor)
+  , HasColumns(!setup.placedMedia.empty())
 {
 }
 
@@ -307,7 +310,7 @@ inline RangeStrips::Strip& RangeStrips::sumOf(double number)
   if (place >= this->Sums.size() || this->Sums[place].key != key)
   {
     place = static_cast<std::uint32_t>(this->Sums.size());
-    this->Sums.push_back({ 0.0, 0.0, 0.0, 0.0, key });
+    this->Sums.push_back({ 0.0, 0.0, 0.0, 0.0, key, 0 });
   }
   return this->Sums[place];
 }
@@ -343,6 +346,10 @@ bool RangeStrips::addWhole(
   const double weight = share / (this->Shape.isRound() ? secant2 * secant : 1.0);
   sum.weight += weight;
   sum.moment += weight * secant / inverse;
+  if (this->HasColumns)
+  {
+    sum.columns |= BeamAir::columnsIn(middle.x, middle.y, half);
+  }
   return true;
 }
 
@@ -399,6 +406,10 @@ bool RangeStrips::add(const CellRays& rays, double share)
       Strip& sum = this->sumOf(block.key[0]);
       sum.weight += avianlidar::sumOf(block.weight);
       sum.moment += avianlidar::sumOf(block.moment);
+      for (int i = 0; this->HasColumns && i < CellLanes; ++i)
+      {
+        sum.columns |= block.key[i] >= 0.0 ? BeamAir::columnAt(block.x[i], block.y[i]) : 0;
+      }
     }
     return true;
   }
@@ -413,6 +424,7 @@ bool RangeStrips::add(const CellRays& rays, double share)
       Strip& sum = this->sumOf(block.key[i]);
       sum.weight += block.weight[i];
       sum.moment += block.moment[i];
+      sum.columns |= this->HasColumns ? BeamAir::columnAt(block.x[i], block.y[i]) : 0;
       sum.variance = sum.variance + block.variance[0][i] + block.variance[1][i];
       sum.moves = sum.moves + block.moves[0][i] + block.moves[1][i];
       if (block.moves[0][i] + block.moves[1][i] > 0.0)
@@ -463,6 +475,7 @@ std::unique_ptr<CellSamples> RangeStrips::collect()
   samples.range.resize(count);
   samples.cosine.resize(count);
   samples.weight.resize(count);
+  samples.columns.resize(this->HasColumns ? count : 0);
   found->variance.resize(count);
   found->moves.resize(count);
   found->halves.resize(this->Halves.empty() ? 0 : count);
@@ -484,6 +497,10 @@ std::unique_ptr<CellSamples> RangeStrips::collect()
       samples.range[k] = range;
       samples.cosine[k] = std::min(1.0, height / range);
       samples.weight[k] = sum.weight;
+      if (this->HasColumns)
+      {
+        samples.columns[k] = sum.columns;
+      }
       found->variance[k] = sum.variance;
       found->moves[k] = sum.moves;
       if (!found->halves.empty())

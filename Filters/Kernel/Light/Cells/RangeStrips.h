@@ -101,6 +101,7 @@ private:
   {
     double weight, moment, variance, moves;
     std::uint32_t key;
+    std::uint64_t columns;
   };
   const SurfaceStrips* stripsOf(std::uint32_t surface);
   Strip& sumOf(double number);
@@ -114,6 +115,7 @@ private:
   const BeamShape Shape;
   double Tangent2 = 0.0;
   double Flatness2 = 1.0; ///< BeamFrame::flatness2
+  const bool HasColumns;  ///< samples get columns
   bool Uneven = false;    ///< rays of a cell have unlike weights
   const std::vector<const BeamSurface*>* All = nullptr;
   std::vector<std::uint32_t> Of;      ///< place of each surface in Visible

@@ -201,6 +201,7 @@ void RaySamples::find(const TriangleMesh& mesh, const BeamFrame& frame, const Be
   samples.range.resize(count);
   samples.cosine.resize(count);
   samples.weight.assign(count, 1.0 / samples.rays);
+  samples.columns.clear();
   this->Kinds.resize(count);
   this->findDirections(frame, rays, samples, geometry);
   samples.forEachSurface(

@@ -11,6 +11,7 @@
 #ifndef avianlidar_SecondaryBeam_h
 #define avianlidar_SecondaryBeam_h
 
+#include "BeamAir.h"
 #include "BeamRays.h"
 #include "BeamTracer.h"
 #include "ParallelLoop.h"
@@ -47,6 +48,7 @@ struct SecondaryBeam
   /// Begins the regions of mirror paths; empty: they are followed from the samples.
   std::function<void(MirrorRegions&)> regions = {};
   std::function<BeamTracer&()> tracer = {}; ///< set to the beam, for regions
+  BeamAir* air = nullptr;                   ///< if the beam meets media that do not fill the scene
   bool endsAreSeen = false; ///< what the regions know of surfaces is visible, all of it
 
   /// Throws WorkStopped if the work is no longer wanted: a beam of 100,000 rays takes longer than a

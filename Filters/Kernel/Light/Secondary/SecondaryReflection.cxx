@@ -211,14 +211,30 @@ void SecondaryReflection::listPaths(const Beam& beam, std::vector<SecondaryPath>
   const SecondaryConnections& connections = beam.trace.connections;
   paths.clear();
   const bool bySample = beam.trace.searched.empty();
+  // What media that do not fill the scene leave.
+  const auto leftOf = [&](const Vec3& one, const Vec3& two)
+  {
+    const Vec3 apex(0.0);
+    return beam.air ? beam.air->transmissionBetween(apex, one) *
+        beam.air->transmissionBetween(one, two) * beam.air->transmissionBetween(two, apex)
+                    : 1.0;
+  };
+  const SampleGeometry* const geometry =
+    beam.air && connections.size() > 0 ? &beam.scene().geometry : nullptr;
+  const auto ofConnection = [&](std::uint32_t one, std::uint32_t two)
+  {
+    return geometry ? leftOf(beam.samples.range[one] * geometry->direction(one),
+                        beam.samples.range[two] * geometry->direction(two))
+                    : 1.0;
+  };
   for (std::size_t p = 0; p < beam.trace.mirrorPaths.size(); ++p)
   {
     const MirrorPath& path = beam.trace.mirrorPaths[p];
     if (path.visibility == Visibility::Clear)
     {
-      paths.push_back(
-        { path.length, this->MirrorThroughputs[p], path.triangle, path.second.cosIncidence,
-          bySample ? path.one : NoSample, bySample ? NoSample : path.start << 22 | path.one });
+      paths.push_back({ path.length, this->MirrorThroughputs[p] * leftOf(path.from, path.end),
+        path.triangle, path.second.cosIncidence, bySample ? path.one : NoSample,
+        bySample ? NoSample : path.start << 22 | path.one });
     }
   }
   for (std::size_t i = 0; i < connections.size(); ++i)
@@ -228,7 +244,8 @@ void SecondaryReflection::listPaths(const Beam& beam, std::vector<SecondaryPath>
       const std::uint32_t one = connections.one[i];
       const std::uint32_t two = connections.two[i];
       paths.push_back({ beam.samples.range[one] + connections.length[i] + beam.samples.range[two],
-        this->ConnectionThroughputs[i], this->Triangles[two], connections.cosIn[i], one, two });
+        this->ConnectionThroughputs[i] * ofConnection(one, two), this->Triangles[two],
+        connections.cosIn[i], one, two });
     }
   }
 }

@@ -1,0 +1,468 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "BeamAir.h"
+
+#include "RangeUnits.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <utility>
+
+namespace avianlidar
+{
+namespace
+{
+constexpr std::int64_t NoUnit = std::numeric_limits<std::int64_t>::max();
+
+/// Optical depth, there and back, behind which nothing is looked for.
+constexpr double Opaque = 60.0;
+
+/// Points across a cell of the grid, each way, by which its share of the pulse is known.
+constexpr int PointsOfCell = 16;
+}
+
+BeamAir::BeamAir(const Sensor& sensor, double attenuation, const std::vector<Medium>& everywhere,
+  const std::vector<PlacedMedium>& placed)
+  : Instrument(sensor)
+  , Attenuation(attenuation)
+  , UnitLength(sensor.rangeUnitLength())
+  , Everywhere(everywhere)
+  , Placed(placed)
+{
+  if (placed.empty())
+  {
+    return;
+  }
+  const BeamShape shape(sensor);
+  const double width = 2.0 / Across;
+  double all = 0.0;
+  for (int cell = 0; cell < Across * Across; ++cell)
+  {
+    Column column{ 0.0, 0.0, 0.0, cell };
+    for (int point = 0; point < PointsOfCell * PointsOfCell; ++point)
+    {
+      const auto at = [=](int number, int part)
+      { return -1.0 + width * (number + (part + 0.5) / PointsOfCell); };
+      const double x = at(cell % Across, point % PointsOfCell);
+      const double y = at(cell / Across, point / PointsOfCell);
+      const double weight = shape.holds(x, y) ? shape.density(x, y) : 0.0;
+      column.x += weight * x;
+      column.y += weight * y;
+      column.weight += weight;
+    }
+    if (column.weight > 0.0)
+    {
+      column.x /= column.weight;
+      column.y /= column.weight;
+      all += column.weight;
+      this->Grid.push_back(column);
+    }
+  }
+  for (Column& column : this->Grid)
+  {
+    column.weight /= all;
+  }
+}
+
+const Medium& BeamAir::mediumAt(std::uint32_t number) const
+{
+  return number < this->Everywhere.size() ? this->Everywhere[number]
+                                          : this->Placed[number - this->Everywhere.size()].medium;
+}
+
+void BeamAir::begin(const BeamFrame& frame, double seconds)
+{
+  this->Origin = frame.origin;
+  this->Seconds = seconds;
+  this->beginEverywhere();
+  this->Surfaces = {};
+  for (std::uint32_t k = 0; k < this->Placed.size(); ++k)
+  {
+    if (mayMeet(this->Placed[k].volume, frame, this->Instrument.rangeGate, seconds))
+    {
+      this->Met.push_back(k);
+    }
+  }
+  if (this->Met.empty())
+  {
+    return;
+  }
+  this->Columns = this->Grid;
+  this->Parts.clear();
+  this->Ends.clear();
+  for (const Column& column : this->Columns)
+  {
+    this->findParts(frame.origin, unitVector(frame.direction(column.x, column.y)));
+  }
+  this->chooseLooked();
+}
+
+void BeamAir::beginRay(const Vec3& origin, const Vec3& direction, double seconds)
+{
+  this->Origin = origin;
+  this->Seconds = seconds;
+  this->Met.resize(this->Placed.size());
+  std::iota(this->Met.begin(), this->Met.end(), 0u);
+  this->Open.clear();
+  this->Surfaces = {};
+  this->Columns.assign(1, this->Axis);
+  this->Parts.clear();
+  this->Ends.clear();
+  this->findParts(origin, direction);
+  this->chooseLooked();
+}
+
+/// Add a column.
+void BeamAir::findParts(const Vec3& origin, const Vec3& direction)
+{
+  for (const std::uint32_t medium : this->Met)
+  {
+    this->Found.clear();
+    this->Crosser.find(this->Placed[medium].volume, origin, direction, this->Instrument.rangeGate,
+      this->Seconds, this->Found);
+    for (const MediumCrossing& part : this->Found)
+    {
+      this->Parts.push_back({ medium, part });
+    }
+  }
+  this->Ends.push_back(this->Parts.size());
+}
+
+/// Find where media return light that may be perceived, and forget the beam if it meets none.
+void BeamAir::chooseLooked()
+{
+  if (this->Parts.empty())
+  {
+    this->Met.clear();
+    return;
+  }
+  this->OpenOf.assign(this->Columns.size(), 1.0);
+  this->Taken = 0;
+  this->TakenTo = 0.0;
+  this->Left = 1.0;
+  this->Unit = -1;
+  double begin = Infinity;
+  double end = 0.0;
+  const auto look = [&](const Medium& medium, double from, double to)
+  {
+    const bool isSeen = medium.backscatter() > 0.0 &&
+      (medium.drops > 0.0 || !medium.isFollowed || !this->Instrument.followsAir());
+    begin = isSeen ? std::min(begin, from) : begin;
+    end = isSeen ? std::max(end, to) : end;
+  };
+  for (const Part& part : this->Parts)
+  {
+    look(this->Placed[part.medium].medium, part.crossing.begin, part.crossing.end);
+  }
+  for (const Medium& medium : this->Everywhere)
+  {
+    look(medium, 0.0, this->Instrument.rangeGate);
+  }
+  if (!(begin < end) || !(this->Instrument.receiverAperture > 0.0))
+  {
+    return;
+  }
+  const double gate = static_cast<double>(
+    unitsInsideGate(this->Instrument.samplingInterval, this->Instrument.rangeGate));
+  this->FirstLooked = static_cast<std::int64_t>(std::floor(begin / this->UnitLength));
+  this->EndLooked =
+    static_cast<std::int64_t>(std::min(gate, std::floor(end / this->UnitLength) + 1.0));
+  // Nothing is seen through what is opaque.
+  const auto isOpaque = [&](std::int64_t unit)
+  {
+    const double range = this->UnitLength * static_cast<double>(unit);
+    for (std::size_t column = 0; column < this->Columns.size(); ++column)
+    {
+      if (2.0 * this->Attenuation * range + this->depth(column, range) < Opaque)
+      {
+        return false;
+      }
+    }
+    return true;
+  };
+  std::int64_t low = this->FirstLooked;
+  for (std::int64_t high = this->EndLooked; low + 1 < high;)
+  {
+    const std::int64_t middle = low + (high - low) / 2;
+    (isOpaque(middle) ? high : low) = middle;
+    this->EndLooked = isOpaque(middle) ? middle : this->EndLooked;
+  }
+}
+
+/// Optical depth of media that do not fill the scene, there and back.
+double BeamAir::depth(std::size_t column, double range) const
+{
+  double sum = 0.0;
+  for (std::size_t p = column > 0 ? this->Ends[column - 1] : 0; p < this->Ends[column]; ++p)
+  {
+    const Medium& medium = this->Placed[this->Parts[p].medium].medium;
+    const double ways = medium.sharesGaps ? 1.0 : 2.0;
+    sum += ways * medium.extinction * this->Parts[p].crossing.upTo(range);
+  }
+  return sum;
+}
+
+double BeamAir::transmission(double range, std::uint64_t columns)
+{
+  double sum = 0.0;
+  double all = 0.0;
+  for (std::size_t k = 0; this->isLocal() && k < this->Columns.size(); ++k)
+  {
+    const Column& column = this->Columns[k];
+    if (columns == 0 || (columns >> column.bit & 1) != 0)
+    {
+      sum += column.weight * std::exp(-this->depth(k, range));
+      all += column.weight;
+    }
+  }
+  return all > 0.0 ? sum / all : columns != 0 ? this->transmission(range) : 1.0;
+}
+
+double BeamAir::transmissionBetween(const Vec3& from, const Vec3& to)
+{
+  const double length = safeLength(to - from);
+  if (!(length > 0.0))
+  {
+    return 1.0;
+  }
+  double depth = 0.0;
+  for (const PlacedMedium& placed : this->Placed)
+  {
+    this->Found.clear();
+    this->Crosser.find(
+      placed.volume, this->Origin + from, (to - from) / length, length, this->Seconds, this->Found);
+    for (const MediumCrossing& part : this->Found)
+    {
+      depth += placed.medium.extinction * part.upTo(length);
+    }
+  }
+  return std::exp(-depth);
+}
+
+void BeamAir::take(const SurfacesInAir& surfaces)
+{
+  this->Surfaces = surfaces;
+  this->Open.clear();
+  this->Unit = -1;
+  if (surfaces.count == 0)
+  {
+    return;
+  }
+  if (this->isLocal())
+  {
+    this->Order.resize(surfaces.count);
+    std::iota(this->Order.begin(), this->Order.end(), 0u);
+    std::stable_sort(this->Order.begin(), this->Order.end(),
+      [&](std::uint32_t a, std::uint32_t b) { return surfaces.ranges[a] < surfaces.ranges[b]; });
+    return;
+  }
+  // The units by whose middle surfaces have taken something.
+  const double most = AirEcho::MostUnits;
+  const auto unitOf = [&](double range)
+  { return static_cast<std::int64_t>(std::min(most, range / this->UnitLength + 0.5)); };
+  const auto [nearest, farthest] =
+    std::minmax_element(surfaces.ranges, surfaces.ranges + surfaces.count);
+  this->FirstTaken = unitOf(*nearest);
+  this->Open.assign(static_cast<std::size_t>(unitOf(*farthest) - this->FirstTaken + 1), 0.0);
+  for (std::size_t i = 0; i < surfaces.count; ++i)
+  {
+    this->Open[static_cast<std::size_t>(unitOf(surfaces.ranges[i]) - this->FirstTaken)] +=
+      surfaces.weights[i];
+  }
+  double left = 1.0;
+  constexpr double none = 1e-9; // of rounding
+  for (double& share : this->Open)
+  {
+    left -= share;
+    share = left > none ? left : 0.0;
+  }
+}
+
+void BeamAir::setOpen(std::int64_t first, std::vector<double> open)
+{
+  this->FirstTaken = first;
+  this->Open = std::move(open);
+}
+
+double BeamAir::open(std::int64_t unit) const
+{
+  if (this->Open.empty() || unit < this->FirstTaken)
+  {
+    return 1.0;
+  }
+  return this
+    ->Open[std::min(static_cast<std::size_t>(unit - this->FirstTaken), this->Open.size() - 1)];
+}
+
+double BeamAir::weightOf(std::uint64_t columns) const
+{
+  double sum = 0.0;
+  for (const Column& column : this->Columns)
+  {
+    sum += (columns >> column.bit & 1) != 0 ? column.weight : 0.0;
+  }
+  return sum;
+}
+
+/// Take off what surfaces meet up to a range, m.
+void BeamAir::takeUpTo(double range)
+{
+  if (range < this->TakenTo)
+  {
+    this->OpenOf.assign(this->Columns.size(), 1.0);
+    this->Taken = 0;
+    this->Left = 1.0;
+  }
+  this->TakenTo = range;
+  bool takes = false;
+  for (; this->Taken < this->Surfaces.count; ++this->Taken)
+  {
+    const std::uint32_t i = this->Order[this->Taken];
+    if (!(this->Surfaces.ranges[i] < range))
+    {
+      break;
+    }
+    const double weight = this->Surfaces.weights[i];
+    const std::uint64_t columns = this->Surfaces.columns ? this->Surfaces.columns[i] : 0;
+    const double all = columns != 0 ? this->weightOf(columns) : 1.0;
+    for (std::size_t k = 0; k < this->Columns.size(); ++k)
+    {
+      const bool isMet = all <= 0.0 || columns == 0 || (columns >> this->Columns[k].bit & 1) != 0;
+      this->OpenOf[k] -= isMet ? weight / (all > 0.0 ? all : 1.0) : 0.0;
+    }
+    this->Left -= weight;
+    takes = true;
+  }
+  if (!takes)
+  {
+    return;
+  }
+  // No column has less than nothing, and all together have what is left.
+  double sum = 0.0;
+  for (std::size_t k = 0; k < this->Columns.size(); ++k)
+  {
+    this->OpenOf[k] = std::max(0.0, this->OpenOf[k]);
+    sum += this->Columns[k].weight * this->OpenOf[k];
+  }
+  constexpr double none = 1e-9; // of rounding
+  const double left = this->Left > none ? this->Left : 0.0;
+  for (double& open : this->OpenOf)
+  {
+    open *= sum > left ? left / sum : 1.0;
+  }
+}
+
+/// Add what a column sends back from between two ranges, m, that no border of a medium divides.
+void BeamAir::addShares(std::size_t column, double open, double from, double to)
+{
+  const Sensor& sensor = this->Instrument;
+  const double weight = open * this->Columns[column].weight;
+  const std::size_t first = column > 0 ? this->Ends[column - 1] : 0;
+  const double middle = 0.5 * (from + to);
+  const auto light = [&](double r)
+  {
+    return sensor.nearRangeShare(r) * std::min(sensor.receiverAperture / (r * r), 2.0 * Pi) *
+      std::exp(-2.0 * this->Attenuation * r - this->depth(column, r));
+  };
+  const auto add = [&](std::uint32_t number, const MediumCrossing* part)
+  {
+    const Medium& medium = this->mediumAt(number);
+    const auto densityAt = [&](double r) { return part ? part->densityAt(r) : 1.0; };
+    if (medium.backscatter() > 0.0)
+    {
+      this->Means[number] += weight * sensor.pulseEnergy * medium.backscatter() *
+        airIntegral(sensor, from, to, 2.0 * (this->Attenuation + medium.extinction),
+          [&](double r) { return light(r) * densityAt(r); });
+    }
+    if (medium.drops > 0.0)
+    {
+      this->Drops[number] += weight * medium.drops * sensor.solidAngle() * densityAt(middle) *
+        (to * to * to - from * from * from) / 3.0;
+    }
+  };
+  for (std::uint32_t k = 0; k < this->Everywhere.size(); ++k)
+  {
+    add(k, nullptr);
+  }
+  for (std::size_t p = first; p < this->Ends[column]; ++p)
+  {
+    const Part& part = this->Parts[p];
+    if (middle > part.crossing.begin && middle < part.crossing.end)
+    {
+      add(static_cast<std::uint32_t>(this->Everywhere.size()) + part.medium, &part.crossing);
+    }
+  }
+}
+
+const std::vector<BeamAir::Share>& BeamAir::sharesOf(std::int64_t unit)
+{
+  if (unit == this->Unit)
+  {
+    return this->Shares;
+  }
+  this->Unit = unit;
+  this->Shares.clear();
+  const std::size_t media = this->Everywhere.size() + this->Placed.size();
+  this->Means.assign(media, 0.0);
+  this->Drops.assign(media, 0.0);
+  if (!(this->Instrument.receiverAperture > 0.0))
+  {
+    return this->Shares; // nothing is known of what comes back
+  }
+  const double from = this->UnitLength * static_cast<double>(unit);
+  const double to = from + this->UnitLength;
+  this->takeUpTo(0.5 * (from + to));
+  for (std::size_t column = 0; column < this->Columns.size(); ++column)
+  {
+    if (!(this->OpenOf[column] > 0.0))
+    {
+      continue;
+    }
+    this->Breaks.assign({ from, to });
+    for (std::size_t p = column > 0 ? this->Ends[column - 1] : 0; p < this->Ends[column]; ++p)
+    {
+      for (const double border : { this->Parts[p].crossing.begin, this->Parts[p].crossing.end })
+      {
+        if (border > from && border < to)
+        {
+          this->Breaks.push_back(border);
+        }
+      }
+    }
+    std::sort(this->Breaks.begin(), this->Breaks.end());
+    for (std::size_t k = 0; k + 1 < this->Breaks.size(); ++k)
+    {
+      this->addShares(column, this->OpenOf[column], this->Breaks[k], this->Breaks[k + 1]);
+    }
+  }
+  for (std::uint32_t k = 0; k < media; ++k)
+  {
+    if (this->Means[k] > 0.0)
+    {
+      this->Shares.push_back({ k, this->Means[k], this->Drops[k] });
+    }
+  }
+  return this->Shares;
+}
+
+double BeamAir::followed(const AirEcho& echo, std::int64_t unit)
+{
+  if (!this->isLocal())
+  {
+    return echo.mean(unit) * this->open(unit);
+  }
+  double sum = 0.0;
+  for (const Share& share : this->sharesOf(unit))
+  {
+    sum += this->mediumAt(share.medium).isFollowed ? share.mean : 0.0;
+  }
+  return sum;
+}
+
+std::int64_t BeamAir::nextLooked(std::int64_t unit) const
+{
+  const std::int64_t next = std::max(unit, this->FirstLooked);
+  return next < this->EndLooked ? next : NoUnit;
+}
+}

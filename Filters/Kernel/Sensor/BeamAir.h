@@ -1,0 +1,188 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file BeamAir.h
+ * @brief The air along one beam: what it leaves of the light, and what it sends back in each range
+ * unit, of which surfaces take their share.
+ *
+ * Where all air is the same everywhere, AirEcho.h knows the units, and only the share of the pulse
+ * counts that no nearer surface has met. A beam that meets a medium which does not fill the scene
+ * is divided into columns: the cells of a grid of eight by eight over its plane, each with a
+ * direction, a share of the pulse, and the parts in which it crosses the media (MediumVolume.h). A
+ * sample knows the columns that its rays lie in (BeamSamples::columns). So light behind half a
+ * tree is weakened where the tree is, and a tree behind half a wall returns what the wall leaves.
+ *
+ * Source: the lidar equation, as AirEcho.h.
+ * Differs: as AirEcho.h.
+ * Valid: units to 1e-6 along each column. A border that crosses the beam is known to an eighth of
+ * its width: shares of it to 0.02. The sum of all shares that surfaces take is exact, unit by unit.
+ * Test: TestBeamAir.cxx.
+ */
+#ifndef avianlidar_BeamAir_h
+#define avianlidar_BeamAir_h
+
+#include "AirEcho.h"
+#include "BeamShape.h"
+#include "MediumVolume.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace avianlidar
+{
+/// Surfaces that a beam meets, as its air needs them.
+struct SurfacesInAir
+{
+  const double* ranges = nullptr;         ///< m
+  const double* weights = nullptr;        ///< shares of the pulse
+  const std::uint64_t* columns = nullptr; ///< bits; null: all
+  std::size_t count = 0;
+};
+
+/// Follows one beam after the other. One per thread; media must outlive it.
+class BeamAir
+{
+public:
+  /// @param attenuation of all air that fills the scene, 1/m @param everywhere that of it which
+  /// scatters @param placed other media
+  BeamAir(const Sensor& sensor, double attenuation, const std::vector<Medium>& everywhere,
+    const std::vector<PlacedMedium>& placed);
+
+  /// Begin a beam that no surface weakens. @param seconds when it is sent
+  void begin(const BeamFrame& frame, double seconds);
+
+  /// Begin a beam where all media fill the scene.
+  void beginEverywhere()
+  {
+    this->Met.clear();
+    this->Open.clear();
+    this->FirstLooked = this->EndLooked = 0;
+  }
+
+  /// Begin with one direction alone. @param direction unit vector
+  void beginRay(const Vec3& origin, const Vec3& direction, double seconds);
+
+  /// Whether it meets a medium that does not fill the scene.
+  bool isLocal() const { return !this->Met.empty(); }
+
+  /// Whether what it returns of these media may be perceived by itself.
+  bool returnsLight() const { return this->FirstLooked < this->EndLooked; }
+
+  /// What media that do not fill the scene leave of light on the way to a range and back.
+  /// @param columns bits, 0: all
+  double transmission(double range, std::uint64_t columns = 0);
+
+  /// The same along a line, on the way from one point to another, m from the apex.
+  double transmissionBetween(const Vec3& from, const Vec3& to);
+
+  /// Take off what surfaces meet. They must live until the next beam.
+  void take(const SurfacesInAir& surfaces);
+
+  /// Shares of the pulse that no surface has met, from the unit of the first on; see setOpen().
+  const std::vector<double>& open() const { return this->Open; }
+  std::int64_t firstTaken() const { return this->FirstTaken; }
+  void setOpen(std::int64_t first, std::vector<double> open);
+
+  /// Share of the pulse that no surface has met by the middle of a unit.
+  double open(std::int64_t unit) const;
+
+  /// What one medium sends back in a unit.
+  struct Share
+  {
+    std::uint32_t medium; ///< see mediumAt()
+    double mean;          ///< J
+    double drops;         ///< on average
+  };
+  /// Of a beam that isLocal(); in an order that does not depend on earlier calls.
+  const std::vector<Share>& sharesOf(std::int64_t unit);
+  const Medium& mediumAt(std::uint32_t number) const;
+
+  /// Mean energy, J, in a unit that a threshold may follow. @param echo of the air that fills the
+  /// scene
+  double followed(const AirEcho& echo, std::int64_t unit);
+
+  /// The first unit from `unit` on in which media that do not fill the scene may be perceived by
+  /// themselves; no such: the greatest number.
+  std::int64_t nextLooked(std::int64_t unit) const;
+
+  /// Cells of the grid across the beam.
+  static constexpr int Across = 8;
+  /// The bit of a point of the beam's plane.
+  static std::uint64_t columnAt(double x, double y)
+  {
+    const auto cell = [](double v)
+    {
+      const int k = static_cast<int>(0.5 * Across * (v + 1.0));
+      return k < 0 ? 0 : k < Across ? k : Across - 1;
+    };
+    return std::uint64_t{ 1 } << (Across * cell(y) + cell(x));
+  }
+
+  /// The bits of a square of so much to each side.
+  static std::uint64_t columnsIn(double x, double y, double half)
+  {
+    constexpr double step = 2.0 / Across;
+    std::uint64_t columns = 0;
+    for (double v = y - half; v < y + half + step; v += step)
+    {
+      for (double u = x - half; u < x + half + step; u += step)
+      {
+        columns |= columnAt(std::min(u, x + half), std::min(v, y + half));
+      }
+    }
+    return columns;
+  }
+
+private:
+  struct Column
+  {
+    double x, y;   ///< in the beam's plane
+    double weight; ///< share of the pulse
+    int bit;
+  };
+  struct Part
+  {
+    std::uint32_t medium;
+    MediumCrossing crossing;
+  };
+  void findParts(const Vec3& origin, const Vec3& direction);
+  double depth(std::size_t column, double range) const;
+  void takeUpTo(double range);
+  void addShares(std::size_t column, double open, double from, double to);
+  double weightOf(std::uint64_t columns) const;
+  void chooseLooked();
+
+  Sensor Instrument;
+  double Attenuation; ///< 1/m
+  double UnitLength;  ///< m
+  const std::vector<Medium>& Everywhere;
+  const std::vector<PlacedMedium>& Placed;
+  std::vector<Column> Grid; ///< of all beams
+  Column Axis{ 0.0, 0.0, 1.0, 0 };
+
+  // The beam.
+  Vec3 Origin{ 0.0 };
+  double Seconds = 0.0;
+  std::vector<Column> Columns;
+  std::vector<std::uint32_t> Met; ///< media that do not fill the scene
+  std::vector<Part> Parts;        ///< column by column
+  std::vector<std::size_t> Ends;  ///< of the parts of each
+  std::int64_t FirstLooked = 0, EndLooked = 0;
+  std::int64_t FirstTaken = 0;
+  std::vector<double> Open; ///< by unit, from FirstTaken on
+  SurfacesInAir Surfaces;
+  std::vector<std::uint32_t> Order; ///< of surfaces, by range
+  std::size_t Taken = 0;            ///< of these
+  double TakenTo = 0.0;             ///< m
+  double Left = 1.0;                ///< of the pulse
+  std::vector<double> OpenOf;       ///< share of each column
+  std::int64_t Unit = -1;           ///< of Shares
+  std::vector<Share> Shares;
+  std::vector<double> Breaks;
+  std::vector<double> Means, Drops; ///< by medium
+  std::vector<MediumCrossing> Found;
+  MediumCrosser Crosser;
+};
+}
+
+#endif

@@ -1,0 +1,439 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkAvianLidarMedia.h"
+
+#include "CollisionTreeBuilder.h"
+#include "JsonNode.h"
+#include "Propagation.h"
+#include "vtkAvianLidarArrays.h"
+#include "vtkAvianLidarBuiltInTexts.h"
+#include "vtkAvianLidarNames.h"
+
+#include "vtkCellArray.h"
+#include "vtkCleanPolyData.h"
+#include "vtkCubeSource.h"
+#include "vtkFeatureEdges.h"
+#include "vtkFieldData.h"
+#include "vtkNew.h"
+#include "vtkPoints.h"
+#include "vtkPolyData.h"
+#include "vtkPolyDataNormals.h"
+#include "vtkSphereSource.h"
+#include "vtkStringArray.h"
+#include "vtkTriangleFilter.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <memory>
+#include <sstream>
+#include <stdexcept>
+#include <utility>
+
+namespace
+{
+using avianlidar::Json;
+using avianlidar::JsonNode;
+using avianlidar::Medium;
+using avianlidar::MediumShape;
+using avianlidar::MediumVolume;
+using avianlidar::Vec3;
+
+JsonNode Known(const std::string& kind)
+{
+  static const std::string file = "media.json";
+  static const Json all = []()
+  {
+    std::istringstream text(vtkAvianLidarBuiltInText(file));
+    return avianlidar::ReadJson(text, file);
+  }();
+  return JsonNode(all, "", file).Get("media").Get(kind);
+}
+
+double NumberOf(const std::string& kind, const char* key)
+{
+  return Known(kind).Get(key).Get("value").PositiveNumber();
+}
+
+Medium FoliageOf(double density)
+{
+  const double projection = NumberOf("foliage", "projection");
+  Medium leaves;
+  leaves.extinction = density * projection;
+  // Lambertian leaves that face all ways: the mean of cos^2 is 1/3, that of |cos| is 1/2.
+  leaves.backscatterRatio = 1.5 * avianlidar::Pi / NumberOf("foliage", "leaf_reflectance");
+  leaves.drops = density / NumberOf("foliage", "leaf_area");
+  leaves.squareOfDrops = 1.0;
+  leaves.renewed = NumberOf("foliage", "renewed");
+  leaves.isFollowed = false;
+  leaves.sharesGaps = true;
+  return leaves;
+}
+
+Medium SnowOf(double visibility)
+{
+  const double extinction = avianlidar::attenuationOfVisibility(visibility, 550e-9); // of no colour
+  return { extinction, NumberOf("snow", "backscatter_ratio"),
+    extinction / (2.0 * NumberOf("snow", "flake_area")) };
+}
+
+Medium MediumOf(const JsonNode& node, double wavelength)
+{
+  const std::string kind = node.Get("kind").String();
+  if (kind == "custom")
+  {
+    Medium medium{ node.Get("extinction").NumberIn(0.0, 1e30),
+      node.Get("backscatter_ratio").NumberIn(1e-3, 1e9) };
+    medium.drops = node.Has("drops") ? node.Get("drops").NumberIn(0.0, 1e12) : 0.0;
+    return medium;
+  }
+  if (kind == "fog" || kind == "haze")
+  {
+    const double visibility = node.Get("visibility").NumberIn(1e-3, 1e9);
+    return { avianlidar::attenuationOfVisibility(visibility, wavelength),
+      NumberOf(kind, "backscatter_ratio") };
+  }
+  if (kind == "snow")
+  {
+    return SnowOf(node.Get("visibility").NumberIn(1e-3, 1e9));
+  }
+  if (kind == "rain" || kind == "drizzle")
+  {
+    return avianlidar::rainOf(node.Get("rain_rate").NumberIn(1e-6, avianlidar::MaximumRainRate),
+      NumberOf(kind, "backscatter_ratio"), NumberOf(kind, "drops_per_volume"),
+      NumberOf(kind, "slope"));
+  }
+  if (kind != "foliage")
+  {
+    node.Get("kind").Fail("must be haze, fog, drizzle, rain, snow, foliage or custom");
+  }
+  return FoliageOf(node.Get("leaf_area_density").NumberIn(1e-6, 1e3));
+}
+
+Vec3 VectorOf(const JsonNode& node, const char* key, const Vec3& otherwise)
+{
+  if (!node.Has(key))
+  {
+    return otherwise;
+  }
+  const auto v = node.Get(key).Vector();
+  return { v[0], v[1], v[2] };
+}
+
+double NumberOr(const JsonNode& node, const char* key, double otherwise)
+{
+  return node.Has(key) ? node.Get(key).Number() : otherwise;
+}
+
+MediumShape ShapeOf(const JsonNode& node)
+{
+  const std::string shape = node.Get("shape").String();
+  const std::pair<const char*, MediumShape> shapes[] = { { "everywhere", MediumShape::Everywhere },
+    { "layer", MediumShape::Layer }, { "box", MediumShape::Box },
+    { "ellipsoid", MediumShape::Ellipsoid }, { "surface", MediumShape::Surface } };
+  for (const auto& [name, value] : shapes)
+  {
+    if (shape == name)
+    {
+      return value;
+    }
+  }
+  node.Get("shape").Fail("must be everywhere, layer, box, ellipsoid or surface");
+}
+
+/// The closed surface of the text, and the box about it.
+void ReadSurface(const JsonNode& node, MediumVolume& volume)
+{
+  auto mesh = std::make_shared<avianlidar::TriangleMesh>();
+  Vec3 low(avianlidar::Infinity);
+  Vec3 high(-avianlidar::Infinity);
+  for (const JsonNode& point : node.Get("points").Items())
+  {
+    const auto p = point.Vector();
+    mesh->points.emplace_back(p[0], p[1], p[2]);
+    low = glm::min(low, mesh->points.back());
+    high = glm::max(high, mesh->points.back());
+  }
+  for (const JsonNode& triangle : node.Get("triangles").Items())
+  {
+    const auto items = triangle.Items(3);
+    std::array<std::uint32_t, 3> corners{};
+    for (std::size_t k = 0; k < 3; ++k)
+    {
+      corners[k] = static_cast<std::uint32_t>(
+        items[k].NumberIn(0.0, static_cast<double>(mesh->points.size()) - 1.0));
+    }
+    mesh->triangles.push_back({ corners[0], corners[1], corners[2] });
+  }
+  if (mesh->triangles.empty())
+  {
+    node.Get("triangles").Fail("is empty, expected the triangles of a closed surface");
+  }
+  volume.centre = 0.5 * (low + high);
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    Vec3& half = volume.halfAxes[static_cast<std::size_t>(axis)];
+    half = Vec3(0.0);
+    half[axis] = 0.5 * (high[axis] - low[axis]);
+  }
+  volume.surface = avianlidar::buildCollisionTree(mesh, avianlidar::TreeOptions{}, {}, 1);
+}
+
+MediumVolume VolumeOf(const JsonNode& node)
+{
+  MediumVolume volume;
+  volume.shape = ShapeOf(node);
+  volume.centre = VectorOf(node, "center", volume.centre);
+  volume.velocity = VectorOf(node, "velocity", volume.velocity);
+  volume.bottom = NumberOr(node, "bottom", volume.bottom);
+  volume.top = NumberOr(node, "top", volume.top);
+  volume.softness = NumberOr(node, "softness", volume.softness);
+  if (volume.shape == MediumShape::Surface)
+  {
+    ReadSurface(node, volume);
+  }
+  else if (volume.isBounded())
+  {
+    const double heading = NumberOr(node, "heading", 0.0) * avianlidar::Pi / 180.0;
+    const Vec3 half = 0.5 * VectorOf(node, "lengths", Vec3(0.0));
+    volume.halfAxes = { half.x * Vec3(std::cos(heading), -std::sin(heading), 0.0),
+      half.y * Vec3(std::sin(heading), std::cos(heading), 0.0), Vec3(0.0, 0.0, half.z) };
+  }
+  const std::string problem = avianlidar::checkVolume(volume);
+  if (!problem.empty())
+  {
+    node.Fail(problem);
+  }
+  return volume;
+}
+
+Json ParsedText(const std::string& text, const std::string& file)
+{
+  std::istringstream stream(text);
+  return avianlidar::ReadJson(stream, file);
+}
+}
+
+//------------------------------------------------------------------------------
+Medium vtkAvianLidarMedia::HazeOf(double visibility, double extinction)
+{
+  const bool isFog = visibility <= NumberOf("fog", "most_visibility");
+  return { extinction, NumberOf(isFog ? "fog" : "haze", "backscatter_ratio") };
+}
+
+//------------------------------------------------------------------------------
+Medium vtkAvianLidarMedia::RainOf(double rate)
+{
+  return avianlidar::rainOf(rate, NumberOf("rain", "backscatter_ratio"),
+    NumberOf("rain", "drops_per_volume"), NumberOf("rain", "slope"));
+}
+
+//------------------------------------------------------------------------------
+avianlidar::PlacedMedium vtkAvianLidarMedia::Read(const std::string& text, double wavelength)
+{
+  const Json json = ParsedText(text, "medium");
+  const std::string file = "medium '" + json.value("name", std::string()) + "'";
+  const JsonNode node(json, "", file);
+  node.RequireKeys({ "kind", "visibility", "rain_rate", "leaf_area_density", "extinction",
+    "backscatter_ratio", "drops", "renewed", "name", "object_id", "shape", "center", "lengths",
+    "heading", "bottom", "top", "softness", "velocity", "points", "triangles", "comment" });
+  avianlidar::PlacedMedium placed{ MediumOf(node, wavelength), VolumeOf(node) };
+  if (node.Has("renewed"))
+  {
+    placed.medium.renewed = node.Get("renewed").NumberIn(0.0, 1.0);
+  }
+  if (!placed.medium.isFollowed)
+  {
+    placed.medium.objectId = static_cast<int>(NumberOr(node, "object_id", placed.medium.objectId));
+  }
+  if (placed.medium.sharesGaps && placed.volume.shape == MediumShape::Everywhere)
+  {
+    node.Get("shape").Fail("must be a layer, box, ellipsoid or surface for foliage");
+  }
+  const std::string problem = avianlidar::checkMedium(placed.medium);
+  if (!problem.empty())
+  {
+    node.Fail(problem);
+  }
+  return placed;
+}
+
+namespace
+{
+/// A closed surface as triangles that face one way. Throws if it is open.
+vtkSmartPointer<vtkPolyData> Closed(vtkPolyData* surface, const std::string& name)
+{
+  vtkNew<vtkTriangleFilter> triangles;
+  triangles->SetInputData(surface);
+  triangles->PassVertsOff();
+  triangles->PassLinesOff();
+  vtkNew<vtkCleanPolyData> clean; // corners of neighbours become one point
+  clean->SetInputConnection(triangles->GetOutputPort());
+  clean->SetTolerance(0.0);
+  vtkNew<vtkPolyDataNormals> facing;
+  facing->SetInputConnection(clean->GetOutputPort());
+  facing->SplittingOff();
+  facing->ConsistencyOn();
+  facing->ComputePointNormalsOff();
+  vtkNew<vtkFeatureEdges> edges;
+  edges->SetInputConnection(facing->GetOutputPort());
+  edges->FeatureEdgesOff();
+  edges->ManifoldEdgesOff();
+  edges->NonManifoldEdgesOff();
+  edges->Update();
+  if (facing->GetOutput()->GetNumberOfPolys() == 0 || edges->GetOutput()->GetNumberOfCells() > 0)
+  {
+    throw std::runtime_error("medium '" + name + "': the input surface has " +
+      std::to_string(edges->GetOutput()->GetNumberOfCells()) + " edges with one triangle, and " +
+      std::to_string(facing->GetOutput()->GetNumberOfPolys()) +
+      " triangles, expected a closed surface");
+  }
+  auto closed = vtkSmartPointer<vtkPolyData>::New();
+  closed->SetPoints(facing->GetOutput()->GetPoints());
+  closed->SetPolys(facing->GetOutput()->GetPolys());
+  return closed;
+}
+
+/// A sphere or a cube, of which the corners go to the half axes.
+vtkSmartPointer<vtkPolyData> Drawn(const MediumVolume& volume)
+{
+  auto drawn = vtkSmartPointer<vtkPolyData>::New();
+  if (volume.shape == MediumShape::Ellipsoid)
+  {
+    vtkNew<vtkSphereSource> sphere;
+    sphere->SetRadius(1.0);
+    sphere->SetThetaResolution(24);
+    sphere->SetPhiResolution(16);
+    sphere->SetOutputPointsPrecision(vtkAlgorithm::DOUBLE_PRECISION);
+    sphere->Update();
+    drawn->CopyStructure(sphere->GetOutput());
+  }
+  else
+  {
+    vtkNew<vtkCubeSource> cube;
+    cube->SetXLength(2.0);
+    cube->SetYLength(2.0);
+    cube->SetZLength(2.0);
+    cube->SetOutputPointsPrecision(vtkAlgorithm::DOUBLE_PRECISION);
+    cube->Update();
+    drawn->CopyStructure(cube->GetOutput());
+  }
+  vtkPoints* points = drawn->GetPoints();
+  for (vtkIdType i = 0; i < points->GetNumberOfPoints(); ++i)
+  {
+    double p[3];
+    points->GetPoint(i, p);
+    const Vec3 at = volume.centre + p[0] * volume.halfAxes[0] + p[1] * volume.halfAxes[1] +
+      p[2] * volume.halfAxes[2];
+    points->SetPoint(i, at.x, at.y, at.z);
+  }
+  return drawn;
+}
+}
+
+//------------------------------------------------------------------------------
+vtkSmartPointer<vtkPolyData> vtkAvianLidarMedia::Surface(
+  const std::string& text, vtkPolyData* closed, double size)
+{
+  const Json json = ParsedText(text, "medium");
+  vtkSmartPointer<vtkPolyData> drawn;
+  constexpr double anyLight = 905e-9;
+  if (json.value("shape", std::string()) == "surface")
+  {
+    drawn = Closed(closed ? closed : vtkSmartPointer<vtkPolyData>::New().Get(),
+      json.value("name", std::string()));
+    vtkAvianLidarArrays::SetFieldStrings(
+      drawn->GetFieldData(), vtkAvianLidarArrays::Medium, { text });
+    Read(TextOf(drawn, json.value("name", std::string())), anyLight);
+    return drawn;
+  }
+  MediumVolume volume = Read(text, anyLight).volume;
+  if (!volume.isBounded())
+  {
+    const bool isLayer = volume.shape == MediumShape::Layer;
+    const double low = isLayer ? std::max(volume.bottom, volume.top - size) : -0.5 * size;
+    const double high = isLayer ? volume.top : 0.5 * size;
+    volume.centre = Vec3(0.0, 0.0, 0.5 * (low + high));
+    volume.halfAxes = { Vec3(0.5 * size, 0.0, 0.0), Vec3(0.0, 0.5 * size, 0.0),
+      Vec3(0.0, 0.0, 0.5 * (high - low)) };
+  }
+  drawn = Drawn(volume);
+  vtkAvianLidarArrays::SetFieldStrings(
+    drawn->GetFieldData(), vtkAvianLidarArrays::Medium, { text });
+  return drawn;
+}
+
+//------------------------------------------------------------------------------
+bool vtkAvianLidarMedia::IsMedium(vtkPolyData* leaf)
+{
+  auto* texts = vtkStringArray::SafeDownCast(
+    leaf->GetFieldData()->GetAbstractArray(vtkAvianLidarArrays::Medium.name));
+  return texts && texts->GetNumberOfValues() == 1;
+}
+
+//------------------------------------------------------------------------------
+std::string vtkAvianLidarMedia::TextOf(vtkPolyData* leaf, const std::string& name)
+{
+  if (!IsMedium(leaf))
+  {
+    return {};
+  }
+  auto* texts = vtkStringArray::SafeDownCast(
+    leaf->GetFieldData()->GetAbstractArray(vtkAvianLidarArrays::Medium.name));
+  const std::string file = "medium '" + name + "'";
+  Json json = ParsedText(texts->GetValue(0), file);
+  if (JsonNode(json, "", file).Get("shape").String() != "surface" || json.contains("points"))
+  {
+    return json.dump();
+  }
+  Json points = Json::array();
+  for (vtkIdType i = 0; i < leaf->GetNumberOfPoints(); ++i)
+  {
+    double p[3];
+    leaf->GetPoint(i, p);
+    points.push_back({ p[0], p[1], p[2] });
+  }
+  Json triangles = Json::array();
+  vtkIdType size = 0;
+  const vtkIdType* corners = nullptr;
+  vtkCellArray* polys = leaf->GetPolys();
+  for (polys->InitTraversal(); polys->GetNextCell(size, corners);)
+  {
+    for (vtkIdType k = 2; k < size; ++k)
+    {
+      triangles.push_back({ corners[0], corners[k - 1], corners[k] });
+    }
+  }
+  json["points"] = std::move(points);
+  json["triangles"] = std::move(triangles);
+  return json.dump();
+}
+
+//------------------------------------------------------------------------------
+bool vtkAvianLidarMedia::IsObject(const std::string& text, int& id, std::string& name)
+{
+  const Json json = ParsedText(text, "medium");
+  id = json.value("object_id", -1);
+  name = json.value("name", std::string());
+  return json.value("kind", std::string()) == "foliage";
+}
+
+//------------------------------------------------------------------------------
+std::string vtkAvianLidarMedia::WithObject(const std::string& text, const std::string& name, int id)
+{
+  Json json = ParsedText(text, "medium");
+  json["name"] = name;
+  if (id >= 0)
+  {
+    json["object_id"] = id;
+  }
+  return json.dump();
+}
+
+//------------------------------------------------------------------------------
+std::string vtkAvianLidarMedia::InWords(const std::string& text)
+{
+  Json json = ParsedText(text, "medium");
+  json.erase("points");
+  json.erase("triangles");
+  return json.dump();
+}
