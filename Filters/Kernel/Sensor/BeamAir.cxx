@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <numeric>
 #include <utility>
@@ -39,7 +40,7 @@ BeamAir::BeamAir(const Sensor& sensor, double attenuation, const std::vector<Med
   double all = 0.0;
   for (int cell = 0; cell < Across * Across; ++cell)
   {
-    Column column{ 0.0, 0.0, 0.0, cell };
+    Column column{ 0.0, 0.0, 0.0, std::uint64_t{ 1 } << cell };
     for (int point = 0; point < PointsOfCell * PointsOfCell; ++point)
     {
       const auto at = [=](int number, int part)
@@ -88,7 +89,7 @@ void BeamAir::begin(const BeamFrame& frame, double seconds)
   {
     return;
   }
-  this->Columns = this->Grid;
+  this->chooseColumns(frame);
   this->Parts.clear();
   this->Ends.clear();
   for (const Column& column : this->Columns)
@@ -96,6 +97,84 @@ void BeamAir::begin(const BeamFrame& frame, double seconds)
     this->findParts(frame.origin, unitVector(frame.direction(column.x, column.y)));
   }
   this->chooseLooked();
+}
+
+/// Whether the rim of a beam crosses all media where its axis does, to a quarter of a range unit and
+/// a hundredth of the way through.
+bool BeamAir::rimAgrees(const BeamFrame& frame)
+{
+  this->Parts.clear();
+  this->Ends.clear();
+  constexpr double rim[][2] = { { 0.0, 0.0 }, { 1.0, 0.0 }, { -1.0, 0.0 }, { 0.0, 1.0 },
+    { 0.0, -1.0 } };
+  for (const auto& [x, y] : rim)
+  {
+    this->findParts(frame.origin, unitVector(frame.direction(x, y)));
+  }
+  const std::size_t count = this->Ends[0];
+  bool agrees = this->Parts.size() == count * std::size(rim);
+  for (std::size_t p = count; p < this->Parts.size() && agrees; ++p)
+  {
+    const Part& one = this->Parts[p % count];
+    const Part& two = this->Parts[p];
+    const double off = std::max(std::fabs(one.crossing.begin - two.crossing.begin),
+      std::fabs(one.crossing.end - two.crossing.end));
+    const double length = one.crossing.end - one.crossing.begin;
+    agrees = one.medium == two.medium && off < 0.25 * this->UnitLength + 0.01 * length;
+  }
+  this->Parts.clear();
+  this->Ends.clear();
+  return agrees;
+}
+
+/// As many columns as the media met ask for.
+void BeamAir::chooseColumns(const BeamFrame& frame)
+{
+  const Vec3* up = nullptr;
+  bool isWide = true;
+  bool isLayered = true;
+  for (const std::uint32_t k : this->Met)
+  {
+    const MediumVolume& volume = this->Placed[k].volume;
+    isWide = isWide && isWiderThan(volume, frame, this->Instrument.rangeGate);
+    isLayered = isLayered && !volume.isBounded() && (!up || *up == volume.up);
+    up = &volume.up;
+  }
+  if (isWide && this->rimAgrees(frame))
+  {
+    this->Columns.assign(1, this->Axis);
+    return;
+  }
+  this->Columns = this->Grid;
+  if (!isLayered)
+  {
+    return;
+  }
+  // Of layers heights alone count: columns of about one height are one.
+  const auto heightOf = [&](const Column& c)
+  { return glm::dot(c.x * frame.e1 + c.y * frame.e2, *up); };
+  std::stable_sort(this->Columns.begin(), this->Columns.end(),
+    [&](const Column& a, const Column& b) { return heightOf(a) < heightOf(b); });
+  std::size_t rows = 0;
+  double before = 0.0;
+  for (std::size_t k = 0; k < this->Columns.size(); ++k)
+  {
+    const Column column = this->Columns[k];
+    const bool begins = std::floor(Across * before) > static_cast<double>(rows) - 1.0;
+    before += column.weight;
+    if (begins || k == 0)
+    {
+      this->Columns[rows++] = column;
+      continue;
+    }
+    Column& row = this->Columns[rows - 1];
+    const double weight = row.weight + column.weight;
+    row.x = (row.weight * row.x + column.weight * column.x) / weight;
+    row.y = (row.weight * row.y + column.weight * column.y) / weight;
+    row.weight = weight;
+    row.bits |= column.bits;
+  }
+  this->Columns.resize(rows);
 }
 
 void BeamAir::beginRay(const Vec3& origin, const Vec3& direction, double seconds)
@@ -210,7 +289,7 @@ double BeamAir::transmission(double range, std::uint64_t columns)
   for (std::size_t k = 0; this->isLocal() && k < this->Columns.size(); ++k)
   {
     const Column& column = this->Columns[k];
-    if (columns == 0 || (columns >> column.bit & 1) != 0)
+    if (columns == 0 || (columns & column.bits) != 0)
     {
       sum += column.weight * std::exp(-this->depth(k, range));
       all += column.weight;
@@ -300,7 +379,7 @@ double BeamAir::weightOf(std::uint64_t columns) const
   double sum = 0.0;
   for (const Column& column : this->Columns)
   {
-    sum += (columns >> column.bit & 1) != 0 ? column.weight : 0.0;
+    sum += (columns & column.bits) != 0 ? column.weight : 0.0;
   }
   return sum;
 }
@@ -328,7 +407,7 @@ void BeamAir::takeUpTo(double range)
     const double all = columns != 0 ? this->weightOf(columns) : 1.0;
     for (std::size_t k = 0; k < this->Columns.size(); ++k)
     {
-      const bool isMet = all <= 0.0 || columns == 0 || (columns >> this->Columns[k].bit & 1) != 0;
+      const bool isMet = all <= 0.0 || columns == 0 || (columns & this->Columns[k].bits) != 0;
       this->OpenOf[k] -= isMet ? weight / (all > 0.0 ? all : 1.0) : 0.0;
     }
     this->Left -= weight;

@@ -5,11 +5,13 @@
  * unit, of which surfaces take their share.
  *
  * Where all air is the same everywhere, AirEcho.h knows the units, and only the share of the pulse
- * counts that no nearer surface has met. A beam that meets a medium which does not fill the scene
- * is divided into columns: the cells of a grid of eight by eight over its plane, each with a
- * direction, a share of the pulse, and the parts in which it crosses the media (MediumVolume.h). A
- * sample knows the columns that its rays lie in (BeamSamples::columns). So light behind half a
- * tree is weakened where the tree is, and a tree behind half a wall returns what the wall leaves.
+ * counts that no nearer surface has met. Of a beam that meets media which do not fill the scene its
+ * axis counts, if they are wider than it and its rim crosses them where the axis does. Else it is
+ * divided into columns, each with a direction, a share of the pulse, and the parts in which it
+ * crosses the media (MediumVolume.h): the cells of a grid of eight by eight over its plane, or of
+ * layers alone, eight rows. A sample knows the columns that its rays lie in (BeamSamples::columns).
+ * So light behind half a tree is weakened where the tree is, and a tree behind half a wall returns
+ * what the wall leaves.
  *
  * Source: the lidar equation, as AirEcho.h.
  * Differs: as AirEcho.h.
@@ -136,15 +138,17 @@ public:
 private:
   struct Column
   {
-    double x, y;   ///< in the beam's plane
-    double weight; ///< share of the pulse
-    int bit;
+    double x, y;        ///< in the beam's plane
+    double weight;      ///< share of the pulse
+    std::uint64_t bits; ///< of the grid
   };
   struct Part
   {
     std::uint32_t medium;
     MediumCrossing crossing;
   };
+  bool rimAgrees(const BeamFrame& frame);
+  void chooseColumns(const BeamFrame& frame);
   void findParts(const Vec3& origin, const Vec3& direction);
   double depth(std::size_t column, double range) const;
   void takeUpTo(double range);
@@ -158,7 +162,7 @@ private:
   const std::vector<Medium>& Everywhere;
   const std::vector<PlacedMedium>& Placed;
   std::vector<Column> Grid; ///< of all beams
-  Column Axis{ 0.0, 0.0, 1.0, 0 };
+  Column Axis{ 0.0, 0.0, 1.0, ~std::uint64_t{ 0 } };
 
   // The beam.
   Vec3 Origin{ 0.0 };

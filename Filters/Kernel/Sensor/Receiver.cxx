@@ -138,8 +138,8 @@ void BeamReceiver::collectUnits(const std::vector<RangeUnit>& units)
     const bool isAlarm = alarm != alarms.end() && *alarm == index;
     const bool isLit = lit != units.end() && lit->index == index;
     const double light = isLit ? lit->energy : 0.0;
-    if (isAlarm || isLocal || this->Air.mean(index) > 0.0 || !(light < this->Plan.faintLight) ||
-      this->Noise.isRare(index))
+    const bool hasAir = isLocal ? index == next || !this->FollowsAir : this->Air.mean(index) > 0.0;
+    if (isAlarm || hasAir || !(light < this->Plan.faintLight) || this->Noise.isRare(index))
     {
       this->addUnit(index, light, isLit ? lit->paths : 0, isAlarm);
     }

@@ -269,4 +269,12 @@ bool mayMeet(const MediumVolume& volume, const BeamFrame& frame, double far, dou
   const double angle = std::atan2(safeLength(glm::cross(frame.axis, to)), glm::dot(frame.axis, to));
   return angle <= frame.halfBeamwidth + std::asin(radius / range) + 1e-9;
 }
+
+bool isWiderThan(const MediumVolume& volume, const BeamFrame& frame, double far)
+{
+  const double range = std::min(far, safeLength(volume.centre - frame.origin) + volume.radius());
+  const auto isWide = [&](const Vec3& axis)
+  { return safeLength(axis) > 2.0 * frame.tanHalf * range; };
+  return !volume.isBounded() || std::all_of(volume.halfAxes.begin(), volume.halfAxes.end(), isWide);
+}
 }

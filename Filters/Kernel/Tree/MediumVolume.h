@@ -94,6 +94,10 @@ private:
   std::vector<std::pair<double, int>> Hits; ///< range, and 1 where the ray enters, else -1
 };
 
+/// Whether a volume is, to each side of its middle, wider than a beam at its far end, so that none
+/// of it lies between the beam's axis and its rim.
+bool isWiderThan(const MediumVolume& volume, const BeamFrame& frame, double far);
+
 /// Whether a beam may meet a volume within `far`, m: conservative.
 bool mayMeet(const MediumVolume& volume, const BeamFrame& frame, double far, double seconds);
 }
