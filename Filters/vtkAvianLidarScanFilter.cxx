@@ -268,8 +268,11 @@ std::string vtkAvianLidarScanFilter::PlaceMedia()
     in.Media.clear();
     for (const std::string& text : in.Surfaces.media)
     {
-      in.Media.push_back(
-        vtkAvianLidarMedia::Read(text, avianlidar::SpeedOfLight / sensor.frequency));
+      for (const avianlidar::PlacedMedium& one :
+        vtkAvianLidarMedia::Read(text, avianlidar::SpeedOfLight / sensor.frequency))
+      {
+        in.Media.push_back(one);
+      }
     }
     in.MediaOf = in.Surfaces.media;
     in.MediaFor = sensor.frequency;

@@ -7,6 +7,7 @@
 #include "vtkAvianLidarCells.h"
 #include "vtkAvianLidarGuard.h"
 #include "vtkAvianLidarMaterials.h"
+#include "vtkAvianLidarMedia.h"
 #include "vtkAvianLidarText.h"
 
 #include "vtkCellData.h"
@@ -107,7 +108,17 @@ void AddBlocks(BuiltScene& built, bool empty, vtkMultiBlockDataSet* output)
     {
       block = vtkSmartPointer<vtkPolyData>::New();
       AddGeometry(part.mesh, block);
-      AddCellArrays(part.mesh, static_cast<int>(i), built.description.materials, block);
+      if (part.medium.empty())
+      {
+        AddCellArrays(part.mesh, static_cast<int>(i), built.description.materials, block);
+      }
+      else
+      {
+        constexpr double drawn = 2000.0; // m, of what has no bounds
+        const std::string named = vtkAvianLidarMedia::WithObject(part.medium, part.name, -1);
+        block = vtkAvianLidarMedia::Surface(
+          vtkAvianLidarMedia::WithCrowns(named, block, part.crowns), block, drawn);
+      }
       vtkAvianLidarArrays::SetFieldStrings(
         block->GetFieldData(), vtkAvianLidarArrays::ObjectNames, { part.name });
       vtkAvianLidarArrays::SetFieldStrings(

@@ -24,6 +24,7 @@ struct Feature
   std::optional<double> width;
   std::vector<Polygon> polygons;
   std::vector<Ring> lines;
+  Ring points;
 };
 
 struct Counts
@@ -120,6 +121,15 @@ void CollectGeometry(const OGRGeometry& geometry, Feature& feature, Counts& coun
       for (const OGRGeometry* part : *geometry.toGeometryCollection())
       {
         CollectGeometry(*part, feature, counts);
+      }
+      break;
+    case wkbPoint:
+      feature.points.push_back({ geometry.toPoint()->getX(), geometry.toPoint()->getY() });
+      break;
+    case wkbMultiPoint:
+      for (const OGRPoint* point : *geometry.toMultiPoint())
+      {
+        feature.points.push_back({ point->getX(), point->getY() });
       }
       break;
     default:
@@ -283,6 +293,7 @@ void ToLocal(
     {
       ToLocal(line, frame, scene.origin->height);
     }
+    ToLocal(feature.points, frame, scene.origin->height);
   }
 }
 
@@ -308,7 +319,7 @@ double GetHeight(const Feature& feature, const Object& object, std::size_t numbe
 }
 
 std::vector<Polygon> GetRegions(
-  const Feature& feature, const FootprintOptions& options, Counts& counts)
+  const Feature& feature, const FootprintOptions& options, bool isMedium, Counts& counts)
 {
   std::vector<Polygon> regions;
   bool repaired = false;
@@ -321,7 +332,7 @@ std::vector<Polygon> GetRegions(
   }
   counts.repaired += repaired;
   const std::optional<double> width = feature.width ? feature.width : options.width;
-  for (const Ring& line : feature.lines)
+  for (const Ring& line : isMedium ? std::vector<Ring>() : feature.lines)
   {
     if (!width)
     {
@@ -336,6 +347,47 @@ std::vector<Polygon> GetRegions(
   return regions;
 }
 
+// Of crowns, points along a line, a width apart and half of one from its ends.
+void AddAlong(const Ring& line, double width, Ring& points)
+{
+  double next = 0.5 * width;
+  for (std::size_t i = 0; i + 1 < line.size(); ++i)
+  {
+    const Vec2 way{ line[i + 1][0] - line[i][0], line[i + 1][1] - line[i][1] };
+    const double length = std::hypot(way[0], way[1]);
+    for (; next <= length; next += width)
+    {
+      points.push_back(
+        { line[i][0] + next / length * way[0], line[i][1] + next / length * way[1] });
+    }
+    next -= length;
+  }
+}
+
+// The crowns of trees and rows of trees: ellipsoids between base and height.
+void AddCrowns(
+  const Feature& feature, const Object& object, std::size_t number, Counts& counts, Part& crowns)
+{
+  const std::optional<double> width = feature.width ? feature.width : object.footprints.width;
+  Ring points = feature.points;
+  for (const Ring& line : feature.lines)
+  {
+    width ? AddAlong(line, *width, points) : void(++counts.thinLines);
+  }
+  if (points.empty() || !width)
+  {
+    counts.points += static_cast<int>(points.size());
+    return;
+  }
+  const double base = object.footprints.base;
+  const double top = base + GetHeight(feature, object, number, counts);
+  for (const Vec2& p : points)
+  {
+    crowns.mesh.points.push_back({ p[0], p[1], 0.5 * (base + top) });
+    crowns.crowns.push_back({ *width, top - base });
+  }
+}
+
 std::vector<Part> Raise(const std::vector<Feature>& features, const Object& object, Counts& counts,
   const std::function<bool()>& keepGoing)
 {
@@ -345,16 +397,26 @@ std::vector<Part> Raise(const std::vector<Feature>& features, const Object& obje
   materials.roof = options.roofMaterial < 0 ? materials.facade : options.roofMaterial;
   materials.glazing = options.glazing;
   std::vector<Part> parts;
+  Part crowns{ object.name, object.objectClass, {} };
   for (std::size_t i = 0; i < features.size(); ++i)
   {
     if (!keepGoing())
     {
       throw WorkStopped();
     }
-    const std::vector<Polygon> regions = GetRegions(features[i], options, counts);
+    const bool isMedium = !object.medium.empty();
+    if (isMedium)
+    {
+      AddCrowns(features[i], object, i + 1, counts, crowns);
+    }
+    else
+    {
+      counts.points += static_cast<int>(features[i].points.size());
+    }
+    const std::vector<Polygon> regions = GetRegions(features[i], options, isMedium, counts);
     if (regions.empty())
     {
-      ++counts.empty;
+      counts.empty += isMedium ? 0 : 1;
       continue;
     }
     if (parts.empty() || options.separate)
@@ -369,6 +431,10 @@ std::vector<Part> Raise(const std::vector<Feature>& features, const Object& obje
                    : AddSolid(region, options.base, GetHeight(features[i], object, i + 1, counts),
                        materials, mesh);
     }
+  }
+  if (!crowns.crowns.empty())
+  {
+    parts.push_back(std::move(crowns));
   }
   return parts;
 }

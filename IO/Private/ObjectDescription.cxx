@@ -204,10 +204,10 @@ void ParseShape(const JsonNode& node, FootprintOptions& options)
 
 void ParseFootprints(const JsonNode& node, Scene& scene, Object& object)
 {
-  node.RequireKeys(
-    { "footprints", "name", "class", "material", "material_map", "comment", "position", "geodetic",
-      "rotation", "scale", "crs", "layer", "filter", "base", "height", "height_attribute", "flat",
-      "width", "width_attribute", "roof_material", "glazing", "features", "name_attribute" });
+  node.RequireKeys({ "footprints", "name", "class", "material", "material_map", "medium", "comment",
+    "position", "geodetic", "rotation", "scale", "crs", "layer", "filter", "base", "height",
+    "height_attribute", "flat", "width", "width_attribute", "roof_material", "glazing", "features",
+    "name_attribute" });
   object.kind = ObjectKind::Footprints;
   object.file = AbsoluteFile(node.Get("footprints"), scene);
   FootprintOptions& options = object.footprints;
@@ -267,10 +267,29 @@ void ParseGround(const JsonNode& node, Object& object)
   }
 }
 
+// What a medium is made of is checked where it is read as one.
+std::string ParseMedium(const JsonNode& node, bool hasSurface)
+{
+  Json text = node.Content();
+  if (!text.is_object())
+  {
+    node.Fail("must be an object with kind, what says how much of it there is, and a shape");
+  }
+  if (hasSurface && text.contains("shape"))
+  {
+    node.Get("shape").Fail("stands beside a file or footprints, whose surface is the shape");
+  }
+  if (hasSurface)
+  {
+    text["shape"] = "surface";
+  }
+  return text.dump();
+}
+
 void ParseMesh(const JsonNode& node, Scene& scene, Object& object)
 {
-  node.RequireKeys({ "file", "name", "class", "material", "material_map", "comment", "position",
-    "geodetic", "rotation", "scale", "up_axis", "crs" });
+  node.RequireKeys({ "file", "name", "class", "material", "material_map", "medium", "comment",
+    "position", "geodetic", "rotation", "scale", "up_axis", "crs" });
   object.kind = ObjectKind::Mesh;
   object.file = AbsoluteFile(node.Get("file"), scene);
   if (node.Has("up_axis"))
@@ -300,9 +319,13 @@ Object ParseObject(const JsonNode& node, Scene& scene)
   Object object;
   object.key = node.GetPath();
   const int kinds = node.Has("file") + node.Has("footprints") + node.Has("ground");
-  if (kinds != 1)
+  if (kinds > 1 || (kinds == 0 && !node.Has("medium")))
   {
-    node.Fail("must have one of file, footprints, ground, and only one");
+    node.Fail("must have one of file, footprints, ground, and only one, or a medium");
+  }
+  if (node.Has("medium"))
+  {
+    object.medium = ParseMedium(node.Get("medium"), kinds == 1);
   }
   if (node.Has("file"))
   {
@@ -312,14 +335,19 @@ Object ParseObject(const JsonNode& node, Scene& scene)
   {
     ParseFootprints(node, scene, object);
   }
-  else
+  else if (node.Has("ground"))
   {
     ParseGround(node, object);
+  }
+  else
+  {
+    node.RequireKeys({ "medium", "name", "comment" });
+    object.kind = ObjectKind::Medium;
   }
   ParsePlacement(node, scene, object);
   object.name = node.Has("name")
     ? node.Get("name").Name()
-    : (object.file.empty() ? std::string("Ground")
+    : (object.file.empty() ? std::string(node.Has("ground") ? "Ground" : "Medium")
                            : vtksys::SystemTools::GetFilenameWithoutExtension(object.file));
   object.objectClass = node.Has("class") ? node.Get("class").String() : std::string();
   object.material = node.Has("material") ? ParseMaterialName(node.Get("material"), scene) : -1;

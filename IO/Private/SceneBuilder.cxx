@@ -164,7 +164,10 @@ Part MakeMesh(const Scene& scene, const Object& object, MeshFiles& files,
     report.push_back(object.name + ": " + std::to_string(part.mesh.skippedFaces) +
       " points or lines were left out");
   }
-  MapMaterials(scene, object, part.mesh, unmapped);
+  if (object.medium.empty())
+  {
+    MapMaterials(scene, object, part.mesh, unmapped);
+  }
   return part;
 }
 
@@ -173,6 +176,11 @@ std::vector<Part> BuildObject(const Scene& scene, const Object& object, MeshFile
   const std::function<bool()>& keepGoing)
 {
   std::vector<Part> parts;
+  if (object.kind == ObjectKind::Medium)
+  {
+    parts.push_back({ object.name, "air", {}, object.medium });
+    return parts;
+  }
   if (object.kind == ObjectKind::Mesh)
   {
     parts.push_back(MakeMesh(scene, object, files, unmapped, report, keepGoing));
@@ -182,7 +190,7 @@ std::vector<Part> BuildObject(const Scene& scene, const Object& object, MeshFile
     Object named = object;
     named.material = object.material >= 0 ? object.material : FindRule(object.rules, object.name);
     named.material = named.material >= 0 ? named.material : FindRule(scene.rules, object.name);
-    if (named.material < 0)
+    if (named.material < 0 && named.medium.empty())
     {
       unmapped.Add(object.name);
     }
@@ -197,6 +205,7 @@ std::vector<Part> BuildObject(const Scene& scene, const Object& object, MeshFile
   }
   for (Part& part : parts)
   {
+    part.medium = object.medium;
     Place(scene, object, part.mesh);
     // Footprints are in the scene's metres by now.
     if (object.kind == ObjectKind::Mesh && !object.crs.empty() && object.crs != "local")

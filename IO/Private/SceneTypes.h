@@ -102,7 +102,8 @@ enum class ObjectKind
 {
   Mesh,
   Footprints,
-  Ground
+  Ground,
+  Medium ///< of a shape of its own
 };
 
 struct Object
@@ -123,6 +124,8 @@ struct Object
   std::string crs;
   FootprintOptions footprints;
   GroundOptions ground;
+  /// JSON of a medium (vtkAvianLidarMedium.h): what fills its surface, or by itself; empty: none.
+  std::string medium;
 };
 
 struct Scene
@@ -155,6 +158,9 @@ struct Part
   std::string name;
   std::string objectClass;
   Mesh mesh;
+  std::string medium{}; ///< JSON; empty: a surface
+  /// Width and height of ellipsoids about the points of the mesh, which has no triangles then.
+  std::vector<std::array<double, 2>> crowns{};
 };
 }
 

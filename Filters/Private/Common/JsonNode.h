@@ -46,6 +46,7 @@ public:
   [[noreturn]] void Fail(const std::string& message) const;
 
   const std::string& GetPath() const { return this->Path; }
+  const Json& Content() const { return this->Value; }
   bool IsNumber() const { return this->Value.is_number(); }
   bool IsArray() const { return this->Value.is_array(); }
 

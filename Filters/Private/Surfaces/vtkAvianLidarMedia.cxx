@@ -8,6 +8,7 @@
 #include "vtkAvianLidarBuiltInTexts.h"
 #include "vtkAvianLidarNames.h"
 
+#include "vtkAppendPolyData.h"
 #include "vtkCellArray.h"
 #include "vtkCleanPolyData.h"
 #include "vtkCubeSource.h"
@@ -228,33 +229,52 @@ Medium vtkAvianLidarMedia::RainOf(double rate)
 }
 
 //------------------------------------------------------------------------------
-avianlidar::PlacedMedium vtkAvianLidarMedia::Read(const std::string& text, double wavelength)
+std::vector<avianlidar::PlacedMedium> vtkAvianLidarMedia::Read(
+  const std::string& text, double wavelength)
 {
   const Json json = ParsedText(text, "medium");
   const std::string file = "medium '" + json.value("name", std::string()) + "'";
   const JsonNode node(json, "", file);
-  node.RequireKeys({ "kind", "visibility", "rain_rate", "leaf_area_density", "extinction",
-    "backscatter_ratio", "drops", "renewed", "name", "object_id", "shape", "center", "lengths",
-    "heading", "bottom", "top", "softness", "velocity", "points", "triangles", "comment" });
-  avianlidar::PlacedMedium placed{ MediumOf(node, wavelength), VolumeOf(node) };
+  node.RequireKeys(
+    { "kind", "visibility", "rain_rate", "leaf_area_density", "extinction", "backscatter_ratio",
+      "drops", "renewed", "name", "object_id", "shape", "center", "lengths", "heading", "bottom",
+      "top", "softness", "velocity", "points", "triangles", "ellipsoids", "comment" });
+  Medium medium = MediumOf(node, wavelength);
   if (node.Has("renewed"))
   {
-    placed.medium.renewed = node.Get("renewed").NumberIn(0.0, 1.0);
+    medium.renewed = node.Get("renewed").NumberIn(0.0, 1.0);
   }
-  if (!placed.medium.isFollowed)
+  if (!medium.isFollowed)
   {
-    placed.medium.objectId = static_cast<int>(NumberOr(node, "object_id", placed.medium.objectId));
+    medium.objectId = static_cast<int>(NumberOr(node, "object_id", medium.objectId));
   }
-  if (placed.medium.sharesGaps && placed.volume.shape == MediumShape::Everywhere)
-  {
-    node.Get("shape").Fail("must be a layer, box, ellipsoid or surface for foliage");
-  }
-  const std::string problem = avianlidar::checkMedium(placed.medium);
+  const std::string problem = avianlidar::checkMedium(medium);
   if (!problem.empty())
   {
     node.Fail(problem);
   }
-  return placed;
+  std::vector<avianlidar::PlacedMedium> all;
+  if (node.Has("ellipsoids"))
+  {
+    for (const JsonNode& one : node.Get("ellipsoids").Items())
+    {
+      const auto n = one.Items(5);
+      MediumVolume volume;
+      volume.shape = MediumShape::Ellipsoid;
+      volume.centre = Vec3(n[0].Number(), n[1].Number(), n[2].Number());
+      const double across = 0.5 * n[3].PositiveNumber();
+      volume.halfAxes = { Vec3(across, 0.0, 0.0), Vec3(0.0, across, 0.0),
+        Vec3(0.0, 0.0, 0.5 * n[4].PositiveNumber()) };
+      all.push_back({ medium, volume });
+    }
+    return all;
+  }
+  all.push_back({ medium, VolumeOf(node) });
+  if (medium.sharesGaps && all[0].volume.shape == MediumShape::Everywhere)
+  {
+    node.Get("shape").Fail("must be a layer, box, ellipsoid or surface for foliage");
+  }
+  return all;
 }
 
 namespace
@@ -273,6 +293,7 @@ vtkSmartPointer<vtkPolyData> Closed(vtkPolyData* surface, const std::string& nam
   facing->SetInputConnection(clean->GetOutputPort());
   facing->SplittingOff();
   facing->ConsistencyOn();
+  facing->NonManifoldTraversalOff();
   facing->ComputePointNormalsOff();
   vtkNew<vtkFeatureEdges> edges;
   edges->SetInputConnection(facing->GetOutputPort());
@@ -346,7 +367,8 @@ vtkSmartPointer<vtkPolyData> vtkAvianLidarMedia::Surface(
     Read(TextOf(drawn, json.value("name", std::string())), anyLight);
     return drawn;
   }
-  MediumVolume volume = Read(text, anyLight).volume;
+  const std::vector<avianlidar::PlacedMedium> all = Read(text, anyLight);
+  MediumVolume volume = all[0].volume;
   if (!volume.isBounded())
   {
     const bool isLayer = volume.shape == MediumShape::Layer;
@@ -357,6 +379,17 @@ vtkSmartPointer<vtkPolyData> vtkAvianLidarMedia::Surface(
       Vec3(0.0, 0.0, 0.5 * (high - low)) };
   }
   drawn = Drawn(volume);
+  if (all.size() > 1)
+  {
+    vtkNew<vtkAppendPolyData> together;
+    together->SetOutputPointsPrecision(vtkAlgorithm::DOUBLE_PRECISION);
+    for (const avianlidar::PlacedMedium& one : all)
+    {
+      together->AddInputData(Drawn(one.volume));
+    }
+    together->Update();
+    drawn->CopyStructure(together->GetOutput());
+  }
   vtkAvianLidarArrays::SetFieldStrings(
     drawn->GetFieldData(), vtkAvianLidarArrays::Medium, { text });
   return drawn;
@@ -430,10 +463,32 @@ std::string vtkAvianLidarMedia::WithObject(const std::string& text, const std::s
 }
 
 //------------------------------------------------------------------------------
+std::string vtkAvianLidarMedia::WithCrowns(
+  const std::string& text, vtkPolyData* middles, const std::vector<std::array<double, 2>>& sizes)
+{
+  if (sizes.empty())
+  {
+    return text;
+  }
+  Json json = ParsedText(text, "medium");
+  json["shape"] = "ellipsoid";
+  Json ellipsoids = Json::array();
+  for (std::size_t i = 0; i < sizes.size(); ++i)
+  {
+    double p[3];
+    middles->GetPoint(static_cast<vtkIdType>(i), p);
+    ellipsoids.push_back({ p[0], p[1], p[2], sizes[i][0], sizes[i][1] });
+  }
+  json["ellipsoids"] = std::move(ellipsoids);
+  return json.dump();
+}
+
+//------------------------------------------------------------------------------
 std::string vtkAvianLidarMedia::InWords(const std::string& text)
 {
   Json json = ParsedText(text, "medium");
   json.erase("points");
   json.erase("triangles");
+  json.erase("ellipsoids");
   return json.dump();
 }

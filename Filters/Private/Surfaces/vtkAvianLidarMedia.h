@@ -13,7 +13,9 @@
 
 #include "vtkSmartPointer.h"
 
+#include <array>
 #include <string>
+#include <vector>
 
 class vtkPolyData;
 
@@ -26,9 +28,9 @@ avianlidar::Medium HazeOf(double visibility, double extinction);
 /// @param rate mm/h, above 0
 avianlidar::Medium RainOf(double rate);
 
-/// A medium by its text. Throws std::runtime_error, which names the medium and the key. @param
-/// wavelength m
-avianlidar::PlacedMedium Read(const std::string& text, double wavelength);
+/// A medium by its text: one, or one for each of its ellipsoids. Throws std::runtime_error, which
+/// names the medium and the key. @param wavelength m
+std::vector<avianlidar::PlacedMedium> Read(const std::string& text, double wavelength);
 
 /// The surface that bounds a medium, with its text in field data. Throws as Read(). @param closed
 /// the surface of a medium of that shape, may be null @param size m, of what has no bounds
@@ -47,6 +49,11 @@ bool IsObject(const std::string& text, int& id, std::string& name);
 
 /// The text with a name and an object.
 std::string WithObject(const std::string& text, const std::string& name, int id);
+
+/// The text with ellipsoids about some points in place of its shape; as it is if there are none.
+/// @param sizes width and height of each, m
+std::string WithCrowns(
+  const std::string& text, vtkPolyData* middles, const std::vector<std::array<double, 2>>& sizes);
 
 /// The text without its surface, for people.
 std::string InWords(const std::string& text);

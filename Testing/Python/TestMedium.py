@@ -1,0 +1,246 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Media in part of a scene: the source, echoes and coverage through it, scene files with trees."""
+import json
+import math
+import pathlib
+import tempfile
+import unittest
+
+import numpy as np
+from vtkmodules.vtkCommonDataModel import vtkMultiBlockDataSet
+from vtkmodules.vtkFiltersSources import vtkPlaneSource, vtkSphereSource
+
+import avianlidar as al
+from avianlidar.vtkAvianLidar import vtkAvianLidarCollisionTree, vtkAvianLidarCoverage, vtkAvianLidarEchoFilter, vtkAvianLidarMedium
+from echotools import Messages, box
+
+WALL = 200.0  # m north
+
+
+def medium(**properties):
+    source = vtkAvianLidarMedium()
+    for name, value in properties.items():
+        getattr(source, "Set" + name)(*value) if isinstance(value, tuple) else getattr(source, "Set" + name)(value)
+    source.Update()
+    return source.GetOutput()
+
+
+def wall():
+    return box((0, WALL + 1, 0), (500, 1, 500), "Concrete", "wall")
+
+
+def group(*blocks):
+    grouped = vtkMultiBlockDataSet()
+    for number, block in enumerate(blocks):
+        grouped.SetBlock(number, block)
+    return grouped
+
+
+def beams(sensor="Search905", **properties):
+    return al.Sensor(sensor, directions=[(0, 1, 0)] * 20, times=[1e-3 * k for k in range(20)], **properties).algorithm
+
+
+def echoes(surfaces, source=None, **properties):
+    scan = vtkAvianLidarEchoFilter()
+    scan.SetInputConnection(0, (source or beams()).GetOutputPort())
+    scan.SetInputDataObject(1, surfaces)
+    scan.SetAttenuationCoefficient(0)
+    scan.NoiseOff()
+    for name, value in properties.items():
+        getattr(scan, "Set" + name)(value)
+    scan.Update()
+    return al.Cloud(scan.GetOutput())
+
+
+class Source(unittest.TestCase):
+    def test_what_it_draws_and_says(self):
+        box = medium(Kind=1, Visibility=200.0, Shape=2, Center=(10.0, 20.0, 30.0), Lengths=(2.0, 4.0, 6.0), Name="bank")
+        self.assertEqual(box.GetBounds(), (9, 11, 18, 22, 27, 33))
+        said = json.loads(box.GetFieldData().GetAbstractArray("medium").GetValue(0))
+        self.assertEqual((said["kind"], said["visibility"], said["shape"]), ("fog", 200.0, "box"))
+        turned = medium(Shape=3, Lengths=(2.0, 10.0, 2.0), Heading=90.0)
+        np.testing.assert_allclose(turned.GetBounds(), (-5, 5, -1, 1, -1, 1), atol=0.03)
+        layer = medium(Bottom=0.0, Top=10.0, DisplaySize=100.0)
+        self.assertEqual(layer.GetBounds(), (-50, 50, -50, 50, 0, 10))
+        self.assertEqual(medium(Kind=5, Shape=3).GetFieldData().GetAbstractArray("object_classes").GetValue(0), "vegetation")
+
+    def test_bad_values_are_named(self):
+        for properties, part in (({"Visibility": -1.0}, "medium 'medium': visibility: must be from 0.001 to 1e+09, is -1"),
+                                 ({"Kind": 7}, "Kind is 7, expected 0 to 6"), ({"Shape": 9}, "Shape is 9, expected 0 to 4"),
+                                 ({"Kind": 3, "RainRate": math.nan}, "rain_rate"),
+                                 ({"Top": -2000.0}, "top is -2000, expected above the bottom"),
+                                 ({"Shape": 2, "Lengths": (0.0, 1.0, 1.0)}, "half an axis is 0"),
+                                 ({"Kind": 5, "Shape": 0}, "for foliage"), ({"DisplaySize": 0.0}, "DisplaySize is 0"),
+                                 ({"RenewedShare": 2.0}, "renewed"), ({"Shape": 4}, "expected a closed surface")):
+            with self.subTest(part):
+                source = vtkAvianLidarMedium()
+                errors = Messages(source).errors
+                for name, value in properties.items():
+                    getattr(source, "Set" + name)(*value) if isinstance(value, tuple) else getattr(source, "Set" + name)(value)
+                source.Update()
+                self.assertIn(part, "".join(errors))
+                self.assertEqual(source.GetOutput().GetNumberOfCells(), 0)
+
+    def test_an_open_surface_is_refused(self):
+        source = vtkAvianLidarMedium()
+        source.SetShapeToSurface()
+        plane = vtkPlaneSource()
+        source.SetInputConnection(plane.GetOutputPort())
+        errors = Messages(source).errors
+        source.Update()
+        self.assertIn("4 edges with one triangle", "".join(errors))
+
+
+class Echoes(unittest.TestCase):
+    def test_what_is_behind_a_bank_is_weakened(self):
+        custom = {"Kind": 6, "Extinction": 0.02, "BackscatterRatio": 1e9, "Shape": 2, "Center": (0.0, 100.0, 0.0)}
+        clear = echoes(wall())["energy_received"].mean()
+        for lengths, depth in (((100.0, 30.0, 100.0), 0.6), ((100.0, 60.0, 100.0), 1.2)):
+            bank = medium(**custom, Lengths=lengths)
+            behind = echoes(group(wall(), bank))["energy_received"].mean()
+            self.assertAlmostEqual(behind / clear / math.exp(-2 * depth), 1, delta=1e-6)
+            tree = vtkAvianLidarCollisionTree()
+            tree.SetInputData(group(wall(), bank))
+            tree.Update()
+            self.assertEqual(echoes(tree.GetOutput())["energy_received"].mean(), behind)
+            other = vtkAvianLidarCollisionTree()
+            other.SetInputData(group(tree.GetOutput()))  # merged again
+            other.Update()
+            self.assertEqual(echoes(other.GetOutput())["energy_received"].mean(), behind)
+
+    def test_a_medium_everywhere_is_the_weather(self):
+        fog = echoes(group(wall(), medium(Visibility=900.0, Shape=0)), Noise=True)
+        weather = echoes(wall(), Visibility=900.0, AirBackscatter=True, Noise=True)
+        for name in ("energy_received", "distance_m", "object_id"):
+            np.testing.assert_allclose(fog[name], weather[name], rtol=1e-13)
+        rain = echoes(group(wall(), medium(Kind=3, RainRate=20.0, Shape=0)), Noise=True)
+        weather = echoes(wall(), RainRate=20.0, Noise=True)
+        self.assertGreater((rain["object_id"] == -2).sum(), 100)
+        for name in ("energy_received", "distance_m", "object_id"):
+            np.testing.assert_allclose(rain[name], weather[name], rtol=1e-13)
+
+    def test_a_tree_by_beer_and_lambert(self):
+        clear = echoes(wall())["energy_received"].mean()
+        ball = vtkSphereSource()
+        ball.SetCenter(0, 100, 0)
+        ball.SetRadius(3)
+        ball.SetThetaResolution(60)
+        ball.SetPhiResolution(60)
+        source = vtkAvianLidarMedium()
+        source.SetKindToFoliage()
+        source.SetLeafAreaDensity(0.4)
+        source.SetName("oak")
+        source.SetShapeToSurface()
+        source.SetInputConnection(ball.GetOutputPort())
+        source.Update()
+        ellipsoid = medium(Kind=5, LeafAreaDensity=0.4, Shape=3, Center=(0.0, 100.0, 0.0), Lengths=(6.0, 6.0, 6.0), Name="oak")
+        for crown in (source.GetOutput(), ellipsoid):
+            seen = echoes(group(wall(), crown))
+            behind = seen["distance_m"] > 150
+            self.assertAlmostEqual(seen["energy_received"][behind].mean() / clear / math.exp(-0.5 * 0.4 * 6), 1, delta=0.02)
+            ids = seen["object_id"][~behind]
+            self.assertGreater(len(ids), 15)
+            names = seen.data.GetFieldData().GetAbstractArray("object_names")
+            self.assertEqual({names.GetValue(int(i)) for i in ids}, {"oak"})
+            classes = seen.data.GetFieldData().GetAbstractArray("object_classes")
+            self.assertEqual({classes.GetValue(int(i)) for i in ids}, {"vegetation"})
+            self.assertTrue(((seen["distance_m"][~behind] > 96.5) & (seen["distance_m"][~behind] < 103.5)).all())
+
+    def test_a_shower_passes(self):
+        shower = {"Kind": 3, "RainRate": 50.0, "Shape": 2, "Lengths": (40.0, 40.0, 200.0), "Velocity": (10.0, 0.0, 0.0)}
+        there = echoes(group(wall(), medium(**shower, Center=(0.0, 80.0, 0.0))), Noise=True)
+        gone = echoes(group(wall(), medium(**shower, Center=(60.0, 80.0, 0.0))), Noise=True)
+        self.assertGreater((there["object_id"] == -2).sum(), 50)
+        self.assertEqual((gone["object_id"] == -2).sum(), 0)
+        # 6 s later the second is where the first was.
+        later = al.Sensor("Search905", directions=[(0, 1, 0)] * 20, times=[6 + 1e-3 * k for k in range(20)]).algorithm
+        came = echoes(group(wall(), medium(**shower, Center=(-60.0, 80.0, 0.0))), later, Noise=True)
+        self.assertGreater((came["object_id"] == -2).sum(), 50)
+
+    def test_beams_without_an_aperture_are_refused(self):
+        scan = vtkAvianLidarEchoFilter()
+        sensor = al.Sensor("Airport16", azimuth_step=10)
+        scan.SetInputConnection(0, sensor.algorithm.GetOutputPort())
+        scan.SetInputDataObject(1, group(wall(), medium()))
+        errors = Messages(scan).errors
+        scan.Update()
+        self.assertIn("air that scatters (AirBackscatter, RainRate, media) needs beams", "".join(errors))
+
+
+class Coverage(unittest.TestCase):
+    def probabilities(self, surfaces, **properties):
+        coverage = vtkAvianLidarCoverage()
+        sensor = al.Sensor("Search905", azimuth_step=2)
+        coverage.SetInputConnection(0, sensor.algorithm.GetOutputPort())
+        coverage.SetInputDataObject(1, surfaces)
+        coverage.SetBounds(-600, 600, 100, 700, 20, 60)
+        coverage.SetSpacing(100, 100, 20)
+        for name, value in properties.items():
+            getattr(coverage, "Set" + name)(value)
+        coverage.Update()
+        array = coverage.GetOutputDataObject(0).GetPointData().GetArray("detection_probability")
+        return np.array([array.GetTuple1(i) for i in range(array.GetNumberOfTuples())])
+
+    def test_it_knows_media(self):
+        ground = box((0, 0, -6), (900, 900, 1), "Grass", "ground")
+        clear = self.probabilities(ground, Visibility=0.0, AttenuationCoefficient=0.0)
+        weather = self.probabilities(ground, Visibility=800.0, AirBackscatter=True)
+        everywhere = self.probabilities(group(ground, medium(Visibility=800.0, Shape=0)), Visibility=0.0, AttenuationCoefficient=0.0)
+        large = self.probabilities(group(ground, medium(Visibility=800.0, Shape=2, Lengths=(1e5, 1e5, 1e5))), Visibility=0.0,
+                                   AttenuationCoefficient=0.0)
+        np.testing.assert_allclose(everywhere, weather, atol=1e-6)
+        np.testing.assert_allclose(large, weather, atol=2e-3)
+        self.assertGreater(clear.sum(), 1.5 * weather.sum())
+        bank = self.probabilities(group(ground, medium(Visibility=100.0, Shape=2, Center=(0.0, 50.0, 0.0), Lengths=(40.0, 60.0, 500.0))),
+                                  Visibility=0.0, AttenuationCoefficient=0.0)
+        self.assertTrue((bank <= clear + 1e-6).all())
+        self.assertTrue((bank < clear - 0.2).any())
+        self.assertTrue((bank[clear > 0.9] > 0.9).any())
+
+
+class SceneFiles(unittest.TestCase):
+    def scene(self, folder, objects):
+        file = pathlib.Path(folder) / "airport.lidarscene.json"
+        file.write_text(json.dumps({"version": 1, "objects": objects}), encoding="utf-8")
+        return file
+
+    def test_fog_trees_rows_and_woods(self):
+        feature = lambda kind, coordinates, **tags: {"type": "Feature", "properties": tags,
+                                                     "geometry": {"type": kind, "coordinates": coordinates}}
+        plan = {"type": "FeatureCollection", "features": [
+            feature("Point", [10.0, 50.0], natural="tree"), feature("Point", [20.0, 50.0], natural="tree", height="12"),
+            feature("LineString", [[0.0, 100.0], [30.0, 100.0]], natural="tree_row"),
+            feature("Polygon", [[[-60, 80], [-20, 80], [-20, 120], [-60, 120], [-60, 80]]], natural="wood")]}
+        trees = {"footprints": "trees.geojson", "crs": "local", "name": "trees", "class": "vegetation", "base": 2, "height": 8,
+                 "height_attribute": "height", "width": 6, "medium": {"kind": "foliage", "leaf_area_density": 0.5}}
+        with tempfile.TemporaryDirectory() as folder:
+            (pathlib.Path(folder) / "trees.geojson").write_text(json.dumps(plan), encoding="utf-8")
+            file = self.scene(folder, [{"ground": {"size": 1000}, "name": "ground", "material": "Grass"}, trees,
+                                       {"medium": {"kind": "fog", "visibility": 200, "shape": "layer", "top": 3, "softness": 2},
+                                        "name": "ground fog"}])
+            scene = al.Scene(str(file))
+            scan = al.Scan(scene, al.Sensor("Search905", position=(0, 0, 5), azimuth_range=(-50, 50)), noise=False)
+            said = scan.echoes.data.GetFieldData().GetAbstractArray("media")
+            kinds = [json.loads(said.GetValue(i))["kind"] for i in range(said.GetNumberOfValues())]
+            self.assertEqual(sorted(kinds), ["fog", "foliage", "foliage"])
+            names = scan.echoes.data.GetFieldData().GetAbstractArray("object_names")
+            crowns = scan.echoes.points[[number >= 0 and names.GetValue(int(number)) == "trees" for number in scan["object_id"]]]
+            # The two trees, the row (crowns at 3, 9, ... 27 m), the wood.
+            for x, y in ((10, 50), (20, 50), (3, 100), (27, 100), (-40, 82)):
+                self.assertTrue((np.hypot(crowns[:, 0] - x, crowns[:, 1] - y) < 3.6).any(), (x, y))
+            near = crowns[crowns[:, 1] < 60]
+            self.assertTrue((near[np.abs(near[:, 0] - 10) < 3][:, 2] < 10.5).all())
+            self.assertGreater(near[np.abs(near[:, 0] - 20) < 3][:, 2].max(), 10.1)
+
+    def test_bad_ones_are_named(self):
+        for one, part in (({"medium": 3}, "objects[0].medium: must be an object"),
+                          ({"medium": {"kind": "soup", "shape": "layer"}, "name": "x"}, "kind: must be haze, fog"),
+                          ({"ground": {"size": 5}, "medium": {"kind": "fog", "visibility": 5, "shape": "box"}}, "objects[0]"),
+                          ({"name": "nothing"}, "objects[0]: must have one of file, footprints, ground, and only one, or a medium")):
+            with self.subTest(part), tempfile.TemporaryDirectory() as folder, self.assertRaises(al.Error) as raised:
+                al.Scene(str(self.scene(folder, [one])))
+            self.assertIn(part, str(raised.exception))
+
+
+if __name__ == "__main__":
+    unittest.main()
