@@ -34,6 +34,8 @@ import detail  # noqa: E402
 import falloff  # noqa: E402
 import labels  # noqa: E402
 import more_reflections  # noqa: E402
+import multiple_scattering  # noqa: E402
+import others  # noqa: E402
 import paper  # noqa: E402
 import patterns  # noqa: E402
 import protocol  # noqa: E402
@@ -72,6 +74,8 @@ RUNS = (
     ("sequence", labels, [], {"labels": "sequences-labels"}),
     ("quadcopter", quadcopter, [], {"points": "measured-quadcopter"}),
     ("weather", weather, [], {"weather": "weather"}),
+    ("weather-others", others, [], {}),
+    ("weather-multiple", multiple_scattering, [], {}),
     ("notebook", render_notebook, [], {"energy-image": "python-range-image", "map": "python-map"}),
 )
 
