@@ -14,6 +14,7 @@ from matplotlib.figure import Figure
 
 import avianlidar as al
 from avianlidar import reach
+from avianlidar.vtkAvianLidar import vtkAvianLidarMedium
 
 HERE = pathlib.Path(__file__).resolve().parent
 SCENE = HERE.parent / "airport" / "scene" / "hongqiao.lidarscene.json"
@@ -23,12 +24,22 @@ WEATHER = (
     ("haze, 5 km", {"visibility": 5e3, "air_backscatter": True}),
     ("fog, 1 km", {"visibility": 1e3, "air_backscatter": True}),
     ("fog, 200 m", {"visibility": 200, "air_backscatter": True}),
+    ("ground fog, 400 m below 5 m", {"visibility": 23e3, "air_backscatter": True}, {"Visibility": 400.0, "Top": 5.0, "Softness": 3.0}),
     ("rain, 1 mm/h", {"visibility": 23e3, "air_backscatter": True, "rain_rate": 1}),
     ("rain, 10 mm/h", {"visibility": 10e3, "air_backscatter": True, "rain_rate": 10}),
     ("rain, 50 mm/h", {"visibility": 5e3, "air_backscatter": True, "rain_rate": 50}),
 )
-SHOWN = ("clear, 23 km", "fog, 1 km", "rain, 10 mm/h")
+SHOWN = ("clear, 23 km", "ground fog, 400 m below 5 m", "fog, 1 km", "rain, 10 mm/h")
 WIDE = 900.0  # m, that the picture shows to each side
+
+
+def fog(properties):
+    """A layer of fog."""
+    source = vtkAvianLidarMedium()
+    for name, value in properties.items():
+        getattr(source, "Set" + name)(value)
+    source.Update()
+    return source.GetOutput()
 
 
 def scan(scene, weather):
@@ -36,11 +47,10 @@ def scan(scene, weather):
     return al.Scan(scene, sensor, **weather).echoes
 
 
-def row(name, weather, echoes):
+def row(name, weather, echoes, layered):
     objects, away = np.array(echoes["object_id"]), np.array(echoes["distance_m"])
     air = away[objects == -2]
-    found = reach.within_beams(al.Sensor(SENSOR), SPECIES, **weather)
-    to = found.to(0.5)
+    to = None if layered else reach.within_beams(al.Sensor(SENSOR), SPECIES, **weather).to(0.5)
     return (f"| {name} | {(objects >= 0).sum():,} | {len(air):,} | {(objects == -1).sum():,} | " + (f"{air.max():.0f} m" if len(air) else "–") + " | " +
             (f"{float(f'{to:.2g}'):g} m" if to else "–") + " |")
 
@@ -63,17 +73,19 @@ def main(arguments=None):
     options = parser.parse_args(arguments)
     options.out.mkdir(parents=True, exist_ok=True)
     warnings.simplefilter("ignore", RuntimeWarning)  # weather without an echo is expected
-    scene = al.load_scene(SCENE)
-    figure = Figure(figsize=(12.0, 4.4), layout="constrained")
+    clear, foggy = al.load_scene(SCENE), al.load_scene(SCENE)
+    figure = Figure(figsize=(14.0, 4.2), layout="constrained")
     FigureCanvasAgg(figure)
     panels = iter(figure.subplots(1, len(SHOWN)))
     lines = ["| weather | echoes of surfaces | points of the air | of noise | the last of the air | half of the gulls, to |",
              "|---|---:|---:|---:|---:|---:|"]
-    for name, weather in WEATHER:
-        echoes = scan(scene, weather)
-        lines.append(row(name, weather, echoes))
+    for name, weather, *layers in WEATHER:
+        for layer in layers:
+            foggy.add(fog(layer), name=name)
+        echoes = scan(foggy if layers else clear, weather)
+        lines.append(row(name, weather, echoes, layers))
         if name in SHOWN:
-            draw(next(panels), name, scene, echoes)
+            draw(next(panels), name, clear, echoes)
     figure.supxlabel("east of the lidar, m", fontsize=9)
     figure.supylabel("north, m", fontsize=9)
     figure.savefig(options.out / "weather.png", dpi=90)

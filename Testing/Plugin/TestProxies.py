@@ -90,6 +90,25 @@ CONTRACT = {
         "Reflectance": "",
         "ObjectId": "",
     },
+    "AvianLidarMedium": {
+        "Kind": "",
+        "Visibility": "metres",
+        "RainRate": "mm/h",
+        "LeafAreaDensity": "m2/m3",
+        "Extinction": "1/m",
+        "BackscatterRatio": "sr",
+        "RenewedShare": "",
+        "Shape": "",
+        "Bottom": "metres",
+        "Top": "metres",
+        "Softness": "metres",
+        "Center": "metres",
+        "Lengths": "metres",
+        "Heading": "degrees",
+        "Velocity": "m/s",
+        "Name": "",
+        "DisplaySize": "metres",
+    },
     "AvianLidarTracks": {
         "Lines": None,
         "Pattern": "",
@@ -233,6 +252,8 @@ CHOICES = {
     "BatchCollisionDetection": ["Rays", "Groups", "Beams"],
     "SourceFrame": ["ENU", "Geodetic", "ECEF", "UTM"],
     "TargetFrame": ["ENU", "Geodetic", "ECEF", "UTM"],
+    "Kind": ["Haze", "Fog", "Drizzle", "Rain", "Snow", "Foliage", "Custom"],
+    "Shape": ["Everywhere", "Layer", "Box", "Ellipsoid"],
     "Pattern": ["Crossings", "Circles", "Flock", "Approach", "File", "Lines"],
 }
 OTHER_NAMES = {"MeteorologicalVisibility": "Visibility"}  # of the class, where a proxy cannot have the same
@@ -466,7 +487,7 @@ class TestProxies(unittest.TestCase):
             with self.subTest(f"{name}.{prop}"):
                 if unit in RESULTS or unit == "steps":
                     continue
-                if prop not in ("ObjectName", "BlockNamePattern", "Species"):
+                if prop not in ("ObjectName", "BlockNamePattern", "Species", "Name"):
                     self.assertTrue(domains_of(smproperty))
                 for domain in domains_of(smproperty):
                     if domain.GetClassName() in ("vtkSMIntRangeDomain", "vtkSMDoubleRangeDomain"):
