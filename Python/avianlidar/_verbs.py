@@ -175,6 +175,8 @@ def info(options) -> None:
         plan = read_plan(file)
         what, rows = "a plan of coverage", {
             key: plan[key] for key in ("scene", "sensor", "compare_with", "coverage", "weather", "mix", "heights", "regions", "runways", "siting") if plan.get(key)}
+        if "year" in plan:
+            rows["year"] = "; ".join(f"{', '.join(part['weather']) or 'as in coverage'} {100 * part['share']:.3g} %" for part in plan["year"])
     elif name.endswith(".json") and not name.endswith(".lidarscene.json"):
         scenario = read_scenario(file)
         what, rows = "a scenario of sequences", {key: scenario[key] for key in ("scene", "sensor", "weather", "number_of_scans") if key in scenario}
@@ -332,7 +334,9 @@ def _plan(options) -> Dict[str, Any]:
                      **{part: dict(getattr(options, f"{part}_set", ())) for part in ("sensor", "coverage", "siting")})
 
 
-def _say_ground(plan) -> None:
+def _say_before(plan) -> None:
+    if "hours" in plan.plan:
+        print(plan.plan["hours"])
     if plan.above != "ground":
         below = "no surface is below the sensor" if plan.ground is None else f"the ground below the sensor is at z = {plan.ground:.4g} m"
         warn(f"heights are above the scene's origin, and {below}")
@@ -342,7 +346,7 @@ def coverage(options) -> None:
     from ._disk import only_run, undone
     from .apps._maps import Plan
     plans = Plan.all_of(_plan(options), options.threads)
-    _say_ground(plans[0])
+    _say_before(plans[0])
     with only_run(options.out, goes_on=len(plans) > 1):  # maps of a sensor that are whole stay
         for plan in plans:
             bars = Bars()
@@ -366,7 +370,7 @@ def siting(options) -> None:
     ranks, bars = Ranks(ends_job=True), Bars()
     plans = Plan.all_of(_plan(options), 1)
     if not ranks.rank:
-        _say_ground(plans[0])
+        _say_before(plans[0])
     everywhere = [Sites(plan, options.out / "coverage", ranks, bars) for plan in plans]
     with _goes_on(options.out, "coverage/*.npy", "candidates kept"), only_run(options.out, ranks, goes_on=True):
         for number, sites in enumerate(everywhere):
@@ -395,7 +399,7 @@ def report(options) -> None:
     from .apps._report import Report
     bars = Bars()
     report = Report(_plan(options), options.threads, bars)
-    _say_ground(report.plans[0])
+    _say_before(report.plans[0])
     folder = report.write(options.out)
     bars.close()
     print(f"{options.out}: the report; {folder}: its tables and pictures")

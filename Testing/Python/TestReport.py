@@ -153,7 +153,7 @@ class Less(unittest.TestCase):
             browser.open(page)
             self.assertEqual(browser.complaints(), [])
             self.assertEqual(browser.run("return document.querySelector('h1').textContent"), "<script>throw 1</script> & gulls?")
-            self.assertEqual(browser.run("return document.images.length"), 3 + 1 + 2)  # map, reasons, clutter; the curve; map and curve at the head
+            self.assertEqual(browser.run("return document.images.length"), 3 + 1 + 2 + 2)  # map, reasons, clutter; the curve; map and curve at the head; fog and rain
             self.assertEqual(browser.run("return document.querySelector('#section, #sites')"), None)
             cells, rows = same_numbers(self, browser, HERE / "map_files" / "shares.csv")
             self.assertGreater(len(cells), 10)

@@ -30,7 +30,8 @@ def extinction(sensor: Sensor, **air: Any) -> float:
     """Of the air at the sensor's wavelength, 1/m. @param air settings of coverage"""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # that there are no surfaces
-        cover = Coverage(Scene(), sensor, places=[(0.0, 0.0, 0.0)], number_of_threads=1, **air)
+        cover = Coverage(Scene(), sensor, places=[(0.0, 0.0, 0.0)], species="", all_species=False, effective_area=0.03,
+                         number_of_threads=1, **air)
         return float(field_values(cover.data)["attenuation_coefficient"])
 
 

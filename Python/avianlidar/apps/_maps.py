@@ -510,7 +510,8 @@ class Plan:
         size = f", effective area {area:.4f} m2 (assumed)" if len(self.mix) == 1 else ", effective areas assumed; reasons are of the first"
         return {"sensor": self.name, "position_m": " ".join(f"{c:g}" for c in self.sensor.position),
                 "target": f"{self.bird}{size}, reflectance {self.coverage.reflectance:g} (assumed)",
-                "visibility_m": f"{self.coverage.visibility:g} (assumed)", "rain_mm_h": f"{self.coverage.rain_rate:g}",
+                "visibility_m": f"{self.coverage.visibility:g} (assumed)" if self.coverage.visibility > 0.0 else
+                                f"none, attenuation {self.coverage.attenuation_coefficient:.3g}/m", "rain_mm_h": f"{self.coverage.rain_rate:g}",
                 "air": "sends light back" if self.coverage.air_backscatter or self.coverage.rain_rate else "only weakens", "assumed_of_the_sensor": ", ".join(self.assumed) or "none",
                 "limits": "calculated, not measured"}
 

@@ -238,7 +238,7 @@ class Report:
         kinds: List[Tuple[str, Sequence[float], str, List[Dict[str, Any]]]] = [
             ("visibility", VISIBILITIES, "visibility, m", [{"visibility": v, "air_backscatter": True} for v in VISIBILITIES]),
             ("rain", RAINS, "rain, mm/h", [{"rain_rate": rain, "air_backscatter": True} for rain in RAINS])]
-        found: Dict[str, Any] = {"beside": visibility, "weaken": [view.title for view in views if not view.gathers_light], "pictures": []}
+        found: Dict[str, Any] = {"beside": visibility, "weaken": [plan.name for plan in self.plans if not plan.gathers_light], "pictures": []}
         table: List[Dict[str, Any]] = []
         shares = []  # by view, then by air
         for view in views:
@@ -300,7 +300,7 @@ class Report:
         found = view.overall
         share = _share(found["detection_probability"], found["detection_std_error"])
         birds = f"{view.bird}s" if len(view.mix) == 1 else f"birds {view.bird[5:]}"
-        air = f" in {in_words(view.air)}" if view.air else ""
+        air = f" in {in_words(view.air)}" if view.air else f" at {_metres(view.coverage.visibility)} visibility" if view.year else ""
         by_year = ", by the year's weather," if view.year else ""
         several = f" by one scan of {plan.name}" if len(self.plans) > 1 else " by one scan"
         if not site:
