@@ -35,14 +35,17 @@ set(avianlidar_python_files
   _sight.py
   _suffixes.py
   _verbs.py
+  _weather.py
   _writers.py
   reach.py
   siting.py
   py.typed
   apps/__init__.py
+  apps/_air.py
   apps/_json.py
   apps/_labels.py
   apps/_maps.py
+  apps/_metar.py
   apps/_pictures.py
   apps/_report.py
   apps/_sequence.py

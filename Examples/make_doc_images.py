@@ -67,7 +67,7 @@ RUNS = (
     ("birds-over-airport", birds_over_airport, [], {"from-above": "birds-over-airport", "range-image": "birds-range-image",
                                                     "points": "birds-points"}),
     ("coverage", screenshots, [], {"head": "coverage-report", "maps": "coverage-maps", "reasons": "coverage-reasons",
-                                   "section": "coverage-section", "sites": "coverage-sites"}),
+                                   "section": "coverage-section", "weather": "coverage-weather", "sites": "coverage-sites"}),
     ("ranges", ranges, [], {"ranges": "coverage-ranges"}),
     ("shapes", beam_shapes, [], {"shapes": "beams-shapes"}),
     ("patterns", patterns, [], {"prisms": "sensors-prisms", "rotors": "sensors-rotors"}),

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""The airport's report as pictures: its head, maps, reasons, section and sites, as Chromium shows them.
+"""The airport's report as pictures: its head, maps, reasons, section, weather and sites, as Chromium shows them.
 
     PYTHONPATH=$(cat build/paraview/python-path) /usr/bin/python3 Examples/coverage/screenshots.py --out build/screenshots
 """
@@ -17,7 +17,7 @@ from browser import Browser  # noqa: E402
 # Name of the picture: the heading that it begins with, and the one before which it ends.
 PARTS = {"head": ("h1", "#range"), "range": ("#range", "#assumptions"), "maps": ("#maps", "#reasons"), "reasons": ("#reasons", "#section"),
          "section": ("#section", "#clutter"),
-         "clutter": ("#clutter", "#shares"), "sites": ("#sites", "#limits")}
+         "clutter": ("#clutter", "#shares"), "weather": ("#weather", "#sites"), "sites": ("#sites", "#limits")}
 
 
 def main(arguments=None):

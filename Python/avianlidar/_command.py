@@ -13,6 +13,7 @@ import warnings
 from typing import Any, Dict, List, Optional
 
 from ._suffixes import READERS, WRITERS, listed
+from ._weather import WEATHER
 
 WRITTEN, READ = listed(WRITERS), listed(READERS)
 SCENE = "a mesh (STL, OBJ, PLY, glTF, VTP, ...; metres, z up) or a .lidarscene.json file"
@@ -100,33 +101,6 @@ def _settings(verb, part: str, example: str) -> None:
                       help=f"a property of the {part}, for example {example}; may be given many times")
 
 
-WEATHER = "fog:V or haze:V (visibility, m), rain:R (mm/h); several together; the air sends light back then"
-
-
-def weather(words) -> List[Any]:
-    """Settings of a scan or of coverage by words of `--weather`.
-
-    >>> weather(["fog:800", "rain:10"])
-    [('visibility', 800.0), ('air_backscatter', True), ('rain_rate', 10.0)]
-    """
-    found: List[Any] = []
-    known: Dict[str, str] = {}
-    for word in words or ():
-        kind, colon, number = word.partition(":")
-        try:
-            value = float(number)
-        except ValueError:
-            value = math.nan
-        if kind not in ("fog", "haze", "rain") or not value > 0 or not math.isfinite(value):
-            raise ValueError(f"weather {word!r}, expected {WEATHER.partition(';')[0]}")
-        name = "rain rate" if kind == "rain" else "visibility"
-        if name in known:
-            raise ValueError(f"weather {word!r} after {known[name]!r}, expected one {name}")
-        known[name] = word
-        found += [("rain_rate", value)] if kind == "rain" else [("visibility", value), ("air_backscatter", True)]
-    return found
-
-
 def _weather(verb) -> None:
     verb.add_argument("--weather", nargs="+", metavar="KIND:NUMBER", help=WEATHER)
 
@@ -193,6 +167,8 @@ def parser() -> Parser:
         _settings(verb[name], "coverage", "species=crow")
         _weather(verb[name])
         if name != "coverage":
+            verb[name].add_argument("--metar", type=pathlib.Path, help="file of METAR reports, one a line: the year's weather by the hour, "
+                                    "by which sites are ranked")
             verb[name].add_argument("--siting-set", action="append", default=[], type=_value, metavar="NAME=VALUE",
                                     help="a part of the plan's siting, for example spacing=100; files are named from the plan's folder")
         if name != "siting":  # one thread a site; ranks share them
@@ -210,9 +186,6 @@ def main(argv: Optional[List[str]] = None) -> int:
     try:
         with warnings.catch_warnings():
             warnings.showwarning = lambda message, *_, **__: _verbs.warn(str(message))
-            part = "scan_set" if hasattr(options, "scan_set") else "coverage_set"
-            if getattr(options, "weather", None):
-                setattr(options, part, [*weather(options.weather), *getattr(options, part)])
             getattr(_verbs, options.verb)(options)
             sys.stdout.flush()
         code = 0

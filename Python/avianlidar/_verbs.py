@@ -86,6 +86,7 @@ def _alarms(cloud) -> str:
 def scan(options) -> None:
     from . import Scan, Sensor, save
     from ._disk import replacing
+    from ._weather import weather
     _check_outs(options)
     bars = Bars()
     scene = _scene(options, bars)
@@ -95,7 +96,7 @@ def scan(options) -> None:
                 raise ValueError(f"{out}: GeoJSON needs longitude and latitude, and the scene has no origin on the Earth")
     sensor = Sensor(options.sensor, position=options.position or scene.lidar_position or (0, 0, 0)).set(**dict(options.sensor_set))
     scan = Scan(scene, sensor, progress=lambda share, _: bars("scan", round(100 * share), 100))
-    scan.set(**{"number_of_threads": options.threads, **dict(options.scan_set)})
+    scan.set(**{"number_of_threads": options.threads, **weather(options.weather), **dict(options.scan_set)})
     echoes = scan.echoes.annotated()
     bars.close()
     for out in options.out:
@@ -173,10 +174,12 @@ def info(options) -> None:
     elif name.endswith(".coverage.json"):
         plan = read_plan(file)
         what, rows = "a plan of coverage", {
-            key: plan[key] for key in ("scene", "sensor", "compare_with", "coverage", "mix", "heights", "regions", "runways", "siting") if plan.get(key)}
+            key: plan[key] for key in ("scene", "sensor", "compare_with", "coverage", "weather", "mix", "heights", "regions", "runways", "siting") if plan.get(key)}
+        if "year" in plan:
+            rows["year"] = "; ".join(f"{', '.join(part['weather']) or 'as in coverage'} {100 * part['share']:.3g} %" for part in plan["year"])
     elif name.endswith(".json") and not name.endswith(".lidarscene.json"):
         scenario = read_scenario(file)
-        what, rows = "a scenario of sequences", {key: scenario[key] for key in ("scene", "sensor", "number_of_scans") if key in scenario}
+        what, rows = "a scenario of sequences", {key: scenario[key] for key in ("scene", "sensor", "weather", "number_of_scans") if key in scenario}
     elif _has_points_only(file):
         _say_cloud(file)
         return
@@ -294,10 +297,14 @@ def sequence(options) -> None:
     from . import Sequence
     from ._properties import in_snake_case
     from ._ranks import Ranks
+    from ._weather import without_air
     from .apps._sequence import PROPERTIES, read_scenario
     ranks = Ranks(ends_job=True)
     scenario = read_scenario(options.scenario)
     changes: Dict[str, Any] = {} if options.scans is None else {"number_of_scans": options.scans}
+    if options.weather:
+        scenario["scan"] = without_air(scenario.get("scan", {}))
+        changes.update(weather=options.weather, scan=scenario["scan"])
     for part, values in (("sensor", options.sensor_set), ("scan", options.scan_set)):
         if values:
             changes[part] = {**scenario.get(part, {}), **in_snake_case(PROPERTIES[part], dict(values), f"--{part}-set")}
@@ -323,10 +330,13 @@ def sequence(options) -> None:
 def _plan(options) -> Dict[str, Any]:
     """The plan with what options change."""
     from .apps._maps import read_plan
-    return read_plan(options.plan, **{part: dict(getattr(options, f"{part}_set", ())) for part in ("sensor", "coverage", "siting")})
+    return read_plan(options.plan, options.weather, getattr(options, "metar", None),
+                     **{part: dict(getattr(options, f"{part}_set", ())) for part in ("sensor", "coverage", "siting")})
 
 
-def _say_ground(plan) -> None:
+def _say_before(plan) -> None:
+    if "hours" in plan.plan:
+        print(plan.plan["hours"])
     if plan.above != "ground":
         below = "no surface is below the sensor" if plan.ground is None else f"the ground below the sensor is at z = {plan.ground:.4g} m"
         warn(f"heights are above the scene's origin, and {below}")
@@ -336,7 +346,7 @@ def coverage(options) -> None:
     from ._disk import only_run, undone
     from .apps._maps import Plan
     plans = Plan.all_of(_plan(options), options.threads)
-    _say_ground(plans[0])
+    _say_before(plans[0])
     with only_run(options.out, goes_on=len(plans) > 1):  # maps of a sensor that are whole stay
         for plan in plans:
             bars = Bars()
@@ -360,7 +370,7 @@ def siting(options) -> None:
     ranks, bars = Ranks(ends_job=True), Bars()
     plans = Plan.all_of(_plan(options), 1)
     if not ranks.rank:
-        _say_ground(plans[0])
+        _say_before(plans[0])
     everywhere = [Sites(plan, options.out / "coverage", ranks, bars) for plan in plans]
     with _goes_on(options.out, "coverage/*.npy", "candidates kept"), only_run(options.out, ranks, goes_on=True):
         for number, sites in enumerate(everywhere):
@@ -389,7 +399,7 @@ def report(options) -> None:
     from .apps._report import Report
     bars = Bars()
     report = Report(_plan(options), options.threads, bars)
-    _say_ground(report.plans[0])
+    _say_before(report.plans[0])
     folder = report.write(options.out)
     bars.close()
     print(f"{options.out}: the report; {folder}: its tables and pictures")

@@ -24,11 +24,11 @@ def run(*command):
     return subprocess.run([*map(str, command)], capture_output=True, text=True, check=False, timeout=200)
 
 
-def few(folder, **siting):
-    """The airport's plan with fewer places, candidates and draws."""
+def few(folder, parts=(), **siting):
+    """The airport's plan with fewer places, candidates and draws. @param parts further parts of it"""
     plan = json.loads(PLAN.read_text(encoding="utf-8"))
-    plan.update({name: str((PLAN.parent / plan[name]).resolve()) for name in ("scene", "runways")}, places=500)
-    plan["siting"].update(spacing=600, draws=10, **siting)
+    plan.update({name: str((PLAN.parent / plan[name]).resolve()) for name in ("scene", "runways")}, places=500, **dict(parts))
+    plan["siting"].update({"spacing": 600, "draws": 10, **siting})
     folder.mkdir(parents=True)
     file = folder / "few.coverage.json"
     file.write_text(json.dumps(plan), encoding="utf-8")
@@ -51,6 +51,22 @@ class Ranks(unittest.TestCase):
             self.assertEqual((alone / name).read_bytes(), (together / name).read_bytes(), name)
         files = [{file.name for file in (folder / "coverage").iterdir()} for folder in (alone, together)]
         self.assertEqual(*files)
+
+    def test_share_the_weathers_of_a_year(self):
+        alone, together = fresh("year-alone"), fresh("year-together")
+        year = {"year": [{"weather": ["haze:20000"], "share": 0.75}, {"weather": ["fog:700", "rain:5"], "share": 0.25}], "compare_with": []}
+        done = run(sys.executable, *few(alone, year, draws=0))
+        self.assertEqual(done.returncode, 0, done.stderr)
+        command = few(together, year, draws=0)
+        self.assertEqual(run(sys.executable, *command).returncode, 0)  # of which half is lost: the ranks go on
+        kept = sorted((together / "coverage").iterdir())
+        for file in kept[::2]:
+            file.unlink()
+        done = on_ranks(*command)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        for name in ("sites.csv", "sites.geojson", "sites.vtp", "gain.csv"):
+            self.assertEqual((alone / name).read_bytes(), (together / name).read_bytes(), name)
+        self.assertEqual({file.name: file.read_bytes() for file in kept}, {file.name: file.read_bytes() for file in (alone / "coverage").iterdir()})
 
     def test_an_error_ends_the_job(self):
         command = few(fresh("bad"))

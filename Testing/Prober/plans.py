@@ -15,7 +15,7 @@ ODD = [None, True, False, 0, -1, 1, 0.5, 20.0, 100.0001, 1e-300, 1e9, -1e9, 1e18
 NAMES = ["species", "effective_area", "visibility", "height_limits", "clutter", "all_species", "range_gate", "azimuth_range", "azimuth_step",
          "orientation", "position", "pulse_energy", "rays_per_beam", "number_of_threads", "species_file_name", "Spacing", "progress", "name",
          "directions", "times", "radius", "heights", "center", "file_name", "number_of_birds", "every", "first", "class", "material",
-         "number_of_scans", "required_detections", "attenuation_coefficient", "preset", "properties", "geometry", "coordinates", "comment"]
+         "number_of_scans", "required_detections", "attenuation_coefficient", "weather", "share", "air_backscatter", "rain_rate", "preset", "properties", "geometry", "coordinates", "comment"]
 SENSOR = {"preset": "Airport16", "azimuth_step": 30.0, "position": [0, 0, 3]}
 
 
@@ -45,12 +45,15 @@ def documents():
                       feature("LineString", [first, last], kind="runway", name="18/36", width=45),
                       {"type": "Feature", "properties": None, "geometry": None})
     plan = {"description": "?", "scene": "town.lidarscene.json", "sensor": SENSOR, "compare_with": [{**SENSOR, "name": "near", "range_gate": 500}, {**SENSOR, "name": "other"}],
-            "coverage": {"visibility": 20000, "height_limits": [0, 30]}, "mix": {"crow": 1, "starling": 2}, "heights": [15, 30.5],
+            "coverage": {"visibility": 20000, "height_limits": [0, 30]}, "weather": ["rain:1"],
+            "year": [{"weather": ["fog:700"], "share": 0.25}, {"weather": [], "share": 0.75}], "mix": {"crow": 1, "starling": 2}, "heights": [15, 30.5],
             "extent": [-300, 300, -300, 300], "spacing": 150, "runways": "town.geojson", "places": 20, "seed": 1, "regions": {"strips": 1, "approaches": 2},
             "siting": {"bounds": [-500, 500, -500, 500], "spacing": 500, "masts": [5, 8], "margin": 3, "exclusions": ["taken.geojson"],
                        "sensors": 2, "draws": 1}}
     points = copy.deepcopy(plan)
     points["siting"] = {"points": "points.csv", "draws": 0}
+    points["metar"] = "year.txt"
+    del points["year"]
     scenario = {"description": "?", "scene": "town.lidarscene.json", "sensor": {**SENSOR, "sway_amplitude": 0.02, "sway_frequency": 0.5},
                 "scan": {"rays_per_beam": 50}, "number_of_scans": 2, "scans_per_sequence": 2, "seed": 1, "near_clutter_distance": 10,
                 "birds": [{"pattern": "Crossings", "species": "crow", "number_of_birds": 2, "radius": 100, "heights": [2, 30]},
@@ -65,6 +68,7 @@ def files():
     """{name: content} of all."""
     table = "x,y\n-100,0\n100,0\n0,-400\n"
     found = {name: json.dumps(document).encode() for name, document in documents().items()}
+    found["year.txt"] = b"ZSSS 010000Z 34004MPS 9999 FEW030 12/08 Q1013\nZSSS 010100Z 34004MPS 0800 -RA FG 12/08 Q1013\n"
     return {**found, "taken.geojson": gzip.compress(found["taken.geojson"], mtime=0), "points.csv": table.encode()}
 
 

@@ -25,8 +25,8 @@ from avianlidar.apps._report import Report  # noqa: E402
 
 BATCH = 40  # documents to a child
 OPENED = ("lattice.coverage.json", "points.coverage.json", "town.scenario.json")
-MEMBERS = ("description|scene|sensor|compare_with|coverage|mix|regions|heights|extent|spacing|runways|places|seed|siting|scan|number_of_scans|"
-           "scans_per_sequence|near_clutter_distance|birds|objects")
+MEMBERS = ("description|scene|sensor|compare_with|coverage|weather|year|metar|mix|regions|heights|extent|spacing|runways|places|seed|siting|scan|"
+           "number_of_scans|scans_per_sequence|near_clutter_distance|birds|objects")
 OF_THE_FILE = ("is no JSON", "its compression", "Additional properties are not allowed", "is a required property", "is not of type 'object'")
 SMALL = 2e5  # values that the work may make
 NO_WORK = 8  # of so many good documents the work of one is done
@@ -36,7 +36,7 @@ def mutated(seed):
     """The opened file of a seed, and {name: content} of all."""
     r = random.Random(seed)
     opened, files, documents = r.choice(OPENED), plans.files(), plans.documents()
-    others = ("town.lidarscene.json", "town.geojson", *(() if "scenario" in opened else ("points.csv" if "points" in opened else "taken.geojson",)))
+    others = ("town.lidarscene.json", "town.geojson", *(() if "scenario" in opened else ("points.csv", "year.txt") if "points" in opened else ("taken.geojson",)))
     name = opened if r.random() < 0.6 else r.choice(others)
     if name in documents and r.random() < 0.8:
         files[name] = json.dumps(plans.changed(documents[name], r.randrange(2**32))).encode()

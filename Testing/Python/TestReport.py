@@ -80,8 +80,8 @@ class Page(unittest.TestCase):
     def test_pictures_are_there_with_words(self):
         pictures = self.browser.run("return [...document.images].map(i => [i.complete, i.naturalWidth, i.alt])")
         # Two receivers where the plan puts them, and one at its best site, as the paper's sees nothing from any: four maps, four
-        # reasons, two sections, clutter. Of each receiver candidates, gain and the curve of ranges; at the head candidates and curve again.
-        self.assertEqual(len(pictures), 3 * (4 + 4 + 2 + 1) + 2 * 3 + 2)
+        # reasons, two sections, clutter. Of each receiver candidates, gain and the curve of ranges; at the head candidates and curve again. Fog and rain.
+        self.assertEqual(len(pictures), 3 * (4 + 4 + 2 + 1) + 2 * 3 + 2 + 2)
         for complete, width, words in pictures:
             self.assertTrue(complete and width > 300, words)
             self.assertRegex(words, r"\d")
@@ -153,7 +153,7 @@ class Less(unittest.TestCase):
             browser.open(page)
             self.assertEqual(browser.complaints(), [])
             self.assertEqual(browser.run("return document.querySelector('h1').textContent"), "<script>throw 1</script> & gulls?")
-            self.assertEqual(browser.run("return document.images.length"), 3 + 1 + 2)  # map, reasons, clutter; the curve; map and curve at the head
+            self.assertEqual(browser.run("return document.images.length"), 3 + 1 + 2 + 2)  # map, reasons, clutter; the curve; map and curve at the head; fog and rain
             self.assertEqual(browser.run("return document.querySelector('#section, #sites')"), None)
             cells, rows = same_numbers(self, browser, HERE / "map_files" / "shares.csv")
             self.assertGreater(len(cells), 10)

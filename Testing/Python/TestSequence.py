@@ -340,7 +340,8 @@ class Labels(unittest.TestCase):
 
     def test_subsets_are_what_they_are_said_to_be(self):
         class Still:
-            echoes = {"beam_id": np.array([7, 3, 3]), "distance_m": np.array([50.0, 200.0, 100.0]), "energy_received": np.ones(3)}
+            echoes = {"beam_id": np.array([7, 3, 3, 9]), "distance_m": np.array([50.0, 200.0, 100.0, 10.0]), "energy_received": np.ones(4),
+                      "object_id": np.array([0, 5, -1, -2])}  # the last is of the air
         distance, subset = Clutter(Still, 15.0).look([3, 3, 3, 3, 7, 9], [90.0, 120.0, 80.0, 190.0, 50.0, 10.0])
         np.testing.assert_array_equal(distance, [10, 20, 20, 10, 0, np.inf])
         self.assertEqual([SUBSETS[k] for k in subset],

@@ -40,7 +40,8 @@ CLASSES = {
     70: Class("vegetation", "trees", (60, 125, 35)),
     72: Class("terrain", "ground", (110, 165, 125)),
     80: Class("pole", "masts", (30, 30, 30)),
-    81: Class("traffic-sign", "signs", (40, 40, 200))}
+    81: Class("traffic-sign", "signs", (40, 40, 200)),
+    1: Class("outlier", "points of the air: rain, fog", (235, 215, 200))}
 
 
 def classes_of(bird: int) -> Dict[int, Class]:

@@ -20,6 +20,9 @@ from .._pipeline import Error, update
 from .._properties import in_snake_case
 from .._scene import Scene, load_scene
 from .._sensor import Sensor
+from .._weather import AIR, in_weather, weather, without_air
+from . import _metar
+from ._air import Air, weakening
 from ._json import check_json, load_json, naming
 from .siting import Runway, ground_of, read_runways, region_heights, require_memory, strips_and_approaches
 
@@ -37,11 +40,28 @@ MOST_PIXELS = 100_000_000  # of a map
 BYTES_OF_PLACE = 200  # of a place that is drawn, and of what is found there
 
 
-def read_plan(file, **changes: Dict[str, Any]) -> Dict[str, Any]:
+SUM = 1e-6  # to which the shares of a year are 1
+
+
+def read_plan(file, words: Optional[Sequence[str]] = None, metar=None, **changes: Dict[str, Any]) -> Dict[str, Any]:
     """A plan of coverage (JSON, `coverage.schema.json`), with its own name as `file`; `Error` names what is wrong. Files that it
-    names are absolute. @param changes parts of the plan, such as `sensor`, each with what else it shall hold"""
+    names are absolute.
+
+    words    of weather, in place of the plan's, its year and what its `coverage` says of the air
+    metar    file of reports, in place of the plan's year
+    changes  parts of the plan, such as `sensor`, each with what else it shall hold
+    """
     path = pathlib.Path(file)
     plan = load_json(path)
+    if isinstance(plan, dict):
+        if words or metar:
+            plan = {name: part for name, part in plan.items() if name not in ("year", "metar")}
+        if words:
+            plan["weather"] = list(words)
+            if isinstance(plan.get("coverage"), dict):
+                plan["coverage"] = without_air(plan["coverage"])
+        if metar:
+            plan["metar"] = str(pathlib.Path(metar).resolve())
     for part, values in changes.items():
         if values and isinstance(plan, dict) and isinstance(plan.get(part, {}), dict):
             lists = {name: list(value) if isinstance(value, tuple) else value for name, value in values.items()}
@@ -72,6 +92,9 @@ def read_plan(file, **changes: Dict[str, Any]) -> Dict[str, Any]:
     if "runways" in plan:
         with naming(f"{file}: runways"):
             plan["runways"] = absolute(plan["runways"])
+    if "metar" in plan:
+        with naming(f"{file}: metar"):
+            plan["metar"] = absolute(plan["metar"])
     if "siting" in plan:
         if "runways" not in plan:
             raise Error(f"{file}: siting: needs runways")
@@ -81,6 +104,10 @@ def read_plan(file, **changes: Dict[str, Any]) -> Dict[str, Any]:
             with naming(f"{file}: siting.points"):
                 plan["siting"]["points"] = absolute(plan["siting"]["points"])
     _check_question(plan, str(file))
+    if "metar" in plan:
+        with naming(f"{file}: metar"):
+            hours = _metar.read_metar(plan["metar"])
+            plan.update(year=hours.year(), hours=hours.words())
     plan["file"] = str(file)
     return plan
 
@@ -92,6 +119,16 @@ def _check_question(plan: Dict[str, Any], file: str) -> None:
             raise Error(f"{file}: siting.{old}: expected {new!r} of the plan instead, beside {'siting'!r}: it counts for maps, shares and sites")
     if "regions" in plan and "runways" not in plan:
         raise Error(f"{file}: regions: needs runways")
+    with naming(f"{file}: weather"):
+        in_weather(plan.get("coverage", {}), plan.get("weather"))
+    for number, part in enumerate(plan.get("year", ())):
+        with naming(f"{file}: year[{number}].weather"):
+            weather(part["weather"])
+    if "year" in plan and "metar" in plan:
+        raise Error(f"{file}: metar: is there beside 'year', expected one of both to say which weather there is")
+    total = sum(part["share"] for part in plan.get("year", ()))
+    if "year" in plan and not abs(total - 1.0) <= SUM:
+        raise Error(f"{file}: year: shares sum to {total:g}, expected 1")
     if "species" in plan.get("coverage", {}) and "mix" in plan:
         raise Error(f"{file}: coverage.species: is there beside 'mix', expected one of both to say which birds are asked for")
 
@@ -228,6 +265,8 @@ class Plan:
     scene, sensor  as loaded              runways  in the scene's coordinates
     coverage       for the maps           regions  Coverage of places drawn in strips and approaches; without runways on the maps
     mix            share of each species, the sum 1; maps of reasons are of the first, the greatest
+    air            words of the plan's weather
+    year           weathers by which sites are ranked, with their shares of the hours; empty where the plan gives none
     asked          least and greatest height of the places, m, None where the plan has no `heights`: then each region's own
     ground         z of the ground below the sensor, m, None where there is none
     """
@@ -246,7 +285,12 @@ class Plan:
             update(self.sensor.algorithm)
         self.heights: List[float] = list(plan.get("heights", HEIGHTS))
         self.asked = (min(self.heights), max(self.heights)) if "heights" in plan else None
-        self.settings: Dict[str, Any] = {"number_of_threads": threads, **plan.get("coverage", {})}
+        self.air = tuple(plan.get("weather", ()))
+        self.settings: Dict[str, Any] = {"number_of_threads": threads, **in_weather(plan.get("coverage", {}), self.air)}
+        if self.air:
+            self.settings.update(self.air_of(**{name: self.settings[name] for name in AIR if name in self.settings}))
+        self.year = [Air(tuple(part["weather"]), float(part["share"]), self.air_of(part["weather"])) for part in plan.get("year", ())
+                     if part["share"] > 0.0]
         if self.asked and self.asked[0] < self.asked[1]:
             self.settings.setdefault("height_limits", sorted(self.heights))
         if member == "sensor":  # else they are those of the plan before
@@ -278,6 +322,10 @@ class Plan:
             warnings.simplefilter("ignore")  # they come with the work
             self.tried = Coverage(Scene(), self.sensor, places=[(0.0, 0.0, 0.0)], **self.settings)
             self.tried.update()
+        for air in self.year:
+            with naming(f"{self.file}: year: {air.name}"), warnings.catch_warnings():
+                warnings.simplefilter("ignore")
+                Coverage(Scene(), self.sensor, places=[(0.0, 0.0, 0.0)], **{**self.settings, **air.settings}).update()
 
     def check_species(self, name: str, member: str) -> None:
         """`Error` for a species that is not known. @param member of the plan that names it"""
@@ -285,6 +333,23 @@ class Plan:
             warnings.simplefilter("ignore")
             self.tried.species = name
             self.tried.update()
+
+    def air_of(self, words: Sequence[str] = (), **air: Any) -> Dict[str, Any]:
+        """Settings of coverage in a weather: where it says nothing of the visibility, the plan's own; without rain, dry.
+
+        words  as of `--weather`
+        air    settings instead of words, such as rain_rate=0 (mm/h)
+        """
+        default, given = _wrapped.vtkAvianLidarCoverage(), self.plan.get("coverage", {})
+        all_of_it = {"attenuation_coefficient": given.get("attenuation_coefficient", default.GetAttenuationCoefficient()),
+                     "visibility": given.get("visibility", default.GetVisibility()),
+                     "air_backscatter": given.get("air_backscatter", False), "rain_rate": 0.0, **weather(words), **air}
+        return all_of_it if self.gathers_light else weakening(self.sensor, all_of_it)
+
+    @property
+    def gathers_light(self) -> bool:
+        """Whether the receiver has an aperture, into which air may send light back."""
+        return float(self.sensor.beams.fields.get("receiver_aperture", 0.0)) > 0.0
 
     def _mix(self) -> Dict[str, float]:
         mix = {str(name): float(share) for name, share in self.plan.get("mix", {}).items()}
@@ -410,13 +475,28 @@ class Plan:
         rows = self.regions.table
         if len(self.mix) == 1:
             return rows
-        groups = [[row for row in rows if row["species"] == species] for species in self.mix]
+        return rows + self._of_mix([[row for row in rows if row["species"] == species] for species in self.mix])
+
+    def _of_mix(self, of_species: Sequence[Sequence[Dict[str, Any]]]) -> List[Dict[str, Any]]:
+        """Rows of the mix. @param of_species rows of each species"""
         mixed = []
-        for same in zip(*groups):
+        for same in zip(*of_species):
             means = {name: sum(share * row[name] for share, row in zip(self.mix.values(), same)) for name, value in same[0].items()
                      if isinstance(value, float) and not name.startswith("height_")}
             mixed.append({**same[0], **means, "species": self.bird})
-        return rows + mixed
+        return mixed
+
+    def in_airs(self, airs: Sequence[Dict[str, Any]]) -> List[List[Dict[str, Any]]]:
+        """For each air the rows of shares of all heights, for the birds asked for: each region, and last all. No line of sight is
+        traced again. @param airs settings of coverage, as of `air_of`"""
+        regions, found = self.regions, []
+        own = {name: getattr(regions, name) for name in ("all_species", "species", *airs[0])}
+        regions.all_species = False
+        for species in self.mix:
+            regions.species = species
+            found.append([[row for row in regions.set(**air).table if math.isinf(row["height_from"]) and math.isinf(row["height_to"])] for air in airs])
+        regions.set(**own)
+        return [self._of_mix(of_species) if len(self.mix) > 1 else list(of_species[0]) for of_species in zip(*found)]
 
     @property
     def overall(self) -> Dict[str, Any]:
@@ -430,7 +510,9 @@ class Plan:
         size = f", effective area {area:.4f} m2 (assumed)" if len(self.mix) == 1 else ", effective areas assumed; reasons are of the first"
         return {"sensor": self.name, "position_m": " ".join(f"{c:g}" for c in self.sensor.position),
                 "target": f"{self.bird}{size}, reflectance {self.coverage.reflectance:g} (assumed)",
-                "visibility_m": f"{self.coverage.visibility:g} (assumed)", "assumed_of_the_sensor": ", ".join(self.assumed) or "none",
+                "visibility_m": f"{self.coverage.visibility:g} (assumed)" if self.coverage.visibility > 0.0 else
+                                f"none, attenuation {self.coverage.attenuation_coefficient:.3g}/m", "rain_mm_h": f"{self.coverage.rain_rate:g}",
+                "air": "sends light back" if self.coverage.air_backscatter or self.coverage.rain_rate else "only weakens", "assumed_of_the_sensor": ", ".join(self.assumed) or "none",
                 "limits": "calculated, not measured"}
 
     def write(self, folder, progress=None) -> List[str]:

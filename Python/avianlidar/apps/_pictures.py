@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import io
 import pathlib
-from typing import Any, Callable, Dict, List, Mapping, Tuple
+from typing import Any, Callable, Dict, List, Mapping, Sequence, Tuple
 
 import numpy as np
 from vtkmodules.util.numpy_support import vtk_to_numpy
@@ -129,6 +129,22 @@ def draw_reach(axes, reaches: Mapping[str, Reach], several: str) -> None:
     axes.set_xlim(0.0, None)
     axes.set_ylim(0.0, 1.02)
     axes.set_xlabel("range, m", fontsize=9)
+    axes.set_ylabel("share of birds detected", fontsize=9)
+    axes.grid(alpha=0.4)
+    axes.legend(fontsize=8)
+
+
+def draw_weather(axes, curves: Mapping[str, Tuple[Sequence[float], Sequence[float], Sequence[float]]], words: str, logarithmic: bool) -> None:
+    """Shares of birds by the weather, with bars of one standard error. @param curves by name: weathers, shares, errors @param words
+    of the weathers' axis"""
+    for name, (weathers, shares, errors) in curves.items():
+        axes.errorbar(weathers, shares, errors, marker="o", markersize=3, linewidth=1.5, elinewidth=1.0, label=name)
+    if logarithmic:
+        axes.set_xscale("log")
+        axes.set_xticks(weathers, [f"{weather:,g}" for weather in weathers], fontsize=8)
+        axes.minorticks_off()
+    axes.set_ylim(0.0, None)
+    axes.set_xlabel(words, fontsize=9)
     axes.set_ylabel("share of birds detected", fontsize=9)
     axes.grid(alpha=0.4)
     axes.legend(fontsize=8)

@@ -15,6 +15,7 @@ from .._cloud import field_values
 from .._disk import only_run, write_whole
 from .._pipeline import Error
 from .._version import __version__
+from .._weather import in_words
 from . import _pictures as pictures
 from . import reach, siting
 from ._json import load_json
@@ -22,6 +23,10 @@ from ._maps import Plan, height_name, write_table
 from ._sites import DRAWS, FEWEST_DRAWS, Sites
 
 BEST = 10  # sites in the table
+VISIBILITIES = (200.0, 500.0, 1000.0, 2000.0, 5000.0, 10_000.0, 20_000.0)  # m, of the section on weather
+RAINS = (0.0, 1.0, 5.0, 10.0, 25.0, 50.0)  # mm/h
+ANSWERED = 1000.0  # m, a visibility of these whose share is said in a sentence
+BESIDE = (("fog:1000",), ("rain:10",))  # weathers whose best sites are looked for, where the plan gives no year
 LEAST = 0.0005  # share that is given as a number; a site that detects less is no answer
 LEAST_WORDS = f"{100.0 * LEAST:g}\u00a0%"
 OTHER_PLACES = 1 << 40  # to a seed: that the share at the best site is not of the places by which it was chosen
@@ -96,7 +101,8 @@ class Report:
         self.plan, self.progress = plan, progress
         self.plans = Plan.all_of(plan, threads)
         self.scene = load_json(plan["scene"])
-        self.sites = [Sites(one, progress=progress) for one in self.plans] if "siting" in plan else []
+        self.sites = [Sites(one, progress=progress, beside=[words for words in BESIDE if words != one.air]) for one in self.plans] \
+            if "siting" in plan else []
         self.done = 0
 
     def _draw(self, file: pathlib.Path, size: Tuple[float, float], alt: str, caption: str, work) -> Dict[str, str]:
@@ -105,7 +111,7 @@ class Report:
         if self.progress:
             first = self.plans[0]
             each = 2 * len(first.heights) + 1 + len(first.runways)
-            self.progress("pictures", self.done, (each * (2 if self.sites else 1) + 1) * len(self.plans))
+            self.progress("pictures", self.done, (each * (2 if self.sites else 1) + 1) * len(self.plans) + 2)
         return {"source": _embedded(file), "alt": alt, "caption": caption}
 
     def _view(self, plan: Plan, folder: pathlib.Path, name: str) -> Dict[str, Any]:
@@ -193,6 +199,7 @@ class Report:
                               f"{sites.plan.name}: with more sensors")}
         return {"name": sites.plan.name, "best": best, "gain": gain, "lattice": sites.lattice, "alike": int(alike), "edge": sites.at_the_edge,
                 "degrees": self._degrees(sites), "masts": [(mast, sites.positions[i], float(sites.values[i])) for mast, i in sites.best_by_mast()],
+                "by_air": [{**row, "position": sites.positions[row["site"]]} for row in sites.best_by_air()],
                 "robustness": sites.robustness(changes), "words": sites.words(), "near": len(sites.near), "count": len(sites.positions),
                 "taken": any(siting.is_near(taken, outline, margin)[0] for outline, margin in sites.exclusions),
                 "heights_varied": any("heights" in change.what for change in changes),
@@ -225,6 +232,55 @@ class Report:
                                       f"{plan.name}: share of birds in its band that are detected, by range, in free air; bars: standard error",
                                       lambda axes: pictures.draw_reach(axes, of, several))}
 
+    def _weather(self, views: List[Plan], folder: pathlib.Path) -> Dict[str, Any]:
+        """Shares of the places in fog and in rain, and over the plan's year, for each view."""
+        visibility = views[0].air_of()["visibility"]
+        kinds: List[Tuple[str, Sequence[float], str, List[Dict[str, Any]]]] = [
+            ("visibility", VISIBILITIES, "visibility, m", [{"visibility": v, "air_backscatter": True} for v in VISIBILITIES]),
+            ("rain", RAINS, "rain, mm/h", [{"rain_rate": rain, "air_backscatter": True} for rain in RAINS])]
+        found: Dict[str, Any] = {"beside": visibility, "weaken": [plan.name for plan in self.plans if not plan.gathers_light], "pictures": []}
+        table: List[Dict[str, Any]] = []
+        shares = []  # by view, then by air
+        for view in views:
+            airs = [view.air_of(**air) for _, _, _, airs in kinds for air in airs] + [air.settings for air in view.year]
+            rows = view.in_airs(airs)
+            shares.append([row[-1] for row in rows])
+            names = [*(f"visibility {v:.10g} m" for v in VISIBILITIES), *(f"rain {rain:.10g} mm/h" for rain in RAINS), *(air.name for air in view.year)]
+            table += [{"receiver": view.title, "weather": name, "region": row["region"], "species": row["species"], "places": row["places"],
+                       "detection_probability": row["detection_probability"], "detection_std_error": row["detection_std_error"]}
+                      for name, of in zip(names, rows) for row in of]
+        write_table(folder / "weather.csv", table)
+        first = 0
+        for kind, values, words, airs in kinds:
+            part = slice(first, first + len(airs))
+            first = part.stop
+            curves = {view.title: (values, [row["detection_probability"] for row in of[part]], [row["detection_std_error"] for row in of[part]])
+                      for view, of in zip(views, shares)}
+            said = "; ".join(f"{name}: {', '.join(f'{value:g}: {share:.3f}' for value, share in zip(values, of))}" for name, (_, of, _) in curves.items())
+            caption = f"{views[0].bird}, share detected by one scan {views[0].where}, by {words}; bars: standard error"
+            found["pictures"].append(self._draw(folder / f"weather-{kind}.png", (4.6, 3.4), f"Share of birds detected by {words}. {said}.", caption,
+                                                lambda axes, curves=curves, words=words, kind=kind:
+                                                pictures.draw_weather(axes, curves, words, kind == "visibility")))
+            found[kind] = [{"value": value, "shares": of} for value, of in zip(values, zip(*(of[part] for of in shares)))]
+        year = views[0].year
+        found["year"] = [{"name": air.name, "share": air.share, "shares": of} for air, of in zip(year, zip(*(of[first:] for of in shares)))]
+        # Places are the same in all weathers: the error of the mean is at most the mean of errors.
+        found["over_the_year"] = [{name: sum(air.share * row[name] for air, row in zip(year, of[first:]))
+                                   for name in ("detection_probability", "detection_std_error")} for of in shares]
+        at = VISIBILITIES.index(ANSWERED)
+        found["answered"] = [of[at] for of in shares]
+        return found
+
+    def _weather_words(self, number: int, view: Plan, weather: Dict[str, Any]) -> str:
+        """A sentence on fog, and on the year. @param number of the view"""
+        def of(row):
+            return _share(row["detection_probability"], row["detection_std_error"])
+        birds = f"{view.bird}s" if len(view.mix) == 1 else f"birds {view.bird[5:]}"
+        said = f"At 1\u00a0km visibility one scan of {view.title} detects {of(weather['answered'][number])} of {birds} {view.where}."
+        if view.year:
+            said += f" Over the year, by the hours of its weather, it is {of(weather['over_the_year'][number])}."
+        return said
+
     def _advice(self, view: Plan, reaches: Dict[str, Any]) -> Optional[Dict[str, Any]]:
         """How high the band must go, with what that would detect."""
         found = reach.advice(view, max(one.to(0.5) for one in reaches["of"].values()))
@@ -244,17 +300,19 @@ class Report:
         found = view.overall
         share = _share(found["detection_probability"], found["detection_std_error"])
         birds = f"{view.bird}s" if len(view.mix) == 1 else f"birds {view.bird[5:]}"
+        air = f" in {in_words(view.air)}" if view.air else f" at {_metres(view.coverage.visibility)} visibility" if view.year else ""
+        by_year = ", by the year's weather," if view.year else ""
         several = f" by one scan of {plan.name}" if len(self.plans) > 1 else " by one scan"
         if not site:
-            said = [f"{plan.name} stands {place(view.sensor.position)}: one scan detects {share} of {birds} {view.where}."]
+            said = [f"{plan.name} stands {place(view.sensor.position)}: one scan detects {share} of {birds} {view.where}{air}."]
         elif view is plan:
-            said = [f"None of {site['count']} candidates, of {site['lattice']}, detects {LEAST_WORDS} of {birds} {view.where}{several}."]
+            said = [f"None of {site['count']} candidates, of {site['lattice']}, detects {LEAST_WORDS} of {birds} {view.where}{several}{by_year.rstrip(',') or air}."]
         else:
             alike = f"; as good within the error: {site['alike']} more" if site["alike"] else ""
             degrees = f"; {site['degrees']}" if site["degrees"] else ""
             edge = " It lies at the lattice's edge: what is beyond was not looked at, wider bounds may have a better one." if site["edge"] else ""
-            said = [f"Of {site['count']} candidates, of {site['lattice']}, the best for {plan.name} stands {place(view.sensor.position)} (from the "
-                    f"scene's origin{degrees}{alike}): one scan detects {share} of {birds} {view.where}.{edge}"]
+            said = [f"Of {site['count']} candidates, of {site['lattice']}, the best for {plan.name}{by_year} stands {place(view.sensor.position)} (from the "
+                    f"scene's origin{degrees}{alike}): one scan detects {share} of {birds} {view.where}{air}.{edge}"]
         said += [self._range_words(view, reaches)]
         if site and view is not plan and plan is self.plans[0]:
             who = "the plan" if "position" in plan.plan["sensor"] else "the scene"
@@ -279,7 +337,7 @@ class Report:
                 f"{', '.join(seen) if seen else 'none'}{'; nowhere at ' + ', '.join(never) if seen and never else ''}.")
 
     def write(self, file) -> pathlib.Path:
-        """Write the page, and beside it a folder of its name and `_files` with shares.csv, range.csv, pictures and tables of sites.
+        """Write the page, and beside it a folder of its name and `_files` with shares.csv, range.csv, weather.csv, pictures and tables of sites.
         @return that folder"""
         file = pathlib.Path(file)
         if file.suffix not in (".html", ".htm") or file.is_dir():
@@ -305,12 +363,16 @@ class Report:
         reaches = [self._reaches(plan, folder) for plan in self.plans]
         shown = [self._view(view, folder, view.name if view in self.plans else f"{view.name}-best") for view in views]
         answering = [next((view for view in best if view.name == plan.name), plan) for plan in self.plans]
+        weather = self._weather(views, folder)
         answers = [sentence for number, (plan, view) in enumerate(zip(self.plans, answering))
                    for sentence in self._answer(plan, view, sited[number] if sited else None, reaches[number])]
+        weather["words"] = [self._weather_words(views.index(view), view, weather) for view in answering]
+        answers.append(weather["words"][0])
         write_table(folder / "shares.csv", [{"receiver": view.title, **row} for view in views for row in view.shares])
         write_table(folder / "range.csv", [row for found in reaches for row in found["table"]])
         known = field_values(first.regions.data)
-        asked = {name: part for name, part in self.plan.items() if name != "file"}
+        made = ("file", "hours", *(["year"] if "metar" in self.plan else []))
+        asked = {name: part for name, part in self.plan.items() if name not in made}
         environment = jinja2.Environment(loader=jinja2.FileSystemLoader(pathlib.Path(__file__).parent), autoescape=True,
                                          undefined=jinja2.StrictUndefined, trim_blocks=True, lstrip_blocks=True)
         environment.globals["zip"] = zip
@@ -323,7 +385,7 @@ class Report:
             attenuation=float(known["attenuation_coefficient"]), plan=first, places=int(first.overall["places"]),
             assumptions=assumptions(self.plans), names=[plan.name for plan in self.plans], views=shown, reaches=reaches,
             advice=[found for view, of in zip(answering, reaches) if (found := self._advice(view, of))],
-            tables=self._tables(views), sites=sited, fewest=FEWEST_DRAWS, least=LEAST, least_words=LEAST_WORDS, colours=pictures.gradient(),
+            tables=self._tables(views), sites=sited, weather=weather, hours=self.plan.get("hours", ""), fewest=FEWEST_DRAWS, least=LEAST, least_words=LEAST_WORDS, colours=pictures.gradient(),
             statuses=list(zip(first.coverage.status_names, pictures.STATUS_COLOURS)),
             scene={"name": pathlib.Path(self.plan["scene"]).name, "comment": _lines(self.scene.get("comment")),
                    "attribution": _lines(self.scene.get("attribution"))},

@@ -26,16 +26,19 @@ from .._ranks import Ranks, as_json, digest_of, digest_of_arrays
 from .._scan import Scan
 from .._scene import Scene, load_scene, mesh, mover
 from .._sensor import Sensor
+from .._weather import in_weather, in_words
 from .._version import __version__
 from ._json import check_json, load_json, naming
 from ._labels import BIRD, FIRST_BIRD, FIRST_OBJECT, LAST_ID, classes_of, configuration, relabel
 
 SUBSETS = ("sky", "near_clutter", "through_edges")
-STATUSES = ("absent", "outside", "hidden", "too weak", "missed", "seen")
+STATUSES = ("absent", "outside", "hidden", "air", "too weak", "missed", "seen")
 TRUTH = ("scan", "bird", "species", "status", "subset", "time_s", "x_m", "y_m", "z_m", "range_m", "azimuth_deg",
          "elevation_deg", "effective_area_m2", "beams", "expected_energy_J", "expected_photoelectrons",
          "expected_probability", "points", "clutter_distance_m", "clutter_share",
-         "first_time_s", "first_x_m", "first_y_m", "first_z_m", "last_time_s", "last_x_m", "last_y_m", "last_z_m")
+         "first_time_s", "first_x_m", "first_y_m", "first_z_m", "last_time_s", "last_x_m", "last_y_m", "last_z_m",
+         "visibility_m", "rain_mm_h", "clear_probability")
+AIR = -2  # object_id of echoes of the air
 WEAK = 0.1  # a bird of a smaller probability of detection is too weak
 LONGEST = 1e9  # s that an object is under way, or sets out later
 DONE = "done.json"
@@ -109,6 +112,7 @@ class Clutter:
     def __init__(self, scan: Scan, near: float):
         echoes = scan.echoes
         order = np.lexsort((echoes["distance_m"], echoes["beam_id"]))
+        order = order[np.array(echoes["object_id"])[order] != AIR]  # those of the air are no clutter
         self.beams, self.ranges = np.array(echoes["beam_id"])[order], np.array(echoes["distance_m"])[order]
         self.energies = np.array(echoes["energy_received"])[order]
         self.near = near
@@ -166,13 +170,19 @@ class Sequence:
                         "labels hold no more")
         sensor: Dict[str, Any] = {"position": self.scene.lidar_position or (0, 0, 0), "motion_seed": self.seed,
                                   **self.scenario["sensor"], "number_of_revolutions": self.scans}
-        settings: Dict[str, Any] = {"seed": self.seed, **self.scenario.get("scan", {}), "number_of_threads": threads}
+        with naming(f"{self.file}: weather"):
+            air = in_weather(self.scenario.get("scan", {}), self.scenario.get("weather"))
+        settings: Dict[str, Any] = {"seed": self.seed, **air, "number_of_threads": threads}
         with naming(f"{self.file}: sensor"):
             self.sensor = Sensor(**sensor)
             update(self.sensor.algorithm)
         with naming(f"{self.file}: scan"):
             self.scan = Scan(self.scene, self.sensor, **settings)
         self.scan.set(report_movers=True)
+        self.clear: Optional[Scan] = None  # the same without weather, where air scatters
+        if self.scan.rain_rate > 0.0 or (self.scan.air_backscatter and self.scan.visibility > 0.0):
+            self.clear = Scan(self.scene, self.sensor, **settings)
+            self.clear.set(report_movers=True, noise=False, visibility=0.0, air_backscatter=False, rain_rate=0.0)
         self._flights(0)  # what is wrong with birds and objects is said before the work
         self._objects(0)
         # Where clutter is, without what differs from scan to scan.
@@ -283,12 +293,16 @@ class Sequence:
         blocks = vtkMultiBlockDataSet()
         for k, block in enumerate(birds + self._objects(number)):
             blocks.SetBlock(k, block)
-        self.scan.movers = blocks
+        for scan in filter(None, (self.scan, self.clear)):
+            scan.movers = blocks
         algorithm, rate = self.scan.algorithm, self.sensor.rotation_rate
         differ = self.sensor.algorithm.GetNumberOfPrisms() > 0  # beams, from scan to scan
-        with Updates(algorithm) as again, Updates(self._still.algorithm) as look:
+        clear = (self.clear or self.scan).algorithm
+        with Updates(algorithm) as again, Updates(self._still.algorithm) as look, Updates(clear) as compare:
             for k in self.span(number):
                 again(lambda: algorithm.UpdateTimeStep(k / rate))
+                if self.clear:
+                    compare(lambda: clear.UpdateTimeStep(k / rate))
                 if differ:
                     look(lambda: self._still.algorithm.UpdateTimeStep(k / rate))
                     self._look_at_rest()
@@ -297,9 +311,12 @@ class Sequence:
     def truth(self, k: int, species: Dict[int, str]) -> List[List[Any]]:
         """A row of `TRUTH` for each bird, of the scan as it is now."""
         report = Cloud(self.scan.algorithm.GetOutput(2))
-        rows = {bird: [k, bird, name, "absent", ""] + [""] * 8 + [0, "", "", "", 0] + [""] * 10 for bird, name in species.items()}
+        weather = [f"{self.scan.visibility:g}" if self.scan.visibility > 0.0 else "", f"{self.scan.rain_rate:g}"]
+        rows = {bird: [k, bird, name, "absent", ""] + [""] * 8 + [0, "", "", "", 0] + [""] * 10 + [*weather, ""] for bird, name in species.items()}
         if report.number_of_points == 0:
             return list(rows.values())
+        clear = Cloud(self.clear.algorithm.GetOutput(2)) if self.clear else report
+        without = {bird: both for bird, *both in zip(clear["object_id"], clear["energy_received"], clear["detection_probability"])}
         places = np.array(report.points)
         columns = {name: np.array(report[name]) for name in report}
         distance, subset = self.clutter.look(columns["beam_id"], columns["distance_m"])
@@ -311,10 +328,11 @@ class Sequence:
                 continue
             beams, energy = int(columns["number_of_beams"][i]), float(columns["energy_received"][i])
             probability, points = float(columns["detection_probability"][i]), int(columns["number_of_echoes"][i])
-            beyond = columns["distance_m"][i] > self.sensor.range_gate or (beams == 0 and energy == 0)
+            light, chance = without.get(bird, (energy, probability))
+            beyond = columns["distance_m"][i] > self.sensor.range_gate or (beams == 0 and light == 0)
             static = self.clutter.energy(columns["beam_id"][i])
-            status = ("seen" if points else "outside" if beyond else "hidden" if energy == 0 else
-                      "too weak" if probability < WEAK else "missed")
+            status = ("seen" if points else "outside" if beyond else "hidden" if light == 0 else
+                      "missed" if probability >= WEAK else "air" if chance >= WEAK else "too weak")
             rows[bird] = [k, bird, species[bird], status, SUBSETS[subset[i]] if status != "outside" else "",
                           f"{1e-6 * columns['timestamp'][i]:.6f}", *(f"{x:.4f}" for x in places[i]),
                           f"{columns['distance_m'][i]:.4f}", f"{columns['azimuth'][i] / 100:.4f}",
@@ -323,7 +341,8 @@ class Sequence:
                           f"{probability:.6g}", points, f"{distance[i]:.4f}" if status != "outside" else "",
                           f"{static / (static + energy):.4f}" if static + energy > 0 else "",
                           *(text for when in ("first", "last") for text in
-                            (f"{1e-6 * columns[when + '_timestamp'][i]:.6f}", *(f"{x:.4f}" for x in columns[when + "_position"][i])))]
+                            (f"{1e-6 * columns[when + '_timestamp'][i]:.6f}", *(f"{x:.4f}" for x in columns[when + "_position"][i]))),
+                          *weather, f"{chance:.6g}" if self.clear else ""]
         return list(rows.values())
 
     def _write_one(self, folder: pathlib.Path, number: int, progress: Optional[Progress]) -> Dict[str, Any]:
@@ -585,6 +604,7 @@ def datasheet(manifest: Dict[str, Any]) -> str:
              f"{manifest['avian_lidar_version']}. Simulated: nothing here was measured.", "",
              f"Scene {pathlib.Path(scenario['scene']).name}, sensor {scenario['sensor']['preset']}. Birds are seen in "
              f"{seen} scans ({100 * seen / max(scans, 1):.1f} %).", "",
+             f"Weather: {in_words(scenario.get('weather', ())) or 'none but what the settings of scan say'}.", "",
              "Assumed: " + ("; ".join(manifest["assumed"]) or "no number of the sensor")
              + "; species, plumage, shapes and flights of birds; sizes of sway and jitter.", "",
              "| class (low 16 bits) | name | points | share |", "|---:|---|---:|---:|"]

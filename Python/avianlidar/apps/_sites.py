@@ -8,7 +8,7 @@ import io
 import itertools
 import pathlib
 import tempfile
-from typing import Any, Callable, Dict, Iterator, List, Optional, Tuple
+from typing import Any, Callable, Dict, Iterator, List, Optional, Sequence, Tuple
 
 import numpy as np
 
@@ -17,6 +17,7 @@ from .._pipeline import Error
 from .._ranks import Ranks
 from .._scene import load_scene
 from . import _pictures, siting
+from ._air import Air
 from ._json import naming
 from ._maps import Plan, write_table
 
@@ -66,16 +67,19 @@ class Sites:
 
     positions  n x 3, m, in the order of the lattice   networks  the best of 1, 2, ... sensors
     values     weighted share that each detects alone  order     candidates from the best to the worst
+    airs       weathers with their shares of the year  by_air    weighted share that each detects alone in each of these
 
-    All but the positions are there after `look`.
+    All but the positions and the airs are there after `look`.
     """
 
-    def __init__(self, plan: Plan, folder=None, ranks: Optional[Ranks] = None, progress: Optional[Progress] = None):
+    def __init__(self, plan: Plan, folder=None, ranks: Optional[Ranks] = None, progress: Optional[Progress] = None,
+                 beside: Sequence[Sequence[str]] = ()):
         """The candidates, and all else that the plan says of them, checked; `look` looks from them. `Error` names the plan's
         file and the member.
 
         folder    keeps each candidate's coverage, so that a stopped run goes on; needed on several ranks
         progress  called with the name of the work, what is done of it and all of it
+        beside    words of weathers that are looked at, too, and do not count
         """
         if not plan.runways:
             raise Error(f"{plan.file}: runways: is not in the plan, expected a GeoJSON file, as sites are compared by strips and "
@@ -87,19 +91,31 @@ class Sites:
         self.settings = {name: value for name, value in plan.settings.items()
                          if name not in ("species", "all_species", "height_limits", "number_of_threads")}
         self.count = int(self.options.get("sensors", 3))
+        self.airs = plan.year or [Air(plan.air, 1.0, {})]
+        if beside and not plan.year:
+            self.airs = [Air(plan.air, 1.0, {name: self.settings.get(name, value) for name, value in plan.air_of().items()}),
+                         *(Air(tuple(words), 0.0, plan.air_of(words)) for words in beside)]
+        self.counting = [i for i, air in enumerate(self.airs) if air.share > 0.0]
         self.exclusions = self._exclusions()
         points = self._points()
         with naming(f"{plan.file}: siting"):
             self.positions = siting.candidates(points, self.masts, self.exclusions, plan.scene)
-            siting.require_memory(4.0 * len(self.positions) * len(self.mix) * plan.count, f"{len(self.positions):,} candidates, "
-                                  f"{len(self.mix)} species and {plan.count:,} places", "take a larger spacing, fewer masts or places")
+            siting.require_memory(4.0 * len(self.positions) * len(self.mix) * len(self.airs) * plan.count,
+                                  f"{len(self.positions):,} candidates, {len(self.mix)} species and {plan.count:,} places"
+                                  + (f" in {len(self.airs)} weathers" if len(self.airs) > 1 else ""),
+                                  "take a larger spacing, fewer masts or places")
         if self.options.get("draws", DRAWS):
             with naming(f"{plan.file}: scene"), tempfile.TemporaryDirectory() as copy:
                 siting.with_other_heights(plan.plan["scene"], copy, lambda: 0.0)  # as `changes` will
 
     def look(self) -> Sites:
         """Look from all candidates, and compare networks of them. @return this"""
-        self.found, self.weights, self.regions = self._look(self.positions, progress=lambda *done: self._tell("sites", *done))
+        self.found, self.weights, self.regions = self._look(self.positions, self.airs, progress=lambda *done: self._tell("sites", *done))
+        of_species = self.plan.weights(self.plan.points)
+        every = self.found.reshape(len(self.positions), len(self.mix), len(self.airs), -1)
+        self.by_air = np.array([[np.vdot(site[:, air].astype(float), of_species) for air in range(len(self.airs))] for site in every])
+        if len(self.counting) < len(self.airs):
+            self.found = every[:, :, self.counting].reshape(len(self.positions), -1, every.shape[-1])
         self.values = siting.values_of(self.found, self.weights)
         self.order = np.argsort(-self.values, kind="stable")
         first = siting.search(self.found, self.weights, min(self.count, len(self.positions)))
@@ -109,7 +125,8 @@ class Sites:
         points, weights, _ = self._draw()
         with self.ranks.together():
             self.of_same_birds = [siting.value_of_same_birds(self.plan.scene, self.plan.sensor, self.positions[list(network.sites)],
-                                                             points, list(self.mix), weights, **self.settings)
+                                                             points, list(self.mix), weights, [self.airs[i].settings for i in self.counting],
+                                                             **self.settings)
                                   for network in self.networks]
         return self
 
@@ -137,17 +154,21 @@ class Sites:
                 outlines += found
         return [(outline, margin) for outline in outlines] + [(siting.runway_outline(r), 0.0) for r in self.plan.runways]
 
-    def _look(self, positions, seed: Optional[int] = None, scene=None, progress=None, **settings: Any):
-        """Coverage of sites, weights and regions."""
+    def _look(self, positions, airs: Optional[List[Air]] = None, seed: Optional[int] = None, scene=None, progress=None, **settings: Any):
+        """Coverage of sites, weights and regions. @param airs default those that count"""
         points, weights, regions = self._draw(seed)
+        settings_of = [air.settings for air in airs or [self.airs[i] for i in self.counting]]
         found = siting.look(scene or self.plan.scene, self.plan.sensor, positions, points, list(self.mix), self.folder, self.ranks,
-                            progress, **{**self.settings, **settings})
+                            progress, airs=settings_of, **{**self.settings, **settings})
         return found, weights, regions
 
     def _draw(self, seed: Optional[int] = None):
-        """Places, their weights and regions: those of the plan's table, or others of the same question."""
+        """Places, their weights (species and weathers x places) and regions: those of the plan's table, or others of the same
+        question."""
         points, regions = (self.plan.points, self.plan.members) if seed is None else self.plan.places(seed)
-        return points, self.plan.weights(points), regions
+        shares = np.array([self.airs[i].share for i in self.counting])
+        weights = self.plan.weights(points)[:, None] * (shares / shares.sum())[:, None]
+        return points, weights.reshape(-1, len(points)), regions
 
     def _search(self, found, weights, known=()) -> List[siting.Network]:
         """The best networks of the near candidates."""
@@ -227,6 +248,8 @@ class Sites:
         return {"sensor": self.plan.name, "birds (sizes assumed)": f"{self.plan.bird} {self.plan.where}",
                 "candidates": f"{len(self.positions)}, of {self.lattice}; what stands between them was not looked at",
                 "masts": ", ".join(f"{mast:g} m" for mast in self.masts) + " above the ground below",
+                **({"weather": "by the year's share of the hours: " + "; ".join(f"{air.name} {100 * air.share:.3g} %" for air in self.plan.year)}
+                   if self.plan.year else {"weather": self.airs[0].name} if self.plan.air else {}),
                 "clutter": "counted" if self.settings.get("clutter") else "not counted",
                 "nothing may stand": f"within 60 m beyond and 185 m beside runways, under surfaces of the scene, and within "
                                      f"{self.options.get('margin', 0.0):g} m of {' and '.join(files)}"}
@@ -248,6 +271,19 @@ class Sites:
         found = [(mast, np.flatnonzero(np.abs(of - mast) < siting.SAME_PLACE)) for mast in self.masts]
         return [(mast, int(numbers[np.argmax(self.values[numbers])])) for mast, numbers in found if len(numbers)]
 
+    def _over_the_year(self, order, species: int, places) -> np.ndarray:
+        """The mean share of some places at each site. @param order of the sites @param species its number @param places numbers"""
+        total = np.zeros(len(order))
+        for k, air in enumerate(self.counting):
+            of = self.found[:, species * len(self.counting) + k]
+            total += self.airs[air].share * of[order][:, places].mean(axis=1, dtype=float)
+        return total / sum(self.airs[air].share for air in self.counting)
+
+    def best_by_air(self) -> List[Dict[str, Any]]:
+        """A row for each weather: the site that is best in it, and what the first of the order detects then."""
+        return [{"weather": air.name, "share": air.share, "site": int(np.argmax(values)), "value": float(values.max()),
+                 "value of the first": float(values[self.order[0]])} for air, values in zip(self.airs, self.by_air.T)]
+
     def write(self, folder, changes: List[Change]) -> None:
         """Write sites (CSV, VTP, GeoJSON) in the order of their rank, gain.csv, robustness.csv and pictures of both."""
         folder = pathlib.Path(folder)
@@ -256,7 +292,10 @@ class Sites:
                                    "in_network": np.isin(order, self.networks[-1].sites).astype(np.int32)}
         for k, name in enumerate(self.mix):
             for region, numbers in self.regions.items():
-                columns[f"{name or 'target'}_{region}".replace(" ", "_")] = self.found[order, k][:, numbers].mean(axis=1, dtype=float)
+                columns[f"{name or 'target'}_{region}".replace(" ", "_")] = self._over_the_year(order, k, numbers)
+        if len(self.airs) > 1:
+            for k, air in enumerate(self.airs):
+                columns["_".join(["value", *(air.words or ("plan",))]).replace(":", "_")] = self.by_air[order, k]
         siting.write_sites(folder, self.positions[order], columns, self.plan.scene.geodetic_origin,
                            "; ".join(f"{name}: {text}" for name, text in self.words().items()))
         write_table(folder / "gain.csv", self.gain())

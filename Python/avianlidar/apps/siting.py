@@ -48,7 +48,7 @@ MOST_CANDIDATES = 100_000
 SAME_PLACE = 1e-3  # m: candidates whose coordinates are the same to this are one
 RUN = 64  # edges of an outline in one box
 PAIRS = 1 << 18  # of points and edges that are looked at together
-SAME_BIRDS = 20_000  # places whose poses are held together: 6 MB a sensor
+SAME_BIRDS = 20_000  # places whose poses are held together: 6 MB a sensor and air
 
 
 @dataclasses.dataclass(frozen=True)
@@ -389,8 +389,9 @@ def weights_of(count: int, regions: Mapping[str, Any], shares: Mapping[str, floa
 
 def look(scene, sensor, sites, places, species: Sequence[str], folder=None, ranks: Optional[Ranks] = None,
          progress: Optional[Callable[[int, int], Any]] = None, array: str = "detection_probability", area_factor: float = 1.0,
-         **settings: Any) -> np.ndarray:
-    """What a lidar at each site finds at each place: float32, sites x species x places. Without clutter unless `clutter` is on;
+         airs: Sequence[Mapping[str, Any]] = ({},), **settings: Any) -> np.ndarray:
+    """What a lidar at each site finds at each place: float32, sites x species x places; with several airs sites x (species x airs)
+    x places, the airs of a species side by side. Without clutter unless `clutter` is on;
     on one thread unless `number_of_threads` says more, which pays only for many places: ranks share sites better.
 
     sensor       a Sensor; it is moved, and put back
@@ -402,6 +403,7 @@ def look(scene, sensor, sites, places, species: Sequence[str], folder=None, rank
     progress     called with the number of sites done and of all that this process makes
     array        a point array of vtkAvianLidarCoverage
     area_factor  on each species' mean effective area
+    airs         further settings, all of the same names: visibility, rain_rate, ... For each the lines of sight are those of the first
     settings     properties of Coverage, for example visibility=10e3 (m)
 
     @throws ValueError that names the argument, Error of Coverage
@@ -420,8 +422,9 @@ def look(scene, sensor, sites, places, species: Sequence[str], folder=None, rank
         try:
             sensor.position = (0.0, 0.0, 0.0)
             inputs = {name: repr(value) for name, value in settings.items() if name != "number_of_threads"}  # which changes no bit
-            files = _files(cover, sites, places, [list(species), array, area_factor, inputs], folder)
-            found = np.empty((len(sites), len(species), len(places)), dtype=np.float32)
+            known = [list(species), array, area_factor, inputs, *([[dict(air) for air in airs]] if any(airs) else [])]
+            files = _files(cover, sites, places, known, folder)
+            found = np.empty((len(sites), len(species) * len(airs), len(places)), dtype=np.float32)
             kept = {i for i, file in enumerate(files) if _read_kept(file, found[i])}
             damaged = [str(file) for i, file in enumerate(files) if i not in kept and os.path.lexists(file)]
             ranks.wait()  # all have looked before anybody adds anything
@@ -435,8 +438,8 @@ def look(scene, sensor, sites, places, species: Sequence[str], folder=None, rank
             with Updates(cover.algorithm) as again:
                 for number, i in enumerate(mine):
                     sensor.position = tuple(sites[i])
-                    for row, (name, area) in enumerate(zip(species, areas)):
-                        cover.set(species=name, effective_area=area)
+                    for row, ((name, area), air) in enumerate(itertools.product(zip(species, areas), airs)):
+                        cover.set(species=name, effective_area=area, **air)
                         again()
                         values = cover.algorithm.GetOutputDataObject(0).GetPointData().GetArray(array)
                         if values is None:
@@ -524,7 +527,8 @@ def values_of(found: np.ndarray, weights: np.ndarray) -> np.ndarray:
     return np.array([np.vdot(site.astype(float), weights) for site in found])
 
 
-def value_of_same_birds(scene, sensor, sites, places, species: Sequence[str], weights: np.ndarray, **settings: Any) -> float:
+def value_of_same_birds(scene, sensor, sites, places, species: Sequence[str], weights: np.ndarray, airs: Sequence[Mapping[str, Any]] = ({},),
+                        **settings: Any) -> float:
     """The weighted share that at least one of the sites detects in one scan if all of them look at the same bird: its heading
     and wing phase are kept from sensor to sensor. Beside it stands value_of, for which each sensor has a bird of its own. Without
     clutter unless `clutter` is on.
@@ -533,7 +537,8 @@ def value_of_same_birds(scene, sensor, sites, places, species: Sequence[str], we
     sites     n x 3, m: of the network
     places    m x 3, m
     species   by name
-    weights   species x places, from weights_of
+    weights   species x places, from weights_of; with several airs (species x airs) x places
+    airs      as of look
     settings  properties of Coverage, for example visibility=10e3 (m)
 
     @throws ValueError that names the argument, Error of Coverage
@@ -541,8 +546,9 @@ def value_of_same_birds(scene, sensor, sites, places, species: Sequence[str], we
     sites, places = np.asarray(sites, dtype=float), np.asarray(places, dtype=float)
     if sites.ndim != 2 or sites.shape[1] != 3 or not np.isfinite(sites).all():
         raise ValueError(f"sites have the shape {sites.shape}, expected n x 3 finite coordinates in metres")
-    if weights.shape != (len(species), len(places)):
-        raise ValueError(f"weights have the shape {weights.shape}, expected species x places, {(len(species), len(places))}")
+    rows = len(species) * len(airs)
+    if weights.shape != (rows, len(places)):
+        raise ValueError(f"weights have the shape {weights.shape}, expected species x places, {(rows, len(places))}")
     if not (np.isfinite(weights).all() and np.min(weights, initial=0.0) >= 0):
         raise ValueError(f"weights have {np.min(weights):g} among them, expected finite numbers of at least 0")
     before, value = sensor.position, 0.0
@@ -553,13 +559,18 @@ def value_of_same_birds(scene, sensor, sites, places, species: Sequence[str], we
         for first in range(0, len(places), SAME_BIRDS):
             part = slice(first, first + SAME_BIRDS)
             cover.places = places[part]
-            for name, weight in zip(species, weights[:, part]):
+            for number, name in enumerate(species):
                 cover.species = name
-                missed = np.ones((len(weight), 1), dtype=np.float32)  # places x poses
+                weight = weights[number * len(airs):(number + 1) * len(airs), part]
+                missed = np.ones((*weight.shape, 1), dtype=np.float32)  # airs x places x poses
                 for site in sites:
                     sensor.position = tuple(site)
-                    missed = missed * (1.0 - cover["pose_probabilities"].reshape(len(weight), -1))
-                value += float(np.vdot(weight, 1.0 - missed.mean(axis=1, dtype=float)))
+                    found = []
+                    for air in airs:
+                        cover.set(**air)
+                        found.append(cover["pose_probabilities"].reshape(weight.shape[1], -1))
+                    missed = missed * (1.0 - np.stack(found))
+                value += float(np.vdot(weight, 1.0 - missed.mean(axis=2, dtype=float)))
     finally:
         sensor.position = before
     return value

@@ -1,0 +1,64 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Weather by words, as `--weather`, plans and scenarios have it: `fog:800` (visibility, m), `rain:10` (mm/h)."""
+from __future__ import annotations
+
+import math
+from typing import Any, Dict, Iterable, Mapping, Optional
+
+from ._properties import snake
+
+WEATHER = "fog:V or haze:V (visibility, m), rain:R (mm/h); several together; the air sends light back then"
+FAR = 10_000.0  # m, from which on reports of airports say no more
+AIR = ("visibility", "air_backscatter", "rain_rate")  # what the words set
+
+
+def weather(words: Optional[Iterable[str]]) -> Dict[str, Any]:
+    """Settings of a scan or of coverage by words of `--weather`.
+
+    >>> weather(["fog:800", "rain:10"])
+    {'visibility': 800.0, 'air_backscatter': True, 'rain_rate': 10.0}
+    """
+    found: Dict[str, Any] = {}
+    known: Dict[str, str] = {}
+    for word in words or ():
+        kind, colon, number = word.partition(":")
+        try:
+            value = float(number)
+        except ValueError:
+            value = math.nan
+        if kind not in ("fog", "haze", "rain") or not value > 0 or not math.isfinite(value):
+            raise ValueError(f"weather {word!r}, expected {WEATHER.partition(';')[0]}")
+        name = "rain rate" if kind == "rain" else "visibility"
+        if name in known:
+            raise ValueError(f"weather {word!r} after {known[name]!r}, expected one {name}")
+        known[name] = word
+        found.update({"rain_rate": value} if kind == "rain" else {"visibility": value, "air_backscatter": True})
+    return found
+
+
+def in_weather(settings: Mapping[str, Any], words: Optional[Iterable[str]]) -> Dict[str, Any]:
+    """Settings in a weather. What they say by name stays; ValueError where both say how far one sees, or how much it rains."""
+    air = weather(words)
+    for name in ("visibility", "rain_rate"):
+        if name in air and name in settings:
+            raise ValueError(f"is there beside {name} {settings[name]}, expected one of both to say it")
+    return {**air, **settings}
+
+
+def without_air(settings: Mapping[str, Any]) -> Dict[str, Any]:
+    """Settings without those that words of weather set."""
+    return {name: value for name, value in settings.items() if snake(name) not in AIR}
+
+
+def in_words(words: Iterable[str]) -> str:
+    """Words of weather for a reader.
+
+    >>> in_words(["fog:800", "rain:10"])
+    'fog of 800 m, rain of 10 mm/h'
+    """
+    said = []
+    for word in words:
+        kind, value = word.partition(":")[0], float(word.partition(":")[2])
+        name = "visibility" if kind == "haze" and value >= FAR else kind
+        said.append(f"{name} of {value:.10g} mm/h" if kind == "rain" else f"{name} of {value:,.10g} m")
+    return ", ".join(said)

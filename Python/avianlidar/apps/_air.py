@@ -1,0 +1,49 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Air for coverage, with its share of the hours of a year."""
+from __future__ import annotations
+
+import functools
+import warnings
+from typing import Any, Dict, NamedTuple, Tuple
+
+from .._cloud import field_values
+from .._coverage import Coverage
+from .._scene import Scene
+from .._sensor import Sensor
+from .._weather import in_words
+
+
+class Air(NamedTuple):
+    """A weather, and its share of the hours."""
+
+    words: Tuple[str, ...]
+    share: float
+    settings: Dict[str, Any]  # of coverage
+
+    @property
+    def name(self) -> str:
+        """For a reader."""
+        return in_words(self.words) or "the plan's air"
+
+
+def extinction(sensor: Sensor, **air: Any) -> float:
+    """Of the air at the sensor's wavelength, 1/m. @param air settings of coverage"""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # that there are no surfaces
+        cover = Coverage(Scene(), sensor, places=[(0.0, 0.0, 0.0)], species="", all_species=False, effective_area=0.03,
+                         number_of_threads=1, **air)
+        return float(field_values(cover.data)["attenuation_coefficient"])
+
+
+@functools.lru_cache(maxsize=None)
+def extinction_of_rain(rate: float) -> float:
+    """1/m, at any wavelength. @param rate mm/h"""
+    return extinction(Sensor("Search905"), visibility=0.0, attenuation_coefficient=0.0, rain_rate=rate)
+
+
+def weakening(sensor: Sensor, air: Dict[str, Any]) -> Dict[str, Any]:
+    """Air of the same extinction that sends no light back. @param air settings of coverage"""
+    dry = {**air, "air_backscatter": False, "rain_rate": 0.0}
+    if not air["rain_rate"]:
+        return dry
+    return {**dry, "visibility": 0.0, "attenuation_coefficient": extinction(sensor, **dry) + extinction_of_rain(air["rain_rate"])}

@@ -1,0 +1,153 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""METAR reports as a year's weather: shares of the hours of some visibilities and rain rates.
+
+Source: the code form FM 15 METAR (WMO No. 306), and statute miles as in the United States. Rain rates are assumed.
+"""
+from __future__ import annotations
+
+import collections
+import dataclasses
+import math
+import pathlib
+import re
+from typing import Any, Counter, Dict, Iterator, List, NamedTuple, Optional, Tuple
+
+from .._disk import read_regular
+from .._pipeline import Error
+from ._air import extinction_of_rain
+
+MILE = 1609.344  # m
+KOSCHMIEDER = 3.912  # visibility times extinction at 550 nm
+LEAST = 50.0  # m, of 0000, which is "less than"
+MOST = 10_000.0  # m, from which on reports say no more
+CLEAR = 23_000.0  # m, that these count as; assumed
+LIMITS = (500.0, 1000.0, 2000.0, 5000.0, MOST)  # m, between classes of visibility without rain ...
+LIMITS_IN_RAIN = (2000.0,)  # ... and with it
+RAIN = {"-": 1.0, "": 5.0, "+": 15.0}  # mm/h; assumed
+DRIZZLE = 0.5  # mm/h, of any intensity; assumed
+NOT_MODELLED = {"SN": "snow", "SG": "snow grains", "IC": "ice crystals", "PL": "ice pellets", "GR": "hail", "GS": "small hail",
+                "UP": "unknown precipitation"}
+STATION = re.compile(r"\b([A-Z][A-Z0-9]{3})\s+(\d{6})Z\b")
+END = re.compile(r"\s(?:RMK|NOSIG|TEMPO|BECMG|INTER)\b.*|=.*")  # remarks, trends, the end of a report
+METRES = re.compile(r"(\d{4})(?:NDV)?$")
+MILES = re.compile(r"([MP]?)(\d+)(?:/(\d+))?SM$")
+PRESENT = re.compile(r"([-+]?)(?:MI|PR|BC|DR|BL|SH|TS|FZ)*((?:DZ|RA|SN|SG|IC|PL|GR|GS|UP|BR|FG|FU|VA|DU|SA|HZ|PY|PO|SQ|FC|SS|DS)*)$")
+
+
+class Hour(NamedTuple):
+    """What one report says."""
+
+    station: str
+    time: str  # day, hour, minute
+    visibility: float  # m; infinite for 10 km or more
+    rain: float  # mm/h
+    others: Tuple[str, ...]  # precipitation that is not modelled
+
+
+def report_of(line: str) -> Hour:
+    """What a line says; ValueError says what it has not."""
+    found = STATION.search(re.sub(r"[,;\"\t]", " ", line))
+    if not found:
+        raise ValueError("expected a station and a time as in 'ZSSS 010000Z'")
+    words = END.sub("", found.string[found.end():]).split()
+    visibility = _visibility(words)
+    if visibility is None:
+        raise ValueError("expected a visibility as in 0800, CAVOK or 1 1/2SM")
+    rain, others = 0.0, []
+    for word in words:
+        present = PRESENT.match(word)
+        if present:
+            kinds = re.findall("..", present[2])
+            rain = max(rain, RAIN[present[1]] if "RA" in kinds else DRIZZLE if "DZ" in kinds else 0.0)
+            others += [NOT_MODELLED[kind] for kind in kinds if kind in NOT_MODELLED]
+    return Hour(found[1], found[2], visibility, rain, tuple(others))
+
+
+def _visibility(words: List[str]) -> Optional[float]:
+    """m; None where there is none."""
+    for k, word in enumerate(words):
+        metres, miles = METRES.match(word), MILES.match(word)
+        if word == "CAVOK":
+            return math.inf
+        if metres:
+            found = float(metres[1])
+            return math.inf if found >= MOST - 1.0 else max(found, LEAST)
+        if miles and int(miles[3] or 1) > 0:
+            whole = int(words[k - 1]) if miles[3] and k and re.fullmatch(r"\d", words[k - 1]) else 0
+            found = MILE * (whole + int(miles[2]) / int(miles[3] or 1))
+            return math.inf if found >= MOST or miles[1] == "P" else max(found, LEAST)
+    return None
+
+
+@dataclasses.dataclass
+class Hours:
+    """Reports of a file, which count by the hour: several in one hour share it."""
+
+    file: str
+    reports: List[Hour]
+    bad: List[Tuple[int, str, str]]  # number, line, what is wrong
+
+    def weighted(self) -> Iterator[Tuple[float, Hour]]:
+        """Reports, each with its share of an hour."""
+        several: Counter[Tuple[int, str]] = collections.Counter()
+        keys, before, number = [], None, 0
+        for one in self.reports:
+            number += before not in (None, one.time[:4])  # the same day and hour come again next month
+            before = one.time[:4]
+            keys.append((number, before))
+            several[keys[-1]] += 1
+        for key, one in zip(keys, self.reports):
+            yield 1.0 / several[key], one
+
+    def classes(self) -> Dict[Tuple[str, ...], float]:
+        """Words of weather, with their hours. In a class without rain the visibility is that of the mean extinction, to two digits; with
+        rain that of the haze beside it: what extinction the rain leaves of the reported one."""
+        sums: Dict[Tuple[float, int], List[float]] = {}
+        for hours, one in self.weighted():
+            number = sum(one.visibility >= limit for limit in (LIMITS_IN_RAIN if one.rain else LIMITS))
+            of = sums.setdefault((one.rain, number), [0.0, 0.0])
+            of[0] += hours
+            of[1] += hours * KOSCHMIEDER / min(one.visibility, CLEAR)
+        found: Dict[Tuple[str, ...], float] = {}
+        for (rain, _), (hours, total) in sorted(sums.items()):
+            left = total / hours - (extinction_of_rain(rain) if rain else 0.0)
+            visibility = float(f"{KOSCHMIEDER / max(left, KOSCHMIEDER / CLEAR):.2g}")
+            words = (f"{'fog' if visibility <= 1000.0 else 'haze'}:{visibility:.10g}", *([f"rain:{rain:g}"] if rain else []))
+            found[words] = found.get(words, 0.0) + hours
+        return found
+
+    def year(self) -> List[Dict[str, Any]]:
+        """As a plan has it."""
+        classes = self.classes()
+        total = sum(classes.values())
+        return [{"weather": list(words), "share": hours / total} for words, hours in classes.items()]
+
+    def words(self) -> str:
+        """What was counted, assumed and left out."""
+        hours = sum(share for share, _ in self.weighted())
+        stations = ", ".join(dict.fromkeys(one.station for one in self.reports))
+        said = f"{pathlib.Path(self.file).name}: {len(self.reports):,} METAR reports of {stations}, {hours:,.0f} hours"
+        if self.bad:
+            number, line, wrong = self.bad[0]
+            said += f"; lines that are no report: {len(self.bad)}, the first is line {number}, '{line[:60]}' ({wrong})"
+        others = collections.Counter(name for one in self.reports for name in set(one.others))
+        if others:
+            said += "; not modelled, but for the visibility: " + ", ".join(f"{name} ({count} reports)" for name, count in others.most_common())
+        return (f"{said}. Assumed: {', '.join(f'{sign}RA {rate:g}' for sign, rate in RAIN.items())} and DZ {DRIZZLE:g} mm/h; 10 km or more is "
+                f"{CLEAR / 1000:g} km")
+
+
+def read_metar(file) -> Hours:
+    """The reports of a file, one a line; a station and a time stand where they are, whatever is before them. Empty lines and those that
+    begin with # do not count. `Error` where there is none."""
+    found = Hours(str(file), [], [])
+    for number, line in enumerate(read_regular(file).decode("utf-8", "replace").splitlines(), 1):
+        if line.strip() and not line.startswith("#"):
+            try:
+                found.reports.append(report_of(line))
+            except ValueError as error:
+                found.bad.append((number, line.strip(), str(error)))
+    if not found.reports:
+        first = f"; line {found.bad[0][0]}, '{found.bad[0][1][:60]}': {found.bad[0][2]}" if found.bad else ""
+        raise Error(f"{file}: holds no METAR report, expected some, one a line{first}")
+    return found

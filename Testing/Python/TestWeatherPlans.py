@@ -1,0 +1,333 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Weather in plans, reports and sequences: words and properties by hand give the same, years are weighted sums, METAR reports by known
+answers, labels of drops, birds that air hides, errors."""
+import csv
+import io
+import json
+import math
+import os
+import pathlib
+import shutil
+import unittest
+from contextlib import redirect_stderr
+
+import numpy as np
+
+import avianlidar as al
+import exampletools
+from avianlidar import siting
+from avianlidar._command import main
+from avianlidar.apps import _metar
+from avianlidar.apps._air import extinction, extinction_of_rain
+from avianlidar.apps._maps import Plan, read_plan
+from avianlidar.apps._report import Report
+from avianlidar.apps._sites import Sites
+
+HERE = pathlib.Path(os.environ.get("AVIANLIDAR_TEST_OUTPUT_DIR", "/tmp")) / "TestWeatherPlans"
+PLAN = pathlib.Path(exampletools.EXAMPLES) / "coverage" / "hongqiao.coverage.json"
+TARGET = {"species": "", "effective_area": 0.03, "all_species": False}  # m2: quicker than birds
+FOG = {"visibility": 1000, "air_backscatter": True}
+YEAR = [{"weather": ["haze:20000"], "share": 0.8}, {"weather": ["fog:500"], "share": 0.15}, {"weather": ["rain:10"], "share": 0.05}]
+
+
+def plan(name, **changes):
+    """The file of the airport's plan, small. A change to None takes away."""
+    wanted = json.loads(PLAN.read_text(encoding="utf-8"))
+    for key in ("scene", "runways"):
+        wanted[key] = str((PLAN.parent / wanted[key]).resolve())
+    wanted["siting"].update(spacing=1400, draws=0, sensors=2)
+    wanted.update({"compare_with": [], "coverage": {**TARGET, "visibility": 23000}, "spacing": 300, "places": 200, "heights": [20], **changes})
+    HERE.mkdir(parents=True, exist_ok=True)
+    file = HERE / f"{name}.coverage.json"
+    file.write_text(json.dumps({key: value for key, value in wanted.items() if value is not None}), encoding="utf-8")
+    return file
+
+
+def said(*words):
+    """The error of a command."""
+    stream = io.StringIO()
+    with redirect_stderr(stream):
+        code = main([str(word) for word in words])
+    assert code == 2, stream.getvalue()
+    return stream.getvalue()
+
+
+class Coverage(unittest.TestCase):
+    def test_words_are_the_properties_set_by_hand(self):
+        tables = []
+        for name, changes, words in (
+                ("hand", {"coverage": {**TARGET, **FOG, "rain_rate": 10}}, ()),
+                ("key", {"coverage": {**TARGET}, "weather": ["fog:1000", "rain:10"]}, ()),
+                ("command", {"coverage": {**TARGET, "visibility": 5000}, "weather": ["haze:3000"], "year": YEAR},
+                 ("--weather", "fog:1000", "rain:10")),
+                ("clear", {}, ())):
+            out = HERE / "maps" / name
+            shutil.rmtree(out, ignore_errors=True)
+            self.assertEqual(main(["coverage", str(plan(name, **changes)), "-o", str(out), *words]), 0)
+            tables.append([(out / file).read_bytes() for file in ("shares.csv", "detection_probability_20m.tif", "clutter.vtp")])
+        self.assertEqual(tables[0], tables[1])
+        self.assertEqual(tables[0], tables[2])
+        self.assertNotEqual(tables[0][0], tables[3][0])
+
+    def test_a_receiver_without_an_aperture_has_the_same_extinction(self):
+        file = plan("paper", compare_with=["Airport16"], weather=["fog:1000", "rain:10"], coverage={**TARGET})
+        search, paper = Plan.all_of(read_plan(file))
+        self.assertTrue(search.gathers_light)
+        self.assertFalse(paper.gathers_light)
+        known = extinction(paper.sensor, **{name: paper.settings[name] for name in ("visibility", "attenuation_coefficient", "rain_rate")})
+        of_fog = 3.912 / 1000 * (paper.sensor.wavelength / 550) ** -0.5 if paper.sensor.wavelength else 0
+        of_rain = math.pi * 8000e-6 / (4.1 * 10**-0.21) ** 3
+        self.assertAlmostEqual(extinction_of_rain(10.0) / of_rain, 1, delta=1e-6)
+        self.assertAlmostEqual(known / (of_fog + of_rain), 1, delta=1e-3)
+        self.assertLess(float(paper.overall["detection_probability"]), 0.1)
+
+    def test_shares_in_other_airs_trace_nothing_and_leave_the_plan_as_it_was(self):
+        one = Plan(read_plan(plan("airs", mix={"crow": 1, "herring gull": 3}, coverage={}, places=200)))
+        before = one.regions.properties()
+        airs = ({"visibility": 1000, "air_backscatter": True, "rain_rate": 0}, {"visibility": 23000, "air_backscatter": False, "rain_rate": 10})
+        rows = one.in_airs([one.air_of(["fog:1000"]), one.air_of(["rain:10"])])
+        self.assertEqual(one.regions.algorithm.GetNumberOfTracedPlaces(), 0)
+        for air, of in zip(airs, rows):
+            self.assertEqual([row["region"] for row in of], ["strips", "approaches", "all"])
+            p = [al.Coverage(one.scene, one.sensor, places=one.points, species=name, **air)["detection_probability"] for name in ("crow", "herring gull")]
+            p = 0.25 * p[0].astype(float) + 0.75 * p[1]
+            for row, members in zip(of, (one.members["strips"], one.members["approaches"], slice(None))):
+                self.assertAlmostEqual(row["detection_probability"], p[members].mean(), delta=1e-7)
+        self.assertEqual(before, one.regions.properties())
+
+
+class Year(unittest.TestCase):
+    def test_sites_are_ranked_by_the_weighted_sum(self):
+        sites = Sites(Plan(read_plan(plan("year", year=YEAR)), 1)).look()
+        alone = []
+        for part in YEAR:
+            words = part["weather"]
+            rain = {"visibility": 23000, "rain_rate": 10} if words == ["rain:10"] else {}
+            coverage = {**TARGET, "visibility": 23000} if rain else {**TARGET}
+            alone.append(Sites(Plan(read_plan(plan("part", coverage=coverage, weather=words)), 1)).look())
+        wanted = sum(part["share"] * one.values for part, one in zip(YEAR, alone))
+        np.testing.assert_allclose(sites.values, wanted, rtol=1e-9)
+        np.testing.assert_allclose(sites.by_air, np.transpose([one.values for one in alone]), rtol=1e-9)
+        self.assertGreater(len(sites.values), 5)
+        # Of two sensors each weather has its own probability that one of them detects.
+        pair = sites.networks[1]
+        of_pair = sum(part["share"] * siting.value_of(one.found, one.weights, pair.sites) for part, one in zip(YEAR, alone))
+        self.assertAlmostEqual(pair.value, of_pair, delta=1e-9)
+        same = sum(part["share"] * siting.value_of_same_birds(one.plan.scene, one.plan.sensor, one.positions[list(pair.sites)], one.plan.points,
+                                                              [""], one.weights, **one.settings) for part, one in zip(YEAR, alone))
+        self.assertAlmostEqual(sites.of_same_birds[1], same, delta=1e-9)
+        out = HERE / "sites"
+        sites.write(out, [])
+        table = np.genfromtxt(out / "sites.csv", delimiter=",", names=True)
+        np.testing.assert_allclose(table["value"], sites.values[sites.order], rtol=1e-9)
+        np.testing.assert_allclose(table["value_fog_500"], alone[1].values[sites.order], rtol=1e-9)
+        region = sum(part["share"] * one.found[sites.order, 0][:, one.regions["strips"]].mean(axis=1) for part, one in zip(YEAR, alone))
+        np.testing.assert_allclose(table["target_strips"], region, rtol=1e-5)
+        self.assertIn("fog of 500 m 15 %", sites.words()["weather"])
+
+    def test_weathers_beside_do_not_count(self):
+        sites = Sites(Plan(read_plan(plan("beside")), 1), beside=[("fog:1000",)]).look()
+        clear = Sites(Plan(read_plan(plan("beside")), 1)).look()
+        foggy = Sites(Plan(read_plan(plan("foggy", coverage={**TARGET}, weather=["fog:1000"])), 1)).look()
+        np.testing.assert_array_equal(sites.values, clear.values)
+        self.assertEqual([n.sites for n in sites.networks], [n.sites for n in clear.networks])
+        np.testing.assert_allclose(sites.by_air[:, 1], foggy.values, rtol=1e-12)
+        row = sites.best_by_air()[1]
+        self.assertEqual((row["weather"], row["site"], row["value"]), ("fog of 1,000 m", int(np.argmax(foggy.values)), foggy.values.max()))
+
+    def test_the_report_says_fog_and_the_year(self):
+        question = {"siting": None, "runways": None, "extent": [-600, 600, -600, 600], "spacing": 100, "places": 500}
+        file = plan("report", year=YEAR, **question)
+        report = Report(read_plan(file), 2)
+        page = HERE / "report.html"
+        report.write(page)
+        text = page.read_text(encoding="utf-8")
+        with open(HERE / "report_files" / "weather.csv", encoding="utf-8") as stream:
+            rows = {(row["weather"], row["region"]): float(row["detection_probability"]) for row in csv.DictReader(stream)}
+        in_fog = Plan(read_plan(plan("fog", coverage={**TARGET}, weather=["fog:1000"], **question))).overall["detection_probability"]
+        self.assertAlmostEqual(rows["visibility 1000 m", "map"], in_fog, delta=1e-6)
+        self.assertIn(f"At 1\u00a0km visibility one scan of Search905 detects {100 * in_fog:.1f} ±", text)
+        year = sum(part["share"] * rows[name, "map"] for part, name in zip(YEAR, ("visibility of 20,000 m", "fog of 500 m", "rain of 10 mm/h")))
+        self.assertIn(f"Over the year, by the hours of its weather, it is {100 * year:.1f} ±", text)
+        shares = [rows[f"visibility {v} m", "map"] for v in (200, 500, 1000, 2000, 5000, 10000, 20000)]
+        self.assertTrue(np.all(np.diff(shares) > 0), shares)
+        shares = [rows[f"rain {rain} mm/h", "map"] for rain in (0, 1, 5, 10, 25, 50)]
+        self.assertTrue(np.all(np.diff(shares) < 0), shares)
+        for name in ("weather-visibility.png", "weather-rain.png"):
+            self.assertGreater((HERE / "report_files" / name).stat().st_size, 10000)
+        self.assertIn('id="year"', text)
+
+    def test_what_is_wrong_is_named(self):
+        half = [{"weather": ["fog:500"], "share": 0.5}]
+        for changes, words in (({"weather": ["snow:3"]}, "weather: weather 'snow:3', expected fog:V or haze:V (visibility, m), rain:R (mm/h)"),
+                               ({"weather": ["fog:500"]}, "weather: is there beside visibility 23000, expected one of both to say it"),
+                               ({"year": half}, "year: shares sum to 0.5, expected 1"),
+                               ({"year": [*half, {"weather": ["fog:1", "haze:2"], "share": 0.5}]},
+                                "year[1].weather: weather 'haze:2' after 'fog:1', expected one visibility"),
+                               ({"year": [*half, {"weather": ["rain:501"], "share": 0.5}]}, "RainRate is 501, expected 0 to 500 mm/h"),
+                               ({"year": [*half, {"weather": [], "share": -0.5}]}, "year[1].share: -0.5 is less than the minimum of 0"),
+                               ({"year": YEAR, "metar": "year.txt"}, "metar: is there beside 'year', expected one of both"),
+                               ({"metar": "none.txt"}, "none.txt: cannot be read (No such file")):
+            self.assertIn(words, said("coverage", plan("wrong", **changes), "-o", HERE / "wrong"))
+        (HERE / "empty.txt").write_text("# nothing\nstation,valid,metar\n", encoding="utf-8")
+        self.assertIn("empty.txt: holds no METAR report, expected some, one a line; line 2, 'station,valid,metar': expected a station and a time",
+                      said("siting", plan("right"), "-o", HERE / "wrong", "--metar", HERE / "empty.txt"))
+
+
+REPORTS = """station,valid,metar
+# of no account
+METAR ZSSS 010000Z 34004MPS 9999 FEW030 12/08 Q1013 NOSIG=
+2023-01-01 00:30 METAR ZSSS 010030Z 34004MPS CAVOK 12/08 Q1013 TEMPO 0800 FG=
+202301010100 SPECI ZSSS 010100Z AUTO 34004MPS 0800 0300N R18L/0600U FG FEW030 12/08 Q1013 BECMG 9999=
+ZSSS,2023-01-01 02:00,ZSSS 010200Z 00000KT 1 1/2SM -RA BR OVC005 10/09 A2992 RMK AO2 10SM RAB05
+ZSSS 010300Z 00000KT M1/4SM FG VV001 05/05 A2992
+ZSSS 010400Z 00000KT 10SM TS FEW020 10/09 A2992
+ZSSS 010500Z 34004MPS 3000 +SHRA BKN010 12/08 Q1013
+ZSSS 010600Z 34004MPS 0000 FG VV/// 05/05 Q1013
+ZSSS 010700Z 34004MPS 5000 HZ VCSH NSC RERA 20/08 Q1013
+ZSSS 010800Z 34004MPS 1500 +SN BLSN VV002 M02/M03 Q1013
+ZSSS 010900Z 34004MPS 4000 TSRAGR BKN010 12/08 Q1013
+ZSSS 011000Z 34004MPS 7000 -DZ OVC004 12/08 Q1013
+ZSSS 011100Z 34004MPS //// // ////// 12/08 Q1013
+ZSSS 011200Z NIL=
+ZSSS 011300Z 24010KT P6SM SKC 12/08 A2992
+"""
+
+
+class Metar(unittest.TestCase):
+    def test_lines_of_known_answers(self):
+        mile = 1609.344
+        wanted = [(math.inf, 0), (math.inf, 0), (800, 0), (1.5 * mile, 1), (0.25 * mile, 0), (math.inf, 0), (3000, 15), (50, 0), (5000, 0),
+                  (1500, 0), (4000, 5), (7000, 0.5), (math.inf, 0)]
+        (HERE / "year.txt").parent.mkdir(parents=True, exist_ok=True)
+        (HERE / "year.txt").write_text(REPORTS, encoding="utf-8")
+        hours = _metar.read_metar(HERE / "year.txt")
+        self.assertEqual([(one.visibility, one.rain) for one in hours.reports], wanted)
+        self.assertEqual([number for number, _, _ in hours.bad], [1, 15, 16])
+        self.assertEqual([hours.reports[k].others for k in (9, 10)], [("snow", "snow"), ("hail",)])
+        # Two in the first hour count half each.
+        self.assertEqual([share for share, _ in hours.weighted()], [0.5, 0.5] + 11 * [1])
+        words = hours.words()
+        for part in ("13 METAR reports of ZSSS, 12 hours", "lines that are no report: 3, the first is line 1, 'station,valid,metar'",
+                     "snow (1 reports)", "hail (1 reports)", "Assumed: -RA 1, RA 5, +RA 15 and DZ 0.5 mm/h"):
+            self.assertIn(part, words)
+
+    def test_hours_are_counted_by_class(self):
+        hours = _metar.Hours("", [_metar.report_of(line) for line in REPORTS.splitlines()[2:] if "////" not in line and "NIL" not in line], [])
+        found = {tuple(part["weather"]): 12 * part["share"] for part in hours.year()}
+        self.assertAlmostEqual(sum(found.values()), 12)
+        self.assertAlmostEqual(found["haze:23000",], 3)
+        self.assertAlmostEqual(found["fog:800",], 1)
+        low = 2 / (1 / 50 + 1 / (0.25 * 1609.344))
+        self.assertAlmostEqual(found[f"fog:{float(f'{low:.2g}'):g}",], 2)
+        self.assertAlmostEqual(found["haze:1500",], 1)
+        # Rain takes its part of the extinction that was reported; of 4000 m in 5 mm/h nothing is left.
+        left = 3.912 / 4000 - extinction_of_rain(5.0)
+        self.assertLess(left, 3.912 / 23000)
+        self.assertAlmostEqual(found["haze:23000", "rain:5"], 1)
+        left = 3.912 / (1.5 * 1609.344) - extinction_of_rain(1.0)
+        self.assertAlmostEqual(found[f"haze:{float(f'{3.912 / left:.2g}'):g}", "rain:1"], 1)
+
+    def test_the_same_hour_of_another_month_is_another_hour(self):
+        line = "ZSSS {}Z 34004MPS 9999 Q1013"
+        hours = _metar.Hours("", [_metar.report_of(line.format(time)) for time in ("010000", "010030", "010100", "010000")], [])
+        self.assertEqual([share for share, _ in hours.weighted()], [0.5, 0.5, 1, 1])
+
+    def test_a_file_is_the_year_of_its_hours(self):
+        (HERE / "few.txt").write_text("".join(f"ZSSS 01{hour:02d}00Z 00000KT {'0500 FG' if hour < 6 else 'CAVOK'} Q1013\n" for hour in range(24)))
+        by_file = read_plan(plan("metar", metar="few.txt"))
+        by_option = read_plan(plan("metar", year=YEAR), metar=HERE / "few.txt")
+        self.assertEqual(by_file["year"], [{"weather": ["fog:500"], "share": 0.25}, {"weather": ["haze:23000"], "share": 0.75}])
+        self.assertEqual(by_option["year"], by_file["year"])
+        self.assertNotIn("year", read_plan(plan("metar", year=YEAR), ["fog:500"]))
+
+
+HOUSE = {"version": 1, "lidar": {"position": [0, 0, 3]}, "objects": [
+    {"name": "Ground", "class": "ground", "ground": {"size": 4000, "height": 0}, "material": "Wall"}]}
+SCENARIO = {"scene": "field.lidarscene.json", "number_of_scans": 2, "scans_per_sequence": 2, "seed": 5,
+            "sensor": {"preset": "Search905", "azimuth_step": 1.5},
+            "birds": [{"pattern": "Circles", "species": "herring gull", "number_of_birds": 60, "radius": 500, "heights": [5, 40]}]}
+
+
+def rows_of(out):
+    with open(out / "sequences" / "00" / "truth.csv", newline="", encoding="utf-8") as stream:
+        return list(csv.DictReader(stream))
+
+
+def labels_of(out):
+    return np.concatenate([np.fromfile(file, np.uint32) for file in sorted((out / "sequences" / "00" / "labels").iterdir())])
+
+
+class Sequences(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.home = HERE / "sequences"
+        shutil.rmtree(cls.home, ignore_errors=True)
+        cls.home.mkdir(parents=True)
+        (cls.home / "field.lidarscene.json").write_text(json.dumps(HOUSE), encoding="utf-8")
+        cls.file = cls.scenario("field")
+        for name, words in (("clear", []), ("fog", ["fog:400"]), ("rain", ["rain:10"])):
+            assert main(["sequence", str(cls.file), "-o", str(cls.home / name), *(["--weather", *words] if words else [])]) == 0
+
+    @classmethod
+    def scenario(cls, name, **changes):
+        file = cls.home / f"{name}.scenario.json"
+        file.write_text(json.dumps({**SCENARIO, **changes}), encoding="utf-8")
+        return file
+
+    def test_drops_are_outliers(self):
+        clear, rain = labels_of(self.home / "clear"), labels_of(self.home / "rain")
+        self.assertFalse(np.any(clear & 0xffff == 1))
+        drops = rain & 0xffff == 1
+        self.assertGreater(drops.sum(), 10000)
+        self.assertTrue(np.all(rain[drops] >> 16 == 0))
+        self.assertGreater((rain & 0xffff == 99).sum(), 10)
+        rules = (self.home / "rain" / "semantic-kitti.yaml").read_text()
+        self.assertIn('  1: "outlier"', rules)
+        self.assertIn(f"  1: {drops.mean():.9f}", rules)
+        self.assertIn("Weather: rain of 10 mm/h.", (self.home / "rain" / "datasheet.md").read_text())
+
+    def test_birds_that_air_hides(self):
+        clear, fog = rows_of(self.home / "clear"), rows_of(self.home / "fog")
+        self.assertEqual({(row["visibility_m"], row["rain_mm_h"]) for row in fog}, {("400", "0")})
+        self.assertEqual({(row["visibility_m"], row["rain_mm_h"], row["clear_probability"]) for row in clear}, {("", "0", "")})
+        statuses = {}
+        for there, here in zip(clear, fog):
+            statuses.setdefault(here["status"], []).append(there["status"])
+            if not here["clear_probability"]:
+                continue
+            p, without = float(here["expected_probability"]), float(here["clear_probability"])
+            self.assertAlmostEqual(without, float(there["expected_probability"]), delta=1e-5)
+            self.assertLessEqual(p, without + 1e-6)
+            if here["status"] in ("air", "too weak"):
+                self.assertEqual(here["status"] == "air", without >= 0.1)
+                self.assertLess(p, 0.1)
+            if there["status"] in ("hidden", "outside", "too weak"):
+                self.assertIn(here["status"], (there["status"], "seen"))
+        self.assertGreater(len(statuses["air"]), 10)
+        self.assertLessEqual(set(statuses["air"]), {"seen", "missed"})
+        self.assertIn(f"| air | {len(statuses['air'])} |", (self.home / "fog" / "datasheet.md").read_text())
+
+    def test_weather_belongs_to_what_a_folder_is_made_of(self):
+        before = labels_of(self.home / "fog")
+        times = {path: path.stat().st_mtime_ns for path in (self.home / "fog").rglob("*.bin")}
+        self.assertEqual(main(["sequence", str(self.file), "-o", str(self.home / "fog"), "--weather", "fog:400"]), 0)
+        self.assertEqual(times, {path: path.stat().st_mtime_ns for path in (self.home / "fog").rglob("*.bin")})
+        self.assertIn('scenario.weather ["fog:400"], now ["fog:500"]', said("sequence", self.file, "-o", self.home / "fog", "--weather", "fog:500"))
+        with_key = self.scenario("key", weather=["fog:400"])
+        for name, source in (("key", with_key), ("manifest", self.home / "fog" / "manifest.json")):
+            self.assertEqual(main(["sequence", str(source), "-o", str(self.home / name)]), 0)
+            np.testing.assert_array_equal(labels_of(self.home / name), before)
+        over = self.scenario("over", weather=["rain:3"], scan={"visibility": 9000})
+        self.assertEqual(main(["sequence", str(over), "-o", str(self.home / "over"), "--weather", "fog:400"]), 0)
+        np.testing.assert_array_equal(labels_of(self.home / "over"), before)
+
+    def test_what_is_wrong_is_named(self):
+        for changes, words in (({"weather": ["rain"]}, "weather: weather 'rain', expected fog:V or haze:V"),
+                               ({"weather": ["fog:500"], "scan": {"Visibility": 3000}}, "weather: is there beside visibility 3000"),
+                               ({"weather": "fog:500"}, "weather: 'fog:500' is not of type 'array'")):
+            self.assertIn(words, said("sequence", self.scenario("wrong", **changes), "-o", self.home / "wrong"))
+
+
+if __name__ == "__main__":
+    unittest.main()
