@@ -138,11 +138,11 @@
  * number of threads, but not for another order, piece, tree or state of the cache. Nor are
  * `skipped` and `skipped_bound`: what is known from before need not be bounded.
  *
- * Surfaces may hold media (vtkAvianLidarMedium): they are no surfaces, but weaken light, and send it
- * back; field data `media` then say which.
+ * Surfaces may hold media (vtkAvianLidarMedium): they are no surfaces, but weaken light, and send
+ * it back; field data `media` then say which.
  *
- * @sa vtkAvianLidarBeamSource, vtkAvianLidarCollisionTree, vtkAvianLidarMaterial, vtkAvianLidarMedium,
- * vtkAvianLidarHSBColorMap
+ * @sa vtkAvianLidarBeamSource, vtkAvianLidarCollisionTree, vtkAvianLidarMaterial,
+ * vtkAvianLidarMedium, vtkAvianLidarHSBColorMap
  */
 #ifndef vtkAvianLidarEchoFilter_h
 #define vtkAvianLidarEchoFilter_h

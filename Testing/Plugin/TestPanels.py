@@ -35,7 +35,7 @@ FIRST_SHOWN = {
     "AvianLidarSearch1550": PHOTON_SOURCE,
     "AvianLidarAutomotive16": PHOTON_SOURCE,
     "AvianLidarBirdSource": "Species Reflectance WingPhase Gliding Position Heading Bank",
-    "AvianLidarMedium": "Kind Name Visibility RainRate LeafAreaDensity Extinction BackscatterRatio Shape Bottom Top Softness Center Lengths Heading",
+    "AvianLidarMedium": "Kind Name MeteorologicalVisibility RainRate LeafAreaDensity Extinction BackscatterRatio Shape Bottom Top Softness Center Lengths Heading",
     "AvianLidarTracks": "Pattern Species NumberOfBirds Reflectance TimeRange Center Radius Heights",
     "AvianLidarTracksApproach": """Pattern Species NumberOfBirds Reflectance TimeRange Radius ThresholdPosition
         ThresholdHeading""",

@@ -92,9 +92,9 @@ CONTRACT = {
     },
     "AvianLidarMedium": {
         "Kind": "",
-        "Visibility": "metres",
-        "RainRate": "mm/h",
-        "LeafAreaDensity": "m2/m3",
+        "MeteorologicalVisibility": "metres",
+        "RainRate": "millimetres",
+        "LeafAreaDensity": "square metres",
         "Extinction": "1/m",
         "BackscatterRatio": "sr",
         "RenewedShare": "",
@@ -523,6 +523,8 @@ class TestProxies(unittest.TestCase):
             "W/(m2 sr nm)": "W/(m2 sr nm)",
             "W/(m2 nm)": "W/(m2 nm)",
             "1/m": "1/m",
+            "sr": "sr",
+            "m/s": "m/s",
             "MiB": "MiB",
         }
         for name, proxy in self.proxies.items():

@@ -99,8 +99,8 @@ void BeamAir::begin(const BeamFrame& frame, double seconds)
   this->chooseLooked();
 }
 
-/// Whether the rim of a beam crosses all media where its axis does, to a quarter of a range unit and
-/// a hundredth of the way through.
+/// Whether the rim of a beam crosses all media where its axis does, to a quarter of a range unit
+/// and a hundredth of the way through.
 bool BeamAir::rimAgrees(const BeamFrame& frame)
 {
   this->Parts.clear();
