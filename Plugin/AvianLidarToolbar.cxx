@@ -64,6 +64,8 @@ const Macro Macros[] = {
     "Gulls, crows and starlings over an airport, in ten scans to play" },
   { "avian_lidar_coverage", "coverage", "Avian Lidar: Map Where a Bird Is Seen",
     "Where a lidar at the airport detects a gull, and why not elsewhere" },
+  { "avian_lidar_ground_fog", "medium", "Avian Lidar: Scan an Airport in Ground Fog",
+    "An airport in ground fog, drawn translucent, and what a lidar receives of it" },
   { ColourMacro, "colours", "Avian Lidar: Colour by Energy",
     "Colour the selected echoes or range image by energy, over the range of the receiver" },
   { "avian_lidar_status_colours", "status", "Avian Lidar: Colour by Status",

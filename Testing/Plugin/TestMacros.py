@@ -2,7 +2,7 @@
 """The macro that scans, the state and what else lies beside the plugin: the same echoes as from the pipeline built by
 hand, shown as they should be, and a word where something does not fit.
 
-With --documentation a picture of the birds goes to Documentation/images."""
+With --documentation pictures of the birds and of the fog go to Documentation/images."""
 
 import contextlib
 import importlib.util
@@ -23,6 +23,7 @@ FOLDER = os.path.dirname(PLUGIN)
 MACRO = os.path.join(FOLDER, "Macros", "avian_lidar_airport_scan.py")
 BIRDS = os.path.join(FOLDER, "Macros", "avian_lidar_birds_over_the_airport.py")
 COVERAGE = os.path.join(FOLDER, "Macros", "avian_lidar_coverage.py")
+FOG = os.path.join(FOLDER, "Macros", "avian_lidar_ground_fog.py")
 STATE = os.path.join(FOLDER, "States", "avian_lidar_airport.py")
 LIMITS = (2e-6, 6.25e-5)
 
@@ -318,6 +319,29 @@ class TestMacros(unittest.TestCase):
         run(MACRO)
         for name in parts:
             self.assertFalse(shown(simple.FindSource(name + " 2"), self.view), name)
+
+    def test_ground_fog(self):
+        self.assertEqual(run(FOG), "")
+        fog, scan = simple.FindSource("Ground fog"), simple.FindSource("Scan in fog")
+        self.assertEqual(simple.GetActiveSource(), fog)
+        display = simple.GetDisplayProperties(fog, self.view)
+        self.assertTrue(shown(fog, self.view) and shown(scan, self.view) and display.Opacity < 0.6)
+        if "--documentation" in sys.argv:
+            file = os.path.join(SOURCE_DIR, "Documentation", "images", "paraview-fog.png")
+            simple.SaveScreenshot(file, self.view, ImageResolution=[1000, 600])
+        counts = []
+        for visibility in (400.0, 2000.0, 50.0):
+            fog.MeteorologicalVisibility = visibility
+            scan.UpdatePipeline()
+            counts.append(scan.GetDataInformation().GetNumberOfPoints())
+        self.assertTrue(counts[1] > counts[0] > counts[2], counts)
+        # A second time, and after it the airport's scan.
+        self.assertEqual(run(FOG), "")
+        self.assertFalse(shown(fog, self.view) or shown(scan, self.view))
+        self.assertEqual(len([name for name in self.names() if name.startswith(("Airport H", "Collision"))]), 2)
+        simple.SetActiveSource(None)
+        run(MACRO)
+        self.assertFalse(shown(simple.FindSource("Ground fog 2"), self.view))
 
     def test_coverage_by_status(self):
         """The colours of status know the words of places, and leave those of beams as they are."""

@@ -21,7 +21,7 @@ PHOTOS = os.path.join(OUTPUT_DIR, "TestStart")
 STATE = os.path.join(PLUGIN_DIR, "States", "avian_lidar_airport.py")
 LOG = os.path.join(OUTPUT_DIR, "TestStart.log")
 MACROS = ["avian_lidar_airport_scan", "avian_lidar_birds_over_the_airport", "avian_lidar_coverage",
-          "avian_lidar_energy_colours", "avian_lidar_status_colours"]
+          "avian_lidar_ground_fog", "avian_lidar_energy_colours", "avian_lidar_status_colours"]
 TIMEOUT = 120
 
 
