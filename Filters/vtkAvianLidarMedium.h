@@ -6,10 +6,10 @@
  *
  * **Input** (optional, vtkPolyData): the closed surface that bounds the medium, for SHAPE_SURFACE,
  * in metres. **Output** (vtkPolyData): the surface that bounds the medium, to be drawn translucent:
- * a box, an ellipsoid, the two faces of a layer, or a box of DisplaySize. Its field data make it a
- * medium for whatever looks at surfaces (echo filter, coverage, collision tree), where it is no
- * surface: combine it with the scene by Group Datasets. `medium` is its description (text, JSON:
- * kind, numbers, shape), `object_names` its Name, `object_classes` "air", or "vegetation" of
+ * a box, an ellipsoid, and of a layer or of air everywhere a box of DisplaySize. Its field data
+ * make it a medium for whatever looks at surfaces (echo filter, coverage, collision tree), where it
+ * is no surface: combine it with the scene by Group Datasets. `medium` is its description (text,
+ * JSON: kind, numbers, shape), `object_names` its Name, `object_classes` "air", or "vegetation" of
  * foliage.
  *
  * Numbers follow from Kind and one quantity:

@@ -265,15 +265,16 @@ std::string vtkAvianLidarScanFilter::PlaceMedia()
   const avianlidar::Sensor& sensor = in.Setup.sensor;
   if (in.MediaOf != in.Surfaces.media || in.MediaFor != sensor.frequency)
   {
-    in.Media.clear();
+    std::vector<avianlidar::PlacedMedium> read;
     for (const std::string& text : in.Surfaces.media)
     {
       for (const avianlidar::PlacedMedium& one :
         vtkAvianLidarMedia::Read(text, avianlidar::SpeedOfLight / sensor.frequency))
       {
-        in.Media.push_back(one);
+        read.push_back(one);
       }
     }
+    in.Media.swap(read);
     in.MediaOf = in.Surfaces.media;
     in.MediaFor = sensor.frequency;
   }

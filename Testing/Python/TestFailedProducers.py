@@ -13,7 +13,7 @@ from vtk.util import numpy_support
 
 import cloudtools
 from avianlidar import vtkAvianLidar as al
-from echotools import RAYS, Messages, assert_same_bits, scan, sensor, town
+from echotools import assert_same_bits, box, Messages, RAYS, scan, sensor, town
 
 FILE = "TestFailedProducers"
 SETTINGS = {"RaysPerBeam": 20, "NumberOfThreads": 1}
@@ -74,6 +74,7 @@ FILTERS = {
     "GeodeticTransform": (with_origin,),
     "HSBColorMap": (echoes,),
     "Material": (surfaces,),
+    "Medium": (lambda: surfaces(box((0, 100, 0), (5, 5, 5))),),
     "RangeImage": (echoes, lambda: beams_of(echoes)),
     "Tracks": (trails,),
     "UnitNames": (echoes,),
@@ -91,6 +92,8 @@ def pipeline(name):
     filter_ = getattr(al, "vtkAvianLidar" + name)()
     if name == "Tracks":
         filter_.SetPatternToLines()
+    if name == "Medium":
+        filter_.SetShapeToSurface()
     producers = [make() for make in FILTERS[name]]
     for port, producer in enumerate(producers):
         filter_.SetInputConnection(port, producer.port)

@@ -12,7 +12,8 @@
  *
  * Source: none.
  * Differs: a surface hides the whole target or nothing of it, as it does its middle.
- * Valid: beams of one origin. Beams farther from a target's middle than WidestTarget or 0.4 rad do
+ * Valid: beams of one origin. Media count by the line to the middle of the target, those that move
+ * as they are at the time 0. Beams farther from a target's middle than WidestTarget or 0.4 rad do
  * not light it. Of more beams than DetectionLaw::MostBeams those count whose axes, or where they
  * are not round whose borders, are nearest. A threshold that follows the air divides energies by
  * its growth: probabilities are right within 0.03.

@@ -31,7 +31,7 @@ bool BeamLighting::light(std::size_t beam, BeamTrace& trace)
   this->Energies.clear();
   this->Units.clear();
   this->Radiance = this->Setup.sensor.backgroundRadiance;
-  this->beginAir(beam);
+  this->Air.begin(this->Block.frameOf(beam), this->Beams.timeOf(beam));
   if (!this->placeSamples(beam, trace))
   {
     return false;
@@ -94,19 +94,6 @@ bool BeamLighting::placeNodes(std::size_t beam)
   this->Lost = this->Unplaced = this->Quadrature.dropped();
   this->Skipped |= this->Unplaced > 0.0 ? SkippedDirectPaths : 0u;
   return true;
-}
-
-/// Begin the air along the beam.
-void BeamLighting::beginAir(std::size_t beam)
-{
-  if (!this->Setup.placedMedia.empty())
-  {
-    this->Air.begin(this->Block.frameOf(beam), this->Beams.timeOf(beam));
-  }
-  else
-  {
-    this->Air.beginEverywhere();
-  }
 }
 
 /// Weaken direct echoes by media that do not fill the scene. @return their sum, J
@@ -218,7 +205,7 @@ void BeamLighting::collectPaths(std::size_t beam, BeamTrace& trace)
     traced = true;
     return this->Block.tracerOf(beam);
   };
-  if (this->Air.isLocal())
+  if (!this->Setup.placedMedia.empty())
   {
     paths.air = &this->Air;
   }

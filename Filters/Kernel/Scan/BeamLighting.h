@@ -85,7 +85,6 @@ private:
   void reflectAgain(std::size_t beam, BeamTrace& trace, double most);
   void collectPaths(std::size_t beam, BeamTrace& trace);
   void dropFaintPaths();
-  void beginAir(std::size_t beam);
   double passMedia(double sum);
   void fillUnits();
   double errorOfMirrors(const RangeShares& shares) const;

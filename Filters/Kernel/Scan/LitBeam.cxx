@@ -30,6 +30,11 @@ bool takeOver(LightKey& key, const ScanSetup& setup)
   {
     numbers.push_back(setting.get(setup.settings));
   }
+  for (const Medium& medium : setup.media) // surfaces take of its light
+  {
+    numbers.push_back(medium.extinction);
+    numbers.push_back(medium.backscatterRatio);
+  }
   const std::uint64_t now = hashOf(numbers.data(), numbers.size() * sizeof(double), 0);
   const bool same = key.numbers == now && key.materials.sharesWith(setup.materials) &&
     key.objectIds.sharesWith(setup.objectIds) && key.materialIds.sharesWith(setup.materialIds);

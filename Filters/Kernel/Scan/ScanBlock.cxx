@@ -194,16 +194,16 @@ bool ScanBlock::end()
     this->Setup.settings.numberOfReflections == 1;
 }
 
-/// True if a bounded medium at rest may lie in part of a beam: samples of polygons do not say in
-/// which part of the beam they lie.
+/// True if a border of a medium may lie in a beam: samples of polygons do not say in which part of
+/// the beam they lie. What moves may be anywhere.
 bool ScanBlock::meetsBorders(const BeamFrame& frame) const
 {
   const std::vector<PlacedMedium>& media = this->Setup.placedMedia;
   return std::any_of(media.begin(), media.end(),
     [&](const PlacedMedium& placed)
     {
-      return placed.volume.isBounded() && placed.volume.velocity == Vec3(0.0) &&
-        mayMeet(placed.volume, frame, this->Setup.sensor.rangeGate, 0.0);
+      return placed.volume.velocity != Vec3(0.0) ||
+        mayMeetBorder(placed.volume, frame, this->Setup.sensor.rangeGate);
     });
 }
 

@@ -162,12 +162,13 @@ std::uint64_t traceKey(const ScanSetup& setup)
   for (const PlacedMedium& placed : setup.placedMedia)
   {
     const MediumVolume& volume = placed.volume;
-    const bool isStill = volume.isBounded() && volume.velocity == Vec3(0.0);
+    const bool isStill = volume.velocity == Vec3(0.0);
     places.push_back(isStill ? 1.0 : 0.0);
     if (isStill)
     {
-      places.insert(
-        places.end(), { volume.centre.x, volume.centre.y, volume.centre.z, volume.radius() });
+      places.insert(places.end(),
+        { static_cast<double>(volume.shape), volume.centre.x, volume.centre.y, volume.centre.z,
+          volume.radius(), volume.bottom, volume.top, volume.softness });
     }
   }
   const std::uint64_t objects = hashOf(places.data(), places.size() * sizeof(double),

@@ -7,8 +7,8 @@
  * its extinction-to-backscatter ratio. Droplets of fog are so many that their number does not
  * matter. Drops of rain are few: their diameters are exponential, N(D) = N0 exp(-Lambda D), N0 =
  * 8000/(m3 mm), Lambda = 4.1 R^-0.21/mm, R the rain rate in mm/h, and each scatters as its
- * cross-section, twice its area. Leaves of a tree are few, too, and of one size. Drops are others
- * in each scan, leaves as far as the wind moves them.
+ * cross-section, twice its area. Leaves of a tree are few, too, and of one size, Lambertian, facing
+ * all ways. Drops are others in each scan, leaves as far as the wind moves them.
  *
  * Source: J. S. Marshall and W. McK. Palmer, The Distribution of Raindrops with Size, Journal of
  * Meteorology 5, 1948; geometric optics.
@@ -28,7 +28,7 @@ struct Medium
   double extinction = 0.0;       ///< mu, 1/m, 0 to 1e30
   double backscatterRatio = 1.0; ///< S, sr, 1e-3 to 1e9
   double drops = 0.0;            ///< or leaves, 1/m^3; 0: beyond number
-  /// Mean square of a drop's energy over the square of its mean: SquareOfDrops, or 1 of leaves.
+  /// Mean square of a drop's energy over the square of its mean: SquareOfDrops, or SquareOfLeaves.
   double squareOfDrops = 6.0;
   double renewed = 1.0;   ///< share of the drops that are others in the next scan, 0 to 1
   bool isFollowed = true; ///< by a threshold that follows the air; trees are not
@@ -43,6 +43,9 @@ struct Medium
 
 /// E[D^4]/E[D^2]^2 of exponential diameters.
 constexpr double SquareOfDrops = 6.0;
+
+/// The same of Lambertian leaves that face all ways: E[cos^4]/E[cos^2]^2.
+constexpr double SquareOfLeaves = 1.8;
 
 /// Rain of so many mm/h, above 0. @param backscatterRatio sr @param perVolume N0, 1/(m^3 mm) @param
 /// fall Lambda at 1 mm/h, 1/mm

@@ -114,16 +114,12 @@ double drawnDrops(std::int32_t seed, std::uint64_t beam, std::uint64_t number,
   }
   const auto count = static_cast<std::uint64_t>(
     std::min<double>(DrawsOfUnit - 1, poissonQuantile(drops, u[0], 1.0 - u[0])));
-  if (square == 1.0)
-  {
-    return static_cast<double>(count) / drops - 1.0;
-  }
-  double squares = 0.0; // of diameters, over their mean
+  double squares = 0.0; // of diameters, or of cosines, over their mean
   for (std::uint64_t k = 1; k <= count; ++k)
   {
-    const double d =
-      std::log(uniformPair(seed, beam, first + k, RandomPurpose::Drops, revolution)[0]);
-    squares += 0.5 * d * d;
+    const double uniform = uniformPair(seed, beam, first + k, RandomPurpose::Drops, revolution)[0];
+    const double d = std::log(uniform);
+    squares += square == SquareOfLeaves ? 3.0 * uniform * uniform : 0.5 * d * d;
   }
   return squares / drops - 1.0;
 }

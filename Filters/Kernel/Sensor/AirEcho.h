@@ -32,19 +32,23 @@ namespace avianlidar
 {
 /// Integral of f over the ranges from one to another, m, which falls no faster than 1/r^2, but for
 /// the range up to which an aperture gathers half of all, and exp(-decay r). @param decay 1/m
+/// @param change 1/m, of the logarithm of f besides
 template <class F>
-double airIntegral(const Sensor& sensor, double from, double to, double decay, F f)
+double airIntegral(
+  const Sensor& sensor, double from, double to, double decay, F f, double change = 0.0)
 {
   // Panels grow by this, and none is longer than so many lengths of extinction, there and back.
   constexpr double growth = 1.5;
   constexpr double longestPanel = 2.0;
   constexpr double nothingLeft = 700.0; // as an exponent
   const double reach = std::sqrt(sensor.receiverAperture / (2.0 * Pi));
-  const double longest = longestPanel / std::max(1e-300, decay);
+  const double longest = longestPanel / std::max(1e-300, decay + change);
   double sum = 0.0;
-  for (double begin = from; begin < to && decay * begin < nothingLeft;)
+  for (double begin = from; begin < to && decay * (begin - from) < nothingLeft;)
   {
-    const double end = std::min({ begin < reach ? reach : growth * begin, begin + longest, to });
+    // A step, even where light goes no farther than the last digit.
+    const double step = std::max(longest, 1e-15 * begin);
+    const double end = std::min({ begin < reach ? reach : growth * begin, begin + step, to });
     // Where a panel is short against its range a rule of few points does as well.
     constexpr double isShort = 0.05;
     sum += end - begin < isShort * std::min(begin, longest)

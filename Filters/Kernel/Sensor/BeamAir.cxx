@@ -19,6 +19,9 @@ constexpr std::int64_t NoUnit = std::numeric_limits<std::int64_t>::max();
 /// Optical depth, there and back, behind which nothing is looked for.
 constexpr double Opaque = 60.0;
 
+/// Of a pulse: less is left of it by rounding alone.
+constexpr double Rounding = 1e-9;
+
 /// Points across a cell of the grid, each way, by which its share of the pulse is known.
 constexpr int PointsOfCell = 16;
 }
@@ -31,11 +34,12 @@ BeamAir::BeamAir(const Sensor& sensor, double attenuation, const std::vector<Med
   , Everywhere(everywhere)
   , Placed(placed)
 {
-  if (placed.empty())
-  {
-    return;
-  }
-  const BeamShape shape(sensor);
+}
+
+/// The cells of the grid in the beam.
+void BeamAir::makeGrid()
+{
+  const BeamShape shape(this->Instrument);
   const double width = 2.0 / Across;
   double all = 0.0;
   for (int cell = 0; cell < Across * Across; ++cell)
@@ -54,8 +58,15 @@ BeamAir::BeamAir(const Sensor& sensor, double attenuation, const std::vector<Med
     }
     if (column.weight > 0.0)
     {
-      column.x /= column.weight;
-      column.y /= column.weight;
+      // Points of rows and columns of cells lie at different places, so that no straight border
+      // passes many at once; in cells at the rim, in their middle.
+      const int i = cell % Across;
+      const int j = cell / Across;
+      const double x = -1.0 + width * (i + std::fmod(0.5 + 0.7320508 * i + 0.6180340 * j, 1.0));
+      const double y = -1.0 + width * (j + std::fmod(0.5 + 0.4142136 * i + 0.2360680 * j, 1.0));
+      const bool isIn = shape.holds(x, y);
+      column.x = isIn ? x : column.x / column.weight;
+      column.y = isIn ? y : column.y / column.weight;
       all += column.weight;
       this->Grid.push_back(column);
     }
@@ -105,8 +116,9 @@ bool BeamAir::rimAgrees(const BeamFrame& frame)
 {
   this->Parts.clear();
   this->Ends.clear();
+  constexpr double h = BeamShape::HalfSide; // of a rectangle its corners
   constexpr double rim[][2] = { { 0.0, 0.0 }, { 1.0, 0.0 }, { -1.0, 0.0 }, { 0.0, 1.0 },
-    { 0.0, -1.0 } };
+    { 0.0, -1.0 }, { h, h }, { h, -h }, { -h, h }, { -h, -h } };
   for (const auto& [x, y] : rim)
   {
     this->findParts(frame.origin, unitVector(frame.direction(x, y)));
@@ -122,8 +134,15 @@ bool BeamAir::rimAgrees(const BeamFrame& frame)
     const double length = one.crossing.end - one.crossing.begin;
     agrees = one.medium == two.medium && off < 0.25 * this->UnitLength + 0.01 * length;
   }
-  this->Parts.clear();
-  this->Ends.clear();
+  // Nor does the density differ across it.
+  const double d = this->Instrument.rangeGate;
+  for (std::size_t k = 1; k < this->Ends.size() && agrees; ++k)
+  {
+    for (const double range : { 0.125 * d, 0.25 * d, 0.5 * d, d })
+    {
+      agrees = agrees && std::fabs(this->depth(k, range) - this->depth(0, range)) < 0.02;
+    }
+  }
   return agrees;
 }
 
@@ -144,6 +163,10 @@ void BeamAir::chooseColumns(const BeamFrame& frame)
   {
     this->Columns.assign(1, this->Axis);
     return;
+  }
+  if (this->Grid.empty())
+  {
+    this->makeGrid();
   }
   this->Columns = this->Grid;
   if (!isLayered)
@@ -181,9 +204,9 @@ void BeamAir::beginRay(const Vec3& origin, const Vec3& direction, double seconds
 {
   this->Origin = origin;
   this->Seconds = seconds;
+  this->beginEverywhere();
   this->Met.resize(this->Placed.size());
   std::iota(this->Met.begin(), this->Met.end(), 0u);
-  this->Open.clear();
   this->Surfaces = {};
   this->Columns.assign(1, this->Axis);
   this->Parts.clear();
@@ -264,8 +287,9 @@ void BeamAir::chooseLooked()
   for (std::int64_t high = this->EndLooked; low + 1 < high;)
   {
     const std::int64_t middle = low + (high - low) / 2;
-    (isOpaque(middle) ? high : low) = middle;
-    this->EndLooked = isOpaque(middle) ? middle : this->EndLooked;
+    const bool isBeyond = isOpaque(middle);
+    (isBeyond ? high : low) = middle;
+    this->EndLooked = isBeyond ? middle : this->EndLooked;
   }
 }
 
@@ -275,9 +299,8 @@ double BeamAir::depth(std::size_t column, double range) const
   double sum = 0.0;
   for (std::size_t p = column > 0 ? this->Ends[column - 1] : 0; p < this->Ends[column]; ++p)
   {
-    const Medium& medium = this->Placed[this->Parts[p].medium].medium;
-    const double ways = medium.sharesGaps ? 1.0 : 2.0;
-    sum += ways * medium.extinction * this->Parts[p].crossing.upTo(range);
+    const Part& part = this->Parts[p];
+    sum += this->waysOf(part) * this->mediumOf(part).extinction * part.crossing.upTo(range);
   }
   return sum;
 }
@@ -337,7 +360,9 @@ void BeamAir::take(const SurfacesInAir& surfaces)
     return;
   }
   // The units by whose middle surfaces have taken something.
-  const double most = AirEcho::MostUnits;
+  const double most = std::min(AirEcho::MostUnits,
+    static_cast<double>(
+      unitsInsideGate(this->Instrument.samplingInterval, this->Instrument.rangeGate)));
   const auto unitOf = [&](double range)
   { return static_cast<std::int64_t>(std::min(most, range / this->UnitLength + 0.5)); };
   const auto [nearest, farthest] =
@@ -350,11 +375,10 @@ void BeamAir::take(const SurfacesInAir& surfaces)
       surfaces.weights[i];
   }
   double left = 1.0;
-  constexpr double none = 1e-9; // of rounding
   for (double& share : this->Open)
   {
     left -= share;
-    share = left > none ? left : 0.0;
+    share = left > Rounding ? left : 0.0;
   }
 }
 
@@ -394,7 +418,6 @@ void BeamAir::takeUpTo(double range)
     this->Left = 1.0;
   }
   this->TakenTo = range;
-  bool takes = false;
   for (; this->Taken < this->Surfaces.count; ++this->Taken)
   {
     const std::uint32_t i = this->Order[this->Taken];
@@ -402,30 +425,26 @@ void BeamAir::takeUpTo(double range)
     {
       break;
     }
-    const double weight = this->Surfaces.weights[i];
-    const std::uint64_t columns = this->Surfaces.columns ? this->Surfaces.columns[i] : 0;
-    const double all = columns != 0 ? this->weightOf(columns) : 1.0;
-    for (std::size_t k = 0; k < this->Columns.size(); ++k)
-    {
-      const bool isMet = all <= 0.0 || columns == 0 || (columns & this->Columns[k].bits) != 0;
-      this->OpenOf[k] -= isMet ? weight / (all > 0.0 ? all : 1.0) : 0.0;
-    }
-    this->Left -= weight;
-    takes = true;
+    this->takeOne(
+      this->Surfaces.weights[i], this->Surfaces.columns ? this->Surfaces.columns[i] : 0);
   }
-  if (!takes)
-  {
-    return;
-  }
-  // No column has less than nothing, and all together have what is left.
+}
+
+/// Take a share of the pulse off some columns. No column has less than nothing, and all together
+/// have what is left.
+void BeamAir::takeOne(double weight, std::uint64_t columns)
+{
+  const double of = columns != 0 ? this->weightOf(columns) : 1.0;
   double sum = 0.0;
   for (std::size_t k = 0; k < this->Columns.size(); ++k)
   {
-    this->OpenOf[k] = std::max(0.0, this->OpenOf[k]);
+    const bool isMet = of <= 0.0 || columns == 0 || (columns & this->Columns[k].bits) != 0;
+    this->OpenOf[k] =
+      std::max(0.0, this->OpenOf[k] - (isMet ? weight / (of > 0.0 ? of : 1.0) : 0.0));
     sum += this->Columns[k].weight * this->OpenOf[k];
   }
-  constexpr double none = 1e-9; // of rounding
-  const double left = this->Left > none ? this->Left : 0.0;
+  this->Left -= weight;
+  const double left = this->Left > Rounding ? this->Left : 0.0;
   for (double& open : this->OpenOf)
   {
     open *= sum > left ? left / sum : 1.0;
@@ -444,6 +463,15 @@ void BeamAir::addShares(std::size_t column, double open, double from, double to)
     return sensor.nearRangeShare(r) * std::min(sensor.receiverAperture / (r * r), 2.0 * Pi) *
       std::exp(-2.0 * this->Attenuation * r - this->depth(column, r));
   };
+  double decay = 2.0 * this->Attenuation;
+  double change = 0.0; // of densities, 1/m
+  for (std::size_t p = first; p < this->Ends[column]; ++p)
+  {
+    const Part& part = this->Parts[p];
+    const bool isThere = middle > part.crossing.begin && middle < part.crossing.end;
+    decay += isThere ? this->waysOf(part) * this->mediumOf(part).extinction : 0.0;
+    change = std::max(change, isThere ? std::fabs(part.crossing.fall) : 0.0);
+  }
   const auto add = [&](std::uint32_t number, const MediumCrossing* part)
   {
     const Medium& medium = this->mediumAt(number);
@@ -451,8 +479,8 @@ void BeamAir::addShares(std::size_t column, double open, double from, double to)
     if (medium.backscatter() > 0.0)
     {
       this->Means[number] += weight * sensor.pulseEnergy * medium.backscatter() *
-        airIntegral(sensor, from, to, 2.0 * (this->Attenuation + medium.extinction),
-          [&](double r) { return light(r) * densityAt(r); });
+        airIntegral(
+          sensor, from, to, decay, [&](double r) { return light(r) * densityAt(r); }, change);
     }
     if (medium.drops > 0.0)
     {

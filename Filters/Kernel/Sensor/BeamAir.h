@@ -6,18 +6,18 @@
  *
  * Where all air is the same everywhere, AirEcho.h knows the units, and only the share of the pulse
  * counts that no nearer surface has met. Of a beam that meets media which do not fill the scene its
- * axis counts, if they are wider than it and its rim crosses them where the axis does. Else it is
- * divided into columns, each with a direction, a share of the pulse, and the parts in which it
- * crosses the media (MediumVolume.h): the cells of a grid of eight by eight over its plane, or of
- * layers alone, eight rows. A sample knows the columns that its rays lie in (BeamSamples::columns).
- * So light behind half a tree is weakened where the tree is, and a tree behind half a wall returns
- * what the wall leaves.
+ * axis counts, if they are wider than it and its rim crosses them where the axis does, and as deep.
+ * Else it is divided into columns, each with a direction, a share of the pulse, and the parts in
+ * which it crosses the media (MediumVolume.h): the cells of a grid of eight by eight over its
+ * plane, or of layers alone, eight rows. A sample knows the columns that its rays lie in
+ * (BeamSamples::columns). So light behind half a tree is weakened where the tree is, and a tree
+ * behind half a wall returns what the wall leaves.
  *
  * Source: the lidar equation, as AirEcho.h.
  * Differs: as AirEcho.h.
- * Valid: units to 1e-6 along each column. A border that crosses the beam is known to an eighth of
- * its width: shares of it to 0.02. The sum of all shares that surfaces take is exact, unit by unit.
- * Test: TestBeamAir.cxx.
+ * Valid: units to 1e-6 along each column. A straight border anywhere in a round uniform beam
+ * divides it to 0.05 at worst, 0.018 rms; one that crosses less than 0.013 of it is not seen. The
+ * sum of all shares that surfaces take is exact, unit by unit. Test: TestBeamAir.cxx.
  */
 #ifndef avianlidar_BeamAir_h
 #define avianlidar_BeamAir_h
@@ -151,7 +151,11 @@ private:
   void chooseColumns(const BeamFrame& frame);
   void findParts(const Vec3& origin, const Vec3& direction);
   double depth(std::size_t column, double range) const;
+  void makeGrid();
   void takeUpTo(double range);
+  void takeOne(double weight, std::uint64_t columns);
+  const Medium& mediumOf(const Part& part) const { return this->Placed[part.medium].medium; }
+  double waysOf(const Part& part) const { return this->mediumOf(part).sharesGaps ? 1.0 : 2.0; }
   void addShares(std::size_t column, double open, double from, double to);
   double weightOf(std::uint64_t columns) const;
   void chooseLooked();
@@ -161,7 +165,7 @@ private:
   double UnitLength;  ///< m
   const std::vector<Medium>& Everywhere;
   const std::vector<PlacedMedium>& Placed;
-  std::vector<Column> Grid; ///< of all beams
+  std::vector<Column> Grid; ///< empty until a beam needs it
   Column Axis{ 0.0, 0.0, 1.0, ~std::uint64_t{ 0 } };
 
   // The beam.

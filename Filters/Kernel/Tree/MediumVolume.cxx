@@ -49,8 +49,16 @@ void crossLayer(const MediumVolume& layer, const Vec3& from, const Vec3& directi
   addPart(dense.first, dense.second, 1.0, 0.0, far, parts);
   if (layer.softness > 0.0)
   {
-    const auto above = between(height, climb, layer.top, Infinity);
-    const double begin = std::max(0.0, above.first);
+    // A level ray at the top is in the dense part.
+    const auto above = climb == 0.0 && height <= layer.top
+      ? std::pair(1.0, 0.0)
+      : between(height, climb, layer.top, Infinity);
+    constexpr double nothingLeft = 60.0; // as an exponent: higher there is nothing
+    double begin = std::max(0.0, above.first);
+    if (climb < 0.0)
+    {
+      begin = std::max(begin, above.second + nothingLeft * layer.softness / climb);
+    }
     const double density = std::exp(-(height + begin * climb - layer.top) / layer.softness);
     addPart(begin, above.second, density, climb / layer.softness, far, parts);
   }
@@ -275,6 +283,27 @@ bool isWiderThan(const MediumVolume& volume, const BeamFrame& frame, double far)
   const double range = std::min(far, safeLength(volume.centre - frame.origin) + volume.radius());
   const auto isWide = [&](const Vec3& axis)
   { return safeLength(axis) > 2.0 * frame.tanHalf * range; };
-  return !volume.isBounded() || std::all_of(volume.halfAxes.begin(), volume.halfAxes.end(), isWide);
+  return volume.shape != MediumShape::Surface &&
+    (!volume.isBounded() || std::all_of(volume.halfAxes.begin(), volume.halfAxes.end(), isWide));
+}
+
+bool mayMeetBorder(const MediumVolume& volume, const BeamFrame& frame, double far)
+{
+  if (volume.isBounded())
+  {
+    return mayMeet(volume, frame, far, volume.time);
+  }
+  if (volume.shape == MediumShape::Everywhere)
+  {
+    return false;
+  }
+  const double height = glm::dot(frame.origin - volume.centre, volume.up);
+  const double climb = glm::dot(frame.axis, volume.up);
+  const double low = height + far * std::min(0.0, climb - frame.sinHalf);
+  const double high = height + far * std::max(0.0, climb + frame.sinHalf);
+  constexpr double nothingLeft = 60.0; // as an exponent
+  const bool isInside = low > volume.bottom && high < volume.top;
+  const bool isOutside = high < volume.bottom || low > volume.top + nothingLeft * volume.softness;
+  return !isInside && !isOutside;
 }
 }

@@ -98,6 +98,9 @@ private:
 /// of it lies between the beam's axis and its rim.
 bool isWiderThan(const MediumVolume& volume, const BeamFrame& frame, double far);
 
+/// Whether a border of a volume at rest, or where a layer fades, may lie in a beam: conservative.
+bool mayMeetBorder(const MediumVolume& volume, const BeamFrame& frame, double far);
+
 /// Whether a beam may meet a volume within `far`, m: conservative.
 bool mayMeet(const MediumVolume& volume, const BeamFrame& frame, double far, double seconds);
 }

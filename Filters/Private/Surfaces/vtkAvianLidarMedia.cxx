@@ -63,7 +63,7 @@ Medium FoliageOf(double density)
   // Lambertian leaves that face all ways: the mean of cos^2 is 1/3, that of |cos| is 1/2.
   leaves.backscatterRatio = 1.5 * avianlidar::Pi / NumberOf("foliage", "leaf_reflectance");
   leaves.drops = density / NumberOf("foliage", "leaf_area");
-  leaves.squareOfDrops = 1.0;
+  leaves.squareOfDrops = avianlidar::SquareOfLeaves;
   leaves.renewed = NumberOf("foliage", "renewed");
   leaves.isFollowed = false;
   leaves.sharesGaps = true;
@@ -186,7 +186,7 @@ MediumVolume VolumeOf(const JsonNode& node)
   volume.centre = VectorOf(node, "center", volume.centre);
   volume.velocity = VectorOf(node, "velocity", volume.velocity);
   volume.bottom = NumberOr(node, "bottom", volume.bottom);
-  volume.top = NumberOr(node, "top", volume.top);
+  volume.top = volume.shape == MediumShape::Layer ? node.Get("top").Number() : volume.top;
   volume.softness = NumberOr(node, "softness", volume.softness);
   if (volume.shape == MediumShape::Surface)
   {
@@ -195,6 +195,7 @@ MediumVolume VolumeOf(const JsonNode& node)
   else if (volume.isBounded())
   {
     const double heading = NumberOr(node, "heading", 0.0) * avianlidar::Pi / 180.0;
+    node.Get("lengths");
     const Vec3 half = 0.5 * VectorOf(node, "lengths", Vec3(0.0));
     volume.halfAxes = { half.x * Vec3(std::cos(heading), -std::sin(heading), 0.0),
       half.y * Vec3(std::sin(heading), std::cos(heading), 0.0), Vec3(0.0, 0.0, half.z) };
@@ -246,7 +247,9 @@ std::vector<avianlidar::PlacedMedium> vtkAvianLidarMedia::Read(
   }
   if (!medium.isFollowed)
   {
-    medium.objectId = static_cast<int>(NumberOr(node, "object_id", medium.objectId));
+    medium.objectId = node.Has("object_id")
+      ? static_cast<int>(node.Get("object_id").NumberIn(0.0, 1e6))
+      : medium.objectId;
   }
   const std::string problem = avianlidar::checkMedium(medium);
   if (!problem.empty())
@@ -265,6 +268,11 @@ std::vector<avianlidar::PlacedMedium> vtkAvianLidarMedia::Read(
       const double across = 0.5 * n[3].PositiveNumber();
       volume.halfAxes = { Vec3(across, 0.0, 0.0), Vec3(0.0, across, 0.0),
         Vec3(0.0, 0.0, 0.5 * n[4].PositiveNumber()) };
+      const std::string wrong = avianlidar::checkVolume(volume);
+      if (!wrong.empty())
+      {
+        one.Fail(wrong);
+      }
       all.push_back({ medium, volume });
     }
     return all;
@@ -374,7 +382,7 @@ vtkSmartPointer<vtkPolyData> vtkAvianLidarMedia::Surface(
     const bool isLayer = volume.shape == MediumShape::Layer;
     const double low = isLayer ? std::max(volume.bottom, volume.top - size) : -0.5 * size;
     const double high = isLayer ? volume.top : 0.5 * size;
-    volume.centre = Vec3(0.0, 0.0, 0.5 * (low + high));
+    volume.centre += Vec3(0.0, 0.0, 0.5 * (low + high));
     volume.halfAxes = { Vec3(0.5 * size, 0.0, 0.0), Vec3(0.0, 0.5 * size, 0.0),
       Vec3(0.0, 0.0, 0.5 * (high - low)) };
   }
@@ -414,6 +422,7 @@ std::string vtkAvianLidarMedia::TextOf(vtkPolyData* leaf, const std::string& nam
     leaf->GetFieldData()->GetAbstractArray(vtkAvianLidarArrays::Medium.name));
   const std::string file = "medium '" + name + "'";
   Json json = ParsedText(texts->GetValue(0), file);
+  json.erase("object_id"); // the scene gives ids
   if (JsonNode(json, "", file).Get("shape").String() != "surface" || json.contains("points"))
   {
     return json.dump();

@@ -119,8 +119,12 @@ int vtkAvianLidarSurfaceIds::AddObject(
 
 int vtkAvianLidarSurfaceIds::AddMedium(const std::string& name, int wanted)
 {
-  const int id =
-    this->KeepObjectIds && wanted >= 0 ? wanted : static_cast<int>(this->ObjectNames.size());
+  constexpr int most = 1000000;
+  const auto count = this->ObjectNames.size();
+  const auto place = static_cast<std::size_t>(wanted);
+  const bool isFree =
+    wanted >= 0 && wanted <= most && (place >= count || this->ObjectNames[place].empty());
+  const int id = this->KeepObjectIds && isFree ? wanted : static_cast<int>(count);
   this->ObjectNames.resize(std::max(this->ObjectNames.size(), static_cast<std::size_t>(id) + 1));
   this->ObjectNames[id] = name;
   this->ObjectClasses.resize(this->ObjectNames.size());

@@ -304,6 +304,10 @@ private:
 
   bool AddLeaf(const Leaf& leaf, const vtkAvianLidarSurfaceArrays& own, LeafState& state)
   {
+    if (vtkAvianLidarMedia::IsMedium(leaf.data))
+    {
+      return true;
+    }
     // Without a holder where the leaf is taken as it is: VTK collects garbage whenever one goes.
     vtkSmartPointer<vtkPolyData> made;
     const bool asItIs = leaf.IsTriangulated();
@@ -313,10 +317,6 @@ private:
     }
     vtkPolyData* poly = asItIs ? leaf.data : made.Get();
     const vtkIdType cells = poly->GetNumberOfPolys();
-    if (vtkAvianLidarMedia::IsMedium(leaf.data))
-    {
-      return true;
-    }
     if (cells == 0)
     {
       this->Ids.AddEmptyLeaf(leaf);
