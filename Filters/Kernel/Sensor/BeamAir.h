@@ -17,7 +17,8 @@
  * Differs: as AirEcho.h.
  * Valid: units to 1e-6 along each column. A straight border anywhere in a round uniform beam
  * divides it to 0.05 at worst, 0.018 rms; one that crosses less than 0.013 of it is not seen. The
- * sum of all shares that surfaces take is exact, unit by unit. Test: TestBeamAir.cxx.
+ * sum of all shares that surfaces take is exact, unit by unit.
+ * Test: TestBeamAir.cxx.
  */
 #ifndef avianlidar_BeamAir_h
 #define avianlidar_BeamAir_h
