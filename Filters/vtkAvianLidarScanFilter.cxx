@@ -27,9 +27,8 @@ namespace
 using Outcome = vtkAvianLidarRanks::Outcome;
 using Pipeline = vtkStreamingDemandDrivenPipeline;
 
-constexpr char NoAperture[] =
-  "air that scatters (AirBackscatter, RainRate, media) needs beams of a "
-  "sensor with a receiver_aperture above 0, expected such a one";
+constexpr char NoAperture[] = "air that scatters (AirBackscatter, RainRate) needs beams of a "
+                              "sensor with a receiver_aperture above 0, expected such a one";
 
 /// All that decides a bit of the results. @param air the attenuation coefficient, of no account
 /// where the visibility says it
@@ -297,7 +296,7 @@ std::string vtkAvianLidarScanFilter::PlaceMedia()
       in.Setup.placedMedia.push_back(placed);
     }
   }
-  return in.Media.empty() || sensor.receiverAperture > 0.0 ? std::string() : NoAperture;
+  return {};
 }
 
 //------------------------------------------------------------------------------

@@ -157,14 +157,13 @@ class Echoes(unittest.TestCase):
         came = echoes(group(wall(), medium(**shower, Center=(-60.0, 80.0, 0.0))), later, Noise=True)
         self.assertGreater((came["object_id"] == -2).sum(), 50)
 
-    def test_beams_without_an_aperture_are_refused(self):
-        scan = vtkAvianLidarEchoFilter()
-        sensor = al.Sensor("Airport16", azimuth_step=10)
-        scan.SetInputConnection(0, sensor.algorithm.GetOutputPort())
-        scan.SetInputDataObject(1, group(wall(), medium()))
-        errors = Messages(scan).errors
-        scan.Update()
-        self.assertIn("air that scatters (AirBackscatter, RainRate, media) needs beams", "".join(errors))
+    def test_without_an_aperture_media_only_weaken(self):
+        sensor = al.Sensor("Airport16", directions=[(0, 1, 0)], lower_energy_limit=0, upper_energy_limit=1)
+        clear = echoes(wall(), sensor.algorithm)["energy_received"]
+        shower = medium(Kind=6, Extinction=0.01, BackscatterRatio=20.0, Shape=2, Center=(0.0, 100.0, 0.0), Lengths=(99.0, 50.0, 99.0))
+        behind = echoes(group(wall(), shower), sensor.algorithm)
+        self.assertEqual(len(behind["object_id"]), len(clear))
+        np.testing.assert_allclose(behind["energy_received"] / clear, math.exp(-1.0), rtol=1e-5)
 
 
 class Coverage(unittest.TestCase):
