@@ -31,6 +31,7 @@
 #include <QFileInfo>
 #include <QHelpEngine>
 #include <QIcon>
+#include <QList>
 #include <QMainWindow>
 #include <QMenu>
 #include <QTimer>
@@ -55,6 +56,7 @@ struct Macro
   const char* icon;
   const char* text;
   const char* tip;
+  bool hasButton = true; ///< else it is in the menu alone: the toolbar fits beside ParaView's
 };
 
 const Macro Macros[] = {
@@ -65,7 +67,7 @@ const Macro Macros[] = {
   { "avian_lidar_coverage", "coverage", "Avian Lidar: Map Where a Bird Is Seen",
     "Where a lidar at the airport detects a gull, and why not elsewhere" },
   { "avian_lidar_ground_fog", "medium", "Avian Lidar: Scan an Airport in Ground Fog",
-    "An airport in ground fog, drawn translucent, and what a lidar receives of it" },
+    "An airport in ground fog, drawn translucent, and what a lidar receives of it", false },
   { ColourMacro, "colours", "Avian Lidar: Colour by Energy",
     "Colour the selected echoes or range image by energy, over the range of the receiver" },
   { "avian_lidar_status_colours", "status", "Avian Lidar: Colour by Status",
@@ -198,6 +200,7 @@ Toolbar::Toolbar(QMainWindow* window)
 //------------------------------------------------------------------------------
 void Toolbar::AddMacros(QMenu* menu)
 {
+  QList<QAction*> all;
   for (const Macro& macro : Macros)
   {
     auto* action =
@@ -209,13 +212,17 @@ void Toolbar::AddMacros(QMenu* menu)
     const QString text = macro.text;
     connect(action, &QAction::triggered, this,
       [path, text] { AvianLidarDoToUndo(text, [path] { Run(path); }); });
-    this->addAction(action);
+    if (macro.hasButton)
+    {
+      this->addAction(action);
+    }
     menu->addAction(action);
+    all.append(action);
   }
 #if !__has_include("pqProxyAction.h")
   // The quick launch of ParaView 5.13 ends the program at an action that makes no proxy.
   auto* known = new QMenu(this); // of the toolbar itself the quick launch would offer to hide it
-  known->addActions(this->actions());
+  known->addActions(all);
   pqPVApplicationCore::instance()->registerForQuicklaunch(known);
 #endif
 }

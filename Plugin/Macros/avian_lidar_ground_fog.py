@@ -7,7 +7,7 @@ echoes by energy. Change Kind, Visibility or the shape of the medium, and Apply.
 with its collision tree; what an earlier scan shows is hidden. If something does not fit, nothing is made and the reason is
 given in Output Messages.
 
-In ParaView: the button is there with the plugin; click it. In a script: cover(view).
+In ParaView: it is in the menu Macros with the plugin. In a script: cover(view).
 """
 
 import importlib.util
