@@ -136,6 +136,40 @@ def test_objects_are_numbered_as_alone():
         check(together(blocks(mine)), expected)
 
 
+def test_media_are_those_of_all_ranks():
+    """Ground fog, a shower and trees among the surfaces, wherever they are."""
+    def medium(kind, shape, **properties):
+        source = al.vtkAvianLidarMedium()
+        getattr(source, "SetKindTo" + kind)()
+        getattr(source, "SetShapeTo" + shape)()
+        for name, value in properties.items():
+            getattr(source, "Set" + name)(value)
+        source.Update()
+        return source.GetOutput()
+
+    media = [medium("Fog", "Layer", Top=1.0, Softness=2.0, Name="fog"),
+             medium("Rain", "Box", Center=(0, 60, 0), Lengths=(300, 80, 100), RainRate=50, Name="shower"),
+             *(medium("Foliage", "Ellipsoid", Center=(12 * k - 30, 20, 2), Lengths=(5, 5, 6), Name=f"tree {k}") for k in range(5))]
+
+    def blocks(mine):
+        some = vtk.vtkMultiBlockDataSet()
+        for i in range(24 + len(media)):
+            some.SetBlock(i, (TOWN.GetBlock(i) if i < 24 else media[i - 24]) if mine(i) else None)
+        return some
+
+    beams = al.vtkAvianLidarBeamSource()
+    beams.SetPresetToSearch905()
+    beams.SetAzimuthStep(4)
+    expected = echotools.scan(blocks(lambda i: True), beams, **SETTINGS)
+    expected.Update()
+    objects = point_arrays(expected.GetOutput())["object_id"]
+    assert (objects == -2).sum() > 100 and len(field_texts(expected.GetOutput())["media"]) == len(media)
+    assert set(field_texts(expected.GetOutput())["object_names"]) >= {f"tree {k}" for k in range(5)}
+    for mine in (lambda i: True, lambda i: RANK == LAST, lambda i: i % RANKS == RANK, lambda i: (i >= 24) == (RANK == LAST)):
+        check(together(blocks(mine), beams), expected, LEFT_OUT)
+        check(together(with_tree(blocks(mine)), beams), expected, LEFT_OUT)
+
+
 def gull(number):
     source = al.vtkAvianLidarBirdSource()
     source.SetObjectId(100 + number)

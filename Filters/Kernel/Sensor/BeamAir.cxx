@@ -111,7 +111,7 @@ void BeamAir::begin(const BeamFrame& frame, double seconds)
 }
 
 /// Whether the rim of a beam crosses all media where its axis does, to a quarter of a range unit
-/// and a hundredth of the way through.
+/// and a hundredth of the way through, and as deep, to 0.02 of optical depth there and back.
 bool BeamAir::rimAgrees(const BeamFrame& frame)
 {
   this->Parts.clear();
@@ -458,6 +458,8 @@ void BeamAir::addShares(std::size_t column, double open, double from, double to)
   const double weight = open * this->Columns[column].weight;
   const std::size_t first = column > 0 ? this->Ends[column - 1] : 0;
   const double middle = 0.5 * (from + to);
+  const auto isThere = [=](const Part& part)
+  { return middle > part.crossing.begin && middle < part.crossing.end; };
   const auto light = [&](double r)
   {
     return sensor.nearRangeShare(r) * std::min(sensor.receiverAperture / (r * r), 2.0 * Pi) *
@@ -468,9 +470,11 @@ void BeamAir::addShares(std::size_t column, double open, double from, double to)
   for (std::size_t p = first; p < this->Ends[column]; ++p)
   {
     const Part& part = this->Parts[p];
-    const bool isThere = middle > part.crossing.begin && middle < part.crossing.end;
-    decay += isThere ? this->waysOf(part) * this->mediumOf(part).extinction : 0.0;
-    change = std::max(change, isThere ? std::fabs(part.crossing.fall) : 0.0);
+    if (isThere(part))
+    {
+      decay += this->waysOf(part) * this->mediumOf(part).extinction;
+      change = std::max(change, std::fabs(part.crossing.fall));
+    }
   }
   const auto add = [&](std::uint32_t number, const MediumCrossing* part)
   {
@@ -495,7 +499,7 @@ void BeamAir::addShares(std::size_t column, double open, double from, double to)
   for (std::size_t p = first; p < this->Ends[column]; ++p)
   {
     const Part& part = this->Parts[p];
-    if (middle > part.crossing.begin && middle < part.crossing.end)
+    if (isThere(part))
     {
       add(static_cast<std::uint32_t>(this->Everywhere.size()) + part.medium, &part.crossing);
     }

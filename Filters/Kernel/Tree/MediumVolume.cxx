@@ -13,7 +13,7 @@ namespace
 {
 Vec3 offsetOf(const MediumVolume& volume, double seconds)
 {
-  return (seconds - volume.time) * volume.velocity;
+  return seconds * volume.velocity;
 }
 
 void addPart(double begin, double end, double density, double fall, double far,
@@ -176,9 +176,9 @@ std::string checkVolume(const MediumVolume& volume)
 {
   const auto isFinite = [](const Vec3& v)
   { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); };
-  if (!isFinite(volume.centre) || !isFinite(volume.velocity) || !std::isfinite(volume.time))
+  if (!isFinite(volume.centre) || !isFinite(volume.velocity))
   {
-    return "centre, velocity or time is not finite, expected m, m/s and s";
+    return "centre or velocity is not finite, expected m and m/s";
   }
   for (const Vec3& axis : volume.halfAxes)
   {
@@ -291,7 +291,7 @@ bool mayMeetBorder(const MediumVolume& volume, const BeamFrame& frame, double fa
 {
   if (volume.isBounded())
   {
-    return mayMeet(volume, frame, far, volume.time);
+    return mayMeet(volume, frame, far, 0.0);
   }
   if (volume.shape == MediumShape::Everywhere)
   {

@@ -49,7 +49,6 @@ struct MediumVolume
   double softness = 0.0; ///< m, by which the density above falls to 1/e; 0: none there
   std::shared_ptr<const CollisionTree> surface;
   Vec3 velocity{ 0.0 }; ///< m/s; the volume is here at the time 0
-  double time = 0.0;    ///< s, from which it moves
 
   bool isBounded() const { return this->shape >= MediumShape::Box; }
   /// Radius of the ball about its centre that holds it, m.

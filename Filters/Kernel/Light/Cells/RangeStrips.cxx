@@ -2,7 +2,6 @@
 #include "RangeStrips.h"
 
 #include "BeamAir.h"
-
 #include "KeySort.h"
 #include "Multiversion.h"
 
