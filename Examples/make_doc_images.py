@@ -33,6 +33,7 @@ import corridor  # noqa: E402
 import detail  # noqa: E402
 import falloff  # noqa: E402
 import labels  # noqa: E402
+import media_time  # noqa: E402
 import more_reflections  # noqa: E402
 import multiple_scattering  # noqa: E402
 import others  # noqa: E402
@@ -74,6 +75,7 @@ RUNS = (
     ("sequence", labels, [], {"labels": "sequences-labels"}),
     ("quadcopter", quadcopter, [], {"points": "measured-quadcopter"}),
     ("weather", weather, [], {"weather": "weather"}),
+    ("weather-media", media_time, [], {}),
     ("weather-others", others, [], {}),
     ("weather-multiple", multiple_scattering, [], {}),
     ("notebook", render_notebook, [], {"energy-image": "python-range-image", "map": "python-map"}),

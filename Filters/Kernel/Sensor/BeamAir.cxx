@@ -218,14 +218,15 @@ void BeamAir::beginRay(const Vec3& origin, const Vec3& direction, double seconds
 /// Add a column.
 void BeamAir::findParts(const Vec3& origin, const Vec3& direction)
 {
-  for (const std::uint32_t medium : this->Met)
+  for (std::uint32_t met = 0; met < this->Met.size(); ++met)
   {
+    const std::uint32_t medium = this->Met[met];
     this->Found.clear();
     this->Crosser.find(this->Placed[medium].volume, origin, direction, this->Instrument.rangeGate,
       this->Seconds, this->Found);
     for (const MediumCrossing& part : this->Found)
     {
-      this->Parts.push_back({ medium, part });
+      this->Parts.push_back({ medium, met, part });
     }
   }
   this->Ends.push_back(this->Parts.size());
@@ -456,29 +457,38 @@ void BeamAir::addShares(std::size_t column, double open, double from, double to)
 {
   const Sensor& sensor = this->Instrument;
   const double weight = open * this->Columns[column].weight;
-  const std::size_t first = column > 0 ? this->Ends[column - 1] : 0;
   const double middle = 0.5 * (from + to);
-  const auto isThere = [=](const Part& part)
-  { return middle > part.crossing.begin && middle < part.crossing.end; };
-  const auto light = [&](double r)
-  {
-    return sensor.nearRangeShare(r) * std::min(sensor.receiverAperture / (r * r), 2.0 * Pi) *
-      std::exp(-2.0 * this->Attenuation * r - this->depth(column, r));
-  };
   double decay = 2.0 * this->Attenuation;
   double change = 0.0; // of densities, 1/m
-  for (std::size_t p = first; p < this->Ends[column]; ++p)
+  this->Here.clear();
+  for (std::size_t p = column > 0 ? this->Ends[column - 1] : 0; p < this->Ends[column]; ++p)
   {
     const Part& part = this->Parts[p];
-    if (isThere(part))
+    if (middle > part.crossing.begin && middle < part.crossing.end)
     {
+      this->Here.push_back(part);
       decay += this->waysOf(part) * this->mediumOf(part).extinction;
       change = std::max(change, std::fabs(part.crossing.fall));
     }
   }
-  const auto add = [&](std::uint32_t number, const MediumCrossing* part)
+  if (this->Here.empty() && this->Everywhere.empty())
   {
-    const Medium& medium = this->mediumAt(number);
+    return;
+  }
+  const double before = this->depth(column, from);
+  const auto light = [&](double r)
+  {
+    double depth = before + 2.0 * this->Attenuation * r;
+    for (const Part& part : this->Here)
+    {
+      depth += this->waysOf(part) * this->mediumOf(part).extinction *
+        (part.crossing.upTo(r) - part.crossing.upTo(from));
+    }
+    return sensor.nearRangeShare(r) * std::min(sensor.receiverAperture / (r * r), 2.0 * Pi) *
+      std::exp(-depth);
+  };
+  const auto add = [&](std::size_t number, const Medium& medium, const MediumCrossing* part)
+  {
     const auto densityAt = [&](double r) { return part ? part->densityAt(r) : 1.0; };
     if (medium.backscatter() > 0.0)
     {
@@ -492,17 +502,13 @@ void BeamAir::addShares(std::size_t column, double open, double from, double to)
         (to * to * to - from * from * from) / 3.0;
     }
   };
-  for (std::uint32_t k = 0; k < this->Everywhere.size(); ++k)
+  for (std::size_t k = 0; k < this->Everywhere.size(); ++k)
   {
-    add(k, nullptr);
+    add(k, this->Everywhere[k], nullptr);
   }
-  for (std::size_t p = first; p < this->Ends[column]; ++p)
+  for (const Part& part : this->Here)
   {
-    const Part& part = this->Parts[p];
-    if (isThere(part))
-    {
-      add(static_cast<std::uint32_t>(this->Everywhere.size()) + part.medium, &part.crossing);
-    }
+    add(this->Everywhere.size() + part.met, this->mediumOf(part), &part.crossing);
   }
 }
 
@@ -514,7 +520,8 @@ const std::vector<BeamAir::Share>& BeamAir::sharesOf(std::int64_t unit)
   }
   this->Unit = unit;
   this->Shares.clear();
-  const std::size_t media = this->Everywhere.size() + this->Placed.size();
+  const auto everywhere = static_cast<std::uint32_t>(this->Everywhere.size());
+  const std::size_t media = everywhere + this->Met.size();
   this->Means.assign(media, 0.0);
   this->Drops.assign(media, 0.0);
   if (!(this->Instrument.receiverAperture > 0.0))
@@ -551,7 +558,8 @@ const std::vector<BeamAir::Share>& BeamAir::sharesOf(std::int64_t unit)
   {
     if (this->Means[k] > 0.0)
     {
-      this->Shares.push_back({ k, this->Means[k], this->Drops[k] });
+      const std::uint32_t number = k < everywhere ? k : everywhere + this->Met[k - everywhere];
+      this->Shares.push_back({ number, this->Means[k], this->Drops[k] });
     }
   }
   return this->Shares;

@@ -146,6 +146,7 @@ private:
   struct Part
   {
     std::uint32_t medium;
+    std::uint32_t met; ///< its place in Met
     MediumCrossing crossing;
   };
   bool rimAgrees(const BeamFrame& frame);
@@ -175,6 +176,7 @@ private:
   std::vector<Column> Columns;
   std::vector<std::uint32_t> Met; ///< media that do not fill the scene
   std::vector<Part> Parts;        ///< column by column
+  std::vector<Part> Here;         ///< of a piece of a column
   std::vector<std::size_t> Ends;  ///< of the parts of each
   std::int64_t FirstLooked = 0, EndLooked = 0;
   std::int64_t FirstTaken = 0;
@@ -188,7 +190,7 @@ private:
   std::int64_t Unit = -1;           ///< of Shares
   std::vector<Share> Shares;
   std::vector<double> Breaks;
-  std::vector<double> Means, Drops; ///< by medium
+  std::vector<double> Means, Drops; ///< of those that fill the scene, and of those met
   std::vector<MediumCrossing> Found;
   MediumCrosser Crosser;
 };

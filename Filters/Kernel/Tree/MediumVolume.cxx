@@ -274,8 +274,10 @@ bool mayMeet(const MediumVolume& volume, const BeamFrame& frame, double far, dou
   {
     return false;
   }
-  const double angle = std::atan2(safeLength(glm::cross(frame.axis, to)), glm::dot(frame.axis, to));
-  return angle <= frame.halfBeamwidth + std::asin(radius / range) + 1e-9;
+  // The cosine of the half-beamwidth and the half of the angle at which the ball appears.
+  const double sine = radius / range;
+  const double least = frame.cosHalf * std::sqrt(1.0 - sine * sine) - frame.sinHalf * sine;
+  return glm::dot(frame.axis, to) >= (least - 1e-9) * range;
 }
 
 bool isWiderThan(const MediumVolume& volume, const BeamFrame& frame, double far)
