@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Runs the examples and brings their pictures and tables into Documentation/: airport.md, birds.md,
 collision-detection.md, corridor.md, coverage.md, echoes.md, paper.md, python.md, sensors.md, sequences.md, time.md and, where AVIANLIDAR_DATA_DIR
-names the folder of their data, results/reality.md, results/falloff.md and results/materials.md say what a run of what is
+names the folder of their data, results/reality.md, results/falloff.md, results/materials.md and crowns in weather.md say what a run of what is
 committed gives. Where AVIANLIDAR_SCENES_DIR names the scenes that the build makes of them, more reflections are followed in
 those, too.
 
@@ -47,6 +47,7 @@ import screenshots  # noqa: E402
 import predicted_measured  # noqa: E402
 import quadcopter  # noqa: E402
 import second_reflection  # noqa: E402
+import vegetation  # noqa: E402
 import weather  # noqa: E402
 
 # Name of the run, what runs, its arguments, {picture: name in Documentation/images}.
@@ -88,6 +89,7 @@ DATA_RUNS = (
     ("detail", detail, [], {}),
     ("measured", predicted_measured, [], {"ground": "measured-ground", "least": "measured-least"}),
     ("falloff", falloff, [], {"signal": "falloff-signal", "beams": "falloff-beams"}),
+    ("weather-vegetation", vegetation, [], {}),
     ("materials", check_fit, [], {"silver-metallic-paint": "materials-silver-metallic-paint"}),
 )
 
