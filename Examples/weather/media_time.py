@@ -22,6 +22,7 @@ TREES = [{"Kind": 5, "Shape": 3, "Center": (100.0 + 20 * (k % 10), 50.0 + 20 * (
 CASES = (
     ("clear air", [], {}),
     ("fog everywhere, 800 m", [], {"Visibility": 800.0, "AirBackscatter": True}),
+    ("rain everywhere, 10 mm/h", [], {"RainRate": 10.0}),
     ("a bank of fog, 300 m across", [{**FOG, "Shape": 2, "Center": (200.0, 200.0, 0.0), "Lengths": (300.0, 300.0, 60.0)}], {}),
     ("ground fog, 300 m below 10 m", [{**FOG, "Shape": 1, "Top": 10.0, "Softness": 5.0}], {}),
     ("a hundred trees", TREES, {}),

@@ -579,6 +579,96 @@ TEST(BeamAir, LeavesThatStayReturnTheSameInEveryScan)
   EXPECT_NEAR(correlation(energies(0.5, 1), energies(0.5, 2)), 0.5, 0.2);
 }
 
+constexpr std::size_t Scans = 1500;
+
+/// Leaves of 20 cm2 as they are seen, in a crown of 4 m before a wall.
+ScanResult throughLeaves(double halfBeamwidth, bool noise, double wall = 40.0)
+{
+  Sensor sensor = search905();
+  sensor.halfBeamwidth = halfBeamwidth;
+  sensor.rangeGate = 60.0;
+  EXPECT_EQ(setPhotonLimits(sensor, 1e-4, 40.0, 15360.0), "");
+  const Medium leaves{ 0.5, 10.5, 250.0, SquareOfLeaves, 1.0, false, 9, true };
+  ScanSetup setup =
+    inMedium(wallAt(wall), sensor, leaves, boxOf(Vec3(20.0, 0.0, 0.0), Vec3(2.0, 50.0, 50.0)));
+  setup.noise.active = noise; // of leaves alone: the receiver's is far below
+  setup.settings.noise = noise;
+  setup.settings.returnMode = ReturnMode::RangeUnits;
+  planModel(setup);
+  return runScan(setup, alike(noise ? Scans : 1));
+}
+
+TEST(BeamAir, ANarrowBeamEndsAtItsFirstLeafOrPasses)
+{
+  const double left = std::exp(-2.0);
+  const ScanResult result = throughLeaves(1e-4, true);
+  std::vector<double> depths(Scans, 0.0);
+  std::vector<double> walls(Scans, 0.0);
+  for (std::size_t k = 0; k < result.echoes.size(); ++k)
+  {
+    const Echo& echo = result.echoes[k];
+    const std::size_t beam = result.beamOfEcho[k];
+    if (echo.objectId == 9)
+    {
+      EXPECT_EQ(depths[beam], 0.0) << "leaves at two depths";
+      depths[beam] = echo.range - 18.0;
+    }
+    walls[beam] += echo.objectId == 7 ? echo.energyReceived : 0.0;
+  }
+  const double unit = Sensor{ search905() }.rangeUnitLength();
+  const double end = unit * std::ceil(18.0 / unit); // of the first unit in the crown
+  double passed = 0.0, first = 0.0;
+  for (std::size_t beam = 0; beam < depths.size(); ++beam)
+  {
+    passed += walls[beam] > 0.0 ? 1.0 : 0.0;
+    first += depths[beam] > 0.0 && depths[beam] < end - 18.0 ? 1.0 : 0.0;
+    EXPECT_NE(walls[beam] > 0.0, depths[beam] > 0.0);
+  }
+  const auto within = [](double count, double share)
+  {
+    EXPECT_NEAR(count, static_cast<double>(Scans) * share,
+      3.0 * std::sqrt(static_cast<double>(Scans) * share * (1.0 - share)));
+  };
+  within(passed, left);
+  within(first, 1.0 - std::exp(-0.5 * (end - 18.0)));
+}
+
+TEST(BeamAir, NoiseOfLeavesLeavesTheMean)
+{
+  for (const double halfBeamwidth : { 1e-4, 1e-3, 4e-3, 2e-2 })
+  {
+    const auto sums = [&](bool noise)
+    {
+      std::array<double, 4> sum{}; // leaves, wall, and squares over all beams
+      const ScanResult result = throughLeaves(halfBeamwidth, noise);
+      std::vector<std::array<double, 2>> beams(noise ? Scans : 1);
+      for (std::size_t k = 0; k < result.echoes.size(); ++k)
+      {
+        beams[result.beamOfEcho[k]][result.echoes[k].range > 30.0] +=
+          result.echoes[k].energyReceived;
+      }
+      for (const auto& beam : beams)
+      {
+        for (std::size_t i = 0; i < 2; ++i)
+        {
+          sum[i] += beam[i] / static_cast<double>(beams.size());
+          sum[i + 2] += beam[i] * beam[i] / static_cast<double>(beams.size());
+        }
+      }
+      return sum;
+    };
+    const auto noisy = sums(true);
+    const auto mean = sums(false);
+    for (std::size_t i = 0; i < 2; ++i)
+    {
+      const double error =
+        std::sqrt((noisy[i + 2] - noisy[i] * noisy[i]) / static_cast<double>(Scans));
+      EXPECT_NEAR(noisy[i], mean[i], 3.5 * error + 2e-3 * mean[i])
+        << halfBeamwidth << (i == 0 ? " leaves" : " wall");
+    }
+  }
+}
+
 TEST(BeamAir, AnyThreadsAndPartsGiveTheSameBits)
 {
   Sensor sensor = search905();

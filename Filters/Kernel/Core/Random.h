@@ -39,7 +39,8 @@ enum class RandomPurpose : std::uint32_t
   Cells = 14,         ///< of jittered rays; the pattern's number replaces the beam's
   Mirrors = 15,       ///< of rays over mirrors
   RangeNoise = 16,    ///< of the range of a return, by its strongest unit
-  Drops = 17          ///< of rain, by range unit
+  Drops = 17,         ///< of rain, by range unit
+  Leaves = 18         ///< that parts of a beam end at
 };
 
 /// Two independent uniform doubles in the open interval (0, 1), 53 bits each.

@@ -498,8 +498,11 @@ void BeamAir::addShares(std::size_t column, double open, double from, double to)
     }
     if (medium.drops > 0.0)
     {
-      this->Drops[number] += weight * medium.drops * sensor.solidAngle() * densityAt(middle) *
-        (to * to * to - from * from * from) / 3.0;
+      // Those whose middle lies in the beam, and leaves that reach into it.
+      const double met =
+        medium.drops * sensor.solidAngle() * (to * to * to - from * from * from) / 3.0 +
+        (medium.sharesGaps ? medium.extinction * (to - from) : 0.0);
+      this->Drops[number] += weight * densityAt(middle) * met;
     }
   };
   for (std::size_t k = 0; k < this->Everywhere.size(); ++k)
@@ -563,6 +566,39 @@ const std::vector<BeamAir::Share>& BeamAir::sharesOf(std::int64_t unit)
     }
   }
   return this->Shares;
+}
+
+BeamAir::Leaves BeamAir::firstLeaves() const
+{
+  Leaves first;
+  for (const Part& part : this->Parts)
+  {
+    const Medium& medium = this->mediumOf(part);
+    if (medium.sharesGaps && medium.drops > 0.0 &&
+      (first.area == 0.0 || part.crossing.begin < first.range))
+    {
+      first = { part.crossing.begin, medium.extinction / medium.drops, medium.renewed };
+    }
+  }
+  return first;
+}
+
+double BeamAir::leftByLeaves(double range) const
+{
+  double sum = 0.0;
+  for (std::size_t column = 0; column < this->Columns.size(); ++column)
+  {
+    double depth = 0.0;
+    for (std::size_t p = column > 0 ? this->Ends[column - 1] : 0; p < this->Ends[column]; ++p)
+    {
+      const Medium& medium = this->mediumOf(this->Parts[p]);
+      depth += medium.sharesGaps && medium.drops > 0.0
+        ? medium.extinction * this->Parts[p].crossing.upTo(range)
+        : 0.0;
+    }
+    sum += this->Columns[column].weight * std::exp(-depth);
+  }
+  return sum;
 }
 
 double BeamAir::followed(const AirEcho& echo, std::int64_t unit)

@@ -100,6 +100,18 @@ public:
   const std::vector<Share>& sharesOf(std::int64_t unit);
   const Medium& mediumAt(std::uint32_t number) const;
 
+  /// Leaves where the beam first meets some.
+  struct Leaves
+  {
+    double range = 0.0;   ///< m
+    double area = 0.0;    ///< of one as it is seen, m^2; 0: there are none
+    double renewed = 0.0; ///< share that is another in the next scan
+  };
+  Leaves firstLeaves() const;
+
+  /// Share of the light that leaves let through to a range, m, on average.
+  double leftByLeaves(double range) const;
+
   /// Mean energy, J, in a unit that a threshold may follow. @param echo of the air that fills the
   /// scene
   double followed(const AirEcho& echo, std::int64_t unit);

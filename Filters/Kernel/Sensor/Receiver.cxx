@@ -86,6 +86,11 @@ void BeamReceiver::receive(
   }
   this->Noise.begin(this->Plan, this->Seed, beam, this->Revolution);
   this->Beam = beam;
+  this->Gaps.clear();
+  if (this->Plan.active && along && along->isLocal())
+  {
+    this->Gaps.begin(*along, this->Instrument.solidAngle(), this->Seed, beam, this->Revolution);
+  }
   this->collectUnits(units);
   this->formReturns();
   this->select();
@@ -137,7 +142,7 @@ void BeamReceiver::collectUnits(const std::vector<RangeUnit>& units)
       { next, lit != units.end() ? lit->index : none, alarm != alarms.end() ? *alarm : none });
     const bool isAlarm = alarm != alarms.end() && *alarm == index;
     const bool isLit = lit != units.end() && lit->index == index;
-    const double light = isLit ? lit->energy : 0.0;
+    const double light = isLit ? lit->energy * this->openAt(index) : 0.0;
     const bool hasAir = isLocal ? index == next || !this->FollowsAir : this->Air.mean(index) > 0.0;
     if (isAlarm || hasAir || !(light < this->Plan.faintLight) || this->Noise.isRare(index))
     {
@@ -165,6 +170,8 @@ void BeamReceiver::drawLocal(std::int64_t unit, double& beyond, ReceivedUnit& re
   {
     all += share.mean;
   }
+  const double from = static_cast<double>(unit) * this->UnitLength;
+  const double open = this->openAt(unit);
   const double variance = this->Plan.darkVariance + this->Plan.varianceOfEnergy * all;
   double most = 0.0;
   for (const BeamAir::Share& share : shares)
@@ -172,13 +179,17 @@ void BeamReceiver::drawLocal(std::int64_t unit, double& beyond, ReceivedUnit& re
     const Medium& medium = this->Along->mediumAt(share.medium);
     const double ofDrops =
       share.drops > 0.0 ? share.mean * share.mean * medium.squareOfDrops / share.drops : 0.0;
-    double energy = share.mean;
-    if (this->Plan.active && ofDrops > DropsCount * variance)
+    double energy = open * share.mean;
+    if (medium.sharesGaps && this->Gaps.any())
+    {
+      energy = share.mean * this->Gaps.returnedBetween(from, from + this->UnitLength);
+    }
+    else if (this->Plan.active && ofDrops > DropsCount * variance)
     {
       const auto number = static_cast<std::uint64_t>(unit) +
         static_cast<std::uint64_t>(AirEcho::MostUnits) * share.medium;
       energy = std::max(0.0,
-        share.mean *
+        energy *
           (1.0 +
             dropsBeyondMean(
               this->Seed, this->Beam, number, this->Revolution, share.drops, medium)));
@@ -252,6 +263,12 @@ double BeamReceiver::noiseOf(std::int64_t unit, double light)
     throw WorkStopped();
   }
   return this->Noise.energy(unit, light);
+}
+
+/// Light of what stands in a unit or behind, over its mean, that leaves before it let through.
+double BeamReceiver::openAt(std::int64_t unit) const
+{
+  return this->Gaps.any() ? this->Gaps.openAt(this->centreOf(unit)) : 1.0;
 }
 
 double BeamReceiver::centreOf(std::int64_t unit) const

@@ -29,6 +29,7 @@
 
 #include "AirEcho.h"
 #include "BeamAir.h"
+#include "LeafGaps.h"
 #include "Noise.h"
 #include "PhotonReceiver.h"
 #include "RangeErrors.h"
@@ -149,6 +150,7 @@ private:
   void formReturns();
   void select();
   double rangeOfNoise(const Return& run) const;
+  double openAt(std::int64_t unit) const;
   double centreOf(std::int64_t unit) const;
 
   Sensor Instrument; ///< before the sky
@@ -164,6 +166,7 @@ private:
   std::int64_t AirLooked = 0; ///< units in which the air alone may be perceived
   std::uint64_t Beam = 0;
   BeamAir* Along = nullptr; ///< of that beam
+  LeafGaps Gaps;            ///< of it, if it is narrow
   std::int32_t Seed;
   std::int32_t Revolution;
   ReturnMode Mode;
