@@ -77,7 +77,7 @@ std::string vtkAvianLidarMedium::Description() const
     default:
       json["visibility"] = this->Visibility;
   }
-  if (this->RenewedShare != -1.0)
+  if (this->RenewedShare != -1.0 && this->Kind != KIND_HAZE && this->Kind != KIND_FOG)
   {
     json["renewed"] = this->RenewedShare;
   }

@@ -128,7 +128,7 @@ public:
   ///@{
   /**
    * Share of the drops or leaves that are others from scan to scan, 0 to 1; -1: as the kind has it
-   * (1 of drops and flakes, 0.3 of leaves, assumed). Default -1.
+   * (1 of drops and flakes, 0.3 of leaves, assumed). Haze and fog have none. Default -1.
    */
   vtkSetMacro(RenewedShare, double);
   vtkGetMacro(RenewedShare, double);

@@ -71,7 +71,7 @@ class Source(unittest.TestCase):
                                  ({"Top": -2000.0}, "top is -2000, expected above the bottom"),
                                  ({"Shape": 2, "Lengths": (0.0, 1.0, 1.0)}, "half an axis is 0"),
                                  ({"Kind": 5, "Shape": 0}, "for foliage"), ({"DisplaySize": 0.0}, "DisplaySize is 0"),
-                                 ({"RenewedShare": 2.0}, "renewed"), ({"Shape": 4}, "expected a closed surface")):
+                                 ({"Kind": 4, "RenewedShare": 2.0}, "renewed"), ({"Shape": 4}, "expected a closed surface")):
             with self.subTest(part):
                 source = vtkAvianLidarMedium()
                 errors = Messages(source).errors
@@ -80,6 +80,12 @@ class Source(unittest.TestCase):
                 source.Update()
                 self.assertIn(part, "".join(errors))
                 self.assertEqual(source.GetOutput().GetNumberOfCells(), 0)
+
+    def test_it_says_only_what_its_kind_and_shape_have(self):
+        for kind in range(7):
+            for shape in range(4 if kind != 5 else 1, 4):
+                said = medium(Kind=kind, Shape=shape, RenewedShare=0.5, Velocity=(1.0, 0.0, 0.0) if shape else (0.0, 0.0, 0.0))
+                self.assertGreater(said.GetNumberOfCells(), 0, (kind, shape))
 
     def test_an_open_surface_is_refused(self):
         source = vtkAvianLidarMedium()
@@ -232,8 +238,15 @@ class SceneFiles(unittest.TestCase):
             self.assertGreater(near[np.abs(near[:, 0] - 20) < 3][:, 2].max(), 10.1)
 
     def test_bad_ones_are_named(self):
+        fog = {"kind": "fog", "visibility": 5, "shape": "layer", "top": 3}
         for one, part in (({"medium": 3}, "objects[0].medium: must be an object"),
                           ({"medium": {"kind": "soup", "shape": "layer"}, "name": "x"}, "kind: must be haze, fog"),
+                          ({"medium": {**fog, "rain_rate": 3}}, "medium 'Medium', kind fog, shape layer: rain_rate: unknown key; known here: "
+                           "kind, shape, velocity, name, comment, visibility, bottom, top, softness"),
+                          ({"medium": {**fog, "center": [0, 0, 0]}}, "kind fog, shape layer: center: unknown key"),
+                          ({"medium": {**fog, "renewed": 0.5}}, "kind fog, shape layer: renewed: unknown key"),
+                          ({"medium": {**fog, "shape": "everywhere"}}, "shape everywhere: top: unknown key"),
+                          ({"medium": {**fog, "name": "x"}}, "objects[0].medium.name: stands in the medium, expected beside it"),
                           ({"ground": {"size": 5}, "medium": {"kind": "fog", "visibility": 5, "shape": "box"}}, "objects[0]"),
                           ({"name": "nothing"}, "objects[0]: must have one of file, footprints, ground, and only one, or a medium")):
             with self.subTest(part), tempfile.TemporaryDirectory() as folder, self.assertRaises(al.Error) as raised:
