@@ -27,7 +27,8 @@
  * Documentation/weather.md.
  *
  * **Bad values** are an error that names the key of the description, with empty output; setters
- * keep what they are given. An open surface is an error.
+ * keep what they are given. An open surface is an error. Each rank asks for all of the surface, as
+ * a piece of it is open.
  *
  * @sa vtkAvianLidarEchoFilter, vtkAvianLidarCoverage, vtkAvianLidarSceneReader
  */
@@ -224,6 +225,7 @@ protected:
   ~vtkAvianLidarMedium() override;
 
   int FillInputPortInformation(int port, vtkInformation* info) override;
+  int RequestUpdateExtent(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
   int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
 
   int Kind = KIND_FOG;
