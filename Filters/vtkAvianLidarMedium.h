@@ -204,7 +204,8 @@ public:
 
   ///@{
   /**
-   * Name of the medium, in messages, and of foliage among the objects. Default "medium".
+   * Name of the medium, in messages, and of foliage among the objects; empty: that of its block, as
+   * of any surface. Default "medium".
    */
   vtkSetMacro(Name, std::string);
   vtkGetMacro(Name, std::string);

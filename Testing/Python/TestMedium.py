@@ -42,7 +42,8 @@ def beams(sensor="Search905", **properties):
 
 def echoes(surfaces, source=None, **properties):
     scan = vtkAvianLidarEchoFilter()
-    scan.SetInputConnection(0, (source or beams()).GetOutputPort())
+    source = source or beams()  # a port does not keep its source
+    scan.SetInputConnection(0, source.GetOutputPort())
     scan.SetInputDataObject(1, surfaces)
     scan.SetAttenuationCoefficient(0)
     scan.NoiseOff()
@@ -151,6 +152,17 @@ class Echoes(unittest.TestCase):
             classes = seen.data.GetFieldData().GetAbstractArray("object_classes")
             self.assertEqual({classes.GetValue(int(i)) for i in ids}, {"vegetation"})
             self.assertTrue(((seen["distance_m"][~behind] > 96.5) & (seen["distance_m"][~behind] < 103.5)).all())
+
+    def test_trees_without_a_name_are_named_as_surfaces_are(self):
+        trees = [medium(Kind=5, Shape=2, Center=(0.0, 50.0 + 50 * k, 0.0), Lengths=(40.0, 1.0, 40.0), Name="") for k in range(3)]
+        blocks = group(wall(), *trees)
+        blocks.GetMetaData(1).Set(vtkMultiBlockDataSet.NAME(), "lime")
+        seen = echoes(blocks)
+        names = seen.data.GetFieldData().GetAbstractArray("object_names")
+        self.assertEqual([names.GetValue(i) for i in range(names.GetNumberOfValues())], ["wall", "lime", "block 2", "block 3"])
+        self.assertGreaterEqual(set(seen["object_id"]), {0, 1, 2, 3})
+        alone = echoes(trees[0]).data.GetFieldData().GetAbstractArray("object_names")
+        self.assertEqual([alone.GetValue(i) for i in range(alone.GetNumberOfValues())], ["object 0"])
 
     def test_a_shower_passes(self):
         shower = {"Kind": 3, "RainRate": 50.0, "Shape": 2, "Lengths": (40.0, 40.0, 200.0), "Velocity": (10.0, 0.0, 0.0)}
