@@ -126,6 +126,10 @@ class Echoes(unittest.TestCase):
         for name in ("energy_received", "distance_m", "object_id"):
             np.testing.assert_allclose(rain[name], weather[name], rtol=1e-13)
 
+    def test_snow_everywhere_has_no_colour(self):
+        clear, snow = (echoes(group(wall(), *media))["energy_received"].max() for media in ((), (medium(Kind=4, Visibility=2000.0, Shape=0),)))
+        self.assertAlmostEqual(snow / clear / math.exp(-2 * 3.912 / 2000 * WALL), 1, delta=1e-3)
+
     def test_a_tree_by_beer_and_lambert(self):
         clear = echoes(wall())["energy_received"].mean()
         ball = vtkSphereSource()
