@@ -13,6 +13,7 @@
 #include "vtkInformationVector.h"
 #include "vtkObjectFactory.h"
 #include "vtkPolyData.h"
+#include "vtkStreamingDemandDrivenPipeline.h"
 
 #include <stdexcept>
 
@@ -77,7 +78,7 @@ std::string vtkAvianLidarMedium::Description() const
     default:
       json["visibility"] = this->Visibility;
   }
-  if (this->RenewedShare != -1.0)
+  if (this->RenewedShare != -1.0 && this->Kind != KIND_HAZE && this->Kind != KIND_FOG)
   {
     json["renewed"] = this->RenewedShare;
   }
@@ -99,6 +100,18 @@ std::string vtkAvianLidarMedium::Description() const
     json["velocity"] = Triple(this->Velocity);
   }
   return json.dump();
+}
+
+//------------------------------------------------------------------------------
+int vtkAvianLidarMedium::RequestUpdateExtent(
+  vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector*)
+{
+  if (vtkInformation* input = inputVector[0]->GetInformationObject(0))
+  {
+    input->Set(vtkStreamingDemandDrivenPipeline::UPDATE_PIECE_NUMBER(), 0);
+    input->Set(vtkStreamingDemandDrivenPipeline::UPDATE_NUMBER_OF_PIECES(), 1);
+  }
+  return 1;
 }
 
 //------------------------------------------------------------------------------

@@ -27,7 +27,8 @@
  * Documentation/weather.md.
  *
  * **Bad values** are an error that names the key of the description, with empty output; setters
- * keep what they are given. An open surface is an error.
+ * keep what they are given. An open surface is an error. Each rank asks for all of the surface, as
+ * a piece of it is open.
  *
  * @sa vtkAvianLidarEchoFilter, vtkAvianLidarCoverage, vtkAvianLidarSceneReader
  */
@@ -128,7 +129,7 @@ public:
   ///@{
   /**
    * Share of the drops or leaves that are others from scan to scan, 0 to 1; -1: as the kind has it
-   * (1 of drops and flakes, 0.3 of leaves, assumed). Default -1.
+   * (1 of drops and flakes, 0.3 of leaves, assumed). Haze and fog have none. Default -1.
    */
   vtkSetMacro(RenewedShare, double);
   vtkGetMacro(RenewedShare, double);
@@ -203,7 +204,8 @@ public:
 
   ///@{
   /**
-   * Name of the medium, in messages, and of foliage among the objects. Default "medium".
+   * Name of the medium, in messages, and of foliage among the objects; empty: that of its block, as
+   * of any surface. Default "medium".
    */
   vtkSetMacro(Name, std::string);
   vtkGetMacro(Name, std::string);
@@ -224,6 +226,7 @@ protected:
   ~vtkAvianLidarMedium() override;
 
   int FillInputPortInformation(int port, vtkInformation* info) override;
+  int RequestUpdateExtent(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
   int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
 
   int Kind = KIND_FOG;

@@ -275,6 +275,10 @@ std::string ParseMedium(const JsonNode& node, bool hasSurface)
   {
     node.Fail("must be an object with kind, what says how much of it there is, and a shape");
   }
+  if (text.contains("name"))
+  {
+    node.Get("name").Fail("stands in the medium, expected beside it");
+  }
   if (hasSurface && text.contains("shape"))
   {
     node.Get("shape").Fail("stands beside a file or footprints, whose surface is the shape");

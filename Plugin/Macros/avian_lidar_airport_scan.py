@@ -30,7 +30,7 @@ DISTANCE = 0.1
 # What a scan is made of.
 SENSORS = ("AvianLidarAirport16", "AvianLidarAirport32", "AvianLidarCorridorC16", "AvianLidarSearch905",
            "AvianLidarSearch1550", "AvianLidarAutomotive16")
-PARTS = ("AvianLidarCollisionTree", "AvianLidarMedium", "AvianLidarTracks", *SENSORS)
+PARTS = ("AvianLidarCollisionTree", "AvianLidarMedium", "AvianLidarMediumInSurface", "AvianLidarTracks", *SENSORS)
 RESULTS = ("AvianLidarEchoFilter", "AvianLidarCoverage")
 # What shows some of a result.
 SOME = ("Threshold", "Cut", "Contour")

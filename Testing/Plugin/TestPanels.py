@@ -35,7 +35,9 @@ FIRST_SHOWN = {
     "AvianLidarSearch1550": PHOTON_SOURCE,
     "AvianLidarAutomotive16": PHOTON_SOURCE,
     "AvianLidarBirdSource": "Species Reflectance WingPhase Gliding Position Heading Bank",
-    "AvianLidarMedium": "Kind Name MeteorologicalVisibility RainRate LeafAreaDensity Extinction BackscatterRatio Shape Bottom Top Softness Center Lengths Heading",
+    "AvianLidarMedium": "Kind Name MeteorologicalVisibility Shape Bottom Top Softness",
+    "AvianLidarMediumShower": "Kind Name RainRate Shape Center Lengths Heading",
+    "AvianLidarMediumInSurface": "Kind Name MeteorologicalVisibility",
     "AvianLidarTracks": "Pattern Species NumberOfBirds Reflectance TimeRange Center Radius Heights",
     "AvianLidarTracksApproach": """Pattern Species NumberOfBirds Reflectance TimeRange Radius ThresholdPosition
         ThresholdHeading""",

@@ -77,6 +77,19 @@ def test_material(scene, beams, echoes):
     assert set(fetch(echoes)["material_id"]) != {0}
 
 
+def test_medium_in_a_surface():
+    """A cube is the box of the source."""
+    beams = simple.AvianLidarSearch905(AzimuthStep=10)
+    cube = simple.Box(XLength=60, YLength=60, ZLength=60, Center=[0, 100, 0])
+    leaves = {"Kind": "Foliage", "LeafAreaDensity": 0.2, "Name": "wood"}
+    inside = simple.AvianLidarMediumInSurface(Input=cube, **leaves)
+    box = simple.AvianLidarMedium(Shape="Box", Lengths=[60, 60, 60], Center=[0, 100, 0], **leaves)
+    found, expected = (simple.AvianLidarEchoFilter(Beams=beams, Surfaces=simple.GroupDatasets(Input=[medium, simple.Plane()]), Noise=0)
+                       for medium in (inside, box))
+    assert len(fetch(expected)["energy"]) > 10
+    assert numpy.allclose(fetch(found)["energy"], fetch(expected)["energy"], rtol=1e-6)
+
+
 def test_colours(echoes):
     """Eq. 13 on every echo."""
     coloured = fetch(simple.AvianLidarHSBColorMap(Input=echoes))
@@ -145,6 +158,7 @@ def main():
     test_multiblock_goes_in_whole(scene, beams, echoes)
     test_moved_beams(tree, echoes)
     test_material(scene, beams, echoes)
+    test_medium_in_a_surface()
     test_colours(echoes)
     test_range_image(beams, echoes)
     test_geodetic(echoes)

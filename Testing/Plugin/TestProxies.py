@@ -71,6 +71,25 @@ BEAM_SOURCE = {
 }
 # What an execution leaves for scripts, and the unit in the tooltip.
 RESULTS = {"result in metres": "metres", "result, a count": "count", "result, a pure number": ""}
+MEDIUM = {
+    "Kind": "",
+    "MeteorologicalVisibility": "metres",
+    "RainRate": "millimetres",
+    "LeafAreaDensity": "square metres",
+    "Extinction": "1/m",
+    "BackscatterRatio": "sr",
+    "RenewedShare": "",
+    "Shape": "",
+    "Bottom": "metres",
+    "Top": "metres",
+    "Softness": "metres",
+    "Center": "metres",
+    "Lengths": "metres",
+    "Heading": "degrees",
+    "Velocity": "m/s",
+    "Name": "",
+    "DisplaySize": "metres",
+}
 CONTRACT = {
     "AvianLidarBeamSource": BEAM_SOURCE,
     "AvianLidarAirport16": BEAM_SOURCE,
@@ -90,25 +109,8 @@ CONTRACT = {
         "Reflectance": "",
         "ObjectId": "",
     },
-    "AvianLidarMedium": {
-        "Kind": "",
-        "MeteorologicalVisibility": "metres",
-        "RainRate": "millimetres",
-        "LeafAreaDensity": "square metres",
-        "Extinction": "1/m",
-        "BackscatterRatio": "sr",
-        "RenewedShare": "",
-        "Shape": "",
-        "Bottom": "metres",
-        "Top": "metres",
-        "Softness": "metres",
-        "Center": "metres",
-        "Lengths": "metres",
-        "Heading": "degrees",
-        "Velocity": "m/s",
-        "Name": "",
-        "DisplaySize": "metres",
-    },
+    "AvianLidarMedium": MEDIUM,
+    "AvianLidarMediumInSurface": {"Input": None, **MEDIUM},
     "AvianLidarTracks": {
         "Lines": None,
         "Pattern": "",
@@ -332,6 +334,10 @@ def cxx_object(name):
     if name in PRESETS:
         instance = module.vtkAvianLidarBeamSource()
         getattr(instance, PRESETS[name])()
+        return instance
+    if name == "AvianLidarMediumInSurface":
+        instance = module.vtkAvianLidarMedium()
+        instance.SetShapeToSurface()
         return instance
     return getattr(module, "vtk" + name)()
 

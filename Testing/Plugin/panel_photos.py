@@ -17,6 +17,7 @@ SENSOR = os.path.join(os.environ["AVIANLIDAR_SOURCE_DIR"], "Filters", "Sensors",
 TEXT = "Greatest wavelength"
 WRITERS = {"las": "LAS", "pcd": "PCD", "ply": "PLY", "bin": "KITTI", "geojson": "GeoJSON"}
 VARIANTS = {
+    "AvianLidarMedium": ("Shower", {"Kind": "Rain", "Shape": "Ellipsoid"}),
     "AvianLidarMaterial": ("Custom", {"Material": "Custom"}),
     "AvianLidarEchoFilter": ("Standard", {"Preset": "Standard"}),
     "AvianLidarGeodeticTransform": ("Moved", {"MovePoints": 1, "UseFieldDataOrigin": 0, "Origin": [31.2, 121.3, 5]}),
@@ -60,6 +61,8 @@ class Pipeline:
     def inputs(self, name):
         if name in ("AvianLidarMaterial", "AvianLidarCollisionTree"):
             return {"Input": self.scene}
+        if name == "AvianLidarMediumInSurface":
+            return {"Input": simple.Sphere()}
         ports = {"Beams": self.beams, "Surfaces": self.scene, "Echoes": self.echoes}
         ports.update(Input=self.echoes, Simulated=self.other, Reference=self.echoes)
         prototype = servermanager.ProxyManager().GetPrototypeProxy("filters", name)

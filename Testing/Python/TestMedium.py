@@ -42,7 +42,8 @@ def beams(sensor="Search905", **properties):
 
 def echoes(surfaces, source=None, **properties):
     scan = vtkAvianLidarEchoFilter()
-    scan.SetInputConnection(0, (source or beams()).GetOutputPort())
+    source = source or beams()  # a port does not keep its source
+    scan.SetInputConnection(0, source.GetOutputPort())
     scan.SetInputDataObject(1, surfaces)
     scan.SetAttenuationCoefficient(0)
     scan.NoiseOff()
@@ -71,7 +72,7 @@ class Source(unittest.TestCase):
                                  ({"Top": -2000.0}, "top is -2000, expected above the bottom"),
                                  ({"Shape": 2, "Lengths": (0.0, 1.0, 1.0)}, "half an axis is 0"),
                                  ({"Kind": 5, "Shape": 0}, "for foliage"), ({"DisplaySize": 0.0}, "DisplaySize is 0"),
-                                 ({"RenewedShare": 2.0}, "renewed"), ({"Shape": 4}, "expected a closed surface")):
+                                 ({"Kind": 4, "RenewedShare": 2.0}, "renewed"), ({"Shape": 4}, "expected a closed surface")):
             with self.subTest(part):
                 source = vtkAvianLidarMedium()
                 errors = Messages(source).errors
@@ -80,6 +81,12 @@ class Source(unittest.TestCase):
                 source.Update()
                 self.assertIn(part, "".join(errors))
                 self.assertEqual(source.GetOutput().GetNumberOfCells(), 0)
+
+    def test_it_says_only_what_its_kind_and_shape_have(self):
+        for kind in range(7):
+            for shape in range(4 if kind != 5 else 1, 4):
+                said = medium(Kind=kind, Shape=shape, RenewedShare=0.5, Velocity=(1.0, 0.0, 0.0) if shape else (0.0, 0.0, 0.0))
+                self.assertGreater(said.GetNumberOfCells(), 0, (kind, shape))
 
     def test_an_open_surface_is_refused(self):
         source = vtkAvianLidarMedium()
@@ -119,6 +126,10 @@ class Echoes(unittest.TestCase):
         for name in ("energy_received", "distance_m", "object_id"):
             np.testing.assert_allclose(rain[name], weather[name], rtol=1e-13)
 
+    def test_snow_everywhere_has_no_colour(self):
+        clear, snow = (echoes(group(wall(), *media))["energy_received"].max() for media in ((), (medium(Kind=4, Visibility=2000.0, Shape=0),)))
+        self.assertAlmostEqual(snow / clear / math.exp(-2 * 3.912 / 2000 * WALL), 1, delta=1e-3)
+
     def test_a_tree_by_beer_and_lambert(self):
         clear = echoes(wall())["energy_received"].mean()
         ball = vtkSphereSource()
@@ -145,6 +156,17 @@ class Echoes(unittest.TestCase):
             classes = seen.data.GetFieldData().GetAbstractArray("object_classes")
             self.assertEqual({classes.GetValue(int(i)) for i in ids}, {"vegetation"})
             self.assertTrue(((seen["distance_m"][~behind] > 96.5) & (seen["distance_m"][~behind] < 103.5)).all())
+
+    def test_trees_without_a_name_are_named_as_surfaces_are(self):
+        trees = [medium(Kind=5, Shape=2, Center=(0.0, 50.0 + 50 * k, 0.0), Lengths=(40.0, 1.0, 40.0), Name="") for k in range(3)]
+        blocks = group(wall(), *trees)
+        blocks.GetMetaData(1).Set(vtkMultiBlockDataSet.NAME(), "lime")
+        seen = echoes(blocks)
+        names = seen.data.GetFieldData().GetAbstractArray("object_names")
+        self.assertEqual([names.GetValue(i) for i in range(names.GetNumberOfValues())], ["wall", "lime", "block 2", "block 3"])
+        self.assertGreaterEqual(set(seen["object_id"]), {0, 1, 2, 3})
+        alone = echoes(trees[0]).data.GetFieldData().GetAbstractArray("object_names")
+        self.assertEqual([alone.GetValue(i) for i in range(alone.GetNumberOfValues())], ["object 0"])
 
     def test_a_shower_passes(self):
         shower = {"Kind": 3, "RainRate": 50.0, "Shape": 2, "Lengths": (40.0, 40.0, 200.0), "Velocity": (10.0, 0.0, 0.0)}
@@ -232,8 +254,15 @@ class SceneFiles(unittest.TestCase):
             self.assertGreater(near[np.abs(near[:, 0] - 20) < 3][:, 2].max(), 10.1)
 
     def test_bad_ones_are_named(self):
+        fog = {"kind": "fog", "visibility": 5, "shape": "layer", "top": 3}
         for one, part in (({"medium": 3}, "objects[0].medium: must be an object"),
                           ({"medium": {"kind": "soup", "shape": "layer"}, "name": "x"}, "kind: must be haze, fog"),
+                          ({"medium": {**fog, "rain_rate": 3}}, "medium 'Medium', kind fog, shape layer: rain_rate: unknown key; known here: "
+                           "kind, shape, velocity, name, comment, visibility, bottom, top, softness"),
+                          ({"medium": {**fog, "center": [0, 0, 0]}}, "kind fog, shape layer: center: unknown key"),
+                          ({"medium": {**fog, "renewed": 0.5}}, "kind fog, shape layer: renewed: unknown key"),
+                          ({"medium": {**fog, "shape": "everywhere"}}, "shape everywhere: top: unknown key"),
+                          ({"medium": {**fog, "name": "x"}}, "objects[0].medium.name: stands in the medium, expected beside it"),
                           ({"ground": {"size": 5}, "medium": {"kind": "fog", "visibility": 5, "shape": "box"}}, "objects[0]"),
                           ({"name": "nothing"}, "objects[0]: must have one of file, footprints, ground, and only one, or a medium")):
             with self.subTest(part), tempfile.TemporaryDirectory() as folder, self.assertRaises(al.Error) as raised:

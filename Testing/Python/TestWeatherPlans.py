@@ -308,6 +308,37 @@ class Sequences(unittest.TestCase):
         self.assertLessEqual(set(statuses["air"]), {"seen", "missed"})
         self.assertIn(f"| air | {len(statuses['air'])} |", (self.home / "fog" / "datasheet.md").read_text())
 
+    def test_media_of_the_scene_are_air_but_crowns_are_things(self):
+        fog = {"name": "fog", "medium": {"kind": "fog", "visibility": 400, "shape": "everywhere"}}
+        wood = {"name": "wood", "medium": {"kind": "foliage", "leaf_area_density": 2, "shape": "box", "center": [-60, 0, 0],
+                                           "lengths": [8, 1200, 200]}}
+        found = {}
+        for name, media in (("foggy", [fog]), ("woody", [wood]), ("both", [fog, wood])):
+            scene = {**HOUSE, "objects": [*HOUSE["objects"], *media]}
+            (self.home / f"{name}.lidarscene.json").write_text(json.dumps(scene), encoding="utf-8")
+            file = self.scenario(name, scene=f"{name}.lidarscene.json")
+            self.assertEqual(main(["sequence", str(file), "-o", str(self.home / name)]), 0)
+            found[name] = rows_of(self.home / name)
+        found.update({name: rows_of(self.home / name) for name in ("clear", "fog")})
+        for here, there in zip(found["foggy"], found["fog"]):  # fog of the scene is that of the scenario
+            self.assertEqual((here["status"], here["clear_probability"]), (there["status"], there["clear_probability"]))
+        behind = {status: 0 for status in ("hidden", "air")}
+        for clear, fog, wood, both in zip(*(found[name] for name in ("clear", "fog", "woody", "both"))):
+            self.assertEqual(wood["clear_probability"], "")
+            self.assertEqual(both["clear_probability"], wood["expected_probability"] if both["status"] != "absent" else "")
+            if wood["status"] == "hidden" and clear["status"] != "hidden":
+                behind["hidden"] += 1
+                self.assertGreaterEqual(float(clear["expected_probability"]), 0.1)
+                self.assertLess(float(wood["expected_probability"]), 0.1)
+                self.assertLess(float(clear["x_m"]), 0)
+                self.assertEqual(both["status"], "hidden")
+            elif both["status"] == "air":
+                behind["air"] += 1
+                self.assertIn(wood["status"], ("seen", "missed"))
+            if wood["status"] == "too weak":
+                self.assertLess(float(clear["expected_probability"]), 0.1)
+        self.assertGreater(min(behind.values()), 5, behind)
+
     def test_weather_belongs_to_what_a_folder_is_made_of(self):
         before = labels_of(self.home / "fog")
         times = {path: path.stat().st_mtime_ns for path in (self.home / "fog").rglob("*.bin")}

@@ -77,9 +77,72 @@ Medium SnowOf(double visibility)
     extinction / (2.0 * NumberOf("snow", "flake_area")) };
 }
 
+/// A kind or a shape, with the keys that say more of it.
+struct Word
+{
+  std::string name;
+  std::vector<const char*> keys;
+};
+
+const Word& WordOf(const JsonNode& node, const std::vector<Word>& all, const char* problem)
+{
+  const std::string name = node.String();
+  const auto found =
+    std::find_if(all.begin(), all.end(), [&](const Word& word) { return word.name == name; });
+  if (found == all.end())
+  {
+    node.Fail(problem);
+  }
+  return *found;
+}
+
+const Word& KindOf(const JsonNode& node)
+{
+  static const std::vector<Word> all = { { "haze", { "visibility" } }, { "fog", { "visibility" } },
+    { "drizzle", { "rain_rate", "renewed" } }, { "rain", { "rain_rate", "renewed" } },
+    { "snow", { "visibility", "renewed" } },
+    { "foliage", { "leaf_area_density", "renewed", "object_id" } },
+    { "custom", { "extinction", "backscatter_ratio", "drops", "renewed" } } };
+  return WordOf(node.Get("kind"), all, "must be haze, fog, drizzle, rain, snow, foliage or custom");
+}
+
+/// @return in the order of avianlidar::MediumShape
+const std::vector<Word>& Shapes()
+{
+  static const std::vector<Word> all = { { "everywhere", {} },
+    { "layer", { "bottom", "top", "softness" } }, { "box", { "center", "lengths", "heading" } },
+    { "ellipsoid", { "center", "lengths", "heading" } }, { "surface", { "points", "triangles" } } };
+  return all;
+}
+
+const Word& ShapeOf(const JsonNode& node)
+{
+  return WordOf(
+    node.Get("shape"), Shapes(), "must be everywhere, layer, box, ellipsoid or surface");
+}
+
+/// Throws where a key says nothing of this kind and shape.
+void CheckKeys(const Json& json, const std::string& file)
+{
+  const JsonNode node(json, "", file);
+  const Word& kind = KindOf(node);
+  const Word& shape = ShapeOf(node);
+  std::vector<const char*> keys = { "kind", "shape", "velocity", "name", "comment" };
+  keys.insert(keys.end(), kind.keys.begin(), kind.keys.end());
+  if (node.Has("ellipsoids"))
+  {
+    keys.push_back("ellipsoids");
+  }
+  else
+  {
+    keys.insert(keys.end(), shape.keys.begin(), shape.keys.end());
+  }
+  JsonNode(json, "", file + ", kind " + kind.name + ", shape " + shape.name).RequireKeys(keys);
+}
+
 Medium MediumOf(const JsonNode& node, double wavelength)
 {
-  const std::string kind = node.Get("kind").String();
+  const std::string kind = KindOf(node).name;
   if (kind == "custom")
   {
     Medium medium{ node.Get("extinction").NumberIn(0.0, 1e30),
@@ -103,10 +166,6 @@ Medium MediumOf(const JsonNode& node, double wavelength)
       NumberOf(kind, "backscatter_ratio"), NumberOf(kind, "drops_per_volume"),
       NumberOf(kind, "slope"));
   }
-  if (kind != "foliage")
-  {
-    node.Get("kind").Fail("must be haze, fog, drizzle, rain, snow, foliage or custom");
-  }
   return FoliageOf(node.Get("leaf_area_density").NumberIn(1e-6, 1e3));
 }
 
@@ -123,22 +182,6 @@ Vec3 VectorOf(const JsonNode& node, const char* key, const Vec3& otherwise)
 double NumberOr(const JsonNode& node, const char* key, double otherwise)
 {
   return node.Has(key) ? node.Get(key).Number() : otherwise;
-}
-
-MediumShape ShapeOf(const JsonNode& node)
-{
-  const std::string shape = node.Get("shape").String();
-  const std::pair<const char*, MediumShape> shapes[] = { { "everywhere", MediumShape::Everywhere },
-    { "layer", MediumShape::Layer }, { "box", MediumShape::Box },
-    { "ellipsoid", MediumShape::Ellipsoid }, { "surface", MediumShape::Surface } };
-  for (const auto& [name, value] : shapes)
-  {
-    if (shape == name)
-    {
-      return value;
-    }
-  }
-  node.Get("shape").Fail("must be everywhere, layer, box, ellipsoid or surface");
 }
 
 /// The closed surface of the text, and the box about it.
@@ -182,7 +225,7 @@ void ReadSurface(const JsonNode& node, MediumVolume& volume)
 MediumVolume VolumeOf(const JsonNode& node)
 {
   MediumVolume volume;
-  volume.shape = ShapeOf(node);
+  volume.shape = static_cast<MediumShape>(&ShapeOf(node) - Shapes().data());
   volume.centre = VectorOf(node, "center", volume.centre);
   volume.velocity = VectorOf(node, "velocity", volume.velocity);
   volume.bottom = NumberOr(node, "bottom", volume.bottom);
@@ -236,10 +279,7 @@ std::vector<avianlidar::PlacedMedium> vtkAvianLidarMedia::Read(
   const Json json = ParsedText(text, "medium");
   const std::string file = "medium '" + json.value("name", std::string()) + "'";
   const JsonNode node(json, "", file);
-  node.RequireKeys(
-    { "kind", "visibility", "rain_rate", "leaf_area_density", "extinction", "backscatter_ratio",
-      "drops", "renewed", "name", "object_id", "shape", "center", "lengths", "heading", "bottom",
-      "top", "softness", "velocity", "points", "triangles", "ellipsoids", "comment" });
+  CheckKeys(json, file);
   Medium medium = MediumOf(node, wavelength);
   if (node.Has("renewed"))
   {
@@ -265,6 +305,7 @@ std::vector<avianlidar::PlacedMedium> vtkAvianLidarMedia::Read(
       MediumVolume volume;
       volume.shape = MediumShape::Ellipsoid;
       volume.centre = Vec3(n[0].Number(), n[1].Number(), n[2].Number());
+      volume.velocity = VectorOf(node, "velocity", volume.velocity);
       const double across = 0.5 * n[3].PositiveNumber();
       volume.halfAxes = { Vec3(across, 0.0, 0.0), Vec3(0.0, across, 0.0),
         Vec3(0.0, 0.0, 0.5 * n[4].PositiveNumber()) };

@@ -126,7 +126,7 @@ int vtkAvianLidarSurfaceIds::AddMedium(const std::string& name, int wanted)
     wanted >= 0 && wanted <= most && (place >= count || this->ObjectNames[place].empty());
   const int id = this->KeepObjectIds && isFree ? wanted : static_cast<int>(count);
   this->ObjectNames.resize(std::max(this->ObjectNames.size(), static_cast<std::size_t>(id) + 1));
-  this->ObjectNames[id] = name;
+  this->ObjectNames[id] = name.empty() ? "object " + std::to_string(id) : name;
   this->ObjectClasses.resize(this->ObjectNames.size());
   this->ObjectClasses[id] = "vegetation";
   return id;

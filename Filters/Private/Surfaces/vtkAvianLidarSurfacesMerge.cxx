@@ -138,8 +138,10 @@ private:
         {
           auto* names = vtkStringArray::SafeDownCast(
             leaf.data->GetFieldData()->GetAbstractArray(vtkAvianLidarArrays::ObjectNames.name));
+          const bool isNamed =
+            names && names->GetNumberOfValues() == 1 && !names->GetValue(0).empty();
           this->AddMedium(vtkAvianLidarMedia::WithObject(
-            own, names && names->GetNumberOfValues() == 1 ? names->GetValue(0) : leaf.name, -1));
+            own, isNamed ? std::string(names->GetValue(0)) : leaf.name, -1));
         }
         auto* others = vtkStringArray::SafeDownCast(
           leaf.data->GetFieldData()->GetAbstractArray(vtkAvianLidarArrays::Media.name));

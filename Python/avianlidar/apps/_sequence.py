@@ -2,7 +2,9 @@
 """Labelled sequences of scans with birds, to train and to test on."""
 from __future__ import annotations
 
+import contextlib
 import csv
+import functools
 import hashlib
 import io
 import json
@@ -179,10 +181,15 @@ class Sequence:
         with naming(f"{self.file}: scan"):
             self.scan = Scan(self.scene, self.sensor, **settings)
         self.scan.set(report_movers=True)
-        self.clear: Optional[Scan] = None  # the same without weather, where air scatters
-        if self.scan.rain_rate > 0.0 or (self.scan.air_backscatter and self.scan.visibility > 0.0):
-            self.clear = Scan(self.scene, self.sensor, **settings)
-            self.clear.set(report_movers=True, noise=False, visibility=0.0, air_backscatter=False, rain_rate=0.0)
+        media = field_values(self.scene.tree.GetOutput()).get("media", ())
+        crowns = [text for text in media if json.loads(text)["kind"] == "foliage"]
+        self.clear = self.bare = self.scan  # without air that scatters; without crowns of trees, too
+        others = dict(settings)
+        if self.scan.rain_rate > 0.0 or (self.scan.air_backscatter and self.scan.visibility > 0.0) or len(crowns) < len(media):
+            others.update(visibility=0.0, air_backscatter=False, rain_rate=0.0)
+            self.clear = self.bare = self._in_media(crowns, others)
+        if crowns:
+            self.bare = self._in_media([], others)
         self._flights(0)  # what is wrong with birds and objects is said before the work
         self._objects(0)
         # Where clutter is, without what differs from scan to scan.
@@ -192,6 +199,18 @@ class Sequence:
         with naming(f"{self.file}: scan"):
             self._still = Scan(self.scene, self.at_rest, **settings)
             self._look_at_rest()
+
+    def _in_media(self, media: List[str], settings: Dict[str, Any]) -> Scan:
+        """A scan to compare with, of the surfaces of the scene with other media."""
+        scan = Scan(self.scene, self.sensor, **settings)
+        scan.set(report_movers=True, noise=False)
+        surfaces = vtkPolyData()
+        surfaces.ShallowCopy(self.scene.tree.GetOutput())
+        surfaces.SetFieldData(vtkFieldData())
+        surfaces.GetFieldData().PassData(self.scene.tree.GetOutput().GetFieldData())
+        _set(surfaces.GetFieldData(), "media", media)
+        scan.algorithm.SetSurfacesData(surfaces)
+        return scan
 
     def _look_at_rest(self) -> None:
         self.clutter = Clutter(self._still, float(self.scenario.get("near_clutter_distance", 15.0)))
@@ -293,16 +312,17 @@ class Sequence:
         blocks = vtkMultiBlockDataSet()
         for k, block in enumerate(birds + self._objects(number)):
             blocks.SetBlock(k, block)
-        for scan in filter(None, (self.scan, self.clear)):
+        others = [scan for scan in dict.fromkeys((self.clear, self.bare)) if scan is not self.scan]
+        for scan in (self.scan, *others):
             scan.movers = blocks
         algorithm, rate = self.scan.algorithm, self.sensor.rotation_rate
         differ = self.sensor.algorithm.GetNumberOfPrisms() > 0  # beams, from scan to scan
-        clear = (self.clear or self.scan).algorithm
-        with Updates(algorithm) as again, Updates(self._still.algorithm) as look, Updates(clear) as compare:
+        with Updates(algorithm) as again, Updates(self._still.algorithm) as look, contextlib.ExitStack() as stack:
+            compare = [(stack.enter_context(Updates(scan.algorithm)), scan.algorithm.UpdateTimeStep) for scan in others]
             for k in self.span(number):
                 again(lambda: algorithm.UpdateTimeStep(k / rate))
-                if self.clear:
-                    compare(lambda: clear.UpdateTimeStep(k / rate))
+                for run, step in compare:
+                    run(functools.partial(step, k / rate))
                 if differ:
                     look(lambda: self._still.algorithm.UpdateTimeStep(k / rate))
                     self._look_at_rest()
@@ -315,8 +335,8 @@ class Sequence:
         rows = {bird: [k, bird, name, "absent", ""] + [""] * 8 + [0, "", "", "", 0] + [""] * 10 + [*weather, ""] for bird, name in species.items()}
         if report.number_of_points == 0:
             return list(rows.values())
-        clear = Cloud(self.clear.algorithm.GetOutput(2)) if self.clear else report
-        without = {bird: both for bird, *both in zip(clear["object_id"], clear["energy_received"], clear["detection_probability"])}
+        without, bare = ({bird: both for bird, *both in zip(found["object_id"], found["energy_received"], found["detection_probability"])}
+                         for found in (Cloud(scan.algorithm.GetOutput(2)) for scan in (self.clear, self.bare)))
         places = np.array(report.points)
         columns = {name: np.array(report[name]) for name in report}
         distance, subset = self.clutter.look(columns["beam_id"], columns["distance_m"])
@@ -332,7 +352,8 @@ class Sequence:
             beyond = columns["distance_m"][i] > self.sensor.range_gate or (beams == 0 and light == 0)
             static = self.clutter.energy(columns["beam_id"][i])
             status = ("seen" if points else "outside" if beyond else "hidden" if light == 0 else
-                      "missed" if probability >= WEAK else "air" if chance >= WEAK else "too weak")
+                      "missed" if probability >= WEAK else "air" if chance >= WEAK else
+                      "hidden" if bare.get(bird, (0.0, chance))[1] >= WEAK else "too weak")
             rows[bird] = [k, bird, species[bird], status, SUBSETS[subset[i]] if status != "outside" else "",
                           f"{1e-6 * columns['timestamp'][i]:.6f}", *(f"{x:.4f}" for x in places[i]),
                           f"{columns['distance_m'][i]:.4f}", f"{columns['azimuth'][i] / 100:.4f}",
@@ -342,7 +363,7 @@ class Sequence:
                           f"{static / (static + energy):.4f}" if static + energy > 0 else "",
                           *(text for when in ("first", "last") for text in
                             (f"{1e-6 * columns[when + '_timestamp'][i]:.6f}", *(f"{x:.4f}" for x in columns[when + "_position"][i]))),
-                          *weather, f"{chance:.6g}" if self.clear else ""]
+                          *weather, f"{chance:.6g}" if self.clear is not self.scan else ""]
         return list(rows.values())
 
     def _write_one(self, folder: pathlib.Path, number: int, progress: Optional[Progress]) -> Dict[str, Any]:
