@@ -10,9 +10,10 @@
  * left, over their mean. Beams of many parts are not divided: drops of that number stand for them
  * (AirEcho.h).
  *
- * Source: the Boolean model of leaves at random places; T. Nilson, Agricultural Meteorology 8,
- * 1971. Differs: the paper has no leaves. Valid: A is taken where the beam meets its first leaves.
- * Means are those of the law without noise. Test: TestBeamAir.cxx.
+ * Source: the Boolean model of leaves at random places (Nilson, Agricultural Meteorology 8, 1971).
+ * Differs: the paper has no leaves.
+ * Valid: A is taken where the beam meets its first leaves. Means are those of the law.
+ * Test: TestBeamAir.cxx.
  */
 #ifndef avianlidar_LeafGaps_h
 #define avianlidar_LeafGaps_h
