@@ -13,11 +13,11 @@
  * SensorPosition), `half_beamwidth` (rad; wins over HalfBeamwidth).
  *
  * **Time** of a cloud, s: DATA_TIME_STEP of the input; else field data `TimeValue`; else that of
- * the cloud before and 1. A cloud of the same time as the last one replaces it, with the settings
- * of now: nothing is counted twice. A cloud of an earlier time empties the memory, with a warning.
- * Clouds are whole scans: a track without a cluster in a cloud was missed. Timestamps that do not
- * lie after all of the cloud before (steps of a sweep, timestamps that begin anew in each cloud)
- * are not used, with a warning.
+ * the cloud before and 1, unless the data are the same, not modified since. A cloud of the same
+ * time as the last one replaces it, with the settings of now: nothing is counted twice. A cloud of
+ * an earlier time empties the memory, with a warning. Clouds are whole scans: a track without a
+ * cluster in a cloud was missed. Timestamps that do not lie after all of the cloud before (steps of
+ * a sweep, timestamps that begin anew in each cloud) are not used, with a warning.
  *
  * **Output port 0** (vtkPolyData), the tracks: a polyline for each through its positions as
  * estimated, a vertex for one with a single position; first the tracks of one position, then the
@@ -72,8 +72,10 @@
 #include "vtkPolyDataAlgorithm.h"
 
 #include <memory> // For std::unique_ptr
+#include <string> // For messages
 
 class vtkMultiProcessController;
+class vtkPolyData;
 
 class VTKAVIANLIDAR_EXPORT vtkAvianLidarTracker : public vtkPolyDataAlgorithm
 {
@@ -142,7 +144,7 @@ public:
 
   ///@{
   /**
-   * How birds move between scans. Default MOTION_CONSTANT_VELOCITY.
+   * How birds move between scans. Default MOTION_COORDINATED_TURN.
    */
   vtkSetMacro(MotionModel, int);
   vtkGetMacro(MotionModel, int);
@@ -153,7 +155,7 @@ public:
   ///@{
   /**
    * Power spectral density of the acceleration, m2/s3: within t s each component of the velocity
-   * changes by the root of this times t, rms. 0 to 1e6; default 2.
+   * changes by the root of this times t, rms. 0 to 1e6; default 10.
    */
   vtkSetMacro(AccelerationDensity, double);
   vtkGetMacro(AccelerationDensity, double);
@@ -161,7 +163,7 @@ public:
 
   ///@{
   /**
-   * The same of the turn rate, deg2/s3, of MOTION_COORDINATED_TURN. 0 to 1e6; default 10.
+   * The same of the turn rate, deg2/s3, of MOTION_COORDINATED_TURN. 0 to 1e6; default 40.
    */
   vtkSetMacro(TurnRateDensity, double);
   vtkGetMacro(TurnRateDensity, double);
@@ -276,9 +278,9 @@ protected:
   double HalfBeamwidth = 0.0056;
   double TargetExtent = 0.2;
   double SensorPosition[3] = { 0.0, 0.0, 0.0 };
-  int MotionModel = MOTION_CONSTANT_VELOCITY;
-  double AccelerationDensity = 2.0;
-  double TurnRateDensity = 10.0;
+  int MotionModel = MOTION_COORDINATED_TURN;
+  double AccelerationDensity = 10.0;
+  double TurnRateDensity = 40.0;
   double MaximumSpeed = 25.0;
   double MaximumClimbRate = 5.0;
   double MaximumTurnRate = 40.0;
@@ -294,6 +296,10 @@ protected:
 private:
   vtkAvianLidarTracker(const vtkAvianLidarTracker&) = delete;
   void operator=(const vtkAvianLidarTracker&) = delete;
+
+  std::string CheckSettings() const;
+  void FillOutputs(bool hasTracks, vtkPolyData* input, const int* trackOfPoint,
+    vtkInformationVector* outputVector) const;
 
   struct vtkInternals;
   std::unique_ptr<vtkInternals> Internals;
