@@ -38,7 +38,7 @@ auto contentOf(const CloudPoint& point)
     point.position.x, point.position.y, point.position.z, point.time, point.rangeError);
 }
 
-/// The places of sorted values. @param order by content
+/// Where the values are, sorted by content.
 template <class T, class Content>
 std::vector<std::size_t> orderOf(const std::vector<T>& values, Content content)
 {
@@ -134,7 +134,7 @@ private:
   std::unordered_map<Cell, std::vector<std::size_t>, CellHash> Cells;
 };
 
-/// Sums in the order of the members: so that rounding is the same.
+/// Members come in an order that their content decides, so rounding is the same.
 Cluster meanOf(const std::vector<CloudPoint>& points, const std::vector<std::size_t>& members)
 {
   const CloudPoint& first = points[members[0]];
@@ -181,7 +181,6 @@ Clusters findClusters(
       clusterOf[members[next]] = found.size();
       grid.take(members[next], members);
     }
-    std::sort(members.begin(), members.end());
     found.push_back(meanOf(sorted, members));
   }
   const std::vector<std::size_t> order = orderOf(found,
