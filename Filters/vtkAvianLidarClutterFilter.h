@@ -16,7 +16,8 @@
  *
  * **Output port 1**, the table (vtkPolyData): a vertex in the middle of each cell that is kept, in
  * the order of the cells, with the point arrays `clutter_probability` (double, its persistence,
- * this scan included) and `cell` (3 ints: azimuth, elevation and range as indices of the cell).
+ * this scan included) and `clutter_cell` (3 ints: azimuth, elevation and range as indices of the
+ * cell).
  *
  * Field data of both: `learned_scans` (int, scans in memory, this one included), `position`
  * (3 doubles, m, of the sensor) and the settings, `clutter_window`, `clutter_threshold`,
@@ -26,21 +27,23 @@
  * **Method.** Space about the sensor is divided into cells: azimuth index a holds azimuths nearest
  * to a AzimuthStep (clockwise from north, y), elevation index e elevations nearest to
  * e ElevationStep, so that beams at multiples of the steps are in the middle of cells; range index
- * r holds ranges from r RangeStep on. AzimuthStep is made a little smaller if it does not divide
- * 360 degrees. Persistence of a cell: weighted share of the scans in which an echo lay in it, where
- * each scan weighs 1 - 1/Window as much as the next one; the sum of the weights is that of the
- * scans there have been. The clutter probability of a point is the largest persistence of the
- * cells around its own, as the scans before this one leave it: up to RangeTolerance cells nearer
- * and farther, AngularTolerance cells to each side, up and down. Cells whose persistence is below
- * a thousandth are forgotten (below 0.1 / Window where Window is beyond 100), so at most 1000 times
- * as many cells are kept as a scan has points (10 Window times).
+ * r holds ranges from r RangeStep on. AzimuthStep is made the nearest that divides 360 degrees.
+ * Persistence of a cell: weighted share of the scans in which an echo lay in it, where each scan
+ * weighs 1 - 1/Window as much as the next one; the sum of the weights is that of the scans there
+ * have been. The clutter probability of a point is the largest persistence of the cells around its
+ * own, as the scans before this one leave it: up to RangeTolerance cells nearer and farther,
+ * AngularTolerance cells to each side, up and down. Cells whose persistence is below a thousandth
+ * are forgotten (below 0.5 / Window where Window is beyond 500), so at most 1000 times as many
+ * cells are kept as a scan has points (2 Window times).
  *
  * **Time.** The time of a scan, s: `DATA_TIME_STEP` of the data's information, else field data
- * `TimeValue`, else the time before + 1 if the data have been modified since. A scan of the same
- * time as the last one replaces it: what executes twice is counted once, and a scan is learned when
- * a later one comes. A time before the last one empties the memory, with a warning. So does, in
- * silence, another position of the sensor, another step or Window, another table, or Learning
- * switched on or off.
+ * `TimeValue`, else the start of its `revolution` (echoes have it, and `rotation_rate`), else the
+ * time before + 1 if it is another cloud or was made anew. Steps of a revolution that sweeps
+ * (`steps_per_revolution` above 1) are one scan. A scan of the same time as the last one replaces
+ * it: what executes twice is counted once, and a scan is learned when a later one comes. A time
+ * before the last one empties the memory, with a warning. So does, in silence, another position of
+ * the sensor, another step or Window, another table, or Learning switched on or off. A memory that
+ * is empty begins with the table, if there is one.
  *
  * **Position of the sensor**: field data `position` of the scan (echoes have it); without it
  * SensorPosition.
@@ -67,9 +70,16 @@
 #include "vtkAvianLidarModule.h" // For export macro
 #include "vtkPassInputTypeAlgorithm.h"
 
-#include <memory> // For std::unique_ptr
+#include <cstdint> // For std::uint64_t
+#include <memory>  // For std::unique_ptr
+#include <string>
+#include <vector>
 
+class vtkDataObject;
+class vtkFieldData;
 class vtkMultiProcessController;
+class vtkPointSet;
+class vtkPolyData;
 
 class VTKAVIANLIDAR_EXPORT vtkAvianLidarClutterFilter : public vtkPassInputTypeAlgorithm
 {
@@ -81,7 +91,7 @@ public:
   ///@{
   /**
    * Length of the memory in scans, 1 to 100,000: a scan so long ago weighs 1 / e of the last one.
-   * Default 100.
+   * Default 200.
    */
   vtkSetMacro(Window, double);
   vtkGetMacro(Window, double);
@@ -111,7 +121,7 @@ public:
   ///@{
   /**
    * How many cells around a point's own count, in range (errors of ranges, sway) and in angles
-   * (jitter of the encoder, steps that are not those of the beams), 0 to 10. Defaults 1 and 0.
+   * (jitter of the encoder, steps that are not those of the beams), 0 to 10. Default 1.
    */
   vtkSetMacro(RangeTolerance, int);
   vtkGetMacro(RangeTolerance, int);
@@ -121,9 +131,9 @@ public:
 
   ///@{
   /**
-   * In how many first scans all points are clutter, 0 or more: without it a tracker behind would
+   * In how many first scans all points are clutter, 0 to 100,000: without it a tracker behind would
    * begin with a track for each of them. A table on port 1 counts as the scans that it has learned.
-   * Default 10.
+   * Default 5.
    */
   vtkSetMacro(WarmUp, int);
   vtkGetMacro(WarmUp, int);
@@ -173,14 +183,14 @@ protected:
   int ModifyRequest(vtkInformation* request, int when) override;
   int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
 
-  double Window = 100.0;
+  double Window = 200.0;
   double ClutterThreshold = 0.05;
   double RangeStep = 1.5;
   double AzimuthStep = 0.375;
   double ElevationStep = 0.375;
   int RangeTolerance = 1;
-  int AngularTolerance = 0;
-  int WarmUp = 10;
+  int AngularTolerance = 1;
+  int WarmUp = 5;
   double SensorPosition[3] = { 0.0, 0.0, 0.0 };
   bool Learning = true;
   vtkMultiProcessController* Controller = nullptr;
@@ -190,6 +200,12 @@ private:
   void operator=(const vtkAvianLidarClutterFilter&) = delete;
 
   struct Memory;
+  std::string CheckProperties() const;
+  std::string Advance(vtkDataObject* cloud, vtkPolyData* table, Memory& memory);
+  void Classify(
+    const Memory& memory, const std::vector<std::uint64_t>& keys, vtkPointSet* output) const;
+  void AddSettings(const Memory& memory, vtkFieldData* fields) const;
+
   std::unique_ptr<Memory> Kept;
 };
 
