@@ -64,6 +64,8 @@ const Macro Macros[] = {
     "Scan the selected surfaces with a lidar; with nothing selected, an airport" },
   { "avian_lidar_birds_over_the_airport", "bird", "Avian Lidar: Scan Birds over an Airport",
     "Gulls, crows and starlings over an airport, in ten scans to play" },
+  { "avian_lidar_birds_tracked", "tracker", "Avian Lidar: Track Birds over an Airport",
+    "Birds over an airport, clutter told from them and their tracks, in twenty scans to play", false },
   { "avian_lidar_coverage", "coverage", "Avian Lidar: Map Where a Bird Is Seen",
     "Where a lidar at the airport detects a gull, and why not elsewhere" },
   { "avian_lidar_ground_fog", "medium", "Avian Lidar: Scan an Airport in Ground Fog",

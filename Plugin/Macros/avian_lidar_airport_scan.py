@@ -31,7 +31,7 @@ DISTANCE = 0.1
 SENSORS = ("AvianLidarAirport16", "AvianLidarAirport32", "AvianLidarCorridorC16", "AvianLidarSearch905",
            "AvianLidarSearch1550", "AvianLidarAutomotive16")
 PARTS = ("AvianLidarCollisionTree", "AvianLidarMedium", "AvianLidarMediumInSurface", "AvianLidarTracks", *SENSORS)
-RESULTS = ("AvianLidarEchoFilter", "AvianLidarCoverage")
+RESULTS = ("AvianLidarEchoFilter", "AvianLidarCoverage", "AvianLidarClutterFilter", "AvianLidarTracker")
 # What shows some of a result.
 SOME = ("Threshold", "Cut", "Contour")
 WHAT_TO_SELECT = "select surfaces, or nothing for the airport that comes with the plugin"

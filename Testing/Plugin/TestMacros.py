@@ -23,6 +23,7 @@ FOLDER = os.path.dirname(PLUGIN)
 MACRO = os.path.join(FOLDER, "Macros", "avian_lidar_airport_scan.py")
 BIRDS = os.path.join(FOLDER, "Macros", "avian_lidar_birds_over_the_airport.py")
 COVERAGE = os.path.join(FOLDER, "Macros", "avian_lidar_coverage.py")
+TRACKED = os.path.join(FOLDER, "Macros", "avian_lidar_birds_tracked.py")
 FOG = os.path.join(FOLDER, "Macros", "avian_lidar_ground_fog.py")
 STATE = os.path.join(FOLDER, "States", "avian_lidar_airport.py")
 LIMITS = (2e-6, 6.25e-5)
@@ -319,6 +320,44 @@ class TestMacros(unittest.TestCase):
         run(MACRO)
         for name in parts:
             self.assertFalse(shown(simple.FindSource(name + " 2"), self.view), name)
+
+    def test_birds_tracked(self):
+        """Tracks after all scans, near birds that fly there; played again from the beginning, the same."""
+        self.assertEqual(run(TRACKED), "")
+        tracker, echoes = simple.FindSource("Tracker"), simple.FindSource("Scan with birds")
+        self.assertEqual(simple.GetActiveSource(), tracker)
+        scene = simple.GetAnimationScene()
+        times = list(scene.TimeKeeper.TimestepValues)
+        self.assertEqual(times, [2.0 * k for k in range(20)])
+
+        def tracks():
+            data = servermanager.Fetch(tracker)
+            return vtk_to_numpy(data.GetPoints().GetData()).copy(), vtk_to_numpy(data.GetCellData().GetArray("confirmed")).copy()
+
+        first, confirmed = tracks()
+        self.assertGreater(numpy.count_nonzero(confirmed), 5)
+        for name in ("Clutter", "What is left", "Tracks"):
+            source = simple.FindSource(name)
+            self.assertTrue(shown(source, self.view), name)
+            self.assertGreater(source.GetDataInformation().GetNumberOfPoints(), 0, name)
+        self.assertFalse(shown(echoes, self.view))
+        simple.Render(self.view)
+        if "--documentation" in sys.argv:
+            file = os.path.join(SOURCE_DIR, "Documentation", "images", "paraview-tracked.png")
+            simple.SaveScreenshot(file, self.view, ImageResolution=[1200, 800])
+        for time in times:
+            scene.AnimationTime = time
+            tracker.UpdatePipeline(time)
+        numpy.testing.assert_array_equal(tracks()[0], first)
+        total = echoes.GetDataInformation().GetNumberOfPoints()
+        self.assertEqual(sum(simple.FindSource(name).GetDataInformation().GetNumberOfPoints() for name in ("Clutter", "What is left")), total)
+        # A second time, and after it the airport's scan.
+        self.assertRegex(run(TRACKED), "all tracks are forgotten")
+        for name in ("Clutter", "What is left", "Tracks"):
+            self.assertFalse(shown(simple.FindSource(name), self.view), name)
+        simple.SetActiveSource(None)
+        run(MACRO)
+        self.assertFalse(shown(simple.FindSource("Tracks 2"), self.view))
 
     def test_ground_fog(self):
         self.assertEqual(run(FOG), "")
