@@ -8,6 +8,7 @@
 #include "vtkAvianLidarCells.h"
 #include "vtkAvianLidarGather.h"
 #include "vtkAvianLidarRanks.h"
+#include "vtkAvianLidarScanStream.h"
 
 #include "vtkCellArray.h"
 #include "vtkCellData.h"
@@ -15,7 +16,6 @@
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
 #include "vtkIntArray.h"
-#include "vtkMath.h"
 #include "vtkMultiProcessController.h"
 #include "vtkMultiProcessStream.h"
 #include "vtkNew.h"
@@ -44,7 +44,6 @@ using avianlidar::Vec3;
 using Outcome = vtkAvianLidarRanks::Outcome;
 using Pipeline = vtkStreamingDemandDrivenPipeline;
 
-constexpr Arrays::Name TimeValue{ "TimeValue", "s" }; // ParaView's
 constexpr Arrays::Name HalfBeamwidthName{ "half_beamwidth", "rad" };
 constexpr Arrays::Name SensorPositionName{ "sensor_position", "m" };
 /// Largest coordinate of a point, m.
@@ -59,52 +58,23 @@ bool IsNear(const double place[3])
 struct CloudFacts
 {
   vtkIdType Points = 0;
-  bool IsTimed = false;
-  vtkMTimeType Made = 0;                // when the data were modified last
   double Time = 0.0;                    // s
   double Sensor[3] = { 0.0, 0.0, 0.0 }; // m
   double HalfBeamwidth = 0.0;           // rad
 };
 
-std::string ReadFacts(vtkPolyData* cloud, CloudFacts& facts)
+std::string ReadFacts(const vtkAvianLidarScanStream& stream, vtkPolyData* cloud, CloudFacts& facts)
 {
-  vtkFieldData* fields = cloud->GetFieldData();
-  vtkInformation* info = cloud->GetInformation();
   facts.Points = cloud->GetNumberOfPoints();
-  facts.Made = cloud->GetMTime();
-  facts.IsTimed = true;
-  if (info->Has(vtkDataObject::DATA_TIME_STEP()))
+  std::string problem = stream.ReadTime(cloud, facts.Time);
+  problem = problem.empty() ? vtkAvianLidarScanStream::ReadPosition(cloud, facts.Sensor) : problem;
+  if (problem.empty() && !IsNear(facts.Sensor))
   {
-    facts.Time = info->Get(vtkDataObject::DATA_TIME_STEP());
+    problem = "field data 'position' is too far away, expected x, y and z up to 1e9 m";
   }
-  else
-  {
-    facts.IsTimed = fields->GetAbstractArray(TimeValue.name) != nullptr;
-    const std::string problem = Arrays::ReadFieldValue(fields, TimeValue, facts.Time);
-    if (!problem.empty())
-    {
-      return problem;
-    }
-  }
-  if (!std::isfinite(facts.Time))
-  {
-    return avianlidar::valueError("its time", facts.Time, "a finite number of seconds");
-  }
-  if (fields->GetAbstractArray(Arrays::Position.name))
-  {
-    vtkDataArray* position = fields->GetArray(Arrays::Position.name);
-    const bool isPlace = position && position->GetNumberOfValues() == 3;
-    for (int i = 0; i < 3; ++i)
-    {
-      facts.Sensor[i] = isPlace ? position->GetVariantValue(i).ToDouble() : vtkMath::Nan();
-    }
-  }
-  if (!IsNear(facts.Sensor))
-  {
-    return "field data 'position' is not three numbers, expected x, y and z up to 1e9 m";
-  }
-  const std::string problem =
-    Arrays::ReadFieldValue(fields, HalfBeamwidthName, facts.HalfBeamwidth);
+  problem = problem.empty()
+    ? Arrays::ReadFieldValue(cloud->GetFieldData(), HalfBeamwidthName, facts.HalfBeamwidth)
+    : problem;
   return !problem.empty() || (facts.HalfBeamwidth >= 0.0 && facts.HalfBeamwidth <= 1.0)
     ? problem
     : avianlidar::valueError("field data 'half_beamwidth'", facts.HalfBeamwidth, "0 to 1 rad");
@@ -119,8 +89,7 @@ std::string TrackerError(const std::string& problem)
 vtkIdType Share(const vtkAvianLidarRanks& ranks, CloudFacts& facts)
 {
   vtkMultiProcessStream mine;
-  mine << static_cast<long long>(facts.Points) << static_cast<int>(facts.IsTimed)
-       << static_cast<long long>(facts.Made) << facts.Time << facts.Sensor[0] << facts.Sensor[1]
+  mine << static_cast<long long>(facts.Points) << facts.Time << facts.Sensor[0] << facts.Sensor[1]
        << facts.Sensor[2] << facts.HalfBeamwidth;
   vtkIdType before = 0;
   bool isFirst = true;
@@ -128,17 +97,13 @@ vtkIdType Share(const vtkAvianLidarRanks& ranks, CloudFacts& facts)
   for (vtkMultiProcessStream& stream : ranks.Gather(mine))
   {
     long long points = 0;
-    int isTimed = 0;
-    long long made = 0;
     CloudFacts read;
-    stream >> points >> isTimed >> made >> read.Time >> read.Sensor[0] >> read.Sensor[1] >>
-      read.Sensor[2] >> read.HalfBeamwidth;
+    stream >> points >> read.Time >> read.Sensor[0] >> read.Sensor[1] >> read.Sensor[2] >>
+      read.HalfBeamwidth;
     before += rank++ < ranks.Rank() ? points : 0;
     if (isFirst && points > 0)
     {
       isFirst = false;
-      read.IsTimed = isTimed != 0;
-      read.Made = static_cast<vtkMTimeType>(made);
       facts = read;
     }
   }
@@ -292,9 +257,7 @@ struct vtkAvianLidarTracker::vtkInternals
   struct State
   {
     avianlidar::Tracker Tracker;
-    bool IsEmpty = true;
-    double Time = 0.0;      // s, of the cloud
-    vtkMTimeType Made = 0;  // the cloud
+    vtkAvianLidarScanStream Stream;
     double LastPoint = 0.0; // s, the latest of a point
     bool HasWarned = false;
   };
@@ -303,8 +266,8 @@ struct vtkAvianLidarTracker::vtkInternals
   CloudFacts Facts; // of the cloud at hand
 
   static avianlidar::TrackerSettings SettingsOf(const vtkAvianLidarTracker& self);
-  std::string Track(
-    vtkAvianLidarTracker* self, vtkPolyData* cloud, bool warns, std::vector<int>& trackOfPoint);
+  std::string Track(vtkAvianLidarTracker* self, vtkPolyData* input, vtkPolyData* cloud, bool warns,
+    std::vector<int>& trackOfPoint);
 };
 
 //------------------------------------------------------------------------------
@@ -362,8 +325,8 @@ avianlidar::TrackerSettings vtkAvianLidarTracker::vtkInternals::SettingsOf(
 }
 
 //------------------------------------------------------------------------------
-std::string vtkAvianLidarTracker::vtkInternals::Track(
-  vtkAvianLidarTracker* self, vtkPolyData* cloud, bool warns, std::vector<int>& trackOfPoint)
+std::string vtkAvianLidarTracker::vtkInternals::Track(vtkAvianLidarTracker* self,
+  vtkPolyData* input, vtkPolyData* cloud, bool warns, std::vector<int>& trackOfPoint)
 {
   const CloudFacts& facts = this->Facts;
   Targets targets;
@@ -372,19 +335,17 @@ std::string vtkAvianLidarTracker::vtkInternals::Track(
   {
     return problem;
   }
-  const bool isFirst = this->After.IsEmpty;
-  // Without a time the data at hand count once, too.
-  const double step = isFirst || facts.Made == this->After.Made ? 0.0 : 1.0;
-  const double time = facts.IsTimed ? facts.Time : this->After.Time + step;
-  const bool isLater = !isFirst && time > this->After.Time;
-  const bool isEarlier = !isFirst && time < this->After.Time;
+  const double time = facts.Time;
+  const bool isFirst = !this->After.Stream.Begun();
+  const bool isLater = !isFirst && time > this->After.Stream.Time();
+  const bool isEarlier = !isFirst && time < this->After.Stream.Time();
   State next = isEarlier ? State{} : isLater ? this->After : this->Before;
 
   // Times of points, if they go on from the last cloud.
   const auto [least, most] = std::minmax_element(targets.Points.begin(), targets.Points.end(),
     [](const auto& a, const auto& b) { return a.time < b.time; });
   const bool hasTimes = targets.AreTimed && !targets.Points.empty();
-  const bool goesOn = hasTimes && (next.IsEmpty || least->time > next.LastPoint);
+  const bool goesOn = hasTimes && (!next.Stream.Begun() || least->time > next.LastPoint);
   const double last = goesOn ? most->time : time;
   if (!goesOn)
   {
@@ -396,9 +357,7 @@ std::string vtkAvianLidarTracker::vtkInternals::Track(
   const bool areOdd = hasTimes && !goesOn && !next.HasWarned;
   next.LastPoint = targets.Points.empty() ? next.LastPoint : last;
   next.HasWarned = next.HasWarned || areOdd;
-  next.IsEmpty = false;
-  next.Time = time;
-  next.Made = facts.Made;
+  next.Stream.Accept(input, time);
 
   avianlidar::TrackerSettings settings = SettingsOf(*self);
   settings.halfBeamwidth = facts.HalfBeamwidth;
@@ -520,7 +479,8 @@ int vtkAvianLidarTracker::RequestData(
         {
           vtkAvianLidarAbort::StopIfWanted(this);
           std::string problem = this->CheckSettings();
-          problem = problem.empty() ? ReadFacts(input, facts) : problem;
+          problem =
+            problem.empty() ? ReadFacts(this->Internals->After.Stream, input, facts) : problem;
           return TrackerError(problem.empty() ? CheckArrays(input) : problem);
         });
       vtkAvianLidarRanks::Settings settings;
@@ -540,9 +500,10 @@ int vtkAvianLidarTracker::RequestData(
       if (outcome == Outcome::Done)
       {
         outcome = ranks.Together(this,
-          [&]() {
+          [&]()
+          {
             return TrackerError(
-              this->Internals->Track(this, cloud, ranks.Rank() == 0, trackOfPoint));
+              this->Internals->Track(this, input, cloud, ranks.Rank() == 0, trackOfPoint));
           });
       }
       const int asked = std::max(0, request->Get(vtkExecutive::FROM_OUTPUT_PORT()));
@@ -588,7 +549,7 @@ void vtkAvianLidarTracker::FillOutputs(bool hasTracks, vtkPolyData* input, const
     points->GetPointData()->AddArray(ids);
     points->GetPointData()->AddArray(confirmed);
   }
-  const double time = this->Internals->After.Time;
+  const double time = this->Internals->After.Stream.Time();
   for (vtkPolyData* output : { tracks, points })
   {
     vtkFieldData* fields = output->GetFieldData();

@@ -12,12 +12,13 @@
  * (m, of the range; else RangeError). Field data, optional: `position` (m, of the sensor; wins over
  * SensorPosition), `half_beamwidth` (rad; wins over HalfBeamwidth).
  *
- * **Time** of a cloud, s: DATA_TIME_STEP of the input; else field data `TimeValue`; else that of
- * the cloud before and 1, unless the data are the same, not modified since. A cloud of the same
+ * **Time** of a cloud, s: DATA_TIME_STEP of the input; else field data `TimeValue`; else the start
+ * of its `revolution`; else that of the cloud before and 1, unless the data are the same, not
+ * modified since. Steps of a revolution that sweeps have the time of its start. A cloud of the same
  * time as the last one replaces it, with the settings of now: nothing is counted twice. A cloud of
  * an earlier time empties the memory, with a warning. Clouds are whole scans: a track without a
- * cluster in a cloud was missed. Timestamps that do not lie after all of the cloud before (steps of
- * a sweep, timestamps that begin anew in each cloud) are not used, with a warning.
+ * cluster in a cloud was missed. Timestamps that do not lie after all of the cloud before
+ * (timestamps that begin anew in each cloud) are not used, with a warning.
  *
  * **Output port 0** (vtkPolyData), the tracks: a polyline for each through its positions as
  * estimated, a vertex for one with a single position; first the tracks of one position, then the
