@@ -48,6 +48,7 @@ set(avianlidar_python_files
   apps/_metar.py
   apps/_pictures.py
   apps/_report.py
+  apps/_scores.py
   apps/_sequence.py
   apps/_sites.py
   apps/reach.py
