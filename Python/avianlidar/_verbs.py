@@ -340,7 +340,7 @@ def track(options) -> None:
     tracks = BirdTracks(options.inputs, options.runways, clutter=dict(options.clutter_set), tracker=dict(options.tracker_set), sensors=options.sensor,
                         threads=options.threads or (1 if ranks.size > 1 else 0), **changes,
                         **{name: value for name, value in given.items() if value is not None})
-    with _goes_on(options.out, "*/[0-9]*.json", "sequences followed"):
+    with _goes_on(options.out, "followed/*/*.json", "sequences followed"):
         card = tracks.write(options.out, ranks, (lambda *_: None) if ranks.rank else bars)
     bars.close()
     if ranks.rank == 0:

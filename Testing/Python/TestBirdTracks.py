@@ -104,7 +104,7 @@ class Scores(unittest.TestCase):
 
     def test_card(self):
         of = _card.of_birds(self.found["birds"])
-        self.assertEqual((of["tracked"].value, of["tracked"].count), (0.5, 2))
+        self.assertEqual((of["tracked"].value, of["tracked"].number), (0.5, 2))
         self.assertAlmostEqual(of["time"].value, 6 / 22)
         self.assertEqual((of["delay"].value, of["switches"].value), (6.0, 1.0))
         tracks = _card.of_tracks([{**self.found, "seconds": 24.0}])
@@ -208,7 +208,7 @@ class Files(unittest.TestCase):
 
     def test_goes_on(self):
         """What is there of the same stays; other settings make it again; the same bits."""
-        file = self.out / "made/01.json"
+        file = self.out / "followed/made/01.json"
         before, content = file.stat().st_mtime_ns, file.read_bytes()
         self.assertEqual(self.tracks().write(self.out), self.card)
         self.assertEqual(file.stat().st_mtime_ns, before)
@@ -218,7 +218,7 @@ class Files(unittest.TestCase):
         other = self.home / "other"
         shutil.copytree(self.out, other)
         self.tracks(cutoff=5.0).write(other)
-        self.assertNotEqual((other / "made/01.json").read_bytes(), content)
+        self.assertNotEqual((other / "followed/made/01.json").read_bytes(), content)
 
     def test_command_makes_and_compares_scenarios(self):
         out = self.home / "compared"

@@ -118,9 +118,9 @@ class Volumes(unittest.TestCase):
     def test_entry(self):
         times = [10.0, 12.0, 14.0, 16.0]
         for inside, when in (([0, 0, 1, 1], 14.0), ([1, 0, 0, 1], 16.0), ([0, 1, 0, 1], 12.0)):
-            self.assertEqual(scores.entry(times, inside), when)
+            self.assertEqual(scores.entry(times, np.array(inside, bool)), when)
         for inside in ([0, 0, 0, 0], [1, 1, 1, 0]):
-            self.assertTrue(math.isnan(scores.entry(times, inside)))
+            self.assertTrue(math.isnan(scores.entry(times, np.array(inside, bool))))
 
 
 class Errors(unittest.TestCase):
@@ -131,7 +131,7 @@ class Errors(unittest.TestCase):
             seen = random.uniform(size=(4000, 400)) < p
             scans = np.argmax(seen[:, 1:] & seen[:, :-1], axis=1) + 2
             found = scores.mean(scans)
-            self.assertEqual(found.count, 4000)
+            self.assertEqual(found.number, 4000)
             self.assertLess(abs(found.value - wanted), 3.0 * found.error)
             self.assertAlmostEqual(wanted, (1.0 + p) / p ** 2)
 

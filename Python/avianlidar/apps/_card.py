@@ -25,11 +25,11 @@ from ._scores import Value
 HEIGHTS = (0.0, 10.0, 30.0, 60.0, math.inf)  # m, bands of a bird's mean height
 WARNED = (10.0, 30.0, 60.0)  # s
 # Of groups of birds: name, words, factor and unit of the page.
-OF_BIRDS = (("tracked", "birds tracked", 100.0, "%"), ("near", "birds tracked, or beside a track", 100.0, "%"), ("time", "share of their time", 100.0, "%"),
-            ("delay", "delay to confirmation", 1.0, "s"), ("switches", "identity switches a bird tracked", 1.0, ""))
+OF_BIRDS = (("tracked", "birds tracked", 100.0, "%"), ("near", "or beside a track", 100.0, "%"), ("time", "share of their time", 100.0, "%"),
+            ("delay", "delay to confirmation", 1.0, "s"), ("switches", "identity switches", 1.0, ""))
 OF_TRACKS = (("false", "false tracks an hour", 1.0, ""), ("vehicle", "tracks of vehicles an hour", 1.0, ""),
-             ("second", "second tracks of a bird an hour", 1.0, ""), ("ospa", "OSPA distance", 1.0, "m"), ("ospa_localisation", "of which localisation", 1.0, "m"),
-             ("ospa_cardinality", "of which birds and tracks without partner", 1.0, "m"))
+             ("second", "second tracks of a bird an hour", 1.0, ""), ("ospa", "OSPA distance", 1.0, "m"), ("ospa_localisation", "OSPA: localisation", 1.0, "m"),
+             ("ospa_cardinality", "OSPA: without partner", 1.0, "m"))
 NEAREST = 300.0  # m that maps hold around the sensor at least
 FEWEST = 5  # birds of a curve of warnings
 COLOURS = ("#1b9e77", "#66c2a5", "#7570b3", "#d95f02", "#e7298a", "#66a6ff")  # of ORIGINS
@@ -120,7 +120,7 @@ def write_card(out: pathlib.Path, inputs: Sequence[Input], results: Sequence[Map
     table: List[List[Any]] = [["input", "by", "group", "score", "unit", "value", "std_error", "count"]]
 
     def add(name: str, by: str, group: str, score: str, unit: str, value: Value) -> None:
-        table.append([name, by, group, score, unit, _number(value.value), _number(value.error), value.count])
+        table.append([name, by, group, score, unit, _number(value.value), _number(value.error), value.number])
     for k, name in enumerate(names):
         for key, words, _, unit in (*OF_BIRDS, *OF_TRACKS):
             add(name, "all", "", words, "1" if unit in ("%", "") else unit, overall[k][key])
@@ -148,8 +148,8 @@ def write_card(out: pathlib.Path, inputs: Sequence[Input], results: Sequence[Map
                     "false": {origin: sum(track["origin"] == origin for one in found for track in one["tracks"]) for origin in FALSE}}
                    for of, found, flock in zip(inputs, sequences, birds)],
         "overall": [{"words": words, "cells": [cell(of[key], factor, unit) for of in overall]} for key, words, factor, unit in (*OF_BIRDS, *OF_TRACKS)],
-        "head": [f"{name[:1].upper()}{name[1:]}" for _, name, _, _ in OF_BIRDS],
-        "groups": [{"by": group["by"], "rows": [{"name": row["name"], "counts": [of["tracked"].count for of in row["cells"]],
+        "head": [words for _, words, _, _ in OF_BIRDS],
+        "groups": [{"by": group["by"], "rows": [{"name": row["name"], "counts": [of["tracked"].number for of in row["cells"]],
                                                  "cells": [[cell(of[key], factor, unit) for of in row["cells"]] for key, _, factor, unit in OF_BIRDS]}
                                                 for row in group["rows"]]} for group in groups],
         "warnings": [{"volume": volume, "counts": [len(of) for of in seconds],

@@ -91,7 +91,8 @@ class Chain:
         self.tracker.SetInputData(rest)
         self._tracked()
         of_points = as_numpy(self.tracker.GetOutputDataObject(1).GetPointData().GetArray("track_id")).astype(int)
-        return Live(*_last(self.tracker.GetOutputDataObject(0)), of_points, clutter != 0)
+        ids, confirmed, last, places, velocities = _last(self.tracker.GetOutputDataObject(0))
+        return Live(ids, confirmed, last, places, velocities, of_points, clutter != 0)
 
 
 def _cloud(points: np.ndarray, time: float, position: np.ndarray):

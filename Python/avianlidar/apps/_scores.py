@@ -14,7 +14,7 @@ class Value(NamedTuple):
     """A number with its standard error (nan where there is none) and how many it is of."""
     value: float
     error: float
-    count: int
+    number: int
 
 
 class Ospa(NamedTuple):
@@ -97,9 +97,8 @@ def _along(points: np.ndarray, start, axis: np.ndarray) -> Tuple[np.ndarray, np.
     return off @ axis, off @ np.array([axis[1], -axis[0]])
 
 
-def entry(times: Sequence[float], inside: Sequence[bool]) -> float:
+def entry(times: np.ndarray, inside: np.ndarray) -> float:
     """The first time inside after one outside, nan without."""
-    inside = np.asarray(inside, bool)
     came = np.flatnonzero(inside[1:] & ~inside[:-1]) + 1
     return float(times[came[0]]) if len(came) else math.nan
 

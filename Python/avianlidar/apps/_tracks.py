@@ -26,6 +26,7 @@ from .siting import Runway
 
 CUTOFF = 20.0  # m: a track that far from a bird is none of it
 ORDER = 2.0  # of OSPA
+FOLLOWED = "followed"  # folder of what was found in sequences
 LEARNING = 20  # scans at the beginning of a sequence of which only clutter is learned
 
 Progress = Callable[[str, int, int], Any]
@@ -88,7 +89,7 @@ class BirdTracks:
         self.folders[name] = folder or pathlib.Path()
 
     def write(self, folder, ranks: Optional[Ranks] = None, progress: Optional[Progress] = None) -> Dict[str, Any]:
-        """Make scenarios (`folder`/sequences/NAME), follow the birds of each sequence (`folder`/NAME/NN.json), then write card.html, card.csv,
+        """Make scenarios (`folder`/sequences/NAME), follow the birds of each sequence (`folder`/followed/NAME/NN.json), then write card.html, card.csv,
         card.json, tracks.csv, birds.csv and pictures. What is there of the same files and settings stays. Ranks take whole sequences.
         @param progress called with what is done, how much of it and of how much @return what card.json holds"""
         ranks, out = ranks or Ranks(), pathlib.Path(folder)
@@ -107,17 +108,17 @@ class BirdTracks:
         total = sum(int(inputs[one].content[number]["scans"]) for one, number in mine)
         for one, number in mine:
             of, chain = inputs[one], chains[one]
-            file = out / of.name / f"{number}.json"
+            file = out / FOLLOWED / of.name / f"{number}.json"
             identity = self._identity(of, number, chain, everywhere[one])
             if not _is_of(file, identity):
                 found = self._follow(of, number, chain, everywhere[one], lambda k, before=done: progress("scans followed", before + k, total))
-                file.parent.mkdir(exist_ok=True)
+                file.parent.mkdir(parents=True, exist_ok=True)
                 write_whole(file, as_json({"identity": identity, **found}))
             done += int(of.content[number]["scans"])
         ranks.wait()
         card: Dict[str, Any] = {}
         if ranks.rank == 0:
-            results = [{number: load_json(out / of.name / f"{number}.json") for number in of.numbers} for of in inputs]
+            results = [{number: load_json(out / FOLLOWED / of.name / f"{number}.json") for number in of.numbers} for of in inputs]
             settings = {"learning_scans": self.learning, "cutoff": self.cutoff, "order": self.order,
                         "runways": [[runway.name for runway in runways] for runways in everywhere], "chains": [chain.properties() for chain in chains]}
             card = write_card(out, inputs, results, everywhere, settings, progress)
