@@ -15,6 +15,7 @@ set(classes
   Filters/vtkAvianLidarRangeImage
   Filters/vtkAvianLidarScanFilter
   Filters/vtkAvianLidarSensorReader
+  Filters/vtkAvianLidarTracker
   Filters/vtkAvianLidarTracks
   IO/vtkAvianLidarCloudWriter
   IO/vtkAvianLidarGeoJSONWriter

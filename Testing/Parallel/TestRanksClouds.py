@@ -150,6 +150,35 @@ def test_bad_cloud_of_one_rank_is_an_error_on_all():
     assert "no points" in messages.errors[-1] and math.isnan(comparison.GetHausdorffDistance())
 
 
+def test_tracks_are_those_of_one_process():
+    """One rank has no points; where the sensor is, says the first that has some."""
+    random = np.random.default_rng(7)
+    start, velocity = random.uniform(-100, 100, (40, 3)), random.normal(0, 10, (40, 3))
+    owner = random.integers(0, RANKS, 40)
+    owner[owner == LAST] = 0
+    serial, together = al.vtkAvianLidarTracker(), al.vtkAvianLidarTracker()
+    serial.SetController(None)
+    for time in range(5):
+        for tracker, mine in ((serial, np.ones(40, bool)), (together, owner == RANK)):
+            data = vtk.vtkPolyData()
+            data.SetPoints(vtk.vtkPoints())
+            data.GetPoints().SetData(numpy_support.numpy_to_vtk((start + time * velocity)[mine], deep=1))
+            data.GetInformation().Set(vtk.vtkDataObject.DATA_TIME_STEP(), float(time))
+            if mine.any():
+                position = numpy_support.numpy_to_vtk(np.array([[5.0, 6.0, 7.0]]), deep=1)
+                position.SetName("position")
+                data.GetFieldData().AddArray(position)
+            tracker.SetInputData(data)
+        serial.Update()
+        update(together)
+    if RANK == 0:
+        assert_same(point_arrays(together.GetOutput(0)), point_arrays(serial.GetOutput(0)))
+    assert RANK == 0 or together.GetOutput(0).GetNumberOfCells() == 0
+    ids = numpy_support.vtk_to_numpy(serial.GetOutput(1).GetPointData().GetArray("track_id"))[owner == RANK]
+    mine = together.GetOutput(1).GetPointData().GetArray("track_id")
+    assert (numpy_support.vtk_to_numpy(mine) == ids).all() if len(ids) else mine.GetNumberOfTuples() == 0
+
+
 def test_pieces_of_ones_own():
     if RANK == LAST:
         comparison = compared(scan(), scan(Seed=5))

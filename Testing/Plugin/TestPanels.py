@@ -48,6 +48,8 @@ FIRST_SHOWN = {
     "AvianLidarEchoFilterStandard": "Preset AttenuationCoefficient Noise ReturnMode",
     "AvianLidarGeodeticTransform": "SourceFrame MovePoints TargetFrame UseFieldDataOrigin Origin",
     "AvianLidarGeodeticTransformMoved": "SourceFrame MovePoints TargetFrame UseFieldDataOrigin Origin",
+    "AvianLidarTracker": """ClusterDistance ClusterAngle MotionModel AccelerationDensity MaximumSpeed MinimumSpeed ConfirmHits
+        ConfirmScans MaximumMisses""",
     "AvianLidarHSBColorMap": "EnergyArray UseFieldDataRange EnergyRange",
     "AvianLidarHSBColorMapGiven": "EnergyArray UseFieldDataRange EnergyRange",
     "AvianLidarPointCloudReader": "LocalCoordinates",

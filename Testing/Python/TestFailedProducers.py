@@ -61,6 +61,17 @@ def with_origin():
     return surfaces(data)
 
 
+def timed():
+    """A cloud of a time: executed again it is the same scan."""
+    data = vtk.vtkPolyData()
+    data.DeepCopy(town(3, 1).GetBlock(0))
+    time = vtk.vtkDoubleArray()
+    time.SetName("TimeValue")
+    time.InsertNextValue(3.0)
+    data.GetFieldData().AddArray(time)
+    return surfaces(data)
+
+
 def trails():
     return Producer(al.vtkAvianLidarTracks(), "SetRadius", 500.0, -1.0, "Radius", 1)
 
@@ -76,6 +87,7 @@ FILTERS = {
     "Material": (surfaces,),
     "Medium": (lambda: surfaces(box((0, 100, 0), (5, 5, 5))),),
     "RangeImage": (echoes, lambda: beams_of(echoes)),
+    "Tracker": (timed,),
     "Tracks": (trails,),
     "UnitNames": (echoes,),
 }

@@ -145,6 +145,16 @@ constexpr Name LastPosition{ "last_position", "m" };
 constexpr Name NumberOfEchoes{ "number_of_echoes", "1" };
 constexpr Name DetectionProbability{ "detection_probability", "1" };
 
+// Tracks of what was detected (point and cell data).
+constexpr Name IsClutter{ "is_clutter", "1" };
+constexpr Name TrackId{ "track_id", "" };
+constexpr Name TrackConfirmed{ "track_confirmed", "1" };
+constexpr Name Velocity{ "velocity", "m/s" };
+constexpr Name PositionCovariance{ "position_covariance", "m2" };
+constexpr Name Confirmed{ "confirmed", "1" };
+constexpr Name Ended{ "ended", "1" };
+constexpr Name Hits{ "hits", "1" };
+
 // Coverage (point data, field data, and columns of the table).
 constexpr Name TrackProbability{ "track_probability", "1" };
 constexpr Name PoseProbabilities{ "pose_probabilities", "1" };

@@ -1,0 +1,621 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkAvianLidarTracker.h"
+
+#include "Tracker.h"
+#include "ValueError.h"
+#include "vtkAvianLidarAbort.h"
+#include "vtkAvianLidarArrays.h"
+#include "vtkAvianLidarGather.h"
+#include "vtkAvianLidarRanks.h"
+
+#include "vtkCellArray.h"
+#include "vtkCellData.h"
+#include "vtkDoubleArray.h"
+#include "vtkInformation.h"
+#include "vtkInformationVector.h"
+#include "vtkIntArray.h"
+#include "vtkMath.h"
+#include "vtkMultiProcessController.h"
+#include "vtkMultiProcessStream.h"
+#include "vtkNew.h"
+#include "vtkObjectFactory.h"
+#include "vtkPointData.h"
+#include "vtkPoints.h"
+#include "vtkPolyData.h"
+#include "vtkStreamingDemandDrivenPipeline.h"
+#include "vtkUnsignedCharArray.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <sstream>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+namespace
+{
+namespace Arrays = vtkAvianLidarArrays;
+using avianlidar::Vec3;
+using Outcome = vtkAvianLidarRanks::Outcome;
+using Pipeline = vtkStreamingDemandDrivenPipeline;
+
+constexpr Arrays::Name TimeValue{ "TimeValue", "s" }; // ParaView's
+constexpr Arrays::Name HalfBeamwidthName{ "half_beamwidth", "rad" };
+constexpr Arrays::Name SensorPositionName{ "sensor_position", "m" };
+/// Largest coordinate of a point, m.
+constexpr double LargestCoordinate = 1e9;
+
+bool IsNear(const double place[3])
+{
+  return std::all_of(place, place + 3, [](double x) { return std::fabs(x) <= LargestCoordinate; });
+}
+
+/// What a cloud says as a whole.
+struct CloudFacts
+{
+  vtkIdType Points = 0;
+  bool IsTimed = false;
+  vtkMTimeType Made = 0;                // when the data were modified last
+  double Time = 0.0;                    // s
+  double Sensor[3] = { 0.0, 0.0, 0.0 }; // m
+  double HalfBeamwidth = 0.0;           // rad
+};
+
+std::string ReadFacts(vtkPolyData* cloud, CloudFacts& facts)
+{
+  vtkFieldData* fields = cloud->GetFieldData();
+  vtkInformation* info = cloud->GetInformation();
+  facts.Points = cloud->GetNumberOfPoints();
+  facts.Made = cloud->GetMTime();
+  facts.IsTimed = true;
+  if (info->Has(vtkDataObject::DATA_TIME_STEP()))
+  {
+    facts.Time = info->Get(vtkDataObject::DATA_TIME_STEP());
+  }
+  else
+  {
+    facts.IsTimed = fields->GetAbstractArray(TimeValue.name) != nullptr;
+    const std::string problem = Arrays::ReadFieldValue(fields, TimeValue, facts.Time);
+    if (!problem.empty())
+    {
+      return problem;
+    }
+  }
+  if (!std::isfinite(facts.Time))
+  {
+    return avianlidar::valueError("its time", facts.Time, "a finite number of seconds");
+  }
+  if (fields->GetAbstractArray(Arrays::Position.name))
+  {
+    vtkDataArray* position = fields->GetArray(Arrays::Position.name);
+    const bool isPlace = position && position->GetNumberOfValues() == 3;
+    for (int i = 0; i < 3; ++i)
+    {
+      facts.Sensor[i] = isPlace ? position->GetVariantValue(i).ToDouble() : vtkMath::Nan();
+    }
+  }
+  if (!IsNear(facts.Sensor))
+  {
+    return "field data 'position' is not three numbers, expected x, y and z up to 1e9 m";
+  }
+  const std::string problem =
+    Arrays::ReadFieldValue(fields, HalfBeamwidthName, facts.HalfBeamwidth);
+  return !problem.empty() || (facts.HalfBeamwidth >= 0.0 && facts.HalfBeamwidth <= 1.0)
+    ? problem
+    : avianlidar::valueError("field data 'half_beamwidth'", facts.HalfBeamwidth, "0 to 1 rad");
+}
+
+std::string TrackerError(const std::string& problem)
+{
+  return problem.empty() ? problem : "Tracker: " + problem;
+}
+
+/// All ranks take what the first one with points says. @return the number of points of those before
+vtkIdType Share(const vtkAvianLidarRanks& ranks, CloudFacts& facts)
+{
+  vtkMultiProcessStream mine;
+  mine << static_cast<long long>(facts.Points) << static_cast<int>(facts.IsTimed)
+       << static_cast<long long>(facts.Made) << facts.Time << facts.Sensor[0] << facts.Sensor[1]
+       << facts.Sensor[2] << facts.HalfBeamwidth;
+  vtkIdType before = 0;
+  bool isFirst = true;
+  int rank = 0;
+  for (vtkMultiProcessStream& stream : ranks.Gather(mine))
+  {
+    long long points = 0;
+    int isTimed = 0;
+    long long made = 0;
+    CloudFacts read;
+    stream >> points >> isTimed >> made >> read.Time >> read.Sensor[0] >> read.Sensor[1] >>
+      read.Sensor[2] >> read.HalfBeamwidth;
+    before += rank++ < ranks.Rank() ? points : 0;
+    if (isFirst && points > 0)
+    {
+      isFirst = false;
+      read.IsTimed = isTimed != 0;
+      read.Made = static_cast<vtkMTimeType>(made);
+      facts = read;
+    }
+  }
+  return before;
+}
+
+/// What is wrong with the arrays of a cloud, or nothing.
+std::string CheckArrays(vtkPolyData* cloud)
+{
+  for (const Arrays::Name& name :
+    { Arrays::IsClutter, Arrays::Timestamp, Arrays::DistanceStdError })
+  {
+    std::string problem = Arrays::CheckNumeric(cloud->GetPointData(), name, "point array");
+    vtkDataArray* array = cloud->GetPointData()->GetArray(name.name);
+    problem += Arrays::CheckShape(array, "point array", 1, cloud->GetNumberOfPoints());
+    if (!problem.empty())
+    {
+      return problem;
+    }
+  }
+  return {};
+}
+
+/// The points that are not clutter.
+struct Targets
+{
+  std::vector<avianlidar::CloudPoint> Points;
+  std::vector<vtkIdType> Indices; // in the cloud
+  bool AreTimed = false;          // else all times are 0
+};
+
+std::string ReadTargets(vtkPolyData* cloud, double rangeError, Targets& targets)
+{
+  vtkPointData* arrays = cloud->GetPointData();
+  vtkDataArray* clutter = arrays->GetArray(Arrays::IsClutter.name);
+  vtkDataArray* times = arrays->GetArray(Arrays::Timestamp.name);
+  vtkDataArray* errors = arrays->GetArray(Arrays::DistanceStdError.name);
+  targets.AreTimed = times != nullptr;
+  for (vtkIdType i = 0; i < cloud->GetNumberOfPoints(); ++i)
+  {
+    if (clutter && clutter->GetComponent(i, 0) != 0.0)
+    {
+      continue;
+    }
+    double p[3];
+    cloud->GetPoint(i, p);
+    const avianlidar::CloudPoint point{ { p[0], p[1], p[2] },
+      times ? times->GetComponent(i, 0) / 1e6 : 0.0,
+      errors ? errors->GetComponent(i, 0) : rangeError };
+    if (!IsNear(p) || !std::isfinite(point.time) ||
+      !(point.rangeError >= 0.0 && point.rangeError <= LargestCoordinate))
+    {
+      return "point " + std::to_string(i) +
+        ": its coordinates, 'timestamp' or 'distance_std_error' are not finite, expected "
+        "coordinates up to 1e9 m and errors from 0 to 1e9 m";
+    }
+    targets.Points.push_back(point);
+    targets.Indices.push_back(i);
+  }
+  return {};
+}
+
+/// The tracks with one position, or the others, as cells.
+void AddCells(const std::vector<const avianlidar::Track*>& tracks, vtkPolyData* output)
+{
+  const auto cells = static_cast<vtkIdType>(tracks.size());
+  vtkIdType points = 0;
+  for (const avianlidar::Track* track : tracks)
+  {
+    points += static_cast<vtkIdType>(track->positions.size());
+  }
+  auto places = Arrays::MakePoints(points);
+  auto times = Arrays::Make<vtkDoubleArray>(Arrays::Time, points);
+  auto velocities = Arrays::Make<vtkDoubleArray>(Arrays::Velocity, points, 3);
+  auto covariances = Arrays::Make<vtkDoubleArray>(Arrays::PositionCovariance, points, 6);
+  auto echoes = Arrays::Make<vtkIntArray>(Arrays::NumberOfEchoes, points);
+  auto ids = Arrays::Make<vtkIntArray>(Arrays::TrackId, cells);
+  auto confirmed = Arrays::Make<vtkUnsignedCharArray>(Arrays::Confirmed, cells);
+  auto ended = Arrays::Make<vtkUnsignedCharArray>(Arrays::Ended, cells);
+  auto hits = Arrays::Make<vtkIntArray>(Arrays::Hits, cells);
+  vtkNew<vtkCellArray> vertices;
+  vtkNew<vtkCellArray> lines;
+  vtkIdType point = 0;
+  for (vtkIdType cell = 0; cell < cells; ++cell)
+  {
+    const avianlidar::Track& track = *tracks[static_cast<std::size_t>(cell)];
+    vtkCellArray* kind = track.positions.size() > 1 ? lines : vertices;
+    kind->InsertNextCell(static_cast<int>(track.positions.size()));
+    for (const avianlidar::TrackPosition& position : track.positions)
+    {
+      kind->InsertCellPoint(point);
+      places->SetPoint(point, &position.position[0]);
+      times->SetValue(point, position.time);
+      velocities->SetTypedTuple(point, &position.velocity[0]);
+      covariances->SetTypedTuple(point, position.covariance.data());
+      echoes->SetValue(point, position.echoes);
+      ++point;
+    }
+    ids->SetValue(cell, track.id);
+    confirmed->SetValue(cell, track.confirmed);
+    ended->SetValue(cell, track.ended);
+    hits->SetValue(cell, track.hits);
+  }
+  output->SetPoints(places);
+  output->SetVerts(vertices);
+  output->SetLines(lines);
+  for (vtkDataArray* array : std::vector<vtkDataArray*>{ times, velocities, covariances, echoes })
+  {
+    output->GetPointData()->AddArray(array);
+  }
+  for (vtkDataArray* array : std::vector<vtkDataArray*>{ ids, confirmed, ended, hits })
+  {
+    output->GetCellData()->AddArray(array);
+  }
+}
+
+/// Cells of vertices come before those of lines.
+std::vector<const avianlidar::Track*> InOrderOfCells(const std::vector<avianlidar::Track>& tracks)
+{
+  std::vector<const avianlidar::Track*> order;
+  for (const avianlidar::Track& track : tracks)
+  {
+    order.push_back(&track);
+  }
+  std::stable_partition(order.begin(), order.end(),
+    [](const avianlidar::Track* track) { return track->positions.size() == 1; });
+  return order;
+}
+}
+
+//------------------------------------------------------------------------------
+struct vtkAvianLidarTracker::vtkInternals
+{
+  // A property that is a number.
+  struct Setting
+  {
+    const char* Property;
+    Arrays::Name Field;
+    std::variant<double vtkAvianLidarTracker::*, int vtkAvianLidarTracker::*> Member;
+    double Least;
+    double Most;
+
+    double ValueOf(const vtkAvianLidarTracker& tracker) const
+    {
+      return std::visit(
+        [&](auto member) { return static_cast<double>(tracker.*member); }, this->Member);
+    }
+  };
+  static const std::vector<Setting>& Settings();
+
+  // What is known after a cloud.
+  struct State
+  {
+    avianlidar::Tracker Tracker;
+    bool IsEmpty = true;
+    double Time = 0.0;      // s, of the cloud
+    vtkMTimeType Made = 0;  // the cloud
+    double LastPoint = 0.0; // s, the latest of a point
+    bool HasWarned = false;
+  };
+  State Before; // the last cloud
+  State After;
+  CloudFacts Facts; // of the cloud at hand
+
+  static avianlidar::TrackerSettings SettingsOf(const vtkAvianLidarTracker& self);
+  std::string Track(
+    vtkAvianLidarTracker* self, vtkPolyData* cloud, bool warns, std::vector<int>& trackOfPoint);
+};
+
+//------------------------------------------------------------------------------
+const std::vector<vtkAvianLidarTracker::vtkInternals::Setting>& vtkAvianLidarTracker::vtkInternals::
+  Settings()
+{
+  using Self = vtkAvianLidarTracker;
+  static const std::vector<Setting> all = { { "ClusterDistance", { "cluster_distance", "m" },
+                                              &Self::ClusterDistance, 0.0, 1000.0 },
+    { "ClusterAngle", { "cluster_angle", "deg" }, &Self::ClusterAngle, 0.0, 20.0 },
+    { "RangeError", { "range_error", "m" }, &Self::RangeError, 0.001, 1000.0 },
+    { "HalfBeamwidth", HalfBeamwidthName, &Self::HalfBeamwidth, 0.0, 1.0 },
+    { "TargetExtent", { "target_extent", "m" }, &Self::TargetExtent, 0.001, 1000.0 },
+    { "MotionModel", { "motion_model", "1" }, &Self::MotionModel, 0.0, 1.0 },
+    { "AccelerationDensity", { "acceleration_density", "m2/s3" }, &Self::AccelerationDensity, 0.0,
+      1e6 },
+    { "TurnRateDensity", { "turn_rate_density", "deg2/s3" }, &Self::TurnRateDensity, 0.0, 1e6 },
+    { "MaximumSpeed", { "maximum_speed", "m/s" }, &Self::MaximumSpeed, 0.1, 1000.0 },
+    { "MaximumClimbRate", { "maximum_climb_rate", "m/s" }, &Self::MaximumClimbRate, 0.1, 1000.0 },
+    { "MaximumTurnRate", { "maximum_turn_rate", "deg/s" }, &Self::MaximumTurnRate, 0.0, 360.0 },
+    { "GateProbability", { "gate_probability", "1" }, &Self::GateProbability, 0.5, 0.999999 },
+    { "ConfirmHits", { "confirm_hits", "1" }, &Self::ConfirmHits, 1.0, 32.0 },
+    { "ConfirmScans", { "confirm_scans", "1" }, &Self::ConfirmScans, 1.0, 32.0 },
+    { "MinimumSpeed", { "minimum_speed", "m/s" }, &Self::MinimumSpeed, 0.0, 1000.0 },
+    { "MaximumMisses", { "maximum_misses", "1" }, &Self::MaximumMisses, 1.0, 1000.0 },
+    { "HistoryLength", { "history_length", "1" }, &Self::HistoryLength, 1.0, 1e6 },
+    { "KeepTime", { "keep_time", "s" }, &Self::KeepTime, 0.0, 1e9 } };
+  return all;
+}
+
+//------------------------------------------------------------------------------
+avianlidar::TrackerSettings vtkAvianLidarTracker::vtkInternals::SettingsOf(
+  const vtkAvianLidarTracker& self)
+{
+  constexpr double degree = avianlidar::RadiansPerDegree;
+  avianlidar::TrackerSettings s;
+  s.targetExtent = self.TargetExtent;
+  s.gate = avianlidar::normalDistanceSquare(self.GateProbability);
+  // The gate of a new track reaches as far as its largest speed takes it.
+  s.motion.accelerationDensity = self.AccelerationDensity;
+  s.motion.speedError = self.MaximumSpeed / std::sqrt(s.gate);
+  s.motion.climbError = self.MaximumClimbRate / std::sqrt(s.gate);
+  if (self.MotionModel == MOTION_COORDINATED_TURN)
+  {
+    s.motion.turnRateDensity = self.TurnRateDensity * degree * degree;
+    s.motion.turnRateError = self.MaximumTurnRate * degree / std::sqrt(s.gate);
+  }
+  s.confirmHits = self.ConfirmHits;
+  s.confirmScans = self.ConfirmScans;
+  s.minimumSpeed = self.MinimumSpeed;
+  s.maximumMisses = self.MaximumMisses;
+  s.historyLength = static_cast<std::size_t>(self.HistoryLength);
+  s.keepTime = self.KeepTime;
+  return s;
+}
+
+//------------------------------------------------------------------------------
+std::string vtkAvianLidarTracker::vtkInternals::Track(
+  vtkAvianLidarTracker* self, vtkPolyData* cloud, bool warns, std::vector<int>& trackOfPoint)
+{
+  const CloudFacts& facts = this->Facts;
+  Targets targets;
+  std::string problem = ReadTargets(cloud, self->RangeError, targets);
+  if (!problem.empty())
+  {
+    return problem;
+  }
+  const bool isFirst = this->After.IsEmpty;
+  // Without a time the data at hand count once, too.
+  const double step = isFirst || facts.Made == this->After.Made ? 0.0 : 1.0;
+  const double time = facts.IsTimed ? facts.Time : this->After.Time + step;
+  const bool isLater = !isFirst && time > this->After.Time;
+  const bool isEarlier = !isFirst && time < this->After.Time;
+  State next = isEarlier ? State{} : isLater ? this->After : this->Before;
+
+  // Times of points, if they go on from the last cloud.
+  const auto [least, most] = std::minmax_element(targets.Points.begin(), targets.Points.end(),
+    [](const auto& a, const auto& b) { return a.time < b.time; });
+  const bool hasTimes = targets.AreTimed && !targets.Points.empty();
+  const bool goesOn = hasTimes && (next.IsEmpty || least->time > next.LastPoint);
+  const double last = goesOn ? most->time : time;
+  if (!goesOn)
+  {
+    for (avianlidar::CloudPoint& point : targets.Points)
+    {
+      point.time = time;
+    }
+  }
+  const bool areOdd = hasTimes && !goesOn && !next.HasWarned;
+  next.LastPoint = targets.Points.empty() ? next.LastPoint : last;
+  next.HasWarned = next.HasWarned || areOdd;
+  next.IsEmpty = false;
+  next.Time = time;
+  next.Made = facts.Made;
+
+  avianlidar::TrackerSettings settings = SettingsOf(*self);
+  settings.halfBeamwidth = facts.HalfBeamwidth;
+  const Vec3 sensor(facts.Sensor[0], facts.Sensor[1], facts.Sensor[2]);
+  const avianlidar::Clusters clusters = avianlidar::findClusters(targets.Points, sensor,
+    self->ClusterDistance, self->ClusterAngle * avianlidar::RadiansPerDegree);
+  vtkAvianLidarAbort::StopIfWanted(self);
+  const std::vector<int> ids = next.Tracker.update(clusters.all, sensor, time, settings);
+  trackOfPoint.assign(static_cast<std::size_t>(cloud->GetNumberOfPoints()), -1);
+  for (std::size_t i = 0; i < targets.Indices.size(); ++i)
+  {
+    trackOfPoint[static_cast<std::size_t>(targets.Indices[i])] = ids[clusters.ofPoint[i]];
+  }
+  if (isLater || isEarlier)
+  {
+    this->Before = isLater ? std::move(this->After) : State{};
+  }
+  this->After = std::move(next);
+  if (isEarlier && warns)
+  {
+    vtkWarningWithObjectMacro(self,
+      << "Tracker: the cloud is of an earlier time than the last one: all tracks are forgotten.");
+  }
+  if (areOdd && warns)
+  {
+    vtkWarningWithObjectMacro(self,
+      << "Tracker: the 'timestamp' of points do not lie after those of the cloud before: the time "
+         "of the cloud is used. Whole scans are expected, whose timestamps go on.");
+  }
+  return {};
+}
+
+vtkStandardNewMacro(vtkAvianLidarTracker);
+vtkCxxSetObjectMacro(vtkAvianLidarTracker, Controller, vtkMultiProcessController);
+
+//------------------------------------------------------------------------------
+vtkAvianLidarTracker::vtkAvianLidarTracker()
+  : Internals(new vtkInternals)
+{
+  this->SetController(vtkMultiProcessController::GetGlobalController());
+  this->SetNumberOfOutputPorts(2);
+}
+
+//------------------------------------------------------------------------------
+vtkAvianLidarTracker::~vtkAvianLidarTracker()
+{
+  this->SetController(nullptr);
+}
+
+//------------------------------------------------------------------------------
+void vtkAvianLidarTracker::Reset()
+{
+  *this->Internals = vtkInternals();
+  this->Modified();
+}
+
+//------------------------------------------------------------------------------
+int vtkAvianLidarTracker::FillInputPortInformation(int, vtkInformation* info)
+{
+  info->Set(INPUT_REQUIRED_DATA_TYPE(), "vtkPolyData");
+  return 1;
+}
+
+//------------------------------------------------------------------------------
+int vtkAvianLidarTracker::RequestUpdateExtent(
+  vtkInformation* request, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
+{
+  const vtkAvianLidarRanks ranks(this->Controller, request, outputVector);
+  vtkInformation* info = inputVector[0]->GetInformationObject(0);
+  info->Set(Pipeline::UPDATE_PIECE_NUMBER(), ranks.Rank());
+  info->Set(Pipeline::UPDATE_NUMBER_OF_PIECES(), ranks.Size());
+  info->Set(Pipeline::UPDATE_NUMBER_OF_GHOST_LEVELS(), 0);
+  return 1;
+}
+
+//------------------------------------------------------------------------------
+int vtkAvianLidarTracker::ModifyRequest(vtkInformation* request, int when)
+{
+  return vtkAvianLidarRanks::UpdateInputs(this, request, when) &&
+    this->Superclass::ModifyRequest(request, when);
+}
+
+//------------------------------------------------------------------------------
+std::string vtkAvianLidarTracker::CheckSettings() const
+{
+  for (const vtkInternals::Setting& setting : vtkInternals::Settings())
+  {
+    const double value = setting.ValueOf(*this);
+    if (!(value >= setting.Least && value <= setting.Most))
+    {
+      std::ostringstream expected;
+      expected << setting.Least << " to " << setting.Most << " " << setting.Field.unit;
+      return avianlidar::valueError(setting.Property, value, expected.str().c_str());
+    }
+  }
+  if (!IsNear(this->SensorPosition))
+  {
+    return "SensorPosition has a number that is not finite or beyond 1e9, expected metres";
+  }
+  return this->ConfirmHits <= this->ConfirmScans
+    ? std::string()
+    : avianlidar::valueError("ConfirmHits", this->ConfirmHits, "at most ConfirmScans");
+}
+
+//------------------------------------------------------------------------------
+int vtkAvianLidarTracker::RequestData(
+  vtkInformation* request, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
+{
+  return vtkAvianLidarRanks::Execute(this, request, outputVector,
+    [&](const vtkAvianLidarRanks& ranks) -> int
+    {
+      vtkPolyData* input = vtkPolyData::GetData(inputVector[0]);
+      CloudFacts& facts = this->Internals->Facts;
+      facts = {};
+      std::copy(this->SensorPosition, this->SensorPosition + 3, facts.Sensor);
+      facts.HalfBeamwidth = this->HalfBeamwidth;
+      Outcome outcome = ranks.Together(this,
+        [&]() -> std::string
+        {
+          vtkAvianLidarAbort::StopIfWanted(this);
+          std::string problem = this->CheckSettings();
+          problem = problem.empty() ? ReadFacts(input, facts) : problem;
+          return TrackerError(problem.empty() ? CheckArrays(input) : problem);
+        });
+      vtkAvianLidarRanks::Settings settings;
+      for (const vtkInternals::Setting& setting : vtkInternals::Settings())
+      {
+        settings.Add(setting.Property, setting.ValueOf(*this));
+      }
+      outcome = outcome == Outcome::Done ? ranks.AgreeOn(this, settings) : outcome;
+      vtkSmartPointer<vtkPolyData> cloud = input;
+      vtkIdType first = 0; // of this rank's points
+      if (outcome == Outcome::Done && !ranks.Alone())
+      {
+        first = Share(ranks, facts);
+        outcome = vtkAvianLidarGather::Points(ranks, this, input, cloud);
+      }
+      std::vector<int> trackOfPoint;
+      if (outcome == Outcome::Done)
+      {
+        outcome = ranks.Together(this,
+          [&]() {
+            return TrackerError(
+              this->Internals->Track(this, cloud, ranks.Rank() == 0, trackOfPoint));
+          });
+      }
+      const int asked = std::max(0, request->Get(vtkExecutive::FROM_OUTPUT_PORT()));
+      const int piece =
+        outputVector->GetInformationObject(asked)->Get(Pipeline::UPDATE_PIECE_NUMBER());
+      if (outcome == Outcome::Done)
+      {
+        this->FillOutputs(piece == 0, input,
+          ranks.Alone() && piece > 0 ? nullptr : trackOfPoint.data() + first, outputVector);
+      }
+      return outcome == Outcome::Failed ? 0 : 1; // stopped: empty and valid
+    });
+}
+
+//------------------------------------------------------------------------------
+void vtkAvianLidarTracker::FillOutputs(bool hasTracks, vtkPolyData* input, const int* trackOfPoint,
+  vtkInformationVector* outputVector) const
+{
+  const CloudFacts& facts = this->Internals->Facts;
+  vtkPolyData* tracks = vtkPolyData::GetData(outputVector, 0);
+  vtkPolyData* points = vtkPolyData::GetData(outputVector, 1);
+  std::map<int, bool> isConfirmed;
+  for (const avianlidar::Track& track : this->Internals->After.Tracker.tracks())
+  {
+    isConfirmed[track.id] = track.confirmed;
+  }
+  if (hasTracks)
+  {
+    AddCells(InOrderOfCells(this->Internals->After.Tracker.tracks()), tracks);
+  }
+  points->GetFieldData()->ShallowCopy(input->GetFieldData());
+  if (trackOfPoint)
+  {
+    points->ShallowCopy(input);
+    const vtkIdType size = input->GetNumberOfPoints();
+    auto ids = Arrays::Make<vtkIntArray>(Arrays::TrackId, size);
+    auto confirmed = Arrays::Make<vtkUnsignedCharArray>(Arrays::TrackConfirmed, size);
+    for (vtkIdType i = 0; i < size; ++i)
+    {
+      ids->SetValue(i, trackOfPoint[i]);
+      confirmed->SetValue(i, trackOfPoint[i] >= 0 && isConfirmed[trackOfPoint[i]]);
+    }
+    points->GetPointData()->AddArray(ids);
+    points->GetPointData()->AddArray(confirmed);
+  }
+  const double time = this->Internals->After.Time;
+  for (vtkPolyData* output : { tracks, points })
+  {
+    vtkFieldData* fields = output->GetFieldData();
+    for (const vtkInternals::Setting& setting : vtkInternals::Settings())
+    {
+      std::holds_alternative<int vtkAvianLidarTracker::*>(setting.Member)
+        ? Arrays::SetFieldInteger(fields, setting.Field, static_cast<int>(setting.ValueOf(*this)))
+        : Arrays::SetFieldValue(fields, setting.Field, setting.ValueOf(*this));
+    }
+    Arrays::SetFieldValue(fields, HalfBeamwidthName, facts.HalfBeamwidth);
+    Arrays::SetFieldValue(fields, Arrays::Time, time);
+    auto sensor = Arrays::Make<vtkDoubleArray>(SensorPositionName, 1, 3);
+    sensor->SetTypedTuple(0, facts.Sensor);
+    fields->AddArray(sensor);
+    output->GetInformation()->Set(vtkDataObject::DATA_TIME_STEP(), time);
+  }
+}
+
+//------------------------------------------------------------------------------
+void vtkAvianLidarTracker::PrintSelf(ostream& os, vtkIndent indent)
+{
+  this->Superclass::PrintSelf(os, indent);
+  os << indent << "ErrorsAsData: " << this->ErrorsAsData << "\n";
+  os << indent << "Controller: " << this->Controller << "\n";
+  for (const vtkInternals::Setting& setting : vtkInternals::Settings())
+  {
+    os << indent << setting.Property << ": " << setting.ValueOf(*this) << " " << setting.Field.unit
+       << "\n";
+  }
+  os << indent << "SensorPosition: " << this->SensorPosition[0] << " " << this->SensorPosition[1]
+     << " " << this->SensorPosition[2] << "\n";
+}

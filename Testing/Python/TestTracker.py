@@ -1,0 +1,346 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The tracker, scan by scan, against one of NumPy and SciPy; times of clouds, what is forgotten, the same bits for any order of
+the points, bad input; and gulls that a search lidar scans."""
+
+import unittest
+
+import numpy as np
+import scipy.linalg
+import scipy.optimize
+import scipy.stats
+from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.vtkCommonDataModel import vtkDataObject
+
+import avianlidar as al
+from avianlidar import vtkAvianLidar as wrapped
+from avianlidar.vtkAvianLidar import vtkAvianLidarTracker as Tracker
+
+from cloudtools import add_array, add_field, cloud
+from echotools import Messages, assert_same_bits
+
+EXACT = {"ClusterDistance": 0.0, "ClusterAngle": 0.0, "HalfBeamwidth": 0.0}
+STRAIGHT = {"MotionModel": Tracker.MOTION_CONSTANT_VELOCITY, "AccelerationDensity": 2.0}
+
+
+def tracker(**settings):
+    made = Tracker()
+    for name, value in settings.items():
+        getattr(made, "Set" + name)(value)
+    return made
+
+
+def feed(made, points, time=None, **arrays):
+    """One cloud; what comes out: tracks, points."""
+    data = cloud(points)
+    if time is not None:
+        data.GetInformation().Set(vtkDataObject.DATA_TIME_STEP(), time)
+    for name, values in arrays.items():
+        add_array(data, name, np.asarray(values))
+    made.SetInputData(data)
+    made.Update()
+    return made.GetOutput(0), made.GetOutput(1)
+
+
+def point_array(data, name):
+    return vtk_to_numpy(data.GetPointData().GetArray(name))
+
+
+def cell_array(data, name):
+    return vtk_to_numpy(data.GetCellData().GetArray(name))
+
+
+def field(data, name):
+    return data.GetFieldData().GetArray(name).GetTuple(0)
+
+
+class Oracle:
+    """The same method in NumPy, without clusters, at times that are equal within a cloud."""
+
+    def __init__(self, q=2.0, speed=25.0, climb=5.0, extent=0.2, error=0.5, p=0.99, hits=3, scans=4, misses=3):
+        self.gate = scipy.stats.chi2.ppf(p, 3)
+        self.first = scipy.linalg.block_diag(np.zeros((3, 3)), np.diag([speed, speed, climb]) ** 2 / self.gate)
+        self.q, self.extent, self.error = q, extent, error
+        self.hits, self.scans, self.misses = hits, scans, misses
+        self.tracks, self.next = [], 0
+
+    def noise(self, place):
+        line = place / np.linalg.norm(place)
+        return self.extent**2 * np.eye(3) + self.error**2 * np.outer(line, line)
+
+    def predict(self, track, time):
+        t = time - track["time"]
+        f = np.kron([[1, t], [0, 1]], np.eye(3))
+        noise = self.q * np.kron([[t**3 / 3, t**2 / 2], [t**2 / 2, t]], np.eye(3))
+        return f @ track["mean"], f @ track["covariance"] @ f.T + noise
+
+    def update(self, places, time):
+        order = np.lexsort(places.T[::-1])
+        ids = np.full(len(places), -1)
+        states = [self.predict(track, time) for track in self.tracks]
+        costs = np.full((len(states), len(places)), np.inf)
+        largest = -np.inf
+        for i, (mean, covariance) in enumerate(states):
+            for j, place in enumerate(places):
+                s = covariance[:3, :3] + self.noise(place)
+                d2 = (place - mean[:3]) @ np.linalg.solve(s, place - mean[:3])
+                if d2 <= self.gate:
+                    log = np.linalg.slogdet(s)[1]
+                    largest = max(largest, log)
+                    costs[i, j] = d2 + log
+        pairs = []
+        if np.isfinite(costs).any():
+            without = np.full((len(states), len(states)), 1e9)
+            np.fill_diagonal(without, self.gate + largest)
+            all_costs = np.hstack([np.where(np.isfinite(costs), costs, 1e9), without])
+            pairs = [(i, j) for i, j in zip(*scipy.optimize.linear_sum_assignment(all_costs)) if j < len(places)]
+        of = dict(pairs)
+        for i, track in enumerate(self.tracks):
+            track["recent"] = [*track["recent"], i in of][-self.scans:]
+            if i not in of:
+                track["misses"] += 1
+                continue
+            mean, covariance = states[i]
+            gain = covariance[:, :3] @ np.linalg.inv(covariance[:3, :3] + self.noise(places[of[i]]))
+            track["mean"] = mean + gain @ (places[of[i]] - mean[:3])
+            track["covariance"] = covariance - gain @ covariance[:3]
+            track.update(time=time, misses=0)
+            track["confirmed"] |= sum(track["recent"]) >= self.hits
+            ids[of[i]] = track["id"]
+        self.tracks = [track for track in self.tracks
+                       if track["misses"] < (self.misses if track["confirmed"] else self.scans - self.hits + 1)]
+        for j in order:
+            if ids[j] < 0:
+                covariance = self.first + scipy.linalg.block_diag(self.noise(places[j]), np.zeros((3, 3)))
+                self.tracks.append({"id": self.next, "mean": np.append(places[j], [0, 0, 0]), "covariance": covariance,
+                                    "time": time, "misses": 0, "recent": [True], "confirmed": False})
+                ids[j] = self.next
+                self.next += 1
+        return ids
+
+
+class TestTracker(unittest.TestCase):
+    def test_against_numpy_and_scipy(self):
+        """Crowded: many birds, of which some are missed, and false alarms, in each other's gates."""
+        random = np.random.default_rng(4)
+        start = random.uniform(-60, 60, (40, 3)) + [200, 0, 60]
+        velocity = random.normal(0, [8, 8, 1], (40, 3))
+        made, oracle = tracker(**EXACT, **STRAIGHT), Oracle()
+        contested = 0
+        for scan in range(25):
+            time = 2.0 * scan
+            birds = start + velocity * (time % 30)
+            places = np.vstack([birds[random.random(40) < 0.8], random.uniform(-80, 80, (10, 3)) + [200, 0, 60]])
+            places += random.normal(0, 0.3, places.shape)
+            random.shuffle(places)
+            tracks, points = feed(made, places, time)
+            expected = oracle.update(places, time)
+            np.testing.assert_array_equal(point_array(points, "track_id"), expected)
+            alive = {track["id"]: track for track in oracle.tracks}
+            ended = cell_array(tracks, "ended") > 0
+            self.assertEqual(set(cell_array(tracks, "track_id")[~ended]), set(alive))
+            contested += len(expected)
+            for cell in np.flatnonzero(~ended):
+                track = alive[cell_array(tracks, "track_id")[cell]]
+                last = tracks.GetCell(cell).GetPointId(tracks.GetCell(cell).GetNumberOfPoints() - 1)
+                np.testing.assert_allclose(tracks.GetPoint(last), track["mean"][:3], rtol=1e-9)
+                np.testing.assert_allclose(point_array(tracks, "velocity")[last], track["mean"][3:], rtol=1e-7, atol=1e-9)
+                xx, yy, zz, xy, yz, xz = point_array(tracks, "position_covariance")[last]
+                np.testing.assert_allclose([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]], track["covariance"][:3, :3], rtol=1e-7,
+                                           atol=1e-12)
+                self.assertEqual(point_array(tracks, "time")[last], track["time"])
+                self.assertEqual(bool(cell_array(tracks, "confirmed")[cell]), track["confirmed"])
+        self.assertGreater(contested, 500)
+        self.assertGreater(oracle.next, 200)
+
+    def test_arrays_and_fields(self):
+        made = tracker(ConfirmHits=2, ConfirmScans=2, SensorPosition=(0, 0, 10), AccelerationDensity=0.1)
+        first = [(100, 0, 50), (100.5, 0.2, 50), (300, 300, 60), (0, 500, 5)]
+        feed(made, first, 10.0, is_clutter=[0, 0, 0, 1])
+        tracks, points = feed(made, np.add(first, (0, 20, 0)), 12.0, is_clutter=[0, 0, 0, 1])
+        self.assertEqual(list(point_array(points, "track_id")), [0, 0, 1, -1])
+        self.assertEqual(list(point_array(points, "track_confirmed")), [1, 1, 1, 0])
+        self.assertEqual([tracks.GetNumberOfVerts(), tracks.GetNumberOfLines()], [0, 2])
+        self.assertEqual(list(cell_array(tracks, "hits")), [2, 2])
+        self.assertEqual(list(point_array(tracks, "number_of_echoes")), [2, 2, 1, 1])
+        self.assertEqual(list(point_array(tracks, "time")), [10, 12, 10, 12])
+        np.testing.assert_allclose(point_array(tracks, "velocity")[1], [0, 10, 0], atol=0.2)
+        for data in (tracks, points):
+            self.assertEqual(field(data, "time"), (12.0,))
+            self.assertEqual(field(data, "confirm_hits"), (2,))
+            self.assertEqual(field(data, "sensor_position"), (0, 0, 10))
+            self.assertEqual(data.GetInformation().Get(vtkDataObject.DATA_TIME_STEP()), 12.0)
+        data = cloud(first)
+        add_field(data, "position", (0.0, 0.0, 3.0))
+        add_field(data, "half_beamwidth", (0.001,))
+        add_field(data, "TimeValue", (14.0,))
+        made.SetInputData(data)
+        made.Update()
+        self.assertEqual(field(made.GetOutput(0), "sensor_position"), (0, 0, 3))
+        self.assertEqual(field(made.GetOutput(0), "half_beamwidth"), (0.001,))
+        self.assertEqual(field(made.GetOutput(0), "time"), (14.0,))
+
+    def test_errors_of_points(self):
+        """Along the line of sight the error of the range, given or not; across it the beam's width."""
+        for given, expected in ((None, 0.5), (0.1, 0.1)):
+            made = tracker(HalfBeamwidth=0.01)
+            arrays = {} if given is None else {"distance_std_error": [given]}
+            tracks, _ = feed(made, [(0, 400, 0)], 0.0, **arrays)
+            np.testing.assert_allclose(point_array(tracks, "position_covariance")[0],
+                                       [4 + 0.04, expected**2 + 0.04, 4 + 0.04, 0, 0, 0], rtol=1e-12)
+
+    def test_a_cloud_of_the_same_time_replaces_the_last(self):
+        random = np.random.default_rng(1)
+        clouds = [random.uniform(0, 100, (20, 3)) for _ in range(4)]
+        once, often = tracker(), tracker()
+        for time, points in enumerate(clouds):
+            feed(once, points, float(time))
+            feed(often, random.uniform(0, 100, (30, 3)), float(time))
+            often.SetMaximumSpeed(3.0)
+            often.Update()
+            often.SetMaximumSpeed(25.0)
+            feed(often, points, float(time))
+        for port in (0, 1):
+            assert_same_bits(once.GetOutput(port), often.GetOutput(port))
+
+    def test_times(self):
+        made = tracker()
+        messages = Messages(made)
+        for expected in (0.0, 1.0, 2.0):  # no time: one after the other
+            tracks, _ = feed(made, [(100, 0, 10)])
+            self.assertEqual(field(tracks, "time"), (expected,))
+        made.SetMaximumSpeed(20.0)
+        made.Update()  # the same data
+        self.assertEqual(list(cell_array(made.GetOutput(0), "hits")), [3])
+        self.assertEqual(messages.all(), [])
+        tracks, _ = feed(made, [(100, 0, 10)], 1.0)
+        self.assertEqual(len(messages.all()), 1)
+        self.assertIn("earlier time", messages.all()[0])
+        self.assertEqual([list(cell_array(tracks, name)) for name in ("hits", "track_id")], [[1], [0]])
+        made.Reset()
+        tracks, _ = feed(made, [(100, 0, 10)], 0.0)
+        self.assertEqual(list(cell_array(tracks, "hits")), [1])
+        self.assertEqual(len(messages.all()), 1)
+
+    def test_timestamps(self):
+        made = tracker(**EXACT, AccelerationDensity=0.1)
+        messages = Messages(made)
+        feed(made, [(100, 0, 10), (0, 100, 10)], 0.0, timestamp=[0.1e6, 1.5e6])
+        tracks, _ = feed(made, [(100, 2, 10), (2, 100, 10)], 2.0, timestamp=[2.1e6, 3.5e6])
+        self.assertEqual(list(point_array(tracks, "time")), [1.5, 3.5, 0.1, 2.1])
+        np.testing.assert_allclose(point_array(tracks, "velocity")[1], [1, 0, 0], atol=0.02)
+        self.assertEqual(messages.all(), [])
+        for time in (4.0, 6.0):  # as if the clock began anew
+            tracks, _ = feed(made, [(100, 2, 10), (2, 100, 10)], time, timestamp=[0.1e6, 1.5e6])
+            self.assertEqual(len(messages.all()), 1)
+            self.assertIn("timestamp", messages.all()[0])
+        self.assertEqual(list(point_array(tracks, "time")), [1.5, 3.5, 4, 6, 0.1, 2.1, 4, 6])
+
+    def test_same_bits_for_any_order(self):
+        random = np.random.default_rng(2)
+        one, other = tracker(), tracker()
+        for scan in range(6):
+            points = random.uniform(0, 150, (150, 3)) + [50, 0, 0]
+            stamps = 2e6 * (scan + random.random(150))
+            order = random.permutation(150)
+            tracks, labels = feed(one, points, 2.0 * scan, timestamp=stamps)
+            shuffled, mixed = feed(other, points[order], 2.0 * scan, timestamp=stamps[order])
+            assert_same_bits(tracks, shuffled)
+            np.testing.assert_array_equal(point_array(labels, "track_id")[order], point_array(mixed, "track_id"))
+
+    def test_memory_is_bounded(self):
+        random = np.random.default_rng(3)
+        made = tracker(HistoryLength=5, KeepTime=4.0)
+        sizes = []
+        for scan in range(120):
+            tracks, _ = feed(made, random.uniform(0, 300, (60, 3)), 2.0 * scan)
+            sizes.append(tracks.GetNumberOfPoints())
+            self.assertLessEqual(max(tracks.GetCell(i).GetNumberOfPoints() for i in range(tracks.GetNumberOfCells())), 5)
+        self.assertLess(max(sizes[60:]), 1.3 * max(sizes[20:60]))
+
+    def test_an_empty_cloud_is_a_scan(self):
+        made = tracker(MaximumMisses=2)
+        for scan in range(4):
+            feed(made, [(100, 10 * scan, 10)], float(scan))
+        for scan, ended in ((4, 0), (5, 1), (6, 1)):
+            tracks, points = feed(made, np.empty((0, 3)), float(scan))
+            self.assertEqual(list(cell_array(tracks, "ended")), [ended])
+            self.assertEqual(points.GetNumberOfPoints(), 0)
+
+    def test_turns(self):
+        """Gulls in circles: with a turn in the model fewer are lost between scans."""
+        share = {}
+        for turns in (False, True):
+            made = tracker(**EXACT, MotionModel=turns, AccelerationDensity=0.3)
+            random = np.random.default_rng(6)
+            radius, rate = random.uniform(30, 45, 20), random.choice([-1, 1], 20) * 0.3
+            middle = random.uniform(-800, 800, (20, 2))
+            for scan in range(20):
+                angle = rate * 2 * scan + np.arange(20)
+                places = np.column_stack([middle + radius[:, None] * np.column_stack([np.cos(angle), np.sin(angle)]),
+                                          np.full(20, 50.0)])
+                tracks, _ = feed(made, places + random.normal(0, 0.2, places.shape), 2.0 * scan)
+            share[turns] = cell_array(tracks, "hits").max()
+        self.assertGreater(share[True], share[False])
+
+    def test_gulls_of_a_search_lidar(self):
+        """Straight and in circles, in clear air: what is seen often enough is tracked, and no track is of two birds but a few."""
+        for pattern, share, shared in (("Crossings", 0.75, 2), ("Circles", 0.75, 6)):
+            birds = wrapped.vtkAvianLidarTracks()
+            getattr(birds, "SetPatternTo" + pattern)()
+            for name, value in {"NumberOfBirds": 30, "Radius": 300, "Heights": (15, 40), "TimeRange": (0, 80)}.items():
+                getattr(birds, "Set" + name)(value)
+            sensor = al.Sensor("Search905", position=(0, 0, 3), number_of_revolutions=40)
+            scan = al.Scan(al.Scene([(0, 0, -50), (1, 0, -50), (0, 1, -50)], [(0, 1, 2)]), sensor, movers=birds)
+            made = tracker()
+            made.SetInputConnection(scan.algorithm.GetOutputPort(0))
+            seen, tracked, owners = 0, 0, {}
+            for revolution in range(40):
+                made.UpdateTimeStep(2.0 * revolution)
+                cloud_ = al.Cloud(made.GetOutput(1))
+                self.assertEqual(field(made.GetOutput(0), "time"), (2.0 * revolution,))
+                isBird = cloud_["object_id"] >= 10000
+                for bird in np.unique(cloud_["object_id"][isBird]):
+                    own = cloud_["object_id"] == bird
+                    seen += 1
+                    tracked += cloud_["track_confirmed"][own].any()
+                    for track in cloud_["track_id"][own & (cloud_["track_confirmed"] > 0)]:
+                        owners.setdefault(track, set()).add(bird)
+            self.assertGreater(seen, 200)
+            self.assertGreater(tracked / seen, share, pattern)
+            self.assertLessEqual(sum(len(birds_) > 1 for birds_ in owners.values()), shared, pattern)
+
+    def test_bad_input(self):
+        made = tracker()
+        feed(made, [(100, 0, 10)], 0.0)
+        for name, value in (("ClusterDistance", -1), ("ClusterAngle", 30), ("RangeError", 0), ("HalfBeamwidth", 2),
+                            ("TargetExtent", 0), ("MotionModel", 2), ("AccelerationDensity", float("nan")),
+                            ("MaximumSpeed", 0), ("GateProbability", 1), ("ConfirmHits", 5), ("ConfirmScans", 33),
+                            ("MaximumMisses", 0), ("HistoryLength", 0), ("KeepTime", -1)):
+            with self.subTest(name):
+                before = getattr(made, "Get" + name)()
+                getattr(made, "Set" + name)(value)
+                messages = Messages(made)
+                tracks, _ = feed(made, [(100, 0, 10)], 1.0)
+                self.assertEqual(len(messages.all()), 1)
+                self.assertIn(name, messages.all()[0])
+                self.assertIn(name, tracks.GetFieldData().GetAbstractArray("error").GetValue(0))
+                getattr(made, "Set" + name)(before)
+        for points, arrays, words in (([(1e10, 0, 0)], {}, "point 0"),
+                                      ([(0, 1, 0), (float("nan"), 0, 0)], {}, "point 1"),
+                                      ([(0, 1, 0)], {"distance_std_error": [-1.0]}, "distance_std_error"),
+                                      ([(0, 1, 0)], {"timestamp": [float("inf")]}, "timestamp"),
+                                      ([(0, 1, 0)], {"is_clutter": [0, 1]}, "is_clutter")):
+            messages = Messages(made)
+            feed(made, points, 1.0, **arrays)
+            self.assertEqual(len(messages.all()), 1)
+            self.assertIn(words, messages.all()[0])
+        for time in (float("nan"), float("inf")):
+            messages = Messages(made)
+            feed(made, [(100, 0, 10)], time)
+            self.assertIn("time", messages.all()[0])
+        tracks, _ = feed(made, [(100, 0, 10)], 1.0)  # the memory is as before
+        self.assertEqual(list(cell_array(tracks, "hits")), [2])
+
+
+if __name__ == "__main__":
+    unittest.main()
