@@ -5,6 +5,7 @@
 #include "ValueError.h"
 #include "vtkAvianLidarAbort.h"
 #include "vtkAvianLidarArrays.h"
+#include "vtkAvianLidarCells.h"
 #include "vtkAvianLidarGather.h"
 #include "vtkAvianLidarRanks.h"
 
@@ -23,11 +24,13 @@
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
+#include "vtkTypeInt64Array.h"
 #include "vtkUnsignedCharArray.h"
 
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numeric>
 #include <sstream>
 #include <string>
 #include <utility>
@@ -198,15 +201,20 @@ std::string ReadTargets(vtkPolyData* cloud, double rangeError, Targets& targets)
   return {};
 }
 
-/// The tracks with one position, or the others, as cells.
-void AddCells(const std::vector<const avianlidar::Track*>& tracks, vtkPolyData* output)
+/// Those of one position first: cells of vertices come before those of lines.
+void AddCells(const std::vector<avianlidar::Track>& tracks, vtkPolyData* output)
 {
   const auto cells = static_cast<vtkIdType>(tracks.size());
+  std::vector<const avianlidar::Track*> order;
   vtkIdType points = 0;
-  for (const avianlidar::Track* track : tracks)
+  for (const avianlidar::Track& track : tracks)
   {
-    points += static_cast<vtkIdType>(track->positions.size());
+    order.push_back(&track);
+    points += static_cast<vtkIdType>(track.positions.size());
   }
+  const vtkIdType vertices = std::stable_partition(order.begin(), order.end(),
+                               [](const auto* track) { return track->positions.size() == 1; }) -
+    order.begin();
   auto places = Arrays::MakePoints(points);
   auto times = Arrays::Make<vtkDoubleArray>(Arrays::Time, points);
   auto velocities = Arrays::Make<vtkDoubleArray>(Arrays::Velocity, points, 3);
@@ -216,17 +224,18 @@ void AddCells(const std::vector<const avianlidar::Track*>& tracks, vtkPolyData* 
   auto confirmed = Arrays::Make<vtkUnsignedCharArray>(Arrays::Confirmed, cells);
   auto ended = Arrays::Make<vtkUnsignedCharArray>(Arrays::Ended, cells);
   auto hits = Arrays::Make<vtkIntArray>(Arrays::Hits, cells);
-  vtkNew<vtkCellArray> vertices;
-  vtkNew<vtkCellArray> lines;
+  vtkNew<vtkTypeInt64Array> offsets; // of lines
+  Arrays::SetTuples(offsets.Get(), cells - vertices + 1);
+  vtkNew<vtkTypeInt64Array> pointsOfLines;
+  Arrays::SetTuples(pointsOfLines.Get(), points - vertices);
+  std::iota(pointsOfLines->GetPointer(0), pointsOfLines->GetPointer(points - vertices), vertices);
+  offsets->SetValue(0, 0);
   vtkIdType point = 0;
   for (vtkIdType cell = 0; cell < cells; ++cell)
   {
-    const avianlidar::Track& track = *tracks[static_cast<std::size_t>(cell)];
-    vtkCellArray* kind = track.positions.size() > 1 ? lines : vertices;
-    kind->InsertNextCell(static_cast<int>(track.positions.size()));
+    const avianlidar::Track& track = *order[static_cast<std::size_t>(cell)];
     for (const avianlidar::TrackPosition& position : track.positions)
     {
-      kind->InsertCellPoint(point);
       places->SetPoint(point, &position.position[0]);
       times->SetValue(point, position.time);
       velocities->SetTypedTuple(point, &position.velocity[0]);
@@ -234,13 +243,19 @@ void AddCells(const std::vector<const avianlidar::Track*>& tracks, vtkPolyData* 
       echoes->SetValue(point, position.echoes);
       ++point;
     }
+    if (cell >= vertices)
+    {
+      offsets->SetValue(cell - vertices + 1, point - vertices);
+    }
     ids->SetValue(cell, track.id);
     confirmed->SetValue(cell, track.confirmed);
     ended->SetValue(cell, track.ended);
     hits->SetValue(cell, track.hits);
   }
   output->SetPoints(places);
-  output->SetVerts(vertices);
+  output->SetVerts(vtkAvianLidarMakeCells(vertices, 1));
+  vtkNew<vtkCellArray> lines;
+  lines->SetData(offsets, pointsOfLines);
   output->SetLines(lines);
   for (vtkDataArray* array : std::vector<vtkDataArray*>{ times, velocities, covariances, echoes })
   {
@@ -250,19 +265,6 @@ void AddCells(const std::vector<const avianlidar::Track*>& tracks, vtkPolyData* 
   {
     output->GetCellData()->AddArray(array);
   }
-}
-
-/// Cells of vertices come before those of lines.
-std::vector<const avianlidar::Track*> InOrderOfCells(const std::vector<avianlidar::Track>& tracks)
-{
-  std::vector<const avianlidar::Track*> order;
-  for (const avianlidar::Track& track : tracks)
-  {
-    order.push_back(&track);
-  }
-  std::stable_partition(order.begin(), order.end(),
-    [](const avianlidar::Track* track) { return track->positions.size() == 1; });
-  return order;
 }
 }
 
@@ -569,7 +571,7 @@ void vtkAvianLidarTracker::FillOutputs(bool hasTracks, vtkPolyData* input, const
   }
   if (hasTracks)
   {
-    AddCells(InOrderOfCells(this->Internals->After.Tracker.tracks()), tracks);
+    AddCells(this->Internals->After.Tracker.tracks(), tracks);
   }
   points->GetFieldData()->ShallowCopy(input->GetFieldData());
   if (trackOfPoint)

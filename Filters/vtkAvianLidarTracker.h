@@ -92,37 +92,28 @@ public:
 
   ///@{
   /**
-   * Points of one cluster: their distance, m, at the sensor. 0 to 1000; default 1.5.
+   * Points of one cluster are at most so far apart: ClusterDistance, m (0 to 1000; default 1.5),
+   * and ClusterAngle, deg (0 to 20; default 0.6, more than the diagonal of a grid of 0.375 deg),
+   * times their range.
    */
   vtkSetMacro(ClusterDistance, double);
   vtkGetMacro(ClusterDistance, double);
-  ///@}
-
-  ///@{
-  /**
-   * How their distance grows with the range: the angle between beams, deg, that still join. 0 to
-   * 20; default 0.6, more than the diagonal of a grid of 0.375 deg.
-   */
   vtkSetMacro(ClusterAngle, double);
   vtkGetMacro(ClusterAngle, double);
   ///@}
 
   ///@{
   /**
-   * Standard error of a range, m, for points without `distance_std_error`. 0.001 to 1000; default
-   * 0.5.
+   * The sensor, for clouds that do not say it: standard error of a range, m (0.001 to 1000; default
+   * 0.5); half of the beam's divergence, rad (0 to 1; default 0.0056); position, m (default: the
+   * origin).
    */
   vtkSetMacro(RangeError, double);
   vtkGetMacro(RangeError, double);
-  ///@}
-
-  ///@{
-  /**
-   * Half of the beam's divergence, rad, for clouds without field data `half_beamwidth`. 0 to 1;
-   * default 0.0056.
-   */
   vtkSetMacro(HalfBeamwidth, double);
   vtkGetMacro(HalfBeamwidth, double);
+  vtkSetVector3Macro(SensorPosition, double);
+  vtkGetVector3Macro(SensorPosition, double);
   ///@}
 
   ///@{
@@ -132,14 +123,6 @@ public:
    */
   vtkSetMacro(TargetExtent, double);
   vtkGetMacro(TargetExtent, double);
-  ///@}
-
-  ///@{
-  /**
-   * The position of the sensor, m, for clouds without field data `position`. Default (0, 0, 0).
-   */
-  vtkSetVector3Macro(SensorPosition, double);
-  vtkGetVector3Macro(SensorPosition, double);
   ///@}
 
   ///@{
@@ -154,42 +137,26 @@ public:
 
   ///@{
   /**
-   * Power spectral density of the acceleration, m2/s3: within t s each component of the velocity
-   * changes by the root of this times t, rms. 0 to 1e6; default 10.
+   * Power spectral density of the acceleration, m2/s3 (default 10): within t s each component of
+   * the velocity changes by the root of this times t, rms. And of the turn rate, deg2/s3 (default
+   * 40), of MOTION_COORDINATED_TURN. Both 0 to 1e6.
    */
   vtkSetMacro(AccelerationDensity, double);
   vtkGetMacro(AccelerationDensity, double);
-  ///@}
-
-  ///@{
-  /**
-   * The same of the turn rate, deg2/s3, of MOTION_COORDINATED_TURN. 0 to 1e6; default 40.
-   */
   vtkSetMacro(TurnRateDensity, double);
   vtkGetMacro(TurnRateDensity, double);
   ///@}
 
   ///@{
   /**
-   * The largest speed over ground of a new track, m/s: how far its second cluster may be from the
-   * first. 0.1 to 1000; default 25.
+   * What a new track may do: largest speed over ground, m/s (default 25), and climb or descent, m/s
+   * (default 5), both 0.1 to 1000: how far its second cluster may be from the first; with
+   * MOTION_COORDINATED_TURN largest turn rate, deg/s (0 to 360; default 40). Assumed.
    */
   vtkSetMacro(MaximumSpeed, double);
   vtkGetMacro(MaximumSpeed, double);
-  ///@}
-
-  ///@{
-  /**
-   * The same of the climb or descent, m/s. 0.1 to 1000; default 5.
-   */
   vtkSetMacro(MaximumClimbRate, double);
   vtkGetMacro(MaximumClimbRate, double);
-  ///@}
-
-  ///@{
-  /**
-   * The same of the turn rate, deg/s, of MOTION_COORDINATED_TURN. 0 to 360; default 40.
-   */
   vtkSetMacro(MaximumTurnRate, double);
   vtkGetMacro(MaximumTurnRate, double);
   ///@}
@@ -204,47 +171,31 @@ public:
 
   ///@{
   /**
-   * A track is confirmed once it had a cluster in ConfirmHits of its last ConfirmScans scans. Both
-   * 1 to 32, the first not above the second; default 3 of 4.
+   * A track is confirmed once it had a cluster in ConfirmHits of its last ConfirmScans scans (both
+   * 1 to 32, the first not above the second; default 3 of 4) and its speed is at least
+   * MinimumSpeed, m/s (0 to 1000; default 0): what stands still, as leaves that a clutter filter
+   * has left, is no bird on the wing.
    */
   vtkSetMacro(ConfirmHits, int);
   vtkGetMacro(ConfirmHits, int);
   vtkSetMacro(ConfirmScans, int);
   vtkGetMacro(ConfirmScans, int);
-  ///@}
-
-  ///@{
-  /**
-   * A track is confirmed only when its speed is at least this, m/s: what stands still, as leaves
-   * that a clutter filter has left, is no bird on the wing. 0 to 1000; default 0.
-   */
   vtkSetMacro(MinimumSpeed, double);
   vtkGetMacro(MinimumSpeed, double);
   ///@}
 
   ///@{
   /**
-   * A confirmed track ends after so many scans in a row without a cluster. 1 to 1000; default 3.
+   * A confirmed track ends after MaximumMisses scans in a row without a cluster (1 to 1000; default
+   * 3). It stays in the output for KeepTime, s on the clock of the clouds (0 to 1e9; default 60),
+   * and keeps its last HistoryLength positions (1 to 1,000,000; default 200).
    */
   vtkSetMacro(MaximumMisses, int);
   vtkGetMacro(MaximumMisses, int);
-  ///@}
-
-  ///@{
-  /**
-   * How many positions of a track are kept, the last ones. 1 to 1,000,000; default 200.
-   */
-  vtkSetMacro(HistoryLength, int);
-  vtkGetMacro(HistoryLength, int);
-  ///@}
-
-  ///@{
-  /**
-   * How long a track stays in the output when it has ended, s on the clock of the clouds. 0 to
-   * 1e9; default 60.
-   */
   vtkSetMacro(KeepTime, double);
   vtkGetMacro(KeepTime, double);
+  vtkSetMacro(HistoryLength, int);
+  vtkGetMacro(HistoryLength, int);
   ///@}
 
   /**

@@ -152,6 +152,7 @@ class Way:
             "range image": lambda: on(al.vtkAvianLidarRangeImage(), self.echoes.GetOutput(), self.beams.GetOutput(),
                                       Columns=360, Rows=16),
             "geodetic transform": lambda: on(al.vtkAvianLidarGeodeticTransform(), self.cloud),
+            "tracker": lambda: on(al.vtkAvianLidarTracker(), self.cloud),
             "cloud comparison": lambda: on(al.vtkAvianLidarCloudComparison(), self.cloud, self.cloud),
         }[name]()
 
@@ -287,7 +288,7 @@ ENVIRONMENT = {"OMP_NUM_THREADS": "2", "MALLOC_MMAP_THRESHOLD_": "65536", "MALLO
                "MALLOC_ARENA_MAX": "1"}
 TASKS = {"walk": walk, "first_scan": first_scan, "too_large": too_large}
 # What needs little comes first: later it might find it among what others left.
-NAMES = ["colour map", "geodetic transform", "cloud comparison", "LAS writer", "PCD writer", "KITTI writer",
+NAMES = ["colour map", "geodetic transform", "cloud comparison", "tracker", "LAS writer", "PCD writer", "KITTI writer",
          "GeoJSON writer", "range image", "LAS reader", "PCD reader", "KITTI reader", "beam source", "material", "tree",
          "echo filter", "scene of OBJ", "scene of VTP"]
 

@@ -38,7 +38,7 @@ auto contentOf(const CloudPoint& point)
     point.position.x, point.position.y, point.position.z, point.time, point.rangeError);
 }
 
-/// The places of sorted values. @param order by content
+/// Where the values are, sorted by content.
 template <class T, class Content>
 std::vector<std::size_t> orderOf(const std::vector<T>& values, Content content)
 {
@@ -62,13 +62,7 @@ public:
       this->Places.push_back(point.position - sensor);
       this->Ranges.push_back(safeLength(this->Places.back()));
       const int level = levelOf(this->reach(this->Ranges.back()));
-      const double size = std::ldexp(1.0, level);
-      Cell cell{ level };
-      for (int axis = 0; axis < 3; ++axis)
-      {
-        cell[static_cast<std::size_t>(axis) + 1] = indexOf(this->Places.back()[axis], size);
-      }
-      this->Cells[cell].push_back(this->Places.size() - 1);
+      this->Cells[cellOf(level, this->Places.back())].push_back(this->Places.size() - 1);
     }
   }
 
@@ -82,19 +76,13 @@ public:
     const double change = this->Angle * farthest;
     for (int level = levelOf(mine - change); level <= levelOf(mine + change); ++level)
     {
-      const double size = std::ldexp(1.0, level);
-      std::array<std::int64_t, 3> first;
-      std::array<std::int64_t, 3> last;
-      for (int axis = 0; axis < 3; ++axis)
+      const Cell first = cellOf(level, place - farthest);
+      const Cell last = cellOf(level, place + farthest);
+      for (std::int64_t x = first[1]; x <= last[1]; ++x)
       {
-        first[static_cast<std::size_t>(axis)] = indexOf(place[axis] - farthest, size);
-        last[static_cast<std::size_t>(axis)] = indexOf(place[axis] + farthest, size);
-      }
-      for (std::int64_t x = first[0]; x <= last[0]; ++x)
-      {
-        for (std::int64_t y = first[1]; y <= last[1]; ++y)
+        for (std::int64_t y = first[2]; y <= last[2]; ++y)
         {
-          for (std::int64_t z = first[2]; z <= last[2]; ++z)
+          for (std::int64_t z = first[3]; z <= last[3]; ++z)
           {
             this->takeFrom({ level, x, y, z }, point, taken);
           }
@@ -108,9 +96,11 @@ private:
 
   static int levelOf(double reach) { return std::ilogb(std::fmax(reach, LeastCell)) + 1; }
 
-  static std::int64_t indexOf(double coordinate, double size)
+  static Cell cellOf(int level, const Vec3& place)
   {
-    return static_cast<std::int64_t>(std::floor(coordinate / size));
+    const Vec3 cell = glm::floor(place / std::ldexp(1.0, level));
+    return { level, static_cast<std::int64_t>(cell.x), static_cast<std::int64_t>(cell.y),
+      static_cast<std::int64_t>(cell.z) };
   }
 
   void takeFrom(const Cell& cell, std::size_t point, std::vector<std::size_t>& taken)
@@ -144,7 +134,7 @@ private:
   std::unordered_map<Cell, std::vector<std::size_t>, CellHash> Cells;
 };
 
-/// Sums in the order of the members: so that rounding is the same.
+/// Members come in an order that their content decides, so rounding is the same.
 Cluster meanOf(const std::vector<CloudPoint>& points, const std::vector<std::size_t>& members)
 {
   const CloudPoint& first = points[members[0]];
@@ -191,7 +181,6 @@ Clusters findClusters(
       clusterOf[members[next]] = found.size();
       grid.take(members[next], members);
     }
-    std::sort(members.begin(), members.end());
     found.push_back(meanOf(sorted, members));
   }
   const std::vector<std::size_t> order = orderOf(found,
