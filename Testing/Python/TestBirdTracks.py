@@ -116,6 +116,11 @@ class Scores(unittest.TestCase):
         self.assertEqual([_card.band_of(height) for height in (-1.0, 9.9, 10.0, 59.0, 60.0)],
                          ["below 10 m", "below 10 m", "10 to 30 m", "30 to 60 m", "above 60 m"])
 
+    def test_cells_have_the_digits_of_their_errors(self):
+        for value, words in (((0.898, 0.0204), "89.8 ± 2.0\u00a0%"), ((1.0, 0.001), "100.00 ± 0.10\u00a0%"), ((0.5, np.nan), "50.0\u00a0%"), ((np.nan, np.nan), "–")):
+            self.assertEqual(_card.cell(_card.Value(*value, 9), 100.0, "%"), words)
+        self.assertEqual(_card.cell(_card.Value(297.4, 36.8, 9)), "297 ± 37")
+
     def test_a_second_track_of_a_bird(self):
         scorer = Scorer(10.0, 2.0, [])
         for k in range(3):

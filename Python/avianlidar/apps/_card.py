@@ -25,8 +25,8 @@ from ._scores import Value
 HEIGHTS = (0.0, 10.0, 30.0, 60.0, math.inf)  # m, bands of a bird's mean height
 WARNED = (10.0, 30.0, 60.0)  # s
 # Of groups of birds: name, words, factor and unit of the page.
-OF_BIRDS = (("tracked", "birds tracked", 100.0, "%"), ("near", "or beside a track", 100.0, "%"), ("time", "share of their time", 100.0, "%"),
-            ("delay", "delay to confirmation", 1.0, "s"), ("switches", "identity switches", 1.0, ""))
+OF_BIRDS = (("tracked", "birds tracked", 100.0, "%"), ("near", "or beside a track", 100.0, "%"), ("time", "share of time", 100.0, "%"),
+            ("delay", "delay", 1.0, "s"), ("switches", "identity switches", 1.0, ""))
 OF_TRACKS = (("false", "false tracks an hour", 1.0, ""), ("vehicle", "tracks of vehicles an hour", 1.0, ""),
              ("second", "second tracks of a bird an hour", 1.0, ""), ("ospa", "OSPA distance", 1.0, "m"), ("ospa_localisation", "OSPA: localisation", 1.0, "m"),
              ("ospa_cardinality", "OSPA: without partner", 1.0, "m"))
@@ -88,12 +88,12 @@ def _groups(everywhere: Sequence[Results]) -> List[Dict[str, Any]]:
 
 
 def cell(value: Value, factor: float = 1.0, unit: str = "") -> str:
-    """A score with its standard error, in words."""
-    if math.isnan(value.value):
+    """A score with its standard error, both to the second digit of the error or hundredths."""
+    number, error = factor * value.value, factor * value.error
+    if math.isnan(number):
         return "–"
-    error = "" if math.isnan(value.error) else f" ± {factor * value.error:.2g}" if factor * value.error < 9.95 else f" ± {factor * value.error:.0f}"
-    digits = 1 if factor == 100.0 else 2 if abs(value.value) < 10.0 else 1
-    return f"{factor * value.value:.{digits}f}{error}" + (f"\u00a0{unit}" if unit else "")
+    digits = min(max(1 - math.floor(math.log10(error)), 0), 2) if error > 0.0 else 1
+    return f"{number:.{digits}f}" + ("" if math.isnan(error) else f" ± {error:.{digits}f}") + (f"\u00a0{unit}" if unit else "")
 
 
 def _text(rows: Iterable[Sequence[Any]]) -> bytes:
@@ -142,6 +142,7 @@ def write_card(out: pathlib.Path, inputs: Sequence[Input], results: Sequence[Map
     card: Dict[str, Any] = {
         "version": __version__, "names": names, "cutoff": settings["cutoff"], "order": settings["order"], "learning_scans": settings["learning_scans"],
         "volumes": bool(warned), "settings": settings,
+        "answers": [_answer(name, of, [(volume, seconds[k]) for volume, seconds in warned]) for k, (name, of) in enumerate(zip(names, overall))],
         "inputs": [{"name": of.name, "sensor": pathlib.Path(of.scenario["sensor"]["preset"]).name.split(".")[0], "scene": pathlib.Path(of.scenario["scene"]).name,
                     "position": [float(x) for x in of.sensor.position], "sequences": len(found), "scans": sum(len(one["ospa"]) for one in found),
                     "seconds": sum(one["seconds"] for one in found), "birds": len(flock), "assumed": of.assumed,
@@ -159,6 +160,14 @@ def write_card(out: pathlib.Path, inputs: Sequence[Input], results: Sequence[Map
     write_whole(out / "card.json", as_json(card))
     write_whole(out / "card.html", render("card.html.jinja", card=shown(out, card)))
     return card
+
+
+def _answer(name: str, of: Dict[str, Value], warned: Sequence[Tuple[str, np.ndarray]]) -> str:
+    """The card of an input in a sentence."""
+    mean = ", ".join(f"a warning of {cell(scores.mean(seconds), 1.0, 's')} before the {volume} ({len(seconds)} birds)"
+                     for volume, seconds in warned if len(seconds) >= FEWEST)
+    return (f"{name}: {cell(of['tracked'], 100.0, '%')} of birds tracked, {cell(of['near'], 100.0, '%')} in or beside a track, "
+            f"{cell(of['false'])} false tracks an hour{', and on average ' + mean if mean else ''}.")
 
 
 def read_card(folder) -> Dict[str, Any]:
@@ -229,15 +238,15 @@ def _draw_strip(axes, ground, sequence: Dict[str, Any]) -> None:
         for number, colour in enumerate(COLOURS):
             part = points[chosen & (origins == number)]
             ax.plot(part[:, 0], part[:, 1], ".", color=colour, markersize=3 if number in (0, 2) else 1.5)
+    colours = {track["track"]: COLOURS[ORIGINS.index(track["origin"])] for track in sequence["tracks"]}
     paths: Dict[int, List[Sequence[float]]] = {}
     for state in sequence["states"]:
         paths.setdefault(state[1], []).append(state)
-    for path in paths.values():
-        places = np.array([state[3:5] for state in path])
-        now = path[-1][0] == last["scan"]
-        axes[2].plot(*places.T, color="#1b9e77" if path[-1][9] >= 0 else "#d95f02", linewidth=1.2 if now else 0.5, alpha=1.0 if now else 0.5)
+    for track, path in paths.items():
+        places, now = np.array([state[3:5] for state in path]), path[-1][0] == last["scan"]
+        axes[2].plot(*places.T, color=colours[track], linewidth=1.2 if now else 0.5, alpha=1.0 if now else 0.5)
         if now:
-            axes[2].plot(*places[-1], "o", color="#1b9e77" if path[-1][9] >= 0 else "#d95f02", markersize=3)
+            axes[2].plot(*places[-1], "o", color=colours[track], markersize=3)
     for x, y, tracked in sequence["last"]:
         axes[3].plot(x, y, "o" if tracked else "x", color="#1b9e77" if tracked else "#cc2222", markersize=4)
 
