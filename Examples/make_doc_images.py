@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
 """Runs the examples and brings their pictures and tables into Documentation/: airport.md, birds.md,
-collision-detection.md, corridor.md, coverage.md, echoes.md, paper.md, python.md, sensors.md, sequences.md, time.md and, where AVIANLIDAR_DATA_DIR
+collision-detection.md, corridor.md, coverage.md, echoes.md, paper.md, python.md, sensors.md, sequences.md, time.md, tracks.md and, where AVIANLIDAR_DATA_DIR
 names the folder of their data, results/reality.md, results/falloff.md, results/materials.md and crowns in weather.md say what a run of what is
 committed gives. Where AVIANLIDAR_SCENES_DIR names the scenes that the build makes of them, more reflections are followed in
 those, too.
@@ -42,6 +42,7 @@ import patterns  # noqa: E402
 import protocol  # noqa: E402
 import ranges  # noqa: E402
 import render_notebook  # noqa: E402
+import report_card  # noqa: E402
 import room  # noqa: E402
 import screenshots  # noqa: E402
 import predicted_measured  # noqa: E402
@@ -74,6 +75,7 @@ RUNS = (
     ("shapes", beam_shapes, [], {"shapes": "beams-shapes"}),
     ("patterns", patterns, [], {"prisms": "sensors-prisms", "rotors": "sensors-rotors"}),
     ("sequence", labels, [], {"labels": "sequences-labels"}),
+    ("tracks", report_card, [], {"scan": "tracks-scan"}),
     ("quadcopter", quadcopter, [], {"points": "measured-quadcopter"}),
     ("weather", weather, [], {"weather": "weather"}),
     ("weather-media", media_time, [], {}),

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Sequences that two ranks share are those of one process. Arguments: mpiexec, pvbatch."""
+"""Sequences and tracks in them that two ranks share are those of one process. Arguments: mpiexec, pvbatch."""
 
 import json
 import os
@@ -17,9 +17,9 @@ from avianlidar._disk import LOCK, only_run  # noqa: E402
 LAUNCHER = sys.argv[1:3]
 
 
-def on_ranks(*arguments):
+def on_ranks(*arguments, verb="sequence"):
     mpiexec, pvbatch = LAUNCHER
-    return subprocess.run([mpiexec, "-n", "2", pvbatch, "--sym", "-m", "avianlidar", "sequence",
+    return subprocess.run([mpiexec, "-n", "2", pvbatch, "--sym", "-m", "avianlidar", verb,
                            *map(str, arguments)], capture_output=True, text=True, check=False, timeout=200)
 
 
@@ -31,6 +31,18 @@ class Ranks(unittest.TestCase):
         done = on_ranks(file, "-o", home / "together")
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertEqual(json.loads((home / "together" / "manifest.json").read_text())["sequences"], wanted)
+
+    def test_share_tracks(self):
+        """Three sequences of different length, so that one rank has more to do."""
+        home = one.folder("ranks-tracks")
+        file = one.scenario_file(home, scans_per_sequence=8, number_of_scans=22)
+        al.Sequence(file).write(home / "made")
+        al.BirdTracks([home / "made"], learning_scans=3).write(home / "alone")
+        done = on_ranks(home / "made", "-o", home / "together", "--learn", "3", verb="track")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        files = [{path.relative_to(home / name): path.read_bytes() for path in (home / name).rglob("*") if path.is_file()} for name in ("alone", "together")]
+        self.assertEqual(*map(sorted, files))
+        self.assertEqual([name for name, content in files[0].items() if files[1][name] != content], [])
 
     def test_an_error_ends_the_job(self):
         home = one.folder("ranks-bad")

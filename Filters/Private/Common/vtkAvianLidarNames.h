@@ -146,7 +146,6 @@ constexpr Name NumberOfEchoes{ "number_of_echoes", "1" };
 constexpr Name DetectionProbability{ "detection_probability", "1" };
 
 // Tracks of what was detected (point and cell data).
-constexpr Name IsClutter{ "is_clutter", "1" };
 constexpr Name TrackId{ "track_id", "" };
 constexpr Name TrackConfirmed{ "track_confirmed", "1" };
 constexpr Name Velocity{ "velocity", "m/s" };
