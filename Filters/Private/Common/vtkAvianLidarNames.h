@@ -184,6 +184,7 @@ constexpr Name RowElevations{ "row_elevations", "deg" };
 
 // Clutter (point data; field data), and the time of a cloud as ParaView writes it (field data).
 constexpr Name ClutterProbability{ "clutter_probability", "1" };
+constexpr Name IsClutter{ "is_clutter", "1" };
 constexpr Name ClutterCell{ "clutter_cell", "" };
 constexpr Name LearnedScans{ "learned_scans", "1" };
 constexpr Name ClutterWindow{ "clutter_window", "1" };
