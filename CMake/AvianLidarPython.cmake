@@ -42,17 +42,26 @@ set(avianlidar_python_files
   py.typed
   apps/__init__.py
   apps/_air.py
+  apps/_card.py
+  apps/_following.py
   apps/_json.py
   apps/_labels.py
   apps/_maps.py
   apps/_metar.py
+  apps/_page.py
   apps/_pictures.py
   apps/_report.py
+  apps/_scores.py
   apps/_sequence.py
   apps/_sites.py
+  apps/_tracks.py
   apps/reach.py
   apps/siting.py
+  apps/card.html.jinja
+  apps/card_parts.html.jinja
   apps/coverage.schema.json
+  apps/macros.html.jinja
+  apps/page.css.jinja
   apps/report.html.jinja
   apps/scenario.schema.json)
 set(avianlidar_python_package "${AVIANLIDAR_PYTHON_BUILD_DIR}/avianlidar")

@@ -43,6 +43,12 @@ VERBS = {
   avianlidar sequence hongqiao.scenario.json -o sequences --scans 100
   avianlidar sequence hongqiao.scenario.json -o still --sensor-set sway_amplitude=0 --sensor-set encoder_jitter=0
 """),
+    "track": ("tracks of birds in labelled scans, and how good they are", "A report card (HTML, CSV) of tracks in sequences: share of birds tracked, delay, identity "
+              "switches, false tracks an hour, warning time. A scenario is made first. Several are compared. Started again it goes on where it was; "
+              "`mpiexec -n 2 pvbatch --sym -m avianlidar` shares the work.", """\
+  avianlidar track sequences -o tracks --runways hongqiao.geojson
+  avianlidar track hongqiao.scenario.json -o tracks --sensor Search905 --sensor Search1550 --scans 500
+"""),
     "coverage": ("maps of where a bird would be detected", "Maps of where a bird would be detected, and why not elsewhere "
                  "(GeoTIFF, GeoJSON), shares (CSV) and clutter (VTP), by a plan: a folder for each sensor if the plan compares "
                  "some.", """\
@@ -159,6 +165,21 @@ def parser() -> Parser:
     _settings(sequence, "scan", "rays_per_beam=400")
     _weather(sequence)
     _threads(sequence)
+
+    track = verb["track"]
+    track.add_argument("inputs", nargs="+", help="folders that `avianlidar sequence` has made, or scenario files")
+    track.add_argument("--runways", type=pathlib.Path, help="a GeoJSON file with lines of kind runway: how long before strip and glide path a bird is tracked")
+    track.add_argument("--sensor", action="append", default=[], help="of scenarios, in place of their own: a name or a .lidarsensor.json file; may be given "
+                       "many times")
+    track.add_argument("--scans", type=int, help="number of scans of scenarios, instead of their own")
+    track.add_argument("--learn", type=int, help="scans at the beginning of a sequence of which only clutter is learned; default 20")
+    track.add_argument("--cutoff", type=float, help="m: a track that far from a bird is none of it; also of OSPA; default 20")
+    track.add_argument("--order", type=float, help="of OSPA, default 2")
+    _out(track, "folder")
+    _settings(track, "clutter", "clutter_threshold=0.1")
+    _settings(track, "tracker", "confirm_hits=2")
+    _weather(track)
+    _threads(track)
 
     for name in ("coverage", "siting", "report"):
         verb[name].add_argument("plan", help="a .coverage.json file")

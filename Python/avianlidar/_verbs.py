@@ -327,6 +327,27 @@ def sequence(options) -> None:
               f"{sum(p['scans_with_birds_seen'] for p in parts)} of them; datasheet.md says more")
 
 
+def track(options) -> None:
+    from . import BirdTracks
+    from ._ranks import Ranks
+    from .apps import _pictures  # needs Matplotlib: said before the work
+    _pictures.gradient()
+    ranks, bars = Ranks(ends_job=True), Bars()
+    changes: Dict[str, Any] = {} if options.scans is None else {"number_of_scans": options.scans}
+    if options.weather:
+        changes["weather"] = options.weather
+    given = {"learning_scans": options.learn, "cutoff": options.cutoff, "order": options.order}
+    tracks = BirdTracks(options.inputs, options.runways, clutter=dict(options.clutter_set), tracker=dict(options.tracker_set), sensors=options.sensor,
+                        threads=options.threads or (1 if ranks.size > 1 else 0), **changes,
+                        **{name: value for name, value in given.items() if value is not None})
+    with _goes_on(options.out, "*/[0-9]*.json", "sequences followed"):
+        card = tracks.write(options.out, ranks, (lambda *_: None) if ranks.rank else bars)
+    bars.close()
+    if ranks.rank == 0:
+        _table([("score", *card["names"]), *((row["words"], *row["cells"]) for row in card["overall"])])
+        print(f"{options.out / 'card.html'}: the report card; its tables and pictures are beside it")
+
+
 def _plan(options) -> Dict[str, Any]:
     """The plan with what options change."""
     from .apps._maps import read_plan

@@ -92,9 +92,10 @@ def read_plan(file, words: Optional[Sequence[str]] = None, metar=None, **changes
     if "runways" in plan:
         with naming(f"{file}: runways"):
             plan["runways"] = absolute(plan["runways"])
-    if "metar" in plan:
-        with naming(f"{file}: metar"):
-            plan["metar"] = absolute(plan["metar"])
+    for name in ("metar", "tracks"):
+        if name in plan:
+            with naming(f"{file}: {name}"):
+                plan[name] = absolute(plan[name])
     if "siting" in plan:
         if "runways" not in plan:
             raise Error(f"{file}: siting: needs runways")

@@ -34,14 +34,15 @@ def gradient(count: int = 9) -> List[str]:
     return [to_hex(colormaps["viridis"](share)) for share in np.linspace(0.0, 1.0, count)]
 
 
-def draw(file, size: Tuple[float, float], work: Callable[[Any], Any]) -> pathlib.Path:
-    """Write a picture (PNG). @param size inches @param work draws into the axes that it is given"""
+def draw(file, size: Tuple[float, float], work: Callable[[Any], Any], columns: int = 1) -> pathlib.Path:
+    """Write a picture (PNG). @param size inches @param work draws into the axes that it is given @param columns axes beside one another"""
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
     figure = Figure(figsize=size, layout="constrained")
     FigureCanvasAgg(figure)
-    axes = figure.subplots()
-    axes.tick_params(labelsize=9)
+    axes = figure.subplots(1, columns)
+    for one in np.ravel(axes):
+        one.tick_params(labelsize=9)
     work(axes)
     content = io.BytesIO()
     figure.savefig(content, format="png", dpi=PIXELS)
@@ -49,11 +50,8 @@ def draw(file, size: Tuple[float, float], work: Callable[[Any], Any]) -> pathlib
     return pathlib.Path(file)
 
 
-def draw_airport(axes, plan: Plan, colour: str = "0.25") -> None:
-    """Buildings and runways in a colour, and the sensor, as seen from above."""
-    from matplotlib.colors import ListedColormap
-    for runway in plan.runways:
-        axes.plot(*np.transpose([runway.start, runway.end]), color=colour, linewidth=1.5, solid_capstyle="butt")
+def _roofs(plan: Plan) -> Tuple[np.ndarray, np.ndarray]:
+    """Triangles of what counts as a building, and their points."""
     surfaces = plan.scene.tree.GetOutput()
     points = vtk_to_numpy(surfaces.GetPoints().GetData())
     cells = vtk_to_numpy(surfaces.GetPolys().GetConnectivityArray()).reshape(-1, 3)
@@ -63,8 +61,18 @@ def draw_airport(axes, plan: Plan, colour: str = "0.25") -> None:
         flat = np.array([name in FLAT for name in ([classes] if isinstance(classes, str) else classes)])
         roofs &= ~flat[as_numpy(surfaces.GetCellData().GetArray("object_id"))]
     roofs = cells[roofs]
-    if len(roofs):
-        axes.tripcolor(points[:, 0], points[:, 1], roofs, facecolors=np.zeros(len(roofs)), cmap=ListedColormap([colour]))
+    return roofs, points
+
+
+def draw_airport(axes, plan: Plan, colour: str = "0.25") -> None:
+    """Buildings and runways in a colour, and the sensor, as seen from above."""
+    from matplotlib.colors import ListedColormap
+    for runway in plan.runways:
+        axes.plot(*np.transpose([runway.start, runway.end]), color=colour, linewidth=1.5, solid_capstyle="butt")
+    if plan.scene is not None:
+        roofs, points = _roofs(plan)
+        if len(roofs):
+            axes.tripcolor(points[:, 0], points[:, 1], roofs, facecolors=np.zeros(len(roofs)), cmap=ListedColormap([colour]))
     axes.plot(*plan.sensor.position[:2], "r^", markersize=5)
     axes.set_xlim(plan.extent[:2])
     axes.set_ylim(plan.extent[2:])

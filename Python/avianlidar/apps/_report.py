@@ -2,7 +2,6 @@
 """A report of coverage as one page of HTML: the command `avianlidar report`."""
 from __future__ import annotations
 
-import base64
 import json
 import math
 import os
@@ -18,8 +17,10 @@ from .._version import __version__
 from .._weather import in_words
 from . import _pictures as pictures
 from . import reach, siting
-from ._json import load_json
+from ._card import read_card
+from ._json import load_json, naming
 from ._maps import Plan, height_name, write_table
+from ._page import embedded, render
 from ._sites import DRAWS, FEWEST_DRAWS, Sites
 
 BEST = 10  # sites in the table
@@ -89,10 +90,6 @@ def _metres(value: float) -> str:
     return f"{float(f'{value:.2g}') if value < 100.0 else 10.0 * round(value / 10.0):g}\u00a0m" if value > 0.0 else "no range"
 
 
-def _embedded(file: pathlib.Path) -> str:
-    return "data:image/png;base64," + base64.b64encode(file.read_bytes()).decode()
-
-
 class Report:
     """Pictures, tables and words of a plan: with the plan's sensor and each that it compares with, where the plan puts them and at
     the best site of each."""
@@ -101,6 +98,8 @@ class Report:
         self.plan, self.progress = plan, progress
         self.plans = Plan.all_of(plan, threads)
         self.scene = load_json(plan["scene"])
+        with naming(f"{plan['file']}: tracks"):
+            self.tracks = read_card(plan["tracks"]) if "tracks" in plan else None
         self.sites = [Sites(one, progress=progress, beside=[words for words in BESIDE if words != one.air]) for one in self.plans] \
             if "siting" in plan else []
         self.done = 0
@@ -112,7 +111,7 @@ class Report:
             first = self.plans[0]
             each = 2 * len(first.heights) + 1 + len(first.runways)
             self.progress("pictures", self.done, (each * (2 if self.sites else 1) + 1) * len(self.plans) + 2)
-        return {"source": _embedded(file), "alt": alt, "caption": caption}
+        return {"source": embedded(file), "alt": alt, "caption": caption}
 
     def _view(self, plan: Plan, folder: pathlib.Path, name: str) -> Dict[str, Any]:
         """Pictures of a sensor somewhere. @param name in the names of files"""
@@ -204,7 +203,7 @@ class Report:
                 "taken": any(siting.is_near(taken, outline, margin)[0] for outline, margin in sites.exclusions),
                 "heights_varied": any("heights" in change.what for change in changes),
                 "draws": int(sites.options.get("draws", DRAWS)),
-                **{key: {"source": _embedded(folder / name), "alt": alt, "caption": caption}
+                **{key: {"source": embedded(folder / name), "alt": alt, "caption": caption}
                    for key, (name, alt, caption) in pictured.items()}}
 
     def _degrees(self, sites: Sites) -> str:
@@ -344,12 +343,11 @@ class Report:
             raise Error(f"{file}: is not the name of a page, expected one that ends in .html")
         folder = file.with_name(f"{file.stem}_files")
         with only_run(folder, goes_on=False):
-            write_whole(file, self._page(folder).encode())
+            write_whole(file, self._page(folder))
         return folder
 
-    def _page(self, folder: pathlib.Path) -> str:
+    def _page(self, folder: pathlib.Path) -> bytes:
         """The page; what it is made of is written to the folder."""
-        import jinja2
         first = self.plans[0]
         sited = [self._siting(sites, folder if number == 0 else folder / sites.plan.name) for number, sites in enumerate(self.sites)]
         best = [plan.at(site["best"][0]["position"], f"{plan.name} at its best site", plan.seed + OTHER_PLACES)
@@ -373,11 +371,8 @@ class Report:
         known = field_values(first.regions.data)
         made = ("file", "hours", *(["year"] if "metar" in self.plan else []))
         asked = {name: part for name, part in self.plan.items() if name not in made}
-        environment = jinja2.Environment(loader=jinja2.FileSystemLoader(pathlib.Path(__file__).parent), autoescape=True,
-                                         undefined=jinja2.StrictUndefined, trim_blocks=True, lstrip_blocks=True)
-        environment.globals["zip"] = zip
-        environment.filters.update(number=lambda value, form: "–" if math.isnan(value) else form % value, metres=_metres, share=_share)
-        return environment.get_template("report.html.jinja").render(
+        return render(
+            "report.html.jinja", filter_metres=_metres, filter_share=_share,
             question=self.plan.get("description") or f"Where is a {first.bird} detected?",
             answer=answers,
             answered=sited[0]["map"] if sited else shown[0]["maps"][len(first.heights) // 2],
@@ -387,6 +382,7 @@ class Report:
             advice=[found for view, of in zip(answering, reaches) if (found := self._advice(view, of))],
             tables=self._tables(views), sites=sited, weather=weather, hours=self.plan.get("hours", ""), fewest=FEWEST_DRAWS, least=LEAST, least_words=LEAST_WORDS, colours=pictures.gradient(),
             statuses=list(zip(first.coverage.status_names, pictures.STATUS_COLOURS)),
+            tracks=self.tracks,
             scene={"name": pathlib.Path(self.plan["scene"]).name, "comment": _lines(self.scene.get("comment")),
                    "attribution": _lines(self.scene.get("attribution"))},
             files=folder.name, version=__version__, json=json.dumps(_shown(asked), indent=1, ensure_ascii=False))

@@ -1,0 +1,306 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Tracks of birds in labelled sequences, held against their truth."""
+from __future__ import annotations
+
+import collections
+import contextlib
+import csv
+import functools
+import io
+import json
+import math
+import pathlib
+from typing import Any, Dict, List, NamedTuple, Optional, Sequence as Many, Tuple
+
+import numpy as np
+
+from .. import vtkAvianLidar as _wrapped
+from .._cloud import as_numpy
+from .._disk import read_regular
+from .._pipeline import Error, Updates, update
+from .._properties import get_property, property_names, set_properties
+from .._ranks import digest_of_arrays
+from .._scene import Scene, load_scene, mesh
+from .._sensor import Sensor
+from . import _scores as scores
+from ._json import load_json, naming
+from ._labels import FIRST_BIRD, FIRST_OBJECT
+from ._sequence import DONE, _digest, _set, _short, read_scenario
+from .siting import (APPROACH_HALF_WIDTH, APPROACH_HEIGHT, APPROACH_LENGTH, STRIP_HALF_WIDTH, STRIP_HEIGHTS, Runway, read_runways)
+
+VOLUMES = ("strip", "glide path")
+NEEDED = ("bird", "species", "status", "time_s", "x_m", "y_m", "z_m", "range_m", "visibility_m", "rain_mm_h")  # of truth.csv
+ORIGINS = ("bird", "second track of a bird", "vehicle", "surface", "false alarm", "air")  # of a track
+FALSE = ("surface", "false alarm", "air")
+STATES = ("scan", "track", "time_s", "x_m", "y_m", "z_m", "vx_m_s", "vy_m_s", "vz_m_s", "bird")
+NO_BIT = ("number_of_threads", "controller")
+
+
+class Live(NamedTuple):
+    """The tracks after a scan that have not ended, and of each point that of which it is, -1 for none."""
+    ids: np.ndarray
+    confirmed: np.ndarray
+    times: np.ndarray  # s, of the last position
+    places: np.ndarray  # n x 3, m
+    velocities: np.ndarray  # n x 3, m/s
+    of_points: np.ndarray
+    clutter: np.ndarray  # whether a point is
+
+
+class Chain:
+    """Clutter filter and tracker, given one scan after the other."""
+
+    def __init__(self, sensor: Sensor, learning: int, clutter: Dict[str, Any], tracker: Dict[str, Any]):
+        """What is not set is the sensor's: steps of the grid, width of the beam."""
+        steps = {name: value for name, value in (("azimuth_step", sensor.azimuth_step), ("elevation_step", sensor.elevation_step)) if value > 0.0}
+        widest = max(steps.values(), default=0.0)
+        self.filter, self.tracker = _wrapped.vtkAvianLidarClutterFilter(), _wrapped.vtkAvianLidarTracker()
+        set_properties(self.filter, "vtkAvianLidarClutterFilter", **{"warm_up": learning, **steps, **clutter})
+        set_properties(self.tracker, "vtkAvianLidarTracker", **{"half_beamwidth": sensor.half_beamwidth, "history_length": 1, "keep_time": 0.0,
+                                                                **({"cluster_angle": 1.6 * widest} if widest else {}), **tracker})
+        self.position = np.array(sensor.position, float)
+
+    def properties(self) -> Dict[str, str]:
+        """All that decides what comes out."""
+        return {f"{part}.{name}": _short(get_property(one, cxx)) for part, one in (("clutter", self.filter), ("tracker", self.tracker))
+                for name, cxx in property_names(type(one)).items() if name not in NO_BIT}
+
+    def __enter__(self) -> "Chain":
+        """Another sequence begins: nothing is known."""
+        self.filter.Forget()
+        self.tracker.Reset()
+        with contextlib.ExitStack() as stack:
+            self._filtered, self._tracked = (stack.enter_context(Updates(one)) for one in (self.filter, self.tracker))
+            self._stack = stack.pop_all()
+        return self
+
+    def __exit__(self, *_) -> None:
+        self._stack.close()
+
+    def __call__(self, points: np.ndarray, placed: np.ndarray, times: Optional[np.ndarray], time: float) -> Live:
+        """@param points m right, forward and up of the sensor, so that cells lie as its beams do @param placed the same in the scene
+        @param times of points, us @param time of the scan, s"""
+        scan = _cloud(points, time, np.zeros(3))
+        self.filter.SetInputData(scan)
+        self._filtered()
+        clutter = as_numpy(self.filter.GetOutputDataObject(0).GetPointData().GetArray("is_clutter")).astype(np.uint8)
+        rest = _cloud(placed, time, self.position)
+        _set(rest.GetPointData(), "is_clutter", clutter)
+        if times is not None:
+            _set(rest.GetPointData(), "timestamp", times)
+        self.tracker.SetInputData(rest)
+        self._tracked()
+        of_points = as_numpy(self.tracker.GetOutputDataObject(1).GetPointData().GetArray("track_id")).astype(int)
+        return Live(*_last(self.tracker.GetOutputDataObject(0)), of_points, clutter != 0)
+
+
+def _cloud(points: np.ndarray, time: float, position: np.ndarray):
+    cloud = mesh(points, np.empty((0, 3), int))
+    _set(cloud.GetFieldData(), "TimeValue", np.array([time]))
+    _set(cloud.GetFieldData(), "position", position.reshape(1, 3))
+    return cloud
+
+
+def _last(tracks) -> Tuple[np.ndarray, ...]:
+    """Ids, whether confirmed, times, places and velocities of the last positions of tracks that have not ended."""
+    ends = []
+    for cells in (tracks.GetVerts(), tracks.GetLines()):
+        if cells.GetNumberOfCells():
+            ends.append(as_numpy(cells.GetConnectivityArray())[as_numpy(cells.GetOffsetsArray())[1:] - 1])
+    if not ends:
+        return np.empty(0, int), np.empty(0, bool), np.empty(0), np.empty((0, 3)), np.empty((0, 3))
+    of_cells, of_points = tracks.GetCellData(), tracks.GetPointData()
+    live = as_numpy(of_cells.GetArray("ended")) == 0
+    last = np.concatenate(ends)[live]
+    return (as_numpy(of_cells.GetArray("track_id")).astype(int)[live], as_numpy(of_cells.GetArray("confirmed"))[live] != 0,
+            as_numpy(of_points.GetArray("time"))[last], as_numpy(tracks.GetPoints().GetData()).astype(float)[last],
+            as_numpy(of_points.GetArray("velocity")).astype(float)[last])
+
+
+def origin_of(labels: np.ndarray) -> np.ndarray:
+    """What gave the light of points: an index in ORIGINS. @param labels of a sequence"""
+    kind, instance = labels & 0xffff, (labels >> 16).astype(int) - 1
+    return np.select([instance >= FIRST_BIRD, instance >= FIRST_OBJECT, kind == 1, (kind == 0) & (instance < 0)],
+                     [ORIGINS.index(name) for name in ("bird", "vehicle", "air", "false alarm")], ORIGINS.index("surface"))
+
+
+def read_truth(file) -> Dict[int, List[Dict[str, Any]]]:
+    """Of each scan, by its number in the whole set, the birds that are somewhere: rows with numbers as such."""
+    rows = csv.DictReader(io.StringIO(read_regular(file).decode(), newline=""))
+    missing = [name for name in ("scan", *NEEDED) if name not in (rows.fieldnames or ())]
+    if missing:
+        raise Error(f"{file}: has no column {missing[0]}, expected the truth of a sequence")
+    found: Dict[int, List[Dict[str, Any]]] = collections.defaultdict(list)
+    for number, row in enumerate(rows):
+        with naming(f"{file}: line {number + 2}"):
+            of_scan = found[int(row["scan"])]
+            if row["x_m"]:
+                of_scan.append({"bird": int(row["bird"]), "species": row["species"], "in": row["status"] not in ("absent", "outside"),
+                                "time": float(row["time_s"]), "place": [float(row[name]) for name in ("x_m", "y_m", "z_m")],
+                                "range": float(row["range_m"]), "weather": weather_words(row["visibility_m"], row["rain_mm_h"])})
+    return found
+
+
+def weather_words(visibility: str, rain: str) -> str:
+    """The weather of a row of the truth."""
+    said = [f"visibility {float(visibility):g} m"] if visibility else []
+    said += [f"rain {float(rain):g} mm/h"] if rain and float(rain) > 0.0 else []
+    return ", ".join(said) or "clear"
+
+
+def inside(volume: str, runways: Many[Runway], places) -> np.ndarray:
+    """Which places (n x 3, m) lie in a volume of any runway: the strip, 150 m to either side of its middle and 60 m high; the glide path,
+    beyond its ends to 3 km, 75 m to either side and 45 m high at the end, widening by 0.15 and rising by 3 degrees."""
+    found = np.zeros(len(places), bool)
+    for runway in runways:
+        if volume == "strip":
+            found |= scores.in_strip(places, runway.start, runway.end, STRIP_HALF_WIDTH, STRIP_HEIGHTS[1])
+            continue
+        axis, _ = runway.axis()
+        for threshold, outwards in ((runway.start, -axis), (runway.end, axis)):
+            found |= scores.in_wedge(places, threshold, outwards, APPROACH_LENGTH, APPROACH_HALF_WIDTH, APPROACH_HEIGHT)
+    return found
+
+
+class Scorer:
+    """Holds the tracks of a sequence against the truth: collects them scan after scan, then scores them."""
+
+    def __init__(self, cutoff: float, order: float, runways: Many[Runway]):
+        self.cutoff, self.order, self.runways = cutoff, order, runways
+        self.scans: List[Tuple[int, List[Dict[str, Any]], Live]] = []
+        self.points: Dict[int, np.ndarray] = collections.defaultdict(lambda: np.zeros(len(ORIGINS), int))  # of tracks, by origin
+        self.begin: Dict[int, List[float]] = {}  # of tracks
+
+    def add(self, scan: int, rows: List[Dict[str, Any]], live: Live, origins: np.ndarray) -> None:
+        """@param rows of the truth @param origins of points"""
+        for track, origin in zip(live.of_points, origins):
+            if track >= 0:
+                self.points[int(track)][origin] += 1
+        for track, place in zip(live.ids, live.places):
+            self.begin.setdefault(int(track), [round(float(x), 2) for x in place])
+        self.scans.append((scan, rows, live))
+
+    def results(self) -> Dict[str, Any]:
+        """Birds that were in the volume of the sensor, confirmed tracks, OSPA of each scan, states of confirmed tracks."""
+        origins = {track: ORIGINS[int(np.argmax(counts))] for track, counts in self.points.items()}
+        tracks: Dict[int, Dict[str, Any]] = {}
+        birds: Dict[int, List[Tuple[Dict[str, Any], Optional[int], bool]]] = collections.defaultdict(list)
+        before: Dict[int, int] = {}
+        ospa, states, last = [], [], []
+        for scan, rows, live in self.scans:
+            ids, times = live.ids[live.confirmed].tolist(), live.times[live.confirmed]
+            places, velocities = live.places[live.confirmed], live.velocities[live.confirmed]
+            # Where each track is when the bird's beam is fired.
+            away = np.array([np.linalg.norm(places + velocities * (row["time"] - times)[:, None] - row["place"], axis=1) for row in rows])
+            away = away.reshape(len(rows), len(ids))
+            of_birds = np.array([origins.get(track) == "bird" for track in ids], bool)
+            before = scores.follow(away[:, of_birds], [row["bird"] for row in rows], np.array(ids, int)[of_birds].tolist(), self.cutoff, before)
+            bird_of = {track: bird for bird, track in before.items()}
+            for row, distance in zip(rows, away[:, of_birds]):
+                birds[row["bird"]].append((row, before.get(row["bird"]), bool((distance < self.cutoff).any())))
+            for i, track in enumerate(ids):
+                known = tracks.setdefault(track, {"track": track, "origin": origins.get(track, "surface"), "begin": self.begin[track],
+                                                  "confirmed_s": float(times[i]), "end_s": -math.inf, "scans": 0, "assigned": 0})
+                known["scans"] += 1
+                known["assigned"] += track in bird_of
+                if times[i] > known["end_s"]:
+                    known["end_s"] = float(times[i])
+                    states.append([scan, track, *(round(float(x), 3) for x in (times[i], *places[i], *velocities[i])), bird_of.get(track, -1)])
+            # Tracks of vehicles, and of birds that are elsewhere, are not asked for.
+            within = {row["bird"]: row["in"] for row in rows}
+            asked = np.array([origins.get(track) != "vehicle" and within.get(bird_of.get(track, -1), True) for track in ids], bool)
+            ospa.append([round(x, 4) for x in scores.ospa(away[np.array([*within.values()], bool)][:, asked], self.cutoff, self.order)])
+            last = [[round(x, 1) for x in row["place"][:2]] + [row["bird"] in before] for row in rows if row["in"]]
+        for known in tracks.values():
+            if known["origin"] == "bird" and not known["assigned"]:
+                known["origin"] = ORIGINS[1]
+        return {"birds": [self._of_bird(*zip(*history)) for _, history in sorted(birds.items()) if any(row["in"] for row, _, _ in history)],
+                "tracks": [tracks[track] for track in sorted(tracks)], "ospa": ospa, "states": states, "last": last}
+
+    def _of_bird(self, rows: Many[Dict[str, Any]], tracks: Many[Optional[int]], near: Many[bool]) -> Dict[str, Any]:
+        """What a bird's rows of the truth come to. @param tracks that it had @param near whether a track of a bird was within the cut-off"""
+        times, places = np.array([row["time"] for row in rows]), np.array([row["place"] for row in rows])
+        within, had, beside = np.array([row["in"] for row in rows]), np.array([track is not None for track in tracks]), np.array(near)
+
+        def first(when: np.ndarray) -> Optional[float]:
+            return float(times[when][0]) if when.any() else None
+        entries = {volume: scores.entry(times, inside(volume, self.runways, places)) for volume in VOLUMES}
+        return {**{name: rows[0][name] for name in ("bird", "species", "weather")}, "height": float(places[within, 2].mean()),
+                "range": float(np.array([row["range"] for row in rows])[within].mean()), "scans": int(within.sum()), "tracked": int((had & within).sum()),
+                "near": int((beside & within).sum()), "came_s": first(within), "found_s": first(had & within), "near_s": first(beside),
+                "switches": scores.switches(tracks), **{volume: None if math.isnan(when) else when for volume, when in entries.items()}}
+
+
+class Input:
+    """A folder of sequences."""
+
+    def __init__(self, folder: pathlib.Path, name: str):
+        self.folder, self.name = folder, name
+        self.manifest = folder / "manifest.json"
+        if not self.manifest.is_file():
+            raise Error(f"{folder}: holds no manifest.json, expected a folder that `avianlidar sequence` has made, or a scenario")
+        known = load_json(self.manifest)
+        parts = known.get("sequences") if isinstance(known, dict) else None
+        if not isinstance(parts, dict) or not parts:
+            raise Error(f"{self.manifest}: names no sequences, expected the manifest of a folder that `avianlidar sequence` has made")
+        self.scenario, self.assumed = read_scenario(self.manifest), list(known.get("assumed", ()))
+        self.numbers = sorted(parts)
+        self.content = {number: self._whole(number) for number in self.numbers}
+        first = self.content[self.numbers[0]]["inputs"]
+        with naming(f"{self.manifest}: sensor"):
+            self.sensor = Sensor(**{"motion_seed": int(self.scenario.get("seed", 0)), "position": json.loads(first["sensor.position"]), **self.scenario["sensor"],
+                                    "number_of_revolutions": 1, "sway_amplitude": 0.0, "encoder_jitter": 0.0})
+            update(self.sensor.algorithm)
+        beams = _short(digest_of_arrays(self.sensor.beams.data))
+        for number, content in self.content.items():
+            if content["inputs"].get("sensor.beams") != beams:
+                raise Error(f"{folder / 'sequences' / number}: is of another sensor than {self.manifest} names; expected sequences of one")
+
+    def _whole(self, number: str) -> Dict[str, Any]:
+        """What DONE says of a sequence, `Error` unless its files are those that it was made with."""
+        home = self.folder / "sequences" / number
+        for name in ("truth.csv", DONE):
+            if not (home / name).is_file():
+                raise Error(f"{home / name}: is not there, expected a sequence with its truth, as `avianlidar sequence` makes it")
+        content = load_json(home / DONE)
+        if not isinstance(content, dict) or not isinstance(content.get("inputs"), dict) or content.get("sha256") != _digest(home):
+            raise Error(f"{home}: its files are not those that its {DONE} has the sha256 of: something else has changed, added or removed some")
+        return content
+
+    @functools.cached_property
+    def scene(self) -> Scene:
+        """The scene as loaded."""
+        with naming(f"{self.manifest}: scene"):
+            scene = load_scene(self.scenario["scene"])
+            update(scene.tree)
+        return scene
+
+    def runways(self, file) -> List[Runway]:
+        """Runways of a file in the coordinates of the scene."""
+        if not file:
+            return []
+        origin = self.scene.geodetic_origin
+        if origin is None:
+            raise Error(f"{file}: runways need longitude and latitude, and the scene {self.scenario['scene']} has no origin on the Earth")
+        return read_runways(file, origin)
+
+    def scans(self, number: str):
+        """Of each scan: its number in the whole set, the time when it begins (s), points in the sensor's frame (right, forward, up, m) and
+        in the scene's, their times (us, None where they do not follow from the direction), labels."""
+        from scipy.spatial import cKDTree
+        home, first = self.folder / "sequences" / number, int(self.content[number]["inputs"]["scans"].split()[0])
+        starts, poses = (np.loadtxt(home / name, ndmin=1) for name in ("times.txt", "poses.txt"))
+        pose = poses.reshape(-1, 12)[0].reshape(3, 4)
+        simple = self.sensor.algorithm.GetNumberOfPrisms() == 0
+        beams = self.sensor.beams
+        nearest = cKDTree(np.array(beams["direction"])) if simple else None
+        fired = np.array(beams["timestamp"])
+        for k, start in enumerate(starts):
+            points = np.fromfile(home / "velodyne" / f"{k:06d}.bin", "<f4").reshape(-1, 4)[:, :3].astype(float)
+            labels = np.fromfile(home / "labels" / f"{k:06d}.label", "<u4")
+            placed = points @ pose[:, :3].T + pose[:, 3]
+            times = None
+            if nearest is not None:
+                ranges = np.maximum(np.linalg.norm(points, axis=1), 1e-9)
+                times = 1e6 * start + fired[nearest.query((placed - pose[:, 3]) / ranges[:, None])[1]] if len(points) else np.empty(0)
+            yield first + k, float(start), np.column_stack([-points[:, 1], points[:, 0], points[:, 2]]), placed, times, labels

@@ -1,0 +1,141 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""How well tracks follow what was there: assignment, OSPA, switches, delay, warning, with standard errors. Functions of arrays."""
+from __future__ import annotations
+
+import math
+from typing import Any, Callable, Dict, Hashable, List, Mapping, NamedTuple, Optional, Sequence, Tuple
+
+import numpy as np
+
+Pairs = List[Tuple[int, int]]
+
+
+class Value(NamedTuple):
+    """A number with its standard error (nan where there is none) and how many it is of."""
+    value: float
+    error: float
+    count: int
+
+
+class Ospa(NamedTuple):
+    """OSPA distance of two sets, m, and its two parts."""
+    distance: float
+    localisation: float
+    cardinality: float
+
+
+def distances(a, b) -> np.ndarray:
+    """n x m distances of points. @param a n x 3 @param b m x 3"""
+    a, b = (np.asarray(points, float).reshape(-1, 3) for points in (a, b))
+    return np.linalg.norm(a[:, None] - b[None], axis=2)
+
+
+def assign(distance, cutoff: float) -> Pairs:
+    """Pairs of a row and a column, each in one pair at most, nearer than the cut-off, such that the sum of all distances is least, where
+    what has no partner counts with the cut-off. @param distance n x m"""
+    from scipy.optimize import linear_sum_assignment
+    distance = np.asarray(distance, float)
+    return [(int(i), int(j)) for i, j in zip(*linear_sum_assignment(np.minimum(distance, cutoff))) if distance[i, j] < cutoff]
+
+
+def follow(distance, truths: Sequence[Hashable], tracks: Sequence[Hashable], cutoff: float,
+           before: Mapping[Any, Any]) -> Dict[Any, Any]:
+    """The track of each truth in a scan. A pair of the scan before stays while it is nearer than the cut-off; all others are assigned
+    (Bernardin & Stiefelhagen 2008, CLEAR MOT). @param distance truths x tracks @param before tracks by truth"""
+    distance = np.array(distance, float).reshape(len(truths), len(tracks))
+    row, column = ({name: number for number, name in enumerate(names)} for names in (truths, tracks))
+    kept = {truth: track for truth, track in before.items()
+            if truth in row and track in column and distance[row[truth], column[track]] < cutoff}
+    distance[[row[truth] for truth in kept]] = np.inf
+    distance[:, [column[track] for track in kept.values()]] = np.inf
+    return {**kept, **{truths[i]: tracks[j] for i, j in assign(distance, cutoff)}}
+
+
+def ospa(distance, cutoff: float, order: float = 2.0) -> Ospa:
+    """Optimal subpattern assignment distance of two sets (Schuhmacher, Vo & Vo 2008, doi:10.1109/TSP.2008.920469, eq. 3): 0 where both are
+    empty, the cut-off where one is. `distance` to the power of the order is the sum of those of its parts. @param distance n x m, of a
+    metric @param order p, 1 or more, finite"""
+    if not cutoff > 0.0 or not 1.0 <= order < math.inf:
+        raise ValueError(f"cutoff is {cutoff} m and order {order}, expected more than 0 m, and 1 or more")
+    distance = np.asarray(distance, float)
+    most, least = max(distance.shape), min(distance.shape)
+    if most == 0:
+        return Ospa(0.0, 0.0, 0.0)
+    from scipy.optimize import linear_sum_assignment
+    powers = np.minimum(distance, cutoff) ** order
+    near = powers[linear_sum_assignment(powers)].sum() / most
+    missing = cutoff ** order * (most - least) / most
+    return Ospa(*(float(part ** (1.0 / order)) for part in (near + missing, near, missing)))
+
+
+def switches(tracks: Sequence[Optional[Hashable]]) -> int:
+    """How often a truth changes from one track to another; None where it has none. @param tracks of its scans"""
+    had = [track for track in tracks if track is not None]
+    return sum(a != b for a, b in zip(had, had[1:]))
+
+
+def in_strip(points, start, end, half_width: float, height: float) -> np.ndarray:
+    """Which points lie in the box over a runway. @param points n x 3, m @param start, end of its middle, m east and north @param half_width m
+    to either side @param height m, of its top"""
+    points, way = np.asarray(points, float).reshape(-1, 3), np.subtract(end, start)
+    length = math.hypot(*way)
+    along, aside = _along(points, start, way / length)
+    return (along >= 0.0) & (along <= length) & (np.abs(aside) <= half_width) & (points[:, 2] <= height)
+
+
+def in_wedge(points, threshold, outwards, length: float, half_width: Tuple[float, float], height: Tuple[float, float]) -> np.ndarray:
+    """Which points lie below and beside the glide path before a threshold. @param outwards unit vector away from the runway
+    @param half_width, height m at the threshold, and by how much they grow a metre outwards"""
+    points = np.asarray(points, float).reshape(-1, 3)
+    along, aside = _along(points, threshold, np.asarray(outwards, float))
+    return (along >= 0.0) & (along <= length) & (np.abs(aside) <= half_width[0] + half_width[1] * along) & (
+        points[:, 2] <= height[0] + height[1] * along)
+
+
+def _along(points: np.ndarray, start, axis: np.ndarray) -> Tuple[np.ndarray, np.ndarray]:
+    off = points[:, :2] - np.asarray(start, float)
+    return off @ axis, off @ np.array([axis[1], -axis[0]])
+
+
+def entry(times: Sequence[float], inside: Sequence[bool]) -> float:
+    """The first time inside after one outside, nan without."""
+    inside = np.asarray(inside, bool)
+    came = np.flatnonzero(inside[1:] & ~inside[:-1]) + 1
+    return float(times[came[0]]) if len(came) else math.nan
+
+
+def jackknife(statistic: Callable[..., float], *columns) -> Value:
+    """A statistic of birds and its standard error by leaving out one bird at a time. @param columns arrays with a value for each bird"""
+    columns = tuple(np.asarray(column, float) for column in columns)
+    count = len(columns[0])
+    if not count:
+        return Value(math.nan, math.nan, 0)
+    without = [statistic(*(np.delete(column, i) for column in columns)) for i in range(count)] if count > 1 else []
+    error = math.sqrt((count - 1) / count * float(np.sum(np.subtract(without, np.mean(without)) ** 2))) if without else math.nan
+    return Value(float(statistic(*columns)), error, count)
+
+
+def mean(values) -> Value:
+    """Mean, and its standard error by the spread of the values."""
+    values = np.asarray(values, float)
+    count = len(values)
+    return Value(float(values.mean()) if count else math.nan, float(values.std(ddof=1)) / math.sqrt(count) if count > 1 else math.nan, count)
+
+
+def ratio(parts, wholes) -> Value:
+    """Sum of the parts over that of the wholes, with the error of leaving out one bird at a time."""
+    parts, wholes = np.asarray(parts, float), np.asarray(wholes, float)
+    parts, wholes = parts[wholes > 0.0], wholes[wholes > 0.0]
+    return jackknife(lambda a, b: a.sum() / b.sum(), parts, wholes)
+
+
+def share(count: int, of: int) -> Value:
+    """A share. Its error is the standard deviation of what it may be if all shares were as likely before, so that none and all have one, too:
+    of the beta distribution of count + 1 and of - count + 1."""
+    p = (count + 1.0) / (of + 2.0)
+    return Value(count / of if of else math.nan, math.sqrt(p * (1.0 - p) / (of + 3.0)) if of else math.nan, of)
+
+
+def rate(count: int, time: float) -> Value:
+    """Events a unit of time. Its error is of the gamma distribution of count + 1: that of a Poisson process, and above 0 for no event."""
+    return Value(count / time if time > 0.0 else math.nan, math.sqrt(count + 1.0) / time if time > 0.0 else math.nan, count)

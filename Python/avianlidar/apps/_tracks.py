@@ -1,0 +1,159 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""A report card of tracks in labelled sequences: the command `avianlidar track`."""
+from __future__ import annotations
+
+import itertools
+import os
+import pathlib
+from typing import Any, Callable, Dict, List, Optional, Sequence as Many, Union
+
+import numpy as np
+
+from .. import vtkAvianLidar as _wrapped
+from .._disk import checked_name, only_run, write_whole
+from .._pipeline import Error
+from .._properties import in_snake_case
+from .._ranks import Ranks, as_json
+from .._sensor import Sensor
+from .._version import __version__
+from .._weather import without_air
+from . import _scores as scores
+from ._card import write_card
+from ._following import Chain, Input, Scorer, origin_of, read_truth
+from ._json import load_json, naming
+from ._sequence import Sequence, _identity, _short, read_scenario
+from .siting import Runway
+
+CUTOFF = 20.0  # m: a track that far from a bird is none of it
+ORDER = 2.0  # of OSPA
+LEARNING = 20  # scans at the beginning of a sequence of which only clutter is learned
+
+Progress = Callable[[str, int, int], Any]
+
+
+class BirdTracks:
+    """Tracks of the birds in labelled sequences, and how well they follow them.
+
+    >>> tracks = BirdTracks(["build/sequences"], runways="Examples/airport/scene/hongqiao.geojson")   # doctest: +SKIP
+    >>> tracks.write("build/tracks")                                                                  # doctest: +SKIP
+    """
+
+    def __init__(self, inputs: Many[Union[str, "os.PathLike[str]"]], runways=None, learning_scans: int = LEARNING, cutoff: float = CUTOFF,
+                 order: float = ORDER, clutter: Optional[Dict[str, Any]] = None, tracker: Optional[Dict[str, Any]] = None,
+                 sensors: Many[str] = (), threads: int = 0, **changes: Any):
+        """Nothing is done yet.
+
+        inputs          folders that `Sequence.write` has made, and scenarios, which are made first; compared side by side
+        runways         a GeoJSON file: how long before strip and glide path a bird is tracked
+        learning_scans  at the beginning of a sequence, of which only clutter is learned; they are not scored
+        cutoff          m: a track that far from a bird is none of it; also of OSPA
+        order           of OSPA
+        clutter         properties of vtkAvianLidarClutterFilter by name
+        tracker         properties of vtkAvianLidarTracker by name
+        sensors         of scenarios, in place of their own: presets, or .lidarsensor.json files
+        threads         of scenarios
+        changes         of scenarios, for example number_of_scans
+        """
+        scores.ospa(np.zeros((0, 0)), cutoff, order)  # what is wrong is said before the work
+        if not isinstance(learning_scans, int) or learning_scans < 0:
+            raise ValueError(f"learning_scans is {learning_scans}, expected a whole number from 0 on")
+        self.runways = pathlib.Path(runways) if runways else None
+        self.learning, self.cutoff, self.order = learning_scans, float(cutoff), float(order)
+        self.clutter = in_snake_case(_wrapped.vtkAvianLidarClutterFilter, dict(clutter or {}), "clutter")
+        self.tracker = in_snake_case(_wrapped.vtkAvianLidarTracker, dict(tracker or {}), "tracker")
+        Chain(Sensor(), self.learning, self.clutter, self.tracker)
+        self.made: Dict[str, Sequence] = {}
+        self.folders: Dict[str, pathlib.Path] = {}
+        for given in map(pathlib.Path, inputs):
+            if given.is_dir():
+                self._add(given.resolve().name, given)
+                continue
+            scenario, stem = read_scenario(given), given.name.split(".")[0]
+            if "weather" in changes:
+                scenario["scan"] = without_air(scenario.get("scan", {}))
+            for sensor in sensors or ("",):
+                changed = {**scenario, "sensor": {**scenario["sensor"], "preset": str(pathlib.Path(sensor).resolve())
+                                                  if sensor.endswith(".json") else sensor}} if sensor else scenario
+                name = "-".join([stem, pathlib.Path(sensor).name.split(".")[0]] if sensor else [stem])
+                self._add(name, None)
+                with naming(str(given)):
+                    self.made[name] = Sequence(changed, threads=threads, **changes)
+        if not self.folders:
+            raise ValueError("no sequences are given, expected a folder or a scenario at least")
+
+    def _add(self, name: str, folder: Optional[pathlib.Path]) -> None:
+        checked_name(name, "the name of an input")
+        if name in self.folders:
+            raise Error(f"the name {name!r} is there twice, expected inputs of different names: their results go to folders of these")
+        self.folders[name] = folder or pathlib.Path()
+
+    def write(self, folder, ranks: Optional[Ranks] = None, progress: Optional[Progress] = None) -> Dict[str, Any]:
+        """Make scenarios (`folder`/sequences/NAME), follow the birds of each sequence (`folder`/NAME/NN.json), then write card.html, card.csv,
+        card.json, tracks.csv, birds.csv and pictures. What is there of the same files and settings stays. Ranks take whole sequences.
+        @param progress called with what is done, how much of it and of how much @return what card.json holds"""
+        ranks, out = ranks or Ranks(), pathlib.Path(folder)
+        with only_run(out, ranks, goes_on=True), ranks.together():
+            return self._write(out, ranks, progress or (lambda *_: None))
+
+    def _write(self, out: pathlib.Path, ranks: Ranks, progress: Progress) -> Dict[str, Any]:
+        for name, sequence in self.made.items():
+            self.folders[name], steps = out / "sequences" / name, itertools.count(1)
+            sequence.write(self.folders[name], ranks, lambda *_, name=name, steps=steps, of=sequence: progress(f"scans of {name}", next(steps), of.scans_to_do))
+        inputs = [Input(path, name) for name, path in self.folders.items()]
+        chains = [Chain(of.sensor, self.learning, self.clutter, self.tracker) for of in inputs]
+        everywhere = [of.runways(self.runways) for of in inputs]
+        todo = [(one, number) for one, of in enumerate(inputs) for number in of.numbers]
+        mine, done = todo[ranks.rank::ranks.size], 0
+        total = sum(int(inputs[one].content[number]["scans"]) for one, number in mine)
+        for one, number in mine:
+            of, chain = inputs[one], chains[one]
+            file = out / of.name / f"{number}.json"
+            identity = self._identity(of, number, chain, everywhere[one])
+            if not _is_of(file, identity):
+                found = self._follow(of, number, chain, everywhere[one], lambda k, before=done: progress("scans followed", before + k, total))
+                file.parent.mkdir(exist_ok=True)
+                write_whole(file, as_json({"identity": identity, **found}))
+            done += int(of.content[number]["scans"])
+        ranks.wait()
+        card: Dict[str, Any] = {}
+        if ranks.rank == 0:
+            results = [{number: load_json(out / of.name / f"{number}.json") for number in of.numbers} for of in inputs]
+            settings = {"learning_scans": self.learning, "cutoff": self.cutoff, "order": self.order,
+                        "runways": [[runway.name for runway in runways] for runways in everywhere], "chains": [chain.properties() for chain in chains]}
+            card = write_card(out, inputs, results, everywhere, settings, progress)
+        ranks.wait()
+        return card
+
+    def _identity(self, of: Input, number: str, chain: Chain, runways: Many[Runway]) -> str:
+        """Of all that decides what is found in a sequence."""
+        return _identity({"sequence": of.content[number]["sha256"], "inputs": of.content[number]["identity"], "version": __version__,
+                          "runways": _short([[r.name, r.start, r.end] for r in runways]), "learning": str(self.learning), "cutoff": repr(self.cutoff),
+                          "order": repr(self.order), **chain.properties()})
+
+    def _follow(self, of: Input, number: str, chain: Chain, runways: Many[Runway], step: Callable[[int], Any]) -> Dict[str, Any]:
+        home = of.folder / "sequences" / number
+        truth, count = read_truth(home / "truth.csv"), int(of.content[number]["scans"])
+        if count <= self.learning:
+            raise Error(f"{home}: has {count} scans, expected more than the {self.learning} of which only clutter is learned")
+        scorer = Scorer(self.cutoff, self.order, runways)
+        shown: Dict[str, Any] = {}
+        with chain:
+            for k, (scan, time, points, placed, times, labels) in enumerate(of.scans(number)):
+                live, origins = chain(points, placed, times, time), origin_of(labels)
+                if k >= self.learning:
+                    scorer.add(scan, truth.get(scan, []), live, origins)
+                if k == count - 1:
+                    shown = {"scan": scan, "points": np.round(placed, 1).tolist(), "origins": origins.tolist(), "clutter": live.clutter.astype(int).tolist()}
+                step(k + 1)
+        return {**scorer.results(), "seconds": (count - self.learning) / of.sensor.rotation_rate, "shown": shown}
+
+
+def _is_of(file: pathlib.Path, identity: str) -> bool:
+    """Whether a file holds the results of these inputs and settings."""
+    if not file.is_file():
+        return False
+    try:
+        known = load_json(file)
+    except Error:
+        return False
+    return isinstance(known, dict) and known.get("identity") == identity

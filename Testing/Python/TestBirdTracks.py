@@ -1,0 +1,277 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The report card of tracks: scores of tracks made by hand, times of points, bad input, small sequences as a whole, work that goes on."""
+import csv
+import json
+import os
+import pathlib
+import shutil
+import subprocess
+import sys
+import unittest
+
+import numpy as np
+
+import avianlidar as al
+from avianlidar.apps import _card, _following, _maps, _report
+from avianlidar.apps._following import ORIGINS, Input, Live, Scorer
+from avianlidar.apps.siting import Runway
+from boxfiles import CORNERS, LOW, TRIANGLES, stl
+
+OUTPUT = pathlib.Path(os.environ.get("AVIANLIDAR_TEST_OUTPUT_DIR", "/tmp")) / "bird-tracks"
+BIRD, CLUTTER, VEHICLE = (ORIGINS.index(name) for name in ("bird", "surface", "vehicle"))
+EAST = {"type": "Feature", "properties": {"kind": "runway", "name": "09/27"},
+        "geometry": {"type": "LineString", "coordinates": [[8.0030, 47.0], [8.0130, 47.0]]}}
+SCENE = {"version": 1, "origin": {"latitude": 47.0, "longitude": 8.0, "height": 400.0}, "lidar": {"position": [0, 0, 3]}, "objects": [
+    {"name": "Ground", "class": "ground", "ground": {"size": 4000, "height": 0}, "material": "Wall"},
+    {"name": "House", "class": "building", "file": "house.stl", "material": "Wall"}]}
+SCENARIO = {
+    "scene": "small.lidarscene.json", "number_of_scans": 50, "scans_per_sequence": 25, "seed": 5,
+    "sensor": {"preset": "Search905", "orientation": [30.0, 0.0, 0.0]}, "scan": {"attenuation_coefficient": 8.9e-5, "rays_per_beam": 50},
+    "birds": [{"pattern": "Crossings", "species": "herring gull", "number_of_birds": 12, "radius": 300, "heights": [4, 20]},
+              {"pattern": "Circles", "species": "crow", "number_of_birds": 4, "radius": 200, "heights": [5, 15]}],
+    "objects": [{"name": "box", "material": "Wall", "class": "car", "boxes": [[-1, 1, -2, 2, 0, 2]], "speed": 5.0, "route": [[-80, 150, 0], [80, 150, 0]]}]}
+
+
+def folder(name):
+    path = OUTPUT / name
+    shutil.rmtree(path, ignore_errors=True)
+    path.mkdir(parents=True)
+    return path
+
+
+def scenario_file(where, **changes):
+    (where / "small.lidarscene.json").write_text(json.dumps(SCENE), encoding="utf-8")
+    house = np.where(CORNERS == LOW, (-40.0, 300.0, 0.0), (40.0, 310.0, 12.0))
+    (where / "house.stl").write_text(stl(house, TRIANGLES), encoding="utf-8")
+    (where / "runways.geojson").write_text(json.dumps({"type": "FeatureCollection", "features": [EAST]}), encoding="utf-8")
+    path = where / "small.scenario.json"
+    path.write_text(json.dumps({**SCENARIO, **changes}), encoding="utf-8")
+    return path
+
+
+def row(bird, time, place, within=True):
+    return {"bird": bird, "species": "crow", "in": within, "time": time, "place": place, "range": 100.0, "weather": "clear"}
+
+
+def live(time, *tracks, points=()):
+    """Tracks (id, confirmed, place, velocity) at a time; points by their tracks."""
+    ids, sure, places, velocities = zip(*tracks) if tracks else ((), (), (), ())
+    return Live(np.array(ids, int), np.array(sure, bool), np.full(len(ids), time), np.array(places, float).reshape(-1, 3),
+                np.array(velocities, float).reshape(-1, 3), np.array(points, int), np.zeros(len(points), bool))
+
+
+class Scores(unittest.TestCase):
+    """Scans every 2 s of a bird that flies east at 10 m/s into a strip, and of one that nothing tracks."""
+
+    @classmethod
+    def setUpClass(cls):
+        scorer = Scorer(10.0, 1.0, [Runway("09/27", (150.0, 0.0), (1000.0, 0.0), 45.0)])
+        for k in range(12):
+            time, place = 2.0 * k, (20.0 * k, 3.0, 10.0)
+            rows = [row(1, time + 0.5, (20.0 * k + 5.0, 3.0, 10.0), within=k >= 2), row(2, time, (0.0, 500.0, 10.0))]
+            tracks = []
+            if k >= 3:  # another track from the 7th scan on; it has not met the bird in the 6th
+                tracks.append((0 if k < 7 else 5, k >= 5 and k != 6, place, (10.0, 0.0, 0.0)))
+            if k >= 4:
+                tracks += [(1, True, (300.0, 300.0, 5.0), (0.0, 0.0, 0.0)), (2, k > 8, (-50.0, 60.0, 1.0), (5.0, 0.0, 0.0))]
+            scorer.add(k, rows, live(time, *tracks, points=[track for track, *_ in tracks]), np.array([{1: CLUTTER, 2: VEHICLE}.get(t, BIRD) for t, *_ in tracks]))
+        cls.found = scorer.results()
+        cls.birds = {bird["bird"]: bird for bird in cls.found["birds"]}
+        cls.tracks = {track["track"]: track for track in cls.found["tracks"]}
+
+    def test_birds(self):
+        bird = self.birds[1]
+        self.assertEqual((bird["scans"], bird["tracked"], bird["switches"]), (10, 6, 1))  # scans 2 to 11, tracked in 5 and 7 to 11
+        self.assertEqual((bird["came_s"], bird["found_s"]), (4.5, 10.5))
+        self.assertEqual(bird["strip"], 16.5)  # at x = 165 in scan 8, at 145 in scan 7
+        self.assertIsNone(bird["glide path"] and None)
+        np.testing.assert_allclose(_card.warnings_of(self.found["birds"], "strip"), [6.0])
+        self.assertEqual((self.birds[2]["scans"], self.birds[2]["tracked"], self.birds[2]["found_s"]), (12, 0, None))
+
+    def test_tracks(self):
+        self.assertEqual({number: track["origin"] for number, track in self.tracks.items()}, {0: "bird", 1: "surface", 2: "vehicle", 5: "bird"})
+        self.assertEqual((self.tracks[1]["scans"], self.tracks[1]["assigned"], self.tracks[1]["begin"]), (8, 0, [300.0, 300.0, 5.0]))
+        self.assertEqual(self.tracks[0]["confirmed_s"], 10.0)
+        self.assertEqual({state[9] for state in self.found["states"] if state[1] in (0, 5)}, {1})
+
+    def test_ospa(self):
+        """Order 1, cut-off 10 m. Predicted to the beam's time the track is where the bird is."""
+        distances = [distance for distance, _, _ in self.found["ospa"]]
+        self.assertEqual(distances[:2], [10.0, 10.0])  # a bird in the volume, no track
+        self.assertEqual(distances[4], 10.0)  # two birds, one false track
+        self.assertEqual(distances[5], 5.0)   # one of two birds at its place, the false track is 10 m off
+        self.assertEqual(distances[11], 5.0)  # the vehicle's track is not asked for
+
+    def test_card(self):
+        of = _card.of_birds(self.found["birds"])
+        self.assertEqual((of["tracked"].value, of["tracked"].count), (0.5, 2))
+        self.assertAlmostEqual(of["time"].value, 6 / 22)
+        self.assertEqual((of["delay"].value, of["switches"].value), (6.0, 1.0))
+        tracks = _card.of_tracks([{**self.found, "seconds": 24.0}])
+        self.assertAlmostEqual(tracks["false"].value, 150.0)
+        self.assertAlmostEqual(tracks["vehicle"].value, 150.0)
+        self.assertAlmostEqual(tracks["ospa"].value, np.mean([distance for distance, _, _ in self.found["ospa"]]))
+
+    def test_bands_of_height(self):
+        self.assertEqual([_card.band_of(height) for height in (-1.0, 9.9, 10.0, 59.0, 60.0)],
+                         ["below 10 m", "below 10 m", "10 to 30 m", "30 to 60 m", "above 60 m"])
+
+    def test_a_second_track_of_a_bird(self):
+        scorer = Scorer(10.0, 2.0, [])
+        for k in range(3):
+            scorer.add(k, [row(1, 2.0 * k, (0.0, 0.0, 10.0))], live(2.0 * k, (0, True, (0.0, 0.0, 10.0), (0, 0, 0)), (1, True, (4.0, 0.0, 10.0), (0, 0, 0)),
+                                                                    points=[0, 1, 1]), np.array([BIRD, BIRD, CLUTTER]))
+        self.assertEqual([track["origin"] for track in scorer.results()["tracks"]], ["bird", "second track of a bird"])
+
+    def test_flocks(self):
+        """One track for two birds: one is tracked, both are beside it."""
+        scorer = Scorer(10.0, 2.0, [])
+        for k in range(3):
+            scorer.add(k, [row(1, 2.0 * k, (0.0, 0.0, 10.0)), row(2, 2.0 * k, (2.0, 0.0, 10.0))],
+                       live(2.0 * k, (0, True, (0.5, 0.0, 10.0), (0, 0, 0)), points=[0]), np.array([BIRD]))
+        birds = scorer.results()["birds"]
+        self.assertEqual([(bird["tracked"], bird["near"]) for bird in birds], [(3, 3), (0, 3)])
+        self.assertEqual([_card.of_birds(birds)[name].value for name in ("tracked", "near")], [0.5, 1.0])
+
+    def test_nothing(self):
+        found = Scorer(10.0, 2.0, [])
+        found.add(0, [], live(0.0), np.empty(0, int))
+        self.assertEqual({**found.results(), "ospa": found.results()["ospa"]}, {"birds": [], "tracks": [], "ospa": [[0.0, 0.0, 0.0]], "states": [], "last": []})
+
+    def test_origins_of_labels(self):
+        labels = np.array([99 | 10001 << 16, 252 | 1001 << 16, 1, 0, 50 | 3 << 16, 0 | 4 << 16], np.uint32)
+        self.assertEqual([ORIGINS[k] for k in _following.origin_of(labels)], ["bird", "vehicle", "air", "false alarm", "surface", "surface"])
+
+
+class Files(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.home = folder("files")
+        cls.file = scenario_file(cls.home)
+        cls.made = cls.home / "made"
+        al.Sequence(cls.file, threads=1).write(cls.made)
+        cls.out = cls.home / "out"
+        cls.card = cls.tracks().write(cls.out)
+
+    @classmethod
+    def tracks(cls, *inputs, **settings):
+        return al.BirdTracks(inputs or [cls.made], **{"runways": cls.home / "runways.geojson", "learning_scans": 8, **settings})
+
+    @staticmethod
+    def table(file):
+        with open(file, newline="", encoding="utf-8") as stream:
+            return list(csv.DictReader(stream))
+
+    def test_times_of_points(self):
+        """A point's time is that of the beam that it lies on: those of birds lie between the truth's first and last time."""
+        of, checked = Input(self.made, "made"), 0
+        truth = {(int(r["scan"]), int(r["bird"])): r for r in self.table(self.made / "sequences/01/truth.csv") if r["x_m"]}
+        for scan, start, points, placed, times, labels in of.scans("01"):
+            self.assertTrue(((times >= 1e6 * start) & (times < 1e6 * (start + 2.0))).all())
+            np.testing.assert_allclose(np.linalg.norm(points, axis=1), np.linalg.norm(placed - of.sensor.position, axis=1), atol=1e-3)
+            for time, place, label in zip(times, placed, labels):
+                if label >> 16 > 10000:
+                    r = truth[scan, (label >> 16) - 1]
+                    if float(r["last_time_s"]) - float(r["first_time_s"]) > 1.0:
+                        continue  # met twice, at both ends of the revolution
+                    self.assertLessEqual(float(r["first_time_s"]) - 1e-5, 1e-6 * time)
+                    self.assertGreaterEqual(float(r["last_time_s"]) + 1e-5, 1e-6 * time)
+                    self.assertLess(np.hypot(place[0] - float(r["x_m"]), place[1] - float(r["y_m"])), 10.0)
+                    checked += 1
+        self.assertGreater(checked, 50)
+
+    def test_birds_are_tracked(self):
+        scores = {r["score"]: r for r in self.table(self.out / "card.csv") if r["by"] == "all"}
+        self.assertGreater(float(scores["birds tracked"]["value"]), 0.4)
+        self.assertGreater(float(scores["birds tracked"]["std_error"]), 0.0)
+        self.assertLess(float(scores["OSPA distance"]["value"]), 20.0)
+        birds = self.table(self.out / "birds.csv")
+        self.assertEqual(int(scores["birds tracked"]["count"]), len(birds))
+        self.assertEqual(float(scores["birds tracked"]["value"]), sum(bool(b["found_s"]) for b in birds) / len(birds))
+        # Positions of tracks lie at birds, to the errors of a beam.
+        truth = {(int(r["scan"]), int(r["bird"])): r for k in "01" for r in self.table(self.made / f"sequences/0{k}/truth.csv") if r["x_m"]}
+        states = [s for s in self.table(self.out / "tracks.csv") if s["bird"] != "-1"]
+        off = [np.hypot(*(float(s[n]) - float(truth[int(s["scan"]), int(s["bird"])][n]) for n in ("x_m", "y_m"))) for s in states]
+        self.assertGreater(len(off), 50)
+        self.assertLess(np.median(off), 2.0)
+        groups = [r for r in self.table(self.out / "card.csv") if r["by"] == "species" and r["score"] == "birds tracked"]
+        self.assertEqual(sum(int(r["count"]) for r in groups), len(birds))
+
+    def test_page(self):
+        page = (self.out / "card.html").read_text(encoding="utf-8")
+        for words in ("measured elsewhere", "second-hand", "Terre Haute", "assumed", "By species", "By height", "By weather", "glide path", "strip"):
+            self.assertIn(words, page)
+        self.assertEqual(page.count("data:image/png"), 4)
+        self.assertNotIn("http", page)
+        for text in (cell for line in self.card["overall"] for cell in line["cells"]):
+            self.assertIn(text.replace("\u00a0", " "), page.replace("\u00a0", " "))
+
+    def test_goes_on(self):
+        """What is there of the same stays; other settings make it again; the same bits."""
+        file = self.out / "made/01.json"
+        before, content = file.stat().st_mtime_ns, file.read_bytes()
+        self.assertEqual(self.tracks().write(self.out), self.card)
+        self.assertEqual(file.stat().st_mtime_ns, before)
+        file.write_text("{}", encoding="utf-8")
+        self.tracks().write(self.out)
+        self.assertEqual(file.read_bytes(), content)
+        other = self.home / "other"
+        shutil.copytree(self.out, other)
+        self.tracks(cutoff=5.0).write(other)
+        self.assertNotEqual((other / "made/01.json").read_bytes(), content)
+
+    def test_command_makes_and_compares_scenarios(self):
+        out = self.home / "compared"
+        done = subprocess.run([sys.executable, "-m", "avianlidar", "track", self.file, "-o", out, "--sensor", "Search905", "--sensor", "Search1550", "--scans", "12",
+                               "--learn", "6", "--weather", "fog:2000", "--tracker-set", "confirm_hits=2"], capture_output=True, text=True, check=False)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("small-Search905", done.stdout)
+        self.assertTrue((out / "sequences/small-Search1550/manifest.json").is_file())
+        weathers = {(r["input"], r["group"]) for r in self.table(out / "card.csv") if r["by"] == "weather"}
+        self.assertEqual(weathers, {(f"small-{name}", "visibility 2000 m") for name in ("Search905", "Search1550")})
+        self.assertNotIn("Warning", (out / "card.html").read_text(encoding="utf-8"))  # without runways
+
+    def test_section_of_the_report(self):
+        plan = self.home / "p.coverage.json"
+        plan.write_text(json.dumps({"scene": "small.lidarscene.json", "sensor": {"preset": "Search905"}, "heights": [20], "extent": [-200, 200, -200, 200],
+                                    "spacing": 50, "places": 50, "tracks": "out"}), encoding="utf-8")
+        _report.Report(_maps.read_plan(plan), 1).write(self.home / "report.html")
+        page = (self.home / "report.html").read_text(encoding="utf-8")
+        self.assertIn('id="tracks"', page)
+        self.assertIn(self.card["overall"][0]["cells"][0].replace("\u00a0", "\u00a0"), page)
+        plan.write_text(json.dumps({"scene": "small.lidarscene.json", "sensor": {"preset": "Search905"}, "tracks": "made"}), encoding="utf-8")
+        with self.assertRaisesRegex(al.Error, "tracks: .*holds no card.json"):
+            _report.Report(_maps.read_plan(plan))
+
+    def broken(self, name):
+        where = self.home / name
+        shutil.rmtree(where, ignore_errors=True)
+        shutil.copytree(self.made, where)
+        return where
+
+    def test_bad_input(self):
+        empty, cut, changed, other = folder("files/empty"), self.broken("cut"), self.broken("changed"), self.broken("sensor")
+        (cut / "sequences/01/truth.csv").unlink()
+        (changed / "sequences/00/truth.csv").write_text("scan,bird\n", encoding="utf-8")
+        manifest = json.loads((other / "manifest.json").read_text())
+        manifest["scenario"]["sensor"]["preset"] = "Search1550"
+        (other / "manifest.json").write_text(json.dumps(manifest), encoding="utf-8")
+        (self.home / "none.geojson").write_text('{"features": []}', encoding="utf-8")
+        for inputs, settings, words in (
+                ((empty,), {}, "holds no manifest.json, expected a folder that"), ((cut,), {}, "truth.csv: is not there, expected a sequence with its truth"),
+                ((changed,), {}, "its files are not those"), ((other,), {}, "is of another sensor than .*manifest.json names"),
+                ((self.made, self.made), {}, "'made' is there twice"), ((self.made,), {"learning_scans": 25}, "has 25 scans, expected more than the 25"),
+                ((self.made,), {"runways": self.home / "none.geojson"}, "holds no runway"), ((self.home / "nowhere",), {}, "nowhere"),
+                ((self.made,), {"tracker": {"hits": 3}}, "hits"), ((self.made,), {"cutoff": 0.0}, "cutoff is 0"),
+                ((self.made,), {"learning_scans": -1}, "learning_scans is -1")):
+            with self.subTest(words), self.assertRaisesRegex((al.Error, ValueError, TypeError), words):
+                self.tracks(*inputs, **settings).write(self.home / "bad")
+            self.assertFalse((self.home / "bad").exists())
+        with self.assertRaisesRegex(ValueError, "no sequences are given"):
+            al.BirdTracks([])
+        with self.assertRaisesRegex(al.Error, "has no column species"):
+            _following.read_truth(changed / "sequences/00/truth.csv")
+
+
+if __name__ == "__main__":
+    unittest.main()

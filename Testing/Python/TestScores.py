@@ -1,0 +1,176 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Scores of tracks: closed forms, crossings made by hand, axioms of a metric, errors against many draws."""
+import itertools
+import math
+import unittest
+
+import numpy as np
+
+from avianlidar.apps import _scores as scores
+
+
+def brute(distance, cutoff, order):
+    """OSPA by all permutations."""
+    distance = distance if distance.shape[0] <= distance.shape[1] else distance.T
+    m, n = distance.shape
+    if n == 0:
+        return 0.0
+    cut = np.minimum(distance, cutoff) ** order
+    least = min(sum(cut[i, j] for i, j in enumerate(of)) for of in itertools.permutations(range(n), m))
+    return ((least + cutoff ** order * (n - m)) / n) ** (1.0 / order)
+
+
+class Ospa(unittest.TestCase):
+    def test_closed_forms(self):
+        self.assertEqual(scores.ospa(np.zeros((0, 0)), 10.0), (0.0, 0.0, 0.0))
+        self.assertEqual(scores.ospa(np.zeros((0, 3)), 10.0), (10.0, 0.0, 10.0))
+        self.assertEqual(scores.ospa(np.zeros((2, 0)), 10.0, 1.0), (10.0, 0.0, 10.0))
+        # m points at their places and n - m that are missing: c ((n - m) / n)^(1 / p); all are off by d: d, at most c.
+        for order, m, n in itertools.product((1.0, 2.0, 3.5), (1, 3), (4, 7)):
+            truth = np.arange(3.0 * n).reshape(n, 3) * 100.0
+            self.assertAlmostEqual(scores.ospa(scores.distances(truth[:m], truth), 10.0, order).distance, 10.0 * ((n - m) / n) ** (1.0 / order))
+            for off in (3.0, 30.0):
+                found = scores.ospa(scores.distances(truth + (off, 0.0, 0.0), truth), 10.0, order)
+                self.assertAlmostEqual(found.distance, min(off, 10.0))
+                self.assertAlmostEqual(found.cardinality, 0.0)
+        # Order 1 is the mean distance of each object: 2 m, 4 m and one that is missing with 10 m.
+        self.assertAlmostEqual(scores.ospa([[2.0, 99.0], [99.0, 4.0], [99.0, 99.0]], 10.0, 1.0).distance, 16.0 / 3.0)
+
+    def test_all_permutations_and_parts(self):
+        random = np.random.default_rng(1)
+        for m, n, order in itertools.product((0, 1, 2, 4), (0, 1, 3, 5), (1.0, 2.0)):
+            distance = scores.distances(random.uniform(0, 30, (m, 3)), random.uniform(0, 30, (n, 3)))
+            found = scores.ospa(distance, 12.0, order)
+            self.assertAlmostEqual(found.distance, brute(distance, 12.0, order))
+            self.assertAlmostEqual(found.distance ** order, found.localisation ** order + found.cardinality ** order)
+
+    def test_is_a_metric(self):
+        random = np.random.default_rng(2)
+        for _ in range(300):
+            a, b, c = (random.uniform(0, 20, (random.integers(0, 5), 3)) for _ in range(3))
+            order = random.choice([1.0, 2.0, 4.0])
+
+            def of(x, y):
+                return scores.ospa(scores.distances(x, y), 8.0, order).distance
+            self.assertAlmostEqual(of(a, b), of(b, a))
+            self.assertLessEqual(of(a, b), of(a, c) + of(c, b) + 1e-12)
+            self.assertLessEqual(of(a, b), 8.0)
+            self.assertAlmostEqual(of(a, a), 0.0)
+            if len(a) != len(b) or not np.allclose(a, b):
+                self.assertGreater(of(a, b), 0.0)
+
+    def test_other_settings_are_errors(self):
+        for cutoff, order in ((0.0, 1.0), (math.nan, 1.0), (1.0, 0.5), (1.0, math.inf)):
+            with self.assertRaisesRegex(ValueError, "cutoff is"):
+                scores.ospa(np.zeros((1, 1)), cutoff, order)
+
+
+class Assignment(unittest.TestCase):
+    def test_sum_is_least_and_the_cut_off_ends_pairs(self):
+        self.assertEqual(scores.assign([[1.0, 2.0], [1.5, 9.0]], 10.0), [(0, 1), (1, 0)])  # not the nearest first
+        self.assertEqual(scores.assign([[1.0, 20.0], [3.0, 20.0]], 10.0), [(0, 0)])
+        self.assertEqual(scores.assign([[10.0]], 10.0), [])
+        self.assertEqual(scores.assign(np.zeros((0, 2)), 10.0), [])
+
+    @staticmethod
+    def crossing(swap):
+        """Two birds that pass one another 1 m apart; tracks follow them, or swap where they meet. Tracks by bird and scan."""
+        history, before = {"a": [], "b": []}, {}
+        for k in range(11):
+            truth = np.array([[k - 5.0, 0.5, 0.0], [5.0 - k, -0.5, 0.0]]) * (4.0, 1.0, 1.0)
+            tracks = truth[::-1] if swap and k >= 5 else truth
+            before = scores.follow(scores.distances(truth, tracks), "ab", (7, 8), 3.0, before)
+            for bird, of in history.items():
+                of.append(before.get(bird))
+        return history
+
+    def test_crossings(self):
+        for swap, wanted in ((False, [7] * 11), (True, [7] * 6 + [8] * 5)):
+            history = self.crossing(swap)
+            self.assertEqual(history["a"], wanted)  # pairs stay where they meet
+            self.assertEqual([scores.switches(of) for of in history.values()], [swap, swap])
+
+    def test_pairs_stay_within_the_cut_off(self):
+        distance = np.array([[2.0, 1.0], [1.0, 2.0]])
+        self.assertEqual(scores.follow(distance, "ab", (0, 1), 3.0, {}), {"a": 1, "b": 0})
+        self.assertEqual(scores.follow(distance, "ab", (0, 1), 3.0, {"a": 0}), {"a": 0, "b": 1})
+        self.assertEqual(scores.follow(distance, "ab", (0, 1), 1.5, {"a": 0}), {"a": 1, "b": 0})
+        self.assertEqual(scores.follow(np.zeros((2, 0)), "ab", (), 3.0, {"a": 0}), {})
+
+    def test_switches_over_gaps(self):
+        for of, count in (([], 0), ([None, 1, 1], 0), ([1, None, 1], 0), ([1, None, 2], 1), ([1, 2, 1, None, 3], 3)):
+            self.assertEqual(scores.switches(of), count)
+
+
+class Volumes(unittest.TestCase):
+    def test_strip(self):
+        points = [[0, 0, 1], [100, 10, 60], [100, 10, 60.1], [100, 151, 1], [-1, 0, 1], [201, 0, 1], [200, -150, 0]]
+        self.assertEqual(scores.in_strip(points, (0, 0), (200, 0), 150.0, 60.0).tolist(), [True, True, False, False, False, False, True])
+
+    def test_wedge_rises_by_three_degrees(self):
+        slope = math.tan(math.radians(3.0))
+        on = np.array([[-1000.0, 0.0, 15.0 + 1000.0 * slope]])
+        for move, inside in (((0, 0, -0.1), True), ((0, 0, 0.1), False), ((0, 224.9, -1), True), ((0, 225.1, -1), False), ((1001, 0, -60), False),
+                             ((-2001, 0, 0), False)):
+            found = scores.in_wedge(on + move, (0, 0), (-1.0, 0.0), 3000.0, (75.0, 0.15), (15.0, slope))
+            self.assertEqual(bool(found[0]), inside, move)
+
+    def test_entry(self):
+        times = [10.0, 12.0, 14.0, 16.0]
+        for inside, when in (([0, 0, 1, 1], 14.0), ([1, 0, 0, 1], 16.0), ([0, 1, 0, 1], 12.0)):
+            self.assertEqual(scores.entry(times, inside), when)
+        for inside in ([0, 0, 0, 0], [1, 1, 1, 0]):
+            self.assertTrue(math.isnan(scores.entry(times, inside)))
+
+
+class Errors(unittest.TestCase):
+    def test_scans_until_two_in_a_row(self):
+        """Detections that are independent with p: (1 + p) / p^2 scans, within three standard errors as `mean` says them."""
+        random = np.random.default_rng(3)
+        for p, wanted in ((0.5, 6.0), (0.8, 2.8125)):
+            seen = random.uniform(size=(4000, 400)) < p
+            scans = np.argmax(seen[:, 1:] & seen[:, :-1], axis=1) + 2
+            found = scores.mean(scans)
+            self.assertEqual(found.count, 4000)
+            self.assertLess(abs(found.value - wanted), 3.0 * found.error)
+            self.assertAlmostEqual(wanted, (1.0 + p) / p ** 2)
+
+    def test_false_tracks(self):
+        """Alarms uniform over a volume, two in a row within a gate confirm: lambda^2 v / V tracks a scan."""
+        random, alarms, gate, scans = np.random.default_rng(4), 20, 2e-4, 4000  # of a line of length 1 whose ends meet
+        places = random.uniform(size=(scans, alarms))
+        off = np.abs(places[1:, :, None] - places[:-1, None])
+        tracks = int(np.count_nonzero(np.minimum(off, 1.0 - off) < gate / 2.0))
+        found = scores.rate(tracks, scans - 1.0)
+        self.assertLess(abs(found.value - alarms ** 2 * gate), 3.0 * found.error)
+
+    def test_jackknife_of_a_mean_is_its_error(self):
+        values = np.random.default_rng(5).normal(size=50)
+        np.testing.assert_allclose(scores.jackknife(np.mean, values), scores.mean(values))
+        np.testing.assert_allclose(scores.ratio(values, np.ones(50)), scores.mean(values))
+
+    def test_errors_are_the_spread_of_many_draws(self):
+        random = np.random.default_rng(6)
+        shares, ratios, rates = [], [], []
+        for _ in range(2000):
+            shares.append(scores.share(int(random.binomial(60, 0.3)), 60)[:2])
+            rates.append(scores.rate(int(random.poisson(25.0)), 0.5)[:2])
+            scans = random.integers(1, 40, 60)
+            ratios.append(scores.ratio(random.binomial(scans, random.beta(2, 3, 60)), scans)[:2])
+        for values, wanted in ((shares, 0.3), (ratios, 0.4), (rates, 50.0)):
+            values, errors = np.transpose(values)
+            self.assertAlmostEqual(values.mean() / wanted, 1.0, delta=0.02)
+            self.assertAlmostEqual(errors.mean() / values.std(), 1.0, delta=0.06)
+
+    def test_none_and_all_have_an_error(self):
+        for count in (0, 10):
+            self.assertEqual(scores.share(count, 10).value, count / 10)
+            self.assertAlmostEqual(scores.share(count, 10).error, math.sqrt(11 / 12 * 1 / 12 / 13))
+        self.assertEqual(scores.rate(0, 2.0), (0.0, 0.5, 0))
+        for nothing in (scores.share(0, 0), scores.mean([]), scores.ratio([], []), scores.ratio([0.0], [0.0]), scores.rate(0, 0.0)):
+            self.assertTrue(math.isnan(nothing.value) and math.isnan(nothing.error))
+        self.assertTrue(math.isnan(scores.mean([1.0]).error))
+
+
+if __name__ == "__main__":
+    unittest.main()
