@@ -14,6 +14,7 @@ RAIN = "-rain"
 BIRD, MOVING = 99, (252, 258, 259)  # labels
 FAR = 50.0       # m: a neighbour that far is none
 NEAR = 1.5       # m: two range units, that close an echo is the same in another scan or beam
+MANY = 200_000   # points that show the channels and columns of a sensor
 WIDTH = 10_000.0  # m, more than a range gate
 
 
@@ -36,7 +37,7 @@ class Frame:
 
     def _lay(self):
         """Sort the points by beam and range."""
-        self.row = np.argmin(abs(self.elevation[:, None] - self.levels[None]), axis=1) if len(self.range) else np.zeros(0, int)
+        self.row = np.searchsorted((self.levels[1:] + self.levels[:-1]) / 2.0, self.elevation)
         self.beam = self.column * len(self.levels) + self.row
         key = self.beam * WIDTH + self.range
         self.order = np.argsort(key, kind="stable")
@@ -117,7 +118,8 @@ def frames(home, number):
     """(name, frame, frames before) of a sequence's scans."""
     files = [home / "sequences" / number / "velodyne" / f"{name}.bin" for name in names(home, number)]
     scans = [np.fromfile(file, "<f4").reshape(-1, 4) for file in files]
-    every = Frame(np.concatenate(scans))  # the channels and columns of the sensor
+    some = np.concatenate(scans)
+    every = Frame(some[::max(1, len(some) // MANY)])  # the channels and columns of the sensor
     before = []
     for file, points in zip(files, scans):
         frame = Frame(points, 360.0 / every.columns).with_levels(every.levels)
