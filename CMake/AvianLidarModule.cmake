@@ -5,6 +5,7 @@ set(classes
   Filters/vtkAvianLidarBeamSource
   Filters/vtkAvianLidarBirdSource
   Filters/vtkAvianLidarCloudComparison
+  Filters/vtkAvianLidarClutterFilter
   Filters/vtkAvianLidarCollisionTree
   Filters/vtkAvianLidarCoverage
   Filters/vtkAvianLidarEchoFilter
@@ -35,6 +36,7 @@ set(private_sources
   Filters/Private/Common/vtkAvianLidarGuard.cxx
   Filters/Private/Common/vtkAvianLidarIdRuns.cxx
   Filters/Private/Common/vtkAvianLidarRanks.cxx
+  Filters/Private/Common/vtkAvianLidarScanStream.cxx
   Filters/Private/Surfaces/vtkAvianLidarMedia.cxx
   Filters/Private/Surfaces/vtkAvianLidarSurfaceExchange.cxx
   Filters/Private/Surfaces/vtkAvianLidarSurfaceIds.cxx

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Behind the echo filter: the comparison of clouds and the range image of several ranks are together those of one
-process, and nothing is traced twice for them."""
+"""Behind the echo filter: the comparison of clouds, the clutter filter and the range image of several ranks are together those
+of one process, and nothing is traced twice for them."""
 
 import math
 
@@ -120,6 +120,31 @@ def test_ties_are_those_of_one_process():
     assert RANKS == 1 or RANK != 0 or "ChamferAlpha is 3 on rank 0 and 2 on rank" in messages.errors[0], messages.errors
 
 
+def test_clutter_is_learned_from_the_points_of_all():
+    """Three scans of a sensor that jitters; the second one twice, as it executes again."""
+    def played(ask):
+        beams = echotools.sensor()
+        beams.SetNumberOfRevolutions(3)
+        beams.SetEncoderJitter(0.5)
+        echo = echotools.scan(TOWN, beams, **SETTINGS)
+        clutter = al.vtkAvianLidarClutterFilter()
+        clutter.SetInputConnection(echo.GetOutputPort())
+        clutter.SetAngularTolerance(0)
+        for k in (0, 1, 1, 2):
+            clutter.Modified()
+            ask(clutter, k / beams.GetRotationRate())
+        return clutter
+
+    serial = played(lambda clutter, time: clutter.UpdateTimeStep(time))
+    together = played(lambda clutter, time: clutter.UpdateTimeStep(time, RANK, RANKS, 0))
+    expected = in_order(point_arrays(serial.GetOutputDataObject(0)))
+    assert {0.0, 0.5, 1.0} <= set(expected["clutter_probability"].round(2)), set(expected["clutter_probability"])
+    assert_same(joined(together.GetOutputDataObject(0)), expected)
+    assert_same(joined(together.GetOutputDataObject(1)), in_order(point_arrays(serial.GetOutputDataObject(1))))
+    for port in (0, 1):
+        assert together.GetOutputDataObject(port).GetFieldData().GetArray("learned_scans").GetValue(0) == 3
+
+
 def test_a_cloud_that_one_rank_has():
     echo = scan()
     echo.Update()
@@ -210,6 +235,7 @@ def test_image_of_a_table_of_beams():
 
 
 if __name__ == "__main__":
-    main([test_comparison_gives_every_point_once, test_ties_are_those_of_one_process, test_a_cloud_that_one_rank_has,
+    main([test_comparison_gives_every_point_once, test_ties_are_those_of_one_process,
+          test_clutter_is_learned_from_the_points_of_all, test_a_cloud_that_one_rank_has,
           test_bad_cloud_of_one_rank_is_an_error_on_all, test_pieces_of_ones_own, test_image_is_that_of_one_process,
           test_nothing_is_traced_again_for_the_image, test_image_of_a_sweep, test_image_of_a_table_of_beams])

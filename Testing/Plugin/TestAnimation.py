@@ -226,6 +226,37 @@ def test_a_series_of_files_is_a_moving_scene(kind):
     remove(glob.glob(os.path.join(OUTPUT_DIR, "TestAnimationBox_?*")))
 
 
+def test_a_clutter_filter_learns_while_it_plays(kind):
+    """A ball that stands and one that moves, whatever executes again meanwhile."""
+    fresh()
+    names = []
+    for k in range(4):
+        balls = [simple.Sphere(Radius=2, Center=center) for center in ([-30, 60, 0], [30, 60 + 12 * k, 0])]
+        group = simple.AppendDatasets(Input=balls)
+        group.UpdatePipeline()
+        names.append(os.path.join(OUTPUT_DIR, f"TestAnimationClutter_{k}.{kind}"))
+        simple.SaveData(names[-1], proxy=group, DataMode="Binary")
+    cloud = simple.OpenDataFile(names)
+    clutter = simple.AvianLidarClutterFilter(Input=cloud, WarmUp=0)
+    view = simple.CreateRenderView()
+    for port in (0, 1):
+        simple.Show(simple.OutputPort(clutter, port), view)
+    scene = simple.GetAnimationScene()
+    scene.UpdateAnimationUsingDataTimeSteps()
+    scene.ViewModules = [view]
+
+    def look():
+        simple.Render(view)
+        clutter.ClutterThreshold = 0.05 if clutter.ClutterThreshold == 0.06 else 0.06  # executes again
+        clutter.UpdatePipeline(scene.TimeKeeper.Time)
+        return (*clutter.PointData["clutter_probability"].GetRange(), clutter.FieldData["learned_scans"].GetRange()[0])
+
+    assert frames_of(scene, look) == [(0.0, float(k > 0), k + 1.0) for k in range(4)], look()
+    scene.GoToFirst()
+    assert look() == (0.0, 0.0, 1.0)
+    remove(glob.glob(os.path.join(OUTPUT_DIR, "TestAnimationClutter_?*")))
+
+
 def main():
     ranks = int(sys.argv[1]) if len(sys.argv) > 1 else 1
     assert vtkMultiProcessController.GetGlobalController().GetNumberOfProcesses() == ranks
@@ -238,6 +269,7 @@ def main():
     test_one_scan_leaves_the_steps_of_others_alone()
     test_saving_every_step(kind)
     test_a_series_of_files_is_a_moving_scene(kind)
+    test_a_clutter_filter_learns_while_it_plays(kind.replace("vtp", "vtu"))
 
 
 if __name__ == "__main__":

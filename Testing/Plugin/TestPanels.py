@@ -42,6 +42,7 @@ FIRST_SHOWN = {
     "AvianLidarMaterial": "Material Kd Ks Kp BlockNamePattern",
     "AvianLidarMaterialCustom": "Material Kd Ks Kp BlockNamePattern",
     "AvianLidarCollisionTree": "SplitRule BoundingVolume DisplayLevel",
+    "AvianLidarClutterFilter": "ClutterThreshold Learning Window WarmUp AzimuthStep ElevationStep",
     "AvianLidarCoverage": """Bounds Spacing Species Reflectance EffectiveArea MeteorologicalVisibility RequiredDetections NumberOfScans
         HeightLimits""",
     "AvianLidarEchoFilter": "Preset RaysPerBeam AttenuationCoefficient NumberOfReflections Noise ReturnMode",

@@ -214,6 +214,20 @@ CONTRACT = {
         "UTMZone": "",
     },
     "AvianLidarRangeImage": {"Echoes": None, "Beams": None, "Columns": "", "Rows": ""},
+    "AvianLidarClutterFilter": {
+        "Input": None,
+        "Table": None,
+        "ClutterThreshold": "",
+        "Learning": "",
+        "Window": "",
+        "WarmUp": "",
+        "RangeStep": "metres",
+        "AzimuthStep": "degrees",
+        "ElevationStep": "degrees",
+        "RangeTolerance": "",
+        "AngularTolerance": "",
+        "SensorPosition": "metres",
+    },
     "AvianLidarCloudComparison": {
         "Simulated": None,
         "Reference": None,
@@ -274,6 +288,7 @@ OUTPUTS = {
     "AvianLidarEchoFilter": ["Echoes", "Beam Report", "Mover Report"],
     "AvianLidarCoverage": ["Coverage", "Shares", "Clutter"],
     "AvianLidarCloudComparison": ["Simulated", "Reference"],
+    "AvianLidarClutterFilter": ["Scan", "Table"],
 }
 # The values of the contract that are not only the class's business.
 DEFAULTS = {

@@ -134,6 +134,7 @@ class Arguments(unittest.TestCase):
             [("point", "energy", ARRAY), ("field", "lower_energy_limit", ONE), ("field", "upper_energy_limit", ONE)]]
         yield make("GeodeticTransform"), [enu], [[ORIGIN]]
         yield make("CloudComparison"), [done.GetOutput(0), everything], [[], []]
+        yield make("ClutterFilter"), [everything], [[PLACE[0]]]
         yield make("UnitNames"), [everything], [[]]
         yield self.writer("LAS"), [everything], [[
             ("point", "intensity", FINITE), ("point", "return_number", WHOLE), ("point", "number_of_returns", WHOLE),
@@ -231,7 +232,7 @@ class Arguments(unittest.TestCase):
             "Material": ({"Material": 4}, [surfaces()]), "HSBColorMap": ({"UseFieldDataRange": False}, [report().GetOutput(0)]),
             "GeodeticTransform": ({"UseFieldDataOrigin": False}, [echoes()]),
             "GeoJSONWriter": ({"UseFieldDataLimit": False}, [echoes()]),
-            "Tracks": ({}, []), "CloudComparison": ({}, [report().GetOutput(0), echoes()])}
+            "Tracks": ({}, []), "CloudComparison": ({}, [report().GetOutput(0), echoes()]), "ClutterFilter": ({}, [echoes()])}
         tried = 0
         for name, (settings, inputs) in setups.items():
             wrapped = getattr(al, "vtkAvianLidar" + name)

@@ -68,6 +68,7 @@ def trails():
 # Every class with inputs: the producers of its ports.
 FILTERS = {
     "CloudComparison": (echoes, echoes),
+    "ClutterFilter": (echoes,),
     "CollisionTree": (surfaces,),
     "Coverage": (beams, surfaces),
     "EchoFilter": (beams, surfaces),

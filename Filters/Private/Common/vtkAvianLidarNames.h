@@ -173,6 +173,22 @@ constexpr Name CrsWkt{ "crs_wkt", "" };
 constexpr Name ColumnAzimuths{ "column_azimuths", "deg" };
 constexpr Name RowElevations{ "row_elevations", "deg" };
 
+// Clutter (point data; field data), and the time of a cloud as ParaView writes it (field data).
+constexpr Name ClutterProbability{ "clutter_probability", "1" };
+constexpr Name IsClutter{ "is_clutter", "1" };
+constexpr Name ClutterCell{ "clutter_cell", "" };
+constexpr Name LearnedScans{ "learned_scans", "1" };
+constexpr Name ClutterWindow{ "clutter_window", "1" };
+constexpr Name ClutterThreshold{ "clutter_threshold", "1" };
+constexpr Name ClutterRangeStep{ "clutter_range_step", "m" };
+constexpr Name ClutterAzimuthStep{ "clutter_azimuth_step", "deg" };
+constexpr Name ClutterElevationStep{ "clutter_elevation_step", "deg" };
+constexpr Name ClutterRangeTolerance{ "clutter_range_tolerance", "1" };
+constexpr Name ClutterAngularTolerance{ "clutter_angular_tolerance", "1" };
+constexpr Name ClutterWarmUp{ "clutter_warm_up", "1" };
+constexpr Name ClutterLearning{ "clutter_learning", "1" };
+constexpr Name TimeValue{ "TimeValue", "" };
+
 // Comparison of two clouds (point data; field data).
 constexpr Name NearestDistance{ "nearest_distance", "m" };
 constexpr Name HausdorffDistance{ "hausdorff_distance", "m" };

@@ -1,0 +1,530 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkAvianLidarClutterFilter.h"
+
+#include "ClutterMap.h"
+#include "ScanBeams.h"
+#include "ValueError.h"
+#include "vtkAvianLidarAbort.h"
+#include "vtkAvianLidarArrays.h"
+#include "vtkAvianLidarContent.h"
+#include "vtkAvianLidarGather.h"
+#include "vtkAvianLidarRanks.h"
+#include "vtkAvianLidarScanStream.h"
+
+#include "vtkCellArray.h"
+#include "vtkDoubleArray.h"
+#include "vtkIdTypeArray.h"
+#include "vtkInformation.h"
+#include "vtkInformationVector.h"
+#include "vtkIntArray.h"
+#include "vtkMultiProcessController.h"
+#include "vtkNew.h"
+#include "vtkObjectFactory.h"
+#include "vtkPointData.h"
+#include "vtkPolyData.h"
+#include "vtkStreamingDemandDrivenPipeline.h"
+#include "vtkUnsignedCharArray.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <numeric>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace
+{
+namespace Arrays = vtkAvianLidarArrays;
+using avianlidar::ClutterCell;
+using avianlidar::ClutterGrid;
+using avianlidar::ClutterMap;
+using Outcome = vtkAvianLidarRanks::Outcome;
+using Pipeline = vtkStreamingDemandDrivenPipeline;
+
+constexpr int MostWarmUp = 100000;
+
+constexpr char ScanPort[] = "input port 0 (scan): ";
+constexpr char TablePort[] = "input port 1 (table): ";
+
+// What decides whether a memory can go on.
+struct Setup
+{
+  ClutterGrid Grid;
+  double Window = 0.0;
+  bool Learning = true;
+  double Position[3] = { 0.0, 0.0, 0.0 };
+  std::uint64_t Table = 0; ///< hash of its content, 0 without one
+
+  bool operator==(const Setup& other) const
+  {
+    return this->Grid.rangeStep == other.Grid.rangeStep &&
+      this->Grid.azimuthStep == other.Grid.azimuthStep &&
+      this->Grid.elevationStep == other.Grid.elevationStep && this->Window == other.Window &&
+      this->Learning == other.Learning &&
+      std::equal(this->Position, this->Position + 3, other.Position) && this->Table == other.Table;
+  }
+};
+
+// The key of each point; `problem` names the first point that cannot be used.
+std::vector<ClutterMap::Key> KeysOf(vtkPointSet* cloud, const Setup& setup, std::string& problem)
+{
+  std::vector<ClutterMap::Key> keys(static_cast<std::size_t>(cloud->GetNumberOfPoints()));
+  for (std::size_t i = 0; i < keys.size(); ++i)
+  {
+    double p[3];
+    cloud->GetPoint(static_cast<vtkIdType>(i), p);
+    const std::string wrong = avianlidar::checkPosition({ p[0], p[1], p[2] });
+    if (!wrong.empty())
+    {
+      problem = std::string(ScanPort) + "point " + std::to_string(i) + ": " + wrong;
+      return {};
+    }
+    keys[i] = ClutterMap::keyOf(
+      setup.Grid, { p[0] - setup.Position[0], p[1] - setup.Position[1], p[2] - setup.Position[2] });
+  }
+  return keys;
+}
+
+// What a table must say about the cells that it was learned with.
+std::string CheckStep(vtkFieldData* fields, const Arrays::Name& name, double expected)
+{
+  double step = 0.0;
+  if (!Arrays::GetFieldValue(fields, name, step))
+  {
+    return std::string("field data '") + name.name + "' is not one finite number";
+  }
+  // A file of text may have rounded it.
+  return std::fabs(step - expected) <= 1e-6 * expected
+    ? std::string()
+    : avianlidar::valueError(
+        name.name, step, ("the step of the filter, " + std::to_string(expected)).c_str());
+}
+
+// The map that a table holds.
+std::string ReadTable(vtkPolyData* table, const ClutterMap& empty, ClutterMap& map)
+{
+  vtkFieldData* fields = table->GetFieldData();
+  const ClutterGrid& grid = empty.grid();
+  for (const auto& [name, expected] : { std::pair(Arrays::ClutterRangeStep, grid.rangeStep),
+         std::pair(Arrays::ClutterAzimuthStep, grid.azimuthStep),
+         std::pair(Arrays::ClutterElevationStep, grid.elevationStep) })
+  {
+    const std::string wrong = CheckStep(fields, name, expected);
+    if (!wrong.empty())
+    {
+      return wrong;
+    }
+  }
+  double scans = 0.0;
+  const bool known = Arrays::GetFieldValue(fields, Arrays::LearnedScans, scans);
+  if (!known || !Arrays::IsInt(scans) || scans < 0.0)
+  {
+    return "field data 'learned_scans' is not a whole number from 0 on";
+  }
+  const vtkIdType size = table->GetNumberOfPoints();
+  vtkDataArray* persistence = table->GetPointData()->GetArray(Arrays::ClutterProbability.name);
+  vtkDataArray* indices = table->GetPointData()->GetArray(Arrays::ClutterCell.name);
+  const std::pair<vtkDataArray*, int> arrays[] = { { persistence, 1 }, { indices, 3 } };
+  for (const auto& [array, components] : arrays)
+  {
+    if (size > 0 && !array)
+    {
+      return "point arrays 'clutter_probability' or 'clutter_cell' are missing, expected both";
+    }
+    const std::string wrong = Arrays::CheckShape(array, "point array", components, size);
+    if (!wrong.empty())
+    {
+      return wrong;
+    }
+  }
+  std::vector<ClutterMap::Key> keys(static_cast<std::size_t>(size));
+  std::vector<double> shares(keys.size());
+  for (std::size_t i = 0; i < keys.size(); ++i)
+  {
+    double index[3];
+    indices->GetTuple(static_cast<vtkIdType>(i), index);
+    shares[i] = persistence->GetComponent(static_cast<vtkIdType>(i), 0);
+    const bool whole = std::all_of(index, index + 3, Arrays::IsInt);
+    const ClutterCell cell = whole ? ClutterCell{ static_cast<int>(index[0]),
+      static_cast<int>(index[1]), static_cast<int>(index[2]) }
+                                   : ClutterCell{ -1, 0, 0 };
+    if (!ClutterMap::holds(grid, cell))
+    {
+      return "point " + std::to_string(i) + ": 'clutter_cell' is no cell of the grid";
+    }
+    if (!(shares[i] >= 0.0 && shares[i] <= 1.0))
+    {
+      return "point " + std::to_string(i) + ": " +
+        avianlidar::valueError("clutter_probability", shares[i], "0 to 1");
+    }
+    keys[i] = ClutterMap::keyOf(cell);
+  }
+  map = empty.restored(keys, shares, static_cast<int>(scans));
+  return {};
+}
+
+std::uint64_t HashOfTable(vtkPolyData* table)
+{
+  if (!table)
+  {
+    return 0;
+  }
+  std::uint64_t hash = 1;
+  for (const Arrays::Name& name : { Arrays::ClutterProbability, Arrays::ClutterCell })
+  {
+    hash = vtkAvianLidarContent::HashOf(table->GetPointData()->GetArray(name.name), hash);
+  }
+  for (const Arrays::Name& name : { Arrays::LearnedScans, Arrays::ClutterRangeStep,
+         Arrays::ClutterAzimuthStep, Arrays::ClutterElevationStep })
+  {
+    hash = vtkAvianLidarContent::HashOf(table->GetFieldData()->GetArray(name.name), hash);
+  }
+  return hash;
+}
+
+// The cells of a map as vertices.
+void WriteTable(const ClutterMap& map, const double position[3], vtkPolyData* output)
+{
+  const auto size = static_cast<vtkIdType>(map.keys().size());
+  auto points = Arrays::MakePoints(size);
+  auto persistence = Arrays::Make<vtkDoubleArray>(Arrays::ClutterProbability, size);
+  auto indices = Arrays::Make<vtkIntArray>(Arrays::ClutterCell, size, 3);
+  vtkNew<vtkIdTypeArray> offsets;
+  vtkNew<vtkIdTypeArray> vertices;
+  Arrays::SetTuples(offsets.Get(), size + 1);
+  Arrays::SetTuples(vertices.Get(), size);
+  std::iota(offsets->GetPointer(0), offsets->GetPointer(0) + size + 1, vtkIdType(0));
+  std::iota(vertices->GetPointer(0), vertices->GetPointer(0) + size, vtkIdType(0));
+  for (vtkIdType i = 0; i < size; ++i)
+  {
+    const auto k = static_cast<std::size_t>(i);
+    const ClutterCell cell = ClutterMap::cellOf(map.keys()[k]);
+    const avianlidar::Vec3 middle = ClutterMap::middleOf(map.grid(), cell);
+    points->SetPoint(i, position[0] + middle.x, position[1] + middle.y, position[2] + middle.z);
+    persistence->SetValue(i, map.persistence(k));
+    indices->SetTypedComponent(i, 0, cell.azimuth);
+    indices->SetTypedComponent(i, 1, cell.elevation);
+    indices->SetTypedComponent(i, 2, cell.range);
+  }
+  vtkNew<vtkCellArray> cells;
+  cells->SetData(offsets.Get(), vertices.Get());
+  output->SetPoints(points);
+  output->SetVerts(cells);
+  output->GetPointData()->AddArray(persistence);
+  output->GetPointData()->AddArray(indices);
+}
+}
+
+// Maps are shared, so a copy that is thrown away when something fails costs nothing.
+struct vtkAvianLidarClutterFilter::Memory
+{
+  Setup Of;
+  vtkAvianLidarScanStream Stream;
+  std::shared_ptr<const ClutterMap> Before; ///< without the last scan
+  std::shared_ptr<const ClutterMap> With;   ///< with it
+};
+
+vtkStandardNewMacro(vtkAvianLidarClutterFilter);
+vtkCxxSetObjectMacro(vtkAvianLidarClutterFilter, Controller, vtkMultiProcessController);
+
+//------------------------------------------------------------------------------
+vtkAvianLidarClutterFilter::vtkAvianLidarClutterFilter()
+  : Kept(std::make_unique<Memory>())
+{
+  this->SetController(vtkMultiProcessController::GetGlobalController());
+  this->SetNumberOfInputPorts(2);
+  this->SetNumberOfOutputPorts(2);
+}
+
+//------------------------------------------------------------------------------
+vtkAvianLidarClutterFilter::~vtkAvianLidarClutterFilter()
+{
+  this->SetController(nullptr);
+}
+
+//------------------------------------------------------------------------------
+void vtkAvianLidarClutterFilter::Forget()
+{
+  *this->Kept = Memory();
+  this->Modified();
+}
+
+//------------------------------------------------------------------------------
+int vtkAvianLidarClutterFilter::FillInputPortInformation(int port, vtkInformation* info)
+{
+  info->Set(INPUT_REQUIRED_DATA_TYPE(), port == 0 ? "vtkPointSet" : "vtkPolyData");
+  if (port == 1)
+  {
+    info->Set(INPUT_IS_OPTIONAL(), 1);
+  }
+  return 1;
+}
+
+//------------------------------------------------------------------------------
+int vtkAvianLidarClutterFilter::FillOutputPortInformation(int port, vtkInformation* info)
+{
+  info->Set(vtkDataObject::DATA_TYPE_NAME(), port == 0 ? "vtkPointSet" : "vtkPolyData");
+  return 1;
+}
+
+//------------------------------------------------------------------------------
+int vtkAvianLidarClutterFilter::RequestDataObject(
+  vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
+{
+  vtkPointSet* input = vtkPointSet::GetData(inputVector[0]);
+  if (!input)
+  {
+    return 0;
+  }
+  vtkPointSet* scan = vtkPointSet::GetData(outputVector, 0);
+  if (!scan || !scan->IsA(input->GetClassName()))
+  {
+    auto created = vtkSmartPointer<vtkPointSet>::Take(input->NewInstance());
+    outputVector->GetInformationObject(0)->Set(vtkDataObject::DATA_OBJECT(), created);
+  }
+  if (!vtkPolyData::GetData(outputVector, 1))
+  {
+    vtkNew<vtkPolyData> table;
+    outputVector->GetInformationObject(1)->Set(vtkDataObject::DATA_OBJECT(), table);
+  }
+  return 1;
+}
+
+//------------------------------------------------------------------------------
+int vtkAvianLidarClutterFilter::RequestUpdateExtent(
+  vtkInformation* request, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
+{
+  const vtkAvianLidarRanks ranks(this->Controller, request, outputVector);
+  for (int port = 0; port < 2; ++port)
+  {
+    // Each rank needs the whole table.
+    if (vtkInformation* info = inputVector[port]->GetInformationObject(0))
+    {
+      info->Set(Pipeline::UPDATE_PIECE_NUMBER(), port == 0 ? ranks.Rank() : 0);
+      info->Set(Pipeline::UPDATE_NUMBER_OF_PIECES(), port == 0 ? ranks.Size() : 1);
+      info->Set(Pipeline::UPDATE_NUMBER_OF_GHOST_LEVELS(), 0);
+    }
+  }
+  return 1;
+}
+
+//------------------------------------------------------------------------------
+int vtkAvianLidarClutterFilter::ModifyRequest(vtkInformation* request, int when)
+{
+  return vtkAvianLidarRanks::UpdateInputs(this, request, when) &&
+    this->Superclass::ModifyRequest(request, when);
+}
+
+//------------------------------------------------------------------------------
+std::string vtkAvianLidarClutterFilter::CheckProperties() const
+{
+  if (!(this->ClutterThreshold > 0.0 && this->ClutterThreshold <= 1.0))
+  {
+    return avianlidar::valueError("ClutterThreshold", this->ClutterThreshold, "above 0, at most 1");
+  }
+  for (const auto& [name, value] : { std::pair("RangeTolerance", this->RangeTolerance),
+         std::pair("AngularTolerance", this->AngularTolerance) })
+  {
+    if (value < 0 || value > ClutterMap::MostTolerance)
+    {
+      return avianlidar::valueError(name, value, "0 to 10 cells");
+    }
+  }
+  if (this->WarmUp < 0 || this->WarmUp > MostWarmUp)
+  {
+    return avianlidar::valueError("WarmUp", this->WarmUp, "0 to 100,000 scans");
+  }
+  const std::string misplaced = avianlidar::checkPosition(
+    { this->SensorPosition[0], this->SensorPosition[1], this->SensorPosition[2] });
+  if (!misplaced.empty())
+  {
+    return "SensorPosition: " + misplaced;
+  }
+  return ClutterMap::check(
+    { this->RangeStep, this->AzimuthStep, this->ElevationStep }, this->Window);
+}
+
+//------------------------------------------------------------------------------
+std::string vtkAvianLidarClutterFilter::Advance(
+  vtkDataObject* cloud, vtkPolyData* table, Memory& memory)
+{
+  std::string problem = this->CheckProperties();
+  if (problem.empty() && !this->Learning && !table)
+  {
+    problem = "Learning is off and input port 1 (table) is not connected, expected one of both";
+  }
+  Setup setup;
+  setup.Grid = { this->RangeStep, this->AzimuthStep, this->ElevationStep };
+  setup.Window = this->Window;
+  setup.Learning = this->Learning;
+  std::copy(this->SensorPosition, this->SensorPosition + 3, setup.Position);
+  setup.Table = HashOfTable(table);
+  double time = 0.0;
+  if (problem.empty())
+  {
+    problem = vtkAvianLidarScanStream::ReadPosition(cloud, setup.Position);
+    problem = problem.empty() ? memory.Stream.ReadTime(cloud, time) : problem;
+    problem = problem.empty() ? problem : ScanPort + problem;
+  }
+  if (!problem.empty())
+  {
+    return problem;
+  }
+  const bool goesOn = memory.Stream.Begun() && memory.Of == setup;
+  const bool back = goesOn && time < memory.Stream.Time();
+  if (!goesOn || back)
+  {
+    const ClutterMap empty(setup.Grid, setup.Window);
+    ClutterMap start = empty;
+    problem = table ? ReadTable(table, empty, start) : std::string();
+    problem = problem.empty() ? problem : TablePort + problem;
+    memory.Before = std::make_shared<const ClutterMap>(std::move(start));
+  }
+  else if (time > memory.Stream.Time())
+  {
+    memory.Before = memory.With;
+  }
+  if (back && problem.empty())
+  {
+    vtkWarningMacro("The time goes back from " << memory.Stream.Time() << " s to " << time
+                                               << " s: what was learned is forgotten.");
+  }
+  memory.Of = setup;
+  memory.Stream.Accept(cloud, time);
+  return problem;
+}
+
+//------------------------------------------------------------------------------
+void vtkAvianLidarClutterFilter::AddSettings(const Memory& memory, vtkFieldData* fields) const
+{
+  for (const auto& [name, value] : { std::pair(Arrays::ClutterWindow, this->Window),
+         std::pair(Arrays::ClutterThreshold, this->ClutterThreshold),
+         std::pair(Arrays::ClutterRangeStep, this->RangeStep),
+         std::pair(Arrays::ClutterAzimuthStep, this->AzimuthStep),
+         std::pair(Arrays::ClutterElevationStep, this->ElevationStep) })
+  {
+    Arrays::SetFieldValue(fields, name, value);
+  }
+  for (const auto& [name, value] : { std::pair(Arrays::LearnedScans, memory.With->scans()),
+         std::pair(Arrays::ClutterRangeTolerance, this->RangeTolerance),
+         std::pair(Arrays::ClutterAngularTolerance, this->AngularTolerance),
+         std::pair(Arrays::ClutterWarmUp, this->WarmUp),
+         std::pair(Arrays::ClutterLearning, this->Learning ? 1 : 0) })
+  {
+    Arrays::SetFieldInteger(fields, name, value);
+  }
+  auto position = Arrays::Make<vtkDoubleArray>(Arrays::Position, 1, 3);
+  std::copy(memory.Of.Position, memory.Of.Position + 3, position->GetPointer(0));
+  fields->AddArray(position);
+}
+
+//------------------------------------------------------------------------------
+void vtkAvianLidarClutterFilter::Classify(
+  const Memory& memory, const std::vector<std::uint64_t>& keys, vtkPointSet* output) const
+{
+  const std::vector<double> found =
+    memory.Before->probabilities(keys, this->RangeTolerance, this->AngularTolerance);
+  const bool warmingUp = this->Learning && memory.Before->scans() < this->WarmUp;
+  auto probability = Arrays::MakeOf<vtkDoubleArray>(Arrays::ClutterProbability, found);
+  auto clutter =
+    Arrays::Make<vtkUnsignedCharArray>(Arrays::IsClutter, static_cast<vtkIdType>(found.size()));
+  std::transform(found.begin(), found.end(), clutter->GetPointer(0),
+    [&](double value) -> unsigned char
+    { return warmingUp || value >= this->ClutterThreshold ? 1 : 0; });
+  output->GetPointData()->AddArray(probability);
+  output->GetPointData()->AddArray(clutter);
+}
+
+//------------------------------------------------------------------------------
+int vtkAvianLidarClutterFilter::RequestData(
+  vtkInformation* request, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
+{
+  return vtkAvianLidarRanks::Execute(this, request, outputVector,
+    [&](const vtkAvianLidarRanks& ranks) -> int
+    {
+      vtkPointSet* cloud = vtkPointSet::GetData(inputVector[0]);
+      Memory memory = *this->Kept; // which stays if something is wrong
+      std::vector<ClutterMap::Key> keys;
+      const Outcome read = ranks.Together(this,
+        [&]() -> std::string
+        {
+          vtkAvianLidarAbort::StopIfWanted(this);
+          std::string problem = this->Advance(cloud, vtkPolyData::GetData(inputVector[1]), memory);
+          if (problem.empty())
+          {
+            keys = KeysOf(cloud, memory.Of, problem);
+          }
+          return problem.empty() ? problem : "Clutter filter: " + problem;
+        });
+      vtkAvianLidarRanks::Settings settings;
+      settings.Add("time", memory.Stream.Time());
+      settings.Add("Window", this->Window);
+      settings.Add("RangeStep", this->RangeStep);
+      settings.Add("AzimuthStep", this->AzimuthStep);
+      settings.Add("ElevationStep", this->ElevationStep);
+      settings.Add("Learning", this->Learning);
+      settings.Add("learned_scans", memory.Before ? memory.Before->scans() : 0);
+      Outcome outcome = read == Outcome::Done ? ranks.AgreeOn(this, settings) : read;
+      vtkSmartPointer<vtkPolyData> all;
+      if (outcome == Outcome::Done && !ranks.Alone())
+      {
+        outcome = vtkAvianLidarGather::Coordinates(ranks, this, cloud, all);
+      }
+      if (outcome == Outcome::Done)
+      {
+        outcome = ranks.Together(this,
+          [&]() -> std::string
+          {
+            std::string problem;
+            memory.With = !this->Learning
+              ? memory.Before
+              : std::make_shared<const ClutterMap>(
+                  memory.Before->learned(all ? KeysOf(all, memory.Of, problem) : keys));
+            vtkPointSet* scan = vtkPointSet::GetData(outputVector, 0);
+            vtkPolyData* table = vtkPolyData::GetData(outputVector, 1);
+            scan->ShallowCopy(cloud);
+            this->Classify(memory, keys, scan);
+            const int asked = std::max(0, request->Get(vtkExecutive::FROM_OUTPUT_PORT()));
+            const bool first = ranks.Alone()
+              ? outputVector->GetInformationObject(asked)->Get(Pipeline::UPDATE_PIECE_NUMBER()) <= 0
+              : ranks.Rank() == 0;
+            if (first)
+            {
+              WriteTable(*memory.With, memory.Of.Position, table);
+            }
+            else if (ranks.Alone())
+            {
+              scan->Initialize();
+            }
+            this->AddSettings(memory, scan->GetFieldData());
+            this->AddSettings(memory, table->GetFieldData());
+            return problem;
+          });
+      }
+      if (outcome == Outcome::Done)
+      {
+        *this->Kept = std::move(memory);
+      }
+      return outcome == Outcome::Failed ? 0 : 1;
+    });
+}
+
+//------------------------------------------------------------------------------
+void vtkAvianLidarClutterFilter::PrintSelf(ostream& os, vtkIndent indent)
+{
+  this->Superclass::PrintSelf(os, indent);
+  os << indent << "Window: " << this->Window << "\n";
+  os << indent << "ClutterThreshold: " << this->ClutterThreshold << "\n";
+  os << indent << "RangeStep: " << this->RangeStep << "\n";
+  os << indent << "AzimuthStep: " << this->AzimuthStep << "\n";
+  os << indent << "ElevationStep: " << this->ElevationStep << "\n";
+  os << indent << "RangeTolerance: " << this->RangeTolerance << "\n";
+  os << indent << "AngularTolerance: " << this->AngularTolerance << "\n";
+  os << indent << "WarmUp: " << this->WarmUp << "\n";
+  os << indent << "SensorPosition: " << this->SensorPosition[0] << " " << this->SensorPosition[1]
+     << " " << this->SensorPosition[2] << "\n";
+  os << indent << "Learning: " << this->Learning << "\n";
+  os << indent << "Controller: " << this->Controller << "\n";
+  os << indent << "ErrorsAsData: " << this->ErrorsAsData << "\n";
+}
