@@ -13,7 +13,8 @@ from sklearn.ensemble import HistGradientBoostingClassifier
 import filters
 
 KINDS = ("trees-one-scan", "trees")
-MOST = 4000  # points of a scan that are learned beside those of birds
+ROUNDS = 150
+MOST = 1000  # points of a scan that are learned beside those of birds
 
 
 def features(frame, before):
@@ -21,17 +22,15 @@ def features(frame, before):
 
 
 def training(home, number):
-    """(features, whether it is a bird, weight) of a sequence: all birds, some of the rest."""
+    """(features, whether it is a bird) of a sequence: all birds, some of the rest."""
     draw, parts = np.random.default_rng(int(number)), []
     for place, (name, frame, before) in enumerate(filters.frames(home, number)):
         if place < 1:
             continue
         label = filters.labels(home, number, name)
         bird, rest = np.flatnonzero(label == filters.BIRD), np.flatnonzero((label != filters.BIRD) & ~np.isin(label, filters.MOVING))
-        some = draw.permutation(rest)[:MOST]
-        chosen = np.concatenate([bird, some])
-        weights = np.repeat([1.0, len(rest) / max(1, len(some))], [len(bird), len(some)])
-        parts.append((features(frame, before)[chosen], label[chosen] == filters.BIRD, weights))
+        chosen = np.concatenate([bird, draw.permutation(rest)[:MOST]])
+        parts.append((features(frame, before)[chosen], label[chosen] == filters.BIRD))
     return [np.concatenate(part) for part in zip(*parts)]
 
 
@@ -42,9 +41,9 @@ def columns_of(kind):
 
 def learn(parts, kind, seed):
     """Trees that have learned what `training` gives of some sequences."""
-    values, birds, weights = (np.concatenate(part) for part in zip(*parts))
-    trees = HistGradientBoostingClassifier(max_iter=150, max_leaf_nodes=24, min_samples_leaf=30, l2_regularization=1.0, random_state=seed)
-    return trees.fit(values[:, columns_of(kind)], birds, sample_weight=np.minimum(weights, 100.0))
+    values, birds = (np.concatenate(part) for part in zip(*parts))
+    trees = HistGradientBoostingClassifier(max_iter=ROUNDS, max_leaf_nodes=24, min_samples_leaf=30, l2_regularization=1.0, random_state=seed)
+    return trees.fit(values[:, columns_of(kind)], birds)
 
 
 def main(argv=None):
