@@ -42,6 +42,7 @@ set(avianlidar_python_files
   py.typed
   apps/__init__.py
   apps/_air.py
+  apps/_bench.py
   apps/_card.py
   apps/_following.py
   apps/_json.py
@@ -57,6 +58,7 @@ set(avianlidar_python_files
   apps/_tracks.py
   apps/reach.py
   apps/siting.py
+  apps/bench.html.jinja
   apps/card.html.jinja
   apps/card_parts.html.jinja
   apps/coverage.schema.json

@@ -49,6 +49,11 @@ VERBS = {
   avianlidar track sequences -o tracks --runways hongqiao.geojson
   avianlidar track hongqiao.scenario.json -o tracks --sensor Search905 --sensor Search1550 --scans 500
 """),
+    "bench": ("clutter filters held against labels", "Predictions for labelled sequences, in SemanticKITTI's format, held against their labels: a page (HTML) and "
+              "tables (CSV) with recall at one false point a scan, IoU, curves, tracks lost, by subset, range and species.", """\
+  avianlidar bench sequences --predictions mine -o scores
+  avianlidar bench airport airport-rain --predictions trees network --first 8 -o scores
+"""),
     "coverage": ("maps of where a bird would be detected", "Maps of where a bird would be detected, and why not elsewhere "
                  "(GeoTIFF, GeoJSON), shares (CSV) and clutter (VTP), by a plan: a folder for each sensor if the plan compares "
                  "some.", """\
@@ -180,6 +185,14 @@ def parser() -> Parser:
     _settings(track, "tracker", "confirm_hits=2")
     _weather(track)
     _threads(track)
+
+    bench = verb["bench"]
+    bench.add_argument("folders", nargs="+", type=pathlib.Path, help="folders that `avianlidar sequence` has made")
+    bench.add_argument("--predictions", nargs="+", type=pathlib.Path, required=True, help="folders with sequences/NN/predictions/NNNNNN.label, and .score "
+                       "(float32) if scores are known; of several sets in a folder with the set's name each")
+    bench.add_argument("--sequences", nargs="+", default=[], metavar="NN", help="numbers of the sequences that are scored, as 02; default: all")
+    bench.add_argument("--first", type=int, default=0, help="scan of each sequence from which on it is scored, default 0")
+    _out(bench, "folder")
 
     for name in ("coverage", "siting", "report"):
         verb[name].add_argument("plan", help="a .coverage.json file")

@@ -348,6 +348,18 @@ def track(options) -> None:
         print(f"{options.out / 'card.html'}: the report card; its tables and pictures are beside it")
 
 
+def bench(options) -> None:
+    from .apps import _pictures  # needs Matplotlib: said before the work
+    from .apps._bench import Bench, verdict
+    _pictures.gradient()
+    bars = Bars()
+    found = Bench(options.folders, options.predictions, options.sequences, options.first).write(options.out, bars)
+    bars.close()
+    for scored in found:
+        print(f"{scored[0].set.name}, {scored[0].set.weather}: {verdict(scored)}")
+    print(f"{options.out / 'bench.html'}: the page; its tables and pictures are beside it")
+
+
 def _plan(options) -> Dict[str, Any]:
     """The plan with what options change."""
     from .apps._maps import read_plan

@@ -1,0 +1,353 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Predictions for labelled sequences, held against their labels: the command `avianlidar bench`."""
+from __future__ import annotations
+
+import csv
+import io
+import itertools
+import math
+import pathlib
+from typing import Any, Callable, Dict, List, NamedTuple, Optional, Sequence, Tuple
+
+import numpy as np
+
+from .._disk import only_run, read_regular, write_whole
+from .._pipeline import Error
+from .._version import __version__
+from .._weather import in_words
+from . import _pictures as pictures
+from ._card import cell
+from ._json import load_json
+from ._labels import BIRD, MOVING
+from ._page import embedded, render
+from ._scores import Value, mean
+from ._sequence import FOLDERS, SUBSETS
+
+RANGES = (0.0, 200.0, 400.0, 600.0, 1000.0, math.inf)  # m
+LOST = 3  # scans with points, one after the other, of which none is called bird, end the track of a bird
+FALSE = (1, 10)  # points a scan that may be false
+RECALLS = np.linspace(0.0, 1.0, 101)  # of the curve
+SURE = 2.0  # standard errors that a difference is larger than, to be called one
+# Of a score: words, factor and unit of the page.
+SCORES = {**{f"recall_at_{most}": (f"recall at {most} false point{'s' if most > 1 else ''} a scan", 100.0, "%") for most in FALSE}, "average_precision": ("average precision", 1.0, ""), "iou": ("IoU", 1.0, ""),
+          "recall": ("recall", 100.0, "%"), "precision": ("precision", 100.0, "%"), "false": ("false points a scan", 1.0, ""),
+          "lost": ("tracks lost", 100.0, "%"), "others": ("others under way called birds", 100.0, "%")}
+PREDICTIONS = (("predictions", ".label", "<u4"), ("predictions", ".score", "<f4"))
+
+
+class Points(NamedTuple):
+    """The points of a sequence that are scored, or of one scan. Arrays of a value for each point."""
+    scan: np.ndarray
+    bird: np.ndarray                # whether it is one
+    other: np.ndarray               # whether it is something else under way: neither right nor wrong
+    instance: np.ndarray
+    subset: np.ndarray
+    range: np.ndarray               # m
+    called: np.ndarray              # whether it is predicted to be a bird
+    score: Optional[np.ndarray]     # the greater, the surer
+
+
+class Threshold(NamedTuple):
+    """By their scores: how many birds and false points are at and above each value, from the greatest on."""
+    values: np.ndarray
+    birds: np.ndarray
+    false: np.ndarray
+
+
+def ranked(score, bird, other) -> Threshold:
+    """Points by falling score. Points of the same score come together."""
+    score, bird = score[~other], bird[~other]
+    order = np.argsort(-score, kind="stable")
+    score, birds = score[order], np.cumsum(bird[order])
+    last = np.flatnonzero(np.append(np.diff(score) != 0.0, True)) if len(score) else np.zeros(0, int)
+    return Threshold(score[last], birds[last], last + 1 - birds[last])
+
+
+def threshold(rank: Threshold, most: float) -> float:
+    """The least score with no more false points than that; infinite if the first has more."""
+    fit = np.flatnonzero(rank.false <= most)
+    return float(rank.values[fit[-1]]) if len(fit) else math.inf
+
+
+def average_precision(rank: Threshold) -> float:
+    """The mean of the precision, each weighted with the recall that is won there; nan without a bird."""
+    if not len(rank.birds) or not rank.birds[-1]:
+        return math.nan
+    return float(np.sum(np.diff(rank.birds, prepend=0) * rank.birds / (rank.birds + rank.false)) / rank.birds[-1])
+
+
+def curve(rank: Threshold) -> np.ndarray:
+    """The greatest precision at each of `RECALLS` or more."""
+    if not len(rank.birds) or not rank.birds[-1]:
+        return np.full(len(RECALLS), math.nan)
+    best = np.maximum.accumulate((rank.birds / (rank.birds + rank.false))[::-1])[::-1]
+    place = np.searchsorted(rank.birds / rank.birds[-1], RECALLS - 1e-9)
+    return best[np.minimum(place, len(best) - 1)]
+
+
+def lost(points: Points) -> Tuple[int, int]:
+    """(birds that have points in `LOST` scans one after the other; those of them that have none called bird in some such scans)."""
+    many = lost_ones = 0
+    mine = np.flatnonzero(points.bird)
+    mine = mine[np.argsort(points.instance[mine], kind="stable")]
+    for one in np.split(mine, np.flatnonzero(np.diff(points.instance[mine])) + 1) if len(mine) else ():
+        scans, place = np.unique(points.scan[one], return_inverse=True)
+        found = np.bincount(place, points.called[one]) > 0
+        runs = [(scans[k + LOST - 1] - scans[k] == LOST - 1, not found[k:k + LOST].any()) for k in range(len(scans) - LOST + 1)]
+        many += any(whole for whole, _ in runs)
+        lost_ones += any(whole and none for whole, none in runs)
+    return many, lost_ones
+
+
+def scores(points: Points, among: np.ndarray, scans: int, least: Sequence[float]) -> Dict[str, float]:
+    """Scores of some of the points of a sequence. @param among which @param scans of the sequence @param least scores of a bird, for each of `FALSE`"""
+    bird, called, other = points.bird & among, points.called & among, points.other & among
+    hit, false, missed = (int(np.count_nonzero(part)) for part in (bird & called, called & ~points.bird & ~other, bird & ~called))
+
+    def ratio(part: float, whole: float) -> float:
+        return part / whole if whole else math.nan
+    found = {"birds": float(hit + missed), "recall": ratio(hit, hit + missed), "precision": ratio(hit, hit + false),
+             "iou": ratio(hit, hit + false + missed) if hit + missed else math.nan, "false": false / scans,
+             "others": ratio(int(np.count_nonzero(other & called)), int(np.count_nonzero(other)))}
+    if points.score is not None:
+        for most, score in zip(FALSE, least):
+            found[f"recall_at_{most}"] = ratio(int(np.count_nonzero(points.score[bird] >= score)), hit + missed)
+        found["average_precision"] = average_precision(ranked(points.score[among], points.bird[among], points.other[among]))
+    return found
+
+
+def range_words(low: float, high: float) -> str:
+    return f"{low:g} to {high:g} m" if math.isfinite(high) else f"beyond {low:g} m"
+
+
+class Set:
+    """A folder that `avianlidar sequence` has made."""
+
+    def __init__(self, folder, numbers: Sequence[str] = (), first: int = 0):
+        """@param numbers of the sequences that are scored, default all @param first scan of each that is: those before are history"""
+        self.folder, self.first = pathlib.Path(folder), first
+        file = self.folder / "manifest.json"
+        if not file.is_file():
+            raise Error(f"{folder}: holds no manifest.json, expected a folder that `avianlidar sequence` has made")
+        manifest = load_json(file)
+        parts = manifest.get("sequences") if isinstance(manifest, dict) else None
+        if not isinstance(parts, dict) or not parts:
+            raise Error(f"{file}: names no sequences, expected the manifest of a folder that `avianlidar sequence` has made")
+        self.numbers = [number for number in sorted(parts) if not numbers or number in numbers]
+        if {*numbers} - {*parts}:
+            raise Error(f"{file}: has no sequence {min({*numbers} - {*parts})}, expected some of {', '.join(sorted(parts))}")
+        scenario = manifest["scenario"]
+        self.name = self.folder.resolve().name
+        self.bird_class = int(scenario.get("bird_class", BIRD))
+        self.weather = in_words(scenario.get("weather", ())) or "clear"
+        self.scene, self.sensor = pathlib.Path(scenario["scene"]).name.split(".")[0], pathlib.Path(str(scenario["sensor"]["preset"])).name.split(".")[0]
+
+    def species(self, number: str) -> Dict[int, str]:
+        """Of a sequence's birds by instance."""
+        with open(self.folder / "sequences" / number / "truth.csv", newline="", encoding="utf-8") as rows:
+            return {int(row["bird"]) + 1: row["species"] for row in csv.DictReader(rows)}
+
+    def points(self, number: str, predictions: pathlib.Path) -> Tuple[Points, int]:
+        """The points of a sequence with what is predicted of them, and the number of scans."""
+        home, theirs = self.folder / "sequences" / number, predictions / "sequences" / number
+        names = [file.stem for file in sorted((home / "velodyne").glob("*.bin"))][self.first:]
+        if not names:
+            raise Error(f"{home}: has no scan from number {self.first} on, expected longer sequences or a smaller --first")
+        has_scores = (theirs / "predictions" / f"{names[0]}.score").exists()
+        columns = []
+        for scan, name in enumerate(names):
+            kinds = [(home / folder / f"{name}{suffix}", kind) for (folder, suffix, _), kind in zip(FOLDERS, ("<f4", "<u4", np.uint8))]
+            kinds += [(theirs / folder / f"{name}{suffix}", kind) for folder, suffix, kind in PREDICTIONS[:1 + has_scores]]
+            found = [np.frombuffer(_content(file), kind) for file, kind in kinds]
+            places = found[0].reshape(-1, 4)[:, :3].astype(float)
+            for (file, _), values in zip(kinds[1:], found[1:]):
+                if len(values) != len(places):
+                    raise Error(f"{file}: has {len(values)} values, expected one for each of the {len(places)} points of the scan")
+            if has_scores and np.isnan(found[4]).any():
+                raise Error(f"{kinds[4][0]}: has a score that is not a number")
+            kind, called = found[1] & 0xffff, (found[3] & 0xffff) == self.bird_class
+            columns.append((np.full(len(places), scan), kind == self.bird_class, np.isin(kind, [*MOVING.values()]) & (kind != self.bird_class),
+                            found[1] >> 16, found[2], np.linalg.norm(places, axis=1), called, *found[4:]))
+        arrays = [np.concatenate(column) for column in zip(*columns)]
+        return Points(*arrays[:7], arrays[7] if has_scores else None), len(names)
+
+    def groups(self, number: str, points: Points) -> Dict[Tuple[str, str], np.ndarray]:
+        """Which points are in a group: by what, and its name."""
+        found = {("all", ""): np.ones(len(points.bird), bool)}
+        found.update({("subset", words.replace("_", " ")): points.subset == place for place, words in enumerate(SUBSETS)})
+        found.update({("range", range_words(low, high)): (points.range >= low) & (points.range < high) for low, high in zip(RANGES, RANGES[1:])})
+        names = self.species(number)
+        for name in sorted({*names.values()}):
+            found["species", name] = points.bird & np.isin(points.instance, [one for one, species in names.items() if species == name])
+        return found
+
+
+def _content(file: pathlib.Path) -> bytes:
+    if not file.exists():
+        raise Error(f"{file}: is not there, expected a file for each scan, of the same number")
+    content = read_regular(file)
+    unit = {".bin": 16, ".subset": 1}.get(file.suffix, 4)
+    if len(content) % unit:
+        raise Error(f"{file}: has {len(content)} bytes, expected {unit} for each point")
+    return content
+
+
+class Scored:
+    """What predictions for a set score: by group the values of each sequence, and the curves."""
+
+    def __init__(self, of: Set, predictions: pathlib.Path, name: str, step: Callable[[], Any] = lambda: None):
+        self.set, self.name = of, name
+        self.values: Dict[Tuple[str, str], List[Dict[str, float]]] = {}
+        self.curves = []
+        self.scans = 0
+        for number in of.numbers:
+            points, scans = of.points(number, predictions)
+            self.scans += scans
+            least: List[float] = []
+            if points.score is not None:
+                rank = ranked(points.score, points.bird, points.other)
+                least = [threshold(rank, most * scans) for most in FALSE]
+                self.curves.append(curve(rank))
+            for group, among in of.groups(number, points).items():
+                found = scores(points, among, scans, least)
+                if group[0] == "all":
+                    many, gone = lost(points)
+                    found["lost"] = gone / many if many else math.nan
+                if group[0] == "species":  # nothing false is of a species
+                    found = {key: found[key] for key in found if key == "birds" or key.startswith("recall")}
+                self.values.setdefault(group, []).append(found)
+            step()
+
+    def of_sequences(self, group: Tuple[str, str], score: str) -> np.ndarray:
+        """A value for each sequence that has the score."""
+        found = np.array([values.get(score, math.nan) for values in self.values.get(group, ())])
+        return found[~np.isnan(found)]
+
+    def value(self, group: Tuple[str, str], score: str) -> Value:
+        """The mean of the sequences and its standard error."""
+        return mean(self.of_sequences(group, score))
+
+    def points(self, group: Tuple[str, str]) -> int:
+        """Of birds, in all sequences."""
+        return int(sum(values["birds"] for values in self.values.get(group, ())))
+
+
+def difference(one: Scored, other: Scored, score: str) -> Value:
+    """Of two predictions for a set, by sequence."""
+    values = [scored.of_sequences(("all", ""), score) for scored in (one, other)]
+    return mean(values[0] - values[1]) if len(values[0]) == len(values[1]) else Value(math.nan, math.nan, 0)
+
+
+def verdict(scored: Sequence[Scored]) -> str:
+    """Which predictions for a set are best, and by how much."""
+    score = f"recall_at_{FALSE[0]}" if all(one.curves for one in scored) else "iou"
+    words, factor, unit = SCORES[score]
+    ordered = sorted((one for one in scored if one.value(("all", ""), score).count), key=lambda one: -one.value(("all", ""), score).value)
+    if not ordered:
+        return "No bird has a point."
+    first = f"{ordered[0].name} has the best {words}, {cell(ordered[0].value(('all', ''), score), factor, unit)}"
+    if len(ordered) == 1:
+        return f"{ordered[0].name} has {cell(ordered[0].value(('all', ''), score), factor, unit)} {words}."
+    parts = []
+    for other in ordered[1:]:
+        by = difference(ordered[0], other, score)
+        sure = by.value > SURE * by.error if not math.isnan(by.error) else False
+        parts.append(f"{cell(by, factor, '')}{f' {unit}' if unit else ''} more than {other.name}{'' if sure else ' (no sure difference)'}")
+    return f"{first}: {'; '.join(parts)}."
+
+
+class Bench:
+    """Sets and predictions for each: tables, curves, and a page."""
+
+    def __init__(self, folders: Sequence[Any], predictions: Sequence[Any], numbers: Sequence[str] = (), first: int = 0):
+        """@param folders sets @param predictions folders that hold sequences/NN/predictions/NNNNNN.label, of several sets in a folder with the
+        set's name each @param numbers, first as those of `Set`"""
+        if first < 0:
+            raise Error(f"first is {first}, expected 0 or more")
+        self.sets = [Set(folder, numbers, first) for folder in folders]
+        self.predictions = [pathlib.Path(folder) for folder in predictions]
+        for what, names in (("sets", [one.name for one in self.sets]), ("predictions", [self.name_of(folder) for folder in self.predictions])):
+            twice = {name for name in names if names.count(name) > 1}
+            if twice:
+                raise Error(f"{what}: two are called {min(twice)}, expected folders of different names")
+        self.jobs = [(one, folder, self._folder_of(one, folder)) for one in self.sets for folder in self.predictions]
+
+    @staticmethod
+    def name_of(folder: pathlib.Path) -> str:
+        return folder.resolve().name
+
+    def _folder_of(self, one: Set, folder: pathlib.Path) -> pathlib.Path:
+        for place in (folder / one.name, *([folder] if len(self.sets) == 1 else ())):
+            if (place / "sequences").is_dir():
+                return place
+        raise Error(f"{folder}: holds no predictions for {one.name}, expected {one.name}/sequences/NN/predictions"
+                    + (" or sequences/NN/predictions" if len(self.sets) == 1 else ""))
+
+    def write(self, out, progress: Callable[[str, int, int], Any] = lambda *_: None) -> List[List[Scored]]:
+        """Write bench.csv, curves.csv, pictures and bench.html into a folder. @return what each set's predictions score"""
+        out = pathlib.Path(out)
+        total, done = sum(len(one.numbers) for one, _, _ in self.jobs), itertools.count(1)
+        with only_run(out):
+            scored = [Scored(one, place, self.name_of(folder), lambda: progress("sequences", next(done), total)) for one, folder, place in self.jobs]
+            by_set = [scored[k * len(self.predictions):(k + 1) * len(self.predictions)] for k in range(len(self.sets))]
+            self._write_tables(out, scored)
+            shown = [self._shown(out, of) for of in by_set]
+            write_whole(out / "bench.html", render("bench.html.jinja", sets=shown, version=__version__, lost=LOST, sure=SURE, rates=FALSE,
+                                                   first=self.sets[0].first))
+        return by_set
+
+    @staticmethod
+    def _write_tables(out: pathlib.Path, scored: Sequence[Scored]) -> None:
+        rows: List[List[Any]] = [["set", "weather", "predictions", "by", "group", "score", "unit", "value", "std_error", "sequences", "points"]]
+        lines: List[List[Any]] = [["set", "predictions", "recall", "precision"]]
+        for one in scored:
+            for group in one.values:
+                for score, (words, _, _) in SCORES.items():
+                    value = one.value(group, score)
+                    if value.count:
+                        rows.append([one.set.name, one.set.weather, one.name, *group, words, "1", *("" if math.isnan(x) else f"{x:.6g}" for x in value[:2]),
+                                     value.count, one.points(group)])
+            if one.curves:
+                lines += [[one.set.name, one.name, f"{recall:g}", f"{precision:.6g}"] for recall, precision in zip(RECALLS, np.nanmean(one.curves, axis=0))]
+        for name, table in (("bench.csv", rows), ("curves.csv", lines)):
+            text = io.StringIO(newline="")
+            csv.writer(text, lineterminator="\n").writerows(table)
+            write_whole(out / name, text.getvalue().encode())
+
+    @staticmethod
+    def _shown(out: pathlib.Path, scored: Sequence[Scored]) -> Dict[str, Any]:
+        """What the page says of a set."""
+        first = scored[0]
+
+        def row(name: str, group: Tuple[str, str], keys: Sequence[str]) -> Dict[str, Any]:
+            return {"name": name, "points": first.points(group), "cells": [[cell(one.value(group, key), *SCORES[key][1:]) for key in keys] for one in scored]}
+        keys = [key for key in SCORES if any(one.value(("all", ""), key).count for one in scored)]
+        best = [key for key in (f"recall_at_{FALSE[0]}", "iou") if key in keys]
+        parts = []
+        for by in ("subset", "range", "species"):
+            names = list(dict.fromkeys(name for one in scored for kind, name in one.values if kind == by and one.points((by, name))))
+            chosen = [key for key in ((f"recall_at_{FALSE[0]}", "recall") if by == "species" else best) if key in keys]
+            parts.append({"by": by, "head": [SCORES[key][0] for key in chosen], "rows": [row(name, (by, name), chosen) for name in names]})
+        found = {"name": first.set.name, "weather": first.set.weather, "scene": first.set.scene, "sensor": first.set.sensor, "scans": first.scans,
+                 "sequences": len(first.set.numbers), "points": first.points(("all", "")), "verdict": verdict(scored), "names": [one.name for one in scored],
+                 "head": [SCORES[key][0] for key in keys], "groups": parts,
+                 "all": [{"name": one.name, "cells": [cell(one.value(("all", ""), key), *SCORES[key][1:]) for key in keys]} for one in scored], "picture": None}
+        curves = [(one.name, np.array(one.curves)) for one in scored if one.curves]
+        if curves:
+            file = pictures.draw(out / f"curves-{first.set.name}.png", (5.6, 3.6), lambda axes: _draw_curves(axes, curves))
+            areas = ", ".join(f"{one.name} {one.value(('all', ''), 'average_precision').value:.3f}" for one in scored if one.curves)
+            found["picture"] = {"source": embedded(file), "alt": f"Precision over recall at {first.set.name}; average precision: {areas}.",
+                                "caption": f"{first.set.name}, {first.set.weather}: the mean of the sequences, and one standard error to either side"}
+        return found
+
+
+def _draw_curves(axes, curves: Sequence[Tuple[str, np.ndarray]]) -> None:
+    for name, values in curves:
+        middle = np.nanmean(values, axis=0)
+        line, = axes.plot(RECALLS, middle, label=name)
+        if len(values) > 1:
+            error = np.nanstd(values, axis=0, ddof=1) / math.sqrt(len(values))
+            axes.fill_between(RECALLS, middle - error, middle + error, color=line.get_color(), alpha=0.2, linewidth=0)
+    axes.set(xlabel="recall", ylabel="precision", xlim=(0.0, 1.0), ylim=(0.0, 1.02))
+    axes.grid(alpha=0.3)
+    axes.legend(fontsize=8)

@@ -1,0 +1,246 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Predictions held against labels: counts by hand, curves by brute force and by scikit-learn, tracks lost, files and their errors, a loader of
+PyTorch as the page shows it."""
+import csv
+import itertools
+import json
+import os
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+import unittest
+
+import numpy as np
+
+import avianlidar as al
+from avianlidar.apps import _bench
+from avianlidar.apps._bench import Bench, Points
+
+OUTPUT = pathlib.Path(os.environ.get("AVIANLIDAR_TEST_OUTPUT_DIR", "/tmp")) / "bench"
+SOURCE = pathlib.Path(os.environ["AVIANLIDAR_SOURCE_DIR"])
+BIRD, WALL, CAR = 99, 50, 252
+SCANS = 6
+
+
+def points(**columns):
+    """Points of one scan, all clutter of the sky that nobody calls a bird, but for what is given."""
+    count = len(next(iter(columns.values())))
+    nothing = {"scan": np.zeros(count, int), "bird": np.zeros(count, bool), "other": np.zeros(count, bool), "instance": np.zeros(count, int),
+               "subset": np.zeros(count, np.uint8), "range": np.full(count, 100.0), "called": np.zeros(count, bool), "score": None}
+    return Points(**{**nothing, **{name: np.array(values) for name, values in columns.items()}})
+
+
+def drawn(seed, count=400):
+    """Scores with ties."""
+    draw = np.random.default_rng(seed)
+    bird, other = draw.random(count) < 0.2, draw.random(count) < 0.1
+    return np.round(draw.normal(bird, 0.7), 1).astype(np.float32), bird & ~other, other
+
+
+def write_set(home, bird_class=BIRD, sequences=2):
+    """A small set with random points. @return labels by (sequence, scan)"""
+    shutil.rmtree(home, ignore_errors=True)
+    draw, found = np.random.default_rng(5), {}
+    for number in range(sequences):
+        folder = home / "sequences" / f"{number:02d}"
+        for name in ("velodyne", "labels", "subsets"):
+            (folder / name).mkdir(parents=True)
+        for scan in range(SCANS):
+            count = int(draw.integers(60, 90))
+            kind = draw.choice([bird_class, WALL, CAR, 0], count, p=(0.3, 0.5, 0.1, 0.1))
+            instance = np.where(kind == bird_class, 10001 + draw.integers(3, size=count), 1)
+            name = f"{scan:06d}"
+            draw.normal(0, 300, (count, 4)).astype("<f4").tofile(folder / "velodyne" / f"{name}.bin")
+            (kind + (instance << 16)).astype("<u4").tofile(folder / "labels" / f"{name}.label")
+            draw.integers(3, size=count).astype(np.uint8).tofile(folder / "subsets" / f"{name}.subset")
+            found[f"{number:02d}", name] = kind
+        (folder / "truth.csv").write_text("bird,species\n10000,crow\n10001,crow\n10002,starling\n", encoding="utf-8")
+    scenario = {"scene": "s.lidarscene.json", "sensor": {"preset": "Search905"}, "bird_class": bird_class, "weather": ["rain:2"]}
+    (home / "manifest.json").write_text(json.dumps({"scenario": scenario, "sequences": {f"{k:02d}": {} for k in range(sequences)}}), encoding="utf-8")
+    return found
+
+
+def write_predictions(home, labels, called, score=None):
+    """@param called, score functions of the labels of a scan"""
+    shutil.rmtree(home, ignore_errors=True)
+    for (number, name), kind in labels.items():
+        folder = home / "sequences" / number / "predictions"
+        folder.mkdir(parents=True, exist_ok=True)
+        called(kind).astype("<u4").tofile(folder / f"{name}.label")
+        if score:
+            score(kind).astype("<f4").tofile(folder / f"{name}.score")
+
+
+class Scores(unittest.TestCase):
+    def test_counts_by_hand(self):
+        some = points(bird=[1, 1, 1, 0, 0, 0], other=[0, 0, 0, 0, 1, 1], called=[1, 1, 0, 1, 1, 0])
+        some = some._replace(**{name: getattr(some, name).astype(bool) for name in ("bird", "other", "called")})
+        found = _bench.scores(some, np.ones(6, bool), 2, ())
+        self.assertEqual(found, {"birds": 3.0, "recall": 2 / 3, "precision": 2 / 3, "iou": 2 / 4, "false": 0.5, "others": 0.5})
+
+    def test_threshold_by_brute_force(self):
+        for seed, most in itertools.product(range(5), (0, 1, 7, 40)):
+            score, bird, other = drawn(seed)
+            least = _bench.threshold(_bench.ranked(score, bird, other), most)
+            fit = [value for value in np.unique(score) if np.count_nonzero((score >= value) & ~bird & ~other) <= most]
+            # What lets the most birds through: the same birds, whatever stands between two scores.
+            self.assertEqual(np.count_nonzero(bird & (score >= least)), max((np.count_nonzero(bird & (score >= value)) for value in fit), default=0))
+
+    def test_curve_by_brute_force(self):
+        for seed in range(5):
+            score, bird, other = drawn(seed)
+            values = _bench.curve(_bench.ranked(score, bird, other))
+            pairs = []
+            for value in np.unique(score[~other]):
+                hit = np.count_nonzero(bird & (score >= value))
+                pairs.append((hit / bird.sum(), hit / np.count_nonzero(~other & (score >= value))))
+            for recall, precision in zip(_bench.RECALLS, values):
+                self.assertAlmostEqual(precision, max(p for r, p in pairs if r >= recall - 1e-9))
+
+    def test_average_precision_is_that_of_scikit_learn(self):
+        try:
+            from sklearn.metrics import average_precision_score
+        except ImportError:
+            self.skipTest("scikit-learn is not installed")
+        for seed in range(5):
+            score, bird, other = drawn(seed)
+            self.assertAlmostEqual(_bench.average_precision(_bench.ranked(score, bird, other)), average_precision_score(bird[~other], score[~other]))
+
+    def test_nothing_there(self):
+        rank = _bench.ranked(np.zeros(0, np.float32), np.zeros(0, bool), np.zeros(0, bool))
+        self.assertTrue(np.isnan(_bench.average_precision(rank)) and np.isnan(_bench.curve(rank)).all())
+        self.assertEqual(_bench.threshold(rank, 1), np.inf)
+
+    def test_tracks_lost(self):
+        """A bird found in every second scan is not lost; one with three missed in a row is; one seen in two scans only is no track."""
+        cases = {1: ((0, 1, 2, 3, 4, 5), (0, 2, 4)), 2: ((0, 1, 2, 3, 4), (0, 1)), 3: ((0, 1), ()), 4: ((0, 1, 3, 4), ()), 5: ((2, 3, 4), ())}
+        rows = [(instance, scan, scan in found) for instance, (seen, found) in cases.items() for scan in seen]
+        instance, scan, called = map(np.array, zip(*rows))
+        some = points(instance=instance, scan=scan, called=called, bird=np.ones(len(scan), bool))
+        self.assertEqual(_bench.lost(some), (3, 2))
+
+
+class Files(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        OUTPUT.mkdir(parents=True, exist_ok=True)
+        cls.home = OUTPUT / "set"
+        cls.labels = write_set(cls.home)
+        draw = np.random.default_rng(1)
+        cls.noisy = {key: draw.normal(kind == BIRD, 0.5) for key, kind in cls.labels.items()}
+        write_predictions(OUTPUT / "right", cls.labels, lambda kind: np.where(kind == BIRD, BIRD, 1), lambda kind: kind == BIRD)
+        write_predictions(OUTPUT / "all", cls.labels, lambda kind: np.full(len(kind), BIRD))
+        scores = iter(cls.noisy.values())
+        write_predictions(OUTPUT / "noisy", cls.labels, lambda kind: np.full(len(kind), BIRD + (7 << 16)), lambda kind: next(scores))
+
+    def test_right_predictions_have_all(self):
+        scored = Bench([self.home], [OUTPUT / "right"]).write(OUTPUT / "out")[0][0]
+        for score, value in {"recall_at_1": 1, "average_precision": 1, "iou": 1, "recall": 1, "precision": 1, "false": 0, "lost": 0, "others": 0}.items():
+            self.assertEqual(scored.value(("all", ""), score)[:2], (value, 0), score)
+
+    def test_groups_hold_all_points(self):
+        scored = Bench([self.home], [OUTPUT / "all"]).write(OUTPUT / "out")[0][0]
+        birds = sum(int((kind == BIRD).sum()) for kind in self.labels.values())
+        for by in ("all", "subset", "range", "species"):
+            self.assertEqual(sum(scored.points(group) for group in scored.values if group[0] == by), birds, by)
+        shares = [np.mean(np.concatenate([kind[kind != CAR] for (number, _), kind in self.labels.items() if number == one]) == BIRD) for one in ("00", "01")]
+        self.assertAlmostEqual(scored.value(("all", ""), "precision").value, np.mean(shares))
+        self.assertAlmostEqual(scored.value(("all", ""), "precision").error, np.std(shares, ddof=1) / np.sqrt(2))
+        self.assertAlmostEqual(scored.value(("all", ""), "iou").value, np.mean(shares))
+        self.assertEqual(scored.value(("all", ""), "others").value, 1)
+        self.assertEqual(scored.value(("all", ""), "recall_at_1").count, 0)  # no scores
+
+    def test_the_page_and_the_tables(self):
+        out = OUTPUT / "page"
+        shutil.rmtree(out, ignore_errors=True)
+        done = subprocess.run([sys.executable, "-m", "avianlidar", "bench", self.home, "--predictions", OUTPUT / "noisy", OUTPUT / "right", "--first", "2",
+                               "-o", out], capture_output=True, text=True, check=True)
+        self.assertIn("set, rain 2 mm/h: right has the best recall at 1 false point a scan, 100.0", done.stdout.replace("of ", ""))
+        page = (out / "bench.html").read_text()
+        self.assertIn("The first 2 scans", page)
+        self.assertEqual(page.count("data:image/png"), 1)
+        with open(out / "bench.csv", newline="", encoding="utf-8") as stream:
+            rows = {(row["predictions"], row["by"], row["group"], row["score"]): row for row in csv.DictReader(stream)}
+        row = rows["noisy", "all", "", "recall at 1 false point a scan"]
+        values = []
+        for number in ("00", "01"):
+            keys = [key for key in self.labels if key[0] == number and key[1] >= "000002"]
+            kind, score = (np.concatenate([table[key] for key in keys]) for table in (self.labels, self.noisy))
+            score = score.astype(np.float32)
+            false = np.sort(score[(kind != BIRD) & (kind != CAR)])[::-1]
+            values.append(np.mean(score[kind == BIRD] > false[SCANS - 2]))
+        self.assertAlmostEqual(float(row["value"]), np.mean(values), places=5)
+        self.assertEqual(int(row["sequences"]), 2)
+        self.assertNotIn(("noisy", "species", "crow", "IoU"), rows)
+        with open(out / "curves.csv", newline="", encoding="utf-8") as stream:
+            self.assertEqual(len(list(csv.DictReader(stream))), 2 * len(_bench.RECALLS))
+
+    def test_another_class_of_birds(self):
+        labels = write_set(OUTPUT / "other", bird_class=259)
+        write_predictions(OUTPUT / "of-other", labels, lambda kind: np.where(kind == 259, 259, 0))
+        scored = Bench([OUTPUT / "other"], [OUTPUT / "of-other"]).write(OUTPUT / "out")[0][0]
+        self.assertEqual(scored.value(("all", ""), "iou").value, 1)
+
+    def test_several_sets(self):
+        labels = write_set(OUTPUT / "second", sequences=1)
+        for name, found in (("set", self.labels), ("second", labels)):
+            write_predictions(OUTPUT / "both" / name, found, lambda kind: np.where(kind == BIRD, BIRD, 1))
+        by_set = Bench([self.home, OUTPUT / "second"], [OUTPUT / "both"], ["00"]).write(OUTPUT / "out")
+        self.assertEqual([len(scored.values["all", ""]) for scored, in by_set], [1, 1])
+        with self.assertRaisesRegex(al.Error, r"right: holds no predictions for second, expected second/sequences/NN/predictions$"):
+            Bench([OUTPUT / "second", self.home], [OUTPUT / "right"])
+
+    def test_bad_input(self):
+        wrong = OUTPUT / "wrong"
+
+        def fails(words, folders=(self.home,), predictions=(wrong,), **options):
+            with self.assertRaisesRegex(al.Error, words):
+                Bench(folders, predictions, **options).write(OUTPUT / "out-wrong")
+            self.assertFalse((OUTPUT / "out-wrong").exists())
+        predictions = wrong / "sequences" / "00" / "predictions"
+
+        def again():
+            shutil.rmtree(wrong, ignore_errors=True)
+            shutil.copytree(OUTPUT / "right", wrong)
+        again()
+        fails("holds no manifest.json", [OUTPUT / "right"])
+        fails("has no sequence 07, expected some of 00, 01", numbers=["07"])
+        fails("has no scan from number 6 on", first=6)
+        fails("first is -1, expected 0 or more", first=-1)
+        fails("predictions: two are called wrong", predictions=[wrong, wrong])
+        (predictions / "000003.label").unlink()
+        fails("000003.label: is not there, expected a file for each scan")
+        again()
+        (predictions / "000003.label").write_bytes(b"abcde")
+        fails("000003.label: has 5 bytes, expected 4 for each point")
+        (predictions / "000003.label").write_bytes(b"abcd")
+        fails("000003.label: has 1 values, expected one for each of the")
+        again()
+        np.full(len(self.labels["00", "000002"]), np.nan, "<f4").tofile(predictions / "000002.score")
+        fails("000002.score: has a score that is not a number")
+        (OUTPUT / "empty").mkdir(exist_ok=True)
+        (OUTPUT / "empty" / "manifest.json").write_text("{}")
+        fails("names no sequences", [OUTPUT / "empty"])
+
+    def test_the_loader_of_the_page(self):
+        """Runs as it stands on the page."""
+        try:
+            import torch
+        except ImportError:
+            self.skipTest("PyTorch is not installed")
+        text = (SOURCE / "Documentation" / "filters.md").read_text(encoding="utf-8")
+        code = next(block for block in re.findall(r"```python\n(.*?)```", text, re.S) if "torch" in block)
+        self.assertLessEqual(len(code.splitlines()), 20)
+        names = {}
+        exec(code.replace("build/sequences", str(self.home)), names)  # pylint: disable=exec-used
+        scans = names["Scans"](self.home)
+        self.assertEqual(len(scans), len(self.labels))
+        batch = next(iter(torch.utils.data.DataLoader(scans, batch_size=None)))
+        self.assertEqual(batch[0].shape, (len(self.labels["00", "000000"]), 4))
+        np.testing.assert_array_equal(batch[1].numpy(), self.labels["00", "000000"] == BIRD)
+
+
+if __name__ == "__main__":
+    unittest.main()
