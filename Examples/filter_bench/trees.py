@@ -7,10 +7,14 @@
 makes two filters: trees-one-scan knows nothing of other scans, trees also where echoes were in the eight scans before. The model for
 sequence N of a set has learned all sequences of hongqiao-train but the N-th, fair and rain. No feature says where a point is. NumPy and scikit-learn are all that it needs.
 """
-import numpy as np
-from sklearn.ensemble import HistGradientBoostingClassifier
+import os
 
-import filters
+import numpy as np
+
+os.environ.setdefault("OMP_NUM_THREADS", "1")  # on one thread, as the network
+from sklearn.ensemble import HistGradientBoostingClassifier  # noqa: E402
+
+import filters  # noqa: E402
 
 KINDS = ("trees-one-scan", "trees")
 ROUNDS = 150

@@ -11,6 +11,7 @@ import shutil
 import subprocess
 import sys
 import unittest
+import unittest.mock
 
 import numpy as np
 
@@ -240,6 +241,68 @@ class Files(unittest.TestCase):
         batch = next(iter(torch.utils.data.DataLoader(scans, batch_size=None)))
         self.assertEqual(batch[0].shape, (len(self.labels["00", "000000"]), 4))
         np.testing.assert_array_equal(batch[1].numpy(), self.labels["00", "000000"] == BIRD)
+
+
+class Baselines(unittest.TestCase):
+    """What the baselines of Examples/filter_bench share."""
+
+    def frame(self, draw, filters):
+        """Points at 6 degrees and 16 levels, some of them in one beam."""
+        azimuth, elevation = np.radians(6 * draw.integers(60, size=400)), np.radians(np.arange(16)[draw.integers(16, size=400)])
+        distance = draw.uniform(20, 200, 400)
+        flat = distance * np.cos(elevation)
+        return filters.Frame(np.column_stack([flat * np.cos(azimuth), -flat * np.sin(azimuth), distance * np.sin(elevation), draw.random(400)]))
+
+    @classmethod
+    def setUpClass(cls):
+        sys.path[:0] = [str(SOURCE / "Examples" / "filter_bench")]
+        import filters
+        import sets
+        cls.filters, cls.sets = filters, sets
+
+    def test_nearest_points_by_brute_force(self):
+        draw = np.random.default_rng(2)
+        one, other = self.frame(draw, self.filters), self.frame(draw, self.filters)
+        self.assertEqual((one.columns, len(one.levels)), (60, 16))
+        for rows, columns in ((0, 0), (1, 0), (-1, 1), (0, -2)):
+            distance, amplitude = (self.filters.unsorted(other, values) for values in one.nearest(other, rows, columns))
+            for k in range(0, 400, 7):
+                there = np.flatnonzero((one.row == other.row[k] + rows) & (one.column == (other.column[k] + columns) % 60))
+                away = abs(one.range[there] - other.range[k])
+                least = away.min(initial=self.filters.FAR)
+                self.assertAlmostEqual(distance[k], least)
+                self.assertAlmostEqual(amplitude[k], one.amplitude[there[np.argmin(away)]] if least < self.filters.FAR else 0.0)
+
+    def test_what_is_seen_again_and_again(self):
+        frames = [self.frame(np.random.default_rng(3), self.filters) for _ in range(4)]
+        shares, beside, ago = self.filters.of_history(frames[-1], frames[:-1]).T
+        self.assertTrue((shares == 1).all() and (beside == 1).all() and (ago == 1).all())
+        self.assertEqual(self.filters.of_one_scan(frames[0]).shape[0], 400)
+
+    def test_the_threshold_by_brute_force(self):
+        score, bird, other = drawn(4)
+        label = np.where(bird, BIRD, np.where(other, CAR, WALL))
+        least = self.filters.tuned([(score, label)])
+
+        def iou(value):
+            called = (score >= value) & ~other
+            return np.count_nonzero(called & bird) / np.count_nonzero(called | bird)
+        self.assertEqual(iou(least), max(map(iou, np.unique(score))))
+
+    def test_scenarios(self):
+        from avianlidar.apps._sequence import read_scenario
+        out = OUTPUT / "scenarios"
+        out.mkdir(parents=True, exist_ok=True)
+        with unittest.mock.patch.dict(os.environ, AVIANLIDAR_DATA_DIR="/data"):
+            for name in self.sets.PLACES:
+                for rainy in (False, True):
+                    scenario = read_scenario(self.sets.scenario_of(name, out, rainy, 7))
+                    self.assertEqual((scenario["number_of_scans"], scenario["scans_per_sequence"]), (35, 7))
+                    self.assertTrue(pathlib.Path(scenario["scene"]).is_file())
+                    self.assertEqual(scenario.get("weather"), [self.sets.RAIN] if rainy else None)
+        self.assertIn("/data/osm", (out / "neubrandenburg.lidarscene.json").read_text())
+        with unittest.mock.patch.dict(os.environ, AVIANLIDAR_DATA_DIR=""):
+            self.assertIsNone(self.sets.scenario_of("honolulu", out, False, 7))
 
 
 if __name__ == "__main__":

@@ -16,6 +16,7 @@ import unittest.mock
 
 import numpy as np
 
+os.environ.setdefault("OMP_NUM_THREADS", "1")  # small trees: threads that wait for one another cost more than they gain
 try:
     from scipy.spatial import cKDTree
     from sklearn.ensemble import HistGradientBoostingClassifier

@@ -239,21 +239,24 @@ def difference(one: Scored, other: Scored, score: str) -> Value:
 
 
 def verdict(scored: Sequence[Scored]) -> str:
-    """Which predictions for a set are best, and by how much."""
-    score = f"recall_at_{FALSE[0]}" if all(one.curves for one in scored) else "iou"
+    """Which predictions for a set are best, and by how much: by recall, if all have scores, and by intersection over union."""
+    return " ".join(_best(scored, score) for score in (f"recall_at_{FALSE[0]}", "iou") if score == "iou" or all(one.curves for one in scored))
+
+
+def _best(scored: Sequence[Scored], score: str) -> str:
     words, factor, unit = SCORES[score]
-    ordered = sorted((one for one in scored if one.value(("all", ""), score).count), key=lambda one: -one.value(("all", ""), score).value)
+    values = {one.name: one.value(("all", ""), score) for one in scored}
+    ordered = sorted((one for one in scored if values[one.name].count), key=lambda one: -values[one.name].value)
     if not ordered:
         return "No bird has a point."
-    first = f"{ordered[0].name} has the best {words}, {cell(ordered[0].value(('all', ''), score), factor, unit)}"
-    if len(ordered) == 1:
-        return f"{ordered[0].name} has {cell(ordered[0].value(('all', ''), score), factor, unit)} {words}."
+    best = ordered[0]
     parts = []
     for other in ordered[1:]:
-        by = difference(ordered[0], other, score)
-        sure = by.value > SURE * by.error if not math.isnan(by.error) else False
-        parts.append(f"{cell(by, factor, '')}{f' {unit}' if unit else ''} more than {other.name}{'' if sure else ' (no sure difference)'}")
-    return f"{first}: {'; '.join(parts)}."
+        by = difference(best, other, score)
+        sure = by.value > SURE * by.error  # never with one sequence
+        parts.append(f"{cell(by, factor)}{' percentage points' if unit else ''} more than {other.name}{'' if sure else ' (no sure difference)'}")
+    end = f": {'; '.join(parts)}." if parts else "."
+    return f"{best.name} has the best {words}, {cell(values[best.name], factor, unit)}{end}"
 
 
 class Bench:
