@@ -151,7 +151,7 @@ class Files(unittest.TestCase):
         self.assertAlmostEqual(scored.value(("all", ""), "precision").error, np.std(shares, ddof=1) / np.sqrt(2))
         self.assertAlmostEqual(scored.value(("all", ""), "iou").value, np.mean(shares))
         self.assertEqual(scored.value(("all", ""), "others").value, 1)
-        self.assertEqual(scored.value(("all", ""), "recall_at_1").count, 0)  # no scores
+        self.assertEqual(scored.value(("all", ""), "recall_at_1").number, 0)  # no scores
 
     def test_the_page_and_the_tables(self):
         out = OUTPUT / "page"

@@ -246,7 +246,7 @@ def verdict(scored: Sequence[Scored]) -> str:
 def _best(scored: Sequence[Scored], score: str) -> str:
     words, factor, unit = SCORES[score]
     values = {one.name: one.value(("all", ""), score) for one in scored}
-    ordered = sorted((one for one in scored if values[one.name].count), key=lambda one: -values[one.name].value)
+    ordered = sorted((one for one in scored if values[one.name].number), key=lambda one: -values[one.name].value)
     if not ordered:
         return "No bird has a point."
     best = ordered[0]
@@ -307,9 +307,9 @@ class Bench:
             for group in one.values:
                 for score, (words, _, _) in SCORES.items():
                     value = one.value(group, score)
-                    if value.count:
+                    if value.number:
                         rows.append([one.set.name, one.set.weather, one.name, *group, words, "1", *("" if math.isnan(x) else f"{x:.6g}" for x in value[:2]),
-                                     value.count, one.points(group)])
+                                     value.number, one.points(group)])
             if one.curves:
                 lines += [[one.set.name, one.name, f"{recall:g}", f"{precision:.6g}"] for recall, precision in zip(RECALLS, np.nanmean(one.curves, axis=0))]
         for name, table in (("bench.csv", rows), ("curves.csv", lines)):
@@ -324,7 +324,7 @@ class Bench:
 
         def row(name: str, group: Tuple[str, str], keys: Sequence[str]) -> Dict[str, Any]:
             return {"name": name, "points": first.points(group), "cells": [[cell(one.value(group, key), *SCORES[key][1:]) for key in keys] for one in scored]}
-        keys = [key for key in SCORES if any(one.value(("all", ""), key).count for one in scored)]
+        keys = [key for key in SCORES if any(one.value(("all", ""), key).number for one in scored)]
         best = [key for key in (f"recall_at_{FALSE[0]}", "iou") if key in keys]
         parts = []
         for by in ("subset", "range", "species"):
