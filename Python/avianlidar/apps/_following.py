@@ -55,8 +55,8 @@ class Chain:
         steps = {name: value for name, value in (("azimuth_step", sensor.azimuth_step), ("elevation_step", sensor.elevation_step)) if value > 0.0}
         widest = max(steps.values(), default=0.0)
         self.filter, self.tracker = _wrapped.vtkAvianLidarClutterFilter(), _wrapped.vtkAvianLidarTracker()
-        for one in (self.filter, self.tracker):
-            one.SetController(None)  # ranks have sequences of their own
+        self.filter.SetController(None)  # ranks have sequences of their own
+        self.tracker.SetController(None)
         set_properties(self.filter, "vtkAvianLidarClutterFilter", **{"warm_up": learning, **steps, **clutter})
         set_properties(self.tracker, "vtkAvianLidarTracker", **{"half_beamwidth": sensor.half_beamwidth, "history_length": 1, "keep_time": 0.0,
                                                                 **({"cluster_angle": 1.6 * widest} if widest else {}), **tracker})
