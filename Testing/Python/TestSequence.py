@@ -350,16 +350,17 @@ class Labels(unittest.TestCase):
 
 class Shipped(unittest.TestCase):
     def test_clutter_is_neither_too_easy_nor_hopeless(self):
-        """Background subtraction for each beam, on 60 scans of the shipped scenario."""
+        """The clutter filter that knows the whole sequence, on 60 scans of the shipped scenario."""
         example = pathlib.Path(os.environ["AVIANLIDAR_SOURCE_DIR"]) / "Examples" / "sequence"
         sys.path.insert(0, str(example))
-        import background
+        import clutter
         out = folder("shipped")
         al.Sequence(example / "hongqiao.scenario.json", number_of_scans=60, scans_per_sequence=60).write(out)
+        files = [sorted((out / "sequences" / "00" / "velodyne").glob("*.bin"))]
         for share in (0.05, 0.2):
-            found = sum(background.counts(sequence, share) for sequence in (out / "sequences").iterdir())
+            found = sum(dict(clutter.measure(files, {"ClutterThreshold": share}))["all scans of its sequence"][0])
             for subset in ("near_clutter", "through_edges"):
-                hit, false, missed = found[background.SUBSETS.index(subset.replace("_", " ")), 0]
+                hit, false, missed = found[clutter.SUBSETS.index(subset.replace("_", " ")), 0]
                 score = hit / (hit + false + missed)
                 self.assertTrue(0.05 < score < 0.9, (share, subset, score))
         rows = truth_of(out)
