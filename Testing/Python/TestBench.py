@@ -81,6 +81,15 @@ class Scores(unittest.TestCase):
         found = _bench.scores(some, np.ones(6, bool), 2, ())
         self.assertEqual(found, {"birds": 3.0, "recall": 2 / 3, "precision": 2 / 3, "iou": 2 / 4, "false": 0.5, "others": 0.5})
 
+    def test_scores_without_bounds(self):
+        """Points that all have the same infinite score are not told apart."""
+        bird, other = np.array([True, False, False, False]), np.zeros(4, bool)
+        for value in (-np.inf, 0.0, np.inf):
+            rank = _bench.ranked(np.full(4, value, np.float32), bird, other)
+            self.assertEqual((rank.birds.tolist(), rank.false.tolist()), ([1], [3]))
+            self.assertTrue(np.isnan(_bench.threshold(rank, 1)))
+            self.assertEqual(_bench.average_precision(rank), 0.25)
+
     def test_threshold_by_brute_force(self):
         for seed, most in itertools.product(range(5), (0, 1, 7, 40)):
             score, bird, other = drawn(seed)
@@ -112,7 +121,7 @@ class Scores(unittest.TestCase):
     def test_nothing_there(self):
         rank = _bench.ranked(np.zeros(0, np.float32), np.zeros(0, bool), np.zeros(0, bool))
         self.assertTrue(np.isnan(_bench.average_precision(rank)) and np.isnan(_bench.curve(rank)).all())
-        self.assertEqual(_bench.threshold(rank, 1), np.inf)
+        self.assertTrue(np.isnan(_bench.threshold(rank, 1)))
 
     def test_tracks_lost(self):
         """A bird found in every second scan is not lost; one with three missed in a row is; one seen in two scans only is no track."""
@@ -221,6 +230,9 @@ class Files(unittest.TestCase):
         again()
         np.full(len(self.labels["00", "000002"]), np.nan, "<f4").tofile(predictions / "000002.score")
         fails("000002.score: has a score that is not a number")
+        again()
+        next(predictions.glob("000002.score")).unlink()
+        fails("000002.score is not there, expected scores of all scans or of none")
         (OUTPUT / "empty").mkdir(exist_ok=True)
         (OUTPUT / "empty" / "manifest.json").write_text("{}")
         fails("names no sequences", [OUTPUT / "empty"])

@@ -269,7 +269,7 @@ class Files(unittest.TestCase):
                 ((changed,), {}, "its files are not those"), ((other,), {}, "is of another sensor than .*manifest.json names"),
                 ((self.made, self.made), {}, "'made' is there twice"), ((self.made,), {"learning_scans": 25}, "has 25 scans, expected more than the 25"),
                 ((self.made,), {"runways": self.home / "none.geojson"}, "holds no runway"), ((self.home / "nowhere",), {}, "nowhere"),
-                ((self.made,), {"tracker": {"hits": 3}}, "hits"), ((self.made,), {"cutoff": 0.0}, "cutoff is 0"),
+                ((self.made,), {"tracker": {"hits": 3}}, "hits"), ((self.made,), {"cutoff": 0.0}, "cutoff is 0"), ((self.made,), {"weather": ["fog:100"]}, "made holds sequences that are made: weather is for scenarios"),
                 ((self.made,), {"learning_scans": -1}, "learning_scans is -1")):
             with self.subTest(words), self.assertRaisesRegex((al.Error, ValueError, TypeError), words):
                 self.tracks(*inputs, **settings).write(self.home / "bad")

@@ -59,14 +59,14 @@ def ranked(score, bird, other) -> Threshold:
     score, bird = score[~other], bird[~other]
     order = np.argsort(-score, kind="stable")
     score, birds = score[order], np.cumsum(bird[order])
-    last = np.flatnonzero(np.append(np.diff(score) != 0.0, True)) if len(score) else np.zeros(0, int)
+    last = np.flatnonzero(np.append(score[1:] != score[:-1], True)) if len(score) else np.zeros(0, int)
     return Threshold(score[last], birds[last], last + 1 - birds[last])
 
 
 def threshold(rank: Threshold, most: float) -> float:
-    """The least score with no more false points than that; infinite if the first has more."""
+    """The least score with no more false points than that; nan, which no score reaches, if the first has more."""
     fit = np.flatnonzero(rank.false <= most)
-    return float(rank.values[fit[-1]]) if len(fit) else math.inf
+    return float(rank.values[fit[-1]]) if len(fit) else math.nan
 
 
 def average_precision(rank: Threshold) -> float:
@@ -153,7 +153,10 @@ class Set:
         names = [file.stem for file in sorted((home / "velodyne").glob("*.bin"))][self.first:]
         if not names:
             raise Error(f"{home}: has no scan from number {self.first} on, expected longer sequences or a smaller --first")
-        has_scores = (theirs / "predictions" / f"{names[0]}.score").exists()
+        scored = [(theirs / "predictions" / f"{name}.score").exists() for name in names]
+        has_scores = any(scored)
+        if has_scores and not all(scored):
+            raise Error(f"{theirs / 'predictions'}: {names[scored.index(False)]}.score is not there, expected scores of all scans or of none")
         columns = []
         for scan, name in enumerate(names):
             kinds = [(home / folder / f"{name}{suffix}", kind) for (folder, suffix, _), kind in zip(FOLDERS, ("<f4", "<u4", np.uint8))]
@@ -219,13 +222,13 @@ class Scored:
             step()
 
     def of_sequences(self, group: Tuple[str, str], score: str) -> np.ndarray:
-        """A value for each sequence that has the score."""
-        found = np.array([values.get(score, math.nan) for values in self.values.get(group, ())])
-        return found[~np.isnan(found)]
+        """A value for each sequence, nan without the score."""
+        return np.array([values.get(score, math.nan) for values in self.values.get(group, ())])
 
     def value(self, group: Tuple[str, str], score: str) -> Value:
         """The mean of the sequences and its standard error."""
-        return mean(self.of_sequences(group, score))
+        found = self.of_sequences(group, score)
+        return mean(found[~np.isnan(found)])
 
     def points(self, group: Tuple[str, str]) -> int:
         """Of birds, in all sequences."""
@@ -233,9 +236,10 @@ class Scored:
 
 
 def difference(one: Scored, other: Scored, score: str) -> Value:
-    """Of two predictions for a set, by sequence."""
+    """Of two predictions for a set, by sequences that both have."""
     values = [scored.of_sequences(("all", ""), score) for scored in (one, other)]
-    return mean(values[0] - values[1]) if len(values[0]) == len(values[1]) else Value(math.nan, math.nan, 0)
+    found = values[0] - values[1]
+    return mean(found[~np.isnan(found)])
 
 
 def verdict(scored: Sequence[Scored]) -> str:

@@ -55,8 +55,8 @@ def ospa(distance, cutoff: float, order: float = 2.0) -> Ospa:
     """Optimal subpattern assignment distance of two sets (Schuhmacher, Vo & Vo 2008, doi:10.1109/TSP.2008.920469, eq. 3): 0 where both are
     empty, the cut-off where one is. `distance` to the power of the order is the sum of those of its parts. @param distance n x m, of a
     metric @param order p, 1 or more, finite"""
-    if not cutoff > 0.0 or not 1.0 <= order < math.inf:
-        raise ValueError(f"cutoff is {cutoff} m and order {order}, expected more than 0 m, and 1 or more")
+    if not 0.0 < cutoff < math.inf or not 1.0 <= order <= 20.0:
+        raise ValueError(f"cutoff is {cutoff} m and order {order}, expected more than 0 m, and 1 to 20")
     distance = np.asarray(distance, float)
     most, least = max(distance.shape), min(distance.shape)
     if most == 0:
@@ -98,9 +98,8 @@ def _along(points: np.ndarray, start, axis: np.ndarray) -> Tuple[np.ndarray, np.
 
 
 def entry(times: np.ndarray, inside: np.ndarray) -> float:
-    """The first time inside after one outside, nan without."""
-    came = np.flatnonzero(inside[1:] & ~inside[:-1]) + 1
-    return float(times[came[0]]) if len(came) else math.nan
+    """The first time inside, nan without, or if it begins there."""
+    return float(times[np.argmax(inside)]) if inside.any() and not inside[0] else math.nan
 
 
 def jackknife(statistic: Callable[..., float], *columns) -> Value:

@@ -66,6 +66,9 @@ class BirdTracks:
         self.folders: Dict[str, pathlib.Path] = {}
         for given in map(pathlib.Path, inputs):
             if given.is_dir():
+                asked = [name for name, value in (("sensors", sensors), *changes.items()) if value]
+                if asked:
+                    raise ValueError(f"{given} holds sequences that are made: {', '.join(asked)} is for scenarios, expected a scenario")
                 self._add(given.resolve().name, given)
                 continue
             scenario, stem = read_scenario(given), given.name.split(".")[0]
