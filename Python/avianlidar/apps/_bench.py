@@ -159,7 +159,7 @@ class Set:
             raise Error(f"{theirs / 'predictions'}: {names[scored.index(False)]}.score is not there, expected scores of all scans or of none")
         columns = []
         for scan, name in enumerate(names):
-            kinds = [(home / folder / f"{name}{suffix}", kind) for (folder, suffix, _), kind in zip(FOLDERS, ("<f4", "<u4", np.uint8))]
+            kinds: List[Tuple[pathlib.Path, Any]] = [(home / folder / f"{name}{suffix}", kind) for (folder, suffix, _), kind in zip(FOLDERS, ("<f4", "<u4", np.uint8))]
             kinds += [(theirs / folder / f"{name}{suffix}", kind) for folder, suffix, kind in PREDICTIONS[:1 + has_scores]]
             found = [np.frombuffer(_content(file), kind) for file, kind in kinds]
             places = found[0].reshape(-1, 4)[:, :3].astype(float)
@@ -171,8 +171,8 @@ class Set:
             kind, called = found[1] & 0xffff, (found[3] & 0xffff) == self.bird_class
             columns.append((np.full(len(places), scan), kind == self.bird_class, np.isin(kind, [*MOVING.values()]) & (kind != self.bird_class),
                             found[1] >> 16, found[2], np.linalg.norm(places, axis=1), called, *found[4:]))
-        arrays = [np.concatenate(column) for column in zip(*columns)]
-        return Points(*arrays[:7], arrays[7] if has_scores else None), len(names)
+        arrays: List[Any] = [np.concatenate(column) for column in zip(*columns)]
+        return Points(*(arrays if has_scores else [*arrays, None])), len(names)
 
     def groups(self, number: str, points: Points) -> Dict[Tuple[str, str], np.ndarray]:
         """Which points are in a group: by what, and its name."""
