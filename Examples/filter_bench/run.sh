@@ -25,3 +25,6 @@ for place in hongqiao honolulu neubrandenburg; do
 done
 # shellcheck disable=SC2086 # names without blanks
 build/paraview/bin/avianlidar bench $sets --predictions build/bench/predictions/* --first 8 -o build/bench/scores
+if [ -n "${AVIANLIDAR_DATA_DIR:-}" ]; then
+  /usr/bin/python3 Examples/filter_bench/tables.py
+fi
