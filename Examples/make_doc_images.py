@@ -39,15 +39,16 @@ import multiple_scattering  # noqa: E402
 import others  # noqa: E402
 import paper  # noqa: E402
 import patterns  # noqa: E402
+import predicted_measured  # noqa: E402
 import protocol  # noqa: E402
+import quadcopter  # noqa: E402
 import ranges  # noqa: E402
 import render_notebook  # noqa: E402
 import report_card  # noqa: E402
 import room  # noqa: E402
 import screenshots  # noqa: E402
-import predicted_measured  # noqa: E402
-import quadcopter  # noqa: E402
 import second_reflection  # noqa: E402
+import tracked_gulls  # noqa: E402
 import vegetation  # noqa: E402
 import weather  # noqa: E402
 
@@ -76,6 +77,7 @@ RUNS = (
     ("patterns", patterns, [], {"prisms": "sensors-prisms", "rotors": "sensors-rotors"}),
     ("sequence", labels, [], {"labels": "sequences-labels"}),
     ("tracks", report_card, [], {"scan": "tracks-scan"}),
+    ("tracked-gulls", tracked_gulls, [], {}),
     ("quadcopter", quadcopter, [], {"points": "measured-quadcopter"}),
     ("weather", weather, [], {"weather": "weather"}),
     ("weather-media", media_time, [], {}),

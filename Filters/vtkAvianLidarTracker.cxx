@@ -293,6 +293,7 @@ const std::vector<vtkAvianLidarTracker::vtkInternals::Setting>& vtkAvianLidarTra
     { "ConfirmScans", { "confirm_scans", "1" }, &Self::ConfirmScans, 1.0, 32.0 },
     { "MinimumSpeed", { "minimum_speed", "m/s" }, &Self::MinimumSpeed, 0.0, 1000.0 },
     { "MaximumMisses", { "maximum_misses", "1" }, &Self::MaximumMisses, 1.0, 1000.0 },
+    { "MaximumPause", { "maximum_pause", "s" }, &Self::MaximumPause, 0.001, 1e9 },
     { "HistoryLength", { "history_length", "1" }, &Self::HistoryLength, 1.0, 1e6 },
     { "KeepTime", { "keep_time", "s" }, &Self::KeepTime, 0.0, 1e9 } };
   return all;
@@ -319,6 +320,7 @@ avianlidar::TrackerSettings vtkAvianLidarTracker::vtkInternals::SettingsOf(
   s.confirmScans = self.ConfirmScans;
   s.minimumSpeed = self.MinimumSpeed;
   s.maximumMisses = self.MaximumMisses;
+  s.maximumPause = self.MaximumPause;
   s.historyLength = static_cast<std::size_t>(self.HistoryLength);
   s.keepTime = self.KeepTime;
   return s;
@@ -365,7 +367,8 @@ std::string vtkAvianLidarTracker::vtkInternals::Track(vtkAvianLidarTracker* self
   const avianlidar::Clusters clusters = avianlidar::findClusters(targets.Points, sensor,
     self->ClusterDistance, self->ClusterAngle * avianlidar::RadiansPerDegree);
   vtkAvianLidarAbort::StopIfWanted(self);
-  const std::vector<int> ids = next.Tracker.update(clusters.all, sensor, time, settings);
+  const std::vector<int> ids =
+    next.Tracker.update(clusters.all, sensor, time, settings, vtkAvianLidarAbort::KeepGoing(self));
   trackOfPoint.assign(static_cast<std::size_t>(cloud->GetNumberOfPoints()), -1);
   for (std::size_t i = 0; i < targets.Indices.size(); ++i)
   {

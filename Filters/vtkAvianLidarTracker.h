@@ -188,11 +188,15 @@ public:
   ///@{
   /**
    * A confirmed track ends after MaximumMisses scans in a row without a cluster (1 to 1000; default
-   * 3). It stays in the output for KeepTime, s on the clock of the clouds (0 to 1e9; default 60),
-   * and keeps its last HistoryLength positions (1 to 1,000,000; default 200).
+   * 3), any track once it had none for more than MaximumPause, s (0.001 to 1e9; default 30): what
+   * is there after a pause of the data is another bird. It stays in the output for KeepTime, s on
+   * the clock of the clouds (0 to 1e9; default 60), and keeps its last HistoryLength positions (1
+   * to 1,000,000; default 200).
    */
   vtkSetMacro(MaximumMisses, int);
   vtkGetMacro(MaximumMisses, int);
+  vtkSetMacro(MaximumPause, double);
+  vtkGetMacro(MaximumPause, double);
   vtkSetMacro(KeepTime, double);
   vtkGetMacro(KeepTime, double);
   vtkSetMacro(HistoryLength, int);
@@ -241,6 +245,7 @@ protected:
   int ConfirmScans = 4;
   double MinimumSpeed = 0.0;
   int MaximumMisses = 3;
+  double MaximumPause = 30.0;
   int HistoryLength = 200;
   double KeepTime = 60.0;
   vtkMultiProcessController* Controller = nullptr;

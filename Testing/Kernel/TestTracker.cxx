@@ -276,6 +276,17 @@ TEST(Tracker, EndsAndForgetsTracks)
   EXPECT_EQ(tracker.tracks().size(), 1u);
 }
 
+TEST(Tracker, StopsWhereNobodyWaits)
+{
+  Tracker tracker;
+  const auto scan = [&](double time, const KeepGoing& goOn)
+  { tracker.update(clustersOf({ Vec3(100.0) }, time), Vec3(0.0), time, settings(), goOn); };
+  scan(0.0, {});
+  EXPECT_THROW(scan(1.0, [](double) { return false; }), WorkStopped);
+  scan(1.0, [](double) { return true; });
+  EXPECT_EQ(tracker.tracks().size(), 1u);
+}
+
 TEST(Tracker, ConfirmsNothingSlowerThanWanted)
 {
   for (const double speed : { 0.0, 1.9, 2.1 })

@@ -234,6 +234,7 @@ CONTRACT = {
         "ConfirmScans": "",
         "MinimumSpeed": "m/s",
         "MaximumMisses": "",
+        "MaximumPause": "seconds",
         "HistoryLength": "",
         "KeepTime": "seconds",
     },

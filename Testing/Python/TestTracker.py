@@ -257,6 +257,17 @@ class TestTracker(unittest.TestCase):
             self.assertLessEqual(max(tracks.GetCell(i).GetNumberOfPoints() for i in range(tracks.GetNumberOfCells())), 5)
         self.assertLess(max(sizes[60:]), 1.3 * max(sizes[20:60]))
 
+    def test_a_pause_ends_tracks(self):
+        """What comes after it is another track, near or far; shorter pauses change nothing."""
+        for pause, place, ids in ((29.0, (100, 60, 10), [0]), (31.0, (100, 60, 10), [0, 1]), (6000.0, (-900, 700, 45), [0, 1])):
+            made = tracker(KeepTime=1e9)
+            for scan in range(4):
+                feed(made, [(100, 10 * scan, 10)], 2.0 * scan)
+            tracks, points = feed(made, [place], 6.0 + pause)
+            self.assertEqual(sorted(cell_array(tracks, "track_id")), ids)
+            self.assertEqual(int(point_array(points, "track_id")[0]), ids[-1])
+            self.assertEqual(dict(zip(cell_array(tracks, "track_id"), cell_array(tracks, "ended")))[0], len(ids) - 1)
+
     def test_an_empty_cloud_is_a_scan(self):
         made = tracker(MaximumMisses=2)
         for scan in range(4):
@@ -315,7 +326,7 @@ class TestTracker(unittest.TestCase):
         for name, value in (("ClusterDistance", -1), ("ClusterAngle", 30), ("RangeError", 0), ("HalfBeamwidth", 2),
                             ("TargetExtent", 0), ("MotionModel", 2), ("AccelerationDensity", float("nan")),
                             ("MaximumSpeed", 0), ("GateProbability", 1), ("ConfirmHits", 5), ("ConfirmScans", 33),
-                            ("MaximumMisses", 0), ("HistoryLength", 0), ("KeepTime", -1)):
+                            ("MaximumMisses", 0), ("HistoryLength", 0), ("KeepTime", -1), ("MaximumPause", 0)):
             with self.subTest(name):
                 before = getattr(made, "Get" + name)()
                 getattr(made, "Set" + name)(value)

@@ -136,20 +136,36 @@ glm::dmat3 positionError(
   return sum / static_cast<double>(cluster.points);
 }
 
-std::vector<int> Tracker::update(
-  const std::vector<Cluster>& clusters, const Vec3& sensor, double time, const TrackerSettings& s)
+std::vector<int> Tracker::update(const std::vector<Cluster>& clusters, const Vec3& sensor,
+  double time, const TrackerSettings& s, const KeepGoing& goOn)
 {
   const auto drop = [this](const auto& isOver)
   {
     this->Tracks.erase(
       std::remove_if(this->Tracks.begin(), this->Tracks.end(), isOver), this->Tracks.end());
   };
-  drop([&](const Track& track) { return track.ended && time - track.endTime > s.keepTime; });
+  // What is there after a pause is another bird, and no state is predicted that far.
+  for (Track& track : this->Tracks)
+  {
+    if (!track.ended && time - track.positions.back().time > s.maximumPause)
+    {
+      track.ended = true;
+      track.endTime = time;
+    }
+  }
+  drop([&](const Track& track)
+    { return track.ended && (!track.confirmed || time - track.endTime > s.keepTime); });
   const Measured measured = measure(clusters, sensor, s);
   std::vector<Row> rows(this->Tracks.size());
   double largest = -Infinity;
+  constexpr std::size_t interval = 64; // tracks, each of which may look at all clusters
   for (std::size_t i = 0; i < rows.size(); ++i)
   {
+    if (goOn && i % interval == 0 &&
+      !goOn(static_cast<double>(i) / static_cast<double>(rows.size())))
+    {
+      throw WorkStopped();
+    }
     if (!this->Tracks[i].ended)
     {
       rows[i] = pairsOf(this->Tracks[i], measured, s, largest);

@@ -20,6 +20,7 @@
 
 #include "Clusters.h"
 #include "MotionFilter.h"
+#include "ParallelLoop.h"
 
 #include <array>
 #include <cstddef>
@@ -33,11 +34,12 @@ struct TrackerSettings
   double halfBeamwidth = 0.0; ///< rad
   double targetExtent = 0.0;  ///< m, of echoes about their target's middle, rms along each axis
   MotionModel motion;
-  double gate = 0.0;         ///< largest square of the distance in standard deviations
-  int confirmHits = 1;       ///< of the last confirmScans scans
-  int confirmScans = 1;      ///< at most 32
-  double minimumSpeed = 0.0; ///< m/s, of a track that is confirmed
-  int maximumMisses = 1;     ///< in a row, of a confirmed track
+  double gate = 0.0;              ///< largest square of the distance in standard deviations
+  int confirmHits = 1;            ///< of the last confirmScans scans
+  int confirmScans = 1;           ///< at most 32
+  double minimumSpeed = 0.0;      ///< m/s, of a track that is confirmed
+  int maximumMisses = 1;          ///< in a row, of a confirmed track
+  double maximumPause = Infinity; ///< s, without a cluster
   std::size_t historyLength = 1;
   double keepTime = 0.0; ///< s
 };
@@ -72,9 +74,10 @@ glm::dmat3 positionError(
 class Tracker
 {
 public:
-  /// One scan more. @param time s, of the scan @return the id of each cluster's track
+  /// One scan more. @param time s, of the scan @param goOn asked now and then; if it is false,
+  /// WorkStopped is thrown @return the id of each cluster's track
   std::vector<int> update(const std::vector<Cluster>& clusters, const Vec3& sensor, double time,
-    const TrackerSettings& settings);
+    const TrackerSettings& settings, const KeepGoing& goOn = {});
 
   /// By id; those that ended, too, as long as they are kept.
   const std::vector<Track>& tracks() const { return this->Tracks; }

@@ -171,4 +171,4 @@ def _is_of(file: pathlib.Path, identity: str) -> bool:
         known = load_json(file)
     except Error:
         return False
-    return isinstance(known, dict) and known.get("identity") == identity
+    return isinstance(known, dict) and known.get("identity") == identity and "birds" in known
