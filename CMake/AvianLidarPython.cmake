@@ -45,6 +45,7 @@ set(avianlidar_python_files
   apps/_json.py
   apps/_labels.py
   apps/_maps.py
+  apps/_mcap.py
   apps/_metar.py
   apps/_pictures.py
   apps/_report.py

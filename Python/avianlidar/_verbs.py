@@ -229,6 +229,11 @@ def compare(options) -> None:
 def convert(options) -> None:
     from . import save
     from ._writers import check_suffix, check_target
+    if options.out.suffix.lower() == ".mcap":
+        from .apps import _mcap
+        check_target(options.out)
+        print(f"{options.out}: {_mcap.write(options.file, options.out)} scans of {options.file}")
+        return
     check_suffix(options.out)
     check_target(options.out)
     cloud = _cloud(options.file)
