@@ -42,6 +42,7 @@ set(avianlidar_python_files
   py.typed
   apps/__init__.py
   apps/_air.py
+  apps/_boxes.py
   apps/_json.py
   apps/_labels.py
   apps/_maps.py
