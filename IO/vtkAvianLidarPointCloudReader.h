@@ -14,7 +14,7 @@
  *   return. Each revolution is a time step, in seconds since the full hour before the first packet
  *   (TIME_STEPS and TIME_RANGE; without a time asked for: the first); the first and the last are
  *   those parts that were recorded. The azimuth of each laser is interpolated, its vertical offset
- *   (at most 11 mm) is not applied
+ *   (at most 11 mm, second-hand) is not applied
  *
  * **Output** (port 0): vtkPolyData, a vertex for each point, double points. Cells of an organised
  * PCD without a point (not-a-number) are left out. Point arrays keep name and type of the file but

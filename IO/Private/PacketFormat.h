@@ -6,11 +6,12 @@
  * Read: pcap (microseconds or nanoseconds, either byte order) and pcapng (its packet blocks) with
  * Ethernet, Linux's cooked capture or bare IP; of these IPv4, not in fragments, UDP to port 2368
  * with 1206 bytes. Everything else is passed over. Sources: draft-ietf-opsawg-pcap and
- * draft-ietf-opsawg-pcapng; Velodyne, "VLP-16 User Manual", 63-9243: data packet, firing times.
+ * draft-ietf-opsawg-pcapng; Velodyne, "VLP-16 User Manual", 63-9243 (second-hand; a real revolution
+ * agrees).
  *
  * A packet has 12 blocks of an azimuth and two firing sequences of 16 lasers. The azimuth of each
  * laser is interpolated to the next block by the times of the firings. Not applied: the vertical
- * offsets of the lasers, at most 11.2 mm.
+ * offsets of the lasers, at most 11.2 mm (second-hand).
  */
 #ifndef AvianLidarPacketFormat_h
 #define AvianLidarPacketFormat_h
