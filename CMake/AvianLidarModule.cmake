@@ -83,6 +83,7 @@ set(private_sources
   IO/Private/ObjectDescription.cxx
   IO/Private/OrganisedCells.cxx
   IO/Private/OutputFile.cxx
+  IO/Private/PacketReading.cxx
   IO/Private/PcdHeader.cxx
   IO/Private/PcdReading.cxx
   IO/Private/PcdWriting.cxx

@@ -43,11 +43,13 @@ set(avianlidar_python_files
   apps/__init__.py
   apps/_air.py
   apps/_bench.py
+  apps/_boxes.py
   apps/_card.py
   apps/_following.py
   apps/_json.py
   apps/_labels.py
   apps/_maps.py
+  apps/_mcap.py
   apps/_metar.py
   apps/_page.py
   apps/_pictures.py

@@ -21,6 +21,7 @@
 #include <algorithm>
 #include <exception>
 #include <new>
+#include <vector>
 
 namespace formats = avianlidar::formats;
 namespace names = vtkAvianLidarArrays;
@@ -94,12 +95,18 @@ void Place(Cloud& cloud, bool wantLocal, vtkFieldData* fields)
 }
 }
 
+struct vtkAvianLidarPointCloudReader::vtkInternals
+{
+  formats::PacketIndex Packets; ///< without revolutions: the file has none, or is wrong
+};
+
 vtkStandardNewMacro(vtkAvianLidarPointCloudReader);
 
 //------------------------------------------------------------------------------
 vtkAvianLidarPointCloudReader::vtkAvianLidarPointCloudReader()
   : FileName(nullptr)
   , LocalCoordinates(true)
+  , Internals(new vtkInternals)
 {
   this->SetNumberOfInputPorts(0);
 }
@@ -133,7 +140,35 @@ int vtkAvianLidarPointCloudReader::CanReadFile(const char* fileName)
 int vtkAvianLidarPointCloudReader::RequestInformation(
   vtkInformation*, vtkInformationVector**, vtkInformationVector* outputVector)
 {
-  outputVector->GetInformationObject(0)->Set(vtkAlgorithm::CAN_HANDLE_PIECE_REQUEST(), 1);
+  using Pipeline = vtkStreamingDemandDrivenPipeline;
+  vtkInformation* info = outputVector->GetInformationObject(0);
+  info->Set(vtkAlgorithm::CAN_HANDLE_PIECE_REQUEST(), 1);
+  info->Remove(Pipeline::TIME_STEPS());
+  info->Remove(Pipeline::TIME_RANGE());
+  formats::PacketIndex& packets = this->Internals->Packets;
+  packets = formats::PacketIndex();
+  const formats::CloudFormat* const format =
+    this->FileName ? formats::formatOf(this->FileName) : nullptr;
+  if (format && format->hasTurns)
+  {
+    try
+    {
+      formats::FileSource source(this->FileName);
+      packets = formats::indexPackets(source, {});
+    }
+    catch (const std::exception&)
+    {
+      return 1; // RequestData finds it again, and says it
+    }
+    std::vector<double> times;
+    for (const formats::PacketIndex::Turn& turn : packets.turns)
+    {
+      times.push_back(turn.time);
+    }
+    double range[] = { times.front(), times.back() };
+    info->Set(Pipeline::TIME_STEPS(), times.data(), static_cast<int>(times.size()));
+    info->Set(Pipeline::TIME_RANGE(), range, 2);
+  }
   return 1;
 }
 
@@ -159,7 +194,22 @@ int vtkAvianLidarPointCloudReader::RequestData(
       vtkAvianLidarAbort::StopIfWanted(this);
       try
       {
-        Cloud cloud = formats::readCloud(this->FileName, vtkAvianLidarAbort::KeepGoing(this));
+        const formats::PacketIndex& packets = this->Internals->Packets;
+        const std::vector<formats::PacketIndex::Turn>& turns = packets.turns;
+        std::size_t turn = 0;
+        if (!turns.empty() && info->Has(vtkStreamingDemandDrivenPipeline::UPDATE_TIME_STEP()))
+        {
+          const double time = info->Get(vtkStreamingDemandDrivenPipeline::UPDATE_TIME_STEP());
+          const auto after = std::upper_bound(turns.begin(), turns.end(), time,
+            [](double t, const formats::PacketIndex::Turn& one) { return t < one.time; });
+          turn = static_cast<std::size_t>(std::max<std::ptrdiff_t>(after - turns.begin() - 1, 0));
+        }
+        Cloud cloud = formats::readCloud(this->FileName, vtkAvianLidarAbort::KeepGoing(this),
+          turns.empty() ? nullptr : &packets, turn);
+        if (!turns.empty())
+        {
+          output->GetInformation()->Set(vtkDataObject::DATA_TIME_STEP(), turns[turn].time);
+        }
         Place(cloud, this->LocalCoordinates, output->GetFieldData());
         vtkAvianLidarCloudFields::ToPolyData(cloud, output);
         const bool simulated = output->GetPointData()->HasArray(names::Energy.name) != 0;

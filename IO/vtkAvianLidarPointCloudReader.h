@@ -10,6 +10,11 @@
  * lists, other elements are passed over
  * - `.bin`: KITTI scans (float32 x, y, z, reflectance), with SemanticKITTI's labels if there are
  *   any: the same name with .label beside it or in the folder `labels` beside its own
+ * - `.pcap`, `.pcapng`: packets of a Velodyne VLP-16 (UDP to port 2368), strongest, last or dual
+ *   return. Each revolution is a time step, in seconds since the full hour before the first packet
+ *   (TIME_STEPS and TIME_RANGE; without a time asked for: the first); the first and the last are
+ *   those parts that were recorded. The azimuth of each laser is interpolated, its vertical offset
+ *   (at most 11 mm, second-hand) is not applied
  *
  * **Output** (port 0): vtkPolyData, a vertex for each point, double points. Cells of an organised
  * PCD without a point (not-a-number) are left out. Point arrays keep name and type of the file but
@@ -21,8 +26,8 @@
  *   origin)
  * - `azimuth` (0.01 deg): the same, clockwise from y (north), [0, 36000)
  * - `vertical_angle` (deg): the same, from the x-y plane, up
- * - `timestamp` (us): LAS: GPS time * 1e6, in the epoch of the file
- * - `return_number`, `number_of_returns` (unit 1): LAS
+ * - `timestamp` (us): LAS: GPS time * 1e6, in the epoch of the file; packets: since the full hour
+ * - `return_number`, `number_of_returns` (unit 1): LAS, packets
  * - `rgb` (unit 1): three unsigned chars: LAS / 256, packed colours of PCD, `red`, `green`, `blue`
  *   of PLY
  * - `semantic_label`, `instance_id`: SemanticKITTI
@@ -39,8 +44,9 @@
  * `crs_wkt` says what they are, with `utm_zone` where it is UTM on WGS84:
  * vtkAvianLidarGeodeticTransform moves them.
  *
- * Field data, as far as the file has it: `position` (m, of the sensor), `crs_wkt`, `description`,
- * `comment`, and what this project's writers put there.
+ * Field data, as far as the file has it: `revolution`, `number_of_revolutions` (packets),
+ * `position` (m, of the sensor), `crs_wkt`, `description`, `comment`, and what this project's
+ * writers put there.
  *
  * **Errors** name the file and what is wrong: no file name, not there, no regular file (a pipe, a
  * device), not of that format, cut short (sizes in headers are believed only as far as the file is
@@ -56,6 +62,8 @@
 #include "vtkAvianLidarErrorsAsData.h"
 #include "vtkAvianLidarModule.h" // For export macro
 #include "vtkPolyDataAlgorithm.h"
+
+#include <memory> // For std::unique_ptr
 
 class VTKAVIANLIDAR_EXPORT vtkAvianLidarPointCloudReader : public vtkPolyDataAlgorithm
 {
@@ -102,6 +110,9 @@ protected:
   bool LocalCoordinates;
 
 private:
+  struct vtkInternals;
+  std::unique_ptr<vtkInternals> Internals;
+
   vtkAvianLidarPointCloudReader(const vtkAvianLidarPointCloudReader&) = delete;
   void operator=(const vtkAvianLidarPointCloudReader&) = delete;
 };

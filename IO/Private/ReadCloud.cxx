@@ -201,6 +201,10 @@ const std::vector<CloudFormat>& cloudFormats()
       [](ByteSource& file, ByteSource*, const KeepGoing& keepGoing)
       { return readPly(file, keepGoing); } },
     { { ".bin" }, [](ByteSource& file) { return file.size() % 16 == 0; }, readKitti, true },
+    { { ".pcap", ".pcapng" }, hasPackets,
+      [](ByteSource& file, ByteSource*, const KeepGoing& keepGoing)
+      { return readTurn(file, indexPackets(file, keepGoing), 0, keepGoing); },
+      false, true },
   };
   return all;
 }
@@ -246,7 +250,8 @@ std::string labelFileOf(const std::string& fileName)
   return std::string();
 }
 
-Cloud readCloud(const std::string& fileName, const KeepGoing& keepGoing)
+Cloud readCloud(const std::string& fileName, const KeepGoing& keepGoing, const PacketIndex* packets,
+  std::size_t turn)
 {
   FileSource source(fileName);
   const CloudFormat* const format = formatOf(fileName);
@@ -260,7 +265,8 @@ Cloud readCloud(const std::string& fileName, const KeepGoing& keepGoing)
   {
     beside.emplace(labels);
   }
-  Cloud cloud = format->read(source, beside ? &*beside : nullptr, keepGoing);
+  Cloud cloud = packets ? readTurn(source, *packets, turn, keepGoing)
+                        : format->read(source, beside ? &*beside : nullptr, keepGoing);
   harmonise(cloud);
   return cloud;
 }

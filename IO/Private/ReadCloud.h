@@ -9,6 +9,7 @@
 
 #include "ByteSource.h"
 #include "CloudData.h"
+#include "PacketFormat.h"
 
 #include <string>
 #include <vector>
@@ -22,11 +23,12 @@ struct CloudFormat
   bool (*fits)(ByteSource& file);   ///< by its first bytes; may throw, which is no
   Cloud (*read)(ByteSource& file, ByteSource* labels, const KeepGoing& keepGoing);
   bool hasLabels = false; ///< in a file of their own, see labelFileOf(); else they are null
+  bool hasTurns = false;  ///< packets; read() gives the first revolution
 };
 
 const std::vector<CloudFormat>& cloudFormats();
 
-/// All endings: ".las, .laz, .pcd, .ply or .bin".
+/// All endings: ".las, .laz, .pcd, .ply, .bin, .pcap or .pcapng".
 std::string knownEndings();
 
 /// The ending of a name, in lower case: ".las".
@@ -39,8 +41,9 @@ const CloudFormat* formatOf(const std::string& fileName);
 /// `labels` beside the one it is in; empty if there are none.
 std::string labelFileOf(const std::string& fileName);
 
-/// Reads the file and its labels.
-Cloud readCloud(const std::string& fileName, const KeepGoing& keepGoing);
+/// Reads the file and its labels; of one that has packets that revolution.
+Cloud readCloud(const std::string& fileName, const KeepGoing& keepGoing,
+  const PacketIndex* packets = nullptr, std::size_t turn = 0);
 
 /// Gives arrays the names and units of this project where a format says what they are:
 /// - notes of this project's writers become units of columns and notes of the cloud;

@@ -2,12 +2,12 @@
 """Point clouds of VTK as NumPy arrays, without copies."""
 from __future__ import annotations
 
-from typing import Any, Dict, Iterator, List, Mapping
+from typing import Any, Dict, Iterator, List, Mapping, Tuple
 
 import numpy as np
-from vtkmodules.util.numpy_support import vtk_to_numpy
-from vtkmodules.vtkCommonCore import vtkDataArray, vtkStringArray
-from vtkmodules.vtkCommonDataModel import vtkPointSet
+from vtkmodules.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray, vtk_to_numpy
+from vtkmodules.vtkCommonCore import vtkDataArray, vtkPoints, vtkStringArray
+from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPointSet, vtkPolyData
 
 from . import vtkAvianLidar as _wrapped
 from ._pipeline import update
@@ -50,6 +50,27 @@ def field_values(data) -> Dict[str, Any]:
     return {array.GetName(): _field_value(array) for array in _field_arrays(data)}
 
 
+def rows_of(what: str, values, row: Tuple[int, ...]) -> np.ndarray:
+    """Numbers in rows of this shape, in double precision."""
+    rows = np.asarray(values)
+    if rows.dtype.kind not in "biuf":
+        raise TypeError(f"{what} are of the type {rows.dtype}, expected real numbers")
+    if rows.ndim != 1 + len(row) or rows.shape[1:] != row:
+        raise ValueError(f"{what} have the shape {rows.shape}, expected {f'(n, {row[0]})' if row else '(n,)'}")
+    return np.ascontiguousarray(rows, dtype=float)
+
+
+def vertices(points) -> vtkPolyData:
+    """A vertex for each of n rows of x, y, z; a copy."""
+    rows = rows_of("points", points, (3,))
+    places, cells, data = vtkPoints(), vtkCellArray(), vtkPolyData()
+    places.SetData(numpy_to_vtk(rows, deep=True))
+    cells.SetData(1, numpy_to_vtkIdTypeArray(np.arange(len(rows)), deep=True))
+    data.SetPoints(places)
+    data.SetVerts(cells)
+    return data
+
+
 class Cloud(Mapping):
     """A vtkPointSet as a read-only mapping from the names of its point arrays to NumPy arrays.
 
@@ -70,7 +91,12 @@ class Cloud(Mapping):
     __hash__ = object.__hash__
 
     def __init__(self, data):
-        """`data`: a vtkPointSet, of which this keeps a shallow copy: arrays are shared, later changes are not seen."""
+        """`data`: a vtkPointSet (also a PolyData of PyVista), of which this keeps a shallow copy: arrays are shared, later
+        changes are not seen. Or a point cloud of Open3D, or whatever has `points` that NumPy takes as n rows of x, y, z: a copy of these."""
+        if isinstance(data, Cloud):
+            data = data.data
+        elif not isinstance(data, vtkPointSet) and hasattr(data, "points"):
+            data = vertices(data.points)
         if not isinstance(data, vtkPointSet):
             raise TypeError(f"a cloud is made of a vtkPointSet, not of {type(data).__name__}")
         self.data = data.NewInstance()
@@ -143,10 +169,13 @@ class Cloud(Mapping):
         update(last)
         return Cloud(last.GetOutputDataObject(0))
 
-    def to_frame(self):
+    def to_pandas(self):
         """A copy as a pandas DataFrame, a row for each point: `x`, `y`, `z` (m) and every point array, those of several
         components as `name_0`, `name_1`, ...; `attrs` holds `units` and `fields`. ImportError without pandas."""
-        import pandas
+        try:
+            import pandas
+        except ImportError:
+            raise ImportError("a table needs pandas, which is not there: install python3-pandas, or pandas with pip") from None
         columns = dict(zip("xyz", self.points.T.copy()))
         for name, values in self.items():
             columns.update({name: values.copy()} if values.ndim == 1 else

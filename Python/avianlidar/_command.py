@@ -35,8 +35,9 @@ VERBS = {
   avianlidar compare simulated.las measured.pcd -o distances.vtp
 """),
     "convert": ("a cloud in another format", "A cloud in another format; names and units of arrays go with it as far as both "
-                "formats have them.", """\
+                "formats have them. A labelled sequence as one file of ROS 2 messages (MCAP).", """\
   avianlidar convert echoes.las echoes.pcd
+  avianlidar convert sequences/sequences/00 sequence.mcap
 """),
     "sequence": ("labelled scans of birds, to train on", "Labelled scans of a scenario in the layout of SemanticKITTI. Started "
                  "again it goes on where it was; `mpiexec -n 2 pvbatch --sym -m avianlidar` shares the work.", """\
@@ -155,8 +156,8 @@ def parser() -> Parser:
     verb["compare"].add_argument("a", type=pathlib.Path, help=f"a cloud: {READ}")
     verb["compare"].add_argument("b", type=pathlib.Path, help="another one, in the same coordinates")
     _out(verb["compare"], "file: the first cloud, with nearest_distance (m) of every point", required=False)
-    verb["convert"].add_argument("file", type=pathlib.Path, help=f"a cloud: {READ}")
-    verb["convert"].add_argument("out", type=pathlib.Path, help=f"file: {WRITTEN}")
+    verb["convert"].add_argument("file", type=pathlib.Path, help=f"a cloud: {READ}; or the folder of a sequence")
+    verb["convert"].add_argument("out", type=pathlib.Path, help=f"file: {WRITTEN}; of a sequence .mcap")
     verb["sensors"].add_argument("name", nargs="?", help="one of them, or a .lidarsensor.json file")
     verb["sensors"].add_argument("--fit", metavar="FILE", help="a sensor file with a sheet, or a name: its receiver fitted to all "
                                  "points of the sheet; needs SciPy")

@@ -7,20 +7,18 @@ import io
 import pathlib
 import re
 import warnings
-from typing import Any, Dict, Tuple
+from typing import Any, Dict, Optional, Tuple
 
 import numpy as np
-from vtkmodules.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray
+from vtkmodules.util.numpy_support import numpy_to_vtk
 from vtkmodules.vtkCommonCore import vtkDataArray
-from vtkmodules.vtkCommonDataModel import vtkCellArray
 
 from . import vtkAvianLidar as _wrapped
-from ._cloud import Cloud
+from ._cloud import Cloud, vertices
 from ._disk import read_regular
-from ._pipeline import file_name, update
+from ._pipeline import callers_level, file_name, update
 from ._properties import set_properties
-from ._scene import mesh
-from ._suffixes import READERS
+from ._suffixes import PACKETS, READERS
 from ._writers import refuse, suffixes, write
 
 _NAME_AND_UNIT = re.compile(r"(.*?)(?: \[([^\[\]]*)\])?", re.S)
@@ -54,10 +52,8 @@ def _csv_table(path: pathlib.Path) -> Tuple[Dict[str, str], np.ndarray]:
 def _read_csv(path: pathlib.Path) -> Cloud:
     """What `_write_csv` has written: whole numbers as int64, columns name_0, name_1, ... as one array, colours (rgb) as bytes."""
     units, table = _csv_table(path)
-    columns, cells = dict(zip(units, table.T)), vtkCellArray()
-    data = mesh(np.column_stack([columns.pop(axis) for axis in "xyz"]), np.empty((0, 3), int))
-    cells.SetData(1, numpy_to_vtkIdTypeArray(np.arange(len(table)), deep=True))
-    data.SetVerts(cells)
+    columns = dict(zip(units, table.T))
+    data = vertices(np.column_stack([columns.pop(axis) for axis in "xyz"]))
     while columns:
         name = next(iter(columns))
         stem, parts = name[:-2], [name]
@@ -76,7 +72,7 @@ def _read_csv(path: pathlib.Path) -> Cloud:
 
 
 def save(cloud, file, **properties: Any) -> None:
-    """Write a cloud (a Cloud, a Scan or vtkPolyData) to the kind of file that the suffix says.
+    """Write a cloud (a Cloud, a Scan, or what a Cloud is made of) to the kind of file that the suffix says.
 
     .vtp      VTK's: everything, units and field data too
     .csv      15 digits, units in the header (`energy [J]`); x, y, z are in metres
@@ -91,12 +87,16 @@ def save(cloud, file, **properties: Any) -> None:
     write(cloud if isinstance(cloud, Cloud) else Cloud(cloud), file, **properties)
 
 
-def load_cloud(file, **properties: Any) -> Cloud:
+def load_cloud(file, time: Optional[float] = None, **properties: Any) -> Cloud:
     """Read a cloud: .vtp, .csv as `save` writes it, and as far as this build has the reader other formats
-    (Documentation/formats.md), whose `properties` are given by name. Coordinates are metres; arrays have the units that the file says (`Cloud.units`)."""
+    (Documentation/formats.md), whose `properties` are given by name. Coordinates are metres; arrays have the units that the file says (`Cloud.units`).
+
+    Of packets (.pcap, .pcapng) it is the revolution at `time` (s since the full hour); default: the first, with a warning if there are more."""
     path = pathlib.Path(file)
     file_name(path)
     suffix = path.suffix.lower()
+    if time is not None and suffix not in PACKETS:
+        raise TypeError(f"a {suffix} file has no revolutions, expected no time: it is {time!r}")
     if suffix == ".csv":
         if properties:
             raise TypeError(f"a {suffix} file has no properties: {', '.join(properties)}")
@@ -117,5 +117,9 @@ def load_cloud(file, **properties: Any) -> Cloud:
         raise FileNotFoundError(f"no such file: {path}")
     set_properties(reader, **properties)
     reader.SetFileName(file_name(path))
-    update(reader)
-    return Cloud(reader.GetOutput())
+    update(reader, run=(lambda: reader.UpdateTimeStep(time)) if time is not None else None)
+    cloud = Cloud(reader.GetOutput())
+    if time is None and suffix in PACKETS and cloud.fields["number_of_revolutions"] > 1:
+        warnings.warn(f"{path}: has {cloud.fields['number_of_revolutions']:g} revolutions, this is the first; load_cloud(file, time=...) gives "
+                      "another one", RuntimeWarning, stacklevel=callers_level())
+    return cloud

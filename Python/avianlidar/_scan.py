@@ -222,6 +222,10 @@ class Scan(SceneAndSensor):
         result["object_id"] = objects[result["echo"]]
         return result
 
+    def to_pandas(self):
+        """The echoes as a pandas DataFrame; see `Cloud.to_pandas`."""
+        return self.echoes.to_pandas()
+
     def plot_range_image(self, array: str = "distance_m", axes=None, **options):
         """Draw the range image with Matplotlib; see `plot_range_image`."""
         return plot_range_image(self, array, axes, **options)

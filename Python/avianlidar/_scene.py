@@ -18,9 +18,10 @@ from vtkmodules.vtkParallelCore import vtkCommunicator
 
 from . import _display
 from . import vtkAvianLidar as _wrapped
-from ._cloud import field_values
+from ._cloud import field_values, rows_of
 from ._pipeline import Error, Progress, file_name, is_current, text_of, update
 from ._properties import choices, choose, get_property, property_names, set_properties, set_property
+from ._suffixes import PACKETS
 
 # Names of a material's coefficients, which are those of cell arrays; those behind the first three may be left out.
 COEFFICIENTS = tuple(filter(None, map(_wrapped.vtkAvianLidarMaterial.GetCoefficientName, range(100))))
@@ -39,7 +40,7 @@ def mesh(points, triangles) -> vtkPolyData:
     >>> mesh([(0, 0, 0), (1, 0, 0), (0, 1, 0)], [(0, 1, 2)]).GetNumberOfCells()
     1
     """
-    places = _rows("points", points, (3,))
+    places = rows_of("points", points, (3,))
     corners = np.asarray(triangles)
     if corners.ndim != 2 or corners.shape[1] != 3:
         raise ValueError(f"triangles have the shape {corners.shape}, expected (m, 3)")
@@ -75,20 +76,10 @@ def mover(surface: vtkPolyData, positions, times=None, orientations=None) -> vtk
     for name, what, values, row in (("pose_position", "positions", positions, (3,)), ("pose_time", "times", times, ()),
                                     ("pose_orientation", "orientations", orientations, (4,))):
         if values is not None:
-            array = numpy_to_vtk(_rows(what, values, row), deep=True)
+            array = numpy_to_vtk(rows_of(what, values, row), deep=True)
             array.SetName(name)
             moving.GetFieldData().AddArray(array)
     return moving
-
-
-def _rows(what: str, values, row: Tuple[int, ...]) -> np.ndarray:
-    """Numbers in rows of this shape, in double precision."""
-    rows = np.asarray(values)
-    if rows.dtype.kind not in "biuf":
-        raise TypeError(f"{what} are of the type {rows.dtype}, expected real numbers")
-    if rows.ndim != 1 + len(row) or rows.shape[1:] != row:
-        raise ValueError(f"{what} have the shape {rows.shape}, expected {f'(n, {row[0]})' if row else '(n,)'}")
-    return np.ascontiguousarray(rows, dtype=float)
 
 
 def _leaf_times(data: vtkPolyData) -> Iterator[int]:
@@ -222,7 +213,7 @@ def _mesh_scene(file: str, painted: bool, options: Dict[str, Any]) -> Dict[str, 
                             "objects": [{"footprints": name, "height": 10}]}).replace('"?"', "?")
         raise ValueError(f"{file}: holds footprints, which become buildings in a scene file: scan a file my{SCENE} beside it with {words}, "
                          "the origin in degrees and metres (Documentation/scene-format.md)")
-    if suffix in (".las", ".laz", ".pcd", ".bin", ".csv"):
+    if suffix in (".las", ".laz", ".pcd", ".bin", ".csv", *PACKETS):
         raise ValueError(f"{file}: has no surfaces, expected a mesh or a scene file")
     text_of(file)
     if "scale" in options:
@@ -289,8 +280,9 @@ class Scene:
         """Add surfaces, coordinates in metres east, north and up of the scene's origin.
 
         surfaces  a mesh file (STL, OBJ, PLY, glTF, VTP, ...: Documentation/scene-format.md), a scene file
-                  (.lidarscene.json) or a mapping with the keys of one; vtkPolyData or a composite of it; a VTK algorithm,
-                  which is run; n rows of x, y, z, with `faces`; or a pair of both, as for `mesh`
+                  (.lidarscene.json) or a mapping with the keys of one; vtkPolyData (also that of PyVista) or a composite
+                  of it; a VTK algorithm, which is run; n rows of x, y, z, with `faces`; or a pair of both, as for `mesh`;
+                  a mesh of Open3D or trimesh: `vertices` with `triangles` or `faces`, of which a copy is kept
         faces     m rows of three indices into the points
         material  a name (`materials()`), or the coefficients (kd, ks, kp, ...; those behind kp may be left out); of one
                   mesh also a sequence of m names or m rows of coefficients, one for each triangle. Default: what the
@@ -306,6 +298,9 @@ class Scene:
                 raise TypeError("Scene(points, faces) takes n rows of x, y, z and m rows of three indices, not "
                                 f"{type(surfaces).__name__} and {type(faces).__name__}; a material is given as material=...")
             surfaces = (surfaces, faces)
+        triangles = getattr(surfaces, "triangles", getattr(surfaces, "faces", None))
+        if hasattr(surfaces, "vertices") and triangles is not None and not isinstance(surfaces, vtkDataObject):
+            surfaces = (np.asarray(surfaces.vertices), np.asarray(triangles))
         data = self._data_of(surfaces, progress, material is not None, scale=scale, up_axis=up_axis)
         if isinstance(surfaces, (tuple, list)) and material is None:
             material = "Wall"

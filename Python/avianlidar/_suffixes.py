@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from typing import Iterable
 
+PACKETS = (".pcap", ".pcapng")  # of which each revolution is a cloud
 # Classes of the wrapped module, which a build may be without; the writers replace a file as a whole themselves.
-READERS = {suffix: "vtkAvianLidarPointCloudReader" for suffix in (".las", ".laz", ".pcd", ".ply", ".bin")}
+READERS = {suffix: "vtkAvianLidarPointCloudReader" for suffix in (".las", ".laz", ".pcd", ".ply", ".bin", *PACKETS)}
 WRITERS = {".las": "vtkAvianLidarLASWriter", ".laz": "vtkAvianLidarLASWriter", ".pcd": "vtkAvianLidarPCDWriter",
            ".ply": "vtkAvianLidarPLYWriter", ".bin": "vtkAvianLidarKITTIWriter", ".geojson": "vtkAvianLidarGeoJSONWriter"}
 # What needs none of them.

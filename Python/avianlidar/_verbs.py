@@ -7,6 +7,8 @@ import pathlib
 import sys
 from typing import Any, Dict, Iterable, Iterator, List, Tuple
 
+from ._suffixes import PACKETS
+
 
 class Bars:
     """A bar on a terminal for each work that is named; nothing in a log."""
@@ -122,7 +124,7 @@ def _has_points_only(file: pathlib.Path) -> bool:
         with open(file, "rb") as stream:
             header = stream.read(65536).partition(b"end_header")[0]
         return not any(line.split()[1:2] == [b"face"] and line.split()[2:] != [b"0"] for line in header.splitlines())
-    return suffix in (".las", ".laz", ".pcd", ".bin", ".csv") or suffix == ".vtp" and not _cloud(file).data.GetNumberOfPolys()
+    return suffix in (".las", ".laz", ".pcd", ".bin", ".csv", *PACKETS) or suffix == ".vtp" and not _cloud(file).data.GetNumberOfPolys()
 
 
 def _words(value: Any) -> str:
@@ -144,7 +146,7 @@ def _say_cloud(file: pathlib.Path) -> None:
         return
     fields = cloud.fields
     known = {"extent": extent(cloud.data.GetBounds()) if "crs_wkt" not in fields else _words(cloud.data.GetBounds())}
-    if file.suffix.lower() == ".bin":
+    if file.suffix.lower() in (".bin", *PACKETS):
         known["frame"] = "of the sensor: right, forward and up for east, north and up"
     units = cloud.field_units
     for name in ("geodetic_origin", "position", "crs_wkt"):
@@ -203,8 +205,9 @@ def compare(options) -> None:
         check_target(options.out, [options.a, options.b])
     measure = wrapped.vtkAvianLidarCloudComparison()
     clouds = [_cloud(file) for file in (options.a, options.b)]
-    if (options.a.suffix.lower() == ".bin") != (options.b.suffix.lower() == ".bin"):
-        warn("a .bin file is in the frame of its sensor, the other file is not")
+    of_sensor = [file.suffix for file in (options.a, options.b) if file.suffix.lower() in (".bin", *PACKETS)]
+    if len(of_sensor) == 1:
+        warn(f"a {of_sensor[0]} file is in the frame of its sensor, the other file is not")
     for port, cloud in enumerate(clouds):
         measure.SetInputDataObject(port, cloud.data)
     update(measure)
@@ -226,6 +229,11 @@ def compare(options) -> None:
 def convert(options) -> None:
     from . import save
     from ._writers import check_suffix, check_target
+    if options.out.suffix.lower() == ".mcap":
+        from .apps import _mcap
+        check_target(options.out)
+        print(f"{options.out}: {_mcap.write(options.file, options.out)} scans of {options.file}")
+        return
     check_suffix(options.out)
     check_target(options.out)
     cloud = _cloud(options.file)

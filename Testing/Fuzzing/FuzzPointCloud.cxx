@@ -116,7 +116,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     return 0;
   }
   const std::vector<CloudFormat>& formats = cloudFormats();
-  const std::size_t letter = std::string("LPYK").find(static_cast<char>(data[0]));
+  const std::size_t letter = std::string("LPYKV").find(static_cast<char>(data[0]));
   const std::size_t number = (letter < formats.size() ? letter : data[0]) % formats.size();
   try
   {

@@ -26,8 +26,8 @@ if (NOT result EQUAL 0)
   # npm's words for a network that is not there, or that answers for the registry with a certificate of its own; anything
   # else is a failure.
   if (errors MATCHES "ENOTFOUND|EAI_AGAIN|ECONNREFUSED|ECONNRESET|ENETUNREACH|EHOSTUNREACH|ETIMEDOUT|SOCKET_TIMEOUT|ENOTCACHED|network timeout|SELF_SIGNED_CERT[A-Z_]*|UNABLE_TO_[A-Z_]*(ISSUER_CERT|LEAF_SIGNATURE)[A-Z_]*")
-    message(FATAL_ERROR "Skipped: npm reaches no registry (${CMAKE_MATCH_0}), and the test of the LAS writer needs its "
-      "package copc. To get it, run this test once with a network; the package stays in ${TO}.")
+    message(FATAL_ERROR "Skipped: npm reaches no registry (${CMAKE_MATCH_0}), and tests of LAS and MCAP files need its "
+      "packages. To get them, run this test once with a network; the packages stay in ${TO}.")
   endif ()
   message(FATAL_ERROR "npm ci failed (${result})")
 endif ()

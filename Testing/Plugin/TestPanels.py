@@ -67,7 +67,7 @@ WRITERS = {
     "KITTI": "WriteLabels LabelSource",
     "GeoJSON": "UseFieldDataLimit MinimumEnergy",
 }
-OPEN = ["Avian lidar scene (*.lidarscene.json)", "Avian lidar sensor (*.lidarsensor.json)", "Lidar point cloud (*.las *.laz *.pcd *.ply *.bin)"]
+OPEN = ["Avian lidar scene (*.lidarscene.json)", "Avian lidar sensor (*.lidarsensor.json)", "Lidar point cloud (*.las *.laz *.pcd *.ply *.bin *.pcap *.pcapng)"]
 SAVE = ["GeoJSON points(*.geojson )", "KITTI lidar scan(*.bin )", "LAS lidar points(*.las *.laz )"]
 SAVE += ["PLY lidar points(*.ply )", "Point Cloud Library points(*.pcd )"]
 

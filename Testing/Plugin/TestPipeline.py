@@ -5,6 +5,8 @@ Run by pvpython in one process and by pvbatch on two ranks (the argument), where
 beams."""
 
 import contextlib
+import os
+import struct
 import sys
 
 import avianlidar.vtkAvianLidar as module
@@ -12,7 +14,7 @@ import numpy
 from paraview import simple
 from vtkmodules.vtkParallelCore import vtkDummyController, vtkMultiProcessController
 
-from plugin_testing import SCENE, airport, arrays_of, assert_same, fetch, load_plugin
+from plugin_testing import OUTPUT_DIR, SCENE, airport, arrays_of, assert_same, fetch, load_plugin
 
 COLUMNS = 240
 
@@ -148,10 +150,35 @@ def test_relighting(echoes):
     assert_same(fetch(echoes), before)
 
 
+def test_packets():
+    """Revolutions of a recording are time steps."""
+    ethernet = bytes(12) + b"\x08\x00" + b"\x45" + bytes(8) + b"\x11" + bytes(10)  # IPv4, UDP
+    ethernet += struct.pack(">HHHH", 2368, 2368, 1214, 0)
+    packets = b""
+    for number in range(3):
+        blocks = (struct.pack("<HH", 0xEEFF, (35000 + 500 * block) % 36000) + struct.pack("<HB", 5000, 9) * 32 for block in range(12))
+        packets += struct.pack("<IIII", 0, 0, 1248, 1248) + ethernet + b"".join(blocks) + struct.pack("<IBB", 100000 * number, 0x37, 0x22)
+    file = os.path.join(OUTPUT_DIR, f"TestPipeline-{os.getpid()}.pcap")
+    with open(file, "wb") as stream:
+        stream.write(struct.pack("<IHHiIII", 0xA1B2C3D4, 2, 4, 0, 0, 65535, 1) + packets)
+    reader = simple.OpenDataFile(file)
+    times = list(reader.TimestepValues)
+    counts = []
+    for time in times:
+        reader.UpdatePipeline(time)
+        counts.append(reader.GetDataInformation().GetNumberOfPoints())
+    os.remove(file)
+    assert counts == [64, 384, 384, 320], counts
+    assert numpy.allclose(times, [0, 2 * 110.592e-6, 0.1 + 2 * 110.592e-6, 0.2 + 2 * 110.592e-6]), times
+    simple.Delete(reader)
+
+
 def main():
     ranks = int(sys.argv[1]) if len(sys.argv) > 1 else 1
     assert vtkMultiProcessController.GetGlobalController().GetNumberOfProcesses() == ranks
     load_plugin()
+    if ranks == 1:
+        test_packets()
     scene, tree, beams, echoes = airport(COLUMNS)
     _, direct = direct_echoes()
     test_echoes(echoes, direct)

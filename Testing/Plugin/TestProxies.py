@@ -267,7 +267,7 @@ CONTRACT = {
         "DensityAwareChamferReferenceToSimulated": "result, a pure number",
     },
     "AvianLidarSceneReader": {"FileName": ""},
-    "AvianLidarPointCloudReader": {"FileName": "", "LocalCoordinates": ""},
+    "AvianLidarPointCloudReader": {"FileName": "", "LocalCoordinates": "", "TimestepValues": "steps"},
     "AvianLidarSensorReader": {"FileName": "", **{name: BEAM_SOURCE[name] for name in (
         "Position", "Orientation", "NumberOfRevolutions", "StepsPerRevolution")}},
     "AvianLidarUnitNames": {"Input": None},

@@ -8,6 +8,7 @@ import pickle
 import shutil
 import subprocess
 import sys
+import types
 import unittest
 import warnings
 
@@ -75,6 +76,39 @@ class Sources(unittest.TestCase):
         one, other = al.Scene(*WALL, material="Glass"), al.Scene(WALL, material="Glass")
         self.assertTrue(same(al.Scan(one).echoes, al.Scan(other).echoes))
         self.assertEqual(al.Scene(WALL[0].tolist(), WALL[1].tolist()).bounds, one.bounds)
+
+    def test_meshes_of_other_libraries(self):
+        """By their attributes; Open3D's own, too, where it is."""
+        class PolyData(vtkPolyData):  # PyVista's is such a class
+            pass
+
+        theirs, corners = PolyData(), np.asarray(WALL[0], dtype=float)
+        theirs.ShallowCopy(al.mesh(*WALL))
+        meshes = [types.SimpleNamespace(vertices=WALL[0], triangles=WALL[1]), types.SimpleNamespace(vertices=corners, faces=WALL[1])]
+        clouds = [types.SimpleNamespace(points=WALL[0])]
+        try:
+            import open3d
+        except ImportError:
+            pass
+        else:
+            points = open3d.utility.Vector3dVector(corners)
+            meshes.append(open3d.geometry.TriangleMesh(points, open3d.utility.Vector3iVector(np.asarray(WALL[1]))))
+            clouds.append(open3d.geometry.PointCloud(points))
+        wanted = al.Scan(al.Scene(WALL)).echoes
+        for number, mesh in enumerate([theirs, *meshes]):
+            with self.subTest(number):
+                self.assertTrue(same(al.Scan(al.Scene(mesh, material="Wall")).echoes, wanted))
+        self.assertTrue(same(al.Scan(al.Scene(meshes[0])).echoes, wanted))
+        for cloud in clouds:
+            self.assertEqual(al.Cloud(cloud).points.tolist(), corners.tolist())
+            al.save(cloud, OUTPUT / "points.csv")
+            self.assertEqual(al.load_cloud(OUTPUT / "points.csv").points.tolist(), corners.tolist())
+        self.assertEqual(al.Cloud(theirs).number_of_points, len(corners))
+        self.assertTrue(same(al.Cloud(wanted), wanted))
+        with self.assertRaisesRegex(ValueError, r"triangles have the shape \(1, 4\), expected \(m, 3\)"):
+            al.Scene(types.SimpleNamespace(vertices=corners, faces=[(0, 1, 2, 3)]))
+        with self.assertRaisesRegex(ValueError, r"points have the shape \(3, 2\), expected \(n, 3\)"):
+            al.Cloud(types.SimpleNamespace(points=corners[:3, :2]))
 
     def test_a_mapping(self):
         description = {"version": 1, "origin": {"latitude": 31, "longitude": 121, "height": 3}, "lidar": {"position": [0, 0, 2]},
@@ -265,15 +299,22 @@ class Shown(unittest.TestCase):
         except ImportError:
             self.skipTest("there is no pandas")
         echoes = al.Scan(al.Scene(WALL), "Search905").echoes
-        frame = echoes.to_frame()
+        frame = echoes.to_pandas()
+        self.assertTrue(frame.equals(al.Scan(al.Scene(WALL), "Search905").to_pandas()))
         self.assertIsInstance(frame, pandas.DataFrame)
         self.assertEqual(frame.shape, (echoes.number_of_points, 3 + len(echoes)))
         self.assertTrue(np.array_equal(frame[["x", "y", "z"]], echoes.points))
         self.assertEqual(frame["energy"].tolist(), echoes["energy"].tolist())
         self.assertEqual((frame.attrs["units"]["energy"], frame.attrs["fields"]["range_gate"]), ("J", 4000))
         frame["energy"] *= 2  # a copy
-        both = pandas.concat([echoes.to_frame(), al.Scan(al.Scene(WALL), "Search905", seed=3).echoes.to_frame()])
+        both = pandas.concat([echoes.to_pandas(), al.Scan(al.Scene(WALL), "Search905", seed=3).echoes.to_pandas()])
         self.assertGreater(len(both), len(frame))
+
+    def test_without_pandas_there_is_no_table(self):
+        program = ("import sys; sys.modules['pandas'] = None\nimport avianlidar as al\n"
+                   "try:\n al.Sensor().beams.to_pandas()\nexcept ImportError as error:\n assert 'needs pandas' in str(error)\n"
+                   "else:\n assert False")
+        subprocess.run([sys.executable, "-c", program], check=True)
 
     def test_without_matplotlib_there_is_no_picture(self):
         program = ("import sys; sys.modules['matplotlib'] = None\nimport avianlidar as al\n"

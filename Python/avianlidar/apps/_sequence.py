@@ -30,6 +30,7 @@ from .._scene import Scene, load_scene, mesh, mover
 from .._sensor import Sensor
 from .._weather import in_weather, in_words
 from .._version import __version__
+from ._boxes import Boxes
 from ._json import check_json, load_json, naming
 from ._labels import BIRD, FIRST_BIRD, FIRST_OBJECT, LAST_ID, classes_of, configuration, relabel
 
@@ -46,6 +47,8 @@ LONGEST = 1e9  # s that an object is under way, or sets out later
 DONE = "done.json"
 PART = ".part"  # ends the name of a folder that is being written
 FOLDERS = (("velodyne", ".bin", 16), ("labels", ".label", 4), ("subsets", ".subset", 1))  # suffix, bytes of a point
+BOXES = ("boxes", ".txt", 0)
+ALL: Tuple[Tuple[str, str, int], ...] = (*FOLDERS, BOXES)
 TEXTS = ("truth.csv", "times.txt", "poses.txt", "calib.txt")  # of a whole sequence
 _AGAIN = "Remove the folder: it is made again"
 _FEWER = "ask for as many scans as there are, or choose another folder"
@@ -368,8 +371,9 @@ class Sequence:
 
     def _write_one(self, folder: pathlib.Path, number: int, progress: Optional[Progress]) -> Dict[str, Any]:
         """The files of a sequence; what is in them."""
-        for name, _, _ in FOLDERS:
+        for name, _, _ in ALL:
             (folder / name).mkdir(parents=True)
+        boxes = Boxes(self.scene.tree.GetOutput(), self.at_rest, self._pose())
         writer = _wrapped.vtkAvianLidarKITTIWriter()
         text, times = io.StringIO(newline=""), []
         table = csv.writer(text, lineterminator="\n")
@@ -389,6 +393,8 @@ class Sequence:
                 points = echoes.GetPointData()
                 _, subset = self.clutter.look(as_numpy(points.GetArray("beam_id")), as_numpy(points.GetArray("distance_m")))
                 (folder / "subsets" / f"{name}.subset").write_bytes(subset.tobytes())
+                (folder / "boxes" / f"{name}.txt").write_text(
+                    boxes.lines(Cloud(scan.algorithm.GetOutput(2)), scan.movers), encoding="utf-8")
                 rows = self.truth(k, species)
                 table.writerows(rows)
                 times.append(f"{k / self.sensor.rotation_rate:.6f}\n")
@@ -582,7 +588,7 @@ def _check_scans(folder: pathlib.Path, count: int) -> None:
         points.append({file.name[:-len(suffix)]: file.stat().st_size / size for file in (folder / name).glob(f"*{suffix}")})
     names = [f"{number:06d}" for number in range(count)]
     whole = sum(name in points[0] and points[0][name] == points[1].get(name) == points[2].get(name) for name in names)
-    if whole < count or any(len(of) != count for of in points):
+    if whole < count or any(len(of) != count for of in points) or len([*(folder / BOXES[0]).glob(f"*{BOXES[1]}")]) != count:
         raise Error(f"{folder}: {whole} of {count} scans are whole, and there are {len(points[0])}: something else has changed files "
                     f"there. {_AGAIN}")
 
@@ -599,7 +605,7 @@ def _wrong_member(content: Dict[str, Any], bird: int) -> str:
 
 def _digest(folder: pathlib.Path) -> str:
     """Of names and contents of all files of a sequence, of those that others have put beside them none."""
-    scans = [path for name, suffix, _ in FOLDERS for path in (folder / name).glob(f"*{suffix}")]
+    scans = [path for name, suffix, _ in ALL for path in (folder / name).glob(f"*{suffix}")]
     digest = hashlib.sha256()
     for path in sorted([*scans, *map(folder.joinpath, TEXTS)]):
         digest.update(str(path.relative_to(folder)).encode() + b"\0" + (path.read_bytes() if path.is_file() else b""))

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file PacketFormat.h
+ * @brief Packets of a Velodyne VLP-16 as a network card records them.
+ *
+ * Read: pcap (microseconds or nanoseconds, either byte order) and pcapng (its packet blocks) with
+ * Ethernet, Linux's cooked capture or bare IP; of these IPv4, not in fragments, UDP to port 2368
+ * with 1206 bytes. Everything else is passed over. Sources: draft-ietf-opsawg-pcap and
+ * draft-ietf-opsawg-pcapng; Velodyne, "VLP-16 User Manual", 63-9243 (second-hand; a real revolution
+ * agrees).
+ *
+ * A packet has 12 blocks of an azimuth and two firing sequences of 16 lasers. The azimuth of each
+ * laser is interpolated to the next block by the times of the firings. Not applied: the vertical
+ * offsets of the lasers, at most 11.2 mm (second-hand).
+ */
+#ifndef AvianLidarPacketFormat_h
+#define AvianLidarPacketFormat_h
+
+#include "ByteSource.h"
+#include "CloudData.h"
+
+namespace avianlidar::formats
+{
+/// Where packets and revolutions begin. A revolution ends where the azimuth passes zero.
+struct PacketIndex
+{
+  struct Turn
+  {
+    std::size_t packet;
+    int block;
+    double time; ///< s since the full hour before the first packet; rising
+  };
+  std::vector<std::uint64_t> packets; ///< the lidar's bytes, from the begin of the file
+  std::vector<Turn> turns;            ///< at least one
+};
+
+/// Whether it begins as pcap or pcapng does.
+bool hasPackets(ByteSource& source);
+
+/// FormatError: no pcap, cut short, no packet of a VLP-16.
+PacketIndex indexPackets(ByteSource& source, const KeepGoing& keepGoing);
+
+/// One revolution: `intensity` (0 to 255), `laser_id` (0 is the lowest), `distance_m`, `azimuth`,
+/// `vertical_angle`, `timestamp`, `return_number` (1 is the nearest), `number_of_returns`. Two
+/// returns that are the same are one point.
+Cloud readTurn(
+  ByteSource& source, const PacketIndex& index, std::size_t turn, const KeepGoing& keepGoing);
+}
+
+#endif

@@ -1,0 +1,419 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "PacketFormat.h"
+
+#include "Vector.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace avianlidar::formats
+{
+namespace
+{
+constexpr std::uint64_t PayloadSize = 1206;
+constexpr std::uint32_t SectionBlock = 0x0A0D0D0A; // of pcapng, the same in either byte order
+constexpr std::uint64_t UdpSize = 8;
+constexpr std::uint64_t MostBeforePayload = 128; // Ethernet with tags, IP with options, UDP
+constexpr unsigned DataPort = 2368;
+constexpr int BlocksPerPacket = 12;
+constexpr int BlockSize = 100;
+constexpr int Lasers = 16;
+constexpr std::size_t PointsPerPacket = BlocksPerPacket * 2 * Lasers;
+constexpr std::size_t PacketsPerCall = 256; // of KeepGoing
+constexpr unsigned DualReturn = 0x39;
+constexpr int FullTurn = 36000;       // 0.01 deg
+constexpr int LargestGap = 300;       // above, packets are missing: 20 turns a second are 80
+constexpr double LaserTime = 2.304;   // us from one laser to the next
+constexpr double FiringTime = 55.296; // us from one firing sequence to the next
+constexpr double HourTime = 3.6e9;    // us, after which the sensor's clock begins again
+constexpr double LeastStep = 1e-6;    // s, so that the times of steps rise
+
+/// Bytes of the file, read in large pieces.
+class FileWindow
+{
+public:
+  explicit FileWindow(ByteSource& source)
+    : Source(source)
+  {
+  }
+
+  const unsigned char* at(std::uint64_t offset, std::uint64_t count)
+  {
+    constexpr std::uint64_t atOnce = 1 << 20;
+    if (offset < this->Begin || offset + count > this->Begin + this->Bytes.size())
+    {
+      const std::uint64_t size = this->Source.size();
+      this->Bytes = this->Source.bytes(
+        offset, std::max(count, std::min(atOnce, size - std::min(size, offset))));
+      this->Begin = offset;
+    }
+    return this->Bytes.data() + (offset - this->Begin);
+  }
+
+private:
+  ByteSource& Source;
+  std::uint64_t Begin = 0;
+  std::vector<unsigned char> Bytes;
+};
+
+unsigned bigEndian16(const unsigned char* bytes)
+{
+  return unsigned{ bytes[0] } << 8 | bytes[1];
+}
+
+std::uint32_t load32(const unsigned char* bytes, bool turned)
+{
+  const auto value = load<std::uint32_t>(bytes);
+  return !turned ? value
+                 : value >> 24 | (value >> 8 & 0xFF00) | (value << 8 & 0xFF0000) | value << 24;
+}
+
+std::uint32_t magicOf(ByteSource& source)
+{
+  return source.holds(0, 24) ? load<std::uint32_t>(source.bytes(0, 4).data()) : 0;
+}
+
+bool isPcap(std::uint32_t magic)
+{
+  return magic == 0xA1B2C3D4 || magic == 0xD4C3B2A1 || magic == 0xA1B23C4D || magic == 0x4D3CB2A1;
+}
+
+/// Where the IPv4 header begins in a packet of that link type, or beyond it.
+std::uint64_t beginOfIp(std::uint32_t link, const unsigned char* bytes, std::uint64_t size)
+{
+  std::uint64_t type = 0; // place of the protocol's number
+  switch (link)
+  {
+    case 1: // Ethernet
+      type = 12;
+      while (type + 2 <= size &&
+        (bigEndian16(bytes + type) == 0x8100 || bigEndian16(bytes + type) == 0x88A8))
+      {
+        type += 4; // a tag of a virtual network
+      }
+      break;
+    case 113: // Linux, cooked
+      type = 14;
+      break;
+    case 276: // the same, version 2
+      return size >= 2 && bigEndian16(bytes) == 0x0800 ? 20 : size;
+    case 12:
+    case 101:
+    case 228: // bare IP
+      return 0;
+    default:
+      return size;
+  }
+  return type + 2 <= size && bigEndian16(bytes + type) == 0x0800 ? type + 2 : size;
+}
+
+/// Where the lidar's bytes begin in a packet; 0 if it is not the lidar's.
+std::uint64_t beginOfPayload(std::uint32_t link, const unsigned char* bytes, std::uint64_t size)
+{
+  const std::uint64_t ip = beginOfIp(link, bytes, size);
+  if (ip + 20 > size || bytes[ip] >> 4 != 4 || bytes[ip + 9] != 17 ||
+    (bigEndian16(bytes + ip + 6) & 0x3FFF) != 0)
+  {
+    return 0;
+  }
+  const std::uint64_t udp = ip + 4 * std::uint64_t{ bytes[ip] & 0xFu };
+  const bool ours = udp + UdpSize <= size && bigEndian16(bytes + udp + 2) == DataPort &&
+    bigEndian16(bytes + udp + 4) == UdpSize + PayloadSize;
+  return ours ? udp + UdpSize : 0;
+}
+
+/// Calls packet(link type, place, bytes that are there) for each packet.
+template <class F>
+void forEachPacket(ByteSource& source, FileWindow& window, F packet)
+{
+  const auto need = [&](std::uint64_t at, std::uint64_t count)
+  {
+    if (!source.holds(at, count))
+    {
+      throw FormatError("it is cut short: a packet that begins at byte " + std::to_string(at) +
+        " goes beyond its end");
+    }
+    return window.at(at, std::min(count, MostBeforePayload));
+  };
+  const std::uint32_t first = magicOf(source);
+  if (isPcap(first))
+  {
+    const bool turned = (first & 0xFF) == 0xA1;
+    const std::uint32_t link = load32(window.at(0, 24) + 20, turned) & 0xFFFF;
+    for (std::uint64_t at = 24; at < source.size();)
+    {
+      const std::uint64_t size = load32(need(at, 16) + 8, turned);
+      need(at, 16 + size);
+      packet(link, at + 16, size);
+      at += 16 + size;
+    }
+    return;
+  }
+  if (first != SectionBlock)
+  {
+    throw FormatError("it is no pcap or pcapng file");
+  }
+  bool turned = false;
+  std::vector<std::uint32_t> links;
+  for (std::uint64_t at = 0; at < source.size();)
+  {
+    const unsigned char* head = need(at, 12);
+    if (load<std::uint32_t>(head) == SectionBlock)
+    {
+      turned = load<std::uint32_t>(head + 8) == 0x4D3C2B1A;
+      links.clear();
+    }
+    const std::uint32_t kind = load32(head, turned);
+    const std::uint64_t size = load32(head + 4, turned);
+    const std::uint64_t least = kind == 6 ? 32 : kind == 1 || kind == 3 ? 16 : 12;
+    if (size < least || size % 4 != 0)
+    {
+      throw FormatError("the block at byte " + std::to_string(at) + " has the length " +
+        std::to_string(size) + ", expected at least " + std::to_string(least) +
+        " and a multiple of 4");
+    }
+    const unsigned char* block = need(at, size);
+    const std::uint32_t number = kind == 6 ? load32(block + 8, turned) : 0; // of the interface
+    if (kind == 1)
+    {
+      links.push_back(turned ? bigEndian16(block + 8) : load<std::uint16_t>(block + 8));
+    }
+    else if ((kind == 3 || kind == 6) && number < links.size())
+    {
+      const std::uint64_t before = kind == 6 ? 28 : 12;
+      const std::uint64_t captured = load32(block + (kind == 6 ? 20 : 8), turned);
+      packet(links[number], at + before, std::min(captured, size - before - 4));
+    }
+    at += size;
+  }
+}
+
+/// FormatError unless these are the bytes of a VLP-16.
+void checkPayload(const unsigned char* bytes, std::size_t number)
+{
+  const auto fail = [&](const std::string& what)
+  { throw FormatError("packet " + std::to_string(number) + " of the lidar " + what); };
+  if (bytes[1205] != 0x22)
+  {
+    fail("is of the product " + std::to_string(bytes[1205]) + ", expected 34, a VLP-16");
+  }
+  if (bytes[1204] < 0x37 || bytes[1204] > DualReturn)
+  {
+    fail("has the return mode " + std::to_string(bytes[1204]) +
+      ", expected 55 (strongest), 56 (last) or 57 (dual)");
+  }
+  for (int b = 0; b < BlocksPerPacket; ++b)
+  {
+    const unsigned char* block = bytes + b * BlockSize;
+    if (block[0] != 0xFF || block[1] != 0xEE || load<std::uint16_t>(block + 2) >= FullTurn)
+    {
+      fail("has no azimuth below 360 deg in block " + std::to_string(b));
+    }
+  }
+}
+
+int azimuthOf(const unsigned char* payload, int block)
+{
+  return load<std::uint16_t>(payload + block * BlockSize + 2);
+}
+
+/// us since the hour of the first packet.
+struct HourClock
+{
+  double hours = 0.0;
+  double last = 0.0;
+
+  double timeOf(const unsigned char* payload)
+  {
+    const double time = load<std::uint32_t>(payload + 1200);
+    this->hours += time < this->last - 0.5 * HourTime ? HourTime : 0.0;
+    this->last = time;
+    return this->hours + time;
+  }
+};
+
+/// Blocks of one firing: in dual mode two.
+int blocksAtOnce(const unsigned char* payload)
+{
+  return payload[1204] == DualReturn ? 2 : 1;
+}
+
+/// us from the time of the packet to the begin of a block.
+double timeOf(const unsigned char* payload, int block)
+{
+  return 2.0 * FiringTime * (block / blocksAtOnce(payload));
+}
+
+struct TurnPoints
+{
+  Cloud cloud;
+  std::vector<double> distance, azimuth, elevation, time;
+  std::vector<std::uint8_t> intensity, laser, number, count;
+
+  void add(const unsigned char* value, int channel, double turned, double moment, int i, int n)
+  {
+    const double range = 0.002 * load<std::uint16_t>(value);
+    // Lasers fire from -15 deg and from 1 deg in turns.
+    const int ring = channel / 2 + (channel % 2) * Lasers / 2;
+    const double up = 2.0 * ring - 15.0;
+    const double a = RadiansPerDegree * turned / 100.0;
+    const double e = RadiansPerDegree * up;
+    const double flat = range * std::cos(e);
+    this->cloud.points.insert(
+      this->cloud.points.end(), { flat * std::sin(a), flat * std::cos(a), range * std::sin(e) });
+    this->distance.push_back(range);
+    this->azimuth.push_back(turned);
+    this->elevation.push_back(up);
+    this->time.push_back(moment);
+    this->intensity.push_back(value[2]);
+    this->laser.push_back(static_cast<std::uint8_t>(ring));
+    this->number.push_back(static_cast<std::uint8_t>(i));
+    this->count.push_back(static_cast<std::uint8_t>(n));
+  }
+};
+
+/// The two firing sequences of a block, in dual mode with the block behind it.
+void addBlock(TurnPoints& points, const unsigned char* payload, int block, double time, double gap)
+{
+  const int returns = blocksAtOnce(payload);
+  for (int firing = 0; firing < 2 * Lasers; ++firing)
+  {
+    const double after = FiringTime * (firing / Lasers) + LaserTime * (firing % Lasers);
+    double turned = azimuthOf(payload, block) + gap * after / (2.0 * FiringTime);
+    turned -= turned < FullTurn ? 0.0 : FullTurn;
+    const double moment = time + timeOf(payload, block) + after;
+    const unsigned char* near = payload + block * BlockSize + 4 + 3 * firing;
+    const unsigned char* far = near + (returns - 1) * BlockSize;
+    int n = load<std::uint16_t>(near) == load<std::uint16_t>(far) ? 1 : 2;
+    if (load<std::uint16_t>(near) > load<std::uint16_t>(far))
+    {
+      std::swap(near, far);
+    }
+    if (load<std::uint16_t>(near) == 0)
+    {
+      near = far;
+      n = load<std::uint16_t>(far) == 0 ? 0 : 1;
+    }
+    for (int i = 1; i <= n; ++i)
+    {
+      points.add(i == 1 ? near : far, firing % Lasers, turned, moment, i, n);
+    }
+  }
+}
+}
+
+bool hasPackets(ByteSource& source)
+{
+  const std::uint32_t magic = magicOf(source);
+  return isPcap(magic) || magic == SectionBlock;
+}
+
+PacketIndex indexPackets(ByteSource& source, const KeepGoing& keepGoing)
+{
+  PacketIndex index;
+  FileWindow window(source);
+  int before = -1;
+  HourClock clock;
+  forEachPacket(source, window,
+    [&](std::uint32_t link, std::uint64_t at, std::uint64_t size)
+    {
+      const std::uint64_t looked = std::min(size, MostBeforePayload);
+      const std::uint64_t begin = beginOfPayload(link, window.at(at, looked), looked);
+      if (begin == 0)
+      {
+        return;
+      }
+      const std::size_t number = index.packets.size();
+      if (begin + PayloadSize > size)
+      {
+        throw FormatError("packet " + std::to_string(number) + " of the lidar has " +
+          std::to_string(size - begin) + " of its 1206 bytes: it was not recorded whole");
+      }
+      const unsigned char* payload = window.at(at + begin, PayloadSize);
+      checkPayload(payload, number);
+      const double time = clock.timeOf(payload);
+      for (int block = 0; block < BlocksPerPacket; block += blocksAtOnce(payload))
+      {
+        const int azimuth = azimuthOf(payload, block);
+        if (before < 0 || azimuth < before - FullTurn / 2)
+        {
+          const double seconds = 1e-6 * (time + timeOf(payload, block));
+          index.turns.push_back({ number, block,
+            index.turns.empty() ? seconds
+                                : std::max(seconds, index.turns.back().time + LeastStep) });
+        }
+        before = azimuth;
+      }
+      index.packets.push_back(at + begin);
+      if (number % PacketsPerCall == 0)
+      {
+        goOn(
+          keepGoing, 0, 1, 0.5 * static_cast<double>(at) / static_cast<double>(source.size()), 1.0);
+      }
+    });
+  if (index.turns.empty())
+  {
+    throw FormatError("it has no packet of a VLP-16: UDP to port 2368 with 1206 bytes");
+  }
+  return index;
+}
+
+Cloud readTurn(
+  ByteSource& source, const PacketIndex& index, std::size_t turn, const KeepGoing& keepGoing)
+{
+  const PacketIndex::Turn& from = index.turns[turn];
+  const PacketIndex::Turn to = turn + 1 < index.turns.size()
+    ? index.turns[turn + 1]
+    : PacketIndex::Turn{ index.packets.size(), 0, 0.0 };
+  const std::size_t packets = to.packet - from.packet + 1;
+  requireMemoryFor(packets * PointsPerPacket, sizeof(double));
+  TurnPoints points;
+  FileWindow window(source);
+  double gap = 0.0; // azimuth from one firing to the next
+  HourClock clock;
+  unsigned char payload[PayloadSize];
+  for (std::size_t p = from.packet; p < index.packets.size() && p <= to.packet; ++p)
+  {
+    std::copy_n(window.at(index.packets[p], PayloadSize), PayloadSize, payload);
+    checkPayload(payload, p); // the file may have changed
+    const int behind = p + 1 < index.packets.size()
+      ? azimuthOf(window.at(index.packets[p + 1], PayloadSize), 0)
+      : -1;
+    const int step = blocksAtOnce(payload);
+    const double time = clock.timeOf(payload);
+    if (p == from.packet) // the hour that the index counted
+    {
+      const double since = 1e6 * from.time - timeOf(payload, from.block) - time;
+      clock.hours = HourTime * std::round(since / HourTime);
+    }
+    const int end = p == to.packet ? to.block : BlocksPerPacket;
+    const int begin = p == from.packet ? from.block / step * step : 0;
+    for (int block = begin; block < end; block += step)
+    {
+      const int next = block + step < BlocksPerPacket ? azimuthOf(payload, block + step) : behind;
+      const int difference = (next - azimuthOf(payload, block) + FullTurn) % FullTurn;
+      gap = next >= 0 && difference <= LargestGap ? difference : gap;
+      addBlock(points, payload, block, clock.hours + clock.last, gap);
+    }
+    if (p % PacketsPerCall == 0)
+    {
+      const auto done = static_cast<double>(p - from.packet);
+      goOn(keepGoing, 0, 1, 0.5 + 0.5 * done / static_cast<double>(packets), 1.0);
+    }
+  }
+  Cloud& cloud = points.cloud;
+  cloud.columns.push_back({ "intensity", "1", 1, std::move(points.intensity) });
+  cloud.columns.push_back({ "laser_id", "", 1, std::move(points.laser) });
+  cloud.columns.push_back({ "distance_m", "m", 1, std::move(points.distance) });
+  cloud.columns.push_back({ "azimuth", "0.01 deg", 1, std::move(points.azimuth) });
+  cloud.columns.push_back({ "vertical_angle", "deg", 1, std::move(points.elevation) });
+  cloud.columns.push_back({ "timestamp", "us", 1, std::move(points.time) });
+  cloud.columns.push_back({ "return_number", "1", 1, std::move(points.number) });
+  cloud.columns.push_back({ "number_of_returns", "1", 1, std::move(points.count) });
+  cloud.notes.push_back({ "revolution", "", { static_cast<double>(turn) }, {} });
+  cloud.notes.push_back(
+    { "number_of_revolutions", "1", { static_cast<double>(index.turns.size()) }, {} });
+  cloud.sensor = Point{ 0.0, 0.0, 0.0 };
+  return std::move(cloud);
+}
+}

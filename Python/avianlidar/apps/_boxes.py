@@ -1,0 +1,112 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Boxes about what moves, for networks that learn boxes."""
+from __future__ import annotations
+
+import math
+from typing import Any, Tuple
+
+import numpy as np
+from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.vtkCommonCore import reference
+from vtkmodules.vtkCommonDataModel import vtkPolyData, vtkStaticCellLocator
+
+from .._cloud import Cloud, as_numpy, field_values
+
+RAYS = 72  # at least, to a mover: the triangles of a bird
+
+
+def _rotation(times: np.ndarray, quaternions: np.ndarray, time: float) -> np.ndarray:
+    """From a mover's frame to the scene's at a time, s: slerp of unit quaternions w, x, y, z."""
+    k = int(np.clip(np.searchsorted(times, time, "right") - 1, 0, max(len(times) - 2, 0)))
+    a, b = quaternions[k], quaternions[min(k + 1, len(quaternions) - 1)]
+    b = -b if a @ b < 0 else b
+    share = np.clip((time - times[k]) / (times[k + 1] - times[k]), 0, 1) if len(times) > 1 else 0.0
+    angle = np.arccos(min(a @ b, 1.0))
+    mixed = a if angle < 1e-9 else (np.sin((1 - share) * angle) * a + np.sin(share * angle) * b)
+    w, x, y, z = mixed / np.linalg.norm(mixed)
+    return np.array([[1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
+                     [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
+                     [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)]])
+
+
+def _parts(n: int) -> np.ndarray:
+    """Centres of n*n equal parts of a triangle, in barycentric coordinates."""
+    upright = [(i, j) for i in range(n) for j in range(n - i)]
+    corners = [(3 * i + 1, 3 * j + 1) for i, j in upright] + [(3 * i + 2, 3 * j + 2) for i, j in upright if i + j < n - 1]
+    return np.array([(a, b, 3 * n - a - b) for a, b in corners]) / (3 * n)
+
+
+class Boxes:
+    """Boxes of the movers of scans. What hides them are the surfaces of the scene, what cuts them is the sensor's field of view: the
+    azimuths, elevations and ranges between its outermost beams."""
+
+    def __init__(self, surfaces: vtkPolyData, sensor, pose: np.ndarray):
+        """sensor  a Sensor, at rest
+           pose    3 x 4: from the coordinates of points (x forward, y left, z up) to the scene's"""
+        self.pose, self.gate = pose, float(sensor.range_gate)
+        self.locator = vtkStaticCellLocator()
+        self.locator.SetDataSet(surfaces)
+        self.locator.SetNumberOfCellsPerNode(2)  # by default rays take several times as long
+        self.has_surfaces = surfaces.GetNumberOfCells() > 0
+        if self.has_surfaces:
+            self.locator.BuildLocator()
+        beams = sensor.beams
+        turned, up = self._angles(beams["direction"] @ pose[:, :3])
+        margin = float(sensor.half_beamwidth)
+        self.low, self.high = up.min() - margin, up.max() + margin
+        sorted_ = np.sort(turned)
+        gaps = np.diff(np.append(sorted_, sorted_[0] + 2 * np.pi))
+        widest = int(gaps.argmax())  # behind it the field of view begins
+        self.begin = sorted_[(widest + 1) % len(sorted_)] - margin
+        self.width = 2 * np.pi if gaps[widest] < np.radians(10) else 2 * np.pi - gaps[widest] + 2 * margin
+
+    @staticmethod
+    def _angles(rows: np.ndarray) -> Tuple[np.ndarray, np.ndarray]:
+        """To the left and up of each row, rad."""
+        return np.arctan2(rows[:, 1], rows[:, 0]), np.arctan2(rows[:, 2], np.hypot(rows[:, 0], rows[:, 1]))
+
+    def lines(self, report: Cloud, movers) -> str:
+        """A line for each mover in the field of view. @param report the mover report @param movers the composite that the scan had"""
+        blocks = {}
+        for k in range(movers.GetNumberOfBlocks()):
+            block = movers.GetBlock(k)
+            blocks[int(block.GetCellData().GetArray("object_id").GetTuple1(0))] = block
+        columns = zip(report["object_id"], report["timestamp"], report["number_of_echoes"], report.points) if report.number_of_points else ()
+        return "".join(self._line(blocks[int(number)], int(number), 1e-6 * time, int(points), place)
+                       for number, time, points, place in columns)
+
+    def _line(self, block: vtkPolyData, number: int, time: float, points: int, place: np.ndarray) -> str:
+        fields = field_values(block)
+        quaternions = np.reshape(fields.get("pose_orientation", [1.0, 0, 0, 0]), (-1, 4))
+        rotation = _rotation(np.ravel(fields.get("pose_time", [0.0])), quaternions, time)
+        corners = as_numpy(block.GetPoints().GetData()) @ rotation.T + place
+        truncated, hidden = self._shares(corners[vtk_to_numpy(block.GetPolys().GetConnectivityArray()).reshape(-1, 3)])
+        if truncated >= 1:
+            return ""
+        bounds = np.reshape(block.GetBounds(), (3, 2))
+        width, length, height = bounds[:, 1] - bounds[:, 0]  # x is right, y forward
+        centre = (rotation @ bounds.mean(axis=1) + place - self.pose[:, 3]) @ self.pose[:, :3]
+        ahead = rotation[:, 1] @ self.pose[:, :3]
+        name = str(fields["object_classes"][0]).replace(" ", "_")
+        numbers = (*centre, length, width, height, np.arctan2(ahead[1], ahead[0]))
+        return f"{name} {truncated:.2f} {hidden:.2f} {' '.join(f'{value:.4f}' for value in numbers)} {number} {points}\n"
+
+    def _shares(self, triangles: np.ndarray) -> Tuple[float, float]:
+        """How much of what is turned to the sensor is out of the field of view, and how much of the rest is hidden."""
+        place, parts = self.pose[:, 3], _parts(math.ceil(math.sqrt(RAYS / len(triangles))))
+        centres = np.einsum("pc,tcx->tpx", parts, triangles).reshape(-1, 3)
+        views = centres - place
+        ranges = np.linalg.norm(views, axis=1)
+        across = np.repeat(np.cross(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0]), len(parts), axis=0)
+        weights = np.abs(np.einsum("ij,ij->i", across, views)) / ranges**3  # solid angles
+        turned, up = self._angles(views @ self.pose[:, :3])
+        inside = (up >= self.low) & (up <= self.high) & ((turned - self.begin) % (2 * np.pi) <= self.width) & (ranges <= self.gate)
+        if not weights[inside].sum() > 0:
+            return 1.0, 0.0
+        covered = np.array([self._is_covered(place, centre) for centre in centres[inside]])
+        return float(weights[~inside].sum() / weights.sum()), float(weights[inside] @ covered / weights[inside].sum())
+
+    def _is_covered(self, place: np.ndarray, centre: np.ndarray) -> bool:
+        share: Any = reference(0.0)
+        hit = [0.0, 0.0, 0.0]
+        return self.has_surfaces and bool(self.locator.IntersectWithLine(place, centre, 0.0, share, hit, [0.0] * 3, reference(0)))

@@ -1,0 +1,146 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""A sequence as MCAP: what the libraries @mcap/core and rosmsg2-serialization read of it (Node.js), and what is wrong with a folder."""
+import base64
+import json
+import os
+import pathlib
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+
+import numpy as np
+
+import avianlidar
+from avianlidar.apps import _mcap
+
+READER = pathlib.Path(os.environ["AVIANLIDAR_SOURCE_DIR"]) / "Testing" / "IO" / "mcap_to_json.js"
+MODULES = pathlib.Path(os.environ.get("NODE_PATH", "none"))
+TURN = np.array([[0.36, 0.48, -0.8], [-0.8, 0.6, 0], [0.48, 0.64, 0.6]])  # a rotation of whole fractions
+COUNTS = (5, 0, 70000)
+TIMES = (0.0, 2.5, 1234567.000001)
+
+
+def pose_line(rotation, place):
+    return " ".join(f"{value:.9g}" for value in np.column_stack([rotation, place]).ravel()) + "\n"
+
+
+class TestMcap(unittest.TestCase):
+    def setUp(self):
+        self.folder = pathlib.Path(self.enterContext(tempfile.TemporaryDirectory()))
+        self.sequence, self.out = self.folder / "00", self.folder / "out.mcap"
+        chance, self.scans = np.random.default_rng(3), []
+        for name in ("velodyne", "labels"):
+            (self.sequence / name).mkdir(parents=True)
+        for number, count in enumerate(COUNTS):
+            points, labels = chance.random((count, 4), np.float32), chance.integers(0, 2**32, count, np.uint32)
+            points.tofile(self.sequence / "velodyne" / f"{number:06d}.bin")
+            labels.tofile(self.sequence / "labels" / f"{number:06d}.label")
+            self.scans.append((points, labels))
+        self.put("times.txt", "".join(f"{time:.6f}\n" for time in TIMES))
+        self.put("poses.txt", pose_line(TURN, (10, -20, 3)) * len(COUNTS))
+        self.put("calib.txt", "P0: 1 0 0 0 0 1 0 0 0 0 1 0\nTr: 1 0 0 0 0 1 0 0 0 0 1 0\n")
+
+    def put(self, name, text):
+        (self.sequence / name).write_text(text, encoding="utf-8")
+
+    def convert(self, source=None):
+        return subprocess.run([sys.executable, "-m", "avianlidar", "convert", str(source or self.sequence), str(self.out)],
+                              capture_output=True, text=True, check=False)
+
+    def read(self):
+        self.assertEqual(_mcap.write(self.sequence, self.out), 3)
+        if not (MODULES / "@mcap").is_dir():
+            self.skipTest("the node modules of Testing/IO are not there")
+        return json.loads(subprocess.run([os.environ["AVIANLIDAR_NODE"], READER, self.out], check=True, capture_output=True).stdout)
+
+    def test_the_command(self):
+        run = self.convert()
+        self.assertEqual((run.returncode, run.stdout, run.stderr), (0, f"{self.out}: 3 scans of {self.sequence}\n", ""))
+
+    def test_what_others_read(self):
+        found = self.read()
+        self.assertEqual(found["header"]["profile"], "ros2")
+        self.assertTrue(found["done"])
+        self.assertEqual(found["kinds"], ["Header", "Schema", "Channel", "Schema", "Channel", *["Message", "Message", "MessageIndex", "MessageIndex"] * 3,
+                         "DataEnd", "Schema", "Channel", "Schema", "Channel", "Statistics", *["ChunkIndex"] * 3, "Footer"])
+        self.assertEqual(found["statistics"]["channelMessageCounts"], {"1": "3", "2": "3"})
+        for number, ((points, labels), time) in enumerate(zip(self.scans, TIMES)):
+            (tf, cloud), stamp = found["messages"][2 * number:2 * number + 2], round(time * 1e9)
+            self.assertEqual([(one["topic"], one["schema"], one["logTime"]) for one in (tf, cloud)], [
+                ("/tf", "tf2_msgs/msg/TFMessage", str(stamp)), ("/points", "sensor_msgs/msg/PointCloud2", str(stamp))])
+            header = {"stamp": {"sec": stamp // 10**9, "nanosec": stamp % 10**9}, "frame_id": "lidar"}
+            self.check_cloud(cloud["message"], header, points, labels)
+            self.check_transform(tf["message"], {**header, "frame_id": "map"}, TURN, (10, -20, 3))
+
+    def check_cloud(self, message, header, points, labels):
+        fields = [(name, 4 * k, 7) for k, name in enumerate(("x", "y", "z", "intensity"))] + [("label", 16, 4), ("instance", 18, 4)]
+        data = base64.b64decode(message.pop("data"))
+        self.assertEqual(message, {
+            "header": header, "height": 1, "width": len(points), "is_bigendian": False, "point_step": 20, "row_step": 20 * len(points),
+            "is_dense": True, "fields": [{"name": name, "offset": at, "datatype": kind, "count": 1} for name, at, kind in fields]})
+        rows = np.frombuffer(data, [("points", "<f4", 4), ("label", "<u2"), ("instance", "<u2")])
+        self.assertTrue(np.array_equal(rows["points"], points * np.float32([1, 1, 1, 255])))
+        self.assertTrue(np.array_equal(rows["label"], labels % 65536) and np.array_equal(rows["instance"], labels // 65536))
+
+    def check_transform(self, message, header, rotation, place):
+        (one,) = message["transforms"]
+        self.assertEqual((one["header"], one["child_frame_id"]), (header, "lidar"))
+        self.assertEqual([one["transform"]["translation"][axis] for axis in "xyz"], list(place))
+        x, y, z, w = (one["transform"]["rotation"][axis] for axis in "xyzw")
+        turned = [[1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
+                  [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
+                  [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)]]
+        self.assertLess(np.abs(np.array(turned) - rotation).max(), 1e-9)
+
+    def test_poses_of_a_camera(self):
+        """KITTI's: x right, y down, z forward. One that drives forward drives along x of the lidar."""
+        camera = np.array([[0, -1, 0], [0, 0, -1], [1, 0, 0]])
+        self.put("calib.txt", "Tr: " + pose_line(camera, (0, 0, 0)))
+        self.put("poses.txt", pose_line(np.eye(3), (0, 0, 7)) * 3)
+        found = self.read()
+        self.check_transform(found["messages"][0]["message"], {"stamp": {"sec": 0, "nanosec": 0}, "frame_id": "map"}, np.eye(3), (7, 0, 0))
+
+    def test_half_turns(self):
+        for rotation in (np.diag([1, -1, -1]), np.diag([-1, 1, -1]), np.diag([-1, -1, 1])):
+            self.put("poses.txt", pose_line(rotation, (1, 2, 3)) * 3)
+            self.check_transform(self.read()["messages"][0]["message"], {"stamp": {"sec": 0, "nanosec": 0}, "frame_id": "map"}, rotation, (1, 2, 3))
+
+    def test_errors(self):
+        def refused(words, source=None):
+            with self.assertRaises((ValueError, avianlidar.Error)) as caught:
+                _mcap.write(pathlib.Path(source or self.sequence), self.out)
+            self.assertIn(words, str(caught.exception))
+            self.assertFalse(self.out.exists())
+        run = self.convert(self.folder)
+        self.assertEqual((run.returncode, run.stdout, self.out.exists()), (2, "", False))
+        self.assertEqual(run.stderr, f"avianlidar: {self.folder}: is no folder of a sequence, expected one with velodyne/, times.txt and poses.txt\n")
+        refused("is no folder of a sequence, expected one with velodyne/, times.txt and poses.txt", self.folder)
+        refused("cloud.las: is no folder of a sequence", "cloud.las")
+        self.put("times.txt", "0\n1\n")
+        refused(f"{self.sequence}: has 3 scans, 2 times and 3 poses, expected as many of each")
+        self.put("times.txt", "0\n1\ntwo\n")
+        refused("times.txt: expected lines of numbers, 1 in each, from 0 to 2e9")
+        for wrong in ("nan", "-1", "1e10"):
+            self.put("times.txt", f"0\n1\n{wrong}\n")
+            refused("times.txt: expected lines of numbers, 1 in each, from 0 to 2e9")
+        self.put("times.txt", "0\n1\n2\n")
+        self.put("poses.txt", "1 2 3\n")
+        refused("poses.txt: expected lines of numbers, 12 in each")
+        self.put("poses.txt", pose_line(TURN, (0, 0, 0)) * 3)
+        (self.sequence / "velodyne" / "000001.bin").write_bytes(bytes(15))
+        refused("000001.bin: has 15 bytes, expected 16 for each of 0 labels")
+        shutil.rmtree(self.sequence / "labels")
+        refused("000001.bin: has 15 bytes")
+        self.put("calib.txt", "Tr: 1 2\n")
+        refused("calib.txt: expected lines of Tr:, 12 in each")
+        for text in ("P0: 1\n", "Tr: " + "0 " * 12):
+            self.put("calib.txt", text)
+            refused("calib.txt: expected one line Tr: with a rotation and a translation in 12 numbers")
+        (self.sequence / "calib.txt").unlink()
+        refused("calib.txt")
+
+
+if __name__ == "__main__":
+    unittest.main()
