@@ -42,6 +42,7 @@ set(avianlidar_python_files
   py.typed
   apps/__init__.py
   apps/_air.py
+  apps/_airport.py
   apps/_json.py
   apps/_labels.py
   apps/_maps.py
@@ -52,6 +53,7 @@ set(avianlidar_python_files
   apps/_sites.py
   apps/reach.py
   apps/siting.py
+  apps/airport.json
   apps/coverage.schema.json
   apps/report.html.jinja
   apps/scenario.schema.json)

@@ -327,6 +327,20 @@ def sequence(options) -> None:
               f"{sum(p['scans_with_birds_seen'] for p in parts)} of them; datasheet.md says more")
 
 
+def airport(options) -> None:
+    from ._disk import only_run
+    from .apps._airport import Airport
+    bars = Bars()
+    made = Airport(options.extract, options.heights, options.icao, options.bounds, bars)
+    with only_run(options.out, goes_on=False):
+        kept = made.write(options.out)
+    bars.close()
+    for name in kept.edited:
+        warn(f"{options.out / name} was edited and stays as it is; remove it to have it made again")
+    print(f"{options.out}: {made.name}, {len(made.sides)} {'runways' if len(made.sides) > 1 else 'runway'}, "
+          f"{sum('height' in row for row in made.rows)} buildings; README.txt says what is assumed")
+
+
 def _plan(options) -> Dict[str, Any]:
     """The plan with what options change."""
     from .apps._maps import read_plan
