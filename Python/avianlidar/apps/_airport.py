@@ -174,7 +174,7 @@ def read_extract(file: pathlib.Path, known: Dict[str, Any]) -> Tuple[List[Featur
             if to_degrees[name] is not None:
                 shape.Transform(to_degrees[name])
             shape.FlattenTo2D()
-            if form == "area" and driver == "OSM" and kind == "taxiway" and tags.get("area") != "yes":
+            if form == "area" and "osm_way_id" in tags and kind == "taxiway" and tags.get("area") != "yes":
                 shape = ogr.ForceToMultiLineString(shape)  # GDAL takes a closed way for an area
             once = (kind, bytes(shape.ExportToWkb()))
             if once not in seen:
@@ -353,7 +353,7 @@ def _at(values: np.ndarray, corner: Sequence[float], spacing: float, place: Sequ
 
 
 def curvature(origin: Sequence[float], x, y):
-    """How far the ellipsoid lies below the origin's tangent plane, m, to the second order: 0.1 mm off at 5 km and 1 cm at 50 km.
+    """How far the ellipsoid lies below the origin's tangent plane, m, to the second order: 5 um off at 5 km and 8 mm at 50 km.
     @param origin latitude (deg), ... @param x, y east and north, m"""
     a, f = 6378137.0, 1.0 / 298.257223563
     bulge = 1.0 - f * (2.0 - f) * math.sin(math.radians(origin[0])) ** 2
