@@ -263,6 +263,8 @@ class Extracts(unittest.TestCase):
             self.assertTrue(is_closed(found[name][1]), name)
         crown = found["Tree"][1].reshape(-1, 3)
         np.testing.assert_allclose((crown.min(axis=0) + crown.max(axis=0)) / 2, (-300, 500, 5 - 12), atol=0.3)
+        clutter = [json.loads((folder / name).read_text())["coverage"].get("clutter") for name in ("airport.coverage.json", "siting.coverage.json")]
+        self.assertEqual(clutter, [None, False])  # there are leaves
         # A hangar is level, and stands on its lowest corner.
         z = found["Hangar 1"][1][:, :, 2]
         self.assertAlmostEqual(z.min(), -0.04 * 300, delta=error)

@@ -613,6 +613,11 @@ class Airport:
         return [float(x) for x in np.round((low[0], high[0], low[1], high[1]), -1)]
 
     @property
+    def leaves(self) -> bool:
+        """Whether the scene has any: the clutter behind them takes seconds in each of a report's weathers."""
+        return any("medium" in self.known["kinds"][row["kind"]] for row in self.rows)
+
+    @property
     def longest(self) -> siting.Runway:
         return max(self.sides, key=lambda runway: runway.axis()[1])
 
@@ -633,6 +638,8 @@ class Airport:
             "scene": "airport.lidarscene.json", "sensor": {"preset": "Search905"}, "coverage": {"species": "herring gull", "visibility": 23000},
             "runways": "airport.geojson"}
         if siting_too:
+            if self.leaves:
+                plan["coverage"]["clutter"] = False
             plan["siting"] = {"bounds": self._bounds(), "spacing": 200, "masts": [self.known["mast"]], "margin": 10,
                               "exclusions": ["exclusions.geojson"], "sensors": 3}
         return plan
@@ -684,6 +691,7 @@ class Airport:
         quoted = "".join(f"  of its heights the extract says: {words}\n" for words in said)
         heights = siting.ground_of(self.scene, [end for runway in self.sides for end in (runway.start, runway.end)])
         x, y, z = self.position
+        without = "; without clutter, as behind leaves it takes long" if self.leaves else ""
         return f"""{self.name}
 
 Made by `avianlidar airport` from {self.extract.name}. All files are to be edited: a further run makes only those again that nobody
@@ -693,7 +701,7 @@ has edited, so remove a file to have it made anew.
   terrain.vtp              the ground
   airport.lidarscene.json  the scene
   airport.coverage.json    a plan: avianlidar coverage airport.coverage.json -o maps
-  siting.coverage.json     the same with sites: avianlidar report siting.coverage.json -o report.html
+  siting.coverage.json     the same with sites: avianlidar report siting.coverage.json -o report.html{without}
   exclusions.geojson       where no lidar may stand, beside buildings
   airport.scenario.json    labelled scans: avianlidar sequence airport.scenario.json -o sequences
   assumed.csv              each number that the extract does not say
