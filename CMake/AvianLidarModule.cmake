@@ -98,6 +98,7 @@ set(private_sources
   IO/Private/SceneReport.cxx
   IO/Private/SemanticLabels.cxx
   IO/Private/SensorPose.cxx
+  IO/Private/Terrain.cxx
   IO/Private/TextLines.cxx
   IO/Private/VirtualFiles.cxx
   IO/Private/VtkCellCheck.cxx

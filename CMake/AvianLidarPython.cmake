@@ -42,6 +42,7 @@ set(avianlidar_python_files
   py.typed
   apps/__init__.py
   apps/_air.py
+  apps/_airport.py
   apps/_bench.py
   apps/_boxes.py
   apps/_card.py
@@ -60,6 +61,7 @@ set(avianlidar_python_files
   apps/_tracks.py
   apps/reach.py
   apps/siting.py
+  apps/airport.json
   apps/bench.html.jinja
   apps/card.html.jinja
   apps/card_parts.html.jinja

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <set>
 #include <sstream>
 
 namespace avianlidar::scene
@@ -121,6 +123,91 @@ void AddFacade(const Facade& f, const ExtrusionMaterials& materials, Mesh& mesh)
   AddTriangle(mesh, f.bottomLeft, f.bottomRight, f.topRight, material);
   AddTriangle(mesh, f.bottomLeft, f.topRight, f.topLeft, material);
 }
+}
+
+namespace
+{
+// Pieces with a common edge share its vertices.
+struct Sheet
+{
+  std::vector<Vec3> points;
+  std::vector<std::array<Index, 3>> triangles;
+};
+
+Sheet Join(const std::vector<TerrainPiece>& pieces)
+{
+  constexpr double same = 1e-4; // m
+  Sheet sheet;
+  std::map<std::array<std::int64_t, 2>, Index> known;
+  for (const TerrainPiece& piece : pieces)
+  {
+    const TriangulatedPolygon plan = Triangulate(piece.polygon);
+    std::vector<Index> ids;
+    for (const Vec2& p : plan.points)
+    {
+      const auto found = known.emplace(
+        std::array<std::int64_t, 2>{ std::llround(p[0] / same), std::llround(p[1] / same) },
+        static_cast<Index>(sheet.points.size()));
+      if (found.second)
+      {
+        sheet.points.push_back({ p[0], p[1], piece.HeightAt(p) });
+      }
+      ids.push_back(found.first->second);
+    }
+    for (const auto& t : plan.triangles)
+    {
+      const Index a = ids[t[0]], b = ids[t[1]], c = ids[t[2]];
+      if (a != b && b != c && c != a)
+      {
+        sheet.triangles.push_back({ a, b, c });
+      }
+    }
+  }
+  return sheet;
+}
+
+// The index of the first vertex.
+Index AddRaised(const Sheet& sheet, double height, Mesh& mesh)
+{
+  const auto first = static_cast<Index>(mesh.points.size());
+  for (const Vec3& p : sheet.points)
+  {
+    mesh.points.push_back({ p[0], p[1], p[2] + height });
+  }
+  return first;
+}
+}
+
+void AddSolidOn(const std::vector<TerrainPiece>& pieces, double base, double height,
+  const ExtrusionMaterials& materials, Mesh& mesh)
+{
+  const Sheet sheet = Join(pieces);
+  const Index bottom = AddRaised(sheet, base, mesh);
+  const Index top = AddRaised(sheet, base + height, mesh);
+  std::set<std::array<Index, 2>> edges;
+  for (const auto& [a, b, c] : sheet.triangles)
+  {
+    AddTriangle(mesh, top + a, top + b, top + c, materials.roof);
+    AddTriangle(mesh, bottom + a, bottom + c, bottom + b, materials.roof);
+    edges.insert({ { a, b }, { b, c }, { c, a } });
+  }
+  for (const auto& [left, right] : edges)
+  {
+    if (edges.count({ right, left }) == 0) // of one triangle: the outline
+    {
+      AddFacade({ bottom + left, bottom + right, top + left, top + right }, materials, mesh);
+    }
+  }
+}
+
+void AddFlatOn(const std::vector<TerrainPiece>& pieces, double height, int material, Mesh& mesh)
+{
+  const Sheet sheet = Join(pieces);
+  const Index first = AddRaised(sheet, height, mesh);
+  for (const auto& [a, b, c] : sheet.triangles)
+  {
+    AddTriangle(mesh, first + a, first + b, first + c, material);
+  }
 }
 
 void AddSolid(const Polygon& polygon, double base, double height,

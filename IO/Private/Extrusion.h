@@ -8,6 +8,7 @@
 
 #include "Polygons.h"
 #include "SceneTypes.h"
+#include "Terrain.h"
 
 namespace avianlidar::scene
 {
@@ -31,6 +32,13 @@ struct ExtrusionMaterials
  */
 void AddSolid(const Polygon& polygon, double base, double height,
   const ExtrusionMaterials& materials, Mesh& mesh);
+
+/// The same between `base` and `base + height` above a terrain: floor and roof follow it.
+void AddSolidOn(const std::vector<TerrainPiece>& pieces, double base, double height,
+  const ExtrusionMaterials& materials, Mesh& mesh);
+
+/// Add pieces as an area at a height above a terrain.
+void AddFlatOn(const std::vector<TerrainPiece>& pieces, double height, int material, Mesh& mesh);
 
 /// Add a valid polygon as a level area at a height, seen from above.
 void AddFlat(const Polygon& polygon, double height, int material, Mesh& mesh);

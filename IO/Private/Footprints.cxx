@@ -35,6 +35,14 @@ struct Counts
   int repaired = 0;
   int empty = 0;
   int assumedHeights = 0;
+  int beyond = 0;
+};
+
+// An area in plan; what follows a terrain has no level roof.
+struct Region
+{
+  Polygon polygon;
+  bool follows = false;
 };
 
 // A value of GDAL's OSM driver for tags without a column of their own:
@@ -318,16 +326,24 @@ double GetHeight(const Feature& feature, const Object& object, std::size_t numbe
   return *options.height;
 }
 
-std::vector<Polygon> GetRegions(
+// Where a width is given, points are square columns.
+Polygon SquareAround(const Vec2& p, double width)
+{
+  const double half = width / 2;
+  return { { { { p[0] - half, p[1] - half }, { p[0] + half, p[1] - half },
+    { p[0] + half, p[1] + half }, { p[0] - half, p[1] + half } } } };
+}
+
+std::vector<Region> GetRegions(
   const Feature& feature, const FootprintOptions& options, bool isMedium, Counts& counts)
 {
-  std::vector<Polygon> regions;
+  std::vector<Region> regions;
   bool repaired = false;
   for (const Polygon& polygon : feature.polygons)
   {
     for (Polygon& valid : MakeValid(polygon, repaired))
     {
-      regions.push_back(std::move(valid));
+      regions.push_back({ std::move(valid), isMedium });
     }
   }
   counts.repaired += repaired;
@@ -341,8 +357,12 @@ std::vector<Polygon> GetRegions(
     }
     for (Polygon& region : WidenLine(line, *width))
     {
-      regions.push_back(std::move(region));
+      regions.push_back({ std::move(region), true });
     }
+  }
+  for (const Vec2& p : isMedium ? Ring() : feature.points)
+  {
+    width && !options.flat ? regions.push_back({ SquareAround(p, *width) }) : void(++counts.points);
   }
   return regions;
 }
@@ -365,8 +385,8 @@ void AddAlong(const Ring& line, double width, Ring& points)
 }
 
 // The crowns of trees and rows of trees: ellipsoids between base and height.
-void AddCrowns(
-  const Feature& feature, const Object& object, std::size_t number, Counts& counts, Part& crowns)
+void AddCrowns(const Feature& feature, const Object& object, std::size_t number,
+  const Terrain* terrain, Counts& counts, Part& crowns)
 {
   const std::optional<double> width = feature.width ? feature.width : object.footprints.width;
   Ring points = feature.points;
@@ -379,17 +399,39 @@ void AddCrowns(
     counts.points += static_cast<int>(points.size());
     return;
   }
-  const double base = object.footprints.base;
-  const double top = base + GetHeight(feature, object, number, counts);
+  const double height = GetHeight(feature, object, number, counts);
   for (const Vec2& p : points)
   {
-    crowns.mesh.points.push_back({ p[0], p[1], 0.5 * (base + top) });
-    crowns.crowns.push_back({ *width, top - base });
+    const std::optional<double> ground = terrain ? terrain->HeightAt(p) : 0.0;
+    if (!ground)
+    {
+      ++counts.beyond;
+      continue;
+    }
+    crowns.mesh.points.push_back({ p[0], p[1], *ground + object.footprints.base + 0.5 * height });
+    crowns.crowns.push_back({ *width, height });
   }
 }
 
-std::vector<Part> Raise(const std::vector<Feature>& features, const Object& object, Counts& counts,
-  const std::function<bool()>& keepGoing)
+void RaiseOn(const std::vector<TerrainPiece>& pieces, bool follows, const FootprintOptions& options,
+  double height, const ExtrusionMaterials& materials, const Polygon& polygon, Mesh& mesh)
+{
+  if (options.flat)
+  {
+    AddFlatOn(pieces, options.base, materials.facade, mesh);
+  }
+  else if (follows)
+  {
+    AddSolidOn(pieces, options.base, height, materials, mesh);
+  }
+  else
+  {
+    AddSolid(polygon, LowestOf(pieces) + options.base, height, materials, mesh);
+  }
+}
+
+std::vector<Part> Raise(const std::vector<Feature>& features, const Object& object,
+  const Terrain* terrain, Counts& counts, const std::function<bool()>& keepGoing)
 {
   const FootprintOptions& options = object.footprints;
   ExtrusionMaterials materials;
@@ -407,13 +449,9 @@ std::vector<Part> Raise(const std::vector<Feature>& features, const Object& obje
     const bool isMedium = !object.medium.empty();
     if (isMedium)
     {
-      AddCrowns(features[i], object, i + 1, counts, crowns);
+      AddCrowns(features[i], object, i + 1, terrain, counts, crowns);
     }
-    else
-    {
-      counts.points += static_cast<int>(features[i].points.size());
-    }
-    const std::vector<Polygon> regions = GetRegions(features[i], options, isMedium, counts);
+    const std::vector<Region> regions = GetRegions(features[i], options, isMedium, counts);
     if (regions.empty())
     {
       counts.empty += isMedium ? 0 : 1;
@@ -425,11 +463,22 @@ std::vector<Part> Raise(const std::vector<Feature>& features, const Object& obje
         object.objectClass, {} });
     }
     Mesh& mesh = parts.back().mesh;
-    for (const Polygon& region : regions)
+    const double height = options.flat ? 0 : GetHeight(features[i], object, i + 1, counts);
+    for (const auto& [region, follows] : regions)
     {
-      options.flat ? AddFlat(region, options.base, materials.facade, mesh)
-                   : AddSolid(region, options.base, GetHeight(features[i], object, i + 1, counts),
-                       materials, mesh);
+      if (!terrain)
+      {
+        options.flat ? AddFlat(region, options.base, materials.facade, mesh)
+                     : AddSolid(region, options.base, height, materials, mesh);
+        continue;
+      }
+      const std::vector<TerrainPiece> pieces = terrain->Cut(region);
+      pieces.empty() ? void(++counts.beyond)
+                     : RaiseOn(pieces, follows, options, height, materials, region, mesh);
+    }
+    if (mesh.triangles.empty())
+    {
+      parts.pop_back();
     }
   }
   if (!crowns.crowns.empty())
@@ -448,7 +497,7 @@ void Note(std::vector<std::string>& notes, const Object& object, int count, cons
 }
 }
 
-std::vector<Part> ReadFootprints(const Object& object, const Scene& scene,
+std::vector<Part> ReadFootprints(const Object& object, const Scene& scene, const Terrain* terrain,
   std::vector<std::string>& notes, const std::function<bool()>& keepGoing)
 {
   const QuietGdal quiet;
@@ -472,16 +521,19 @@ std::vector<Part> ReadFootprints(const Object& object, const Scene& scene,
     throw Error("none of its " + std::to_string(counts.filtered) + " features fits the filter");
   }
   ToLocal(features, layer, object, scene);
-  std::vector<Part> parts = Raise(features, object, counts, keepGoing);
+  std::vector<Part> parts = Raise(features, object, terrain, counts, keepGoing);
   if (parts.empty())
   {
-    throw Error("its features have no area (points, or lines without width)");
+    throw Error("its features have no area (points, or lines without width)" +
+      std::string(terrain ? ", or lie beyond " + object.footprints.on : ""));
   }
   Note(
     notes, object, counts.repaired, "footprints with crossing or overlapping rings were repaired");
   Note(notes, object, counts.empty, "features without an area were left out");
   Note(notes, object, counts.thinLines, "lines without a width were left out");
   Note(notes, object, counts.points, "points were left out");
+  Note(notes, object, counts.beyond,
+    ("areas and points beyond " + object.footprints.on + " were left out").c_str());
   Note(notes, object, counts.assumedHeights,
     "features have no usable height attribute and got the default height");
   return parts;

@@ -7,6 +7,7 @@
 #define AvianLidarFootprints_h
 
 #include "SceneTypes.h"
+#include "Terrain.h"
 
 #include <functional>
 
@@ -18,11 +19,14 @@ namespace avianlidar::scene
  * from the origin's tangent plane, so that a level ground stays level (at 3 km it lies 0.7 m above
  * the ellipsoid's curve). Triangles carry scene material ids.
  *
+ * On a terrain, solids stand on the lowest point below them; flat areas, lines and media follow it.
+ * What lies beyond it is left out.
+ *
  * Notes on what was repaired, skipped or assumed are added to `notes`. Throws Error where the file
  * cannot be read, no feature is left, or one has no height; WorkStopped where keepGoing returns
  * false.
  */
-std::vector<Part> ReadFootprints(const Object& object, const Scene& scene,
+std::vector<Part> ReadFootprints(const Object& object, const Scene& scene, const Terrain* terrain,
   std::vector<std::string>& notes, const std::function<bool()>& keepGoing);
 }
 

@@ -202,12 +202,32 @@ void ParseShape(const JsonNode& node, FootprintOptions& options)
   }
 }
 
+void ParseOn(const JsonNode& node, const Scene& scene, FootprintOptions& options)
+{
+  options.on = node.Get("on").Name();
+  for (const char* key : { "position", "geodetic", "rotation", "scale" })
+  {
+    if (node.Has(key))
+    {
+      node.Get(key).Fail("stands beside on, which needs footprints that are in place");
+    }
+  }
+  for (const Object& object : scene.objects)
+  {
+    if (object.name == options.on && object.medium.empty() && object.kind == ObjectKind::Mesh)
+    {
+      return;
+    }
+  }
+  node.Get("on").Fail("is " + options.on + ", expected the name of a mesh further up");
+}
+
 void ParseFootprints(const JsonNode& node, Scene& scene, Object& object)
 {
   node.RequireKeys({ "footprints", "name", "class", "material", "material_map", "medium", "comment",
     "position", "geodetic", "rotation", "scale", "crs", "layer", "filter", "base", "height",
     "height_attribute", "flat", "width", "width_attribute", "roof_material", "glazing", "features",
-    "name_attribute" });
+    "name_attribute", "on" });
   object.kind = ObjectKind::Footprints;
   object.file = AbsoluteFile(node.Get("footprints"), scene);
   FootprintOptions& options = object.footprints;
@@ -240,6 +260,10 @@ void ParseFootprints(const JsonNode& node, Scene& scene, Object& object)
   if (node.Has("name_attribute"))
   {
     options.nameAttribute = node.Get("name_attribute").Name();
+  }
+  if (node.Has("on"))
+  {
+    ParseOn(node, scene, options);
   }
 }
 

@@ -18,6 +18,7 @@ namespace
 // Below what any map resolves; such edges only make slivers.
 constexpr double SmallestEdge = 1e-6;
 constexpr double AreaTolerance = 1e-9;
+constexpr double SmallestPiece = 1e-6; // m2
 
 // Without handlers GEOS keeps silent and returns null.
 class Geos
@@ -230,6 +231,46 @@ std::vector<Polygon> WidenLine(const Ring& line, double width)
   std::vector<Polygon> polygons;
   geos.Collect(region.get(), polygons);
   return polygons;
+}
+
+std::vector<std::vector<Polygon>> CutToTriangles(
+  const Polygon& polygon, const std::vector<Ring>& triangles)
+{
+  const Geos geos;
+  const Geos::Geometry whole = geos.MakePolygon(polygon);
+  const std::unique_ptr<const GEOSPreparedGeometry,
+    std::function<void(const GEOSPreparedGeometry*)>>
+    prepared(GEOSPrepare_r(geos.Get(), whole.get()),
+      [&geos](const GEOSPreparedGeometry* p) { GEOSPreparedGeom_destroy_r(geos.Get(), p); });
+  std::vector<std::vector<Polygon>> pieces(triangles.size());
+  for (std::size_t i = 0; i < triangles.size(); ++i)
+  {
+    const Geos::Geometry triangle = geos.MakePolygon({ { triangles[i] } });
+    if (GEOSPreparedContainsProperly_r(geos.Get(), prepared.get(), triangle.get()) == 1)
+    {
+      pieces[i].push_back({ { triangles[i] } });
+      continue;
+    }
+    if (GEOSPreparedIntersects_r(geos.Get(), prepared.get(), triangle.get()) == 0)
+    {
+      continue;
+    }
+    std::vector<Polygon> shared;
+    geos.Collect(
+      geos.Own(GEOSIntersection_r(geos.Get(), whole.get(), triangle.get())).get(), shared);
+    for (const Polygon& part : shared)
+    {
+      bool repaired = false;
+      for (Polygon& piece : MakeValid(part, repaired))
+      {
+        if (Area(piece) > SmallestPiece)
+        {
+          pieces[i].push_back(std::move(piece));
+        }
+      }
+    }
+  }
+  return pieces;
 }
 
 TriangulatedPolygon Triangulate(const Polygon& polygon)

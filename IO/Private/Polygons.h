@@ -50,6 +50,11 @@ std::vector<Polygon> MakeValid(const Polygon& polygon, bool& repaired);
 /// The region within half a width of a line, with flat ends and mitred corners.
 std::vector<Polygon> WidenLine(const Ring& line, double width);
 
+/// What each of the triangles, which run anticlockwise, shares with a valid polygon, less what is
+/// smaller than 1e-6 m2.
+std::vector<std::vector<Polygon>> CutToTriangles(
+  const Polygon& polygon, const std::vector<Ring>& triangles);
+
 /// Triangles of a valid polygon. Throws Error if GEOS fails or the areas differ by more than 1e-9
 /// of the whole.
 TriangulatedPolygon Triangulate(const Polygon& polygon);

@@ -171,8 +171,32 @@ Part MakeMesh(const Scene& scene, const Object& object, MeshFiles& files,
   return part;
 }
 
-std::vector<Part> BuildObject(const Scene& scene, const Object& object, MeshFiles& files,
-  UnmappedMaterials& unmapped, std::vector<std::string>& report,
+// The surfaces that footprints stand on, each made once.
+class Terrains
+{
+public:
+  // Of the parts so far the first with that name.
+  const Terrain* Get(const std::string& name, const std::vector<Part>& parts)
+  {
+    if (name.empty())
+    {
+      return nullptr;
+    }
+    const auto part = std::find_if(parts.begin(), parts.end(),
+      [&name](const Part& p) { return p.name == name && p.medium.empty(); });
+    if (part == parts.end())
+    {
+      throw Error("there is no " + name + " to stand on");
+    }
+    return &this->Known.try_emplace(name, part->mesh).first->second;
+  }
+
+private:
+  std::map<std::string, Terrain> Known;
+};
+
+std::vector<Part> BuildObject(const Scene& scene, const Object& object, const Terrain* terrain,
+  MeshFiles& files, UnmappedMaterials& unmapped, std::vector<std::string>& report,
   const std::function<bool()>& keepGoing)
 {
   std::vector<Part> parts;
@@ -196,7 +220,7 @@ std::vector<Part> BuildObject(const Scene& scene, const Object& object, MeshFile
     }
     if (object.kind == ObjectKind::Footprints)
     {
-      parts = ReadFootprints(named, scene, report, keepGoing);
+      parts = ReadFootprints(named, scene, terrain, report, keepGoing);
     }
     else
     {
@@ -280,7 +304,7 @@ BuiltScene OutlineScene(
     if (object.kind == ObjectKind::Footprints && object.footprints.separate)
     {
       std::vector<std::string> notes;
-      parts = ReadFootprints(object, built.description, notes, keepGoing);
+      parts = ReadFootprints(object, built.description, nullptr, notes, keepGoing);
       for (Part& part : parts)
       {
         part.mesh = Mesh();
@@ -299,10 +323,15 @@ BuiltScene BuildScene(
   built.description = ReadDescription(file, text);
   UnmappedMaterials unmapped;
   MeshFiles files(built.description.objects);
+  Terrains terrains;
   AddParts(
     built,
     [&](const Object& object, const std::function<bool()>& keepGoing)
-    { return BuildObject(built.description, object, files, unmapped, built.report, keepGoing); },
+    {
+      const Terrain* terrain = terrains.Get(object.footprints.on, built.parts);
+      return BuildObject(
+        built.description, object, terrain, files, unmapped, built.report, keepGoing);
+    },
     progress);
   unmapped.Warn(built.warnings);
   ReportExtents(built);

@@ -89,6 +89,8 @@ struct FootprintOptions
   std::optional<Glazing> glazing;
   bool separate = false;
   std::string nameAttribute = "name";
+  /// Name of the object before it that it stands on; empty: the level of the origin.
+  std::string on;
 };
 
 struct GroundOptions

@@ -39,6 +39,11 @@ VERBS = {
   avianlidar convert echoes.las echoes.pcd
   avianlidar convert sequences/sequences/00 sequence.mcap
 """),
+    "airport": ("a scene and plans of an airport from a map", "A scene file, plans of coverage and siting, a scenario and a picture of an "
+                "airport, from an extract of OpenStreetMap or another map. A further run keeps files that were edited.", """\
+  avianlidar airport extract.osm.pbf --heights terrain.tif -o my-airport
+  avianlidar airport county.geojson --icao EDBN -o edbn
+"""),
     "sequence": ("labelled scans of birds, to train on", "Labelled scans of a scenario in the layout of SemanticKITTI. Started "
                  "again it goes on where it was; `mpiexec -n 2 pvbatch --sym -m avianlidar` shares the work.", """\
   avianlidar sequence hongqiao.scenario.json -o sequences --scans 100
@@ -162,6 +167,15 @@ def parser() -> Parser:
     verb["sensors"].add_argument("--fit", metavar="FILE", help="a sensor file with a sheet, or a name: its receiver fitted to all "
                                  "points of the sheet; needs SciPy")
     _out(verb["sensors"], "file: the sensor with the fitted receiver (.lidarsensor.json)", required=False)
+
+    airport = verb["airport"]
+    airport.add_argument("extract", type=pathlib.Path, help="of a map: .osm, .osm.pbf, .geojson, .gpkg")
+    airport.add_argument("--heights", type=pathlib.Path, metavar="DEM", help="of the ground: a GeoTIFF or an ASCII grid; default: level")
+    which = airport.add_mutually_exclusive_group()
+    which.add_argument("--icao", metavar="CODE", help="of the airport, where the extract holds several")
+    which.add_argument("--bounds", nargs=4, type=float, metavar=("W", "S", "E", "N"),
+                       help="degrees: the scene holds what lies inside; default: 2 km around the runways")
+    _out(airport, "folder")
 
     sequence = verb["sequence"]
     sequence.add_argument("scenario", help="a scenario file, or the manifest.json of another sequence")

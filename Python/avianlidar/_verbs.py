@@ -368,6 +368,20 @@ def bench(options) -> None:
     print(f"{options.out / 'bench.html'}: the page; its tables and pictures are beside it")
 
 
+def airport(options) -> None:
+    from ._disk import only_run
+    from .apps._airport import Airport
+    bars = Bars()
+    made = Airport(options.extract, options.heights, options.icao, options.bounds, bars)
+    with only_run(options.out, goes_on=False):
+        kept = made.write(options.out)
+    bars.close()
+    for name in kept.edited:
+        warn(f"{options.out / name} was edited and stays as it is; remove it to have it made again")
+    print(f"{options.out}: {made.name}, {len(made.sides)} {'runways' if len(made.sides) > 1 else 'runway'}, "
+          f"{sum('height' in row for row in made.rows)} buildings; README.txt says what is assumed")
+
+
 def _plan(options) -> Dict[str, Any]:
     """The plan with what options change."""
     from .apps._maps import read_plan

@@ -1,0 +1,777 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""A scene, plans and a scenario of an airport from an extract of a map: the command `avianlidar airport`. GDAL reads; the scene
+reader raises footprints, lays areas on the terrain and places crowns."""
+from __future__ import annotations
+
+import collections
+import contextlib
+import csv
+import dataclasses
+import hashlib
+import io
+import json
+import math
+import pathlib
+import re
+from typing import Any, Callable, Dict, Iterator, List, Optional, Sequence, Tuple
+
+import numpy as np
+from vtkmodules.util.numpy_support import vtk_to_numpy
+
+from .._cloud import field_values
+from .._disk import read_regular, write_whole
+from .._pipeline import Error, update
+from .._scene import Scene, load_scene
+from .._scene import mesh as _surface
+from . import _pictures, siting
+from ._json import load_json, naming
+from ._maps import coordinate_system
+
+SUFFIXES = {".osm": "OSM", ".pbf": "OSM", ".geojson": "GeoJSON", ".gpkg": "GPKG"}  # with GDAL's drivers
+RASTERS = ["GTiff", "AAIGrid"]
+LARGEST = 256 << 20  # bytes of an extract
+MOST_POSTS = 250_000  # of a terrain: it takes some seconds
+MOST_CHOSEN = 0.25  # of the posts: where so many are needed, all are taken
+NEAR_AERODROME = 3000.0  # m: a runway belongs to the nearest aerodrome within
+ONE_AIRPORT = 6000.0  # m between runways of one airport, where no aerodrome is in the extract
+TALLEST = 1000.0  # m: what is higher is no height
+FLAT_SPACING = 100.0  # m, of a ground without a terrain, which follows the Earth
+AROUND = 600.0  # m beside runways where lidars may stand
+WHAT = ("airport.geojson", "terrain.vtp", "airport.lidarscene.json", "exclusions.geojson", "airport.coverage.json",
+        "siting.coverage.json", "airport.scenario.json", "assumed.csv", "airport.png", "README.txt")
+RECORD = "made.json"  # checksums of these as they were made
+TAG = re.compile(r'"((?:[^"\\]|\\.)*)"=>"((?:[^"\\]|\\.)*)"')  # of GDAL's OSM driver
+LENGTH = re.compile(r"\s*(\d+(?:[.,]\d+)?)\s*(m|ft|feet|')?\s*")
+FOOT = 0.3048  # m
+COLOURS = {"runway": "#333333", "taxiway": "#666666", "apron": "#b0aca4", "road": "#8c8c8c", "parking": "#a5a5a5", "water": "#7fb2d6",
+           "grass": "#cfe3b8", "terminal": "#c0392b", "hangar": "#8e44ad", "tower": "#e67e22", "mast": "#e67e22", "pole": "#e67e22",
+           "fence": "#000000", "structure": "#8e6d4f"}
+BUILDING = "#a0522d"
+PLANTS = "#4c8c4a"
+
+
+@dataclasses.dataclass
+class Feature:
+    """What a kind of the rules takes from an extract: tags and geometry (ogr, degrees, longitude first)."""
+
+    kind: str
+    tags: Dict[str, str]
+    shape: Any
+
+
+def rules() -> Dict[str, Any]:
+    """What is made of which tags, with all numbers that are assumed (`airport.json`)."""
+    return load_json(pathlib.Path(__file__).with_name("airport.json"))
+
+
+def _gdal():
+    from osgeo import gdal, ogr, osr
+    for module in (gdal, ogr, osr):
+        module.UseExceptions()
+    return gdal, ogr, osr
+
+
+@contextlib.contextmanager
+def _quiet() -> Iterator[None]:
+    """Without GDAL's warnings, as of rings that cross, which the scene reader repairs and counts."""
+    gdal, _, _ = _gdal()
+    gdal.PushErrorHandler("CPLQuietErrorHandler")
+    try:
+        yield
+    finally:
+        gdal.PopErrorHandler()
+
+
+def _degrees():
+    _, _, osr = _gdal()
+    system = osr.SpatialReference()
+    system.ImportFromEPSG(4326)
+    system.SetAxisMappingStrategy(osr.OAMS_TRADITIONAL_GIS_ORDER)
+    return system
+
+
+def _fits(tags: Dict[str, str], wanted: Dict[str, Any]) -> bool:
+    return all(name in tags and (words == "*" or tags[name] in (words if isinstance(words, list) else [words]))
+               for name, words in wanted.items())
+
+
+def _form(shape) -> str:
+    """Which of point, line and area a geometry is; "" for others."""
+    name = shape.GetGeometryName().replace("MULTI", "") if shape is not None else ""
+    return {"POINT": "point", "LINESTRING": "line", "POLYGON": "area"}.get(name, "")
+
+
+def length_of(text: Any) -> Optional[float]:
+    """Metres of "12", "12.5 m", "40 ft"; None where it is no length."""
+    found = LENGTH.fullmatch(str(text))
+    if not found:
+        return None
+    value = float(found[1].replace(",", ".")) * (FOOT if found[2] not in (None, "m") else 1.0)
+    return value if 0.0 < value <= TALLEST else None
+
+
+def _open(file: pathlib.Path, what: str, drivers: List[str], kind: int):
+    """A regular file with one of GDAL's drivers."""
+    gdal, _, _ = _gdal()
+    if not file.exists():
+        raise FileNotFoundError(f"no such file: {file}")
+    if not file.is_file():
+        raise Error(f"{file}: it is no regular file")
+    try:
+        return gdal.OpenEx(str(file.resolve()), kind | gdal.OF_READONLY, allowed_drivers=drivers)
+    except RuntimeError as error:
+        raise Error(f"{file}: GDAL cannot read it as {what} ({error})") from None
+
+
+def _tags(feature) -> Dict[str, str]:
+    tags: Dict[str, str] = {}
+    for number in range(feature.GetFieldCount()):
+        if feature.IsFieldSetAndNotNull(number):
+            name, value = feature.GetFieldDefnRef(number).GetName(), feature.GetFieldAsString(number)
+            if name in ("other_tags", "all_tags"):
+                tags.update((re.sub(r"\\(.)", r"\1", key), re.sub(r"\\(.)", r"\1", word)) for key, word in TAG.findall(value))
+            elif value:
+                tags[name] = value
+    return tags
+
+
+def read_extract(file: pathlib.Path, known: Dict[str, Any]) -> Tuple[List[Feature], List[Feature]]:
+    """What the rules know, and aerodromes."""
+    gdal, ogr, osr = _gdal()
+    driver = SUFFIXES.get(file.suffix.lower())
+    if not driver:
+        raise Error(f"{file}: is no extract by its name, expected .osm, .osm.pbf, .geojson or .gpkg")
+    if file.exists() and file.stat().st_size > LARGEST:
+        raise Error(f"{file}: holds {file.stat().st_size >> 20} MiB, expected at most {LARGEST >> 20}: cut it to the airport and some "
+                    "kilometres around it first, as `osmium extract --bbox W,S,E,N` does")
+    data = _open(file, "an extract", [driver], gdal.OF_VECTOR)
+    found: List[Feature] = []
+    aerodromes: List[Feature] = []
+    degrees, seen = _degrees(), set()
+    with naming(str(file)), _quiet():
+        to_degrees = {}
+        while True:
+            feature, layer = data.GetNextFeature()
+            if feature is None:
+                break
+            shape = feature.GetGeometryRef()
+            form = _form(shape)
+            tags = _tags(feature) if form else {}
+            if not tags:
+                continue
+            is_aerodrome = tags.get("aeroway") == "aerodrome"
+            kind = next((kind for kind, rule in known["kinds"].items() if form in rule["from"] and any(_fits(tags, one) for one in rule["tags"])),
+                        None)
+            if is_aerodrome is False and (kind is None or any(_fits(tags, one) for one in known["not"])):
+                continue
+            name = layer.GetName()
+            if name not in to_degrees:
+                own = layer.GetSpatialRef()
+                if own is not None:
+                    own.SetAxisMappingStrategy(osr.OAMS_TRADITIONAL_GIS_ORDER)
+                to_degrees[name] = osr.CoordinateTransformation(own, degrees) if own is not None and not own.IsSame(degrees) else None
+            shape = shape.Clone()
+            if to_degrees[name] is not None:
+                shape.Transform(to_degrees[name])
+            shape.FlattenTo2D()
+            if form == "area" and "osm_way_id" in tags and kind == "taxiway" and tags.get("area") != "yes":
+                shape = ogr.ForceToMultiLineString(shape)  # GDAL takes a closed way for an area
+            once = (kind, bytes(shape.ExportToWkb()))
+            if once not in seen:
+                seen.add(once)
+                (aerodromes if is_aerodrome else found).append(Feature(kind or "", tags, shape))
+    return found, aerodromes
+
+
+def _name_of(aerodrome: Feature) -> str:
+    code = aerodrome.tags.get("icao", "")
+    return " ".join(filter(None, (code, aerodrome.tags.get("name", ""), "" if code else "(no ICAO code)")))
+
+
+def choose_runways(file: pathlib.Path, features: List[Feature], aerodromes: List[Feature], icao: Optional[str],
+                   box: Optional[Sequence[float]]) -> Tuple[List[Feature], Optional[Feature]]:
+    """The runways of one airport, and its aerodrome if the extract has it. @param icao its code, if given @param box west, south,
+    east, north, degrees: runways that meet it, if given"""
+    _, ogr, osr = _gdal()
+    runways = [one for one in features if one.kind == "runway" and _form(one.shape) == "line"]
+    if not runways:
+        raise Error(f"{file}: holds no runway, expected lines with the tag aeroway=runway")
+    middle = runways[0].shape.Centroid()
+    local = osr.CoordinateTransformation(_degrees(), coordinate_system((middle.GetY(), middle.GetX(), 0.0)))
+
+    def metres(feature: Feature):
+        shape = feature.shape.Clone()
+        shape.Transform(local)
+        return shape
+
+    if box is not None:
+        inside = _box(box)
+        runways = [one for one in runways if one.shape.Intersects(inside)]
+        if not runways:
+            raise Error(f"{file}: --bounds {' '.join(f'{x:g}' for x in box)} holds none of its runways")
+    places = [metres(one) for one in aerodromes]
+    groups: Dict[Any, List[Feature]] = collections.defaultdict(list)
+    for one in runways:
+        line = metres(one)
+        away = [(place.Distance(line), number) for number, place in enumerate(places)]
+        near = min(away, default=(math.inf, -1))
+        if near[0] <= NEAR_AERODROME:
+            groups[near[1]].append(one)
+        else:  # by the runways themselves
+            beside = next((key for key, members in groups.items() if isinstance(key, str)
+                           and min(metres(other).Distance(line) for other in members) <= ONE_AIRPORT), f"runway {one.tags.get('ref', '?')}")
+            groups[beside].append(one)
+    names = {key: _name_of(aerodromes[key]) if isinstance(key, int) else key for key in groups}
+    if icao is not None:
+        chosen = [key for key in groups if isinstance(key, int) and aerodromes[key].tags.get("icao", "").upper() == icao.upper()]
+        if not chosen:
+            raise Error(f"{file}: holds no airport {icao} with a runway, but: {', '.join(names.values())}")
+    elif len(groups) > 1 and box is None:
+        raise Error(f"{file}: holds runways of {len(groups)} airports: {', '.join(names.values())}; expected one, or --icao CODE or "
+                    "--bounds W S E N to say which")
+    else:
+        chosen = list(groups)
+    aerodrome = next((aerodromes[key] for key in chosen if isinstance(key, int)), None)
+    return [one for key in chosen for one in groups[key]], aerodrome
+
+
+def _box(degrees: Sequence[float]):
+    _, ogr, _ = _gdal()
+    west, south, east, north = degrees
+    return ogr.CreateGeometryFromWkt(f"POLYGON (({west} {south}, {east} {south}, {east} {north}, {west} {north}, {west} {south}))")
+
+
+def _joined(runways: List[Feature]) -> List[Feature]:
+    """Ways of one runway, which have its `ref`, as one line."""
+    _, ogr, _ = _gdal()
+    parts: Dict[str, List[Feature]] = collections.defaultdict(list)
+    for number, one in enumerate(runways):
+        parts[one.tags.get("ref") or f"#{number}"].append(one)
+    joined = []
+    for members in parts.values():
+        lines = ogr.Geometry(ogr.wkbMultiLineString)
+        for one in members:
+            for line in ([one.shape] if one.shape.GetGeometryCount() == 0 else [one.shape.GetGeometryRef(i) for i in range(one.shape.GetGeometryCount())]):
+                lines.AddGeometry(line)
+        whole = ogr.ForceToLineString(lines)
+        rest = [whole] if whole.GetGeometryName() == "LINESTRING" else [whole.GetGeometryRef(i) for i in range(whole.GetGeometryCount())]
+        tags = {name: value for one in reversed(members) for name, value in one.tags.items()}
+        joined += [Feature("runway", tags, line.Clone()) for line in rest]
+    return joined
+
+
+def properties_of(feature: Feature, known: Dict[str, Any]) -> Dict[str, Any]:
+    """What the scene file reads of a feature, and what each number is from."""
+    rule, tags = known["kinds"][feature.kind], feature.tags
+    number = tags.get("osm_id") or tags.get("osm_way_id") or tags.get("id") or tags.get("@id")
+    properties: Dict[str, Any] = {"kind": feature.kind, "id": number, "name": tags.get("name"), "ref": tags.get("ref")}
+    if "height" in rule:
+        name = height_name(rule)
+        value, source = next(((length_of(tags[key]), key) for key in ("height", "building:height", "height_m") if length_of(tags.get(key))),
+                             (None, "assumed"))
+        if value is not None and "height_source" in tags:
+            source = f"{source}: {tags['height_source']}"
+        levels = length_of(tags.get("building:levels"))
+        if value is None and levels:
+            value, source = known["level_height"] * levels, f"building:levels, {known['level_height']:g} m each assumed"
+        properties.update({name: round(float(rule["height"] if value is None else value), 3), f"{name}_from": source})
+    if "width" in rule and _form(feature.shape) != "area":
+        value, source = next(((length_of(tags.get(key)), key) for key in ("width", "width_m", "diameter_crown") if length_of(tags.get(key))),
+                             (None, "assumed"))
+        properties.update(width=round(float(rule["width"] if value is None else value), 3), width_from=source)
+    if feature.kind in ("runway", "taxiway", "apron", "road", "parking"):
+        said = tags.get("surface", "")
+        surface = next((name for name, words in known["surfaces"].items() if said in words), None)
+        properties.update(surface=surface or rule["material"], surface_from="surface" if surface else "assumed")
+    return {name: value for name, value in properties.items() if value is not None}
+
+
+def height_name(rule: Dict[str, Any]) -> str:
+    """The property with the height: `height` of buildings, which siting changes by some metres and keeps lidars away from, `top`
+    of plants, fences and masts."""
+    return "top" if rule["class"] in ("fence", "mast", "pole", "tree", "vegetation") else "height"
+
+
+def read_heights(file: pathlib.Path, origin: Sequence[float], rectangle: Sequence[float], known: Dict[str, Any]
+                 ) -> Tuple[np.ndarray, float, float, str]:
+    """Heights of a raster at posts that cover a rectangle (m about the origin), rows from south to north: where the raster says
+    none they are level, and it fades into that. @return heights (m), spacing (m), height at the origin (m), words for the reader"""
+    gdal, _, _ = _gdal()
+    data = _open(file, "heights", RASTERS, gdal.OF_RASTER)
+    if not data.GetProjection():
+        raise Error(f"{file}: does not say its coordinate reference system; an ASCII grid has it in a .prj file beside it")
+    with naming(str(file)):
+        system = coordinate_system((*origin[:2], 0.0)).ExportToWkt()
+        own = abs(gdal.AutoCreateWarpedVRT(data, None, system).GetGeoTransform()[1])
+        west, east, south, north = rectangle
+        spacing = max(own, math.sqrt((east - west) * (north - south) / MOST_POSTS))
+        columns, rows = (int(math.ceil((high - low) / spacing)) + 1 for low, high in ((west, east), (south, north)))
+        half = spacing / 2
+        bounds = (west - half, south - half, west - half + columns * spacing, south - half + rows * spacing)
+        grid = gdal.Warp("", data, format="MEM", dstSRS=system, outputBounds=bounds, width=columns, height=rows, dstNodata=-1e9,
+                         resampleAlg="bilinear" if spacing < 2.0 * own else "average", outputType=gdal.GDT_Float64, multithread=False)
+        band = grid.GetRasterBand(1)
+        heights = band.ReadAsArray()
+        missing = ~(np.abs(heights) < 1e5)
+        if missing.all():
+            raise Error("holds no heights at the airport")
+        holes = 100.0 * missing.mean()
+        if missing.any():
+            gdal.FillNodata(band, None, 20, 0)
+            heights = band.ReadAsArray()
+            heights = _feathered(heights, ~(np.abs(heights) < 1e5), spacing, known["feather"])
+    heights = heights[::-1]
+    here = float(_at(heights, (west, south), spacing, (0.0, 0.0)))
+    words = f"heights: {file.name}, taken every {spacing:.3g} m" + (f" (it has them every {own:.3g} m)" if spacing > 1.01 * own else "")
+    if holes > 0.0:
+        words += (f"; {holes:.2g} % of the places have none there: holes are filled from around them, and beyond its border the ground is level, "
+                  f"into which it fades over {known['feather']:g} m (assumed)")
+    return heights, spacing, here, words
+
+
+def _feathered(heights: np.ndarray, missing: np.ndarray, spacing: float, width: float) -> np.ndarray:
+    """Level where heights are missing, at the mean of the border, and fading into that within `width` (m)."""
+    gdal, _, _ = _gdal()
+    if not missing.any():
+        return heights
+    raster = gdal.GetDriverByName("MEM").Create("", missing.shape[1], missing.shape[0], 2, gdal.GDT_Float32)
+    raster.GetRasterBand(1).WriteArray(missing.astype(np.float32))
+    gdal.ComputeProximity(raster.GetRasterBand(1), raster.GetRasterBand(2), ["VALUES=1"])
+    away = raster.GetRasterBand(2).ReadAsArray() * spacing
+    level = heights[(away > 0.0) & (away < 1.5 * spacing)].mean()
+    share = np.clip(away / max(width, spacing), 0.0, 1.0)
+    return level + np.where(missing, 0.0, share * share * (3.0 - 2.0 * share) * (heights - level))
+
+
+def _at(values: np.ndarray, corner: Sequence[float], spacing: float, place: Sequence[float]) -> float:
+    """Between four posts."""
+    x, y = ((place[i] - corner[i]) / spacing for i in (0, 1))
+    column, row = (min(max(int(c), 0), n - 2) for c, n in ((x, values.shape[1]), (y, values.shape[0])))
+    u, v = x - column, y - row
+    (a, b), (c, d) = values[row:row + 2, column:column + 2]
+    return (a * (1 - u) + b * u) * (1 - v) + (c * (1 - u) + d * u) * v
+
+
+def curvature(origin: Sequence[float], x, y):
+    """How far the ellipsoid lies below the origin's tangent plane, m, to the second order: 5 um off at 5 km and 8 mm at 50 km.
+    @param origin latitude (deg), ... @param x, y east and north, m"""
+    a, f = 6378137.0, 1.0 / 298.257223563
+    bulge = 1.0 - f * (2.0 - f) * math.sin(math.radians(origin[0])) ** 2
+    across = a / math.sqrt(bulge)
+    along = a * (1.0 - f * (2.0 - f)) / bulge ** 1.5
+    return 0.5 * (x * x / across + y * y / along)
+
+
+def terrain(heights: np.ndarray, corner: Sequence[float], spacing: float, origin: Sequence[float], error: float):
+    """Triangles (vtkPolyData, m east, north and up of the origin) within `error` (m) of the posts: Delaunay's of the corners and of
+    the worst post of each triangle, again and again; of rough ground all posts. VTK's vtkGreedyTerrainDecimation does not keep to its error: of waves of 20 m
+    it was 34 m off where 0.25 m was asked for (VTK 9.1). @param heights above the origin's height, m, rows from south to north"""
+    from scipy.spatial import Delaunay
+    rows, columns = heights.shape
+    row, column = (index.ravel() for index in np.indices(heights.shape))
+    x, y = corner[0] + spacing * column, corner[1] + spacing * row
+    z = heights.ravel() - curvature(origin, x, y)
+    posts = np.column_stack([column, row]).astype(float)
+    chosen = np.isin(row, (0, rows - 1)) & np.isin(column, (0, columns - 1))
+    while chosen.mean() < MOST_CHOSEN:
+        numbers = np.flatnonzero(chosen)
+        mesh = Delaunay(posts[numbers])
+        found = mesh.find_simplex(posts, tol=1e-9)
+        frame = mesh.transform[found]
+        two = np.einsum("nij,nj->ni", frame[:, :2], posts - frame[:, 2])
+        off = np.abs((np.column_stack([two, 1.0 - two.sum(axis=1)]) * z[numbers][mesh.simplices[found]]).sum(axis=1) - z)
+        off[chosen] = 0.0
+        order = np.lexsort((-off, found))
+        worst = order[np.r_[True, np.diff(found[order]) != 0]]
+        worst = worst[off[worst] > error]
+        if not len(worst):
+            return _surface(np.column_stack([x, y, z])[numbers], mesh.simplices)
+        chosen[worst] = True
+    cells = np.arange(rows * columns).reshape(heights.shape)
+    a, b, c, d = (part.ravel() for part in (cells[:-1, :-1], cells[:-1, 1:], cells[1:, 1:], cells[1:, :-1]))
+    return _surface(np.column_stack([x, y, z]), np.concatenate([np.column_stack([a, b, c]), np.column_stack([a, c, d])]))
+
+
+class Kept:
+    """Files of a folder that are made again as long as nobody has edited them."""
+
+    def __init__(self, folder: pathlib.Path):
+        self.folder, self.record = folder, folder / RECORD
+        self.edited: List[str] = []
+        self.made = load_json(self.record) if self.record.exists() else {}
+        if not isinstance(self.made, dict):
+            raise Error(f"{self.record}: expected checksums by the names of files; remove it to have all files made again as new ones")
+        strange = [name for name in WHAT if (folder / name).exists() and name not in self.made]
+        if strange:
+            raise Error(f"{folder}: {strange[0]} is there and was not made by this command; choose another folder")
+
+    def is_edited(self, name: str) -> bool:
+        path = self.folder / name
+        return path.exists() and hashlib.sha256(path.read_bytes()).hexdigest() != self.made[name]
+
+    def put(self, name: str, make: Callable[[], bytes]) -> pathlib.Path:
+        """The file, made unless it was edited."""
+        path = self.folder / name
+        if self.is_edited(name):
+            self.edited.append(name)
+            return path
+        content = make()
+        self.made[name] = hashlib.sha256(content).hexdigest()
+        write_whole(self.record, (json.dumps(self.made, indent=2) + "\n").encode())
+        write_whole(path, content)
+        return path
+
+
+def _json(value: Any) -> bytes:
+    return (json.dumps(value, indent=2, ensure_ascii=False) + "\n").encode()
+
+
+def _geojson(features: Sequence[Tuple[Dict[str, Any], Any]]) -> bytes:
+    """A feature a line. @param features properties and geometries (ogr, degrees)"""
+    rows = [json.dumps({"type": "Feature", "properties": properties, "geometry": json.loads(shape.ExportToJson(["COORDINATE_PRECISION=9"]))},
+                       ensure_ascii=False) for properties, shape in features]
+    return ('{"type": "FeatureCollection", "features": [\n' + ",\n".join(rows) + "\n]}\n").encode()
+
+
+class Airport:
+    """What is made of an extract."""
+
+    def __init__(self, extract, heights=None, icao: Optional[str] = None, bounds: Optional[Sequence[float]] = None,
+                 progress: Callable[[str, int, int], Any] = lambda *_: None):
+        self.known, self.extract = rules(), pathlib.Path(extract)
+        self.dem = pathlib.Path(heights) if heights is not None else None
+        self.progress = progress
+        if bounds is not None:
+            west, south, east, north = bounds
+            if not (-180.0 <= west < east <= 180.0 and -90.0 <= south < north <= 90.0):
+                raise ValueError(f"--bounds {west:g} {south:g} {east:g} {north:g}: expected west, south, east and north in degrees")
+        progress("extract", 0, 1)
+        self.features, aerodromes = read_extract(self.extract, self.known)
+        progress("extract", 1, 1)
+        runways, aerodrome = choose_runways(self.extract, self.features, aerodromes, icao, bounds)
+        self.runways = _joined(runways)
+        self.tags = aerodrome.tags if aerodrome else {}
+        self.name = self.tags.get("name") or self.tags.get("icao") or self.extract.name.split(".")[0]
+        self._place(bounds)
+
+    def _place(self, bounds: Optional[Sequence[float]]) -> None:
+        """Origin, and the rectangle that the scene holds."""
+        _, ogr, osr = _gdal()
+        ends = np.array([one.shape.GetPoint_2D(i) for one in self.runways for i in (0, one.shape.GetPointCount() - 1)])
+        middle = (ends.min(axis=0) + ends.max(axis=0)) / 2
+        self.origin = (round(float(middle[1]), 7), round(float(middle[0]), 7), 0.0)
+        self.degrees = _degrees()
+        self.local = coordinate_system((*self.origin[:2], 0.0))
+        self.to_local = osr.CoordinateTransformation(self.degrees, self.local)
+        self.to_degrees = osr.CoordinateTransformation(self.local, self.degrees)
+        shape = _box(bounds) if bounds is not None else None
+        if shape is None:
+            shape = ogr.Geometry(ogr.wkbMultiLineString)
+            for one in self.runways:
+                shape.AddGeometry(one.shape)
+        shape.Transform(self.to_local)
+        margin = 0.0 if bounds is not None else self.known["margin"]
+        west, east, south, north = shape.GetEnvelope()
+        self.rectangle = (west - margin, east + margin, south - margin, north + margin)
+        around = _box([self.rectangle[i] for i in (0, 2, 1, 3)])
+        around.Transform(self.to_degrees)
+        self.box = _box([around.GetEnvelope()[i] for i in (0, 2, 1, 3)])
+
+    def _mapped(self) -> bytes:
+        """What lies in the box, with what the scene file reads of it."""
+        rows = []
+        for one in [*self.runways, *(one for one in self.features if one.kind != "runway" or _form(one.shape) == "area")]:
+            shape = one.shape
+            if not shape.Intersects(self.box) if shape.IsValid() else not shape.ConvexHull().Intersects(self.box):
+                continue
+            rule = self.known["kinds"][one.kind]
+            if ("flat" in rule or "medium" in rule or _form(shape) == "line") and one.kind != "runway" and not self.box.Contains(shape):
+                shape = (shape if shape.IsValid() else shape.MakeValid()).Intersection(self.box)
+                if shape is None or shape.IsEmpty():
+                    continue
+            rows.append((properties_of(one, self.known), shape))
+        order = list(self.known["kinds"])
+        rows.sort(key=lambda row: order.index(row[0]["kind"]))
+        return _geojson(rows)
+
+    def _terrain(self) -> bytes:
+        from vtkmodules.vtkIOXML import vtkXMLPolyDataWriter
+        west, east, south, north = rectangle = tuple(x + sign * 50.0 for x, sign in zip(self.rectangle, (-1, 1, -1, 1)))
+        if self.dem is None:
+            spacing = FLAT_SPACING
+            columns, rows = (int(math.ceil((high - low) / spacing)) + 1 for low, high in ((west, east), (south, north)))
+            posts = np.zeros((rows, columns))
+            self.terrain_words = (f"heights: none given: the ground is level at 0 m (assumed), and curves as the Earth does")
+        else:
+            posts, spacing, here, self.terrain_words = read_heights(self.dem, self.origin, rectangle, self.known)
+            self.origin = (*self.origin[:2], round(here, 3))
+            posts = posts - self.origin[2]
+        self.error = self.known["terrain_error"] if self.dem is not None else self.known["level_error"]
+        self.terrain_words += f"; triangles within {self.error:g} m of that"
+        surface = terrain(posts, (west, south), spacing, self.origin, self.error)
+        writer = vtkXMLPolyDataWriter()
+        writer.SetInputData(surface)
+        writer.SetDataModeToBinary()
+        writer.WriteToOutputStringOn()
+        update(writer)
+        return writer.GetOutputString().encode("latin-1")
+
+    def write(self, folder) -> "Kept":
+        """Leave all files in a folder, which is there; those that were edited stay."""
+        out = pathlib.Path(folder)
+        kept = Kept(out)
+        self.progress("files", 0, len(WHAT))
+        with _quiet():
+            mapped = kept.put("airport.geojson", self._mapped)
+        kept.put("terrain.vtp", self._terrain)
+        if not hasattr(self, "terrain_words"):
+            self.terrain_words = "heights: terrain.vtp as it was edited"
+        self.rows = [feature["properties"] for feature in siting._features(mapped)]
+        unknown = {row.get("kind") for row in self.rows} - set(self.known["kinds"])
+        if unknown:
+            raise Error(f"{mapped}: kind is {sorted(map(str, unknown))[0]!r}, expected one of {', '.join(self.known['kinds'])}")
+        scene_file = out / "airport.lidarscene.json"
+        if not kept.is_edited(scene_file.name):
+            kept.put(scene_file.name, lambda: _json(self.scene_of()))
+        self.progress("files", 3, len(WHAT))
+        self.scene = load_scene(scene_file)
+        self.sides = siting.read_runways(mapped, self.scene.geodetic_origin)
+        exclusions = kept.put("exclusions.geojson", lambda: self._exclusions(mapped))
+        self.position = self._position(mapped, exclusions)
+        kept.put(scene_file.name, lambda: _json(self.scene_of(self.position)))
+        kept.put("airport.coverage.json", lambda: _json(self.plan()))
+        kept.put("siting.coverage.json", lambda: _json(self.plan(siting_too=True)))
+        kept.put("airport.scenario.json", lambda: _json(self.scenario()))
+        kept.put("assumed.csv", self._assumed)
+        self.progress("files", 8, len(WHAT))
+        picture = out / "airport.png"
+        if kept.is_edited(picture.name):
+            kept.edited.append(picture.name)
+        else:
+            kept.put(picture.name, self._picture)
+        kept.put("README.txt", self._readme)
+        self.progress("files", len(WHAT), len(WHAT))
+        return kept
+
+    def scene_of(self, position: Optional[np.ndarray] = None) -> Dict[str, Any]:
+        """The scene file. @param position of the lidar, m"""
+        objects: List[Dict[str, Any]] = [{"name": "Terrain", "class": "terrain", "file": "terrain.vtp", "material": "Grass"}]
+        there = collections.Counter((row["kind"], row.get("surface")) for row in self.rows)
+        for kind, rule in self.known["kinds"].items():
+            for surface in sorted({surface for one, surface in there if one == kind}, key=str):
+                name = kind.capitalize() + (f" of {surface.lower()}" if surface else "")
+                item: Dict[str, Any] = {"name": name, "class": rule["class"], "footprints": "airport.geojson",
+                                        "filter": {"kind": kind, **({"surface": surface} if surface else {})}, "on": "Terrain"}
+                if "medium" in rule:
+                    item["medium"] = rule["medium"]
+                else:
+                    item["material"] = surface or rule["material"]
+                if rule.get("flat"):
+                    item.update(flat=True, base=rule["base"])
+                else:
+                    item.update(height_attribute=height_name(rule), height=rule["height"])
+                if "width" in rule:
+                    item.update(width_attribute="width", width=rule["width"])
+                if "glazing" in rule:
+                    item["glazing"] = rule["glazing"]
+                if kind in ("runway", "terminal", "hangar", "tower"):
+                    item.update(features="separate", name_attribute="ref" if kind == "runway" else "name")
+                objects.append(item)
+        used = {item.get("material") for item in objects}
+        materials = {name: values for name, values in self.known["materials"].items() if name in used}
+        lidar = {"lidar": {"position": [round(float(x), 3) for x in position]}} if position is not None else {}
+        return {"version": 1, "comment": [f"{self.name}, from {self.extract.name}. README.txt says what is assumed.", self.terrain_words],
+                "attribution": [f"Outlines: {self.extract.name}; of OpenStreetMap: (c) OpenStreetMap contributors, ODbL 1.0, "
+                                "https://www.openstreetmap.org/copyright"],
+                "origin": dict(zip(("latitude", "longitude", "height"), self.origin)), **lidar,
+                **({"materials": materials} if materials else {}), "objects": objects}
+
+    def _exclusions(self, mapped: pathlib.Path) -> bytes:
+        """Where no lidar may stand beside buildings: around runways and taxiways, on aprons and water, in woods."""
+        _, ogr, _ = _gdal()
+        rows = []
+        for runway in self.sides:
+            corners = siting.to_geodetic(np.column_stack([siting.runway_outline(runway), np.zeros(4)]), self.scene.geodetic_origin)[:, :2]
+            ring = ", ".join(f"{x:.9f} {y:.9f}" for x, y in [*corners, corners[0]])
+            rows.append(({"what": "around a runway", "name": runway.name}, ogr.CreateGeometryFromWkt(f"POLYGON (({ring}))")))
+        for feature in siting._features(mapped):
+            kind = feature["properties"]["kind"]
+            if kind not in ("taxiway", "apron", "water", "wood", "scrub"):
+                continue
+            shape = ogr.CreateGeometryFromJson(json.dumps(feature["geometry"]))
+            if _form(shape) == "line":
+                shape.Transform(self.to_local)
+                shape = shape.Buffer(self.known["beside_taxiways"])
+                shape.Transform(self.to_degrees)
+            rows.append(({"what": kind}, shape))
+        return _geojson(rows)
+
+    def _bounds(self) -> List[float]:
+        """Of the runways, and what lies beside them: least and greatest x, y, m."""
+        ends = np.array([end for runway in self.sides for end in (runway.start, runway.end)])
+        low, high = ends.min(axis=0) - AROUND, ends.max(axis=0) + AROUND
+        return [float(x) for x in np.round((low[0], high[0], low[1], high[1]), -1)]
+
+    @property
+    def leaves(self) -> bool:
+        """Whether the scene has any: the clutter behind them takes seconds in each of a report's weathers."""
+        return any("medium" in self.known["kinds"][row["kind"]] for row in self.rows)
+
+    @property
+    def longest(self) -> siting.Runway:
+        return max(self.sides, key=lambda runway: runway.axis()[1])
+
+    def _position(self, mapped: pathlib.Path, exclusions: pathlib.Path) -> np.ndarray:
+        """A place for the lidar, until siting says a better one: the free one that is nearest to the middle of the longest runway."""
+        taken = siting.read_outlines(mapped, self.scene.geodetic_origin, "height")
+        taken += siting.read_outlines(exclusions, self.scene.geodetic_origin)
+        with naming(f"{self.extract}: places for a lidar beside its runways"):
+            free = siting.candidates(siting.lattice(self._bounds(), 50.0), (self.known["mast"],), [(outline, 10.0) for outline in taken], self.scene)
+        middle = np.mean([self.longest.start, self.longest.end], axis=0)
+        return free[np.argmin(np.linalg.norm(free[:, :2] - middle, axis=1))]
+
+    def plan(self, siting_too: bool = False) -> Dict[str, Any]:
+        """A plan of coverage. @param siting_too also where else lidars could stand"""
+        plan: Dict[str, Any] = {
+            "description": f"{'Where should a search lidar stand to see herring gulls' if siting_too else 'Where does a search lidar see herring gulls'} "
+                           f"at {self.name}?",
+            "scene": "airport.lidarscene.json", "sensor": {"preset": "Search905"}, "coverage": {"species": "herring gull", "visibility": 23000},
+            "runways": "airport.geojson"}
+        if siting_too:
+            if self.leaves:
+                plan["coverage"]["clutter"] = False
+            plan["siting"] = {"bounds": self._bounds(), "spacing": 200, "masts": [self.known["mast"]], "margin": 10,
+                              "exclusions": ["exclusions.geojson"], "sensors": 3}
+        return plan
+
+    def scenario(self) -> Dict[str, Any]:
+        """A scenario of labelled scans with birds around the lidar, and an aircraft on the longest runway."""
+        x, y, z = (round(float(c), 1) for c in self.position)
+        ground = round(z - self.known["mast"], 1)
+        around = {"center": [x, y, ground]}
+        runway = self.longest
+        (x0, y0), (x1, y1) = runway.start, runway.end
+        z0, z1 = (round(float(np.nan_to_num(h)), 1) for h in siting.ground_of(self.scene, [runway.start, runway.end]))
+        return {
+            "description": f"Birds at {self.name}. Kinds, numbers and flights of birds, the aircraft, sway and jitter are assumed.",
+            "scene": "airport.lidarscene.json",
+            "sensor": {"preset": "Search905", "sway_amplitude": 0.02, "sway_frequency": 0.5, "encoder_jitter": 0.01},
+            "scan": {"attenuation_coefficient": 8.9e-5, "number_of_reflections": 1, "rays_per_beam": 400},
+            "number_of_scans": 100, "scans_per_sequence": 100, "seed": 1,
+            "birds": [
+                {"pattern": "Crossings", "species": "herring gull", "number_of_birds": 8, "radius": 500, "heights": [2, 40], **around},
+                {"pattern": "Crossings", "species": "crow", "number_of_birds": 8, "radius": 400, "heights": [2, 30], **around},
+                {"pattern": "Circles", "species": "kestrel", "number_of_birds": 4, "radius": 300, "heights": [5, 25], **around},
+                {"pattern": "Flock", "species": "starling", "number_of_birds": 8, "radius": 250, "heights": [8, 20], **around}],
+            "objects": [
+                {"name": "Aircraft on the runway", "class": "aircraft", "material": "Metal", "speed": 40, "every": 150,
+                 "boxes": [[-2, 2, -19, 19, 2, 6], [-17, 17, -3, 3, 2.5, 3.2], [-0.3, 0.3, -19, -14, 6, 12]],
+                 "route": [[round(x0, 1), round(y0, 1), z0], [round(x1, 1), round(y1, 1), z1]]}]}
+
+    def _assumed_rows(self) -> Iterator[Tuple[Any, ...]]:
+        for row in self.rows:
+            for what in ("height", "top", "width", "surface"):
+                if "assumed" in str(row.get(f"{what}_from", "")):
+                    yield row["kind"], row.get("id", ""), row.get("name") or row.get("ref") or "", what, row.get(what), row[f"{what}_from"]
+
+    def _assumed(self) -> bytes:
+        table = io.StringIO(newline="")
+        writer = csv.writer(table, lineterminator="\n")
+        writer.writerow(("kind", "id", "name", "what", "value (m, or a material)", "from"))
+        writer.writerows(self._assumed_rows())
+        return table.getvalue().encode()
+
+    def _readme(self) -> bytes:
+        kinds = collections.Counter(row["kind"] for row in self.rows)
+        assumed = collections.Counter((row[0], row[3]) for row in self._assumed_rows())
+        lengths = "\n".join(f"  {runway.name}: {runway.axis()[1]:.0f} m long, {runway.width:g} m wide" for runway in self.sides)
+        table = "\n".join(f"  {kind}: {count}" + "".join(f"; {what} assumed of {number}" for (one, what), number in assumed.items() if one == kind)
+                          for kind, count in kinds.items())
+        said = sorted({str(row["height_from"]) for row in self.rows if ": " in str(row.get("height_from", ""))})
+        quoted = "".join(f"  of its heights the extract says: {words}\n" for words in said)
+        heights = siting.ground_of(self.scene, [end for runway in self.sides for end in (runway.start, runway.end)])
+        x, y, z = self.position
+        without = "; without clutter, as behind leaves it takes long" if self.leaves else ""
+        return f"""{self.name}
+
+Made by `avianlidar airport` from {self.extract.name}. All files are to be edited: a further run makes only those again that nobody
+has edited, so remove a file to have it made anew.
+
+  airport.geojson          what was taken from the extract: kind, height (of plants, fences and masts: top), width, and what each is from
+  terrain.vtp              the ground
+  airport.lidarscene.json  the scene
+  airport.coverage.json    a plan: avianlidar coverage airport.coverage.json -o maps
+  siting.coverage.json     the same with sites: avianlidar report siting.coverage.json -o report.html{without}
+  exclusions.geojson       where no lidar may stand, beside buildings
+  airport.scenario.json    labelled scans: avianlidar sequence airport.scenario.json -o sequences
+  assumed.csv              each number that the extract does not say
+  airport.png              the scene from above
+
+Runways
+{lengths}
+
+What there is, and of how much of it a number is assumed
+{table}
+{quoted}
+{self.terrain_words}
+  heights are above the sea or the ellipsoid as the file has them
+  the ends of the runways lie {np.nanmin(heights):.1f} to {np.nanmax(heights):.1f} m above the origin; heights of plans are above the origin
+
+Assumed besides: materials, leaves (m2/m3) of woods and trees, which are full of leaves to the ground, what is not mapped is grass.
+Roofs are level, solids stand on the lowest ground below them. Fences are walls here: wire lets most light through.
+
+Check on site
+  the runways' widths and ends, against the aeronautical chart
+  heights of terminals, hangars, towers and masts near the lidar: they shadow
+  what is new, gone, or was never mapped: buildings, masts, fences, trees; cranes and parked aircraft
+  woods and trees: height, and leaves by season
+  the lidar's place ({x:.0f} m east, {y:.0f} m north, {z:.1f} m up): it is the free place nearest to the middle of the longest runway,
+  chosen for nothing else; whether a mast may stand there is for the airport to say
+  exclusions: simplified, not the airport's obstacle surfaces
+""".encode()
+
+    def _picture(self) -> bytes:
+        """The scene from above, in colours of what it is."""
+        import tempfile
+        west, east, south, north = self.rectangle
+        longer = max(east - west, north - south) / 9.0  # m of an inch
+        size = (max((east - west) / longer, 3.0) + 2.0, max((north - south) / longer, 3.0) + 0.5)
+        with tempfile.TemporaryDirectory() as folder:
+            return read_regular(_pictures.draw(pathlib.Path(folder) / "airport.png", size, self._draw))
+
+    def _draw(self, axes) -> None:
+        from matplotlib.collections import PolyCollection
+        from matplotlib.colors import LinearSegmentedColormap
+        from matplotlib.patches import Patch
+        shown: Dict[str, str] = {}
+        for _, word, triangles in parts_of(self.scene):
+            if word == "terrain":
+                x, y, z = triangles.reshape(-1, 3).T
+                shades = axes.tripcolor(x, y, np.arange(len(x)).reshape(-1, 3), z, shading="gouraud", zorder=0,
+                                        cmap=LinearSegmentedColormap.from_list("ground", ("#c3d3b4", "#f6f1df")))
+                axes.figure.colorbar(shades, ax=axes, shrink=0.5, label="ground, m above the origin")
+                continue
+            colour = COLOURS.get(word, PLANTS if word in ("tree", "vegetation") else BUILDING)
+            shown[word] = colour
+            order = {"grass": 1, "water": 2, "parking": 2, "road": 3, "apron": 4, "taxiway": 5, "runway": 6, "vegetation": 7}.get(word, 8)
+            axes.add_collection(PolyCollection(triangles[:, :, :2], facecolors=colour, edgecolors=colour, linewidths=0.2, zorder=order))
+        axes.plot(*self.position[:2], "r^", markersize=8, zorder=20)
+        for runway in self.sides:
+            axes.annotate(runway.name, runway.start, color="white", fontsize=8, ha="center", zorder=21,
+                          bbox={"facecolor": "black", "pad": 1, "linewidth": 0})
+        axes.legend(handles=[Patch(color=colour, label=word) for word, colour in shown.items()], fontsize=8, loc="upper left").set_zorder(30)
+        axes.set_xlim(self.rectangle[:2])
+        axes.set_ylim(self.rectangle[2:])
+        axes.set_aspect("equal")
+        axes.set_xlabel("m east")
+        axes.set_ylabel("m north")
+        axes.set_title(f"{self.name}: the scene from above; red: the lidar")
+
+
+def parts_of(scene: Scene) -> Iterator[Tuple[str, str, np.ndarray]]:
+    """Of each object of a scene file its name, class and triangles (n x 3 x 3, m)."""
+    data = scene.surfaces.GetBlock(0)
+    for block in (data.GetBlock(i) for i in range(data.GetNumberOfBlocks())):
+        fields = field_values(block)
+        cells = vtk_to_numpy(block.GetPolys().GetConnectivityArray()).reshape(-1, 3)
+        yield fields["object_names"][0], fields["object_classes"][0], vtk_to_numpy(block.GetPoints().GetData())[cells]

@@ -1,0 +1,515 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""`avianlidar airport`: extracts and terrains that the tests write, areas and heights against closed forms, an ellipsoid's curve,
+edits that stay, extracts that are wrong; extracts of real airports, where the data folder is there."""
+import bz2
+import contextlib
+import csv
+import io
+import json
+import os
+import pathlib
+import shutil
+import unittest
+from xml.sax.saxutils import quoteattr
+
+import numpy as np
+from osgeo import gdal
+
+import avianlidar as al
+import exampletools
+from avianlidar import siting
+from avianlidar._command import main
+from avianlidar.apps import _airport as airport
+from avianlidar.apps._maps import coordinate_system
+
+DATA = os.environ.get("AVIANLIDAR_DATA_DIR", "")
+HERE = (53.6, 13.3, 0.0)  # latitude, longitude, height
+FOLDER = pathlib.Path(exampletools.OUTPUT) / "TestAirport"
+PAGES = False  # TestAirportReports.py has them
+gdal.UseExceptions()
+
+
+def fresh(name):
+    folder = FOLDER / name
+    shutil.rmtree(folder, ignore_errors=True)
+    folder.parent.mkdir(parents=True, exist_ok=True)
+    return folder
+
+
+def run(*words):
+    """The exit code of the command, and what it says on both streams."""
+    out, err = io.StringIO(), io.StringIO()
+    with contextlib.redirect_stdout(out), contextlib.redirect_stderr(err):
+        try:
+            code = main([str(word) for word in words])
+        except SystemExit as stop:
+            code = stop.code
+    return code, out.getvalue() + err.getvalue()
+
+
+class Map:
+    """Raw OSM of things in metres about a place."""
+
+    def __init__(self, about=HERE):
+        self.about, self.rows, self.ways, self.relations, self.count = about, [], [], [], 0
+
+    def _number(self):
+        self.count += 1
+        return self.count
+
+    @staticmethod
+    def _tags(tags):
+        return "".join(f"<tag k={quoteattr(key)} v={quoteattr(value)}/>" for key, value in tags.items())
+
+    def point(self, x, y, **tags):
+        lon, lat, _ = siting.to_geodetic([(x, y, 0.0)], self.about)[0]
+        number = self._number()
+        self.rows.append(f'<node id="{number}" version="1" lat="{lat:.9f}" lon="{lon:.9f}">{self._tags(tags)}</node>')
+        return number
+
+    def way(self, points, closed=False, **tags):
+        nodes = [self.point(*point) for point in points]
+        number = self._number()
+        self.ways.append(f'<way id="{number}" version="1">' + "".join(f'<nd ref="{node}"/>' for node in nodes + nodes[:1] * closed)
+                         + self._tags({key.replace("__", ":"): value for key, value in tags.items()}) + "</way>")
+        return number
+
+    def area(self, low, high, **tags):
+        (a, b), (c, d) = low, high
+        return self.way([(a, b), (c, b), (c, d), (a, d)], True, **tags)
+
+    def relation(self, outer, inner, **tags):
+        members = [f'<member type="way" ref="{way}" role="{role}"/>' for ways, role in ((outer, "outer"), (inner, "inner")) for way in ways]
+        tags = {key.replace("__", ":"): value for key, value in tags.items()}
+        self.relations.append(f'<relation id="{self._number()}" version="1">{"".join(members)}{self._tags({"type": "multipolygon", **tags})}</relation>')
+
+    def write(self, name):
+        FOLDER.mkdir(parents=True, exist_ok=True)
+        file = FOLDER / name
+        file.write_text('<?xml version="1.0"?><osm version="0.6">' + "".join(self.rows + self.ways + self.relations) + "</osm>", encoding="utf-8")
+        return file
+
+
+def crossing():
+    """Two runways that cross, one of them in two ways, and what stands beside them."""
+    plan = Map()
+    plan.way([(-900, 0), (0, 0)], aeroway="runway", ref="09/27", width="45", surface="concrete")
+    plan.way([(0, 0), (900, 0)], aeroway="runway", ref="09/27", width="45", surface="concrete")
+    plan.way([(0, -700), (0, 700)], aeroway="runway", ref="18/36")
+    plan.way([(100, 100), (400, 100), (400, 300), (100, 300)], True, aeroway="taxiway")
+    plan.area((450, 250), (550, 350), aeroway="apron")
+    plan.area((450, 400), (510, 440), aeroway="hangar", height="12.5 m", name="Hangar A")
+    plan.area((600, 400), (640, 420), building="yes")
+    plan.area((700, 400), (710, 410), building="garage", height="40 ft")
+    plan.point(450, 380, man_made="mast", height="25")
+    plan.way([(-900, -400), (900, -400)], barrier="fence")
+    plan.point(-900, 0, aeroway="aerodrome", icao="XAAA", name="Crossing")
+    return plan
+
+
+def blocks(folder):
+    """By name: class, triangles."""
+    scene = al.load_scene(folder / "airport.lidarscene.json")
+    return scene, {name: (word, triangles) for name, word, triangles in airport.parts_of(scene)}
+
+
+def plan_area(triangles):
+    """Of the sides that are seen from above, m2."""
+    a, b = (triangles[:, i, :2] - triangles[:, 0, :2] for i in (1, 2))
+    area = 0.5 * (a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0])
+    return area[area > 1e-9].sum()
+
+
+def is_closed(triangles):
+    """Whether each edge has two sides."""
+    points = np.round(triangles.reshape(-1, 3), 3)
+    _, ids = np.unique(points, axis=0, return_inverse=True)
+    ids = ids.reshape(-1, 3)
+    edges = np.concatenate([ids[:, [0, 1]], ids[:, [1, 2]], ids[:, [2, 0]]])
+    edges = edges[edges[:, 0] != edges[:, 1]]
+    forth, back = (sorted(map(tuple, way.tolist())) for way in (edges, edges[:, ::-1]))
+    return forth == back
+
+
+def write_heights(name, heights, low, spacing, driver="GTiff"):
+    """A raster in metres about HERE, rows from south to north, pixels about posts."""
+    FOLDER.mkdir(parents=True, exist_ok=True)
+    rows, columns = heights.shape
+    image = gdal.GetDriverByName("MEM").Create("", columns, rows, 1, gdal.GDT_Float64)
+    image.SetGeoTransform((low[0] - spacing / 2, spacing, 0, low[1] + (rows - 0.5) * spacing, 0, -spacing))
+    image.SetProjection(coordinate_system(HERE).ExportToWkt())
+    image.GetRasterBand(1).SetNoDataValue(-9999.0)
+    image.GetRasterBand(1).WriteArray(np.where(np.isfinite(heights), heights, -9999.0)[::-1])
+    gdal.GetDriverByName(driver).CreateCopy(str(FOLDER / name), image)
+    return FOLDER / name
+
+
+def to_report(test, folder):
+    """Coverage of a folder, by its command, and the report, which takes half a minute, if PAGES; few places, and without clutter,
+    which takes seconds behind leaves in each air."""
+    plan = json.loads((folder / "siting.coverage.json").read_text())
+    small = {**plan, "places": 200, "spacing": 100, "siting": {**plan["siting"], "spacing": 700, "sensors": 1, "draws": 0}}
+    small["coverage"]["clutter"] = False
+    (folder / "small.coverage.json").write_text(json.dumps(small))
+    for verb, out in (("coverage", folder / "maps"), ("report", folder / "report.html"))[:1 + PAGES]:
+        code, words = run(verb, folder / "small.coverage.json", "-o", out)
+        test.assertEqual(code, 0, words)
+
+
+class Extracts(unittest.TestCase):
+    def test_runways_that_cross(self):
+        folder = fresh("crossing")
+        code, words = run("airport", crossing().write("crossing.osm"), "-o", folder)
+        self.assertEqual(code, 0, words)
+        self.assertEqual(sorted(path.name for path in folder.iterdir()), sorted([*airport.WHAT, airport.RECORD]))
+        scene, found = blocks(folder)
+        runways = {one.name: one for one in siting.read_runways(folder / "airport.geojson", scene.geodetic_origin)}
+        self.assertEqual(set(runways), {"09/27", "18/36"})
+        self.assertAlmostEqual(runways["09/27"].axis()[1], 1800.0, delta=0.01)
+        self.assertAlmostEqual(runways["18/36"].axis()[1], 1400.0, delta=0.01)
+        self.assertEqual((runways["09/27"].width, runways["18/36"].width), (45.0, 45.0))
+        for name, area in (("09/27", 1800 * 45), ("18/36", 1400 * 45), ("Taxiway of asphalt", 1000 * 18), ("Apron of concrete", 1e4),
+                           ("Hangar A", 2400), ("Building", 800), ("Garage", 100), ("Mast", 0.25), ("Fence", 90)):
+            self.assertAlmostEqual(plan_area(found[name][1]) / area, 1.0, delta=1e-4, msg=name)
+        for name, height in (("Hangar A", 12.5), ("Building", 8), ("Garage", 40 * 0.3048), ("Mast", 25)):
+            z = found[name][1][:, :, 2]
+            self.assertAlmostEqual(z.max() - z.min(), height, delta=2e-3, msg=name)  # of coordinates in degrees
+        for name in ("Hangar A", "Building", "Mast", "Fence"):
+            self.assertTrue(is_closed(found[name][1]), name)
+        # The ground curves: a point at the far end of the fence lies lower.
+        low = found["Fence"][1][:, :, 2].min()
+        self.assertAlmostEqual(low, -(900**2 + 400**2) / 2 / 6.37e6, delta=0.02)
+        with open(folder / "assumed.csv", encoding="utf-8", newline="") as stream:
+            assumed = {(row[0], row[3]): row[4] for row in list(csv.reader(stream))[1:]}
+        self.assertEqual(assumed[("building", "height")], "8.0")
+        self.assertEqual(assumed[("runway", "width")], "45.0")
+        self.assertNotIn(("hangar", "height"), assumed)
+        # The lidar stands beside the runways, and siting's candidates do.
+        outlines = siting.read_outlines(folder / "exclusions.geojson", scene.geodetic_origin)
+        self.assertFalse(any(siting.is_near([scene.lidar_position], outline)[0] for outline in outlines))
+        self.assertEqual(sum(siting.is_near([(0.0, 0.0)], outline)[0] for outline in outlines), 2)
+        to_report(self, folder)
+        code, words = run("sequence", folder / "airport.scenario.json", "-o", folder / "scans", "--scans", 1)
+        self.assertEqual(code, 0, words)
+
+    def test_other_formats_hold_the_same(self):
+        """A GeoPackage in UTM, with tags as text, and GeoJSON."""
+        file, found = crossing().write("formats.osm"), []
+        gdal.VectorTranslate(str(FOLDER / "formats.gpkg"), str(file), format="GPKG", dstSRS="EPSG:32633")
+        with open(FOLDER / "formats.geojson", "w", encoding="utf-8") as stream:
+            features = [{"type": "Feature", "properties": one.tags, "geometry": json.loads(one.shape.ExportToJson())}
+                        for group in airport.read_extract(file, airport.rules()) for one in group]
+            json.dump({"type": "FeatureCollection", "features": features}, stream)
+        for name in ("formats.osm", "formats.gpkg", "formats.geojson"):
+            folder = fresh(name.replace(".", "-"))
+            code, words = run("airport", FOLDER / name, "--icao", "XAAA", "-o", folder)
+            self.assertEqual(code, 0, words)
+            _, parts = blocks(folder)
+            found.append({part: (word, round(plan_area(triangles), 1)) for part, (word, triangles) in parts.items()})
+        self.assertEqual(found[0], found[1])
+        self.assertEqual(found[0], found[2])
+
+    def test_relations_with_holes_and_levels(self):
+        plan = Map()
+        plan.way([(-600, 0), (600, 0)], aeroway="runway", ref="09/27", width="30")
+        outer, inner = plan.area((0, 200), (100, 280)), plan.area((30, 220), (70, 250))
+        plan.relation([outer], [inner], building="yes", building__levels="4", name="Ring")
+        wood, glade = plan.area((-400, 200), (-200, 300)), plan.area((-350, 230), (-250, 270))
+        plan.relation([wood], [glade], landuse="forest", height="20")
+        plan.relation([plan.area((200, 200), (260, 260)), plan.area((240, 240), (300, 300))], [], building="yes", building__levels="two")
+        folder = fresh("holes")
+        code, words = run("airport", plan.write("holes.osm"), "-o", folder)
+        self.assertEqual(code, 0, words)
+        rows = [feature["properties"] for feature in json.loads((folder / "airport.geojson").read_text())["features"]]
+        ring = next(row for row in rows if row.get("name") == "Ring")
+        self.assertEqual((ring["height"], ring["height_from"]), (12, "building:levels, 3 m each assumed"))
+        _, found = blocks(folder)
+        self.assertAlmostEqual(plan_area(found["Wood"][1]), 200 * 100 - 100 * 40, delta=2.0)
+        self.assertTrue(is_closed(found["Wood"][1]))
+        z = found["Wood"][1][:, :, 2]
+        self.assertAlmostEqual(z.max() - z.min(), 20.0, delta=0.03)
+        # The hole and the overlap of a relation that is none: GEOS joins them, or takes them for a hole.
+        area = plan_area(found["Building"][1]) - (8000 - 1200)
+        self.assertTrue(any(abs(area - expected) < 1.0 for expected in (2 * 3600 - 400, 2 * 3600 - 800, 2 * 3600)), area)
+        to_report(self, folder)
+
+    def test_a_slope_with_a_wood(self):
+        """Ground that rises by 4 % to the east, in a tilted plane that a few triangles hold."""
+        plan = Map()
+        plan.way([(-600, 0), (600, 0)], aeroway="runway", ref="09/27", width="30")
+        plan.area((100, 300), (400, 500), natural="wood", height="15")
+        plan.point(-300, 500, natural="tree", height="10")
+        plan.area((-300, 300), (-200, 340), building="hangar", height="10")
+        plan.way([(-500, -300), (500, -300)], barrier="fence", height="3")
+        x = np.arange(-3200, 3201, 50.0)
+        dem = write_heights("slope.tif", np.broadcast_to(100 + 0.04 * x, (len(x), len(x))), (-3200, -3200), 50.0)
+        folder = fresh("slope")
+        code, words = run("airport", plan.write("slope.osm"), "--heights", dem, "-o", folder)
+        self.assertEqual(code, 0, words)
+        scene, found = blocks(folder)
+        self.assertAlmostEqual(scene.geodetic_origin[2], 100.0, delta=0.01)
+        error = airport.rules()["terrain_error"]
+
+        def above(name):
+            places = found[name][1].reshape(-1, 3)
+            return places[:, 2] - 0.04 * places[:, 0] + airport.curvature(scene.geodetic_origin, places[:, 0], places[:, 1])
+
+        runway, wood, fence = above("09/27"), above("Wood"), above("Fence")
+        np.testing.assert_allclose(runway, 0.06, atol=error)
+        self.assertLess(np.abs(wood[wood > 7] - 15).max(), error)
+        self.assertLess(np.abs(wood[wood < 7]).max(), error)
+        self.assertLess(np.abs(fence[fence > 1.5] - 3).max(), error)
+        for name in ("Wood", "Fence"):
+            self.assertTrue(is_closed(found[name][1]), name)
+        crown = found["Tree"][1].reshape(-1, 3)
+        np.testing.assert_allclose((crown.min(axis=0) + crown.max(axis=0)) / 2, (-300, 500, 5 - 12), atol=0.3)
+        clutter = [json.loads((folder / name).read_text())["coverage"].get("clutter") for name in ("airport.coverage.json", "siting.coverage.json")]
+        self.assertEqual(clutter, [None, False])  # there are leaves
+        # A hangar is level, and stands on its lowest corner.
+        z = found["Hangar 1"][1][:, :, 2]
+        self.assertAlmostEqual(z.min(), -0.04 * 300, delta=error)
+        self.assertEqual(len(np.unique(np.round(z, 6))), 2)
+        self.assertGreater(scene.lidar_position[2], -30)
+        to_report(self, folder)
+
+    def test_edits_stay(self):
+        folder = fresh("edits")
+        file = crossing().write("edits.osm")
+        self.assertEqual(run("airport", file, "-o", folder)[0], 0)
+        before = {path.name: path.read_bytes() for path in folder.iterdir()}
+        self.assertEqual(run("airport", file, "-o", folder), (0, run("airport", file, "-o", folder)[1]))
+        self.assertEqual({path.name: path.read_bytes() for path in folder.iterdir()}, before)
+        scene = json.loads(before["airport.lidarscene.json"])
+        scene["comment"] = "mine"
+        (folder / "airport.lidarscene.json").write_text(json.dumps(scene))
+        mapped = before["airport.geojson"].decode().replace('"height": 12.5, "height_from": "height"', '"height": 17, "height_from": "survey"')
+        self.assertNotEqual(mapped.encode(), before["airport.geojson"])
+        (folder / "airport.geojson").write_text(mapped)
+        (folder / "README.txt").unlink()
+        code, words = run("airport", file, "-o", folder)
+        self.assertEqual(code, 0)
+        self.assertEqual(words.count("was edited and stays as it is"), 2)
+        self.assertEqual(json.loads((folder / "airport.lidarscene.json").read_text())["comment"], "mine")
+        self.assertEqual((folder / "airport.geojson").read_text(), mapped)
+        self.assertEqual((folder / "README.txt").read_bytes(), before["README.txt"])
+        _, found = blocks(folder)
+        z = found["Hangar A"][1][:, :, 2]
+        self.assertAlmostEqual(z.max() - z.min(), 17.0, delta=2e-3)
+        # What others have left is not written over.
+        other = fresh("others")
+        other.mkdir()
+        (other / "README.txt").write_text("mine")
+        code, words = run("airport", file, "-o", other)
+        self.assertEqual((code, (other / "README.txt").read_text()), (2, "mine"))
+        self.assertIn("was not made by this command", words)
+
+    def test_one_of_two_airports(self):
+        plan = crossing()
+        plan.way([(12000, 0), (13000, 0)], aeroway="runway", ref="01/19", width="20")
+        plan.point(12500, 100, aeroway="aerodrome", icao="XBBB")
+        file = plan.write("two.osm")
+        code, words = run("airport", file, "-o", fresh("two"))
+        self.assertEqual(code, 2)
+        self.assertIn("runways of 2 airports: XAAA Crossing, XBBB", words)
+        self.assertFalse((FOLDER / "two").exists())
+        self.assertIn("but: XAAA Crossing, XBBB", run("airport", file, "--icao", "EDDF", "-o", FOLDER / "two")[1])
+        code, words = run("airport", file, "--icao", "xbbb", "-o", FOLDER / "two")
+        self.assertEqual(code, 0, words)
+        lon, lat, _ = siting.to_geodetic([(12500, 0, 0)], HERE)[0]
+        bounds = (lon - 0.02, lat - 0.01, lon + 0.02, lat + 0.01)
+        code, words = run("airport", file, "--bounds", *bounds, "-o", fresh("bounds"))
+        self.assertEqual(code, 0, words)
+        for name in ("two", "bounds"):
+            scene, found = blocks(FOLDER / name)
+            np.testing.assert_allclose(scene.geodetic_origin[:2], (lat, lon), atol=1e-6)
+            self.assertEqual([one for one in found if "/" in one], ["01/19"])
+        self.assertIn("holds none of its runways", run("airport", file, "--bounds", 1, 1, 2, 2, "-o", fresh("bounds"))[1])
+        self.assertIn("expected west, south, east and north", run("airport", file, "--bounds", 2, 1, 1, 2, "-o", FOLDER / "bounds")[1])
+
+
+class Terrains(unittest.TestCase):
+    def setUp(self):
+        random = np.random.default_rng(5)
+        self.x = np.arange(-1500, 1501, 10.0)
+        x, y = np.meshgrid(self.x, self.x)
+        self.heights = 50 + 20 * np.sin(x / 300) * np.cos(y / 400) + random.normal(0, 0.1, x.shape)
+
+    def above(self, surface, places):
+        """How far places lie above a terrain, m."""
+        scene = al.Scene(surface, material="Wall")
+        return places[:, 2] - siting.ground_of(scene, places[:, :2])
+
+    def test_triangles_keep_to_the_heights(self):
+        """3 km every 10 m: at all posts, on the ellipsoid that GeographicLib has."""
+        from vtkmodules.util.numpy_support import vtk_to_numpy
+        origin = (*HERE[:2], 50.0)
+        surface = airport.terrain(self.heights - 50.0, (-1500.0, -1500.0), 10.0, origin, 0.25)
+        x, y = np.meshgrid(self.x, self.x)
+        places = np.column_stack([x.ravel(), y.ravel(), (self.heights - 50.0).ravel() - airport.curvature(origin, x, y).ravel()])
+        inner = np.abs(places[:, :2]).max(axis=1) < 1499
+        self.assertLess(np.abs(self.above(surface, places[inner][::37])).max(), 0.25 + 1e-6)
+        self.assertLess(surface.GetNumberOfPolys(), 300 * 300)
+        vertices = vtk_to_numpy(surface.GetPoints().GetData())
+        exact = siting.to_geodetic(vertices, origin)[:, 2]
+        columns, rows = (np.round((vertices[:, i] + 1500) / 10).astype(int) for i in (0, 1))
+        np.testing.assert_allclose(exact, self.heights[rows, columns], atol=1e-3)
+        rough = airport.terrain(np.random.default_rng(1).normal(0, 1, (20, 30)), (0.0, 0.0), 10.0, origin, 0.01)
+        self.assertEqual(rough.GetNumberOfPolys(), 2 * 19 * 29)  # all posts
+
+    def test_the_curve_of_the_earth(self):
+        for latitude in (0.0, 31.2, 53.6, 80.0):
+            origin = (latitude, 13.3, 0.0)
+            for x, y in ((5000.0, 0.0), (0.0, 5000.0), (-3000.0, 4000.0)):
+                z = -airport.curvature(origin, x, y)
+                self.assertAlmostEqual(siting.to_geodetic([(x, y, z)], origin)[0, 2], 0.0, delta=1e-5)
+
+    def test_heights_of_files(self):
+        """GeoTIFF and ASCII grid alike; what they do not hold is level, and fades."""
+        known = airport.rules()
+        rectangle = (-2500.0, 2500.0, -1000.0, 1000.0)
+        smooth = 50 + 0.01 * np.broadcast_to(self.x, self.heights.shape)
+        found = []
+        for name, driver in (("part.tif", "GTiff"), ("part.asc", "AAIGrid")):
+            file = write_heights(name, smooth, (-1500, -1500), 10.0, driver)
+            posts, spacing, here, words = airport.read_heights(file, HERE, rectangle, known)
+            found.append(posts)
+            self.assertAlmostEqual(spacing, 10.0, delta=0.01)
+            self.assertAlmostEqual(here, 50.0, delta=0.01)
+            self.assertIn("assumed", words)
+            self.assertLess(np.abs(np.diff(posts, axis=1)).max(), 1.5 * 15.0 * spacing / known["feather"] + 0.2)  # no step of 15 m
+            x = -2500.0 + spacing * np.arange(posts.shape[1])
+            inner = np.abs(x) < 1200
+            np.testing.assert_allclose(posts[50, inner], 50 + 0.01 * x[inner], atol=0.02)
+            outer = np.abs(x) > 1800
+            self.assertLess(np.ptp(posts[:, outer]), 1e-6)
+        np.testing.assert_allclose(found[0], found[1], atol=1e-3)
+        holed = smooth.copy()
+        holed[140:160, 140:160] = np.nan  # filled from around it
+        posts, spacing, here, _ = airport.read_heights(write_heights("holed.tif", holed, (-1500, -1500), 10.0), HERE,
+                                                       (-1000.0, 1000.0, -1000.0, 1000.0), known)
+        self.assertAlmostEqual(here, 50.0, delta=1.0)  # as the border is
+
+    def test_wrong_heights(self):
+        file = crossing().write("wrong.osm")
+        plain = gdal.GetDriverByName("MEM").Create("", 4, 4, 1, gdal.GDT_Float32)
+        gdal.GetDriverByName("GTiff").CreateCopy(str(FOLDER / "nowhere.tif"), plain)
+        far = write_heights("far.tif", np.ones((10, 10)), (90000, 90000), 10.0)
+        (FOLDER / "text.tif").write_text("no raster")
+        for dem, said in ((FOLDER / "nowhere.tif", "does not say its coordinate reference system"), (far, "holds no heights at the airport"),
+                          (FOLDER / "text.tif", "GDAL cannot read it as heights"), (FOLDER / "none.tif", "no such file")):
+            code, words = run("airport", file, "--heights", dem, "-o", fresh("wrong"))
+            self.assertEqual(code, 2)
+            self.assertIn(said, words)
+            self.assertEqual(words.count("\n"), 1)
+            self.assertFalse((FOLDER / "wrong").exists())
+
+
+class Wrong(unittest.TestCase):
+    def test_extracts_that_are_wrong(self):
+        FOLDER.mkdir(parents=True, exist_ok=True)
+        plan = Map()
+        plan.area((0, 0), (10, 10), building="yes")
+        files = [(plan.write("none.osm"), "holds no runway"), (FOLDER / "missing.osm", "no such file"), (FOLDER, "is no extract by its name"),
+                 (FOLDER / "map.shp", "is no extract by its name")]
+        for name, content, said in (("text.osm", "no map", "GDAL cannot read it as an extract"), ("empty.geojson", "", "GDAL cannot read it"),
+                                    ("cut.geojson", '{"type": "FeatureCollection", "features": [', "GDAL cannot read"),
+                                    ("cut.osm", crossing().write("whole.osm").read_text()[:3000], "cut.osm: "), ("text.pbf", "no map", "GDAL cannot"),
+                                    ("text.gpkg", "no map", "GDAL cannot"), ("null.geojson", '{"type": "FeatureCollection", "features": []}', "holds no runway")):
+            (FOLDER / name).write_text(content)
+            files.append((FOLDER / name, said))
+        large = FOLDER / "large.osm"
+        with open(large, "wb") as stream:
+            stream.truncate(500 << 20)  # takes no place on the disk
+        files.append((large, "holds 500 MiB, expected at most 256: cut it"))
+        for file, said in files:
+            code, words = run("airport", file, "-o", fresh("bad"))
+            self.assertEqual(code, 2, (file, words))
+            self.assertIn(said, words)
+            self.assertEqual(words.count("\n"), 1, words)
+            self.assertFalse((FOLDER / "bad").exists())
+        large.unlink()
+
+    def test_lengths(self):
+        for text, metres in (("12", 12), ("12.5 m", 12.5), ("12,5", 12.5), ("10 ft", 3.048), ("10'", 3.048), ("three", None), ("-3", None),
+                             ("0", None), ("5000", None), ("nan", None), (None, None), ("3 floors", None)):
+            self.assertEqual(airport.length_of(text), metres, text)
+
+    def test_numbers_are_said_to_be_assumed(self):
+        known = airport.rules()
+        self.assertIn("assumed", known["comment"][0])
+        for kind, rule in known["kinds"].items():
+            self.assertTrue(set(rule["from"]) <= {"point", "line", "area"} and rule["tags"] and rule["class"], kind)
+            self.assertTrue("height" in rule or rule.get("flat"), kind)
+
+
+class StandsOn(unittest.TestCase):
+    """The key `on` of footprints."""
+
+    def scene(self, **more):
+        FOLDER.mkdir(parents=True, exist_ok=True)
+        (FOLDER / "plane.obj").write_text("v -50 -50 -5\nv 50 -50 5\nv 50 50 5\nv -50 50 -5\nf 1 2 3\nf 1 3 4\n")
+        shapes = [{"type": "Polygon", "coordinates": [[[-10, -10], [10, -10], [10, 10], [-10, 10], [-10, -10]]]},
+                  {"type": "Polygon", "coordinates": [[[90, 90], [95, 90], [95, 95], [90, 90]]]}, {"type": "Point", "coordinates": [20, 0]}]
+        (FOLDER / "shapes.geojson").write_text(json.dumps({"type": "FeatureCollection", "features": [
+            {"type": "Feature", "properties": {}, "geometry": shape} for shape in shapes]}))
+        return {"version": 1, "objects": [
+            {"name": "Plane", "file": str(FOLDER / "plane.obj"), "material": "Wall"},
+            {"name": "Things", "footprints": str(FOLDER / "shapes.geojson"), "crs": "local", "material": "Wall", "on": "Plane", **more}]}
+
+    def triangles(self, **more):
+        scene = al.Scene(self.scene(**more))
+        return next(triangles for name, _, triangles in airport.parts_of(scene) if name == "Things"), scene
+
+    def test_solids_areas_columns(self):
+        solid, scene = self.triangles(height=4)
+        self.assertAlmostEqual(solid[:, :, 2].min(), -1.0, delta=1e-12)
+        self.assertAlmostEqual(solid[:, :, 2].max(), 3.0, delta=1e-12)
+        from avianlidar._cloud import field_values
+        report = "\n".join(field_values(scene.surfaces.GetBlock(0))["scene_report"])
+        self.assertIn("1 areas and points beyond Plane were left out", report)
+        self.assertIn("1 points were left out", report)
+        column, _ = self.triangles(height=4, width=2)
+        far = column[column[:, :, 0].min(axis=1) > 15]
+        np.testing.assert_allclose(far.reshape(-1, 3).min(axis=0), [19.0, -1.0, 1.9], atol=1e-12)
+        self.assertTrue(is_closed(far))
+        flat, _ = self.triangles(flat=True, base=0.5)
+        np.testing.assert_allclose(flat[:, :, 2], 0.1 * flat[:, :, 0] + 0.5, atol=1e-12)
+        self.assertAlmostEqual(plan_area(flat), 400.0, delta=1e-9)
+
+    def test_errors(self):
+        for more, said in (({"on": "Nothing", "height": 1}, "is Nothing, expected the name of a mesh further up"),
+                           ({"on": "Things", "height": 1}, "is Things, expected the name of a mesh"),
+                           ({"height": 1, "position": [0, 0, 1]}, "stands beside on"), ({"height": 1, "scale": 2}, "stands beside on")):
+            with self.assertRaisesRegex(RuntimeError, said):
+                al.Scene(self.scene(**more))
+
+
+@unittest.skipUnless(DATA, "AVIANLIDAR_DATA_DIR is not set")
+class RealAirports(unittest.TestCase):
+    def test_hongqiao(self):
+        """Areas as its source states them; heights are those of the extract."""
+        folder = fresh("hongqiao")
+        code, words = run("airport", pathlib.Path(DATA) / "airport_zsss" / "osm" / "ZSSS_osm.geojson", "-o", folder)
+        self.assertEqual(code, 0, words)
+        _, found = blocks(folder)
+        for name, area in (("Terminal 1", 54459), ("Terminal 2", 139673)):
+            self.assertAlmostEqual(plan_area(found[name][1]), area, delta=area * 1e-4)
+            z = found[name][1][:, :, 2]
+            self.assertAlmostEqual(z.max() - z.min(), 25.0, delta=1e-9)
+        runways = {one.name: one for one in siting.read_runways(folder / "airport.geojson", (31.1979, 121.3363, 0.0))}
+        self.assertEqual([round(runways[name].axis()[1]) for name in ("18L/36R", "18R/36L")], [3398, 3292])
+        self.assertEqual(plan_area(found["18L/36R"][1]) > 57.6 * 3398, True)
+        self.assertIn("default of origin tool, not surveyed", (folder / "README.txt").read_text(encoding="utf-8"))
+
+    def test_neubrandenburg(self):
+        folder = fresh("neubrandenburg")
+        code, words = run("airport", pathlib.Path(DATA) / "osm_neubrandenburg" / "edbn_3km.geojson", "--icao", "EDBN", "-o", folder)
+        self.assertEqual(code, 0, words)
+        _, found = blocks(folder)
+        self.assertIn("09/27", found)
+        self.assertEqual({found[name][0] for name in ("Terrain", "09/27", "Building")}, {"terrain", "runway", "building"})
+        self.assertAlmostEqual(plan_area(found["09/27"][1]), 45 * 2092.4, delta=60)
+
+
+if __name__ == "__main__":
+    unittest.main()
