@@ -43,6 +43,7 @@ set(avianlidar_python_files
   apps/__init__.py
   apps/_air.py
   apps/_airport.py
+  apps/_answer.py
   apps/_bench.py
   apps/_boxes.py
   apps/_card.py

@@ -15,7 +15,7 @@ sys.path.insert(0, str(HERE.parent / "common"))
 from browser import Browser  # noqa: E402
 
 # Name of the picture: the heading that it begins with, and the one before which it ends.
-PARTS = {"head": ("h1", "#range"), "range": ("#range", "#assumptions"), "maps": ("#maps", "#reasons"), "reasons": ("#reasons", "#section"),
+PARTS = {"head": ("h1", "#full"), "range": ("#range", "#assumptions"), "maps": ("#maps", "#reasons"), "reasons": ("#reasons", "#section"),
          "section": ("#section", "#clutter"),
          "clutter": ("#clutter", "#shares"), "weather": ("#weather", "#sites"), "sites": ("#sites", "#limits")}
 

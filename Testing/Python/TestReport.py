@@ -9,6 +9,7 @@ import re
 import shutil
 import sys
 import unittest
+import unittest.mock
 
 import numpy as np
 
@@ -16,6 +17,7 @@ import avianlidar as al
 import exampletools
 from avianlidar import Coverage, reach, siting
 from avianlidar._command import main
+from avianlidar.apps import _answer, _report
 from avianlidar.apps._maps import Plan, read_plan
 from avianlidar.apps._report import Report
 from avianlidar.apps._sites import Sites
@@ -43,7 +45,10 @@ def report(name, wanted):
     HERE.mkdir(parents=True, exist_ok=True)
     file = HERE / f"{name}.coverage.json"
     file.write_text(json.dumps(wanted), encoding="utf-8")
-    assert main(["report", str(file), "-o", str(HERE / f"{name}.html")]) == 0
+    few = name != "report"  # that page has all weathers and ranges, and both have tests of their own
+    with unittest.mock.patch.multiple(_report, VISIBILITIES=(_report.ANSWERED,) if few else _report.VISIBILITIES, RAINS=(0.0,) if few else _report.RAINS), \
+            unittest.mock.patch.object(reach, "RANGES", 12 if few else reach.RANGES):
+        assert main(["report", str(file), "-o", str(HERE / f"{name}.html")]) == 0
     return HERE / f"{name}.html"
 
 
@@ -80,13 +85,49 @@ class Page(unittest.TestCase):
     def test_pictures_are_there_with_words(self):
         pictures = self.browser.run("return [...document.images].map(i => [i.complete, i.naturalWidth, i.alt])")
         # Two receivers where the plan puts them, and one at its best site, as the paper's sees nothing from any: four maps, four
-        # reasons, two sections, clutter. Of each receiver candidates, gain and the curve of ranges; at the head candidates and curve again. Fog and rain.
-        self.assertEqual(len(pictures), 3 * (4 + 4 + 2 + 1) + 2 * 3 + 2 + 2)
+        # reasons, two sections, clutter. Of each receiver candidates, gain and the curve of ranges. The answer, fog and rain.
+        self.assertEqual(len(pictures), 3 * (4 + 4 + 2 + 1) + 2 * 3 + 1 + 2)
         for complete, width, words in pictures:
             self.assertTrue(complete and width > 300, words)
             self.assertRegex(words, r"\d")
             self.assertGreater(len(words), 40)
-        self.assertEqual(len({words for _, _, words in pictures}), len(pictures) - 2)
+        self.assertEqual(len({words for _, _, words in pictures}), len(pictures))
+
+    def test_captions_say_what_was_asked(self):
+        captions = self.browser.run("return [...document.querySelectorAll('figcaption, caption')].map(c => c.textContent)")
+        self.assertEqual(len(captions), self.browser.run("return document.querySelectorAll('table').length + document.images.length"))
+        for words in captions:
+            self.assertRegex(words, "(Search905|Airport16).*; asked for: herring gull in strips .to 60 m high. and approaches .to 202 m high.$")
+
+    def test_the_first_page_answers(self):
+        said = self.browser.run("return [...document.querySelectorAll('#answer .said')].map(p => p.textContent)")
+        with open(HERE / "report_files" / "shares.csv", encoding="utf-8") as file:
+            row = next(row for row in csv.DictReader(file) if row["receiver"].endswith("best site") and row["region"] == "all"
+                       and row["species"] == "herring gull" and row["height_from [m]"] == "-inf")
+        share = " ± ".join(f"{100 * float(row[name]):.1f}" for name in ("detection_probability", "detection_std_error")) + "\u00a0%"
+        with open(HERE / "report_files" / "sites.csv", encoding="utf-8") as file:
+            x, y = (float(value) for value in list(csv.reader(file))[1][:2])
+        self.assertEqual(len(said), 2)
+        for words in ("Search905 should stand", f"{abs(x):g}\u00a0m {'east' if x > 0 else 'west'} and {abs(y):g}\u00a0m {'north' if y > 0 else 'south'}", "of Runway 18",
+                      f"one scan detects {share} of herring gulls over the strips of both runways", "60 and 202\u00a0m high at 23\u00a0km visibility"):
+            self.assertIn(words, said[0])
+        self.assertRegex(said[1], "^Within its beams, 0.0 to 5.6° up, one scan detects half of herring gulls to 580.m and a tenth to 7[012]0.m.$")
+        heads = self.browser.run("return [...document.querySelectorAll('#next b')].map(b => b.textContent)")
+        self.assertEqual(heads, ["Weigh a second lidar.", "Check the site.", "Replace what is assumed."])
+        self.assertEqual(self.browser.run("return [...document.querySelectorAll('#first a')].filter(a => !document.querySelector(a.hash)).length"), 0)
+
+    def test_the_first_page_is_one(self):
+        """Of a screen, and of A4 with margins of 0.4 inch."""
+        def bottom(width, media):
+            self.browser.driver.execute_cdp_cmd("Emulation.setEmulatedMedia", {"media": media})
+            self.browser.driver.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", {"width": width, "height": 900, "deviceScaleFactor": 1, "mobile": False})
+            return self.browser.run("return document.querySelector('#first').getBoundingClientRect().bottom + scrollY")
+        try:
+            self.assertLess(bottom(1280, ""), 900)
+            self.assertLess(bottom(717, "print"), 1046)
+            self.assertEqual(self.browser.run("return getComputedStyle(document.querySelector('#first')).breakAfter"), "page")
+        finally:
+            bottom(1150, "")
 
     def test_numbers_are_those_of_the_table(self):
         cells, rows = same_numbers(self, self.browser, HERE / "report_files" / "shares.csv")
@@ -153,7 +194,7 @@ class Less(unittest.TestCase):
             browser.open(page)
             self.assertEqual(browser.complaints(), [])
             self.assertEqual(browser.run("return document.querySelector('h1').textContent"), "<script>throw 1</script> & gulls?")
-            self.assertEqual(browser.run("return document.images.length"), 3 + 1 + 2 + 2)  # map, reasons, clutter; the curve; map and curve at the head; fog and rain
+            self.assertEqual(browser.run("return document.images.length"), 3 + 1 + 1 + 2)  # map, reasons, clutter; the curve; the answer; fog and rain
             self.assertEqual(browser.run("return document.querySelector('#section, #sites')"), None)
             cells, rows = same_numbers(self, browser, HERE / "map_files" / "shares.csv")
             self.assertGreater(len(cells), 10)
@@ -229,6 +270,18 @@ class Less(unittest.TestCase):
         for words in ("candidates, of a lattice of 1500 m, detects 0.05\u00a0% of crows in strips and approaches, 100 to 150 m high",
                       "half of them are in its band and near enough at none", "its beams go up to 5.6°", "number_of_channels"):
             self.assertTrue(words in text, words)
+        heads = re.findall("<li><b>([^<]*)</b>", text)
+        self.assertEqual(heads, ["Change the beams first.", "Replace what is assumed."])
+
+    def test_where_a_place_lies_by_runways(self):
+        north, east = siting.Runway("A", (0, 0), (0, 3000), 45), siting.Runway("B", (-1500, -400), (500, -400), 45)
+        for position, words in (((-300, 1000, 5), "300\u00a0m west of A, 1000\u00a0m from its south end"), ((0, 3400, 5), "400\u00a0m north of the north end of A"),
+                                ((0.2, 2900, 5), "on A, 100\u00a0m from its north end"), ((-300, 3300, 5), "420\u00a0m north-west of the north end of A")):
+            self.assertEqual(_answer.beside(position, [north]), words)
+        self.assertEqual(_answer.beside((100, -300, 5), [north, east]), "100\u00a0m north of B, 400\u00a0m from its east end, and 320\u00a0m south of the south end of A")
+        self.assertEqual(_answer.beside((100, -300, 5), []), "")
+        self.assertEqual(_answer.listed(["a"]), "a")
+        self.assertEqual(_answer.listed(["a", "b", "c"]), "a, b and c")
 
     def test_a_winner_at_the_edge_of_the_lattice(self):
         for bounds, there in (([800, 2000, -600, 600], True), ([-1600, 1600, -2400, 2400], False)):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import functools
 import io
 import json
 import math
@@ -469,7 +470,7 @@ class Plan:
             total = total + share * cover[name]
         return total
 
-    @property
+    @functools.cached_property
     def shares(self) -> List[Dict[str, Any]]:
         """Rows of shares of the regions: those of each species, then those of the mix. Its standard errors are the most that those
         of the species allow."""

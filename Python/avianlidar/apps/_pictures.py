@@ -14,7 +14,7 @@ from .._coverage import Coverage
 from .._disk import write_whole
 from ._maps import Plan
 from .reach import Reach
-from .siting import APPROACH_LENGTH, Runway
+from .siting import APPROACH_LENGTH, STRIP_HALF_WIDTH, Runway
 
 # Colours of vtkAvianLidarCoverage's statuses: outside the gate, above, below, between beams, shadowed, in clutter, too weak, seen.
 STATUS_COLOURS = ("#f7f7f7", "#a6cee3", "#c6a982", "#f4e04d", "#77778a", "#d95f02", "#cc99bb", "#1b9e77")
@@ -24,6 +24,8 @@ THRESHOLD_HEIGHT = 15.0  # m, of the glide path above a runway's end
 TALL = 5.0  # m above the ground at the sensor: what is higher is drawn as a building ...
 FLAT = ("ground", "terrain", "apron", "runway", "taxiway", "road", "water", "grass")  # ... but for these classes
 PIXELS = 150  # an inch
+OUTLINES = (0.1, 0.5)  # probabilities, on the first page
+MOST = 800  # pixels to each side, of outlines
 STEP = (10.0, 2.0)  # m, of the section, along and up
 
 
@@ -95,6 +97,40 @@ def draw_map(axes, plan: Plan, cover: Coverage, quantity: str) -> None:
     values = cover["status"] if quantity == "status" else plan.mixed(cover, quantity)
     axes.imshow(values[0], origin="lower", extent=(low[0], high[0], low[1], high[1]), interpolation="nearest", **style)
     draw_airport(axes, plan, "0.1" if quantity == "status" else "0.75")
+
+
+def draw_answer(axes, plan: Plan, found_at: Sequence[Tuple[float, np.ndarray]]) -> None:
+    """The airport with the sensor, and for each height where the probability is above OUTLINES. @param found_at height (m) and classes, rows
+    from south to north, of the plan's extent"""
+    from matplotlib import colormaps
+    from matplotlib.patches import Patch
+    x0, x1, y0, y1 = plan.extent
+    legend = []
+    for number, (height, classes) in enumerate(found_at):
+        colour = colormaps["viridis"](0.9 * number / max(len(found_at) - 1, 1))
+        step = -(-max(classes.shape) // MOST)
+        shown = classes[::step, ::step]
+        here = (x0 + plan.spacing * step * np.arange(shown.shape[1]), y0 + plan.spacing * step * np.arange(shown.shape[0]))
+        for limit in (1, 2):
+            if min(shown.shape) > 1 and shown.min() < limit <= shown.max():
+                axes.contour(*here, shown, [limit - 0.5], colors=[colour], linewidths=1.0, linestyles="--" if limit == 1 else "-")
+        if min(shown.shape) > 1 and (shown == 2).any():
+            axes.contourf(*here, shown, [1.5, 2.5], colors=[colour], alpha=0.45)
+        words = {2: "", 1: ": nowhere half", 0: ": nowhere a tenth"}[int(classes.max(initial=0))]
+        legend.append(Patch(facecolor=colour, alpha=0.6, label=f"{height:g} m up{words}"))
+    for runway in plan.runways:
+        axis, length = runway.axis()
+        across = STRIP_HALF_WIDTH * np.array([-axis[1], axis[0]])
+        start, end = np.asarray(runway.start), np.asarray(runway.end)
+        axes.plot(*np.transpose([start + across, end + across, end - across, start - across, start + across]), ":", color="0.3", linewidth=1.0)
+        angle = np.degrees(np.arctan2(axis[1], axis[0]))
+        axes.text(*(start + 0.75 * length * axis + 0.4 * across), runway.name, fontsize=8, color="0.1", ha="center", va="center",
+                  rotation=(angle + 90.0) % 180.0 - 90.0, bbox={"facecolor": "white", "alpha": 0.7, "pad": 0.5, "linewidth": 0})
+    draw_airport(axes, plan, "0.55")
+    axes.plot(*plan.sensor.position[:2], "r^", markersize=11, markeredgecolor="white", zorder=5)
+    axes.annotate(plan.name, plan.sensor.position[:2], (9, 9), textcoords="offset points", fontsize=9, color="red", zorder=5,
+                  bbox={"facecolor": "white", "alpha": 0.8, "pad": 1, "linewidth": 0})
+    axes.legend(handles=legend, loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=min(len(legend), 2), fontsize=8, frameon=False)
 
 
 def section(plan: Plan, runway: Runway) -> Tuple[np.ndarray, Tuple[float, float, float, float]]:

@@ -16,7 +16,8 @@ from .._pipeline import Error
 from .._version import __version__
 from .._weather import in_words
 from . import _pictures as pictures
-from . import reach, siting
+from . import _answer, reach, siting
+from ._answer import LEAST, LEAST_WORDS, birds_of, metres, percent, place
 from ._card import read_card
 from ._json import load_json, naming
 from ._maps import Plan, height_name, write_table
@@ -28,8 +29,6 @@ VISIBILITIES = (200.0, 500.0, 1000.0, 2000.0, 5000.0, 10_000.0, 20_000.0)  # m, 
 RAINS = (0.0, 1.0, 5.0, 10.0, 25.0, 50.0)  # mm/h
 ANSWERED = 1000.0  # m, a visibility of these whose share is said in a sentence
 BESIDE = (("fog:1000",), ("rain:10",))  # weathers whose best sites are looked for, where the plan gives no year
-LEAST = 0.0005  # share that is given as a number; a site that detects less is no answer
-LEAST_WORDS = f"{100.0 * LEAST:g}\u00a0%"
 OTHER_PLACES = 1 << 40  # to a seed: that the share at the best site is not of the places by which it was chosen
 
 # Numbers of a sensor that a reader should know: property, words, unit, what one unit of the property is in it.
@@ -70,26 +69,6 @@ def assumptions(plans: List[Plan]) -> List[Dict[str, Any]]:
     return rows
 
 
-def place(position: Sequence[float]) -> str:
-    """Coordinates in words."""
-    x, y, z = position
-    words = [f"{abs(value):g}\u00a0m {plus if value > 0.0 else minus}" for value, plus, minus in ((x, "east", "west"), (y, "north", "south")) if value]
-    return f"{' and '.join(words) or 'at the origin'}, {z:g}\u00a0m up"
-
-
-def _share(value: float, error: float = math.nan) -> str:
-    """A share as a percentage, with its standard error."""
-    if 0.0 < value < LEAST:
-        return f"under {LEAST_WORDS}"
-    bar = "" if math.isnan(error) else f" ± {100.0 * error:.1f}"
-    return f"{100.0 * value:.1f}{bar}\u00a0%"
-
-
-def _metres(value: float) -> str:
-    """A range to what is known of it."""
-    return f"{float(f'{value:.2g}') if value < 100.0 else 10.0 * round(value / 10.0):g}\u00a0m" if value > 0.0 else "no range"
-
-
 class Report:
     """Pictures, tables and words of a plan: with the plan's sensor and each that it compares with, where the plan puts them and at
     the best site of each."""
@@ -104,37 +83,43 @@ class Report:
             if "siting" in plan else []
         self.done = 0
 
+    @property
+    def asked(self) -> str:
+        """What every caption says: whom and what the plan asks for."""
+        return f"asked for: {self.plans[0].bird} {self.plans[0].where}"
+
     def _draw(self, file: pathlib.Path, size: Tuple[float, float], alt: str, caption: str, work) -> Dict[str, str]:
         pictures.draw(file, size, work)
         self.done += 1
         if self.progress:
             first = self.plans[0]
             each = 2 * len(first.heights) + 1 + len(first.runways)
-            self.progress("pictures", self.done, (each * (2 if self.sites else 1) + 1) * len(self.plans) + 2)
-        return {"source": embedded(file), "alt": alt, "caption": caption}
+            self.progress("pictures", self.done, (each * (2 if self.sites else 1) + 1) * len(self.plans) + 3)
+        return {"source": embedded(file), "alt": alt, "caption": f"{caption}; {self.asked}"}
 
     def _view(self, plan: Plan, folder: pathlib.Path, name: str) -> Dict[str, Any]:
         """Pictures of a sensor somewhere. @param name in the names of files"""
         names = plan.coverage.status_names
-        maps, reasons = [], []
+        maps, reasons, found_at = [], [], []
         for height in plan.heights:
             cover = plan.map_at(height)
             p = plan.mixed(cover)
             status = cover["status"]
             shares = np.bincount(status.ravel(), minlength=len(names)) / status.size
-            caption = f"{height:g} m above {plan.above}: mean {p.mean():.3f}, at least 0.5 on {_share(float(np.mean(p >= 0.5)))} of the map"
+            found_at.append((height, np.digitize(p[0], pictures.OUTLINES).astype(np.uint8)))
+            caption = f"{height:g} m above {plan.above}: mean {p.mean():.3f}, at least 0.5 on {percent(float(np.mean(p >= 0.5)))} of the map"
             maps.append(self._draw(folder / f"{name}-probability-{height_name(height)}.png", (3.3, 3.3),
-                                   f"Map of the probability that one scan of {plan.title} detects a {plan.bird} {caption}.", caption,
+                                   f"Map of the probability that one scan of {plan.title} detects a {plan.bird} {caption}.", f"{plan.title}, {caption}",
                                    lambda axes, cover=cover: pictures.draw_map(axes, plan, cover, "detection_probability")))
-            words = ", ".join(f"{names[i]} {_share(shares[i])}" for i in np.argsort(-shares)[:3] if shares[i] > 0.0)
+            words = ", ".join(f"{names[i]} {percent(shares[i])}" for i in np.argsort(-shares)[:3] if shares[i] > 0.0)
             reasons.append(self._draw(folder / f"{name}-reasons-{height_name(height)}.png", (3.3, 3.3),
                                       f"Map of reasons for {plan.title} {height:g} m above {plan.above}: {words}.",
-                                      f"{height:g} m above {plan.above}: {words}",
+                                      f"{plan.title}, {height:g} m above {plan.above}: {words}",
                                       lambda axes, cover=cover: pictures.draw_map(axes, plan, cover, "status")))
         clutter = plan.coverage.clutter_map
         count = int(np.count_nonzero(clutter["detection_probability"] >= 0.5)) if clutter.number_of_points else 0
         found: Dict[str, Any] = {
-            "name": plan.title, "maps": maps, "reasons": reasons, "overall": plan.overall, "position": place(plan.sensor.position), "sections": [],
+            "name": plan.title, "found_at": found_at, "maps": maps, "reasons": reasons, "overall": plan.overall, "position": place(plan.sensor.position), "sections": [],
             "clutter": self._draw(folder / f"{name}-clutter.png", (4.6, 3.8),
                                   f"Map of echoes of surfaces with {plan.title}: {count} in at least every second scan.",
                                   f"{plan.title}: {count} echoes of surfaces in at least every second scan",
@@ -143,7 +128,7 @@ class Report:
             values, extent = pictures.section(plan, runway)
             found["sections"].append(self._draw(
                 folder / f"{name}-section{number + 1}.png", (5.6, 2.6),
-                f"Section along {runway.name} with {plan.title}: at least 0.5 on {_share(float(np.mean(values >= 0.5)))} of it, mean {values.mean():.3f}.",
+                f"Section along {runway.name} with {plan.title}: at least 0.5 on {percent(float(np.mean(values >= 0.5)))} of it, mean {values.mean():.3f}.",
                 f"{plan.title}, along the middle of {runway.name} (white) and its approaches to 3 km; dashed: glide paths of "
                 f"{pictures.GLIDE_PATH:g} degrees{'; red: the heights asked for' if plan.asked else ''}; heights are stretched",
                 lambda axes, runway=runway, values=values, extent=extent: pictures.draw_section(axes, plan, runway, values, extent)))
@@ -203,7 +188,7 @@ class Report:
                 "taken": any(siting.is_near(taken, outline, margin)[0] for outline, margin in sites.exclusions),
                 "heights_varied": any("heights" in change.what for change in changes),
                 "draws": int(sites.options.get("draws", DRAWS)),
-                **{key: {"source": embedded(folder / name), "alt": alt, "caption": caption}
+                **{key: {"source": embedded(folder / name), "alt": alt, "caption": f"{caption}; {self.asked}"}
                    for key, (name, alt, caption) in pictured.items()}}
 
     def _degrees(self, sites: Sites) -> str:
@@ -221,7 +206,7 @@ class Report:
         several = f"{plan.coverage.required_detections} of {plan.coverage.number_of_scans} scans"
         rows: List[Dict[str, Any]] = [{"receiver": plan.name, "species": name, "scans": scans, "to": {share: one.to(share, more) for share in reach.SHARES}}
                 for name, one in of.items() for scans, more in (("one scan", False), (several, True))]
-        words = "; ".join(f"half of them ({row['species']}) by {row['scans']} to {_metres(row['to'][0.5])}" for row in rows)
+        words = "; ".join(f"half of them ({row['species']}) by {row['scans']} to {metres(row['to'][0.5])}" for row in rows)
         table = [{"receiver": plan.name, "species": name, "range": float(r), "one_scan": float(p), "one_scan_std_error": float(e),
                   "several_scans": float(k)} for name, one in of.items()
                  for r, p, e, k in zip(one.ranges, one.one_scan, one.error, one.several_scans)]
@@ -256,7 +241,7 @@ class Report:
             curves = {view.title: (values, [row["detection_probability"] for row in of[part]], [row["detection_std_error"] for row in of[part]])
                       for view, of in zip(views, shares)}
             said = "; ".join(f"{name}: {', '.join(f'{value:g}: {share:.3f}' for value, share in zip(values, of))}" for name, (_, of, _) in curves.items())
-            caption = f"{views[0].bird}, share detected by one scan {views[0].where}, by {words}; bars: standard error"
+            caption = f"{', '.join(view.title for view in views)}: share detected by one scan, by {words}; bars: standard error"
             found["pictures"].append(self._draw(folder / f"weather-{kind}.png", (4.6, 3.4), f"Share of birds detected by {words}. {said}.", caption,
                                                 lambda axes, curves=curves, words=words, kind=kind:
                                                 pictures.draw_weather(axes, curves, words, kind == "visibility")))
@@ -273,8 +258,8 @@ class Report:
     def _weather_words(self, number: int, view: Plan, weather: Dict[str, Any]) -> str:
         """A sentence on fog, and on the year. @param number of the view"""
         def of(row):
-            return _share(row["detection_probability"], row["detection_std_error"])
-        birds = f"{view.bird}s" if len(view.mix) == 1 else f"birds {view.bird[5:]}"
+            return percent(row["detection_probability"], row["detection_std_error"])
+        birds = birds_of(view)
         said = f"At 1\u00a0km visibility one scan of {view.title} detects {of(weather['answered'][number])} of {birds} {view.where}."
         if view.year:
             said += f" Over the year, by the hours of its weather, it is {of(weather['over_the_year'][number])}."
@@ -287,7 +272,7 @@ class Report:
             low, high = reach.band(view.sensor)
             found.update(name=view.title, low=low, high=high, now=view.overall)
             for way in found["ways"]:
-                tried = [(view.at(view.sensor.position, view.title, **changes).overall, changes) for changes in way["changes"]]
+                tried = [(view.at(view.sensor.position, view.title, **changes).in_airs([{}])[0][-1], changes) for changes in way["changes"]]
                 way["then"], changes = max(tried, key=lambda one: one[0]["detection_probability"])
                 way["what"] = f"{way['what'](changes)} ({', '.join(f'{name} {value:g}' for name, value in changes.items())})"
             found["ways"] = [way for way in found["ways"] if way["then"]["detection_probability"] > view.overall["detection_probability"]]
@@ -297,9 +282,9 @@ class Report:
         """Two sentences or more: the share and where it is, how far birds are seen, at the heights asked for and elsewhere. @param view
         the plan's sensor at its best site, or the plan itself"""
         found = view.overall
-        share = _share(found["detection_probability"], found["detection_std_error"])
-        birds = f"{view.bird}s" if len(view.mix) == 1 else f"birds {view.bird[5:]}"
-        air = f" in {in_words(view.air)}" if view.air else f" at {_metres(view.coverage.visibility)} visibility" if view.year else ""
+        share = percent(found["detection_probability"], found["detection_std_error"])
+        birds = birds_of(view)
+        air = f" in {in_words(view.air)}" if view.air else f" at {metres(view.coverage.visibility)} visibility" if view.year else ""
         by_year = ", by the year's weather," if view.year else ""
         several = f" by one scan of {plan.name}" if len(self.plans) > 1 else " by one scan"
         if not site:
@@ -316,16 +301,24 @@ class Report:
         if site and view is not plan and plan is self.plans[0]:
             who = "the plan" if "position" in plan.plan["sensor"] else "the scene"
             nobody = ", but nothing may stand there" if site["taken"] else ""
-            own = _share(plan.overall["detection_probability"], plan.overall["detection_std_error"])
+            own = percent(plan.overall["detection_probability"], plan.overall["detection_std_error"])
             said += [f"Where {who} puts it, {place(plan.sensor.position)}, it is {own}{nobody}."]
         return said
+
+    def _first_picture(self, view: Plan, shown: Dict[str, Any], folder: pathlib.Path) -> Dict[str, str]:
+        """The airport with the sensor, and where birds are detected at each height."""
+        seen = "; ".join(f"{height:g} m above {view.above}: half or more on {percent(float(np.mean(classes == 2)))} of the map"
+                         for height, classes in shown["found_at"])
+        return self._draw(folder / "answer.png", (4.6, 5.6), f"Map of the airport with {view.title}, {shown['position']}. {view.bird}, {seen}.",
+                          f"{view.name} (red triangle), {shown['position']}. Filled: one scan detects half or more of the birds, dashed: a tenth; strips dotted",
+                          lambda axes: pictures.draw_answer(axes, view, shown["found_at"]))
 
     def _range_words(self, view: Plan, reaches: Dict[str, Any]) -> str:
         def of(name: str, found: reach.Reach) -> str:
             if found.to(0.1) == 0.0:
                 return f"less than a tenth of {name}s at any range"
-            half = f"half of {name}s to {_metres(found.to(0.5))}" if found.to(0.5) > 0.0 else f"at no range half of {name}s"
-            return f"{half}, a tenth to {_metres(found.to(0.1))}"
+            half = f"half of {name}s to {metres(found.to(0.5))}" if found.to(0.5) > 0.0 else f"at no range half of {name}s"
+            return f"{half}, a tenth to {metres(found.to(0.1))}"
         said = f"Within the band of {view.name}, in free air, one scan detects {'; '.join(of(*one) for one in reaches['of'].items())}"
         if not view.asked:
             return f"{said}."
@@ -366,20 +359,23 @@ class Report:
                    for sentence in self._answer(plan, view, sited[number] if sited else None, reaches[number])]
         weather["words"] = [self._weather_words(views.index(view), view, weather) for view in answering]
         answers.append(weather["words"][0])
+        advices = [self._advice(view, of) for view, of in zip(answering, reaches)]
+        site = sited[0] if sited else None
         write_table(folder / "shares.csv", [{"receiver": view.title, **row} for view in views for row in view.shares])
         write_table(folder / "range.csv", [row for found in reaches for row in found["table"]])
         known = field_values(first.regions.data)
         made = ("file", "hours", *(["year"] if "metar" in self.plan else []))
         asked = {name: part for name, part in self.plan.items() if name not in made}
         return render(
-            "report.html.jinja", filter_metres=_metres, filter_share=_share,
+            "report.html.jinja", filter_metres=metres, filter_share=percent,
             question=self.plan.get("description") or f"Where is a {first.bird} detected?",
-            answer=answers,
-            answered=sited[0]["map"] if sited else shown[0]["maps"][len(first.heights) // 2],
+            asked=self.asked, chance=percent(answering[0].overall["detection_probability"], answering[0].overall["detection_std_error"]), said=_answer.two_sentences(first, answering[0], site, reaches[0]),
+            first=self._first_picture(answering[0], shown[views.index(answering[0])], folder),
+            steps=_answer.next_steps(first, answering[0], site, advices[0]), answer=answers,
             bird=first.bird, cover=first.coverage, area=float(np.ravel(known["effective_area"])[0]),
             attenuation=float(known["attenuation_coefficient"]), plan=first, places=int(first.overall["places"]),
             assumptions=assumptions(self.plans), names=[plan.name for plan in self.plans], views=shown, reaches=reaches,
-            advice=[found for view, of in zip(answering, reaches) if (found := self._advice(view, of))],
+            advice=[found for found in advices if found],
             tables=self._tables(views), sites=sited, weather=weather, hours=self.plan.get("hours", ""), fewest=FEWEST_DRAWS, least=LEAST, least_words=LEAST_WORDS, colours=pictures.gradient(),
             statuses=list(zip(first.coverage.status_names, pictures.STATUS_COLOURS)),
             tracks=self.tracks,
