@@ -25,10 +25,10 @@ def run(*command):
 
 
 def few(folder, parts=(), **siting):
-    """The airport's plan with fewer places, candidates and draws. @param parts further parts of it"""
+    """The airport's plan with one sensor and fewer places and candidates. @param parts further parts of it"""
     plan = json.loads(PLAN.read_text(encoding="utf-8"))
-    plan.update({name: str((PLAN.parent / plan[name]).resolve()) for name in ("scene", "runways")}, places=500, **dict(parts))
-    plan["siting"].update({"spacing": 600, "draws": 10, **siting})
+    plan.update({name: str((PLAN.parent / plan[name]).resolve()) for name in ("scene", "runways")}, compare_with=[], places=500, **dict(parts))
+    plan["siting"].update({"spacing": 1000, "draws": 10, **siting})
     folder.mkdir(parents=True)
     file = folder / "few.coverage.json"
     file.write_text(json.dumps(plan), encoding="utf-8")
@@ -54,7 +54,7 @@ class Ranks(unittest.TestCase):
 
     def test_share_the_weathers_of_a_year(self):
         alone, together = fresh("year-alone"), fresh("year-together")
-        year = {"year": [{"weather": ["haze:20000"], "share": 0.75}, {"weather": ["fog:700", "rain:5"], "share": 0.25}], "compare_with": []}
+        year = {"year": [{"weather": ["haze:20000"], "share": 0.75}, {"weather": ["fog:700", "rain:5"], "share": 0.25}]}
         done = run(sys.executable, *few(alone, year, draws=0))
         self.assertEqual(done.returncode, 0, done.stderr)
         command = few(together, year, draws=0)

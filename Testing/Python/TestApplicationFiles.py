@@ -23,6 +23,7 @@ from avianlidar import siting as _siting
 from avianlidar._command import main
 from avianlidar.apps import _maps, _report, _sites
 from osgeo import gdal
+from reporttools import quick
 
 OUTPUT = pathlib.Path(os.environ.get("AVIANLIDAR_TEST_OUTPUT_DIR", "/tmp")) / "applications"
 SCENE = {"version": 1, "origin": {"latitude": 0, "longitude": 0, "height": 0}, "lidar": {"position": [5, -8, 3]}, "objects": [
@@ -60,7 +61,8 @@ signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
 home = test.pathlib.Path(sys.argv[1])
 noise = np.random.default_rng(1).uniform(0.0, 1.0, (200, 200)).astype(np.float32)
 def report():
-    test._report.Report(_maps.read_plan(home / "p.coverage.json", siting={})).write(home / "report.html")
+    with test.quick():
+        test._report.Report(_maps.read_plan(home / "p.coverage.json", siting={})).write(home / "report.html")
 work = {
     "map.tif": lambda: _maps.write_geotiff(home / "map.tif", noise, (0, 0), (1, 1), test.ORIGIN, "p"),
     "status.tif": lambda: _maps.write_geotiff(home / "status.tif", (9 * noise).astype(int), (0, 0), (1, 1), None, "s", "", list("abcdefghi")),
@@ -113,6 +115,7 @@ def tree(folder):
 
 class Applications(unittest.TestCase):
     def setUp(self):
+        self.enterContext(quick())
         self.home = OUTPUT / self.id().rpartition(".")[2]
         shutil.rmtree(self.home, ignore_errors=True)
         self.home.mkdir(parents=True)

@@ -8,7 +8,6 @@ import shutil
 import subprocess
 import sys
 import unittest
-import unittest.mock
 
 import numpy as np
 
@@ -17,6 +16,7 @@ from avianlidar.apps import _card, _following, _maps, _report
 from avianlidar.apps._following import ORIGINS, Input, Live, Scorer
 from avianlidar.apps.siting import Runway
 from boxfiles import CORNERS, LOW, TRIANGLES, stl
+from reporttools import quick
 
 OUTPUT = pathlib.Path(os.environ.get("AVIANLIDAR_TEST_OUTPUT_DIR", "/tmp")) / "bird-tracks"
 BIRD, CLUTTER, VEHICLE = (ORIGINS.index(name) for name in ("bird", "surface", "vehicle"))
@@ -241,7 +241,7 @@ class Files(unittest.TestCase):
         plan = self.home / "p.coverage.json"
         plan.write_text(json.dumps({"scene": "small.lidarscene.json", "sensor": {"preset": "Search905"}, "heights": [20], "extent": [-200, 200, -200, 200],
                                     "spacing": 100, "places": 10, "tracks": "out"}), encoding="utf-8")
-        with unittest.mock.patch.multiple(_report, VISIBILITIES=(_report.ANSWERED,), RAINS=(0.0,)):  # what the report says else has its own test
+        with quick():  # what the report says else has its own test
             _report.Report(_maps.read_plan(plan), 1).write(self.home / "report.html")
         page = (self.home / "report.html").read_text(encoding="utf-8")
         self.assertIn('id="tracks"', page)

@@ -63,6 +63,7 @@ class TestMcap(unittest.TestCase):
         found = self.read()
         self.assertEqual(found["header"]["profile"], "ros2")
         self.assertTrue(found["done"])
+        self.assertEqual(found["strange"], [])
         self.assertEqual(found["kinds"], ["Header", "Schema", "Channel", "Schema", "Channel", *["Message", "Message", "MessageIndex", "MessageIndex"] * 3,
                          "DataEnd", "Schema", "Channel", "Schema", "Channel", "Statistics", *["ChunkIndex"] * 3, "Footer"])
         self.assertEqual(found["statistics"]["channelMessageCounts"], {"1": "3", "2": "3"})
@@ -93,6 +94,26 @@ class TestMcap(unittest.TestCase):
                   [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
                   [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)]]
         self.assertLess(np.abs(np.array(turned) - rotation).max(), 1e-9)
+
+    def test_boxes(self):
+        (self.sequence / "boxes").mkdir()
+        for number, text in enumerate(("bird 0.00 0.25 -180.25 -226.5 27.75 0.5 1.25 0.125 1.6271 10000 3\ncar 0.5 1.00 1 2 3 4 2 2 -3 7 0\n", "", "")):
+            self.put(f"boxes/{number:06d}.txt", text)
+        found = self.read()
+        self.assertEqual((found["strange"], found["statistics"]["channelMessageCounts"]), ([], {"1": "3", "2": "3", "3": "3"}))
+        of = [message["message"]["markers"] for message in found["messages"] if message["topic"] == "/boxes"]
+        self.assertEqual([[one["action"] for one in markers] for markers in of], [[3, 0, 0], [3], [3]])  # all go, then these come
+        for marker, name, number, middle, size, yaw, words in zip(
+                of[0][1:], ("bird", "car"), (10000, 7), ((-180.25, -226.5, 27.75), (1, 2, 3)), ((0.5, 1.25, 0.125), (4, 2, 2)), (1.6271, -3),
+                ("truncated 0.00, hidden 0.25, points 3", "truncated 0.50, hidden 1.00, points 0")):
+            self.assertEqual((marker["ns"], marker["id"], marker["type"], marker["text"], marker["header"]["frame_id"]), (name, number, 1, words, "lidar"))
+            self.assertEqual([marker["pose"]["position"][axis] for axis in "xyz"], list(middle))
+            self.assertEqual([marker["scale"][axis] for axis in "xyz"], list(size))
+            turned = marker["pose"]["orientation"]
+            self.assertAlmostEqual(2 * np.arctan2(turned["z"], turned["w"]), yaw, delta=1e-12)
+        self.put("boxes/000002.txt", "bird 0 0 1 2 3\n")
+        with self.assertRaisesRegex(ValueError, "000002.txt: expected lines of a class, 9 numbers, an id and a number of points"):
+            _mcap.write(self.sequence, self.out)
 
     def test_poses_of_a_camera(self):
         """KITTI's: x right, y down, z forward. One that drives forward drives along x of the lidar."""

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The command `avianlidar report`: the page in Chromium without a network, its numbers, plans that ask for less."""
+import contextlib
 import csv
 import json
 import math
@@ -9,7 +10,6 @@ import re
 import shutil
 import sys
 import unittest
-import unittest.mock
 
 import numpy as np
 
@@ -17,11 +17,12 @@ import avianlidar as al
 import exampletools
 from avianlidar import Coverage, reach, siting
 from avianlidar._command import main
-from avianlidar.apps import _answer, _report
+from avianlidar.apps import _answer
 from avianlidar.apps._maps import Plan, read_plan
 from avianlidar.apps._report import Report
 from avianlidar.apps._sites import Sites
 from browser import Browser
+from reporttools import quick
 
 sys.path.append(os.path.join(exampletools.EXAMPLES, "coverage"))
 import flown  # noqa: E402
@@ -45,9 +46,7 @@ def report(name, wanted):
     HERE.mkdir(parents=True, exist_ok=True)
     file = HERE / f"{name}.coverage.json"
     file.write_text(json.dumps(wanted), encoding="utf-8")
-    few = name != "report"  # that page has all weathers and ranges, and both have tests of their own
-    with unittest.mock.patch.multiple(_report, VISIBILITIES=(_report.ANSWERED,) if few else _report.VISIBILITIES, RAINS=(0.0,) if few else _report.RAINS), \
-            unittest.mock.patch.object(reach, "RANGES", 12 if few else reach.RANGES):
+    with contextlib.nullcontext() if name == "report" else quick():
         assert main(["report", str(file), "-o", str(HERE / f"{name}.html")]) == 0
     return HERE / f"{name}.html"
 

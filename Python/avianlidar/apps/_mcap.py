@@ -1,14 +1,15 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""A sequence as one MCAP file of ROS 2 messages: clouds, and where the sensor stands.
+"""A sequence as one MCAP file of ROS 2 messages: clouds, where the sensor stands, and boxes about what moves.
 
-Sources: the MCAP specification (mcap.dev/spec), profile `ros2`; OMG CDR, little endian; definitions of common_interfaces and geometry2.
+Sources: the MCAP specification (mcap.dev/spec), profile `ros2`; OMG CDR, little endian; definitions of common_interfaces and geometry2 (Humble and later).
 """
 from __future__ import annotations
 
+import math
 import pathlib
 import struct
 import zlib
-from typing import Dict, Iterator, List, Tuple
+from typing import Dict, Iterator, List, Sequence, Tuple
 
 import numpy as np
 
@@ -19,7 +20,9 @@ _MAGIC = b"\x89MCAP0\r\n"
 _HEADER, _FOOTER, _SCHEMA, _CHANNEL, _MESSAGE, _CHUNK, _MESSAGES, _CHUNKS, _STATISTICS, _END = 1, 2, 3, 4, 5, 6, 7, 8, 11, 15
 _LINE = "=" * 80
 _TIME = f"{_LINE}\nMSG: std_msgs/Header\nbuiltin_interfaces/Time stamp\nstring frame_id\n{_LINE}\nMSG: builtin_interfaces/Time\nint32 sec\nuint32 nanosec\n"
-_TF, _POINTS = 1, 2  # channels, and their schemas
+_VECTOR = f"{_LINE}\nMSG: geometry_msgs/Vector3\nfloat64 x\nfloat64 y\nfloat64 z\n"
+_QUATERNION = f"{_LINE}\nMSG: geometry_msgs/Quaternion\nfloat64 x\nfloat64 y\nfloat64 z\nfloat64 w\n"
+_TF, _POINTS, _BOXES = 1, 2, 3  # channels, and their schemas
 _TOPICS = {
     _TF: ("/tf", "tf2_msgs/msg/TFMessage", f"""\
 geometry_msgs/TransformStamped[] transforms
@@ -32,18 +35,7 @@ geometry_msgs/Transform transform
 MSG: geometry_msgs/Transform
 geometry_msgs/Vector3 translation
 geometry_msgs/Quaternion rotation
-{_LINE}
-MSG: geometry_msgs/Vector3
-float64 x
-float64 y
-float64 z
-{_LINE}
-MSG: geometry_msgs/Quaternion
-float64 x
-float64 y
-float64 z
-float64 w
-{_TIME}"""),
+{_VECTOR}{_QUATERNION}{_TIME}"""),
     _POINTS: ("/points", "sensor_msgs/msg/PointCloud2", f"""\
 std_msgs/Header header
 uint32 height
@@ -61,7 +53,65 @@ uint32 offset
 uint8 datatype
 uint32 count
 {_TIME}"""),
+    _BOXES: ("/boxes", "visualization_msgs/msg/MarkerArray", f"""\
+visualization_msgs/Marker[] markers
+{_LINE}
+MSG: visualization_msgs/Marker
+std_msgs/Header header
+string ns
+int32 id
+int32 type
+int32 action
+geometry_msgs/Pose pose
+geometry_msgs/Vector3 scale
+std_msgs/ColorRGBA color
+builtin_interfaces/Duration lifetime
+bool frame_locked
+geometry_msgs/Point[] points
+std_msgs/ColorRGBA[] colors
+string texture_resource
+sensor_msgs/CompressedImage texture
+visualization_msgs/UVCoordinate[] uv_coordinates
+string text
+string mesh_resource
+visualization_msgs/MeshFile mesh_file
+bool mesh_use_embedded_materials
+{_LINE}
+MSG: geometry_msgs/Pose
+geometry_msgs/Point position
+geometry_msgs/Quaternion orientation
+{_LINE}
+MSG: geometry_msgs/Point
+float64 x
+float64 y
+float64 z
+{_LINE}
+MSG: std_msgs/ColorRGBA
+float32 r
+float32 g
+float32 b
+float32 a
+{_LINE}
+MSG: builtin_interfaces/Duration
+int32 sec
+uint32 nanosec
+{_LINE}
+MSG: sensor_msgs/CompressedImage
+std_msgs/Header header
+string format
+uint8[] data
+{_LINE}
+MSG: visualization_msgs/UVCoordinate
+float32 u
+float32 v
+{_LINE}
+MSG: visualization_msgs/MeshFile
+string filename
+uint8[] data
+{_VECTOR}{_QUATERNION}{_TIME}"""),
 }
+_CUBE, _ADD, _DELETE_ALL = 1, 0, 3  # of markers
+_COLOURS = {True: (0.1, 0.7, 0.3, 0.5), False: (0.6, 0.3, 0.8, 0.5)}  # of birds, of others: red, green, blue, opacity
 _FLOAT, _UINT = ("<f4", 7), ("<u2", 4)  # types, and what PointField calls them
 _FIELDS = {"x": _FLOAT, "y": _FLOAT, "z": _FLOAT, "intensity": _FLOAT, "label": _UINT, "instance": _UINT}
 _POINT = np.dtype([(name, kind) for name, (kind, _) in _FIELDS.items()])
@@ -122,6 +172,44 @@ def _cloud(time: int, points: np.ndarray) -> bytes:
     return cdr.message()
 
 
+def _marker(cdr: _Cdr, time: int, name: str, number: int, action: int, numbers: Sequence[float], words: str = "") -> None:
+    """A marker of a box. @param numbers middle, size and heading, as of a line of boxes @param words its text"""
+    x, y, z, length, width, height, yaw = numbers
+    cdr.header(time, "lidar")
+    cdr.text(name)
+    cdr.put("i", number, _CUBE, action)
+    cdr.put("d", x, y, z, 0, 0, math.sin(yaw / 2), math.cos(yaw / 2), length, width, height)
+    cdr.put("f", *_COLOURS[name == "bird"])
+    cdr.put("i", 0)  # it stays until the next scan takes all away
+    cdr.put("I", 0)
+    cdr.put("B", 0)
+    cdr.put("I", 0, 0)
+    cdr.text("")
+    cdr.header(0, "")
+    cdr.text("")
+    cdr.put("I", 0, 0)
+    cdr.text(words)
+    cdr.text("")  # no mesh
+    cdr.text("")
+    cdr.put("I", 0)
+    cdr.put("B", 0)
+
+
+def _boxes(time: int, file: pathlib.Path) -> bytes:
+    """MarkerArray: those of the scan before go, and a box of each line comes."""
+    cdr = _Cdr()
+    try:
+        lines = [line.split() for line in read_regular(file).decode("ascii").splitlines()]
+        cdr.put("I", 1 + len(lines))
+        _marker(cdr, time, "", 0, _DELETE_ALL, (0,) * 7)
+        for name, truncated, hidden, *numbers, number, points in lines:
+            words = f"truncated {float(truncated):.2f}, hidden {float(hidden):.2f}, points {int(points)}"
+            _marker(cdr, time, name, int(number), _ADD, [float(word) for word in numbers], words)
+    except (ValueError, struct.error):  # also words that are no ASCII
+        raise ValueError(f"{file}: expected lines of a class, 9 numbers, an id and a number of points") from None
+    return cdr.message()
+
+
 def _table(file: pathlib.Path, columns: int, least: float = -2e9, key: str = "") -> np.ndarray:
     """The numbers of each line that begins with the key."""
     try:
@@ -134,8 +222,8 @@ def _table(file: pathlib.Path, columns: int, least: float = -2e9, key: str = "")
     return rows
 
 
-def _scans(folder: pathlib.Path) -> Iterator[Tuple[int, np.ndarray, np.ndarray]]:
-    """Time (ns), pose and points of each scan. A calibration turns poses of a camera to those of the lidar, as in SemanticKITTI."""
+def _scans(folder: pathlib.Path) -> Iterator[Tuple[str, int, np.ndarray, np.ndarray]]:
+    """Name, time (ns), pose and points of each scan. A calibration turns poses of a camera to those of the lidar, as in SemanticKITTI."""
     if not (folder / "velodyne").is_dir():
         raise ValueError(f"{folder}: is no folder of a sequence, expected one with velodyne/, times.txt and poses.txt")
     files = sorted((folder / "velodyne").glob("*.bin"))
@@ -154,7 +242,7 @@ def _scans(folder: pathlib.Path) -> Iterator[Tuple[int, np.ndarray, np.ndarray]]
         points, rows = np.empty(len(labels), _POINT), np.frombuffer(content, "<f4").reshape(-1, 4)
         points["x"], points["y"], points["z"], points["intensity"] = (rows * np.array([1, 1, 1, 255], "<f4")).T
         points["label"], points["instance"] = labels & 0xffff, labels >> 16
-        yield round(1e9 * time), (np.linalg.inv(camera) @ np.vstack([pose, last]) @ camera)[:3], points
+        yield file.stem, round(1e9 * time), (np.linalg.inv(camera) @ np.vstack([pose, last]) @ camera)[:3], points
 
 
 def _record(kind: int, content: bytes) -> bytes:
@@ -167,17 +255,21 @@ def _bytes(content: bytes) -> bytes:
 
 def write(folder: pathlib.Path, out: pathlib.Path) -> int:
     """Write a sequence; returns the number of scans. Each scan is a chunk with an index, not compressed."""
+    topics = {key: topic for key, topic in _TOPICS.items() if key != _BOXES or (folder / "boxes").is_dir()}
     known = b"".join(_record(_SCHEMA, struct.pack("<H", key) + _bytes(schema.encode()) + _bytes(b"ros2msg") + _bytes(text.encode()))
                      + _record(_CHANNEL, struct.pack("<HH", key, key) + _bytes(topic.encode()) + _bytes(b"cdr") + _bytes(b""))
-                     for key, (topic, schema, text) in _TOPICS.items())
+                     for key, (topic, schema, text) in topics.items())
     indices: List[bytes] = []
     times: List[int] = []
     with replacing(out) as name, open(name, "wb") as file:
         file.write(_MAGIC + _record(_HEADER, _bytes(b"ros2") + _bytes(f"avian-lidar {__version__}".encode())) + known)
-        for number, (time, pose, points) in enumerate(_scans(folder)):
+        for number, (name_of_scan, time, pose, points) in enumerate(_scans(folder)):
             times.append(time)
             records, offsets = b"", {}  # type: bytes, Dict[int, int]
-            for key, message in ((_TF, _transform(time, pose)), (_POINTS, _cloud(time, points))):
+            messages = [(_TF, _transform(time, pose)), (_POINTS, _cloud(time, points))]
+            if _BOXES in topics:
+                messages.append((_BOXES, _boxes(time, folder / "boxes" / f"{name_of_scan}.txt")))
+            for key, message in messages:
                 offsets[key] = len(records)
                 records += _record(_MESSAGE, struct.pack("<HIQQ", key, number, time, time) + message)
             chunk = _record(_CHUNK, struct.pack("<QQQI", time, time, len(records), zlib.crc32(records)) + _bytes(b"")
@@ -192,7 +284,7 @@ def write(folder: pathlib.Path, out: pathlib.Path) -> int:
         file.write(_record(_END, bytes(4)))
         summary, count = file.tell(), len(times)
         file.write(known + _record(_STATISTICS, struct.pack(
-            "<QHIIIIQQ", count * len(_TOPICS), len(_TOPICS), len(_TOPICS), 0, 0, count, min(times, default=0), max(times, default=0)) + _bytes(
-                b"".join(struct.pack("<HQ", key, count) for key in _TOPICS))) + b"".join(indices))
+            "<QHIIIIQQ", count * len(topics), len(topics), len(topics), 0, 0, count, min(times, default=0), max(times, default=0)) + _bytes(
+                b"".join(struct.pack("<HQ", key, count) for key in topics))) + b"".join(indices))
         file.write(_record(_FOOTER, struct.pack("<QQI", summary, 0, 0)) + _MAGIC)
     return count
