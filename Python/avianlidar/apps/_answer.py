@@ -43,7 +43,7 @@ def listed(words: Sequence[str]) -> str:
     return " and ".join(filter(None, (", ".join(words[:-1]), words[-1])))
 
 
-def wind(way: Sequence[float]) -> str:
+def wind(way: np.ndarray) -> str:
     """The direction of a way (east, north) by eight winds."""
     return WINDS[round(math.atan2(way[0], way[1]) / (math.pi / 4)) % 8]
 
@@ -172,8 +172,8 @@ def _check(view: Plan, site: Dict[str, Any], file: str) -> Dict[str, str]:
     alone = [row for row in site["robustness"] if row["sensors"] == 1]
     if alone:
         most = max(alone, key=lambda row: row["another winner"])
-        words.append(f"With other numbers another wins in up to {most['another winner']} of {most['draws']} draws, by at most "
-                     f"{100.0 * max(row['gain at most'] for row in alone):.1f}\u00a0%.")
+        words.append(f"With other numbers ({most['change']}) another wins in up to {most['another winner']} of {most['draws']} draws, with at most "
+                     f"{1.0 + max(row['gain at most'] for row in alone):.2f} times the share.")
     if site["edge"]:
         words.append("It lies at the lattice's edge: wider bounds may have a better one.")
     if site["draws"] < FEWEST_DRAWS:
