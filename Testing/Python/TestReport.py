@@ -366,7 +366,7 @@ class Less(unittest.TestCase):
         self.assertLess(whole.one_scan[-1], 0.01)
 
     def test_is_the_same_again(self):
-        wanted = plan(siting=None, compare_with=None, heights=[20])
+        wanted = plan(siting=None, compare_with=None, heights=[20], spacing=200, places=200)
         self.assertEqual(report("one", wanted).read_bytes(), report("one", wanted).read_bytes())
 
     def test_sensors_that_are_changed_say_so(self):
@@ -389,7 +389,7 @@ class Less(unittest.TestCase):
                 item["height"] = 20.0
         (HERE / "even.lidarscene.json").write_text(json.dumps(scene), encoding="utf-8")
         page = report("even", plan(scene=str(HERE / "even.lidarscene.json"), heights=[20], places=200, compare_with=None,
-                                   siting={"spacing": 1000, "draws": 10, "sensors": 1}))
+                                   siting={"bounds": [1000, 2000, -1000, 1000], "spacing": 2000, "draws": 10, "sensors": 1}))
         text = page.read_text(encoding="utf-8")
         self.assertTrue("varied: none is read" in text)
         self.assertFalse("building heights" in text)

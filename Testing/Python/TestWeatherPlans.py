@@ -156,6 +156,7 @@ class Year(unittest.TestCase):
         for name in ("weather-visibility.png", "weather-rain.png"):
             self.assertGreater((HERE / "report_files" / name).stat().st_size, 10000)
         self.assertIn('id="year"', text)
+        self.assertRegex(text, f", {100 * year:.1f} ± [0-9.]*\u00a0% over the year")
 
     def test_what_is_wrong_is_named(self):
         half = [{"weather": ["fog:500"], "share": 0.5}]

@@ -95,11 +95,13 @@ def air_of(view: Plan) -> str:
     return f" in {in_words(view.air)}" if view.air else f" at {visibility / 1000.0:g}\u00a0km visibility" if visibility > 0.0 else ""
 
 
-def two_sentences(plan: Plan, view: Plan, site: Optional[Dict[str, Any]], reaches: Dict[str, Any]) -> List[str]:
+def two_sentences(plan: Plan, view: Plan, site: Optional[Dict[str, Any]], reaches: Dict[str, Any], of_year: Dict[str, float]) -> List[str]:
     """Where the lidar should stand and which share of the birds it detects from there; how far they are seen. @param view the plan's
-    sensor at its best site, or the plan itself"""
+    sensor at its best site, or the plan itself @param of_year the share over the plan's year, if it has one"""
     found = view.overall
     detects = f"one scan detects {percent(found['detection_probability'], found['detection_std_error'])} of {birds_of(view)} {over(view)}{air_of(view)}"
+    if view.year:
+        detects += f", {percent(of_year['detection_probability'], of_year['detection_std_error'])} over the year"
     by = beside(view.sensor.position, view.runways)
     at = f"{place(view.sensor.position)} from the scene's origin{'; ' + site['degrees'] if site and site['degrees'] else ''}"
     where = f"{by} ({at})" if by else at

@@ -369,7 +369,7 @@ class Report:
         return render(
             "report.html.jinja", filter_metres=metres, filter_share=percent,
             question=self.plan.get("description") or f"Where is a {first.bird} detected?",
-            asked=self.asked, chance=percent(answering[0].overall["detection_probability"], answering[0].overall["detection_std_error"]), said=_answer.two_sentences(first, answering[0], site, reaches[0]),
+            asked=self.asked, chance=percent(answering[0].overall["detection_probability"], answering[0].overall["detection_std_error"]), said=_answer.two_sentences(first, answering[0], site, reaches[0], weather["over_the_year"][views.index(answering[0])]),
             first=self._first_picture(answering[0], shown[views.index(answering[0])], folder),
             steps=_answer.next_steps(first, answering[0], site, advices[0]), answer=answers,
             bird=first.bird, cover=first.coverage, area=float(np.ravel(known["effective_area"])[0]),
