@@ -451,7 +451,6 @@ def _say_sites(sites, changes) -> None:
 
 
 def design(options) -> None:
-    from ._disk import only_run
     from ._ranks import Ranks
     from .apps import _design_page, _pictures  # needs Matplotlib: said before the work
     from .apps._design import Designs
@@ -462,13 +461,12 @@ def design(options) -> None:
     if not ranks.rank:
         _say_before(plan)
     study = Designs(plan, options.out, ranks, bars)
-    with _goes_on(options.out, "coverage/*.npy", "designs kept"), only_run(options.out, ranks, goes_on=True):
-        study.look()
-        bars.close()
-        if not ranks.rank:
-            _design_page.write(study)
-            print("\n".join(_design_page.answers(study)))
-            print(f"{options.out / 'design.html'}: the page; its tables and pictures are beside it")
+    with _goes_on(options.out, "coverage/*.npy", "designs kept"):
+        study.write()
+    bars.close()
+    if not ranks.rank:
+        print("\n".join(_design_page.answers(study)))
+        print(f"{options.out / 'design.html'}: the page; its tables and pictures are beside it")
 
 
 def report(options) -> None:

@@ -197,7 +197,7 @@ class Work(unittest.TestCase):
         self.assertNotIn("<script", page)
         self.assertNotIn("<b>kEUR", page)
         self.assertNotRegex(page, r'(src|href)="(?!data:|#)')
-        self.assertIn("The cheapest of 8 designs that detects 12 % of herring gulls on the map, 10 to 40 m by one scan costs ", page)
+        self.assertIn("The cheapest of 8 designs that detects 12 % of herring gulls on the map, 10 to 40 m, by one scan costs ", page)
         self.assertIn("no limit is applied here and no verdict given", page)
         for _, changed in ((row["field"], row) for row in csv.DictReader((where / "out" / "sensitivities.csv").read_text(encoding="utf-8").splitlines())):
             up = float(changed["to"]) > float(changed["from"])

@@ -7,24 +7,26 @@ import dataclasses
 import io
 import itertools
 import math
+import os
 import pathlib
-from typing import Any, Callable, Dict, List, Mapping, NamedTuple, Optional, Sequence, Tuple
+from typing import Any, Callable, Dict, List, Mapping, NamedTuple, Optional, Sequence, Tuple, Union
 
 import numpy as np
 from vtkmodules.util.numpy_support import vtk_to_numpy
 
 from .._coverage import Coverage, places_of
-from .._disk import read_regular, write_whole
+from .._disk import only_run, read_regular, write_whole
 from .._pipeline import Error, Updates, update
 from .._ranks import Ranks
+from .._sensor import Sensor
 from . import _scores as scores
 from . import siting
 from ._air import Air
 from ._formula import Formula
 from ._json import naming
-from ._maps import Plan
+from ._maps import Plan, read_plan
 from ._sequence import read_scenario
-from ._tracks import BirdTracks
+from ._tracks import LEARNING, BirdTracks
 
 DESIGNS = 128
 FINALISTS = 5  # that are tracked
@@ -111,19 +113,24 @@ class Candidate:
 
 
 class Designs:
-    """Designs of a plan within its bounds; `look` finds their shares, `write` leaves design.csv, pictures and a page.
+    """Designs of a plan within its bounds: `look` finds their shares, `write` also leaves tables, pictures and a page.
+
+    >>> study = Designs("Examples/design/hongqiao.coverage.json", "build/design").write()   # doctest: +SKIP
+    >>> study.chosen.values, study.chosen.cost, study.chosen.share                          # doctest: +SKIP
 
     candidates  all of them         base     numbers of the plan's own sensor
     swept       names of the FIELDS that differ, in their order
     chosen      the cheapest that has the asked share, None without one; after `look`
     """
 
-    def __init__(self, plan: Plan, folder, ranks: Optional[Ranks] = None, progress: Optional[Progress] = None):
+    def __init__(self, plan: Union[Plan, str, "os.PathLike[str]"], folder, ranks: Optional[Ranks] = None, progress: Optional[Progress] = None):
         """All that the plan says of its designs, checked, and what they cost. `Error` names the plan's file and the member.
 
+        plan      a plan's file, or a Plan, whose sensor is then that of the design that was looked at last
         folder    keeps what each design detects, so that a stopped run goes on, and what is written at the end
         progress  called with the name of the work, what is done of it and all of it
         """
+        plan = plan if isinstance(plan, Plan) else Plan(read_plan(plan))
         if "design" not in plan.plan:
             raise Error(f"{plan.file}: design: is not in the plan, expected share, bounds and cost of designs")
         self.plan, self.folder, self.ranks, self.progress = plan, pathlib.Path(folder), ranks or Ranks(), progress
@@ -309,6 +316,15 @@ class Designs:
         self.sensitivities = self._sensitivities(found[possible.index(self.about)])
         return self
 
+    def write(self) -> Designs:
+        """Look, then write design.html, design.csv, sensitivities.csv and pictures into the folder. @return this"""
+        from . import _design_page  # needs Matplotlib
+        with only_run(self.folder, self.ranks, goes_on=True):
+            self.look()
+            if not self.ranks.rank:
+                _design_page.write(self)
+        return self
+
     @property
     def judged(self) -> List[Candidate]:
         """Designs whose share is known by the measure asked for."""
@@ -410,10 +426,15 @@ class Designs:
         count = min(int(self.options.get("finalists", FINALISTS)), len(front))
         chosen = np.unique(np.round(np.linspace(0, len(front) - 1, count)).astype(int))
         self.finalists = [front[i] for i in chosen]
+        with naming(f"{self.plan.file}: design.scenario"):
+            rate = Sensor(**self.scenario["sensor"]).rotation_rate
         for number, one in enumerate(self.finalists):
             sensor = {**self.scenario["sensor"], **{name: value for name, value in self.plan.plan["sensor"].items() if name != "name"}, **self.changes(one.values)}
+            each = int(self.scenario.get("scans_per_sequence", 100))
+            scans, learning = (max(round(count * one.values["rotation_rate"] / rate), 1) for count in (each, LEARNING))  # in the same time
             with naming(f"{self.plan.file}: design.scenario"):
-                tracks = BirdTracks([self.options["scenario"]], threads=self.plan.threads, sensor=sensor)
+                tracks = BirdTracks([self.options["scenario"]], learning_scans=learning, threads=self.plan.threads, sensor=sensor, scans_per_sequence=scans,
+                                    number_of_scans=max(scans * self.scenario["number_of_scans"] // each, 1))
             folder = self.folder / "tracks" / f"{one.number}"
 
             def step(what: str, done: int, total: int, which: str = f"design {number + 1} of {len(self.finalists)}") -> None:

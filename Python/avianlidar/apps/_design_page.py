@@ -15,6 +15,7 @@ from ._card import cell
 from ._design import CHANGE, FIELDS, TOLD, Candidate, Designs, is_told
 from ._maps import write_table
 from ._page import embedded, render
+from ._report import place
 from ._scores import Value
 
 
@@ -32,8 +33,14 @@ def does(study: Designs, form: str = "detects") -> str:
     if study.measure == "tracked":
         return f"{form.replace('detect', 'track')} {birds} of the scenario at least once"
     needed = study.plan.settings.get("required_detections", 1)
-    time = f"{needed} {'scan' if needed == 1 else 'scans'} or more of those in {study.within:g} s" if study.within else "one scan"
-    return f"{form} {birds} {study.plan.where} by {time}"
+    time = f"{needed} or more of the scans in {study.within:g} s" if study.within else "one scan"
+    return f"{form} {birds} {study.plan.where}, by {time}"
+
+
+def stands(study: Designs) -> str:
+    """Where the lidar is."""
+    x, y, _ = study.plan.sensor.position
+    return f"{place((x, y, study.about.values['mast'] + study.ground)).rsplit(',', 1)[0]} of the scene's origin" if x or y else "at the scene's origin"
 
 
 def in_words(study: Designs, one: Candidate) -> str:
@@ -41,10 +48,10 @@ def in_words(study: Designs, one: Candidate) -> str:
     return ", ".join(f"{FIELDS[name].words} {FIELDS[name].text(one.values[name])}" for name in study.swept)
 
 
-def pulses(one: Candidate) -> str:
+def pulses(study: Designs, one: Candidate) -> str:
     """What whoever assesses eye safety asks for first."""
-    of = one.pulses
-    return (f"{1e3 * one.values['pulse_energy']:.4g} mJ a pulse, {of['exposure']:.4g} J/m² at the exit aperture of {1e4 * of['exit_aperture']:.4g} cm², "
+    of, energy = one.pulses, FIELDS["pulse_energy"].text(one.values["pulse_energy"])
+    return (f"{'' if 'pulse_energy' in study.swept else energy + ' a pulse, '}{of['exposure']:.4g} J/m² a pulse at the exit aperture of {1e4 * of['exit_aperture']:.4g} cm², "
             f"{of['pulse_rate']:,.0f} pulses a second")
 
 
@@ -56,7 +63,7 @@ def answers(study: Designs) -> List[str]:
         found = [f"The cheapest of {count} designs that {does(study).replace(' ', f' {asked} of ', 1)} costs {_cost(study, about.cost)} by the plan's formula and has {_percent(share)}."]
     else:
         found = [f"None of {count} designs surely {does(study).replace(' ', f' {asked} of ', 1)}: the best has {_percent(share)} and costs {_cost(study, about.cost)} by the plan's formula."]
-    found.append(f"It is number {about.number}: {in_words(study, about)}; {pulses(about)}.")
+    found.append(f"It is number {about.number}: {in_words(study, about)}; {pulses(study, about)}.")
     other = study.elsewhere
     same = is_told(other.value, other.error, study.asked)
     words = {True: "the asked share or more", False: "less than the asked share", None: "so the error does not tell"}[same]
@@ -130,7 +137,6 @@ def _draw_sensitivities(axes, study: Designs) -> None:
 def write(study: Designs) -> None:
     """design.csv, sensitivities.csv, front.png, sensitivities.png, design.html, in the study's folder."""
     out = pathlib.Path(study.folder)
-    out.mkdir(parents=True, exist_ok=True)
     write_table(out / "design.csv", table(study))
     write_table(out / "sensitivities.csv", [
         {"field": row["field"], "unit": row["unit"], "from": row["from"], "to": row["to"], "change_of_detected [1]": row["share"].value,
@@ -145,7 +151,7 @@ def write(study: Designs) -> None:
              "bounds": _bounds(name, bounds[name]) if name in bounds else "the same in all designs", "swept": name in bounds} for name in FIELDS]
     write_whole(out / "design.html", render(
         "design.html.jinja", question=plan.plan.get("description") or f"What must the lidar be that {does(study).replace(' ', f' {100 * study.asked:g} % of ', 1)}?",
-        answer=answers(study), study=study, front=front, shown=shown, fields=[FIELDS[name] for name in study.swept], names=study.swept, told=TOLD, change=CHANGE, refused=refused,
+        answer=answers(study), study=study, stands=stands(study), front=front, shown=shown, fields=[FIELDS[name] for name in study.swept], names=study.swept, told=TOLD, change=CHANGE, refused=refused,
         base=base, version=__version__, does=does(study), places=len(plan.points), name=plan.name, count=len(study.candidates),
         cells=lambda one: [FIELDS[name].text(one.values[name]) for name in study.swept],
         verdict=lambda one: "–" if math.isnan(study.of(one).value) else
