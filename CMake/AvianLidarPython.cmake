@@ -47,7 +47,10 @@ set(avianlidar_python_files
   apps/_bench.py
   apps/_boxes.py
   apps/_card.py
+  apps/_design.py
+  apps/_design_page.py
   apps/_following.py
+  apps/_formula.py
   apps/_json.py
   apps/_labels.py
   apps/_maps.py
@@ -67,6 +70,7 @@ set(avianlidar_python_files
   apps/card.html.jinja
   apps/card_parts.html.jinja
   apps/coverage.schema.json
+  apps/design.html.jinja
   apps/macros.html.jinja
   apps/page.css.jinja
   apps/report.html.jinja

@@ -22,11 +22,11 @@ def settings(wrapped):
     return [name for name, there in property_names(wrapped).items() if isinstance(get_property(wrapped(), there), (int, float, str, tuple))]
 
 
-SITING = load_json(pathlib.Path(avianlidar.__file__).parent / "apps" / "coverage.schema.json")["properties"]["siting"]["properties"]
+PLAN = load_json(pathlib.Path(avianlidar.__file__).parent / "apps" / "coverage.schema.json")["properties"]
 NAMES = {"sensor": avianlidar.Sensor.presets(), "material": tuple(avianlidar.materials()),  # names, and what begins a setting
          **{f"{part}_set": tuple(f"{name}=" for name in names) for part, names in (
              ("sensor", settings(wrapped.vtkAvianLidarBeamSource)), ("scan", settings(wrapped.vtkAvianLidarEchoFilter)),
-             ("coverage", settings(wrapped.vtkAvianLidarCoverage)), ("siting", SITING))}}
+             ("coverage", settings(wrapped.vtkAvianLidarCoverage)), ("siting", PLAN["siting"]["properties"]), ("design", PLAN["design"]["properties"]))}}
 
 
 def files(whole):

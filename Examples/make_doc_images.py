@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
 """Runs the examples and brings their pictures and tables into Documentation/: airport.md, birds.md,
-collision-detection.md, corridor.md, coverage.md, echoes.md, paper.md, python.md, sensors.md, sequences.md, time.md, tracks.md and, where AVIANLIDAR_DATA_DIR
+collision-detection.md, corridor.md, coverage.md, design.md, echoes.md, paper.md, python.md, sensors.md, sequences.md, time.md, tracks.md and, where AVIANLIDAR_DATA_DIR
 names the folder of their data, results/reality.md, results/falloff.md, results/materials.md and crowns in weather.md say what a run of what is
 committed gives. Where AVIANLIDAR_SCENES_DIR names the scenes that the build makes of them, more reflections are followed in
 those, too.
@@ -18,7 +18,7 @@ import tempfile
 
 HERE = pathlib.Path(__file__).resolve().parent
 DOCUMENTATION = HERE.parent / "Documentation"
-sys.path[:0] = [str(HERE / folder) for folder in ("common", "airport", "birds", "corridor", "coverage", "materials", "measured",
+sys.path[:0] = [str(HERE / folder) for folder in ("common", "airport", "birds", "corridor", "coverage", "design", "materials", "measured",
                                                   "notebook", "outdoor", "paper", "reflections", "room", "sensors", "sequence",
                                                   "weather")]
 import airport  # noqa: E402
@@ -30,6 +30,7 @@ import birds  # noqa: E402
 import birds_over_airport  # noqa: E402
 import check_fit  # noqa: E402
 import corridor  # noqa: E402
+import design  # noqa: E402
 import detail  # noqa: E402
 import falloff  # noqa: E402
 import labels  # noqa: E402
@@ -72,6 +73,7 @@ RUNS = (
                                                     "points": "birds-points"}),
     ("coverage", screenshots, [], {"head": "coverage-report", "maps": "coverage-maps", "reasons": "coverage-reasons",
                                    "section": "coverage-section", "weather": "coverage-weather", "sites": "coverage-sites"}),
+    ("design", design, [], {"head": "design-head"}),
     ("ranges", ranges, [], {"ranges": "coverage-ranges"}),
     ("shapes", beam_shapes, [], {"shapes": "beams-shapes"}),
     ("patterns", patterns, [], {"prisms": "sensors-prisms", "rotors": "sensors-rotors"}),

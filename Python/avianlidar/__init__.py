@@ -26,8 +26,9 @@ from ._scan import Scan
 from ._scene import Scene, load_scene, materials, mesh, mover
 from ._sensor import Sensor
 from ._version import __version__
+from .apps._design import Designs
 from .apps._sequence import Sequence
 from .apps._tracks import BirdTracks
 
-__all__ = ["BirdTracks", "Cloud", "Coverage", "Error", "Scan", "Scene", "Sensor", "Sequence", "hue_colors", "load_cloud", "load_scene",
+__all__ = ["BirdTracks", "Cloud", "Coverage", "Designs", "Error", "Scan", "Scene", "Sensor", "Sequence", "hue_colors", "load_cloud", "load_scene",
            "materials", "mesh", "mover", "places_of", "plot_map", "plot_range_image", "save", "vtkAvianLidar"]

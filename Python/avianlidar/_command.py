@@ -69,6 +69,10 @@ VERBS = {
                "plan. Started again it goes on where it was; `mpiexec -n 2 pvbatch --sym -m avianlidar` shares the work.", """\
   avianlidar siting hongqiao.coverage.json -o sites --siting-set spacing=100
 """),
+    "design": ("what the lidar must be for an asked share", "Designs within the bounds of a plan: which is the cheapest that detects or tracks the share of birds "
+               "that is asked for (HTML, CSV). Started again it goes on where it was; `mpiexec -n 2 pvbatch --sym -m avianlidar` shares the work.", """\
+  avianlidar design hongqiao-design.coverage.json -o design --design-set share=0.4
+"""),
     "report": ("maps, sections, shares and sites as one page of HTML", "One page of HTML that needs no network, by a plan; tables "
                "and pictures are in a folder beside it.", """\
   avianlidar report hongqiao.coverage.json -o report.html
@@ -209,7 +213,7 @@ def parser() -> Parser:
     bench.add_argument("--first", type=int, default=0, help="scan of each sequence from which on it is scored, default 0")
     _out(bench, "folder")
 
-    for name in ("coverage", "siting", "report"):
+    for name in ("coverage", "siting", "design", "report"):
         verb[name].add_argument("plan", help="a .coverage.json file")
         _out(verb[name], "file: .html" if name == "report" else "folder")
         _settings(verb[name], "sensor", "range_gate=3000")
@@ -217,9 +221,13 @@ def parser() -> Parser:
         _weather(verb[name])
         if name != "coverage":
             verb[name].add_argument("--metar", type=pathlib.Path, help="file of METAR reports, one a line: the year's weather by the hour, "
-                                    "by which sites are ranked")
+                                    "of which shares are")
+        if name in ("siting", "report"):
             verb[name].add_argument("--siting-set", action="append", default=[], type=_value, metavar="NAME=VALUE",
                                     help="a part of the plan's siting, for example spacing=100; files are named from the plan's folder")
+        if name == "design":
+            verb[name].add_argument("--design-set", action="append", default=[], type=_value, metavar="NAME=VALUE",
+                                    help="a part of the plan's design, for example share=0.4 or designs=500")
         if name != "siting":  # one thread a site; ranks share them
             _threads(verb[name])
     return whole

@@ -176,7 +176,7 @@ def info(options) -> None:
     elif name.endswith(".coverage.json"):
         plan = read_plan(file)
         what, rows = "a plan of coverage", {
-            key: plan[key] for key in ("scene", "sensor", "compare_with", "coverage", "weather", "mix", "heights", "regions", "runways", "siting") if plan.get(key)}
+            key: plan[key] for key in ("scene", "sensor", "compare_with", "coverage", "weather", "mix", "heights", "regions", "runways", "siting", "design") if plan.get(key)}
         if "year" in plan:
             rows["year"] = "; ".join(f"{', '.join(part['weather']) or 'as in coverage'} {100 * part['share']:.3g} %" for part in plan["year"])
     elif name.endswith(".json") and not name.endswith(".lidarscene.json"):
@@ -386,7 +386,7 @@ def _plan(options) -> Dict[str, Any]:
     """The plan with what options change."""
     from .apps._maps import read_plan
     return read_plan(options.plan, options.weather, getattr(options, "metar", None),
-                     **{part: dict(getattr(options, f"{part}_set", ())) for part in ("sensor", "coverage", "siting")})
+                     **{part: dict(getattr(options, f"{part}_set", ())) for part in ("sensor", "coverage", "siting", "design")})
 
 
 def _say_before(plan) -> None:
@@ -448,6 +448,25 @@ def _say_sites(sites, changes) -> None:
               f"{row['draws']} draws, better by at most {100 * row['gain at most']:.1f} %")
     if not rows:
         print("how sure the winner is was not looked at: fewer draws than that takes")
+
+
+def design(options) -> None:
+    from ._ranks import Ranks
+    from .apps import _design_page, _pictures  # needs Matplotlib: said before the work
+    from .apps._design import Designs
+    from .apps._maps import Plan
+    _pictures.gradient()
+    ranks, bars = Ranks(ends_job=True), Bars()
+    plan = Plan(_plan(options), options.threads or (1 if ranks.size > 1 else 0))
+    if not ranks.rank:
+        _say_before(plan)
+    study = Designs(plan, options.out, ranks, bars)
+    with _goes_on(options.out, "coverage/*.npy", "designs kept"):
+        study.write()
+    bars.close()
+    if not ranks.rank:
+        print("\n".join(_design_page.answers(study)))
+        print(f"{options.out / 'design.html'}: the page; its tables and pictures are beside it")
 
 
 def report(options) -> None:

@@ -97,6 +97,9 @@ def read_plan(file, words: Optional[Sequence[str]] = None, metar=None, **changes
         if name in plan:
             with naming(f"{file}: {name}"):
                 plan[name] = absolute(plan[name])
+    if "scenario" in plan.get("design", {}):
+        with naming(f"{file}: design.scenario"):
+            plan["design"]["scenario"] = absolute(plan["design"]["scenario"])
     if "siting" in plan:
         if "runways" not in plan:
             raise Error(f"{file}: siting: needs runways")

@@ -1,0 +1,61 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""What must the lidar be? The airport's plan by `avianlidar design`: the head of its page as Chromium shows it, pictures and tables.
+
+    PYTHONPATH=$(cat build/paraview/python-path) /usr/bin/python3 Examples/design/design.py --out build/design
+"""
+import argparse
+import csv
+import pathlib
+import sys
+
+from avianlidar._command import main as avianlidar
+
+HERE = pathlib.Path(__file__).resolve().parent
+sys.path.insert(0, str(HERE.parent / "common"))
+from browser import Browser  # noqa: E402
+
+# Column of design.csv, heading, factor, form.
+NUMBERS = (("design", "design", 1, "%d"), ("mast [m]", "mast, m", 1, "%g"), ("number_of_channels [1]", "channels", 1, "%d"),
+           ("maximum_elevation [deg]", "to, deg", 1, "%.1f"), ("half_beamwidth [rad]", "half beamwidth, mrad", 1e3, "%.1f"),
+           ("receiver_aperture [m2]", "aperture, cm²", 1e4, "%.0f"), ("pulse_energy [J]", "pulse, mJ", 1e3, "%.2f"), ("rotation_rate [Hz]", "scans/s", 1, "%g"),
+           ("radiant_exposure [J/m2]", "radiant exposure, J/m²", 1, "%.2f"), ("pulse_rate [Hz]", "pulses/s", 1, "%.0f"), ("cost [k€]", "cost, k€", 1, "%.1f"))
+
+
+def rows_of(file):
+    with open(file, newline="", encoding="utf-8") as stream:
+        return list(csv.DictReader(stream))
+
+
+def table(head, rows):
+    """Markdown."""
+    return "\n".join([f"| {' | '.join(head)} |", "|" + "---:|" * len(head), *(f"| {' | '.join(row)} |" for row in rows)]) + "\n"
+
+
+def main(arguments=None):
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--out", type=pathlib.Path, required=True, help="folder; what was found there stays")
+    options = parser.parse_args(arguments)
+    code = avianlidar(["design", str(HERE / "hongqiao.coverage.json"), "-o", str(options.out)])
+    if code:
+        return code
+    front = sorted((row for row in rows_of(options.out / "design.csv") if int(row["on_the_front"])), key=lambda row: float(row["cost [k€]"]))
+    lines = []
+    for row in front:
+        share = f"{100 * float(row['detected [1]']):.1f} ± {100 * float(row['detected_std_error [1]']):.1f} %"
+        cells = [form % (factor * float(row[name])) for name, _, factor, form in NUMBERS] + [share]
+        lines.append([f"**{cell}**" if int(row["chosen"]) else cell for cell in cells])
+    (options.out / "design-front.md").write_text(table([heading for _, heading, _, _ in NUMBERS] + ["detected"], lines), encoding="utf-8")
+    changes = [[row["field"], f"{float(row['from']):.4g}", f"{float(row['to']):.4g}",
+                "no such sensor" if row["refused"] else f"{100 * float(row['change_of_detected [1]']):+.1f} ± {100 * float(row['change_std_error [1]']):.1f}",
+                "–" if row["refused"] else f"{float(row['change_of_cost [k€]']):+.1f}"] for row in rows_of(options.out / "sensitivities.csv")]
+    (options.out / "design-sensitivities.md").write_text(
+        table(["number (SI units)", "from", "to", "share, percentage points", "cost, k€"], changes), encoding="utf-8")
+    with Browser(width=1100) as browser:
+        browser.open(options.out / "design.html")
+        browser.picture_between("h1", "#front", options.out / "head.png")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

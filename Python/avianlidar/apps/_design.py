@@ -1,0 +1,457 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What must the lidar be? Designs within bounds, their shares and costs: a plan's `design`, the command `avianlidar design`."""
+from __future__ import annotations
+
+import csv
+import dataclasses
+import io
+import itertools
+import math
+import os
+import pathlib
+from typing import Any, Callable, Dict, List, Mapping, NamedTuple, Optional, Sequence, Tuple, Union
+
+import numpy as np
+from vtkmodules.util.numpy_support import vtk_to_numpy
+
+from .._coverage import Coverage, places_of
+from .._disk import only_run, read_regular, write_whole
+from .._pipeline import Error, Updates, update
+from .._ranks import Ranks
+from .._sensor import Sensor
+from . import _scores as scores
+from . import siting
+from ._air import Air
+from ._formula import Formula
+from ._json import naming
+from ._maps import Plan, read_plan
+from ._sequence import read_scenario
+from ._tracks import LEARNING, BirdTracks
+
+DESIGNS = 128
+FINALISTS = 5  # that are tracked
+LIGHTS = 4  # designs of one geometry: they differ in what changes no line of sight and no hit
+TOLD = 2.0  # standard errors that a share must lie above or below what is asked
+CHANGE = 0.2  # of a number, to either side, for sensitivities
+OTHER_PLACES = 1 << 40  # to a seed: places by which no design was chosen
+MOST_SCANS = 100  # of vtkAvianLidarCoverage's NumberOfScans
+
+Progress = Callable[[str, int, int], Any]
+
+
+class Field(NamedTuple):
+    """A number of a design."""
+
+    unit: str
+    words: str
+    light: bool  # whether beams hit the same, however it changes
+    shown: Tuple[float, str]  # on pages: factor and unit
+    least: float = 0.0  # not included
+    whole: bool = False
+
+    def text(self, value: float) -> str:
+        """For a reader."""
+        return f"{self.shown[0] * value:.4g}{self.shown[1]}"
+
+
+FIELDS = {
+    "mast": Field("m", "mast above the ground", False, (1.0, " m")),
+    "number_of_channels": Field("1", "beams above one another", False, (1.0, ""), whole=True),
+    "minimum_elevation": Field("deg", "elevation of the lowest beams", False, (1.0, "°"), -90.0),
+    "maximum_elevation": Field("deg", "elevation of the highest beams", False, (1.0, "°"), -90.0),
+    "azimuth_step": Field("deg", "step in azimuth", False, (1.0, "°")),
+    "half_beamwidth": Field("rad", "half beamwidth", False, (1e3, " mrad")),
+    "receiver_aperture": Field("m2", "area of the receiver's aperture", True, (1e4, " cm²")),
+    "pulse_energy": Field("J", "energy of a pulse", True, (1e3, " mJ")),
+    "rotation_rate": Field("Hz", "scans a second", True, (1.0, ""))}
+BAND = ("number_of_channels", "minimum_elevation", "maximum_elevation")
+PULSES = {"pulse_rate": ("Hz", "pulses a second, mean"), "average_power": ("W", "average power")}  # that formulas may name, too
+
+
+def spread(number: int, count: int) -> np.ndarray:
+    """Points first, first + 1, ... of a sequence that fills the unit cube evenly: the additive recurrence k -> frac(1/2 + k a) with
+    a_j = phi^-(j + 1), phi^(d + 1) = phi + 1 (M. Roberts, 2018). More points keep those before. @param number of dimensions, d
+    @param count of points @return count x d"""
+    phi = 2.0
+    for _ in range(100):
+        phi = (1.0 + phi) ** (1.0 / (number + 1))
+    return np.modf(0.5 + np.outer(np.arange(1, count + 1), phi ** -np.arange(1.0, number + 1.0)))[0]
+
+
+def on_the_front(costs, shares) -> np.ndarray:
+    """Of each design whether none of the others has a share as large at a lower cost, or a larger one at a cost as low: n of bool.
+    NaN: never."""
+    costs, shares = np.asarray(costs, float), np.asarray(shares, float)
+    found, best = np.zeros(len(costs), bool), -math.inf
+    order = sorted(np.flatnonzero(np.isfinite(costs) & np.isfinite(shares)), key=lambda i: (costs[i], -shares[i]))
+    for cost, of_it in itertools.groupby(order, key=lambda i: costs[i]):
+        same = list(of_it)
+        top = shares[same[0]]
+        if top > best:
+            found[[i for i in same if shares[i] == top]] = True
+            best = top
+    return found
+
+
+def is_told(share: float, error: float, asked: float) -> Optional[bool]:
+    """Whether a share is what is asked or more; None where the error does not tell."""
+    return True if share - TOLD * error >= asked else False if share + TOLD * error < asked else None
+
+
+@dataclasses.dataclass
+class Candidate:
+    """A design: its numbers by FIELDS, what it costs, what it emits, and what is detected or tracked with it."""
+
+    number: int
+    values: Dict[str, float]
+    cost: float = math.nan
+    pulses: Dict[str, float] = dataclasses.field(default_factory=dict)  # pulse_rate Hz, shortest_interval s, average_power W, exposure J/m2
+    refused: str = ""  # by the sensor: why there is no such lidar
+    share: scores.Value = scores.Value(math.nan, math.nan, 0)
+    tracked: scores.Value = scores.Value(math.nan, math.nan, 0)
+    front: bool = False
+
+
+class Designs:
+    """Designs of a plan within its bounds: `look` finds their shares, `write` also leaves tables, pictures and a page.
+
+    >>> study = Designs("Examples/design/hongqiao.coverage.json", "build/design").write()   # doctest: +SKIP
+    >>> study.chosen.values, study.chosen.cost, study.chosen.share                          # doctest: +SKIP
+
+    candidates  all of them         base     numbers of the plan's own sensor
+    swept       names of the FIELDS that differ, in their order
+    chosen      the cheapest that has the asked share, None without one; after `look`
+    """
+
+    def __init__(self, plan: Union[Plan, str, "os.PathLike[str]"], folder, ranks: Optional[Ranks] = None, progress: Optional[Progress] = None):
+        """All that the plan says of its designs, checked, and what they cost. `Error` names the plan's file and the member.
+
+        plan      a plan's file, or a Plan, whose sensor is then that of the design that was looked at last
+        folder    keeps what each design detects, so that a stopped run goes on, and what is written at the end
+        progress  called with the name of the work, what is done of it and all of it
+        """
+        plan = plan if isinstance(plan, Plan) else Plan(read_plan(plan))
+        if "design" not in plan.plan:
+            raise Error(f"{plan.file}: design: is not in the plan, expected share, bounds and cost of designs")
+        self.plan, self.folder, self.ranks, self.progress = plan, pathlib.Path(folder), ranks or Ranks(), progress
+        self.options: Dict[str, Any] = plan.plan["design"]
+        self.asked, self.measure = float(self.options["share"]), self.options.get("measure", "detected")
+        self.within = float(self.options.get("within", 0.0))
+        self.unit = str(self.options.get("cost_unit", ""))
+        self.airs = plan.year or [Air(plan.air, 1.0, {})]
+        self.base = self._base()
+        bounds: Dict[str, Any] = self.options["bounds"]
+        self.swept = [name for name in FIELDS if name in bounds]
+        self.levels = {name: self._levels(name, bounds[name]) for name in self.swept}
+        self._check()
+        names = [*FIELDS, *PULSES]
+        with naming(f"{plan.file}: design.cost"):
+            self.cost = Formula(self.options["cost"], names)
+        with naming(f"{plan.file}: design.exit_aperture"):
+            self.exit = Formula(str(self.options.get("exit_aperture", "receiver_aperture")), names)
+        self.candidates = [Candidate(number, values) for number, values in enumerate(self._all_values())]
+        for one in self.candidates:
+            self._judge(one)
+        if all(one.refused for one in self.candidates):
+            raise Error(f"{plan.file}: design.bounds: hold no lidar that can be: {self.candidates[0].refused}")
+        self.scenario = self._scenario() if self.measure == "tracked" else {}
+
+    def _base(self) -> Dict[str, float]:
+        sensor = self.plan.sensor
+        x, y, z = sensor.position
+        found = {name: float(getattr(sensor, name)) for name in FIELDS if name not in ("mast", "maximum_elevation")}
+        found["maximum_elevation"] = sensor.minimum_elevation + (sensor.number_of_channels - 1) * sensor.elevation_step
+        self.ground = 0.0 if self.plan.ground is None else self.plan.ground
+        found["mast"] = z - self.ground
+        return {name: found[name] for name in FIELDS}
+
+    def _levels(self, name: str, given: Any) -> Callable[[float], float]:
+        """From 0 to 1 all values of a bound. Bounds are checked."""
+        what = f"{self.plan.file}: design.bounds.{name}"
+        ends = given if isinstance(given, list) else [given["from"], given["to"]]
+        field = FIELDS[name]
+        if not all(value > field.least for value in ends):
+            raise Error(f"{what}: holds {min(ends):g}, expected values above {field.least:g} {field.unit}")
+        if field.whole and not all(float(value).is_integer() for value in ends):
+            raise Error(f"{what}: holds {next(value for value in ends if not float(value).is_integer()):g}, expected whole numbers")
+        if isinstance(given, list):
+            return lambda u: float(given[min(int(u * len(given)), len(given) - 1)])
+        low, high, logarithmic = float(ends[0]), float(ends[1]), bool(given.get("logarithmic", False))
+        if not low < high:
+            raise Error(f"{what}: is from {low:g} to {high:g}, expected the smaller one first")
+        if logarithmic and not low > 0.0:
+            raise Error(f"{what}: begins at {low:g}, expected a number above 0 where it is logarithmic")
+        levels = int(given.get("levels", 0))
+
+        def at(u: float) -> float:
+            part = min(int(u * levels), levels - 1) / (levels - 1) if levels else u
+            if field.whole and not levels:
+                return min(low + math.floor(u * (high - low + 1.0)), high)
+            value = low * (high / low) ** part if logarithmic else low + part * (high - low)
+            return float(round(value)) if field.whole else value
+        return at
+
+    def _check(self) -> None:
+        """What bounds say together."""
+        what, sensor = f"{self.plan.file}: design", self.plan.sensor
+        regular = (not sensor.channel_elevations and sensor._beams is None and not sensor.algorithm.GetNumberOfPrisms())
+        of_band = [name for name in (*BAND, "azimuth_step") if name in self.swept]
+        if of_band and not regular:
+            raise Error(f"{what}.bounds.{of_band[0]}: the sensor's beams are a table of its own, expected channels at even steps, as of Search905")
+        if "receiver_aperture" in self.swept and not self.plan.gathers_light:
+            raise Error(f"{what}.bounds.receiver_aperture: the sensor has no aperture, expected a photon receiver, as of Search905")
+        low, high = (self._ends(name) for name in ("minimum_elevation", "maximum_elevation"))
+        if of_band and not low[1] < high[0]:
+            raise Error(f"{what}.bounds: beams begin at up to {low[1]:g} deg and end from {high[0]:g} deg on, expected bounds of minimum_elevation below "
+                        "those of maximum_elevation")
+        if of_band and self._ends("number_of_channels")[0] < 2.0:
+            raise Error(f"{what}.bounds.number_of_channels: begins at 1, expected 2 or more, of which the lowest and the highest are the band's ends")
+
+    def _scans(self, values: Mapping[str, float]) -> int:
+        """Within the time that a bird is given."""
+        return int(self.within * values["rotation_rate"] * (1.0 + 1e-12))
+
+    def _ends(self, name: str) -> Tuple[float, float]:
+        """Least and greatest value of a number."""
+        if name not in self.swept:
+            return self.base[name], self.base[name]
+        given = self.options["bounds"][name]
+        ends = given if isinstance(given, list) else [given["from"], given["to"]]
+        return float(min(ends)), float(max(ends))
+
+    def _all_values(self) -> List[Dict[str, float]]:
+        """The numbers of all designs; those of one geometry stand together."""
+        bounds, wanted = self.options["bounds"], self.options.get("designs")
+        sizes = [len(of) if isinstance(of, list) else int(of.get("levels", 0)) for of in (bounds[name] for name in self.swept)]
+        every = math.prod(sizes)  # 0 where there are intervals
+        self.factorial = 0 < every <= (DESIGNS if wanted is None else wanted)
+        if self.factorial:
+            places = [[(k + 0.5) / size for k in range(size)] for size in sizes]
+            units = [dict(zip(self.swept, point)) for point in itertools.product(*places)]
+        else:
+            light = [name for name in self.swept if FIELDS[name].light]
+            hard = [name for name in self.swept if not FIELDS[name].light]
+            count = DESIGNS if wanted is None else int(wanted)
+            of_one = LIGHTS if light and hard else 1
+            of_light, of_hard = spread(max(len(light), 1), count), spread(max(len(hard), 1), -(-count // of_one))
+            units = [{**dict(zip(hard, of_hard[k // of_one])), **dict(zip(light, of_light[k]))} for k in range(count)]
+        found = [{**self.base, **{name: self.levels[name](point[name]) for name in self.swept}} for point in units]
+        return [dict(one) for one in dict.fromkeys(tuple(values.items()) for values in found)]  # lists may give one design twice
+
+    def _set(self, values: Mapping[str, float]) -> None:
+        """Make the plan's sensor that design. `Error` of the sensor says why there is none."""
+        sensor, (x, y, _) = self.plan.sensor, self.plan.sensor.position
+        changes: Dict[str, Any] = {name: values[name] for name in FIELDS if name not in ("mast", *BAND) and values[name] != getattr(sensor, name)}
+        if "mast" in self.swept:
+            changes["position"] = (x, y, self.ground + values["mast"])
+        if any(name in self.swept for name in BAND):
+            changes.update(number_of_channels=int(values["number_of_channels"]), minimum_elevation=values["minimum_elevation"],
+                           elevation_step=(values["maximum_elevation"] - values["minimum_elevation"]) / max(values["number_of_channels"] - 1.0, 1.0))
+        sensor.set(**changes)
+        update(sensor.algorithm)
+
+    def changes(self, values: Mapping[str, float]) -> Dict[str, Any]:
+        """Properties of the plan's sensor that make it a design."""
+        self._set(values)
+        sensor = self.plan.sensor
+        names = {name for name in self.swept if name not in ("mast", "maximum_elevation")} | {"position", "orientation"}
+        if any(name in self.swept for name in BAND):
+            names |= {"number_of_channels", "minimum_elevation", "elevation_step"}
+        return {name: list(value) if isinstance(value, tuple) else value for name, value in ((name, getattr(sensor, name)) for name in sorted(names))}
+
+    def _judge(self, one: Candidate) -> None:
+        """Pulses and cost of a design."""
+        if self._scans(one.values) > MOST_SCANS:
+            one.refused = f"{self._scans(one.values)} scans in {self.within:g} s, expected at most {MOST_SCANS}"
+            return
+        try:
+            self._set(one.values)
+        except Error as error:
+            one.refused = str(error)
+            return
+        beams = self.plan.sensor.beams
+        times = np.sort(1e-6 * np.asarray(beams["timestamp"], float))
+        rate, energy = beams.number_of_points * one.values["rotation_rate"], one.values["pulse_energy"]
+        numbers = {**one.values, "pulse_rate": rate, "average_power": rate * energy}
+        with naming(f"{self.plan.file}: design.cost"):
+            one.cost = self.cost(numbers)
+        with naming(f"{self.plan.file}: design.exit_aperture"):
+            area = self.exit(numbers)
+            if not area > 0.0:
+                raise ValueError(f"{self.exit.text}: is {area:g} m2, expected more than 0")
+        one.pulses = {"pulse_rate": rate, "shortest_interval": float(np.diff(times).min()) if len(times) > 1 else 1.0 / rate,
+                      "average_power": rate * energy, "exit_aperture": area, "exposure": energy / area}
+
+    def _scenario(self) -> Dict[str, Any]:
+        what = f"{self.plan.file}: design.scenario"
+        if "scenario" not in self.options:
+            raise Error(f"{what}: is not in the plan, expected a scenario of sequences whose birds are tracked")
+        with naming(what):
+            found = read_scenario(self.options["scenario"])
+        if pathlib.Path(found["scene"]).resolve() != pathlib.Path(self.plan.plan["scene"]).resolve():
+            raise Error(f"{what}: is of the scene {found['scene']}, expected that of the plan")
+        return found
+
+    def _tell(self, what: str, done: int, total: int) -> None:
+        if self.progress and self.ranks.rank == 0:
+            self.progress(what, done, total)
+
+    def look(self) -> Designs:
+        """Find what each design detects, and of the finalists what is tracked. @return this"""
+        possible = [one for one in self.candidates if not one.refused]
+        self.weights = self.plan.weights(self.plan.points).sum(axis=0)
+        found = self._found("designs", [one.values for one in possible], self.plan.points)
+        for one, values in zip(possible, found):
+            one.share = self._share(values, self.weights)
+        for one, is_on in zip(possible, on_the_front([one.cost for one in possible], [one.share.value for one in possible])):
+            one.front = bool(is_on)
+        self.chosen = self._cheapest(possible, lambda one: one.share)
+        if self.measure == "tracked":
+            self._track()
+            self.chosen = self._cheapest(self.finalists, lambda one: one.tracked)
+        self.about = self.chosen or max(self.judged, key=lambda one: self.of(one).value)
+        points, _ = self.plan.places(self.plan.seed + OTHER_PLACES)
+        weights = self.plan.weights(points).sum(axis=0)
+        self.elsewhere = self._share(self._found("other places", [self.about.values], points)[0], weights)
+        self.sensitivities = self._sensitivities(found[possible.index(self.about)])
+        return self
+
+    def write(self) -> Designs:
+        """Look, then write design.html, design.csv, sensitivities.csv and pictures into the folder. @return this"""
+        from . import _design_page  # needs Matplotlib
+        with only_run(self.folder, self.ranks, goes_on=True):
+            self.look()
+            if not self.ranks.rank:
+                _design_page.write(self)
+        return self
+
+    @property
+    def judged(self) -> List[Candidate]:
+        """Designs whose share is known by the measure asked for."""
+        return self.finalists if self.measure == "tracked" else [one for one in self.candidates if not one.refused]
+
+    def of(self, one: Candidate) -> scores.Value:
+        """The share by the measure asked for."""
+        return one.tracked if self.measure == "tracked" else one.share
+
+    def _cheapest(self, of: Sequence[Candidate], share: Callable[[Candidate], scores.Value]) -> Optional[Candidate]:
+        good = [one for one in of if is_told(share(one).value, share(one).error, self.asked)]
+        return min(good, key=lambda one: one.cost) if good else None
+
+    def undecided(self) -> List[Candidate]:
+        """Designs that are cheaper than the chosen one, all if there is none, and of which the error does not tell whether they have the
+        asked share."""
+        limit = self.chosen.cost if self.chosen else math.inf
+        return [one for one in self.judged if one.cost < limit and is_told(self.of(one).value, self.of(one).error, self.asked) is None]
+
+    @staticmethod
+    def _share(values: np.ndarray, weights: np.ndarray) -> scores.Value:
+        """The weighted mean over places, with the standard error of places drawn at random."""
+        mean = float(np.vdot(weights, values.astype(float)) / weights.sum())
+        error = math.sqrt(float(np.sum((weights * (values - mean)) ** 2))) / float(weights.sum())
+        return scores.Value(mean, error * math.sqrt(len(values) / max(len(values) - 1, 1)), len(values))
+
+    def _found(self, what: str, designs: Sequence[Mapping[str, float]], points: np.ndarray) -> np.ndarray:
+        """The probability at each place for the birds and weathers asked for: float32, designs x places. Ranks share designs, those of one
+        geometry together; what is kept in the folder is not found again."""
+        siting.require_memory(4.0 * len(designs) * len(points), f"{len(designs):,} designs and {len(points):,} places", "take fewer")
+        folder, places = self.folder / "coverage", np.ascontiguousarray(points, float)
+        cover = Coverage(self.plan.scene, self.plan.sensor, places=places_of(places))
+        settings = {name: value for name, value in self.plan.settings.items() if name != "height_limits"}
+        cover.set(**settings)
+        known = [self.plan.mix, [[air.share, air.settings] for air in self.airs], self.within,
+                 {name: repr(value) for name, value in settings.items() if name != "number_of_threads"}]
+        found, files = np.empty((len(designs), len(points)), np.float32), []
+        for values in designs:
+            self._set(values)
+            files += siting._files(cover, np.array([self.plan.sensor.position]), places, known, folder)
+        with self.ranks.together():
+            todo = [i for i, file in enumerate(files) if not siting._read_kept(file, found[i])]
+            self.ranks.wait()  # all have looked before anybody adds anything
+            hard = [tuple(value for name, value in values.items() if not FIELDS[name].light) for values in designs]
+            groups = [list(of) for _, of in itertools.groupby(todo, key=lambda i: hard[i])]
+            mine = [i for group in groups[self.ranks.rank::self.ranks.size] for i in group]
+            with Updates(cover.algorithm) as again:
+                for number, i in enumerate(mine):
+                    found[i] = self._at_places(cover, designs[i], again)
+                    files[i].unlink(missing_ok=True)  # a damaged one may be a pipe
+                    write_whole(files[i], siting._kept(found[i]))
+                    self._tell(what, number + 1, len(mine))
+            self.ranks.wait()
+            for i in sorted(set(todo) - set(mine)):
+                if not siting._read_kept(files[i], found[i]):
+                    raise Error(f"{files[i]}: is damaged, which another rank has just written")
+        return found
+
+    def _at_places(self, cover: Coverage, values: Mapping[str, float], again: Callable[[], Any]) -> np.ndarray:
+        self._set(values)
+        name, total = "detection_probability", 0.0
+        if self.within:
+            name, scans = "track_probability", self._scans(values)
+            if scans < cover.required_detections:
+                return np.zeros(1, np.float32)  # of every place
+            cover.number_of_scans = scans
+        whole = sum(air.share for air in self.airs)
+        for species, share in self.plan.mix.items():
+            cover.species = species
+            for air in self.airs:
+                cover.set(**air.settings)
+                again()
+                array = cover.algorithm.GetOutputDataObject(0).GetPointData().GetArray(name)
+                total = total + share * air.share / whole * vtk_to_numpy(array).astype(float)
+        return np.asarray(total, np.float32)
+
+    def _sensitivities(self, found: np.ndarray) -> List[Dict[str, Any]]:
+        """Rows: each swept number of the design lower and higher by CHANGE (elevations by CHANGE of the band), one at a time: what
+        that changes of the detected share, at the same places, and of the cost."""
+        about = self.about.values
+        width = about["maximum_elevation"] - about["minimum_elevation"]
+        changed = []
+        for name in self.swept:
+            step = CHANGE * (width if name.endswith("_elevation") else about[name])
+            for sign in (-1.0, 1.0):
+                value = about[name] + sign * (max(round(step), 1.0) if FIELDS[name].whole else step)
+                one = Candidate(-1, {**about, name: value})
+                self._judge(one)
+                changed.append((name, value, one))
+        possible = [one for _, _, one in changed if not one.refused]
+        shares = {id(one): self._share(values - found, self.weights)
+                  for one, values in zip(possible, self._found("sensitivities", [one.values for one in possible], self.plan.points))}
+        return [{"field": name, "unit": FIELDS[name].unit, "from": about[name], "to": value, "refused": one.refused, "cost": one.cost - self.about.cost,
+                 "share": shares.get(id(one), scores.Value(math.nan, math.nan, 0))} for name, value, one in changed]
+
+    def _track(self) -> None:
+        """Of designs on the front, evenly by their order, how many birds of the scenario are tracked."""
+        front = sorted((one for one in self.candidates if one.front), key=lambda one: one.cost)
+        count = min(int(self.options.get("finalists", FINALISTS)), len(front))
+        chosen = np.unique(np.round(np.linspace(0, len(front) - 1, count)).astype(int))
+        self.finalists = [front[i] for i in chosen]
+        with naming(f"{self.plan.file}: design.scenario"):
+            rate = Sensor(**self.scenario["sensor"]).rotation_rate
+        for number, one in enumerate(self.finalists):
+            sensor = {**self.scenario["sensor"], **{name: value for name, value in self.plan.plan["sensor"].items() if name != "name"}, **self.changes(one.values)}
+            each = int(self.scenario.get("scans_per_sequence", 100))
+            scans, learning = (max(round(count * one.values["rotation_rate"] / rate), 1) for count in (each, LEARNING))  # in the same time
+            with naming(f"{self.plan.file}: design.scenario"):
+                tracks = BirdTracks([self.options["scenario"]], learning_scans=learning, threads=self.plan.threads, sensor=sensor, scans_per_sequence=scans,
+                                    number_of_scans=max(scans * self.scenario["number_of_scans"] // each, 1))
+            folder = self.folder / "tracks" / f"{one.number}"
+
+            def step(what: str, done: int, total: int, which: str = f"design {number + 1} of {len(self.finalists)}") -> None:
+                self._tell(f"{which}: {what}", done, total)
+            tracks.write(folder, self.ranks, step)
+            with naming(f"{self.plan.file}: design.scenario"):
+                one.tracked = self._tracked(read_regular(folder / "birds.csv").decode())
+
+    def _tracked(self, text: str) -> scores.Value:
+        """The share of birds tracked, of the plan's species at its heights. @param text birds.csv"""
+        birds = list(csv.DictReader(io.StringIO(text, newline="")))
+        low, high = self.plan.asked or (-math.inf, math.inf)
+        parts = []
+        for species, share in self.plan.mix.items():
+            of = [bird for bird in birds if bird["species"] == species and low <= float(bird["height"]) <= high]
+            if not of:
+                raise ValueError(f"has no {species or 'target'} at the plan's heights within the beams, expected some")
+            parts.append((share, scores.share(sum(bird["found_s"] != "" for bird in of), len(of))))
+        return scores.Value(sum(share * part.value for share, part in parts), math.sqrt(sum((share * part.error) ** 2 for share, part in parts)),
+                            sum(part.number for _, part in parts))

@@ -1,0 +1,172 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What `avianlidar design` writes: design.csv, sensitivities.csv, pictures and a page of HTML."""
+from __future__ import annotations
+
+import math
+import pathlib
+from typing import Any, Dict, List
+
+import numpy as np
+
+from .._disk import write_whole
+from .._version import __version__
+from . import _pictures as pictures
+from ._card import cell
+from ._design import CHANGE, FIELDS, TOLD, Candidate, Designs, is_told
+from ._maps import write_table
+from ._page import embedded, render
+from ._report import place
+from ._scores import Value
+
+
+def _percent(value: Value) -> str:
+    return cell(value, 100.0, "%")
+
+
+def _cost(study: Designs, cost: float) -> str:
+    return f"{cost:.4g}{' ' + study.unit if study.unit else ''}"
+
+
+def does(study: Designs, form: str = "detects") -> str:
+    """What the share is of, in words. @param form of the verb "detect" """
+    birds = f"{study.plan.bird}s" if len(study.plan.mix) == 1 else "birds"
+    if study.measure == "tracked":
+        return f"{form.replace('detect', 'track')} {birds} of the scenario at least once"
+    needed = study.plan.settings.get("required_detections", 1)
+    time = f"{needed} or more of the scans in {study.within:g} s" if study.within else "one scan"
+    return f"{form} {birds} {study.plan.where}, by {time}"
+
+
+def stands(study: Designs) -> str:
+    """Where the lidar is."""
+    x, y, _ = study.plan.sensor.position
+    return f"{place((x, y, study.about.values['mast'] + study.ground)).rsplit(',', 1)[0]} of the scene's origin" if x or y else "at the scene's origin"
+
+
+def in_words(study: Designs, one: Candidate) -> str:
+    """The swept numbers of a design."""
+    return ", ".join(f"{FIELDS[name].words} {FIELDS[name].text(one.values[name])}" for name in study.swept)
+
+
+def pulses(study: Designs, one: Candidate) -> str:
+    """What whoever assesses eye safety asks for first."""
+    of, energy = one.pulses, FIELDS["pulse_energy"].text(one.values["pulse_energy"])
+    return (f"{'' if 'pulse_energy' in study.swept else energy + ' a pulse, '}{of['exposure']:.4g} J/m² a pulse at the exit aperture of {1e4 * of['exit_aperture']:.4g} cm², "
+            f"{of['pulse_rate']:,.0f} pulses a second")
+
+
+def answers(study: Designs) -> List[str]:
+    """The question answered."""
+    count, asked = len(study.judged), f"{100.0 * study.asked:g} %"
+    about, share = study.about, study.of(study.about)
+    if study.chosen:
+        found = [f"The cheapest of {count} designs that {does(study).replace(' ', f' {asked} of ', 1)} costs {_cost(study, about.cost)} by the plan's formula and has {_percent(share)}."]
+    else:
+        found = [f"None of {count} designs surely {does(study).replace(' ', f' {asked} of ', 1)}: the best has {_percent(share)} and costs {_cost(study, about.cost)} by the plan's formula."]
+    found.append(f"It is number {about.number}: {in_words(study, about)}; {pulses(study, about)}.")
+    other = study.elsewhere
+    same = is_told(other.value, other.error, study.asked)
+    words = {True: "the asked share or more", False: "less than the asked share", None: "so the error does not tell"}[same]
+    found.append(f"At {other.number:,} other places, by which no design was chosen, it detects {_percent(other)}"
+                 + (f": {words}." if study.measure == "detected" and study.chosen else "."))
+    unsure = study.undecided()
+    if unsure:
+        least = min(unsure, key=lambda one: one.cost)
+        found.append(f"Of {len(unsure)} {'cheaper ' if study.chosen else ''}{'design' if len(unsure) == 1 else 'designs'}, from {_cost(study, least.cost)} on, the error "
+                     f"does not tell: they lie within {TOLD:g} standard errors of {asked}. More {'scans' if study.measure == 'tracked' else 'places'} would.")
+    return found
+
+
+def table(study: Designs) -> List[Dict[str, Any]]:
+    """Rows of design.csv, in SI units."""
+    rows = []
+    for one in study.candidates:
+        of = one.pulses
+        row: Dict[str, Any] = {"design": one.number, **{f"{name} [{FIELDS[name].unit}]": one.values[name] for name in FIELDS},
+                               "detected [1]": one.share.value, "detected_std_error [1]": one.share.error}
+        if study.measure == "tracked":
+            row.update({"tracked [1]": one.tracked.value, "tracked_std_error [1]": one.tracked.error, "tracked_of [1]": one.tracked.number})
+        told = None if math.isnan(study.of(one).value) else is_told(study.of(one).value, study.of(one).error, study.asked)
+        row.update({f"cost [{study.unit or '1'}]": one.cost, "wavelength [nm]": float(study.plan.sensor.wavelength), "pulse_width [s]": float(study.plan.sensor.pulse_width),
+                    "exit_aperture [m2]": of.get("exit_aperture", math.nan), "radiant_exposure [J/m2]": of.get("exposure", math.nan),
+                    "pulse_rate [Hz]": of.get("pulse_rate", math.nan), "shortest_interval [s]": of.get("shortest_interval", math.nan),
+                    "average_power [W]": of.get("average_power", math.nan), "on_the_front": int(one.front),
+                    "has_the_asked_share": {True: "yes", False: "no", None: "not told"}[told] if not math.isnan(study.of(one).value) else "",
+                    "chosen": int(one is study.chosen), "refused": one.refused})
+        rows.append(row)
+    return rows
+
+
+def _draw_front(axes, study: Designs) -> None:
+    known = [one for one in study.candidates if not one.refused]
+    front = sorted((one for one in known if one.front), key=lambda one: one.cost)
+    others = [one for one in known if not one.front]
+    for of, style in ((others, {"color": "0.6", "label": "designs"}), (front, {"color": "C0", "label": "on the front"})):
+        axes.errorbar([one.cost for one in of], [100 * one.share.value for one in of], [100 * one.share.error for one in of], fmt="o", markersize=4, **style)
+    axes.step([one.cost for one in front], [100 * one.share.value for one in front], where="post", color="C0", linewidth=1)
+    if study.measure == "tracked":
+        of = study.finalists
+        axes.errorbar([one.cost for one in of], [100 * one.tracked.value for one in of], [100 * one.tracked.error for one in of], fmt="s-", color="C1", label="tracked")
+    axes.axhline(100 * study.asked, color="red", linewidth=0.8, label=f"asked: {100 * study.asked:g} %")
+    about = study.about
+    axes.plot(about.cost, 100 * study.of(about).value, "*", color="red", markersize=14, zorder=5, label="the cheapest that has it" if study.chosen else "the best")
+    axes.set_ylim(0.0, None)
+    axes.set_xlabel(f"cost{', ' + study.unit if study.unit else ''}", fontsize=9)
+    axes.set_ylabel("share of birds, %", fontsize=9)
+    axes.grid(alpha=0.4)
+    axes.legend(fontsize=8)
+
+
+def _draw_sensitivities(axes, study: Designs) -> None:
+    rows = study.sensitivities
+    largest = {name: max((abs(row["share"].value) for row in rows if row["field"] == name and not row["refused"]), default=0.0) for name in study.swept}
+    order = sorted(study.swept, key=lambda name: largest[name])
+    for row in rows:
+        up = row["to"] > row["from"]
+        if not row["refused"]:
+            axes.barh(order.index(row["field"]) + (0.19 if up else -0.19), 100 * row["share"].value, 0.36, xerr=100 * row["share"].error, color="C0" if up else "C1")
+    for up, colour in ((True, "C0"), (False, "C1")):
+        axes.barh([0], [0], color=colour, label="more" if up else "less")
+    axes.set_yticks(np.arange(len(order)), [FIELDS[name].words for name in order], fontsize=9)
+    axes.axvline(0.0, color="0.3", linewidth=0.8)
+    axes.set_xlabel("change of the share detected, percentage points", fontsize=9)
+    axes.grid(axis="x", alpha=0.4)
+    axes.legend(fontsize=8)
+
+
+def write(study: Designs) -> None:
+    """design.csv, sensitivities.csv, front.png, sensitivities.png, design.html, in the study's folder."""
+    out = pathlib.Path(study.folder)
+    write_table(out / "design.csv", table(study))
+    write_table(out / "sensitivities.csv", [
+        {"field": row["field"], "unit": row["unit"], "from": row["from"], "to": row["to"], "change_of_detected [1]": row["share"].value,
+         "change_std_error [1]": row["share"].error, f"change_of_cost [{study.unit or '1'}]": row["cost"], "refused": row["refused"]} for row in study.sensitivities])
+    pictures.draw(out / "front.png", (6.4, 4.2), lambda axes: _draw_front(axes, study))
+    pictures.draw(out / "sensitivities.png", (6.4, 4.2), lambda axes: _draw_sensitivities(axes, study))
+    front = sorted((one for one in study.candidates if one.front), key=lambda one: one.cost)
+    shown = sorted({one.number: one for one in [*front, *(study.finalists if study.measure == 'tracked' else ()), study.about]}.values(), key=lambda one: one.cost)
+    plan, refused = study.plan, [one for one in study.candidates if one.refused]
+    bounds = study.options["bounds"]
+    base = [{"words": FIELDS[name].words, "base": FIELDS[name].text(study.base[name]),
+             "bounds": _bounds(name, bounds[name]) if name in bounds else "the same in all designs", "swept": name in bounds} for name in FIELDS]
+    write_whole(out / "design.html", render(
+        "design.html.jinja", question=plan.plan.get("description") or f"What must the lidar be that {does(study).replace(' ', f' {100 * study.asked:g} % of ', 1)}?",
+        answer=answers(study), study=study, stands=stands(study), front=front, shown=shown, fields=[FIELDS[name] for name in study.swept], names=study.swept, told=TOLD, change=CHANGE, refused=refused,
+        base=base, version=__version__, does=does(study), places=len(plan.points), name=plan.name, count=len(study.candidates),
+        cells=lambda one: [FIELDS[name].text(one.values[name]) for name in study.swept],
+        verdict=lambda one: "–" if math.isnan(study.of(one).value) else
+        {True: "yes", False: "no", None: "not told"}[is_told(study.of(one).value, study.of(one).error, study.asked)],
+        cost=lambda one: _cost(study, one.cost), added=lambda value: f"{value:+.3g}", words=FIELDS, filter_percent=_percent,
+        filter_points=lambda value: "–" if math.isnan(value.value) else f"{100 * value.value:+.2f} ± {100 * value.error:.2f}",
+        pictures=[{"source": embedded(out / "front.png"), "alt": f"Share of birds by cost of {len(study.candidates)} designs; {answers(study)[0]}",
+                   "caption": "Share of birds by cost, with one standard error; blue: on the front; red: what is asked"},
+                  {"source": embedded(out / "sensitivities.png"), "alt": "Change of the share by a change of each number.",
+                   "caption": f"What {100 * CHANGE:g} % more or less of one number change (elevations: of the band's width)"}]))
+
+
+def _bounds(name: str, given: Any) -> str:
+    field = FIELDS[name]
+    if isinstance(given, list):
+        return ", ".join(field.text(value) for value in given)
+    return (f"{field.text(given['from'])} to {field.text(given['to'])}" + (f" in {given['levels']} levels" if given.get("levels") else "")
+            + (", evenly by the logarithm" if given.get("logarithmic") else ""))

@@ -1,0 +1,316 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Designs: closed forms of the link budget, the front against brute force, formulas that attack, bounds that are wrong, work that goes on."""
+import csv
+import json
+import math
+import os
+import pathlib
+import re
+import shutil
+import unittest
+import unittest.mock
+
+import numpy as np
+
+import TestBirdTracks
+from avianlidar import Error
+from avianlidar._command import main
+from avianlidar.apps import _design_page
+from avianlidar.apps._design import FIELDS, Designs, is_told, on_the_front, spread
+from avianlidar.apps._formula import Formula
+from avianlidar.apps._maps import Plan, read_plan
+
+OUTPUT = pathlib.Path(os.environ.get("AVIANLIDAR_TEST_OUTPUT_DIR", "/tmp")) / "design"
+BOUNDS = {"pulse_energy": {"from": 1e-4, "to": 4e-3, "logarithmic": True}, "receiver_aperture": [0.005, 0.02]}
+DESIGN = {"share": 0.12, "bounds": BOUNDS, "cost": "1000 * pulse_energy + 100 * receiver_aperture", "designs": 8}
+NIGHT = {"preset": "Search905", "azimuth_step": 2.0, "background_radiance": 0.0}
+
+
+def fresh(name):
+    return TestBirdTracks.folder(f"../design/{name}")
+
+
+def plan_of(where, **changes):
+    """A plan file in a folder, whose scene is level ground and a house."""
+    TestBirdTracks.scenario_file(where)
+    plan = {"scene": "small.lidarscene.json", "sensor": NIGHT, "coverage": {"species": "herring gull", "clutter": False}, "extent": [-400, 400, -400, 400],
+            "heights": [10, 40], "places": 400, "design": DESIGN, **changes}
+    file = where / "small.coverage.json"
+    file.write_text(json.dumps(plan), encoding="utf-8")
+    return file
+
+
+def study_of(where, design=(), **changes):
+    return Designs(Plan(read_plan(plan_of(where, design={**DESIGN, **dict(design)}, **changes)), 1), where / "out")
+
+
+class Formulas(unittest.TestCase):
+    def test_arithmetic(self):
+        values = {"x": 3.0, "y": 0.5}
+        for text, expected in (("1 + 2 * x ** 2 / 3", 7.0), ("-(x - y) ** 2", -6.25), ("2 ** 3 ** 2", 512.0), ("sqrt(x * 3) + min(x, y, 1)", 3.5),
+                               ("ceil(y) + floor(y) + max(1, 2)", 3.0), ("log(exp(2)) + log10(100) + abs(-1)", 5.0), (" +x", 3.0), ("1e3 * y", 500.0)):
+            self.assertAlmostEqual(Formula(text, values)(values), expected, msg=text)
+
+    def test_attacks(self):
+        """All are a ValueError at once that names the formula: none runs, none fills the memory."""
+        texts = ("__import__('os').system('touch broken')", "x.__class__", "().__class__.__bases__", "9 ** 9 ** 9 ** 9", "2 ** 10000000000", "10 ** 400 * 0",
+                 "1 / 0", "1 / (x - 3)", "(-8) ** (1 / 3)", "'a' * 9", "lambda: 1", "[1]", "x if x else 1", "min()", "min(x)", "exp(1e9)", "(" * 300 + "1" + ")" * 300,
+                 "1e999", "1e999 - 1e999", "9" * 500, "9" * 5000, "open('f')", "True", "1j", "x(2)", "max(*[1, 2])", "log(0)", "", "x x", "sqrt(x, 1)", "f'{x}'", "(z := 1)",
+                 "x @ x", "x // 2", "x % 2", "x < 2", "x & 1", "min(x, key=abs)", "\x00", "x\n= 1", "z", "eval('1')", "sqrt", "print(x)", "x; x", "#", "~x", "not x")
+        for text in texts:
+            with self.subTest(text[:40]), self.assertRaisesRegex(ValueError, re.escape(text.strip()[:20])):
+                Formula(text, ["x"])({"x": 3.0})
+        with self.assertRaisesRegex(ValueError, "'z' is not known, expected one of the numbers x, y"):
+            Formula("2 * z", ["x", "y"])
+
+
+class Parts(unittest.TestCase):
+    def test_front_is_brute_force(self):
+        random = np.random.default_rng(1)
+        for levels in (1000, 6):  # many ties
+            costs, shares = random.integers(0, levels, (2, 300)).astype(float)
+            costs[:3], shares[3:5] = math.nan, math.nan
+            brute = [math.isfinite(costs[i] + shares[i]) and not any(
+                costs[k] <= costs[i] and shares[k] >= shares[i] and (costs[k] < costs[i] or shares[k] > shares[i]) for k in range(300)) for i in range(300)]
+            self.assertEqual(on_the_front(costs, shares).tolist(), brute)
+        self.assertEqual(on_the_front([], []).tolist(), [])
+
+    def test_points_fill_the_cube(self):
+        for number in (1, 2, 5):
+            points = spread(number, 200)
+            self.assertTrue(((points >= 0.0) & (points < 1.0)).all())
+            np.testing.assert_array_equal(points[:50], spread(number, 50))  # more keep those before
+            for column in points.T:  # no tenth is empty, none has twice its part
+                counts = np.histogram(column, 10, (0.0, 1.0))[0]
+                self.assertTrue(14 <= counts.min() and counts.max() <= 26, counts)
+        pairs = np.histogram2d(*spread(2, 200).T, 5, [(0, 1), (0, 1)])[0]
+        random = np.histogram2d(*np.random.default_rng(1).uniform(size=(2, 200)), 5, [(0, 1), (0, 1)])[0]
+        self.assertLess(pairs.std(), 0.5 * random.std())
+
+    def test_what_an_error_tells(self):
+        self.assertEqual([is_told(share, 0.01, 0.5) for share in (0.53, 0.515, 0.5, 0.485, 0.47)], [True, None, None, None, False])
+
+
+class LinkBudget(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.study = study_of(fresh("energy"), {"bounds": {"pulse_energy": [3.6e-4, 7.2e-4, 1.44e-3], "receiver_aperture": [0.0078539816, 0.0157079632]}}).look()
+
+    def test_twice_the_aperture_is_twice_the_energy_without_background(self):
+        of = {(round(one.values["pulse_energy"] / 3.6e-4), round(one.values["receiver_aperture"] / 0.0078539816)): one for one in self.study.candidates}
+        self.assertEqual(len(of), 6)
+        for (energy, aperture), one in of.items():
+            if aperture == 2:
+                self.assertAlmostEqual(one.share.value, of[min(2 * energy, 4), 1 if energy < 4 else 2].share.value, delta=1e-6)
+        self.assertGreater(of[2, 1].share.value, of[1, 1].share.value + 0.005)
+        self.assertAlmostEqual(of[1, 2].pulses["exposure"], of[1, 1].pulses["exposure"] / 2)
+
+    def test_more_energy_detects_more(self):
+        study = study_of(fresh("more"), {"bounds": {"pulse_energy": BOUNDS["pulse_energy"]}, "designs": 12}).look()
+        order = sorted(study.candidates, key=lambda one: one.values["pulse_energy"])
+        self.assertTrue((np.diff([one.share.value for one in order]) > 0.0).all())
+        self.assertTrue(all(one.front for one in order))  # as costs rise with energy
+        self.assertIs(study.chosen, next(one for one in order if one.share.value - 2.0 * one.share.error >= 0.12))
+
+    def test_sixteen_times_the_energy_reaches_twice_as_far(self):
+        """A point target in no air: the energy falls with the fourth power of the range, and beams are cones."""
+        found = []
+        for scale in (1.0, 2.0):
+            where = fresh(f"scale{scale:g}")
+            plan = plan_of(where, sensor={**NIGHT, "position": [0, 0, 0], "range_gate": 4000}, extent=[-100 * scale, 100 * scale] * 2, heights=[0.0, 6 * scale], places=3000,
+                           coverage={"species": "", "effective_area": 0.03, "visibility": 0, "attenuation_coefficient": 0.0, "clutter": False},
+                           design={**DESIGN, "bounds": {"pulse_energy": [2e-7 * scale ** 4, 4e-7 * scale ** 4]}})
+            scene = {**TestBirdTracks.SCENE, "objects": TestBirdTracks.SCENE["objects"][1:]}  # without the ground
+            (where / "small.lidarscene.json").write_text(json.dumps(scene), encoding="utf-8")
+            house = np.where(TestBirdTracks.CORNERS == TestBirdTracks.LOW, (-1.0, 3990.0, -500.0), (1.0, 3999.0, -400.0))
+            (where / "house.stl").write_text(TestBirdTracks.stl(house, TestBirdTracks.TRIANGLES), encoding="utf-8")
+            found.append([one.share.value for one in Designs(Plan(read_plan(plan), 1), where / "out").look().candidates])
+        np.testing.assert_allclose(*found, atol=2e-6)
+        self.assertGreater(found[0][1], found[0][0] + 0.01)
+
+    def test_the_plans_own_lidar_has_the_plans_own_share(self):
+        where = fresh("own")
+        clutter = {"coverage": {"species": "herring gull"}}
+        plan = Plan(read_plan(plan_of(where, **clutter)), 1)
+        overall = plan.overall
+        base = {name: [getattr(plan.sensor, name)] for name in ("pulse_energy", "receiver_aperture", "number_of_channels", "rotation_rate")}
+        study = study_of(where, {"bounds": {**base, "mast": [3.0], "maximum_elevation": [15 * 0.375]}}, **clutter).look()
+        one, = study.candidates
+        self.assertAlmostEqual(one.share.value, overall["detection_probability"], delta=1e-6)
+        self.assertAlmostEqual(one.share.error, overall["detection_std_error"], delta=2e-5)
+        self.assertEqual(one.values, study.base)
+
+    def test_a_mix_in_the_weathers_of_a_year(self):
+        year = [{"weather": ["haze:20000"], "share": 0.75}, {"weather": ["fog:300"], "share": 0.25}]
+        where = fresh("year")
+        study = study_of(where, {"bounds": {"pulse_energy": [3.6e-4]}}, coverage={}, mix={"herring gull": 3, "crow": 1}, year=year).look()
+        plan = Plan(read_plan(where / "small.coverage.json"), 1)
+        rows = [rows[-1]["detection_probability"] for rows in plan.in_airs([air.settings for air in plan.year])]
+        self.assertAlmostEqual(study.candidates[0].share.value, 0.75 * rows[0] + 0.25 * rows[1], delta=1e-6)
+        self.assertGreater(rows[0], rows[1] + 0.01)
+
+    def test_scans_within_a_time(self):
+        """2 of the scans in 10 s, by the binomial law at each place."""
+        study = study_of(fresh("within"), {"bounds": {"rotation_rate": [0.1, 0.2, 0.5]}, "within": 10}, coverage={"species": "herring gull", "required_detections": 2, "number_of_scans": 2, "clutter": False}).look()
+        once = study_of(fresh("once"), {"bounds": {"rotation_rate": [0.5]}})
+        p = once._found("one", [once.candidates[0].values], once.plan.points)[0].astype(float)
+        for one, scans in zip(study.candidates, (1, 2, 5)):
+            expected = 1.0 - (1.0 - p) ** scans - scans * p * (1.0 - p) ** (scans - 1)
+            self.assertAlmostEqual(one.share.value, expected.mean(), delta=2e-6)
+
+
+class Pulses(unittest.TestCase):
+    def test_numbers(self):
+        study = study_of(fresh("pulses"), {"bounds": {"rotation_rate": [0.25, 0.5]}, "exit_aperture": 2e-3, "cost": "pulse_rate + average_power"})
+        for one in study.candidates:
+            rate = 180 * 16 * one.values["rotation_rate"]  # steps of 2 degrees, 16 channels
+            self.assertAlmostEqual(one.pulses["pulse_rate"], rate)
+            self.assertAlmostEqual(one.pulses["average_power"], 3.6e-4 * rate)
+            self.assertAlmostEqual(one.pulses["exposure"], 3.6e-4 / 2e-3)
+            self.assertAlmostEqual(one.pulses["shortest_interval"], 30e-6, delta=1e-9)
+            self.assertAlmostEqual(one.cost, rate * (1.0 + 3.6e-4))
+
+    def test_a_lidar_that_cannot_be_is_told(self):
+        study = study_of(fresh("refused"), {"bounds": {"number_of_channels": [16, 4000]}})
+        self.assertEqual([bool(one.refused) for one in study.candidates], [False, True])
+        self.assertRegex(study.candidates[1].refused, "the 4000 firings of a column take")
+        study.look()
+        _design_page.write(study)
+        rows = list(csv.DictReader((study.folder / "design.csv").read_text(encoding="utf-8").splitlines()))
+        self.assertEqual([row["detected [1]"] == "nan" for row in rows], [False, True])
+
+
+class Work(unittest.TestCase):
+    def test_folder_and_page(self):
+        where = fresh("page")
+        file = plan_of(where, description="<script>alert(1)</script> & what?", design={**DESIGN, "cost_unit": "<b>kEUR"})
+        self.assertEqual(main(["design", str(file), "-o", str(where / "out")]), 0)
+        self.assertEqual({path.name for path in (where / "out").iterdir()},
+                         {"coverage", "design.csv", "design.html", "front.png", "sensitivities.csv", "sensitivities.png"})
+        rows = list(csv.DictReader((where / "out" / "design.csv").read_text(encoding="utf-8").splitlines()))
+        self.assertEqual(len(rows), 8)
+        for row in rows:
+            self.assertAlmostEqual(float(row["radiant_exposure [J/m2]"]), float(row["pulse_energy [J]"]) / float(row["receiver_aperture [m2]"]), delta=1e-5)
+            self.assertAlmostEqual(float(row["cost [<b>kEUR]"]), 1000 * float(row["pulse_energy [J]"]) + 100 * float(row["receiver_aperture [m2]"]), delta=1e-3)
+        self.assertEqual(sum(int(row["chosen"]) for row in rows), 1)
+        page = (where / "out" / "design.html").read_text(encoding="utf-8")
+        self.assertNotIn("<script", page)
+        self.assertNotIn("<b>kEUR", page)
+        self.assertNotRegex(page, r'(src|href)="(?!data:|#)')
+        self.assertIn("The cheapest of 8 designs that detects 12 % of herring gulls on the map, 10 to 40 m, by one scan costs ", page)
+        self.assertIn("no limit is applied here and no verdict given", page)
+        for _, changed in ((row["field"], row) for row in csv.DictReader((where / "out" / "sensitivities.csv").read_text(encoding="utf-8").splitlines())):
+            up = float(changed["to"]) > float(changed["from"])
+            self.assertEqual(float(changed["change_of_detected [1]"]) > 0.0, up)
+            self.assertAlmostEqual(float(changed["to"]) / float(changed["from"]), 1.2 if up else 0.8, delta=1e-5)
+
+    def test_what_no_design_has(self):
+        study = study_of(fresh("none"), {"share": 0.999}).look()
+        self.assertIsNone(study.chosen)
+        self.assertEqual(study.about.share.value, max(one.share.value for one in study.candidates))
+        self.assertTrue(_design_page.answers(study)[0].startswith("None of 8 designs surely detects 99.9 % of herring gulls"))
+
+    def test_what_the_error_does_not_tell(self):
+        only = {"bounds": {"pulse_energy": BOUNDS["pulse_energy"]}}  # so that what costs more detects more
+        study = study_of(fresh("unsure"), only).look()
+        middle = sorted(study.candidates, key=lambda one: one.cost)[2]
+        again = study_of(fresh("unsure"), {**only, "share": middle.share.value - middle.share.error}).look()
+        self.assertIn(middle.number, [one.number for one in again.undecided()])
+        self.assertGreater(again.chosen.cost, middle.cost)
+        self.assertRegex(" ".join(_design_page.answers(again)), "the error does not tell: .* within 2 standard errors")
+
+    def test_a_killed_run_goes_on(self):
+        where = fresh("killed")
+        study, written = study_of(where), []
+
+        def stop(what, done, total):
+            written.append(done)
+            if done == 3:
+                raise KeyboardInterrupt
+        study.progress = stop
+        with self.assertRaises(KeyboardInterrupt):
+            study.look()
+        kept = {file: file.read_bytes() for file in (where / "out" / "coverage").iterdir()}
+        self.assertEqual(len(kept), 3)
+        damaged = min(kept)
+        damaged.write_bytes(kept[damaged][:-1] + b"\0")
+        again, written = study_of(where), []
+        again.progress = lambda what, done, total: written.append((what, total))
+        again.look()
+        self.assertIn(("designs", 6), written)  # 8 but 2 that are whole
+        for file, content in kept.items():
+            self.assertEqual(file.read_bytes(), content)
+        whole = study_of(fresh("not-killed")).look()
+        self.assertEqual([one.share for one in whole.candidates], [one.share for one in again.candidates])
+        other = study_of(where, coverage={"species": "crow", "clutter": False})
+        with unittest.mock.patch.object(Designs, "_at_places", side_effect=RuntimeError("made again")), self.assertRaisesRegex(RuntimeError, "made again"):
+            other.look()
+
+    def test_designs_of_one_geometry_keep_their_lines_of_sight(self):
+        study, traced = study_of(fresh("kept"), {"bounds": {**BOUNDS, "mast": {"from": 3, "to": 9}}, "designs": 8}), []
+        at_places = Designs._at_places
+
+        def count(self, cover, values, again):
+            found = at_places(self, cover, values, again)
+            traced.append(cover.algorithm.GetNumberOfTracedPlaces() > 0)
+            return found
+        with unittest.mock.patch.object(Designs, "_at_places", count):
+            study.look()
+        self.assertEqual(traced[:8], [True, False, False, False] * 2)
+        self.assertEqual(len({one.values["mast"] for one in study.candidates}), 2)
+
+    def test_tracked(self):
+        where = fresh("tracked")
+        scenario = TestBirdTracks.scenario_file(where, number_of_scans=25)
+        study = study_of(where, {"measure": "tracked", "scenario": scenario.name, "finalists": 2, "share": 0.1, "bounds": {"pulse_energy": [1e-6, 3.6e-4]}},
+                         heights=[0, 40], sensor={"preset": "Search905"}).look()
+        weak, strong = study.finalists
+        self.assertLess(weak.tracked.value + 0.1, strong.tracked.value)
+        self.assertIs(study.chosen, strong)
+        birds = list(csv.DictReader((where / "out" / "tracks" / "1" / "birds.csv").read_text(encoding="utf-8").splitlines()))
+        gulls = [bird for bird in birds if bird["species"] == "herring gull"]
+        self.assertEqual((strong.tracked.number, strong.tracked.value), (len(gulls), sum(bird["found_s"] != "" for bird in gulls) / len(gulls)))
+        _design_page.write(study)
+        self.assertIn("tracks 10 % of herring gulls of the scenario at least once", _design_page.answers(study)[0])
+
+
+class Wrong(unittest.TestCase):
+    def test_plans(self):
+        where = fresh("wrong")
+        span = {"from": 1, "to": 2}
+        for design, changes, words in (
+                ({"share": 1.5}, {}, r"design.share: 1.5 is greater"), ({"bounds": {}}, {}, "design.bounds"), ({"bounds": {"color": [1]}}, {}, "design.bounds.*'color'"),
+                ({"bounds": {"mast": []}}, {}, "design.bounds.mast"), ({"bounds": {"mast": [0]}}, {}, r"design.bounds.mast: holds 0, expected values above 0 m"),
+                ({"bounds": {"pulse_energy": {"from": 2, "to": 1}}}, {}, r"pulse_energy: is from 2 to 1, expected the smaller one first"),
+                ({"bounds": {"minimum_elevation": {"from": -2, "to": 1, "logarithmic": True}}}, {}, "begins at -2, expected a number above 0 where it is logarithmic"),
+                ({"bounds": {"number_of_channels": [16, 16.5]}}, {}, "number_of_channels: holds 16.5, expected whole numbers"),
+                ({"bounds": {"number_of_channels": [1, 16]}}, {}, "number_of_channels: begins at 1, expected 2 or more"),
+                ({"bounds": {"maximum_elevation": [0, 9]}}, {}, "beams begin at up to 0 deg and end from 0 deg on"),
+                ({"bounds": {"number_of_channels": [16]}}, {"sensor": {"preset": "VLP32C"}}, "the sensor's beams are a table of its own"),
+                ({"bounds": {"receiver_aperture": span}}, {"sensor": {"preset": "Airport16"}}, "receiver_aperture: the sensor has no aperture"),
+                ({"bounds": {"number_of_channels": [5000]}}, {}, "design.bounds: hold no lidar that can be: .*firings of a column"),
+                ({"cost": "price"}, {}, "design.cost: price: 'price' is not known, expected one of the numbers mast, "),
+                ({"cost": "1 / (pulse_rate - pulse_rate)"}, {}, r"design.cost: .* cannot be calculated \(float division by zero\) for mast 3"),
+                ({"exit_aperture": "0 * mast"}, {}, r"design.exit_aperture: 0 \* mast: is 0 m2, expected more than 0"),
+                ({"measure": "tracked"}, {}, "design.scenario: is not in the plan"), ({"measure": "tracked", "scenario": "none.json"}, {}, "design.scenario: .*none.json"),
+                ({"within": 1e9}, {}, r"hold no lidar that can be: .* scans in 1e\+09 s, expected at most 100")):
+            with self.subTest(words), self.assertRaisesRegex(Error, words):
+                study_of(where, design, **changes)
+        scenario = json.loads(TestBirdTracks.scenario_file(where).read_text(encoding="utf-8"))
+        shutil.copyfile(where / "small.lidarscene.json", where / "other.lidarscene.json")
+        (where / "other.scenario.json").write_text(json.dumps({**scenario, "scene": "other.lidarscene.json"}), encoding="utf-8")
+        with self.assertRaisesRegex(Error, "design.scenario: is of the scene .*other.lidarscene.json, expected that of the plan"):
+            study_of(where, {"measure": "tracked", "scenario": "other.scenario.json"})
+        with self.assertRaisesRegex(Error, "design: is not in the plan"):
+            plan = read_plan(where / "small.coverage.json")
+            del plan["design"]
+            Designs(Plan(plan, 1), where / "out")
+        self.assertFalse((where / "out").exists())
+
+    def test_names_are_those_of_the_schema(self):
+        schema = json.loads((pathlib.Path(_design_page.__file__).with_name("coverage.schema.json")).read_text(encoding="utf-8"))
+        self.assertEqual(schema["properties"]["design"]["properties"]["bounds"]["propertyNames"]["enum"], list(FIELDS))
+
+
+if __name__ == "__main__":
+    unittest.main()
