@@ -14,8 +14,11 @@ namespace avianlidar
 {
 namespace
 {
+constexpr double Ghost = 0.5;    ///< share of the energy over two reflections
 constexpr double Surely = 1.645; ///< standard deviations of a one-sided bound of 95 %
 constexpr double OfNone = 3.0;   ///< 95 % bound of a count of which none was seen
+constexpr double Coarse = 0.25;  ///< of an error asked: the reference of a beam is made finer
+constexpr int FinerScans = 8;
 constexpr int MostTurns = 5;
 constexpr double FarSlower = 1.5; ///< than the fastest that is good: no further turns
 constexpr double AsFast = 1.03;   ///< within what times vary by
@@ -70,11 +73,12 @@ ScanBeams someOf(const ScanBeams& beams, const std::vector<std::size_t>& which)
   return some;
 }
 
-/// Range, energy of an echo, nearest first within its beam.
+/// An echo.
 struct Seen
 {
   double range;
   double energy;
+  double secondary; ///< share of the energy
 };
 using Beams = std::vector<std::vector<Seen>>;
 
@@ -84,7 +88,7 @@ Beams byBeam(const ScanResult& result)
   for (std::size_t e = 0; e < result.echoes.size(); ++e)
   {
     beams[result.beamOfEcho[e]].push_back(
-      { result.echoes[e].range, result.echoes[e].energyReceived });
+      { result.echoes[e].range, result.echoes[e].energyReceived, result.echoes[e].secondaryShare });
   }
   return beams;
 }
@@ -270,7 +274,13 @@ private:
         this->addShares(one);
       }
     }
-    this->compareReference(reference, witness);
+    this->compareReference(reference);
+    this->refine();
+    this->Bias.assign(this->Sample.size(), {});
+    for (std::size_t b = 0; b < this->Sample.size(); ++b)
+    {
+      this->compareWitness(b, witness);
+    }
     this->addConnections(this->scan(
       { BeamSampleSource::Cells, ReferenceRays, 2, 0 }, ReferenceSeeds[0], this->Sample));
     TraceCache cache;
@@ -311,45 +321,102 @@ private:
     }
   }
 
-  /// The mean of the two scans, and how far it may be wrong.
-  void compareReference(const std::array<Beams, 2>& reference, const std::array<Beams, 2>& witness)
+  void compareReference(const std::array<Beams, 2>& reference)
   {
     const std::size_t count = this->Sample.size();
     this->Sure.resize(count);
     this->Undecided.resize(count);
-    this->Spread.assign(count, {});
-    this->Bias.assign(count, {});
+    this->Spread.resize(count);
     for (std::size_t b = 0; b < count; ++b)
     {
-      const auto &one = reference[0][b], &other = reference[1][b];
-      std::vector<char> foundOne(one.size(), 0), foundOther(other.size(), 0);
-      for (const auto& [i, j] : matches(one, other, this->Tolerance))
+      this->average(b, { reference[0][b], reference[1][b] });
+    }
+  }
+
+  /// The mean of some scans of a beam, and its variance: the reference.
+  void average(std::size_t b, const std::vector<std::vector<Seen>>& scans)
+  {
+    this->Sure[b].clear();
+    this->Undecided[b].clear();
+    Counted spread;
+    const std::size_t needed = scans.size() - scans.size() / 8;
+    std::vector<std::vector<Seen>> found(scans[0].size());
+    std::vector<Seen> others;
+    for (const std::vector<Seen>& scan : scans)
+    {
+      std::vector<char> known(scan.size(), 0);
+      for (const auto& [i, j] : matches(scans[0], scan, this->Tolerance))
       {
-        foundOne[i] = foundOther[j] = 1;
-        this->Sure[b].push_back(
-          { 0.5 * (one[i].range + other[j].range), 0.5 * (one[i].energy + other[j].energy) });
-        const Seen& mean = this->Sure[b].back();
+        found[i].push_back(scan[j]);
+        known[j] = 1;
+      }
+      for (std::size_t j = 0; j < scan.size(); ++j)
+      {
+        known[j] ? void() : others.push_back(scan[j]);
+      }
+    }
+    for (const std::vector<Seen>& all : found)
+    {
+      const auto n = static_cast<double>(all.size());
+      Seen mean{ 0.0, 0.0, 0.0 };
+      for (const Seen& one : all)
+      {
+        mean.range += one.range / n;
+        mean.energy += one.energy / n;
+        mean.secondary += one.secondary / n;
+      }
+      if (all.size() < needed)
+      {
+        others.push_back(mean);
+        continue;
+      }
+      this->Sure[b].push_back(mean);
+      for (const Seen& one : all)
+      {
         if (this->isStrong(mean))
         {
-          const double energy = 0.5 * (one[i].energy - other[j].energy) / mean.energy;
-          const double range = 0.5 * (one[i].range - other[j].range);
-          this->Spread[b].x[EnergyError] += energy * energy;
-          this->Spread[b].x[RangeError] += range * range;
-          this->Spread[b].y[EnergyError] += 1.0;
-          this->Spread[b].y[RangeError] += 1.0;
+          const double variance = 1.0 / (n * (n - 1.0)); // of the mean
+          spread.x[EnergyError] += variance * std::pow(one.energy / mean.energy - 1.0, 2);
+          spread.x[RangeError] += variance * std::pow(one.range - mean.range, 2);
+          spread.y[EnergyError] += 1.0 / n;
+          spread.y[RangeError] += 1.0 / n;
         }
       }
-      for (std::size_t i = 0; i < one.size(); ++i)
+    }
+    spread.x[EchoError] = static_cast<double>(others.size());
+    spread.y[EchoError] = static_cast<double>(this->Sure[b].size());
+    this->Undecided[b] = std::move(others);
+    this->Spread[b] = spread;
+  }
+
+  /// More and finer scans of beams of which two differ by much: rare paths that carry much light.
+  void refine()
+  {
+    std::vector<std::size_t> which;
+    for (std::size_t b = 0; b < this->Sample.size(); ++b)
+    {
+      const Counted& spread = this->Spread[b];
+      if (spread.x[EnergyError] > std::pow(Coarse * this->Question.asked[EnergyError], 2) ||
+        spread.x[RangeError] > std::pow(Coarse * this->Question.asked[RangeError], 2))
       {
-        foundOne[i] ? void() : this->Undecided[b].push_back(one[i]);
+        which.push_back(b);
       }
-      for (std::size_t j = 0; j < other.size(); ++j)
+    }
+    const AdviceSettings finer{ BeamSampleSource::Cells, 4 * ReferenceRays, 2, 8 };
+    std::vector<Beams> scans;
+    for (int i = 0; i < FinerScans && !which.empty(); ++i)
+    {
+      const std::int32_t seed = ReferenceSeeds[0] + 100 + i;
+      scans.push_back(byBeam(this->scan(finer, seed, someOf(this->Sample, which))));
+    }
+    for (std::size_t k = 0; k < which.size(); ++k)
+    {
+      std::vector<std::vector<Seen>> of;
+      for (const Beams& scan : scans)
       {
-        foundOther[j] ? void() : this->Undecided[b].push_back(other[j]);
+        of.push_back(scan[k]);
       }
-      this->Spread[b].x[EchoError] = static_cast<double>(this->Undecided[b].size());
-      this->Spread[b].y[EchoError] = static_cast<double>(this->Sure[b].size());
-      this->compareWitness(b, witness);
+      this->average(which[k], of);
     }
   }
 
@@ -378,9 +445,10 @@ private:
     }
   }
 
+  /// Whether its energy and its range are judged.
   bool isStrong(const Seen& echo) const
   {
-    return echo.energy >= 2.0 * this->Setup.sensor.lowerEnergyLimit;
+    return echo.energy >= 2.0 * this->Setup.sensor.lowerEnergyLimit && echo.secondary <= Ghost;
   }
 
   void count(const ScanResult& result, std::vector<Counted>& counted) const

@@ -6,13 +6,15 @@
  *
  * 1. Some beams are scanned with default settings, to know which have an echo, which meet a surface
  *    without one, which meet a mover and which nothing. Of each kind some are drawn, with weights.
- * 2. The reference: two scans of these by cells, ReferenceRays each. What they differ by, and what
- *    two scans by plain rays differ from them beyond their own spread, is the reference's own
- *    error.
+ * 2. The reference: two scans of these by cells, ReferenceRays each; of beams of which the two
+ *    differ by much eight scans of four times as many. From their spread, and from what two scans
+ *    by plain rays differ by from them beyond their own spread, follows the reference's own error.
  * 3. Each setting scans the same beams. Errors are of echoes that are matched within a beam (each
  *    the nearest of the other, within a range unit and a pulse). Energy and range count echoes of
- *    at least twice the lower limit; such an echo that is missed has an energy error of -1. Echoes
- *    that only one scan of the reference has are not judged.
+ *    at least twice the lower limit that are no ghosts (at most half of the energy over two
+ *    reflections, in the reference); such an echo that is missed has an energy error of -1. Of
+ *    ghosts counts whether they are there. Echoes that only one scan of the reference has are not
+ *    judged.
  * 4. Times are processor times of one thread, over runs of neighbouring beams, as neighbours share
  *    work. Settings that clearly fail, or that take far longer than one that is good, get one turn.
  *

@@ -38,7 +38,7 @@ std::string Whole(double value)
 
 std::string PerCent(double share)
 {
-  return Digits(100.0 * share) + " %";
+  return Digits(100.0 * share, share < 0.995 ? 2 : 3) + " %";
 }
 
 std::string Cost(double share)
@@ -94,45 +94,57 @@ std::string Advised(const AdviceAnswer& answer)
     " times as fast as the settings now";
 }
 
+/// Whether second reflections are rounding alone, as on a sphere in single precision.
+bool AreNone(const AdviceAnswer& a)
+{
+  return a.secondary < 1e-6 && a.withoutSecondary[EnergyError].value < 1e-4 &&
+    a.withoutSecondary[EchoError].value <= 0.0;
+}
+
 std::string SecondReflections(const AdviceAnswer& a)
 {
-  if (!(a.secondary > 0.0))
+  if (AreNone(a))
   {
-    return "One reflection is enough: second reflections carry 0 of the light (measured over " +
+    return std::string("One reflection is enough: second reflections carry ") +
+      (a.secondary > 0.0 ? "less than 1e-6" : "0") + " of the light (measured over " +
       Whole(a.measured) + " beams)" +
       (a.convex ? ": the scene is one convex body, seen from outside, and a convex body cannot "
                   "light itself"
                 : "") +
       "; two take " + Cost(a.secondaryCost);
   }
-  return "Second reflections: " + PerCent(a.secondary) + " of the light, up to " +
-    PerCent(a.largestSecondary) + " of an echo; without them energy errs by " +
-    PerCent(a.withoutSecondary[EnergyError].value) + " rms, and " +
-    PerCent(a.withoutSecondary[EchoError].value) + " of the echoes are wrong; they take " +
-    Cost(a.secondaryCost);
+  const bool one = a.advised >= 0 && a.trials[a.advised].settings.reflections == 1;
+  return (one ? "One reflection is enough for what is asked: second reflections carry "
+              : "Second reflections carry ") +
+    PerCent(a.secondary) + " of the light, up to " + PerCent(a.largestSecondary) +
+    " of an echo; without them energy errs by " + PerCent(a.withoutSecondary[EnergyError].value) +
+    " rms, and " + PerCent(a.withoutSecondary[EchoError].value) +
+    " of the echoes are wrong; they take " + Cost(a.secondaryCost);
 }
 
 std::string Connections(const AdviceAnswer& a)
 {
-  return "Connections: " + PerCent(a.connected) + " of the light; without them energy errs by " +
+  return "Connections carry " + PerCent(std::max(0.0, a.connected)) +
+    " of the light; without them energy errs by " +
     PerCent(a.withoutConnections[EnergyError].value) + " rms; two take " + Cost(a.connectionCost);
 }
 
-/// The fastest of a kind that meets what is asked.
-std::string Fastest(const AdviceAnswer& a, BeamSampleSource source, const char* name)
+/// The fewest rays of a kind that meet what is asked.
+std::string Fewest(const AdviceAnswer& a, BeamSampleSource source, const char* name)
 {
-  const AdviceTrial* fastest = nullptr;
+  const AdviceTrial* fewest = nullptr;
   for (const AdviceTrial& trial : a.trials)
   {
     if (trial.settings.samples == source && trial.verdict == AdviceVerdict::Met &&
-      (!fastest || trial.seconds < fastest->seconds))
+      (!fewest || trial.settings.rays < fewest->settings.rays ||
+        (trial.settings.rays == fewest->settings.rays && trial.seconds < fewest->seconds)))
     {
-      fastest = &trial;
+      fewest = &trial;
     }
   }
-  return fastest ? std::string(name) + " need " + std::to_string(fastest->settings.rays) + " (" +
-      Digits(1e6 * fastest->seconds, 3) + " us a beam)"
-                 : std::string("no number of ") + name + " that was tried is enough";
+  return fewest ? std::string(name) + " need " + std::to_string(fewest->settings.rays) + " (" +
+      Digits(1e6 * fewest->seconds, 3) + " us a beam)"
+                : std::string("no number of ") + name + " that was tried is enough";
 }
 
 std::string Density(const AdviceAnswer& a)
@@ -141,8 +153,8 @@ std::string Density(const AdviceAnswer& a)
   { return PerCent(a.direct[static_cast<std::size_t>(how)]); };
   return "Density of rays: of the beams " + share(DirectEcho::Polygons) +
     " are integrated over polygons, " + share(DirectEcho::Cells) + " need cells, " +
-    share(DirectEcho::Nothing) + " meet nothing; " + Fastest(a, BeamSampleSource::Cells, "cells") +
-    ", " + Fastest(a, BeamSampleSource::Rays, "plain rays");
+    share(DirectEcho::Nothing) + " meet nothing; " + Fewest(a, BeamSampleSource::Cells, "cells") +
+    ", " + Fewest(a, BeamSampleSource::Rays, "plain rays");
 }
 
 std::string Weather(const avianlidar::ScanSetup& setup, const AdviceAnswer& a)
