@@ -18,6 +18,7 @@ vtk_module_wrap_python(
 set(avianlidar_python_files
   __init__.py
   __main__.py
+  _advice.py
   _cloud.py
   _command.py
   _coverage.py

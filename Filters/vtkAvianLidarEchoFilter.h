@@ -230,6 +230,8 @@ protected:
   int RequestInformation(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
   int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
 
+  bool PrepareMovers(const vtkAvianLidarRanks& ranks, vtkDataObject* input);
+
   bool Noise = true;
   int ReturnMode = RETURN_MODE_ALL;
   bool ReportMovers = true;
@@ -239,7 +241,6 @@ private:
   void operator=(const vtkAvianLidarEchoFilter&) = delete;
 
   // Passes of an execution, as those of the superclass.
-  bool PrepareMovers(const vtkAvianLidarRanks& ranks, vtkDataObject* input);
   bool Scan(const vtkAvianLidarRanks& ranks, vtkFieldData* beamFields,
     const std::array<vtkPolyData*, 3>& outputs);
 

@@ -23,7 +23,7 @@ import running  # noqa: E402
 HALF_LIGHT_SPEED = 0.5 * 299792458.0  # m/s: metres of range per second of delay
 AIRPORT = HERE.parent / "airport" / "scene" / "hongqiao.lidarscene.json"
 SENSORS = {"airport16": "Airport16", "airport32": "Airport32", "corridor": "CorridorC16"}
-ARRAYS = ("beam_id", "distance_m", "energy_received", "return_energy", "energy_std_error")
+ARRAYS = ("beam_id", "distance_m", "energy_received", "return_energy", "energy_std_error", "secondary_share")
 
 
 def scene_and_sensor(text):
@@ -168,9 +168,9 @@ class Reference:
     """The mean of two converged scans with seeds of their own. Half of their difference is the reference's own error.
     Echoes that only one of them has are too near to the limit to be judged: finding them is right, missing them too."""
 
-    def __init__(self, subject, rays, seeds=(1000003, 1000033)):
+    def __init__(self, subject, rays, seeds=(1000003, 1000033), samples=vtkAvianLidarEchoFilter.BEAM_SAMPLES_RAYS, connections=2):
         self.subject = subject
-        settings = {"RaysPerBeam": rays, "BeamSamples": vtkAvianLidarEchoFilter.BEAM_SAMPLES_RAYS}
+        settings = {"RaysPerBeam": rays, "BeamSamples": samples, "NumberOfConnections": connections}
         one, other = (scan(subject, settings, seed, 0).echoes for seed in seeds)
         i, j = matches(one, other, subject.tolerance)
         self.rays = rays

@@ -17,6 +17,7 @@ and `Cloud.data`:
     from avianlidar.vtkAvianLidar import vtkAvianLidarEchoFilter
 """
 
+from ._advice import Advice
 from ._cloud import Cloud
 from ._coverage import Coverage, places_of
 from ._files import load_cloud, save
@@ -30,5 +31,5 @@ from .apps._design import Designs
 from .apps._sequence import Sequence
 from .apps._tracks import BirdTracks
 
-__all__ = ["BirdTracks", "Cloud", "Coverage", "Designs", "Error", "Scan", "Scene", "Sensor", "Sequence", "hue_colors", "load_cloud", "load_scene",
+__all__ = ["Advice", "BirdTracks", "Cloud", "Coverage", "Designs", "Error", "Scan", "Scene", "Sensor", "Sequence", "hue_colors", "load_cloud", "load_scene",
            "materials", "mesh", "mover", "places_of", "plot_map", "plot_range_image", "save", "vtkAvianLidar"]

@@ -25,6 +25,12 @@ VERBS = {
   avianlidar scan hangar.stl --scale 0.001 --material Metal --position 0 -60 2 -o echoes.pcd -o range.png
   avianlidar scan airport.glb --sensor mine.lidarsensor.json --sensor-set range_gate=800 --scan-set rays_per_beam=400 -o echoes.csv
 """),
+    "advise": ("the fastest settings for an error", "What a scene requires, measured on some beams of a scan: the fastest settings whose errors are surely below "
+               "those asked, as options, in Python and for ParaView, and the share and the cost of second reflections, connections, density "
+               "of rays, weather and processes.", """\
+  avianlidar advise airport.lidarscene.json --sensor Search905 --position 0 0 3 --energy 0.02
+  avianlidar advise hangar.stl --position 0 -60 2 --missed 0.005 --beams 4000 -o advice.json -o advice.png
+"""),
     "info": ("what is in a file", "What is in a file: a scene or a mesh, a cloud, a sensor, a plan, a scenario.", """\
   avianlidar info hangar.stl
   avianlidar info echoes.las
@@ -145,23 +151,34 @@ def parser() -> Parser:
     verb = {name: verbs.add_parser(name, help=words, description=sentence, epilog="examples:\n" + examples, formatter_class=raw)
             for name, (words, sentence, examples) in VERBS.items()}
 
-    scan = verb["scan"]
-    scan.add_argument("scene", help=SCENE)
-    scan.add_argument("--sensor", default="Airport16", help="a name that `avianlidar sensors` lists, or a .lidarsensor.json file; "
-                      "default Airport16")
-    scan.add_argument("--position", nargs=3, type=float, metavar=("X", "Y", "Z"),
-                      help="of the sensor, m; default: where the scene says, else 0 0 0")
-    scan.add_argument("--material", help="of the whole scene, a name that `avianlidar materials` lists; default: what the file "
-                      "says, else Wall")
-    scan.add_argument("--scale", type=float, help="metres of a mesh's unit, 0.001 for millimetres; default 1")
-    scan.add_argument("--up-axis", choices=("y", "z"), help="of a mesh: the axis that points up; default: as its format has it")
-    _out(scan, f"file: {WRITTEN}; .png is a picture of the range image; may be given many times", action="append")
-    _settings(scan, "sensor", "range_gate=800")
-    _settings(scan, "scan", "rays_per_beam=400")
-    _weather(scan)
-    _threads(scan)
+    for name in ("scan", "advise"):
+        scan = verb[name]
+        scan.add_argument("scene", help=SCENE)
+        scan.add_argument("--sensor", default="Airport16", help="a name that `avianlidar sensors` lists, or a .lidarsensor.json file; "
+                          "default Airport16")
+        scan.add_argument("--position", nargs=3, type=float, metavar=("X", "Y", "Z"),
+                          help="of the sensor, m; default: where the scene says, else 0 0 0")
+        scan.add_argument("--material", help="of the whole scene, a name that `avianlidar materials` lists; default: what the file "
+                          "says, else Wall")
+        scan.add_argument("--scale", type=float, help="metres of a mesh's unit, 0.001 for millimetres; default 1")
+        scan.add_argument("--up-axis", choices=("y", "z"), help="of a mesh: the axis that points up; default: as its format has it")
+        if name == "scan":
+            _out(scan, f"file: {WRITTEN}; .png is a picture of the range image; may be given many times", action="append")
+            scan.add_argument("--quiet", action="store_true", help="no lines on what was modelled and what was left out")
+        else:
+            scan.add_argument("--energy", type=float, default=0.02, metavar="SHARE", help="error of energies that is allowed, rms, relative; default 0.02")
+            scan.add_argument("--range", type=float, default=0.05, metavar="METRES", help="error of ranges that is allowed, rms, m; default 0.05")
+            scan.add_argument("--missed", type=float, default=0.01, metavar="SHARE",
+                              help="echoes that may be missed or invented, of the true ones; default 0.01")
+            scan.add_argument("--beams", type=int, default=1000, help="to measure on; default 1000")
+            _out(scan, "file: .json (all), .csv (the table) or .png (a picture); may be given many times", action="append", required=False, default=[])
+        _settings(scan, "sensor", "range_gate=800")
+        _settings(scan, "scan", "rays_per_beam=400")
+        _weather(scan)
+        _threads(scan)
 
     verb["info"].add_argument("file", type=pathlib.Path, help="a scene, mesh, cloud, sensor, plan or scenario")
+    verb["info"].add_argument("--quiet", action="store_true", help="of a cloud no lines on what was modelled and what was left out")
     verb["compare"].add_argument("a", type=pathlib.Path, help=f"a cloud: {READ}")
     verb["compare"].add_argument("b", type=pathlib.Path, help="another one, in the same coordinates")
     _out(verb["compare"], "file: the first cloud, with nearest_distance (m) of every point", required=False)

@@ -13,6 +13,7 @@ from vtkmodules.vtkCommonExecutionModel import vtkAlgorithm
 
 from . import _display
 from . import vtkAvianLidar as _wrapped
+from ._advice import Advice, advise_scan
 from ._cloud import Cloud, as_numpy
 from ._pipeline import Progress, callers_level, is_current, update
 from ._plot import plot_map, plot_range_image
@@ -221,6 +222,26 @@ class Scan(SceneAndSensor):
         objects = np.append(as_numpy(echoes.GetPointData().GetArray("object_id")), -1)  # the last: no echo
         result["object_id"] = objects[result["echo"]]
         return result
+
+    def advise(self, energy: float = 0.02, range: float = 0.05, missed: float = 0.01, beams: int = 1000,
+               progress: Optional[Progress] = None) -> Advice:
+        """Which settings this scan requires, measured on some of its beams: the fastest whose errors are surely below those asked.
+
+        energy    error of the energy received that is allowed, rms, relative
+        range     error of ranges that is allowed, rms, m
+        missed    echoes that may be missed or invented, as a share of the true ones
+        beams     beams to measure on; more of them tell smaller errors, and take longer
+        progress  as of the scan, whose own it is by default
+
+        Sensor, scene, movers and air are the scan's, and nothing of the scan changes: `scan.set(**advice.settings)` takes the
+        settings over. It takes seconds. How it is measured: Documentation/advise.md.
+
+        >>> scene = Scene(([(-5, 50, -5), (5, 50, -5), (0, 50, 9)], [(0, 1, 2)]), material="Glass")
+        >>> Scan(scene, Sensor(azimuth_step=1)).advise(energy=0.05, missed=0.5).settings["number_of_reflections"]
+        1
+        """
+        self._refresh()
+        return advise_scan(self, {"energy": energy, "range": range, "missed": missed}, beams, progress or self.progress)
 
     def to_pandas(self):
         """The echoes as a pandas DataFrame; see `Cloud.to_pandas`."""

@@ -85,10 +85,19 @@ def _alarms(cloud) -> str:
     return said
 
 
-def scan(options) -> None:
-    from . import Scan, Sensor, save
-    from ._disk import replacing
+def _scan_of(options, bars: Bars, scene):
+    """The scan that options describe."""
+    from . import Scan, Sensor
     from ._weather import weather
+    sensor = Sensor(options.sensor, position=options.position or scene.lidar_position or (0, 0, 0)).set(**dict(options.sensor_set))
+    scan = Scan(scene, sensor, progress=lambda share, _: bars(options.verb, round(100 * share), 100))
+    return scan.set(**{"number_of_threads": options.threads, **weather(options.weather), **dict(options.scan_set)})
+
+
+def scan(options) -> None:
+    from . import save
+    from ._advice import notes_of
+    from ._disk import replacing
     _check_outs(options)
     bars = Bars()
     scene = _scene(options, bars)
@@ -96,9 +105,7 @@ def scan(options) -> None:
         for out in options.out:
             if out.suffix.lower() == ".geojson":
                 raise ValueError(f"{out}: GeoJSON needs longitude and latitude, and the scene has no origin on the Earth")
-    sensor = Sensor(options.sensor, position=options.position or scene.lidar_position or (0, 0, 0)).set(**dict(options.sensor_set))
-    scan = Scan(scene, sensor, progress=lambda share, _: bars("scan", round(100 * share), 100))
-    scan.set(**{"number_of_threads": options.threads, **weather(options.weather), **dict(options.scan_set)})
+    scan = _scan_of(options, bars, scene)
     echoes = scan.echoes.annotated()
     bars.close()
     for out in options.out:
@@ -108,7 +115,29 @@ def scan(options) -> None:
         else:
             save(echoes, out)
         labels = f", labels in {out.with_suffix('.label').name}" if out.suffix.lower() == ".bin" else ""
-        print(f"{out}: {echoes.number_of_points} echoes of {sensor.beams.number_of_points} beams{_alarms(echoes)}{labels}")
+        print(f"{out}: {echoes.number_of_points} echoes of {scan.report.number_of_points} beams{_alarms(echoes)}{labels}")
+    if not options.quiet:
+        print(*notes_of(echoes.fields), sep="\n")
+
+
+def advise(options) -> None:
+    from ._advice import check_suffix, rows_of
+    from ._writers import check_target
+    for number, out in enumerate(options.out):
+        check_suffix(out)
+        if out.suffix.lower() == ".png":
+            import matplotlib
+            matplotlib.use("Agg")
+        check_target(out, [*options.out[:number], pathlib.Path(options.scene)])
+    bars = Bars()
+    scan = _scan_of(options, bars, _scene(options, bars))
+    advice = scan.advise(options.energy, options.range, options.missed, options.beams)
+    bars.close()
+    _table(rows_of(advice))
+    print(advice)
+    for out in options.out:
+        advice.save(out)
+        print(f"{out}: the advice")
 
 
 def _cloud(file):
@@ -136,9 +165,10 @@ def _words(value: Any) -> str:
         else str(parts)
 
 
-def _say_cloud(file: pathlib.Path) -> None:
+def _say_cloud(file: pathlib.Path, quiet: bool) -> None:
     import numpy as np
 
+    from ._advice import notes_of
     from ._sight import extent
     cloud = _cloud(file)
     print(f"{file}: a cloud of {cloud.number_of_points} points{_alarms(cloud)}")
@@ -159,6 +189,9 @@ def _say_cloud(file: pathlib.Path) -> None:
         ends = (f"{finite.min():.6g}", f"{finite.max():.6g}") if len(finite) else ("nan", "nan")
         rows.append((name, cloud.units[name] or "-", *ends))
     _table(rows)
+    if not quiet:
+        for line in notes_of(fields):
+            print(line)
 
 
 def info(options) -> None:
@@ -183,7 +216,7 @@ def info(options) -> None:
         scenario = read_scenario(file)
         what, rows = "a scenario of sequences", {key: scenario[key] for key in ("scene", "sensor", "weather", "number_of_scans") if key in scenario}
     elif _has_points_only(file):
-        _say_cloud(file)
+        _say_cloud(file, options.quiet)
         return
     else:
         scene = Scene(file)

@@ -362,6 +362,10 @@ READERS = ("AvianLidarSceneReader", "AvianLidarPointCloudReader", "AvianLidarSen
 # Their proxies are no sources; TestWriters.py looks at them.
 WRITERS = {*_suffixes.WRITERS.values()}
 ABSTRACT = {"vtkAvianLidarCloudWriter", "vtkAvianLidarScanFilter"}
+# What a button runs: TestAdvise.py.
+BEHIND_BUTTONS = {"vtkAvianLidarAdvisor"}
+# Properties that are buttons.
+BUTTONS = {"AvianLidarEchoFilter": ["Advise"], **{name: ["Reload"] for name in READERS}}
 # Properties with any number of values: the method that counts them, the one that gives them.
 LISTS = {
     "ChannelElevations": ("GetNumberOfChannelElevations", "GetChannelElevation"),
@@ -463,13 +467,21 @@ class TestProxies(unittest.TestCase):
     def test_every_class_is_a_proxy(self):
         classes = {c for c in dir(module) if c.startswith("vtkAvianLidar")}
         made = {proxy.SMProxy.GetVTKClassName() for proxy in self.proxies.values()}
-        self.assertEqual(classes, made | WRITERS | ABSTRACT)
+        self.assertEqual(classes, made | WRITERS | ABSTRACT | BEHIND_BUTTONS)
 
     def test_properties_are_those_of_the_contract(self):
         for name, proxy in self.proxies.items():
             with self.subTest(name):
-                internal = [INTERNAL, "Reload"] if name in READERS else [INTERNAL]
+                internal = [INTERNAL, *BUTTONS.get(name, [])]
                 self.assertEqual(sorted(proxy.ListProperties()), sorted([*CONTRACT[name], *internal]))
+
+    def test_the_advisor_is_an_echo_filter_with_a_question(self):
+        advisor = servermanager.ProxyManager().NewProxy("internal_avian_lidar", "AvianLidarAdvisor")
+        instance = module.vtkAvianLidarAdvisor()
+        for prop in ("EnergyError", "RangeError", "MissedShare", "SampleBeams"):
+            self.assertEqual(values_of(advisor.GetProperty(prop)), [getattr(instance, "Get" + prop)()], prop)
+        for prop in CONTRACT["AvianLidarEchoFilter"]:
+            self.assertIsNotNone(advisor.GetProperty(prop), prop)
 
     def test_errors_are_errors_unless_the_window_wants_them_as_data(self):
         for name, proxy in self.proxies.items():

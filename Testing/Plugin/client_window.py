@@ -12,6 +12,7 @@ import time
 import traceback
 
 from client_qt import QAction, QtCore, QtTest, QtWidgets
+from vtkmodules.vtkCommonCore import VTK_STRING, vtkOutputWindow
 
 app = QtWidgets.QApplication.instance()
 # For results and photos.
@@ -104,6 +105,35 @@ def type_in(prop, text):
     line.selectAll()
     QtTest.QTest.keyClicks(line, text)
     QtTest.QTest.keyClick(line, QtCore.Qt.Key.Key_Return)
+
+
+def apply_button():
+    return find("Accept", QtWidgets.QAbstractButton, panel())
+
+
+def apply():
+    """Presses Apply and waits for the end, to be yielded from."""
+    yield from until(apply_button().isEnabled, "Apply")
+    later(apply_button().click)
+    yield from until(lambda: not apply_button().isEnabled(), "the end of Apply")
+    yield 0.3
+
+
+class Messages:
+    """The classes that have said an error, as ParaView's Output Messages get them."""
+
+    def __init__(self):
+        self.texts = []
+
+        def heard(_, __, text):
+            self.texts.append(text)
+
+        heard.CallDataType = VTK_STRING
+        vtkOutputWindow.GetInstance().AddObserver("ErrorEvent", heard)
+
+    def take(self):
+        texts, self.texts = self.texts, []
+        return texts
 
 
 def photo(file_name, widget, bottom=None):

@@ -13,11 +13,10 @@ import os
 import zlib
 
 import client_window
-from client_qt import QAction, QtWidgets
-from client_window import FOLDER, find, later, main_window, panel, type_in, until
+from client_qt import QAction
+from client_window import FOLDER, Messages, apply, apply_button, find, later, main_window, panel, type_in, until
 from paraview import servermanager, simple
 from vtkmodules.util.numpy_support import vtk_to_numpy
-from vtkmodules.vtkCommonCore import VTK_STRING, vtkOutputWindow
 from vtkmodules.vtkCommonDataModel import vtkDataObject
 
 SCENE = os.path.join(FOLDER, "errors.lidarscene.json")
@@ -35,23 +34,6 @@ def write_scene(width):
         text = json.dumps({"version": 1, "objects": [ground]})
     with open(SCENE, "w", encoding="utf-8") as file:
         file.write(text)
-
-
-class Messages:
-    """The classes that have said an error, as ParaView's Output Messages get them."""
-
-    def __init__(self):
-        self.texts = []
-
-        def heard(_, __, text):
-            self.texts.append(text)
-
-        heard.CallDataType = VTK_STRING
-        vtkOutputWindow.GetInstance().AddObserver("ErrorEvent", heard)
-
-    def take(self):
-        texts, self.texts = self.texts, []
-        return texts
 
 
 class Pipeline:
@@ -90,18 +72,6 @@ class Pipeline:
 
 def elements(information):
     return information.GetNumberOfPoints() + information.GetNumberOfCells()
-
-
-def apply_button():
-    return find("Accept", QtWidgets.QAbstractButton, panel())
-
-
-def apply():
-    """Presses Apply and waits for the end, to be yielded from."""
-    yield from until(apply_button().isEnabled, "Apply")
-    later(apply_button().click)
-    yield from until(lambda: not apply_button().isEnabled(), "the end of Apply")
-    yield 0.3
 
 
 def by_panel(proxy, prop, values):

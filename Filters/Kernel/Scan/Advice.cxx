@@ -1,0 +1,880 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Advice.h"
+
+#include "CollisionTreeBuilder.h"
+#include "Random.h"
+
+#include <algorithm>
+#include <cmath>
+#include <ctime>
+#include <limits>
+#include <numeric>
+
+namespace avianlidar
+{
+namespace
+{
+constexpr double Ghost = 0.5;    ///< share of the energy over two reflections
+constexpr double Surely = 1.645; ///< standard deviations of a one-sided bound of 95 %
+constexpr double OfNone = 3.0;   ///< 95 % bound of a count of which none was seen
+constexpr double Coarse = 0.25;  ///< of an error asked: the reference of a beam is made finer
+constexpr int FinerScans = 8;
+constexpr int MostTurns = 5;
+constexpr double FarSlower = 1.5; ///< than the fastest that is good: no further turns
+constexpr double AsFast = 1.03;   ///< within what times vary by
+constexpr std::size_t CandidatesPerBeam = 50;
+constexpr std::size_t RunLength = 32; ///< neighbouring beams that are timed together
+constexpr std::size_t TimedRuns = 32;
+constexpr std::size_t MostTimedTree = 1000000; ///< triangles of a tree that is built to time it
+constexpr std::size_t MostConvex = 20000;      ///< triangles that are looked at
+
+/// Seeds of the reference and of the plain rays; those of trials are counted from another.
+constexpr std::int32_t ReferenceSeeds[] = { 1000003, 1000033 };
+constexpr std::int32_t WitnessSeeds[] = { 1000037, 1000039 };
+
+double threadSeconds()
+{
+  timespec now{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+/// `wanted` of `count` items, ascending: one at a random place of each of as many parts.
+std::vector<std::size_t> pick(std::size_t count, std::size_t wanted, std::uint64_t purpose)
+{
+  wanted = std::min(count, wanted);
+  std::vector<std::size_t> picked(wanted);
+  for (std::size_t i = 0; i < wanted; ++i)
+  {
+    const double at = uniformPair(0, purpose, i, RandomPurpose::Patterns)[0];
+    const double place = (static_cast<double>(i) + at) * static_cast<double>(count);
+    picked[i] = std::min(static_cast<std::size_t>(place / static_cast<double>(wanted)), count - 1);
+  }
+  if (wanted == count)
+  {
+    std::iota(picked.begin(), picked.end(), std::size_t{ 0 });
+  }
+  return picked;
+}
+
+ScanBeams someOf(const ScanBeams& beams, const std::vector<std::size_t>& which)
+{
+  ScanBeams some;
+  for (const std::size_t b : which)
+  {
+    some.ids.push_back(beams.ids[b]);
+    some.origins.push_back(beams.origins[b]);
+    some.directions.push_back(beams.directions[b]);
+    if (!beams.times.empty())
+    {
+      some.times.push_back(beams.times[b]);
+    }
+  }
+  return some;
+}
+
+/// An echo.
+struct Seen
+{
+  double range;
+  double energy;
+  double secondary; ///< share of the energy
+};
+using Beams = std::vector<std::vector<Seen>>;
+
+Beams byBeam(const ScanResult& result)
+{
+  Beams beams(result.reports.size());
+  for (std::size_t e = 0; e < result.echoes.size(); ++e)
+  {
+    beams[result.beamOfEcho[e]].push_back(
+      { result.echoes[e].range, result.echoes[e].energyReceived, result.echoes[e].secondaryShare });
+  }
+  return beams;
+}
+
+std::size_t nearest(const std::vector<Seen>& echoes, double range)
+{
+  std::size_t best = 0;
+  for (std::size_t i = 1; i < echoes.size(); ++i)
+  {
+    best = std::fabs(echoes[i].range - range) < std::fabs(echoes[best].range - range) ? i : best;
+  }
+  return best;
+}
+
+/// Pairs of echoes, each the nearest of the other and within the tolerance, m.
+std::vector<std::array<std::size_t, 2>> matches(
+  const std::vector<Seen>& one, const std::vector<Seen>& other, double tolerance)
+{
+  std::vector<std::array<std::size_t, 2>> pairs;
+  for (std::size_t i = 0; i < one.size() && !other.empty(); ++i)
+  {
+    const std::size_t j = nearest(other, one[i].range);
+    if (nearest(one, other[j].range) == i && std::fabs(one[i].range - other[j].range) < tolerance)
+    {
+      pairs.push_back({ i, j });
+    }
+  }
+  return pairs;
+}
+
+/// A ratio of sums over beams, x over y, of each kind of error.
+struct Counted
+{
+  std::array<double, AdviceErrors> x{};
+  std::array<double, AdviceErrors> y{};
+};
+
+/// Sums over beams of which a ratio and its standard error follow.
+struct Sums
+{
+  double x = 0.0, y = 0.0, xx = 0.0, xy = 0.0, yy = 0.0;
+};
+
+/// What follows from the settings of a trial while it is measured.
+struct Measuring
+{
+  std::vector<Counted> counted; ///< by beam, the sum over turns
+  std::vector<double> seconds;  ///< of a beam, each turn
+};
+
+class Advisor
+{
+public:
+  Advisor(const ScanSetup& setup, const ScanBeams& beams, const AdviceQuestion& question,
+    const AdviceHost& host, AdviceAnswer& answer)
+    : Setup(setup)
+    , All(beams)
+    , Question(question)
+    , Host(host)
+    , Answer(answer)
+    , Tolerance(setup.sensor.rangeUnitLength() + 0.5 * SpeedOfLight * setup.sensor.pulseWidth)
+  {
+    this->Setup.settings.noise = false;
+  }
+
+  bool go()
+  {
+    this->Answer.beams = this->Host.sum(static_cast<double>(this->All.size()));
+    return this->Host.together([this] { this->choose(); }) &&
+      this->Host.together([this] { this->refer(); }) && this->judgeReference() && this->tryAll() &&
+      this->Host.together([this] { this->lookAtScene(); }) && this->conclude();
+  }
+
+private:
+  /// Scan some beams with some settings. @param timed one thread
+  ScanResult scan(const AdviceSettings& settings, std::int32_t seed, const ScanBeams& beams,
+    TraceCache& cache, bool timed = false, bool air = true)
+  {
+    ScanSetup setup = this->Setup;
+    settings.apply(setup.settings);
+    setup.settings.seed = seed;
+    if (!air)
+    {
+      setup.settings.attenuationCoefficient = 0.0;
+      setup.media.clear();
+      setup.placedMedia.clear();
+    }
+    planModel(setup);
+    ScanResult result;
+    const bool sights = beams.size() == this->Candidates.size() && setup.movers;
+    const auto goOn = [this](double) { return this->Host.keepGoing(this->Done); };
+    if (!simulateScan(
+          setup, beams, timed ? 1 : this->Question.threads, cache, 0, goOn, result, sights))
+    {
+      throw WorkStopped{};
+    }
+    return result;
+  }
+
+  ScanResult scan(const AdviceSettings& settings, std::int32_t seed, const ScanBeams& beams)
+  {
+    TraceCache cache;
+    return this->scan(settings, seed, beams, cache);
+  }
+
+  /// Draw the beams to measure on.
+  void choose()
+  {
+    const std::size_t count = this->All.size();
+    const double part = static_cast<double>(count) / std::max(1.0, this->Answer.beams);
+    const auto wanted = static_cast<std::size_t>(std::ceil(this->Question.beams * part));
+    this->Candidates = pick(count, CandidatesPerBeam * wanted, 1);
+    const ScanBeams candidates = someOf(this->All, this->Candidates);
+    const ScanResult seen = this->scan({}, this->Setup.settings.seed, candidates);
+    this->Done = 0.1;
+    std::array<std::vector<std::size_t>, 4> kinds; // a mover, nothing, no echo, echo
+    std::vector<char> moves(candidates.size(), 0);
+    for (const MoverSight& sight : seen.sights)
+    {
+      moves[sight.beam] = moves[sight.beam] || sight.energy > 0.0;
+    }
+    this->Direct.fill(0.0);
+    for (std::size_t c = 0; c < candidates.size(); ++c)
+    {
+      const BeamReport& report = seen.reports[c];
+      const bool echo = report.status == BeamStatus::Echo || report.status == BeamStatus::Saturated;
+      kinds[moves[c] ? 0 : report.status == BeamStatus::NoSurface ? 1 : echo ? 3 : 2].push_back(c);
+      this->Direct[static_cast<std::size_t>(report.direct)] += 1.0;
+    }
+    this->draw(kinds, wanted);
+    std::vector<std::size_t> timed;
+    for (const std::size_t run : pick((count + RunLength - 1) / RunLength, TimedRuns, 2))
+    {
+      for (std::size_t b = run * RunLength; b < std::min(count, (run + 1) * RunLength); ++b)
+      {
+        timed.push_back(b);
+      }
+    }
+    this->Timed = someOf(this->All, timed);
+  }
+
+  void draw(const std::array<std::vector<std::size_t>, 4>& kinds, std::size_t wanted)
+  {
+    std::array<std::size_t, 4> numbers{};
+    std::size_t left = wanted;
+    for (std::size_t k = 0; k < 4; ++k)
+    {
+      const std::size_t most = k == 3 ? left : wanted / (k == 1 ? 8 : 4);
+      numbers[k] = std::min({ kinds[k].size(), most, left });
+      left -= numbers[k];
+    }
+    numbers[2] += std::min(left, kinds[2].size() - numbers[2]);
+    std::vector<std::size_t> which;
+    const double all = static_cast<double>(this->All.size());
+    for (std::size_t k = 0; k < 4; ++k)
+    {
+      for (const std::size_t c : pick(kinds[k].size(), numbers[k], 3 + k))
+      {
+        which.push_back(this->Candidates[kinds[k][c]]);
+        const double weight = static_cast<double>(kinds[k].size()) /
+          static_cast<double>(numbers[k]) * all / static_cast<double>(this->Candidates.size());
+        this->Weights.push_back(weight);
+      }
+    }
+    this->Sample = someOf(this->All, which);
+  }
+
+  /// Scan the reference, and what it is held against.
+  void refer()
+  {
+    const AdviceSettings finest{ BeamSampleSource::Cells, ReferenceRays, 2, 8 };
+    const AdviceSettings plain{ BeamSampleSource::Rays, WitnessRays, 2, 2 };
+    std::array<Beams, 2> reference, witness;
+    for (int i = 0; i < 2; ++i)
+    {
+      const ScanResult one = this->scan(finest, ReferenceSeeds[i], this->Sample);
+      this->Done += 0.1;
+      reference[i] = byBeam(one);
+      witness[i] = byBeam(this->scan(plain, WitnessSeeds[i], this->Sample));
+      this->Done += 0.1;
+      if (i == 0)
+      {
+        this->addShares(one);
+      }
+    }
+    this->compareReference(reference);
+    this->refine();
+    this->Bias.assign(this->Sample.size(), {});
+    for (std::size_t b = 0; b < this->Sample.size(); ++b)
+    {
+      this->compareWitness(b, witness);
+    }
+    this->addConnections(this->scan(
+      { BeamSampleSource::Cells, ReferenceRays, 2, 0 }, ReferenceSeeds[0], this->Sample));
+    TraceCache cache;
+    this->addAir(this->scan(finest, ReferenceSeeds[0], this->Sample, cache, false, false));
+    this->Done = 0.55;
+  }
+
+  void addShares(const ScanResult& result)
+  {
+    for (std::size_t e = 0; e < result.echoes.size(); ++e)
+    {
+      const Echo& echo = result.echoes[e];
+      const double weight = this->Weights[result.beamOfEcho[e]];
+      this->Energy += weight * echo.returnEnergy;
+      this->Secondary += weight * echo.returnEnergy * echo.secondaryShare;
+      this->LargestSecondary = std::max(this->LargestSecondary, echo.secondaryShare);
+      this->Echoes += weight;
+      this->OfAir += echo.objectId == ObjectOfAir ? weight : 0.0;
+    }
+  }
+
+  void addConnections(const ScanResult& without)
+  {
+    this->Connected = this->Energy;
+    for (std::size_t e = 0; e < without.echoes.size(); ++e)
+    {
+      this->Connected -= this->Weights[without.beamOfEcho[e]] * without.echoes[e].returnEnergy;
+    }
+  }
+
+  void addAir(const ScanResult& without)
+  {
+    for (std::size_t e = 0; e < without.echoes.size(); ++e)
+    {
+      const double weight = this->Weights[without.beamOfEcho[e]];
+      this->EchoesWithoutAir += weight;
+      this->EnergyWithoutAir += weight * without.echoes[e].returnEnergy;
+    }
+  }
+
+  void compareReference(const std::array<Beams, 2>& reference)
+  {
+    const std::size_t count = this->Sample.size();
+    this->Sure.resize(count);
+    this->Undecided.resize(count);
+    this->Spread.resize(count);
+    for (std::size_t b = 0; b < count; ++b)
+    {
+      this->average(b, { reference[0][b], reference[1][b] });
+    }
+  }
+
+  /// The mean of some scans of a beam, and its variance: the reference.
+  void average(std::size_t b, const std::vector<std::vector<Seen>>& scans)
+  {
+    this->Sure[b].clear();
+    this->Undecided[b].clear();
+    Counted spread;
+    const std::size_t needed = scans.size() - scans.size() / 8;
+    std::vector<std::vector<Seen>> found(scans[0].size());
+    std::vector<Seen> others;
+    for (const std::vector<Seen>& scan : scans)
+    {
+      std::vector<char> known(scan.size(), 0);
+      for (const auto& [i, j] : matches(scans[0], scan, this->Tolerance))
+      {
+        found[i].push_back(scan[j]);
+        known[j] = 1;
+      }
+      for (std::size_t j = 0; j < scan.size(); ++j)
+      {
+        known[j] ? void() : others.push_back(scan[j]);
+      }
+    }
+    for (const std::vector<Seen>& all : found)
+    {
+      const auto n = static_cast<double>(all.size());
+      Seen mean{ 0.0, 0.0, 0.0 };
+      for (const Seen& one : all)
+      {
+        mean.range += one.range / n;
+        mean.energy += one.energy / n;
+        mean.secondary += one.secondary / n;
+      }
+      if (all.size() < needed)
+      {
+        others.push_back(mean);
+        continue;
+      }
+      this->Sure[b].push_back(mean);
+      for (const Seen& one : all)
+      {
+        if (this->isStrong(mean))
+        {
+          const double variance = 1.0 / (n * (n - 1.0)); // of the mean
+          spread.x[EnergyError] += variance * std::pow(one.energy / mean.energy - 1.0, 2);
+          spread.x[RangeError] += variance * std::pow(one.range - mean.range, 2);
+          spread.y[EnergyError] += 1.0 / n;
+          spread.y[RangeError] += 1.0 / n;
+        }
+      }
+    }
+    spread.x[EchoError] = static_cast<double>(others.size());
+    spread.y[EchoError] = static_cast<double>(this->Sure[b].size());
+    this->Undecided[b] = std::move(others);
+    this->Spread[b] = spread;
+  }
+
+  /// More and finer scans of beams of which two differ by much: rare paths that carry much light.
+  void refine()
+  {
+    std::vector<std::size_t> which;
+    for (std::size_t b = 0; b < this->Sample.size(); ++b)
+    {
+      const Counted& spread = this->Spread[b];
+      if (spread.x[EnergyError] > std::pow(Coarse * this->Question.asked[EnergyError], 2) ||
+        spread.x[RangeError] > std::pow(Coarse * this->Question.asked[RangeError], 2))
+      {
+        which.push_back(b);
+      }
+    }
+    const AdviceSettings finer{ BeamSampleSource::Cells, 4 * ReferenceRays, 2, 8 };
+    std::vector<Beams> scans;
+    for (int i = 0; i < FinerScans && !which.empty(); ++i)
+    {
+      const std::int32_t seed = ReferenceSeeds[0] + 100 + i;
+      scans.push_back(byBeam(this->scan(finer, seed, someOf(this->Sample, which))));
+    }
+    for (std::size_t k = 0; k < which.size(); ++k)
+    {
+      std::vector<std::vector<Seen>> of;
+      for (const Beams& scan : scans)
+      {
+        of.push_back(scan[k]);
+      }
+      this->average(which[k], of);
+    }
+  }
+
+  /// What the mean of the plain rays differs by from the reference, less what it should by its own
+  /// spread, in squares.
+  void compareWitness(std::size_t b, const std::array<Beams, 2>& witness)
+  {
+    const auto first = matches(this->Sure[b], witness[0][b], this->Tolerance);
+    const auto second = matches(this->Sure[b], witness[1][b], this->Tolerance);
+    for (const auto& [i, j] : first)
+    {
+      for (const auto& [k, l] : second)
+      {
+        const Seen& truth = this->Sure[b][i];
+        if (i == k && this->isStrong(truth))
+        {
+          const Seen &one = witness[0][b][j], &other = witness[1][b][l];
+          // The mean of this product is the square of the bias: the two are independent.
+          this->Bias[b].x[EnergyError] +=
+            (one.energy / truth.energy - 1.0) * (other.energy / truth.energy - 1.0);
+          this->Bias[b].x[RangeError] += (one.range - truth.range) * (other.range - truth.range);
+          this->Bias[b].y[EnergyError] += 1.0;
+          this->Bias[b].y[RangeError] += 1.0;
+        }
+      }
+    }
+  }
+
+  /// Whether its energy and its range are judged.
+  bool isStrong(const Seen& echo) const
+  {
+    return echo.energy >= 2.0 * this->Setup.sensor.lowerEnergyLimit && echo.secondary <= Ghost;
+  }
+
+  void count(const ScanResult& result, std::vector<Counted>& counted) const
+  {
+    counted.resize(this->Sample.size());
+    const Beams found = byBeam(result);
+    for (std::size_t b = 0; b < found.size(); ++b)
+    {
+      Counted& here = counted[b];
+      const auto pairs = matches(this->Sure[b], found[b], this->Tolerance);
+      std::vector<Seen> rest = found[b];
+      double strong = 0.0;
+      for (auto pair = pairs.rbegin(); pair != pairs.rend(); ++pair)
+      {
+        const Seen &truth = this->Sure[b][(*pair)[0]], &echo = found[b][(*pair)[1]];
+        if (this->isStrong(truth))
+        {
+          here.x[EnergyError] += std::pow(echo.energy / truth.energy - 1.0, 2);
+          here.x[RangeError] += std::pow(echo.range - truth.range, 2);
+          strong += 1.0;
+        }
+        rest[(*pair)[1]].range = -1.0;
+      }
+      rest.erase(
+        std::remove_if(rest.begin(), rest.end(), [](const Seen& echo) { return echo.range < 0.0; }),
+        rest.end());
+      const auto all = static_cast<double>(std::count_if(this->Sure[b].begin(), this->Sure[b].end(),
+        [this](const Seen& echo) { return this->isStrong(echo); }));
+      here.x[EnergyError] += all - strong;
+      here.y[EnergyError] += all;
+      here.y[RangeError] += strong;
+      here.x[EchoError] += static_cast<double>(this->Sure[b].size() - pairs.size() + rest.size() -
+        matches(rest, this->Undecided[b], this->Tolerance).size());
+      here.y[EchoError] += static_cast<double>(this->Sure[b].size());
+    }
+  }
+
+  Sums sumsOf(const std::vector<Counted>& counted, int error) const
+  {
+    Sums sums;
+    for (std::size_t b = 0; b < counted.size(); ++b)
+    {
+      const double x = this->Weights[b] * counted[b].x[error];
+      const double y = this->Weights[b] * counted[b].y[error];
+      const double drawn = 1.0 - 1.0 / this->Weights[b]; // of a kind that was taken whole: exact
+      sums.x += x;
+      sums.y += y;
+      sums.xx += drawn * x * x;
+      sums.xy += drawn * x * y;
+      sums.yy += drawn * y * y;
+    }
+    for (double* one : { &sums.x, &sums.y, &sums.xx, &sums.xy, &sums.yy })
+    {
+      *one = this->Host.sum(*one);
+    }
+    return sums;
+  }
+
+  static double deviationOf(const Sums& sums)
+  {
+    const double ratio = sums.x / sums.y;
+    const double square = sums.xx - 2.0 * ratio * sums.xy + ratio * ratio * sums.yy;
+    return std::sqrt(std::max(0.0, square)) / sums.y;
+  }
+
+  bool judgeReference()
+  {
+    for (int error = 0; error < AdviceErrors; ++error)
+    {
+      const Sums spread = this->sumsOf(this->Spread, error);
+      const Sums bias = this->sumsOf(this->Bias, error);
+      const double by = spread.y > 0.0 ? spread.x / spread.y : 0.0;
+      const double off =
+        bias.y > 0.0 ? std::max(0.0, bias.x / bias.y - Surely * deviationOf(bias)) : 0.0;
+      this->Answer.own[error] = error == EchoError ? by : std::sqrt(by + off);
+    }
+    AdviceAnswer& a = this->Answer;
+    a.measured = this->Host.sum(static_cast<double>(this->Sample.size()));
+    std::size_t echoes = 0;
+    for (const std::vector<Seen>& beam : this->Sure)
+    {
+      echoes += beam.size();
+    }
+    a.echoes = this->Host.sum(static_cast<double>(echoes));
+    const double energy = std::max(this->Host.sum(this->Energy), 1e-300);
+    const double number = std::max(this->Host.sum(this->Echoes), 1e-300);
+    a.secondary = this->Host.sum(this->Secondary) / energy;
+    a.connected = this->Host.sum(this->Connected) / energy;
+    a.lostInAir = this->Host.sum(this->EchoesWithoutAir) / number - 1.0;
+    a.weakenedByAir = this->Host.sum(this->EnergyWithoutAir) / energy - 1.0;
+    a.pointsOfAir = this->Host.sum(this->OfAir) / number;
+    a.largestSecondary = this->Host.largest(this->LargestSecondary);
+    double looked = 0.0;
+    for (std::size_t k = 0; k < a.direct.size(); ++k)
+    {
+      a.direct[k] = this->Host.sum(this->Direct[k]);
+      looked += a.direct[k];
+    }
+    for (double& share : a.direct)
+    {
+      share /= std::max(1.0, looked);
+    }
+    return true;
+  }
+
+  /// Bounds of errors, from what was counted.
+  std::array<MeasuredError, AdviceErrors> errorsOf(const std::vector<Counted>& counted) const
+  {
+    std::array<MeasuredError, AdviceErrors> errors;
+    for (int error = 0; error < AdviceErrors; ++error)
+    {
+      const Sums sums = this->sumsOf(counted, error);
+      const double ratio = sums.y > 0.0 ? sums.x / sums.y : 0.0;
+      const double by = sums.y > 0.0 ? Surely * deviationOf(sums) : 0.0;
+      const double own = this->Answer.own[error];
+      if (error == EchoError)
+      {
+        const double none = sums.y > 0.0 ? OfNone * sums.yy / (sums.y * sums.y) : 0.0;
+        errors[error] = { ratio, std::max(0.0, ratio - by - own), std::max(ratio + by, none) };
+      }
+      else
+      {
+        errors[error] = { std::sqrt(ratio),
+          std::max(0.0, std::sqrt(std::max(0.0, ratio - by)) - own), std::sqrt(ratio + by) + own };
+      }
+    }
+    return errors;
+  }
+
+  AdviceVerdict verdictOf(const std::array<MeasuredError, AdviceErrors>& errors) const
+  {
+    AdviceVerdict verdict = AdviceVerdict::Met;
+    for (int error = 0; error < AdviceErrors; ++error)
+    {
+      const double asked = this->Question.asked[error];
+      const AdviceVerdict one = errors[error].high <= asked ? AdviceVerdict::Met
+        : errors[error].low > asked                         ? AdviceVerdict::NotMet
+                                                            : AdviceVerdict::Undecided;
+      verdict = std::min(verdict, one);
+    }
+    return verdict;
+  }
+
+  void measure(const AdviceSettings& settings, int turn, Measuring& measuring)
+  {
+    TraceCache cache; // keeps patterns of rays, which a whole scan makes once
+    const std::int32_t seed = this->Setup.settings.seed + turn;
+    this->count(this->scan(settings, seed, this->Sample, cache), measuring.counted);
+    measuring.seconds.push_back(this->timeOf(settings, seed, cache));
+  }
+
+  double timeOf(
+    const AdviceSettings& settings, std::int32_t seed, TraceCache& cache, bool air = true)
+  {
+    const double before = threadSeconds();
+    this->scan(settings, seed, this->Timed, cache, true, air);
+    return threadSeconds() - before;
+  }
+
+  double secondsOf(const Measuring& measuring) const
+  {
+    std::vector<double> sorted = measuring.seconds;
+    std::sort(sorted.begin(), sorted.end());
+    const std::size_t middle = sorted.size() / 2;
+    const double median = sorted.empty() ? 0.0
+      : sorted.size() % 2                ? sorted[middle]
+                                         : 0.5 * (sorted[middle - 1] + sorted[middle]);
+    return this->Host.sum(median) /
+      std::max(1.0, this->Host.sum(static_cast<double>(this->Timed.size())));
+  }
+
+  std::vector<AdviceSettings> ladder() const
+  {
+    const EchoSettings& now = this->Setup.settings;
+    std::vector<AdviceSettings> all = { { now.beamSamples, now.raysPerBeam, now.numberOfReflections,
+      now.numberOfConnections, now.sampling } };
+    for (const int rays : { 8, 25, 100, 400, 1600 })
+    {
+      all.push_back({ BeamSampleSource::Cells, rays, 1, 0 });
+      all.push_back({ BeamSampleSource::Cells, rays, 2, 0 });
+      all.push_back({ BeamSampleSource::Cells, rays, 2, 2 });
+      if (rays >= 100)
+      {
+        all.push_back({ BeamSampleSource::Cells, rays, 2, 8 });
+      }
+    }
+    for (const int rays : { 8, 25, 100, 400, 1600, 6400 })
+    {
+      all.push_back({ BeamSampleSource::Rays, rays, 1, 0 });
+      all.push_back({ BeamSampleSource::Rays, rays, 2, 0 });
+      all.push_back({ BeamSampleSource::Rays, rays, 2, 2 });
+    }
+    return all;
+  }
+
+  static bool isDefault(const AdviceSettings& s)
+  {
+    return s.samples == BeamSampleSource::Cells && s.rays == 100 && s.connections <= 2;
+  }
+
+  bool tryAll()
+  {
+    std::vector<AdviceTrial>& trials = this->Answer.trials;
+    for (const AdviceSettings& settings : this->ladder())
+    {
+      trials.emplace_back().settings = settings;
+    }
+    std::vector<Measuring> measuring(trials.size());
+    for (int turn = 0; turn < MostTurns; ++turn)
+    {
+      const double fastest = this->fastestOf(trials);
+      for (std::size_t t = 0; t < trials.size(); ++t)
+      {
+        AdviceTrial& trial = trials[t];
+        const bool wanted = turn == 0 || t == 0 || isDefault(trial.settings) ||
+          (trial.verdict != AdviceVerdict::NotMet && trial.seconds < FarSlower * fastest);
+        if (!wanted)
+        {
+          continue;
+        }
+        if (!this->Host.together([&] { this->measure(trial.settings, 1 + turn, measuring[t]); }))
+        {
+          return false;
+        }
+        this->Done = 0.55 + 0.4 * (turn > 0 ? 0.6 + 0.1 * turn : 0.6 * t / trials.size());
+        trial.turns = turn + 1;
+        trial.errors = this->errorsOf(measuring[t].counted);
+        trial.verdict = this->verdictOf(trial.errors);
+        trial.seconds = this->secondsOf(measuring[t]);
+      }
+    }
+    return this->Host.together([this] { this->leaveOut(); });
+  }
+
+  double fastestOf(const std::vector<AdviceTrial>& trials) const
+  {
+    double fastest = std::numeric_limits<double>::infinity();
+    for (const AdviceTrial& trial : trials)
+    {
+      if (trial.verdict == AdviceVerdict::Met)
+      {
+        fastest = std::min(fastest, trial.seconds);
+      }
+    }
+    return fastest;
+  }
+
+  /// What is wrong without second reflections, and without connections, at the finest.
+  void leaveOut()
+  {
+    for (int reflections : { 1, 2 })
+    {
+      this->count(this->scan({ BeamSampleSource::Cells, ReferenceRays, reflections, 0 },
+                    ReferenceSeeds[0], this->Sample),
+        this->Without[reflections - 1]);
+    }
+    if (!this->Setup.media.empty() || !this->Setup.placedMedia.empty())
+    {
+      for (int turn = 0; turn < MostTurns; ++turn)
+      {
+        TraceCache with, without;
+        this->TimesWithAir.seconds.push_back(this->timeOf({}, turn, with));
+        this->TimesWithoutAir.seconds.push_back(this->timeOf({}, turn, without, false));
+      }
+    }
+  }
+
+  void lookAtScene()
+  {
+    const TriangleMesh& mesh = *this->Setup.tree->mesh;
+    this->Done = 0.97;
+    if (mesh.size() <= MostTimedTree)
+    {
+      const double before = threadSeconds();
+      const auto goOn = [this](double) { return this->Host.keepGoing(this->Done); };
+      if (!buildCollisionTree(this->Setup.tree->mesh, TreeOptions{}, goOn, 1))
+      {
+        throw WorkStopped{};
+      }
+      this->TreeSeconds = threadSeconds() - before;
+    }
+    this->Convex = mesh.size() > 0 && mesh.size() <= MostConvex && this->All.size() > 0 &&
+      !(this->Setup.movers && !this->Setup.movers->empty()) && this->isConvex(mesh);
+  }
+
+  /// Whether all corners lie on one side of each triangle, triangles close the body, and the beams
+  /// start outside.
+  bool isConvex(const TriangleMesh& mesh) const
+  {
+    Vec3 low = mesh.points[0], high = low, sum(0.0);
+    for (const Vec3& p : mesh.points)
+    {
+      low = glm::min(low, p);
+      high = glm::max(high, p);
+    }
+    const double size = glm::length(high - low);
+    double area = 0.0;
+    bool outside = false;
+    for (std::uint32_t t = 0; t < mesh.size(); ++t)
+    {
+      const Vec3& corner = mesh.corner(t, 0);
+      Vec3 normal = glm::cross(mesh.corner(t, 1) - corner, mesh.corner(t, 2) - corner);
+      const double twice = glm::length(normal);
+      if (!(twice > 1e-12 * size * size))
+      {
+        continue; // degenerate, as at the poles of a sphere
+      }
+      normal /= twice;
+      double above = 0.0, below = 0.0;
+      for (const auto& other : mesh.triangles)
+      {
+        for (const std::uint32_t c : other)
+        {
+          const double height = glm::dot(mesh.points[c] - corner, normal);
+          above = std::max(above, height);
+          below = std::max(below, -height);
+        }
+        if (above > 1e-6 * size && below > 1e-6 * size)
+        {
+          return false;
+        }
+      }
+      normal *= above > below ? -1.0 : 1.0;
+      outside = outside || glm::dot(this->All.origins[0] - corner, normal) > 0.0;
+      sum += twice * normal;
+      area += twice;
+    }
+    return outside && glm::length(sum) < 1e-3 * area;
+  }
+
+  bool conclude()
+  {
+    AdviceAnswer& a = this->Answer;
+    a.withoutSecondary = this->errorsOf(this->Without[0]);
+    a.withoutConnections = this->errorsOf(this->Without[1]);
+    const auto timeOfDefault = [&](int reflections, int connections)
+    {
+      for (const AdviceTrial& trial : a.trials)
+      {
+        const AdviceSettings& s = trial.settings;
+        if (isDefault(s) && s.reflections == reflections && s.connections == connections &&
+          s.sampling == Sampling::Stratified)
+        {
+          return std::max(trial.seconds, 1e-12);
+        }
+      }
+      return 1e-12;
+    };
+    a.secondaryCost = timeOfDefault(2, 2) / timeOfDefault(1, 0) - 1.0;
+    a.connectionCost = timeOfDefault(2, 2) / timeOfDefault(2, 0) - 1.0;
+    const double without = this->secondsOf(this->TimesWithoutAir);
+    const double with = this->secondsOf(this->TimesWithAir);
+    a.airCost = without > 0.0 ? with / without - 1.0 : 0.0;
+    a.convex = this->Host.sum(this->Convex) > 0.0;
+    a.treeSeconds = this->Host.sum(this->TreeSeconds) / std::max(1.0, this->Host.sum(1.0));
+    this->pickOne();
+    a.scanSeconds = a.beams * (a.advised < 0 ? timeOfDefault(2, 2) : a.trials[a.advised].seconds);
+    return true;
+  }
+
+  /// The fastest that meets all; of those that are as fast the most accurate.
+  void pickOne()
+  {
+    AdviceAnswer& a = this->Answer;
+    const double fastest = this->fastestOf(a.trials);
+    const auto part = [this](const AdviceTrial& trial)
+    {
+      double largest = 0.0;
+      for (int error = 0; error < AdviceErrors; ++error)
+      {
+        largest = std::max(
+          largest, trial.errors[error].high / std::max(this->Question.asked[error], 1e-300));
+      }
+      return largest;
+    };
+    for (std::size_t t = 0; t < a.trials.size() && a.echoes > 0.0; ++t)
+    {
+      const AdviceTrial& trial = a.trials[t];
+      if (a.best < 0 || part(trial) < part(a.trials[a.best]))
+      {
+        a.best = static_cast<int>(t);
+      }
+      if (trial.verdict == AdviceVerdict::Met && trial.seconds <= AsFast * fastest &&
+        (a.advised < 0 || part(trial) < part(a.trials[a.advised])))
+      {
+        a.advised = static_cast<int>(t);
+      }
+    }
+  }
+
+  ScanSetup Setup;
+  const ScanBeams& All;
+  const AdviceQuestion& Question;
+  const AdviceHost& Host;
+  AdviceAnswer& Answer;
+  double Tolerance;  ///< m, between echoes that are one
+  double Done = 0.0; ///< of the work
+  std::vector<std::size_t> Candidates;
+  ScanBeams Sample;            ///< of which errors are measured
+  std::vector<double> Weights; ///< beams of the scan for each of them
+  ScanBeams Timed;
+  std::array<double, 5> Direct{};
+  Beams Sure;      ///< the reference
+  Beams Undecided; ///< that one scan of it has
+  std::vector<Counted> Spread, Bias;
+  std::array<std::vector<Counted>, 2> Without; ///< second reflections, connections
+  Measuring TimesWithAir, TimesWithoutAir;
+  double Energy = 0.0, Secondary = 0.0, Connected = 0.0, Echoes = 0.0, OfAir = 0.0;
+  double LargestSecondary = 0.0, EchoesWithoutAir = 0.0, EnergyWithoutAir = 0.0;
+  double TreeSeconds = 0.0;
+  bool Convex = false;
+};
+}
+
+void AdviceSettings::apply(EchoSettings& settings) const
+{
+  settings.beamSamples = this->samples;
+  settings.raysPerBeam = this->rays;
+  settings.numberOfReflections = this->reflections;
+  settings.numberOfConnections = this->connections;
+  settings.sampling = this->sampling;
+}
+
+bool advise(const ScanSetup& setup, const ScanBeams& beams, const AdviceQuestion& question,
+  const AdviceHost& host, AdviceAnswer& answer)
+{
+  return Advisor(setup, beams, question, host, answer).go();
+}
+}

@@ -1,0 +1,150 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What a scene requires of a scan, measured on it."""
+from __future__ import annotations
+
+import dataclasses
+import json
+import os
+import pathlib
+from typing import Any, Dict, Iterator, List, Mapping, Optional, Tuple, Union
+
+import numpy as np
+
+from . import vtkAvianLidar as _wrapped
+from ._cloud import as_numpy
+from ._pipeline import update
+from ._properties import get_property, set_properties, snake
+
+SETTINGS = ("BeamSamples", "RaysPerBeam", "Sampling", "NumberOfReflections", "NumberOfConnections")
+VERDICTS = ("not met", "not told", "met")
+SUFFIXES = (".json", ".csv", ".png")
+
+
+@dataclasses.dataclass(frozen=True)
+class Advice:
+    """What was measured of a scene, and what is advised.
+
+    settings  properties of a Scan, for `scan.set(**advice.settings)`; None if no setting surely meets what is asked
+    lines     what is advised and why, each a sentence; the last ones are the settings as options of the command, in Python and
+              for ParaView's panel
+    asked     errors that were asked for: `energy` (rms, relative), `range` (m, rms), `missed` (share)
+    row       of the table that is advised, -1 if none is
+    table     a column of every setting that was tried, the first is the scan's own: `beam_samples` (0 cells, 1 rays),
+              `rays_per_beam`, ..., `seconds_per_beam` (s of one core), `energy_error`, `energy_error_most` (the upper bound, 95 %),
+              `range_error` (m), `missed_share`, `verdict` (0 not met, 1 the beams cannot tell, 2 met)
+    """
+
+    settings: Optional[Dict[str, Any]]
+    lines: Tuple[str, ...]
+    asked: Dict[str, float]
+    row: int
+    table: Dict[str, np.ndarray]
+
+    def __str__(self) -> str:
+        return "\n".join(self.lines)
+
+    def words(self, row: int) -> str:
+        """A setting of the table in words."""
+        of = {name: int(self.table[name][row]) for name in map(snake, SETTINGS)}
+        said = f"{of['rays_per_beam']} {('Cells', 'Rays')[of['beam_samples']]}" + ("" if of["sampling"] else ", MonteCarlo")
+        return said + (f", 2 reflections, {of['number_of_connections']} connections" if of["number_of_reflections"] > 1 else ", 1 reflection")
+
+    def save(self, file: Union[str, os.PathLike]) -> None:
+        """Write it: .json has all, .csv the table, .png a picture of errors over time (with Matplotlib)."""
+        from ._disk import replacing
+        target = pathlib.Path(file)
+        check_suffix(target)
+        with replacing(target) as name:
+            if target.suffix.lower() == ".png":
+                self.plot().figure.savefig(name, format="png", dpi=150)
+                return
+            with open(name, "w", encoding="utf-8", newline="\n") as stream:
+                if target.suffix.lower() == ".json":
+                    table = {key: values.tolist() for key, values in self.table.items()}
+                    json.dump({**dataclasses.asdict(self), "table": table}, stream, indent=1)
+                    stream.write("\n")
+                else:
+                    stream.write(",".join(self.table) + "\n")
+                    stream.writelines(",".join(f"{value:.9g}" for value in row) + "\n" for row in zip(*self.table.values()))
+
+    def plot(self, axes=None):
+        """Draw error of energy over time with Matplotlib, a point for each setting: filled if it meets all that is asked.
+        Returns the axes."""
+        from matplotlib.figure import Figure
+        axes = axes or Figure(figsize=(7, 4.5), layout="constrained").add_subplot()
+        table = self.table
+        for samples, reflections, marker, colour, name in (
+                (0, 1, "s", "tab:orange", "Cells, 1 reflection"), (0, 2, "o", "tab:blue", "Cells, 2 reflections"),
+                (1, 1, "v", "tab:olive", "Rays, 1 reflection"), (1, 2, "^", "tab:gray", "Rays, 2 reflections")):
+            these = (table["beam_samples"] == samples) & (table["number_of_reflections"] == reflections)
+            for met in (False, True):
+                some = these & ((table["verdict"] == 2) == met)
+                axes.scatter(1e6 * table["seconds_per_beam"][some], 100 * np.maximum(table["energy_error"][some], 1e-5), marker=marker, s=30,
+                             edgecolors=colour, facecolors=colour if met else "none", label=name if met else None)
+        axes.axhline(100 * self.asked["energy"], color="black", linewidth=0.8, linestyle=":")
+        if self.row >= 0:
+            axes.scatter(1e6 * table["seconds_per_beam"][self.row], 100 * max(table["energy_error"][self.row], 1e-5), s=160,
+                         facecolors="none", edgecolors="tab:red", label="advised")
+        axes.set(xscale="log", yscale="log", xlabel="time of a beam, one core (µs)", ylabel="error of energy (% rms)")
+        axes.legend(fontsize="small")
+        return axes
+
+
+def check_suffix(file: pathlib.Path) -> None:
+    if file.suffix.lower() not in SUFFIXES:
+        raise ValueError(f"{file}: advice is not written as {file.suffix or 'a file without suffix'}, expected {', '.join(SUFFIXES)}")
+
+
+def advise_scan(scan: Any, asked: Dict[str, float], beams: int, progress=None) -> Advice:
+    """See `Scan.advise`."""
+    advisor = _wrapped.vtkAvianLidarAdvisor()
+    set_properties(advisor, **scan.properties())
+    set_properties(advisor, energy_error=asked["energy"], range_error=asked["range"], missed_share=asked["missed"], sample_beams=beams)
+    for port in (0, 1, 2):
+        if scan.algorithm.GetNumberOfInputConnections(port):
+            advisor.SetInputConnection(port, scan.algorithm.GetInputConnection(port, 0))
+    update(advisor, progress)
+    table = advisor.GetTable()
+    columns = {table.GetColumnName(i): as_numpy(table.GetColumn(i)) for i in range(table.GetNumberOfColumns())}
+    row = int(table.GetFieldData().GetArray("advised").GetValue(0))
+    settings = None
+    if row >= 0:
+        settings = {"preset": "Custom"}
+        for name in SETTINGS:
+            setter = _wrapped.vtkAvianLidarEchoFilter()
+            getattr(setter, "Set" + name)(getattr(advisor, "GetAdvised" + name)())
+            settings[snake(name)] = get_property(setter, name)
+    return Advice(settings, tuple(advisor.GetAdvice().splitlines()), asked, row, columns)
+
+
+def rows_of(advice: Advice, most: int = 12) -> List[Tuple[Any, ...]]:
+    """Rows for a reader: the scan's own settings, and the fastest of those that are not surely too bad, then of the others."""
+    table = advice.table
+    order = sorted(range(1, len(table["verdict"])), key=lambda t: (table["verdict"][t] == 0, table["seconds_per_beam"][t]))
+    shown = [0, *order[:most]]
+
+    def error(name: str, t: int, scale: float) -> str:
+        return f"{scale * table[name][t]:.3g} ({scale * table[name + '_most'][t]:.3g})"
+
+    return [("setting", "us a beam", "energy, % (at most)", "range, m (at most)", "wrong echoes, % (at most)", ""),
+            *((("now: " if t == 0 else "") + advice.words(t), f"{1e6 * table['seconds_per_beam'][t]:.3g}", error("energy_error", t, 100),
+               error("range_error", t, 1), error("missed_share", t, 100),
+               "advised" if t == advice.row else VERDICTS[table["verdict"][t]]) for t in shown)]
+
+
+def notes_of(fields: Mapping[str, Any]) -> Iterator[str]:
+    """What was modelled of a scan and what was left out, by field data of its echoes: nothing where there are none."""
+    def note(name: str) -> str:
+        value = fields.get("note_" + name, "")
+        return value if isinstance(value, str) else " ".join(map(str, value))
+
+    if not note("two_reflections") or "rays_per_beam" not in fields:
+        return
+    samples = ("Cells", "Rays")[int(fields.get("beam_samples", 0))]
+    air = f"air of {float(fields.get('attenuation_coefficient', 0)):.3g} 1/m" + \
+        (", which sends light back" if fields.get("air_backscatter") else "") + \
+        (f", rain of {float(fields['rain_rate']):g} mm/h" if fields.get("rain_rate") else "")
+    yield (f"modelled: {int(fields['rays_per_beam'])} rays a beam by {samples}; paths over two reflections: {note('two_reflections')}; "
+           f"{int(fields.get('number_of_connections', 0))} connections; {air}; noise: {note('noise')}")
+    yield f"left out: {note('all_left_out')}; {note('further_reflections').replace('not modelled: ', '')}"
+    yield f"perceived: {note('perceivable_range')}; detail between rays {note('detail_between_rays')}"

@@ -1,0 +1,175 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Advice on a scene: one reflection of a convex sphere and why, two of a corner; at the airport what is advised holds on the
+whole scan with other seeds and what surely fails does; every kind of sensor, movers and weather; the same each time; errors."""
+import contextlib
+import io
+import json
+import os
+import pathlib
+import unittest
+
+import numpy as np
+from vtkmodules.vtkCommonDataModel import vtkPolyData
+from vtkmodules.vtkFiltersSources import vtkSphereSource
+
+import avianlidar as al
+from avianlidar import _command
+from avianlidar._advice import notes_of
+
+SOURCE = pathlib.Path(os.environ["AVIANLIDAR_SOURCE_DIR"])
+SCENE = SOURCE / "Examples" / "airport" / "scene" / "hongqiao.lidarscene.json"
+OUTPUT = pathlib.Path(os.environ.get("AVIANLIDAR_TEST_OUTPUT_DIR", "/tmp")) / "advice"
+EASY = {"energy": 0.05, "range": 0.2, "missed": 0.08, "beams": 150}
+CORNER = ([(-30, 50, -30), (0, 80, -30), (30, 50, -30), (-30, 50, 30), (0, 80, 30), (30, 50, 30)],
+          [(0, 1, 4), (0, 4, 3), (1, 2, 5), (1, 5, 4)])
+
+
+def sphere():
+    source = vtkSphereSource()
+    source.SetCenter(0, 60, 0)
+    source.SetRadius(20)
+    source.SetThetaResolution(32)
+    source.SetPhiResolution(32)
+    source.Update()
+    return al.Scene(source.GetOutput(), material="Metal")
+
+
+def errors_of(found, truth, limit):
+    """(rms relative error of energy, share of wrong echoes) of a scan against another, over beams with one echo in both."""
+    def single(cloud):
+        ids, first, counts = np.unique(cloud["beam_id"], return_index=True, return_counts=True)
+        return {beam: cloud["energy_received"][at] for beam, at, count in zip(ids, first, counts) if count == 1}, set(ids)
+    (here, all_here), (there, all_there) = single(found), single(truth)
+    both = [beam for beam in here if beam in there and there[beam] >= 2 * limit]
+    energy = np.array([here[beam] / there[beam] - 1 for beam in both])
+    return np.sqrt(np.mean(energy**2)), len(all_here ^ all_there) / len(all_there)
+
+
+class Advice(unittest.TestCase):
+    def test_a_convex_body_needs_one_reflection(self):
+        advice = al.Scan(sphere(), "Airport16").advise(**EASY)
+        self.assertEqual(advice.settings["number_of_reflections"], 1)
+        self.assertIn("One reflection is enough: second reflections carry 0 of the light (measured over 150 beams)", str(advice))
+        self.assertIn("a convex body cannot light itself", str(advice))
+        self.assertEqual(advice.table["verdict"][advice.row], 2)
+
+    def test_from_inside_no_body_is_called_convex(self):
+        self.assertNotIn("convex", str(al.Scan(sphere(), al.Sensor("Airport16", position=(0, 60, 0))).advise(**EASY)))
+
+    def test_a_corner_needs_two(self):
+        advice = al.Scan(al.Scene(CORNER, material="Metal"), "Airport16").advise(**{**EASY, "energy": 0.01})
+        self.assertEqual(advice.settings["number_of_reflections"], 2)
+        one = (advice.table["number_of_reflections"] == 1) & (advice.table["beam_samples"] == 0)
+        self.assertTrue((advice.table["energy_error"][one] > 0.01).all())
+        self.assertNotIn("convex", str(advice))
+
+    def test_holds_on_the_whole_scan(self):
+        scan = al.Scan(SCENE, "Airport16", noise=False)
+        advice = scan.advise(**{**EASY, "energy": 0.01, "missed": 0.02, "beams": 400})
+        before = scan.properties()
+        self.assertEqual(scan.set(**advice.settings, seed=99).seed, 99)
+        self.assertEqual({key for key, value in scan.properties().items() if value != before[key]} - {"seed"},
+                         {key for key, value in advice.settings.items() if value != before[key]})
+        truth = al.Scan(scan.scene, "Airport16", noise=False, rays_per_beam=3200, number_of_connections=8, seed=98)
+        limit = float(scan.sensor.beams.fields["lower_energy_limit"])
+        energy, wrong = errors_of(scan.echoes, truth.echoes, limit)
+        self.assertLess(energy, 0.01)
+        self.assertLess(wrong, 0.02)
+        # Of those that surely fail, the best one does so on the whole scan, too.
+        table = advice.table
+        failed = np.flatnonzero((table["verdict"] == 0) & (table["energy_error"] > 0.012))
+        worst = failed[np.argmin(table["energy_error"][failed])]
+        scan.set(beam_samples=("Cells", "Rays")[table["beam_samples"][worst]], rays_per_beam=table["rays_per_beam"][worst],
+                 number_of_reflections=table["number_of_reflections"][worst], number_of_connections=table["number_of_connections"][worst])
+        self.assertGreater(errors_of(scan.echoes, truth.echoes, limit)[0], 0.01)
+
+    def test_every_kind_of_sensor(self):
+        for name in ("Search905", "Search1550", "VLP16", "OS1_64", "Mid40"):
+            with self.subTest(name):
+                advice = al.Scan(SCENE, name).advise(**{**EASY, "beams": 50})
+                self.assertEqual(len(advice.table["verdict"]), 37)
+                self.assertTrue((advice.table["seconds_per_beam"] > 0).all())
+                self.assertTrue(any(line.startswith("Second reflections carry") or line.startswith("One reflection") for line in advice.lines))
+
+    def test_weather_and_movers(self):
+        bird = al.mover(sphere().tree.GetOutput(), [(0, -20, 0)])
+        advice = al.Scan(al.Scene(CORNER), "Search905", movers=bird, visibility=800, air_backscatter=True, rain_rate=10).advise(**EASY)
+        weather = next(line for line in advice.lines if line.startswith("Weather"))
+        self.assertRegex(weather, r"takes \d+ % of the light .* of the points are of the air itself; it takes \d+ % (more|less) time")
+        clear = al.Scan(al.Scene(CORNER), "Search905", attenuation_coefficient=0).advise(**EASY)
+        self.assertIn("Weather: none", clear.lines)
+
+    def test_the_same_each_time(self):
+        of = [al.Scan(SCENE, "Airport16", number_of_threads=threads).advise(**{**EASY, "beams": 60}).table for threads in (1, 2)]
+        for name in ("energy_error", "range_error", "missed_share"):
+            once = np.flatnonzero((of[0]["turns"] == 1) & (of[1]["turns"] == 1))
+            self.assertTrue(np.array_equal(of[0][name][once], of[1][name][once]), name)
+
+    def test_what_cannot_be_met(self):
+        advice = al.Scan(SCENE, "Airport16").advise(energy=1e-6, beams=50)
+        self.assertIsNone(advice.settings)
+        self.assertEqual(advice.row, -1)
+        self.assertRegex(advice.lines[1], r"^Advised: none of 37 settings surely meets what is asked; the best, ")
+
+    def test_nothing_to_measure(self):
+        empty = al.Scan(al.Scene(([(0, 1e6, 0), (1, 1e6, 0), (0, 1e6, 1)], [(0, 1, 2)])), al.Sensor("Airport16", azimuth_step=10))
+        advice = empty.advise(**EASY)
+        self.assertIsNone(advice.settings)
+        self.assertEqual(advice.lines[1], "Advised: nothing, as none of these beams has an echo")
+        nothing = al.Scan(al.Scene(vtkPolyData()), al.Sensor("Airport16", azimuth_step=10)).advise(**EASY)
+        self.assertIsNone(nothing.settings)
+
+    def test_bad_input(self):
+        scan = al.Scan(al.Scene(CORNER), "Airport16")
+        for values, words in (({"energy": 0.0}, "EnergyError is 0, expected an error that is allowed, above 0"),
+                              ({"range": -1.0}, "RangeError is -1"), ({"missed": float("nan")}, "MissedShare is"),
+                              ({"beams": 10}, "SampleBeams is 10, expected 50 to 1000000 beams")):
+            with self.assertRaisesRegex(al.Error, words):
+                scan.advise(**values)
+        with self.assertRaises(TypeError):
+            scan.advise(energy="much")
+        with self.assertRaisesRegex(al.Error, "RaysPerBeam"):
+            al.Scan(al.Scene(CORNER), "Airport16", rays_per_beam=0).advise()
+
+    def test_stops(self):
+        class Stop(Exception):
+            pass
+
+        def progress(share, _):
+            if share > 0.3:
+                raise Stop
+        with self.assertRaises(Stop):
+            al.Scan(SCENE, "Airport16").advise(progress=progress)
+
+    def test_command(self):
+        OUTPUT.mkdir(parents=True, exist_ok=True)
+        files = [OUTPUT / f"advice{suffix}" for suffix in (".json", ".csv", ".png")]
+        out = io.StringIO()
+        with contextlib.redirect_stdout(out):
+            code = _command.main(["advise", str(SCENE), "--energy", "0.05", "--missed", "0.3", "--beams", "60",
+                                  *(word for file in files for word in ("-o", str(file)))])
+        self.assertEqual(code, 0)
+        text = out.getvalue()
+        found = json.loads(files[0].read_text(encoding="utf-8"))
+        options = next(line for line in text.splitlines() if line.startswith("Command: ")).split()[2::2]
+        self.assertEqual(dict(option.split("=") for option in options), {key: str(value) for key, value in found["settings"].items()})
+        self.assertIn("advised", text)
+        self.assertIn(f"scan.set(preset=\"Custom\", beam_samples=\"{found['settings']['beam_samples']}\"", text)
+        self.assertIn("ParaView: Preset Custom", text)
+        self.assertEqual(len(files[1].read_text(encoding="utf-8").splitlines()), 38)
+        self.assertEqual(files[2].read_bytes()[:4], b"\x89PNG")
+        error = io.StringIO()
+        with contextlib.redirect_stderr(error):
+            self.assertEqual(_command.main(["advise", str(SCENE), "-o", str(OUTPUT / "advice.las")]), 2)
+        self.assertIn("advice is not written as .las, expected .json, .csv, .png", error.getvalue())
+
+    def test_notes_of_a_scan(self):
+        scan = al.Scan(al.Scene(CORNER), "Airport16", number_of_reflections=1)
+        lines = list(notes_of(scan.echoes.fields))
+        self.assertEqual([line.partition(":")[0] for line in lines], ["modelled", "left out", "perceived"])
+        self.assertIn("100 rays a beam by Cells; paths over two reflections: not modelled, as NumberOfReflections is 1", lines[0])
+        self.assertEqual(list(notes_of({})), [])
+
+
+if __name__ == "__main__":
+    unittest.main()
