@@ -21,7 +21,8 @@ WINDS = ("north", "north-east", "east", "south-east", "south", "south-west", "we
 def place(position: Sequence[float]) -> str:
     """Coordinates in words."""
     x, y, z = position
-    words = [f"{abs(value):g}\u00a0m {plus if value > 0.0 else minus}" for value, plus, minus in ((x, "east", "west"), (y, "north", "south")) if value]
+    words = [f"{abs(value):g}\u00a0m {plus if value > 0.0 else minus}"
+             for value, plus, minus in ((x, "east", "west"), (y, "north", "south")) if value]
     return f"{' and '.join(words) or 'at the origin'}, {z:g}\u00a0m up"
 
 
@@ -99,7 +100,8 @@ def two_sentences(plan: Plan, view: Plan, site: Optional[Dict[str, Any]], reache
     """Where the lidar should stand and which share of the birds it detects from there; how far they are seen. @param view the plan's
     sensor at its best site, or the plan itself @param of_year the share over the plan's year, if it has one"""
     found = view.overall
-    detects = f"one scan detects {percent(found['detection_probability'], found['detection_std_error'])} of {birds_of(view)} {over(view)}{air_of(view)}"
+    detects = (f"one scan detects {percent(found['detection_probability'], found['detection_std_error'])} of {birds_of(view)} "
+               f"{over(view)}{air_of(view)}")
     if view.year:
         detects += f", {percent(of_year['detection_probability'], of_year['detection_std_error'])} over the year"
     by = beside(view.sensor.position, view.runways)
@@ -109,8 +111,8 @@ def two_sentences(plan: Plan, view: Plan, site: Optional[Dict[str, Any]], reache
     if not site:
         first = f"{plan.name} stands {where}: from there {detects}."
     elif view is plan:
-        first = (f"Nowhere: from none of {site['count']} candidates, of {site['lattice']}, one scan of {plan.name} detects {LEAST_WORDS} of {birds_of(view)} "
-                 f"{over(view)}{year or air_of(view)}.")
+        first = (f"Nowhere: from none of {site['count']} candidates, of {site['lattice']}, one scan of {plan.name} detects {LEAST_WORDS} of "
+                 f"{birds_of(view)} {over(view)}{year or air_of(view)}.")
     else:
         first = f"{plan.name} should stand {where}: from there {detects}, the most of {site['count']} candidates{year}."
     return [first, _how_far(view, reaches)]
@@ -130,7 +132,8 @@ def _how_far(view: Plan, reaches: Dict[str, Any]) -> str:
     rows = reach.heights_in_band(view, view.heights, max(one.to(0.5) for one in reaches["of"].values()))
     seen = [f"{row['height']:g}\u00a0m up from {row['from']:.0f} to {row['to']:.0f}\u00a0m away" for row in rows if row["to"] > row["from"]]
     never = [f"{row['height']:g}" for row in rows if not row["to"] > row["from"]]
-    return f"{said}; half are in its beams and near enough {'at ' if seen else ''}{', '.join(seen)}{', and ' if seen and never else ''}{'nowhere at ' + listed(never) + ' m' if never else ''}."
+    where = [*(["at " + ", ".join(seen)] if seen else []), *([f"nowhere at {listed(never)} m"] if never else [])]
+    return f"{said}; half are in its beams and near enough {', and '.join(where)}."
 
 
 def next_steps(plan: Plan, view: Plan, site: Optional[Dict[str, Any]], advice: Optional[Dict[str, Any]]) -> List[Dict[str, str]]:
@@ -138,14 +141,16 @@ def next_steps(plan: Plan, view: Plan, site: Optional[Dict[str, Any]], advice: O
     file = pathlib.Path(plan.file).name if pathlib.Path(plan.file).is_absolute() else plan.file
     steps = [_raise(view, advice)] if advice else []
     if site and len(site["gain"]) > 1 and view is not plan:
-        together = [f"{('two', 'three')[row['sensors'] - 2] if row['sensors'] < 4 else row['sensors']} detect {percent(row['value'])}" for row in site["gain"][1:]]
+        together = [f"{('two', 'three')[row['sensors'] - 2] if row['sensors'] < 4 else row['sensors']} detect {percent(row['value'])}"
+                    for row in site["gain"][1:]]
         steps.append({"head": "Weigh a second lidar.", "more": "#sites", "command": "",
-                      "words": f"Where one detects {percent(site['gain'][0]['value'])}, {listed(together)} at their best sites, if they miss birds independently."})
+                      "words": f"Where one detects {percent(site['gain'][0]['value'])}, {listed(together)} at their best sites, "
+                               "if they miss birds independently."})
     if site and view is not plan:
         steps.append(_check(view, site, file))
     steps.append({"head": "Replace what is assumed.", "more": "#assumptions",
-                  "words": f"Size and reflectance ({view.coverage.reflectance:g}) of birds, and {len(set(view.assumed))} numbers of {view.name}: ask its maker. What darker "
-                           "birds change:",
+                  "words": f"Size and reflectance ({view.coverage.reflectance:g}) of birds, and {len(set(view.assumed))} numbers of {view.name}: ask its "
+                           "maker. What darker birds change:",
                   "command": f"avianlidar report {file} -o darker.html --coverage-set reflectance={view.coverage.reflectance / 2.0:g}"})
     return steps
 
@@ -154,13 +159,15 @@ def _raise(view: Plan, advice: Dict[str, Any]) -> Dict[str, str]:
     """The sensor itself, where its band leaves out heights that are asked for."""
     found = {"head": "Change the beams first.", "more": "#heights-in-band", "command": ""}
     if advice["needed"] is None:
-        return {**found, "head": "Take a lidar that sees farther.", "words": "At the heights asked for no bird is near enough, whatever the elevation of the beams."}
+        return {**found, "head": "Take a lidar that sees farther.",
+                "words": "At the heights asked for no bird is near enough, whatever the elevation of the beams."}
     best = max(advice["ways"], key=lambda way: way["then"]["detection_probability"], default=None)
     ends = f"They end at {advice['high']:.1f}°; for all heights asked for they should go up to {advice['needed']:.1f}°"
     if best is None:
         return {**found, "words": f"{ends}. No change of them that was tried detects more from there."}
     now, then = (percent(one["detection_probability"]) for one in (advice["now"], best["then"]))
-    return {**found, "words": f"{ends}. From the same place {best['what'].partition(' (')[0]} detect {then} instead of {now}; it costs {best['cost']}."}
+    return {**found, "words": f"{ends}. From the same place {best['what'].partition(' (')[0]} detect {then} instead of {now}; it costs "
+                              f"{best['cost']}."}
 
 
 def _check(view: Plan, site: Dict[str, Any], file: str) -> Dict[str, str]:
