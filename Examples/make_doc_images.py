@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Runs the examples and brings their pictures and tables into Documentation/: airport.md, birds.md,
+"""Runs the examples and brings their pictures and tables into Documentation/: advise.md, airport.md, birds.md,
 collision-detection.md, corridor.md, coverage.md, design.md, echoes.md, paper.md, python.md, sensors.md, sequences.md, time.md, tracks.md and, where AVIANLIDAR_DATA_DIR
 names the folder of their data, results/reality.md, results/falloff.md, results/materials.md and crowns in weather.md say what a run of what is
 committed gives. Where AVIANLIDAR_SCENES_DIR names the scenes that the build makes of them, more reflections are followed in
@@ -20,7 +20,8 @@ HERE = pathlib.Path(__file__).resolve().parent
 DOCUMENTATION = HERE.parent / "Documentation"
 sys.path[:0] = [str(HERE / folder) for folder in ("common", "airport", "birds", "corridor", "coverage", "design", "materials", "measured",
                                                   "notebook", "outdoor", "paper", "reflections", "room", "sensors", "sequence",
-                                                  "weather")]
+                                                  "weather", "accuracy_speed")]
+import advice  # noqa: E402
 import airport  # noqa: E402
 import airport_search  # noqa: E402
 import airport_time  # noqa: E402
@@ -90,6 +91,7 @@ RUNS = (
 
 # Those that need the data folder.
 DATA_RUNS = (
+    ("advice", advice, [], {}),
     ("room", room, [], {"errors": "room-errors", "xt32-clouds": "room-xt32-clouds", "xt32-ranges": "room-xt32-ranges",
                         "pandar40p-clouds": "room-pandar40p-clouds", "xt32-intensity": "room-xt32-intensity"}),
     ("detail", detail, [], {}),

@@ -24,7 +24,6 @@ from avianlidar.vtkAvianLidar import vtkAvianLidarEchoFilter as Filter  # noqa: 
 SCENES = (("footprints alone (Hongqiao)", None), ("towers (Shanghai)", "shanghai_cbd"),
           ("masts and jetways (Hongqiao)", "zsss_structures"), ("airport with terrain (Honolulu)", "phnl"),
           ("town and airport (Neubrandenburg)", "neubrandenburg"), ("houses in detail (Ingolstadt)", "ingolstadt"))
-SENSORS = "Airport16", "Search905"
 ASKED = {"energy": 0.02, "range": 0.05, "missed": 0.01}, {"energy": 0.05, "range": 0.2, "missed": 0.03}
 SEEDS = 501, 502  # of scans that are judged
 REFERENCE = 6400  # rays by cells, with eight connections
@@ -115,21 +114,26 @@ def table(rows):
     return "\n".join(["| " + " | ".join(names) + " |", "|---|---|---|---|---|---|---|---:|---:|", *("| " + " | ".join(row) + " |" for row in rows)])
 
 
+def page(rows):
+    """The table, and how often what is advised holds."""
+    advised = [row for row in rows if row[3] != "none"]
+    faster = [row[6] for row in advised if row[6] != "-"]
+    return table(rows) + (f"\n\nAdvised in {len(advised)} of {len(rows)} cases. On the whole scan the settings hold in {sum(row[5] == 'yes' for row in advised)} of "
+                          f"these; the next faster setting fails in {sum('fails' in text for text in faster)} of {len(faster)}.\n")
+
+
 def main(argv=None):
     parser = running.Parser(description=__doc__.split("\n\n")[0])
     parser.add_argument("--out", type=pathlib.Path, default=pathlib.Path("build/advice"), help="folder, default build/advice")
     parser.add_argument("--scenes", type=pathlib.Path, default=os.environ.get("AVIANLIDAR_SCENES_DIR"), help="folder of scenes that the build makes")
+    parser.add_argument("--sensors", nargs="+", choices=al.Sensor.presets(), default=["Airport16"], help="default Airport16")
     parser.add_argument("--beams", type=running.whole(50, 1000000), default=1000, help="that advice measures on, default 1000")
     options = parser.parse_args(argv)
     files = [(title, options.scenes / f"{name}.lidarscene.json" if name else trade_runs.AIRPORT) for title, name in SCENES
              if name is None or options.scenes]
-    rows = [row for sensor in SENSORS for title, file in files for row in measure(title, file, sensor, options.beams)]
-    advised = [row for row in rows if row[3] != "none"]
-    held, faster = sum(row[5] == "yes" for row in advised), [row[6] for row in advised if row[6] != "-"]
+    rows = [row for sensor in options.sensors for title, file in files for row in measure(title, file, sensor, options.beams)]
     options.out.mkdir(parents=True, exist_ok=True)
-    (options.out / "table.md").write_text(table(rows) + f"\n\nAdvised in {len(advised)} of {len(rows)} cases; on the whole scan the settings hold in {held} "
-                                          f"of these. The next faster setting fails in {sum('fails' in text for text in faster)} of {len(faster)}.\n",
-                                          encoding="utf-8")
+    (options.out / "table.md").write_text(page(rows), encoding="utf-8")
     return rows
 
 

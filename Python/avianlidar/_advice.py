@@ -6,7 +6,7 @@ import dataclasses
 import json
 import os
 import pathlib
-from typing import Any, Dict, Iterator, List, Mapping, Optional, Tuple, Union
+from typing import Any, Dict, List, Mapping, Optional, Tuple, Union
 
 import numpy as np
 
@@ -132,19 +132,19 @@ def rows_of(advice: Advice, most: int = 12) -> List[Tuple[Any, ...]]:
                "advised" if t == advice.row else VERDICTS[table["verdict"][t]]) for t in shown)]
 
 
-def notes_of(fields: Mapping[str, Any]) -> Iterator[str]:
+def notes_of(fields: Mapping[str, Any]) -> List[str]:
     """What was modelled of a scan and what was left out, by field data of its echoes: nothing where there are none."""
     def note(name: str) -> str:
         value = fields.get("note_" + name, "")
         return value if isinstance(value, str) else " ".join(map(str, value))
 
     if not note("two_reflections") or "rays_per_beam" not in fields:
-        return
+        return []
     samples = ("Cells", "Rays")[int(fields.get("beam_samples", 0))]
     air = f"air of {float(fields.get('attenuation_coefficient', 0)):.3g} 1/m" + \
         (", which sends light back" if fields.get("air_backscatter") else "") + \
         (f", rain of {float(fields['rain_rate']):g} mm/h" if fields.get("rain_rate") else "")
-    yield (f"modelled: {int(fields['rays_per_beam'])} rays a beam by {samples}; paths over two reflections: {note('two_reflections')}; "
-           f"{int(fields.get('number_of_connections', 0))} connections; {air}; noise: {note('noise')}")
-    yield f"left out: {note('all_left_out')}; {note('further_reflections').replace('not modelled: ', '')}"
-    yield f"perceived: {note('perceivable_range')}; detail between rays {note('detail_between_rays')}"
+    return [f"modelled: {int(fields['rays_per_beam'])} rays a beam by {samples}; paths over two reflections: {note('two_reflections')}; "
+            f"{int(fields.get('number_of_connections', 0))} connections; {air}; noise: {note('noise')}",
+            f"left out: {note('all_left_out')}; {note('further_reflections').replace('not modelled: ', '')}",
+            f"perceived: {note('perceivable_range')}; detail between rays {note('detail_between_rays')}"]

@@ -29,7 +29,7 @@ def check(found, ranks):
     for name, value in advised["shown"].items():
         assert f"{value}" in found["answer_tip"] or name in ("Preset", "BeamSamples", "Sampling"), (name, found["answer_tip"])
     assert applied["applied"] == advised["shown"] and not applied["accept"], (applied, advised)
-    assert undone["applied"] == before["applied"], undone
+    assert undone["applied"] == before["applied"] and found["steps"] <= 2, (undone, found["steps"])
     assert any("EchoSettings" in text or "AttenuationCoefficient" in text for text in found["errors"]), found["errors"]
     assert found["answer_of_error"] == "No advice: nothing was measured", found
     assert found["sources"] == 3, found["sources"]  # what the button makes is not shown

@@ -47,8 +47,8 @@ FIRST_SHOWN = {
     "AvianLidarClutterFilter": "ClutterThreshold Learning Window WarmUp AzimuthStep ElevationStep",
     "AvianLidarCoverage": """Bounds Spacing Species Reflectance EffectiveArea MeteorologicalVisibility RequiredDetections NumberOfScans
         HeightLimits""",
-    "AvianLidarEchoFilter": "Preset RaysPerBeam AttenuationCoefficient NumberOfReflections Noise ReturnMode",
-    "AvianLidarEchoFilterStandard": "Preset AttenuationCoefficient Noise ReturnMode",
+    "AvianLidarEchoFilter": "Preset RaysPerBeam Advise AttenuationCoefficient NumberOfReflections Noise ReturnMode",
+    "AvianLidarEchoFilterStandard": "Preset Advise AttenuationCoefficient Noise ReturnMode",
     "AvianLidarGeodeticTransform": "SourceFrame MovePoints TargetFrame UseFieldDataOrigin Origin",
     "AvianLidarGeodeticTransformMoved": "SourceFrame MovePoints TargetFrame UseFieldDataOrigin Origin",
     "AvianLidarTracker": """ClusterDistance ClusterAngle MotionModel AccelerationDensity MaximumSpeed MinimumSpeed ConfirmHits
@@ -80,14 +80,15 @@ DOCUMENTATION = {
 
 
 def proxies():
-    """The sources, readers and filters in the plugin's XML files; what they have in common has no class."""
+    """The sources, readers and filters in the plugin's XML files; what they have in common has no class, and what the button Advise
+    runs has no panel."""
     names = []
     for folder in ("Filters", "IO"):
         folder = os.path.join(SOURCE_DIR, "Plugin", folder)
         for file_name in os.listdir(folder):
             with open(os.path.join(folder, file_name), encoding="utf-8") as file:
                 names += re.findall(r'<SourceProxy name="(\w+)"\s+class=', file.read())
-    return names
+    return [name for name in names if name != "AvianLidarAdvisor"]
 
 
 def check_panels(panels):

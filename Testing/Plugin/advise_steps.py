@@ -58,8 +58,12 @@ def steps(results):
     panel().grab().save(os.path.join(FOLDER, "advise.png"))
     yield from apply()
     results["applied"] = look(echoes)
-    later(find("actionEditUndo", QAction, main_window()).trigger)
-    yield 1.0
+    undo = find("actionEditUndo", QAction, main_window())
+    results["steps"] = 0
+    while undo.isEnabled() and look(echoes)["applied"] == results["applied"]["applied"]:  # colours of new echoes are a step, too
+        results["steps"] += 1
+        later(undo.trigger)
+        yield 1.0
     results["undone"] = look(echoes)
     messages.take()
     type_in("AttenuationCoefficient", "-1")

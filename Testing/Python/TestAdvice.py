@@ -165,10 +165,10 @@ class Advice(unittest.TestCase):
 
     def test_notes_of_a_scan(self):
         scan = al.Scan(al.Scene(CORNER), "Airport16", number_of_reflections=1)
-        lines = list(notes_of(scan.echoes.fields))
+        lines = notes_of(scan.echoes.fields)
         self.assertEqual([line.partition(":")[0] for line in lines], ["modelled", "left out", "perceived"])
         self.assertIn("100 rays a beam by Cells; paths over two reflections: not modelled, as NumberOfReflections is 1", lines[0])
-        self.assertEqual(list(notes_of({})), [])
+        self.assertEqual(notes_of({}), [])
 
 
 if __name__ == "__main__":

@@ -18,7 +18,7 @@ VALUE = f"{ANY} is {ANY} , expected {ANY}"
 MOST = 16  # messages that another entry may cover: above, it says too little
 # Texts that no user is shown as an error: assertions, units with words, texts in files that are written.
 NOT_SHOWN = ("vtkAvianLidarMaterial.cxx: … Material: ", "Unable to allocate", "Echoes of a lidar; heights", "Wavelength",
-             "LasWriting.cxx: ", "vtkAvianLidarCoverageOutput.cxx: ", "# .PCD v0.7", "USGS Spectral Library", "property list uchar", "no triangle is bad", "species,mass [kg]")
+             "LasWriting.cxx: ", "vtkAvianLidarAdviceNotes.cxx: ", "vtkAvianLidarCoverageOutput.cxx: ", "# .PCD v0.7", "USGS Spectral Library", "property list uchar", "no triangle is bad", "species,mass [kg]")
 TOKEN = re.compile(r'//[^\n]*|/\*.*?\*/|"(?:\\.|[^"\\\n])*"|\'(?:\\.|[^\'\\\n])\'|\w+|[^\s\w]', re.S)
 WHERE = set("and another array arrays beams block cell cells cloud collision columns comparison data echoes field image input is line "
             "movers of or places point points port rows scan surfaces the tree whole".split())

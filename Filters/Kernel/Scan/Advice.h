@@ -25,7 +25,7 @@
  * Source: none.
  * Valid: noise is off: it belongs to the receiver and is no error. Errors and choices are the same
  * for any number of threads but for times, which decide what is fastest.
- * Test: Testing/Python/TestAdvice.py; on whole scans Examples/accuracy_speed/advice.py.
+ * Test: Testing/Python/TestAdvice.py.
  */
 #ifndef avianlidar_Advice_h
 #define avianlidar_Advice_h
