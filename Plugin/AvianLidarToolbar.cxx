@@ -6,6 +6,7 @@
 #include "pqApplicationCore.h"
 #include "pqCoreUtilities.h"
 #include "pqDataRepresentation.h"
+#include "pqObjectBuilder.h"
 #include "pqOutputPort.h"
 #include "pqPVApplicationCore.h"
 #include "pqPipelineSource.h"
@@ -15,6 +16,7 @@
 #endif
 #include "pqProxyGroupMenuManager.h"
 #include "pqPythonManager.h"
+#include "pqServerManagerModel.h"
 
 #include "vtkAvianLidarMaterial.h"
 #include "vtkDataObject.h"
@@ -153,6 +155,27 @@ void ShowMaterial(pqPipelineSource* source)
 }
 
 //------------------------------------------------------------------------------
+// A lidar that can be bought is called so in the pipeline, too, with a number if that name is
+// taken.
+void NameSensor(pqPipelineSource* source)
+{
+  vtkPVXMLElement* hints = source->getProxy()->GetHints();
+  auto* hint = hints ? hints->FindNestedElementByName("AvianLidarMenu") : nullptr;
+  if (!hint || !hint->GetAttribute("pipeline"))
+  {
+    return;
+  }
+  const QString wanted = hint->GetAttributeOrEmpty("text");
+  QString name = wanted;
+  const auto* model = pqApplicationCore::instance()->getServerManagerModel();
+  for (int i = 2; model->findItem<pqPipelineSource*>(name); ++i)
+  {
+    name = QString("%1 (%2)").arg(wanted).arg(i);
+  }
+  source->rename(name);
+}
+
+//------------------------------------------------------------------------------
 void AddHelp()
 {
   pqApplicationCore* core = pqApplicationCore::instance();
@@ -192,6 +215,8 @@ Toolbar::Toolbar(QMainWindow* window)
       [this, manager] { this->AddFilters(manager); });
     this->AddFilters(manager);
   }
+  connect(pqApplicationCore::instance()->getObjectBuilder(), &pqObjectBuilder::sourceCreated, this,
+    NameSensor);
   auto& active = pqActiveObjects::instance();
   connect(&active, &pqActiveObjects::portChanged, this, [this] { this->EnableFilter(); });
   connect(&active, &pqActiveObjects::dataUpdated, this, [this] { this->EnableFilter(); });
