@@ -3,6 +3,7 @@
 
 set(classes
   Filters/vtkAvianLidarBeamSource
+  Filters/vtkAvianLidarBeamView
   Filters/vtkAvianLidarBirdSource
   Filters/vtkAvianLidarCloudComparison
   Filters/vtkAvianLidarClutterFilter

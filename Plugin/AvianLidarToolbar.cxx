@@ -77,7 +77,9 @@ const Macro Macros[] = {
     "Colour the selected echoes or range image by energy, over the range of the receiver" },
   { "avian_lidar_status_colours", "status", "Avian Lidar: Colour by Status",
     "Colour the selected beam report, range image or coverage by what became of each beam or "
-    "place" }
+    "place" },
+  { "avian_lidar_show_beam", "beam", "Avian Lidar: Show Beam",
+    "The beam of the selected echo, the surfaces that it sees, and the share of each" }
 };
 
 //------------------------------------------------------------------------------

@@ -34,6 +34,7 @@ FIRST_SHOWN = {
     **{"AvianLidar" + name: PHOTON_SOURCE for name in
        ("Search905", "Search1550", "Automotive16", "OS0128", "OS164", "OS2128", "Avia", "Mid40", "Mid360")},
     **{"AvianLidar" + name: BEAM_SOURCE for name in ("HDL32E", "Helios16P", "Pandar40P", "PandarXT32", "VLP16", "VLP32C")},
+    "AvianLidarBeamView": "BeamId RaysPerBeam AttenuationCoefficient",
     "AvianLidarBirdSource": "Species Reflectance WingPhase Gliding Position Heading Bank",
     "AvianLidarMedium": "Kind Name MeteorologicalVisibility Shape Bottom Top Softness",
     "AvianLidarMediumShower": "Kind Name RainRate Shape Center Lengths Heading",

@@ -102,6 +102,18 @@ MEDIUM = {
 CONTRACT = {
     "AvianLidarBeamSource": BEAM_SOURCE,
     **{name: BEAM_SOURCE for name in PRESETS},
+    "AvianLidarBeamView": {
+        "Beams": None,
+        "Surfaces": None,
+        "Movers": None,
+        "BeamId": "",
+        "RaysPerBeam": "",
+        "AttenuationCoefficient": "1/m",
+        "MeteorologicalVisibility": "metres",
+        "AirBackscatter": "",
+        "RainRate": "millimetres",
+        "ReflectanceModel": "",
+    },
     "AvianLidarBirdSource": {
         "Species": "",
         "SpeciesFileName": "",
@@ -307,6 +319,7 @@ MIXED = ("Frames (deg, m)", "Material (pure numbers, rad)", "Origin: latitude, l
 OUTPUTS = {
     "AvianLidarBeamSource": ["Beams", "Rays"],
     **{name: ["Beams", "Rays"] for name in PRESETS},
+    "AvianLidarBeamView": ["Surfaces", "Beam", "Shares"],
     "AvianLidarSensorReader": ["Beams", "Rays"],
     "AvianLidarTracker": ["Tracks", "Points"],
     "AvianLidarTracks": ["Movers", "Trails"],
@@ -706,7 +719,7 @@ class TestProxies(unittest.TestCase):
         for name in PRESETS:
             proxy = self.proxies[name]
             proxy.UpdatePipeline()
-            for taker in ("AvianLidarEchoFilter", "AvianLidarCoverage"):
+            for taker in ("AvianLidarEchoFilter", "AvianLidarCoverage", "AvianLidarBeamView"):
                 beams = servermanager.ProxyManager().GetPrototypeProxy("filters", taker).GetProperty("Beams")
                 for source, fits in ((proxy, True), (self.proxies["AvianLidarBirdSource"], False)):
                     source.UpdatePipeline()
