@@ -27,6 +27,7 @@ set(classes
   IO/vtkAvianLidarPLYWriter
   IO/vtkAvianLidarPointCloudReader
   IO/vtkAvianLidarSceneReader
+  IO/vtkAvianLidarSequenceReader
   IO/vtkAvianLidarUnitNames)
 
 include("${CMAKE_CURRENT_LIST_DIR}/AvianLidarPrivateFolders.cmake")

@@ -50,7 +50,9 @@ constexpr char ScanFilter[] = "AvianLidarEchoFilter";
 constexpr char MaterialFilter[] = "AvianLidarMaterial";
 constexpr char ImageFilter[] = "AvianLidarRangeImage";
 constexpr char MacrosMenu[] = "menu_Macros";
+constexpr char SequenceReader[] = "AvianLidarSequenceReader";
 constexpr char ColourMacro[] = "avian_lidar_energy_colours";
+constexpr char ClassMacro[] = "avian_lidar_class_colours";
 
 struct Macro
 {
@@ -79,7 +81,9 @@ const Macro Macros[] = {
     "Colour the selected beam report, range image or coverage by what became of each beam or "
     "place" },
   { "avian_lidar_show_beam", "beam", "Avian Lidar: Show Beam",
-    "The beam of the selected echo, the surfaces that it sees, and the share of each" }
+    "The beam of the selected echo, the surfaces that it sees, and the share of each" },
+  { ClassMacro, "status", "Avian Lidar: Colour by Class",
+    "Colour the selected labelled points by class", false }
 };
 
 //------------------------------------------------------------------------------
@@ -319,17 +323,19 @@ void Toolbar::Colour(pqProxy* applied)
   {
     ShowMaterial(source);
   }
-  if ((name != ScanFilter && name != ImageFilter) || !source->property("AvianLidar").isNull())
+  const bool ofClasses = name == SequenceReader;
+  if ((name != ScanFilter && name != ImageFilter && !ofClasses) ||
+    !source->property("AvianLidar").isNull())
   {
     return;
   }
   source->updatePipeline(); // nothing else asks for an image that is not shown
   vtkPVDataInformation* data = source->getOutputPort(0)->getDataInformation();
-  if (data->GetArrayInformation("energy", vtkDataObject::POINT) &&
+  if (data->GetArrayInformation(ofClasses ? "semantic_label" : "energy", vtkDataObject::POINT) &&
     pqActiveObjects::instance().activeSource() == source)
   {
     source->setProperty("AvianLidar", true);
-    Run(PathOf(ColourMacro));
+    Run(PathOf(ofClasses ? ClassMacro : ColourMacro));
   }
 }
 }

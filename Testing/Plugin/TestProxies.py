@@ -284,6 +284,7 @@ CONTRACT = {
     },
     "AvianLidarSceneReader": {"FileName": ""},
     "AvianLidarPointCloudReader": {"FileName": "", "LocalCoordinates": "", "TimestepValues": "steps"},
+    "AvianLidarSequenceReader": {"FileName": "", "TimestepValues": "steps"},
     "AvianLidarSensorReader": {"FileName": "", **{name: BEAM_SOURCE[name] for name in (
         "Position", "Orientation", "NumberOfRevolutions", "StepsPerRevolution")}},
     "AvianLidarUnitNames": {"Input": None},
@@ -320,6 +321,7 @@ OUTPUTS = {
     "AvianLidarBeamSource": ["Beams", "Rays"],
     **{name: ["Beams", "Rays"] for name in PRESETS},
     "AvianLidarBeamView": ["Surfaces", "Beam", "Shares"],
+    "AvianLidarSequenceReader": ["Points", "Boxes"],
     "AvianLidarSensorReader": ["Beams", "Rays"],
     "AvianLidarTracker": ["Tracks", "Points"],
     "AvianLidarTracks": ["Movers", "Trails"],
@@ -362,7 +364,7 @@ DEFAULTS = {
     "AvianLidarAutomotive16": {"ReceiverModel": "Photons", "AzimuthStep": 0.09, "RangeGate": 300},
     "AvianLidarCorridorC16": {"PulseEnergy": 2.5e-4, "RangeGate": 200, "RotationRate": 10, "FiringInterval": 5e-6},
 }
-READERS = ("AvianLidarSceneReader", "AvianLidarPointCloudReader", "AvianLidarSensorReader")
+READERS = ("AvianLidarSceneReader", "AvianLidarPointCloudReader", "AvianLidarSensorReader", "AvianLidarSequenceReader")
 # Their proxies are no sources; TestWriters.py looks at them.
 WRITERS = {*_suffixes.WRITERS.values()}
 ABSTRACT = {"vtkAvianLidarCloudWriter", "vtkAvianLidarScanFilter"}
