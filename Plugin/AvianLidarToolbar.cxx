@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "AvianLidarToolbar.h"
 #include "AvianLidarUndo.h"
+#include "AvianLidarWizard.h"
 
 #include "pqActiveObjects.h"
 #include "pqApplicationCore.h"
@@ -39,6 +40,7 @@
 #include <QTimer>
 #include <QToolBar>
 #include <QVariant>
+#include <QVector>
 
 #include <dlfcn.h>
 
@@ -52,6 +54,7 @@ constexpr char ImageFilter[] = "AvianLidarRangeImage";
 constexpr char MacrosMenu[] = "menu_Macros";
 constexpr char SequenceReader[] = "AvianLidarSequenceReader";
 constexpr char ColourMacro[] = "avian_lidar_energy_colours";
+constexpr char WizardMacro[] = "avian_lidar_wizard";
 constexpr char ClassMacro[] = "avian_lidar_class_colours";
 
 struct Macro
@@ -64,6 +67,8 @@ struct Macro
 };
 
 const Macro Macros[] = {
+  { WizardMacro, "wizard", "Avian Lidar: Scan as You Choose...",
+    "Choose scene, sensor, birds and weather: the pipeline is made of them" },
   { "avian_lidar_airport_scan", "scan", "Avian Lidar: Scan Surfaces or an Airport",
     "Scan the selected surfaces with a lidar; with nothing selected, an airport" },
   { "avian_lidar_birds_over_the_airport", "bird", "Avian Lidar: Scan Birds over an Airport",
@@ -98,7 +103,8 @@ QString PathOf(const char* macro)
 
 //------------------------------------------------------------------------------
 // As executeScriptAndRender() does, whose reading of the file is a step to undo in ParaView 5.13.
-void Run(const QString& path)
+// @param answers a dictionary of Python for the macro, or nothing
+void Run(const QString& path, const QString& answers = QString())
 {
   pqPythonManager* python = pqPVApplicationCore::instance()->pythonManager();
   QFile file(path);
@@ -110,7 +116,14 @@ void Run(const QString& path)
   {
     QByteArray name = path.toUtf8();
     name.replace('\\', "\\\\").replace('\'', "\\'");
-    python->executeCode(file.readAll(), { "__file__ = '" + name + "'" }, { "del __file__" });
+    QVector<QByteArray> before = { "__file__ = '" + name + "'" };
+    QVector<QByteArray> after = { "del __file__" };
+    if (!answers.isEmpty())
+    {
+      before.append("avian_lidar_answers = " + answers.toUtf8());
+      after.append("del avian_lidar_answers");
+    }
+    python->executeCode(file.readAll(), before, after);
     pqPVApplicationCore::instance()->render();
   }
 }
@@ -244,8 +257,17 @@ void Toolbar::AddMacros(QMenu* menu)
     action->setStatusTip(macro.tip);
     const QString path = PathOf(macro.file);
     const QString text = macro.text;
+    const bool asks = macro.file == WizardMacro;
     connect(action, &QAction::triggered, this,
-      [path, text] { AvianLidarDoToUndo(text, [path] { Run(path); }); });
+      [path, text, asks]
+      {
+        const QString answers =
+          asks ? AvianLidarAskForScan(pqCoreUtilities::mainWidget()) : QString();
+        if (!asks || !answers.isEmpty())
+        {
+          AvianLidarDoToUndo(text, [path, answers] { Run(path, answers); });
+        }
+      });
     if (macro.hasButton)
     {
       this->addAction(action);
