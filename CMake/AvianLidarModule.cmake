@@ -4,6 +4,7 @@
 set(classes
   Filters/vtkAvianLidarAdvisor
   Filters/vtkAvianLidarBeamSource
+  Filters/vtkAvianLidarBeamView
   Filters/vtkAvianLidarBirdSource
   Filters/vtkAvianLidarCloudComparison
   Filters/vtkAvianLidarClutterFilter
@@ -27,6 +28,7 @@ set(classes
   IO/vtkAvianLidarPLYWriter
   IO/vtkAvianLidarPointCloudReader
   IO/vtkAvianLidarSceneReader
+  IO/vtkAvianLidarSequenceReader
   IO/vtkAvianLidarUnitNames)
 
 include("${CMAKE_CURRENT_LIST_DIR}/AvianLidarPrivateFolders.cmake")

@@ -24,6 +24,7 @@
 #include <cctype>
 #include <cmath>
 #include <exception>
+#include <stdexcept>
 #include <string>
 
 namespace
@@ -148,15 +149,40 @@ void vtkAvianLidarBeamSource::TakeProperties(const vtkAvianLidarBeamSource& pres
 void vtkAvianLidarBeamSource::TakePreset(const char* name)
 {
   vtkNew<vtkAvianLidarBeamSource> preset;
-  const vtkAvianLidarSensorFile file = vtkAvianLidarSensorFile::Preset(name);
-  vtkInternals::Apply(file, *preset);
-  const auto& known = vtkInternals::PhotonSensors();
-  if (std::any_of(known.begin(), known.end(),
-        [&](const vtkAvianLidarSensorFile& one) { return one.name == file.name; }))
-  {
-    preset->Assumed.clear(); // known by their values
-  }
+  vtkInternals::ApplyPreset(name, *preset);
   this->TakeProperties(*preset);
+}
+
+//------------------------------------------------------------------------------
+void vtkAvianLidarBeamSource::SetTablesOfPreset(const char* name)
+{
+  vtkNew<vtkAvianLidarBeamSource> preset;
+  try
+  {
+    if (name && *name)
+    {
+      vtkInternals::ApplyPreset(name, *preset);
+    }
+  }
+  catch (const std::out_of_range&)
+  {
+    vtkErrorMacro("TablesOfPreset is \"" << name
+                                         << "\", expected the name of a sensor that is "
+                                            "built in, as OS1_64.");
+    return;
+  }
+  for (const auto& [array, table] : vtkInternals::Tables())
+  {
+    if (table != &vtkAvianLidarBeamSource::ChannelElevations)
+    {
+      this->*table = preset->*table;
+    }
+  }
+  this->PrismAxisElevation = preset->PrismAxisElevation;
+  this->PrismAxisRotationRate = preset->PrismAxisRotationRate;
+  this->Assumed = preset->Assumed;
+  this->Description = preset->Description;
+  this->Modified();
 }
 
 //------------------------------------------------------------------------------

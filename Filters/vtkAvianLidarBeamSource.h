@@ -157,6 +157,14 @@ public:
   ///@}
 
   /**
+   * Of a sensor that is built in, by the name of its file (`OS1_64`), only what no other method of
+   * this class sets: the tables of files and the prisms, the names of what is assumed, and the
+   * description. For a user interface that sets all properties one by one. Null or empty: none. An
+   * unknown name is an error and changes nothing.
+   */
+  void SetTablesOfPreset(const char* name);
+
+  /**
    * The same from a file (`.lidarsensor.json`, see the page on sensors). Of files alone, and field
    * data where they are given, are `channel_azimuth_offsets` (deg, of a channel's beam from the
    * column), `channel_firing_times` (s, since the column begins, instead of FiringInterval),

@@ -144,13 +144,20 @@ bool vtkAvianLidarEchoFilter::Scan(const vtkAvianLidarRanks& ranks, vtkFieldData
     {
       for (vtkPolyData* output : outputs)
       {
-        vtkAvianLidarEchoOutput::FillFields(in.Setup, this->Preset, beamFields, this->Moved->Movers,
-          in.Exchange.Fields, in.Scene, output->GetFieldData());
-        this->AddAirTo(output->GetFieldData());
+        this->FillFields(beamFields, output->GetFieldData());
       }
       return {};
     });
   return in.GoOn(outcome);
+}
+
+//------------------------------------------------------------------------------
+void vtkAvianLidarEchoFilter::FillFields(vtkFieldData* beamFields, vtkFieldData* fields) const
+{
+  const vtkInternals& in = *this->Internals;
+  vtkAvianLidarEchoOutput::FillFields(
+    in.Setup, this->Preset, beamFields, this->Moved->Movers, in.Exchange.Fields, in.Scene, fields);
+  this->AddAirTo(fields);
 }
 
 //------------------------------------------------------------------------------

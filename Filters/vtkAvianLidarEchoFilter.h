@@ -230,7 +230,9 @@ protected:
   int RequestInformation(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
   int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
 
+  // A pass of an execution, as those of the superclass, and the field data of its outputs.
   bool PrepareMovers(const vtkAvianLidarRanks& ranks, vtkDataObject* input);
+  void FillFields(vtkFieldData* beamFields, vtkFieldData* fields) const;
 
   bool Noise = true;
   int ReturnMode = RETURN_MODE_ALL;
@@ -240,7 +242,6 @@ private:
   vtkAvianLidarEchoFilter(const vtkAvianLidarEchoFilter&) = delete;
   void operator=(const vtkAvianLidarEchoFilter&) = delete;
 
-  // Passes of an execution, as those of the superclass.
   bool Scan(const vtkAvianLidarRanks& ranks, vtkFieldData* beamFields,
     const std::array<vtkPolyData*, 3>& outputs);
 

@@ -4,10 +4,14 @@
 #include "vtkAvianLidarMaterial.h"
 #include "vtkClientServerInterpreter.h"
 #include "vtkClientServerInterpreterInitializer.h"
+#include "vtkDataObject.h"
 #include "vtkObjectFactory.h"
+#include "vtkPVDataInformation.h"
 #include "vtkPVXMLElement.h"
 #include "vtkSMDoubleRangeDomain.h"
+#include "vtkSMInputArrayDomain.h"
 #include "vtkSMPropertyHelper.h"
+#include "vtkSMSourceProxy.h"
 #include "vtkSMUncheckedPropertyHelper.h"
 
 #include <cmath>
@@ -99,6 +103,34 @@ private:
 
 vtkStandardNewMacro(vtkSMAvianLidarScaledDomain);
 
+// Beams of a sensor: of what a scene may hold, only they have this point array and this field. The
+// superclass is for the words that ParaView has where it does not fit.
+class vtkSMAvianLidarBeamsDomain : public vtkSMInputArrayDomain
+{
+public:
+  static vtkSMAvianLidarBeamsDomain* New();
+  vtkTypeMacro(vtkSMAvianLidarBeamsDomain, vtkSMInputArrayDomain);
+
+  int IsInDomain(vtkSMProperty* property) override
+  {
+    vtkSMUncheckedPropertyHelper helper(property);
+    for (unsigned int i = 0; i < helper.GetNumberOfElements(); ++i)
+    {
+      auto* source = vtkSMSourceProxy::SafeDownCast(helper.GetAsProxy(i));
+      vtkPVDataInformation* data =
+        source ? source->GetDataInformation(helper.GetOutputPort(i)) : nullptr;
+      if (!data || !data->GetArrayInformation("direction", vtkDataObject::POINT) ||
+        !data->GetArrayInformation("half_beamwidth", vtkDataObject::FIELD))
+      {
+        return NOT_IN_DOMAIN;
+      }
+    }
+    return IN_DOMAIN;
+  }
+};
+
+vtkStandardNewMacro(vtkSMAvianLidarBeamsDomain);
+
 template <class Domain>
 vtkObjectBase* New(void*)
 {
@@ -110,6 +142,8 @@ vtkObjectBase* New(void*)
 void AvianLidarAddDomains()
 {
   auto* interpreter = vtkClientServerInterpreterInitializer::GetGlobalInterpreter();
+  interpreter->AddNewInstanceFunction(
+    "vtkSMAvianLidarBeamsDomain", New<vtkSMAvianLidarBeamsDomain>);
   interpreter->AddNewInstanceFunction(
     "vtkSMAvianLidarMaterialDomain", New<vtkSMAvianLidarMaterialDomain>);
   interpreter->AddNewInstanceFunction(

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "AvianLidarToolbar.h"
 #include "AvianLidarUndo.h"
+#include "AvianLidarWizard.h"
 
 #include "pqActiveObjects.h"
 #include "pqApplicationCore.h"
 #include "pqCoreUtilities.h"
 #include "pqDataRepresentation.h"
+#include "pqObjectBuilder.h"
 #include "pqOutputPort.h"
 #include "pqPVApplicationCore.h"
 #include "pqPipelineSource.h"
@@ -15,6 +17,7 @@
 #endif
 #include "pqProxyGroupMenuManager.h"
 #include "pqPythonManager.h"
+#include "pqServerManagerModel.h"
 
 #include "vtkAvianLidarMaterial.h"
 #include "vtkDataObject.h"
@@ -37,6 +40,7 @@
 #include <QTimer>
 #include <QToolBar>
 #include <QVariant>
+#include <QVector>
 
 #include <dlfcn.h>
 
@@ -48,7 +52,10 @@ constexpr char ScanFilter[] = "AvianLidarEchoFilter";
 constexpr char MaterialFilter[] = "AvianLidarMaterial";
 constexpr char ImageFilter[] = "AvianLidarRangeImage";
 constexpr char MacrosMenu[] = "menu_Macros";
+constexpr char SequenceReader[] = "AvianLidarSequenceReader";
 constexpr char ColourMacro[] = "avian_lidar_energy_colours";
+constexpr char WizardMacro[] = "avian_lidar_wizard";
+constexpr char ClassMacro[] = "avian_lidar_class_colours";
 
 struct Macro
 {
@@ -60,6 +67,8 @@ struct Macro
 };
 
 const Macro Macros[] = {
+  { WizardMacro, "wizard", "Avian Lidar: Scan as You Choose...",
+    "Choose scene, sensor, birds and weather: the pipeline is made of them" },
   { "avian_lidar_airport_scan", "scan", "Avian Lidar: Scan Surfaces or an Airport",
     "Scan the selected surfaces with a lidar; with nothing selected, an airport" },
   { "avian_lidar_birds_over_the_airport", "bird", "Avian Lidar: Scan Birds over an Airport",
@@ -75,7 +84,11 @@ const Macro Macros[] = {
     "Colour the selected echoes or range image by energy, over the range of the receiver" },
   { "avian_lidar_status_colours", "status", "Avian Lidar: Colour by Status",
     "Colour the selected beam report, range image or coverage by what became of each beam or "
-    "place" }
+    "place" },
+  { "avian_lidar_show_beam", "beam", "Avian Lidar: Show Beam",
+    "The beam of the selected echo, the surfaces that it sees, and the share of each" },
+  { ClassMacro, "status", "Avian Lidar: Colour by Class",
+    "Colour the selected labelled points by class", false }
 };
 
 //------------------------------------------------------------------------------
@@ -90,7 +103,8 @@ QString PathOf(const char* macro)
 
 //------------------------------------------------------------------------------
 // As executeScriptAndRender() does, whose reading of the file is a step to undo in ParaView 5.13.
-void Run(const QString& path)
+// @param answers a dictionary of Python for the macro, or nothing
+void Run(const QString& path, const QString& answers = QString())
 {
   pqPythonManager* python = pqPVApplicationCore::instance()->pythonManager();
   QFile file(path);
@@ -102,7 +116,14 @@ void Run(const QString& path)
   {
     QByteArray name = path.toUtf8();
     name.replace('\\', "\\\\").replace('\'', "\\'");
-    python->executeCode(file.readAll(), { "__file__ = '" + name + "'" }, { "del __file__" });
+    QVector<QByteArray> before = { "__file__ = '" + name + "'" };
+    QVector<QByteArray> after = { "del __file__" };
+    if (!answers.isEmpty())
+    {
+      before.append("avian_lidar_answers = " + answers.toUtf8());
+      after.append("del avian_lidar_answers");
+    }
+    python->executeCode(file.readAll(), before, after);
     pqPVApplicationCore::instance()->render();
   }
 }
@@ -153,6 +174,27 @@ void ShowMaterial(pqPipelineSource* source)
 }
 
 //------------------------------------------------------------------------------
+// A lidar that can be bought is called so in the pipeline, too, with a number if that name is
+// taken.
+void NameSensor(pqPipelineSource* source)
+{
+  vtkPVXMLElement* hints = source->getProxy()->GetHints();
+  auto* hint = hints ? hints->FindNestedElementByName("AvianLidarMenu") : nullptr;
+  if (!hint || !hint->GetAttribute("pipeline"))
+  {
+    return;
+  }
+  const QString wanted = hint->GetAttributeOrEmpty("text");
+  QString name = wanted;
+  const auto* model = pqApplicationCore::instance()->getServerManagerModel();
+  for (int i = 2; model->findItem<pqPipelineSource*>(name); ++i)
+  {
+    name = QString("%1 (%2)").arg(wanted).arg(i);
+  }
+  source->rename(name);
+}
+
+//------------------------------------------------------------------------------
 void AddHelp()
 {
   pqApplicationCore* core = pqApplicationCore::instance();
@@ -192,6 +234,8 @@ Toolbar::Toolbar(QMainWindow* window)
       [this, manager] { this->AddFilters(manager); });
     this->AddFilters(manager);
   }
+  connect(pqApplicationCore::instance()->getObjectBuilder(), &pqObjectBuilder::sourceCreated, this,
+    NameSensor);
   auto& active = pqActiveObjects::instance();
   connect(&active, &pqActiveObjects::portChanged, this, [this] { this->EnableFilter(); });
   connect(&active, &pqActiveObjects::dataUpdated, this, [this] { this->EnableFilter(); });
@@ -213,8 +257,17 @@ void Toolbar::AddMacros(QMenu* menu)
     action->setStatusTip(macro.tip);
     const QString path = PathOf(macro.file);
     const QString text = macro.text;
+    const bool asks = macro.file == WizardMacro;
     connect(action, &QAction::triggered, this,
-      [path, text] { AvianLidarDoToUndo(text, [path] { Run(path); }); });
+      [path, text, asks]
+      {
+        const QString answers =
+          asks ? AvianLidarAskForScan(pqCoreUtilities::mainWidget()) : QString();
+        if (!asks || !answers.isEmpty())
+        {
+          AvianLidarDoToUndo(text, [path, answers] { Run(path, answers); });
+        }
+      });
     if (macro.hasButton)
     {
       this->addAction(action);
@@ -292,17 +345,19 @@ void Toolbar::Colour(pqProxy* applied)
   {
     ShowMaterial(source);
   }
-  if ((name != ScanFilter && name != ImageFilter) || !source->property("AvianLidar").isNull())
+  const bool ofClasses = name == SequenceReader;
+  if ((name != ScanFilter && name != ImageFilter && !ofClasses) ||
+    !source->property("AvianLidar").isNull())
   {
     return;
   }
   source->updatePipeline(); // nothing else asks for an image that is not shown
   vtkPVDataInformation* data = source->getOutputPort(0)->getDataInformation();
-  if (data->GetArrayInformation("energy", vtkDataObject::POINT) &&
+  if (data->GetArrayInformation(ofClasses ? "semantic_label" : "energy", vtkDataObject::POINT) &&
     pqActiveObjects::instance().activeSource() == source)
   {
     source->setProperty("AvianLidar", true);
-    Run(PathOf(ColourMacro));
+    Run(PathOf(ofClasses ? ClassMacro : ColourMacro));
   }
 }
 }

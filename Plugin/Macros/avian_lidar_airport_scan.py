@@ -28,9 +28,8 @@ POSITION = "lidar_position"
 HEIGHT = 3
 DISTANCE = 0.1
 # What a scan is made of.
-SENSORS = ("AvianLidarAirport16", "AvianLidarAirport32", "AvianLidarCorridorC16", "AvianLidarSearch905",
-           "AvianLidarSearch1550", "AvianLidarAutomotive16")
-PARTS = ("AvianLidarCollisionTree", "AvianLidarMedium", "AvianLidarMediumInSurface", "AvianLidarTracks", *SENSORS)
+SENSORS = ("vtkAvianLidarBeamSource", "vtkAvianLidarSensorReader")  # classes: there are many sources of them
+PARTS = ("AvianLidarCollisionTree", "AvianLidarMedium", "AvianLidarMediumInSurface", "AvianLidarTracks")
 RESULTS = ("AvianLidarEchoFilter", "AvianLidarCoverage", "AvianLidarClutterFilter", "AvianLidarTracker")
 # What shows some of a result.
 SOME = ("Threshold", "Cut", "Contour")
@@ -115,7 +114,7 @@ def of_result(source):
 
 def is_part(source):
     """Whether it belongs to a scan."""
-    return source.SMProxy.GetXMLName() in PARTS or of_result(source)
+    return source.SMProxy.GetXMLName() in PARTS or source.SMProxy.GetVTKClassName() in SENSORS or of_result(source)
 
 
 def hide_scans(view):

@@ -31,9 +31,10 @@ FIRST_SHOWN = {
     "AvianLidarAirport16": BEAM_SOURCE,
     "AvianLidarAirport32": BEAM_SOURCE,
     "AvianLidarCorridorC16": BEAM_SOURCE,
-    "AvianLidarSearch905": PHOTON_SOURCE,
-    "AvianLidarSearch1550": PHOTON_SOURCE,
-    "AvianLidarAutomotive16": PHOTON_SOURCE,
+    **{"AvianLidar" + name: PHOTON_SOURCE for name in
+       ("Search905", "Search1550", "Automotive16", "OS0128", "OS164", "OS2128", "Avia", "Mid40", "Mid360")},
+    **{"AvianLidar" + name: BEAM_SOURCE for name in ("HDL32E", "Helios16P", "Pandar40P", "PandarXT32", "VLP16", "VLP32C")},
+    "AvianLidarBeamView": "BeamId RaysPerBeam AttenuationCoefficient",
     "AvianLidarBirdSource": "Species Reflectance WingPhase Gliding Position Heading Bank",
     "AvianLidarMedium": "Kind Name MeteorologicalVisibility Shape Bottom Top Softness",
     "AvianLidarMediumShower": "Kind Name RainRate Shape Center Lengths Heading",

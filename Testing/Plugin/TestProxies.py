@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Every proxy against the contract and against its C++ class: names, labels, defaults, choices, help and units."""
 
+import json
 import math
+import os
 import re
 import unittest
 
@@ -10,7 +12,10 @@ from avianlidar import _suffixes
 from paraview import servermanager, simple
 from vtkmodules.vtkCommonCore import reference
 
-from plugin_testing import load_plugin
+from plugin_testing import SOURCE_DIR, load_plugin
+
+SENSOR_FOLDER = os.path.join(SOURCE_DIR, "Filters", "Sensors")
+SENSOR_FILE = ".lidarsensor.json"
 
 # The contract: what scripts rely on. Inputs are marked by None, results by RESULTS; the steps to play, which have no
 # place in a panel, by "steps"; otherwise the unit as the tooltip says it, "" for names, counts, choices and switches.
@@ -69,6 +74,10 @@ BEAM_SOURCE = {
     "RangeQuantum": "metres",
     "DisplayLength": "metres",
 }
+# Each sensor that is built in is a source of its own: that of its file.
+SENSORS = {file[: -len(SENSOR_FILE)]: json.load(open(os.path.join(SENSOR_FOLDER, file), encoding="utf-8"))
+           for file in sorted(os.listdir(SENSOR_FOLDER)) if file.endswith(SENSOR_FILE)}
+PRESETS = {"AvianLidar" + name.replace("_", ""): "SetPresetTo" + name for name in SENSORS}
 # What an execution leaves for scripts, and the unit in the tooltip.
 RESULTS = {"result in metres": "metres", "result, a count": "count", "result, a pure number": ""}
 MEDIUM = {
@@ -92,12 +101,19 @@ MEDIUM = {
 }
 CONTRACT = {
     "AvianLidarBeamSource": BEAM_SOURCE,
-    "AvianLidarAirport16": BEAM_SOURCE,
-    "AvianLidarAirport32": BEAM_SOURCE,
-    "AvianLidarCorridorC16": BEAM_SOURCE,
-    "AvianLidarSearch905": BEAM_SOURCE,
-    "AvianLidarSearch1550": BEAM_SOURCE,
-    "AvianLidarAutomotive16": BEAM_SOURCE,
+    **{name: BEAM_SOURCE for name in PRESETS},
+    "AvianLidarBeamView": {
+        "Beams": None,
+        "Surfaces": None,
+        "Movers": None,
+        "BeamId": "",
+        "RaysPerBeam": "",
+        "AttenuationCoefficient": "1/m",
+        "MeteorologicalVisibility": "metres",
+        "AirBackscatter": "",
+        "RainRate": "millimetres",
+        "ReflectanceModel": "",
+    },
     "AvianLidarBirdSource": {
         "Species": "",
         "SpeciesFileName": "",
@@ -268,6 +284,7 @@ CONTRACT = {
     },
     "AvianLidarSceneReader": {"FileName": ""},
     "AvianLidarPointCloudReader": {"FileName": "", "LocalCoordinates": "", "TimestepValues": "steps"},
+    "AvianLidarSequenceReader": {"FileName": "", "TimestepValues": "steps"},
     "AvianLidarSensorReader": {"FileName": "", **{name: BEAM_SOURCE[name] for name in (
         "Position", "Orientation", "NumberOfRevolutions", "StepsPerRevolution")}},
     "AvianLidarUnitNames": {"Input": None},
@@ -302,12 +319,9 @@ SCALED = {"BeamwidthMilliradians": ("HalfBeamwidth", 2000)}  # a property of the
 MIXED = ("Frames (deg, m)", "Material (pure numbers, rad)", "Origin: latitude, longitude, height (deg, deg, m)")
 OUTPUTS = {
     "AvianLidarBeamSource": ["Beams", "Rays"],
-    "AvianLidarAirport16": ["Beams", "Rays"],
-    "AvianLidarAirport32": ["Beams", "Rays"],
-    "AvianLidarCorridorC16": ["Beams", "Rays"],
-    "AvianLidarSearch905": ["Beams", "Rays"],
-    "AvianLidarSearch1550": ["Beams", "Rays"],
-    "AvianLidarAutomotive16": ["Beams", "Rays"],
+    **{name: ["Beams", "Rays"] for name in PRESETS},
+    "AvianLidarBeamView": ["Surfaces", "Beam", "Shares"],
+    "AvianLidarSequenceReader": ["Points", "Boxes"],
     "AvianLidarSensorReader": ["Beams", "Rays"],
     "AvianLidarTracker": ["Tracks", "Points"],
     "AvianLidarTracks": ["Movers", "Trails"],
@@ -350,15 +364,7 @@ DEFAULTS = {
     "AvianLidarAutomotive16": {"ReceiverModel": "Photons", "AzimuthStep": 0.09, "RangeGate": 300},
     "AvianLidarCorridorC16": {"PulseEnergy": 2.5e-4, "RangeGate": 200, "RotationRate": 10, "FiringInterval": 5e-6},
 }
-PRESETS = {
-    "AvianLidarAirport16": "SetPresetToAirport16",
-    "AvianLidarAirport32": "SetPresetToAirport32",
-    "AvianLidarCorridorC16": "SetPresetToCorridorC16",
-    "AvianLidarSearch905": "SetPresetToSearch905",
-    "AvianLidarSearch1550": "SetPresetToSearch1550",
-    "AvianLidarAutomotive16": "SetPresetToAutomotive16",
-}
-READERS = ("AvianLidarSceneReader", "AvianLidarPointCloudReader", "AvianLidarSensorReader")
+READERS = ("AvianLidarSceneReader", "AvianLidarPointCloudReader", "AvianLidarSensorReader", "AvianLidarSequenceReader")
 # Their proxies are no sources; TestWriters.py looks at them.
 WRITERS = {*_suffixes.WRITERS.values()}
 ABSTRACT = {"vtkAvianLidarCloudWriter", "vtkAvianLidarScanFilter"}
@@ -472,7 +478,8 @@ class TestProxies(unittest.TestCase):
     def test_properties_are_those_of_the_contract(self):
         for name, proxy in self.proxies.items():
             with self.subTest(name):
-                internal = [INTERNAL, *BUTTONS.get(name, [])]
+                internal = [INTERNAL, *BUTTONS.get(name, []), *(["Reload"] if name in READERS else [])]
+                internal += ["TablesOfPreset"] if CONTRACT[name] is BEAM_SOURCE else []
                 self.assertEqual(sorted(proxy.ListProperties()), sorted([*CONTRACT[name], *internal]))
 
     def test_the_advisor_is_an_echo_filter_with_a_question(self):
@@ -644,7 +651,7 @@ class TestProxies(unittest.TestCase):
                 for text in (documentation.GetDescription(), documentation.GetShortHelp(), documentation.GetLongHelp()):
                     self.assertGreater(len(text_of(text)), 20)
                 self.assertEqual(smproxy.GetXMLLabel().replace(" ", ""), name)
-                if name not in READERS:
+                if name not in READERS and name not in PRESETS:
                     menu = smproxy.GetHints().FindNestedElementByName("ShowInMenu")
                     self.assertEqual(menu.GetAttribute("category"), "Avian Lidar")
 
@@ -676,6 +683,7 @@ class TestProxies(unittest.TestCase):
         """What one property is set to is the other, in scripts and as the panel shows it; the last bit stays."""
         for name in PRESETS:
             proxy = self.proxies[name]
+            proxy.HalfBeamwidthAcross = 0  # else the least is another
             half, full = (proxy.SMProxy.GetProperty(prop) for prop in ("HalfBeamwidth", "BeamwidthMilliradians"))
             for value in (0.0031, 0.007 / 3, 1e-9):
                 proxy.HalfBeamwidth = value
@@ -692,6 +700,47 @@ class TestProxies(unittest.TestCase):
                 one.SetUncheckedElement(0, 0.5)
                 self.assertAlmostEqual(other.GetUncheckedElement(0), 0.5 * factor, delta=1e-9)
                 self.assertNotEqual(one.GetElement(0), 0.5)
+
+    def test_sensors_are_those_of_their_files(self):
+        """Also what has no property: the beams and all that they say are those of the class, and the menu has the makers."""
+        for name, preset in PRESETS.items():
+            with self.subTest(name):
+                instance, proxy = cxx_object(name), self.proxies[name]
+                instance.Update()
+                proxy.UpdatePipeline()
+                ours, theirs = instance.GetOutput(), servermanager.Fetch(proxy)
+                for kind in ("GetPointData", "GetFieldData"):
+                    ours_of, theirs_of = getattr(ours, kind)(), getattr(theirs, kind)()
+                    self.assertEqual(ours_of.GetNumberOfArrays(), theirs_of.GetNumberOfArrays())
+                    for i in range(ours_of.GetNumberOfArrays()):
+                        one = ours_of.GetAbstractArray(i)
+                        other = theirs_of.GetAbstractArray(one.GetName())
+                        values = [[array.GetVariantValue(k).ToString() if array.IsA("vtkStringArray") else array.GetTuple(k)
+                                   for k in range(0, array.GetNumberOfTuples(), max(1, array.GetNumberOfTuples() // 50))]
+                                  for array in (one, other)]
+                        self.assertEqual(*values, one.GetName())
+                sensor = SENSORS[preset[len("SetPresetTo"):]]
+                menu = proxy.SMProxy.GetHints().FindNestedElementByName("ShowInMenu").GetAttribute("category")
+                maker = sensor.get("maker")
+                self.assertEqual(menu, "Avian Lidar" + (f": {maker[0].upper() + maker[1:]}" if maker else ""))
+                text = proxy.SMProxy.GetHints().FindNestedElementByName("AvianLidarMenu")
+                self.assertEqual(text and text.GetAttribute("text"),
+                                 f"{maker} {sensor['model']}" if maker not in (None, "assumed") else None)
+        makers = {sensor.get("maker") for sensor in SENSORS.values()}
+        self.assertEqual(makers, {None, "assumed", "Hesai", "Livox", "Ouster", "RoboSense", "Velodyne"})
+
+    def test_every_sensor_fits_the_filters_that_take_beams(self):
+        for name in PRESETS:
+            proxy = self.proxies[name]
+            proxy.UpdatePipeline()
+            for taker in ("AvianLidarEchoFilter", "AvianLidarCoverage", "AvianLidarBeamView"):
+                beams = servermanager.ProxyManager().GetPrototypeProxy("filters", taker).GetProperty("Beams")
+                for source, fits in ((proxy, True), (self.proxies["AvianLidarBirdSource"], False)):
+                    source.UpdatePipeline()
+                    beams.RemoveAllUncheckedProxies()
+                    beams.AddUncheckedInputConnection(source.SMProxy, 0)
+                    self.assertEqual(bool(beams.IsInDomains()), fits, (name, taker))
+                    beams.RemoveAllUncheckedProxies()
 
     def test_output_ports_are_named(self):
         for name, proxy in self.proxies.items():

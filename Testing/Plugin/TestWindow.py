@@ -28,7 +28,7 @@ def check_found(found):
         assert entries.get(ENTRY) is False, (word, entries)  # a mesh with normals gives no beams
     assert ENTRY in found["menu"], found["menu"]
     assert (found["mesh"], found["beams"]) == (False, True), found
-    assert found["tip"].startswith("Requires a field attribute array"), found["tip"]
+    assert found["tip"].startswith("Requires a point attribute array"), found["tip"]
     assert len(found["missing"]) == 1 and "Input port 1 (surfaces) is not connected" in found["missing"][0], found["missing"]
     assert "Edit > Change Input > Surfaces" in found["missing"][0], found["missing"]
 

@@ -78,6 +78,12 @@ class Pipeline:
             cloud = os.path.join(FOLDER, "cloud.pcd")
             simple.SaveData(cloud, proxy=self.echoes)
             return simple.OpenDataFile(cloud)
+        if name == "AvianLidarSequenceReader":
+            os.makedirs(os.path.join(FOLDER, "velodyne"), exist_ok=True)
+            with open(os.path.join(FOLDER, "velodyne", "000000.bin"), "wb") as scan, open(os.path.join(FOLDER, "times.txt"), "w", encoding="utf-8") as times:
+                scan.write(bytes(16))
+                times.write("0\n")
+            return simple.OpenDataFile(times.name)
         return getattr(simple, name)(**({} if source else self.inputs(name)))
 
 

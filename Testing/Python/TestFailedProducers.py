@@ -78,6 +78,7 @@ def trails():
 
 # Every class with inputs: the producers of its ports.
 FILTERS = {
+    "BeamView": (beams, surfaces),
     "CloudComparison": (echoes, echoes),
     "ClutterFilter": (echoes,),
     "CollisionTree": (surfaces,),

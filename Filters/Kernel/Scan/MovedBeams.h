@@ -53,6 +53,10 @@ public:
   void simulate(std::size_t beam, std::vector<Echo>& echoes, BeamReport& report,
     std::vector<MoverSight>& sights);
 
+  /// What lit the beam simulated last, and its scene.
+  const BeamSimulator& simulator() const { return *this->Simulator; }
+  const ScanSetup& scene() const { return this->Scene; }
+
 private:
   struct Touch
   {

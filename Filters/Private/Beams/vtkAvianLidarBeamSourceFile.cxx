@@ -221,6 +221,19 @@ void vtkAvianLidarBeamSource::vtkInternals::Apply(const vtkAvianLidarSensorFile&
 }
 
 //------------------------------------------------------------------------------
+void vtkAvianLidarBeamSource::vtkInternals::ApplyPreset(const std::string& name, Source& self)
+{
+  const vtkAvianLidarSensorFile file = vtkAvianLidarSensorFile::Preset(name);
+  Apply(file, self);
+  const auto& known = PhotonSensors();
+  if (std::any_of(known.begin(), known.end(),
+        [&](const vtkAvianLidarSensorFile& one) { return one.name == file.name; }))
+  {
+    self.Assumed.clear(); // known by their values
+  }
+}
+
+//------------------------------------------------------------------------------
 std::vector<double> vtkAvianLidarBeamSource::vtkInternals::ValuesOf(
   const Source& self, const std::string& name)
 {

@@ -74,6 +74,8 @@ struct vtkAvianLidarBeamSource::vtkInternals
 
   // Set what a file names. Throws std::exception for what is no property or has another unit.
   static void Apply(const vtkAvianLidarSensorFile& file, Source& self);
+  // The same of a sensor that is built in. Throws std::out_of_range for a name that none has.
+  static void ApplyPreset(const std::string& name, Source& self);
   using AssumedValues = std::vector<std::pair<std::string, std::vector<double>>>;
   // What a property has, by its name in snake case.
   static std::vector<double> ValuesOf(const Source& self, const std::string& name);

@@ -41,7 +41,8 @@ vtkAvianLidarSensorFile::Entry EntryOf(const std::string& name, const JsonNode& 
 vtkAvianLidarSensorFile Parse(const Json& json, const std::string& file)
 {
   const JsonNode root(json, "", file);
-  root.RequireKeys({ "format", "name", "comment", "source", "data_sheet", "sheet", "values" });
+  root.RequireKeys(
+    { "format", "name", "maker", "model", "comment", "source", "data_sheet", "sheet", "values" });
   if (root.Get("format").String() != "lidarsensor 1")
   {
     root.Get("format").Fail("must be \"lidarsensor 1\"");
@@ -50,7 +51,7 @@ vtkAvianLidarSensorFile Parse(const Json& json, const std::string& file)
   sensor.file = file;
   sensor.name = root.Get("name").Name();
   sensor.text = json.dump();
-  for (const char* key : { "comment", "source" })
+  for (const char* key : { "maker", "model", "comment", "source" })
   {
     if (root.Has(key))
     {

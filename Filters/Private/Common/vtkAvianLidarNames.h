@@ -135,6 +135,14 @@ constexpr Name RaysTraced{ "rays_traced", "1" };
 constexpr Name Skipped{ "skipped", "" };
 constexpr Name SkippedBound{ "skipped_bound", "J" };
 
+// What a beam sees (cell data, and columns of the table).
+constexpr Name SolidAngleShare{ "solid_angle_share", "1" };
+constexpr Name EnergyShare{ "energy_share", "1" };
+constexpr Name Object{ "object", "" };
+constexpr Name Material{ "material", "" };
+constexpr Name NearestRange{ "nearest_m", "m" };
+constexpr Name FarthestRange{ "farthest_m", "m" };
+
 // Mover report (point data).
 constexpr Name EffectiveArea{ "effective_area", "m2" };
 constexpr Name NumberOfBeams{ "number_of_beams", "1" };

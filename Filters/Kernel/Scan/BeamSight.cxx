@@ -1,0 +1,240 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "BeamSight.h"
+
+#include "BeamShape.h"
+#include "BeamSimulator.h"
+#include "MovedBeams.h"
+
+#include <algorithm>
+#include <limits>
+#include <map>
+#include <memory>
+
+namespace avianlidar
+{
+namespace
+{
+constexpr int SidesOfDisc = 64;
+
+using Sums = std::map<std::uint32_t, SeenSurface>;
+
+/// The surface that a triangle of the lit scene is.
+SeenSurface& surfaceOf(const ScanSetup& scene, std::uint32_t triangle, Sums& sums)
+{
+  const auto [place, isNew] = sums.try_emplace(triangle);
+  SeenSurface& surface = place->second;
+  if (isNew)
+  {
+    surface.objectId = scene.objectIds[triangle];
+    surface.materialId = scene.materialIds[triangle];
+    surface.nearest = std::numeric_limits<double>::infinity();
+  }
+  return surface;
+}
+
+/// The corners of a triangle; where the next one or the one before belongs to the same surface and
+/// is not in `sums` itself, those of the quadrilateral.
+std::vector<Vec3> cornersOf(const ScanSetup& scene, std::uint32_t triangle, const Sums& sums)
+{
+  const TriangleMesh& mesh = *scene.tree->mesh;
+  std::vector<Vec3> corners = { mesh.corner(triangle, 0), mesh.corner(triangle, 1),
+    mesh.corner(triangle, 2) };
+  const Vec3 normal = glm::cross(corners[1] - corners[0], corners[2] - corners[0]);
+  for (const std::uint32_t other : { triangle + 1, triangle - 1 })
+  {
+    if (other >= mesh.size() || sums.count(other) > 0 ||
+      scene.objectIds[other] != scene.objectIds[triangle] ||
+      scene.materialIds[other] != scene.materialIds[triangle])
+    {
+      continue;
+    }
+    for (int c = 0; c < 3; ++c)
+    {
+      const Vec3 from = mesh.corner(other, (c + 1) % 3);
+      const Vec3 to = mesh.corner(other, (c + 2) % 3);
+      const Vec3 apart = mesh.corner(other, c) - from;
+      const bool inPlane =
+        std::fabs(glm::dot(normal, apart)) <= 1e-9 * safeLength(normal) * safeLength(apart);
+      for (std::size_t k = 0; k < 3 && inPlane; ++k)
+      {
+        const Vec3& a = corners[k];
+        const Vec3& b = corners[(k + 1) % 3];
+        if ((a == from && b == to) || (a == to && b == from))
+        {
+          corners.insert(
+            corners.begin() + static_cast<std::ptrdiff_t>(k + 1), mesh.corner(other, c));
+          return corners;
+        }
+      }
+    }
+  }
+  return corners;
+}
+
+/// Keep what lies on the inner side of a plane: where dot(inward, p) >= least.
+void cut(const Vec3& inward, double least, std::vector<Vec3>& polygon)
+{
+  std::vector<Vec3> kept;
+  for (std::size_t i = 0; i < polygon.size(); ++i)
+  {
+    const Vec3& from = polygon[i];
+    const Vec3& to = polygon[(i + 1) % polygon.size()];
+    const double a = glm::dot(inward, from) - least;
+    const double b = glm::dot(inward, to) - least;
+    if (a >= 0.0)
+    {
+      kept.push_back(from);
+    }
+    if ((a < 0.0) != (b < 0.0))
+    {
+      kept.push_back(from + (a / (a - b)) * (to - from));
+    }
+  }
+  polygon.swap(kept);
+}
+
+/// Light the one beam, and call f(scene, lighting).
+template <class F>
+void light(
+  const ScanSetup& setup, const ScanBeams& one, const std::function<bool()>& wanted, const F& f)
+{
+  BeamSampler sampler(setup.sensor, setup.settings.sampling, tracedRaysOf(setup.settings));
+  std::vector<Echo> echoes;
+  BeamReport report;
+  if (setup.movers && !setup.movers->empty())
+  {
+    MovedBeams moved(setup, one, sampler, wanted, true);
+    moved.find(0, 1);
+    if (moved.isTouched(0))
+    {
+      std::vector<MoverSight> sights;
+      moved.simulate(0, echoes, report, sights);
+      f(moved.scene(), moved.simulator().lighting());
+      return;
+    }
+  }
+  std::vector<BeamTrace> traces(1);
+  BeamSimulator simulator(setup, one, false, sampler, wanted);
+  simulator.lightAll();
+  simulator.trace(0, 1, traces);
+  simulator.light(0, traces[0], echoes, report);
+  f(setup, simulator.lighting());
+}
+
+/// Add shares, and energies with what belongs to them, if these are wanted.
+void addSamples(
+  const ScanSetup& scene, const BeamLighting& lighting, bool shares, bool energies, Sums& sums)
+{
+  const BeamSamples* samples = lighting.samples();
+  if (!samples)
+  {
+    return;
+  }
+  samples->forEachSurface(
+    [&](std::uint32_t triangle, std::uint32_t begin, std::uint32_t end)
+    {
+      SeenSurface& surface = surfaceOf(scene, triangle, sums);
+      for (std::uint32_t i = begin; i < end; ++i)
+      {
+        const double weight = samples->weight[i];
+        surface.share += shares ? weight : 0.0;
+        if (energies)
+        {
+          surface.weight += weight;
+          surface.energy += lighting.energies().empty() ? 0.0 : lighting.energies()[i];
+          surface.range += weight * samples->range[i];
+          surface.cosine += weight * samples->cosine[i];
+          surface.nearest = std::min(surface.nearest, samples->range[i]);
+          surface.farthest = std::max(surface.farthest, samples->range[i]);
+        }
+      }
+    });
+}
+}
+
+std::vector<SeenSurface> sightAlong(const ScanSetup& setup, const ScanBeams& beams,
+  std::size_t beam, const std::function<bool()>& wanted)
+{
+  ScanBeams one;
+  one.ids = { beams.ids[beam] };
+  one.origins = { beams.origins[beam] };
+  one.directions = { beams.directions[beam] };
+  one.times = { beams.timeOf(beam) };
+  Sums sums;
+  const bool uniform = setup.sensor.beamProfile == BeamProfile::Uniform;
+  light(setup, one, wanted,
+    [&](const ScanSetup& scene, const BeamLighting& lighting)
+    {
+      addSamples(scene, lighting, uniform, true, sums);
+      for (auto& [triangle, surface] : sums)
+      {
+        surface.corners = cornersOf(scene, triangle, sums);
+      }
+    });
+  if (!uniform)
+  {
+    ScanSetup even = setup;
+    even.sensor.beamProfile = BeamProfile::Uniform;
+    light(even, one, wanted,
+      [&](const ScanSetup& scene, const BeamLighting& lighting)
+      { addSamples(scene, lighting, true, false, sums); });
+  }
+  std::vector<SeenSurface> seen;
+  double all = 0.0;
+  for (const auto& [triangle, surface] : sums)
+  {
+    all += surface.share;
+  }
+  for (auto& [triangle, surface] : sums)
+  {
+    surface.share /= std::max(1.0, all); // but for rounding there is no more than the beam
+    if (surface.weight > 0.0)
+    {
+      surface.range /= surface.weight;
+      surface.cosine /= surface.weight;
+    }
+    if (surface.weight > 0.0 || surface.share > 0.0)
+    {
+      seen.push_back(surface);
+    }
+  }
+  return seen;
+}
+
+std::vector<Vec3> outlineOf(const BeamFrame& frame)
+{
+  std::vector<Vec3> outline;
+  if (frame.isRectangle)
+  {
+    const double h = BeamShape::HalfSide;
+    return { frame.direction(h, h), frame.direction(-h, h), frame.direction(-h, -h),
+      frame.direction(h, -h) };
+  }
+  for (int i = 0; i < SidesOfDisc; ++i)
+  {
+    const double angle = 2.0 * Pi * i / SidesOfDisc;
+    outline.push_back(frame.direction(std::cos(angle), std::sin(angle)));
+  }
+  return outline;
+}
+
+std::vector<Vec3> partWithin(
+  const BeamFrame& frame, const std::vector<Vec3>& outline, const SeenSurface& surface)
+{
+  std::vector<Vec3> part;
+  for (const Vec3& corner : surface.corners)
+  {
+    part.push_back(corner - frame.origin);
+  }
+  // One plane after the other cuts off what lies outside (Sutherland, Hodgman).
+  for (std::size_t k = 0; k < outline.size() && !part.empty(); ++k)
+  {
+    const Vec3 inward = glm::cross(outline[k], outline[(k + 1) % outline.size()]);
+    cut(glm::dot(inward, frame.axis) < 0.0 ? -inward : inward, 0.0, part);
+  }
+  // A share more, lest rounding takes what stands square to the beam.
+  cut(frame.axis, frame.cosHalf * surface.nearest * (1.0 - 1e-6), part);
+  cut(-frame.axis, -surface.farthest * (1.0 + 1e-6), part);
+  return part.size() < 3 ? std::vector<Vec3>() : part;
+}
+}

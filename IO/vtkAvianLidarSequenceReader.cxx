@@ -1,0 +1,382 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkAvianLidarSequenceReader.h"
+
+#include "Private/ReadCloud.h"
+#include "Private/TextLines.h"
+#include "Private/vtkAvianLidarCloudFields.h"
+#include "vtkAvianLidarAbort.h"
+#include "vtkAvianLidarArrays.h"
+#include "vtkAvianLidarGuard.h"
+
+#include "vtkCellArray.h"
+#include "vtkCellData.h"
+#include "vtkExecutive.h"
+#include "vtkInformation.h"
+#include "vtkInformationVector.h"
+#include "vtkIntArray.h"
+#include "vtkNew.h"
+#include "vtkObjectFactory.h"
+#include "vtkPointData.h"
+#include "vtkPoints.h"
+#include "vtkPolyData.h"
+#include "vtkStreamingDemandDrivenPipeline.h"
+#include "vtkStringArray.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <exception>
+#include <filesystem>
+#include <new>
+#include <optional>
+#include <sstream>
+
+namespace formats = avianlidar::formats;
+namespace fs = std::filesystem;
+namespace names = vtkAvianLidarArrays;
+using formats::FormatError;
+using formats::Point;
+using Pipeline = vtkStreamingDemandDrivenPipeline;
+
+namespace
+{
+constexpr char TimesFile[] = "times.txt";
+constexpr char Label[] = "semantic_label";
+
+/// From the sensor's frame (x forward, y left, z up) to that of the poses: rows of 3 x 4.
+using Pose = std::array<double, 12>;
+
+std::vector<std::string> LinesOf(const std::string& file)
+{
+  formats::FileSource source(file);
+  formats::TextLines lines(source, 0);
+  std::vector<std::string> all;
+  for (std::string line; lines.get(line);)
+  {
+    if (line.find_first_not_of(" \t\r") != line.npos)
+    {
+      all.push_back(line);
+    }
+  }
+  return all;
+}
+
+std::vector<std::string> WordsOf(const std::string& line)
+{
+  std::istringstream stream(line);
+  std::vector<std::string> words;
+  for (std::string word; stream >> word;)
+  {
+    words.push_back(word);
+  }
+  return words;
+}
+
+std::vector<double> TimesOf(const std::string& file)
+{
+  std::vector<double> times;
+  for (const std::string& line : LinesOf(file))
+  {
+    times.push_back(formats::numberOf<double>(WordsOf(line).front(), "a line"));
+    if (!std::isfinite(times.back()) ||
+      (times.size() > 1 && !(times.back() > times[times.size() - 2])))
+    {
+      throw FormatError("the time in line " + std::to_string(times.size()) +
+        " is not above the one before, expected seconds that rise");
+    }
+  }
+  if (times.empty())
+  {
+    throw FormatError("there is no time in it, expected the time of a scan (s) in each line");
+  }
+  return times;
+}
+
+Pose PoseOf(const std::vector<std::string>& words, std::size_t first)
+{
+  if (words.size() != first + 12)
+  {
+    throw FormatError("a line has " + std::to_string(words.size() - std::min(first, words.size())) +
+      " numbers, expected the 12 of a pose");
+  }
+  Pose pose;
+  for (std::size_t i = 0; i < 12; ++i)
+  {
+    pose[i] = formats::numberOf<double>(words[first + i], "a pose");
+  }
+  return pose;
+}
+
+Point Carry(const Pose& pose, const Point& p)
+{
+  Point carried;
+  for (std::size_t r = 0; r < 3; ++r)
+  {
+    const double* row = &pose[4 * r];
+    carried[r] = row[0] * p[0] + row[1] * p[1] + row[2] * p[2] + row[3];
+  }
+  return carried;
+}
+
+/// Back, of a rotation.
+Point CarryBack(const Pose& pose, const Point& p)
+{
+  const Point d = { p[0] - pose[3], p[1] - pose[7], p[2] - pose[11] };
+  return { pose[0] * d[0] + pose[4] * d[1] + pose[8] * d[2],
+    pose[1] * d[0] + pose[5] * d[1] + pose[9] * d[2],
+    pose[2] * d[0] + pose[6] * d[1] + pose[10] * d[2] };
+}
+
+/// Poses of a sequence: without a file nothing moves.
+class Placement
+{
+public:
+  Placement(const fs::path& folder, std::size_t scan)
+  {
+    const std::string poses = (folder / "poses.txt").string();
+    if (!fs::exists(poses))
+    {
+      return;
+    }
+    const std::vector<std::string> lines = LinesOf(poses);
+    if (scan >= lines.size())
+    {
+      throw FormatError(
+        "poses.txt has " + std::to_string(lines.size()) + " lines, expected a pose for each scan");
+    }
+    this->Of = PoseOf(WordsOf(lines[scan]), 0);
+    if (fs::exists(folder / "calib.txt"))
+    {
+      for (const std::string& line : LinesOf((folder / "calib.txt").string()))
+      {
+        const std::vector<std::string> words = WordsOf(line);
+        this->Calibration = words.front() == "Tr:" ? PoseOf(words, 1) : this->Calibration;
+      }
+    }
+  }
+
+  /// A point of KITTI's frame.
+  Point operator()(const Point& p) const
+  {
+    if (!this->Of)
+    {
+      return { -p[1], p[0], p[2] };
+    }
+    return CarryBack(this->Calibration, Carry(*this->Of, Carry(this->Calibration, p)));
+  }
+
+private:
+  std::optional<Pose> Of;
+  Pose Calibration{ 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0 };
+};
+
+/// The eight corners and six sides of each box.
+void ReadBoxes(const std::string& file, const Placement& place, vtkPolyData* boxes)
+{
+  vtkNew<vtkPoints> points;
+  points->SetDataTypeToDouble();
+  vtkNew<vtkCellArray> sides;
+  auto classes = names::Make<vtkStringArray>(names::Object);
+  auto ids = names::Make<vtkIntArray>(names::ObjectId);
+  for (const std::string& line : LinesOf(file))
+  {
+    const std::vector<std::string> words = WordsOf(line);
+    if (words.size() != 12)
+    {
+      throw FormatError("a line of " + file + " has " + std::to_string(words.size()) +
+        " words, expected the 12 of a box");
+    }
+    std::array<double, 12> v{};
+    for (std::size_t i = 1; i < 12; ++i)
+    {
+      v[i] = formats::numberOf<double>(words[i], "a box");
+    }
+    const vtkIdType first = points->GetNumberOfPoints();
+    for (int corner = 0; corner < 8; ++corner)
+    {
+      const double along = ((corner & 1) ? 0.5 : -0.5) * v[6];
+      const double across = ((corner & 2) ? 0.5 : -0.5) * v[7];
+      const double up = ((corner & 4) ? 0.5 : -0.5) * v[8];
+      const double c = std::cos(v[9]);
+      const double s = std::sin(v[9]);
+      const Point at =
+        place({ v[3] + c * along - s * across, v[4] + s * along + c * across, v[5] + up });
+      points->InsertNextPoint(at.data());
+    }
+    constexpr int Sides[6][4] = { { 0, 2, 3, 1 }, { 4, 5, 7, 6 }, { 0, 1, 5, 4 }, { 2, 6, 7, 3 },
+      { 0, 4, 6, 2 }, { 1, 3, 7, 5 } };
+    for (const auto& side : Sides)
+    {
+      sides->InsertNextCell(4);
+      for (const int corner : side)
+      {
+        sides->InsertCellPoint(first + corner);
+      }
+      classes->InsertNextValue(words[0]);
+      ids->InsertNextValue(static_cast<int>(v[10]));
+    }
+  }
+  boxes->SetPoints(points);
+  boxes->SetPolys(sides);
+  boxes->GetCellData()->AddArray(classes);
+  boxes->GetCellData()->AddArray(ids);
+}
+
+std::string NumberedFile(const fs::path& folder, std::size_t scan, const char* ending)
+{
+  char number[32];
+  std::snprintf(number, sizeof(number), "%06zu", scan);
+  return (folder / (number + std::string(ending))).string();
+}
+
+/// Reads a scan into the outputs.
+void ReadScan(vtkAlgorithm* self, const fs::path& folder, std::size_t scan, vtkPolyData* points,
+  vtkPolyData* boxes)
+{
+  const std::string file = NumberedFile(folder / "velodyne", scan, ".bin");
+  formats::Cloud cloud;
+  try
+  {
+    cloud = formats::readCloud(file, vtkAvianLidarAbort::KeepGoing(self));
+  }
+  catch (const FormatError& error)
+  {
+    throw FormatError(fs::path(file).filename().string() + ": " + error.what());
+  }
+  const Placement place(folder, scan);
+  for (std::size_t i = 0; i < cloud.size(); ++i)
+  {
+    double* at = cloud.points.data() + 3 * i;
+    const Point moved = place({ at[1], -at[0], at[2] }); // as the file has it
+    std::copy(moved.begin(), moved.end(), at);
+  }
+  if (cloud.sensor)
+  {
+    cloud.sensor = place({ 0.0, 0.0, 0.0 });
+  }
+  vtkAvianLidarCloudFields::ToPolyData(cloud, points);
+  vtkPointData* data = points->GetPointData();
+  data->SetActiveScalars(data->HasArray(Label) ? Label : names::Intensity.name);
+  const std::string boxFile = NumberedFile(folder / "boxes", scan, ".txt");
+  if (fs::exists(boxFile))
+  {
+    ReadBoxes(boxFile, place, boxes);
+  }
+}
+}
+
+vtkStandardNewMacro(vtkAvianLidarSequenceReader);
+
+//------------------------------------------------------------------------------
+vtkAvianLidarSequenceReader::vtkAvianLidarSequenceReader()
+{
+  this->SetNumberOfInputPorts(0);
+  this->SetNumberOfOutputPorts(2);
+}
+
+//------------------------------------------------------------------------------
+vtkAvianLidarSequenceReader::~vtkAvianLidarSequenceReader()
+{
+  this->SetFileName(nullptr);
+}
+
+//------------------------------------------------------------------------------
+int vtkAvianLidarSequenceReader::CanReadFile(const char* fileName)
+{
+  std::error_code ignored;
+  const fs::path file = fileName ? fileName : "";
+  return file.filename() == TimesFile && fs::is_regular_file(file, ignored) &&
+      fs::is_directory(fs::absolute(file).parent_path() / "velodyne", ignored)
+    ? 1
+    : 0;
+}
+
+//------------------------------------------------------------------------------
+int vtkAvianLidarSequenceReader::RequestInformation(
+  vtkInformation*, vtkInformationVector**, vtkInformationVector* outputVector)
+{
+  std::vector<double> times;
+  try
+  {
+    times = TimesOf(this->FileName ? this->FileName : "");
+  }
+  catch (const std::exception&)
+  {
+    times.clear(); // RequestData finds it again, and says it
+  }
+  for (int port = 0; port < 2; ++port)
+  {
+    vtkInformation* info = outputVector->GetInformationObject(port);
+    info->Set(vtkAlgorithm::CAN_HANDLE_PIECE_REQUEST(), 1);
+    info->Remove(Pipeline::TIME_STEPS());
+    info->Remove(Pipeline::TIME_RANGE());
+    if (!times.empty())
+    {
+      double range[] = { times.front(), times.back() };
+      info->Set(Pipeline::TIME_STEPS(), times.data(), static_cast<int>(times.size()));
+      info->Set(Pipeline::TIME_RANGE(), range, 2);
+    }
+  }
+  return 1;
+}
+
+//------------------------------------------------------------------------------
+int vtkAvianLidarSequenceReader::RequestData(
+  vtkInformation* request, vtkInformationVector**, vtkInformationVector* outputVector)
+{
+  return vtkAvianLidarGuarded(this, outputVector,
+    [&]() -> std::string
+    {
+      const int port = std::max(0, request->Get(vtkExecutive::FROM_OUTPUT_PORT()));
+      vtkInformation* info = outputVector->GetInformationObject(port);
+      if (!this->FileName || !*this->FileName)
+      {
+        return "FileName is not set, expected the times.txt of a sequence";
+      }
+      if (info->Has(Pipeline::UPDATE_PIECE_NUMBER()) &&
+        info->Get(Pipeline::UPDATE_PIECE_NUMBER()) > 0)
+      {
+        return {};
+      }
+      vtkAvianLidarAbort::StopIfWanted(this);
+      try
+      {
+        const std::vector<double> times = TimesOf(this->FileName);
+        const double time = info->Has(Pipeline::UPDATE_TIME_STEP())
+          ? info->Get(Pipeline::UPDATE_TIME_STEP())
+          : times.front();
+        const auto after = std::upper_bound(times.begin(), times.end(), time);
+        const auto scan =
+          static_cast<std::size_t>(std::max<std::ptrdiff_t>(after - times.begin() - 1, 0));
+        vtkPolyData* points = vtkPolyData::GetData(outputVector, 0);
+        vtkPolyData* boxes = vtkPolyData::GetData(outputVector, 1);
+        ReadScan(this, fs::absolute(this->FileName).parent_path(), scan, points, boxes);
+        for (vtkPolyData* output : { points, boxes })
+        {
+          output->GetInformation()->Set(vtkDataObject::DATA_TIME_STEP(), times[scan]);
+        }
+        return {};
+      }
+      catch (const avianlidar::WorkStopped&)
+      {
+        throw;
+      }
+      catch (const std::bad_alloc&)
+      {
+        return std::string(this->FileName) + ": there is not enough memory for a scan";
+      }
+      catch (const std::exception& error)
+      {
+        return std::string(this->FileName) + ": " + error.what();
+      }
+    });
+}
+
+//------------------------------------------------------------------------------
+void vtkAvianLidarSequenceReader::PrintSelf(ostream& os, vtkIndent indent)
+{
+  this->Superclass::PrintSelf(os, indent);
+  os << indent << "ErrorsAsData: " << this->ErrorsAsData << "\n";
+  os << indent << "FileName: " << (this->FileName ? this->FileName : "(none)") << "\n";
+}

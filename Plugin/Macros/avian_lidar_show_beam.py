@@ -1,0 +1,184 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""ParaView macro: the beam of the selected echo, the surfaces that it sees, and the share of each.
+
+Select an echo first: Select Points On in a render view, or a row of a spreadsheet; of the echo filter's outputs or of anything
+made of them that has beam_id. It makes an Avian Lidar Beam View with the inputs and the air of that scan, or sets Beam Id of
+the one that is there: the cone translucent, the parts of the surfaces in the beam coloured by their share of the energy, and
+a table. If something does not fit, nothing is made and the reason is given in Output Messages.
+
+In ParaView: the button is there with the plugin. In a script: show_beam(echoes, beam_id, view).
+"""
+
+import importlib.util
+import os
+
+from paraview import servermanager, simple
+from vtkmodules.vtkCommonCore import vtkOutputWindow
+
+PLUGIN = "AvianLidarPlugin"
+AIRPORT = "avian_lidar_airport_scan"
+ARRAY, SHARE = "beam_id", "energy_share"
+SCAN, VIEW = "AvianLidarEchoFilter", "AvianLidarBeamView"
+WHAT_TO_SELECT = "select an echo first (Select Points On in the view, or a row of a spreadsheet)"
+AIR = ("AttenuationCoefficient", "MeteorologicalVisibility", "AirBackscatter", "RainRate", "ReflectanceModel")
+CONE_COLOUR, CONE_OPACITY = (1.0, 0.7, 0.2), 0.25
+# Towards the lidar, so that nothing is drawn at the same depth: metres, and of the range.
+NEARER, NEARER_SHARE = 0.01, 0.002
+TABLE = "Shares of the beam"
+HEIGHT = 0.75  # of the view, that is not the table's
+
+
+def say(text, failed=True):
+    """A word in Output Messages, which ParaView opens by itself for a failure."""
+    window = vtkOutputWindow.GetInstance()
+    display = window.DisplayErrorText if failed else window.DisplayWarningText
+    display(f"Avian lidar show beam: {text}.\n")
+
+
+def neighbour(name):
+    """Another macro of the plugin, beside this file or, if this is a copy elsewhere, beside the plugin."""
+    folders = [os.path.dirname(os.path.abspath(__file__))] if "__file__" in globals() else []
+    plugins = servermanager.vtkSMProxyManager.GetProxyManager().GetPluginManager().GetLocalInformation()
+    for i in range(plugins.GetNumberOfPlugins()):
+        if plugins.GetPluginName(i) == PLUGIN and plugins.GetPluginLoaded(i):
+            folders.append(os.path.join(os.path.dirname(os.path.abspath(plugins.GetPluginFileName(i))), "Macros"))
+    for folder in folders:
+        path = os.path.join(folder, name + ".py")
+        if os.path.exists(path):
+            spec = importlib.util.spec_from_file_location(name, path)
+            macro = importlib.util.module_from_spec(spec)
+            spec.loader.exec_module(macro)
+            return macro
+    raise ValueError(f"there is no {name}.py in {' nor in '.join(folders) or 'any folder: load the plugin'}")
+
+
+def scan_of(source):
+    """The echo filter that it is, or is made of; or None."""
+    while source is not None and source.SMProxy.GetXMLName() != SCAN:
+        names = [name for name in ("Input", "Echoes", "Simulated") if source.SMProxy.GetProperty(name)]
+        source = getattr(source, names[0]) if names else None
+        source = source if source is None or hasattr(source, "SMProxy") else source[0]  # of several
+        source = getattr(source, "Proxy", source)  # of a port
+    return source
+
+
+def selections():
+    """(source, port, selection) of all that is selected, the active source first."""
+    active = simple.GetActiveSource()
+    for source in sorted(simple.GetSources().values(), key=lambda one: one != active):
+        for port in range(source.SMProxy.GetNumberOfOutputPorts()):
+            selection = source.SMProxy.GetSelectionInput(port)
+            if selection:
+                yield source, port, selection
+
+
+def selected_beam():
+    """(source, beam_id) of the first echo that is selected."""
+    for source, port, selection in selections():
+        if scan_of(source) is None:
+            continue
+        extract = servermanager.filters.ExtractSelection(Input=source[port], Selection=servermanager._getPyProxy(selection))
+        extract.UpdatePipeline()
+        ids = servermanager.Fetch(extract).GetPointData().GetArray(ARRAY)
+        ids = [int(ids.GetTuple1(i)) for i in range(ids.GetNumberOfTuples())] if ids else []
+        if ids:
+            if len(set(ids)) > 1:
+                say(f"echoes of {len(set(ids))} beams are selected: this is the beam {ids[0]}", failed=False)
+            return source, ids[0]
+    raise ValueError(WHAT_TO_SELECT)
+
+
+def same(one, other):
+    """Whether two inputs are one output."""
+    pairs = [(getattr(port, "Proxy", port), getattr(port, "Port", 0)) if port is not None else None for port in (one, other)]
+    return pairs[0] == pairs[1]
+
+
+def view_of(scan):
+    """The beam view with the inputs of a scan, if there is one."""
+    for source in simple.GetSources().values():
+        if source.SMProxy.GetXMLName() == VIEW and all(same(getattr(source, name), getattr(scan, name))
+                                                      for name in ("Beams", "Surfaces", "Movers")):
+            return source
+    return None
+
+
+def show_parts(beam, view):
+    """The surfaces by their share of the energy, a little nearer to the lidar than they are; the cone."""
+    cone = simple.OutputPort(beam, 1)
+    data = servermanager.Fetch(beam, idx=1)
+    display = simple.Show(cone, view, "GeometryRepresentation")
+    display.ColorArrayName = ["POINTS", ""]
+    display.AmbientColor = display.DiffuseColor = CONE_COLOUR
+    display.Opacity = CONE_OPACITY
+    display = simple.Show(beam, view, "GeometryRepresentation")
+    display.Representation = "Surface With Edges"
+    display.Ambient, display.Diffuse = 1.0, 0.0  # colours as in the legend
+    apex, count = data.GetPoint(0), data.GetNumberOfPoints()
+    middle = [sum(data.GetPoint(i)[axis] for i in range(1, count)) / (count - 1) for axis in range(3)]
+    length = sum((a - b) ** 2 for a, b in zip(middle, apex)) ** 0.5
+    display.Position = [-(NEARER / length + NEARER_SHARE) * (a - b) for a, b in zip(middle, apex)]
+    simple.ColorBy(display, ("CELLS", SHARE))
+    table = simple.GetColorTransferFunction(SHARE)
+    table.AutomaticRescaleRangeMode = "Never"
+    table.ApplyPreset("Viridis (matplotlib)", True)
+    table.RescaleTransferFunction(0.0, 1.0)
+    bar = simple.GetScalarBar(table, view)
+    bar.Title, bar.ComponentTitle, bar.WindowLocation = "share of the energy", "", "Upper Right Corner"
+    display.SetScalarBarVisibility(view, True)
+
+
+def show_table(beam, view):
+    """The shares below the view, in a spreadsheet of its own."""
+    sheet = simple.FindView(TABLE)
+    if sheet is None:
+        sheet = simple.CreateView("SpreadSheetView")
+        simple.RenameView(TABLE, sheet)
+        layout = simple.GetLayout(view)
+        if layout is not None:
+            cell = layout.SplitViewVertical(view, HEIGHT)
+            simple.AssignViewToLayout(sheet, layout, cell)
+    shares = simple.OutputPort(beam, 2)
+    simple.Show(shares, sheet, "SpreadSheetRepresentation")
+    sheet.FieldAssociation = "Row Data"
+
+
+def show_beam(source=None, beam_id=None, view=None):
+    """Shows the beam of the selected echo, or the one of that number in a scan: returns the beam view."""
+    airport = neighbour(AIRPORT)
+    airport.plugin_folder(on_server=True)
+    if beam_id is None:
+        source, beam_id = selected_beam()
+    scan = scan_of(source)
+    if scan is None:
+        raise ValueError(WHAT_TO_SELECT)
+    simple._DisableFirstRenderCameraReset()
+    view = view or simple.GetActiveViewOrCreate("RenderView")
+    if view.SMProxy.GetXMLName() != "RenderView":  # the echo was selected in a spreadsheet
+        view = next((one for one in simple.GetRenderViews()), None) or simple.CreateView("RenderView")
+    beam = view_of(scan)
+    if beam is None:
+        inputs = {name: getattr(scan, name) for name in ("Beams", "Surfaces", "Movers") if getattr(scan, name) is not None}
+        beam = simple.AvianLidarBeamView(registrationName=airport.free_name("Beam"), **inputs)
+    beam.BeamId = beam_id
+    for name in AIR:
+        setattr(beam, name, getattr(scan, name))
+    beam.UpdatePipeline(simple.GetAnimationScene().TimeKeeper.Time)
+    show_parts(beam, view)
+    show_table(beam, view)
+    simple.SetActiveView(view)
+    simple.SetActiveSource(beam)
+    return beam
+
+
+def main():
+    try:
+        show_beam()
+    except ValueError as problem:
+        say(problem)
+        return
+    simple.RenderAllViews()
+
+
+if __name__ in ("__main__", "__vtkconsole__"):
+    main()

@@ -1,0 +1,135 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""A sequence as one time series: which scan at which time, poses, labels, boxes, and what is refused."""
+import importlib.util
+import os
+import shutil
+import sys
+import tempfile
+import types
+import unittest
+
+import numpy as np
+from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.vtkCommonExecutionModel import vtkStreamingDemandDrivenPipeline
+
+from avianlidar.apps import _labels
+from avianlidar.vtkAvianLidar import vtkAvianLidarPointCloudReader, vtkAvianLidarSequenceReader
+from echotools import Messages
+
+TURN = np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])  # a quarter to the left
+SHIFT = np.array([100.0, 200.0, 3.0])
+SCANS = [np.array([[10, 1, 0.5, 0.2], [20, -2, 1, 0.4]], "<f4"), np.array([[30, 3, 2, 0.6]], "<f4"), np.zeros((0, 4), "<f4")]
+TIMES = (0.0, 0.5, 2.0)
+
+
+class Sequence(unittest.TestCase):
+    def setUp(self):
+        self.folder = tempfile.mkdtemp()
+        self.addCleanup(shutil.rmtree, self.folder)
+        for name in ("velodyne", "labels", "boxes"):
+            os.mkdir(os.path.join(self.folder, name))
+        self.write("times.txt", "".join(f"{time}\n" for time in TIMES))
+        pose = " ".join(map(repr, np.column_stack([TURN, SHIFT]).ravel().tolist()))
+        self.write("poses.txt", f"{pose}\n" * len(SCANS))
+        self.write("calib.txt", "P0: 1 0 0 0 0 1 0 0 0 0 1 0\nTr: 1 0 0 0 0 1 0 0 0 0 1 0\n")
+        for number, points in enumerate(SCANS):
+            points.tofile(os.path.join(self.folder, "velodyne", f"{number:06d}.bin"))
+            np.full(len(points), (7 << 16) + 99, "<u4").tofile(os.path.join(self.folder, "labels", f"{number:06d}.label"))
+        self.write("boxes/000001.txt", "bird 0.00 0.00 30 3 2 2.0 1.0 0.5 0 10000 1\n")
+
+    def write(self, name, text):
+        with open(os.path.join(self.folder, name), "w", encoding="utf-8") as file:
+            file.write(text)
+
+    def reader(self):
+        reader = vtkAvianLidarSequenceReader()
+        reader.SetFileName(os.path.join(self.folder, "times.txt"))
+        return reader
+
+    def at(self, reader, time):
+        reader.UpdateTimeStep(time)
+        return reader.GetOutputDataObject(0), reader.GetOutputDataObject(1)
+
+    def test_each_scan_at_its_time_where_its_pose_puts_it(self):
+        reader = self.reader()
+        reader.UpdateInformation()
+        for port in (0, 1):
+            self.assertEqual(reader.GetOutputInformation(port).Get(vtkStreamingDemandDrivenPipeline.TIME_STEPS()), TIMES)
+        for time, scan in ((0.0, 0), (0.4, 0), (0.5, 1), (1.9, 1), (2.0, 2), (9.0, 2), (-1.0, 0)):
+            points, _ = self.at(reader, time)
+            self.assertEqual(points.GetNumberOfPoints(), len(SCANS[scan]), time)
+            if len(SCANS[scan]):
+                expected = SCANS[scan][:, :3].astype(float) @ TURN.T + SHIFT
+                np.testing.assert_allclose(vtk_to_numpy(points.GetPoints().GetData()), expected, atol=1e-9)
+                data = points.GetPointData()
+                self.assertEqual(data.GetScalars().GetName(), "semantic_label")
+                self.assertEqual({data.GetArray("semantic_label").GetTuple1(0), data.GetArray("instance_id").GetTuple1(0)}, {99, 7})
+
+    def test_a_calibration_turns_the_poses(self):
+        """KITTI's poses are of the camera: Tr carries points to it, and back."""
+        tr = np.column_stack([np.array([[0.0, -1, 0], [0, 0, -1], [1, 0, 0]]), [0.1, 0.2, 0.3]])
+        self.write("calib.txt", "Tr: " + " ".join(map(repr, tr.ravel().tolist())) + "\n")
+        points, _ = self.at(self.reader(), 0.0)
+        camera = SCANS[0][:, :3].astype(float) @ tr[:, :3].T + tr[:, 3]
+        moved = camera @ TURN.T + SHIFT
+        np.testing.assert_allclose(vtk_to_numpy(points.GetPoints().GetData()), (moved - tr[:, 3]) @ tr[:, :3], atol=1e-9)
+
+    def test_without_poses_as_the_reader_of_scans(self):
+        os.remove(os.path.join(self.folder, "poses.txt"))
+        points, _ = self.at(self.reader(), 0.0)
+        plain = vtkAvianLidarPointCloudReader()
+        plain.SetFileName(os.path.join(self.folder, "velodyne", "000000.bin"))
+        plain.Update()
+        np.testing.assert_array_equal(vtk_to_numpy(points.GetPoints().GetData()), vtk_to_numpy(plain.GetOutput().GetPoints().GetData()))
+
+    def test_boxes(self):
+        reader = self.reader()
+        self.assertEqual(self.at(reader, 0.0)[1].GetNumberOfCells(), 0)
+        _, boxes = self.at(reader, 0.5)
+        self.assertEqual((boxes.GetNumberOfCells(), boxes.GetNumberOfPoints()), (6, 8))
+        low, high = np.array([29.0, 2.5, 1.75]), np.array([31.0, 3.5, 2.25])
+        corners = np.array([[low[0], low[1]], [high[0], high[1]]]) @ TURN[:2, :2].T + SHIFT[:2]
+        np.testing.assert_allclose(boxes.GetBounds(), [*sorted(corners[:, 0]), *sorted(corners[:, 1]), 4.75, 5.25], atol=1e-9)
+        data = boxes.GetCellData()
+        self.assertEqual((data.GetAbstractArray("object").GetValue(0), data.GetArray("object_id").GetValue(5)), ("bird", 10000))
+
+    def test_what_it_reads(self):
+        self.assertEqual(vtkAvianLidarSequenceReader.CanReadFile(os.path.join(self.folder, "times.txt")), 1)
+        self.assertEqual(vtkAvianLidarSequenceReader.CanReadFile(os.path.join(self.folder, "poses.txt")), 0)
+        shutil.rmtree(os.path.join(self.folder, "velodyne"))
+        self.assertEqual(vtkAvianLidarSequenceReader.CanReadFile(os.path.join(self.folder, "times.txt")), 0)
+
+    def test_what_is_refused(self):
+        for name, text, said in (("times.txt", "0\n0\n", "the time in line 2 is not above the one before"), ("times.txt", "\n", "there is no time in it"),
+                                 ("times.txt", "zero\n", 'has "zero", expected a number'), ("times.txt", "0\n1\n2\n3\n", "000003.bin"),
+                                 ("poses.txt", "1 2 3\n", "a line has 3 numbers, expected the 12 of a pose"),
+                                 ("poses.txt", "", "poses.txt has 0 lines, expected a pose for each scan"),
+                                 ("boxes/000000.txt", "bird 1\n", "has 2 words, expected the 12 of a box")):
+            with self.subTest(said):
+                self.setUp()
+                self.write(name, text)
+                reader = self.reader()
+                messages = Messages(reader)
+                reader.UpdateTimeStep(3.0 if "3" in text and name == "times.txt" else 0.0)
+                self.assertIn(said, messages.errors[0])
+                self.assertEqual(reader.GetOutputDataObject(0).GetNumberOfPoints(), 0)
+        reader = vtkAvianLidarSequenceReader()
+        messages = Messages(reader)
+        reader.Update()
+        self.assertIn("FileName is not set, expected the times.txt of a sequence", messages.errors[0])
+
+
+class Colours(unittest.TestCase):
+    def test_the_macro_has_the_classes_of_sequences(self):
+        for name in ("paraview", "paraview.simple"):
+            sys.modules.setdefault(name, types.ModuleType(name))
+        sys.modules["paraview"].simple = sys.modules["paraview.simple"]
+        path = os.path.join(os.environ["AVIANLIDAR_SOURCE_DIR"], "Plugin", "Macros", "avian_lidar_class_colours.py")
+        spec = importlib.util.spec_from_file_location("class_colours", path)
+        macro = importlib.util.module_from_spec(spec)
+        spec.loader.exec_module(macro)
+        self.assertEqual(macro.CLASSES, {label: (one.name, one.color[::-1]) for label, one in _labels.CLASSES.items()})
+
+
+if __name__ == "__main__":
+    unittest.main()
