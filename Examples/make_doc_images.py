@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Runs the examples and brings their pictures and tables into Documentation/: advise.md, airport.md, birds.md,
 collision-detection.md, corridor.md, coverage.md, design.md, echoes.md, paper.md, python.md, sensors.md, sequences.md, time.md, tracks.md and, where AVIANLIDAR_DATA_DIR
-names the folder of their data, results/reality.md, results/falloff.md, results/materials.md and crowns in weather.md say what a run of what is
+names the folder of their data, results/reality.md, results/falloff.md, results/materials.md, crowns in weather.md and your-airport.md say what a run of what is
 committed gives. Where AVIANLIDAR_SCENES_DIR names the scenes that the build makes of them, more reflections are followed in
 those, too.
 
@@ -53,6 +53,7 @@ import second_reflection  # noqa: E402
 import tracked_gulls  # noqa: E402
 import vegetation  # noqa: E402
 import weather  # noqa: E402
+import your_airport  # noqa: E402
 
 # Name of the run, what runs, its arguments, {picture: name in Documentation/images}.
 RUNS = (
@@ -95,6 +96,7 @@ DATA_RUNS = (
     ("room", room, [], {"errors": "room-errors", "xt32-clouds": "room-xt32-clouds", "xt32-ranges": "room-xt32-ranges",
                         "pandar40p-clouds": "room-pandar40p-clouds", "xt32-intensity": "room-xt32-intensity"}),
     ("detail", detail, [], {}),
+    ("your-airport", your_airport, [], {"airport": "your-airport"}),
     ("measured", predicted_measured, [], {"ground": "measured-ground", "least": "measured-least"}),
     ("falloff", falloff, [], {"signal": "falloff-signal", "beams": "falloff-beams"}),
     ("weather-vegetation", vegetation, [], {}),

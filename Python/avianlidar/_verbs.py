@@ -411,8 +411,11 @@ def airport(options) -> None:
     bars.close()
     for name in kept.edited:
         warn(f"{options.out / name} was edited and stays as it is; remove it to have it made again")
+    buildings = [row for row in made.rows if "height" in row]
+    if buildings and all(row.get("height_from") == "assumed" for row in buildings):
+        warn(f"{options.extract} says no height of any building: all are assumed by kind, {options.out / 'assumed.csv'} lists them")
     print(f"{options.out}: {made.name}, {len(made.sides)} {'runways' if len(made.sides) > 1 else 'runway'}, "
-          f"{sum('height' in row for row in made.rows)} buildings; README.txt says what is assumed")
+          f"{len(buildings)} buildings; README.txt says what is assumed")
 
 
 def _plan(options) -> Dict[str, Any]:

@@ -10,6 +10,7 @@ import os
 import pathlib
 import shutil
 import unittest
+from xml.etree import ElementTree
 from xml.sax.saxutils import quoteattr
 
 import numpy as np
@@ -64,6 +65,7 @@ class Map:
     def point(self, x, y, **tags):
         lon, lat, _ = siting.to_geodetic([(x, y, 0.0)], self.about)[0]
         number = self._number()
+        tags = {key.replace("__", ":"): value for key, value in tags.items()}
         self.rows.append(f'<node id="{number}" version="1" lat="{lat:.9f}" lon="{lon:.9f}">{self._tags(tags)}</node>')
         return number
 
@@ -88,6 +90,59 @@ class Map:
         file = FOLDER / name
         file.write_text('<?xml version="1.0"?><osm version="0.6">' + "".join(self.rows + self.ways + self.relations) + "</osm>", encoding="utf-8")
         return file
+
+
+def pbf(file):
+    """A file of raw OSM as .osm.pbf beside it: https://wiki.openstreetmap.org/wiki/PBF_Format, nodes one by one, nothing compressed."""
+    def number(value):
+        out = bytearray()
+        while value > 127:
+            out.append(value & 127 | 128)
+            value >>= 7
+        return bytes([*out, value])
+
+    def signed(value):
+        return number(value << 1 if value >= 0 else (-value << 1) - 1)
+
+    def field(key, value):
+        return number(key << 3) + number(value) if isinstance(value, int) else number(key << 3 | 2) + number(len(value)) + value
+
+    def steps(values):
+        return b"".join(signed(b - a) for a, b in zip([0, *values], values))
+
+    strings = [""]
+
+    def index(word):
+        if word not in strings:
+            strings.append(word)
+        return number(strings.index(word))
+
+    def tags(of):
+        found = [(index(tag.get("k")), index(tag.get("v"))) for tag in of.iter("tag")]
+        return field(2, b"".join(key for key, _ in found)) + field(3, b"".join(value for _, value in found)) if found else b""
+
+    groups = {"node": b"", "way": b"", "relation": b""}
+    for one in ElementTree.parse(file).getroot():
+        name = int(one.get("id"))
+        if one.tag == "node":
+            where = [round(float(one.get(key)) * 1e7) for key in ("lat", "lon")]
+            groups["node"] += field(1, number(8) + signed(name) + tags(one) + number(8 << 3) + signed(where[0]) + number(9 << 3) + signed(where[1]))
+        elif one.tag == "way":
+            groups["way"] += field(3, field(1, name) + tags(one) + field(8, steps([int(node.get("ref")) for node in one.iter("nd")])))
+        else:
+            members = list(one.iter("member"))
+            kinds = b"".join(number(("node", "way", "relation").index(member.get("type"))) for member in members)
+            groups["relation"] += field(4, field(1, name) + tags(one) + field(8, b"".join(index(member.get("role")) for member in members))
+                                        + field(9, steps([int(member.get("ref")) for member in members])) + field(10, kinds))
+    data = field(1, b"".join(field(1, word.encode()) for word in strings)) + b"".join(field(2, group) for group in groups.values() if group)
+    header = b"".join(field(4, word) for word in (b"OsmSchema-V0.6",))
+    out = file.with_suffix(".osm.pbf")
+    with open(out, "wb") as stream:
+        for kind, block in ((b"OSMHeader", header), (b"OSMData", data)):
+            blob = field(1, block) + field(2, len(block))
+            about = field(1, kind) + field(3, len(blob))
+            stream.write(len(about).to_bytes(4, "big") + about + blob)
+    return out
 
 
 def crossing():
@@ -193,21 +248,24 @@ class Extracts(unittest.TestCase):
         self.assertEqual(code, 0, words)
 
     def test_other_formats_hold_the_same(self):
-        """A GeoPackage in UTM, with tags as text, and GeoJSON."""
+        """PBF, a GeoPackage in UTM, with tags as text, and GeoJSON."""
         file, found = crossing().write("formats.osm"), []
         gdal.VectorTranslate(str(FOLDER / "formats.gpkg"), str(file), format="GPKG", dstSRS="EPSG:32633")
         with open(FOLDER / "formats.geojson", "w", encoding="utf-8") as stream:
             features = [{"type": "Feature", "properties": one.tags, "geometry": json.loads(one.shape.ExportToJson())}
                         for group in airport.read_extract(file, airport.rules()) for one in group]
             json.dump({"type": "FeatureCollection", "features": features}, stream)
-        for name in ("formats.osm", "formats.gpkg", "formats.geojson"):
+        for name in ("formats.osm", pbf(file).name, "formats.gpkg", "formats.geojson"):
             folder = fresh(name.replace(".", "-"))
             code, words = run("airport", FOLDER / name, "--icao", "XAAA", "-o", folder)
             self.assertEqual(code, 0, words)
             _, parts = blocks(folder)
             found.append({part: (word, round(plan_area(triangles), 1)) for part, (word, triangles) in parts.items()})
-        self.assertEqual(found[0], found[1])
         self.assertEqual(found[0], found[2])
+        self.assertEqual(found[0], found[3])
+        for name, (word, area) in found[0].items():  # PBF has seven decimals of a degree
+            self.assertEqual(found[1][name][0], word)
+            self.assertAlmostEqual(found[1][name][1] / area, 1.0, delta=1e-3 if area > 1 else 0.1)
 
     def test_relations_with_holes_and_levels(self):
         plan = Map()
@@ -218,7 +276,7 @@ class Extracts(unittest.TestCase):
         plan.relation([wood], [glade], landuse="forest", height="20")
         plan.relation([plan.area((200, 200), (260, 260)), plan.area((240, 240), (300, 300))], [], building="yes", building__levels="two")
         folder = fresh("holes")
-        code, words = run("airport", plan.write("holes.osm"), "-o", folder)
+        code, words = run("airport", pbf(plan.write("holes.osm")), "-o", folder)
         self.assertEqual(code, 0, words)
         rows = [feature["properties"] for feature in json.loads((folder / "airport.geojson").read_text())["features"]]
         ring = next(row for row in rows if row.get("name") == "Ring")
@@ -232,6 +290,50 @@ class Extracts(unittest.TestCase):
         area = plan_area(found["Building"][1]) - (8000 - 1200)
         self.assertTrue(any(abs(area - expected) < 1.0 for expected in (2 * 3600 - 400, 2 * 3600 - 800, 2 * 3600)), area)
         to_report(self, folder)
+
+    def test_tags_as_they_are_found(self):
+        """Of real maps: runways as areas and out of use, an aerodrome by relation and by point, odd numbers, tunnels, broken ways."""
+        plan = Map()
+        plan.area((-800, -22.5), (800, 22.5), aeroway="runway", ref="09/27")
+        plan.way([(-400, -300), (400, -300)], aeroway="runway", ref="10/28", width="150 ft")
+        plan.area((-400, -322.9), (400, -277.1), aeroway="runway", area="yes", ref="10/28")
+        for tags in ({"aeroway": "runway", "disused": "yes"}, {"aeroway": "runway", "abandoned": "yes"}, {"disused__aeroway": "runway"}):
+            plan.way([(-800, 600), (800, 600)], ref="11/29", **tags)
+        plan.relation([plan.area((-900, -450), (900, 450))], [plan.area((-100, -240), (100, -200))], aeroway="aerodrome", icao="XREL")
+        plan.point(0, -200, aeroway="aerodrome", icao="XREL")
+        plan.point(0, 60, aeroway="aerodrome", icao="XHEL", aerodrome__type="heliport")
+        heights = {"12 m": 12.0, "40'": 12.192, "39'4\"": 11.989, "12,5": 12.5, "~10": 10.0, "9;11": 11.0, "9.5 meters": 9.5, "high": 8.0}
+        for number, text in enumerate(heights):
+            plan.area((40 * number, 100), (40 * number + 20, 120), building="yes", name=text, height=text)
+        levels = {"2;3": 9.0, "2.5": 7.5, "0": 8.0, "ground": 8.0}
+        for number, text in enumerate(levels):
+            plan.area((40 * number, 200), (40 * number + 20, 220), building="yes", name=text, building__levels=text)
+        plan.area((400, 200), (420, 220), building="yes", name="roof", building__levels="2", roof__height="1.5")
+        plan.area((440, 200), (460, 220), building="yes", layer="-1")
+        plan.way([(0, 300), (300, 300)], highway="primary", tunnel="yes", layer="-1")
+        plan.way([(0, 350), (300, 350)], natural="tree_row")
+        plan.way([(-300, 350), (-100, 350)], barrier="fence")
+        plan.way([(-300, 200), (-280, 200), (-280, 200), (-280, 220), (-300, 220)], True, building="yes", name="a node twice")
+        plan.way([(-200, 200), (-180, 200), (-180, 220)], building="yes", name="open")
+        plan.way([(-200, 240), (-180, 240)], True, building="yes", name="two nodes")
+        plan.way([(-200, 260), (-200, 260)], barrier="wall")
+        file = plan.write("tags.osm")
+        text = file.read_text(encoding="utf-8")
+        broken = '<way id="9998" version="1"><nd ref="1"/><nd ref="77777"/><tag k="barrier" v="wall"/></way>'  # cut at the extract's border
+        file.write_text(text.replace("</osm>", broken + "</osm>"), encoding="utf-8")
+        folder = fresh("tags")
+        code, words = run("airport", file, "--icao", "XREL", "-o", folder)
+        self.assertEqual(code, 0, words)
+        rows = [feature["properties"] for feature in json.loads((folder / "airport.geojson").read_text(encoding="utf-8"))["features"]]
+        kinds = [row["kind"] for row in rows]
+        self.assertEqual([kinds.count(kind) for kind in ("runway", "road", "tree", "fence", "wall")], [3, 0, 1, 1, 0])
+        found = {row["name"]: row["height"] for row in rows if row["kind"] == "building"}
+        self.assertEqual(found, {**heights, **levels, "roof": 7.5, "a node twice": 8.0})
+        scene, parts = blocks(folder)
+        runways = {one.name: one for one in siting.read_runways(folder / "airport.geojson", scene.geodetic_origin)}
+        self.assertEqual({name: (round(one.axis()[1], 1), round(one.width, 1)) for name, one in runways.items()},
+                         {"09/27": (1600.0, 45.0), "10/28": (800.0, 45.7)})
+        self.assertAlmostEqual(plan_area(parts["09/27"][1]), 1600 * 45, delta=160)  # of a width in decimetres
 
     def test_a_slope_with_a_wood(self):
         """Ground that rises by 4 % to the east, in a tilted plane that a few triangles hold."""
@@ -389,14 +491,49 @@ class Terrains(unittest.TestCase):
                                                        (-1000.0, 1000.0, -1000.0, 1000.0), known)
         self.assertAlmostEqual(here, 50.0, delta=1.0)  # as the border is
 
+    def test_units_and_holes_that_a_raster_does_not_name(self):
+        """Feet, a scale, a vertical datum, -9999 without a word of it, an area of degrees."""
+        known, around = airport.rules(), (-1000.0, 1000.0, -1000.0, 1000.0)
+        smooth = 50 + 0.01 * np.broadcast_to(self.x, self.heights.shape)
+        truth = airport.read_heights(write_heights("metres.tif", smooth, (-1500, -1500), 10.0), HERE, around, known)
+
+        def changed(name, values, kind=gdal.GDT_Float32, system=None, change=lambda band: None):
+            file = write_heights(name, values, (-1500, -1500), 10.0)
+            plain = gdal.Open(str(file))
+            image = gdal.GetDriverByName("MEM").Create("", plain.RasterXSize, plain.RasterYSize, 1, kind)
+            image.SetGeoTransform(plain.GetGeoTransform())
+            image.SetProjection(plain.GetProjection() if system is None else system)
+            image.GetRasterBand(1).WriteArray(plain.ReadAsArray())
+            change(image.GetRasterBand(1))
+            gdal.GetDriverByName("GTiff").CreateCopy(str(file), image)
+            return airport.read_heights(file, HERE, around, known)
+
+        local = gdal.Open(str(FOLDER / "metres.tif")).GetProjection()
+        above_geoid = f'COMPD_CS["with heights",{local},VERT_CS["EGM96 height",VERT_DATUM["EGM96 geoid",2005],UNIT["metre",1],AXIS["Up",UP]]]'
+        holed = smooth.copy()
+        holed[140:160, 140:160] = -9999.0
+        for posts, _, here, words in (changed("feet.tif", smooth / 0.3048, change=lambda band: band.SetUnitType("ft")),
+                                      changed("scaled.tif", np.round(1000 * (smooth - 20)), gdal.GDT_Int32,
+                                              change=lambda band: (band.SetScale(0.001), band.SetOffset(20.0))),
+                                      changed("geoid.tif", smooth, system=above_geoid)):
+            np.testing.assert_allclose(posts, truth[0], atol=2e-3)
+            self.assertAlmostEqual(here, truth[2], delta=1e-3)
+        posts, _, here, words = changed("holed.tif", holed)
+        self.assertAlmostEqual(here, 50.0, delta=1.0)
+        self.assertGreater(posts.min(), 35.0)
+        self.assertIn("have none there", words)
+        self.assertIn("in ft, which it says", airport.read_heights(FOLDER / "feet.tif", HERE, around, known)[3])
+
     def test_wrong_heights(self):
         file = crossing().write("wrong.osm")
         plain = gdal.GetDriverByName("MEM").Create("", 4, 4, 1, gdal.GDT_Float32)
         gdal.GetDriverByName("GTiff").CreateCopy(str(FOLDER / "nowhere.tif"), plain)
         far = write_heights("far.tif", np.ones((10, 10)), (90000, 90000), 10.0)
         (FOLDER / "text.tif").write_text("no raster")
+        gdal.Translate(str(FOLDER / "picture.tif"), str(far), bandList=[1, 1, 1], outputType=gdal.GDT_Byte, noData="none")
         for dem, said in ((FOLDER / "nowhere.tif", "does not say its coordinate reference system"), (far, "holds no heights at the airport"),
-                          (FOLDER / "text.tif", "GDAL cannot read it as heights"), (FOLDER / "none.tif", "no such file")):
+                          (FOLDER / "text.tif", "GDAL cannot read it as heights"),
+                          (FOLDER / "picture.tif", "is a picture of 3 bands of bytes, expected one band of heights"), (FOLDER / "none.tif", "no such file")):
             code, words = run("airport", file, "--heights", dem, "-o", fresh("wrong"))
             self.assertEqual(code, 2)
             self.assertIn(said, words)
@@ -409,7 +546,12 @@ class Wrong(unittest.TestCase):
         FOLDER.mkdir(parents=True, exist_ok=True)
         plan = Map()
         plan.area((0, 0), (10, 10), building="yes")
-        files = [(plan.write("none.osm"), "holds no runway"), (FOLDER / "missing.osm", "no such file"), (FOLDER, "is no extract by its name"),
+        across, beside, nothing = Map((-17.0, 179.999, 0.0)), Map((-17.0, 179.99, 0.0)), Map()
+        for one in (across, beside):
+            one.way([(-600, 0), (600, 0)], aeroway="runway")
+        nothing.way([(0, 0), (0, 0)], aeroway="runway")
+        files = [(across.write("across.osm"), "cross the meridian of 180 degrees"), (beside.write("beside.osm"), "would reach over the meridian of 180"),
+                 (nothing.write("nothing.osm"), "holds no runway"), (plan.write("none.osm"), "holds no runway"), (FOLDER / "missing.osm", "no such file"), (FOLDER, "is no extract by its name"),
                  (FOLDER / "map.shp", "is no extract by its name")]
         for name, content, said in (("text.osm", "no map", "GDAL cannot read it as an extract"), ("empty.geojson", "", "GDAL cannot read it"),
                                     ("cut.geojson", '{"type": "FeatureCollection", "features": [', "GDAL cannot read"),
@@ -430,9 +572,11 @@ class Wrong(unittest.TestCase):
         large.unlink()
 
     def test_lengths(self):
-        for text, metres in (("12", 12), ("12.5 m", 12.5), ("12,5", 12.5), ("10 ft", 3.048), ("10'", 3.048), ("three", None), ("-3", None),
+        for text, metres in (("12", 12), ("12.5 m", 12.5), ("12,5", 12.5), ("10 ft", 3.048), ("10'", 3.048), ("5'6\"", 1.6764), ("2;3", 3), ("~9", 9),
+                             ("9 Meters", 9), ("9 m 4 in", None), ("three", None), ("-3", None),
                              ("0", None), ("5000", None), ("nan", None), (None, None), ("3 floors", None)):
-            self.assertEqual(airport.length_of(text), metres, text)
+            found = airport.length_of(text)
+            self.assertEqual(found if found is None else round(found, 9), metres, text)
 
     def test_numbers_are_said_to_be_assumed(self):
         known = airport.rules()
@@ -499,12 +643,14 @@ class RealAirports(unittest.TestCase):
         runways = {one.name: one for one in siting.read_runways(folder / "airport.geojson", (31.1979, 121.3363, 0.0))}
         self.assertEqual([round(runways[name].axis()[1]) for name in ("18L/36R", "18R/36L")], [3398, 3292])
         self.assertEqual(plan_area(found["18L/36R"][1]) > 57.6 * 3398, True)
+        self.assertNotIn("says no height", words)
         self.assertIn("default of origin tool, not surveyed", (folder / "README.txt").read_text(encoding="utf-8"))
 
     def test_neubrandenburg(self):
         folder = fresh("neubrandenburg")
         code, words = run("airport", pathlib.Path(DATA) / "osm_neubrandenburg" / "edbn_3km.geojson", "--icao", "EDBN", "-o", folder)
         self.assertEqual(code, 0, words)
+        self.assertIn("says no height of any building: all are assumed by kind", words)
         _, found = blocks(folder)
         self.assertIn("09/27", found)
         self.assertEqual({found[name][0] for name in ("Terrain", "09/27", "Building")}, {"terrain", "runway", "building"})

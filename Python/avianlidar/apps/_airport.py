@@ -34,6 +34,7 @@ MOST_POSTS = 250_000  # of a terrain: it takes some seconds
 MOST_CHOSEN = 0.25  # of the posts: where so many are needed, all are taken
 NEAR_AERODROME = 3000.0  # m: a runway belongs to the nearest aerodrome within
 ONE_AIRPORT = 6000.0  # m between runways of one airport, where no aerodrome is in the extract
+LOWEST = -1500.0  # m, or ft: what is lower is no height
 TALLEST = 1000.0  # m: what is higher is no height
 FLAT_SPACING = 100.0  # m, of a ground without a terrain, which follows the Earth
 AROUND = 600.0  # m beside runways where lidars may stand
@@ -41,7 +42,7 @@ WHAT = ("airport.geojson", "terrain.vtp", "airport.lidarscene.json", "exclusions
         "siting.coverage.json", "airport.scenario.json", "assumed.csv", "airport.png", "README.txt")
 RECORD = "made.json"  # checksums of these as they were made
 TAG = re.compile(r'"((?:[^"\\]|\\.)*)"=>"((?:[^"\\]|\\.)*)"')  # of GDAL's OSM driver
-LENGTH = re.compile(r"\s*(\d+(?:[.,]\d+)?)\s*(m|ft|feet|')?\s*")
+LENGTH = re.compile(r"\s*~?\s*(\d+(?:[.,]\d+)?)\s*(m|met(?:er|re)s?|ft|feet|foot|')?\s*(?:(\d+(?:\.\d+)?)\s*(?:\"|''|in))?\s*", re.IGNORECASE)
 FOOT = 0.3048  # m
 COLOURS = {"runway": "#333333", "taxiway": "#666666", "apron": "#b0aca4", "road": "#8c8c8c", "parking": "#a5a5a5", "water": "#7fb2d6",
            "grass": "#cfe3b8", "terminal": "#c0392b", "hangar": "#8e44ad", "tower": "#e67e22", "mast": "#e67e22", "pole": "#e67e22",
@@ -101,13 +102,21 @@ def _form(shape) -> str:
     return {"POINT": "point", "LINESTRING": "line", "POLYGON": "area"}.get(name, "")
 
 
+def _has_extent(shape, form: str) -> bool:
+    """False of lines and areas of which nodes are missing, or the same."""
+    return form == "point" or (shape.Length() if form == "line" else shape.ConvexHull().Area()) > 0.0
+
+
 def length_of(text: Any) -> Optional[float]:
-    """Metres of "12", "12.5 m", "40 ft"; None where it is no length."""
-    found = LENGTH.fullmatch(str(text))
-    if not found:
-        return None
-    value = float(found[1].replace(",", ".")) * (FOOT if found[2] not in (None, "m") else 1.0)
-    return value if 0.0 < value <= TALLEST else None
+    """Metres of "12", "12.5 m", "40 ft", "39'4\"", the greatest of "2;3"; None where it is no length."""
+    values = []
+    for part in str(text).split(";"):
+        found = LENGTH.fullmatch(part)
+        feet = found and (found[2] or "m")[0].lower() in "f'"
+        if not found or (found[3] and not feet):
+            return None
+        values.append((float(found[1].replace(",", ".")) + float(found[3] or 0) / 12) * (FOOT if feet else 1.0))
+    return max(values) if 0.0 < max(values) <= TALLEST else None
 
 
 def _open(file: pathlib.Path, what: str, drivers: List[str], kind: int):
@@ -162,6 +171,8 @@ def read_extract(file: pathlib.Path, known: Dict[str, Any]) -> Tuple[List[Featur
             is_aerodrome = tags.get("aeroway") == "aerodrome"
             kind = next((kind for kind, rule in known["kinds"].items() if form in rule["from"] and any(_fits(tags, one) for one in rule["tags"])),
                         None)
+            if is_aerodrome and "heliport" in (tags.get("aerodrome:type"), tags.get("aerodrome")):
+                continue
             if is_aerodrome is False and (kind is None or any(_fits(tags, one) for one in known["not"])):
                 continue
             name = layer.GetName()
@@ -174,6 +185,8 @@ def read_extract(file: pathlib.Path, known: Dict[str, Any]) -> Tuple[List[Featur
             if to_degrees[name] is not None:
                 shape.Transform(to_degrees[name])
             shape.FlattenTo2D()
+            if not _has_extent(shape, form):
+                continue
             if form == "area" and "osm_way_id" in tags and kind == "taxiway" and tags.get("area") != "yes":
                 shape = ogr.ForceToMultiLineString(shape)  # GDAL takes a closed way for an area
             once = (kind, bytes(shape.ExportToWkb()))
@@ -194,15 +207,24 @@ def choose_runways(file: pathlib.Path, features: List[Feature], aerodromes: List
     east, north, degrees: runways that meet it, if given"""
     _, ogr, osr = _gdal()
     runways = [one for one in features if one.kind == "runway" and _form(one.shape) == "line"]
-    if not runways:
-        raise Error(f"{file}: holds no runway, expected lines with the tag aeroway=runway")
-    middle = runways[0].shape.Centroid()
-    local = osr.CoordinateTransformation(_degrees(), coordinate_system((middle.GetY(), middle.GetX(), 0.0)))
+    areas = [one for one in features if one.kind == "runway" and _form(one.shape) == "area"]
+    if not runways + areas:
+        raise Error(f"{file}: holds no runway, expected lines or areas with the tag aeroway=runway")
+    middle = (runways + areas)[0].shape.Centroid()
+    local = coordinate_system((middle.GetY(), middle.GetX(), 0.0))
+    to_local, to_degrees = osr.CoordinateTransformation(_degrees(), local), osr.CoordinateTransformation(local, _degrees())
 
     def metres(feature: Feature):
         shape = feature.shape.Clone()
-        shape.Transform(local)
+        shape.Transform(to_local)
         return shape
+
+    for one in areas:  # that have no line
+        if not any(line.shape.Intersects(one.shape.ConvexHull()) for line in runways):
+            axis, width = _axis_of(metres(one))
+            axis.Transform(to_degrees)
+            runways.append(Feature("runway", {"width": f"{width:.1f}", **one.tags}, axis))
+            features.remove(one)
 
     if box is not None:
         inside = _box(box)
@@ -216,7 +238,8 @@ def choose_runways(file: pathlib.Path, features: List[Feature], aerodromes: List
         away = [(place.Distance(line), number) for number, place in enumerate(places)]
         near = min(away, default=(math.inf, -1))
         if near[0] <= NEAR_AERODROME:
-            groups[near[1]].append(one)
+            code = aerodromes[near[1]].tags.get("icao")
+            groups[next(number for number, place in enumerate(aerodromes) if number == near[1] or (code and place.tags.get("icao") == code))].append(one)
         else:  # by the runways themselves
             beside = next((key for key, members in groups.items() if isinstance(key, str)
                            and min(metres(other).Distance(line) for other in members) <= ONE_AIRPORT), f"runway {one.tags.get('ref', '?')}")
@@ -233,6 +256,28 @@ def choose_runways(file: pathlib.Path, features: List[Feature], aerodromes: List
         chosen = list(groups)
     aerodrome = next((aerodromes[key] for key in chosen if isinstance(key, int)), None)
     return [one for key in chosen for one in groups[key]], aerodrome
+
+
+def _axis_of(area):
+    """Line between the short sides of the smallest rectangle about an area, and the rectangle's width. @param area ogr, m"""
+    _, ogr, _ = _gdal()
+    hull = area.ConvexHull()
+    ring = hull.GetGeometryRef(0)
+    corners = np.array([ring.GetPoint_2D(i) for i in range(ring.GetPointCount())])
+    best = None
+    for way in np.diff(corners, axis=0):
+        along = way / np.linalg.norm(way)
+        turned = corners @ np.array([along, (-along[1], along[0])]).T
+        low, high = turned.min(axis=0), turned.max(axis=0)
+        if best is None or np.prod(high - low) < best[0]:
+            best = np.prod(high - low), along, low, high
+    _, along, low, high = best
+    middle, sides = (low + high) / 2, high - low
+    ends = [middle + sign * 0.5 * sides * (sides == sides.max()) for sign in (-1, 1)]
+    line = ogr.Geometry(ogr.wkbLineString)
+    for x, y in ends:
+        line.AddPoint_2D(*(x * along + y * np.array((-along[1], along[0]))))
+    return line, float(sides.min())
 
 
 def _box(degrees: Sequence[float]):
@@ -271,9 +316,10 @@ def properties_of(feature: Feature, known: Dict[str, Any]) -> Dict[str, Any]:
                              (None, "assumed"))
         if value is not None and "height_source" in tags:
             source = f"{source}: {tags['height_source']}"
-        levels = length_of(tags.get("building:levels"))
+        levels, roof = (length_of(tags.get(f"{part}:levels")) or 0.0 for part in ("building", "roof"))
         if value is None and levels:
-            value, source = known["level_height"] * levels, f"building:levels, {known['level_height']:g} m each assumed"
+            value = known["level_height"] * (levels + roof) + (0.0 if roof else length_of(tags.get("roof:height")) or 0.0)
+            source = f"building:levels, {known['level_height']:g} m each assumed"
         properties.update({name: round(float(rule["height"] if value is None else value), 3), f"{name}_from": source})
     if "width" in rule and _form(feature.shape) != "area":
         value, source = next(((length_of(tags.get(key)), key) for key in ("width", "width_m", "diameter_crown") if length_of(tags.get(key))),
@@ -300,7 +346,13 @@ def read_heights(file: pathlib.Path, origin: Sequence[float], rectangle: Sequenc
     data = _open(file, "heights", RASTERS, gdal.OF_RASTER)
     if not data.GetProjection():
         raise Error(f"{file}: does not say its coordinate reference system; an ASCII grid has it in a .prj file beside it")
-    with naming(str(file)):
+    raw = data.GetRasterBand(1)
+    if data.RasterCount > 2 and raw.DataType == gdal.GDT_Byte:
+        raise Error(f"{file}: is a picture of {data.RasterCount} bands of bytes, expected one band of heights")
+    with naming(str(file)), _quiet():
+        none = raw.GetNoDataValue()
+        lowest = raw.ComputeRasterMinMax(False)[0] if none is None else 0.0
+        none = lowest if lowest < LOWEST else none  # -9999 and -32768 are said to be none by few
         system = coordinate_system((*origin[:2], 0.0)).ExportToWkt()
         own = abs(gdal.AutoCreateWarpedVRT(data, None, system).GetGeoTransform()[1])
         west, east, south, north = rectangle
@@ -309,24 +361,37 @@ def read_heights(file: pathlib.Path, origin: Sequence[float], rectangle: Sequenc
         half = spacing / 2
         bounds = (west - half, south - half, west - half + columns * spacing, south - half + rows * spacing)
         grid = gdal.Warp("", data, format="MEM", dstSRS=system, outputBounds=bounds, width=columns, height=rows, dstNodata=-1e9,
-                         resampleAlg="bilinear" if spacing < 2.0 * own else "average", outputType=gdal.GDT_Float64, multithread=False)
+                         resampleAlg="bilinear" if spacing < 2.0 * own else "average", outputType=gdal.GDT_Float64, multithread=False,
+                         srcNodata=none, options=["-novshift"])
         band = grid.GetRasterBand(1)
         heights = band.ReadAsArray()
-        missing = ~(np.abs(heights) < 1e5)
+        missing = ~(np.abs(heights) < 1e8)
         if missing.all():
             raise Error("holds no heights at the airport")
         holes = 100.0 * missing.mean()
         if missing.any():
             gdal.FillNodata(band, None, 20, 0)
             heights = band.ReadAsArray()
-            heights = _feathered(heights, ~(np.abs(heights) < 1e5), spacing, known["feather"])
-    heights = heights[::-1]
+            heights = _feathered(heights, ~(np.abs(heights) < 1e8), spacing, known["feather"])
+    unit, metres = _unit_of(data)
+    heights = metres * ((raw.GetScale() or 1.0) * heights[::-1] + (raw.GetOffset() or 0.0))
     here = float(_at(heights, (west, south), spacing, (0.0, 0.0)))
     words = f"heights: {file.name}, taken every {spacing:.3g} m" + (f" (it has them every {own:.3g} m)" if spacing > 1.01 * own else "")
+    if metres != 1.0:
+        words += f", in {unit}, which it says"
     if holes > 0.0:
         words += (f"; {holes:.2g} % of the places have none there: holes are filled from around them, and beyond its border the ground is level, "
                   f"into which it fades over {known['feather']:g} m (assumed)")
     return heights, spacing, here, words
+
+
+def _unit_of(data) -> Tuple[str, float]:
+    """The unit of a raster's heights, and metres of it."""
+    _, _, osr = _gdal()
+    system = osr.SpatialReference()
+    system.ImportFromWkt(data.GetProjection())
+    name = data.GetRasterBand(1).GetUnitType() or (system.GetAttrValue("VERT_CS|UNIT", 0) or "m")
+    return name, FOOT if name.lower().startswith(("f", "us")) else 1.0
 
 
 def _feathered(heights: np.ndarray, missing: np.ndarray, spacing: float, width: float) -> np.ndarray:
@@ -458,6 +523,8 @@ class Airport:
         """Origin, and the rectangle that the scene holds."""
         _, ogr, osr = _gdal()
         ends = np.array([one.shape.GetPoint_2D(i) for one in self.runways for i in (0, one.shape.GetPointCount() - 1)])
+        if np.ptp(ends[:, 0]) > 180.0:
+            raise Error(f"{self.extract}: its runways cross the meridian of 180 degrees, where scenes of this command end")
         middle = (ends.min(axis=0) + ends.max(axis=0)) / 2
         self.origin = (round(float(middle[1]), 7), round(float(middle[0]), 7), 0.0)
         self.degrees = _degrees()
@@ -475,6 +542,8 @@ class Airport:
         self.rectangle = (west - margin, east + margin, south - margin, north + margin)
         around = _box([self.rectangle[i] for i in (0, 2, 1, 3)])
         around.Transform(self.to_degrees)
+        if np.ptp(around.GetEnvelope()[:2]) > 180.0:
+            raise Error(f"{self.extract}: the scene would reach over the meridian of 180 degrees; set --bounds to the runways' side of it")
         self.box = _box([around.GetEnvelope()[i] for i in (0, 2, 1, 3)])
 
     def _mapped(self) -> bytes:
