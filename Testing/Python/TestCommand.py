@@ -234,7 +234,9 @@ class Verbs(unittest.TestCase):
 
     def test_what_sees_nothing_is_a_warning(self):
         code, lines, errors = run("scan", SCENE, "--position", "0", "0", "-50", "-o", OUTPUT / "none.vtp")
-        self.assertEqual((code, lines), (0, [f"{OUTPUT / 'none.vtp'}: 0 echoes of 15360 beams"]))
+        self.assertEqual((code, lines[0]), (0, f"{OUTPUT / 'none.vtp'}: 0 echoes of 15360 beams"))
+        self.assertEqual([line.partition(":")[0] for line in lines[1:]], ["modelled", "left out", "perceived"])
+        self.assertEqual(len(run("scan", SCENE, "--position", "0", "0", "-50", "--quiet", "-o", OUTPUT / "none.vtp")[1]), 1)
         self.assertRegex("\n".join(errors), "^avianlidar: warning: the sensor at .* is below the scene, whose lowest point is at 0 m\n"
                          "avianlidar: warning: no echoes of 15360 beams: ")
 

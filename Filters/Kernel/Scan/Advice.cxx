@@ -804,16 +804,28 @@ private:
     a.airCost = without > 0.0 ? with / without - 1.0 : 0.0;
     a.convex = this->Host.sum(this->Convex) > 0.0;
     a.treeSeconds = this->Host.sum(this->TreeSeconds) / std::max(1.0, this->Host.sum(1.0));
+    a.reflectsTwice = !(a.secondary < 1e-6 && a.withoutSecondary[EnergyError].value < 1e-4 &&
+      a.withoutSecondary[EchoError].value <= 0.0);
     this->pickOne();
     a.scanSeconds = a.beams * (a.advised < 0 ? timeOfDefault(2, 2) : a.trials[a.advised].seconds);
     return true;
   }
 
-  /// The fastest that meets all; of those that are as fast the most accurate.
+  /// The fastest that meets all, with second reflections only if there are any; of those that are
+  /// as fast the most accurate.
   void pickOne()
   {
     AdviceAnswer& a = this->Answer;
-    const double fastest = this->fastestOf(a.trials);
+    const auto fits = [&a](const AdviceTrial& trial)
+    {
+      return trial.verdict == AdviceVerdict::Met &&
+        (a.reflectsTwice || trial.settings.reflections == 1);
+    };
+    double fastest = std::numeric_limits<double>::infinity();
+    for (const AdviceTrial& trial : a.trials)
+    {
+      fastest = fits(trial) ? std::min(fastest, trial.seconds) : fastest;
+    }
     const auto part = [this](const AdviceTrial& trial)
     {
       double largest = 0.0;
@@ -831,7 +843,7 @@ private:
       {
         a.best = static_cast<int>(t);
       }
-      if (trial.verdict == AdviceVerdict::Met && trial.seconds <= AsFast * fastest &&
+      if (fits(trial) && trial.seconds <= AsFast * fastest &&
         (a.advised < 0 || part(trial) < part(a.trials[a.advised])))
       {
         a.advised = static_cast<int>(t);

@@ -105,6 +105,7 @@ struct AdviceAnswer
   // Shares, of what the reference receives.
   double secondary = 0.0;        ///< of the energy, over two reflections
   double largestSecondary = 0.0; ///< of an echo
+  bool reflectsTwice = true;     ///< second reflections are more than rounding
   double connected = 0.0;        ///< of the energy, over connections
   std::array<MeasuredError, AdviceErrors> withoutSecondary;
   std::array<MeasuredError, AdviceErrors> withoutConnections;

@@ -94,16 +94,9 @@ std::string Advised(const AdviceAnswer& answer)
     " times as fast as the settings now";
 }
 
-/// Whether second reflections are rounding alone, as on a sphere in single precision.
-bool AreNone(const AdviceAnswer& a)
-{
-  return a.secondary < 1e-6 && a.withoutSecondary[EnergyError].value < 1e-4 &&
-    a.withoutSecondary[EchoError].value <= 0.0;
-}
-
 std::string SecondReflections(const AdviceAnswer& a)
 {
-  if (AreNone(a))
+  if (!a.reflectsTwice)
   {
     return std::string("One reflection is enough: second reflections carry ") +
       (a.secondary > 0.0 ? "less than 1e-6" : "0") + " of the light (measured over " +
