@@ -27,7 +27,7 @@ from ._scan import Scan
 from ._scene import Scene, load_scene, materials, mesh, mover
 from ._sensor import Sensor
 from ._version import __version__
-from .apps._design import Designs
+from .apps._design_page import Designs
 from .apps._sequence import Sequence
 from .apps._tracks import BirdTracks
 

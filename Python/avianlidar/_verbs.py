@@ -489,14 +489,13 @@ def _say_sites(sites, changes) -> None:
 def design(options) -> None:
     from ._ranks import Ranks
     from .apps import _design_page, _pictures  # needs Matplotlib: said before the work
-    from .apps._design import Designs
     from .apps._maps import Plan
     _pictures.gradient()
     ranks, bars = Ranks(ends_job=True), Bars()
     plan = Plan(_plan(options), options.threads or (1 if ranks.size > 1 else 0))
     if not ranks.rank:
         _say_before(plan)
-    study = Designs(plan, options.out, ranks, bars)
+    study = _design_page.Designs(plan, options.out, ranks, bars)
     with _goes_on(options.out, "coverage/*.npy", "designs kept"):
         study.write()
     bars.close()

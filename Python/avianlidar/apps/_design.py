@@ -15,7 +15,7 @@ import numpy as np
 from vtkmodules.util.numpy_support import vtk_to_numpy
 
 from .._coverage import Coverage, places_of
-from .._disk import only_run, read_regular, write_whole
+from .._disk import read_regular, write_whole
 from .._pipeline import Error, Updates, update
 from .._ranks import Ranks
 from .._sensor import Sensor
@@ -112,11 +112,8 @@ class Candidate:
     front: bool = False
 
 
-class Designs:
-    """Designs of a plan within its bounds: `look` finds their shares, `write` also leaves tables, pictures and a page.
-
-    >>> study = Designs("Examples/design/hongqiao.coverage.json", "build/design").write()   # doctest: +SKIP
-    >>> study.chosen.values, study.chosen.cost, study.chosen.share                          # doctest: +SKIP
+class Study:
+    """Designs of a plan within its bounds; `look` finds their shares.
 
     candidates  all of them         base     numbers of the plan's own sensor
     swept       names of the FIELDS that differ, in their order
@@ -296,7 +293,7 @@ class Designs:
         if self.progress and self.ranks.rank == 0:
             self.progress(what, done, total)
 
-    def look(self) -> Designs:
+    def look(self) -> Study:
         """Find what each design detects, and of the finalists what is tracked. @return this"""
         possible = [one for one in self.candidates if not one.refused]
         self.weights = self.plan.weights(self.plan.points).sum(axis=0)
@@ -314,15 +311,6 @@ class Designs:
         weights = self.plan.weights(points).sum(axis=0)
         self.elsewhere = self._share(self._found("other places", [self.about.values], points)[0], weights)
         self.sensitivities = self._sensitivities(found[possible.index(self.about)])
-        return self
-
-    def write(self) -> Designs:
-        """Look, then write design.html, design.csv, sensitivities.csv and pictures into the folder. @return this"""
-        from . import _design_page  # needs Matplotlib
-        with only_run(self.folder, self.ranks, goes_on=True):
-            self.look()
-            if not self.ranks.rank:
-                _design_page.write(self)
         return self
 
     @property

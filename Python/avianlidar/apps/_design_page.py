@@ -8,11 +8,11 @@ from typing import Any, Dict, List
 
 import numpy as np
 
-from .._disk import write_whole
+from .._disk import only_run, write_whole
 from .._version import __version__
 from . import _pictures as pictures
 from ._card import cell
-from ._design import CHANGE, FIELDS, TOLD, Candidate, Designs, is_told
+from ._design import CHANGE, FIELDS, TOLD, Candidate, Study, is_told
 from ._maps import write_table
 from ._page import embedded, render
 from ._report import place
@@ -23,11 +23,11 @@ def _percent(value: Value) -> str:
     return cell(value, 100.0, "%")
 
 
-def _cost(study: Designs, cost: float) -> str:
+def _cost(study: Study, cost: float) -> str:
     return f"{cost:.4g}{' ' + study.unit if study.unit else ''}"
 
 
-def does(study: Designs, form: str = "detects") -> str:
+def does(study: Study, form: str = "detects") -> str:
     """What the share is of, in words. @param form of the verb "detect" """
     birds = f"{study.plan.bird}s" if len(study.plan.mix) == 1 else "birds"
     if study.measure == "tracked":
@@ -37,25 +37,25 @@ def does(study: Designs, form: str = "detects") -> str:
     return f"{form} {birds} {study.plan.where}, by {time}"
 
 
-def stands(study: Designs) -> str:
+def stands(study: Study) -> str:
     """Where the lidar is."""
     x, y, _ = study.plan.sensor.position
     return f"{place((x, y, study.about.values['mast'] + study.ground)).rsplit(',', 1)[0]} of the scene's origin" if x or y else "at the scene's origin"
 
 
-def in_words(study: Designs, one: Candidate) -> str:
+def in_words(study: Study, one: Candidate) -> str:
     """The swept numbers of a design."""
     return ", ".join(f"{FIELDS[name].words} {FIELDS[name].text(one.values[name])}" for name in study.swept)
 
 
-def pulses(study: Designs, one: Candidate) -> str:
+def pulses(study: Study, one: Candidate) -> str:
     """What whoever assesses eye safety asks for first."""
     of, energy = one.pulses, FIELDS["pulse_energy"].text(one.values["pulse_energy"])
     return (f"{'' if 'pulse_energy' in study.swept else energy + ' a pulse, '}{of['exposure']:.4g} J/m² a pulse at the exit aperture of {1e4 * of['exit_aperture']:.4g} cm², "
             f"{of['pulse_rate']:,.0f} pulses a second")
 
 
-def answers(study: Designs) -> List[str]:
+def answers(study: Study) -> List[str]:
     """The question answered."""
     count, asked = len(study.judged), f"{100.0 * study.asked:g} %"
     about, share = study.about, study.of(study.about)
@@ -77,7 +77,7 @@ def answers(study: Designs) -> List[str]:
     return found
 
 
-def table(study: Designs) -> List[Dict[str, Any]]:
+def table(study: Study) -> List[Dict[str, Any]]:
     """Rows of design.csv, in SI units."""
     rows = []
     for one in study.candidates:
@@ -97,7 +97,7 @@ def table(study: Designs) -> List[Dict[str, Any]]:
     return rows
 
 
-def _draw_front(axes, study: Designs) -> None:
+def _draw_front(axes, study: Study) -> None:
     known = [one for one in study.candidates if not one.refused]
     front = sorted((one for one in known if one.front), key=lambda one: one.cost)
     others = [one for one in known if not one.front]
@@ -117,7 +117,7 @@ def _draw_front(axes, study: Designs) -> None:
     axes.legend(fontsize=8)
 
 
-def _draw_sensitivities(axes, study: Designs) -> None:
+def _draw_sensitivities(axes, study: Study) -> None:
     rows = study.sensitivities
     largest = {name: max((abs(row["share"].value) for row in rows if row["field"] == name and not row["refused"]), default=0.0) for name in study.swept}
     order = sorted(study.swept, key=lambda name: largest[name])
@@ -134,7 +134,7 @@ def _draw_sensitivities(axes, study: Designs) -> None:
     axes.legend(fontsize=8)
 
 
-def write(study: Designs) -> None:
+def write(study: Study) -> None:
     """design.csv, sensitivities.csv, front.png, sensitivities.png, design.html, in the study's folder."""
     out = pathlib.Path(study.folder)
     write_table(out / "design.csv", table(study))
@@ -170,3 +170,19 @@ def _bounds(name: str, given: Any) -> str:
         return ", ".join(field.text(value) for value in given)
     return (f"{field.text(given['from'])} to {field.text(given['to'])}" + (f" in {given['levels']} levels" if given.get("levels") else "")
             + (", evenly by the logarithm" if given.get("logarithmic") else ""))
+
+
+class Designs(Study):
+    """Designs of a plan within its bounds: `write` finds their shares and leaves tables, pictures and a page.
+
+    >>> study = Designs("Examples/design/hongqiao.coverage.json", "build/design").write()   # doctest: +SKIP
+    >>> study.chosen.values, study.chosen.cost, study.chosen.share                          # doctest: +SKIP
+    """
+
+    def write(self) -> Designs:
+        """Look, then write design.html, design.csv, sensitivities.csv and pictures into the folder. @return this"""
+        with only_run(self.folder, self.ranks, goes_on=True):
+            self.look()
+            if not self.ranks.rank:
+                write(self)
+        return self
