@@ -108,6 +108,10 @@ def pipeline(name):
         filter_.SetPatternToLines()
     if name == "Medium":
         filter_.SetShapeToSurface()
+    if name == "BeamView":
+        seen = scan(town(3, 12), **SETTINGS)
+        seen.Update()
+        filter_.SetBeamId(seen.GetOutput().GetPointData().GetArray("beam_id").GetValue(0))
     producers = [make() for make in FILTERS[name]]
     for port, producer in enumerate(producers):
         filter_.SetInputConnection(port, producer.port)
