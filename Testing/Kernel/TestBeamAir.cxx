@@ -12,6 +12,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 #include <random>
 
 using namespace echotest;
@@ -253,6 +254,42 @@ TEST(BeamAir, ABoxThatHoldsEverythingIsAirThatFillsTheScene)
     EXPECT_NEAR(air.transmission(500.0), std::exp(-1000.0 * medium.extinction), 1e-12);
     EXPECT_EQ(air.returnsLight(), medium.drops > 0.0);
   }
+}
+
+TEST(BeamAir, UnitsAreLookedAtWhereMediaMayBePerceived)
+{
+  const Sensor sensor = search905();
+  const BeamFrame frame = makeBeamFrame(Vec3(0.0), Vec3(1.0, 0.0, 0.0), sensor.halfBeamwidth);
+  Medium leaves{ 0.15, 11.8, 30.0, SquareOfLeaves };
+  leaves.isFollowed = false;
+  leaves.sharesGaps = true;
+  const double length = sensor.rangeUnitLength();
+  const auto unitAt = [=](double range) { return static_cast<std::int64_t>(range / length); };
+  // A tree, a gap, and a wood that is deeper than light goes.
+  const std::vector<PlacedMedium> placed = { { leaves, boxOf(Vec3(105.0, 0.0, 0.0), Vec3(5.0)) },
+    { leaves, boxOf(Vec3(650.0, 0.0, 0.0), Vec3(350.0, 50.0, 50.0)) } };
+  const std::vector<Medium> none;
+  const std::vector<Medium> rain = { rainOf(10.0, 20.0) };
+  const std::int64_t most = std::numeric_limits<std::int64_t>::max();
+  BeamAir air(sensor, 1e-4, none, placed);
+  air.begin(frame, 0.0);
+  EXPECT_EQ(air.nextLooked(0), unitAt(100.0));
+  EXPECT_EQ(air.nextLooked(unitAt(200.0)), unitAt(300.0));
+  for (std::int64_t unit = 0; unit < unitAt(1100.0); ++unit)
+  {
+    double mean = 0.0;
+    for (const BeamAir::Share& share : air.sharesOf(unit))
+    {
+      mean += share.mean;
+    }
+    EXPECT_TRUE(air.nextLooked(unit) == unit || mean < 2e-6 * sensor.lowerEnergyLimit) << unit;
+  }
+  EXPECT_EQ(air.nextLooked(unitAt(600.0)), most);
+  // Air that fills the scene is looked at as far as the receiver says.
+  BeamAir inRain(sensor, 1e-3, rain, placed, 20);
+  inRain.begin(frame, 0.0);
+  EXPECT_EQ(inRain.nextLooked(0), 0);
+  EXPECT_EQ(inRain.nextLooked(20), unitAt(100.0));
 }
 
 TEST(BeamAir, WhatSurfacesMeetTheAirDoesNotReturn)

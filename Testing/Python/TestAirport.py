@@ -8,6 +8,7 @@ import io
 import json
 import os
 import pathlib
+import re
 import shutil
 import unittest
 from xml.etree import ElementTree
@@ -244,8 +245,16 @@ class Extracts(unittest.TestCase):
         self.assertFalse(any(siting.is_near([scene.lidar_position], outline)[0] for outline in outlines))
         self.assertEqual(sum(siting.is_near([(0.0, 0.0)], outline)[0] for outline in outlines), 2)
         to_report(self, folder)
-        code, words = run("sequence", folder / "airport.scenario.json", "-o", folder / "scans", "--scans", 1)
-        self.assertEqual(code, 0, words)
+        # The lines of its README.
+        lines = re.findall(r"avianlidar ((\w+) .*?)(?:;.*)?$", (folder / "README.txt").read_text(encoding="utf-8"), re.MULTILINE)
+        self.assertEqual([verb for _, verb in lines], ["coverage", "report", "sequence", "track"])
+        fewer = {"coverage": [], "sequence": ["--scans", 3], "track": ["--learn", 1]}
+        self.addCleanup(os.chdir, os.getcwd())
+        os.chdir(folder)
+        for line, verb in lines:
+            if verb in fewer:
+                code, words = run(*line.split(), *fewer[verb])
+                self.assertEqual(code, 0, words)
 
     def test_other_formats_hold_the_same(self):
         """PBF, a GeoPackage in UTM, with tags as text, and GeoJSON."""

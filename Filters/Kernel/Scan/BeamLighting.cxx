@@ -19,7 +19,8 @@ BeamLighting::BeamLighting(const ScanSetup& setup, const ScanBeams& beams, ScanB
   , Secondary(setup)
   , Quadrature(setup)
   , Units(setup.sensor.samplingInterval, setup.sensor.pulseWidth, setup.sensor.rangeGate)
-  , Air(setup.sensor, setup.settings.attenuationCoefficient, setup.media, setup.placedMedia)
+  , Air(setup.sensor, setup.settings.attenuationCoefficient, setup.media, setup.placedMedia,
+      receiver.airLooked())
 {
 }
 

@@ -16,10 +16,10 @@ namespace
 {
 constexpr int SidesOfDisc = 64;
 
-using Sums = std::map<std::uint32_t, SeenSurface>;
+using SurfaceSums = std::map<std::uint32_t, SeenSurface>;
 
 /// The surface that a triangle of the lit scene is.
-SeenSurface& surfaceOf(const ScanSetup& scene, std::uint32_t triangle, Sums& sums)
+SeenSurface& surfaceOf(const ScanSetup& scene, std::uint32_t triangle, SurfaceSums& sums)
 {
   const auto [place, isNew] = sums.try_emplace(triangle);
   SeenSurface& surface = place->second;
@@ -34,7 +34,7 @@ SeenSurface& surfaceOf(const ScanSetup& scene, std::uint32_t triangle, Sums& sum
 
 /// The corners of a triangle; where the next one or the one before belongs to the same surface and
 /// is not in `sums` itself, those of the quadrilateral.
-std::vector<Vec3> cornersOf(const ScanSetup& scene, std::uint32_t triangle, const Sums& sums)
+std::vector<Vec3> cornersOf(const ScanSetup& scene, std::uint32_t triangle, const SurfaceSums& sums)
 {
   const TriangleMesh& mesh = *scene.tree->mesh;
   std::vector<Vec3> corners = { mesh.corner(triangle, 0), mesh.corner(triangle, 1),
@@ -122,8 +122,8 @@ void light(
 }
 
 /// Add shares, and energies with what belongs to them, if these are wanted.
-void addSamples(
-  const ScanSetup& scene, const BeamLighting& lighting, bool shares, bool energies, Sums& sums)
+void addSamples(const ScanSetup& scene, const BeamLighting& lighting, bool shares, bool energies,
+  SurfaceSums& sums)
 {
   const BeamSamples* samples = lighting.samples();
   if (!samples)
@@ -160,7 +160,7 @@ std::vector<SeenSurface> sightAlong(const ScanSetup& setup, const ScanBeams& bea
   one.origins = { beams.origins[beam] };
   one.directions = { beams.directions[beam] };
   one.times = { beams.timeOf(beam) };
-  Sums sums;
+  SurfaceSums sums;
   const bool uniform = setup.sensor.beamProfile == BeamProfile::Uniform;
   light(setup, one, wanted,
     [&](const ScanSetup& scene, const BeamLighting& lighting)

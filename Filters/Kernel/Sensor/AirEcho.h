@@ -49,9 +49,9 @@ double airIntegral(
     // A step, even where light goes no farther than the last digit.
     const double step = std::max(longest, 1e-15 * begin);
     const double end = std::min({ begin < reach ? reach : growth * begin, begin + step, to });
-    // Where a panel is short against its range a rule of few points does as well.
+    // Where a panel is short against its range a rule of few points does as well, to 1e-8.
     constexpr double isShort = 0.05;
-    sum += end - begin < isShort * std::min(begin, longest)
+    sum += end - begin < std::min(isShort * begin, 0.25 * longest)
       ? boost::math::quadrature::gauss<double, 3>::integrate(f, begin, end)
       : boost::math::quadrature::gauss<double, 10>::integrate(f, begin, end);
     begin = end;

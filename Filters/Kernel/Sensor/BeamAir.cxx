@@ -19,6 +19,9 @@ constexpr std::int64_t NoUnit = std::numeric_limits<std::int64_t>::max();
 /// Optical depth, there and back, behind which nothing is looked for.
 constexpr double Opaque = 60.0;
 
+/// Of the lower limit: media return less than that from behind what counts as opaque.
+constexpr double Faint = 1e-6;
+
 /// Of a pulse: less is left of it by rounding alone.
 constexpr double Rounding = 1e-9;
 
@@ -27,12 +30,14 @@ constexpr int PointsOfCell = 16;
 }
 
 BeamAir::BeamAir(const Sensor& sensor, double attenuation, const std::vector<Medium>& everywhere,
-  const std::vector<PlacedMedium>& placed)
+  const std::vector<PlacedMedium>& placed, std::int64_t looked)
   : Instrument(sensor)
   , Attenuation(attenuation)
   , UnitLength(sensor.rangeUnitLength())
+  , SolidAngle(sensor.solidAngle())
   , Everywhere(everywhere)
   , Placed(placed)
+  , LookedEverywhere(looked)
 {
 }
 
@@ -232,7 +237,8 @@ void BeamAir::findParts(const Vec3& origin, const Vec3& direction)
   this->Ends.push_back(this->Parts.size());
 }
 
-/// Find where media return light that may be perceived, and forget the beam if it meets none.
+/// Find the units in which media return light that may be perceived, and forget the beam if it
+/// meets none.
 void BeamAir::chooseLooked()
 {
   if (this->Parts.empty())
@@ -245,53 +251,83 @@ void BeamAir::chooseLooked()
   this->TakenTo = 0.0;
   this->Left = 1.0;
   this->Unit = -1;
-  double begin = Infinity;
-  double end = 0.0;
-  const auto look = [&](const Medium& medium, double from, double to)
-  {
-    const bool isSeen = medium.backscatter() > 0.0 &&
-      (medium.drops > 0.0 || !medium.isFollowed || !this->Instrument.followsAir());
-    begin = isSeen ? std::min(begin, from) : begin;
-    end = isSeen ? std::max(end, to) : end;
-  };
-  for (const Part& part : this->Parts)
-  {
-    look(this->Placed[part.medium].medium, part.crossing.begin, part.crossing.end);
-  }
-  for (const Medium& medium : this->Everywhere)
-  {
-    look(medium, 0.0, this->Instrument.rangeGate);
-  }
-  if (!(begin < end) || !(this->Instrument.receiverAperture > 0.0))
+  if (!(this->Instrument.receiverAperture > 0.0))
   {
     return;
   }
-  const double gate = static_cast<double>(
-    unitsInsideGate(this->Instrument.samplingInterval, this->Instrument.rangeGate));
-  this->FirstLooked = static_cast<std::int64_t>(std::floor(begin / this->UnitLength));
-  this->EndLooked =
-    static_cast<std::int64_t>(std::min(gate, std::floor(end / this->UnitLength) + 1.0));
-  // Nothing is seen through what is opaque.
+  const std::int64_t gate =
+    unitsInsideGate(this->Instrument.samplingInterval, this->Instrument.rangeGate);
+  double backscatter = 0.0;
+  const auto look = [&](const Medium& medium, std::int64_t first, std::int64_t end)
+  {
+    if (medium.backscatter() > 0.0 && first < std::min(gate, end) &&
+      (medium.drops > 0.0 || !medium.isFollowed || !this->Instrument.followsAir()))
+    {
+      this->Looked.emplace_back(first, std::min(gate, end));
+    }
+    backscatter += medium.backscatter();
+  };
+  for (const Part& part : this->Parts)
+  {
+    look(this->mediumOf(part),
+      static_cast<std::int64_t>(std::floor(part.crossing.begin / this->UnitLength)),
+      static_cast<std::int64_t>(std::floor(part.crossing.end / this->UnitLength)) + 1);
+  }
+  for (const Medium& medium : this->Everywhere)
+  {
+    look(medium, 0, this->LookedEverywhere);
+  }
+  if (this->Looked.empty())
+  {
+    return;
+  }
+  std::sort(this->Looked.begin(), this->Looked.end());
+  std::size_t count = 1;
+  for (const auto& [first, end] : this->Looked)
+  {
+    auto& last = this->Looked[count - 1].second;
+    if (first > last)
+    {
+      this->Looked[count++] = { first, end };
+    }
+    else
+    {
+      last = std::max(last, end);
+    }
+  }
+  this->Looked.resize(count);
+  // Nothing is seen through what is opaque: media there return too little for the lower limit.
+  const double most = this->Instrument.pulseEnergy * backscatter * this->UnitLength;
   const auto isOpaque = [&](std::int64_t unit)
   {
     const double range = this->UnitLength * static_cast<double>(unit);
+    const double light =
+      most * std::min(this->Instrument.receiverAperture / (range * range), 2.0 * Pi);
+    const double enough =
+      std::clamp(std::log(light / (Faint * this->Instrument.lowerEnergyLimit)), 0.0, Opaque);
     for (std::size_t column = 0; column < this->Columns.size(); ++column)
     {
-      if (2.0 * this->Attenuation * range + this->depth(column, range) < Opaque)
+      if (2.0 * this->Attenuation * range + this->depth(column, range) < enough)
       {
         return false;
       }
     }
     return true;
   };
-  std::int64_t low = this->FirstLooked;
-  for (std::int64_t high = this->EndLooked; low + 1 < high;)
+  std::int64_t low = this->Looked.front().first;
+  std::int64_t opaque = this->Looked.back().second;
+  for (std::int64_t high = opaque; low + 1 < high;)
   {
     const std::int64_t middle = low + (high - low) / 2;
     const bool isBeyond = isOpaque(middle);
     (isBeyond ? high : low) = middle;
-    this->EndLooked = isBeyond ? middle : this->EndLooked;
+    opaque = isBeyond ? middle : opaque;
   }
+  while (this->Looked.back().first >= opaque)
+  {
+    this->Looked.pop_back();
+  }
+  this->Looked.back().second = std::min(this->Looked.back().second, opaque);
 }
 
 /// Optical depth of media that do not fill the scene, there and back.
@@ -458,8 +494,9 @@ void BeamAir::addShares(std::size_t column, double open, double from, double to)
   const Sensor& sensor = this->Instrument;
   const double weight = open * this->Columns[column].weight;
   const double middle = 0.5 * (from + to);
-  double decay = 2.0 * this->Attenuation;
-  double change = 0.0; // of densities, 1/m
+  double decay = 2.0 * this->Attenuation; // 1/m, at most
+  double slope = decay;                   // of the depth, where no density changes
+  double change = 0.0;                    // of densities, 1/m
   this->Here.clear();
   for (std::size_t p = column > 0 ? this->Ends[column - 1] : 0; p < this->Ends[column]; ++p)
   {
@@ -467,7 +504,9 @@ void BeamAir::addShares(std::size_t column, double open, double from, double to)
     if (middle > part.crossing.begin && middle < part.crossing.end)
     {
       this->Here.push_back(part);
-      decay += this->waysOf(part) * this->mediumOf(part).extinction;
+      const double extinction = this->waysOf(part) * this->mediumOf(part).extinction;
+      decay += extinction;
+      slope += extinction * part.crossing.density;
       change = std::max(change, std::fabs(part.crossing.fall));
     }
   }
@@ -476,6 +515,12 @@ void BeamAir::addShares(std::size_t column, double open, double from, double to)
     return;
   }
   const double before = this->depth(column, from);
+  if (before > Opaque)
+  {
+    return;
+  }
+  const auto gathered = [&](double r)
+  { return sensor.nearRangeShare(r) * std::min(sensor.receiverAperture / (r * r), 2.0 * Pi); };
   const auto light = [&](double r)
   {
     double depth = before + 2.0 * this->Attenuation * r;
@@ -484,23 +529,34 @@ void BeamAir::addShares(std::size_t column, double open, double from, double to)
       depth += this->waysOf(part) * this->mediumOf(part).extinction *
         (part.crossing.upTo(r) - part.crossing.upTo(from));
     }
-    return sensor.nearRangeShare(r) * std::min(sensor.receiverAperture / (r * r), 2.0 * Pi) *
-      std::exp(-depth);
+    return gathered(r) * std::exp(-depth);
   };
+  // Where no density changes, all media share one integral, and columns of one slope, too.
+  const Steady wanted{ from, to, slope };
+  if (change == 0.0 && this->Known != wanted)
+  {
+    this->Known = wanted;
+    this->OfKnown = airIntegral(sensor, from, to, slope,
+      [&](double r) { return gathered(r) * std::exp(-slope * (r - from)); });
+  }
+  const double steady =
+    change == 0.0 ? this->OfKnown * std::exp(-before - 2.0 * this->Attenuation * from) : 0.0;
   const auto add = [&](std::size_t number, const Medium& medium, const MediumCrossing* part)
   {
     const auto densityAt = [&](double r) { return part ? part->densityAt(r) : 1.0; };
     if (medium.backscatter() > 0.0)
     {
       this->Means[number] += weight * sensor.pulseEnergy * medium.backscatter() *
-        airIntegral(
-          sensor, from, to, decay, [&](double r) { return light(r) * densityAt(r); }, change);
+        (change == 0.0 ? densityAt(middle) * steady
+                       : airIntegral(
+                           sensor, from, to, decay,
+                           [&](double r) { return light(r) * densityAt(r); }, change));
     }
     if (medium.drops > 0.0)
     {
       // Those whose middle lies in the beam, and leaves that reach into it.
       const double met =
-        medium.drops * sensor.solidAngle() * (to * to * to - from * from * from) / 3.0 +
+        medium.drops * this->SolidAngle * (to * to * to - from * from * from) / 3.0 +
         (medium.sharesGaps ? medium.extinction * (to - from) : 0.0);
       this->Drops[number] += weight * densityAt(middle) * met;
     }
@@ -617,7 +673,8 @@ double BeamAir::followed(const AirEcho& echo, std::int64_t unit)
 
 std::int64_t BeamAir::nextLooked(std::int64_t unit) const
 {
-  const std::int64_t next = std::max(unit, this->FirstLooked);
-  return next < this->EndLooked ? next : NoUnit;
+  const auto next = std::upper_bound(this->Looked.begin(), this->Looked.end(), unit,
+    [](std::int64_t at, const auto& units) { return at < units.second; });
+  return next == this->Looked.end() ? NoUnit : std::max(unit, next->first);
 }
 }

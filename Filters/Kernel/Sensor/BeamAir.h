@@ -13,6 +13,9 @@
  * (BeamSamples::columns). So light behind half a tree is weakened where the tree is, and a tree
  * behind half a wall returns what the wall leaves.
  *
+ * Units are looked at where media may be perceived: in their parts, as far as they return more than
+ * a millionth of the lower limit.
+ *
  * Source: the lidar equation, as AirEcho.h.
  * Differs: as AirEcho.h.
  * Valid: units to 1e-6 along each column. A straight border anywhere in a round uniform beam
@@ -27,8 +30,11 @@
 #include "BeamShape.h"
 #include "MediumVolume.h"
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
+#include <utility>
 #include <vector>
 
 namespace avianlidar
@@ -47,9 +53,11 @@ class BeamAir
 {
 public:
   /// @param attenuation of all air that fills the scene, 1/m @param everywhere that of it which
-  /// scatters @param placed other media
+  /// scatters @param placed other media @param looked units in which air that fills the scene may
+  /// be perceived
   BeamAir(const Sensor& sensor, double attenuation, const std::vector<Medium>& everywhere,
-    const std::vector<PlacedMedium>& placed);
+    const std::vector<PlacedMedium>& placed,
+    std::int64_t looked = std::numeric_limits<std::int64_t>::max());
 
   /// Begin a beam that no surface weakens. @param seconds when it is sent
   void begin(const BeamFrame& frame, double seconds);
@@ -59,7 +67,7 @@ public:
   {
     this->Met.clear();
     this->Open.clear();
-    this->FirstLooked = this->EndLooked = 0;
+    this->Looked.clear();
   }
 
   /// Begin with one direction alone. @param direction unit vector
@@ -69,7 +77,7 @@ public:
   bool isLocal() const { return !this->Met.empty(); }
 
   /// Whether what it returns of these media may be perceived by itself.
-  bool returnsLight() const { return this->FirstLooked < this->EndLooked; }
+  bool returnsLight() const { return !this->Looked.empty(); }
 
   /// What media that do not fill the scene leave of light on the way to a range and back.
   /// @param columns bits, 0: all
@@ -116,8 +124,8 @@ public:
   /// scene
   double followed(const AirEcho& echo, std::int64_t unit);
 
-  /// The first unit from `unit` on in which media that do not fill the scene may be perceived by
-  /// themselves; no such: the greatest number.
+  /// The first unit from `unit` on in which media may be perceived by themselves; no such: the
+  /// greatest number.
   std::int64_t nextLooked(std::int64_t unit) const;
 
   /// Cells of the grid across the beam.
@@ -161,6 +169,7 @@ private:
     std::uint32_t met; ///< its place in Met
     MediumCrossing crossing;
   };
+  using Steady = std::array<double, 3>; ///< from and to, m, and the slope of the depth, 1/m
   bool rimAgrees(const BeamFrame& frame);
   void chooseColumns(const BeamFrame& frame);
   void findParts(const Vec3& origin, const Vec3& direction);
@@ -177,8 +186,10 @@ private:
   Sensor Instrument;
   double Attenuation; ///< 1/m
   double UnitLength;  ///< m
+  double SolidAngle;  ///< sr
   const std::vector<Medium>& Everywhere;
   const std::vector<PlacedMedium>& Placed;
+  std::int64_t LookedEverywhere;
   std::vector<Column> Grid; ///< empty until a beam needs it
   Column Axis{ 0.0, 0.0, 1.0, ~std::uint64_t{ 0 } };
 
@@ -190,7 +201,8 @@ private:
   std::vector<Part> Parts;        ///< column by column
   std::vector<Part> Here;         ///< of a piece of a column
   std::vector<std::size_t> Ends;  ///< of the parts of each
-  std::int64_t FirstLooked = 0, EndLooked = 0;
+  /// Units in which media may be perceived, from and to, in order.
+  std::vector<std::pair<std::int64_t, std::int64_t>> Looked;
   std::int64_t FirstTaken = 0;
   std::vector<double> Open; ///< by unit, from FirstTaken on
   SurfacesInAir Surfaces;
@@ -201,6 +213,8 @@ private:
   std::vector<double> OpenOf;       ///< share of each column
   std::int64_t Unit = -1;           ///< of Shares
   std::vector<Share> Shares;
+  Steady Known{ 0.0, 0.0, 0.0 }; ///< the last piece without a change of density
+  double OfKnown = 0.0;          ///< its integral, as if it began the beam
   std::vector<double> Breaks;
   std::vector<double> Means, Drops; ///< of those that fill the scene, and of those met
   std::vector<MediumCrossing> Found;

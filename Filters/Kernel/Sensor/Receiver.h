@@ -122,6 +122,9 @@ public:
   /// What the air sends back.
   const AirEcho& air() const { return this->Air; }
 
+  /// Units from the first on in which the air alone may be perceived.
+  std::int64_t airLooked() const { return this->AirLooked; }
+
   /// The mean, J, of the air's light in a unit of a beam that a threshold may follow.
   double followedIn(BeamAir& along, std::int64_t unit) const
   {

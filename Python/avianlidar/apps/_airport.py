@@ -773,6 +773,7 @@ has edited, so remove a file to have it made anew.
   siting.coverage.json     the same with sites: avianlidar report siting.coverage.json -o report.html{without}
   exclusions.geojson       where no lidar may stand, beside buildings
   airport.scenario.json    labelled scans: avianlidar sequence airport.scenario.json -o sequences
+                           tracks of them: avianlidar track sequences --runways airport.geojson -o tracks
   assumed.csv              each number that the extract does not say
   airport.png              the scene from above
 
