@@ -1,16 +1,16 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Run in ParaView's window by TestAdvise.py, alone or connected to a pvserver: Advise is pressed for a sphere, applied and undone,
+"""Run in ParaView's window by TestAdvise.py, alone or connected to a pvserver: Advise is pressed for a sphere, applied,
 and pressed with a value that is wrong.
 
-The results: "before", "advised", "applied", "undone": {"applied": {property: value}, "shown": the same as the panel has it, "combo": the text of
+The results: "before", "advised", "applied": {"applied": {property: value}, "shown": the same as the panel has it, "combo": the text of
 Preset's widget, "accept": may Apply be pressed}, "answer" and "answer_tip" beside the button, "errors" said after a wrong value,
 "answer_of_error", "sources" in the pipeline, "server": number of its processes. A photo of the panel is advise.png."""
 
 import os
 
 import client_window
-from client_qt import QAction, QtWidgets
-from client_window import FOLDER, Messages, apply, apply_button, find, later, main_window, panel, type_in, until
+from client_qt import QtWidgets
+from client_window import FOLDER, Messages, apply, apply_button, find, later, panel, type_in, until
 from paraview import servermanager, simple
 
 NAMES = ("Preset", "BeamSamples", "RaysPerBeam", "Sampling", "NumberOfReflections", "NumberOfConnections")
@@ -58,13 +58,6 @@ def steps(results):
     panel().grab().save(os.path.join(FOLDER, "advise.png"))
     yield from apply()
     results["applied"] = look(echoes)
-    undo = find("actionEditUndo", QAction, main_window())
-    results["steps"] = 0
-    while undo.isEnabled() and look(echoes)["applied"] == results["applied"]["applied"]:  # colours of new echoes are a step, too
-        results["steps"] += 1
-        later(undo.trigger)
-        yield 1.0
-    results["undone"] = look(echoes)
     messages.take()
     type_in("AttenuationCoefficient", "-1")
     yield 0.3

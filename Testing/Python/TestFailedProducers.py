@@ -78,6 +78,7 @@ def trails():
 
 # Every class with inputs: the producers of its ports.
 FILTERS = {
+    "Advisor": (beams, surfaces),
     "BeamView": (beams, surfaces),
     "CloudComparison": (echoes, echoes),
     "ClutterFilter": (echoes,),
@@ -132,7 +133,7 @@ def copies(filter_):
 
 
 def elements(data):
-    return sum(data.GetNumberOfElements(kind) for kind in (vtk.vtkDataObject.POINT, vtk.vtkDataObject.CELL))
+    return sum(data.GetNumberOfElements(kind) for kind in (vtk.vtkDataObject.POINT, vtk.vtkDataObject.CELL, vtk.vtkDataObject.ROW))
 
 
 def error_of(data):
