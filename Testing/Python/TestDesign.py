@@ -3,7 +3,6 @@
 import csv
 import json
 import math
-import os
 import pathlib
 import re
 import shutil
@@ -21,7 +20,6 @@ from avianlidar.apps._design_page import Designs
 from avianlidar.apps._formula import Formula
 from avianlidar.apps._maps import Plan, read_plan
 
-OUTPUT = pathlib.Path(os.environ.get("AVIANLIDAR_TEST_OUTPUT_DIR", "/tmp")) / "design"
 BOUNDS = {"pulse_energy": {"from": 1e-4, "to": 4e-3, "logarithmic": True}, "receiver_aperture": [0.005, 0.02]}
 DESIGN = {"share": 0.12, "bounds": BOUNDS, "cost": "1000 * pulse_energy + 100 * receiver_aperture", "designs": 8}
 NIGHT = {"preset": "Search905", "azimuth_step": 2.0, "background_radiance": 0.0}

@@ -51,7 +51,8 @@ def in_words(study: Study, one: Candidate) -> str:
 def pulses(study: Study, one: Candidate) -> str:
     """What whoever assesses eye safety asks for first."""
     of, energy = one.pulses, FIELDS["pulse_energy"].text(one.values["pulse_energy"])
-    return (f"{'' if 'pulse_energy' in study.swept else energy + ' a pulse, '}{of['exposure']:.4g} J/m² a pulse at the exit aperture of {1e4 * of['exit_aperture']:.4g} cm², "
+    first = "" if "pulse_energy" in study.swept else f"{energy} a pulse, "
+    return (f"{first}{of['exposure']:.4g} J/m² a pulse at the exit aperture of {1e4 * of['exit_aperture']:.4g} cm², "
             f"{of['pulse_rate']:,.0f} pulses a second")
 
 
@@ -60,9 +61,11 @@ def answers(study: Study) -> List[str]:
     count, asked = len(study.judged), f"{100.0 * study.asked:g} %"
     about, share = study.about, study.of(study.about)
     if study.chosen:
-        found = [f"The cheapest of {count} designs that {does(study).replace(' ', f' {asked} of ', 1)} costs {_cost(study, about.cost)} by the plan's formula and has {_percent(share)}."]
+        found = [f"The cheapest of {count} designs that {does(study).replace(' ', f' {asked} of ', 1)} "
+                 f"costs {_cost(study, about.cost)} by the plan's formula and has {_percent(share)}."]
     else:
-        found = [f"None of {count} designs surely {does(study).replace(' ', f' {asked} of ', 1)}: the best has {_percent(share)} and costs {_cost(study, about.cost)} by the plan's formula."]
+        found = [f"None of {count} designs surely {does(study).replace(' ', f' {asked} of ', 1)}: "
+                 f"the best has {_percent(share)} and costs {_cost(study, about.cost)} by the plan's formula."]
     found.append(f"It is number {about.number}: {in_words(study, about)}; {pulses(study, about)}.")
     other = study.elsewhere
     same = is_told(other.value, other.error, study.asked)
@@ -72,7 +75,8 @@ def answers(study: Study) -> List[str]:
     unsure = study.undecided()
     if unsure:
         least = min(unsure, key=lambda one: one.cost)
-        found.append(f"Of {len(unsure)} {'cheaper ' if study.chosen else ''}{'design' if len(unsure) == 1 else 'designs'}, from {_cost(study, least.cost)} on, the error "
+        found.append(f"Of {len(unsure)} {'cheaper ' if study.chosen else ''}{'design' if len(unsure) == 1 else 'designs'}, "
+                     f"from {_cost(study, least.cost)} on, the error "
                      f"does not tell: they lie within {TOLD:g} standard errors of {asked}. More {'scans' if study.measure == 'tracked' else 'places'} would.")
     return found
 
@@ -87,7 +91,8 @@ def table(study: Study) -> List[Dict[str, Any]]:
         if study.measure == "tracked":
             row.update({"tracked [1]": one.tracked.value, "tracked_std_error [1]": one.tracked.error, "tracked_of [1]": one.tracked.number})
         told = None if math.isnan(study.of(one).value) else is_told(study.of(one).value, study.of(one).error, study.asked)
-        row.update({f"cost [{study.unit or '1'}]": one.cost, "wavelength [nm]": float(study.plan.sensor.wavelength), "pulse_width [s]": float(study.plan.sensor.pulse_width),
+        row.update({f"cost [{study.unit or '1'}]": one.cost, "wavelength [nm]": float(study.plan.sensor.wavelength),
+                    "pulse_width [s]": float(study.plan.sensor.pulse_width),
                     "exit_aperture [m2]": of.get("exit_aperture", math.nan), "radiant_exposure [J/m2]": of.get("exposure", math.nan),
                     "pulse_rate [Hz]": of.get("pulse_rate", math.nan), "shortest_interval [s]": of.get("shortest_interval", math.nan),
                     "average_power [W]": of.get("average_power", math.nan), "on_the_front": int(one.front),
