@@ -21,7 +21,7 @@ def fresh(name):
 
 
 def run(*command):
-    return subprocess.run([*map(str, command)], capture_output=True, text=True, check=False, timeout=200)
+    return subprocess.run([*map(str, command)], capture_output=True, text=True, check=False, timeout=550)
 
 
 def few(folder, parts=(), **siting):
