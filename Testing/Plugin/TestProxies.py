@@ -478,7 +478,7 @@ class TestProxies(unittest.TestCase):
     def test_properties_are_those_of_the_contract(self):
         for name, proxy in self.proxies.items():
             with self.subTest(name):
-                internal = [INTERNAL, *BUTTONS.get(name, []), *(["Reload"] if name in READERS else [])]
+                internal = [INTERNAL, *BUTTONS.get(name, [])]
                 internal += ["TablesOfPreset"] if CONTRACT[name] is BEAM_SOURCE else []
                 self.assertEqual(sorted(proxy.ListProperties()), sorted([*CONTRACT[name], *internal]))
 
