@@ -208,7 +208,8 @@ void AvianLidarAddAdvise()
   }
   else if (QCoreApplication* application = QCoreApplication::instance())
   {
-    // A plugin that is loaded at every start (Auto Load) comes before ParaView's application.
-    QTimer::singleShot(0, application, AvianLidarAddAdvise);
+    // A plugin that is loaded at every start (Auto Load) comes before ParaView's application. Not
+    // at once: Qt handles events that handlers post before it goes on, and would never go on.
+    QTimer::singleShot(50, application, AvianLidarAddAdvise);
   }
 }

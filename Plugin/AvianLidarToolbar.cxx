@@ -66,9 +66,9 @@ struct Macro
   bool hasButton = true; ///< else it is in the menu alone: the toolbar fits beside ParaView's
 };
 
-const Macro Macros[] = {
-  { WizardMacro, "wizard", "Avian Lidar: Scan as You Choose...",
-    "Choose scene, sensor, birds and weather: the pipeline is made of them" },
+const Macro Macros[] = { { WizardMacro, "wizard", "Avian Lidar: Scan as You Choose...",
+                           "Choose scene, sensor, birds and weather: the pipeline is made of them",
+                           false },
   { "avian_lidar_airport_scan", "scan", "Avian Lidar: Scan Surfaces or an Airport",
     "Scan the selected surfaces with a lidar; with nothing selected, an airport" },
   { "avian_lidar_birds_over_the_airport", "bird", "Avian Lidar: Scan Birds over an Airport",
@@ -86,10 +86,9 @@ const Macro Macros[] = {
     "Colour the selected beam report, range image or coverage by what became of each beam or "
     "place" },
   { "avian_lidar_show_beam", "beam", "Avian Lidar: Show Beam",
-    "The beam of the selected echo, the surfaces that it sees, and the share of each" },
+    "The beam of the selected echo, the surfaces that it sees, and the share of each", false },
   { ClassMacro, "status", "Avian Lidar: Colour by Class",
-    "Colour the selected labelled points by class", false }
-};
+    "Colour the selected labelled points by class", false } };
 
 //------------------------------------------------------------------------------
 // The full path of a macro: in a folder beside the library that this function is in.

@@ -20,9 +20,10 @@ from gui_testing import OUTPUT_DIR, PLUGIN_DIR, SOURCE_DIR, empty, photograph, p
 PHOTOS = os.path.join(OUTPUT_DIR, "TestStart")
 STATE = os.path.join(PLUGIN_DIR, "States", "avian_lidar_airport.py")
 LOG = os.path.join(OUTPUT_DIR, "TestStart.log")
-MACROS = ["avian_lidar_airport_scan", "avian_lidar_birds_over_the_airport", "avian_lidar_birds_tracked", "avian_lidar_coverage",
-          "avian_lidar_ground_fog", "avian_lidar_energy_colours", "avian_lidar_status_colours"]
-IN_MENU = ("avian_lidar_birds_tracked", "avian_lidar_ground_fog")  # alone: the toolbar fits beside ParaView's
+MACROS = ["avian_lidar_wizard", "avian_lidar_airport_scan", "avian_lidar_birds_over_the_airport", "avian_lidar_birds_tracked", "avian_lidar_coverage",
+          "avian_lidar_ground_fog", "avian_lidar_energy_colours", "avian_lidar_status_colours", "avian_lidar_show_beam", "avian_lidar_class_colours"]
+IN_MENU = ("avian_lidar_wizard", "avian_lidar_birds_tracked", "avian_lidar_ground_fog", "avian_lidar_show_beam",
+           "avian_lidar_class_colours")  # alone: the toolbar fits beside ParaView's
 TIMEOUT = 120
 
 
