@@ -19,6 +19,7 @@ namespace
 constexpr double SmallestEdge = 1e-6;
 constexpr double AreaTolerance = 1e-9;
 constexpr double SmallestPiece = 1e-6; // m2
+constexpr double SmallestWidth = 1e-4; // m, below which vertices of pieces are one
 
 // Without handlers GEOS keeps silent and returns null.
 class Geos
@@ -128,6 +129,20 @@ Ring WithoutRepeats(const Ring& ring)
     kept.pop_back();
   }
   return kept;
+}
+
+double Perimeter(const Polygon& polygon)
+{
+  double length = 0;
+  for (const Ring& ring : polygon.rings)
+  {
+    for (std::size_t i = 0; i < ring.size(); ++i)
+    {
+      const Vec2& next = ring[(i + 1) % ring.size()];
+      length += std::hypot(next[0] - ring[i][0], next[1] - ring[i][1]);
+    }
+  }
+  return length;
 }
 
 void CollectTriangles(const std::vector<Polygon>& pieces, const std::map<Vec2, std::size_t>& index,
@@ -263,7 +278,7 @@ std::vector<std::vector<Polygon>> CutToTriangles(
       bool repaired = false;
       for (Polygon& piece : MakeValid(part, repaired))
       {
-        if (Area(piece) > SmallestPiece)
+        if (Area(piece) > std::max(SmallestPiece, SmallestWidth * Perimeter(piece) / 2))
         {
           pieces[i].push_back(std::move(piece));
         }

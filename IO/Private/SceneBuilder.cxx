@@ -189,7 +189,7 @@ public:
     {
       throw Error("there is no " + name + " to stand on");
     }
-    return &this->Known.try_emplace(name, part->mesh).first->second;
+    return &this->Known.try_emplace(name, name, part->mesh).first->second;
   }
 
 private:
