@@ -56,7 +56,7 @@ std::vector<std::vector<Polygon>> CutToTriangles(
   const Polygon& polygon, const std::vector<Ring>& triangles);
 
 /// Triangles of a valid polygon. Throws Error if GEOS fails or the areas differ by more than 1e-9
-/// of the whole.
+/// of the whole and their rounding.
 TriangulatedPolygon Triangulate(const Polygon& polygon);
 }
 
