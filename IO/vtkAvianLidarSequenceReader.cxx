@@ -28,6 +28,7 @@
 #include <cstdio>
 #include <exception>
 #include <filesystem>
+#include <limits>
 #include <new>
 #include <optional>
 #include <sstream>
@@ -47,43 +48,57 @@ constexpr char Label[] = "semantic_label";
 /// From the sensor's frame (x forward, y left, z up) to that of the poses: rows of 3 x 4.
 using Pose = std::array<double, 12>;
 
-std::vector<std::string> LinesOf(const std::string& file)
+/// The words of a line, of which there is one at least.
+struct Line
+{
+  std::string where;
+  std::vector<std::string> words;
+
+  double NumberAt(std::size_t word) const
+  {
+    const double value = formats::numberOf<double>(this->words[word], this->where.c_str());
+    if (!std::isfinite(value))
+    {
+      throw FormatError(this->where + " has \"" + formats::shown(this->words[word]) +
+        "\", expected a finite number");
+    }
+    return value;
+  }
+};
+
+std::vector<Line> LinesOf(const std::string& file)
 {
   formats::FileSource source(file);
   formats::TextLines lines(source, 0);
-  std::vector<std::string> all;
-  for (std::string line; lines.get(line);)
+  const std::string name = " of " + fs::path(file).filename().string();
+  std::vector<Line> all;
+  std::size_t number = 0;
+  for (std::string text; lines.get(text);)
   {
-    if (line.find_first_not_of(" \t\r") != line.npos)
+    Line line{ "line " + std::to_string(++number) + name, {} };
+    std::istringstream stream(text);
+    for (std::string word; stream >> word;)
     {
-      all.push_back(line);
+      line.words.push_back(word);
+    }
+    if (!line.words.empty())
+    {
+      all.push_back(std::move(line));
     }
   }
   return all;
 }
 
-std::vector<std::string> WordsOf(const std::string& line)
-{
-  std::istringstream stream(line);
-  std::vector<std::string> words;
-  for (std::string word; stream >> word;)
-  {
-    words.push_back(word);
-  }
-  return words;
-}
-
 std::vector<double> TimesOf(const std::string& file)
 {
   std::vector<double> times;
-  for (const std::string& line : LinesOf(file))
+  for (const Line& line : LinesOf(file))
   {
-    times.push_back(formats::numberOf<double>(WordsOf(line).front(), "a line"));
-    if (!std::isfinite(times.back()) ||
-      (times.size() > 1 && !(times.back() > times[times.size() - 2])))
+    times.push_back(line.NumberAt(0));
+    if (times.size() > 1 && !(times.back() > times[times.size() - 2]))
     {
-      throw FormatError("the time in line " + std::to_string(times.size()) +
-        " is not above the one before, expected seconds that rise");
+      throw FormatError(
+        "the time in " + line.where + " is not above the one before, expected seconds that rise");
     }
   }
   if (times.empty())
@@ -93,17 +108,17 @@ std::vector<double> TimesOf(const std::string& file)
   return times;
 }
 
-Pose PoseOf(const std::vector<std::string>& words, std::size_t first)
+Pose PoseOf(const Line& line, std::size_t first)
 {
-  if (words.size() != first + 12)
+  if (line.words.size() != first + 12)
   {
-    throw FormatError("a line has " + std::to_string(words.size() - std::min(first, words.size())) +
+    throw FormatError(line.where + " has " + std::to_string(line.words.size() - first) +
       " numbers, expected the 12 of a pose");
   }
   Pose pose;
   for (std::size_t i = 0; i < 12; ++i)
   {
-    pose[i] = formats::numberOf<double>(words[first + i], "a pose");
+    pose[i] = line.NumberAt(first + i);
   }
   return pose;
 }
@@ -139,19 +154,18 @@ public:
     {
       return;
     }
-    const std::vector<std::string> lines = LinesOf(poses);
+    const std::vector<Line> lines = LinesOf(poses);
     if (scan >= lines.size())
     {
       throw FormatError(
         "poses.txt has " + std::to_string(lines.size()) + " lines, expected a pose for each scan");
     }
-    this->Of = PoseOf(WordsOf(lines[scan]), 0);
+    this->Of = PoseOf(lines[scan], 0);
     if (fs::exists(folder / "calib.txt"))
     {
-      for (const std::string& line : LinesOf((folder / "calib.txt").string()))
+      for (const Line& line : LinesOf((folder / "calib.txt").string()))
       {
-        const std::vector<std::string> words = WordsOf(line);
-        this->Calibration = words.front() == "Tr:" ? PoseOf(words, 1) : this->Calibration;
+        this->Calibration = line.words.front() == "Tr:" ? PoseOf(line, 1) : this->Calibration;
       }
     }
   }
@@ -179,18 +193,22 @@ void ReadBoxes(const std::string& file, const Placement& place, vtkPolyData* box
   vtkNew<vtkCellArray> sides;
   auto classes = names::Make<vtkStringArray>(names::Object);
   auto ids = names::Make<vtkIntArray>(names::ObjectId);
-  for (const std::string& line : LinesOf(file))
+  for (const Line& line : LinesOf(file))
   {
-    const std::vector<std::string> words = WordsOf(line);
-    if (words.size() != 12)
+    if (line.words.size() != 12)
     {
-      throw FormatError("a line of " + file + " has " + std::to_string(words.size()) +
+      throw FormatError(line.where + " has " + std::to_string(line.words.size()) +
         " words, expected the 12 of a box");
     }
     std::array<double, 12> v{};
     for (std::size_t i = 1; i < 12; ++i)
     {
-      v[i] = formats::numberOf<double>(words[i], "a box");
+      v[i] = line.NumberAt(i);
+    }
+    if (v[10] != std::trunc(v[10]) || std::abs(v[10]) > std::numeric_limits<int>::max())
+    {
+      throw FormatError(line.where + " has \"" + formats::shown(line.words[10]) +
+        "\", expected a whole number of 32 bits: an id");
     }
     const vtkIdType first = points->GetNumberOfPoints();
     for (int corner = 0; corner < 8; ++corner)
@@ -213,7 +231,7 @@ void ReadBoxes(const std::string& file, const Placement& place, vtkPolyData* box
       {
         sides->InsertCellPoint(first + corner);
       }
-      classes->InsertNextValue(words[0]);
+      classes->InsertNextValue(line.words[0]);
       ids->InsertNextValue(static_cast<int>(v[10]));
     }
   }

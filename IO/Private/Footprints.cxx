@@ -12,6 +12,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
+#include <sstream>
 
 namespace avianlidar::scene
 {
@@ -367,14 +368,23 @@ std::vector<Region> GetRegions(
   return regions;
 }
 
-// Of crowns, points along a line, a width apart and half of one from its ends.
+// Of crowns, points along a line, a width apart and half of one from its ends. Throws where a wrong
+// coordinate, or a width of nothing, would make as many as memory holds.
 void AddAlong(const Ring& line, double width, Ring& points)
 {
+  constexpr int most = 100000;
   double next = 0.5 * width;
   for (std::size_t i = 0; i + 1 < line.size(); ++i)
   {
     const Vec2 way{ line[i + 1][0] - line[i][0], line[i + 1][1] - line[i][1] };
     const double length = std::hypot(way[0], way[1]);
+    if (!(static_cast<double>(points.size()) + length / width <= most))
+    {
+      std::ostringstream text;
+      text << "a line has more than " << most << " crowns of " << width
+           << " m: a coordinate or 'width' is wrong";
+      throw Error(text.str());
+    }
     for (; next <= length; next += width)
     {
       points.push_back(
@@ -389,11 +399,12 @@ void AddCrowns(const Feature& feature, const Object& object, std::size_t number,
   const Terrain* terrain, Counts& counts, Part& crowns)
 {
   const std::optional<double> width = feature.width ? feature.width : object.footprints.width;
-  Ring points = feature.points;
+  Ring points;
   for (const Ring& line : feature.lines)
   {
     width ? AddAlong(line, *width, points) : void(++counts.thinLines);
   }
+  points.insert(points.begin(), feature.points.begin(), feature.points.end());
   if (points.empty() || !width)
   {
     counts.points += static_cast<int>(points.size());

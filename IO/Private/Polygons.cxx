@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <map>
 #include <memory>
 
@@ -19,6 +20,7 @@ namespace
 constexpr double SmallestEdge = 1e-6;
 constexpr double AreaTolerance = 1e-9;
 constexpr double SmallestPiece = 1e-6; // m2
+constexpr double SmallestWidth = 1e-4; // m, below which vertices of pieces are one
 
 // Without handlers GEOS keeps silent and returns null.
 class Geos
@@ -128,6 +130,20 @@ Ring WithoutRepeats(const Ring& ring)
     kept.pop_back();
   }
   return kept;
+}
+
+double Perimeter(const Polygon& polygon)
+{
+  double length = 0;
+  for (const Ring& ring : polygon.rings)
+  {
+    for (std::size_t i = 0; i < ring.size(); ++i)
+    {
+      const Vec2& next = ring[(i + 1) % ring.size()];
+      length += std::hypot(next[0] - ring[i][0], next[1] - ring[i][1]);
+    }
+  }
+  return length;
 }
 
 void CollectTriangles(const std::vector<Polygon>& pieces, const std::map<Vec2, std::size_t>& index,
@@ -263,7 +279,7 @@ std::vector<std::vector<Polygon>> CutToTriangles(
       bool repaired = false;
       for (Polygon& piece : MakeValid(part, repaired))
       {
-        if (Area(piece) > SmallestPiece)
+        if (Area(piece) > std::max(SmallestPiece, SmallestWidth * Perimeter(piece) / 2))
         {
           pieces[i].push_back(std::move(piece));
         }
@@ -302,7 +318,10 @@ TriangulatedPolygon Triangulate(const Polygon& polygon)
     geos.Own(GEOSConstrainedDelaunayTriangulation_r(geos.Get(), geometry.get())).get(), pieces);
   CollectTriangles(pieces, index, result);
   const double area = Area(polygon);
-  if (!(std::abs(Area(result) - area) <= AreaTolerance * area))
+  // Of a long narrow polygon the products of an area are far above it, and so is their rounding.
+  const double rounding =
+    4 * std::numeric_limits<double>::epsilon() * std::pow(Perimeter(polygon), 2);
+  if (!(std::abs(Area(result) - area) <= AreaTolerance * area + rounding))
   {
     throw Error("a polygon of " + std::to_string(area) + " m2 cannot be triangulated");
   }

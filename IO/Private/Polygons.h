@@ -51,12 +51,12 @@ std::vector<Polygon> MakeValid(const Polygon& polygon, bool& repaired);
 std::vector<Polygon> WidenLine(const Ring& line, double width);
 
 /// What each of the triangles, which run anticlockwise, shares with a valid polygon, less what is
-/// smaller than 1e-6 m2.
+/// smaller than 1e-6 m2 or narrower than 1e-4 m (area over half the perimeter).
 std::vector<std::vector<Polygon>> CutToTriangles(
   const Polygon& polygon, const std::vector<Ring>& triangles);
 
 /// Triangles of a valid polygon. Throws Error if GEOS fails or the areas differ by more than 1e-9
-/// of the whole.
+/// of the whole and their rounding.
 TriangulatedPolygon Triangulate(const Polygon& polygon);
 }
 

@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <map>
 #include <new>
+#include <set>
 
 namespace avianlidar::scene
 {
@@ -188,7 +189,7 @@ public:
     {
       throw Error("there is no " + name + " to stand on");
     }
-    return &this->Known.try_emplace(name, part->mesh).first->second;
+    return &this->Known.try_emplace(name, name, part->mesh).first->second;
   }
 
 private:
@@ -298,21 +299,40 @@ BuiltScene OutlineScene(
 {
   BuiltScene built;
   built.description = ReadDescription(file, text);
+  // How many parts footprints make, their features say, and the terrain below them.
+  const auto hasParts = [](const Object& object)
+  {
+    return object.kind == ObjectKind::Footprints &&
+      (object.footprints.separate || !object.medium.empty());
+  };
+  std::set<std::string> needed;
+  for (const Object& object : built.description.objects)
+  {
+    if (hasParts(object))
+    {
+      needed.insert(object.footprints.on);
+    }
+  }
+  UnmappedMaterials unmapped;
+  MeshFiles files(built.description.objects);
+  Terrains terrains;
   const auto outline = [&](const Object& object, const std::function<bool()>& keepGoing)
   {
-    std::vector<Part> parts{ { object.name, object.objectClass, {} } };
-    if (object.kind == ObjectKind::Footprints && object.footprints.separate)
+    if (hasParts(object) || needed.count(object.name) > 0)
     {
-      std::vector<std::string> notes;
-      parts = ReadFootprints(object, built.description, nullptr, notes, keepGoing);
-      for (Part& part : parts)
-      {
-        part.mesh = Mesh();
-      }
+      const Terrain* terrain =
+        hasParts(object) ? terrains.Get(object.footprints.on, built.parts) : nullptr;
+      return BuildObject(
+        built.description, object, terrain, files, unmapped, built.report, keepGoing);
     }
-    return parts;
+    return std::vector<Part>{ { object.name, object.objectClass, {} } };
   };
   AddParts(built, outline, progress);
+  for (Part& part : built.parts)
+  {
+    part = { part.name, part.objectClass, {} };
+  }
+  built.report.clear();
   return built;
 }
 

@@ -25,8 +25,8 @@ struct BuiltScene
 
 /**
  * The parts of a scene by name, without triangles: for pieces of it that are empty. Of the files
- * that it names only footprints that become a part each are read. No report, no warnings; else as
- * BuildScene().
+ * that it names only footprints that become several parts are read, and what they stand on. No
+ * report, no warnings; else as BuildScene().
  */
 BuiltScene OutlineScene(const std::string& file, const std::function<bool(double)>& progress,
   const std::string& text = {});

@@ -34,19 +34,24 @@ double LowestOf(const std::vector<TerrainPiece>& pieces)
   return lowest;
 }
 
-Terrain::Terrain(const Mesh& mesh)
+Terrain::Terrain(const std::string& name, const Mesh& mesh)
 {
+  constexpr double vertical = 1e-6; // of a triangle's area in plan
   Ring corners;
+  bool up = false;
+  bool down = false;
   for (const auto& [a, b, c] : mesh.triangles)
   {
     const Vec3 &p = mesh.points[a], &q = mesh.points[b], &r = mesh.points[c];
     const double ux = q[0] - p[0], uy = q[1] - p[1], uz = q[2] - p[2];
     const double vx = r[0] - p[0], vy = r[1] - p[1], vz = r[2] - p[2];
     const double twice = ux * vy - uy * vx;
-    if (twice == 0)
+    const double whole = std::hypot(twice, uy * vz - uz * vy, uz * vx - ux * vz);
+    if (std::abs(twice) <= vertical * whole)
     {
       continue;
     }
+    (twice > 0 ? up : down) = true;
     Ring ring{ { p[0], p[1] }, { q[0], q[1] }, { r[0], r[1] } };
     corners.insert(corners.end(), ring.begin(), ring.end());
     const Vec3 plane{ (uz * vy - uy * vz) / twice, (ux * vz - uz * vx) / twice, p[2] };
@@ -56,6 +61,12 @@ Terrain::Terrain(const Mesh& mesh)
       std::swap(ring[1], ring[2]);
     }
     this->Triangles.push_back(std::move(ring));
+  }
+  if (up && down)
+  {
+    throw Error(name +
+      " has triangles that face up and others that face down, expected a surface "
+      "that covers each place in plan once at most");
   }
   if (corners.empty())
   {
@@ -67,15 +78,43 @@ Terrain::Terrain(const Mesh& mesh)
   this->Cells.resize(this->Size * this->Size);
   for (std::size_t i = 0; i < this->Triangles.size(); ++i)
   {
-    const auto [low, high] = BoxOf(this->Triangles[i]);
-    const auto [firstX, firstY] = this->CellOf(low);
-    const auto [lastX, lastY] = this->CellOf(high);
-    for (std::size_t y = firstY; y <= lastY; ++y)
+    this->Insert(i);
+  }
+}
+
+// Into the cells that it meets: all of its box would be too many of long triangles.
+void Terrain::Insert(std::size_t number)
+{
+  constexpr double rounding = 1e-6; // of a cell
+  const Ring& triangle = this->Triangles[number];
+  const auto [low, high] = BoxOf(triangle);
+  const double width = (this->High[0] - this->Low[0]) / static_cast<double>(this->Size);
+  const double height = (this->High[1] - this->Low[1]) / static_cast<double>(this->Size);
+  const std::size_t lastY = this->CellOf(high)[1];
+  for (std::size_t y = this->CellOf(low)[1]; y <= lastY; ++y)
+  {
+    const double bottom = this->Low[1] + (static_cast<double>(y) - rounding) * height;
+    const double top = this->Low[1] + (static_cast<double>(y + 1) + rounding) * height;
+    double left = this->High[0];
+    double right = this->Low[0];
+    for (std::size_t i = 0; i < 3; ++i)
     {
-      for (std::size_t x = firstX; x <= lastX; ++x)
+      const Vec2 &a = triangle[i], &b = triangle[(i + 1) % 3];
+      if (a[1] == b[1] || std::max(a[1], b[1]) < bottom || std::min(a[1], b[1]) > top)
       {
-        this->Cells[y * this->Size + x].push_back(i);
+        continue;
       }
+      for (const double end : { a[1], b[1] })
+      {
+        const double share = (std::clamp(end, bottom, top) - a[1]) / (b[1] - a[1]);
+        left = std::min(left, a[0] + share * (b[0] - a[0]));
+        right = std::max(right, a[0] + share * (b[0] - a[0]));
+      }
+    }
+    const std::size_t lastX = this->CellOf({ right + rounding * width, top })[0];
+    for (std::size_t x = this->CellOf({ left - rounding * width, top })[0]; x <= lastX; ++x)
+    {
+      this->Cells[y * this->Size + x].push_back(number);
     }
   }
 }

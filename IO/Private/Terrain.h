@@ -34,7 +34,8 @@ struct TerrainPiece
 class Terrain
 {
 public:
-  explicit Terrain(const Mesh& mesh);
+  /// Throws Error where some triangles face up and others down, as those of a closed body.
+  Terrain(const std::string& name, const Mesh& mesh);
 
   /// A valid polygon, cut along the edges of the terrain; nothing of it where it lies beyond.
   std::vector<TerrainPiece> Cut(const Polygon& polygon) const;
@@ -42,6 +43,7 @@ public:
   std::optional<double> HeightAt(const Vec2& place) const;
 
 private:
+  void Insert(std::size_t number);
   std::array<std::size_t, 2> CellOf(const Vec2& p) const;
   std::vector<std::size_t> Near(const Vec2& low, const Vec2& high) const;
 

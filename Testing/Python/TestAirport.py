@@ -10,7 +10,10 @@ import os
 import pathlib
 import re
 import shutil
+import subprocess
+import sys
 import unittest
+import unittest.mock
 from xml.etree import ElementTree
 from xml.sax.saxutils import quoteattr
 
@@ -580,10 +583,57 @@ class Wrong(unittest.TestCase):
             self.assertFalse((FOLDER / "bad").exists())
         large.unlink()
 
+    def test_an_edited_terrain_keeps_the_height_of_the_origin(self):
+        folder = fresh("edited_terrain")
+        extract = Map()
+        extract.way([(-600, 0), (600, 0)], aeroway="runway", ref="09/27", width="30")
+        file = extract.write("edited_terrain.osm")
+        heights = write_heights("edited_terrain.tif", np.full((130, 130), 60.0), (-3225, -3225), 50.0)
+        words = ("airport", file, "--heights", heights, "-o", folder)
+        self.assertEqual(run(*words)[0], 0)
+        terrain = folder / "terrain.vtp"
+        terrain.write_text(terrain.read_text().replace("<VTKFile", "<!-- edited -->\n<VTKFile", 1))
+        code, said = run(*words)
+        self.assertEqual((code, said.count("was edited and stays as it is")), (0, 1), said)
+        self.assertEqual(json.loads((folder / "airport.lidarscene.json").read_text())["origin"]["height"], 60.0)
+
+    def test_a_run_that_was_stopped_edits_nothing(self):
+        """Before each file and each record in turn, and then from the same input and another."""
+        def made(kept, text):
+            for name in ("airport.geojson", "terrain.vtp"):
+                kept.put(name, lambda: (name + text).encode())
+            return {name: (kept.folder / name).read_text() for name in ("airport.geojson", "terrain.vtp")}
+
+        for stop in range(4):
+            for begun in (False, True):
+                for text in ("2", "3"):
+                    folder = fresh("stopped")
+                    folder.mkdir()
+                    if begun:
+                        made(airport.Kept(folder), "1")
+                    calls = []
+
+                    def write(path, content):
+                        calls.append(path)
+                        if len(calls) > stop:
+                            raise KeyboardInterrupt
+                        path.write_bytes(content)
+
+                    with unittest.mock.patch.object(airport, "write_whole", write), self.assertRaises(KeyboardInterrupt):
+                        made(airport.Kept(folder), "2")
+                    kept = airport.Kept(folder)
+                    self.assertEqual((made(kept, text), kept.edited),
+                                     ({"airport.geojson": "airport.geojson" + text, "terrain.vtp": "terrain.vtp" + text}, []))
+        (folder / "terrain.vtp").unlink()
+        os.mkfifo(folder / "terrain.vtp")
+        with self.assertRaisesRegex(RuntimeError, "no regular file"):
+            made(airport.Kept(folder), "3")
+
     def test_lengths(self):
         for text, metres in (("12", 12), ("12.5 m", 12.5), ("12,5", 12.5), ("10 ft", 3.048), ("10'", 3.048), ("5'6\"", 1.6764), ("2;3", 3), ("~9", 9),
                              ("9 Meters", 9), ("9 m 4 in", None), ("three", None), ("-3", None),
-                             ("0", None), ("5000", None), ("nan", None), (None, None), ("3 floors", None)):
+                             ("0", None), ("5000", None), ("nan", None), (None, None), ("3 floors", None),
+                             ("1" + " " * 100_000 + "x", None)):
             found = airport.length_of(text)
             self.assertEqual(found if found is None else round(found, 9), metres, text)
 
@@ -628,6 +678,86 @@ class StandsOn(unittest.TestCase):
         flat, _ = self.triangles(flat=True, base=0.5)
         np.testing.assert_allclose(flat[:, :, 2], 0.1 * flat[:, :, 0] + 0.5, atol=1e-12)
         self.assertAlmostEqual(plan_area(flat), 400.0, delta=1e-9)
+
+    def stood_on(self, ground, shape, **more):
+        """Triangles of a footprint on a ground (OBJ)."""
+        scene = self.scene(**more)
+        (FOLDER / "plane.obj").write_text(ground)
+        (FOLDER / "shapes.geojson").write_text(json.dumps({"type": "FeatureCollection", "features": [
+            {"type": "Feature", "properties": {}, "geometry": shape}]}))
+        return next(triangles for name, _, triangles in airport.parts_of(al.Scene(scene)) if name == "Things")
+
+    def test_slivers_at_edges_of_the_terrain(self):
+        """A rectangle that reaches over an edge of the terrain by less than a map resolves."""
+        for over in (1e-9, 1e-7, 1e-6, 1e-5, 9e-5, 1.01e-4, 2e-4, 1e-3):
+            for angle in np.linspace(0.2, 1.3, 30):
+                turn = np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
+                x, y = turn @ np.array([[-2000, 0], [2000, 0], [0, 2000], [0, -2000]], float).T
+                ring = (turn @ np.array([[-801.3, -over], [903.7, -over], [903.7, 20], [-801.3, 20], [-801.3, -over]]).T).T.tolist()
+                ground = "".join(f"v {a!r} {b!r} 0\n" for a, b in zip(x.tolist(), y.tolist())) + "f 1 2 3\nf 2 1 4\n"
+                with self.subTest(over=over, angle=angle):
+                    flat = self.stood_on(ground, {"type": "Polygon", "coordinates": [ring]}, flat=True, base=0.5)
+                    self.assertAlmostEqual(plan_area(flat), 1705.0 * (20 + over), delta=1705.0 * 1e-4)
+
+    def test_a_closed_body_is_no_terrain(self):
+        corners = [(x, y, z) for z in (0, 10) for y in (-50, 50) for x in (-50, 50)]
+        sides = "1 3 4,1 4 2,5 6 8,5 8 7,1 2 6,1 6 5,3 7 8,3 8 4,1 5 7,1 7 3,2 4 8,2 8 6".split(",")
+        points = "".join("v %g %g %g\n" % corner for corner in corners)
+        shape = {"type": "Polygon", "coordinates": [[[0, 0], [10, 0], [10, 10], [0, 0]]]}
+        with self.assertRaisesRegex(RuntimeError, "Plane has triangles that face up and others that face down"):
+            self.stood_on(points + "".join(f"f {side}\n" for side in sides), shape, flat=True, base=0.5)
+        for open_below in (sides[2:], sides[:2] + sides[4:]):  # walls, and a roof or a floor
+            flat = self.stood_on(points + "".join(f"f {side}\n" for side in open_below), shape, flat=True, base=0.5)
+            self.assertAlmostEqual(plan_area(flat), 50.0, delta=1e-9)
+
+    def test_a_fan_of_long_triangles(self):
+        """Heights on a cone against its closed form; each triangle lies in the cells that it meets alone."""
+        count, radius = 40_000, 100.0
+        angle = 2 * np.pi * np.arange(count) / count
+        ground = "v 0 0 10\n" + "".join(f"v {x!r} {y!r} 0\n" for x, y in zip((radius * np.cos(angle)).tolist(), (radius * np.sin(angle)).tolist()))
+        ground += "".join(f"f 1 {i + 2} {(i + 1) % count + 2}\n" for i in range(count))
+        places = np.random.default_rng(1).uniform(-70, 70, (50, 2))
+        column = self.stood_on(ground, {"type": "MultiPoint", "coordinates": places.tolist()}, height=1, width=0.1)
+        columns = np.argmin(np.linalg.norm(column.mean(axis=1)[:, None, :2] - places, axis=2), axis=1)
+        low = np.array([column[columns == i].reshape(-1, 3).min(axis=0) for i in range(len(places))])
+        np.testing.assert_allclose(low[:, 2], 10 - 0.1 * np.linalg.norm(np.abs(places) + 0.05, axis=1), atol=1e-3)
+        code = (f"import sys; sys.path[:0] = {sys.path!r}; import avianlidar as al; scene = {self.scene(height=1, width=0.1)!r}\n"
+                f"open({str(FOLDER / 'plane.obj')!r}, 'w').write(open({str(FOLDER / 'fan.obj')!r}).read())\nal.Scene(scene).surfaces\n"
+                "print(next(line.split()[1] for line in open('/proc/self/status') if line.startswith('VmHWM')))")
+        (FOLDER / "fan.obj").write_text(ground)
+        self.assertLess(int(subprocess.run([sys.executable, "-c", code], check=True, capture_output=True, text=True).stdout), 600e3)  # kB
+
+    def test_rows_of_trees_of_no_width(self):
+        line = {"type": "LineString", "coordinates": [[-40, 0], [40, 0]]}
+        for width, said in ((1e-12, "a line has more than 100000 crowns of 1e-12 m"), (0.1, "")):
+            scene = self.scene(height=4, width=width, medium={"kind": "foliage", "leaf_area_density": 0.6})
+            del scene["objects"][1]["material"]
+            (FOLDER / "shapes.geojson").write_text(json.dumps({"type": "FeatureCollection", "features": [
+                {"type": "Feature", "properties": {}, "geometry": line}]}))
+            with self.assertRaisesRegex(RuntimeError, said) if said else contextlib.nullcontext():
+                al.Scene(scene)
+
+    def test_pieces_have_the_same_blocks(self):
+        """Ranks beyond the first have no triangles, and as many blocks of the same names."""
+        shape = {"type": "Polygon", "coordinates": [[[0, 0], [10, 0], [10, 10], [0, 0]]]}
+        beyond = {"type": "Polygon", "coordinates": [[[500, 0], [510, 0], [510, 10], [500, 0]]]}
+        for more in ({"features": "separate"}, {"medium": {"kind": "foliage", "leaf_area_density": 0.6}, "width": 2.0}):
+            scene = self.scene(height=5, **more)
+            if "medium" in more:
+                del scene["objects"][1]["material"]
+            (FOLDER / "shapes.geojson").write_text(json.dumps({"type": "FeatureCollection", "features": [
+                {"type": "Feature", "properties": {}, "geometry": one} for one in (beyond, shape, {"type": "Point", "coordinates": [20, 0]})]}))
+            scene["objects"].append({"name": "Last", "file": scene["objects"][0]["file"], "material": "Wall", "position": [0, 0, 50]})
+            (FOLDER / "pieces.lidarscene.json").write_text(json.dumps(scene))
+            found = []
+            for piece in (0, 1):
+                reader = al.vtkAvianLidar.vtkAvianLidarSceneReader()
+                reader.SetFileName(str(FOLDER / "pieces.lidarscene.json"))
+                reader.UpdatePiece(piece, 2, 0)
+                blocks_of = reader.GetOutput()
+                found.append([blocks_of.GetMetaData(i).Get(blocks_of.NAME()) for i in range(blocks_of.GetNumberOfBlocks())])
+            self.assertEqual(found[0], found[1])
+            self.assertEqual((found[0][0], found[0][-1], len(found[0])), ("Plane", "Last", 3 if "features" in more else 4))
 
     def test_errors(self):
         for more, said in (({"on": "Nothing", "height": 1}, "is Nothing, expected the name of a mesh further up"),

@@ -99,12 +99,22 @@ class Sequence(unittest.TestCase):
         shutil.rmtree(os.path.join(self.folder, "velodyne"))
         self.assertEqual(vtkAvianLidarSequenceReader.CanReadFile(os.path.join(self.folder, "times.txt")), 0)
 
+    def test_lines_of_white_space_alone(self):
+        self.write("times.txt", "0\n\f\n0.5\n\v\n2\n \t\r\n")
+        self.write("calib.txt", "\v\nTr: 1 0 0 0 0 1 0 0 0 0 1 0\n")
+        points, _ = self.at(self.reader(), 0.5)
+        np.testing.assert_allclose(points.GetPoint(0), SCANS[1][0, :3].astype(float) @ TURN.T + SHIFT, atol=1e-9)
+
     def test_what_is_refused(self):
-        for name, text, said in (("times.txt", "0\n0\n", "the time in line 2 is not above the one before"), ("times.txt", "\n", "there is no time in it"),
+        for name, text, said in (("times.txt", "0\n0\n", "the time in line 2 of times.txt is not above the one before"), ("times.txt", "\n", "there is no time in it"),
                                  ("times.txt", "zero\n", 'has "zero", expected a number'), ("times.txt", "0\n1\n2\n3\n", "000003.bin"),
-                                 ("poses.txt", "1 2 3\n", "a line has 3 numbers, expected the 12 of a pose"),
+                                 ("poses.txt", "1 2 3\n", "line 1 of poses.txt has 3 numbers, expected the 12 of a pose"),
                                  ("poses.txt", "", "poses.txt has 0 lines, expected a pose for each scan"),
-                                 ("boxes/000000.txt", "bird 1\n", "has 2 words, expected the 12 of a box")):
+                                 ("poses.txt", "\nnan 0 0 0 0 1 0 0 0 0 1 0\n", 'line 2 of poses.txt has "nan", expected a finite number'),
+                                 ("calib.txt", "\v\nTr: inf 0 0 0 0 1 0 0 0 0 1 0\n", 'line 2 of calib.txt has "inf", expected a finite number'),
+                                 ("boxes/000000.txt", "bird 1\n", "line 1 of 000000.txt has 2 words, expected the 12 of a box"),
+                                 ("boxes/000000.txt", "bird 0 0 1 2 3 1 1 1 0 1e300 1\n", 'has "1e300", expected a whole number of 32 bits'),
+                                 ("boxes/000000.txt", "bird 0 0 1 2 3 1 1 1 0 nan 1\n", 'has "nan", expected a finite number')):
             with self.subTest(said):
                 self.setUp()
                 self.write(name, text)

@@ -43,6 +43,7 @@ WHAT = ("airport.geojson", "terrain.vtp", "airport.lidarscene.json", "exclusions
 RECORD = "made.json"  # checksums of these as they were made
 TAG = re.compile(r'"((?:[^"\\]|\\.)*)"=>"((?:[^"\\]|\\.)*)"')  # of GDAL's OSM driver
 LENGTH = re.compile(r"\s*~?\s*(\d+(?:[.,]\d+)?)\s*(m|met(?:er|re)s?|ft|feet|foot|')?\s*(?:(\d+(?:\.\d+)?)\s*(?:\"|''|in))?\s*", re.IGNORECASE)
+LONGEST_LENGTH = 100  # characters
 FOOT = 0.3048  # m
 COLOURS = {"runway": "#333333", "taxiway": "#666666", "apron": "#b0aca4", "road": "#8c8c8c", "parking": "#a5a5a5", "water": "#7fb2d6",
            "grass": "#cfe3b8", "terminal": "#c0392b", "hangar": "#8e44ad", "tower": "#e67e22", "mast": "#e67e22", "pole": "#e67e22",
@@ -111,7 +112,7 @@ def length_of(text: Any) -> Optional[float]:
     """Metres of "12", "12.5 m", "40 ft", "39'4\"", the greatest of "2;3"; None where it is no length."""
     values = []
     for part in str(text).split(";"):
-        found = LENGTH.fullmatch(part)
+        found = LENGTH.fullmatch(part) if len(part) <= LONGEST_LENGTH else None  # which takes the third power of a text's size
         feet = found and (found[2] or "m")[0].lower() in "f'"
         if not found or (found[3] and not feet):
             return None
@@ -464,15 +465,19 @@ class Kept:
         self.folder, self.record = folder, folder / RECORD
         self.edited: List[str] = []
         self.made = load_json(self.record) if self.record.exists() else {}
-        if not isinstance(self.made, dict):
+        if not isinstance(self.made, dict) or not all(isinstance(sums, (str, list)) for sums in self.made.values()):
             raise Error(f"{self.record}: expected checksums by the names of files; remove it to have all files made again as new ones")
         strange = [name for name in WHAT if (folder / name).exists() and name not in self.made]
         if strange:
             raise Error(f"{folder}: {strange[0]} is there and was not made by this command; choose another folder")
 
-    def is_edited(self, name: str) -> bool:
+    def _sum(self, name: str) -> str:
         path = self.folder / name
-        return path.exists() and hashlib.sha256(path.read_bytes()).hexdigest() != self.made[name]
+        return hashlib.sha256(read_regular(path)).hexdigest() if path.exists() else ""
+
+    def is_edited(self, name: str) -> bool:
+        found = self._sum(name)
+        return bool(found) and found not in self.made[name]
 
     def put(self, name: str, make: Callable[[], bytes]) -> pathlib.Path:
         """The file, made unless it was edited."""
@@ -481,7 +486,8 @@ class Kept:
             self.edited.append(name)
             return path
         content = make()
-        self.made[name] = hashlib.sha256(content).hexdigest()
+        # A run that is stopped between the record and the file leaves the one before: both are as they were made.
+        self.made[name] = sorted({hashlib.sha256(content).hexdigest(), self._sum(name)} - {""})
         write_whole(self.record, (json.dumps(self.made, indent=2) + "\n").encode())
         write_whole(path, content)
         return path
@@ -563,8 +569,8 @@ class Airport:
         rows.sort(key=lambda row: order.index(row[0]["kind"]))
         return _geojson(rows)
 
-    def _terrain(self) -> bytes:
-        from vtkmodules.vtkIOXML import vtkXMLPolyDataWriter
+    def _posts(self) -> Tuple[np.ndarray, Sequence[float], float]:
+        """Heights above the origin, whose height they say, their south-west corner (m) and spacing."""
         west, east, south, north = rectangle = tuple(x + sign * 50.0 for x, sign in zip(self.rectangle, (-1, 1, -1, 1)))
         if self.dem is None:
             spacing = FLAT_SPACING
@@ -577,7 +583,11 @@ class Airport:
             posts = posts - self.origin[2]
         self.error = self.known["terrain_error"] if self.dem is not None else self.known["level_error"]
         self.terrain_words += f"; triangles within {self.error:g} m of that"
-        surface = terrain(posts, (west, south), spacing, self.origin, self.error)
+        return posts, (west, south), spacing
+
+    def _terrain(self, posts: np.ndarray, corner: Sequence[float], spacing: float) -> bytes:
+        from vtkmodules.vtkIOXML import vtkXMLPolyDataWriter
+        surface = terrain(posts, corner, spacing, self.origin, self.error)
         writer = vtkXMLPolyDataWriter()
         writer.SetInputData(surface)
         writer.SetDataModeToBinary()
@@ -592,8 +602,9 @@ class Airport:
         self.progress("files", 0, len(WHAT))
         with _quiet():
             mapped = kept.put("airport.geojson", self._mapped)
-        kept.put("terrain.vtp", self._terrain)
-        if not hasattr(self, "terrain_words"):
+        posts = self._posts()
+        kept.put("terrain.vtp", lambda: self._terrain(*posts))
+        if "terrain.vtp" in kept.edited:
             self.terrain_words = "heights: terrain.vtp as it was edited"
         self.rows = [feature["properties"] for feature in siting._features(mapped)]
         unknown = {row.get("kind") for row in self.rows} - set(self.known["kinds"])
