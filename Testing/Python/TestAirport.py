@@ -417,6 +417,50 @@ class Extracts(unittest.TestCase):
         self.assertEqual((code, (other / "README.txt").read_text()), (2, "mine"))
         self.assertIn("was not made by this command", words)
 
+    def test_a_coast_and_the_outline_of_the_aerodrome(self):
+        """Sea is to the right of a coastline, an island is none; lidars stand within the aerodrome, on no road."""
+        plan = Map()
+        plan.way([(-800, 0), (800, 0)], aeroway="runway", ref="09/27", width="30")
+        plan.area((-1000, -500), (1000, 500), aeroway="aerodrome", icao="XSEA")
+        plan.way([(-6000, -1000), (6000, -1000)], natural="coastline")
+        plan.area((100, -1700), (500, -1400), natural="coastline")
+        plan.way([(-1000, 300), (1000, 300)], highway="service", width="8")
+        folder = fresh("coast")
+        code, said = run("airport", plan.write("coast.osm"), "-o", folder)
+        self.assertEqual(code, 0, said)
+        _, found = blocks(folder)
+        west, east, south, _ = airport.Airport(FOLDER / "coast.osm").rectangle
+        self.assertAlmostEqual(plan_area(found["Water"][1]), (east - west) * (-1000 - south) - 400 * 300, delta=0.004 * (east - west) * 1000)  # a box of degrees
+        shut = siting.read_outlines(folder / "exclusions.geojson", al.load_scene(folder / "airport.lidarscene.json").geodetic_origin)
+        for place, free in (((0, 250), True), ((0, 302), False), ((0, 600), False), ((1100, 0), False), ((-1100, 0), False), ((0, -600), False)):
+            near = [siting.is_near(np.array([place]), outline, 0.0)[0] for outline in shut]
+            self.assertEqual(not any(near), free, place)
+        lidar = json.loads((folder / "airport.lidarscene.json").read_text())["lidar"]["position"]
+        self.assertLess(max(abs(lidar[0]) - 1000, abs(lidar[1]) - 500), 0)
+        self.assertLess(json.loads((folder / "siting.coverage.json").read_text())["siting"]["spacing"], 200)
+        open_ = Map()
+        open_.way([(-800, 0), (800, 0)], aeroway="runway", ref="09/27", width="30")
+        open_.way([(-500, -1000), (500, -1000)], natural="coastline")
+        self.assertIn("its coastlines do not part the scene", run("airport", open_.write("open_coast.osm"), "-o", fresh("open_coast"))[1])
+
+    def test_heights_that_are_none(self):
+        plan = Map()
+        plan.way([(-800, 0), (800, 0)], aeroway="runway", ref="09/27", width="30")
+        plan.area((300, 300), (340, 340), building="yes", height="eleven")
+        plan.area((400, 300), (440, 340), aeroway="hangar", building__levels="1")
+        folder, file = fresh("none"), plan.write("none.osm")
+        self.assertEqual(run("airport", file, "-o", folder)[0], 0)
+        mapped = json.loads((folder / "airport.geojson").read_text())
+        heights = {row["properties"]["kind"]: row["properties"]["height"] for row in mapped["features"] if "height" in row["properties"]}
+        self.assertEqual(heights, {"building": 8.0, "hangar": 12.0})
+        self.assertIn("assumed: height is 'eleven'", (folder / "assumed.csv").read_text())
+        for wrong in ("eleven", -7, 0):
+            next(row for row in mapped["features"] if row["properties"]["kind"] == "hangar")["properties"]["height"] = wrong
+            (folder / "airport.geojson").write_text(json.dumps(mapped))
+            code, said = run("airport", file, "-o", folder)
+            self.assertEqual(code, 2)
+            self.assertIn(f"height is {wrong!r}, expected metres above 0", said)
+
     def test_one_of_two_airports(self):
         plan = crossing()
         plan.way([(12000, 0), (13000, 0)], aeroway="runway", ref="01/19", width="20")

@@ -13,6 +13,7 @@ import json
 import math
 import pathlib
 import re
+import warnings
 from typing import Any, Callable, Dict, Iterator, List, Optional, Sequence, Tuple
 
 import numpy as np
@@ -38,8 +39,10 @@ LOWEST = -1500.0  # m, or ft: what is lower is no height
 TALLEST = 1000.0  # m: what is higher is no height
 FLAT_SPACING = 100.0  # m, of a ground without a terrain, which follows the Earth
 AROUND = 600.0  # m beside runways where lidars may stand
+SPACINGS, CHOICE = (200, 150, 100, 50), 30  # m between candidates of the siting plan: the widest that leaves about so many
 WHAT = ("airport.geojson", "terrain.vtp", "airport.lidarscene.json", "exclusions.geojson", "airport.coverage.json",
         "siting.coverage.json", "airport.scenario.json", "assumed.csv", "airport.png", "README.txt")
+COAST = "coastline"
 RECORD = "made.json"  # checksums of these as they were made
 TAG = re.compile(r'"((?:[^"\\]|\\.)*)"=>"((?:[^"\\]|\\.)*)"')  # of GDAL's OSM driver
 LENGTH = re.compile(r"\s*~?\s*(\d+(?:[.,]\d+)?)\s*(m|met(?:er|re)s?|ft|feet|foot|')?\s*(?:(\d+(?:\.\d+)?)\s*(?:\"|''|in))?\s*", re.IGNORECASE)
@@ -170,8 +173,8 @@ def read_extract(file: pathlib.Path, known: Dict[str, Any]) -> Tuple[List[Featur
             if not tags:
                 continue
             is_aerodrome = tags.get("aeroway") == "aerodrome"
-            kind = next((kind for kind, rule in known["kinds"].items() if form in rule["from"] and any(_fits(tags, one) for one in rule["tags"])),
-                        None)
+            kind = COAST if tags.get("natural") == COAST and form != "point" else next(
+                (kind for kind, rule in known["kinds"].items() if form in rule["from"] and any(_fits(tags, one) for one in rule["tags"])), None)
             if is_aerodrome and "heliport" in (tags.get("aerodrome:type"), tags.get("aerodrome")):
                 continue
             if is_aerodrome is False and (kind is None or any(_fits(tags, one) for one in known["not"])):
@@ -195,6 +198,35 @@ def read_extract(file: pathlib.Path, known: Dict[str, Any]) -> Tuple[List[Featur
                 seen.add(once)
                 (aerodromes if is_aerodrome else found).append(Feature(kind or "", tags, shape))
     return found, aerodromes
+
+
+def sea(features: Sequence[Feature], box) -> List[Any]:
+    """Areas of a box that lie to the right of its coastlines, as OpenStreetMap draws them. GDAL takes a closed one for an area: an
+    island. None where coastlines end within the box. @param box ogr, degrees, as the areas"""
+    _, ogr, _ = _gdal()
+    lines, right = box.Boundary(), []
+    for shape in (one.shape for one in features if one.kind == COAST):
+        parts = [shape] if shape.GetGeometryCount() == 0 else [shape.GetGeometryRef(i) for i in range(shape.GetGeometryCount())]
+        for part in parts:
+            points = np.array((part.GetGeometryRef(0) if part.GetGeometryCount() else part).GetPoints())[:, :2]
+            if _form(shape) == "area" and np.sum(points[:-1, 0] * points[1:, 1] - points[1:, 0] * points[:-1, 1]) < 0.0:
+                points = points[::-1]  # land is to the left
+            coast = ogr.Geometry(ogr.wkbLineString)
+            for point in points:
+                coast.AddPoint_2D(*point)
+            coast = coast.Intersection(box)
+            lines = lines.Union(coast)
+            for i in range(max(coast.GetGeometryCount(), 1)):
+                ends = np.array((coast.GetGeometryRef(i) if coast.GetGeometryCount() else coast).GetPoints() or np.empty((0, 2)))[:, :2]
+                ways = np.diff(ends, axis=0)
+                right += list((ends[:-1] + ends[1:]) / 2 + 1e-3 * np.column_stack([ways[:, 1], -ways[:, 0]]))
+    faces = lines.Polygonize() if right else None
+    found = []
+    for i in range(faces.GetGeometryCount() if faces is not None else 0):
+        face = faces.GetGeometryRef(i)
+        if any(face.Contains(ogr.CreateGeometryFromWkt(f"POINT ({x!r} {y!r})")) for x, y in (map(float, point) for point in right)):
+            found.append(face.Clone())
+    return [] if sum(face.Area() for face in found) > 0.999 * box.Area() else found
 
 
 def _name_of(aerodrome: Feature) -> str:
@@ -319,8 +351,11 @@ def properties_of(feature: Feature, known: Dict[str, Any]) -> Dict[str, Any]:
             source = f"{source}: {tags['height_source']}"
         levels, roof = (length_of(tags.get(f"{part}:levels")) or 0.0 for part in ("building", "roof"))
         if value is None and levels:
-            value = known["level_height"] * (levels + roof) + (0.0 if roof else length_of(tags.get("roof:height")) or 0.0)
-            source = f"building:levels, {known['level_height']:g} m each assumed"
+            each = rule.get("level_height", known["level_height"])
+            value = each * levels + (known["level_height"] * roof or length_of(tags.get("roof:height")) or 0.0)
+            source = f"building:levels, {each:g} m each assumed"
+        if value is None and "height" in tags:
+            source = f"assumed: height is {str(tags['height'])[:40]!r}"
         properties.update({name: round(float(rule["height"] if value is None else value), 3), f"{name}_from": source})
     if "width" in rule and _form(feature.shape) != "area":
         value, source = next(((length_of(tags.get(key)), key) for key in ("width", "width_m", "diameter_crown") if length_of(tags.get(key))),
@@ -383,6 +418,8 @@ def read_heights(file: pathlib.Path, origin: Sequence[float], rectangle: Sequenc
     if holes > 0.0:
         words += (f"; {holes:.2g} % of the places have none there: holes are filled from around them, and beyond its border the ground is level, "
                   f"into which it fades over {known['feather']:g} m (assumed)")
+    if holes > 5.0:
+        warnings.warn(f"{file}: has no heights at {holes:.2g} % of the places of the scene, which are level there", RuntimeWarning, stacklevel=2)
     return heights, spacing, here, words
 
 
@@ -524,6 +561,18 @@ class Airport:
         self.tags = aerodrome.tags if aerodrome else {}
         self.name = self.tags.get("name") or self.tags.get("icao") or self.extract.name.split(".")[0]
         self._place(bounds)
+        coasts = [one for one in self.features if one.kind == COAST]
+        self.features = [one for one in self.features if one.kind != COAST]
+        if coasts:
+            seas = sea(coasts, self.box)
+            self.features += [Feature("water", {"name": "sea"}, shape) for shape in seas]
+            if not seas and any(one.shape.Intersects(self.box) for one in coasts):
+                warnings.warn(f"{self.extract}: its coastlines do not part the scene: the sea is land there; draw it as natural=water, or cut the extract "
+                              "wider", RuntimeWarning, stacklevel=2)
+        ground = aerodrome.shape if aerodrome and _form(aerodrome.shape) == "area" else None
+        if ground is not None and not ground.IsValid():
+            ground = ground.MakeValid()
+        self.ground = ground if ground is not None and all(ground.Contains(one.shape.Centroid()) for one in self.runways) else None
 
     def _place(self, bounds: Optional[Sequence[float]]) -> None:
         """Origin, and the rectangle that the scene holds."""
@@ -610,6 +659,10 @@ class Airport:
         unknown = {row.get("kind") for row in self.rows} - set(self.known["kinds"])
         if unknown:
             raise Error(f"{mapped}: kind is {sorted(map(str, unknown))[0]!r}, expected one of {', '.join(self.known['kinds'])}")
+        for number, row in enumerate(self.rows):
+            for name in ("height", "top", "width"):
+                if name in row and (not isinstance(row[name], (int, float)) or not 0.0 < row[name] <= 1e4):
+                    raise Error(f"{mapped}: features[{number}] ({row['kind']} {row.get('id', '')}): {name} is {row[name]!r}, expected metres above 0")
         scene_file = out / "airport.lidarscene.json"
         if not kept.is_edited(scene_file.name):
             kept.put(scene_file.name, lambda: _json(self.scene_of()))
@@ -667,21 +720,28 @@ class Airport:
                 **({"materials": materials} if materials else {}), "objects": objects}
 
     def _exclusions(self, mapped: pathlib.Path) -> bytes:
-        """Where no lidar may stand beside buildings: around runways and taxiways, on aprons and water, in woods."""
+        """Where no lidar may stand beside buildings: around runways and taxiways, on aprons, roads and water, in woods, and outside
+        the aerodrome, if the extract has its outline."""
         _, ogr, _ = _gdal()
         rows = []
+        if self.ground is not None:  # without holes, as outlines have none: in four parts
+            middle = self.ground.PointOnSurface()
+            outside, (west, east, south, north) = self.box.Difference(self.ground), self.box.GetEnvelope()
+            for part in ((west, south, middle.GetX(), middle.GetY()), (middle.GetX(), south, east, middle.GetY()),
+                         (west, middle.GetY(), middle.GetX(), north), (middle.GetX(), middle.GetY(), east, north)):
+                rows.append(({"what": "outside the aerodrome"}, outside.Intersection(_box(part))))
         for runway in self.sides:
             corners = siting.to_geodetic(np.column_stack([siting.runway_outline(runway), np.zeros(4)]), self.scene.geodetic_origin)[:, :2]
             ring = ", ".join(f"{x:.9f} {y:.9f}" for x, y in [*corners, corners[0]])
             rows.append(({"what": "around a runway", "name": runway.name}, ogr.CreateGeometryFromWkt(f"POLYGON (({ring}))")))
         for feature in siting._features(mapped):
             kind = feature["properties"]["kind"]
-            if kind not in ("taxiway", "apron", "water", "wood", "scrub"):
+            if kind not in ("taxiway", "apron", "road", "water", "wood", "scrub"):
                 continue
             shape = ogr.CreateGeometryFromJson(json.dumps(feature["geometry"]))
             if _form(shape) == "line":
                 shape.Transform(self.to_local)
-                shape = shape.Buffer(self.known["beside_taxiways"])
+                shape = shape.Buffer(self.known["beside_taxiways"] if kind == "taxiway" else feature["properties"].get("width", 0.0) / 2)
                 shape.Transform(self.to_degrees)
             rows.append(({"what": kind}, shape))
         return _geojson(rows)
@@ -706,7 +766,10 @@ class Airport:
         taken = siting.read_outlines(mapped, self.scene.geodetic_origin, "height")
         taken += siting.read_outlines(exclusions, self.scene.geodetic_origin)
         with naming(f"{self.extract}: places for a lidar beside its runways"):
-            free = siting.candidates(siting.lattice(self._bounds(), 50.0), (self.known["mast"],), [(outline, 10.0) for outline in taken], self.scene)
+            free = siting.candidates(siting.lattice(self._bounds(), SPACINGS[-1]), (self.known["mast"],), [(outline, 10.0) for outline in taken],
+                                     self.scene)
+        area = len(free) * SPACINGS[-1] ** 2
+        self.spacing = next((spacing for spacing in SPACINGS if area >= CHOICE * spacing**2), SPACINGS[-1])
         middle = np.mean([self.longest.start, self.longest.end], axis=0)
         return free[np.argmin(np.linalg.norm(free[:, :2] - middle, axis=1))]
 
@@ -720,7 +783,7 @@ class Airport:
         if siting_too:
             if self.leaves:
                 plan["coverage"]["clutter"] = False
-            plan["siting"] = {"bounds": self._bounds(), "spacing": 200, "masts": [self.known["mast"]], "margin": 10,
+            plan["siting"] = {"bounds": self._bounds(), "spacing": self.spacing, "masts": [self.known["mast"]], "margin": 10,
                               "exclusions": ["exclusions.geojson"], "sensors": 3}
         return plan
 

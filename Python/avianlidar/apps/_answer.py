@@ -23,7 +23,7 @@ def place(position: Sequence[float]) -> str:
     x, y, z = position
     words = [f"{abs(value):g}\u00a0m {plus if value > 0.0 else minus}"
              for value, plus, minus in ((x, "east", "west"), (y, "north", "south")) if value]
-    return f"{' and '.join(words) or 'at the origin'}, {z:g}\u00a0m up"
+    return f"{' and '.join(words) or 'at the origin'}, {round(z, 1):g}\u00a0m up"
 
 
 def percent(value: float, error: float = math.nan) -> str:
@@ -106,6 +106,8 @@ def two_sentences(plan: Plan, view: Plan, site: Optional[Dict[str, Any]], reache
         detects += f", {percent(of_year['detection_probability'], of_year['detection_std_error'])} over the year"
     by = beside(view.sensor.position, view.runways)
     at = f"{place(view.sensor.position)} from the scene's origin{'; ' + site['degrees'] if site and site['degrees'] else ''}"
+    mast = round(float(view.sensor.position[2] - siting.ground_of(view.scene, [view.sensor.position[:2]])[0]), 1)
+    at = f"on a mast of {mast:g}\u00a0m, {at}" if mast > 0.0 else at
     where = f"{by} ({at})" if by else at
     year = ", by the year's weather" if view.year else ""
     if not site:
@@ -172,7 +174,7 @@ def _raise(view: Plan, advice: Dict[str, Any]) -> Dict[str, str]:
 
 def _check(view: Plan, site: Dict[str, Any], file: str) -> Dict[str, str]:
     """The site itself."""
-    words = ["It is clear of runways and buildings, but perhaps on an apron, taxiway, road or water: the plan's exclusions take those out."]
+    words = ["It is clear of runways, buildings and what the plan excludes; what no map has may be there."]
     masts = [f"{percent(value)} with a mast of {mast:g}\u00a0m" for mast, _, value in site["masts"]]
     if len(masts) > 1:
         words.append(f"The best sites have {listed(masts)}.")
