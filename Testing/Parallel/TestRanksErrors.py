@@ -316,23 +316,7 @@ def test_abort_upstream():
         check_good(echo)
 
 
-def test_questions_of_the_advisor_are_the_same():
-    """What is asked for on one rank alone is an error on all."""
-    advisor = al.vtkAvianLidarAdvisor()
-    advisor.SetInputConnection(0, echotools.sensor().GetOutputPort())
-    advisor.SetInputDataObject(1, TOWN)
-    advisor.SetSampleBeams(50)
-    for name, value in (("EnergyError", 1e-6), ("RangeError", 2.0), ("MissedShare", 0.5), ("SampleBeams", 60)):
-        good = getattr(advisor, "Get" + name)()
-        getattr(advisor, "Set" + name)(mine(good, value))
-        messages = echotools.Messages(advisor)
-        update(advisor)
-        heard = exchange("\n".join(messages.errors))
-        assert name in heard[0] and all("expected the same on all ranks" in text for text in heard), (name, heard)
-        getattr(advisor, "Set" + name)(good)
-
-
 if __name__ == "__main__":
     main([test_bad_surfaces, test_bad_coordinates, test_block_of_2_gib, test_bad_surfaces_of_the_tree, test_bad_beams, test_bad_settings,
-          test_settings_that_differ, test_questions_of_the_advisor_are_the_same,
+          test_settings_that_differ,
           test_beams_of_two_sensors, test_missing_file, test_missing_file_of_vtk, test_errors_as_data, test_damaged_mesh, test_abort, test_abort_upstream])

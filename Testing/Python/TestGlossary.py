@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Documentation/glossary.md has every array of the echo filter's outputs, and every name in it is there with its unit."""
+import functools
 import os
 import pathlib
 import re
@@ -33,6 +34,7 @@ def outputs():
             yield al.Cloud(scan.algorithm.GetOutputDataObject(port))
 
 
+@functools.lru_cache
 def of_advisor():
     """Names and units of the advisor's table and its field data."""
     advisor = wrapped.vtkAvianLidarAdvisor()
