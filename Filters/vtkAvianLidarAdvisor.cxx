@@ -120,8 +120,13 @@ int vtkAvianLidarAdvisor::RequestData(
       vtkPolyData* beams = vtkPolyData::GetData(inputVector[0]);
       vtkDataObject* surfaces = vtkDataObject::GetData(inputVector[1]);
       vtkTable* table = vtkTable::GetData(outputVector, 0);
+      vtkAvianLidarRanks::Settings own;
+      own.Add("EnergyError", this->EnergyError);
+      own.Add("RangeError", this->RangeError);
+      own.Add("MissedShare", this->MissedShare);
+      own.Add("SampleBeams", this->SampleBeams);
       const bool done = in.GoOn(ranks.Together(this, [this] { return this->CheckQuestion(); })) &&
-        this->PrepareBeams(ranks, beams) &&
+        this->PrepareBeams(ranks, beams) && in.GoOn(ranks.AgreeOn(this, own)) &&
         in.GoOn(in.Beams.CheckRanks(ranks, this, vtkInternals::WrongWithBeams)) &&
         this->PrepareSurfaces(ranks, surfaces) &&
         this->PrepareMovers(ranks, vtkDataObject::GetData(inputVector[2])) &&

@@ -155,13 +155,16 @@ std::vector<SeenSurface> RowsOf(const std::vector<SeenSurface>& seen)
     }
     SeenSurface& sum = place->second;
     const double weight = sum.weight + one.weight;
-    sum.range =
-      weight > 0.0 ? (sum.weight * sum.range + one.weight * one.range) / weight : sum.range;
+    if (one.weight > 0.0) // else its range is not known
+    {
+      sum.range =
+        sum.weight > 0.0 ? (sum.weight * sum.range + one.weight * one.range) / weight : one.range;
+    }
     sum.weight = weight;
     sum.share += one.share;
     sum.energy += one.energy;
-    sum.nearest = std::min(sum.nearest, one.nearest);
-    sum.farthest = std::max(sum.farthest, one.farthest);
+    sum.nearest = std::fmin(sum.nearest, one.nearest);
+    sum.farthest = std::fmax(sum.farthest, one.farthest);
   }
   std::vector<SeenSurface> rows;
   for (const auto& [ids, sum] : sums)
@@ -263,8 +266,6 @@ bool vtkAvianLidarBeamView::Look(const vtkAvianLidarRanks& ranks, vtkFieldData* 
         return "BeamId is " + std::to_string(this->BeamId) +
           ", expected the beam_id of a beam of input port 0 (beams)";
       }
-      in.Setup.settings.fullModel = true; // faint samples, too
-      avianlidar::planModel(in.Setup);
       for (vtkDataObject* output : std::initializer_list<vtkDataObject*>{ surfaces, cone, shares })
       {
         this->FillFields(beamFields, output->GetFieldData());
@@ -275,6 +276,8 @@ bool vtkAvianLidarBeamView::Look(const vtkAvianLidarRanks& ranks, vtkFieldData* 
       {
         return {};
       }
+      in.Setup.settings.fullModel = true; // faint samples, too
+      avianlidar::planModel(in.Setup);
       const auto beam = static_cast<std::size_t>(place - ids.begin());
       const avianlidar::KeepGoing keepGoing =
         vtkAvianLidarAbort::KeepGoing(this, vtkInternals::BuildShare, 1.0);

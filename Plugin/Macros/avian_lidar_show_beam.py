@@ -157,13 +157,18 @@ def show_beam(source=None, beam_id=None, view=None):
     if view.SMProxy.GetXMLName() != "RenderView":  # the echo was selected in a spreadsheet
         view = next((one for one in simple.GetRenderViews()), None) or simple.CreateView("RenderView")
     beam = view_of(scan)
-    if beam is None:
+    is_new = beam is None
+    if is_new:
         inputs = {name: getattr(scan, name) for name in ("Beams", "Surfaces", "Movers") if getattr(scan, name) is not None}
         beam = simple.AvianLidarBeamView(registrationName=airport.free_name("Beam"), **inputs)
     beam.BeamId = beam_id
     for name in AIR:
         setattr(beam, name, getattr(scan, name))
     beam.UpdatePipeline(simple.GetAnimationScene().TimeKeeper.Time)
+    if not beam.GetDataInformation(1).GetNumberOfPoints():  # Output Messages have the reason
+        if is_new:
+            simple.Delete(beam)
+        raise ValueError(f"there is no beam {beam_id} to show")
     show_parts(beam, view)
     show_table(beam, view)
     simple.SetActiveView(view)

@@ -60,7 +60,7 @@ class Advice:
                 return
             with open(name, "w", encoding="utf-8", newline="\n") as stream:
                 if target.suffix.lower() == ".json":
-                    table = {key: values.tolist() for key, values in self.table.items()}
+                    table = {key: [value if np.isfinite(value) else None for value in values.tolist()] for key, values in self.table.items()}
                     json.dump({**dataclasses.asdict(self), "table": table}, stream, indent=1)
                     stream.write("\n")
                 else:

@@ -298,7 +298,7 @@ class Scene:
                 raise TypeError("Scene(points, faces) takes n rows of x, y, z and m rows of three indices, not "
                                 f"{type(surfaces).__name__} and {type(faces).__name__}; a material is given as material=...")
             surfaces = (surfaces, faces)
-        triangles = getattr(surfaces, "triangles", getattr(surfaces, "faces", None))
+        triangles = getattr(surfaces, "faces", getattr(surfaces, "triangles", None))  # trimesh's triangles are points
         if hasattr(surfaces, "vertices") and triangles is not None and not isinstance(surfaces, vtkDataObject):
             surfaces = (np.asarray(surfaces.vertices), np.asarray(triangles))
         data = self._data_of(surfaces, progress, material is not None, scale=scale, up_axis=up_axis)

@@ -22,6 +22,7 @@ from plugin_testing import OUTPUT_DIR, PLUGIN, SCENE, SOURCE_DIR, airport, asser
 FOLDER = os.path.dirname(PLUGIN)
 MACRO = os.path.join(FOLDER, "Macros", "avian_lidar_airport_scan.py")
 BIRDS = os.path.join(FOLDER, "Macros", "avian_lidar_birds_over_the_airport.py")
+BEAM = os.path.join(FOLDER, "Macros", "avian_lidar_show_beam.py")
 COVERAGE = os.path.join(FOLDER, "Macros", "avian_lidar_coverage.py")
 TRACKED = os.path.join(FOLDER, "Macros", "avian_lidar_birds_tracked.py")
 FOG = os.path.join(FOLDER, "Macros", "avian_lidar_ground_fog.py")
@@ -390,6 +391,18 @@ class TestMacros(unittest.TestCase):
         with self.assertRaisesRegex(ValueError, "there is no no_such_macro.py in"):
             macro.cover()
         self.assertEqual(self.names(), [])
+
+    def test_a_beam_that_is_not_there(self):
+        """A new view goes again; one that is there stays."""
+        run(MACRO)
+        macro, scan, before = load_macro(BEAM), simple.FindSource("Scan"), self.names()
+        with self.assertRaisesRegex(ValueError, "there is no beam 100000000 to show"):
+            macro.show_beam(scan, 10**8)
+        self.assertEqual(self.names(), before)
+        beam = macro.show_beam(scan, 11408)
+        with self.assertRaisesRegex(ValueError, "there is no beam 5000000000 to show"):
+            macro.show_beam(scan, 5 * 10**9)
+        self.assertEqual((self.names(), int(beam.BeamId)), (sorted([*before, "Beam"]), 5 * 10**9))
 
     def test_without_the_plugin(self):
         macro = load_macro()

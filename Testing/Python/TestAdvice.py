@@ -105,6 +105,26 @@ class Advice(unittest.TestCase):
             once = np.flatnonzero((of[0]["turns"] == 1) & (of[1]["turns"] == 1))
             self.assertTrue(np.array_equal(of[0][name][once], of[1][name][once]), name)
 
+    def test_echoes_too_weak_to_judge(self):
+        """All between the limit and twice it: nothing tells the errors of energies and ranges."""
+        def scan(kd):
+            wall = al.Scene([(-40, 50, -10), (40, 50, -10), (0, 50, 60)], [(0, 1, 2)], material=(kd, 0.0, 1.0))
+            return al.Scan(wall, al.Sensor("Airport16", azimuth_step=1.0), noise=False)
+        limit = float(scan(0.5).sensor.beams.fields["lower_energy_limit"])
+        weak = scan(0.5 * 1.9 * limit / scan(0.5).echoes["energy_received"].max())
+        advice = weak.advise(energy=1e-6, range=1e-6, missed=0.5, beams=200)
+        self.assertIsNone(advice.settings)
+        self.assertEqual(set(advice.table["verdict"]) - {0}, {1})
+        self.assertTrue(np.isinf(advice.table["energy_error_most"]).all() and np.isinf(advice.table["range_error_most"]).all())
+        self.assertIn("(not told: fewer than 30 beams have an echo of twice the limit)", advice.lines[1])
+        OUTPUT.mkdir(parents=True, exist_ok=True)
+        advice.save(OUTPUT / "weak.json")
+        self.assertNotIn("Infinity", (OUTPUT / "weak.json").read_text(encoding="utf-8"))
+
+    def test_the_largest_seed(self):
+        scan = al.Scan(sphere(), "Airport16", seed=2**31 - 1)
+        self.assertEqual(scan.advise(**{**EASY, "beams": 50}).table["verdict"].size, 37)
+
     def test_what_cannot_be_met(self):
         advice = al.Scan(SCENE, "Airport16").advise(energy=1e-6, beams=50)
         self.assertIsNone(advice.settings)

@@ -211,6 +211,15 @@ class Movers(unittest.TestCase):
             self.assertAlmostEqual(sum(by_object(view, "solid_angle_share").values()), 1.0, delta=1e-9)
 
 
+class Fields(unittest.TestCase):
+    def test_full_model_is_what_was_set(self):
+        view = look(north(), plate(-40, 40, 100, 3))
+        for wanted in (False, True):
+            view.SetFullModel(wanted)
+            view.Update()
+            self.assertEqual([view.GetOutputDataObject(port).GetFieldData().GetArray("full_model").GetValue(0) for port in range(3)], [wanted] * 3)
+
+
 class Bad(unittest.TestCase):
     def test_a_beam_that_is_not_there(self):
         for beam in (1, -1):

@@ -24,12 +24,12 @@ def turned(degrees):
     return np.cos(half), 0, 0, -np.sin(half)
 
 
-def one(size, place, heading=0.0, surfaces=None, points=3, **settings):
-    """The words of the line of a car of so much (x right, y forward, z up) in the middle of its frame. @param settings of the sensor"""
+def one(size, place, heading=0.0, surfaces=None, points=3, name="car", **settings):
+    """The words of the line of a mover of so much (x right, y forward, z up) in the middle of its frame. @param settings of the sensor"""
     low = -np.array(size) / 2
     thing = al.mover(al.mesh(*box(low, -low)), [place, place], [0, 10], [turned(heading)] * 2)
     _set(thing.GetCellData(), "object_id", np.full(thing.GetNumberOfCells(), 1007, np.int32))
-    _set(thing.GetFieldData(), "object_classes", ["car"])
+    _set(thing.GetFieldData(), "object_classes", [name])
     movers = vtkMultiBlockDataSet()
     movers.SetBlock(0, thing)
     report = al.mesh([place], np.empty((0, 3), int))
@@ -49,6 +49,11 @@ class TestBoxes(unittest.TestCase):
         self.assertEqual((words[0], words[-2:]), ("car", ["1007", "3"]))
         self.assertEqual([float(word) for word in words[1:-2]], [0, 0, 100, 30, 5, 4, 2, 1.5, round(-np.pi / 2, 4)])
         self.assertEqual(float(one((2, 4, 1.5), (0, 100, 0), heading=-30)[9]), round(np.radians(30), 4))
+
+    def test_a_name_is_one_word(self):
+        for name, expected in (("fire  engine", "fire_engine"), ("a\tb", "a_b"), ("", "object"), ("Löschfahrzeug", "Löschfahrzeug")):
+            words = one((2, 4, 1.5), (-30, 100, 5), name=name)
+            self.assertEqual((words[0], len(words)), (expected, 12))
 
     def test_turns_between_poses(self):
         from avianlidar.apps._boxes import _rotation

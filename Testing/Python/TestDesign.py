@@ -61,7 +61,8 @@ class Formulas(unittest.TestCase):
         texts = ("__import__('os').system('touch broken')", "x.__class__", "().__class__.__bases__", "9 ** 9 ** 9 ** 9", "2 ** 10000000000", "10 ** 400 * 0",
                  "1 / 0", "1 / (x - 3)", "(-8) ** (1 / 3)", "'a' * 9", "lambda: 1", "[1]", "x if x else 1", "min()", "min(x)", "exp(1e9)", "(" * 300 + "1" + ")" * 300,
                  "1e999", "1e999 - 1e999", "9" * 500, "9" * 5000, "open('f')", "True", "1j", "x(2)", "max(*[1, 2])", "log(0)", "", "x x", "sqrt(x, 1)", "f'{x}'", "(z := 1)",
-                 "x @ x", "x // 2", "x % 2", "x < 2", "x & 1", "min(x, key=abs)", "\x00", "x\n= 1", "z", "eval('1')", "sqrt", "print(x)", "x; x", "#", "~x", "not x")
+                 "x @ x", "x // 2", "x % 2", "x < 2", "x & 1", "min(x, key=abs)", "\x00", "x\n= 1", "z", "eval('1')", "sqrt", "print(x)", "x; x", "#", "~x", "not x",
+                 "~" * 400 + "x", "not " * 240 + "x", "-" * 995 + "x")
         for text in texts:
             with self.subTest(text[:40]), self.assertRaisesRegex(ValueError, re.escape(text.strip()[:20])):
                 Formula(text, ["x"])({"x": 3.0})
@@ -209,6 +210,15 @@ class Work(unittest.TestCase):
             self.assertEqual(float(changed["change_of_detected [1]"]) > 0.0, up)
             self.assertAlmostEqual(float(changed["to"]) / float(changed["from"]), 1.2 if up else 0.8, delta=1e-5)
 
+    def test_a_formula_that_fails_beyond_the_bounds(self):
+        """Its row of the sensitivities says so, and the answer is there."""
+        study = study_of(fresh("formula"), {"bounds": {"receiver_aperture": [0.02]}, "share": 0.05, "cost": "-log(0.021 - receiver_aperture)"}).look()
+        less, more = study.sensitivities
+        self.assertEqual((less["refused"], math.isfinite(less["cost"])), ("", True))
+        self.assertRegex(more["refused"], r"design.cost: -log\(0.021 - receiver_aperture\): cannot be calculated")
+        _design_page.write(study)
+        self.assertTrue((study.folder / "design.html").exists())
+
     def test_what_no_design_has(self):
         study = looked(study_of(fresh("none"), {"share": 0.999}))
         self.assertIsNone(study.chosen)
@@ -272,11 +282,20 @@ class Work(unittest.TestCase):
         weak, strong = study.finalists
         self.assertLess(weak.tracked.value + 0.1, strong.tracked.value)
         self.assertIs(study.chosen, strong)
-        birds = list(csv.DictReader((where / "out" / "tracks" / "1" / "birds.csv").read_text(encoding="utf-8").splitlines()))
+        folders = sorted((where / "out" / "tracks").iterdir(), key=lambda folder: folder.stat().st_mtime_ns)
+        self.assertEqual(len(folders), 2)
+        birds = list(csv.DictReader((folders[1] / "birds.csv").read_text(encoding="utf-8").splitlines()))
         gulls = [bird for bird in birds if bird["species"] == "herring gull"]
         self.assertEqual((strong.tracked.number, strong.tracked.value), (len(gulls), sum(bird["found_s"] != "" for bird in gulls) / len(gulls)))
         _design_page.write(study)
         self.assertIn("tracks 10 % of herring gulls of the scenario at least once", _design_page.answers(study)[0])
+        # The same designs by other numbers are in the same folders.
+        names = {folder.name for folder in folders}
+        again = study_of(where, {"measure": "tracked", "scenario": scenario.name, "finalists": 1, "share": 0.1, "bounds": {"pulse_energy": [3.6e-4]}},
+                         heights=[0, 40], sensor={"preset": "Search905"})
+        self.assertEqual([one.number for one in again.candidates], [0])
+        looked(again)
+        self.assertEqual(({folder.name for folder in (where / "out" / "tracks").iterdir()}, again.chosen.tracked), (names, strong.tracked))
 
 
 class Wrong(unittest.TestCase):

@@ -1,9 +1,12 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Documentation/glossary.md has every array of the echo filter's outputs, and every name in it is there with its unit."""
+import functools
 import os
 import pathlib
 import re
 import unittest
+
+from vtkmodules.vtkCommonCore import vtkDataArray
 
 import avianlidar as al
 from avianlidar import vtkAvianLidar as wrapped
@@ -31,7 +34,27 @@ def outputs():
             yield al.Cloud(scan.algorithm.GetOutputDataObject(port))
 
 
+@functools.lru_cache
+def of_advisor():
+    """Names and units of the advisor's table and its field data."""
+    advisor = wrapped.vtkAvianLidarAdvisor()
+    scan = al.Scan(al.Scene(WALL), al.Sensor("Airport16", azimuth_step=5))
+    for port in (0, 1):
+        advisor.SetInputConnection(port, scan.algorithm.GetInputConnection(port, 0))
+    advisor.SetSampleBeams(50)
+    advisor.Update()
+    table = advisor.GetTable()
+    arrays = [table.GetColumn(i) for i in range(table.GetNumberOfColumns())] + [table.GetFieldData().GetAbstractArray(name) for name in ("advised", "advice")]
+    return {array.GetName(): array.GetInformation().Get(vtkDataArray.UNITS_LABEL()) or "" for array in arrays}
+
+
 class Glossary(unittest.TestCase):
+    def test_every_array_of_the_advisor(self):
+        for name, unit in of_advisor().items():
+            with self.subTest(array=name):
+                self.assertEqual(NAMED[name], unit)
+
+
     def test_every_array_of_the_echo_filter(self):
         found = 0
         for cloud in outputs():
@@ -50,7 +73,7 @@ class Glossary(unittest.TestCase):
 
     def test_every_name_is_there(self):
         header = (SOURCE / "Filters" / "Private" / "Common" / "vtkAvianLidarNames.h").read_text(encoding="utf-8")
-        units = dict(re.findall(r'constexpr Name \w+\{ "(\w+)", "([^"]*)" \};', header))
+        units = {**dict(re.findall(r'constexpr Name \w+\{ "(\w+)", "([^"]*)" \};', header)), **of_advisor(), "semantic_label": ""}  # the last: by the reader
         others = set(COEFFICIENTS).union(*(cloud.fields for cloud in outputs()))
         self.assertGreater(len(NAMED), 90)
         for name, unit in NAMED.items():

@@ -165,6 +165,14 @@ class Sources(unittest.TestCase):
             bare.GetCellData().RemoveArray("roughness")
             self.assertEqual(np.array_equal(energies(al.Scene(bare)), energies(scene)), slope == 0.0)
 
+    def test_a_mesh_of_trimesh(self):
+        """Its `triangles` are points: the corners of each face."""
+        class Trimesh:
+            vertices, faces = np.array(WALL[0], float), np.array(WALL[1])
+            triangles = vertices[faces]
+        scene = al.Scene(Trimesh())
+        self.assertEqual((scene.number_of_triangles, scene.bounds), (12, al.Scene(*WALL).bounds))
+
     def test_errors_say_what_is_expected(self):
         text = OUTPUT / "text.stl"
         text.write_text("no mesh", encoding="utf-8")

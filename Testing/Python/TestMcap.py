@@ -111,9 +111,17 @@ class TestMcap(unittest.TestCase):
             self.assertEqual([marker["scale"][axis] for axis in "xyz"], list(size))
             turned = marker["pose"]["orientation"]
             self.assertAlmostEqual(2 * np.arctan2(turned["z"], turned["w"]), yaw, delta=1e-12)
+        self.put("boxes/000001.txt", "Löschfahrzeug 0 0 1 2 3 1 1 1 0 8 0\n")
+        self.assertEqual([one["ns"] for one in self.read()["messages"][5]["message"]["markers"]], ["", "Löschfahrzeug"])
         self.put("boxes/000002.txt", "bird 0 0 1 2 3\n")
         with self.assertRaisesRegex(ValueError, "000002.txt: expected lines of a class, 9 numbers, an id and a number of points"):
             _mcap.write(self.sequence, self.out)
+
+    def test_words_of_any_letters(self):
+        """CDR: the number of bytes with the last, 0, then UTF-8."""
+        cdr = _mcap._Cdr()
+        cdr.text("Löschfahrzeug")
+        self.assertEqual(bytes(cdr.data), b"\x0f\0\0\0" + "Löschfahrzeug".encode() + b"\0")
 
     def test_poses_of_a_camera(self):
         """KITTI's: x right, y down, z forward. One that drives forward drives along x of the lidar."""

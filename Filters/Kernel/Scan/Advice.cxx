@@ -14,10 +14,11 @@ namespace avianlidar
 {
 namespace
 {
-constexpr double Ghost = 0.5;    ///< share of the energy over two reflections
-constexpr double Surely = 1.645; ///< standard deviations of a one-sided bound of 95 %
-constexpr double OfNone = 3.0;   ///< 95 % bound of a count of which none was seen
-constexpr double Coarse = 0.25;  ///< of an error asked: the reference of a beam is made finer
+constexpr double Ghost = 0.5;           ///< share of the energy over two reflections
+constexpr double Surely = 1.645;        ///< standard deviations of a one-sided bound of 95 %
+constexpr double OfNone = 3.0;          ///< 95 % bound of a count of which none was seen
+constexpr double FewestCarriers = 30.0; ///< beams from which a bound of an rms follows
+constexpr double Coarse = 0.25; ///< of an error asked: the reference of a beam is made finer
 constexpr int FinerScans = 8;
 constexpr int MostTurns = 5;
 constexpr double FarSlower = 1.5; ///< than the fastest that is good: no further turns
@@ -130,6 +131,7 @@ struct Counted
 struct Sums
 {
   double x = 0.0, y = 0.0, xx = 0.0, xy = 0.0, yy = 0.0;
+  double carriers = 0.0; ///< beams of which y is not 0
 };
 
 /// What follows from the settings of a trial while it is measured.
@@ -165,7 +167,7 @@ public:
 private:
   /// Scan some beams with some settings. @param timed one thread
   ScanResult scan(const AdviceSettings& settings, std::int32_t seed, const ScanBeams& beams,
-    TraceCache& cache, bool timed = false, bool air = true)
+    TraceCache& cache, bool timed = false, bool air = true, bool sights = false)
   {
     ScanSetup setup = this->Setup;
     settings.apply(setup.settings);
@@ -178,7 +180,6 @@ private:
     }
     planModel(setup);
     ScanResult result;
-    const bool sights = beams.size() == this->Candidates.size() && setup.movers;
     const auto goOn = [this](double) { return this->Host.keepGoing(this->Done); };
     if (!simulateScan(
           setup, beams, timed ? 1 : this->Question.threads, cache, 0, goOn, result, sights))
@@ -202,7 +203,9 @@ private:
     const auto wanted = static_cast<std::size_t>(std::ceil(this->Question.beams * part));
     this->Candidates = pick(count, CandidatesPerBeam * wanted, 1);
     const ScanBeams candidates = someOf(this->All, this->Candidates);
-    const ScanResult seen = this->scan({}, this->Setup.settings.seed, candidates);
+    TraceCache cache;
+    const ScanResult seen =
+      this->scan({}, this->Setup.settings.seed, candidates, cache, false, true, true);
     this->Done = 0.1;
     std::array<std::vector<std::size_t>, 4> kinds; // a mover, nothing, no echo, echo
     std::vector<char> moves(candidates.size(), 0);
@@ -237,8 +240,9 @@ private:
     for (std::size_t k = 0; k < 4; ++k)
     {
       const std::size_t most = k == 3 ? left : wanted / (k == 1 ? 8 : 4);
-      numbers[k] = std::min({ kinds[k].size(), most, left });
-      left -= numbers[k];
+      // One at least of each, also of a few beams: else its weight were lost.
+      numbers[k] = std::min(kinds[k].size(), std::max(std::size_t{ 1 }, std::min(most, left)));
+      left -= std::min(left, numbers[k]);
     }
     numbers[2] += std::min(left, kinds[2].size() - numbers[2]);
     std::vector<std::size_t> which;
@@ -499,8 +503,9 @@ private:
       sums.xx += drawn * x * x;
       sums.xy += drawn * x * y;
       sums.yy += drawn * y * y;
+      sums.carriers += y > 0.0 ? 1.0 : 0.0;
     }
-    for (double* one : { &sums.x, &sums.y, &sums.xx, &sums.xy, &sums.yy })
+    for (double* one : { &sums.x, &sums.y, &sums.xx, &sums.xy, &sums.yy, &sums.carriers })
     {
       *one = this->Host.sum(*one);
     }
@@ -567,7 +572,12 @@ private:
       if (error == EchoError)
       {
         const double none = sums.y > 0.0 ? OfNone * sums.yy / (sums.y * sums.y) : 0.0;
-        errors[error] = { ratio, std::max(0.0, ratio - by - own), std::max(ratio + by, none) };
+        errors[error] = { ratio, std::max(0.0, ratio - by - own),
+          std::max(ratio + by, none) + own };
+      }
+      else if (sums.carriers < FewestCarriers)
+      {
+        errors[error] = { std::sqrt(ratio), 0.0, std::numeric_limits<double>::infinity() };
       }
       else
       {
@@ -595,7 +605,8 @@ private:
   void measure(const AdviceSettings& settings, int turn, Measuring& measuring)
   {
     TraceCache cache; // keeps patterns of rays, which a whole scan makes once
-    const std::int32_t seed = this->Setup.settings.seed + turn;
+    const auto seed = static_cast<std::int32_t>(
+      static_cast<std::uint32_t>(this->Setup.settings.seed) + static_cast<std::uint32_t>(turn));
     this->count(this->scan(settings, seed, this->Sample, cache), measuring.counted);
     measuring.seconds.push_back(this->timeOf(settings, seed, cache));
   }

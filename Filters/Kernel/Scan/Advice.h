@@ -20,7 +20,7 @@
  *
  * Bounds of errors are one-sided with 95 %: from the spread among beams (of a share without any
  * wrong echo 3/n), plus the reference's own error. An error is met if the upper bound is below what
- * is asked.
+ * is asked. There is none (infinite) of energies and ranges that fewer than 30 beams carry.
  *
  * Source: none.
  * Valid: noise is off: it belongs to the receiver and is no error. Errors and choices are the same

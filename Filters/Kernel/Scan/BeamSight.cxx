@@ -193,6 +193,10 @@ std::vector<SeenSurface> sightAlong(const ScanSetup& setup, const ScanBeams& bea
       surface.range /= surface.weight;
       surface.cosine /= surface.weight;
     }
+    else
+    {
+      surface.range = surface.nearest = surface.farthest = std::numeric_limits<double>::quiet_NaN();
+    }
     if (surface.weight > 0.0 || surface.share > 0.0)
     {
       seen.push_back(surface);

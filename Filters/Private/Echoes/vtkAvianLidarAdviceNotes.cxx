@@ -55,8 +55,11 @@ std::string Errors(const std::array<double, AdviceErrors>& e)
 
 std::string Errors(const std::array<MeasuredError, AdviceErrors>& e)
 {
-  return "energy " + PerCent(e[EnergyError].value) + " (at most " + PerCent(e[EnergyError].high) +
-    "), range " + Digits(e[RangeError].value, 3) + " m (" + Digits(e[RangeError].high, 3) +
+  const std::string none = "not told: fewer than 30 beams have an echo of twice the limit";
+  return "energy " + PerCent(e[EnergyError].value) + " (" +
+    (std::isinf(e[EnergyError].high) ? none : "at most " + PerCent(e[EnergyError].high)) +
+    "), range " + Digits(e[RangeError].value, 3) + " m (" +
+    (std::isinf(e[RangeError].high) ? none : Digits(e[RangeError].high, 3)) +
     "), echoes missed or invented " + PerCent(e[EchoError].value) + " (" +
     PerCent(e[EchoError].high) + ")";
 }

@@ -87,7 +87,7 @@ class Boxes:
         width, length, height = bounds[:, 1] - bounds[:, 0]  # x is right, y forward
         centre = (rotation @ bounds.mean(axis=1) + place - self.pose[:, 3]) @ self.pose[:, :3]
         ahead = rotation[:, 1] @ self.pose[:, :3]
-        name = str(fields["object_classes"][0]).replace(" ", "_")
+        name = "_".join(str(fields["object_classes"][0]).split()) or "object"
         numbers = (*centre, length, width, height, np.arctan2(ahead[1], ahead[0]))
         return f"{name} {truncated:.2f} {hidden:.2f} {' '.join(f'{value:.4f}' for value in numbers)} {number} {points}\n"
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import dataclasses
+import hashlib
 import io
 import itertools
 import math
@@ -400,7 +401,10 @@ class Study:
             for sign in (-1.0, 1.0):
                 value = about[name] + sign * (max(round(step), 1.0) if FIELDS[name].whole else step)
                 one = Candidate(-1, {**about, name: value})
-                self._judge(one)
+                try:
+                    self._judge(one)
+                except Error as error:  # a formula gives no number outside the bounds
+                    one.refused = str(error)
                 changed.append((name, value, one))
         possible = [one for _, _, one in changed if not one.refused]
         shares = {id(one): self._share(values - found, self.weights)
@@ -423,7 +427,7 @@ class Study:
             with naming(f"{self.plan.file}: design.scenario"):
                 tracks = BirdTracks([self.options["scenario"]], learning_scans=learning, threads=self.plan.threads, sensor=sensor, scans_per_sequence=scans,
                                     number_of_scans=max(scans * self.scenario["number_of_scans"] // each, 1))
-            folder = self.folder / "tracks" / f"{one.number}"
+            folder = self.folder / "tracks" / hashlib.sha256(repr(one.values).encode()).hexdigest()[:16]
 
             def step(what: str, done: int, total: int, which: str = f"design {number + 1} of {len(self.finalists)}") -> None:
                 self._tell(f"{which}: {what}", done, total)

@@ -37,7 +37,10 @@ class Formula:
             body = ast.parse(text.strip(), mode="eval").body
         except (SyntaxError, ValueError, MemoryError, RecursionError) as error:
             raise ValueError(f"{text}: is no formula ({getattr(error, 'msg', error) or 'it is nested too deeply'})") from None
-        self._work = self._compiled(body)
+        try:
+            self._work = self._compiled(body)
+        except RecursionError:
+            raise ValueError(f"{text[:40]}...: is no formula (it is nested too deeply)") from None
 
     def _compiled(self, node: ast.AST) -> Callable[[Values], float]:
         if isinstance(node, ast.Constant) and type(node.value) in (int, float):

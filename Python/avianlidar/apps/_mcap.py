@@ -128,8 +128,9 @@ class _Cdr:
             self.data += bytes(-len(self.data) % struct.calcsize(code)) + struct.pack("<" + code, value)
 
     def text(self, word: str) -> None:
-        self.put("I", len(word) + 1)
-        self.data += word.encode("ascii") + b"\0"
+        content = word.encode() + b"\0"
+        self.put("I", len(content))
+        self.data += content
 
     def header(self, time: int, frame: str) -> None:
         self.put("i", time // 10**9)
@@ -199,13 +200,13 @@ def _boxes(time: int, file: pathlib.Path) -> bytes:
     """MarkerArray: those of the scan before go, and a box of each line comes."""
     cdr = _Cdr()
     try:
-        lines = [line.split() for line in read_regular(file).decode("ascii").splitlines()]
+        lines = [line.split() for line in read_regular(file).decode().splitlines()]
         cdr.put("I", 1 + len(lines))
         _marker(cdr, time, "", 0, _DELETE_ALL, (0,) * 7)
         for name, truncated, hidden, *numbers, number, points in lines:
             words = f"truncated {float(truncated):.2f}, hidden {float(hidden):.2f}, points {int(points)}"
             _marker(cdr, time, name, int(number), _ADD, [float(word) for word in numbers], words)
-    except (ValueError, struct.error):  # also words that are no ASCII
+    except (ValueError, struct.error):  # also words that are no UTF-8
         raise ValueError(f"{file}: expected lines of a class, 9 numbers, an id and a number of points") from None
     return cdr.message()
 
