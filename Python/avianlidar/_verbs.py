@@ -500,6 +500,9 @@ def design(options) -> None:
         study.write()
     bars.close()
     if not ranks.rank:
+        refused = [one.refused for one in study.candidates if one.refused]
+        if refused:
+            warn(f"{len(refused)} of {len(study.candidates)} designs are none, as the sensor refuses them: {refused[0]}")
         print("\n".join(_design_page.answers(study)))
         print(f"{options.out / 'design.html'}: the page; its tables and pictures are beside it")
 

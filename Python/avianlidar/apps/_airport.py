@@ -173,8 +173,10 @@ def read_extract(file: pathlib.Path, known: Dict[str, Any]) -> Tuple[List[Featur
             if not tags:
                 continue
             is_aerodrome = tags.get("aeroway") == "aerodrome"
-            kind = COAST if tags.get("natural") == COAST and form != "point" else next(
-                (kind for kind, rule in known["kinds"].items() if form in rule["from"] and any(_fits(tags, one) for one in rule["tags"])), None)
+            kind = next((kind for kind, rule in known["kinds"].items() if form in rule["from"] and any(_fits(tags, one) for one in rule["tags"])),
+                        None)
+            if tags.get("natural") == COAST and form != "point":
+                kind = COAST
             if is_aerodrome and "heliport" in (tags.get("aerodrome:type"), tags.get("aerodrome")):
                 continue
             if is_aerodrome is False and (kind is None or any(_fits(tags, one) for one in known["not"])):

@@ -11,6 +11,8 @@ from typing import Any, Iterator
 from .._disk import read_regular
 from .._pipeline import Error
 
+KINDS = {"objects": "a scene", "number_of_scans": "a scenario", "siting": "a plan", "coverage": "a plan"}  # by a key that others have not
+SCHEMAS = {"coverage.schema.json": "a plan", "scenario.schema.json": "a scenario"}
 LONGEST = 400  # characters of what a schema says, which may quote a whole list
 
 
@@ -45,6 +47,9 @@ def check_json(document: Any, schema: str, what: str) -> None:
         words = wrong.message if len(wrong.message) <= LONGEST else f"{wrong.message[:LONGEST // 2]} ... {wrong.message[-LONGEST // 2:]}"
         if wrong.validator == "not":
             words = "is not to be given here"
+        if wrong.validator == "required" and not wrong.path:
+            words += next((f": this is {kind}, expected {expected}" for key, kind in KINDS.items() if key in document
+                           for expected in [SCHEMAS.get(schema, "another file")] if expected != kind), "")
         where = [part for part in (what, wrong.json_path.removeprefix("$").removeprefix(".")) if part]
         raise Error(": ".join([*where, words]))
 

@@ -432,6 +432,8 @@ def look(scene, sensor, sites, places, species: Sequence[str], folder=None, rank
                 warnings.warn(f"kept coverage is damaged and is made again: {', '.join(damaged)}", RuntimeWarning, stacklevel=callers_level())
             todo = [i for i in range(len(sites)) if i not in kept]
             mine = todo[ranks.rank::ranks.size]
+            if len(sites):
+                sensor.position = tuple(sites[0])  # who is warned of a place is warned of one that was asked for
             areas = [cover.effective_area] * len(species)
             if area_factor != 1.0:
                 areas = [area_factor * _area(cover, name) for name in species]
