@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import pathlib
-from typing import Any, Dict, List, Optional, Sequence
+from typing import Any, Dict, List, Optional, Sequence, Tuple
 
 import numpy as np
 
@@ -122,20 +122,30 @@ def two_sentences(plan: Plan, view: Plan, site: Optional[Dict[str, Any]], reache
 
 def _how_far(view: Plan, reaches: Dict[str, Any]) -> str:
     """How far birds are seen, and where that is at the heights asked for."""
+    low, high = reach.band(view.sensor)
+    said = f"Within its beams, {low:.1f} to {high:.1f}° up, one scan detects {half_and_tenth(reaches)}"
+    if not view.asked:
+        return f"{said}."
+    seen, never = in_band(view, reaches, "\u00a0m up")
+    where = [*(["at " + ", ".join(seen)] if seen else []), *([f"nowhere at {listed(never)} m"] if never else [])]
+    return f"{said}; half are in its beams and near enough {', and '.join(where)}."
+
+
+def half_and_tenth(reaches: Dict[str, Any]) -> str:
+    """To which range a half and a tenth of each species are detected."""
     def of(name: str, found: reach.Reach) -> str:
         if found.to(0.1) == 0.0:
             return f"less than a tenth of {name}s at any range"
         half = f"half of {name}s to {metres(found.to(0.5))}" if found.to(0.5) > 0.0 else f"at no range half of {name}s"
         return f"{half} and a tenth to {metres(found.to(0.1))}"
-    low, high = reach.band(view.sensor)
-    said = f"Within its beams, {low:.1f} to {high:.1f}° up, one scan detects {'; '.join(of(*one) for one in reaches['of'].items())}"
-    if not view.asked:
-        return f"{said}."
+    return "; ".join(of(*one) for one in reaches["of"].items())
+
+
+def in_band(view: Plan, reaches: Dict[str, Any], unit: str) -> Tuple[List[str], List[str]]:
+    """From where to where half of the birds are in the beams and near enough at the heights asked for; and heights (m) where nowhere."""
     rows = reach.heights_in_band(view, view.heights, max(one.to(0.5) for one in reaches["of"].values()))
-    seen = [f"{row['height']:g}\u00a0m up from {row['from']:.0f} to {row['to']:.0f}\u00a0m away" for row in rows if row["to"] > row["from"]]
-    never = [f"{row['height']:g}" for row in rows if not row["to"] > row["from"]]
-    where = [*(["at " + ", ".join(seen)] if seen else []), *([f"nowhere at {listed(never)} m"] if never else [])]
-    return f"{said}; half are in its beams and near enough {', and '.join(where)}."
+    return ([f"{row['height']:g}{unit} from {row['from']:.0f} to {row['to']:.0f}\u00a0m away" for row in rows if row["to"] > row["from"]],
+            [f"{row['height']:g}" for row in rows if not row["to"] > row["from"]])
 
 
 def next_steps(plan: Plan, view: Plan, site: Optional[Dict[str, Any]], advice: Optional[Dict[str, Any]]) -> List[Dict[str, str]]:

@@ -156,7 +156,8 @@ def write(study: Study) -> None:
              "bounds": _bounds(name, bounds[name]) if name in bounds else "the same in all designs", "swept": name in bounds} for name in FIELDS]
     write_whole(out / "design.html", render(
         "design.html.jinja", question=plan.plan.get("description") or f"What must the lidar be that {does(study).replace(' ', f' {100 * study.asked:g} % of ', 1)}?",
-        answer=answers(study), study=study, stands=stands(study), front=front, shown=shown, fields=[FIELDS[name] for name in study.swept], names=study.swept, told=TOLD, change=CHANGE, refused=refused,
+        answer=answers(study), study=study, stands=stands(study), front=front, shown=shown, fields=[FIELDS[name] for name in study.swept],
+        names=study.swept, told=TOLD, change=CHANGE, refused=refused,
         base=base, version=__version__, does=does(study), places=len(plan.points), name=plan.name, count=len(study.candidates),
         cells=lambda one: [FIELDS[name].text(one.values[name]) for name in study.swept],
         verdict=lambda one: "–" if math.isnan(study.of(one).value) else

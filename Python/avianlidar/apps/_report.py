@@ -314,19 +314,12 @@ class Report:
                           lambda axes: pictures.draw_answer(axes, view, shown["found_at"]))
 
     def _range_words(self, view: Plan, reaches: Dict[str, Any]) -> str:
-        def of(name: str, found: reach.Reach) -> str:
-            if found.to(0.1) == 0.0:
-                return f"less than a tenth of {name}s at any range"
-            half = f"half of {name}s to {metres(found.to(0.5))}" if found.to(0.5) > 0.0 else f"at no range half of {name}s"
-            return f"{half}, a tenth to {metres(found.to(0.1))}"
-        said = f"Within the band of {view.name}, in free air, one scan detects {'; '.join(of(*one) for one in reaches['of'].items())}"
+        said = f"Within the band of {view.name}, in free air, one scan detects {_answer.half_and_tenth(reaches)}"
         if not view.asked:
             return f"{said}."
-        rows = reach.heights_in_band(view, view.heights, max(one.to(0.5) for one in reaches["of"].values()))
-        seen = [f"{row['height']:g} m from {row['from']:.0f} to {row['to']:.0f} m away" for row in rows if row["to"] > row["from"]]
-        never = [f"{row['height']:g} m" for row in rows if not row["to"] > row["from"]]
+        seen, never = _answer.in_band(view, reaches, " m")
         return (f"{said}. At the heights asked for, half of them are in its band and near enough at "
-                f"{', '.join(seen) if seen else 'none'}{'; nowhere at ' + ', '.join(never) if seen and never else ''}.")
+                f"{', '.join(seen) if seen else 'none'}{f'; nowhere at {_answer.listed(never)} m' if seen and never else ''}.")
 
     def write(self, file) -> pathlib.Path:
         """Write the page, and beside it a folder of its name and `_files` with shares.csv, range.csv, weather.csv, pictures and tables of sites.
@@ -366,17 +359,20 @@ class Report:
         known = field_values(first.regions.data)
         made = ("file", "hours", *(["year"] if "metar" in self.plan else []))
         asked = {name: part for name, part in self.plan.items() if name not in made}
+        at_first, found = views.index(answering[0]), answering[0].overall
         return render(
             "report.html.jinja", filter_metres=metres, filter_share=percent,
             question=self.plan.get("description") or f"Where is a {first.bird} detected?",
-            asked=self.asked, chance=percent(answering[0].overall["detection_probability"], answering[0].overall["detection_std_error"]), said=_answer.two_sentences(first, answering[0], site, reaches[0], weather["over_the_year"][views.index(answering[0])]),
-            first=self._first_picture(answering[0], shown[views.index(answering[0])], folder),
+            asked=self.asked, chance=percent(found["detection_probability"], found["detection_std_error"]),
+            said=_answer.two_sentences(first, answering[0], site, reaches[0], weather["over_the_year"][at_first]),
+            first=self._first_picture(answering[0], shown[at_first], folder),
             steps=_answer.next_steps(first, answering[0], site, advices[0]), answer=answers,
             bird=first.bird, cover=first.coverage, area=float(np.ravel(known["effective_area"])[0]),
             attenuation=float(known["attenuation_coefficient"]), plan=first, places=int(first.overall["places"]),
             assumptions=assumptions(self.plans), names=[plan.name for plan in self.plans], views=shown, reaches=reaches,
-            advice=[found for found in advices if found],
-            tables=self._tables(views), sites=sited, weather=weather, hours=self.plan.get("hours", ""), fewest=FEWEST_DRAWS, least=LEAST, least_words=LEAST_WORDS, colours=pictures.gradient(),
+            advice=[one for one in advices if one],
+            tables=self._tables(views), sites=sited, weather=weather, hours=self.plan.get("hours", ""), fewest=FEWEST_DRAWS, least=LEAST,
+            least_words=LEAST_WORDS, colours=pictures.gradient(),
             statuses=list(zip(first.coverage.status_names, pictures.STATUS_COLOURS)),
             tracks=self.tracks,
             scene={"name": pathlib.Path(self.plan["scene"]).name, "comment": _lines(self.scene.get("comment")),
