@@ -2,26 +2,13 @@
 """Designs that two ranks share are those of one process. Arguments: mpiexec, pvbatch."""
 
 import json
-import os
-import pathlib
-import shutil
-import subprocess
 import sys
 import unittest
 
-SOURCE = pathlib.Path(os.environ["AVIANLIDAR_SOURCE_DIR"])
+from ranktools import SOURCE, fresh, on_ranks, run
+
 PLAN = SOURCE / "Examples" / "design" / "hongqiao.coverage.json"
 WRITTEN = ("design.csv", "sensitivities.csv", "front.png", "sensitivities.png", "design.html")
-
-
-def fresh(name):
-    folder = pathlib.Path(os.environ["AVIANLIDAR_TEST_OUTPUT_DIR"]) / "TestDesignRanks" / name
-    shutil.rmtree(folder, ignore_errors=True)
-    return folder
-
-
-def run(*command):
-    return subprocess.run([*map(str, command)], capture_output=True, text=True, check=False, timeout=200)
 
 
 def few(folder, **coverage):
@@ -37,14 +24,9 @@ def few(folder, **coverage):
     return "-m", "avianlidar", "design", file, "-o", folder / "out"
 
 
-def on_ranks(*arguments):
-    mpiexec, pvbatch = sys.argv[1:3]
-    return run(mpiexec, "-n", "2", pvbatch, "--sym", *arguments)
-
-
 class Ranks(unittest.TestCase):
     def test_share_designs(self):
-        alone, together = fresh("alone"), fresh("together")
+        alone, together = fresh("TestDesignRanks", "alone"), fresh("TestDesignRanks", "together")
         done = run(sys.executable, *few(alone))
         self.assertEqual(done.returncode, 0, done.stderr)
         command = few(together)
@@ -60,7 +42,7 @@ class Ranks(unittest.TestCase):
             self.assertEqual((alone / "out" / name).read_bytes(), (together / "out" / name).read_bytes(), name)
 
     def test_an_error_ends_the_job(self):
-        done = on_ranks(*few(fresh("bad"), species="dodo"))
+        done = on_ranks(*few(fresh("TestDesignRanks", "bad"), species="dodo"))
         self.assertNotEqual(done.returncode, 0)
         self.assertIn("Species is 'dodo'", done.stderr)
 

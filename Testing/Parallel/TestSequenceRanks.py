@@ -2,67 +2,58 @@
 """Sequences and tracks in them that two ranks share are those of one process. Arguments: mpiexec, pvbatch."""
 
 import json
-import os
-import pathlib
-import subprocess
 import sys
 import unittest
 
-SOURCE = pathlib.Path(os.environ["AVIANLIDAR_SOURCE_DIR"])
+from ranktools import SOURCE, on_ranks
+
 sys.path.insert(0, str(SOURCE / "Testing" / "Python"))
 import TestSequence as one  # noqa: E402
 import avianlidar as al  # noqa: E402
 from avianlidar._disk import LOCK, only_run  # noqa: E402
-
-LAUNCHER = sys.argv[1:3]
-
-
-def on_ranks(*arguments, verb="sequence"):
-    mpiexec, pvbatch = LAUNCHER
-    return subprocess.run([mpiexec, "-n", "2", pvbatch, "--sym", "-m", "avianlidar", verb,
-                           *map(str, arguments)], capture_output=True, text=True, check=False, timeout=200)
+from exampletools import emptied  # noqa: E402
 
 
 class Ranks(unittest.TestCase):
     def test_share_sequences(self):
-        home = one.folder("ranks")
+        home = emptied("sequence", "ranks")
         file = one.scenario_file(home, scans_per_sequence=8, number_of_scans=20)
         wanted = al.Sequence(file).write(home / "alone")["sequences"]
-        done = on_ranks(file, "-o", home / "together")
+        done = on_ranks("-m", "avianlidar", "sequence", file, "-o", home / "together")
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertEqual(json.loads((home / "together" / "manifest.json").read_text())["sequences"], wanted)
 
     def test_share_tracks(self):
         """Three sequences of different length, so that one rank has more to do."""
-        home = one.folder("ranks-tracks")
+        home = emptied("sequence", "ranks-tracks")
         file = one.scenario_file(home, scans_per_sequence=8, number_of_scans=22)
         al.Sequence(file).write(home / "made")
         al.BirdTracks([home / "made"], learning_scans=3).write(home / "alone")
-        done = on_ranks(home / "made", "-o", home / "together", "--learn", "3", verb="track")
+        done = on_ranks("-m", "avianlidar", "track", home / "made", "-o", home / "together", "--learn", "3")
         self.assertEqual(done.returncode, 0, done.stderr)
         files = [{path.relative_to(home / name): path.read_bytes() for path in (home / name).rglob("*") if path.is_file()} for name in ("alone", "together")]
         self.assertEqual(*map(sorted, files))
         self.assertEqual([name for name, content in files[0].items() if files[1][name] != content], [])
 
     def test_an_error_ends_the_job(self):
-        home = one.folder("ranks-bad")
+        home = emptied("sequence", "ranks-bad")
         file = one.scenario_file(home, birds=[{"pattern": "Crossings", "species": "dodo"}])
-        done = on_ranks(file, "-o", home / "out")
+        done = on_ranks("-m", "avianlidar", "sequence", file, "-o", home / "out")
         self.assertNotEqual(done.returncode, 0)
         self.assertIn("Species is 'dodo'", done.stderr)
 
     def test_a_folder_that_another_run_has(self):
         """An error on all ranks, which does not wait; afterwards the ranks have the folder, which is none's in the end."""
-        home = one.folder("ranks-held")
+        home = emptied("sequence", "ranks-held")
         file = one.scenario_file(home, scans_per_sequence=1, number_of_scans=2)
         with only_run(home / "out"):
-            done = on_ranks(file, "-o", home / "out")
+            done = on_ranks("-m", "avianlidar", "sequence", file, "-o", home / "out")
             self.assertNotEqual(done.returncode, 0)
             self.assertIn(f"{home / 'out'}: another run writes there", done.stderr)
         (home / "other" / LOCK).mkdir(parents=True)  # no rank can lock it
-        done = on_ranks(file, "-o", home / "other")
+        done = on_ranks("-m", "avianlidar", "sequence", file, "-o", home / "other")
         self.assertNotEqual(done.returncode, 0)
-        self.assertEqual(on_ranks(file, "-o", home / "out").returncode, 0)
+        self.assertEqual(on_ranks("-m", "avianlidar", "sequence", file, "-o", home / "out").returncode, 0)
         self.assertEqual(sorted(path.name for path in (home / "out").iterdir()), ["datasheet.md", "manifest.json", "semantic-kitti.yaml", "sequences"])
 
 

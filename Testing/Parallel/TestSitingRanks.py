@@ -2,26 +2,12 @@
 """Sites that two ranks share are those of one process. Arguments: mpiexec, pvbatch."""
 
 import json
-import os
-import pathlib
-import shutil
-import subprocess
 import sys
 import unittest
 
-SOURCE = pathlib.Path(os.environ["AVIANLIDAR_SOURCE_DIR"])
+from ranktools import SOURCE, fresh, on_ranks, run
+
 PLAN = SOURCE / "Examples" / "coverage" / "hongqiao.coverage.json"
-LAUNCHER = sys.argv[1:3]
-
-
-def fresh(name):
-    folder = pathlib.Path(os.environ["AVIANLIDAR_TEST_OUTPUT_DIR"]) / "TestSitingRanks" / name
-    shutil.rmtree(folder, ignore_errors=True)
-    return folder
-
-
-def run(*command):
-    return subprocess.run([*map(str, command)], capture_output=True, text=True, check=False, timeout=550)
 
 
 def few(folder, parts=(), **siting):
@@ -35,14 +21,9 @@ def few(folder, parts=(), **siting):
     return "-m", "avianlidar", "siting", file, "-o", folder
 
 
-def on_ranks(*arguments):
-    mpiexec, pvbatch = LAUNCHER
-    return run(mpiexec, "-n", "2", pvbatch, "--sym", *arguments)
-
-
 class Ranks(unittest.TestCase):
     def test_share_sites(self):
-        alone, together = fresh("alone"), fresh("together")
+        alone, together = fresh("TestSitingRanks", "alone"), fresh("TestSitingRanks", "together")
         done = run(sys.executable, *few(alone))
         self.assertEqual(done.returncode, 0, done.stderr)
         done = on_ranks(*few(together))
@@ -53,7 +34,7 @@ class Ranks(unittest.TestCase):
         self.assertEqual(*files)
 
     def test_share_the_weathers_of_a_year(self):
-        alone, together = fresh("year-alone"), fresh("year-together")
+        alone, together = fresh("TestSitingRanks", "year-alone"), fresh("TestSitingRanks", "year-together")
         year = {"year": [{"weather": ["haze:20000"], "share": 0.75}, {"weather": ["fog:700", "rain:5"], "share": 0.25}]}
         done = run(sys.executable, *few(alone, year, draws=0))
         self.assertEqual(done.returncode, 0, done.stderr)
@@ -69,7 +50,7 @@ class Ranks(unittest.TestCase):
         self.assertEqual({file.name: file.read_bytes() for file in kept}, {file.name: file.read_bytes() for file in (alone / "coverage").iterdir()})
 
     def test_an_error_ends_the_job(self):
-        command = few(fresh("bad"))
+        command = few(fresh("TestSitingRanks", "bad"))
         command[3].write_text(command[3].read_text().replace("herring gull", "dodo"))
         done = on_ranks(*command)
         self.assertNotEqual(done.returncode, 0)
@@ -77,7 +58,7 @@ class Ranks(unittest.TestCase):
 
     def test_an_error_in_the_work_ends_the_job_at_once(self):
         """The other rank would be at its own site for half an hour."""
-        command = few(fresh("work"))
+        command = few(fresh("TestSitingRanks", "work"))
         script = command[3].with_name("work.py")
         script.write_text(f"""
 import time
@@ -96,7 +77,7 @@ _command.main(["siting", {str(command[3])!r}, "-o", {str(command[5])!r}])
 
     def test_what_one_rank_raises_all_hear_of(self):
         """In a script of one's own, where the job goes on."""
-        folder = fresh("raises")
+        folder = fresh("TestSitingRanks", "raises")
         folder.mkdir(parents=True)
         script = folder / "raises.py"
         script.write_text(f"""

@@ -4,24 +4,14 @@
 import os
 
 import client_window
-from client_qt import QAction, QtWidgets
-from client_window import FOLDER, find, later, main_window, panel, photo, until
+from client_qt import QtWidgets
+from client_window import FOLDER, action, find, later, main_window, panel, photo, press, until
 from paraview import servermanager, simple
 
 SCENE = os.path.join(FOLDER, "box.obj")
 SEQUENCE = os.environ["AVIANLIDAR_SEQUENCE"]
 SEES_MUCH = 11408
 WIZARD, BEAM = "avian_lidar_wizard", "avian_lidar_show_beam"
-
-
-def action(name):
-    return main_window().findChild(QAction, name)
-
-
-def press(pressed):
-    later(pressed.trigger)
-    yield 0.5
-    yield 1.5
 
 
 def names():

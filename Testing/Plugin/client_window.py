@@ -45,9 +45,21 @@ def run(steps):
     QtCore.QTimer.singleShot(500, step)
 
 
-def later(action):
+def later(work):
     """Calls without waiting for the end, as that of a dialog."""
-    QtCore.QTimer.singleShot(0, action)
+    QtCore.QTimer.singleShot(0, work)
+
+
+def action(name):
+    """A button or an entry of a menu."""
+    return main_window().findChild(QAction, name)
+
+
+def press(pressed):
+    """As a click on it, until its work is done."""
+    later(pressed.trigger)
+    yield 0.5
+    yield 1.5
 
 
 def until(condition, what, timeout=60):

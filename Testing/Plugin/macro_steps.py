@@ -12,22 +12,12 @@ and after taking that back}."""
 import os
 
 import client_window
-from client_qt import QAction, QtCore, QtWidgets
-from client_window import FOLDER, app, find, later, main_window, photo, until
+from client_qt import QtCore, QtWidgets
+from client_window import FOLDER, action, app, find, main_window, photo, press, until
 from paraview import servermanager, simple
 
 MACROS = ["avian_lidar_airport_scan", "avian_lidar_birds_over_the_airport", "avian_lidar_coverage"]
 KINDS = ["gulls", "crows", "starlings"]
-
-
-def action(name):
-    return main_window().findChild(QAction, name)
-
-
-def press(pressed):
-    later(pressed.trigger)
-    yield 0.5
-    yield 1.5
 
 
 def state(first):

@@ -11,8 +11,8 @@ import json
 import os
 
 import client_window
-from client_qt import QAction, QtCore, QtTest, QtWidgets
-from client_window import FOLDER, app, find, later, main_window, panel, photo, type_in, until
+from client_qt import QtCore, QtTest, QtWidgets
+from client_window import FOLDER, action, app, find, later, main_window, panel, photo, type_in, until
 from paraview import servermanager, simple
 from vtkmodules.vtkCommonCore import VTK_STRING, vtkOutputWindow
 
@@ -42,10 +42,6 @@ def write_scene(good=True):
     objects = [{"name": "ground", "ground": {"size": 200, "height": -1}, "material": "concrete"}]
     with open(SCENE, "w", encoding="utf-8") as file:
         file.write(json.dumps({"version": 1, "objects": objects}) if good else "{")
-
-
-def action(name):
-    return main_window().findChild(QAction, name)
 
 
 def trigger(name):

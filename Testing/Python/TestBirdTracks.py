@@ -2,8 +2,6 @@
 """The report card of tracks: scores of tracks made by hand, times of points, bad input, small sequences as a whole, work that goes on."""
 import csv
 import json
-import os
-import pathlib
 import shutil
 import subprocess
 import sys
@@ -16,9 +14,9 @@ from avianlidar.apps import _card, _following, _maps, _report
 from avianlidar.apps._following import ORIGINS, Input, Live, Scorer
 from avianlidar.apps.siting import Runway
 from boxfiles import CORNERS, LOW, TRIANGLES, stl
+from exampletools import emptied
 from reporttools import quick
 
-OUTPUT = pathlib.Path(os.environ.get("AVIANLIDAR_TEST_OUTPUT_DIR", "/tmp")) / "bird-tracks"
 BIRD, CLUTTER, VEHICLE = (ORIGINS.index(name) for name in ("bird", "surface", "vehicle"))
 EAST = {"type": "Feature", "properties": {"kind": "runway", "name": "09/27"},
         "geometry": {"type": "LineString", "coordinates": [[8.0030, 47.0], [8.0130, 47.0]]}}
@@ -31,13 +29,6 @@ SCENARIO = {
     "birds": [{"pattern": "Crossings", "species": "herring gull", "number_of_birds": 12, "radius": 300, "heights": [4, 20]},
               {"pattern": "Circles", "species": "crow", "number_of_birds": 4, "radius": 200, "heights": [5, 15]}],
     "objects": [{"name": "box", "material": "Wall", "class": "car", "boxes": [[-1, 1, -2, 2, 0, 2]], "speed": 5.0, "route": [[-80, 150, 0], [80, 150, 0]]}]}
-
-
-def folder(name):
-    path = OUTPUT / name
-    shutil.rmtree(path, ignore_errors=True)
-    path.mkdir(parents=True)
-    return path
 
 
 def scenario_file(where, **changes):
@@ -152,7 +143,7 @@ class Scores(unittest.TestCase):
 class Files(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        cls.home = folder("files")
+        cls.home = emptied("bird-tracks", "files")
         cls.file = scenario_file(cls.home)
         cls.made = cls.home / "made"
         al.Sequence(cls.file, threads=1).write(cls.made)
@@ -257,7 +248,7 @@ class Files(unittest.TestCase):
         return where
 
     def test_bad_input(self):
-        empty, cut, changed, other = folder("files/empty"), self.broken("cut"), self.broken("changed"), self.broken("sensor")
+        empty, cut, changed, other = emptied("bird-tracks", "files/empty"), self.broken("cut"), self.broken("changed"), self.broken("sensor")
         (cut / "sequences/01/truth.csv").unlink()
         (changed / "sequences/00/truth.csv").write_text("scan,bird\n", encoding="utf-8")
         manifest = json.loads((other / "manifest.json").read_text())

@@ -19,6 +19,7 @@ from avianlidar.apps._design import FIELDS, is_told, on_the_front, spread
 from avianlidar.apps._design_page import Designs
 from avianlidar.apps._formula import Formula
 from avianlidar.apps._maps import Plan, read_plan
+from exampletools import emptied
 
 BOUNDS = {"pulse_energy": {"from": 1e-4, "to": 4e-3, "logarithmic": True}, "receiver_aperture": [0.005, 0.02]}
 DESIGN = {"share": 0.12, "bounds": BOUNDS, "cost": "1000 * pulse_energy + 100 * receiver_aperture", "designs": 8}
@@ -26,7 +27,7 @@ NIGHT = {"preset": "Search905", "azimuth_step": 2.0, "background_radiance": 0.0}
 
 
 def fresh(name):
-    return TestBirdTracks.folder(f"../design/{name}")
+    return emptied("design", name)
 
 
 def plan_of(where, **changes):

@@ -25,8 +25,8 @@ from avianlidar import _pipeline
 from avianlidar.apps import _labels
 from avianlidar.apps._sequence import STATUSES, SUBSETS, TRUTH, Clutter
 from avianlidar.vtkAvianLidar import vtkAvianLidarBirdSource
+from exampletools import emptied
 
-OUTPUT = pathlib.Path(os.environ.get("AVIANLIDAR_TEST_OUTPUT_DIR", "/tmp")) / "sequence"
 EXAMPLE = pathlib.Path(os.environ["AVIANLIDAR_SOURCE_DIR"]) / "Examples" / "sequence"
 BOX = {"name": "box", "material": "Wall", "class": "car", "boxes": [[-1, 1, -2, 2, 0, 2]], "speed": 10.0, "every": 30,
        "route": [[-80, 150, 0], [80, 150, 0], [80, 250, 0]]}
@@ -40,13 +40,6 @@ SCENARIO = {
     "birds": [{"pattern": "Crossings", "species": "herring gull", "number_of_birds": 20, "radius": 450, "heights": [5, 40]},
               {"pattern": "Circles", "species": "crow", "number_of_birds": 10, "radius": 700, "heights": [8, 50]}],
     "objects": [BOX]}
-
-
-def folder(name):
-    path = OUTPUT / name
-    shutil.rmtree(path, ignore_errors=True)
-    path.mkdir(parents=True)
-    return path
 
 
 def scenario_file(where, **changes):
@@ -125,7 +118,7 @@ def command(*arguments):
 class Files(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        cls.home = folder("files")
+        cls.home = emptied("sequence", "files")
         cls.file = scenario_file(cls.home)
         cls.out = cls.home / "out"
         cls.manifest = al.Sequence(cls.file, threads=1).write(cls.out)
@@ -214,7 +207,7 @@ class Files(unittest.TestCase):
 
     def test_birds_may_have_another_label(self):
         for bird in (259, 300):
-            out = folder(f"birds-{bird}")
+            out = emptied("sequence", f"birds-{bird}")
             al.Sequence(self.file, threads=1, number_of_scans=10, bird_class=bird).write(out)
             check_configuration(self, out, bird)
             self.assertRegex((out / "datasheet.md").read_text(), rf"\| {bird} \| .*birds.* \| \d+")
@@ -273,7 +266,7 @@ class Files(unittest.TestCase):
             sequence = al.Sequence(self.file, threads=1, number_of_scans=scans, birds=[])
             added.clear()
             with unittest.mock.patch.object(_pipeline._Listener, "_observe", count):
-                sequence.write(folder("observers"))
+                sequence.write(emptied("sequence", "observers"))
             numbers.append(len(added))
         self.assertGreater(numbers[0], 0)
         self.assertEqual(*numbers)
@@ -354,7 +347,7 @@ class Shipped(unittest.TestCase):
         example = pathlib.Path(os.environ["AVIANLIDAR_SOURCE_DIR"]) / "Examples" / "sequence"
         sys.path.insert(0, str(example))
         import clutter
-        out = folder("shipped")
+        out = emptied("sequence", "shipped")
         al.Sequence(example / "hongqiao.scenario.json", number_of_scans=60, scans_per_sequence=60).write(out)
         files = [sorted((out / "sequences" / "00" / "velodyne").glob("*.bin"))]
         for share in (0.05, 0.2):
@@ -369,7 +362,7 @@ class Shipped(unittest.TestCase):
     def test_the_picture_has_all_points(self):
         sys.path.insert(0, str(pathlib.Path(os.environ["AVIANLIDAR_SOURCE_DIR"]) / "Examples" / "sequence"))
         import labels
-        out = folder("labels")
+        out = emptied("sequence", "labels")
         counts = labels.main(["--scans", "2", "--out", str(out)])
         written = [np.fromfile(file, "<u4") & 0xffff for file in (out / "sequences").glob("sequences/*/labels/*.label")]
         self.assertEqual(len(written), 2)
@@ -380,7 +373,7 @@ class Shipped(unittest.TestCase):
 
 class BadScenarios(unittest.TestCase):
     def test_are_said_in_one_line(self):
-        home = folder("bad")
+        home = emptied("sequence", "bad")
         bird = {"pattern": "Crossings", "number_of_birds": 3}
         for words, changes in {
                 "number_of_scans: 0 is less than the minimum of 1": {"number_of_scans": 0},
@@ -418,7 +411,7 @@ class BadScenarios(unittest.TestCase):
 
 class Command(unittest.TestCase):
     def test_scan_writes_a_file(self):
-        home = folder("command")
+        home = emptied("sequence", "command")
         scenario_file(home)
         for name in ("echoes.csv", "echoes.vtp", "echoes.bin"):
             done = subprocess.run(command("scan", home / "small.lidarscene.json", "--sensor", "Search905", "--sensor-set",
@@ -429,7 +422,7 @@ class Command(unittest.TestCase):
         self.assertGreater(al.load_cloud(home / "echoes.vtp").number_of_points, 0)
 
     def test_settings_of_a_sequence_are_those_of_a_changed_scenario(self):
-        home = folder("settings")
+        home = emptied("sequence", "settings")
         file = scenario_file(home, number_of_scans=2, scans_per_sequence=2, objects=[])
         done = subprocess.run(command("sequence", file, "-o", home / "told", "--sensor-set", "sway_amplitude=0", "--sensor-set",
                                       "encoder_jitter=0", "--scan-set", "rays_per_beam=50"),

@@ -3,6 +3,8 @@
 import contextlib
 import io
 import os
+import pathlib
+import shutil
 import sys
 
 import numpy as np
@@ -22,6 +24,14 @@ def folder(name):
     os.makedirs(path, exist_ok=True)
     for file in os.listdir(path):
         os.remove(os.path.join(path, file))
+    return path
+
+
+def emptied(*names):
+    """A folder of that path, empty."""
+    path = pathlib.Path(OUTPUT, *names)
+    shutil.rmtree(path, ignore_errors=True)
+    path.mkdir(parents=True)
     return path
 
 
