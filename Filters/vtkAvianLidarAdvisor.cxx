@@ -59,7 +59,7 @@ void FillTrials(const avianlidar::AdviceAnswer& a, vtkTable* table)
     a, table, "seconds_per_beam", "s", [](const AdviceTrial& t) { return t.seconds; });
   const char* const names[][2] = { { "energy_error", "energy_error_most" },
     { "range_error", "range_error_most" }, { "missed_share", "missed_share_most" } };
-  for (int error = 0; error < avianlidar::AdviceErrors; ++error)
+  for (int error = 0; error < avianlidar::ErrorKinds; ++error)
   {
     const char* unit = error == avianlidar::RangeError ? "m" : "1";
     AddTrialColumn<vtkDoubleArray>(a, table, names[error][0], unit,

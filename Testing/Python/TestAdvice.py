@@ -101,9 +101,8 @@ class Advice(unittest.TestCase):
 
     def test_the_same_each_time(self):
         of = [al.Scan(SCENE, "Airport16", number_of_threads=threads).advise(**{**EASY, "beams": 60}).table for threads in (1, 2)]
-        for name in ("energy_error", "range_error", "missed_share"):
-            once = np.flatnonzero((of[0]["turns"] == 1) & (of[1]["turns"] == 1))
-            self.assertTrue(np.array_equal(of[0][name][once], of[1][name][once]), name)
+        for name in set(of[0]) - {"seconds_per_beam", "turns"}:
+            self.assertTrue(np.array_equal(of[0][name], of[1][name]), name)
 
     def test_echoes_too_weak_to_judge(self):
         """All between the limit and twice it: nothing tells the errors of energies and ranges."""

@@ -2,6 +2,7 @@
 #include "Advice.h"
 
 #include "CollisionTreeBuilder.h"
+#include "ConvexBody.h"
 #include "Random.h"
 
 #include <algorithm>
@@ -14,10 +15,6 @@ namespace avianlidar
 {
 namespace
 {
-constexpr double Ghost = 0.5;           ///< share of the energy over two reflections
-constexpr double Surely = 1.645;        ///< standard deviations of a one-sided bound of 95 %
-constexpr double OfNone = 3.0;          ///< 95 % bound of a count of which none was seen
-constexpr double FewestCarriers = 30.0; ///< beams from which a bound of an rms follows
 constexpr double Coarse = 0.25; ///< of an error asked: the reference of a beam is made finer
 constexpr int FinerScans = 8;
 constexpr int MostTurns = 5;
@@ -74,71 +71,11 @@ ScanBeams someOf(const ScanBeams& beams, const std::vector<std::size_t>& which)
   return some;
 }
 
-/// An echo.
-struct Seen
-{
-  double range;
-  double energy;
-  double secondary; ///< share of the energy
-};
-using Beams = std::vector<std::vector<Seen>>;
-
-Beams byBeam(const ScanResult& result)
-{
-  Beams beams(result.reports.size());
-  for (std::size_t e = 0; e < result.echoes.size(); ++e)
-  {
-    beams[result.beamOfEcho[e]].push_back(
-      { result.echoes[e].range, result.echoes[e].energyReceived, result.echoes[e].secondaryShare });
-  }
-  return beams;
-}
-
-std::size_t nearest(const std::vector<Seen>& echoes, double range)
-{
-  std::size_t best = 0;
-  for (std::size_t i = 1; i < echoes.size(); ++i)
-  {
-    best = std::fabs(echoes[i].range - range) < std::fabs(echoes[best].range - range) ? i : best;
-  }
-  return best;
-}
-
-/// Pairs of echoes, each the nearest of the other and within the tolerance, m.
-std::vector<std::array<std::size_t, 2>> matches(
-  const std::vector<Seen>& one, const std::vector<Seen>& other, double tolerance)
-{
-  std::vector<std::array<std::size_t, 2>> pairs;
-  for (std::size_t i = 0; i < one.size() && !other.empty(); ++i)
-  {
-    const std::size_t j = nearest(other, one[i].range);
-    if (nearest(one, other[j].range) == i && std::fabs(one[i].range - other[j].range) < tolerance)
-    {
-      pairs.push_back({ i, j });
-    }
-  }
-  return pairs;
-}
-
-/// A ratio of sums over beams, x over y, of each kind of error.
-struct Counted
-{
-  std::array<double, AdviceErrors> x{};
-  std::array<double, AdviceErrors> y{};
-};
-
-/// Sums over beams of which a ratio and its standard error follow.
-struct Sums
-{
-  double x = 0.0, y = 0.0, xx = 0.0, xy = 0.0, yy = 0.0;
-  double carriers = 0.0; ///< beams of which y is not 0
-};
-
 /// What follows from the settings of a trial while it is measured.
 struct Measuring
 {
-  std::vector<Counted> counted; ///< by beam, the sum over turns
-  std::vector<double> seconds;  ///< of a beam, each turn
+  std::vector<CountedErrors> counted; ///< by beam
+  std::vector<double> seconds;        ///< of a beam, each turn
 };
 
 class Advisor
@@ -151,7 +88,9 @@ public:
     , Question(question)
     , Host(host)
     , Answer(answer)
-    , Tolerance(setup.sensor.rangeUnitLength() + 0.5 * SpeedOfLight * setup.sensor.pulseWidth)
+    , Reference(setup.sensor.rangeUnitLength() + 0.5 * SpeedOfLight * setup.sensor.pulseWidth,
+        2.0 * setup.sensor.lowerEnergyLimit)
+    , Errors(this->Weights, host.sum)
   {
     this->Setup.settings.noise = false;
   }
@@ -265,7 +204,7 @@ private:
   {
     const AdviceSettings finest{ BeamSampleSource::Cells, ReferenceRays, 2, 8 };
     const AdviceSettings plain{ BeamSampleSource::Rays, WitnessRays, 2, 2 };
-    std::array<Beams, 2> reference, witness;
+    std::array<EchoesByBeam, 2> reference, witness;
     for (int i = 0; i < 2; ++i)
     {
       const ScanResult one = this->scan(finest, ReferenceSeeds[i], this->Sample);
@@ -278,12 +217,15 @@ private:
         this->addShares(one);
       }
     }
-    this->compareReference(reference);
-    this->refine();
-    this->Bias.assign(this->Sample.size(), {});
+    this->Reference.resize(this->Sample.size());
     for (std::size_t b = 0; b < this->Sample.size(); ++b)
     {
-      this->compareWitness(b, witness);
+      this->Reference.average(b, { reference[0][b], reference[1][b] });
+    }
+    this->refine();
+    for (std::size_t b = 0; b < this->Sample.size(); ++b)
+    {
+      this->Reference.compare(b, witness);
     }
     this->addConnections(this->scan(
       { BeamSampleSource::Cells, ReferenceRays, 2, 0 }, ReferenceSeeds[0], this->Sample));
@@ -325,81 +267,13 @@ private:
     }
   }
 
-  void compareReference(const std::array<Beams, 2>& reference)
-  {
-    const std::size_t count = this->Sample.size();
-    this->Sure.resize(count);
-    this->Undecided.resize(count);
-    this->Spread.resize(count);
-    for (std::size_t b = 0; b < count; ++b)
-    {
-      this->average(b, { reference[0][b], reference[1][b] });
-    }
-  }
-
-  /// The mean of some scans of a beam, and its variance: the reference.
-  void average(std::size_t b, const std::vector<std::vector<Seen>>& scans)
-  {
-    this->Sure[b].clear();
-    this->Undecided[b].clear();
-    Counted spread;
-    const std::size_t needed = scans.size() - scans.size() / 8;
-    std::vector<std::vector<Seen>> found(scans[0].size());
-    std::vector<Seen> others;
-    for (const std::vector<Seen>& scan : scans)
-    {
-      std::vector<char> known(scan.size(), 0);
-      for (const auto& [i, j] : matches(scans[0], scan, this->Tolerance))
-      {
-        found[i].push_back(scan[j]);
-        known[j] = 1;
-      }
-      for (std::size_t j = 0; j < scan.size(); ++j)
-      {
-        known[j] ? void() : others.push_back(scan[j]);
-      }
-    }
-    for (const std::vector<Seen>& all : found)
-    {
-      const auto n = static_cast<double>(all.size());
-      Seen mean{ 0.0, 0.0, 0.0 };
-      for (const Seen& one : all)
-      {
-        mean.range += one.range / n;
-        mean.energy += one.energy / n;
-        mean.secondary += one.secondary / n;
-      }
-      if (all.size() < needed)
-      {
-        others.push_back(mean);
-        continue;
-      }
-      this->Sure[b].push_back(mean);
-      for (const Seen& one : all)
-      {
-        if (this->isStrong(mean))
-        {
-          const double variance = 1.0 / (n * (n - 1.0)); // of the mean
-          spread.x[EnergyError] += variance * std::pow(one.energy / mean.energy - 1.0, 2);
-          spread.x[RangeError] += variance * std::pow(one.range - mean.range, 2);
-          spread.y[EnergyError] += 1.0 / n;
-          spread.y[RangeError] += 1.0 / n;
-        }
-      }
-    }
-    spread.x[EchoError] = static_cast<double>(others.size());
-    spread.y[EchoError] = static_cast<double>(this->Sure[b].size());
-    this->Undecided[b] = std::move(others);
-    this->Spread[b] = spread;
-  }
-
   /// More and finer scans of beams of which two differ by much: rare paths that carry much light.
   void refine()
   {
     std::vector<std::size_t> which;
     for (std::size_t b = 0; b < this->Sample.size(); ++b)
     {
-      const Counted& spread = this->Spread[b];
+      const CountedErrors& spread = this->Reference.spread()[b];
       if (spread.x[EnergyError] > std::pow(Coarse * this->Question.asked[EnergyError], 2) ||
         spread.x[RangeError] > std::pow(Coarse * this->Question.asked[RangeError], 2))
       {
@@ -407,7 +281,7 @@ private:
       }
     }
     const AdviceSettings finer{ BeamSampleSource::Cells, 4 * ReferenceRays, 2, 8 };
-    std::vector<Beams> scans;
+    std::vector<EchoesByBeam> scans;
     for (int i = 0; i < FinerScans && !which.empty(); ++i)
     {
       const std::int32_t seed = ReferenceSeeds[0] + 100 + i;
@@ -415,129 +289,21 @@ private:
     }
     for (std::size_t k = 0; k < which.size(); ++k)
     {
-      std::vector<std::vector<Seen>> of;
-      for (const Beams& scan : scans)
+      EchoesByBeam of;
+      for (const EchoesByBeam& scan : scans)
       {
         of.push_back(scan[k]);
       }
-      this->average(which[k], of);
+      this->Reference.average(which[k], of);
     }
-  }
-
-  /// What the mean of the plain rays differs by from the reference, less what it should by its own
-  /// spread, in squares.
-  void compareWitness(std::size_t b, const std::array<Beams, 2>& witness)
-  {
-    const auto first = matches(this->Sure[b], witness[0][b], this->Tolerance);
-    const auto second = matches(this->Sure[b], witness[1][b], this->Tolerance);
-    for (const auto& [i, j] : first)
-    {
-      for (const auto& [k, l] : second)
-      {
-        const Seen& truth = this->Sure[b][i];
-        if (i == k && this->isStrong(truth))
-        {
-          const Seen &one = witness[0][b][j], &other = witness[1][b][l];
-          // The mean of this product is the square of the bias: the two are independent.
-          this->Bias[b].x[EnergyError] +=
-            (one.energy / truth.energy - 1.0) * (other.energy / truth.energy - 1.0);
-          this->Bias[b].x[RangeError] += (one.range - truth.range) * (other.range - truth.range);
-          this->Bias[b].y[EnergyError] += 1.0;
-          this->Bias[b].y[RangeError] += 1.0;
-        }
-      }
-    }
-  }
-
-  /// Whether its energy and its range are judged.
-  bool isStrong(const Seen& echo) const
-  {
-    return echo.energy >= 2.0 * this->Setup.sensor.lowerEnergyLimit && echo.secondary <= Ghost;
-  }
-
-  void count(const ScanResult& result, std::vector<Counted>& counted) const
-  {
-    counted.resize(this->Sample.size());
-    const Beams found = byBeam(result);
-    for (std::size_t b = 0; b < found.size(); ++b)
-    {
-      Counted& here = counted[b];
-      const auto pairs = matches(this->Sure[b], found[b], this->Tolerance);
-      std::vector<Seen> rest = found[b];
-      double strong = 0.0;
-      for (auto pair = pairs.rbegin(); pair != pairs.rend(); ++pair)
-      {
-        const Seen &truth = this->Sure[b][(*pair)[0]], &echo = found[b][(*pair)[1]];
-        if (this->isStrong(truth))
-        {
-          here.x[EnergyError] += std::pow(echo.energy / truth.energy - 1.0, 2);
-          here.x[RangeError] += std::pow(echo.range - truth.range, 2);
-          strong += 1.0;
-        }
-        rest[(*pair)[1]].range = -1.0;
-      }
-      rest.erase(
-        std::remove_if(rest.begin(), rest.end(), [](const Seen& echo) { return echo.range < 0.0; }),
-        rest.end());
-      const auto all = static_cast<double>(std::count_if(this->Sure[b].begin(), this->Sure[b].end(),
-        [this](const Seen& echo) { return this->isStrong(echo); }));
-      here.x[EnergyError] += all - strong;
-      here.y[EnergyError] += all;
-      here.y[RangeError] += strong;
-      here.x[EchoError] += static_cast<double>(this->Sure[b].size() - pairs.size() + rest.size() -
-        matches(rest, this->Undecided[b], this->Tolerance).size());
-      here.y[EchoError] += static_cast<double>(this->Sure[b].size());
-    }
-  }
-
-  Sums sumsOf(const std::vector<Counted>& counted, int error) const
-  {
-    Sums sums;
-    for (std::size_t b = 0; b < counted.size(); ++b)
-    {
-      const double x = this->Weights[b] * counted[b].x[error];
-      const double y = this->Weights[b] * counted[b].y[error];
-      const double drawn = 1.0 - 1.0 / this->Weights[b]; // of a kind that was taken whole: exact
-      sums.x += x;
-      sums.y += y;
-      sums.xx += drawn * x * x;
-      sums.xy += drawn * x * y;
-      sums.yy += drawn * y * y;
-      sums.carriers += y > 0.0 ? 1.0 : 0.0;
-    }
-    for (double* one : { &sums.x, &sums.y, &sums.xx, &sums.xy, &sums.yy, &sums.carriers })
-    {
-      *one = this->Host.sum(*one);
-    }
-    return sums;
-  }
-
-  static double deviationOf(const Sums& sums)
-  {
-    const double ratio = sums.x / sums.y;
-    const double square = sums.xx - 2.0 * ratio * sums.xy + ratio * ratio * sums.yy;
-    return std::sqrt(std::max(0.0, square)) / sums.y;
   }
 
   bool judgeReference()
   {
-    for (int error = 0; error < AdviceErrors; ++error)
-    {
-      const Sums spread = this->sumsOf(this->Spread, error);
-      const Sums bias = this->sumsOf(this->Bias, error);
-      const double by = spread.y > 0.0 ? spread.x / spread.y : 0.0;
-      const double off =
-        bias.y > 0.0 ? std::max(0.0, bias.x / bias.y - Surely * deviationOf(bias)) : 0.0;
-      this->Answer.own[error] = error == EchoError ? by : std::sqrt(by + off);
-    }
     AdviceAnswer& a = this->Answer;
+    a.own = this->Errors.ownErrors(this->Reference);
     a.measured = this->Host.sum(static_cast<double>(this->Sample.size()));
-    std::size_t echoes = 0;
-    for (const std::vector<Seen>& beam : this->Sure)
-    {
-      echoes += beam.size();
-    }
-    a.echoes = this->Host.sum(static_cast<double>(echoes));
+    a.echoes = this->Host.sum(static_cast<double>(this->Reference.numberOfEchoes()));
     const double energy = std::max(this->Host.sum(this->Energy), 1e-300);
     const double number = std::max(this->Host.sum(this->Echoes), 1e-300);
     a.secondary = this->Host.sum(this->Secondary) / energy;
@@ -559,39 +325,10 @@ private:
     return true;
   }
 
-  /// Bounds of errors, from what was counted.
-  std::array<MeasuredError, AdviceErrors> errorsOf(const std::vector<Counted>& counted) const
-  {
-    std::array<MeasuredError, AdviceErrors> errors;
-    for (int error = 0; error < AdviceErrors; ++error)
-    {
-      const Sums sums = this->sumsOf(counted, error);
-      const double ratio = sums.y > 0.0 ? sums.x / sums.y : 0.0;
-      const double by = sums.y > 0.0 ? Surely * deviationOf(sums) : 0.0;
-      const double own = this->Answer.own[error];
-      if (error == EchoError)
-      {
-        const double none = sums.y > 0.0 ? OfNone * sums.yy / (sums.y * sums.y) : 0.0;
-        errors[error] = { ratio, std::max(0.0, ratio - by - own),
-          std::max(ratio + by, none) + own };
-      }
-      else if (sums.carriers < FewestCarriers)
-      {
-        errors[error] = { std::sqrt(ratio), 0.0, std::numeric_limits<double>::infinity() };
-      }
-      else
-      {
-        errors[error] = { std::sqrt(ratio),
-          std::max(0.0, std::sqrt(std::max(0.0, ratio - by)) - own), std::sqrt(ratio + by) + own };
-      }
-    }
-    return errors;
-  }
-
-  AdviceVerdict verdictOf(const std::array<MeasuredError, AdviceErrors>& errors) const
+  AdviceVerdict verdictOf(const std::array<MeasuredError, ErrorKinds>& errors) const
   {
     AdviceVerdict verdict = AdviceVerdict::Met;
-    for (int error = 0; error < AdviceErrors; ++error)
+    for (int error = 0; error < ErrorKinds; ++error)
     {
       const double asked = this->Question.asked[error];
       const AdviceVerdict one = errors[error].high <= asked ? AdviceVerdict::Met
@@ -602,12 +339,22 @@ private:
     return verdict;
   }
 
+  /// A turn: errors are those of the first, as times decide how many there are.
   void measure(const AdviceSettings& settings, int turn, Measuring& measuring)
   {
     TraceCache cache; // keeps patterns of rays, which a whole scan makes once
     const auto seed = static_cast<std::int32_t>(
-      static_cast<std::uint32_t>(this->Setup.settings.seed) + static_cast<std::uint32_t>(turn));
-    this->count(this->scan(settings, seed, this->Sample, cache), measuring.counted);
+      static_cast<std::uint32_t>(this->Setup.settings.seed) + static_cast<std::uint32_t>(turn + 1));
+    if (turn == 0)
+    {
+      this->Reference.count(this->scan(settings, seed, this->Sample, cache), measuring.counted);
+    }
+    else
+    {
+      std::vector<std::size_t> few(std::min(this->Sample.size(), RunLength));
+      std::iota(few.begin(), few.end(), std::size_t{ 0 });
+      this->scan(settings, seed, someOf(this->Sample, few), cache);
+    }
     measuring.seconds.push_back(this->timeOf(settings, seed, cache));
   }
 
@@ -680,15 +427,18 @@ private:
         {
           continue;
         }
-        if (!this->Host.together([&] { this->measure(trial.settings, 1 + turn, measuring[t]); }))
+        if (!this->Host.together([&] { this->measure(trial.settings, turn, measuring[t]); }))
         {
           return false;
         }
         this->Done = 0.55 + 0.4 * (turn > 0 ? 0.6 + 0.1 * turn : 0.6 * t / trials.size());
-        trial.turns = turn + 1;
-        trial.errors = this->errorsOf(measuring[t].counted);
-        trial.verdict = this->verdictOf(trial.errors);
+        ++trial.turns;
         trial.seconds = this->secondsOf(measuring[t]);
+        if (turn == 0)
+        {
+          trial.errors = this->Errors.errorsOf(measuring[t].counted, this->Answer.own);
+          trial.verdict = this->verdictOf(trial.errors);
+        }
       }
     }
     return this->Host.together([this] { this->leaveOut(); });
@@ -712,8 +462,8 @@ private:
   {
     for (int reflections : { 1, 2 })
     {
-      this->count(this->scan({ BeamSampleSource::Cells, ReferenceRays, reflections, 0 },
-                    ReferenceSeeds[0], this->Sample),
+      this->Reference.count(this->scan({ BeamSampleSource::Cells, ReferenceRays, reflections, 0 },
+                              ReferenceSeeds[0], this->Sample),
         this->Without[reflections - 1]);
     }
     if (!this->Setup.media.empty() || !this->Setup.placedMedia.empty())
@@ -742,59 +492,15 @@ private:
       this->TreeSeconds = threadSeconds() - before;
     }
     this->Convex = mesh.size() > 0 && mesh.size() <= MostConvex && this->All.size() > 0 &&
-      !(this->Setup.movers && !this->Setup.movers->empty()) && this->isConvex(mesh);
-  }
-
-  /// Whether all corners lie on one side of each triangle, triangles close the body, and the beams
-  /// start outside.
-  bool isConvex(const TriangleMesh& mesh) const
-  {
-    Vec3 low = mesh.points[0], high = low, sum(0.0);
-    for (const Vec3& p : mesh.points)
-    {
-      low = glm::min(low, p);
-      high = glm::max(high, p);
-    }
-    const double size = glm::length(high - low);
-    double area = 0.0;
-    bool outside = false;
-    for (std::uint32_t t = 0; t < mesh.size(); ++t)
-    {
-      const Vec3& corner = mesh.corner(t, 0);
-      Vec3 normal = glm::cross(mesh.corner(t, 1) - corner, mesh.corner(t, 2) - corner);
-      const double twice = glm::length(normal);
-      if (!(twice > 1e-12 * size * size))
-      {
-        continue; // degenerate, as at the poles of a sphere
-      }
-      normal /= twice;
-      double above = 0.0, below = 0.0;
-      for (const auto& other : mesh.triangles)
-      {
-        for (const std::uint32_t c : other)
-        {
-          const double height = glm::dot(mesh.points[c] - corner, normal);
-          above = std::max(above, height);
-          below = std::max(below, -height);
-        }
-        if (above > 1e-6 * size && below > 1e-6 * size)
-        {
-          return false;
-        }
-      }
-      normal *= above > below ? -1.0 : 1.0;
-      outside = outside || glm::dot(this->All.origins[0] - corner, normal) > 0.0;
-      sum += twice * normal;
-      area += twice;
-    }
-    return outside && glm::length(sum) < 1e-3 * area;
+      !(this->Setup.movers && !this->Setup.movers->empty()) &&
+      isConvexBody(mesh, this->All.origins[0]);
   }
 
   bool conclude()
   {
     AdviceAnswer& a = this->Answer;
-    a.withoutSecondary = this->errorsOf(this->Without[0]);
-    a.withoutConnections = this->errorsOf(this->Without[1]);
+    a.withoutSecondary = this->Errors.errorsOf(this->Without[0], this->Answer.own);
+    a.withoutConnections = this->Errors.errorsOf(this->Without[1], this->Answer.own);
     const auto timeOfDefault = [&](int reflections, int connections)
     {
       for (const AdviceTrial& trial : a.trials)
@@ -840,7 +546,7 @@ private:
     const auto part = [this](const AdviceTrial& trial)
     {
       double largest = 0.0;
-      for (int error = 0; error < AdviceErrors; ++error)
+      for (int error = 0; error < ErrorKinds; ++error)
       {
         largest = std::max(
           largest, trial.errors[error].high / std::max(this->Question.asked[error], 1e-300));
@@ -867,17 +573,15 @@ private:
   const AdviceQuestion& Question;
   const AdviceHost& Host;
   AdviceAnswer& Answer;
-  double Tolerance;  ///< m, between echoes that are one
+  EchoReference Reference;
+  SampledErrors Errors;
   double Done = 0.0; ///< of the work
   std::vector<std::size_t> Candidates;
   ScanBeams Sample;            ///< of which errors are measured
   std::vector<double> Weights; ///< beams of the scan for each of them
   ScanBeams Timed;
   std::array<double, 5> Direct{};
-  Beams Sure;      ///< the reference
-  Beams Undecided; ///< that one scan of it has
-  std::vector<Counted> Spread, Bias;
-  std::array<std::vector<Counted>, 2> Without; ///< second reflections, connections
+  std::array<std::vector<CountedErrors>, 2> Without; ///< second reflections, connections
   Measuring TimesWithAir, TimesWithoutAir;
   double Energy = 0.0, Secondary = 0.0, Connected = 0.0, Echoes = 0.0, OfAir = 0.0;
   double LargestSecondary = 0.0, EchoesWithoutAir = 0.0, EnergyWithoutAir = 0.0;

@@ -9,18 +9,12 @@
  * 2. The reference: two scans of these by cells, ReferenceRays each; of beams of which the two
  *    differ by much eight scans of four times as many. From their spread, and from what two scans
  *    by plain rays differ by from them beyond their own spread, follows the reference's own error.
- * 3. Each setting scans the same beams. Errors are of echoes that are matched within a beam (each
- *    the nearest of the other, within a range unit and a pulse). Energy and range count echoes of
- *    at least twice the lower limit that are no ghosts (at most half of the energy over two
- *    reflections, in the reference); such an echo that is missed has an energy error of -1. Of
- *    ghosts counts whether they are there. Echoes that only one scan of the reference has are not
- *    judged.
+ * 3. Each setting scans the same beams: its errors, with bounds, are those of EchoErrors.h.
  * 4. Times are processor times of one thread, over runs of neighbouring beams, as neighbours share
- *    work. Settings that clearly fail, or that take far longer than one that is good, get one turn.
+ *    work. Errors are those of the first turn. Settings that clearly fail, or that take far longer
+ * than one that is good, get one turn.
  *
- * Bounds of errors are one-sided with 95 %: from the spread among beams (of a share without any
- * wrong echo 3/n), plus the reference's own error. An error is met if the upper bound is below what
- * is asked. There is none (infinite) of energies and ranges that fewer than 30 beams carry.
+ * An error is met if its upper bound is below what is asked.
  *
  * Source: none.
  * Valid: noise is off: it belongs to the receiver and is no error. Errors and choices are the same
@@ -30,6 +24,7 @@
 #ifndef avianlidar_Advice_h
 #define avianlidar_Advice_h
 
+#include "EchoErrors.h"
 #include "Scan.h"
 
 #include <array>
@@ -40,23 +35,6 @@
 
 namespace avianlidar
 {
-/// What an error is of.
-enum AdviceError
-{
-  EnergyError = 0, ///< rms, relative, of the energy received
-  RangeError = 1,  ///< rms, m
-  EchoError = 2,   ///< share of the true echoes that is missed or invented
-  AdviceErrors = 3
-};
-
-/// An error, and the bounds within which it lies.
-struct MeasuredError
-{
-  double value = 0.0;
-  double low = 0.0;
-  double high = 0.0;
-};
-
 /// Settings among which advice chooses.
 struct AdviceSettings
 {
@@ -78,7 +56,7 @@ enum class AdviceVerdict
 struct AdviceTrial
 {
   AdviceSettings settings;
-  std::array<MeasuredError, AdviceErrors> errors;
+  std::array<MeasuredError, ErrorKinds> errors;
   double seconds = 0.0; ///< of a beam, one core, median of turns
   int turns = 0;
   AdviceVerdict verdict = AdviceVerdict::NotMet;
@@ -87,7 +65,7 @@ struct AdviceTrial
 /// What is asked, and how it is looked for.
 struct AdviceQuestion
 {
-  std::array<double, AdviceErrors> asked{ { 0.02, 0.05, 0.01 } };
+  std::array<double, ErrorKinds> asked{ { 0.02, 0.05, 0.01 } };
   int beams = 1000; ///< to measure on, of all ranks
   int threads = 0;  ///< of scans that are not timed
 };
@@ -99,16 +77,16 @@ struct AdviceAnswer
   int advised = -1;                ///< index of a trial; -1: none meets what is asked
   int best = -1;      ///< if none does: the one whose errors are the smallest parts of those asked
   double beams = 0.0; ///< of the scan
-  double measured = 0.0;                  ///< of them, looked at
-  double echoes = 0.0;                    ///< of these, in the reference
-  std::array<double, AdviceErrors> own{}; ///< errors of the reference
+  double measured = 0.0;                ///< of them, looked at
+  double echoes = 0.0;                  ///< of these, in the reference
+  std::array<double, ErrorKinds> own{}; ///< errors of the reference
   // Shares, of what the reference receives.
   double secondary = 0.0;        ///< of the energy, over two reflections
   double largestSecondary = 0.0; ///< of an echo
   bool reflectsTwice = true;     ///< second reflections are more than rounding
   double connected = 0.0;        ///< of the energy, over connections
-  std::array<MeasuredError, AdviceErrors> withoutSecondary;
-  std::array<MeasuredError, AdviceErrors> withoutConnections;
+  std::array<MeasuredError, ErrorKinds> withoutSecondary;
+  std::array<MeasuredError, ErrorKinds> withoutConnections;
   // Costs, of default settings with another.
   double secondaryCost = 0.0;   ///< time of two reflections over one, less 1
   double connectionCost = 0.0;  ///< time of two connections over none, less 1

@@ -10,7 +10,6 @@
 namespace
 {
 using avianlidar::AdviceAnswer;
-using avianlidar::AdviceErrors;
 using avianlidar::AdviceQuestion;
 using avianlidar::AdviceSettings;
 using avianlidar::AdviceTrial;
@@ -19,6 +18,7 @@ using avianlidar::BeamSampleSource;
 using avianlidar::DirectEcho;
 using avianlidar::EchoError;
 using avianlidar::EnergyError;
+using avianlidar::ErrorKinds;
 using avianlidar::MeasuredError;
 using avianlidar::RangeError;
 
@@ -47,13 +47,13 @@ std::string Cost(double share)
   return Digits(std::fabs(percent), 3) + " % " + (percent < 0.0 ? "less" : "more") + " time";
 }
 
-std::string Errors(const std::array<double, AdviceErrors>& e)
+std::string Errors(const std::array<double, ErrorKinds>& e)
 {
   return "energy " + PerCent(e[EnergyError]) + " rms, range " + Digits(e[RangeError], 3) +
     " m rms, echoes missed or invented " + PerCent(e[EchoError]);
 }
 
-std::string Errors(const std::array<MeasuredError, AdviceErrors>& e)
+std::string Errors(const std::array<MeasuredError, ErrorKinds>& e)
 {
   const std::string none = "not told: fewer than 30 beams have an echo of twice the limit";
   return "energy " + PerCent(e[EnergyError].value) + " (" +
