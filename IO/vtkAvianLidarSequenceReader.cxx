@@ -305,7 +305,7 @@ int vtkAvianLidarSequenceReader::CanReadFile(const char* fileName)
   std::error_code ignored;
   const fs::path file = fileName ? fileName : "";
   return file.filename() == TimesFile && fs::is_regular_file(file, ignored) &&
-      fs::is_directory(fs::absolute(file).parent_path() / "velodyne", ignored)
+      fs::is_directory(fs::absolute(file, ignored).parent_path() / "velodyne", ignored)
     ? 1
     : 0;
 }

@@ -31,6 +31,10 @@ QMap<QString, QString> Sensors()
 {
   QMap<QString, QString> found;
   vtkSMSessionProxyManager* manager = pqActiveObjects::instance().proxyManager();
+  if (!manager)
+  {
+    return found; // not connected
+  }
   auto each = vtkSmartPointer<vtkPVProxyDefinitionIterator>::Take(
     manager->GetProxyDefinitionManager()->NewSingleGroupIterator("sources"));
   for (each->InitTraversal(); !each->IsDoneWithTraversal(); each->GoToNextItem())
@@ -53,7 +57,7 @@ QMap<QString, QString> Sensors()
 /// A string of Python.
 QString Quoted(QString text)
 {
-  return "'" + text.replace('\\', "\\\\").replace('\'', "\\'") + "'";
+  return "'" + text.replace('\\', "\\\\").replace('\'', "\\'").replace('\n', "\\n") + "'";
 }
 
 class Wizard : public QWizard

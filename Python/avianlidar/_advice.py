@@ -117,7 +117,7 @@ def advise_scan(scan: Any, asked: Dict[str, float], beams: int, progress=None) -
     return Advice(settings, tuple(advisor.GetAdvice().splitlines()), asked, row, columns)
 
 
-def rows_of(advice: Advice, most: int = 12) -> List[Tuple[Any, ...]]:
+def table_rows(advice: Advice, most: int = 12) -> List[Tuple[Any, ...]]:
     """Rows for a reader: the scan's own settings, and the fastest of those that are not surely too bad, then of the others."""
     table = advice.table
     order = sorted(range(1, len(table["verdict"])), key=lambda t: (table["verdict"][t] == 0, table["seconds_per_beam"][t]))

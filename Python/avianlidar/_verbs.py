@@ -121,7 +121,7 @@ def scan(options) -> None:
 
 
 def advise(options) -> None:
-    from ._advice import check_suffix, rows_of
+    from ._advice import check_suffix, table_rows
     from ._writers import check_target
     for number, out in enumerate(options.out):
         check_suffix(out)
@@ -133,7 +133,7 @@ def advise(options) -> None:
     scan = _scan_of(options, bars, _scene(options, bars))
     advice = scan.advise(options.energy, options.range, options.missed, options.beams)
     bars.close()
-    _table(rows_of(advice))
+    _table(table_rows(advice))
     print(advice)
     for out in options.out:
         advice.save(out)
