@@ -19,8 +19,9 @@
  * Source: the lidar equation, as AirEcho.h.
  * Differs: as AirEcho.h.
  * Valid: units to 1e-6 along each column. A straight border anywhere in a round uniform beam
- * divides it to 0.05 at worst, 0.018 rms; one that crosses less than 0.013 of it is not seen. The
- * sum of all shares that surfaces take is exact, unit by unit.
+ * divides it to 0.095 at worst, 0.017 rms; a layer's top to 0.093 at worst, 0.037 rms; one that
+ * crosses less than 0.013 of it is not seen. The sum of all shares that surfaces take is exact,
+ * unit by unit.
  * Test: TestBeamAir.cxx.
  */
 #ifndef avianlidar_BeamAir_h

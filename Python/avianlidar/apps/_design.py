@@ -36,6 +36,7 @@ TOLD = 2.0  # standard errors that a share must lie above or below what is asked
 CHANGE = 0.2  # of a number, to either side, for sensitivities
 OTHER_PLACES = 1 << 40  # to a seed: places by which no design was chosen
 MOST_SCANS = 100  # of vtkAvianLidarCoverage's NumberOfScans
+PUPIL = math.pi * 0.0035 ** 2  # m2: an eye's in the dark, 7 mm across
 
 Progress = Callable[[str, int, int], Any]
 
@@ -106,7 +107,7 @@ class Candidate:
     number: int
     values: Dict[str, float]
     cost: float = math.nan
-    pulses: Dict[str, float] = dataclasses.field(default_factory=dict)  # pulse_rate Hz, shortest_interval s, average_power W, exposure J/m2
+    pulses: Dict[str, float] = dataclasses.field(default_factory=dict)  # pulse_rate Hz, shortest_interval s, average_power W, exposure J/m2, pupil J
     refused: str = ""  # by the sensor: why there is no such lidar
     share: scores.Value = scores.Value(math.nan, math.nan, 0)
     tracked: scores.Value = scores.Value(math.nan, math.nan, 0)
@@ -278,7 +279,8 @@ class Study:
             if not area > 0.0:
                 raise ValueError(f"{self.exit.text}: is {area:g} m2, expected more than 0")
         one.pulses = {"pulse_rate": rate, "shortest_interval": float(np.diff(times).min()) if len(times) > 1 else 1.0 / rate,
-                      "average_power": rate * energy, "exit_aperture": area, "exposure": energy / area}
+                      "average_power": rate * energy, "exit_aperture": area, "exposure": energy / area,
+                      "pupil": energy * min(PUPIL / area, 1.0)}
 
     def _scenario(self) -> Dict[str, Any]:
         what = f"{self.plan.file}: design.scenario"
