@@ -9,7 +9,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace avianlidar
 {
@@ -18,9 +17,51 @@ namespace
 constexpr std::uint64_t DrawsOfUnit = 256;
 }
 
+LidarView viewOf(const Sensor& sensor)
+{
+  return { SpeedOfLight / sensor.frequency,
+    2.0 * std::asin(std::min(1.0, std::sqrt(sensor.solidAngle() / (4.0 * Pi)))) };
+}
+
+PulseShares::PulseShares(double width)
+  : Width(width)
+  , Reach(static_cast<std::int64_t>(std::ceil(0.5 * width)))
+{
+  // With a share e in the next unit, e (1 - e) is its mean over drops anywhere: w/6.
+  const double part = std::min(1.0, width);
+  const double end = 0.5 * part * (1.0 - std::sqrt(1.0 - 2.0 * part / 3.0)) - 0.5 * width;
+  this->Place = end - std::floor(end);
+}
+
+void PulseShares::add(double energy, double place, double* units) const
+{
+  const double begin = place - 0.5 * this->Width + static_cast<double>(this->Reach);
+  const double end = begin + this->Width;
+  if (!(end > begin))
+  {
+    units[this->Reach] += energy;
+    return;
+  }
+  for (auto unit = static_cast<std::int64_t>(begin); unit <= 2 * this->Reach; ++unit)
+  {
+    const auto from = static_cast<double>(unit);
+    units[unit] +=
+      energy * std::max(0.0, std::min(end, from + 1.0) - std::max(begin, from)) / (end - begin);
+  }
+}
+
+SharedDrops::SharedDrops(const PulseShares& pulse)
+  : Reach(pulse.reach())
+{
+  const auto count = static_cast<std::size_t>(2 * this->Reach + 1);
+  this->Numbers.assign(count, -1);
+  this->Shares.assign(count * count, 0.0);
+}
+
 AirEcho::AirEcho(const Sensor& sensor, const std::vector<Medium>& media, double attenuation)
   : SolidAngle(sensor.solidAngle())
   , UnitLength(sensor.rangeUnitLength())
+  , Pulse(sensor.pulseWidth / sensor.samplingInterval)
 {
   double all = 0.0;
   for (const Medium& medium : media)
@@ -71,72 +112,97 @@ double AirEcho::variance(std::int64_t unit) const
   return mean > 0.0 ? mean * mean * SquareOfDrops / this->dropsIn(unit) : 0.0;
 }
 
-void AirEcho::setLeast(std::int64_t unit, double least)
+void AirEcho::setLeast(const std::vector<double>& least)
 {
-  const double mean = this->OfDrops * this->mean(unit);
-  const double shape = this->dropsIn(unit) / SquareOfDrops;
-  this->Quiet[static_cast<std::size_t>(unit)] =
-    mean > 0.0 && least > -mean ? 1.0 - gammaTail(shape, shape * (1.0 + least / mean)) : 0.0;
+  // So much of each joule arrives in a unit at most, over all units that reach it.
+  const std::int64_t reach = this->Pulse.reach();
+  std::vector<double> one(static_cast<std::size_t>(2 * reach + 1), 0.0);
+  std::vector<double> other = one;
+  this->Pulse.add(1.0, this->Pulse.placeOfMany(), one.data());
+  this->Pulse.add(1.0, 1.0 - this->Pulse.placeOfMany(), other.data());
+  double most = 0.0;
+  for (std::size_t k = 0; k < one.size(); ++k)
+  {
+    most += std::max(one[k], other[k]);
+  }
+  const auto count = static_cast<std::int64_t>(least.size());
+  for (std::int64_t unit = 0; unit < count; ++unit)
+  {
+    const auto begin = least.begin() + std::max<std::int64_t>(0, unit - reach);
+    const auto end = least.begin() + std::min(count, unit + reach + 1);
+    const double limit = *std::min_element(begin, end) / most;
+    const double mean = this->OfDrops * this->mean(unit);
+    const double shape = this->dropsIn(unit) / SquareOfDrops;
+    this->Quiet[static_cast<std::size_t>(unit)] =
+      mean > 0.0 && limit > 0.0 && shape > FewDrops / SquareOfDrops
+      ? 1.0 - gammaTail(shape, shape * (1.0 + limit / mean))
+      : 0.0;
+  }
 }
 
-double AirEcho::beyondMean(std::int32_t seed, std::uint64_t beam, std::int64_t unit,
-  std::int32_t revolution, bool all, double open) const
+bool AirEcho::isQuiet(
+  std::int32_t seed, std::uint64_t beam, std::int64_t unit, std::int32_t revolution) const
 {
-  const double mean = open * this->OfDrops * this->mean(unit);
-  const double drops = open * this->dropsIn(unit);
-  if (!(mean > 0.0))
-  {
-    return 0.0;
-  }
-  const auto number = static_cast<std::uint64_t>(unit);
-  if (!all && open == 1.0 && drops > FewDrops &&
-    uniformPair(seed, beam, DrawsOfUnit * number, RandomPurpose::Drops, revolution)[0] <
-      this->Quiet[static_cast<std::size_t>(unit)])
-  {
-    return -std::numeric_limits<double>::infinity();
-  }
-  return mean * dropsBeyondMean(seed, beam, number, revolution, drops, Medium{});
+  return uniformPair(seed, beam, DrawsOfUnit * static_cast<std::uint64_t>(unit),
+           RandomPurpose::Drops, revolution)[0] < this->Quiet[static_cast<std::size_t>(unit)];
+}
+
+void AirEcho::addBeyondMean(std::int32_t seed, std::uint64_t beam, std::int64_t unit,
+  std::int32_t revolution, double open, double* units) const
+{
+  addDropsBeyondMean(seed, beam, static_cast<std::uint64_t>(unit), revolution,
+    open * this->OfDrops * this->mean(unit), open * this->dropsIn(unit), Medium{}, this->Pulse,
+    units);
 }
 
 namespace
 {
-/// The drops of one scan.
-double drawnDrops(std::int32_t seed, std::uint64_t beam, std::uint64_t number,
-  std::int32_t revolution, double drops, double square)
+/// Add the drops of one scan.
+void addDrops(std::int32_t seed, std::uint64_t beam, std::uint64_t number, std::int32_t revolution,
+  double mean, double drops, double square, const PulseShares& pulse, double* units)
 {
+  if (!(mean > 0.0 && drops > 0.0))
+  {
+    return;
+  }
   const std::uint64_t first = DrawsOfUnit * number;
   const auto u = uniformPair(seed, beam, first, RandomPurpose::Drops, revolution);
+  const double place = pulse.placeOfMany();
   if (drops > AirEcho::FewDrops)
   {
     // Shape a, scale 1/a of the mean.
     const double shape = drops / square;
-    return boost::math::gamma_p_inv(shape, u[0]) / shape - 1.0;
+    const double beyond = mean * (boost::math::gamma_p_inv(shape, u[0]) / shape - 1.0);
+    pulse.add(beyond, u[1] < 0.5 ? place : 1.0 - place, units);
+    return;
   }
+  pulse.add(-0.5 * mean, place, units);
+  pulse.add(-0.5 * mean, 1.0 - place, units);
   const auto count = static_cast<std::uint64_t>(
     std::min<double>(DrawsOfUnit - 1, poissonQuantile(drops, u[0], 1.0 - u[0])));
-  double squares = 0.0; // of diameters, or of cosines, over their mean
   for (std::uint64_t k = 1; k <= count; ++k)
   {
-    const double uniform = uniformPair(seed, beam, first + k, RandomPurpose::Drops, revolution)[0];
-    const double d = std::log(uniform);
-    squares += square == SquareOfLeaves ? 3.0 * uniform * uniform : 0.5 * d * d;
+    const auto [size, at] = uniformPair(seed, beam, first + k, RandomPurpose::Drops, revolution);
+    const double d = std::log(size);
+    // The square of a diameter, or of a cosine, over its mean.
+    const double light = square == SquareOfLeaves ? 3.0 * size * size : 0.5 * d * d;
+    pulse.add(mean * light / drops, at, units);
   }
-  return squares / drops - 1.0;
 }
 }
 
-double dropsBeyondMean(std::int32_t seed, std::uint64_t beam, std::uint64_t number,
-  std::int32_t revolution, double drops, const Medium& medium)
+void addDropsBeyondMean(std::int32_t seed, std::uint64_t beam, std::uint64_t number,
+  std::int32_t revolution, double mean, double drops, const Medium& medium,
+  const PulseShares& pulse, double* units)
 {
-  const auto draw = [&](std::int32_t scan, double share)
+  const auto add = [&](std::int32_t scan, double share)
   {
-    return share > 0.0 && drops > 0.0
-      ? share * drawnDrops(seed, beam, number, scan, share * drops, medium.squareOfDrops)
-      : 0.0;
+    addDrops(
+      seed, beam, number, scan, share * mean, share * drops, medium.squareOfDrops, pulse, units);
   };
   // Those that stay are the same in every scan.
   constexpr std::int32_t always = -1;
-  const double renewed = draw(revolution, medium.renewed);
-  return medium.renewed < 1.0 ? renewed + draw(always, 1.0 - medium.renewed) : renewed;
+  add(revolution, medium.renewed);
+  add(always, 1.0 - medium.renewed);
 }
 }

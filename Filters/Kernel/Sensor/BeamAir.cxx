@@ -267,11 +267,15 @@ void BeamAir::chooseLooked()
     }
     backscatter += medium.backscatter();
   };
+  const PulseShares pulse(this->Instrument.pulseWidth / this->Instrument.samplingInterval);
   for (const Part& part : this->Parts)
   {
-    look(this->mediumOf(part),
-      static_cast<std::int64_t>(std::floor(part.crossing.begin / this->UnitLength)),
-      static_cast<std::int64_t>(std::floor(part.crossing.end / this->UnitLength)) + 1);
+    // Pulses of drops reach beyond.
+    const std::int64_t reach = this->mediumOf(part).isFollowed ? pulse.reach() : 0;
+    const auto unitOf = [&](double range)
+    { return static_cast<std::int64_t>(std::floor(range / this->UnitLength)); };
+    look(this->mediumOf(part), std::max<std::int64_t>(0, unitOf(part.crossing.begin) - reach),
+      unitOf(part.crossing.end) + 1 + reach);
   }
   for (const Medium& medium : this->Everywhere)
   {
