@@ -5,9 +5,8 @@
 #include "Random.h"
 #include "RangeUnits.h"
 
-#include <boost/math/special_functions/gamma.hpp>
-
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace avianlidar
@@ -94,7 +93,6 @@ AirEcho::AirEcho(const Sensor& sensor, const std::vector<Medium>& media, double 
     }
     this->Means.push_back(energy);
   }
-  this->Quiet.resize(this->Means.size(), 0.0);
 }
 
 /// Drops in a unit, on average.
@@ -112,41 +110,6 @@ double AirEcho::variance(std::int64_t unit) const
   return mean > 0.0 ? mean * mean * SquareOfDrops / this->dropsIn(unit) : 0.0;
 }
 
-void AirEcho::setLeast(const std::vector<double>& least)
-{
-  // So much of each joule arrives in a unit at most, over all units that reach it.
-  const std::int64_t reach = this->Pulse.reach();
-  std::vector<double> one(static_cast<std::size_t>(2 * reach + 1), 0.0);
-  std::vector<double> other = one;
-  this->Pulse.add(1.0, this->Pulse.placeOfMany(), one.data());
-  this->Pulse.add(1.0, 1.0 - this->Pulse.placeOfMany(), other.data());
-  double most = 0.0;
-  for (std::size_t k = 0; k < one.size(); ++k)
-  {
-    most += std::max(one[k], other[k]);
-  }
-  const auto count = static_cast<std::int64_t>(least.size());
-  for (std::int64_t unit = 0; unit < count; ++unit)
-  {
-    const auto begin = least.begin() + std::max<std::int64_t>(0, unit - reach);
-    const auto end = least.begin() + std::min(count, unit + reach + 1);
-    const double limit = *std::min_element(begin, end) / most;
-    const double mean = this->OfDrops * this->mean(unit);
-    const double shape = this->dropsIn(unit) / SquareOfDrops;
-    this->Quiet[static_cast<std::size_t>(unit)] =
-      mean > 0.0 && limit > 0.0 && shape > FewDrops / SquareOfDrops
-      ? 1.0 - gammaTail(shape, shape * (1.0 + limit / mean))
-      : 0.0;
-  }
-}
-
-bool AirEcho::isQuiet(
-  std::int32_t seed, std::uint64_t beam, std::int64_t unit, std::int32_t revolution) const
-{
-  return uniformPair(seed, beam, DrawsOfUnit * static_cast<std::uint64_t>(unit),
-           RandomPurpose::Drops, revolution)[0] < this->Quiet[static_cast<std::size_t>(unit)];
-}
-
 void AirEcho::addBeyondMean(std::int32_t seed, std::uint64_t beam, std::int64_t unit,
   std::int32_t revolution, double open, double* units) const
 {
@@ -157,6 +120,27 @@ void AirEcho::addBeyondMean(std::int32_t seed, std::uint64_t beam, std::int64_t 
 
 namespace
 {
+/// A gamma variate of mean 1, less 1, and a uniform number that is independent of it: G. Marsaglia
+/// and W. W. Tsang, ACM Trans. Math. Softw. 26, 2000. @param shape 1 or more @param draw pairs of
+/// uniform numbers
+template <class F>
+std::array<double, 2> gammaBeyondMean(double shape, F draw)
+{
+  const double d = shape - 1.0 / 3.0;
+  const double c = 1.0 / std::sqrt(9.0 * d);
+  for (std::uint64_t k = 0;; k += 2)
+  {
+    const auto [radius, angle] = draw(k);
+    const auto [u, other] = draw(k + 1);
+    const double x = std::sqrt(-2.0 * std::log(radius)) * std::cos(2.0 * Pi * angle);
+    const double v = std::pow(std::max(0.0, 1.0 + c * x), 3);
+    if (v > 0.0 && std::log(u) < 0.5 * x * x + d * (1.0 - v + std::log(v)))
+    {
+      return { d * v / shape - 1.0, other };
+    }
+  }
+}
+
 /// Add the drops of one scan.
 void addDrops(std::int32_t seed, std::uint64_t beam, std::uint64_t number, std::int32_t revolution,
   double mean, double drops, double square, const PulseShares& pulse, double* units)
@@ -166,23 +150,24 @@ void addDrops(std::int32_t seed, std::uint64_t beam, std::uint64_t number, std::
     return;
   }
   const std::uint64_t first = DrawsOfUnit * number;
-  const auto u = uniformPair(seed, beam, first, RandomPurpose::Drops, revolution);
+  const auto draw = [&](std::uint64_t k)
+  { return uniformPair(seed, beam, first + k, RandomPurpose::Drops, revolution); };
   const double place = pulse.placeOfMany();
   if (drops > AirEcho::FewDrops)
   {
-    // Shape a, scale 1/a of the mean.
     const double shape = drops / square;
-    const double beyond = mean * (boost::math::gamma_p_inv(shape, u[0]) / shape - 1.0);
-    pulse.add(beyond, u[1] < 0.5 ? place : 1.0 - place, units);
+    const auto [beyond, where] = gammaBeyondMean(shape, draw);
+    pulse.add(mean * beyond, where < 0.5 ? place : 1.0 - place, units);
     return;
   }
   pulse.add(-0.5 * mean, place, units);
   pulse.add(-0.5 * mean, 1.0 - place, units);
+  const double u = draw(0)[0];
   const auto count = static_cast<std::uint64_t>(
-    std::min<double>(DrawsOfUnit - 1, poissonQuantile(drops, u[0], 1.0 - u[0])));
+    std::min<double>(DrawsOfUnit - 1, poissonQuantile(drops, u, 1.0 - u)));
   for (std::uint64_t k = 1; k <= count; ++k)
   {
-    const auto [size, at] = uniformPair(seed, beam, first + k, RandomPurpose::Drops, revolution);
+    const auto [size, at] = draw(k);
     const double d = std::log(size);
     // The square of a diameter, or of a cosine, over its mean.
     const double light = square == SquareOfLeaves ? 3.0 * size * size : 0.5 * d * d;

@@ -164,19 +164,11 @@ public:
   /// How the pulse of a drop is divided among units.
   const PulseShares& pulse() const { return this->Pulse; }
 
-  /// Note from where on drops may matter. @param least J beyond the mean of each unit from 0 on
-  void setLeast(const std::vector<double>& least);
-
   /// Add what the drops of a unit return beyond their mean, J, to the units that their pulses
   /// reach: the same for the same numbers. @param open share of the pulse that no nearer surface
   /// has met
   void addBeyondMean(std::int32_t seed, std::uint64_t beam, std::int64_t unit,
     std::int32_t revolution, double open, double* units) const;
-
-  /// True if what all these drops return beyond their mean is known to be less than the limit given
-  /// to setLeast(), in any unit that their pulses reach.
-  bool isQuiet(
-    std::int32_t seed, std::uint64_t beam, std::int64_t unit, std::int32_t revolution) const;
 
   /// Up to so many drops in a unit, on average, are drawn one by one.
   static constexpr double FewDrops = 40.0;
@@ -185,7 +177,6 @@ public:
 
 private:
   std::vector<double> Means; ///< of units, J
-  std::vector<double> Quiet; ///< probabilities that drops do not matter
   double OfDrops = 0.0;      ///< share of the means that drops return
   double Drops = 0.0;        ///< 1/m^3
   double SolidAngle = 0.0;   ///< sr

@@ -60,15 +60,6 @@ void BeamReceiver::planAir()
       this->AirLooked = unit + 1;
     }
   }
-  std::vector<double> least;
-  for (std::int64_t unit = 0; unit < this->AirLooked && this->Plan.gaussian; ++unit)
-  {
-    const double mean = this->Air.mean(unit);
-    const double variance = this->Plan.darkVariance + this->Plan.varianceOfEnergy * mean;
-    const double limit = this->FollowsAir ? this->lowerIn(mean) : this->Lower - mean;
-    least.push_back(leastLight(limit, variance, this->Plan.varianceOfEnergy));
-  }
-  this->Air.setLeast(least);
 }
 
 /// The lower limit of a unit, J. @param air mean of what the air sends back, J
@@ -162,21 +153,6 @@ void BeamReceiver::collectUnits(const std::vector<RangeUnit>& units)
 double BeamReceiver::followedNow(std::int64_t unit)
 {
   return this->Along ? this->followedIn(*this->Along, unit) : this->Air.mean(unit);
-}
-
-/// Whether drops of the air that fills the scene return too little in a unit for it to be
-/// perceived.
-bool BeamReceiver::isQuiet(std::int64_t unit) const
-{
-  const std::int64_t reach = this->Air.pulse().reach();
-  const std::int64_t end = std::min(this->AirLooked, unit + reach + 1);
-  bool quiet = true;
-  for (std::int64_t of = std::max<std::int64_t>(0, unit - reach); of < end && quiet; ++of)
-  {
-    quiet = (!this->Along || this->Along->open(of) == 1.0) &&
-      this->Air.isQuiet(this->Seed, this->Beam, of, this->Revolution);
-  }
-  return quiet;
 }
 
 /// What drops return in a unit beyond their mean, J.
@@ -286,10 +262,6 @@ void BeamReceiver::addUnit(std::int64_t index, double light, std::uint32_t paths
   }
   else if (this->Plan.active && index < this->AirLooked)
   {
-    if (!(light > 0.0) && !alarm && gaussian && this->isQuiet(index) && !this->Noise.isRare(index))
-    {
-      return;
-    }
     beyond = this->fromDrops(index);
   }
   const double all = light + std::max(0.0, mean + beyond);

@@ -146,7 +146,6 @@ private:
   void planAir();
   double lowerIn(double air) const;
   double followedNow(std::int64_t unit);
-  bool isQuiet(std::int64_t unit) const;
   double fromDrops(std::int64_t unit);
   double varianceWith(const std::vector<BeamAir::Share>& shares) const;
   void drawLocalDrops(std::int64_t unit, double* units);
