@@ -615,6 +615,15 @@ public:
 
   ///@{
   /**
+   * Least range that is recorded in metres, 0 to less than RangeGate: what arrives earlier is no
+   * echo, and surfaces there still hide what is behind. Default 0.
+   */
+  vtkSetMacro(MinimumRange, double);
+  vtkGetMacro(MinimumRange, double);
+  ///@}
+
+  ///@{
+  /**
    * Range r_o, metres, 0 to 1e9, of the overlap of beam and view: 1 - exp(-(r/r_o)^2) of the light
    * from the range r lies in the view. Default 0: all of it.
    */
@@ -780,6 +789,7 @@ protected:
   double Sunlight = 0.0;
   double SunAzimuth = 180.0;
   double SunElevation = 45.0;
+  double MinimumRange = 0.0;
   double OverlapRange = 0.0;
   double DefocusRange = 0.0;
   double RangeNoise = 0.0;

@@ -110,6 +110,7 @@ private:
   double Drops = 0.0;        ///< 1/m^3
   double SolidAngle = 0.0;   ///< sr
   double UnitLength = 0.0;   ///< m
+  double Nearest = 0.0;      ///< m, at which the gate begins
   double dropsIn(std::int64_t unit) const;
 };
 }
