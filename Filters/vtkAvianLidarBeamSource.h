@@ -489,6 +489,14 @@ public:
   vtkGetMacro(RangeGate, double);
   ///@}
 
+  /**
+   * Range in metres from which echoes arrive after the next pulse has left: c/2 times
+   * FiringInterval, or times what a column lasts where each channel has a receiver of its own
+   * (`channel_firing_times` of a file, a FiringInterval of 0, one channel). Infinite for
+   * SetBeams(). A RangeGate beyond it is warned of once; echoes stay where they are.
+   */
+  double GetUnambiguousRange();
+
   ///@{
   /**
    * Mean rate of noise photons at the receiver in hertz, 0 to 1e50 (paper, Eq. 11). Default 20e3.

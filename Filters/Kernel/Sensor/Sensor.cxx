@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <sstream>
 
 namespace avianlidar
 {
@@ -98,6 +99,27 @@ double Sensor::nearRangeShare(double range) const
     : 1.0;
   const double image = this->defocusRange > 0.0 ? this->defocusRange / range : 0.0;
   return overlap / (1.0 + image * image);
+}
+
+double unambiguousRange(double pulseInterval)
+{
+  return 0.5 * SpeedOfLight * pulseInterval;
+}
+
+std::string warningOnAmbiguity(const Sensor& sensor, double pulseInterval)
+{
+  if (!(sensor.rangeGate > unambiguousRange(pulseInterval)))
+  {
+    return {};
+  }
+  std::ostringstream text;
+  text.precision(4);
+  text
+    << "range_gate is " << sensor.rangeGate << " m, but the next pulse leaves after "
+    << 1e6 * pulseInterval << " us, that is " << unambiguousRange(pulseInterval)
+    << " m: a receiver that all channels share takes echoes from beyond for nearer ones, which is "
+    << "not simulated";
+  return text.str();
 }
 
 std::string checkSensor(const Sensor& s)

@@ -172,6 +172,12 @@ const std::vector<SensorField>& sensorFields();
 /// The row of a member.
 const SensorField& sensorField(double Sensor::*member);
 
+/// Range, m, from which echoes arrive after the next pulse has left. @param pulseInterval s
+double unambiguousRange(double pulseInterval);
+
+/// Empty, or a sentence on a gate that ends after the next pulse has left. @param pulseInterval s
+std::string warningOnAmbiguity(const Sensor& sensor, double pulseInterval);
+
 /// Empty if the sensor is usable; otherwise a sentence that names the value and what was expected.
 std::string checkSensor(const Sensor& sensor);
 }
