@@ -349,6 +349,12 @@ double vtkAvianLidarBeamSource::GetWavelength()
 }
 
 //------------------------------------------------------------------------------
+double vtkAvianLidarBeamSource::GetUnambiguousRange()
+{
+  return avianlidar::unambiguousRange(avianlidar::pulseInterval(vtkInternals::PatternOf(*this)));
+}
+
+//------------------------------------------------------------------------------
 void vtkAvianLidarBeamSource::SetLimitsFromDataSheet(
   double range, double reflectance, double attenuation)
 {
@@ -587,7 +593,13 @@ int vtkAvianLidarBeamSource::RequestData(
       vtkInternals::AddSensor(*this, revolution, rays->GetFieldData());
       avianlidar::Sensor sensor;
       vtkInternals::SensorOf(*this, sensor);
-      const std::string warning = NameProperties(avianlidar::warningOnElectrons(sensor));
+      std::string warning;
+      for (const std::string& one : { avianlidar::warningOnElectrons(sensor),
+             avianlidar::warningOnAmbiguity(
+               sensor, avianlidar::pulseInterval(vtkInternals::PatternOf(*this))) })
+      {
+        warning += (warning.empty() || one.empty() ? "" : "; ") + NameProperties(one);
+      }
       if (part.piece == 0 && warning != this->Warned)
       {
         this->Warned = warning;

@@ -489,6 +489,14 @@ public:
   vtkGetMacro(RangeGate, double);
   ///@}
 
+  /**
+   * Range in metres from which echoes arrive after the next pulse has left: c/2 times
+   * FiringInterval, or times what a column lasts where each channel has a receiver of its own
+   * (`channel_firing_times` of a file, a FiringInterval of 0, one channel). Infinite for
+   * SetBeams(). A RangeGate beyond it is warned of once; echoes stay where they are.
+   */
+  double GetUnambiguousRange();
+
   ///@{
   /**
    * Mean rate of noise photons at the receiver in hertz, 0 to 1e50 (paper, Eq. 11). Default 20e3.
@@ -611,6 +619,15 @@ public:
    */
   vtkSetMacro(SunElevation, double);
   vtkGetMacro(SunElevation, double);
+  ///@}
+
+  ///@{
+  /**
+   * Least range that is recorded in metres, 0 to less than RangeGate: what arrives earlier is no
+   * echo, and surfaces there still hide what is behind. Default 0.
+   */
+  vtkSetMacro(MinimumRange, double);
+  vtkGetMacro(MinimumRange, double);
   ///@}
 
   ///@{
@@ -780,6 +797,7 @@ protected:
   double Sunlight = 0.0;
   double SunAzimuth = 180.0;
   double SunElevation = 45.0;
+  double MinimumRange = 0.0;
   double OverlapRange = 0.0;
   double DefocusRange = 0.0;
   double RangeNoise = 0.0;

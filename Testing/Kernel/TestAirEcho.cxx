@@ -266,6 +266,18 @@ TEST(AirEcho, UnitsAreIntegralsOfTheLaw)
       EXPECT_LT(echo.mean(0), sensor.pulseEnergy * 2.0 * Pi / 30.0);
     }
   }
+  // Before the gate there is none: of the unit in which it begins, a part.
+  sensor.minimumRange = 1.7;
+  const Medium air{ 1e-4, 30.0, 2.0 };
+  const AirEcho gated(sensor, { air }, 1e-4);
+  const double length = sensor.rangeUnitLength();
+  EXPECT_EQ(gated.mean(0), 0.0);
+  EXPECT_EQ(gated.mean(1), 0.0);
+  const double part = byMidpoints(sensor, air, 1.7, 3.0 * length);
+  EXPECT_NEAR(gated.mean(2), part, 2e-6 * part);
+  const double drops =
+    2.0 * sensor.solidAngle() * (std::pow(3.0 * length, 3) - std::pow(1.7, 3)) / 3.0;
+  EXPECT_NEAR(gated.variance(2), SquareOfDrops * part * part / drops, 1e-5 * gated.variance(2));
   EXPECT_FALSE(AirEcho(sensor, {}, 0.1).any());
   sensor.receiverAperture = 0.0;
   EXPECT_FALSE(AirEcho(sensor, { { 0.1, 20.0, 0.0 } }, 0.1).any());

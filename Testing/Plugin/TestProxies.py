@@ -69,6 +69,7 @@ BEAM_SOURCE = {
     "Sunlight": "W/(m2 nm)",
     "SunAzimuth": "degrees",
     "SunElevation": "degrees",
+    "MinimumRange": "metres",
     "OverlapRange": "metres",
     "DefocusRange": "metres",
     "RangeQuantum": "metres",

@@ -169,6 +169,18 @@ class LinkBudget(unittest.TestCase):
 
 
 class Pulses(unittest.TestCase):
+    def test_gates_end_before_the_next_pulse(self):
+        """16 channels, 10 us apart: c/2 times that is 1,498.96 m."""
+        for gate, ambiguous, refused in ((1498, False, False), (1500, False, True), (1500, True, False)):
+            with self.subTest(gate=gate, ambiguous=ambiguous):
+                sensor = {**NIGHT, "firing_interval": 1e-5, "range_gate": gate}
+                if refused:
+                    with self.assertRaisesRegex(Error, "hold no lidar that can be: range_gate is 1500 m, expected at most the 1499 m"):
+                        study_of(fresh("gate"), sensor=sensor)
+                else:
+                    study = study_of(fresh("gate"), {"ambiguous_ranges": True} if ambiguous else {}, sensor=sensor)
+                    self.assertFalse(any(one.refused for one in study.candidates))
+
     def test_numbers(self):
         study = study_of(fresh("pulses"), {"bounds": {"rotation_rate": [0.25, 0.5]}, "exit_aperture": 2e-3, "cost": "pulse_rate + average_power"})
         for one in study.candidates:

@@ -202,8 +202,16 @@ class Receiver(unittest.TestCase):
             warnings.simplefilter("error")
             few.position = (0, 0, 3)
             self.assertEqual(few.beams.number_of_points, 15360)
-            for name in ("Search905", "Search1550", "Automotive16", "Airport16"):
+            for name in ("Search905", "Airport16"):
                 self.assertGreater(Sensor(name).beams.number_of_points, 0)
+        with self.assertWarnsRegex(RuntimeWarning, "RangeGate is 4000 m, but the next pulse leaves after 15 us, that is 2248 m") as caught:
+            Sensor("Search1550").beams.number_of_points
+        self.assertNotIn("electrons", str(caught.warning))
+        with self.assertWarnsRegex(RuntimeWarning, "RangeGate is 300 m.*1.3 us"):
+            Sensor("Automotive16").beams.number_of_points
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            Sensor("Search1550", range_gate=2248).beams.number_of_points
         few.amplifier_noise = 0.1
         with self.assertWarns(RuntimeWarning):  # another number
             few.beams.number_of_points

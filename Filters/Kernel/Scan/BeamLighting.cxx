@@ -18,7 +18,8 @@ BeamLighting::BeamLighting(const ScanSetup& setup, const ScanBeams& beams, ScanB
   , Wanted(std::move(wanted))
   , Secondary(setup)
   , Quadrature(setup)
-  , Units(setup.sensor.samplingInterval, setup.sensor.pulseWidth, setup.sensor.rangeGate)
+  , Units(setup.sensor.samplingInterval, setup.sensor.pulseWidth, setup.sensor.rangeGate,
+      setup.sensor.minimumRange)
   , Air(setup.sensor, setup.settings.attenuationCoefficient, setup.media, setup.placedMedia,
       receiver.airLooked())
 {
@@ -403,9 +404,10 @@ double BeamLighting::errorOfRays(const RangeShares& shares, bool filled)
   return error.estimate({ filled ? error.smallest() : 0.0, error.largest() });
 }
 
-bool BeamLighting::isBeyondGate() const
+bool BeamLighting::isOutsideGate() const
 {
-  return this->Units.units().empty() && this->Units.energyBeyondGate() > 0.0 &&
+  return this->Units.units().empty() &&
+    (this->Units.energyBeyondGate() > 0.0 || this->Units.energyBeforeGate() > 0.0) &&
     std::any_of(this->Energies.begin(), this->Energies.end(), [](double e) { return e > 0.0; });
 }
 }

@@ -66,8 +66,8 @@ public:
   /// The width of mirrors' lobes adds to it, where an aperture gathers their light.
   /// @param paths number of paths with a share in the unit
   double errorOf(std::int64_t unit, std::uint32_t paths);
-  /// True if a direct echo arrives beyond the gate, and nothing inside.
-  bool isBeyondGate() const;
+  /// True if a direct echo arrives outside the gate, and nothing inside.
+  bool isOutsideGate() const;
   /// The air along it.
   BeamAir& air() { return this->Air; }
   /// Radiance that the beam looks at, W/(m2 sr nm) (Background.h).

@@ -61,6 +61,7 @@ AirEcho::AirEcho(const Sensor& sensor, const std::vector<Medium>& media, double 
   : SolidAngle(sensor.solidAngle())
   , UnitLength(sensor.rangeUnitLength())
   , Pulse(sensor.pulseWidth / sensor.samplingInterval)
+  , Nearest(sensor.minimumRange)
 {
   double all = 0.0;
   for (const Medium& medium : media)
@@ -84,10 +85,11 @@ AirEcho::AirEcho(const Sensor& sensor, const std::vector<Medium>& media, double 
     MostUnits, static_cast<double>(unitsInsideGate(sensor.samplingInterval, sensor.rangeGate)));
   for (double unit = 0.0; unit < count; unit += 1.0)
   {
-    const double energy = sensor.pulseEnergy * all *
-      airIntegral(
-        sensor, unit * this->UnitLength, (unit + 1.0) * this->UnitLength, 2.0 * attenuation, light);
-    if (!(energy > 0.0))
+    const double from = std::max(unit * this->UnitLength, this->Nearest);
+    const double to = (unit + 1.0) * this->UnitLength;
+    const double energy =
+      sensor.pulseEnergy * all * airIntegral(sensor, from, to, 2.0 * attenuation, light);
+    if (!(energy > 0.0) && from < to)
     {
       break;
     }
@@ -98,9 +100,10 @@ AirEcho::AirEcho(const Sensor& sensor, const std::vector<Medium>& media, double 
 /// Drops in a unit, on average.
 double AirEcho::dropsIn(std::int64_t unit) const
 {
-  const double r = this->UnitLength * static_cast<double>(unit);
-  const double volume = this->SolidAngle * this->UnitLength *
-    (r * r + r * this->UnitLength + this->UnitLength * this->UnitLength / 3.0);
+  const double begin = this->UnitLength * static_cast<double>(unit);
+  const double r = std::max(begin, this->Nearest);
+  const double length = this->UnitLength - (r - begin);
+  const double volume = this->SolidAngle * length * (r * r + r * length + length * length / 3.0);
   return this->Drops * volume;
 }
 

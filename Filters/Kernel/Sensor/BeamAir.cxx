@@ -593,6 +593,10 @@ const std::vector<BeamAir::Share>& BeamAir::sharesOf(std::int64_t unit)
   }
   const double from = this->UnitLength * static_cast<double>(unit);
   const double to = from + this->UnitLength;
+  if (!(this->Instrument.minimumRange < to))
+  {
+    return this->Shares;
+  }
   this->takeUpTo(0.5 * (from + to));
   for (std::size_t column = 0; column < this->Columns.size(); ++column)
   {
@@ -600,12 +604,12 @@ const std::vector<BeamAir::Share>& BeamAir::sharesOf(std::int64_t unit)
     {
       continue;
     }
-    this->Breaks.assign({ from, to });
+    this->Breaks.assign({ std::max(from, this->Instrument.minimumRange), to });
     for (std::size_t p = column > 0 ? this->Ends[column - 1] : 0; p < this->Ends[column]; ++p)
     {
       for (const double border : { this->Parts[p].crossing.begin, this->Parts[p].crossing.end })
       {
-        if (border > from && border < to)
+        if (border > this->Breaks[0] && border < to)
         {
           this->Breaks.push_back(border);
         }

@@ -268,6 +268,11 @@ class Study:
         except Error as error:
             one.refused = str(error)
             return
+        gate, limit = self.plan.sensor.range_gate, self.plan.sensor.algorithm.GetUnambiguousRange()
+        if gate > limit and not self.options.get("ambiguous_ranges", False):
+            one.refused = (f"range_gate is {gate:g} m, expected at most the {limit:.4g} m from which an echo arrives before the next pulse leaves, "
+                           "or design.ambiguous_ranges true")
+            return
         beams = self.plan.sensor.beams
         times = np.sort(1e-6 * np.asarray(beams["timestamp"], float))
         rate, energy = beams.number_of_points * one.values["rotation_rate"], one.values["pulse_energy"]
