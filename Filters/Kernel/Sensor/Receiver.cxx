@@ -171,7 +171,6 @@ void BeamReceiver::drawLocal(std::int64_t unit, double& beyond, ReceivedUnit& re
     all += share.mean;
   }
   const double from = static_cast<double>(unit) * this->UnitLength;
-  const double open = this->openAt(unit);
   const double variance = this->Plan.darkVariance + this->Plan.varianceOfEnergy * all;
   double most = 0.0;
   for (const BeamAir::Share& share : shares)
@@ -179,12 +178,11 @@ void BeamReceiver::drawLocal(std::int64_t unit, double& beyond, ReceivedUnit& re
     const Medium& medium = this->Along->mediumAt(share.medium);
     const double ofDrops =
       share.drops > 0.0 ? share.mean * share.mean * medium.squareOfDrops / share.drops : 0.0;
-    double energy = open * share.mean;
-    if (medium.sharesGaps && this->Gaps.any())
-    {
-      energy = share.mean * this->Gaps.returnedBetween(from, from + this->UnitLength);
-    }
-    else if (this->Plan.active && ofDrops > DropsCount * variance)
+    const bool isLeaves = medium.sharesGaps && this->Gaps.any();
+    double energy = isLeaves
+      ? this->Gaps.returnedBetween(from, from + this->UnitLength, share.medium)
+      : share.mean * this->openAt(unit);
+    if (!isLeaves && this->Plan.active && ofDrops > DropsCount * variance)
     {
       const auto number = static_cast<std::uint64_t>(unit) +
         static_cast<std::uint64_t>(AirEcho::MostUnits) * share.medium;
