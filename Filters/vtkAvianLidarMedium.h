@@ -19,8 +19,9 @@
  * - KIND_DRIZZLE, KIND_RAIN: RainRate (Joss et al. 1968; Marshall and Palmer 1948), 20 sr, drops
  *   that are few
  * - KIND_SNOW: Visibility, 20 sr, flakes
- * - KIND_FOLIAGE: LeafAreaDensity; leaves are Lambertian and face all ways; light comes back
- * through the gaps that let it in; no threshold follows it, and its echoes belong to an object
+ * - KIND_FOLIAGE: LeafAreaDensity; leaves are Lambertian discs and face all ways; light comes back
+ *   through the gaps that let it in, as far as these are wider than the aperture; no threshold
+ *   follows it, and its echoes belong to an object
  * - KIND_CUSTOM: Extinction and BackscatterRatio, beyond number
  *
  * Sources of all numbers, and which are assumed, stand in Filters/Media/media.json and

@@ -36,8 +36,9 @@ struct Medium
   double renewed = 1.0;   ///< share of the drops that are others in the next scan, 0 to 1
   bool isFollowed = true; ///< by a threshold that follows the air; trees are not
   int objectId = -2;      ///< of what it returns, ObjectOfAir for air
-  /// Light comes back through the gaps that let it in, as between leaves, which are larger than the
-  /// paths lie apart: it is weakened once, not twice.
+  /// Drops are leaves: light comes back through the gaps that let it in, as far as its two ways lie
+  /// nearer to each other than a leaf is wide (BeamAir.h). Without a number of drops they always
+  /// do.
   bool sharesGaps = false;
 
   /// mu/S, 1/(m sr).

@@ -25,6 +25,17 @@ constexpr double Faint = 1e-6;
 /// Of a pulse: less is left of it by rounding alone.
 constexpr double Rounding = 1e-9;
 
+/// Places on the aperture, over its radius, and their shares of its area: Gauss's rule.
+constexpr double PlacesOnAperture[][2] = { { 0.21234054, 0.13965396 }, { 0.59053314, 0.45848221 },
+  { 0.91141204, 0.40186383 } };
+
+/// The share of leaves before one of two ways that are not before the other. @param x distance of
+/// the ways over a leaf's diameter
+double beforeOneWay(double x)
+{
+  return x < 1.0 ? x * (2.0 - x) : 1.0;
+}
+
 /// Points across a cell of the grid, each way, by which its share of the pulse is known.
 constexpr int PointsOfCell = 16;
 }
@@ -38,7 +49,10 @@ BeamAir::BeamAir(const Sensor& sensor, double attenuation, const std::vector<Med
   , Everywhere(everywhere)
   , Placed(placed)
   , LookedEverywhere(looked)
+  , ApertureRadius(std::sqrt(sensor.receiverAperture / Pi))
 {
+  const BeamWidth width = BeamShape(sensor).width();
+  this->HalfWidths = { width.tangent, width.flatness * width.tangent };
 }
 
 /// The cells of the grid in the beam.
@@ -49,7 +63,7 @@ void BeamAir::makeGrid()
   double all = 0.0;
   for (int cell = 0; cell < Across * Across; ++cell)
   {
-    Column column{ 0.0, 0.0, 0.0, std::uint64_t{ 1 } << cell };
+    Column column{ 0.0, 0.0, 0.0, std::uint64_t{ 1 } << cell, {}, 0.0 };
     for (int point = 0; point < PointsOfCell * PointsOfCell; ++point)
     {
       const auto at = [=](int number, int part)
@@ -72,6 +86,11 @@ void BeamAir::makeGrid()
       const bool isIn = shape.holds(x, y);
       column.x = isIn ? x : column.x / column.weight;
       column.y = isIn ? y : column.y / column.weight;
+      // A sequence that fills the square evenly, in any order of the cells.
+      const auto number = static_cast<double>(this->Grid.size());
+      const double angle = 2.0 * Pi * 0.5698402910 * number;
+      column.towards = { std::cos(angle), std::sin(angle) };
+      column.nearer = std::fmod(0.7548776662 * number, 1.0);
       all += column.weight;
       this->Grid.push_back(column);
     }
@@ -169,11 +188,7 @@ void BeamAir::chooseColumns(const BeamFrame& frame)
     this->Columns.assign(1, this->Axis);
     return;
   }
-  if (this->Grid.empty())
-  {
-    this->makeGrid();
-  }
-  this->Columns = this->Grid;
+  this->Columns = this->grid();
   if (!isLayered)
   {
     return;
@@ -229,9 +244,13 @@ void BeamAir::findParts(const Vec3& origin, const Vec3& direction)
     this->Found.clear();
     this->Crosser.find(this->Placed[medium].volume, origin, direction, this->Instrument.rangeGate,
       this->Seconds, this->Found);
+    // Seen from all sides a disc is half as large as from its front.
+    const Medium& of = this->Placed[medium].medium;
+    const double perLeaf =
+      of.sharesGaps && of.extinction > 0.0 ? std::sqrt(Pi * of.drops / (8.0 * of.extinction)) : 0.0;
     for (const MediumCrossing& part : this->Found)
     {
-      this->Parts.push_back({ medium, met, part });
+      this->Parts.push_back({ medium, met, part, perLeaf });
     }
   }
   this->Ends.push_back(this->Parts.size());
@@ -334,7 +353,7 @@ void BeamAir::chooseLooked()
   this->Looked.back().second = std::min(this->Looked.back().second, opaque);
 }
 
-/// Optical depth of media that do not fill the scene, there and back.
+/// Optical depth of media that do not fill the scene, there and back; of leaves, there.
 double BeamAir::depth(std::size_t column, double range) const
 {
   double sum = 0.0;
@@ -346,6 +365,39 @@ double BeamAir::depth(std::size_t column, double range) const
   return sum;
 }
 
+/// What leaves let through on the way back of what they let through on the way there.
+double BeamAir::wayBack(std::size_t column, double range) const
+{
+  std::array<double, std::size(PlacesOnAperture)> depths{};
+  bool isFree = true;
+  for (std::size_t p = column > 0 ? this->Ends[column - 1] : 0; p < this->Ends[column]; ++p)
+  {
+    const Part& part = this->Parts[p];
+    if (!(part.perLeaf * this->ApertureRadius > 0.0) || !(part.crossing.begin < range))
+    {
+      continue;
+    }
+    isFree = false;
+    const double stops = this->mediumOf(part).extinction * part.crossing.upTo(range);
+    const double begin = 1.0 - part.crossing.begin / range;
+    const double end = 1.0 - std::min(part.crossing.end, range) / range;
+    for (std::size_t k = 0; k < depths.size(); ++k)
+    {
+      // Simpson's rule: exact as long as the ways are nearer to each other than a leaf's width.
+      const double x = PlacesOnAperture[k][0] * this->ApertureRadius * part.perLeaf;
+      depths[k] += stops / 6.0 *
+        (beforeOneWay(x * begin) + 4.0 * beforeOneWay(0.5 * x * (begin + end)) +
+          beforeOneWay(x * end));
+    }
+  }
+  double sum = 0.0;
+  for (std::size_t k = 0; k < depths.size() && !isFree; ++k)
+  {
+    sum += PlacesOnAperture[k][1] * std::exp(-depths[k]);
+  }
+  return isFree ? 1.0 : sum;
+}
+
 double BeamAir::transmission(double range, std::uint64_t columns)
 {
   double sum = 0.0;
@@ -355,7 +407,7 @@ double BeamAir::transmission(double range, std::uint64_t columns)
     const Column& column = this->Columns[k];
     if (columns == 0 || (columns & column.bits) != 0)
     {
-      sum += column.weight * std::exp(-this->depth(k, range));
+      sum += column.weight * std::exp(-this->depth(k, range)) * this->wayBack(k, range);
       all += column.weight;
     }
   }
@@ -492,11 +544,17 @@ void BeamAir::takeOne(double weight, std::uint64_t columns)
   }
 }
 
+/// Solid angle, sr, from which light of a range, m, is gathered, less what misses the detector.
+double BeamAir::gathered(double range) const
+{
+  return this->Instrument.nearRangeShare(range) *
+    std::min(this->Instrument.receiverAperture / (range * range), 2.0 * Pi);
+}
+
 /// Add what a column sends back from between two ranges, m, that no border of a medium divides.
 void BeamAir::addShares(std::size_t column, double open, double from, double to)
 {
   const Sensor& sensor = this->Instrument;
-  const double weight = open * this->Columns[column].weight;
   const double middle = 0.5 * (from + to);
   double decay = 2.0 * this->Attenuation; // 1/m, at most
   double slope = decay;                   // of the depth, where no density changes
@@ -523,8 +581,8 @@ void BeamAir::addShares(std::size_t column, double open, double from, double to)
   {
     return;
   }
-  const auto gathered = [&](double r)
-  { return sensor.nearRangeShare(r) * std::min(sensor.receiverAperture / (r * r), 2.0 * Pi); };
+  const double weight = open * this->Columns[column].weight;
+  const double seen = weight * this->wayBack(column, middle);
   const auto light = [&](double r)
   {
     double depth = before + 2.0 * this->Attenuation * r;
@@ -533,7 +591,7 @@ void BeamAir::addShares(std::size_t column, double open, double from, double to)
       depth += this->waysOf(part) * this->mediumOf(part).extinction *
         (part.crossing.upTo(r) - part.crossing.upTo(from));
     }
-    return gathered(r) * std::exp(-depth);
+    return this->gathered(r) * std::exp(-depth);
   };
   // Where no density changes, all media share one integral, and columns of one slope, too.
   const Steady wanted{ from, to, slope };
@@ -541,7 +599,7 @@ void BeamAir::addShares(std::size_t column, double open, double from, double to)
   {
     this->Known = wanted;
     this->OfKnown = airIntegral(sensor, from, to, slope,
-      [&](double r) { return gathered(r) * std::exp(-slope * (r - from)); });
+      [&](double r) { return this->gathered(r) * std::exp(-slope * (r - from)); });
   }
   const double steady =
     change == 0.0 ? this->OfKnown * std::exp(-before - 2.0 * this->Attenuation * from) : 0.0;
@@ -550,7 +608,7 @@ void BeamAir::addShares(std::size_t column, double open, double from, double to)
     const auto densityAt = [&](double r) { return part ? part->densityAt(r) : 1.0; };
     if (medium.backscatter() > 0.0)
     {
-      this->Means[number] += weight * sensor.pulseEnergy * medium.backscatter() *
+      this->Means[number] += seen * sensor.pulseEnergy * medium.backscatter() *
         (change == 0.0 ? densityAt(middle) * steady
                        : airIntegral(
                            sensor, from, to, decay,
@@ -632,19 +690,72 @@ const std::vector<BeamAir::Share>& BeamAir::sharesOf(std::int64_t unit)
   return this->Shares;
 }
 
-BeamAir::Leaves BeamAir::firstLeaves() const
+void BeamAir::findLeaves(std::vector<Leaves>& all) const
 {
-  Leaves first;
+  all.clear();
+  const auto first = static_cast<std::uint32_t>(this->Everywhere.size());
   for (const Part& part : this->Parts)
   {
     const Medium& medium = this->mediumOf(part);
-    if (medium.sharesGaps && medium.drops > 0.0 &&
-      (first.area == 0.0 || part.crossing.begin < first.range))
+    if (!medium.sharesGaps || !(medium.drops > 0.0))
     {
-      first = { part.crossing.begin, medium.extinction / medium.drops, medium.renewed };
+      continue;
     }
+    const Leaves found{ first + part.medium, part.crossing.begin, part.crossing.end };
+    const auto known = std::find_if(
+      all.begin(), all.end(), [&](const Leaves& one) { return one.medium == found.medium; });
+    if (known == all.end())
+    {
+      all.push_back(found);
+      continue;
+    }
+    known->begin = std::min(known->begin, found.begin);
+    known->end = std::max(known->end, found.end);
   }
-  return first;
+  std::stable_sort(all.begin(), all.end(),
+    [](const Leaves& one, const Leaves& two) { return one.begin < two.begin; });
+}
+
+const std::vector<BeamAir::Column>& BeamAir::grid()
+{
+  if (this->Grid.empty())
+  {
+    this->makeGrid();
+  }
+  return this->Grid;
+}
+
+std::size_t BeamAir::columnOf(const Column& cell) const
+{
+  const auto found = std::find_if(this->Columns.begin(), this->Columns.end(),
+    [&](const Column& column) { return (column.bits & cell.bits) != 0; });
+  return static_cast<std::size_t>(found - this->Columns.begin());
+}
+
+double BeamAir::densityAt(std::size_t column, std::uint32_t medium, double range) const
+{
+  double density = 0.0;
+  for (std::size_t p = column > 0 ? this->Ends[column - 1] : 0; p < this->Ends[column]; ++p)
+  {
+    const Part& part = this->Parts[p];
+    density +=
+      this->Everywhere.size() + part.medium == medium ? part.crossing.densityAt(range) : 0.0;
+  }
+  return density;
+}
+
+double BeamAir::returnedBy(const MetLeaf& leaf, std::size_t column, double share) const
+{
+  double depth = 2.0 * this->Attenuation * leaf.range;
+  for (std::size_t p = column > 0 ? this->Ends[column - 1] : 0; p < this->Ends[column]; ++p)
+  {
+    const Part& part = this->Parts[p];
+    const Medium& medium = this->mediumOf(part);
+    depth += medium.sharesGaps ? 0.0 : 2.0 * medium.extinction * part.crossing.upTo(leaf.range);
+  }
+  // Seen leaves have a mean cosine of 2/3.
+  return this->Instrument.pulseEnergy * share * this->OpenOf[column] * 1.5 * leaf.cosine /
+    this->mediumAt(leaf.medium).backscatterRatio * this->gathered(leaf.range) * std::exp(-depth);
 }
 
 double BeamAir::leftByLeaves(double range) const
@@ -660,7 +771,7 @@ double BeamAir::leftByLeaves(double range) const
         ? medium.extinction * this->Parts[p].crossing.upTo(range)
         : 0.0;
     }
-    sum += this->Columns[column].weight * std::exp(-depth);
+    sum += this->Columns[column].weight * std::exp(-depth) * this->wayBack(column, range);
   }
   return sum;
 }

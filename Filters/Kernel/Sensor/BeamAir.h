@@ -13,15 +13,25 @@
  * (BeamSamples::columns). So light behind half a tree is weakened where the tree is, and a tree
  * behind half a wall returns what the wall leaves.
  *
+ * Leaves stop light on its way there and on its way back, but a leaf that would stop both counts
+ * once. Light returns to any point of the aperture, a disc about the apex: at a range z its way
+ * back lies q (1 - z/R) beside its way there, q the distance of that point from the apex, R the
+ * range of what returns the light. Discs of diameter d that face all ways stop both of two ways, x
+ * d apart, (1 - x)^2 times as often as one of them, and never beyond x = 1. So leaves let exp(-mu
+ * int (2 - (1 - x)^2) dz) come back, averaged over the aperture: from exp(-mu L), where the
+ * aperture is much smaller than a leaf, to exp(-2 mu L).
+ *
  * Units are looked at where media may be perceived: in their parts, as far as they return more than
  * a millionth of the lower limit.
  *
- * Source: the lidar equation, as AirEcho.h.
- * Differs: as AirEcho.h.
- * Valid: units to 1e-6 along each column. A straight border anywhere in a round uniform beam
- * divides it to 0.095 at worst, 0.017 rms; a layer's top to 0.093 at worst, 0.037 rms; one that
- * crosses less than 0.013 of it is not seen. The sum of all shares that surfaces take is exact,
- * unit by unit.
+ * Source: the lidar equation, as AirEcho.h; the hot spot of leaves: A. Kuusk, Soviet Journal of
+ * Remote Sensing 3, 1985 (second-hand).
+ * Differs: as AirEcho.h. Kuusk has exp(-x) in place of (1 - x)^2.
+ * Valid: units to 1e-6 along each column; with leaves to 1e-2, up to an optical depth of 4 one way.
+ * A straight border anywhere in a round uniform beam divides it to 0.095 at worst, 0.017 rms; a
+ * layer's top to 0.093 at worst, 0.037 rms; one that crosses less than 0.013 of it is not seen. The
+ * sum of all shares that surfaces take is exact, unit by unit. The transmitter is a point. Paths
+ * over two reflections meet other leaves on each of their three ways.
  * Test: TestBeamAir.cxx.
  */
 #ifndef avianlidar_BeamAir_h
@@ -40,6 +50,14 @@
 
 namespace avianlidar
 {
+/// The leaf at which a ray of the beam ends.
+struct MetLeaf
+{
+  std::uint32_t medium; ///< see BeamAir::mediumAt()
+  double range;         ///< m
+  double cosine;        ///< at which it is seen
+};
+
 /// Surfaces that a beam meets, as its air needs them.
 struct SurfacesInAir
 {
@@ -59,6 +77,17 @@ public:
   BeamAir(const Sensor& sensor, double attenuation, const std::vector<Medium>& everywhere,
     const std::vector<PlacedMedium>& placed,
     std::int64_t looked = std::numeric_limits<std::int64_t>::max());
+
+  /// A part of the beam.
+  struct Column
+  {
+    double x, y;        ///< in the beam's plane
+    double weight;      ///< share of the pulse
+    std::uint64_t bits; ///< of the grid
+    // The point of the aperture to which light returns; those of neighbours lie far apart.
+    std::array<double, 2> towards{}; ///< unit vector from the middle of the aperture
+    double nearer = 0.0;             ///< share of the aperture's area that is nearer to the middle
+  };
 
   /// Begin a beam that no surface weakens. @param seconds when it is sent
   void begin(const BeamFrame& frame, double seconds);
@@ -109,17 +138,34 @@ public:
   const std::vector<Share>& sharesOf(std::int64_t unit);
   const Medium& mediumAt(std::uint32_t number) const;
 
-  /// Leaves where the beam first meets some.
+  /// A medium of leaves, and the ranges, m, between which the beam may meet it.
   struct Leaves
   {
-    double range = 0.0;   ///< m
-    double area = 0.0;    ///< of one as it is seen, m^2; 0: there are none
-    double renewed = 0.0; ///< share that is another in the next scan
+    std::uint32_t medium; ///< see mediumAt()
+    double begin, end;
   };
-  Leaves firstLeaves() const;
+  /// Find them, in the order of their beginnings.
+  void findLeaves(std::vector<Leaves>& all) const;
 
-  /// Share of the light that leaves let through to a range, m, on average.
+  /// Half widths of the beam at 1 m, and radius of the aperture, m.
+  std::array<double, 2> halfWidths() const { return this->HalfWidths; }
+  double apertureRadius() const { return this->ApertureRadius; }
+
+  /// Share of the light that leaves let through to a range, m, and back, on average.
   double leftByLeaves(double range) const;
+
+  /// The cells of the grid, whether or not the beam is divided.
+  const std::vector<Column>& grid();
+
+  /// The number of the column in which a cell lies.
+  std::size_t columnOf(const Column& cell) const;
+
+  /// Density of a medium in a column, over that of the medium.
+  double densityAt(std::size_t column, std::uint32_t medium, double range) const;
+
+  /// Energy, J, that a leaf returns of a share of the pulse, if no leaf stops it on its way back.
+  /// Surfaces take what they meet before the unit of the last sharesOf().
+  double returnedBy(const MetLeaf& leaf, std::size_t column, double share) const;
 
   /// Mean energy, J, in a unit that a threshold may follow. @param echo of the air that fills the
   /// scene
@@ -158,28 +204,25 @@ public:
   }
 
 private:
-  struct Column
-  {
-    double x, y;        ///< in the beam's plane
-    double weight;      ///< share of the pulse
-    std::uint64_t bits; ///< of the grid
-  };
   struct Part
   {
     std::uint32_t medium;
     std::uint32_t met; ///< its place in Met
     MediumCrossing crossing;
+    double perLeaf; ///< of leaves: 1 over their diameter, 1/m
   };
   using Steady = std::array<double, 3>; ///< from and to, m, and the slope of the depth, 1/m
   bool rimAgrees(const BeamFrame& frame);
   void chooseColumns(const BeamFrame& frame);
   void findParts(const Vec3& origin, const Vec3& direction);
   double depth(std::size_t column, double range) const;
+  double wayBack(std::size_t column, double range) const;
   void makeGrid();
   void takeUpTo(double range);
   void takeOne(double weight, std::uint64_t columns);
   const Medium& mediumOf(const Part& part) const { return this->Placed[part.medium].medium; }
   double waysOf(const Part& part) const { return this->mediumOf(part).sharesGaps ? 1.0 : 2.0; }
+  double gathered(double range) const;
   void addShares(std::size_t column, double open, double from, double to);
   double weightOf(std::uint64_t columns) const;
   void chooseLooked();
@@ -191,6 +234,8 @@ private:
   const std::vector<Medium>& Everywhere;
   const std::vector<PlacedMedium>& Placed;
   std::int64_t LookedEverywhere;
+  std::array<double, 2> HalfWidths;
+  double ApertureRadius;    ///< m
   std::vector<Column> Grid; ///< empty until a beam needs it
   Column Axis{ 0.0, 0.0, 1.0, ~std::uint64_t{ 0 } };
 

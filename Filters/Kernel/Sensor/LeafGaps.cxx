@@ -1,58 +1,218 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "LeafGaps.h"
 
-#include "BeamAir.h"
 #include "Random.h"
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace avianlidar
 {
+namespace
+{
+constexpr double Never = std::numeric_limits<double>::infinity();
+
+/// The scan of leaves that stay: they are the same in every scan.
+constexpr std::int32_t Always = -1;
+
+constexpr std::uint64_t DrawsOfLeaf = 3;
+}
+
 void LeafGaps::begin(
   BeamAir& along, double solidAngle, std::int32_t seed, std::uint64_t beam, std::int32_t revolution)
 {
-  this->Parts.clear();
+  this->clear();
   this->Along = &along;
-  const BeamAir::Leaves first = along.firstLeaves();
-  const double parts = 1.0 + solidAngle * first.range * first.range / first.area;
-  if (!(first.area > 0.0) || parts > MostParts)
+  this->Streams.clear();
+  along.findLeaves(this->Leaves);
+  const auto [slopeX, slopeY] = along.halfWidths();
+  // Leaves are drawn in a rectangle about all ways, as large as a square of this half side.
+  const double growth = 0.5 * (slopeX + slopeY);
+  const auto halfSide = [=](const Stream& of) { return of.rim + growth * of.range; };
+  const auto draw = [=](const Stream& of, std::uint64_t number)
+  { return uniformPair(seed, beam, of.number + number, RandomPurpose::Leaves, of.scan); };
+  const auto advance = [&](Stream& of)
+  {
+    // The volume up to the next leaf, the integral of 4 (rim + growth r)^2, is exponential.
+    of.number += DrawsOfLeaf;
+    const double side = halfSide(of);
+    const double volume = -std::log(draw(of, 0)[0]) / of.perVolume;
+    of.range = (std::cbrt(side * side * side + 0.75 * growth * volume) - of.rim) / growth;
+    of.range = of.range < of.leaves.end ? of.range : Never;
+  };
+  for (const BeamAir::Leaves& leaves : this->Leaves)
+  {
+    const Medium& medium = along.mediumAt(leaves.medium);
+    const double seenArea = medium.extinction / medium.drops;
+    const double radius = std::sqrt(2.0 * seenArea / Pi);
+    const Stream one{ leaves, Always, medium.drops * (1.0 - medium.renewed), radius,
+      radius + along.apertureRadius(), std::uint64_t{ leaves.medium } << 24, leaves.begin };
+    const double across = 2.0 * halfSide(one);
+    if (this->Streams.empty() &&
+      (solidAngle * leaves.begin * leaves.begin > MostLeaves * seenArea ||
+        across * across > MostLeavesAcross * seenArea))
+    {
+      return;
+    }
+    Stream two = one;
+    two.scan = revolution;
+    two.perVolume = medium.drops * medium.renewed;
+    this->Streams.push_back(one);
+    this->Streams.push_back(two);
+  }
+  if (this->Streams.empty())
   {
     return;
   }
-  constexpr std::int32_t always = -1; // leaves that stay are the same in every scan
-  const auto count = static_cast<std::uint64_t>(std::lround(parts));
-  for (std::uint64_t k = 0; k < count; ++k)
+  const auto [turn, shift] = uniformPair(seed, beam, 0, RandomPurpose::Leaves, revolution);
+  this->makeRays(turn, shift);
+  for (Stream& stream : this->Streams)
   {
-    const auto draw = [&](std::uint64_t number, std::int32_t scan)
-    { return uniformPair(seed, beam, 2 * k + number, RandomPurpose::Leaves, scan); };
-    const bool isRenewed = draw(0, always)[0] < first.renewed;
-    const auto [share, turned] = draw(1, isRenewed ? revolution : always);
-    // A leaf is met by the cosine at which it is seen, and returns by that cosine.
-    this->Parts.push_back({ share, 1.5 * std::sqrt(turned) });
+    advance(stream);
   }
+  while (!this->Left.empty())
+  {
+    Stream& next = *std::min_element(this->Streams.begin(), this->Streams.end(),
+      [](const Stream& a, const Stream& b) { return a.range < b.range; });
+    if (!(next.range < Never))
+    {
+      break;
+    }
+    // One number has digits enough for two.
+    constexpr double digits = 67108864.0; // 2^26
+    const double place = digits * draw(next, 0)[1];
+    const double u = std::floor(place) / digits;
+    const double v = place - std::floor(place);
+    const double high = next.rim + slopeY * next.range;
+    const double wide = halfSide(next) * halfSide(next) / high;
+    this->place({ (2.0 * u - 1.0) * wide, (2.0 * v - 1.0) * high }, next,
+      [&](std::uint64_t number) { return draw(next, number); });
+    advance(next);
+  }
+  for (std::size_t k = 0; k < this->Rays.size(); ++k)
+  {
+    Ray& ray = this->Rays[k];
+    ray.isSeen = (this->shadedAt(ray.leaf.range) >> k & 1) == 0;
+  }
+}
+
+/// Set the rays; no leaf has stopped them yet. @param turn of their points on the aperture about
+/// its middle, in whole turns @param shift of the share of its area that is nearer to the middle
+void LeafGaps::makeRays(double turn, double shift)
+{
+  this->Shadows.clear();
+  this->Left.clear();
+  const auto [slopeX, slopeY] = this->Along->halfWidths();
+  const double cosine = std::cos(2.0 * Pi * turn);
+  const double sine = std::sin(2.0 * Pi * turn);
+  for (const BeamAir::Column& cell : this->Along->grid())
+  {
+    const double nearer = cell.nearer + shift;
+    const double away =
+      this->Along->apertureRadius() * std::sqrt(nearer < 1.0 ? nearer : nearer - 1.0);
+    const auto [x, y] = cell.towards;
+    this->Left.push_back({ this->Rays.size(), { slopeX * cell.x, slopeY * cell.y } });
+    this->Rays.push_back({ { away * (cosine * x - sine * y), away * (cosine * y + sine * x) },
+      cell.weight, this->Along->columnOf(cell), { 0, Never, 0.0 }, true });
+  }
+}
+
+/// Place a leaf: end the rays that meet it, and note those whose light it stops on its way back.
+/// @param draw two of its random numbers
+template <class F>
+void LeafGaps::place(const std::array<double, 2>& centre, const Stream& of, F draw)
+{
+  bool isDrawn = false;
+  double least = 0.0; // density of the medium from which on this leaf exists
+  double cosine = 1.0;
+  double along = 0.0;
+  double beside = 0.0;
+  // Coordinates in which the leaf is the unit disc.
+  const auto toLeaf = [&](double x, double y) -> std::array<double, 2> {
+    return { x * along + y * beside, (y * along - x * beside) / cosine };
+  };
+  for (std::size_t i = this->Left.size(); i-- > 0;)
+  {
+    const double x = this->Left[i].slope[0] * of.range - centre[0];
+    const double y = this->Left[i].slope[1] * of.range - centre[1];
+    if (x * x + y * y > of.rim * of.rim)
+    {
+      continue;
+    }
+    if (!isDrawn)
+    {
+      const double turn = Pi * draw(1)[0];
+      along = std::cos(turn) / of.radius;
+      beside = std::sin(turn) / of.radius;
+      least = draw(1)[1];
+      cosine = draw(2)[0];
+      isDrawn = true;
+    }
+    Ray& ray = this->Rays[this->Left[i].ray];
+    // The way back from a range R passes p + s q, s = 1 - r/R: inside where a s^2 + 2 b s + c < 0.
+    const auto p = toLeaf(x, y);
+    const auto q = toLeaf(ray.aperture[0], ray.aperture[1]);
+    const double a = q[0] * q[0] + q[1] * q[1];
+    const double b = p[0] * q[0] + p[1] * q[1];
+    const double c = p[0] * p[0] + p[1] * p[1] - 1.0;
+    const double root = b * b - a * c;
+    const bool isMet = c < 0.0;
+    if ((!isMet && (b >= 0.0 || root <= 0.0)) ||
+      !(least < this->Along->densityAt(ray.column, of.leaves.medium, of.range)))
+    {
+      continue;
+    }
+    if (isMet)
+    {
+      ray.leaf = { of.leaves.medium, of.range, cosine };
+      this->Left[i] = this->Left.back();
+      this->Left.pop_back();
+      continue;
+    }
+    const double enters = c / (std::sqrt(root) - b);
+    const double ends = (std::sqrt(root) - b) / a;
+    if (enters < 1.0)
+    {
+      this->Shadows.push_back({ this->Left[i].ray, of.range / (1.0 - enters),
+        ends < 1.0 ? of.range / (1.0 - ends) : Never });
+    }
+  }
+}
+
+/// Rays, as bits, whose light a leaf stops on its way back from a range, m.
+std::uint64_t LeafGaps::shadedAt(double range) const
+{
+  std::uint64_t shaded = 0;
+  for (const Shadow& shadow : this->Shadows)
+  {
+    const bool isIn = range > shadow.from && range < shadow.to;
+    shaded |= std::uint64_t{ isIn } << shadow.ray;
+  }
+  return shaded;
 }
 
 double LeafGaps::openAt(double range) const
 {
-  const double left = this->Along->leftByLeaves(range);
-  std::size_t open = 0;
-  for (const auto& [share, light] : this->Parts)
+  const std::uint64_t shaded = this->shadedAt(range);
+  double open = 0.0;
+  for (std::size_t k = 0; k < this->Rays.size(); ++k)
   {
-    open += share < left ? 1 : 0;
+    open += this->Rays[k].leaf.range > range && (shaded >> k & 1) == 0 ? this->Rays[k].share : 0.0;
   }
-  return open > 0 ? static_cast<double>(open) / (left * static_cast<double>(this->Parts.size()))
-                  : 0.0;
+  return open > 0.0 ? open / this->Along->leftByLeaves(range) : 0.0;
 }
 
-double LeafGaps::returnedBetween(double from, double to) const
+double LeafGaps::returnedBetween(double from, double to, std::uint32_t medium) const
 {
-  const double before = this->Along->leftByLeaves(from);
-  const double after = this->Along->leftByLeaves(to);
   double sum = 0.0;
-  for (const auto& [share, light] : this->Parts)
+  for (const Ray& ray : this->Rays)
   {
-    sum += share < before && !(share < after) ? light : 0.0;
+    const MetLeaf& leaf = ray.leaf;
+    sum += ray.isSeen && leaf.medium == medium && leaf.range >= from && leaf.range < to
+      ? this->Along->returnedBy(leaf, ray.column, ray.share)
+      : 0.0;
   }
-  return sum > 0.0 ? sum / ((before - after) * static_cast<double>(this->Parts.size())) : 0.0;
+  return sum;
 }
 }

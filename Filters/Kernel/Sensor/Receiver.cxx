@@ -219,12 +219,11 @@ void BeamReceiver::drawLocal(std::int64_t unit, double& beyond, ReceivedUnit& re
     const Medium& medium = this->Along->mediumAt(share.medium);
     const double ofDrops =
       share.drops > 0.0 ? share.mean * share.mean * medium.squareOfDrops / share.drops : 0.0;
-    double energy = open * share.mean;
-    if (medium.sharesGaps && this->Gaps.any())
-    {
-      energy = share.mean * this->Gaps.returnedBetween(from, from + this->UnitLength);
-    }
-    else if (this->Plan.active && !medium.isFollowed && ofDrops > DropsCount * variance)
+    const bool isLeaves = medium.sharesGaps && this->Gaps.any();
+    double energy = isLeaves
+      ? this->Gaps.returnedBetween(from, from + this->UnitLength, share.medium)
+      : open * share.mean;
+    if (!isLeaves && this->Plan.active && !medium.isFollowed && ofDrops > DropsCount * variance)
     {
       const auto number = static_cast<std::uint64_t>(unit) +
         static_cast<std::uint64_t>(AirEcho::MostUnits) * share.medium;
