@@ -3,6 +3,7 @@
 
 #include "AvailableMemory.h"
 #include "PhotonReceiver.h"
+#include "Propagation.h"
 #include "vtkAvianLidarAbort.h"
 #include "vtkAvianLidarArrays.h"
 #include "vtkAvianLidarBeamSourceInternals.h"
@@ -352,6 +353,19 @@ double vtkAvianLidarBeamSource::GetWavelength()
 double vtkAvianLidarBeamSource::GetUnambiguousRange()
 {
   return avianlidar::unambiguousRange(avianlidar::pulseInterval(vtkInternals::PatternOf(*this)));
+}
+
+//------------------------------------------------------------------------------
+double vtkAvianLidarBeamSource::GetClearAirAttenuation()
+{
+  return avianlidar::attenuationOfVisibility(
+    avianlidar::ClearVisibility, 1e-9 * this->GetWavelength());
+}
+
+//------------------------------------------------------------------------------
+void vtkAvianLidarBeamSource::SetLimitsFromDataSheet(double range, double reflectance)
+{
+  this->SetLimitsFromDataSheet(range, reflectance, this->GetClearAirAttenuation());
 }
 
 //------------------------------------------------------------------------------

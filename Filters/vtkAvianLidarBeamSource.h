@@ -713,14 +713,23 @@ public:
   vtkGetMacro(DynamicRange, double);
   ///@}
 
+  ///@{
   /**
    * Set LowerEnergyLimit and UpperEnergyLimit (DynamicRange above it) by a line of a data sheet:
    * the sensor sees a Lambertian surface of `reflectance` (above 0, at most 1) that fills the beam
-   * until `range` in metres, through air of `attenuation` in 1/m. One point is a guess: others of
-   * its sheet were predicted up to 43 % wrong (Documentation/sensors.md, Fitted to a sheet). Needs
-   * ReceiverAperture; for RECEIVER_MODEL_ENERGY_LIMITS. A bad value changes nothing.
+   * until `range` in metres, through air of `attenuation` in 1/m, by default clear air. One point
+   * is a guess: others of its sheet were predicted up to 58 % wrong (Documentation/sensors.md,
+   * Fitted to a sheet). Needs ReceiverAperture; for RECEIVER_MODEL_ENERGY_LIMITS. A bad value
+   * changes nothing.
    */
-  void SetLimitsFromDataSheet(double range, double reflectance, double attenuation = 0.0);
+  void SetLimitsFromDataSheet(double range, double reflectance);
+  void SetLimitsFromDataSheet(double range, double reflectance, double attenuation);
+  ///@}
+
+  /**
+   * Attenuation in 1/m of clear air, of a visibility of 23 km, at Wavelength.
+   */
+  double GetClearAirAttenuation();
 
   ///@{
   /**

@@ -233,6 +233,10 @@ class Receiver(unittest.TestCase):
         energy = 1e-6 * 0.1 * 0.01 / (np.pi * 200.0**2) * np.exp(-2 * 1e-4 * 200.0)
         self.assertAlmostEqual(sensor.lower_energy_limit / energy, 1, delta=1e-12)
         self.assertAlmostEqual(sensor.upper_energy_limit / energy, 1e4, delta=1e-6)
+        clear = 3.912 / 23e3 * (sensor.wavelength / 550) ** -1.3  # by default, at the sensor's wavelength
+        sensor.algorithm.SetLimitsFromDataSheet(200.0, 0.1)
+        self.assertAlmostEqual(sensor.lower_energy_limit / energy, np.exp(-2 * (clear - 1e-4) * 200.0), delta=1e-12)
+        sensor.algorithm.SetLimitsFromDataSheet(200.0, 0.1, 1e-4)
         for bad in ((0.0, 0.1), (200.0, 0.0), (200.0, 1.5), (200.0, 0.1, -1.0), (float("nan"), 0.1)):
             sensor.algorithm.SetLimitsFromDataSheet(*bad)
         sensor.algorithm.SetLimitsFromDataSheet(4000.0, 0.1, 1.0)  # through which nothing comes back
