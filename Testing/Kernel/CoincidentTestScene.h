@@ -90,6 +90,7 @@ inline std::vector<CoincidentPlates> pairs(int parts)
 
 inline void moveBy(Scene& scene, const Vec3& by)
 {
+  scene.mesh = std::make_shared<TriangleMesh>(*scene.mesh); // copies of a scene share it
   for (Vec3& p : scene.mesh->points)
   {
     p += by;
