@@ -181,7 +181,9 @@ void vtkAvianLidarEchoFilter::Trace(const std::array<vtkPolyData*, 3>& outputs)
   in.TracedRays = static_cast<double>(result.raysTraced);
   in.TracedBeams = static_cast<double>(result.beamsTraced);
   this->Moved->TouchedBeams = static_cast<double>(result.beamsTouched);
-  this->Moved->Coincident = in.Surfaces.WarningOnCoincidence(result.coincident);
+  this->Moved->Coincident = result.echoes.empty()
+    ? std::string() // it changes nothing
+    : in.Surfaces.WarningOnCoincidence(result.coincident);
   vtkAvianLidarEchoOutput::FillEchoes(result, in.Beams, in.Setup.noise, outputs[0]);
   vtkAvianLidarEchoOutput::FillReport(result, in.Beams, in.Setup.noise, outputs[1]);
   if (this->ReportMovers)

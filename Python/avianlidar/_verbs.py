@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import pathlib
 import sys
+import warnings
 from typing import Any, Dict, Iterable, Iterator, List, Tuple
 
 from ._suffixes import PACKETS
@@ -286,7 +287,9 @@ def sensors(options) -> None:
     if options.name:
         _table(_display.sensor_rows(Sensor(options.name)).items())
         return
-    all_rows = {name: _display.sensor_rows(Sensor(name)) for name in Sensor.presets()}
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # about sensors that nobody has chosen
+        all_rows = {name: _display.sensor_rows(Sensor(name)) for name in Sensor.presets()}
     keys = [key for key in next(iter(all_rows.values())) if key not in ("position", "what")]
     _table([("name", *keys), *((name, *(rows.get(key, "") for key in keys)) for name, rows in all_rows.items())])
 

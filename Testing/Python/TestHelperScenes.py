@@ -409,7 +409,6 @@ class NothingToSee(unittest.TestCase):
 
     def test_below_the_ground(self):
         words = self.words(al.Scene(SCENE), position=(0, 0, -50))
-        self.assertRegex(words.pop(0), "faces coincide.*: 'Ground' over 'Terminal 2'")  # floors, seen from below
         self.assertEqual(words[0], "the sensor at (0, 0, -50) m is below the scene, whose lowest point is at 0 m")
         self.assertRegex(words[1], "^no echoes of 2880 beams: ")
         hill = al.Scene([(-500, -500, 0), (500, -500, 0), (500, 500, 40), (-500, 500, 40)], [(0, 1, 2), (0, 2, 3)])
@@ -461,11 +460,11 @@ class NothingToSee(unittest.TestCase):
 
     def test_the_place_is_looked_at_once(self):
         scan = al.Scan(al.Scene(SCENE), al.Sensor(position=(0, 0, -50), azimuth_step=2))
-        self.assertEqual(len(said(scan.update)), 3)
+        self.assertEqual(len(said(scan.update)), 2)
         scan.attenuation_coefficient = 1e-5
-        self.assertNotRegex(" ".join(said(scan.update)), "the sensor at")
+        self.assertRegex(" ".join(said(scan.update)), "^no echoes of")
         scan.sensor.position = (0, 0, -40)
-        self.assertRegex(" ".join(said(scan.update)), r"the sensor at \(0, 0, -40\) m")
+        self.assertRegex(" ".join(said(scan.update)), r"^the sensor at \(0, 0, -40\) m")
 
     def test_said_when_it_runs_only(self):
         scan = al.Scan(al.Scene(WALL), al.Sensor(minimum_elevation=40, azimuth_step=2))
