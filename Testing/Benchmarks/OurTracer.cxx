@@ -29,7 +29,7 @@ Tracer ourTracer(const CollisionTree& tree, TraceMode mode)
       for (std::size_t b = begin; consumer && b < end; ++b)
       {
         const std::vector<Hit> hits =
-          hitsOf(*tree.mesh, work.frames[b], work.rays[b], found.triangles[b - begin]);
+          hitsOf(tree, work.frames[b], work.rays[b], found.triangles[b - begin]);
         consumer(b * work.raysPerBeam, hits.data(), work.raysPerBeam);
       }
     };

@@ -12,16 +12,17 @@
 
 namespace avianlidar
 {
-/// Range on a triangle that the ray (x, y) hits, m.
+/// Range on a triangle that the ray (x, y) hits, m; on the plane that faces share which coincide.
 inline double rangeOnTriangle(
-  const TriangleMesh& mesh, std::uint32_t triangle, const BeamFrame& frame, double x, double y)
+  const CollisionTree& tree, std::uint32_t triangle, const BeamFrame& frame, double x, double y)
 {
-  return rangeOnTriangle(
-    seeTriangle(mesh, triangle, frame.origin), frame, unitDirection(frame.direction(x, y)));
+  SeenTriangle seen = seeTriangle(*tree.mesh, triangle, frame.origin);
+  seen.plane = planeOf(tree, triangle, seen.corners, frame.origin);
+  return rangeOnTriangle(seen, frame, unitDirection(frame.direction(x, y)));
 }
 
 /// Hits of the rays of a beam. @param triangles that the rays hit; null: none hits anything
-inline std::vector<Hit> hitsOf(const TriangleMesh& mesh, const BeamFrame& frame,
+inline std::vector<Hit> hitsOf(const CollisionTree& tree, const BeamFrame& frame,
   const BeamRays& rays, const std::uint32_t* triangles)
 {
   std::vector<Hit> hits(rays.size());
@@ -29,7 +30,7 @@ inline std::vector<Hit> hitsOf(const TriangleMesh& mesh, const BeamFrame& frame,
   {
     if (triangles[n] != NoTriangle)
     {
-      hits[n] = { triangles[n], rangeOnTriangle(mesh, triangles[n], frame, rays.x[n], rays.y[n]) };
+      hits[n] = { triangles[n], rangeOnTriangle(tree, triangles[n], frame, rays.x[n], rays.y[n]) };
     }
   }
   return hits;
@@ -40,7 +41,7 @@ class OneBeamTracer : public BeamTracer
 public:
   explicit OneBeamTracer(const CollisionTree& tree)
     : BeamTracer(tree)
-    , Mesh(*tree.mesh)
+    , Descended(tree)
   {
   }
 
@@ -59,7 +60,7 @@ public:
     const BeamBlock block{ &this->Frame, 1, count,
       [&rays](std::size_t) -> const BeamRays& { return rays; } };
     const BlockHits& found = this->traceBlock(block, mode);
-    hits = hitsOf(this->Mesh, this->Frame, rays, found.triangles[0]);
+    hits = hitsOf(this->Descended, this->Frame, rays, found.triangles[0]);
     this->OfRays.nodesVisited += found.counters[0].nodesVisited;
     this->OfRays.raysTraced += found.counters[0].raysTraced;
     this->OfRays.candidates = std::max(this->OfRays.candidates, found.counters[0].candidates);
@@ -74,7 +75,7 @@ public:
   }
 
 private:
-  const TriangleMesh& Mesh;
+  const CollisionTree& Descended;
   BeamFrame Frame;
   TraceCounters OfRays;
 };

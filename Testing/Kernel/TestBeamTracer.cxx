@@ -124,8 +124,8 @@ TEST_P(TracerScene, EqualsBruteForce)
         *mesh, scene.apex, rayDirection(beam.frame, beam.rays.x[i], beam.rays.y[i]), EdgeTolerance);
       if (reference[i].valid())
       {
-        const double again =
-          rangeOnTriangle(*mesh, reference[i].triangle, beam.frame, beam.rays.x[i], beam.rays.y[i]);
+        const double again = rangeOnTriangle(
+          *trees[0], reference[i].triangle, beam.frame, beam.rays.x[i], beam.rays.y[i]);
         ASSERT_EQ(again, reference[i].range);
         ++hitCount;
       }
