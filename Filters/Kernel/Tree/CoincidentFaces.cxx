@@ -21,13 +21,23 @@ constexpr float TiltOfRounding = 1e-6f;
 struct Face
 {
   float normal[3];
-  float tilt;      ///< rad, by which rounding may turn it
-  float tolerance; ///< toleranceOf(), rounded up
+  float tilt;           ///< rad, by which rounding may turn it
+  float tolerance;      ///< toleranceOf(), rounded up
+  std::uint32_t number; ///< of the triangle
 };
+
+/// Twice the area, along the normal.
+Vec3 areaOf(const Corners& t)
+{
+  return glm::cross(t.b - t.a, t.c - t.a);
+}
 
 double longestSideOf(const Corners& t)
 {
-  return std::max(safeLength(t.b - t.a), std::max(safeLength(t.c - t.b), safeLength(t.a - t.c)));
+  const Vec3 ab = t.b - t.a;
+  const Vec3 bc = t.c - t.b;
+  const Vec3 ca = t.a - t.c;
+  return std::sqrt(std::max(glm::dot(ab, ab), std::max(glm::dot(bc, bc), glm::dot(ca, ca))));
 }
 
 /// Relative to its first corner.
@@ -68,26 +78,62 @@ double toleranceOf(const TriangleMesh& mesh, std::uint32_t triangle, const Vec3&
 
 Face faceOf(const TriangleMesh& mesh, std::uint32_t triangle)
 {
+  Face face = {};
+  face.number = triangle;
   const Corners t = cornersOf(mesh, triangle);
-  const Vec3 area = normalOf(t);
-  const double size = safeLength(area);
-  if (!(size > 0.0))
+  const Vec3 area = areaOf(t);
+  const double size = glm::length(area);
+  if (size > 0.0)
   {
-    return {};
+    const Vec3 n = area / size;
+    const double tolerance = toleranceOf(mesh, triangle, n);
+    const double longest = longestSideOf(t);
+    constexpr float up = 1.0f + 1e-6f;
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      face.normal[axis] = static_cast<float>(n[axis]);
+    }
+    face.tilt =
+      up * static_cast<float>((2.0 * tolerance + 8.0 * RoundOffDouble * longest) * longest / size);
+    face.tolerance = up * static_cast<float>(tolerance);
   }
-  const Vec3 n = area / size;
-  const double tolerance = toleranceOf(mesh, triangle, n);
-  constexpr float up = 1.0f + 1e-6f;
-  return { { static_cast<float>(n.x), static_cast<float>(n.y), static_cast<float>(n.z) },
-    up * static_cast<float>(2.0 * tolerance * longestSideOf(t) / size),
-    up * static_cast<float>(tolerance) };
+  return face;
+}
+
+/// True if a side of the first triangle separates them, seen along one axis.
+bool isSeparated(const double (&one)[3][2], const double (&two)[3][2])
+{
+  for (int k = 0; k < 3; ++k)
+  {
+    const double* const a = one[k];
+    const double* const b = one[(k + 1) % 3];
+    const double x = b[0] - a[0];
+    const double y = b[1] - a[1];
+    const auto side = [&](const double* p) { return x * (p[1] - a[1]) - y * (p[0] - a[0]); };
+    const double sign = side(one[(k + 2) % 3]) > 0.0 ? 1.0 : -1.0;
+    if (sign * side(two[0]) <= 0.0 && sign * side(two[1]) <= 0.0 && sign * side(two[2]) <= 0.0)
+    {
+      return true;
+    }
+  }
+  return false;
+}
+
+/// The same of either. @param along the axis
+bool isSeparated(const Corners& one, const Corners& two, int along)
+{
+  const int u = (along + 1) % 3;
+  const int v = (along + 2) % 3;
+  const double a[3][2] = { { one.a[u], one.a[v] }, { one.b[u], one.b[v] }, { one.c[u], one.c[v] } };
+  const double b[3][2] = { { two.a[u], two.a[v] }, { two.b[u], two.b[v] }, { two.c[u], two.c[v] } };
+  return isSeparated(a, b) || isSeparated(b, a);
 }
 
 /// True if two triangles overlap, and are nowhere in their overlap farther apart than `tolerance`.
 bool coincide(const Corners& one, const Corners& two, double tolerance)
 {
-  const Vec3 area = normalOf(one);
-  const double size = safeLength(area);
+  const Vec3 area = areaOf(one);
+  const double size = glm::length(area);
   const Vec3 n = area / size;
   const auto height = [&](const Vec3& p) { return glm::dot(n, p - one.a); };
   Vec3 ring[6] = { two.a, two.b, two.c };
@@ -130,7 +176,7 @@ bool coincide(const Corners& one, const Corners& two, double tolerance)
     overlap += glm::cross(ring[i] - ring[0], ring[i + 1 == count ? 0 : i + 1] - ring[0]);
     farthest = std::max(farthest, std::fabs(height(ring[i])));
   }
-  const double least = std::min(size, safeLength(normalOf(two)));
+  const double least = std::min(size, glm::length(areaOf(two)));
   const double edge = 8.0 * tolerance * std::min(longestSideOf(one), longestSideOf(two));
   return farthest <= tolerance &&
     std::fabs(glm::dot(n, overlap)) > std::max(LeastOverlap * least, edge);
@@ -139,7 +185,7 @@ bool coincide(const Corners& one, const Corners& two, double tolerance)
 /// A box of the wide tree.
 struct Part
 {
-  float low[3], high[3];
+  float centre[3], half[3];
   std::uint32_t first, count; ///< as of WideNode
   bool isLeaf() const { return this->count > 0; }
   bool operator==(const Part& other) const
@@ -156,7 +202,7 @@ public:
     : Tree(tree)
     , Mesh(*tree.mesh)
     , Team(team)
-    , Faces(tree.mesh->size())
+    , Faces(tree.order.size())
     , Parents(new std::atomic<std::uint32_t>[tree.mesh->size()])
   {
   }
@@ -169,18 +215,18 @@ public:
       [&](std::size_t begin, std::size_t end, int)
       {
         float most = 0.0f;
-        for (std::size_t t = begin; t < end; ++t)
+        for (std::size_t k = begin; k < end; ++k)
         {
-          this->Faces[t] = faceOf(this->Mesh, static_cast<std::uint32_t>(t));
-          this->Parents[t] = static_cast<std::uint32_t>(t);
-          most = std::max(most, this->Faces[t].tolerance);
+          this->Faces[k] = faceOf(this->Mesh, this->Tree.order[k]);
+          this->Parents[k] = static_cast<std::uint32_t>(k);
+          most = std::max(most, this->Faces[k].tolerance);
         }
         float known = widest;
         while (known < most && !widest.compare_exchange_weak(known, most))
         {
         }
       });
-    this->Slack = 2.0f * widest;
+    this->Slack = 2.0f * widest + WideRounding * static_cast<float>(this->Tree.wide.extent);
     std::vector<PartPair> pairs = this->firstPairs();
     this->Team.loop(pairs.size(), 1,
       [&](std::size_t begin, std::size_t end, int)
@@ -218,32 +264,33 @@ private:
     return pairs;
   }
 
-  template <class F>
-  void forEachChild(std::uint32_t number, F f) const
+  static Part childOf(const WideNode& node, int lane)
   {
-    const WideNode& node = this->Tree.wide.nodes[number];
-    for (int i = 0; i < WideNode::Width; ++i)
-    {
-      if (node.first[i] != NoChild)
-      {
-        f(Part{ { node.x[i] - node.halfX[i], node.y[i] - node.halfY[i], node.z[i] - node.halfZ[i] },
-          { node.x[i] + node.halfX[i], node.y[i] + node.halfY[i], node.z[i] + node.halfZ[i] },
-          node.first[i], node.count[i] });
-      }
-    }
+    return { { node.x[lane], node.y[lane], node.z[lane] },
+      { node.halfX[lane], node.halfY[lane], node.halfZ[lane] }, node.first[lane],
+      node.count[lane] };
   }
 
-  void addIfMet(const Part& one, const Part& two, bool wanted, std::vector<PartPair>& pairs) const
+  /// Children of a node whose boxes meet that of a part, a bit for each.
+  std::uint32_t childrenMet(const WideNode& node, const Part& part) const
   {
-    for (int axis = 0; axis < 3; ++axis)
+    const float slack = this->Slack;
+    std::uint32_t met[WideNode::Width];
+#pragma omp simd
+    for (int i = 0; i < WideNode::Width; ++i)
     {
-      wanted = wanted && !(one.low[axis] > two.high[axis] + this->Slack) &&
-        !(two.low[axis] > one.high[axis] + this->Slack);
+      const float x = std::fabs(node.x[i] - part.centre[0]) - (node.halfX[i] + part.half[0]);
+      const float y = std::fabs(node.y[i] - part.centre[1]) - (node.halfY[i] + part.half[1]);
+      const float z = std::fabs(node.z[i] - part.centre[2]) - (node.halfZ[i] + part.half[2]);
+      const float apart = x > y ? (x > z ? x : z) : (y > z ? y : z);
+      met[i] = !(apart > slack) & (node.first[i] != NoChild) ? 1u : 0u;
     }
-    if (wanted)
+    std::uint32_t bits = 0;
+    for (int i = 0; i < WideNode::Width; ++i)
     {
-      pairs.emplace_back(one, two);
+      bits |= met[i] << i;
     }
+    return bits;
   }
 
   void visit(const PartPair& pair, std::vector<PartPair>& more)
@@ -253,26 +300,30 @@ private:
     if (one.isLeaf() && two.isLeaf())
     {
       this->compare(one, two);
+      return;
     }
-    else if (one == two)
+    const bool opensOne = !one.isLeaf();
+    const WideNode& node = this->Tree.wide.nodes[opensOne ? one.first : two.first];
+    const auto add = [&](std::uint32_t lanes, const Part& part)
     {
-      this->forEachChild(one.first,
-        [&](const Part& a)
-        {
-          bool after = false; // each pair once
-          this->forEachChild(one.first,
-            [&](const Part& b)
-            {
-              after = after || a == b;
-              this->addIfMet(a, b, after, more);
-            });
-        });
+      for (; lanes != 0; lanes &= lanes - 1)
+      {
+        more.emplace_back(childOf(node, __builtin_ctz(lanes)), part);
+      }
+    };
+    if (!(one == two))
+    {
+      const Part other = opensOne ? two : one;
+      add(this->childrenMet(node, other), other);
+      return;
     }
-    else
+    for (int i = 0; i < WideNode::Width; ++i)
     {
-      const bool opensOne = !one.isLeaf();
-      this->forEachChild(opensOne ? one.first : two.first,
-        [&](const Part& child) { this->addIfMet(child, opensOne ? two : one, true, more); });
+      if (node.first[i] != NoChild)
+      {
+        const Part child = childOf(node, i);
+        add(this->childrenMet(node, child) >> i << i, child); // each pair once
+      }
     }
   }
 
@@ -282,13 +333,19 @@ private:
     {
       for (std::uint32_t j = one == two ? i + 1 : 0; j < two.count; ++j)
       {
-        const auto both =
-          std::minmax(this->Tree.order[one.first + i], this->Tree.order[two.first + j]);
-        this->compare(both.first, both.second);
+        this->compare(one.first + i, two.first + j);
       }
     }
   }
 
+  Corners cornersAt(std::uint32_t place, const Vec3& apex) const
+  {
+    const auto& corners = this->Tree.leafTriangles[place].corners;
+    const std::vector<Vec3>& points = this->Mesh.points;
+    return { points[corners[0]] - apex, points[corners[1]] - apex, points[corners[2]] - apex };
+  }
+
+  /// Compare two triangles, by their places in the tree's order.
   void compare(std::uint32_t one, std::uint32_t two)
   {
     const Face& a = this->Faces[one];
@@ -299,21 +356,29 @@ private:
     const float cosine =
       a.normal[0] * b.normal[0] + a.normal[1] * b.normal[1] + a.normal[2] * b.normal[2];
     const float tilt = a.tilt + b.tilt + TiltOfRounding;
-    if (!(x * x + y * y + z * z <= tilt * tilt) || !(std::fabs(cosine) > 0.5f) ||
-      this->rootOf(one) == this->rootOf(two))
+    if (!(x * x + y * y + z * z <= tilt * tilt) || !(std::fabs(cosine) > 0.5f))
     {
       return;
     }
-    const Vec3& apex = this->Mesh.corner(one, 0);
-    if (coincide(cornersFrom(this->Mesh, one, apex), cornersFrom(this->Mesh, two, apex),
-          static_cast<double>(a.tolerance) + static_cast<double>(b.tolerance)))
+    const bool inOrder = a.number < b.number; // so that nothing depends on the tree
+    const std::uint32_t lower = inOrder ? one : two;
+    const Vec3& apex = this->Mesh.points[this->Tree.leafTriangles[lower].corners[0]];
+    const Corners first = this->cornersAt(lower, apex);
+    const Corners second = this->cornersAt(inOrder ? two : one, apex);
+    const double tolerance = static_cast<double>(a.tolerance) + static_cast<double>(b.tolerance);
+    const Vec3 n(a.normal[0], a.normal[1], a.normal[2]);
+    const Vec3 size = glm::abs(n);
+    const int along = size.x > size.y ? (size.x > size.z ? 0 : 2) : (size.y > size.z ? 1 : 2);
+    const double level = tolerance + tilt * glm::dot(glm::abs(second.a), Vec3(1.0));
+    if (!(std::fabs(glm::dot(n, second.a)) > level) && !isSeparated(first, second, along) &&
+      this->rootOf(a.number) != this->rootOf(b.number) && coincide(first, second, tolerance))
     {
-      this->unite(one, two);
+      this->unite(a.number, b.number);
       this->Found = true;
     }
   }
 
-  std::uint32_t rootOf(std::uint32_t triangle) const
+  std::uint32_t rootOf(std::uint32_t triangle)
   {
     while (true)
     {
@@ -322,7 +387,9 @@ private:
       {
         return triangle;
       }
-      triangle = parent;
+      const std::uint32_t next = this->Parents[parent].load(std::memory_order_relaxed);
+      this->Parents[triangle].store(next, std::memory_order_relaxed); // shortens the way
+      triangle = next;
     }
   }
 
@@ -348,7 +415,7 @@ private:
   double leastAltitudeOf(std::uint32_t triangle) const
   {
     const Corners t = cornersOf(this->Mesh, triangle);
-    return safeLength(normalOf(t)) / longestSideOf(t);
+    return glm::length(areaOf(t)) / longestSideOf(t);
   }
 
   /// True if rounding explains how far a triangle lies from the plane of another.
@@ -356,15 +423,15 @@ private:
   {
     const Corners plane = cornersOf(this->Mesh, owner);
     const Corners t = cornersFrom(this->Mesh, triangle, this->Mesh.corner(owner, 0));
-    const Vec3 area = normalOf(plane);
-    const Vec3 n = area / safeLength(area);
+    const Vec3 area = areaOf(plane);
+    const Vec3 n = area / glm::length(area);
     const double least = this->leastAltitudeOf(owner);
+    const double own = faceOf(this->Mesh, triangle).tolerance;
+    const double ofPlane = faceOf(this->Mesh, owner).tolerance;
     for (const Vec3* corner : { &t.a, &t.b, &t.c })
     {
-      const double ofOwner = static_cast<double>(this->Faces[owner].tolerance) *
-        (1.0 + 4.0 * safeLength(*corner) / least);
-      if (!(std::fabs(glm::dot(n, *corner)) <=
-            static_cast<double>(this->Faces[triangle].tolerance) + ofOwner))
+      const double reach = 1.0 + 4.0 * glm::length(*corner) / least;
+      if (!(std::fabs(glm::dot(n, *corner)) <= own + ofPlane * reach))
       {
         return false;
       }
@@ -372,7 +439,7 @@ private:
     return true;
   }
 
-  std::vector<std::uint32_t> owners() const
+  std::vector<std::uint32_t> owners()
   {
     const auto size = static_cast<std::uint32_t>(this->Faces.size());
     std::vector<std::uint32_t> owners(size, NoTriangle); // of the roots of sets of several
