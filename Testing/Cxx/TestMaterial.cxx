@@ -188,8 +188,7 @@ void TestCustomAndNames()
   third->SetInputData(plane);
   third->Update();
   named = third->GetOutputDataObject(0);
-  Check(
-    vtkPolyData::SafeDownCast(named)->GetCellData()->GetNumberOfArrays() == 1 &&
+  Check(vtkPolyData::SafeDownCast(named)->GetCellData()->GetNumberOfArrays() == 1 &&
       Cells(named, "object_id") == 0 && Text(named, "object_names", 0) == "door",
     "a name is no material");
 }

@@ -182,7 +182,7 @@ private:
   double SolidAngle = 0.0;   ///< sr
   double UnitLength = 0.0;   ///< m
   PulseShares Pulse;
-  double Nearest = 0.0;      ///< m, at which the gate begins
+  double Nearest = 0.0; ///< m, at which the gate begins
   double dropsIn(std::int64_t unit) const;
 };
 }
