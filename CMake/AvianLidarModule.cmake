@@ -118,8 +118,6 @@ vtk_module_add_module(AvianLidar::AvianLidar
     Filters/vtkAvianLidarFilePath.h
   SOURCES ${private_sources})
 
-include("${CMAKE_CURRENT_LIST_DIR}/AvianLidarSourcesWithJson.cmake")
-
 # Data files that are built in, as text.
 set(built_in_texts "")
 foreach(built_in IN ITEMS

@@ -3,6 +3,7 @@
 
 #include "AvailableMemory.h"
 #include "PhotonReceiver.h"
+#include "Propagation.h"
 #include "vtkAvianLidarAbort.h"
 #include "vtkAvianLidarArrays.h"
 #include "vtkAvianLidarBeamSourceInternals.h"
@@ -349,6 +350,25 @@ double vtkAvianLidarBeamSource::GetWavelength()
 }
 
 //------------------------------------------------------------------------------
+double vtkAvianLidarBeamSource::GetUnambiguousRange()
+{
+  return avianlidar::unambiguousRange(avianlidar::pulseInterval(vtkInternals::PatternOf(*this)));
+}
+
+//------------------------------------------------------------------------------
+double vtkAvianLidarBeamSource::GetClearAirAttenuation()
+{
+  return avianlidar::attenuationOfVisibility(
+    avianlidar::ClearVisibility, 1e-9 * this->GetWavelength());
+}
+
+//------------------------------------------------------------------------------
+void vtkAvianLidarBeamSource::SetLimitsFromDataSheet(double range, double reflectance)
+{
+  this->SetLimitsFromDataSheet(range, reflectance, this->GetClearAirAttenuation());
+}
+
+//------------------------------------------------------------------------------
 void vtkAvianLidarBeamSource::SetLimitsFromDataSheet(
   double range, double reflectance, double attenuation)
 {
@@ -587,7 +607,13 @@ int vtkAvianLidarBeamSource::RequestData(
       vtkInternals::AddSensor(*this, revolution, rays->GetFieldData());
       avianlidar::Sensor sensor;
       vtkInternals::SensorOf(*this, sensor);
-      const std::string warning = NameProperties(avianlidar::warningOnElectrons(sensor));
+      std::string warning;
+      for (const std::string& one : { avianlidar::warningOnElectrons(sensor),
+             avianlidar::warningOnAmbiguity(
+               sensor, avianlidar::pulseInterval(vtkInternals::PatternOf(*this))) })
+      {
+        warning += (warning.empty() || one.empty() ? "" : "; ") + NameProperties(one);
+      }
       if (part.piece == 0 && warning != this->Warned)
       {
         this->Warned = warning;

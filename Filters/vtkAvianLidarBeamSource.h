@@ -489,6 +489,14 @@ public:
   vtkGetMacro(RangeGate, double);
   ///@}
 
+  /**
+   * Range in metres from which echoes arrive after the next pulse has left: c/2 times
+   * FiringInterval, or times what a column lasts where each channel has a receiver of its own
+   * (`channel_firing_times` of a file, a FiringInterval of 0, one channel). Infinite for
+   * SetBeams(). A RangeGate beyond it is warned of once; echoes stay where they are.
+   */
+  double GetUnambiguousRange();
+
   ///@{
   /**
    * Mean rate of noise photons at the receiver in hertz, 0 to 1e50 (paper, Eq. 11). Default 20e3.
@@ -615,6 +623,15 @@ public:
 
   ///@{
   /**
+   * Least range that is recorded in metres, 0 to less than RangeGate: what arrives earlier is no
+   * echo, and surfaces there still hide what is behind. Default 0.
+   */
+  vtkSetMacro(MinimumRange, double);
+  vtkGetMacro(MinimumRange, double);
+  ///@}
+
+  ///@{
+  /**
    * Range r_o, metres, 0 to 1e9, of the overlap of beam and view: 1 - exp(-(r/r_o)^2) of the light
    * from the range r lies in the view. Default 0: all of it.
    */
@@ -696,14 +713,23 @@ public:
   vtkGetMacro(DynamicRange, double);
   ///@}
 
+  ///@{
   /**
    * Set LowerEnergyLimit and UpperEnergyLimit (DynamicRange above it) by a line of a data sheet:
    * the sensor sees a Lambertian surface of `reflectance` (above 0, at most 1) that fills the beam
-   * until `range` in metres, through air of `attenuation` in 1/m. One point is a guess: others of
-   * its sheet were predicted up to 43 % wrong (Documentation/sensors.md, Fitted to a sheet). Needs
-   * ReceiverAperture; for RECEIVER_MODEL_ENERGY_LIMITS. A bad value changes nothing.
+   * until `range` in metres, through air of `attenuation` in 1/m, by default clear air. One point
+   * is a guess: others of its sheet were predicted up to 58 % wrong (Documentation/sensors.md,
+   * Fitted to a sheet). Needs ReceiverAperture; for RECEIVER_MODEL_ENERGY_LIMITS. A bad value
+   * changes nothing.
    */
-  void SetLimitsFromDataSheet(double range, double reflectance, double attenuation = 0.0);
+  void SetLimitsFromDataSheet(double range, double reflectance);
+  void SetLimitsFromDataSheet(double range, double reflectance, double attenuation);
+  ///@}
+
+  /**
+   * Attenuation in 1/m of clear air, of a visibility of 23 km, at Wavelength.
+   */
+  double GetClearAirAttenuation();
 
   ///@{
   /**
@@ -780,6 +806,7 @@ protected:
   double Sunlight = 0.0;
   double SunAzimuth = 180.0;
   double SunElevation = 45.0;
+  double MinimumRange = 0.0;
   double OverlapRange = 0.0;
   double DefocusRange = 0.0;
   double RangeNoise = 0.0;

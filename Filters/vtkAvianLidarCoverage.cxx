@@ -3,6 +3,7 @@
 
 #include "AvailableMemory.h"
 #include "CoverageSurvey.h"
+#include "Propagation.h"
 #include "ValueError.h"
 #include "vtkAvianLidarAbort.h"
 #include "vtkAvianLidarArrays.h"
@@ -87,7 +88,7 @@ struct vtkAvianLidarCoverage::vtkTargets
 vtkAvianLidarCoverage::vtkAvianLidarCoverage()
   : Targets(new vtkTargets)
 {
-  this->Visibility = 23000.0; // a clear day
+  this->Visibility = avianlidar::ClearVisibility;
   this->SetNumberOfInputPorts(3);
   this->SetNumberOfOutputPorts(3);
 }

@@ -10,6 +10,7 @@
 #include "vtkAvianLidarRevolutions.h"
 #include "vtkAvianLidarScanFilterInternals.h"
 #include "vtkAvianLidarScanShape.h"
+#include "vtkAvianLidarText.h"
 
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
@@ -28,6 +29,8 @@ struct vtkAvianLidarEchoFilter::vtkMoved
 {
   vtkAvianLidarMovers Movers;
   double TouchedBeams = 0.0; ///< by movers, of all ranks
+  std::string Coincident;    ///< a warning on what the beams of this rank see
+  vtkAvianLidarWarnings Warnings;
 };
 
 //------------------------------------------------------------------------------
@@ -80,6 +83,11 @@ int vtkAvianLidarEchoFilter::RequestData(
         this->PrepareSurfaces(ranks, surfaces) && this->PrepareMovers(ranks, movers) &&
         this->PrepareTree(ranks, surfaces) &&
         this->Scan(ranks, beams->GetFieldData(), { echoes, report, moved });
+      const std::string& warning = this->Moved->Coincident;
+      if (done && this->Moved->Warnings.IsNew(surfaces, in.Scene, warning))
+      {
+        vtkWarningMacro("Input port 1, " << vtkAvianLidarText(warning));
+      }
       for (vtkPolyData* output : { echoes, report, moved })
       {
         if (!done)
@@ -173,6 +181,7 @@ void vtkAvianLidarEchoFilter::Trace(const std::array<vtkPolyData*, 3>& outputs)
   in.TracedRays = static_cast<double>(result.raysTraced);
   in.TracedBeams = static_cast<double>(result.beamsTraced);
   this->Moved->TouchedBeams = static_cast<double>(result.beamsTouched);
+  this->Moved->Coincident = in.Surfaces.WarningOnCoincidence(result.coincident);
   vtkAvianLidarEchoOutput::FillEchoes(result, in.Beams, in.Setup.noise, outputs[0]);
   vtkAvianLidarEchoOutput::FillReport(result, in.Beams, in.Setup.noise, outputs[1]);
   if (this->ReportMovers)

@@ -4,8 +4,8 @@
  * @brief The property ErrorsAsData, which every algorithm of the module has.
  *
  * Whether an execution that fails counts as done, so that the pipeline goes on, on empty outputs
- * whose field data `error` hold the message. So it is in ParaView's window, which never updates
- * again what failed. Default: off, an error is a failure of the pipeline, too.
+ * whose field data `error` hold the message. Default: off, an error is a failure of the pipeline,
+ * too. The proxies of ParaView turn it on, as ParaView never updates again what failed.
  */
 #ifndef vtkAvianLidarErrorsAsData_h
 #define vtkAvianLidarErrorsAsData_h

@@ -29,6 +29,7 @@
 #include <cctype>
 #include <iterator>
 #include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -49,7 +50,7 @@ const Materials::NamedMaterial* Named(int material)
 // What is to be written.
 struct Assignment
 {
-  avianlidar::Material Coefficients;
+  std::optional<avianlidar::Material> Coefficients; // none: materials stay as they are
   std::string MaterialName;
   int ObjectId = -1;
   std::string ObjectName;
@@ -155,9 +156,7 @@ void SetConstant(vtkPolyData* data, const Arrays::Name& name, int value)
   data->GetCellData()->AddArray(array);
 }
 
-// `output` is a shallow copy of a leaf; `number` counts leaves.
-void Assign(const Assignment& what, int number, const std::string& blockName, vtkFieldData* whole,
-  vtkPolyData* output)
+void AssignMaterial(const Assignment& what, vtkFieldData* whole, vtkPolyData* output)
 {
   vtkFieldData* fields = output->GetFieldData();
   const std::vector<std::string> names = MaterialNames(fields, whole, what.MaterialName);
@@ -165,12 +164,27 @@ void Assign(const Assignment& what, int number, const std::string& blockName, vt
   Arrays::SetFieldStrings(fields, Arrays::MaterialNames, names);
   SetConstant(output, Arrays::MaterialId, static_cast<int>(index));
   Materials::AddCoefficients(output->GetCellData(), output->GetNumberOfCells(),
-    [&](vtkIdType) -> const avianlidar::Material& { return what.Coefficients; });
+    [&](vtkIdType) -> const avianlidar::Material& { return *what.Coefficients; });
+}
 
+// The id of the first cell, or -1.
+int FirstObjectId(vtkPolyData* data)
+{
+  vtkDataArray* ids = data->GetCellData()->GetArray(Arrays::ObjectId.name);
+  const double id = ids && ids->GetNumberOfTuples() > 0 ? ids->GetComponent(0, 0) : -1.0;
+  return Arrays::IsInt(id) ? static_cast<int>(id) : -1;
+}
+
+// `output` is a shallow copy of a leaf; `number` counts leaves.
+void AssignObject(
+  const Assignment& what, int number, const std::string& blockName, vtkPolyData* output)
+{
+  vtkFieldData* fields = output->GetFieldData();
   const bool oneObject = what.ObjectId >= 0 || !what.ObjectName.empty();
   if (oneObject || !output->GetCellData()->GetArray(Arrays::ObjectId.name))
   {
-    SetConstant(output, Arrays::ObjectId, what.ObjectId >= 0 ? what.ObjectId : number);
+    const int known = what.ObjectId >= 0 ? what.ObjectId : FirstObjectId(output);
+    SetConstant(output, Arrays::ObjectId, known >= 0 ? known : number);
   }
   const std::vector<std::string> classes = StringsOf(fields, Arrays::ObjectClasses);
   if (oneObject && classes.size() > 1)
@@ -264,12 +278,19 @@ void AssignToTree(const Assignment& what, const std::vector<Leaf>& leaves, vtkDa
     {
       vtkNew<vtkPolyData> leaf;
       leaf->ShallowCopy(leaves[number].Data);
-      Assign(what, number, leaves[number].Name, fields, leaf);
+      if (what.Coefficients)
+      {
+        AssignMaterial(what, fields, leaf);
+      }
+      AssignObject(what, number, leaves[number].Name, leaf);
       output->SetDataSet(iterator, leaf);
     }
   }
-  Arrays::SetFieldStrings(
-    fields, Arrays::MaterialNames, MaterialNames(fields, nullptr, what.MaterialName));
+  if (what.Coefficients)
+  {
+    Arrays::SetFieldStrings(
+      fields, Arrays::MaterialNames, MaterialNames(fields, nullptr, what.MaterialName));
+  }
 }
 }
 
@@ -353,9 +374,10 @@ int vtkAvianLidarMaterial::RequestData(
       vtkDataObject* input = vtkDataObject::GetData(inputVector[0]);
       vtkDataObject* output = vtkDataObject::GetData(outputVector);
       const Materials::NamedMaterial* named = Named(this->Material);
-      if (!named && this->Material != MATERIAL_CUSTOM)
+      if (!named && this->Material != MATERIAL_CUSTOM && this->Material != MATERIAL_UNCHANGED)
       {
-        return avianlidar::valueError("Material", this->Material, "0 (Wall) to 8 (Plumage)");
+        return avianlidar::valueError(
+          "Material", this->Material, "0 (Wall) to 8 (Plumage), or -1 (unchanged)");
       }
       if (this->ObjectId < -1)
       {
@@ -364,14 +386,18 @@ int vtkAvianLidarMaterial::RequestData(
       Assignment what;
       what.ObjectId = this->ObjectId;
       what.ObjectName = this->NameOfObject;
-      what.MaterialName = "Custom";
-      what.Coefficients = { this->Kd, this->Ks, this->Kp, this->Roughness };
       if (named)
       {
         what.MaterialName = named->name;
         what.Coefficients = named->material;
       }
-      const std::string badMaterial = avianlidar::checkMaterial(what.Coefficients);
+      else if (this->Material == MATERIAL_CUSTOM)
+      {
+        what.MaterialName = "Custom";
+        what.Coefficients = { this->Kd, this->Ks, this->Kp, this->Roughness };
+      }
+      const std::string badMaterial =
+        what.Coefficients ? avianlidar::checkMaterial(*what.Coefficients) : std::string();
       if (!badMaterial.empty())
       {
         return "Material: " + NameProperties(badMaterial);
@@ -389,7 +415,11 @@ int vtkAvianLidarMaterial::RequestData(
           return "Input port 0, " + badCells;
         }
         surface->ShallowCopy(input);
-        Assign(what, 0, "", nullptr, surface);
+        if (what.Coefficients)
+        {
+          AssignMaterial(what, nullptr, surface);
+        }
+        AssignObject(what, 0, "", surface);
         return {};
       }
       std::vector<Leaf> leaves;

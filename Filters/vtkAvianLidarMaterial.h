@@ -52,6 +52,7 @@ public:
   /// Values of Material.
   enum MaterialChoices
   {
+    MATERIAL_UNCHANGED = -1,
     MATERIAL_WALL = 0,
     MATERIAL_GLASS = 1,
     MATERIAL_METAL = 2,
@@ -68,7 +69,8 @@ public:
    * The material: one of the paper's Table 1 (kd, ks, kp: wall 0.146, 0.054, 112; glass 0.020,
    * 0.852, 8046; metal 0.075, 0.634, 6803; wood 0.107, 0.100, 82); one that only scatters, at
    * 905 nm (kd: concrete 0.3104, asphalt 0.1298, grass 0.2204, of the USGS Spectral Library 7;
-   * plumage 0.3, assumed); or custom, which takes Kd, Ks, Kp and Roughness. Default MATERIAL_WALL.
+   * plumage 0.3, assumed); or custom, which takes Kd, Ks, Kp and Roughness. MATERIAL_UNCHANGED, to
+   * name surfaces alone: materials stay as they are, or missing. Default MATERIAL_WALL.
    */
   vtkSetMacro(Material, int);
   vtkGetMacro(Material, int);
@@ -136,8 +138,9 @@ public:
 
   ///@{
   /**
-   * Object id of the surfaces, at least 0, or -1, automatic: ids that are there are kept, other
-   * leaves get their number in leaf order. Ids that are not unique over a whole scene are given
+   * Object id of the surfaces, at least 0, or -1, automatic: ids that are there are kept (a leaf
+   * that becomes one object has that of its first cell), other leaves get their number in leaf
+   * order. Ids that are not unique over a whole scene are given
    * anew when its surfaces are merged. Default -1.
    */
   vtkSetMacro(ObjectId, int);

@@ -224,7 +224,8 @@ std::string vtkAvianLidarScanFilter::PrepareSettings()
     }
     if (this->RainRate > 0.0)
     {
-      media.push_back(vtkAvianLidarMedia::RainOf(this->RainRate));
+      media.push_back(vtkAvianLidarMedia::RainOf(
+        this->RainRate, avianlidar::viewOf(this->Internals->Setup.sensor)));
       s.attenuationCoefficient += media.back().extinction;
     }
   }
@@ -261,21 +262,20 @@ std::string vtkAvianLidarScanFilter::PrepareSettings()
 std::string vtkAvianLidarScanFilter::PlaceMedia()
 {
   vtkInternals& in = *this->Internals;
-  const avianlidar::Sensor& sensor = in.Setup.sensor;
-  if (in.MediaOf != in.Surfaces.media || in.MediaFor != sensor.frequency)
+  const avianlidar::LidarView view = avianlidar::viewOf(in.Setup.sensor);
+  if (in.MediaOf != in.Surfaces.media || !(in.MediaFor == view))
   {
     std::vector<avianlidar::PlacedMedium> read;
     for (const std::string& text : in.Surfaces.media)
     {
-      for (const avianlidar::PlacedMedium& one :
-        vtkAvianLidarMedia::Read(text, avianlidar::SpeedOfLight / sensor.frequency))
+      for (const avianlidar::PlacedMedium& one : vtkAvianLidarMedia::Read(text, view))
       {
         read.push_back(one);
       }
     }
     in.Media.swap(read);
     in.MediaOf = in.Surfaces.media;
-    in.MediaFor = sensor.frequency;
+    in.MediaFor = view;
   }
   in.Setup.placedMedia.clear();
   for (const avianlidar::PlacedMedium& placed : in.Media)

@@ -182,7 +182,8 @@ public:
   /**
    * Rain rate in millimetres per hour, 0 to 500. Rain weakens light in addition to the air and
    * sends it back, drop by drop, as Marshall and Palmer distribute them, each like twice its area
-   * (geometric optics), with 20 sr (assumed). Default: 0, none.
+   * (geometric optics), with 20 sr (assumed). What drops diffract into the view, as wide as the
+   * beam, is not lost. Default: 0, none.
    */
   vtkSetMacro(RainRate, double);
   vtkGetMacro(RainRate, double);

@@ -152,7 +152,6 @@ void AdviseWidget::Ask(vtkSMSourceProxy* advisor) const
   vtkSMPropertyHelper(advisor, "EnergyError").Set(0.01 * this->Energy->value());
   vtkSMPropertyHelper(advisor, "RangeError").Set(this->Range->value());
   vtkSMPropertyHelper(advisor, "MissedShare").Set(0.01 * this->Missed->value());
-  vtkSMPropertyHelper(advisor, "ErrorsAsData").Set(1); // its message is enough
   advisor->UpdateVTKObjects();
 }
 

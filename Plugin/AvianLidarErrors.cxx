@@ -10,7 +10,6 @@
 
 #include "vtkPVArrayInformation.h"
 #include "vtkPVDataInformation.h"
-#include "vtkSMPropertyHelper.h"
 #include "vtkSMProxy.h"
 #include "vtkType.h"
 
@@ -25,8 +24,6 @@
 
 namespace
 {
-constexpr char Property[] = "ErrorsAsData";
-
 //------------------------------------------------------------------------------
 // Lives as long as the application of the window.
 class Errors : public QObject
@@ -36,14 +33,9 @@ public:
     : QObject(application)
   {
     pqServerManagerModel* model = application->getServerManagerModel();
-    connect(model, &pqServerManagerModel::preSourceAdded, this, &Errors::Keep);
     connect(model, &pqServerManagerModel::dataUpdated, this, [this] { this->LookAgain(); });
     connect(&pqActiveObjects::instance(), &pqActiveObjects::portChanged, this,
       [this] { this->GuardSaving(); });
-    for (pqPipelineSource* source : model->findItems<pqPipelineSource*>())
-    {
-      this->Keep(source);
-    }
   }
 
 private:
@@ -51,16 +43,6 @@ private:
   {
     const char* name = source->getProxy()->GetXMLName();
     return name && std::string(name).rfind("AvianLidar", 0) == 0;
-  }
-
-  void Keep(pqPipelineSource* source)
-  {
-    vtkSMProxy* proxy = source->getProxy();
-    if (IsOurs(source) && proxy->GetProperty(Property))
-    {
-      vtkSMPropertyHelper(proxy, Property).Set(1);
-      proxy->UpdateProperty(Property);
-    }
   }
 
   // True if all ranks' data of an output, or one that it is made from, is an error: filters
@@ -135,7 +117,7 @@ private:
 }
 
 //------------------------------------------------------------------------------
-void AvianLidarKeepErrors()
+void AvianLidarGuardSaving()
 {
   pqApplicationCore* application = pqApplicationCore::instance();
   static QPointer<Errors> errors;

@@ -4,7 +4,9 @@
 detects a bird, as assumed and with one assumption changed at a time.
 
     /usr/bin/python3 Examples/coverage/assumptions.py
+    /usr/bin/python3 Examples/coverage/assumptions.py --sensor Search1550 --rows 3
 """
+import argparse
 import pathlib
 
 import numpy as np
@@ -28,19 +30,23 @@ CHANGES = (("as assumed", {}, {}),
 
 
 def main():
+    parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0])
+    parser.add_argument("--sensor", default="Search905", help="default Search905")
+    parser.add_argument("--rows", type=int, default=len(CHANGES), help="of the table, default all")
+    options = parser.parse_args()
     scene = al.load_scene(SCENE / "hongqiao.lidarscene.json")
     runways = siting.read_runways(SCENE / "hongqiao.geojson", scene.geodetic_origin)
     places = al.places_of(*siting.strips_and_approaches(runways, 12000))
     usual = {}
     print("| changed | herring gull | starling |\n|---|---:|---:|")
-    for words, of_sensor, of_target in CHANGES:
+    for words, of_sensor, of_target in CHANGES[:options.rows]:
         cells = []
         for species in ("herring gull", "starling"):
             settings = dict(of_target)
             share = settings.pop("area", None)
             if share is not None:
                 settings["effective_area"] = share * usual[species][1]
-            cover = al.Coverage(scene, al.Sensor("Search905", position=scene.lidar_position, **of_sensor), places=places,
+            cover = al.Coverage(scene, al.Sensor(options.sensor, position=scene.lidar_position, **of_sensor), places=places,
                                 species=species, **settings)
             found = float(np.mean(cover["detection_probability"]))
             usual.setdefault(species, (found, cover.data.GetFieldData().GetArray("effective_area").GetValue(0)))

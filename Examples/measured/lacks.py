@@ -155,7 +155,7 @@ def shared(found, frame, data, scan, used, corners):
             found.add("rings that answer, or have beams", name, len(np.unique(scan.ring)), len(sensor.channel_elevations))
         found.add("degrees of azimuth without an answer, or a beam", name, without_answer(scan.azimuth[scan.answered]),
                   without_answer(np.degrees(np.arctan2(*np.asarray(sensor.beams["direction"])[:, :2].T))))
-        least = sensor.description["data_sheet"].get("minimum_range", {}).get("value")
+        least = sensor.minimum_range
         if least:
             found.add("nearer than the sheet's least range", name, int((scan.range < least - MILLIMETRE).sum()),
                       "seen" if sees_nearer(frame.preset, least) else "none")

@@ -6,7 +6,10 @@
 
 A quadcopter 0.4 m across, near the sensor's axis, is flown outward; a frame is 0.1 s. Each flight draws, evenly within stated intervals, its
 reflectance, the thickness of its parts, its attitude, where it is off the axis, and the bar of the sensor's ranges. Leaves tables: distance
-of the last return (5 to 95 % of the flights) and points a frame against distance; and a picture.
+of the last return (5 to 95 % of the flights) and points a frame against distance; and a picture. What explains the flights of others, which
+were published later:
+
+    /usr/bin/python3 Examples/measured/quadcopter.py --flights 8 --reflectance 0.25 0.5 --off-axis 0.5 --bar 0
 """
 import dataclasses
 import pathlib
@@ -104,12 +107,12 @@ def windows_of(number):
     return found
 
 
-def fly(sensor, windows, light, seed):
+def fly(sensor, windows, light, seed, reflectance=REFLECTANCE, off_axis=OFF_AXIS):
     random = np.random.default_rng(seed)
     points, faces = quadcopter(random.uniform(*THICK))
     yaw, (pitch, roll) = random.uniform(0, 2 * np.pi), np.radians(random.uniform(-TILT, TILT, 2))
-    off, around = np.radians(OFF_AXIS) * np.sqrt(random.random()), random.uniform(0, 2 * np.pi)
-    kd = random.uniform(*REFLECTANCE)
+    off, around = np.radians(off_axis) * np.sqrt(random.random()), random.uniform(0, 2 * np.pi)
+    kd = random.uniform(*reflectance)
     middle = np.array((np.sin(off) * np.cos(around), np.cos(off), np.sin(off) * np.sin(around)))
     shape = turned(points, yaw, pitch, roll)
     distance = np.arange(STEP, FARTHEST + STEP, STEP)
@@ -170,14 +173,17 @@ def draw(flights, folder):
 def main(argv=None):
     parser = running.Parser(description=__doc__.split("\n\n")[0])
     parser.add_argument("--flights", type=running.whole(2, 10000), default=40, help="in each light, default 40")
+    parser.add_argument("--reflectance", type=running.above_zero, nargs=2, default=REFLECTANCE, metavar=("LOW", "HIGH"), help="default 0.05 0.5")
+    parser.add_argument("--off-axis", type=running.above_zero, default=OFF_AXIS, help="deg at most, default 2")
+    parser.add_argument("--bar", type=running.finite, help="ranges of all flights are those of the sheet times 1 + this; default: drawn within the sensor's bar")
     parser.add_argument("--out", type=pathlib.Path, default=pathlib.Path("build/quadcopter"))
     options = parser.parse_args(argv)
     bar = al.Sensor("Avia").description["sheet"]["bar"]
     warnings.simplefilter("ignore", RuntimeWarning)  # frames without an echo are expected
     flights, windows = [], windows_of(FRAMES)
     for i in range(options.flights):
-        sensor = fitted(np.random.default_rng(1000 + i).uniform(-bar, bar))
-        flights += [fly(sensor, windows, light, i) for light in LIGHTS]
+        sensor = fitted(np.random.default_rng(1000 + i).uniform(-bar, bar) if options.bar is None else options.bar)
+        flights += [fly(sensor, windows, light, i, options.reflectance, options.off_axis) for light in LIGHTS]
     for name, (header, rows) in tables_of(flights).items():
         tables.write(options.out, name, falloff.markdown(header, rows).rstrip())
         print(falloff.markdown(header, rows))

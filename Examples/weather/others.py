@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
 """The weather of this simulator against figures that others published, failures included: extinction of fog and rain, what droplets and drops
-send back (Mie's theory), and how far lidars see a wall in fog.
+send back (Mie's theory), how far lidars see a wall in fog, and how many drops they see in rain.
 
     PYTHONPATH=$(cat build/paraview/python-path) /usr/bin/python3 Examples/weather/others.py --out build/weather-others
 """
@@ -10,6 +10,7 @@ import pathlib
 import warnings
 
 import numpy as np
+from scipy.special import j0, j1
 
 import avianlidar as al
 
@@ -17,6 +18,10 @@ WATER = 1.328           # refractive index at 905 nm, as LISA (Kilic et al. 2021
 HAHNER_BACKSCATTER = 0.046  # times 1/MOR, 1/(m sr): M. Hahner et al., ICCV 2021, after Rasshofer et al. 2011
 MOR = np.log(20)        # extinction times meteorological optical range, at which 5 % of a beam is left; METARs' 2 % of contrast: 3.912
 # Gamma distributions of radii, r^a exp(-a r/mode): Rasshofer et al. 2011 (second-hand), and two of radiation fog.
+# A VLP-16 that stood outdoors: 1/m of extinction and share of beams that end at a drop, for each mm/h, and the log-normal law of their distances
+# (m). Clemens Linnhoff et al., Sensors 22, 5266, 2022, as the authors' model of it has them (openMSL/sl-1-2-reflection-based-lidar-object-model,
+# profile_VLP16.hpp.in, its commit 35082e3e, and DetectionEnvironmentalEffects.cpp; MPL-2.0).
+VLP16_IN_RAIN = {"extinction": 7.677e-5, "share": 1.69e-4, "mu": 1.362, "sigma": 0.784}
 FOGS = {"strong advection": (3, 10.0), "moderate advection": (3, 8.0), "heavy radiation": (6, 4.0), "moderate radiation": (6, 2.0)}  # um
 
 
@@ -62,6 +67,15 @@ def rain_of_spheres(rate, drops=1500, seed=1, wavelength=0.905):
     return extinction.mean(), 4 * np.pi * extinction.mean() / backscatter.mean(), backscatter.std() / np.sqrt(drops) / backscatter.mean()
 
 
+def kept_in_view(half_angle, wavelength, rate):
+    """Share of the light which Marshall and Palmer's drops diffract that stays in a view: Airy's pattern, by midpoints over diameters, weighted with
+    their areas, and over places u of the drops on the way, where a turn counts by u. @param half_angle rad @param wavelength m"""
+    diameters = 1e-5 * (np.arange(1000) + 0.5)
+    weights = diameters**2 * np.exp(-4.1e3 * rate**-0.21 * diameters)
+    x = np.pi * diameters * half_angle / wavelength / ((np.arange(100) + 0.5) / 100)[:, None]
+    return np.average((1 - j0(x)**2 - j1(x)**2).mean(0), weights=weights)
+
+
 def wall(distance, reflectance):
     corners = [(-999, distance, -999), (999, distance, -999), (999, distance, 999), (-999, distance, 999)]
     return al.Scene(corners, [(0, 1, 2), (0, 2, 3)], material=(reflectance, 0, 1))
@@ -90,12 +104,19 @@ def seen_to(name, reflectance, **weather):
     return near
 
 
+def drops_seen(name, **weather):
+    """Share of a scan's beams whose strongest echo is a drop in the open, and the distances of these, m."""
+    echoes = al.Scan(al.Scene(), al.Sensor(name), return_mode="Strongest", attenuation_coefficient=0, **weather).echoes
+    return (np.array(echoes["object_id"]) == -2).sum() / al.Sensor(name).beams.number_of_points, np.array(echoes["distance_m"])
+
+
 def rows():
     hundredth = np.log(100) / extinction_in(1000, visibility=600)
     decibels = 10 * np.log10(np.e)
     fog = [1e3 * decibels * extinction_in(wavelength, visibility=200) for wavelength in (550, 905, 1550)]
     ratios = [ratio_of_fog(name) for name in FOGS]
     rain = extinction_in(905, rain_rate=10, attenuation_coefficient=0)
+    lost = 2 - kept_in_view(looking("Search905").half_beamwidth, 905e-9, 10)
     efficiency, ratio, error = rain_of_spheres(10)
     seen = {name: [seen_to(name, reflectance, visibility=40, air_backscatter=True) for reflectance in (0.1, 0.8)] for name in ("VLP16", "OS1_64", "Avia")}
     chamber = ", ".join(f"`{name}` {near:.0f} to {far:.0f} m" for name, (near, far) in seen.items())
@@ -110,8 +131,19 @@ def rows():
     yield (f"The fog simulator of Hahner et al. (2021): backscatter {HAHNER_BACKSCATTER}/MOR, which is S = {MOR / HAHNER_BACKSCATTER:.0f} sr (its code)",
            f"the same closed form; {MOR / HAHNER_BACKSCATTER / 18.8:.1f} times the light, at equal extinction", "**differs**; the row above speaks for 18.8 sr")
     yield (f"Rain of 10 mm/h: drops of LISA (Kilic et al. 2021; its code), by Mie's theory {efficiency:.3f} times their areas; Goodin et al. 2019, "
-           f"as LISA's code has it, 0.01 R^0.6 = {0.01 * 10**0.6:.3f}/m", f"2 times their areas, {rain:.5f}/m",
-           f"holds within {100 * (efficiency / 2 - 1):.1f} %; **differs** from Goodin's by {0.01 * 10**0.6 / rain:.0f}: a visibility of 100 m")
+           f"as LISA's code has it, 0.01 R^0.6 = {0.01 * 10**0.6:.3f}/m", f"2 times their areas, of which `Search905` loses {lost:.2f}, {rain:.5f}/m",
+           f"holds within {100 * (efficiency / 2 - 1):.1f} %; **differs** from Goodin's by {0.01 * 10**0.6 * lost / 2 / rain:.0f}: a visibility of 100 m")
+    rate, law = 10, VLP16_IN_RAIN
+    ours = np.pi * 8000e-6 / (4.1 * rate**-0.21)**3 * (1 - kept_in_view(looking("VLP16").half_beamwidth, 903e-9, rate) / 2)
+    share, away = drops_seen("VLP16", rain_rate=rate)
+    published = "(Linnhoff et al. 2022; the authors' model, its code, with a law linear in R)"
+    yield (f"A VLP-16 outdoors: rain of R mm/h took {law['extinction']:.2e} R per m, {law['extinction'] * rate:.2e}/m of {rate} mm/h {published}",
+           f"{ours:.2e}/m for `VLP16`", f"holds within {100 * (ours / law['extinction'] / rate - 1):.0f} %; without the light that drops diffract")
+    median, far = np.exp(law["mu"]), np.exp(law["mu"] + 1.645 * law["sigma"])
+    yield (f"The same VLP-16: {100 * law['share'] * rate:.2f} % of its beams ended at a drop in {rate} mm/h, half of these within {median:.1f} m, "
+           f"95 % within {far:.0f} m {published}",
+           f"`VLP16` in the open: {100 * share:.1f} %, half within {np.median(away):.1f} m, 95 % within {np.quantile(away, 0.95):.1f} m",
+           f"**fails**: {share / law['share'] / rate:.0f} times too many")
     yield (f"Perfect spheres of that rain: S = {ratio:.1f} ± {ratio * error:.1f} sr at 180° exactly, by Mie's theory. Drizzle of 0.2 mm should return 6 dB "
            "less at 1.5 µm than at 905 nm (Westbrook et al. 2010; abstract)", "20 sr, at any wavelength (assumed)",
            "**open** by a factor of 4 for round drops; **fails** at 1550 nm, where rain returns too much")

@@ -175,6 +175,7 @@ std::shared_ptr<const CollisionTree> buildVolumeTree(std::shared_ptr<const Trian
   {
     return nullptr;
   }
+  tree->planeOwners = buildCollisionTree(tree->mesh, TreeOptions{}, {}, threads)->planeOwners;
   TreeVolumes volumes;
   const bool finished = options.boundingVolume == BoundingVolumeType::OBB
     ? fit<OBB>(*tree, part(Built, 1.0), threads, volumes)

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "FileLook.h"
 
+#include "Json.h"
 #include "LookedBytes.h"
 #include "NodeGraph.h"
 #include "XmlTags.h"
-
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cstdlib>

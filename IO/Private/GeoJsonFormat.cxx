@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "GeoJsonFormat.h"
 
-#include <nlohmann/json.hpp>
+#include "Json.h"
 
 #include <charconv>
 #include <cmath>

@@ -27,7 +27,7 @@ constexpr std::size_t HeaderSize = 227; // of LAS 1.2
 constexpr std::size_t ItemsAt = 34;     // in the record of the compression
 constexpr std::size_t ItemSize = 6;
 constexpr std::size_t CoreLayers = 9; // of formats 6 and above
-constexpr std::uint64_t BlockSize = 1 << 16;
+constexpr std::uint64_t BytesPerRead = 1 << 16;
 constexpr std::uint32_t AnySize = 0xFFFFFFFF;
 
 [[noreturn]] void damaged()
@@ -142,7 +142,7 @@ protected:
   int_type underflow() override
   {
     const std::uint64_t left = this->End < this->Limit ? this->Limit - this->End : 0;
-    this->Block.resize(std::min(left, BlockSize));
+    this->Block.resize(std::min(left, BytesPerRead));
     if (this->Block.empty())
     {
       return traits_type::eof();

@@ -16,7 +16,7 @@ constexpr std::uint64_t UdpSize = 8;
 constexpr std::uint64_t MostBeforePayload = 128; // Ethernet with tags, IP with options, UDP
 constexpr unsigned DataPort = 2368;
 constexpr int BlocksPerPacket = 12;
-constexpr int BlockSize = 100;
+constexpr int BytesPerBlock = 100;
 constexpr int Lasers = 16;
 constexpr std::size_t PointsPerPacket = BlocksPerPacket * 2 * Lasers;
 constexpr std::size_t PacketsPerCall = 256; // of KeepGoing
@@ -204,7 +204,7 @@ void checkPayload(const unsigned char* bytes, std::size_t number)
   }
   for (int b = 0; b < BlocksPerPacket; ++b)
   {
-    const unsigned char* block = bytes + b * BlockSize;
+    const unsigned char* block = bytes + b * BytesPerBlock;
     if (block[0] != 0xFF || block[1] != 0xEE || load<std::uint16_t>(block + 2) >= FullTurn)
     {
       fail("has no azimuth below 360 deg in block " + std::to_string(b));
@@ -214,7 +214,7 @@ void checkPayload(const unsigned char* bytes, std::size_t number)
 
 int azimuthOf(const unsigned char* payload, int block)
 {
-  return load<std::uint16_t>(payload + block * BlockSize + 2);
+  return load<std::uint16_t>(payload + block * BytesPerBlock + 2);
 }
 
 /// us since the hour of the first packet.
@@ -282,8 +282,8 @@ void addBlock(TurnPoints& points, const unsigned char* payload, int block, doubl
     double turned = azimuthOf(payload, block) + gap * after / (2.0 * FiringTime);
     turned -= turned < FullTurn ? 0.0 : FullTurn;
     const double moment = time + timeOf(payload, block) + after;
-    const unsigned char* near = payload + block * BlockSize + 4 + 3 * firing;
-    const unsigned char* far = near + (returns - 1) * BlockSize;
+    const unsigned char* near = payload + block * BytesPerBlock + 4 + 3 * firing;
+    const unsigned char* far = near + (returns - 1) * BytesPerBlock;
     int n = load<std::uint16_t>(near) == load<std::uint16_t>(far) ? 1 : 2;
     if (load<std::uint16_t>(near) > load<std::uint16_t>(far))
     {

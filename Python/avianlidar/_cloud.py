@@ -7,7 +7,7 @@ from typing import Any, Dict, Iterator, List, Mapping, Tuple
 import numpy as np
 from vtkmodules.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray, vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkDataArray, vtkPoints, vtkStringArray
-from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPointSet, vtkPolyData
+from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkDataObject, vtkPointSet, vtkPolyData
 
 from . import vtkAvianLidar as _wrapped
 from ._pipeline import update
@@ -95,7 +95,7 @@ class Cloud(Mapping):
         changes are not seen. Or a point cloud of Open3D, or whatever has `points` that NumPy takes as n rows of x, y, z: a copy of these."""
         if isinstance(data, Cloud):
             data = data.data
-        elif not isinstance(data, vtkPointSet) and hasattr(data, "points"):
+        elif not isinstance(data, vtkDataObject) and hasattr(data, "points"):  # VTK 9.4 gives images `points`, too
             data = vertices(data.points)
         if not isinstance(data, vtkPointSet):
             raise TypeError(f"a cloud is made of a vtkPointSet, not of {type(data).__name__}")

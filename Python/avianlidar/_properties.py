@@ -40,7 +40,7 @@ def property_names(wrapped: type) -> Mapping[str, str]:
     found = [m[3:] for m in methods if m.startswith("Set") and "Get" + m[3:] in methods]
     # A table is set as a whole.
     tables = {"ChannelElevation", "NumberOfChannelElevations"}
-    # An error is an exception here, never data: that is for ParaView's window.
+    # An error is an exception here, never data: that is for ParaView.
     names = {snake(name): name for name in sorted(found) if name not in (*tables, "ErrorsAsData")}
     if tables <= set(found):
         names["channel_elevations"] = "ChannelElevations"

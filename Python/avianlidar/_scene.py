@@ -128,6 +128,8 @@ def _painter(surfaces, material: Optional[Material], name: Optional[str]):
             raise TypeError(f"material is {material!r}, expected a name ({', '.join(materials())}), the coefficients "
                             f"({_ALL}), or a name or coefficients for each triangle") from None
         set_properties(paint, "Scene", material="Custom", **dict(zip(COEFFICIENTS, numbers)))
+    else:
+        paint.SetMaterial(paint.MATERIAL_UNCHANGED)
     if name is not None:
         paint.SetNameOfObject(text_of(name))
     update(paint)
@@ -155,6 +157,12 @@ def _of_each_triangle(material) -> bool:
         (np.ndim(material) > 1 or np.asarray(material).dtype.kind in "UO")
 
 
+def _only_block(data):
+    while isinstance(data, vtkMultiBlockDataSet) and data.GetNumberOfBlocks() == 1:
+        data = data.GetBlock(0)
+    return data
+
+
 def _paint_triangles(data, material, name: Optional[str]) -> vtkPolyData:
     """A copy of triangles with a material for each: m names, or m rows of coefficients."""
     try:
@@ -162,7 +170,8 @@ def _paint_triangles(data, material, name: Optional[str]) -> vtkPolyData:
         values = values.astype(str if values.dtype.kind in "UO" and all(isinstance(value, str) for value in values.flat) else float)
     except (TypeError, ValueError):
         raise TypeError(f"materials of the triangles are neither names nor rows ({_ALL}) alone") from None
-    number = data.GetNumberOfCells() if isinstance(data, vtkPolyData) else None
+    one = _only_block(data)
+    number = one.GetNumberOfCells() if isinstance(one, vtkPolyData) else None
     if number is None or values.shape[:1] != (number,) or values.shape[1:] not in ((), *((n,) for n in _NUMBERS)):
         raise ValueError(f"materials of the shape {values.shape} for {number or 'a composite of'} triangles, expected one name "
                          f"or one row ({_ALL}) for each triangle of one mesh")
@@ -178,7 +187,7 @@ def _paint_triangles(data, material, name: Optional[str]) -> vtkPolyData:
         for row in {*sums.argmin(axis=0), *sums.argmax(axis=0)}:  # of NaN these are the NaN
             _painter(mesh(*_ONE), rows[row], None)  # coefficients out of their range are an error
     painted = vtkPolyData()
-    painted.ShallowCopy(_painter(data, "Wall", name).GetOutputDataObject(0))
+    painted.ShallowCopy(_only_block(_painter(data, "Wall", name).GetOutputDataObject(0)))
     cells, ids = painted.GetCellData(), numbers.reshape(-1).astype(np.int32)
     for key, column in (("material_id", ids), *((key, row[ids]) for key, row in zip(COEFFICIENTS, rows.T))):
         array = numpy_to_vtk(np.ascontiguousarray(column), deep=True)
@@ -225,7 +234,7 @@ def _mesh_scene(file: str, painted: bool, options: Dict[str, Any]) -> Dict[str, 
             raise ValueError(f"scale is {options['scale']!r}, expected finite numbers")
     stem = os.path.splitext(name[:-3] if suffix == ".gz" else name)[0]
     rules = {known: known for known in choices(_wrapped.vtkAvianLidarMaterial, "Material") if known != "Custom"}
-    unnamed = {"*": "Wall"} if painted else {"DefaultMaterial": "Wall", stem: "Wall"}  # Assimp's word for none
+    unnamed = {"*" if painted else "DefaultMaterial": "Wall"}  # Assimp's word for none
     return {"version": 1, "objects": [{"file": name, "name": stem, "material_map": {**rules, **unnamed}, **options}]}
 
 
@@ -280,14 +289,15 @@ class Scene:
         """Add surfaces, coordinates in metres east, north and up of the scene's origin.
 
         surfaces  a mesh file (STL, OBJ, PLY, glTF, VTP, ...: Documentation/scene-format.md), a scene file
-                  (.lidarscene.json) or a mapping with the keys of one; vtkPolyData (also that of PyVista) or a composite
+                  (.lidarscene.json) or a mapping with the keys of one; vtkPolyData (also that of PyVista) or a multiblock
                   of it; a VTK algorithm, which is run; n rows of x, y, z, with `faces`; or a pair of both, as for `mesh`;
                   a mesh of Open3D or trimesh: `vertices` with `triangles` or `faces`, of which a copy is kept
         faces     m rows of three indices into the points
         material  a name (`materials()`), or the coefficients (kd, ks, kp, ...; those behind kp may be left out); of one
                   mesh also a sequence of m names or m rows of coefficients, one for each triangle. Default: what the
                   surfaces have; else `Wall`, of VTK data with a warning
-        name      of the object; default: what the surfaces have, the name of a mesh file
+        name      of the object, or of each block: each is one object then, and its material stays; default: what the
+                  surfaces have, the name of a mesh file
         scale     of a mesh file: metres of its unit (0.001: millimetres), a number or one for each axis; default 1
         up_axis   of a mesh file: "y" or "z", the axis that points up; default: y for glTF, FBX and some more, else z
         progress  called with the share done (0 to 1) and the name of the class at work
@@ -304,17 +314,15 @@ class Scene:
         data = self._data_of(surfaces, progress, material is not None, scale=scale, up_axis=up_axis)
         if isinstance(surfaces, (tuple, list)) and material is None:
             material = "Wall"
-        if not isinstance(data, (vtkPolyData, vtkCompositeDataSet)):
-            raise TypeError(f"surfaces are vtkPolyData or a composite of it, not {data.GetClassName()}")
+        if not isinstance(data, (vtkPolyData, vtkMultiBlockDataSet)):
+            raise TypeError(f"surfaces are vtkPolyData or a vtkMultiBlockDataSet of it, not {data.GetClassName()}")
+        fields = data.GetFieldData()
         if _of_each_triangle(material):
-            blocks = data
-            while isinstance(blocks, vtkMultiBlockDataSet) and blocks.GetNumberOfBlocks() == 1:
-                blocks = blocks.GetBlock(0)
-            data = _paint_triangles(blocks, material, name)
+            data = _paint_triangles(data, material, name)
         elif material is not None or name:
             self._painters.append(_painter(data, material, name))
             data = self._painters[-1].GetOutputDataObject(0)
-        self._append(data, name)
+        self._append(data, name, fields)
 
     @staticmethod
     def _data_of(surfaces, progress: Optional[Progress], painted: bool, **options: Any):
@@ -372,14 +380,14 @@ class Scene:
         for name, value in state["tree"].items():
             set_property(self.tree, name, value)
 
-    def _append(self, data, name: Optional[str]) -> None:
+    def _append(self, data, name: Optional[str], fields: vtkFieldData) -> None:
         number = self.surfaces.GetNumberOfBlocks()
         self.surfaces.SetBlock(number, data)
         if name:
             self.surfaces.GetMetaData(number).Set(vtkCompositeDataSet.NAME(), name)
         # Where the scene stands is said by its root; the first that says it counts.
         for field in ("geodetic_origin", "lidar_position"):
-            array = data.GetFieldData().GetAbstractArray(field)
+            array = fields.GetAbstractArray(field)
             if array and not self.surfaces.GetFieldData().HasArray(field):
                 self.surfaces.GetFieldData().AddArray(array)
 

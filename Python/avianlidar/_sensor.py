@@ -123,6 +123,7 @@ class Sensor(PropertyOwner):
         What is found: `numbers`, `board` (m), and of each point `predicted` (m), `residuals` and `left_out` (relative errors of
         its range, with it in the fit and without), and `bar`, the largest of them: what ranges by this receiver are good for (nan:
         no point can be left out, and nobody knows).
+        A filter is at most 100 nm wide (assumed); `limit` is a sentence where the fit ends there, else empty.
         ValueError: a point is not as it should be, or the sensor has no aperture.
 
         >>> round(Sensor("Search905").fit([{"range": 300, "reflectance": 0.1, "source": "mine"}]).predicted[0])

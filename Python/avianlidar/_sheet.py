@@ -3,9 +3,10 @@
 
 A sheet says at which range a board of a reflectance is seen with which probability, in which light. One number fits none of them:
 by 1/r^2 a board of 80 % is seen 2.83 times as far as one of 10 %, sheets say 1.7 to 2.5. A board at R fills f = min(1, w^2/(Omega R^2))
-of a round beam, w its width, (1 - exp(-2 k^2 f))/(1 - exp(-2 k^2)) of a Gaussian one, k its truncation; it gives n = eta E rho A/(pi R^2 h nu) electrons for what it fills, and, lit by sky and sun, its daylight as
+of a round beam, w its width, (1 - exp(-2 k^2 f))/(1 - exp(-2 k^2)) of a Gaussian one, k its truncation; it gives n = eta E rho A exp(-2 mu R)/(pi R^2 h nu) electrons for what it fills, mu that of clear air
+(a visibility of 23 km), and, lit by sky and sun, its daylight as
 background, beside the sky past it: the sensor's `background_radiance` in 100 klx, less in less light. It is seen with the probability that n and Gaussian noise exceed the threshold (Documentation/sensors.md). Fitted are, as
-far as the points tell them: the aperture A (how much light), the filter's bandwidth (how much daylight, also that of a view wider than the beam) and, where no point has it,
+far as the points tell them: the aperture A (how much light), the filter's bandwidth (how much daylight, also that of a view wider than the beam; at most BANDWIDTH) and, where no point has it,
 the width of the boards without one, which is not the receiver's but unknown. SciPy's least squares, over logarithms of ranges.
 """
 from __future__ import annotations
@@ -24,6 +25,9 @@ from ._disk import write_whole
 # reference spectrum ASTM G173-03 (global, 37 degrees), which has some 109 klx.
 DAYLIGHT = ((532, 1.40), (650, 1.40), (785, 1.05), (850, 0.83), (905, 0.70), (1064, 0.59), (1550, 0.25))
 APERTURE = 1e-4  # m2, at which fits begin
+BANDWIDTH = 100.0  # nm, of the widest filter that a fit may find: assumed, those of lidars are 1 to some tens of nm wide
+LIMIT = (f"filter_bandwidth ends at the bound of the fit, {BANDWIDTH:g} nm: the sheet's ranges in the light and in the dark differ by more than "
+         "the daylight that the filter of a lidar lets through")
 HALF = 0.5  # probability of a point that says none: assumed
 UNITS = {"range": " m", "probability": "", "reflectance": "", "light": " klx", "board": " m"}
 MOST = {"range": 1e6, "probability": 0.9999, "reflectance": 1.0, "light": 1000.0, "board": 1e4}
@@ -41,6 +45,7 @@ class Fit:
     left_out   the same where that point had no part in the fit; nan where the others do not tell all that is fitted
     bar        what ranges by this receiver are good for, relative: the largest of |residuals| and |left_out|; nan where no point
                could be left out
+    limit      empty, or a sentence: the bandwidth ended at its bound
     """
     numbers: Dict[str, float]
     board: float
@@ -48,6 +53,7 @@ class Fit:
     residuals: List[float]
     left_out: List[float]
     bar: float
+    limit: str = ""
 
 
 def check(points: Sequence[Dict[str, Any]]) -> None:
@@ -132,8 +138,11 @@ class Receiver:
         self.background = self.per_joule * self.solid_angle * self.interval
         self.excess = float(sensor.excess_noise_factor)
         self.sky = 0.01 * float(sensor.background_radiance)  # for each klx
+        self.attenuation = float(sensor.algorithm.GetClearAirAttenuation())
         self.overlap, self.defocus = float(sensor.overlap_range), float(sensor.defocus_range)
-        units = sensor.beams.number_of_points * np.floor(2 * float(sensor.range_gate) / (299792458.0 * self.interval))
+        unit = 0.5 * 299792458.0 * self.interval
+        in_gate = np.floor(float(sensor.range_gate) / unit) - np.floor(float(sensor.minimum_range) / unit)
+        units = sensor.beams.number_of_points * in_gate
         self.factor = float(np.sqrt(2) * erfcinv(2 * float(sensor.false_alarms_per_scan) / units))
 
     def excess_of(self, distance, point: Dict[str, Any], aperture: float, bandwidth: float, board: float):
@@ -142,6 +151,7 @@ class Receiver:
         rho, light, board = point["reflectance"], point.get("light", 0.0), point.get("board", board)
         filled = np.interp(board / distance, self.tangents, self.shares) if np.isfinite(board) else np.ones_like(distance)
         near = (1 - np.exp(-(distance / self.overlap) ** 2) if self.overlap else 1.0) / (1 + (self.defocus / distance) ** 2)
+        near = near * np.exp(-2 * self.attenuation * distance)
         signal = self.per_joule * self.pulse_energy * filled * near * np.minimum(1.0, rho * aperture / (np.pi * distance**2))
         sky = self.sky * light
         board_radiance = rho * (sky + irradiance(light, self.wavelength) / np.pi)
@@ -182,7 +192,8 @@ def _fitted(receiver: Receiver, points, start: Tuple[float, float], frees: List[
     best: Tuple[float, Tuple[float, float, float]] = (np.inf, (start[0], start[1], np.nan))
     widths = (0.3 * size, 0.6 * size, 1.2 * size) if "board" in frees else (np.nan,)
     # Starts do not depend on the numbers that are fitted: a fit of a fitted sensor is the same.
-    for width, bandwidth in itertools.product(widths, (1.0, 30.0, 1000.0) if "bandwidth" in frees else (start[1],)):
+    most = {"bandwidth": np.log(BANDWIDTH)}
+    for width, bandwidth in itertools.product(widths, (1.0, 10.0, 0.9 * BANDWIDTH) if "bandwidth" in frees else (start[1],)):
         value = {"aperture": APERTURE, "bandwidth": bandwidth, "board": width}
 
         def off(x, names):
@@ -190,7 +201,8 @@ def _fitted(receiver: Receiver, points, start: Tuple[float, float], frees: List[
             return [np.log(receiver.range(point, *at.values()) / point["range"]) for point in points]
 
         for names in (frees[:1], frees):  # the aperture first: the others start where it is right
-            found = least_squares(off, [np.log(value[name]) for name in names], args=(names,), diff_step=1e-4)
+            found = least_squares(off, [np.log(value[name]) for name in names], args=(names,), diff_step=1e-4,
+                                  bounds=(-np.inf, [most.get(name, np.inf) for name in names]))
             value = {**value, **dict(zip(names, np.exp(found.x)))}
         if found.cost < best[0]:
             best = found.cost, (float(value["aperture"]), float(value["bandwidth"]), float(value["board"]))
@@ -210,6 +222,8 @@ def fit(sensor, points: Optional[Sequence[Dict[str, Any]]] = None) -> Fit:
     start = float(sensor.receiver_aperture), max(float(sensor.filter_bandwidth), 1e-3)
     frees = _told(points)
     numbers = _fitted(receiver, points, start, frees)
+    at_bound = "bandwidth" in frees and numbers[1] > 0.99 * BANDWIDTH
+    numbers = (numbers[0], BANDWIDTH if at_bound else numbers[1], numbers[2])
     predicted = [receiver.range(point, *numbers) for point in points]
     left_out = []
     for i, point in enumerate(points):
@@ -220,7 +234,7 @@ def fit(sensor, points: Optional[Sequence[Dict[str, Any]]] = None) -> Fit:
     bar = float(np.nanmax(np.abs([*residuals, *left_out]))) if np.isfinite(left_out).any() else float("nan")
     lights = len({point.get("light", 0.0) for point in points}) > 1
     return Fit({"receiver_aperture": numbers[0], **({"filter_bandwidth": numbers[1]} if lights else {})}, numbers[2], predicted,
-               residuals, left_out, bar)
+               residuals, left_out, bar, LIMIT if at_bound else "")
 
 
 def write(description: Dict[str, Any], found: Fit, file) -> None:
@@ -228,8 +242,9 @@ def write(description: Dict[str, Any], found: Fit, file) -> None:
     number = len(description["sheet"]["points"])
     for name, value in found.numbers.items():
         unit = {"receiver_aperture": "m2", "filter_bandwidth": "nm"}[name]
-        description["values"][name] = {"value": float(f"{value:.6g}"), "unit": unit,
-                                       "source": f"assumed with the others: fitted to the {number} points of the sheet"}
+        source = f"assumed: {found.limit}" if name == "filter_bandwidth" and found.limit else \
+            f"assumed with the others: fitted to the {number} points of the sheet"
+        description["values"][name] = {"value": float(f"{value:.6g}"), "unit": unit, "source": source}
     description["values"]["receiver_model"] = {"value": 1, "unit": "1", "source": "assumed: photons, by the fit"}
     description["sheet"]["residuals"] = [float(f"{value:.3g}") for value in found.residuals]
     for key, value in (("bar", found.bar), ("board", found.board)):

@@ -308,6 +308,8 @@ def _fit(options) -> None:
               for point, predicted, off, left in zip(points, found.predicted, found.residuals, found.left_out))])
     print(*(f"{name} {value:.4g}" for name, value in found.numbers.items()),
           *([f"board of the maker {found.board:.3g} m"] if found.board == found.board else []), sep=", ")
+    if found.limit:
+        print(found.limit)
     print(f"ranges by this receiver are good for {100 * found.bar:.0f} %" if found.bar == found.bar else
           "what ranges by this receiver are good for is not known: no point can be left out of the fit")
     if options.out:

@@ -174,6 +174,24 @@ void TestCustomAndNames()
   Check(Cells(again, "object_id") == 7 && Text(again, "object_names", 0) == "mirror",
     "the object is kept");
   Check(Text(again, "material_names", 4) == "Custom", "known materials are kept");
+
+  // A third gives a name alone; on surfaces without a material there is none behind it either.
+  vtkNew<Filter> third;
+  third->SetInputConnection(second->GetOutputPort());
+  third->SetMaterial(Filter::MATERIAL_UNCHANGED);
+  third->SetNameOfObject("door");
+  third->Update();
+  vtkDataObject* named = third->GetOutputDataObject(0);
+  Check(Cells(named, "material_id") == 3 && Cells(named, "kd") == 0.107, "the material is kept");
+  Check(Cells(named, "object_id") == 7 && Text(named, "object_names", 0) == "door",
+    "the object has another name");
+  third->SetInputData(plane);
+  third->Update();
+  named = third->GetOutputDataObject(0);
+  Check(
+    vtkPolyData::SafeDownCast(named)->GetCellData()->GetNumberOfArrays() == 1 &&
+      Cells(named, "object_id") == 0 && Text(named, "object_names", 0) == "door",
+    "a name is no material");
 }
 
 void TestComposite()
@@ -276,7 +294,7 @@ void TestBadInput()
     std::function<void(Filter*)> spoil;
   } cases[] = {
     { "Material", [](Filter* f) { f->SetMaterial(9); } },
-    { "Material", [](Filter* f) { f->SetMaterial(-1); } },
+    { "Material", [](Filter* f) { f->SetMaterial(-2); } },
     { "ObjectId", [](Filter* f) { f->SetObjectId(-2); } },
     { "Kd is", [](Filter* f) { f->SetKd(-0.1); } },
     { "Kd is", [&](Filter* f) { f->SetKd(nan); } },

@@ -20,17 +20,17 @@ using geometrytest::sameBits;
 namespace
 {
 /// Hits by a loop over all triangles with the kernel's own test of a pair.
-std::vector<Hit> loopOverTriangles(const GeometryCase& one, const BeamFrame& frame)
+std::vector<Hit> loopOverTriangles(
+  const GeometryCase& one, const BeamFrame& frame, const CollisionTree& tree)
 {
-  const TriangleMesh& mesh = one.mesh;
   const BeamRays& rays = one.rays;
-  std::vector<std::uint32_t> all(mesh.size());
-  for (std::uint32_t t = 0; t < mesh.size(); ++t)
+  std::vector<std::uint32_t> all(one.mesh.size());
+  for (std::uint32_t t = 0; t < all.size(); ++t)
   {
     all[t] = t;
   }
   const BeamPlaneMap map(frame);
-  BeamRayVisitor visitor(mesh, frame, map);
+  BeamRayVisitor visitor(tree, frame, map);
   std::vector<Hit> hits(rays.size());
   for (std::size_t i = 0; i < rays.size(); ++i)
   {
@@ -89,7 +89,7 @@ std::string faultOfBlock(const GeometryCase& one, const BeamFrame& frame, const 
   const BlockHits& found = tracer.traceBlock(block, TraceMode::Automatic);
   for (std::size_t b = 0; b < Beams; ++b)
   {
-    const std::vector<Hit> right = loopOverTriangles(one, frames[b]);
+    const std::vector<Hit> right = loopOverTriangles(one, frames[b], tree);
     for (std::size_t i = 0; i < right.size(); ++i)
     {
       const std::uint32_t triangle = found.triangles[b] ? found.triangles[b][i] : NoTriangle;
@@ -277,7 +277,7 @@ std::string findFault(const GeometryCase& one)
   const auto tree = buildVolumeTree(mesh, one.options, {}, 1);
   const auto usualTree = buildVolumeTree(mesh, TreeOptions(), {}, 1);
   const BeamFrame frame = makeBeamFrame(one.apex, one.direction, one.halfBeamwidth);
-  const std::vector<Hit> hits = loopOverTriangles(one, frame);
+  const std::vector<Hit> hits = loopOverTriangles(one, frame, *tree);
   for (const CollisionTree* way : { tree.get(), usualTree.get() })
   {
     std::string fault = faultOfWays(one, frame, hits, *way);

@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <random>
 #include <vector>
 
@@ -91,6 +92,14 @@ std::vector<double> pointsOf(
   return counts;
 }
 
+/// What the drops of a unit return beyond their mean, wherever it arrives.
+double whole(const AirEcho& echo, std::int32_t seed, std::uint64_t beam, std::int64_t unit)
+{
+  std::vector<double> units(static_cast<std::size_t>(2 * echo.pulse().reach() + 1), 0.0);
+  echo.addBeyondMean(seed, beam, unit, 0, 1.0, units.data());
+  return std::accumulate(units.begin(), units.end(), 0.0);
+}
+
 double sum(const std::vector<double>& values)
 {
   double all = 0.0;
@@ -108,7 +117,7 @@ TEST(Medium, RainIsThatOfMarshallAndPalmer)
     { 10.0, 3165.0, 1.556e-3 }, { 25.0, 3836.0, 2.771e-3 }, { 50.0, 4437.0, 4.288e-3 } };
   for (const auto& [rate, drops, extinction] : rows)
   {
-    const Medium rain = rainOf(rate, 20.0);
+    const Medium rain = rainOf(rate, 20.0, {});
     EXPECT_NEAR(rain.drops, drops, 0.5);
     EXPECT_NEAR(rain.extinction / extinction, 1.0, 3e-4);
     // Twice the cross-sections of the drops, and their mean square, by midpoints over diameters.
@@ -125,6 +134,60 @@ TEST(Medium, RainIsThatOfMarshallAndPalmer)
     EXPECT_NEAR(areas / rain.extinction, 1.0, 1e-4);
     EXPECT_NEAR(squares / number * 4.0 * number * number / (areas * areas), SquareOfDrops, 1e-2);
   }
+}
+
+TEST(Medium, LightThatDropsDiffractIntoTheViewIsNotLost)
+{
+  // Airy's pattern 2 J1(x)^2/x, summed over angles; over drops and places on the way by midpoints.
+  constexpr double step = 0.01;
+  std::vector<double> within = { 0.0 };
+  for (double x = 0.5 * step; x < 500.0; x += step)
+  {
+    const double j = ::j1(x);
+    within.push_back(within.back() + 2.0 * j * j / x * step);
+  }
+  const auto airy = [&](double x)
+  {
+    const double at = x / step;
+    return at < static_cast<double>(within.size()) ? within[static_cast<std::size_t>(at)]
+                                                   : 1.0 - 2.0 / (Pi * x);
+  };
+  struct Row
+  {
+    double wavelength, halfAngle, kept; ///< of 10 mm/h
+  };
+  for (const Row& row : { Row{ 903e-9, 0.95e-3, 0.87 }, Row{ 905e-9, 1.5e-3, 0.92 },
+         Row{ 1550e-9, 3e-3, 0.93 }, Row{ 905e-9, 5.6e-3, 0.98 }, Row{ 905e-9, 1e-5, 0.034 } })
+  {
+    for (const double rate : { 1.0, 10.0, 50.0 })
+    {
+      const double slope = 4.1e3 * std::pow(rate, -0.21); // 1/m
+      double kept = 0.0, weight = 0.0;
+      for (double d = 5e-6; d < 8e-3; d += 1e-5)
+      {
+        const double area = d * d * std::exp(-slope * d);
+        for (double u = 0.0025; u < 1.0; u += 0.005)
+        {
+          kept += area * airy(Pi * d * row.halfAngle / (row.wavelength * u));
+          weight += area;
+        }
+      }
+      kept /= weight;
+      const LidarView view{ row.wavelength, row.halfAngle };
+      EXPECT_NEAR(keptInView(view, slope), kept, 1e-3) << row.halfAngle << " " << rate;
+      EXPECT_NEAR(kept, row.kept, rate == 10.0 ? 0.005 : 0.1);
+      const Medium all = rainOf(rate, 20.0, {});
+      const Medium seen = rainOf(rate, 20.0, view);
+      EXPECT_NEAR(seen.extinction / all.extinction, 1.0 - 0.5 * kept, 1e-3);
+      EXPECT_NEAR(seen.backscatter() / all.backscatter(), 1.0, 1e-12);
+      EXPECT_EQ(seen.drops, all.drops);
+    }
+  }
+  Sensor sensor = sensorOf(Search905);
+  EXPECT_NEAR(viewOf(sensor).halfAngle, 5.6e-3, 1e-12);
+  EXPECT_NEAR(viewOf(sensor).wavelength, 905e-9, 1e-15);
+  sensor.halfBeamwidthAcross = 1.4e-3;
+  EXPECT_NEAR(viewOf(sensor).halfAngle, 2.8e-3, 1e-6);
 }
 
 TEST(Medium, BadOnesAreNamed)
@@ -203,6 +266,18 @@ TEST(AirEcho, UnitsAreIntegralsOfTheLaw)
       EXPECT_LT(echo.mean(0), sensor.pulseEnergy * 2.0 * Pi / 30.0);
     }
   }
+  // Before the gate there is none: of the unit in which it begins, a part.
+  sensor.minimumRange = 1.7;
+  const Medium air{ 1e-4, 30.0, 2.0 };
+  const AirEcho gated(sensor, { air }, 1e-4);
+  const double length = sensor.rangeUnitLength();
+  EXPECT_EQ(gated.mean(0), 0.0);
+  EXPECT_EQ(gated.mean(1), 0.0);
+  const double part = byMidpoints(sensor, air, 1.7, 3.0 * length);
+  EXPECT_NEAR(gated.mean(2), part, 2e-6 * part);
+  const double drops =
+    2.0 * sensor.solidAngle() * (std::pow(3.0 * length, 3) - std::pow(1.7, 3)) / 3.0;
+  EXPECT_NEAR(gated.variance(2), SquareOfDrops * part * part / drops, 1e-5 * gated.variance(2));
   EXPECT_FALSE(AirEcho(sensor, {}, 0.1).any());
   sensor.receiverAperture = 0.0;
   EXPECT_FALSE(AirEcho(sensor, { { 0.1, 20.0, 0.0 } }, 0.1).any());
@@ -268,8 +343,9 @@ TEST(AirEcho, FalseAlarmsInFogAreThoseOfItsNoise)
 
 TEST(AirEcho, DropsAreACompoundPoissonLaw)
 {
-  const Sensor sensor = sensorOf(Search905);
-  const Medium rain = rainOf(10.0, 20.0);
+  Sensor sensor = sensorOf(Search905);
+  sensor.pulseWidth = 0.0;
+  const Medium rain = rainOf(10.0, 20.0, {});
   const AirEcho echo(sensor, { rain }, rain.extinction);
   std::mt19937_64 random(3);
   for (const std::int64_t unit : { 2, 8, 14, 40, 200 })
@@ -287,8 +363,7 @@ TEST(AirEcho, DropsAreACompoundPoissonLaw)
     std::exponential_distribution<double> diameter(1.0);
     for (int beam = 0; beam < draws; ++beam)
     {
-      const double beyond =
-        echo.beyondMean(1, static_cast<std::uint64_t>(beam), unit, 0, true) / mean0;
+      const double beyond = whole(echo, 1, static_cast<std::uint64_t>(beam), unit) / mean0;
       mean += beyond / draws;
       square += beyond * beyond / draws;
       high += beyond > limit ? 1.0 / draws : 0.0;
@@ -308,11 +383,11 @@ TEST(AirEcho, DropsAreACompoundPoissonLaw)
   }
 }
 
-TEST(AirEcho, RainMakesPointsByItsLawWhetherAllIsDrawnOrNot)
+TEST(AirEcho, RainMakesPointsByItsLaw)
 {
   const Sensor sensor = sensorOf(Search905);
   const PhotonReceiver receiver(sensor);
-  const Medium rain = rainOf(10.0, 20.0);
+  const Medium rain = rainOf(10.0, 20.0, {});
   const AirEcho echo(sensor, { rain }, rain.extinction);
   constexpr int beams = 400;
   std::vector<double> ofAir;
@@ -320,14 +395,18 @@ TEST(AirEcho, RainMakesPointsByItsLawWhetherAllIsDrawnOrNot)
   // Every unit, by the numbers of the beams.
   const NoisePlan plan = planNoise(sensor, true);
   std::vector<double> all(points.size(), 0.0);
+  SharedDrops drops(echo.pulse());
   for (int beam = 0; beam < beams; ++beam)
   {
     BeamNoise noise;
     noise.begin(plan, 7, static_cast<std::uint64_t>(beam), 0);
+    drops.clear();
     for (std::size_t unit = 0; unit < 500; ++unit)
     {
       const auto u = static_cast<std::int64_t>(unit);
-      const double beyond = echo.beyondMean(7, static_cast<std::uint64_t>(beam), u, 0, true);
+      const double beyond = drops.in(u,
+        [&](std::int64_t of, double* units)
+        { echo.addBeyondMean(7, static_cast<std::uint64_t>(beam), of, 0, 1.0, units); });
       const double drawn = std::max(0.0, echo.mean(u) + beyond);
       const double energy = drawn - echo.mean(u) + noise.energy(u, drawn);
       const double lower =
@@ -348,9 +427,121 @@ TEST(AirEcho, RainMakesPointsByItsLawWhetherAllIsDrawnOrNot)
       looked = unit;
     }
   }
-  EXPECT_GT(looked, 200u);
+  EXPECT_GT(looked, 150u);
   EXPECT_GT(sum(points), 20.0 * beams); // a hundred metres of rain are full of points
   EXPECT_LT(sum({ points.begin() + static_cast<std::ptrdiff_t>(looked), points.end() }), 10.0);
+}
+
+TEST(AirEcho, DropsShareTheirPulsesBetweenUnits)
+{
+  // Drops anywhere: a unit has 1 - w/3 of the variance that it has of short pulses, w/6 in common
+  // with the next, and third moments fall to 1 - w/2.
+  constexpr int cells = 200000;
+  const Medium rain = rainOf(10.0, 20.0, {});
+  for (const double width : { 0.3, 1.0, 2.0 })
+  {
+    const PulseShares pulse(width);
+    for (const double number : { 30.0, 60.0 })
+    {
+      SharedDrops drops(pulse);
+      double mean = 0.0, square = 0.0, cube = 0.0, next = 0.0, before = 0.0;
+      for (std::int64_t unit = 0; unit < cells; ++unit)
+      {
+        const double here = drops.in(unit,
+          [&](std::int64_t of, double* units) {
+            addDropsBeyondMean(
+              3, 1, static_cast<std::uint64_t>(of), 0, 1.0, number, rain, pulse, units);
+          });
+        mean += here / cells;
+        square += here * here / cells;
+        cube += here * here * here / cells;
+        next += here * before / cells;
+        before = here;
+      }
+      const double variance = SquareOfDrops / number;
+      // Of many drops the third moment is that of the gamma distribution; E[D^6]/E[D^2]^3 = 90.
+      const double third =
+        number > AirEcho::FewDrops ? 2.0 * variance * variance : 90.0 / (number * number);
+      const bool narrow = width <= 1.0;
+      EXPECT_NEAR(mean, 0.0, 0.005);
+      EXPECT_NEAR(square / variance,
+        narrow ? 1.0 - width / 3.0 : (width - 1.0 / 3.0) / (width * width), 0.02);
+      EXPECT_NEAR(next / variance, narrow ? width / 6.0 : 0.25, 0.015);
+      EXPECT_NEAR(cube / third, narrow ? 1.0 - width / 2.0 : 0.1875, 0.06) << width << number;
+    }
+  }
+}
+
+TEST(AirEcho, PointsOfRainAreThoseOfDropsOneByOne)
+{
+  const Sensor sensor = sensorOf(Search905);
+  const PhotonReceiver receiver(sensor);
+  const Medium rain = rainOf(10.0, 20.0, viewOf(sensor));
+  const AirEcho echo(sensor, { rain }, rain.extinction);
+  const double length = sensor.rangeUnitLength();
+  const double far = 160.0; // m
+  const auto units = static_cast<std::size_t>(far / length) - 2;
+  std::mt19937_64 random(5);
+  constexpr int beams = 40;
+  const double slope = 4.1e3 * std::pow(10.0, -0.21); // 1/m
+  std::poisson_distribution<int> count(rain.drops * sensor.solidAngle() * far * far * far / 3.0);
+  std::exponential_distribution<double> diameter(slope);
+  std::uniform_real_distribution<double> uniform;
+  std::normal_distribution<double> normal;
+  std::vector<double> theirs(units, 0.0);
+  for (int beam = 0; beam < beams; ++beam)
+  {
+    std::vector<double> light(units + 4, 0.0);
+    for (int drop = count(random); drop > 0; --drop)
+    {
+      // Anywhere in the cone; twice its area over S per steradian, of the light that meets it.
+      const double r = far * std::cbrt(uniform(random));
+      const double d = diameter(random);
+      const double energy = sensor.pulseEnergy * 2.0 * 0.25 * Pi * d * d / 20.0 *
+        std::min(sensor.receiverAperture / (r * r), 2.0 * Pi) / (sensor.solidAngle() * r * r) *
+        std::exp(-2.0 * rain.extinction * r);
+      const double begin = r / length - 0.5; // of the pulse, as long as a unit
+      if (begin > 0.0)
+      {
+        const auto unit = static_cast<std::size_t>(begin);
+        light[unit] += energy * (1.0 - begin + static_cast<double>(unit));
+        light[unit + 1] += energy * (begin - static_cast<double>(unit));
+      }
+    }
+    for (std::size_t unit = 0; unit < units; ++unit)
+    {
+      const double mean = echo.mean(static_cast<std::int64_t>(unit));
+      const double noise = normal(random) *
+        receiver.deviation(receiver.electronsPerJoule * light[unit]) / receiver.electronsPerJoule;
+      const double lower =
+        sensor.lowerEnergyLimit * receiver.growthInAir(receiver.electronsPerJoule * mean);
+      theirs[unit] += light[unit] + noise - mean > lower ? 1.0 / beams : 0.0;
+    }
+  }
+  const auto between = [&](const std::vector<double>& points, double from, double to)
+  {
+    double all = 0.0;
+    for (auto unit = static_cast<std::size_t>(from / length); unit < to / length; ++unit)
+    {
+      all += points[unit];
+    }
+    return all;
+  };
+  // Nearer than 8 m the mean of the rain blinds the receiver.
+  constexpr int ours = 400;
+  std::vector<double> points = pointsOf(sensor, echo, ours);
+  Sensor brief = sensor;
+  brief.pulseWidth = 0.0;
+  const AirEcho unshared(brief, { rain }, rain.extinction);
+  std::vector<double> apart = pointsOf(brief, unshared, ours);
+  for (const auto& [from, to] :
+    { std::pair(8.0, 50.0), std::pair(50.0, 100.0), std::pair(100.0, 150.0) })
+  {
+    const double truth = between(theirs, from, to);
+    const double error = std::sqrt(truth / beams + truth / ours); // at most
+    EXPECT_NEAR(between(points, from, to) / ours, truth, 3.0 * error) << from;
+    EXPECT_TRUE(from < 50.0 || between(apart, from, to) / ours > truth + 3.0 * error) << from;
+  }
 }
 
 TEST(AirEcho, NearAirBlinds)

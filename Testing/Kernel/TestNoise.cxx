@@ -259,6 +259,12 @@ TEST(NoiseBeam, AlmostEveryUnitAlarms)
   noise.begin(plan, 0, 0);
   EXPECT_EQ(noise.alarms().size(), static_cast<std::size_t>(plan.gateUnits));
   EXPECT_TRUE(std::is_sorted(noise.alarms().begin(), noise.alarms().end()));
+  Sensor gated = photonCounter(1e4, 1.0);
+  gated.minimumRange = 30.0;
+  noise.begin(planNoise(gated, true), 0, 0);
+  EXPECT_EQ(noise.alarms().front(), 200); // units of 0.1499 m
+  EXPECT_EQ(noise.energy(199), 0.0);
+  EXPECT_GT(noise.energy(200), 0.0);
 }
 
 TEST(NoiseBeam, PureFunctionOfSeedBeamAndUnit)

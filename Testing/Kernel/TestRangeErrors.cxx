@@ -87,10 +87,13 @@ TEST(RangeErrors, WalkAndQuantum)
   sensor.rangeNoiseFloor = 1.0;
   EXPECT_EQ(RangeErrors(sensor, true).measured(100.0, low, 2.0), 102.25);
   EXPECT_EQ(RangeErrors(sensor, false).measured(100.0, low, 2.0), 100.25);
-  // No range is negative or beyond the gate.
+  // No range is before or beyond the gate.
   EXPECT_EQ(RangeErrors(sensor, true).measured(1.0, low, -5.0), 3.75);
   EXPECT_EQ(
     RangeErrors(sensor, true).measured(sensor.rangeGate - 1.0, low, 3.0), sensor.rangeGate - 2.25);
+  sensor.minimumRange = 2.0;
+  EXPECT_EQ(RangeErrors(sensor, true).measured(3.0, low, -5.0), 5.75);
+  sensor.minimumRange = 0.0;
   sensor.rangeNoiseFloor = 1e9;
   EXPECT_EQ(RangeErrors(sensor, true).measured(1.0, low, 1.0), 0.0);
 }

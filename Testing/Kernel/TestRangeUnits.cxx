@@ -269,6 +269,22 @@ TEST(RangeUnits, UnitsBeyondTheGateAreDropped)
   EXPECT_NEAR(accumulator.energyBeyondGate(), 3.0, 1e-12);
 }
 
+TEST(RangeUnits, PathsBeforeTheGateAreDropped)
+{
+  RangeUnitAccumulator accumulator(nanosecond, nanosecond, 100.0, 2.0);
+  const double ranges[] = { 1.9, 2.0, 5.0 };
+  const double energies[] = { 7.0, 2.0, 1.0 };
+  accumulator.add(ranges, energies, 3);
+  accumulator.add({ 3.99, 4.0 });
+  accumulator.accumulate();
+  EXPECT_NEAR(totalOf(accumulator), 3.0, 1e-12);
+  EXPECT_EQ(accumulator.energyBeforeGate(), 11.0);
+  accumulator.clear();
+  EXPECT_EQ(accumulator.energyBeforeGate(), 0.0);
+  EXPECT_EQ(firstUnitInsideGate(5e-9, 0.7), 0);
+  EXPECT_EQ(firstUnitInsideGate(5e-9, 0.8), 1);
+}
+
 TEST(RangeUnits, NothingArrivesBeforeThePulseIsSent)
 {
   RangeUnitAccumulator accumulator(nanosecond, 2.0 * nanosecond, 100.0);

@@ -188,6 +188,30 @@ TEST(ScanPattern, TimesAreUniqueAndOneSweepLong)
   EXPECT_LT(*times.rbegin(), 2.0);
 }
 
+TEST(ScanPattern, TheNextPulseEndsTheUnambiguousRange)
+{
+  ScanPattern p;
+  p.firingInterval = 15e-6;
+  EXPECT_EQ(pulseInterval(p), 15e-6);
+  EXPECT_NEAR(unambiguousRange(pulseInterval(p)), 2248.4, 0.1);
+  Sensor sensor;
+  sensor.rangeGate = 2248.0;
+  EXPECT_EQ(warningOnAmbiguity(sensor, pulseInterval(p)), "");
+  sensor.rangeGate = 2249.0;
+  EXPECT_EQ(warningOnAmbiguity(sensor, pulseInterval(p)).find("range_gate is 2249 m"), 0u);
+  // Channels that fire together, that have times of their own, or one alone: a column, 2 s/960.
+  p.firingInterval = 0.0;
+  EXPECT_DOUBLE_EQ(pulseInterval(p), 2.0 / 960.0);
+  p.firingInterval = 15e-6;
+  p.firingTimes.assign(16, 0.0);
+  EXPECT_DOUBLE_EQ(pulseInterval(p), 2.0 / 960.0);
+  p.firingTimes.clear();
+  p.channels = 1;
+  EXPECT_DOUBLE_EQ(pulseInterval(p), 2.0 / 960.0);
+  p.table = std::make_shared<BeamTable>();
+  EXPECT_TRUE(std::isinf(pulseInterval(p)));
+}
+
 TEST(ScanPattern, TableOfElevationsReplacesTheRegularOnes)
 {
   ScanPattern p;

@@ -59,6 +59,12 @@ TEST(ScanReport, StatusOfABeamTellsWhatBecameOfIt)
   EXPECT_EQ(unclamped.reports[0].status, BeamStatus::Echo);
   EXPECT_NEAR(unclamped.reports[0].range, 100.0, 1e-2);
   EXPECT_TRUE(std::isnan(unclamped.reports[1].range));
+  // What is nearer than the minimum range hides what is behind, and is no echo.
+  wide.minimumRange = 100.1;
+  scene.plate(Vec3(150.0, 0.0, 0.0), Vec3(0.0, 5.0, 0.0), Vec3(0.0, 0.0, 5.0), Wall);
+  const ScanResult gated = runScan(makeSetup(scene, wide, usual()), beams);
+  EXPECT_EQ(gated.reports[0].status, BeamStatus::OutsideGate);
+  EXPECT_TRUE(gated.echoes.empty());
 }
 
 TEST(ScanReport, FewRaysHaveNoStandardError)

@@ -13,6 +13,7 @@ deb $mirror/debian $1 main
 deb $mirror/debian $1-updates main
 deb $mirror/debian-security $1-security main
 END
+echo force-unsafe-io > "$2/etc/dpkg/dpkg.cfg.d/unsafe-io" # nobody needs it after a crash
 echo "127.0.0.1 localhost" > "$2/etc/hosts"
 cat /etc/resolv.conf > "$2/etc/resolv.conf"
 chroot "$2" sh -c 'apt-get -qq update && apt-get -qq -y full-upgrade' > "$log" 2>&1 || { tail "$log"; exit 1; }

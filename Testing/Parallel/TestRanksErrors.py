@@ -213,7 +213,7 @@ def check_error_as_data(algorithm, messages, words):
 
 
 def test_errors_as_data():
-    """As in ParaView's window: what fails on one rank goes on with an empty output, which is missing on no rank in silence.
+    """As in ParaView: what fails on one rank goes on with an empty output, which is missing on no rank in silence.
     The image is made again on all ranks or on none, also where a rank's part of it is empty."""
     for rows in (4, 1):
         material = al.vtkAvianLidarMaterial()

@@ -69,6 +69,7 @@ BEAM_SOURCE = {
     "Sunlight": "W/(m2 nm)",
     "SunAzimuth": "degrees",
     "SunElevation": "degrees",
+    "MinimumRange": "metres",
     "OverlapRange": "metres",
     "DefocusRange": "metres",
     "RangeQuantum": "metres",
@@ -289,7 +290,7 @@ CONTRACT = {
         "Position", "Orientation", "NumberOfRevolutions", "StepsPerRevolution")}},
     "AvianLidarUnitNames": {"Input": None},
 }
-# What every proxy has, and no state or trace.
+# What every proxy has, and no panel.
 INTERNAL = "ErrorsAsData"
 CHOICES = {
     "Preset": ["Custom", "Draft", "Standard", "Reference"],
@@ -490,13 +491,11 @@ class TestProxies(unittest.TestCase):
         for prop in CONTRACT["AvianLidarEchoFilter"]:
             self.assertIsNotNone(advisor.GetProperty(prop), prop)
 
-    def test_errors_are_errors_unless_the_window_wants_them_as_data(self):
+    def test_errors_are_data_in_paraview_and_failures_in_vtk(self):
         for name, proxy in self.proxies.items():
             with self.subTest(name):
-                smproperty = proxy.SMProxy.GetProperty(INTERNAL)
-                self.assertTrue(smproperty.GetIsInternal())
-                self.assertEqual(values_of(smproperty), [cxx_object(name).GetErrorsAsData()])
-                self.assertEqual(values_of(smproperty), [0])
+                self.assertTrue(proxy.SMProxy.GetClientSideObject().GetErrorsAsData())
+                self.assertFalse(cxx_object(name).GetErrorsAsData())
 
     def test_label_is_the_name_in_words(self):
         for name, smproperty, prop, _ in self.each_property():

@@ -4,7 +4,7 @@ as a user does it: by the panel with Apply, and by a file with F5.
 
 The results: {"server": number of its processes, "cases": {name: [what there is to see at first, after the error, mended,
 after the second error, mended again]}, "files": {name: [the same of a file: may one choose Save Data, is it what it was]},
-"state": does a saved state know of ErrorsAsData, "applies": may Apply be pressed for what was only made}.
+"applies": may Apply be pressed for what was only made}.
 What there is to see: {"errors": [the sources that have said something new], "shown": {name: points and cells that its
 representation has}, "information": {name: [points and cells, error]}, "picture": checksum of the view}."""
 
@@ -166,10 +166,6 @@ def steps(results):
     cases["Sensor"] = yield from case(pipeline, energy, 4)
     cases["Scene"] = yield from case(pipeline, by_file((None, OTHER, None, GOOD)), 4)
     results["files"] = yield from save(pipeline, by_panel(pipeline.echoes, "AttenuationCoefficient", (-1, 0.02)))
-    state = os.path.join(FOLDER, "state")
-    simple.SaveState(state + ".pvsm")
-    simple.SaveState(state + ".py")
-    results["state"] = any(b"ErrorsAsData" in file_of(state + ending) for ending in (".pvsm", ".py"))
 
 
 client_window.run(steps)

@@ -80,6 +80,18 @@ class Scores(unittest.TestCase):
         np.testing.assert_allclose(_card.warnings_of(self.found["birds"], "strip"), [6.0])
         self.assertEqual((self.birds[2]["scans"], self.birds[2]["tracked"], self.birds[2]["found_s"]), (12, 0, None))
 
+    def test_from_one_volume_into_the_other(self):
+        """Two runways, two ends: birds that begin in a strip or below a glide path are warned of before the other one. One that stays counts nowhere."""
+        scorer = Scorer(10.0, 1.0, [Runway("a", (0.0, 0.0), (1000.0, 0.0), 45.0), Runway("b", (0.0, 400.0), (1000.0, 400.0), 45.0)])
+        for k in range(20):  # north from strip to strip, 20 m a scan; east over a runway from one glide path to the other, 100 m a scan; and back and forth
+            rows = [row(1, 2.0 * k, (500.0, 20.0 * k, 10.0)), row(2, 2.0 * k, (100.0 * k - 450.0, 0.0, 40.0)), row(3, 2.0 * k, (500.0, 160.0 * (k % 2), 10.0))]
+            tracks = [(0, k >= 5, rows[0]["place"], (0.0, 10.0, 0.0))]
+            scorer.add(k, rows, live(2.0 * k, *tracks, points=[0]), np.array([BIRD]))
+        birds = scorer.results()["birds"]
+        self.assertEqual([(bird["strip"], bird["glide path"]) for bird in birds], [(26.0, None), (10.0, 30.0), (None, None)])
+        np.testing.assert_allclose(_card.warnings_of(birds, "strip"), [16.0, 0.0])
+        np.testing.assert_allclose(_card.warnings_of(birds, "glide path"), [0.0])
+
     def test_tracks(self):
         self.assertEqual({number: track["origin"] for number, track in self.tracks.items()}, {0: "bird", 1: "surface", 2: "vehicle", 5: "bird"})
         self.assertEqual((self.tracks[1]["scans"], self.tracks[1]["assigned"], self.tracks[1]["begin"]), (8, 0, [300.0, 300.0, 5.0]))

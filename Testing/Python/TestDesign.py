@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Designs: closed forms of the link budget, the front against brute force, formulas that attack, bounds that are wrong, work that goes on."""
+import contextlib
 import csv
+import io
 import json
 import math
 import pathlib
@@ -167,6 +169,18 @@ class LinkBudget(unittest.TestCase):
 
 
 class Pulses(unittest.TestCase):
+    def test_gates_end_before_the_next_pulse(self):
+        """16 channels, 10 us apart: c/2 times that is 1,498.96 m."""
+        for gate, ambiguous, refused in ((1498, False, False), (1500, False, True), (1500, True, False)):
+            with self.subTest(gate=gate, ambiguous=ambiguous):
+                sensor = {**NIGHT, "firing_interval": 1e-5, "range_gate": gate}
+                if refused:
+                    with self.assertRaisesRegex(Error, "hold no lidar that can be: range_gate is 1500 m, expected at most the 1499 m"):
+                        study_of(fresh("gate"), sensor=sensor)
+                else:
+                    study = study_of(fresh("gate"), {"ambiguous_ranges": True} if ambiguous else {}, sensor=sensor)
+                    self.assertFalse(any(one.refused for one in study.candidates))
+
     def test_numbers(self):
         study = study_of(fresh("pulses"), {"bounds": {"rotation_rate": [0.25, 0.5]}, "exit_aperture": 2e-3, "cost": "pulse_rate + average_power"})
         for one in study.candidates:
@@ -174,8 +188,13 @@ class Pulses(unittest.TestCase):
             self.assertAlmostEqual(one.pulses["pulse_rate"], rate)
             self.assertAlmostEqual(one.pulses["average_power"], 3.6e-4 * rate)
             self.assertAlmostEqual(one.pulses["exposure"], 3.6e-4 / 2e-3)
+            self.assertAlmostEqual(one.pulses["pupil"], 3.6e-4 * math.pi * 0.0035 ** 2 / 2e-3)
             self.assertAlmostEqual(one.pulses["shortest_interval"], 30e-6, delta=1e-9)
             self.assertAlmostEqual(one.cost, rate * (1.0 + 3.6e-4))
+
+    def test_a_beam_narrower_than_a_pupil(self):
+        study = study_of(fresh("narrow"), {"bounds": {"pulse_energy": [3.6e-4]}, "exit_aperture": 2e-5})
+        self.assertEqual(study.candidates[0].pulses["pupil"], 3.6e-4)
 
     def test_a_lidar_that_cannot_be_is_told(self):
         study = study_of(fresh("refused"), {"bounds": {"number_of_channels": [16, 4000]}})
@@ -191,7 +210,8 @@ class Work(unittest.TestCase):
     def test_folder_and_page(self):
         where = fresh("page")
         file = plan_of(where, description="<script>alert(1)</script> & what?", design={**DESIGN, "cost_unit": "<b>kEUR"})
-        self.assertEqual(main(["design", str(file), "-o", str(where / "out")]), 0)
+        with contextlib.redirect_stdout(io.StringIO()) as said:
+            self.assertEqual(main(["design", str(file), "-o", str(where / "out")]), 0)
         self.assertEqual({path.name for path in (where / "out").iterdir()},
                          {"coverage", "design.csv", "design.html", "front.png", "sensitivities.csv", "sensitivities.png"})
         rows = list(csv.DictReader((where / "out" / "design.csv").read_text(encoding="utf-8").splitlines()))
@@ -206,6 +226,11 @@ class Work(unittest.TestCase):
         self.assertNotRegex(page, r'(src|href)="(?!data:|#)')
         self.assertIn("The cheapest of 8 designs that detects 12 % of herring gulls on the map, 10 to 40 m, by one scan costs ", page)
         self.assertIn("no limit is applied here and no verdict given", page)
+        chosen = next(row for row in rows if int(row["chosen"]))
+        microjoules = 1e6 * float(chosen["pulse_energy [J]"]) * 38.4845e-6 / float(chosen["receiver_aperture [m2]"])
+        for answer in (said.getvalue().splitlines()[0], re.search('<p class="said">(.*?)</p>', page)[1]):
+            first = re.search(r"^The cheapest of .*; eye safety is not assessed: at 905 nm each pulse puts (\S+) µJ through a pupil of 7 mm at its exit aperture", answer)
+            self.assertAlmostEqual(float(first[1]) / microjoules, 1.0, delta=0.05)
         for _, changed in ((row["field"], row) for row in csv.DictReader((where / "out" / "sensitivities.csv").read_text(encoding="utf-8").splitlines())):
             up = float(changed["to"]) > float(changed["from"])
             self.assertEqual(float(changed["change_of_detected [1]"]) > 0.0, up)
@@ -224,7 +249,7 @@ class Work(unittest.TestCase):
         study = looked(study_of(fresh("none"), {"share": 0.999}))
         self.assertIsNone(study.chosen)
         self.assertEqual(study.about.share.value, max(one.share.value for one in study.candidates))
-        self.assertTrue(_design_page.answers(study)[0].startswith("None of 8 designs surely detects 99.9 % of herring gulls"))
+        self.assertRegex(_design_page.answers(study)[0], "^None of 8 designs surely detects 99.9 % of herring gulls.*; eye safety is not assessed: .* µJ through a pupil of 7 mm")
 
     def test_what_the_error_does_not_tell(self):
         only = {"bounds": {"pulse_energy": BOUNDS["pulse_energy"]}}  # so that what costs more detects more

@@ -222,7 +222,7 @@ report_units = {
     "": "beam_id laser_id status skipped",
 }
 field_units = {
-    "m": "position display_length range_gate perceivable_range range_noise range_noise_floor range_walk range_quantum overlap_range defocus_range",
+    "m": "position display_length range_gate perceivable_range range_noise range_noise_floor range_walk range_quantum minimum_range overlap_range defocus_range",
     "deg": "beam_rotation sun_azimuth sun_elevation orientation minimum_elevation elevation_step azimuth_range azimuth_step",
     "rad": "half_beamwidth half_beamwidth_across",
     "Hz": "rotation_rate frequency noise_photon_rate",

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """What follows an execution that failed: whoever is updated next says so, by the input port and the first error, and has no
-output; a file stays as it is; the next good input works. As VTK has it, and with errors as data, as ParaView's window has it."""
+output; a file stays as it is; the next good input works. As VTK has it, and with errors as data, as ParaView has it."""
 
 import os
 import shutil

@@ -469,7 +469,7 @@ class Refused(unittest.TestCase):
                 (ValueError, "count is 9, expected at least 2", lambda: siting.strips_and_approaches([], 9)),
                 (ValueError, r"heights are \(5, 1\)", lambda: siting.strips_and_approaches([runway], heights=(5, 1))),
                 (ValueError, "weights have the shape", lambda: siting.values_of(np.zeros((1, 2, 3)), np.zeros((3, 2)))),
-                (TypeError, "surfaces are vtkPolyData or a composite", lambda: al.Scene(vtkImageData())),
+                (TypeError, "surfaces are vtkPolyData or a vtkMultiBlockDataSet", lambda: al.Scene(vtkImageData())),
                 (ValueError, "'sensor' needs field data", lambda: al.Cloud(cloud([(1, 2, 3)])).coordinates("sensor")),
                 (ValueError, "cannot draw 'direction', which has 3 components", lambda: sensor.beams.plot_map("direction"))):
             with self.subTest(words), self.assertRaisesRegex(kind, words):

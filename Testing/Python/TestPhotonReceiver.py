@@ -202,8 +202,16 @@ class Receiver(unittest.TestCase):
             warnings.simplefilter("error")
             few.position = (0, 0, 3)
             self.assertEqual(few.beams.number_of_points, 15360)
-            for name in ("Search905", "Search1550", "Automotive16", "Airport16"):
+            for name in ("Search905", "Airport16"):
                 self.assertGreater(Sensor(name).beams.number_of_points, 0)
+        with self.assertWarnsRegex(RuntimeWarning, "RangeGate is 4000 m, but the next pulse leaves after 15 us, that is 2248 m") as caught:
+            Sensor("Search1550").beams.number_of_points
+        self.assertNotIn("electrons", str(caught.warning))
+        with self.assertWarnsRegex(RuntimeWarning, "RangeGate is 300 m.*1.3 us"):
+            Sensor("Automotive16").beams.number_of_points
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            Sensor("Search1550", range_gate=2248).beams.number_of_points
         few.amplifier_noise = 0.1
         with self.assertWarns(RuntimeWarning):  # another number
             few.beams.number_of_points
@@ -225,6 +233,10 @@ class Receiver(unittest.TestCase):
         energy = 1e-6 * 0.1 * 0.01 / (np.pi * 200.0**2) * np.exp(-2 * 1e-4 * 200.0)
         self.assertAlmostEqual(sensor.lower_energy_limit / energy, 1, delta=1e-12)
         self.assertAlmostEqual(sensor.upper_energy_limit / energy, 1e4, delta=1e-6)
+        clear = 3.912 / 23e3 * (sensor.wavelength / 550) ** -1.3  # by default, at the sensor's wavelength
+        sensor.algorithm.SetLimitsFromDataSheet(200.0, 0.1)
+        self.assertAlmostEqual(sensor.lower_energy_limit / energy, np.exp(-2 * (clear - 1e-4) * 200.0), delta=1e-12)
+        sensor.algorithm.SetLimitsFromDataSheet(200.0, 0.1, 1e-4)
         for bad in ((0.0, 0.1), (200.0, 0.0), (200.0, 1.5), (200.0, 0.1, -1.0), (float("nan"), 0.1)):
             sensor.algorithm.SetLimitsFromDataSheet(*bad)
         sensor.algorithm.SetLimitsFromDataSheet(4000.0, 0.1, 1.0)  # through which nothing comes back

@@ -117,9 +117,10 @@ class Volumes(unittest.TestCase):
 
     def test_entry(self):
         times = [10.0, 12.0, 14.0, 16.0]
-        for inside, when in (([0, 0, 1, 1], 14.0), ([0, 0, 0, 1], 16.0), ([0, 1, 0, 1], 12.0)):
+        for inside, when in (([[0, 0, 1, 1]], 14.0), ([[0, 0, 0, 1]], 16.0), ([[0, 1, 0, 1]], 12.0), ([[0, 0, 0, 1], [0, 1, 0, 0]], 12.0),
+                             ([[1, 1, 0, 0], [0, 0, 1, 1]], 14.0), ([[1, 0, 1, 0], [0, 0, 0, 1]], 16.0)):  # from one volume into the other
             self.assertEqual(scores.entry(times, np.array(inside, bool)), when)
-        for inside in ([0, 0, 0, 0], [1, 1, 1, 0], [1, 0, 0, 1]):
+        for inside in ([[0, 0, 0, 0]], [[1, 1, 1, 0]], [[1, 0, 0, 1]], [[1, 1, 0, 0], [1, 1, 1, 1]], np.zeros((0, 4))):
             self.assertTrue(math.isnan(scores.entry(times, np.array(inside, bool))))
 
 

@@ -71,12 +71,44 @@ class Manuals(unittest.TestCase):
 
     def test_a_wall_is_seen_to_the_range_of_the_data_sheet(self):
         sheet = al.Sensor("PandarXT-32").description["data_sheet"]
-        for at, seen in ((0.97, True), (1.03, False)):
+        for at, seen in ((0.995, True), (1.005, False)):
             y = at * sheet["detection_range"]["value"]
             corners = [(-9, y, -9), (9, y, -9), (9, y, 9), (-9, y, 9)]
             scan = al.Scan(al.Scene((corners, [(0, 1, 2), (0, 2, 3)]), material=(sheet["detection_reflectance"]["value"], 0, 0)),
-                           al.Sensor("PandarXT-32", directions=[(0, 1, 0)]), noise=False, attenuation_coefficient=0.0)
+                           al.Sensor("PandarXT-32", directions=[(0, 1, 0)]), noise=False, visibility=23e3)
             self.assertEqual(scan.echoes.number_of_points > 0, seen, at)
+
+    def test_clear_air_is_not_seen(self):
+        """No sensor sees the air of a visibility of 23 km, so that the strongest return of a beam is a wall at 20 m."""
+        def wall(y, half=5):
+            return [(-half, y, -half), (half, y, -half), (half, y, half), (-half, y, half)], [(0, 1, 2), (0, 2, 3)]
+
+        def ranges(sensor, y, **settings):
+            scan = al.Scan(al.Scene(wall(y), material=(0.3, 0, 1)), sensor, visibility=23e3, air_backscatter=sensor.receiver_aperture > 0,
+                           noise=False, **settings)
+            return scan.echoes["distance_m"], scan.echoes["energy_received"]
+
+        for name in al.Sensor.presets():
+            with self.subTest(name):
+                sensor = al.Sensor(name, directions=[(0, 1, 0)])
+                for mode in ("All", "Strongest"):
+                    np.testing.assert_allclose(ranges(sensor, 20, return_mode=mode)[0], [20], atol=0.1)
+                self.assertEqual(len(ranges(sensor, -20)[0]), 0)
+                # What is nearer than the maker's minimum range is not recorded, and what is farther is.
+                least, far = sensor.minimum_range, 2.15 * max(sensor.overlap_range, 1)
+                if least:
+                    self.assertEqual(len(ranges(sensor, 0.98 * least)[0]), 0)
+                    self.assertEqual(len(ranges(sensor, 1.02 * least)[0]), 1)
+                if sensor.overlap_range and not sensor.defocus_range:
+                    energy = ranges(sensor, far, return_mode="Last")[1]
+                    sensor.overlap_range = 0
+                    np.testing.assert_allclose(energy / ranges(sensor, far, return_mode="Last")[1], 1, atol=0.01)
+
+    def test_makers_minimum_ranges(self):
+        found = {name: al.Sensor(name).minimum_range for name in al.Sensor.presets()}
+        self.assertEqual({name: value for name, value in found.items() if value},
+                         {"HDL32E": 0.05, "Helios16P": 0.2, "Mid360": 0.1, "Mid40": 2.0, "OS0_128": 0.3, "OS1_64": 0.8, "OS2_128": 1.0,
+                          "Pandar40P": 0.3, "PandarXT32": 0.05})
 
     def test_fitted_receivers_are_those_of_their_sheets(self):
         """What a file says of its fit is what the fit gives again, and no fit is better than its bar."""

@@ -46,6 +46,16 @@ class Sheets(unittest.TestCase):
         self.assertAlmostEqual(one.numbers["receiver_aperture"] / 3e-4, 1, delta=1e-3)
         self.assertTrue(np.isnan(one.left_out[0]) and np.isnan(one.board) and np.isnan(one.bar))
 
+    def test_a_filter_has_a_bound(self):
+        start, rows = sensor(), [(0.1, 0.5, 0), (0.8, 0.5, 0), (0.1, 0.9, 100), (0.8, 0.5, 100), (0.8, 0.9, 100)]
+        for width, limit in ((60.0, False), (2000.0, True)):
+            found = _sheet.fit(start, points(_sheet.Receiver(start), (3e-4, width, 0.6), *rows))
+            self.assertEqual("filter_bandwidth ends at the bound of the fit, 100 nm" in found.limit, limit)
+            self.assertAlmostEqual(found.numbers["filter_bandwidth"] / min(width, 100.0), 1, delta=0.02)
+            self.assertEqual(found.bar > 0.01, limit)
+        for name in al.Sensor.presets():
+            self.assertLessEqual(al.Sensor(name).filter_bandwidth, 100, name)
+
     def test_boards_are_seen_as_often_when_simulated(self):
         """2,000 beams on a board at a fitted range, in the dark and in the sun."""
         start = sensor()
@@ -62,7 +72,7 @@ class Sheets(unittest.TestCase):
                 looking = sensor(directions=np.tile([1.0, 0, 0], (count, 1)), receiver_aperture=numbers[0], pulse_width=0,
                                  filter_bandwidth=numbers[1], sun_azimuth=270, sun_elevation=0,
                                  sunlight=_sheet.irradiance(light, start.wavelength))
-                echoes = al.Scan(scene, looking, attenuation_coefficient=0, number_of_reflections=1).echoes
+                echoes = al.Scan(scene, looking, visibility=23e3, number_of_reflections=1).echoes
                 seen = (echoes["object_id"] >= 0).sum() / count
                 # The simulated board is not quite what fills so much of the beam: 2 % of the signal.
                 self.assertAlmostEqual(seen, p, delta=0.05)
@@ -84,7 +94,7 @@ class Sheets(unittest.TestCase):
                                         sunlight=_sheet.irradiance(light, sensor.wavelength), range_noise=0,
                                         background_radiance=0.01 * light * sensor.background_radiance,
                                         false_alarms_per_scan=share * sensor.false_alarms_per_scan)
-                    echoes = al.Scan(scene, looking, attenuation_coefficient=0, number_of_reflections=1).echoes
+                    echoes = al.Scan(scene, looking, visibility=23e3, number_of_reflections=1).echoes
                     # The board is a square, the fit takes a disc of its area: up to 10 % of the signal where it just fills the beam.
                     self.assertAlmostEqual((echoes["object_id"] >= 0).sum() / 1000, point.get("probability", 0.5), delta=0.13)
 

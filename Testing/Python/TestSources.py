@@ -53,6 +53,12 @@ for folder in ("Filters", "IO"):
         if not path.startswith(("Filters/Kernel/", "Filters/VolumeTree/")):
             assert path in words or path[: -len(".cxx")] in words, f"{path} is not listed"
 
+# VTK's copy of the JSON library and Debian's have the same include guards: one header decides which is included.
+for folder in ("Filters", "IO", "Plugin"):
+    for path in files(folder, ".h", ".cxx"):
+        includes = re.search(r"#include.*(nlohmann|NLOHMANN)", read(path))
+        assert not includes or path == "Filters/Private/Common/Json.h", f"{path}: include Json.h"
+
 # Folders depend in one direction: each on those before it in CMake's list.
 def names_in(text):
     """The names of the files that a source includes."""

@@ -14,6 +14,9 @@ from scipy import integrate, stats
 
 import avianlidar as al
 
+sys.path.insert(0, os.path.join(os.environ["AVIANLIDAR_SOURCE_DIR"], "Examples", "weather"))
+from others import kept_in_view  # noqa: E402
+
 LIGHT, PLANCK = 299792458.0, 6.626e-34  # the constants of the receiver
 NOTHING = al.Scene(np.zeros((0, 3)), np.zeros((0, 3), dtype=int), material="Wall")
 FOG = {"visibility": 1000, "air_backscatter": True}
@@ -57,8 +60,9 @@ class Law(unittest.TestCase):
     def test_noise_over_many_beams(self):
         beams = 4000
         sensor = looking(beams=beams, threshold_law="Fixed", dynamic_range=200, false_alarms_per_scan=1)
+        lost = 1 - kept_in_view(5.6e-3, 905e-9, 10) / 2  # of what drops take from the beam; two thirds of their variance are left in a unit
         for weather, mu, ratio, relative in (
-                (FOG, extinction(1000, 905), 18.8, 0.0), ({"rain_rate": 10, "attenuation_coefficient": 0}, 1.5556e-3, 20, 6 / 2355)):
+                (FOG, extinction(1000, 905), 18.8, 0.0), ({"rain_rate": 10, "attenuation_coefficient": 0}, lost * 1.5556e-3, lost * 20, 2 / 3 * 6 / 2355)):
             echoes = al.Scan(NOTHING, sensor, return_mode="RangeUnits", **weather).echoes
             unit = 133
             here = np.floor(np.array(echoes["distance_m"]) / (LIGHT * 2.5e-9)).astype(int) == unit
@@ -74,7 +78,7 @@ class Law(unittest.TestCase):
         wall = al.Scene([(-9, 80, -9), (9, 80, -9), (9, 80, 9), (-9, 80, 9)], [(0, 1, 2), (0, 2, 3)], material=(0.5, 0, 1))
         sensor = looking()
         clear = al.Scan(wall, sensor, noise=False, attenuation_coefficient=0).echoes["return_energy"]
-        for weather, mu in ((FOG, extinction(1000, 905)), ({"rain_rate": 25, "attenuation_coefficient": 0}, 2.7708e-3)):
+        for weather, mu in ((FOG, extinction(1000, 905)), ({"rain_rate": 25, "attenuation_coefficient": 0}, 2.7708e-3 * (1 - kept_in_view(5.6e-3, 905e-9, 25) / 2))):
             echoes = al.Scan(wall, sensor, noise=False, **weather).echoes
             self.assertEqual(len(echoes["return_energy"]), 1)  # the threshold follows
             self.assertAlmostEqual(echoes["return_energy"][0] / clear[0] / math.exp(-160 * mu), 1, delta=1e-3)

@@ -8,6 +8,7 @@ import math
 import os
 import pathlib
 import shutil
+import sys
 import unittest
 from contextlib import redirect_stderr
 
@@ -22,6 +23,9 @@ from avianlidar.apps._air import extinction, extinction_of_rain
 from avianlidar.apps._maps import Plan, read_plan
 from avianlidar.apps._report import Report
 from avianlidar.apps._sites import Sites
+
+sys.path.insert(0, os.path.join(exampletools.EXAMPLES, "weather"))
+from others import kept_in_view  # noqa: E402
 
 HERE = pathlib.Path(os.environ.get("AVIANLIDAR_TEST_OUTPUT_DIR", "/tmp")) / "TestWeatherPlans"
 PLAN = pathlib.Path(exampletools.EXAMPLES) / "coverage" / "hongqiao.coverage.json"
@@ -76,8 +80,8 @@ class Coverage(unittest.TestCase):
         self.assertFalse(paper.gathers_light)
         known = extinction(paper.sensor, **{name: paper.settings[name] for name in ("visibility", "attenuation_coefficient", "rain_rate")})
         of_fog = 3.912 / 1000 * (paper.sensor.wavelength / 550) ** -0.5 if paper.sensor.wavelength else 0
-        of_rain = math.pi * 8000e-6 / (4.1 * 10**-0.21) ** 3
-        self.assertAlmostEqual(extinction_of_rain(10.0) / of_rain, 1, delta=1e-6)
+        of_rain = math.pi * 8000e-6 / (4.1 * 10**-0.21) ** 3 * (1 - kept_in_view(paper.sensor.half_beamwidth, 905e-9, 10) / 2)
+        self.assertAlmostEqual(extinction_of_rain(10.0) / of_rain, 1, delta=1e-3)
         self.assertAlmostEqual(known / (of_fog + of_rain), 1, delta=1e-3)
         self.assertLess(float(paper.overall["detection_probability"]), 0.1)
 

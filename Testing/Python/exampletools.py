@@ -78,14 +78,15 @@ def documented_table(page, name):
 
 
 def assert_documented(test, table, page, name):
-    """The counts of a table are those of the page; another processor may differ by a beam or two."""
+    """The counts of a table are those of the page. Another processor may differ by a beam or two, and another version of
+    GEOS divides roofs into other triangles, which changes how many rays are traced."""
     documented = documented_table(page, name)
     test.assertEqual(list(table), list(documented))
     for column, rows in documented.items():
         for row, text in rows.items():
             if text.isdigit():
                 found, wanted = int(table[column][row]), int(text)
-                test.assertAlmostEqual(found, wanted, delta=2 + 0.003 * wanted, msg=(column, row))
+                test.assertAlmostEqual(found, wanted, delta=2 + (0.01 if row == "rays traced" else 0.003) * wanted, msg=(column, row))
 
 
 BAD_ARGUMENTS = (("--rays", "0"), ("--rays", "-3"), ("--rays", "1000001"), ("--rays", "many"), ("--threads", "-1"),

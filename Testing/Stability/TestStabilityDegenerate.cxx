@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Scenes at the edge of geometry: planes through the lidar or nearly so, triangles twice, without
 // area or turned over, a lidar within, on a surface, on a vertex, and grazing incidence.
+#include "CoincidentTestScene.h"
 #include "CollisionTreeBuilder.h"
 #include "HitsAgainstOracle.h"
 #include "ScanTestTown.h"
@@ -222,6 +223,38 @@ TEST(StabilityDegenerate, DuplicatesAndTrianglesWithoutArea)
       "echoes, with two reflections, that change by a bit", 0.0, static_cast<double>(withMore) });
   record({ "Inverted", "every triangle turned over",
     "echoes, with two reflections, that change by a bit", 0.0, static_cast<double>(whenTurned) });
+}
+
+TEST(StabilityDegenerate, FacesThatCoincide)
+{
+  using namespace coincidenttest;
+  Worst ofRays;
+  Worst ofCells;
+  for (const int parts : { 20, 60 })
+  {
+    for (const CoincidentPlates& plates : coincidenttest::pairs(parts))
+    {
+      for (const bool wallFirst : { true, false })
+      {
+        const Scene seen = plates.seen(wallFirst);
+        const Scene scene = plates.scene(wallFirst);
+        const double right = receivedAt(Vec3(0.0), seen, inCells());
+        const double byTheseRays = receivedAt(Vec3(0.0), seen, byRays(1000));
+        for (const Vec3& place : { Vec3(0.0), Utm })
+        {
+          ofRays.see(std::fabs(receivedAt(place, scene, byRays(1000)) / byTheseRays - 1.0));
+          ofCells.see(std::fabs(receivedAt(place, scene, inCells()) / right - 1.0));
+        }
+      }
+    }
+  }
+  const std::string range =
+    "a sheet of 800 or 7,200 triangles in a wall, either first; 0 and 4,000 km from the origin";
+  record({ "Coincident faces", range,
+    "relative error of energy, beside the same rays without what is hidden", 1e-6,
+    ofRays.value() });
+  record({ "Coincident faces", range, "the same in cells, beside integrated polygons", 3e-3,
+    ofCells.value() });
 }
 
 TEST(StabilityDegenerate, LidarWithinABox)

@@ -58,6 +58,8 @@ TEST(StabilityErrors, OfTheSensor)
       { 0.0, -1e-9, 9e-31, 1.1e20, Infinity, NotANumber }, { 1e-11, 1e-3, 1e20 } },
     { "range_gate", &Sensor::rangeGate, { 0.0, -1.0, 1e16, 1.1e30, Infinity, NotANumber },
       { 1e-320, 1e-3, 1e5 } },
+    { "minimum_range", &Sensor::minimumRange, { -1.0, 4000.0, Infinity, NotANumber },
+      { 0.0, 1e-3, 3999.0 } },
     { "noise_photon_rate", &Sensor::noisePhotonRate, { -1.0, 1.1e50, Infinity, NotANumber },
       { 0.0, 1e12, 1e50 } },
     { "lower_energy_limit", &Sensor::lowerEnergyLimit, { -1e-9, Infinity, NotANumber },

@@ -40,7 +40,8 @@ enum class RandomPurpose : std::uint32_t
   Mirrors = 15,       ///< of rays over mirrors
   RangeNoise = 16,    ///< of the range of a return, by its strongest unit
   Drops = 17,         ///< of rain, by range unit
-  Leaves = 18         ///< that parts of a beam end at
+  Leaves = 18,        ///< that parts of a beam end at
+  ShortPaths = 19     ///< directions of paths from a hit to a near one
 };
 
 /// Two independent uniform doubles in the open interval (0, 1), 53 bits each.

@@ -129,7 +129,7 @@ CoverageSight Coverage::sightOf(const Vec3& to, BeamTracer& tracer) const
 {
   CoverageSight sight;
   const double range = safeLength(to);
-  if (!(range <= this->Setup.sensor.rangeGate))
+  if (!(range >= this->Setup.sensor.minimumRange && range <= this->Setup.sensor.rangeGate))
   {
     return sight;
   }

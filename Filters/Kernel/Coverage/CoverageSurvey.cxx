@@ -53,7 +53,8 @@ bool CoverageSurvey::look(const ScanSetup& setup, const ScanBeams& beams, const 
   const std::uint64_t directionsOf = hashOfBeams(beams.directions, shape.width().half, 0);
   const double outline[] = { setup.sensor.halfBeamwidth,
     static_cast<double>(setup.sensor.beamOutline), setup.sensor.halfBeamwidthAcross,
-    setup.sensor.beamRotation, setup.sensor.up.x, setup.sensor.up.y, setup.sensor.up.z };
+    setup.sensor.beamRotation, setup.sensor.up.x, setup.sensor.up.y, setup.sensor.up.z,
+    setup.sensor.minimumRange };
   // In order: of an exclusive or, parts that are equal would leave nothing.
   const std::uint64_t parts[] = { directionsOf, places.hash, geometry,
     hashOf(outline, sizeof(outline), 0) };

@@ -31,12 +31,14 @@ struct EightTriangles
 {
   double corners[9][LaneCount]; ///< a, b, c from the apex, m
   double normal[3][LaneCount];  ///< TrianglePlane::normal
+  double onPlane[3][LaneCount]; ///< a, or a corner of the triangle whose plane it takes, m
   double lines[9][LaneCount];   ///< ab, bc, ca; slope 1, positive inside
   double inverse[3][LaneCount]; ///< 1/z, 1/m
   double mostInverse[LaneCount], leastInverse[LaneCount], height[LaneCount], area[LaneCount];
-  std::uint64_t crosses[3]; ///< one bit for each: the side meets the octagon
-  std::uint64_t enters;     ///< the triangle enters the disc
-  std::uint64_t inside;     ///< all of it lies there
+  double mostOfPlane[LaneCount]; ///< upper bound of 1/z of the plane in the octagon
+  std::uint64_t crosses[3];      ///< one bit for each: the side meets the octagon
+  std::uint64_t enters;          ///< the triangle enters the disc
+  std::uint64_t inside;          ///< all of it lies there
 };
 
 /// The beam's plane.
@@ -180,7 +182,7 @@ void setUpLanes(const PlaneAxes& plane, EightTriangles& t)
     const Three b = load(t.corners + 3, i);
     const Three c = load(t.corners + 6, i);
     const Three n = load(t.normal, i);
-    const Eight height = dot(n, a);
+    const Eight height = dot(n, load(t.onPlane, i));
     const Three e0 = edgeOf(a, b);
     const Eight determinant = dot(c, e0);
     const Eight sign = hn::IfThenElse(hn::Gt(determinant, zero), all(1.0), all(-1.0));
@@ -217,6 +219,7 @@ void setUpLanes(const PlaneAxes& plane, EightTriangles& t)
     t.inside |= bitsOf(lanes, hn::And(before, inside)) << i;
     const Eight inOctagon =
       hn::Add(wz, hn::Mul(all(OutRadius), hn::Sqrt(hn::Add(hn::Mul(wx, wx), hn::Mul(wy, wy)))));
+    store(inOctagon, t.mostOfPlane, i);
     store(hn::IfThenElse(before, hn::Min(inOctagon, hn::Div(all(1.0), nearest)), inOctagon),
       t.mostInverse, i);
     const Eight farthest2 = hn::Max(dot(a, a), hn::Max(dot(b, b), dot(c, c)));
@@ -285,13 +288,11 @@ namespace
 {
 /// TrianglePlane::normal of eight triangles, where the processor has fused multiply-add without a
 /// call.
-AVIANLIDAR_MULTIVERSION void findNormals(EightTriangles& t)
+AVIANLIDAR_MULTIVERSION void findNormals(const Corners* planes, EightTriangles& t)
 {
   for (int i = 0; i < LaneCount; ++i)
   {
-    const auto corner = [&](int k)
-    { return Vec3(t.corners[3 * k][i], t.corners[3 * k + 1][i], t.corners[3 * k + 2][i]); };
-    const Vec3 n = normalOf({ corner(0), corner(1), corner(2) });
+    const Vec3 n = normalOf(planes[i]);
     t.normal[0][i] = n.x;
     t.normal[1][i] = n.y;
     t.normal[2][i] = n.z;
@@ -307,9 +308,16 @@ void BeamTriangles::setUp(const std::uint32_t* triangles, std::size_t count)
     return;
   }
   EightTriangles t;
+  Corners planes[LaneCount];
   for (std::size_t i = 0; i < LaneCount; ++i)
   {
-    const Corners c = this->cornersOf(triangles[i < count ? i : 0]);
+    const std::uint32_t number = triangles[i < count ? i : 0];
+    const std::uint32_t owner = this->Tree->planeOwner(number);
+    const Corners c = this->cornersOf(number);
+    planes[i] = owner == number ? c : this->cornersOf(owner);
+    t.onPlane[0][i] = planes[i].a.x;
+    t.onPlane[1][i] = planes[i].a.y;
+    t.onPlane[2][i] = planes[i].a.z;
     const Vec3* const all[] = { &c.a, &c.b, &c.c };
     for (int k = 0; k < 3; ++k)
     {
@@ -318,7 +326,7 @@ void BeamTriangles::setUp(const std::uint32_t* triangles, std::size_t count)
       t.corners[3 * k + 2][i] = all[k]->z;
     }
   }
-  findNormals(t);
+  findNormals(planes, t);
   const BeamFrame& frame = this->Frame;
   HWY_DYNAMIC_DISPATCH(setUpLanes)
   ({ frame.tanHalf * frame.e1, frame.tanHalf * frame.e2, frame.axis, frame.tanHalf * frame.tanHalf,
@@ -348,6 +356,7 @@ void BeamTriangles::setUp(const std::uint32_t* triangles, std::size_t count)
     }
     s.inverse = { t.inverse[0][i], t.inverse[1][i], t.inverse[2][i] };
     s.mostInverse = t.mostInverse[i];
+    s.sortInverse = this->Tree->coincides(triangles[i]) ? t.mostOfPlane[i] : s.mostInverse;
     s.leastInverse = t.leastInverse[i];
     s.height = t.height[i];
     s.area = (t.inside >> i & 1u) != 0u ? t.area[i] : AreaUnknown;
@@ -397,7 +406,7 @@ const std::vector<const BeamSurface*>& BeamTriangles::sort()
   keys.clear();
   for (const std::uint32_t number : this->ByTriangle)
   {
-    keys.push_back(keyAbove(nearestFirst(all[number].mostInverse), keys.size()));
+    keys.push_back(keyAbove(nearestFirst(all[number].sortInverse), keys.size()));
   }
   sortKeys(keys);
   this->Nearest.clear();
@@ -468,7 +477,9 @@ bool BeamTriangles::join(BeamSurface& one, const BeamSurface& two)
   {
     joint = this->findJoint(one.triangle);
   }
-  if (joint == Apart)
+  const bool coincide = this->Tree->coincides(one.triangle) || this->Tree->coincides(two.triangle);
+  if (joint == Apart ||
+    (coincide && this->Tree->planeOwner(one.triangle) != this->Tree->planeOwner(two.triangle)))
   {
     return false;
   }
@@ -495,6 +506,7 @@ bool BeamTriangles::join(BeamSurface& one, const BeamSurface& two)
   one.other = two.triangle;
   one.area = one.area < 0.0 || two.area < 0.0 ? AreaUnknown : one.area + two.area;
   one.mostInverse = std::max(one.mostInverse, two.mostInverse);
+  one.sortInverse = std::max(one.sortInverse, two.sortInverse);
   one.leastInverse = std::min(one.leastInverse, two.leastInverse);
   return true;
 }

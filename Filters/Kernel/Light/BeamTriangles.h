@@ -7,7 +7,8 @@
  * of the half-planes of its edge functions (TriangleTest.h), and 1/z of its plane an affine
  * function, z the distance along the axis. Triangles are set up eight at a time, in SIMD lanes. Two
  * triangles with consecutive numbers that form a convex quadrilateral in one plane, but for the
- * rounding of scene coordinates, are one surface.
+ * rounding of scene coordinates, are one surface. Triangles that take the plane of another
+ * (CoincidentFaces.h) have its 1/z, and come in the order of their numbers.
  *
  * Source: Pineda, "A Parallel Algorithm for Polygon Rasterization", SIGGRAPH 1988, for half-planes.
  * Differs: the plane is across a beam's axis, and has the unit disc instead of pixels.
@@ -75,6 +76,7 @@ struct BeamSurface : PlaneSurface
   int count = 0;         ///< of `lines`
   PlaneLine lines[4];    ///< sides that meet the octagon; slope 1, positive inside
   double mostInverse;    ///< upper bound of 1/z in the octagon
+  double sortInverse;    ///< the same, for all surfaces that coincide that of their plane
   double area;           ///< in half-beamwidths squared; AreaUnknown if it crosses the rim
 };
 
@@ -85,7 +87,8 @@ public:
   /// @param most triangles that are set up; of a beam that more enter only the numbers are kept
   explicit BeamTriangles(
     const CollisionTree& tree, std::size_t most = std::numeric_limits<std::size_t>::max())
-    : Mesh(tree.mesh.get())
+    : Tree(&tree)
+    , Mesh(tree.mesh.get())
     , Most(most)
   {
   }
@@ -93,6 +96,7 @@ public:
   /// Go on to the triangles of another tree.
   void follow(const CollisionTree& tree)
   {
+    this->Tree = &tree;
     this->Mesh = tree.mesh.get();
     this->Joints.clear();
   }
@@ -123,6 +127,7 @@ private:
   std::uint8_t findJoint(std::uint32_t triangle) const;
   bool join(BeamSurface& one, const BeamSurface& two);
 
+  const CollisionTree* Tree;
   const TriangleMesh* Mesh;
   std::size_t Most;
   BeamFrame Frame;

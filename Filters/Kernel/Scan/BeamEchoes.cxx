@@ -167,7 +167,7 @@ void BeamEchoes::receive(
     return known.echo;
   };
   this->finish(
-    echoOf, this->Lighting.isBeyondGate(), this->Lighting.samples() != nullptr, echoes, report);
+    echoOf, this->Lighting.isOutsideGate(), this->Lighting.samples() != nullptr, echoes, report);
 }
 
 bool BeamEchoes::receiveAgain(
@@ -184,7 +184,7 @@ bool BeamEchoes::receiveAgain(
   {
     return false;
   }
-  this->finish([&](const Return& ret) { return this->find(known, ret)->echo; }, known.beyondGate,
+  this->finish([&](const Return& ret) { return this->find(known, ret)->echo; }, known.outsideGate,
     true, echoes, report);
   report.lost = known.lost;
   report.skipped = known.skipped;
@@ -192,11 +192,12 @@ bool BeamEchoes::receiveAgain(
 }
 
 /// Make the echoes of what was received. @param echoOf what follows from the light of a return
-/// @param beyondGate see BeamLighting::isBeyondGate(): direct echoes alone decide that, as whether
-/// paths over two reflections are traced depends on what is kept of the beam @param meets a surface
+/// @param outsideGate see BeamLighting::isOutsideGate(): direct echoes alone decide that, as
+/// whether paths over two reflections are traced depends on what is kept of the beam @param meets a
+/// surface
 template <class F>
 void BeamEchoes::finish(
-  F echoOf, bool beyondGate, bool meets, std::vector<Echo>& echoes, BeamReport& report)
+  F echoOf, bool outsideGate, bool meets, std::vector<Echo>& echoes, BeamReport& report)
 {
   const auto make = [&](const Return& ret)
   {
@@ -234,7 +235,7 @@ void BeamEchoes::finish(
   if (!strongest)
   {
     report.status = !meets ? BeamStatus::NoSurface
-      : beyondGate         ? BeamStatus::OutsideGate
+      : outsideGate        ? BeamStatus::OutsideGate
                            : BeamStatus::BelowLimit;
     return;
   }

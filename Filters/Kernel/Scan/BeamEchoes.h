@@ -134,7 +134,8 @@ public:
 
 private:
   template <class F>
-  void finish(F echoOf, bool beyondGate, bool meets, std::vector<Echo>& echoes, BeamReport& report);
+  void finish(
+    F echoOf, bool outsideGate, bool meets, std::vector<Echo>& echoes, BeamReport& report);
   Echo echoOfLight(const Return& ret);
   void addLeaves(const Return& ret, Echo& echo) const;
   LitBeam::KnownReturn unitsOf(const Return& ret) const;

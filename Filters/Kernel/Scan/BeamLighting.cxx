@@ -18,7 +18,8 @@ BeamLighting::BeamLighting(const ScanSetup& setup, const ScanBeams& beams, ScanB
   , Wanted(std::move(wanted))
   , Secondary(setup)
   , Quadrature(setup)
-  , Units(setup.sensor.samplingInterval, setup.sensor.pulseWidth, setup.sensor.rangeGate)
+  , Units(setup.sensor.samplingInterval, setup.sensor.pulseWidth, setup.sensor.rangeGate,
+      setup.sensor.minimumRange)
   , Air(setup.sensor, setup.settings.attenuationCoefficient, setup.media, setup.placedMedia,
       receiver.airLooked())
 {
@@ -287,6 +288,28 @@ double BeamLighting::errorOf(std::int64_t unit, std::uint32_t paths)
     return 0.0; // a false alarm: no sample has a share in it
   }
   const RangeShares shares = this->Units.sharesOf(unit, unit + 1);
+  const double ofSamples = this->errorOfSamples(shares, paths);
+  const double ofLobes = this->errorOfLobes(shares);
+  return ofLobes > 0.0 ? std::hypot(ofSamples, ofLobes) : ofSamples;
+}
+
+/// Error, J, of what came over mirrors into a unit, by the width of their lobes.
+double BeamLighting::errorOfLobes(const RangeShares& shares) const
+{
+  const std::size_t direct = this->Lit->size();
+  double sum = 0.0;
+  for (std::size_t s = 0; s < shares.count; ++s)
+  {
+    const std::size_t contribution = shares.contribution(s);
+    sum +=
+      contribution < direct ? 0.0 : shares.energies[s] * this->Paths[contribution - direct].unsure;
+  }
+  return sum;
+}
+
+/// Error, J, of what was put into a unit, by the choice of samples.
+double BeamLighting::errorOfSamples(const RangeShares& shares, std::uint32_t paths)
+{
   if (this->raysAreLit())
   {
     return this->errorOfRays(shares, paths >= this->Lit->rays && this->Lit->onOnePlane());
@@ -309,18 +332,29 @@ double BeamLighting::errorOf(std::int64_t unit, std::uint32_t paths)
 double BeamLighting::errorOfMirrors(const RangeShares& shares) const
 {
   const std::size_t direct = this->Lit->size();
+  const auto isMirror = [&](std::size_t s)
+  {
+    const std::size_t contribution = shares.contribution(s);
+    return contribution >= direct && this->Paths[contribution - direct].one == NoSample;
+  };
+  const auto sampleOf = [&](std::size_t s)
+  { return this->Paths[shares.contribution(s) - direct].two; };
   double variance = 0.0;
   std::uint32_t last = NoSample;
   double waiting = 0.0;
   for (std::size_t s = 0; s < shares.count; ++s)
   {
-    const std::size_t contribution = shares.contribution(s);
-    if (contribution < direct || this->Paths[contribution - direct].one != NoSample)
+    if (!isMirror(s))
     {
       continue;
     }
-    const std::uint32_t stratum = this->Paths[contribution - direct].two;
-    const double energy = shares.energies[s];
+    double energy = shares.energies[s];
+    // Light goes the path of a sample both ways.
+    for (; s + 1 < shares.count && isMirror(s + 1) && sampleOf(s + 1) == sampleOf(s); ++s)
+    {
+      energy += shares.energies[s + 1];
+    }
+    const std::uint32_t stratum = sampleOf(s) / 2;
     if (stratum == last)
     {
       variance -= waiting * waiting;
@@ -370,9 +404,10 @@ double BeamLighting::errorOfRays(const RangeShares& shares, bool filled)
   return error.estimate({ filled ? error.smallest() : 0.0, error.largest() });
 }
 
-bool BeamLighting::isBeyondGate() const
+bool BeamLighting::isOutsideGate() const
 {
-  return this->Units.units().empty() && this->Units.energyBeyondGate() > 0.0 &&
+  return this->Units.units().empty() &&
+    (this->Units.energyBeyondGate() > 0.0 || this->Units.energyBeforeGate() > 0.0) &&
     std::any_of(this->Energies.begin(), this->Energies.end(), [](double e) { return e > 0.0; });
 }
 }

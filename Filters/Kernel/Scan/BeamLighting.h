@@ -63,10 +63,11 @@ public:
   /// Standard error, J, of the energy in a range unit: of the rays (StandardError.h), or of the
   /// cells and of the rays from which paths start. The direct echo of an integrated beam has a
   /// bound of the error instead, to which the standard error of its paths is added.
+  /// The width of mirrors' lobes adds to it, where an aperture gathers their light.
   /// @param paths number of paths with a share in the unit
   double errorOf(std::int64_t unit, std::uint32_t paths);
-  /// True if a direct echo arrives beyond the gate, and nothing inside.
-  bool isBeyondGate() const;
+  /// True if a direct echo arrives outside the gate, and nothing inside.
+  bool isOutsideGate() const;
   /// The air along it.
   BeamAir& air() { return this->Air; }
   /// Radiance that the beam looks at, W/(m2 sr nm) (Background.h).
@@ -87,6 +88,8 @@ private:
   void dropFaintPaths();
   double passMedia(double sum);
   void fillUnits();
+  double errorOfSamples(const RangeShares& shares, std::uint32_t paths);
+  double errorOfLobes(const RangeShares& shares) const;
   double errorOfMirrors(const RangeShares& shares) const;
   double errorOfRays(const RangeShares& shares, bool filled);
 

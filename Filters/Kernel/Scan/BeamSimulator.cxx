@@ -51,7 +51,7 @@ void BeamSimulator::lightBeam(
     trace.lit->radiance = this->Lighting.radiance();
     trace.lit->open = this->Lighting.air().open();
     trace.lit->firstTaken = this->Lighting.air().firstTaken();
-    trace.lit->beyondGate = this->Lighting.isBeyondGate();
+    trace.lit->outsideGate = this->Lighting.isOutsideGate();
     trace.lit->lost = this->Lighting.lost();
     trace.lit->skipped = this->Lighting.skipped();
   }

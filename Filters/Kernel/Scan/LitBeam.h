@@ -41,7 +41,7 @@ struct LitBeam
   std::vector<double> open; ///< see BeamAir::open()
   std::int64_t firstTaken = 0;
   double radiance = 0.0;     ///< see BeamLighting::radiance()
-  bool beyondGate = false;   ///< see BeamLighting::isBeyondGate()
+  bool outsideGate = false;  ///< see BeamLighting::isOutsideGate()
   double lost = 0.0;         ///< J, see BeamReport
   std::uint32_t skipped = 0; ///< see BeamReport
 

@@ -114,7 +114,8 @@ MovedBeams::MovedBeams(const ScanSetup& setup, const ScanBeams& beams, BeamSampl
   , Wanted(std::move(wanted))
   , Sights(sights)
   , Scene(setup)
-  , Units(setup.sensor.samplingInterval, setup.sensor.pulseWidth, setup.sensor.rangeGate)
+  , Units(setup.sensor.samplingInterval, setup.sensor.pulseWidth, setup.sensor.rangeGate,
+      setup.sensor.minimumRange)
   , Trace(1)
 {
   this->One.ids.resize(1);

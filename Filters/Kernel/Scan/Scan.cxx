@@ -27,6 +27,7 @@ struct Block
   std::uint64_t beamsTraced = 0;
   std::uint64_t beamsTouched = 0;
   std::vector<MoverSight> sights;
+  std::vector<SeenPlane> planes;
 };
 
 /// What one thread works with.
@@ -188,11 +189,16 @@ private:
         worker.simulator.light(b, traces[b], block.echoes, report);
       }
       block.beamOfEcho.resize(block.echoes.size(), b);
+      if (!this->Setup.tree->planeOwners.empty())
+      {
+        addSeenPlanes(*this->Setup.tree, traces[b], b, block.planes);
+      }
       block.raysTraced += report.raysTracedNow;
       this->Progress.beamDone();
       this->lookUp(b, thread, raysSince);
       this->keep(traces[b]);
     }
+    sortSeenPlanes(block.planes);
   }
 
   /// Remove what is kept of a beam if it exceeds the memory.
@@ -236,6 +242,7 @@ private:
     {
       count += block.echoes.size();
     }
+    std::vector<SeenPlane> planes;
     this->Result.echoes.reserve(count);
     this->Result.beamOfEcho.reserve(count);
     for (const Block& block : this->Blocks)
@@ -243,10 +250,13 @@ private:
       append(block.echoes, this->Result.echoes);
       append(block.beamOfEcho, this->Result.beamOfEcho);
       append(block.sights, this->Result.sights);
+      append(block.planes, planes);
       this->Result.raysTraced += block.raysTraced;
       this->Result.beamsTraced += block.beamsTraced;
       this->Result.beamsTouched += block.beamsTouched;
     }
+    sortSeenPlanes(planes);
+    this->Result.coincident = findCoincidentObjects(this->Setup, this->Beams, planes);
   }
 
   const ScanSetup& Setup;

@@ -13,6 +13,7 @@
 #define avianlidar_Scan_h
 
 #include "BeamSimulator.h"
+#include "CoincidentObjects.h"
 #include "MovedBeams.h"
 #include "ParallelLoop.h"
 #include "TraceCache.h"
@@ -31,6 +32,7 @@ struct ScanResult
   std::uint64_t beamsTraced = 0;       ///< beams whose static surfaces were looked for in this run
   std::uint64_t beamsTouched = 0;      ///< beams that movers may touch, which are simulated anew
   std::vector<MoverSight> sights;      ///< in the order of beams, if they are asked for
+  std::vector<CoincidentPair> coincident; ///< see findCoincidentObjects()
 };
 
 /**

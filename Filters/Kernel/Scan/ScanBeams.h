@@ -63,7 +63,7 @@ enum class BeamStatus
   NoSurface = 1,
   BelowLimit = 2,
   Saturated = 3,
-  OutsideGate = 4 ///< direct echoes arrive, all of them beyond the gate
+  OutsideGate = 4 ///< direct echoes arrive, all of them outside the gate
 };
 
 /// How the direct echo of a beam is found.

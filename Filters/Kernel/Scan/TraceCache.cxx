@@ -146,7 +146,7 @@ std::uint64_t checksumOf(const ScanBeams& beams)
 std::uint64_t traceKey(const ScanSetup& setup)
 {
   // The others are energies, times and limits, or decide what is traced on from hits.
-  static_assert(memberCount<Sensor>() == 33 && memberCount<EchoSettings>() == 16,
+  static_assert(memberCount<Sensor>() == 34 && memberCount<EchoSettings>() == 16,
     "do a beam's rays depend on the new member? Then it belongs to the key");
   const Sensor& sensor = setup.sensor;
   const EchoSettings& s = setup.settings;

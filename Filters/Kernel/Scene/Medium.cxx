@@ -4,15 +4,39 @@
 #include "ValueError.h"
 #include "Vector.h"
 
+#include <boost/math/quadrature/gauss.hpp>
+#include <boost/math/special_functions/bessel.hpp>
+
 #include <cmath>
 
 namespace avianlidar
 {
-Medium rainOf(double rate, double backscatterRatio, double perVolume, double fall)
+double keptInView(const LidarView& view, double slope)
+{
+  using boost::math::cyl_bessel_j;
+  using boost::math::quadrature::gauss;
+  constexpr double largest = 30.0; // drops, over 1/slope
+  const double scale = Pi * view.halfAngle / (view.wavelength * slope);
+  const auto within = [](double x)
+  { return 1.0 - std::pow(cyl_bessel_j(0, x), 2) - std::pow(cyl_bessel_j(1, x), 2); };
+  const auto ofDrops = [&](double u)
+  {
+    return gauss<double, 30>::integrate(
+      [&](double t) { return 0.5 * t * t * std::exp(-t) * within(scale * t / u); }, 0.0, largest);
+  };
+  return gauss<double, 20>::integrate(ofDrops, 0.0, 1.0);
+}
+
+Medium rainOf(
+  double rate, double backscatterRatio, const LidarView& view, double perVolume, double fall)
 {
   const double lambda = fall * std::pow(rate, -0.21);                  // 1/mm
   const double squares = perVolume * 2.0 / (lambda * lambda * lambda); // mm^2/m^3, sum of D^2
-  return { 2.0 * 0.25 * Pi * squares * 1e-6, backscatterRatio, perVolume / lambda };
+  const double areas = 0.25 * Pi * squares * 1e-6;                     // 1/m
+  // Of twice the areas, without the share of one of them that stays in view. What comes back from
+  // drops is that of the whole.
+  const double lost = 2.0 - keptInView(view, 1e3 * lambda);
+  return { lost * areas, 0.5 * lost * backscatterRatio, perVolume / lambda };
 }
 
 std::string checkMedium(const Medium& medium)

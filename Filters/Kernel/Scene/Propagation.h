@@ -28,6 +28,9 @@ inline double transmission(double attenuation, double length)
   return attenuation > 0.0 ? std::exp(-attenuation * length) : 1.0;
 }
 
+/// Visibility of clear air, m, for which makers' ranges are taken to hold (assumed).
+constexpr double ClearVisibility = 23e3;
+
 /// Attenuation coefficient of haze, 1/m. @param visibility at 550 nm, m, above 0
 /// @param wavelength m
 inline double attenuationOfVisibility(double visibility, double wavelength)

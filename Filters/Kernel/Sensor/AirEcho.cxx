@@ -5,11 +5,9 @@
 #include "Random.h"
 #include "RangeUnits.h"
 
-#include <boost/math/special_functions/gamma.hpp>
-
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <limits>
 
 namespace avianlidar
 {
@@ -18,9 +16,52 @@ namespace
 constexpr std::uint64_t DrawsOfUnit = 256;
 }
 
+LidarView viewOf(const Sensor& sensor)
+{
+  return { SpeedOfLight / sensor.frequency,
+    2.0 * std::asin(std::min(1.0, std::sqrt(sensor.solidAngle() / (4.0 * Pi)))) };
+}
+
+PulseShares::PulseShares(double width)
+  : Width(width)
+  , Reach(static_cast<std::int64_t>(std::ceil(0.5 * width)))
+{
+  // With a share e in the next unit, e (1 - e) is its mean over drops anywhere: w/6.
+  const double part = std::min(1.0, width);
+  const double end = 0.5 * part * (1.0 - std::sqrt(1.0 - 2.0 * part / 3.0)) - 0.5 * width;
+  this->Place = end - std::floor(end);
+}
+
+void PulseShares::add(double energy, double place, double* units) const
+{
+  const double begin = place - 0.5 * this->Width + static_cast<double>(this->Reach);
+  const double end = begin + this->Width;
+  if (!(end > begin))
+  {
+    units[this->Reach] += energy;
+    return;
+  }
+  for (auto unit = static_cast<std::int64_t>(begin); unit <= 2 * this->Reach; ++unit)
+  {
+    const auto from = static_cast<double>(unit);
+    units[unit] +=
+      energy * std::max(0.0, std::min(end, from + 1.0) - std::max(begin, from)) / (end - begin);
+  }
+}
+
+SharedDrops::SharedDrops(const PulseShares& pulse)
+  : Reach(pulse.reach())
+{
+  const auto count = static_cast<std::size_t>(2 * this->Reach + 1);
+  this->Numbers.assign(count, -1);
+  this->Shares.assign(count * count, 0.0);
+}
+
 AirEcho::AirEcho(const Sensor& sensor, const std::vector<Medium>& media, double attenuation)
   : SolidAngle(sensor.solidAngle())
   , UnitLength(sensor.rangeUnitLength())
+  , Pulse(sensor.pulseWidth / sensor.samplingInterval)
+  , Nearest(sensor.minimumRange)
 {
   double all = 0.0;
   for (const Medium& medium : media)
@@ -44,24 +85,25 @@ AirEcho::AirEcho(const Sensor& sensor, const std::vector<Medium>& media, double 
     MostUnits, static_cast<double>(unitsInsideGate(sensor.samplingInterval, sensor.rangeGate)));
   for (double unit = 0.0; unit < count; unit += 1.0)
   {
-    const double energy = sensor.pulseEnergy * all *
-      airIntegral(
-        sensor, unit * this->UnitLength, (unit + 1.0) * this->UnitLength, 2.0 * attenuation, light);
-    if (!(energy > 0.0))
+    const double from = std::max(unit * this->UnitLength, this->Nearest);
+    const double to = (unit + 1.0) * this->UnitLength;
+    const double energy =
+      sensor.pulseEnergy * all * airIntegral(sensor, from, to, 2.0 * attenuation, light);
+    if (!(energy > 0.0) && from < to)
     {
       break;
     }
     this->Means.push_back(energy);
   }
-  this->Quiet.resize(this->Means.size(), 0.0);
 }
 
 /// Drops in a unit, on average.
 double AirEcho::dropsIn(std::int64_t unit) const
 {
-  const double r = this->UnitLength * static_cast<double>(unit);
-  const double volume = this->SolidAngle * this->UnitLength *
-    (r * r + r * this->UnitLength + this->UnitLength * this->UnitLength / 3.0);
+  const double begin = this->UnitLength * static_cast<double>(unit);
+  const double r = std::max(begin, this->Nearest);
+  const double length = this->UnitLength - (r - begin);
+  const double volume = this->SolidAngle * length * (r * r + r * length + length * length / 3.0);
   return this->Drops * volume;
 }
 
@@ -71,72 +113,84 @@ double AirEcho::variance(std::int64_t unit) const
   return mean > 0.0 ? mean * mean * SquareOfDrops / this->dropsIn(unit) : 0.0;
 }
 
-void AirEcho::setLeast(std::int64_t unit, double least)
+void AirEcho::addBeyondMean(std::int32_t seed, std::uint64_t beam, std::int64_t unit,
+  std::int32_t revolution, double open, double* units) const
 {
-  const double mean = this->OfDrops * this->mean(unit);
-  const double shape = this->dropsIn(unit) / SquareOfDrops;
-  this->Quiet[static_cast<std::size_t>(unit)] =
-    mean > 0.0 && least > -mean ? 1.0 - gammaTail(shape, shape * (1.0 + least / mean)) : 0.0;
-}
-
-double AirEcho::beyondMean(std::int32_t seed, std::uint64_t beam, std::int64_t unit,
-  std::int32_t revolution, bool all, double open) const
-{
-  const double mean = open * this->OfDrops * this->mean(unit);
-  const double drops = open * this->dropsIn(unit);
-  if (!(mean > 0.0))
-  {
-    return 0.0;
-  }
-  const auto number = static_cast<std::uint64_t>(unit);
-  if (!all && open == 1.0 && drops > FewDrops &&
-    uniformPair(seed, beam, DrawsOfUnit * number, RandomPurpose::Drops, revolution)[0] <
-      this->Quiet[static_cast<std::size_t>(unit)])
-  {
-    return -std::numeric_limits<double>::infinity();
-  }
-  return mean * dropsBeyondMean(seed, beam, number, revolution, drops, Medium{});
+  addDropsBeyondMean(seed, beam, static_cast<std::uint64_t>(unit), revolution,
+    open * this->OfDrops * this->mean(unit), open * this->dropsIn(unit), Medium{}, this->Pulse,
+    units);
 }
 
 namespace
 {
-/// The drops of one scan.
-double drawnDrops(std::int32_t seed, std::uint64_t beam, std::uint64_t number,
-  std::int32_t revolution, double drops, double square)
+/// A gamma variate of mean 1, less 1, and a uniform number that is independent of it: G. Marsaglia
+/// and W. W. Tsang, ACM Trans. Math. Softw. 26, 2000. @param shape 1 or more @param draw pairs of
+/// uniform numbers
+template <class F>
+std::array<double, 2> gammaBeyondMean(double shape, F draw)
 {
+  const double d = shape - 1.0 / 3.0;
+  const double c = 1.0 / std::sqrt(9.0 * d);
+  for (std::uint64_t k = 0;; k += 2)
+  {
+    const auto [radius, angle] = draw(k);
+    const auto [u, other] = draw(k + 1);
+    const double x = std::sqrt(-2.0 * std::log(radius)) * std::cos(2.0 * Pi * angle);
+    const double v = std::pow(std::max(0.0, 1.0 + c * x), 3);
+    if (v > 0.0 && std::log(u) < 0.5 * x * x + d * (1.0 - v + std::log(v)))
+    {
+      return { d * v / shape - 1.0, other };
+    }
+  }
+}
+
+/// Add the drops of one scan.
+void addDrops(std::int32_t seed, std::uint64_t beam, std::uint64_t number, std::int32_t revolution,
+  double mean, double drops, double square, const PulseShares& pulse, double* units)
+{
+  if (!(mean > 0.0 && drops > 0.0))
+  {
+    return;
+  }
   const std::uint64_t first = DrawsOfUnit * number;
-  const auto u = uniformPair(seed, beam, first, RandomPurpose::Drops, revolution);
+  const auto draw = [&](std::uint64_t k)
+  { return uniformPair(seed, beam, first + k, RandomPurpose::Drops, revolution); };
+  const double place = pulse.placeOfMany();
   if (drops > AirEcho::FewDrops)
   {
-    // Shape a, scale 1/a of the mean.
     const double shape = drops / square;
-    return boost::math::gamma_p_inv(shape, u[0]) / shape - 1.0;
+    const auto [beyond, where] = gammaBeyondMean(shape, draw);
+    pulse.add(mean * beyond, where < 0.5 ? place : 1.0 - place, units);
+    return;
   }
+  pulse.add(-0.5 * mean, place, units);
+  pulse.add(-0.5 * mean, 1.0 - place, units);
+  const double u = draw(0)[0];
   const auto count = static_cast<std::uint64_t>(
-    std::min<double>(DrawsOfUnit - 1, poissonQuantile(drops, u[0], 1.0 - u[0])));
-  double squares = 0.0; // of diameters, or of cosines, over their mean
+    std::min<double>(DrawsOfUnit - 1, poissonQuantile(drops, u, 1.0 - u)));
   for (std::uint64_t k = 1; k <= count; ++k)
   {
-    const double uniform = uniformPair(seed, beam, first + k, RandomPurpose::Drops, revolution)[0];
-    const double d = std::log(uniform);
-    squares += square == SquareOfLeaves ? 3.0 * uniform * uniform : 0.5 * d * d;
+    const auto [size, at] = draw(k);
+    const double d = std::log(size);
+    // The square of a diameter, or of a cosine, over its mean.
+    const double light = square == SquareOfLeaves ? 3.0 * size * size : 0.5 * d * d;
+    pulse.add(mean * light / drops, at, units);
   }
-  return squares / drops - 1.0;
 }
 }
 
-double dropsBeyondMean(std::int32_t seed, std::uint64_t beam, std::uint64_t number,
-  std::int32_t revolution, double drops, const Medium& medium)
+void addDropsBeyondMean(std::int32_t seed, std::uint64_t beam, std::uint64_t number,
+  std::int32_t revolution, double mean, double drops, const Medium& medium,
+  const PulseShares& pulse, double* units)
 {
-  const auto draw = [&](std::int32_t scan, double share)
+  const auto add = [&](std::int32_t scan, double share)
   {
-    return share > 0.0 && drops > 0.0
-      ? share * drawnDrops(seed, beam, number, scan, share * drops, medium.squareOfDrops)
-      : 0.0;
+    addDrops(
+      seed, beam, number, scan, share * mean, share * drops, medium.squareOfDrops, pulse, units);
   };
   // Those that stay are the same in every scan.
   constexpr std::int32_t always = -1;
-  const double renewed = draw(revolution, medium.renewed);
-  return medium.renewed < 1.0 ? renewed + draw(always, 1.0 - medium.renewed) : renewed;
+  add(revolution, medium.renewed);
+  add(always, 1.0 - medium.renewed);
 }
 }

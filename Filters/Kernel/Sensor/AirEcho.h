@@ -6,13 +6,19 @@
  * Media that fill the scene return, in the unit from R1 to R2, E sum(mu/S) times the integral over
  * R of O(R) min(A/R^2, 2 pi) exp(-2 mu_all R): A the aperture, O what reaches the detector of the
  * near range, mu_all the extinction of all air. Drops are a Poisson number in the unit's part of
- * the beam's cone, and the energy of each is exponential in its diameter (Medium.h): up to FewDrops
- * are drawn one by one, more are a gamma distribution of the same mean and variance.
+ * the beam's cone, and the energy of each is the square of an exponential diameter (Medium.h): up
+ * to FewDrops are drawn one by one, more are a gamma distribution of the same mean and variance.
+ *
+ * A drop shares its pulse with the units that the pulse overlaps, as surfaces do (RangeUnits.h), so
+ * drops vary less in a unit, and neighbouring units vary together. Each of few drops has a place of
+ * its own in its unit. Many vary as if all were at one of two places, either equally likely, which
+ * are chosen such that variances, covariances and third moments of units are those of drops
+ * anywhere (of pulses no wider than a unit, or of whole units). The mean is that of a short pulse.
  *
  * Source: the lidar equation, single scattering, e.g. U. Wandinger, in: Lidar, Springer, 2005.
  * Differs: the paper's air sends nothing back.
- * Valid: the pulse is short against the unit; the beam is evenly lit as far as drops are concerned.
- * Integrals are right to 1e-6. Units beyond a million are without air.
+ * Valid: the mean changes little within a pulse, as beyond the first few units; the beam is evenly
+ * lit as far as drops are concerned. Integrals are right to 1e-6. Units beyond a million are empty.
  * Test: TestAirEcho.cxx, TestWeather.py.
  */
 #ifndef avianlidar_AirEcho_h
@@ -59,11 +65,77 @@ double airIntegral(
   return sum;
 }
 
-/// What drops or leaves return beyond their mean, over that: a compound Poisson law. @param drops
-/// on average @param number of the unit, or one that no other has @param medium whose squareOfDrops
-/// and `renewed` count
-double dropsBeyondMean(std::int32_t seed, std::uint64_t beam, std::uint64_t number,
-  std::int32_t revolution, double drops, const Medium& medium);
+/// What a sensor sees of light that drops turn. A beam that is not round has the half angle of a
+/// round one of its solid angle.
+LidarView viewOf(const Sensor& sensor);
+
+/// How the pulse of a drop is divided among range units.
+class PulseShares
+{
+public:
+  /// @param width tau_e/tau_s, 0 to 1000
+  explicit PulseShares(double width = 0.0);
+
+  /// Units that a pulse reaches before and behind its own.
+  std::int64_t reach() const { return this->Reach; }
+
+  /// Add the energy of a pulse to 2 reach() + 1 units, its own in the middle. @param place in its
+  /// own unit, 0 to 1
+  void add(double energy, double place, double* units) const;
+
+  /// One of the two places of many drops, in [0, 1]; the other is as far from the other end.
+  double placeOfMany() const { return this->Place; }
+
+private:
+  double Width;
+  std::int64_t Reach;
+  double Place;
+};
+
+/// Add what the drops of a unit return beyond their mean to 2 reach() + 1 units: a compound Poisson
+/// law. @param mean J @param drops on average @param number of the unit, or one that no other has
+/// @param medium whose squareOfDrops and `renewed` count
+void addDropsBeyondMean(std::int32_t seed, std::uint64_t beam, std::uint64_t number,
+  std::int32_t revolution, double mean, double drops, const Medium& medium,
+  const PulseShares& pulse, double* units);
+
+/// What all drops of a beam return beyond their mean in each unit. Units are drawn once, if they
+/// are asked for in order. One per thread.
+class SharedDrops
+{
+public:
+  explicit SharedDrops(const PulseShares& pulse);
+
+  /// Begin a beam.
+  void clear() { this->Numbers.assign(this->Numbers.size(), -1); }
+
+  /// J. @param draw called with a unit and a pointer to its 2 reach() + 1 sums, which are 0
+  template <class F>
+  double in(std::int64_t unit, F draw)
+  {
+    double sum = 0.0;
+    const std::int64_t reach = this->Reach;
+    const std::int64_t count = 2 * reach + 1;
+    for (std::int64_t of = std::max<std::int64_t>(0, unit - reach); of <= unit + reach; ++of)
+    {
+      double* const shares = this->Shares.data() + (of % count) * count;
+      std::int64_t& number = this->Numbers[static_cast<std::size_t>(of % count)];
+      if (number != of)
+      {
+        number = of;
+        std::fill_n(shares, count, 0.0);
+        draw(of, shares);
+      }
+      sum += shares[unit - of + reach];
+    }
+    return sum;
+  }
+
+private:
+  std::int64_t Reach;
+  std::vector<std::int64_t> Numbers; ///< of the units whose drops are known
+  std::vector<double> Shares;        ///< J, of each in 2 Reach + 1 units
+};
 
 class AirEcho
 {
@@ -86,17 +158,17 @@ public:
     return unit >= 0 && unit < this->units() ? this->Means[static_cast<std::size_t>(unit)] : 0.0;
   }
 
-  /// Variance of a unit's energy by its drops, J^2.
+  /// Variance by the drops of a unit, J^2, wherever their pulses arrive.
   double variance(std::int64_t unit) const;
 
-  /// Note from where on drops may matter. @param least J beyond the mean of the unit
-  void setLeast(std::int64_t unit, double least);
+  /// How the pulse of a drop is divided among units.
+  const PulseShares& pulse() const { return this->Pulse; }
 
-  /// What the drops of a unit return beyond their mean, J: the same for the same numbers. @param
-  /// all false: negative infinity may stand for less than what setLeast() was told @param open
-  /// share of the pulse that no nearer surface has met
-  double beyondMean(std::int32_t seed, std::uint64_t beam, std::int64_t unit,
-    std::int32_t revolution, bool all, double open = 1.0) const;
+  /// Add what the drops of a unit return beyond their mean, J, to the units that their pulses
+  /// reach: the same for the same numbers. @param open share of the pulse that no nearer surface
+  /// has met
+  void addBeyondMean(std::int32_t seed, std::uint64_t beam, std::int64_t unit,
+    std::int32_t revolution, double open, double* units) const;
 
   /// Up to so many drops in a unit, on average, are drawn one by one.
   static constexpr double FewDrops = 40.0;
@@ -105,11 +177,12 @@ public:
 
 private:
   std::vector<double> Means; ///< of units, J
-  std::vector<double> Quiet; ///< probabilities that drops do not matter
   double OfDrops = 0.0;      ///< share of the means that drops return
   double Drops = 0.0;        ///< 1/m^3
   double SolidAngle = 0.0;   ///< sr
   double UnitLength = 0.0;   ///< m
+  PulseShares Pulse;
+  double Nearest = 0.0;      ///< m, at which the gate begins
   double dropsIn(std::int64_t unit) const;
 };
 }

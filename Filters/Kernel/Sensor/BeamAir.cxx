@@ -286,11 +286,15 @@ void BeamAir::chooseLooked()
     }
     backscatter += medium.backscatter();
   };
+  const PulseShares pulse(this->Instrument.pulseWidth / this->Instrument.samplingInterval);
   for (const Part& part : this->Parts)
   {
-    look(this->mediumOf(part),
-      static_cast<std::int64_t>(std::floor(part.crossing.begin / this->UnitLength)),
-      static_cast<std::int64_t>(std::floor(part.crossing.end / this->UnitLength)) + 1);
+    // Pulses of drops reach beyond.
+    const std::int64_t reach = this->mediumOf(part).isFollowed ? pulse.reach() : 0;
+    const auto unitOf = [&](double range)
+    { return static_cast<std::int64_t>(std::floor(range / this->UnitLength)); };
+    look(this->mediumOf(part), std::max<std::int64_t>(0, unitOf(part.crossing.begin) - reach),
+      unitOf(part.crossing.end) + 1 + reach);
   }
   for (const Medium& medium : this->Everywhere)
   {
@@ -647,6 +651,10 @@ const std::vector<BeamAir::Share>& BeamAir::sharesOf(std::int64_t unit)
   }
   const double from = this->UnitLength * static_cast<double>(unit);
   const double to = from + this->UnitLength;
+  if (!(this->Instrument.minimumRange < to))
+  {
+    return this->Shares;
+  }
   this->takeUpTo(0.5 * (from + to));
   for (std::size_t column = 0; column < this->Columns.size(); ++column)
   {
@@ -654,12 +662,12 @@ const std::vector<BeamAir::Share>& BeamAir::sharesOf(std::int64_t unit)
     {
       continue;
     }
-    this->Breaks.assign({ from, to });
+    this->Breaks.assign({ std::max(from, this->Instrument.minimumRange), to });
     for (std::size_t p = column > 0 ? this->Ends[column - 1] : 0; p < this->Ends[column]; ++p)
     {
       for (const double border : { this->Parts[p].crossing.begin, this->Parts[p].crossing.end })
       {
-        if (border > from && border < to)
+        if (border > this->Breaks[0] && border < to)
         {
           this->Breaks.push_back(border);
         }

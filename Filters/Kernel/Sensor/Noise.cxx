@@ -194,7 +194,8 @@ void planGaussian(const Sensor& sensor, NoisePlan& plan)
   const double k = sensor.lowerEnergyLimit / std::sqrt(plan.darkVariance);
   plan.alarmProbability = 0.5 * std::erfc(k / Root2);
   plan.quietProbability = 0.5 * std::erfc(-k / Root2);
-  plan.falseAlarmsPerBeam = plan.alarmProbability * static_cast<double>(plan.gateUnits);
+  plan.falseAlarmsPerBeam =
+    plan.alarmProbability * static_cast<double>(plan.gateUnits - plan.firstUnit);
   plan.faintLight = leastLight(sensor.lowerEnergyLimit, plan.darkVariance, plan.varianceOfEnergy);
 }
 }
@@ -212,6 +213,7 @@ NoisePlan planNoise(const Sensor& sensor, bool enabled, bool inFull)
 {
   NoisePlan plan;
   plan.gateUnits = unitsInsideGate(sensor.samplingInterval, sensor.rangeGate);
+  plan.firstUnit = firstUnitInsideGate(sensor.samplingInterval, sensor.minimumRange);
   plan.photonEnergy = sensor.photonEnergy();
   plan.ofRanges = enabled;
   if (sensor.receiverModel == ReceiverModel::Photons)
@@ -240,7 +242,8 @@ NoisePlan planNoise(const Sensor& sensor, bool enabled, bool inFull)
     plan.alarmPhotons = countWithin(sensor.lowerEnergyLimit, plan.photonEnergy);
     plan.alarmProbability = poissonTail(plan.meanPhotons, plan.alarmPhotons);
     plan.quietProbability = poissonCdf(plan.meanPhotons, plan.alarmPhotons);
-    plan.falseAlarmsPerBeam = plan.alarmProbability * static_cast<double>(plan.gateUnits);
+    plan.falseAlarmsPerBeam =
+      plan.alarmProbability * static_cast<double>(plan.gateUnits - plan.firstUnit);
   }
   return plan;
 }
@@ -288,7 +291,7 @@ void BeamNoise::begin(
   // ln(1 - p) from the smaller of the two.
   const double logQuiet = plan.alarmProbability > 0.5 ? std::log(plan.quietProbability)
                                                       : std::log1p(-plan.alarmProbability);
-  this->forEachInGaps(logQuiet, 0, plan.gateUnits, RandomPurpose::FalseAlarms,
+  this->forEachInGaps(logQuiet, plan.firstUnit, plan.gateUnits, RandomPurpose::FalseAlarms,
     [&](std::int64_t unit) { this->Alarms.push_back(unit); });
 }
 
@@ -365,7 +368,7 @@ double BeamNoise::place(std::int64_t unit) const
 double BeamNoise::energy(std::int64_t unit, double light)
 {
   const NoisePlan& plan = this->Plan;
-  if (!plan.active || unit < 0 || unit >= plan.gateUnits)
+  if (!plan.active || unit < plan.firstUnit || unit >= plan.gateUnits)
   {
     return 0.0;
   }

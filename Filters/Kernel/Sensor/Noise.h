@@ -4,11 +4,11 @@
  * @brief Noise of the receiver in every range unit: a Poisson number of photons, or the Gaussian
  * noise of a photon receiver.
  *
- * Q_n[m] = b[m] h nu with b[m] ~ Poisson(b tau_s), independent over range units, for 0 <= m <
- * units inside the gate; with a photon receiver Q_n[m] = z[m] sqrt(sigma0^2 + F n) h nu/eta with
- * z[m] ~ N(0, 1), n the electrons of the unit (PhotonReceiver.h). b[m] and z[m] are pure functions
- * of (seed, beam, m, revolution), whether or not the unit holds an echo, and so is the place in its
- * unit where noise alone lies, which is uniform. For b[m] and z[m]:
+ * Q_n[m] = b[m] h nu with b[m] ~ Poisson(b tau_s), independent over range units m inside the gate;
+ * with a photon receiver Q_n[m] = z[m] sqrt(sigma0^2 + F n) h nu/eta with z[m] ~ N(0, 1), n the
+ * electrons of the unit (PhotonReceiver.h). b[m] and z[m] are pure functions of (seed, beam, m,
+ * revolution), whether or not the unit holds an echo, and so is the place in its unit where noise
+ * alone lies, which is uniform. For b[m] and z[m]:
  *
  * 1. The units whose noise alone exceeds Qlow (false alarms) are drawn by geometric gaps. That
  *    costs as many draws as there are alarms, not one for each of the thousands of empty units.
@@ -47,6 +47,7 @@ struct NoisePlan
   double meanPhotons = 0.0;  ///< b tau_s, in one unit
   double photonEnergy = 0.0; ///< J
   std::int64_t gateUnits = 0;
+  std::int64_t firstUnit = 0; ///< in which the gate begins
   /// K, the largest number of photons that alone is not perceived: K h nu <= Qlow < (K+1) h nu.
   double alarmPhotons = 0.0;
   bool gaussian = false; ///< of a photon receiver; otherwise photons are counted

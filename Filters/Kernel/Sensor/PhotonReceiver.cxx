@@ -125,7 +125,9 @@ double thresholdFactor(double falseAlarms, double units)
 
 double rangeUnitsOf(const Sensor& sensor, double beams)
 {
-  return beams * static_cast<double>(unitsInsideGate(sensor.samplingInterval, sensor.rangeGate));
+  return beams *
+    static_cast<double>(unitsInsideGate(sensor.samplingInterval, sensor.rangeGate) -
+      firstUnitInsideGate(sensor.samplingInterval, sensor.minimumRange));
 }
 
 std::string checkPhotonLimits(double falseAlarms, double dynamicRange)

@@ -47,10 +47,10 @@ double RangeErrors::measured(double range, double energy, double normal) const
   {
     range += this->deviation(energy) * normal;
   }
-  // Nothing is recorded before the pulse or beyond the gate; what lay at either would pile up
-  // there.
-  range = std::abs(range);
-  range = range > sensor.rangeGate ? std::max(0.0, 2.0 * sensor.rangeGate - range) : range;
+  // Nothing is recorded before or beyond the gate; what lay at either would pile up there.
+  const double begin = sensor.minimumRange;
+  range = begin + std::abs(range - begin);
+  range = range > sensor.rangeGate ? std::max(begin, 2.0 * sensor.rangeGate - range) : range;
   if (sensor.rangeQuantum > 0.0)
   {
     range = sensor.rangeQuantum * std::round(range / sensor.rangeQuantum);

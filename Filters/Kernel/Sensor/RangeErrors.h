@@ -10,7 +10,7 @@
  * average; one deviation less, as the strongest of some units is strong by its noise, too. S tends
  * to twice the ratio m/sqrt(sigma0^2 + F m) of strong light and grows no more beyond Qhigh. Only a
  * photon receiver has S. Echoes that exceed the limit by little come late by w Qlow/Q (walk), w the
- * walk at the limit. Ranges below 0 or beyond the gate are folded back. Last, ranges are rounded to
+ * walk at the limit. Ranges before or beyond the gate are folded back. Last, ranges are rounded to
  * multiples of a quantum. False alarms have the same errors as echoes. Returns stay in the order of
  * their true ranges.
  *

@@ -151,11 +151,18 @@ std::int64_t unitsInsideGate(double samplingInterval, double rangeGate)
   return static_cast<std::int64_t>(std::clamp(units, 1.0, MaximumGateUnits));
 }
 
+std::int64_t firstUnitInsideGate(double samplingInterval, double minimumRange)
+{
+  return static_cast<std::int64_t>(
+    std::min(MaximumGateUnits, std::floor(2.0 * minimumRange / (SpeedOfLight * samplingInterval))));
+}
+
 RangeUnitAccumulator::RangeUnitAccumulator(
-  double samplingInterval, double pulseWidth, double rangeGate)
+  double samplingInterval, double pulseWidth, double rangeGate, double minimumRange)
   : UnitPathLength(SpeedOfLight * samplingInterval)
   , RelativeWidth(pulseWidth / samplingInterval)
   , GateUnits(unitsInsideGate(samplingInterval, rangeGate))
+  , LeastLength(2.0 * minimumRange)
 {
 }
 
@@ -163,6 +170,7 @@ void RangeUnitAccumulator::clear()
 {
   this->Lengths.clear();
   this->Energies.clear();
+  this->EnergyBeforeGate = 0.0;
   this->clearUnits();
 }
 
@@ -175,21 +183,30 @@ void RangeUnitAccumulator::clearUnits()
   this->ByFirst.clear();
 }
 
+/// The energy of a path, or 0 if it arrives before the gate.
+double RangeUnitAccumulator::recorded(double length, double energy)
+{
+  const bool isEarly = length < this->LeastLength;
+  this->EnergyBeforeGate += isEarly ? energy : 0.0;
+  return isEarly ? 0.0 : energy;
+}
+
 void RangeUnitAccumulator::add(const Contribution& contribution)
 {
   this->Lengths.push_back(contribution.pathLength);
-  this->Energies.push_back(contribution.energy);
+  this->Energies.push_back(this->recorded(contribution.pathLength, contribution.energy));
 }
 
 void RangeUnitAccumulator::add(const double* ranges, const double* energies, std::size_t count)
 {
   const std::size_t before = this->Lengths.size();
   this->Lengths.resize(before + count);
+  this->Energies.resize(before + count);
   for (std::size_t i = 0; i < count; ++i)
   {
     this->Lengths[before + i] = 2.0 * ranges[i];
+    this->Energies[before + i] = this->recorded(2.0 * ranges[i], energies[i]);
   }
-  this->Energies.insert(this->Energies.end(), energies, energies + count);
 }
 
 double RangeUnitAccumulator::lastUnitOf(double range) const

@@ -6,7 +6,8 @@
  * A path of length l arrives after tau = l/c. Its energy arrives as a rectangular pulse of width
  * tau_e centred on tau and is divided, exactly and in proportion, among the units m, [m tau_s,
  * (m+1) tau_s), that it overlaps; tau_e = 0 is a delta at tau. What would arrive before the pulse
- * is sent, closer than c tau_e/4, is counted in unit 0.
+ * is sent, closer than c tau_e/4, is counted in unit 0. A path shorter than twice the minimum range
+ * is not recorded.
  *
  * Units are sparse: memory follows contributions and the units that they meet, at most (1 +
  * tau_e/tau_s) each, not the range. Sums run in the order in which contributions were given.
@@ -68,7 +69,9 @@ class RangeUnitAccumulator
 public:
   /// @param samplingInterval tau_s, s, > 0 @param pulseWidth tau_e, s, in [0, 1000 tau_s]
   /// @param rangeGate m, > 0: units that begin at or beyond it are dropped (see gateUnits())
-  RangeUnitAccumulator(double samplingInterval, double pulseWidth, double rangeGate);
+  /// @param minimumRange m: nearer contributions are dropped
+  RangeUnitAccumulator(
+    double samplingInterval, double pulseWidth, double rangeGate, double minimumRange = 0.0);
 
   /// Forget the previous beam.
   void clear();
@@ -95,6 +98,9 @@ public:
   /// Energy that arrived beyond the gate, J.
   double energyBeyondGate() const { return this->EnergyBeyondGate; }
 
+  /// Energy that arrived before the gate, J.
+  double energyBeforeGate() const { return this->EnergyBeforeGate; }
+
   /// Units inside the gate: 0 <= m < gateUnits().
   std::int64_t gateUnits() const { return this->GateUnits; }
 
@@ -120,6 +126,7 @@ private:
   void takeCells(std::int64_t lowest, std::uint32_t window);
   void accumulateWide(double lowest);
   void sumBeyondGate();
+  double recorded(double length, double energy);
   double addToTable(double from, double to, std::size_t& next);
   void sortByFirst();
   void findShares(double from, double to);
@@ -128,6 +135,8 @@ private:
   double UnitPathLength; // c tau_s: twice a unit's length in range
   double RelativeWidth;  // tau_e/tau_s
   std::int64_t GateUnits;
+  double LeastLength; // m
+  double EnergyBeforeGate = 0.0;
   double EnergyBeyondGate = 0.0;
 
   // Contributions, in lanes.
@@ -160,6 +169,9 @@ private:
 
 /// Number of range units whose beginning lies inside the gate: ceil(2 gate/(c tau_s)), at least 1.
 std::int64_t unitsInsideGate(double samplingInterval, double rangeGate);
+
+/// The unit in which the gate begins, floor(2 minimum/(c tau_s)): those before it receive nothing.
+std::int64_t firstUnitInsideGate(double samplingInterval, double minimumRange);
 }
 
 #endif

@@ -34,6 +34,7 @@ BeamReceiver::BeamReceiver(const Sensor& sensor, const NoisePlan& noise, std::in
   , Air(std::move(air))
   , FollowsAir(sensor.followsAir())
   , Photons(sensor)
+  , Drops(this->Air.pulse())
   , Seed(seed)
   , Revolution(revolution)
   , Mode(mode)
@@ -59,13 +60,6 @@ void BeamReceiver::planAir()
       this->AirLooked = unit + 1;
     }
   }
-  for (std::int64_t unit = 0; unit < this->AirLooked && this->Plan.gaussian; ++unit)
-  {
-    const double mean = this->Air.mean(unit);
-    const double variance = this->Plan.darkVariance + this->Plan.varianceOfEnergy * mean;
-    const double limit = this->FollowsAir ? this->lowerIn(mean) : this->Lower - mean;
-    this->Air.setLeast(unit, leastLight(limit, variance, this->Plan.varianceOfEnergy));
-  }
 }
 
 /// The lower limit of a unit, J. @param air mean of what the air sends back, J
@@ -87,6 +81,7 @@ void BeamReceiver::receive(
   this->Noise.begin(this->Plan, this->Seed, beam, this->Revolution);
   this->Beam = beam;
   this->Gaps.clear();
+  this->Drops.clear();
   if (this->Plan.active && along && along->isLocal())
   {
     this->Gaps.begin(*along, this->Instrument.solidAngle(), this->Seed, beam, this->Revolution);
@@ -160,18 +155,64 @@ double BeamReceiver::followedNow(std::int64_t unit)
   return this->Along ? this->followedIn(*this->Along, unit) : this->Air.mean(unit);
 }
 
-/// What media that do not fill the scene, and what is with them, return in a unit. @param beyond
-/// the mean, J, of those that a threshold follows @param received gets the light of the others
-void BeamReceiver::drawLocal(std::int64_t unit, double& beyond, ReceivedUnit& received)
+/// What drops return in a unit beyond their mean, J.
+double BeamReceiver::fromDrops(std::int64_t unit)
+{
+  const bool isLocal = this->Along && this->Along->isLocal();
+  return this->Drops.in(unit,
+    [&](std::int64_t of, double* units)
+    {
+      if (isLocal)
+      {
+        this->drawLocalDrops(of, units);
+      }
+      else if (of < this->AirLooked)
+      {
+        const double open = this->Along ? this->Along->open(of) : 1.0;
+        this->Air.addBeyondMean(this->Seed, this->Beam, of, this->Revolution, open, units);
+      }
+    });
+}
+
+/// Variance of the noise of a unit with what media return there, J^2.
+double BeamReceiver::varianceWith(const std::vector<BeamAir::Share>& shares) const
 {
   double all = 0.0;
-  const std::vector<BeamAir::Share>& shares = this->Along->sharesOf(unit);
   for (const BeamAir::Share& share : shares)
   {
     all += share.mean;
   }
+  return this->Plan.darkVariance + this->Plan.varianceOfEnergy * all;
+}
+
+/// Add what drops of media that do not fill the scene, and of what is with them, return beyond
+/// their mean, to the units that they reach.
+void BeamReceiver::drawLocalDrops(std::int64_t unit, double* units)
+{
+  const std::vector<BeamAir::Share>& shares = this->Along->sharesOf(unit);
+  const double variance = this->varianceWith(shares);
+  for (const BeamAir::Share& share : shares)
+  {
+    const Medium& medium = this->Along->mediumAt(share.medium);
+    const double ofDrops = share.mean * share.mean * medium.squareOfDrops;
+    if (medium.isFollowed && ofDrops > DropsCount * variance * share.drops)
+    {
+      const auto number = static_cast<std::uint64_t>(unit) +
+        static_cast<std::uint64_t>(AirEcho::MostUnits) * share.medium;
+      addDropsBeyondMean(this->Seed, this->Beam, number, this->Revolution,
+        this->openAt(unit) * share.mean, share.drops, medium, this->Air.pulse(), units);
+    }
+  }
+}
+
+/// What media that do not fill the scene, and what is with them, return in a unit. @param beyond
+/// the mean, J, of those that a threshold follows @param received gets the light of the others
+void BeamReceiver::drawLocal(std::int64_t unit, double& beyond, ReceivedUnit& received)
+{
+  const std::vector<BeamAir::Share>& shares = this->Along->sharesOf(unit);
   const double from = static_cast<double>(unit) * this->UnitLength;
-  const double variance = this->Plan.darkVariance + this->Plan.varianceOfEnergy * all;
+  const double open = this->openAt(unit);
+  const double variance = this->varianceWith(shares);
   double most = 0.0;
   for (const BeamAir::Share& share : shares)
   {
@@ -181,16 +222,15 @@ void BeamReceiver::drawLocal(std::int64_t unit, double& beyond, ReceivedUnit& re
     const bool isLeaves = medium.sharesGaps && this->Gaps.any();
     double energy = isLeaves
       ? this->Gaps.returnedBetween(from, from + this->UnitLength, share.medium)
-      : share.mean * this->openAt(unit);
-    if (!isLeaves && this->Plan.active && ofDrops > DropsCount * variance)
+      : open * share.mean;
+    if (!isLeaves && this->Plan.active && !medium.isFollowed && ofDrops > DropsCount * variance)
     {
       const auto number = static_cast<std::uint64_t>(unit) +
         static_cast<std::uint64_t>(AirEcho::MostUnits) * share.medium;
-      energy = std::max(0.0,
-        energy *
-          (1.0 +
-            dropsBeyondMean(
-              this->Seed, this->Beam, number, this->Revolution, share.drops, medium)));
+      double leaves = energy;
+      addDropsBeyondMean(this->Seed, this->Beam, number, this->Revolution, energy, share.drops,
+        medium, PulseShares(), &leaves);
+      energy = std::max(0.0, leaves);
     }
     if (medium.isFollowed)
     {
@@ -204,6 +244,7 @@ void BeamReceiver::drawLocal(std::int64_t unit, double& beyond, ReceivedUnit& re
       received.medium = medium.objectId;
     }
   }
+  beyond += this->Plan.active ? this->fromDrops(unit) : 0.0;
 }
 
 /// Add a unit, unless noise and drops are too common for it to be perceived.
@@ -220,18 +261,7 @@ void BeamReceiver::addUnit(std::int64_t index, double light, std::uint32_t paths
   }
   else if (this->Plan.active && index < this->AirLooked)
   {
-    const double open = this->Along ? this->Along->open(index) : 1.0;
-    const auto drawn = [&](bool all)
-    { return this->Air.beyondMean(this->Seed, this->Beam, index, this->Revolution, all, open); };
-    beyond = drawn(light > 0.0 || alarm || !gaussian);
-    if (!std::isfinite(beyond))
-    {
-      if (!this->Noise.isRare(index))
-      {
-        return;
-      }
-      beyond = drawn(true);
-    }
+    beyond = this->fromDrops(index);
   }
   const double all = light + std::max(0.0, mean + beyond);
   const double off = this->FollowsAir ? mean : 0.0;

@@ -146,6 +146,9 @@ private:
   void planAir();
   double lowerIn(double air) const;
   double followedNow(std::int64_t unit);
+  double fromDrops(std::int64_t unit);
+  double varianceWith(const std::vector<BeamAir::Share>& shares) const;
+  void drawLocalDrops(std::int64_t unit, double* units);
   void drawLocal(std::int64_t unit, double& beyond, ReceivedUnit& received);
   void collectUnits(const std::vector<RangeUnit>& units);
   void addUnit(std::int64_t index, double light, std::uint32_t paths, bool alarm);
@@ -170,6 +173,7 @@ private:
   std::uint64_t Beam = 0;
   BeamAir* Along = nullptr; ///< of that beam
   LeafGaps Gaps;            ///< of it, if it is narrow
+  SharedDrops Drops;        ///< of it
   std::int32_t Seed;
   std::int32_t Revolution;
   ReturnMode Mode;

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <sstream>
 
 namespace avianlidar
@@ -395,6 +396,17 @@ double firingTime(const ScanPattern& pattern, int channel)
   return pattern.firingTimes.empty()
     ? firingSlot(channel, numberOfChannels(pattern)) * pattern.firingInterval
     : pattern.firingTimes[channel];
+}
+
+double pulseInterval(const ScanPattern& pattern)
+{
+  if (pattern.table)
+  {
+    return std::numeric_limits<double>::infinity();
+  }
+  const bool oneReceiver = pattern.firingTimes.empty() && pattern.firingInterval > 0.0 &&
+    (numberOfChannels(pattern) > 1 || !pattern.prisms.none());
+  return oneReceiver ? pattern.firingInterval : columnTime(pattern, 1);
 }
 
 double columnTime(const ScanPattern& pattern, std::int64_t column)

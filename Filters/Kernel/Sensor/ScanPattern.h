@@ -111,6 +111,11 @@ int firingSlot(int channel, int channels);
 /// Firing of a channel since its column began, s.
 double firingTime(const ScanPattern& pattern, int channel);
 
+/// Time from a pulse to the next one into the same receiver, s: the channels of a column that fire
+/// one after the other have one receiver, those with firing times, or that fire together, have one
+/// each. Infinite for a table of beams, whose receivers are not known.
+double pulseInterval(const ScanPattern& pattern);
+
 /// Start of a column since the start of the scan, s.
 double columnTime(const ScanPattern& pattern, std::int64_t column);
 

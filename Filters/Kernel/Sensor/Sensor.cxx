@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <sstream>
 
 namespace avianlidar
 {
@@ -53,6 +54,8 @@ const std::vector<SensorField>& sensorFields()
       NeededOf::None },
     { "sun_azimuth", "deg", &Sensor::sunAzimuth, -360.0, 360.0, "-360 to 360 deg", NeededOf::None },
     { "sun_elevation", "deg", &Sensor::sunElevation, -90.0, 90.0, "-90 to 90 deg", NeededOf::None },
+    { "minimum_range", "m", &Sensor::minimumRange, 0.0, MaximumRangeGate,
+      "0 to less than range_gate, m", NeededOf::None },
     { "overlap_range", "m", &Sensor::overlapRange, 0.0, 1e9, "0 to 1e9 m", NeededOf::None },
     { "defocus_range", "m", &Sensor::defocusRange, 0.0, 1e9, "0 to 1e9 m", NeededOf::None },
     { "range_noise", "m", &Sensor::rangeNoise, 0.0, 1e9, "0 to 1e9 m", NeededOf::None },
@@ -63,7 +66,7 @@ const std::vector<SensorField>& sensorFields()
     { "range_quantum", "m", &Sensor::rangeQuantum, 0.0, 1e9, "0, or 1e-9 to 1e9 m", NeededOf::None }
   };
   constexpr std::size_t others = 5; // profile, outline, receiver model, threshold law, what is up
-  static_assert(memberCount<Sensor>() == 28 + others, "is the new member a row of the table?");
+  static_assert(memberCount<Sensor>() == 29 + others, "is the new member a row of the table?");
   return all;
 }
 
@@ -96,6 +99,27 @@ double Sensor::nearRangeShare(double range) const
     : 1.0;
   const double image = this->defocusRange > 0.0 ? this->defocusRange / range : 0.0;
   return overlap / (1.0 + image * image);
+}
+
+double unambiguousRange(double pulseInterval)
+{
+  return 0.5 * SpeedOfLight * pulseInterval;
+}
+
+std::string warningOnAmbiguity(const Sensor& sensor, double pulseInterval)
+{
+  if (!(sensor.rangeGate > unambiguousRange(pulseInterval)))
+  {
+    return {};
+  }
+  std::ostringstream text;
+  text.precision(4);
+  text
+    << "range_gate is " << sensor.rangeGate << " m, but the next pulse leaves after "
+    << 1e6 * pulseInterval << " us, that is " << unambiguousRange(pulseInterval)
+    << " m: a receiver that all channels share takes echoes from beyond for nearer ones, which is "
+    << "not simulated";
+  return text.str();
 }
 
 std::string checkSensor(const Sensor& s)
@@ -150,6 +174,10 @@ std::string checkSensor(const Sensor& s)
   {
     return valueError(
       "range_gate", s.rangeGate, "at most 2^52 range units (c/2 sampling_interval each)");
+  }
+  if (!(s.minimumRange < s.rangeGate))
+  {
+    return wrong(sensorField(&Sensor::minimumRange));
   }
   if (s.upperEnergyLimit < s.lowerEnergyLimit)
   {

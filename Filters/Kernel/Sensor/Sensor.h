@@ -99,6 +99,7 @@ struct Sensor
   double sunElevation = 45.0; ///< deg, -90 to 90
 
   // What a receiver loses of near echoes, see nearRangeShare(); 0: nothing.
+  double minimumRange = 0.0; ///< m, 0 to rangeGate: nothing nearer is recorded
   double overlapRange = 0.0; ///< m, at which 1 - 1/e of the beam lies in its view
   double defocusRange = 0.0; ///< m, at which half of a spot's blurred image is on the detector
 
@@ -170,6 +171,12 @@ const std::vector<SensorField>& sensorFields();
 
 /// The row of a member.
 const SensorField& sensorField(double Sensor::*member);
+
+/// Range, m, from which echoes arrive after the next pulse has left. @param pulseInterval s
+double unambiguousRange(double pulseInterval);
+
+/// Empty, or a sentence on a gate that ends after the next pulse has left. @param pulseInterval s
+std::string warningOnAmbiguity(const Sensor& sensor, double pulseInterval);
 
 /// Empty if the sensor is usable; otherwise a sentence that names the value and what was expected.
 std::string checkSensor(const Sensor& sensor);

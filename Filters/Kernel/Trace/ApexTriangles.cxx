@@ -133,6 +133,28 @@ void ApexTriangles::begin(const CollisionTree& tree, const BeamFrame& widest)
   this->Used.clear();
 }
 
+/// What the plane of another triangle, which this one takes, may add to the error of w.
+float ApexTriangles::errorOfOwner(std::uint32_t position, const float* w) const
+{
+  const CollisionTree& tree = *this->Tree;
+  const std::uint32_t number = tree.leafTriangles[position].number;
+  const std::uint32_t owner = tree.planeOwner(number);
+  if (owner == number)
+  {
+    return 0.0f;
+  }
+  const Vec3& base = tree.mesh->corner(owner, 0);
+  const Vec3 normal = unitDirection(normalOf(cornersFrom(*tree.mesh, owner, base)));
+  double apart = 0.0;
+  for (int c = 0; c < 3; ++c)
+  {
+    apart = std::max(apart, std::fabs(glm::dot(normal, tree.mesh->corner(number, c) - base)));
+  }
+  // Off the plane by d, a ray's hit moves by d / cos(incidence), and 1/r by d |w| / r.
+  const float size = std::fabs(w[0]) + std::fabs(w[1]) + std::fabs(w[2]);
+  return 4.0f * static_cast<float>(apart) * size * size;
+}
+
 void ApexTriangles::see(const std::uint32_t* positions, int count, ApexTriangle* fresh)
 {
   ApexCorners& t = this->Corners;
@@ -165,7 +187,7 @@ void ApexTriangles::see(const std::uint32_t* positions, int count, ApexTriangle*
       }
       one.w[e] = records.w[e][i];
     }
-    one.error = records.error[i];
+    one.error = records.error[i] + this->errorOfOwner(positions[i], one.w);
     one.inside = records.inside[i];
     one.number = this->Tree->leafTriangles[positions[i]].number;
     one.position = positions[i];

@@ -80,6 +80,8 @@ public:
   }
 
 private:
+  float errorOfOwner(std::uint32_t position, const float* w) const;
+
   static constexpr std::uint32_t Places = 8192;
 
   std::vector<ApexTriangle> Table;

@@ -73,7 +73,7 @@ Hit BeamTracer::traceFrom(const Vec3& origin, const Vec3& direction, double mini
   const Vec3 d = unitDirection(direction);
   // From the apex the ranges must have the bits of the rays of the beam.
   const double margin = origin == Vec3(0.0) ? beamRayMargin(this->Frame) : 0.0;
-  FreeRayVisitor visitor(*this->Tree->mesh, this->Frame.origin, origin, d, margin);
+  FreeRayVisitor visitor(*this->Tree, this->Frame.origin, origin, d, margin);
   visitor.minimum = minimumRange;
   visitor.maximum = maximumRange;
   visitor.ignore1 = ignore;
@@ -91,7 +91,7 @@ bool BeamTracer::occluded(
     return false;
   }
   const Vec3 d = unitDirection(between);
-  FreeRayVisitor visitor(*this->Tree->mesh, this->Frame.origin, from, d, 0.0);
+  FreeRayVisitor visitor(*this->Tree, this->Frame.origin, from, d, 0.0);
   visitor.minimum = margin;
   visitor.maximum = length - margin;
   visitor.ignore1 = ignore1;

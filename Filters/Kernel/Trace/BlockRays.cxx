@@ -65,7 +65,7 @@ void BlockRays::rayByRay(std::uint32_t b)
   const BeamRays& rays = this->Block.source(b);
   std::uint32_t* const triangles = this->room();
   const BeamPlaneMap map(frame);
-  BeamRayVisitor visitor(*this->Tree.mesh, frame, map);
+  BeamRayVisitor visitor(this->Tree, frame, map);
   bool any = false;
   for (std::size_t i = 0; i < rays.size(); ++i)
   {

@@ -79,12 +79,19 @@ inline void keepNearest(Hit& hit, double range, std::uint32_t triangle)
   }
 }
 
+/// Ranges up to which volumes are visited for a hit. One that takes the plane of another triangle
+/// may lie before its own volumes, by rounding.
+inline double limitOf(const CollisionTree& tree, double range)
+{
+  return tree.planeOwners.empty() ? range : (1.0 + 1e-6) * range;
+}
+
 /// Finds the nearest hit of one ray of a beam.
 class BeamRayVisitor
 {
 public:
-  BeamRayVisitor(const TriangleMesh& mesh, const BeamFrame& frame, const BeamPlaneMap& map)
-    : Mesh(mesh)
+  BeamRayVisitor(const CollisionTree& tree, const BeamFrame& frame, const BeamPlaneMap& map)
+    : Tree(tree)
     , Frame(frame)
     , Map(map)
     , Margin(beamRayMargin(frame))
@@ -99,16 +106,18 @@ public:
     this->Nearest = &hit;
   }
 
-  double limit() const { return this->Nearest->range; }
+  double limit() const { return limitOf(this->Tree, this->Nearest->range); }
 
   bool leaf(const std::uint32_t* triangles, std::uint32_t count)
   {
     for (std::uint32_t i = 0; i < count; ++i)
     {
-      const Corners corners = cornersFrom(this->Mesh, triangles[i], this->Frame.origin);
+      const Vec3& apex = this->Frame.origin;
+      const Corners corners = cornersFrom(*this->Tree.mesh, triangles[i], apex);
       if (beamRayAccepted(this->Map, corners, this->X, this->Y))
       {
-        const double range = rangeOf(corners, planeOf(corners), this->Direction, this->Margin);
+        const TrianglePlane plane = planeOf(this->Tree, triangles[i], corners, apex);
+        const double range = rangeOf(corners, plane, this->Direction, this->Margin);
         if (range > 0.0)
         {
           keepNearest(*this->Nearest, range, triangles[i]);
@@ -119,7 +128,7 @@ public:
   }
 
 private:
-  const TriangleMesh& Mesh;
+  const CollisionTree& Tree;
   const BeamFrame& Frame;
   const BeamPlaneMap& Map;
   double Margin;
@@ -133,9 +142,9 @@ private:
 class FreeRayVisitor
 {
 public:
-  FreeRayVisitor(const TriangleMesh& mesh, const Vec3& apex, const Vec3& origin,
+  FreeRayVisitor(const CollisionTree& tree, const Vec3& apex, const Vec3& origin,
     const Vec3& direction, double angularMargin)
-    : Mesh(mesh)
+    : Tree(tree)
     , Apex(apex)
     , Origin(origin)
     , Direction(direction)
@@ -150,7 +159,7 @@ public:
   bool anyHit = false;
   Hit nearest;
 
-  double limit() const { return std::min(this->maximum, this->nearest.range); }
+  double limit() const { return std::min(this->maximum, limitOf(this->Tree, this->nearest.range)); }
 
   bool leaf(const std::uint32_t* triangles, std::uint32_t count)
   {
@@ -172,13 +181,13 @@ private:
     {
       return;
     }
-    Corners corners = cornersFrom(this->Mesh, triangle, this->Apex);
-    corners.a -= this->Origin;
-    corners.b -= this->Origin;
-    corners.c -= this->Origin;
+    const Corners corners = this->cornersOf(triangle);
     if (rayAccepted(corners, this->Direction))
     {
-      const double range = rangeOf(corners, planeOf(corners), this->Direction, this->Margin);
+      const std::uint32_t owner = this->Tree.planeOwner(triangle);
+      const TrianglePlane plane =
+        owner == triangle ? planeOf(corners) : planeOf(corners, planeOf(this->cornersOf(owner)));
+      const double range = rangeOf(corners, plane, this->Direction, this->Margin);
       if (range > this->minimum && range < this->maximum)
       {
         keepNearest(this->nearest, range, triangle);
@@ -186,7 +195,17 @@ private:
     }
   }
 
-  const TriangleMesh& Mesh;
+  /// From the ray's origin.
+  Corners cornersOf(std::uint32_t triangle) const
+  {
+    Corners corners = cornersFrom(*this->Tree.mesh, triangle, this->Apex);
+    corners.a -= this->Origin;
+    corners.b -= this->Origin;
+    corners.c -= this->Origin;
+    return corners;
+  }
+
+  const CollisionTree& Tree;
   Vec3 Apex;
   Vec3 Origin;
   Vec3 Direction;

@@ -5,13 +5,13 @@
  * beams mostly meet the same triangles, so the last few are kept.
  *
  * Source: none.
- * Valid: for one mesh and apex at a time.
+ * Valid: for one tree and apex at a time.
  * Test: TestRayPacket.cxx, TestVisiblePolygons.cxx.
  */
 #ifndef avianlidar_ExactTriangles_h
 #define avianlidar_ExactTriangles_h
 
-#include "TriangleMesh.h"
+#include "CollisionTree.h"
 #include "TriangleTest.h"
 
 #include <algorithm>
@@ -35,27 +35,27 @@ class ExactTriangles
   static_assert((Remembered & (Remembered - 1)) == 0, "a power of two");
 
 public:
-  /// Clear it if it belongs to another mesh or apex.
-  void begin(const TriangleMesh& mesh, const Vec3& apex)
+  /// Clear it if it belongs to another tree or apex.
+  void begin(const CollisionTree& tree, const Vec3& apex)
   {
-    if (this->Mesh != &mesh || this->Apex != apex)
+    if (this->Tree != &tree || this->Apex != apex)
     {
-      this->Mesh = &mesh;
+      this->Tree = &tree;
       this->Apex = apex;
       for (const std::uint32_t place : this->Used)
       {
         this->Last[place].number = NoTriangle;
       }
       this->Used.clear();
-      while (this->Last.size() < std::min<std::size_t>(mesh.size(), Remembered))
+      while (this->Last.size() < std::min<std::size_t>(tree.mesh->size(), Remembered))
       {
         this->Last.resize(std::max<std::size_t>(2 * this->Last.size(), 16));
       }
     }
   }
 
-  /// The mesh has other triangles now.
-  void forget() { this->Mesh = nullptr; }
+  /// The tree has other triangles now.
+  void forget() { this->Tree = nullptr; }
 
   /// The triangle of this number. Valid until the next call.
   const ExactTriangle& operator[](std::uint32_t number)
@@ -69,14 +69,14 @@ public:
         this->Used.push_back(at);
       }
       place.number = number;
-      place.corners = cornersFrom(*this->Mesh, number, this->Apex);
-      place.plane = planeOf(place.corners);
+      place.corners = cornersFrom(*this->Tree->mesh, number, this->Apex);
+      place.plane = planeOf(*this->Tree, number, place.corners, this->Apex);
     }
     return place;
   }
 
 private:
-  const TriangleMesh* Mesh = nullptr;
+  const CollisionTree* Tree = nullptr;
   Vec3 Apex{ 0.0 };
   std::vector<ExactTriangle> Last; ///< as many as a power of two
   std::vector<std::uint32_t> Used; ///< occupied places

@@ -93,7 +93,7 @@ public:
       return false;
     }
     this->Scale = static_cast<float>((1.0 - 1e-6) / longest);
-    s.exact.begin(this->Mesh, widest->origin);
+    s.exact.begin(this->Tree, widest->origin);
     s.known.begin(this->Tree, *widest);
     s.filled = 0;
     s.missing = 0;
@@ -250,7 +250,7 @@ std::uint64_t traceAlone(
   const BeamFrame& frame = packet.frameOf(ray);
   const Vec3 direction = packet.direction(ray);
   const BeamPlaneMap map(frame);
-  BeamRayVisitor visitor(*tree.mesh, frame, map);
+  BeamRayVisitor visitor(tree, frame, map);
   Hit hit;
   visitor.setRay(packet.x[ray], packet.y[ray], direction, hit);
   const std::uint64_t nodes = descendRay(

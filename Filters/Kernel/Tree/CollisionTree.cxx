@@ -18,6 +18,14 @@ std::vector<std::uint32_t> CollisionTree::depths() const
   return depth;
 }
 
+TrianglePlane planeOf(
+  const CollisionTree& tree, std::uint32_t triangle, const Corners& corners, const Vec3& apex)
+{
+  const std::uint32_t owner = tree.planeOwner(triangle);
+  return owner == triangle ? planeOf(corners)
+                           : planeOf(corners, planeOf(cornersFrom(*tree.mesh, owner, apex)));
+}
+
 void collectLeafTriangles(CollisionTree& tree, ParallelTeam& team)
 {
   constexpr std::size_t Block = 4096;

@@ -118,10 +118,28 @@ struct CollisionTree
   std::uint64_t checksum = 0;              ///< of the mesh
   WideTree wide; ///< boxes eight at a time in single precision; empty with other volumes
   std::shared_ptr<const OtherVolumes> other; ///< null: boxes
+  /// For each triangle that coincides with others the one whose plane they take
+  /// (CoincidentFaces.h), for the rest NoTriangle; empty if no faces coincide.
+  std::vector<std::uint32_t> planeOwners;
+
+  bool coincides(std::uint32_t triangle) const
+  {
+    return !this->planeOwners.empty() && this->planeOwners[triangle] != NoTriangle;
+  }
+
+  /// Number of the triangle whose plane a triangle takes, or its own.
+  std::uint32_t planeOwner(std::uint32_t triangle) const
+  {
+    return this->coincides(triangle) ? this->planeOwners[triangle] : triangle;
+  }
 
   /// Depth of each node, root 0.
   std::vector<std::uint32_t> depths() const;
 };
+
+/// Plane of a triangle, or that which it takes of another. @param corners from the apex
+TrianglePlane planeOf(
+  const CollisionTree& tree, std::uint32_t triangle, const Corners& corners, const Vec3& apex);
 
 /// Fill `leafTriangles` from order and mesh.
 void collectLeafTriangles(CollisionTree& tree, ParallelTeam& team);

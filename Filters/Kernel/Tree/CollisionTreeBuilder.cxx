@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "CollisionTreeBuilder.h"
 
+#include "CoincidentFaces.h"
 #include "TreeDraft.h"
 #include "WideTreeBuilder.h"
 
@@ -136,7 +137,12 @@ private:
       [&](std::uint32_t slot) { input.setCosts(slot, slot + 1); });
     this->Tree.wide =
       buildWideTree(input, this->Draft.scene, this->Team, this->stage(Divided, 1.0));
-    return !this->Tree.wide.nodes.empty();
+    if (this->Tree.wide.nodes.empty())
+    {
+      return false;
+    }
+    this->Tree.planeOwners = findPlaneOwners(this->Tree, this->Team);
+    return true;
   }
 
   CollisionTree& Tree;

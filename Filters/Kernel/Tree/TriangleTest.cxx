@@ -162,6 +162,18 @@ AVIANLIDAR_MULTIVERSION TrianglePlane planeOf(const Corners& t)
   return plane;
 }
 
+TrianglePlane planeOf(const Corners& t, const TrianglePlane& owner)
+{
+  TrianglePlane plane = planeOf(t);
+  // The sides give the normal its sign.
+  const double sign = glm::dot(plane.normal, owner.normal) < 0.0 ? -1.0 : 1.0;
+  plane.normal = sign * owner.normal;
+  plane.height = sign * owner.height;
+  plane.longestSquared = owner.longestSquared;
+  plane.leastSlope = owner.leastSlope;
+  return plane;
+}
+
 PlaneView viewOfCone(const TrianglePlane& plane, const Vec3& axis, double sine, double cosine)
 {
   // v . d lies within cos(t) v . axis -+ sin(t) |v| for every d of the cone.

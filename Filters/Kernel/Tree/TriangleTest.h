@@ -103,6 +103,9 @@ struct TrianglePlane
 };
 TrianglePlane planeOf(const Corners& corners);
 
+/// The same of a triangle that takes the plane of another: ranges are those on that plane.
+TrianglePlane planeOf(const Corners& corners, const TrianglePlane& owner);
+
 /// a b - c d to one and a half units in the last place (Kahan; Jeannerod, Louvet and Muller, Math.
 /// Comp. 82, 2013). std::fma is exact on every machine, so unlike contraction it costs no
 /// reproducibility.

@@ -58,6 +58,7 @@ const std::vector<vtkAvianLidarBeamSource::vtkInternals::Scalar>& vtkAvianLidarB
     ofSensor(&Source::Sunlight, &Sensor::sunlight),
     ofSensor(&Source::SunAzimuth, &Sensor::sunAzimuth),
     ofSensor(&Source::SunElevation, &Sensor::sunElevation),
+    ofSensor(&Source::MinimumRange, &Sensor::minimumRange),
     ofSensor(&Source::OverlapRange, &Sensor::overlapRange),
     ofSensor(&Source::DefocusRange, &Sensor::defocusRange),
     ofSensor(&Source::RangeNoise, &Sensor::rangeNoise),

@@ -7,7 +7,7 @@
 #ifndef AvianLidarJsonNode_h
 #define AvianLidarJsonNode_h
 
-#include <nlohmann/json.hpp>
+#include "Json.h"
 
 #include <array>
 #include <iosfwd>
@@ -17,9 +17,6 @@
 
 namespace avianlidar
 {
-/// Ordered: of two patterns that fit a name, the one written first counts.
-using Json = nlohmann::ordered_json;
-
 /**
  * Read a file as JSON. A file that cannot be opened or parsed, an object with one key twice, or
  * more than 100 values one in the other are a FileError.

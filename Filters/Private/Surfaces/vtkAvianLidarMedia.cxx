@@ -140,7 +140,7 @@ void CheckKeys(const Json& json, const std::string& file)
   JsonNode(json, "", file + ", kind " + kind.name + ", shape " + shape.name).RequireKeys(keys);
 }
 
-Medium MediumOf(const JsonNode& node, double wavelength)
+Medium MediumOf(const JsonNode& node, const avianlidar::LidarView& view)
 {
   const std::string kind = KindOf(node).name;
   if (kind == "custom")
@@ -153,7 +153,7 @@ Medium MediumOf(const JsonNode& node, double wavelength)
   if (kind == "fog" || kind == "haze")
   {
     const double visibility = node.Get("visibility").NumberIn(1e-3, 1e9);
-    return { avianlidar::attenuationOfVisibility(visibility, wavelength),
+    return { avianlidar::attenuationOfVisibility(visibility, view.wavelength),
       NumberOf(kind, "backscatter_ratio") };
   }
   if (kind == "snow")
@@ -163,7 +163,7 @@ Medium MediumOf(const JsonNode& node, double wavelength)
   if (kind == "rain" || kind == "drizzle")
   {
     return avianlidar::rainOf(node.Get("rain_rate").NumberIn(1e-6, avianlidar::MaximumRainRate),
-      NumberOf(kind, "backscatter_ratio"), NumberOf(kind, "drops_per_volume"),
+      NumberOf(kind, "backscatter_ratio"), view, NumberOf(kind, "drops_per_volume"),
       NumberOf(kind, "slope"));
   }
   return FoliageOf(node.Get("leaf_area_density").NumberIn(1e-6, 1e3));
@@ -266,21 +266,21 @@ Medium vtkAvianLidarMedia::HazeOf(double visibility, double extinction)
 }
 
 //------------------------------------------------------------------------------
-Medium vtkAvianLidarMedia::RainOf(double rate)
+Medium vtkAvianLidarMedia::RainOf(double rate, const avianlidar::LidarView& view)
 {
-  return avianlidar::rainOf(rate, NumberOf("rain", "backscatter_ratio"),
+  return avianlidar::rainOf(rate, NumberOf("rain", "backscatter_ratio"), view,
     NumberOf("rain", "drops_per_volume"), NumberOf("rain", "slope"));
 }
 
 //------------------------------------------------------------------------------
 std::vector<avianlidar::PlacedMedium> vtkAvianLidarMedia::Read(
-  const std::string& text, double wavelength)
+  const std::string& text, const avianlidar::LidarView& view)
 {
   const Json json = ParsedText(text, "medium");
   const std::string file = "medium '" + json.value("name", std::string()) + "'";
   const JsonNode node(json, "", file);
   CheckKeys(json, file);
-  Medium medium = MediumOf(node, wavelength);
+  Medium medium = MediumOf(node, view);
   if (node.Has("renewed"))
   {
     medium.renewed = node.Get("renewed").NumberIn(0.0, 1.0);
@@ -406,17 +406,17 @@ vtkSmartPointer<vtkPolyData> vtkAvianLidarMedia::Surface(
 {
   const Json json = ParsedText(text, "medium");
   vtkSmartPointer<vtkPolyData> drawn;
-  constexpr double anyLight = 905e-9;
+  const avianlidar::LidarView any;
   if (json.value("shape", std::string()) == "surface")
   {
     drawn = Closed(closed ? closed : vtkSmartPointer<vtkPolyData>::New().Get(),
       json.value("name", std::string()));
     vtkAvianLidarArrays::SetFieldStrings(
       drawn->GetFieldData(), vtkAvianLidarArrays::Medium, { text });
-    Read(TextOf(drawn, json.value("name", std::string())), anyLight);
+    Read(TextOf(drawn, json.value("name", std::string())), any);
     return drawn;
   }
-  const std::vector<avianlidar::PlacedMedium> all = Read(text, anyLight);
+  const std::vector<avianlidar::PlacedMedium> all = Read(text, any);
   MediumVolume volume = all[0].volume;
   if (!volume.isBounded())
   {

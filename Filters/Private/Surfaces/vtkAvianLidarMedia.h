@@ -25,12 +25,13 @@ namespace vtkAvianLidarMedia
 /// extinction at the lidar's wavelength, 1/m
 avianlidar::Medium HazeOf(double visibility, double extinction);
 
-/// @param rate mm/h, above 0
-avianlidar::Medium RainOf(double rate);
+/// @param rate mm/h, above 0 @param view of the lidar
+avianlidar::Medium RainOf(double rate, const avianlidar::LidarView& view);
 
 /// A medium by its text: one, or one for each of its ellipsoids. Throws std::runtime_error, which
-/// names the medium and the key. @param wavelength m
-std::vector<avianlidar::PlacedMedium> Read(const std::string& text, double wavelength);
+/// names the medium and the key. @param view of the lidar
+std::vector<avianlidar::PlacedMedium> Read(
+  const std::string& text, const avianlidar::LidarView& view);
 
 /// The surface that bounds a medium, with its text in field data. Throws as Read(). @param closed
 /// the surface of a medium of that shape, may be null @param size m, of what has no bounds

@@ -18,6 +18,7 @@
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 class vtkDataObject;
@@ -69,6 +70,11 @@ struct vtkAvianLidarSurfaces
   /// The same as one vtkPolyData: double points, triangles, ids and coefficients, names and
   /// `fields` besides, if not null.
   vtkSmartPointer<vtkPolyData> ToPolyData(vtkFieldData* fields) const;
+
+  /// A warning that names objects whose faces coincide; empty without any. @param pairs of
+  /// triangles, the first of each is seen
+  std::string WarningOnCoincidence(
+    const std::vector<std::pair<std::uint32_t, std::uint32_t>>& pairs) const;
 
   /// What Merge() would make of ToPolyData().
   vtkAvianLidarSurfaces MergedAgain() const;

@@ -36,9 +36,11 @@ def extinction(sensor: Sensor, **air: Any) -> float:
 
 
 @functools.lru_cache(maxsize=None)
-def extinction_of_rain(rate: float) -> float:
-    """1/m, at any wavelength. @param rate mm/h"""
-    return extinction(Sensor("Search905"), visibility=0.0, attenuation_coefficient=0.0, rain_rate=rate)
+def extinction_of_rain(rate: float, half_beamwidth: float = 5.6e-3, wavelength: float = 905.0) -> float:
+    """1/m, for a view that keeps most of the light which drops diffract, as eyes do that look for a dark object of half a degree. @param rate
+    mm/h @param half_beamwidth rad, of a round beam @param wavelength nm"""
+    seen = Sensor("Search905", half_beamwidth=half_beamwidth, wavelength=wavelength)
+    return extinction(seen, visibility=0.0, attenuation_coefficient=0.0, rain_rate=rate)
 
 
 def weakening(sensor: Sensor, air: Dict[str, Any]) -> Dict[str, Any]:
@@ -46,4 +48,5 @@ def weakening(sensor: Sensor, air: Dict[str, Any]) -> Dict[str, Any]:
     dry = {**air, "air_backscatter": False, "rain_rate": 0.0}
     if not air["rain_rate"]:
         return dry
-    return {**dry, "visibility": 0.0, "attenuation_coefficient": extinction(sensor, **dry) + extinction_of_rain(air["rain_rate"])}
+    of_rain = extinction_of_rain(air["rain_rate"], sensor.half_beamwidth, sensor.wavelength)
+    return {**dry, "visibility": 0.0, "attenuation_coefficient": extinction(sensor, **dry) + of_rain}

@@ -43,7 +43,7 @@ class Boxes:
     def __init__(self, surfaces: vtkPolyData, sensor, pose: np.ndarray):
         """sensor  a Sensor, at rest
            pose    3 x 4: from the coordinates of points (x forward, y left, z up) to the scene's"""
-        self.pose, self.gate = pose, float(sensor.range_gate)
+        self.pose, self.gate = pose, (float(sensor.minimum_range), float(sensor.range_gate))
         self.locator = vtkStaticCellLocator()
         self.locator.SetDataSet(surfaces)
         self.locator.SetNumberOfCellsPerNode(2)  # by default rays take several times as long
@@ -100,7 +100,8 @@ class Boxes:
         across = np.repeat(np.cross(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0]), len(parts), axis=0)
         weights = np.abs(np.einsum("ij,ij->i", across, views)) / ranges**3  # solid angles
         turned, up = self._angles(views @ self.pose[:, :3])
-        inside = (up >= self.low) & (up <= self.high) & ((turned - self.begin) % (2 * np.pi) <= self.width) & (ranges <= self.gate)
+        inside = (up >= self.low) & (up <= self.high) & ((turned - self.begin) % (2 * np.pi) <= self.width)
+        inside &= (ranges >= self.gate[0]) & (ranges <= self.gate[1])
         if not weights[inside].sum() > 0:
             return 1.0, 0.0
         covered = np.array([self._is_covered(place, centre) for centre in centres[inside]])

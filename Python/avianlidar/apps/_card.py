@@ -54,8 +54,8 @@ def of_tracks(sequences: Results) -> Dict[str, Value]:
 
 
 def warnings_of(birds: Results, volume: str) -> np.ndarray:
-    """s that each bird which flies into a volume was beside a confirmed track before; 0 without one. Birds that were there at the
-    beginning do not count."""
+    """s that each bird which flies into a volume was beside a confirmed track before; 0 without one. A bird that begins in such a
+    volume counts if it flies into another one."""
     return np.array([max(bird[volume] - bird["near_s"], 0.0) if bird["near_s"] is not None else 0.0 for bird in birds if bird[volume] is not None])
 
 

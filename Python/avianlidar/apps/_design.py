@@ -36,6 +36,7 @@ TOLD = 2.0  # standard errors that a share must lie above or below what is asked
 CHANGE = 0.2  # of a number, to either side, for sensitivities
 OTHER_PLACES = 1 << 40  # to a seed: places by which no design was chosen
 MOST_SCANS = 100  # of vtkAvianLidarCoverage's NumberOfScans
+PUPIL = math.pi * 0.0035 ** 2  # m2: an eye's in the dark, 7 mm across
 
 Progress = Callable[[str, int, int], Any]
 
@@ -106,7 +107,7 @@ class Candidate:
     number: int
     values: Dict[str, float]
     cost: float = math.nan
-    pulses: Dict[str, float] = dataclasses.field(default_factory=dict)  # pulse_rate Hz, shortest_interval s, average_power W, exposure J/m2
+    pulses: Dict[str, float] = dataclasses.field(default_factory=dict)  # pulse_rate Hz, shortest_interval s, average_power W, exposure J/m2, pupil J
     refused: str = ""  # by the sensor: why there is no such lidar
     share: scores.Value = scores.Value(math.nan, math.nan, 0)
     tracked: scores.Value = scores.Value(math.nan, math.nan, 0)
@@ -267,6 +268,11 @@ class Study:
         except Error as error:
             one.refused = str(error)
             return
+        gate, limit = self.plan.sensor.range_gate, self.plan.sensor.algorithm.GetUnambiguousRange()
+        if gate > limit and not self.options.get("ambiguous_ranges", False):
+            one.refused = (f"range_gate is {gate:g} m, expected at most the {limit:.4g} m from which an echo arrives before the next pulse leaves, "
+                           "or design.ambiguous_ranges true")
+            return
         beams = self.plan.sensor.beams
         times = np.sort(1e-6 * np.asarray(beams["timestamp"], float))
         rate, energy = beams.number_of_points * one.values["rotation_rate"], one.values["pulse_energy"]
@@ -278,7 +284,8 @@ class Study:
             if not area > 0.0:
                 raise ValueError(f"{self.exit.text}: is {area:g} m2, expected more than 0")
         one.pulses = {"pulse_rate": rate, "shortest_interval": float(np.diff(times).min()) if len(times) > 1 else 1.0 / rate,
-                      "average_power": rate * energy, "exit_aperture": area, "exposure": energy / area}
+                      "average_power": rate * energy, "exit_aperture": area, "exposure": energy / area,
+                      "pupil": energy * min(PUPIL / area, 1.0)}
 
     def _scenario(self) -> Dict[str, Any]:
         what = f"{self.plan.file}: design.scenario"

@@ -56,16 +56,24 @@ def pulses(study: Study, one: Candidate) -> str:
             f"{of['pulse_rate']:,.0f} pulses a second")
 
 
+def unassessed(study: Study, one: Candidate) -> str:
+    """That eye safety is not assessed, and what an eye at the lidar would receive of a pulse."""
+    microjoules = float(f"{1e6 * one.pulses['pupil']:.2g}")
+    return (f"eye safety is not assessed: at {study.plan.sensor.wavelength:g} nm each pulse puts {microjoules:g} µJ "
+            "through a pupil of 7 mm at its exit aperture, which it is assumed to fill evenly")
+
+
 def answers(study: Study) -> List[str]:
     """The question answered."""
     count, asked = len(study.judged), f"{100.0 * study.asked:g} %"
     about, share = study.about, study.of(study.about)
     if study.chosen:
         found = [f"The cheapest of {count} designs that {does(study).replace(' ', f' {asked} of ', 1)} "
-                 f"costs {_cost(study, about.cost)} by the plan's formula and has {_percent(share)}."]
+                 f"costs {_cost(study, about.cost)} by the plan's formula and has {_percent(share)}; {unassessed(study, about)}."]
     else:
         found = [f"None of {count} designs surely {does(study).replace(' ', f' {asked} of ', 1)}: "
-                 f"the best has {_percent(share)} and costs {_cost(study, about.cost)} by the plan's formula."]
+                 f"the best has {_percent(share)} and costs {_cost(study, about.cost)} by the plan's formula; "
+                 f"{unassessed(study, about)}."]
     found.append(f"It is number {about.number}: {in_words(study, about)}; {pulses(study, about)}.")
     other = study.elsewhere
     same = is_told(other.value, other.error, study.asked)
@@ -94,6 +102,7 @@ def table(study: Study) -> List[Dict[str, Any]]:
         row.update({f"cost [{study.unit or '1'}]": one.cost, "wavelength [nm]": float(study.plan.sensor.wavelength),
                     "pulse_width [s]": float(study.plan.sensor.pulse_width),
                     "exit_aperture [m2]": of.get("exit_aperture", math.nan), "radiant_exposure [J/m2]": of.get("exposure", math.nan),
+                    "through_7_mm_pupil [J]": of.get("pupil", math.nan),
                     "pulse_rate [Hz]": of.get("pulse_rate", math.nan), "shortest_interval [s]": of.get("shortest_interval", math.nan),
                     "average_power [W]": of.get("average_power", math.nan), "on_the_front": int(one.front),
                     "has_the_asked_share": {True: "yes", False: "no", None: "not told"}[told] if not math.isnan(study.of(one).value) else "",

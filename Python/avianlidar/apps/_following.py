@@ -152,17 +152,18 @@ def weather_words(visibility: str, rain: str) -> str:
 
 
 def inside(volume: str, runways: Many[Runway], places) -> np.ndarray:
-    """Which places (n x 3, m) lie in a volume of any runway: the strip, 150 m to either side of its middle and 60 m high; the glide path,
-    beyond its ends to 3 km, 75 m to either side and 45 m high at the end, widening by 0.15 and rising by 3 degrees."""
-    found = np.zeros(len(places), bool)
+    """Which of n places (n x 3, m) lie in each volume of the runways, volumes x n: their strips, 150 m to either side of the middle and 60 m
+    high; their glide paths, two a runway, beyond its ends to 3 km, 75 m to either side and 45 m high at the end, widening by 0.15 and rising
+    by 3 degrees."""
+    found = []
     for runway in runways:
         if volume == "strip":
-            found |= scores.in_strip(places, runway.start, runway.end, STRIP_HALF_WIDTH, STRIP_HEIGHTS[1])
+            found.append(scores.in_strip(places, runway.start, runway.end, STRIP_HALF_WIDTH, STRIP_HEIGHTS[1]))
             continue
         axis, _ = runway.axis()
         for threshold, outwards in ((runway.start, -axis), (runway.end, axis)):
-            found |= scores.in_wedge(places, threshold, outwards, APPROACH_LENGTH, APPROACH_HALF_WIDTH, APPROACH_HEIGHT)
-    return found
+            found.append(scores.in_wedge(places, threshold, outwards, APPROACH_LENGTH, APPROACH_HALF_WIDTH, APPROACH_HEIGHT))
+    return np.array(found, bool).reshape(-1, len(places))
 
 
 class Scorer:

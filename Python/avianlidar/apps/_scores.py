@@ -98,8 +98,9 @@ def _along(points: np.ndarray, start, axis: np.ndarray) -> Tuple[np.ndarray, np.
 
 
 def entry(times: np.ndarray, inside: np.ndarray) -> float:
-    """The first time inside, nan without, or if it begins there."""
-    return float(times[np.argmax(inside)]) if inside.any() and not inside[0] else math.nan
+    """The first time inside any of the volumes in which it does not begin; nan without. @param inside volumes x times"""
+    entered = (inside & ~inside[:, :1]).any(axis=0)
+    return float(times[np.argmax(entered)]) if entered.any() else math.nan
 
 
 def jackknife(statistic: Callable[..., float], *columns) -> Value:

@@ -352,9 +352,10 @@ class Sequence:
             beams, energy = int(columns["number_of_beams"][i]), float(columns["energy_received"][i])
             probability, points = float(columns["detection_probability"][i]), int(columns["number_of_echoes"][i])
             light, chance = without.get(bird, (energy, probability))
-            beyond = columns["distance_m"][i] > self.sensor.range_gate or (beams == 0 and light == 0)
+            in_gate = self.sensor.minimum_range <= columns["distance_m"][i] <= self.sensor.range_gate
+            outside = not in_gate or (beams == 0 and light == 0)
             static = self.clutter.energy(columns["beam_id"][i])
-            status = ("seen" if points else "outside" if beyond else "hidden" if light == 0 else
+            status = ("seen" if points else "outside" if outside else "hidden" if light == 0 else
                       "missed" if probability >= WEAK else "air" if chance >= WEAK else
                       "hidden" if bare.get(bird, (0.0, chance))[1] >= WEAK else "too weak")
             rows[bird] = [k, bird, species[bird], status, SUBSETS[subset[i]] if status != "outside" else "",

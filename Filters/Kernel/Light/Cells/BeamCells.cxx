@@ -262,7 +262,7 @@ void BeamCells::setSurfaces()
   constexpr double least = 1e-30; // of the farthest, whatever lies at the apex
   const double scale = this->All->empty()
     ? 1.0
-    : std::max(1.0 / this->All->front()->mostInverse, least / this->All->back()->mostInverse);
+    : std::max(1.0 / this->All->front()->sortInverse, least / this->All->back()->sortInverse);
   const double perFoot = 1.0 / this->Tangent2;
   for (std::size_t k = 0; k < this->Surfaces.size(); ++k)
   {
@@ -281,7 +281,7 @@ void BeamCells::setSurfaces()
     s.inverse[1] = static_cast<float>(scale * w.y);
     s.inverse[2] = static_cast<float>(scale * w.z);
     s.inverseSlope = std::fabs(s.inverse[0]) + std::fabs(s.inverse[1]);
-    s.most = outwards * static_cast<float>(scale * from.mostInverse);
+    s.most = outwards * static_cast<float>(scale * from.sortInverse);
     s.slack =
       static_cast<float>(rounding * scale * (std::fabs(w.x) + std::fabs(w.y) + std::fabs(w.z)));
     const int id = this->Setup.objectIds[from.triangle];

@@ -245,7 +245,7 @@ bool PolygonFinder::isBehindAll(const Candidate& candidate) const
   constexpr double inOrder =
     1.0 + 4.0 * RoundOffSingle; // candidates are sorted in single precision
   return std::all_of(this->Pieces.begin(), this->Pieces.end(),
-    [&](const Piece& piece) { return inOrder * candidate.mostInverse < piece.leastInverse; });
+    [&](const Piece& piece) { return inOrder * candidate.sortInverse < piece.leastInverse; });
 }
 
 /// Insert a candidate. @return false if there are too many pieces or corners

@@ -58,9 +58,7 @@ ConnectionFinder::ConnectionFinder(const ScanSetup& setup)
 {
 }
 
-/// Find the pairs of surfaces with hits that may face each other: each has a hit before the plane
-/// of the other. @return false if there are none
-bool ConnectionFinder::findFacingSurfaces(const BeamSamples& hits, const SampleGeometry& geometry)
+bool ConnectionFinder::findFacing(const BeamSamples& hits, const SampleGeometry& geometry)
 {
   const std::size_t count = geometry.surfaces.size();
   this->Facing.clear();
@@ -95,10 +93,16 @@ bool ConnectionFinder::findFacingSurfaces(const BeamSamples& hits, const SampleG
   return any;
 }
 
+bool ConnectionFinder::faces(std::uint32_t surface, std::size_t surfaces) const
+{
+  const auto row = this->Facing.begin() + (this->Facing.empty() ? 0 : surface * surfaces);
+  return this->Facing.empty() || std::find(row, row + surfaces, char{ 1 }) != row + surfaces;
+}
+
 void ConnectionFinder::find(const SecondaryBeam& beam, std::uint32_t partners)
 {
   const SecondaryScene scene = beam.scene();
-  if (!this->findFacingSurfaces(beam.samples, scene.geometry))
+  if (!this->findFacing(beam.samples, scene.geometry))
   {
     return;
   }
@@ -279,18 +283,16 @@ AVIANLIDAR_ALWAYS_INLINE double throughputOf(const ConnectionLanes& h, std::size
   const ReflectionGeometry out{ h.cosine[a], h.cosOut[i], 1.0, 0.0, 0.0, h.differenceOne[i],
     roughTerm(h.cosine[a], h.cosOut[i], h.differenceOne[i]) };
   const double diffuse = h.weight[i] * Model::of(first, out).diffuse;
-  // Through an aperture: the solid angle under which P1 sees the part of the surface that fills
-  // the cone around P2, over pi. P1 sends out no more than its kd.
-  const double lit = h.range[b] * h.range[b] * h.solidAngle / lanes::larger(cosBack, 1e-300);
-  const double form = h.cosOut[i] * h.cosIn[i] * lit / (Pi * h.length[i] * h.length[i]);
-  const double received = first.kd *
-    lanes::smaller(lanes::smaller(h.weight[i] * form, 1.0) * Model::unlikeLambert(first, out), 1.0);
+  const double form =
+    formFactor(h.cosOut[i], h.cosIn[i], h.length[i], h.range[b], cosBack, h.solidAngle);
+  const double received = first.kd * h.weight[i] * lanes::smaller(form, MostFormFactor) *
+    Model::unlikeLambert(first, out);
   const ReflectionGeometry back{ gathers ? cosBack : h.cosIn[i], cosBack, h.cosLobe[i],
     h.sin2Lobe[i], h.sin2Half[i], h.differenceTwo[i],
     roughTerm(h.cosIn[i], cosBack, h.differenceTwo[i]) };
-  const double returned =
-    throughAperture(Model::of(second, back), second, h.aperture, h.range[b]).total();
-  return h.share * (gathers ? received : diffuse) * returned *
+  const Reflectance returned =
+    throughAperture(Model::of(second, back), second, h.aperture, h.range[b]);
+  return h.share * (gathers ? received * returned.diffuse : diffuse * returned.total()) *
     scaleOf<Model>(first, second, h.cosine[a], h.direct[a], h.aperture);
 }
 

@@ -14,7 +14,7 @@
  * repetition.
  * Differs: the paper leaves open which secondary directions are followed, and their weight. Here
  * the sum over a ray's connections is an unbiased estimate of the mean over the cone's solid angle;
- * with an aperture the form factor stands for it.
+ * with an aperture it is the mean of the form factor, as far as that is below MostFormFactor.
  * Valid: M from 1 to N - 1; pairs that do not face each other by more than surfaceMargin() have no
  * connection.
  * Test: TestSecondaryReflection.cxx, TestSecondaryPaths.cxx.
@@ -23,6 +23,7 @@
 #define avianlidar_ConnectionFinder_h
 
 #include "BeamShape.h"
+#include "LaneMath.h"
 #include "ScanSetup.h"
 #include "SecondaryBeam.h"
 
@@ -40,8 +41,14 @@ public:
   /// Set the connections of the beam's trace, for `partners` >= 1 a ray.
   void find(const SecondaryBeam& beam, std::uint32_t partners);
 
+  /// Find the pairs of surfaces with hits that may face each other: each has a hit before the plane
+  /// of the other. @return false if there are none
+  bool findFacing(const BeamSamples& hits, const SampleGeometry& geometry);
+
+  /// False if a surface, one of so many, faces none of the others.
+  bool faces(std::uint32_t surface, std::size_t surfaces) const;
+
 private:
-  bool findFacingSurfaces(const BeamSamples& hits, const SampleGeometry& geometry);
   void chooseShifts(std::uint64_t beam, std::uint32_t rays, std::uint32_t count);
   double partnerWeight(
     const SecondaryBeam& beam, std::uint32_t n, std::uint32_t partner, double partnerShare) const;
@@ -64,6 +71,20 @@ private:
   std::vector<char> Facing;            ///< by pair of surfaces, if they are few
   std::vector<double> Heights;         ///< of surfaces above planes, m
 };
+
+/// Form factor of the cone's part of a surface, as if all of it lay where it is seen at P2, from
+/// P1: solid angle of that surface, weighted with cosOut, over pi. @param length from P1 to P2, m
+/// @param range of P2, m @param cosBack cosine of incidence of the lidar's own light at P2
+/// @param solidAngle of the cone
+AVIANLIDAR_ALWAYS_INLINE double formFactor(
+  double cosOut, double cosIn, double length, double range, double cosBack, double solidAngle)
+{
+  const double area = range * range * solidAngle / lanes::larger(cosBack, 1e-300);
+  return cosOut * cosIn * area / (Pi * length * length);
+}
+
+/// Largest form factor of a connection; what exceeds it is left to short paths.
+constexpr double MostFormFactor = 1.0;
 
 /// Throughput of each connection if nothing blocks it. @param materials of the samples
 void connectionThroughputs(const ScanSetup& setup, const SecondaryBeam& beam,

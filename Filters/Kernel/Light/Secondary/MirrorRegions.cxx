@@ -244,7 +244,7 @@ std::size_t MirrorRegions::search(std::size_t surface, std::vector<MirrorPath>& 
     this->addFacets();
   }
   this->Start = static_cast<std::uint32_t>(surface);
-  this->Stratum = 0;
+  this->Sample = 0;
   this->Pair = 0;
   this->Drawn = 0;
   this->Regions.clear();
@@ -270,7 +270,7 @@ std::size_t MirrorRegions::search(std::size_t surface, std::vector<MirrorPath>& 
   {
     this->placeIn(k, k + step, paths);
   }
-  return 2 * std::size_t{ this->Stratum };
+  return this->Sample;
 }
 
 /// Mirror the facets of a surface on the plane of another: what lies behind the mirror is seen
@@ -436,7 +436,7 @@ void MirrorRegions::placeIn(std::size_t first, std::size_t end, std::vector<Mirr
     const double secant2 = 1.0 + tangent2 * this->Frame.radius2(ray.x, ray.y);
     MirrorPath path;
     path.start = this->Start;
-    path.one = this->Stratum + k / 2;
+    path.one = this->Sample + k;
     if (this->Shape.holds(ray.x, ray.y) && this->findPath(this->Regions[region], ray, path))
     {
       path.weight = area / count * this->ShareOfArea * this->Shape.density(ray.x, ray.y) /
@@ -444,7 +444,7 @@ void MirrorRegions::placeIn(std::size_t first, std::size_t end, std::vector<Mirr
       paths.push_back(path);
     }
   }
-  this->Stratum += pairs;
+  this->Sample += count;
   this->Drawn += count;
 }
 
@@ -482,6 +482,7 @@ bool MirrorRegions::findPath(const Region& region, const PlanePoint& p, MirrorPa
       return false;
     }
   }
+  path.back = this->Shape.density(place.x, place.y) / this->Shape.density(p.x, p.y);
   path.first = one.seen->triangleAt(p);
   path.triangle = two.seen->triangleAt(place);
   path.length = path.rangeOne + step + path.range;

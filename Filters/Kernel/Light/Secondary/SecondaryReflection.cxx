@@ -43,6 +43,8 @@ void SecondaryReflection::prepare(const Beam& beam, bool byRegions)
   if (trace.partners != partners)
   {
     trace.connections.clear();
+    trace.shortPaths.clear();
+    trace.shortTraced = partners == 0 || beam.samples.coplanar;
     trace.partners = partners;
     // Points of one plane do not look at each other.
     if (partners > 0 && !beam.samples.coplanar)
@@ -77,28 +79,95 @@ double SecondaryReflection::bound(const BeamSamples& samples, const Throughput& 
   return mirrorsOnly ? std::min(mirrors, budget) : budget;
 }
 
-double SecondaryReflection::mirrorThroughput(const Beam& beam, const MirrorPath& path) const
+SecondaryReflection::BothWays SecondaryReflection::mirrorThroughput(
+  const Beam& beam, const MirrorPath& path) const
 {
   const ReflectanceModel model = this->Setup.settings.reflectanceModel;
   const double aperture = this->Setup.sensor.receiverAperture;
   const Material& first = this->Setup.materials[path.first];
-  const Material& second = this->Setup.materials[path.triangle];
+  Material second = this->Setup.materials[path.triangle];
   ReflectionGeometry back = path.second;
   if (aperture > 0.0)
   {
     back.cosIncidence = back.cosOutgoing;
+    // The lobes of both mirrors spread the light where it arrives.
+    const double reach = (path.length - path.rangeOne) / path.range;
+    second.kp = 1.0 / (1.0 / second.kp + reach * reach / first.kp);
   }
   const double f1 = specularReflectance(model, first, mirrorGeometry(path.cosine));
-  const double f2 =
-    throughAperture(reflectance(model, second, back), second, aperture, path.range).total();
+  const Reflectance f2 =
+    throughAperture(reflectance(model, second, back), second, aperture, path.range);
   const double direct = !beam.trace.searched.empty()
     ? throughAperture(
         reflectance(model, first, monostaticGeometry(path.cosine)), first, aperture, path.rangeOne)
         .total() *
       this->Setup.sensor.nearRangeShare(path.rangeOne)
     : beam.direct.reflected[path.one];
-  return f1 * f2 * this->Setup.sensor.nearRangeShare(path.range) *
-    secondaryScale(this->Setup, first, second, path.cosine, direct) * path.weight;
+  const double scale = secondaryScale(this->Setup, first, second, path.cosine, direct);
+  const double there =
+    f1 * f2.total() * this->Setup.sensor.nearRangeShare(path.range) * scale * path.weight;
+  if (!(aperture > 0.0))
+  {
+    return { there, 0.0 };
+  }
+  const double reverse = f1 * f2.diffuse * path.back *
+    this->Setup.sensor.nearRangeShare(path.rangeOne) * scale * path.weight;
+  // Where an aperture gathers nearly everything, both together stay within the bound of one.
+  const double within = std::min(1.0, f1 * path.weight / std::max(there + reverse, 1e-300));
+  return { within * there, within * reverse };
+}
+
+/// Share of the light of a mirror path that the width of the mirror's lobe moves across the rim of
+/// the cone, if such paths fill the cone at the second point: circumference times mean excursion,
+/// over area.
+double SecondaryReflection::unsureShare(const MirrorPath& path) const
+{
+  const Sensor& sensor = this->Setup.sensor;
+  if (!(sensor.receiverAperture > 0.0))
+  {
+    return 0.0; // the paper's receiver takes no account of where light arrives
+  }
+  const double step = path.length - path.rangeOne - path.range;
+  const double deviation = step / std::sqrt(this->Setup.materials[path.first].kp);
+  return std::min(
+    1.0, std::sqrt(2.0 / Pi) * deviation / (path.range * std::tan(sensor.halfBeamwidth)));
+}
+
+double SecondaryReflection::shortThroughput(const Beam& beam, const ShortPath& path) const
+{
+  const ReflectanceModel model = this->Setup.settings.reflectanceModel;
+  const Material first = this->Materials[path.one];
+  const Material& second = this->Setup.materials[path.triangle];
+  ReflectionGeometry back = path.second;
+  back.cosIncidence = back.cosOutgoing;
+  const double unlike =
+    withModel(model, [&](auto m) { return decltype(m)::unlikeLambert(first, path.first); });
+  const double f2 = throughAperture(
+    reflectance(model, second, back), second, this->Setup.sensor.receiverAperture, path.range)
+                      .diffuse;
+  return path.weight * first.kd * unlike * f2 * this->Setup.sensor.nearRangeShare(path.range) *
+    secondaryScale(
+      this->Setup, first, second, beam.samples.cosine[path.one], beam.direct.reflected[path.one]);
+}
+
+/// Bound of the sum of the throughputs of all short paths.
+double SecondaryReflection::mostOfShortPaths(const Beam& beam) const
+{
+  const double aperture = this->Setup.sensor.receiverAperture;
+  if (!(aperture > 0.0) || beam.trace.partners == 0 || beam.samples.coplanar)
+  {
+    return 0.0;
+  }
+  double sum = 0.0;
+  for (std::size_t i = 0; i < beam.samples.size(); ++i)
+  {
+    const double cosine = beam.samples.cosine[i];
+    const double most =
+      reflectanceBound(this->Setup.settings.reflectanceModel, this->Materials[i], cosine).diffuse;
+    sum += most > 0.0 ? beam.samples.weight[i] * most / cosine : 0.0;
+  }
+  const double gathered = aperture / (Pi * beam.nearest * beam.nearest);
+  return sum * std::min(1.0, this->Setup.largestReflectance * gathered) * SurelyAbove;
 }
 
 /// What each path could bring back.
@@ -173,12 +242,16 @@ double SecondaryReflection::placeMirrors(const Beam& beam, double least)
 void SecondaryReflection::measureMirrors(const Beam& beam)
 {
   this->MirrorThroughputs.clear();
+  this->BackThroughputs.clear();
   this->NumberWanted = 0.0;
+  const double ways = this->Setup.sensor.receiverAperture > 0.0 ? 2.0 : 1.0;
   for (const MirrorPath& path : beam.trace.mirrorPaths)
   {
     const bool wanted = beam.trace.searched.empty() || this->Wanted[path.start];
-    this->NumberWanted += wanted ? 1.0 : 0.0;
-    this->MirrorThroughputs.push_back(wanted ? this->mirrorThroughput(beam, path) : 0.0);
+    this->NumberWanted += wanted ? ways : 0.0;
+    const BothWays both = wanted ? this->mirrorThroughput(beam, path) : BothWays{ 0.0, 0.0 };
+    this->MirrorThroughputs.push_back(both.there + both.back);
+    this->BackThroughputs.push_back(both.back);
   }
 }
 
@@ -232,9 +305,17 @@ void SecondaryReflection::listPaths(const Beam& beam, std::vector<SecondaryPath>
     const MirrorPath& path = beam.trace.mirrorPaths[p];
     if (path.visibility == Visibility::Clear)
     {
-      paths.push_back({ path.length, this->MirrorThroughputs[p] * leftOf(path.from, path.end),
-        path.triangle, path.second.cosIncidence, bySample ? path.one : NoSample,
-        bySample ? NoSample : path.start << 22 | path.one });
+      const double left = leftOf(path.from, path.end);
+      const double back = this->BackThroughputs[p];
+      const std::uint32_t one = bySample ? path.one : NoSample;
+      const std::uint32_t two = bySample ? NoSample : path.start << 22 | path.one;
+      paths.push_back({ path.length, (this->MirrorThroughputs[p] - back) * left, path.triangle,
+        path.second.cosIncidence, one, two, this->unsureShare(path) });
+      if (back > 0.0)
+      {
+        paths.push_back(
+          { path.length, back * left, path.first, path.cosine, one, two, paths.back().unsure });
+      }
     }
   }
   for (std::size_t i = 0; i < connections.size(); ++i)
@@ -247,6 +328,13 @@ void SecondaryReflection::listPaths(const Beam& beam, std::vector<SecondaryPath>
         this->ConnectionThroughputs[i] * ofConnection(one, two), this->Triangles[two],
         connections.cosIn[i], one, two });
     }
+  }
+  const bool gathers = this->Setup.sensor.receiverAperture > 0.0;
+  for (std::size_t i = 0; gathers && i < beam.trace.shortPaths.size(); ++i)
+  {
+    const ShortPath& path = beam.trace.shortPaths[i];
+    paths.push_back({ path.length, this->shortThroughput(beam, path) * leftOf(path.from, path.end),
+      path.triangle, path.second.cosIncidence, path.one, NoSample });
   }
 }
 
@@ -277,6 +365,7 @@ void SecondaryReflection::collect(const Beam& beam, std::vector<SecondaryPath>& 
   this->measure(beam);
   // What the strongest path can carry.
   const double most = pulseEnergy * mostAir(beam.nearest, settings.attenuationCoefficient);
+  const bool gathers = this->Setup.sensor.receiverAperture > 0.0;
   double threshold = 0.0;
   if (dropsFaintPaths(settings) && settings.lightEnergyThreshold == LightEnergyThreshold::Limit)
   {
@@ -285,13 +374,16 @@ void SecondaryReflection::collect(const Beam& beam, std::vector<SecondaryPath>& 
   else if (dropsFaintPaths(settings))
   {
     const double budget = lightEnergyTolerance(this->Setup);
-    const double all = most * (this->mostOfMirrors(byRegions) + sumOf(this->ConnectionThroughputs));
+    const double all = most *
+      (this->mostOfMirrors(byRegions) + sumOf(this->ConnectionThroughputs) +
+        this->mostOfShortPaths(beam));
     if (all + lost < budget)
     {
       lost += all;
       return;
     }
-    threshold = budget / pathsOfABeam(settings);
+    // Through an aperture mirror paths go back, and short paths are as many as connections.
+    threshold = budget / (pathsOfABeam(settings) * (gathers ? 2.0 : 1.0));
   }
   const auto throughputOf = [=](double energy)
   { return most > 0.0 ? energy / most : std::numeric_limits<double>::infinity(); };
@@ -314,6 +406,10 @@ void SecondaryReflection::collect(const Beam& beam, std::vector<SecondaryPath>& 
   }
   const double least = throughputOf(threshold);
   traceConnections(beam, this->ConnectionThroughputs, least);
+  if (gathers)
+  {
+    traceShortPaths(this->Setup, beam, this->Finder);
+  }
   lost += most * this->untracedSum(beam.trace);
   this->listPaths(beam, paths);
   energiesOfAll(pulseEnergy, settings.attenuationCoefficient, paths.data(), paths.size());

@@ -24,16 +24,24 @@
  * factor is 1. Where the random weights of the connections exceed their mean, what would still pass
  * the budget is cut.
  *
- * With a receiver aperture A > 0 a connection carries the physical form factor of the part of the
- * cone that its partner stands for, cos(out at P1) cos(in at P2) r2^2 Omega/(pi L^2 cos(lidar's
- * incidence at P2)), at most 1, and f at P2 takes the cosine of the outgoing direction.
+ * With a receiver aperture A > 0, and Omega the solid angle of the cone:
+ *
+ * 1. The matt part of what a mirror path returns at P2 comes back by the reverse path as well,
+ * which ends on the mirror. It weighs by the beam's density at P2 over that at P1. The lobes of two
+ * mirrors add up where the light arrives.
+ * 2. A connection is matt at both ends. It carries the form factor F = cos(out at P1) cos(in at P2)
+ * r2^2 Omega/(pi L^2 cos(lidar's incidence at P2)), at most MostFormFactor = 1.
+ * 3. Short paths carry the rest: M directions of each ray, drawn as its matt light is spread. A
+ * path that ends in the cone with F > 1 carries 1 - 1/F. Then f at P2 takes the cosine of the
+ * outgoing direction, as that of connections and mirror paths does.
  *
  * Geometry is found once and kept (BeamTrace.h), and only as far as energies need it. Throughputs
  * are computed each time a beam is lit.
  *
- * Source: paper, Sec. 3.4 and Eq. 6.
+ * Source: paper, Sec. 3.4 and Eq. 6. The sum of bounded connections and short paths: Kollig and
+ * Keller, "Illumination in the Presence of Weak Singularities", MCQMC 2004.
  * Differs: the paper leaves open how many secondary directions are followed and with what weight;
- * the scale by the budget and the form factor are ours.
+ * the scale by the budget and all that an aperture changes are ours.
  * Valid: the paths of a ray return at most B together. No range unit loses more than epsilon Qlow
  * by the light-energy constraint (BeamLighting.h).
  * Test: TestSecondaryReflection.cxx, TestSecondaryPaths.cxx, TestSecondaryConstraints.cxx,
@@ -61,7 +69,8 @@ struct SecondaryPath
   std::uint32_t triangle; ///< at P2
   double cosIncidence;    ///< at P2
   std::uint32_t one;      ///< sample at P1; NoSample of a mirror path by regions
-  std::uint32_t two;      ///< sample at P2; of a mirror path NoSample, by regions its stratum
+  std::uint32_t two;      ///< sample at P2; else NoSample, by regions the sample of the path
+  double unsure = 0.0;    ///< share of the energy that the width of a mirror's lobe may change
 };
 
 /// Paths of one beam after the other. One per thread.
@@ -81,6 +90,11 @@ public:
   void collect(const Beam& beam, std::vector<SecondaryPath>& paths, double& lost);
 
 private:
+  /// Throughputs of a mirror path and, through an aperture, of the same path back.
+  struct BothWays
+  {
+    double there, back;
+  };
   void prepare(const Beam& beam, bool byRegions);
   double placeMirrors(const Beam& beam, double least);
   void measureMirrors(const Beam& beam);
@@ -88,7 +102,10 @@ private:
   void measure(const Beam& beam);
   double untracedSum(const SecondaryTrace& trace) const;
   void listPaths(const Beam& beam, std::vector<SecondaryPath>& paths) const;
-  double mirrorThroughput(const Beam& beam, const MirrorPath& path) const;
+  BothWays mirrorThroughput(const Beam& beam, const MirrorPath& path) const;
+  double unsureShare(const MirrorPath& path) const;
+  double shortThroughput(const Beam& beam, const ShortPath& path) const;
+  double mostOfShortPaths(const Beam& beam) const;
   void cutToBudget(const Beam& beam, std::vector<SecondaryPath>& paths);
 
   const ScanSetup& Setup;
@@ -100,7 +117,8 @@ private:
   std::vector<double> SpecularBounds;        ///< bounds of mirror paths' throughputs, by sample
   double NumberWanted = 0.0;                 ///< of mirror paths
   std::vector<char> Wanted;                  ///< by surface: its mirror paths may matter
-  std::vector<double> MirrorThroughputs;     ///< by mirror path, if it is not blocked
+  std::vector<double> MirrorThroughputs;     ///< by mirror path, both ways, if it is not blocked
+  std::vector<double> BackThroughputs;       ///< the way back of these
   std::vector<double> ConnectionThroughputs; ///< by connection, if it is not blocked
   std::vector<double> Returned;              ///< over two reflections, by sample, J
 };

@@ -2,8 +2,8 @@
 /**
  * @file SecondaryTrace.h
  * @brief What is known of the geometry of a beam's paths over two reflections: where mirror paths
- * end, and which hits are connected and visible to each other. Found when first needed and kept
- * with the beam.
+ * and short paths end, and which hits are connected and visible to each other. Found when first
+ * needed and kept with the beam.
  *
  * A connection is a pair of hits that face each other, with all that the energy of a path over both
  * depends on but materials, in SIMD lanes. Where a beam looks into a corner there are M of them for
@@ -76,10 +76,11 @@ enum class MirrorEnd : std::uint8_t
 struct MirrorPath
 {
   std::uint32_t start;       ///< by regions: surface on which it starts
-  std::uint32_t one;         ///< hit of the first reflection; by regions: stratum of the surface
+  std::uint32_t one;         ///< hit of the first reflection; by regions: sample of the surface
   std::uint32_t first;       ///< triangle of the first reflection
   std::uint32_t triangle;    ///< of the second reflection
   double weight;             ///< share of the pulse's energy
+  double back;               ///< the same of light that goes the other way, over `weight`
   double cosine;             ///< of incidence at the first point
   double rangeOne;           ///< of the first point, m
   double length;             ///< whole path, m
@@ -87,6 +88,19 @@ struct MirrorPath
   ReflectionGeometry second; ///< angles at the second point
   Vec3 from, end;            ///< the two points, m, from the apex
   Visibility visibility;     ///< whether anything stands in its way
+};
+
+/// A path of matt light whose form factor exceeds MostFormFactor (SecondaryReflection.h).
+struct ShortPath
+{
+  std::uint32_t one;         ///< hit of the first reflection
+  std::uint32_t triangle;    ///< of the second reflection
+  double weight;             ///< share of the pulse's energy
+  double length;             ///< whole path, m
+  double range;              ///< of the second point, m
+  ReflectionGeometry first;  ///< angles at the first point
+  ReflectionGeometry second; ///< angles at the second point
+  Vec3 from, end;            ///< the two points, m, from the apex
 };
 
 /// Known paths of a beam.
@@ -97,13 +111,15 @@ struct SecondaryTrace
   std::vector<char> searched;
   std::vector<MirrorPath> mirrorPaths; ///< in the order of hits
   SecondaryConnections connections;
-  std::uint32_t partners = 0; ///< M of `connections`
+  std::uint32_t partners = 0;        ///< M of `connections`
+  std::vector<ShortPath> shortPaths; ///< in the order of hits
+  bool shortTraced = false;          ///< true once `shortPaths` holds all of them
 
   std::size_t bytes() const
   {
     return sizeof(SecondaryTrace) + this->mirror.capacity() * sizeof(MirrorEnd) +
       this->mirrorPaths.capacity() * sizeof(MirrorPath) + this->searched.capacity() +
-      this->connections.bytes();
+      this->shortPaths.capacity() * sizeof(ShortPath) + this->connections.bytes();
   }
 };
 }

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "SecondaryTracer.h"
 
+#include "BeamShape.h"
+#include "Random.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -29,8 +32,8 @@ double distanceInCone(
   return reach * (1.0 + 1e-6) + 1e-6 * range;
 }
 
-/// Where the mirror path of a hit ends, if that is in the cone and seen by the lidar.
-Hit mirrorEnd(const ScanSetup& setup, const SecondaryBeam& beam, const SecondaryScene& scene,
+/// Where the path of a hit into a direction ends, if that is in the cone and seen by the lidar.
+Hit pathEnd(const ScanSetup& setup, const SecondaryBeam& beam, const SecondaryScene& scene,
   std::uint32_t hit, const Vec3& direction)
 {
   const HitPoint from(beam.samples, scene.geometry, hit);
@@ -62,12 +65,12 @@ Hit mirrorEnd(const ScanSetup& setup, const SecondaryBeam& beam, const Secondary
   return visible ? end : Hit();
 }
 
-void traceMirror(
-  const ScanSetup& setup, const SecondaryBeam& beam, const SecondaryScene& scene, std::uint32_t hit)
+void traceMirror(const ScanSetup& setup, const SecondaryBeam& beam, const SecondaryScene& scene,
+  const BeamShape& shape, std::uint32_t hit)
 {
   const HitPoint from(beam.samples, scene.geometry, hit);
   const Vec3 direction = mirrorDirection(scene.geometry.direction(hit), from.normal);
-  const Hit found = mirrorEnd(setup, beam, scene, hit, direction);
+  const Hit found = pathEnd(setup, beam, scene, hit, direction);
   if (!found.valid())
   {
     beam.trace.mirror[hit] = MirrorEnd::Nowhere;
@@ -78,11 +81,60 @@ void traceMirror(
   // The range that was found, not the plane's once more: seen edge-on they have little in common.
   const Vec3 point = from.point + found.range * direction;
   const double range = safeLength(point);
-  beam.trace.mirrorPaths.push_back(
-    { 0, hit, scene.geometry.triangle(hit), found.triangle, beam.samples.weight[hit],
-      beam.samples.cosine[hit], from.range, from.range + found.range + range, range,
-      reflectionGeometry(direction, -point / range, end.normal), from.point, point,
-      Visibility::Clear });
+  const auto densityAt = [&](const Vec3& p)
+  {
+    const Vec3 q = scene.frame.toPlane(p);
+    return shape.density(q.x / q.z, q.y / q.z);
+  };
+  beam.trace.mirrorPaths.push_back({ 0, hit, scene.geometry.triangle(hit), found.triangle,
+    beam.samples.weight[hit], densityAt(point) / densityAt(from.point), beam.samples.cosine[hit],
+    from.range, from.range + found.range + range, range,
+    reflectionGeometry(direction, -point / range, end.normal), from.point, point,
+    Visibility::Clear });
+}
+
+/// A direction from a surface, drawn as its matt light is spread.
+Vec3 drawDirection(
+  const ScanSetup& setup, const SecondaryBeam& beam, std::uint64_t number, const Vec3& normal)
+{
+  const auto u = uniformPair(setup.settings.seed, beam.id, number, RandomPurpose::ShortPaths);
+  const Vec3 other = std::fabs(normal.x) < 0.7 ? Vec3(1.0, 0.0, 0.0) : Vec3(0.0, 1.0, 0.0);
+  const Vec3 e1 = unitVector(glm::cross(normal, other));
+  const Vec3 e2 = glm::cross(normal, e1);
+  const double turn = 2.0 * Pi * u[1];
+  const double sine = std::sqrt(u[0]);
+  return unitVector(
+    sine * (std::cos(turn) * e1 + std::sin(turn) * e2) + std::sqrt(1.0 - u[0]) * normal);
+}
+
+/// Follow the k-th of a ray's directions.
+void traceShortPath(const ScanSetup& setup, const SecondaryBeam& beam, const SecondaryScene& scene,
+  std::uint32_t hit, std::uint32_t k)
+{
+  const HitPoint from(beam.samples, scene.geometry, hit);
+  const Vec3 direction = drawDirection(
+    setup, beam, std::uint64_t{ beam.samples.ray[hit] } * beam.trace.partners + k, from.normal);
+  const Hit found = pathEnd(setup, beam, scene, hit, direction);
+  if (!found.valid())
+  {
+    return;
+  }
+  const SeenTriangle end = seeTriangle(*setup.tree->mesh, found.triangle, scene.frame.origin);
+  const Vec3 point = from.point + found.range * direction;
+  const double range = safeLength(point);
+  const ReflectionGeometry first =
+    reflectionGeometry(scene.geometry.direction(hit), direction, from.normal);
+  const ReflectionGeometry second = reflectionGeometry(direction, -point / range, end.normal);
+  const double excess = 1.0 -
+    MostFormFactor /
+      formFactor(first.cosOutgoing, second.cosIncidence, found.range, range, second.cosOutgoing,
+        setup.sensor.solidAngle());
+  if (excess > 0.0)
+  {
+    beam.trace.shortPaths.push_back(
+      { hit, found.triangle, beam.samples.weight[hit] * excess / beam.trace.partners,
+        from.range + found.range + range, range, first, second, from.point, point });
+  }
 }
 
 /// Whether something stands between the hits of a connection.
@@ -116,6 +168,7 @@ void traceMirrors(const ScanSetup& setup, const SecondaryBeam& beam,
     return;
   }
   const SecondaryScene scene = beam.scene();
+  const BeamShape shape(setup.sensor);
   const bool constrained = setup.settings.beamConstraint;
   if (constrained)
   {
@@ -134,7 +187,7 @@ void traceMirrors(const ScanSetup& setup, const SecondaryBeam& beam,
     }
     else
     {
-      traceMirror(setup, beam, scene, hit);
+      traceMirror(setup, beam, scene, shape, hit);
     }
   }
   std::sort(trace.mirrorPaths.begin(), trace.mirrorPaths.end(),
@@ -164,6 +217,27 @@ void traceRegions(const SecondaryBeam& beam, const std::vector<double>& throughp
         path.first, path.triangle);
     path.visibility = clear ? Visibility::Clear : Visibility::Blocked;
   }
+}
+
+void traceShortPaths(const ScanSetup& setup, const SecondaryBeam& beam, ConnectionFinder& finder)
+{
+  if (beam.trace.shortTraced)
+  {
+    return;
+  }
+  beam.trace.shortPaths.clear(); // of work that was stopped
+  const SecondaryScene scene = beam.scene();
+  const bool any = finder.findFacing(beam.samples, scene.geometry);
+  for (std::uint32_t hit = 0; any && hit < beam.samples.size(); ++hit)
+  {
+    beam.askWhetherWanted(hit);
+    const bool faces = finder.faces(scene.geometry.surface[hit], scene.geometry.surfaces.size());
+    for (std::uint32_t k = 0; faces && k < beam.trace.partners; ++k)
+    {
+      traceShortPath(setup, beam, scene, hit, k);
+    }
+  }
+  beam.trace.shortTraced = true;
 }
 
 void traceConnections(

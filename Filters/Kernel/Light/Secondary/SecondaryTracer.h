@@ -2,7 +2,7 @@
 /**
  * @file SecondaryTracer.h
  * @brief Traces the paths on from the hits of a beam (SecondaryReflection.h): where mirror paths
- * end, and whether anything stands in the way of connections.
+ * and short paths end, and whether anything stands in the way of connections.
  *
  * The results are geometry and go to the beam's trace. Only paths that may be as strong as the
  * caller needs are traced, and no mirror paths from samples on surfaces that face nothing
@@ -16,6 +16,7 @@
 #ifndef avianlidar_SecondaryTracer_h
 #define avianlidar_SecondaryTracer_h
 
+#include "ConnectionFinder.h"
 #include "MirrorPairs.h"
 #include "ScanSetup.h"
 #include "SecondaryBeam.h"
@@ -33,6 +34,9 @@ void traceMirrors(const ScanSetup& setup, const SecondaryBeam& beam,
 /// Find which mirror paths by regions (MirrorRegions.h) of at least the throughput `least` are
 /// blocked, if not known yet. @param throughputs by path, if it is not blocked
 void traceRegions(const SecondaryBeam& beam, const std::vector<double>& throughputs, double least);
+
+/// Find the short paths of the samples, if not known yet.
+void traceShortPaths(const ScanSetup& setup, const SecondaryBeam& beam, ConnectionFinder& finder);
 
 /// Find which connections of at least the throughput `least` are blocked, if not known yet.
 /// @param throughputs by connection, if it is not blocked

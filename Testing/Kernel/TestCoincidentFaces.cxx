@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Surfaces that lie on each other: the one with the lower number is seen, in every way of looking,
+// however finely the other is meshed and wherever the scene lies. Oracle: the scene without what is
+// hidden, in which nothing coincides.
+#include "CoincidentTestScene.h"
+
+#include "CollisionTreeBuilder.h"
+
+#include <algorithm>
+#include <utility>
+#include <vector>
+
+using namespace coincidenttest;
+
+TEST(CoincidentFaces, TheLowerNumberIsSeenByRays)
+{
+  for (const int parts : { 20, 60 })
+  {
+    for (const CoincidentPlates& pair : pairs(parts))
+    {
+      for (const bool wallFirst : { true, false })
+      {
+        const double right = receivedAt(Vec3(0.0), pair.seen(wallFirst), byRays(1000));
+        for (const Vec3& place : { Vec3(0.0), Utm })
+        {
+          for (int volume = 0; volume < (parts > 20 ? 1 : 3); ++volume)
+          {
+            TreeOptions options;
+            options.boundingVolume = static_cast<BoundingVolumeType>(volume);
+            EXPECT_NEAR(
+              receivedAt(place, pair.scene(wallFirst), byRays(1000), options) / right, 1.0, 1e-6)
+              << parts << ' ' << pair.u.x << ' ' << wallFirst << ' ' << place.x << ' ' << volume;
+          }
+        }
+      }
+    }
+  }
+}
+
+TEST(CoincidentFaces, TheLowerNumberIsSeenInCells)
+{
+  for (const int parts : { 20, 60 })
+  {
+    for (const CoincidentPlates& pair : pairs(parts))
+    {
+      for (const bool wallFirst : { true, false })
+      {
+        const double right = receivedAt(Vec3(0.0), pair.seen(wallFirst), inCells());
+        for (const Vec3& place : { Vec3(0.0), Utm })
+        {
+          EXPECT_NEAR(receivedAt(place, pair.scene(wallFirst), inCells()) / right, 1.0, 3e-3)
+            << parts << ' ' << pair.u.x << ' ' << wallFirst << ' ' << place.x;
+        }
+      }
+    }
+  }
+}
+
+TEST(CoincidentFaces, TheLowerNumberIsSeenInPolygons)
+{
+  for (const CoincidentPlates& pair : pairs(8))
+  {
+    for (const bool wallFirst : { true, false })
+    {
+      const double right = receivedAt(Vec3(0.0), pair.seen(wallFirst), inCells());
+      for (const Vec3& place : { Vec3(0.0), Utm })
+      {
+        EXPECT_NEAR(receivedAt(place, pair.scene(wallFirst), inCells(9000)) / right, 1.0, 1e-5)
+          << pair.u.x << ' ' << wallFirst << ' ' << place.x;
+      }
+    }
+  }
+}
+
+TEST(CoincidentFaces, CornersInSinglePrecisionCoincide)
+{
+  for (const CoincidentPlates& pair : pairs(60))
+  {
+    for (const bool wallFirst : { true, false })
+    {
+      Scene scene = pair.scene(wallFirst);
+      for (Vec3& p : scene.mesh->points)
+      {
+        for (int axis = 0; axis < 3; ++axis)
+        {
+          volatile float single = static_cast<float>(p[axis]); // else GCC 12 does not round
+          p[axis] = static_cast<double>(single);
+        }
+      }
+      const double right = received(pair.seen(wallFirst), openSensor(), inCells());
+      EXPECT_NEAR(received(scene, openSensor(), inCells()) / right, 1.0, 3e-3);
+      EXPECT_NEAR(received(scene, openSensor(), byRays(1000)) / right, 1.0, 1e-2);
+    }
+  }
+}
+
+TEST(CoincidentFaces, NeighboursAndCloseSurfacesKeepTheirPlanes)
+{
+  Scene scene = fineWall(20, Vec3(17.0, 1.9, 0.3));
+  scene.box(Vec3(50.1, 0.1, 0.0), Vec3(1.0, 2.0, 3.0), Wall, 3);
+  scene.box(Vec3(50.1, 4.1, 0.0), Vec3(1.0, 1.999999, 3.0), Wall, 4);
+  EXPECT_TRUE(buildCollisionTree(scene.mesh, {})->planeOwners.empty());
+  moveBy(scene, Utm);
+  EXPECT_TRUE(buildCollisionTree(scene.mesh, {})->planeOwners.empty());
+}
+
+TEST(CoincidentFaces, OwnersDependOnTheMeshAlone)
+{
+  const Scene scene = pairs(20)[3].scene(false);
+  const auto usual = buildCollisionTree(scene.mesh, {}, {}, 1);
+  const std::uint32_t wall = static_cast<std::uint32_t>(scene.mesh->size()) - 2;
+  std::size_t taken = 0;
+  for (const std::uint32_t owner : usual->planeOwners)
+  {
+    taken += owner == wall || owner == wall + 1 ? 1 : 0;
+  }
+  EXPECT_GT(taken, scene.mesh->size() / 2);
+  for (const SplitRule rule : { SplitRule::Halves, SplitRule::Median, SplitRule::PrincipalPlane })
+  {
+    for (const int threads : { 1, 3 })
+    {
+      EXPECT_EQ(
+        buildCollisionTree(scene.mesh, { rule }, {}, threads)->planeOwners, usual->planeOwners);
+    }
+  }
+}
+
+TEST(CoincidentFaces, AScanNamesObjectsOfWhichOneIsSeen)
+{
+  const auto pairsOf = [](const Scene& scene, const EchoSettings& settings)
+  {
+    const ScanSetup setup = makeSetup(scene, openSensor(), settings);
+    std::vector<std::pair<int, int>> objects;
+    for (const CoincidentPair& pair : runScan(setup, oneBeam()).coincident)
+    {
+      objects.emplace_back(setup.objectIds[pair.first], setup.objectIds[pair.second]);
+    }
+    return objects;
+  };
+  using Objects = std::vector<std::pair<int, int>>;
+  for (const EchoSettings& settings : { byRays(100), inCells(), inCells(9000) })
+  {
+    Scene scene = pairs(6)[3].scene(true);
+    EXPECT_EQ(pairsOf(scene, settings), (Objects{ { 1, 2 } }));
+    EXPECT_EQ(pairsOf(pairs(6)[3].scene(false), settings), (Objects{ { 2, 1 } }));
+    std::fill(scene.objects.begin(), scene.objects.end(), 1);
+    EXPECT_EQ(pairsOf(scene, settings), (Objects{ { 1, 1 } }));
+    std::fill(scene.materials.begin(), scene.materials.end(), Matt);
+    EXPECT_EQ(pairsOf(scene, settings), Objects());
+    // A common wall, of which only the part above the lower building is seen.
+    Scene buildings;
+    buildings.box(Vec3(110.0, 0.0, -1.5), Vec3(10.0, 2.0, 1.5), Wall, 1);
+    buildings.box(Vec3(130.0, 0.0, 0.0), Vec3(10.0, 2.0, 3.0), Wood, 2);
+    EXPECT_FALSE(buildCollisionTree(buildings.mesh, {})->planeOwners.empty());
+    EXPECT_EQ(pairsOf(buildings, settings), Objects());
+  }
+}

@@ -1,0 +1,31 @@
+#!/bin/sh
+# SPDX-License-Identifier: BSD-3-Clause
+# Run by debian13.sh in the clone: the airport's command, then the build with its tests, the plugin in pvpython, and some tests of each
+# layer, which take no more than eight minutes.
+set -eu
+
+cd "$(dirname "$0")/../.."
+begin=$(date +%s)
+# step NAME COMMAND...: prints how long it took or, if it failed, the end of what it printed.
+step() {
+  name=$1
+  shift
+  "$@" > /tmp/step.log 2>&1 || { tail -200 /tmp/step.log; echo "ERROR: $name"; exit 1; }
+  echo "$name: $(($(date +%s) - begin)) s after the begin"
+}
+
+step "Debian 13, the airport" Examples/airport/run.sh
+for picture in Airport16-top Airport16-close Airport16-range Airport32-top Airport32-close Airport32-range; do
+  [ -s "build/airport/$picture.png" ] || { echo "ERROR: build/airport/$picture.png is missing"; exit 1; }
+done
+step "Debian 13, the tests' configuration" cmake --preset paraview -DBUILD_TESTING=ON -DAVIANLIDAR_KERNEL_TESTS=BITS
+step "Debian 13, the tests' build" cmake --build --preset paraview
+
+python='(Airport|BadInput|Command|EchoPipeline|ExampleAirport|HelperFiles|HelperPipeline|HelperScenes|Laz|PacketReader|PointCloudReader'
+python="$python|SceneObjects|Sensors|SequenceReader|Sources|Stubs|Tracker|Weather|WriterErrors)"
+plugin='(Animation|ColourPreset|Errors|Help|Pipeline|PipelineImage|Proxies|Start|State|Writers)'
+export OMP_WAIT_POLICY=passive
+step "Debian 13, tests" xvfb-run -a -s "-screen 0 1280x1024x24 -noreset" ctest --test-dir build/paraview --no-tests=error \
+  --output-on-failure -j 2 -LE 'nightly|bare' \
+  -R "Cxx-|Kernel-InstructionSets|Python-Test$python\$|Plugin-Test$plugin\$|Parallel-TestRanks(Errors)?-2"
+grep "tests passed" /tmp/step.log
