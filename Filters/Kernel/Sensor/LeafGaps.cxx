@@ -126,9 +126,11 @@ void LeafGaps::place(const std::array<double, 2>& centre, const Stream& of, F dr
   bool isDrawn = false;
   double least = 0.0; // density of the medium from which on this leaf exists
   double cosine = 1.0;
-  std::array<double, 4> turned{}; // to coordinates in which the leaf is the unit disc
+  double along = 0.0;
+  double beside = 0.0;
+  // Coordinates in which the leaf is the unit disc.
   const auto toLeaf = [&](double x, double y) -> std::array<double, 2> {
-    return { turned[0] * x + turned[1] * y, turned[2] * x + turned[3] * y };
+    return { x * along + y * beside, (y * along - x * beside) / cosine };
   };
   for (std::size_t i = this->Left.size(); i-- > 0;)
   {
@@ -140,12 +142,11 @@ void LeafGaps::place(const std::array<double, 2>& centre, const Stream& of, F dr
     }
     if (!isDrawn)
     {
-      const auto [turn, density] = draw(1);
-      const double c = std::cos(Pi * turn) / of.radius;
-      const double d = std::sin(Pi * turn) / of.radius;
-      least = density;
+      const double turn = Pi * draw(1)[0];
+      along = std::cos(turn) / of.radius;
+      beside = std::sin(turn) / of.radius;
+      least = draw(1)[1];
       cosine = draw(2)[0];
-      turned = { c, d, -d / cosine, c / cosine };
       isDrawn = true;
     }
     Ray& ray = this->Rays[this->Left[i].ray];
