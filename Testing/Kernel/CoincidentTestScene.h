@@ -18,8 +18,8 @@ const Material Dark{ 0.05, 0.0, 1.0 };
 struct CoincidentPlates
 {
   Vec3 center, u, v;
-  Vec3 patch, half; ///< of the second in units of u and v: centre, extent
-  int parts;        ///< of the second: parts x parts quadrilaterals
+  Vec3 patch, half; ///< centre and extent of the second surface in units of u and v
+  int parts;        ///< the second surface has parts x parts quadrilaterals
   bool turned;      ///< it is wound the other way
 
   Vec3 at(double a, double b) const { return this->center + a * this->u + b * this->v; }

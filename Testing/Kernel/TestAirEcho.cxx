@@ -266,7 +266,7 @@ TEST(AirEcho, UnitsAreIntegralsOfTheLaw)
       EXPECT_LT(echo.mean(0), sensor.pulseEnergy * 2.0 * Pi / 30.0);
     }
   }
-  // Before the gate there is none: of the unit in which it begins, a part.
+  // Nothing arrives before the gate; the unit in which it begins is recorded in part.
   sensor.minimumRange = 1.7;
   const Medium air{ 1e-4, 30.0, 2.0 };
   const AirEcho gated(sensor, { air }, 1e-4);

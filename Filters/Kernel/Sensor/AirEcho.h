@@ -133,7 +133,7 @@ public:
 
 private:
   std::int64_t Reach;
-  std::vector<std::int64_t> Numbers; ///< of the units whose drops are known
+  std::vector<std::int64_t> Numbers; ///< units whose drops are known
   std::vector<double> Shares;        ///< J, of each in 2 Reach + 1 units
 };
 

@@ -83,7 +83,7 @@ public:
   {
     double x, y;        ///< in the beam's plane
     double weight;      ///< share of the pulse
-    std::uint64_t bits; ///< of the grid
+    std::uint64_t bits; ///< cells of the grid, one bit each
     // The point of the aperture to which light returns; those of neighbours lie far apart.
     std::array<double, 2> towards{}; ///< unit vector from the middle of the aperture
     double nearer = 0.0;             ///< share of the aperture's area that is nearer to the middle
@@ -209,7 +209,7 @@ private:
     std::uint32_t medium;
     std::uint32_t met; ///< its place in Met
     MediumCrossing crossing;
-    double perLeaf; ///< of leaves: 1 over their diameter, 1/m
+    double perLeaf; ///< inverse diameter of a leaf, 1/m
   };
   using Steady = std::array<double, 3>; ///< from and to, m, and the slope of the depth, 1/m
   bool rimAgrees(const BeamFrame& frame);

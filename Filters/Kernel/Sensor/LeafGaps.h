@@ -58,7 +58,7 @@ private:
   struct Ray
   {
     std::array<double, 2> aperture; ///< point to which its light returns, m
-    double share;                   ///< of the pulse
+    double share;                   ///< share of the pulse
     std::size_t column;
     MetLeaf leaf; ///< at which it ends; at an infinite range: none
     bool isSeen;  ///< no leaf stops the light of that leaf on its way back
@@ -81,9 +81,9 @@ private:
     BeamAir::Leaves leaves;
     std::int32_t scan;
     double perVolume;     ///< 1/m^3
-    double radius;        ///< of a leaf, m
+    double radius;        ///< radius of a leaf, m
     double rim;           ///< greatest distance from a ray at which a leaf matters, m
-    std::uint64_t number; ///< of draws
+    std::uint64_t number; ///< number of draws
     double range;         ///< m, of the next leaf
   };
   void makeRays(double turn, double shift);

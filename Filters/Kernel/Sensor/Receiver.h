@@ -173,7 +173,7 @@ private:
   std::uint64_t Beam = 0;
   BeamAir* Along = nullptr; ///< of that beam
   LeafGaps Gaps;            ///< of it, if it is narrow
-  SharedDrops Drops;        ///< of it
+  SharedDrops Drops;        ///< drops that share their pulses
   std::int32_t Seed;
   std::int32_t Revolution;
   ReturnMode Mode;

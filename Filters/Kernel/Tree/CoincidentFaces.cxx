@@ -23,7 +23,7 @@ struct Face
   float normal[3];
   float tilt;           ///< rad, by which rounding may turn it
   float tolerance;      ///< toleranceOf(), rounded up
-  std::uint32_t number; ///< of the triangle
+  std::uint32_t number; ///< triangle number
 };
 
 /// Twice the area, along the normal.
@@ -467,8 +467,9 @@ private:
   const TriangleMesh& Mesh;
   ParallelTeam& Team;
   std::vector<Face> Faces;
-  std::unique_ptr<std::atomic<std::uint32_t>[]> Parents; ///< of sets of triangles that coincide
-  float Slack = 0.0f;                                    ///< m, most that boxes may lie apart
+  std::unique_ptr<std::atomic<std::uint32_t>[]>
+    Parents;          ///< sets of triangles that coincide, as a forest
+  float Slack = 0.0f; ///< m, most that boxes may lie apart
   std::atomic<bool> Found{ false };
 };
 }

@@ -35,7 +35,7 @@ struct vtkAvianLidarScanFilter::vtkInternals
   vtkAvianLidarSurfaceExchange Exchange;       ///< of surfaces between ranks
   std::vector<avianlidar::PlacedMedium> Media; ///< of the surfaces
   std::vector<std::string> MediaOf;            ///< their texts
-  avianlidar::LidarView MediaFor;              ///< of the lidar
+  avianlidar::LidarView MediaFor;              ///< view of the lidar
   avianlidar::SceneSummary Summary;            ///< of them
   std::shared_ptr<const avianlidar::CollisionTree> OwnTree;
   vtkAvianLidarContent::State State; ///< of the surfaces merged last

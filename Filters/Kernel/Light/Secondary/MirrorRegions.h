@@ -125,7 +125,7 @@ private:
   BeamFrame Frame;
   const VisiblePolygons* Seen = nullptr;
   double ShareOfArea = 0.0;
-  std::uint32_t Sample = 0; ///< of the surface; two neighbours are a stratum
+  std::uint32_t Sample = 0; ///< number of the sample on the surface; two neighbours are a stratum
   std::uint64_t Pair = 0;   ///< surfaces between which paths were placed last
   std::uint64_t Drawn = 0;  ///< for these
   std::uint32_t Start = 0;  ///< surface on which paths start
