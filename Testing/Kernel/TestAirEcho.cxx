@@ -523,7 +523,7 @@ TEST(AirEcho, PointsOfRainAreThoseOfDropsOneByOne)
     double all = 0.0;
     for (auto unit = static_cast<std::size_t>(from / length); unit < to / length; ++unit)
     {
-      all += points[unit];
+      all += unit < points.size() ? points[unit] : 0.0;
     }
     return all;
   };

@@ -222,7 +222,7 @@ def sea(features: Sequence[Feature], box) -> List[Any]:
                 ends = np.array((coast.GetGeometryRef(i) if coast.GetGeometryCount() else coast).GetPoints() or np.empty((0, 2)))[:, :2]
                 ways = np.diff(ends, axis=0)
                 right += list((ends[:-1] + ends[1:]) / 2 + 1e-3 * np.column_stack([ways[:, 1], -ways[:, 0]]))
-    faces = lines.Polygonize() if right else None
+    faces: Any = lines.Polygonize() if right else None
     found = []
     for i in range(faces.GetGeometryCount() if faces is not None else 0):
         face = faces.GetGeometryRef(i)
@@ -626,7 +626,7 @@ class Airport:
         if self.dem is None:
             spacing = FLAT_SPACING
             columns, rows = (int(math.ceil((high - low) / spacing)) + 1 for low, high in ((west, east), (south, north)))
-            posts = np.zeros((rows, columns))
+            posts: np.ndarray = np.zeros((rows, columns))
             self.terrain_words = (f"heights: none given: the ground is level at 0 m (assumed), and curves as the Earth does")
         else:
             posts, spacing, here, self.terrain_words = read_heights(self.dem, self.origin, rectangle, self.known)
@@ -900,7 +900,7 @@ Check on site
             colour = COLOURS.get(word, PLANTS if word in ("tree", "vegetation") else BUILDING)
             shown[word] = colour
             order = {"grass": 1, "water": 2, "parking": 2, "road": 3, "apron": 4, "taxiway": 5, "runway": 6, "vegetation": 7}.get(word, 8)
-            axes.add_collection(PolyCollection(triangles[:, :, :2], facecolors=colour, edgecolors=colour, linewidths=0.2, zorder=order))
+            axes.add_collection(PolyCollection(list(triangles[:, :, :2]), facecolors=colour, edgecolors=colour, linewidths=0.2, zorder=order))
         axes.plot(*self.position[:2], "r^", markersize=8, zorder=20)
         for runway in self.sides:
             axes.annotate(runway.name, runway.start, color="white", fontsize=8, ha="center", zorder=21,

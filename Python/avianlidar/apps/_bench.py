@@ -176,7 +176,7 @@ class Set:
 
     def groups(self, number: str, points: Points) -> Dict[Tuple[str, str], np.ndarray]:
         """Which points are in a group: by what, and its name."""
-        found = {("all", ""): np.ones(len(points.bird), bool)}
+        found: Dict[Tuple[str, str], np.ndarray] = {("all", ""): np.ones(len(points.bird), bool)}
         found.update({("subset", words.replace("_", " ")): points.subset == place for place, words in enumerate(SUBSETS)})
         found.update({("range", range_words(low, high)): (points.range >= low) & (points.range < high) for low, high in zip(RANGES, RANGES[1:])})
         names = self.species(number)

@@ -564,7 +564,7 @@ def value_of_same_birds(scene, sensor, sites, places, species: Sequence[str], we
             for number, name in enumerate(species):
                 cover.species = name
                 weight = weights[number * len(airs):(number + 1) * len(airs), part]
-                missed = np.ones((*weight.shape, 1), dtype=np.float32)  # airs x places x poses
+                missed: np.ndarray = np.ones((*weight.shape, 1), dtype=np.float32)  # airs x places x poses
                 for site in sites:
                     sensor.position = tuple(site)
                     found = []
