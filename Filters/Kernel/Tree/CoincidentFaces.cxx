@@ -283,7 +283,7 @@ private:
       const float y = std::fabs(node.y[i] - part.centre[1]) - (node.halfY[i] + part.half[1]);
       const float z = std::fabs(node.z[i] - part.centre[2]) - (node.halfZ[i] + part.half[2]);
       const float apart = x > y ? (x > z ? x : z) : (y > z ? y : z);
-      met[i] = !(apart > slack) & (node.first[i] != NoChild) ? 1u : 0u;
+      met[i] = (!(apart > slack) & (node.first[i] != NoChild)) ? 1u : 0u;
     }
     std::uint32_t bits = 0;
     for (int i = 0; i < WideNode::Width; ++i)
