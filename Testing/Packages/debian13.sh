@@ -4,7 +4,7 @@
 # into pvpython and runs some tests of every layer. With arguments these are the command to run in the clone instead, such as
 # Testing/run.sh.
 # The system with its packages is kept in /var/cache/avian-lidar. It is made again when the list of packages has changed, and after a
-# week. If that fails three times, as it does without a network, the newest one that is there is used. Needs root.
+# week. If that fails, as it does without a network, the one that is there is used; if there is none, it is tried three times. Needs root.
 set -eu
 
 cd "$(dirname "$0")/../.."
@@ -13,29 +13,42 @@ kind=trixie-$(sha256sum CMake/debian-packages.txt | cut -c 1-12)
 system=$cache/$kind
 
 make_system() {
-  rm -rf --one-file-system "$system.new"
-  Testing/Packages/bare_system.sh trixie "$system.new" &&
+  timeout 15m Testing/Packages/bare_system.sh trixie "$system.new" &&
     mkdir "$system.new/packages" &&
     cp CMake/install-packages.sh CMake/debian-packages.txt "$system.new/packages" &&
-    unshare --mount --pid --fork --kill-child chroot "$system.new" \
+    timeout 20m unshare --mount --pid --fork --kill-child chroot "$system.new" \
       sh -c 'mount -t proc proc /proc && packages/install-packages.sh && apt-get clean' &&
     rm -rf --one-file-system "$system.new/packages" &&
     touch "$system.new"
 }
 
+newest() {
+  find "$cache" -maxdepth 1 -name 'trixie-????????????' -printf '%T@ %p\n' | sort -n | sed -n '$s/^[^ ]* //p'
+}
+
+for program in debootstrap unshare; do
+  command -v "$program" > /dev/null || { echo "debian13.sh: the program $program is missing" >&2; exit 1; }
+done
+unshare --mount --pid --fork true || { echo "debian13.sh: expected root, and permission to mount" >&2; exit 1; }
 mkdir -p "$cache"
+exec 9> "$cache/lock"
+flock 9 # until this run ends: another one must not replace the system under it
 if [ -z "$(find "$system" -maxdepth 0 -mtime -7 2> /dev/null)" ]; then
-  for pause in 30 120 0; do
+  pauses='30 120 end'
+  [ -z "$(newest)" ] || pauses=end
+  for pause in $pauses; do
+    rm -rf --one-file-system "$cache"/trixie-*.new
     if make_system; then
-      rm -rf --one-file-system "$cache"/trixie-????????????
+      old=$(newest)
+      [ -z "$old" ] || rm -rf --one-file-system "$old"
       mv "$system.new" "$system"
       break
     fi
-    echo "A bare Debian 13 could not be made; next attempt in $pause s"
-    sleep "$pause"
+    echo "A bare Debian 13 could not be made"
+    [ "$pause" = end ] || sleep "$pause"
   done
 fi
-system=$(find "$cache" -maxdepth 1 -name 'trixie-????????????' -printf '%T@ %p\n' | sort -n | sed -n '$s/^[^ ]* //p')
+system=$(newest)
 [ -n "$system" ] || { echo "There is neither a network to make a bare Debian 13 from nor an older one in $cache" >&2; exit 1; }
 echo "Debian $(cat "$system/etc/debian_version") of $(date -r "$system" +%F)"
 

@@ -4,7 +4,9 @@ import contextlib
 import io
 import os
 import pathlib
+import re
 import shutil
+import subprocess
 import sys
 
 import numpy as np
@@ -78,15 +80,17 @@ def documented_table(page, name):
 
 
 def assert_documented(test, table, page, name):
-    """The counts of a table are those of the page. Another processor may differ by a beam or two, and another version of
-    GEOS divides roofs into other triangles, which changes how many rays are traced."""
+    """The counts of a table are those of the page. Another processor may differ by a beam or two, and GEOS from 3.13 on
+    divides roofs into other triangles, which changes how many rays are traced."""
+    geos = tuple(map(int, re.findall(r"\d+", subprocess.run(["geos-config", "--version"], capture_output=True, text=True).stdout)[:2]))
+    traced = 0.01 if geos >= (3, 13) else 0.003
     documented = documented_table(page, name)
     test.assertEqual(list(table), list(documented))
     for column, rows in documented.items():
         for row, text in rows.items():
             if text.isdigit():
                 found, wanted = int(table[column][row]), int(text)
-                test.assertAlmostEqual(found, wanted, delta=2 + (0.01 if row == "rays traced" else 0.003) * wanted, msg=(column, row))
+                test.assertAlmostEqual(found, wanted, delta=2 + (traced if row == "rays traced" else 0.003) * wanted, msg=(column, row))
 
 
 BAD_ARGUMENTS = (("--rays", "0"), ("--rays", "-3"), ("--rays", "1000001"), ("--rays", "many"), ("--threads", "-1"),

@@ -36,10 +36,10 @@ def extinction(sensor: Sensor, **air: Any) -> float:
 
 
 @functools.lru_cache(maxsize=None)
-def extinction_of_rain(rate: float, half_beamwidth: float = 5.6e-3, wavelength: float = 905.0) -> float:
+def extinction_of_rain(rate: float, half_beamwidth: float = 5.6e-3, wavelength: float = 905.0, half_beamwidth_across: float = 0.0) -> float:
     """1/m, for a view that keeps most of the light which drops diffract, as eyes do that look for a dark object of half a degree. @param rate
-    mm/h @param half_beamwidth rad, of a round beam @param wavelength nm"""
-    seen = Sensor("Search905", half_beamwidth=half_beamwidth, wavelength=wavelength)
+    mm/h @param half_beamwidth rad @param wavelength nm @param half_beamwidth_across rad; 0: a round beam"""
+    seen = Sensor("Search905", half_beamwidth=half_beamwidth, half_beamwidth_across=half_beamwidth_across, wavelength=wavelength)
     return extinction(seen, visibility=0.0, attenuation_coefficient=0.0, rain_rate=rate)
 
 
@@ -48,5 +48,5 @@ def weakening(sensor: Sensor, air: Dict[str, Any]) -> Dict[str, Any]:
     dry = {**air, "air_backscatter": False, "rain_rate": 0.0}
     if not air["rain_rate"]:
         return dry
-    of_rain = extinction_of_rain(air["rain_rate"], sensor.half_beamwidth, sensor.wavelength)
+    of_rain = extinction_of_rain(air["rain_rate"], sensor.half_beamwidth, sensor.wavelength, sensor.half_beamwidth_across)
     return {**dry, "visibility": 0.0, "attenuation_coefficient": extinction(sensor, **dry) + of_rain}
