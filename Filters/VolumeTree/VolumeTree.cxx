@@ -170,12 +170,15 @@ std::shared_ptr<const CollisionTree> buildVolumeTree(std::shared_ptr<const Trian
                          { return keepGoing(std::min(to, from + (to - from) * done)); })
                      : KeepGoing();
   };
-  const auto tree = buildBinaryTree(std::move(mesh), options, part(0.0, Built), threads);
-  if (!tree)
+  const auto tree = buildBinaryTree(mesh, options, part(0.0, 0.5 * Built), threads);
+  const auto boxes =
+    tree ? buildCollisionTree(mesh, TreeOptions{}, part(0.5 * Built, Built), threads) : nullptr;
+  if (!boxes)
   {
     return nullptr;
   }
-  tree->planeOwners = buildCollisionTree(tree->mesh, TreeOptions{}, {}, threads)->planeOwners;
+  tree->planeOwners = boxes->planeOwners;
+  tree->planeDepth = boxes->planeDepth;
   TreeVolumes volumes;
   const bool finished = options.boundingVolume == BoundingVolumeType::OBB
     ? fit<OBB>(*tree, part(Built, 1.0), threads, volumes)

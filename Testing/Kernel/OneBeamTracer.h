@@ -16,8 +16,7 @@ namespace avianlidar
 inline double rangeOnTriangle(
   const CollisionTree& tree, std::uint32_t triangle, const BeamFrame& frame, double x, double y)
 {
-  SeenTriangle seen = seeTriangle(*tree.mesh, triangle, frame.origin);
-  seen.plane = planeOf(tree, triangle, seen.corners, frame.origin);
+  const SeenTriangle seen = seeTriangle(tree, triangle, frame.origin);
   return rangeOnTriangle(seen, frame, unitDirection(frame.direction(x, y)));
 }
 

@@ -292,15 +292,18 @@ TEST(BeamTracer, MovedToUtmAndEcefRangesAgreeToAMicrometre)
 
 TEST(BeamTracer, SeenTrianglesFaceTheApex)
 {
-  TriangleMesh mesh;
+  CollisionTree tree;
+  const auto made = std::make_shared<TriangleMesh>();
+  TriangleMesh& mesh = *made;
+  tree.mesh = made;
   addTriangle(mesh, { 0, 0, 10 }, { 2, 0, 10 }, { 0, 2, 10 });
   addTriangle(mesh, { 0, 0, 10 }, { 0, 2, 10 }, { 2, 0, 10 });
   addTriangle(mesh, { 0, 0, 10 }, { 1, 0, 10 }, { 2, 0, 10 });
-  const SeenTriangle up = seeTriangle(mesh, 0, { 0, 0, 4 });
+  const SeenTriangle up = seeTriangle(tree, 0, { 0, 0, 4 });
   EXPECT_EQ(up.corners.a, Vec3(0, 0, 6));
   EXPECT_EQ(up.corners.b, Vec3(2, 0, 6));
   EXPECT_EQ(up.normal, Vec3(0, 0, -1));
-  EXPECT_EQ(seeTriangle(mesh, 1, { 0, 0, 4 }).normal, Vec3(0, 0, -1));
-  EXPECT_EQ(seeTriangle(mesh, 1, { 0, 0, 14 }).normal, Vec3(0, 0, 1));
-  EXPECT_EQ(seeTriangle(mesh, 2, { 0, 0, 4 }).normal, Vec3(0, 0, 0));
+  EXPECT_EQ(seeTriangle(tree, 1, { 0, 0, 4 }).normal, Vec3(0, 0, -1));
+  EXPECT_EQ(seeTriangle(tree, 1, { 0, 0, 14 }).normal, Vec3(0, 0, 1));
+  EXPECT_EQ(seeTriangle(tree, 2, { 0, 0, 4 }).normal, Vec3(0, 0, 0));
 }

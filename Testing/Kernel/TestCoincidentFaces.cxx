@@ -12,6 +12,21 @@
 
 using namespace coincidenttest;
 
+namespace
+{
+void roundToSingle(Scene& scene)
+{
+  for (Vec3& p : scene.mesh->points)
+  {
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      volatile float single = static_cast<float>(p[axis]); // else GCC 12 does not round
+      p[axis] = static_cast<double>(single);
+    }
+  }
+}
+}
+
 TEST(CoincidentFaces, TheLowerNumberIsSeenByRays)
 {
   for (const int parts : { 20, 60 })
@@ -79,17 +94,38 @@ TEST(CoincidentFaces, CornersInSinglePrecisionCoincide)
     for (const bool wallFirst : { true, false })
     {
       Scene scene = pair.scene(wallFirst);
-      for (Vec3& p : scene.mesh->points)
-      {
-        for (int axis = 0; axis < 3; ++axis)
-        {
-          volatile float single = static_cast<float>(p[axis]); // else GCC 12 does not round
-          p[axis] = static_cast<double>(single);
-        }
-      }
+      roundToSingle(scene);
       const double right = received(pair.seen(wallFirst), openSensor(), inCells());
       EXPECT_NEAR(received(scene, openSensor(), inCells()) / right, 1.0, 3e-3);
       EXPECT_NEAR(received(scene, openSensor(), byRays(1000)) / right, 1.0, 1e-2);
+    }
+  }
+}
+
+TEST(CoincidentFaces, LightOfSecondReflectionsIsNotStoppedByTheHiddenFace)
+{
+  // A wall and the floor before it; what the floor adds over two reflections.
+  Sensor sensor = openSensor();
+  for (const double aperture : { 0.0, 0.00785 })
+  {
+    sensor.receiverAperture = aperture;
+    for (const CoincidentPlates& pair : pairs(60))
+    {
+      const auto secondary = [&](Scene scene, bool single)
+      {
+        scene.plate(Vec3(97.0, 0.0, -0.3), Vec3(3.4, 0.0, 0.0), Vec3(0.0, 2.0, 0.0), Matt, 3);
+        if (single)
+        {
+          roundToSingle(scene);
+        }
+        EchoSettings settings = byRays(1000);
+        const double direct = received(scene, sensor, settings);
+        settings.numberOfReflections = 2;
+        return received(scene, sensor, settings) / direct - 1.0;
+      };
+      const double right = secondary(pair.seen(false), false);
+      EXPECT_GT(right, 1e-4);
+      EXPECT_NEAR(secondary(pair.scene(false), true) / right, 1.0, 2e-2) << aperture;
     }
   }
 }

@@ -118,7 +118,7 @@ TEST(StabilityCoordinates, AreaOfMicrometreTriangles)
       const long double stored =
         doubleArea(wide(mesh.points[0]), wide(mesh.points[1]), wide(mesh.points[2]));
       const long double right = doubleArea(meant[0], meant[1], meant[2]);
-      const Vec3 normal = avianlidar::seeTriangle(mesh, 0, apex + Vec3(1e-6)).plane.normal;
+      const Vec3 normal = planeOf(avianlidar::cornersFrom(mesh, 0, apex + Vec3(1e-6))).normal;
       ofInput.see(static_cast<double>(std::fabs(stored / right - 1.0L)));
       ofKernel.see(
         static_cast<double>(std::fabs(std::sqrt(dot(wide(normal), wide(normal))) / stored - 1.0L)));

@@ -76,7 +76,7 @@ struct BeamSurface : PlaneSurface
   int count = 0;         ///< of `lines`
   PlaneLine lines[4];    ///< sides that meet the octagon; slope 1, positive inside
   double mostInverse;    ///< upper bound of 1/z in the octagon
-  double sortInverse;    ///< the same, for all surfaces that coincide that of their plane
+  double sortInverse;    ///< the same; surfaces that coincide have that of their plane
   double area;           ///< in half-beamwidths squared; AreaUnknown if it crosses the rim
 };
 

@@ -254,9 +254,10 @@ bool BeamLighting::mayBePerceived(double most, double ofPaths)
 /// True if nothing of the beam can be perceived. @param most J, bound of its strongest unit
 bool BeamLighting::isSkipped(double most, double farthest, double nearest)
 {
-  // The report says what arrives beyond the gate.
+  // The report says what arrives outside the gate.
   const bool perceivable = this->LightsAll || this->Receiver.mayAlarm() ||
     this->Air.returnsLight() || !(most < SurelyBelow * this->Setup.sensor.lowerEnergyLimit) ||
+    nearest < this->Setup.sensor.minimumRange ||
     !(this->Units.lastUnitOf(farthest) < static_cast<double>(this->Units.gateUnits()));
   if (!perceivable)
   {

@@ -242,7 +242,7 @@ void ScanBlock::makeHits(
   std::size_t beam, const std::vector<std::uint32_t>& triangles, BeamTrace& trace)
 {
   trace.hits = std::make_unique<BeamSamples>();
-  this->Finder.find(*this->Setup.tree->mesh, this->frameOf(beam), this->raysOf(beam), triangles,
+  this->Finder.find(*this->Setup.tree, this->frameOf(beam), this->raysOf(beam), triangles,
     *trace.hits, this->Geometry);
   this->GeometryBeam = beam;
   if (!this->Setup.placedMedia.empty())
@@ -275,7 +275,7 @@ const SampleGeometry& ScanBlock::geometryOf(std::size_t beam, const BeamSamples&
   if (this->GeometryBeam != beam)
   {
     this->Finder.findAgain(
-      *this->Setup.tree->mesh, this->frameOf(beam), this->raysOf(beam), hits, this->Geometry);
+      *this->Setup.tree, this->frameOf(beam), this->raysOf(beam), hits, this->Geometry);
     this->GeometryBeam = beam;
   }
   return this->Geometry;

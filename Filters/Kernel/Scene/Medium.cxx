@@ -33,8 +33,8 @@ Medium rainOf(
   const double lambda = fall * std::pow(rate, -0.21);                  // 1/mm
   const double squares = perVolume * 2.0 / (lambda * lambda * lambda); // mm^2/m^3, sum of D^2
   const double areas = 0.25 * Pi * squares * 1e-6;                     // 1/m
-  // Of twice the areas, without the share of one of them that stays in view. What comes back from
-  // drops is that of the whole.
+  // Drops take twice their areas from the light. The lidar loses less, as diffracted light stays
+  // in its view; the backscatter ratio refers to twice the areas.
   const double lost = 2.0 - keptInView(view, 1e3 * lambda);
   return { lost * areas, 0.5 * lost * backscatterRatio, perVolume / lambda };
 }

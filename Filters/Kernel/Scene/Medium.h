@@ -55,7 +55,7 @@ constexpr double SquareOfLeaves = 1.8;
 struct LidarView
 {
   double wavelength = 905e-9; ///< m, above 0
-  double halfAngle = 0.0;     ///< rad; of 0 nothing that is turned stays in view
+  double halfAngle = 0.0;     ///< rad; at 0 no diffracted light stays in view
 };
 
 inline bool operator==(const LidarView& a, const LidarView& b)
@@ -66,7 +66,7 @@ inline bool operator==(const LidarView& a, const LidarView& b)
 /// Share of the light that drops on the way to a target and back diffract which stays in view.
 /// Drops at a share 1 - u of the way move it at the target by u of the angle, so it is the mean
 /// over u of the energy that Airy's pattern has within halfAngle/u, weighted with the areas of the
-/// drops. To 1e-4. @param slope Lambda of exponential diameters, 1/m
+/// drops. Within 6e-4. @param slope Lambda of exponential diameters, 1/m
 double keptInView(const LidarView& view, double slope);
 
 /// Rain of so many mm/h, above 0. @param backscatterRatio sr, of twice the area of the drops @param

@@ -49,10 +49,11 @@ void LeafGaps::begin(
     const Stream one{ leaves, Always, medium.drops * (1.0 - medium.renewed), radius,
       radius + along.apertureRadius(), std::uint64_t{ leaves.medium } << 24, leaves.begin };
     const double across = 2.0 * halfSide(one);
-    if (this->Streams.empty() &&
-      (solidAngle * leaves.begin * leaves.begin > MostLeaves * seenArea ||
-        across * across > MostLeavesAcross * seenArea))
+    const double section = solidAngle * leaves.begin * leaves.begin / seenArea; // leaves
+    if (section > (this->Streams.empty() ? MostLeaves : MostLeavesBehind) ||
+      (this->Streams.empty() && across * across > MostLeavesAcross * seenArea))
     {
+      this->Streams.clear();
       return;
     }
     Stream two = one;

@@ -51,6 +51,8 @@ public:
 
   /// Largest section of a beam that is divided, where it meets its first crown, in areas of leaves.
   static constexpr double MostLeaves = 64.0;
+  /// The same where it meets crowns behind the first one: it limits the leaves that are drawn.
+  static constexpr double MostLeavesBehind = 4096.0;
   /// The same of the square that holds all ways there and back: it limits wide apertures.
   static constexpr double MostLeavesAcross = 1000.0;
 

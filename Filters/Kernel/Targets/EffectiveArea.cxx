@@ -145,7 +145,7 @@ private:
     if (triangle != this->Number)
     {
       this->Number = triangle;
-      this->Seen = seeTriangle(*this->Tree->mesh, triangle, this->Frame.origin);
+      this->Seen = seeTriangle(*this->Tree, triangle, this->Frame.origin);
     }
     const Vec3 along = this->Frame.direction(x, y);
     const double away = safeLength(along);

@@ -112,14 +112,16 @@ void BeamTracer::search(Visitor& visitor, const Vec3& origin, const Vec3& d, dou
   }
 }
 
-SeenTriangle seeTriangle(const TriangleMesh& mesh, std::uint32_t triangle, const Vec3& origin)
+SeenTriangle seeTriangle(const CollisionTree& tree, std::uint32_t triangle, const Vec3& origin)
 {
   SeenTriangle seen;
-  seen.corners = cornersFrom(mesh, triangle, origin);
-  seen.plane = planeOf(seen.corners);
+  seen.corners = cornersFrom(*tree.mesh, triangle, origin);
+  seen.plane = planeOf(tree, triangle, seen.corners, origin);
   if (seen.plane.normal != Vec3(0.0))
   {
     seen.normal = (seen.plane.height > 0.0 ? -1.0 : 1.0) * unitDirection(seen.plane.normal);
+    const Vec3 onPlane = tree.mesh->corner(tree.planeOwner(triangle), 0) - origin;
+    seen.height = -glm::dot(seen.normal, onPlane);
   }
   return seen;
 }

@@ -154,11 +154,12 @@ private:
 /// A triangle relative to a beam's apex: what the ranges of all its rays on it share.
 struct SeenTriangle
 {
-  Corners corners; ///< relative to the apex
-  TrianglePlane plane;
-  Vec3 normal{ 0.0 }; ///< unit, towards the apex (zero if degenerate)
+  Corners corners;     ///< relative to the apex
+  TrianglePlane plane; ///< shared by faces that coincide (CoincidentFaces.h)
+  Vec3 normal{ 0.0 };  ///< unit, towards the apex (zero if degenerate)
+  double height = 0.0; ///< m, of the apex above the plane, along the normal
 };
-SeenTriangle seeTriangle(const TriangleMesh& mesh, std::uint32_t triangle, const Vec3& origin);
+SeenTriangle seeTriangle(const CollisionTree& tree, std::uint32_t triangle, const Vec3& origin);
 
 /// Range on a triangle that the ray along the unit direction `d` of the beam hits, m.
 double rangeOnTriangle(const SeenTriangle& triangle, const BeamFrame& frame, const Vec3& d);

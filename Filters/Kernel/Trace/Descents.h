@@ -80,10 +80,12 @@ inline void keepNearest(Hit& hit, double range, std::uint32_t triangle)
 }
 
 /// Ranges up to which volumes are visited for a hit. One that takes the plane of another triangle
-/// may lie before its own volumes, by rounding.
+/// may lie before its own volumes by what rounding moves them apart, along a ray by more: rays
+/// within 4 degrees of a plane are not provided for.
 inline double limitOf(const CollisionTree& tree, double range)
 {
-  return tree.planeOwners.empty() ? range : (1.0 + 1e-6) * range;
+  constexpr double alongRay = 16.0;
+  return range + alongRay * tree.planeDepth;
 }
 
 /// Finds the nearest hit of one ray of a beam.

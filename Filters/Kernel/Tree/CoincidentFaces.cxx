@@ -207,7 +207,8 @@ public:
   {
   }
 
-  std::vector<std::uint32_t> run()
+  /// Set what the tree holds of coincident faces. @return false if stopped
+  bool run(const KeepGoing& keepGoing, CollisionTree& tree)
   {
     constexpr std::size_t block = 1024;
     std::atomic<float> widest{ 0.0f };
@@ -228,7 +229,8 @@ public:
       });
     this->Slack = 2.0f * widest + WideRounding * static_cast<float>(this->Tree.wide.extent);
     std::vector<PartPair> pairs = this->firstPairs();
-    this->Team.loop(pairs.size(), 1,
+    const bool finished = this->Team.loop(
+      pairs.size(), 1,
       [&](std::size_t begin, std::size_t end, int)
       {
         std::vector<PartPair> stack(pairs.begin() + begin, pairs.begin() + end);
@@ -238,8 +240,14 @@ public:
           stack.pop_back();
           this->visit(pair, stack);
         }
-      });
-    return this->Found ? this->owners() : std::vector<std::uint32_t>();
+      },
+      keepGoing);
+    if (finished && this->Found)
+    {
+      tree.planeOwners = this->owners();
+      tree.planeDepth = 2.0 * widest;
+    }
+    return finished;
   }
 
 private:
@@ -474,8 +482,8 @@ private:
 };
 }
 
-std::vector<std::uint32_t> findPlaneOwners(const CollisionTree& tree, ParallelTeam& team)
+bool findPlaneOwners(CollisionTree& tree, ParallelTeam& team, const KeepGoing& keepGoing)
 {
-  return Search(tree, team).run();
+  return Search(tree, team).run(keepGoing, tree);
 }
 }

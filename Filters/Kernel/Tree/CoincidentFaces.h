@@ -28,8 +28,9 @@
 
 namespace avianlidar
 {
-/// CollisionTree::planeOwners. @param tree wide and complete but for this
-std::vector<std::uint32_t> findPlaneOwners(const CollisionTree& tree, ParallelTeam& team);
+/// Set planeOwners and planeDepth. @param tree wide, complete but for these @return false if
+/// stopped
+bool findPlaneOwners(CollisionTree& tree, ParallelTeam& team, const KeepGoing& keepGoing);
 }
 
 #endif

@@ -121,6 +121,7 @@ struct CollisionTree
   /// For each triangle that coincides with others the one whose plane they take
   /// (CoincidentFaces.h), for the rest NoTriangle; empty if no faces coincide.
   std::vector<std::uint32_t> planeOwners;
+  double planeDepth = 0.0; ///< m, most that rounding moves two of them apart
 
   bool coincides(std::uint32_t triangle) const
   {

@@ -36,8 +36,9 @@ std::size_t largestSubtree(const TreeDraft& draft)
   return std::max(size, static_cast<std::size_t>(draft.options.maximumLeafSize));
 }
 
-/// Share of the work that is done when all nodes are divided.
-constexpr double Divided = 0.9;
+/// Shares of the work that are done when all nodes are divided, and when the wide tree is made.
+constexpr double Divided = 0.5;
+constexpr double Widened = 0.55;
 
 class Builder
 {
@@ -136,13 +137,9 @@ private:
     std::for_each(this->Draft.upper.rbegin(), this->Draft.upper.rend(),
       [&](std::uint32_t slot) { input.setCosts(slot, slot + 1); });
     this->Tree.wide =
-      buildWideTree(input, this->Draft.scene, this->Team, this->stage(Divided, 1.0));
-    if (this->Tree.wide.nodes.empty())
-    {
-      return false;
-    }
-    this->Tree.planeOwners = findPlaneOwners(this->Tree, this->Team);
-    return true;
+      buildWideTree(input, this->Draft.scene, this->Team, this->stage(Divided, Widened));
+    return !this->Tree.wide.nodes.empty() &&
+      findPlaneOwners(this->Tree, this->Team, this->stage(Widened, 1.0));
   }
 
   CollisionTree& Tree;

@@ -63,7 +63,7 @@ void addSurface(const SeenTriangle& seen, std::uint32_t triangle, std::size_t be
   std::size_t end, SampleGeometry& geometry)
 {
   const auto number = static_cast<std::uint32_t>(geometry.surfaces.size());
-  geometry.surfaces.push_back({ triangle, seen.normal, -glm::dot(seen.normal, seen.corners.a) });
+  geometry.surfaces.push_back({ triangle, seen.normal, seen.height });
   std::fill(geometry.nx.begin() + begin, geometry.nx.begin() + end, seen.normal.x);
   std::fill(geometry.ny.begin() + begin, geometry.ny.begin() + end, seen.normal.y);
   std::fill(geometry.nz.begin() + begin, geometry.nz.begin() + end, seen.normal.z);
@@ -72,14 +72,14 @@ void addSurface(const SeenTriangle& seen, std::uint32_t triangle, std::size_t be
 }
 
 const SeenTriangle& RaySamples::see(
-  const TriangleMesh& mesh, std::uint32_t triangle, const Vec3& apex)
+  const CollisionTree& tree, std::uint32_t triangle, const Vec3& apex)
 {
   this->Triangles.resize(Places);
   Known& known = this->Triangles[triangle % Places];
-  if (known.triangle != triangle || known.generation != this->Generation || known.mesh != &mesh ||
+  if (known.triangle != triangle || known.generation != this->Generation || known.tree != &tree ||
     known.apex != apex)
   {
-    known = { triangle, this->Generation, &mesh, apex, seeTriangle(mesh, triangle, apex) };
+    known = { triangle, this->Generation, &tree, apex, seeTriangle(tree, triangle, apex) };
   }
   return known.seen;
 }
@@ -191,7 +191,7 @@ void RaySamples::findOnSurface(const BeamFrame& frame, const SeenTriangle& seen,
   }
 }
 
-void RaySamples::find(const TriangleMesh& mesh, const BeamFrame& frame, const BeamRays& rays,
+void RaySamples::find(const CollisionTree& tree, const BeamFrame& frame, const BeamRays& rays,
   const std::vector<std::uint32_t>& triangles, BeamSamples& samples, SampleGeometry& geometry)
 {
   samples = BeamSamples{};
@@ -207,18 +207,18 @@ void RaySamples::find(const TriangleMesh& mesh, const BeamFrame& frame, const Be
   samples.forEachSurface(
     [&](std::uint32_t triangle, std::uint32_t begin, std::uint32_t end)
     {
-      const SeenTriangle& seen = this->see(mesh, triangle, frame.origin);
+      const SeenTriangle& seen = this->see(tree, triangle, frame.origin);
       this->findOnSurface(frame, seen, begin, end, geometry, samples);
       addSurface(seen, triangle, begin, end, geometry);
     });
   samples.coplanar = areCoplanar(samples, geometry);
 }
 
-void RaySamples::findAgain(const TriangleMesh& mesh, const BeamFrame& frame, const BeamRays& rays,
+void RaySamples::findAgain(const CollisionTree& tree, const BeamFrame& frame, const BeamRays& rays,
   const BeamSamples& samples, SampleGeometry& geometry)
 {
   this->findDirections(frame, rays, samples, geometry);
   samples.forEachSurface([&](std::uint32_t triangle, std::uint32_t begin, std::uint32_t end)
-    { addSurface(this->see(mesh, triangle, frame.origin), triangle, begin, end, geometry); });
+    { addSurface(this->see(tree, triangle, frame.origin), triangle, begin, end, geometry); });
 }
 }

@@ -31,18 +31,18 @@ class RaySamples
 public:
   /// Find the samples of N rays, each of weight 1/N. @param triangles of each ray, NoTriangle if it
   /// hit none
-  void find(const TriangleMesh& mesh, const BeamFrame& frame, const BeamRays& rays,
+  void find(const CollisionTree& tree, const BeamFrame& frame, const BeamRays& rays,
     const std::vector<std::uint32_t>& triangles, BeamSamples& samples, SampleGeometry& geometry);
 
   /// Find the geometry of known samples. @param rays all rays, in the order of their numbers
-  void findAgain(const TriangleMesh& mesh, const BeamFrame& frame, const BeamRays& rays,
+  void findAgain(const CollisionTree& tree, const BeamFrame& frame, const BeamRays& rays,
     const BeamSamples& samples, SampleGeometry& geometry);
 
-  /// The mesh has other triangles now.
+  /// The tree has other triangles now.
   void forget() { ++this->Generation; }
 
 private:
-  const SeenTriangle& see(const TriangleMesh& mesh, std::uint32_t triangle, const Vec3& apex);
+  const SeenTriangle& see(const CollisionTree& tree, std::uint32_t triangle, const Vec3& apex);
   void sortBySurface(const std::vector<std::uint32_t>& triangles, BeamSamples& samples);
   void sortByTriangle(const std::vector<std::uint32_t>& triangles, BeamSamples& samples);
   void findDirections(const BeamFrame& frame, const BeamRays& rays, const BeamSamples& samples,
@@ -57,7 +57,7 @@ private:
   {
     std::uint32_t triangle = NoTriangle;
     std::uint32_t generation = 0;
-    const TriangleMesh* mesh = nullptr;
+    const CollisionTree* tree = nullptr;
     Vec3 apex{ 0.0 };
     SeenTriangle seen;
   };

@@ -224,9 +224,9 @@ void MirrorRegions::fillLanes()
 void MirrorRegions::setSurface(Surface& surface) const
 {
   const SeenTriangle seen =
-    seeTriangle(*this->Setup.tree->mesh, surface.seen->triangle, this->Frame.origin);
+    seeTriangle(*this->Setup.tree, surface.seen->triangle, this->Frame.origin);
   surface.normal = seen.normal;
-  surface.height = -glm::dot(seen.normal, seen.corners.a);
+  surface.height = seen.height;
   surface.along = { this->Frame.tanHalf * glm::dot(surface.normal, this->Frame.e1),
     this->Frame.tanHalf * glm::dot(surface.normal, this->Frame.e2),
     glm::dot(surface.normal, this->Frame.axis) };

@@ -129,8 +129,10 @@ double SecondaryReflection::unsureShare(const MirrorPath& path) const
   }
   const double step = path.length - path.rangeOne - path.range;
   const double deviation = step / std::sqrt(this->Setup.materials[path.first].kp);
-  return std::min(
-    1.0, std::sqrt(2.0 / Pi) * deviation / (path.range * std::tan(sensor.halfBeamwidth)));
+  const double across = sensor.halfBeamwidthAcross;
+  const double narrower =
+    across > 0.0 ? std::min(across, sensor.halfBeamwidth) : sensor.halfBeamwidth;
+  return std::min(1.0, std::sqrt(2.0 / Pi) * deviation / (path.range * std::tan(narrower)));
 }
 
 double SecondaryReflection::shortThroughput(const Beam& beam, const ShortPath& path) const
