@@ -558,17 +558,21 @@ class Airport:
 
     def _counts(self) -> str:
         """The same by kind."""
-        lines = [f"  {self.counts}"]
+        lines, outside = [f"  {self.counts}"], "outside the scene"
+        away: List[str] = []
         for kind in dict.fromkeys([*self.there, *(one.kind for one in self.left)]):
             reasons: Dict[str, int] = collections.Counter()
             for one in self.left:
                 reasons[one.reason] += one.count * (one.kind == kind)
             out = {reason: count for reason, count in reasons.items() if count}
-            if out:
+            if not self.there[kind] and set(out) == {outside}:
+                away.append(f"{kind} ({out[outside]:,})")
+            elif out:
                 lines.append(f"  {kind or 'others'}: {self.there[kind] + sum(out.values()):,} read, {self.there[kind]:,} in the scene; left out: "
                              + ", ".join(f"{count:,} {reason}" for reason, count in out.items()))
-        if self.unknown:
-            lines.append("  of unknown kind most are " + ", ".join(f"{name} ({count:,})" for name, count in self.unknown.most_common(6)))
+        lines += [f"  all {outside}: {', '.join(away)}"] * bool(away)
+        named = [f"{name} ({count:,})" for name, count in self.unknown.most_common(7) if name != "others"]
+        lines += [f"  among those of unknown kind: {', '.join(named[:6])}"] * bool(named)
         if any(one.reason == CUT for one in self.left):
             lines.append("  what is cut by the border is whole in an extract that is cut by `osmium extract --strategy smart`")
         return "\n".join(lines)
@@ -597,7 +601,7 @@ has edited, so remove a file to have it made anew.
   exclusions.geojson       where no lidar may stand, beside buildings
   airport.scenario.json    labelled scans: avianlidar sequence airport.scenario.json -o sequences
                            tracks of them: avianlidar track sequences --runways airport.geojson -o tracks
-  assumed.csv              each number that the extract does not say
+  assumed.csv              each number that the extract does not say, and what was left out
   airport.png              the scene from above
 
 Runways
