@@ -50,6 +50,7 @@ set(avianlidar_python_files
   apps/_card.py
   apps/_design.py
   apps/_design_page.py
+  apps/_extract.py
   apps/_following.py
   apps/_formula.py
   apps/_json.py
@@ -57,9 +58,11 @@ set(avianlidar_python_files
   apps/_maps.py
   apps/_mcap.py
   apps/_metar.py
+  apps/_obstacles.py
   apps/_page.py
   apps/_pictures.py
   apps/_report.py
+  apps/_runways.py
   apps/_scores.py
   apps/_sequence.py
   apps/_sites.py
@@ -73,6 +76,7 @@ set(avianlidar_python_files
   apps/coverage.schema.json
   apps/design.html.jinja
   apps/macros.html.jinja
+  apps/osmconf.ini
   apps/page.css.jinja
   apps/report.html.jinja
   apps/scenario.schema.json)

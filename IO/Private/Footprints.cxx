@@ -22,6 +22,7 @@ struct Feature
 {
   std::string name;
   std::optional<double> height;
+  std::optional<double> minHeight;
   std::optional<double> width;
   std::vector<Polygon> polygons;
   std::vector<Ring> lines;
@@ -31,11 +32,13 @@ struct Feature
 struct Counts
 {
   int filtered = 0;
+  int placeless = 0;
   int points = 0;
   int thinLines = 0;
   int repaired = 0;
   int empty = 0;
   int assumedHeights = 0;
+  int minHeights = 0;
   int beyond = 0;
 };
 
@@ -236,11 +239,13 @@ std::vector<Feature> ReadFeatures(OGRLayer& layer, const FootprintOptions& optio
     if (!geometry || !Passes(*source, options.filters))
     {
       ++counts.filtered;
+      counts.placeless += !geometry;
       continue;
     }
     Feature feature;
     FindAttribute(*source, options.nameAttribute, feature.name);
     feature.height = FindLength(*source, options.heightAttribute);
+    feature.minHeight = FindLength(*source, options.minHeightAttribute);
     feature.width = FindLength(*source, options.widthAttribute);
     // Arcs become chords.
     const std::unique_ptr<OGRGeometry> straight(geometry->getLinearGeometry());
@@ -325,6 +330,14 @@ double GetHeight(const Feature& feature, const Object& object, std::size_t numbe
   }
   counts.assumedHeights += !options.heightAttribute.empty();
   return *options.height;
+}
+
+// The height of the underside; 0 where it is not below the height.
+double GetMinHeight(const Feature& feature, double height, Counts& counts)
+{
+  const double under = feature.minHeight.value_or(0);
+  counts.minHeights += under >= height && under > 0;
+  return under < height ? under : 0;
 }
 
 // Where a width is given, points are square columns.
@@ -424,20 +437,20 @@ void AddCrowns(const Feature& feature, const Object& object, std::size_t number,
   }
 }
 
-void RaiseOn(const std::vector<TerrainPiece>& pieces, bool follows, const FootprintOptions& options,
+void RaiseOn(const std::vector<TerrainPiece>& pieces, bool follows, bool flat, double base,
   double height, const ExtrusionMaterials& materials, const Polygon& polygon, Mesh& mesh)
 {
-  if (options.flat)
+  if (flat)
   {
-    AddFlatOn(pieces, options.base, materials.facade, mesh);
+    AddFlatOn(pieces, base, materials.facade, mesh);
   }
   else if (follows)
   {
-    AddSolidOn(pieces, options.base, height, materials, mesh);
+    AddSolidOn(pieces, base, height, materials, mesh);
   }
   else
   {
-    AddSolid(polygon, LowestOf(pieces) + options.base, height, materials, mesh);
+    AddSolid(polygon, LowestOf(pieces) + base, height, materials, mesh);
   }
 }
 
@@ -474,18 +487,22 @@ std::vector<Part> Raise(const std::vector<Feature>& features, const Object& obje
         object.objectClass, {} });
     }
     Mesh& mesh = parts.back().mesh;
-    const double height = options.flat ? 0 : GetHeight(features[i], object, i + 1, counts);
+    const double top = options.flat ? 0 : GetHeight(features[i], object, i + 1, counts);
+    const double under = options.flat ? 0 : GetMinHeight(features[i], top, counts);
+    const double base = options.base + under;
+    const double height = top - under;
     for (const auto& [region, follows] : regions)
     {
       if (!terrain)
       {
-        options.flat ? AddFlat(region, options.base, materials.facade, mesh)
-                     : AddSolid(region, options.base, height, materials, mesh);
+        options.flat ? AddFlat(region, base, materials.facade, mesh)
+                     : AddSolid(region, base, height, materials, mesh);
         continue;
       }
       const std::vector<TerrainPiece> pieces = terrain->Cut(region);
-      pieces.empty() ? void(++counts.beyond)
-                     : RaiseOn(pieces, follows, options, height, materials, region, mesh);
+      pieces.empty()
+        ? void(++counts.beyond)
+        : RaiseOn(pieces, follows, options.flat, base, height, materials, region, mesh);
     }
     if (mesh.triangles.empty())
     {
@@ -512,10 +529,14 @@ std::vector<Part> ReadFootprints(const Object& object, const Scene& scene, const
   std::vector<std::string>& notes, const std::function<bool()>& keepGoing)
 {
   const QuietGdal quiet;
+  // OSM of editors has negative ids, in any order.
+  const GdalOption indexing{ "OSM_USE_CUSTOM_INDEXING", "NO" };
   GDALAllRegister();
   RequireRegularNeighbours(object.file);
-  const GDALDatasetUniquePtr data(GDALDataset::Open(
-    VirtualName(object.file).c_str(), GDAL_OF_VECTOR | GDAL_OF_READONLY, Drivers));
+  const char* const columns[] = { "X_POSSIBLE_NAMES=x,lon*", "Y_POSSIBLE_NAMES=y,lat*", nullptr };
+  const bool isTable = std::filesystem::path(object.file).extension() == ".csv";
+  const GDALDatasetUniquePtr data(GDALDataset::Open(VirtualName(object.file).c_str(),
+    GDAL_OF_VECTOR | GDAL_OF_READONLY, Drivers, isTable ? columns : nullptr));
   if (!data)
   {
     throw Error("GDAL cannot read it" + quiet.Reason());
@@ -526,6 +547,11 @@ std::vector<Part> ReadFootprints(const Object& object, const Scene& scene, const
   if (quiet.Failed())
   {
     throw Error("GDAL cannot read all of it" + quiet.Reason());
+  }
+  if (features.empty() && counts.placeless > 0 && counts.placeless == counts.filtered)
+  {
+    throw Error("none of its features has a geometry: a table needs the columns x and y, or "
+                "longitude and latitude");
   }
   if (features.empty())
   {
@@ -547,6 +573,8 @@ std::vector<Part> ReadFootprints(const Object& object, const Scene& scene, const
     ("areas and points beyond " + object.footprints.on + " were left out").c_str());
   Note(notes, object, counts.assumedHeights,
     "features have no usable height attribute and got the default height");
+  Note(notes, object, counts.minHeights,
+    "features have a least height that is not below their height, and stand on the ground");
   return parts;
 }
 }

@@ -173,7 +173,8 @@ void ParseShape(const JsonNode& node, FootprintOptions& options)
     options.base = node.Get("base").Number();
   }
   options.flat = node.Has("flat") && node.Get("flat").Bool();
-  for (const char* key : { "height", "height_attribute", "glazing", "roof_material" })
+  for (const char* key :
+    { "height", "height_attribute", "min_height_attribute", "glazing", "roof_material" })
   {
     if (options.flat && node.Has(key))
     {
@@ -187,6 +188,10 @@ void ParseShape(const JsonNode& node, FootprintOptions& options)
   if (node.Has("height_attribute"))
   {
     options.heightAttribute = node.Get("height_attribute").Name();
+  }
+  if (node.Has("min_height_attribute"))
+  {
+    options.minHeightAttribute = node.Get("min_height_attribute").Name();
   }
   if (!options.flat && !options.height && options.heightAttribute.empty())
   {
@@ -226,8 +231,8 @@ void ParseFootprints(const JsonNode& node, Scene& scene, Object& object)
 {
   node.RequireKeys({ "footprints", "name", "class", "material", "material_map", "medium", "comment",
     "position", "geodetic", "rotation", "scale", "crs", "layer", "filter", "base", "height",
-    "height_attribute", "flat", "width", "width_attribute", "roof_material", "glazing", "features",
-    "name_attribute", "on" });
+    "height_attribute", "min_height_attribute", "flat", "width", "width_attribute", "roof_material",
+    "glazing", "features", "name_attribute", "on" });
   object.kind = ObjectKind::Footprints;
   object.file = AbsoluteFile(node.Get("footprints"), scene);
   FootprintOptions& options = object.footprints;

@@ -82,6 +82,7 @@ struct FootprintOptions
   double base = 0;
   std::optional<double> height;
   std::string heightAttribute;
+  std::string minHeightAttribute;
   bool flat = false;
   std::optional<double> width;
   std::string widthAttribute;

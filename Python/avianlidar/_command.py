@@ -192,6 +192,8 @@ def parser() -> Parser:
     airport = verb["airport"]
     airport.add_argument("extract", type=pathlib.Path, help="of a map: .osm, .osm.pbf, .geojson, .gpkg")
     airport.add_argument("--heights", type=pathlib.Path, metavar="DEM", help="of the ground: a GeoTIFF or an ASCII grid; default: level")
+    airport.add_argument("--obstacles", type=pathlib.Path, metavar="FILE", action="append", default=[],
+                         help="surveyed obstacles: AIXM 5.1 (.xml), or .csv with columns longitude, latitude, height, unit, kind; may be repeated")
     which = airport.add_mutually_exclusive_group()
     which.add_argument("--icao", metavar="CODE", help="of the airport, where the extract holds several")
     which.add_argument("--bounds", nargs=4, type=float, metavar=("W", "S", "E", "N"),

@@ -44,7 +44,7 @@ SCALES = {"J": 1.0, "mJ": 1e3, "\u00b5J": 1e6, "nJ": 1e9, "pJ": 1e12, "fJ": 1e15
 
 
 def _label(name: str, unit: str) -> str:
-    return LABELS.get(name, name.replace("_", " ") + (f" ({unit})" if unit not in ("", "1") else ""))
+    return LABELS.get(name, name.replace("_", " ").replace("$", r"\$") + (f" ({unit})" if unit not in ("", "1") else ""))
 
 
 def _values(cloud, name: str):

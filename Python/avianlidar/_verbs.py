@@ -410,7 +410,7 @@ def airport(options) -> None:
     from ._disk import only_run
     from .apps._airport import Airport
     bars = Bars()
-    made = Airport(options.extract, options.heights, options.icao, options.bounds, bars)
+    made = Airport(options.extract, options.heights, options.icao, options.bounds, options.obstacles, bars)
     with only_run(options.out, goes_on=False):
         kept = made.write(options.out)
     bars.close()
@@ -421,6 +421,7 @@ def airport(options) -> None:
         warn(f"{options.extract} says no height of any building: all are assumed by kind, {options.out / 'assumed.csv'} lists them")
     print(f"{options.out}: {made.name}, {len(made.sides)} {'runways' if len(made.sides) > 1 else 'runway'}, "
           f"{len(buildings)} buildings; README.txt says what is assumed")
+    print(made.counts)
 
 
 def _plan(options) -> Dict[str, Any]:

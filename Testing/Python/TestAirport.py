@@ -265,7 +265,7 @@ class Extracts(unittest.TestCase):
         gdal.VectorTranslate(str(FOLDER / "formats.gpkg"), str(file), format="GPKG", dstSRS="EPSG:32633")
         with open(FOLDER / "formats.geojson", "w", encoding="utf-8") as stream:
             features = [{"type": "Feature", "properties": one.tags, "geometry": json.loads(one.shape.ExportToJson())}
-                        for group in airport.read_extract(file, airport.rules()) for one in group]
+                        for read in [airport.read_extract(file, airport.rules())] for one in [*read.features, *read.aerodromes]]
             json.dump({"type": "FeatureCollection", "features": features}, stream)
         for name in ("formats.osm", pbf(file).name, "formats.gpkg", "formats.geojson"):
             folder = fresh(name.replace(".", "-"))
@@ -672,14 +672,6 @@ class Wrong(unittest.TestCase):
         os.mkfifo(folder / "terrain.vtp")
         with self.assertRaisesRegex(RuntimeError, "no regular file"):
             made(airport.Kept(folder), "3")
-
-    def test_lengths(self):
-        for text, metres in (("12", 12), ("12.5 m", 12.5), ("12,5", 12.5), ("10 ft", 3.048), ("10'", 3.048), ("5'6\"", 1.6764), ("2;3", 3), ("~9", 9),
-                             ("9 Meters", 9), ("9 m 4 in", None), ("three", None), ("-3", None),
-                             ("0", None), ("5000", None), ("nan", None), (None, None), ("3 floors", None),
-                             ("1" + " " * 100_000 + "x", None)):
-            found = airport.length_of(text)
-            self.assertEqual(found if found is None else round(found, 9), metres, text)
 
     def test_numbers_are_said_to_be_assumed(self):
         known = airport.rules()

@@ -383,6 +383,20 @@ class SceneObjects(unittest.TestCase):
             scene = self.plan("town.geojson", *features, filter=chosen, **options)
             self.assertEqual(scene.blocks[0].GetNumberOfCells(), 12 * count, msg=chosen)
 
+    def test_undersides_and_tables(self):
+        """A canopy from 6 to 8 m, one whose underside is above its top; a table of places."""
+        scene = self.plan("roofs.geojson", ("Polygon", [self.SQUARE], {"h": 8, "u": "6 m"}), ("Polygon", [self.SQUARE], {"h": 5, "u": 9}),
+                          ("Polygon", [self.SQUARE], {"h": 5}), height_attribute="h", height=3, min_height_attribute="u", base=0.5, features="separate")
+        self.assertEqual([(z.min(), z.max()) for z in (st.corners(block)[:, :, 2] for block in scene.blocks)], [(6.5, 8.5), (0.5, 5.5), (0.5, 5.5)])
+        self.assertIn("1 features have a least height that is not below their height", " ".join(scene.strings("scene_report")))
+        self.save("masts.csv", "name,LATDEC,LONDEC,AGL\nA,0.001,0.002,30\n")
+        scene = self.read({"footprints": "masts.csv", "height_attribute": "AGL", "width": 2, "crs": "EPSG:4326"}, origin={"latitude": 0, "longitude": 0, "height": 0})
+        low, high = (getattr(st.corners(scene.blocks[0]).reshape(-1, 3), name)(axis=0) for name in ("min", "max"))
+        np.testing.assert_allclose((low + high) / 2, (222.639, 110.574, 15), atol=1e-3)
+        self.save("nowhere.csv", "name,AGL\nA,30\n")
+        file = st.write_scene(self.folder, "scene", {"version": 1, "objects": [{"footprints": "nowhere.csv", "height": 3, "crs": "local"}]})
+        self.assertIn("none of its features has a geometry: a table needs the columns x and y", " ".join(st.Read(file).errors))
+
     def test_pieces_without_triangles(self):
         """They have the blocks of the whole, and open no mesh: a damaged one is an error of the first piece alone."""
         self.plan("row.geojson", *(("Polygon", [[[x + 30 * i, y] for x, y in self.SQUARE]], {}) for i in range(3)),
@@ -406,10 +420,11 @@ class SceneObjects(unittest.TestCase):
                                  (other.names, other.strings("object_classes")))
 
     def test_tags_of_a_raw_osm_file(self):
+        """With negative ids, as an editor writes them, in falling order."""
         nodes = [(1, 0, 0), (2, 0, 0.001), (3, 0.001, 0.001), (4, 0.001, 0)]
         self.save("town.osm", '<osm version="0.6">' + "".join(
-            f'<node id="{i}" lat="{lat}" lon="{lon}" version="1"/>' for i, lat, lon in nodes)
-            + '<way id="9" version="1">' + "".join(f'<nd ref="{i}"/>' for i in (1, 2, 3, 4, 1))
+            f'<node id="{-i}" lat="{lat}" lon="{lon}" version="1"/>' for i, lat, lon in nodes)
+            + '<way id="-9" version="1">' + "".join(f'<nd ref="{-i}"/>' for i in (1, 2, 3, 4, 1))
             + '<tag k="building" v="yes"/><tag k="height" v="33"/></way></osm>')
         scene = self.read({"footprints": "town.osm", "layer": "multipolygons", "filter": {"building": "*"},
                            "height_attribute": "height"}, origin={"latitude": 0, "longitude": 0, "height": 0})

@@ -1,12 +1,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""A scene, plans and a scenario of an airport from an extract of a map: the command `avianlidar airport`. GDAL reads; the scene
-reader raises footprints, lays areas on the terrain and places crowns."""
+"""A scene, plans and a scenario of an airport from an extract of a map: the command `avianlidar airport`. The scene reader raises
+footprints, lays areas on the terrain and places crowns."""
 from __future__ import annotations
 
 import collections
-import contextlib
 import csv
-import dataclasses
 import hashlib
 import io
 import json
@@ -25,355 +23,34 @@ from .._pipeline import Error, update
 from .._scene import Scene, load_scene
 from .._scene import mesh as _surface
 from . import _pictures, siting
+from ._extract import COAST, CUT, Feature, Left, height_name, properties_of, read_extract, rules, sea, without_parts
+from ._extract import degrees as _degrees
+from ._extract import form_of as _form
+from ._extract import gdal_modules as _gdal
+from ._extract import open_file as _open
+from ._extract import quiet as _quiet
 from ._json import load_json, naming
 from ._maps import coordinate_system
+from ._obstacles import read_obstacles
+from ._runways import box_of as _box
+from ._runways import choose_runways
 
-SUFFIXES = {".osm": "OSM", ".pbf": "OSM", ".geojson": "GeoJSON", ".gpkg": "GPKG"}  # with GDAL's drivers
 RASTERS = ["GTiff", "AAIGrid"]
-LARGEST = 256 << 20  # bytes of an extract
 MOST_POSTS = 250_000  # of a terrain: it takes some seconds
 MOST_CHOSEN = 0.25  # of the posts: where so many are needed, all are taken
-NEAR_AERODROME = 3000.0  # m: a runway belongs to the nearest aerodrome within
-ONE_AIRPORT = 6000.0  # m between runways of one airport, where no aerodrome is in the extract
 LOWEST = -1500.0  # m, or ft: what is lower is no height
-TALLEST = 1000.0  # m: what is higher is no height
 FLAT_SPACING = 100.0  # m, of a ground without a terrain, which follows the Earth
 AROUND = 600.0  # m beside runways where lidars may stand
 SPACINGS, CHOICE = (200, 150, 100, 50), 30  # m between candidates of the siting plan: the widest that leaves about so many
 WHAT = ("airport.geojson", "terrain.vtp", "airport.lidarscene.json", "exclusions.geojson", "airport.coverage.json",
         "siting.coverage.json", "airport.scenario.json", "assumed.csv", "airport.png", "README.txt")
-COAST = "coastline"
 RECORD = "made.json"  # checksums of these as they were made
-TAG = re.compile(r'"((?:[^"\\]|\\.)*)"=>"((?:[^"\\]|\\.)*)"')  # of GDAL's OSM driver
-LENGTH = re.compile(r"\s*~?\s*(\d+(?:[.,]\d+)?)\s*(m|met(?:er|re)s?|ft|feet|foot|')?\s*(?:(\d+(?:\.\d+)?)\s*(?:\"|''|in))?\s*", re.IGNORECASE)
-LONGEST_LENGTH = 100  # characters
 FOOT = 0.3048  # m
 COLOURS = {"runway": "#333333", "taxiway": "#666666", "apron": "#b0aca4", "road": "#8c8c8c", "parking": "#a5a5a5", "water": "#7fb2d6",
            "grass": "#cfe3b8", "terminal": "#c0392b", "hangar": "#8e44ad", "tower": "#e67e22", "mast": "#e67e22", "pole": "#e67e22",
            "fence": "#000000", "structure": "#8e6d4f"}
 BUILDING = "#a0522d"
 PLANTS = "#4c8c4a"
-
-
-@dataclasses.dataclass
-class Feature:
-    """What a kind of the rules takes from an extract: tags and geometry (ogr, degrees, longitude first)."""
-
-    kind: str
-    tags: Dict[str, str]
-    shape: Any
-
-
-def rules() -> Dict[str, Any]:
-    """What is made of which tags, with all numbers that are assumed (`airport.json`)."""
-    return load_json(pathlib.Path(__file__).with_name("airport.json"))
-
-
-def _gdal():
-    from osgeo import gdal, ogr, osr
-    for module in (gdal, ogr, osr):
-        module.UseExceptions()
-    return gdal, ogr, osr
-
-
-@contextlib.contextmanager
-def _quiet() -> Iterator[None]:
-    """Without GDAL's warnings, as of rings that cross, which the scene reader repairs and counts."""
-    gdal, _, _ = _gdal()
-    gdal.PushErrorHandler("CPLQuietErrorHandler")
-    try:
-        yield
-    finally:
-        gdal.PopErrorHandler()
-
-
-def _degrees():
-    _, _, osr = _gdal()
-    system = osr.SpatialReference()
-    system.ImportFromEPSG(4326)
-    system.SetAxisMappingStrategy(osr.OAMS_TRADITIONAL_GIS_ORDER)
-    return system
-
-
-def _fits(tags: Dict[str, str], wanted: Dict[str, Any]) -> bool:
-    return all(name in tags and (words == "*" or tags[name] in (words if isinstance(words, list) else [words]))
-               for name, words in wanted.items())
-
-
-def _form(shape) -> str:
-    """Which of point, line and area a geometry is; "" for others."""
-    name = shape.GetGeometryName().replace("MULTI", "") if shape is not None else ""
-    return {"POINT": "point", "LINESTRING": "line", "POLYGON": "area"}.get(name, "")
-
-
-def _has_extent(shape, form: str) -> bool:
-    """False of lines and areas of which nodes are missing, or the same."""
-    return form == "point" or (shape.Length() if form == "line" else shape.ConvexHull().Area()) > 0.0
-
-
-def length_of(text: Any) -> Optional[float]:
-    """Metres of "12", "12.5 m", "40 ft", "39'4\"", the greatest of "2;3"; None where it is no length."""
-    values = []
-    for part in str(text).split(";"):
-        found = LENGTH.fullmatch(part) if len(part) <= LONGEST_LENGTH else None  # which takes the third power of a text's size
-        feet = found and (found[2] or "m")[0].lower() in "f'"
-        if not found or (found[3] and not feet):
-            return None
-        values.append((float(found[1].replace(",", ".")) + float(found[3] or 0) / 12) * (FOOT if feet else 1.0))
-    return max(values) if 0.0 < max(values) <= TALLEST else None
-
-
-def _open(file: pathlib.Path, what: str, drivers: List[str], kind: int):
-    """A regular file with one of GDAL's drivers."""
-    gdal, _, _ = _gdal()
-    if not file.exists():
-        raise FileNotFoundError(f"no such file: {file}")
-    if not file.is_file():
-        raise Error(f"{file}: it is no regular file")
-    try:
-        return gdal.OpenEx(str(file.resolve()), kind | gdal.OF_READONLY, allowed_drivers=drivers)
-    except RuntimeError as error:
-        raise Error(f"{file}: GDAL cannot read it as {what} ({error})") from None
-
-
-def _tags(feature) -> Dict[str, str]:
-    tags: Dict[str, str] = {}
-    for number in range(feature.GetFieldCount()):
-        if feature.IsFieldSetAndNotNull(number):
-            name, value = feature.GetFieldDefnRef(number).GetName(), feature.GetFieldAsString(number)
-            if name in ("other_tags", "all_tags"):
-                tags.update((re.sub(r"\\(.)", r"\1", key), re.sub(r"\\(.)", r"\1", word)) for key, word in TAG.findall(value))
-            elif value:
-                tags[name] = value
-    return tags
-
-
-def read_extract(file: pathlib.Path, known: Dict[str, Any]) -> Tuple[List[Feature], List[Feature]]:
-    """What the rules know, and aerodromes."""
-    gdal, ogr, osr = _gdal()
-    driver = SUFFIXES.get(file.suffix.lower())
-    if not driver:
-        raise Error(f"{file}: is no extract by its name, expected .osm, .osm.pbf, .geojson or .gpkg")
-    if file.exists() and file.stat().st_size > LARGEST:
-        raise Error(f"{file}: holds {file.stat().st_size >> 20} MiB, expected at most {LARGEST >> 20}: cut it to the airport and some "
-                    "kilometres around it first, as `osmium extract --bbox W,S,E,N` does")
-    data = _open(file, "an extract", [driver], gdal.OF_VECTOR)
-    found: List[Feature] = []
-    aerodromes: List[Feature] = []
-    degrees, seen = _degrees(), set()
-    with naming(str(file)), _quiet():
-        to_degrees = {}
-        while True:
-            feature, layer = data.GetNextFeature()
-            if feature is None:
-                break
-            shape = feature.GetGeometryRef()
-            form = _form(shape)
-            tags = _tags(feature) if form else {}
-            if not tags:
-                continue
-            is_aerodrome = tags.get("aeroway") == "aerodrome"
-            kind = next((kind for kind, rule in known["kinds"].items() if form in rule["from"] and any(_fits(tags, one) for one in rule["tags"])),
-                        None)
-            if tags.get("natural") == COAST and form != "point":
-                kind = COAST
-            if is_aerodrome and "heliport" in (tags.get("aerodrome:type"), tags.get("aerodrome")):
-                continue
-            if is_aerodrome is False and (kind is None or any(_fits(tags, one) for one in known["not"])):
-                continue
-            name = layer.GetName()
-            if name not in to_degrees:
-                own = layer.GetSpatialRef()
-                if own is not None:
-                    own.SetAxisMappingStrategy(osr.OAMS_TRADITIONAL_GIS_ORDER)
-                to_degrees[name] = osr.CoordinateTransformation(own, degrees) if own is not None and not own.IsSame(degrees) else None
-            shape = shape.Clone()
-            if to_degrees[name] is not None:
-                shape.Transform(to_degrees[name])
-            shape.FlattenTo2D()
-            if not _has_extent(shape, form):
-                continue
-            if form == "area" and "osm_way_id" in tags and kind == "taxiway" and tags.get("area") != "yes":
-                shape = ogr.ForceToMultiLineString(shape)  # GDAL takes a closed way for an area
-            once = (kind, bytes(shape.ExportToWkb()))
-            if once not in seen:
-                seen.add(once)
-                (aerodromes if is_aerodrome else found).append(Feature(kind or "", tags, shape))
-    return found, aerodromes
-
-
-def sea(features: Sequence[Feature], box) -> List[Any]:
-    """Areas of a box that lie to the right of its coastlines, as OpenStreetMap draws them. GDAL takes a closed one for an area: an
-    island. None where coastlines end within the box. @param box ogr, degrees, as the areas"""
-    _, ogr, _ = _gdal()
-    lines, right = box.Boundary(), []
-    for shape in (one.shape for one in features if one.kind == COAST):
-        parts = [shape] if shape.GetGeometryCount() == 0 else [shape.GetGeometryRef(i) for i in range(shape.GetGeometryCount())]
-        for part in parts:
-            points = np.array((part.GetGeometryRef(0) if part.GetGeometryCount() else part).GetPoints())[:, :2]
-            if _form(shape) == "area" and np.sum(points[:-1, 0] * points[1:, 1] - points[1:, 0] * points[:-1, 1]) < 0.0:
-                points = points[::-1]  # land is to the left
-            coast = ogr.Geometry(ogr.wkbLineString)
-            for point in points:
-                coast.AddPoint_2D(*point)
-            coast = coast.Intersection(box)
-            lines = lines.Union(coast)
-            for i in range(max(coast.GetGeometryCount(), 1)):
-                ends = np.array((coast.GetGeometryRef(i) if coast.GetGeometryCount() else coast).GetPoints() or np.empty((0, 2)))[:, :2]
-                ways = np.diff(ends, axis=0)
-                right += list((ends[:-1] + ends[1:]) / 2 + 1e-3 * np.column_stack([ways[:, 1], -ways[:, 0]]))
-    faces: Any = lines.Polygonize() if right else None
-    found = []
-    for i in range(faces.GetGeometryCount() if faces is not None else 0):
-        face = faces.GetGeometryRef(i)
-        if any(face.Contains(ogr.CreateGeometryFromWkt(f"POINT ({x!r} {y!r})")) for x, y in (map(float, point) for point in right)):
-            found.append(face.Clone())
-    return [] if sum(face.Area() for face in found) > 0.999 * box.Area() else found
-
-
-def _name_of(aerodrome: Feature) -> str:
-    code = aerodrome.tags.get("icao", "")
-    return " ".join(filter(None, (code, aerodrome.tags.get("name", ""), "" if code else "(no ICAO code)")))
-
-
-def choose_runways(file: pathlib.Path, features: List[Feature], aerodromes: List[Feature], icao: Optional[str],
-                   box: Optional[Sequence[float]]) -> Tuple[List[Feature], Optional[Feature]]:
-    """The runways of one airport, and its aerodrome if the extract has it. @param icao its code, if given @param box west, south,
-    east, north, degrees: runways that meet it, if given"""
-    _, ogr, osr = _gdal()
-    runways = [one for one in features if one.kind == "runway" and _form(one.shape) == "line"]
-    areas = [one for one in features if one.kind == "runway" and _form(one.shape) == "area"]
-    if not runways + areas:
-        raise Error(f"{file}: holds no runway, expected lines or areas with the tag aeroway=runway")
-    middle = (runways + areas)[0].shape.Centroid()
-    local = coordinate_system((middle.GetY(), middle.GetX(), 0.0))
-    to_local, to_degrees = osr.CoordinateTransformation(_degrees(), local), osr.CoordinateTransformation(local, _degrees())
-
-    def metres(feature: Feature):
-        shape = feature.shape.Clone()
-        shape.Transform(to_local)
-        return shape
-
-    for one in areas:  # that have no line
-        if not any(line.shape.Intersects(one.shape.ConvexHull()) for line in runways):
-            axis, width = _axis_of(metres(one))
-            axis.Transform(to_degrees)
-            runways.append(Feature("runway", {"width": f"{width:.1f}", **one.tags}, axis))
-            features.remove(one)
-
-    if box is not None:
-        inside = _box(box)
-        runways = [one for one in runways if one.shape.Intersects(inside)]
-        if not runways:
-            raise Error(f"{file}: --bounds {' '.join(f'{x:g}' for x in box)} holds none of its runways")
-    places = [metres(one) for one in aerodromes]
-    groups: Dict[Any, List[Feature]] = collections.defaultdict(list)
-    for one in runways:
-        line = metres(one)
-        away = [(place.Distance(line), number) for number, place in enumerate(places)]
-        near = min(away, default=(math.inf, -1))
-        if near[0] <= NEAR_AERODROME:
-            code = aerodromes[near[1]].tags.get("icao")
-            groups[next(number for number, place in enumerate(aerodromes) if number == near[1] or (code and place.tags.get("icao") == code))].append(one)
-        else:  # by the runways themselves
-            beside = next((key for key, members in groups.items() if isinstance(key, str)
-                           and min(metres(other).Distance(line) for other in members) <= ONE_AIRPORT), f"runway {one.tags.get('ref', '?')}")
-            groups[beside].append(one)
-    names = {key: _name_of(aerodromes[key]) if isinstance(key, int) else key for key in groups}
-    if icao is not None:
-        chosen = [key for key in groups if isinstance(key, int) and aerodromes[key].tags.get("icao", "").upper() == icao.upper()]
-        if not chosen:
-            raise Error(f"{file}: holds no airport {icao} with a runway, but: {', '.join(names.values())}")
-    elif len(groups) > 1 and box is None:
-        raise Error(f"{file}: holds runways of {len(groups)} airports: {', '.join(names.values())}; expected one, or --icao CODE or "
-                    "--bounds W S E N to say which")
-    else:
-        chosen = list(groups)
-    aerodrome = next((aerodromes[key] for key in chosen if isinstance(key, int)), None)
-    return [one for key in chosen for one in groups[key]], aerodrome
-
-
-def _axis_of(area):
-    """Line between the short sides of the smallest rectangle about an area, and the rectangle's width. @param area ogr, m"""
-    _, ogr, _ = _gdal()
-    hull = area.ConvexHull()
-    ring = hull.GetGeometryRef(0)
-    corners = np.array([ring.GetPoint_2D(i) for i in range(ring.GetPointCount())])
-    best = None
-    for way in np.diff(corners, axis=0):
-        along = way / np.linalg.norm(way)
-        turned = corners @ np.array([along, (-along[1], along[0])]).T
-        low, high = turned.min(axis=0), turned.max(axis=0)
-        if best is None or np.prod(high - low) < best[0]:
-            best = np.prod(high - low), along, low, high
-    _, along, low, high = best
-    middle, sides = (low + high) / 2, high - low
-    ends = [middle + sign * 0.5 * sides * (sides == sides.max()) for sign in (-1, 1)]
-    line = ogr.Geometry(ogr.wkbLineString)
-    for x, y in ends:
-        line.AddPoint_2D(*(x * along + y * np.array((-along[1], along[0]))))
-    return line, float(sides.min())
-
-
-def _box(degrees: Sequence[float]):
-    _, ogr, _ = _gdal()
-    west, south, east, north = degrees
-    return ogr.CreateGeometryFromWkt(f"POLYGON (({west} {south}, {east} {south}, {east} {north}, {west} {north}, {west} {south}))")
-
-
-def _joined(runways: List[Feature]) -> List[Feature]:
-    """Ways of one runway, which have its `ref`, as one line."""
-    _, ogr, _ = _gdal()
-    parts: Dict[str, List[Feature]] = collections.defaultdict(list)
-    for number, one in enumerate(runways):
-        parts[one.tags.get("ref") or f"#{number}"].append(one)
-    joined = []
-    for members in parts.values():
-        lines = ogr.Geometry(ogr.wkbMultiLineString)
-        for one in members:
-            for line in ([one.shape] if one.shape.GetGeometryCount() == 0 else [one.shape.GetGeometryRef(i) for i in range(one.shape.GetGeometryCount())]):
-                lines.AddGeometry(line)
-        whole = ogr.ForceToLineString(lines)
-        rest = [whole] if whole.GetGeometryName() == "LINESTRING" else [whole.GetGeometryRef(i) for i in range(whole.GetGeometryCount())]
-        tags = {name: value for one in reversed(members) for name, value in one.tags.items()}
-        joined += [Feature("runway", tags, line.Clone()) for line in rest]
-    return joined
-
-
-def properties_of(feature: Feature, known: Dict[str, Any]) -> Dict[str, Any]:
-    """What the scene file reads of a feature, and what each number is from."""
-    rule, tags = known["kinds"][feature.kind], feature.tags
-    number = tags.get("osm_id") or tags.get("osm_way_id") or tags.get("id") or tags.get("@id")
-    properties: Dict[str, Any] = {"kind": feature.kind, "id": number, "name": tags.get("name"), "ref": tags.get("ref")}
-    if "height" in rule:
-        name = height_name(rule)
-        value, source = next(((length_of(tags[key]), key) for key in ("height", "building:height", "height_m") if length_of(tags.get(key))),
-                             (None, "assumed"))
-        if value is not None and "height_source" in tags:
-            source = f"{source}: {tags['height_source']}"
-        levels, roof = (length_of(tags.get(f"{part}:levels")) or 0.0 for part in ("building", "roof"))
-        if value is None and levels:
-            each = rule.get("level_height", known["level_height"])
-            value = each * levels + (known["level_height"] * roof or length_of(tags.get("roof:height")) or 0.0)
-            source = f"building:levels, {each:g} m each assumed"
-        if value is None and "height" in tags:
-            source = f"assumed: height is {str(tags['height'])[:40]!r}"
-        properties.update({name: round(float(rule["height"] if value is None else value), 3), f"{name}_from": source})
-    if "width" in rule and _form(feature.shape) != "area":
-        value, source = next(((length_of(tags.get(key)), key) for key in ("width", "width_m", "diameter_crown") if length_of(tags.get(key))),
-                             (None, "assumed"))
-        properties.update(width=round(float(rule["width"] if value is None else value), 3), width_from=source)
-    if feature.kind in ("runway", "taxiway", "apron", "road", "parking"):
-        said = tags.get("surface", "")
-        surface = next((name for name, words in known["surfaces"].items() if said in words), None)
-        properties.update(surface=surface or rule["material"], surface_from="surface" if surface else "assumed")
-    return {name: value for name, value in properties.items() if value is not None}
-
-
-def height_name(rule: Dict[str, Any]) -> str:
-    """The property with the height: `height` of buildings, which siting changes by some metres and keeps lidars away from, `top`
-    of plants, fences and masts."""
-    return "top" if rule["class"] in ("fence", "mast", "pole", "tree", "vegetation") else "height"
 
 
 def read_heights(file: pathlib.Path, origin: Sequence[float], rectangle: Sequence[float], known: Dict[str, Any]
@@ -546,7 +223,7 @@ def _geojson(features: Sequence[Tuple[Dict[str, Any], Any]]) -> bytes:
 class Airport:
     """What is made of an extract."""
 
-    def __init__(self, extract, heights=None, icao: Optional[str] = None, bounds: Optional[Sequence[float]] = None,
+    def __init__(self, extract, heights=None, icao: Optional[str] = None, bounds: Optional[Sequence[float]] = None, obstacles: Sequence[Any] = (),
                  progress: Callable[[str, int, int], Any] = lambda *_: None):
         self.known, self.extract = rules(), pathlib.Path(extract)
         self.dem = pathlib.Path(heights) if heights is not None else None
@@ -556,10 +233,15 @@ class Airport:
             if not (-180.0 <= west < east <= 180.0 and -90.0 <= south < north <= 90.0):
                 raise ValueError(f"--bounds {west:g} {south:g} {east:g} {north:g}: expected west, south, east and north in degrees")
         progress("extract", 0, 1)
-        self.features, aerodromes = read_extract(self.extract, self.known)
+        found = read_extract(self.extract, self.known)
+        self.features, self.left, self.unknown = found.features, found.left, found.unknown
         progress("extract", 1, 1)
-        runways, aerodrome = choose_runways(self.extract, self.features, aerodromes, icao, bounds)
-        self.runways = _joined(runways)
+        self.runways, aerodrome = choose_runways(self.extract, found, self.known, icao, bounds)
+        self.obstacles = [pathlib.Path(file) for file in obstacles]
+        for file in self.obstacles:
+            surveyed, left = read_obstacles(file, self.known)
+            self.features += surveyed
+            self.left += left
         self.tags = aerodrome.tags if aerodrome else {}
         self.name = self.tags.get("name") or self.tags.get("icao") or self.extract.name.split(".")[0]
         self._place(bounds)
@@ -603,14 +285,35 @@ class Airport:
             raise Error(f"{self.extract}: the scene would reach over the meridian of 180 degrees; set --bounds to the runways' side of it")
         self.box = _box([around.GetEnvelope()[i] for i in (0, 2, 1, 3)])
 
-    def _mapped(self) -> bytes:
-        """What lies in the box, with what the scene file reads of it."""
-        rows = []
-        for one in [*self.runways, *(one for one in self.features if one.kind != "runway" or _form(one.shape) == "area")]:
+    def _chosen(self, posts: np.ndarray, corner: Sequence[float], spacing: float) -> List[Feature]:
+        """What becomes part of the scene; `self.left` gets all else, with its reason. The ground is that of `_posts`."""
+        found: List[Feature] = []
+        outside: Dict[str, int] = collections.Counter()
+        lines = [one for one in self.features if one.kind == "runway" and _form(one.shape) == "line"]
+        for one in [*self.runways, *(one for one in self.features if one not in lines)]:
             shape = one.shape
             if not shape.Intersects(self.box) if shape.IsValid() else not shape.ConvexHull().Intersects(self.box):
+                outside[one.kind] += 1
                 continue
-            rule = self.known["kinds"][one.kind]
+            if "elevation" in one.tags and "height" not in one.tags:
+                place = shape.Centroid()
+                place.Transform(self.to_local)
+                above = float(one.tags["elevation"]) - self.origin[2] - _at(posts, corner, spacing, (place.GetX(), place.GetY()))
+                if self.dem is None or not above > 0.0:
+                    self.left.append(Left(one.kind, "an elevation without --heights" if self.dem is None else "below ground", one.id, one.name))
+                    continue
+                one.tags = {**one.tags, "height": f"{above:.3f}", "height_source": f"{one.tags['height_source']}, elevation less that of the ground"}
+            found.append(one)
+        self.left += [Left(kind, "outside the scene", count=count) for kind, count in outside.items()]
+        found, drawn = without_parts(found, self.known)
+        self.left += [Left(one.kind, "drawn by its parts", one.id, one.name) for one in drawn]
+        return found
+
+    def _mapped(self, chosen: Sequence[Feature]) -> bytes:
+        """What is in the scene, with what the scene file reads of it; flat areas, woods and lines end at the box."""
+        rows = []
+        for one in chosen:
+            shape, rule = one.shape, self.known["kinds"][one.kind]
             if ("flat" in rule or "medium" in rule or _form(shape) == "line") and one.kind != "runway" and not self.box.Contains(shape):
                 shape = (shape if shape.IsValid() else shape.MakeValid()).Intersection(self.box)
                 if shape is None or shape.IsEmpty():
@@ -651,9 +354,10 @@ class Airport:
         out = pathlib.Path(folder)
         kept = Kept(out)
         self.progress("files", 0, len(WHAT))
-        with _quiet():
-            mapped = kept.put("airport.geojson", self._mapped)
         posts = self._posts()
+        with _quiet():
+            chosen = self._chosen(*posts)
+            mapped = kept.put("airport.geojson", lambda: self._mapped(chosen))
         kept.put("terrain.vtp", lambda: self._terrain(*posts))
         if "terrain.vtp" in kept.edited:
             self.terrain_words = "heights: terrain.vtp as it was edited"
@@ -670,6 +374,7 @@ class Airport:
             kept.put(scene_file.name, lambda: _json(self.scene_of()))
         self.progress("files", 3, len(WHAT))
         self.scene = load_scene(scene_file)
+        self._count(chosen)
         self.sides = siting.read_runways(mapped, self.scene.geodetic_origin)
         exclusions = kept.put("exclusions.geojson", lambda: self._exclusions(mapped))
         self.position = self._position(mapped, exclusions)
@@ -694,7 +399,7 @@ class Airport:
         there = collections.Counter((row["kind"], row.get("surface")) for row in self.rows)
         for kind, rule in self.known["kinds"].items():
             for surface in sorted({surface for one, surface in there if one == kind}, key=str):
-                name = kind.capitalize() + (f" of {surface.lower()}" if surface else "")
+                name = kind.replace("_", " ").capitalize() + (f" of {surface.lower()}" if surface else "")
                 item: Dict[str, Any] = {"name": name, "class": rule["class"], "footprints": "airport.geojson",
                                         "filter": {"kind": kind, **({"surface": surface} if surface else {})}, "on": "Terrain"}
                 if "medium" in rule:
@@ -705,6 +410,8 @@ class Airport:
                     item.update(flat=True, base=rule["base"])
                 else:
                     item.update(height_attribute=height_name(rule), height=rule["height"])
+                    if any(row["kind"] == kind and "min_height" in row for row in self.rows):
+                        item["min_height_attribute"] = "min_height"
                 if "width" in rule:
                     item.update(width_attribute="width", width=rule["width"])
                 if "glazing" in rule:
@@ -717,7 +424,7 @@ class Airport:
         lidar = {"lidar": {"position": [round(float(x), 3) for x in position]}} if position is not None else {}
         return {"version": 1, "comment": [f"{self.name}, from {self.extract.name}. README.txt says what is assumed.", self.terrain_words],
                 "attribution": [f"Outlines: {self.extract.name}; of OpenStreetMap: (c) OpenStreetMap contributors, ODbL 1.0, "
-                                "https://www.openstreetmap.org/copyright"],
+                                "https://www.openstreetmap.org/copyright", *(f"Obstacles: {file.name}" for file in self.obstacles)],
                 "origin": dict(zip(("latitude", "longitude", "height"), self.origin)), **lidar,
                 **({"materials": materials} if materials else {}), "objects": objects}
 
@@ -726,12 +433,8 @@ class Airport:
         the aerodrome, if the extract has its outline."""
         _, ogr, _ = _gdal()
         rows = []
-        if self.ground is not None:  # without holes, as outlines have none: in four parts
-            middle = self.ground.PointOnSurface()
-            outside, (west, east, south, north) = self.box.Difference(self.ground), self.box.GetEnvelope()
-            for part in ((west, south, middle.GetX(), middle.GetY()), (middle.GetX(), south, east, middle.GetY()),
-                         (west, middle.GetY(), middle.GetX(), north), (middle.GetX(), middle.GetY(), east, north)):
-                rows.append(({"what": "outside the aerodrome"}, outside.Intersection(_box(part))))
+        if self.ground is not None:
+            rows.append(({"what": "outside the aerodrome"}, self.box.Difference(self.ground)))
         for runway in self.sides:
             corners = siting.to_geodetic(np.column_stack([siting.runway_outline(runway), np.zeros(4)]), self.scene.geodetic_origin)[:, :2]
             ring = ", ".join(f"{x:.9f} {y:.9f}" for x, y in [*corners, corners[0]])
@@ -815,7 +518,7 @@ class Airport:
 
     def _assumed_rows(self) -> Iterator[Tuple[Any, ...]]:
         for row in self.rows:
-            for what in ("height", "top", "width", "surface"):
+            for what in ("kind", "height", "top", "min_height", "width", "surface"):
                 if "assumed" in str(row.get(f"{what}_from", "")):
                     yield row["kind"], row.get("id", ""), row.get("name") or row.get("ref") or "", what, row.get(what), row[f"{what}_from"]
 
@@ -824,16 +527,64 @@ class Airport:
         writer = csv.writer(table, lineterminator="\n")
         writer.writerow(("kind", "id", "name", "what", "value (m, or a material)", "from"))
         writer.writerows(self._assumed_rows())
+        writer.writerows((one.kind, one.id, one.name, "left out", one.count, one.reason) for one in self.left)
+        writer.writerows(("unknown kind", "", name, "left out", count, "no rule knows it") for name, count in self.unknown.most_common())
+        writer.writerows((kind, "", "", "in the scene", count, "") for kind, count in self.there.items())
         return table.getvalue().encode()
+
+    def _count(self, chosen: Sequence[Feature]) -> None:
+        """How many of each kind are in the scene; what its reader leaves out becomes part of `self.left`."""
+        self.there = collections.Counter(one.kind for one in chosen)
+        kinds = {kind.replace("_", " "): kind for kind in self.known["kinds"]}
+        report = field_values(self.scene.surfaces.GetBlock(0)).get("scene_report", ())
+        for name, count, reason in re.findall(r"^(.*): (\d+) (.*) were left out$", "\n".join([report] if isinstance(report, str) else report), re.MULTILINE):
+            kind = kinds.get(name.split(" of ")[0].lower())
+            if kind is not None:
+                self.left.append(Left(kind, reason, count=int(count)))
+                self.there[kind] -= int(count)
+
+    @property
+    def counts(self) -> str:
+        """What was read, what is in the scene and what is not, by reason, in one line."""
+        reasons = collections.Counter(self.unknown and {"unknown kind": sum(self.unknown.values())})
+        for one in self.left:
+            reasons[one.reason] += one.count
+        there, left = sum(self.there.values()), sum(reasons.values())
+
+        def verb(count: int, one: str, more: str) -> str:
+            return f"{count:,} {one if count == 1 else more}"
+        return (f"{there + left:,} features were read, {verb(there, 'is', 'are')} in the scene, {verb(left, 'was', 'were')} left out") + (
+            ": " + ", ".join(f"{count:,} {reason}" for reason, count in reasons.most_common()) if left else "")
+
+    def _counts(self) -> str:
+        """The same by kind."""
+        lines, outside = [f"  {self.counts}"], "outside the scene"
+        away: List[str] = []
+        for kind in dict.fromkeys([*self.there, *(one.kind for one in self.left)]):
+            reasons: Dict[str, int] = collections.Counter()
+            for one in self.left:
+                reasons[one.reason] += one.count * (one.kind == kind)
+            out = {reason: count for reason, count in reasons.items() if count}
+            if not self.there[kind] and set(out) == {outside}:
+                away.append(f"{kind} ({out[outside]:,})")
+            elif out:
+                lines.append(f"  {kind or 'others'}: {self.there[kind] + sum(out.values()):,} read, {self.there[kind]:,} in the scene; left out: "
+                             + ", ".join(f"{count:,} {reason}" for reason, count in out.items()))
+        lines += [f"  all {outside}: {', '.join(away)}"] * bool(away)
+        named = [f"{name} ({count:,})" for name, count in self.unknown.most_common(7) if name != "others"]
+        lines += [f"  among those of unknown kind: {', '.join(named[:6])}"] * bool(named)
+        if any(one.reason == CUT for one in self.left):
+            lines.append("  what is cut by the border is whole in an extract that is cut by `osmium extract --strategy smart`")
+        return "\n".join(lines)
 
     def _readme(self) -> bytes:
         kinds = collections.Counter(row["kind"] for row in self.rows)
         assumed = collections.Counter((row[0], row[3]) for row in self._assumed_rows())
-        lengths = "\n".join(f"  {runway.name}: {runway.axis()[1]:.0f} m long, {runway.width:g} m wide" for runway in self.sides)
+        lengths = "\n".join(f"  {runway.words()}" for runway in self.sides)
         table = "\n".join(f"  {kind}: {count}" + "".join(f"; {what} assumed of {number}" for (one, what), number in assumed.items() if one == kind)
                           for kind, count in kinds.items())
-        said = sorted({str(row["height_from"]) for row in self.rows if ": " in str(row.get("height_from", ""))})
-        quoted = "".join(f"  of its heights the extract says: {words}\n" for words in said)
+        said = sorted({str(row[name]) for row in self.rows for name in ("height_from", "top_from") if ": " in str(row.get(name, ""))})
+        quoted = "".join(f"  heights are from {words}\n" for words in said)
         heights = siting.ground_of(self.scene, [end for runway in self.sides for end in (runway.start, runway.end)])
         x, y, z = self.position
         without = "; without clutter, as behind leaves it takes long" if self.leaves else ""
@@ -850,7 +601,7 @@ has edited, so remove a file to have it made anew.
   exclusions.geojson       where no lidar may stand, beside buildings
   airport.scenario.json    labelled scans: avianlidar sequence airport.scenario.json -o sequences
                            tracks of them: avianlidar track sequences --runways airport.geojson -o tracks
-  assumed.csv              each number that the extract does not say
+  assumed.csv              each number that the extract does not say, and what was left out
   airport.png              the scene from above
 
 Runways
@@ -859,6 +610,9 @@ Runways
 What there is, and of how much of it a number is assumed
 {table}
 {quoted}
+What was read, and what became of it
+{self._counts()}
+
 {self.terrain_words}
   heights are above the sea or the ellipsoid as the file has them
   the ends of the runways lie {np.nanmin(heights):.1f} to {np.nanmax(heights):.1f} m above the origin; heights of plans are above the origin

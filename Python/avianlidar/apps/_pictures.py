@@ -38,16 +38,18 @@ def gradient(count: int = 9) -> List[str]:
 
 def draw(file, size: Tuple[float, float], work: Callable[[Any], Any], columns: int = 1) -> pathlib.Path:
     """Write a picture (PNG). @param size inches @param work draws into the axes that it is given @param columns axes beside one another"""
+    from matplotlib import rc_context
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
-    figure = Figure(figsize=size, layout="constrained")
-    FigureCanvasAgg(figure)
-    axes = figure.subplots(1, columns)
-    for one in np.ravel(axes):
-        one.tick_params(labelsize=9)
-    work(axes)
     content = io.BytesIO()
-    figure.savefig(content, format="png", dpi=PIXELS)
+    with rc_context({"text.parse_math": False}):  # names are drawn as they are written, with their $
+        figure = Figure(figsize=size, layout="constrained")
+        FigureCanvasAgg(figure)
+        axes = figure.subplots(1, columns)
+        for one in np.ravel(axes):
+            one.tick_params(labelsize=9)
+        work(axes)
+        figure.savefig(content, format="png", dpi=PIXELS)
     write_whole(file, content.getvalue())
     return pathlib.Path(file)
 

@@ -59,6 +59,13 @@ class Runway:
     start: Tuple[float, float]
     end: Tuple[float, float]
     width: float
+    displaced: Tuple[float, float] = (0.0, 0.0)  # how far the thresholds lie from the start and the end, m
+
+    def words(self) -> str:
+        """Its name, length, width and displaced thresholds."""
+        names = self.name.split("/") if self.name.count("/") == 1 else ("its start", "its end")
+        found = [f"of {name} by {away:.0f} m" for name, away in zip(names, self.displaced) if away > 0.0]
+        return f"{self.name}: {self.axis()[1]:.0f} m long, {self.width:g} m wide" + (f"; threshold displaced: {', '.join(found)}" if found else "")
 
     def axis(self) -> Tuple[np.ndarray, float]:
         """The unit vector from start to end, and the length, m."""
@@ -142,7 +149,10 @@ def read_runways(file, origin: Sequence[float]) -> List[Runway]:
                 if not isinstance(width, (int, float)) or not width > 0 or not np.hypot(*(corners[-1] - corners[0])) > 1.0:
                     raise ValueError(f"{name}: expected a line of some length and a width above 0 m, got the width {width!r}")
                 (x0, y0), (x1, y1) = (map(float, corner) for corner in corners[[0, -1]])
-                found.append(Runway(name, (x0, y0), (x1, y1), float(width)))
+                displaced = [properties.get(f"displaced_{end}", 0.0) for end in ("start", "end")]
+                if not all(isinstance(away, (int, float)) and 0.0 <= away < np.hypot(x1 - x0, y1 - y0) for away in displaced):
+                    raise ValueError(f"{name}: displaced thresholds are {displaced[0]!r} and {displaced[1]!r}, expected metres, less than its length")
+                found.append(Runway(name, (x0, y0), (x1, y1), float(width), (float(displaced[0]), float(displaced[1]))))
     if not found:
         raise Error(f"{path}: holds no runway, expected lines whose property kind or aeroway is runway")
     return found
@@ -214,8 +224,8 @@ def strips_and_approaches(runways: Sequence[Runway], count: int = 12000, seed: i
     return np.concatenate(places), {name: numbers for name, numbers in members.items() if len(numbers)}
 
 
-def read_outlines(file, origin: Sequence[float], attribute: str = "") -> List[np.ndarray]:
-    """The outer rings (n x 2, m, open) of the polygons in a GeoJSON file; what they enclose counts as theirs.
+def read_outlines(file, origin: Sequence[float], attribute: str = "") -> List[Any]:
+    """The polygons in a GeoJSON file: each its ring (n x 2, m, open), or, where it has holes, a list of its outer ring and theirs.
     @param origin of the scene: latitude, longitude (deg), height (m) @param attribute only of features that have this one"""
     found = []
     for number, feature in enumerate(_features(pathlib.Path(file))):
@@ -225,7 +235,11 @@ def read_outlines(file, origin: Sequence[float], attribute: str = "") -> List[np
                 polygons = [shape.get("coordinates")] if shape["type"] == "Polygon" else shape.get("coordinates")
                 if not isinstance(polygons, list):
                     raise ValueError("the coordinates of a MultiPolygon are no list")
-                found += [_ring(rings, origin) for rings in polygons if rings != []]
+                for rings in polygons:
+                    if rings != []:
+                        found.append(_ring(rings, origin))
+                        if len(rings) > 1:
+                            found[-1] = [found[-1], *(_ring([ring], origin) for ring in rings[1:])]
     return found
 
 
@@ -248,14 +262,18 @@ def runway_outline(runway: Runway, beyond: float = 60.0, beside: float = 185.0) 
 
 
 def is_near(points, outline, margin: float = 0.0) -> np.ndarray:
-    """Which points (n x 2, m) lie in an outline (m x 2, m) or within `margin` (m) of it: n of bool."""
-    points, outline = np.asarray(points, dtype=float)[:, :2], np.asarray(outline, dtype=float)
-    if outline.ndim != 2 or outline.shape[1] != 2 or len(outline) < 3:
-        raise ValueError(f"an outline has the shape {outline.shape}, expected n x 2 with n at least 3")
+    """Which points (n x 2, m) lie in an outline or within `margin` (m) of it: n of bool. @param outline a ring (m x 2, m), or several:
+    the outer one and holes"""
+    points = np.asarray(points, dtype=float)[:, :2]
+    rings = [np.asarray(ring, dtype=float) for ring in (outline if np.ndim(outline[0]) == 2 else [outline])]
+    for ring in rings:
+        if ring.ndim != 2 or ring.shape[1] != 2 or len(ring) < 3:
+            raise ValueError(f"an outline has the shape {ring.shape}, expected n x 2 with n at least 3")
+    outline, ends = np.concatenate(rings), np.concatenate([np.roll(ring, -1, axis=0) for ring in rings])
     reach = max(margin, 0.0)
     near = ((points >= outline.min(axis=0) - reach) & (points <= outline.max(axis=0) + reach)).all(axis=1)
     chosen = np.flatnonzero(near)[np.argsort(points[near, 1], kind="stable")]  # from south to north
-    places, ends = points[chosen], np.roll(outline, -1, axis=0)
+    places = points[chosen]
     crossed, close = np.zeros(len(places), dtype=int), np.zeros(len(places), dtype=bool)
     for place, edge in _pairs(places, np.minimum(outline, ends), np.maximum(outline, ends), reach):
         crosses, within = _beside(places[place], outline[edge], ends[edge], margin)
@@ -711,6 +729,9 @@ def with_other_heights(scene_file, folder, offset: Callable[[], float]) -> pathl
                 value = _height(properties.get(height))
                 if value and (id(feature), height) not in moved:
                     properties[height] = max(value + offset(), 0.1)
+                    under = _height(properties.get(item.get("min_height_attribute")))
+                    if under:  # what does not reach the ground keeps its thickness
+                        properties[item["min_height_attribute"]] = max(under + properties[height] - value, 0.0)
                     moved.add((id(feature), height))
     out.mkdir(parents=True, exist_ok=True)
     for file, shapes in changed.values():

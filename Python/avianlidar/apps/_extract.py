@@ -1,0 +1,624 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Extracts of maps: which features become which parts of an airport's scene, which are left out, and why. GDAL reads."""
+from __future__ import annotations
+
+import collections
+import contextlib
+import dataclasses
+import json
+import mmap
+import pathlib
+import re
+import tempfile
+from typing import Any, Callable, Dict, Iterable, Iterator, List, Optional, Set, Tuple
+from xml.etree import ElementTree
+
+import numpy as np
+
+from .._pipeline import Error
+from ._json import load_json, naming
+
+SUFFIXES = {".osm": "OSM", ".pbf": "OSM", ".geojson": "GeoJSON", ".gpkg": "GPKG"}  # with GDAL's drivers
+LARGEST = 256 << 20  # bytes of an extract
+TALLEST = 1000.0  # m: what is higher is no height
+LONGEST_LENGTH = 100  # characters
+COAST = "coastline"
+UNKNOWN, CUT = "unknown kind", "cut by the extract's border"
+TAG = re.compile(r'"((?:[^"\\]|\\.)*)"=>"((?:[^"\\]|\\.)*)"')  # of GDAL's OSM driver
+THOUSANDS = "[, \u00a0\u202f'\u2019]"  # between groups of three digits
+NUMBER = rf"\d{{1,3}}(?:{THOUSANDS}\d{{3}})+(?:\.\d+)?|\d+(?:[.,]\d+)?"
+LENGTH = re.compile(rf"(?:~|<|>|≈|c\.|ca\.?|circa|approx\.?|about|max\.?|up to)?\s*({NUMBER})\s*\+?\s*"
+                    r"(mm|cm|km|millimet\w+|centimet\w+|kilomet\w+|met(?:er|re)s?|mtrs?|mts?|m|ft|foot|feet|['′]|yd|yards?|stor[ei]\w*|floors?|levels?)?\.?"
+                    rf"\s*-?\s*(?:({NUMBER})\s*(?:\"|''|″|in|inch|inches)\.?)?\s*(?:\(.*\)|a\.?g\.?l\.?|above ground\w*(?: level)?)?", re.IGNORECASE)
+UNITS = {"mm": 1e-3, "mil": 1e-3, "c": 1e-2, "k": 1e3, "f": 0.3048, "'": 0.3048, "′": 0.3048, "y": 0.9144}  # m, by how a unit begins
+HEIGHTS = ("height", "building:height", "est_height", "height_m", "render_height", "measuredHeight", "height:hub")
+LEVELS = ("building:levels", "num_floors", "levels", "floors")
+MIN_HEIGHTS = ("min_height", "building:min_height", "render_min_height")
+MIN_LEVELS = ("building:min_level", "min_level", "min_floor")
+WIDTHS = ("width", "width_m", "diameter", "diameter_crown")
+
+
+@dataclasses.dataclass
+class Feature:
+    """What a kind of the rules takes from an extract: tags and geometry (ogr, degrees, longitude first)."""
+
+    kind: str
+    tags: Dict[str, str]
+    shape: Any
+
+    @property
+    def id(self) -> str:
+        """As the extract has it, or empty."""
+        return next((self.tags[name] for name in ("osm_id", "osm_way_id", "id", "@id") if self.tags.get(name)), "")
+
+    @property
+    def name(self) -> str:
+        return self.tags.get("name") or self.tags.get("ref") or ""
+
+
+@dataclasses.dataclass
+class Left:
+    """Features that are not in the scene."""
+
+    kind: str
+    reason: str
+    id: str = ""
+    name: str = ""
+    count: int = 1
+
+
+@dataclasses.dataclass
+class Extract:
+    """What an extract holds."""
+
+    features: List[Feature] = dataclasses.field(default_factory=list)
+    aerodromes: List[Feature] = dataclasses.field(default_factory=list)
+    models: List[Feature] = dataclasses.field(default_factory=list)  # model airfields
+    thresholds: List[Feature] = dataclasses.field(default_factory=list)  # of runways, points
+    left: List[Left] = dataclasses.field(default_factory=list)
+    unknown: collections.Counter = dataclasses.field(default_factory=collections.Counter)  # by tag
+
+    def leave(self, feature: Feature, reason: str) -> None:
+        self.left.append(Left(feature.kind, reason, feature.id, feature.name))
+
+
+def rules() -> Dict[str, Any]:
+    """What is made of which tags, with all numbers that are assumed (`airport.json`)."""
+    return load_json(pathlib.Path(__file__).with_name("airport.json"))
+
+
+def gdal_modules():
+    from osgeo import gdal, ogr, osr
+    for module in (gdal, ogr, osr):
+        module.UseExceptions()
+    return gdal, ogr, osr
+
+
+@contextlib.contextmanager
+def quiet(hear: Optional[Callable[[str], Any]] = None) -> Iterator[None]:
+    """Without GDAL's warnings, as of rings that cross, which the scene reader repairs and counts. @param hear is called with them,
+    and with what the OSM driver says of ways and relations"""
+    gdal, _, _ = gdal_modules()
+    before = gdal.GetConfigOption("CPL_DEBUG")
+    gdal.PushErrorHandler("CPLQuietErrorHandler" if hear is None else lambda _, number, words: hear(words))
+    gdal.SetConfigOption("CPL_DEBUG", before if hear is None else "OSM")
+    try:
+        yield
+    finally:
+        gdal.SetConfigOption("CPL_DEBUG", before)
+        gdal.PopErrorHandler()
+
+
+def degrees():
+    _, _, osr = gdal_modules()
+    system = osr.SpatialReference()
+    system.ImportFromEPSG(4326)
+    system.SetAxisMappingStrategy(osr.OAMS_TRADITIONAL_GIS_ORDER)
+    return system
+
+
+def open_file(file: pathlib.Path, what: str, drivers: List[str], kind: int, options: Tuple[str, ...] = ()):
+    """A regular file with one of GDAL's drivers."""
+    gdal, _, _ = gdal_modules()
+    if not file.exists():
+        raise FileNotFoundError(f"no such file: {file}")
+    if not file.is_file():
+        raise Error(f"{file}: it is no regular file")
+    try:
+        return gdal.OpenEx(str(file.resolve()), kind | gdal.OF_READONLY, allowed_drivers=drivers, open_options=list(options))
+    except RuntimeError as error:
+        raise Error(f"{file}: GDAL cannot read it as {what} ({error})") from None
+
+
+def fits(tags: Dict[str, str], wanted: Dict[str, Any]) -> bool:
+    """Whether tags have all of these: a word, several, `*` for any, `-*` for any that begins so."""
+    for name, words in wanted.items():
+        said = tags.get(name)
+        if said is None or (words != "*" and said not in (words if isinstance(words, list) else [words])
+                            and not (words == "-*" and said.startswith("-"))):
+            return False
+    return True
+
+
+class Table:
+    """Names by tags: the first row counts that fits."""
+
+    def __init__(self, rows: Iterable[Tuple[str, Dict[str, Any]]]):
+        self.rows: Dict[str, List[Tuple[int, str, Dict[str, Any]]]] = collections.defaultdict(list)
+        for number, (name, wanted) in enumerate(rows):
+            self.rows[next(iter(wanted))].append((number, name, wanted))
+
+    def find(self, tags: Dict[str, str]) -> Optional[str]:
+        found = [(number, name) for key in tags if key in self.rows for number, name, wanted in self.rows[key] if fits(tags, wanted)]
+        return min(found)[1] if found else None
+
+
+def form_of(shape) -> str:
+    """Which of point, line and area a geometry is; "" for others."""
+    name = shape.GetGeometryName().replace("MULTI", "") if shape is not None else ""
+    return {"POINT": "point", "LINESTRING": "line", "POLYGON": "area"}.get(name, "")
+
+
+def parts_of(shape) -> List[Any]:
+    """Points, lines and polygons of a geometry (ogr)."""
+    if form_of(shape) and "MULTI" not in shape.GetGeometryName():
+        return [shape]
+    return [part for i in range(shape.GetGeometryCount()) for part in parts_of(shape.GetGeometryRef(i))]
+
+
+def _outer(shape) -> np.ndarray:
+    """The corners (n x 2) of points, lines and outer rings."""
+    rings = [part.GetGeometryRef(0) if part.GetGeometryCount() else part for part in parts_of(shape)]
+    return np.array([point for ring in rings for point in ring.GetPoints() or ()], dtype=float).reshape(-1, 2)
+
+
+def _has_extent(corners: np.ndarray, form: str) -> bool:
+    """False of lines and areas of which nodes are missing, or the same."""
+    if form == "point":
+        return True
+    away = corners - corners[0]
+    far = away[np.argmax(np.hypot(*away.T))]
+    least = 1e-9 * np.hypot(*far)  # of 0.1 mm
+    return least > 0.0 and (form == "line" or bool(np.abs(away[:, 0] * far[1] - away[:, 1] * far[0]).max() > least))
+
+
+def _number(text: str) -> float:
+    """Of "1,200.5", "1 200", "12,5"."""
+    thousands = re.fullmatch(rf"\d{{1,3}}({THOUSANDS}\d{{3}})+(\.\d+)?", text)
+    return float(re.sub(THOUSANDS, "", text) if thousands else text.replace(",", "."))
+
+
+def length_of(text: Any) -> Optional[float]:
+    """Metres of "12", "12.5 m", "40 ft", "39'4\"", "1,200 ft", "approx 12", the greatest of "2;3" and "12-15"; None where it is no
+    length."""
+    return _greatest(text, _one_length)
+
+
+def levels_of(text: Any) -> Optional[float]:
+    """The number of "2", "2 floors", "3+1", the greatest of "2;3", "2,3" and "2-3"; None where it is none."""
+    return _greatest(re.sub(r",(?!5\b)", ";", str(text)) if text else text, _one_number_of_levels)
+
+
+def _greatest(text: Any, one: Callable[[str], Optional[float]]) -> Optional[float]:
+    said = str(text if text is not None else "").strip().strip(";").strip()
+    if not said or len(said) > LONGEST_LENGTH:  # expressions take the third power of a text's size
+        return None
+    values = [one(part.strip()) for part in re.split(r";|(?<=[\w.])\s*[-–]\s*(?=\d)", said)]
+    return max(values) if None not in values and 0.0 < max(values) <= TALLEST else None
+
+
+def _one_length(text: str) -> Optional[float]:
+    found = LENGTH.fullmatch(text)
+    unit = (found[2] or "m").lower() if found else ""
+    if not found or (found[3] and unit[0] not in "f'′"):
+        return None
+    if unit[0] in "sl" or unit.startswith("fl"):
+        return _number(found[1]) * rules()["level_height"]
+    metres = next((value for word, value in UNITS.items() if unit.startswith(word)), 1.0)
+    value = (_number(found[1]) + (_number(found[3]) if found[3] else 0.0) / 12) * metres
+    return value if value <= TALLEST or "," not in found[1] else float(found[1].replace(",", ".", 1).replace(",", "")) * metres
+
+
+def _one_number_of_levels(text: str) -> Optional[float]:
+    found = re.fullmatch(r"(\d+(?:[.,]\d+)?)(?:\s*\+\s*(\d+(?:\.\d+)?))?\s*(?:[a-z]+\.?)?", text, re.IGNORECASE)
+    return _number(found[1]) + float(found[2] or 0.0) if found else None
+
+
+def _tags(feature, names: List[str]) -> Dict[str, str]:
+    tags: Dict[str, str] = {}
+    for number, name in enumerate(names):
+        if not feature.IsFieldSetAndNotNull(number):
+            continue
+        value = feature.GetFieldAsString(number)
+        if name in ("other_tags", "all_tags", "tags"):
+            if value.startswith("{"):
+                tags.update((key, str(word)) for key, word in json.loads(value).items())
+            else:
+                found = TAG.findall(value)
+                tags.update(found if "\\" not in value else [tuple(re.sub(r"\\(.)", r"\1", word) for word in pair) for pair in found])
+        elif name == "names" and value.startswith("{"):
+            tags["name"] = str(json.loads(value).get("primary") or "")
+        elif value:
+            tags[name] = value
+    return tags
+
+
+def _as_osm(tags: Dict[str, str], known: Dict[str, Any]) -> Dict[str, str]:
+    """Tags of OpenStreetMap beside those of Overture's maps, and of what is out of use and still stands."""
+    said = tags.get("class") or ""
+    if tags.get("theme") == "buildings" or "has_parts" in tags or "building_id" in tags:
+        is_part = tags.get("type") == "building_part" or "building_id" in tags
+        tags = {"building:part" if is_part else "building": said or "yes", **tags}
+    elif said and tags.get("subtype") in known["subtypes"]:
+        tags = {known["subtypes"][tags["subtype"]]: said.replace("power_", ""), **tags}
+    for name in [name for name in tags if name.startswith(("disused:", "abandoned:"))]:
+        if name.split(":", 1)[1] in known["standing"]:
+            tags = {name.split(":", 1)[1]: tags[name], **tags}
+    return tags
+
+
+class Reader:
+    """Takes features one by one."""
+
+    def __init__(self, known: Dict[str, Any]):
+        self.known = known
+        self.kinds = {form: Table((kind, tags) for kind, rule in known["kinds"].items() if form in rule["from"] for tags in rule["tags"])
+                      for form in ("point", "line", "area")}
+        self.reasons = Table((reason, tags) for reason, rows in known["left_out"].items() for tags in rows)
+        self.lines, self.models = (Table(("", tags) for tags in known[name]) for name in ("lines", "models"))
+        self.found = Extract()
+        self.seen: Dict[Any, Tuple[int, Feature, Optional[str]]] = {}
+        self.cut: Set[str] = set()  # ways of which nodes are missing
+
+    def hear(self, words: str) -> None:
+        """What GDAL's OSM driver says: it leaves out relations that are not complete, and ways of fewer than two nodes."""
+        part = re.search(r"For way (-?\d+), got only", words)
+        if part:
+            self.cut.add(part[1])
+        gone = re.search(r"(Way|Relation) (-?\d+) (?:has missing ways|with \d+ nodes that)", words)
+        if gone:
+            self.found.left.append(Left(gone[1].lower(), CUT, gone[2]))
+        elif words.startswith("Non closed ring detected"):
+            self.found.left.append(Left("relation", "unclosed"))
+
+    def _kinds(self, tags: Dict[str, str], shape) -> List[Tuple[str, str]]:
+        """Kinds of a feature, each with the form that it takes: what is closed may be an area, a line, and both."""
+        form = form_of(shape)
+        if form == "point":
+            found = [(self.kinds["point"].find(tags), "point")]
+        else:
+            is_area = tags.get("area") == "yes"
+            closed = form == "area" or _is_closed(shape)
+            # GDAL's own idea of polygons: closed ways of aeroway, and others with area=yes, which it drops.
+            is_way = form == "line" or ("aeroway" in tags) == ("osm_way_id" in tags)
+            linear = is_way and not is_area and self.lines.find(tags) is not None
+            area = self.kinds["area"].find(tags) if closed and not linear else None
+            line = self.kinds["line"].find(tags) if not (closed and is_area) or "barrier" in tags else None
+            found = [(area, "area"), (line if line != area else None, "line")]
+        found = [(kind, form) for kind, form in found if kind is not None]
+        has_height = any(length_of(tags[name]) for name in HEIGHTS if name in tags)
+        if not found and has_height and (form == "point" or (closed and not linear and not any(name in tags for name in self.known["low"]))):
+            found = [("obstacle", "point" if form == "point" else "area")]
+        return found
+
+    def take(self, tags: Dict[str, str], shape) -> None:
+        """A feature. @param shape ogr, degrees; may be None"""
+        left = self.found.leave
+        tags = _as_osm(tags, self.known)
+        form = form_of(shape)
+        one = Feature("", tags, shape)
+        if fits(tags, {"type": "building", "building": "*"}) and not form and shape is not None:  # a relation of outlines and parts
+            shape, form = _union([_as_area(part) for part in parts_of(shape) if form_of(part) == "area" or _is_closed(part)]), "area"
+        corners = _outer(shape) if form else ()
+        if not len(corners):
+            if shape is None or shape.IsEmpty():
+                left(one, "without a geometry")
+            elif tags.get("type") != "building":  # whose members are read by themselves
+                self._do_not_know(tags)
+            return
+        is_closed = form == "area" or _is_closed(shape)
+        if self.models.find(tags) is not None:
+            self.found.models.append(one)
+        if tags.get("aeroway") == "threshold" and form == "point":
+            self.found.thresholds.append(one)
+        is_aerodrome = tags.get("aeroway") == "aerodrome"
+        if is_aerodrome and "heliport" not in (tags.get("aerodrome:type"), tags.get("aerodrome")):
+            self.found.aerodromes.append(Feature("", tags, _as_area(shape) if form == "line" and is_closed else shape))
+        if tags.get("natural") == COAST and form != "point":
+            self._keep(Feature(COAST, tags, shape), form, corners, None)
+            return
+        kinds = self._kinds(tags, shape)
+        if not kinds:
+            self._leave_unknown(one, form, is_aerodrome)
+        for kind, taken in kinds:
+            one = Feature(kind, tags, shape)
+            reason = self.reasons.find(tags)
+            if reason is None and not _has_extent(corners, taken):
+                reason = CUT if one.tags.get("osm_way_id") in self.cut else "no nodes"
+            elif reason is None and form != taken:
+                one.shape = _as_area(shape) if taken == "area" else gdal_modules()[1].ForceToMultiLineString(shape)
+            self._keep(one, taken, corners, reason)
+
+    def _leave_unknown(self, one: Feature, form: str, is_aerodrome: bool) -> None:
+        """What no rule takes: what is gone or is not there yet, what is not closed, points of what has an outline, all else."""
+        gone = {rest: (word, self.known["lifecycle"][state]) for name, word in one.tags.items() for state, _, rest in [name.partition(":")]
+                if rest and state in self.known["lifecycle"]}
+        one.kind = self.kinds["area" if form == "line" else form].find({name: word for name, (word, _) in gone.items()}) or ""
+        if one.kind:
+            self.found.leave(one, next(iter(gone.values()))[1])
+            return
+        one.kind = self.kinds["area"].find(one.tags) or "" if form != "area" else ""
+        if "height" in self.known["kinds"].get(one.kind, ()):
+            reason = "a point without an outline" if form == "point" else CUT if one.tags.get("osm_way_id") in self.cut else "unclosed"
+            self.found.leave(one, self.reasons.find(one.tags) or reason)
+        elif not is_aerodrome:
+            self._do_not_know(one.tags)
+
+    def _do_not_know(self, tags: Dict[str, str]) -> None:
+        name = next((name for name in self.known["main"] if name in tags), None)
+        self.found.unknown[f"{name}={tags[name]}" if name else "others"] += 1
+
+    def _keep(self, one: Feature, form: str, corners: np.ndarray, reason: Optional[str]) -> None:
+        """Once each: extracts repeat closed ways as lines and areas, and the outer way of a relation. @param reason to leave it out"""
+        once = (one.kind, frozenset(map(tuple, np.round(corners, 9).tolist())))
+        rank = 99 if form == "line" else sum(max(part.GetGeometryCount(), 1) for part in parts_of(one.shape))
+        if once not in self.seen or self.seen[once][0] < rank:
+            self.seen[once] = rank, one, reason
+
+    def done(self) -> Extract:
+        for _, one, reason in self.seen.values():
+            if reason is None and one.tags.get("osm_way_id") in self.cut and form_of(one.shape) == "area":
+                reason = CUT
+            if reason is None:
+                self.found.features.append(one)
+            else:
+                self.found.leave(one, reason)
+        return self.found
+
+
+def _is_closed(shape) -> bool:
+    return shape.GetGeometryName() == "LINESTRING" and shape.GetPointCount() > 3 and shape.GetPoint_2D(0) == shape.GetPoint_2D(shape.GetPointCount() - 1)
+
+
+def _as_area(shape):
+    """The polygon in a closed line; polygons are as they are."""
+    _, ogr, _ = gdal_modules()
+    if form_of(shape) == "area":
+        return shape.Clone()
+    ring, area = ogr.Geometry(ogr.wkbLinearRing), ogr.Geometry(ogr.wkbPolygon)
+    for point in shape.GetPoints():
+        ring.AddPoint_2D(*point[:2])
+    area.AddGeometry(ring)
+    return area
+
+
+def _union(areas: List[Any]):
+    _, ogr, _ = gdal_modules()
+    whole = ogr.Geometry(ogr.wkbMultiPolygon)
+    for area in areas:
+        valid = area if area.IsValid() else area.MakeValid()
+        for part in parts_of(valid):
+            if form_of(part) == "area":
+                whole.AddGeometry(part)
+    return whole.UnionCascaded()
+
+
+def _needs_order(file: pathlib.Path) -> bool:
+    """Whether XML of OpenStreetMap has nodes after ways, things that an editor has deleted, or places in ways: GDAL reads none of
+    these."""
+    with open(file, "rb") as stream, mmap.mmap(stream.fileno(), 0, access=mmap.ACCESS_READ) as data:
+        way, relation = data.find(b"<way "), data.find(b"<relation ")
+        return (0 <= way < data.rfind(b"<node ") or 0 <= relation < data.rfind(b"<way ") or 0 <= relation < data.rfind(b"<node ")
+                or re.search(rb"""action=["']delete|visible=["']false|<nd [^>]*lat=""", data) is not None)
+
+
+def _elements(file: pathlib.Path) -> Iterator[Tuple[str, Any]]:
+    try:
+        yield from ElementTree.iterparse(file, ("start", "end"))
+    except ElementTree.ParseError as error:
+        raise Error(f"{file}: GDAL cannot read it as an extract ({error})") from None
+
+
+def _in_order(file: pathlib.Path, out: pathlib.Path) -> pathlib.Path:
+    """A copy of XML of OpenStreetMap with nodes, then ways, then relations, each once, by their ids."""
+    found: Dict[str, Dict[int, Tuple[int, bytes]]] = {"node": {}, "way": {}, "relation": {}}
+    places: Dict[Tuple[str, str], str] = {}
+
+    def keep(tag: str, number: int, size: int, text: bytes) -> None:
+        if size > found[tag].get(number, (-1, b""))[0]:
+            found[tag][number] = size, text
+
+    def place(node) -> None:
+        """A node of what Overpass writes by `out geom`: without a number in members of relations."""
+        where = node.get("lat"), node.get("lon")
+        if where[0]:
+            node.set("ref", node.get("ref") or places.setdefault(where, str(-(1 << 40) - len(places))))
+            keep("node", int(node.get("ref")), 0, b'<node id="%s" lat="%s" lon="%s"/>' % tuple(word.encode() for word in (node.get("ref"), *where)))
+
+    root = None
+    for event, one in _elements(file):
+        root = one if root is None else root
+        if event == "start" or one.tag not in found:
+            continue
+        for node in one.iter("nd"):
+            place(node)
+        for member in one.iter("member"):
+            nodes = [node for node in member.iter("nd") if node.get("ref")]
+            if nodes and member.get("type") == "way":
+                keep("way", int(member.get("ref")), 0, b'<way id="%s">%s</way>' % (member.get("ref").encode(),
+                     b"".join(b'<nd ref="%s"/>' % node.get("ref").encode() for node in nodes)))
+        if one.get("action") != "delete" and one.get("visible") != "false" and (one.tag != "node" or one.get("lat")):
+            keep(one.tag, int(one.get("id")), len(one) + 1, ElementTree.tostring(one))
+        root.clear()
+    with open(out, "wb") as stream:
+        stream.write(b'<?xml version="1.0" encoding="UTF-8"?><osm version="0.6">\n')
+        for things in found.values():
+            stream.writelines(things[number][1] for number in sorted(things))
+        stream.write(b"</osm>\n")
+    return out
+
+
+def read_extract(file: pathlib.Path, known: Dict[str, Any]) -> Extract:
+    """What the rules know, aerodromes, and what is left out."""
+    gdal, _, osr = gdal_modules()
+    driver = SUFFIXES.get(file.suffix.lower())
+    if not driver:
+        raise Error(f"{file}: is no extract by its name, expected .osm, .osm.pbf, .geojson or .gpkg")
+    if file.exists() and file.stat().st_size > LARGEST:
+        raise Error(f"{file}: holds {file.stat().st_size >> 20} MiB, expected at most {LARGEST >> 20}: cut it to the airport and some "
+                    "kilometres around it first, as `osmium extract --bbox W,S,E,N` does")
+    options = (f"CONFIG_FILE={pathlib.Path(__file__).with_name('osmconf.ini')}", "USE_CUSTOM_INDEXING=NO") if driver == "OSM" else ()
+    reader = Reader(known)
+    aliases = {name.replace(":", "_"): name for name in known["colons"]}
+    with contextlib.ExitStack() as stack:
+        source = file
+        if file.suffix.lower() == ".osm" and file.is_file() and file.stat().st_size and _needs_order(file):
+            with naming("its nodes, ways and relations"):
+                source = _in_order(file, pathlib.Path(stack.enter_context(tempfile.TemporaryDirectory())) / "in_order.osm")
+        data = open_file(source, "an extract", [driver], gdal.OF_VECTOR, options)
+        stack.enter_context(naming(str(file)))
+        stack.enter_context(quiet(reader.hear if driver == "OSM" else None))
+        layers: Dict[str, Tuple[List[str], Any]] = {}
+        while True:
+            feature, layer = data.GetNextFeature()
+            if feature is None:
+                break
+            if layer.GetName() not in layers:
+                own, frame = layer.GetSpatialRef(), layer.GetLayerDefn()
+                if own is not None:
+                    own.SetAxisMappingStrategy(osr.OAMS_TRADITIONAL_GIS_ORDER)
+                names = [frame.GetFieldDefn(number).GetName() for number in range(frame.GetFieldCount())]
+                layers[layer.GetName()] = ([aliases.get(name, name) for name in names],
+                                           osr.CoordinateTransformation(own, degrees()) if own is not None and not own.IsSame(degrees()) else None)
+            names, to_degrees = layers[layer.GetName()]
+            tags = _tags(feature, names)
+            if not tags:
+                tags = {"feature": str(feature.GetFID())} if driver != "OSM" else tags
+            if driver == "OSM" and layer.GetName() == "lines":
+                tags["osm_way_id"] = tags.get("osm_id", "")
+            if tags:
+                reader.take(tags, _plain(feature.GetGeometryRef(), to_degrees))
+        del data
+    return reader.done()
+
+
+def _plain(shape, to_degrees):
+    """A geometry of straight lines in degrees; what consists of one part is that part, and rings are closed."""
+    if shape is None:
+        return None
+    shape = shape.GetLinearGeometry() if shape.HasCurveGeometry() else shape.Clone()
+    if to_degrees is not None:
+        shape.Transform(to_degrees)
+    shape.FlattenTo2D()
+    shape.CloseRings()
+    return shape.GetGeometryRef(0).Clone() if shape.GetGeometryName().startswith("MULTI") and shape.GetGeometryCount() == 1 else shape
+
+
+def height_name(rule: Dict[str, Any]) -> str:
+    """The property with the height: `height` of buildings, which siting changes by some metres and keeps lidars away from, `top`
+    of plants, fences and masts."""
+    return "top" if rule["class"] in ("fence", "mast", "pole", "tree", "vegetation") else "height"
+
+
+def _first(tags: Dict[str, str], names: Tuple[str, ...], read: Callable[[Any], Optional[float]]) -> Tuple[Optional[float], str]:
+    """The first of some tags with a usable number, and its name."""
+    return next(((value, name) for name in names for value in [read(tags.get(name))] if value is not None), (None, "assumed"))
+
+
+def _height(tags: Dict[str, str], rule: Dict[str, Any], floor: float) -> Tuple[float, str]:
+    """m above the ground, and what it is from. @param floor height of one, m"""
+    value, source = _first(tags, HEIGHTS, length_of)
+    if value is not None:
+        return value, f"{source}: {tags['height_source']}" if "height_source" in tags else source
+    levels, source = _first(tags, LEVELS, levels_of)
+    roof = levels_of(tags.get("roof:levels")) or 0.0
+    if levels or roof:
+        each, lowest = rule.get("level_height", floor), rule.get("lowest_level")
+        levels, up = levels or 0.0, floor * roof or length_of(tags.get("roof:height")) or 0.0
+        if lowest and levels:
+            return lowest + floor * (levels - 1.0) + up, f"{source}, {lowest:g} m for the lowest and {floor:g} m for others assumed"
+        return each * levels + up, f"{source if levels else 'roof:levels'}, {each:g} m each assumed"
+    said = next((name for name in HEIGHTS if name in tags), None)
+    return rule["height"], f"assumed: {said} is {str(tags[said])[:40]!r}" if said else "assumed"
+
+
+def properties_of(feature: Feature, known: Dict[str, Any]) -> Dict[str, Any]:
+    """What the scene file reads of a feature, and what each number is from."""
+    rule, tags = known["kinds"][feature.kind], feature.tags
+    properties: Dict[str, Any] = {"kind": feature.kind, "id": feature.id or None, "name": tags.get("name"), "ref": tags.get("ref")}
+    if feature.kind == "obstacle":
+        properties["kind_from"] = f"assumed: no rule knows {next((f'{name}={tags[name]}' for name in known['main'] if name in tags), 'it')}"
+    if "height" in rule:
+        name, floor = height_name(rule), known["level_height"]
+        height, source = _height(tags, rule, floor)
+        under, why = _first(tags, MIN_HEIGHTS, length_of)
+        if under is None:
+            below, why = _first(tags, MIN_LEVELS, levels_of)
+            under = rule.get("level_height", floor) * below if below else None
+            why = f"{why}, {rule.get('level_height', floor):g} m each assumed" if below else why
+        if under is None and "thickness" in rule and not tags.get("min_height", "").startswith("0"):
+            under, why = height - rule["thickness"], "assumed"
+        properties.update({name: round(float(height), 3), f"{name}_from": source})
+        if under is not None and 0.0 < under < height:
+            properties.update(min_height=round(float(under), 3), min_height_from=why)
+    if "width" in rule and form_of(feature.shape) != "area":
+        value, source = _first(tags, WIDTHS, length_of)
+        properties.update(width=round(float(rule["width"] if value is None else value), 3), width_from=source)
+    if feature.kind in ("runway", "taxiway", "apron", "road", "parking"):
+        said = tags.get("surface", "")
+        surface = next((name for name, words in known["surfaces"].items() if said in words), None)
+        properties.update(surface=surface or rule["material"], surface_from="surface" if surface else "assumed")
+    properties.update((name, float(tags[name])) for name in ("displaced_start", "displaced_end") if feature.kind == "runway" and name in tags)
+    return {name: value for name, value in properties.items() if value is not None}
+
+
+def without_parts(features: List[Feature], known: Dict[str, Any]) -> Tuple[List[Feature], List[Feature]]:
+    """Buildings of which parts are drawn lose the ground below these, so that parts may be lower than their outline. @return features,
+    and the buildings that are nothing but their parts"""
+    parts = [one for one in features if one.kind == "part" and "min_height" not in properties_of(one, known)]
+    outlines = [one for one in features if "level_height" in known["kinds"][one.kind] or known["kinds"][one.kind]["class"] in ("building", "house")]
+    outlines = [one for one in outlines if one.kind != "part" and form_of(one.shape) == "area"]
+    drawn: Set[int] = set()
+    if not parts or not outlines:
+        return features, []
+    boxes = np.array([one.shape.GetEnvelope() for one in outlines])
+    below: Dict[int, List[Any]] = collections.defaultdict(list)
+    for part in parts:
+        x, y = part.shape.GetEnvelope()[:2], part.shape.GetEnvelope()[2:]
+        for number in np.flatnonzero((boxes[:, 0] <= x[1]) & (boxes[:, 1] >= x[0]) & (boxes[:, 2] <= y[1]) & (boxes[:, 3] >= y[0])):
+            below[number].append(part.shape)
+    for number, shapes in below.items():
+        outline = outlines[number]
+        whole = outline.shape if outline.shape.IsValid() else outline.shape.MakeValid()
+        rest = whole.Difference(_union(shapes))
+        if rest.Area() < known["drawn_by_parts"] * whole.Area():
+            drawn.add(id(outline))
+        elif rest.Area() < whole.Area():
+            outline.shape = rest
+    return [one for one in features if id(one) not in drawn], [one for one in features if id(one) in drawn]
+
+
+def sea(features: List[Feature], box) -> List[Any]:
+    """Areas of a box that lie to the right of its coastlines, as OpenStreetMap draws them. A polygon is an island. None where
+    coastlines end within the box. @param box ogr, degrees, as the areas"""
+    _, ogr, _ = gdal_modules()
+    lines, right = box.Boundary(), []
+    for part in (part for one in features if one.kind == COAST for part in parts_of(one.shape)):
+        points = _outer(part)
+        if form_of(part) == "area" and np.sum(points[:-1, 0] * points[1:, 1] - points[1:, 0] * points[:-1, 1]) < 0.0:
+            points = points[::-1]  # land is to the left
+        coast = ogr.Geometry(ogr.wkbLineString)
+        for point in points:
+            coast.AddPoint_2D(*point)
+        coast = coast.Intersection(box)
+        lines = lines.Union(coast)
+        for piece in parts_of(coast):
+            ends = _outer(piece)
+            ways = np.diff(ends, axis=0)
+            right += list((ends[:-1] + ends[1:]) / 2 + 1e-3 * np.column_stack([ways[:, 1], -ways[:, 0]]))
+    faces: Any = lines.Polygonize() if right else None
+    found = []
+    for face in parts_of(faces) if faces is not None else ():
+        if any(face.Contains(ogr.CreateGeometryFromWkt(f"POINT ({x!r} {y!r})")) for x, y in (map(float, point) for point in right)):
+            found.append(face.Clone())
+    return [] if sum(face.Area() for face in found) > 0.999 * box.Area() else found

@@ -1,0 +1,182 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Surveyed obstacles, as States publish them: AIXM 5.1, and CSV with named columns."""
+from __future__ import annotations
+
+import csv
+import io
+import pathlib
+import re
+from typing import Any, Dict, Iterator, List, Optional, Tuple
+from xml.etree import ElementTree
+
+import numpy as np
+
+from .._disk import read_regular
+from .._pipeline import Error
+from ._extract import Feature, Left, degrees, form_of, gdal_modules
+
+METRES = {"m": 1.0, "metre": 1.0, "metres": 1.0, "meter": 1.0, "meters": 1.0, "ft": 0.3048, "foot": 0.3048, "feet": 0.3048}
+COLUMNS = {"longitude": ("longitude", "lon", "long", "lng", "londec", "x"), "latitude": ("latitude", "lat", "latdec", "y"),
+           "height": ("height", "agl", "hgt"), "elevation": ("elevation", "amsl", "elev"), "unit": ("unit", "units", "uom"),
+           "kind": ("kind", "type", "obstacle_type"), "name": ("name", "id", "identifier", "designator", "oas"), "action": ("action",)}
+UNIT = re.compile(r"[ _]*[\[(](\w+)[\])]$|_(m|ft|feet)$")  # of a column, as in "height_ft" and "Height (m)"
+ANGLE = re.compile(r"([NSEW]?)\s*(\d{1,3})[°:\s-]*(\d{2})[′':\s-]*(\d{2}(?:[.,]\d+)?)[″\"\s]*([NSEW]?)", re.IGNORECASE)
+NO_PLACE = "without a place or a height"
+
+
+def read_obstacles(file: pathlib.Path, known: Dict[str, Any]) -> Tuple[List[Feature], List[Left]]:
+    """Obstacles as features of the rules, and what is left out. Their tag `height` is in metres above the ground; where a file gives
+    only the elevation of the top, that is in `elevation`, m."""
+    suffix = file.suffix.lower()
+    if suffix not in (".xml", ".csv"):
+        raise Error(f"{file}: is no file of obstacles by its name, expected .xml (AIXM 5.1) or .csv")
+    found: List[Feature] = []
+    left: List[Left] = []
+    for tags, shape in (_aixm if suffix == ".xml" else _csv)(file, read_regular(file)):
+        kind = _kind_of(tags.pop("word"), form_of(shape) if shape is not None else "", known)
+        one = Feature(kind, {**tags, "height_source": f"surveyed, {file.name}" + tags.pop("note", "")}, shape)
+        reason = "a wire" if kind == "wire" else "ruins, or gone" if tags.pop("gone", "") else ""
+        if shape is None or not ("height" in tags or "elevation" in tags):
+            reason = NO_PLACE
+        found += [] if reason else [one]
+        left += [Left("obstacle" if kind == "wire" else kind, reason, one.id, one.name)] if reason else []
+    return found, left
+
+
+def _kind_of(word: str, form: str, known: Dict[str, Any]) -> str:
+    """The kind of the rules for the words of a file. A building without an outline is taken for a tower, which has a width."""
+    kind = next((kind for kind, words in known["obstacles"].items() if any(one in word.lower() for one in words)), "obstacle")
+    if kind != "wire" and form and form not in known["kinds"][kind]["from"]:
+        kind = {"point": "tower" if kind == "building" else "obstacle", "line": "wall"}.get(form, "obstacle")
+    return kind
+
+
+def _metres(value: str, unit: str, what: str) -> Optional[float]:
+    """None where there is no number above 0."""
+    try:
+        number = float(value)
+    except (TypeError, ValueError):
+        return None
+    if unit.lower() not in METRES:
+        raise Error(f"{what}: the unit is {unit!r}, expected m or ft")
+    return number * METRES[unit.lower()] if number > 0.0 and np.isfinite(number) else None
+
+
+def _csv(file: pathlib.Path, content: bytes) -> Iterator[Tuple[Dict[str, str], Any]]:
+    try:
+        text = content.decode("utf-8-sig")
+    except UnicodeDecodeError:
+        text = content.decode("latin-1")
+    head = text.split("\n", 1)[0]
+    rows = csv.reader(io.StringIO(text, newline=""), delimiter=max(",;\t", key=head.count), skipinitialspace=True)
+    names = [name.strip().lower() for name in next(rows, [])]
+    plain = [UNIT.sub("", name) for name in names]
+    at = {column: next((plain.index(word) for word in words if word in plain), None) for column, words in COLUMNS.items()}
+    if at["longitude"] is None or at["latitude"] is None or at["height"] is at["elevation"] is None:
+        raise Error(f"{file}: expected the columns longitude, latitude, and height or elevation (and unit, kind, name), found {', '.join(names)[:200]}")
+    is_faa = {"latdec", "londec", "agl"} <= set(names)  # the Digital Obstacle File of the FAA, in feet
+    for number, row in enumerate(rows, 2):
+        if not any(cell.strip() for cell in row):
+            continue
+        cells = {column: row[place].strip() if place is not None and place < len(row) else "" for column, place in at.items()}
+        tags = {"id": cells["name"] or str(number), "name": cells["name"], "word": cells["kind"], "gone": "yes" if cells["action"].upper() == "D" else ""}
+        for column in ("height", "elevation"):
+            own = UNIT.search(names[at[column]]) if at[column] is not None else None
+            unit = cells["unit"] or (own and (own[1] or own[2])) or ("ft" if is_faa else "")
+            value = _metres(cells[column].replace(",", "."), unit or "m", f"{file}: row {number}")
+            if value is not None:
+                tags[column] = f"{value:.3f}"
+                tags["note"] = "" if unit else ", m assumed"
+        longitude, latitude = _angle(cells["longitude"]), _angle(cells["latitude"])
+        is_place = longitude is not None and latitude is not None and abs(longitude) <= 180.0 and abs(latitude) <= 90.0
+        yield tags, gdal_modules()[1].CreateGeometryFromWkt(f"POINT ({longitude!r} {latitude!r})") if is_place else None
+
+
+def _angle(text: str) -> Optional[float]:
+    """Degrees of "13.302", "13,302", "0131807.2E", "53°36'10\"N"."""
+    found = ANGLE.fullmatch(text)
+    if found and (found[1] or found[5]):
+        value = int(found[2]) + int(found[3]) / 60.0 + float(found[4].replace(",", ".")) / 3600.0
+        return -value if (found[1] or found[5]).upper() in "SW" else value
+    try:
+        value = float(text.replace(",", "."))
+    except ValueError:
+        return None
+    return value if np.isfinite(value) else None
+
+
+def _local(element) -> str:
+    return element.tag.rsplit("}", 1)[-1]
+
+
+def _all(element, *names: str) -> List[Any]:
+    return [one for one in element.iter() if _local(one) in names]
+
+
+def _text(element, *names: str) -> str:
+    return next(((one.text or "").strip() for one in _all(element, *names) if (one.text or "").strip()), "")
+
+
+def _aixm(file: pathlib.Path, content: bytes) -> Iterator[Tuple[Dict[str, str], Any]]:
+    try:
+        root = ElementTree.fromstring(content)
+    except ElementTree.ParseError as error:
+        raise Error(f"{file}: cannot be read as AIXM 5.1 ({error})") from None
+    structures = _all(root, "VerticalStructure")
+    if not structures:
+        raise Error(f"{file}: holds no VerticalStructure, expected AIXM 5.1")
+    for structure in structures:
+        slices = [one for one in _all(structure, "VerticalStructureTimeSlice") if not _text(one, "interpretation").endswith("DELTA")]
+        last = max(slices, key=lambda one: int(_text(one, "sequenceNumber") or 0), default=None)
+        for part in _all(last, "VerticalStructurePart") if last is not None else ():
+            name = _text(last, "name")
+            what = f"{file}: {name}"
+            tags = {"id": next((value for key, value in structure.attrib.items() if key.endswith("}id")), name), "name": name,
+                    "word": " ".join((_text(part, "type") or _text(last, "type"), name)) if _text(last, "type") else name}
+            for column, names in (("height", ("verticalExtent",)), ("elevation", ("elevation",))):
+                for one in _all(part, *names)[:1]:
+                    value = _metres((one.text or "").strip(), one.get("uom", "M"), what)
+                    tags.update({column: f"{value:.3f}"} if value is not None else {})
+            yield tags, _shape(part, what)
+
+
+def _shape(part, what: str):
+    """The place of a part (ogr, degrees), or None."""
+    _, ogr, _ = gdal_modules()
+    for place in _all(part, "ElevatedPoint", "ElevatedCurve", "ElevatedSurface", "Point", "Curve", "Surface"):
+        form = _local(place).replace("Elevated", "")
+        rings = _all(place, "exterior", "interior") if form == "Surface" else [place]
+        srs = next((one.get("srsName") for one in place.iter() if one.get("srsName")), "urn:ogc:def:crs:EPSG::4326")
+        size = int(next((one.get("srsDimension") for one in place.iter() if one.get("srsDimension")), 2))
+        shape = ogr.Geometry({"Point": ogr.wkbPoint, "Curve": ogr.wkbLineString, "Surface": ogr.wkbPolygon}[form])
+        for ring in rings:
+            words = " ".join(one.text or "" for one in _all(ring, "pos", "posList")).replace(",", " ").split()
+            try:
+                points = np.array(words, dtype=float).reshape(-1, size)[:, :2]
+            except ValueError:
+                raise Error(f"{what}: {' '.join(words)[:60]!r}: expected coordinates in groups of {size}") from None
+            line = ogr.Geometry(ogr.wkbLinearRing) if form == "Surface" else shape
+            for x, y in points.tolist():
+                line.AddPoint_2D(x, y)
+            if form == "Surface" and len(points):
+                shape.AddGeometry(line)
+        if not shape.IsEmpty():
+            shape.CloseRings()
+            shape.Transform(_to_degrees(srs, what))
+            return shape
+    return None
+
+
+def _to_degrees(srs: str, what: str):
+    """From a coordinate system by its name, with its own order of axes, to longitude and latitude. Nothing is fetched."""
+    _, _, osr = gdal_modules()
+    code = re.search(r"EPSG[:/]+(?:[\d.]*[:/])?(\d+)$", srs)
+    if srs.endswith("CRS84"):
+        return osr.CoordinateTransformation(degrees(), degrees())
+    system = osr.SpatialReference()
+    try:
+        system.ImportFromEPSG(int(code[1]) if code else 0)
+    except RuntimeError:
+        raise Error(f"{what}: the coordinate system is {srs!r}, expected one of EPSG") from None
+    system.SetAxisMappingStrategy(osr.OAMS_AUTHORITY_COMPLIANT)
+    return osr.CoordinateTransformation(system, degrees())

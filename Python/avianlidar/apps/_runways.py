@@ -1,0 +1,196 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The runways of one airport, from the features of an extract."""
+from __future__ import annotations
+
+import collections
+import math
+import pathlib
+import re
+from typing import Any, Dict, List, Optional, Sequence, Set, Tuple
+
+import numpy as np
+
+from .._pipeline import Error
+from ._extract import Extract, Feature, degrees, form_of, gdal_modules, parts_of
+from ._maps import coordinate_system
+
+NEAR_AERODROME = 3000.0  # m: a runway belongs to the nearest aerodrome within
+ONE_AIRPORT = 6000.0  # m between runways of one airport, where no aerodrome is in the extract
+MODEL_NEAR = 100.0  # m of a model airfield
+THRESHOLD_BESIDE, THRESHOLD_BEYOND = 30.0, 30.0  # m: a threshold lies on a runway; nearer to its end it is the end
+
+
+def box_of(west_south_east_north: Sequence[float]):
+    _, ogr, _ = gdal_modules()
+    west, south, east, north = west_south_east_north
+    return ogr.CreateGeometryFromWkt(f"POLYGON (({west} {south}, {east} {south}, {east} {north}, {west} {north}, {west} {south}))")
+
+
+def _axis_of(area) -> Tuple[np.ndarray, float]:
+    """Ends of the line between the short sides of the smallest rectangle about an area, and the rectangle's width. @param area ogr, m"""
+    hull = area.ConvexHull()
+    ring = hull.GetGeometryRef(0)
+    corners = np.array([ring.GetPoint_2D(i) for i in range(ring.GetPointCount())])
+    best = None
+    for way in np.diff(corners, axis=0):
+        along = way / np.linalg.norm(way)
+        turned = corners @ np.array([along, (-along[1], along[0])]).T
+        low, high = turned.min(axis=0), turned.max(axis=0)
+        if best is None or np.prod(high - low) < best[0]:
+            best = np.prod(high - low), along, low, high
+    _, along, low, high = best
+    middle, sides = (low + high) / 2, high - low
+    ends = np.array([middle + sign * 0.5 * sides * (sides == sides.max()) for sign in (-1, 1)])
+    return ends @ np.array([along, (-along[1], along[0])]), float(sides.min())
+
+
+def _designators(tags: Dict[str, str]) -> Set[str]:
+    """"09L" and "27R" of "9L/27R"."""
+    return {word.strip().upper().zfill(3 if word.strip()[-1:].isalpha() else 2) for word in re.split(r"[/;-]", tags.get("ref", "")) if word.strip()}
+
+
+class _Piece:
+    """A way of a runway: tags, and its points (n x 2, m)."""
+
+    def __init__(self, tags: Dict[str, str], points: np.ndarray):
+        self.tags, self.points = tags, points
+        self.is_displaced = "displaced_threshold" in (tags.get("runway"), tags.get("aeroway"))
+        way = points[-1] - points[0]
+        self.length = float(np.linalg.norm(way))
+        self.along = way / self.length
+
+    def goes_on(self, other: _Piece, known: Dict[str, Any]) -> bool:
+        """Whether both are of one runway: no other number, in one line, and no further apart than a gap of the map."""
+        mine, theirs = _designators(self.tags), _designators(other.tags)
+        if mine and theirs and not mine & theirs:
+            return False
+        long, short = (self, other) if self.length >= other.length else (other, self)
+        off = short.points[[0, -1]] - long.points[0]
+        across = np.abs(off @ np.array([-long.along[1], long.along[0]]))
+        at = np.sort(off @ long.along)
+        gap = max(at[0] - long.length, -at[1], 0.0)
+        return bool(across.max() <= known["runway_offset"] and gap <= (known["runway_gap"] if mine & theirs else known["runway_offset"]))
+
+
+def _joined(pieces: List[_Piece], known: Dict[str, Any]) -> List[Tuple[Dict[str, str], np.ndarray, List[float]]]:
+    """Runways of pieces: tags, ends (2 x 2, m), and by how much each end's threshold is displaced, m. The first end is that of the
+    first number of `ref`."""
+    groups: List[List[_Piece]] = []
+    for piece in sorted(pieces, key=lambda one: -one.length):
+        fitting = [group for group in groups if any(piece.goes_on(one, known) for one in group)]
+        groups = [group for group in groups if not any(group is one for one in fitting)] + [[*(one for group in fitting for one in group), piece]]
+    found = []
+    for group in groups:
+        group.sort(key=lambda one: (one.is_displaced, -one.length))
+        tags = {name: value for one in reversed(group) for name, value in one.tags.items() if name != "runway"}
+        points, along, start = np.concatenate([one.points for one in group]), group[0].along, group[0].points[0]
+        number = re.match(r"(\d{1,2})[LCR]?\s*/", tags.get("ref", ""))
+        if number and math.cos(math.atan2(along[0], along[1]) - math.radians(10.0 * int(number[1]))) < 0.0:
+            along = -along
+        at = (points - start) @ along
+        ends = points[[np.argmin(at), np.argmax(at)]]
+        inner = np.concatenate([(one.points - start) @ along for one in group if not one.is_displaced] or [at])
+        found.append((tags, ends, [float(inner.min() - at.min()), float(at.max() - inner.max())]))
+    return found
+
+
+def _displaced(ends: np.ndarray, by_pieces: List[float], thresholds: List[np.ndarray]) -> List[float]:
+    """By how much each end's threshold is displaced, m, by ways of a runway or by points of thresholds."""
+    length = float(np.linalg.norm(ends[1] - ends[0]))
+    along, found = (ends[1] - ends[0]) / length, list(by_pieces)
+    for point in thresholds:
+        at, beside = (point - ends[0]) @ along, abs((point - ends[0]) @ np.array([-along[1], along[0]]))
+        for end, away in enumerate((at, length - at)):
+            if beside <= THRESHOLD_BESIDE and THRESHOLD_BEYOND < away < length / 2:
+                found[end] = max(found[end], float(away))
+    return found
+
+
+def _name_of(aerodrome: Feature) -> str:
+    code = aerodrome.tags.get("icao", "")
+    return " ".join(filter(None, (code, aerodrome.tags.get("name", ""), "" if code else "(no ICAO code)")))
+
+
+def choose_runways(file: pathlib.Path, extract: Extract, known: Dict[str, Any], icao: Optional[str], box: Optional[Sequence[float]]
+                   ) -> Tuple[List[Feature], Optional[Feature]]:
+    """The runways of one airport as lines (degrees), and its aerodrome if the extract has it. What is too short for a runway is left out.
+    @param icao its code, if given @param box west, south, east, north, degrees: runways that meet it, if given"""
+    _, ogr, osr = gdal_modules()
+    lines = [one for one in extract.features if one.kind == "runway" and form_of(one.shape) == "line"]
+    areas = [one for one in extract.features if one.kind == "runway" and form_of(one.shape) == "area"]
+    if not lines + areas:
+        other = next((f"; left out: {left.reason}" for left in extract.left if left.kind == "runway"), "")
+        lost = sum(left.kind == "way" for left in extract.left)
+        other += f"; {lost} ways lack their nodes, which `osmium sort` puts before them" if lost and not other else ""
+        raise Error(f"{file}: holds no runway, expected lines or areas with the tag aeroway=runway{other}")
+    middle = (lines + areas)[0].shape.Centroid()
+    local = coordinate_system((middle.GetY(), middle.GetX(), 0.0))
+    to_local, to_degrees = osr.CoordinateTransformation(degrees(), local), osr.CoordinateTransformation(local, degrees())
+
+    def metres(shape):
+        shape = shape.Clone()
+        shape.Transform(to_local)
+        return shape
+
+    def points_of(shape) -> np.ndarray:
+        return np.array([point[:2] for point in metres(shape).GetPoints()])
+
+    pieces = [_Piece(one.tags, points) for one in lines for part in parts_of(one.shape) for points in [points_of(part)]
+              if np.linalg.norm(points[-1] - points[0]) > 1.0]
+    for one in areas:  # that have no line
+        if not any(line.shape.Intersects(one.shape.ConvexHull()) for line in lines):
+            ends, width = _axis_of(metres(one.shape))
+            pieces.append(_Piece({"width": f"{width:.1f}", **one.tags}, ends))
+            extract.features.remove(one)
+    places = [metres(one.shape) for one in extract.aerodromes]
+    models = [metres(one.shape) for one in extract.models]
+    thresholds = [points_of(one.shape)[0] for one in extract.thresholds]
+    runways: List[Feature] = []
+    groups: Dict[Any, List[Feature]] = collections.defaultdict(list)
+    away_of: List[Any] = []
+    for tags, ends, by_pieces in _joined(pieces, known):
+        line = ogr.Geometry(ogr.wkbLineString)
+        for x, y in ends:
+            line.AddPoint_2D(float(x), float(y))
+        one = Feature("runway", tags, line.Clone())
+        one.shape.Transform(to_degrees)
+        is_model = line.Length() < known["model_runway"] and any(model.Distance(line) <= MODEL_NEAR for model in models)
+        if is_model or line.Length() < known["shortest_runway"]:
+            extract.leave(one, "of a model airfield" if is_model else f"a runway shorter than {known['shortest_runway']:g} m")
+            continue
+        for name, away in zip(("displaced_start", "displaced_end"), _displaced(ends, by_pieces, thresholds)):
+            one.tags = {**one.tags, **({name: f"{away:.1f}"} if away > 1.0 else {})}
+        runways.append(one)
+        away_of.append(line)
+    if not runways:
+        raise Error(f"{file}: holds no runway of {known['shortest_runway']:g} m or more")
+    if box is not None:
+        inside = box_of(box)
+        kept = [number for number, one in enumerate(runways) if one.shape.Intersects(inside)]
+        if not kept:
+            raise Error(f"{file}: --bounds {' '.join(f'{x:g}' for x in box)} holds none of its runways")
+        runways, away_of = [runways[number] for number in kept], [away_of[number] for number in kept]
+    lines_of: Dict[Any, List[Any]] = collections.defaultdict(list)
+    for one, line in zip(runways, away_of):
+        near = min(((place.Distance(line), number) for number, place in enumerate(places)), default=(math.inf, -1))
+        if near[0] <= NEAR_AERODROME:
+            code = extract.aerodromes[near[1]].tags.get("icao")
+            key: Any = next(number for number, place in enumerate(extract.aerodromes)
+                            if number == near[1] or (code and place.tags.get("icao") == code))
+        else:  # by the runways themselves
+            key = next((key for key, members in lines_of.items() if isinstance(key, str)
+                        and min(other.Distance(line) for other in members) <= ONE_AIRPORT), f"runway {one.tags.get('ref', '?')}")
+        groups[key].append(one)
+        lines_of[key].append(line)
+    names = {key: _name_of(extract.aerodromes[key]) if isinstance(key, int) else key for key in groups}
+    if icao is not None:
+        chosen = [key for key in groups if isinstance(key, int) and extract.aerodromes[key].tags.get("icao", "").upper() == icao.upper()]
+        if not chosen:
+            raise Error(f"{file}: holds no airport {icao} with a runway, but: {', '.join(names.values())}")
+    elif len(groups) > 1 and box is None:
+        raise Error(f"{file}: holds runways of {len(groups)} airports: {', '.join(names.values())}; expected one, or --icao CODE or "
+                    "--bounds W S E N to say which")
+    else:
+        chosen = list(groups)
+    aerodrome = next((extract.aerodromes[key] for key in chosen if isinstance(key, int)), None)
+    return [one for key in chosen for one in groups[key]], aerodrome

@@ -1,0 +1,438 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Extracts of maps as tools write them: what of them becomes part of an airport's scene, and what is counted as left out. Surveyed
+obstacles beside them."""
+import csv
+import json
+import math
+import re
+import unittest
+
+import numpy as np
+from osgeo import gdal
+
+import avianlidar as al
+import TestAirport as ta
+from avianlidar import siting
+from avianlidar.apps import _extract as extract
+from avianlidar.apps import _obstacles as obstacles
+from avianlidar.apps import _pictures as pictures
+from avianlidar.apps._airport import Airport
+
+KNOWN = extract.rules()
+
+
+def things(file):
+    """Each feature that the rules take: kind, form, name, and its area (m2) or length (m)."""
+    found = []
+    for one in extract.read_extract(file, KNOWN).features:
+        shape = one.shape.Clone()
+        shape.Transform(to_local())
+        form = extract.form_of(shape)
+        found.append((one.kind, form, one.tags.get("name", ""), round({"area": shape.Area, "line": shape.Length}[form]() if form != "point" else 0)))
+    return sorted(found)
+
+
+def to_local():
+    return extract.gdal_modules()[2].CoordinateTransformation(extract.degrees(), ta.coordinate_system(ta.HERE))
+
+
+def left(file):
+    """How many features are left out, by kind and reason."""
+    found = {}
+    for one in extract.read_extract(file, KNOWN).left:
+        found[one.kind, one.reason] = found.get((one.kind, one.reason), 0) + one.count
+    return found
+
+
+def rows(folder):
+    return [feature["properties"] for feature in json.loads((folder / "airport.geojson").read_text(encoding="utf-8"))["features"]]
+
+
+def runway(plan, **tags):
+    plan.way([(-800, 0), (800, 0)], aeroway="runway", ref="09/27", width="45", **tags)
+    return plan
+
+
+def fenced():
+    """Closed ways that are areas by some tags, lines by others, and both."""
+    plan = runway(ta.Map())
+    plan.area((-1500, -700), (1500, 700), aeroway="aerodrome", icao="XFEN", barrier="fence", height="3")
+    for number, tags in enumerate(({"man_made": "storage_tank"}, {"man_made": "chimney"}, {"man_made": "silo"}, {"man_made": "tower"},
+                                   {"waterway": "dock"}, {"power": "tower"}, {"landuse": "military", "barrier": "wall"}, {"amenity": "school", "barrier": "fence"},
+                                   {"landuse": "grass", "barrier": "hedge"}, {"building": "yes", "height": "9"}, {"building__part": "yes", "height": "12"},
+                                   {"aeroway": "apron"}, {"amenity": "parking", "area": "yes"}, {"natural": "wood"}, {"highway": "footway", "surface": "asphalt"}, {"highway": "service", "area": "yes"}, {"building": "construction"})):
+        plan.area((60 * number, 300), (60 * number + 30 + number, 340), name=str(number), **tags)
+    plan.way([(100, 100), (400, 100), (400, 200), (100, 200)], True, aeroway="taxiway")
+    plan.way([(-400, 100), (-100, 100), (-100, 200), (-400, 200)], True, highway="service")
+    plan.relation([plan.area((-600, 300), (-500, 400))], [plan.area((-570, 330), (-530, 370))], building="hangar", height="12", name="ring")
+    plan.relation([plan.area((-900, 300), (-800, 400), natural="wood")], [plan.area((-880, 320), (-820, 380))], natural="wood", name="glade")
+    plan.point(0, 500, man_made="mast", height="25")
+    return plan
+
+
+class Formats(unittest.TestCase):
+    def test_one_map_in_four_formats(self):
+        """PBF; GDAL's own idea of areas in a GeoPackage; GeoJSON with each closed way twice, as by osmium, and with tags in one object."""
+        file = fenced().write("fenced.osm")
+        expected = things(file)
+        kinds = [kind for kind, *_ in expected]
+        self.assertEqual({kind: kinds.count(kind) for kind in set(kinds)},
+                         {"runway": 1, "fence": 2, "wall": 1, "hedge": 1, "tank": 2, "chimney": 1, "tower": 1, "mast": 2, "water": 1, "grass": 1, "building": 1,
+                          "part": 1, "apron": 1, "parking": 1, "wood": 2, "taxiway": 1, "road": 2, "hangar": 1})
+        sizes = {(kind, name): size for kind, _, name, size in expected}
+        for which, size in ((("tank", "0"), 30 * 40), (("wall", "6"), 2 * (36 + 40)), (("grass", "8"), 38 * 40), (("hedge", "8"), 2 * (38 + 40)),
+                            (("hangar", "ring"), 1e4 - 40**2), (("wood", "glade"), 1e4 - 60**2), (("taxiway", ""), 800), (("fence", ""), 2 * (3000 + 1400))):
+            self.assertAlmostEqual(sizes[which] / size, 1.0, delta=1e-3, msg=which)
+        geopackage, twice, nested = (ta.FOLDER / f"fenced{name}" for name in (".gpkg", "-twice.geojson", "-nested.geojson"))
+        geopackage.unlink(missing_ok=True)
+        gdal.VectorTranslate(str(geopackage), str(file), format="GPKG")
+        lines, nest = [], []
+        for one in [*extract.read_extract(file, KNOWN).features, *extract.read_extract(file, KNOWN).aerodromes]:
+            tags = {name: value for name, value in one.tags.items() if not name.startswith("osm_")}
+            shape = json.loads(one.shape.ExportToJson())
+            if shape["type"] == "Polygon" and len(shape["coordinates"]) == 1:
+                ring = {"type": "LineString", "coordinates": shape["coordinates"][0]}
+                lines += [(tags, ring), (tags, {"type": "MultiPolygon", "coordinates": [shape["coordinates"]]})]
+            elif shape["type"] == "LineString" and shape["coordinates"][0] == shape["coordinates"][-1]:
+                lines += [(tags, {"type": "Polygon", "coordinates": [shape["coordinates"]]}), (tags, shape)]
+            else:
+                lines.append((tags, shape))
+            nest.append(({"type": "way", "id": 1, "tags": tags}, shape))
+        for out, all_ in ((twice, lines), (nested, nest)):
+            out.write_text(json.dumps({"type": "FeatureCollection", "features": [
+                {"type": "Feature", "properties": tags, "geometry": shape} for tags, shape in all_]}))
+        for other in (ta.pbf(file), geopackage, twice, nested):
+            found = things(other)
+            self.assertEqual([row[:3] for row in found], [row[:3] for row in expected], other)
+            if other in (geopackage, ta.FOLDER / "fenced.osm.pbf"):
+                self.assertEqual(left(other), left(file), other)
+            np.testing.assert_allclose([row[3] for row in found], [row[3] for row in expected], atol=1.5, err_msg=str(other))
+
+    def test_orders_of_xml(self):
+        """Nodes from last to first, after ways, with negative ids, places in ways, and what an editor has deleted."""
+        plan = fenced()
+        file = plan.write("order.osm")
+        expected = things(file)
+        text = file.read_text(encoding="utf-8")
+        places = dict(re.findall(r'<node id="(\d+)" version="1" (lat="\S+" lon="\S+")>', text))
+        deleted = "".join(f'<node id="{i}" action="delete" lat="1" lon="{i}"/>' for i in (90001, 90002)) + (
+            '<way id="90003" action="delete"><nd ref="90001"/><nd ref="90002"/><tag k="barrier" v="fence"/></way>')
+        relations = "".join(plan.relations)
+        in_ways = re.sub(r'<nd ref="(\d+)"/>', lambda found: f'<nd ref="{found[1]}" {places[found[1]]}/>', "".join(plan.ways))
+        tagged = "".join(row for row in plan.rows if "<tag" in row)
+        for name, body in (("backwards", "".join(plan.rows[::-1] + plan.ways[::-1]) + relations),
+                           ("after", relations + "".join(plan.ways + plan.rows)),
+                           ("body_and_skeleton", "".join(plan.ways) + relations + re.sub(r"<tag [^>]*>", "", "".join(plan.rows)) + tagged),
+                           ("negative", re.sub(r'(id|ref)="', r'\1="-', "".join(plan.rows + plan.ways) + relations)),
+                           ("geometry", tagged + in_ways + relations),
+                           ("deleted", deleted + "".join(plan.rows + plan.ways) + relations)):
+            other = ta.FOLDER / f"{name}.osm"
+            other.write_text(f'<?xml version="1.0"?><osm version="0.6">{body}</osm>', encoding="utf-8")
+            self.assertEqual(things(other), expected, name)
+
+    def test_what_the_border_cuts(self):
+        """Closed ways of which one, two and three nodes of four are there, a way of none, and a relation of a way that is not."""
+        plan = runway(ta.Map())
+        text = plan.write("cut.osm").read_text(encoding="utf-8")
+        nodes = "".join(f'<node id="{i}" lat="{53.603 + 1e-4 * (i % 2)}" lon="{13.301 + 1e-4 * (i // 2 % 2)}" version="1"/>' for i in (900, 901, 903, 902))
+        ways = "".join(f'<way id="{number}" version="1">' + "".join(f'<nd ref="{i}"/>' for i in refs) + '<tag k="building" v="yes"/></way>' for number, refs in (
+            (910, (900, 991, 992, 993, 900)), (911, (900, 901, 992, 993, 900)), (912, (900, 901, 903, 993, 900)), (913, (991, 992, 993, 991)), (914, (991, 901, 903, 902, 991))))
+        relation = ('<relation id="920" version="1"><member type="way" ref="910" role="outer"/><member type="way" ref="999" role="outer"/>'
+                    '<tag k="type" v="multipolygon"/><tag k="natural" v="wood"/></relation>')
+        file = ta.FOLDER / "cut.osm"
+        file.write_text(text.replace("<way", nodes + ways + "<way", 1).replace("</osm>", relation + "</osm>"), encoding="utf-8")
+        for one in (file, ta.pbf(file)):
+            self.assertEqual([kind for kind, *_ in things(one)], ["runway"], one)
+            self.assertEqual(left(one), {("building", extract.CUT): 4, ("way", extract.CUT): 1, ("relation", extract.CUT): 1}, one)
+        folder = ta.fresh("cut")
+        code, words = ta.run("airport", file, "-o", folder)
+        self.assertEqual(code, 0, words)
+        self.assertIn("7 features were read, 1 is in the scene, 6 were left out: 6 cut by the extract's border", words)
+        self.assertIn("osmium extract --strategy smart", (folder / "README.txt").read_text(encoding="utf-8"))
+
+
+class Runways(unittest.TestCase):
+    def runways(self, *pieces, **more):
+        plan = ta.Map()
+        for points, tags in pieces:
+            plan.way(points, **{"aeroway": "runway", **tags})
+        for x, y in more.get("thresholds", ()):
+            plan.point(x, y, aeroway="threshold")
+        for tags in more.get("areas", ()):
+            plan.area((-300, 450), (300, 650), **tags)
+        made = Airport(plan.write("pieces.osm"))
+        found = []
+        for one in made.runways:
+            line = one.shape.Clone()
+            line.Transform(to_local())
+            heading = math.degrees(math.atan2(line.GetX(1) - line.GetX(0), line.GetY(1) - line.GetY(0))) % 360
+            found.append((one.tags.get("ref"), round(line.Length()), round(heading), one.tags.get("width"),
+                          *(round(float(one.tags.get(f"displaced_{end}", 0))) for end in ("start", "end"))))
+        return sorted(found, key=str), [one.reason for one in made.left]
+
+    def test_pieces_of_one_runway(self):
+        ref = {"ref": "09/27", "width": "45"}
+        a, b, c = [(-900, 0), (-500, 0)], [(-480, 0), (200, 0.5)], [(200, 0.5), (900, 0)]
+        for pieces in ((a, b, c), (c, a[::-1], b), (b[::-1], c, a), (a[::-1], b[::-1], c[::-1])):
+            self.assertEqual(self.runways(*((piece, ref) for piece in pieces))[0], [("09/27", 1800, 90, "45", 0, 0)], pieces)
+        # Parallel runways, and one that crosses, stay themselves; the last piece has no number.
+        found, _ = self.runways((a, ref), (b, ref), (c, {}), ([(-900, 210), (900, 210)], {"ref": "09L/27R"}), ([(0, 700), (0, -700)], {"ref": "18/36"}))
+        self.assertEqual(found, [("09/27", 1800, 90, "45", 0, 0), ("09L/27R", 1800, 90, None, 0, 0), ("18/36", 1400, 180, None, 0, 0)])
+
+    def test_displaced_thresholds(self):
+        main, ref = [(-600, 0), (800, 0)], {"ref": "9/27", "width": "30"}
+        for tags in ({"runway": "displaced_threshold", "ref": "9/27"}, {"runway": "displaced_threshold"}, {"aeroway": "displaced_threshold"}):
+            self.assertEqual(self.runways(([(-600, 0), (-900, 0)], tags), (main, ref))[0], [("9/27", 1700, 90, "30", 300, 0)], tags)
+        found, _ = self.runways(([(900, 0), (-900, 0)], {"ref": "09/27"}), thresholds=[(-890, 0), (700, 3), (500, 200)])
+        self.assertEqual(found, [("09/27", 1800, 90, None, 0, 200)])
+        plan = ta.Map()
+        plan.way([(-900, 0), (-600, 0)], aeroway="runway", ref="09/27", runway="displaced_threshold")
+        plan.way([(-600, 0), (900, 0)], aeroway="runway", ref="09/27")
+        folder = ta.fresh("displaced")
+        self.assertEqual(ta.run("airport", plan.write("displaced.osm"), "-o", folder)[0], 0)
+        self.assertIn("09/27: 1800 m long, 45 m wide; threshold displaced: of 09 by 300 m", (folder / "README.txt").read_text(encoding="utf-8"))
+        scene = al.load_scene(folder / "airport.lidarscene.json")
+        np.testing.assert_allclose(siting.read_runways(folder / "airport.geojson", scene.geodetic_origin)[0].displaced, (300, 0), atol=0.1)
+
+    def test_what_is_no_runway(self):
+        real = ([(-800, 0), (800, 0)], {"ref": "09/27"})
+        other = [(-200, 550), (200, 550)]
+        for tags, reason in (({"surface": "water"}, "a runway on water"), ({"seaplane": "yes"}, "a runway on water"), ({"runway": "closed"}, "out of use"),
+                             ({"disused": "yes"}, "out of use"), ({"sport": "model_aerodrome"}, "of a model airfield"), ({"construction": "yes"}, "not built")):
+            self.assertEqual(self.runways(real, (other, tags)), ([("09/27", 1600, 90, None, 0, 0)], [reason]), tags)
+        short = [(-70, 550), (70, 550)]
+        self.assertEqual(self.runways(real, (short, {}))[1], ["a runway shorter than 150 m"])
+        strip, field = [(-100, 550), (100, 550)], {"leisure": "pitch", "sport": "model_aerodrome"}
+        self.assertEqual(self.runways(real, (strip, {}), areas=[field])[1], ["of a model airfield"])
+        self.assertEqual(len(self.runways(real, (strip, {}))[0]), 2)  # a short strip of its own
+        with self.assertRaisesRegex(RuntimeError, "holds no runway.*left out: a runway on water"):
+            self.runways((other, {"surface": "water"}))
+
+
+class Heights(unittest.TestCase):
+    def test_lengths(self):
+        for text, metres in (("12", 12), ("12.5 m", 12.5), ("12,5", 12.5), ("10 ft", 3.048), ("10'", 3.048), ("5'6\"", 1.6764), ("5'-6\"", 1.6764), ("5 ft 6 in", 1.6764),
+                             ("2;3", 3), ("2;", 2), ("12-15", 15), ("~9", 9), ("approx 12", 12), ("ca. 12 m", 12), ("9 Meters", 9), ("12 M.", 12), ("1,200 ft", 365.76),
+                             ("1200ft", 365.76), ("1,234.5 ft", 376.2756), ("1 200 ft", 365.76), ("12,500", 12.5), ("0.012 km", 12), ("350 cm", 3.5), ("2000 mm", 2),
+                             ("10 yd", 9.144), ("3.5 m above ground", 3.5), ("30 m AGL", 30), ("2 storeys", 6), ("\uff11\uff12", 12), ("9 m 4 in", None), ("three", None),
+                             ("-3", None), ("0", None), ("-1.0", None), ("5000", None), ("1000.5", None), ("nan", None), ("inf", None), ("", None), (None, None),
+                             ("yes", None), ("1" + " " * 100_000 + "x", None)):
+            found = extract.length_of(text)
+            self.assertEqual(found if found is None else round(found, 9), metres, text)
+        for text, levels in (("2", 2), ("02", 2), ("2;3", 3), ("2,3", 3), ("1,5", 1.5), ("2-3", 3), ("3+1", 4), ("1.5", 1.5), ("2 floors", 2), ("0", None), ("-1", None),
+                             ("ground", None), (None, None)):
+            self.assertEqual(extract.levels_of(text), levels, text)
+
+    def test_heights_of_tags(self):
+        def row(**tags):
+            found = extract.Reader(KNOWN)
+            shape = extract.gdal_modules()[1].CreateGeometryFromWkt("POLYGON ((0 0, 1e-3 0, 1e-3 1e-3, 0 1e-3, 0 0))")
+            found.take({key.replace("__", ":"): value for key, value in tags.items()}, shape)
+            one, = found.done().features
+            row = extract.properties_of(one, KNOWN)
+            return row["kind"], row.get("height", row.get("top")), row.get("min_height"), "assumed" in row.get("height_from", row.get("top_from"))
+
+        for tags, expected in (
+                ({"building": "yes", "est_height": "33"}, ("building", 33, None, False)),
+                ({"building": "yes", "building__levels": "2", "roof__height": "1.5"}, ("building", 7.5, None, True)),
+                ({"building": "yes", "building__levels": "0", "roof__levels": "2"}, ("building", 6, None, True)),
+                ({"building": "hangar", "building__levels": "1"}, ("hangar", 12, None, True)),
+                ({"building": "hangar", "building__levels": "3"}, ("hangar", 18, None, True)),
+                ({"building": "terminal", "building__levels": "2"}, ("terminal", 10, None, True)),
+                ({"building": "yes", "height": "14", "min_height": "10 m"}, ("building", 14, 10, False)),
+                ({"building__part": "yes", "building__levels": "6", "building__min_level": "2"}, ("part", 18, 6, True)),
+                ({"building": "yes", "height": "5", "min_height": "9"}, ("building", 5, None, False)),
+                ({"building": "roof", "height": "8"}, ("canopy", 8, 7.5, False)),
+                ({"building": "roof", "height": "8", "min_height": "0"}, ("canopy", 8, None, False)),
+                ({"aeroway": "jet_bridge", "area": "yes"}, ("jet_bridge", 7, 4, True)),
+                ({"disused__building": "yes", "height": "9"}, ("building", 9, None, False)),
+                ({"theme": "buildings", "type": "building", "class": "hangar", "height": "17.5"}, ("hangar", 17.5, None, False)),
+                ({"subtype": "transportation", "class": "hangar", "has_parts": "0", "num_floors": "2"}, ("hangar", 15, None, True)),
+                ({"theme": "buildings", "type": "building_part", "height": "40", "min_height": "10"}, ("part", 40, 10, False)),
+                ({"height": "12.3", "confidence": "0.9"}, ("building", 12.3, None, False)),
+                ({"height": "-1", "confidence": "-1"}, ("building", 8, None, True)),
+                ({"power": "generator", "generator__source": "wind", "height": "140"}, ("turbine", 140, None, False)),
+                ({"power": "generator", "generator__source": "wind"}, ("turbine", 100, None, True)),
+                ({"power": "generator", "height": "7"}, ("obstacle", 7, None, False)),
+                ({"man_made": "obelisk", "height": "30"}, ("obstacle", 30, None, False))):
+            self.assertEqual(row(**tags), expected, tags)
+
+    def test_parts_stand_in_place_of_their_building(self):
+        """A terminal of which a tower and a low part are drawn, one that is all parts, and a canopy that does not reach the ground."""
+        plan = runway(ta.Map())
+        plan.area((0, 200), (100, 300), building="terminal", height="20", name="Hall")
+        plan.area((0, 200), (50, 300), building__part="yes", height="6")
+        plan.area((60, 220), (70, 230), building__part="yes", height="35", min_height="20")
+        plan.area((200, 200), (300, 300), building="yes", height="30", name="All parts")
+        plan.area((200, 200), (300, 250), building__part="yes", height="30")
+        plan.area((200, 250), (300, 300), building__part="yes", height="10")
+        plan.area((400, 200), (450, 250), building="roof", height="8", min_height="6")
+        plan.way([(500, 200), (540, 200)], aeroway="jet_bridge", width="4")
+        folder = ta.fresh("parts")
+        code, words = ta.run("airport", plan.write("parts.osm"), "-o", folder)
+        self.assertEqual(code, 0, words)
+        self.assertIn("1 drawn by its parts", words)
+        scene, found = ta.blocks(folder)
+        self.assertNotIn("All parts", found)
+        z = {name: (triangles[:, :, 2].min(), triangles[:, :, 2].max()) for name, (_, triangles) in found.items()}
+        for name, (low, high) in (("Hall", (0, 20)), ("Canopy", (6, 8)), ("Jet bridge", (4, 7))):
+            np.testing.assert_allclose(z[name], (low, high), atol=0.1, err_msg=name)
+            self.assertTrue(ta.is_closed(found[name][1]), name)
+        self.assertAlmostEqual(ta.plan_area(found["Hall"][1]), 5000, delta=5)
+        self.assertAlmostEqual(ta.plan_area(found["Part"][1]), 5000 + 100 + 1e4, delta=15)
+        self.assertAlmostEqual(siting.ground_of(scene, [(425.0, 225.0)])[0], 0.0, delta=0.1)  # below the canopy
+
+
+class LeftOut(unittest.TestCase):
+    def test_all_are_counted(self):
+        """60 buildings and some obstacles, of which each reason takes some."""
+        plan, x = runway(ta.Map()), 0
+        reasons = {"ruins, or gone": ({"building": "ruins"}, {"building": "collapsed"}, {"demolished__building": "yes"}, {"building": "yes", "ruins": "yes"}),
+                   "not built": ({"building": "construction"}, {"proposed__building": "yes"}, {"construction__building": "hangar"}),
+                   "below ground": ({"building": "yes", "layer": "-4"}, {"building": "yes", "location": "underground"}, {"building": "yes", "is_underground": "true"}),
+                   "no building": ({"building": "no"},), "": ({"building": "yes"},) * 40}
+        for tags in (tags for all_ in reasons.values() for tags in all_):
+            plan.area((x, 300), (x + 8, 310), **tags)
+            x += 12
+        plan.way([(0, 400), (10, 400), (10, 410)], building="yes")
+        plan.way([(0, 450), (0, 450), (0, 450), (0, 450)], True, building="yes")
+        plan.point(20, 400, building="house")
+        for far in range(6):
+            plan.area((9000 + 20 * far, 0), (9010 + 20 * far, 10), building="yes")
+        plan.point(-100, 300, power="generator", height="30")
+        plan.point(-120, 300, power="generator", generator__source="solar")
+        plan.point(-140, 300, shop="kiosk")
+        folder = ta.fresh("left")
+        code, words = ta.run("airport", plan.write("left.osm"), "-o", folder)
+        self.assertEqual(code, 0, words)
+        line = next(line for line in words.splitlines() if "features were read" in line)
+        self.assertTrue(line.startswith("64 features were read, 42 are in the scene, 22 were left out: "), line)
+        for part in ("6 outside the scene", "4 ruins, or gone", "3 not built", "3 below ground", "2 unknown kind", "1 unclosed", "1 no nodes", "1 no building",
+                     "1 a point without an outline"):
+            self.assertIn(part, line)
+        readme = (folder / "README.txt").read_text(encoding="utf-8")
+        self.assertIn(line, readme)
+        self.assertIn("building: 58 read, 40 in the scene; left out: ", readme)
+        with open(folder / "assumed.csv", encoding="utf-8", newline="") as stream:
+            table = list(csv.reader(stream))[1:]
+        counted = {}
+        for kind, _, _, what, value, reason in table:
+            if what in ("left out", "in the scene"):
+                counted[what] = counted.get(what, 0) + int(value)
+        self.assertEqual(counted, {"left out": 22, "in the scene": 42})
+        self.assertIn(["obstacle", "", "", "kind", "obstacle", "assumed: no rule knows power=generator"], [[row[0], "", *row[2:]] for row in table])
+        mast = next(row for row in rows(folder) if row["kind"] == "obstacle")
+        self.assertEqual((mast["top"], mast["top_from"]), (30.0, "height"))
+
+    def test_names_are_drawn_as_they_are_written(self):
+        seen = []
+        pictures.draw(ta.FOLDER / "name.png", (3.0, 2.0), lambda axes: seen.append(axes.set_title(r"A $\frac{1}{ $x_{")))
+        self.assertFalse(seen[0].get_parse_math())
+        plan = runway(ta.Map())
+        plan.area((-900, -400), (900, 400), aeroway="aerodrome", icao="XDOL", name=r"A $\frac{1}{ $x_{")
+        self.assertEqual(ta.run("airport", plan.write("dollar.osm"), "-o", ta.fresh("dollar"))[0], 0)
+
+
+class Holes(unittest.TestCase):
+    def test_an_island(self):
+        """An airport on an island, with a moat around and a clearing in a wood: holes are free, with their margin."""
+        ring = np.array([(0, 0), (100, 0), (100, 100), (0, 100)], float)
+        hole = ring * 0.6 + 20
+        for outline in ([ring, hole], [ring, hole[::-1]]):
+            near = siting.is_near([(50, 50), (10, 50), (50, 25), (-5, 50), (150, 50)], outline)
+            self.assertEqual(near.tolist(), [False, True, False, False, False])
+            self.assertEqual(siting.is_near([(50, 50), (50, 25), (-5, 50)], outline, 10.0).tolist(), [False, True, True])
+        plan = runway(ta.Map())
+        plan.area((-1200, -900), (1200, 900), aeroway="aerodrome", icao="XISL")
+        plan.area((-1500, -1200), (1500, 1200), natural="coastline")
+        plan.relation([plan.area((-1190, -890), (1190, 890))], [plan.area((-1180, -880), (1180, 880))], natural="water")
+        folder = ta.fresh("island")
+        code, words = ta.run("airport", plan.write("island.osm"), "-o", folder)
+        self.assertEqual(code, 0, words)
+        scene = al.load_scene(folder / "airport.lidarscene.json")
+        shut = siting.read_outlines(folder / "exclusions.geojson", scene.geodetic_origin)
+        for place, free in (((0, 400), True), ((0, 885), False), ((0, 1000), False), ((0, 1300), False), ((0, 100), False)):
+            self.assertEqual(not any(siting.is_near([place], outline)[0] for outline in shut), free, place)
+
+
+AIXM = """<?xml version="1.0"?><message:AIXMBasicMessage xmlns:message="http://www.aixm.aero/schema/5.1.1/message"
+ xmlns:aixm="http://www.aixm.aero/schema/5.1.1" xmlns:gml="http://www.opengis.net/gml/3.2">{}</message:AIXMBasicMessage>"""
+STRUCTURE = """<message:hasMember><aixm:VerticalStructure gml:id="{id}"><aixm:timeSlice><aixm:VerticalStructureTimeSlice gml:id="{id}T">
+<aixm:interpretation>BASELINE</aixm:interpretation><aixm:name>{name}</aixm:name><aixm:type>{type}</aixm:type><aixm:part><aixm:VerticalStructurePart gml:id="{id}P">
+{extent}{place}</aixm:VerticalStructurePart></aixm:part></aixm:VerticalStructureTimeSlice></aixm:timeSlice></aixm:VerticalStructure></message:hasMember>"""
+
+
+class Surveyed(unittest.TestCase):
+    def aixm(self, *structures):
+        file = ta.FOLDER / "obstacles.xml"
+        ta.FOLDER.mkdir(parents=True, exist_ok=True)
+        file.write_text(AIXM.format("".join(STRUCTURE.format(**one) for one in structures)), encoding="utf-8")
+        return file
+
+    def test_aixm(self):
+        point = ('<aixm:horizontalProjection_location><aixm:ElevatedPoint gml:id="E" srsName="{}"><gml:pos>{}</gml:pos>'
+                 '<aixm:elevation uom="{}">{}</aixm:elevation></aixm:ElevatedPoint></aixm:horizontalProjection_location>')
+        surface = ('<aixm:horizontalProjection_surfaceExtent><aixm:ElevatedSurface gml:id="S" srsName="urn:ogc:def:crs:EPSG::4326"><gml:patches><gml:PolygonPatch>'
+                   '<gml:exterior><gml:LinearRing><gml:posList>53.604 13.302 53.604 13.303 53.605 13.303 53.605 13.302 53.604 13.302</gml:posList></gml:LinearRing>'
+                   '</gml:exterior></gml:PolygonPatch></gml:patches></aixm:ElevatedSurface></aixm:horizontalProjection_surfaceExtent>')
+        urn = "urn:ogc:def:crs:EPSG::4326"
+        file = self.aixm(
+            {"id": "A", "name": "MAST 1", "type": "ANTENNA", "extent": '<aixm:verticalExtent uom="FT">150</aixm:verticalExtent>', "place": point.format(urn, "53.603 13.302", "M", 81)},
+            {"id": "B", "name": "HOUSE", "type": "BUILDING", "extent": '<aixm:verticalExtent uom="M">12</aixm:verticalExtent>', "place": surface},
+            {"id": "C", "name": "TOP", "type": "STACK", "extent": "", "place": point.format("urn:ogc:def:crs:OGC:1.3:CRS84", "13.305 53.603", "FT", 400)},
+            {"id": "D", "name": "NOWHERE", "type": "POLE", "extent": "", "place": ""})
+        found, out = obstacles.read_obstacles(file, KNOWN)
+        self.assertEqual([(one.kind, one.id, extract.form_of(one.shape)) for one in found], [("mast", "A", "point"), ("building", "B", "area"), ("chimney", "C", "point")])
+        self.assertEqual([(one.kind, one.name, one.reason) for one in out], [("pole", "NOWHERE", obstacles.NO_PLACE)])
+        self.assertEqual(found[0].shape.GetPoint_2D(), (13.302, 53.603))
+        self.assertEqual(found[2].shape.GetPoint_2D(), (13.305, 53.603))
+        self.assertAlmostEqual(float(found[0].tags["height"]), 45.72, delta=1e-3)
+        # An elevation alone becomes a height above the ground of --heights, which rises by 4 % to the east.
+        x = np.arange(-3200, 3201, 50.0)
+        dem = ta.write_heights("survey.tif", np.broadcast_to(100 + 0.04 * x, (len(x), len(x))), (-3200, -3200), 50.0)
+        plan = runway(ta.Map()).write("survey.osm")
+        folder = ta.fresh("survey")
+        code, words = ta.run("airport", plan, "--heights", dem, "--obstacles", file, "-o", folder)
+        self.assertEqual(code, 0, words)
+        tops = {row["id"]: row for row in rows(folder) if row["id"] in "ABC"}
+        east = siting.to_enu([(13.305, 53.603)], ta.HERE)[0, 0]
+        self.assertAlmostEqual(tops["C"]["top"], 400 * 0.3048 - (100 + 0.04 * east), delta=0.1)
+        self.assertEqual((tops["B"]["height"], tops["B"]["height_from"]), (12.0, "height: surveyed, obstacles.xml"))
+        with open(folder / "assumed.csv", encoding="utf-8", newline="") as stream:
+            self.assertNotIn("height", {row[3] for row in csv.reader(stream) if row[1] in ("A", "B", "C")})
+        code, words = ta.run("airport", plan, "--obstacles", file, "-o", ta.fresh("no_heights"))
+        self.assertEqual(code, 0, words)
+        self.assertIn("1 an elevation without --heights", words)
+
+    def test_csv(self):
+        file = ta.FOLDER / "obstacles.csv"
+        ta.FOLDER.mkdir(parents=True, exist_ok=True)
+
+        def read(text):
+            file.write_text(text, encoding="utf-8")
+            found, out = obstacles.read_obstacles(file, KNOWN)
+            return [(one.kind, *(round(c, 6) for c in one.shape.GetPoint_2D()), round(float(one.tags["height"]), 3), one.tags["height_source"]) for one in found], \
+                [one.reason for one in out]
+
+        said = "surveyed, obstacles.csv"
+        for text, expected in (
+                ("longitude,latitude,height,unit,kind\n13.302,53.603,45,m,mast\n13.303,53.604,100,ft,tree\n", [("mast", 13.302, 53.603, 45, said), ("tree", 13.303, 53.604, 30.48, said)]),
+                ("Kind;Latitude;Longitude;Height (ft)\ncrane;53,603;13,302;100\n", [("crane", 13.302, 53.603, 30.48, said)]),
+                ("lat\tlon\theight_m\tname\n53\u00b036'10.8\"N\t013\u00b018'07.2\"E\t45\tx\n", [("obstacle", 13.302, 53.603, 45, said)]),
+                ("latitude,longitude,height,uom\n533610.8N,0131807.2W,45,M\n", [("obstacle", -13.302, 53.603, 45, said)]),
+                ("longitude,latitude,height\n13.302,53.603,45\n", [("obstacle", 13.302, 53.603, 45, said + ", m assumed")]),
+                ("OAS,VERIFIED,COUNTRY,CITY,LATDEC,LONDEC,TYPE,QUANTITY,AGL,AMSL,ACTION\n01-1,O,DE,NB,53.603,13.302,TOWER,1,00120,00240,A\n", [("tower", 13.302, 53.603, 36.576, said)])):
+            self.assertEqual(read(text), (expected, []), text)
+        self.assertEqual(read("longitude,latitude,height,unit,kind\n13.302,53.603,,m,mast\n13.302,,45,m,mast\n13.302,99,45,m,mast\n\n")[1], [obstacles.NO_PLACE] * 3)
+        for text, words in (("a,b,c\n1,2,3\n", "expected the columns longitude, latitude, and height or elevation"), ("", "expected the columns longitude"),
+                            ("longitude,latitude,height,unit\n1,2,3,furlong\n", "row 2: the unit is 'furlong', expected m or ft")):
+            with self.assertRaisesRegex(RuntimeError, words):
+                read(text)
+        for name, text, words in (("bad.xml", "<a>", "cannot be read as AIXM 5.1"), ("other.xml", "<a/>", "holds no VerticalStructure"), ("x.txt", "", "is no file of obstacles by its name")):
+            (ta.FOLDER / name).write_text(text)
+            with self.assertRaisesRegex(RuntimeError, words):
+                obstacles.read_obstacles(ta.FOLDER / name, KNOWN)
+
+
+if __name__ == "__main__":
+    unittest.main()
