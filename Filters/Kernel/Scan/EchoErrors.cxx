@@ -9,9 +9,9 @@ namespace avianlidar
 {
 namespace
 {
-constexpr double Ghost = 0.5;           ///< share of the energy over two reflections
-constexpr double Surely = 1.645;        ///< standard deviations of a one-sided bound of 95 %
-constexpr double OfNone = 3.0;          ///< 95 % bound of a count of which none was seen
+constexpr double Ghost = 0.5;    ///< share of the energy over two reflections
+constexpr double Surely = 1.645; ///< standard deviations of a one-sided bound of 95 %
+constexpr double OfNone = 3.0;   ///< 95 % bound of a count, beyond sqrt(count), if few were seen
 constexpr double FewestCarriers = 30.0; ///< beams from which a bound of an rms follows
 
 std::size_t nearest(const std::vector<SeenEcho>& echoes, double range)
@@ -223,7 +223,7 @@ SampledErrors::Sums SampledErrors::sumsOf(
   {
     const double x = this->Weights[b] * counted[b].x[error];
     const double y = this->Weights[b] * counted[b].y[error];
-    const double drawn = 1.0 - 1.0 / this->Weights[b]; // of a kind that was taken whole: exact
+    const double drawn = 1.0 + 1.0 / this->Weights[b]; // the scan that is judged has another seed
     sums.x += x;
     sums.y += y;
     sums.xx += drawn * x * x;
@@ -265,8 +265,8 @@ std::array<MeasuredError, ErrorKinds> SampledErrors::errorsOf(
     const double own = of[error];
     if (error == EchoError)
     {
-      const double none = sums.y > 0.0 ? OfNone * sums.yy / (sums.y * sums.y) : 0.0;
-      errors[error] = { ratio, std::max(0.0, ratio - by - own), std::max(ratio + by, none) + own };
+      const double few = sums.y > 0.0 ? OfNone * sums.yy / (sums.y * sums.y) : 0.0;
+      errors[error] = { ratio, std::max(0.0, ratio - by - own), ratio + by + few + own };
     }
     else if (sums.carriers < FewestCarriers)
     {
