@@ -261,12 +261,13 @@ std::array<MeasuredError, ErrorKinds> SampledErrors::errorsOf(
   {
     const Sums sums = this->sumsOf(counted, error);
     const double ratio = sums.y > 0.0 ? sums.x / sums.y : 0.0;
-    const double by = sums.y > 0.0 ? Surely * sums.deviation() : 0.0;
+    double by = sums.y > 0.0 ? Surely * sums.deviation() : 0.0;
+    by += sums.x > 0.0 ? OfNone * sums.xx / (sums.x * sums.y) : 0.0;
     const double own = of[error];
     if (error == EchoError)
     {
-      const double few = sums.y > 0.0 ? OfNone * sums.yy / (sums.y * sums.y) : 0.0;
-      errors[error] = { ratio, std::max(0.0, ratio - by - own), ratio + by + few + own };
+      const double none = sums.y > 0.0 ? OfNone * sums.yy / (sums.y * sums.y) : 0.0;
+      errors[error] = { ratio, std::max(0.0, ratio - by - own), std::max(ratio + by, none) + own };
     }
     else if (sums.carriers < FewestCarriers)
     {

@@ -10,9 +10,9 @@
  * counts whether they are there. Echoes that only some scans of the reference have are not judged.
  *
  * Bounds are one-sided with 95 %, for a scan of all beams with another seed: from the spread among
- * beams, which counts twice where all beams were taken, as both draws differ; of a share 3/n more,
- * as few wrong echoes tell little of their number; plus the reference's own error. An rms of fewer
- * than 30 beams has none.
+ * beams, which counts twice where all beams were taken, as both draws differ, and three times the
+ * part of a beam that errs more, as few such beams tell little of their number (of a share without
+ * any wrong echo 3/n); plus the reference's own error. An rms of fewer than 30 beams has none.
  *
  * Source: variance of a ratio of weighted sums, linearised: Cochran, Sampling Techniques, 3rd ed.,
  * section 6 (second-hand).
