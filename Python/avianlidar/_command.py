@@ -237,7 +237,7 @@ def parser() -> Parser:
         _settings(verb[name], "coverage", "species=crow")
         _weather(verb[name])
         if name != "coverage":
-            verb[name].add_argument("--metar", type=pathlib.Path, help="file of METAR reports, one a line: the year's weather by the hour, "
+            verb[name].add_argument("--metar", type=pathlib.Path, help="file of METAR reports: the year's weather by the hour, "
                                     "of which shares are")
         if name in ("siting", "report"):
             verb[name].add_argument("--siting-set", action="append", default=[], type=_value, metavar="NAME=VALUE",
