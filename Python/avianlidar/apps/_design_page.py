@@ -32,7 +32,7 @@ def does(study: Study, form: str = "detects") -> str:
     birds = f"{study.plan.bird}s" if len(study.plan.mix) == 1 else "birds"
     if study.measure == "tracked":
         return f"{form.replace('detect', 'track')} {birds} of the scenario at least once"
-    needed = study.plan.settings.get("required_detections", 1)
+    needed = study.plan.coverage.required_detections
     time = f"{needed} or more of the scans in {study.within:g} s" if study.within else "one scan"
     return f"{form} {birds} {study.plan.where}, by {time}"
 
