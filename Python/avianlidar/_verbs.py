@@ -486,7 +486,7 @@ def siting(options) -> None:
     if not ranks.rank:
         _say_before(plans[0])
     everywhere = [Sites(plan, options.out / "coverage", ranks, bars) for plan in plans]
-    with _goes_on(options.out, "coverage/*.npy", "candidates kept"), only_run(options.out, ranks, goes_on=True):
+    with _goes_on(options.out, "coverage/*.npy", "candidates kept"), only_run(options.out, ranks, goes_on=True, known=plans[0].decides):
         for number, sites in enumerate(everywhere):
             changes = list(sites.look().changes())
             bars.close()

@@ -196,7 +196,7 @@ class Designs(Study):
 
     def write(self) -> Designs:
         """Look, then write design.html, design.csv, sensitivities.csv and pictures into the folder. @return this"""
-        with only_run(self.folder, self.ranks, goes_on=True):
+        with only_run(self.folder, self.ranks, goes_on=True, known=self.plan.decides):
             self.look()
             if not self.ranks.rank:
                 write(self)
