@@ -52,6 +52,7 @@ set(avianlidar_python_files
   apps/_design_page.py
   apps/_following.py
   apps/_formula.py
+  apps/_heights.py
   apps/_json.py
   apps/_labels.py
   apps/_maps.py

@@ -191,7 +191,7 @@ def parser() -> Parser:
 
     airport = verb["airport"]
     airport.add_argument("extract", type=pathlib.Path, help="of a map: .osm, .osm.pbf, .geojson, .gpkg")
-    airport.add_argument("--heights", type=pathlib.Path, metavar="DEM", help="of the ground: a GeoTIFF or an ASCII grid; default: level")
+    airport.add_argument("--heights", type=pathlib.Path, metavar="DEM", help="of the ground: a GeoTIFF, ASCII grid, SRTM .hgt or GDAL .vrt; default: level")
     which = airport.add_mutually_exclusive_group()
     which.add_argument("--icao", metavar="CODE", help="of the airport, where the extract holds several")
     which.add_argument("--bounds", nargs=4, type=float, metavar=("W", "S", "E", "N"),
