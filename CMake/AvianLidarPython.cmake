@@ -53,6 +53,7 @@ set(avianlidar_python_files
   apps/_extract.py
   apps/_following.py
   apps/_formula.py
+  apps/_heights.py
   apps/_json.py
   apps/_labels.py
   apps/_maps.py

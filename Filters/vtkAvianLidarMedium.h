@@ -28,8 +28,8 @@
  * Documentation/weather.md.
  *
  * **Bad values** are an error that names the key of the description, with empty output; setters
- * keep what they are given. An open surface is an error. Each rank asks for all of the surface, as
- * a piece of it is open.
+ * keep what they are given. An open surface is an error; its triangles may be wound either way.
+ * Each rank asks for all of the surface, as a piece of it is open.
  *
  * @sa vtkAvianLidarEchoFilter, vtkAvianLidarCoverage, vtkAvianLidarSceneReader
  */

@@ -135,7 +135,7 @@ def shares(scans, todo, ranks):
 
 
 def sweep(options, ranks):
-    with only_run(options.out, ranks):
+    with only_run(options.out, ranks, known=lambda: sorted((name, value) for name, value in vars(options).items() if name != "threads")):
         make(options, ranks)
 
 

@@ -191,7 +191,7 @@ def parser() -> Parser:
 
     airport = verb["airport"]
     airport.add_argument("extract", type=pathlib.Path, help="of a map: .osm, .osm.pbf, .geojson, .gpkg")
-    airport.add_argument("--heights", type=pathlib.Path, metavar="DEM", help="of the ground: a GeoTIFF or an ASCII grid; default: level")
+    airport.add_argument("--heights", type=pathlib.Path, metavar="DEM", help="of the ground: a GeoTIFF, ASCII grid, SRTM .hgt or GDAL .vrt; default: level")
     airport.add_argument("--obstacles", type=pathlib.Path, metavar="FILE", action="append", default=[],
                          help="surveyed obstacles: AIXM 5.1 (.xml), or .csv with columns longitude, latitude, height, unit, kind; may be repeated")
     which = airport.add_mutually_exclusive_group()
@@ -239,7 +239,7 @@ def parser() -> Parser:
         _settings(verb[name], "coverage", "species=crow")
         _weather(verb[name])
         if name != "coverage":
-            verb[name].add_argument("--metar", type=pathlib.Path, help="file of METAR reports, one a line: the year's weather by the hour, "
+            verb[name].add_argument("--metar", type=pathlib.Path, help="file of METAR reports: the year's weather by the hour, "
                                     "of which shares are")
         if name in ("siting", "report"):
             verb[name].add_argument("--siting-set", action="append", default=[], type=_value, metavar="NAME=VALUE",

@@ -13,7 +13,7 @@ import shutil
 import stat
 import unicodedata
 import zlib
-from typing import Iterator, List, Optional
+from typing import Any, Callable, Iterator, List, Optional
 
 from ._pipeline import Error
 
@@ -204,12 +204,15 @@ def undone(folder) -> Iterator[None]:
 
 
 @contextlib.contextmanager
-def only_run(folder, ranks=None, goes_on: bool = True) -> Iterator[None]:
+def only_run(folder, ranks=None, goes_on: bool = True, known: Callable[[], Any] = lambda: None) -> Iterator[None]:
     """The folder, which is made, is of this run alone: `Error` where another one has it. A run that was killed has none. A folder
     that a failed run has made goes again, with what is in it unless the next run goes on with that.
     @param ranks of this run: the first has the folder for all, so none must leave before the others are done
-    @param goes_on whether what a failed run has left stays"""
+    @param goes_on whether what a failed run has left stays
+    @param known what ranks must agree on before anything is written, see `Ranks.agree`"""
     folder = pathlib.Path(folder)
+    if ranks is not None:
+        ranks.agree(folder, known)
     name, new = folder / LOCK, _new(folder)
     handle, failed, problem, words = None, True, None, ""
     try:

@@ -40,6 +40,7 @@ def _status_colours(axes):
     return {"cmap": ListedColormap(list(STATUS.values())), "vmin": -0.5, "vmax": len(STATUS) - 0.5}
 
 
+DECADES = 100.0  # energies further apart than by this factor have a logarithmic scale
 SCALES = {"J": 1.0, "mJ": 1e3, "\u00b5J": 1e6, "nJ": 1e9, "pJ": 1e12, "fJ": 1e15}
 
 
@@ -54,10 +55,16 @@ def _values(cloud, name: str):
         raise ValueError(f"cannot draw {name!r}, which has {values.shape[1]} components")
     if name == "energy":
         low, high = (cloud.fields.get(key) for key in ("lower_energy_limit", "upper_energy_limit"))
-        most = high if high is not None else values.max(initial=0)
+        least, most = values[values > 0.0].min(initial=np.inf), values.max(initial=0.0)
+        decades = (least if low is None else low) * DECADES < (most if high is None else high)  # as a receiver of photons has
+        if low is not None and high is not None:
+            limits = {"vmin": low, "vmax": min(high, most) if decades and most > low else high}
+            most = limits["vmax"]
+        else:
+            limits = {"vmin": least} if decades else {}
         unit, scale = next(((unit, scale) for unit, scale in SCALES.items() if most * scale >= 1), ("J", 1.0))
-        limits = {} if low is None or high is None else {"vmin": low * scale, "vmax": high * scale}
-        return values * scale, {"cmap": hue_colors(), **limits}, _label(name, unit)
+        return values * scale, {"cmap": hue_colors(), **({"norm": "log"} if decades else {}),
+                                **{name: limit * scale for name, limit in limits.items()}}, _label(name, unit)
     if name == "object_id":
         return np.ma.masked_less(values, 0) % 20, {"cmap": "tab20", "vmin": -0.5, "vmax": 19.5}, name
     return values, {}, _label(name, cloud.units[name])
@@ -68,7 +75,7 @@ def plot_map(cloud, array: str = "energy", axes=None, **options):
 
     cloud    a Cloud, or a Scan, of which the echoes are drawn
     array    any point array of one component; energy in microjoules or whatever fits, in the colours of vtkAvianLidarHSBColorMap
-             between the limits of the sensor
+             between the limits of the sensor, by the logarithm where they are decades apart
     axes     of Matplotlib to draw into; default: new ones
     options  of Matplotlib's `scatter`
 
@@ -89,7 +96,7 @@ def plot_range_image(scan, array: str = "distance_m", axes=None, **options):
     """Draw the range image of a scan with Matplotlib: azimuth (degrees from north, clockwise) by elevation (degrees).
 
     array    `distance_m` (m), `energy` (in microjoules or whatever fits, in the colours of vtkAvianLidarHSBColorMap between the
-             limits of the sensor), `object_id` (each object a colour), `status` (what became of each beam), what a beam
+             limits of the sensor, by the logarithm where they are decades apart), `object_id` (each object a colour), `status` (what became of each beam), what a beam
              cost and did without (`nodes_visited`, `candidates`, `rays_traced`, `skipped_bound` (J)), or any point array of the echoes: of the strongest one of each beam
     axes     of Matplotlib to draw into; default: new ones
     options  of Matplotlib's `pcolormesh`

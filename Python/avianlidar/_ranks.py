@@ -6,15 +6,16 @@ import contextlib
 import hashlib
 import json
 import sys
-from typing import Any, Iterator
+from typing import Any, Callable, Iterator
 
-from vtkmodules.vtkCommonCore import vtkDataArray, vtkIntArray
+from vtkmodules.vtkCommonCore import vtkDataArray, vtkIntArray, vtkUnsignedCharArray
 from vtkmodules.vtkCommonDataModel import vtkPolyData
 from vtkmodules.vtkParallelCore import vtkCommunicator, vtkMultiProcessController
 
 from ._cloud import as_numpy, field_values
 from ._pipeline import Error
 from ._scene import COEFFICIENTS
+from ._version import __version__
 
 
 class AnotherFailed(Error):
@@ -61,6 +62,20 @@ class Ranks:
         least.InsertNextValue(0)
         self.controller.AllReduce(said, least, vtkCommunicator.MIN_OP)
         return bool(least.GetValue(0))
+
+    def agree(self, folder, known: Callable[[], Any]) -> None:
+        """`Error` on all ranks unless they are to write the same. @param folder where they write @param known all that decides what is written, if
+        its text (`repr`) is the same for equal values; only asked for on several ranks"""
+        if self.size == 1:
+            return
+        with self.together():
+            mine = hashlib.sha256(repr((__version__, str(folder), known())).encode()).digest()
+        first = vtkUnsignedCharArray()
+        for byte in mine:
+            first.InsertNextValue(byte)
+        self.controller.Broadcast(first, 0)
+        if not self._all(as_numpy(first).tobytes() == mine):
+            raise Error(f"{folder}: the ranks are to write different things there, expected the same files, settings and version on all")
 
     def first_says(self, so: bool) -> bool:
         """On all ranks what the first one says."""

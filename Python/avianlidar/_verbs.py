@@ -229,6 +229,21 @@ def info(options) -> None:
             warn(text)
 
 
+def _without_alarms(clouds) -> str:
+    """The Hausdorff distance of echoes that surfaces have returned."""
+    from . import vtkAvianLidar as wrapped
+    from ._cloud import vertices
+    from ._pipeline import update
+    left = [cloud.points[cloud["object_id"] >= 0] if "object_id" in cloud else cloud.points for cloud in clouds]
+    if not all(map(len, left)):
+        return ""
+    measure = wrapped.vtkAvianLidarCloudComparison()
+    for port, points in enumerate(left):
+        measure.SetInputDataObject(port, vertices(points))
+    update(measure)
+    return f" Without them the Hausdorff distance is {measure.GetHausdorffDistance():.6g} m."
+
+
 def compare(options) -> None:
     from . import Cloud, save
     from . import vtkAvianLidar as wrapped
@@ -253,6 +268,9 @@ def compare(options) -> None:
              f"{measure.GetDensityAwareChamferReferenceToSimulated():.6g}"),
             ("number of points", *(cloud.number_of_points for cloud in clouds))])
     print(f"Hausdorff distance: {measure.GetHausdorffDistance():.6g} m")
+    alarms = [f"{file.name} has {cloud.number_of_points} echoes{_alarms(cloud)}" for file, cloud in zip((options.a, options.b), clouds) if _alarms(cloud)]
+    if alarms:
+        print(f"All numbers here count echoes that no surface has returned: {'; '.join(alarms)}.{_without_alarms(clouds)}")
     print(f"density-aware Chamfer distance: {measure.GetDensityAwareChamferDistance():.6g} "
           f"(alpha = {measure.GetChamferAlpha():g} 1/m)")
     if options.out:
@@ -469,7 +487,7 @@ def siting(options) -> None:
     if not ranks.rank:
         _say_before(plans[0])
     everywhere = [Sites(plan, options.out / "coverage", ranks, bars) for plan in plans]
-    with _goes_on(options.out, "coverage/*.npy", "candidates kept"), only_run(options.out, ranks, goes_on=True):
+    with _goes_on(options.out, "coverage/*.npy", "candidates kept"), only_run(options.out, ranks, goes_on=True, known=plans[0].decides):
         for number, sites in enumerate(everywhere):
             changes = list(sites.look().changes())
             bars.close()

@@ -42,6 +42,37 @@ class Ranks(unittest.TestCase):
         self.assertNotEqual(done.returncode, 0)
         self.assertIn("Species is 'dodo'", done.stderr)
 
+    def test_ranks_that_would_write_different_things_write_nothing(self):
+        """Scenarios of other seeds, as many scans, and learned scans of tracks: an error on all ranks, in a script of one's own, too."""
+        home = emptied("sequence", "ranks-differ")
+        file = one.scenario_file(home, scans_per_sequence=1, number_of_scans=2)
+        al.Sequence(file).write(home / "made")
+        script = home / "differ.py"
+        script.write_text(f"""
+import pathlib, avianlidar as al
+from avianlidar import siting
+from avianlidar._ranks import Ranks
+rank, home = Ranks().rank, pathlib.Path({str(home)!r})
+wall = al.Scene(([(-9, 50, -9), (9, 50, -9), (9, 50, 9)], [(0, 1, 2)]), material="Wall")
+for k, work in enumerate((lambda out: al.Sequence({str(file)!r}, seed=rank).write(out), lambda out: al.Sequence({str(file)!r}, number_of_scans=1 + rank).write(out),
+                          lambda out: al.BirdTracks([home / "made"], learning_scans=rank).write(out),
+                          lambda out: siting.look(wall, al.Sensor(azimuth_range=(-1.0, 1.0)), [(rank, 0, 2)], [(0, 200, 1)], ["crow"], out))):
+    try:
+        work(home / f"out{{k}}")
+        heard = "no error"
+    except al.Error as error:
+        heard = str(error)
+    with open(home / f"heard{{rank}}.txt", "a", encoding="utf-8") as stream:
+        stream.write(heard + "\\n")
+""", encoding="utf-8")
+        done = on_ranks(script)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        for rank in range(2):
+            heard = (home / f"heard{rank}.txt").read_text(encoding="utf-8").splitlines()
+            self.assertEqual(heard, [f"{home / f'out{k}'}: the ranks are to write different things there, expected the same files, settings and "
+                                     "version on all" for k in range(4)], done.stderr)
+        self.assertEqual([path for k in range(4) for path in (home / f"out{k}").rglob("*") if path.is_file()], [])
+
     def test_a_folder_that_another_run_has(self):
         """An error on all ranks, which does not wait; afterwards the ranks have the folder, which is none's in the end."""
         home = emptied("sequence", "ranks-held")

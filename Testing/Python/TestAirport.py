@@ -6,6 +6,7 @@ import contextlib
 import csv
 import io
 import json
+import math
 import os
 import pathlib
 import re
@@ -18,7 +19,7 @@ from xml.etree import ElementTree
 from xml.sax.saxutils import quoteattr
 
 import numpy as np
-from osgeo import gdal
+from osgeo import gdal, osr
 
 import avianlidar as al
 import exampletools
@@ -548,7 +549,7 @@ class Terrains(unittest.TestCase):
         self.assertAlmostEqual(here, 50.0, delta=1.0)  # as the border is
 
     def test_units_and_holes_that_a_raster_does_not_name(self):
-        """Feet, a scale, a vertical datum, -9999 without a word of it, an area of degrees."""
+        """Units of the band and of a compound system, a scale, a vertical datum, values that no ground has without a word of them."""
         known, around = airport.rules(), (-1000.0, 1000.0, -1000.0, 1000.0)
         smooth = 50 + 0.01 * np.broadcast_to(self.x, self.heights.shape)
         truth = airport.read_heights(write_heights("metres.tif", smooth, (-1500, -1500), 10.0), HERE, around, known)
@@ -562,23 +563,83 @@ class Terrains(unittest.TestCase):
             image.GetRasterBand(1).WriteArray(plain.ReadAsArray())
             change(image.GetRasterBand(1))
             gdal.GetDriverByName("GTiff").CreateCopy(str(file), image)
+            if system is not None:  # GeoTIFF has no word for most vertical systems
+                gdal.Translate(str(file.with_suffix(".vrt")), str(file), outputSRS=system)
+                file = file.with_suffix(".vrt")
             return airport.read_heights(file, HERE, around, known)
 
         local = gdal.Open(str(FOLDER / "metres.tif")).GetProjection()
-        above_geoid = f'COMPD_CS["with heights",{local},VERT_CS["EGM96 height",VERT_DATUM["EGM96 geoid",2005],UNIT["metre",1],AXIS["Up",UP]]]'
-        holed = smooth.copy()
-        holed[140:160, 140:160] = -9999.0
-        for posts, _, here, words in (changed("feet.tif", smooth / 0.3048, change=lambda band: band.SetUnitType("ft")),
+
+        def above_geoid(unit, metres):
+            return (f'COMPD_CS["with heights",{local},VERT_CS["EGM96 height",VERT_DATUM["EGM96 geoid",2005],UNIT["{unit}",{metres!r}],AXIS["Up",UP]]]')
+        named = {"ft": 0.3048, "Foot_US": 1200 / 3937, "cm": 0.01, "decimetres": 0.1, "millimeter": 0.001, "km": 1000.0, "yd": 0.9144}
+        for posts, _, here, words in (*(changed(f"{name}.tif", smooth / metres, gdal.GDT_Float64, change=lambda band, name=name: band.SetUnitType(name))
+                                        for name, metres in named.items()),
                                       changed("scaled.tif", np.round(1000 * (smooth - 20)), gdal.GDT_Int32,
                                               change=lambda band: (band.SetScale(0.001), band.SetOffset(20.0))),
-                                      changed("geoid.tif", smooth, system=above_geoid)):
-            np.testing.assert_allclose(posts, truth[0], atol=2e-3)
+                                      changed("geoid.tif", smooth, system=above_geoid("metre", 1.0)),
+                                      changed("geoid_survey_feet.tif", smooth * 3937 / 1200, system=above_geoid("US survey foot", 1200 / 3937)),
+                                      changed("geoid_yards.tif", smooth / 0.9144, system=above_geoid("Indian yard", 0.9144))):
+            np.testing.assert_allclose(posts, truth[0], atol=2e-3, err_msg=words)
             self.assertAlmostEqual(here, truth[2], delta=1e-3)
-        posts, _, here, words = changed("holed.tif", holed)
-        self.assertAlmostEqual(here, 50.0, delta=1.0)
-        self.assertGreater(posts.min(), 35.0)
-        self.assertIn("have none there", words)
-        self.assertIn("in ft, which it says", airport.read_heights(FOLDER / "feet.tif", HERE, around, known)[3])
+            self.assertIn("40.0 to 60.0 m", words)
+        self.assertIn("in ft, which it says", airport.read_heights(FOLDER / "ft.tif", HERE, around, known)[3])
+        for value, unit in ((-9999.0, "m"), (-32768.0, "m"), (32767.0, "m"), (-501.0, "m"), (9001.0, ""), (-3.4028235e38, ""), (np.nan, ""),
+                            (-32768.0, "cm"), (-9999.0, "mm"), (30000.0, "ft")):
+            for declared in (None, -9998.0):
+                with self.subTest(value=value, unit=unit, declared=declared):
+                    holed = smooth / {"cm": 0.01, "mm": 0.001, "ft": 0.3048}.get(unit, 1.0)
+                    holed[140:160, 140:160] = value
+                    posts, _, here, words = changed("holed.tif", holed, gdal.GDT_Float64, change=lambda band, unit=unit, declared=declared: (
+                        band.SetUnitType(unit), declared and band.SetNoDataValue(declared)))
+                    self.assertAlmostEqual(here, 50.0, delta=1.0)
+                    self.assertGreater(posts.min(), 35.0)
+                    self.assertLess(posts.max(), 65.0)
+                    self.assertIn("have none there", words)
+        for unit, system, said in (("furlong", None, "its heights are in 'furlong', expected one of m, dm, cm, mm, km, ft, us ft"),
+                                   ("m", above_geoid("foot", 0.3048), "its band says heights in 'm', and its vertical system in 'foot', expected one unit")):
+            with self.assertRaisesRegex(al.Error, said):
+                changed("unknown.tif", smooth, system=system, change=lambda band, unit=unit: band.SetUnitType(unit))
+        with self.assertRaisesRegex(al.Error, "holds bytes in 1 band, as a picture or a hillshade does, expected heights of 16 bits or more"):
+            changed("hillshade.tif", smooth, gdal.GDT_Byte)
+        state_plane = osr.SpatialReference()
+        state_plane.ImportFromWkt(local)
+        state_plane.SetLinearUnitsAndUpdateParameters("US survey foot", 1200 / 3937)
+        far = [value * 3937 / 1200 for value in gdal.Open(str(FOLDER / "metres.tif")).GetGeoTransform()]
+        image = gdal.GetDriverByName("GTiff").Create(str(FOLDER / "state.tif"), smooth.shape[1], smooth.shape[0], 1, gdal.GDT_Float32)
+        image.SetGeoTransform(far)
+        image.SetProjection(state_plane.ExportToWkt())
+        image.GetRasterBand(1).WriteArray(smooth[::-1])
+        del image
+        with self.assertWarnsRegex(RuntimeWarning, "says no unit of its heights, .* in US survey foot: they are taken for metres, and are likely in US survey foot"):
+            posts = airport.read_heights(FOLDER / "state.tif", HERE, around, known)[0]
+        np.testing.assert_allclose(posts[:200, :200], truth[0][:200, :200], atol=2e-3)
+
+    def test_formats_of_heights(self):
+        """A tile of SRTM, a .vrt over a GeoTIFF, and a raster whose holes are in a mask."""
+        known, around = airport.rules(), (-1000.0, 1000.0, -1000.0, 1000.0)
+        image = gdal.GetDriverByName("MEM").Create("", 1201, 1201, 1, gdal.GDT_Int16)
+        image.SetGeoTransform((math.floor(HERE[1]) - 1 / 2400, 1 / 1200, 0, math.floor(HERE[0]) + 1 + 1 / 2400, 0, -1 / 1200))
+        degrees = osr.SpatialReference()
+        degrees.ImportFromEPSG(4326)
+        image.SetProjection(degrees.ExportToWkt())
+        image.GetRasterBand(1).WriteArray(np.full((1201, 1201), 77, np.int16))
+        FOLDER.mkdir(parents=True, exist_ok=True)
+        tile = FOLDER / f"{'N' if HERE[0] > 0 else 'S'}{abs(math.floor(HERE[0])):02d}{'E' if HERE[1] > 0 else 'W'}{abs(math.floor(HERE[1])):03d}.hgt"
+        gdal.GetDriverByName("SRTMHGT").CreateCopy(str(tile), image)
+        self.assertAlmostEqual(airport.read_heights(tile, HERE, around, known)[2], 77.0, delta=1e-6)
+        smooth = 50 + 0.01 * np.broadcast_to(self.x, self.heights.shape)
+        plain = write_heights("plain.tif", smooth, (-1500, -1500), 10.0)
+        gdal.BuildVRT(str(FOLDER / "plain.vrt"), [str(plain)]).FlushCache()
+        np.testing.assert_array_equal(airport.read_heights(FOLDER / "plain.vrt", HERE, around, known)[0], airport.read_heights(plain, HERE, around, known)[0])
+        masked = gdal.Open(str(write_heights("masked.tif", smooth, (-1500, -1500), 10.0)), gdal.GA_Update)
+        masked.GetRasterBand(1).DeleteNoDataValue()
+        masked.CreateMaskBand(gdal.GMF_PER_DATASET)
+        mask = np.full(smooth.shape, 255, np.uint8)
+        mask[140:160, 140:160] = 0
+        masked.GetRasterBand(1).GetMaskBand().WriteArray(mask)
+        del masked
+        self.assertIn("have none there", airport.read_heights(FOLDER / "masked.tif", HERE, around, known)[3])
 
     def test_wrong_heights(self):
         file = crossing().write("wrong.osm")
@@ -587,9 +648,9 @@ class Terrains(unittest.TestCase):
         far = write_heights("far.tif", np.ones((10, 10)), (90000, 90000), 10.0)
         (FOLDER / "text.tif").write_text("no raster")
         gdal.Translate(str(FOLDER / "picture.tif"), str(far), bandList=[1, 1, 1], outputType=gdal.GDT_Byte, noData="none")
-        for dem, said in ((FOLDER / "nowhere.tif", "does not say its coordinate reference system"), (far, "holds no heights at the airport"),
-                          (FOLDER / "text.tif", "GDAL cannot read it as heights"),
-                          (FOLDER / "picture.tif", "is a picture of 3 bands of bytes, expected one band of heights"), (FOLDER / "none.tif", "no such file")):
+        for dem, said in ((FOLDER / "nowhere.tif", "does not say its coordinate reference system"), (far, "holds no heights from -500 to 9,000 m at the airport"),
+                          (FOLDER / "text.tif", "GDAL cannot read it as heights, expected GeoTIFF, ASCII grid, SRTM .hgt, GDAL .vrt ("),
+                          (FOLDER / "picture.tif", "holds bytes in 3 bands, as a picture or a hillshade does"), (FOLDER / "none.tif", "no such file")):
             code, words = run("airport", file, "--heights", dem, "-o", fresh("wrong"))
             self.assertEqual(code, 2)
             self.assertIn(said, words)

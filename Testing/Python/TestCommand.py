@@ -99,6 +99,19 @@ class Verbs(unittest.TestCase):
         distance = float(re.search(r"Hausdorff distance: (\S+) m", "\n".join(lines)).group(1))
         self.assertLess(distance, 2e-4)  # LAS counts in 0.1 mm
         self.assertRegex("\n".join(lines), r"density-aware Chamfer distance: \S+ \(alpha = 1 1/m\)")
+        with_alarms = [line for line in lines if "no surface has returned" in line]
+        self.assertEqual(len(with_alarms), 1, lines)
+        self.assertIn("echoes.las has", with_alarms[0])
+        # One false alarm more, 5 km above, is the whole distance; without it nothing is left.
+        row = self.files["csv"].read_text(encoding="utf-8").splitlines()[-1].split(",")
+        head = self.files["csv"].read_text(encoding="utf-8").splitlines()[0].split(",")
+        names = [name.partition(" ")[0] for name in head]
+        row[names.index("z")], row[names.index("object_id")] = "5000", "-1"
+        (OUTPUT / "alarm.csv").write_text(self.files["csv"].read_text(encoding="utf-8") + ",".join(row) + "\n", encoding="utf-8")
+        text = "\n".join(run("compare", OUTPUT / "alarm.csv", self.files["csv"])[1])
+        self.assertGreater(float(re.search(r"Hausdorff distance: (\S+) m", text).group(1)), 4900)
+        self.assertIn("alarm.csv has", text)
+        self.assertIn("Without them the Hausdorff distance is 0 m.", text)
         self.assertAlmostEqual(al.load_cloud(OUTPUT / "distances.vtp")["nearest_distance"].max(), distance, delta=1e-9)
 
     def test_csv_is_read_back(self):

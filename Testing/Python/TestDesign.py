@@ -159,8 +159,9 @@ class LinkBudget(unittest.TestCase):
         self.assertGreater(rows[0], rows[1] + 0.01)
 
     def test_scans_within_a_time(self):
-        """2 of the scans in 10 s, by the binomial law at each place."""
-        study = looked(study_of(fresh("within"), {"bounds": {"rotation_rate": [0.1, 0.2, 0.5]}, "within": 10}, coverage={"species": "herring gull", "required_detections": 2, "number_of_scans": 2, "clutter": False}))
+        """2 of the scans in 10 s, Coverage's own number, by the binomial law at each place."""
+        study = looked(study_of(fresh("within"), {"bounds": {"rotation_rate": [0.1, 0.2, 0.5]}, "within": 10}, coverage={"species": "herring gull", "number_of_scans": 2, "clutter": False}))
+        self.assertIn("by 2 or more of the scans in 10 s", _design_page.does(study))
         once = study_of(fresh("once"), {"bounds": {"rotation_rate": [0.5]}})
         p = once._found("one", [once.candidates[0].values], once.plan.points)[0].astype(float)
         for one, scans in zip(study.candidates, (1, 2, 5)):

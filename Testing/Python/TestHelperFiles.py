@@ -246,6 +246,10 @@ class Pictures(unittest.TestCase):
         self.assertEqual(echoes.plot_map().collections[0].get_clim(), (2.0, 62.5))
         weak = al.Scan(al.Scene(WALL), al.Sensor("Search905", azimuth_step=2))  # a prefix that fits
         self.assertEqual(weak.plot_map().figure.axes[1].get_ylabel(), "energy (pJ)")
+        # Its limits are four decades apart: colours are by the logarithm, from the threshold to the largest energy.
+        mesh, energy, low = weak.plot_range_image("energy").collections[0], weak.echoes["energy"], weak.echoes.fields["lower_energy_limit"]
+        np.testing.assert_allclose(mesh.get_clim(), (1e12 * low, 1e12 * energy.max()))
+        np.testing.assert_allclose(mesh.norm(1e12 * energy), np.log(energy / low) / np.log(energy.max() / low), atol=1e-6)
         __import__("matplotlib.pyplot").pyplot.close("all")
 
     def test_colours_of_energy(self):

@@ -59,6 +59,10 @@ class TestMcap(unittest.TestCase):
         run = self.convert()
         self.assertEqual((run.returncode, run.stdout, run.stderr), (0, f"{self.out}: 3 scans of {self.sequence}\n", ""))
 
+    def test_a_sequence_without_labels(self):
+        shutil.rmtree(self.sequence / "labels")
+        self.assertEqual(self.convert().returncode, 0)
+
     def test_what_others_read(self):
         found = self.read()
         self.assertEqual(found["header"]["profile"], "ros2")
@@ -158,6 +162,9 @@ class TestMcap(unittest.TestCase):
         self.put("poses.txt", "1 2 3\n")
         refused("poses.txt: expected lines of numbers, 12 in each")
         self.put("poses.txt", pose_line(TURN, (0, 0, 0)) * 3)
+        (self.sequence / "labels" / "000001.label").unlink()
+        refused("000001.label: cannot be read (No such file or directory)")
+        (self.sequence / "labels" / "000001.label").write_bytes(b"")
         (self.sequence / "velodyne" / "000001.bin").write_bytes(bytes(15))
         refused("000001.bin: has 15 bytes, expected 16 for each of 0 labels")
         shutil.rmtree(self.sequence / "labels")

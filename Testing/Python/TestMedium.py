@@ -8,7 +8,8 @@ import unittest
 
 import numpy as np
 from vtkmodules.vtkCommonDataModel import vtkMultiBlockDataSet
-from vtkmodules.vtkFiltersSources import vtkPlaneSource, vtkSphereSource
+from vtkmodules.vtkFiltersCore import vtkAppendPolyData, vtkReverseSense
+from vtkmodules.vtkFiltersSources import vtkCubeSource, vtkPlaneSource, vtkSphereSource
 
 import avianlidar as al
 from avianlidar.vtkAvianLidar import vtkAvianLidarCollisionTree, vtkAvianLidarCoverage, vtkAvianLidarEchoFilter, vtkAvianLidarMedium
@@ -17,8 +18,8 @@ from echotools import Messages, box
 WALL = 200.0  # m north
 
 
-def medium(**properties):
-    source = vtkAvianLidarMedium()
+def medium(source=None, **properties):
+    source = source or vtkAvianLidarMedium()
     for name, value in properties.items():
         getattr(source, "Set" + name)(*value) if isinstance(value, tuple) else getattr(source, "Set" + name)(value)
     source.Update()
@@ -96,6 +97,24 @@ class Source(unittest.TestCase):
         errors = Messages(source).errors
         source.Update()
         self.assertIn("4 edges with one triangle", "".join(errors))
+
+
+    def test_bodies_that_touch_fill_both_whichever_way_they_are_wound(self):
+        """40 m in all; what a beam crosses stands in its light."""
+        clear = echoes(wall())["energy_received"].mean()
+        boxes = [vtkCubeSource(), vtkCubeSource()]
+        for number, box in enumerate(boxes):
+            box.SetBounds(-50, 50, 60 + 20 * number, 80 + 20 * number, -50, 50)
+        inward = vtkReverseSense()
+        inward.SetInputConnection(boxes[1].GetOutputPort())
+        for second in (boxes[1], inward):
+            both = vtkAppendPolyData()
+            both.AddInputConnection(boxes[0].GetOutputPort())
+            both.AddInputConnection(second.GetOutputPort())
+            source = vtkAvianLidarMedium()
+            source.SetInputConnection(both.GetOutputPort())
+            bank = medium(source, Kind=6, Extinction=0.02, BackscatterRatio=1e9, Shape=4)
+            self.assertAlmostEqual(echoes(group(wall(), bank))["energy_received"].mean() / clear / math.exp(-2 * 0.8), 1, delta=1e-4)
 
 
 class Echoes(unittest.TestCase):

@@ -175,7 +175,7 @@ class Year(unittest.TestCase):
                                ({"metar": "none.txt"}, "none.txt: cannot be read (No such file")):
             self.assertIn(words, said("coverage", plan("wrong", **changes), "-o", HERE / "wrong"))
         (HERE / "empty.txt").write_text("# nothing\nstation,valid,metar\n", encoding="utf-8")
-        self.assertIn("empty.txt: holds no METAR report, expected some, one a line; line 2, 'station,valid,metar': expected a station and a time",
+        self.assertIn("empty.txt: holds no METAR report, expected lines with a station, a time and a visibility; line 2, 'station,valid,metar': expected a station and a time",
                       said("siting", plan("right"), "-o", HERE / "wrong", "--metar", HERE / "empty.txt"))
 
 
@@ -202,7 +202,7 @@ ZSSS 011300Z 24010KT P6SM SKC 12/08 A2992
 class Metar(unittest.TestCase):
     def test_lines_of_known_answers(self):
         mile = 1609.344
-        wanted = [(math.inf, 0), (math.inf, 0), (800, 0), (1.5 * mile, 1), (0.25 * mile, 0), (math.inf, 0), (3000, 15), (50, 0), (5000, 0),
+        wanted = [(math.inf, 0), (math.inf, 0), (300, 0), (1.5 * mile, 1), (0.25 * mile, 0), (math.inf, 0), (3000, 15), (50, 0), (5000, 0),
                   (1500, 0), (4000, 5), (7000, 0.5), (math.inf, 0)]
         (HERE / "year.txt").parent.mkdir(parents=True, exist_ok=True)
         (HERE / "year.txt").write_text(REPORTS, encoding="utf-8")
@@ -213,18 +213,60 @@ class Metar(unittest.TestCase):
         # Two in the first hour count half each.
         self.assertEqual([share for share, _ in hours.weighted()], [0.5, 0.5] + 11 * [1])
         words = hours.words()
-        for part in ("13 METAR reports of ZSSS, 12 hours", "lines that are no report: 3, the first is line 1, 'station,valid,metar'",
+        for part in ("13 METAR reports of ZSSS, 12 hours", "left out: 1, the first in line 1, 'station,valid,metar'",
                      "snow (1 reports)", "hail (1 reports)", "Assumed: -RA 1, RA 5, +RA 15 and DZ 0.5 mm/h"):
             self.assertIn(part, words)
+
+    def test_spellings_of_archives(self):
+        mile = 1609.344
+        for words, visibility, rain in (("11/2SM BR", 1.5 * mile, 0), ("111/16SM BR", 27 / 16 * mile, 0), ("11/16SM BR", 11 / 16 * mile, 0),
+                                        ("2 1/2 SM HZ", 2.5 * mile, 0), ("10SM", math.inf, 0), ("6KM HZ", 6000, 0), ("20KM VCSH", math.inf, 0),
+                                        ("9999NDV -RA", math.inf, 1), ("9999 3100 SHRA", math.inf, 5), ("1500NE 7000SW BR", 1500, 0),
+                                        ("4000 1200N BR", 1200, 0), ("0600SW R18R/P1500 FG", 600, 0), ("9999 FU 2000SE", math.inf, 0),
+                                        ("350 FG", 350, 0), ("0800M FG", 800, 0), ("//// -RA BKN010 10/09 1013", None, 0)):
+            for head in ("EGLL 010020Z 24005KT", "EGLL,2020-01-01 00:20,EGLL 010020Z 0000KT", "METAR EGLL 010020Z /////", "SPECI EGLL 010020 COR 24005MPS"):
+                for line in (f"{head} {words} BKN010 10/09 Q1020", f"{head} {words}".lower()):
+                    with self.subTest(line):
+                        if visibility is None:
+                            self.assertRaisesRegex(ValueError, "expected a visibility", _metar.report_of, line)
+                        else:
+                            found = _metar.report_of(line)
+                            self.assertEqual((found.station, found.rain), ("EGLL", rain))
+                            self.assertAlmostEqual(found.visibility, visibility)
+
+    def test_reports_go_on_in_the_next_line_and_forecasts_do_not_count(self):
+        text = """SAUK31 EGRR 010020
+METAR EGLL 010020Z 24005MPS 200V280
+ 2000
+# a comment
++RA BR TEMPO 0800
+FG= METAR EGKK 010020Z 24005KT CAVOK=
+
+TAF EGLL 010500Z 0106/0212 24005MPS CAVOK
+ BECMG 0108/0109 1200 +RA=
+EGLL 010500Z 010606 24005MPS CAVOK
+EGLL 010120Z 24005MPS 3000
+             -RA
+
+no report
+EGLL 010220Z NIL=
+"""
+        (HERE / "wrapped.txt").parent.mkdir(parents=True, exist_ok=True)
+        (HERE / "wrapped.txt").write_text(text, encoding="utf-8")
+        hours = _metar.read_metar(HERE / "wrapped.txt")
+        self.assertEqual([(one.station, one.visibility, one.rain) for one in hours.reports],
+                         [("EGLL", 2000, 15), ("EGKK", math.inf, 0), ("EGLL", 3000, 1)])
+        for part in ("left out: 2, the first in line 1, 'SAUK31 EGRR 010020' (expected a station", "left out: 2, the first in line 8, 'TAF EGLL",
+                     "left out: 1, the first in line 15, 'EGLL 010220Z NIL' (no observation (NIL))"):
+            self.assertIn(part, hours.words())
 
     def test_hours_are_counted_by_class(self):
         hours = _metar.Hours("", [_metar.report_of(line) for line in REPORTS.splitlines()[2:] if "////" not in line and "NIL" not in line], [])
         found = {tuple(part["weather"]): 12 * part["share"] for part in hours.year()}
         self.assertAlmostEqual(sum(found.values()), 12)
         self.assertAlmostEqual(found["haze:23000",], 3)
-        self.assertAlmostEqual(found["fog:800",], 1)
-        low = 2 / (1 / 50 + 1 / (0.25 * 1609.344))
-        self.assertAlmostEqual(found[f"fog:{float(f'{low:.2g}'):g}",], 2)
+        low = 3 / (1 / 50 + 1 / 300 + 1 / (0.25 * 1609.344))
+        self.assertAlmostEqual(found[f"fog:{float(f'{low:.2g}'):g}",], 3)
         self.assertAlmostEqual(found["haze:1500",], 1)
         # Rain takes its part of the extinction that was reported.
         for visibility, rate in ((4000, 5), (1.5 * 1609.344, 1)):

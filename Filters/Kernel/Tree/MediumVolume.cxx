@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 namespace avianlidar
 {
@@ -103,12 +104,23 @@ void crossEllipsoid(const MediumVolume& ellipsoid, const Vec3& from, const Vec3&
   }
 }
 
+/// Whether a ray that hits a triangle passes its sides at a distance. @param direction unit vector
+bool isAmid(const Corners& corners, const Vec3& direction)
+{
+  const double a = glm::dot(direction, glm::cross(corners.b, corners.c));
+  const double b = glm::dot(direction, glm::cross(corners.c, corners.a));
+  const double c = glm::dot(direction, glm::cross(corners.a, corners.b));
+  constexpr double margin = 1e-9; // of the triangle: more than rounding, less than matters
+  const double least = margin * std::fabs(a + b + c);
+  return std::fabs(a) > least && std::fabs(b) > least && std::fabs(c) > least;
+}
+
 /// All hits of a ray.
 class HitList
 {
 public:
   HitList(const TriangleMesh& mesh, const Vec3& origin, const Vec3& direction,
-    std::vector<std::pair<double, int>>& hits)
+    std::vector<MediumCrosser::Hit>& hits)
     : Mesh(mesh)
     , Origin(origin)
     , Direction(direction)
@@ -127,7 +139,8 @@ public:
         const double range = rangeOf(corners, plane, this->Direction, 0.0);
         if (range > 0.0)
         {
-          this->Hits.emplace_back(range, glm::dot(plane.normal, this->Direction) < 0.0 ? 1 : -1);
+          this->Hits.push_back({ range, glm::dot(plane.normal, this->Direction) < 0.0 ? 1 : -1,
+            isAmid(corners, this->Direction) });
         }
       }
     }
@@ -138,7 +151,7 @@ private:
   const TriangleMesh& Mesh;
   const Vec3 Origin;
   const Vec3 Direction;
-  std::vector<std::pair<double, int>>& Hits;
+  std::vector<MediumCrosser::Hit>& Hits;
 };
 }
 
@@ -211,25 +224,29 @@ void MediumCrosser::findInSurface(const MediumVolume& volume, const Vec3& origin
   HitList list(*tree.mesh, origin, direction, this->Hits);
   descendWide(
     tree, WideRay(tree.wide, origin, Vec3(0.0), direction, 2.0 * HitMargin), list, this->Stack);
-  std::sort(this->Hits.begin(), this->Hits.end());
-  // Hits on a side that two triangles share are one.
-  const auto isSame = [](const auto& a, const auto& b)
-  { return a.second == b.second && b.first - a.first <= 1e-9 * b.first; };
+  std::sort(this->Hits.begin(), this->Hits.end(),
+    [](const Hit& a, const Hit& b)
+    { return std::tie(a.range, a.entered) < std::tie(b.range, b.entered); });
+  // Hits on a side that two triangles share are one; those amid two triangles in one place are two.
+  const auto isSame = [](const Hit& a, const Hit& b)
+  {
+    return a.entered == b.entered && b.range - a.range <= 1e-9 * b.range && !(a.isAmid && b.isAmid);
+  };
   this->Hits.erase(std::unique(this->Hits.begin(), this->Hits.end(), isSame), this->Hits.end());
   int shells = 0; // that enclose the origin
-  for (const auto& hit : this->Hits)
+  for (const Hit& hit : this->Hits)
   {
-    shells -= hit.second;
+    shells -= hit.entered;
   }
   double begin = 0.0;
-  for (const auto& hit : this->Hits)
+  for (const Hit& hit : this->Hits)
   {
     if (shells != 0)
     {
-      addPart(begin, hit.first, 1.0, 0.0, far, parts);
+      addPart(begin, hit.range, 1.0, 0.0, far, parts);
     }
-    shells += hit.second;
-    begin = hit.first;
+    shells += hit.entered;
+    begin = hit.range;
   }
 }
 

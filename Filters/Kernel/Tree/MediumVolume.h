@@ -10,7 +10,8 @@
  *
  * Source: none.
  * Valid: exact but for rounding. A closed surface is crossed where the tree's triangle test says
- * so; points that more shells enclose than not are inside, whichever way its triangles face.
+ * so; its shells face outward but for holes, as closedShells() turns them, and what they enclose is
+ * inside.
  * Test: TestBeamAir.cxx.
  */
 #ifndef avianlidar_MediumVolume_h
@@ -86,11 +87,18 @@ public:
   void find(const MediumVolume& volume, const Vec3& origin, const Vec3& direction, double far,
     double seconds, std::vector<MediumCrossing>& parts);
 
+  struct Hit
+  {
+    double range; ///< m
+    int entered;  ///< shells that the ray enters: 1 or -1
+    bool isAmid;  ///< not on a side of the triangle
+  };
+
 private:
   void findInSurface(const MediumVolume& volume, const Vec3& origin, const Vec3& direction,
     double far, std::vector<MediumCrossing>& parts);
   TraversalStack Stack;
-  std::vector<std::pair<double, int>> Hits; ///< range, and 1 where the ray enters, else -1
+  std::vector<Hit> Hits;
 };
 
 /// Whether a volume is, to each side of its middle, wider than a beam at its far end, so that none

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkAvianLidarMedia.h"
 
+#include "ClosedShells.h"
 #include "CollisionTreeBuilder.h"
 #include "JsonNode.h"
 #include "Propagation.h"
@@ -10,14 +11,11 @@
 
 #include "vtkAppendPolyData.h"
 #include "vtkCellArray.h"
-#include "vtkCleanPolyData.h"
 #include "vtkCubeSource.h"
-#include "vtkFeatureEdges.h"
 #include "vtkFieldData.h"
 #include "vtkNew.h"
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
-#include "vtkPolyDataNormals.h"
 #include "vtkSphereSource.h"
 #include "vtkStringArray.h"
 #include "vtkTriangleFilter.h"
@@ -328,38 +326,50 @@ std::vector<avianlidar::PlacedMedium> vtkAvianLidarMedia::Read(
 
 namespace
 {
-/// A closed surface as triangles that face one way. Throws if it is open.
+/// A closed surface as triangles that face outward. Throws if it is open.
 vtkSmartPointer<vtkPolyData> Closed(vtkPolyData* surface, const std::string& name)
 {
   vtkNew<vtkTriangleFilter> triangles;
   triangles->SetInputData(surface);
   triangles->PassVertsOff();
   triangles->PassLinesOff();
-  vtkNew<vtkCleanPolyData> clean; // corners of neighbours become one point
-  clean->SetInputConnection(triangles->GetOutputPort());
-  clean->SetTolerance(0.0);
-  vtkNew<vtkPolyDataNormals> facing;
-  facing->SetInputConnection(clean->GetOutputPort());
-  facing->SplittingOff();
-  facing->ConsistencyOn();
-  facing->NonManifoldTraversalOff();
-  facing->ComputePointNormalsOff();
-  vtkNew<vtkFeatureEdges> edges;
-  edges->SetInputConnection(facing->GetOutputPort());
-  edges->FeatureEdgesOff();
-  edges->ManifoldEdgesOff();
-  edges->NonManifoldEdgesOff();
-  edges->Update();
-  if (facing->GetOutput()->GetNumberOfPolys() == 0 || edges->GetOutput()->GetNumberOfCells() > 0)
+  triangles->Update();
+  vtkPolyData* given = triangles->GetOutput();
+  avianlidar::TriangleMesh mesh;
+  for (vtkIdType i = 0; i < given->GetNumberOfPoints(); ++i)
   {
-    throw std::runtime_error("medium '" + name + "': the input surface has " +
-      std::to_string(edges->GetOutput()->GetNumberOfCells()) + " edges with one triangle, and " +
-      std::to_string(facing->GetOutput()->GetNumberOfPolys()) +
-      " triangles, expected a closed surface");
+    double p[3];
+    given->GetPoint(i, p);
+    mesh.points.emplace_back(p[0], p[1], p[2]);
+  }
+  vtkIdType size = 0;
+  const vtkIdType* corners = nullptr;
+  for (given->GetPolys()->InitTraversal(); given->GetPolys()->GetNextCell(size, corners);)
+  {
+    mesh.triangles.push_back({ static_cast<std::uint32_t>(corners[0]),
+      static_cast<std::uint32_t>(corners[1]), static_cast<std::uint32_t>(corners[2]) });
+  }
+  std::string problem;
+  mesh = avianlidar::closedShells(mesh, problem);
+  if (!problem.empty())
+  {
+    throw std::runtime_error("medium '" + name + "': the input surface " + problem);
+  }
+  vtkNew<vtkPoints> points;
+  points->SetDataType(surface->GetPoints()->GetDataType());
+  for (const Vec3& p : mesh.points)
+  {
+    points->InsertNextPoint(p.x, p.y, p.z);
+  }
+  vtkNew<vtkCellArray> polys;
+  for (const auto& t : mesh.triangles)
+  {
+    polys->InsertNextCell(
+      { static_cast<vtkIdType>(t[0]), static_cast<vtkIdType>(t[1]), static_cast<vtkIdType>(t[2]) });
   }
   auto closed = vtkSmartPointer<vtkPolyData>::New();
-  closed->SetPoints(facing->GetOutput()->GetPoints());
-  closed->SetPolys(facing->GetOutput()->GetPolys());
+  closed->SetPoints(points);
+  closed->SetPolys(polys);
   return closed;
 }
 

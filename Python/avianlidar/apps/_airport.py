@@ -22,7 +22,7 @@ from .._disk import read_regular, write_whole
 from .._pipeline import Error, update
 from .._scene import Scene, load_scene
 from .._scene import mesh as _surface
-from . import _pictures, siting
+from . import _heights, _pictures, siting
 from ._extract import COAST, CUT, Feature, Left, height_name, properties_of, read_extract, rules, sea, without_parts
 from ._extract import degrees as _degrees
 from ._extract import form_of as _form
@@ -35,10 +35,8 @@ from ._obstacles import read_obstacles
 from ._runways import box_of as _box
 from ._runways import choose_runways
 
-RASTERS = ["GTiff", "AAIGrid"]
 MOST_POSTS = 250_000  # of a terrain: it takes some seconds
 MOST_CHOSEN = 0.25  # of the posts: where so many are needed, all are taken
-LOWEST = -1500.0  # m, or ft: what is lower is no height
 FLAT_SPACING = 100.0  # m, of a ground without a terrain, which follows the Earth
 AROUND = 600.0  # m beside runways where lidars may stand
 SPACINGS, CHOICE = (200, 150, 100, 50), 30  # m between candidates of the siting plan: the widest that leaves about so many
@@ -58,16 +56,9 @@ def read_heights(file: pathlib.Path, origin: Sequence[float], rectangle: Sequenc
     """Heights of a raster at posts that cover a rectangle (m about the origin), rows from south to north: where the raster says
     none they are level, and it fades into that. @return heights (m), spacing (m), height at the origin (m), words for the reader"""
     gdal, _, _ = _gdal()
-    data = _open(file, "heights", RASTERS, gdal.OF_RASTER)
-    if not data.GetProjection():
-        raise Error(f"{file}: does not say its coordinate reference system; an ASCII grid has it in a .prj file beside it")
-    raw = data.GetRasterBand(1)
-    if data.RasterCount > 2 and raw.DataType == gdal.GDT_Byte:
-        raise Error(f"{file}: is a picture of {data.RasterCount} bands of bytes, expected one band of heights")
+    raw = _open(file, _heights.WHAT, list(_heights.DRIVERS), gdal.OF_RASTER)
     with naming(str(file)), _quiet():
-        none = raw.GetNoDataValue()
-        lowest = raw.ComputeRasterMinMax(False)[0] if none is None else 0.0
-        none = lowest if lowest < LOWEST else none  # -9999 and -32768 are said to be none by few
+        data, unit = _heights.in_metres(file, raw)
         system = coordinate_system((*origin[:2], 0.0)).ExportToWkt()
         own = abs(gdal.AutoCreateWarpedVRT(data, None, system).GetGeoTransform()[1])
         west, east, south, north = rectangle
@@ -77,22 +68,21 @@ def read_heights(file: pathlib.Path, origin: Sequence[float], rectangle: Sequenc
         bounds = (west - half, south - half, west - half + columns * spacing, south - half + rows * spacing)
         grid = gdal.Warp("", data, format="MEM", dstSRS=system, outputBounds=bounds, width=columns, height=rows, dstNodata=-1e9,
                          resampleAlg="bilinear" if spacing < 2.0 * own else "average", outputType=gdal.GDT_Float64, multithread=False,
-                         srcNodata=none, options=["-novshift"])
+                         overviewLevel="NONE", options=["-novshift"])
         band = grid.GetRasterBand(1)
         heights = band.ReadAsArray()
         missing = ~(np.abs(heights) < 1e8)
         if missing.all():
-            raise Error("holds no heights at the airport")
+            raise Error(f"holds no heights from {_heights.LOWEST:,g} to {_heights.HIGHEST:,g} m at the airport")
         holes = 100.0 * missing.mean()
         if missing.any():
             gdal.FillNodata(band, None, 20, 0)
             heights = band.ReadAsArray()
             heights = _feathered(heights, ~(np.abs(heights) < 1e8), spacing, known["feather"])
-    unit, metres = _unit_of(data)
-    heights = metres * ((raw.GetScale() or 1.0) * heights[::-1] + (raw.GetOffset() or 0.0))
+    heights = heights[::-1]
     here = float(_at(heights, (west, south), spacing, (0.0, 0.0)))
-    words = f"heights: {file.name}, taken every {spacing:.3g} m" + (f" (it has them every {own:.3g} m)" if spacing > 1.01 * own else "")
-    if metres != 1.0:
+    words = f"heights: {file.name}, {heights.min():.1f} to {heights.max():.1f} m, taken every {spacing:.3g} m" + (f" (it has them every {own:.3g} m)" if spacing > 1.01 * own else "")
+    if unit and _heights.metres_of(unit) != 1.0:
         words += f", in {unit}, which it says"
     if holes > 0.0:
         words += (f"; {holes:.2g} % of the places have none there: holes are filled from around them, and beyond its border the ground is level, "
@@ -100,15 +90,6 @@ def read_heights(file: pathlib.Path, origin: Sequence[float], rectangle: Sequenc
     if holes > 5.0:
         warnings.warn(f"{file}: has no heights at {holes:.2g} % of the places of the scene, which are level there", RuntimeWarning, stacklevel=2)
     return heights, spacing, here, words
-
-
-def _unit_of(data) -> Tuple[str, float]:
-    """The unit of a raster's heights, and metres of it."""
-    _, _, osr = _gdal()
-    system = osr.SpatialReference()
-    system.ImportFromWkt(data.GetProjection())
-    name = data.GetRasterBand(1).GetUnitType() or (system.GetAttrValue("VERT_CS|UNIT", 0) or "m")
-    return name, FOOT if name.lower().startswith(("f", "us")) else 1.0
 
 
 def _feathered(heights: np.ndarray, missing: np.ndarray, spacing: float, width: float) -> np.ndarray:

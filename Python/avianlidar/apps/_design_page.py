@@ -32,7 +32,7 @@ def does(study: Study, form: str = "detects") -> str:
     birds = f"{study.plan.bird}s" if len(study.plan.mix) == 1 else "birds"
     if study.measure == "tracked":
         return f"{form.replace('detect', 'track')} {birds} of the scenario at least once"
-    needed = study.plan.settings.get("required_detections", 1)
+    needed = study.plan.coverage.required_detections
     time = f"{needed} or more of the scans in {study.within:g} s" if study.within else "one scan"
     return f"{form} {birds} {study.plan.where}, by {time}"
 
@@ -196,7 +196,7 @@ class Designs(Study):
 
     def write(self) -> Designs:
         """Look, then write design.html, design.csv, sensitivities.csv and pictures into the folder. @return this"""
-        with only_run(self.folder, self.ranks, goes_on=True):
+        with only_run(self.folder, self.ranks, goes_on=True, known=self.plan.decides):
             self.look()
             if not self.ranks.rank:
                 write(self)

@@ -19,6 +19,7 @@ from .._disk import checked_name, replacing, write_whole
 from .._files import save
 from .._pipeline import Error, update
 from .._properties import in_snake_case
+from .._ranks import digest_of, digest_of_arrays
 from .._scene import Scene, load_scene
 from .._sensor import Sensor
 from .._weather import AIR, in_weather, weather, without_air
@@ -397,6 +398,12 @@ class Plan:
         if self.scene.geodetic_origin is None:
             raise Error(f"{self.plan['scene']}: has no origin, expected latitude and longitude, as runways are given by them")
         return read_runways(self.plan["runways"], self.scene.geodetic_origin)
+
+    def decides(self) -> Any:
+        """All that decides what is found: the plan but for its own name, surfaces, beams and places."""
+        update(self.scene.tree)
+        return ({name: part for name, part in self.plan.items() if name != "file"}, digest_of(self.scene.tree.GetOutput()),
+                digest_of_arrays(self.sensor.beams.data), self.points.tobytes())
 
     def places(self, seed: int) -> Tuple[np.ndarray, Dict[str, np.ndarray]]:
         """Where shares are of: n x 3, m, and the regions."""

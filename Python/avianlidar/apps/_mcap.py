@@ -237,7 +237,7 @@ def _scans(folder: pathlib.Path) -> Iterator[Tuple[str, int, np.ndarray, np.ndar
         raise ValueError(f"{folder / 'calib.txt'}: expected one line Tr: with a rotation and a translation in 12 numbers")
     for file, time, pose in zip(files, times, poses):
         content, label = read_regular(file), folder / "labels" / f"{file.stem}.label"
-        labels = np.frombuffer(read_regular(label), "<u4") if label.exists() else np.zeros(len(content) // 16, "<u4")
+        labels = np.frombuffer(read_regular(label), "<u4") if label.parent.is_dir() else np.zeros(len(content) // 16, "<u4")
         if len(content) != 16 * len(labels):
             raise ValueError(f"{file}: has {len(content)} bytes, expected 16 for each of {len(labels)} labels")
         points, rows = np.empty(len(labels), _POINT), np.frombuffer(content, "<f4").reshape(-1, 4)

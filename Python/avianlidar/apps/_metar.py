@@ -1,12 +1,16 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """METAR reports as a year's weather: shares of the hours of some visibilities and rain rates.
 
-Source: the code form FM 15 METAR (WMO No. 306), and statute miles as in the United States. Rain rates are assumed.
+Source: the code form FM 15 METAR (WMO No. 306) and its spellings in archives: statute miles, kilometres, visibility by direction, lower
+case, reports that go on in the next line. Rain rates are assumed. The grammar is this module's own, because Debian has no parser of such
+lines for Python: `python3-pymetar` reads the decoded pages of one service. It reads what the year's weather needs, visibility and
+precipitation, and passes over the rest.
 """
 from __future__ import annotations
 
 import collections
 import dataclasses
+import itertools
 import math
 import pathlib
 import re
@@ -27,10 +31,13 @@ RAIN = {"-": 1.0, "": 5.0, "+": 15.0}  # mm/h; assumed
 DRIZZLE = 0.5  # mm/h, of any intensity; assumed
 NOT_MODELLED = {"SN": "snow", "SG": "snow grains", "IC": "ice crystals", "PL": "ice pellets", "GR": "hail", "GS": "small hail",
                 "UP": "unknown precipitation"}
-STATION = re.compile(r"\b([A-Z][A-Z0-9]{3})\s+(\d{6})Z\b")
-END = re.compile(r"\s(?:RMK|NOSIG|TEMPO|BECMG|INTER)\b.*|=.*")  # remarks, trends, the end of a report
-METRES = re.compile(r"(\d{4})(?:NDV)?$")
-MILES = re.compile(r"([MP]?)(\d+)(?:/(\d+))?SM$")
+# A station and a time. Without its Z the time counts only before a wind, because heads of bulletins have six digits, too.
+START = re.compile(r"\b([A-Z][A-Z0-9]{3})\s+(\d{6})(?:Z\b|(?=\s+(?:(?:AUTO|COR)\s+)?\S{3,8}(?:KT|MPS|KMH)\b))")
+FORECAST = re.compile(r"(?:\d{4}/\d{4}|\d{6})\s")  # the period of a TAF
+END = re.compile(r"\s(?:RMKS?|NOSIG|TEMPO|BECMG|INTER|PROB\d\d|FM\d{4,6}|TTF)\b.*|=.*")  # remarks, trends, the end of a report
+AFTER = re.compile(r"FEW|SCT|BKN|OVC|VV|NSC|NCD|SKC|CLR|M?\d\d/(?:M?\d\d|//)?$|[QA]\d{4}$")  # clouds, temperatures, pressure
+METRES = re.compile(r"[MP]?(\d{3,4})(?:M|NDV|(N|NE|E|SE|S|SW|W|NW))?$")
+MILES = re.compile(r"([MP]?)(\d+)(?:/([1-9]\d*))?(SM|KM)$")
 PRESENT = re.compile(r"([-+]?)(?:MI|PR|BC|DR|BL|SH|TS|FZ)*((?:DZ|RA|SN|SG|IC|PL|GR|GS|UP|BR|FG|FU|VA|DU|SA|HZ|PY|PO|SQ|FC|SS|DS)*)$")
 
 
@@ -44,12 +51,21 @@ class Hour(NamedTuple):
     others: Tuple[str, ...]  # precipitation that is not modelled
 
 
+def _plain(line: str) -> str:
+    return re.sub(r"[,;\"\t]", " ", line.upper())
+
+
 def report_of(line: str) -> Hour:
-    """What a line says; ValueError says what it has not."""
-    found = STATION.search(re.sub(r"[,;\"\t]", " ", line))
+    """The weather in one report; ValueError says what is missing."""
+    found = START.search(_plain(line))
     if not found:
         raise ValueError("expected a station and a time as in 'ZSSS 010000Z'")
-    words = END.sub("", found.string[found.end():]).split()
+    text = re.sub(r"(\d)\s+(SM|KM)\b", r"\1\2", END.sub("", found.string[found.end():])).strip()
+    if re.search(r"\bTAF\b", found.string[:found.start()]) or FORECAST.match(text):
+        raise ValueError("a forecast (TAF)")
+    words = text.split()
+    if "NIL" in words:
+        raise ValueError("no observation (NIL)")
     visibility = _visibility(words)
     if visibility is None:
         raise ValueError("expected a visibility as in 0800, CAVOK or 1 1/2SM")
@@ -64,19 +80,29 @@ def report_of(line: str) -> Hour:
 
 
 def _visibility(words: List[str]) -> Optional[float]:
-    """m; None where there is none."""
+    """Prevailing visibility in metres, or the least that follows it with a direction; None where it is missing."""
+    first = next((k for k, word in enumerate(words) if AFTER.match(word)), len(words))  # metres stand before it
     for k, word in enumerate(words):
-        metres, miles = METRES.match(word), MILES.match(word)
+        metres, miles = METRES.match(word) if k < first else None, MILES.match(word)
         if word == "CAVOK":
             return math.inf
         if metres:
-            found = float(metres[1])
+            sectors = itertools.takewhile(lambda sector: sector and sector[2], map(METRES.match, words[k + 1:]))
+            found = min(float(one[1]) for one in (metres, *sectors) if one)
             return math.inf if found >= MOST - 1.0 else max(found, LEAST)
-        if miles and int(miles[3] or 1) > 0:
-            whole = int(words[k - 1]) if miles[3] and k and re.fullmatch(r"\d", words[k - 1]) else 0
-            found = MILE * (whole + int(miles[2]) / int(miles[3] or 1))
+        if miles:
+            before = int(words[k - 1]) if miles[3] and k and re.fullmatch(r"\d{1,2}", words[k - 1]) else 0
+            found = (MILE if miles[4] == "SM" else 1000.0) * (before + _number(miles[2], miles[3]))
             return math.inf if found >= MOST or miles[1] == "P" else max(found, LEAST)
     return None
+
+
+def _number(digits: str, denominator: Optional[str]) -> float:
+    """A number, a fraction, or both without a space between them: 11/2 is one and a half."""
+    if not denominator:
+        return float(digits)
+    whole = next((k for k in range(len(digits)) if digits[k] != "0" and int(digits[k:]) < int(denominator)), 0)
+    return int(digits[:whole] or 0) + int(digits[whole:]) / int(denominator)
 
 
 @dataclasses.dataclass
@@ -127,9 +153,11 @@ class Hours:
         hours = sum(share for share, _ in self.weighted())
         stations = ", ".join(dict.fromkeys(one.station for one in self.reports))
         said = f"{pathlib.Path(self.file).name}: {len(self.reports):,} METAR reports of {stations}, {hours:,.0f} hours"
-        if self.bad:
-            number, line, wrong = self.bad[0]
-            said += f"; lines that are no report: {len(self.bad)}, the first is line {number}, '{line[:60]}' ({wrong})"
+        left_out: Dict[str, List[Tuple[int, str]]] = {}
+        for number, line, wrong in self.bad:
+            left_out.setdefault(wrong, []).append((number, line))
+        for wrong, lines in left_out.items():
+            said += f"; left out: {len(lines):,}, the first in line {lines[0][0]}, '{lines[0][1][:60]}' ({wrong})"
         others = collections.Counter(name for one in self.reports for name in set(one.others))
         if others:
             said += "; not modelled, but for the visibility: " + ", ".join(f"{name} ({count} reports)" for name, count in others.most_common())
@@ -137,17 +165,38 @@ class Hours:
                 f"{CLEAR / 1000:g} km")
 
 
+def _reports(text: str) -> Iterator[Tuple[int, str]]:
+    """Reports with the numbers of their first lines. A report goes on until its equals sign, an empty line or the next station and time;
+    lines that begin with # do not count."""
+    number, report = 0, ""
+    for here, line in enumerate(text.splitlines(), 1):
+        if line.startswith("#"):
+            continue
+        for k, part in enumerate(line.split("=")):
+            starts = START.search(_plain(part))
+            if report and (starts or k or not line.strip()):
+                yield number, report
+                report = ""
+            if report:
+                report += " " + part.strip()
+            elif starts:
+                number, report = here, part.strip()
+            elif k == 0 and part.strip():
+                yield here, part.strip()
+    if report:
+        yield number, report
+
+
 def read_metar(file) -> Hours:
-    """The reports of a file, one a line; a station and a time stand where they are, whatever is before them. Empty lines and those that
-    begin with # do not count. `Error` where there is none."""
+    """The reports of a file, METAR and SPECI; a station and a time stand where they are, whatever is before them. `Error` where there
+    is none."""
     found = Hours(str(file), [], [])
-    for number, line in enumerate(read_regular(file).decode("utf-8", "replace").splitlines(), 1):
-        if line.strip() and not line.startswith("#"):
-            try:
-                found.reports.append(report_of(line))
-            except ValueError as error:
-                found.bad.append((number, line.strip(), str(error)))
+    for number, report in _reports(read_regular(file).decode("utf-8", "replace")):
+        try:
+            found.reports.append(report_of(report))
+        except ValueError as error:
+            found.bad.append((number, report, str(error)))
     if not found.reports:
         first = f"; line {found.bad[0][0]}, '{found.bad[0][1][:60]}': {found.bad[0][2]}" if found.bad else ""
-        raise Error(f"{file}: holds no METAR report, expected some, one a line{first}")
+        raise Error(f"{file}: holds no METAR report, expected lines with a station, a time and a visibility{first}")
     return found

@@ -438,6 +438,10 @@ class Sequence:
         found = {f"{part}.{name}": _short(value) for part, values in parts.items() for name, value in values.items() if name not in no_bit}
         return {"version": __version__, "scene": digest_of(self.scene.tree.GetOutput()), **found}
 
+    def decides(self) -> Any:
+        """All that decides which files `write` makes."""
+        return self.scans, sorted(self._inputs().items())
+
     def write(self, folder, ranks: Optional[Ranks] = None, progress: Optional[Progress] = None) -> Dict[str, Any]:
         """Make what is missing of `folder`/sequences/NN, then manifest.json and datasheet.md; returns the manifest.
 
@@ -449,7 +453,7 @@ class Sequence:
         progress  called with the number of the sequence, its scans done and all of them
         """
         ranks, out = ranks or Ranks(), pathlib.Path(folder)
-        with only_run(out, ranks, goes_on=True), ranks.together():
+        with only_run(out, ranks, goes_on=True, known=self.decides), ranks.together():
             return self._write(out, ranks, progress)
 
     def _write(self, out: pathlib.Path, ranks: Ranks, progress: Optional[Progress]) -> Dict[str, Any]:

@@ -95,7 +95,10 @@ class BirdTracks:
         card.json, tracks.csv, birds.csv and pictures. What is there of the same files and settings stays. Ranks take whole sequences.
         @param progress called with what is done, how much of it and of how much @return what card.json holds"""
         ranks, out = ranks or Ranks(), pathlib.Path(folder)
-        with only_run(out, ranks, goes_on=True), ranks.together():
+        def known() -> Any:
+            return (list(self.folders.items()), [(name, made.decides()) for name, made in self.made.items()], self.runways, self.learning, self.cutoff,
+                    self.order, self.clutter, self.tracker)
+        with only_run(out, ranks, goes_on=True, known=known), ranks.together():
             return self._write(out, ranks, progress or (lambda *_: None))
 
     def _write(self, out: pathlib.Path, ranks: Ranks, progress: Progress) -> Dict[str, Any]:

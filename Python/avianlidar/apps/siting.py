@@ -442,6 +442,7 @@ def look(scene, sensor, sites, places, species: Sequence[str], folder=None, rank
             inputs = {name: repr(value) for name, value in settings.items() if name != "number_of_threads"}  # which changes no bit
             known = [list(species), array, area_factor, inputs, *([[dict(air) for air in airs]] if any(airs) else [])]
             files = _files(cover, sites, places, known, folder)
+            ranks.agree(folder, lambda: [file.name for file in files])
             found = np.empty((len(sites), len(species) * len(airs), len(places)), dtype=np.float32)
             kept = {i for i, file in enumerate(files) if _read_kept(file, found[i])}
             damaged = [str(file) for i, file in enumerate(files) if i not in kept and os.path.lexists(file)]
