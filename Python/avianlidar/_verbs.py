@@ -480,6 +480,7 @@ def siting(options) -> None:
 def _say_sites(sites, changes) -> None:
     name = sites.plan.name
     print(f"{name}: {len(sites.positions)} candidates, of {sites.lattice}, for a {sites.plan.bird} {sites.plan.where}")
+    print(f"obstacle limits: {sites.kept_surfaces}")
     for network in sites.networks:
         where = ", ".join(f"({x:g}, {y:g}, {z:g})" for x, y, z in sites.positions[list(network.sites)])
         print(f"{len(network.sites)} of {name}: {network.value:.3f} at {where} m")

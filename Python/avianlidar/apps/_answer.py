@@ -184,7 +184,7 @@ def _raise(view: Plan, advice: Dict[str, Any]) -> Dict[str, str]:
 
 def _check(view: Plan, site: Dict[str, Any], file: str) -> Dict[str, str]:
     """The site itself."""
-    words = ["It is clear of runways, buildings and what the plan excludes; what no map has may be there."]
+    words = [f"{site['surfaces']}; what no map has may be there."]
     masts = [f"{percent(value)} with a mast of {mast:g}\u00a0m" for mast, _, value in site["masts"]]
     if len(masts) > 1:
         words.append(f"The best sites have {listed(masts)}.")

@@ -175,7 +175,6 @@ class Report:
         gain = sites.gain()
         alike = sum(less <= 2.0 * error for less, error in map(sites.difference, map(int, sites.order[1:])))
         words = "; ".join(f"{row['sensors']}: {row['value']:.3f}" for row in gain)
-        taken = np.array([sites.plan.sensor.position[:2]])
         pictured = {"map": ("sites.png", f"Map of {len(sites.positions)} candidates for {sites.plan.name}; best alone: "
                             f"{place(best[0]['position'])}, with {best[0]['value']:.3f}.",
                             f"{sites.plan.name}: {len(sites.positions)} candidates, of {sites.lattice}; light grey: nothing may stand there"),
@@ -185,7 +184,7 @@ class Report:
                 "degrees": self._degrees(sites), "masts": [(mast, sites.positions[i], float(sites.values[i])) for mast, i in sites.best_by_mast()],
                 "by_air": [{**row, "position": sites.positions[row["site"]]} for row in sites.best_by_air()],
                 "robustness": sites.robustness(changes), "words": sites.words(), "near": len(sites.near), "count": len(sites.positions),
-                "taken": any(siting.is_near(taken, outline, margin)[0] for outline, margin in sites.exclusions),
+                "taken": sites.stands_wrong(sites.plan.sensor.position), "surfaces": sites.surface_sentence,
                 "heights_varied": any("heights" in change.what for change in changes),
                 "draws": int(sites.options.get("draws", DRAWS)),
                 **{key: {"source": embedded(folder / name), "alt": alt, "caption": f"{caption}; {self.asked}"}

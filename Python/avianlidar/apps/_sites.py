@@ -20,6 +20,7 @@ from . import _pictures, siting
 from ._air import Air
 from ._json import naming
 from ._maps import Plan, write_table
+from ._surfaces import NAMES, Surfaces, pierced, table
 
 NEAR = 40  # candidates that are best alone: all networks of one to three of these and of the best network are compared
 DRAWS = 10
@@ -68,8 +69,9 @@ class Sites:
     positions  n x 3, m, in the order of the lattice   networks  the best of 1, 2, ... sensors
     values     weighted share that each detects alone  order     candidates from the best to the worst
     airs       weathers with their shares of the year  by_air    weighted share that each detects alone in each of these
+    surfaces   of each runway, that masts keep below    pierced   number of candidates left out for each of them, by name
 
-    All but the positions and the airs are there after `look`.
+    All but positions, airs and surfaces are there after `look`.
     """
 
     def __init__(self, plan: Plan, folder=None, ranks: Optional[Ranks] = None, progress: Optional[Progress] = None,
@@ -104,9 +106,59 @@ class Sites:
                                   f"{len(self.positions):,} candidates, {len(self.mix)} species and {plan.count:,} places"
                                   + (f" in {len(self.airs)} weathers" if len(self.airs) > 1 else ""),
                                   "take a larger spacing, fewer masts or places")
+        with naming(f"{plan.file}: siting.surfaces"):
+            self._keep_below()
         if self.options.get("draws", DRAWS):
             with naming(f"{plan.file}: scene"), tempfile.TemporaryDirectory() as copy:
                 siting.with_other_heights(plan.plan["scene"], copy, lambda: 0.0)  # as `changes` will
+
+    def _keep_below(self) -> None:
+        """Leave out candidates whose masts pierce an obstacle limitation surface."""
+        asked = self.options.get("surfaces", True)
+        changes = asked if isinstance(asked, dict) else {}
+        self.surfaces = [Surfaces.of(runway, self.plan.scene, changes) for runway in self.plan.runways] if asked is not False else []
+        found = pierced(self.surfaces, self.positions)
+        self.pierced = {name: int(np.count_nonzero(found == number)) for number, name in enumerate(NAMES, 1)
+                        if self.surfaces and name in self.surfaces[0].kept}
+        if found.all():
+            raise Error(f"the masts of all {len(found)} candidates pierce one ({self._counted()}): take lower masts or wider bounds, change the "
+                        "surfaces, or switch them off (false)")
+        self.positions = self.positions[found == 0]
+
+    def _counted(self) -> str:
+        return ", ".join(f"{name} {count}" for name, count in self.pierced.items())
+
+    @property
+    def kept_surfaces(self) -> str:
+        """Which surfaces masts keep below, by which codes, and how many candidates did not, in words."""
+        if not self.pierced:
+            return "none is kept, as the plan switches them off"
+        given = self.options.get("surfaces")
+        given = given if isinstance(given, dict) else {}
+        code = "code number" if "code" in given else "code number by its length, assumed:"
+        category = self.surfaces[0].category + ("" if "category" in given else " (assumed)")
+        changed = [name for name in self.pierced if isinstance(given.get(name), dict)]
+        return (f"masts keep below {', '.join(self.pierced)} surfaces of ICAO Annex 14 ({table()['year']}) for {category} approaches, "
+                f"{'; '.join(f'{one.runway.name}: {code} {one.code}' for one in self.surfaces)}"
+                f"{'; the plan changes ' + ', '.join(changed) if changed else ''}; {sum(self.pierced.values())} of "
+                f"{sum(self.pierced.values()) + len(self.positions)} candidates pierced one and are left out ({self._counted()})")
+
+    @property
+    def surface_sentence(self) -> str:
+        """What was looked at where a mast may stand, for the first page."""
+        if not self.pierced:
+            return "It is clear of runways, buildings and what the plan excludes; the plan switches obstacle limitation surfaces off"
+        given = self.options.get("surfaces")
+        assumed = "" if isinstance(given, dict) and "category" in given else ", assumed"
+        names = list(self.pierced)
+        return (f"It keeps below the {' and '.join(filter(None, (', '.join(names[:-1]), names[-1])))} surfaces of ICAO Annex 14 "
+                f"({self.surfaces[0].category} approaches{assumed}), which {sum(self.pierced.values())} other candidates pierce ({self._counted()}), and is "
+                "clear of buildings and what the plan excludes")
+
+    def stands_wrong(self, position: Sequence[float]) -> bool:
+        """Whether no candidate may stand at a place, m."""
+        place = np.array([position], dtype=float)
+        return bool(pierced(self.surfaces, place)[0]) or any(siting.is_near(place, outline, margin)[0] for outline, margin in self.exclusions)
 
     def look(self) -> Sites:
         """Look from all candidates, and compare networks of them. @return this"""
@@ -152,7 +204,7 @@ class Sites:
                 if not found:
                     raise Error(f"{file}: holds no polygon, expected some where no lidar may stand")
                 outlines += found
-        return [(outline, margin) for outline in outlines] + [(siting.runway_outline(r), 0.0) for r in self.plan.runways]
+        return [(outline, margin) for outline in outlines] + [(siting.runway_outline(r, 0.0, r.width / 2.0), 0.0) for r in self.plan.runways]
 
     def _look(self, positions, airs: Optional[List[Air]] = None, seed: Optional[int] = None, scene=None, progress=None, **settings: Any):
         """Coverage of sites, weights and regions. @param airs default those that count"""
@@ -251,8 +303,8 @@ class Sites:
                 **({"weather": "by the year's share of the hours: " + "; ".join(f"{air.name} {100 * air.share:.3g} %" for air in self.plan.year)}
                    if self.plan.year else {"weather": self.airs[0].name} if self.plan.air else {}),
                 "clutter": "counted" if self.settings.get("clutter") else "not counted",
-                "nothing may stand": f"within 60 m beyond and 185 m beside runways, under surfaces of the scene, and within "
-                                     f"{self.options.get('margin', 0.0):g} m of {' and '.join(files)}"}
+                "nothing may stand": f"on runways, under surfaces of the scene, and within {self.options.get('margin', 0.0):g} m of {' and '.join(files)}",
+                "obstacle limits": self.kept_surfaces}
 
     @property
     def at_the_edge(self) -> bool:
