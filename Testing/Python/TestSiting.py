@@ -141,6 +141,37 @@ print(len(points), resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before, 
         np.testing.assert_allclose(weights[1], 0.8 * np.array([0.375, 0.375, 1 / 12, 1 / 12, 1 / 12, 0.0]))
 
 
+class Places(unittest.TestCase):
+    RUNWAYS = [siting.Runway("08/26", (0.0, 0.0), (3000.0, 0.0), 45.0), siting.Runway("Runway 18R/36L", (500.0, -900.0), (500.0, 100.0), 30.0)]
+
+    def test_ends_are_called_by_where_aircraft_land(self):
+        grass, magnetic = siting.Runway("grass", (0.0, 0.0), (-500.0, 0.0), 20.0), siting.Runway("RWY 35/17", (0.0, 0.0), (60.0, 500.0), 20.0)
+        self.assertEqual(siting.end_names([*self.RUNWAYS, grass, magnetic]), [("08", "26"), ("36L", "18R"), ("grass east", "grass west"), ("35", "17")])
+        self.assertEqual(siting.region_names(self.RUNWAYS), {"strips": ["strip 08/26", "strip 18R/36L"],
+                                                             "approaches": ["approach 08", "approach 26", "approach 36L", "approach 18R"]})
+        self.assertEqual(siting.end_names(2 * [grass])[1], ("grass east (2)", "grass west (2)"))
+
+    def test_shares_by_end(self):
+        points, regions = siting.places_by_region(self.RUNWAYS, 1000, 3, {"strips": {"18R/36L": 1}, "approaches": {"08": 2, "26": 1}})
+        self.assertEqual({name: len(numbers) for name, numbers in regions.items()}, {"strip 18R/36L": 250, "approach 08": 500, "approach 26": 250})
+        self.assertLess(points[regions["approach 08"], 0].max(), 0.0)  # aircraft that land on 08 come from the west
+        self.assertGreater(points[regions["approach 26"], 0].min(), 3000.0)
+        self.assertLessEqual(np.abs(points[regions["strip 18R/36L"], 0] - 500.0).max(), 150.0)
+        for shares, words in (({"approaches": {"09": 1}}, "approaches has '09', expected some of 08, 26, 36L, 18R"), ({"approaches": {"08": 0}}, "a sum above 0")):
+            with self.assertRaisesRegex(ValueError, words):
+                siting.strips_and_approaches(self.RUNWAYS, 100, shares=shares)
+
+    def test_spread_by_distance_and_by_area(self):
+        """Over an approach of the half-width 75 m + 0.15 d, to d = 3000 m: the share of its area before d is (75 d + 0.075 d^2) / 900,000 m^2."""
+        for spread, before, long_one in (("distance", lambda d: d / 3000.0, 0.5), ("area", lambda d: (75 * d + 0.075 * d * d) / 900e3, 0.75)):
+            points, regions = siting.places_by_region(self.RUNWAYS, 40000, 1, spread=spread)
+            away = -points[regions["approach 08"], 0]
+            for d in (500.0, 1500.0, 2500.0):
+                self.assertAlmostEqual(np.mean(away < d), before(d), delta=4 * np.sqrt(0.25 / len(away)))
+            self.assertAlmostEqual(len(regions["strip 08/26"]) / 20000, long_one, delta=1e-3)
+            self.assertEqual(len({len(regions[name]) for name in siting.region_names(self.RUNWAYS)["approaches"]}), 1)
+
+
 class ObstacleLimits(unittest.TestCase):
     """Against heights by hand, from the dimensions of ICAO Annex 14."""
 

@@ -25,6 +25,8 @@ from ._surfaces import NAMES, Surfaces, pierced, table
 NEAR = 40  # candidates that are best alone: all networks of one to three of these and of the best network are compared
 DRAWS = 10
 FEWEST_DRAWS = 10  # that say how sure a winner is
+BEST = 10  # sites whose shares are told
+OTHER_PLACES = 1 << 40  # to a seed: that shares are not of the places by which sites were chosen
 SPACING = 200.0  # m, of the lattice
 HEIGHT_ERROR = 5.0  # m, of buildings; assumed
 AREA_ERROR = 0.2  # of the mean effective area; assumed
@@ -70,6 +72,7 @@ class Sites:
     values     weighted share that each detects alone  order     candidates from the best to the worst
     airs       weathers with their shares of the year  by_air    weighted share that each detects alone in each of these
     surfaces   of each runway, that masts keep below    pierced   number of candidates left out for each of them, by name
+    told       what the best of them detect, by number, at other places than those by which they were chosen
 
     All but positions, airs and surfaces are there after `look`.
     """
@@ -174,13 +177,36 @@ class Sites:
         members = [site for network in first for site in network.sites]
         self.near = np.array(list(dict.fromkeys([*self.order[:NEAR], *members])))
         self.networks = self._search(self.found[self.near], self.weights, first)
-        points, weights, _ = self._draw()
-        with self.ranks.together():
-            self.of_same_birds = [siting.value_of_same_birds(self.plan.scene, self.plan.sensor, self.positions[list(network.sites)],
-                                                             points, list(self.mix), weights, [self.airs[i].settings for i in self.counting],
-                                                             **self.settings)
-                                  for network in self.networks]
+        self._look_again()
         return self
+
+    def _look_again(self) -> None:
+        """Look from the best sites and networks at other places than those by which they were chosen, with clutter as the plan has it: what is
+        told of them is of these."""
+        of_air = list(dict.fromkeys(map(int, [self.order[0], *np.argmax(self.by_air, axis=0)])))
+        numbers = [*self.order[:BEST], *(site for network in self.networks for site in network.sites), *(site for _, site in self._best_with_masts()), *of_air]
+        told = list(dict.fromkeys(map(int, numbers)))
+        seed, clutter = self.plan.seed + OTHER_PLACES, {"clutter": self.plan.coverage.clutter}
+        found, self.told_weights, _ = self._look(self.positions[told], None, seed, **clutter)
+        self.told = dict(zip(told, found))
+        points, _ = self.plan.places(seed)
+        of_species = self.plan.weights(points)
+        found = self._look(self.positions[of_air], self.airs, seed, **clutter)[0].reshape(len(of_air), len(self.mix), len(self.airs), -1)
+        self.told_by_air = {site: [float(np.vdot(of[:, air].astype(float), of_species)) for air in range(len(self.airs))] for site, of in zip(of_air, found)}
+        with self.ranks.together():
+            self.of_same_birds = [siting.value_of_same_birds(self.plan.scene, self.plan.sensor, self.positions[list(network.sites)], points,
+                                                             list(self.mix), self.told_weights, [self.airs[i].settings for i in self.counting],
+                                                             **{**self.settings, **clutter})
+                                  for network in self.networks]
+
+    def share(self, sites: Sequence[int]) -> Tuple[float, float]:
+        """The share of the birds that one scan of at least one of the sites detects, and its standard error. @param sites numbers of the best
+        candidates or of members of networks"""
+        missed: np.ndarray = np.prod([1.0 - self.told[int(site)].astype(float) for site in sites], axis=0)
+        of_place = self.told_weights.sum(axis=0)
+        value = float(np.vdot(self.told_weights, 1.0 - missed))
+        off = (self.told_weights * (1.0 - missed)).sum(axis=0) - value * of_place
+        return value, float(np.sqrt(np.sum(off ** 2) * len(off) / (len(off) - 1)))
 
     def _tell(self, what: str, done: int, total: int) -> None:
         if self.progress and self.ranks.rank == 0:
@@ -257,10 +283,19 @@ class Sites:
                     yield Change(what, draw, winner, siting.value_of(found, weights, [number[s] for s in before.sites]))
 
     def difference(self, site: int) -> Tuple[float, float]:
-        """How much less a site's value is than the best one's, and the standard error of that, as both see the same places."""
-        less = ((self.found[self.order[0]].astype(float) - self.found[site]) * self.weights).sum(axis=0)
-        variance = sum(len(members) * np.var(less[members]) for members in self.regions.values())
-        return float(less.sum()), float(np.sqrt(variance))
+        """How much less one of the best sites detects than the first, and the standard error of that, as both see the same places. It may be
+        below 0: these are other places than those by which sites were ranked."""
+        less = (self.told_weights * (self.told[int(self.order[0])].astype(float) - self.told[site])).sum(axis=0)
+        return float(less.sum()), float(np.sqrt(len(less) * np.var(less)))
+
+    def count_alike(self) -> int:
+        """The number of other candidates that are as good as the best within twice the standard error, at the places by which they were ranked."""
+        first = self.found[self.order[0]].astype(float)
+        count = 0
+        for site in self.order[1:]:
+            less = ((first - self.found[site]) * self.weights).sum(axis=0)
+            count += less.sum() <= 2.0 * np.sqrt(sum(len(members) * np.var(less[members]) for members in self.regions.values()))
+        return int(count)
 
     def rank_of(self, site: int) -> int:
         """1 for the best candidate."""
@@ -268,10 +303,11 @@ class Sites:
 
     def gain(self) -> List[Dict[str, Any]]:
         """A row for each number of sensors."""
-        return [{"sensors": len(n.sites), "value": n.value, "value of the same birds": same,
+        shares = [self.share(n.sites) for n in self.networks]
+        return [{"sensors": len(n.sites), "value": value, "std_error": error, "value of the same birds": same,
                  "ranks of the sites": " ".join(str(self.rank_of(i)) for i in n.sites),
-                 "sites": "; ".join(f"{x:g} {y:g} {z:g}" for x, y, z in self.positions[list(n.sites)])}
-                for n, same in zip(self.networks, self.of_same_birds)]
+                 "sites": "; ".join(" ".join(siting.rounded(place)) for place in self.positions[list(n.sites)])}
+                for n, (value, error), same in zip(self.networks, shares, self.of_same_birds)]
 
     def robustness(self, changes: List[Change]) -> List[Dict[str, Any]]:
         """A row for each kind of change and number of sensors: draws, how often another network wins, and by how much more at
@@ -316,12 +352,15 @@ class Sites:
         place = self.positions[self.order[0], :2]
         return bool(((place - bounds[:, 0] < spacing) | (bounds[:, 1] - place < spacing)).any())
 
-    def best_by_mast(self) -> List[Tuple[float, int]]:
-        """The best candidate with each mast: its height above the ground, m, and the candidate's number."""
+    def _best_with_masts(self) -> List[Tuple[float, int]]:
         ground = np.nan_to_num(siting.ground_of(self.plan.scene, self.positions[:, :2]))
         of = self.positions[:, 2] - ground
         found = [(mast, np.flatnonzero(np.abs(of - mast) < siting.SAME_PLACE)) for mast in self.masts]
         return [(mast, int(numbers[np.argmax(self.values[numbers])])) for mast, numbers in found if len(numbers)]
+
+    def best_by_mast(self) -> List[Dict[str, Any]]:
+        """The best candidate with each mast: its height above the ground, m, the place, m, and its share."""
+        return [{"mast": mast, "position": self.positions[site], "share": self.share([site])} for mast, site in self._best_with_masts()]
 
     def _over_the_year(self, order, species: int, places) -> np.ndarray:
         """The mean share of some places at each site. @param order of the sites @param species its number @param places numbers"""
@@ -333,8 +372,9 @@ class Sites:
 
     def best_by_air(self) -> List[Dict[str, Any]]:
         """A row for each weather: the site that is best in it, and what the first of the order detects then."""
-        return [{"weather": air.name, "share": air.share, "site": int(np.argmax(values)), "value": float(values.max()),
-                 "value of the first": float(values[self.order[0]])} for air, values in zip(self.airs, self.by_air.T)]
+        return [{"weather": air.name, "share": air.share, "site": int(site), "value": self.told_by_air[int(site)][k],
+                 "value of the first": self.told_by_air[int(self.order[0])][k]}
+                for k, (air, site) in enumerate(zip(self.airs, np.argmax(self.by_air, axis=0)))]
 
     def write(self, folder, changes: List[Change]) -> None:
         """Write sites (CSV, VTP, GeoJSON) in the order of their rank, gain.csv, robustness.csv and pictures of both."""
@@ -352,5 +392,5 @@ class Sites:
                            "; ".join(f"{name}: {text}" for name, text in self.words().items()))
         write_table(folder / "gain.csv", self.gain())
         write_table(folder / "robustness.csv", self.robustness(changes))
-        _pictures.draw(folder / "sites.png", (5.2, 5.6), lambda axes: _pictures.draw_sites(axes, self))
+        _pictures.draw(folder / "sites.png", _pictures.map_size(_pictures.sites_extent(self), 4.6, 0.8, 0.3), lambda axes: _pictures.draw_sites(axes, self))
         _pictures.draw(folder / "gain.png", (4.4, 2.8), lambda axes: _pictures.draw_gain(axes, self))
