@@ -157,8 +157,12 @@ def share_of(row: Dict[str, Any]) -> str:
 
 def by_end(view: Plan) -> List[str]:
     """A sentence with the share by strip and approach, where several are asked for."""
-    words = [f"{share_of(row)} in the {row['region'].replace('strip ', 'strip of ').replace('approach ', 'approach to ')}" for row in view.by_end]
-    return [f"By runway end it is {listed(words)}."] if len(words) > 1 else []
+    alike: Dict[Tuple[str, str], List[str]] = {}
+    for row in view.by_end:
+        kind, _, name = row["region"].partition(" ")
+        alike.setdefault((share_of(row), kind), []).append(name)
+    words = [f"{share} in the {kind} {'of' if kind == 'strip' else 'to'} {listed(names)}" for (share, kind), names in alike.items()]
+    return [f"By runway end it is {listed(words)}."] if len(view.by_end) > 1 else []
 
 
 def _how_far(view: Plan, reaches: Dict[str, Any]) -> str:

@@ -444,7 +444,7 @@ class Plan:
     @property
     def spread_words(self) -> str:
         """How places are spread over strips and approaches."""
-        return {"distance": "as many on each metre along a strip or an approach, as an aircraft flies each once, however wide they are",
+        return {"distance": "as many on each metre along strips and approaches, as aircraft fly each once",
                 "area": "as many on each square metre of strips and approaches"}[self.spread]
 
     @property

@@ -155,8 +155,8 @@ class Sites:
         assumed = "" if isinstance(given, dict) and "category" in given else ", assumed"
         names = list(self.pierced)
         return (f"It keeps below the {' and '.join(filter(None, (', '.join(names[:-1]), names[-1])))} surfaces of ICAO Annex 14 "
-                f"({self.surfaces[0].category} approaches{assumed}), which {sum(self.pierced.values())} other candidates pierce ({self._counted()}), and is "
-                "clear of buildings and what the plan excludes")
+                f"({self.surfaces[0].category} approaches{assumed}), which {sum(self.pierced.values())} others pierce ({self._counted()}), and is clear "
+                "of buildings and what the plan excludes")
 
     def stands_wrong(self, position: Sequence[float]) -> bool:
         """Whether no candidate may stand at a place, m."""
