@@ -67,6 +67,7 @@ set(avianlidar_python_files
   apps/_scores.py
   apps/_sequence.py
   apps/_sites.py
+  apps/_surfaces.py
   apps/_tracks.py
   apps/reach.py
   apps/siting.py
@@ -80,7 +81,8 @@ set(avianlidar_python_files
   apps/osmconf.ini
   apps/page.css.jinja
   apps/report.html.jinja
-  apps/scenario.schema.json)
+  apps/scenario.schema.json
+  apps/surfaces.json)
 set(avianlidar_python_package "${AVIANLIDAR_PYTHON_BUILD_DIR}/avianlidar")
 # Modules that have moved since would still be found in a build tree.
 file(GLOB old "${avianlidar_python_package}/*.py")

@@ -83,6 +83,11 @@ VERBS = {
                "and pictures are in a folder beside it.", """\
   avianlidar report hongqiao.coverage.json -o report.html
 """),
+    "reach": ("how far birds are seen", "How far one scan of a sensor detects birds within its beams, in free air, with the ranges that the fit of its receiver "
+              "leaves open.", """\
+  avianlidar reach --sensor OS1_64 --species "herring gull"
+  avianlidar reach --sensor Search905 --sensor VLP16 --species crow --weather fog:1000
+"""),
     "sensors": ("sensors that are known by name", "Sensors that are known by name; with a name, that one; with --fit, a receiver fitted to the points of a sheet.", """\
   avianlidar sensors
   avianlidar sensors VLP-16
@@ -199,6 +204,14 @@ def parser() -> Parser:
     which.add_argument("--bounds", nargs=4, type=float, metavar=("W", "S", "E", "N"),
                        help="degrees: the scene holds what lies inside; default: 2 km around the runways")
     _out(airport, "folder")
+
+    reach = verb["reach"]
+    reach.add_argument("--sensor", action="append", required=True, help="a name that `avianlidar sensors` lists, or a .lidarsensor.json file; may be given many "
+                       "times")
+    reach.add_argument("--species", action="append", help="of the bird, default herring gull; may be given many times")
+    _settings(reach, "sensor", "range_gate=800")
+    _weather(reach)
+    _out(reach, "file: .csv, shares by range", required=False)
 
     sequence = verb["sequence"]
     sequence.add_argument("scenario", help="a scenario file, or the manifest.json of another sequence")

@@ -210,7 +210,7 @@ def info(options) -> None:
     elif name.endswith(".coverage.json"):
         plan = read_plan(file)
         what, rows = "a plan of coverage", {
-            key: plan[key] for key in ("scene", "sensor", "compare_with", "coverage", "weather", "mix", "heights", "regions", "runways", "siting", "design") if plan.get(key)}
+            key: plan[key] for key in ("scene", "sensor", "compare_with", "coverage", "weather", "mix", "heights", "regions", "spread", "runways", "siting", "design") if plan.get(key)}
         if "year" in plan:
             rows["year"] = "; ".join(f"{', '.join(part['weather']) or 'as in coverage'} {100 * part['share']:.3g} %" for part in plan["year"])
     elif name.endswith(".json") and not name.endswith(".lidarscene.json"):
@@ -497,11 +497,13 @@ def siting(options) -> None:
 
 
 def _say_sites(sites, changes) -> None:
+    from .apps._answer import percent
     name = sites.plan.name
     print(f"{name}: {len(sites.positions)} candidates, of {sites.lattice}, for a {sites.plan.bird} {sites.plan.where}")
-    for network in sites.networks:
-        where = ", ".join(f"({x:g}, {y:g}, {z:g})" for x, y, z in sites.positions[list(network.sites)])
-        print(f"{len(network.sites)} of {name}: {network.value:.3f} at {where} m")
+    print(f"obstacle limits: {sites.kept_surfaces}")
+    for row in sites.gain():
+        where = "), (".join(row["sites"].replace(" ", ", ").split(";, "))
+        print(f"{row['sensors']} of {name}: {percent(row['value'], row['std_error'], sites.plan.count)} at ({where}) m")
     rows = sites.robustness(changes)
     for row in rows:
         print(f"{row['change']}, {row['sensors']} {'sensors' if row['sensors'] > 1 else 'sensor'}: another winner in {row['another winner']} of "
@@ -529,6 +531,31 @@ def design(options) -> None:
             warn(f"{len(refused)} of {len(study.candidates)} designs are none, as the sensor refuses them: {refused[0]}")
         print("\n".join(_design_page.answers(study)))
         print(f"{options.out / 'design.html'}: the page; its tables and pictures are beside it")
+
+
+def reach(options) -> None:
+    from . import Sensor
+    from .apps import reach as ranges
+    from .apps._maps import write_table
+    if options.out and options.out.suffix.lower() != ".csv":
+        raise ValueError(f"{options.out}: is not the name of a table, expected one that ends in .csv")
+    rows: List[Tuple[Any, ...]] = [("sensor", "bird", "9 of 10, to", "half, to", "a tenth, to", "9 of 10 by 2 of 3 scans, to")]
+    said, curve = [], []
+    for name in options.sensor:
+        sensor = Sensor(name).set(**dict(options.sensor_set))
+        for species in options.species or ["herring gull"]:
+            found = ranges.within_beams(sensor, species, **ranges.air_of(sensor, options.weather), required_detections=2, number_of_scans=3)
+            rows.append((name, species, ranges.metres(found.to(0.9)), ranges.half(sensor, found), ranges.metres(found.to(0.1)), ranges.metres(found.to(0.9, True))))
+            said.append(ranges.sentence(name, species, sensor, found))
+            curve += [{"sensor": name, "species": species, "range": float(to), "one_scan": float(one), "one_scan_std_error": float(error), "two_of_three": float(two)}
+                      for to, one, error, two in zip(found.ranges, found.one_scan, found.error, found.several_scans)]
+    if options.out:
+        write_table(options.out, curve)
+    _table(rows)
+    print(*said, sep="\n")
+    print("Birds lie evenly between the lowest and the highest beam; sizes of birds are assumed. In brackets: what the fit of the receiver to its sheet leaves open.")
+    if options.out:
+        print(f"{options.out}: the shares by range")
 
 
 def report(options) -> None:

@@ -6,15 +6,17 @@ import io
 import os
 import pathlib
 import re
+import shlex
 import shutil
 import subprocess
 import sys
 import unittest
+import unittest.mock
 
 import numpy as np
 
 import avianlidar as al
-from avianlidar import _command
+from avianlidar import _command, reach
 from boxfiles import CORNERS, TRIANGLES, gltf, obj, ply, poly_data, stl, y_up
 from helpertools import from_terminal
 
@@ -289,6 +291,20 @@ class Surroundings(unittest.TestCase):
         self.assertNotEqual(done.returncode, 0)
         self.assertEqual((picture.read_bytes(), list(OUTPUT.glob("kept.png.*"))), (b"before", []))
 
+    def test_reach_is_that_of_birds_within_beams(self):
+        """With the ranges that the fit of a receiver leaves open: those of its bar, 11.3 %."""
+        with unittest.mock.patch.object(reach, "RANGES", 8):
+            code, lines, _ = run("reach", "--sensor", "OS1_64", "--species", "herring gull", "--weather", "fog:500", "-o", OUTPUT / "reach.csv")
+            found = reach.within_beams(al.Sensor("OS1_64"), "herring gull", visibility=500.0, air_backscatter=True)
+        self.assertEqual(code, 0)
+        half = found.to(0.5)
+        self.assertGreater(half, 10.0)
+        words = f"{half:.2g} m ({(1 - 0.113) * half:.2g} to {1.113 * half:.2g} m)"
+        self.assertEqual(re.split("  +", lines[1])[:4], ["OS1_64", "herring gull", f"{found.to(0.9):.2g} m", words])
+        self.assertEqual(lines[2], f"OS1_64 sees half of the herring gulls in its beams to {words}, less than the 280 m that the strip of a large runway is wide.")
+        table = np.genfromtxt(OUTPUT / "reach.csv", delimiter=",", skip_header=1)
+        np.testing.assert_allclose(table[:, 2:4], np.column_stack([found.ranges, found.one_scan]), rtol=1e-5)
+
     def test_help_of_every_verb_has_examples(self):
         _, lines, _ = run("--help")
         for verb, (words, _, examples) in _command.VERBS.items():
@@ -302,7 +318,8 @@ class Surroundings(unittest.TestCase):
         """Every example that is printed is one that the parser takes."""
         for _, _, examples in _command.VERBS.values():
             for example in examples.splitlines():
-                self.assertEqual(_command.parser().parse_args(example.split()[1:]).verb, example.split()[1])
+                words = shlex.split(example)
+                self.assertEqual(_command.parser().parse_args(words[1:]).verb, words[1])
 
     def test_the_page_as_printed(self):
         folder = OUTPUT / "page"

@@ -1,11 +1,16 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The command `avianlidar report`: more plans, each a report or two."""
+import csv
+import html
 import json
 import pathlib
 import re
+import shlex
 import sys
 import unittest
 
+from avianlidar._command import main, parser
+from reporttools import quick
 from TestReport import HERE, Browser, plan, report
 
 
@@ -22,6 +27,34 @@ class Plans(unittest.TestCase):
             self.assertTrue(words in text, words)
         heads = re.findall("<li><b>([^<]*)</b>", text)
         self.assertEqual(heads, ["Change the beams first.", "Replace what is assumed."])
+
+    def test_one_end_and_every_option(self):
+        """Regions by runway end; commands that say every option that the report was made with."""
+        file = HERE / "one end.coverage.json"
+        file.write_text(json.dumps(plan(compare_with=None, heights=[20], places=200, spacing=400, regions={"approaches": {"18L": 3, "36R": 1}}, spread="area", coverage={"clutter": False},
+                                        siting={"spacing": 1200, "draws": 0, "sensors": 1})), encoding="utf-8")
+        (HERE / "hours.txt").write_text("ZSSS 010000Z 00000KT 9999 15/10 Q1020\nZSSS 010100Z 00000KT 0500 FG 15/14 Q1020\n", encoding="utf-8")
+        words = ["--weather", "fog:1500", "--metar", str(HERE / "hours.txt"), "--sensor-set", "range_gate=1200", "--sensor-set", "azimuth_range=0,360",
+                 "--coverage-set", "species=crow", "--siting-set", "surfaces=off"]
+        with quick():
+            self.assertEqual(main(["report", str(file), "-o", str(HERE / "one end.html"), *words]), 0)
+        text = html.unescape((HERE / "one end.html").read_text(encoding="utf-8"))
+        self.assertRegex(text, "By runway end it is .*% in the approach to 18L and .*36R[.]")
+        for part in ("over the approach to 18L and 36R (to 3", "as many on each square metre", "in approach 18L, approach 36R, at 20 m", "the plan switches obstacle limitation surfaces off",
+                     "200 in approaches"):
+            self.assertIn(part, text)
+        commands = [shlex.split(found) for found in re.findall("<code>(avianlidar [^<]*)</code>", text)]
+        self.assertEqual([command[:3] for command in commands], [["avianlidar", verb, "one end.coverage.json"] for verb in ("coverage", "report")])
+        for command, own in zip(commands, (["--siting-set", "--metar"], [])):
+            made = parser().parse_args(command[1:])
+            asked = parser().parse_args(["report", str(file), "-o", "x.html", *words])
+            self.assertEqual(made.weather, asked.weather)
+            for name in ("sensor_set", "coverage_set", *(() if own else ("siting_set", "metar"))):
+                first = getattr(asked, name)
+                self.assertEqual(getattr(made, name)[:len(first)] if name != "metar" else made.metar, first)
+        self.assertEqual(dict(parser().parse_args(commands[1][1:]).coverage_set)["reflectance"], 0.15)
+        with open(HERE / "one end_files" / "ends.csv", encoding="utf-8") as stream:
+            self.assertEqual([(row["region"], row["places"]) for row in csv.DictReader(stream)][:2], [("approach 18L", "150"), ("approach 36R", "50")])
 
     def test_is_the_same_again(self):
         wanted = plan(siting=None, compare_with=None, heights=[20], spacing=200, places=200)

@@ -27,6 +27,7 @@ from avianlidar import siting
 from avianlidar._command import main
 from avianlidar.apps._maps import Plan, height_name, read_plan
 from avianlidar.apps._sites import Sites
+from avianlidar.apps._surfaces import Surfaces, code_of, pierced
 
 AIRPORT = pathlib.Path(exampletools.EXAMPLES) / "airport" / "scene"
 PLAN, SCENE = AIRPORT / "hongqiao.geojson", AIRPORT / "hongqiao.lidarscene.json"
@@ -138,6 +139,84 @@ print(len(points), resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before, 
         weights = siting.weights_of(6, {"a": [0, 1], "b": [2, 3, 4]}, {"a": 3.0, "b": 1.0}, {"crow": 1.0, "gull": 4.0})
         self.assertAlmostEqual(weights.sum(), 1.0)
         np.testing.assert_allclose(weights[1], 0.8 * np.array([0.375, 0.375, 1 / 12, 1 / 12, 1 / 12, 0.0]))
+
+
+class Places(unittest.TestCase):
+    RUNWAYS = [siting.Runway("08/26", (0.0, 0.0), (3000.0, 0.0), 45.0), siting.Runway("Runway 18R/36L", (500.0, -900.0), (500.0, 100.0), 30.0)]
+
+    def test_ends_are_called_by_where_aircraft_land(self):
+        grass, magnetic = siting.Runway("grass", (0.0, 0.0), (-500.0, 0.0), 20.0), siting.Runway("RWY 35/17", (0.0, 0.0), (60.0, 500.0), 20.0)
+        self.assertEqual(siting.end_names([*self.RUNWAYS, grass, magnetic]), [("08", "26"), ("36L", "18R"), ("grass east", "grass west"), ("35", "17")])
+        self.assertEqual(siting.region_names(self.RUNWAYS), {"strips": ["strip 08/26", "strip 18R/36L"],
+                                                             "approaches": ["approach 08", "approach 26", "approach 36L", "approach 18R"]})
+        self.assertEqual(siting.end_names(2 * [grass])[1], ("grass east (2)", "grass west (2)"))
+
+    def test_shares_by_end(self):
+        points, regions = siting.places_by_region(self.RUNWAYS, 1000, 3, {"strips": {"18R/36L": 1}, "approaches": {"08": 2, "26": 1}})
+        self.assertEqual({name: len(numbers) for name, numbers in regions.items()}, {"strip 18R/36L": 250, "approach 08": 500, "approach 26": 250})
+        self.assertLess(points[regions["approach 08"], 0].max(), 0.0)  # aircraft that land on 08 come from the west
+        self.assertGreater(points[regions["approach 26"], 0].min(), 3000.0)
+        self.assertLessEqual(np.abs(points[regions["strip 18R/36L"], 0] - 500.0).max(), 150.0)
+        for shares, words in (({"approaches": {"09": 1}}, "approaches has '09', expected some of 08, 26, 36L, 18R"), ({"approaches": {"08": 0}}, "a sum above 0")):
+            with self.assertRaisesRegex(ValueError, words):
+                siting.strips_and_approaches(self.RUNWAYS, 100, shares=shares)
+
+    def test_spread_by_distance_and_by_area(self):
+        """Over an approach of the half-width 75 m + 0.15 d, to d = 3000 m: the share of its area before d is (75 d + 0.075 d^2) / 900,000 m^2."""
+        for spread, before, long_one in (("distance", lambda d: d / 3000.0, 0.5), ("area", lambda d: (75 * d + 0.075 * d * d) / 900e3, 0.75)):
+            points, regions = siting.places_by_region(self.RUNWAYS, 40000, 1, spread=spread)
+            away = -points[regions["approach 08"], 0]
+            for d in (500.0, 1500.0, 2500.0):
+                self.assertAlmostEqual(np.mean(away < d), before(d), delta=4 * np.sqrt(0.25 / len(away)))
+            self.assertAlmostEqual(len(regions["strip 08/26"]) / 20000, long_one, delta=1e-3)
+            self.assertEqual(len({len(regions[name]) for name in siting.region_names(self.RUNWAYS)["approaches"]}), 1)
+
+
+class ObstacleLimits(unittest.TestCase):
+    """Against heights by hand, from the dimensions of ICAO Annex 14."""
+
+    def at(self, runway, *local):
+        """Places by (m beyond the runway's end, m to its right)."""
+        axis, _ = runway.axis()
+        return np.array([np.add(runway.end, beyond * axis + aside * np.array([axis[1], -axis[0]])) for beyond, aside in local])
+
+    def test_code_numbers(self):
+        self.assertEqual([code_of(length) for length in (799.9, 800, 1199.9, 1200, 1799.9, 1800, 4000)], [1, 2, 2, 3, 3, 4, 4])
+
+    def test_heights_by_hand(self):
+        slanted = siting.Runway("04/22", (100.0, -50.0), (100.0 + 3000 * 0.6, -50.0 + 3000 * 0.8), 45.0)
+        inf = np.inf
+        # Of code 4, precision. 285 m beyond the end and 174 m aside is 225 m from the inner edge, where the approach is 173.75 m wide.
+        rows = (((285, 174), inf, 4.5 + 0.143 * 0.25), ((285, -173.7), 4.5, inf), ((310, 0), 5.0, inf), ((60 + 3000 + 1000, 500), 85.0, inf),
+                ((60 + 6600 + 8000, -2000), 150.0, inf), ((60 + 15001, 0), inf, inf), ((-1500, 185), inf, 45 * 0.143), ((-1500, -454.6), inf, 314.6 * 0.143),
+                ((-1500, 455), inf, inf), ((60 + 2000, 140 + 300 + 30), inf, 40 + 30 * 0.143), ((60 + 2000, 140 + 300 + 36), inf, inf),
+                ((-3000 - 310, 0), 5.0, inf), ((-1500, 139.9), inf, inf))
+        found = Surfaces.of(slanted).limits(self.at(slanted, *(place for place, _, _ in rows)))
+        np.testing.assert_allclose(found["approach"], [row[1] for row in rows], atol=1e-9)
+        np.testing.assert_allclose(found["transitional"], [row[2] for row in rows], atol=1e-9)
+        self.assertEqual(np.flatnonzero(found["strip"] == -inf).tolist(), [len(rows) - 1])
+        short = siting.Runway("09/27", (0.0, 0.0), (700.0, 0.0), 18.0)  # code 1
+        visual = Surfaces.of(short, changes={"category": "non-instrument"}).limits(self.at(short, (30 + 100, 39), (30 + 100, 41), (-300, 50), (31, 0), (29, 29)))
+        np.testing.assert_allclose(visual["approach"], [5.0, inf, inf, 0.05, inf], atol=1e-9)
+        np.testing.assert_allclose(visual["transitional"], [inf, 5.0 + 0.2, 4.0, inf, inf], atol=1e-9)
+        self.assertEqual(visual["strip"].tolist(), [inf] * 4 + [-inf])
+
+    def test_heights_are_above_the_thresholds(self):
+        """Ground that rises 1 in 100 along the runway: 10 m at its start, 40 m at its end."""
+        slope = np.array([(-9000, -9000, -80), (9000, -9000, 100), (9000, 9000, 100), (-9000, 9000, -80)], dtype=float)
+        runway = siting.Runway("09/27", (0.0, 0.0), (3000.0, 0.0), 45.0)
+        scene = al.Scene((slope, [(0, 1, 2), (0, 2, 3)]), material="Wall")
+        limits = Surfaces.of(runway, scene).limits([(3310.0, 0.0), (-310.0, 0.0), (1500.0, 185.0)])
+        np.testing.assert_allclose(limits["approach"][:2], [45.0, 15.0], atol=1e-6)
+        self.assertAlmostEqual(limits["transitional"][2], 25.0 + 45 * 0.143, delta=1e-6)
+
+    def test_plans_change_surfaces(self):
+        runway = siting.Runway("09/27", (0.0, 0.0), (3000.0, 0.0), 45.0)
+        tops = np.column_stack([self.at(runway, (0, 0), (285, 174), (310, 0), (310, 0), (-1500, 200)), [5, 10, 5.01, 4.99, 8.5]])
+        for changes, wanted in (({}, [1, 3, 2, 0, 0]), ({"strip": False}, [0, 3, 2, 0, 0]), ({"approach": False, "transitional": True}, [1, 3, 0, 0, 0]),
+                                ({"transitional": {"slope": 0.1}}, [1, 3, 2, 0, 3]), ({"code": 1, "category": "non-instrument"}, [1, 0, 0, 0, 0])):
+            self.assertEqual(pierced([Surfaces.of(runway, changes=changes)], tops).tolist(), wanted, changes)
+        self.assertEqual(pierced([], tops).tolist(), [0] * 5)
 
 
 class Search(unittest.TestCase):
@@ -372,6 +451,35 @@ class Airport(unittest.TestCase):
         self.assertEqual(sites.robustness(changes), [])  # two draws say nothing
         rows = sites.robustness(5 * changes)
         self.assertEqual([(row["sensors"], row["draws"]) for row in rows], [(1, 10), (2, 10)] * 3)
+
+    def test_masts_keep_below_surfaces_unless_the_plan_says_otherwise(self):
+        known = read_plan(AIRPORT.parent.parent / "coverage" / "hongqiao.coverage.json")
+        siting_of = {"spacing": 300, "bounds": [-2000, 2600, -2600, 2600], "masts": [5, 10], "draws": 0}
+
+        def sites(**surfaces):
+            return Sites(Plan({**known, "places": 100, "siting": {**siting_of, **surfaces}}))
+        whole, kept = sites(surfaces=False), sites()
+        self.assertEqual(whole.pierced, {})
+        self.assertIn("none is kept", whole.words()["obstacle limits"])
+        by_hand = np.zeros(len(whole.positions), dtype=bool)
+        for runway in self.runways:
+            axis, length = runway.axis()
+            off = whole.positions[:, :2] - runway.start
+            along, aside = off @ axis, np.abs(off @ np.array([axis[1], -axis[0]]))
+            away = np.maximum(-along, along - length) - 60
+            width = 140 + 0.15 * np.maximum(away, 0)
+            by_hand |= np.where(aside <= width, (away <= 0) | (0.02 * away < whole.positions[:, 2]),
+                                0.02 * np.maximum(away, 0) + 0.143 * (aside - width) < whole.positions[:, 2])
+        np.testing.assert_array_equal(kept.positions, whole.positions[~by_hand])
+        self.assertEqual(sum(kept.pierced.values()), np.count_nonzero(by_hand))
+        self.assertGreater(min(kept.pierced.values()), 0)
+        said = kept.words()["obstacle limits"]
+        for words in ("ICAO Annex 14 (2018)", "precision (assumed)", f"{self.runways[0].name}: code number by its length, assumed: 4",
+                      f"{np.count_nonzero(by_hand)} of {len(by_hand)} candidates pierced one", f"approach {kept.pierced['approach']}"):
+            self.assertIn(words, said)
+        with self.assertRaisesRegex(al.Error, "siting.surfaces: the masts of all [0-9]* candidates pierce one .strip [0-9]*, approach "):
+            x, y = np.mean([self.runways[0].start, self.runways[0].end], axis=0)
+            sites(masts=[50], bounds=[x - 200, x + 200, y - 500, y + 500], spacing=100)
 
     def test_files_say_where_sites_are(self):
         folder = fresh("files")

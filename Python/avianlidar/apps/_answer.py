@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import pathlib
+import shlex
 from typing import Any, Dict, List, Optional, Sequence, Tuple
 
 import numpy as np
@@ -15,23 +16,53 @@ from ._sites import FEWEST_DRAWS
 
 LEAST = 0.0005  # share that is given as a number; a site that detects less is no answer
 LEAST_WORDS = f"{100.0 * LEAST:g}\u00a0%"
-WINDS = ("north", "north-east", "east", "south-east", "south", "south-west", "west", "north-west")
 
 
 def place(position: Sequence[float]) -> str:
     """Coordinates in words."""
-    x, y, z = position
-    words = [f"{abs(value):g}\u00a0m {plus if value > 0.0 else minus}"
-             for value, plus, minus in ((x, "east", "west"), (y, "north", "south")) if value]
-    return f"{' and '.join(words) or 'at the origin'}, {round(z, 1):g}\u00a0m up"
+    x, y, z = siting.rounded(position)
+    words = [f"{value.lstrip('-')}\u00a0m {minus if value.startswith('-') else plus}"
+             for value, plus, minus in ((x, "east", "west"), (y, "north", "south")) if value != "0"]
+    return f"{' and '.join(words) or 'at the origin'}, {z}\u00a0m up"
 
 
-def percent(value: float, error: float = math.nan) -> str:
-    """A share as a percentage, with its standard error."""
-    if 0.0 < value < LEAST:
-        return f"under {LEAST_WORDS}"
-    bar = "" if math.isnan(error) else f" ± {100.0 * error:.1f}"
-    return f"{100.0 * value:.1f}{bar}\u00a0%"
+def decimals(error: float) -> int:
+    """How many decimals a standard error leaves of a number: those with one digit of its own."""
+    return min(max(-math.floor(math.log10(error)), 0), 9)
+
+
+def bound(places: int) -> float:
+    """The share that is surely not exceeded, with 95 %, where none of so many drawn places counts."""
+    return max(LEAST, 3.0 / places) if places else LEAST
+
+
+def percent(value: float, error: float = math.nan, places: int = 0, bar: bool = True) -> str:
+    """A share as a percentage, with the digits that its standard error allows. @param error of drawn places @param places their number
+    @param bar whether the error is there, too"""
+    if math.isnan(value):
+        return "–"
+    if value < LEAST and (value > 0.0 or not math.isnan(error)):
+        return f"under {100.0 * bound(places):.1g}\u00a0%" if places else f"under {LEAST_WORDS}"
+    if value == 0.0:
+        return "0\u00a0%"
+    known = error > 0.0
+    digits = decimals(100.0 * error) if known else 1
+    return f"{100.0 * value:.{digits}f}{f' ± {100.0 * error:.{digits}f}' if known and bar else ''}\u00a0%"
+
+
+def cell(row: Dict[str, Any], column: str) -> str:
+    """A share of a row of shares, or the standard error of one, with the digits that the error allows."""
+    value, places = row[column], row["places"]
+    of = row[column.replace("_std_error", "_probability")]
+    if math.isnan(value):
+        return "–"
+    if column.endswith("_std_error"):
+        return f"{value:.{decimals(value)}f}" if value > 0.0 and of >= LEAST else "–"
+    error = row[column.replace("_probability", "_std_error")] if column.endswith("_probability") else math.sqrt(value * (1.0 - value) / places)
+    if error > 0.0 and value >= LEAST:
+        return f"{value:.{decimals(error)}f}"
+    least = min(bound(places), 1.0)
+    return f"< {least:.1g}" if value < 0.5 else f"> {1.0 - least:.{decimals(least)}f}"
 
 
 def metres(value: float) -> str:
@@ -42,11 +73,6 @@ def metres(value: float) -> str:
 def listed(words: Sequence[str]) -> str:
     """a, b and c."""
     return " and ".join(filter(None, (", ".join(words[:-1]), words[-1])))
-
-
-def wind(way: np.ndarray) -> str:
-    """The direction of a way (east, north) by eight winds."""
-    return WINDS[round(math.atan2(way[0], way[1]) / (math.pi / 4)) % 8]
 
 
 def beside(position: Sequence[float], runways: Sequence[siting.Runway]) -> str:
@@ -61,12 +87,12 @@ def beside(position: Sequence[float], runways: Sequence[siting.Runway]) -> str:
         if 0.0 <= along <= length:
             off = at - (runway.start + along * axis)
             away = float(np.hypot(*off))
-            found.append((away, f"{metres(away)} {wind(off)} of {runway.name}" if away >= 1.0 else f"on {runway.name}",
-                          f", {metres(min(along, length - along))} from its {wind(way)} end"))
+            found.append((away, f"{metres(away)} {siting.wind(off)} of {runway.name}" if away >= 1.0 else f"on {runway.name}",
+                          f", {metres(min(along, length - along))} from its {siting.wind(way)} end"))
         else:
             off = at - nearer
             away = float(np.hypot(*off))
-            found.append((away, f"{metres(away)} {wind(off)} of the {wind(way)} end of {runway.name}", ""))
+            found.append((away, f"{metres(away)} {siting.wind(off)} of the {siting.wind(way)} end of {runway.name}", ""))
     found = sorted(found)[:2]
     return f"{found[0][1]}{found[0][2]}" + (f", and {found[1][1]}" if len(found) > 1 else "") if found else ""
 
@@ -80,10 +106,16 @@ def over(view: Plan) -> str:
     """Where and how high the birds are that the plan asks for, for who has not seen the plan."""
     if not view.runways:
         return view.where
-    count = len(view.runways)
-    whose = "the runway" if count == 1 else "both runways" if count == 2 else f"all {count} runways"
-    parts = [{"strips": f"the strips of {whose} (to {siting.STRIP_HALF_WIDTH:g}\u00a0m beside the middle)",
-              "approaches": f"the approaches (to {siting.APPROACH_LENGTH / 1000.0:g}\u00a0km from an end)"}[name] for name in view.members]
+    parts = []
+    for kind, names in siting.region_names(view.runways).items():
+        there = [name.partition(" ")[2] for name in names if name in view.ends]
+        count = len(view.runways)
+        whose = "the runway" if count == 1 else "both runways" if count == 2 else f"all {count} runways"
+        every = len(there) == len(names)
+        if there and kind == "strips":
+            parts.append(f"the {'strips of ' + whose if every else 'strip of ' + listed(there)} (to {siting.STRIP_HALF_WIDTH:g}\u00a0m beside the middle)")
+        elif there:
+            parts.append(f"the {'approaches' if every else 'approach to ' + listed(there)} (to {siting.APPROACH_LENGTH / 1000.0:g}\u00a0km from an end)")
     low, high = view.asked or (0.0, 0.0)
     heights = "" if not view.asked else f"at {low:g}\u00a0m " if low == high else f"at {low:g} to {high:g}\u00a0m "
     tops = "" if view.asked else f", to {listed([f'{view.heights_of(name)[1]:.3g}' for name in view.members])}\u00a0m high"
@@ -99,11 +131,9 @@ def air_of(view: Plan) -> str:
 def two_sentences(plan: Plan, view: Plan, site: Optional[Dict[str, Any]], reaches: Dict[str, Any], of_year: Dict[str, float]) -> List[str]:
     """Where the lidar should stand and which share of the birds it detects from there; how far they are seen. @param view the plan's
     sensor at its best site, or the plan itself @param of_year the share over the plan's year, if it has one"""
-    found = view.overall
-    detects = (f"one scan detects {percent(found['detection_probability'], found['detection_std_error'])} of {birds_of(view)} "
-               f"{over(view)}{air_of(view)}")
+    detects = f"one scan detects {share_of(view.overall)} of {birds_of(view)} {over(view)}{air_of(view)}"
     if view.year:
-        detects += f", {percent(of_year['detection_probability'], of_year['detection_std_error'])} over the year"
+        detects += f", {share_of(of_year)} over the year"
     by = beside(view.sensor.position, view.runways)
     at = f"{place(view.sensor.position)} from the scene's origin{'; ' + site['degrees'] if site and site['degrees'] else ''}"
     mast = round(float(view.sensor.position[2] - siting.ground_of(view.scene, [view.sensor.position[:2]])[0]), 1)
@@ -117,7 +147,22 @@ def two_sentences(plan: Plan, view: Plan, site: Optional[Dict[str, Any]], reache
                  f"{birds_of(view)} {over(view)}{year or air_of(view)}.")
     else:
         first = f"{plan.name} should stand {where}: from there {detects}, the most of {site['count']} candidates{year}."
-    return [first, _how_far(view, reaches)]
+    return [first, *by_end(view), _how_far(view, reaches)]
+
+
+def share_of(row: Dict[str, Any]) -> str:
+    """The share of a row that one scan detects, with its standard error."""
+    return percent(row["detection_probability"], row["detection_std_error"], row["places"])
+
+
+def by_end(view: Plan) -> List[str]:
+    """A sentence with the share by strip and approach, where several are asked for."""
+    alike: Dict[Tuple[str, str], List[str]] = {}
+    for row in view.by_end:
+        kind, _, name = row["region"].partition(" ")
+        alike.setdefault((share_of(row), kind), []).append(name)
+    words = [f"{share} in the {kind} {'of' if kind == 'strip' else 'to'} {listed(names)}" for (share, kind), names in alike.items()]
+    return [f"By runway end it is {listed(words)}."] if len(view.by_end) > 1 else []
 
 
 def _how_far(view: Plan, reaches: Dict[str, Any]) -> str:
@@ -144,26 +189,40 @@ def half_and_tenth(reaches: Dict[str, Any]) -> str:
 def in_band(view: Plan, reaches: Dict[str, Any], unit: str) -> Tuple[List[str], List[str]]:
     """From where to where half of the birds are in the beams and near enough at the heights asked for; and heights (m) where nowhere."""
     rows = reach.heights_in_band(view, view.heights, max(one.to(0.5) for one in reaches["of"].values()))
-    return ([f"{row['height']:g}{unit} from {row['from']:.0f} to {row['to']:.0f}\u00a0m away" for row in rows if row["to"] > row["from"]],
+    return ([f"{row['height']:g}{unit} from {metres(row['from']) if row['from'] else '0 m'} to {metres(row['to'])} away" for row in rows if row["to"] > row["from"]],
             [f"{row['height']:g}" for row in rows if not row["to"] > row["from"]])
+
+
+def command(view: Plan, verb: str, out: str, **settings: str) -> str:
+    """A command with every option that the report was made with and that the verb has. @param settings to be added to those of the sensor or
+    the coverage, in place of others of their names"""
+    file = pathlib.Path(view.file).name if pathlib.Path(view.file).is_absolute() else view.file
+    words = ["avianlidar", verb, file, "-o", out]
+    flags = {"--weather", "--sensor-set", "--coverage-set", *(("--metar", "--siting-set") if verb == "report" else ())}
+    for flag, *values in view.plan.get("options", ()):
+        if flag in flags and f"{flag.strip('-').partition('-')[0]}.{values[0].partition('=')[0]}" not in settings:
+            words += [flag, *values]
+    words += [word for name, value in settings.items() for word in (f"--{name.partition('.')[0]}-set", f"{name.partition('.')[2]}={value}")]
+    words += ["--threads", str(view.threads)] if view.threads else []
+    return shlex.join(words)
 
 
 def next_steps(plan: Plan, view: Plan, site: Optional[Dict[str, Any]], advice: Optional[Dict[str, Any]]) -> List[Dict[str, str]]:
     """What follows from the answer: a head, words, an anchor of the page for more, and a command, each perhaps empty."""
-    file = pathlib.Path(plan.file).name if pathlib.Path(plan.file).is_absolute() else plan.file
     steps = [_raise(view, advice)] if advice else []
     if site and len(site["gain"]) > 1 and view is not plan:
-        together = [f"{('two', 'three')[row['sensors'] - 2] if row['sensors'] < 4 else row['sensors']} detect {percent(row['value'])}"
-                    for row in site["gain"][1:]]
+        one, *more = [percent(row["value"], row["std_error"], view.count, bar=False) for row in site["gain"]]
+        together = [f"{('two', 'three')[row['sensors'] - 2] if row['sensors'] < 4 else row['sensors']} detect {share}"
+                    for row, share in zip(site["gain"][1:], more)]
         steps.append({"head": "Weigh a second lidar.", "more": "#sites", "command": "",
-                      "words": f"Where one detects {percent(site['gain'][0]['value'])}, {listed(together)} at their best sites, "
+                      "words": f"Where one detects {one}{' over the year' if view.year else ''}, {listed(together)} at their best sites, "
                                "if they miss birds independently."})
     if site and view is not plan:
-        steps.append(_check(view, site, file))
+        steps.append(_check(view, site))
     steps.append({"head": "Replace what is assumed.", "more": "#assumptions",
                   "words": f"Size and reflectance ({view.coverage.reflectance:g}) of birds, and {len(set(view.assumed))} numbers of {view.name}: ask its "
                            "maker. What darker birds change:",
-                  "command": f"avianlidar report {file} -o darker.html --coverage-set reflectance={view.coverage.reflectance / 2.0:g}"})
+                  "command": command(plan, "report", "darker.html", **{"coverage.reflectance": f"{view.coverage.reflectance / 2.0:g}"})})
     return steps
 
 
@@ -177,15 +236,15 @@ def _raise(view: Plan, advice: Dict[str, Any]) -> Dict[str, str]:
     ends = f"They end at {advice['high']:.1f}°; for all heights asked for they should go up to {advice['needed']:.1f}°"
     if best is None:
         return {**found, "words": f"{ends}. No change of them that was tried detects more from there."}
-    now, then = (percent(one["detection_probability"]) for one in (advice["now"], best["then"]))
+    now, then = (percent(one["detection_probability"], one["detection_std_error"], one["places"], bar=False) for one in (advice["now"], best["then"]))
     return {**found, "words": f"{ends}. From the same place {best['what'].partition(' (')[0]} detect {then} instead of {now}; it costs "
                               f"{best['cost']}."}
 
 
-def _check(view: Plan, site: Dict[str, Any], file: str) -> Dict[str, str]:
+def _check(view: Plan, site: Dict[str, Any]) -> Dict[str, str]:
     """The site itself."""
-    words = ["It is clear of runways, buildings and what the plan excludes; what no map has may be there."]
-    masts = [f"{percent(value)} with a mast of {mast:g}\u00a0m" for mast, _, value in site["masts"]]
+    words = [f"{site['surfaces']}; what no map has may be there."]
+    masts = [f"{percent(*row['share'], view.count, bar=False)} with a mast of {row['mast']:g}\u00a0m" for row in site["masts"]]
     if len(masts) > 1:
         words.append(f"The best sites have {listed(masts)}.")
     if site["alike"]:
@@ -199,6 +258,5 @@ def _check(view: Plan, site: Dict[str, Any], file: str) -> Dict[str, str]:
         words.append("It lies at the lattice's edge: wider bounds may have a better one.")
     if site["draws"] < FEWEST_DRAWS:
         words.append(f"How sure it is the best was not looked at: that takes draws={FEWEST_DRAWS}.")
-    at = ",".join(f"{value:g}" for value in view.sensor.position)
     return {"head": "Check the site.", "more": "#sites", "words": " ".join(words) + " Its maps for GIS:",
-            "command": f"avianlidar coverage {file} -o maps --sensor-set position={at}"}
+            "command": command(view, "coverage", "maps", **{"sensor.position": ",".join(siting.rounded(view.sensor.position))})}

@@ -26,7 +26,7 @@ from .._weather import AIR, in_weather, weather, without_air
 from . import _metar
 from ._air import Air, weakening
 from ._json import check_json, load_json, naming
-from .siting import Runway, ground_of, read_runways, region_heights, require_memory, strips_and_approaches
+from .siting import Runway, by_kind, ground_of, places_by_region, read_runways, region_heights, region_names, require_memory
 
 QUANTITIES = {"detection_probability": "1", "track_probability": "1", "photoelectrons": "1",
               "minimum_effective_area": "m2", "status": ""}  # maps that are written, with their units
@@ -46,8 +46,8 @@ SUM = 1e-6  # to which the shares of a year are 1
 
 
 def read_plan(file, words: Optional[Sequence[str]] = None, metar=None, **changes: Dict[str, Any]) -> Dict[str, Any]:
-    """A plan of coverage (JSON, `coverage.schema.json`), with its own name as `file`; `Error` names what is wrong. Files that it
-    names are absolute.
+    """A plan of coverage (JSON, `coverage.schema.json`), with its own name as `file` and what was changed as `options`; `Error` names what
+    is wrong. Files that it names are absolute.
 
     words    of weather, in place of the plan's, its year and what its `coverage` says of the air
     metar    file of reports, in place of the plan's year
@@ -115,7 +115,16 @@ def read_plan(file, words: Optional[Sequence[str]] = None, metar=None, **changes
             hours = _metar.read_metar(plan["metar"])
             plan.update(year=hours.year(), hours=hours.words())
     plan["file"] = str(file)
+    plan["options"] = [*([["--weather", *words]] if words else []), *([["--metar", str(metar)]] if metar else []),
+                       *([f"--{part}-set", f"{name}={_as_option(value)}"] for part, values in changes.items() for name, value in (values or {}).items())]
     return plan
+
+
+def _as_option(value: Any) -> str:
+    """A value as commands take it."""
+    if isinstance(value, (list, tuple)):
+        return ",".join(map(_as_option, value))
+    return ("off", "on")[value] if isinstance(value, bool) else str(value)
 
 
 def _check_question(plan: Dict[str, Any], file: str) -> None:
@@ -270,6 +279,7 @@ class Plan:
     name           of the sensor          heights  of the maps, m
     scene, sensor  as loaded              runways  in the scene's coordinates
     coverage       for the maps           regions  Coverage of places drawn in strips and approaches; without runways on the maps
+    members        numbers of the places by strips and approaches     ends  and by each strip and the approach to each runway's end
     mix            share of each species, the sum 1; maps of reasons are of the first, the greatest
     air            words of the plan's weather
     year           weathers by which sites are ranked, with their shares of the hours; empty where the plan gives none
@@ -313,9 +323,11 @@ class Plan:
         self.spacing = float(plan.get("spacing", 10.0))
         self._check_maps()
         self.coverage = Coverage(self.scene, self.sensor, spacing=(self.spacing, self.spacing, 1.0), **self.settings)
+        self.spread = plan.get("spread", "distance")
         self.count, self.seed = int(plan.get("places", PLACES)), int(plan.get("seed", 0))
         with naming(f"{self.file}: {'regions' if 'regions' in plan else 'places'}"):
-            self.points, self.members = self.places(self.seed)
+            self.points, self.ends = self._drawn(self.seed)
+        self.members = by_kind(self.ends) if self.runways else self.ends
         every: Dict[str, Any] = {"all_species": True, **self.settings}
         self.regions = Coverage(self.scene, self.sensor, places=places_of(self.points, self.members), **every)
         x, y, _ = self.sensor.position
@@ -407,10 +419,15 @@ class Plan:
 
     def places(self, seed: int) -> Tuple[np.ndarray, Dict[str, np.ndarray]]:
         """Where shares are of: n x 3, m, and the regions."""
+        points, ends = self._drawn(seed)
+        return points, by_kind(ends) if self.runways else ends
+
+    def _drawn(self, seed: int) -> Tuple[np.ndarray, Dict[str, np.ndarray]]:
+        """Where shares are of: n x 3, m, and the numbers of those in each strip and the approach to each end."""
         count = self.count
         require_memory(BYTES_OF_PLACE * count, f"{count:,} places", "take fewer")
         if self.runways:
-            return strips_and_approaches(self.runways, count, seed, self.plan.get("regions"), self.asked)
+            return places_by_region(self.runways, count, seed, self.plan.get("regions"), self.asked, self.spread)
         low, high = np.transpose([self.extent[:2], self.extent[2:], (min(self.heights), max(self.heights))])
         return np.random.default_rng(seed).uniform(low, high, (count, 3)), {"map": np.arange(count)}
 
@@ -432,15 +449,23 @@ class Plan:
         return plans
 
     @property
+    def spread_words(self) -> str:
+        """How places are spread over strips and approaches."""
+        return {"distance": "as many on each metre along strips and approaches, as aircraft fly each once",
+                "area": "as many on each square metre of strips and approaches"}[self.spread]
+
+    @property
     def where(self) -> str:
         """Of which places the shares are."""
         low, high = min(self.heights), max(self.heights)
         heights = f"{low:g} to {high:g} m" if high > low else f"at {low:g} m"
         if not self.runways:
             return f"on the map, {heights}" if high > low else f"on the map {heights}"
+        there = {kind: kind if set(names) <= self.ends.keys() else ", ".join(name for name in names if name in self.ends)
+                 for kind, names in region_names(self.runways).items() if kind in self.members}
         if self.asked:
-            return f"in {' and '.join(self.members)}, {heights + ' high' if high > low else heights}"
-        return "in " + " and ".join(f"{name} (to {self.heights_of(name)[1]:.3g} m high)" for name in self.members)
+            return f"in {' and '.join(there.values())}, {heights + ' high' if high > low else heights}"
+        return "in " + " and ".join(f"{words} (to {self.heights_of(kind)[1]:.3g} m high)" for kind, words in there.items())
 
     def heights_of(self, region: str) -> Tuple[float, float]:
         """Least and greatest height of the places of a region, m; of all for any other name."""
@@ -510,6 +535,24 @@ class Plan:
         regions.set(**own)
         return [self._of_mix(of_species) if len(self.mix) > 1 else list(of_species[0]) for of_species in zip(*found)]
 
+    @functools.cached_property
+    def by_end(self) -> List[Dict[str, Any]]:
+        """A row for each strip and the approach to each end: the share of all heights, for the birds asked for, with its standard error as
+        in the table."""
+        weights = self.weights(self.points).sum(axis=0)
+        names = ("detection", "track")
+        values = [self.mixed(self.regions, f"{name}_probability") for name in names]
+        rows = []
+        for region, members in self.ends.items():
+            row: Dict[str, Any] = {"region": region, "species": self.bird, "places": len(members)}
+            w = weights[members]
+            for name, p in zip(names, values):
+                mean = np.vdot(w, p[members]) / w.sum() if w.sum() else math.nan
+                spread = np.sum((w * (p[members] - mean)) ** 2) * len(w) / max(len(w) - 1, 1)
+                row.update({f"{name}_probability": float(mean), f"{name}_std_error": float(np.sqrt(spread) / w.sum()) if w.sum() else math.nan})
+            rows.append(row)
+        return rows
+
     @property
     def overall(self) -> Dict[str, Any]:
         """The row of shares of all places and heights, for the birds asked for."""
@@ -528,13 +571,13 @@ class Plan:
                 "limits": "calculated, not measured"}
 
     def write(self, folder, progress=None) -> List[str]:
-        """Write all files: a GeoTIFF for each height and quantity, shares.csv, clutter.vtp. @param progress called with the
+        """Write all files: a GeoTIFF for each height and quantity, shares.csv, ends.csv, clutter.vtp. @param progress called with the
         files done and their number @return their names"""
         folder = pathlib.Path(folder)
         folder.mkdir(parents=True, exist_ok=True)
         names: List[str] = []
         origin = self.scene.geodetic_origin
-        total = len(self.heights) * (len(QUANTITIES) + (origin is not None)) + 2
+        total = len(self.heights) * (len(QUANTITIES) + (origin is not None)) + 3
 
         def done(name: str) -> None:
             names.append(name)
@@ -560,6 +603,8 @@ class Plan:
         done("clutter.vtp")
         write_table(folder / "shares.csv", self.shares)
         done("shares.csv")
+        write_table(folder / "ends.csv", self.by_end)
+        done("ends.csv")
         return names
 
 

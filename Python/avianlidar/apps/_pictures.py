@@ -14,7 +14,7 @@ from .._coverage import Coverage
 from .._disk import write_whole
 from ._maps import Plan
 from .reach import Reach
-from .siting import APPROACH_LENGTH, STRIP_HALF_WIDTH, Runway
+from .siting import APPROACH_LENGTH, Runway, region_outlines
 
 # Colours of vtkAvianLidarCoverage's statuses: outside the gate, above, below, between beams, shadowed, in clutter, too weak, seen.
 STATUS_COLOURS = ("#f7f7f7", "#a6cee3", "#c6a982", "#f4e04d", "#77778a", "#d95f02", "#cc99bb", "#1b9e77")
@@ -25,7 +25,11 @@ TALL = 5.0  # m above the ground at the sensor: what is higher is drawn as a bui
 FLAT = ("ground", "terrain", "apron", "runway", "taxiway", "road", "water", "grass")  # ... but for these classes
 PIXELS = 150  # an inch
 OUTLINES = (0.1, 0.5)  # probabilities, on the first page
-MOST = 800  # pixels to each side, of outlines
+AROUND_SITES = 150.0  # m, around the candidates on their map
+SHOWN = 250  # pixels along the longer side of the map on the first page
+AROUND = 0.04  # of the longer side, around what that map shows
+SIDES = (0.35, 1.15)  # of that map, height over width
+PLANTS = ("vegetation", "tree")  # classes that are drawn as woods
 STEP = (10.0, 2.0)  # m, of the section, along and up
 
 
@@ -68,6 +72,41 @@ def _roofs(plan: Plan) -> Tuple[np.ndarray, np.ndarray]:
     return roofs, points
 
 
+def map_size(extent: Sequence[float], width: float, beside: float = 0.0, above: float = 0.0) -> Tuple[float, float]:
+    """Inches of a picture that a map with its labels fills. @param width of the map @param beside, above inches for what else is there"""
+    x0, x1, y0, y1 = extent
+    return width + beside, 0.5 + (width - 0.7) * float(np.clip((y1 - y0) / max(x1 - x0, 1e-9), 0.25, 3.0)) + above
+
+
+def _bar(axes, dots, words: str) -> None:
+    """A colour bar as high as the map."""
+    bar = axes.figure.colorbar(dots, cax=axes.inset_axes([1.03, 0.0, 0.04, 1.0]))
+    bar.set_label(words, fontsize=9)
+    bar.ax.tick_params(labelsize=9)
+
+
+def draw_land(axes, plan: Plan) -> None:
+    """Woods and water of the scene, from above."""
+    from matplotlib.collections import PolyCollection
+    iterator = plan.scene.surfaces.NewIterator()
+    iterator.InitTraversal()
+    while not iterator.IsDoneWithTraversal():
+        block = iterator.GetCurrentDataObject()
+        iterator.GoToNextItem()
+        if not block.GetNumberOfPolys():
+            continue
+        fields, polygons = field_values(block), block.GetPolys()
+        classes = fields.get("object_classes", ())
+        classes = np.array([classes] if isinstance(classes, str) else list(classes) or [""])
+        ids = block.GetCellData().GetArray("object_id")
+        of = classes[as_numpy(ids)] if ids and len(classes) > 1 else np.full(block.GetNumberOfPolys(), classes[0])
+        points = vtk_to_numpy(block.GetPoints().GetData())[:, :2]
+        cells = np.split(vtk_to_numpy(polygons.GetConnectivityArray()), vtk_to_numpy(polygons.GetOffsetsArray())[1:-1])
+        for wanted, colour in ((np.isin(of, PLANTS), "#b5d6a7"), (of == "water", "#a9cfe8")):
+            if wanted.any():
+                axes.add_collection(PolyCollection([points[cell] for cell, there in zip(cells, wanted) if there], facecolors=colour, edgecolors=colour, zorder=0.5))
+
+
 def draw_airport(axes, plan: Plan, colour: str = "0.25") -> None:
     """Buildings and runways in a colour, and the sensor, as seen from above."""
     from matplotlib.colors import ListedColormap
@@ -101,34 +140,62 @@ def draw_map(axes, plan: Plan, cover: Coverage, quantity: str) -> None:
     draw_airport(axes, plan, "0.1" if quantity == "status" else "0.75")
 
 
-def draw_answer(axes, plan: Plan, found_at: Sequence[Tuple[float, np.ndarray]]) -> None:
-    """The airport with the sensor, and for each height where the probability is above OUTLINES. @param found_at height (m) and classes, rows
-    from south to north, of the plan's extent"""
+def answer_extent(plan: Plan) -> Tuple[float, float, float, float]:
+    """What the map on the first page holds, m: all regions that are asked for and the sensor, or without runways the map."""
+    outlines = [outline for name, outline in region_outlines(plan.runways).items() if name in plan.ends]
+    corners = np.concatenate([*outlines, [plan.sensor.position[:2]]]) if outlines else np.transpose([plan.extent[:2], plan.extent[2:]])
+    low, high = corners.min(axis=0), corners.max(axis=0)
+    middle, size = 0.5 * (low + high), (1.0 + 2.0 * AROUND) * np.maximum(high - low, 1.0) if outlines else high - low
+    width = max(size[0], size[1] / SIDES[1])
+    height = max(size[1], width * SIDES[0])
+    (x0, y0), (x1, y1) = middle - [0.5 * width, 0.5 * height], middle + [0.5 * width, 0.5 * height]
+    return float(x0), float(x1), float(y0), float(y1)
+
+
+def found_at(plan: Plan, extent: Sequence[float]) -> List[Tuple[float, np.ndarray]]:
+    """Each height that is asked for, m, and over an extent how many of OUTLINES the probability reaches, rows from south to north."""
+    x0, x1, y0, y1 = extent
+    step = max(x1 - x0, y1 - y0, 1.0) / (SHOWN - 1)
+    cover, spacing, classes = plan.coverage, plan.coverage.spacing, []
+    for height in plan.heights:
+        cover.set(bounds=(x0, x1, y0, y1, height, height), spacing=(step, step, 1.0))
+        classes.append((height, np.digitize(plan.mixed(cover)[0], OUTLINES)))
+    cover.spacing = spacing
+    return classes
+
+
+def draw_answer(axes, plan: Plan, found: Sequence[Tuple[float, np.ndarray]], extent: Tuple[float, float, float, float],
+                shares: Mapping[str, str]) -> None:
+    """The airport with the sensor, the regions that are asked for, and for each height where the probability is above OUTLINES.
+    @param found as of `found_at` @param shares of each region in words"""
     from matplotlib import colormaps
     from matplotlib.patches import Patch
-    x0, x1, y0, y1 = plan.extent
+    x0, x1, y0, y1 = extent
     legend = []
-    for number, (height, classes) in enumerate(found_at):
-        colour = colormaps["viridis"](0.9 * number / max(len(found_at) - 1, 1))
-        step = -(-max(classes.shape) // MOST)
-        shown = classes[::step, ::step]
-        here = (x0 + plan.spacing * step * np.arange(shown.shape[1]), y0 + plan.spacing * step * np.arange(shown.shape[0]))
+    for number, (height, classes) in enumerate(found):
+        colour = colormaps["viridis"](0.9 * number / max(len(found) - 1, 1))
+        here = (np.linspace(x0, x1, classes.shape[1]), np.linspace(y0, y1, classes.shape[0]))
         for limit in (1, 2):
-            if min(shown.shape) > 1 and shown.min() < limit <= shown.max():
-                axes.contour(*here, shown, [limit - 0.5], colors=[colour], linewidths=1.0, linestyles="--" if limit == 1 else "-")
-        if min(shown.shape) > 1 and (shown == 2).any():
-            axes.contourf(*here, shown, [1.5, 2.5], colors=[colour], alpha=0.45)
+            if min(classes.shape) > 1 and classes.min() < limit <= classes.max():
+                axes.contour(*here, classes, [limit - 0.5], colors=[colour], linewidths=1.0, linestyles="--" if limit == 1 else "-")
+        if min(classes.shape) > 1 and (classes == 2).any():
+            axes.contourf(*here, classes, [1.5, 2.5], colors=[colour], alpha=0.45)
         words = {2: "", 1: ": nowhere half", 0: ": nowhere a tenth"}[int(classes.max(initial=0))]
         legend.append(Patch(facecolor=colour, alpha=0.6, label=f"{height:g} m up{words}"))
-    for runway in plan.runways:
-        axis, length = runway.axis()
-        across = STRIP_HALF_WIDTH * np.array([-axis[1], axis[0]])
-        start, end = np.asarray(runway.start), np.asarray(runway.end)
-        axes.plot(*np.transpose([start + across, end + across, end - across, start - across, start + across]), ":", color="0.3", linewidth=1.0)
-        angle = np.degrees(np.arctan2(axis[1], axis[0]))
-        axes.text(*(start + 0.75 * length * axis + 0.4 * across), runway.name, fontsize=8, color="0.1", ha="center", va="center",
-                  rotation=(angle + 90.0) % 180.0 - 90.0, bbox={"facecolor": "white", "alpha": 0.7, "pad": 0.5, "linewidth": 0})
+    draw_land(axes, plan)
+    box = {"facecolor": "white", "alpha": 0.7, "pad": 0.5, "linewidth": 0}
+    for name, outline in region_outlines(plan.runways).items():
+        if name in plan.ends:
+            axes.plot(*np.concatenate([outline, outline[:1]]).T, ":", color="0.3", linewidth=1.0)
+        if name in plan.ends or name.startswith("strip "):
+            near, far = outline[[0, 3]].mean(axis=0), outline[1:3].mean(axis=0)
+            at = max((near + share * (far - near) for share in (0.75, 0.25) if share == 0.75 or name.startswith("strip ")),
+                     key=lambda place: np.hypot(*(place - plan.sensor.position[:2])))
+            label = "\n".join(filter(None, (name.partition(" ")[2], shares.get(name, ""))))
+            axes.text(*at, label, fontsize=7, color="0.1", ha="center", va="center", bbox=box, zorder=4)
     draw_airport(axes, plan, "0.55")
+    axes.set_xlim(x0, x1)
+    axes.set_ylim(y0, y1)
     axes.plot(*plan.sensor.position[:2], "r^", markersize=11, markeredgecolor="white", zorder=5)
     axes.annotate(plan.name, plan.sensor.position[:2], (9, 9), textcoords="offset points", fontsize=9, color="red", zorder=5,
                   bbox={"facecolor": "white", "alpha": 0.8, "pad": 1, "linewidth": 0})
@@ -198,25 +265,26 @@ def draw_weather(axes, curves: Mapping[str, Tuple[Sequence[float], Sequence[floa
 
 def draw_clutter(axes, plan: Plan, clutter) -> None:
     """Echoes of surfaces from above, coloured by how often a scan perceives them."""
+    draw_land(axes, plan)
     draw_airport(axes, plan, "0.8")
     often = clutter["detection_probability"]
     order = np.argsort(often)
     dots = axes.scatter(*clutter.points[order, :2].T, c=often[order], s=1.5, linewidths=0, cmap="plasma_r", vmin=0.0, vmax=1.0)
-    bar = axes.figure.colorbar(dots, ax=axes, shrink=0.8)
-    bar.set_label("share of scans", fontsize=9)
-    bar.ax.tick_params(labelsize=9)
+    _bar(axes, dots, "share of scans")
 
 
 def draw_sites(axes, sites) -> None:
     """Candidates by value, where nothing may stand, and the best network."""
+    draw_land(axes, sites.plan)
     draw_airport(axes, sites.plan, "0.1")
     for outline, _ in sites.exclusions:
         axes.fill(*outline.T, color="0.9", zorder=0)
+    for one in sites.surfaces:
+        if "strip" in one.kept:
+            axes.fill(*one.strip.T, color="0.9", zorder=0)
     x, y, _ = sites.positions[sites.order[::-1]].T
     dots = axes.scatter(x, y, c=sites.values[sites.order[::-1]], s=22, cmap="viridis")
-    bar = axes.figure.colorbar(dots, ax=axes, shrink=0.8)
-    bar.set_label("probability of one scan of one sensor", fontsize=9)
-    bar.ax.tick_params(labelsize=9)
+    _bar(axes, dots, "share by which candidates are ranked")
     members = sites.networks[-1].sites
     network = sites.positions[list(members)]
     axes.scatter(*network[:, :2].T, s=130, facecolors="none", edgecolors="red", linewidths=2, label=f"best {len(network)} together" if len(network) > 1 else "best")
@@ -226,16 +294,23 @@ def draw_sites(axes, sites) -> None:
     axes.plot([], [], "r^", markersize=5, label="where the plan puts the sensor")
     axes.scatter(*sites.positions[sites.order[0], :2], s=80, marker="x", color="red", linewidths=2, label="best alone")
     axes.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=3, fontsize=8, handletextpad=0.2, columnspacing=1.0, frameon=False)
-    margin = 150.0
-    axes.set_xlim(x.min() - margin, x.max() + margin)
-    axes.set_ylim(y.min() - margin, y.max() + margin)
+    x0, x1, y0, y1 = sites_extent(sites)
+    axes.set_xlim(x0, x1)
+    axes.set_ylim(y0, y1)
+
+
+def sites_extent(sites) -> Tuple[float, float, float, float]:
+    """What the map of candidates holds, m."""
+    low, high = sites.positions[:, :2].min(axis=0) - AROUND_SITES, sites.positions[:, :2].max(axis=0) + AROUND_SITES
+    return low[0], high[0], low[1], high[1]
 
 
 def draw_gain(axes, sites) -> None:
     """What each more sensor adds."""
-    axes.plot([len(n.sites) for n in sites.networks], [n.value for n in sites.networks], "o-")
+    rows = sites.gain()
+    axes.errorbar([row["sensors"] for row in rows], [row["value"] for row in rows], [row["std_error"] for row in rows], marker="o")
     axes.set_ylim(0.0, None)
-    axes.set_xticks([len(n.sites) for n in sites.networks])
+    axes.set_xticks([row["sensors"] for row in rows])
     axes.set_xlabel("sensors", fontsize=9)
     axes.set_ylabel("probability of one scan", fontsize=9)
     axes.grid(alpha=0.4)

@@ -17,19 +17,17 @@ from .._version import __version__
 from .._weather import in_words
 from . import _pictures as pictures
 from . import _answer, reach, siting
-from ._answer import LEAST, LEAST_WORDS, birds_of, metres, percent, place
+from ._answer import LEAST, LEAST_WORDS, birds_of, cell, decimals, metres, percent, place, share_of
 from ._card import read_card
 from ._json import load_json, naming
 from ._maps import Plan, height_name, write_table
 from ._page import embedded, render
-from ._sites import DRAWS, FEWEST_DRAWS, Sites
+from ._sites import BEST, DRAWS, FEWEST_DRAWS, OTHER_PLACES, Sites
 
-BEST = 10  # sites in the table
 VISIBILITIES = (200.0, 500.0, 1000.0, 2000.0, 5000.0, 10_000.0, 20_000.0)  # m, of the section on weather
 RAINS = (0.0, 1.0, 5.0, 10.0, 25.0, 50.0)  # mm/h
 ANSWERED = 1000.0  # m, a visibility of these whose share is said in a sentence
 BESIDE = (("fog:1000",), ("rain:10",))  # weathers whose best sites are looked for, where the plan gives no year
-OTHER_PLACES = 1 << 40  # to a seed: that the share at the best site is not of the places by which it was chosen
 
 # Numbers of a sensor that a reader should know: property, words, unit, what one unit of the property is in it.
 COMMON = (("number_of_channels", "beams above one another", "", 1.0), ("azimuth_step", "step in azimuth", "°", 1.0),
@@ -100,27 +98,26 @@ class Report:
     def _view(self, plan: Plan, folder: pathlib.Path, name: str) -> Dict[str, Any]:
         """Pictures of a sensor somewhere. @param name in the names of files"""
         names = plan.coverage.status_names
-        maps, reasons, found_at = [], [], []
+        maps, reasons, size = [], [], pictures.map_size(plan.extent, 3.3)
         for height in plan.heights:
             cover = plan.map_at(height)
             p = plan.mixed(cover)
             status = cover["status"]
             shares = np.bincount(status.ravel(), minlength=len(names)) / status.size
-            found_at.append((height, np.digitize(p[0], pictures.OUTLINES).astype(np.uint8)))
-            caption = f"{height:g} m above {plan.above}: mean {p.mean():.3f}, at least 0.5 on {percent(float(np.mean(p >= 0.5)))} of the map"
-            maps.append(self._draw(folder / f"{name}-probability-{height_name(height)}.png", (3.3, 3.3),
+            caption = f"{height:g} m above {plan.above}: mean {percent(float(p.mean()))}, at least 0.5 on {percent(float(np.mean(p >= 0.5)))} of the map"
+            maps.append(self._draw(folder / f"{name}-probability-{height_name(height)}.png", size,
                                    f"Map of the probability that one scan of {plan.title} detects a {plan.bird} {caption}.", f"{plan.title}, {caption}",
                                    lambda axes, cover=cover: pictures.draw_map(axes, plan, cover, "detection_probability")))
             words = ", ".join(f"{names[i]} {percent(shares[i])}" for i in np.argsort(-shares)[:3] if shares[i] > 0.0)
-            reasons.append(self._draw(folder / f"{name}-reasons-{height_name(height)}.png", (3.3, 3.3),
+            reasons.append(self._draw(folder / f"{name}-reasons-{height_name(height)}.png", size,
                                       f"Map of reasons for {plan.title} {height:g} m above {plan.above}: {words}.",
                                       f"{plan.title}, {height:g} m above {plan.above}: {words}",
                                       lambda axes, cover=cover: pictures.draw_map(axes, plan, cover, "status")))
         clutter = plan.coverage.clutter_map
         count = int(np.count_nonzero(clutter["detection_probability"] >= 0.5)) if clutter.number_of_points else 0
         found: Dict[str, Any] = {
-            "name": plan.title, "found_at": found_at, "maps": maps, "reasons": reasons, "overall": plan.overall, "position": place(plan.sensor.position), "sections": [],
-            "clutter": self._draw(folder / f"{name}-clutter.png", (4.6, 3.8),
+            "name": plan.title, "maps": maps, "reasons": reasons, "overall": plan.overall, "position": place(plan.sensor.position), "sections": [],
+            "clutter": self._draw(folder / f"{name}-clutter.png", pictures.map_size(plan.extent, 4.0, 0.8),
                                   f"Map of echoes of surfaces with {plan.title}: {count} in at least every second scan.",
                                   f"{plan.title}: {count} echoes of surfaces in at least every second scan",
                                   lambda axes: pictures.draw_clutter(axes, plan, clutter))}
@@ -128,7 +125,7 @@ class Report:
             values, extent = pictures.section(plan, runway)
             found["sections"].append(self._draw(
                 folder / f"{name}-section{number + 1}.png", (5.6, 2.6),
-                f"Section along {runway.name} with {plan.title}: at least 0.5 on {percent(float(np.mean(values >= 0.5)))} of it, mean {values.mean():.3f}.",
+                f"Section along {runway.name} with {plan.title}: at least 0.5 on {percent(float(np.mean(values >= 0.5)))} of it, mean {percent(float(values.mean()))}.",
                 f"{plan.title}, along the middle of {runway.name} (white) and its approaches to 3 km; dashed: glide paths of "
                 f"{pictures.GLIDE_PATH:g} degrees{'; red: the heights asked for' if plan.asked else ''}; heights are stretched",
                 lambda axes, runway=runway, values=values, extent=extent: pictures.draw_section(axes, plan, runway, values, extent)))
@@ -150,20 +147,9 @@ class Report:
         whole = [(row["region"], row["heights"]) for row in rows if row["all"]]
         rows = [row for row in rows if row["all"] or (row["region"], row["heights"]) not in whole]  # one band alone
         return {"heights": [row for row in rows if row["species"] == bird],
-                "runways": self._by_runway(views) if len(first.runways) > 1 else [],
+                "ends": [{"region": of[0]["region"], "shares": of} for of in zip(*(view.by_end for view in views))] if len(first.ends) > 1 else [],
                 "species": everywhere if len(everywhere) > 1 else [],
                 "reasons": [(name, f"share_{name.replace(' ', '_')}") for name in first.coverage.status_names]}
-
-    def _by_runway(self, views: List[Plan]) -> List[Dict[str, Any]]:
-        """The share at the places that are nearest to each runway, for each view."""
-        found = []
-        for view in views:
-            near = siting.nearest_runways(view.runways, view.points)
-            weights = view.weights(view.points).sum(axis=0)
-            p = view.mixed(view.regions)
-            found.append([float(np.average(p[near == k], weights=weights[near == k])) if weights[near == k].sum() else math.nan
-                          for k in range(len(view.runways))])
-        return [{"name": runway.name, "shares": list(shares)} for runway, shares in zip(views[0].runways, zip(*found))]
 
     def _siting(self, sites: Sites, folder: pathlib.Path) -> Dict[str, Any]:
         changes = list(sites.look().changes())
@@ -171,21 +157,22 @@ class Report:
         best = []
         for k, i in enumerate(map(int, sites.order[:BEST])):
             less, error = sites.difference(i)
-            best.append({"rank": k + 1, "position": sites.positions[i], "value": float(sites.values[i]), "less": less, "error": error})
+            value, own = sites.share([i])
+            places = f"{100.0 * less:.{decimals(100.0 * error)}f} ± {100.0 * error:.{decimals(100.0 * error)}f}" if error > 0.0 else "–"
+            best.append({"rank": k + 1, "position": siting.rounded(sites.positions[i]), "value": percent(value, own, sites.plan.count), "less": places})
         gain = sites.gain()
-        alike = sum(less <= 2.0 * error for less, error in map(sites.difference, map(int, sites.order[1:])))
-        words = "; ".join(f"{row['sensors']}: {row['value']:.3f}" for row in gain)
-        taken = np.array([sites.plan.sensor.position[:2]])
+        words = "; ".join(f"{row['sensors']}: {percent(row['value'], row['std_error'], sites.plan.count)}" for row in gain)
         pictured = {"map": ("sites.png", f"Map of {len(sites.positions)} candidates for {sites.plan.name}; best alone: "
-                            f"{place(best[0]['position'])}, with {best[0]['value']:.3f}.",
+                            f"{place(sites.positions[sites.order[0]])}, with {best[0]['value']}.",
                             f"{sites.plan.name}: {len(sites.positions)} candidates, of {sites.lattice}; light grey: nothing may stand there"),
                     "curve": ("gain.png", f"Probability of one scan with the best networks of {sites.plan.name}: {words}.",
-                              f"{sites.plan.name}: with more sensors")}
-        return {"name": sites.plan.name, "best": best, "gain": gain, "lattice": sites.lattice, "alike": int(alike), "edge": sites.at_the_edge,
-                "degrees": self._degrees(sites), "masts": [(mast, sites.positions[i], float(sites.values[i])) for mast, i in sites.best_by_mast()],
-                "by_air": [{**row, "position": sites.positions[row["site"]]} for row in sites.best_by_air()],
+                              f"{sites.plan.name}: with more sensors; bars: standard error")}
+        return {"name": sites.plan.name, "best": best, "gain": gain, "lattice": sites.lattice, "alike": sites.count_alike(), "edge": sites.at_the_edge,
+                "degrees": self._degrees(sites), "masts": sites.best_by_mast(), "first": sites.positions[sites.order[0]],
+                "detects": float(sites.values[sites.order[0]]) >= LEAST, "places": sites.plan.count,
+                "by_air": [{**row, "position": siting.rounded(sites.positions[row["site"]])} for row in sites.best_by_air()],
                 "robustness": sites.robustness(changes), "words": sites.words(), "near": len(sites.near), "count": len(sites.positions),
-                "taken": any(siting.is_near(taken, outline, margin)[0] for outline, margin in sites.exclusions),
+                "taken": sites.stands_wrong(sites.plan.sensor.position), "surfaces": sites.surface_sentence,
                 "heights_varied": any("heights" in change.what for change in changes),
                 "draws": int(sites.options.get("draws", DRAWS)),
                 **{key: {"source": embedded(folder / name), "alt": alt, "caption": f"{caption}; {self.asked}"}
@@ -240,7 +227,7 @@ class Report:
             first = part.stop
             curves = {view.title: (values, [row["detection_probability"] for row in of[part]], [row["detection_std_error"] for row in of[part]])
                       for view, of in zip(views, shares)}
-            said = "; ".join(f"{name}: {', '.join(f'{value:g}: {share:.3f}' for value, share in zip(values, of))}" for name, (_, of, _) in curves.items())
+            said = "; ".join(f"{name}: {', '.join(f'{value:g}: {percent(share)}' for value, share in zip(values, of))}" for name, (_, of, _) in curves.items())
             caption = f"{', '.join(view.title for view in views)}: share detected by one scan, by {words}; bars: standard error"
             found["pictures"].append(self._draw(folder / f"weather-{kind}.png", (4.6, 3.4), f"Share of birds detected by {words}. {said}.", caption,
                                                 lambda axes, curves=curves, words=words, kind=kind:
@@ -249,20 +236,18 @@ class Report:
         year = views[0].year
         found["year"] = [{"name": air.name, "share": air.share, "shares": of} for air, of in zip(year, zip(*(of[first:] for of in shares)))]
         # Places are the same in all weathers: the error of the mean is at most the mean of errors.
-        found["over_the_year"] = [{name: sum(air.share * row[name] for air, row in zip(year, of[first:]))
-                                   for name in ("detection_probability", "detection_std_error")} for of in shares]
+        found["over_the_year"] = [{"places": of[0]["places"], **{name: sum(air.share * row[name] for air, row in zip(year, of[first:]))
+                                                                 for name in ("detection_probability", "detection_std_error")}} for of in shares]
         at = VISIBILITIES.index(ANSWERED)
         found["answered"] = [of[at] for of in shares]
         return found
 
     def _weather_words(self, number: int, view: Plan, weather: Dict[str, Any]) -> str:
         """A sentence on fog, and on the year. @param number of the view"""
-        def of(row):
-            return percent(row["detection_probability"], row["detection_std_error"])
         birds = birds_of(view)
-        said = f"At 1\u00a0km visibility one scan of {view.title} detects {of(weather['answered'][number])} of {birds} {view.where}."
+        said = f"At 1\u00a0km visibility one scan of {view.title} detects {share_of(weather['answered'][number])} of {birds} {view.where}."
         if view.year:
-            said += f" Over the year, by the hours of its weather, it is {of(weather['over_the_year'][number])}."
+            said += f" Over the year, by the hours of its weather, it is {share_of(weather['over_the_year'][number])}."
         return said
 
     def _advice(self, view: Plan, reaches: Dict[str, Any]) -> Optional[Dict[str, Any]]:
@@ -274,15 +259,14 @@ class Report:
             for way in found["ways"]:
                 tried = [(view.at(view.sensor.position, view.title, **changes).in_airs([{}])[0][-1], changes) for changes in way["changes"]]
                 way["then"], changes = max(tried, key=lambda one: one[0]["detection_probability"])
-                way["what"] = f"{way['what'](changes)} ({', '.join(f'{name} {value:g}' for name, value in changes.items())})"
+                way["what"] = f"{way['what'](changes)} ({', '.join(f'{name} {value:.4g}' for name, value in changes.items())})"
             found["ways"] = [way for way in found["ways"] if way["then"]["detection_probability"] > view.overall["detection_probability"]]
         return found
 
     def _answer(self, plan: Plan, view: Plan, site: Optional[Dict[str, Any]], reaches: Dict[str, Any]) -> List[str]:
         """Two sentences or more: the share and where it is, how far birds are seen, at the heights asked for and elsewhere. @param view
         the plan's sensor at its best site, or the plan itself"""
-        found = view.overall
-        share = percent(found["detection_probability"], found["detection_std_error"])
+        share = share_of(view.overall)
         birds = birds_of(view)
         air = f" in {in_words(view.air)}" if view.air else f" at {metres(view.coverage.visibility)} visibility" if view.year else ""
         by_year = ", by the year's weather," if view.year else ""
@@ -301,17 +285,21 @@ class Report:
         if site and view is not plan and plan is self.plans[0]:
             who = "the plan" if "position" in plan.plan["sensor"] else "the scene"
             nobody = ", but nothing may stand there" if site["taken"] else ""
-            own = percent(plan.overall["detection_probability"], plan.overall["detection_std_error"])
+            own = share_of(plan.overall)
             said += [f"Where {who} puts it, {place(plan.sensor.position)}, it is {own}{nobody}."]
         return said
 
-    def _first_picture(self, view: Plan, shown: Dict[str, Any], folder: pathlib.Path) -> Dict[str, str]:
-        """The airport with the sensor, and where birds are detected at each height."""
-        seen = "; ".join(f"{height:g} m above {view.above}: half or more on {percent(float(np.mean(classes == 2)))} of the map"
-                         for height, classes in shown["found_at"])
-        return self._draw(folder / "answer.png", (4.6, 5.6), f"Map of the airport with {view.title}, {shown['position']}. {view.bird}, {seen}.",
-                          f"{view.name} (red triangle), {shown['position']}. Filled: one scan detects half or more of the birds, dashed: a tenth; strips dotted",
-                          lambda axes: pictures.draw_answer(axes, view, shown["found_at"]))
+    def _first_picture(self, view: Plan, folder: pathlib.Path) -> Dict[str, str]:
+        """The airport with the sensor, all regions that are asked for, and where birds are detected at each height."""
+        extent = pictures.answer_extent(view)
+        found = pictures.found_at(view, extent)
+        seen = "; ".join(f"{height:g} m above {view.above}: half or more on {percent(float(np.mean(classes == 2)))} of the map" for height, classes in found)
+        shares = {row["region"]: share_of(row) for row in view.by_end}
+        regions = "; dotted: strips and approaches asked for, with the share detected there" if view.runways else ""
+        return self._draw(folder / "answer.png", pictures.map_size(extent, 4.6, 0.0, 0.2 * math.ceil(len(found) / 2) + 0.1),
+                          f"Map of the airport with {view.title}, {place(view.sensor.position)}. {view.bird}, {seen}.",
+                          f"{view.name} (red triangle), {place(view.sensor.position)}. Filled: one scan detects half or more of the birds, dashed: a tenth{regions}",
+                          lambda axes: pictures.draw_answer(axes, view, found, extent, shares))
 
     def _range_words(self, view: Plan, reaches: Dict[str, Any]) -> str:
         said = f"Within the band of {view.name}, in free air, one scan detects {_answer.half_and_tenth(reaches)}"
@@ -322,7 +310,7 @@ class Report:
                 f"{', '.join(seen) if seen else 'none'}{f'; nowhere at {_answer.listed(never)} m' if seen and never else ''}.")
 
     def write(self, file) -> pathlib.Path:
-        """Write the page, and beside it a folder of its name and `_files` with shares.csv, range.csv, weather.csv, pictures and tables of sites.
+        """Write the page, and beside it a folder of its name and `_files` with shares.csv, ends.csv, range.csv, weather.csv, pictures and tables of sites.
         @return that folder"""
         file = pathlib.Path(file)
         if file.suffix not in (".html", ".htm") or file.is_dir():
@@ -336,8 +324,7 @@ class Report:
         """The page; what it is made of is written to the folder."""
         first = self.plans[0]
         sited = [self._siting(sites, folder if number == 0 else folder / sites.plan.name) for number, sites in enumerate(self.sites)]
-        best = [plan.at(site["best"][0]["position"], f"{plan.name} at its best site", plan.seed + OTHER_PLACES)
-                for plan, site in zip(self.plans, sited) if site["best"][0]["value"] >= LEAST]
+        best = [plan.at(site["first"], f"{plan.name} at its best site", plan.seed + OTHER_PLACES) for plan, site in zip(self.plans, sited) if site["detects"]]
         views = [*self.plans, *best]
         if "extent" not in self.plan:
             points = np.array([point for view in views for point in (view.extent[::2], view.extent[1::2], view.sensor.position[:2])])
@@ -355,17 +342,18 @@ class Report:
         advices = [self._advice(view, of) for view, of in zip(answering, reaches)]
         site = sited[0] if sited else None
         write_table(folder / "shares.csv", [{"receiver": view.title, **row} for view in views for row in view.shares])
+        write_table(folder / "ends.csv", [{"receiver": view.title, **row} for view in views for row in view.by_end])
         write_table(folder / "range.csv", [row for found in reaches for row in found["table"]])
         known = field_values(first.regions.data)
-        made = ("file", "hours", *(["year"] if "metar" in self.plan else []))
+        made = ("file", "hours", "options", *(["year"] if "metar" in self.plan else []))
         asked = {name: part for name, part in self.plan.items() if name not in made}
-        at_first, found = views.index(answering[0]), answering[0].overall
+        at_first = views.index(answering[0])
         return render(
-            "report.html.jinja", filter_metres=metres, filter_share=percent,
+            "report.html.jinja", filter_metres=metres, filter_share=percent, filter_of_row=share_of, filter_cell=cell, filter_rounded=siting.rounded,
             question=self.plan.get("description") or f"Where is a {first.bird} detected?",
-            asked=self.asked, chance=percent(found["detection_probability"], found["detection_std_error"]),
+            asked=self.asked, chance=share_of(answering[0].overall),
             said=_answer.two_sentences(first, answering[0], site, reaches[0], weather["over_the_year"][at_first]),
-            first=self._first_picture(answering[0], shown[at_first], folder),
+            first=self._first_picture(answering[0], folder),
             steps=_answer.next_steps(first, answering[0], site, advices[0]), answer=answers,
             bird=first.bird, cover=first.coverage, area=float(np.ravel(known["effective_area"])[0]),
             attenuation=float(known["attenuation_coefficient"]), plan=first, places=int(first.overall["places"]),

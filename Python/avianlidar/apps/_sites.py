@@ -20,10 +20,13 @@ from . import _pictures, siting
 from ._air import Air
 from ._json import naming
 from ._maps import Plan, write_table
+from ._surfaces import NAMES, Surfaces, pierced, table
 
 NEAR = 40  # candidates that are best alone: all networks of one to three of these and of the best network are compared
 DRAWS = 10
 FEWEST_DRAWS = 10  # that say how sure a winner is
+BEST = 10  # sites whose shares are told
+OTHER_PLACES = 1 << 40  # to a seed: that shares are not of the places by which sites were chosen
 SPACING = 200.0  # m, of the lattice
 HEIGHT_ERROR = 5.0  # m, of buildings; assumed
 AREA_ERROR = 0.2  # of the mean effective area; assumed
@@ -68,8 +71,10 @@ class Sites:
     positions  n x 3, m, in the order of the lattice   networks  the best of 1, 2, ... sensors
     values     weighted share that each detects alone  order     candidates from the best to the worst
     airs       weathers with their shares of the year  by_air    weighted share that each detects alone in each of these
+    surfaces   of each runway, that masts keep below    pierced   number of candidates left out for each of them, by name
+    told       what the best of them detect, by number, at other places than those by which they were chosen
 
-    All but the positions and the airs are there after `look`.
+    All but positions, airs and surfaces are there after `look`.
     """
 
     def __init__(self, plan: Plan, folder=None, ranks: Optional[Ranks] = None, progress: Optional[Progress] = None,
@@ -104,9 +109,59 @@ class Sites:
                                   f"{len(self.positions):,} candidates, {len(self.mix)} species and {plan.count:,} places"
                                   + (f" in {len(self.airs)} weathers" if len(self.airs) > 1 else ""),
                                   "take a larger spacing, fewer masts or places")
+        with naming(f"{plan.file}: siting.surfaces"):
+            self._keep_below()
         if self.options.get("draws", DRAWS):
             with naming(f"{plan.file}: scene"), tempfile.TemporaryDirectory() as copy:
                 siting.with_other_heights(plan.plan["scene"], copy, lambda: 0.0)  # as `changes` will
+
+    def _keep_below(self) -> None:
+        """Leave out candidates whose masts pierce an obstacle limitation surface."""
+        asked = self.options.get("surfaces", True)
+        changes = asked if isinstance(asked, dict) else {}
+        self.surfaces = [Surfaces.of(runway, self.plan.scene, changes) for runway in self.plan.runways] if asked is not False else []
+        found = pierced(self.surfaces, self.positions)
+        self.pierced = {name: int(np.count_nonzero(found == number)) for number, name in enumerate(NAMES, 1)
+                        if self.surfaces and name in self.surfaces[0].kept}
+        if found.all():
+            raise Error(f"the masts of all {len(found)} candidates pierce one ({self._counted()}): take lower masts or wider bounds, change the "
+                        "surfaces, or switch them off (false)")
+        self.positions = self.positions[found == 0]
+
+    def _counted(self) -> str:
+        return ", ".join(f"{name} {count}" for name, count in self.pierced.items())
+
+    @property
+    def kept_surfaces(self) -> str:
+        """Which surfaces masts keep below, by which codes, and how many candidates did not, in words."""
+        if not self.pierced:
+            return "none is kept, as the plan switches them off"
+        given = self.options.get("surfaces")
+        given = given if isinstance(given, dict) else {}
+        code = "code number" if "code" in given else "code number by its length, assumed:"
+        category = self.surfaces[0].category + ("" if "category" in given else " (assumed)")
+        changed = [name for name in self.pierced if isinstance(given.get(name), dict)]
+        return (f"masts keep below {', '.join(self.pierced)} surfaces of ICAO Annex 14 ({table()['year']}) for {category} approaches, "
+                f"{'; '.join(f'{one.runway.name}: {code} {one.code}' for one in self.surfaces)}"
+                f"{'; the plan changes ' + ', '.join(changed) if changed else ''}; {sum(self.pierced.values())} of "
+                f"{sum(self.pierced.values()) + len(self.positions)} candidates pierced one and are left out ({self._counted()})")
+
+    @property
+    def surface_sentence(self) -> str:
+        """What was looked at where a mast may stand, for the first page."""
+        if not self.pierced:
+            return "It is clear of runways, buildings and what the plan excludes; the plan switches obstacle limitation surfaces off"
+        given = self.options.get("surfaces")
+        assumed = "" if isinstance(given, dict) and "category" in given else ", assumed"
+        names = list(self.pierced)
+        return (f"It keeps below the {' and '.join(filter(None, (', '.join(names[:-1]), names[-1])))} surfaces of ICAO Annex 14 "
+                f"({self.surfaces[0].category} approaches{assumed}), which {sum(self.pierced.values())} others pierce ({self._counted()}), and is clear "
+                "of buildings and what the plan excludes")
+
+    def stands_wrong(self, position: Sequence[float]) -> bool:
+        """Whether no candidate may stand at a place, m."""
+        place = np.array([position], dtype=float)
+        return bool(pierced(self.surfaces, place)[0]) or any(siting.is_near(place, outline, margin)[0] for outline, margin in self.exclusions)
 
     def look(self) -> Sites:
         """Look from all candidates, and compare networks of them. @return this"""
@@ -122,13 +177,36 @@ class Sites:
         members = [site for network in first for site in network.sites]
         self.near = np.array(list(dict.fromkeys([*self.order[:NEAR], *members])))
         self.networks = self._search(self.found[self.near], self.weights, first)
-        points, weights, _ = self._draw()
-        with self.ranks.together():
-            self.of_same_birds = [siting.value_of_same_birds(self.plan.scene, self.plan.sensor, self.positions[list(network.sites)],
-                                                             points, list(self.mix), weights, [self.airs[i].settings for i in self.counting],
-                                                             **self.settings)
-                                  for network in self.networks]
+        self._look_again()
         return self
+
+    def _look_again(self) -> None:
+        """Look from the best sites and networks at other places than those by which they were chosen, with clutter as the plan has it: what is
+        told of them is of these."""
+        of_air = list(dict.fromkeys(map(int, [self.order[0], *np.argmax(self.by_air, axis=0)])))
+        numbers = [*self.order[:BEST], *(site for network in self.networks for site in network.sites), *(site for _, site in self._best_with_masts()), *of_air]
+        told = list(dict.fromkeys(map(int, numbers)))
+        seed, clutter = self.plan.seed + OTHER_PLACES, {"clutter": self.plan.coverage.clutter}
+        found, self.told_weights, _ = self._look(self.positions[told], None, seed, **clutter)
+        self.told = dict(zip(told, found))
+        points, _ = self.plan.places(seed)
+        of_species = self.plan.weights(points)
+        found = self._look(self.positions[of_air], self.airs, seed, **clutter)[0].reshape(len(of_air), len(self.mix), len(self.airs), -1)
+        self.told_by_air = {site: [float(np.vdot(of[:, air].astype(float), of_species)) for air in range(len(self.airs))] for site, of in zip(of_air, found)}
+        with self.ranks.together():
+            self.of_same_birds = [siting.value_of_same_birds(self.plan.scene, self.plan.sensor, self.positions[list(network.sites)], points,
+                                                             list(self.mix), self.told_weights, [self.airs[i].settings for i in self.counting],
+                                                             **{**self.settings, **clutter})
+                                  for network in self.networks]
+
+    def share(self, sites: Sequence[int]) -> Tuple[float, float]:
+        """The share of the birds that one scan of at least one of the sites detects, and its standard error. @param sites numbers of the best
+        candidates or of members of networks"""
+        missed: np.ndarray = np.prod([1.0 - self.told[int(site)].astype(float) for site in sites], axis=0)
+        of_place = self.told_weights.sum(axis=0)
+        value = float(np.vdot(self.told_weights, 1.0 - missed))
+        off = (self.told_weights * (1.0 - missed)).sum(axis=0) - value * of_place
+        return value, float(np.sqrt(np.sum(off ** 2) * len(off) / (len(off) - 1)))
 
     def _tell(self, what: str, done: int, total: int) -> None:
         if self.progress and self.ranks.rank == 0:
@@ -152,7 +230,7 @@ class Sites:
                 if not found:
                     raise Error(f"{file}: holds no polygon, expected some where no lidar may stand")
                 outlines += found
-        return [(outline, margin) for outline in outlines] + [(siting.runway_outline(r), 0.0) for r in self.plan.runways]
+        return [(outline, margin) for outline in outlines] + [(siting.runway_outline(r, 0.0, r.width / 2.0), 0.0) for r in self.plan.runways]
 
     def _look(self, positions, airs: Optional[List[Air]] = None, seed: Optional[int] = None, scene=None, progress=None, **settings: Any):
         """Coverage of sites, weights and regions. @param airs default those that count"""
@@ -205,10 +283,19 @@ class Sites:
                     yield Change(what, draw, winner, siting.value_of(found, weights, [number[s] for s in before.sites]))
 
     def difference(self, site: int) -> Tuple[float, float]:
-        """How much less a site's value is than the best one's, and the standard error of that, as both see the same places."""
-        less = ((self.found[self.order[0]].astype(float) - self.found[site]) * self.weights).sum(axis=0)
-        variance = sum(len(members) * np.var(less[members]) for members in self.regions.values())
-        return float(less.sum()), float(np.sqrt(variance))
+        """How much less one of the best sites detects than the first, and the standard error of that, as both see the same places. It may be
+        below 0: these are other places than those by which sites were ranked."""
+        less = (self.told_weights * (self.told[int(self.order[0])].astype(float) - self.told[site])).sum(axis=0)
+        return float(less.sum()), float(np.sqrt(len(less) * np.var(less)))
+
+    def count_alike(self) -> int:
+        """The number of other candidates that are as good as the best within twice the standard error, at the places by which they were ranked."""
+        first = self.found[self.order[0]].astype(float)
+        count = 0
+        for site in self.order[1:]:
+            less = ((first - self.found[site]) * self.weights).sum(axis=0)
+            count += less.sum() <= 2.0 * np.sqrt(sum(len(members) * np.var(less[members]) for members in self.regions.values()))
+        return int(count)
 
     def rank_of(self, site: int) -> int:
         """1 for the best candidate."""
@@ -216,10 +303,11 @@ class Sites:
 
     def gain(self) -> List[Dict[str, Any]]:
         """A row for each number of sensors."""
-        return [{"sensors": len(n.sites), "value": n.value, "value of the same birds": same,
+        shares = [self.share(n.sites) for n in self.networks]
+        return [{"sensors": len(n.sites), "value": value, "std_error": error, "value of the same birds": same,
                  "ranks of the sites": " ".join(str(self.rank_of(i)) for i in n.sites),
-                 "sites": "; ".join(f"{x:g} {y:g} {z:g}" for x, y, z in self.positions[list(n.sites)])}
-                for n, same in zip(self.networks, self.of_same_birds)]
+                 "sites": "; ".join(" ".join(siting.rounded(place)) for place in self.positions[list(n.sites)])}
+                for n, (value, error), same in zip(self.networks, shares, self.of_same_birds)]
 
     def robustness(self, changes: List[Change]) -> List[Dict[str, Any]]:
         """A row for each kind of change and number of sensors: draws, how often another network wins, and by how much more at
@@ -251,8 +339,8 @@ class Sites:
                 **({"weather": "by the year's share of the hours: " + "; ".join(f"{air.name} {100 * air.share:.3g} %" for air in self.plan.year)}
                    if self.plan.year else {"weather": self.airs[0].name} if self.plan.air else {}),
                 "clutter": "counted" if self.settings.get("clutter") else "not counted",
-                "nothing may stand": f"within 60 m beyond and 185 m beside runways, under surfaces of the scene, and within "
-                                     f"{self.options.get('margin', 0.0):g} m of {' and '.join(files)}"}
+                "nothing may stand": f"on runways, under surfaces of the scene, and within {self.options.get('margin', 0.0):g} m of {' and '.join(files)}",
+                "obstacle limits": self.kept_surfaces}
 
     @property
     def at_the_edge(self) -> bool:
@@ -264,12 +352,15 @@ class Sites:
         place = self.positions[self.order[0], :2]
         return bool(((place - bounds[:, 0] < spacing) | (bounds[:, 1] - place < spacing)).any())
 
-    def best_by_mast(self) -> List[Tuple[float, int]]:
-        """The best candidate with each mast: its height above the ground, m, and the candidate's number."""
+    def _best_with_masts(self) -> List[Tuple[float, int]]:
         ground = np.nan_to_num(siting.ground_of(self.plan.scene, self.positions[:, :2]))
         of = self.positions[:, 2] - ground
         found = [(mast, np.flatnonzero(np.abs(of - mast) < siting.SAME_PLACE)) for mast in self.masts]
         return [(mast, int(numbers[np.argmax(self.values[numbers])])) for mast, numbers in found if len(numbers)]
+
+    def best_by_mast(self) -> List[Dict[str, Any]]:
+        """The best candidate with each mast: its height above the ground, m, the place, m, and its share."""
+        return [{"mast": mast, "position": self.positions[site], "share": self.share([site])} for mast, site in self._best_with_masts()]
 
     def _over_the_year(self, order, species: int, places) -> np.ndarray:
         """The mean share of some places at each site. @param order of the sites @param species its number @param places numbers"""
@@ -281,8 +372,9 @@ class Sites:
 
     def best_by_air(self) -> List[Dict[str, Any]]:
         """A row for each weather: the site that is best in it, and what the first of the order detects then."""
-        return [{"weather": air.name, "share": air.share, "site": int(np.argmax(values)), "value": float(values.max()),
-                 "value of the first": float(values[self.order[0]])} for air, values in zip(self.airs, self.by_air.T)]
+        return [{"weather": air.name, "share": air.share, "site": int(site), "value": self.told_by_air[int(site)][k],
+                 "value of the first": self.told_by_air[int(self.order[0])][k]}
+                for k, (air, site) in enumerate(zip(self.airs, np.argmax(self.by_air, axis=0)))]
 
     def write(self, folder, changes: List[Change]) -> None:
         """Write sites (CSV, VTP, GeoJSON) in the order of their rank, gain.csv, robustness.csv and pictures of both."""
@@ -300,5 +392,5 @@ class Sites:
                            "; ".join(f"{name}: {text}" for name, text in self.words().items()))
         write_table(folder / "gain.csv", self.gain())
         write_table(folder / "robustness.csv", self.robustness(changes))
-        _pictures.draw(folder / "sites.png", (5.2, 5.6), lambda axes: _pictures.draw_sites(axes, self))
+        _pictures.draw(folder / "sites.png", _pictures.map_size(_pictures.sites_extent(self), 4.6, 0.8, 0.3), lambda axes: _pictures.draw_sites(axes, self))
         _pictures.draw(folder / "gain.png", (4.4, 2.8), lambda axes: _pictures.draw_gain(axes, self))

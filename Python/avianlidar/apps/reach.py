@@ -17,18 +17,24 @@ from typing import Any, Dict, List, Optional, Sequence, Tuple
 
 import numpy as np
 
+from .. import vtkAvianLidar as _wrapped
 from .._coverage import Coverage
 from .._scene import Scene
 from .._sensor import Sensor
+from .._weather import weather
+from ._air import weakening
 from ._maps import Plan
+from ._surfaces import table
 
 RANGES = 48
 NEAR = 200  # beams, of a pattern without columns, that say how far it reaches to the sides at an elevation
 BIRDS = 400  # at each range
+FEW = 40  # of them, that say where ranges end
 SEED = 1
 LEAST = 0.005  # share that still counts as detected, to find where ranges end
 RAISES = 8  # of the band, that are tried
 SHARES = (0.9, 0.5, 0.1)  # of birds, whose ranges the report gives
+CLEAR = 23e3  # m, visibility of air of which nothing is said
 
 
 @dataclasses.dataclass(frozen=True)
@@ -99,17 +105,17 @@ def within_beams(sensor: Sensor, species: str = "herring gull", ranges: Optional
         about = np.arctan2(of[:, 0], of[:, 1]) + np.radians(random.uniform(-0.5, 0.5, birds) * sensor.azimuth_step)
     lines = np.column_stack([np.sin(about) * np.cos(up), np.cos(about) * np.cos(up), np.sin(up)])
 
-    def at(distances: np.ndarray) -> Tuple[np.ndarray, np.ndarray]:
+    def at(distances: np.ndarray, lines: np.ndarray) -> Tuple[np.ndarray, np.ndarray]:
         cover.places = (distances[:, None, None] * lines).reshape(-1, 3)
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # that there are no surfaces
-            return cover["detection_probability"].reshape(-1, birds), cover["track_probability"].reshape(-1, birds)
+            return cover["detection_probability"].reshape(len(distances), -1), cover["track_probability"].reshape(len(distances), -1)
 
     if ranges is None:
         end = sensor.range_gate
         for _ in range(4):
             tried = np.linspace(end / RANGES, end, RANGES)
-            seen = np.flatnonzero(at(tried)[0].mean(axis=1) > LEAST)
+            seen = np.flatnonzero(at(tried, lines[:FEW])[0].mean(axis=1) > LEAST)
             found = tried[min(seen[-1] + 1, RANGES - 1)] if len(seen) else tried[0]
             if found > 0.5 * end:
                 break
@@ -117,8 +123,42 @@ def within_beams(sensor: Sensor, species: str = "herring gull", ranges: Optional
         distances = np.linspace(found / RANGES, found, RANGES)
     else:
         distances = np.asarray(ranges, dtype=float)
-    one, several = at(distances)
+    one, several = at(distances, lines)
     return Reach(distances, one.mean(axis=1, dtype=float), one.std(axis=1, dtype=float) / math.sqrt(birds), several.mean(axis=1, dtype=float))
+
+
+def air_of(sensor: Sensor, words: Optional[Sequence[str]] = None) -> Dict[str, Any]:
+    """Settings of `within_beams` in a weather, by words as of `--weather`; CLEAR where they say no visibility. Where a receiver has no aperture,
+    air and drops only weaken."""
+    default = _wrapped.vtkAvianLidarCoverage()
+    air = {"attenuation_coefficient": default.GetAttenuationCoefficient(), "visibility": CLEAR, "air_backscatter": False, "rain_rate": 0.0, **weather(words)}
+    return air if float(sensor.beams.fields.get("receiver_aperture", 0.0)) > 0.0 else weakening(sensor, air)
+
+
+def left_open(sensor: Sensor) -> float:
+    """What ranges by a sensor's fitted receiver are good for, relative; nan for one that is not fitted to several points of a sheet."""
+    return float(sensor.description.get("sheet", {}).get("bar", math.nan))
+
+
+def metres(value: float) -> str:
+    """A range in the two digits that the draw of birds leaves of it."""
+    return f"{float(f'{value:.2g}'):g} m" if value > 0.0 else "–"
+
+
+def half(sensor: Sensor, found: Reach) -> str:
+    """The range to which half of the birds are detected, with the ranges that the fit of the receiver leaves open."""
+    to, bar = found.to(0.5), left_open(sensor)
+    between = "" if math.isnan(bar) or to == 0.0 else f" ({metres((1.0 - bar) * to).removesuffix(' m')} to {metres((1.0 + bar) * to)})"
+    return metres(to) + between
+
+
+def sentence(name: str, species: str, sensor: Sensor, found: Reach) -> str:
+    """How far half of the birds are seen, beside the width of a runway's strip."""
+    to, width = found.to(0.5), 2.0 * table()["precision"]["4"]["strip"]["half_width"]
+    if to == 0.0:
+        return f"{name} sees half of the {species}s in its beams at no range."
+    return (f"{name} sees half of the {species}s in its beams to {half(sensor, found)}, {'less' if to < width else 'more'} than the {width:g} m that the strip "
+            "of a large runway is wide.")
 
 
 def heights_in_band(plan: Plan, heights: Sequence[float], detected_to: float) -> List[Dict[str, float]]:

@@ -15,6 +15,7 @@ import hashlib
 import io
 import itertools
 import json
+import math
 import os
 import pathlib
 import re
@@ -44,6 +45,10 @@ APPROACH_HALF_WIDTH = (75.0, 0.15)  # m at the end, and how it widens
 APPROACH_HEIGHT = (45.0, 0.0524)  # m at the end, and how it rises (3 degrees)
 APPROACH_LOWEST = 0.02  # of that height
 
+SPREADS = ("distance", "area")  # of places over a region
+
+WINDS = ("north", "north-east", "east", "south-east", "south", "south-west", "west", "north-west")
+LETTERS = "ABCDEFGHIJKLMNOPQRSTUVWXYZ"
 MOST_CANDIDATES = 100_000
 SAME_PLACE = 1e-3  # m: candidates whose coordinates are the same to this are one
 RUN = 64  # edges of an outline in one box
@@ -97,6 +102,11 @@ def to_geodetic(points, origin: Sequence[float]) -> np.ndarray:
     """Longitude, latitude (deg) and height above the ellipsoid (m). @param points n x 3, m east, north and up
     @param origin latitude, longitude (deg), height (m)"""
     return _transformed(points, origin, True)
+
+
+def rounded(position: Sequence[float]) -> List[str]:
+    """Coordinates in tenths of a metre, more than is known of terrain and maps."""
+    return [f"{round(float(value), 1) + 0.0:.10g}" for value in position]
 
 
 def require_memory(needed: float, what: str, instead: str) -> None:
@@ -158,17 +168,6 @@ def read_runways(file, origin: Sequence[float]) -> List[Runway]:
     return found
 
 
-def nearest_runways(runways: Sequence[Runway], points) -> np.ndarray:
-    """The number of the runway whose middle, lengthened at both ends, is nearest to each point. @param points n x 2 or n x 3, m"""
-    away = []
-    for runway in runways:
-        axis, length = runway.axis()
-        off = np.asarray(points, dtype=float)[:, :2] - runway.start
-        along = np.clip(off @ axis, -APPROACH_LENGTH, length + APPROACH_LENGTH)
-        away.append(np.linalg.norm(off - along[:, None] * axis, axis=1))
-    return np.argmin(away, axis=0)
-
-
 def region_heights(name: str, heights: Optional[Tuple[float, float]] = None) -> Tuple[float, float]:
     """Least and greatest height (m) of the places that are drawn in "strips" or "approaches". @param heights asked for, if any"""
     if heights is not None:
@@ -178,41 +177,115 @@ def region_heights(name: str, heights: Optional[Tuple[float, float]] = None) -> 
     return APPROACH_LOWEST * APPROACH_HEIGHT[0], APPROACH_HEIGHT[0] + APPROACH_HEIGHT[1] * APPROACH_LENGTH
 
 
-def strips_and_approaches(runways: Sequence[Runway], count: int = 12000, seed: int = 0, shares: Optional[Mapping[str, float]] = None,
-                          heights: Optional[Tuple[float, float]] = None) -> Tuple[np.ndarray, Dict[str, np.ndarray]]:
-    """Places drawn at random, and which lie where: in strips (along each runway, 150 m to either side, 0.5 to 60 m high) and in
-    approaches (beyond each runway's end to 3 km, 75 m + 0.15 d to either side at the distance d, 0.02 to 1 of 45 m + 0.0524 d
-    high).
+def wind(way: Sequence[float]) -> str:
+    """The direction of a way (east, north) by eight winds."""
+    return WINDS[round(math.atan2(way[0], way[1]) / (math.pi / 4)) % 8]
 
-    shares   of the places by the name of the region, "strips" and "approaches"; default 1 each. A region without is not there
-    heights  least and greatest z of all places, m, in place of the regions' own: evenly between them
-    @return n x 3 coordinates, m; the numbers of the places by the name of the region
-    """
+
+def end_names(runways: Sequence[Runway]) -> List[Tuple[str, str]]:
+    """The designators of the start and the end of each runway, such as ("08", "26"): that of an end is the one which says in what direction
+    aircraft land there. Where a name does not hold two, ends are called by the wind: ("grass west", "grass east")."""
+    names = []
+    for runway in runways:
+        axis, _ = runway.axis()
+        found = re.findall(r"(?<![0-9])([0-9]{1,2}[A-Z]?)(?![0-9A-Za-z])", runway.name)
+        if len(found) == 2 and (int(found[0].rstrip(LETTERS)) - int(found[1].rstrip(LETTERS))) % 36 == 18:
+            heading = math.degrees(math.atan2(axis[0], axis[1]))
+            off = abs((10.0 * int(found[0].rstrip(LETTERS)) - heading + 180.0) % 360.0 - 180.0)
+            names.append((found[0], found[1]) if off <= 90.0 else (found[1], found[0]))
+        else:
+            names.append((f"{runway.name} {wind(-axis)}", f"{runway.name} {wind(axis)}"))
+    known = [name for pair in names for name in pair]
+    return [pair if all(known.count(name) == 1 for name in pair) else (f"{pair[0]} ({number})", f"{pair[1]} ({number})")
+            for number, pair in enumerate(names, 1)]
+
+
+def region_names(runways: Sequence[Runway]) -> Dict[str, List[str]]:
+    """Of strips and approaches, in the order of the runways: "strip" and the runway's name, "approach" and the name of the end."""
+    pairs = end_names(runways)
+    strips = [f"strip {'/'.join(sorted(pair))}" if all(name in runway.name for name in pair) else f"strip {runway.name}" for runway, pair in zip(runways, pairs)]
+    return {"strips": [name if strips.count(name) == 1 else f"{name} ({number})" for number, name in enumerate(strips, 1)],
+            "approaches": [f"approach {name}" for pair in pairs for name in pair]}
+
+
+def region_outlines(runways: Sequence[Runway]) -> Dict[str, np.ndarray]:
+    """Each strip and approach from above, 4 x 2, m, by its name."""
+    names, found = region_names(runways), {}
+    for number, runway in enumerate(runways):
+        axis, _ = runway.axis()
+        across = np.array([axis[1], -axis[0]])
+        found[names["strips"][number]] = runway_outline(runway, 0.0, STRIP_HALF_WIDTH)
+        for name, end, way in zip(names["approaches"][2 * number:], (runway.start, runway.end), (-axis, axis)):
+            near, far = APPROACH_HALF_WIDTH[0] * across, (APPROACH_HALF_WIDTH[0] + APPROACH_HALF_WIDTH[1] * APPROACH_LENGTH) * across
+            outer = np.asarray(end) + APPROACH_LENGTH * way
+            found[name] = np.array([end - near, outer - far, outer + far, end + near])
+    return found
+
+
+def _region_shares(runways: Sequence[Runway], shares: Optional[Mapping[str, Any]], spread: str) -> Dict[str, Dict[str, float]]:
+    """The share of the places in each region of each kind; all of them sum to 1."""
+    wanted = {"strips": 1.0, "approaches": 1.0} if shares is None else dict(shares)
+    if not wanted.keys() <= {"strips", "approaches"}:
+        raise ValueError(f"shares are {wanted}, expected numbers from 0 of strips and approaches with a sum above 0")
+    if spread not in SPREADS:
+        raise ValueError(f"spread is {spread!r}, expected {' or '.join(SPREADS)}")
+    found: Dict[str, Dict[str, float]] = {}
+    for kind, names in region_names(runways).items():
+        given = wanted.get(kind, 0.0)
+        if isinstance(given, Mapping):
+            known = {word: name for name in names for word in (name, name.partition(" ")[2])}
+            known.update({runway.name: name for runway, name in zip(runways, names)} if kind == "strips" else {})
+            for word in given:
+                if word not in known:
+                    raise ValueError(f"{kind} has {word!r}, expected some of {', '.join(name.partition(' ')[2] for name in names)}")
+            found[kind] = {**dict.fromkeys(names, 0.0), **{known[word]: float(share) for word, share in given.items()}}
+        else:
+            sizes = [runway.axis()[1] for runway in runways] if (kind, spread) == ("strips", "area") else [1.0] * len(names)
+            found[kind] = {name: float(given) * size / sum(sizes) for name, size in zip(names, sizes)}
+    each = [share for of in found.values() for share in of.values()]
+    if not 0.0 < sum(each) < np.inf or min(each) < 0.0:
+        raise ValueError(f"shares are {wanted}, expected numbers from 0 of strips and approaches with a sum above 0")
+    return {kind: {name: share / sum(each) for name, share in of.items()} for kind, of in found.items()}
+
+
+def _split(count: int, shares: Sequence[float]) -> np.ndarray:
+    """Whole numbers by shares, the sum `count`: what is left goes to the largest remainders, of equal ones to the first."""
+    total = sum(shares)
+    exact = np.array(shares) * (count / total) if total > 0.0 else np.zeros(len(shares))
+    numbers = np.floor(exact + 1e-9).astype(int)
+    if total > 0.0:
+        numbers[np.argsort(-np.round(exact - numbers, 9), kind="stable")[:count - numbers.sum()]] += 1
+    return numbers
+
+
+def places_by_region(runways: Sequence[Runway], count: int = 12000, seed: int = 0, shares: Optional[Mapping[str, Any]] = None,
+                     heights: Optional[Tuple[float, float]] = None, spread: str = "distance") -> Tuple[np.ndarray, Dict[str, np.ndarray]]:
+    """The same places as `strips_and_approaches`, with the numbers of those in each strip and in the approach to each end."""
     if count < 2 * len(runways) or not runways:
         raise ValueError(f"count is {count}, expected at least 2 for each of at least one runway")
     if heights is not None and not -np.inf < heights[0] <= heights[1] < np.inf:
         raise ValueError(f"heights are {tuple(heights)}, expected the least and the greatest, m")
-    wanted = {"strips": 1.0, "approaches": 1.0} if shares is None else {name: float(share) for name, share in shares.items()}
-    if not wanted.keys() <= {"strips", "approaches"} or not 0.0 < sum(wanted.values()) < np.inf or min(wanted.values()) < 0.0:
-        raise ValueError(f"shares are {wanted}, expected numbers from 0 of strips and approaches with a sum above 0")
+    wanted = _region_shares(runways, shares, spread)
     random = np.random.default_rng(seed)
-    strips = int(count * wanted.get("strips", 0.0) / sum(wanted.values()))
-    approaches = count - strips
+    strips = int(count * sum(wanted["strips"].values()) + 1e-9)
+    numbers = [*_split(strips, list(wanted["strips"].values())), *_split(count - strips, list(wanted["approaches"].values()))]
     places = []
-    for number, runway in enumerate(runways):
+    for runway, n in zip(runways, numbers):
         axis, length = runway.axis()
         across = np.array([axis[1], -axis[0]])
-        n = strips // len(runways) + (number < strips % len(runways))
         along = random.uniform(0.0, length, n)
         aside = random.uniform(-STRIP_HALF_WIDTH, STRIP_HALF_WIDTH, n)
         ground = np.asarray(runway.start) + along[:, None] * axis + aside[:, None] * across
         places.append(np.column_stack([ground, random.uniform(*region_heights("strips", heights), n)]))
-    ends = [(point, sign) for runway in runways for point, sign in ((runway.start, -1.0), (runway.end, 1.0))]
-    for number, (point, sign) in enumerate(ends):
-        axis, _ = runways[number // 2].axis()
+    ends = [(runway, point, sign) for runway in runways for point, sign in ((runway.start, -1.0), (runway.end, 1.0))]
+    for (runway, point, sign), n in zip(ends, numbers[len(runways):]):
+        axis, _ = runway.axis()
         across = np.array([axis[1], -axis[0]])
-        n = approaches // len(ends) + (number < approaches % len(ends))
         away = random.uniform(0.0, APPROACH_LENGTH, n)
+        if spread == "area":  # the width of an approach rises evenly with the distance
+            base, wider = APPROACH_HALF_WIDTH
+            area = away / APPROACH_LENGTH * (base * APPROACH_LENGTH + 0.5 * wider * APPROACH_LENGTH ** 2)
+            away = (np.sqrt(base ** 2 + 2.0 * wider * area) - base) / wider
         aside = random.uniform(-1.0, 1.0, n) * (APPROACH_HALF_WIDTH[0] + APPROACH_HALF_WIDTH[1] * away)
         ground = np.asarray(point) + (sign * away)[:, None] * axis + aside[:, None] * across
         if heights is None:
@@ -220,8 +293,33 @@ def strips_and_approaches(runways: Sequence[Runway], count: int = 12000, seed: i
         else:
             height = random.uniform(*heights, n)
         places.append(np.column_stack([ground, height]))
-    members = {"strips": np.arange(strips), "approaches": np.arange(strips, count)}
-    return np.concatenate(places), {name: numbers for name, numbers in members.items() if len(numbers)}
+    names = [name for of in wanted.values() for name in of]
+    parts = np.split(np.arange(count), np.cumsum(numbers)[:-1])
+    return np.concatenate(places), {name: part for name, part in zip(names, parts) if len(part)}
+
+
+def by_kind(regions: Mapping[str, np.ndarray]) -> Dict[str, np.ndarray]:
+    """The numbers of all places in strips and of all in approaches. @param regions as of `places_by_region`"""
+    kinds: Dict[str, List[np.ndarray]] = {}
+    for name, numbers in regions.items():
+        kinds.setdefault("strips" if name.startswith("strip ") else "approaches", []).append(numbers)
+    return {kind: np.concatenate(parts) for kind, parts in kinds.items()}
+
+
+def strips_and_approaches(runways: Sequence[Runway], count: int = 12000, seed: int = 0, shares: Optional[Mapping[str, Any]] = None,
+                          heights: Optional[Tuple[float, float]] = None, spread: str = "distance") -> Tuple[np.ndarray, Dict[str, np.ndarray]]:
+    """Places drawn at random, and which lie where: in strips (along each runway, 150 m to either side, 0.5 to 60 m high) and in
+    approaches (beyond each runway's end to 3 km, 75 m + 0.15 d to either side at the distance d, 0.02 to 1 of 45 m + 0.0524 d
+    high).
+
+    shares   of the places by the name of the region, "strips" and "approaches"; default 1 each. A region without is not there. In place of a
+             number, the shares of single ones by name: {"approaches": {"08": 1}} (`region_names`)
+    heights  least and greatest z of all places, m, in place of the regions' own: evenly between them
+    spread   "distance": as many on each metre along a strip or an approach, and in each of them. "area": as many on each square metre
+    @return n x 3 coordinates, m; the numbers of the places by the name of the region
+    """
+    points, regions = places_by_region(runways, count, seed, shares, heights, spread)
+    return points, by_kind(regions)
 
 
 def read_outlines(file, origin: Sequence[float], attribute: str = "") -> List[Any]:
