@@ -244,7 +244,7 @@ def _raise(view: Plan, advice: Dict[str, Any]) -> Dict[str, str]:
 def _check(view: Plan, site: Dict[str, Any]) -> Dict[str, str]:
     """The site itself."""
     words = [f"{site['surfaces']}; what no map has may be there."]
-    masts = [f"{percent(*row['share'], view.count, bar=False)} with a mast of {row['mast']:g}\u00a0m" for row in site["masts"]]
+    masts = [f"{percent(row['share'][0], row['share'][1], view.count, bar=False)} with a mast of {row['mast']:g}\u00a0m" for row in site["masts"]]
     if len(masts) > 1:
         words.append(f"The best sites have {listed(masts)}.")
     if site["alike"]:

@@ -177,7 +177,7 @@ def region_heights(name: str, heights: Optional[Tuple[float, float]] = None) -> 
     return APPROACH_LOWEST * APPROACH_HEIGHT[0], APPROACH_HEIGHT[0] + APPROACH_HEIGHT[1] * APPROACH_LENGTH
 
 
-def wind(way: Sequence[float]) -> str:
+def wind(way: np.ndarray) -> str:
     """The direction of a way (east, north) by eight winds."""
     return WINDS[round(math.atan2(way[0], way[1]) / (math.pi / 4)) % 8]
 
@@ -325,7 +325,7 @@ def strips_and_approaches(runways: Sequence[Runway], count: int = 12000, seed: i
 def read_outlines(file, origin: Sequence[float], attribute: str = "") -> List[Any]:
     """The polygons in a GeoJSON file: each its ring (n x 2, m, open), or, where it has holes, a list of its outer ring and theirs.
     @param origin of the scene: latitude, longitude (deg), height (m) @param attribute only of features that have this one"""
-    found = []
+    found: List[Any] = []
     for number, feature in enumerate(_features(pathlib.Path(file))):
         shape = feature["geometry"]
         if shape.get("type") in ("Polygon", "MultiPolygon") and (not attribute or feature["properties"].get(attribute)):
