@@ -362,7 +362,7 @@ class Stopped(Applications):
         self.assertEqual([path.name for path in (out / "sequences").iterdir()], ["00"])
         two = self.write("two.coverage.json", {**PLAN, "compare_with": [{**SENSOR, "name": "other"}]})
         out = self.home / "maps"
-        self.assertEqual(self.stop((_maps, "write_table"), ("coverage", two, "-o", out), 2)[0], 130)
+        self.assertEqual(self.stop((_maps, "write_table"), ("coverage", two, "-o", out), 3)[0], 130)
         self.assertEqual([path.name for path in out.iterdir()], ["Search905 changed"])
 
 
