@@ -438,7 +438,7 @@ def airport(options) -> None:
     if buildings and all(row.get("height_from") == "assumed" for row in buildings):
         warn(f"{options.extract} says no height of any building: all are assumed by kind, {options.out / 'assumed.csv'} lists them")
     print(f"{options.out}: {made.name}, {len(made.sides)} {'runways' if len(made.sides) > 1 else 'runway'}, "
-          f"{len(buildings)} buildings; README.txt says what is assumed")
+          f"{len(buildings)} {'building' if len(buildings) == 1 else 'buildings'}; README.txt says what is assumed")
     print(made.counts)
 
 

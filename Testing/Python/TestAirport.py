@@ -670,7 +670,7 @@ class Wrong(unittest.TestCase):
         files = [(across.write("across.osm"), "cross the meridian of 180 degrees"), (beside.write("beside.osm"), "would reach over the meridian of 180"),
                  (nothing.write("nothing.osm"), "holds no runway"), (plan.write("none.osm"), "holds no runway"), (FOLDER / "missing.osm", "no such file"), (FOLDER, "is no extract by its name"),
                  (FOLDER / "map.shp", "is no extract by its name")]
-        for name, content, said in (("text.osm", "no map", "GDAL cannot read it as an extract"), ("empty.geojson", "", "GDAL cannot read it"),
+        for name, content, said in (("text.osm", "no map", "GDAL cannot read it as an extract"), ("empty.geojson", "", "is empty"),
                                     ("cut.geojson", '{"type": "FeatureCollection", "features": [', "GDAL cannot read"),
                                     ("cut.osm", crossing().write("whole.osm").read_text()[:3000], "cut.osm: "), ("text.pbf", "no map", "GDAL cannot"),
                                     ("text.gpkg", "no map", "GDAL cannot"), ("null.geojson", '{"type": "FeatureCollection", "features": []}', "holds no runway")):

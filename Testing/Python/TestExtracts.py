@@ -6,6 +6,7 @@ import json
 import math
 import re
 import unittest
+import warnings
 
 import numpy as np
 from osgeo import gdal
@@ -105,7 +106,8 @@ class Formats(unittest.TestCase):
             found = things(other)
             self.assertEqual([row[:3] for row in found], [row[:3] for row in expected], other)
             if other in (geopackage, ta.FOLDER / "fenced.osm.pbf"):
-                self.assertEqual(left(other), left(file), other)
+                twice = {("wood", extract.TWICE): 1} if other != geopackage else {}  # GDAL drops the outer way
+                self.assertEqual(left(other), {("building", "not built"): 1, **twice}, other)
             np.testing.assert_allclose([row[3] for row in found], [row[3] for row in expected], atol=1.5, err_msg=str(other))
 
     def test_orders_of_xml(self):
@@ -137,18 +139,52 @@ class Formats(unittest.TestCase):
         nodes = "".join(f'<node id="{i}" lat="{53.603 + 1e-4 * (i % 2)}" lon="{13.301 + 1e-4 * (i // 2 % 2)}" version="1"/>' for i in (900, 901, 903, 902))
         ways = "".join(f'<way id="{number}" version="1">' + "".join(f'<nd ref="{i}"/>' for i in refs) + '<tag k="building" v="yes"/></way>' for number, refs in (
             (910, (900, 991, 992, 993, 900)), (911, (900, 901, 992, 993, 900)), (912, (900, 901, 903, 993, 900)), (913, (991, 992, 993, 991)), (914, (991, 901, 903, 902, 991))))
+        ways += '<way id="915"><nd ref="900"/><tag k="building" v="yes"/></way><way id="916"><tag k="building" v="yes"/></way>'
         relation = ('<relation id="920" version="1"><member type="way" ref="910" role="outer"/><member type="way" ref="999" role="outer"/>'
-                    '<tag k="type" v="multipolygon"/><tag k="natural" v="wood"/></relation>')
+                    '<tag k="type" v="multipolygon"/><tag k="natural" v="wood"/></relation>'
+                    '<relation id="921"><tag k="type" v="multipolygon"/><tag k="natural" v="wood"/></relation>')
+        text = text.replace('<tag k="aeroway"', '<nd ref="995"/><tag k="aeroway"')  # the runway goes on beyond the border
         file = ta.FOLDER / "cut.osm"
         file.write_text(text.replace("<way", nodes + ways + "<way", 1).replace("</osm>", relation + "</osm>"), encoding="utf-8")
-        for one in (file, ta.pbf(file)):
+        packed = ta.FOLDER / "packed.osm"  # nothing empty, which the test's own writer of PBF cannot write
+        packed.write_text(re.sub('<way id="916">.*?</way>|<relation id="921">.*?</relation>', "", file.read_text(encoding="utf-8")), encoding="utf-8")
+        for one in (file, ta.pbf(packed)):
             self.assertEqual([kind for kind, *_ in things(one)], ["runway"], one)
-            self.assertEqual(left(one), {("building", extract.CUT): 4, ("way", extract.CUT): 1, ("relation", extract.CUT): 1}, one)
+            self.assertEqual(left(one), {("building", extract.CUT): 4, ("way", extract.CUT): 1, ("relation", extract.CUT): 1,
+                                         **({("way", "no nodes"): 2, ("relation", "no ways"): 1} if one is file else {("way", "no nodes"): 1})}, one)
         folder = ta.fresh("cut")
         code, words = ta.run("airport", file, "-o", folder)
         self.assertEqual(code, 0, words)
-        self.assertIn("7 features were read, 1 is in the scene, 6 were left out: 6 cut by the extract's border", words)
-        self.assertIn("osmium extract --strategy smart", (folder / "README.txt").read_text(encoding="utf-8"))
+        self.assertIn("10 features were read, 1 is in the scene, 9 were left out: 6 cut by the extract's border, 2 no nodes, 1 no ways", words)
+        self.assertIn("a runway is cut by the extract's border, and ends there", words)
+        readme = (folder / "README.txt").read_text(encoding="utf-8")
+        self.assertIn("osmium extract --strategy smart", readme)
+        self.assertIn("cut by the extract's border, and shorter than they are: 1 runway", readme)
+
+    def test_what_is_not_a_whole_extract(self):
+        whole = fenced().write("whole.osm")
+        for name, content, words in (
+                ("none.osm", b"", "is empty"), ("page.osm", b"\n<html><body>too many requests</body></html>", "is a web page"),
+                ("own.geojson", b'{"version": 0.6, "generator": "Overpass API", "elements": []}', "is Overpass's own JSON"),
+                ("wide.osm", "<osm/>".encode("utf-16"), "is in UTF-16"), ("half.osm", whole.read_bytes()[:6000], "cannot be read to its end"),
+                ("half.osm.pbf", ta.pbf(whole).read_bytes()[:-200], "cannot be read to its end")):
+            file = ta.FOLDER / name
+            file.write_bytes(content)
+            with self.assertRaisesRegex(RuntimeError, f"{name}: {words}.*expected"):
+                extract.read_extract(file, KNOWN)
+
+    def test_what_is_drawn_twice(self):
+        """Parts above one another are two; of what stands in one place the higher counts, and the other is counted as left out."""
+        plan = runway(ta.Map())
+        for tags in ({"height": "10"}, {"height": "60", "min_height": "40"}, {"height": "60", "min_height": "45"}):
+            plan.area((0, 300), (40, 340), building__part="yes", **tags)
+        for height in ("30", "55", "40"):
+            plan.point(100, 300, man_made="mast", height=height)
+        plan.relation([plan.area((200, 300), (240, 340), building="yes", height="9")], [], building="yes", name="relation")
+        file = plan.write("twice.osm")
+        found = sorted((one.kind, float(one.tags["height"]), one.name) for one in extract.read_extract(file, KNOWN).features if one.kind != "runway")
+        self.assertEqual(found, [("building", 9, "relation"), ("mast", 55, ""), ("part", 10, ""), ("part", 60, "")])
+        self.assertEqual(left(file), {("part", extract.TWICE): 1, ("mast", extract.TWICE): 2, ("building", extract.TWICE): 1})
 
 
 class Runways(unittest.TestCase):
@@ -179,6 +215,18 @@ class Runways(unittest.TestCase):
         found, _ = self.runways((a, ref), (b, ref), (c, {}), ([(-900, 210), (900, 210)], {"ref": "09L/27R"}), ([(0, 700), (0, -700)], {"ref": "18/36"}))
         self.assertEqual(found, [("09/27", 1800, 90, "45", 0, 0), ("09L/27R", 1800, 90, None, 0, 0), ("18/36", 1400, 180, None, 0, 0)])
 
+    def test_areas_and_lines(self):
+        """An area without a line along it is a runway: one that a line crosses, and one in three pieces. Pieces without a number go on."""
+        def box(x0, x1):
+            return [(x0, -22), (x1, -22), (x1, 22), (x0, 22), (x0, -22)]
+
+        ref, area, across = {"ref": "09/27"}, {"area": "yes"}, [(-310, -290), (-290, -310), (310, 290), (290, 310), (-310, -290)]
+        line = ([(-900, 0), (900, 0)], ref)
+        self.assertEqual(self.runways(line, (across, {"ref": "04/22", **area}))[0], [("04/22", 849, 45, "28.3", 0, 0), ("09/27", 1800, 90, None, 0, 0)])
+        self.assertEqual(self.runways(line, (box(-850, 900), area))[0], [("09/27", 1800, 90, None, 0, 0)])
+        self.assertEqual(self.runways(*((box(x, x + 600), {**ref, **area}) for x in (-900, -300, 300)))[0], [("09/27", 1800, 90, "44.0", 0, 0)])
+        self.assertEqual(self.runways(([(-900, 0), (500, 0)], ref), ([(520, 0), (900, 0)], {}))[0], [("09/27", 1800, 90, None, 0, 0)])
+
     def test_displaced_thresholds(self):
         main, ref = [(-600, 0), (800, 0)], {"ref": "9/27", "width": "30"}
         for tags in ({"runway": "displaced_threshold", "ref": "9/27"}, {"runway": "displaced_threshold"}, {"aeroway": "displaced_threshold"}):
@@ -188,8 +236,12 @@ class Runways(unittest.TestCase):
         plan = ta.Map()
         plan.way([(-900, 0), (-600, 0)], aeroway="runway", ref="09/27", runway="displaced_threshold")
         plan.way([(-600, 0), (900, 0)], aeroway="runway", ref="09/27")
+        plan.area((-1000, -500), (1000, 500), aeroway="aerodrome", icao="XDIS")
+        plan.point(-600, 0, aeroway="threshold")
         folder = ta.fresh("displaced")
-        self.assertEqual(ta.run("airport", plan.write("displaced.osm"), "-o", folder)[0], 0)
+        code, words = ta.run("airport", plan.write("displaced.osm"), "-o", folder)
+        self.assertEqual(code, 0, words)
+        self.assertIn("4 features were read, 4 are in the scene, 0 were left out\n", words)
         self.assertIn("09/27: 1800 m long, 45 m wide; threshold displaced: of 09 by 300 m", (folder / "README.txt").read_text(encoding="utf-8"))
         scene = al.load_scene(folder / "airport.lidarscene.json")
         np.testing.assert_allclose(siting.read_runways(folder / "airport.geojson", scene.geodetic_origin)[0].displaced, (300, 0), atol=0.1)
@@ -214,7 +266,8 @@ class Heights(unittest.TestCase):
         for text, metres in (("12", 12), ("12.5 m", 12.5), ("12,5", 12.5), ("10 ft", 3.048), ("10'", 3.048), ("5'6\"", 1.6764), ("5'-6\"", 1.6764), ("5 ft 6 in", 1.6764),
                              ("2;3", 3), ("2;", 2), ("12-15", 15), ("~9", 9), ("approx 12", 12), ("ca. 12 m", 12), ("9 Meters", 9), ("12 M.", 12), ("1,200 ft", 365.76),
                              ("1200ft", 365.76), ("1,234.5 ft", 376.2756), ("1 200 ft", 365.76), ("12,500", 12.5), ("0.012 km", 12), ("350 cm", 3.5), ("2000 mm", 2),
-                             ("10 yd", 9.144), ("3.5 m above ground", 3.5), ("30 m AGL", 30), ("2 storeys", 6), ("\uff11\uff12", 12), ("9 m 4 in", None), ("three", None),
+                             ("10 yd", 9.144), ("3.5 m above ground", 3.5), ("30 m AGL", 30), ("2 storeys", 6), ("12+-1", 12), ("12\u00b11 m", 12), ("12/15", 15), ("12..15", 15), ("+12", 12), ("1e1", 10), ("12m 50cm", 12.5), ("40 ft/12 m", 12.192),
+                             ("12 \u043c", 12), ("12\u7c73", 12), ("12 meter hoch", 12), ("1'200", None), ("120 m AMSL", None), ("\uff11\uff12", 12), ("9 m 4 in", None), ("three", None),
                              ("-3", None), ("0", None), ("-1.0", None), ("5000", None), ("1000.5", None), ("nan", None), ("inf", None), ("", None), (None, None),
                              ("yes", None), ("1" + " " * 100_000 + "x", None)):
             found = extract.length_of(text)
@@ -243,6 +296,10 @@ class Heights(unittest.TestCase):
                 ({"building__part": "yes", "building__levels": "6", "building__min_level": "2"}, ("part", 18, 6, True)),
                 ({"building": "yes", "height": "5", "min_height": "9"}, ("building", 5, None, False)),
                 ({"building": "roof", "height": "8"}, ("canopy", 8, 7.5, False)),
+                ({"building": "roof", "min_height": "6"}, ("canopy", 6.5, 6, True)),
+                ({"building__part": "yes", "min_height": "40"}, ("part", 48, 40, True)),
+                ({"building": "Hangar", "height": "12", "end_date": "2999-01"}, ("hangar", 12, None, False)),
+                ({"building": "yes", "building__levels": "0", "building__levels__underground": "2", "height": "3"}, ("building", 3, None, False)),
                 ({"building": "roof", "height": "8", "min_height": "0"}, ("canopy", 8, None, False)),
                 ({"aeroway": "jet_bridge", "area": "yes"}, ("jet_bridge", 7, 4, True)),
                 ({"disused__building": "yes", "height": "9"}, ("building", 9, None, False)),
@@ -256,6 +313,17 @@ class Heights(unittest.TestCase):
                 ({"power": "generator", "height": "7"}, ("obstacle", 7, None, False)),
                 ({"man_made": "obelisk", "height": "30"}, ("obstacle", 30, None, False))):
             self.assertEqual(row(**tags), expected, tags)
+
+    def test_reasons_of_tags(self):
+        for tags, reason in (({"start_date": "2999"}, "not built"), ({"end_date": "2001-05-01"}, "ruins, or gone"),
+                             ({"building:levels": "0", "building:levels:underground": "2"}, "below ground")):
+            found = extract.Reader(KNOWN)
+            found.take({"building": "yes", **tags}, extract.gdal_modules()[1].CreateGeometryFromWkt("POLYGON ((0 0, 1e-3 0, 1e-3 1e-3, 0 1e-3, 0 0))"))
+            self.assertEqual([one.reason for one in found.done().left], [reason], tags)
+        area = extract.gdal_modules()[1].CreateGeometryFromWkt("POLYGON ((0 0, 1e-3 0, 1e-3 1e-3, 0 1e-3, 0 0))")
+        for said in ("12", "bogus"):
+            row = extract.properties_of(extract.Feature("building", {"height": "10", "min_height": said}, area), KNOWN)
+            self.assertEqual((row["height"], row.get("min_height"), row["min_height_from"]), (10, None, f"assumed: min_height is '{said}'"))
 
     def test_parts_stand_in_place_of_their_building(self):
         """A terminal of which a tower and a low part are drawn, one that is all parts, and a canopy that does not reach the ground."""
@@ -290,7 +358,7 @@ class LeftOut(unittest.TestCase):
         reasons = {"ruins, or gone": ({"building": "ruins"}, {"building": "collapsed"}, {"demolished__building": "yes"}, {"building": "yes", "ruins": "yes"}),
                    "not built": ({"building": "construction"}, {"proposed__building": "yes"}, {"construction__building": "hangar"}),
                    "below ground": ({"building": "yes", "layer": "-4"}, {"building": "yes", "location": "underground"}, {"building": "yes", "is_underground": "true"}),
-                   "no building": ({"building": "no"},), "": ({"building": "yes"},) * 40}
+                   "no building": ({"building": "no"},), "": ({"building": "yes"},) * 39 + ({"building": "yes", "height": "tall"},)}
         for tags in (tags for all_ in reasons.values() for tags in all_):
             plan.area((x, 300), (x + 8, 310), **tags)
             x += 12
@@ -307,6 +375,7 @@ class LeftOut(unittest.TestCase):
         self.assertEqual(code, 0, words)
         line = next(line for line in words.splitlines() if "features were read" in line)
         self.assertTrue(line.startswith("64 features were read, 42 are in the scene, 22 were left out: "), line)
+        self.assertTrue(line.endswith("; 1 height was not understood: 'tall'"), line)
         for part in ("6 outside the scene", "4 ruins, or gone", "3 not built", "3 below ground", "2 unknown kind", "1 unclosed", "1 no nodes", "1 no building",
                      "1 a point without an outline"):
             self.assertIn(part, line)
@@ -328,6 +397,12 @@ class LeftOut(unittest.TestCase):
         seen = []
         pictures.draw(ta.FOLDER / "name.png", (3.0, 2.0), lambda axes: seen.append(axes.set_title(r"A $\frac{1}{ $x_{")))
         self.assertFalse(seen[0].get_parse_math())
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            pictures.draw(ta.FOLDER / "name.png", (3.0, 2.0), lambda axes: axes.set_title("\u6771"))
+        plan = runway(ta.Map())
+        plan.point(0, 300, man_made="mast", name="A\u202eB")
+        self.assertIn("AB", [one.name for one in extract.read_extract(plan.write("marks.osm"), KNOWN).features])
         plan = runway(ta.Map())
         plan.area((-900, -400), (900, 400), aeroway="aerodrome", icao="XDOL", name=r"A $\frac{1}{ $x_{")
         self.assertEqual(ta.run("airport", plan.write("dollar.osm"), "-o", ta.fresh("dollar"))[0], 0)
@@ -404,6 +479,17 @@ class Surveyed(unittest.TestCase):
         self.assertEqual(code, 0, words)
         self.assertIn("1 an elevation without --heights", words)
 
+    def test_words_of_kinds(self):
+        """Whole words, of which the last counts."""
+        for word, kind in (("BUILDING", "tower"), ("12 MAIN STREET", "obstacle"), ("WIRELESS STATION", "obstacle"), ("WINDSOR CASTLE", "obstacle"), ("STREETLIGHT", "pole"),
+                           ("CABLE CAR PYLON", "mast"), ("TRANSMISSION_LINE", "wire"), ("T-L TWR", "mast"), ("BLDG-TWR", "tower"), ("WIND TURBINES", "turbine"), ("Trees", "tree")):
+            self.assertEqual(obstacles._kind_of(word, "point", KNOWN), kind, word)
+        place = ('<aixm:horizontalProjection_location><aixm:ElevatedPoint srsName="urn:ogc:def:crs:EPSG::4326"><gml:pos>53.603 13.302</gml:pos>'
+                 '</aixm:ElevatedPoint></aixm:horizontalProjection_location>')
+        found, _ = obstacles.read_obstacles(self.aixm(*({"id": f"V{i}", "name": name, "type": kind, "extent": '<aixm:verticalExtent uom="M">30</aixm:verticalExtent>', "place": place}
+                                                       for i, (name, kind) in enumerate((("Post office", "TOWER"), ("Crane 4", ""))))), KNOWN)
+        self.assertEqual([one.kind for one in found], ["tower", "crane"])
+
     def test_csv(self):
         file = ta.FOLDER / "obstacles.csv"
         ta.FOLDER.mkdir(parents=True, exist_ok=True)
@@ -418,6 +504,8 @@ class Surveyed(unittest.TestCase):
         for text, expected in (
                 ("longitude,latitude,height,unit,kind\n13.302,53.603,45,m,mast\n13.303,53.604,100,ft,tree\n", [("mast", 13.302, 53.603, 45, said), ("tree", 13.303, 53.604, 30.48, said)]),
                 ("Kind;Latitude;Longitude;Height (ft)\ncrane;53,603;13,302;100\n", [("crane", 13.302, 53.603, 30.48, said)]),
+                ("Longitude;Latitude;Height (ft)\n13,302;53,603;1,200\n13,302;53,603;100 ft\n13,302;53,603;100'\n13,302;53,603;30 m\n",
+                 [("obstacle", 13.302, 53.603, metres, said) for metres in (365.76, 30.48, 30.48, 30)]),
                 ("lat\tlon\theight_m\tname\n53\u00b036'10.8\"N\t013\u00b018'07.2\"E\t45\tx\n", [("obstacle", 13.302, 53.603, 45, said)]),
                 ("latitude,longitude,height,uom\n533610.8N,0131807.2W,45,M\n", [("obstacle", -13.302, 53.603, 45, said)]),
                 ("longitude,latitude,height\n13.302,53.603,45\n", [("obstacle", 13.302, 53.603, 45, said + ", m assumed")]),

@@ -215,7 +215,7 @@ class Airport:
                 raise ValueError(f"--bounds {west:g} {south:g} {east:g} {north:g}: expected west, south, east and north in degrees")
         progress("extract", 0, 1)
         found = read_extract(self.extract, self.known)
-        self.features, self.left, self.unknown = found.features, found.left, found.unknown
+        self.features, self.left, self.unknown, self.used = found.features, found.left, found.unknown, found.used
         progress("extract", 1, 1)
         self.runways, aerodrome = choose_runways(self.extract, found, self.known, icao, bounds)
         self.obstacles = [pathlib.Path(file) for file in obstacles]
@@ -230,8 +230,12 @@ class Airport:
         self.features = [one for one in self.features if one.kind != COAST]
         if coasts:
             seas = sea(coasts, self.box)
-            self.features += [Feature("water", {"name": "sea"}, shape) for shape in seas]
-            if not seas and any(one.shape.Intersects(self.box) for one in coasts):
+            self.features += [Feature("water", {"name": "sea"}, shape, 0) for shape in seas]
+            near = sum(one.shape.Intersects(self.box) for one in coasts)
+            self.left += [Left(COAST, "outside the scene", count=len(coasts) - near)] * (near < len(coasts))
+            self.used.update({COAST: near} if seas else {})
+            if near and not seas:
+                self.left.append(Left(COAST, "a coast that does not part the scene", count=near))
                 warnings.warn(f"{self.extract}: its coastlines do not part the scene: the sea is land there; draw it as natural=water, or cut the extract "
                               "wider", RuntimeWarning, stacklevel=2)
         ground = aerodrome.shape if aerodrome and _form(aerodrome.shape) == "area" else None
@@ -274,7 +278,7 @@ class Airport:
         for one in [*self.runways, *(one for one in self.features if one not in lines)]:
             shape = one.shape
             if not shape.Intersects(self.box) if shape.IsValid() else not shape.ConvexHull().Intersects(self.box):
-                outside[one.kind] += 1
+                outside[one.kind] += one.count
                 continue
             if "elevation" in one.tags and "height" not in one.tags:
                 place = shape.Centroid()
@@ -288,6 +292,9 @@ class Airport:
         self.left += [Left(kind, "outside the scene", count=count) for kind, count in outside.items()]
         found, drawn = without_parts(found, self.known)
         self.left += [Left(one.kind, "drawn by its parts", one.id, one.name) for one in drawn]
+        self.cut = [one for one in found if CUT in one.tags]
+        if any(one.kind == "runway" for one in self.cut):
+            warnings.warn(f"{self.extract}: a runway is {CUT}, and ends there: cut the extract wider", RuntimeWarning, stacklevel=3)
         return found
 
     def _mapped(self, chosen: Sequence[Feature]) -> bytes:
@@ -501,7 +508,7 @@ class Airport:
         for row in self.rows:
             for what in ("kind", "height", "top", "min_height", "width", "surface"):
                 if "assumed" in str(row.get(f"{what}_from", "")):
-                    yield row["kind"], row.get("id", ""), row.get("name") or row.get("ref") or "", what, row.get(what), row[f"{what}_from"]
+                    yield row["kind"], row.get("id", ""), row.get("name") or row.get("ref") or "", what, row.get(what, 0.0), row[f"{what}_from"]
 
     def _assumed(self) -> bytes:
         table = io.StringIO(newline="")
@@ -515,7 +522,9 @@ class Airport:
 
     def _count(self, chosen: Sequence[Feature]) -> None:
         """How many of each kind are in the scene; what its reader leaves out becomes part of `self.left`."""
-        self.there = collections.Counter(one.kind for one in chosen)
+        self.there = collections.Counter(self.used)
+        for one in chosen:
+            self.there[one.kind] += one.count
         kinds = {kind.replace("_", " "): kind for kind in self.known["kinds"]}
         report = field_values(self.scene.surfaces.GetBlock(0)).get("scene_report", ())
         for name, count, reason in re.findall(r"^(.*): (\d+) (.*) were left out$", "\n".join([report] if isinstance(report, str) else report), re.MULTILINE):
@@ -534,8 +543,11 @@ class Airport:
 
         def verb(count: int, one: str, more: str) -> str:
             return f"{count:,} {one if count == 1 else more}"
-        return (f"{there + left:,} features were read, {verb(there, 'is', 'are')} in the scene, {verb(left, 'was', 'were')} left out") + (
-            ": " + ", ".join(f"{count:,} {reason}" for reason, count in reasons.most_common()) if left else "")
+        strange = [said[1] for row in self.rows for name in ("height_from", "top_from", "min_height_from")
+                   for said in [re.match("assumed: [^ ]+ is ('.*?'|\".*?\")(?:, above|$)", str(row.get(name, "")))] if said]
+        return (f"{verb(there + left, 'feature was', 'features were')} read, {verb(there, 'is', 'are')} in the scene, {verb(left, 'was', 'were')} left out") + (
+            ": " + ", ".join(f"{count:,} {reason}" for reason, count in reasons.most_common()) if left else "") + (
+            f"; {verb(len(strange), 'height was', 'heights were')} not understood: {', '.join(list(dict.fromkeys(strange))[:4])}" if strange else "")
 
     def _counts(self) -> str:
         """The same by kind."""
@@ -554,7 +566,10 @@ class Airport:
         lines += [f"  all {outside}: {', '.join(away)}"] * bool(away)
         named = [f"{name} ({count:,})" for name, count in self.unknown.most_common(7) if name != "others"]
         lines += [f"  among those of unknown kind: {', '.join(named[:6])}"] * bool(named)
-        if any(one.reason == CUT for one in self.left):
+        if self.cut:
+            lines.append(f"  {CUT}, and shorter than they are: " + ", ".join(
+                f"{count:,} {kind}" for kind, count in collections.Counter(one.kind for one in self.cut).items()))
+        if self.cut or any(one.reason == CUT for one in self.left):
             lines.append("  what is cut by the border is whole in an extract that is cut by `osmium extract --strategy smart`")
         return "\n".join(lines)
 

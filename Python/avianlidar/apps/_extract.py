@@ -5,6 +5,7 @@ from __future__ import annotations
 import collections
 import contextlib
 import dataclasses
+import datetime
 import json
 import mmap
 import pathlib
@@ -23,18 +24,20 @@ LARGEST = 256 << 20  # bytes of an extract
 TALLEST = 1000.0  # m: what is higher is no height
 LONGEST_LENGTH = 100  # characters
 COAST = "coastline"
-UNKNOWN, CUT = "unknown kind", "cut by the extract's border"
+UNKNOWN, CUT, TWICE = "unknown kind", "cut by the extract's border", "drawn twice"
+CONTROLS = re.compile("[\x00-\x1f\x7f-\x9f\u200e\u200f\u202a-\u202e\u2066-\u2069]")  # and marks of direction, which disorder a line
 TAG = re.compile(r'"((?:[^"\\]|\\.)*)"=>"((?:[^"\\]|\\.)*)"')  # of GDAL's OSM driver
 THOUSANDS = "[, \u00a0\u202f'\u2019]"  # between groups of three digits
 NUMBER = rf"\d{{1,3}}(?:{THOUSANDS}\d{{3}})+(?:\.\d+)?|\d+(?:[.,]\d+)?"
-LENGTH = re.compile(rf"(?:~|<|>|≈|c\.|ca\.?|circa|approx\.?|about|max\.?|up to)?\s*({NUMBER})\s*\+?\s*"
-                    r"(mm|cm|km|millimet\w+|centimet\w+|kilomet\w+|met(?:er|re)s?|mtrs?|mts?|m|ft|foot|feet|['′]|yd|yards?|stor[ei]\w*|floors?|levels?)?\.?"
-                    rf"\s*-?\s*(?:({NUMBER})\s*(?:\"|''|″|in|inch|inches)\.?)?\s*(?:\(.*\)|a\.?g\.?l\.?|above ground\w*(?: level)?)?", re.IGNORECASE)
+LENGTH = re.compile(rf"(?:~|<|>|≈|\+|c\.|ca\.?|circa|approx\.?|about|max\.?|up to)?\s*({NUMBER})\s*(?:(?:±|\+/?-)\s*(?:{NUMBER})|\+)?\s*"
+                    r"(mm|cm|km|millimet\w+|centimet\w+|kilomet\w+|met(?:er|re)s?|mtrs?|mts?|m|м|метр\w*|米|ft|foot|feet|['′]|yd|yards?|stor[ei]\w*|floors?|levels?)?\.?"
+                    rf"\s*-?\s*(?:({NUMBER})\s*(?:\"|''|″|in|inch|inches)\.?)?\s*(?:\(.*\)|a\.?g\.?l\.?|above ground\w*(?: level)?|high|tall|hoch)?", re.IGNORECASE)
 UNITS = {"mm": 1e-3, "mil": 1e-3, "c": 1e-2, "k": 1e3, "f": 0.3048, "'": 0.3048, "′": 0.3048, "y": 0.9144}  # m, by how a unit begins
 HEIGHTS = ("height", "building:height", "est_height", "height_m", "render_height", "measuredHeight", "height:hub")
 LEVELS = ("building:levels", "num_floors", "levels", "floors")
 MIN_HEIGHTS = ("min_height", "building:min_height", "render_min_height")
 MIN_LEVELS = ("building:min_level", "min_level", "min_floor")
+NOTHING = re.compile(r"\s*(?:-\d+(?:\.\d+)?|0*\.?0*)\s*m?\s*")  # no height
 WIDTHS = ("width", "width_m", "diameter", "diameter_crown")
 
 
@@ -45,6 +48,7 @@ class Feature:
     kind: str
     tags: Dict[str, str]
     shape: Any
+    count: int = 1  # of the file's features that it is made of
 
     @property
     def id(self) -> str:
@@ -75,11 +79,12 @@ class Extract:
     aerodromes: List[Feature] = dataclasses.field(default_factory=list)
     models: List[Feature] = dataclasses.field(default_factory=list)  # model airfields
     thresholds: List[Feature] = dataclasses.field(default_factory=list)  # of runways, points
+    used: collections.Counter = dataclasses.field(default_factory=collections.Counter)  # features that the scene follows but does not draw
     left: List[Left] = dataclasses.field(default_factory=list)
     unknown: collections.Counter = dataclasses.field(default_factory=collections.Counter)  # by tag
 
     def leave(self, feature: Feature, reason: str) -> None:
-        self.left.append(Left(feature.kind, reason, feature.id, feature.name))
+        self.left.append(Left(feature.kind, reason, feature.id, feature.name, feature.count))
 
 
 def rules() -> Dict[str, Any]:
@@ -182,10 +187,11 @@ def _has_extent(corners: np.ndarray, form: str) -> bool:
     return least > 0.0 and (form == "line" or bool(np.abs(away[:, 0] * far[1] - away[:, 1] * far[0]).max() > least))
 
 
-def _number(text: str) -> float:
-    """Of "1,200.5", "1 200", "12,5"."""
+def number_of(text: str, most: float = np.inf) -> float:
+    """Of "1,200.5", "1 200", "12,5". @param most above which a comma is taken for that of decimals"""
     thousands = re.fullmatch(rf"\d{{1,3}}({THOUSANDS}\d{{3}})+(\.\d+)?", text)
-    return float(re.sub(THOUSANDS, "", text) if thousands else text.replace(",", "."))
+    value = float(re.sub(THOUSANDS, "", text) if thousands else text.replace(",", "."))
+    return value if value <= most or "," not in text else float(text.replace(",", ".", 1).replace(",", ""))
 
 
 def length_of(text: Any) -> Optional[float]:
@@ -203,25 +209,29 @@ def _greatest(text: Any, one: Callable[[str], Optional[float]]) -> Optional[floa
     said = str(text if text is not None else "").strip().strip(";").strip()
     if not said or len(said) > LONGEST_LENGTH:  # expressions take the third power of a text's size
         return None
-    values = [one(part.strip()) for part in re.split(r";|(?<=[\w.])\s*[-–]\s*(?=\d)", said)]
+    values = [one(part.strip()) for part in re.split(r"[;/](?!-)|\.\.|(?<=[\w.])\s*[-–]\s*(?=\d)", said)]
     return max(values) if None not in values and 0.0 < max(values) <= TALLEST else None
 
 
 def _one_length(text: str) -> Optional[float]:
     found = LENGTH.fullmatch(text)
     unit = (found[2] or "m").lower() if found else ""
+    parts = re.fullmatch(r"(\d+)\s*m\s*(\d{1,2})\s*cm", text, re.IGNORECASE)
+    if parts:
+        return int(parts[1]) + int(parts[2]) / 100.0
+    if re.fullmatch(r"\d+(?:\.\d+)?e\d", text, re.IGNORECASE):
+        return float(text)
     if not found or (found[3] and unit[0] not in "f'′"):
         return None
     if unit[0] in "sl" or unit.startswith("fl"):
-        return _number(found[1]) * rules()["level_height"]
+        return number_of(found[1]) * rules()["level_height"]
     metres = next((value for word, value in UNITS.items() if unit.startswith(word)), 1.0)
-    value = (_number(found[1]) + (_number(found[3]) if found[3] else 0.0) / 12) * metres
-    return value if value <= TALLEST or "," not in found[1] else float(found[1].replace(",", ".", 1).replace(",", "")) * metres
+    return (number_of(found[1], TALLEST / metres) + (number_of(found[3]) if found[3] else 0.0) / 12) * metres
 
 
 def _one_number_of_levels(text: str) -> Optional[float]:
     found = re.fullmatch(r"(\d+(?:[.,]\d+)?)(?:\s*\+\s*(\d+(?:\.\d+)?))?\s*(?:[a-z]+\.?)?", text, re.IGNORECASE)
-    return _number(found[1]) + float(found[2] or 0.0) if found else None
+    return number_of(found[1]) + float(found[2] or 0.0) if found else None
 
 
 def _tags(feature, names: List[str]) -> Dict[str, str]:
@@ -240,7 +250,7 @@ def _tags(feature, names: List[str]) -> Dict[str, str]:
             tags["name"] = str(json.loads(value).get("primary") or "")
         elif value:
             tags[name] = value
-    return tags
+    return {name: value if value.isprintable() else CONTROLS.sub("", value) for name, value in tags.items()}
 
 
 def _as_osm(tags: Dict[str, str], known: Dict[str, Any]) -> Dict[str, str]:
@@ -251,6 +261,7 @@ def _as_osm(tags: Dict[str, str], known: Dict[str, Any]) -> Dict[str, str]:
         tags = {"building:part" if is_part else "building": said or "yes", **tags}
     elif said and tags.get("subtype") in known["subtypes"]:
         tags = {known["subtypes"][tags["subtype"]]: said.replace("power_", ""), **tags}
+    tags.update({name: tags[name].lower() for name in known["main"] if name in tags})
     for name in [name for name in tags if name.startswith(("disused:", "abandoned:"))]:
         if name.split(":", 1)[1] in known["standing"]:
             tags = {name.split(":", 1)[1]: tags[name], **tags}
@@ -267,7 +278,8 @@ class Reader:
         self.reasons = Table((reason, tags) for reason, rows in known["left_out"].items() for tags in rows)
         self.lines, self.models = (Table(("", tags) for tags in known[name]) for name in ("lines", "models"))
         self.found = Extract()
-        self.seen: Dict[Any, Tuple[int, Feature, Optional[str]]] = {}
+        self.seen: Dict[Any, List[Tuple[int, Feature]]] = collections.defaultdict(list)  # with ranks: of two alike the greater counts
+        self.today = datetime.date.today().isoformat()
         self.cut: Set[str] = set()  # ways of which nodes are missing
 
     def hear(self, words: str) -> None:
@@ -275,9 +287,9 @@ class Reader:
         part = re.search(r"For way (-?\d+), got only", words)
         if part:
             self.cut.add(part[1])
-        gone = re.search(r"(Way|Relation) (-?\d+) (?:has missing ways|with \d+ nodes that)", words)
+        gone = re.search(r"(Way|Relation) (-?\d+) (?:has missing ways|with \d+ nodes( that)?)", words)
         if gone:
-            self.found.left.append(Left(gone[1].lower(), CUT, gone[2]))
+            self.found.left.append(Left(gone[1].lower(), CUT if gone[3] or "missing" in words else "no nodes", gone[2]))
         elif words.startswith("Non closed ring detected"):
             self.found.left.append(Left("relation", "unclosed"))
 
@@ -313,34 +325,48 @@ class Reader:
         if not len(corners):
             if shape is None or shape.IsEmpty():
                 left(one, "without a geometry")
-            elif tags.get("type") != "building":  # whose members are read by themselves
+            elif tags.get("type") == "building":  # whose members are read by themselves
+                self.found.used["relation"] += 1
+            else:
                 self._do_not_know(tags)
             return
         is_closed = form == "area" or _is_closed(shape)
         if self.models.find(tags) is not None:
             self.found.models.append(one)
-        if tags.get("aeroway") == "threshold" and form == "point":
+        is_threshold = tags.get("aeroway") == "threshold" and form == "point"
+        if is_threshold:
             self.found.thresholds.append(one)
-        is_aerodrome = tags.get("aeroway") == "aerodrome"
-        if is_aerodrome and "heliport" not in (tags.get("aerodrome:type"), tags.get("aerodrome")):
+        is_aerodrome = tags.get("aeroway") == "aerodrome" and "heliport" not in (tags.get("aerodrome:type"), tags.get("aerodrome"))
+        if is_aerodrome:
             self.found.aerodromes.append(Feature("", tags, _as_area(shape) if form == "line" and is_closed else shape))
         if tags.get("natural") == COAST and form != "point":
             self._keep(Feature(COAST, tags, shape), form, corners, None)
             return
         kinds = self._kinds(tags, shape)
         if not kinds:
-            self._leave_unknown(one, form, is_aerodrome)
+            self._leave_unknown(one, form, "threshold" if is_threshold else "aerodrome" if is_aerodrome else None)
         for kind, taken in kinds:
             one = Feature(kind, tags, shape)
-            reason = self.reasons.find(tags)
+            reason = self._reason(tags)
             if reason is None and not _has_extent(corners, taken):
                 reason = CUT if one.tags.get("osm_way_id") in self.cut else "no nodes"
             elif reason is None and form != taken:
                 one.shape = _as_area(shape) if taken == "area" else gdal_modules()[1].ForceToMultiLineString(shape)
             self._keep(one, taken, corners, reason)
 
-    def _leave_unknown(self, one: Feature, form: str, is_aerodrome: bool) -> None:
-        """What no rule takes: what is gone or is not there yet, what is not closed, points of what has an outline, all else."""
+    def _reason(self, tags: Dict[str, str]) -> Optional[str]:
+        """Why a feature of a known kind stands nowhere, by its tags and dates."""
+        for name, reason in (("start_date", "not built"), ("end_date", "ruins, or gone")):
+            date = re.match(r"\d{4}(?:-\d\d){0,2}$", tags.get(name, ""))
+            today = self.today[:len(date[0])] if date else ""
+            if date and (date[0] > today if name == "start_date" else date[0] < today):
+                return reason
+        underground = tags.get("building:levels") == "0" and levels_of(tags.get("building:levels:underground"))
+        return self.reasons.find(tags) or ("below ground" if underground and not any(name in tags for name in (*HEIGHTS, "roof:levels")) else None)
+
+    def _leave_unknown(self, one: Feature, form: str, use: Optional[str]) -> None:
+        """What no rule takes: what is gone or is not there yet, what is not closed, points of what has an outline, all else.
+        @param use what it is used for, if it is"""
         gone = {rest: (word, self.known["lifecycle"][state]) for name, word in one.tags.items() for state, _, rest in [name.partition(":")]
                 if rest and state in self.known["lifecycle"]}
         one.kind = self.kinds["area" if form == "line" else form].find({name: word for name, (word, _) in gone.items()}) or ""
@@ -350,8 +376,10 @@ class Reader:
         one.kind = self.kinds["area"].find(one.tags) or "" if form != "area" else ""
         if "height" in self.known["kinds"].get(one.kind, ()):
             reason = "a point without an outline" if form == "point" else CUT if one.tags.get("osm_way_id") in self.cut else "unclosed"
-            self.found.leave(one, self.reasons.find(one.tags) or reason)
-        elif not is_aerodrome:
+            self.found.leave(one, self._reason(one.tags) or reason)
+        elif use:
+            self.found.used[use] += 1
+        else:
             self._do_not_know(one.tags)
 
     def _do_not_know(self, tags: Dict[str, str]) -> None:
@@ -359,20 +387,45 @@ class Reader:
         self.found.unknown[f"{name}={tags[name]}" if name else "others"] += 1
 
     def _keep(self, one: Feature, form: str, corners: np.ndarray, reason: Optional[str]) -> None:
-        """Once each: extracts repeat closed ways as lines and areas, and the outer way of a relation. @param reason to leave it out"""
-        once = (one.kind, frozenset(map(tuple, np.round(corners, 9).tolist())))
+        """Once each: extracts repeat closed ways as lines and areas, and the outer way of a relation. What stands above or beyond
+        another of the same corners is another. @param reason to leave it out"""
+        if reason is not None:
+            self.found.leave(one, reason)
+            return
+        alike = self.seen[one.kind, frozenset(map(tuple, np.round(corners, 9).tolist()))]
         rank = 99 if form == "line" else sum(max(part.GetGeometryCount(), 1) for part in parts_of(one.shape))
-        if once not in self.seen or self.seen[once][0] < rank:
-            self.seen[once] = rank, one, reason
+        for number, (other_rank, other) in enumerate(alike):
+            greater = self._greater(one, other)
+            if greater is not None:
+                lesser = other if greater is one else one
+                self.found.leave(lesser, TWICE)
+                alike[number] = max(rank, other_rank), Feature(one.kind, {**lesser.tags, **greater.tags}, (one if rank > other_rank else other).shape)
+                return
+        alike.append((rank, one))
+
+    def _greater(self, one: Feature, other: Feature) -> Optional[Feature]:
+        """Which of two in one place counts: the one whose height is not assumed, else the one that reaches from below to above the
+        other. None where neither does."""
+        rule = self.known["kinds"].get(one.kind, {})
+        if "height" not in rule:
+            return other
+        name, spans = height_name(rule), []
+        for each in (one, other):
+            row = properties_of(each, self.known)
+            spans.append((row[f"{name}_from"].startswith("assumed") and "min_height" not in row, row.get("min_height", 0.0), row[name]))
+        (is_assumed, low, high), (is_other_assumed, other_low, other_high) = spans
+        if is_assumed or (not is_other_assumed and other_low <= low and high <= other_high):
+            return other
+        return one if is_other_assumed or (low <= other_low and other_high <= high) else None
 
     def done(self) -> Extract:
-        for _, one, reason in self.seen.values():
-            if reason is None and one.tags.get("osm_way_id") in self.cut and form_of(one.shape) == "area":
-                reason = CUT
-            if reason is None:
-                self.found.features.append(one)
-            else:
-                self.found.leave(one, reason)
+        for _, one in (pair for alike in self.seen.values() for pair in alike):
+            is_cut = one.tags.get("osm_way_id") in self.cut
+            if is_cut and form_of(one.shape) == "area":
+                self.found.leave(one, CUT)
+                continue
+            one.tags = {**one.tags, CUT: "yes"} if is_cut else one.tags
+            self.found.features.append(one)
         return self.found
 
 
@@ -410,6 +463,13 @@ def _needs_order(file: pathlib.Path) -> bool:
         way, relation = data.find(b"<way "), data.find(b"<relation ")
         return (0 <= way < data.rfind(b"<node ") or 0 <= relation < data.rfind(b"<way ") or 0 <= relation < data.rfind(b"<node ")
                 or re.search(rb"""action=["']delete|visible=["']false|<nd [^>]*lat=""", data) is not None)
+
+
+def _memberless(file: pathlib.Path) -> int:
+    """How many areas of XML of OpenStreetMap have no way, of which GDAL says nothing."""
+    with open(file, "rb") as stream, mmap.mmap(stream.fileno(), 0, access=mmap.ACCESS_READ) as data:
+        return sum(re.search(rb"""type=["']way""", one[1]) is None and re.search(rb"""v=["'](multipolygon|boundary)""", one[1]) is not None
+                   for one in re.finditer(rb"<relation [^>]*[^/]>(.*?)</relation>", data, re.DOTALL))
 
 
 def _elements(file: pathlib.Path) -> Iterator[Tuple[str, Any]]:
@@ -458,6 +518,18 @@ def _in_order(file: pathlib.Path, out: pathlib.Path) -> pathlib.Path:
     return out
 
 
+def _expect_map(file: pathlib.Path) -> None:
+    """Say what a file is that tools leave where an extract was expected."""
+    if not file.is_file():
+        return
+    with open(file, "rb") as stream:
+        head = stream.read(2000).lstrip(b"\xef\xbb\xbf \r\n\t").lower()
+    what = ("is empty" if not head else "is in UTF-16" if head[:2] in (b"\xff\xfe", b"\xfe\xff") else "is a web page" if head.startswith((b"<!doctype html", b"<html"))
+            else "is Overpass's own JSON" if head.startswith(b"{") and b'"elements"' in head else "")
+    if what:
+        raise Error(f"{file}: {what}, expected an extract of a map: export it again as .osm, .osm.pbf, .geojson or .gpkg")
+
+
 def read_extract(file: pathlib.Path, known: Dict[str, Any]) -> Extract:
     """What the rules know, aerodromes, and what is left out."""
     gdal, _, osr = gdal_modules()
@@ -467,6 +539,7 @@ def read_extract(file: pathlib.Path, known: Dict[str, Any]) -> Extract:
     if file.exists() and file.stat().st_size > LARGEST:
         raise Error(f"{file}: holds {file.stat().st_size >> 20} MiB, expected at most {LARGEST >> 20}: cut it to the airport and some "
                     "kilometres around it first, as `osmium extract --bbox W,S,E,N` does")
+    _expect_map(file)
     options = (f"CONFIG_FILE={pathlib.Path(__file__).with_name('osmconf.ini')}", "USE_CUSTOM_INDEXING=NO") if driver == "OSM" else ()
     reader = Reader(known)
     aliases = {name.replace(":", "_"): name for name in known["colons"]}
@@ -475,12 +548,17 @@ def read_extract(file: pathlib.Path, known: Dict[str, Any]) -> Extract:
         if file.suffix.lower() == ".osm" and file.is_file() and file.stat().st_size and _needs_order(file):
             with naming("its nodes, ways and relations"):
                 source = _in_order(file, pathlib.Path(stack.enter_context(tempfile.TemporaryDirectory())) / "in_order.osm")
+        if file.suffix.lower() == ".osm" and source.is_file():
+            reader.found.left += [Left("relation", "no ways")] * _memberless(source)
         data = open_file(source, "an extract", [driver], gdal.OF_VECTOR, options)
         stack.enter_context(naming(str(file)))
         stack.enter_context(quiet(reader.hear if driver == "OSM" else None))
         layers: Dict[str, Tuple[List[str], Any]] = {}
         while True:
-            feature, layer = data.GetNextFeature()
+            try:
+                feature, layer = data.GetNextFeature()
+            except RuntimeError:
+                raise Error("cannot be read to its end: it is damaged or not whole, expected a whole extract") from None
             if feature is None:
                 break
             if layer.GetName() not in layers:
@@ -538,7 +616,7 @@ def _height(tags: Dict[str, str], rule: Dict[str, Any], floor: float) -> Tuple[f
         if lowest and levels:
             return lowest + floor * (levels - 1.0) + up, f"{source}, {lowest:g} m for the lowest and {floor:g} m for others assumed"
         return each * levels + up, f"{source if levels else 'roof:levels'}, {each:g} m each assumed"
-    said = next((name for name in HEIGHTS if name in tags), None)
+    said = next((name for name in HEIGHTS if name in tags and not NOTHING.fullmatch(tags[name])), None)
     return rule["height"], f"assumed: {said} is {str(tags[said])[:40]!r}" if said else "assumed"
 
 
@@ -556,11 +634,16 @@ def properties_of(feature: Feature, known: Dict[str, Any]) -> Dict[str, Any]:
             below, why = _first(tags, MIN_LEVELS, levels_of)
             under = rule.get("level_height", floor) * below if below else None
             why = f"{why}, {rule.get('level_height', floor):g} m each assumed" if below else why
+        if under is not None and "assumed" in source and (source.startswith("assumed") or under >= height):
+            height, source = under + rule.get("thickness", height), f"{source}, above {why}"
+        said = next((name for name in (*MIN_HEIGHTS, *MIN_LEVELS) if name in tags and not NOTHING.fullmatch(tags[name])), None)
         if under is None and "thickness" in rule and not tags.get("min_height", "").startswith("0"):
             under, why = height - rule["thickness"], "assumed"
+        elif said and not (under and under < height):
+            under, why = 0.0, f"assumed: {said} is {str(tags[said])[:40]!r}"
         properties.update({name: round(float(height), 3), f"{name}_from": source})
-        if under is not None and 0.0 < under < height:
-            properties.update(min_height=round(float(under), 3), min_height_from=why)
+        if under is not None and 0.0 <= under < height:
+            properties.update(min_height=round(float(under), 3) or None, min_height_from=why)
     if "width" in rule and form_of(feature.shape) != "area":
         value, source = _first(tags, WIDTHS, length_of)
         properties.update(width=round(float(rule["width"] if value is None else value), 3), width_from=source)

@@ -13,14 +13,16 @@ import numpy as np
 
 from .._disk import read_regular
 from .._pipeline import Error
-from ._extract import Feature, Left, degrees, form_of, gdal_modules
+from ._extract import CONTROLS, NUMBER, TALLEST, Feature, Left, degrees, form_of, gdal_modules, number_of
 
-METRES = {"m": 1.0, "metre": 1.0, "metres": 1.0, "meter": 1.0, "meters": 1.0, "ft": 0.3048, "foot": 0.3048, "feet": 0.3048}
+METRES = {"'": 0.3048, "′": 0.3048, "m": 1.0, "metre": 1.0, "metres": 1.0, "meter": 1.0, "meters": 1.0, "ft": 0.3048, "foot": 0.3048, "feet": 0.3048}
 COLUMNS = {"longitude": ("longitude", "lon", "long", "lng", "londec", "x"), "latitude": ("latitude", "lat", "latdec", "y"),
            "height": ("height", "agl", "hgt"), "elevation": ("elevation", "amsl", "elev"), "unit": ("unit", "units", "uom"),
            "kind": ("kind", "type", "obstacle_type"), "name": ("name", "id", "identifier", "designator", "oas"), "action": ("action",)}
 UNIT = re.compile(r"[ _]*[\[(](\w+)[\])]$|_(m|ft|feet)$")  # of a column, as in "height_ft" and "Height (m)"
+CELL = re.compile(rf"\+?({NUMBER})\s*(m|met(?:re|er)s?|ft|foot|feet|['′])?\.?\s*(?:agl|amsl)?", re.IGNORECASE)
 ANGLE = re.compile(r"([NSEW]?)\s*(\d{1,3})[°:\s-]*(\d{2})[′':\s-]*(\d{2}(?:[.,]\d+)?)[″\"\s]*([NSEW]?)", re.IGNORECASE)
+MOST = {"height": TALLEST, "elevation": 9000.0}  # m
 NO_PLACE = "without a place or a height"
 
 
@@ -34,6 +36,7 @@ def read_obstacles(file: pathlib.Path, known: Dict[str, Any]) -> Tuple[List[Feat
     left: List[Left] = []
     for tags, shape in (_aixm if suffix == ".xml" else _csv)(file, read_regular(file)):
         kind = _kind_of(tags.pop("word"), form_of(shape) if shape is not None else "", known)
+        tags = {name: CONTROLS.sub("", value) for name, value in tags.items()}
         one = Feature(kind, {**tags, "height_source": f"surveyed, {file.name}" + tags.pop("note", "")}, shape)
         reason = "a wire" if kind == "wire" else "ruins, or gone" if tags.pop("gone", "") else ""
         if shape is None or not ("height" in tags or "elevation" in tags):
@@ -44,22 +47,24 @@ def read_obstacles(file: pathlib.Path, known: Dict[str, Any]) -> Tuple[List[Feat
 
 
 def _kind_of(word: str, form: str, known: Dict[str, Any]) -> str:
-    """The kind of the rules for the words of a file. A building without an outline is taken for a tower, which has a width."""
-    kind = next((kind for kind, words in known["obstacles"].items() if any(one in word.lower() for one in words)), "obstacle")
+    """The kind of the rules for the words of a file, of which the last says what it is, as in "cable car pylon". A building without an outline is taken for a tower, which has a width."""
+    said = re.sub(r"[\W_]+", " ", word.lower())
+    ends = [(found.end(), len(one), kind) for kind, words in known["obstacles"].items() for one in words for found in re.finditer(rf"\b{one}s?\b", said)]
+    kind = max(ends, default=(0, 0, "obstacle"))[2]
     if kind != "wire" and form and form not in known["kinds"][kind]["from"]:
         kind = {"point": "tower" if kind == "building" else "obstacle", "line": "wall"}.get(form, "obstacle")
     return kind
 
 
-def _metres(value: str, unit: str, what: str) -> Optional[float]:
-    """None where there is no number above 0."""
-    try:
-        number = float(value)
-    except (TypeError, ValueError):
+def _metres(value: str, unit: str, what: str, most: float) -> Optional[float]:
+    """None where there is no number above 0. @param unit where the value has none @param most m"""
+    found = CELL.fullmatch(value)
+    if not found:
         return None
-    if unit.lower() not in METRES:
+    unit = (found[2] or unit).lower()
+    if unit not in METRES:
         raise Error(f"{what}: the unit is {unit!r}, expected m or ft")
-    return number * METRES[unit.lower()] if number > 0.0 and np.isfinite(number) else None
+    return number_of(found[1], most / METRES[unit]) * METRES[unit] or None
 
 
 def _csv(file: pathlib.Path, content: bytes) -> Iterator[Tuple[Dict[str, str], Any]]:
@@ -83,10 +88,10 @@ def _csv(file: pathlib.Path, content: bytes) -> Iterator[Tuple[Dict[str, str], A
         for column in ("height", "elevation"):
             own = UNIT.search(names[at[column]]) if at[column] is not None else None
             unit = cells["unit"] or (own and (own[1] or own[2])) or ("ft" if is_faa else "")
-            value = _metres(cells[column].replace(",", "."), unit or "m", f"{file}: row {number}")
+            value = _metres(cells[column], unit or "m", f"{file}: row {number}", MOST[column])
             if value is not None:
                 tags[column] = f"{value:.3f}"
-                tags["note"] = "" if unit else ", m assumed"
+                tags["note"] = "" if unit or not cells[column][-1].isdigit() else ", m assumed"
         longitude, latitude = _angle(cells["longitude"]), _angle(cells["latitude"])
         is_place = longitude is not None and latitude is not None and abs(longitude) <= 180.0 and abs(latitude) <= 90.0
         yield tags, gdal_modules()[1].CreateGeometryFromWkt(f"POINT ({longitude!r} {latitude!r})") if is_place else None
@@ -132,10 +137,10 @@ def _aixm(file: pathlib.Path, content: bytes) -> Iterator[Tuple[Dict[str, str], 
             name = _text(last, "name")
             what = f"{file}: {name}"
             tags = {"id": next((value for key, value in structure.attrib.items() if key.endswith("}id")), name), "name": name,
-                    "word": " ".join((_text(part, "type") or _text(last, "type"), name)) if _text(last, "type") else name}
+                    "word": _text(part, "type") or _text(last, "type") or name}
             for column, names in (("height", ("verticalExtent",)), ("elevation", ("elevation",))):
                 for one in _all(part, *names)[:1]:
-                    value = _metres((one.text or "").strip(), one.get("uom", "M"), what)
+                    value = _metres((one.text or "").strip(), one.get("uom", "M"), what, MOST[column])
                     tags.update({column: f"{value:.3f}"} if value is not None else {})
             yield tags, _shape(part, what)
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import pathlib
+import warnings
 from typing import Any, Callable, Dict, List, Mapping, Sequence, Tuple
 
 import numpy as np
@@ -46,7 +47,8 @@ def draw(file, size: Tuple[float, float], work: Callable[[Any], Any], columns: i
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
     content = io.BytesIO()
-    with rc_context({"text.parse_math": False}):  # names are drawn as they are written, with their $
+    with rc_context({"text.parse_math": False}), warnings.catch_warnings():  # names are drawn as they are written, with their $
+        warnings.filterwarnings("ignore", "Glyph .* missing from")  # boxes stand for letters that the font lacks
         figure = Figure(figsize=size, layout="constrained")
         FigureCanvasAgg(figure)
         axes = figure.subplots(1, columns)

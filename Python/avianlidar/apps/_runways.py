@@ -17,6 +17,7 @@ from ._maps import coordinate_system
 NEAR_AERODROME = 3000.0  # m: a runway belongs to the nearest aerodrome within
 ONE_AIRPORT = 6000.0  # m between runways of one airport, where no aerodrome is in the extract
 MODEL_NEAR = 100.0  # m of a model airfield
+ALONG = math.cos(math.radians(10.0))  # of two directions that are the same
 THRESHOLD_BESIDE, THRESHOLD_BEYOND = 30.0, 30.0  # m: a threshold lies on a runway; nearer to its end it is the end
 
 
@@ -50,11 +51,11 @@ def _designators(tags: Dict[str, str]) -> Set[str]:
 
 
 class _Piece:
-    """A way of a runway: tags, and its points (n x 2, m)."""
+    """A way of a runway: its feature, tags, and points (n x 2, m)."""
 
-    def __init__(self, tags: Dict[str, str], points: np.ndarray):
-        self.tags, self.points = tags, points
-        self.is_displaced = "displaced_threshold" in (tags.get("runway"), tags.get("aeroway"))
+    def __init__(self, feature: Feature, points: np.ndarray, **more: str):
+        self.feature, self.tags, self.points = feature, {**more, **feature.tags}, points
+        self.is_displaced = "displaced_threshold" in (self.tags.get("runway"), self.tags.get("aeroway"))
         way = points[-1] - points[0]
         self.length = float(np.linalg.norm(way))
         self.along = way / self.length
@@ -69,11 +70,11 @@ class _Piece:
         across = np.abs(off @ np.array([-long.along[1], long.along[0]]))
         at = np.sort(off @ long.along)
         gap = max(at[0] - long.length, -at[1], 0.0)
-        return bool(across.max() <= known["runway_offset"] and gap <= (known["runway_gap"] if mine & theirs else known["runway_offset"]))
+        return bool(across.max() <= known["runway_offset"] and gap <= known["runway_gap"])
 
 
-def _joined(pieces: List[_Piece], known: Dict[str, Any]) -> List[Tuple[Dict[str, str], np.ndarray, List[float]]]:
-    """Runways of pieces: tags, ends (2 x 2, m), and by how much each end's threshold is displaced, m. The first end is that of the
+def _joined(pieces: List[_Piece], known: Dict[str, Any]) -> List[Tuple[Feature, np.ndarray, List[float]]]:
+    """Runways of pieces: features without a geometry, ends (2 x 2, m), and by how much each end's threshold is displaced, m. The first end is that of the
     first number of `ref`."""
     groups: List[List[_Piece]] = []
     for piece in sorted(pieces, key=lambda one: -one.length):
@@ -90,7 +91,8 @@ def _joined(pieces: List[_Piece], known: Dict[str, Any]) -> List[Tuple[Dict[str,
         at = (points - start) @ along
         ends = points[[np.argmin(at), np.argmax(at)]]
         inner = np.concatenate([(one.points - start) @ along for one in group if not one.is_displaced] or [at])
-        found.append((tags, ends, [float(inner.min() - at.min()), float(at.max() - inner.max())]))
+        one = Feature("runway", tags, None, len({id(piece.feature) for piece in group}))
+        found.append((one, ends, [float(inner.min() - at.min()), float(at.max() - inner.max())]))
     return found
 
 
@@ -122,6 +124,8 @@ def choose_runways(file: pathlib.Path, extract: Extract, known: Dict[str, Any], 
         other = next((f"; left out: {left.reason}" for left in extract.left if left.kind == "runway"), "")
         lost = sum(left.kind == "way" for left in extract.left)
         other += f"; {lost} ways lack their nodes, which `osmium sort` puts before them" if lost and not other else ""
+        if lost and file.suffix.lower() == ".pbf":
+            other += "; if the places of nodes are in the ways, `osmium cat FILE -o FILE.osm` writes an extract that is read"
         raise Error(f"{file}: holds no runway, expected lines or areas with the tag aeroway=runway{other}")
     middle = (lines + areas)[0].shape.Centroid()
     local = coordinate_system((middle.GetY(), middle.GetX(), 0.0))
@@ -135,12 +139,20 @@ def choose_runways(file: pathlib.Path, extract: Extract, known: Dict[str, Any], 
     def points_of(shape) -> np.ndarray:
         return np.array([point[:2] for point in metres(shape).GetPoints()])
 
-    pieces = [_Piece(one.tags, points) for one in lines for part in parts_of(one.shape) for points in [points_of(part)]
-              if np.linalg.norm(points[-1] - points[0]) > 1.0]
-    for one in areas:  # that have no line
-        if not any(line.shape.Intersects(one.shape.ConvexHull()) for line in lines):
-            ends, width = _axis_of(metres(one.shape))
-            pieces.append(_Piece({"width": f"{width:.1f}", **one.tags}, ends))
+    pieces = []
+    for one in lines:
+        of_line = [_Piece(one, points) for part in parts_of(one.shape) for points in [points_of(part)] if np.linalg.norm(points[-1] - points[0]) > 1.0]
+        pieces += of_line
+        if not of_line:
+            extract.leave(one, "a runway of no length")
+    drawn = [(piece, ogr.CreateGeometryFromWkt("LINESTRING (" + ", ".join(f"{x!r} {y!r}" for x, y in piece.points.tolist()) + ")")) for piece in pieces]
+    for one in areas:
+        hull = metres(one.shape).ConvexHull()
+        ends, width = _axis_of(hull)
+        area = _Piece(one, ends, width=f"{width:.1f}")
+        inside = sum(line.Intersection(hull).Length() for piece, line in drawn if abs(piece.along @ area.along) > ALONG)
+        if inside < area.length / 2:  # no line is drawn along it
+            pieces.append(area)
             extract.features.remove(one)
     places = [metres(one.shape) for one in extract.aerodromes]
     models = [metres(one.shape) for one in extract.models]
@@ -148,11 +160,11 @@ def choose_runways(file: pathlib.Path, extract: Extract, known: Dict[str, Any], 
     runways: List[Feature] = []
     groups: Dict[Any, List[Feature]] = collections.defaultdict(list)
     away_of: List[Any] = []
-    for tags, ends, by_pieces in _joined(pieces, known):
+    for one, ends, by_pieces in _joined(pieces, known):
         line = ogr.Geometry(ogr.wkbLineString)
         for x, y in ends:
             line.AddPoint_2D(float(x), float(y))
-        one = Feature("runway", tags, line.Clone())
+        one.shape = line.Clone()
         one.shape.Transform(to_degrees)
         is_model = line.Length() < known["model_runway"] and any(model.Distance(line) <= MODEL_NEAR for model in models)
         if is_model or line.Length() < known["shortest_runway"]:
@@ -169,6 +181,9 @@ def choose_runways(file: pathlib.Path, extract: Extract, known: Dict[str, Any], 
         kept = [number for number, one in enumerate(runways) if one.shape.Intersects(inside)]
         if not kept:
             raise Error(f"{file}: --bounds {' '.join(f'{x:g}' for x in box)} holds none of its runways")
+        for number, one in enumerate(runways):
+            if number not in kept:
+                extract.leave(one, "outside the scene")
         runways, away_of = [runways[number] for number in kept], [away_of[number] for number in kept]
     lines_of: Dict[Any, List[Any]] = collections.defaultdict(list)
     for one, line in zip(runways, away_of):
@@ -192,5 +207,7 @@ def choose_runways(file: pathlib.Path, extract: Extract, known: Dict[str, Any], 
                     "--bounds W S E N to say which")
     else:
         chosen = list(groups)
+    for one in (one for key in groups if key not in chosen for one in groups[key]):
+        extract.leave(one, "of another airport")
     aerodrome = next((extract.aerodromes[key] for key in chosen if isinstance(key, int)), None)
     return [one for key in chosen for one in groups[key]], aerodrome
