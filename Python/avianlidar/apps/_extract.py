@@ -210,7 +210,8 @@ def _greatest(text: Any, one: Callable[[str], Optional[float]]) -> Optional[floa
     if not said or len(said) > LONGEST_LENGTH:  # expressions take the third power of a text's size
         return None
     values = [one(part.strip()) for part in re.split(r"[;/](?!-)|\.\.|(?<=[\w.])\s*[-–]\s*(?=\d)", said)]
-    return max(values) if None not in values and 0.0 < max(values) <= TALLEST else None
+    known = [value for value in values if value is not None]
+    return max(known) if len(known) == len(values) and 0.0 < max(known) <= TALLEST else None
 
 
 def _one_length(text: str) -> Optional[float]:
@@ -245,7 +246,7 @@ def _tags(feature, names: List[str]) -> Dict[str, str]:
                 tags.update((key, str(word)) for key, word in json.loads(value).items())
             else:
                 found = TAG.findall(value)
-                tags.update(found if "\\" not in value else [tuple(re.sub(r"\\(.)", r"\1", word) for word in pair) for pair in found])
+                tags.update(found if "\\" not in value else [(re.sub(r"\\(.)", r"\1", key), re.sub(r"\\(.)", r"\1", word)) for key, word in found])
         elif name == "names" and value.startswith("{"):
             tags["name"] = str(json.loads(value).get("primary") or "")
         elif value:
@@ -307,11 +308,11 @@ class Reader:
             area = self.kinds["area"].find(tags) if closed and not linear else None
             line = self.kinds["line"].find(tags) if not (closed and is_area) or "barrier" in tags else None
             found = [(area, "area"), (line if line != area else None, "line")]
-        found = [(kind, form) for kind, form in found if kind is not None]
+        known = [(kind, form) for kind, form in found if kind is not None]
         has_height = any(length_of(tags[name]) for name in HEIGHTS if name in tags)
-        if not found and has_height and (form == "point" or (closed and not linear and not any(name in tags for name in self.known["low"]))):
-            found = [("obstacle", "point" if form == "point" else "area")]
-        return found
+        if not known and has_height and (form == "point" or (closed and not linear and not any(name in tags for name in self.known["low"]))):
+            known = [("obstacle", "point" if form == "point" else "area")]
+        return known
 
     def take(self, tags: Dict[str, str], shape) -> None:
         """A feature. @param shape ogr, degrees; may be None"""
@@ -321,7 +322,7 @@ class Reader:
         one = Feature("", tags, shape)
         if fits(tags, {"type": "building", "building": "*"}) and not form and shape is not None:  # a relation of outlines and parts
             shape, form = _union([_as_area(part) for part in parts_of(shape) if form_of(part) == "area" or _is_closed(part)]), "area"
-        corners = _outer(shape) if form else ()
+        corners = _outer(shape) if form else np.empty((0, 2))
         if not len(corners):
             if shape is None or shape.IsEmpty():
                 left(one, "without a geometry")

@@ -86,7 +86,8 @@ def _csv(file: pathlib.Path, content: bytes) -> Iterator[Tuple[Dict[str, str], A
         cells = {column: row[place].strip() if place is not None and place < len(row) else "" for column, place in at.items()}
         tags = {"id": cells["name"] or str(number), "name": cells["name"], "word": cells["kind"], "gone": "yes" if cells["action"].upper() == "D" else ""}
         for column in ("height", "elevation"):
-            own = UNIT.search(names[at[column]]) if at[column] is not None else None
+            place = at[column]
+            own = UNIT.search(names[place]) if place is not None else None
             unit = cells["unit"] or (own and (own[1] or own[2])) or ("ft" if is_faa else "")
             value = _metres(cells[column], unit or "m", f"{file}: row {number}", MOST[column])
             if value is not None:

@@ -32,7 +32,7 @@ def _axis_of(area) -> Tuple[np.ndarray, float]:
     hull = area.ConvexHull()
     ring = hull.GetGeometryRef(0)
     corners = np.array([ring.GetPoint_2D(i) for i in range(ring.GetPointCount())])
-    best = None
+    best: Any = None
     for way in np.diff(corners, axis=0):
         along = way / np.linalg.norm(way)
         turned = corners @ np.array([along, (-along[1], along[0])]).T
