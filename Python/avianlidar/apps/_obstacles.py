@@ -162,8 +162,8 @@ def _shape(part, what: str):
             except ValueError:
                 raise Error(f"{what}: {' '.join(words)[:60]!r}: expected coordinates in groups of {size}") from None
             line = ogr.Geometry(ogr.wkbLinearRing) if form == "Surface" else shape
-            for x, y in points.tolist():
-                line.AddPoint_2D(x, y)
+            for point in points:
+                line.AddPoint_2D(*map(float, point))
             if form == "Surface" and len(points):
                 shape.AddGeometry(line)
         if not shape.IsEmpty():

@@ -145,7 +145,7 @@ def choose_runways(file: pathlib.Path, extract: Extract, known: Dict[str, Any], 
         pieces += of_line
         if not of_line:
             extract.leave(one, "a runway of no length")
-    drawn = [(piece, ogr.CreateGeometryFromWkt("LINESTRING (" + ", ".join(f"{x!r} {y!r}" for x, y in piece.points.tolist()) + ")")) for piece in pieces]
+    drawn = [(piece, ogr.CreateGeometryFromWkt("LINESTRING (" + ", ".join(f"{float(at[0])!r} {float(at[1])!r}" for at in piece.points) + ")")) for piece in pieces]
     for one in areas:
         hull = metres(one.shape).ConvexHull()
         ends, width = _axis_of(hull)
