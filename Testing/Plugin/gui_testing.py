@@ -22,7 +22,7 @@ HERE = os.path.dirname(os.path.abspath(__file__))
 SOURCE_DIR = os.environ["AVIANLIDAR_SOURCE_DIR"]
 OUTPUT_DIR = os.environ["AVIANLIDAR_TEST_OUTPUT_DIR"]
 PLUGIN_DIR = os.path.dirname(os.environ["AVIANLIDAR_PLUGIN"])
-TIMEOUT = 240
+TIMEOUT = 800  # s, against what hangs
 
 
 @contextlib.contextmanager
