@@ -559,7 +559,7 @@ class Terrains(unittest.TestCase):
             plain = gdal.Open(str(file))
             image = gdal.GetDriverByName("MEM").Create("", plain.RasterXSize, plain.RasterYSize, 1, kind)
             image.SetGeoTransform(plain.GetGeoTransform())
-            image.SetProjection(plain.GetProjection() if system is None else system)
+            image.SetProjection(plain.GetProjection())
             image.GetRasterBand(1).WriteArray(plain.ReadAsArray())
             change(image.GetRasterBand(1))
             gdal.GetDriverByName("GTiff").CreateCopy(str(file), image)
