@@ -280,7 +280,7 @@ class Less(unittest.TestCase):
         np.testing.assert_allclose(table[next(name for name in table.dtype.names if name.startswith("value"))], values, atol=1e-6)
         self.assertGreater(len(values), 30)
         self.assertEqual(np.argmax(values), 0)
-        cover.places = drawn(1 << 40)  # what is told of sites is of other places than those by which they are ranked, with clutter
+        cover.places = drawn(1 << 40)  # the page states sites at other places than those by which they are ranked, with clutter
         with open(HERE / "asked_files" / "gain.csv", encoding="utf-8") as file:
             for row in csv.DictReader(file):
                 missed = np.prod([1.0 - by_species([float(c) for c in place.split()], True) for place in row["sites"].split(";")], axis=0)

@@ -201,7 +201,7 @@ def length_of(text: Any) -> Optional[float]:
 
 
 def levels_of(text: Any) -> Optional[float]:
-    """The number of "2", "2 floors", "3+1", the greatest of "2;3", "2,3" and "2-3"; None where it is none."""
+    """The number of "2", "2 floors", "3+1", the greatest of "2;3", "2,3" and "2-3"; None for other texts."""
     return _greatest(re.sub(r",(?!5\b)", ";", str(text)) if text else text, _one_number_of_levels)
 
 
