@@ -21,7 +21,8 @@ set(avianlidar_vtk_components
   IOPLY
   IOXML
   ParallelCore
-  vtksys)
+  vtksys
+  zlib)
 set(AVIANLIDAR_VTK_COMPONENTS "${avianlidar_vtk_components}")
 if (AVIANLIDAR_BUILD_PYTHON)
   list(APPEND avianlidar_vtk_components Python WrappingPythonCore)
@@ -96,6 +97,7 @@ function (avianlidar_build_module)
     TEST_OUTPUT_DIRECTORY "${AVIANLIDAR_TEST_OUTPUT_DIR}")
 endfunction ()
 avianlidar_build_module()
+add_subdirectory(IO/MeshReader)
 if (BUILD_TESTING)
   ExternalData_Add_Target(AvianLidarData)
 endif ()

@@ -68,8 +68,6 @@ set(private_sources
   Filters/Private/Echoes/vtkAvianLidarModelNotes.cxx
   Filters/Private/Coverage/vtkAvianLidarCoverageOutput.cxx
   Filters/Private/Coverage/vtkAvianLidarPlaces.cxx
-  IO/Private/AssimpFileLook.cxx
-  IO/Private/AssimpFiles.cxx
   IO/Private/ByteSource.cxx
   IO/Private/CloudData.cxx
   IO/Private/CloudNotes.cxx
@@ -83,7 +81,8 @@ set(private_sources
   IO/Private/LasWriting.cxx
   IO/Private/LazFormat.cxx
   IO/Private/MeshImport.cxx
-  IO/Private/NodeGraph.cxx
+  IO/Private/MeshReaderProcess.cxx
+  IO/Private/MeshStream.cxx
   IO/Private/ObjectDescription.cxx
   IO/Private/OrganisedCells.cxx
   IO/Private/OutputFile.cxx
@@ -105,10 +104,6 @@ set(private_sources
   IO/Private/Terrain.cxx
   IO/Private/TextLines.cxx
   IO/Private/VirtualFiles.cxx
-  IO/Private/VtkCellCheck.cxx
-  IO/Private/VtkFileLook.cxx
-  IO/Private/VtkMeshImport.cxx
-  IO/Private/XmlTags.cxx
   IO/Private/vtkAvianLidarCloudFields.cxx)
 
 vtk_module_add_module(AvianLidar::AvianLidar
@@ -166,7 +161,6 @@ vtk_module_link(AvianLidar::AvianLidar
     avianlidarVolumeTree
     avianlidarKernel
     AvianLidar::xxhash
-    assimp::assimp
     AvianLidar::geos
     AvianLidar::utf8
     GDAL::GDAL

@@ -18,22 +18,18 @@ namespace avianlidar::scene
  * graph applied in double precision, and vertices of identical coordinates made one, over all parts
  * of the file. Triangles carry indices in materialNames, which never carry colours.
  *
+ * The libraries run in a program of their own (IO/MeshReader): a file on which they crash, never
+ * end or take all memory is an error like any other. The limits are those of MeshReaderProcess.h.
+ *
  * Throws Error where the file cannot be read, holds no triangle, or has a coordinate that is not
- * finite; WorkStopped where keepGoing returns false.
+ * finite; std::bad_alloc where the memory does not suffice; WorkStopped where keepGoing, which is
+ * asked about ten times in a second, returns false.
  */
 Mesh ReadMesh(const std::string& file, const std::function<bool()>& keepGoing);
 
 /// Turn what ReadMesh() made of a file so that z is up. `upAxis`: 'y' or 'z', 0 for what the format
 /// says.
 void TurnUp(const std::string& file, char upAxis, Mesh& mesh);
-
-/// The parts of ReadMesh.
-Mesh ReadAssimpMesh(const std::string& file, const std::function<bool()>& keepGoing);
-Mesh ReadVtkMesh(const std::string& file);
-bool IsVtkFile(const std::string& file);
-
-/// Make points with identical coordinates one; triangles keep their number and order.
-void MergePoints(Mesh& mesh);
 }
 
 #endif

@@ -9,9 +9,11 @@
 #include "VirtualFiles.h"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <new>
 #include <set>
+#include <sstream>
 
 namespace avianlidar::scene
 {
@@ -154,20 +156,31 @@ private:
   std::map<std::string, File> Files;
 };
 
-Part MakeMesh(const Scene& scene, const Object& object, MeshFiles& files,
-  UnmappedMaterials& unmapped, std::vector<std::string>& report,
-  const std::function<bool()>& keepGoing)
+Part MakeMesh(BuiltScene& built, const Object& object, MeshFiles& files,
+  UnmappedMaterials& unmapped, const std::function<bool()>& keepGoing)
 {
   Part part{ object.name, object.objectClass, files.Take(object.file, keepGoing) };
   TurnUp(object.file, object.upAxis, part.mesh);
   if (part.mesh.skippedFaces > 0)
   {
-    report.push_back(object.name + ": " + std::to_string(part.mesh.skippedFaces) +
+    built.report.push_back(object.name + ": " + std::to_string(part.mesh.skippedFaces) +
       " points or lines were left out");
+  }
+  constexpr double leastLoss = 0.01; // m
+  const Vec3& scale = object.placement.scale;
+  const double lost =
+    part.mesh.rounding * std::max({ std::abs(scale[0]), std::abs(scale[1]), std::abs(scale[2]) });
+  if (lost > leastLoss)
+  {
+    std::ostringstream text;
+    text.precision(2);
+    text << object.name << ": its coordinates are so large that single precision keeps them to "
+         << lost << " m only: subtract an offset from them, and give it as position";
+    built.warnings.push_back(text.str());
   }
   if (object.medium.empty())
   {
-    MapMaterials(scene, object, part.mesh, unmapped);
+    MapMaterials(built.description, object, part.mesh, unmapped);
   }
   return part;
 }
@@ -196,10 +209,11 @@ private:
   std::map<std::string, Terrain> Known;
 };
 
-std::vector<Part> BuildObject(const Scene& scene, const Object& object, const Terrain* terrain,
-  MeshFiles& files, UnmappedMaterials& unmapped, std::vector<std::string>& report,
-  const std::function<bool()>& keepGoing)
+// Adds to the report and the warnings, not to the parts.
+std::vector<Part> BuildObject(BuiltScene& built, const Object& object, const Terrain* terrain,
+  MeshFiles& files, UnmappedMaterials& unmapped, const std::function<bool()>& keepGoing)
 {
+  const Scene& scene = built.description;
   std::vector<Part> parts;
   if (object.kind == ObjectKind::Medium)
   {
@@ -208,7 +222,7 @@ std::vector<Part> BuildObject(const Scene& scene, const Object& object, const Te
   }
   if (object.kind == ObjectKind::Mesh)
   {
-    parts.push_back(MakeMesh(scene, object, files, unmapped, report, keepGoing));
+    parts.push_back(MakeMesh(built, object, files, unmapped, keepGoing));
   }
   else
   {
@@ -221,7 +235,7 @@ std::vector<Part> BuildObject(const Scene& scene, const Object& object, const Te
     }
     if (object.kind == ObjectKind::Footprints)
     {
-      parts = ReadFootprints(named, scene, terrain, report, keepGoing);
+      parts = ReadFootprints(named, scene, terrain, built.report, keepGoing);
     }
     else
     {
@@ -322,8 +336,7 @@ BuiltScene OutlineScene(
     {
       const Terrain* terrain =
         hasParts(object) ? terrains.Get(object.footprints.on, built.parts) : nullptr;
-      return BuildObject(
-        built.description, object, terrain, files, unmapped, built.report, keepGoing);
+      return BuildObject(built, object, terrain, files, unmapped, keepGoing);
     }
     return std::vector<Part>{ { object.name, object.objectClass, {} } };
   };
@@ -333,6 +346,7 @@ BuiltScene OutlineScene(
     part = { part.name, part.objectClass, {} };
   }
   built.report.clear();
+  built.warnings.clear();
   return built;
 }
 
@@ -349,8 +363,7 @@ BuiltScene BuildScene(
     [&](const Object& object, const std::function<bool()>& keepGoing)
     {
       const Terrain* terrain = terrains.Get(object.footprints.on, built.parts);
-      return BuildObject(
-        built.description, object, terrain, files, unmapped, built.report, keepGoing);
+      return BuildObject(built, object, terrain, files, unmapped, keepGoing);
     },
     progress);
   unmapped.Warn(built.warnings);

@@ -153,6 +153,9 @@ struct Mesh
   std::vector<std::string> materialNames;
   /// Faces that are points or lines, which no ray hits.
   std::int64_t skippedFaces = 0;
+  /// Distance between neighbouring numbers of single precision at the largest coordinate, in units
+  /// of the file; 0 where the reader keeps double precision.
+  double rounding = 0.0;
 };
 
 /// One object of the output.

@@ -81,11 +81,6 @@ std::string VirtualName(const std::string& file)
   return IsCompressed(file) ? "/vsigzip/" + file : file;
 }
 
-std::string UncompressedName(const std::string& file)
-{
-  return IsCompressed(file) ? file.substr(0, file.size() - 3) : file;
-}
-
 GdalOption::GdalOption(const char* name, const char* value)
   : Name(name)
 {

@@ -16,9 +16,6 @@ namespace avianlidar::scene
 /// name itself.
 std::string VirtualName(const std::string& file);
 
-/// The name without ".gz": it tells the format.
-std::string UncompressedName(const std::string& file);
-
 /// An option of GDAL for this thread, which has its old value again afterwards.
 class GdalOption
 {

@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Files that would end the process: each is one error that names file and reason, and a good scene is read after it.
+"""Files on which libraries crash, never end or take all memory: each is one error that names file and reason.
 
-The files are read one after the other in a process of their own, with the address space and the stack of which the
-numbers below speak."""
+The files are read one after the other in a process with the limits below; meshes in one of their own, which the reader starts."""
 import base64
 import gzip
 import json
 import os
+import re
 import resource
 import struct
 import subprocess
@@ -17,6 +17,7 @@ import unittest
 import scenetools as st
 
 ADDRESSES = 4 << 30  # bytes
+MESH_GIGABYTES = "0.5"
 STACK = 8 << 20
 DEEP = 80000
 CHAIN = 20000
@@ -144,85 +145,71 @@ TEXTS = [
     ('{"version":1,"objects":' + "[" * DEEP, "is nested more than 100 deep"),
 ]
 
-# Name and content of a mesh, and what the error says.
+# Name and content of meshes of one triangle at most, which libraries cannot be trusted with.
 MESHES = [
-    ("chain.gltf", chain(CHAIN), "is nested more than 1000 deep"),
-    ("chain.glb", glb(chain(CHAIN)), "is nested more than 1000 deep"),
-    ("chain.gltf.gz", gzip.compress(chain(CHAIN).encode()), "is nested more than 1000 deep"),
-    ("values.gltf", gltf([[]], "[" * 10**6 + "]" * 10**6), "is nested more than 1000 deep"),
-    ("nodes.gltf", '{"asset":{"version":"2.0"},"nodes":[1,{"children":5},{"children":["x",-1,99]}]}', "Assimp cannot read it"),
-    ("nonodes.gltf", '{"asset":{"version":"2.0"},"nodes":5}', "Assimp cannot read it"),
-    ("list.gltf", "[1]", "Assimp cannot read it"),
-    ("cycle.gltf", gltf([[1], [2], [0]]), "has a node within itself"),
-    ("double.gltf", gltf([[i + 1] * 2 for i in range(50)] + [[]]), "nodes need about"),
-    ("chain.dae", collada("<node>" * CHAIN + TRIANGLE + "</node>" * CHAIN), "is nested more than 1000 deep"),
-    ("chain16.dae", collada("<node>" * CHAIN + TRIANGLE + "</node>" * CHAIN, encoding="UTF-16").encode("utf-16"),
-     "is nested more than 1000 deep"),
-    ("own.dae", collada(f'<node id="a">{TRIANGLE}<instance_node url="#a"/></node>'), "has a node within itself"),
+    ("chain.gltf", chain(CHAIN)),
+    ("chain.glb", glb(chain(CHAIN))),
+    ("chain.gltf.gz", gzip.compress(chain(CHAIN).encode())),
+    ("values.gltf", gltf([[]], "[" * 10**6 + "]" * 10**6)),
+    ("nodes.gltf", '{"asset":{"version":"2.0"},"nodes":[1,{"children":5},{"children":["x",-1,99]}]}'),
+    ("nonodes.gltf", '{"asset":{"version":"2.0"},"nodes":5}'),
+    ("list.gltf", "[1]"),
+    ("cycle.gltf", gltf([[1], [2], [0]])),
+    ("double.gltf", gltf([[i + 1] * 2 for i in range(50)] + [[]])),
+    ("chain.dae", collada("<node>" * CHAIN + TRIANGLE + "</node>" * CHAIN)),
+    ("chain16.dae", collada("<node>" * CHAIN + TRIANGLE + "</node>" * CHAIN, encoding="UTF-16").encode("utf-16")),
+    ("own.dae", collada(f'<node id="a">{TRIANGLE}<instance_node url="#a"/></node>')),
     ("others.dae", collada('<node id="s0"><instance_node url="#a"/></node>',
-                           '<node id="a"><instance_node url="#b"/></node><node id="b"><instance_node url="#a"/></node>'),
-     "has a node within itself"),
+                           '<node id="a"><instance_node url="#b"/></node><node id="b"><instance_node url="#a"/></node>')),
     ("tenfold.dae", collada('<node id="s0"><instance_node url="#l0"/></node>',
-                            TENFOLD + f'<node id="l12">{TRIANGLE}</node>'), "nodes need about"),
-    ("chain.x3d", x3d("<Group>" * CHAIN + SHAPE + "</Group>" * CHAIN), "is nested more than 1000 deep"),
-    ("own.x3d", x3d('<Group DEF="a"><Group USE="a"/></Group>'), "has a node within itself"),
-    ("chain.ac", AC3D + "OBJECT group\nkids 1\n" * CHAIN + AC3D_TRIANGLE, "is nested more than 1000 deep"),
-    ("chain.x", "xof 0303txt 0032\n" + "Frame a {\n" * CHAIN + "}\n" * CHAIN, "is nested more than 1000 deep"),
-
-    ("empty.ply", PLY.format(1) + "0\n", "a face has no vertex"),
-    ("cell.vtk", legacy("POLYDATA", POINTS + "POLYGONS 1 4\n99999999 0 1 2\n"),
-     "a cell says that it has 99999999 points, and has room for 3"),
-    ("binary.vtk", binary(99999999), "a cell says that it has 99999999 points, and has room for 3"),
-    ("below.vtk", legacy("POLYDATA", POINTS + "POLYGONS 1 4\n-3 0 1 2\n"), "a cell says that it has -3 points"),
-    ("typeless.vtk", legacy("POLYDATA", POINTS + "POLYGONS 2 3\nOFFSETS \n0 3\nCONNECTIVITY vtktypeint64\n0 1 2\n", "5.1"),
-     "after OFFSETS '' stands, expected vtktypeint64"),
-    ("unknown.vtk", legacy("POLYDATA", POINTS + "POLYGONS 2 3\nOFFSETS vtktypeint64\n0 3\nCONNECTIVITY xx\n0 1 2\n", "5.1"),
-     "after CONNECTIVITY 'xx' stands, expected vtktypeint64"),
-    ("none.vtk", legacy("UNSTRUCTURED_GRID", POINTS + "CELLS 2 3\nOFFSETS vtktypeint64\n0 3\n0 1 2\nCELL_TYPES 1\n5\n", "5.1"),
-     "'0' stands where CONNECTIVITY is expected"),
-    ("binary5.vtk", binary5(b"CONNECTIVITY \n"), "after CONNECTIVITY"),
-    ("cells.vtk", legacy("UNSTRUCTURED_GRID", POINTS + "CELLS 1 4\n99999999 0 1 2\nCELL_TYPES 1\n5\n"),
-     "a cell says that it has 99999999 points"),
-    ("points.vtk", legacy("POLYDATA", WHOLE.replace("POINTS 3", f"POINTS {HUGE}")), "values in one place"),
-    ("polygons.vtk", legacy("POLYDATA", WHOLE.replace("POLYGONS 1 4", f"POLYGONS 1 {HUGE}")), "values in one place"),
+                            TENFOLD + f'<node id="l12">{TRIANGLE}</node>')),
+    ("chain.x3d", x3d("<Group>" * CHAIN + SHAPE + "</Group>" * CHAIN)),
+    ("own.x3d", x3d('<Group DEF="a"><Group USE="a"/></Group>')),
+    ("chain.ac", AC3D + "OBJECT group\nkids 1\n" * CHAIN + AC3D_TRIANGLE),
+    ("chain.x", "xof 0303txt 0032\n" + "Frame a {\n" * CHAIN + "}\n" * CHAIN),
+    ("empty.ply", PLY.format(1) + "0\n"),
+    ("cell.vtk", legacy("POLYDATA", POINTS + "POLYGONS 1 4\n99999999 0 1 2\n")),
+    ("binary.vtk", binary(99999999)),
+    ("below.vtk", legacy("POLYDATA", POINTS + "POLYGONS 1 4\n-3 0 1 2\n")),
+    ("typeless.vtk", legacy("POLYDATA", POINTS + "POLYGONS 2 3\nOFFSETS \n0 3\nCONNECTIVITY vtktypeint64\n0 1 2\n", "5.1")),
+    ("unknown.vtk", legacy("POLYDATA", POINTS + "POLYGONS 2 3\nOFFSETS vtktypeint64\n0 3\nCONNECTIVITY xx\n0 1 2\n", "5.1")),
+    ("none.vtk", legacy("UNSTRUCTURED_GRID", POINTS + "CELLS 2 3\nOFFSETS vtktypeint64\n0 3\n0 1 2\nCELL_TYPES 1\n5\n", "5.1")),
+    ("binary5.vtk", binary5(b"CONNECTIVITY \n")),
+    ("cells.vtk", legacy("UNSTRUCTURED_GRID", POINTS + "CELLS 1 4\n99999999 0 1 2\nCELL_TYPES 1\n5\n")),
+    ("points.vtk", legacy("POLYDATA", WHOLE.replace("POINTS 3", f"POINTS {HUGE}"))),
+    ("polygons.vtk", legacy("POLYDATA", WHOLE.replace("POLYGONS 1 4", f"POLYGONS 1 {HUGE}"))),
     ("offsets.vtk", legacy("POLYDATA", POINTS + f"POLYGONS {HUGE} 3\nOFFSETS vtktypeint64\n0 3\n"
-                           "CONNECTIVITY vtktypeint64\n0 1 2\n", "5.1"), "values in one place"),
-    ("types.vtk", legacy("UNSTRUCTURED_GRID", POINTS + f"CELLS 1 4\n3 0 1 2\nCELL_TYPES {HUGE}\n5\n"), "values in one"),
-    ("vectors.vtk", legacy("POLYDATA", WHOLE + f"POINT_DATA {10**12}\nVECTORS v double\n1\n"), "values in one place"),
-    ("scalars.vtk", legacy("POLYDATA", WHOLE + f"POINT_DATA 3\nSCALARS v double {2 * 10**9}\nLOOKUP_TABLE default\n1\n"),
-     "values in one place"),
-    ("fields.vtk", legacy("POLYDATA", WHOLE + f"FIELD FieldData 1\nx 1000000 {10**9} double\n1\n"), "values in one place"),
-    ("table.vtk", legacy("TABLE", f"ROW_DATA {10**12}\nSCALARS x double\n1\n"), "values in one place"),
-    ("graph.vtk", legacy("UNDIRECTED_GRAPH", f"VERTICES {10**12}\nEDGES {10**12}\n0 1\n"), "values in one place"),
-    ("blocks.vtk", legacy("MULTIBLOCK", f"CHILDREN {10**12}\nCHILD 1\nx\nENDCHILD\n"), "values in one place"),
-    ("image.vtk", legacy("STRUCTURED_POINTS", "DIMENSIONS 100000 100000 100000\nORIGIN 0 0 0\nSPACING 1 1 1\n"),
-     "faces need about 9000 GB"),
-    ("few.vtk", legacy("STRUCTURED_GRID", "DIMENSIONS 1000 1000 1\n" + POINTS),
-     "a grid of 1000 x 1000 x 1 has 3 points"),
+                           "CONNECTIVITY vtktypeint64\n0 1 2\n", "5.1")),
+    ("types.vtk", legacy("UNSTRUCTURED_GRID", POINTS + f"CELLS 1 4\n3 0 1 2\nCELL_TYPES {HUGE}\n5\n")),
+    ("vectors.vtk", legacy("POLYDATA", WHOLE + f"POINT_DATA {10**12}\nVECTORS v double\n1\n")),
+    ("scalars.vtk", legacy("POLYDATA", WHOLE + f"POINT_DATA 3\nSCALARS v double {2 * 10**9}\nLOOKUP_TABLE default\n1\n")),
+    ("fields.vtk", legacy("POLYDATA", WHOLE + f"FIELD FieldData 1\nx 1000000 {10**9} double\n1\n")),
+    ("table.vtk", legacy("TABLE", f"ROW_DATA {10**12}\nSCALARS x double\n1\n")),
+    ("graph.vtk", legacy("UNDIRECTED_GRAPH", f"VERTICES {10**12}\nEDGES {10**12}\n0 1\n")),
+    ("blocks.vtk", legacy("MULTIBLOCK", f"CHILDREN {10**12}\nCHILD 1\nx\nENDCHILD\n")),
+    ("image.vtk", legacy("STRUCTURED_POINTS", "DIMENSIONS 100000 100000 100000\nORIGIN 0 0 0\nSPACING 1 1 1\n")),
+    ("few.vtk", legacy("STRUCTURED_GRID", "DIMENSIONS 1000 1000 1\n" + POINTS)),
     ("axes.vtk", legacy("RECTILINEAR_GRID", "DIMENSIONS 100 100 100\n" + "".join(
-        f"{axis}_COORDINATES 3 float\n0 1 2\n" for axis in "XYZ")), "an axis has 3 coordinates, expected 100"),
-
-    ("image.vti", image(10**6, 10**6, 10**3), "points and cells need about"),
-    ("points.vtp", surface(points=HUGE), "points and cells need about"),
-    ("polys.vtp", surface(polys=HUGE), "points and cells need about"),
-    ("offsets.vtp", surface(offset=10**15), "there is not enough memory for it"),
-    ("cells.vtu", grid(cells=10**13), "points and cells need about"),
-    ("offsets.vtu", grid(offset=10**15), "there is not enough memory for it"),
-    ("components.vtp", surface(more="<PointData>" + array("x", 0, more='NumberOfComponents="2000000000"') + "</PointData>"),
-     "points and cells need about"),
+        f"{axis}_COORDINATES 3 float\n0 1 2\n" for axis in "XYZ"))),
+    ("image.vti", image(10**6, 10**6, 10**3)),
+    ("points.vtp", surface(points=HUGE)),
+    ("polys.vtp", surface(polys=HUGE)),
+    ("offsets.vtp", surface(offset=10**15)),
+    ("cells.vtu", grid(cells=10**13)),
+    ("offsets.vtu", grid(offset=10**15)),
+    ("components.vtp", surface(more="<PointData>" + array("x", 0, more='NumberOfComponents="2000000000"') + "</PointData>")),
     ("fields.vtp", surface().replace("<Piece", "<FieldData>" + array("x", 1, more=f'NumberOfTuples="{10**12}"')
-                                     + "</FieldData><Piece", 1), "points and cells need about"),
+                                     + "</FieldData><Piece", 1)),
     ("type.vtp", surface().replace("<Piece", '<FieldData><Array type="Float" Name="x" NumberOfTuples="1">1</Array></FieldData>'
-                                   "<Piece", 1), "an array is of the type 'Float', expected"),
+                                   "<Piece", 1)),
     ("notype.vtp", surface().replace("<Piece", '<FieldData><DataArray Name="x" NumberOfTuples="1">1</DataArray></FieldData>'
-                                     "<Piece", 1), "an array is of the type '', expected"),
-    ("compressor.vtp", surface().replace("<VTKFile", '<VTKFile compressor="zip"', 1), "its compressor is 'zip', expected"),
-    ("below.vtp", surface().replace('NumberOfPolys="1"', 'NumberOfVerts="-7" NumberOfPolys="1"', 1), "NumberOfVerts is -7"),
-    ("extent.vti", image(2, 3, 1).replace('WholeExtent="0 2 0 3', 'WholeExtent="0 2 65535 3', 1), "leaves the whole extent"),
-    ("elements.vtp", "<VTKFile type='PolyData'>" + "<a>" * DEEP + "</a>" * DEEP + "</VTKFile>",
-     "is nested more than 1000 deep"),
-    ("elements.vtm", blocks('<Block index="0">' * DEEP + "</Block>" * DEEP), "is nested more than 1000 deep"),
-    ("parts.vtm", blocks('<DataSet index="0" file="points.vtp"/>'), "points and cells need about"),
+                                     "<Piece", 1)),
+    ("compressor.vtp", surface().replace("<VTKFile", '<VTKFile compressor="zip"', 1)),
+    ("below.vtp", surface().replace('NumberOfPolys="1"', 'NumberOfVerts="-7" NumberOfPolys="1"', 1)),
+    ("extent.vti", image(2, 3, 1).replace('WholeExtent="0 2 0 3', 'WholeExtent="0 2 65535 3', 1)),
+    ("elements.vtp", "<VTKFile type='PolyData'>" + "<a>" * DEEP + "</a>" * DEEP + "</VTKFile>"),
+    ("elements.vtm", blocks('<Block index="0">' * DEEP + "</Block>" * DEEP)),
+    ("parts.vtm", blocks('<DataSet index="0" file="points.vtp"/>')),
 ]
 
 # Sound files of the same kinds, up to where the errors begin.
@@ -275,8 +262,9 @@ class HostileFiles(unittest.TestCase):
         said = {}
         left = list(files)
         while left:
-            run = subprocess.run([sys.executable, __file__, "--read", *left], preexec_fn=limit, text=True,
-                                 errors="replace", stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, check=False)
+            run = subprocess.run([sys.executable, __file__, "--read", *left], preexec_fn=limit, text=True, errors="replace",
+                                 env={**os.environ, "AVIANLIDAR_MESH_GIGABYTES": MESH_GIGABYTES},
+                                 stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, check=False)
             lines = [json.loads(line) for line in run.stdout.splitlines() if line.startswith('["')]
             said.update({file: (errors, cells) for file, errors, cells in lines})
             left = left[len(lines) + 1:]
@@ -296,16 +284,21 @@ class HostileFiles(unittest.TestCase):
             with self.subTest(file=file):
                 self.assert_one_error(said, file, words)
 
-    def test_meshes_that_would_end_the_process_are_errors(self):
+    def test_meshes_that_may_end_the_process_are_errors_or_one_triangle(self):
         files = []
-        for name, content, _ in MESHES:
+        for name, content in MESHES:
             self.save(name, content)
             files.append(st.write_scene(self.folder, name, scene(name)))
         said = self.read(files)
-        for file, (name, _, words) in zip(files, MESHES):
+        for file, (name, _) in zip(files, MESHES):
             with self.subTest(name=name):
-                self.assert_one_error(said, file, words)
-                self.assertIn("objects[0].file: " + os.path.join(self.folder, name), said[file][0][0])
+                self.assertIn(file, said, "it ended the process")
+                errors, cells = said[file]
+                if cells == 0:
+                    self.assertEqual(len(errors), 1, errors)
+                    self.assertRegex(errors[0], re.escape("objects[0].file: " + os.path.join(self.folder, name)) + ": .{10}")
+                else:
+                    self.assertEqual((errors, cells), ([], 1))
 
     def test_sound_files_are_read(self):
         files = []

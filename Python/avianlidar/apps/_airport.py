@@ -34,6 +34,7 @@ from ._maps import coordinate_system
 from ._obstacles import read_obstacles
 from ._runways import box_of as _box
 from ._runways import choose_runways
+from ._surfaces import Surfaces, pierced
 
 MOST_POSTS = 250_000  # of a terrain: it takes some seconds
 MOST_CHOSEN = 0.25  # of the posts: where so many are needed, all are taken
@@ -455,12 +456,16 @@ class Airport:
         return max(self.sides, key=lambda runway: runway.axis()[1])
 
     def _position(self, mapped: pathlib.Path, exclusions: pathlib.Path) -> np.ndarray:
-        """A place for the lidar, until siting says a better one: the free one that is nearest to the middle of the longest runway."""
+        """A place for the lidar, until siting finds a better one: the free place nearest to the middle of the longest runway, below the
+        obstacle limitation surfaces unless every free place pierces them."""
         taken = siting.read_outlines(mapped, self.scene.geodetic_origin, "height")
         taken += siting.read_outlines(exclusions, self.scene.geodetic_origin)
         with naming(f"{self.extract}: places for a lidar beside its runways"):
             free = siting.candidates(siting.lattice(self._bounds(), SPACINGS[-1]), (self.known["mast"],), [(outline, 10.0) for outline in taken],
                                      self.scene)
+        below = free[pierced([Surfaces.of(runway, self.scene) for runway in self.sides], free) == 0]
+        self.pierces = len(below) == 0
+        free = free if self.pierces else below
         area = len(free) * SPACINGS[-1] ** 2
         self.spacing = next((spacing for spacing in SPACINGS if area >= CHOICE * spacing**2), SPACINGS[-1])
         middle = np.mean([self.longest.start, self.longest.end], axis=0)
@@ -621,9 +626,10 @@ Check on site
   heights of terminals, hangars, towers and masts near the lidar: they shadow
   what is new, gone, or was never mapped: buildings, masts, fences, trees; cranes and parked aircraft
   woods and trees: height, and leaves by season
-  the lidar's place ({x:.0f} m east, {y:.0f} m north, {z:.1f} m up): it is the free place nearest to the middle of the longest runway,
-  chosen for nothing else; whether a mast may stand there is for the airport to say
-  exclusions: simplified, not the airport's obstacle surfaces
+  the lidar's place ({x:.0f} m east, {y:.0f} m north, {z:.1f} m up): the free place nearest to the middle of the longest runway
+  {"that pierces an obstacle limitation surface of ICAO Annex 14, as every free place does" if self.pierces else
+   "below the strip, approach and transitional surfaces of ICAO Annex 14"}; whether a mast may stand there is for the airport to decide
+  exclusions: simplified; the report of siting.coverage.json also keeps masts below these surfaces
 """.encode()
 
     def _picture(self) -> bytes:

@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "AssimpFiles.h"
 
-#include "VirtualFiles.h"
+#include "FormatFacts.h"
+#include "MeshFormats.h"
 
 #include <assimp/IOStream.hpp>
 
-#include <cpl_vsi.h>
+#include "vtk_zlib.h"
 
 #include <algorithm>
+#include <cerrno>
 #include <cstring>
 #include <filesystem>
 #include <vector>
@@ -63,24 +65,31 @@ private:
   std::size_t Position = 0;
 };
 
-bool ReadAll(const std::string& file, std::vector<char>& bytes)
+/// The bytes of a file, unpacked if they are packed by gzip. Returns why there are none, or
+/// nothing.
+std::string ReadAll(const std::string& file, std::vector<char>& bytes)
 {
-  VSILFILE* handle = VSIFOpenL(file.c_str(), "rb");
+  gzFile handle = gzopen(file.c_str(), "rb");
   if (!handle)
   {
-    return false;
+    return std::strerror(errno);
   }
-  const std::size_t chunk = 1u << 22;
-  std::size_t got = 0;
+  constexpr std::size_t chunk = 1u << 22;
+  int got = 0;
   do
   {
     const std::size_t size = bytes.size();
     bytes.resize(size + chunk);
-    got = VSIFReadL(bytes.data() + size, 1, chunk, handle);
-    bytes.resize(size + got);
-  } while (got == chunk);
-  VSIFCloseL(handle);
-  return true;
+    got = gzread(handle, bytes.data() + size, chunk);
+    bytes.resize(size + static_cast<std::size_t>(std::max(got, 0)));
+  } while (got > 0);
+  int error = Z_OK;
+  const std::string reason = gzerror(handle, &error);
+  // A damaged archive may end like a whole one.
+  const int closed = gzclose(handle);
+  return error == Z_OK && closed == Z_OK ? ""
+    : !reason.empty()                    ? reason
+                                         : "the compressed file ends too early";
 }
 }
 
@@ -88,11 +97,6 @@ AssimpFiles::AssimpFiles(const std::string& mesh)
   : Mesh(mesh)
   , MeshName(UncompressedName(mesh))
 {
-}
-
-std::string AssimpFiles::RealName(const char* file) const
-{
-  return this->MeshName == file ? VirtualName(this->Mesh) : std::string(file);
 }
 
 bool AssimpFiles::Exists(const char* file) const
@@ -108,19 +112,22 @@ char AssimpFiles::getOsSeparator() const
 
 Assimp::IOStream* AssimpFiles::Open(const char* file, const char* mode)
 {
-  // A pipe would wait for ever, a device never end; and GDAL takes names like /vsicurl/ for other
-  // places than the file system.
-  if (!this->Exists(file))
+  // A pipe would wait for ever, a device never end.
+  if (!this->Exists(file) || std::strchr(mode, 'r') == nullptr)
   {
     return nullptr;
   }
-  const QuietGdal quiet;
+  const bool isMesh = this->MeshName == file;
   std::vector<char> bytes;
-  // A damaged archive ends like a whole one, but not without an error.
-  if (std::strchr(mode, 'r') == nullptr || !ReadAll(this->RealName(file), bytes) || quiet.Failed())
+  const std::string reason = ReadAll(isMesh ? this->Mesh : file, bytes);
+  if (!reason.empty())
   {
-    this->Reason = quiet.Reason();
+    this->Reason = ": " + reason;
     return nullptr;
+  }
+  if (isMesh && EndingOf(file) == ".obj")
+  {
+    this->Offset = MoveObjToOrigin(bytes);
   }
   return new MemoryStream(std::move(bytes));
 }

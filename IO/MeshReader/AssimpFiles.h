@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file AssimpFiles.h
- * @brief Lets Assimp read compressed meshes, and materials and buffers beside them, through GDAL's
- * file system.
+ * @brief Lets Assimp read compressed meshes, and materials and buffers beside them.
  */
 #ifndef AvianLidarAssimpFiles_h
 #define AvianLidarAssimpFiles_h
+
+#include "SceneTypes.h"
 
 #include <assimp/IOSystem.hpp>
 
@@ -28,17 +29,19 @@ public:
   /// Why the mesh could not be opened, as ": <reason>"; empty if nobody said.
   const std::string& GetReason() const { return this->Reason; }
 
+  /// What must be added to the vertices (MoveObjToOrigin()).
+  const Vec3& GetOffset() const { return this->Offset; }
+
   bool Exists(const char* file) const override;
   char getOsSeparator() const override;
   Assimp::IOStream* Open(const char* file, const char* mode) override;
   void Close(Assimp::IOStream* stream) override;
 
 private:
-  std::string RealName(const char* file) const;
-
   std::string Mesh;
   std::string MeshName;
   std::string Reason;
+  Vec3 Offset{};
 };
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "MeshImport.h"
+#include "Imports.h"
 
-#include "FileLook.h"
+#include "MeshFormats.h"
 #include "RegularFile.h"
 #include "VtkCellCheck.h"
 #include "vtkAvianLidarNames.h"
@@ -25,22 +25,15 @@
 #include "vtkXMLGenericDataObjectReader.h"
 #include "vtkXMLUtilities.h"
 
-#include <vtksys/SystemTools.hxx>
-
 #include <algorithm>
+#include <cmath>
 #include <cstring>
-#include <mutex>
 #include <new>
 
 namespace avianlidar::scene
 {
 namespace
 {
-std::string Ending(const std::string& file)
-{
-  return vtksys::SystemTools::LowerCase(vtksys::SystemTools::GetFilenameLastExtension(file));
-}
-
 // What VTK says, without the file, line, class and address in front, and without what follows.
 std::string FirstLine(const std::string& message)
 {
@@ -77,73 +70,27 @@ private:
 };
 
 // An array of VTK's for which there is no memory says so, and the process ends, as Debian builds
-// VTK; while one of these lives, std::bad_alloc leaves in between. VTK knows one window for all
-// messages, so one thread at a time reads.
+// VTK: std::bad_alloc leaves in between.
 class ThrowingWindow : public vtkOutputWindow
 {
 public:
   static ThrowingWindow* New();
 
-  void DisplayText(const char* text) override
-  {
-    if (this->Shown)
-    {
-      this->Before->DisplayText(text);
-    }
-  }
   void DisplayErrorText(const char* text) override
   {
     if (std::strstr(text, "Unable to allocate"))
     {
       throw std::bad_alloc();
     }
-    if (this->Shown)
-    {
-      this->Before->DisplayErrorText(text);
-    }
-  }
-  void DisplayWarningText(const char* text) override
-  {
-    if (this->Shown)
-    {
-      this->Before->DisplayWarningText(text);
-    }
+    this->First = this->First.empty() ? FirstLine(text) : this->First;
+    this->Superclass::DisplayErrorText(text);
   }
 
-  bool Shown = true; // all others
-  vtkSmartPointer<vtkOutputWindow> Before;
+  vtkTypeMacro(ThrowingWindow, vtkOutputWindow);
+
+  std::string First; // error
 };
 vtkStandardNewMacro(ThrowingWindow);
-
-class ThrowingArrays
-{
-public:
-  ThrowingArrays()
-    : Lock(Mutex())
-  {
-    this->Window->Shown = vtkObject::GetGlobalWarningDisplay() != 0;
-    this->Window->Before = vtkOutputWindow::GetInstance();
-    vtkOutputWindow::SetInstance(this->Window);
-    vtkObject::SetGlobalWarningDisplay(1);
-  }
-  ~ThrowingArrays()
-  {
-    vtkObject::SetGlobalWarningDisplay(this->Window->Shown);
-    vtkOutputWindow::SetInstance(this->Window->Before);
-  }
-  ThrowingArrays(const ThrowingArrays&) = delete;
-  ThrowingArrays& operator=(const ThrowingArrays&) = delete;
-
-private:
-  static std::mutex& Mutex()
-  {
-    static std::mutex mutex;
-    return mutex;
-  }
-
-  const std::lock_guard<std::mutex> Lock;
-  vtkNew<ThrowingWindow> Window;
-};
 
 template <class Reader>
 vtkSmartPointer<vtkDataObject> Read(const std::string& file)
@@ -174,7 +121,7 @@ void RequireRegularParts(vtkXMLDataElement* element, const std::string& folder)
       throw Error(
         "names the file " + part + ": " + (irregular.empty() ? "there is none" : irregular));
     }
-    if (!IsVtkFile(part) || Ending(part) == ".vtk" || Ending(part).find(".vtm") == 0)
+    if (!IsVtkFile(part) || EndingOf(part) == ".vtk" || EndingOf(part).find(".vtm") == 0)
     {
       throw Error("names the file " + part + ", expected .vtp, .vtu, .vts, .vtr or .vti");
     }
@@ -224,11 +171,17 @@ void AddDataSet(vtkDataSet* data, Mesh& mesh)
   const vtkSmartPointer<vtkPolyData> surface = vtkAvianLidarTriangles(outside->GetOutput());
   surface->GetFieldData()->ShallowCopy(data->GetFieldData());
   const auto first = static_cast<std::int64_t>(mesh.points.size());
+  double farthest = 0.0;
   for (vtkIdType i = 0; i < surface->GetNumberOfPoints(); ++i)
   {
     Vec3 p;
     surface->GetPoint(i, p.data());
+    farthest = std::max({ farthest, std::abs(p[0]), std::abs(p[1]), std::abs(p[2]) });
     mesh.points.push_back(p);
+  }
+  if (surface->GetPoints() && surface->GetPoints()->GetDataType() == VTK_FLOAT)
+  {
+    mesh.rounding = std::max(mesh.rounding, SpacingAt(farthest));
   }
   vtkIdType size = 0;
   const vtkIdType* ids = nullptr;
@@ -241,28 +194,15 @@ void AddDataSet(vtkDataSet* data, Mesh& mesh)
 }
 }
 
-bool IsVtkFile(const std::string& file)
-{
-  const std::string ending = Ending(file);
-  for (const char* known : { ".vtp", ".vtu", ".vts", ".vtr", ".vti", ".vtm", ".vtmb", ".vtk" })
-  {
-    if (ending == known)
-    {
-      return true;
-    }
-  }
-  return false;
-}
-
 Mesh ReadVtkMesh(const std::string& file)
 {
-  LookAtVtkFile(file);
-  const ThrowingArrays throwing;
-  if (Ending(file).find(".vtm") == 0)
+  const vtkNew<ThrowingWindow> throwing;
+  vtkOutputWindow::SetInstance(throwing);
+  if (EndingOf(file).find(".vtm") == 0)
   {
     RequireRegularParts(file);
   }
-  const vtkSmartPointer<vtkDataObject> data = Ending(file) == ".vtk"
+  const vtkSmartPointer<vtkDataObject> data = EndingOf(file) == ".vtk"
     ? Read<vtkGenericDataObjectReader>(file)
     : Read<vtkXMLGenericDataObjectReader>(file);
   Mesh mesh;
@@ -285,6 +225,10 @@ Mesh ReadVtkMesh(const std::string& file)
   else
   {
     throw Error(std::string("holds no geometry but a ") + data->GetClassName());
+  }
+  if (mesh.triangles.empty() && !throwing->First.empty())
+  {
+    throw Error("VTK cannot read it: " + throwing->First);
   }
   return mesh;
 }

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file FormatFacts.h
+ * @brief What mesh files say that Assimp 5.2 passes over, and without which their geometry is
+ * wrong.
+ */
+#ifndef AvianLidarFormatFacts_h
+#define AvianLidarFormatFacts_h
+
+#include "SceneTypes.h"
+
+#include <vector>
+
+namespace avianlidar::scene
+{
+/**
+ * Refuses glTF 2.0 files whose geometry depends on extensions that Assimp does not know: required
+ * ones (specification, section 3.12), except those of materials, textures and lights, and
+ * instances, quantization and the centre of a tile even where they are only used.
+ * @param text of the file, JSON or binary. Throws Error, which names the extension.
+ */
+void CheckGltfExtensions(const std::string& text);
+
+/**
+ * The length of an IFC file's unit, m, where it is a conversion-based unit such as the foot;
+ * Assimp knows the metre with its prefixes alone, which give 1 here.
+ * @param text of the file. Throws Error where the unit cannot be read.
+ */
+double IfcUnit(const std::string& text);
+
+/**
+ * The length, m, of the unit that the root element of a 3MF or AMF file names; a millimetre where
+ * it names none, as both specifications say.
+ * @param text XML. Throws Error where it is another unit.
+ */
+double PrintUnit(const std::string& text);
+
+/**
+ * Moves the vertices of an OBJ file so that they lie near the origin, since Assimp reads single
+ * precision. Only files whose coordinates reach 8192 (there they are kept to 0.001) are changed.
+ * @return by how much: to be added to what is read
+ */
+Vec3 MoveObjToOrigin(std::vector<char>& bytes);
+}
+
+#endif

@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file Main.cxx
+ * @brief mesh-reader FILE BYTES: reads one mesh file and writes it to standard output as
+ * MeshStream.h says, within so many bytes of data (0: no limit).
+ *
+ * The libraries that read meshes crash on some files, and never end on others. This is a program of
+ * its own so that they take nothing with them.
+ */
+#include "Imports.h"
+#include "MeshFormats.h"
+#include "MeshStream.h"
+
+#include <cmath>
+#include <cstdlib>
+#include <cstring>
+#include <iostream>
+#include <new>
+#include <unordered_map>
+
+#include <signal.h>
+#include <sys/prctl.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+namespace avianlidar::scene
+{
+namespace
+{
+struct PointHash
+{
+  std::size_t operator()(const Vec3& p) const
+  {
+    std::uint64_t hash = 0;
+    for (double value : p)
+    {
+      std::uint64_t bits;
+      // -0 and 0 are the same coordinate.
+      value += 0.0;
+      std::memcpy(&bits, &value, sizeof bits);
+      hash = (hash ^ bits) * 0x9e3779b97f4a7c15u;
+      hash ^= hash >> 32;
+    }
+    return static_cast<std::size_t>(hash);
+  }
+};
+
+/// Makes points with identical coordinates one; triangles keep their number and order.
+void MergePoints(Mesh& mesh)
+{
+  std::unordered_map<Vec3, std::int64_t, PointHash> index;
+  index.reserve(mesh.points.size());
+  std::vector<Vec3> points;
+  std::vector<std::int64_t> target(mesh.points.size());
+  for (std::size_t i = 0; i < mesh.points.size(); ++i)
+  {
+    const auto inserted = index.emplace(mesh.points[i], static_cast<std::int64_t>(points.size()));
+    if (inserted.second)
+    {
+      points.push_back(mesh.points[i]);
+    }
+    target[i] = inserted.first->second;
+  }
+  for (auto& triangle : mesh.triangles)
+  {
+    triangle = { target[triangle[0]], target[triangle[1]], target[triangle[2]] };
+  }
+  mesh.points = std::move(points);
+}
+
+Mesh ReadMesh(const std::string& file)
+{
+  Mesh mesh = IsVtkFile(file) ? ReadVtkMesh(file) : ReadAssimpMesh(file);
+  if (mesh.triangles.empty())
+  {
+    throw Error("holds no triangle");
+  }
+  for (const Vec3& p : mesh.points)
+  {
+    if (!std::isfinite(p[0]) || !std::isfinite(p[1]) || !std::isfinite(p[2]))
+    {
+      throw Error("has a vertex whose coordinates are not finite");
+    }
+  }
+  MergePoints(mesh);
+  return mesh;
+}
+
+/// Writes to a descriptor.
+WriteBytes WriterTo(int output)
+{
+  return [output](const void* bytes, std::size_t size)
+  {
+    for (std::size_t written = 0; written < size;)
+    {
+      const ssize_t count =
+        write(output, static_cast<const char*>(bytes) + written, size - written);
+      if (count <= 0)
+      {
+        _exit(1); // nobody reads
+      }
+      written += static_cast<std::size_t>(count);
+    }
+  };
+}
+
+void Limit(rlim_t data)
+{
+  prctl(PR_SET_PDEATHSIG, SIGKILL);
+  const rlimit none{ 0, 0 };
+  setrlimit(RLIMIT_CORE, &none);
+#ifndef AVIANLIDAR_SANITIZED
+  if (data > 0)
+  {
+    const rlimit most{ data, data };
+    setrlimit(RLIMIT_DATA, &most);
+  }
+#else
+  (void)data; // the sanitizer's own tables count as data
+#endif
+}
+}
+}
+
+int main(int argc, char* argv[])
+{
+  using namespace avianlidar::scene;
+  if (argc != 3)
+  {
+    std::cerr << "mesh-reader FILE BYTES: started by the avian-lidar library\n";
+    return 2;
+  }
+  Limit(std::strtoull(argv[2], nullptr, 10));
+  // What libraries print must not come between.
+  const WriteBytes write = WriterTo(dup(STDOUT_FILENO));
+  dup2(STDERR_FILENO, STDOUT_FILENO);
+  const std::string file = argv[1];
+  try
+  {
+    SendMesh(ReadMesh(file), write);
+  }
+  catch (const Error& error)
+  {
+    SendError(error.what(), write);
+  }
+  catch (const std::bad_alloc&)
+  {
+    SendNoMemory(write);
+  }
+  catch (const std::exception& error)
+  {
+    SendError((IsVtkFile(file) ? "VTK cannot read it: " : "Assimp cannot read it: ") +
+        std::string(error.what()),
+      write);
+  }
+  _exit(0); // libraries may crash while they clean up
+}

@@ -1,0 +1,215 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Mesh files as other programs write them: units and extensions that a file names, coordinates of national grids, and the program that
+reads them. Expected: the corners that were written, in metres."""
+import json
+import os
+import pathlib
+import stat
+import tempfile
+import unittest
+import zipfile
+
+import numpy as np
+import scenetools as st
+from boxfiles import CORNERS, TRIANGLES, gltf, ifc
+
+SINGLE = 2**-23
+
+
+def mesh_3mf(file, unit, build='<item objectid="1"/>', more=""):
+    """The box as a 3MF file (core specification 1.3), object 1 of the resources."""
+    vertices = "".join('<vertex x="{}" y="{}" z="{}"/>'.format(*corner) for corner in CORNERS)
+    triangles = "".join('<triangle v1="{}" v2="{}" v3="{}"/>'.format(*corners) for corners in TRIANGLES)
+    with zipfile.ZipFile(file, "w") as archive:
+        archive.writestr("[Content_Types].xml", '<?xml version="1.0"?><Types xmlns="http://schemas.openxmlformats.org/package/2006/content-types">'
+                         '<Default Extension="rels" ContentType="application/vnd.openxmlformats-package.relationships+xml"/><Default Extension="model" '
+                         'ContentType="application/vnd.ms-package.3dmanufacturing-3dmodel+xml"/></Types>')
+        archive.writestr("_rels/.rels", '<?xml version="1.0"?><Relationships xmlns="http://schemas.openxmlformats.org/package/2006/relationships">'
+                         '<Relationship Target="/3D/3dmodel.model" Id="rel0" Type="http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel"/>'
+                         '</Relationships>')
+        archive.writestr("3D/3dmodel.model", f'<?xml version="1.0"?><model {unit} xmlns="http://schemas.microsoft.com/3dmanufacturing/core/2015/02">'
+                         f'<resources><object id="1" type="model"><mesh><vertices>{vertices}</vertices><triangles>{triangles}</triangles></mesh>'
+                         f"</object>{more}</resources><build>{build}</build></model>")
+
+
+def amf(unit):
+    vertices = "".join("<vertex><coordinates><x>{}</x><y>{}</y><z>{}</z></coordinates></vertex>".format(*corner) for corner in CORNERS)
+    triangles = "".join("<triangle><v1>{}</v1><v2>{}</v2><v3>{}</v3></triangle>".format(*corners) for corners in TRIANGLES)
+    return (f'<?xml version="1.0"?><amf {unit} version="1.1"><object id="0"><mesh><vertices>{vertices}</vertices><volume>{triangles}</volume></mesh>'
+            "</object></amf>")
+
+
+def fbx(centimetres):
+    """One triangle in FBX's text."""
+    return f"""; FBX 7.4.0 project file
+FBXHeaderExtension:  {{
+	FBXVersion: 7400
+}}
+GlobalSettings:  {{
+	Version: 1000
+	Properties70:  {{
+		P: "UnitScaleFactor", "double", "Number", "",{centimetres}
+	}}
+}}
+Objects:  {{
+	Geometry: 10, "Geometry::", "Mesh" {{
+		Vertices: *9 {{
+			a: 0,0,0,200,0,0,0,300,0
+		}}
+		PolygonVertexIndex: *3 {{
+			a: 0,1,-3
+		}}
+		GeometryVersion: 124
+	}}
+	Model: 20, "Model::box", "Mesh" {{
+		Version: 232
+	}}
+}}
+Connections:  {{
+	C: "OO",20,0
+	C: "OO",10,20
+}}
+"""
+
+
+class MeshFiles(unittest.TestCase):
+    def setUp(self):
+        holder = tempfile.TemporaryDirectory()
+        self.addCleanup(holder.cleanup)
+        self.folder = pathlib.Path(holder.name)
+
+    def read(self, name, text=None, **more):
+        if text is not None:
+            (self.folder / name).write_text(text, encoding="utf-8")
+        return st.Read(st.write_scene(self.folder, name, {"version": 1, "objects": [
+            {"name": "Box", "file": name, "material": "Wall", **more}]}))
+
+    def places(self, read):
+        self.assertEqual(read.errors, [])
+        return np.unique(st.corners(read.block("Box")).reshape(-1, 3), axis=0)
+
+    def assert_box(self, read, unit):
+        self.assertEqual(read.warnings, [])
+        np.testing.assert_allclose(self.places(read), unit * np.unique(CORNERS, axis=0), atol=4 * SINGLE * unit * np.abs(CORNERS).max())
+
+    def assert_refused(self, read, words):
+        self.assertEqual(len(read.errors), 1, read.errors)
+        self.assertIn(words, read.errors[0])
+
+    def test_units_that_a_file_names_become_metres(self):
+        for unit, length in (('unit="millimeter"', 1e-3), ("", 1e-3), ('unit="inch"', 0.0254), ('unit="foot"', 0.3048), ("unit='meter'", 1.0),
+                             ('xml:lang="en" unit="micron"', 1e-6)):
+            with self.subTest(unit=unit):
+                mesh_3mf(self.folder / "box.3mf", unit)
+                self.assert_box(self.read("box.3mf"), length)
+                amf_unit = unit.replace("foot", "feet").replace('xml:lang="en" ', "")
+                self.assert_box(self.read("box.amf", amf(amf_unit)), length)
+        mesh_3mf(self.folder / "box.3mf", 'unit="furlong"')
+        self.assert_refused(self.read("box.3mf"), "box.3mf: has the unit 'furlong', expected")
+        for centimetres, length in ((1, 0.01), (100, 1.0), (2.54, 0.0254)):
+            places = self.places(self.read("triangle.fbx", fbx(centimetres), up_axis="z"))
+            np.testing.assert_allclose(places, length * np.array([[0, 0, 0], [0, 300, 0], [200, 0, 0]]), rtol=2 * SINGLE)
+
+    def test_3mf_builds_place_objects_and_components(self):
+        """Expected: transforms of the core specification, section 4.1, rows of 3 x 3, then the translation."""
+        mesh_3mf(self.folder / "build.3mf", 'unit="meter"', '<item objectid="2" transform="1 0 0 0 1 0 0 0 1 100 0 0"/><item objectid="1"/>',
+                 '<object id="2" type="model"><components><component objectid="1"/>'
+                 '<component objectid="1" transform="0 1 0 -1 0 0 0 0 1 0 50 0"/></components></object>')
+        box = np.asarray(CORNERS, dtype=float)
+        turned = np.column_stack([-box[:, 1], box[:, 0] + 50.0, box[:, 2]])
+        expected = np.unique(np.concatenate([box, box + (100, 0, 0), turned + (100, 0, 0)]), axis=0)
+        np.testing.assert_allclose(self.places(self.read("build.3mf")), expected, atol=200 * SINGLE)
+
+    def test_ifc_units_become_metres(self):
+        metre = ifc(CORNERS, TRIANGLES)
+        unit = next(line for line in metre.splitlines() if ".LENGTHUNIT." in line)
+        name = unit.split("=")[0].strip()
+        self.assertIn(".METRE.", unit)
+        foot = (f"#901=IFCSIUNIT(*,.LENGTHUNIT.,{{}},.METRE.);\n#902=IFCMEASUREWITHUNIT(IFCLENGTHMEASURE({{}}),#901);\n"
+                f"#903=IFCDIMENSIONALEXPONENTS(1,0,0,0,0,0,0);\n{name}=IFCCONVERSIONBASEDUNIT(#903,.LENGTHUNIT.,'{{}}',#902);")
+        for written, length in ((unit, 1.0), (unit.replace(",$,", ",.MILLI.,"), 1e-3), (foot.format("$", "0.3048", "FOOT"), 0.3048),
+                                (foot.format(".MILLI.", "25.4", "INCH"), 0.0254),
+                                (foot.format("$", "3.048E-1", "FOOT").replace("#902=", "#902 = ").replace("(IFCL", "( IFCL"), 0.3048)):
+            with self.subTest(unit=written):
+                read = self.read("box.ifc", metre.replace(unit, written), up_axis="y")
+                self.assertEqual(read.warnings, [])
+                extent = np.ptp(self.places(read), axis=0)
+                np.testing.assert_allclose(np.sort(extent), np.sort(length * np.ptp(CORNERS, axis=0)), rtol=1e-5)
+        self.assert_refused(self.read("box.ifc", metre.replace(unit, foot.format("$", "x", "FOOT"))), f"has a unit of length, {name}, that cannot be read")
+
+    def test_gltf_extensions_that_change_geometry_are_refused_by_name(self):
+        half = np.asarray(CORNERS)
+        for key, name, refused in (("Required", "EXT_meshopt_compression", True), ("Required", "KHR_mesh_quantization", True),
+                                   ("Required", "VENDOR_unheard_of", True), ("Used", "EXT_mesh_gpu_instancing", True), ("Used", "CESIUM_RTC", True),
+                                   ("Used", "VENDOR_unheard_of", False), ("Required", "KHR_materials_unlit", False),
+                                   ("Required", "KHR_texture_transform", False)):
+            with self.subTest(key=key, name=name):
+                document = json.loads(gltf(half, TRIANGLES))
+                document["extensions" + key] = [name]
+                read = self.read("box.gltf", json.dumps(document))
+                if refused:
+                    self.assert_refused(read, f"s the glTF extension {name}, which is not supported")
+                else:
+                    self.assertEqual(len(self.places(read)), 8)
+
+    def test_obj_keeps_coordinates_of_a_national_grid(self):
+        """Two walls 0.2 m apart in UTM, where single precision keeps 0.5 m: Expected: their doubles."""
+        walls = np.array([(412345.17 + across, 5941234.56 + along, up) for across in (0.0, 0.2) for along, up in ((0, 0), (5, 0), (5, 3))])
+        for form, more in (("{:.2f} {:.2f} {:.2f}", ""), ("{:.2f}  {:.2f}\t{:.2f} 0.5 0.5 0.5", ""), ("{:.2f} {:.2f} {:.2f} 1.0", ""),
+                           ("{:.9e} {:.9e} +{:.2f}", "# comment\nvn 0 0 1\n")):
+            text = more + "".join("v " + form.format(*corner) + "\n" for corner in walls) + "f 1 2 3\nf 4 5 6"
+            read = self.read("walls.obj", text)
+            np.testing.assert_allclose(self.places(read), np.unique(walls, axis=0), atol=6e-3 if "e}" in form else 1e-6)
+            self.assertFalse(any("single precision" in words for words in read.warnings))
+
+    def test_coordinates_that_lose_a_centimetre_are_a_warning(self):
+        head = ("ply\nformat ascii 1.0\nelement vertex 3\nproperty double x\nproperty double y\nproperty double z\nelement face 1\n"
+                "property list uchar int vertex_indices\nend_header\n")
+        for far, scale, warned in ((412345.17, 1.0, True), (412345.17, 0.01, False), (60000.0, 1.0, False), (60000.0, 10.0, True)):
+            with self.subTest(far=far, scale=scale):
+                read = self.read("far.ply", head + f"{far} 0 0\n{far} 5 0\n{far} 5 3\n3 0 1 2\n", scale=scale)
+                self.assertEqual(any("Box: its coordinates are so large that single precision keeps them to" in words for words in read.warnings), warned)
+
+    def environment(self, **variables):
+        for name, value in variables.items():
+            before = os.environ.get(name)
+            self.addCleanup(os.environ.__setitem__ if before is not None else lambda key, _: os.environ.pop(key, None), name, before)
+            os.environ[name] = value
+
+    def program(self, text):
+        file = self.folder / "reader"
+        file.write_text(f"#!/bin/sh\n{text}\n", encoding="utf-8")
+        file.chmod(file.stat().st_mode | stat.S_IXUSR)
+        self.environment(AVIANLIDAR_MESH_READER=str(file))
+
+    def test_whatever_the_program_does_is_one_error(self):
+        (self.folder / "box.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", encoding="utf-8")
+        for text, words in (("kill -SEGV $$", "Assimp cannot read it: it crashes on the file (Segmentation fault)"),
+                            ("printf mnonsense; kill -ABRT $$", "Assimp cannot read it: it crashes on the file (Aborted)"),
+                            ("exit 3", "Assimp cannot read it: its program ended without a word"), ("printf n", "there is not enough memory for it"),
+                            ("printf 'e\\003\\0\\0\\0\\0\\0\\0\\0bad'", "box.obj: bad")):
+            with self.subTest(text=text):
+                self.program(text)
+                self.assert_refused(self.read("box.obj"), words)
+        self.environment(AVIANLIDAR_MESH_SECONDS="1")
+        self.program("exec sleep 600")
+        self.assert_refused(self.read("box.obj"), "Assimp cannot read it in 1 s: set the environment variable AVIANLIDAR_MESH_SECONDS to allow more")
+        self.environment(AVIANLIDAR_MESH_SECONDS="soon")
+        self.assert_refused(self.read("box.obj"), "the environment variable AVIANLIDAR_MESH_SECONDS is 'soon', expected a number above 0")
+        self.environment(AVIANLIDAR_MESH_SECONDS="60", AVIANLIDAR_MESH_READER=str(self.folder / "none"))
+        self.assert_refused(self.read("box.obj"), "none, cannot be started: No such file or directory")
+        del os.environ["AVIANLIDAR_MESH_READER"]
+        self.assertEqual(len(self.places(self.read("box.obj"))), 3)
+
+    def test_the_limit_of_memory_is_the_users(self):
+        points, faces = 200000, 300000
+        text = "".join(f"v {i} {i % 7} 0\n" for i in range(points)) + "".join(f"f {i % points + 1} {(i + 1) % points + 1} {(i + 2) % points + 1}\n"
+                                                                              for i in range(faces))
+        self.environment(AVIANLIDAR_MESH_GIGABYTES="0.02")
+        self.assert_refused(self.read("large.obj", text), "there is not enough memory for it")
+        self.environment(AVIANLIDAR_MESH_GIGABYTES="2")
+        self.assertEqual(self.read("large.obj").block("Box").GetNumberOfCells(), faces)
+
+
+if __name__ == "__main__":
+    unittest.main()
