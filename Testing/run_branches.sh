@@ -40,8 +40,7 @@ import coverage
 coverage.process_startup()
 atexit.register(lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (resource.RLIM_INFINITY,) * 2) if os.getuid() == 0 else None)
 EOF
-  OMP_WAIT_POLICY=passive xvfb-run -a -s "-screen 0 1280x1024x24 -noreset" ctest --test-dir "$tree" --no-tests=error \
-    --output-on-failure -LE 'nightly|bare|install|plugin' -E '-[34]$' -j 2 "$@" || failed=$?
+  Testing/run_ctest.sh "$tree" -LE 'nightly|bare|install|plugin' -E '-[34]$' "$@" || failed=$?
   rm "$package/sitecustomize.py"
   python3-coverage combine --rcfile="$tree/python/rc"
 }

@@ -8,7 +8,7 @@ set -eu
 
 cd "$(dirname "$0")/.."
 status=0
-Testing/run.sh --nightly || status=1
+Testing/run_more.sh --nightly || status=1
 Testing/run_sanitizers.sh filters tsan || status=1
 Testing/Fuzzing/run.sh "${1:-3600}" || status=1
 exit "$status"

@@ -24,8 +24,6 @@ step "Debian 13, the tests' build" cmake --build --preset paraview
 python='(Airport|BadInput|Command|EchoPipeline|ExampleAirport|HelperFiles|HelperPipeline|HelperScenes|Laz|PacketReader|PointCloudReader'
 python="$python|SceneObjects|Sensors|SequenceReader|Sources|Stubs|Tracker|Weather|WriterErrors)"
 plugin='(Animation|ColourPreset|Errors|ErrorsInScripts|Help|Pipeline|PipelineImage|Proxies|Start|State|Writers)'
-export OMP_WAIT_POLICY=passive
-step "Debian 13, tests" xvfb-run -a -s "-screen 0 1280x1024x24 -noreset" ctest --test-dir build/paraview --no-tests=error \
-  --output-on-failure -j 2 -LE 'nightly|bare' \
+step "Debian 13, tests" Testing/run_ctest.sh build/paraview -LE 'nightly|bare' \
   -R "Cxx-|Kernel-InstructionSets|Python-Test$python\$|Plugin-Test$plugin\$|Parallel-TestRanks(Errors)?-2"
 grep "tests passed" /tmp/step.log
