@@ -97,7 +97,7 @@ class TestPointCloudReader(unittest.TestCase):
             self.assertEqual(array(read(FILE), "rgb").tolist(), [list(wanted)] * 5)
 
     def test_las_numbers_of_points(self):
-        """A file of 1.4 may have the number of older versions alone; both differ: the new one counts."""
+        """A file of 1.4 may have the number of older versions alone, or its own alone."""
         las(3, minor=4, patch={247: ("<Q", 0)})
         self.assertEqual(read(FILE).GetNumberOfPoints(), 5)
         las(3, minor=4, patch={107: ("<I", 0)})
@@ -160,7 +160,7 @@ class TestPointCloudReader(unittest.TestCase):
         finally:
             os.remove(name)
 
-    def test test_las_extra_bytes(self):
+    def test_las_extra_bytes(self):
         described = [extra(b"a", 9, description=b"of something [m/s]"), extra(b"skipped", 0, options=3),
                      extra(b"b", 3, options=24, scale=(0.5, 1, 1), offset=(10, 0, 0)), extra(b"three", 22),
                      extra(b"energy", 10), extra(b"beyond", 10)]
