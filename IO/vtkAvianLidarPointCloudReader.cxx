@@ -97,7 +97,8 @@ void Place(Cloud& cloud, bool wantLocal, vtkFieldData* fields)
 
 struct vtkAvianLidarPointCloudReader::vtkInternals
 {
-  formats::PacketIndex Packets; ///< without revolutions: the file has none, or is wrong
+  formats::PacketIndex Packets;
+  std::string Problem; ///< of a file of packets
 };
 
 vtkStandardNewMacro(vtkAvianLidarPointCloudReader);
@@ -106,6 +107,7 @@ vtkStandardNewMacro(vtkAvianLidarPointCloudReader);
 vtkAvianLidarPointCloudReader::vtkAvianLidarPointCloudReader()
   : FileName(nullptr)
   , LocalCoordinates(true)
+  , SensorAddress(nullptr)
   , Internals(new vtkInternals)
 {
   this->SetNumberOfInputPorts(0);
@@ -115,6 +117,7 @@ vtkAvianLidarPointCloudReader::vtkAvianLidarPointCloudReader()
 vtkAvianLidarPointCloudReader::~vtkAvianLidarPointCloudReader()
 {
   this->SetFileName(nullptr);
+  this->SetSensorAddress(nullptr);
 }
 
 //------------------------------------------------------------------------------
@@ -147,6 +150,7 @@ int vtkAvianLidarPointCloudReader::RequestInformation(
   info->Remove(Pipeline::TIME_RANGE());
   formats::PacketIndex& packets = this->Internals->Packets;
   packets = formats::PacketIndex();
+  this->Internals->Problem.clear();
   const formats::CloudFormat* const format =
     this->FileName ? formats::formatOf(this->FileName) : nullptr;
   if (format && format->hasTurns)
@@ -154,11 +158,21 @@ int vtkAvianLidarPointCloudReader::RequestInformation(
     try
     {
       formats::FileSource source(this->FileName);
-      packets = formats::indexPackets(source, {});
+      packets = formats::indexPackets(source, this->SensorAddress ? this->SensorAddress : "", {});
     }
-    catch (const std::exception&)
+    catch (const std::bad_alloc&)
     {
-      return 1; // RequestData finds it again, and says it
+      this->Internals->Problem = "there is not enough memory for it";
+      return 1; // RequestData says it
+    }
+    catch (const std::exception& error)
+    {
+      this->Internals->Problem = error.what();
+      return 1;
+    }
+    if (!packets.warning.empty())
+    {
+      this->Warn(packets.warning);
     }
     std::vector<double> times;
     for (const formats::PacketIndex::Turn& turn : packets.turns)
@@ -191,6 +205,10 @@ int vtkAvianLidarPointCloudReader::RequestData(
       {
         return {};
       }
+      if (!this->Internals->Problem.empty())
+      {
+        return this->FileName + (": " + this->Internals->Problem);
+      }
       vtkAvianLidarAbort::StopIfWanted(this);
       try
       {
@@ -209,6 +227,15 @@ int vtkAvianLidarPointCloudReader::RequestData(
         if (!turns.empty())
         {
           output->GetInformation()->Set(vtkDataObject::DATA_TIME_STEP(), turns[turn].time);
+        }
+        if (!cloud.warnings.empty())
+        {
+          std::string all;
+          for (const std::string& warning : cloud.warnings)
+          {
+            all += (all.empty() ? "" : "; ") + warning;
+          }
+          this->Warn(all);
         }
         Place(cloud, this->LocalCoordinates, output->GetFieldData());
         vtkAvianLidarCloudFields::ToPolyData(cloud, output);
@@ -233,10 +260,18 @@ int vtkAvianLidarPointCloudReader::RequestData(
 }
 
 //------------------------------------------------------------------------------
+void vtkAvianLidarPointCloudReader::Warn(const std::string& what)
+{
+  vtkWarningMacro("" << vtkAvianLidarText(this->FileName + (": " + what)) << ".");
+}
+
+//------------------------------------------------------------------------------
 void vtkAvianLidarPointCloudReader::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
   os << indent << "ErrorsAsData: " << this->ErrorsAsData << "\n";
   os << indent << "FileName: " << (this->FileName ? this->FileName : "(none)") << "\n";
   os << indent << "LocalCoordinates: " << this->LocalCoordinates << "\n";
+  os << indent << "SensorAddress: " << (this->SensorAddress ? this->SensorAddress : "(none)")
+     << "\n";
 }

@@ -3,15 +3,19 @@
  * @class vtkAvianLidarPointCloudReader
  * @brief Reads a point cloud, of a real lidar or simulated, with the array names of this project.
  *
- * - `.las`: LAS 1.0 to 1.4, point data record formats 0 to 3 and 6 to 8, extra bytes
- * - `.laz`: the same, compressed; an error in a build without LASzip
+ * - `.las`: LAS 1.0 to 1.4, point data record formats 0 to 10, extra bytes, coordinate systems as
+ *   WKT or as keys of GeoTIFF; waveforms are left out, which a warning says
+ * - `.laz`: the same, compressed, without formats that have waveforms; an error in a build without
+ *   LASzip
  * - `.pcd`: PCD of the Point Cloud Library: ascii, binary, binary_compressed
  * - `.ply`: the element `vertex` of PLY: ascii, binary of either byte order; vertices have no
  * lists, other elements are passed over
  * - `.bin`: KITTI scans (float32 x, y, z, reflectance), with SemanticKITTI's labels if there are
- *   any: the same name with .label beside it or in the folder `labels` beside its own
- * - `.pcap`, `.pcapng`: packets of a Velodyne VLP-16 (UDP to port 2368), strongest, last or dual
- *   return. Each revolution is a time step, in seconds since the full hour before the first packet
+ *   any: the same name with .label beside it or in the folder `labels` beside its own. Points of
+ *   five numbers (nuScenes) are an error
+ * - `.pcap`, `.pcapng`: packets of a Velodyne VLP-16, strongest, last or dual return, of one sensor
+ *   (SensorAddress). Damaged packets, and what follows a cut, are left out, and counted in a
+ *   warning. Each revolution is a time step, in seconds since the full hour before the first packet
  *   (TIME_STEPS and TIME_RANGE; without a time asked for: the first); the first and the last are
  *   those parts that were recorded. The azimuth of each laser is interpolated, its vertical offset
  *   (at most 11 mm, second-hand) is not applied
@@ -20,7 +24,8 @@
  * PCD without a point (not-a-number) are left out. Point arrays keep name and type of the file but
  * for what this project has a name for:
  *
- * - `intensity` (unit 1): PCD and PLY as it is, LAS / 257, KITTI * 255: 0 to 255
+ * - `intensity` (unit 1): PCD and PLY as it is, LAS / 257, KITTI * 255: 0 to 255. Numbers above 1
+ * in a KITTI scan are taken as they are, which a warning says
  * - `laser_id`: the field `ring` or `channel`
  * - `distance_m` (m): of the points, where the sensor's place is known (PCD: VIEWPOINT, KITTI:
  *   origin)
@@ -28,7 +33,8 @@
  * - `vertical_angle` (deg): the same, from the x-y plane, up
  * - `timestamp` (us): LAS: GPS time * 1e6, in the epoch of the file; packets: since the full hour
  * - `return_number`, `number_of_returns` (unit 1): LAS, packets
- * - `rgb` (unit 1): three unsigned chars: LAS / 256, packed colours of PCD, `red`, `green`, `blue`
+ * - `rgb` (unit 1): three unsigned chars: LAS / 256 (as they are where no
+ *   channel of the file is above 255), packed colours of PCD, `red`, `green`, `blue`
  *   of PLY
  * - `semantic_label`, `instance_id`: SemanticKITTI
  *
@@ -42,7 +48,7 @@
  * geocentric (EPSG:4978) that says its `geodetic_origin` (this project's writer) comes back in
  * metres east, north and up of it with LocalCoordinates. Otherwise points stay and the field data
  * `crs_wkt` says what they are, with `utm_zone` where it is UTM on WGS84:
- * vtkAvianLidarGeodeticTransform moves them.
+ * vtkAvianLidarGeodeticTransform moves them. Where its unit is not the metre, a warning says so.
  *
  * Field data, as far as the file has it: `revolution`, `number_of_revolutions` (packets),
  * `position` (m, of the sensor), `crs_wkt`, `description`, `comment`, and what this project's
@@ -64,6 +70,7 @@
 #include "vtkPolyDataAlgorithm.h"
 
 #include <memory> // For std::unique_ptr
+#include <string> // For std::string
 
 class VTKAVIANLIDAR_EXPORT vtkAvianLidarPointCloudReader : public vtkPolyDataAlgorithm
 {
@@ -91,6 +98,17 @@ public:
   vtkBooleanMacro(LocalCoordinates, bool);
   ///@}
 
+  ///@{
+  /**
+   * The sensor whose packets are read of a recording of several: the IPv4 address that it sends
+   * from, with the port that it sends to where addresses do not differ ("192.168.1.201" or
+   * "192.168.1.201:2368"). Default: none; a recording of several sensors is an error that lists
+   * them. Other files have no sensors, and are read as without.
+   */
+  vtkSetStringMacro(SensorAddress);
+  vtkGetStringMacro(SensorAddress);
+  ///@}
+
   /**
    * Whether a file is a cloud by its name and by how it begins (.bin: by its length, a multiple of
    * 16; .ply: without faces). 1 or 0.
@@ -108,8 +126,11 @@ protected:
 
   char* FileName;
   bool LocalCoordinates;
+  char* SensorAddress;
 
 private:
+  void Warn(const std::string& what);
+
   struct vtkInternals;
   std::unique_ptr<vtkInternals> Internals;
 

@@ -7,6 +7,7 @@
 #include "vtkAvianLidarAbort.h"
 #include "vtkAvianLidarArrays.h"
 #include "vtkAvianLidarGuard.h"
+#include "vtkAvianLidarText.h"
 
 #include "vtkCellArray.h"
 #include "vtkCellData.h"
@@ -257,6 +258,10 @@ void ReadScan(vtkAlgorithm* self, const fs::path& folder, std::size_t scan, vtkP
   try
   {
     cloud = formats::readCloud(file, vtkAvianLidarAbort::KeepGoing(self));
+    for (const std::string& warning : cloud.warnings)
+    {
+      vtkWarningWithObjectMacro(self, "" << vtkAvianLidarText(file + ": " + warning) << ".");
+    }
   }
   catch (const FormatError& error)
   {

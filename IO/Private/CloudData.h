@@ -80,7 +80,8 @@ struct Cloud
   std::vector<Note> notes;
   /// Where the sensor stood, in the frame of the points; nothing if the format does not say.
   std::optional<std::array<double, 3>> sensor;
-  std::string crs; ///< WKT, or empty
+  std::string crs;                   ///< WKT, or empty
+  std::vector<std::string> warnings; ///< what was left out or assumed
 
   std::size_t size() const { return this->points.size() / 3; }
 };

@@ -2,12 +2,17 @@
 #include "CoordinateSystem.h"
 
 #include "CloudData.h"
+#include "VirtualFiles.h"
 
 #include <cpl_conv.h>
 #include <cpl_error.h>
+#include <cpl_vsi.h>
+#include <gdal_priv.h>
 #include <ogr_spatialref.h>
 
+#include <cmath>
 #include <cstdlib>
+#include <utility>
 
 namespace avianlidar::formats
 {
@@ -32,6 +37,70 @@ std::string wktOf(int code, bool ellipsoidalHeights)
   }
   return wkt;
 }
+
+using Bytes = std::vector<unsigned char>;
+
+/// A TIFF of one pixel with these keys.
+class KeyImage
+{
+public:
+  KeyImage()
+    : Image{ 'I', 'I', 42, 0, 8, 0, 0, 0 }
+  {
+    // Width, height, bits, no compression, black is 0; one strip of one row with one byte.
+    constexpr std::pair<int, unsigned> tags[] = { { 256, 1 }, { 257, 1 }, { 258, 8 }, { 259, 1 },
+      { 262, 1 }, { 273, 0 }, { 277, 1 }, { 278, 1 }, { 279, 1 } };
+    for (const auto& [tag, value] : tags)
+    {
+      this->addTag(tag, 4, 1, value);
+    }
+  }
+
+  /// Values of a type of TIFF, each of `size` bytes; they are cut to whole ones.
+  void add(int tag, int type, std::size_t size, const Bytes& values)
+  {
+    const std::size_t count = values.size() / size;
+    if (count * size > 4)
+    {
+      this->addTag(tag, type, count, DataAt + this->Data.size());
+      this->Data.insert(this->Data.end(), values.begin(), values.begin() + count * size);
+      this->Data.resize((this->Data.size() + 7) / 8 * 8);
+    }
+  }
+
+  Bytes whole() const
+  {
+    Bytes all = this->Image;
+    append(all, this->Count, 2);
+    all.insert(all.end(), this->Tags.begin(), this->Tags.end());
+    all.resize(DataAt);
+    all.insert(all.end(), this->Data.begin(), this->Data.end());
+    return all;
+  }
+
+private:
+  static constexpr std::size_t DataAt = 160; // behind 12 tags
+
+  static void append(Bytes& to, std::uint64_t value, int bytes)
+  {
+    for (int i = 0; i < bytes; ++i)
+    {
+      to.push_back(static_cast<unsigned char>(value >> 8 * i));
+    }
+  }
+
+  void addTag(int tag, int type, std::uint64_t count, std::uint64_t value)
+  {
+    append(this->Tags, static_cast<std::uint64_t>(tag), 2);
+    append(this->Tags, static_cast<std::uint64_t>(type), 2);
+    append(this->Tags, count, 4);
+    append(this->Tags, value, 4);
+    ++this->Count;
+  }
+
+  Bytes Image, Tags, Data;
+  std::uint64_t Count = 0;
+};
 }
 
 std::string utmWkt(int zone)
@@ -42,6 +111,59 @@ std::string utmWkt(int zone)
 std::string geocentricWkt()
 {
   return wktOf(4978, false);
+}
+
+std::string wktOfGeoKeys(const Bytes& keys, const Bytes& doubles, const Bytes& texts)
+{
+  constexpr int shorts = 3, reals = 12, ascii = 2; // types of TIFF
+  KeyImage image;
+  image.add(34735, shorts, 2, keys);
+  image.add(34736, reals, 8, doubles);
+  image.add(34737, ascii, 1, texts);
+  Bytes bytes = image.whole();
+  const scene::QuietGdal quiet;
+  const scene::OfflineGdal offline;
+  const scene::GdalOption heights("GTIFF_REPORT_COMPD_CS", "YES");
+  GDALAllRegister();
+  const std::string name = "/vsimem/avian_lidar_keys_" +
+    std::to_string(reinterpret_cast<std::uintptr_t>(bytes.data())) + ".tif";
+  VSIFCloseL(VSIFileFromMemBuffer(name.c_str(), bytes.data(), bytes.size(), FALSE));
+  std::string wkt;
+  {
+    const char* const drivers[] = { "GTiff", nullptr };
+    const GDALDatasetUniquePtr data(GDALDataset::Open(name.c_str(), GDAL_OF_RASTER, drivers));
+    const OGRSpatialReference* system = data ? data->GetSpatialRef() : nullptr;
+    for (const char* format : { "FORMAT=WKT1_GDAL", "FORMAT=WKT2_2019" })
+    {
+      char* text = nullptr;
+      const char* const options[] = { format, nullptr };
+      if (wkt.empty() && system && system->exportToWkt(&text, options) == OGRERR_NONE && text)
+      {
+        wkt = text;
+      }
+      CPLFree(text);
+    }
+  }
+  VSIUnlink(name.c_str());
+  return wkt.compare(0, 8, "LOCAL_CS") == 0 ? std::string() : wkt;
+}
+
+std::string foreignUnitOf(const std::string& wkt)
+{
+  OGRSpatialReference system;
+  CPLErrorHandlerPusher quiet(CPLQuietErrorHandler);
+  if (wkt.empty() || system.importFromWkt(wkt.c_str()) != OGRERR_NONE)
+  {
+    return {};
+  }
+  const auto isMetre = [](double factor) { return std::abs(factor - 1.0) < 1e-12; };
+  const char* plan = "degree";
+  const bool planIsMetre = !system.IsGeographic() && isMetre(system.GetLinearUnits(&plan));
+  const char* up = nullptr;
+  const bool upIsMetre =
+    !system.IsCompound() || isMetre(system.GetTargetLinearUnits("COMPD_CS|VERT_CS", &up));
+  const std::string name = planIsMetre ? "metre" : plan;
+  return planIsMetre && upIsMetre ? std::string() : up && name != up ? name + " and " + up : name;
 }
 
 int utmZoneOf(const std::string& wkt)

@@ -7,6 +7,7 @@
 #define AvianLidarCoordinateSystem_h
 
 #include <string>
+#include <vector>
 
 namespace avianlidar::formats
 {
@@ -16,6 +17,15 @@ std::string utmWkt(int zone);
 
 /// Geocentric WGS84, EPSG:4978.
 std::string geocentricWkt();
+
+/// The system that keys of GeoTIFF describe (tags 34735, 34736 and 34737); empty if GDAL knows
+/// none.
+std::string wktOfGeoKeys(const std::vector<unsigned char>& keys,
+  const std::vector<unsigned char>& doubles, const std::vector<unsigned char>& texts);
+
+/// The unit of the coordinates where it is not the metre: "degree", "US survey foot"; with both,
+/// "metre and foot" for plan and heights. Empty: metres, or not known.
+std::string foreignUnitOf(const std::string& wkt);
 
 /// The zone of a text that is UTM on WGS84, negative in the south; 0 if it is something else.
 int utmZoneOf(const std::string& wkt);

@@ -132,7 +132,7 @@ void TableColumns::take(std::size_t f, std::uint64_t i, std::uint64_t c, const u
   }
 }
 
-void readAsciiRows(
+std::uint64_t readAsciiRows(
   ByteSource& source, const FieldTable& table, TableColumns& columns, const KeepGoing& keepGoing)
 {
   TextLines lines(source, table.begin);
@@ -162,8 +162,13 @@ void readAsciiRows(
         columns.take(f, i, c, bytes);
       }
     }
+    if (words >> word)
+    {
+      throw FormatError("point " + std::to_string(i) + " has too many values");
+    }
     goOn(keepGoing, static_cast<std::int64_t>(i), static_cast<std::int64_t>(table.points), 0, 1);
   }
+  return lines.position();
 }
 
 void readBinaryRows(

@@ -59,8 +59,9 @@ private:
   std::vector<Target> Targets;
 };
 
-/// Reads the rows. FormatError: too few, too short, no numbers.
-void readAsciiRows(
+/// Reads the rows. FormatError: too few, too short or too long, no numbers.
+/// @return where they end in the file
+std::uint64_t readAsciiRows(
   ByteSource& source, const FieldTable& table, TableColumns& columns, const KeepGoing& keepGoing);
 void readBinaryRows(
   ByteSource& source, const FieldTable& table, TableColumns& columns, const KeepGoing& keepGoing);

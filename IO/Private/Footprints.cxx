@@ -7,7 +7,9 @@
 #include "SceneFrame.h"
 #include "VirtualFiles.h"
 
+#include <cpl_vsi.h>
 #include <ogrsf_frmts.h>
+#include <vtksys/SystemTools.hxx>
 
 #include <cmath>
 #include <cstdlib>
@@ -33,6 +35,7 @@ struct Counts
 {
   int filtered = 0;
   int placeless = 0;
+  int surfaces = 0;
   int points = 0;
   int thinLines = 0;
   int repaired = 0;
@@ -81,8 +84,9 @@ bool FindAttribute(const OGRFeature& feature, const std::string& name, std::stri
     FindOtherTag(feature.GetFieldAsString(other), name, value);
 }
 
-// "12", "12.5", "12 m"; feet, floors and the like are not guessed.
-std::optional<double> FindLength(const OGRFeature& feature, const std::string& name)
+// "12", "12.5", "12 m"; feet, floors and the like are not guessed. `unit`: of a bare number, m.
+std::optional<double> FindLength(
+  const OGRFeature& feature, const std::string& name, double unit = 1)
 {
   std::string text;
   if (name.empty() || !FindAttribute(feature, name, text))
@@ -91,13 +95,13 @@ std::optional<double> FindLength(const OGRFeature& feature, const std::string& n
   }
   char* end = nullptr;
   const double value = std::strtod(text.c_str(), &end);
-  const std::string unit(end);
+  const std::string given(end);
   if (end == text.c_str() || !(value > 0) || !std::isfinite(value) ||
-    (unit != "" && unit != " m" && unit != "m"))
+    (given != "" && given != " m" && given != "m"))
   {
     return {};
   }
-  return value;
+  return given.empty() ? unit * value : value;
 }
 
 Ring GetRing(const OGRSimpleCurve& curve)
@@ -145,7 +149,7 @@ void CollectGeometry(const OGRGeometry& geometry, Feature& feature, Counts& coun
       }
       break;
     default:
-      ++counts.points;
+      ++counts.surfaces;
   }
 }
 
@@ -200,6 +204,19 @@ void RequireRegularNeighbours(const std::filesystem::path& file)
   }
 }
 
+// Whether a file begins as CityJSON does, which no driver reads.
+bool IsCityJson(const std::string& file)
+{
+  std::string start(4096, '\0');
+  VSILFILE* stream = VSIFOpenL(VirtualName(file).c_str(), "rb");
+  start.resize(stream ? VSIFReadL(start.data(), 1, start.size(), stream) : 0);
+  if (stream)
+  {
+    VSIFCloseL(stream);
+  }
+  return start.find("\"CityJSON") != std::string::npos;
+}
+
 OGRLayer& OpenLayer(GDALDataset& data, const std::string& wanted)
 {
   if (!wanted.empty())
@@ -224,10 +241,20 @@ OGRLayer& OpenLayer(GDALDataset& data, const std::string& wanted)
   return *data.GetLayer(0);
 }
 
+// The unit of heights without one, m. The Digital Obstacle File of the FAA is in feet.
+double HeightUnit(OGRLayer& layer, const std::string& attribute)
+{
+  const OGRFeatureDefn& columns = *layer.GetLayerDefn();
+  const bool isObstacleFile = columns.GetFieldIndex("OAS") >= 0 &&
+    columns.GetFieldIndex("LATDEC") >= 0 && columns.GetFieldIndex("AGL") >= 0;
+  return isObstacleFile && (attribute == "AGL" || attribute == "AMSL") ? 0.3048 : 1.0;
+}
+
 std::vector<Feature> ReadFeatures(OGRLayer& layer, const FootprintOptions& options, Counts& counts,
   const std::function<bool()>& keepGoing)
 {
   std::vector<Feature> features;
+  const double unit = HeightUnit(layer, options.heightAttribute);
   layer.ResetReading();
   for (auto& source : layer)
   {
@@ -235,16 +262,20 @@ std::vector<Feature> ReadFeatures(OGRLayer& layer, const FootprintOptions& optio
     {
       throw WorkStopped();
     }
-    const OGRGeometry* geometry = source->GetGeometryRef();
-    if (!geometry || !Passes(*source, options.filters))
+    if (!Passes(*source, options.filters))
     {
       ++counts.filtered;
-      counts.placeless += !geometry;
+      continue;
+    }
+    const OGRGeometry* geometry = source->GetGeometryRef();
+    if (!geometry || geometry->IsEmpty())
+    {
+      ++counts.placeless;
       continue;
     }
     Feature feature;
     FindAttribute(*source, options.nameAttribute, feature.name);
-    feature.height = FindLength(*source, options.heightAttribute);
+    feature.height = FindLength(*source, options.heightAttribute, unit);
     feature.minHeight = FindLength(*source, options.minHeightAttribute);
     feature.width = FindLength(*source, options.widthAttribute);
     // Arcs become chords.
@@ -534,9 +565,15 @@ std::vector<Part> ReadFootprints(const Object& object, const Scene& scene, const
   GDALAllRegister();
   RequireRegularNeighbours(object.file);
   const char* const columns[] = { "X_POSSIBLE_NAMES=x,lon*", "Y_POSSIBLE_NAMES=y,lat*", nullptr };
-  const bool isTable = std::filesystem::path(object.file).extension() == ".csv";
+  const std::string ending = vtksys::SystemTools::LowerCase(
+    std::filesystem::path(UncompressedName(object.file)).extension());
+  const bool isTable = ending == ".csv";
   const GDALDatasetUniquePtr data(GDALDataset::Open(VirtualName(object.file).c_str(),
     GDAL_OF_VECTOR | GDAL_OF_READONLY, Drivers, isTable ? columns : nullptr));
+  if (!data && IsCityJson(object.file))
+  {
+    throw Error("is CityJSON, which is not read: convert it to a mesh or to footprints in GeoJSON");
+  }
   if (!data)
   {
     throw Error("GDAL cannot read it" + quiet.Reason());
@@ -548,17 +585,26 @@ std::vector<Part> ReadFootprints(const Object& object, const Scene& scene, const
   {
     throw Error("GDAL cannot read all of it" + quiet.Reason());
   }
-  if (features.empty() && counts.placeless > 0 && counts.placeless == counts.filtered)
+  if (features.empty() && counts.placeless > 0)
   {
-    throw Error("none of its features has a geometry: a table needs the columns x and y, or "
-                "longitude and latitude");
+    throw Error("none of its " + std::to_string(counts.placeless) + " features" +
+      (object.footprints.filters.empty() ? "" : " that fit the filter") + " has a geometry" +
+      (isTable ? ": a table needs the columns x and y, or longitude and latitude, with numbers"
+               : ""));
   }
   if (features.empty())
   {
-    throw Error("none of its " + std::to_string(counts.filtered) + " features fits the filter");
+    throw Error(counts.filtered == 0
+        ? "holds no features"
+        : "none of its " + std::to_string(counts.filtered) + " features fits the filter");
   }
   ToLocal(features, layer, object, scene);
   std::vector<Part> parts = Raise(features, object, terrain, counts, keepGoing);
+  if (parts.empty() && counts.surfaces > 0)
+  {
+    throw Error("its features are surfaces in space, expected areas, lines or points in plan: give "
+                "it as a mesh");
+  }
   if (parts.empty())
   {
     throw Error("its features have no area (points, or lines without width)" +
@@ -569,6 +615,8 @@ std::vector<Part> ReadFootprints(const Object& object, const Scene& scene, const
   Note(notes, object, counts.empty, "features without an area were left out");
   Note(notes, object, counts.thinLines, "lines without a width were left out");
   Note(notes, object, counts.points, "points were left out");
+  Note(notes, object, counts.placeless, "features without a geometry were left out");
+  Note(notes, object, counts.surfaces, "surfaces in space were left out");
   Note(notes, object, counts.beyond,
     ("areas and points beyond " + object.footprints.on + " were left out").c_str());
   Note(notes, object, counts.assumedHeights,

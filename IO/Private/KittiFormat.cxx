@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "KittiFormat.h"
 
+#include "FieldTable.h"
+
 #include <algorithm>
+#include <cmath>
+#include <sstream>
 
 namespace avianlidar::formats
 {
@@ -9,7 +13,40 @@ namespace
 {
 constexpr std::uint64_t PointSize = 16;
 constexpr std::uint64_t LabelSize = 4;
+constexpr std::uint64_t LongPointSize = 20; // of other data sets
 constexpr double GreatestIntensity = 255.0;
+constexpr const char* LongPoints = "five float32 a point, as nuScenes has them: this is not a scan "
+                                   "of KITTI, whose points have four";
+
+/// Whether the bytes may be points of five numbers, of which the last is a ring or a label.
+bool mayHaveFive(ByteSource& points)
+{
+  bool may = points.size() % LongPointSize == 0;
+  const auto isWhole = [](float value) { return value >= 0 && value == std::floor(value); };
+  forEachRecord(points, 0, LongPointSize, points.size() / LongPointSize,
+    [&](std::uint64_t, const unsigned char* bytes)
+    { may &= load<float>(bytes + 12) >= 0 && isWhole(load<float>(bytes + 16)); });
+  return may;
+}
+
+/// FormatError unless the fourth numbers of all points may be reflectances (0 to 1) or intensities
+/// (0 to 255): in files of other layouts coordinates are among them.
+void checkReflectance(double least, double greatest, ByteSource& points)
+{
+  const bool fits = least >= 0.0 && greatest <= GreatestIntensity;
+  if ((!fits || greatest > 1.0) && mayHaveFive(points))
+  {
+    throw FormatError(std::string("it has ") + LongPoints);
+  }
+  if (!fits)
+  {
+    std::ostringstream text;
+    text << "the fourth numbers of its points go from " << least << " to " << greatest
+         << ", expected reflectances (0 to 1) or intensities (0 to 255): this is not a scan of "
+            "KITTI, which has x, y, z and reflectance as float32";
+    throw FormatError(text.str());
+  }
+}
 }
 
 void writeKitti(
@@ -50,7 +87,8 @@ Cloud readKitti(ByteSource& points, ByteSource* labels, const KeepGoing& keepGoi
   if (points.size() % PointSize != 0)
   {
     throw FormatError("its length is " + std::to_string(points.size()) +
-      " bytes, expected a multiple of 16: four float32 a point");
+      " bytes, expected a multiple of 16: four float32 a point" +
+      (points.size() > 0 && mayHaveFive(points) ? std::string("; it has ") + LongPoints : ""));
   }
   const std::uint64_t n = points.size() / PointSize;
   if (labels && labels->size() != n * LabelSize)
@@ -62,6 +100,7 @@ Cloud readKitti(ByteSource& points, ByteSource* labels, const KeepGoing& keepGoi
   Cloud cloud;
   cloud.points.resize(3 * n);
   std::vector<double> intensity(n);
+  double least = 0.0, greatest = 0.0;
   forEachRecord(points, 0, PointSize, n,
     [&](std::uint64_t i, const unsigned char* bytes)
     {
@@ -69,9 +108,30 @@ Cloud readKitti(ByteSource& points, ByteSource* labels, const KeepGoing& keepGoi
       p[0] = -static_cast<double>(load<float>(bytes + 4));
       p[1] = load<float>(bytes);
       p[2] = load<float>(bytes + 8);
-      intensity[i] = GreatestIntensity * static_cast<double>(load<float>(bytes + 12));
+      intensity[i] = load<float>(bytes + 12);
+      if (std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]))
+      {
+        least = std::min(least, intensity[i]);
+        if (!std::isnan(greatest) && !(intensity[i] <= greatest))
+        {
+          greatest = intensity[i];
+        }
+      }
       goOn(keepGoing, static_cast<std::int64_t>(i), static_cast<std::int64_t>(n), 0.0, 1.0);
     });
+  checkReflectance(least, greatest, points);
+  if (greatest > 1.0)
+  {
+    std::ostringstream text;
+    text << "the fourth numbers of its points reach " << greatest
+         << ": they are taken for intensities of 0 to 255, not for reflectances of 0 to 1";
+    cloud.warnings.push_back(text.str());
+  }
+  else
+  {
+    std::for_each(
+      intensity.begin(), intensity.end(), [](double& value) { value *= GreatestIntensity; });
+  }
   cloud.columns.push_back({ "intensity", "1", 1, std::move(intensity) });
   cloud.sensor = Point{ 0.0, 0.0, 0.0 };
   if (labels)
@@ -85,6 +145,12 @@ Cloud readKitti(ByteSource& points, ByteSource* labels, const KeepGoing& keepGoi
       });
     cloud.columns.push_back({ "semantic_label", "", 1, std::move(label) });
     cloud.columns.push_back({ "instance_id", "", 1, std::move(instance) });
+  }
+  dropEmptyCells(cloud);
+  if (cloud.size() < n)
+  {
+    cloud.warnings.push_back(
+      std::to_string(n - cloud.size()) + " points whose coordinates are not finite are left out");
   }
   return cloud;
 }

@@ -34,8 +34,10 @@ struct KittiOutput
 void writeKitti(
   OutputFile& points, OutputFile* labels, const KittiOutput& output, const KeepGoing& keepGoing);
 
-/// Reads a cloud, and `semantic_label` and `instance_id` if there are labels. FormatError: no whole
-/// number of points, or not as many labels.
+/// Reads a cloud, and `semantic_label` and `instance_id` if there are labels. Reflectances above 1
+/// are taken for intensities of 0 to 255; points that are not finite are left out; a warning says
+/// either. FormatError: no whole number of points, another layout (five numbers a point, as in
+/// nuScenes), or not as many labels.
 Cloud readKitti(ByteSource& points, ByteSource* labels, const KeepGoing& keepGoing);
 }
 

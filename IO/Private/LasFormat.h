@@ -5,8 +5,8 @@
  *
  * Source: "LAS Specification 1.4 - R15", American Society for Photogrammetry and Remote Sensing
  * (2019). Written: version 1.4, point data record format 6, or 7 with colours. Read: versions 1.0
- * to 1.4, formats 0 to 3 and 6 to 8, with extra bytes. LAZ is the same with compressed point
- * records, see LazFormat.h.
+ * to 1.4, formats 0 to 10, with extra bytes; waveforms (formats 4, 5, 9 and 10) are left out. LAZ
+ * is the same with compressed point records, without waveforms, see LazFormat.h.
  *
  * **Rounding.** Coordinates are 32-bit integers: c = offset + scale * n. chooseAxis() takes the
  * finest scale of 10^-6, 10^-5, ... m that the extent leaves room for, so the error is at most half
@@ -50,6 +50,7 @@ struct LasLayout
   int time = -1; ///< offsets, -1: not there
   int rgb = -1;
   int nir = -1;
+  bool waveforms = false; ///< in packets behind the rest of the core
 };
 
 /// FormatError: a format that is not read, or records that are too short for theirs.

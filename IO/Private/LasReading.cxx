@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "CoordinateSystem.h"
 #include "LasFormat.h"
 #include "LazFormat.h"
 
@@ -14,6 +15,7 @@ using Bytes = std::vector<unsigned char>;
 constexpr std::size_t ShortestHeader = 227;
 constexpr std::size_t EvlrHeaderSize = 60;
 constexpr std::uint64_t LongestText = 1 << 24;
+constexpr int WktFlag = 16; // of the global encoding
 
 /// An array in the extra bytes.
 struct ExtraField
@@ -31,6 +33,7 @@ struct ExtraField
 struct Header
 {
   int minor = 0;
+  bool hasWkt = false; ///< it says so
   std::size_t size = 0;
   std::uint64_t points = 0;
   std::uint64_t data = 0;
@@ -40,6 +43,7 @@ struct Header
   std::array<LasAxis, 3> axes;
   LasLayout layout;
   bool compressed = false;
+  std::uint64_t room = 0; ///< bytes behind the begin of the points, unless compressed
 };
 
 std::string textOf(const unsigned char* bytes, std::size_t length)
@@ -67,10 +71,11 @@ Header readHeader(ByteSource& source)
     0, std::min<std::uint64_t>(source.size(), static_cast<std::uint64_t>(LasHeaderSize)));
   if (h.size() < ShortestHeader || textOf(h.data(), 4) != "LASF")
   {
-    throw FormatError("it is no LAS file: it does not begin with a header and LASF");
+    throw FormatError("this is not a LAS file: it does not begin with LASF and a header");
   }
   Header header;
   header.minor = h[25];
+  header.hasWkt = (h[6] & WktFlag) != 0;
   if (h[24] != 1 || header.minor > 4)
   {
     throw FormatError("its version is " + std::to_string(h[24]) + "." + std::to_string(h[25]) +
@@ -87,7 +92,16 @@ Header readHeader(ByteSource& source)
   {
     header.evlrsAt = load<std::uint64_t>(h.data() + 235);
     header.evlrs = load<std::uint32_t>(h.data() + 243);
-    header.points = load<std::uint64_t>(h.data() + 247);
+    // Some writers fill in the number of older versions alone.
+    const auto points = load<std::uint64_t>(h.data() + 247);
+    header.points = points > 0 ? points : header.points;
+  }
+  for (const LasAxis& axis : header.axes)
+  {
+    if (header.points > 0 && axis.scale == 0.0)
+    {
+      throw FormatError("a scale of its coordinates is 0");
+    }
   }
   if (header.compressed)
   {
@@ -100,6 +114,7 @@ Header readHeader(ByteSource& source)
       " points of " + std::to_string(header.layout.length) + " bytes, and has room for " +
       std::to_string(room / header.layout.length));
   }
+  header.room = room;
   return header;
 }
 
@@ -180,6 +195,7 @@ struct Records
 {
   std::vector<ExtraField> fields;
   Bytes laz;
+  Bytes keys, doubles, texts; ///< of GeoTIFF
 };
 
 void takeRecord(const std::string& user, int record, const Bytes& content, const LasLayout& layout,
@@ -188,6 +204,10 @@ void takeRecord(const std::string& user, int record, const Bytes& content, const
   if (user == "LASF_Projection" && record == 2112)
   {
     cloud.crs = textOf(content.data(), content.size());
+  }
+  else if (user == "LASF_Projection" && record >= 34735 && record <= 34737)
+  {
+    (record == 34735 ? records.keys : record == 34736 ? records.doubles : records.texts) = content;
   }
   else if (user == "LASF_Spec" && record == 4 && records.fields.empty())
   {
@@ -234,6 +254,27 @@ Records readRecords(ByteSource& source, const Header& header, Cloud& cloud)
   return records;
 }
 
+/// The system of the points: a text, or keys of GeoTIFF, which count where both are there and the
+/// header does not say that the text does.
+void findSystem(const Header& header, const Records& records, Cloud& cloud)
+{
+  if (!records.keys.empty() && (cloud.crs.empty() || !header.hasWkt))
+  {
+    const std::string wkt = wktOfGeoKeys(records.keys, records.doubles, records.texts);
+    cloud.crs = wkt.empty() ? cloud.crs : wkt;
+    if (cloud.crs.empty())
+    {
+      cloud.warnings.emplace_back("its GeoTIFF keys name no coordinate system that GDAL knows");
+    }
+  }
+  const std::string unit = foreignUnitOf(cloud.crs);
+  if (!unit.empty())
+  {
+    cloud.warnings.push_back(
+      "its coordinates are not in metres but in " + unit + ", and stay as they are");
+  }
+}
+
 /// The columns of a cloud of that layout, all zeros, and how a record fills them.
 class Columns
 {
@@ -261,6 +302,7 @@ public:
     if (this->Record.rgb >= 0)
     {
       this->Rgb = this->add("rgb", "1", Scalar::UInt8, n, 3);
+      this->Colours.resize(3 * n);
     }
     if (this->Record.nir >= 0)
     {
@@ -287,14 +329,26 @@ public:
     }
     for (int c = 0; this->Record.rgb >= 0 && c < 3; ++c)
     {
-      // Of 16 bits the upper ones: 8-bit colours are written as c * 256 or c * 257.
-      this->at<std::uint8_t>(this->Rgb)[3 * i + c] = bytes[this->Record.rgb + 2 * c + 1];
+      this->Colours[3 * i + c] = load<std::uint16_t>(bytes + this->Record.rgb + 2 * c);
     }
     if (this->Record.nir >= 0)
     {
       this->at<std::uint16_t>(this->Nir)[i] = load<std::uint16_t>(bytes + this->Record.nir);
     }
     this->takeExtra(i, bytes);
+  }
+
+  /// Colours of 16 bits become 8. The specification wants 8-bit colours as c * 256; some writers
+  /// leave them as they are, so no channel of the file is above 255.
+  void finish()
+  {
+    const bool small = std::all_of(
+      this->Colours.begin(), this->Colours.end(), [](std::uint16_t c) { return c < 256; });
+    for (std::size_t k = 0; k < this->Colours.size(); ++k)
+    {
+      this->at<std::uint8_t>(this->Rgb)[k] =
+        static_cast<std::uint8_t>(small ? this->Colours[k] : this->Colours[k] >> 8);
+    }
   }
 
 private:
@@ -362,27 +416,31 @@ private:
   std::size_t Intensity, ReturnNumber, Returns, Class, Flags, User, Angle, SourceId;
   std::size_t Time = 0, Rgb = 0, Nir = 0;
   std::vector<std::size_t> FirstExtra;
+  std::vector<std::uint16_t> Colours;
 };
 }
 
 LasLayout layoutOf(int format, std::size_t length)
 {
-  // Bytes of the core, and where time, colours and near infrared are. 4 and 5 have waveforms.
+  // Bytes of the core, and where time, colours and near infrared are.
   struct Place
   {
     std::size_t core;
     int time, rgb, nir;
+    bool waveforms;
   };
-  constexpr Place places[] = { { 20, -1, -1, -1 }, { 28, 20, -1, -1 }, { 26, -1, 20, -1 },
-    { 34, 20, 28, -1 }, {}, {}, { 30, 22, -1, -1 }, { 36, 22, 30, -1 }, { 38, 22, 30, 36 } };
-  if (format < 0 || format > 8 || places[format].core == 0)
+  constexpr Place places[] = { { 20, -1, -1, -1, false }, { 28, 20, -1, -1, false },
+    { 26, -1, 20, -1, false }, { 34, 20, 28, -1, false }, { 57, 20, -1, -1, true },
+    { 63, 20, 28, -1, true }, { 30, 22, -1, -1, false }, { 36, 22, 30, -1, false },
+    { 38, 22, 30, 36, false }, { 59, 22, -1, -1, true }, { 67, 22, 30, 36, true } };
+  if (format < 0 || format > 10)
   {
     throw FormatError(
-      "its point data record format is " + std::to_string(format) + ", expected 0 to 3 or 6 to 8");
+      "its point data record format is " + std::to_string(format) + ", expected 0 to 10");
   }
   const Place& place = places[format];
   const LasLayout layout = { format, format >= 6, place.core, length, place.time, place.rgb,
-    place.nir };
+    place.nir, place.waveforms };
   if (length < layout.core)
   {
     throw FormatError("its points have " + std::to_string(length) + " bytes, expected at least " +
@@ -396,6 +454,21 @@ Cloud readLas(ByteSource& source, const KeepGoing& keepGoing)
   const Header header = readHeader(source);
   Cloud cloud;
   const Records records = readRecords(source, header, cloud);
+  findSystem(header, records, cloud);
+  if (header.layout.waveforms)
+  {
+    if (header.compressed)
+    {
+      throw FormatError("its points have waveforms (point data record format " +
+        std::to_string(header.layout.format) + "), which are read from LAS, not from LAZ");
+    }
+    cloud.warnings.emplace_back("its waveforms are left out");
+  }
+  if (header.points == 0 && header.room >= header.layout.length && header.evlrs == 0)
+  {
+    cloud.warnings.push_back("its header says that it has no points, though " +
+      std::to_string(header.room) + " bytes follow");
+  }
   const LazPoints laz{ header.data, header.points, header.layout, records.laz };
   if (header.compressed)
   {
@@ -417,6 +490,7 @@ Cloud readLas(ByteSource& source, const KeepGoing& keepGoing)
   {
     forEachRecord(source, header.data, header.layout.length, header.points, take);
   }
+  columns.finish();
   return cloud;
 }
 }

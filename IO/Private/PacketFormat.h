@@ -4,10 +4,13 @@
  * @brief Packets of a Velodyne VLP-16 as a network card records them.
  *
  * Read: pcap (microseconds or nanoseconds, either byte order) and pcapng (its packet blocks) with
- * Ethernet, Linux's cooked capture or bare IP; of these IPv4, not in fragments, UDP to port 2368
- * with 1206 bytes. Everything else is passed over. Sources: draft-ietf-opsawg-pcap and
- * draft-ietf-opsawg-pcapng; Velodyne, "VLP-16 User Manual", 63-9243 (second-hand; a real revolution
- * agrees).
+ * Ethernet, Linux's cooked capture, BSD's loopback or bare IP; of these IPv4, UDP with 1206 bytes
+ * to port 2368, or to another one where they are in blocks as a Velodyne's. Other traffic is passed
+ * over. Sources: draft-ietf-opsawg-pcap and draft-ietf-opsawg-pcapng; Velodyne, "VLP-16 User
+ * Manual", 63-9243 (second-hand; a real revolution agrees).
+ *
+ * A sensor is known by the address that it sends from and the port that it sends to. Packets are
+ * taken in the order of the sensor's clock.
  *
  * A packet has 12 blocks of an azimuth and two firing sequences of 16 lasers. The azimuth of each
  * laser is interpolated to the next block by the times of the firings. Not applied: the vertical
@@ -32,13 +35,16 @@ struct PacketIndex
   };
   std::vector<std::uint64_t> packets; ///< the lidar's bytes, from the begin of the file
   std::vector<Turn> turns;            ///< at least one
+  std::string warning;                ///< what was left out; or empty
 };
 
 /// Whether it begins as pcap or pcapng does.
 bool hasPackets(ByteSource& source);
 
-/// FormatError: no pcap, cut short, no packet of a VLP-16.
-PacketIndex indexPackets(ByteSource& source, const KeepGoing& keepGoing);
+/// Packets of one sensor: "192.168.1.201", "192.168.1.201:2368", or empty if there is but one.
+/// Damaged packets and those behind a cut are left out, and counted. FormatError: no pcap, no whole
+/// packet of a VLP-16, several sensors that fit.
+PacketIndex indexPackets(ByteSource& source, const std::string& sensor, const KeepGoing& keepGoing);
 
 /// One revolution: `intensity` (0 to 255), `laser_id` (0 is the lowest), `distance_m`, `azimuth`,
 /// `vertical_angle`, `timestamp`, `return_number` (1 is the nearest), `number_of_returns`. Two

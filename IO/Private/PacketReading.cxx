@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "PacketFormat.h"
 
+#include "TextLines.h"
 #include "Vector.h"
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 namespace avianlidar::formats
 {
@@ -27,6 +29,7 @@ constexpr double LaserTime = 2.304;   // us from one laser to the next
 constexpr double FiringTime = 55.296; // us from one firing sequence to the next
 constexpr double HourTime = 3.6e9;    // us, after which the sensor's clock begins again
 constexpr double LeastStep = 1e-6;    // s, so that the times of steps rise
+constexpr double GreatestDelay = 1e6; // us, of a packet that comes late
 
 /// Bytes of the file, read in large pieces.
 class FileWindow
@@ -68,6 +71,11 @@ std::uint32_t load32(const unsigned char* bytes, bool turned)
                  : value >> 24 | (value >> 8 & 0xFF00) | (value << 8 & 0xFF0000) | value << 24;
 }
 
+std::uint32_t load16(const unsigned char* bytes, bool turned)
+{
+  return turned ? bigEndian16(bytes) : load<std::uint16_t>(bytes);
+}
+
 std::uint32_t magicOf(ByteSource& source)
 {
   return source.holds(0, 24) ? load<std::uint32_t>(source.bytes(0, 4).data()) : 0;
@@ -92,6 +100,9 @@ std::uint64_t beginOfIp(std::uint32_t link, const unsigned char* bytes, std::uin
         type += 4; // a tag of a virtual network
       }
       break;
+    case 0:
+    case 108: // BSD's loopback: a family, 2 for IPv4 in either byte order
+      return size >= 4 && (bytes[0] == 2 || bytes[3] == 2) ? 4 : size;
     case 113: // Linux, cooked
       type = 14;
       break;
@@ -107,19 +118,56 @@ std::uint64_t beginOfIp(std::uint32_t link, const unsigned char* bytes, std::uin
   return type + 2 <= size && bigEndian16(bytes + type) == 0x0800 ? type + 2 : size;
 }
 
-/// Where the lidar's bytes begin in a packet; 0 if it is not the lidar's.
-std::uint64_t beginOfPayload(std::uint32_t link, const unsigned char* bytes, std::uint64_t size)
+bool isBlock(const unsigned char* bytes)
 {
+  return bytes[0] == 0xFF && bytes[1] == 0xEE;
+}
+
+/// Whether most of the 1206 bytes are in blocks of a Velodyne.
+bool hasBlocks(const unsigned char* payload)
+{
+  int blocks = 0;
+  for (int b = 0; b < BlocksPerPacket; ++b)
+  {
+    blocks += isBlock(payload + b * BytesPerBlock) ? 1 : 0;
+  }
+  return 2 * blocks > BlocksPerPacket;
+}
+
+/// A packet of 1206 bytes, which may be a lidar's.
+struct Datagram
+{
+  std::uint64_t begin = 0; ///< of the lidar's bytes in the packet; 0: it is something else
+  bool isFragment = false;
+  bool isForLidars = false; ///< by its port
+  std::string sensor;       ///< address and port
+};
+
+Datagram datagramOf(std::uint32_t link, const unsigned char* bytes, std::uint64_t size)
+{
+  constexpr unsigned offset = 0x1FFF, more = 0x2000;
+  Datagram datagram;
   const std::uint64_t ip = beginOfIp(link, bytes, size);
   if (ip + 20 > size || bytes[ip] >> 4 != 4 || bytes[ip + 9] != 17 ||
-    (bigEndian16(bytes + ip + 6) & 0x3FFF) != 0)
+    (bigEndian16(bytes + ip + 6) & offset) != 0)
   {
-    return 0;
+    return datagram;
   }
   const std::uint64_t udp = ip + 4 * std::uint64_t{ bytes[ip] & 0xFu };
-  const bool ours = udp + UdpSize <= size && bigEndian16(bytes + udp + 2) == DataPort &&
-    bigEndian16(bytes + udp + 4) == UdpSize + PayloadSize;
-  return ours ? udp + UdpSize : 0;
+  if (udp + UdpSize > size || bigEndian16(bytes + udp + 4) != UdpSize + PayloadSize)
+  {
+    return datagram;
+  }
+  const unsigned port = bigEndian16(bytes + udp + 2);
+  datagram.begin = udp + UdpSize;
+  datagram.isFragment = (bigEndian16(bytes + ip + 6) & more) != 0;
+  datagram.isForLidars = port == DataPort;
+  for (int i = 0; i < 4; ++i)
+  {
+    datagram.sensor += (i > 0 ? "." : "") + std::to_string(bytes[ip + 12 + i]);
+  }
+  datagram.sensor += ":" + std::to_string(port);
+  return datagram;
 }
 
 /// Calls packet(link type, place, bytes that are there) for each packet.
@@ -131,7 +179,8 @@ void forEachPacket(ByteSource& source, FileWindow& window, F packet)
     if (!source.holds(at, count))
     {
       throw FormatError("it is cut short: a packet that begins at byte " + std::to_string(at) +
-        " goes beyond its end");
+        " goes beyond its end, and the last " + std::to_string(source.size() - at) +
+        " bytes are left out");
     }
     return window.at(at, std::min(count, MostBeforePayload));
   };
@@ -151,7 +200,7 @@ void forEachPacket(ByteSource& source, FileWindow& window, F packet)
   }
   if (first != SectionBlock)
   {
-    throw FormatError("it is no pcap or pcapng file");
+    throw FormatError("this is not a pcap or pcapng file");
   }
   bool turned = false;
   std::vector<std::uint32_t> links;
@@ -165,51 +214,54 @@ void forEachPacket(ByteSource& source, FileWindow& window, F packet)
     }
     const std::uint32_t kind = load32(head, turned);
     const std::uint64_t size = load32(head + 4, turned);
-    const std::uint64_t least = kind == 6 ? 32 : kind == 1 || kind == 3 ? 16 : 12;
+    // Packet blocks: enhanced, simple, and the old one, which is as the enhanced one is.
+    const bool isEnhanced = kind == 6 || kind == 2;
+    const std::uint64_t least = isEnhanced ? 32 : kind == 1 || kind == 3 ? 16 : 12;
     if (size < least || size % 4 != 0)
     {
       throw FormatError("the block at byte " + std::to_string(at) + " has the length " +
         std::to_string(size) + ", expected at least " + std::to_string(least) +
-        " and a multiple of 4");
+        " and a multiple of 4: it and what follows are left out");
     }
     const unsigned char* block = need(at, size);
-    const std::uint32_t number = kind == 6 ? load32(block + 8, turned) : 0; // of the interface
+    const std::uint32_t number = kind == 6 ? load32(block + 8, turned)
+      : kind == 2                          ? load16(block + 8, turned)
+                                           : 0; // of the interface
     if (kind == 1)
     {
-      links.push_back(turned ? bigEndian16(block + 8) : load<std::uint16_t>(block + 8));
+      links.push_back(load16(block + 8, turned));
     }
-    else if ((kind == 3 || kind == 6) && number < links.size())
+    else if ((kind == 3 || isEnhanced) && number < links.size())
     {
-      const std::uint64_t before = kind == 6 ? 28 : 12;
-      const std::uint64_t captured = load32(block + (kind == 6 ? 20 : 8), turned);
+      const std::uint64_t before = isEnhanced ? 28 : 12;
+      const std::uint64_t captured = load32(block + (isEnhanced ? 20 : 8), turned);
       packet(links[number], at + before, std::min(captured, size - before - 4));
     }
     at += size;
   }
 }
 
-/// FormatError unless these are the bytes of a VLP-16.
-void checkPayload(const unsigned char* bytes, std::size_t number)
+/// What is wrong with the bytes of a VLP-16; or empty.
+std::string problemOf(const unsigned char* bytes)
 {
-  const auto fail = [&](const std::string& what)
-  { throw FormatError("packet " + std::to_string(number) + " of the lidar " + what); };
   if (bytes[1205] != 0x22)
   {
-    fail("is of the product " + std::to_string(bytes[1205]) + ", expected 34, a VLP-16");
+    return "is of the product " + std::to_string(bytes[1205]) + ", expected 34, a VLP-16";
   }
   if (bytes[1204] < 0x37 || bytes[1204] > DualReturn)
   {
-    fail("has the return mode " + std::to_string(bytes[1204]) +
-      ", expected 55 (strongest), 56 (last) or 57 (dual)");
+    return "has the return mode " + std::to_string(bytes[1204]) +
+      ", expected 55 (strongest), 56 (last) or 57 (dual)";
   }
   for (int b = 0; b < BlocksPerPacket; ++b)
   {
     const unsigned char* block = bytes + b * BytesPerBlock;
-    if (block[0] != 0xFF || block[1] != 0xEE || load<std::uint16_t>(block + 2) >= FullTurn)
+    if (!isBlock(block) || load<std::uint16_t>(block + 2) >= FullTurn)
     {
-      fail("has no azimuth below 360 deg in block " + std::to_string(b));
+      return "has no azimuth below 360 deg in block " + std::to_string(b);
     }
   }
+  return {};
 }
 
 int azimuthOf(const unsigned char* payload, int block)
@@ -300,6 +352,155 @@ void addBlock(TurnPoints& points, const unsigned char* payload, int block, doubl
     }
   }
 }
+
+/// The place of a packet in the file, and when it was sent.
+struct SentPacket
+{
+  int epoch = 0;     ///< rises where the sensor's clock goes back, as at the full hour
+  double time = 0.0; ///< us
+  std::uint64_t begin = 0;
+};
+
+/// What one sensor has sent.
+struct Sender
+{
+  std::vector<SentPacket> packets;
+  std::size_t damaged = 0;
+  std::string problem; ///< of the first packet that is damaged
+  int epoch = 0;
+  double latest = 0.0; ///< us, in this epoch
+
+  void add(std::uint64_t begin, const unsigned char* payload)
+  {
+    const double time = load<std::uint32_t>(payload + 1200);
+    const bool goesBack = time < this->latest - GreatestDelay;
+    const bool isLate = this->epoch > 0 && time > this->latest + 0.5 * HourTime;
+    this->epoch += goesBack ? 1 : 0;
+    this->packets.push_back({ this->epoch - (isLate ? 1 : 0), time, begin });
+    this->latest = goesBack ? time : isLate ? this->latest : std::max(this->latest, time);
+  }
+
+  void leaveOut(const std::string& what)
+  {
+    if (this->damaged++ == 0)
+    {
+      this->problem = "packet " + std::to_string(this->packets.size()) + " of the lidar " + what;
+    }
+  }
+};
+
+struct Recording
+{
+  std::map<std::string, Sender> senders; ///< by address and port
+  std::string cut;                       ///< why it ends too early; or empty
+};
+
+Recording scanPackets(ByteSource& source, const KeepGoing& keepGoing)
+{
+  Recording recording;
+  FileWindow window(source);
+  std::size_t number = 0;
+  const auto take = [&](std::uint32_t link, std::uint64_t at, std::uint64_t size)
+  {
+    if (number++ % PacketsPerCall == 0)
+    {
+      goOn(
+        keepGoing, 0, 1, 0.5 * static_cast<double>(at) / static_cast<double>(source.size()), 1.0);
+    }
+    const std::uint64_t looked = std::min(size, MostBeforePayload);
+    const Datagram datagram = datagramOf(link, window.at(at, looked), looked);
+    const bool isWhole = datagram.begin + PayloadSize <= size;
+    const unsigned char* payload =
+      datagram.begin > 0 && isWhole ? window.at(at + datagram.begin, PayloadSize) : nullptr;
+    if (datagram.begin == 0 || (!datagram.isForLidars && !(payload && hasBlocks(payload))))
+    {
+      return;
+    }
+    Sender& sender = recording.senders[datagram.sensor];
+    const std::string problem = datagram.isFragment
+      ? "is in fragments of IP, expected whole packets"
+      : payload ? problemOf(payload)
+                : "has " + std::to_string(size - datagram.begin) +
+        " of its 1206 bytes: it was not recorded whole";
+    problem.empty() ? sender.add(at + datagram.begin, payload) : sender.leaveOut(problem);
+  };
+  try
+  {
+    forEachPacket(source, window, take);
+  }
+  catch (const FormatError& error)
+  {
+    if (recording.senders.empty())
+    {
+      throw;
+    }
+    recording.cut = error.what();
+  }
+  return recording;
+}
+
+/// The sensor that is wanted, by its address, with its port or without; any if none is named.
+Sender& choose(std::map<std::string, Sender>& senders, const std::string& wanted)
+{
+  std::vector<Sender*> fitting;
+  std::string all;
+  for (auto& [name, sender] : senders)
+  {
+    if (wanted.empty() || wanted == name || wanted == name.substr(0, name.find(':')))
+    {
+      fitting.push_back(&sender);
+    }
+    all += (all.empty() ? "" : ", ") + name + " (" +
+      std::to_string(sender.packets.size() + sender.damaged) + " packets)";
+  }
+  if (senders.empty())
+  {
+    throw FormatError("it has no packet of a VLP-16: UDP with 1206 bytes");
+  }
+  if (fitting.empty())
+  {
+    throw FormatError("it has no packets of the sensor " + shown(wanted) +
+      ", expected the SensorAddress of one of these: " + all);
+  }
+  if (fitting.size() > 1)
+  {
+    throw FormatError("it has packets of several sensors, expected the SensorAddress of one of "
+                      "these: " +
+      all);
+  }
+  return *fitting.front();
+}
+
+/// Where the revolutions of the packets begin.
+std::vector<PacketIndex::Turn> turnsOf(
+  ByteSource& source, const std::vector<std::uint64_t>& packets, const KeepGoing& keepGoing)
+{
+  std::vector<PacketIndex::Turn> turns;
+  FileWindow window(source);
+  int before = -1;
+  HourClock clock;
+  for (std::size_t number = 0; number < packets.size(); ++number)
+  {
+    const unsigned char* payload = window.at(packets[number], PayloadSize);
+    const double time = clock.timeOf(payload);
+    for (int block = 0; block < BlocksPerPacket; block += blocksAtOnce(payload))
+    {
+      const int azimuth = azimuthOf(payload, block);
+      if (before < 0 || azimuth < before - FullTurn / 2)
+      {
+        const double seconds = 1e-6 * (time + timeOf(payload, block));
+        turns.push_back({ number, block,
+          turns.empty() ? seconds : std::max(seconds, turns.back().time + LeastStep) });
+      }
+      before = azimuth;
+    }
+    if (number % PacketsPerCall == 0)
+    {
+      goOn(keepGoing, 0, 1, 0.5, 1.0);
+    }
+  }
+  return turns;
+}
 }
 
 bool hasPackets(ByteSource& source)
@@ -308,52 +509,33 @@ bool hasPackets(ByteSource& source)
   return isPcap(magic) || magic == SectionBlock;
 }
 
-PacketIndex indexPackets(ByteSource& source, const KeepGoing& keepGoing)
+PacketIndex indexPackets(ByteSource& source, const std::string& sensor, const KeepGoing& keepGoing)
 {
-  PacketIndex index;
-  FileWindow window(source);
-  int before = -1;
-  HourClock clock;
-  forEachPacket(source, window,
-    [&](std::uint32_t link, std::uint64_t at, std::uint64_t size)
-    {
-      const std::uint64_t looked = std::min(size, MostBeforePayload);
-      const std::uint64_t begin = beginOfPayload(link, window.at(at, looked), looked);
-      if (begin == 0)
-      {
-        return;
-      }
-      const std::size_t number = index.packets.size();
-      if (begin + PayloadSize > size)
-      {
-        throw FormatError("packet " + std::to_string(number) + " of the lidar has " +
-          std::to_string(size - begin) + " of its 1206 bytes: it was not recorded whole");
-      }
-      const unsigned char* payload = window.at(at + begin, PayloadSize);
-      checkPayload(payload, number);
-      const double time = clock.timeOf(payload);
-      for (int block = 0; block < BlocksPerPacket; block += blocksAtOnce(payload))
-      {
-        const int azimuth = azimuthOf(payload, block);
-        if (before < 0 || azimuth < before - FullTurn / 2)
-        {
-          const double seconds = 1e-6 * (time + timeOf(payload, block));
-          index.turns.push_back({ number, block,
-            index.turns.empty() ? seconds
-                                : std::max(seconds, index.turns.back().time + LeastStep) });
-        }
-        before = azimuth;
-      }
-      index.packets.push_back(at + begin);
-      if (number % PacketsPerCall == 0)
-      {
-        goOn(
-          keepGoing, 0, 1, 0.5 * static_cast<double>(at) / static_cast<double>(source.size()), 1.0);
-      }
-    });
-  if (index.turns.empty())
+  Recording recording = scanPackets(source, keepGoing);
+  Sender& sender = choose(recording.senders, sensor);
+  if (sender.packets.empty())
   {
-    throw FormatError("it has no packet of a VLP-16: UDP to port 2368 with 1206 bytes");
+    throw FormatError(sender.problem);
+  }
+  // Networks may change the order.
+  std::stable_sort(sender.packets.begin(), sender.packets.end(),
+    [](const SentPacket& a, const SentPacket& b)
+    { return a.epoch != b.epoch ? a.epoch < b.epoch : a.time < b.time; });
+  PacketIndex index;
+  for (const SentPacket& packet : sender.packets)
+  {
+    index.packets.push_back(packet.begin);
+  }
+  index.turns = turnsOf(source, index.packets, keepGoing);
+  if (sender.damaged > 0)
+  {
+    index.warning = std::to_string(sender.damaged) + " of " +
+      std::to_string(sender.packets.size() + sender.damaged) +
+      " packets of the lidar are left out: " + sender.problem;
+  }
+  if (!recording.cut.empty())
+  {
+    index.warning += (index.warning.empty() ? "" : "; ") + recording.cut;
   }
   return index;
 }
@@ -375,7 +557,11 @@ Cloud readTurn(
   for (std::size_t p = from.packet; p < index.packets.size() && p <= to.packet; ++p)
   {
     std::copy_n(window.at(index.packets[p], PayloadSize), PayloadSize, payload);
-    checkPayload(payload, p); // the file may have changed
+    const std::string problem = problemOf(payload);
+    if (!problem.empty()) // the file has changed
+    {
+      throw FormatError("packet " + std::to_string(p) + " of the lidar " + problem);
+    }
     const int behind = p + 1 < index.packets.size()
       ? azimuthOf(window.at(index.packets[p + 1], PayloadSize), 0)
       : -1;

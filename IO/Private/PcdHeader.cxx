@@ -2,6 +2,8 @@
 #include "PcdFormat.h"
 #include "TextLines.h"
 
+#include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <limits>
 #include <sstream>
@@ -33,6 +35,11 @@ struct Words
   }
 };
 
+char upper(unsigned char c)
+{
+  return static_cast<char>(std::toupper(c));
+}
+
 std::uint64_t oneOf(const std::vector<std::string>& words, const char* key, std::uint64_t otherwise)
 {
   if (words.size() > 1)
@@ -55,13 +62,16 @@ void understandFields(const Words& words, PcdHeader& header)
     TableField field;
     field.name = words.fields[i];
     const auto size = numberOf<std::uint64_t>(words.sizes[i], "SIZE");
-    if (words.types[i].size() != 1 || !scalarOf(words.types[i][0], size, field.type))
+    const std::string& type = words.types[i];
+    if (type.size() != 1 || !scalarOf(upper(type[0]), size, field.type))
     {
       throw FormatError("the field " + shown(field.name) + " has TYPE " + shown(words.types[i]) +
         " and SIZE " + shown(words.sizes[i]) + ", expected I or U with 1, 2, 4, 8 or F with 4, 8");
     }
     field.count = words.counts.empty() ? 1 : numberOf<std::uint64_t>(words.counts[i], "COUNT");
-    if (field.count < 1 || field.count > GreatestCount)
+    // Old converters of ROS write 0 for a single value, and so the Point Cloud Library reads it.
+    field.count += field.count == 0;
+    if (field.count > GreatestCount)
     {
       throw FormatError("the field " + shown(field.name) + " has COUNT " +
         std::to_string(field.count) + ", expected 1 to 65536");
@@ -101,7 +111,9 @@ void understandSize(const Words& words, PcdHeader& header)
 
 PcdData understandData(const Words& words)
 {
-  const std::string kind = words.data.empty() ? "" : words.data[0];
+  std::string kind = words.data.empty() ? "" : words.data[0];
+  std::transform(kind.begin(), kind.end(), kind.begin(),
+    [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   if (kind == "ascii")
   {
     return PcdData::Ascii;
@@ -134,6 +146,7 @@ PcdHeader readPcdHeader(ByteSource& source)
     std::istringstream text(line);
     std::string key, word;
     text >> key;
+    std::transform(key.begin(), key.end(), key.begin(), upper);
     if (!key.empty() && key[0] == '#')
     {
       header.comments.push_back(line.substr(line.find('#') + 1));

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "PcdFormat.h"
+#include "TextLines.h"
 
 #include <lzf.h>
 
@@ -69,16 +70,30 @@ Cloud readPcd(ByteSource& source, const KeepGoing& keepGoing)
   const Bytes plain = header.data == PcdData::Compressed ? decompress(source, header) : Bytes();
   Cloud cloud;
   TableColumns columns(header, cloud);
+  bool hasMore = false;
+  std::string line;
   switch (header.data)
   {
     case PcdData::Ascii:
-      readAsciiRows(source, header, columns, keepGoing);
+    {
+      TextLines rest(source, readAsciiRows(source, header, columns, keepGoing));
+      while (!hasMore && rest.get(line))
+      {
+        hasMore = line.find_first_not_of(" \t") != std::string::npos;
+      }
       break;
+    }
     case PcdData::Binary:
       readBinaryRows(source, header, columns, keepGoing);
+      hasMore = source.size() - header.begin >= (header.points + 1) * header.length();
       break;
     default:
       takeCompressed(plain, header, columns, keepGoing);
+  }
+  if (hasMore)
+  {
+    cloud.warnings.push_back("its header says that it has " + std::to_string(header.points) +
+      " points, and more follow, which are left out");
   }
   dropEmptyCells(cloud);
   cloud.sensor = { { header.viewpoint[0], header.viewpoint[1], header.viewpoint[2] } };

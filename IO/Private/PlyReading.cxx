@@ -240,8 +240,14 @@ Cloud readPly(ByteSource& source, const KeepGoing& keepGoing)
   requireMemoryFor(header.points, header.length());
   Cloud cloud;
   TableColumns columns(header, cloud);
-  header.ascii ? readAsciiRows(source, header, columns, keepGoing)
-               : readBinaryRows(source, header, columns, keepGoing);
+  if (header.ascii)
+  {
+    readAsciiRows(source, header, columns, keepGoing);
+  }
+  else
+  {
+    readBinaryRows(source, header, columns, keepGoing);
+  }
   dropEmptyCells(cloud);
   for (const std::string& comment : header.comments)
   {

@@ -203,7 +203,7 @@ const std::vector<CloudFormat>& cloudFormats()
     { { ".bin" }, [](ByteSource& file) { return file.size() % 16 == 0; }, readKitti, true },
     { { ".pcap", ".pcapng" }, hasPackets,
       [](ByteSource& file, ByteSource*, const KeepGoing& keepGoing)
-      { return readTurn(file, indexPackets(file, keepGoing), 0, keepGoing); },
+      { return readTurn(file, indexPackets(file, {}, keepGoing), 0, keepGoing); },
       false, true },
   };
   return all;

@@ -18,6 +18,7 @@ std::string shown(const std::string& text)
 bool TextLines::get(std::string& line)
 {
   constexpr std::size_t longest = 1 << 24;
+  const bool isFirst = this->Next == 0;
   line.clear();
   bool any = false;
   while (this->fill())
@@ -36,6 +37,10 @@ bool TextLines::get(std::string& line)
       ++this->At;
       break;
     }
+  }
+  if (isFirst && line.compare(0, 3, "\xEF\xBB\xBF") == 0) // a byte-order mark
+  {
+    line.erase(0, 3);
   }
   if (!line.empty() && line.back() == '\r')
   {

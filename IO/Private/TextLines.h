@@ -27,8 +27,8 @@ public:
   {
   }
 
-  /// The next line without its end; false behind the last. A line of more than 16 MiB is a
-  /// FormatError.
+  /// The next line without its end, the first one without a byte-order mark; false behind the last.
+  /// A line of more than 16 MiB is a FormatError.
   bool get(std::string& line);
 
   /// Where the next line begins.
@@ -49,7 +49,8 @@ T numberOf(const std::string& word, const char* key)
 {
   T value{};
   const char* end = word.data() + word.size();
-  const auto [stop, problem] = std::from_chars(word.data(), end, value);
+  const bool hasPlus = word.size() > 1 && word[0] == '+' && word[1] != '-';
+  const auto [stop, problem] = std::from_chars(word.data() + hasPlus, end, value);
   if (problem != std::errc() || stop != end)
   {
     throw FormatError(std::string(key) + " has \"" + shown(word) + "\", expected a number");

@@ -7,7 +7,7 @@ import io
 import pathlib
 import re
 import warnings
-from typing import Any, Dict, Optional, Tuple
+from typing import Any, Dict, List, Optional, Tuple
 
 import numpy as np
 from vtkmodules.util.numpy_support import numpy_to_vtk
@@ -18,19 +18,74 @@ from ._cloud import Cloud, vertices
 from ._disk import read_regular
 from ._pipeline import callers_level, file_name, update
 from ._properties import set_properties
-from ._suffixes import PACKETS, READERS
+from ._suffixes import PACKETS, READERS, TABLES
 from ._writers import refuse, suffixes, write
 
 _NAME_AND_UNIT = re.compile(r"(.*?)(?: \[([^\[\]]*)\])?", re.S)
+_AXIS = re.compile(r"(?://)?\s*([xyz])(?:\s*[(\[]m[)\]])?", re.I)  # of CloudCompare, LAStools, spreadsheets
+_POINTS = [stem + mark for stem in ("Points", "Points_m_XYZ") for mark in ":_"]  # of ParaView and VeloView, before a number
+# What HELIOS++ writes, without a first line of names; and what any table of places has.
+_HELIOS = ("x y z intensity echo_width return_number number_of_returns fullwave_index hit_object_id classification gps_time").split()
 
 
-def _csv_table(path: pathlib.Path) -> Tuple[Dict[str, str], np.ndarray]:
+def _delimiter(line: str) -> str:
+    """What stands between the names of the first line, quoted ones aside: a tab, a semicolon (spreadsheets in much of Europe) or a comma."""
+    bare = re.sub(r'"[^"]*"', "", line)
+    return max(",;\t", key=bare.count)
+
+
+def _axes(names: List[str]) -> List[str]:
+    """The names with x, y and z for what other programs call so, unless these are there."""
+    if set("xyz") <= {_NAME_AND_UNIT.fullmatch(name)[1] for name in names}:  # type: ignore[index]
+        return names
+    for points in _POINTS:
+        if all(points + str(i) in names for i in range(3)):
+            return ["xyz"[int(name[len(points):])] if name in (points + "0", points + "1", points + "2") else name for name in names]
+    found = [_AXIS.fullmatch(name) for name in names]
+    return [axis[1].lower() if axis else name for axis, name in zip(found, names)]
+
+
+def _is_number(word: str) -> bool:
+    try:
+        float(word)
+        return True
+    except ValueError:
+        return False
+
+
+def _names_and_rows(path: pathlib.Path) -> Tuple[List[str], io.StringIO, Optional[str]]:
+    """Names of the columns, the rows behind them, and what stands between their numbers (None: blanks)."""
+    text = read_regular(path).decode("utf-8-sig")
+    first = text.partition("\n")[0].strip()
+    if first.lower().startswith("sep=") and len(first) == 5:  # of Excel
+        text, delimiter = text.partition("\n")[2], first[4]
+    else:
+        delimiter = _delimiter(first)
+    if path.suffix.lower() == ".xyz":
+        delimiter = max(",;", key=first.count)
+        words = first.replace(delimiter, " ").split()
+        if len(words) == 1:
+            raise ValueError("the first line has one word, as files of molecules have it")
+        if all(map(_is_number, words)):
+            count = len(words)
+            names = _HELIOS if count == len(_HELIOS) else [*"xyz", *(f"column_{i}" for i in range(4, count + 1))][:count]
+            return names, io.StringIO(text), delimiter if delimiter in first else None
+        if delimiter not in first:
+            return _axes(first.removeprefix("//").split()), io.StringIO(text.partition("\n")[2]), None
+    stream = io.StringIO(text, newline="")
+    names = _axes([cell.strip() for cell in next(csv.reader(stream, delimiter=delimiter), [])])
+    if delimiter != ",":  # then a comma stands in a number
+        stream = io.StringIO(stream.read().replace(",", "."))
+    return names, stream, delimiter
+
+
+def _table(path: pathlib.Path) -> Tuple[Dict[str, str], np.ndarray]:
     """Units by name of the columns, and the rows."""
     try:
-        stream = io.StringIO(read_regular(path).decode("utf-8-sig"), newline="")
+        names, stream, delimiter = _names_and_rows(path)
         units: Dict[str, str] = {}
-        for cell in next(csv.reader(stream), []):
-            name, unit = _NAME_AND_UNIT.fullmatch(cell.strip()).groups("")  # type: ignore[union-attr]
+        for cell in names:
+            name, unit = _NAME_AND_UNIT.fullmatch(cell).groups("")  # type: ignore[union-attr]
             if name in units:
                 raise ValueError(f"the column {name!r} is there twice")
             units[name] = unit
@@ -39,32 +94,33 @@ def _csv_table(path: pathlib.Path) -> Tuple[Dict[str, str], np.ndarray]:
             raise ValueError(f"has no column {wrong[0]} in metres")
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # of no rows
-            table = np.loadtxt(stream, delimiter=",", quotechar='"', comments=None, ndmin=2)
+            table = np.loadtxt(stream, delimiter=delimiter, quotechar='"', comments=None, ndmin=2)
         table = table if table.size else np.empty((0, len(units)))
         if table.shape[1] != len(units):
             raise ValueError(f"rows have {table.shape[1]} cells, the first line {len(units)}")
     except (ValueError, csv.Error) as error:
         raise ValueError(f"{path}: is no cloud ({error}): expected a first line of names, among them x, y and z (m), some with units, as "
-                         "'energy [J]', and numbers below") from None
+                         "'energy [J]', and numbers below; of .xyz numbers alone, x, y and z (m) first") from None
     return units, table
 
 
-def _read_csv(path: pathlib.Path) -> Cloud:
-    """What `_write_csv` has written: whole numbers as int64, columns name_0, name_1, ... as one array, colours (rgb) as bytes."""
-    units, table = _csv_table(path)
+def _read_table(path: pathlib.Path) -> Cloud:
+    """What `_write_csv` has written, and tables of other programs: whole numbers as int64, columns name_0, name_1, ... (or name:0, ...) as one
+    array, colours (rgb) as bytes."""
+    units, table = _table(path)
     columns = dict(zip(units, table.T))
     data = vertices(np.column_stack([columns.pop(axis) for axis in "xyz"]))
     while columns:
         name = next(iter(columns))
-        stem, parts = name[:-2], [name]
-        while name.endswith("_0") and f"{stem}_{len(parts)}" in columns:
-            parts.append(f"{stem}_{len(parts)}")
+        stem, parts = name[:-1], [name]
+        while name.endswith(("_0", ":0")) and f"{stem}{len(parts)}" in columns:
+            parts.append(f"{stem}{len(parts)}")
         values = np.column_stack([columns.pop(part) for part in parts])
         if (np.abs(values) < 2.0**53).all() and (values == np.floor(values)).all():  # of NaN neither
-            colours = stem == "rgb" and len(parts) == 3 and ((values >= 0) & (values < 256)).all()
+            colours = stem[:-1] == "rgb" and len(parts) == 3 and ((values >= 0) & (values < 256)).all()
             values = values.astype(np.uint8 if colours else np.int64)
         array = numpy_to_vtk(values if len(parts) > 1 else values[:, 0].copy(), deep=True)
-        array.SetName(stem if len(parts) > 1 else name)
+        array.SetName(stem[:-1] if len(parts) > 1 else name)
         if units[name]:
             array.GetInformation().Set(vtkDataArray.UNITS_LABEL(), units[name])
         data.GetPointData().AddArray(array)
@@ -88,20 +144,21 @@ def save(cloud, file, **properties: Any) -> None:
 
 
 def load_cloud(file, time: Optional[float] = None, **properties: Any) -> Cloud:
-    """Read a cloud: .vtp, .csv as `save` writes it, and as far as this build has the reader other formats
+    """Read a cloud: .vtp, .csv as `save` and other programs write it, .xyz, and as far as this build has the reader other formats
     (Documentation/formats.md), whose `properties` are given by name. Coordinates are metres; arrays have the units that the file says (`Cloud.units`).
 
-    Of packets (.pcap, .pcapng) it is the revolution at `time` (s since the full hour); default: the first, with a warning if there are more."""
+    Of packets (.pcap, .pcapng) it is the revolution at `time` (s since the full hour); default: the first, with a warning if there are more.
+    `sensor_address` chooses among the sensors of a recording, as "192.168.1.201"."""
     path = pathlib.Path(file)
     file_name(path)
     suffix = path.suffix.lower()
     if time is not None and suffix not in PACKETS:
         raise TypeError(f"a {suffix} file has no revolutions, expected no time: it is {time!r}")
-    if suffix == ".csv":
+    if suffix in TABLES:
         if properties:
             raise TypeError(f"a {suffix} file has no properties: {', '.join(properties)}")
         if path.exists():
-            return _read_csv(path)
+            return _read_table(path)
     elif suffix == ".vtp":
         from vtkmodules.vtkIOXML import vtkXMLPolyDataReader
         reader = vtkXMLPolyDataReader()
@@ -112,7 +169,7 @@ def load_cloud(file, time: Optional[float] = None, **properties: Any) -> Cloud:
     elif suffix in READERS and hasattr(_wrapped, READERS[suffix]):
         reader = getattr(_wrapped, READERS[suffix])()
     else:
-        raise refuse("read", path, suffixes(READERS))
+        raise refuse("read", path, [*suffixes(READERS), *TABLES[1:]])
     if not path.is_file():
         raise FileNotFoundError(f"no such file: {path}")
     set_properties(reader, **properties)

@@ -11,6 +11,7 @@ WRITERS = {".las": "vtkAvianLidarLASWriter", ".laz": "vtkAvianLidarLASWriter", "
            ".ply": "vtkAvianLidarPLYWriter", ".bin": "vtkAvianLidarKITTIWriter", ".geojson": "vtkAvianLidarGeoJSONWriter"}
 # What needs none of them.
 OWN = (".vtp", ".csv")
+TABLES = (".csv", ".xyz")  # that are read; the first is written, too
 
 
 def listed(classes: Iterable[str]) -> str:

@@ -8,7 +8,7 @@ import sys
 import warnings
 from typing import Any, Dict, Iterable, Iterator, List, Tuple
 
-from ._suffixes import PACKETS
+from ._suffixes import PACKETS, TABLES
 
 
 class Bars:
@@ -154,7 +154,7 @@ def _has_points_only(file: pathlib.Path) -> bool:
         with open(file, "rb") as stream:
             header = stream.read(65536).partition(b"end_header")[0]
         return not any(line.split()[1:2] == [b"face"] and line.split()[2:] != [b"0"] for line in header.splitlines())
-    return suffix in (".las", ".laz", ".pcd", ".bin", ".csv", *PACKETS) or suffix == ".vtp" and not _cloud(file).data.GetNumberOfPolys()
+    return suffix in (".las", ".laz", ".pcd", ".bin", *TABLES, *PACKETS) or suffix == ".vtp" and not _cloud(file).data.GetNumberOfPolys()
 
 
 def _words(value: Any) -> str:

@@ -57,7 +57,7 @@ FIRST_SHOWN = {
         ConfirmScans MaximumMisses""",
     "AvianLidarHSBColorMap": "EnergyArray UseFieldDataRange EnergyRange",
     "AvianLidarHSBColorMapGiven": "EnergyArray UseFieldDataRange EnergyRange",
-    "AvianLidarPointCloudReader": "LocalCoordinates",
+    "AvianLidarPointCloudReader": "LocalCoordinates SensorAddress",
     "AvianLidarSensorReader": "Position Orientation NumberOfRevolutions StepsPerRevolution",
 }
 # ParaView's own part of the options of Save Data.

@@ -284,7 +284,7 @@ CONTRACT = {
         "DensityAwareChamferReferenceToSimulated": "result, a pure number",
     },
     "AvianLidarSceneReader": {"FileName": ""},
-    "AvianLidarPointCloudReader": {"FileName": "", "LocalCoordinates": "", "TimestepValues": "steps"},
+    "AvianLidarPointCloudReader": {"FileName": "", "LocalCoordinates": "", "SensorAddress": "", "TimestepValues": "steps"},
     "AvianLidarSequenceReader": {"FileName": "", "TimestepValues": "steps"},
     "AvianLidarSensorReader": {"FileName": "", **{name: BEAM_SOURCE[name] for name in (
         "Position", "Orientation", "NumberOfRevolutions", "StepsPerRevolution")}},

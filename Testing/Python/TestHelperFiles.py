@@ -64,6 +64,36 @@ class Files(unittest.TestCase):
         al.save(self.scan.sensor.beams, file)
         self.assertIn("direction_2", file.read_text(encoding="utf-8").splitlines()[0])
 
+    def test_tables_of_other_programs(self):
+        """First lines of ParaView, VeloView, CloudCompare, LAStools and spreadsheets; HELIOS++ and .xyz without one."""
+        helios = "1.5 -2 3 0.25 0.0 1 2 7 12 6 300000.5"
+        bom = b"\xef\xbb\xbf"
+        for suffix, text, arrays in (
+                (".csv", "Points:0,Points:1,Points:2,energy\n1.5,-2,3,4\n", {"energy": 4}),
+                (".csv", '"Point ID","Points_0","Points_1","Points_2","Points_Magnitude"\n0,1.5,-2,3,4\n', {"Point ID": 0, "Points_Magnitude": 4}),
+                (".csv", '"intensity","Points_m_XYZ:0","Points_m_XYZ:1","Points_m_XYZ:2"\n7,1.5,-2,3\n', {"intensity": 7}),
+                (".csv", "Normals:0,Normals:1,Normals:2,Points:0,Points:1,Points:2\n0,0,1,1.5,-2,3\n", {"Normals": [0, 0, 1]}),
+                (".csv", "//X,Y,Z,R\n1.5,-2,3,9\n", {"R": 9}), (".csv", bom + b"X (m);Y (m);Z (m);i\r\n1,5;-2;3;0,25\r\n", {"i": 0.25}),
+                (".csv", "sep=;\nx;y;z\n1,5;-2;3\n", {}), (".csv", "x\ty\tz\n1.5\t-2\t3\n", {}),
+                (".xyz", "1.5 -2 3\n", {}), (".xyz", "1.5  -2\t3\n", {}), (".xyz", "1.5,-2,3,8\n", {"column_4": 8}), (".xyz", "//X Y Z c\n1.5 -2 3 8\n", {"c": 8}),
+                (".xyz", "x,y,z\n1.5,-2,3\n", {}),
+                (".xyz", helios, {"intensity": 0.25, "echo_width": 0, "return_number": 1, "number_of_returns": 2, "fullwave_index": 7,
+                                  "hit_object_id": 12, "classification": 6, "gps_time": 300000.5})):
+            with self.subTest(text):
+                file = self.folder / f"table{suffix}"
+                file.write_bytes(text if isinstance(text, bytes) else text.encode())
+                cloud = al.load_cloud(file)
+                self.assertEqual(cloud.points.tolist(), [[1.5, -2, 3]])
+                self.assertEqual({name: values[0].tolist() for name, values in cloud.items()}, arrays)
+        for suffix, text, words in ((".xyz", "3\nwater\nO 0 0 0\n", "one word, as files of molecules"), (".xyz", "1 2\n", "no column z"),
+                                    (".csv", "x;y;z\n1.234,5;2;3\n", "1.234.5"), (".csv", "X (mm),Y (mm),Z (mm)\n1,2,3\n", "no column x in metres"),
+                                    (".xyz", "1 2 3\n1 2\n", "columns")):
+            with self.subTest(text):
+                file = self.folder / f"table{suffix}"
+                file.write_text(text, encoding="ascii")
+                with self.assertRaisesRegex(ValueError, words):
+                    al.load_cloud(file)
+
     def test_csv_quotes_names(self):
         data = vtkPolyData()
         data.DeepCopy(self.scan.echoes.data)

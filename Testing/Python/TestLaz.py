@@ -116,7 +116,7 @@ class TestLaz(Files):
         table = struct.unpack_from("<Q", whole, data)[0]
         layers = data + 8 + length + 4
         for cut in {0, 200, 374, data - 1, data, data + 8, layers, table - 1, table, table + 4, len(whole) - 1}:
-            self.assert_damaged(whole[:cut], "damaged or cut short|no LAS file|ends before")
+            self.assert_damaged(whole[:cut], "damaged or cut short|not a LAS file|ends before")
         for offset, kind, value in (
             (96, "<I", 300), (96, "<I", 2**32 - 1), (247, "<Q", 201), (247, "<Q", 199), (247, "<Q", 50001), (105, "<H", length - 1),
             (data, "<q", -1), (data, "<Q", 2**64 - 2), (data, "<Q", data), (table, "<I", 1), (table + 4, "<I", 0),

@@ -155,6 +155,25 @@ class TestPCDReader(unittest.TestCase):
             self.assertEqual(bool(fields.HasArray("comment")), kept, text)
             self.assertFalse(any(fields.HasArray(name) for name in "abc"), text)
 
+    def test_dialects(self):
+        """Types, keys and words in any case, COUNT 0 of old converters, a byte-order mark, plus signs."""
+        for changes in ({"TYPE": "f F f"}, {"COUNT": "0 0 0"}, {"DATA": "ASCII"}, {"data": LINES.replace(b"1", b"+1")},
+                        {"VERSION": "0.7\nfields x y z\nSize 4 4 4", "FIELDS": None, "SIZE": None}):
+            write(**changes)
+            self.assertEqual(points(read(FILE)).tolist(), [[1, 2, 3], [4, 5, 6]], changes)
+        write(struct.pack("<3fB3fB", 1, 2, 3, 7, 4, 5, 6, 8), FIELDS="x y z n", SIZE="4 4 4 1", TYPE="f f f u", COUNT="1 1 1 0", DATA="binary")
+        with open(FILE, "rb") as file:
+            whole = file.read()
+        with open(FILE, "wb") as file:
+            file.write(b"\xef\xbb\xbf" + whole)
+        data = read(FILE)
+        self.assertEqual((points(data).tolist(), array(data, "n").tolist()), ([[1, 2, 3], [4, 5, 6]], [7, 8]))
+
+    def test_more_points_than_the_header_says(self):
+        for changes in ({"data": LINES + b"7 8 9\n"}, {"data": np.ones((3, 3), "<f4").tobytes(), "DATA": "binary"}):
+            write(**changes)
+            self.assertEqual(read(FILE, said=["its header says that it has 2 points, and more follow, which are left out"]).GetNumberOfPoints(), 2)
+
     def test_errors(self):
         cases = [
             ("no line DATA", {"DATA": None, "data": b""}),
@@ -168,7 +187,6 @@ class TestPCDReader(unittest.TestCase):
             ("expected I or U", {"SIZE": "4 4 3"}),
             ("expected I or U", {"TYPE": "F F Q"}),
             ("expected I or U", {"SIZE": "2 4 4"}),
-            ("COUNT 0", {"COUNT": "1 1 0"}),
             ("COUNT 70000", {"COUNT": "1 1 70000"}),
             ("expected a number", {"WIDTH": "two"}),
             ("expected a number", {"WIDTH": "-2"}),
@@ -185,6 +203,7 @@ class TestPCDReader(unittest.TestCase):
             ("cut short", {"WIDTH": "1000000000", "POINTS": None}),
             ("cut short", {"WIDTH": "4000000000", "HEIGHT": "4000000000", "POINTS": None}),
             ("cut short", {"WIDTH": "3", "POINTS": "3", "data": LINES + b"           \n\n\n"}),
+            ("point 1 has too many values", {"data": b"1 2 3\n4 5 6 7\n"}),
             ("too few values", {"data": b"1 2\n3 4 5\n     "}),
             ("expected a number", {"data": b"1 2 three\n4 5 6\n"}),
             ("cut short", {"DATA": "binary", "data": b"\0" * 23}),

@@ -31,11 +31,11 @@ def payload(azimuth, time=0, mode=STRONGEST, step=40, value=lambda block, shot: 
     return blocks + struct.pack("<IBB", time, mode, product)
 
 
-def datagram(data, port=2368, options=b"", fragment=0, protocol=17):
+def datagram(data, port=2368, options=b"", fragment=0, protocol=17, last=201):
     """IPv4 with UDP."""
     udp = struct.pack(">HHHH", 2368, port, 8 + len(data), 0) + data
     head = struct.pack(">BBHHHBBH4s4s", 0x45 + len(options) // 4, 0, 20 + len(options) + len(udp), 0, fragment, 64, protocol, 0,
-                       bytes([192, 168, 1, 201]), bytes([255] * 4))
+                       bytes([192, 168, 1, last]), bytes([255] * 4))
     return head + options + udp
 
 
@@ -48,7 +48,7 @@ def pcap(frames, link=1, order="<", magic=0xA1B2C3D4):
     return head + b"".join(struct.pack(order + "IIII", 0, 0, len(frame), len(frame)) + frame for frame in frames)
 
 
-def pcapng(frames, order="<", simple=False):
+def pcapng(frames, order="<", simple=False, old=False):
     def block(kind, body):
         body += bytes(-len(body) % 4)
         return struct.pack(order + "II", kind, 12 + len(body)) + body + struct.pack(order + "I", 12 + len(body))
@@ -56,7 +56,7 @@ def pcapng(frames, order="<", simple=False):
     whole += block(5, bytes(12))  # statistics, which are passed over
     for frame in frames:
         head = struct.pack(order + "I", len(frame)) if simple else struct.pack(order + "IIIII", 0, 0, 0, len(frame), len(frame))
-        whole += block(3 if simple else 6, head + frame)
+        whole += block(3 if simple else 6, head + frame) if not old else block(2, struct.pack(order + "HHIIII", 0, 0, 0, 0, len(frame), len(frame)) + frame)
     return whole
 
 
@@ -164,9 +164,11 @@ class TestPacketReader(unittest.TestCase):
                  "options": pcap([ethernet(data, options=bytes(8))]), "bare": pcap([datagram(data)], link=101),
                  "cooked": pcap([bytes(14) + b"\x08\x00" + datagram(data)], link=113),
                  "cooked2": pcap([b"\x08\x00" + bytes(18) + datagram(data)], link=276), "ng": pcapng([ethernet(data)]),
+                 "ng old": pcapng([ethernet(data)], old=True), "loopback": pcap([b"\2\0\0\0" + datagram(data)], link=0),
+                 "another port": pcap([ethernet(data, port=2370)]),
                  "ng turned": pcapng([ethernet(data)], order=">"), "ng simple": pcapng([ethernet(data)], simple=True),
-                 "others": pcap([b"", ethernet(data, port=8308), ethernet(data[:-1]), ethernet(data, protocol=6),
-                                 ethernet(data, fragment=0x2000), bytes(60), ethernet(data), ethernet(b"")])}
+                 "others": pcap([b"", ethernet(bytes(1206), port=8308), ethernet(data[:-1]), ethernet(data, protocol=6),
+                                 ethernet(data, fragment=1), bytes(60), ethernet(data), ethernet(b"")])}
         for name, content in kinds.items():
             with self.subTest(name):
                 write(content)
@@ -207,18 +209,67 @@ class TestPacketReader(unittest.TestCase):
         turned = np.concatenate([cloud["azimuth"] for cloud in found]) / 100
         self.assertLess(np.abs(turned - measured["file_azimuth"]).max(), 2e-5)
 
+    def test_two_sensors(self):
+        """One is chosen by its address, or by the port where addresses are the same; without a choice an error lists them."""
+        near, far = (payload(500, value=lambda block, shot, d=d: (d, 100)) for d in (1000, 3000))
+        for address, port, exact in ((202, 2368, "192.168.1.202"), (201, 2369, "192.168.1.201:2369")):
+            write(pcap([ethernet(near), ethernet(far, last=address, port=port), ethernet(near)]))
+            error = read_error(FILE)
+            self.assertIn(f"expected the SensorAddress of one of these: 192.168.1.201:2368 (2 packets), 192.168.1.{address}:{port} (1 packets)", error)
+            self.assertEqual(set(array(read(FILE, SensorAddress=exact), "distance_m")), {6.0})
+            cloud = avianlidar.load_cloud(FILE, sensor_address="192.168.1.201:2368")
+            self.assertEqual((cloud.number_of_points, set(cloud["distance_m"])), (768, {2.0}))
+        for wrong, words in (("192.168.1.7", "has no packets of the sensor 192.168.1.7, expected"), ("192.168.1.201", "of several sensors")):
+            with self.assertRaisesRegex(avianlidar.Error, words):
+                avianlidar.load_cloud(FILE, sensor_address=wrong)
+
+    def test_damaged_packets_are_left_out(self):
+        """With one warning, whatever their number; a cut end, too."""
+        good = [ethernet(payload(480 * number, 1327 * number)) for number in range(20)]
+        write(pcap(good[:4] + good[5:]))
+        wanted = points(read(FILE)).tolist()
+        bad = payload(1920, 5308)
+        for name, frame in (("no block", bad[:300] + b"\0\0" + bad[302:]), ("azimuth", bad[:302] + struct.pack("<H", 36000) + bad[304:]),
+                            ("mode", payload(1920, mode=0x40)), ("product", payload(1920, product=0x21))):
+            with self.subTest(name):
+                write(pcap(good[:4] + [ethernet(frame)] + good[5:]))
+                self.assertEqual(points(read(FILE, said=["1 of 20 packets of the lidar are left out: packet 4 of the lidar "])).tolist(), wanted)
+        for frame in (good[4][:700], ethernet(bad, fragment=0x2000)):  # recorded with a limit; a fragment
+            for whole in (pcap(good[:4] + [frame] + good[5:]), pcapng(good[:4] + [frame] + good[5:])):
+                write(whole)
+                self.assertEqual(points(read(FILE, said=["1 of 20 packets of the lidar are left out"])).tolist(), wanted)
+        write(pcap(good[:4] + good[5:] + [ethernet(payload(480 * 20, 1327 * 20))])[:-400])
+        self.assertEqual(points(read(FILE, said=["is cut short: a packet that begins at byte ", ", and the last 864 bytes are left out"])).tolist(), wanted)
+        write(pcapng(good[:4] + good[5:])[:-7])
+        self.assertEqual(points(read(FILE, said=["is cut short"])).tolist(), points(self.without_last(good)).tolist())
+
+    def without_last(self, good):
+        write(pcap(good[:4] + good[5:-1]))
+        return read(FILE)
+
+    def test_packets_that_come_late(self):
+        """They are sorted by the sensor's clock, at the full hour, too: points and revolutions are the same."""
+        for start in (0, 3_599_990_000):
+            good = [ethernet(payload(35000 + 480 * number, int(start + 1327.104 * number) % 3_600_000_000)) for number in range(30)]
+            write(pcap(good))
+            wanted = [(cloud.number_of_points, cloud["timestamp"].tolist()) for cloud in turns()[0]]
+            for at in range(1, 29, 2):
+                good[at], good[at + 1] = good[at + 1], good[at]
+            write(pcap(good))
+            self.assertEqual([(cloud.number_of_points, cloud["timestamp"].tolist()) for cloud in turns()[0]], wanted)
+
     def test_errors(self):
         good = payload(0)
         broken = good[:100] + b"\0" + good[101:]
         ng = pcapng([ethernet(good)])
         for content, words in (
-                (b"", "is no pcap or pcapng file"), (bytes(100), "is no pcap or pcapng file"),
-                (pcap([]), "has no packet of a VLP-16: UDP to port 2368 with 1206 bytes"),
+                (b"", "is not a pcap or pcapng file"), (bytes(100), "is not a pcap or pcapng file"),
+                (pcap([]), "has no packet of a VLP-16: UDP with 1206 bytes"),
                 (pcap([ethernet(good)], link=147), "has no packet of a VLP-16"),
                 (pcap([ethernet(good)])[:-1], "is cut short: a packet that begins at byte 24 goes beyond its end"),
                 (pcap([ethernet(good)])[:30], "is cut short: a packet that begins at byte 24"),
                 (pcap([ethernet(good)[:900]]), "packet 0 of the lidar has 858 of its 1206 bytes: it was not recorded whole"),
-                (pcap([ethernet(good), ethernet(broken)]), "packet 1 of the lidar has no azimuth below 360 deg in block 1"),
+                (pcap([ethernet(broken), ethernet(broken)]), "packet 0 of the lidar has no azimuth below 360 deg in block 1"),
                 (pcap([ethernet(good[:2] + struct.pack("<H", 36000) + good[4:])]), "no azimuth below 360 deg in block 0"),
                 (pcap([ethernet(payload(0, product=0x21))]), "is of the product 33, expected 34, a VLP-16"),
                 (pcap([ethernet(payload(0, mode=0x40))]), "has the return mode 64, expected 55 (strongest), 56 (last) or 57 (dual)"),

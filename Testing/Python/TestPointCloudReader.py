@@ -13,7 +13,7 @@ from cloudtools import add_field, cloud, echoes, field, names, points, read, rea
 from echotools import Messages, array
 
 FILE = "TestPointCloudReader.las"
-CORE = {0: 20, 1: 28, 2: 26, 3: 34, 6: 30, 7: 36, 8: 38}
+CORE = {0: 20, 1: 28, 2: 26, 3: 34, 4: 57, 5: 63, 6: 30, 7: 36, 8: 38, 9: 59, 10: 67}
 DATA = os.environ.get("AVIANLIDAR_DATA_DIR", "")
 
 
@@ -25,20 +25,22 @@ def extra(name, kind, options=0, scale=(1, 1, 1), offset=(0, 0, 0), description=
     return struct.pack("<HBB32sI24s24s24s3d3d32s", 0, kind, options, name, 0, b"", b"", b"", *scale, *offset, description)
 
 
-def point(form, i):
+def point(form, i, colour=None):
     """A record of that format: (100 + i, 200, -i) in steps of 0.01 m."""
     position = struct.pack("<3iH", 10000 + 100 * i, 20000, -100 * i, 257 * i)
-    time, rgb, nir = struct.pack("<d", 0.5 * i), struct.pack("<3H", 256 * i, 512, 65535), struct.pack("<H", 7)
+    time, rgb, nir = struct.pack("<d", 0.5 * i), struct.pack("<3H", *(colour or (256 * i, 512, 65535))), struct.pack("<H", 7)
+    wave = bytes(range(29))
     if form < 6:
         core = position + struct.pack("<BBbBH", 1 | 2 << 3, 2 | 1 << 5, -30, 9, 4)
     else:
         core = position + struct.pack("<BBBBhHd", 3 | 5 << 4, 2, 11, 9, 5000, 4, 0.5 * i)
-    rest = {0: b"", 1: time, 2: rgb, 3: time + rgb, 6: b"", 7: rgb, 8: rgb + nir}[form]
+    rest = {0: b"", 1: time, 2: rgb, 3: time + rgb, 4: time + wave, 5: time + rgb + wave, 6: b"", 7: rgb, 8: rgb + nir, 9: wave,
+            10: rgb + nir + wave}[form]
     assert len(core + rest) == CORE[form]
     return core + rest
 
 
-def las(form, n=5, minor=None, records=(), behind=b"", tail=b"", length=None, **patch):
+def las(form, n=5, minor=None, records=(), behind=b"", tail=b"", length=None, colour=None, **patch):
     minor = (4 if form >= 6 else 2) if minor is None else minor
     size = {4: 375, 3: 235}.get(minor, 227)
     vlrs = b"".join(records)
@@ -53,7 +55,7 @@ def las(form, n=5, minor=None, records=(), behind=b"", tail=b"", length=None, **
     for offset, (kind, value) in patch.get("patch", {}).items():
         struct.pack_into(kind, header, offset, value)
     with open(FILE, "wb") as file:
-        file.write(bytes(header) + vlrs + b"".join(point(form, i) + behind for i in range(n)) + tail)
+        file.write(bytes(header) + vlrs + b"".join(point(form, i, colour) + behind for i in range(n)) + tail)
 
 
 class TestPointCloudReader(unittest.TestCase):
@@ -62,9 +64,10 @@ class TestPointCloudReader(unittest.TestCase):
             os.remove(FILE)
 
     def test_las_formats(self):
-        for form, minor in [(0, 0), (1, 1), (0, 2), (1, 2), (2, 2), (3, 2), (3, 3), (0, 4), (3, 4), (6, 4), (7, 4), (8, 4)]:
+        for form, minor in [(0, 0), (1, 1), (0, 2), (1, 2), (2, 2), (3, 2), (3, 3), (0, 4), (3, 4), (6, 4), (7, 4), (8, 4),
+                           (4, 3), (5, 3), (4, 4), (5, 4), (9, 4), (10, 4)]:
             las(form, minor=minor)
-            data = read(FILE)
+            data = read(FILE, said=["its waveforms are left out"] if form in (4, 5, 9, 10) else [])
             i = np.arange(5)
             # offset + 0.01 m * n
             expected = np.column_stack([1100 + i, np.full(5, 2200.0), -i])
@@ -77,14 +80,85 @@ class TestPointCloudReader(unittest.TestCase):
             }.items():
                 self.assertEqual(set(array(data, name)), {value}, (form, name))
             np.testing.assert_allclose(array(data, "scan_angle"), 30 if new else -30, rtol=1e-12)
-            self.assertEqual("timestamp" in names(data), form in (1, 3, 6, 7, 8))
+            self.assertEqual("timestamp" in names(data), form not in (0, 2))
             if "timestamp" in names(data):
                 np.testing.assert_allclose(array(data, "timestamp"), 0.5e6 * i)
                 self.assertEqual(unit(data, "timestamp"), "us")
-            self.assertEqual("rgb" in names(data), form in (2, 3, 7, 8))
+            self.assertEqual("rgb" in names(data), form in (2, 3, 5, 7, 8, 10))
             if "rgb" in names(data):
                 np.testing.assert_array_equal(array(data, "rgb"), np.column_stack([i, i * 0 + 2, i * 0 + 255]))
-            self.assertEqual("near_infrared" in names(data), form == 8)
+            self.assertEqual("near_infrared" in names(data), form in (8, 10))
+
+    def test_las_colours(self):
+        """Of 8 bits in fields of 16: as they are, unless a channel of the file is above 255."""
+        for colour, wanted in (((200, 100, 50), (200, 100, 50)), ((0, 255, 1), (0, 255, 1)), ((0, 256, 255), (0, 1, 0)),
+                               ((51400, 25700, 12850), (200, 100, 50)), ((0, 0, 0), (0, 0, 0))):
+            las(3, colour=colour)
+            self.assertEqual(array(read(FILE), "rgb").tolist(), [list(wanted)] * 5)
+
+    def test_las_numbers_of_points(self):
+        """A file of 1.4 may have the number of older versions alone, or its own alone."""
+        las(3, minor=4, patch={247: ("<Q", 0)})
+        self.assertEqual(read(FILE).GetNumberOfPoints(), 5)
+        las(3, minor=4, patch={107: ("<I", 0)})
+        self.assertEqual(read(FILE).GetNumberOfPoints(), 5)
+        las(6, patch={247: ("<Q", 0)})
+        self.assertEqual(read(FILE, said=["its header says that it has no points, though 150 bytes follow"]).GetNumberOfPoints(), 0)
+
+    def test_las_systems_in_keys_of_geotiff(self):
+        def keys(*entries):
+            return vlr(b"LASF_Projection", 34735, struct.pack("<4H", 1, 1, 0, len(entries)) + b"".join(struct.pack("<4H", *entry) for entry in entries))
+        names_ = vlr(b"LASF_Projection", 34737, b"own grid|\0")
+        numbers = vlr(b"LASF_Projection", 34736, struct.pack("<5d", 43.0, 45.5, -120.5, 41.75, 400000))
+        model, utm = (1024, 0, 1, 1), (3072, 0, 1, 32633)
+        own = (model, (2048, 0, 1, 4269), (3072, 0, 1, 32767), (3073, 34737, 9, 0), (3074, 0, 1, 32767), (3075, 0, 1, 8), (3076, 0, 1, 9001),
+               *((key, 34736, 1, at) for at, key in enumerate((3078, 3079, 3084, 3085, 3086))))
+        for records, said, words, zone in (
+                ([keys(utm)], [], ["PROJCS", "zone 33N", "32633"], 33), ([keys(model, (3072, 0, 1, 32733))], [], ["zone 33S"], -33),
+                ([keys(model, (3072, 0, 1, 26910), (4096, 0, 1, 5703), (4099, 0, 1, 9001))], [], ["COMPD_CS", "NAD83 / UTM zone 10N", "NAVD88"], 0),
+                ([keys((1024, 0, 1, 2), (2048, 0, 1, 4326))], ["in degree"], ["GEOGCS", "4326"], 0),
+                ([keys(model, (3072, 0, 1, 2994))], ["in foot"], ["Oregon GIC Lambert (ft)"], 0),
+                ([keys(model, (3072, 0, 1, 26910), (4096, 0, 1, 6360), (4099, 0, 1, 9003))], ["in metre and US survey foot"], ["zone 10N"], 0),
+                ([numbers, keys(*own), names_], [], ["own grid", "41.75", "400000"], 0),
+                ([keys((3072, 0, 1, 12))], ["its GeoTIFF keys name no coordinate system that GDAL knows"], [], 0),
+                ([keys(model)], ["name no coordinate system"], [], 0), ([vlr(b"LASF_Projection", 34735, b"\1\0\1\0")], ["name no"], [], 0),
+                ([keys(utm), vlr(b"LASF_Projection", 2112, b"\0")], [], ["zone 33N"], 33)):
+            with self.subTest(words):
+                las(3, records=records)
+                data = read(FILE, said=said)
+                system = field(data, "crs_wkt")[0] if words else ""
+                self.assertTrue(all(word in system for word in words), system)
+                self.assertEqual(data.GetFieldData().HasArray("crs_wkt"), bool(words))
+                self.assertEqual(field(data, "utm_zone") if zone else [], [zone] if zone else [])
+        both = [keys(utm), vlr(b"LASF_Projection", 2112, b'LOCAL_CS["mine",UNIT["metre",1]]\0')]
+        for flag, word in ((0, "zone 33N"), (16, "mine")):  # of the global encoding
+            las(3, minor=4, records=both, patch={6: ("<H", flag)})
+            self.assertIn(word, field(read(FILE), "crs_wkt")[0])
+
+    def test_scans_of_other_data_sets(self):
+        """Five numbers a point are an error, whatever the length; intensities of 0 to 255 are taken as they are."""
+        name = "TestPointCloudReader.bin"
+        draw = np.random.default_rng(7)
+        places = draw.uniform(-50, 50, (1000, 3))
+        ring, bright = draw.integers(0, 32, (1000, 1)), draw.integers(0, 256, (1000, 1))
+        try:
+            for rows, words in (([places, bright, ring], "it has five float32 a point, as nuScenes has them"),
+                                ([places[:999], bright[:999], ring[:999]], "expected a multiple of 16: four float32 a point; it has five"),
+                                ([abs(places), bright, ring], "it has five float32 a point"),
+                                ([places, bright, ring, ring], "the fourth numbers of its points go from -"), ([places, 300 + bright], "go from 0 to 55")):
+                np.hstack(rows).astype("<f4").tofile(name)
+                self.assertIn(words, read_error(name))
+            places.astype("<f8").tofile(name)
+            self.assertIn("the fourth numbers of its points", read_error(name))
+            np.hstack([places, bright]).astype("<f4").tofile(name)
+            np.testing.assert_array_equal(array(read(name, said=["are taken for intensities of 0 to 255"]), "intensity"), bright[:, 0])
+            rows = np.hstack([places, bright / 255]).astype("<f4")
+            rows[5, 1] = rows[6] = np.nan
+            rows.tofile(name)
+            data = read(name, said=["2 points whose coordinates are not finite are left out"])
+            np.testing.assert_allclose(array(data, "intensity"), np.delete(bright[:, 0], [5, 6]), rtol=1e-6)
+        finally:
+            os.remove(name)
 
     def test_las_extra_bytes(self):
         described = [extra(b"a", 9, description=b"of something [m/s]"), extra(b"skipped", 0, options=3),
@@ -115,7 +189,7 @@ class TestPointCloudReader(unittest.TestCase):
         las(6)
         with open(FILE, "rb") as file:
             whole = file.read()
-        for cut, words in ((0, "no LAS file"), (3, "no LAS file"), (226, "no LAS file"), (len(whole) - 1, "cut short")):
+        for cut, words in ((0, "not a LAS file"), (3, "not a LAS file"), (226, "not a LAS file"), (len(whole) - 1, "cut short")):
             with open(FILE, "wb") as file:
                 file.write(whole[:cut])
             self.assertIn(words, read_error(FILE), cut)
@@ -123,7 +197,9 @@ class TestPointCloudReader(unittest.TestCase):
         for words, changes in [
             ("version is 2.4", {"patch": {24: ("<B", 2)}}),
             ("version is 1.5", {"patch": {25: ("<B", 5)}}),
-            ("record format is 5", {"patch": {104: ("<B", 5)}}),
+            ("record format is 11", {"patch": {104: ("<B", 11)}}),
+            ("waveforms (point data record format 4), which are read from LAS, not from LAZ", {"patch": {104: ("<B", 0x84), 105: ("<H", 57)}}),
+            ("a scale of its coordinates is 0", {"patch": {147: ("<d", 0.0)}}),
             ("have 29 bytes", {"patch": {105: ("<H", 29)}}),
             ("cut short", {"patch": {247: ("<Q", 6)}}),
             ("cut short", {"patch": {247: ("<Q", 2**63)}}),

@@ -395,7 +395,34 @@ class SceneObjects(unittest.TestCase):
         np.testing.assert_allclose((low + high) / 2, (222.639, 110.574, 15), atol=1e-3)
         self.save("nowhere.csv", "name,AGL\nA,30\n")
         file = st.write_scene(self.folder, "scene", {"version": 1, "objects": [{"footprints": "nowhere.csv", "height": 3, "crs": "local"}]})
-        self.assertIn("none of its features has a geometry: a table needs the columns x and y", " ".join(st.Read(file).errors))
+        self.assertIn("none of its 1 features has a geometry: a table needs the columns x and y", " ".join(st.Read(file).errors))
+
+    def test_features_without_places(self):
+        """What is left out is counted, and an error says what is wrong, whether there is a filter or not."""
+        origin = {"latitude": 0, "longitude": 0, "height": 0}
+        feature = '{"type":"Feature","properties":{"k":"a"},"geometry":%s}'
+        whole = '{"type":"FeatureCollection","features":[%s]}'
+        square = '{"type":"Polygon","coordinates":[[[0,0],[0.001,0],[0.001,0.001],[0,0]]]}'
+        empty = '{"type":"Polygon","coordinates":[]}'
+        for name, text, chosen, words in (
+                ("null.geojson", whole % ",".join([feature % "null"] * 2), None, "none of its 2 features has a geometry"),
+                ("null.geojson", whole % ",".join([feature % "null", feature % empty]), {"k": "a"}, "none of its 2 features that fit the filter has a geometry"),
+                ("null.geojson", whole % (feature % "null"), {"k": "b"}, "none of its 1 features fits the filter"),
+                ("none.geojson", whole % "", None, "holds no features"),
+                ("city.json", '{"type": "CityJSON", "version": "1.1", "CityObjects": {}, "vertices": []}', None, "is CityJSON, which is not read"),
+                ("A.CSV", "id,height\n1,2\n", None, "a table needs the columns x and y"),
+                ("blank.csv", "x,y\n,\n", None, "a table needs the columns x and y")):
+            with self.subTest(words):
+                self.save(name, text)
+                item = {"footprints": name, "height": 3, "crs": "EPSG:4326", **({"filter": chosen} if chosen else {})}
+                file = st.write_scene(self.folder, "scene", {"version": 1, "origin": origin, "objects": [item]})
+                self.assertIn(words, " ".join(st.Read(file).errors))
+        self.save("some.geojson", whole % ",".join([feature % "null", feature % square]))
+        scene = self.read({"footprints": "some.geojson", "height": 3}, origin=origin)
+        self.assertIn("1 features without a geometry were left out", " ".join(scene.strings("scene_report")))
+        self.save("dof.csv", "OAS,LATDEC,LONDEC,AGL,AMSL\n01-1,0.001,0.002,00100,00200\n")
+        scene = self.read({"footprints": "dof.csv", "height_attribute": "AGL", "width": 2, "crs": "EPSG:4326"}, origin=origin)
+        self.assertAlmostEqual(st.corners(scene.blocks[0])[:, :, 2].max(), 30.48)  # feet
 
     def test_pieces_without_triangles(self):
         """They have the blocks of the whole, and open no mesh: a damaged one is an error of the first piece alone."""

@@ -114,15 +114,16 @@ def assert_refused(test, writer, data, name, words):
     test.assertFalse(os.path.exists(name))
 
 
-def read(name, **properties):
-    """The cloud in a file; nothing may be said."""
+def read(name, said=(), **properties):
+    """The cloud in a file; nothing may be said, or one warning that names the file and has these words."""
     reader = al.vtkAvianLidarPointCloudReader()
     heard = Messages(reader)
     reader.SetFileName(name)
     for key, value in properties.items():
         getattr(reader, "Set" + key)(value)
     reader.Update()
-    assert not heard.errors and not heard.warnings, (heard.errors, heard.warnings)
+    assert not heard.errors and len(heard.warnings) == bool(said), (heard.errors, heard.warnings)
+    assert all(words in heard.warnings[0] for words in (*said, *([name] if said else ()))), heard.warnings
     data = reader.GetOutput()
     assert data.GetNumberOfVerts() == data.GetNumberOfPoints()
     bright = "energy" if data.GetPointData().HasArray("energy") else "intensity"

@@ -241,6 +241,8 @@ def _scans(folder: pathlib.Path) -> Iterator[Tuple[str, int, np.ndarray, np.ndar
         if len(content) != 16 * len(labels):
             raise ValueError(f"{file}: has {len(content)} bytes, expected 16 for each of {len(labels)} labels")
         points, rows = np.empty(len(labels), _POINT), np.frombuffer(content, "<f4").reshape(-1, 4)
+        if not ((rows[:, 3] >= 0) & (rows[:, 3] <= 1)).all():
+            raise ValueError(f"{file}: the fourth numbers of its points are not all reflectances, expected 0 to 1, as KITTI has them")
         points["x"], points["y"], points["z"], points["intensity"] = (rows * np.array([1, 1, 1, 255], "<f4")).T
         points["label"], points["instance"] = labels & 0xffff, labels >> 16
         yield file.stem, round(1e9 * time), (np.linalg.inv(camera) @ np.vstack([pose, last]) @ camera)[:3], points
