@@ -7,9 +7,12 @@ set -eu
 
 cd "$(dirname "$0")/.."
 CMake/install-packages.sh
-choice='-LE nightly|bare' of_paraview='-L install|benchmarks|more -LE nightly|bare' kernel_tests=BITS # the others run under the sanitizers
+choice='-LE nightly|bare'
+of_paraview='-L install|more -LE nightly|bare'
+kernel_tests=BITS # the others run under the sanitizers
+benchmarks=OFF
 if [ "${1:-}" = --nightly ]; then
-  choice='-L nightly|bare' of_paraview=$choice kernel_tests=ON
+  choice='-L nightly|bare' of_paraview=$choice kernel_tests=ON benchmarks=ON
 else
   Testing/Packages/debian13.sh
 fi
@@ -20,7 +23,7 @@ configure() {
   cmake --build --preset "$preset"
 }
 failed=0
-configure paraview -DAVIANLIDAR_BUILD_BENCHMARKS=ON -DAVIANLIDAR_KERNEL_TESTS=$kernel_tests
+configure paraview -DAVIANLIDAR_BUILD_BENCHMARKS=$benchmarks -DAVIANLIDAR_KERNEL_TESTS=$kernel_tests
 # Unquoted: they are words.
 Testing/run_ctest.sh build/paraview $of_paraview || failed=1
 if grep -q '^12\|^bookworm' /etc/debian_version; then

@@ -2,6 +2,7 @@
 #include "Footprints.h"
 
 #include "Extrusion.h"
+#include "MeshFormats.h"
 #include "RegularFile.h"
 #include "SceneDescription.h"
 #include "SceneFrame.h"

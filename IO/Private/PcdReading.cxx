@@ -4,6 +4,8 @@
 
 #include <lzf.h>
 
+#include <algorithm>
+
 namespace avianlidar::formats
 {
 namespace
@@ -58,6 +60,17 @@ void takeCompressed(
   }
 }
 
+/// Whether a row follows the last one of a binary file. PCL fills its last page with zeros.
+bool hasOneMoreRow(ByteSource& source, const PcdHeader& header)
+{
+  const std::uint64_t end = header.begin + header.points * header.length();
+  if (!source.holds(end, header.length()))
+  {
+    return false;
+  }
+  const Bytes row = source.bytes(end, header.length());
+  return std::any_of(row.begin(), row.end(), [](unsigned char byte) { return byte != 0; });
+}
 }
 
 Cloud readPcd(ByteSource& source, const KeepGoing& keepGoing)
@@ -85,7 +98,7 @@ Cloud readPcd(ByteSource& source, const KeepGoing& keepGoing)
     }
     case PcdData::Binary:
       readBinaryRows(source, header, columns, keepGoing);
-      hasMore = source.size() - header.begin >= (header.points + 1) * header.length();
+      hasMore = hasOneMoreRow(source, header);
       break;
     default:
       takeCompressed(plain, header, columns, keepGoing);

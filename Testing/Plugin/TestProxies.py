@@ -551,7 +551,7 @@ class TestProxies(unittest.TestCase):
             with self.subTest(f"{name}.{prop}"):
                 if unit in RESULTS or unit == "steps":
                     continue
-                if prop not in ("ObjectName", "BlockNamePattern", "Species", "Name"):
+                if prop not in ("ObjectName", "BlockNamePattern", "Species", "Name", "SensorAddress"):
                     self.assertTrue(domains_of(smproperty))
                 for domain in domains_of(smproperty):
                     if domain.GetClassName() in ("vtkSMIntRangeDomain", "vtkSMDoubleRangeDomain"):

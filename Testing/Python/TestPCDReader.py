@@ -174,6 +174,9 @@ class TestPCDReader(unittest.TestCase):
             write(**changes)
             self.assertEqual(read(FILE, said=["its header says that it has 2 points, and more follow, which are left out"]).GetNumberOfPoints(), 2)
 
+        write(data=np.concatenate([np.ones((2, 3)), np.zeros((100, 3))]).astype("<f4").tobytes(), DATA="binary")
+        self.assertEqual(read(FILE).GetNumberOfPoints(), 2)  # PCL fills its last page
+
     def test_errors(self):
         cases = [
             ("no line DATA", {"DATA": None, "data": b""}),
