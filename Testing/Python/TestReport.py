@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The command `avianlidar report`: the page in Chromium without a network, its numbers, plans that ask for less."""
-import contextlib
 import csv
 import json
 import math
@@ -22,7 +21,7 @@ from avianlidar.apps._maps import Plan, read_plan
 from avianlidar.apps._report import Report
 from avianlidar.apps._sites import Sites
 from browser import Browser
-from reporttools import quick
+from reporttools import curves, quick
 
 sys.path.append(os.path.join(exampletools.EXAMPLES, "coverage"))
 import flown  # noqa: E402
@@ -46,7 +45,7 @@ def report(name, wanted):
     HERE.mkdir(parents=True, exist_ok=True)
     file = HERE / f"{name}.coverage.json"
     file.write_text(json.dumps(wanted), encoding="utf-8")
-    with contextlib.nullcontext() if name == "report" else quick():
+    with curves() if name == "report" else quick():
         assert main(["report", str(file), "-o", str(HERE / f"{name}.html")]) == 0
     return HERE / f"{name}.html"
 
@@ -241,8 +240,8 @@ class Less(unittest.TestCase):
     def test_heights_regions_and_species_reach_every_number(self):
         """Gulls and starlings at 50 to 150 m over both runways, within 150 m: every share and the best site, by places drawn here and
         coverage of each candidate."""
-        asked = plan(compare_with=None, heights=[50, 100, 150], regions={"strips": 1}, places=1200, mix={"starling": 1, "herring gull": 3},
-                     coverage={"visibility": 10e3}, siting={"bounds": [-1200, 800, -1500, 1500], "spacing": 500, "masts": [5, 10], "draws": 0, "sensors": 2})
+        asked = plan(compare_with=None, heights=[50, 100, 150], regions={"strips": 1}, places=600, mix={"starling": 1, "herring gull": 3},
+                     coverage={"visibility": 10e3}, siting={"bounds": [-1200, 800, -1500, 1500], "spacing": 800, "masts": [5, 10], "draws": 0, "sensors": 2})
         text = report("asked", asked).read_text(encoding="utf-8")
         scene = al.load_scene(asked["scene"])
         runways = siting.read_runways(asked["runways"], scene.geodetic_origin)
@@ -251,9 +250,9 @@ class Less(unittest.TestCase):
             random, places = np.random.default_rng(seed), []
             for runway in runways:
                 axis, length = runway.axis()
-                along, aside = random.uniform(0.0, length, 600), random.uniform(-150.0, 150.0, 600)
+                along, aside = random.uniform(0.0, length, 300), random.uniform(-150.0, 150.0, 300)
                 ground = runway.start + along[:, None] * axis + aside[:, None] * np.array([axis[1], -axis[0]])
-                places.append(np.column_stack([ground, random.uniform(50.0, 150.0, 600)]))
+                places.append(np.column_stack([ground, random.uniform(50.0, 150.0, 300)]))
             return np.concatenate(places)
         sensor = al.Sensor("Search905", position=(0, 0, 3))
         cover = al.Coverage(scene, sensor, places=drawn(0), visibility=10e3)
@@ -278,7 +277,7 @@ class Less(unittest.TestCase):
         positions = np.column_stack([table[name] for name in table.dtype.names[:3]])
         values = np.array([shares(position, False).mean() for position in positions])
         np.testing.assert_allclose(table[next(name for name in table.dtype.names if name.startswith("value"))], values, atol=1e-6)
-        self.assertGreater(len(values), 30)
+        self.assertGreater(len(values), 10)
         self.assertEqual(np.argmax(values), 0)
         cover.places = drawn(1 << 40)  # the page states sites at other places than those by which they are ranked, with clutter
         with open(HERE / "asked_files" / "gain.csv", encoding="utf-8") as file:
@@ -287,7 +286,7 @@ class Less(unittest.TestCase):
                 self.assertAlmostEqual(float(row["value"]), np.array([0.75, 0.25]) @ (1.0 - missed).mean(axis=1), delta=1e-6)
         x, y, z = positions[0]
         for words in (f"{abs(x):g}\u00a0m {'east' if x > 0 else 'west'} and {abs(y):g}\u00a0m {'north' if y > 0 else 'south'}, {z:g}\u00a0m up",
-                      "of a lattice of 500 m", "in strips, 50 to 150 m high", "herring gull 75 %, starling 25 %", "its beams go up to 5.6°",
+                      "of a lattice of 800 m", "in strips, 50 to 150 m high", "herring gull 75 %, starling 25 %", "its beams go up to 5.6°",
                       "<td>strips</td><td class=\"left line\">50 to 100 m</td>"):
             self.assertTrue(words in text, words)
         self.assertFalse("strips and approaches, 50" in text)
