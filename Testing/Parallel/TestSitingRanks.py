@@ -13,8 +13,8 @@ PLAN = SOURCE / "Examples" / "coverage" / "hongqiao.coverage.json"
 def few(folder, parts=(), **siting):
     """The airport's plan with one sensor and fewer places and candidates. @param parts further parts of it"""
     plan = json.loads(PLAN.read_text(encoding="utf-8"))
-    plan.update({name: str((PLAN.parent / plan[name]).resolve()) for name in ("scene", "runways")}, compare_with=[], places=500, **dict(parts))
-    plan["siting"].update({"spacing": 1000, "draws": 10, **siting})
+    plan.update({name: str((PLAN.parent / plan[name]).resolve()) for name in ("scene", "runways")}, compare_with=[], places=300, **dict(parts))
+    plan["siting"].update({"spacing": 1200, "masts": [5], "draws": 5, **siting})
     folder.mkdir(parents=True)
     file = folder / "few.coverage.json"
     file.write_text(json.dumps(plan), encoding="utf-8")
