@@ -20,7 +20,8 @@ PACKAGES = {
     "avian-lidar": (
         {"Section": "science", "Recommends": "python3-avianlidar",
          "Depends": r".*libassimp5 .*libgdal3\d .*libqt(5widgets5|6widgets6) .*paraview \(>= (5\.\d+).*paraview \(<< \2"},
-        [r"usr/(bin/paraview\.conf|share/paraview/plugins)", r"usr/lib/libvtkAvianLidar\.so\.0\.1(\.0)?", PLUGINS + r"avianlidar\.plugins\.xml",
+        [r"usr/(bin/paraview\.conf|share/paraview/plugins)", r"usr/lib/libvtkAvianLidar\.so\.0\.1(\.0)?", r"usr/lib/avianlidar/mesh-reader",
+         PLUGINS + r"avianlidar\.plugins\.xml",
          PLUGINS + r"AvianLidarPlugin/(AvianLidarPlugin\.so|[A-Z][a-z]+/\w[\w.-]+)"]),
     "python3-avianlidar": (
         {"Section": "python", "Recommends": r".*matplotlib.*gdal.*jinja2.*jsonschema.*scipy.*pandas",
