@@ -3,6 +3,7 @@
 // rays that are drawn and tested without the kernel.
 #include "BeamSampler.h"
 #include "CellTestScene.h"
+#include "Sanitized.h"
 
 #include <algorithm>
 #include <cmath>
@@ -296,6 +297,10 @@ TEST(BeamShape, AnEdgeCutsAShare)
     const double turn = s.rotation * Degree;
     for (const double angle : { 0.0, 50.0, 90.0, 200.0 })
     {
+      if (IsSanitized && angle != 50.0)
+      {
+        continue;
+      }
       for (const double at : { -0.4, 0.1, 0.7 })
       {
         // In half-widths the edge is cos u + sin v = at; the plate lies beyond.

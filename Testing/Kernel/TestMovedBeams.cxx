@@ -491,7 +491,7 @@ TEST(MovedBeams, NothingStaticIsTracedTwice)
   }
   setMovers(setup, movers);
 #if defined(AVIANLIDAR_SANITIZED)
-  constexpr int scans = 100;
+  constexpr int scans = 40;
 #else
   constexpr int scans = 1000;
 #endif

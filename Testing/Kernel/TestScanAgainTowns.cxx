@@ -16,7 +16,7 @@ namespace
 {
 /// Sanitizers see the same limits in fewer, larger steps.
 #if defined(AVIANLIDAR_SANITIZED)
-constexpr int StepsAtOnce = 5;
+constexpr int StepsAtOnce = 14;
 #else
 constexpr int StepsAtOnce = 1;
 #endif
