@@ -12,6 +12,7 @@
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
+#include <iterator>
 #include <vector>
 
 namespace avianlidar::scene
@@ -127,6 +128,11 @@ Assimp::IOStream* AssimpFiles::Open(const char* file, const char* mode)
   }
   if (isMesh && EndingOf(file) == ".obj")
   {
+    const char mark[] = { '\xEF', '\xBB', '\xBF' }; // of UTF-8, a part of the first word for Assimp
+    if (bytes.size() > sizeof mark && std::equal(std::begin(mark), std::end(mark), bytes.begin()))
+    {
+      bytes.erase(bytes.begin(), bytes.begin() + sizeof mark);
+    }
     this->Offset = MoveObjToOrigin(bytes);
   }
   return new MemoryStream(std::move(bytes));

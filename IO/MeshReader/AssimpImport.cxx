@@ -17,6 +17,7 @@
 #include <cmath>
 #include <memory>
 #include <new>
+#include <regex>
 
 namespace avianlidar::scene
 {
@@ -145,29 +146,40 @@ std::string TextOf(AssimpFiles& files)
   return text;
 }
 
-/// How the model within a 3MF file begins; empty where there is none, which Assimp says.
-std::string BeginOfModel(const std::string& file)
+/// How a part of an archive begins; empty where there is none. @param name without a slash in front
+std::string BeginOf(unzFile archive, const std::string& name)
 {
-  const std::unique_ptr<void, int (*)(unzFile)> archive(unzOpen64(file.c_str()), unzClose);
-  std::string text;
-  for (int at = archive ? unzGoToFirstFile(archive.get()) : UNZ_ERRNO; at == UNZ_OK && text.empty();
-       at = unzGoToNextFile(archive.get()))
+  constexpr int anyCase = 2;
+  if (unzLocateFile(archive, name.c_str(), anyCase) != UNZ_OK ||
+    unzOpenCurrentFile(archive) != UNZ_OK)
   {
-    char name[256] = "";
-    unzGetCurrentFileInfo64(archive.get(), nullptr, name, sizeof name - 1, nullptr, 0, nullptr, 0);
-    if (EndingOf(name) == ".model" && unzOpenCurrentFile(archive.get()) == UNZ_OK)
-    {
-      text.resize(1u << 16);
-      const int got = unzReadCurrentFile(archive.get(), &text[0], 1u << 16);
-      text.resize(static_cast<std::size_t>(std::max(got, 0)));
-      unzCloseCurrentFile(archive.get());
-    }
+    return {};
   }
+  std::string text(1u << 16, '\0');
+  const int got = unzReadCurrentFile(archive, &text[0], static_cast<unsigned int>(text.size()));
+  text.resize(static_cast<std::size_t>(std::max(got, 0)));
+  unzCloseCurrentFile(archive);
   return text;
 }
 
+/// How the model of a 3MF file begins, which its relationships name; empty where there is none,
+/// which Assimp says.
+std::string BeginOfModel(const std::string& file)
+{
+  const std::unique_ptr<void, int (*)(unzFile)> archive(unzOpen64(file.c_str()), unzClose);
+  if (!archive)
+  {
+    return {};
+  }
+  static const std::regex target("Target *= *[\"']/?([^\"']*\\.model)[\"']");
+  const std::string relationships = BeginOf(archive.get(), "_rels/.rels");
+  std::smatch named;
+  return BeginOf(archive.get(),
+    std::regex_search(relationships, named, target) ? named[1].str() : "3D/3dmodel.model");
+}
+
 /// Refuses what Assimp reads wrong. Returns the length of the file's unit, m.
-double CheckFormat(AssimpFiles& files)
+double CheckFormat(AssimpFiles& files, std::vector<std::string>& warnings)
 {
   const std::string& name = files.GetMeshName();
   const std::string ending = EndingOf(name);
@@ -177,27 +189,30 @@ double CheckFormat(AssimpFiles& files)
   }
   else if (ending == ".gltf" || ending == ".glb")
   {
-    CheckGltfExtensions(TextOf(files));
+    warnings = CheckGltf(TextOf(files));
   }
-  return ending == ".ifc" ? IfcUnit(TextOf(files))
-    : ending == ".3mf"    ? PrintUnit(BeginOfModel(name))
+  if (ending == ".ifc" || ending == ".stp" || ending == ".step")
+  {
+    return IfcUnit(TextOf(files));
+  }
+  return ending == ".3mf" ? PrintUnit(BeginOfModel(name))
     : ending == ".amf"    ? PrintUnit(TextOf(files))
                           : 1.0;
 }
 
-/// What Assimp notes of an FBX file's unit, m; 1 for other formats.
-double FbxUnit(const aiScene& scene, const std::string& name)
+/// What Assimp notes of an FBX file: the axis that points up. Returns the length of its unit, m.
+double FbxUnit(const aiScene& scene, char& upAxis)
 {
   constexpr double centimetre = 0.01;
+  constexpr int z = 2;
   float centimetres = 1.0f;
-  if (EndingOf(name) != ".fbx")
-  {
-    return 1.0;
-  }
+  int up = 1;
   if (scene.mMetaData)
   {
     scene.mMetaData->Get("UnitScaleFactor", centimetres);
+    scene.mMetaData->Get("UpAxis", up);
   }
+  upAxis = up == z ? 'z' : 'y';
   return centimetre * centimetres;
 }
 }
@@ -209,7 +224,8 @@ Mesh ReadAssimpMesh(const std::string& file)
   Assimp::Importer& importer = *new Assimp::Importer;
   auto* files = new AssimpFiles(file);
   importer.SetIOHandler(files);
-  double unit = CheckFormat(*files);
+  Mesh mesh;
+  double unit = CheckFormat(*files, mesh.warnings);
   const aiScene* scene = importer.ReadFile(files->GetMeshName(), 0);
   if (scene)
   {
@@ -232,12 +248,14 @@ Mesh ReadAssimpMesh(const std::string& file)
     }
     throw Error("Assimp cannot read it: " + reason + files->GetReason());
   }
-  Mesh mesh;
   for (unsigned int i = 0; i < scene->mNumMaterials; ++i)
   {
     mesh.materialNames.emplace_back(scene->mMaterials[i]->GetName().C_Str());
   }
-  unit *= FbxUnit(*scene, files->GetMeshName());
+  if (EndingOf(files->GetMeshName()) == ".fbx")
+  {
+    unit *= FbxUnit(*scene, mesh.upAxis);
+  }
   AddNode(*scene, *scene->mRootNode, { 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1 }, mesh);
   const Vec3& moved = files->GetOffset();
   for (Vec3& p : mesh.points)

@@ -10,6 +10,7 @@
 #include <cstring>
 #include <iterator>
 #include <regex>
+#include <sstream>
 #include <string_view>
 
 namespace avianlidar::scene
@@ -34,21 +35,64 @@ std::string_view JsonOf(const std::string& text)
   return std::string_view(text).substr(header + chunk, length);
 }
 
+/// A list of an object; an empty one where there is none.
+const Json& ListIn(const Json& object, const char* key)
+{
+  static const Json none = Json::array();
+  const auto list = object.is_object() ? object.find(key) : object.end();
+  return list != object.end() && list->is_array() ? *list : none;
+}
+
 std::vector<std::string> NamesIn(const Json& document, const char* key)
 {
   std::vector<std::string> names;
-  const auto list = document.is_object() ? document.find(key) : document.end();
-  if (list != document.end() && list->is_array())
+  for (const Json& name : ListIn(document, key))
   {
-    for (const Json& name : *list)
+    if (name.is_string())
     {
-      if (name.is_string())
-      {
-        names.push_back(name.get<std::string>());
-      }
+      names.push_back(name.get<std::string>());
     }
   }
   return names;
+}
+
+std::vector<const Json*> PrimitivesOf(const Json& document)
+{
+  std::vector<const Json*> primitives;
+  for (const Json& mesh : ListIn(document, "meshes"))
+  {
+    for (const Json& primitive : ListIn(mesh, "primitives"))
+    {
+      primitives.push_back(&primitive);
+    }
+  }
+  return primitives;
+}
+
+/// Positions are numbers of single precision (specification, section 3.7.2.1); Assimp reads others
+/// as if they were.
+void CheckPositions(const Json& document, const Json& primitive)
+{
+  constexpr int single = 5126;
+  const Json& accessors = ListIn(document, "accessors");
+  const auto attributes = primitive.is_object() ? primitive.find("attributes") : primitive.end();
+  if (attributes == primitive.end() || !attributes->is_object())
+  {
+    return;
+  }
+  const auto position = attributes->find("POSITION");
+  if (position == attributes->end() || !position->is_number_unsigned() ||
+    position->get<std::size_t>() >= accessors.size())
+  {
+    return;
+  }
+  const Json& accessor = accessors[position->get<std::size_t>()];
+  const auto type = accessor.is_object() ? accessor.find("componentType") : accessor.end();
+  if (type != accessor.end() && type->is_number() && type->get<int>() != single)
+  {
+    throw Error("has positions of the component type " + std::to_string(type->get<int>()) +
+      ", expected 5126, numbers of single precision");
+  }
 }
 
 /// Whether the geometry of a file that requires the extension is read right.
@@ -66,6 +110,37 @@ bool ChangesGeometry(const std::string& extension)
 {
   return extension == "EXT_mesh_gpu_instancing" || extension == "KHR_mesh_quantization" ||
     extension == "CESIUM_RTC";
+}
+
+/// A STEP file in capital letters, without comments and without what stands in strings.
+std::string WithoutComments(const std::string& file)
+{
+  std::string text;
+  text.reserve(file.size());
+  for (std::size_t at = 0; at < file.size(); ++at)
+  {
+    if (file.compare(at, 2, "/*") == 0)
+    {
+      at = std::min(file.find("*/", at), file.size() - 1) + 1;
+    }
+    else if (file[at] == '\'')
+    {
+      at = std::min(file.find('\'', at + 1), file.size());
+      text += "''";
+    }
+    else
+    {
+      const char byte = file[at];
+      text += byte >= 'a' && byte <= 'z' ? static_cast<char>(byte - 'a' + 'A') : byte;
+    }
+  }
+  return text;
+}
+
+/// The rest of a STEP statement from a place on, without its end.
+std::string_view StatementAt(std::string_view text, std::size_t at)
+{
+  return text.substr(at, text.find(';', at) - at);
 }
 
 /// The definition of a STEP entity, in capital letters as it stands: "IFCSIUNIT(...)".
@@ -175,17 +250,25 @@ void ForEachLine(const std::vector<char>& bytes, const Use& use)
   const char* const end = bytes.data() + bytes.size();
   for (const char* line = bytes.data(); line < end;)
   {
-    const char* const next = std::find(line, end, '\n');
+    const char* next = line;
+    while (next < end && *next != '\n' && !(*next == '\r' && (next + 1 == end || next[1] != '\n')))
+    {
+      ++next;
+    }
     use(line, next);
     line = std::min(next + 1, end);
   }
 }
 }
 
-void CheckGltfExtensions(const std::string& text)
+std::vector<std::string> CheckGltf(const std::string& text)
 {
-  const std::string_view json = JsonOf(text);
-  const Json document = Json::parse(json.begin(), json.end(), nullptr, /*allow_exceptions=*/false);
+  std::string json(JsonOf(text));
+  // Names in other encodings, which Assimp takes; none is looked at here.
+  std::replace_if(
+    json.begin(), json.end(), [](char byte) { return (byte & 0x80) != 0; }, '?');
+  json.erase(0, std::min(json.find('{'), json.size())); // a mark of the byte order
+  const Json document = Json::parse(json, nullptr, /*allow_exceptions=*/false);
   for (const std::string& name : NamesIn(document, "extensionsRequired"))
   {
     if (!IsKnown(name))
@@ -202,28 +285,53 @@ void CheckGltfExtensions(const std::string& text)
         ", which is not supported: export it without this extension");
     }
   }
+  for (const Json* primitive : PrimitivesOf(document))
+  {
+    CheckPositions(document, *primitive);
+  }
+  std::vector<std::string> warnings;
+  if (ListIn(document, "skins").size() > 0)
+  {
+    warnings.push_back("it has skins, which are left out: it is read in the pose of its vertices");
+  }
+  for (const char* list : { "nodes", "meshes" })
+  {
+    for (const Json& one : ListIn(document, list))
+    {
+      const Json& weights = ListIn(one, "weights");
+      if (std::any_of(weights.begin(), weights.end(),
+            [](const Json& weight) { return weight.is_number() && weight.get<double>() != 0.0; }))
+      {
+        warnings.push_back("it has weights of morph targets, which are left out");
+        return warnings;
+      }
+    }
+  }
+  return warnings;
 }
 
-double IfcUnit(const std::string& text)
+double IfcUnit(const std::string& file)
 {
-  const std::size_t units = text.find("IFCUNITASSIGNMENT");
-  if (units == std::string::npos)
+  const std::string text = WithoutComments(file);
+  const std::size_t project = text.find("IFCPROJECT(");
+  const std::vector<std::string> of =
+    project == std::string::npos ? std::vector<std::string>() : IdsIn(StatementAt(text, project));
+  const std::string_view units = of.empty() ? "" : EntityOf(text, of.back());
+  if (!StartsWith(units, "IFCUNITASSIGNMENT"))
   {
     return 1.0;
   }
-  for (const std::string& id :
-    IdsIn(std::string_view(text).substr(units, text.find(';', units) - units)))
+  for (const std::string& id : IdsIn(units))
   {
     const std::string_view unit = EntityOf(text, id);
-    if (!StartsWith(unit, "IFCCONVERSIONBASEDUNIT") ||
-      unit.find(".LENGTHUNIT.") == std::string_view::npos)
+    if (unit.find(".LENGTHUNIT.") == std::string_view::npos || StartsWith(unit, "IFCSIUNIT"))
     {
       continue;
     }
     const std::vector<std::string> parts = IdsIn(unit);
     const std::string_view measure = parts.empty() ? "" : EntityOf(text, parts.back());
-    const std::vector<std::string> of = IdsIn(measure);
-    const double metres = of.empty() ? 0.0 : SiLength(EntityOf(text, of.back()));
+    const std::vector<std::string> base = IdsIn(measure);
+    const double metres = base.empty() ? 0.0 : SiLength(EntityOf(text, base.back()));
     static const std::regex number("MEASURE\\( *\\+?([0-9.]+(?:[eE][-+]?[0-9]+)?) *\\)");
     std::cmatch found;
     if (metres > 0.0 && std::regex_search(measure.begin(), measure.end(), found, number))
@@ -241,6 +349,29 @@ double IfcUnit(const std::string& text)
   return 1.0;
 }
 
+/// Refuses 3MF files that require other extensions than that of materials.
+void CheckPrintExtensions(const std::string& attributes)
+{
+  static const std::regex required("\\brequiredextensions *= *[\"']([^\"']*)");
+  std::smatch found;
+  if (!std::regex_search(attributes, found, required))
+  {
+    return;
+  }
+  std::istringstream prefixes(found[1].str());
+  for (std::string prefix; prefixes >> prefix;)
+  {
+    std::smatch space;
+    const bool isNamed =
+      std::regex_search(attributes, space, std::regex("xmlns:" + prefix + " *= *[\"']([^\"']*)"));
+    if (!isNamed || space[1].str().find("/material/") == std::string::npos)
+    {
+      throw Error("requires the 3MF extension " + (isNamed ? space[1].str() : prefix) +
+        ", which is not supported: export it without this extension");
+    }
+  }
+}
+
 double PrintUnit(const std::string& text)
 {
   static const struct
@@ -253,12 +384,14 @@ double PrintUnit(const std::string& text)
   static const std::regex root("<(?:[A-Za-z]+:)?(?:model|amf)\\b[^>]*>");
   static const std::regex unit("\\bunit *= *[\"']([^\"']*)");
   std::smatch element, found;
-  const std::string start = text.substr(0, 1u << 16);
+  static const std::regex comment("<!--[^]*?-->");
+  const std::string start = std::regex_replace(text.substr(0, 1u << 16), comment, "");
   if (!std::regex_search(start, element, root))
   {
     return 1e-3;
   }
   const std::string attributes = element.str();
+  CheckPrintExtensions(attributes);
   if (!std::regex_search(attributes, found, unit))
   {
     return 1e-3;

@@ -17,9 +17,11 @@ namespace avianlidar::scene
  * Refuses glTF 2.0 files whose geometry depends on extensions that Assimp does not know: required
  * ones (specification, section 3.12), except those of materials, textures and lights, and
  * instances, quantization and the centre of a tile even where they are only used.
+ * Refuses positions that are not of single precision, too.
  * @param text of the file, JSON or binary. Throws Error, which names the extension.
+ * @return warnings: skins and weights of morph targets are left out
  */
-void CheckGltfExtensions(const std::string& text);
+std::vector<std::string> CheckGltf(const std::string& text);
 
 /**
  * The length of an IFC file's unit, m, where it is a conversion-based unit such as the foot;

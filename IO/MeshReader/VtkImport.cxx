@@ -86,6 +86,16 @@ public:
     this->Superclass::DisplayErrorText(text);
   }
 
+  // Legacy files with fewer values than they say have any memory for the others.
+  void DisplayGenericWarningText(const char* text) override
+  {
+    if (std::strstr(text, "Error reading"))
+    {
+      throw Error("VTK cannot read it: " + FirstLine(text));
+    }
+    this->Superclass::DisplayGenericWarningText(text);
+  }
+
   vtkTypeMacro(ThrowingWindow, vtkOutputWindow);
 
   std::string First; // error

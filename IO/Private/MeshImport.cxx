@@ -9,14 +9,14 @@ namespace avianlidar::scene
 {
 namespace
 {
-// The axis that points up after Assimp's reading: it turns Collada, 3DS and IFC to y, and the
+// The axis that points up after Assimp's reading: it turns Collada, 3DS, IFC and DXF to y, and the
 // specifications of glTF, AC3D, FBX and X3D say y. The others say nothing: z, as everywhere in
 // surveying.
 char UpAxis(const std::string& file)
 {
   const std::string ending = EndingOf(UncompressedName(file));
-  for (const char* y :
-    { ".dae", ".3ds", ".ifc", ".gltf", ".glb", ".ac", ".acc", ".ac3d", ".fbx", ".x3d" })
+  for (const char* y : { ".dae", ".zae", ".3ds", ".ifc", ".stp", ".step", ".dxf", ".gltf", ".glb",
+         ".ac", ".acc", ".ac3d", ".fbx", ".x3d" })
   {
     if (ending == y)
     {
@@ -35,7 +35,8 @@ Mesh ReadMesh(const std::string& file, const std::function<bool()>& keepGoing)
 
 void TurnUp(const std::string& file, char upAxis, Mesh& mesh)
 {
-  if ((upAxis ? upAxis : UpAxis(file)) == 'y')
+  const char said = mesh.upAxis ? mesh.upAxis : UpAxis(file);
+  if ((upAxis ? upAxis : said) == 'y')
   {
     for (Vec3& p : mesh.points)
     {

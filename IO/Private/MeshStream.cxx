@@ -83,6 +83,8 @@ void SendMesh(const Mesh& mesh, const WriteBytes& write)
   SendTexts(mesh.materialNames, write);
   Send(mesh.skippedFaces, write);
   Send(mesh.rounding, write);
+  Send(mesh.upAxis, write);
+  SendTexts(mesh.warnings, write);
 }
 
 void SendError(const std::string& reason, const WriteBytes& write)
@@ -114,6 +116,8 @@ Mesh ReceiveMesh(const ReadBytes& read)
   mesh.materialNames = ReceiveTexts(read);
   mesh.skippedFaces = Receive<std::int64_t>(read);
   mesh.rounding = Receive<double>(read);
+  mesh.upAxis = Receive<char>(read);
+  mesh.warnings = ReceiveTexts(read);
   return mesh;
 }
 }

@@ -253,6 +253,11 @@ std::string problemOf(const unsigned char* bytes)
     return "has the return mode " + std::to_string(bytes[1204]) +
       ", expected 55 (strongest), 56 (last) or 57 (dual)";
   }
+  constexpr std::uint32_t hour = 3'600'000'000u; // us
+  if (load<std::uint32_t>(bytes + 1200) > hour)
+  {
+    return "has a time beyond the hour";
+  }
   for (int b = 0; b < BlocksPerPacket; ++b)
   {
     const unsigned char* block = bytes + b * BytesPerBlock;

@@ -178,6 +178,10 @@ Part MakeMesh(BuiltScene& built, const Object& object, MeshFiles& files,
          << lost << " m only: subtract an offset from them, and give it as position";
     built.warnings.push_back(text.str());
   }
+  for (const std::string& warning : part.mesh.warnings)
+  {
+    built.warnings.push_back(object.name + ": " + warning);
+  }
   if (object.medium.empty())
   {
     MapMaterials(built.description, object, part.mesh, unmapped);

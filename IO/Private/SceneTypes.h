@@ -156,6 +156,10 @@ struct Mesh
   /// Distance between neighbouring numbers of single precision at the largest coordinate, in units
   /// of the file; 0 where the reader keeps double precision.
   double rounding = 0.0;
+  /// 'y' or 'z', the axis that the file says points up; 0 where it says none.
+  char upAxis = 0;
+  /// What was left out or may be meant in another way.
+  std::vector<std::string> warnings;
 };
 
 /// One object of the output.

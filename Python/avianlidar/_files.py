@@ -75,7 +75,10 @@ def _names_and_rows(path: pathlib.Path) -> Tuple[List[str], io.StringIO, Optiona
     stream = io.StringIO(text, newline="")
     names = _axes([cell.strip() for cell in next(csv.reader(stream, delimiter=delimiter), [])])
     if delimiter != ",":  # then a comma stands in a number
-        stream = io.StringIO(stream.read().replace(",", "."))
+        rest = stream.read()
+        if "," in rest and "." in rest:
+            raise ValueError("numbers have points and commas: either may be the decimal mark")
+        stream = io.StringIO(rest.replace(",", "."))
     return names, stream, delimiter
 
 

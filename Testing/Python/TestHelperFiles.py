@@ -86,7 +86,7 @@ class Files(unittest.TestCase):
                 self.assertEqual(cloud.points.tolist(), [[1.5, -2, 3]])
                 self.assertEqual({name: values[0].tolist() for name, values in cloud.items()}, arrays)
         for suffix, text, words in ((".xyz", "3\nwater\nO 0 0 0\n", "one word, as files of molecules"), (".xyz", "1 2\n", "no column z"),
-                                    (".csv", "x;y;z\n1.234,5;2;3\n", "1.234.5"), (".csv", "X (mm),Y (mm),Z (mm)\n1,2,3\n", "no column x in metres"),
+                                    (".csv", "x;y;z\n1.234,5;2;3\n", "points and commas"), (".csv", "X (mm),Y (mm),Z (mm)\n1,2,3\n", "no column x in metres"),
                                     (".xyz", "1 2 3\n1 2\n", "columns")):
             with self.subTest(text):
                 file = self.folder / f"table{suffix}"

@@ -4,6 +4,7 @@ reads them. Expected: the corners that were written, in metres."""
 import json
 import os
 import pathlib
+import re
 import stat
 import tempfile
 import unittest
@@ -137,6 +138,61 @@ class MeshFiles(unittest.TestCase):
                 np.testing.assert_allclose(np.sort(extent), np.sort(length * np.ptp(CORNERS, axis=0)), rtol=1e-5)
         self.assert_refused(self.read("box.ifc", metre.replace(unit, foot.format("$", "x", "FOOT"))), f"has a unit of length, {name}, that cannot be read")
 
+    def test_ifc_units_are_those_of_the_project(self):
+        """Keywords in any case, comments, words in strings, assignments that nobody uses; units that are not of the standard's."""
+        metre = ifc(CORNERS, TRIANGLES)
+        unit = next(line for line in metre.splitlines() if ".LENGTHUNIT." in line)
+        name = unit.split("=")[0].strip()
+        foot = metre.replace(unit, "#901=IFCSIUNIT(*,.LENGTHUNIT.,$,.METRE.);\n#902=IFCMEASUREWITHUNIT(IFCLENGTHMEASURE(0.3048),#901);\n"
+                             f"#903=IFCDIMENSIONALEXPONENTS(1,0,0,0,0,0,0);\n{name}=IFCCONVERSIONBASEDUNIT(#903,.LENGTHUNIT.,'FOOT',#902);")
+        first = foot.index("DATA;") + 5
+        lower = re.sub("(IFCCONVERSIONBASEDUNIT|IFCUNITASSIGNMENT|IFCMEASUREWITHUNIT)", lambda found: found[0].title(), foot)
+        for text in (lower, foot[:first] + "\n/* #8=IFCUNITASSIGNMENT(()); */" + foot[first:], foot.replace("FILE_NAME('", "FILE_NAME('IFCPROJECT(#1)"),
+                     foot[:first] + "\n#910=IFCUNITASSIGNMENT((#901));" + foot[first:]):
+            for ending in ("ifc", "stp"):
+                extent = np.ptp(self.places(self.read("box." + ending, text)), axis=0)
+                np.testing.assert_allclose(extent, 0.3048 * np.ptp(CORNERS, axis=0), rtol=1e-5)
+        strange = metre.replace(unit, f"#903=IFCDIMENSIONALEXPONENTS(1,0,0,0,0,0,0);\n{name}=IFCCONTEXTDEPENDENTUNIT(#903,.LENGTHUNIT.,'CUBIT');")
+        self.assert_refused(self.read("box.ifc", strange), f"has a unit of length, {name}, that cannot be read")
+
+    def test_3mf_extensions_and_parts(self):
+        for unit, words in (('unit="meter" xmlns:p="http://schemas.microsoft.com/3dmanufacturing/production/2015/06" requiredextensions="p"',
+                             "requires the 3MF extension http://schemas.microsoft.com/3dmanufacturing/production/2015/06, which is not supported"),
+                            ('unit="meter" requiredextensions="q"', "requires the 3MF extension q"),
+                            ('unit="meter" xmlns:m="http://schemas.microsoft.com/3dmanufacturing/material/2015/02" requiredextensions="m"', "")):
+            mesh_3mf(self.folder / "box.3mf", unit)
+            read = self.read("box.3mf")
+            self.assert_refused(read, words) if words else self.assert_box(read, 1.0)
+        mesh_3mf(self.folder / "box.3mf", 'unit="meter"')
+        with zipfile.ZipFile(self.folder / "box.3mf") as archive:
+            parts = {name: archive.read(name) for name in archive.namelist()}
+        with zipfile.ZipFile(self.folder / "box.3mf", "w") as archive:  # another part first, and a comment before the root
+            archive.writestr("3D/Objects/other.model", b'<model unit="inch"></model>')
+            for name, content in parts.items():
+                archive.writestr(name, content.replace(b"<model", b'<!-- <model unit="inch"> --><model', 1) if name.endswith(".model") else content)
+        self.assert_box(self.read("box.3mf"), 1.0)
+
+    def test_the_axis_that_fbx_says_points_up(self):
+        up = fbx(100).replace("\tProperties70:  {", '\tProperties70:  {\n\t\tP: "UpAxis", "int", "Integer", "",2', 1)
+        triangle = np.array([[0, 0, 0], [0, 300, 0], [200, 0, 0]])
+        np.testing.assert_allclose(self.places(self.read("triangle.fbx", up)), triangle, rtol=2 * SINGLE)
+        turned = np.unique(np.column_stack([triangle[:, 0], -triangle[:, 2], triangle[:, 1]]), axis=0)
+        np.testing.assert_allclose(self.places(self.read("triangle.fbx", fbx(100))), turned, rtol=2 * SINGLE)
+
+    def test_gltf_poses_are_warnings_and_other_numbers_refused(self):
+        document = json.loads(gltf(np.asarray(CORNERS), TRIANGLES))
+        for key, value, words in (("skins", [{"joints": [0]}], "has skins, which are left out"), ("meshes", [{**document["meshes"][0], "weights": [0, 1]}],
+                                                                                                  "weights of morph targets, which are left out")):
+            read = self.read("box.gltf", json.dumps({**document, key: value}))
+            self.assertEqual(len(self.places(read)), 8)
+            self.assertTrue(any(words in warning for warning in read.warnings), read.warnings)
+        accessor = document["meshes"][0]["primitives"][0]["attributes"]["POSITION"]
+        document["accessors"][accessor]["componentType"] = 5122
+        self.assert_refused(self.read("box.gltf", json.dumps(document)), "has positions of the component type 5122, expected 5126")
+        latin = json.dumps({"asset": {"version": "2.0", "generator": "X"}, "extensionsRequired": ["EXT_mesh_gpu_instancing"]}).encode()
+        (self.folder / "box.gltf").write_bytes(latin.replace(b'"X"', b'"\xe9"'))
+        self.assert_refused(self.read("box.gltf"), "EXT_mesh_gpu_instancing")
+
     def test_gltf_extensions_that_change_geometry_are_refused_by_name(self):
         half = np.asarray(CORNERS)
         for key, name, refused in (("Required", "EXT_meshopt_compression", True), ("Required", "KHR_mesh_quantization", True),
@@ -156,9 +212,12 @@ class MeshFiles(unittest.TestCase):
         """Two walls 0.2 m apart in UTM, where single precision keeps 0.5 m: Expected: their doubles."""
         walls = np.array([(412345.17 + across, 5941234.56 + along, up) for across in (0.0, 0.2) for along, up in ((0, 0), (5, 0), (5, 3))])
         for form, more in (("{:.2f} {:.2f} {:.2f}", ""), ("{:.2f}  {:.2f}\t{:.2f} 0.5 0.5 0.5", ""), ("{:.2f} {:.2f} {:.2f} 1.0", ""),
-                           ("{:.9e} {:.9e} +{:.2f}", "# comment\nvn 0 0 1\n")):
+                           ("{:.9e} {:.9e} +{:.2f}", "# comment\nvn 0 0 1\n"), ("{:.2f} {:.2f} {:.2f}\r", "\ufeff")):
             text = more + "".join("v " + form.format(*corner) + "\n" for corner in walls) + "f 1 2 3\nf 4 5 6"
-            read = self.read("walls.obj", text)
+            if form.endswith("\r"):  # the line ends of old Macintosh, and a byte-order mark
+                text = text.replace("\r\n", "\r").replace("\n", "\r")
+            (self.folder / "walls.obj").write_bytes(text.encode())
+            read = self.read("walls.obj")
             np.testing.assert_allclose(self.places(read), np.unique(walls, axis=0), atol=6e-3 if "e}" in form else 1e-6)
             self.assertFalse(any("single precision" in words for words in read.warnings))
 

@@ -230,7 +230,7 @@ class TestPacketReader(unittest.TestCase):
         wanted = points(read(FILE)).tolist()
         bad = payload(1920, 5308)
         for name, frame in (("no block", bad[:300] + b"\0\0" + bad[302:]), ("azimuth", bad[:302] + struct.pack("<H", 36000) + bad[304:]),
-                            ("mode", payload(1920, mode=0x40)), ("product", payload(1920, product=0x21))):
+                            ("mode", payload(1920, mode=0x40)), ("product", payload(1920, product=0x21)), ("time", payload(1920, 0xFFFFFFFF))):
             with self.subTest(name):
                 write(pcap(good[:4] + [ethernet(frame)] + good[5:]))
                 self.assertEqual(points(read(FILE, said=["1 of 20 packets of the lidar are left out: packet 4 of the lidar "])).tolist(), wanted)
