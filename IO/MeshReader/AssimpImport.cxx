@@ -195,9 +195,13 @@ double CheckFormat(AssimpFiles& files, std::vector<std::string>& warnings)
   {
     return IfcUnit(TextOf(files));
   }
-  return ending == ".3mf" ? PrintUnit(BeginOfModel(name))
-    : ending == ".amf"    ? PrintUnit(TextOf(files))
-                          : 1.0;
+  if (ending == ".amf")
+  {
+    const std::string text = TextOf(files);
+    CheckAmf(text);
+    return PrintUnit(text);
+  }
+  return ending == ".3mf" ? PrintUnit(BeginOfModel(name)) : 1.0;
 }
 
 /// What Assimp notes of an FBX file: the axis that points up. Returns the length of its unit, m.

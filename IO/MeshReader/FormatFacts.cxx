@@ -407,6 +407,33 @@ double PrintUnit(const std::string& text)
     "', expected micron, millimeter, centimeter, inch, foot or meter");
 }
 
+void CheckAmf(const std::string& text)
+{
+  for (const char* turn : { "<rx>", "<ry>", "<rz>" })
+  {
+    if (text.find(turn) != std::string::npos)
+    {
+      throw Error(std::string("turns objects of a constellation (") + turn +
+        "), which is not supported: export it with the objects turned");
+    }
+  }
+  const auto count = [&text](const char* element)
+  {
+    std::size_t found = 0;
+    for (std::size_t at = text.find(element); at != std::string::npos;
+         at = text.find(element, at + 1))
+    {
+      ++found;
+    }
+    return found;
+  };
+  if (count("<volume") > count("<mesh"))
+  {
+    throw Error("has meshes of several volumes, which are not supported: export each volume as an "
+                "object");
+  }
+}
+
 Vec3 MoveObjToOrigin(std::vector<char>& bytes)
 {
   constexpr double farAway = 8192.0; // single precision keeps 0.001 there

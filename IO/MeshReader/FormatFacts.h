@@ -37,6 +37,10 @@ double IfcUnit(const std::string& text);
  */
 double PrintUnit(const std::string& text);
 
+/// Refuses AMF files that Assimp reads wrong: constellations that turn objects, and meshes of
+/// several volumes, of which it keeps the first. @param text XML. Throws Error.
+void CheckAmf(const std::string& text);
+
 /**
  * Moves the vertices of an OBJ file so that they lie near the origin, since Assimp reads single
  * precision. Only files whose coordinates reach 8192 (there they are kept to 0.001) are changed.

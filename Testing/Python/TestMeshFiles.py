@@ -172,6 +172,16 @@ class MeshFiles(unittest.TestCase):
                 archive.writestr(name, content.replace(b"<model", b'<!-- <model unit="inch"> --><model', 1) if name.endswith(".model") else content)
         self.assert_box(self.read("box.3mf"), 1.0)
 
+    def test_amf_that_would_be_read_wrong_is_refused(self):
+        whole = amf('unit="meter"')
+        placed = whole.replace("</amf>", '<constellation id="1"><instance objectid="0"><deltax>5</deltax><rz>90</rz></instance></constellation></amf>')
+        self.assert_refused(self.read("box.amf", placed), "turns objects of a constellation (<rz>)")
+        self.assert_refused(self.read("box.amf", whole.replace("</volume>", "</volume><volume></volume>")), "has meshes of several volumes")
+
+    def test_legacy_vtk_with_fewer_points_than_it_says_is_refused(self):
+        text = "# vtk DataFile Version 3.0\nt\nASCII\nDATASET POLYDATA\nPOINTS 4 double\n0 0 0 1 0 0 0 1 0\nPOLYGONS 1 4\n3 0 1 2\n"
+        self.assert_refused(self.read("few.vtk", text), "VTK cannot read it")
+
     def test_the_axis_that_fbx_says_points_up(self):
         up = fbx(100).replace("\tProperties70:  {", '\tProperties70:  {\n\t\tP: "UpAxis", "int", "Integer", "",2', 1)
         triangle = np.array([[0, 0, 0], [0, 300, 0], [200, 0, 0]])
