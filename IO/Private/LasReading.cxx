@@ -464,10 +464,12 @@ Cloud readLas(ByteSource& source, const KeepGoing& keepGoing)
     }
     cloud.warnings.emplace_back("its waveforms are left out");
   }
-  if (header.points == 0 && header.room >= header.layout.length && header.evlrs == 0)
+  const std::uint64_t length = header.layout.length;
+  if (header.room >= (header.points + 1) * length && header.evlrs == 0 && !header.layout.waveforms)
   {
-    cloud.warnings.push_back("its header says that it has no points, though " +
-      std::to_string(header.room) + " bytes follow");
+    cloud.warnings.push_back("its header says that it has " +
+      (header.points > 0 ? std::to_string(header.points) : std::string("no")) + " points, though " +
+      std::to_string(header.room - header.points * length) + " bytes follow");
   }
   const LazPoints laz{ header.data, header.points, header.layout, records.laz };
   if (header.compressed)

@@ -104,6 +104,8 @@ class TestPointCloudReader(unittest.TestCase):
         self.assertEqual(read(FILE).GetNumberOfPoints(), 5)
         las(6, patch={247: ("<Q", 0)})
         self.assertEqual(read(FILE, said=["its header says that it has no points, though 150 bytes follow"]).GetNumberOfPoints(), 0)
+        las(6, patch={247: ("<Q", 3)})
+        self.assertEqual(read(FILE, said=["its header says that it has 3 points, though 60 bytes follow"]).GetNumberOfPoints(), 3)
 
     def test_las_systems_in_keys_of_geotiff(self):
         def keys(*entries):
