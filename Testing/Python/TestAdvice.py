@@ -109,7 +109,7 @@ class Advice(unittest.TestCase):
     def test_every_kind_of_sensor(self):
         for name in ("Search905", "OS1_64", "Mid40"):
             with self.subTest(name):
-                advice = al.Scan(SCENE, name).advise(**{**EASY, "beams": 30})
+                advice = al.Scan(SCENE, name).advise(**{**EASY, "beams": 50})
                 self.assertEqual(len(advice.table["verdict"]), 37)
                 self.assertTrue((advice.table["seconds_per_beam"] > 0).all())
                 self.assertTrue(any(line.startswith("Second reflections carry") or line.startswith("One reflection") for line in advice.lines))
