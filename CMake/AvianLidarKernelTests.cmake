@@ -61,7 +61,8 @@ function (avianlidar_add_kernel_tests target prefix)
     set(test "${AVIANLIDAR_TEST_PREFIX}${prefix}-${name}")
     add_test(NAME "${test}" COMMAND "${target}" "--gtest_filter=${filters}")
     set(labels ${avianlidar_kernel_test_labels})
-    if (NOT AVIANLIDAR_SANITIZE)
+    # Sanitizers look for faults of memory: what takes minutes for its statistics or its many changes is for the night.
+    if (NOT AVIANLIDAR_SANITIZE OR name MATCHES "^Test(EffectiveArea|ScanAgainPlates|ScanAgainTowns|SecondaryReflection)$")
       list(APPEND labels nightly)
     endif ()
     set_tests_properties("${test}" PROPERTIES

@@ -9,6 +9,10 @@ import shlex
 import sys
 import unittest
 
+import numpy as np
+
+import avianlidar as al
+from avianlidar import siting
 from avianlidar._command import main, parser
 from reporttools import quick
 from TestReport import HERE, Browser, plan, report
@@ -27,6 +31,73 @@ class Plans(unittest.TestCase):
             self.assertTrue(words in text, words)
         heads = re.findall("<li><b>([^<]*)</b>", text)
         self.assertEqual(heads, ["Change the beams first.", "Replace what is assumed."])
+
+    def test_heights_regions_and_species_reach_every_number(self):
+        """Gulls and starlings at 50 to 150 m over both runways, within 150 m: every share and the best site, by places drawn here and
+        coverage of each candidate."""
+        asked = plan(compare_with=None, heights=[50, 100, 150], regions={"strips": 1}, places=600, mix={"starling": 1, "herring gull": 3},
+                     coverage={"visibility": 10e3}, siting={"bounds": [-1200, 800, -1500, 1500], "spacing": 800, "masts": [5, 10], "draws": 0, "sensors": 2})
+        text = report("asked", asked).read_text(encoding="utf-8")
+        scene = al.load_scene(asked["scene"])
+        runways = siting.read_runways(asked["runways"], scene.geodetic_origin)
+
+        def drawn(seed):
+            random, places = np.random.default_rng(seed), []
+            for runway in runways:
+                axis, length = runway.axis()
+                along, aside = random.uniform(0.0, length, 300), random.uniform(-150.0, 150.0, 300)
+                ground = runway.start + along[:, None] * axis + aside[:, None] * np.array([axis[1], -axis[0]])
+                places.append(np.column_stack([ground, random.uniform(50.0, 150.0, 300)]))
+            return np.concatenate(places)
+        sensor = al.Sensor("Search905", position=(0, 0, 3))
+        cover = al.Coverage(scene, sensor, places=drawn(0), visibility=10e3)
+
+        def by_species(position, clutter):
+            sensor.position = position
+            cover.set(clutter=clutter)
+            found = []
+            for cover.species in ("herring gull", "starling"):
+                found.append(cover["detection_probability"].astype(float))
+            return np.array(found)
+
+        def shares(position, clutter):
+            return np.array([0.75, 0.25]) @ by_species(position, clutter)
+        with open(HERE / "asked_files" / "shares.csv", encoding="utf-8") as file:
+            rows = [row for row in csv.DictReader(file) if row["receiver"] == "Search905" and row["species"].startswith("bird (")]
+        self.assertEqual({row["region"] for row in rows }, {"strips"})
+        self.assertEqual({row["height_from [m]"] for row in rows if float(row["places"])}, {"50", "100", "-inf"})
+        self.assertAlmostEqual(float(rows[-1]["detection_probability"]), shares((0, 0, 3), True).mean(), delta=1e-6)
+        with open(HERE / "asked_files" / "sites.csv", encoding="utf-8") as file:
+            table = np.genfromtxt(file, delimiter=",", names=True)
+        positions = np.column_stack([table[name] for name in table.dtype.names[:3]])
+        values = np.array([shares(position, False).mean() for position in positions])
+        np.testing.assert_allclose(table[next(name for name in table.dtype.names if name.startswith("value"))], values, atol=1e-6)
+        self.assertGreater(len(values), 10)
+        self.assertEqual(np.argmax(values), 0)
+        cover.places = drawn(1 << 40)  # the page states sites at other places than those by which they are ranked, with clutter
+        with open(HERE / "asked_files" / "gain.csv", encoding="utf-8") as file:
+            for row in csv.DictReader(file):
+                missed = np.prod([1.0 - by_species([float(c) for c in place.split()], True) for place in row["sites"].split(";")], axis=0)
+                self.assertAlmostEqual(float(row["value"]), np.array([0.75, 0.25]) @ (1.0 - missed).mean(axis=1), delta=1e-6)
+        x, y, z = positions[0]
+        for words in (f"{abs(x):g}\u00a0m {'east' if x > 0 else 'west'} and {abs(y):g}\u00a0m {'north' if y > 0 else 'south'}, {z:g}\u00a0m up",
+                      "of a lattice of 800 m", "in strips, 50 to 150 m high", "herring gull 75 %, starling 25 %", "its beams go up to 5.6°",
+                      "<td>strips</td><td class=\"left line\">50 to 100 m</td>"):
+            self.assertTrue(words in text, words)
+        self.assertFalse("strips and approaches, 50" in text)
+        with open(HERE / "asked_files" / "ends.csv", encoding="utf-8") as file:
+            shown = {row["region"]: float(row["detection_probability"]) for row in csv.DictReader(file) if row["receiver"].endswith("best site")}
+        self.assertEqual(set(shown), {"strip 18L/36R", "strip 18R/36L"})
+        with open(HERE / "asked_files" / "shares.csv", encoding="utf-8") as file:
+            best = next(float(row["detection_probability"]) for row in csv.DictReader(file) if row["receiver"].endswith("best site")
+                        and row["species"].startswith("bird (") and row["height_from [m]"] == "-inf")
+        self.assertAlmostEqual(np.mean(list(shown.values())), best, delta=2e-4)  # as many places each
+        masts = dict(re.findall(r"([0-9]+) m: ([0-9.]+) ± [0-9.]+.% at", text))
+        for mast in (5, 10):
+            best = positions[positions[:, 2] == mast][np.argmax(values[positions[:, 2] == mast])]
+            self.assertAlmostEqual(0.01 * float(masts[str(mast)]), shares(best, True).mean(), delta=5.1e-4)
+        self.assertTrue("At the heights asked for, half of them are in its band and near enough at 50 m from " in text)
+        self.assertTrue("How sure the winner is was not looked at" in text)
 
     def test_one_end_and_every_option(self):
         """Regions by runway end; commands that say every option that the report was made with."""
