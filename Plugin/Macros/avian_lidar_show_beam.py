@@ -117,7 +117,8 @@ def show_parts(beam, view):
     apex, count = data.GetPoint(0), data.GetNumberOfPoints()
     middle = [sum(data.GetPoint(i)[axis] for i in range(1, count)) / (count - 1) for axis in range(3)]
     length = sum((a - b) ** 2 for a, b in zip(middle, apex)) ** 0.5
-    display.Position = [-(NEARER / length + NEARER_SHARE) * (a - b) for a, b in zip(middle, apex)]
+    place = "Translation" if "Translation" in display.ListProperties() else "Position"  # from ParaView 5.12 on, and before
+    display.SetPropertyWithName(place, [-(NEARER / length + NEARER_SHARE) * (a - b) for a, b in zip(middle, apex)])
     simple.ColorBy(display, ("CELLS", SHARE))
     table = simple.GetColorTransferFunction(SHARE)
     table.AutomaticRescaleRangeMode = "Never"
