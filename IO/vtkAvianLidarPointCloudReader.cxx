@@ -98,7 +98,7 @@ void Place(Cloud& cloud, bool wantLocal, vtkFieldData* fields)
 struct vtkAvianLidarPointCloudReader::vtkInternals
 {
   formats::PacketIndex Packets;
-  std::string Problem; ///< of a file of packets
+  std::string Problem; ///< why packets cannot be read; empty if they can
 };
 
 vtkStandardNewMacro(vtkAvianLidarPointCloudReader);

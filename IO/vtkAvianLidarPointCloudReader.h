@@ -4,7 +4,7 @@
  * @brief Reads a point cloud, of a real lidar or simulated, with the array names of this project.
  *
  * - `.las`: LAS 1.0 to 1.4, point data record formats 0 to 10, extra bytes, coordinate systems as
- *   WKT or as keys of GeoTIFF; waveforms are left out, which a warning says
+ *   WKT or as GeoTIFF keys; a warning says that waveforms are left out
  * - `.laz`: the same, compressed, without formats that have waveforms; an error in a build without
  *   LASzip
  * - `.pcd`: PCD of the Point Cloud Library: ascii, binary, binary_compressed
@@ -25,7 +25,7 @@
  * for what this project has a name for:
  *
  * - `intensity` (unit 1): PCD and PLY as it is, LAS / 257, KITTI * 255: 0 to 255. Numbers above 1
- * in a KITTI scan are taken as they are, which a warning says
+ * in a KITTI scan are taken as they are, with a warning
  * - `laser_id`: the field `ring` or `channel`
  * - `distance_m` (m): of the points, where the sensor's place is known (PCD: VIEWPOINT, KITTI:
  *   origin)

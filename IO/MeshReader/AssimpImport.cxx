@@ -87,7 +87,7 @@ void AddNode(const aiScene& scene, const aiNode& node, const Transform& parent, 
   }
 }
 
-// Assimp's triangulation does not look whether the corners of a polygon are there.
+// Assimp's triangulation does not check the indices of a polygon's corners.
 void CheckFaces(const aiScene& scene)
 {
   for (unsigned int i = 0; i < scene.mNumMeshes; ++i)
@@ -109,18 +109,19 @@ void CheckFaces(const aiScene& scene)
     }
     if ((mesh.mPrimitiveTypes & aiPrimitiveType_POLYGON) != 0 && !hasPolygon)
     {
-      // Assimp takes it for a polygon, and ends the process where there is no other.
+      // Assimp takes a face without vertices for a polygon, and crashes unless there is another
+      // one.
       throw Error("is broken: a face has no vertex");
     }
   }
 }
 
-// Assimp looks for the end of a PLY header for ever.
+// Assimp never ends on a PLY file whose header has no end.
 void CheckPlyHeader(const std::string& text)
 {
   if (text.empty())
   {
-    return; // which Assimp says
+    return; // Assimp reports that the file cannot be opened
   }
   const char* const end = "end_header";
   for (std::size_t at = text.find(end); at != std::string::npos; at = text.find(end, at + 1))
@@ -134,7 +135,7 @@ void CheckPlyHeader(const std::string& text)
   throw Error("is broken: its header has no line end_header");
 }
 
-/// The text of the mesh; empty where it cannot be opened, which Assimp says.
+/// Returns the text of the mesh, or nothing if it cannot be opened: Assimp reports that.
 std::string TextOf(AssimpFiles& files)
 {
   const std::unique_ptr<Assimp::IOStream> stream(files.Open(files.GetMeshName().c_str(), "rb"));
@@ -146,7 +147,8 @@ std::string TextOf(AssimpFiles& files)
   return text;
 }
 
-/// How a part of an archive begins; empty where there is none. @param name without a slash in front
+/// Returns the first 64 KiB of a part of an archive, or nothing if the part is missing.
+/// @param name without a slash in front
 std::string BeginOf(unzFile archive, const std::string& name)
 {
   constexpr int anyCase = 2;
@@ -162,8 +164,8 @@ std::string BeginOf(unzFile archive, const std::string& name)
   return text;
 }
 
-/// How the model of a 3MF file begins, which its relationships name; empty where there is none,
-/// which Assimp says.
+/// Returns the first 64 KiB of the model that the relationships of a 3MF file name, or nothing if
+/// the file cannot be opened: Assimp reports that.
 std::string BeginOfModel(const std::string& file)
 {
   const std::unique_ptr<void, int (*)(unzFile)> archive(unzOpen64(file.c_str()), unzClose);
@@ -178,7 +180,8 @@ std::string BeginOfModel(const std::string& file)
     std::regex_search(relationships, named, target) ? named[1].str() : "3D/3dmodel.model");
 }
 
-/// Refuses what Assimp reads wrong. Returns the length of the file's unit, m.
+/// Refuses files that Assimp reads wrong, and adds warnings. Returns the length of the file's unit,
+/// m.
 double CheckFormat(AssimpFiles& files, std::vector<std::string>& warnings)
 {
   const std::string& name = files.GetMeshName();
@@ -204,7 +207,8 @@ double CheckFormat(AssimpFiles& files, std::vector<std::string>& warnings)
   return ending == ".3mf" ? PrintUnit(BeginOfModel(name)) : 1.0;
 }
 
-/// What Assimp notes of an FBX file: the axis that points up. Returns the length of its unit, m.
+/// Reads the metadata that Assimp keeps of an FBX file. Returns the length of its unit, m.
+/// @param upAxis becomes 'y' or 'z'
 double FbxUnit(const aiScene& scene, char& upAxis)
 {
   constexpr double centimetre = 0.01;
@@ -223,8 +227,8 @@ double FbxUnit(const aiScene& scene, char& upAxis)
 
 Mesh ReadAssimpMesh(const std::string& file)
 {
-  // Never deleted, with the files that it owns: some files crash Assimp 5.2 there, after it has
-  // read them well.
+  // The importer owns the files. It is never deleted: some files crash Assimp 5.2 in its
+  // destructor, after they have been read.
   Assimp::Importer& importer = *new Assimp::Importer;
   auto* files = new AssimpFiles(file);
   importer.SetIOHandler(files);

@@ -35,7 +35,7 @@ std::string_view JsonOf(const std::string& text)
   return std::string_view(text).substr(header + chunk, length);
 }
 
-/// A list of an object; an empty one where there is none.
+/// Returns a list of an object, or an empty list if the object has no such list.
 const Json& ListIn(const Json& object, const char* key)
 {
   static const Json none = Json::array();

@@ -37,8 +37,8 @@ double IfcUnit(const std::string& text);
  */
 double PrintUnit(const std::string& text);
 
-/// Refuses AMF files that Assimp reads wrong: constellations that turn objects, and meshes of
-/// several volumes, of which it keeps the first. @param text XML. Throws Error.
+/// Refuses AMF files that Assimp reads wrong: it does not turn objects of constellations, and it
+/// keeps only the first volume of a mesh. @param text XML. Throws Error.
 void CheckAmf(const std::string& text);
 
 /**

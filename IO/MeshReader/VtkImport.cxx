@@ -69,8 +69,8 @@ private:
   std::string Text;
 };
 
-// An array of VTK's for which there is no memory says so, and the process ends, as Debian builds
-// VTK: std::bad_alloc leaves in between.
+// A VTK array that cannot be allocated reports an error, and then the process ends as Debian builds
+// VTK: the report throws std::bad_alloc instead.
 class ThrowingWindow : public vtkOutputWindow
 {
 public:
@@ -86,7 +86,7 @@ public:
     this->Superclass::DisplayErrorText(text);
   }
 
-  // Legacy files with fewer values than they say have any memory for the others.
+  // The legacy reader only warns of missing values, and leaves their memory uninitialised.
   void DisplayGenericWarningText(const char* text) override
   {
     if (std::strstr(text, "Error reading"))

@@ -18,7 +18,7 @@ constexpr double GreatestIntensity = 255.0;
 constexpr const char* LongPoints = "five float32 a point, as nuScenes has them: this is not a scan "
                                    "of KITTI, whose points have four";
 
-/// Whether the bytes may be points of five numbers, of which the last is a ring or a label.
+/// Whether the bytes may be points of five numbers, the last one a ring or a label.
 bool mayHaveFive(ByteSource& points)
 {
   bool may = points.size() % LongPointSize == 0;

@@ -195,7 +195,7 @@ struct Records
 {
   std::vector<ExtraField> fields;
   Bytes laz;
-  Bytes keys, doubles, texts; ///< of GeoTIFF
+  Bytes keys, doubles, texts; ///< GeoTIFF keys and their parameters
 };
 
 void takeRecord(const std::string& user, int record, const Bytes& content, const LasLayout& layout,

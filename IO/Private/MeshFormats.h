@@ -18,7 +18,7 @@ inline std::string EndingOf(const std::string& file)
   return vtksys::SystemTools::LowerCase(vtksys::SystemTools::GetFilenameLastExtension(file));
 }
 
-/// The name without ".gz": it tells the format.
+/// Returns the name without ".gz"; its ending gives the format.
 inline std::string UncompressedName(const std::string& file)
 {
   return EndingOf(file) == ".gz" ? file.substr(0, file.size() - 3) : file;

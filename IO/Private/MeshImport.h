@@ -21,9 +21,9 @@ namespace avianlidar::scene
  * The libraries run in a program of their own (IO/MeshReader): a file on which they crash, never
  * end or take all memory is an error like any other. The limits are those of MeshReaderProcess.h.
  *
- * Throws Error where the file cannot be read, holds no triangle, or has a coordinate that is not
- * finite; std::bad_alloc where the memory does not suffice; WorkStopped where keepGoing, which is
- * asked about ten times in a second, returns false.
+ * Throws Error if the file cannot be read, holds no triangle, or has a coordinate that is not
+ * finite; std::bad_alloc if the memory does not suffice; WorkStopped if keepGoing returns false,
+ * which is called about ten times a second.
  */
 Mesh ReadMesh(const std::string& file, const std::function<bool()>& keepGoing);
 

@@ -60,7 +60,7 @@ double Limit(const char* variable, double otherwise)
 /// Bytes as the program's argument: 0 for no limit.
 std::string MostData()
 {
-  constexpr double share = 0.9; // what else needs memory meanwhile keeps the rest
+  constexpr double share = 0.9; // the rest is for this process
   constexpr double gigabyte = 1e9;
   const double bytes =
     Limit("AVIANLIDAR_MESH_GIGABYTES", share * availableMemory() / gigabyte) * gigabyte;
@@ -80,7 +80,7 @@ int Start(const std::vector<std::string>& words, int output, pid_t& pid)
   posix_spawn_file_actions_init(&actions);
   posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
   posix_spawn_file_actions_adddup2(&actions, output, STDOUT_FILENO);
-  // Whatever this thread blocks or ignores.
+  // The program must not inherit signals that this thread blocks or ignores.
   posix_spawnattr_t attributes;
   posix_spawnattr_init(&attributes);
   sigset_t signals;
@@ -152,7 +152,7 @@ void MeshReaderProcess::Read(void* bytes, std::size_t size)
   }
 }
 
-/// Until there is something to read, or the end.
+/// Waits until there are bytes to read or the pipe is closed.
 void MeshReaderProcess::Wait()
 {
   constexpr int pause = 100; // ms
@@ -182,7 +182,7 @@ std::string MeshReaderProcess::HowItEnded()
     ended = waitpid(this->Pid, &status, 0);
   } while (ended < 0 && errno == EINTR);
   this->Pid = -1;
-  // Nobody knows in a process that ignores its children.
+  // The status is not known if this process ignores SIGCHLD.
   return ended > 0 && WIFSIGNALED(status)
     ? std::string("it crashes on the file (") + strsignal(WTERMSIG(status)) + ")"
     : std::string("its program ended without a word");

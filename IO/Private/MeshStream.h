@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file MeshStream.h
- * @brief What the program that reads meshes sends through its pipe: a mesh, or why there is none.
+ * @brief The program that reads meshes sends through its pipe a mesh, or the reason why it could
+ * not read one.
  *
  * Both ends run on one machine and are built together, so numbers travel as they lie in memory.
  */

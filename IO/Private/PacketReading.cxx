@@ -137,7 +137,7 @@ bool hasBlocks(const unsigned char* payload)
 /// A packet of 1206 bytes, which may be a lidar's.
 struct Datagram
 {
-  std::uint64_t begin = 0; ///< of the lidar's bytes in the packet; 0: it is something else
+  std::uint64_t begin = 0; ///< offset of the lidar's bytes in the packet; 0 for other traffic
   bool isFragment = false;
   bool isForLidars = false; ///< by its port
   std::string sensor;       ///< address and port
@@ -371,7 +371,7 @@ struct Sender
 {
   std::vector<SentPacket> packets;
   std::size_t damaged = 0;
-  std::string problem; ///< of the first packet that is damaged
+  std::string problem; ///< what is wrong with the first damaged packet
   int epoch = 0;
   double latest = 0.0; ///< us, in this epoch
 

@@ -153,12 +153,12 @@ struct Mesh
   std::vector<std::string> materialNames;
   /// Faces that are points or lines, which no ray hits.
   std::int64_t skippedFaces = 0;
-  /// Distance between neighbouring numbers of single precision at the largest coordinate, in units
-  /// of the file; 0 where the reader keeps double precision.
+  /// Distance between neighbouring single-precision numbers at the largest coordinate, in the
+  /// file's unit; 0 if the reader keeps double precision.
   double rounding = 0.0;
-  /// 'y' or 'z', the axis that the file says points up; 0 where it says none.
+  /// 'y' or 'z', the axis that points up according to the file; 0 if the file does not say.
   char upAxis = 0;
-  /// What was left out or may be meant in another way.
+  /// Sentences on what was left out.
   std::vector<std::string> warnings;
 };
 

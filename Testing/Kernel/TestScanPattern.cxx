@@ -2,6 +2,7 @@
 // Beams of a scan: counts, order, angles, orientation, clock, and what is refused.
 #include "ScanClock.h"
 #include "ScanPattern.h"
+#include "Sensor.h"
 
 #include <gtest/gtest.h>
 

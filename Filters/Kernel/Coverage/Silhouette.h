@@ -39,8 +39,8 @@ struct Squares
 /// A beam at a target, in the plane across the line of sight through the target's middle.
 struct BeamAtTarget
 {
-  double radius; ///< m, of an ellipse or rectangle half its longer side
-  double x, y;   ///< of the beam's axis from the middle, m to the right and up
+  double radius = 0.0; ///< m, half the longer side of an ellipse or rectangle
+  double x, y;         ///< of the beam's axis from the middle, m to the right and up
   BeamProfile profile = BeamProfile::Uniform;
   // Of beams that are not round, or have another Gaussian:
   double across = radius; ///< m, half the shorter side

@@ -16,7 +16,7 @@
  * Differs: the paper has no leaves.
  * Valid: leaves are seen along the beam's axis, and exist where the medium of the ray's own column
  * does. Means are those of BeamAir.h.
- * Test: TestBeamAir.cxx.
+ * Test: TestBeamCrowns.cxx.
  */
 #ifndef avianlidar_LeafGaps_h
 #define avianlidar_LeafGaps_h

@@ -12,7 +12,7 @@
  * Valid: exact but for rounding. A closed surface is crossed where the tree's triangle test says
  * so; its shells face outward but for holes, as closedShells() turns them, and what they enclose is
  * inside.
- * Test: TestBeamAir.cxx.
+ * Test: TestMediumVolume.cxx.
  */
 #ifndef avianlidar_MediumVolume_h
 #define avianlidar_MediumVolume_h

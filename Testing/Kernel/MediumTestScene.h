@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file MediumTestScene.h
+ * @brief Media in boxes before a wall, and a search lidar: what tests of media share.
+ */
+#ifndef MediumTestScene_h
+#define MediumTestScene_h
+
+#include "CollisionTreeBuilder.h"
+#include "EchoTestScene.h"
+#include "PhotonReceiver.h"
+
+#include <gtest/gtest.h>
+
+#include <memory>
+
+namespace echotest
+{
+inline Sensor search905()
+{
+  Sensor sensor;
+  sensor.receiverModel = ReceiverModel::Photons;
+  sensor.pulseEnergy = 3.6e-4;
+  sensor.frequency = SpeedOfLight / 905e-9;
+  sensor.halfBeamwidth = 5.6e-3;
+  sensor.receiverAperture = 0.0078539816;
+  sensor.receiverEfficiency = 0.4;
+  sensor.backgroundRadiance = 0.05;
+  sensor.filterBandwidth = 10.0;
+  sensor.rangeGate = 4000.0;
+  EXPECT_EQ(setPhotonLimits(sensor, 1.0, 40.0, 15360.0), "");
+  return sensor;
+}
+
+inline MediumVolume boxOf(const Vec3& centre, const Vec3& half)
+{
+  MediumVolume box;
+  box.shape = MediumShape::Box;
+  box.centre = centre;
+  box.halfAxes = { Vec3(half.x, 0.0, 0.0), Vec3(0.0, half.y, 0.0), Vec3(0.0, 0.0, half.z) };
+  return box;
+}
+
+/// The same by a mesh.
+inline MediumVolume meshOf(const MediumVolume& box)
+{
+  // Corners by bits, sides that face outwards.
+  auto of = std::make_shared<TriangleMesh>();
+  for (int corner = 0; corner < 8; ++corner)
+  {
+    Vec3 point = box.centre;
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      point += (corner >> axis & 1 ? 1.0 : -1.0) * box.halfAxes[static_cast<std::size_t>(axis)];
+    }
+    of->points.push_back(point);
+  }
+  of->triangles = { { 0, 2, 1 }, { 1, 2, 3 }, { 4, 5, 6 }, { 5, 7, 6 }, { 0, 1, 4 }, { 1, 5, 4 },
+    { 2, 6, 3 }, { 3, 6, 7 }, { 0, 4, 2 }, { 2, 4, 6 }, { 1, 3, 5 }, { 3, 7, 5 } };
+  MediumVolume mesh = box;
+  mesh.shape = MediumShape::Surface;
+  mesh.surface = buildCollisionTree(of, TreeOptions{}, {}, 1);
+  return mesh;
+}
+
+inline ScanSetup inMedium(const Scene& scene, Sensor sensor, const Medium& medium,
+  const MediumVolume& volume, bool cells = true)
+{
+  EchoSettings settings = directSettings(400);
+  settings.beamSamples = cells ? BeamSampleSource::Cells : BeamSampleSource::Rays;
+  ScanSetup setup = makeSetup(scene, sensor, settings);
+  setup.placedMedia = { { medium, volume } };
+  planModel(setup);
+  return setup;
+}
+
+inline Scene wallAt(double x, double from = -50.0, double to = 50.0)
+{
+  Scene scene;
+  scene.plate(Vec3(x, 0.5 * (from + to), 0.0), Vec3(0.0, 0.5 * (to - from), 0.0),
+    Vec3(0.0, 0.0, 50.0), Wall, 7);
+  return scene;
+}
+}
+
+#endif

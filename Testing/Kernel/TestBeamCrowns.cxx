@@ -1,0 +1,247 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Crowns of leaves against leaves that an independent program places one by one.
+#include "BeamAir.h"
+#include "MediumTestScene.h"
+#include "Sanitized.h"
+
+#include <cmath>
+
+using namespace echotest;
+
+TEST(BeamCrowns, LeavesThatStayReturnTheSameInEveryScan)
+{
+  Sensor sensor = search905();
+  Medium leaves{ 0.5, 30.0, 20.0, SquareOfLeaves, 0.0, false, 9, true };
+  const MediumVolume crown = boxOf(Vec3(100.0, 0.0, 0.0), Vec3(4.0, 50.0, 50.0));
+  const auto energies = [&](double renewed, int revolution)
+  {
+    leaves.renewed = renewed;
+    ScanSetup setup = inMedium(Scene{}, sensor, leaves, crown);
+    setup.noise.active = true; // of leaves alone: the receiver's is far below
+    setup.settings.noise = true;
+    planModel(setup);
+    setup.revolution = revolution;
+    std::vector<double> found(300, 0.0);
+    const ScanResult result = runScan(setup, alike(300));
+    for (std::size_t k = 0; k < result.echoes.size(); ++k)
+    {
+      found[result.beamOfEcho[k]] += result.echoes[k].energyReceived;
+    }
+    return found;
+  };
+  const auto correlation = [](const std::vector<double>& a, const std::vector<double>& b)
+  {
+    double sa = 0.0, sb = 0.0, saa = 0.0, sbb = 0.0, sab = 0.0;
+    const auto n = static_cast<double>(a.size());
+    for (std::size_t i = 0; i < a.size(); ++i)
+    {
+      sa += a[i];
+      sb += b[i];
+      saa += a[i] * a[i];
+      sbb += b[i] * b[i];
+      sab += a[i] * b[i];
+    }
+    return (n * sab - sa * sb) / std::sqrt((n * saa - sa * sa) * (n * sbb - sb * sb));
+  };
+  EXPECT_GT(correlation(energies(0.0, 1), energies(0.0, 2)), 0.9);
+  EXPECT_LT(std::fabs(correlation(energies(1.0, 1), energies(1.0, 2))), 0.2);
+  EXPECT_NEAR(correlation(energies(0.5, 1), energies(0.5, 2)), 0.5, 0.2);
+}
+
+/// A crown of leaves of 40 cm2 that face all ways, before a wall, and a lidar. Expected values are
+/// those of an independent program, which places leaves one by one as discs in space and follows
+/// rays to points of the beam and back to points of the aperture: means and standard errors of
+/// 4,000 to 16,000 crowns with fixed seeds, of 24 rays each or, where shares of beams are given, of
+/// 120.
+struct CrownCase
+{
+  double halfBeamwidth, aperture; ///< rad, m in radius
+  double density;                 ///< m2/m3
+  double begin, end, wall;        ///< m
+  std::array<double, 2> behind;   ///< light of the wall, over that in clear air
+  std::array<double, 2> leaves;   ///< 1/m2: share of the pulse that leaves return, 3/2 cos/r2 of it
+  /// Shares of beams with less than 2 % and with more than 98 % of the wall's light; below 0: not
+  /// known.
+  double dark, bright;
+};
+constexpr CrownCase CrownCases[] = {
+  { 5.6e-3, 0.05, 1.0, 8.5, 11.5, 50.0, { 0.0956, 0.0009 }, { 8.244e-3, 2.2e-5 }, -1.0, -1.0 },
+  { 3e-3, 0.075, 1.0, 33.5, 36.5, 50.0, { 0.1300, 0.0011 }, { 6.391e-4, 1.5e-6 }, -1.0, -1.0 },
+  { 3e-3, 0.075, 0.6, 6.0, 10.0, 14.0, { 0.1687, 0.0017 }, { 1.2149e-2, 6.4e-5 }, -1.0, -1.0 },
+  { 9.5e-4, 0.0125, 1.0, 4.0, 6.0, 40.0, { 0.3048, 0.0032 }, { 2.786e-2, 1.9e-4 }, -1.0, -1.0 },
+  { 9.5e-4, 0.0125, 1.0, 10.0, 13.0, 15.0, { 0.2054, 0.0035 }, { 6.332e-3, 4.1e-5 }, 0.544, 0.046 },
+  { 5.6e-3, 0.05, 1.0, 10.0, 13.0, 15.0, { 0.1639, 0.0018 }, { 6.149e-3, 2.6e-5 }, 0.059, 0.0 },
+  { 9.5e-4, 0.0125, 0.5, 20.0, 25.0, 40.0, { 0.2518, 0.0031 }, { 1.4892e-3, 9.3e-6 }, 0.289,
+    0.015 },
+  { 3e-3, 0.075, 1.0, 10.0, 13.0, 40.0, { 0.0795, 0.0017 }, { 6.062e-3, 4.0e-5 }, 0.400, 0.0 },
+};
+
+Medium leavesOf(double density)
+{
+  return { 0.5 * density, 10.5, 250.0 * density, SquareOfLeaves, 1.0, false, 9, true };
+}
+
+MediumVolume crownOf(const CrownCase& of)
+{
+  return boxOf(
+    Vec3(0.5 * (of.begin + of.end), 0.0, 0.0), Vec3(0.5 * (of.end - of.begin), 50.0, 50.0));
+}
+
+Sensor lidarOf(const CrownCase& of)
+{
+  Sensor sensor = search905();
+  sensor.halfBeamwidth = of.halfBeamwidth;
+  sensor.receiverAperture = Pi * of.aperture * of.aperture;
+  sensor.pulseEnergy *= 0.0025 / (of.aperture * of.aperture); // so that it receives as much
+  sensor.rangeGate = 60.0;
+  EXPECT_EQ(setPhotonLimits(sensor, 1e-4, 40.0, 15360.0), "");
+  return sensor;
+}
+
+TEST(BeamCrowns, TheWayBackMeetsOtherLeaves)
+{
+  for (const CrownCase& of : CrownCases)
+  {
+    const Sensor sensor = lidarOf(of);
+    const std::vector<PlacedMedium> placed = { { leavesOf(of.density), crownOf(of) } };
+    const std::vector<Medium> none;
+    BeamAir air(sensor, 0.0, none, placed);
+    air.begin(makeBeamFrame(Vec3(0.0), Vec3(1.0, 0.0, 0.0), sensor.halfBeamwidth), 0.0);
+    EXPECT_NEAR(air.transmission(of.wall), of.behind[0], 3.0 * of.behind[1]) << of.wall;
+    double leaves = 0.0;
+    for (std::int64_t unit = 0; unit < 100; ++unit)
+    {
+      for (const BeamAir::Share& share : air.sharesOf(unit))
+      {
+        leaves += share.mean * 10.5 / (sensor.pulseEnergy * sensor.receiverAperture);
+      }
+    }
+    EXPECT_NEAR(leaves, of.leaves[0], 3.0 * of.leaves[1]) << of.wall;
+    // Along one direction, as coverage sees it.
+    air.beginRay(Vec3(0.0), Vec3(1.0, 0.0, 0.0), 0.0);
+    EXPECT_NEAR(air.transmission(of.wall), of.behind[0], 3.0 * of.behind[1]) << of.wall;
+  }
+}
+
+constexpr std::size_t Scans = 1500;
+
+ScanResult throughLeaves(const CrownCase& of, bool noise)
+{
+  ScanSetup setup = inMedium(wallAt(of.wall), lidarOf(of), leavesOf(of.density), crownOf(of));
+  setup.noise.active = noise; // of leaves alone: the receiver's is far below
+  setup.settings.noise = noise;
+  setup.settings.returnMode = ReturnMode::RangeUnits;
+  planModel(setup);
+  return runScan(setup, alike(noise ? Scans : 1));
+}
+
+TEST(BeamCrowns, ABeamMeetsLeavesWithAPartOfIt)
+{
+  int looked = 0;
+  for (const CrownCase& of : CrownCases)
+  {
+    if (of.dark < 0.0 || (IsSanitized && ++looked > 1))
+    {
+      continue;
+    }
+    CrownCase without = of;
+    without.density = 1e-9;
+    const double clear = receivedFrom(throughLeaves(without, false));
+    const ScanResult result = throughLeaves(of, true);
+    std::vector<double> walls(Scans, 0.0);
+    for (std::size_t k = 0; k < result.echoes.size(); ++k)
+    {
+      const Echo& echo = result.echoes[k];
+      walls[result.beamOfEcho[k]] += echo.range > of.end + 1.0 ? echo.energyReceived : 0.0;
+    }
+    const auto count = [&](double from, double to)
+    {
+      return static_cast<double>(std::count_if(walls.begin(), walls.end(),
+               [=](double energy) { return energy >= from * clear && energy < to * clear; })) /
+        static_cast<double>(Scans);
+    };
+    EXPECT_NEAR(count(-1.0, 0.02), of.dark, 0.045) << of.wall;
+    EXPECT_NEAR(count(0.98, 2.0), of.bright, 0.02) << of.wall;
+  }
+}
+
+/// A crown of 4 m before a wall; where nothing is wider than leaves.
+constexpr CrownCase ThinRay{ 1e-8, 1e-6, 1.0, 18.0, 22.0, 40.0, {}, {}, 0.0, 0.0 };
+
+TEST(BeamCrowns, AThinRayEndsAtItsFirstLeafOrPasses)
+{
+  const double left = std::exp(-2.0);
+  const ScanResult result = throughLeaves(ThinRay, true);
+  std::vector<double> depths(Scans, 0.0);
+  std::vector<double> walls(Scans, 0.0);
+  for (std::size_t k = 0; k < result.echoes.size(); ++k)
+  {
+    const Echo& echo = result.echoes[k];
+    const std::size_t beam = result.beamOfEcho[k];
+    if (echo.objectId == 9)
+    {
+      EXPECT_EQ(depths[beam], 0.0) << "leaves at two depths";
+      depths[beam] = echo.range - 18.0;
+    }
+    walls[beam] += echo.objectId == 7 ? echo.energyReceived : 0.0;
+  }
+  const double unit = Sensor{ search905() }.rangeUnitLength();
+  const double end = unit * std::ceil(18.0 / unit); // of the first unit in the crown
+  double passed = 0.0, first = 0.0;
+  for (std::size_t beam = 0; beam < depths.size(); ++beam)
+  {
+    passed += walls[beam] > 0.0 ? 1.0 : 0.0;
+    first += depths[beam] > 0.0 && depths[beam] < end - 18.0 ? 1.0 : 0.0;
+    EXPECT_NE(walls[beam] > 0.0, depths[beam] > 0.0);
+  }
+  const auto within = [](double count, double share)
+  {
+    EXPECT_NEAR(count, static_cast<double>(Scans) * share,
+      3.0 * std::sqrt(static_cast<double>(Scans) * share * (1.0 - share)));
+  };
+  within(passed, left);
+  within(first, 1.0 - std::exp(-0.5 * (end - 18.0)));
+}
+
+TEST(BeamCrowns, NoiseOfLeavesLeavesTheMean)
+{
+  for (const double halfBeamwidth : { 1e-4, 1e-3, 4e-3, 2e-2 })
+  {
+    if (IsSanitized && halfBeamwidth != 4e-3)
+    {
+      continue;
+    }
+    const auto sums = [&](bool noise)
+    {
+      std::array<double, 4> sum{}; // leaves, wall, and squares over all beams
+      CrownCase of = ThinRay;
+      of.halfBeamwidth = halfBeamwidth;
+      of.aperture = 0.05;
+      const ScanResult result = throughLeaves(of, noise);
+      std::vector<std::array<double, 2>> beams(noise ? Scans : 1);
+      for (std::size_t k = 0; k < result.echoes.size(); ++k)
+      {
+        beams[result.beamOfEcho[k]][result.echoes[k].range > 30.0] +=
+          result.echoes[k].energyReceived;
+      }
+      for (const auto& beam : beams)
+      {
+        for (std::size_t i = 0; i < 2; ++i)
+        {
+          sum[i] += beam[i] / static_cast<double>(beams.size());
+          sum[i + 2] += beam[i] * beam[i] / static_cast<double>(beams.size());
+        }
+      }
+      return sum;
+    };
+    const auto noisy = sums(true);
+    const auto mean = sums(false);
+    for (std::size_t i = 0; i < 2; ++i)
+    {
+      const double error =
+        std::sqrt((noisy[i + 2] - noisy[i] * noisy[i]) / static_cast<double>(Scans));
+      EXPECT_NEAR(noisy[i], mean[i], 3.5 * error + 2e-3 * mean[i])
+        << halfBeamwidth << (i == 0 ? " leaves" : " wall");
+    }
+  }
+}
