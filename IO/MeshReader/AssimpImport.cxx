@@ -207,20 +207,59 @@ double CheckFormat(AssimpFiles& files, std::vector<std::string>& warnings)
   return ending == ".3mf" ? PrintUnit(BeginOfModel(name)) : 1.0;
 }
 
-/// Reads the metadata that Assimp keeps of an FBX file. Returns the length of its unit, m.
-/// @param upAxis becomes 'y' or 'z'
-double FbxUnit(const aiScene& scene, char& upAxis)
+/// The axis of an FBX file's coordinates that `name` ("Coord", "Up" or "Front") points along, or 3
+/// if it says none, and the sign.
+std::pair<int, int> FbxAxis(const aiMetadata& data, const std::string& name)
+{
+  int axis = 3;
+  int sign = 1;
+  data.Get(name + "Axis", axis);
+  data.Get(name + "AxisSign", sign);
+  return { axis < 0 ? 3 : std::min(axis, 3), sign < 0 ? -1 : 1 };
+}
+
+/// Turns what Assimp made of an FBX file to x right, y up and z towards the viewer, or with z up to
+/// y away from the viewer. Assimp 5.4 does so in the transformation of the root, always to y up,
+/// Assimp 5.2 does not. Returns the axis that points up then, 'y' or 'z'.
+char TurnFbx(const aiScene& scene)
+{
+  constexpr int yAxis = 1, zAxis = 2;
+  std::pair<int, int> right{ 0, 1 }, up{ yAxis, 1 }, front{ zAxis, 1 };
+  if (scene.mMetaData)
+  {
+    right = FbxAxis(*scene.mMetaData, "Coord");
+    up = FbxAxis(*scene.mMetaData, "Up");
+    front = FbxAxis(*scene.mMetaData, "Front");
+    if (((1 << right.first) | (1 << up.first) | (1 << front.first)) != 7)
+    {
+      if (up.first == 0)
+      {
+        throw Error("says that x points up, and not which axes point right and to the front");
+      }
+      right = { 0, 1 };
+      up.second = 1;
+      front = up.first == zAxis ? std::pair(yAxis, -1) : std::pair(zAxis, 1);
+      up.first = up.first == zAxis ? zAxis : yAxis;
+    }
+  }
+  aiMatrix4x4 turn(0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1);
+  turn[0][right.first] = static_cast<float>(right.second);
+  const bool zUp = up.first == zAxis;
+  turn[zUp ? zAxis : yAxis][up.first] = static_cast<float>(up.second);
+  turn[zUp ? yAxis : zAxis][front.first] = static_cast<float>(zUp ? -front.second : front.second);
+  scene.mRootNode->mTransformation = turn;
+  return zUp ? 'z' : 'y';
+}
+
+/// The length of an FBX file's unit, m.
+double FbxUnit(const aiScene& scene)
 {
   constexpr double centimetre = 0.01;
-  constexpr int z = 2;
   float centimetres = 1.0f;
-  int up = 1;
   if (scene.mMetaData)
   {
     scene.mMetaData->Get("UnitScaleFactor", centimetres);
-    scene.mMetaData->Get("UpAxis", up);
   }
-  upAxis = up == z ? 'z' : 'y';
   return centimetre * centimetres;
 }
 }
@@ -262,7 +301,8 @@ Mesh ReadAssimpMesh(const std::string& file)
   }
   if (EndingOf(files->GetMeshName()) == ".fbx")
   {
-    unit *= FbxUnit(*scene, mesh.upAxis);
+    unit *= FbxUnit(*scene);
+    mesh.upAxis = TurnFbx(*scene);
   }
   AddNode(*scene, *scene->mRootNode, { 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1 }, mesh);
   const Vec3& moved = files->GetOffset();

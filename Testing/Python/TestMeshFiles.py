@@ -182,12 +182,17 @@ class MeshFiles(unittest.TestCase):
         text = "# vtk DataFile Version 3.0\nt\nASCII\nDATASET POLYDATA\nPOINTS 4 double\n0 0 0 1 0 0 0 1 0\nPOLYGONS 1 4\n3 0 1 2\n"
         self.assert_refused(self.read("few.vtk", text), "VTK cannot read it")
 
-    def test_the_axis_that_fbx_says_points_up(self):
-        up = fbx(100).replace("\tProperties70:  {", '\tProperties70:  {\n\t\tP: "UpAxis", "int", "Integer", "",2', 1)
-        triangle = np.array([[0, 0, 0], [0, 300, 0], [200, 0, 0]])
-        np.testing.assert_allclose(self.places(self.read("triangle.fbx", up)), triangle, rtol=2 * SINGLE)
-        turned = np.unique(np.column_stack([triangle[:, 0], -triangle[:, 2], triangle[:, 1]]), axis=0)
-        np.testing.assert_allclose(self.places(self.read("triangle.fbx", fbx(100))), turned, rtol=2 * SINGLE)
+    def test_the_axes_that_fbx_says(self):
+        right, up, away = np.array([[0, 200, 0], [0, 0, 300], [0, 0, 0]])  # of the three points in what a viewer sees
+        x, y, z = np.array([[0, 200, 0], [0, 0, 300], [0, 0, 0]])  # in the file
+        for axes, expected in (((), (right, away, up)), ((("Up", 2, 1),), (x, y, z)), ((("Up", 2, 1), ("Front", 1, -1), ("Coord", 0, 1)), (x, y, z)),
+                               ((("Up", 2, 1), ("Front", 0, 1), ("Coord", 1, 1)), (y, -x, z)), ((("Up", 1, -1), ("Front", 2, 1), ("Coord", 0, -1)), (-x, -z, -y)),
+                               ((("Up", 0, 1), ("Front", 2, 1), ("Coord", 1, -1)), (-y, -z, x))):
+            said = "".join(f'\n\t\tP: "{name}Axis", "int", "Integer", "",{axis}\n\t\tP: "{name}AxisSign", "int", "Integer", "",{sign}' for name, axis, sign in axes)
+            read = self.read("triangle.fbx", fbx(100).replace("\tProperties70:  {", "\tProperties70:  {" + said, 1))
+            np.testing.assert_allclose(self.places(read), np.unique(np.column_stack(expected), axis=0), rtol=2 * SINGLE, err_msg=str(axes))
+        x_up = fbx(100).replace("\tProperties70:  {", '\tProperties70:  {\n\t\tP: "UpAxis", "int", "Integer", "",0', 1)
+        self.assert_refused(self.read("triangle.fbx", x_up), "says that x points up, and not which axes point right and to the front")
 
     def test_gltf_poses_are_warnings_and_other_numbers_refused(self):
         document = json.loads(gltf(np.asarray(CORNERS), TRIANGLES))
