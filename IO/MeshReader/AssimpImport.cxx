@@ -5,8 +5,10 @@
 #include "FormatFacts.h"
 #include "MeshFormats.h"
 
+#include <assimp/DefaultLogger.hpp>
 #include <assimp/IOStream.hpp>
 #include <assimp/Importer.hpp>
+#include <assimp/LogStream.hpp>
 #include <assimp/metadata.h>
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
@@ -15,9 +17,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <memory>
 #include <new>
 #include <regex>
+#include <set>
 
 namespace avianlidar::scene
 {
@@ -116,25 +120,6 @@ void CheckFaces(const aiScene& scene)
   }
 }
 
-// Assimp never ends on a PLY file whose header has no end.
-void CheckPlyHeader(const std::string& text)
-{
-  if (text.empty())
-  {
-    return; // Assimp reports that the file cannot be opened
-  }
-  const char* const end = "end_header";
-  for (std::size_t at = text.find(end); at != std::string::npos; at = text.find(end, at + 1))
-  {
-    const std::size_t before = text.find_last_not_of(" \t", at - 1);
-    if (at > 0 && before != std::string::npos && (text[before] == '\n' || text[before] == '\r'))
-    {
-      return;
-    }
-  }
-  throw Error("is broken: its header has no line end_header");
-}
-
 /// Returns the text of the mesh, or nothing if it cannot be opened: Assimp reports that.
 std::string TextOf(AssimpFiles& files)
 {
@@ -147,9 +132,9 @@ std::string TextOf(AssimpFiles& files)
   return text;
 }
 
-/// Returns the first 64 KiB of a part of an archive, or nothing if the part is missing.
+/// Returns a part of an archive, or nothing if the part is missing.
 /// @param name without a slash in front
-std::string BeginOf(unzFile archive, const std::string& name)
+std::string PartOf(unzFile archive, const std::string& name)
 {
   constexpr int anyCase = 2;
   if (unzLocateFile(archive, name.c_str(), anyCase) != UNZ_OK ||
@@ -157,16 +142,20 @@ std::string BeginOf(unzFile archive, const std::string& name)
   {
     return {};
   }
-  std::string text(1u << 16, '\0');
-  const int got = unzReadCurrentFile(archive, &text[0], static_cast<unsigned int>(text.size()));
-  text.resize(static_cast<std::size_t>(std::max(got, 0)));
+  std::string text;
+  std::vector<char> chunk(1u << 20);
+  for (int got = 1; got > 0;)
+  {
+    got = unzReadCurrentFile(archive, chunk.data(), static_cast<unsigned int>(chunk.size()));
+    text.append(chunk.data(), static_cast<std::size_t>(std::max(got, 0)));
+  }
   unzCloseCurrentFile(archive);
   return text;
 }
 
-/// Returns the first 64 KiB of the model that the relationships of a 3MF file name, or nothing if
-/// the file cannot be opened: Assimp reports that.
-std::string BeginOfModel(const std::string& file)
+/// Returns the model that the relationships of a 3MF file name, or nothing if the file cannot be
+/// opened: Assimp reports that.
+std::string ModelOf(const std::string& file)
 {
   const std::unique_ptr<void, int (*)(unzFile)> archive(unzOpen64(file.c_str()), unzClose);
   if (!archive)
@@ -174,38 +163,128 @@ std::string BeginOfModel(const std::string& file)
     return {};
   }
   static const std::regex target("Target *= *[\"']/?([^\"']*\\.model)[\"']");
-  const std::string relationships = BeginOf(archive.get(), "_rels/.rels");
+  const std::string relationships = PartOf(archive.get(), "_rels/.rels");
   std::smatch named;
-  return BeginOf(archive.get(),
+  return PartOf(archive.get(),
     std::regex_search(relationships, named, target) ? named[1].str() : "3D/3dmodel.model");
 }
 
-/// Refuses files that Assimp reads wrong, and adds warnings. Returns the length of the file's unit,
-/// m.
-double CheckFormat(AssimpFiles& files, std::vector<std::string>& warnings)
+/// Refuses files that Assimp reads wrong, and adds what the file says to the mesh. Returns the
+/// length of the file's unit, m.
+/// @param elements becomes what IfcElements() says
+double CheckFormat(AssimpFiles& files, Mesh& mesh, std::map<std::string, std::size_t>& elements)
 {
   const std::string& name = files.GetMeshName();
   const std::string ending = EndingOf(name);
+  if (ending == ".3mf")
+  {
+    const std::string model = ModelOf(name);
+    mesh.warnings = Check3mf(model);
+    return PrintUnit(model);
+  }
+  static const std::set<std::string> looked{ ".ply", ".gltf", ".glb", ".ifc", ".stp", ".step",
+    ".amf", ".x3d", ".ogex" };
+  const std::string text = looked.count(ending) > 0 ? TextOf(files) : "";
   if (ending == ".ply")
   {
-    CheckPlyHeader(TextOf(files));
+    CheckPly(text);
   }
   else if (ending == ".gltf" || ending == ".glb")
   {
-    warnings = CheckGltf(TextOf(files));
+    mesh.warnings = CheckGltf(text);
   }
-  if (ending == ".ifc" || ending == ".stp" || ending == ".step")
+  else if (ending == ".amf")
   {
-    return IfcUnit(TextOf(files));
-  }
-  if (ending == ".amf")
-  {
-    const std::string text = TextOf(files);
     CheckAmf(text);
     return PrintUnit(text);
   }
-  return ending == ".3mf" ? PrintUnit(BeginOfModel(name)) : 1.0;
+  else if (ending == ".x3d")
+  {
+    return X3dUnit(text);
+  }
+  else if (ending == ".ogex")
+  {
+    return OpenGexUnit(text, mesh.upAxis);
+  }
+  else if (!text.empty())
+  {
+    elements = IfcElements(text);
+    return IfcUnit(text);
+  }
+  return 1.0;
 }
+
+/// Whether a node or one below it has triangles.
+bool HasMesh(const aiNode& node)
+{
+  return node.mNumMeshes > 0 ||
+    std::any_of(node.mChildren, node.mChildren + node.mNumChildren,
+      [](const aiNode* child) { return HasMesh(*child); });
+}
+
+/// Takes what has become a node with triangles from the elements of an IFC file. Assimp begins a
+/// node's name with the element's type.
+void TakeFound(const aiNode& node, std::map<std::string, std::size_t>& elements)
+{
+  std::string type(node.mName.C_Str());
+  type.erase(std::min(type.find('_'), type.size()));
+  type = vtksys::SystemTools::UpperCase(type);
+  const auto element = elements.find(type);
+  if (element != elements.end() && element->second > 0 && HasMesh(node))
+  {
+    --element->second;
+  }
+  std::for_each(node.mChildren, node.mChildren + node.mNumChildren,
+    [&elements](const aiNode* child) { TakeFound(*child, elements); });
+}
+
+/// Keeps what Assimp logs about geometry that it leaves out.
+class LossLog : public Assimp::LogStream
+{
+public:
+  void write(const char* line) override
+  {
+    static const std::regex loss("skip|ignor|unsupported|not supported|discard|dropp?ed|invalid|"
+                                 "out[- ]of[- ]range|fail|unable|unknown|missing|omitt|resolve",
+      std::regex::icase);
+    static const std::regex harmless(
+      "material|texture|shad(?:er|ing)|\\buv|normal|tangent|bone|skin|"
+      "anim|camera|light|colou?r|comment|ambient|diffuse|image|Ignored file",
+      std::regex::icase);
+    // "Warn,  T0: text\n"
+    std::string text(line);
+    text.erase(0, text.find(": ") + 2);
+    text.erase(std::min(text.find_last_not_of(" .\r\n") + 1, text.size()));
+    if (std::regex_search(text, loss) && !std::regex_search(text, harmless))
+    {
+      ++this->Count;
+      if (std::find(this->Texts.begin(), this->Texts.end(), text) == this->Texts.end() &&
+        this->Texts.size() < most)
+      {
+        this->Texts.push_back(text);
+      }
+    }
+  }
+
+  /// Returns one sentence about all of it, or nothing.
+  std::string Sentence() const
+  {
+    std::string sentence;
+    for (const std::string& text : this->Texts)
+    {
+      sentence +=
+        (sentence.empty() ? "Assimp may have left out something: \"" : "; \"") + text + '"';
+    }
+    return this->Count > this->Texts.size()
+      ? sentence + " (" + std::to_string(this->Count) + " messages)"
+      : sentence;
+  }
+
+private:
+  static constexpr std::size_t most = 3;
+  std::vector<std::string> Texts;
+  std::size_t Count = 0;
+};
 
 /// The axis of an FBX file's coordinates that `name` ("Coord", "Up" or "Front") points along, or 3
 /// if it says none, and the sign.
@@ -266,13 +345,18 @@ double FbxUnit(const aiScene& scene)
 
 Mesh ReadAssimpMesh(const std::string& file)
 {
+  // Assimp's logger owns it.
+  auto* losses = new LossLog;
+  Assimp::DefaultLogger::create(nullptr, Assimp::Logger::NORMAL, 0);
+  Assimp::DefaultLogger::get()->attachStream(losses, Assimp::Logger::Warn | Assimp::Logger::Err);
   // The importer owns the files. It is never deleted: some files crash Assimp 5.2 in its
   // destructor, after they have been read.
   Assimp::Importer& importer = *new Assimp::Importer;
   auto* files = new AssimpFiles(file);
   importer.SetIOHandler(files);
   Mesh mesh;
-  double unit = CheckFormat(*files, mesh.warnings);
+  std::map<std::string, std::size_t> elements;
+  double unit = CheckFormat(*files, mesh, elements);
   const aiScene* scene = importer.ReadFile(files->GetMeshName(), 0);
   if (scene)
   {
@@ -311,6 +395,20 @@ Mesh ReadAssimpMesh(const std::string& file)
     p = { unit * (p[0] + moved[0]), unit * (p[1] + moved[1]), unit * (p[2] + moved[2]) };
   }
   mesh.rounding *= unit;
+  TakeFound(*scene->mRootNode, elements);
+  std::string absent;
+  for (const auto& [type, count] : elements)
+  {
+    absent += count == 0 ? "" : (absent.empty() ? "" : ", ") + std::to_string(count) + ' ' + type;
+  }
+  if (!absent.empty())
+  {
+    mesh.warnings.push_back("elements have no triangles and are left out: " + absent);
+  }
+  if (const std::string lost = losses->Sentence(); !lost.empty())
+  {
+    mesh.warnings.push_back(lost);
+  }
   return mesh;
 }
 }

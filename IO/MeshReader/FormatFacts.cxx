@@ -7,9 +7,11 @@
 #include <charconv>
 #include <cmath>
 #include <cstdint>
+#include <cstdlib>
 #include <cstring>
 #include <iterator>
 #include <regex>
+#include <set>
 #include <sstream>
 #include <string_view>
 
@@ -199,6 +201,25 @@ double SiLength(std::string_view definition)
   return 1.0;
 }
 
+/// The value of an attribute in an XML tag, or nothing.
+std::string_view ValueOf(std::string_view tag, std::string_view name)
+{
+  const char* const blanks = " \t\r\n";
+  for (std::size_t at = tag.find(name, 1); at != std::string_view::npos;
+       at = tag.find(name, at + 1))
+  {
+    const std::size_t equals = tag.find_first_not_of(blanks, at + name.size());
+    if (std::strchr(blanks, tag[at - 1]) && equals != std::string_view::npos && tag[equals] == '=')
+    {
+      const std::size_t quote = tag.find_first_of("'\"", equals);
+      return quote == std::string_view::npos
+        ? std::string_view()
+        : tag.substr(quote + 1, tag.find(tag[quote], quote + 1) - quote - 1);
+    }
+  }
+  return {};
+}
+
 void SkipBlanks(const char*& at, const char* end)
 {
   while (at < end && (*at == ' ' || *at == '\t' || *at == '\r'))
@@ -370,6 +391,147 @@ void CheckPrintExtensions(const std::string& attributes)
         ", which is not supported: export it without this extension");
     }
   }
+}
+
+std::map<std::string, std::size_t> IfcElements(const std::string& file)
+{
+  const std::string text = WithoutComments(file);
+  std::vector<std::pair<std::string, std::string_view>> statements;
+  std::set<std::string> shapes;
+  static const std::regex entity("\\s*(#[0-9]+)\\s*=\\s*([A-Z0-9_]+)\\s*\\(");
+  for (std::size_t at = 0; at < text.size();)
+  {
+    const std::string_view statement = StatementAt(text, at);
+    std::cmatch found;
+    if (std::regex_search(statement.data(), statement.data() + statement.size(), found, entity,
+          std::regex_constants::match_continuous))
+    {
+      if (found[2] == "IFCPRODUCTDEFINITIONSHAPE")
+      {
+        shapes.insert(found[1]);
+      }
+      else
+      {
+        statements.emplace_back(found[2], statement.substr(found.length()));
+      }
+    }
+    at += statement.size() + 1;
+  }
+  std::map<std::string, std::size_t> elements;
+  static const std::set<std::string> empty{ "IFCSPACE", "IFCOPENINGELEMENT", "IFCANNOTATION",
+    "IFCGRID", "IFCVIRTUALELEMENT", "IFCSHAPEASPECT", "IFCPORT", "IFCDISTRIBUTIONPORT" };
+  for (const auto& [type, arguments] : statements)
+  {
+    // Of the ids that a product names the shape is one of the last.
+    if (StartsWith(type, "IFC") && StartsWith(arguments, "''") && empty.count(type) == 0)
+    {
+      const std::vector<std::string> ids = IdsIn(arguments);
+      elements[type] += std::any_of(
+        ids.begin(), ids.end(), [&shapes](const std::string& id) { return shapes.count(id) > 0; });
+    }
+  }
+  return elements;
+}
+
+double X3dUnit(const std::string& text)
+{
+  static const std::regex unit("<unit\\b[^>]*category *= *[\"']length[\"'][^>]*>");
+  static const std::regex factor("conversionFactor *= *[\"']([^\"']+)");
+  const std::string begin = text.substr(0, text.find("<Scene"));
+  std::smatch element, found;
+  if (!std::regex_search(begin, element, unit))
+  {
+    return 1.0;
+  }
+  const std::string attributes = element.str();
+  const double metres =
+    std::regex_search(attributes, found, factor) ? std::atof(found[1].str().c_str()) : 0.0;
+  if (!(metres > 0.0))
+  {
+    throw Error("has a unit of length without a positive conversionFactor");
+  }
+  return metres;
+}
+
+double OpenGexUnit(const std::string& text, char& upAxis)
+{
+  static const std::regex metric("Metric[^{]*\"(distance|up)\"[^{]*\\{[^{]*\\{\\s*\"?([^\"}\\s]+)");
+  double metres = 1.0;
+  const std::string begin = text.substr(0, 1u << 14);
+  for (std::sregex_iterator at(begin.begin(), begin.end(), metric), end; at != end; ++at)
+  {
+    const std::string value = (*at)[2];
+    if ((*at)[1] == "up")
+    {
+      upAxis = value == "y" ? 'y' : 'z';
+    }
+    else if (metres = std::atof(value.c_str()); !(metres > 0.0))
+    {
+      throw Error("has the distance '" + value + "' in its Metric, expected metres above 0");
+    }
+  }
+  return metres;
+}
+
+void CheckPly(const std::string& text)
+{
+  if (text.empty())
+  {
+    return; // Assimp reports that the file cannot be opened
+  }
+  const char* const end = "end_header";
+  for (std::size_t at = text.find(end); at != std::string::npos; at = text.find(end, at + 1))
+  {
+    const std::size_t before = text.find_last_not_of(" \t", at - 1);
+    if (at > 0 && before != std::string::npos && (text[before] == '\n' || text[before] == '\r'))
+    {
+      static const std::regex strips("[\n\r]element\\s+tristrips\\b");
+      if (std::regex_search(text.substr(0, at), strips))
+      {
+        throw Error("has triangle strips, which are not supported: export it with faces");
+      }
+      return;
+    }
+  }
+  throw Error("is broken: its header has no line end_header");
+}
+
+std::vector<std::string> Check3mf(const std::string& text)
+{
+  std::set<std::string> held;
+  std::vector<std::string> named;
+  std::size_t painted = 0;
+  for (std::size_t at = text.find('<'); at != std::string::npos; at = text.find('<', at + 1))
+  {
+    std::string_view tag = std::string_view(text).substr(at + 1, text.find('>', at) - at - 1);
+    const std::size_t nameEnd = std::min(tag.find_first_of(" \t\r\n/"), tag.size());
+    const std::size_t space = tag.substr(0, nameEnd).find(':');
+    const std::string_view name =
+      tag.substr(0, nameEnd).substr(space == std::string_view::npos ? 0 : space + 1);
+    tag.remove_prefix(nameEnd);
+    if (name == "triangle")
+    {
+      painted += !ValueOf(tag, "pid").empty() || !ValueOf(tag, "p1").empty();
+    }
+    else if (name == "object")
+    {
+      held.emplace(ValueOf(tag, "id"));
+    }
+    else if (name == "item" || name == "component")
+    {
+      named.emplace_back(ValueOf(tag, "objectid"));
+    }
+  }
+  for (const std::string& name : named)
+  {
+    if (held.count(name) == 0)
+    {
+      throw Error("is broken: it builds the object " + name + ", which it does not hold");
+    }
+  }
+  return painted == 0 ? std::vector<std::string>()
+                      : std::vector<std::string>{ "materials of " + std::to_string(painted) +
+                          " triangles are left out: they have that of their object" };
 }
 
 double PrintUnit(const std::string& text)

@@ -9,6 +9,7 @@
 
 #include "SceneTypes.h"
 
+#include <map>
 #include <vector>
 
 namespace avianlidar::scene
@@ -29,6 +30,24 @@ std::vector<std::string> CheckGltf(const std::string& text);
  * @param text of the file. Throws Error where the unit cannot be read.
  */
 double IfcUnit(const std::string& text);
+
+/// How many elements of each type, such as "IFCWALL", have a shape. What is not solid is left out:
+/// spaces, openings, annotations. @param text of the file
+std::map<std::string, std::size_t> IfcElements(const std::string& text);
+
+/// The length of an X3D file's unit, m (version 3.3 and later). @param text XML
+double X3dUnit(const std::string& text);
+
+/// The length of an OpenGEX file's unit, m. @param upAxis becomes 'y' or 'z'
+double OpenGexUnit(const std::string& text, char& upAxis);
+
+/// Refuses PLY files with triangle strips, which Assimp reads wrong, and files whose header has no
+/// end, which it never ends on. @param text of the file. Throws Error.
+void CheckPly(const std::string& text);
+
+/// Refuses 3MF files that build an object that they do not hold. @param text XML. Throws Error.
+/// @return warnings: materials of triangles are left out
+std::vector<std::string> Check3mf(const std::string& text);
 
 /**
  * The length, m, of the unit that the root element of a 3MF or AMF file names; a millimetre where

@@ -97,6 +97,10 @@ class MeshFiles(unittest.TestCase):
         self.assertEqual(len(read.errors), 1, read.errors)
         self.assertIn(words, read.errors[0])
 
+    def assert_left_out(self, read, words):
+        self.assertEqual(read.errors, [])
+        self.assertTrue(any(words in warning for warning in read.warnings), read.warnings)
+
     def test_units_that_a_file_names_become_metres(self):
         for unit, length in (('unit="millimeter"', 1e-3), ("", 1e-3), ('unit="inch"', 0.0254), ('unit="foot"', 0.3048), ("unit='meter'", 1.0),
                              ('xml:lang="en" unit="micron"', 1e-6)):
@@ -172,6 +176,51 @@ class MeshFiles(unittest.TestCase):
                 archive.writestr(name, content.replace(b"<model", b'<!-- <model unit="inch"> --><model', 1) if name.endswith(".model") else content)
         self.assert_box(self.read("box.3mf"), 1.0)
 
+    def test_3mf_objects_that_are_missing_and_materials_of_triangles(self):
+        for build in ('<item objectid="1"/><item objectid="9"/>', '<item objectid="9"/>'):
+            mesh_3mf(self.folder / "box.3mf", 'unit="meter"', build)
+            self.assert_refused(self.read("box.3mf"), "it builds the object 9, which it does not hold")
+        mesh_3mf(self.folder / "box.3mf", 'unit="meter"', more="<object id='2'><mesh><vertices><vertex x='0' y='0' z='0'/><vertex x='1' y='0' z='0'/><vertex x='0' y='1' z='0'/></vertices><triangles>"
+                 "<triangle v1='0' v2='1' v3='2' pid='5' p1='1'/>"
+                 "</triangles></mesh></object>")
+        self.assert_left_out(self.read("box.3mf"), "materials of 1 triangles are left out")
+
+    def test_what_assimp_leaves_out_is_a_warning(self):
+        broken = gltf(np.asarray(CORNERS), [*TRIANGLES[:-1], (0, 1, 77)])
+        self.assert_left_out(self.read("box.gltf", broken), 'Assimp may have left out something: "Some faces had out-of-range indices')
+        whole = ifc(np.asarray(CORNERS), TRIANGLES)
+        self.assert_box(self.read("box.ifc", whole), 1.0)
+        more = ("#901=IFCPRODUCTDEFINITIONSHAPE($,$,(#902));\n#902=IFCSHAPEREPRESENTATION(#5,'Body','CSG',(#903));\n#903=IFCBLOCK(#4,1.,1.,1.);\n"
+                "#904=IFCBUILDINGELEMENTPROXY('0000000000000000000004',#14,'tank; (one)',$,$,#6,#901,$,$);\n"
+                "#906=IFCSPACE('0000000000000000000006',#14,$,$,$,#6,#901,$,$,$,$);\n"
+                "#907=IFCRELCONTAINEDINSPATIALSTRUCTURE('0000000000000000000007',#14,$,$,(#904),#7);\n")
+        end = whole.rindex("ENDSEC;")
+        self.assert_left_out(self.read("box.ifc", whole[:end] + more + whole[end:]),
+                             "elements have no triangles and are left out: 1 IFCBUILDINGELEMENTPROXY")
+
+    def test_triangle_strips_of_ply_are_refused(self):
+        text = ("ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\nelement tristrips 1\n"
+                "property list int int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n1 1 0\n4 0 1 2 3\n")
+        self.assert_refused(self.read("strip.ply", text), "has triangle strips, which are not supported")
+
+    def test_units_of_x3d_and_opengex(self):
+        faces = " -1 ".join(" ".join(map(str, corners)) for corners in TRIANGLES)
+        points = ", ".join("{} {} {}".format(*corner) for corner in CORNERS)
+        x3d = (f'<?xml version="1.0" encoding="UTF-8"?><X3D profile="Interchange" version="3.3"><head>UNIT</head><Scene><Shape><IndexedFaceSet '
+               f'coordIndex="{faces} -1"><Coordinate point="{points}"/></IndexedFaceSet></Shape></Scene></X3D>')
+        gex = ('Metric (key = "distance") {{float {{{}}}}}\nMetric (key = "up") {{string {{"{}"}}}}\nGeometryNode $node1 {{ObjectRef {{ref {{$geometry1}}}}}}\n'
+               'GeometryObject $geometry1 {{Mesh (primitive = "triangles") {{VertexArray (attrib = "position") {{float[3] {{'
+               + ",".join("{{{{{},{},{}}}}}".format(*corner) for corner in CORNERS) + "}}}} IndexArray {{unsigned_int32[3] {{"
+               + ",".join("{{{{{},{},{}}}}}".format(*corners) for corners in TRIANGLES) + "}}}}}}}}")
+        for name, text, unit, up in (("box.x3d", x3d.replace("UNIT", ""), 1.0, "y"), ("box.ogex", gex.format("1.0", "z"), 1.0, "z"),
+                                     ("box.x3d", x3d.replace("UNIT", '<unit category="length" name="foot" conversionFactor="0.3048"/>'), 0.3048, "y"),
+                                     ("box.ogex", gex.format("0.01", "y"), 0.01, "y")):
+            with self.subTest(name=name, unit=unit):
+                expected = unit * (np.column_stack([CORNERS[:, 0], -CORNERS[:, 2], CORNERS[:, 1]]) if up == "y" else CORNERS)
+                np.testing.assert_allclose(self.places(self.read(name, text)), np.unique(expected, axis=0), atol=1e-5)
+        for text in (x3d.replace("UNIT", '<unit category="length" name="foot"/>'), gex.format("0.0", "z")):
+            self.assertEqual(len(self.read("box.x3d" if "X3D" in text else "box.ogex", text).errors), 1)
+
     def test_amf_that_would_be_read_wrong_is_refused(self):
         whole = amf('unit="meter"')
         placed = whole.replace("</amf>", '<constellation id="1"><instance objectid="0"><deltax>5</deltax><rz>90</rz></instance></constellation></amf>')
@@ -200,7 +249,7 @@ class MeshFiles(unittest.TestCase):
                                                                                                   "weights of morph targets, which are left out")):
             read = self.read("box.gltf", json.dumps({**document, key: value}))
             self.assertEqual(len(self.places(read)), 8)
-            self.assertTrue(any(words in warning for warning in read.warnings), read.warnings)
+            self.assert_left_out(read, words)
         accessor = document["meshes"][0]["primitives"][0]["attributes"]["POSITION"]
         document["accessors"][accessor]["componentType"] = 5122
         self.assert_refused(self.read("box.gltf", json.dumps(document)), "has positions of the component type 5122, expected 5126")
