@@ -84,7 +84,14 @@ void vtkAvianLidarKITTIWriter::WriteCloud(vtkPointSet* input)
     return p;
   };
   vtkDataArray* intensity = fields::Find(input, names::Intensity.name);
-  output.intensity = [intensity](std::int64_t i) { return fields::ValueOf(intensity, i, 0.0); };
+  constexpr double greatest = 255.0;
+  vtkIdType beyond = 0;
+  output.intensity = [intensity, &beyond, greatest](std::int64_t i)
+  {
+    const double value = fields::ValueOf(intensity, i, 0.0);
+    beyond += value < 0.0 || value > greatest ? 1 : 0;
+    return std::clamp(value, 0.0, greatest);
+  };
 
   std::optional<formats::OutputFile> labels;
   if (this->WriteLabels)
@@ -123,6 +130,12 @@ void vtkAvianLidarKITTIWriter::WriteCloud(vtkPointSet* input)
   else
   {
     file.commit();
+  }
+  if (beyond > 0)
+  {
+    vtkWarningMacro("" << vtkAvianLidarText(this->FileName) << ": " << beyond
+                       << " points have an intensity that is not within 0 and 255: the nearest of "
+                          "the two is written for it.");
   }
 }
 

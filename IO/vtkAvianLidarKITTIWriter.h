@@ -6,8 +6,9 @@
  * FileName gets four float32 for each point: x forward, y left, z up in metres in the sensor's
  * frame (the field data `position` and `orientation` say where that is; without them a warning is
  * given and the frame is that of the points, x right and y forward), and `intensity` / 255 (0
- * without it). float32 rounds a coordinate by at most 2^-25 of the next power of two above it: 4
- * micrometres at 100 m, 0.12 mm at 4 km from the sensor.
+ * without it; intensities beyond 0 and 255 become these, with a warning). float32 rounds a
+ * coordinate by at most 2^-25 of the next power of two above it: 4 micrometres at 100 m, 0.12 mm at
+ * 4 km from the sensor.
  *
  * With WriteLabels the same name with the ending .label gets a uint32 for each point: class in the
  * lower 16 bits, instance in the upper ones. Classes are SemanticKITTI's by the class of the object

@@ -29,6 +29,42 @@ bool mayHaveFive(ByteSource& points)
   return may;
 }
 
+/// FormatError if the numbers change less from one point to the next where points have another
+/// number of them than four: in a scan neighbours are near each other.
+void checkStride(ByteSource& points)
+{
+  constexpr std::uint64_t most = 1 << 14; // numbers that are looked at
+  const std::uint64_t count = std::min<std::uint64_t>(points.size() / sizeof(float), most);
+  constexpr std::uint64_t least = 200;
+  if (count < least)
+  {
+    return;
+  }
+  const std::vector<unsigned char> bytes = points.bytes(0, count * sizeof(float));
+  const auto medianChange = [&](std::uint64_t stride)
+  {
+    std::vector<float> changes;
+    for (std::uint64_t i = 0; i + stride < count; ++i)
+    {
+      const float change = load<float>(bytes.data() + sizeof(float) * (i + stride)) -
+        load<float>(bytes.data() + sizeof(float) * i);
+      changes.push_back(std::isfinite(change) ? std::abs(change) : 0.0f);
+    }
+    const auto middle = changes.begin() + static_cast<std::ptrdiff_t>(changes.size() / 2);
+    std::nth_element(changes.begin(), middle, changes.end());
+    return *middle;
+  };
+  const float ofFour = medianChange(4);
+  for (const std::uint64_t stride : { 3, 5, 6, 7 })
+  {
+    if (4.0f * medianChange(stride) < ofFour)
+    {
+      throw FormatError("it seems to have " + std::to_string(stride) +
+        " float32 a point: this is not a scan of KITTI, which has x, y, z and reflectance");
+    }
+  }
+}
+
 /// FormatError unless the fourth numbers of all points may be reflectances (0 to 1) or intensities
 /// (0 to 255): in files of other layouts coordinates are among them.
 void checkReflectance(double least, double greatest, ByteSource& points)
@@ -120,6 +156,7 @@ Cloud readKitti(ByteSource& points, ByteSource* labels, const KeepGoing& keepGoi
       goOn(keepGoing, static_cast<std::int64_t>(i), static_cast<std::int64_t>(n), 0.0, 1.0);
     });
   checkReflectance(least, greatest, points);
+  checkStride(points);
   if (greatest > 1.0)
   {
     std::ostringstream text;

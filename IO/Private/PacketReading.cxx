@@ -465,15 +465,58 @@ Sender& choose(std::map<std::string, Sender>& senders, const std::string& wanted
   if (fitting.empty())
   {
     throw FormatError("it has no packets of the sensor " + shown(wanted) +
-      ", expected the SensorAddress of one of these: " + all);
+      ", expected the SensorAddress (--sensor-address) of one of these: " + all);
   }
   if (fitting.size() > 1)
   {
-    throw FormatError("it has packets of several sensors, expected the SensorAddress of one of "
-                      "these: " +
+    throw FormatError(
+      "it has packets of several sensors, expected the SensorAddress (--sensor-address) "
+      "of one of these: " +
       all);
   }
   return *fitting.front();
+}
+
+/// Leaves out packets that were recorded twice, as by two interfaces. Returns how many.
+std::size_t dropCopies(ByteSource& source, std::vector<SentPacket>& packets)
+{
+  FileWindow window(source);
+  unsigned char before[PayloadSize] = {};
+  const auto isCopy = [&](const SentPacket& a, const SentPacket& b)
+  {
+    if (a.epoch != b.epoch || a.time != b.time)
+    {
+      return false;
+    }
+    std::copy_n(window.at(a.begin, PayloadSize), PayloadSize, before);
+    return std::equal(before, before + PayloadSize, window.at(b.begin, PayloadSize));
+  };
+  const auto end = std::unique(packets.begin(), packets.end(), isCopy);
+  const auto copies = static_cast<std::size_t>(packets.end() - end);
+  packets.erase(end, packets.end());
+  return copies;
+}
+
+/// FormatError if two sensors have sent the packets: then azimuths go back again and again, as
+/// those of one sensor never do.
+void checkOneSensor(ByteSource& source, const std::vector<std::uint64_t>& packets)
+{
+  FileWindow window(source);
+  std::size_t backwards = 0;
+  int before = -1;
+  for (const std::uint64_t at : packets)
+  {
+    const int azimuth = azimuthOf(window.at(at, PayloadSize), 0);
+    backwards += before >= 0 && (azimuth - before + FullTurn) % FullTurn > FullTurn / 2 ? 1 : 0;
+    before = azimuth;
+  }
+  if (4 * backwards > packets.size())
+  {
+    throw FormatError("its packets come from more than one sensor with the same address: the "
+                      "azimuth goes back " +
+      std::to_string(backwards) + " times in " + std::to_string(packets.size()) +
+      " packets. Expected another address or port for each sensor");
+  }
 }
 
 /// Where the revolutions of the packets begin.
@@ -526,17 +569,24 @@ PacketIndex indexPackets(ByteSource& source, const std::string& sensor, const Ke
   std::stable_sort(sender.packets.begin(), sender.packets.end(),
     [](const SentPacket& a, const SentPacket& b)
     { return a.epoch != b.epoch ? a.epoch < b.epoch : a.time < b.time; });
+  const std::size_t copies = dropCopies(source, sender.packets);
   PacketIndex index;
   for (const SentPacket& packet : sender.packets)
   {
     index.packets.push_back(packet.begin);
   }
+  checkOneSensor(source, index.packets);
   index.turns = turnsOf(source, index.packets, keepGoing);
   if (sender.damaged > 0)
   {
     index.warning = std::to_string(sender.damaged) + " of " +
       std::to_string(sender.packets.size() + sender.damaged) +
       " packets of the lidar are left out: " + sender.problem;
+  }
+  if (copies > 0)
+  {
+    index.warning += (index.warning.empty() ? "" : "; ") + std::to_string(copies) +
+      " packets were recorded twice, and are taken once";
   }
   if (!recording.cut.empty())
   {

@@ -43,6 +43,7 @@ VERBS = {
     "convert": ("a cloud in another format", "A cloud in another format; names and units of arrays go with it as far as both "
                 "formats have them. A labelled sequence as one file of ROS 2 messages (MCAP).", """\
   avianlidar convert echoes.las echoes.pcd
+  avianlidar convert drive.pcap revolution.ply --sensor-address 192.168.1.201 --time 12.5
   avianlidar convert sequences/sequences/00 sequence.mcap
 """),
     "airport": ("a scene and plans of an airport from a map", "A scene file, plans of coverage and siting, a scenario and a picture of an "
@@ -189,6 +190,10 @@ def parser() -> Parser:
     _out(verb["compare"], "file: the first cloud, with nearest_distance (m) of every point", required=False)
     verb["convert"].add_argument("file", type=pathlib.Path, help=f"a cloud: {READ}; or the folder of a sequence")
     verb["convert"].add_argument("out", type=pathlib.Path, help=f"file: {WRITTEN}; of a sequence .mcap")
+    for reads in ("info", "compare", "convert"):
+        verb[reads].add_argument("--sensor-address", metavar="ADDRESS", help="of packets (.pcap): the sensor, as 192.168.1.201 or 192.168.1.201:2368; default: the "
+                                 "only one")
+        verb[reads].add_argument("--time", type=float, metavar="S", help="of packets: the revolution at that time, seconds since the full hour; default: the first")
     verb["sensors"].add_argument("name", nargs="?", help="one of them, or a .lidarsensor.json file")
     verb["sensors"].add_argument("--fit", metavar="FILE", help="a sensor file with a sheet, or a name: its receiver fitted to all "
                                  "points of the sheet; needs SciPy")

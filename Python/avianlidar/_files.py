@@ -180,6 +180,6 @@ def load_cloud(file, time: Optional[float] = None, **properties: Any) -> Cloud:
     update(reader, run=(lambda: reader.UpdateTimeStep(time)) if time is not None else None)
     cloud = Cloud(reader.GetOutput())
     if time is None and suffix in PACKETS and cloud.fields["number_of_revolutions"] > 1:
-        warnings.warn(f"{path}: has {cloud.fields['number_of_revolutions']:g} revolutions, this is the first; load_cloud(file, time=...) gives "
-                      "another one", RuntimeWarning, stacklevel=callers_level())
+        warnings.warn(f"{path}: has {cloud.fields['number_of_revolutions']:g} revolutions, this is the first; load_cloud(file, time=...) or "
+                      "--time of the command gives another one", RuntimeWarning, stacklevel=callers_level())
     return cloud

@@ -141,10 +141,18 @@ def advise(options) -> None:
         print(f"{out}: the advice")
 
 
-def _cloud(file):
-    """A cloud in the scene's frame, where the file says it."""
+def _cloud(file, options=None):
+    """A cloud in the scene's frame, where the file says it; of packets what the options `time` and `sensor_address` choose."""
     from . import load_cloud
-    return load_cloud(file, **({"local_coordinates": True} if file.suffix.lower() in (".las", ".laz") else {}))
+    suffix = file.suffix.lower()
+    chosen = {name: getattr(options, name) for name in ("time", "sensor_address") if getattr(options, name, None) is not None} if suffix in PACKETS else {}
+    return load_cloud(file, **({"local_coordinates": True} if suffix in (".las", ".laz") else chosen))
+
+
+def _check_packets(options, *files) -> None:
+    for name in ("time", "sensor_address"):
+        if getattr(options, name) is not None and not any(file.suffix.lower() in PACKETS for file in files):
+            raise ValueError(f"--{name.replace('_', '-')} {getattr(options, name)} chooses packets, expected a file {' or '.join(PACKETS)}: it is {files[0]}")
 
 
 def _has_points_only(file: pathlib.Path) -> bool:
@@ -166,12 +174,12 @@ def _words(value: Any) -> str:
         else str(parts)
 
 
-def _say_cloud(file: pathlib.Path, quiet: bool) -> None:
+def _say_cloud(file: pathlib.Path, options) -> None:
     import numpy as np
 
     from ._advice import notes_of
     from ._sight import extent
-    cloud = _cloud(file)
+    cloud = _cloud(file, options)
     print(f"{file}: a cloud of {cloud.number_of_points} points{_alarms(cloud)}")
     if not cloud.number_of_points:
         return
@@ -190,7 +198,7 @@ def _say_cloud(file: pathlib.Path, quiet: bool) -> None:
         ends = (f"{finite.min():.6g}", f"{finite.max():.6g}") if len(finite) else ("nan", "nan")
         rows.append((name, cloud.units[name] or "-", *ends))
     _table(rows)
-    if not quiet:
+    if not options.quiet:
         for line in notes_of(fields):
             print(line)
 
@@ -203,6 +211,7 @@ def info(options) -> None:
     file, name = options.file, options.file.name.lower()
     if not file.is_file():
         raise FileNotFoundError(f"no such file: {file}")
+    _check_packets(options, file)
     rows: Dict[str, Any]
     scene = None
     if name.endswith(".lidarsensor.json"):
@@ -217,7 +226,7 @@ def info(options) -> None:
         scenario = read_scenario(file)
         what, rows = "a scenario of sequences", {key: scenario[key] for key in ("scene", "sensor", "weather", "number_of_scans") if key in scenario}
     elif _has_points_only(file):
-        _say_cloud(file, options.quiet)
+        _say_cloud(file, options)
         return
     else:
         scene = Scene(file)
@@ -252,8 +261,9 @@ def compare(options) -> None:
     if options.out:
         check_suffix(options.out)
         check_target(options.out, [options.a, options.b])
+    _check_packets(options, options.a, options.b)
     measure = wrapped.vtkAvianLidarCloudComparison()
-    clouds = [_cloud(file) for file in (options.a, options.b)]
+    clouds = [_cloud(file, options) for file in (options.a, options.b)]
     of_sensor = [file.suffix for file in (options.a, options.b) if file.suffix.lower() in (".bin", *PACKETS)]
     if len(of_sensor) == 1:
         warn(f"a {of_sensor[0]} file is in the frame of its sensor, the other file is not")
@@ -281,6 +291,7 @@ def compare(options) -> None:
 def convert(options) -> None:
     from . import save
     from ._writers import check_suffix, check_target
+    _check_packets(options, options.file)
     if options.out.suffix.lower() == ".mcap":
         from .apps import _mcap
         check_target(options.out)
@@ -288,7 +299,7 @@ def convert(options) -> None:
         return
     check_suffix(options.out)
     check_target(options.out)
-    cloud = _cloud(options.file)
+    cloud = _cloud(options.file, options)
     save(cloud, options.out)
     print(f"{options.out}: {cloud.number_of_points} points of {options.file}")
 

@@ -122,6 +122,13 @@ class TestKITTIWriter(unittest.TestCase):
         self.assertFalse(os.path.exists(LABELS))
         np.testing.assert_array_equal(np.fromfile(FILE, "<f4"), [2, -1, 3, 0])
 
+    def test_intensities_of_more_than_a_byte(self):
+        data = cloud([[1, 2, 3], [4, 5, 6], [7, 8, 9]])
+        add_array(data, "intensity", np.array([-1.0, 51.0, 65535.0]))
+        warnings = self.write(data, WriteLabels=False)
+        self.assertIn("2 points have an intensity that is not within 0 and 255", warnings[-1])
+        np.testing.assert_allclose(array(read(FILE), "intensity"), [0, 51, 255], rtol=1e-6)
+
     def test_read_again(self):
         self.data = echoes(orientation=(0.0, 0.0, 0.0))
         self.write()

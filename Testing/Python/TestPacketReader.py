@@ -1,10 +1,13 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Packets of a VLP-16 in pcap and pcapng files: points in closed form, those of a real revolution as another program decoded
 it, files of every kind, by scapy, too, and every way in which they can be wrong."""
+import contextlib
+import io
 import os
 import pathlib
 import random
 import struct
+import tempfile
 import unittest
 import warnings
 
@@ -12,6 +15,7 @@ import numpy as np
 from vtkmodules.vtkCommonExecutionModel import vtkStreamingDemandDrivenPipeline as Pipeline
 
 import avianlidar
+from avianlidar import _command
 from avianlidar import vtkAvianLidar as al
 from cloudtools import field, points, read, read_error, unit
 from echotools import Messages, array
@@ -212,16 +216,38 @@ class TestPacketReader(unittest.TestCase):
     def test_two_sensors(self):
         """One is chosen by its address, or by the port where addresses are the same; without a choice an error lists them."""
         near, far = (payload(500, value=lambda block, shot, d=d: (d, 100)) for d in (1000, 3000))
+        later = payload(500, time=1327, value=lambda block, shot: (1000, 100))
         for address, port, exact in ((202, 2368, "192.168.1.202"), (201, 2369, "192.168.1.201:2369")):
-            write(pcap([ethernet(near), ethernet(far, last=address, port=port), ethernet(near)]))
+            write(pcap([ethernet(near), ethernet(far, last=address, port=port), ethernet(later)]))
             error = read_error(FILE)
-            self.assertIn(f"expected the SensorAddress of one of these: 192.168.1.201:2368 (2 packets), 192.168.1.{address}:{port} (1 packets)", error)
+            self.assertIn(f"expected the SensorAddress (--sensor-address) of one of these: 192.168.1.201:2368 (2 packets), 192.168.1.{address}:{port} (1 packets)", error)
             self.assertEqual(set(array(read(FILE, SensorAddress=exact), "distance_m")), {6.0})
             cloud = avianlidar.load_cloud(FILE, sensor_address="192.168.1.201:2368")
             self.assertEqual((cloud.number_of_points, set(cloud["distance_m"])), (768, {2.0}))
         for wrong, words in (("192.168.1.7", "has no packets of the sensor 192.168.1.7, expected"), ("192.168.1.201", "of several sensors")):
             with self.assertRaisesRegex(avianlidar.Error, words):
                 avianlidar.load_cloud(FILE, sensor_address=wrong)
+        with tempfile.TemporaryDirectory() as folder, contextlib.redirect_stdout(io.StringIO()), contextlib.redirect_stderr(io.StringIO()) as said:
+            out = pathlib.Path(folder) / "out.pcd"
+            self.assertEqual(_command.main(["convert", FILE, str(out)]), 2)
+            self.assertIn("expected the SensorAddress (--sensor-address) of one", said.getvalue())
+            self.assertEqual(_command.main(["convert", FILE, str(out), "--sensor-address", "192.168.1.201:2369", "--time", "0"]), 0)
+            self.assertEqual(avianlidar.load_cloud(out).number_of_points, 384)
+            self.assertEqual(_command.main(["info", str(out), "--time", "0"]), 2)
+            self.assertIn("--time 0.0 chooses packets, expected a file .pcap or .pcapng", said.getvalue())
+
+    def test_packets_recorded_twice_are_taken_once(self):
+        good = [ethernet(payload(480 * number, 1327 * number)) for number in range(20)]
+        write(pcap(good))
+        wanted = points(read(FILE)).tolist()
+        for frames in ([frame for frame in good for _ in range(2)], good + good[3:5]):
+            write(pcap(frames))
+            self.assertEqual(points(read(FILE, said=[f"{len(frames) - 20} packets were recorded twice, and are taken once"])).tolist(), wanted)
+
+    def test_two_sensors_of_one_address_are_an_error(self):
+        frames = [ethernet(payload((480 * number + turned) % 36000, 1327 * number + turned // 100)) for number in range(20) for turned in (0, 9000)]
+        write(pcap(frames))
+        self.assertIn("its packets come from more than one sensor with the same address: the azimuth goes back 19 times in 40 packets", read_error(FILE))
 
     def test_damaged_packets_are_left_out(self):
         """With one warning, whatever their number; a cut end, too."""

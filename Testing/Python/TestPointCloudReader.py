@@ -152,6 +152,13 @@ class TestPointCloudReader(unittest.TestCase):
                 self.assertIn(words, read_error(name))
             places.astype("<f8").tofile(name)
             self.assertIn("the fourth numbers of its points", read_error(name))
+            turned = np.linspace(0, np.pi / 2, 1000)[:, None]  # a scan about a corner: no coordinate below zero
+            scan = np.hstack([30 * np.cos(turned), 20 * np.sin(turned), 2 + turned, 0.5 + 0 * turned, turned, turned])
+            for count in (3, 5, 6):
+                scan[:, :count].astype("<f4").tofile(name)
+                self.assertIn(f"it seems to have {count} float32 a point", read_error(name))
+            scan[:, :4].astype("<f4").tofile(name)
+            self.assertEqual(read(name).GetNumberOfPoints(), 1000)
             np.hstack([places, bright]).astype("<f4").tofile(name)
             np.testing.assert_array_equal(array(read(name, said=["are taken for intensities of 0 to 255"]), "intensity"), bright[:, 0])
             rows = np.hstack([places, bright / 255]).astype("<f4")
