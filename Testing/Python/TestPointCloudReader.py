@@ -121,6 +121,7 @@ class TestPointCloudReader(unittest.TestCase):
                 ([keys((1024, 0, 1, 2), (2048, 0, 1, 4326))], ["in degree"], ["GEOGCS", "4326"], 0),
                 ([keys(model, (3072, 0, 1, 2994))], ["in foot"], ["Oregon GIC Lambert (ft)"], 0),
                 ([keys(model, (3072, 0, 1, 26910), (4096, 0, 1, 6360), (4099, 0, 1, 9003))], ["in metre and US survey foot"], ["zone 10N"], 0),
+                ([keys(model, (3072, 0, 1, 26910), (4099, 0, 1, 9002))], ["in metre and foot"], ["zone 10N"], 0),
                 ([numbers, keys(*own), names_], [], ["own grid", "41.75", "400000"], 0),
                 ([keys((3072, 0, 1, 12))], ["its GeoTIFF keys name no coordinate system that GDAL knows"], [], 0),
                 ([keys(model)], ["name no coordinate system"], [], 0), ([vlr(b"LASF_Projection", 34735, b"\1\0\1\0")], ["name no"], [], 0),
