@@ -31,6 +31,7 @@ SHOWN = 250  # pixels along the longer side of the map on the first page
 AROUND = 0.04  # of the longer side, around what that map shows
 SIDES = (0.35, 1.15)  # of that map, height over width
 PLANTS = ("vegetation", "tree")  # classes that are drawn as woods
+CJK = ("Noto Sans CJK JP", "WenQuanYi Micro Hei")  # fonts for letters that Matplotlib's own lacks
 STEP = (10.0, 2.0)  # m, of the section, along and up
 
 
@@ -43,12 +44,14 @@ def gradient(count: int = 9) -> List[str]:
 
 def draw(file, size: Tuple[float, float], work: Callable[[Any], Any], columns: int = 1) -> pathlib.Path:
     """Write a picture (PNG). @param size inches @param work draws into the axes that it is given @param columns axes beside one another"""
-    from matplotlib import rc_context
+    from matplotlib import font_manager, rc_context
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
     content = io.BytesIO()
-    with rc_context({"text.parse_math": False}), warnings.catch_warnings():  # names are drawn as they are written, with their $
-        warnings.filterwarnings("ignore", "Glyph .* missing from")  # boxes stand for letters that the font lacks
+    known = {font.name for font in font_manager.fontManager.ttflist}
+    fonts = ["DejaVu Sans", *(name for name in CJK if name in known)]
+    with rc_context({"text.parse_math": False, "font.family": fonts}), warnings.catch_warnings():  # names are drawn as they are written, with their $
+        warnings.filterwarnings("ignore", "Glyph .* missing from")  # boxes stand for letters that no font has
         figure = Figure(figsize=size, layout="constrained")
         FigureCanvasAgg(figure)
         axes = figure.subplots(1, columns)
