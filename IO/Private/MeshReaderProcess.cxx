@@ -17,6 +17,7 @@
 #include <fcntl.h>
 #include <poll.h>
 #include <spawn.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -183,8 +184,15 @@ std::string MeshReaderProcess::HowItEnded()
   } while (ended < 0 && errno == EINTR);
   this->Pid = -1;
   // The status is not known if this process ignores SIGCHLD.
-  return ended > 0 && WIFSIGNALED(status)
-    ? std::string("it crashes on the file (") + strsignal(WTERMSIG(status)) + ")"
-    : std::string("its program ended without a word");
+  if (ended <= 0 || !WIFSIGNALED(status))
+  {
+    return "its program ended without a word";
+  }
+  // The reader has the limits of this process; libraries crash where memory ends, too.
+  rlimit addresses{};
+  const bool isLimited =
+    getrlimit(RLIMIT_AS, &addresses) == 0 && addresses.rlim_cur != RLIM_INFINITY;
+  return std::string("it crashes on the file (") + strsignal(WTERMSIG(status)) + ")" +
+    (isLimited ? ", or the memory that this process may have (ulimit -v) is too little" : "");
 }
 }

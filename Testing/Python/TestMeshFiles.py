@@ -5,6 +5,7 @@ import json
 import os
 import pathlib
 import re
+import resource
 import stat
 import tempfile
 import unittest
@@ -314,6 +315,13 @@ class MeshFiles(unittest.TestCase):
             with self.subTest(text=text):
                 self.program(text)
                 self.assert_refused(self.read("box.obj"), words)
+        before = resource.getrlimit(resource.RLIMIT_AS)
+        self.program("kill -SEGV $$")
+        try:
+            resource.setrlimit(resource.RLIMIT_AS, (64 << 30, before[1]))
+            self.assert_refused(self.read("box.obj"), "or the memory that this process may have (ulimit -v) is too little")
+        finally:
+            resource.setrlimit(resource.RLIMIT_AS, before)
         self.environment(AVIANLIDAR_MESH_SECONDS="1")
         self.program("exec sleep 600")
         self.assert_refused(self.read("box.obj"), "Assimp cannot read it in 1 s: set the environment variable AVIANLIDAR_MESH_SECONDS to allow more")
