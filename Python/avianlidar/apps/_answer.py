@@ -248,7 +248,7 @@ def _check(view: Plan, site: Dict[str, Any]) -> Dict[str, str]:
     if len(masts) > 1:
         words.append(f"The best sites have {listed(masts)}.")
     if site["alike"]:
-        words.append(f"{site['alike']} more candidates are as good within the error.")
+        words.append(f"{site['alike']} more candidate{'s are' if site['alike'] > 1 else ' is'} as good within the error.")
     alone = [row for row in site["robustness"] if row["sensors"] == 1]
     if alone:
         most = max(alone, key=lambda row: row["another winner"])
