@@ -59,6 +59,13 @@ function (avianlidar_add_kernel_tests target prefix)
     list(REMOVE_DUPLICATES filters)
     list(JOIN filters ":" filters)
     set(test "${AVIANLIDAR_TEST_PREFIX}${prefix}-${name}")
+    # Sanitizers look for faults of memory: cases of a minute, whose code others run, too, are for the builds without them.
+    if (AVIANLIDAR_SANITIZE)
+      string(APPEND filters "-BeamCells.WhatNoRayOfTheGridMeetsIsTheSameReused:CoverageSurvey.KeepsNoTargetForAnother:"
+        "ScanAgain.LimitsFromNothingToEverything:CellErrors.WhatIsHiddenChangesNoMoreThanTheStatedError:"
+        "MovedBeams.AMoverInAWideGaussianBeam:MovedBeams.AMoverMayHaveManyTriangles:StabilityBeam.NumbersOfRays:"
+        "Background.BrightWallsRaiseNoMoreFalseAlarmsThanTheSky:Scan.AnyTreeGivesTheSameBits")
+    endif ()
     add_test(NAME "${test}" COMMAND "${target}" "--gtest_filter=${filters}")
     set(labels ${avianlidar_kernel_test_labels})
     # Sanitizers look for faults of memory: what takes minutes for its statistics or its many changes is for the night.
