@@ -497,8 +497,8 @@ std::size_t dropCopies(ByteSource& source, std::vector<SentPacket>& packets)
   return copies;
 }
 
-/// FormatError if two sensors have sent the packets: then azimuths go back again and again, as
-/// those of one sensor never do.
+/// FormatError if two sensors have sent the packets: then azimuths go back again and again, by
+/// more than a motor that stands still lets them jitter.
 void checkOneSensor(ByteSource& source, const std::vector<std::uint64_t>& packets)
 {
   FileWindow window(source);
@@ -507,7 +507,8 @@ void checkOneSensor(ByteSource& source, const std::vector<std::uint64_t>& packet
   for (const std::uint64_t at : packets)
   {
     const int azimuth = azimuthOf(window.at(at, PayloadSize), 0);
-    backwards += before >= 0 && (azimuth - before + FullTurn) % FullTurn > FullTurn / 2 ? 1 : 0;
+    const int back = before < 0 ? 0 : (before - azimuth + FullTurn) % FullTurn;
+    backwards += back > LargestGap && back < FullTurn / 2 ? 1 : 0;
     before = azimuth;
   }
   if (4 * backwards > packets.size())

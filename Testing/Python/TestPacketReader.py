@@ -248,6 +248,8 @@ class TestPacketReader(unittest.TestCase):
         frames = [ethernet(payload((480 * number + turned) % 36000, 1327 * number + turned // 100)) for number in range(20) for turned in (0, 9000)]
         write(pcap(frames))
         self.assertIn("its packets come from more than one sensor with the same address: the azimuth goes back 19 times in 40 packets", read_error(FILE))
+        write(pcap([ethernet(payload(100 + number % 2, 1327 * number, step=0)) for number in range(20)]))  # a motor that stands still
+        self.assertEqual(read(FILE).GetNumberOfPoints(), 20 * 384)
 
     def test_damaged_packets_are_left_out(self):
         """With one warning, whatever their number; a cut end, too."""

@@ -40,7 +40,7 @@ struct Squares
 struct BeamAtTarget
 {
   double radius = 0.0; ///< m, half the longer side of an ellipse or rectangle
-  double x, y;         ///< of the beam's axis from the middle, m to the right and up
+  double x, y;         ///< beam axis relative to the middle, m right and up
   BeamProfile profile = BeamProfile::Uniform;
   // Of beams that are not round, or have another Gaussian:
   double across = radius; ///< m, half the shorter side
