@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import io
+import math
 import pathlib
 import re
 import warnings
@@ -157,6 +158,8 @@ def load_cloud(file, time: Optional[float] = None, **properties: Any) -> Cloud:
     suffix = path.suffix.lower()
     if time is not None and suffix not in PACKETS:
         raise TypeError(f"a {suffix} file has no revolutions, expected no time: it is {time!r}")
+    if time is not None and not math.isfinite(time):
+        raise ValueError(f"time is {time}, expected seconds since the full hour")
     if suffix in TABLES:
         if properties:
             raise TypeError(f"a {suffix} file has no properties: {', '.join(properties)}")

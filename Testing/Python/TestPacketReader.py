@@ -227,6 +227,8 @@ class TestPacketReader(unittest.TestCase):
         for wrong, words in (("192.168.1.7", "has no packets of the sensor 192.168.1.7, expected"), ("192.168.1.201", "of several sensors")):
             with self.assertRaisesRegex(avianlidar.Error, words):
                 avianlidar.load_cloud(FILE, sensor_address=wrong)
+        with self.assertRaisesRegex(ValueError, "time is nan, expected seconds"):
+            avianlidar.load_cloud(FILE, time=float("nan"))
         with tempfile.TemporaryDirectory() as folder, contextlib.redirect_stdout(io.StringIO()), contextlib.redirect_stderr(io.StringIO()) as said:
             out = pathlib.Path(folder) / "out.pcd"
             self.assertEqual(_command.main(["convert", FILE, str(out)]), 2)
