@@ -27,6 +27,10 @@ if (AVIANLIDAR_SANITIZE MATCHES "address" AND CMAKE_CXX_COMPILER_ID STREQUAL "Cl
     "ASAN_OPTIONS=malloc_context_size=2" "LSAN_OPTIONS=suppressions=${CMAKE_BINARY_DIR}/leaks.txt:print_suppressions=0")
 endif ()
 
+# Cases of seconds, for their statistics or their many changes: left out of the tests of their files, in Kernel-Slow.
+file(STRINGS "${PROJECT_SOURCE_DIR}/Testing/Kernel/slow-cases.txt" avianlidar_slow_kernel_cases REGEX "^[^#]")
+list(JOIN avianlidar_slow_kernel_cases ":" avianlidar_slow_kernel_cases)
+
 # avianlidar_add_kernel_tests(<executable> <name> <file>...): finish the executable that holds these
 # files, and add a test <name>-<file without ending> for each. TestX.cxx holds the suites X, XFoo, XBar,
 # ...: found by reading the file, checked again by the filter, which must match at least one test.
@@ -59,21 +63,9 @@ function (avianlidar_add_kernel_tests target prefix)
     list(REMOVE_DUPLICATES filters)
     list(JOIN filters ":" filters)
     set(test "${AVIANLIDAR_TEST_PREFIX}${prefix}-${name}")
-    # Sanitizers look for faults of memory: cases of a minute, whose code others run, too, are for the builds without them.
-    if (AVIANLIDAR_SANITIZE)
-      string(APPEND filters "-BeamCells.WhatNoRayOfTheGridMeetsIsTheSameReused:CoverageSurvey.KeepsNoTargetForAnother:"
-        "ScanAgain.LimitsFromNothingToEverything:CellErrors.WhatIsHiddenChangesNoMoreThanTheStatedError:"
-        "MovedBeams.AMoverInAWideGaussianBeam:MovedBeams.AMoverMayHaveManyTriangles:StabilityBeam.NumbersOfRays:"
-        "Background.BrightWallsRaiseNoMoreFalseAlarmsThanTheSky:Scan.AnyTreeGivesTheSameBits")
-    endif ()
-    add_test(NAME "${test}" COMMAND "${target}" "--gtest_filter=${filters}")
-    set(labels ${avianlidar_kernel_test_labels})
-    # Sanitizers look for faults of memory: what takes minutes for its statistics or its many changes is for the night.
-    if (NOT AVIANLIDAR_SANITIZE OR name MATCHES "^Test(EffectiveArea|ScanAgainPlates|ScanAgainTowns|SecondaryReflection)$")
-      list(APPEND labels nightly)
-    endif ()
+    add_test(NAME "${test}" COMMAND "${target}" "--gtest_filter=${filters}-${avianlidar_slow_kernel_cases}")
     set_tests_properties("${test}" PROPERTIES
-      LABELS "${labels}"
+      LABELS "${avianlidar_kernel_test_labels}"
       TIMEOUT ${avianlidar_kernel_test_timeout}
       ENVIRONMENT "${avianlidar_sanitizer_environment}"
       FAIL_REGULAR_EXPRESSION "0 tests from 0 test suites ran")

@@ -6,9 +6,7 @@ option(BUILD_TESTING "Build the tests" ON)
 option(AVIANLIDAR_KERNEL_ONLY "Build the VTK-free kernel and its tests only" OFF)
 option(AVIANLIDAR_BUILD_PYTHON "Build the Python package avianlidar" ON)
 option(AVIANLIDAR_BUILD_PLUGIN "Build the ParaView plugin; VTK is then ParaView's" OFF)
-set(AVIANLIDAR_KERNEL_TESTS ON CACHE STRING
-  "Build the tests of the VTK-free kernel: ON, OFF, or BITS for those alone that compare bits, instruction sets, memory and times")
-set_property(CACHE AVIANLIDAR_KERNEL_TESTS PROPERTY STRINGS ON OFF BITS)
+option(AVIANLIDAR_KERNEL_TESTS "Build the tests of the VTK-free kernel" ON)
 option(AVIANLIDAR_RENDERING_TESTS "Build the tests that draw (they need an X server)"
   "${AVIANLIDAR_BUILD_PLUGIN}")
 option(AVIANLIDAR_BUILD_BENCHMARKS "Build Testing/Benchmarks and Testing/Accuracy (their run.sh do)" OFF)

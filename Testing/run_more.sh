@@ -9,10 +9,9 @@ cd "$(dirname "$0")/.."
 CMake/install-packages.sh
 choice='-LE nightly|bare'
 of_paraview='-L install|more -LE nightly|bare'
-kernel_tests=BITS # the others run under the sanitizers
 benchmarks=OFF
 if [ "${1:-}" = --nightly ]; then
-  choice='-L nightly|bare' of_paraview=$choice kernel_tests=ON benchmarks=ON
+  choice='-L nightly|bare' of_paraview=$choice benchmarks=ON
 else
   Testing/Packages/debian13.sh
 fi
@@ -23,7 +22,7 @@ configure() {
   cmake --build --preset "$preset"
 }
 failed=0
-configure paraview -DAVIANLIDAR_BUILD_BENCHMARKS=$benchmarks -DAVIANLIDAR_KERNEL_TESTS=$kernel_tests
+configure paraview -DAVIANLIDAR_BUILD_BENCHMARKS=$benchmarks
 # Unquoted: they are words.
 Testing/run_ctest.sh build/paraview $of_paraview || failed=1
 if grep -q '^12\|^bookworm' /etc/debian_version; then

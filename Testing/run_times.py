@@ -12,7 +12,7 @@ import sys
 import time
 import xml.etree.ElementTree
 
-SLOWEST = 20
+SLOWEST = 10
 
 
 def stage(file, name, *command):
