@@ -9,7 +9,7 @@ option(AVIANLIDAR_BUILD_PLUGIN "Build the ParaView plugin; VTK is then ParaView'
 option(AVIANLIDAR_KERNEL_TESTS "Build the tests of the VTK-free kernel" ON)
 option(AVIANLIDAR_RENDERING_TESTS "Build the tests that draw (they need an X server)"
   "${AVIANLIDAR_BUILD_PLUGIN}")
-option(AVIANLIDAR_BUILD_BENCHMARKS "Build Testing/Benchmarks and Testing/Accuracy (their run.sh do)" OFF)
+option(AVIANLIDAR_BUILD_BENCHMARKS "Build Testing/Benchmarks (its run.sh does)" OFF)
 option(AVIANLIDAR_BUILD_FUZZERS "Build Testing/Fuzzing (needs clang)" OFF)
 option(AVIANLIDAR_FUZZ_COVERAGE "Count which code an input of the fuzzers reaches: needed to find new ones, not to replay those known" ON)
 set(AVIANLIDAR_TEST_PREFIX "" CACHE STRING

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""What do polygons and cells buy? Prints a table: for each scene and number of rays the rms error of energy, the processor
-time and the share of the true echoes that is invented or missed, once with `BeamSamples` at `Rays` and once at `Cells`. And
-another with the same of the presets.
+"""What do polygons and cells buy, and do standard errors hold? Prints tables: for each scene and number of rays the rms error of
+energy, the processor time and the share of the true echoes that is invented or missed, once with `BeamSamples` at `Rays` and
+once at `Cells`; the same of the presets; and how many true energies 1.96 standard errors hold.
 
     /usr/bin/python3 Examples/accuracy_speed/front.py airport airport:airport32 field my.lidarscene.json
 
@@ -23,8 +23,8 @@ RAYS = (32, 100, 400, 1000, 3000, 10000)
 
 
 def measure(name, sensor, options):
-    """The scene's title, the reference's own error, {(rays, samples) or preset: (rms error of energy, s of one core,
-    share of the true echoes that is missed or invented)}. All other settings are the filter's defaults."""
+    """The scene's title, the reference's own error, {(rays, samples) or preset: (rms error of energy, s of one core, share of
+    the true echoes that is missed or invented, share of energies that are held)}. All else is the filter's defaults."""
     subject = trade_runs.Subject(name, sensor)
     reference = trade_runs.Reference(subject, options.reference_rays)
     settings = {(rays, samples): {"RaysPerBeam": rays, "BeamSamples": samples}
@@ -39,28 +39,36 @@ def result(reference, values, seeds):
     for seed in range(seeds):
         scan = trade_runs.scan(reference.subject, values, seed)
         judged = trade_runs.judge(reference, scan)
-        runs.append((judged["energy"], scan.cpu, (judged["missed"] + judged["false"]) / max(judged["true"], 1)))
-    energies, times, wrong = zip(*runs)
-    return trade_runs.rms(np.concatenate(energies)), min(times), float(np.mean(wrong))
+        runs.append((judged["energy"], scan.cpu, (judged["missed"] + judged["false"]) / max(judged["true"], 1), judged["held"]))
+    energies, times, wrong, held = zip(*runs)
+    return trade_runs.rms(np.concatenate(energies)), min(times), float(np.mean(wrong)), float(np.mean(np.concatenate(held)))
 
 
-def in_words(found):
-    error, time, wrong = found
+def errors(found):
+    error, time, wrong, _ = found
     return f"{100 * error:.2g} %, {time:.3g} s, {100 * wrong:.2g} %"
 
 
+def held(found):
+    return f"{100 * found[3]:.1f} %"
+
+
 def table(measured):
-    """Two tables in Markdown: numbers of rays, presets."""
+    """Three tables in Markdown: numbers of rays, presets, standard errors."""
     numbers = sorted({setting[0] for _, _, found in measured for setting in found if isinstance(setting, tuple)})
-    rays = ["| scene, sensor | own error of the reference | " + " | ".join(f"{n:,} rays" for n in numbers) + " |",
-            "|---|---:|" + "---|" * len(numbers)]
+
+    def by_rays(words):
+        head = ["| scene, sensor | own error of the reference | " + " | ".join(f"{n:,} rays" for n in numbers) + " |",
+                "|---|---:|" + "---|" * len(numbers)]
+        return head + [f"| {title} | {100 * own:.2g} % | " + " | ".join(
+            f"{words(found[n, Filter.BEAM_SAMPLES_RAYS])} → {words(found[n, Filter.BEAM_SAMPLES_CELLS])}" for n in numbers) + " |"
+            for title, own, found in measured]
+
     presets = ["| scene, sensor | " + " | ".join(f"`{name}`" for name in trade_grid.PRESETS) + " |",
-               "|---|" + "---|" * len(trade_grid.PRESETS)]
-    for title, own, found in measured:
-        cells = [f"{in_words(found[n, Filter.BEAM_SAMPLES_RAYS])} → {in_words(found[n, Filter.BEAM_SAMPLES_CELLS])}" for n in numbers]
-        rays.append(f"| {title} | {100 * own:.2g} % | " + " | ".join(cells) + " |")
-        presets.append(f"| {title} | " + " | ".join(in_words(found[name]) for name in trade_grid.PRESETS) + " |")
-    return "\n".join([*rays, "", *presets])
+               "|---|" + "---|" * len(trade_grid.PRESETS),
+               *(f"| {title} | " + " | ".join(errors(found[name]) for name in trade_grid.PRESETS) + " |"
+                 for title, _, found in measured)]
+    return "\n".join([*by_rays(errors), "", *presets, "", *by_rays(held)])
 
 
 def main(argv=None):

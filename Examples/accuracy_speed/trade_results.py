@@ -62,7 +62,7 @@ def summary(found, cost, wall):
             "energy_median": float(np.median(abs(found["energy"]))) if len(found["energy"]) else math.nan,
             "range_95": float(np.percentile(away, 95)) if len(away) else math.nan,
             "bias": float(np.mean(found["energy"])) if len(found["energy"]) else math.nan,
-            "detection": (found["missed"] + found["false"]) / true, "missed": found["missed"],
+            "held": float(np.mean(found["held"])), "detection": (found["missed"] + found["false"]) / true, "missed": found["missed"],
             "missed_strong": found["missed_strong"], "false": found["false"], "true": found["true"],
             "cpu": cost.cpu, "wall": wall, "rays": cost.rays, "used": cost.used}
 

@@ -198,18 +198,21 @@ def rms(values):
 
 def judge(reference, found):
     """Differences of one scan from the reference: of energies (relative), of totals (relative), of ranges (m), over
-    echoes and beams of at least twice the lower limit; numbers of echoes missed and made up. The energy of a missed
-    echo is wrong by all of it, -1: a setting must not look better for what it does not see. A missed echo has no range
-    to judge."""
+    echoes and beams of at least twice the lower limit; whether 1.96 standard errors hold these energies; numbers of echoes
+    missed and made up. The energy of a missed echo is wrong by all of it, -1, and not held: a setting must not look better
+    for what it does not see. A missed echo has no range to judge."""
     subject, truth = reference.subject, reference.echoes
     i, j = matches(truth, found.echoes, subject.tolerance)
     strong = reference.strong[i]
     energy = np.full(len(truth["beam_id"]), -1.0)
     energy[i] = found.echoes["energy_received"][j] / truth["energy_received"][i] - 1
+    held = np.zeros(len(energy), dtype=bool)
+    held[i] = abs(energy[i]) * truth["energy_received"][i] <= 1.96 * np.hypot(
+        found.echoes["energy_std_error"][j], truth["energy_std_error"][i] / np.sqrt(2))  # the truth is a mean of two
     away = found.echoes["distance_m"][j] - truth["distance_m"][i]
     rest = {name: np.delete(values, j) for name, values in found.echoes.items()}
     excused = matches(rest, reference.undecided, subject.tolerance).shape[1]
     total = totals(found.echoes, reference.beams)[reference.lit] / reference.totals[reference.lit] - 1
-    return {"energy": energy[reference.strong], "range": away[strong], "total": total,
+    return {"energy": energy[reference.strong], "held": held[reference.strong], "range": away[strong], "total": total,
             "missed": len(truth["beam_id"]) - len(i), "missed_strong": int(reference.strong.sum() - strong.sum()),
             "false": len(rest["beam_id"]) - excused, "true": len(truth["beam_id"])}

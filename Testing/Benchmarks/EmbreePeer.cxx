@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "EmbreePeer.h"
+#include "Tracers.h"
 
 #include "ParallelLoop.h"
 
@@ -19,41 +19,19 @@ namespace
 {
 constexpr float Far = std::numeric_limits<float>::infinity();
 
-/// Denormal numbers off, as Embree's manual advises, and on again when it is done.
-class FlushToZero
-{
-public:
-  FlushToZero()
-    : Before(_mm_getcsr())
-  {
-    _MM_SET_FLUSH_ZERO_MODE(_MM_FLUSH_ZERO_ON);
-    _MM_SET_DENORMALS_ZERO_MODE(_MM_DENORMALS_ZERO_ON);
-  }
-  ~FlushToZero() { _mm_setcsr(this->Before); }
-
-private:
-  unsigned Before;
-};
-
 void traceSingle(
   RTCScene scene, const Workload& work, std::size_t ray, Hit* hits, std::size_t count)
 {
   EmbreeQuery query;
+  RTCRayHit r{};
+  r.ray.mask = 0xffffffffu;
   for (std::size_t i = 0; i < count; ++i)
   {
-    RTCRayHit r;
-    r.ray.org_x = r.ray.org_y = r.ray.org_z = 0.0f;
     r.ray.dir_x = work.x[ray + i];
     r.ray.dir_y = work.y[ray + i];
     r.ray.dir_z = work.z[ray + i];
-    r.ray.tnear = 0.0f;
     r.ray.tfar = Far;
-    r.ray.time = 0.0f;
-    r.ray.mask = 0xffffffffu;
-    r.ray.flags = 0;
-    r.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-    r.hit.primID = RTC_INVALID_GEOMETRY_ID;
-    r.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+    r.hit.geomID = r.hit.primID = r.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
     query.trace(scene, r);
     hits[i].triangle = r.hit.primID;
     hits[i].range = r.ray.tfar;
@@ -65,7 +43,8 @@ void tracePackets(
 {
   EmbreeQuery query(true);
   alignas(64) int valid[16];
-  alignas(64) RTCRayHit16 r;
+  alignas(64) RTCRayHit16 r{};
+  std::fill_n(r.ray.mask, 16, 0xffffffffu);
   for (std::size_t i = 0; i < count; i += 16)
   {
     const std::size_t lanes = std::min<std::size_t>(16, count - i);
@@ -75,15 +54,8 @@ void tracePackets(
     for (std::size_t k = 0; k < 16; ++k)
     {
       valid[k] = k < lanes ? -1 : 0;
-      r.ray.org_x[k] = r.ray.org_y[k] = r.ray.org_z[k] = 0.0f;
-      r.ray.tnear[k] = 0.0f;
       r.ray.tfar[k] = Far;
-      r.ray.time[k] = 0.0f;
-      r.ray.mask[k] = 0xffffffffu;
-      r.ray.flags[k] = 0;
-      r.hit.geomID[k] = RTC_INVALID_GEOMETRY_ID;
-      r.hit.primID[k] = RTC_INVALID_GEOMETRY_ID;
-      r.hit.instID[0][k] = RTC_INVALID_GEOMETRY_ID;
+      r.hit.geomID[k] = r.hit.primID[k] = r.hit.instID[0][k] = RTC_INVALID_GEOMETRY_ID;
     }
     query.trace(scene, valid, r);
     for (std::size_t k = 0; k < lanes; ++k)
@@ -102,11 +74,15 @@ Tracer blockwise(RTCScene scene, Trace trace)
     std::vector<std::vector<Hit>> buffers(threads);
     const auto body = [&](std::size_t begin, std::size_t end, int thread)
     {
-      const FlushToZero mode;
+      // Denormal numbers off, as Embree's manual advises, and on again when it is done.
+      const unsigned mode = _mm_getcsr();
+      _MM_SET_FLUSH_ZERO_MODE(_MM_FLUSH_ZERO_ON);
+      _MM_SET_DENORMALS_ZERO_MODE(_MM_DENORMALS_ZERO_ON);
       const std::size_t first = begin * work.raysPerBeam;
       const std::size_t count = (end - begin) * work.raysPerBeam;
       buffers[thread].resize(count);
       trace(scene, work, first, buffers[thread].data(), count);
+      _mm_setcsr(mode);
       if (consumer)
       {
         consumer(first, buffers[thread].data(), count);
@@ -117,7 +93,7 @@ Tracer blockwise(RTCScene scene, Trace trace)
 }
 }
 
-EmbreeScene::EmbreeScene(const Scene& scene, bool robust, int buildThreads)
+EmbreeScene::EmbreeScene(const Scene& scene, int buildThreads)
 {
   this->Device = rtcNewDevice(("threads=" + std::to_string(buildThreads)).c_str());
   if (!this->Device)
@@ -126,7 +102,6 @@ EmbreeScene::EmbreeScene(const Scene& scene, bool robust, int buildThreads)
   }
   rtcSetDeviceMemoryMonitorFunction(this->Device, &EmbreeScene::countMemory, this);
   this->Scene_ = rtcNewScene(this->Device);
-  rtcSetSceneFlags(this->Scene_, robust ? RTC_SCENE_FLAG_ROBUST : RTC_SCENE_FLAG_NONE);
   rtcSetSceneBuildQuality(this->Scene_, RTC_BUILD_QUALITY_MEDIUM);
   const TriangleMesh& mesh = *scene.mesh;
   RTCGeometry geometry = rtcNewGeometry(this->Device, RTC_GEOMETRY_TYPE_TRIANGLE);

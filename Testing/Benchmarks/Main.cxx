@@ -3,23 +3,17 @@
 #include "Suites.h"
 
 #include <cstdlib>
-#include <cstring>
 #include <exception>
 #include <filesystem>
 #include <iostream>
+#include <map>
 #include <stdexcept>
 
 namespace benchmarks
 {
 namespace
 {
-struct Suite
-{
-  const char* name;
-  bool (*run)(const Options&);
-};
-
-const Suite suites[] = {
+const std::map<std::string, bool (*)(const Options&)> suites = {
   { "machine", suiteMachine },
   { "matrix", suiteMatrix },
   { "locators", suiteLocators },
@@ -29,10 +23,8 @@ const Suite suites[] = {
   { "figure11", suiteFigure11 },
   { "epsilon", suiteEpsilon },
   { "section5", suiteSection5 },
-  { "growth", suiteGrowth },
   { "filter", suiteFilter },
   { "scan", suiteScan },
-  { "front", suiteFront },
   { "memory", suiteMemory },
   { "movers", suiteMovers },
 };
@@ -40,40 +32,24 @@ const Suite suites[] = {
 Options parse(int argc, char* argv[])
 {
   Options options;
+  const std::map<std::string, bool*> switches = { { "--short", &options.brief },
+    { "--smoke", &options.smoke } };
+  const std::map<std::string, std::string*> values = { { "--suite", &options.suite },
+    { "--out", &options.folder }, { "--scene", &options.scene } };
   for (int i = 1; i < argc; ++i)
   {
-    const std::string word = argv[i];
-    const auto value = [&]()
+    if (switches.count(argv[i]))
     {
-      if (i + 1 >= argc)
-      {
-        throw std::invalid_argument(word + " wants a value");
-      }
-      return std::string(argv[++i]);
-    };
-    if (word == "--suite")
-    {
-      options.suite = value();
+      *switches.at(argv[i]) = true;
     }
-    else if (word == "--out")
+    else if (values.count(argv[i]) && i + 1 < argc)
     {
-      options.folder = value();
-    }
-    else if (word == "--scene")
-    {
-      options.scene = value();
-    }
-    else if (word == "--short")
-    {
-      options.brief = true;
-    }
-    else if (word == "--smoke")
-    {
-      options.smoke = true;
+      *values.at(argv[i]) = argv[i + 1];
+      ++i;
     }
     else
     {
-      throw std::invalid_argument("unknown argument " + word);
+      throw std::invalid_argument("unknown argument or no value: " + std::string(argv[i]));
     }
   }
   return options;
@@ -86,16 +62,12 @@ int main(int argc, char* argv[])
   try
   {
     const benchmarks::Options options = benchmarks::parse(argc, argv);
-    benchmarks::initializeRounds(argv[0]);
     std::filesystem::create_directories(options.folder);
-    for (const benchmarks::Suite& suite : benchmarks::suites)
+    if (!benchmarks::suites.count(options.suite))
     {
-      if (options.suite == suite.name)
-      {
-        return suite.run(options) ? EXIT_SUCCESS : EXIT_FAILURE;
-      }
+      throw std::invalid_argument("unknown suite \"" + options.suite + "\"");
     }
-    throw std::invalid_argument("unknown suite \"" + options.suite + "\"");
+    return benchmarks::suites.at(options.suite)(options) ? EXIT_SUCCESS : EXIT_FAILURE;
   }
   catch (const std::exception& e)
   {

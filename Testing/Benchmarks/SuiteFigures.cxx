@@ -1,15 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Suites.h"
-
 #include "CollisionTreeBuilder.h"
 #include "FinishSetup.h"
-#include "OurTracer.h"
-#include "ScanRunner.h"
+#include "Suites.h"
+#include "Tracers.h"
 #include "VolumeTree.h"
 
 #include <algorithm>
 #include <cmath>
-#include <memory>
 
 namespace benchmarks
 {
@@ -17,47 +14,53 @@ using namespace avianlidar;
 
 namespace
 {
-const char* const Rules[] = { "BVH (halves)", "k-D (median)", "BSP (principal plane)",
-  "surface area heuristic" };
+/// Tree of the paper: k-D, boxes, leaves of one triangle (Sec. 5.1, Algorithm 1).
+constexpr TreeOptions PaperTree{ SplitRule::Median, BoundingVolumeType::AABB, 1 };
 
-std::vector<std::size_t> sphereSizes(const Options& options)
+/// Settings that add nothing to the paper: independent random rays, all beams sampled alike, one
+/// point a range unit, one descent per beam, the light-energy constraint with the paper's
+/// threshold.
+/// @param change of these settings
+ScanSetup makePaperSetup(const Scene& scene, std::shared_ptr<const CollisionTree> tree,
+  const std::function<void(EchoSettings&)>& change = {})
 {
-  if (options.smoke)
+  ScanSetup setup = makeSetup(scene, std::move(tree));
+  setup.settings.sampling = Sampling::MonteCarlo;
+  setup.settings.returnMode = ReturnMode::RangeUnits;
+  setup.settings.traceMode = TraceMode::Beams;
+  setup.settings.lightEnergyThreshold = LightEnergyThreshold::Limit;
+  if (change)
   {
-    return { 100, 1000 };
+    change(setup.settings);
   }
-  if (options.brief)
-  {
-    return { 8, 100, 1000, 10000, 100000 };
-  }
-  return { 8, 32, 100, 300, 1000, 3000, 10000, 30000, 100000, 300000, 1000000, 5000000 };
+  finishSetup(setup);
+  return setup;
 }
 
 /// Scenes other than spheres; those whose data are absent are left out.
 void forEachOther(const Options& options, const std::function<void(const Scene&)>& measure)
 {
-  measure(makePaperCorridor());
-  if (options.smoke)
+  std::vector<SceneEntry> scenes = { { "corridor", makePaperCorridor } };
+  if (!options.smoke)
   {
-    return;
+    const std::vector<SceneEntry> more = airports();
+    scenes.push_back({ "loggias", makeLoggias });
+    scenes.insert(scenes.end(), more.begin(), more.end());
   }
-  measure(makeLoggias());
-  for (const SceneEntry& airport : airports())
-  {
-    const Scene scene = airport.make();
-    if (scene.mesh->size() > 0)
-    {
-      measure(scene);
-    }
-  }
+  forEachScene(Options(), scenes, [&](const Scene& scene, const SceneEntry&) { measure(scene); });
 }
 
 /// Spheres, then the others.
 void forEachSceneOfFigures(const Options& options, const std::function<void(const Scene&)>& measure)
 {
-  for (const std::size_t size : sphereSizes(options))
+  const std::size_t most = options.brief ? 100000 : 5000000;
+  for (const std::size_t size :
+    { 8, 32, 100, 300, 1000, 3000, 10000, 30000, 100000, 300000, 1000000, 5000000 })
   {
-    measure(makeSphere(size));
+    if (options.smoke ? size == 100 || size == 1000 : size <= most)
+    {
+      measure(makeSphere(size));
+    }
   }
   forEachOther(options, measure);
 }
@@ -88,93 +91,59 @@ struct Figure9Tree
   double build; ///< s
 };
 
-/// Time of the processor that a build takes, s: of large trees once, else the median of three.
-double buildSeconds(const Scene& scene, const TreeOptions& options)
-{
-  std::vector<double> times;
-  for (int round = 0; round < (scene.mesh->size() > 200000 ? 1 : 3); ++round)
-  {
-    int builds = 0;
-    const double all = processorSecondsOf(
-      [&]()
-      {
-        const double enough = secondsOf([&]() { buildVolumeTree(scene.mesh, options, {}, 1); });
-        for (builds = 1; builds * enough < 0.01; ++builds)
-        {
-          buildVolumeTree(scene.mesh, options, {}, 1);
-        }
-      });
-    times.push_back(all / builds);
-  }
-  return medianOf(times);
-}
-
-/// Trees with leaves of one triangle (Algorithm 1) by all rules and volumes. Boxes stand two a
-/// node, as the other volumes do, and eight a node, as this project uses them; one builder makes
-/// both. The rules and volumes that the paper lacks are left out where trees are very large.
+/// Trees with leaves of one triangle (Algorithm 1) by the paper's rules and volumes. Boxes stand
+/// two a node, as spheres do, and eight a node, as this project uses them; one builder makes both.
 std::vector<Figure9Tree> treesOf(const Scene& scene)
 {
-  const bool all = scene.mesh->size() < 2000000;
+  const int builds = scene.mesh->size() > 200000 ? 1 : 3;
   std::vector<Figure9Tree> trees;
-  for (const SplitRule rule : { SplitRule::Halves, SplitRule::Median, SplitRule::PrincipalPlane,
-         SplitRule::SurfaceAreaHeuristic })
+  for (const SplitRule rule : { SplitRule::Halves, SplitRule::Median })
   {
-    for (const BoundingVolumeType volume :
-      { BoundingVolumeType::AABB, BoundingVolumeType::OBB, BoundingVolumeType::Sphere })
+    for (const bool boxes : { true, false })
     {
-      if (!all && (rule > SplitRule::Median || volume == BoundingVolumeType::OBB))
+      const TreeOptions options{ rule,
+        boxes ? BoundingVolumeType::AABB : BoundingVolumeType::Sphere, PaperTree.maximumLeafSize };
+      const std::string name = rule == SplitRule::Halves ? "BVH (halves)" : "k-D (median)";
+      std::shared_ptr<const CollisionTree> tree;
+      const double build =
+        compete({ { name, [&]() { tree = buildVolumeTree(scene.mesh, options, {}, 1); } } },
+          { 0.0, builds, builds, 0.01, true })[0]
+          .median;
+      trees.push_back(
+        { name, boxes ? "AABB" : "SBV", boxes ? withPlainBoxes(*tree) : tree, build });
+      if (boxes)
       {
-        continue;
-      }
-      const TreeOptions options{ rule, volume, PaperTree.maximumLeafSize };
-      const std::string name = Rules[static_cast<int>(rule)];
-      const double build = buildSeconds(scene, options);
-      const auto tree = buildVolumeTree(scene.mesh, options);
-      if (volume == BoundingVolumeType::AABB)
-      {
-        trees.push_back({ name, "AABB", withPlainBoxes(*tree), build });
         trees.push_back({ name, "AABB, eight a node", tree, build });
-      }
-      else
-      {
-        trees.push_back({ name, volume == BoundingVolumeType::OBB ? "OBB" : "SBV", tree, build });
       }
     }
   }
   return trees;
 }
 
-/// Nodes that a beam's cone meets, and triangles against which a packet of its rays is tested;
-/// means over the beams.
-struct Figure9Work
-{
-  double nodes = 0.0;
-  double triangles = 0.0;
-};
-
-Figure9Work workOf(const CollisionTree& tree, const Workload& work)
+/// Means over the beams: nodes that a beam's cone meets, and triangles against which a packet of
+/// its rays is tested.
+std::pair<double, double> workOf(const CollisionTree& tree, const Workload& work)
 {
   BeamTracer tracer(tree);
   const auto rays = static_cast<std::uint32_t>(work.raysPerBeam);
   const double packets = std::ceil(static_cast<double>(rays) / 64.0);
-  Figure9Work mean;
+  std::pair<double, double> sum{ 0.0, 0.0 };
   for (std::size_t b = 0; b < work.beams(); ++b)
   {
     const BeamBlock block{ &work.frames[b], 1, rays,
       [&](std::size_t) -> const BeamRays& { return work.rays[b]; } };
     const TraceCounters& counters = tracer.traceBlock(block, TraceMode::Beams).counters[0];
-    mean.nodes += static_cast<double>(counters.nodesVisited);
-    mean.triangles += static_cast<double>(counters.candidates) / packets;
+    sum.first += static_cast<double>(counters.nodesVisited);
+    sum.second += static_cast<double>(counters.candidates) / packets;
   }
-  mean.nodes /= static_cast<double>(work.beams());
-  mean.triangles /= static_cast<double>(work.beams());
-  return mean;
+  const auto beams = static_cast<double>(work.beams());
+  return { sum.first / beams, sum.second / beams };
 }
 }
 
 bool suiteFigure9(const Options& options)
 {
-  Table times(options.folder + "/figure9.csv",
+  Table times(options, "figure9",
     "scene,triangles,rays,split_rule,volume,build_s,detection_s,total_s,nodes,tests");
   forEachSceneOfFigures(options,
     [&](const Scene& scene)
@@ -193,9 +162,9 @@ bool suiteFigure9(const Options& options)
       for (std::size_t k = 0; k < trees.size(); ++k)
       {
         const Figure9Tree& kind = trees[k];
-        const Figure9Work done = workOf(*kind.tree, work);
+        const auto [nodes, tests] = workOf(*kind.tree, work);
         times.row(scene.name, scene.mesh->size(), work.size(), kind.rule, kind.volume, kind.build,
-          detections[k].median, kind.build + detections[k].median, done.nodes, done.triangles);
+          detections[k].median, kind.build + detections[k].median, nodes, tests);
       }
       say("Fig. 9, " + scene.name);
     });
@@ -204,14 +173,25 @@ bool suiteFigure9(const Options& options)
 
 namespace
 {
-/// A method of Fig. 10.
+/// A way to scan.
 struct Method
 {
   std::string name;
   ScanSetup setup;
-  ScanBeams beams; ///< beams that are run, of those of the scan
-  double build;    ///< s, of its tree
+  ScanBeams beams;
+  double build = 0.0; ///< s, of its tree
 };
+
+/// Times of whole scans on one thread.
+std::vector<Timing> timesOf(const std::vector<Method>& methods, const Options& options)
+{
+  std::vector<Contender> contenders;
+  for (const Method& m : methods)
+  {
+    contenders.push_back({ m.name, [&m]() { freshScan(m.setup, m.beams, 1); } });
+  }
+  return compete(contenders, figureLimits(options));
+}
 
 /// `count` of the beams, spread over the scan by the golden ratio.
 ScanBeams someOf(const ScanBeams& all, std::size_t count)
@@ -239,14 +219,6 @@ ScanBeams someOf(const ScanBeams& all, std::size_t count)
   return some;
 }
 
-ScanResult resultOf(const ScanSetup& setup, const ScanBeams& beams)
-{
-  TraceCache cache;
-  ScanResult result;
-  simulateScan(setup, beams, 2, cache, 0, {}, result);
-  return result;
-}
-
 /// The original method: no acceleration.
 void switchOff(EchoSettings& settings)
 {
@@ -272,73 +244,54 @@ std::vector<Method> methodsOf(const Scene& scene, const ScanBeams& beams)
     const double most = factor * MostTests / static_cast<double>(scene.mesh->size());
     return someOf(beams, std::max(FewestBeams, static_cast<std::size_t>(most)));
   };
-  std::vector<Method> methods;
-  methods.push_back({ "proposed", makePaperSetup(scene, tree), beams, build });
+  std::vector<Method> methods = { { "proposed", makePaperSetup(scene, tree), beams, build } };
   for (const bool phong : { true, false })
   {
     const std::string model = phong ? "Phong" : "BRDF";
-    ScanSetup setup = makePaperSetup(scene, facets);
-    switchOff(setup.settings);
-    setup.settings.reflectanceModel =
-      phong ? ReflectanceModel::Phong : ReflectanceModel::Microfacet;
-    setup.settings.traceMode = TraceMode::Automatic; // packets of a beam's rays
-    setup.settings.numberOfReflections = 1;
-    finishSetup(setup);
-    methods.push_back({ "facet loop, one reflection, " + model, setup, fewer(10.0), 0.0 });
-    setup.settings.numberOfReflections = 2;
-    finishSetup(setup);
+    const auto peer = [&](const auto& with, int reflections, TraceMode mode)
+    {
+      return makePaperSetup(scene, with,
+        [&](EchoSettings& s)
+        {
+          switchOff(s);
+          s.reflectanceModel = phong ? ReflectanceModel::Phong : ReflectanceModel::Microfacet;
+          s.traceMode = mode;
+          s.numberOfReflections = reflections;
+        });
+    };
+    // Packets of a beam's rays against all triangles.
+    methods.push_back({ "facet loop, one reflection, " + model,
+      peer(facets, 1, TraceMode::Automatic), fewer(10.0) });
     if (scene.mesh->size() < 500000)
     {
-      methods.push_back({ "facet loop, " + model, setup, fewer(1.0), 0.0 });
+      methods.push_back(
+        { "facet loop, " + model, peer(facets, 2, TraceMode::Automatic), fewer(1.0) });
     }
-    setup.tree = tree;
-    setup.settings.traceMode = TraceMode::SingleRays;
-    finishSetup(setup);
-    methods.push_back({ "per ray, " + model, setup, beams, build });
+    methods.push_back({ "per ray, " + model, peer(tree, 2, TraceMode::SingleRays), beams, build });
   }
   return methods;
-}
-
-/// Whether the facet loops have the echoes of the tree; where that takes seconds it is not checked.
-bool sameForAllMethods(const std::vector<Method>& methods)
-{
-  bool same = true;
-  for (std::size_t k = 2; k + 1 < methods.size(); ++k)
-  {
-    const Method& loop = methods[k];
-    const Method& perRay = methods[k + 1];
-    if (loop.name.rfind("facet loop, ", 0) == 0 && perRay.name.rfind("per ray", 0) == 0 &&
-      loop.setup.tree->mesh->size() < 2000)
-    {
-      same =
-        same && sameEchoes(resultOf(loop.setup, loop.beams), resultOf(perRay.setup, loop.beams));
-    }
-  }
-  return same;
 }
 }
 
 bool suiteFigure10(const Options& options)
 {
   bool good = true;
-  Table times(options.folder + "/figure10.csv",
-    "scene,triangles,beams,method,run_beams,build_s,scan_s,total_s");
+  Table times(options, "figure10", "scene,triangles,beams,method,run_beams,build_s,scan_s,total_s");
   forEachSceneOfFigures(options,
     [&](const Scene& scene)
     {
       const ScanBeams beams = makeBeams(scene, strideOf(options, scene));
       const std::vector<Method> methods = methodsOf(scene, beams);
-      if (!sameForAllMethods(methods))
+      bool same = true;
+      // Facet loops have the echoes of the tree; where that takes seconds it is not checked.
+      for (std::size_t k = 3; k < methods.size() && scene.mesh->size() < 2000; k += 3)
       {
-        say("ECHOES DEPEND ON THE METHOD: " + scene.name);
-        good = false;
+        const ScanBeams& run = methods[k - 1].beams;
+        same = same &&
+          sameEchoes(freshScan(methods[k - 1].setup, run, 2), freshScan(methods[k].setup, run, 2));
       }
-      std::vector<Contender> contenders;
-      for (const Method& m : methods)
-      {
-        contenders.push_back({ m.name, [&m]() { freshScan(m.setup, m.beams, 1); } });
-      }
-      const std::vector<Timing> timings = compete(contenders, figureLimits(options));
+      good = good && same;
+      const std::vector<Timing> timings = timesOf(methods, options);
       for (std::size_t k = 0; k < methods.size(); ++k)
       {
         const Method& m = methods[k];
@@ -347,7 +300,7 @@ bool suiteFigure10(const Options& options)
         times.row(scene.name, scene.mesh->size(), beams.size(), m.name, m.beams.size(), m.build,
           scan, m.build + scan);
       }
-      say("Fig. 10, " + scene.name);
+      say("Fig. 10, " + scene.name + (same ? "" : ": ECHOES DEPEND ON THE METHOD"));
     });
   return good;
 }
@@ -359,7 +312,7 @@ std::uint64_t secondRays(ScanSetup setup, const ScanBeams& beams, const ScanResu
 {
   setup.settings.numberOfReflections = 1;
   finishSetup(setup);
-  return result.raysTraced - resultOf(setup, beams).raysTraced;
+  return result.raysTraced - freshScan(setup, beams, 2).raysTraced;
 }
 
 /// Energy of all echoes, J, and of it what came over two reflections.
@@ -381,128 +334,96 @@ bool ablation(const Scene& scene, const Options& options, Table& times, Table& r
 {
   const auto tree = buildCollisionTree(scene.mesh, PaperTree);
   const ScanBeams beams = makeBeams(scene, strideOf(options, scene));
-  std::vector<ScanSetup> setups;
-  std::vector<Contender> contenders;
-  constexpr int share = 8; // of the limit
-  constexpr int direct = 16;
-  const int masks[] = { 0, 1, 2, 3, 4, 5, 6, 7, share, direct };
-  setups.reserve(std::size(masks));
-  std::vector<ScanResult> results(direct + 1);
-  for (const int mask : masks)
+  // Bits of the number: beam, energy, batch. Then a share of the limit, and one reflection.
+  const char* const names[] = { "original ray tracing", "beam", "energy", "beam + energy", "batch",
+    "beam + batch", "energy + batch", "beam + energy + batch", "share", "one reflection" };
+  constexpr int share = 8;
+  constexpr int direct = 9;
+  std::vector<Method> methods;
+  std::vector<ScanResult> results;
+  for (int k = 0; k <= direct; ++k)
   {
-    setups.push_back(makePaperSetup(scene, tree));
-    EchoSettings& s = setups.back().settings;
-    s.beamConstraint = (mask & 1) != 0;
-    s.lightEnergyConstraint = (mask & 2) != 0 || mask == share;
-    s.lightEnergyThreshold =
-      mask == share ? LightEnergyThreshold::ShareOfLimit : LightEnergyThreshold::Limit;
-    s.numberOfReflections = mask == direct ? 1 : 2;
-    s.traceMode = (mask & 4) != 0 ? TraceMode::Beams : TraceMode::SingleRays;
-    finishSetup(setups.back());
-    std::string name = mask == 0 ? "original ray tracing"
-      : mask == share            ? "share"
-      : mask == direct           ? "one reflection"
-                                 : "";
-    const char* const words[] = { "beam", "energy", "batch" };
-    for (int k = 0; k < 3; ++k)
+    const auto change = [k](EchoSettings& s)
     {
-      if (mask >> k & 1)
-      {
-        name += (name.empty() ? "" : " + ") + std::string(words[k]);
-      }
-    }
-    const ScanSetup& setup = setups.back();
-    results[mask] = resultOf(setup, beams);
-    contenders.push_back({ name, [&setup, &beams]() { freshScan(setup, beams, 1); } });
-    if (mask < 4 || mask == share)
+      const int bits = k < share ? k : 0;
+      s.beamConstraint = (bits & 1) != 0;
+      s.lightEnergyConstraint = (bits & 2) != 0 || k == share;
+      s.lightEnergyThreshold =
+        k == share ? LightEnergyThreshold::ShareOfLimit : LightEnergyThreshold::Limit;
+      s.numberOfReflections = k == direct ? 1 : 2;
+      s.traceMode = (bits & 4) != 0 ? TraceMode::Beams : TraceMode::SingleRays;
+    };
+    methods.push_back({ names[k], makePaperSetup(scene, tree, change), beams });
+    results.push_back(freshScan(methods[k].setup, beams, 2));
+    if (k < 4 || k == share)
     {
-      const auto [energy, second] = energyOf(results[mask]);
-      rays.row(scene.name, scene.mesh->size(), beams.size(), name,
-        secondRays(setup, beams, results[mask]), results[mask].echoes.size(), energy, second);
+      const auto [energy, second] = energyOf(results[k]);
+      rays.row(scene.name, scene.mesh->size(), names[k],
+        secondRays(methods[k].setup, beams, results[k]), results[k].echoes.size(), energy, second);
     }
   }
   bool good = true;
-  for (int mask = 0; mask < 8; ++mask)
+  for (int k = 0; k < share; ++k)
   {
     // Beam constraint and batch change no bit; what the energy constraint leaves out is in the
     // table.
-    good = good && sameEchoes(results[mask], results[mask & 2]);
+    good = good && sameEchoes(results[k], results[k & 2]);
   }
-  if (!good)
+  for (const Timing& t : timesOf(methods, options))
   {
-    say("ECHOES DEPEND ON A SWITCH: " + scene.name);
+    times.row(scene.name, scene.mesh->size(), t.name, t.best);
   }
-  for (const Timing& t : compete(contenders, figureLimits(options)))
-  {
-    times.row(scene.name, scene.mesh->size(), beams.size(), t.name, t.median, t.best, t.rounds);
-  }
-  say("Fig. 11, " + scene.name);
+  say("Fig. 11, " + scene.name + (good ? "" : ": ECHOES DEPEND ON A SWITCH"));
   return good;
 }
-}
-
-bool suiteFigure11(const Options& options)
-{
-  Table times(
-    options.folder + "/figure11.csv", "scene,triangles,beams,switches,median_s,best_s,rounds");
-  Table rays(options.folder + "/rays11.csv",
-    "scene,triangles,beams,switches,second_rays,echoes,energy_j,second_energy_j");
-  bool good = true;
-  forEachSceneOfFigures(
-    options, [&](const Scene& scene) { good = ablation(scene, options, times, rays) && good; });
-  return good;
-}
-
-namespace
-{
-/// A choice of what a path must carry.
-struct Choice
-{
-  const char* name;
-  bool on;
-  double fraction;
-};
 
 /// What is lost by choices of epsilon on one scene, the constraint off being the measure.
 void measureEpsilon(const Scene& scene, const Options& options, Table& table)
 {
   const auto tree = buildCollisionTree(scene.mesh, PaperTree);
   const ScanBeams beams = makeBeams(scene, strideOf(options, scene));
-  ScanSetup setup = makePaperSetup(scene, tree);
-  setup.settings.lightEnergyThreshold = LightEnergyThreshold::ShareOfLimit;
-  const double paths = setup.settings.raysPerBeam * (2.0 + setup.settings.numberOfConnections);
-  const Choice choices[] = { { "off", false, 0.0 }, { "1e-6", true, 1e-6 }, { "1e-3", true, 1e-3 },
-    { "0.1", true, 0.1 }, { "a path against Qlow/N", true, paths / setup.settings.raysPerBeam },
-    { "a path against Qlow", true, paths } };
-  std::vector<ScanSetup> setups;
-  std::vector<ScanResult> results;
-  std::vector<Contender> contenders;
-  setups.reserve(std::size(choices));
-  for (const Choice& choice : choices)
+  const EchoSettings usual;
+  const double paths = usual.raysPerBeam * (2.0 + usual.numberOfConnections);
+  const std::pair<const char*, double> choices[] = { { "off", 0.0 }, { "1e-6", 1e-6 },
+    { "1e-3", 1e-3 }, { "0.1", 0.1 }, { "a path against Qlow/N", paths / usual.raysPerBeam },
+    { "a path against Qlow", paths } };
+  std::vector<Method> methods;
+  for (const auto& [name, fraction] : choices)
   {
-    setup.settings.lightEnergyConstraint = choice.on;
-    setup.settings.lightEnergyFraction = choice.fraction;
-    finishSetup(setup);
-    setups.push_back(setup);
-    results.push_back(resultOf(setup, beams));
-    contenders.push_back(
-      { choice.name, [&s = setups.back(), &beams]() { freshScan(s, beams, 1); } });
+    const auto change = [f = fraction](EchoSettings& s)
+    {
+      s.lightEnergyThreshold = LightEnergyThreshold::ShareOfLimit;
+      s.lightEnergyConstraint = f > 0.0;
+      s.lightEnergyFraction = f;
+    };
+    methods.push_back({ name, makePaperSetup(scene, tree, change), beams });
   }
-  const std::vector<Timing> timings = compete(contenders, figureLimits(options));
-  for (std::size_t k = 0; k < setups.size(); ++k)
+  const std::vector<Timing> timings = timesOf(methods, options);
+  for (std::size_t k = 0; k < methods.size(); ++k)
   {
-    table.row(scene.name, scene.mesh->size(), beams.size(), timings[k].name, choices[k].fraction,
-      timings[k].best, secondRays(setups[k], beams, results[k]), results[k].echoes.size(),
-      energyOf(results[k]).first);
+    const ScanResult result = freshScan(methods[k].setup, beams, 2);
+    table.row(scene.name, scene.mesh->size(), methods[k].name, choices[k].second, timings[k].best,
+      secondRays(methods[k].setup, beams, result), result.echoes.size(), energyOf(result).first);
   }
   say("epsilon, " + scene.name);
 }
 }
 
+bool suiteFigure11(const Options& options)
+{
+  Table times(options, "figure11", "scene,triangles,switches,best_s");
+  Table rays(
+    options, "rays11", "scene,triangles,switches,second_rays,echoes,energy_j,second_energy_j");
+  bool good = true;
+  forEachSceneOfFigures(
+    options, [&](const Scene& scene) { good = ablation(scene, options, times, rays) && good; });
+  return good;
+}
+
 bool suiteEpsilon(const Options& options)
 {
-  Table table(options.folder + "/epsilon.csv",
-    "scene,triangles,beams,choice,fraction,best_s,second_rays,echoes,energy_j");
+  Table table(
+    options, "epsilon", "scene,triangles,choice,fraction,best_s,second_rays,echoes,energy_j");
   measureEpsilon(makeSphere(options.smoke ? 100 : 10000), options, table);
   forEachOther(options, [&](const Scene& scene) { measureEpsilon(scene, options, table); });
   return true;
@@ -510,8 +431,7 @@ bool suiteEpsilon(const Options& options)
 
 bool suiteSection5(const Options& options)
 {
-  Table table(
-    options.folder + "/section5.csv", "scene,triangles,beams,method,build_s,scan_s,echoes,rounds");
+  Table table(options, "section5", "scene,triangles,beams,method,build_s,scan_s");
   const auto measure = [&](Scene scene, int channels)
   {
     std::string name = scene.name;
@@ -527,25 +447,18 @@ bool suiteSection5(const Options& options)
       { { "paper", [&]() { paper = buildCollisionTree(scene.mesh, PaperTree, {}, 1); } },
         { "ours", [&]() { ours = buildCollisionTree(scene.mesh, TreeOptions{}, {}, 1); } } },
       figureLimits(options));
-    ScanSetup original = makePaperSetup(scene, paper);
-    switchOff(original.settings);
-    finishSetup(original);
-    const ScanSetup proposed = makePaperSetup(scene, paper);
     ScanSetup usual = makeSetup(scene, ours);
     usual.settings.beamSamples = EchoSettings().beamSamples;
     finishSetup(usual);
-    const ScanSetup* const setups[] = { &original, &proposed, &usual };
-    std::vector<Contender> contenders;
-    for (const char* method : { "original", "proposed", "defaults of this project" })
+    const std::vector<Method> methods = { { "original", makePaperSetup(scene, paper, switchOff),
+                                            beams, builds[0].best },
+      { "proposed", makePaperSetup(scene, paper), beams, builds[0].best },
+      { "defaults of this project", usual, beams, builds[1].best } };
+    const std::vector<Timing> timings = timesOf(methods, options);
+    for (std::size_t k = 0; k < methods.size(); ++k)
     {
-      const ScanSetup& setup = *setups[contenders.size()];
-      contenders.push_back({ method, [&setup, &beams]() { freshScan(setup, beams, 1); } });
-    }
-    const std::vector<Timing> timings = compete(contenders, figureLimits(options));
-    for (std::size_t k = 0; k < timings.size(); ++k)
-    {
-      table.row(name, scene.mesh->size(), beams.size(), timings[k].name, builds[k / 2].best,
-        timings[k].best, resultOf(*setups[k], beams).echoes.size(), timings[k].rounds);
+      table.row(
+        name, scene.mesh->size(), beams.size(), methods[k].name, methods[k].build, timings[k].best);
     }
     say("Sec. 5, " + name);
   };

@@ -1,18 +1,117 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file Suites.h
- * @brief The measurements, each a process of its own. Every one returns false if hits disagree.
+ * @brief The measurements, each a process of its own, and what they share: options, files of
+ * results, and rounds in which contenders take turns. A suite returns false if hits disagree.
  */
 #ifndef avianlidar_Suites_h
 #define avianlidar_Suites_h
 
-#include "BenchmarkScene.h"
-#include "Results.h"
+#include "Scenes.h"
 
+#include <fstream>
 #include <functional>
+#include <iomanip>
+#include <sstream>
+#include <string>
+#include <vector>
 
 namespace benchmarks
 {
+/// How long contenders take turns.
+struct RoundLimits
+{
+  double seconds = 5.0; ///< for all rounds of all contenders, about
+  int fewest = 3;
+  int most = 15;
+  double shortestTurn = 0.004; ///< s; a turn shorter than this is several runs
+  bool processorTime = false;  ///< time of the processor, of all threads, instead of real time
+};
+
+/// What the command line asked for.
+struct Options
+{
+  std::string suite;
+  std::string folder = "."; ///< results go here
+  bool brief = false;       ///< the short form
+  bool smoke = false;       ///< seconds: does everything work, no times worth reading
+  std::string scene;        ///< only this one; empty: all
+
+  RoundLimits limits() const;
+  /// Rays of a workload, at most.
+  std::size_t mostRays() const;
+};
+
+/// A file of comma-separated values in the folder of results. Every row is written through at once,
+/// so that a stopped run leaves what it has.
+class Table
+{
+public:
+  Table(const Options& options, const std::string& name, const std::string& header);
+
+  template <typename... Values>
+  void row(const Values&... values)
+  {
+    std::ostringstream line;
+    line.precision(9);
+    const char* comma = "";
+    ((line << comma << quoted(values), comma = ","), ...);
+    this->File << line.str() << std::endl;
+  }
+
+private:
+  static std::string quoted(const std::string& text);
+  static std::string quoted(const char* text) { return quoted(std::string(text)); }
+  template <typename Number>
+  static Number quoted(Number number)
+  {
+    return number;
+  }
+
+  std::ofstream File;
+};
+
+/// Writes a line for the user.
+void say(const std::string& text);
+
+struct Contender
+{
+  std::string name;
+  std::function<void()> run;
+};
+
+struct Timing
+{
+  std::string name;
+  double median = 0.0; ///< s
+  double best = 0.0;   ///< s
+  std::size_t rounds = 0;
+};
+
+/// Everyone runs once to warm up, then in rounds, in random order, so that whatever else the
+/// machine does falls on all alike; ratios are those of the medians.
+std::vector<Timing> compete(const std::vector<Contender>& contenders, const RoundLimits& limits);
+
+double medianOf(std::vector<double> values);
+
+/// Wall time of one call, s.
+double secondsOf(const std::function<void()>& run);
+
+/// Time of the processor for one call, of all threads, s.
+double processorSecondsOf(const std::function<void()>& run);
+
+/// Runs `work`, which writes its own results, in a copy of this process while no other thread
+/// works.
+/// @return whether it came to its end within so many seconds
+bool inSubprocess(const std::function<void()>& work, unsigned seconds);
+
+/// Those scenes of the list that are wanted and whose data are here, one after the other.
+void forEachScene(const Options& options, const std::vector<SceneEntry>& list,
+  const std::function<void(const Scene&, const SceneEntry&)>& measure);
+
+/// Airports and generated scenes.
+std::vector<SceneEntry> allScenes();
+
 /// What is measured with: libraries and compiler.
 bool suiteMachine(const Options& options);
 
@@ -41,28 +140,17 @@ bool suiteEpsilon(const Options& options);
 /// whole scans.
 bool suiteSection5(const Options& options);
 
-/// Cost against the number of triangles at fixed visible geometry.
-bool suiteGrowth(const Options& options);
-
 /// The stages of the filter, whole updates, lighting known hits again; airports.
 bool suiteFilter(const Options& options);
 
-/// Whole scans without refinement beside Embree tracing the same rays and nothing else, one thread;
-/// airports.
+/// Whole scans beside Embree tracing rays and nothing else, one thread; airports.
 bool suiteScan(const Options& options);
 
 /// Peak memory of tree and scan; airports.
-/// Time and error of scans beside those of rays that Embree traces.
-bool suiteFront(const Options& options);
-
 bool suiteMemory(const Options& options);
 
-/// Birds that move: a scan whose static hits are known, against a tree of its own for every beam;
-/// one thread, time of the processor. Outdoor scenes.
+/// Birds that move, in a scan whose static hits are known. Outdoor scenes.
 bool suiteMovers(const Options& options);
-
-/// All scenes of the matrix that are wanted and here, one after the other; says what is left out.
-void forEachScene(const Options& options, const std::function<void(const Scene&)>& measure);
 }
 
 #endif

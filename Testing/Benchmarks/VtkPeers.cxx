@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "VtkPeers.h"
+#include "Suites.h"
+#include "Tracers.h"
 
 #include "vtkAbstractCellLocator.h"
 #include "vtkCellArray.h"
@@ -13,7 +14,6 @@
 #include "vtkStaticCellLocator.h"
 
 #include <algorithm>
-#include <chrono>
 
 namespace benchmarks
 {
@@ -46,31 +46,20 @@ vtkSmartPointer<vtkPolyData> toPolyData(const Scene& scene)
   return data;
 }
 
-/// Reach of the segments that are given to the locators, m.
-double farthestCorner(vtkPolyData* data)
-{
-  const double* b = data->GetBounds();
-  double sum = 0.0;
-  for (int k = 0; k < 3; ++k)
-  {
-    const double side = std::max(std::fabs(b[2 * k]), std::fabs(b[2 * k + 1]));
-    sum += side * side;
-  }
-  return std::sqrt(sum);
-}
-
 VtkPeer peer(const Scene& scene, const vtkSmartPointer<vtkAbstractCellLocator>& locator)
 {
   const vtkSmartPointer<vtkPolyData> data = toPolyData(scene);
   locator->SetDataSet(data);
-  const auto start = std::chrono::steady_clock::now();
-  locator->BuildLocator();
-  const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
-  const double reach = 2.0 * farthestCorner(data);
+  const double seconds = secondsOf([&]() { locator->BuildLocator(); });
+  double reach = 0.0; // of the segments that are given to the locators, m
+  for (const Vec3& p : scene.mesh->points)
+  {
+    reach = std::max(reach, 2.0 * glm::length(p - scene.apex));
+  }
   const auto trace = [=](const Workload& work, int, const Consumer& consumer)
   {
     vtkNew<vtkGenericCell> cell;
-    const double from[3] = { Stand.x, Stand.y, Stand.z };
+    std::vector<Hit> hits(work.size());
     for (std::size_t i = 0; i < work.size(); ++i)
     {
       const Vec3 to = Stand + reach * work.direction(i);
@@ -79,19 +68,18 @@ VtkPeer peer(const Scene& scene, const vtkSmartPointer<vtkAbstractCellLocator>& 
       double parametric[3];
       int part = 0;
       vtkIdType triangle = -1;
-      Hit hit;
-      if (locator->IntersectWithLine(from, &to.x, 0.0, t, x, parametric, part, triangle, cell))
+      if (locator->IntersectWithLine(&Stand.x, &to.x, 0.0, t, x, parametric, part, triangle, cell))
       {
-        hit.triangle = static_cast<std::uint32_t>(triangle);
-        hit.range = safeLength(Vec3(x[0], x[1], x[2]) - Stand);
-      }
-      if (consumer)
-      {
-        consumer(i, &hit, 1);
+        hits[i].triangle = static_cast<std::uint32_t>(triangle);
+        hits[i].range = safeLength(Vec3(x[0], x[1], x[2]) - Stand);
       }
     }
+    if (consumer)
+    {
+      consumer(0, hits.data(), hits.size());
+    }
   };
-  return { seconds.count(), trace };
+  return { seconds, trace };
 }
 
 template <class Locator>

@@ -1,11 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Workload.h"
 
+#include "FinishSetup.h"
+
 #include <algorithm>
 
 namespace benchmarks
 {
 using namespace avianlidar;
+
+Vec3 Workload::direction(std::size_t ray) const
+{
+  const std::size_t beam = ray / this->raysPerBeam;
+  const std::size_t n = ray % this->raysPerBeam;
+  return glm::normalize(this->frames[beam].direction(this->rays[beam].x[n], this->rays[beam].y[n]));
+}
 
 std::size_t Workload::beamsPerBlock() const
 {
@@ -15,28 +24,24 @@ std::size_t Workload::beamsPerBlock() const
 
 Workload makeWorkload(const Scene& scene, const BeamAxes& axes)
 {
-  const ScanGenerator scan(axes.channels > 0 ? airportPattern(axes.channels) : scene.pattern);
-  const auto channels = axes.channels > 0 ? axes.channels : numberOfChannels(scene.pattern);
-  const std::int64_t columns = scan.size() / channels;
+  Scene scanned = scene;
+  scanned.pattern = axes.channels > 0 ? airportPattern(axes.channels) : scene.pattern;
+  const ScanGenerator scan(scanned.pattern);
   const std::size_t all = static_cast<std::size_t>(scan.size()) * axes.raysPerBeam;
-  const std::int64_t stride = axes.mostRays > 0
-    ? std::clamp<std::int64_t>((all + axes.mostRays - 1) / axes.mostRays, 1, columns)
-    : 1;
+  const std::int64_t columns = scan.size() / numberOfChannels(scanned.pattern);
+  const ScanBeams beams = makeBeams(scanned,
+    axes.mostRays > 0
+      ? std::clamp<std::int64_t>((all + axes.mostRays - 1) / axes.mostRays, 1, columns)
+      : 1);
   Workload work;
   work.raysPerBeam = axes.raysPerBeam;
+  work.rays.resize(beams.size());
   const StrataPartition strata(axes.raysPerBeam);
-  for (std::int64_t column = 0; column < columns; column += stride)
+  for (std::size_t b = 0; b < beams.size(); ++b)
   {
-    for (std::int64_t b = column * channels; b < (column + 1) * channels; ++b)
-    {
-      const ScanBeam beam = scan.beam(b);
-      work.frames.push_back(makeBeamFrame(scene.apex,
-        Vec3(beam.direction[0], beam.direction[1], beam.direction[2]), axes.halfBeamwidth));
-      work.rays.emplace_back();
-      sampleBeam(0, static_cast<std::uint64_t>(b), axes.raysPerBeam,
-        { axes.halfBeamwidth, BeamProfile::Uniform }, Sampling::Stratified, &strata,
-        work.rays.back());
-    }
+    work.frames.push_back(makeBeamFrame(scene.apex, beams.directions[b], axes.halfBeamwidth));
+    sampleBeam(0, beams.ids[b], axes.raysPerBeam, { axes.halfBeamwidth, BeamProfile::Uniform },
+      Sampling::Stratified, &strata, work.rays[b]);
   }
   for (std::size_t i = 0; i < work.size(); ++i)
   {
@@ -52,12 +57,44 @@ Workload makeWorkload(const Scene& scene, const BeamAxes& axes)
   return work;
 }
 
-std::vector<Hit> allHits(const Tracer& tracer, const Workload& workload, int threads)
+ScanSetup makeSetup(const Scene& scene, std::shared_ptr<const CollisionTree> tree)
 {
-  std::vector<Hit> all(workload.size());
-  tracer(workload, threads,
-    [&](std::size_t first, const Hit* hits, std::size_t count)
-    { std::copy(hits, hits + count, all.begin() + static_cast<std::ptrdiff_t>(first)); });
-  return all;
+  ScanSetup setup;
+  setup.tree = std::move(tree);
+  setup.materials = scene.materials;
+  setup.objectIds = scene.objectIds;
+  setup.materialIds = std::vector<int>(scene.materials.size(), 0);
+  setup.sensor = scene.sensor;
+  setup.settings.attenuationCoefficient = scene.attenuationCoefficient;
+  setup.settings.beamSamples = BeamSampleSource::Rays; // rays are what is measured here
+  finishSetup(setup);
+  return setup;
+}
+
+ScanBeams makeBeams(const Scene& scene, std::int64_t stride)
+{
+  const ScanGenerator scan(scene.pattern);
+  const int channels = numberOfChannels(scene.pattern);
+  ScanBeams beams;
+  for (std::int64_t b = 0; b < scan.size(); ++b)
+  {
+    if (b / channels % stride == 0)
+    {
+      const ScanBeam beam = scan.beam(b);
+      beams.ids.push_back(static_cast<std::uint64_t>(b));
+      beams.origins.push_back(scene.apex);
+      beams.directions.emplace_back(beam.direction[0], beam.direction[1], beam.direction[2]);
+      beams.times.push_back(beam.time);
+    }
+  }
+  return beams;
+}
+
+ScanResult freshScan(const ScanSetup& setup, const ScanBeams& beams, int threads)
+{
+  TraceCache cache;
+  ScanResult result;
+  simulateScan(setup, beams, threads, cache, std::size_t(1) << 30, {}, result);
+  return result;
 }
 }

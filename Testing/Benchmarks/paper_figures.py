@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Tables of Fig. 9 to 11 and of Sec. 5.2 and 5.3: what the paper says, what is measured, and a verdict that follows
 from the numbers. A ratio within NOTHING of 1 is no difference."""
+import functools
 import math
-from collections import OrderedDict
 
-from results import count, fit, read, seconds, table
+from results import columns_of, count, fit, pivot as pivoted, read, seconds, table
 
 NOTHING = 1.1
 SAME, PARTLY, CONTRADICTED = "same", "**in part**", "**contradicted**"
@@ -23,20 +23,12 @@ def name_of(row):
 
 
 def pivot(rows, group, values):
-    """{scene: {group: row}}, in the order of the rows."""
-    result = OrderedDict()
-    for r in rows:
-        result.setdefault(name_of(r), OrderedDict())[group(r)] = tuple(r[v] for v in values) if len(values) > 1 else r[
-            values[0]]
-    return result
+    """{scene: {group: values of the row}}, in the order of the rows."""
+    return pivoted(rows, name_of, group, lambda r: tuple(r[v] for v in values) if len(values) > 1 else r[values[0]])
 
 
 def triangles_of(rows):
     return {name_of(r): int(r["triangles"]) for r in rows}
-
-
-def verdict(holds, because=""):
-    return SAME if holds else f"{CONTRADICTED}, because {because}"
 
 
 def verdict_of(holds, names, because=""):
@@ -68,11 +60,9 @@ def percent(share):
 
 # ---------------------------------------------------------------------------------------------- Fig. 9
 
-RULES = ("BVH", "k-D", "BSP", "surface")
 BVH, KD = ("BVH", "AABB"), ("k-D", "AABB")
 BVH_SBV, KD_SBV = ("BVH", "SBV"), ("k-D", "SBV")
 OF_PAPER = (KD, KD_SBV, BVH, BVH_SBV)
-WIDE = ("k-D", "AABB, eight a node")
 
 
 def trees(folder):
@@ -88,15 +78,6 @@ def figure9(folder):
                                                if key in t else "-" for key in OF_PAPER)]
             for scene, t in found.items()]
     return table(["scene", "triangles", *names], rows)
-
-
-def figure9_all(folder):
-    """Totals of all trees."""
-    found = trees(folder)
-    keys = list(OrderedDict((key, None) for t in found.values() for key in t))
-    names = {"surface": "SAH"}
-    return table(["scene", *(f"{names.get(rule, rule)}, {volume}" for rule, volume in keys)],
-                 [[scene, *(seconds(t[key][2]) if key in t else "-" for key in keys)] for scene, t in found.items()])
 
 
 def work9(folder):
@@ -132,6 +113,7 @@ def paper9(folder):
     def won(part, pairs):
         return [r > 1.0 for _, a, b in pairs for r in ratios(a, b, part, full)]
 
+    rays = max(r["rays"] for r in read(folder, "figure9"))
     build, detection, total = (power(part) for part in range(3))
     ruled = power(2, scenes=[s for s in large if found[s][KD][0] > found[s][KD][1]])
     first, last = ([found[s][b][2] / found[s][a][2] for a, b in ((BVH, BVH_SBV), (KD, KD_SBV))]
@@ -141,9 +123,10 @@ def paper9(folder):
 
     return table(["the paper says", "measured here", "verdict"], [
         ["building takes time in proportion to the number of triangles",
-         f"k-D with AABB, spheres from {count(triangles[large[0]])}: as n^{build:.2f}", verdict(0.9 < build < 1.2, "sorting takes n log n")],
-        ["so does the total", f"detection as n^{detection:.2f}, total as n^{total:.2f} with {int(rays_of(folder)):,} rays; where building "
-         f"takes longer than detection, as n^{ruled:.2f}", in_proportion(total, ruled)],
+         f"k-D with AABB, spheres from {count(triangles[large[0]])}: as n^{build:.2f}",
+         SAME if 0.9 < build < 1.2 else f"{CONTRADICTED}, because sorting takes n log n"],
+        ["so does the total", f"detection as n^{detection:.2f}, total as n^{total:.2f} with {rays:,.0f} rays; "
+         f"where building takes longer than detection, as n^{ruled:.2f}", in_proportion(total, ruled)],
         *[[f"with SBV the {word} time is higher throughout than with AABB", f"SBV over AABB, {text(part, *sbv)}",
            verdict_of(won(part, sbv), "cases", because)]
           for part, (word, because) in enumerate((
@@ -153,7 +136,7 @@ def paper9(folder):
               ("total", "spheres are slower to fit, which decides only where triangles are many")))],
         ["and grows much faster", "total, SBV over AABB: BVH {:.2f}, k-D {:.2f} at {} triangles; {:.2f} and {:.2f} at {}"
          .format(*first, count(triangles[spheres[0]]), *last, count(triangles[spheres[-1]])),
-         verdict(grows, "the parts grow alike")],
+         SAME if grows else f"{CONTRADICTED}, because the parts grow alike"],
         *[[f"with the same volume the k-D tree is more efficient than the BVH: {word}",
            f"BVH over k-D, {text(part, *rules)}", verdict_of(won(part, rules), "cases", because)]
           for part, (word, because) in enumerate((
@@ -166,10 +149,6 @@ def paper9(folder):
     ], words=True)
 
 
-def rays_of(folder):
-    return max(r["rays"] for r in read(folder, "figure9"))
-
-
 # ---------------------------------------------------------------------------------------------- Fig. 10
 
 def methods(folder):
@@ -180,7 +159,7 @@ def methods(folder):
 def figure10(folder, part):
     found, triangles = methods(folder), triangles_of(read(folder, "figure10"))
     run = pivot(read(folder, "figure10"), lambda r: r["method"], ("run_beams",))
-    names = list(OrderedDict((m, None) for t in found.values() for m in t))
+    names = columns_of(found)
     rows = [[scene, count(triangles[scene]), *(seconds(t[m][part]) if m in t else "-" for m in names),
              f"{count(run[scene].get('facet loop, Phong', 0))}, "
              f"{count(run[scene]['facet loop, one reflection, Phong'])} of {count(run[scene]['proposed'])}"]
@@ -272,7 +251,7 @@ def switches(folder):
 
 def figure11(folder):
     found, triangles = switches(folder), triangles_of(read(folder, "figure11"))
-    names = list(OrderedDict((m, None) for t in found.values() for m in t))
+    names = columns_of(found)
     return table(["scene", "triangles", *names],
                  [[scene, count(triangles[scene]), *(seconds(t[m]) for m in names)] for scene, t in found.items()])
 
@@ -377,13 +356,10 @@ def paper11(folder):
 
 def epsilon(folder):
     """What choices cost and lose, each beside the constraint off."""
-    scenes = OrderedDict()
-    for r in read(folder, "epsilon"):
-        scenes.setdefault(name_of(r), []).append(r)
     rows = []
-    for scene, choices in scenes.items():
-        off = choices[0]
-        for r in choices:
+    for scene, choices in pivoted(read(folder, "epsilon"), name_of, lambda r: r["choice"], dict).items():
+        off = choices["off"]
+        for r in choices.values():
             lost = [max(0.0, 1.0 - r[k] / off[k]) for k in ("energy_j", "echoes")]
             rows.append([scene, r["choice"], f"{r['fraction']:g}" if r["fraction"] else "-", seconds(r["best_s"]),
                          f"{off['best_s'] / r['best_s']:.2f}", count(r["second_rays"]),
@@ -395,11 +371,10 @@ def epsilon(folder):
 # ---------------------------------------------------------------------------------------------- Sec. 5.2 and 5.3
 
 def section5(folder):
-    scenes = OrderedDict()
-    for r in read(folder, "section5"):
-        scenes.setdefault((r["scene"], r["triangles"], r["beams"]), []).append(r)
+    scenes = pivoted(read(folder, "section5"), lambda r: (r["scene"], r["triangles"], r["beams"]), lambda r: r["method"], dict)
     rows = []
-    for (scene, triangles, beams), (original, proposed, ours) in scenes.items():
+    for (scene, triangles, beams), methods_of in scenes.items():
+        original, proposed, ours = methods_of.values()
         ratio = original["scan_s"] / proposed["scan_s"]
         built = (original["build_s"] + original["scan_s"]) / (proposed["build_s"] + proposed["scan_s"])
         words, value = PAPER_RATIOS.get(scene, ("", 0.0))
@@ -415,19 +390,7 @@ def section5(folder):
                   "proposed / defaults"], rows)
 
 
-def tables(folder):
-    """{name: Markdown} of what there are results for."""
-    return OrderedDict([
-        ("figure9", figure9(folder)),
-        ("figure9-all", figure9_all(folder)),
-        ("work9", work9(folder)),
-        ("paper9", paper9(folder)),
-        ("figure10", figure10(folder, 0)),
-        ("figure10-build", figure10(folder, 1)),
-        ("paper10", paper10(folder)),
-        ("figure11", figure11(folder)),
-        ("rays11", rays11(folder)),
-        ("paper11", paper11(folder)),
-        ("epsilon", epsilon(folder)),
-        ("section5", section5(folder)),
-    ])
+TABLES = {"figure9": figure9, "work9": work9, "paper9": paper9,
+          "figure10": functools.partial(figure10, part=0), "figure10-build": functools.partial(figure10, part=1),
+          "paper10": paper10, "figure11": figure11, "rays11": rays11, "paper11": paper11, "epsilon": epsilon,
+          "section5": section5}

@@ -2,23 +2,41 @@
 """CSV files of the benchmarks, and what their tables are made of."""
 import csv
 import math
+import os
 import pathlib
+import platform
+import re
+import time
+
+import numpy as np
+
+PAGES = pathlib.Path(__file__).resolve().parents[2] / "Documentation" / "results"
 
 
 def read(folder, name):
     """The rows of one CSV file as dictionaries, numbers as numbers; [] if it is not there."""
-    file = pathlib.Path(folder) / f"{name}.csv"
-    if not file.exists():
-        return []
-
     def value(text):
         try:
             return float(text)
         except ValueError:
             return text
 
-    with open(file, newline="", encoding="utf-8") as stream:
-        return [{key: value(text) for key, text in row.items()} for row in csv.DictReader(stream)]
+    file = pathlib.Path(folder) / f"{name}.csv"
+    lines = file.read_text(encoding="utf-8").splitlines() if file.exists() else []
+    return [{key: value(text) for key, text in row.items()} for row in csv.DictReader(lines)]
+
+
+def pivot(rows, group, column, cell):
+    """{group of a row: {column of a row: its cell}}, in the order of the rows."""
+    found = {}
+    for r in rows:
+        found.setdefault(group(r), {})[column(r)] = cell(r)
+    return found
+
+
+def columns_of(found):
+    """The columns of a pivot, in the order in which they come first."""
+    return list(dict.fromkeys(column for cells in found.values() for column in cells))
 
 
 def table(header, rows, words=False):
@@ -33,23 +51,41 @@ def count(number):
 
 def seconds(value):
     """Three digits with a unit that fits."""
-    if value == "":
-        return "-"
-    for unit, size in (("s", 1.0), ("ms", 1e-3), ("us", 1e-6)):
-        if value >= size:
-            break
+    unit, size = next((u for u in (("s", 1.0), ("ms", 1e-3)) if value >= u[1]), ("us", 1e-6))
     return f"{value / size:.3g} {unit}" if value < 1000 else f"{value:,.0f} s"
 
 
 def fit(xs, ys):
     """Slope, intercept and R^2 of a straight line."""
-    n, mx, my = len(xs), sum(xs) / len(xs), sum(ys) / len(ys)
-    sxx = sum((x - mx) ** 2 for x in xs)
-    sxy = sum((x - mx) * (y - my) for x, y in zip(xs, ys))
-    syy = sum((y - my) ** 2 for y in ys)
-    slope = sxy / sxx if n > 1 and sxx > 0 else math.nan
-    return slope, my - slope * mx, sxy * sxy / (sxx * syy) if sxx > 0 and syy > 0 else math.nan
+    if len(xs) < 2 or max(xs) == min(xs):
+        return math.nan, math.nan, math.nan
+    return *np.polyfit(xs, ys, 1), np.corrcoef(xs, ys)[0, 1] ** 2
 
 
 def ratio_text(ratio):
     return f"**{ratio:.2f}**" if ratio < 1.0 else f"{ratio:.1f}" if ratio < 10 else f"{ratio:.0f}"
+
+
+def machine():
+    """(what, is): processor, cores, instruction sets, memory, system, load, date."""
+    info = dict(re.findall(r"^([^\t:]*?)\s*:\s*(.*)$", pathlib.Path("/proc/cpuinfo").read_text(encoding="utf-8"), re.M))
+    flags = info.get("flags", "").split()
+    sets = [s for s in ("sse4_2", "avx", "avx2", "fma", "avx512f", "avx512bw", "avx512vl") if s in flags]
+    memory = os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES") / 2**30
+    name, family, model = (info.get(key, "unknown") for key in ("model name", "cpu family", "model"))
+    return [("processor", f"{name} (family {family}, model {model})"), ("cores", len(os.sched_getaffinity(0))),
+            ("instruction sets", " ".join(sets)), ("memory", f"{memory:.0f} GiB"),
+            ("system", platform.freedesktop_os_release().get("PRETTY_NAME", "")),
+            ("load before the run", f"{os.getloadavg()[0]:.1f}"), ("date", time.strftime("%Y-%m-%d"))]
+
+
+def put_into_page(name, tables):
+    """Tables that have a row into a page of results, which is returned."""
+    page = PAGES / f"{name}.md"
+    text = page.read_text(encoding="utf-8")
+    for key, body in tables.items():
+        if body.count("\n") > 2:
+            block = rf"(<!-- table: {key} -->\n).*?(<!-- end -->)"
+            text = re.sub(block, lambda m, body=body: m[1] + body + m[2], text, flags=re.S)
+    page.write_text(text, encoding="utf-8")
+    return text

@@ -68,6 +68,10 @@ class Trade(unittest.TestCase):
         self.assertAlmostEqual(trade_runs.rms(found["total"]), 0.03, delta=1e-12)
         self.assertAlmostEqual(trade_runs.rms(found["range"]), 0.02, delta=1e-9)
         self.assertEqual((found["missed"], found["missed_strong"], found["false"]), (1, 1, 1))
+        for stated, held in ((0.01, 0), (0.02, strong - 1)):  # 1.96 of it against 3 %
+            echoes["energy_std_error"] = stated * echoes["energy_received"]
+            found = trade_runs.judge(self.reference, trade_runs.Scan(echoes, 1, 1, 1, {}))
+            self.assertEqual(found["held"].sum(), held)
 
     def test_errors_fall_as_theory_says(self):
         # Independent rays: -1/2. Two in each cell: -3/4 where an edge cuts the beam. Both sample every beam.
@@ -79,6 +83,12 @@ class Trade(unittest.TestCase):
         for rays in (64, 400):
             self.assertLess(self.named("cells", rays).error("energy"),
                             0.5 * self.named("stratified", rays).error("energy"))
+
+    def test_standard_errors_hold(self):
+        # 1.96 of them: 95 % if estimates were normal, and what is missed is not held.
+        for family, rays, wanted in (("Monte Carlo", 64, 0.93), ("Monte Carlo", 400, 0.93), ("stratified", 8, 0.9), ("stratified", 64, 0.93)):
+            with self.subTest(family, rays=rays):
+                self.assertGreater(self.named(family, rays).mean("held"), wanted)
 
     def test_advice_keeps_its_word_on_a_new_seed(self):
         self.assertEqual(len(self.advice), 5)

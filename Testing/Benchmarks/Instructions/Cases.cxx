@@ -2,9 +2,7 @@
 // Three fixed pieces of work whose instructions callgrind counts (check_instructions.py). What is
 // made ready before is not counted: callgrind looks only at avianlidarCounted().
 #include "BeamTracer.h"
-#include "BenchmarkScene.h"
 #include "CollisionTreeBuilder.h"
-#include "ScanRunner.h"
 #include "Workload.h"
 
 #include <algorithm>
@@ -23,32 +21,27 @@ extern "C" __attribute__((noinline)) void avianlidarCounted(const std::function<
 
 namespace
 {
-/// Every beam of `work`, on this thread.
-std::size_t trace(const CollisionTree& tree, const Workload& work)
-{
-  BeamTracer tracer(tree);
-  std::size_t found = 0;
-  for (std::size_t b = 0; b < work.beams(); ++b)
-  {
-    const auto rays = static_cast<std::uint32_t>(work.rays[b].size());
-    const BeamBlock block{ &work.frames[b], 1, rays,
-      [&](std::size_t) -> const BeamRays& { return work.rays[b]; } };
-    const BlockHits& hits = tracer.traceBlock(block, TraceMode::Automatic);
-    if (const std::uint32_t* const triangles = hits.triangles[0])
-    {
-      found += rays - std::count(triangles, triangles + rays, NoTriangle);
-    }
-  }
-  return found;
-}
-
 /// Tracing what beams of 100 rays see of `scene`.
 std::size_t countTracing(const Scene& scene, std::size_t mostRays)
 {
   const auto tree = buildCollisionTree(scene.mesh, TreeOptions{});
   const Workload work = makeWorkload(scene, { 100, 5.6e-3, 0, mostRays });
   std::size_t found = 0;
-  avianlidarCounted([&]() { found = trace(*tree, work); });
+  avianlidarCounted(
+    [&]()
+    {
+      BeamTracer tracer(*tree);
+      for (std::size_t b = 0; b < work.beams(); ++b)
+      {
+        const BeamBlock block{ &work.frames[b], 1, 100,
+          [&](std::size_t) -> const BeamRays& { return work.rays[b]; } };
+        const BlockHits& hits = tracer.traceBlock(block, TraceMode::Automatic);
+        if (const std::uint32_t* const triangles = hits.triangles[0])
+        {
+          found += 100 - std::count(triangles, triangles + 100, NoTriangle);
+        }
+      }
+    });
   return found;
 }
 
@@ -59,7 +52,7 @@ std::size_t countScan()
   const ScanSetup setup = makeSetup(scene, buildCollisionTree(scene.mesh, TreeOptions{}));
   const ScanBeams beams = makeBeams(scene, 12);
   std::size_t echoes = 0;
-  avianlidarCounted([&]() { echoes = freshScan(setup, beams, 1); });
+  avianlidarCounted([&]() { echoes = freshScan(setup, beams, 1).echoes.size(); });
   return echoes;
 }
 }

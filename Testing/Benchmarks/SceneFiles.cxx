@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "BenchmarkScene.h"
+#include "Scenes.h"
 
 #include "vtkAvianLidarCollisionTree.h"
 #include "vtkAvianLidarSceneReader.h"
@@ -21,43 +21,12 @@ namespace benchmarks
 {
 namespace
 {
-/// The surfaces as the filters see them: merged, triangles only, with a material and an object
-/// each.
-void takeSurfaces(vtkPolyData* surfaces, Scene& scene)
-{
-  TriangleMesh& mesh = *scene.mesh;
-  mesh.points.resize(surfaces->GetNumberOfPoints());
-  for (vtkIdType p = 0; p < surfaces->GetNumberOfPoints(); ++p)
-  {
-    surfaces->GetPoint(p, &mesh.points[p].x);
-  }
-  vtkCellArray* cells = surfaces->GetPolys();
-  vtkNew<vtkIdList> corners;
-  vtkDataArray* kd = surfaces->GetCellData()->GetArray("kd");
-  vtkDataArray* ks = surfaces->GetCellData()->GetArray("ks");
-  vtkDataArray* kp = surfaces->GetCellData()->GetArray("kp");
-  vtkDataArray* object = surfaces->GetCellData()->GetArray("object_id");
-  if (!object)
-  {
-    throw std::runtime_error("surfaces without object_id");
-  }
-  for (vtkIdType c = 0; c < cells->GetNumberOfCells(); ++c)
-  {
-    cells->GetCellAtId(c, corners);
-    mesh.triangles.push_back({ static_cast<std::uint32_t>(corners->GetId(0)),
-      static_cast<std::uint32_t>(corners->GetId(1)),
-      static_cast<std::uint32_t>(corners->GetId(2)) });
-    scene.materials.push_back({ kd->GetTuple1(c), ks->GetTuple1(c), kp->GetTuple1(c) });
-    scene.objectIds.push_back(static_cast<int>(object->GetTuple1(c)));
-  }
-}
-}
-
+/// A scene file seen by the airport scan of 16 channels: the surfaces as the filters see them,
+/// merged, triangles only, with a material and an object each.
 Scene readScene(const std::string& name, const std::string& file)
 {
   Scene scene;
   scene.name = name;
-  scene.mesh = std::make_shared<TriangleMesh>();
   scene.pattern = airportPattern(16);
   scene.airport = true;
   const char* data = std::getenv("AVIANLIDAR_DATA_DIR");
@@ -71,7 +40,23 @@ Scene readScene(const std::string& name, const std::string& file)
   vtkNew<vtkAvianLidarCollisionTree> tree;
   tree->SetInputConnection(reader->GetOutputPort());
   tree->Update();
-  takeSurfaces(tree->GetOutput(), scene);
+  vtkPolyData* surfaces = tree->GetOutput();
+  scene.mesh->points.resize(surfaces->GetNumberOfPoints());
+  for (vtkIdType p = 0; p < surfaces->GetNumberOfPoints(); ++p)
+  {
+    surfaces->GetPoint(p, &scene.mesh->points[p].x);
+  }
+  vtkNew<vtkIdList> corners;
+  const auto value = [surfaces](const char* array, vtkIdType cell)
+  { return surfaces->GetCellData()->GetArray(array)->GetTuple1(cell); };
+  for (vtkIdType c = 0; c < surfaces->GetNumberOfPolys(); ++c)
+  {
+    surfaces->GetPolys()->GetCellAtId(c, corners);
+    const auto corner = [&](int k) { return static_cast<std::uint32_t>(corners->GetId(k)); };
+    scene.mesh->triangles.push_back({ corner(0), corner(1), corner(2) });
+    scene.materials.push_back({ value("kd", c), value("ks", c), value("kp", c) });
+    scene.objectIds.push_back(static_cast<int>(value("object_id", c)));
+  }
   vtkDataArray* position =
     reader->GetOutputDataObject(0)->GetFieldData()->GetArray("lidar_position");
   if (!position || scene.mesh->size() == 0)
@@ -80,6 +65,7 @@ Scene readScene(const std::string& name, const std::string& file)
   }
   position->GetTuple(0, &scene.apex.x);
   return scene;
+}
 }
 
 std::vector<SceneEntry> airports()
@@ -101,7 +87,7 @@ std::vector<SceneEntry> airports()
 std::vector<SceneEntry> generatedScenes()
 {
   const auto entry = [](const std::string& name, std::function<Scene()> make) {
-    return SceneEntry{ name, std::move(make), "", "" };
+    return SceneEntry{ name, std::move(make) };
   };
   return {
     entry("boxes 500", []() { return makeBoxes(500); }),

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
- * @file BenchmarkScene.h
+ * @file Scenes.h
  * @brief The scenes that are measured: generated ones, and the airports where their data are.
  */
-#ifndef avianlidar_BenchmarkScene_h
-#define avianlidar_BenchmarkScene_h
+#ifndef avianlidar_Scenes_h
+#define avianlidar_Scenes_h
 
 #include "Reflectance.h"
 #include "ScanPattern.h"
@@ -25,7 +25,7 @@ using avianlidar::Vec3;
 struct Scene
 {
   std::string name;
-  std::shared_ptr<TriangleMesh> mesh;
+  std::shared_ptr<TriangleMesh> mesh = std::make_shared<TriangleMesh>();
   std::vector<avianlidar::Material> materials; ///< one per triangle
   std::vector<int> objectIds; ///< one per triangle; each wall, box, plate has its own
   Vec3 apex{ 0.0 };           ///< the lidar, m
@@ -40,8 +40,8 @@ struct SceneEntry
 {
   std::string name;
   std::function<Scene()> make;
-  std::string file;    ///< scene file, empty if generated
-  std::string repaint; ///< pattern of the blocks whose material is changed to measure re-lighting
+  std::string file = {};    ///< scene file, empty if generated
+  std::string repaint = {}; ///< pattern of the blocks whose material is changed to light again
 };
 
 /// The paper's airport scan (Sec. 5.3): 0 to 6 degrees in `channels`, the same step horizontally.
@@ -68,13 +68,6 @@ Scene makeLoggias();
 /// Rolling ground of a million triangles on 4 km, seen from 3 m above it at 0 to 1.5 degrees below
 /// the horizon.
 Scene makeTerrain();
-
-/// The front of a building, 200 x 40 m in bays of 4 m with windows, at 150 m, seen by a scan aimed
-/// at it, and behind it, hidden, as many boxes as bring the scene to about `triangles` triangles.
-Scene makeFacade(std::size_t triangles);
-
-/// A scene file (.lidarscene.json) seen by the airport scan of 16 channels.
-Scene readScene(const std::string& name, const std::string& file);
 
 /// Airports: Hongqiao as shipped, with its structures, with everything, and Honolulu.
 std::vector<SceneEntry> airports();
