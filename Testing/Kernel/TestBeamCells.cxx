@@ -282,8 +282,8 @@ TEST(BeamCells, SmallObjectsAreFoundAmongManyTriangles)
   Sensor sensor = openSensor();
   sensor.samplingInterval = 5e-8; // units of 7.5 m
   // Lists of surfaces, and so many that rays go through the tree.
-  for (const auto& [share, parts] : { std::pair<double, int>{ 1e-5, 10 }, { 1e-4, 10 },
-         { 1e-3, 10 }, { 1e-2, 10 }, { 1e-5, 40 }, { 1e-3, 40 } })
+  for (const auto& [share, parts] : { std::pair<double, int>{ 4e-6, 10 }, { 1e-5, 10 },
+         { 1e-4, 10 }, { 1e-3, 10 }, { 1e-2, 10 }, { 1e-5, 40 }, { 1e-3, 40 } })
   {
     int near = 0;
     constexpr int places = 60;
