@@ -10,36 +10,18 @@
 #include "vtkAvianLidarNames.h"
 #include "vtkAvianLidarRangeImage.h"
 
-#include "vtkCommand.h"
+#include "Checks.h"
 #include "vtkCubeSource.h"
-#include "vtkExecutive.h"
 #include "vtkImageData.h"
-#include "vtkNew.h"
 #include "vtkPointData.h"
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
 #include "vtkSphereSource.h"
-#include "vtkTestErrorObserver.h"
-
-#include <cmath>
-#include <cstdlib>
-#include <iostream>
-#include <string>
 
 namespace
 {
 namespace Arrays = vtkAvianLidarArrays;
-
-int Failures = 0;
-
-void Check(bool good, const std::string& what)
-{
-  if (!good)
-  {
-    std::cerr << "Failed: " << what << "\n";
-    ++Failures;
-  }
-}
+using checks::Check;
 
 /// Sum of an array of the echoes.
 double Sum(vtkAvianLidarEchoFilter* filter, const char* name)
@@ -121,12 +103,10 @@ int TestEchoFilter(int, char*[])
   echoes->Update();
   Check(echoes->GetOutput()->GetNumberOfPoints() == 2 * 90, "the strongest return of each beam");
 
-  vtkNew<vtkTest::ErrorObserver> errors;
-  echoes->AddObserver(vtkCommand::ErrorEvent, errors);
-  echoes->GetExecutive()->AddObserver(vtkCommand::ErrorEvent, errors);
+  checks::Heard heard(echoes);
   echoes->SetRaysPerBeam(0);
   echoes->Update();
-  Check(errors->GetError(), "no rays are an error");
+  Check(heard.ErrorHas("RaysPerBeam"), "no rays are an error");
   Check(echoes->GetOutput()->GetNumberOfPoints() == 0, "and give nothing");
-  return Failures == 0 ? EXIT_SUCCESS : EXIT_FAILURE;
+  return checks::Result();
 }

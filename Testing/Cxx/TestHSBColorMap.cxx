@@ -3,23 +3,17 @@
 #include "vtkAvianLidarArrays.h"
 #include "vtkAvianLidarHSBColorMap.h"
 
-#include "vtkCommand.h"
+#include "Checks.h"
 #include "vtkDoubleArray.h"
-#include "vtkExecutive.h"
 #include "vtkFloatArray.h"
 #include "vtkLookupTable.h"
-#include "vtkNew.h"
 #include "vtkPointData.h"
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
-#include "vtkTestErrorObserver.h"
 #include "vtkUnsignedCharArray.h"
 #include "vtkUnstructuredGrid.h"
 
 #include <cmath>
-#include <cstdlib>
-#include <functional>
-#include <iostream>
 #include <limits>
 #include <string>
 #include <vector>
@@ -28,19 +22,9 @@ namespace
 {
 namespace Arrays = vtkAvianLidarArrays;
 using Filter = vtkAvianLidarHSBColorMap;
+using checks::Check;
 
 const double Nan = std::numeric_limits<double>::quiet_NaN();
-int Failures = 0;
-
-void Check(bool good, const std::string& what)
-{
-  if (!good)
-  {
-    std::cerr << "Failed: " << what << "\n";
-    ++Failures;
-  }
-}
-
 template <class SetT>
 vtkSmartPointer<SetT> Cloud(const std::vector<double>& energies, double lower, double upper)
 {
@@ -149,77 +133,48 @@ void TestLookupTable()
 
 void TestLegalButOdd()
 {
-  vtkNew<vtkTest::ErrorObserver> observer;
   vtkNew<Filter> filter;
-  filter->AddObserver(vtkCommand::ErrorEvent, observer);
-  filter->AddObserver(vtkCommand::WarningEvent, observer);
+  checks::Heard heard(filter);
   vtkNew<vtkPolyData> nothing;
   filter->SetInputData(nothing);
   filter->Update();
-  Check(!observer->GetError() && !observer->GetWarning(), "no points: silence");
-  vtkPointData* none = vtkPointSet::SafeDownCast(filter->GetOutputDataObject(0))->GetPointData();
-  Check(none->GetArray("hue") && none->GetArray("hue")->GetNumberOfTuples() == 0,
-    "no points: the array of hues is there");
-  Check(none->GetArray("rgb") && none->GetArray("rgb")->GetNumberOfComponents() == 3 &&
-      none->GetArray("rgb")->GetNumberOfTuples() == 0,
-    "no points: the array of colours is there");
+  Check(heard.Nothing(), "no points: silence");
+  auto* output = vtkPointSet::SafeDownCast(filter->GetOutputDataObject(0));
+  vtkDataArray* hue = output->GetPointData()->GetArray("hue");
+  vtkDataArray* rgb = output->GetPointData()->GetArray("rgb");
+  Check(hue && hue->GetNumberOfTuples() == 0 && rgb && rgb->GetNumberOfComponents() == 3,
+    "no points: the arrays are there");
   filter->SetInputData(Cloud<vtkPolyData>({ 1.0, Nan, Nan }, 1.0, 3.0));
   filter->Update();
-  auto* output = vtkPointSet::SafeDownCast(filter->GetOutputDataObject(0));
-  Check(observer->GetWarningMessage().find("2 values") != std::string::npos,
-    "energies that are not numbers are counted");
-  Check(std::isnan(output->GetPointData()->GetArray("hue")->GetComponent(1, 0)),
-    "their hue is not a number");
-  Check(output->GetPointData()->GetArray("rgb")->GetComponent(1, 2) == 0.0, "they are black");
+  output = vtkPointSet::SafeDownCast(filter->GetOutputDataObject(0));
+  Check(heard.WarningHas("2 values"), "energies that are not numbers are counted");
+  Check(std::isnan(output->GetPointData()->GetArray("hue")->GetComponent(1, 0)) &&
+      output->GetPointData()->GetArray("rgb")->GetComponent(1, 2) == 0.0,
+    "they have no hue and are black");
 }
 
+// Arrays and fields of wrong values are tested in TestArguments.py.
 void TestBadInput()
 {
-  const struct
+  const auto check = [](Filter* filter, vtkPolyData* cloud, const char* words)
   {
-    const char* names;
-    std::function<void(Filter*, vtkPolyData*)> spoil;
-  } cases[] = {
-    { "'energy'", [](Filter*, vtkPolyData* d) { d->GetPointData()->RemoveArray("energy"); } },
-    { "2 components",
-      [](Filter*, vtkPolyData* d)
-      { d->GetPointData()->AddArray(Arrays::Make<vtkDoubleArray>(Arrays::Energy, 7, 2)); } },
-    { "lower_energy_limit",
-      [](Filter*, vtkPolyData* d) { d->GetFieldData()->RemoveArray("lower_energy_limit"); } },
-    { "upper_energy_limit",
-      [](Filter*, vtkPolyData* d)
-      { Arrays::SetFieldValue(d->GetFieldData(), Arrays::UpperEnergyLimit, Nan); } },
-    { "limits in the field data",
-      [](Filter*, vtkPolyData* d)
-      { Arrays::SetFieldValue(d->GetFieldData(), Arrays::UpperEnergyLimit, 0.5); } },
-    { "EnergyRange",
-      [](Filter* f, vtkPolyData*)
-      {
-        f->UseFieldDataRangeOff();
-        f->SetEnergyRange(3.0, 1.0);
-      } },
-    { "EnergyRange",
-      [](Filter* f, vtkPolyData*)
-      {
-        f->UseFieldDataRangeOff();
-        f->SetEnergyRange(Nan, 1.0);
-      } },
-  };
-  for (const auto& c : cases)
-  {
-    vtkNew<vtkTest::ErrorObserver> observer;
-    vtkNew<Filter> filter;
-    filter->AddObserver(vtkCommand::ErrorEvent, observer);
-    filter->GetExecutive()->AddObserver(vtkCommand::ErrorEvent, observer);
-    auto cloud = Cloud<vtkPolyData>(Energies, 1.0, 3.0);
-    c.spoil(filter, cloud);
+    checks::Heard heard(filter);
     filter->SetInputData(cloud);
     filter->Update();
-    Check(observer->GetErrorMessage().find(c.names) != std::string::npos,
-      std::string(c.names) + " is named: " + observer->GetErrorMessage());
+    Check(heard.ErrorHas(words), std::string(words) + " is named");
     Check(vtkPointSet::SafeDownCast(filter->GetOutputDataObject(0))->GetNumberOfPoints() == 0,
-      std::string(c.names) + ": the output is empty");
-  }
+      std::string(words) + ": the output is empty");
+  };
+  auto cloud = Cloud<vtkPolyData>(Energies, 3.0, 1.0);
+  check(vtkNew<Filter>(), cloud, "limits in the field data");
+  cloud->GetFieldData()->RemoveArray("lower_energy_limit");
+  check(vtkNew<Filter>(), cloud, "lower_energy_limit");
+  cloud->GetPointData()->RemoveArray("energy");
+  check(vtkNew<Filter>(), cloud, "'energy'");
+  vtkNew<Filter> filter;
+  filter->UseFieldDataRangeOff();
+  filter->SetEnergyRange(3.0, 1.0);
+  check(filter, Cloud<vtkPolyData>(Energies, 1.0, 3.0), "EnergyRange");
 }
 }
 
@@ -229,5 +184,5 @@ int TestHSBColorMap(int, char*[])
   TestLookupTable();
   TestLegalButOdd();
   TestBadInput();
-  return Failures ? EXIT_FAILURE : EXIT_SUCCESS;
+  return checks::Result();
 }
