@@ -30,29 +30,18 @@ def a_scan(**settings):
 class Memory(unittest.TestCase):
     def test_no_copies(self):
         scan = a_scan()
-        echoes = scan.echoes
-        output = scan.algorithm.GetOutput()
+        echoes, output = scan.echoes, scan.algorithm.GetOutput()
         for name in echoes:
             self.assertEqual(address(echoes[name]), address(vtk_to_numpy(output.GetPointData().GetArray(name))), name)
             self.assertEqual(address(echoes[name]), address(scan[name]))
         self.assertEqual(address(echoes.points), address(vtk_to_numpy(output.GetPoints().GetData())))
-        beams = scan.sensor.beams
-        plain = vtk_to_numpy(scan.sensor.algorithm.GetOutput().GetPointData().GetArray("direction"))
-        self.assertEqual(address(beams["direction"]), address(plain))
-
-    def test_arrays_cannot_be_written_to(self):
-        scan = a_scan()
-        for array in (scan["energy"], scan.echoes.points, scan.range_image()["distance_m"]):
+        for array in (scan["energy"], echoes.points, scan.range_image()["distance_m"], scan.sensor.beams["direction"]):
             with self.assertRaisesRegex(ValueError, "read-only"):
                 array[0] = 1
-        copy = scan["energy"].copy()
-        copy[0] = 1
 
     def test_arrays_outlive_everything(self):
         scan = a_scan()
         energy, points, expected = scan["energy"], scan.echoes.points, scan["energy"].copy()
-        image = scan.range_image()["distance_m"]
-        finite = image[np.isfinite(image)].copy()
         places = points.copy()
         filters = [weakref.ref(thing) for thing in (scan.algorithm, scan.sensor.algorithm, scan.scene.tree)]
         array = weakref.ref(scan.algorithm.GetOutput().GetPointData().GetArray("energy"))
@@ -62,7 +51,6 @@ class Memory(unittest.TestCase):
         self.assertIsNotNone(array())
         noise = [np.full(len(energy), i, dtype=float) for i in range(100)]  # would take freed memory
         self.assertTrue(np.array_equal(energy, expected) and np.array_equal(points, places))
-        self.assertTrue(np.array_equal(image[np.isfinite(image)], finite))
         del energy, noise
         gc.collect()
         self.assertIsNone(array())
@@ -77,59 +65,38 @@ class Memory(unittest.TestCase):
                 for name in copy:
                     self.assertEqual(cloud[name].tobytes(), copy[name].tobytes(), (change, name))
 
-
     def test_visibility_is_air(self):
-        clear, haze = a_scan(visibility=23e3), a_scan(visibility=5e3)
-        # Kruse and Kim: 8.9e-5 1/m at 23 km and 905 nm.
-        self.assertAlmostEqual(float(clear.echoes.fields["attenuation_coefficient"]), 8.9e-5, delta=1e-6)
-        self.assertGreater(float(haze.echoes.fields["attenuation_coefficient"]), 4e-4)
-        self.assertLess(haze["energy"].max(), clear["energy"].max())
-        same_air = a_scan(attenuation_coefficient=float(clear.echoes.fields["attenuation_coefficient"]))
-        self.assertTrue(same(clear.echoes, same_air.echoes))
-        for wrong in (-1.0, float("nan"), float("inf"), 1e-40):
-            clear.visibility = wrong
-            with self.assertRaisesRegex(al.Error, "Visibility is .*, expected 0, or up to 1e9 m"):
-                clear.update()
-        clear.visibility = 23e3
-        self.assertTrue(same(clear.echoes, same_air.echoes))
+        clear = a_scan(visibility=23e3)
+        air = float(clear.echoes.fields["attenuation_coefficient"])
+        self.assertAlmostEqual(air, 8.9e-5, delta=1e-6)  # Kruse and Kim, at 23 km and 905 nm
+        self.assertTrue(same(clear.echoes, a_scan(attenuation_coefficient=air).echoes))
 
 
 class Messages(unittest.TestCase):
     def test_errors_are_exceptions(self):
+        """As long as it is so, whatever is asked for, and no echoes of the scan before; mended, it scans as it did."""
         scan = a_scan()
-        scan.sensor.pulse_energy = -1
-        for _ in range(2):  # as long as it is so
-            with self.assertRaisesRegex(al.Error, r"\AvtkAvianLidarBeamSource: .*PulseEnergy is -1, expected .* J\.\Z"):
-                scan.update()
-        scan.sensor.pulse_energy = 3.6e-4
-        self.assertTrue(same(scan.echoes, a_scan().echoes))
+        before = scan.echoes
+        for name, value, good in (("pulse_energy", -1, 3.6e-4), ("position", (float("nan"), 0, 0), (0, 0, 0))):
+            setattr(scan.sensor, name, value)
+            for ask in (scan.update, lambda: scan.echoes, lambda: scan.report, lambda: scan["energy"], scan.range_image) * 2:
+                with self.assertRaisesRegex(al.Error, r"\AvtkAvianLidarBeamSource: .*" + name.title().replace("_", "")):
+                    ask()
+            setattr(scan.sensor, name, good)
+            self.assertTrue(same(scan.echoes, before))
         scan.rays_per_beam = 0
         with self.assertRaisesRegex(al.Error, "^vtkAvianLidarEchoFilter: .*RaysPerBeam"):
             scan["energy"]
-        with self.assertRaises(KeyError):
-            a_scan()["enrgy"]
         with self.assertRaisesRegex(TypeError, "vtkPointSet"):
             al.Cloud(vtkImageData())
 
-    def test_a_sensor_that_fails_leaves_no_echoes(self):
-        """Not those of the scan before, however often they are asked for; mended, it scans as it did."""
-        scan = a_scan()
-        before = scan.echoes
-        for position in ((1e31, 0, 0), (float("nan"), 0, 0)):
-            scan.sensor.position = position
-            for _ in range(2):
-                for ask in (lambda: scan.echoes, lambda: scan.report, lambda: scan["energy"], scan.range_image):
-                    with self.assertRaisesRegex(al.Error, "^vtkAvianLidarBeamSource: .*Position"):
-                        ask()
-        scan.sensor.position = (0, 0, 0)
-        self.assertTrue(same(scan.echoes, before))
-
     def test_nothing_is_printed(self):
-        code = ("import avianlidar as al\n"
+        code = ("import sys, avianlidar as al\n"
+                "print([m for m in sys.modules if m.startswith('matplotlib') or 'Rendering' in m or m == 'vtk'])\n"  # slow to import
                 "try:\n    al.Scan(al.Scene(), al.Sensor(azimuth_step=-1)).update()\n"
                 "except al.Error as error:\n    print('caught', error)\n")
         result = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-        self.assertRegex(result.stdout, "^caught vtkAvianLidarBeamSource: .*AzimuthStep")
+        self.assertRegex(result.stdout, r"^\[\]\ncaught vtkAvianLidarBeamSource: .*AzimuthStep")
         self.assertEqual(result.stderr, "")
 
     def test_errors_where_the_display_of_warnings_is_off(self):
@@ -139,9 +106,8 @@ class Messages(unittest.TestCase):
         vtkObject.GlobalWarningDisplayOff()
         for call in (lambda: al.Sensor(pulse_energy=-1).beams, lambda: a_scan(rays_per_beam=0).echoes,
                      lambda: al.load_scene(file), lambda: a_scan(attenuation_coefficient=-1).save(file + ".csv")):
-            for _ in range(2):
-                with self.assertRaisesRegex(al.Error, r"vtkAvianLidar\w+: failed, and VTK's messages are off"):
-                    call()
+            with self.assertRaisesRegex(al.Error, r"vtkAvianLidar\w+: failed, and VTK's messages are off"):
+                call()
         self.assertFalse(os.path.exists(file + ".csv"))
 
     def test_a_failure_without_a_word(self):
@@ -155,22 +121,19 @@ class Messages(unittest.TestCase):
                 return self.result
 
         mute = Mute()
-        for _ in range(2):
-            with self.assertRaisesRegex(al.Error, "vtkPythonAlgorithm: failed"):
-                al.Scene(mute)
-        mute.AddObserver("StartEvent", lambda *_: vtkObject.GlobalWarningDisplayOff())  # no executive says it either
         self.addCleanup(vtkObject.GlobalWarningDisplayOn)
         for _ in range(2):
-            with self.assertRaisesRegex(al.Error, "vtkPythonAlgorithm: failed"):
-                al.Scene(mute)
+            for _ in range(2):
+                with self.assertRaisesRegex(al.Error, "vtkPythonAlgorithm: failed"):
+                    al.Scene(mute)
+            mute.AddObserver("StartEvent", lambda *_: vtkObject.GlobalWarningDisplayOff())  # no executive says it either
         Mute.result = 1
         self.assertEqual(al.Scene(mute).surfaces.GetNumberOfBlocks(), 1)
 
     def test_warnings_are_warnings(self):
-        cube = vtkCubeSource()
         with warnings.catch_warnings(record=True) as caught:
             warnings.simplefilter("always")
-            al.Scan(al.Scene(cube), al.Sensor(azimuth_step=10)).update()
+            al.Scan(al.Scene(vtkCubeSource()), al.Sensor(azimuth_step=10)).update()
         self.assertEqual(len(caught), 1, [str(w.message) for w in caught])
         self.assertRegex(str(caught[0].message), "^vtkAvianLidarCollisionTree: .*taken as Wall")
         self.assertEqual(caught[0].category, RuntimeWarning)
@@ -189,8 +152,7 @@ class Stopping(unittest.TestCase):
         """After a stop the scan is what it would have been."""
         self.scan.progress = None
         self.scan.preset = "Draft"
-        fresh = al.Scan(al.Scene(town()), al.Sensor(azimuth_step=1), preset="Draft", seed=self.scan.seed,
-                        beam_samples="rays")
+        fresh = al.Scan(al.Scene(town()), al.Sensor(azimuth_step=1), preset="Draft", seed=self.scan.seed, beam_samples="rays")
         self.assertTrue(same(self.scan.echoes, fresh.echoes))
         self.assertGreater(fresh.echoes.number_of_points, 100)
 
@@ -220,58 +182,45 @@ class Stopping(unittest.TestCase):
                     self.scan.update()
                 self.assert_goes_on()
 
-    def test_interrupt(self):
-        before = signal.getsignal(signal.SIGINT)
-        heard = []
-
-        def interrupt(share, name):
-            if name == "vtkAvianLidarEchoFilter":
-                heard.append(share)
-                if share > 0.02:
-                    os.kill(os.getpid(), signal.SIGINT)
-
-        self.scan.progress = interrupt
-        with self.assertRaises(KeyboardInterrupt):
-            self.scan.update()
-        self.assertLess(heard[-1], 0.5)  # long before its end
-        self.assertEqual(self.scan.algorithm.GetOutput().GetNumberOfPoints(), 0)
-        self.assertEqual(signal.getsignal(signal.SIGINT), before)
-        self.assert_goes_on()
-
     def signalled(self, number, handler):
-        """The scan with a handler that gets a signal while VTK works. The handler stays who handles it."""
-        before = signal.signal(number, handler)
-        sender = subprocess.Popen(["sh", "-c", f"sleep 0.1; kill -{int(number)} {os.getpid()}"])
+        """The scan with a handler that gets a signal when VTK works. The handler stays who handles it."""
+        before, shares, sent = signal.signal(number, handler), [], []
+
+        def send(share, name):
+            shares.append(share)
+            if name == "vtkAvianLidarEchoFilter" and share > 0.02 and not sent:
+                sent.append(share)
+                os.kill(os.getpid(), number)
+
+        self.scan.progress = send
+        self.scan.seed += 1
         try:
             self.scan.update()
         finally:
-            sender.wait()
             self.assertIs(signal.getsignal(number), handler)
             signal.signal(number, before)
+            self.share = shares[-1]
 
     def test_signals_whose_handler_raises(self):
-        shares = []
-        self.scan.set(preset="Custom", rays_per_beam=20000)
-        self.scan.progress = lambda share, name: shares.append(share)
-        for number in (signal.SIGTERM, signal.SIGALRM, signal.SIGINT):
-            for kind in (TimeoutError, SystemExit, KeyboardInterrupt):
-                def handler(*_, kind=kind):
-                    raise kind("enough")
+        def ends(kind):
+            def handler(*_):
+                raise kind("enough")
+            return handler
 
-                with self.subTest(f"{number}, {kind}"):
-                    self.scan.seed += 1
-                    with self.assertRaisesRegex(kind, "enough"):
-                        self.signalled(number, handler)
-                    self.assertLess(shares[-1], 0.9)
-                    self.assertEqual(self.scan.algorithm.GetOutput().GetNumberOfPoints(), 0)
+        for number, kind, handler in ((signal.SIGINT, KeyboardInterrupt, signal.default_int_handler), (signal.SIGINT, LookupError, None),
+                                      (signal.SIGTERM, SystemExit, None), (signal.SIGALRM, TimeoutError, None)):
+            with self.subTest(f"{number}, {kind}"):
+                with self.assertRaises(kind):
+                    self.signalled(number, handler or ends(kind))
+                self.assertLess(self.share, 0.5)  # long before its end
+                self.assertEqual(self.scan.algorithm.GetOutput().GetNumberOfPoints(), 0)
         self.assert_goes_on()
 
     def test_signals_whose_handler_returns(self):
         """The scan goes on."""
-        self.scan.set(preset="Custom", rays_per_beam=2000)
+        self.scan.set(preset="Draft")
         for number in (signal.SIGALRM, signal.SIGINT):
             heard = []
-            self.scan.seed += 1
             self.signalled(number, lambda number, _, heard=heard: heard.append(number))
             self.assertEqual(heard, [number])
             self.assertGreater(self.scan.algorithm.GetOutput().GetNumberOfPoints(), 100)
@@ -286,21 +235,20 @@ class Stopping(unittest.TestCase):
                 "scan = al.Scan(al.Scene(town()), al.Sensor(azimuth_step=1), preset='Draft', beam_samples='rays')\n"
                 "scan.update()\n"
                 "ends = 0\n"
-                "for i in range(300):\n"
+                "for i in range(100):\n"
                 "    try:\n"
-                "        signal.setitimer(signal.ITIMER_REAL, 1e-6 + 1e-5 * i)\n"
+                "        signal.setitimer(signal.ITIMER_REAL, 1e-6 + 3e-5 * i)\n"
                 "        scan.seed = i\n"
                 "        scan.update()\n"
                 "        signal.setitimer(signal.ITIMER_REAL, 0)\n"
                 "    except Enough:\n"
                 "        ends += 1\n"
                 "signal.signal(signal.SIGALRM, signal.SIG_IGN)\n"
-                "print(ends, signal.getsignal(signal.SIGINT) is signal.default_int_handler)\n")
+                "print(ends > 90, signal.getsignal(signal.SIGINT) is signal.default_int_handler)\n")
         path = os.pathsep.join([os.path.dirname(os.path.abspath(__file__)), os.environ.get("PYTHONPATH", "")])
         result = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, timeout=200,
                                 env={**os.environ, "PYTHONPATH": path})
-        self.assertEqual(result.stderr, "")
-        self.assertEqual(result.stdout, "300 True\n")
+        self.assertEqual((result.stdout, result.stderr), ("True True\n", ""))
 
     def test_other_threads_leave_signals_alone(self):
         results = []
@@ -308,14 +256,6 @@ class Stopping(unittest.TestCase):
         thread.start()
         thread.join()
         self.assertGreater(results[0], 100)
-
-
-class Imports(unittest.TestCase):
-    def test_neither_matplotlib_nor_rendering(self):
-        code = ("import sys, avianlidar\n"
-                "print([m for m in sys.modules if m.startswith('matplotlib') or 'Rendering' in m or m == 'vtk'])")
-        result = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-        self.assertEqual(result.stdout.strip(), "[]")
 
 
 if __name__ == "__main__":
