@@ -224,6 +224,7 @@ class Pictures(unittest.TestCase):
             factor = 1e6 if array == "energy" else 1
             np.testing.assert_allclose(drawn[shown], factor * values[shown], rtol=1e-12, err_msg=array)
             self.assertTrue(np.array_equal(~np.ma.getmaskarray(drawn), shown), array)
+            __import__("matplotlib.pyplot").pyplot.close(axes.figure)
         self.assertEqual((axes.get_xlabel(), axes.get_ylabel()), ("azimuth (deg from north)", "elevation (deg)"))
         self.assertEqual(self.drawn("energy")[1].get_clim(), (2.0, 62.5))
         axes, mesh, _ = self.drawn("status")
