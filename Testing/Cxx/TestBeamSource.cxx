@@ -132,44 +132,6 @@ void TestTable()
     "the table is printed");
 }
 
-// All pieces together are the whole, each has every so manieth column, and knows its global beams.
-void TestPieces()
-{
-  vtkNew<Source> whole;
-  whole->SetOrientation(10.0, 2.0, -1.0);
-  whole->Update();
-  vtkPointData* all = whole->GetOutput()->GetPointData();
-  for (int pieces : { 3, 1000 }) // more than there are columns
-  {
-    vtkNew<Source> source;
-    source->SetOrientation(10.0, 2.0, -1.0);
-    vtkIdType count = 0;
-    bool same = true;
-    for (int piece = 0; piece < pieces; ++piece)
-    {
-      source->UpdatePiece(piece, pieces, 0);
-      vtkPointData* part = source->GetOutput()->GetPointData();
-      const vtkIdType size = source->GetOutput()->GetNumberOfPoints();
-      count += size;
-      same = same && size <= 16 * ((960 + pieces - 1) / pieces);
-      for (vtkIdType i = 0; i < size; ++i)
-      {
-        const auto id = static_cast<vtkIdType>(part->GetArray("beam_id")->GetComponent(i, 0));
-        same = same && id / 16 % pieces == piece;
-        for (const char* name :
-          { "beam_id", "direction", "laser_id", "azimuth", "vertical_angle", "timestamp" })
-        {
-          const int last = part->GetArray(name)->GetNumberOfComponents() - 1;
-          same = same &&
-            part->GetArray(name)->GetComponent(i, last) ==
-              all->GetArray(name)->GetComponent(id, last);
-        }
-      }
-    }
-    Check(same && count == 15360, std::to_string(pieces) + " even pieces make the whole");
-  }
-}
-
 // Rays that are asked for after the beams are those of the same piece.
 void TestPiecesOfBothPorts()
 {
@@ -283,7 +245,6 @@ int TestBeamSource(int, char*[])
   TestPreset("CorridorC16", &Source::SetPresetToCorridorC16, 180, 16, 2.5e-4, 200.0, -15.0, 2.0);
   TestArrays();
   TestTable();
-  TestPieces();
   TestPiecesOfBothPorts();
   TestHeldOutput();
   TestBadValues();

@@ -161,15 +161,6 @@ void TestOtherBeams()
   filter->Update();
   Check(At(filter->GetOutput(), "distance_m", 7, 2) == 50.0, "directions are enough");
 
-  vtkNew<vtkAvianLidarBeamSource> tilted;
-  tilted->SetOrientation(20.0, 5.0, -3.0);
-  filter->SetInputData(0, Echoes({ { 16 * 7 + 3, 50.0, 1e-5, 4 } }));
-  filter->SetInputConnection(1, tilted->GetOutputPort());
-  filter->SetColumns(0);
-  filter->Update();
-  Check(filter->GetOutput()->GetDimensions()[0] == 960 &&
-      At(filter->GetOutput(), "distance_m", 7, 3) == 50.0,
-    "the rows of a tilted sensor are its channels");
 }
 
 // A beam report of four beams, two of which share a cell.

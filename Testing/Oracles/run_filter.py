@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Runs vtkAvianLidarEchoFilter on every case of oracles.json and prints a table of its errors; --page brings it into
+"""Runs vtkAvianLidarEchoFilter on every case of oracles.py and prints a table of its errors; --page brings it into
 Documentation/results/oracles.md. For another simulator, this is the file to write anew.
 
     PYTHONPATH=$(cat build/paraview/python-path) /usr/bin/python3 Testing/Oracles/run_filter.py [--page]
@@ -153,12 +153,9 @@ def of_connections(case, how="sampled", seeds=40, rays=1000, **more):
 
 
 def results():
-    """One row for each number. The specular path is one of a kernel test (TestSecondaryReflection): a beam of many rays
-    has no way to be one ray."""
+    """One row for each number."""
     rows = []
-    for case in oracles.read()["cases"]:
-        if "path" in case:
-            continue
+    for case in oracles.compute()["cases"]:
         connects = "secondary_energy_J" in case["expected"]
         rows += of_connections(case) if connects else of_energy(case)
         if "waveform" in case:
@@ -197,13 +194,6 @@ def table(rows):
         expected = next(iter(both.values()))["expected"]
         lines.append(f"| {case} | {quantity} | {expected:.10g} | {' | '.join(cells)} |")
     return "\n".join(lines) + "\n"
-
-
-def on_page():
-    """{(case, quantity): what it is, sampled, integrated or both} of the rows of the page."""
-    block = re.search(r"<!-- table: oracles -->\n(.*?)<!-- end -->", PAGE.read_text(encoding="utf-8"), flags=re.S)[1]
-    cells = [[cell.strip() for cell in line.split("|")[1:-1]] for line in block.splitlines()[2:]]
-    return {(c[0], c[1]): {how for how, text in (("sampled", c[3]), ("integrated", c[5])) if text} for c in cells}
 
 
 def main():

@@ -6,34 +6,28 @@ import unittest
 
 import numpy as np
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
-from vtkmodules.vtkCommonCore import mutable, vtkPoints
-from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData, vtkStaticCellLocator
+from vtkmodules.vtkCommonCore import mutable
+from vtkmodules.vtkCommonDataModel import vtkStaticCellLocator
 from vtkmodules.vtkFiltersCore import vtkAppendPolyData
 
 import avianlidar as al
 import exampletools
-from avianlidar.vtkAvianLidar import vtkAvianLidarBeamSource, vtkAvianLidarBeamView, vtkAvianLidarEchoFilter, vtkAvianLidarTracks
-from echotools import Messages
+from avianlidar.vtkAvianLidar import vtkAvianLidarBeamSource, vtkAvianLidarBeamView, vtkAvianLidarTracks
+from echotools import Messages, array, scan
 
 AIRPORT = os.path.join(exampletools.EXAMPLES, "airport", "scene", "hongqiao.lidarscene.json")
 HALF = 5.6e-3  # rad
-RAYS = 6000
+RAYS = 3000
 
 
 def plate(x0, x1, distance, object_id, kd=0.5, z=40.0):
     """A plate across the direction north."""
-    points, cells, data = vtkPoints(), vtkCellArray(), vtkPolyData()
-    points.SetDataTypeToDouble()
-    for x, y in ((x0, -z), (x1, -z), (x1, z), (x0, z)):
-        points.InsertNextPoint(x, distance, y)
-    for triangle in ((0, 1, 2), (0, 2, 3)):
-        cells.InsertNextCell(3, triangle)
-    data.SetPoints(points)
-    data.SetPolys(cells)
+    corners = [(x, distance, y) for x, y in ((x0, -z), (x1, -z), (x1, z), (x0, z))]
+    data = al.mesh(corners, [(0, 1, 2), (0, 2, 3)])
     for name, value in (("kd", kd), ("ks", 0.0), ("kp", 1.0), ("object_id", object_id)):
-        array = numpy_to_vtk(np.full(2, value, dtype=np.int32 if name == "object_id" else float), deep=True)
-        array.SetName(name)
-        data.GetCellData().AddArray(array)
+        values = numpy_to_vtk(np.full(2, value, dtype=np.int32 if name == "object_id" else float), deep=True)
+        values.SetName(name)
+        data.GetCellData().AddArray(values)
     return data
 
 
@@ -85,62 +79,45 @@ def by_object(view, column):
 class ClosedForms(unittest.TestCase):
     def test_two_plates_halve_a_beam(self):
         for profile in (0, 1):
-            view = look(north(BeamProfile=profile), both(plate(-40, 0, 100, 3), plate(0, 40, 100, 4)))
-            for column in ("solid_angle_share", "energy_share"):
+            view = look(north(BeamProfile=profile), both(plate(-40, 0, 100, 3, 0.6), plate(0, 40, 100, 4, 0.2)))
+            for column, first in (("solid_angle_share", 0.5), ("energy_share", 0.75)):  # energy goes with the reflectance
                 shares = by_object(view, column)
-                self.assertAlmostEqual(shares[3], 0.5, delta=1e-6)
-                self.assertAlmostEqual(shares[4], 0.5, delta=1e-6)
+                self.assertAlmostEqual(shares[3], first, delta=1e-5)
                 self.assertAlmostEqual(sum(shares.values()), 1.0, delta=1e-12)
             table = rows(view)
             self.assertEqual([row["object_id"] for row in table], [3, 4, -1])
             self.assertEqual(table[-1]["object"], "no surface")
             self.assertAlmostEqual(table[0]["distance_m"], 100.0, delta=0.01)
 
-    def test_energy_goes_with_the_reflectance_and_the_solid_angle_does_not(self):
-        view = look(north(), both(plate(-40, 0, 100, 3, 0.6), plate(0, 40, 100, 4, 0.2)))
-        self.assertAlmostEqual(by_object(view, "energy_share")[3], 0.75, delta=1e-5)
-        self.assertAlmostEqual(by_object(view, "solid_angle_share")[3], 0.5, delta=1e-6)
-
-    def test_half_a_beam_is_sky(self):
+    def test_sky(self):
         view = look(north(), plate(-40, 0, 100, 3))
         self.assertAlmostEqual(by_object(view, "solid_angle_share")[-1], 0.5, delta=1e-6)
         self.assertEqual(by_object(view, "energy_share"), {3: 1.0, -1: 0.0})
-
-    def test_a_beam_into_the_sky(self):
         view = look(north(), plate(-40, 0, -100, 3))
         self.assertEqual([(row["object"], row["solid_angle_share"]) for row in rows(view)], [("no surface", 1.0)])
         self.assertEqual(view.GetOutputDataObject(0).GetNumberOfCells(), 0)
         self.assertAlmostEqual(view.GetOutputDataObject(1).GetBounds()[3], 1000.0, delta=0.1)
 
-    def test_what_is_seen_lies_in_the_cone(self):
-        view = look(north(), plate(-40, 40, 100, 3))
-        radius = 100 * math.tan(HALF)
-        bounds = view.GetOutputDataObject(0).GetBounds()
-        for found, wanted in zip(bounds, (-radius, radius, 100, 100, -radius, radius)):
-            self.assertAlmostEqual(found, wanted, delta=2e-3 * radius)
+    def test_what_is_seen_lies_in_the_cone_and_has_the_energy_of_the_echo(self):
+        source, wall, radius = north(), plate(-40, 40, 100, 3), 100 * math.tan(HALF)
+        view = look(source, wall)
+        np.testing.assert_allclose(view.GetOutputDataObject(0).GetBounds(), (-radius, radius, 100, 100, -radius, radius), atol=2e-3 * radius)
         cone = view.GetOutputDataObject(1)
         self.assertEqual(cone.GetPoint(0), (0.0, 0.0, 0.0))
         self.assertAlmostEqual(cone.GetBounds()[3], 100.0, delta=0.01)
-
-    def test_the_energy_is_that_of_the_echo(self):
-        source, wall = north(), plate(-40, 40, 100, 3)
-        echoes = vtkAvianLidarEchoFilter()
-        echoes.SetInputConnection(0, source.GetOutputPort())
-        echoes.SetInputDataObject(1, wall)
-        echoes.SetNoise(False)
-        echoes.Update()
-        received = echoes.GetOutput().GetPointData().GetArray("return_energy").GetValue(0)
-        self.assertAlmostEqual(by_object(look(source, wall), "energy_received")[3] / received, 1.0, delta=1e-6)
+        echo = scan(wall, source, Noise=False)
+        echo.Update()
+        self.assertAlmostEqual(by_object(view, "energy_received")[3] / array(echo.GetOutput(), "return_energy")[0], 1.0, delta=1e-6)
 
 
 class Airport(unittest.TestCase):
     def test_against_the_cell_locator(self):
-        """The beams of mixed echoes: shares of the solid angle are those of 6000 rays that VTK follows."""
+        """The beams of mixed echoes: shares of the solid angle are those of rays that VTK follows."""
         scene = al.load_scene(AIRPORT)
         source = vtkAvianLidarBeamSource()
         source.SetPosition(0, 0, 3)
-        scan = al.Scan(scene, al.Sensor("Airport16", position=(0, 0, 3)), noise=False)
-        beams = np.array(scan["beam_id"])[np.argsort(scan["label_share"], kind="stable")]
+        seen = al.Scan(scene, al.Sensor("Airport16", position=(0, 0, 3)), noise=False)
+        beams = np.array(seen["beam_id"])[np.argsort(seen["label_share"], kind="stable")]
         mesh = scene.tree.GetOutput()
         locator = vtkStaticCellLocator()
         locator.SetDataSet(mesh)
@@ -148,12 +125,12 @@ class Airport(unittest.TestCase):
         objects = vtk_to_numpy(mesh.GetCellData().GetArray("object_id"))
         random = np.random.default_rng(1)
         found, view = 0, look(source, mesh)
-        for beam in beams[:400]:
+        for beam in beams[:100]:
             view.SetBeamId(int(beam))
             view.Update()
             shares = by_object(view, "solid_angle_share")
             self.assertAlmostEqual(sum(shares.values()), 1.0, delta=1e-9)
-            if found == 3 or len(shares) < 3:
+            if found == 2 or len(shares) < 3:
                 continue
             found += 1
             cone = view.GetOutputDataObject(1)
@@ -164,7 +141,7 @@ class Airport(unittest.TestCase):
                 counted = np.count_nonzero(hits < 0) if thing == -1 else np.count_nonzero(objects[hits[hits >= 0]] == thing)
                 error = 4 * math.sqrt(max(share * (1 - share), 1e-4) / RAYS) + 2e-3
                 self.assertAlmostEqual(share, counted / RAYS, delta=error, msg=(beam, thing))
-        self.assertEqual(found, 3)
+        self.assertEqual(found, 2)
 
 
 def rays_of(locator, apex, axis, half, random, count):
@@ -195,23 +172,20 @@ class Movers(unittest.TestCase):
         source = vtkAvianLidarBeamSource()
         source.SetPresetToSearch905()
         source.SetPosition(0, 0, 3)
-        echoes = vtkAvianLidarEchoFilter()
-        echoes.SetInputConnection(0, source.GetOutputPort())
-        echoes.SetInputDataObject(1, plate(-900, 900, 500, 3, z=200))
+        wall = plate(-900, 900, 500, 3, z=200)
+        echoes = scan(wall, source)
         echoes.SetInputConnection(2, tracks.GetOutputPort())
         echoes.Update()
-        points = echoes.GetOutput().GetPointData()
-        objects = vtk_to_numpy(points.GetArray("object_id"))
+        objects = array(echoes.GetOutput(), "object_id")
         birds = np.flatnonzero(objects > 3)
         self.assertGreater(len(birds), 3)
         for i in birds[:3]:
-            beam = int(points.GetArray("beam_id").GetValue(i))
-            view = look(source, plate(-900, 900, 500, 3, z=200), beam, tracks)
+            view = look(source, wall, int(array(echoes.GetOutput(), "beam_id")[i]), tracks)
             self.assertGreater(by_object(view, "energy_received")[objects[i]], 0)
             self.assertAlmostEqual(sum(by_object(view, "solid_angle_share").values()), 1.0, delta=1e-9)
 
 
-class Fields(unittest.TestCase):
+class Settings(unittest.TestCase):
     def test_full_model_is_what_was_set(self):
         view = look(north(), plate(-40, 40, 100, 3))
         for wanted in (False, True):
@@ -219,8 +193,6 @@ class Fields(unittest.TestCase):
             view.Update()
             self.assertEqual([view.GetOutputDataObject(port).GetFieldData().GetArray("full_model").GetValue(0) for port in range(3)], [wanted] * 3)
 
-
-class Bad(unittest.TestCase):
     def test_a_beam_that_is_not_there(self):
         for beam in (1, -1):
             view = look(north(), plate(-40, 40, 100, 3))

@@ -225,31 +225,6 @@ class Stopping(unittest.TestCase):
             self.assertEqual(heard, [number])
             self.assertGreater(self.scan.algorithm.GetOutput().GetNumberOfPoints(), 100)
 
-    def test_many_signals(self):
-        """At any place of the helper's code: nothing is printed, and the handler is who it was."""
-        code = ("import signal, avianlidar as al\n"
-                "from echotools import town\n"
-                "class Enough(Exception): pass\n"
-                "def stop(*_): raise Enough\n"
-                "signal.signal(signal.SIGALRM, stop)\n"
-                "scan = al.Scan(al.Scene(town()), al.Sensor(azimuth_step=1), preset='Draft', beam_samples='rays')\n"
-                "scan.update()\n"
-                "ends = 0\n"
-                "for i in range(100):\n"
-                "    try:\n"
-                "        signal.setitimer(signal.ITIMER_REAL, 1e-6 + 3e-5 * i)\n"
-                "        scan.seed = i\n"
-                "        scan.update()\n"
-                "        signal.setitimer(signal.ITIMER_REAL, 0)\n"
-                "    except Enough:\n"
-                "        ends += 1\n"
-                "signal.signal(signal.SIGALRM, signal.SIG_IGN)\n"
-                "print(ends > 90, signal.getsignal(signal.SIGINT) is signal.default_int_handler)\n")
-        path = os.pathsep.join([os.path.dirname(os.path.abspath(__file__)), os.environ.get("PYTHONPATH", "")])
-        result = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, timeout=200,
-                                env={**os.environ, "PYTHONPATH": path})
-        self.assertEqual((result.stdout, result.stderr), ("True True\n", ""))
-
     def test_other_threads_leave_signals_alone(self):
         results = []
         thread = threading.Thread(target=lambda: results.append(self.scan.set(preset="Draft").echoes.number_of_points))

@@ -171,22 +171,6 @@ class Movers(unittest.TestCase):
         # The class makes it unless it is told not to: VTK's programs read any output after Update().
         self.assertTrue(type(scan.algorithm)().GetReportMovers())
 
-    def test_detection_is_as_probable_as_the_report_says(self):
-        """Over 100 revolutions, which differ in noise alone, within 3.5 standard errors."""
-        away = [550 * np.array((np.sin(a) * np.cos(0.05), np.cos(a) * np.cos(0.05), 0.05)) for a in np.linspace(0, 6, 12)]
-        gulls = [al.mover(bird(ObjectId=k, Heading=25.0 * k), [place]) for k, place in enumerate(away)]
-        sensor = al.Sensor("Search905", number_of_revolutions=100)
-        scan = al.Scan(al.Scene(), sensor, attenuation_coefficient=8.9e-5, movers=gulls, report_movers=True)
-        seen = np.zeros(len(gulls))
-        for revolution in range(100):
-            scan.algorithm.UpdateTimeStep(2.0 * revolution)
-            report = al.Cloud(scan.algorithm.GetOutput(2))
-            seen += np.array(report["number_of_echoes"]) > 0
-        expected = np.array(report["detection_probability"])
-        error = np.sqrt(100 * expected * (1 - expected)) + 1e-6
-        self.assertGreater(((expected > 0.1) & (expected < 0.9)).sum(), 3)
-        self.assertLess(np.abs((seen - 100 * expected) / np.maximum(error, 1)).max(), 3.5)
-
     def test_ids_and_names(self):
         """Of an object that is there already, of two that share a number, and of numbers that leave a gap."""
         for ids, expected in (((1, 2), [3, 4]), ((10, 12), [10, 12])):

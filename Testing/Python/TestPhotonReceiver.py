@@ -4,6 +4,7 @@ changed receiver traces nothing, and a scan of empty sky has the false alarms th
 import json
 import os
 import pathlib
+import re
 import tempfile
 import unittest
 import warnings
@@ -77,14 +78,13 @@ class Files(unittest.TestCase):
         sensor.amplifier_noise = 10.0
         self.assertNotIn("amplifier_noise", sensor.beams.fields["assumed"])
         self.assertNotIn("assumed", Sensor("Airport16").beams.fields)
-        sensor = self.load({**self.good, "values": {**self.good["values"], "channel_elevations": {
-            "value": [1, 2], "unit": "deg", "source": "assumed"}, "beam_profile": {
-                "value": 1, "unit": "1", "source": "assumed"}}})
+        self.good["values"].update({"channel_elevations": {"value": [1, 2], "unit": "deg", "source": "assumed"},
+                                    "beam_profile": {"value": 1, "unit": "1", "source": "assumed"}})
+        sensor = self.load(self.good)
         self.assertLessEqual({"channel_elevations", "beam_profile"}, set(sensor.beams.fields["assumed"]))
         sensor.set(channel_elevations=(1, 3), beam_profile="Uniform")
         self.assertFalse({"channel_elevations", "beam_profile"} & set(sensor.beams.fields["assumed"]))
-        by_hand = Sensor("Airport16", receiver_model="Photons", receiver_aperture=0.01)
-        self.assertIn("receiver_efficiency", by_hand.beams.fields["assumed"])
+        self.assertIn("receiver_efficiency", Sensor("Airport16", receiver_model="Photons", receiver_aperture=0.01).beams.fields["assumed"])
 
     def test_channels_and_sectors_of_ones_own(self):
         self.good["values"].update({
@@ -102,17 +102,15 @@ class Files(unittest.TestCase):
         np.testing.assert_allclose(beams["timestamp"], 1e6 * (column * 2 / 36 + np.array([0, 2e-5, 1e-5])[channel]))
         self.assertIn("blanked_sectors", beams.fields["assumed"])
         self.assertEqual(list(beams.fields["blanked_sectors"]), [90, 180])
-        # However the offsets are grouped, a range image has a column for each step.
+        # A range image has a column for each step, however the offsets are grouped, and nothing where no beam is.
         self.good["values"]["channel_azimuth_offsets"]["value"] = [0.1, 0.1, -0.1]
         grouped = self.load(self.good)
         grouped.azimuth_step = 10.0
-        self.assertEqual(Scan(wall(), grouped, noise=False).range_image()["distance_m"].shape, (3, 36))
-        # A range image has all columns, and nothing where no beam is.
-        image = Scan(wall(), sensor, noise=False).range_image()
-        self.assertEqual(image["distance_m"].shape, (3, 36))
-        self.assertTrue(np.isnan(image["distance_m"][:, 9:18]).all())
-        # A preset has none of this.
-        sensor.algorithm.SetPresetToAirport16()
+        for one in (grouped, sensor):
+            image = Scan(wall(), one, noise=False).range_image()["distance_m"]
+            self.assertEqual(image.shape, (3, 36))
+            self.assertTrue(np.isnan(image[:, 9:18]).all())
+        sensor.algorithm.SetPresetToAirport16()  # which has none of this
         self.assertEqual(sensor.beams.number_of_points, 15360)
 
     def test_bad_files_name_the_key_and_change_nothing(self):
@@ -137,16 +135,11 @@ class Files(unittest.TestCase):
         sensor = Sensor("CorridorC16")
         before = text_of(sensor)
         for content, words in cases:
-            with self.subTest(words):
-                with self.assertRaises(Error) as raised:
-                    self.load(content)
-                self.assertIn(words, str(raised.exception))
-                self.assertIn("own.lidarsensor.json", str(raised.exception))
-                self.assertFalse(sensor.algorithm.LoadSensor(os.path.join(self.folder.name, "own.lidarsensor.json")))
+            with self.subTest(words), self.assertRaisesRegex(Error, "own.lidarsensor.json(.|\n)*" + re.escape(words)):
+                self.load(content)
+            self.assertFalse(sensor.algorithm.LoadSensor(os.path.join(self.folder.name, "own.lidarsensor.json")))
         self.assertEqual(text_of(sensor), before)
         self.assertEqual(self.load(self.good).wavelength, 905)
-        with self.assertRaisesRegex(Error, "cannot be opened"):
-            Sensor(os.path.join(self.folder.name, "none.json"))
 
 
 class Receiver(unittest.TestCase):
@@ -198,26 +191,17 @@ class Receiver(unittest.TestCase):
         with self.assertWarnsRegex(RuntimeWarning, r"some 1\d\d\d times the FalseAlarmsPerScan") as caught:
             few.beams.number_of_points
         self.assertEqual(len(caught.warnings), 1)
+        for sensor, words in ((Sensor("Search1550"), "RangeGate is 4000 m, but the next pulse leaves after 15 us, that is 2248 m"),
+                              (Sensor("Automotive16"), "RangeGate is 300 m.*1.3 us")):
+            with self.assertWarnsRegex(RuntimeWarning, words):
+                sensor.beams.number_of_points
+        few.position = (0, 0, 3)
         with warnings.catch_warnings():
             warnings.simplefilter("error")
-            few.position = (0, 0, 3)
-            self.assertEqual(few.beams.number_of_points, 15360)
-            for name in ("Search905", "Airport16"):
-                self.assertGreater(Sensor(name).beams.number_of_points, 0)
-        with self.assertWarnsRegex(RuntimeWarning, "RangeGate is 4000 m, but the next pulse leaves after 15 us, that is 2248 m") as caught:
-            Sensor("Search1550").beams.number_of_points
-        self.assertNotIn("electrons", str(caught.warning))
-        with self.assertWarnsRegex(RuntimeWarning, "RangeGate is 300 m.*1.3 us"):
-            Sensor("Automotive16").beams.number_of_points
-        with warnings.catch_warnings():
-            warnings.simplefilter("error")
-            Sensor("Search1550", range_gate=2248).beams.number_of_points
+            for sensor in (few, Sensor("Search905"), Sensor("Airport16"), Sensor("Search1550", range_gate=2248)):
+                self.assertGreater(sensor.beams.number_of_points, 0)
         few.amplifier_noise = 0.1
         with self.assertWarns(RuntimeWarning):  # another number
-            few.beams.number_of_points
-        few.amplifier_noise = 60.0
-        with warnings.catch_warnings():
-            warnings.simplefilter("error")
             few.beams.number_of_points
 
     def test_the_threshold_is_that_of_the_whole_scan(self):
@@ -237,11 +221,8 @@ class Receiver(unittest.TestCase):
         sensor.algorithm.SetLimitsFromDataSheet(200.0, 0.1)
         self.assertAlmostEqual(sensor.lower_energy_limit / energy, np.exp(-2 * (clear - 1e-4) * 200.0), delta=1e-12)
         sensor.algorithm.SetLimitsFromDataSheet(200.0, 0.1, 1e-4)
-        for bad in ((0.0, 0.1), (200.0, 0.0), (200.0, 1.5), (200.0, 0.1, -1.0), (float("nan"), 0.1)):
+        for bad in ((0.0, 0.1), (200.0, 1.5), (200.0, 0.1, -1.0), (float("nan"), 0.1), (4000.0, 0.1, 1.0)):  # the last lets nothing through
             sensor.algorithm.SetLimitsFromDataSheet(*bad)
-        sensor.algorithm.SetLimitsFromDataSheet(4000.0, 0.1, 1.0)  # through which nothing comes back
-        Sensor("Airport16", receiver_aperture=0.01, pulse_energy=float("nan")).algorithm.SetLimitsFromDataSheet(200.0, 0.1)
-        Sensor("Airport16").algorithm.SetLimitsFromDataSheet(200.0, 0.1)
         self.assertAlmostEqual(sensor.lower_energy_limit / energy, 1, delta=1e-12)
 
 

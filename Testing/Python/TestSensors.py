@@ -37,6 +37,10 @@ def around(angle):
     return (angle + 180) % 360 - 180
 
 
+def wall(y, half=5):
+    return [(-half, y, -half), (half, y, -half), (half, y, half), (-half, y, half)], [(0, 1, 2), (0, 2, 3)]
+
+
 class Manuals(unittest.TestCase):
     def test_names_and_what_a_file_says(self):
         for name, rate in REAL.items():
@@ -58,31 +62,25 @@ class Manuals(unittest.TestCase):
         self.assertEqual(al.Sensor("Airport16").description["name"], "Airport16")
         self.assertEqual(al.Sensor(FILES / "VLP16.lidarsensor.json").description, al.Sensor("VLP16").description)
 
-    def test_limits_are_those_of_the_data_sheets(self):
+    def test_limits_and_ranges_are_those_of_the_data_sheets(self):
         for name in REAL:
             with self.subTest(name):
                 sensor = al.Sensor(name)
                 if "sheet" in sensor.description:
                     continue
-                sheet = sensor.description["data_sheet"]
+                sheet = {key: entry["value"] for key, entry in sensor.description["data_sheet"].items()}
                 limits = sensor.lower_energy_limit, sensor.upper_energy_limit
-                sensor.algorithm.SetLimitsFromDataSheet(*(sheet[f"detection_{key}"]["value"] for key in ("range", "reflectance")))
+                sensor.algorithm.SetLimitsFromDataSheet(sheet["detection_range"], sheet["detection_reflectance"])
                 np.testing.assert_allclose(limits, (sensor.lower_energy_limit, sensor.upper_energy_limit), rtol=1e-5)
-
-    def test_a_wall_is_seen_to_the_range_of_the_data_sheet(self):
-        sheet = al.Sensor("PandarXT-32").description["data_sheet"]
-        for at, seen in ((0.995, True), (1.005, False)):
-            y = at * sheet["detection_range"]["value"]
-            corners = [(-9, y, -9), (9, y, -9), (9, y, 9), (-9, y, 9)]
-            scan = al.Scan(al.Scene((corners, [(0, 1, 2), (0, 2, 3)]), material=(sheet["detection_reflectance"]["value"], 0, 0)),
-                           al.Sensor("PandarXT-32", directions=[(0, 1, 0)]), noise=False, visibility=23e3)
-            self.assertEqual(scan.echoes.number_of_points > 0, seen, at)
+                if name == "PandarXT-32":
+                    sensor = al.Sensor(name, directions=[(0, 1, 0)])
+                    for y, seen in ((0.995, 1), (1.005, 0)):
+                        scan = al.Scan(al.Scene(wall(y * sheet["detection_range"], 9), material=(sheet["detection_reflectance"], 0, 0)), sensor,
+                                       noise=False, visibility=23e3)
+                        self.assertEqual(scan.echoes.number_of_points, seen)
 
     def test_clear_air_is_not_seen(self):
         """No sensor sees the air of a visibility of 23 km, so that the strongest return of a beam is a wall at 20 m."""
-        def wall(y, half=5):
-            return [(-half, y, -half), (half, y, -half), (half, y, half), (-half, y, half)], [(0, 1, 2), (0, 2, 3)]
-
         def ranges(sensor, y, **settings):
             scan = al.Scan(al.Scene(wall(y), material=(0.3, 0, 1)), sensor, visibility=23e3, air_backscatter=sensor.receiver_aperture > 0,
                            noise=False, **settings)
@@ -104,17 +102,10 @@ class Manuals(unittest.TestCase):
                     sensor.overlap_range = 0
                     np.testing.assert_allclose(energy / ranges(sensor, far, return_mode="Last")[1], 1, atol=0.01)
 
-    def test_makers_minimum_ranges(self):
-        found = {name: al.Sensor(name).minimum_range for name in al.Sensor.presets()}
-        self.assertEqual({name: value for name, value in found.items() if value},
-                         {"HDL32E": 0.05, "Helios16P": 0.2, "Mid360": 0.1, "Mid40": 2.0, "OS0_128": 0.3, "OS1_64": 0.8, "OS2_128": 1.0,
-                          "Pandar40P": 0.3, "PandarXT32": 0.05})
-
     def test_fitted_receivers_are_those_of_their_sheets(self):
-        """What a file says of its fit is what the fit gives again, and no fit is better than its bar."""
-        fitted = [name for name in al.Sensor.presets() if "residuals" in al.Sensor(name).description.get("sheet", {})]
-        self.assertLessEqual({"OS0_128", "OS1_64", "OS2_128", "Avia", "Mid40", "Mid360"}, set(fitted))
-        for name in fitted:
+        """What a file says of its fit is what the fit gives again, and no fit is better than its bar. One of each maker; TestSheets.py has
+        what the others see."""
+        for name in ("OS1_64", "Mid40"):
             with self.subTest(name):
                 sensor = al.Sensor(name)
                 said, aperture = sensor.description["sheet"], sensor.receiver_aperture
@@ -122,7 +113,6 @@ class Manuals(unittest.TestCase):
                 np.testing.assert_allclose(found.residuals, said["residuals"], atol=2e-3)
                 self.assertAlmostEqual(found.numbers["receiver_aperture"] / aperture, 1, delta=0.01)
                 np.testing.assert_allclose(found.bar, said.get("bar", np.nan), atol=5e-3)
-                self.assertTrue(all(point["source"] for point in said["points"]))
 
     @unittest.skipUnless(DATA, "AVIANLIDAR_DATA_DIR is empty")
     def test_patterns_are_those_of_real_frames(self):
@@ -184,21 +174,20 @@ class Own(unittest.TestCase):
     def test_the_pattern_as_a_table_has_the_same_echoes(self):
         scene = al.Scene(([(-5, 50, -5), (5, 50, -5), (0, 50, 9)], [(0, 1, 2)]), material="Glass")
         pattern = al.Sensor("VLP-16", azimuth_range=(-6, 6))
-        beams = pattern.beams
-        table = al.Sensor("VLP-16", directions=beams["direction"], times=1e-6 * beams["timestamp"])
-        with tempfile.TemporaryDirectory() as folder:
-            one, other = (al.Scan(scene, sensor, rays_per_beam=50) for sensor in (pattern, table))
-            self.assertGreater(one.echoes.number_of_points, 10)
-            for name in ("beam_id", "energy", "distance_m", "timestamp", "azimuth"):
-                np.testing.assert_allclose(other[name], one[name], rtol=1e-12, err_msg=name)
-            other.save(os.path.join(folder, "list.pcd"))  # no rows and columns
+        table = al.Sensor("VLP-16", directions=pattern.beams["direction"], times=1e-6 * pattern.beams["timestamp"])
+        one, other = (al.Scan(scene, sensor, rays_per_beam=50) for sensor in (pattern, table))
+        self.assertGreater(one.echoes.number_of_points, 10)
+        for name in ("beam_id", "energy", "distance_m", "timestamp", "azimuth"):
+            np.testing.assert_allclose(other[name], one[name], rtol=1e-12, err_msg=name)
+        with tempfile.TemporaryDirectory() as folder:  # no rows and columns
+            other.save(os.path.join(folder, "list.pcd"))
             self.assertEqual(al.load_cloud(os.path.join(folder, "list.pcd")).number_of_points, other.echoes.number_of_points)
         with self.assertRaisesRegex(al.Error, "set Columns and Rows"):
             other.range_image()
 
     def test_copies(self):
         mine = {"directions": [(0, 1, 0), (1, 0, 0)], "times": [0, 1e-3], "positions": [(0, 0, 1), (0, 0, 2)]}
-        for sensor in (al.Sensor("VLP-32C", pulse_energy=1e-6), al.Sensor("Search905", **mine, orientation=(10, 0, 0))):
+        for sensor in (al.Sensor("VLP-32C", pulse_energy=1e-6), al.Sensor("Avia", orientation=(20, 5, 0)), al.Sensor("Search905", **mine, orientation=(10, 0, 0))):
             for again in (pickle.loads(pickle.dumps(sensor)), copy.deepcopy(sensor)):
                 self.assertEqual(again.description, sensor.description)
                 one, other = sensor.beams, again.beams
@@ -223,12 +212,8 @@ class Own(unittest.TestCase):
                 ("times and positions are those of directions", {"times": [0]})):
             with self.subTest(words), self.assertRaisesRegex((ValueError, TypeError, al.Error), words):
                 al.Sensor(**arguments).beams  # noqa: B018
+        # Text is no array that is missing; what was refused changes nothing.
         source = al.Sensor().algorithm
-        heard = []
-        source.AddObserver("ErrorEvent", lambda *_: heard.append(1))
-        self.assertFalse(source.SetBeams(vtkPolyData()))
-        self.assertEqual(len(heard), 1)
-        # Text is no array that is missing.
         for name in ("timestamp", "direction"):
             beams, text = vtkPolyData(), vtkStringArray()
             beams.ShallowCopy(al.Sensor(directions=[(0, 1, 0), (1, 0, 0)], times=[0, 1e-3]).beams.data)
@@ -237,9 +222,8 @@ class Own(unittest.TestCase):
                 text.InsertNextValue(word)
             beams.GetPointData().RemoveArray(name)
             beams.GetPointData().AddArray(text)
-            other = al.Sensor().algorithm
-            messages = echotools.Messages(other)
-            self.assertFalse(other.SetBeams(beams))
+            messages = echotools.Messages(source)
+            self.assertFalse(source.SetBeams(beams))
             self.assertIn(f"SetBeams: point array '{name}' holds no numbers", " ".join(messages.errors))
         source.Update()
         self.assertEqual(source.GetOutput().GetNumberOfPoints(), 15360)
