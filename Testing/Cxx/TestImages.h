@@ -4,9 +4,7 @@
 #define TestImages_h
 
 #include "vtkActor.h"
-#include "vtkAvianLidarBeamSource.h"
 #include "vtkAvianLidarCollisionTree.h"
-#include "vtkAvianLidarEchoFilter.h"
 #include "vtkAvianLidarMaterial.h"
 #include "vtkCamera.h"
 #include "vtkCubeSource.h"
@@ -49,24 +47,6 @@ inline vtkNew<vtkMultiBlockDataSet> MakeTown()
   return town;
 }
 
-/// Beam source, tree and echo filter on the town.
-struct Scan
-{
-  vtkNew<vtkAvianLidarBeamSource> beams;
-  vtkNew<vtkAvianLidarCollisionTree> tree;
-  vtkNew<vtkAvianLidarEchoFilter> echoes;
-
-  explicit Scan(vtkMultiBlockDataSet* town)
-  {
-    this->beams->SetAzimuthStep(1.0);
-    this->beams->SetNumberOfChannels(12);
-    this->beams->SetElevationStep(0.75);
-    this->tree->SetInputData(town);
-    this->echoes->SetInputConnection(0, this->beams->GetOutputPort());
-    this->echoes->SetInputConnection(1, this->tree->GetOutputPort());
-  }
-};
-
 /// A white window of 400 x 300 pixels.
 struct Window
 {
@@ -97,15 +77,6 @@ struct Window
     this->renderer->AddActor(actor);
   }
 
-  void LookFromAbove(double height)
-  {
-    vtkCamera* camera = this->renderer->GetActiveCamera();
-    camera->SetPosition(0.0, 0.0, height);
-    camera->SetFocalPoint(0.0, 0.0, 0.0);
-    camera->SetViewUp(0.0, 1.0, 0.0);
-    this->renderer->ResetCameraClippingRange();
-  }
-
   /// Compare with the test's baseline; -I keeps the window open instead.
   int Compare(int argc, char* argv[])
   {
@@ -124,12 +95,13 @@ struct Window
 inline int CompareTree(int boundingVolume, int argc, char* argv[])
 {
   auto town = MakeTown();
-  Scan scan(town);
-  scan.tree->SetBoundingVolume(boundingVolume);
-  scan.tree->SetDisplayLevel(3);
+  vtkNew<vtkAvianLidarCollisionTree> tree;
+  tree->SetInputData(town);
+  tree->SetBoundingVolume(boundingVolume);
+  tree->SetDisplayLevel(3);
   Window window;
-  window.AddWireframe(scan.tree->GetOutputPort(0), 0.0, 0.0, 0.0);
-  window.AddWireframe(scan.tree->GetOutputPort(1), 0.1, 0.3, 0.9);
+  window.AddWireframe(tree->GetOutputPort(0), 0.0, 0.0, 0.0);
+  window.AddWireframe(tree->GetOutputPort(1), 0.1, 0.3, 0.9);
   vtkCamera* camera = window.renderer->GetActiveCamera();
   camera->SetPosition(0.0, -330.0, 220.0);
   camera->SetFocalPoint(0.0, 0.0, 0.0);

@@ -160,7 +160,6 @@ void TestOtherBeams()
   filter->SetRows(3);
   filter->Update();
   Check(At(filter->GetOutput(), "distance_m", 7, 2) == 50.0, "directions are enough");
-
 }
 
 // A beam report of four beams, two of which share a cell.

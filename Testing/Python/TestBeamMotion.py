@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Mast sway and encoder jitter in the filters: beams leave in other directions than the sensor reports. Ranges are those of the real
 directions, echoes lie along the reported ones. How large both are is tested in TestPointingErrors.cxx."""
-import os
-import tempfile
 import unittest
 
 import numpy as np
@@ -101,21 +99,6 @@ class Beams(unittest.TestCase):
             ids = array(lidar.GetOutput(), "beam_id")
             np.testing.assert_array_equal(array(lidar.GetOutput(), "direction"), array(second, "direction")[ids])
 
-    def test_a_sensor_file_may_say_it(self):
-        text = """{"format": "lidarsensor 1", "name": "Mast", "values": {
-            "sway_amplitude": {"value": 0.02, "unit": "deg", "source": "assumed"},
-            "sway_frequency": {"value": 0.8, "unit": "Hz", "source": "assumed"},
-            "encoder_jitter": {"value": 0.01, "unit": "deg", "source": "data sheet"}}}"""
-        lidar = al.vtkAvianLidarBeamSource()
-        with tempfile.TemporaryDirectory() as folder:
-            name = os.path.join(folder, "mast.lidarsensor.json")
-            with open(name, "w", encoding="utf-8") as file:
-                file.write(text)
-            self.assertTrue(lidar.LoadSensor(name))
-        self.assertEqual((lidar.GetSwayAmplitude(), lidar.GetSwayFrequency(), lidar.GetEncoderJitter()), (0.02, 0.8, 0.01))
-        lidar.SetPresetToAirport16()
-        self.assertEqual((lidar.GetSwayAmplitude(), lidar.GetEncoderJitter()), (0.0, 0.0))
-
 
 class Echoes(unittest.TestCase):
     def test_a_wall_is_as_far_as_the_real_beam_says(self):
@@ -145,14 +128,6 @@ class Echoes(unittest.TestCase):
         self.assertFalse(np.array_equal(array(first, "energy"), array(second, "energy")))
         assert_same_bits(first, at(echo, 0.0), COSTS)
         assert_same_bits(second, at(scan(town(), moving(0.3, 0.1), BeamSamples=RAYS), 2.0), COSTS)
-
-    def test_angles_not_given_are_those_reported(self):
-        beams = output(moving(2.0))
-        given, derived = scan(town(), beams), scan(town(), table_of(beams, "azimuth", "vertical_angle"))
-        given.Update()
-        derived.Update()
-        for name in ("azimuth", "vertical_angle"):
-            np.testing.assert_allclose(array(given.GetOutput(1), name), array(derived.GetOutput(1), name), atol=1e-9)
 
     def test_a_changed_report_moves_echoes_and_traces_nothing(self):
         beams = output(moving(0.3))

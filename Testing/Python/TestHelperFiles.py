@@ -182,21 +182,6 @@ class Files(unittest.TestCase):
             os.remove(part)
             os.remove(file)
 
-    def test_a_part_that_another_writer_locked_first(self):
-        """It took it for abandoned and is about to remove it: the next number is tried."""
-        file, lock, taken = self.folder / "echoes.csv", _disk.fcntl.flock, []
-
-        def flock(handle, operation):
-            if len(taken) < 3:
-                taken.append(handle)
-                raise BlockingIOError(errno.EWOULDBLOCK, "taken")
-            lock(handle, operation)
-
-        with mock.patch.object(_disk.fcntl, "flock", flock):
-            self.scan.save(file)
-        self.assertEqual(len(taken), 3)
-        self.assertEqual(sorted(os.listdir(self.folder)), ["echoes.csv"] + [f"echoes.csv.avianpart{i}" for i in range(3)])
-
 
 class Pictures(unittest.TestCase):
     @classmethod

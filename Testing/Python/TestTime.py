@@ -359,24 +359,6 @@ class MovingScene(unittest.TestCase):
             self.assertEqual(len(heard.warnings), 1, heard.warnings)
             self.assertIn("Wall", heard.warnings[0])
 
-    def test_a_static_scene_that_says_it_moves_is_not_traced_again(self):
-        class Still(MovingBox):
-            def RequestData(self, request, inputs, outputs):
-                super().RequestData(request, inputs, outputs)
-                vtk.vtkPolyData.GetData(outputs).ShallowCopy(box((0, 51, 0), (20, 1, 20), "Wall"))
-                return 1
-
-        still, tree = Still(), al.vtkAvianLidarCollisionTree()
-        tree.SetInputConnection(still.GetOutputPort())
-        echo = scan(tree, sweeping(revolutions=3, steps=2, rate=0.5), BeamSamples=RAYS)
-        rays = []
-        for time in steps_of(echo):
-            at(echo, time)
-            rays.append(echo.GetNumberOfTracedRays())
-        self.assertEqual(still.asked, [0.0, 2.0, 4.0])
-        self.assertGreater(rays[0], 0)
-        self.assertEqual((sum(rays[2:]), tree.GetNumberOfBuilds()), (0, 1))
-
     def test_other_beams_later_leave_nothing_behind(self):
         """A filter that stays while its input changes from the beam source to a file keeps no period of it."""
         for count in (1, 2):
