@@ -2,10 +2,8 @@
 """The geodetic transform against two outside programs (CartConvert of GeographicLib's tools, cct of PROJ), composites, and bad input.
 Round trips, poles and the date line are tested in TestGeodeticFrame.cxx, properties and arrays of wrong values in TestArguments.py.
 
-Tolerance against the programs: 10 nm in each coordinate. A coordinate of 6.4e6 m is rounded to 0.5 nm and goes through
-some four operations on either side (4 nm); a longitude in degrees is rounded to 1.6 nm on the ground; the programs print
-1 nm; the methods themselves err by a few nm. In UTM, where northings reach 1e7 m (rounded to 1 nm) and the two series
-differ, it is 20 nm. Measured differences are half of that.
+Tolerance against the programs: 10 nm in each coordinate, of which rounding takes 4 nm, digits of the programs 1 nm and the methods
+themselves a few; 20 nm in UTM, where northings reach 1e7 m and the two series differ. Measured differences are half of that.
 """
 import math
 import subprocess

@@ -202,12 +202,6 @@ class Copies(unittest.TestCase):
             self.assertEqual(len(again.objects), len(scene.objects) + 1)
         self.assertEqual(pickle.loads(pickle.dumps(al.Scene())).number_of_triangles, 0)
 
-    def test_sensors(self):
-        sensor = al.Sensor("Search905", position=(1, 2, 3), channel_elevations=(1, 3, 2), sway_amplitude=0.1)
-        for again in (pickle.loads(pickle.dumps(sensor)), copy.deepcopy(sensor)):
-            self.assertEqual(again.properties(), sensor.properties())
-            self.assertTrue(same(again.beams, sensor.beams))
-
     def test_a_scan_is_not_copied(self):
         scan = al.Scan(al.Scene(WALL))
         for call in (lambda: copy.copy(scan), lambda: copy.deepcopy(scan), lambda: pickle.dumps(scan)):
