@@ -1,9 +1,11 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The echo filter in a pipeline: the same bits however it is run, tracing only what is new, progress and abort; units of every array."""
+"""The echo filter in a pipeline: the same bits however it is run, tracing only what is new, progress and abort; units of every array. And what
+of the tree is shown."""
 import unittest
 
 import numpy as np
 import vtk
+from vtk.util import numpy_support
 
 from avianlidar import vtkAvianLidar as al
 from echotools import RAYS, array, arrays, assert_same_bits, box, scan, sensor, town
@@ -224,6 +226,41 @@ class EchoPipeline(unittest.TestCase):
             self.assertEqual((reports[0].GetNumberOfVerts(), reports[0].GetPointData().GetScalars().GetName()), (360, "status"))
             statuses.add(tuple(array(reports[0], "status")))
         self.assertGreater(len(statuses), 3)  # with the air and the limits
+
+
+class TreeDisplay(unittest.TestCase):
+    def test_volumes_of_a_level_hold_the_scene(self):
+        """Each volume has the form of its kind; together they hold every triangle once, and every point."""
+        for volume, (corners, faces) in enumerate(((8, 6), (8, 6), (13 * 24, 12 * 24))):
+            tree = al.vtkAvianLidarCollisionTree()
+            tree.SetInputData(TOWN)
+            tree.SetBoundingVolume(volume)
+            for level in (0, 3):
+                tree.SetDisplayLevel(level)
+                tree.Update()
+                shown, scene = tree.GetOutput(1), numpy_support.vtk_to_numpy(tree.GetOutput().GetPoints().GetData())
+                node, triangles, depth = (numpy_support.vtk_to_numpy(shown.GetCellData().GetArray(name)).reshape(-1, faces)
+                                          for name in ("node_id", "triangles", "depth"))
+                volumes = numpy_support.vtk_to_numpy(shown.GetPoints().GetData()).reshape(-1, corners, 3)
+                self.assertEqual(len(volumes), len(set(node[:, 0])))
+                self.assertEqual(triangles[:, 0].sum(), 12 * TOWN.GetNumberOfBlocks())
+                self.assertEqual((depth.max(), len(volumes) <= 2**level), (level, True))
+                held = np.zeros(len(scene), dtype=bool)
+                for points in volumes:
+                    if corners == 8:
+                        axes = 0.5 * (points[[1, 2, 4]] - points[0])
+                        away = (scene - points.mean(axis=0)) @ axes.T / (axes**2).sum(axis=1)
+                        held |= (np.abs(away) < 1 + 1e-6).all(axis=1)
+                        if volume == 0:
+                            np.testing.assert_allclose(axes, np.diag(np.diag(axes)), atol=1e-9)
+                        np.testing.assert_allclose(axes @ axes.T, np.diag((axes**2).sum(axis=1)), atol=1e-6 * (axes**2).sum())
+                    else:
+                        center, radius = 0.5 * (points[0] + points[-1]), 0.5 * np.linalg.norm(points[0] - points[-1])
+                        np.testing.assert_allclose(np.linalg.norm(points - center, axis=1), radius, rtol=1e-9)
+                        held |= np.linalg.norm(scene - center, axis=1) < radius * (1 + 1e-6)
+                self.assertTrue(held.all())
+                if (volume, level) == (0, 0):
+                    np.testing.assert_allclose(shown.GetBounds(), tree.GetOutput().GetBounds(), rtol=1e-6)
 
 
 if __name__ == "__main__":
