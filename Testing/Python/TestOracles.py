@@ -123,7 +123,7 @@ def of_waveform(case, how="sampled", **more):
     return rows
 
 
-def of_connections(case, how="sampled", seeds=40, rays=1000, **more):
+def of_connections(case, how="sampled", seeds=20, rays=1000, **more):
     """The mean over seeds of what came over two reflections. These paths are sampled in integrated beams, too: they start
     from rays that are located on the visible polygons."""
     found = []
