@@ -50,7 +50,8 @@ class BeamMap(unittest.TestCase):
             beams.GetPointData().RemoveArray(name)
         echo.Update()
         for name in LABELS[1:]:
-            np.testing.assert_allclose(echotools.arrays(echo.GetOutput(1))[name], echotools.array(lidar.GetOutput(), name), atol=1e-8)
+            expected = echotools.array(lidar.GetOutput(), name)
+            np.testing.assert_allclose(echotools.arrays(echo.GetOutput(1))[name], expected, atol=1e-8)
 
     def test_map_has_the_image_and_the_report(self):
         for orientation in ((0.0, 0.0, 0.0), (20.0, 5.0, -3.0)):

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Mast sway and encoder jitter in the filters: beams leave in other directions than the sensor reports. Ranges are those of the real
-directions, echoes lie along the reported ones. How large both are is tested in TestPointingErrors.cxx."""
+"""Mast sway and encoder jitter in the filters: beams leave in other directions than the sensor reports. Ranges are those of
+the real directions, echoes lie along the reported ones. How large both are is tested in TestPointingErrors.cxx."""
 import unittest
 
 import numpy as np
@@ -69,7 +69,8 @@ class Beams(unittest.TestCase):
             angles = np.degrees(np.linalg.norm(real - array(plain, "direction"), axis=1))
             self.assertTrue((angles > 0).all())
             self.assertLess(angles.max(), 5.7 * 2**0.5 * (sway + jitter))
-            np.testing.assert_allclose(points(lidar.GetOutput(1))[1::2], 100 * real, atol=1e-12)  # rays to look at are the real ones
+            # Rays to look at are the real ones.
+            np.testing.assert_allclose(points(lidar.GetOutput(1))[1::2], 100 * real, atol=1e-12)
         # Jitter turns columns, as large as was asked for.
         azimuths = np.degrees(np.arctan2(real[:, 0], real[:, 1])).reshape(-1, 4)
         np.testing.assert_allclose(azimuths, azimuths[:, :1] * np.ones(4), atol=1e-12)
@@ -78,7 +79,8 @@ class Beams(unittest.TestCase):
 
     def test_fields_say_what_is_on(self):
         sway = {"sway_amplitude": (0.3, "deg"), "sway_frequency": (0.5, "Hz"), "motion_seed": (7, None)}
-        for settings, expected in (((0.3, 0.0, 7), sway), ((0.0, 0.2, 7), {"encoder_jitter": (0.2, "deg"), "motion_seed": (7, None)})):
+        jitter = {"encoder_jitter": (0.2, "deg"), "motion_seed": (7, None)}
+        for settings, expected in (((0.3, 0.0, 7), sway), ((0.0, 0.2, 7), jitter)):
             lidar = moving(*settings)
             echo = scan(town(), lidar)
             echo.Update()
@@ -102,8 +104,8 @@ class Beams(unittest.TestCase):
 
 class Echoes(unittest.TestCase):
     def test_a_wall_is_as_far_as_the_real_beam_says(self):
-        """A wall 100 m to the north: the range is 100 m / the north component of the real direction. Echoes and report lie on the
-        reported one."""
+        """A wall 100 m to the north: the range is 100 m / the north component of the real direction. Echoes and report
+        lie on the reported one."""
         lidar = moving(1.0, 1.0, 3)
         lidar.SetAzimuthRange(-40, 40)
         lidar.SetMinimumElevation(20)
@@ -142,7 +144,8 @@ class Echoes(unittest.TestCase):
         after = arrays(echo.GetOutput())
         self.assertEqual(echo.GetNumberOfTracedRays(), 0)
         np.testing.assert_array_equal(before["energy"], after["energy"])
-        np.testing.assert_allclose(after["points"], after["distance_m"][:, None] * array(beams, "direction")[after["beam_id"]], atol=1e-9)
+        expected = after["distance_m"][:, None] * array(beams, "direction")[after["beam_id"]]
+        np.testing.assert_allclose(after["points"], expected, atol=1e-9)
         values.SetTuple3(5, 0, 0, 0)
         values.Modified()
         messages = Messages(echo)
@@ -163,7 +166,8 @@ class Echoes(unittest.TestCase):
             image.Update()
             self.assertEqual(messages.all(), [])
             distances = array(image.GetOutput(), "distance_m")
-            self.assertEqual((len(distances), np.isfinite(distances).sum()), (360, len(set(array(echo.GetOutput(), "beam_id")))))
+            seen = len(set(array(echo.GetOutput(), "beam_id")))
+            self.assertEqual((len(distances), np.isfinite(distances).sum()), (360, seen))
 
 
 if __name__ == "__main__":

@@ -79,7 +79,8 @@ class Messages(unittest.TestCase):
         before = scan.echoes
         for name, value, good in (("pulse_energy", -1, 3.6e-4), ("position", (float("nan"), 0, 0), (0, 0, 0))):
             setattr(scan.sensor, name, value)
-            for ask in (scan.update, lambda: scan.echoes, lambda: scan.report, lambda: scan["energy"], scan.range_image) * 2:
+            ways = (scan.update, lambda: scan.echoes, lambda: scan.report, lambda: scan["energy"], scan.range_image)
+            for ask in ways * 2:
                 with self.assertRaisesRegex(al.Error, r"\AvtkAvianLidarBeamSource: .*" + name.title().replace("_", "")):
                     ask()
             setattr(scan.sensor, name, good)
@@ -92,7 +93,7 @@ class Messages(unittest.TestCase):
 
     def test_nothing_is_printed(self):
         code = ("import sys, avianlidar as al\n"
-                "print([m for m in sys.modules if m.startswith('matplotlib') or 'Rendering' in m or m == 'vtk'])\n"  # slow to import
+                "print([m for m in sys.modules if m.startswith('matplotlib') or 'Rendering' in m or m == 'vtk'])\n"
                 "try:\n    al.Scan(al.Scene(), al.Sensor(azimuth_step=-1)).update()\n"
                 "except al.Error as error:\n    print('caught', error)\n")
         result = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
@@ -126,7 +127,8 @@ class Messages(unittest.TestCase):
             for _ in range(2):
                 with self.assertRaisesRegex(al.Error, "vtkPythonAlgorithm: failed"):
                     al.Scene(mute)
-            mute.AddObserver("StartEvent", lambda *_: vtkObject.GlobalWarningDisplayOff())  # no executive says it either
+            # No executive says it either.
+            mute.AddObserver("StartEvent", lambda *_: vtkObject.GlobalWarningDisplayOff())
         Mute.result = 1
         self.assertEqual(al.Scene(mute).surfaces.GetNumberOfBlocks(), 1)
 
@@ -152,7 +154,8 @@ class Stopping(unittest.TestCase):
         """After a stop the scan is what it would have been."""
         self.scan.progress = None
         self.scan.preset = "Draft"
-        fresh = al.Scan(al.Scene(town()), al.Sensor(azimuth_step=1), preset="Draft", seed=self.scan.seed, beam_samples="rays")
+        fresh = al.Scan(al.Scene(town()), al.Sensor(azimuth_step=1), preset="Draft", seed=self.scan.seed,
+                        beam_samples="rays")
         self.assertTrue(same(self.scan.echoes, fresh.echoes))
         self.assertGreater(fresh.echoes.number_of_points, 100)
 
@@ -207,7 +210,8 @@ class Stopping(unittest.TestCase):
                 raise kind("enough")
             return handler
 
-        for number, kind, handler in ((signal.SIGINT, KeyboardInterrupt, signal.default_int_handler), (signal.SIGINT, LookupError, None),
+        for number, kind, handler in ((signal.SIGINT, KeyboardInterrupt, signal.default_int_handler),
+                                      (signal.SIGINT, LookupError, None),
                                       (signal.SIGTERM, SystemExit, None), (signal.SIGALRM, TimeoutError, None)):
             with self.subTest(f"{number}, {kind}"):
                 with self.assertRaises(kind):

@@ -233,7 +233,7 @@ class SceneFiles(unittest.TestCase):
         fog = {"kind": "fog", "visibility": 5, "shape": "layer", "top": 3}
         for one, part in (({"medium": 3}, "objects[0].medium: must be an object"),
                           ({"medium": {"kind": "soup", "shape": "layer"}, "name": "x"}, "kind: must be haze, fog"),
-                          ({"medium": {**fog, "rain_rate": 3}}, "medium 'Medium', kind fog, shape layer: rain_rate: unknown key; known here: "),
+                          ({"medium": {**fog, "rain_rate": 3}}, "medium 'Medium', kind fog, shape layer: rain_rate: unknown key"),
                           ({"medium": {**fog, "shape": "everywhere"}}, "shape everywhere: top: unknown key"),
                           ({"medium": {**fog, "name": "x"}}, "objects[0].medium.name: stands in the medium, expected beside it"),
                           ({"ground": {"size": 5}, "medium": {"kind": "fog", "visibility": 5, "shape": "box"}}, "objects[0]"),

@@ -61,7 +61,8 @@ class Mirrors(unittest.TestCase):
 
 class AgainstTheFilter(unittest.TestCase):
     def test_orders_one_and_two(self):
-        for subject, beams, rays, connections in ((mr.two_mirrors(), 100, 20, 0), (mr.corner(), 100, 20, 0), (mr.corridor(), 300, 20, 2)):
+        for subject, beams, rays, connections in ((mr.two_mirrors(), 100, 20, 0), (mr.corner(), 100, 20, 0),
+                                                  (mr.corridor(), 300, 20, 2)):
             found = mr.measure(subject, beams, rays, connections)
             self.assertEqual(len(found.orders), beams)
             for order, difference in enumerate(differences(found), 1):

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The echo filter gives what closed forms give (Testing/Oracles), sampled and integrated. With --table it prints the table of
-Documentation/results/oracles.md instead. For another simulator, this is the file to write anew."""
+"""The echo filter gives what closed forms give (Testing/Oracles), sampled and integrated. With --table it prints the numbers
+of Documentation/results/oracles.md instead. For another simulator, this is the file to write anew."""
 import math
 import os
 import sys
@@ -157,7 +157,8 @@ def table(rows):
     for r in rows:
         error = r["found"] - r["expected"]
         bounds = f"{error / r['standard_error']:.1f}" if r["standard_error"] > 0 else "-"
-        print(f"| {r['case']} | {r['quantity']} | {r['how']} | {r['expected']:.10g} | {error / r['expected']:.1e} | {bounds} |")
+        print(f"| {r['case']} | {r['quantity']} | {r['how']} | {r['expected']:.10g} | {error / r['expected']:.1e} | "
+              f"{bounds} |")
 
 
 # What a mesh of the sphere and the end of a plate cost.

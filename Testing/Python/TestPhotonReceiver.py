@@ -221,7 +221,8 @@ class Receiver(unittest.TestCase):
         sensor.algorithm.SetLimitsFromDataSheet(200.0, 0.1)
         self.assertAlmostEqual(sensor.lower_energy_limit / energy, np.exp(-2 * (clear - 1e-4) * 200.0), delta=1e-12)
         sensor.algorithm.SetLimitsFromDataSheet(200.0, 0.1, 1e-4)
-        for bad in ((0.0, 0.1), (200.0, 1.5), (200.0, 0.1, -1.0), (float("nan"), 0.1), (4000.0, 0.1, 1.0)):  # the last lets nothing through
+        # The last lets nothing through.
+        for bad in ((0.0, 0.1), (200.0, 1.5), (200.0, 0.1, -1.0), (float("nan"), 0.1), (4000.0, 0.1, 1.0)):
             sensor.algorithm.SetLimitsFromDataSheet(*bad)
         self.assertAlmostEqual(sensor.lower_energy_limit / energy, 1, delta=1e-12)
 

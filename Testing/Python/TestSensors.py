@@ -75,8 +75,8 @@ class Manuals(unittest.TestCase):
                 if name == "PandarXT-32":
                     sensor = al.Sensor(name, directions=[(0, 1, 0)])
                     for y, seen in ((0.995, 1), (1.005, 0)):
-                        scan = al.Scan(al.Scene(wall(y * sheet["detection_range"], 9), material=(sheet["detection_reflectance"], 0, 0)), sensor,
-                                       noise=False, visibility=23e3)
+                        board = al.Scene(wall(y * sheet["detection_range"], 9), material=(sheet["detection_reflectance"], 0, 0))
+                        scan = al.Scan(board, sensor, noise=False, visibility=23e3)
                         self.assertEqual(scan.echoes.number_of_points, seen)
 
     def test_clear_air_is_not_seen(self):
@@ -103,8 +103,8 @@ class Manuals(unittest.TestCase):
                     np.testing.assert_allclose(energy / ranges(sensor, far, return_mode="Last")[1], 1, atol=0.01)
 
     def test_fitted_receivers_are_those_of_their_sheets(self):
-        """What a file says of its fit is what the fit gives again, and no fit is better than its bar. One of each maker; TestSheets.py has
-        what the others see."""
+        """What a file says of its fit is what the fit gives again, and no fit is better than its bar. One of each maker;
+        TestSheets.py has what the others see."""
         for name in ("OS1_64", "Mid40"):
             with self.subTest(name):
                 sensor = al.Sensor(name)
@@ -187,7 +187,8 @@ class Own(unittest.TestCase):
 
     def test_copies(self):
         mine = {"directions": [(0, 1, 0), (1, 0, 0)], "times": [0, 1e-3], "positions": [(0, 0, 1), (0, 0, 2)]}
-        for sensor in (al.Sensor("VLP-32C", pulse_energy=1e-6), al.Sensor("Avia", orientation=(20, 5, 0)), al.Sensor("Search905", **mine, orientation=(10, 0, 0))):
+        for sensor in (al.Sensor("VLP-32C", pulse_energy=1e-6), al.Sensor("Avia", orientation=(20, 5, 0)),
+                       al.Sensor("Search905", **mine, orientation=(10, 0, 0))):
             for again in (pickle.loads(pickle.dumps(sensor)), copy.deepcopy(sensor)):
                 self.assertEqual(again.description, sensor.description)
                 one, other = sensor.beams, again.beams

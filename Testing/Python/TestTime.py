@@ -325,7 +325,8 @@ class MovingScene(unittest.TestCase):
         def one_scan(_=None):  # has its revolutions all the same
             return sweeping(revolutions=1, steps=1, rate=0.5)
 
-        cases = (("a filter of VTK between", transformed, (0, 1, 2, 3), [0, 2]), ("a filter of anyone's", PassedOn, (0, 1, 2, 3), [0, 2]),
+        cases = (("a filter of VTK between", transformed, (0, 1, 2, 3), [0, 2]),
+                 ("a filter of anyone's", PassedOn, (0, 1, 2, 3), [0, 2]),
                  ("both", lambda lidar: PassedOn(transformed(lidar)), (0, 1, 2, 3), [0, 2]),
                  ("one scan to play", one_scan, (0, 1, 2, 3, 7, 7.5), [0, 2, 6]),
                  ("one scan through a filter", lambda _: PassedOn(one_scan()), (0, 1, 2, 3, 7, 7.5), [0, 2, 6]),
