@@ -47,16 +47,19 @@ class BeamShapes(unittest.TestCase):
 
     def test_what_coverage_keeps_follows_every_number(self):
         random, nothing = np.random.default_rng(5), al.Scene(np.zeros((0, 3)), np.zeros((0, 3), dtype=int), material="Wall")
-        places = np.column_stack([random.uniform(-300, 300, (40, 2)), random.uniform(5, 40, 40)])
-        sensor = al.Sensor("Airport16", receiver_aperture=0.01, half_beamwidth=5e-4, half_beamwidth_across=8e-3)
+        azimuth = random.uniform(0, 2 * np.pi, 8)
+        places = 200 * np.column_stack([np.cos(azimuth), np.sin(azimuth), np.full(8, 0.05)])
+        sensor = al.Sensor("Search905", azimuth_step=2, half_beamwidth=1e-3, half_beamwidth_across=3e-3)
         kept = al.Coverage(nothing, sensor, places=places, species="herring gull")
-        kept["detection_probability"]
-        for name, value in (("half_beamwidth", 4e-3), ("half_beamwidth_across", 6e-3), ("beam_rotation", 50), ("beam_outline", "Rectangle"),
-                            ("orientation", (0, 0, 90)), ("beam_profile", "Gaussian"), ("gaussian_truncation", 2)):
+        before = np.array(kept["detection_probability"])
+        for name, value in (("half_beamwidth", 2e-3), ("half_beamwidth_across", 5e-3), ("beam_rotation", 50), ("beam_outline", "Rectangle"),
+                            ("beam_profile", "Gaussian"), ("gaussian_truncation", 2), ("orientation", (0.5, 0, 0))):
             sensor.set(**{name: value})
             new = al.Coverage(nothing, sensor, places=places, species="herring gull")
             for array in ("detection_probability", "beams_per_scan", "status"):
                 np.testing.assert_array_equal(kept[array], new[array], f"{array} after {name}")
+            self.assertFalse(np.array_equal(before, kept["detection_probability"]), name)
+            before = np.array(kept["detection_probability"])
 
     def test_shapes_are_in_field_data_and_files(self):
         fields = {name: float(al.Sensor("Airport16", **SHAPE).beams.fields[name]) for name in SHAPE}
