@@ -104,6 +104,18 @@ class ToTheLetter(unittest.TestCase):
         for reading in ("mean", "one", "all"):
             self.assertAlmostEqual(beam.second[reading] / (expected * math.exp(-1e-4 * length)), 1, delta=1e-9)
 
+    def test_without_a_lobe_the_mean_is_that_of_the_filter(self):
+        subject = self.corner(Kd=0.3, Ks=0.0, Kp=0.0)
+        beams, _ = sr.measure(subject, 40, 30)
+        here, mean, one, whole = (np.array([beam.second[name] for beam in beams]) for name in sr.READINGS)
+        self.assertGreater(mean.min(), 1e-3)
+        found = mr.Measured.mean(here - mean)
+        self.assertLess(abs(found[0]), 4 * found[1])
+        np.testing.assert_allclose(whole, 29 * mean, rtol=1e-9)
+        self.assertTrue(((one > mean) & (one < whole)).all())
+        # Each of many targets in whole: more than there is.
+        self.assertEqual([beams[0].beyond[name] > 0 for name in sr.READINGS], [False, False, False, True])
+
 
 if __name__ == "__main__":
     unittest.main()
