@@ -1,18 +1,14 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """`avianlidar airport`: extracts and terrains that the tests write, areas and heights against closed forms, an ellipsoid's curve,
 edits that stay, extracts that are wrong; extracts of real airports, where the data folder is there."""
-import bz2
 import contextlib
 import csv
 import io
 import json
-import math
 import os
 import pathlib
 import re
 import shutil
-import subprocess
-import sys
 import unittest
 import unittest.mock
 from xml.etree import ElementTree
@@ -24,14 +20,15 @@ from osgeo import gdal, osr
 import avianlidar as al
 import exampletools
 from avianlidar import siting
-from avianlidar._command import main
+from avianlidar._cloud import field_values
+from avianlidar._command import main, parser
 from avianlidar.apps import _airport as airport
 from avianlidar.apps._maps import coordinate_system
 
 DATA = os.environ.get("AVIANLIDAR_DATA_DIR", "")
 HERE = (53.6, 13.3, 0.0)  # latitude, longitude, height
 FOLDER = pathlib.Path(exampletools.OUTPUT) / "TestAirport"
-PAGES = False  # TestAirportReports.py has them
+KNOWN = airport.rules()
 gdal.UseExceptions()
 
 
@@ -204,18 +201,6 @@ def write_heights(name, heights, low, spacing, driver="GTiff"):
     return FOLDER / name
 
 
-def to_report(test, folder):
-    """Coverage of a folder, by its command, and the report, which takes half a minute, if PAGES; few places, and without clutter,
-    which takes seconds behind leaves in each air."""
-    plan = json.loads((folder / "siting.coverage.json").read_text())
-    small = {**plan, "places": 200, "spacing": 100, "siting": {**plan["siting"], "spacing": 700, "sensors": 1, "draws": 0}}
-    small["coverage"]["clutter"] = False
-    (folder / "small.coverage.json").write_text(json.dumps(small))
-    for verb, out in (("coverage", folder / "maps"), ("report", folder / "report.html"))[:1 + PAGES]:
-        code, words = run(verb, folder / "small.coverage.json", "-o", out)
-        test.assertEqual(code, 0, words)
-
-
 class Extracts(unittest.TestCase):
     def test_runways_that_cross(self):
         folder = fresh("crossing")
@@ -248,37 +233,18 @@ class Extracts(unittest.TestCase):
         outlines = siting.read_outlines(folder / "exclusions.geojson", scene.geodetic_origin)
         self.assertFalse(any(siting.is_near([scene.lidar_position], outline)[0] for outline in outlines))
         self.assertEqual(sum(siting.is_near([(0.0, 0.0)], outline)[0] for outline in outlines), 2)
-        to_report(self, folder)
-        # The lines of its README.
+        # Its plan, with few places, and the lines of its README.
+        plan = json.loads((folder / "siting.coverage.json").read_text())
+        small = {**plan, "places": 100, "spacing": 400, "coverage": {"species": "", "effective_area": 0.03, "clutter": False}}
+        small.pop("mix", None)
+        (folder / "small.coverage.json").write_text(json.dumps(small))
+        code, words = run("coverage", folder / "small.coverage.json", "-o", folder / "maps")
+        self.assertEqual(code, 0, words)
         lines = re.findall(r"avianlidar ((\w+) .*?)(?:;.*)?$", (folder / "README.txt").read_text(encoding="utf-8"), re.MULTILINE)
         self.assertEqual([verb for _, verb in lines], ["coverage", "report", "sequence", "track"])
-        fewer = {"coverage": [], "sequence": ["--scans", 3], "track": ["--learn", 1]}
-        self.addCleanup(os.chdir, os.getcwd())
-        os.chdir(folder)
-        for line, verb in lines:
-            if verb in fewer:
-                code, words = run(*line.split(), *fewer[verb])
-                self.assertEqual(code, 0, words)
-
-    def test_other_formats_hold_the_same(self):
-        """PBF, a GeoPackage in UTM, with tags as text, and GeoJSON."""
-        file, found = crossing().write("formats.osm"), []
-        gdal.VectorTranslate(str(FOLDER / "formats.gpkg"), str(file), format="GPKG", dstSRS="EPSG:32633")
-        with open(FOLDER / "formats.geojson", "w", encoding="utf-8") as stream:
-            features = [{"type": "Feature", "properties": one.tags, "geometry": json.loads(one.shape.ExportToJson())}
-                        for read in [airport.read_extract(file, airport.rules())] for one in [*read.features, *read.aerodromes]]
-            json.dump({"type": "FeatureCollection", "features": features}, stream)
-        for name in ("formats.osm", pbf(file).name, "formats.gpkg", "formats.geojson"):
-            folder = fresh(name.replace(".", "-"))
-            code, words = run("airport", FOLDER / name, "--icao", "XAAA", "-o", folder)
-            self.assertEqual(code, 0, words)
-            _, parts = blocks(folder)
-            found.append({part: (word, round(plan_area(triangles), 1)) for part, (word, triangles) in parts.items()})
-        self.assertEqual(found[0], found[2])
-        self.assertEqual(found[0], found[3])
-        for name, (word, area) in found[0].items():  # PBF has seven decimals of a degree
-            self.assertEqual(found[1][name][0], word)
-            self.assertAlmostEqual(found[1][name][1] / area, 1.0, delta=1e-3 if area > 1 else 0.1)
+        for line, _ in lines:
+            asked = vars(parser().parse_args(line.split()))
+            self.assertTrue(any((folder / str(value)).is_file() for value in asked.values()) or "track " in line, line)
 
     def test_relations_with_holes_and_levels(self):
         plan = Map()
@@ -302,10 +268,9 @@ class Extracts(unittest.TestCase):
         # The hole and the overlap of a relation that is none: GEOS joins them, or takes them for a hole.
         area = plan_area(found["Building"][1]) - (8000 - 1200)
         self.assertTrue(any(abs(area - expected) < 1.0 for expected in (2 * 3600 - 400, 2 * 3600 - 800, 2 * 3600)), area)
-        to_report(self, folder)
 
     def test_tags_as_they_are_found(self):
-        """Of real maps: runways as areas and out of use, an aerodrome by relation and by point, odd numbers, tunnels, broken ways."""
+        """Of real maps: runways as areas and out of use, an aerodrome by relation and by point, tunnels, broken ways."""
         plan = Map()
         plan.area((-800, -22.5), (800, 22.5), aeroway="runway", ref="09/27")
         plan.way([(-400, -300), (400, -300)], aeroway="runway", ref="10/28", width="150 ft")
@@ -315,13 +280,6 @@ class Extracts(unittest.TestCase):
         plan.relation([plan.area((-900, -450), (900, 450))], [plan.area((-100, -240), (100, -200))], aeroway="aerodrome", icao="XREL")
         plan.point(0, -200, aeroway="aerodrome", icao="XREL")
         plan.point(0, 60, aeroway="aerodrome", icao="XHEL", aerodrome__type="heliport")
-        heights = {"12 m": 12.0, "40'": 12.192, "39'4\"": 11.989, "12,5": 12.5, "~10": 10.0, "9;11": 11.0, "9.5 meters": 9.5, "high": 8.0}
-        for number, text in enumerate(heights):
-            plan.area((40 * number, 100), (40 * number + 20, 120), building="yes", name=text, height=text)
-        levels = {"2;3": 9.0, "2.5": 7.5, "0": 8.0, "ground": 8.0}
-        for number, text in enumerate(levels):
-            plan.area((40 * number, 200), (40 * number + 20, 220), building="yes", name=text, building__levels=text)
-        plan.area((400, 200), (420, 220), building="yes", name="roof", building__levels="2", roof__height="1.5")
         plan.area((440, 200), (460, 220), building="yes", layer="-1")
         plan.way([(0, 300), (300, 300)], highway="primary", tunnel="yes", layer="-1")
         plan.way([(0, 350), (300, 350)], natural="tree_row")
@@ -340,8 +298,7 @@ class Extracts(unittest.TestCase):
         rows = [feature["properties"] for feature in json.loads((folder / "airport.geojson").read_text(encoding="utf-8"))["features"]]
         kinds = [row["kind"] for row in rows]
         self.assertEqual([kinds.count(kind) for kind in ("runway", "road", "tree", "fence", "wall")], [3, 0, 1, 1, 0])
-        found = {row["name"]: row["height"] for row in rows if row["kind"] == "building"}
-        self.assertEqual(found, {**heights, **levels, "roof": 7.5, "a node twice": 8.0})
+        self.assertEqual([row["name"] for row in rows if row["kind"] == "building"], ["a node twice"])
         scene, parts = blocks(folder)
         runways = {one.name: one for one in siting.read_runways(folder / "airport.geojson", scene.geodetic_origin)}
         self.assertEqual({name: (round(one.axis()[1], 1), round(one.width, 1)) for name, one in runways.items()},
@@ -363,7 +320,7 @@ class Extracts(unittest.TestCase):
         self.assertEqual(code, 0, words)
         scene, found = blocks(folder)
         self.assertAlmostEqual(scene.geodetic_origin[2], 100.0, delta=0.01)
-        error = airport.rules()["terrain_error"]
+        error = KNOWN["terrain_error"]
 
         def above(name):
             places = found[name][1].reshape(-1, 3)
@@ -385,14 +342,13 @@ class Extracts(unittest.TestCase):
         self.assertAlmostEqual(z.min(), -0.04 * 300, delta=error)
         self.assertEqual(len(np.unique(np.round(z, 6))), 2)
         self.assertGreater(scene.lidar_position[2], -30)
-        to_report(self, folder)
 
     def test_edits_stay(self):
         folder = fresh("edits")
         file = crossing().write("edits.osm")
         self.assertEqual(run("airport", file, "-o", folder)[0], 0)
         before = {path.name: path.read_bytes() for path in folder.iterdir()}
-        self.assertEqual(run("airport", file, "-o", folder), (0, run("airport", file, "-o", folder)[1]))
+        self.assertEqual(run("airport", file, "-o", folder)[0], 0)
         self.assertEqual({path.name: path.read_bytes() for path in folder.iterdir()}, before)
         scene = json.loads(before["airport.lidarscene.json"])
         scene["comment"] = "mine"
@@ -448,19 +404,17 @@ class Extracts(unittest.TestCase):
         plan = Map()
         plan.way([(-800, 0), (800, 0)], aeroway="runway", ref="09/27", width="30")
         plan.area((300, 300), (340, 340), building="yes", height="eleven")
-        plan.area((400, 300), (440, 340), aeroway="hangar", building__levels="1")
         folder, file = fresh("none"), plan.write("none.osm")
         self.assertEqual(run("airport", file, "-o", folder)[0], 0)
         mapped = json.loads((folder / "airport.geojson").read_text())
-        heights = {row["properties"]["kind"]: row["properties"]["height"] for row in mapped["features"] if "height" in row["properties"]}
-        self.assertEqual(heights, {"building": 8.0, "hangar": 12.0})
+        row = next(row["properties"] for row in mapped["features"] if row["properties"]["kind"] == "building")
+        self.assertEqual(row["height"], 8.0)
         self.assertIn("assumed: height is 'eleven'", (folder / "assumed.csv").read_text())
-        for wrong in ("eleven", -7, 0):
-            next(row for row in mapped["features"] if row["properties"]["kind"] == "hangar")["properties"]["height"] = wrong
+        for row["height"] in ("eleven", 0):
             (folder / "airport.geojson").write_text(json.dumps(mapped))
             code, said = run("airport", file, "-o", folder)
             self.assertEqual(code, 2)
-            self.assertIn(f"height is {wrong!r}, expected metres above 0", said)
+            self.assertIn(f"height is {row['height']!r}, expected metres above 0", said)
 
     def test_one_of_two_airports(self):
         plan = crossing()
@@ -524,18 +478,17 @@ class Terrains(unittest.TestCase):
 
     def test_heights_of_files(self):
         """GeoTIFF and ASCII grid alike; what they do not hold is level, and fades."""
-        known = airport.rules()
         rectangle = (-2500.0, 2500.0, -1000.0, 1000.0)
         smooth = 50 + 0.01 * np.broadcast_to(self.x, self.heights.shape)
         found = []
         for name, driver in (("part.tif", "GTiff"), ("part.asc", "AAIGrid")):
             file = write_heights(name, smooth, (-1500, -1500), 10.0, driver)
-            posts, spacing, here, words = airport.read_heights(file, HERE, rectangle, known)
+            posts, spacing, here, words = airport.read_heights(file, HERE, rectangle, KNOWN)
             found.append(posts)
             self.assertAlmostEqual(spacing, 10.0, delta=0.01)
             self.assertAlmostEqual(here, 50.0, delta=0.01)
             self.assertIn("assumed", words)
-            self.assertLess(np.abs(np.diff(posts, axis=1)).max(), 1.5 * 15.0 * spacing / known["feather"] + 0.2)  # no step of 15 m
+            self.assertLess(np.abs(np.diff(posts, axis=1)).max(), 1.5 * 15.0 * spacing / KNOWN["feather"] + 0.2)  # no step of 15 m
             x = -2500.0 + spacing * np.arange(posts.shape[1])
             inner = np.abs(x) < 1200
             np.testing.assert_allclose(posts[50, inner], 50 + 0.01 * x[inner], atol=0.02)
@@ -545,93 +498,76 @@ class Terrains(unittest.TestCase):
         holed = smooth.copy()
         holed[140:160, 140:160] = np.nan  # filled from around it
         posts, spacing, here, _ = airport.read_heights(write_heights("holed.tif", holed, (-1500, -1500), 10.0), HERE,
-                                                       (-1000.0, 1000.0, -1000.0, 1000.0), known)
+                                                       (-1000.0, 1000.0, -1000.0, 1000.0), KNOWN)
         self.assertAlmostEqual(here, 50.0, delta=1.0)  # as the border is
 
     def test_units_and_holes_that_a_raster_does_not_name(self):
         """Units of the band and of a compound system, a scale, a vertical datum, values that no ground has without a word of them."""
-        known, around = airport.rules(), (-1000.0, 1000.0, -1000.0, 1000.0)
+        around = (-1000.0, 1000.0, -1000.0, 1000.0)
         smooth = 50 + 0.01 * np.broadcast_to(self.x, self.heights.shape)
-        truth = airport.read_heights(write_heights("metres.tif", smooth, (-1500, -1500), 10.0), HERE, around, known)
+        truth = airport.read_heights(write_heights("metres.tif", smooth, (-1500, -1500), 10.0), HERE, around, KNOWN)
+        plain = gdal.Open(str(FOLDER / "metres.tif"))
 
-        def changed(name, values, kind=gdal.GDT_Float32, system=None, change=lambda band: None):
-            file = write_heights(name, values, (-1500, -1500), 10.0)
-            plain = gdal.Open(str(file))
+        def changed(values, unit="", kind=gdal.GDT_Float64, system=None, places=None, **settings):
+            """@param settings of the band, @param system a compound one, which GeoTIFF has no word for @param places as rows of a geotransform"""
             image = gdal.GetDriverByName("MEM").Create("", plain.RasterXSize, plain.RasterYSize, 1, kind)
-            image.SetGeoTransform(plain.GetGeoTransform())
-            image.SetProjection(plain.GetProjection())
-            image.GetRasterBand(1).WriteArray(plain.ReadAsArray())
-            change(image.GetRasterBand(1))
-            gdal.GetDriverByName("GTiff").CreateCopy(str(file), image)
-            if system is not None:  # GeoTIFF has no word for most vertical systems
-                gdal.Translate(str(file.with_suffix(".vrt")), str(file), outputSRS=system)
-                file = file.with_suffix(".vrt")
-            return airport.read_heights(file, HERE, around, known)
-
-        local = gdal.Open(str(FOLDER / "metres.tif")).GetProjection()
+            image.SetGeoTransform(places or plain.GetGeoTransform())
+            image.SetProjection(system if places else plain.GetProjection())
+            image.GetRasterBand(1).WriteArray(values[::-1])
+            image.GetRasterBand(1).SetUnitType(unit)
+            for name, value in settings.items():
+                getattr(image.GetRasterBand(1), f"Set{name}")(value)
+            gdal.GetDriverByName("GTiff").CreateCopy(str(FOLDER / "changed.tif"), image)
+            if system is None or places:
+                return airport.read_heights(FOLDER / "changed.tif", HERE, around, KNOWN)
+            gdal.Translate(str(FOLDER / "changed.vrt"), str(FOLDER / "changed.tif"), outputSRS=system)
+            return airport.read_heights(FOLDER / "changed.vrt", HERE, around, KNOWN)
 
         def above_geoid(unit, metres):
-            return (f'COMPD_CS["with heights",{local},VERT_CS["EGM96 height",VERT_DATUM["EGM96 geoid",2005],UNIT["{unit}",{metres!r}],AXIS["Up",UP]]]')
-        named = {"ft": 0.3048, "Foot_US": 1200 / 3937, "cm": 0.01, "decimetres": 0.1, "millimeter": 0.001, "km": 1000.0, "yd": 0.9144}
-        for posts, _, here, words in (*(changed(f"{name}.tif", smooth / metres, gdal.GDT_Float64, change=lambda band, name=name: band.SetUnitType(name))
-                                        for name, metres in named.items()),
-                                      changed("scaled.tif", np.round(1000 * (smooth - 20)), gdal.GDT_Int32,
-                                              change=lambda band: (band.SetScale(0.001), band.SetOffset(20.0))),
-                                      changed("geoid.tif", smooth, system=above_geoid("metre", 1.0)),
-                                      changed("geoid_survey_feet.tif", smooth * 3937 / 1200, system=above_geoid("US survey foot", 1200 / 3937)),
-                                      changed("geoid_yards.tif", smooth / 0.9144, system=above_geoid("Indian yard", 0.9144))):
+            return (f'COMPD_CS["with heights",{plain.GetProjection()},VERT_CS["EGM96 height",VERT_DATUM["EGM96 geoid",2005],UNIT["{unit}",{metres!r}],AXIS["Up",UP]]]')
+        units = {"ft": 0.3048, "Foot_US": 1200 / 3937, "cm": 0.01, "decimetres": 0.1, "millimeter": 0.001, "km": 1000.0, "yd": 0.9144}
+        for posts, _, here, words in (*(changed(smooth / metres, unit) for unit, metres in units.items()),
+                                      changed(np.round(1000 * (smooth - 20)), kind=gdal.GDT_Int32, Scale=0.001, Offset=20.0),
+                                      changed(smooth, system=above_geoid("metre", 1.0)), changed(smooth / 0.9144, system=above_geoid("Indian yard", 0.9144))):
             np.testing.assert_allclose(posts, truth[0], atol=2e-3, err_msg=words)
             self.assertAlmostEqual(here, truth[2], delta=1e-3)
             self.assertIn("40.0 to 60.0 m", words)
-        self.assertIn("in ft, which it says", airport.read_heights(FOLDER / "ft.tif", HERE, around, known)[3])
-        for value, unit in ((-9999.0, "m"), (-32768.0, "m"), (32767.0, "m"), (-501.0, "m"), (9001.0, ""), (-3.4028235e38, ""), (np.nan, ""),
-                            (-32768.0, "cm"), (-9999.0, "mm"), (30000.0, "ft")):
-            for declared in (None, -9998.0):
-                with self.subTest(value=value, unit=unit, declared=declared):
-                    holed = smooth / {"cm": 0.01, "mm": 0.001, "ft": 0.3048}.get(unit, 1.0)
-                    holed[140:160, 140:160] = value
-                    posts, _, here, words = changed("holed.tif", holed, gdal.GDT_Float64, change=lambda band, unit=unit, declared=declared: (
-                        band.SetUnitType(unit), declared and band.SetNoDataValue(declared)))
-                    self.assertAlmostEqual(here, 50.0, delta=1.0)
-                    self.assertGreater(posts.min(), 35.0)
-                    self.assertLess(posts.max(), 65.0)
-                    self.assertIn("have none there", words)
-        for unit, system, said in (("furlong", None, "its heights are in 'furlong', expected one of m, dm, cm, mm, km, ft, us ft"),
-                                   ("m", above_geoid("foot", 0.3048), "its band says heights in 'm', and its vertical system in 'foot', expected one unit")):
+        for value, unit, metres in ((-9999.0, "m", 1.0), (32767.0, "m", 1.0), (-501.0, "m", 1.0), (9001.0, "", 1.0), (np.nan, "", 1.0), (-32768.0, "cm", 0.01), (30000.0, "ft", 0.3048)):
+            for declared in ({}, {"NoDataValue": -9998.0}):
+                holed = smooth / metres
+                holed[140:160, 140:160] = value
+                posts, _, here, words = changed(holed, unit, **declared)
+                self.assertAlmostEqual(here, 50.0, delta=1.0, msg=(value, unit, declared))
+                self.assertTrue(35.0 < posts.min() and posts.max() < 65.0, (value, unit, declared))
+                self.assertIn("have none there", words)
+        for unit, more, said in (("furlong", {}, "its heights are in 'furlong', expected one of m"), ("", {"kind": gdal.GDT_Byte}, "holds bytes in 1 band"),
+                                 ("m", {"system": above_geoid("foot", 0.3048)}, "its band says heights in 'm', and its vertical system in 'foot'")):
             with self.assertRaisesRegex(al.Error, said):
-                changed("unknown.tif", smooth, system=system, change=lambda band, unit=unit: band.SetUnitType(unit))
-        with self.assertRaisesRegex(al.Error, "holds bytes in 1 band, as a picture or a hillshade does, expected heights of 16 bits or more"):
-            changed("hillshade.tif", smooth, gdal.GDT_Byte)
+                changed(smooth, unit, **more)
         state_plane = osr.SpatialReference()
-        state_plane.ImportFromWkt(local)
+        state_plane.ImportFromWkt(plain.GetProjection())
         state_plane.SetLinearUnitsAndUpdateParameters("US survey foot", 1200 / 3937)
-        far = [value * 3937 / 1200 for value in gdal.Open(str(FOLDER / "metres.tif")).GetGeoTransform()]
-        image = gdal.GetDriverByName("GTiff").Create(str(FOLDER / "state.tif"), smooth.shape[1], smooth.shape[0], 1, gdal.GDT_Float32)
-        image.SetGeoTransform(far)
-        image.SetProjection(state_plane.ExportToWkt())
-        image.GetRasterBand(1).WriteArray(smooth[::-1])
-        del image
-        with self.assertWarnsRegex(RuntimeWarning, "says no unit of its heights, .* in US survey foot: they are taken for metres, and are likely in US survey foot"):
-            posts = airport.read_heights(FOLDER / "state.tif", HERE, around, known)[0]
+        with self.assertWarnsRegex(RuntimeWarning, "says no unit of its heights, .* are likely in US survey foot"):
+            posts = changed(smooth, system=state_plane.ExportToWkt(), places=[value * 3937 / 1200 for value in plain.GetGeoTransform()])[0]
         np.testing.assert_allclose(posts[:200, :200], truth[0][:200, :200], atol=2e-3)
 
     def test_formats_of_heights(self):
         """A tile of SRTM, a .vrt over a GeoTIFF, and a raster whose holes are in a mask."""
-        known, around = airport.rules(), (-1000.0, 1000.0, -1000.0, 1000.0)
+        around = (-1000.0, 1000.0, -1000.0, 1000.0)
         image = gdal.GetDriverByName("MEM").Create("", 1201, 1201, 1, gdal.GDT_Int16)
-        image.SetGeoTransform((math.floor(HERE[1]) - 1 / 2400, 1 / 1200, 0, math.floor(HERE[0]) + 1 + 1 / 2400, 0, -1 / 1200))
+        image.SetGeoTransform((13 - 1 / 2400, 1 / 1200, 0, 54 + 1 / 2400, 0, -1 / 1200))
         degrees = osr.SpatialReference()
         degrees.ImportFromEPSG(4326)
         image.SetProjection(degrees.ExportToWkt())
         image.GetRasterBand(1).WriteArray(np.full((1201, 1201), 77, np.int16))
         FOLDER.mkdir(parents=True, exist_ok=True)
-        tile = FOLDER / f"{'N' if HERE[0] > 0 else 'S'}{abs(math.floor(HERE[0])):02d}{'E' if HERE[1] > 0 else 'W'}{abs(math.floor(HERE[1])):03d}.hgt"
+        tile = FOLDER / "N53E013.hgt"
         gdal.GetDriverByName("SRTMHGT").CreateCopy(str(tile), image)
-        self.assertAlmostEqual(airport.read_heights(tile, HERE, around, known)[2], 77.0, delta=1e-6)
+        self.assertAlmostEqual(airport.read_heights(tile, HERE, around, KNOWN)[2], 77.0, delta=1e-6)
         smooth = 50 + 0.01 * np.broadcast_to(self.x, self.heights.shape)
         plain = write_heights("plain.tif", smooth, (-1500, -1500), 10.0)
         gdal.BuildVRT(str(FOLDER / "plain.vrt"), [str(plain)]).FlushCache()
-        np.testing.assert_array_equal(airport.read_heights(FOLDER / "plain.vrt", HERE, around, known)[0], airport.read_heights(plain, HERE, around, known)[0])
+        np.testing.assert_array_equal(airport.read_heights(FOLDER / "plain.vrt", HERE, around, KNOWN)[0], airport.read_heights(plain, HERE, around, KNOWN)[0])
         masked = gdal.Open(str(write_heights("masked.tif", smooth, (-1500, -1500), 10.0)), gdal.GA_Update)
         masked.GetRasterBand(1).DeleteNoDataValue()
         masked.CreateMaskBand(gdal.GMF_PER_DATASET)
@@ -639,7 +575,7 @@ class Terrains(unittest.TestCase):
         mask[140:160, 140:160] = 0
         masked.GetRasterBand(1).GetMaskBand().WriteArray(mask)
         del masked
-        self.assertIn("have none there", airport.read_heights(FOLDER / "masked.tif", HERE, around, known)[3])
+        self.assertIn("have none there", airport.read_heights(FOLDER / "masked.tif", HERE, around, KNOWN)[3])
 
     def test_wrong_heights(self):
         file = crossing().write("wrong.osm")
@@ -668,12 +604,9 @@ class Wrong(unittest.TestCase):
             one.way([(-600, 0), (600, 0)], aeroway="runway")
         nothing.way([(0, 0), (0, 0)], aeroway="runway")
         files = [(across.write("across.osm"), "cross the meridian of 180 degrees"), (beside.write("beside.osm"), "would reach over the meridian of 180"),
-                 (nothing.write("nothing.osm"), "holds no runway"), (plan.write("none.osm"), "holds no runway"), (FOLDER / "missing.osm", "no such file"), (FOLDER, "is no extract by its name"),
-                 (FOLDER / "map.shp", "is no extract by its name")]
-        for name, content, said in (("text.osm", "no map", "GDAL cannot read it as an extract"), ("empty.geojson", "", "is empty"),
-                                    ("cut.geojson", '{"type": "FeatureCollection", "features": [', "GDAL cannot read"),
-                                    ("cut.osm", crossing().write("whole.osm").read_text()[:3000], "cut.osm: "), ("text.pbf", "no map", "GDAL cannot"),
-                                    ("text.gpkg", "no map", "GDAL cannot"), ("null.geojson", '{"type": "FeatureCollection", "features": []}', "holds no runway")):
+                 (nothing.write("nothing.osm"), "holds no runway"), (plan.write("none.osm"), "holds no runway"), (FOLDER / "missing.osm", "no such file"), (FOLDER, "is no extract by its name")]
+        for name, content, said in (("text.osm", "no map", "GDAL cannot read it as an extract"), ("text.gpkg", "no map", "GDAL cannot"),
+                                    ("cut.geojson", '{"type": "FeatureCollection", "features": [', "GDAL cannot read"), ("null.geojson", '{"type": "FeatureCollection", "features": []}', "holds no runway")):
             (FOLDER / name).write_text(content)
             files.append((FOLDER / name, said))
         large = FOLDER / "large.osm"
@@ -692,9 +625,8 @@ class Wrong(unittest.TestCase):
         folder = fresh("edited_terrain")
         extract = Map()
         extract.way([(-600, 0), (600, 0)], aeroway="runway", ref="09/27", width="30")
-        file = extract.write("edited_terrain.osm")
         heights = write_heights("edited_terrain.tif", np.full((130, 130), 60.0), (-3225, -3225), 50.0)
-        words = ("airport", file, "--heights", heights, "-o", folder)
+        words = ("airport", extract.write("edited_terrain.osm"), "--heights", heights, "-o", folder)
         self.assertEqual(run(*words)[0], 0)
         terrain = folder / "terrain.vtp"
         terrain.write_text(terrain.read_text().replace("<VTKFile", "<!-- edited -->\n<VTKFile", 1))
@@ -709,37 +641,16 @@ class Wrong(unittest.TestCase):
                 kept.put(name, lambda: (name + text).encode())
             return {name: (kept.folder / name).read_text() for name in ("airport.geojson", "terrain.vtp")}
 
-        for stop in range(4):
-            for begun in (False, True):
-                for text in ("2", "3"):
-                    folder = fresh("stopped")
-                    folder.mkdir()
-                    if begun:
-                        made(airport.Kept(folder), "1")
-                    calls = []
-
-                    def write(path, content):
-                        calls.append(path)
-                        if len(calls) > stop:
-                            raise KeyboardInterrupt
-                        path.write_bytes(content)
-
-                    with unittest.mock.patch.object(airport, "write_whole", write), self.assertRaises(KeyboardInterrupt):
-                        made(airport.Kept(folder), "2")
-                    kept = airport.Kept(folder)
-                    self.assertEqual((made(kept, text), kept.edited),
-                                     ({"airport.geojson": "airport.geojson" + text, "terrain.vtp": "terrain.vtp" + text}, []))
-        (folder / "terrain.vtp").unlink()
-        os.mkfifo(folder / "terrain.vtp")
-        with self.assertRaisesRegex(RuntimeError, "no regular file"):
-            made(airport.Kept(folder), "3")
-
-    def test_numbers_are_said_to_be_assumed(self):
-        known = airport.rules()
-        self.assertIn("assumed", known["comment"][0])
-        for kind, rule in known["kinds"].items():
-            self.assertTrue(set(rule["from"]) <= {"point", "line", "area"} and rule["tags"] and rule["class"], kind)
-            self.assertTrue("height" in rule or rule.get("flat"), kind)
+        for stop, begun, text in ((stop, begun, text) for stop in range(4) for begun in (False, True) for text in ("2", "3")):
+            folder = fresh("stopped")
+            folder.mkdir()
+            if begun:
+                made(airport.Kept(folder), "1")
+            write = unittest.mock.Mock(side_effect=[*stop * [None], KeyboardInterrupt])
+            with unittest.mock.patch.object(airport, "write_whole", lambda path, content: write(path) or path.write_bytes(content)), self.assertRaises(KeyboardInterrupt):
+                made(airport.Kept(folder), "2")
+            kept = airport.Kept(folder)
+            self.assertEqual((made(kept, text), kept.edited), ({"airport.geojson": "airport.geojson" + text, "terrain.vtp": "terrain.vtp" + text}, []))
 
 
 class StandsOn(unittest.TestCase):
@@ -764,7 +675,6 @@ class StandsOn(unittest.TestCase):
         solid, scene = self.triangles(height=4)
         self.assertAlmostEqual(solid[:, :, 2].min(), -1.0, delta=1e-12)
         self.assertAlmostEqual(solid[:, :, 2].max(), 3.0, delta=1e-12)
-        from avianlidar._cloud import field_values
         report = "\n".join(field_values(scene.surfaces.GetBlock(0))["scene_report"])
         self.assertIn("1 areas and points beyond Plane were left out", report)
         self.assertIn("1 points were left out", report)
@@ -786,8 +696,8 @@ class StandsOn(unittest.TestCase):
 
     def test_slivers_at_edges_of_the_terrain(self):
         """A rectangle that reaches over an edge of the terrain by less than a map resolves."""
-        for over in (1e-9, 1e-7, 1e-6, 1e-5, 9e-5, 1.01e-4, 2e-4, 1e-3):
-            for angle in np.linspace(0.2, 1.3, 30):
+        for over in (1e-9, 1e-6, 9e-5, 1.01e-4, 1e-3):
+            for angle in np.linspace(0.2, 1.3, 6):
                 turn = np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
                 x, y = turn @ np.array([[-2000, 0], [2000, 0], [0, 2000], [0, -2000]], float).T
                 ring = (turn @ np.array([[-801.3, -over], [903.7, -over], [903.7, 20], [-801.3, 20], [-801.3, -over]]).T).T.tolist()
@@ -809,7 +719,7 @@ class StandsOn(unittest.TestCase):
 
     def test_a_fan_of_long_triangles(self):
         """Heights on a cone against its closed form; each triangle lies in the cells that it meets alone."""
-        count, radius = 40_000, 100.0
+        count, radius = 4_000, 100.0
         angle = 2 * np.pi * np.arange(count) / count
         ground = "v 0 0 10\n" + "".join(f"v {x!r} {y!r} 0\n" for x, y in zip((radius * np.cos(angle)).tolist(), (radius * np.sin(angle)).tolist()))
         ground += "".join(f"f 1 {i + 2} {(i + 1) % count + 2}\n" for i in range(count))
@@ -818,11 +728,6 @@ class StandsOn(unittest.TestCase):
         columns = np.argmin(np.linalg.norm(column.mean(axis=1)[:, None, :2] - places, axis=2), axis=1)
         low = np.array([column[columns == i].reshape(-1, 3).min(axis=0) for i in range(len(places))])
         np.testing.assert_allclose(low[:, 2], 10 - 0.1 * np.linalg.norm(np.abs(places) + 0.05, axis=1), atol=1e-3)
-        code = (f"import sys; sys.path[:0] = {sys.path!r}; import avianlidar as al; scene = {self.scene(height=1, width=0.1)!r}\n"
-                f"open({str(FOLDER / 'plane.obj')!r}, 'w').write(open({str(FOLDER / 'fan.obj')!r}).read())\nal.Scene(scene).surfaces\n"
-                "print(next(line.split()[1] for line in open('/proc/self/status') if line.startswith('VmHWM')))")
-        (FOLDER / "fan.obj").write_text(ground)
-        self.assertLess(int(subprocess.run([sys.executable, "-c", code], check=True, capture_output=True, text=True).stdout), 600e3)  # kB
 
     def test_rows_of_trees_of_no_width(self):
         line = {"type": "LineString", "coordinates": [[-40, 0], [40, 0]]}
@@ -833,28 +738,6 @@ class StandsOn(unittest.TestCase):
                 {"type": "Feature", "properties": {}, "geometry": line}]}))
             with self.assertRaisesRegex(RuntimeError, said) if said else contextlib.nullcontext():
                 al.Scene(scene)
-
-    def test_pieces_have_the_same_blocks(self):
-        """Ranks beyond the first have no triangles, and as many blocks of the same names."""
-        shape = {"type": "Polygon", "coordinates": [[[0, 0], [10, 0], [10, 10], [0, 0]]]}
-        beyond = {"type": "Polygon", "coordinates": [[[500, 0], [510, 0], [510, 10], [500, 0]]]}
-        for more in ({"features": "separate"}, {"medium": {"kind": "foliage", "leaf_area_density": 0.6}, "width": 2.0}):
-            scene = self.scene(height=5, **more)
-            if "medium" in more:
-                del scene["objects"][1]["material"]
-            (FOLDER / "shapes.geojson").write_text(json.dumps({"type": "FeatureCollection", "features": [
-                {"type": "Feature", "properties": {}, "geometry": one} for one in (beyond, shape, {"type": "Point", "coordinates": [20, 0]})]}))
-            scene["objects"].append({"name": "Last", "file": scene["objects"][0]["file"], "material": "Wall", "position": [0, 0, 50]})
-            (FOLDER / "pieces.lidarscene.json").write_text(json.dumps(scene))
-            found = []
-            for piece in (0, 1):
-                reader = al.vtkAvianLidar.vtkAvianLidarSceneReader()
-                reader.SetFileName(str(FOLDER / "pieces.lidarscene.json"))
-                reader.UpdatePiece(piece, 2, 0)
-                blocks_of = reader.GetOutput()
-                found.append([blocks_of.GetMetaData(i).Get(blocks_of.NAME()) for i in range(blocks_of.GetNumberOfBlocks())])
-            self.assertEqual(found[0], found[1])
-            self.assertEqual((found[0][0], found[0][-1], len(found[0])), ("Plane", "Last", 3 if "features" in more else 4))
 
     def test_errors(self):
         for more, said in (({"on": "Nothing", "height": 1}, "is Nothing, expected the name of a mesh further up"),
@@ -878,7 +761,7 @@ class RealAirports(unittest.TestCase):
             self.assertAlmostEqual(z.max() - z.min(), 25.0, delta=1e-9)
         runways = {one.name: one for one in siting.read_runways(folder / "airport.geojson", (31.1979, 121.3363, 0.0))}
         self.assertEqual([round(runways[name].axis()[1]) for name in ("18L/36R", "18R/36L")], [3398, 3292])
-        self.assertEqual(plan_area(found["18L/36R"][1]) > 57.6 * 3398, True)
+        self.assertGreater(plan_area(found["18L/36R"][1]), 57.6 * 3398)
         self.assertNotIn("says no height", words)
         self.assertIn("default of origin tool, not surveyed", (folder / "README.txt").read_text(encoding="utf-8"))
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Reports that are made in seconds, for tests of all but their curves."""
+"""Reports that are made in seconds."""
 import contextlib
 import unittest.mock
 
@@ -10,12 +10,4 @@ from avianlidar.apps import _report, reach
 def quick():
     """Reports have one visibility, one rain and few ranges."""
     with unittest.mock.patch.multiple(_report, VISIBILITIES=(_report.ANSWERED,), RAINS=(0.0,)), unittest.mock.patch.object(reach, "RANGES", 12):
-        yield
-
-
-@contextlib.contextmanager
-def curves():
-    """Reports have three visibilities and rains, and half of the ranges."""
-    with unittest.mock.patch.multiple(_report, VISIBILITIES=(200.0, _report.ANSWERED, 20e3), RAINS=(0.0, 10.0, 50.0)), \
-            unittest.mock.patch.object(reach, "RANGES", 24):
         yield
