@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Sites that two ranks share are those of one process. Arguments: mpiexec, pvbatch."""
+"""Sites and designs that two ranks share are those of one process; what one rank raises ends or reaches the others. Arguments: mpiexec,
+pvbatch."""
 
 import json
 import sys
@@ -7,52 +8,49 @@ import unittest
 
 from ranktools import SOURCE, fresh, on_ranks, run
 
-PLAN = SOURCE / "Examples" / "coverage" / "hongqiao.coverage.json"
+EXAMPLES = SOURCE / "Examples"
+PLAN, DESIGN = EXAMPLES / "coverage" / "hongqiao.coverage.json", EXAMPLES / "design" / "hongqiao.coverage.json"
+TARGET = {"species": "", "effective_area": 0.03, "clutter": False}  # m2: quicker than birds
 
 
-def few(folder, parts=(), **siting):
-    """The airport's plan with one sensor and fewer places and candidates. @param parts further parts of it"""
-    plan = json.loads(PLAN.read_text(encoding="utf-8"))
-    plan.update({name: str((PLAN.parent / plan[name]).resolve()) for name in ("scene", "runways")}, compare_with=[], places=300, **dict(parts))
-    plan["siting"].update({"spacing": 1200, "masts": [5], "draws": 5, **siting})
+def few(folder, verb="siting", **parts):
+    """The airport's plan with few places, candidates and designs. @param parts further parts of it"""
+    plan = json.loads((PLAN if verb == "siting" else DESIGN).read_text(encoding="utf-8"))
+    plan.update({name: str((PLAN.parent / plan[name]).resolve()) for name in ("scene", "runways")}, compare_with=[], places=50, coverage=TARGET)
+    plan.update(parts)
+    if verb == "siting":
+        plan["siting"].update(spacing=800, bounds=[-1200, 1600, -1200, 1200], masts=[5], draws=0, sensors=2)
+    else:
+        plan["design"]["designs"] = 6
+        plan["sensor"]["azimuth_step"] = 3.0
     folder.mkdir(parents=True)
     file = folder / "few.coverage.json"
     file.write_text(json.dumps(plan), encoding="utf-8")
-    return "-m", "avianlidar", "siting", file, "-o", folder
+    return "-m", "avianlidar", verb, file, "-o", folder / "out"
 
 
 class Ranks(unittest.TestCase):
-    def test_share_sites(self):
-        alone, together = fresh("TestSitingRanks", "alone"), fresh("TestSitingRanks", "together")
-        done = run(sys.executable, *few(alone))
-        self.assertEqual(done.returncode, 0, done.stderr)
-        done = on_ranks(*few(together))
-        self.assertEqual(done.returncode, 0, done.stderr)
-        for name in ("sites.csv", "sites.geojson", "sites.vtp", "gain.csv", "robustness.csv", "sites.png"):
-            self.assertEqual((alone / name).read_bytes(), (together / name).read_bytes(), name)
-        files = [{file.name for file in (folder / "coverage").iterdir()} for folder in (alone, together)]
-        self.assertEqual(*files)
-
-    def test_share_the_weathers_of_a_year(self):
-        alone, together = fresh("TestSitingRanks", "year-alone"), fresh("TestSitingRanks", "year-together")
-        year = {"year": [{"weather": ["haze:20000"], "share": 0.75}, {"weather": ["fog:700", "rain:5"], "share": 0.25}]}
-        done = run(sys.executable, *few(alone, year, draws=0))
-        self.assertEqual(done.returncode, 0, done.stderr)
-        command = few(together, year, draws=0)
-        self.assertEqual(run(sys.executable, *command).returncode, 0)  # of which half is lost: the ranks go on
-        kept = sorted((together / "coverage").iterdir())
-        for file in kept[::2]:
-            file.unlink()
-        done = on_ranks(*command)
-        self.assertEqual(done.returncode, 0, done.stderr)
-        for name in ("sites.csv", "sites.geojson", "sites.vtp", "gain.csv"):
-            self.assertEqual((alone / name).read_bytes(), (together / name).read_bytes(), name)
-        self.assertEqual({file.name: file.read_bytes() for file in kept}, {file.name: file.read_bytes() for file in (alone / "coverage").iterdir()})
+    def test_share_sites_and_designs(self):
+        """In the weathers of a year; half is lost, and the ranks go on."""
+        year = [{"weather": ["haze:20000"], "share": 0.75}, {"weather": ["fog:700", "rain:5"], "share": 0.25}]
+        for verb, parts, names in (("siting", {"year": year}, ("sites.csv", "sites.geojson", "sites.vtp", "gain.csv", "sites.png")),
+                                   ("design", {"coverage": {**TARGET, "number_of_scans": 2}}, ("design.csv", "sensitivities.csv", "front.png", "design.html"))):
+            alone, together = fresh("TestSitingRanks", f"{verb}-alone"), fresh("TestSitingRanks", f"{verb}-together")
+            done = run(sys.executable, *few(alone, verb, **parts))
+            self.assertEqual(done.returncode, 0, done.stderr)
+            command = few(together, verb, **parts)
+            wanted = {file.name: file.read_bytes() for file in (alone / "out" / "coverage").iterdir()}
+            (together / "out" / "coverage").mkdir(parents=True)
+            for name in sorted(wanted)[::2]:
+                (together / "out" / "coverage" / name).write_bytes(wanted[name])
+            done = on_ranks(*command)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            for name in names:
+                self.assertEqual((alone / "out" / name).read_bytes(), (together / "out" / name).read_bytes(), name)
+            self.assertEqual({file.name: file.read_bytes() for file in (together / "out" / "coverage").iterdir()}, wanted)
 
     def test_an_error_ends_the_job(self):
-        command = few(fresh("TestSitingRanks", "bad"))
-        command[3].write_text(command[3].read_text().replace("herring gull", "dodo"))
-        done = on_ranks(*command)
+        done = on_ranks(*few(fresh("TestSitingRanks", "bad"), coverage={"species": "dodo"}))
         self.assertNotEqual(done.returncode, 0)
         self.assertIn("Species is 'dodo'", done.stderr)
 

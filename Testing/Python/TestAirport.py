@@ -62,12 +62,11 @@ class Map:
 
     @staticmethod
     def _tags(tags):
-        return "".join(f"<tag k={quoteattr(key)} v={quoteattr(value)}/>" for key, value in tags.items())
+        return "".join(f"<tag k={quoteattr(key.replace('__', ':'))} v={quoteattr(value)}/>" for key, value in tags.items())
 
     def point(self, x, y, **tags):
         lon, lat, _ = siting.to_geodetic([(x, y, 0.0)], self.about)[0]
         number = self._number()
-        tags = {key.replace("__", ":"): value for key, value in tags.items()}
         self.rows.append(f'<node id="{number}" version="1" lat="{lat:.9f}" lon="{lon:.9f}">{self._tags(tags)}</node>')
         return number
 
@@ -75,7 +74,7 @@ class Map:
         nodes = [self.point(*point) for point in points]
         number = self._number()
         self.ways.append(f'<way id="{number}" version="1">' + "".join(f'<nd ref="{node}"/>' for node in nodes + nodes[:1] * closed)
-                         + self._tags({key.replace("__", ":"): value for key, value in tags.items()}) + "</way>")
+                         + self._tags(tags) + "</way>")
         return number
 
     def area(self, low, high, **tags):
@@ -84,7 +83,6 @@ class Map:
 
     def relation(self, outer, inner, **tags):
         members = [f'<member type="way" ref="{way}" role="{role}"/>' for ways, role in ((outer, "outer"), (inner, "inner")) for way in ways]
-        tags = {key.replace("__", ":"): value for key, value in tags.items()}
         self.relations.append(f'<relation id="{self._number()}" version="1">{"".join(members)}{self._tags({"type": "multipolygon", **tags})}</relation>')
 
     def write(self, name):
@@ -246,65 +244,6 @@ class Extracts(unittest.TestCase):
             asked = vars(parser().parse_args(line.split()))
             self.assertTrue(any((folder / str(value)).is_file() for value in asked.values()) or "track " in line, line)
 
-    def test_relations_with_holes_and_levels(self):
-        plan = Map()
-        plan.way([(-600, 0), (600, 0)], aeroway="runway", ref="09/27", width="30")
-        outer, inner = plan.area((0, 200), (100, 280)), plan.area((30, 220), (70, 250))
-        plan.relation([outer], [inner], building="yes", building__levels="4", name="Ring")
-        wood, glade = plan.area((-400, 200), (-200, 300)), plan.area((-350, 230), (-250, 270))
-        plan.relation([wood], [glade], landuse="forest", height="20")
-        plan.relation([plan.area((200, 200), (260, 260)), plan.area((240, 240), (300, 300))], [], building="yes", building__levels="two")
-        folder = fresh("holes")
-        code, words = run("airport", pbf(plan.write("holes.osm")), "-o", folder)
-        self.assertEqual(code, 0, words)
-        rows = [feature["properties"] for feature in json.loads((folder / "airport.geojson").read_text())["features"]]
-        ring = next(row for row in rows if row.get("name") == "Ring")
-        self.assertEqual((ring["height"], ring["height_from"]), (12, "building:levels, 3 m each assumed"))
-        _, found = blocks(folder)
-        self.assertAlmostEqual(plan_area(found["Wood"][1]), 200 * 100 - 100 * 40, delta=2.0)
-        self.assertTrue(is_closed(found["Wood"][1]))
-        z = found["Wood"][1][:, :, 2]
-        self.assertAlmostEqual(z.max() - z.min(), 20.0, delta=0.03)
-        # The hole and the overlap of a relation that is none: GEOS joins them, or takes them for a hole.
-        area = plan_area(found["Building"][1]) - (8000 - 1200)
-        self.assertTrue(any(abs(area - expected) < 1.0 for expected in (2 * 3600 - 400, 2 * 3600 - 800, 2 * 3600)), area)
-
-    def test_tags_as_they_are_found(self):
-        """Of real maps: runways as areas and out of use, an aerodrome by relation and by point, tunnels, broken ways."""
-        plan = Map()
-        plan.area((-800, -22.5), (800, 22.5), aeroway="runway", ref="09/27")
-        plan.way([(-400, -300), (400, -300)], aeroway="runway", ref="10/28", width="150 ft")
-        plan.area((-400, -322.9), (400, -277.1), aeroway="runway", area="yes", ref="10/28")
-        for tags in ({"aeroway": "runway", "disused": "yes"}, {"aeroway": "runway", "abandoned": "yes"}, {"disused__aeroway": "runway"}):
-            plan.way([(-800, 600), (800, 600)], ref="11/29", **tags)
-        plan.relation([plan.area((-900, -450), (900, 450))], [plan.area((-100, -240), (100, -200))], aeroway="aerodrome", icao="XREL")
-        plan.point(0, -200, aeroway="aerodrome", icao="XREL")
-        plan.point(0, 60, aeroway="aerodrome", icao="XHEL", aerodrome__type="heliport")
-        plan.area((440, 200), (460, 220), building="yes", layer="-1")
-        plan.way([(0, 300), (300, 300)], highway="primary", tunnel="yes", layer="-1")
-        plan.way([(0, 350), (300, 350)], natural="tree_row")
-        plan.way([(-300, 350), (-100, 350)], barrier="fence")
-        plan.way([(-300, 200), (-280, 200), (-280, 200), (-280, 220), (-300, 220)], True, building="yes", name="a node twice")
-        plan.way([(-200, 200), (-180, 200), (-180, 220)], building="yes", name="open")
-        plan.way([(-200, 240), (-180, 240)], True, building="yes", name="two nodes")
-        plan.way([(-200, 260), (-200, 260)], barrier="wall")
-        file = plan.write("tags.osm")
-        text = file.read_text(encoding="utf-8")
-        broken = '<way id="9998" version="1"><nd ref="1"/><nd ref="77777"/><tag k="barrier" v="wall"/></way>'  # cut at the extract's border
-        file.write_text(text.replace("</osm>", broken + "</osm>"), encoding="utf-8")
-        folder = fresh("tags")
-        code, words = run("airport", file, "--icao", "XREL", "-o", folder)
-        self.assertEqual(code, 0, words)
-        rows = [feature["properties"] for feature in json.loads((folder / "airport.geojson").read_text(encoding="utf-8"))["features"]]
-        kinds = [row["kind"] for row in rows]
-        self.assertEqual([kinds.count(kind) for kind in ("runway", "road", "tree", "fence", "wall")], [3, 0, 1, 1, 0])
-        self.assertEqual([row["name"] for row in rows if row["kind"] == "building"], ["a node twice"])
-        scene, parts = blocks(folder)
-        runways = {one.name: one for one in siting.read_runways(folder / "airport.geojson", scene.geodetic_origin)}
-        self.assertEqual({name: (round(one.axis()[1], 1), round(one.width, 1)) for name, one in runways.items()},
-                         {"09/27": (1600.0, 45.0), "10/28": (800.0, 45.7)})
-        self.assertAlmostEqual(plan_area(parts["09/27"][1]), 1600 * 45, delta=160)  # of a width in decimetres
-
     def test_a_slope_with_a_wood(self):
         """Ground that rises by 4 % to the east, in a tilted plane that a few triangles hold."""
         plan = Map()
@@ -366,6 +305,15 @@ class Extracts(unittest.TestCase):
         _, found = blocks(folder)
         z = found["Hangar A"][1][:, :, 2]
         self.assertAlmostEqual(z.max() - z.min(), 17.0, delta=2e-3)
+        # An edited terrain keeps the height of the origin.
+        heights = write_heights("edited.tif", np.full((130, 130), 60.0), (-3225, -3225), 50.0)
+        words = ("airport", file, "--heights", heights, "-o", fresh("edited_terrain"))
+        self.assertEqual(run(*words)[0], 0)
+        terrain = FOLDER / "edited_terrain" / "terrain.vtp"
+        terrain.write_text(terrain.read_text().replace("<VTKFile", "<!-- edited -->\n<VTKFile", 1))
+        code, said = run(*words)
+        self.assertEqual((code, said.count("was edited and stays as it is")), (0, 1), said)
+        self.assertEqual(json.loads((FOLDER / "edited_terrain" / "airport.lidarscene.json").read_text())["origin"]["height"], 60.0)
         # What others have left is not written over.
         other = fresh("others")
         other.mkdir()
@@ -621,19 +569,6 @@ class Wrong(unittest.TestCase):
             self.assertFalse((FOLDER / "bad").exists())
         large.unlink()
 
-    def test_an_edited_terrain_keeps_the_height_of_the_origin(self):
-        folder = fresh("edited_terrain")
-        extract = Map()
-        extract.way([(-600, 0), (600, 0)], aeroway="runway", ref="09/27", width="30")
-        heights = write_heights("edited_terrain.tif", np.full((130, 130), 60.0), (-3225, -3225), 50.0)
-        words = ("airport", extract.write("edited_terrain.osm"), "--heights", heights, "-o", folder)
-        self.assertEqual(run(*words)[0], 0)
-        terrain = folder / "terrain.vtp"
-        terrain.write_text(terrain.read_text().replace("<VTKFile", "<!-- edited -->\n<VTKFile", 1))
-        code, said = run(*words)
-        self.assertEqual((code, said.count("was edited and stays as it is")), (0, 1), said)
-        self.assertEqual(json.loads((folder / "airport.lidarscene.json").read_text())["origin"]["height"], 60.0)
-
     def test_a_run_that_was_stopped_edits_nothing(self):
         """Before each file and each record in turn, and then from the same input and another."""
         def made(kept, text):
@@ -694,18 +629,6 @@ class StandsOn(unittest.TestCase):
             {"type": "Feature", "properties": {}, "geometry": shape}]}))
         return next(triangles for name, _, triangles in airport.parts_of(al.Scene(scene)) if name == "Things")
 
-    def test_slivers_at_edges_of_the_terrain(self):
-        """A rectangle that reaches over an edge of the terrain by less than a map resolves."""
-        for over in (1e-9, 1e-6, 9e-5, 1.01e-4, 1e-3):
-            for angle in np.linspace(0.2, 1.3, 6):
-                turn = np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
-                x, y = turn @ np.array([[-2000, 0], [2000, 0], [0, 2000], [0, -2000]], float).T
-                ring = (turn @ np.array([[-801.3, -over], [903.7, -over], [903.7, 20], [-801.3, 20], [-801.3, -over]]).T).T.tolist()
-                ground = "".join(f"v {a!r} {b!r} 0\n" for a, b in zip(x.tolist(), y.tolist())) + "f 1 2 3\nf 2 1 4\n"
-                with self.subTest(over=over, angle=angle):
-                    flat = self.stood_on(ground, {"type": "Polygon", "coordinates": [ring]}, flat=True, base=0.5)
-                    self.assertAlmostEqual(plan_area(flat), 1705.0 * (20 + over), delta=1705.0 * 1e-4)
-
     def test_a_closed_body_is_no_terrain(self):
         corners = [(x, y, z) for z in (0, 10) for y in (-50, 50) for x in (-50, 50)]
         sides = "1 3 4,1 4 2,5 6 8,5 8 7,1 2 6,1 6 5,3 7 8,3 8 4,1 5 7,1 7 3,2 4 8,2 8 6".split(",")
@@ -728,16 +651,6 @@ class StandsOn(unittest.TestCase):
         columns = np.argmin(np.linalg.norm(column.mean(axis=1)[:, None, :2] - places, axis=2), axis=1)
         low = np.array([column[columns == i].reshape(-1, 3).min(axis=0) for i in range(len(places))])
         np.testing.assert_allclose(low[:, 2], 10 - 0.1 * np.linalg.norm(np.abs(places) + 0.05, axis=1), atol=1e-3)
-
-    def test_rows_of_trees_of_no_width(self):
-        line = {"type": "LineString", "coordinates": [[-40, 0], [40, 0]]}
-        for width, said in ((1e-12, "a line has more than 100000 crowns of 1e-12 m"), (0.1, "")):
-            scene = self.scene(height=4, width=width, medium={"kind": "foliage", "leaf_area_density": 0.6})
-            del scene["objects"][1]["material"]
-            (FOLDER / "shapes.geojson").write_text(json.dumps({"type": "FeatureCollection", "features": [
-                {"type": "Feature", "properties": {}, "geometry": line}]}))
-            with self.assertRaisesRegex(RuntimeError, said) if said else contextlib.nullcontext():
-                al.Scene(scene)
 
     def test_errors(self):
         for more, said in (({"on": "Nothing", "height": 1}, "is Nothing, expected the name of a mesh further up"),

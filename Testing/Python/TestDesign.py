@@ -5,7 +5,6 @@ import csv
 import io
 import json
 import math
-import pathlib
 import re
 import shutil
 import unittest
@@ -17,7 +16,7 @@ import TestBirdTracks
 from avianlidar import Error
 from avianlidar._command import main
 from avianlidar.apps import _design_page
-from avianlidar.apps._design import FIELDS, is_told, on_the_front, spread
+from avianlidar.apps._design import is_told, on_the_front, spread
 from avianlidar.apps._design_page import Designs
 from avianlidar.apps._formula import Formula
 from avianlidar.apps._maps import Plan, read_plan
@@ -25,6 +24,8 @@ from exampletools import emptied
 
 BOUNDS = {"pulse_energy": {"from": 1e-4, "to": 4e-3, "logarithmic": True}, "receiver_aperture": [0.005, 0.02]}
 DESIGN = {"share": 0.12, "bounds": BOUNDS, "cost": "1000 * pulse_energy + 100 * receiver_aperture", "designs": 8}
+TARGET = {"species": "", "effective_area": 0.03, "clutter": False}  # m2: quicker than birds
+GULL = {"species": "herring gull", "clutter": False}
 NIGHT = {"preset": "Search905", "azimuth_step": 2.0, "background_radiance": 0.0}
 
 
@@ -35,7 +36,7 @@ def fresh(name):
 def plan_of(where, **changes):
     """A plan file in a folder, whose scene is level ground and a house."""
     TestBirdTracks.scenario_file(where)
-    plan = {"scene": "small.lidarscene.json", "sensor": NIGHT, "coverage": {"species": "herring gull", "clutter": False}, "extent": [-400, 400, -400, 400],
+    plan = {"scene": "small.lidarscene.json", "sensor": NIGHT, "coverage": TARGET, "extent": [-400, 400, -400, 400],
             "heights": [10, 40], "places": 400, "design": DESIGN, **changes}
     file = where / "small.coverage.json"
     file.write_text(json.dumps(plan), encoding="utf-8")
@@ -56,22 +57,17 @@ class Formulas(unittest.TestCase):
     def test_arithmetic(self):
         values = {"x": 3.0, "y": 0.5}
         for text, expected in (("1 + 2 * x ** 2 / 3", 7.0), ("-(x - y) ** 2", -6.25), ("2 ** 3 ** 2", 512.0), ("sqrt(x * 3) + min(x, y, 1)", 3.5),
-                               ("ceil(y) + floor(y) + max(1, 2)", 3.0), ("log(exp(2)) + log10(100) + abs(-1)", 5.0), (" +x", 3.0), ("1e3 * y", 500.0)):
+                               ("ceil(y) + floor(y) + max(1, 2)", 3.0), ("log(exp(2)) + log10(100) + abs(-1)", 5.0)):
             self.assertAlmostEqual(Formula(text, values)(values), expected, msg=text)
 
     def test_attacks(self):
         """All are a ValueError at once that names the formula: none runs, none fills the memory."""
-        texts = ("__import__('os').system('touch broken')", "x.__class__", "().__class__.__bases__", "9 ** 9 ** 9 ** 9", "2 ** 10000000000", "10 ** 400 * 0",
-                 "1 / 0", "1 / (x - 3)", "(-8) ** (1 / 3)", "'a' * 9", "lambda: 1", "[1]", "x if x else 1", "min()", "min(x)", "exp(1e9)", "(" * 300 + "1" + ")" * 300,
-                 "1e999", "1e999 - 1e999", "9" * 500, "9" * 5000, "open('f')", "True", "1j", "x(2)", "max(*[1, 2])", "log(0)", "", "x x", "sqrt(x, 1)", "f'{x}'", "(z := 1)",
-                 "x @ x", "x // 2", "x % 2", "x < 2", "x & 1", "min(x, key=abs)", "\x00", "x\n= 1", "z", "eval('1')", "sqrt", "print(x)", "x; x", "#", "~x", "not x",
-                 "~" * 400 + "x", "not " * 240 + "x", "-" * 995 + "x")
+        texts = ("__import__('os').system('touch broken')", "x.__class__", "9 ** 9 ** 9 ** 9", "2 ** 10000000000", "10 ** 400 * 0", "1 / (x - 3)", "(-8) ** (1 / 3)", "'a' * 9",
+                 "lambda: 1", "[1]", "min()", "exp(1e9)", "(" * 300 + "1" + ")" * 300, "1e999 - 1e999", "9" * 5000, "open('f')", "True", "1j", "x(2)", "max(*[1, 2])", "log(0)", "",
+                 "x x", "sqrt(x, 1)", "f'{x}'", "(z := 1)", "x @ x", "x < 2", "min(x, key=abs)", "\x00", "z", "sqrt", "x; x", "#", "~x", "not " * 240 + "x", "-" * 995 + "x")
         for text in texts:
             with self.subTest(text[:40]), self.assertRaisesRegex(ValueError, re.escape(text.strip()[:20])):
                 Formula(text, ["x"])({"x": 3.0})
-        with self.assertRaisesRegex(ValueError, "'z' is not known, expected one of the numbers x, y"):
-            Formula("2 * z", ["x", "y"])
-
 
 class Parts(unittest.TestCase):
     def test_front_is_brute_force(self):
@@ -96,21 +92,14 @@ class Parts(unittest.TestCase):
         random = np.histogram2d(*np.random.default_rng(1).uniform(size=(2, 200)), 5, [(0, 1), (0, 1)])[0]
         self.assertLess(pairs.std(), 0.5 * random.std())
 
-    def test_what_an_error_tells(self):
-        self.assertEqual([is_told(share, 0.01, 0.5) for share in (0.53, 0.515, 0.5, 0.485, 0.47)], [True, None, None, None, False])
-
 
 class LinkBudget(unittest.TestCase):
-    @classmethod
-    def setUpClass(cls):
-        cls.study = looked(study_of(fresh("energy"), {"bounds": {"pulse_energy": [3.6e-4, 7.2e-4, 1.44e-3], "receiver_aperture": [0.0078539816, 0.0157079632]}}))
-
     def test_twice_the_aperture_is_twice_the_energy_without_background(self):
-        of = {(round(one.values["pulse_energy"] / 3.6e-4), round(one.values["receiver_aperture"] / 0.0078539816)): one for one in self.study.candidates}
+        study = looked(study_of(fresh("energy"), {"bounds": {"pulse_energy": [3.6e-4, 7.2e-4, 1.44e-3], "receiver_aperture": [0.0078539816, 0.0157079632]}}))
+        of = {(round(one.values["pulse_energy"] / 3.6e-4), round(one.values["receiver_aperture"] / 0.0078539816)): one for one in study.candidates}
         self.assertEqual(len(of), 6)
-        for (energy, aperture), one in of.items():
-            if aperture == 2:
-                self.assertAlmostEqual(one.share.value, of[min(2 * energy, 4), 1 if energy < 4 else 2].share.value, delta=1e-6)
+        for energy in (1, 2):
+            self.assertAlmostEqual(of[energy, 2].share.value, of[2 * energy, 1].share.value, delta=1e-6)
         self.assertGreater(of[2, 1].share.value, of[1, 1].share.value + 0.005)
         self.assertAlmostEqual(of[1, 2].pulses["exposure"], of[1, 1].pulses["exposure"] / 2)
 
@@ -139,7 +128,7 @@ class LinkBudget(unittest.TestCase):
 
     def test_the_plans_own_lidar_has_the_plans_own_share(self):
         where = fresh("own")
-        clutter = {"coverage": {"species": "herring gull"}}
+        clutter = {"coverage": {"species": "herring gull"}, "places": 100}
         plan = Plan(read_plan(plan_of(where, **clutter)), 1)
         overall = plan.overall
         base = {name: [getattr(plan.sensor, name)] for name in ("pulse_energy", "receiver_aperture", "number_of_channels", "rotation_rate")}
@@ -152,7 +141,7 @@ class LinkBudget(unittest.TestCase):
     def test_a_mix_in_the_weathers_of_a_year(self):
         year = [{"weather": ["haze:20000"], "share": 0.75}, {"weather": ["fog:300"], "share": 0.25}]
         where = fresh("year")
-        study = looked(study_of(where, {"bounds": {"pulse_energy": [3.6e-4]}}, coverage={}, mix={"herring gull": 3, "crow": 1}, year=year))
+        study = looked(study_of(where, {"bounds": {"pulse_energy": [3.6e-4]}}, coverage={"clutter": False}, mix={"herring gull": 3, "crow": 1}, year=year, places=100))
         plan = Plan(read_plan(where / "small.coverage.json"), 1)
         rows = [rows[-1]["detection_probability"] for rows in plan.in_airs([air.settings for air in plan.year])]
         self.assertAlmostEqual(study.candidates[0].share.value, 0.75 * rows[0] + 0.25 * rows[1], delta=1e-6)
@@ -160,7 +149,7 @@ class LinkBudget(unittest.TestCase):
 
     def test_scans_within_a_time(self):
         """2 of the scans in 10 s, Coverage's own number, by the binomial law at each place."""
-        study = looked(study_of(fresh("within"), {"bounds": {"rotation_rate": [0.1, 0.2, 0.5]}, "within": 10}, coverage={"species": "herring gull", "number_of_scans": 2, "clutter": False}))
+        study = looked(study_of(fresh("within"), {"bounds": {"rotation_rate": [0.1, 0.2, 0.5]}, "within": 10}, coverage={**TARGET, "number_of_scans": 2}))
         self.assertIn("by 2 or more of the scans in 10 s", _design_page.does(study))
         once = study_of(fresh("once"), {"bounds": {"rotation_rate": [0.5]}})
         p = once._found("one", [once.candidates[0].values], once.plan.points)[0].astype(float)
@@ -172,15 +161,11 @@ class LinkBudget(unittest.TestCase):
 class Pulses(unittest.TestCase):
     def test_gates_end_before_the_next_pulse(self):
         """16 channels, 10 us apart: c/2 times that is 1,498.96 m."""
-        for gate, ambiguous, refused in ((1498, False, False), (1500, False, True), (1500, True, False)):
-            with self.subTest(gate=gate, ambiguous=ambiguous):
-                sensor = {**NIGHT, "firing_interval": 1e-5, "range_gate": gate}
-                if refused:
-                    with self.assertRaisesRegex(Error, "hold no lidar that can be: range_gate is 1500 m, expected at most the 1499 m"):
-                        study_of(fresh("gate"), sensor=sensor)
-                else:
-                    study = study_of(fresh("gate"), {"ambiguous_ranges": True} if ambiguous else {}, sensor=sensor)
-                    self.assertFalse(any(one.refused for one in study.candidates))
+        for gate, ambiguous in ((1498, False), (1500, True)):
+            study = study_of(fresh("gate"), {"ambiguous_ranges": True} if ambiguous else {}, sensor={**NIGHT, "firing_interval": 1e-5, "range_gate": gate})
+            self.assertFalse(any(one.refused for one in study.candidates))
+        with self.assertRaisesRegex(Error, "hold no lidar that can be: range_gate is 1500 m, expected at most the 1499 m"):
+            study_of(fresh("gate"), sensor={**NIGHT, "firing_interval": 1e-5, "range_gate": 1500})
 
     def test_numbers(self):
         study = study_of(fresh("pulses"), {"bounds": {"rotation_rate": [0.25, 0.5]}, "exit_aperture": 2e-3, "cost": "pulse_rate + average_power"})
@@ -193,9 +178,8 @@ class Pulses(unittest.TestCase):
             self.assertAlmostEqual(one.pulses["shortest_interval"], 30e-6, delta=1e-9)
             self.assertAlmostEqual(one.cost, rate * (1.0 + 3.6e-4))
 
-    def test_a_beam_narrower_than_a_pupil(self):
         study = study_of(fresh("narrow"), {"bounds": {"pulse_energy": [3.6e-4]}, "exit_aperture": 2e-5})
-        self.assertEqual(study.candidates[0].pulses["pupil"], 3.6e-4)
+        self.assertEqual(study.candidates[0].pulses["pupil"], 3.6e-4)  # all that a narrower beam has
 
     def test_a_lidar_that_cannot_be_is_told(self):
         study = study_of(fresh("refused"), {"bounds": {"number_of_channels": [16, 4000]}})
@@ -210,7 +194,7 @@ class Pulses(unittest.TestCase):
 class Work(unittest.TestCase):
     def test_folder_and_page(self):
         where = fresh("page")
-        file = plan_of(where, description="<script>alert(1)</script> & what?", design={**DESIGN, "cost_unit": "<b>kEUR"})
+        file = plan_of(where, description="<script>alert(1)</script> & what?", design={**DESIGN, "cost_unit": "<b>kEUR"}, coverage=GULL)
         with contextlib.redirect_stdout(io.StringIO()) as said:
             self.assertEqual(main(["design", str(file), "-o", str(where / "out")]), 0)
         self.assertEqual({path.name for path in (where / "out").iterdir()},
@@ -230,27 +214,18 @@ class Work(unittest.TestCase):
         chosen = next(row for row in rows if int(row["chosen"]))
         microjoules = 1e6 * float(chosen["pulse_energy [J]"]) * 38.4845e-6 / float(chosen["receiver_aperture [m2]"])
         for answer in (said.getvalue().splitlines()[0], re.search('<p class="said">(.*?)</p>', page)[1]):
-            first = re.search(r"^The cheapest of .*; eye safety is not assessed: at 905 nm each pulse puts (\S+) µJ through a pupil of 7 mm at its exit aperture", answer)
+            first = re.search(r"^The cheapest of .*; eye safety is not assessed: at 905 nm each pulse puts (\S+) µJ through a pupil of 7 mm", answer)
             self.assertAlmostEqual(float(first[1]) / microjoules, 1.0, delta=0.05)
         for _, changed in ((row["field"], row) for row in csv.DictReader((where / "out" / "sensitivities.csv").read_text(encoding="utf-8").splitlines())):
             up = float(changed["to"]) > float(changed["from"])
             self.assertEqual(float(changed["change_of_detected [1]"]) > 0.0, up)
             self.assertAlmostEqual(float(changed["to"]) / float(changed["from"]), 1.2 if up else 0.8, delta=1e-5)
 
-    def test_a_formula_that_fails_beyond_the_bounds(self):
-        """Its row of the sensitivities says so, and the answer is there."""
-        study = study_of(fresh("formula"), {"bounds": {"receiver_aperture": [0.02]}, "share": 0.05, "cost": "-log(0.021 - receiver_aperture)"}).look()
-        less, more = study.sensitivities
-        self.assertEqual((less["refused"], math.isfinite(less["cost"])), ("", True))
-        self.assertRegex(more["refused"], r"design.cost: -log\(0.021 - receiver_aperture\): cannot be calculated")
-        _design_page.write(study)
-        self.assertTrue((study.folder / "design.html").exists())
-
     def test_what_no_design_has(self):
         study = looked(study_of(fresh("none"), {"share": 0.999}))
         self.assertIsNone(study.chosen)
         self.assertEqual(study.about.share.value, max(one.share.value for one in study.candidates))
-        self.assertRegex(_design_page.answers(study)[0], "^None of 8 designs surely detects 99.9 % of herring gulls.*; eye safety is not assessed: .* µJ through a pupil of 7 mm")
+        self.assertRegex(_design_page.answers(study)[0], "^None of 8 designs surely detects 99.9 % of .*; eye safety is not assessed: .* µJ through a pupil of 7 mm")
 
     def test_what_the_error_does_not_tell(self):
         only = {"bounds": {"pulse_energy": BOUNDS["pulse_energy"]}}  # so that what costs more detects more
@@ -259,6 +234,7 @@ class Work(unittest.TestCase):
         again = looked(study_of(fresh("unsure"), {**only, "share": middle.share.value - middle.share.error}))
         self.assertIn(middle.number, [one.number for one in again.undecided()])
         self.assertGreater(again.chosen.cost, middle.cost)
+        self.assertEqual([is_told(share, 0.01, 0.5) for share in (0.53, 0.515, 0.485, 0.47)], [True, None, None, False])
         self.assertRegex(" ".join(_design_page.answers(again)), "the error does not tell: .* within 2 standard errors")
 
     def test_a_killed_run_goes_on(self):
@@ -284,28 +260,15 @@ class Work(unittest.TestCase):
             self.assertEqual(file.read_bytes(), content)
         whole = looked(study_of(fresh("not-killed")))
         self.assertEqual([one.share for one in whole.candidates], [one.share for one in again.candidates])
-        other = study_of(where, coverage={"species": "crow", "clutter": False})
+        other = study_of(where, coverage={**TARGET, "effective_area": 0.04})
         with unittest.mock.patch.object(Designs, "_at_places", side_effect=RuntimeError("made again")), self.assertRaisesRegex(RuntimeError, "made again"):
             looked(other)
-
-    def test_designs_of_one_geometry_keep_their_lines_of_sight(self):
-        study, traced = study_of(fresh("kept"), {"bounds": {**BOUNDS, "mast": {"from": 3, "to": 9}}, "designs": 8}), []
-        at_places = Designs._at_places
-
-        def count(self, cover, values, again):
-            found = at_places(self, cover, values, again)
-            traced.append(cover.algorithm.GetNumberOfTracedPlaces() > 0)
-            return found
-        with unittest.mock.patch.object(Designs, "_at_places", count):
-            looked(study)
-        self.assertEqual(traced[:8], [True, False, False, False] * 2)
-        self.assertEqual(len({one.values["mast"] for one in study.candidates}), 2)
 
     def test_tracked(self):
         where = fresh("tracked")
         scenario = TestBirdTracks.scenario_file(where, number_of_scans=25)
         study = study_of(where, {"measure": "tracked", "scenario": scenario.name, "finalists": 2, "share": 0.1, "bounds": {"pulse_energy": [1e-6, 3.6e-4]}},
-                         heights=[0, 40], sensor={"preset": "Search905"}).look()
+                         heights=[0, 40], sensor={"preset": "Search905"}, coverage=GULL, places=100).look()
         weak, strong = study.finalists
         self.assertLess(weak.tracked.value + 0.1, strong.tracked.value)
         self.assertIs(study.chosen, strong)
@@ -316,35 +279,22 @@ class Work(unittest.TestCase):
         self.assertEqual((strong.tracked.number, strong.tracked.value), (len(gulls), sum(bird["found_s"] != "" for bird in gulls) / len(gulls)))
         _design_page.write(study)
         self.assertIn("tracks 10 % of herring gulls of the scenario at least once", _design_page.answers(study)[0])
-        # The same designs by other numbers are in the same folders.
-        names = {folder.name for folder in folders}
-        again = study_of(where, {"measure": "tracked", "scenario": scenario.name, "finalists": 1, "share": 0.1, "bounds": {"pulse_energy": [3.6e-4]}},
-                         heights=[0, 40], sensor={"preset": "Search905"})
-        self.assertEqual([one.number for one in again.candidates], [0])
-        looked(again)
-        self.assertEqual(({folder.name for folder in (where / "out" / "tracks").iterdir()}, again.chosen.tracked), (names, strong.tracked))
-
 
 class Wrong(unittest.TestCase):
     def test_plans(self):
         where = fresh("wrong")
-        span = {"from": 1, "to": 2}
         for design, changes, words in (
-                ({"share": 1.5}, {}, r"design.share: 1.5 is greater"), ({"bounds": {}}, {}, "design.bounds"), ({"bounds": {"color": [1]}}, {}, "design.bounds.*'color'"),
-                ({"bounds": {"mast": []}}, {}, "design.bounds.mast"), ({"bounds": {"mast": [0]}}, {}, r"design.bounds.mast: holds 0, expected values above 0 m"),
-                ({"bounds": {"pulse_energy": {"from": 2, "to": 1}}}, {}, r"pulse_energy: is from 2 to 1, expected the smaller one first"),
-                ({"bounds": {"minimum_elevation": {"from": -2, "to": 1, "logarithmic": True}}}, {}, "begins at -2, expected a number above 0 where it is logarithmic"),
+                ({"share": 1.5}, {}, "design.share"), ({"bounds": {}}, {}, "design.bounds"), ({"bounds": {"color": [1]}}, {}, "design.bounds.*'color'"),
+                ({"bounds": {"mast": [0]}}, {}, r"design.bounds.mast: holds 0"), ({"bounds": {"pulse_energy": {"from": 2, "to": 1}}}, {}, r"pulse_energy: is from 2 to 1"),
+                ({"bounds": {"minimum_elevation": {"from": -2, "to": 1, "logarithmic": True}}}, {}, "begins at -2, expected a number above 0"),
                 ({"bounds": {"number_of_channels": [16, 16.5]}}, {}, "number_of_channels: holds 16.5, expected whole numbers"),
-                ({"bounds": {"number_of_channels": [1, 16]}}, {}, "number_of_channels: begins at 1, expected 2 or more"),
                 ({"bounds": {"maximum_elevation": [0, 9]}}, {}, "beams begin at up to 0 deg and end from 0 deg on"),
                 ({"bounds": {"number_of_channels": [16]}}, {"sensor": {"preset": "VLP32C"}}, "the sensor's beams are a table of its own"),
-                ({"bounds": {"receiver_aperture": span}}, {"sensor": {"preset": "Airport16"}}, "receiver_aperture: the sensor has no aperture"),
+                ({"bounds": {"receiver_aperture": {"from": 1, "to": 2}}}, {"sensor": {"preset": "Airport16"}}, "receiver_aperture: the sensor has no aperture"),
                 ({"bounds": {"number_of_channels": [5000]}}, {}, "design.bounds: hold no lidar that can be: .*firings of a column"),
-                ({"cost": "price"}, {}, "design.cost: price: 'price' is not known, expected one of the numbers mast, "),
-                ({"cost": "1 / (pulse_rate - pulse_rate)"}, {}, r"design.cost: .* cannot be calculated \(float division by zero\) for mast 3"),
-                ({"exit_aperture": "0 * mast"}, {}, r"design.exit_aperture: 0 \* mast: is 0 m2, expected more than 0"),
-                ({"measure": "tracked"}, {}, "design.scenario: is not in the plan"), ({"measure": "tracked", "scenario": "none.json"}, {}, "design.scenario: .*none.json"),
-                ({"within": 1e9}, {}, r"hold no lidar that can be: .* scans in 1e\+09 s, expected at most 100")):
+                ({"cost": "price"}, {}, "design.cost: price: 'price' is not known"), ({"cost": "1 / (pulse_rate - pulse_rate)"}, {}, r"design.cost: .* cannot be calculated"),
+                ({"exit_aperture": "0 * mast"}, {}, r"design.exit_aperture: 0 \* mast: is 0 m2"), ({"measure": "tracked"}, {}, "design.scenario: is not in the plan"),
+                ({"within": 1e9}, {}, r"hold no lidar that can be: .* scans in 1e\+09 s")):
             with self.subTest(words), self.assertRaisesRegex(Error, words):
                 study_of(where, design, **changes)
         scenario = json.loads(TestBirdTracks.scenario_file(where).read_text(encoding="utf-8"))
@@ -352,15 +302,7 @@ class Wrong(unittest.TestCase):
         (where / "other.scenario.json").write_text(json.dumps({**scenario, "scene": "other.lidarscene.json"}), encoding="utf-8")
         with self.assertRaisesRegex(Error, "design.scenario: is of the scene .*other.lidarscene.json, expected that of the plan"):
             study_of(where, {"measure": "tracked", "scenario": "other.scenario.json"})
-        with self.assertRaisesRegex(Error, "design: is not in the plan"):
-            plan = read_plan(where / "small.coverage.json")
-            del plan["design"]
-            Designs(Plan(plan, 1), where / "out")
         self.assertFalse((where / "out").exists())
-
-    def test_names_are_those_of_the_schema(self):
-        schema = json.loads((pathlib.Path(_design_page.__file__).with_name("coverage.schema.json")).read_text(encoding="utf-8"))
-        self.assertEqual(schema["properties"]["design"]["properties"]["bounds"]["propertyNames"]["enum"], list(FIELDS))
 
 
 if __name__ == "__main__":

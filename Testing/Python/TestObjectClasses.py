@@ -3,6 +3,7 @@
 collision tree and the echo filter, to the labels of a file."""
 
 import os
+import tempfile
 import unittest
 
 import numpy as np
@@ -11,8 +12,6 @@ from vtk.util import numpy_support
 
 from avianlidar import vtkAvianLidar as al
 from echotools import Messages, array, box, scan, sensor
-
-FILE = "TestObjectClasses.bin"
 
 
 def texts(name, values):
@@ -79,37 +78,22 @@ class ObjectClasses(unittest.TestCase):
         return treed.GetOutput()
 
     def test_of_several_producers(self):
-        """Each producer begins to count at 0, so objects get new numbers."""
-        parts = (thing("hangar", 0, ["hangar"]), thing("cone", 90), thing("goose", 180, ["bird"]))
-        self.check(group(*parts), ["hangar", "cone", "goose"], ["hangar", "", "bird"])
-        self.check(group(*parts[::-1]), ["goose", "cone", "hangar"], ["bird", "", "hangar"])
-
-    def test_of_the_first_producer_are_not_those_of_all(self):
-        """Group Datasets hands on the field data of its first input."""
-        first = thing("faces", 0, ["runway", "apron", "fence"], (0, 0, 1, 1, 2, 2))
-        collect = vtk.vtkMultiBlockDataGroupFilter()
-        for part in (first, thing("cone", 90), thing("goose", 180, ["bird"])):
+        """Each producer begins to count at 0, so objects get new numbers; a leaf may have several. Where no block says its own, the scene's
+        are by object id."""
+        hangar, cone, goose = thing("hangar", 0, ["hangar"]), thing("cone", 90), thing("goose", 180, ["bird"])
+        leaf, other = thing("faces", 0, ["runway", "", "fence"], (2, 2, 2, 0, 0, 1)), thing("more", 90, ["tree", "car"], (0, 0, 0, 1, 1, 1))
+        unnamed = [thing("a", 0, None, [1] * 6), thing("b", 90, None, [0] * 6)]
+        for part in unnamed:
+            part.GetFieldData().RemoveArray("object_names")
+        collect = vtk.vtkMultiBlockDataGroupFilter()  # it hands on the field data of its first input
+        for part in (thing("faces", 0, ["runway", "apron", "fence"], (0, 0, 1, 1, 2, 2)), cone, goose):
             collect.AddInputData(part)
         collect.Update()
-        names = ["faces 0", "faces 1", "faces 2", "cone", "goose"]
-        self.check(collect.GetOutput(), names, ["runway", "apron", "fence", "", "bird"])
-
-    def test_of_a_leaf_with_several_objects(self):
-        leaf = thing("faces", 0, ["runway", "", "fence"], (2, 2, 2, 0, 0, 1))
-        self.check(leaf, ["faces 0", "faces 1", "faces 2"], ["runway", "", "fence"])
-        other = thing("more", 90, ["tree", "car"], (0, 0, 0, 1, 1, 1))
-        self.check(group(leaf, other), ["faces 2", "faces 0", "faces 1", "more 0", "more 1"],
-                   ["fence", "runway", "", "tree", "car"])
-
-    def test_of_the_whole_scene(self):
-        """Where no block says its own, the scene's are by object id."""
-        parts = [thing("a", 0, None, [1] * 6), thing("b", 90, None, [0] * 6)]
-        for part in parts:
-            part.GetFieldData().RemoveArray("object_names")
-        self.check(group(*parts, classes=["tower", "sign"]), ["block 1", "block 0"], ["tower", "sign"])
-
-    def test_none_is_none(self):
-        self.check(group(thing("a", 0), thing("b", 90)), ["a", "b"], None)
+        for surfaces, expected in ((group(hangar, cone, goose), {"hangar": "hangar", "cone": "", "goose": "bird"}), (group(goose, cone, hangar), {"goose": "bird", "cone": "", "hangar": "hangar"}),
+                                   (collect.GetOutput(), {"faces 0": "runway", "faces 1": "apron", "faces 2": "fence", "cone": "", "goose": "bird"}),
+                                   (leaf, {"faces 0": "runway", "faces 1": "", "faces 2": "fence"}), (group(*unnamed, classes=["tower", "sign"]), {"block 1": "tower", "block 0": "sign"}),
+                                   (group(leaf, other), {"faces 2": "fence", "faces 0": "runway", "faces 1": "", "more 0": "tree", "more 1": "car"})):
+            self.check(surfaces, list(expected), list(expected.values()))
 
     def test_material_keeps_it(self):
         surfaces = group(thing("hangar", 0, ["hangar"]), thing("faces", 90, ["runway", "fence"], (0, 0, 0, 1, 1, 1)))
@@ -151,18 +135,16 @@ class ObjectClasses(unittest.TestCase):
         bird.SetSpecies("Canada goose")
         bird.SetPosition(0, 60, 2)
         bird.Update()
-        self.assertEqual(field(bird.GetOutput(), "object_classes"), ["bird"])
         surfaces = group(thing("hangar", 90, ["hangar"]), bird.GetOutput(), thing("runway", 180, ["runway"]))
         echoes = self.check(surfaces, ["hangar", "Canada goose", "runway"], ["hangar", "bird", "runway"])
-        writer = al.vtkAvianLidarKITTIWriter()
-        writer.SetInputData(echoes)
-        writer.SetFileName(FILE)
-        self.assertTrue(writer.Write())
-        labels = np.fromfile(FILE.replace(".bin", ".label"), dtype="<u4")
-        for name in (FILE, FILE.replace(".bin", ".label")):
-            os.remove(name)
-        self.assertEqual((labels & 0xFFFF).tolist(), [{0: 50, 1: 99, 2: 40}[i] for i in array(echoes, "object_id")])
         self.assertEqual(set(array(echoes, "object_id")), {0, 1, 2})
+        with tempfile.TemporaryDirectory() as folder:
+            writer = al.vtkAvianLidarKITTIWriter()
+            writer.SetInputData(echoes)
+            writer.SetFileName(os.path.join(folder, "a.bin"))
+            self.assertTrue(writer.Write())
+            labels = np.fromfile(os.path.join(folder, "a.label"), dtype="<u4")
+        self.assertEqual((labels & 0xFFFF).tolist(), [{0: 50, 1: 99, 2: 40}[i] for i in array(echoes, "object_id")])
 
 
 if __name__ == "__main__":

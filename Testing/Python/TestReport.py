@@ -32,7 +32,6 @@ import flown  # noqa: E402
 PLAN = pathlib.Path(exampletools.EXAMPLES) / "coverage" / "hongqiao.coverage.json"
 HERE = pathlib.Path(exampletools.OUTPUT) / "TestReport"
 TARGET = {"species": "", "effective_area": 0.03, "clutter": False}  # m2: quicker than birds
-SHARES = np.array([0.75, 0.25])  # of the birds of Page
 
 
 def plan(**changes):
@@ -83,7 +82,7 @@ def same_numbers(test, browser, file):
 
 
 class Page(unittest.TestCase):
-    """Gulls and starlings at 50 to 100 m over both runways, within 150 m."""
+    """Targets at 50 to 100 m over both runways, within 150 m."""
 
     @classmethod
     def setUpClass(cls):
@@ -96,7 +95,7 @@ class Page(unittest.TestCase):
                 item["footprints"] = str(where.parent / item["footprints"])
         (HERE / "page.lidarscene.json").write_text(json.dumps(scene), encoding="utf-8")
         cls.asked = plan(scene="page.lidarscene.json", description="<script>throw 1</script> & gulls?", heights=[50, 100], regions={"strips": 1},
-                         mix={"starling": 1, "herring gull": 3}, coverage={"visibility": 10e3},
+                         coverage={**TARGET, "clutter": True, "visibility": 10e3},
                          siting={"bounds": [-1200, 800, -1500, 1500], "spacing": 1000, "masts": [5, 10], "draws": 0, "sensors": 2})
         page = report("report", cls.asked)
         cls.text = page.read_text(encoding="utf-8")
@@ -151,7 +150,7 @@ class Page(unittest.TestCase):
         texts = self.browser.run("return [...document.querySelectorAll('[data-sensors]')].map(c => c.textContent)")
         np.testing.assert_allclose([0.01 * float(text.partition(" ")[0]) for text in texts], gain, atol=0.0051)
         # The best site has one number: of one scan from there, wherever the page has it.
-        best = next(row for row in rows_of("report_files/shares.csv", receiver="Search905 at its best site") if row["height_from [m]"] == "-inf" and row["species"].startswith("bird ("))
+        best = next(row for row in rows_of("report_files/shares.csv", receiver="Search905 at its best site") if row["height_from [m]"] == "-inf")
         self.assertAlmostEqual(gain[0], float(best["detection_probability"]), delta=1e-6)
         self.assertEqual([shown[0][4], texts[0]], 2 * [self.browser.run("return document.querySelector('#answer b').textContent")])
         ends = {row["region"]: float(row["detection_probability"]) for row in rows_of("report_files/ends.csv", receiver="Search905 at its best site")}
@@ -172,44 +171,41 @@ class Page(unittest.TestCase):
                 places.append(np.column_stack([ground, random.uniform(50.0, 100.0, 100)]))
             return np.concatenate(places)
         sensor = al.Sensor("Search905", position=(0, 0, 3))
-        cover = al.Coverage(scene, sensor, places=drawn(0), visibility=10e3)
+        cover = al.Coverage(scene, sensor, places=drawn(0), visibility=10e3, species="", effective_area=0.03)
 
-        def by_species(position, clutter):
+        def shares(position, clutter):
             sensor.position = position
             cover.set(clutter=clutter)
-            found = []
-            for cover.species in ("herring gull", "starling"):
-                found.append(cover["detection_probability"].astype(float))
-            return np.array(found)
-        rows = [row for row in rows_of("report_files/shares.csv", receiver="Search905") if row["species"].startswith("bird (")]
+            return cover["detection_probability"].astype(float)
+        rows = rows_of("report_files/shares.csv", receiver="Search905")
         self.assertEqual({row["region"] for row in rows}, {"strips"})
         self.assertEqual({row["height_from [m]"] for row in rows if float(row["places"])}, {"50", "-inf"})
-        self.assertAlmostEqual(float(rows[-1]["detection_probability"]), SHARES @ by_species((0, 0, 3), True).mean(axis=1), delta=1e-6)
+        self.assertAlmostEqual(float(rows[-1]["detection_probability"]), shares((0, 0, 3), True).mean(), delta=1e-6)
         table = np.genfromtxt(HERE / "report_files" / "sites.csv", delimiter=",", names=True, encoding="utf-8")
         positions = np.column_stack([table[name] for name in table.dtype.names[:3]])
-        values = np.array([SHARES @ by_species(position, False).mean(axis=1) for position in positions])
+        values = np.array([shares(position, False).mean() for position in positions])
         np.testing.assert_allclose(table[next(name for name in table.dtype.names if name.startswith("value"))], values, atol=1e-6)
         self.assertGreater(len(values), 5)
         self.assertEqual(np.argmax(values), 0)
         cover.places = drawn(1 << 40)  # the page states sites at other places than those by which they are ranked, with clutter
         for row in rows_of("report_files/gain.csv"):
-            missed = np.prod([1.0 - by_species([float(c) for c in place.split()], True) for place in row["sites"].split(";")], axis=0)
-            self.assertAlmostEqual(float(row["value"]), SHARES @ (1.0 - missed).mean(axis=1), delta=1e-6)
+            missed = np.prod([1.0 - shares([float(c) for c in place.split()], True) for place in row["sites"].split(";")], axis=0)
+            self.assertAlmostEqual(float(row["value"]), (1.0 - missed).mean(), delta=1e-6)
         x, y, z = positions[0]
         for words in (f"{abs(x):g}\u00a0m {'east' if x > 0 else 'west'} and {abs(y):g}\u00a0m {'north' if y > 0 else 'south'}, {z:g}\u00a0m up",
-                      "of a lattice of 1000 m", "herring gull 75 %, starling 25 %", "<td>strips</td><td class=\"left line\">50 to 100 m</td>",
+                      "of a lattice of 1000 m", "<td>strips</td><td class=\"left line\">50 to 100 m</td>",
                       "How sure the winner is was not looked at"):
             self.assertIn(words, self.text)
         for mast, share in re.findall(r"([0-9]+) m: ([0-9.]+) ± [0-9.]+.% at", self.text):
             best = positions[positions[:, 2] == float(mast)][np.argmax(values[positions[:, 2] == float(mast)])]
-            self.assertAlmostEqual(0.01 * float(share), SHARES @ by_species(best, True).mean(axis=1), delta=5.1e-3)
+            self.assertAlmostEqual(0.01 * float(share), shares(best, True).mean(), delta=5.1e-3)
 
 
 class Less(unittest.TestCase):
     def test_a_plan_of_a_map_alone(self):
         """Of two receivers, one of which is changed, and without sites and runways; the mean of the map within four standard errors."""
         twice = {"preset": "Search905", "name": "twice the pulse", "pulse_energy": 7.2e-4}
-        page = report("map", plan(runways=None, siting=None, compare_with=[twice], heights=[20], coverage={"species": "crow", "clutter": False}))
+        page = report("map", plan(runways=None, siting=None, compare_with=[twice], heights=[20], coverage=TARGET))
         with Browser() as browser:
             browser.open(page)
             self.assertEqual(browser.run("return document.images.length"), 2 * (3 + 1) + 1 + 2)  # map, reasons, clutter; the curve; the answer; fog and rain
@@ -218,20 +214,20 @@ class Less(unittest.TestCase):
             known = browser.run("return [...document.querySelectorAll('#receivers tr')].map(r => [...r.cells].map(c => c.textContent.trim()))")
         self.assertEqual(known[0], ["receiver", "Search905", "twice the pulse"])
         self.assertIn(["energy of a pulse (mJ)", "0.36", "0.72 assumed"], known)
-        row, more = (rows[name, "map", "crow", -np.inf] for name in ("Search905", "twice the pulse"))
+        row, more = (next(row for key, row in rows.items() if key[0] == name and key[3] == -np.inf) for name in ("Search905", "twice the pulse"))
         self.assertGreater(float(more["detection_probability"]), 1.2 * float(row["detection_probability"]))
-        cover = al.Coverage(plan()["scene"], al.Sensor("Search905", position=(0, 0, 3)), species="crow", clutter=False,
+        cover = al.Coverage(plan()["scene"], al.Sensor("Search905", position=(0, 0, 3)), **TARGET, visibility=23e3,
                             bounds=(-600, 600, -600, 600, 20, 20), spacing=(40, 40, 1))
         self.assertAlmostEqual(float(row["detection_probability"]), cover["detection_probability"].mean(), delta=4 * float(row["detection_std_error"]))
 
     def test_one_end_and_every_option(self):
         """Regions by runway end; commands that say every option that the report was made with."""
-        wanted = plan(heights=[20], places=100, spacing=400, regions={"approaches": {"18L": 3, "36R": 1}}, spread="area", coverage={"clutter": False},
+        wanted = plan(heights=[20], places=100, spacing=400, regions={"approaches": {"18L": 3, "36R": 1}}, spread="area", coverage=TARGET,
                       siting={"bounds": [-1200, 0, -1500, -300], "spacing": 1200, "draws": 0, "sensors": 1})
         HERE.mkdir(parents=True, exist_ok=True)
         (HERE / "hours.txt").write_text("ZSSS 010000Z 00000KT 9999 15/10 Q1020\nZSSS 010100Z 00000KT 0500 FG 15/14 Q1020\n", encoding="utf-8")
         words = ["--weather", "fog:1500", "--metar", str(HERE / "hours.txt"), "--sensor-set", "range_gate=1200", "--sensor-set", "azimuth_range=0,360",
-                 "--coverage-set", "species=crow", "--siting-set", "surfaces=off"]
+                 "--coverage-set", "effective_area=0.04", "--siting-set", "surfaces=off"]
         text = html.unescape(report("one end", wanted, *words).read_text(encoding="utf-8"))
         commands = [shlex.split(found) for found in re.findall("<code>(avianlidar [^<]*)</code>", text)]
         self.assertTrue({tuple(command[:3]) for command in commands} <= {("avianlidar", verb, "one end.coverage.json") for verb in ("coverage", "report")})
