@@ -244,6 +244,33 @@ class Extracts(unittest.TestCase):
             asked = vars(parser().parse_args(line.split()))
             self.assertTrue(any((folder / str(value)).is_file() for value in asked.values()) or "track " in line, line)
 
+    def test_tags_as_they_are_found(self):
+        """Of real maps: runways as areas and out of use, an aerodrome by relation and by point, tunnels, broken ways."""
+        plan = Map()
+        plan.area((-800, -22.5), (800, 22.5), aeroway="runway", ref="09/27")
+        plan.way([(-400, -300), (400, -300)], aeroway="runway", ref="10/28", width="150 ft")
+        plan.area((-400, -322.9), (400, -277.1), aeroway="runway", area="yes", ref="10/28")
+        for tags in ({"aeroway": "runway", "disused": "yes"}, {"disused__aeroway": "runway"}):
+            plan.way([(-800, 600), (800, 600)], ref="11/29", **tags)
+        plan.relation([plan.area((-900, -450), (900, 450))], [plan.area((-100, -240), (100, -200))], aeroway="aerodrome", icao="XREL")
+        plan.point(0, -200, aeroway="aerodrome", icao="XREL")
+        plan.point(0, 60, aeroway="aerodrome", icao="XHEL", aerodrome__type="heliport")
+        plan.way([(0, 300), (300, 300)], highway="primary", tunnel="yes", layer="-1")
+        plan.way([(0, 350), (300, 350)], natural="tree_row")
+        plan.way([(-300, 200), (-280, 200), (-280, 200), (-280, 220), (-300, 220)], True, building="yes", name="a node twice")
+        plan.way([(-200, 240), (-180, 240)], True, building="yes", name="two nodes")
+        plan.way([(-200, 260), (-200, 260)], barrier="wall")
+        folder = fresh("tags")
+        code, words = run("airport", plan.write("tags.osm"), "--icao", "XREL", "-o", folder)
+        self.assertEqual(code, 0, words)
+        kinds = [feature["properties"]["kind"] for feature in json.loads((folder / "airport.geojson").read_text(encoding="utf-8"))["features"]]
+        self.assertEqual([kinds.count(kind) for kind in ("runway", "road", "tree", "wall", "building")], [3, 0, 1, 0, 1])
+        scene, parts = blocks(folder)
+        runways = {one.name: one for one in siting.read_runways(folder / "airport.geojson", scene.geodetic_origin)}
+        self.assertEqual({name: (round(one.axis()[1], 1), round(one.width, 1)) for name, one in runways.items()},
+                         {"09/27": (1600.0, 45.0), "10/28": (800.0, 45.7)})
+        self.assertAlmostEqual(plan_area(parts["09/27"][1]), 1600 * 45, delta=160)  # of a width in decimetres
+
     def test_a_slope_with_a_wood(self):
         """Ground that rises by 4 % to the east, in a tilted plane that a few triangles hold."""
         plan = Map()
@@ -525,22 +552,6 @@ class Terrains(unittest.TestCase):
         del masked
         self.assertIn("have none there", airport.read_heights(FOLDER / "masked.tif", HERE, around, KNOWN)[3])
 
-    def test_wrong_heights(self):
-        file = crossing().write("wrong.osm")
-        plain = gdal.GetDriverByName("MEM").Create("", 4, 4, 1, gdal.GDT_Float32)
-        gdal.GetDriverByName("GTiff").CreateCopy(str(FOLDER / "nowhere.tif"), plain)
-        far = write_heights("far.tif", np.ones((10, 10)), (90000, 90000), 10.0)
-        (FOLDER / "text.tif").write_text("no raster")
-        gdal.Translate(str(FOLDER / "picture.tif"), str(far), bandList=[1, 1, 1], outputType=gdal.GDT_Byte, noData="none")
-        for dem, said in ((FOLDER / "nowhere.tif", "does not say its coordinate reference system"), (far, "holds no heights from -500 to 9,000 m at the airport"),
-                          (FOLDER / "text.tif", "GDAL cannot read it as heights, expected GeoTIFF, ASCII grid, SRTM .hgt, GDAL .vrt ("),
-                          (FOLDER / "picture.tif", "holds bytes in 3 bands, as a picture or a hillshade does"), (FOLDER / "none.tif", "no such file")):
-            code, words = run("airport", file, "--heights", dem, "-o", fresh("wrong"))
-            self.assertEqual(code, 2)
-            self.assertIn(said, words)
-            self.assertEqual(words.count("\n"), 1)
-            self.assertFalse((FOLDER / "wrong").exists())
-
 
 class Wrong(unittest.TestCase):
     def test_extracts_that_are_wrong(self):
@@ -560,14 +571,22 @@ class Wrong(unittest.TestCase):
         large = FOLDER / "large.osm"
         with open(large, "wb") as stream:
             stream.truncate(500 << 20)  # takes no place on the disk
+        self.addCleanup(large.unlink)
         files.append((large, "holds 500 MiB, expected at most 256: cut it"))
+        # Heights beside an extract that is right.
+        gdal.GetDriverByName("GTiff").CreateCopy(str(FOLDER / "nowhere.tif"), gdal.GetDriverByName("MEM").Create("", 4, 4, 1, gdal.GDT_Float32))
+        far = write_heights("far.tif", np.ones((10, 10)), (90000, 90000), 10.0)
+        (FOLDER / "text.tif").write_text("no raster")
+        for dem, said in ((FOLDER / "nowhere.tif", "does not say its coordinate reference system"), (far, "holds no heights from -500 to 9,000 m at the airport"),
+                          (FOLDER / "text.tif", "GDAL cannot read it as heights"), (FOLDER / "none.tif", "no such file")):
+            files.append(((FOLDER / "whole.osm", "--heights", dem), said))
+        crossing().write("whole.osm")
         for file, said in files:
-            code, words = run("airport", file, "-o", fresh("bad"))
+            code, words = run("airport", *(file if isinstance(file, tuple) else (file,)), "-o", fresh("bad"))
             self.assertEqual(code, 2, (file, words))
             self.assertIn(said, words)
             self.assertEqual(words.count("\n"), 1, words)
             self.assertFalse((FOLDER / "bad").exists())
-        large.unlink()
 
     def test_a_run_that_was_stopped_edits_nothing(self):
         """Before each file and each record in turn, and then from the same input and another."""
@@ -639,18 +658,6 @@ class StandsOn(unittest.TestCase):
         for open_below in (sides[2:], sides[:2] + sides[4:]):  # walls, and a roof or a floor
             flat = self.stood_on(points + "".join(f"f {side}\n" for side in open_below), shape, flat=True, base=0.5)
             self.assertAlmostEqual(plan_area(flat), 50.0, delta=1e-9)
-
-    def test_a_fan_of_long_triangles(self):
-        """Heights on a cone against its closed form; each triangle lies in the cells that it meets alone."""
-        count, radius = 4_000, 100.0
-        angle = 2 * np.pi * np.arange(count) / count
-        ground = "v 0 0 10\n" + "".join(f"v {x!r} {y!r} 0\n" for x, y in zip((radius * np.cos(angle)).tolist(), (radius * np.sin(angle)).tolist()))
-        ground += "".join(f"f 1 {i + 2} {(i + 1) % count + 2}\n" for i in range(count))
-        places = np.random.default_rng(1).uniform(-70, 70, (50, 2))
-        column = self.stood_on(ground, {"type": "MultiPoint", "coordinates": places.tolist()}, height=1, width=0.1)
-        columns = np.argmin(np.linalg.norm(column.mean(axis=1)[:, None, :2] - places, axis=2), axis=1)
-        low = np.array([column[columns == i].reshape(-1, 3).min(axis=0) for i in range(len(places))])
-        np.testing.assert_allclose(low[:, 2], 10 - 0.1 * np.linalg.norm(np.abs(places) + 0.05, axis=1), atol=1e-3)
 
     def test_errors(self):
         for more, said in (({"on": "Nothing", "height": 1}, "is Nothing, expected the name of a mesh further up"),
