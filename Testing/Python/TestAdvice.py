@@ -75,7 +75,7 @@ class Advice(unittest.TestCase):
         self.assertLess(energy, 0.02)
         self.assertLess(wrong, 0.03)
         table = advice.table
-        row = next(row for row, rays in enumerate(table["rays_per_beam"]) if rays == 25 and table["beam_samples"][row] == 1 and table["number_of_reflections"][row] == 1)
+        row, = np.flatnonzero((table["rays_per_beam"] == 25) & (table["beam_samples"] == 1) & (table["number_of_reflections"] == 1))
         scan.set(beam_samples="Rays", rays_per_beam=25, number_of_reflections=1)
         energy, wrong = errors_of(scan.echoes, truth.echoes, limit)
         self.assertTrue(0.02 < energy < table["energy_error_most"][row], (energy, table["energy_error_most"][row]))
@@ -113,7 +113,8 @@ class Advice(unittest.TestCase):
 
     def test_bad_input(self):
         scan = al.Scan(al.Scene(CORNER), SENSOR)
-        for values, words in (({"energy": 0.0}, "EnergyError is 0"), ({"range": -1.0}, "RangeError is -1"), ({"missed": float("nan")}, "MissedShare is"), ({"beams": 10}, "SampleBeams is 10")):
+        for values, words in (({"energy": 0.0}, "EnergyError is 0"), ({"range": -1.0}, "RangeError is -1"),
+                              ({"missed": float("nan")}, "MissedShare is"), ({"beams": 10}, "SampleBeams is 10")):
             with self.assertRaisesRegex(al.Error, words):
                 scan.advise(**values)
         with self.assertRaisesRegex(al.Error, "RaysPerBeam"):
@@ -129,7 +130,8 @@ class Advice(unittest.TestCase):
         OUTPUT.mkdir(parents=True, exist_ok=True)
         files = [OUTPUT / f"advice{suffix}" for suffix in (".json", ".csv", ".png")]
         with contextlib.redirect_stdout(io.StringIO()) as out:
-            code = _command.main(["advise", str(SCENE), "--energy", "0.05", "--missed", "0.3", "--beams", "50", "--sensor-set", "azimuth_range=-60,60",
+            code = _command.main(["advise", str(SCENE), "--energy", "0.05", "--missed", "0.3", "--beams", "50", "--sensor-set",
+                                  "azimuth_range=-60,60",
                                   *(word for file in files for word in ("-o", str(file)))])
         self.assertEqual(code, 0)
         found = json.loads(files[0].read_text(encoding="utf-8"))

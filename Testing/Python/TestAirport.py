@@ -444,13 +444,6 @@ class Terrains(unittest.TestCase):
         rough = airport.terrain(np.random.default_rng(1).normal(0, 1, (20, 30)), (0.0, 0.0), 10.0, origin, 0.01)
         self.assertEqual(rough.GetNumberOfPolys(), 2 * 19 * 29)  # all posts
 
-    def test_the_curve_of_the_earth(self):
-        for latitude in (0.0, 31.2, 53.6, 80.0):
-            origin = (latitude, 13.3, 0.0)
-            for x, y in ((5000.0, 0.0), (0.0, 5000.0), (-3000.0, 4000.0)):
-                z = -airport.curvature(origin, x, y)
-                self.assertAlmostEqual(siting.to_geodetic([(x, y, z)], origin)[0, 2], 0.0, delta=1e-5)
-
     def test_heights_of_files(self):
         """GeoTIFF and ASCII grid alike; what they do not hold is level, and fades."""
         rectangle = (-2500.0, 2500.0, -1000.0, 1000.0)
@@ -565,7 +558,8 @@ class Wrong(unittest.TestCase):
         files = [(across.write("across.osm"), "cross the meridian of 180 degrees"), (beside.write("beside.osm"), "would reach over the meridian of 180"),
                  (nothing.write("nothing.osm"), "holds no runway"), (plan.write("none.osm"), "holds no runway"), (FOLDER / "missing.osm", "no such file"), (FOLDER, "is no extract by its name")]
         for name, content, said in (("text.osm", "no map", "GDAL cannot read it as an extract"), ("text.gpkg", "no map", "GDAL cannot"),
-                                    ("cut.geojson", '{"type": "FeatureCollection", "features": [', "GDAL cannot read"), ("null.geojson", '{"type": "FeatureCollection", "features": []}', "holds no runway")):
+                                    ("cut.geojson", '{"type": "FeatureCollection", "features": [', "GDAL cannot read"),
+                                    ("null.geojson", '{"type": "FeatureCollection", "features": []}', "holds no runway")):
             (FOLDER / name).write_text(content)
             files.append((FOLDER / name, said))
         large = FOLDER / "large.osm"
@@ -684,16 +678,6 @@ class RealAirports(unittest.TestCase):
         self.assertGreater(plan_area(found["18L/36R"][1]), 57.6 * 3398)
         self.assertNotIn("says no height", words)
         self.assertIn("default of origin tool, not surveyed", (folder / "README.txt").read_text(encoding="utf-8"))
-
-    def test_neubrandenburg(self):
-        folder = fresh("neubrandenburg")
-        code, words = run("airport", pathlib.Path(DATA) / "osm_neubrandenburg" / "edbn_3km.geojson", "--icao", "EDBN", "-o", folder)
-        self.assertEqual(code, 0, words)
-        self.assertIn("says no height of any building: all are assumed by kind", words)
-        _, found = blocks(folder)
-        self.assertIn("09/27", found)
-        self.assertEqual({found[name][0] for name in ("Terrain", "09/27", "Building")}, {"terrain", "runway", "building"})
-        self.assertAlmostEqual(plan_area(found["09/27"][1]), 45 * 2092.4, delta=60)
 
 
 if __name__ == "__main__":

@@ -22,7 +22,8 @@ class Airport(unittest.TestCase):
 
     def test_leaves_files(self):
         echoes, found = self.results["Airport16"][0], self.found
-        self.assertEqual(sorted(os.listdir(self.folder)), sorted([f"Airport16.{kind}" for kind in ("vtp", "csv", "las", "pcd", "geojson")] + ["table.csv", "table.md"]))
+        self.assertEqual(sorted(os.listdir(self.folder)), sorted([f"Airport16.{kind}" for kind in ("vtp", "csv", "las", "pcd",
+                                                                                                   "geojson")] + ["table.csv", "table.md"]))
         written = et.read(os.path.join(self.folder, "Airport16.vtp"))
         for array, values in found.items():
             np.testing.assert_array_equal(et.arrays(written)[array], values, array)
@@ -32,7 +33,8 @@ class Airport(unittest.TestCase):
             rows = dict(zip(header, np.loadtxt(stream, delimiter=",").T))
         np.testing.assert_allclose(np.column_stack([rows[f"{axis} [m]"] for axis in "xyz"]), found["points"], rtol=1e-14, atol=1e-300)
         table = et.read_table(os.path.join(self.folder, "table.md"))["Airport16"]
-        self.assertEqual([int(table[name]) for name in ("triangles", "beams", "rays emitted", "echoes")], [5510, 15360, 40 * 15360, echoes.GetNumberOfPoints()])
+        self.assertEqual([int(table[name]) for name in ("triangles", "beams", "rays emitted", "echoes")],
+                         [5510, 15360, 40 * 15360, echoes.GetNumberOfPoints()])
         self.assertEqual(sum(int(value) for key, value in table.items() if key.startswith("- ")), 15360)
         self.assertEqual(int(table["- with echoes below saturation"]) + int(table["- saturated"]), len(np.unique(found["beam_id"])))
         # No beam looks down, and none higher than a cone's half-width above 25 m meets anything. The ground is 3 m above the

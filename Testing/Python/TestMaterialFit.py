@@ -138,9 +138,12 @@ class Command(unittest.TestCase):
     def test_bad_files_are_one_line_that_names_them(self):
         short = self.folder / "short.binary"
         short.write_bytes(np.array([90, 90, 180], "<i4").tobytes() + bytes(100))
-        for file, words in ((short, "expected a MERL table"), (self.folder / "none.csv", "No such file"), (self.table("t.txt", "", []), "expected a table"),
-                            (self.table("head.csv", "angle,brdf", []), "expected the header"), (self.table("width.csv", "incidence,brdf", [(1, 2, 3)]), "line 2: expected 2 numbers"),
-                            (self.table("angle.csv", "incidence,brdf", [(1, 1), (91, 1)]), "line 3: expected angles"), (self.table("few.csv", "incidence,brdf", [(1, 1), (85, 1)]), "1 values above 0")):
+        for file, words in ((short, "expected a MERL table"), (self.folder / "none.csv", "No such file"),
+                            (self.table("t.txt", "", []), "expected a table"),
+                            (self.table("head.csv", "angle,brdf", []), "expected the header"),
+                            (self.table("width.csv", "incidence,brdf", [(1, 2, 3)]), "line 2: expected 2 numbers"),
+                            (self.table("angle.csv", "incidence,brdf", [(1, 1), (91, 1)]), "line 3: expected angles"),
+                            (self.table("few.csv", "incidence,brdf", [(1, 1), (85, 1)]), "1 values above 0")):
             with self.subTest(file.name), self.assertRaises((OSError, ValueError)) as caught:
                 self.run_it(file)
             self.assertRegex(str(caught.exception), f"{words}.*{file.name}|{file.name}.*{words}")

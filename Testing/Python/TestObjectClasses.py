@@ -89,9 +89,11 @@ class ObjectClasses(unittest.TestCase):
         for part in (thing("faces", 0, ["runway", "apron", "fence"], (0, 0, 1, 1, 2, 2)), cone, goose):
             collect.AddInputData(part)
         collect.Update()
-        for surfaces, expected in ((group(hangar, cone, goose), {"hangar": "hangar", "cone": "", "goose": "bird"}), (group(goose, cone, hangar), {"goose": "bird", "cone": "", "hangar": "hangar"}),
+        for surfaces, expected in ((group(hangar, cone, goose), {"hangar": "hangar", "cone": "", "goose": "bird"}),
+                                   (group(goose, cone, hangar), {"goose": "bird", "cone": "", "hangar": "hangar"}),
                                    (collect.GetOutput(), {"faces 0": "runway", "faces 1": "apron", "faces 2": "fence", "cone": "", "goose": "bird"}),
-                                   (leaf, {"faces 0": "runway", "faces 1": "", "faces 2": "fence"}), (group(*unnamed, classes=["tower", "sign"]), {"block 1": "tower", "block 0": "sign"}),
+                                   (leaf, {"faces 0": "runway", "faces 1": "", "faces 2": "fence"}),
+                                   (group(*unnamed, classes=["tower", "sign"]), {"block 1": "tower", "block 0": "sign"}),
                                    (group(leaf, other), {"faces 2": "fence", "faces 0": "runway", "faces 1": "", "more 0": "tree", "more 1": "car"})):
             self.check(surfaces, list(expected), list(expected.values()))
 

@@ -130,7 +130,8 @@ class SceneObjects(unittest.TestCase):
         for item, names, expected in (({}, of_scene, {2: 6, 3: 6}), ({}, dict(reversed(of_scene.items())), {3: 12}),
                                       ({}, {"paint*": "glass", "p?inted": "metal", "*": "wood"}, {1: 6, 3: 6}),
                                       ({"material_map": {"glazed": "Glass"}}, {"*": "wall"}, {0: 6, 1: 6}), ({"material": "WOOD"}, of_scene, {3: 12}),
-                                      ({"file": "box.vtp"}, {"glazed": "glass", "*": "wall"}, {0: 6, 1: 6}), ({"file": "box.vtk"}, {"glazed": "glass", "*": "wall"}, {0: 6, 1: 6})):
+                                      ({"file": "box.vtp"}, {"glazed": "glass", "*": "wall"}, {0: 6, 1: 6}),
+                                      ({"file": "box.vtk"}, {"glazed": "glass", "*": "wall"}, {0: 6, 1: 6})):
             block = self.read({"file": "quads.obj", **item}, material_map=names).blocks[0]
             self.assertEqual(dict(zip(*np.unique(st.cells(block, "material_id"), return_counts=True))), expected, (item, names))
 
@@ -222,7 +223,8 @@ class SceneObjects(unittest.TestCase):
         text = subprocess.run(["cs2cs", "-f", "%.12f", "EPSG:32632", "EPSG:4979"], input=lines, text=True,
                               capture_output=True, check=True).stdout
         places = [list(map(float, line.split())) for line in text.splitlines()]
-        local = np.array([self.frame(origin, {"latitude": lat, "longitude": lon, "height": corner[2] + offset[2]})[0] for (lat, lon, _), corner in zip(places, CORNERS)])
+        local = np.array([self.frame(origin, {"latitude": lat, "longitude": lon, "height": corner[2] + offset[2]})[0] for (lat, lon, _),
+                          corner in zip(places, CORNERS)])
         np.testing.assert_allclose(got, local[np.array(TRIANGLES)], atol=1e-6)
 
     # --- footprints
@@ -323,7 +325,8 @@ class SceneObjects(unittest.TestCase):
         for name, text, chosen, words in (
                 ("null.geojson", whole % ",".join([feature % "null"] * 2), {"k": "*"}, "none of its 2 features that fit the filter has a geometry"),
                 ("null.geojson", whole % (feature % '{"type":"Polygon","coordinates":[]}'), {}, "none of its 1 features has a geometry"),
-                ("null.geojson", whole % (feature % "null"), {"k": "b"}, "none of its 1 features fits the filter"), ("none.geojson", whole % "", {}, "holds no features"),
+                ("null.geojson", whole % (feature % "null"), {"k": "b"}, "none of its 1 features fits the filter"),
+                ("none.geojson", whole % "", {}, "holds no features"),
                 ("city.json", '{"type": "CityJSON", "version": "1.1", "CityObjects": {}, "vertices": []}', {}, "is CityJSON, which is not read"),
                 ("A.CSV", "id,height\n1,2\n", {}, "a table needs the columns x and y"), ("blank.csv", "x,y\n,\n", {}, "a table needs the columns x and y")):
             self.save(name, text)
@@ -387,7 +390,8 @@ class SceneObjects(unittest.TestCase):
         self.save("flat.obj", "v 0 0 0\nv 1 0 0\nv 2 0 0\nv 0 3 1\nf 1 2 3\nf 1 2 4\nf 1 1 4\n")
         scene = self.read({"file": "flat.obj", "name": "Flat"})
         self.assertIn("Flat: 3 triangles, 2 degenerate, east 0.00 to 2.00, north 0.00 to 3.00, up 0.00 to 1.00 m", scene.strings("scene_report"))
-        self.assertEqual([scene.reader.CanReadFile(os.path.join(self.folder, name)) for name in ("scene.lidarscene.json", "flat.obj", "none.lidarscene.json", "")], [1, 0, 0, 0])
+        self.assertEqual([scene.reader.CanReadFile(os.path.join(self.folder, name)) for name in ("scene.lidarscene.json", "flat.obj",
+                                                                                                 "none.lidarscene.json", "")], [1, 0, 0, 0])
 
     def test_abort_leaves_an_empty_output(self):
         scene, seen = self.read({"file": "box.obj"}, {"file": "box.obj"}), []

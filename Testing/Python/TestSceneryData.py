@@ -33,7 +33,8 @@ class SceneryData(unittest.TestCase):
                 ("zsss_structures", "Scenery", 81087, "Wall Glass Metal", (-1219.0, -2763.6, -89.6), (975.0, 2822.6, 26.9)),
                 ("phnl", "Structures", 116215, "Wall Glass Metal", (-4754.9, -1300.5, -478.2), (4537.7, 5011.3, 169.7)),
                 ("phnl", "Ground", 80265, "Grass Asphalt Concrete Sand Water", None, None), ("avz_office", "Office floor", 12151, "Wall", None, None),
-                ("ingolstadt", "Street", 151179, "Wall Glass Metal Wood Concrete Brick", None, None), ("shanghai_cbd", "Towers", 37083, "", None, (None, None, 640.1))):
+                ("ingolstadt", "Street", 151179, "Wall Glass Metal Wood Concrete Brick", None, None),
+                ("shanghai_cbd", "Towers", 37083, "", None, (None, None, 640.1))):
             with self.subTest(name=name, block=block):
                 scene = self.check(name, {block: count})
                 names = scene.strings("material_names")
@@ -50,7 +51,9 @@ class SceneryData(unittest.TestCase):
                     self.assertAlmostEqual(np.linalg.norm(np.ptp(points[:, :2], axis=0)), np.hypot(190.488, 490.658), delta=5)
 
     def test_a_town_from_geojson_and_from_raw_osm(self):
-        with bz2.open(os.path.join(DATA, "osm_neubrandenburg", "neubrandenburg.osm.bz2")) as source, open(os.path.join(SCENES, "neubrandenburg.osm"), "wb") as target:
+        with bz2.open(os.path.join(DATA, "osm_neubrandenburg", "neubrandenburg.osm.bz2")) as source, open(os.path.join(SCENES,
+                                                                                                                       "neubrandenburg.osm"),
+                                                                                                                       "wb") as target:
             shutil.copyfileobj(source, target)
         self.addCleanup(os.remove, target.name)
         for name in ("neubrandenburg", "neubrandenburg_osm"):

@@ -100,7 +100,8 @@ class ShippedScene(unittest.TestCase):
             self.assertAlmostEqual(area[up > 1e-9].sum() / ground, 1, delta=1e-9, msg=name)
             self.assertAlmostEqual(st.volume(triangles) / ground / properties["height"], 1, delta=1e-9, msg=name)
             self.assertAlmostEqual(area[facade].sum() / ring_length(rings[0]) / properties["height"], 1, delta=1e-9, msg=name)
-            self.assertAlmostEqual(area[material == GLASS].sum() / area[facade].sum(), 0.4 if properties["kind"] == "terminal" else 0, delta=1e-9, msg=name)
+            self.assertAlmostEqual(area[material == GLASS].sum() / area[facade].sum(), 0.4 if properties["kind"] == "terminal" else 0, delta=1e-9,
+                                   msg=name)
             self.assertTrue(facade[material == GLASS].all(), msg=name)
             self.assertEqual(set(material) - {GLASS}, {METAL} if properties["kind"] == "hangar" else {WALL})
         for name, area in (("Terminal 1", 54459), ("Terminal 2", 139673)):  # as the author of the extract measured them

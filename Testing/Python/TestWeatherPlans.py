@@ -133,13 +133,15 @@ class Year(unittest.TestCase):
 
     def test_what_is_wrong_is_named(self):
         half = [{"weather": ["fog:500"], "share": 0.5}]
-        for changes, words in (({"weather": ["snow:3"]}, "weather: weather 'snow:3', expected fog:V or haze:V"), ({"weather": ["fog:500"]}, "weather: is there beside visibility 23000"),
+        plan("wrong").with_name("empty.txt").write_text("# nothing\nstation,valid,metar\n", encoding="utf-8")
+        for changes, words in (({"weather": ["snow:3"]}, "weather: weather 'snow:3', expected fog:V or haze:V"),
+                               ({"weather": ["fog:500"]}, "weather: is there beside visibility 23000"),
                                ({"year": half}, "year: shares sum to 0.5, expected 1"),
                                ({"year": [*half, {"weather": ["fog:1", "haze:2"], "share": 0.5}]}, "year[1].weather: weather 'haze:2' after 'fog:1'"),
-                               ({"year": [*half, {"weather": ["rain:501"], "share": 0.5}]}, "RainRate is 501"), ({"year": [*half, {"weather": [], "share": -0.5}]}, "year[1].share: "),
+                               ({"year": [*half, {"weather": ["rain:501"], "share": 0.5}]}, "RainRate is 501"),
+                               ({"year": [*half, {"weather": [], "share": -0.5}]}, "year[1].share: "),
                                ({"year": YEAR, "metar": "year.txt"}, "metar: is there beside 'year'"), ({"metar": "none.txt"}, "none.txt: cannot be read (No such file"),
                                ({"metar": "empty.txt"}, "empty.txt: holds no METAR report")):
-            (HERE / "empty.txt").write_text("# nothing\nstation,valid,metar\n", encoding="utf-8")
             self.assertIn(words, said("coverage", plan("wrong", **changes), "-o", HERE / "wrong"))
 
 
@@ -183,9 +185,12 @@ class Metar(unittest.TestCase):
 
     def test_spellings_of_archives(self):
         mile = 1609.344
-        for words, visibility, rain in (("11/2SM BR", 1.5 * mile, 0), ("111/16SM BR", 27 / 16 * mile, 0), ("2 1/2 SM HZ", 2.5 * mile, 0), ("10SM", math.inf, 0), ("6KM HZ", 6000, 0),
-                                        ("20KM VCSH", math.inf, 0), ("9999NDV -RA", math.inf, 1), ("9999 3100 SHRA", math.inf, 5), ("1500NE 7000SW BR", 1500, 0), ("4000 1200N BR", 1200, 0),
-                                        ("0600SW R18R/P1500 FG", 600, 0), ("9999 FU 2000SE", math.inf, 0), ("350 FG", 350, 0), ("0800M FG", 800, 0), ("//// -RA BKN010 10/09 1013", None, 0)):
+        for words, visibility, rain in (("11/2SM BR", 1.5 * mile, 0), ("111/16SM BR", 27 / 16 * mile, 0), ("2 1/2 SM HZ", 2.5 * mile, 0),
+                                        ("10SM", math.inf, 0), ("6KM HZ", 6000, 0),
+                                        ("20KM VCSH", math.inf, 0), ("9999NDV -RA", math.inf, 1), ("9999 3100 SHRA", math.inf, 5),
+                                        ("1500NE 7000SW BR", 1500, 0), ("4000 1200N BR", 1200, 0),
+                                        ("0600SW R18R/P1500 FG", 600, 0), ("9999 FU 2000SE", math.inf, 0), ("350 FG", 350, 0),
+                                        ("0800M FG", 800, 0), ("//// -RA BKN010 10/09 1013", None, 0)):
             for head in ("EGLL 010020Z 24005KT", "EGLL,2020-01-01 00:20,EGLL 010020Z 0000KT", "METAR EGLL 010020Z /////", "SPECI EGLL 010020 COR 24005MPS"):
                 for line in (f"{head} {words} BKN010 10/09 Q1020", f"{head} {words}".lower()):
                     with self.subTest(line):
@@ -218,7 +223,8 @@ EGLL 010220Z NIL=
         hours = _metar.read_metar(HERE / "wrapped.txt")
         self.assertEqual([(one.station, one.visibility, one.rain) for one in hours.reports],
                          [("EGLL", 2000, 15), ("EGKK", math.inf, 0), ("EGLL", 3000, 1)])
-        for part in ("left out: 2, the first in line 1, 'SAUK31 EGRR 010020'", "left out: 2, the first in line 8, 'TAF EGLL", "left out: 1, the first in line 15, 'EGLL 010220Z NIL'"):
+        for part in ("left out: 2, the first in line 1, 'SAUK31 EGRR 010020'", "left out: 2, the first in line 8, 'TAF EGLL",
+                     "left out: 1, the first in line 15, 'EGLL 010220Z NIL'"):
             self.assertIn(part, hours.words())
 
     def test_hours_are_counted_by_class(self):
@@ -334,7 +340,8 @@ class Sequences(unittest.TestCase):
 
     def test_weather_belongs_to_what_a_folder_is_made_of(self):
         self.assertIn('scenario.weather ["fog:400"], now ["fog:500"]', said("sequence", self.file, "-o", self.home / "fog", "--weather", "fog:500"))
-        for changes, words in (({"weather": ["rain"]}, "weather: weather 'rain', expected fog:V or haze:V"), ({"weather": "fog:500"}, "weather: 'fog:500' is not of type 'array'"),
+        for changes, words in (({"weather": ["rain"]}, "weather: weather 'rain', expected fog:V or haze:V"),
+                               ({"weather": "fog:500"}, "weather: 'fog:500' is not of type 'array'"),
                                ({"weather": ["fog:500"], "scan": {"Visibility": 3000}}, "weather: is there beside visibility 3000")):
             self.assertIn(words, said("sequence", self.scenario("wrong", **changes), "-o", self.home / "wrong"))
         over = self.scenario("over", weather=["rain:3"], scan={"visibility": 9000})
