@@ -337,8 +337,9 @@ class SceneObjects(unittest.TestCase):
         scene = self.read({"footprints": "some.geojson", "height": 3}, origin=origin)
         self.assertIn("1 features without a geometry were left out", " ".join(scene.strings("scene_report")))
         self.save("dof.csv", "OAS,LATDEC,LONDEC,AGL,AMSL\n01-1,0.001,0.002,00100,00200\n")
-        scene = self.read({"footprints": "dof.csv", "height_attribute": "AGL", "width": 2, "crs": "EPSG:4326"}, origin=origin)
-        self.assertAlmostEqual(st.corners(scene.blocks[0])[:, :, 2].max(), 30.48)  # feet
+        for name, feet in (("AGL", 100), ("AMSL", 200)):
+            scene = self.read({"footprints": "dof.csv", "height_attribute": name, "width": 2, "crs": "EPSG:4326"}, origin=origin)
+            self.assertAlmostEqual(st.corners(scene.blocks[0])[:, :, 2].max(), 0.3048 * feet)
 
     def test_pieces_without_triangles(self):
         """They have the blocks of the whole, and open no mesh: a damaged one is an error of the first piece alone."""
