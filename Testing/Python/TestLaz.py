@@ -11,9 +11,8 @@ import unittest
 
 import numpy as np
 
-import avianlidar
 from avianlidar import vtkAvianLidar as al
-from cloudtools import add_array, add_field, assert_refused, cloud, echoes, names, points, read, read_error, write
+from cloudtools import add_array, add_field, assert_refused, cloud, names, points, read, read_error, write
 from echotools import Messages, array
 
 LASZIP = os.environ["AVIANLIDAR_LASZIP"] == "1"
@@ -69,38 +68,12 @@ class TestBuild(unittest.TestCase):
 @unittest.skipUnless(LASZIP, "built without LASzip")
 class TestLaz(Files):
     def test_the_same_as_las(self):
-        for count in (0, 1, 7, 2 * CHUNK + 1):
+        for count in (0, 1, CHUNK + 1):
             for rgb in (False, True):
                 for name in (LAS, LAZ):
                     write(al.vtkAvianLidarLASWriter(), random_cloud(count, rgb), name)
                 self.assertEqual(bits(read(LAZ)), bits(read(LAS)), (count, rgb))
         self.assertLess(os.path.getsize(LAZ), 0.8 * os.path.getsize(LAS))
-
-    def test_echoes_in_python(self):
-        for name in (LAS, LAZ.upper()):
-            avianlidar.save(echoes(), name)
-        las, laz = avianlidar.load_cloud(LAS), avianlidar.load_cloud(LAZ.upper())
-        os.remove(LAZ.upper())
-        self.assertEqual(bits(laz.data), bits(las.data))
-        self.assertEqual((laz.units, list(laz.fields)), (las.units, list(las.fields)))
-
-    def test_abort_and_progress(self):
-        write(al.vtkAvianLidarLASWriter(), random_cloud(2 * CHUNK, False), LAZ)
-        for last in (0.5, 1.0):
-            reader = al.vtkAvianLidarPointCloudReader()
-            heard, seen = Messages(reader), []
-            reader.SetFileName(LAZ)
-
-            def watch(caller, _, last=last, seen=seen):
-                seen.append(caller.GetProgress())
-                if last <= seen[-1] < 1:
-                    caller.SetAbortExecute(1)
-
-            reader.AddObserver("ProgressEvent", watch)
-            reader.Update()
-            self.assertEqual(reader.GetOutput().GetNumberOfPoints(), 0 if last < 1 else 2 * CHUNK)
-            self.assertEqual((heard.errors, seen), ([], sorted(seen)))
-            self.assertGreater(len(seen), 3)
 
     def assert_damaged(self, whole, words="damaged or cut short"):
         save(whole)
@@ -115,26 +88,20 @@ class TestLaz(Files):
         record = whole.index(b"laszip encoded") - 2
         table = struct.unpack_from("<Q", whole, data)[0]
         layers = data + 8 + length + 4
-        for cut in {0, 200, 374, data - 1, data, data + 8, layers, table - 1, table, table + 4, len(whole) - 1}:
+        for cut in (0, 200, data, layers, table - 1, table + 4, len(whole) - 1):
             self.assert_damaged(whole[:cut], "damaged or cut short|not a LAS file|ends before")
         for offset, kind, value in (
-            (96, "<I", 300), (96, "<I", 2**32 - 1), (247, "<Q", 201), (247, "<Q", 199), (247, "<Q", 50001), (105, "<H", length - 1),
-            (data, "<q", -1), (data, "<Q", 2**64 - 2), (data, "<Q", data), (table, "<I", 1), (table + 4, "<I", 0),
-            (table + 4, "<I", 2**32 - 1), (table + 8, "<I", 2**32 - 1), (layers - 4, "<I", 199), (layers, "<I", 2**32 - 1),
-            (layers + 32, "<I", 2**32 - 1), (layers + 4 * 20, "<I", 2**31),
-            (layers + 4 * (10 + length - 36), "<I", 2**32 - 1), (record + 2, "<B", 0), (record + 20, "<H", 0),
-            (record + 54, "<H", 2), (record + 56, "<H", 1), (record + 86, "<H", 1), (record + 88, "<H", 6), (record + 90, "<H", 20),
-            (record + 92, "<H", 9),
+            (96, "<I", 2**32 - 1), (247, "<Q", 201), (247, "<Q", 199), (105, "<H", length - 1), (247, "<Q", 10**12),
+            (data, "<q", -1), (data, "<Q", 2**64 - 2), (data, "<Q", data), (table, "<I", 1), (table + 4, "<I", 0), (table + 4, "<I", 2**32 - 1),
+            (layers - 4, "<I", 199), (layers, "<I", 2**32 - 1), (layers + 4 * (10 + length - 36), "<I", 2**32 - 1), (record + 2, "<B", 0),
+            (record + 20, "<H", 0), (record + 54, "<H", 2), (record + 86, "<H", 1), (record + 88, "<H", 6), (record + 92, "<H", 9),
         ):
             changed = bytearray(whole)
             struct.pack_into(kind, changed, offset, value)
             with self.subTest(offset=offset - data, value=value):
                 self.assert_damaged(bytes(changed), "damaged or cut short|memory|ends before|cut short")
-        claims = bytearray(whole)
-        struct.pack_into("<Q", claims, 247, 10**12)
-        self.assert_damaged(bytes(claims))  # before memory is asked for
         draw = np.random.default_rng(1)
-        for _ in range(1000):  # an error or a cloud, not the end of the process
+        for _ in range(300):  # an error or a cloud, not the end of the process
             changed = bytearray(whole)
             changed[draw.integers(data, len(whole))] = draw.integers(0, 256)
             save(bytes(changed))
@@ -164,7 +131,7 @@ class TestLaz(Files):
             resource.setrlimit(resource.RLIMIT_AS, before)
 
     @unittest.skipUnless(LASPY, "laspy is not installed")
-    def test_laspy_reads_ours(self):
+    def test_laspy_reads_ours_and_we_its(self):
         import laspy
         for rgb in (False, True):
             for name in (LAS, LAZ):
@@ -174,10 +141,6 @@ class TestLaz(Files):
             self.assertEqual((laz.header.point_format.id, laz.header.point_count), (7 if rgb else 6, CHUNK + 1))
             np.testing.assert_array_equal(laz.header.maxs, las.header.maxs)
             self.assertEqual(laz.vlrs.get("WktCoordinateSystemVlr")[0].string, las.vlrs.get("WktCoordinateSystemVlr")[0].string)
-
-    @unittest.skipUnless(LASPY, "laspy is not installed")
-    def test_ours_reads_what_laspy_wrote(self):
-        import laspy
         draw = np.random.default_rng(4)
         for form in (0, 1, 2, 3, 6, 7, 8):
             header = laspy.LasHeader(point_format=form, version="1.4" if form > 5 else "1.2")
@@ -187,25 +150,20 @@ class TestLaz(Files):
             for name in (LAS, LAZ):
                 las.write(name)
             self.assertEqual(bits(read(LAZ)), bits(read(LAS)), form)
-            whole = content(LAZ)
-            self.assert_damaged(whole[:len(whole) // 2])
 
 
 @unittest.skipIf(LASZIP, "built with LASzip")
 class TestWithout(Files):
-    WORDS = "LAZ needs LASzip, which this build is without: install liblaszip-dev (Debian 13) and build again, or use LAS"
-
-    def test_writing(self):
-        assert_refused(self, al.vtkAvianLidarLASWriter(), random_cloud(1, False), LAZ, f"{LAZ}: {self.WORDS}.")
-
-    def test_reading(self):
+    def test_reading_and_writing(self):
+        words = f"{LAZ}: LAZ needs LASzip, which this build is without: install liblaszip-dev"
+        assert_refused(self, al.vtkAvianLidarLASWriter(), random_cloud(1, False), LAZ, words)
         write(al.vtkAvianLidarLASWriter(), random_cloud(1, False), LAS)
         whole = bytearray(content(LAS))
         whole[104] |= 128
         for count in (1, 10**12):
             struct.pack_into("<Q", whole, 247, count)
             save(whole)
-            self.assertIn(f"{LAZ}: {self.WORDS}.", read_error(LAZ))
+            self.assertIn(words, read_error(LAZ))
 
 
 if __name__ == "__main__":

@@ -1,18 +1,24 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Reading clouds: LAS of all formats made by hand, wrong files, real frames, and a real scan beside a simulated one."""
+"""Every array through every format that keeps arrays; LAS of all formats made by hand; wrong files; real frames."""
 
 import os
 import struct
 import unittest
 
 import numpy as np
-import vtk
 
 from avianlidar import vtkAvianLidar as al
-from cloudtools import add_field, cloud, echoes, field, names, points, read, read_error, unit, write
+from cloudtools import add_array, add_field, cloud, echoes, field, names, points, read, read_error, unit, write
 from echotools import Messages, array
 
 FILE = "TestPointCloudReader.las"
+# Writer, suffix, settings, types that change, and relative and absolute rounding: LAS has intensities of 16 bits, returns in a byte and time in
+# seconds; the others have intensities as floats and whole numbers of 64 bits as doubles.
+FLOATS = {"i8": "f8", "u8": "f8", "intensity": "f4"}, {"intensity": (6e-8, 0)}
+BYTES = {"return_number": "u1", "number_of_returns": "u1"}, {"intensity": (0, 0.5 / 257), "timestamp": (1e-15, 0)}
+FORMATS = [(al.vtkAvianLidarLASWriter, ".las", {"CoordinateSystem": system}, *BYTES) for system in (0, 1, 2)] + [
+    (writer, suffix, {"FileType": kind, "Precision": 1}, *FLOATS)
+    for writer, suffix in ((al.vtkAvianLidarPCDWriter, ".pcd"), (al.vtkAvianLidarPLYWriter, ".ply")) for kind in (0, 1)]
 CORE = {0: 20, 1: 28, 2: 26, 3: 34, 4: 57, 5: 63, 6: 30, 7: 36, 8: 38, 9: 59, 10: 67}
 DATA = os.environ.get("AVIANLIDAR_DATA_DIR", "")
 
@@ -62,6 +68,30 @@ class TestPointCloudReader(unittest.TestCase):
     def tearDown(self):
         if os.path.exists(FILE):
             os.remove(FILE)
+
+    def test_every_array_through_every_format(self):
+        data = echoes()
+        n, draw = data.GetNumberOfPoints(), np.random.default_rng(3)
+        for kind in ("i1", "u1", "i2", "u2", "i4", "u4", "i8", "u8", "f4", "f8"):
+            add_array(data, "of_" + kind, draw.integers(0, 100, n).astype(kind), "m")
+        add_array(data, "rgb", draw.integers(0, 256, (n, 3)).astype("u1"), "1")
+        for kind, suffix, settings, kept, rounding in FORMATS:
+            with self.subTest(suffix, **settings):
+                writer, name = kind(), FILE.replace(".las", suffix)
+                self.addCleanup(lambda name=name: os.path.exists(name) and os.remove(name))
+                self.assertEqual(write(writer, data, name, **settings), [])
+                again = read(name)
+                # Turned into another frame, a corner of the box of rounding shows: sqrt(3) as far.
+                bound = 1.8 * writer.GetRoundingBound() if suffix == ".las" else 0
+                np.testing.assert_allclose(points(again), points(data), rtol=0, atol=bound)
+                for one in names(data):
+                    wanted, found = array(data, one), array(again, one)
+                    relative, absolute = rounding.get(one, (0, 0))
+                    np.testing.assert_allclose(found, wanted, rtol=relative, atol=absolute, err_msg=one)
+                    self.assertEqual(found.dtype.str[1:], kept.get(one, kept.get(wanted.dtype.str[1:], wanted.dtype.str[1:])), one)
+                    self.assertEqual(unit(again, one), unit(data, one), one)
+                for one in ("position", "orientation", "lower_energy_limit", "geodetic_origin", "object_names", "object_classes"):
+                    self.assertEqual(field(again, one), field(data, one), one)
 
     def test_las_formats(self):
         for form, minor in [(0, 0), (1, 1), (0, 2), (1, 2), (2, 2), (3, 2), (3, 3), (0, 4), (3, 4), (6, 4), (7, 4), (8, 4),
@@ -117,58 +147,49 @@ class TestPointCloudReader(unittest.TestCase):
                *((key, 34736, 1, at) for at, key in enumerate((3078, 3079, 3084, 3085, 3086))))
         for records, said, words, zone in (
                 ([keys(utm)], [], ["PROJCS", "zone 33N", "32633"], 33), ([keys(model, (3072, 0, 1, 32733))], [], ["zone 33S"], -33),
-                ([keys(model, (3072, 0, 1, 26910), (4096, 0, 1, 5703), (4099, 0, 1, 9001))], [], ["COMPD_CS", "NAD83 / UTM zone 10N", "NAVD88"], 0),
+                ([keys(model, (3072, 0, 1, 26910), (4096, 0, 1, 5703), (4099, 0, 1, 9001))], [], ["COMPD_CS", "zone 10N", "NAVD88"], 0),
                 ([keys((1024, 0, 1, 2), (2048, 0, 1, 4326))], ["in degree"], ["GEOGCS", "4326"], 0),
                 ([keys(model, (3072, 0, 1, 2994))], ["in foot"], ["Oregon GIC Lambert (ft)"], 0),
                 ([keys(model, (3072, 0, 1, 26910), (4096, 0, 1, 6360), (4099, 0, 1, 9003))], ["in metre and US survey foot"], ["zone 10N"], 0),
-                ([keys(model, (3072, 0, 1, 26910), (4099, 0, 1, 9002))], ["in metre and foot"], ["zone 10N"], 0),
                 ([numbers, keys(*own), names_], [], ["own grid", "41.75", "400000"], 0),
-                ([keys((3072, 0, 1, 12))], ["its GeoTIFF keys name no coordinate system that GDAL knows"], [], 0),
-                ([keys(model)], ["name no coordinate system"], [], 0), ([vlr(b"LASF_Projection", 34735, b"\1\0\1\0")], ["name no"], [], 0),
+                ([keys((3072, 0, 1, 12))], ["name no coordinate system"], [], 0), ([vlr(b"LASF_Projection", 34735, b"\1\0\1\0")], ["name no"], [], 0),
                 ([keys(utm), vlr(b"LASF_Projection", 2112, b"\0")], [], ["zone 33N"], 33)):
             with self.subTest(words):
                 las(3, records=records)
                 data = read(FILE, said=said)
-                system = field(data, "crs_wkt")[0] if words else ""
-                self.assertTrue(all(word in system for word in words), system)
-                self.assertEqual(data.GetFieldData().HasArray("crs_wkt"), bool(words))
-                self.assertEqual(field(data, "utm_zone") if zone else [], [zone] if zone else [])
+                fields = data.GetFieldData()
+                system = field(data, "crs_wkt")[0] if fields.HasArray("crs_wkt") else ""
+                self.assertTrue(bool(system) == bool(words) and all(word in system for word in words), system)
+                self.assertEqual(field(data, "utm_zone") if fields.HasArray("utm_zone") else [], [zone] if zone else [])
         both = [keys(utm), vlr(b"LASF_Projection", 2112, b'LOCAL_CS["mine",UNIT["metre",1]]\0')]
         for flag, word in ((0, "zone 33N"), (16, "mine")):  # of the global encoding
             las(3, minor=4, records=both, patch={6: ("<H", flag)})
             self.assertIn(word, field(read(FILE), "crs_wkt")[0])
 
     def test_scans_of_other_data_sets(self):
-        """Five numbers a point are an error, whatever the length; intensities of 0 to 255 are taken as they are."""
-        name = "TestPointCloudReader.bin"
+        """Other numbers a point than four are an error; intensities of 0 to 255 are taken as they are."""
+        name = FILE.replace(".las", ".bin")
+        self.addCleanup(lambda: os.remove(name))
         draw = np.random.default_rng(7)
         places = draw.uniform(-50, 50, (1000, 3))
         ring, bright = draw.integers(0, 32, (1000, 1)), draw.integers(0, 256, (1000, 1))
-        try:
-            for rows, words in (([places, bright, ring], "it has five float32 a point, as nuScenes has them"),
-                                ([places[:999], bright[:999], ring[:999]], "expected a multiple of 16: four float32 a point; it has five"),
-                                ([abs(places), bright, ring], "it has five float32 a point"),
-                                ([places, bright, ring, ring], "the fourth numbers of its points go from -"), ([places, 300 + bright], "go from 0 to 55")):
-                np.hstack(rows).astype("<f4").tofile(name)
-                self.assertIn(words, read_error(name))
-            places.astype("<f8").tofile(name)
-            self.assertIn("the fourth numbers of its points", read_error(name))
-            turned = np.linspace(0, np.pi / 2, 1000)[:, None]  # a scan about a corner: no coordinate below zero
-            scan = np.hstack([30 * np.cos(turned), 20 * np.sin(turned), 2 + turned, 0.5 + 0 * turned, turned, turned])
-            for count in (3, 5, 6):
-                scan[:, :count].astype("<f4").tofile(name)
-                self.assertIn(f"it seems to have {count} float32 a point", read_error(name))
-            scan[:, :4].astype("<f4").tofile(name)
-            self.assertEqual(read(name).GetNumberOfPoints(), 1000)
-            np.hstack([places, bright]).astype("<f4").tofile(name)
-            np.testing.assert_array_equal(array(read(name, said=["are taken for intensities of 0 to 255"]), "intensity"), bright[:, 0])
-            rows = np.hstack([places, bright / 255]).astype("<f4")
-            rows[5, 1] = rows[6] = np.nan
-            rows.tofile(name)
-            data = read(name, said=["2 points whose coordinates are not finite are left out"])
-            np.testing.assert_allclose(array(data, "intensity"), np.delete(bright[:, 0], [5, 6]), rtol=1e-6)
-        finally:
-            os.remove(name)
+        turned = np.linspace(0, np.pi / 2, 1000)[:, None]  # a scan about a corner: no coordinate below zero
+        corner = np.hstack([30 * np.cos(turned), 20 * np.sin(turned), 2 + turned, 0.5 + 0 * turned, turned, turned])
+        for rows, words in (([places, bright, ring], "it has five float32 a point, as nuScenes has them"),
+                            ([places[:999], bright[:999], ring[:999]], "expected a multiple of 16: four float32 a point; it has five"),
+                            ([places, bright, ring, ring], "the fourth numbers of its points go from -"), ([places, 300 + bright], "go from 0 to 55"),
+                            *(([corner[:, :count]], f"it seems to have {count} float32 a point") for count in (3, 5, 6))):
+            np.hstack(rows).astype("<f4").tofile(name)
+            self.assertIn(words, read_error(name))
+        corner[:, :4].astype("<f4").tofile(name)
+        self.assertEqual(read(name).GetNumberOfPoints(), 1000)
+        np.hstack([places, bright]).astype("<f4").tofile(name)
+        np.testing.assert_array_equal(array(read(name, said=["are taken for intensities of 0 to 255"]), "intensity"), bright[:, 0])
+        rows = np.hstack([places, bright / 255]).astype("<f4")
+        rows[5, 1] = rows[6] = np.nan
+        rows.tofile(name)
+        data = read(name, said=["2 points whose coordinates are not finite are left out"])
+        np.testing.assert_allclose(array(data, "intensity"), np.delete(bright[:, 0], [5, 6]), rtol=1e-6)
 
     def test_las_extra_bytes(self):
         described = [extra(b"a", 9, description=b"of something [m/s]"), extra(b"skipped", 0, options=3),
@@ -224,41 +245,36 @@ class TestPointCloudReader(unittest.TestCase):
             self.assertIn(words, read_error(FILE), changes)
 
     def test_files_that_cannot_be_read(self):
-        self.assertIn("No such file", read_error("TestPointCloudReader-none.las"))
-        with open("TestPointCloudReader.txt", "w", encoding="ascii") as file:
+        can = al.vtkAvianLidarPointCloudReader.CanReadFile
+        stem = FILE[:-len(".las")]
+        self.assertIn("No such file", read_error(stem + "-none.las"))
+        with open(stem + ".txt", "w", encoding="ascii") as file:
             file.write("1 2 3\n")
-        self.assertIn("does not end with", read_error("TestPointCloudReader.txt"))
-        os.remove("TestPointCloudReader.txt")
-        os.makedirs("TestPointCloudReader-folder.las", exist_ok=True)
-        self.assertIn("folder", read_error("TestPointCloudReader-folder.las"))
-        os.rmdir("TestPointCloudReader-folder.las")
+        self.assertIn("does not end with", read_error(stem + ".txt"))
+        os.remove(stem + ".txt")
+        os.makedirs(stem + "-folder.las", exist_ok=True)
+        self.assertIn("folder", read_error(stem + "-folder.las"))
+        os.rmdir(stem + "-folder.las")
         reader = al.vtkAvianLidarPointCloudReader()
         heard = Messages(reader)
         reader.Update()
         self.assertIn("FileName is not set", heard.errors[0])
-
-    def test_can_read_file(self):
-        can = al.vtkAvianLidarPointCloudReader.CanReadFile
         las(6)
         self.assertEqual(can(FILE), 1)
-        os.rename(FILE, "TestPointCloudReader.LAS")
-        self.assertEqual(can("TestPointCloudReader.LAS"), 1)
-        os.rename("TestPointCloudReader.LAS", "TestPointCloudReader.pcd")
-        self.assertEqual(can("TestPointCloudReader.pcd"), 0)
-        os.rename("TestPointCloudReader.pcd", "TestPointCloudReader.bin")
-        self.assertEqual(can("TestPointCloudReader.bin"), int(os.path.getsize("TestPointCloudReader.bin") % 16 == 0))
-        os.remove("TestPointCloudReader.bin")
-        for name in ("TestPointCloudReader.bin", "", None, ".", "x.vtp"):
+        for suffix, readable in ((".LAS", 1), (".pcd", 0), (".las", 1)):
+            os.rename(FILE, stem + suffix)
+            self.assertEqual(can(stem + suffix), readable)
+            os.rename(stem + suffix, FILE)
+        for name in ("", None, ".", "x.vtp", stem + ".bin"):
             self.assertEqual(can(name), 0, name)
 
     def test_origin_that_is_no_place(self):
         data = cloud([[1, 2, 3]])
         add_field(data, "geodetic_origin", (31.0, 121.0, 3.0))
-        writer = al.vtkAvianLidarLASWriter()
-        write(writer, data, FILE)
-        with open(FILE, "rb") as file:
+        write(al.vtkAvianLidarLASWriter(), data, FILE)
+        with open(FILE, "r+b") as file:
             whole = file.read()
-        with open(FILE, "wb") as file:
+            file.seek(0)
             file.write(whole.replace(b"[31.0,121.0,3.0]", b"[99.0,121.0,3.0]"))
         self.assertIn("no place on the Earth", read_error(FILE))
 
@@ -281,90 +297,31 @@ class TestPointCloudReader(unittest.TestCase):
         transform.SetTargetFrameToENU()
         transform.UseFieldDataOriginOff()
         transform.SetOrigin(31.1979, 121.3363, 3.0)
-        transform.Update()
-        self.assertTrue(transform.GetOutput().GetFieldData().HasArray("crs_wkt"))  # they have not moved
-        transform.MovePointsOn()
-        transform.Update()
-        self.assertFalse(transform.GetOutput().GetFieldData().HasArray("crs_wkt"))
+        for move in (False, True):
+            transform.SetMovePoints(move)
+            transform.Update()
+            self.assertNotEqual(bool(transform.GetOutput().GetFieldData().HasArray("crs_wkt")), move)
         self.assertTrue(away.GetFieldData().HasArray("crs_wkt"))
         np.testing.assert_allclose(points(transform.GetOutput()), points(echoes()), rtol=0, atol=1e-6)
 
-    def assert_compared(self, real):
-        """A cloud through the comparison with itself, moved."""
-        moved = vtk.vtkTransform()
-        moved.Translate(0, 0, 0.001)
-        other = vtk.vtkTransformPolyDataFilter()
-        other.SetTransform(moved)
-        other.SetInputData(real)
-        comparison = al.vtkAvianLidarCloudComparison()
-        comparison.SetInputData(0, real)
-        comparison.SetInputConnection(1, other.GetOutputPort())
-        comparison.Update()
-        self.assertAlmostEqual(comparison.GetHausdorffDistance(), 0.001, 9)
-
-    def assert_coloured(self, real, energy, limits):
-        """A cloud through the colours."""
-        colours = al.vtkAvianLidarHSBColorMap()
-        colours.SetInputData(real)
-        colours.SetInputArrayToProcess(0, 0, 0, 0, energy)
-        if limits:
-            colours.UseFieldDataRangeOff()
-            colours.SetEnergyRange(*limits)
-        colours.Update()
-        hue = array(colours.GetOutput(), "hue")
-        self.assertGreaterEqual(hue.min(), 0)
-        self.assertLessEqual(hue.max(), 240)
-        self.assertGreater(np.ptp(hue), 50)
-
-    def test_a_cloud_that_was_written_is_as_good_as_the_echoes(self):
-        data = echoes()
-        for writer, name in ((al.vtkAvianLidarLASWriter(), FILE), (al.vtkAvianLidarPCDWriter(), "TestPointCloudReader.pcd")):
-            write(writer, data, name)
-            again = read(name)
-            self.assert_compared(again)
-            self.assert_coloured(again, "energy", None)  # the limits came along as field data
-            if name != FILE:
-                os.remove(name)
-
     @unittest.skipUnless(DATA, "AVIANLIDAR_DATA_DIR is empty")
     def test_real_frames(self):
-        frames = {
-            "lidar_room/pandar64": 179121, "lidar_room/pandar40p": 108663, "lidar_room/xt32": 121648,
-            "lidar_room/qt64": 74842, "lidar_outdoor/helios16p_frame0": 15258, "lidar_outdoor/helios16p_frame1": 15795,
-            "lidar_outdoor/xt16": 26287, "lidar_vlp16_mrpt/vlp16": 22591, "lidar_ouster/os0_32": 21631,
-            "lidar_ouster/os1_32": 27310, "lidar_ouster/os2_32": 28541,
-        }
-        listed = {f"{folder}/{name[:-4]}" for folder in os.listdir(DATA) if folder.startswith("lidar_")
-                  for name in os.listdir(os.path.join(DATA, folder)) if name.endswith(".pcd")}
-        self.assertEqual(set(frames), listed)
-        for frame, count in frames.items():
-            name = os.path.join(DATA, frame + ".pcd")
-            self.assertEqual(al.vtkAvianLidarPointCloudReader.CanReadFile(name), 1)
-            data = read(name)
+        for frame, count in {"lidar_room/pandar40p": 108663, "lidar_room/qt64": 74842, "lidar_outdoor/helios16p_frame0": 15258,
+                             "lidar_outdoor/xt16": 26287, "lidar_vlp16_mrpt/vlp16": 22591, "lidar_ouster/os0_32": 21631}.items():
+            data = read(os.path.join(DATA, frame + ".pcd"))
             self.assertEqual(data.GetNumberOfPoints(), count, frame)
             for needed, its in (("laser_id", None), ("distance_m", "m"), ("azimuth", "0.01 deg"), ("vertical_angle", "deg")):
                 self.assertEqual(unit(data, needed), its, (frame, needed))
-            if "file_azimuth" in names(data) and "helios" in frame:
+            if "helios" in frame:
                 # Hundredths of a degree here; the sensor's optical centre is not its axis, so far points only.
                 far = array(data, "distance_m") > 20
                 turn = array(data, "azimuth")[far] - array(data, "file_azimuth")[far]
                 turn = (turn - np.median(turn) + 18000) % 36000 - 18000
                 self.assertLess(np.percentile(np.abs(turn), 95), 20)
-            bright = "intensity" if "intensity" in names(data) else "signal"
-            self.assert_coloured(data, bright, (0.0, 255.0))
-            if "vlp16" in frame:
-                self.assert_compared(data)
-
-    @unittest.skipUnless(DATA, "AVIANLIDAR_DATA_DIR is empty")
-    def test_a_real_scan_through_las(self):
         first = read(os.path.join(DATA, "lidar_vlp16_mrpt", "vlp16.pcd"))
         write(al.vtkAvianLidarLASWriter(), first, FILE, CoordinateSystem=2)
         again = read(FILE)
-        comparison = al.vtkAvianLidarCloudComparison()
-        comparison.SetInputData(0, first)
-        comparison.SetInputData(1, again)
-        comparison.Update()
-        self.assertLess(comparison.GetHausdorffDistance(), 1e-6)
+        np.testing.assert_allclose(points(again), points(first), rtol=0, atol=1e-6)
         np.testing.assert_allclose(array(again, "intensity"), array(first, "intensity"), rtol=1e-14)
         np.testing.assert_array_equal(array(again, "laser_id"), array(first, "laser_id"))
 
