@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Echoes and trees through files: everything in field data comes back, numbers to 15 digits, no tree built twice."""
+"""Echoes and trees through files: everything in field data comes back, no tree built twice."""
 
 import os
 import pathlib
@@ -7,11 +7,10 @@ import re
 import subprocess
 import sys
 
-import numpy as np
 import vtk
 
 from avianlidar import vtkAvianLidar as al
-from echotools import Messages, array, arrays, assert_same_bits, scan, town
+from echotools import Messages, assert_same_bits, scan, town
 
 echo = scan(town())
 echo.Update()
@@ -44,10 +43,9 @@ beam_fields = echo.GetInputDataObject(0, 0).GetFieldData()
 assert written.issuperset(beam_fields.GetArrayName(i) for i in range(beam_fields.GetNumberOfArrays()))
 assert written.issuperset("avian_lidar_version scene_checksum perceivable_range object_names material_names".split())
 for name in sorted(written):
-    one, two = fields.GetAbstractArray(name), again.GetAbstractArray(name)
-    assert two and one.GetNumberOfValues() == two.GetNumberOfValues(), name
-    for i in range(one.GetNumberOfValues()):
-        assert one.GetVariantValue(i).ToString() == two.GetVariantValue(i).ToString(), name
+    one, two = ([data.GetAbstractArray(name).GetVariantValue(i).ToString() for i in range(data.GetAbstractArray(name).GetNumberOfValues())]
+                for data in (fields, again))
+    assert one == two, name
 assert back.GetPointData().GetArray("energy").GetInformation().Get(vtk.vtkDataArray.UNITS_LABEL()) == "J"
 
 # They are every property, but for those that the class's comment names.
@@ -61,40 +59,13 @@ unsaid = {name for name in properties if not fields.HasArray(re.sub("(?<!^)(?=[A
 assert unsaid == excepted, unsaid ^ excepted
 
 # Field data are enough to make the file again: the sensor and the settings by their names.
-beams = vtk.vtkPolyData()
 source = al.vtkAvianLidarBeamSource()
-for name, setter in {
-    "pulse_energy": source.SetPulseEnergy,
-    "half_beamwidth": source.SetHalfBeamwidth,
-    "azimuth_step": source.SetAzimuthStep,
-    "elevation_step": source.SetElevationStep,
-    "minimum_elevation": source.SetMinimumElevation,
-}.items():
-    setter(again.GetArray(name).GetValue(0))
+for name in ("pulse_energy", "half_beamwidth", "azimuth_step", "elevation_step", "minimum_elevation"):
+    getattr(source, "Set" + name.title().replace("_", ""))(again.GetArray(name).GetValue(0))
 source.SetNumberOfChannels(int(again.GetArray("number_of_channels").GetComponent(0, 0)))
 remade = scan(town(), source, RaysPerBeam=int(again.GetArray("rays_per_beam").GetValue(0)), Seed=0)
 remade.Update()
 assert_same_bits(echoes, remade.GetOutput())
-
-# .csv with 15 digits.
-np.savetxt(
-    "TestEchoFiles.csv",
-    np.column_stack([array(echoes, name) for name in ("distance_m", "energy_received", "beam_id")]),
-    fmt="%.15g",
-    delimiter=",",
-    header="distance_m,energy_received,beam_id",
-    comments="",
-)
-reader = vtk.vtkDelimitedTextReader()
-reader.SetFileName("TestEchoFiles.csv")
-reader.SetHaveHeaders(True)
-reader.DetectNumericColumnsOn()
-reader.Update()
-for column in range(3):
-    read = reader.GetOutput().GetColumn(column)
-    values = np.array([read.GetVariantValue(i).ToDouble() for i in range(read.GetNumberOfValues())])
-    assert np.allclose(values, array(echoes, read.GetName()), rtol=1e-14, atol=0), read.GetName()
-os.remove("TestEchoFiles.csv")
 
 # A tree stays behind where surfaces go into a file, and is built again, without a word.
 tree = al.vtkAvianLidarCollisionTree()
@@ -142,12 +113,3 @@ assert len(heard.warnings) == 1 and "another geometry" in heard.warnings[0], hea
 other.SetSeed(2)
 other.Update()
 assert len(heard.warnings) == 1
-
-# Moved, then given a new tree: nothing of the old one is left.
-again = al.vtkAvianLidarCollisionTree()
-again.SetInputConnection(move.GetOutputPort())
-again.Update()
-other = scan(through_file(again.GetOutput(), "TestEchoFiles.vtp"))
-heard = Messages(other)
-other.Update()
-assert not heard.warnings, heard.warnings

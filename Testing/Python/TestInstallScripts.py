@@ -33,38 +33,27 @@ class Packages(unittest.TestCase):
             (self.folder / name).write_text(text, encoding="ascii")
             (self.folder / name).chmod(0o755)
 
-    def run_script(self, bad="", lists=True):
-        return subprocess.run(SCRIPT, env=self.environment(bad, lists), check=False, capture_output=True, text=True)
-
     def environment(self, bad="", lists=True):
         (self.folder / "lists").touch() if lists else None
         return {**os.environ, "PATH": f"{self.folder}:{os.environ['PATH']}", "HERE": str(self.folder), "BAD": bad}
 
     def test_a_log_has_a_line_for_each_step(self):
-        done = self.run_script()
-        self.assertEqual((done.returncode, done.stdout.splitlines(), done.stderr),
-                         (0, ["Missing: dpkg-dev file", DOWNLOAD, "Installing what was downloaded"], ""))
-
-    def test_lists_are_fetched_where_they_are_needed(self):
-        for bad, lists, words in (("", False, ["Fetching lists of packages", DOWNLOAD]),
-                                  ("once", True, [DOWNLOAD, "Get:1 a", "E: 404", "Fetching lists of packages", DOWNLOAD])):
-            with self.subTest(bad=bad):
+        """Lists of packages are fetched where they are needed; what apt said is shown where it fails."""
+        for bad, lists, code, words in (("", True, 0, [DOWNLOAD, "Installing what was downloaded"]),
+                                        ("", False, 0, ["Fetching lists of packages", DOWNLOAD, "Installing what was downloaded"]),
+                                        ("once", True, 0, [DOWNLOAD, "Get:1 a", "E: 404", "Fetching lists of packages", DOWNLOAD,
+                                                           "Installing what was downloaded"]),
+                                        ("ever", True, 1, [DOWNLOAD, "Installing what was downloaded", "Unpacking a", "E: broken"])):
+            with self.subTest(bad=bad, lists=lists):
                 (self.folder / "lists").unlink(missing_ok=True)
-                done = self.run_script(bad, lists)
-                self.assertEqual((done.returncode, done.stdout.splitlines()[1:-1], done.stderr), (0, words, ""))
-
-    def test_what_fails_is_shown(self):
-        done = self.run_script("ever")
-        self.assertEqual(done.returncode, 1)
-        self.assertEqual(done.stdout.splitlines()[-2:], ["Unpacking a", "E: broken"])
+                done = subprocess.run(SCRIPT, env=self.environment(bad, lists), check=False, capture_output=True, text=True)
+                self.assertEqual((done.returncode, done.stdout.splitlines()[1:]), (code, words))
 
     def test_a_terminal_sees_the_progress(self):
         text, code = from_terminal(self, SCRIPT, env=self.environment())
         self.assertEqual(code, 0)
         for words in (DOWNLOAD, "Get:1 a", "Unpacking a"):
             self.assertIn(words, text)
-        calls = (self.folder / "calls").read_text().splitlines()
-        self.assertTrue(all("-q" not in call for call in calls if "--print-uris" not in call), calls)
 
 
 if __name__ == "__main__":

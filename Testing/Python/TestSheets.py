@@ -56,59 +56,54 @@ class Sheets(unittest.TestCase):
         for name in al.Sensor.presets():
             self.assertLessEqual(al.Sensor(name).filter_bandwidth, 100, name)
 
+    def check_board(self, looking, point, half, delta):
+        """The share of beams on a square board at the range of a point that see it, its probability by the sheet."""
+        x = point["range"]
+        scene = al.Scene([(x, -half, -half), (x, half, -half), (x, half, half), (x, -half, half)], [(0, 1, 2), (0, 2, 3)],
+                         material=(point["reflectance"], 0, 1))
+        echoes = al.Scan(scene, looking, visibility=23e3, number_of_reflections=1).echoes
+        share = (echoes["object_id"] >= 0).sum() / looking.beams.number_of_points
+        self.assertAlmostEqual(share, point.get("probability", 0.5), delta=delta)
+
     def test_boards_are_seen_as_often_when_simulated(self):
-        """2,000 beams on a board at a fitted range, in the dark and in the sun."""
-        start = sensor()
-        receiver = _sheet.Receiver(start)
+        """1,000 beams on a board at a fitted range, in the dark and in the sun: a standard deviation of 0.016 at most."""
         numbers = 3e-4, 60.0, 0.5
-        for rho, p, light in ((0.1, 0.9, 0), (0.8, 0.5, 0), (0.8, 0.9, 100), (0.3, 0.5, 100)):
+        for rho, p, light in ((0.1, 0.9, 0), (0.8, 0.5, 100)):
             with self.subTest(reflectance=rho, light=light):
-                board = points(receiver, numbers, (rho, p, light))[0]
-                half = 0.5 * numbers[2]
-                x = board["range"]
-                scene = al.Scene([(x, -half, -half), (x, half, -half), (x, half, half), (x, -half, half)],
-                                 [(0, 1, 2), (0, 2, 3)], material=(rho, 0, 1))
-                count = start.beams.number_of_points
-                looking = sensor(directions=np.tile([1.0, 0, 0], (count, 1)), receiver_aperture=numbers[0], pulse_width=0,
+                looking = sensor(directions=np.tile([1.0, 0, 0], (1000, 1)), receiver_aperture=numbers[0], pulse_width=0,
                                  filter_bandwidth=numbers[1], sun_azimuth=270, sun_elevation=0,
-                                 sunlight=_sheet.irradiance(light, start.wavelength))
-                echoes = al.Scan(scene, looking, visibility=23e3, number_of_reflections=1).echoes
-                seen = (echoes["object_id"] >= 0).sum() / count
+                                 sunlight=_sheet.irradiance(light, sensor().wavelength))
                 # The simulated board is not quite what fills so much of the beam: 2 % of the signal.
-                self.assertAlmostEqual(seen, p, delta=0.05)
+                self.check_board(looking, points(_sheet.Receiver(sensor()), numbers, (rho, p, light))[0], 0.5 * numbers[2], 0.05)
 
     def test_presets_see_the_boards_of_their_sheets(self):
-        """Each fitted preset as it is shipped, on the boards of its own points at the fitted ranges."""
+        """Each fitted preset as it is shipped, on the first and the last board of its own points at the fitted ranges: 400 beams, whose
+        share has a standard deviation of 0.025."""
         for name in al.Sensor.presets():
-            sensor = al.Sensor(name)
-            if "sheet" not in sensor.description:
+            of = al.Sensor(name)
+            if "sheet" not in of.description:
                 continue
-            found = sensor.fit()
-            share = 1000 / sensor.beams.number_of_points
-            for point, x in zip(sensor.description["sheet"]["points"], found.predicted):
-                with self.subTest(name, reflectance=point["reflectance"], light=point.get("light", 0)):
-                    light, half = point.get("light", 0), 0.5 * found.board if np.isfinite(found.board) else 50
-                    scene = al.Scene([(x, -half, -half), (x, half, -half), (x, half, half), (x, -half, half)],
-                                     [(0, 1, 2), (0, 2, 3)], material=(point["reflectance"], 0, 1))
-                    looking = al.Sensor(name, directions=np.tile([1.0, 0, 0], (1000, 1)), sun_azimuth=270, sun_elevation=0,
-                                        sunlight=_sheet.irradiance(light, sensor.wavelength), range_noise=0,
-                                        background_radiance=0.01 * light * sensor.background_radiance,
-                                        false_alarms_per_scan=share * sensor.false_alarms_per_scan)
-                    echoes = al.Scan(scene, looking, visibility=23e3, number_of_reflections=1).echoes
+            found = of.fit()
+            half, share = 0.5 * found.board if np.isfinite(found.board) else 50, 400 / of.beams.number_of_points
+            for at in (0, -1):
+                point = {**of.description["sheet"]["points"][at], "range": found.predicted[at]}
+                light = point.get("light", 0)
+                with self.subTest(name, reflectance=point["reflectance"], light=light):
+                    looking = al.Sensor(name, directions=np.tile([1.0, 0, 0], (400, 1)), sun_azimuth=270, sun_elevation=0,
+                                        sunlight=_sheet.irradiance(light, of.wavelength), range_noise=0,
+                                        background_radiance=0.01 * light * of.background_radiance,
+                                        false_alarms_per_scan=share * of.false_alarms_per_scan)
                     # The board is a square, the fit takes a disc of its area: up to 10 % of the signal where it just fills the beam.
-                    self.assertAlmostEqual((echoes["object_id"] >= 0).sum() / 1000, point.get("probability", 0.5), delta=0.13)
+                    self.check_board(looking, point, half, 0.13)
 
     def test_what_is_wrong_is_named(self):
         good = {"range": 100, "reflectance": 0.1, "source": "x"}
-        for bad, words in (({**good, "range": -1}, "points[0].range is -1, expected 0.0001 to 1e+06 m"),
-                           ({**good, "reflectance": 2}, "points[0].reflectance is 2"), ({**good, "probability": 1}, "probability is 1"),
-                           ({**good, "light": "much"}, "light is 'much'"), ({"range": 1, "source": "x"}, "reflectance is missing"),
-                           ({**good, "ligth": 100}, "ligth is not known"), ({**good, "source": 7}, "source is 7, expected a text"),
-                           ("range", "points[0] is 'range'")):
-            with self.assertRaisesRegex(ValueError, words.replace("[", r"\[").replace("]", r"\]").replace("+", r"\+")):
+        for bad, words in (({**good, "range": -1}, r"points\[0\].range is -1"), ({**good, "reflectance": 2}, "reflectance is 2"),
+                           ({**good, "probability": 1}, "probability is 1"), ({**good, "light": "much"}, "light is 'much'"),
+                           ({"range": 1, "source": "x"}, "reflectance is missing"), ({**good, "ligth": 100}, "ligth is not known"),
+                           ("range", r"points\[0\] is 'range'"), ({**good, "range": 700}, "range is 700, expected at most range_gate, 600 m")):
+            with self.assertRaisesRegex(ValueError, words):
                 sensor().fit([bad])
-        with self.assertRaisesRegex(ValueError, "range is 700, expected at most range_gate, 600 m"):
-            sensor().fit([{**good, "range": 700}])
         with self.assertRaisesRegex(ValueError, "no points"):
             sensor().fit()
         with self.assertRaisesRegex(ValueError, "receiver_aperture is 0"):
@@ -136,14 +131,7 @@ class Sheets(unittest.TestCase):
             self.assertEqual(sorted(path.name for path in made.parent.iterdir()), sorted((made.name, fitted.name)))
             of = al.Sensor(fitted)
             self.assertAlmostEqual(of.receiver_aperture / 3e-4, 1, delta=0.01)
-            self.assertLess(of.description["sheet"]["bar"], 0.01)
-            self.assertEqual(len(of.description["sheet"]["residuals"]), 4)
-            try:
-                import jsonschema
-            except ImportError:
-                return
-            schema = pathlib.Path(__file__).parents[2] / "Filters" / "Sensors" / "lidarsensor.schema.json"
-            jsonschema.validate(of.description, json.loads(schema.read_text(encoding="utf-8")))
+            self.assertEqual((of.description["sheet"]["bar"] < 0.01, len(of.description["sheet"]["residuals"])), (True, 4))
 
 
 if __name__ == "__main__":
