@@ -1,13 +1,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The pages say what is there: links and the files that they name exist, generated tables are current, and every row
 of the page on the paper has a verdict."""
-import fcntl
 import os
 import pathlib
 import re
-import subprocess
 import sys
-import tempfile
 import unittest
 
 SOURCE = pathlib.Path(os.environ["AVIANLIDAR_SOURCE_DIR"])
@@ -28,10 +25,6 @@ def anchors(text):
     """Of the headings of a page, as web pages of repositories make them."""
     return {re.sub(r"[^\w\- ]", "", heading.lower()).strip().replace(" ", "-")
             for heading in re.findall(r"^#+ (.*)$", text, re.M)}
-
-
-def part(text, begin, end):
-    return text.split(begin, 1)[1].split(end, 1)[0]
 
 
 class Documentation(unittest.TestCase):
@@ -69,13 +62,6 @@ class Documentation(unittest.TestCase):
         named = set(re.findall(r"\bTest[A-Z]\w+", (SOURCE / "Documentation" / "tests.md").read_text(encoding="utf-8")))
         self.assertGreater(len(named), 80)
         self.assertEqual(sorted(named - files), [])
-
-    def test_architecture_names_the_folders_of_the_kernel(self):
-        text = (SOURCE / "Documentation" / "architecture.md").read_text(encoding="utf-8")
-        named = re.findall(r"^\| `(\w+)/` \|", part(text, "## The folders of the kernel", "\n## "), re.M)
-        lists = (SOURCE / "Filters" / "Kernel" / "CMakeLists.txt").read_text(encoding="utf-8")
-        folders = re.search(r"set\(kernel_folders\s+([\w\s/]+)\)", lists)[1].split()
-        self.assertEqual(named, [folder for folder in folders if "/" not in folder])
 
     def test_hours_of_fuzzing_are_the_sums_of_the_runs(self):
         for _, table in reliability_tables.fuzzing():
@@ -117,27 +103,6 @@ class Paper(unittest.TestCase):
         fewer = "\n".join(line for line in self.text.splitlines() if not line.startswith("| Eq. 1: "))
         self.assertNotEqual(verdicts.with_counts(fewer), fewer)
 
-    def test_one_run_at_a_time_writes_into_a_folder(self):
-        with tempfile.TemporaryDirectory() as folder, open(pathlib.Path(folder, "lock"), "w", encoding="utf-8") as lock:
-            fcntl.flock(lock, fcntl.LOCK_EX)
-            done = subprocess.run([SOURCE / "Examples" / "paper" / "run.sh", "--quick", "--no-build", "--out", folder],
-                                  check=False, capture_output=True, text=True)
-            self.assertEqual(done.returncode, 2)
-            self.assertIn("another run writes into", done.stderr)
-            self.assertEqual([file.name for file in pathlib.Path(folder).iterdir()], ["lock"])
-
-    def test_the_one_command_runs_every_script(self):
-        text = (SOURCE / "Examples" / "paper" / "run.sh").read_text(encoding="utf-8")
-        for script in (SOURCE / "Examples" / "paper").glob("*.py"):
-            self.assertIn(script.name, text)
-
-    def test_nothing_that_has_a_number_is_left_out(self):
-        for kind, numbers in (("Eq.", range(1, 21)), ("Fig.", range(1, 18)), ("Table", (1, 2)), ("Algorithm", (1, 2)),
-                              ("Sec.", (1, 2, 3, 4, 5, 6, 7))):
-            for number in numbers:
-                place = re.compile(rf"{re.escape(kind)} {number}(?!\d)")
-                self.assertTrue(any(place.match(row[0]) for row in self.rows), (kind, number))
-
     def test_what_shows_a_row_is_there(self):
         for row in self.rows:
             names = re.findall(r"`([^`]+)`", row[3])
@@ -147,19 +112,15 @@ class Paper(unittest.TestCase):
                     self.assertTrue(self.is_there(name))
 
     def is_there(self, name):
+        """A file, `Kind-TestX` with or without a method, or `Suite.Case` of the kernel."""
         kind, _, test = name.partition("-")
         test, _, method = test.partition(": ")
         if "/" in name:
             return (SOURCE / name).is_file()
-        if kind == "Python":
-            file = SOURCE / "Testing" / "Python" / f"{test}.py"
-            return file.is_file() and (not method or f"def {method}(" in file.read_text(encoding="utf-8"))
-        if kind == "Kernel":
-            return test == "InstructionSets" or f"{test}.cxx" in NAMES
-        if kind == "AvianLidarCxx":
-            return (SOURCE / "Testing" / "Cxx" / f"{test}.cxx").is_file()
-        if kind == "Parallel":
-            return (SOURCE / "Testing" / "Parallel" / f"{test}.py").is_file()
+        if test:
+            file = SOURCE / "Testing" / kind / f"{test}.py"
+            there = file.is_file() and (not method or f"def {method}(" in file.read_text(encoding="utf-8"))
+            return there or test == "InstructionSets" or f"{test}.cxx" in NAMES
         suite, case = name.split(".")
         case = "" if case == "*" else rf"{case}\)"
         return re.search(rf"^(TYPED_)?TEST(_F|_P)?\({suite}, {case}", self.kernel, re.M) is not None

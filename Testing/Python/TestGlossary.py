@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Documentation/glossary.md has every array of the echo filter's outputs, and every name in it is there with its unit."""
-import functools
 import os
 import pathlib
 import re
@@ -35,7 +34,6 @@ def outputs():
             yield al.Cloud(scan.algorithm.GetOutputDataObject(port))
 
 
-@functools.lru_cache
 def of_advisor():
     """Names and units of the advisor's table and its field data."""
     advisor = wrapped.vtkAvianLidarAdvisor()
@@ -63,35 +61,23 @@ class Glossary(unittest.TestCase):
         np.testing.assert_allclose(np.radians(echoes["azimuth"] / 100), turned, rtol=0, atol=1e-9)
         self.assertTrue(echoes["intensity"].max() <= 255 and beams["laser_id"].min() == 0 and 1e5 < beams["timestamp"].max() < 2e6)
 
-    def test_every_array_of_the_echo_filter(self):
-        found = 0
-        for cloud in outputs():
-            for name in cloud:
-                with self.subTest(array=name):
-                    found += 1
-                    self.assertIn(name, NAMED)
-                    self.assertEqual(NAMED[name], cloud.units.get(name, ""))
-            for name, unit in cloud.field_units.items():
-                with self.subTest(field=name):
-                    found += 1
-                    prop = "".join(word.title() for word in name.split("_"))
-                    self.assertTrue(name in NAMED or any(hasattr(one, "Set" + prop) for one in CLASSES))
-                    self.assertEqual(NAMED.get(name, unit), unit)
-        for name, unit in of_advisor().items():
-            self.assertEqual(NAMED[name], unit, name)
-        self.assertGreater(found, 300)
-
-    def test_every_name_is_there(self):
+    def test_every_array_and_every_name(self):
+        """Arrays have the unit of the page; field data are there, or are properties; what the page names exists."""
+        clouds, advised = list(outputs()), of_advisor()
+        for name, unit in [*advised.items(), *((name, cloud.units.get(name, "")) for cloud in clouds for name in cloud)]:
+            self.assertEqual(NAMED.get(name), unit, name)
+        for name, unit in ((name, unit) for cloud in clouds for name, unit in cloud.field_units.items()):
+            prop = "".join(word.title() for word in name.split("_"))
+            self.assertTrue(name in NAMED or any(hasattr(one, "Set" + prop) for one in CLASSES), name)
+            self.assertEqual(NAMED.get(name, unit), unit, name)
         header = (SOURCE / "Filters" / "Private" / "Common" / "vtkAvianLidarNames.h").read_text(encoding="utf-8")
-        units = {**dict(re.findall(r'constexpr Name \w+\{ "(\w+)", "([^"]*)" \};', header)), **of_advisor(), "semantic_label": ""}  # the last: by the reader
-        others = set(COEFFICIENTS).union(*(cloud.fields for cloud in outputs()))
+        declared = dict(re.findall(r'constexpr Name \w+\{ "(\w+)", "([^"]*)" \};', header))
+        units = {**declared, **advised, "semantic_label": ""}  # the last: by the reader
+        others = set(COEFFICIENTS).union({"in clutter"}, *(cloud.fields for cloud in clouds))
         self.assertGreater(len(NAMED), 90)
         for name, unit in NAMED.items():
-            with self.subTest(name=name):
-                if name in units:
-                    self.assertEqual(unit, units[name])
-                elif name != "in clutter":
-                    self.assertTrue(name in others or any(hasattr(one, "Set" + name) or hasattr(one, name) for one in CLASSES))
+            self.assertEqual(unit, units.get(name, unit), name)
+            self.assertTrue(name in units or name in others or any(hasattr(one, "Set" + name) or hasattr(one, name) for one in CLASSES), name)
 
 
 if __name__ == "__main__":

@@ -63,14 +63,9 @@ class TestKITTIWriter(unittest.TestCase):
         # A float is off by 2^-25 of the next power of two; distances are below 512 m.
         self.assertLess(np.abs(scan[:, :3] - expected).max(), 512 * 2.0**-25 * 1.01)
         np.testing.assert_array_equal(scan[:, 3], (array(self.data, "intensity") / 255).astype("f4"))
-
-    def test_read_by_others(self):
-        """The toolkit's reader finds the same floats in the same order."""
-        self.write()
+        # The toolkit's reader finds the same floats in the same order.
         result = subprocess.run([os.environ["AVIANLIDAR_KITTI_READER"], FILE], capture_output=True, text=True, check=True)
-        found = np.array([line.split() for line in result.stdout.splitlines()], dtype="f4")
-        self.assertEqual(len(found), self.data.GetNumberOfPoints())
-        np.testing.assert_array_equal(found, parse()[0])
+        np.testing.assert_array_equal(np.array([line.split() for line in result.stdout.splitlines()], dtype="f4"), scan)
 
     def test_labels(self):
         objects, classes = array(self.data, "object_id"), field(self.data, "object_classes")
@@ -98,9 +93,7 @@ class TestKITTIWriter(unittest.TestCase):
 
     def test_instances_wrap(self):
         self.write(ids([-1, 0, 65534, 65535, 65536]))
-        _, label, instance = parse()
-        self.assertEqual(instance.tolist(), [0, 1, 65535, 0, 1])
-        self.assertEqual(label.tolist(), [0] * 5)
+        self.assertEqual(parse()[2].tolist(), [0, 1, 65535, 0, 1])
 
     def test_points_alone_and_bright_ones(self):
         """x forward, y to the left, z up; intensities beyond a byte are cut with a warning."""
@@ -118,10 +111,8 @@ class TestKITTIWriter(unittest.TestCase):
         self.write()
         again = read(FILE)
         np.testing.assert_allclose(points(again), points(self.data) - (10, 20, 3), rtol=0, atol=512 * 2.0**-25 * 1.01)
-        np.testing.assert_allclose(array(again, "intensity"), array(self.data, "intensity"), rtol=1e-7)
-        np.testing.assert_allclose(array(again, "distance_m"), array(self.data, "distance_m"), rtol=1e-6)
-        np.testing.assert_allclose(array(again, "azimuth"), array(self.data, "azimuth"), rtol=0, atol=0.01)
-        np.testing.assert_allclose(array(again, "vertical_angle"), array(self.data, "vertical_angle"), atol=1e-4)
+        for name, rounding in (("intensity", (1e-7, 0)), ("distance_m", (1e-6, 0)), ("azimuth", (0, 0.01)), ("vertical_angle", (1e-7, 1e-4))):
+            np.testing.assert_allclose(array(again, name), array(self.data, name), *rounding, err_msg=name)
         self.assertEqual(array(again, "instance_id").tolist(), (array(self.data, "object_id") + 1).tolist())
         self.assertEqual(set(array(again, "semantic_label")), {0, 40, 50, 51, 72})
         self.assertEqual(unit(again, "azimuth"), "0.01 deg")

@@ -111,16 +111,6 @@ class TestPCDReader(unittest.TestCase):
             write(comments=[text])
             self.assertEqual(bool(read(FILE).GetFieldData().HasArray("comment")), kept, text)
 
-    def test_any_bytes(self):
-        """A byte-order mark, and what is not UTF-8, in comments and names."""
-        one(b"0 1 0 7\n", "x y z n?", "F4 F4 F4 F4")
-        with open(FILE, "rb") as file:
-            whole = file.read()
-        with open(FILE, "wb") as file:
-            file.write(b"\xef\xbb\xbf# caf\xc3\xa9 \xff\x01\n" + whole.replace(b"n?", b"n\xfe"))
-        data = read(FILE)
-        self.assertEqual((field(data, "comment"), array(data, "n\ufffd")[0]), ([" caf\u00e9 \ufffd?"], 7))
-
     def test_more_points_than_the_header_says(self):
         for changes in ({"data": LINES + b"7 8 9\n"}, {"data": np.ones((3, 3), "<f4").tobytes(), "DATA": "binary"}):
             write(**changes)
@@ -134,18 +124,13 @@ class TestPCDReader(unittest.TestCase):
             ("no line DATA", {"DATA": None, "data": b""}),
             ('has the line "1 2 3"', {"DATA": None}),
             ("DATA is missing", {"DATA": ""}),
-            ("DATA is zip", {"DATA": "zip"}),
-            ("as many values", {"TYPE": "F F"}),
             ("as many values", {"FIELDS": None}),
             ("expected I or U", {"SIZE": "4 4 3"}),
-            ("expected I or U", {"SIZE": "2 4 4"}),
             ("expected I or U", {"TYPE": "F F FF"}),
             ("COUNT 70000", {"COUNT": "1 1 70000"}),
-            ("expected a number", {"WIDTH": "-2"}),
             ("expected a number", {"WIDTH": "99999999999999999999"}),
             ("WIDTH times HEIGHT", {"POINTS": "3"}),
             ("above 4294967295", {"HEIGHT": "4294967296", "POINTS": None}),
-            ("more than one value", {"WIDTH": "2 2"}),
             ("no fields x, y and z", {"FIELDS": "x y y"}),
             ("seven values", {"VIEWPOINT": "0 0 0"}),
             ("not finite", {"VIEWPOINT": "0 0 nan 1 0 0 0"}),
@@ -157,7 +142,6 @@ class TestPCDReader(unittest.TestCase):
             ("cut short", {"DATA": "binary", "data": b"\0" * 23}),
             ("ends before", {**packed, "data": b"\0" * 7}),
             ("have 25 bytes", {**packed, "data": struct.pack("<II", 26, 25) + b"\0" * 26}),
-            ("damaged", {**packed, "data": struct.pack("<II", 0, 24)}),
             ("ends before", {**packed, "data": struct.pack("<II", 26, 24) + b"\x17" + b"\0" * 24}),
             ("damaged", {**packed, "data": struct.pack("<II", 5, 24) + b"\xff" * 5}),
             ("damaged", {**packed, "data": struct.pack("<II", 8, 4294967280) + b"\xff" * 8, "WIDTH": "357913940", "POINTS": None}),
