@@ -9,7 +9,7 @@
  * Source: paper, Eq. 4-9.
  * Differs: see Reflectance.h; the air is applied to the length of the whole path at the end.
  * Valid: the bounds are never below what the paths return, but for rounding (SurelyAbove).
- * Test: TestScan.cxx, TestScanAgain.cxx, TestScanAgainPlates.cxx, TestEchoClosedForms.cxx.
+ * Test: TestScan.cxx, TestScanAgain.cxx, TestEchoClosedForms.cxx.
  */
 #ifndef avianlidar_Throughput_h
 #define avianlidar_Throughput_h

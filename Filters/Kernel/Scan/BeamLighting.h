@@ -19,8 +19,7 @@
  * Differs: the constraint compares with the sum of a range unit, not with a single ray: Qlow for a
  * ray would remove every wall.
  * Valid: no range unit loses more than epsilon Qlow; a beam that ends early has no echo either way.
- * Test: TestEchoClosedForms.cxx, TestSecondaryConstraints.cxx, TestScanAgain.cxx,
- * TestScanAgainTowns.cxx.
+ * Test: TestEchoClosedForms.cxx, TestSecondaryConstraints.cxx, TestScanAgain.cxx.
  */
 #ifndef avianlidar_BeamLighting_h
 #define avianlidar_BeamLighting_h

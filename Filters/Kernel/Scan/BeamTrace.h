@@ -10,7 +10,7 @@
  *
  * Source: none.
  * Valid: geometry for one traceKey() (TraceCache.h), `lit` for one LightKey.
- * Test: TestScanAgain.cxx, TestScanAgainTowns.cxx, TestScanAgainPlates.cxx.
+ * Test: TestScanAgain.cxx.
  */
 #ifndef avianlidar_BeamTrace_h
 #define avianlidar_BeamTrace_h

@@ -9,7 +9,7 @@
  *
  * Source: none.
  * Valid: any scene; equal content gives equal results.
- * Test: Testing/Python/TestSceneChanges.py.
+ * Test: Testing/Prober/same_bits.py.
  */
 #ifndef avianlidar_SceneSummary_h
 #define avianlidar_SceneSummary_h

@@ -6,7 +6,7 @@
  * Source: none.
  * Valid: hits belong to one traceKey(), lit beams to one LightKey. Echoes do not depend on what is
  * kept. An aborted run leaves the cache empty.
- * Test: TestScanAgain.cxx, TestScanAgainTowns.cxx, TestScanAgainPlates.cxx, TestScanSweep.cxx.
+ * Test: TestScanAgain.cxx, TestScanSweep.cxx.
  */
 #ifndef avianlidar_TraceCache_h
 #define avianlidar_TraceCache_h

@@ -45,7 +45,7 @@
  * Valid: the paths of a ray return at most B together. No range unit loses more than epsilon Qlow
  * by the light-energy constraint (BeamLighting.h).
  * Test: TestSecondaryReflection.cxx, TestSecondaryPaths.cxx, TestSecondaryConstraints.cxx,
- * TestScanAgainPlates.cxx.
+ * TestScanAgain.cxx.
  */
 #ifndef avianlidar_SecondaryReflection_h
 #define avianlidar_SecondaryReflection_h
