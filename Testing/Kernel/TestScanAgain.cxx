@@ -143,9 +143,10 @@ void changeAnything(ScanSeries& series, std::mt19937_64& random)
     [&]() { ofObject(series.setup.materialIds, draw(3)); },
     [&]() { ofObject(series.setup.objectIds, draw(61)); },
     [&]() { sensor.rangeGate = draw(2) ? 4000.0 : 150.0; },
-    [&]() { series.beams.origins[draw(9)].z += 0.1; },
-    [&]() { std::swap(series.beams.directions[draw(9)], series.beams.directions[9]); },
-    [&]() { std::swap(series.beams.ids[draw(9)], series.beams.ids[9]); },
+    [&]() { series.beams.origins.assign(series.beams.size(), Vec3(0.0, 0.0, 0.1 * draw(9))); },
+    [&]()
+    { std::reverse(series.beams.directions.begin(), series.beams.directions.end() - draw(9)); },
+    [&]() { std::reverse(series.beams.ids.begin(), series.beams.ids.end() - draw(9)); },
     [&]() { series.beams = horizon(draw(2) ? 60 : 30, 2); },
   };
   const auto count = static_cast<int>(changes.size());

@@ -130,8 +130,8 @@ def polydata(points, cells, double=True):
 
 
 def place(r):
-    angle, distance = 2 * math.pi * r.random(), r.choice((8, 30, 60, 120)) * (0.5 + r.random())
-    return np.array([distance * math.sin(angle), distance * math.cos(angle), r.uniform(-3, 12)])
+    angle, distance = 2 * math.pi * r.random(), r.choice((8, 15, 30, 80)) * (0.5 + r.random())
+    return np.array([distance * math.sin(angle), distance * math.cos(angle), r.uniform(-3, 6)])
 
 
 def _box(r):

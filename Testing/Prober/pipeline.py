@@ -26,7 +26,7 @@ WHOLE = ("comparison", "image", "tree", "coverage", "view", "tracks")  # there a
 VALUES = {
     "AzimuthStep": (7.0, 10.0, 20.0), "NumberOfChannels": (1, 2, 5), "ElevationStep": (0.5, 1.0, 3.0), "MinimumElevation": (-10.0, 0.0),
     "AzimuthRange": ((0.0, 360.0), (-20.0, 100.0), (300.0, 420.0)), "NumberOfRevolutions": (1, 2, 3), "StepsPerRevolution": (1, 2, 3),
-    "HalfBeamwidth": (1e-3, 5.6e-3, 0.03, 0.1), "HalfBeamwidthAcross": (0.0, 0.0, 1e-3, 0.02), "RangeGate": (40.0, 200.0, 4000.0),
+    "HalfBeamwidth": (5.6e-3, 0.03, 0.08, 0.1), "HalfBeamwidthAcross": (0.0, 0.0, 1e-3, 0.02), "RangeGate": (40.0, 200.0, 4000.0),
     "LowerEnergyLimit": (0.0, 1e-12, 1e-8, 1e-7, 2e-6), "UpperEnergyLimit": (1e-5, 6.25e-5, 1e-3), "NoisePhotonRate": (0.0, 2e4, 1e12, 1e18),
     "ReceiverAperture": (0.0, 0.0, 0.008, 10.0), "SamplingInterval": (1e-9, 5e-9), "PulseWidth": (0.0, 5e-9, 2e-8),
     "FiringInterval": (0.0, 5e-6, 3e-3), "RotationRate": (0.5, 1.0, 10.0), "EncoderJitter": (0.0, 0.1), "SwayAmplitude": (0.0, 0.1, 3.0),

@@ -22,9 +22,13 @@ class World:
         self.movers = vtk.vtkMultiBlockDataSet()
         for i in range(r.randint(1, 3)):
             self.movers.SetBlock(i, surfaces.mover(r, surfaces.leaf(r)))
-        for key in ("NumberOfChannels", "AzimuthStep", "RaysPerBeam", "ReceiverModel"):
-            self.settings["echo" if key == "RaysPerBeam" else "sensor", key] = value_of("echo" if key == "RaysPerBeam" else "sensor", key, r)
-        if self.settings["sensor", "ReceiverModel"] or r.random() < 0.3:
+        for key in ("NumberOfChannels", "AzimuthStep", "ReceiverModel"):
+            self.settings["sensor", key] = value_of("sensor", key, r)
+        self.settings["echo", "RaysPerBeam"] = value_of("echo", "RaysPerBeam", r)
+        # Beams so wide that little is between them.
+        self.settings["sensor", "HalfBeamwidth"], self.settings["sensor", "MinimumElevation"] = r.choice((0.03, 0.08)), -1.0
+        self.settings["sensor", "LowerEnergyLimit"] = r.choice((1e-9, 1e-8, 2e-6))
+        if self.settings["sensor", "ReceiverModel"]:
             self.settings["sensor", "ReceiverAperture"] = 0.008
         self.used = Pipeline(self.settings)
         self.used.connect(self)
