@@ -113,7 +113,7 @@ void changeAnything(ScanSeries& series, std::mt19937_64& random)
   const double width = draw(2) ? 1e-3 : 1.0;
   const double factor = std::exp(width * std::normal_distribution<double>()(random));
   const Material paints[] = { Wall, Glass, Metal, Wood, { 1e-6, 0.9, 1e5 }, { 1e-7, 0.0, 1.0 } };
-  const int object = draw(3) ? draw(61) : 100 + draw(3);
+  const int object = draw(2) ? draw(61) : 100 + draw(3);
   Sensor& sensor = series.setup.sensor;
   EchoSettings& s = series.setup.settings;
   const auto ofObject = [&](auto& values, const auto& value)
@@ -181,15 +181,16 @@ void changeAnything(ScanSeries& series, std::mt19937_64& random)
 
 TEST(ScanAgain, AfterAnyChangesItIsAFreshScan)
 {
-  for (const int seed : { 0, 1, 2, 3, 4, 5, 6, 7 })
+  for (int seed = 0; seed < 12; ++seed)
   {
     std::mt19937_64 random(seed);
-    Sensor sensor = seed < 4 ? Sensor{} : noisy();
-    sensor.halfBeamwidth = seed % 2 ? 0.03 : sensor.halfBeamwidth;
-    ScanSeries series(sensor, usual(), townOf(seed % 4, random));
-    for (int step = 0; step < 40 && !testing::Test::HasFailure(); ++step)
+    Sensor sensor = seed % 2 ? noisy() : Sensor{};
+    sensor.halfBeamwidth = seed % 3 ? 0.03 : sensor.halfBeamwidth;
+    sensor.halfBeamwidthAcross = seed % 5 ? 0.0 : 2e-3;
+    ScanSeries series(sensor, usual(), townOf(seed / 3, random));
+    for (int step = 0; step < 32 && !testing::Test::HasFailure(); ++step)
     {
-      series.setup.revolution += seed > 3; // lit beams are kept for another noise
+      series.setup.revolution += seed % 2; // lit beams are kept for another noise
       if (step % 3 != 1)
       {
         changeAnything(series, random);
@@ -208,7 +209,6 @@ TEST(ScanAgain, WhatIsKnownIsNotTraced)
     settings.beamSamples = source;
     settings.lightEnergyConstraint = false; // it leaves paths untraced that others may need
     ScanSeries series(noisy(), settings, townOf(3, random));
-    ASSERT_GT(series.result.beamsTraced, 0u);
     const std::function<void()> changes[] = { []() {}, [&]() { series.setup.revolution = 3; },
       [&]() { series.setup.sensor.lowerEnergyLimit *= 0.1; },
       [&]() { series.setup.settings.attenuationCoefficient = 1e-3; },
@@ -219,9 +219,6 @@ TEST(ScanAgain, WhatIsKnownIsNotTraced)
       series.check("known");
       EXPECT_EQ(series.result.raysTraced + series.result.beamsTraced, 0u);
     }
-    const auto known = [](const BeamTrace& trace)
-    { return trace.lit && !trace.lit->returns.empty(); };
-    EXPECT_GT(std::count_if(series.cache.beams.begin(), series.cache.beams.end(), known), 9);
   }
 }
 
@@ -292,7 +289,6 @@ TEST(ScanAgain, WhatWasTooFaintIsHeardInOtherAir)
       for (std::size_t e = 0; e < echoes.size(); e += 5)
       {
         look(air[0], 1e3);
-        ASSERT_TRUE(series.result.echoes.empty());
         look(air[1], echoes[e].energyReceived * (1.0 - 1e-6));
       }
     }

@@ -95,13 +95,17 @@ def compare(sink, found, expected):
 
 
 def compare_pieces(whole, pipeline, time):
-    """The pieces of echoes, one after the other, are the whole."""
-    parts = [pipeline.update(ECHOES, (i, 3, time)).found for i in range(3)]
-    for where in whole:
-        if where.startswith("/point ") or where == "/points":
-            pieces = [part[where][-1] for part in parts if part[where][0]]
-            if whole[where][0] and pieces[0][:0].join(pieces) != whole[where][-1]:
-                raise Fault(f"{where}: not the same in pieces")
+    """The echoes of all pieces are those of the whole."""
+    if rows_of([whole]) != rows_of([pipeline.update(ECHOES, (i, 3, time)).found for i in range(3)]):
+        raise Fault("echoes are not the same in pieces")
+
+
+def rows_of(parts):
+    """All bytes of each echo, in an order that follows from them."""
+    rows = [np.hstack([np.frombuffer(what[-1], np.uint8).reshape(what[0], -1) for where, what in sorted(part.items())
+                       if (where.startswith("/point ") or where == "/points") and isinstance(what[-1], bytes)])
+            for part in parts if part["/points"][0]]
+    return sorted(map(bytes, np.vstack(rows))) if rows else []
 
 
 def touch(world, _):
