@@ -246,5 +246,5 @@ KINDS = {**{name: change_property(name) for name in SET}, "edit": edit, "blocks"
          "route": change_route, "moment": change_moment, "hold": hold, "abort": abort, "bad data": lambda world, r: edit(world, r, True),
          **{"bad " + name: change_property(name, True) for name in ("sensor", "echo", "tree", "material", "medium")}}
 # How often each is drawn, in place of once.
-WEIGHTS = {"edit": 20, "echo": 6, "sensor": 5, "moment": 4, "route": 3, "material": 2, "blocks": 2}
+WEIGHTS = {"edit": 40, "echo": 6, "sensor": 5, "moment": 4, "route": 3, "material": 2, "blocks": 2}
 WEIGHTS.update({"touch": 3, "scribble": 3, "coverage": 0.3})  # touch and scribble: same_bits.py
