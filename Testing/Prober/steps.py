@@ -119,10 +119,10 @@ def edit_values(array, r):
         some += np.array([r.uniform(-4, 4) for _ in range(3)]).astype(values.dtype)
     elif values.dtype.kind == "f":
         some *= np.array([r.uniform(0.2, 1.2) for _ in range(some[0].size)]).astype(values.dtype).reshape(some[0].shape)
-    elif r.random() < 0.5:
-        some[:] = some[::-1].copy()
+    elif values.dtype == np.int64:  # corners, numbers of beams
+        some[:] = r.choice((some[::-1].copy(), r.choice(values)))
     else:
-        some[:] = r.choice(values) if array.GetName() is None or values.dtype == np.int64 else r.randint(0, 3)
+        some[:] = r.randint(0, 3)
 
 
 def edit(world, r, bad=False):
@@ -156,6 +156,11 @@ def edit(world, r, bad=False):
         edit_values(array, r)
     if what == "values":
         world.modified(r, root, leaf, array, holder)
+        for other in [other for _, _, other in leaves(root) if other is not leaf and other.GetNumberOfPoints() and r.random() < 0.5]:
+            for array_of, holder_of in arrays_of(other):
+                if array_of.GetName() == array.GetName() and isinstance(holder_of, type(holder)) and not bad:
+                    edit_values(array_of, r)
+                    world.modified(r, root, other, array_of, holder_of)
     else:
         leaf.Modified()
         root.Modified()
