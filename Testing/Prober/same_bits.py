@@ -51,9 +51,24 @@ def run(tell, seed, steps):
                 while waiting:
                     [one() for one in reversed(waiting.pop()) if one]
                 check(world, r, counts)
+        sweep(world, random.Random(seed))
         return "", world.said, counts
     except Fault as fault:
         return str(fault), world.said, counts
+
+
+def sweep(world, r):
+    """Each kind of array once, in all blocks."""
+    world.route.material = False
+    world.used.connect(world)
+    found = [(root, leaf, *pair) for root in world.roots() for _, _, leaf in leaves(root) if leaf.GetNumberOfPoints() for pair in arrays_of(leaf)]
+    for name in sorted({array.GetName() or "" for _, _, array, _ in found}):
+        world.say(f"-- sweep: {name}")
+        for root, leaf, array, holder in found:
+            if (array.GetName() or "") == name:
+                edit_values(array, r)
+                world.modified(r, root, leaf, array, holder)
+        compare(ECHOES, world.used.update(ECHOES, world.moment), world.fresh().update(ECHOES, world.moment))
 
 
 def check(world, r, counts):
