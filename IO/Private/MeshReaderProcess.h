@@ -15,7 +15,7 @@
  *
  * The program is started by posix_spawn, not by fork: other threads may hold locks.
  *
- * Test: Testing/Python/TestMeshFiles.py, TestHostileFiles.py.
+ * Test: Testing/Python/TestMeshFiles.py, TestInputFiles.py.
  */
 #ifndef AvianLidarMeshReaderProcess_h
 #define AvianLidarMeshReaderProcess_h

@@ -2,13 +2,14 @@
 // The operator new of a process that preloads this library: it fails where a test wants it to, as
 // if memory had run out just there. Only what this project's library asks for fails, or else what
 // the standard library's texts and streams ask for: VTK's own lists of pointers are not made for
-// it.
+// it. In place of a failure it may throw what others throw.
 #include <algorithm>
 #include <atomic>
 #include <cstddef>
 #include <cstdlib>
 #include <cstring>
 #include <new>
+#include <stdexcept>
 
 #include <dlfcn.h>
 
@@ -22,6 +23,7 @@ std::atomic<long> Seen{ 0 };             // allocations between these since the 
 std::atomic<const char*> Library{ "" };  // whose allocations they are
 std::atomic<long> Failing{ 0 };          // the number of the one that fails; 0: none; below 0:
                                          // all from that number on, then of any size
+std::atomic<int> Thrown{ 0 };            // 0: std::bad_alloc, 1: another exception, 2: none of std
 
 bool isMeant(void* caller)
 {
@@ -48,6 +50,14 @@ void* allocate(std::size_t bytes, std::size_t alignment, void* caller)
       return place;
     }
   }
+  if (Thrown == 1)
+  {
+    throw std::runtime_error("A planted error");
+  }
+  if (Thrown == 2)
+  {
+    throw 7;
+  }
   throw std::bad_alloc();
 }
 }
@@ -56,9 +66,10 @@ extern "C"
 {
   /// From now on the `which`-th allocation of `least` to `most` bytes fails; 0: they are counted;
   /// below 0: after the -`which`-th one, which fails, all fail, of any size. `texts`: those of
-  /// texts and streams instead of this project's.
-  void failing_new_begin(long which, std::size_t least, std::size_t most, bool texts)
+  /// texts and streams instead of this project's. `thrown`: what is thrown (see above).
+  void failing_new_begin(long which, std::size_t least, std::size_t most, bool texts, int thrown)
   {
+    Thrown = thrown;
     Library = texts ? "libstdc++" : "libvtkAvianLidar";
     Seen = 0;
     Failing = which;

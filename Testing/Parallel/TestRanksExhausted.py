@@ -9,7 +9,7 @@ import echotools
 def test_no_memory_for_anything():
     echo = echotools.scan(blocks_of(echotools.town(3, 12), lambda i: i % RANKS == RANK), NumberOfThreads=1)
     if RANK == LAST:
-        failing_new().failing_new_begin(-1, 256, 2**40, False)
+        failing_new().failing_new_begin(-1, 256, 2**40, False, 0)
     update(echo)
     raise AssertionError("the ranks went on")
 

@@ -41,7 +41,7 @@ def main(tests):
 def failing_new():
     """The functions of FailingNew.cxx, if this process has preloaded it."""
     library = ctypes.CDLL(None)
-    library.failing_new_begin.argtypes = (ctypes.c_long, ctypes.c_size_t, ctypes.c_size_t, ctypes.c_bool)
+    library.failing_new_begin.argtypes = (ctypes.c_long, ctypes.c_size_t, ctypes.c_size_t, ctypes.c_bool, ctypes.c_int)
     library.failing_new_end.restype = ctypes.c_long
     return library
 

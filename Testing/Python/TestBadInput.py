@@ -1,273 +1,511 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Every kind of bad input to the collision tree and the echo filter: the documented message, and empty outputs."""
+"""What each class reads and each of its properties, with wrong values: one error that names the input and the quantity, empty
+outputs, and the next good input gives what it gave before. What is legal but suspicious is a warning, once."""
+import os
+import shutil
+import tempfile
+import unittest
 
 import numpy as np
 import vtk
+from vtk.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray, vtk_to_numpy
 
-from avianlidar import vtkAvianLidar as al
+from avianlidar import _properties, vtkAvianLidar as al
 from avianlidar._scene import COEFFICIENTS
-from badinput import bad_beams, bad_properties, bad_surfaces, bad_tree_properties, beams, field, surfaces
-from echotools import Messages, box, scan, sensor
+from cloudtools import add_array, cloud, echoes
+from echotools import CELLS, RAYS, Messages, assert_same_bits, box, scan, sensor, town
+from faulttools import INF, NAN, PLACE_OF_VALUE, algorithms, beams, copy, make, spoil, surfaces, text_array
 
-for data, words in bad_surfaces:
-    for algorithm in (al.vtkAvianLidarCollisionTree(), scan(data)):
-        if algorithm.IsA("vtkAvianLidarCollisionTree"):
-            algorithm.SetInputData(data)
+NOTHING = (0, 0)
+
+
+class Faults(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.mkdtemp()
+        self.addCleanup(shutil.rmtree, folder)
+        self.addCleanup(os.chdir, os.getcwd())
+        os.chdir(folder)
+
+    def run_one(self, algorithm, inputs):
+        """What it says, and what comes out: points, cells and arrays, or the bytes of its files."""
+        for port, data in enumerate(inputs):
+            algorithm.SetInputData(port, data)
         heard = Messages(algorithm)
+        if isinstance(algorithm, al.vtkAvianLidarCloudWriter):
+            self.assertEqual(algorithm.Write(), 0 if heard.errors else 1)
+            content = []
+            for name in sorted(os.listdir()):
+                with open(name, "rb") as file:
+                    content.append((name, file.read()))
+                os.remove(name)
+            return heard.errors, content or NOTHING
         algorithm.Update()
-        assert len(heard.errors) == 1, (words, heard.errors)
-        assert all(word in heard.errors[0] for word in words), (words, heard.errors[0])
-        assert "nput port" in heard.errors[0], heard.errors[0]
-        for port in (0, 1):
-            assert algorithm.GetOutput(port).GetNumberOfPoints() == 0
+        output = algorithm.GetOutputDataObject(1 if algorithm.IsA("vtkAvianLidarTracks") else 0)
+        data = output.GetPointData() if hasattr(output, "GetPointData") else None
+        arrays = [(data.GetArrayName(i), vtk_to_numpy(data.GetArray(i)).tobytes())
+                  for i in range(data.GetNumberOfArrays() if data else 0) if data.GetArray(i)]
+        return heard.errors, (output.GetNumberOfElements(0), output.GetNumberOfElements(1), *arrays)
 
-for change, words in bad_beams:
-    echo = scan(surfaces(), beams(change))
-    heard = Messages(echo)
-    echo.Update()
-    assert len(heard.errors) == 1, (words, heard.errors)
-    assert all(word in heard.errors[0] for word in words), (words, heard.errors[0])
-    assert "nput port 0" in heard.errors[0], heard.errors[0]
-    assert echo.GetOutput().GetNumberOfPoints() == 0 and echo.GetOutput(1).GetNumberOfPoints() == 0
+    def fails(self, algorithm, inputs, *words):
+        errors, out = self.run_one(algorithm, inputs)
+        self.assertEqual(len(errors), 1, errors)
+        for word in words:
+            self.assertRegex(errors[0], word)
+        self.assertEqual(out, NOTHING)
+        return errors[0]
 
-for name, value in bad_properties:
-    echo = scan(surfaces(), beams(), **({"RaysPerBeam": 70000} if value == 2000000000 else {}), **{name: value})
-    heard = Messages(echo)
-    echo.Update()
-    assert len(heard.errors) == 1 and name in heard.errors[0] and "expected" in heard.errors[0], (name, heard.errors)
-    assert echo.GetOutput().GetNumberOfPoints() == 0
-for name, value in bad_tree_properties:
-    tree = al.vtkAvianLidarCollisionTree()
-    tree.SetInputData(surfaces())
-    getattr(tree, "Set" + name)(value)
-    heard = Messages(tree)
-    tree.Update()
-    assert len(heard.errors) == 1 and name in heard.errors[0] and "expected" in heard.errors[0], (name, heard.errors)
-    assert tree.GetOutput().GetNumberOfPoints() == 0
-
-# An input that is missing: one error that says which, and how to connect it; connected, all is well.
-for make in (al.vtkAvianLidarEchoFilter, al.vtkAvianLidarCoverage):
-    for connected, words in ((1, "Input port 0 (beams) is not connected"), (0, "Input port 1 (surfaces) is not connected")):
-        algorithm = make()
-        algorithm.SetInputData(connected, (beams(), surfaces())[connected])
+    def warnings(self, algorithm, inputs, again=()):
         heard = Messages(algorithm)
-        algorithm.Update()
-        assert len(heard.errors) == 1 and words in heard.errors[0] and "Change Input" in heard.errors[0], heard.errors
-        algorithm.SetInputData(1 - connected, (surfaces(), beams())[connected])
-        algorithm.Update()
-        assert len(heard.errors) == 1 and algorithm.GetOutputDataObject(0).GetNumberOfElements(0) > 0, heard.errors
-
-# Inputs the other way round: an error that says which, and what belongs there.
-for make, port in ((al.vtkAvianLidarEchoFilter, 1), (al.vtkAvianLidarCoverage, 1), (al.vtkAvianLidarCollisionTree, 0)):
-    algorithm = make()
-    if port:
-        algorithm.SetInputData(0, beams())
-    algorithm.SetInputData(port, beams())
-    heard = Messages(algorithm)
-    algorithm.Update()
-    words = (f"Input port {port}, surfaces: these are beams, expected polygons", "Change Input")
-    assert len(heard.errors) == 1 and all(word in heard.errors[0] for word in words), heard.errors
-echo = scan(surfaces(), surfaces())
-heard = Messages(echo)
-echo.Update()
-words = ("Input port 0 (beams), point array 'direction' is missing", "output Beams of a beam source (in ParaView: Edit > Change Input > Beams)")
-assert len(heard.errors) == 1 and all(word in heard.errors[0] for word in words), heard.errors
-
-# Points and lines alone are no surface: a warning, once. Nothing at all is a legal scene.
-rays = vtk.vtkLineSource()
-rays.Update()
-echo = scan(rays.GetOutput(), beams())
-heard = Messages(echo)
-for _ in range(2):
-    echo.Modified()
-    echo.Update()
-assert not heard.errors and len(heard.warnings) == 1, heard.warnings
-assert "Input port 1, surfaces: 2 points without a polygon, expected surfaces" in heard.warnings[0], heard.warnings
-
-# Something astray far away: a warning, once, and the same echoes.
-both = vtk.vtkAppendPolyData()
-both.AddInputData(surfaces())
-both.AddInputData(box((1e16, 0, 0), (1, 10, 10), "Wall"))
-both.Update()
-near, astray = scan(surfaces(), beams()), scan(both.GetOutput(), beams())
-heard = Messages(astray)
-near.Update()
-astray.Update()
-assert not heard.errors and len(heard.warnings) == 1, heard.warnings
-assert "Input port 1, surfaces: points lie 1e+16 m apart, expected at most 1e8 m" in heard.warnings[0], heard.warnings
-assert astray.GetOutput().GetNumberOfPoints() == near.GetOutput().GetNumberOfPoints() > 0
-
-echo = scan(vtk.vtkPolyData(), beams())
-heard = Messages(echo)
-echo.Update()
-assert not heard.errors and not heard.warnings and echo.GetOutput().GetNumberOfPoints() == 0, heard.warnings
-
-# Noise that would drown the scan in false alarms is refused before it fills the memory.
-loud = sensor(36, 2)
-loud.SetNoisePhotonRate(1e15)
-loud.SetSamplingInterval(1e-11)
-loud.SetPulseWidth(0)
-loud.SetLowerEnergyLimit(1e-18)
-echo = scan(surfaces(), loud)
-heard = Messages(echo)
-echo.Update()
-assert len(heard.errors) == 1 and "false alarms" in heard.errors[0], heard.errors
-
-# Legal but empty: silence, and empty outputs.
-nothing = vtk.vtkPolyData()
-for data in (nothing, vtk.vtkMultiBlockDataSet()):
-    echo = scan(data)
-    tree = al.vtkAvianLidarCollisionTree()
-    tree.SetInputData(data)
-    heard = Messages(echo, tree)
-    echo.Update()
-    tree.Update()
-    assert not heard.errors and not heard.warnings, (heard.errors, heard.warnings)
-    assert echo.GetOutput().GetNumberOfPoints() == 0 and tree.GetOutput().GetNumberOfCells() == 0
-    assert echo.GetOutput(1).GetNumberOfPoints() == 360  # every beam says: no surface
-no_beams = vtk.vtkPolyData()
-spoilt = vtk.vtkPolyData()
-spoilt.GetFieldData().PassData(beams(field("lower_energy_limit", -1.0)).GetFieldData())
-for data in (no_beams, spoilt):
-    echo = scan(surfaces(), data)
-    heard = Messages(echo)
-    echo.Update()
-    assert not heard.errors and not heard.warnings
-    assert echo.GetOutput().GetNumberOfPoints() == 0
-
-# Suspicious: surfaces without coefficients are Wall, said once per scene.
-plain = surfaces(lambda data: [data.GetCellData().RemoveArray(name) for name in COEFFICIENTS])
-echo, wall = scan(plain), scan(surfaces())
-heard = Messages(echo)
-for seed in (0, 1):
-    echo.SetSeed(seed)
-    wall.SetSeed(seed)
-    echo.Update()
-    wall.Update()
-    assert echo.GetOutput().GetNumberOfPoints() == wall.GetOutput().GetNumberOfPoints() > 0
-assert len(heard.warnings) == 1 and "Wall" in heard.warnings[0] and "Group Datasets" in heard.warnings[0]
-
-# Said again when a scene that had a material loses it.
-material = al.vtkAvianLidarMaterial()
-material.SetInputData(plain)
-for algorithm in (al.vtkAvianLidarCollisionTree(), scan(material)):
-    port = min(1, algorithm.GetNumberOfInputPorts() - 1)  # the surfaces
-    algorithm.SetInputConnection(port, material.GetOutputPort())
-    heard = Messages(algorithm)
-    algorithm.Update()
-    assert not heard.warnings, heard.warnings
-    algorithm.SetInputDataObject(port, plain)
-    algorithm.Update()
-    assert len(heard.warnings) == 1 and "Wall" in heard.warnings[0], heard.warnings
+        for data in (inputs, *again):
+            for port, one in enumerate(data):
+                algorithm.SetInputData(port, one)
+            algorithm.Modified()
+            algorithm.Update()
+        self.assertEqual(heard.errors, [])
+        return heard.warnings
 
 
+class Arrays(Faults):
+    def test_every_array_and_field(self):
+        tried = 0
+        for algorithm, inputs, reads in algorithms():
+            errors, good = self.run_one(algorithm, inputs)
+            self.assertEqual(errors, [], algorithm.GetClassName())
+            for port, wanted in enumerate(reads):
+                for where, name, ways in wanted:
+                    for how in ways:
+                        with self.subTest(algorithm.GetClassName(), port=port, array=name, how=how):
+                            bad = list(inputs)
+                            bad[port] = spoil(inputs[port], where, name, how)
+                            words = [name]
+                            if isinstance(how, (float, tuple)) and where != "field":
+                                words.append(rf"\b{PLACE_OF_VALUE}\b")
+                            if isinstance(algorithm, (al.vtkAvianLidarEchoFilter, al.vtkAvianLidarCollisionTree)):
+                                words.append(f"nput port {port}")
+                            self.fails(algorithm, bad, *words)
+                            tried += 1
+            errors, again = self.run_one(algorithm, inputs)
+            self.assertEqual(errors, [])
+            if not isinstance(algorithm, al.vtkAvianLidarLASWriter):  # has the day in its header
+                self.assertEqual(again, good, algorithm.GetClassName())
+        self.assertGreater(tried, 400)
 
-def far_away(precision, distance):
-    """A scene with a material, its points that far out in this type."""
-    data = surfaces()
-    points = vtk.vtkPoints()
-    points.SetDataType(precision)
-    for i in range(data.GetNumberOfPoints()):
-        x, y, z = data.GetPoint(i)
-        points.InsertNextPoint(x, y + distance, z)
-    data.SetPoints(points)
+    def test_errors_say_what_was_expected(self):
+        """One of each kind of words."""
+        echo = make("EchoFilter")
+        for where, name, how, words in (("field", "half_beamwidth", 1.05, "60 degrees"), ("field", "gaussian_truncation", 5, "0.1 to 3"),
+                                        ("point", "direction", (0, 0, 0), "zero"), ("point", "beam_id", "twice", "one sensor"),
+                                        ("field", "pulse_energy", "missing", "missing"), ("point", "timestamp", "text", "holds no numbers"),
+                                        ("field", "pulse_energy", 0, "1e-50 to 1e50 J"), ("point", "direction", "wide", "6 components"),
+                                        ("point", "direction", NAN, "not finite"), ("field", "receiver_model", 1, "receiver_aperture.*photons")):
+            self.fails(echo, [spoil(beams(), where, name, how), surfaces()], words)
+        for where, name, how, words in (("points", "", 1e31, "1e30"), ("cell", "ks", 0.99, r"kd \+ ks"), ("cell", "ks", "missing", "kd, ks, kp"),
+                                        ("cell", "kd", "short", "5 values, expected 6")):
+            self.fails(echo, [beams(), spoil(surfaces(), where, name, how)], words)
+
+    def test_inputs_of_another_kind(self):
+        """None, the other's, or blocks of other data; the error says where what belongs there comes from."""
+        for name in ("EchoFilter", "Coverage"):
+            for port, what in enumerate(("beams", "surfaces")):
+                algorithm, good = make(name), (beams(), surfaces())
+                algorithm.SetInputData(1 - port, good[1 - port])
+                heard = Messages(algorithm)
+                algorithm.Update()
+                self.assertRegex("".join(heard.errors), rf"Input port {port} \({what}\) is not connected.*Change Input")
+                self.assertEqual(len(heard.errors), 1)
+                algorithm.SetInputData(port, good[port])
+                algorithm.Update()
+                self.assertEqual(len(heard.errors), 1)
+                self.assertGreater(algorithm.GetOutputDataObject(0).GetNumberOfElements(0), 0)
+            self.fails(make(name), [beams(), beams()], "Input port 1, surfaces: these are beams, expected polygons.*Change Input")
+        self.fails(make("CollisionTree"), [beams()], "Input port 0, surfaces: these are beams")
+        self.fails(make("EchoFilter"), [surfaces(), surfaces()], r"Input port 0 \(beams\).*'direction' is missing.*Change Input > Beams")
+        blocks = town(count=2)
+        blocks.SetBlock(2, vtk.vtkUnstructuredGrid())
+        blocks.GetMetaData(2).Set(vtk.vtkCompositeDataSet.NAME(), "tetrahedra")
+        for algorithm, inputs in ((make("CollisionTree"), [blocks]), (make("EchoFilter"), [beams(), blocks])):
+            self.fails(algorithm, inputs, "nput port", "tetrahedra", "vtkPolyData")
+        for name in ("LAS", "PCD", "PLY", "KITTI", "GeoJSON"):
+            writer = make(name + "Writer", FileName="x")
+            heard = Messages(writer)
+            self.assertEqual((writer.Write(), len(heard.errors), os.listdir()), (0, 1, []))
+
+    def test_far_away(self):
+        """Clouds to compare: squares of what is beyond are no numbers."""
+        near = cloud([(0, 0, 0), (1, 0, 0)])
+        comparison = make("CloudComparison")
+        for far in (1e31, 1e200, -1e308):
+            for port in (0, 1):
+                inputs = [near, near]
+                inputs[port] = cloud([(0, 0, 0), (0, far, 0)])
+                self.fails(comparison, inputs, f"input port {port}.*point 1.*1e30")
+                self.assertEqual(self.run_one(comparison, [near, near])[0], [])
+        self.assertEqual(self.run_one(comparison, [near, cloud([(1e30, 0, 0), (0, 0, 0)])])[0], [])
+        self.assertEqual(comparison.GetHausdorffDistance(), 1e30)
+
+    def test_clouds_that_formats_cannot_hold(self):
+        data = cloud(np.zeros((5, 3)))
+        for colours, words in ((np.zeros((5, 4), np.uint8), "4 components"), (np.zeros((5, 3)), "double"), (np.zeros((2, 3), np.uint8), "2"),
+                               (None, "holds no numbers")):
+            bad = copy(data)
+            if colours is None:
+                array = text_array(5)
+                array.SetName("rgb")
+                bad.GetPointData().AddArray(array)
+            else:
+                add_array(bad, "rgb", colours)
+            for name in ("LAS", "PCD"):
+                self.fails(make(name + "Writer", FileName="x"), [bad], "'rgb'.*" + words)
+        data.GetPointData().AddArray(numpy_to_vtk(np.ones(5), deep=True))
+        writer = make("LASWriter", FileName="x.las")
+        heard = Messages(writer)
+        self.run_one(writer, [data])
+        self.assertIn("x.las is without the point arrays 'point array 0' (it has no name)", "".join(heard.warnings))
+
+
+class Properties(Faults):
+    # Any value of these means something.
+    ANY = {("EchoFilter", "Seed"), ("BeamSource", "MotionSeed"), ("EchoFilter", "NumberOfThreads"), ("EchoFilter", "MaximumCacheSize"),
+           ("CollisionTree", "DisplayLevel"), ("CollisionTree", "MaximumLeafSize"), ("Material", "ObjectId"), ("BeamSource", "AzimuthStep"),
+           ("BeamSource", "Orientation"), ("GeoJSONWriter", "MinimumEnergy"), ("EchoFilter", "NumberOfConnections"),
+           ("HSBColorMap", "EnergyRange"), ("Tracks", "Seed")}
+    # The last value before the border of a choice or a number.
+    BORDERS = {"EchoFilter": {"Preset": (-1, 4), "RaysPerBeam": (0, 1000001), "Sampling": (2,), "BeamSamples": (2,), "NumberOfThreads": (-1,),
+                              "AttenuationCoefficient": (-1e-9,), "ReflectanceModel": (4,), "NumberOfReflections": (0, 3),
+                              "LightEnergyFraction": (-1e-9, 1.1e8), "LightEnergyThreshold": (-1, 2), "ReturnMode": (-1, 5),
+                              "NumberOfConnections": (-1,), "BatchCollisionDetection": (3,), "MaximumCacheSize": (-1,)},
+               "CollisionTree": {"SplitRule": (4,), "BoundingVolume": (-1,), "MaximumLeafSize": (0,)}}
+
+    def test_every_property(self):
+        """NaN is refused by each; beyond its range, each says its own name."""
+        seen = echoes()
+        setups = {
+            "BeamSource": ({}, []), "EchoFilter": ({"Preset": 0}, [beams(), surfaces()]), "CollisionTree": ({}, [surfaces()]),
+            "Material": ({"Material": 4}, [surfaces()]), "HSBColorMap": ({"UseFieldDataRange": False}, [seen]),
+            "GeodeticTransform": ({"UseFieldDataOrigin": False}, [seen]), "GeoJSONWriter": ({"UseFieldDataLimit": False}, [seen]),
+            "Tracks": ({}, []), "Tracker": ({}, [seen]), "CloudComparison": ({}, [seen, seen]), "ClutterFilter": ({}, [seen])}
+        tried = 0
+        for name, (settings, inputs) in setups.items():
+            wrapped = getattr(al, "vtkAvianLidar" + name)
+            for property_ in _properties.property_names(wrapped).values():
+                if property_ in ("ChannelElevations", "FileName", "GivenFileName"):
+                    continue
+                value = getattr(wrapped(), "Get" + property_)()
+                first = value[0] if isinstance(value, tuple) else value
+                for bad in (NAN, INF, -INF, 1e300, -1e300, -(1 << 31), (1 << 31) - 1, *self.BORDERS.get(name, {}).get(property_, ())):
+                    if isinstance(first, (bool, str)) or type(first) is not type(bad):
+                        continue
+                    algorithm = make(name, **settings, **({"FileName": "x"} if name.endswith("Writer") else {}))
+                    getattr(algorithm, "Set" + property_)((bad,) * len(value) if isinstance(value, tuple) else bad)
+                    with self.subTest(name, property=property_, value=bad):
+                        errors, out = self.run_one(algorithm, inputs)
+                        legal = (name, property_) in self.ANY and bad == bad and bad not in self.BORDERS.get(name, {}).get(property_, ())
+                        if errors or not legal:
+                            self.assertEqual(len(errors), 1, errors)
+                            self.assertRegex(errors[0], rf"{property_}[\s\S]*expected|{property_}.*\bis")
+                            self.assertEqual(out, NOTHING)
+                        tried += 1
+        self.assertGreater(tried, 200)
+
+    def test_messages_name_what_was_set(self):
+        """Each of several that share a limit."""
+        source = make("BeamSource", NumberOfChannelElevations=2)
+        source.SetChannelElevation(1, 93)
+        self.fails(source, [], r"channel 1 \(its ChannelElevation\) is 93")
+        self.fails(make("BeamSource", NumberOfChannels=2, MinimumElevation=80, ElevationStep=11),
+                   [], r"\(MinimumElevation \+ ElevationStep \* \(NumberOfChannels - 1\)\) is 91")
+        for name, value, words in (("Kd", -1, ": Kd is"), ("Ks", 2, r"Kd \+ Ks is"), ("Kp", -1, ": Kp is")):
+            self.fails(make("Material", Material=4, **{name: value}), [surfaces()], words)
+        self.fails(make("EchoFilter", Preset=0, RaysPerBeam=1000000, NumberOfReflections=2, NumberOfConnections=1000),
+                   [beams(), surfaces()], "RaysPerBeam is 1000000")
+        self.fails(make("EchoFilter", RaysPerBeam=70000, NumberOfConnections=2000000000), [beams(), surfaces()], "NumberOfConnections")
+
+    def test_arguments_of_methods(self):
+        cover, colours = make("Coverage"), make("HSBColorMap")
+        for algorithm, words, call in ((cover, "there is no entry 1000, expected 0 to", lambda: cover.GetHeightLimit(1000)),
+                                       (cover, "there is no entry -1", lambda: cover.GetHeightLimit(-1)),
+                                       (colours, "no table given", lambda: colours.FillLookupTable(None))):
+            heard = Messages(algorithm)
+            call()
+            self.assertEqual(len(heard.errors), 1)
+            self.assertIn(words, heard.errors[0])
+
+    def test_more_than_there_is_memory_for(self):
+        """Noise that would drown the scan, and range units without number, are refused before they fill the memory."""
+        loud, units = sensor(36, 2), sensor(36, 2)
+        for source, values in ((loud, {"NoisePhotonRate": 1e15, "SamplingInterval": 1e-11, "PulseWidth": 0, "LowerEnergyLimit": 1e-18}),
+                               (units, {"SamplingInterval": 1e-12, "PulseWidth": 1e-9, "RangeGate": 1e5})):
+            for name, value in values.items():
+                getattr(source, "Set" + name)(value)
+            source.Update()
+        self.fails(make("EchoFilter"), [loud.GetOutput(), surfaces()], "false alarms")
+        echo = make("EchoFilter", RaysPerBeam=100000)
+        self.fails(echo, [units.GetOutput(), surfaces()], "pulse_width", "RaysPerBeam", "range units")
+        self.assertEqual(echo.GetNumberOfTreeBuilds(), 0)
+
+    def test_deprecated_setters(self):
+        """They work for one version: each warns and says what to do instead."""
+        for on, samples, word in ((False, RAYS, "Rays"), (True, CELLS, "Cells")):
+            echo = make("EchoFilter", BeamSamples=CELLS + RAYS - samples)
+            heard = Messages(echo)
+            echo.SetPlaneIntegration(on)
+            self.assertEqual((echo.GetBeamSamples(), heard.errors), (samples, []))
+            self.assertIn(f"use SetBeamSamplesTo{word} instead", heard.warnings[0])
+        for name, value, word in (("RefineNearLimit", False, "RaysPerBeam"), ("TargetRelativeError", 0.02, "RaysPerBeam"),
+                                  ("SmallTargets", False, "BeamSamples"), ("EmbedTree", True, "file")):
+            usual, changed = [make("CollisionTree" if name == "EmbedTree" else "EchoFilter") for _ in range(2)]
+            heard = Messages(changed)
+            getattr(changed, "Set" + name)(value)
+            self.assertEqual(len(heard.warnings), 1)
+            self.assertRegex(heard.warnings[0], f"Set{name} is deprecated and has no effect: .*{word}")
+            inputs = [surfaces()] if name == "EmbedTree" else [beams(), surfaces()]
+            self.assertEqual(self.run_one(changed, inputs), self.run_one(usual, inputs))
+
+
+class Legal(Faults):
+    """What is odd, and no error."""
+
+    def test_nothing(self):
+        """Silence, and empty outputs; without surfaces each beam says so."""
+        for data in (vtk.vtkPolyData(), vtk.vtkMultiBlockDataSet()):
+            echo, tree = make("EchoFilter"), make("CollisionTree")
+            self.assertEqual(self.warnings(echo, [beams(), data]) + self.warnings(tree, [data]), [])
+            self.assertEqual((echo.GetOutput().GetNumberOfPoints(), tree.GetOutput().GetNumberOfCells()), NOTHING)
+            self.assertEqual(echo.GetOutput(1).GetNumberOfPoints(), 72)
+        spoilt = vtk.vtkPolyData()
+        spoilt.GetFieldData().PassData(spoil(beams(), "field", "lower_energy_limit", -1.0).GetFieldData())
+        for none in (vtk.vtkPolyData(), spoilt):
+            echo = make("EchoFilter")
+            self.assertEqual(self.warnings(echo, [none, surfaces()]), [])
+            self.assertEqual(echo.GetOutput().GetNumberOfPoints(), 0)
+
+    def test_suspicious_surfaces_are_a_warning_once(self):
+        """And the same echoes as without what is suspicious."""
+        lines = vtk.vtkLineSource()
+        lines.Update()
+        astray = vtk.vtkAppendPolyData()
+        for part in (surfaces(), box((1e16, 0, 0), (1, 10, 10), "Wall")):
+            astray.AddInputData(part)
+        astray.Update()
+        plain = surfaces()
+        for name in COEFFICIENTS:
+            plain.GetCellData().RemoveArray(name)
+        for data, words, same in ((lines.GetOutput(), "Input port 1, surfaces: 2 points without a polygon", vtk.vtkPolyData()),
+                                  (astray.GetOutput(), r"Input port 1, surfaces: points lie 1e\+16 m apart", surfaces()),
+                                  (plain, "Wall.*Group Datasets", surfaces())):
+            echo, usual = make("EchoFilter", Seed=1), make("EchoFilter", Seed=1)
+            said = self.warnings(echo, [beams(), data], [[beams(), data]])
+            self.assertEqual(len(said), 1, said)
+            self.assertRegex(said[0], words)
+            self.warnings(usual, [beams(), same])
+            self.assertEqual(echo.GetOutput().GetNumberOfPoints(), usual.GetOutput().GetNumberOfPoints())
+        # Said again when a scene that had a material loses it.
+        for algorithm, before in ((make("CollisionTree"), []), (make("EchoFilter"), [beams()])):
+            self.assertEqual(self.warnings(algorithm, [*before, surfaces()]), [])
+            self.assertRegex("".join(self.warnings(algorithm, [*before, plain])), "Wall")
+
+    def test_single_precision_far_away(self):
+        """Said once per scene, with what the points are rounded to."""
+        def far(kind, distance):
+            data, points = surfaces(), vtk.vtkPoints()
+            points.SetDataType(kind)
+            for i in range(data.GetNumberOfPoints()):
+                points.InsertNextPoint(np.add(data.GetPoint(i), (0, distance, 0)))
+            data.SetPoints(points)
+            return data
+
+        for algorithm, before in ((make("CollisionTree"), []), (make("EchoFilter"), [beams()])):
+            near = [[*before, far(vtk.VTK_DOUBLE, 5e6)], [*before, far(vtk.VTK_FLOAT, 3e4)]]
+            self.assertEqual(self.warnings(algorithm, *near[:1], near[1:]), [])
+            bad = [*before, far(vtk.VTK_FLOAT, 5e6)]
+            said = self.warnings(algorithm, bad, [bad])
+            self.assertEqual(len(said), 1, said)
+            self.assertRegex(said[0], r"single precision[\s\S]*5e\+06 m[\s\S]*0.5 m|5e\+06 m[\s\S]*single precision[\s\S]*0.5 m")
+
+    def test_beams_of_anyones_making(self):
+        """Points, directions of any length and type, and the sensor's field data are enough; azimuths lie in [0, 36000)."""
+        for kind, directions, count in (("f4", ((5, 0, 0), (0, 0.1, 0)), 1), ("f8", ((1e-307, 0, 0), (1.5e308, 1e307, 0)), 2)):
+            own = cloud(np.zeros((2, 3)))
+            add_array(own, "direction", np.array(directions, kind))
+            own.GetFieldData().PassData(beams().GetFieldData())
+            echo = make("EchoFilter")
+            self.assertEqual(self.warnings(echo, [own, surfaces()]), [])
+            self.assertEqual(echo.GetOutput().GetNumberOfPoints(), count)
+            self.assertAlmostEqual(echo.GetOutput().GetPoint(0)[0], 49, delta=0.01)
+            self.assertAlmostEqual(echo.GetOutput().GetPointData().GetArray("azimuth").GetValue(0), 9000, delta=1e-9)
+        own.GetPointData().GetArray("direction").SetTuple3(0, -1e-17, 1, 0)
+        echo = make("EchoFilter")
+        self.warnings(echo, [own, box((0, 50, 0), (10, 1, 10), "Wall")])
+        self.assertEqual(echo.GetOutput().GetPointData().GetArray("azimuth").GetValue(0), 0.0)
+
+    def test_partitions_are_chosen_by_the_name_of_their_set(self):
+        sets = vtk.vtkPartitionedDataSetCollection()
+        for i, name in enumerate(("fence", "wall")):
+            for k in range(2):
+                sets.SetPartition(i, k, surfaces())
+            sets.GetMetaData(i).Set(vtk.vtkCompositeDataSet.NAME(), name)
+        material = make("Material", Material=2, BlockNamePattern="fen*")
+        material.SetInputData(sets)
+        material.Update()
+        output = material.GetOutputDataObject(0)
+        ids = [output.GetPartition(i, k).GetCellData().GetArray("material_id").GetValue(0) for i in range(2) for k in range(2)]
+        self.assertEqual((ids[0], ids[2]), (ids[1], ids[3]))
+        self.assertNotEqual(ids[0], ids[2])
+
+
+TRIANGLES = ((0, 1, 2), (0, 2, 3))
+KINDS = ("Verts", "Lines", "Polys", "Strips")
+OFFSETS = "the offsets of its cells do not fit their points"
+
+
+def cells_of(cells):
+    array = vtk.vtkCellArray()
+    for cell in cells:
+        array.InsertNextCell(len(cell))
+        for point in cell:
+            array.InsertCellPoint(point)
+    return array
+
+
+def raw_cells(offsets, connectivity, kind):
+    """Cells as a file or a script may give them, of 32 or 64 bits."""
+    array = vtk.vtkCellArray()
+    convert = numpy_to_vtkIdTypeArray if kind == np.int64 else numpy_to_vtk
+    array.SetData(*(convert(np.array(values, dtype=kind), deep=True) for values in (offsets, connectivity)))
+    return array
+
+
+def wall(polys=TRIANGLES, points=((10, -5, -5), (10, 5, -5), (10, 5, 5), (10, -5, 5)), **others):
+    """A wall 10 m away, of two triangles or with other cells."""
+    data = vtk.vtkPolyData()
+    if points:
+        data.SetPoints(cloud(points).GetPoints())
+    data.SetPolys(cells_of(polys))
+    for kind, cells in others.items():
+        getattr(data, "Set" + kind)(cells if isinstance(cells, vtk.vtkCellArray) else cells_of(cells))
     return data
 
 
-# Points in single precision far from the origin: said once per scene, with what they are rounded to.
-for algorithm in (al.vtkAvianLidarCollisionTree(), scan(surfaces())):
-    port = min(1, algorithm.GetNumberOfInputPorts() - 1)  # the surfaces
-    heard = Messages(algorithm)
-    for near in (far_away(vtk.VTK_DOUBLE, 5e6), far_away(vtk.VTK_FLOAT, 3e4)):
-        algorithm.SetInputDataObject(port, near)
-        algorithm.Update()
-    assert not heard.warnings and not heard.errors, (heard.warnings, heard.errors)
-    algorithm.SetInputDataObject(port, far_away(vtk.VTK_FLOAT, 5e6))
-    algorithm.Update()
-    algorithm.Modified()
-    algorithm.Update()
-    assert len(heard.warnings) == 1 and "single precision" in heard.warnings[0], heard.warnings
-    assert "5e+06 m" in heard.warnings[0] and "0.5 m" in heard.warnings[0], heard.warnings
+def with_materials(data, **changes):
+    """kd is a hundredth of the cell's number."""
+    count = data.GetNumberOfCells()
+    for name, values in {"kd": np.arange(count) / 100, "ks": np.full(count, 0.1), "kp": np.full(count, 50.0),
+                         "object_id": np.arange(count, dtype=np.int32), **changes}.items():
+        array = numpy_to_vtk(np.ascontiguousarray(values), deep=True)
+        array.SetName(name)
+        data.GetCellData().AddArray(array)
+    return data
 
-# More range units than there is memory for.
-units = sensor(36, 2)
-units.SetSamplingInterval(1e-12)
-units.SetPulseWidth(1e-9)
-units.SetRangeGate(1e5)
-echo = scan(surfaces(), units)
-echo.SetRaysPerBeam(100000)
-heard = Messages(echo)
-echo.Update()
-assert any(all(word in error for word in ("pulse_width", "RaysPerBeam", "range units")) for error in heard.errors), heard.errors
-assert echo.GetNumberOfTreeBuilds() == 0
-assert echo.GetOutput().GetNumberOfPoints() == 0
 
-# Polygons of any kind are triangulated: quads, strips and a concave polygon; vertices and lines are no surface.
-strips = vtk.vtkStripper()
-strips.SetInputData(surfaces())
-strips.Update()
-mixed = vtk.vtkAppendPolyData()
-for part in (surfaces(), strips.GetOutput()):
-    only = vtk.vtkPolyData()
-    only.CopyStructure(part)
-    mixed.AddInputData(only)
-outline = vtk.vtkOutlineFilter()
-outline.SetInputData(surfaces())
-outline.Update()
-mixed.AddInputData(outline.GetOutput())
-tree = al.vtkAvianLidarCollisionTree()
-tree.SetInputConnection(mixed.GetOutputPort())
-tree.Update()
-assert tree.GetOutput().GetNumberOfPolys() == 24
-concave = vtk.vtkPolyData()
-points = vtk.vtkPoints()
-polygons = vtk.vtkCellArray()
-for p in ((0, 0, 0), (4, 0, 0), (4, 4, 0), (2, 1, 0), (0, 4, 0)):
-    points.InsertNextPoint(*p)
-polygons.InsertNextCell(5, list(range(5)))
-concave.SetPoints(points)
-concave.SetPolys(polygons)
-tree.SetInputData(concave)
-tree.Update()
-mass = vtk.vtkMassProperties()
-mass.SetInputData(tree.GetOutput())
-assert tree.GetOutput().GetNumberOfPolys() == 3 and abs(mass.GetSurfaceArea() - 10.0) < 1e-12
+class Cells(Faults):
+    """Cells that are no area, lie where no points are, or begin where no cell is: what has no triangles counts for nothing, the
+    rest is an error; and errors count the cells of the user's data."""
 
-# Beams of anyone's making: points with float directions of any length and the sensor's field data are enough.
-own = vtk.vtkPolyData()
-own_points = vtk.vtkPoints()
-own_directions = vtk.vtkFloatArray()
-own_directions.SetName("direction")
-own_directions.SetNumberOfComponents(3)
-for d in ((5.0, 0.0, 0.0), (0.0, 0.1, 0.0)):
-    own_points.InsertNextPoint(0, 0, 0)
-    own_directions.InsertNextTuple3(*d)
-own.SetPoints(own_points)
-own.GetPointData().AddArray(own_directions)
-own.GetFieldData().PassData(beams().GetFieldData())
-echo = scan(surfaces(), own)
-heard = Messages(echo)
-echo.Update()
-assert not heard.errors, heard.errors
-assert echo.GetOutput().GetNumberOfPoints() == 1
-assert abs(echo.GetOutput().GetPointData().GetArray("azimuth").GetValue(0) - 9000.0) < 1e-9
-assert np.isclose(echo.GetOutput().GetPoint(0)[0], 49.0, atol=0.01)
+    def both_fail(self, data, *words):
+        self.fails(make("CollisionTree"), [data], *words)
+        self.fails(make("EchoFilter"), [beams(), data], *words)
 
-# Of any length, and with an azimuth in [0, 36000).
-extreme = vtk.vtkPolyData()
-extreme.DeepCopy(own)
-doubles = vtk.vtkDoubleArray()
-doubles.SetName("direction")
-doubles.SetNumberOfComponents(3)
-doubles.InsertNextTuple3(1e-307, 0, 0)
-doubles.InsertNextTuple3(1.5e308, 1e307, 0)
-extreme.GetPointData().AddArray(doubles)
-echo = scan(surfaces(), extreme)
-echo.Update()
-assert echo.GetOutput().GetNumberOfPoints() == 2
-assert np.isclose(echo.GetOutput().GetPoint(0)[0], 49.0, atol=0.01)
-doubles.SetTuple3(0, -1e-17, 1, 0)
-doubles.Modified()
-echo = scan(box((0, 50, 0), (10, 1, 10), "Wall"), extreme)
-echo.Update()
-assert echo.GetOutput().GetPointData().GetArray("azimuth").GetValue(0) == 0.0
+    def assert_same_scene(self, data, expected):
+        for name, inputs in (("EchoFilter", [sensor(8, 1)]), ("CollisionTree", [])):
+            for source in inputs:
+                source.Update()
+            one, other = make(name), make(name)
+            for algorithm, surface in ((one, data), (other, expected)):
+                self.assertEqual(self.run_one(algorithm, [*(source.GetOutput() for source in inputs), surface])[0], [])
+            if name == "EchoFilter":
+                assert_same_bits(one.GetOutput(), other.GetOutput())
+            self.assertEqual(one.GetOutput().GetNumberOfCells(), other.GetOutput().GetNumberOfCells())
+        for array in ("kd", "object_id"):
+            np.testing.assert_array_equal(*(vtk_to_numpy(a.GetOutput().GetCellData().GetArray(array)) for a in (one, other)))
+
+    def test_cells_of_few_points_have_no_triangles(self):
+        for short in ((), (0,), (0, 1)):
+            for data in (wall(Strips=[short]), wall(TRIANGLES + (short,)), wall((short,) + TRIANGLES, Verts=[short], Lines=[short])):
+                self.assert_same_scene(data, wall())
+            for empty in (wall([], Strips=[short]), wall([short]), wall([], Verts=[short])):
+                self.assert_same_scene(empty, wall([]))
+
+    def test_cells_without_points(self):
+        self.assert_same_scene(wall([], None, Strips=[()]), wall([]))
+        self.assert_same_scene(wall([()], None), wall([]))
+        self.both_fail(wall(TRIANGLES, None), "its cells have points, and there are none")
+
+    def test_numbers_of_cells_go_on_over_short_ones(self):
+        short = with_materials(wall([(0,), (0, 1, 2), (), (0, 2, 3)], Strips=[(), (1, 2, 3), (0, 1)], Lines=[(0, 1)]))
+        tree = make("CollisionTree")
+        self.run_one(tree, [short])
+        np.testing.assert_array_equal(vtk_to_numpy(tree.GetOutput().GetCellData().GetArray("kd")), np.array([2, 4, 6]) / 100)
+
+    def test_offsets_and_point_ids_that_are_none(self):
+        """Of the Material filter, too: without offsets VTK counts -1 cells."""
+        bad = {"beyond": [0, 3, 7], "far beyond": [0, 3, 2**31 - 1], "down": [0, 5, 3, 6], "negative": [0, -3, 3, 6],
+               "not from 0": [3, 6], "short": [0, 3], "none": []}
+        for bits in (np.int32, np.int64):
+            for kind in KINDS:
+                for name, offsets in bad.items():
+                    with self.subTest(kind=kind, bits=bits, offsets=name):
+                        self.both_fail(wall(**{kind: raw_cells(offsets, [0, 1, 2, 0, 2, 3], bits)}), OFFSETS)
+            for kind in ("Polys", "Strips"):
+                for point in (-1, 4, 99999):
+                    with self.subTest(kind=kind, bits=bits, point=point):
+                        self.both_fail(wall(**{kind: raw_cells([0, 3], [0, 1, point], bits)}), "a cell has a point id outside 0 to 3")
+        for kind in KINDS:
+            self.fails(make("Material"), [wall(**{kind: raw_cells([], [0, 1, 2], np.int64)})], "Input port 0.*" + OFFSETS)
+
+    def test_arrays_of_other_layouts(self):
+        """One array for each component, and single bits: the same scene as from arrays of the usual kind."""
+        other = with_materials(wall())
+        points = vtk.vtkSOADataArrayTemplate["float32"]()
+        points.DeepCopy(other.GetPoints().GetData())
+        other.GetPoints().SetData(points)
+        for array, name in ((vtk.vtkSOADataArrayTemplate["float64"](), "kd"), (vtk.vtkBitArray(), "object_id")):
+            array.DeepCopy(other.GetCellData().GetArray(name))
+            array.SetName(name)
+            other.GetCellData().AddArray(array)
+        self.assert_same_scene(other, with_materials(wall()))
+
+    def test_errors_count_cells_as_the_user_does(self):
+        """Not the triangles that polygons and strips are made into, nor what is left without lines and ghosts."""
+        quads = [(0, 1, 2, 3)] * 5
+        for data, cell in ((wall(quads), 3), (wall(quads, Lines=[(0, 1)] * 3), 6), (wall(quads, Verts=[(0,)]), 5),
+                           (wall(quads, Strips=[(0, 1, 3, 2)] * 2), 6), (wall([(0,), (), (0, 1, 2, 3, 0), (0, 1, 2)]), 3)):
+            for name, value in (("kd", -0.5), ("ks", 1.5), ("kp", NAN), ("object_id", 1e12)):
+                values = np.full(data.GetNumberOfCells(), 0.0 if name == "object_id" else 0.1)
+                values[cell] = value
+                self.both_fail(with_materials(data, **{name: values}), f"surfaces: cell {cell}: .*{name}")
+
+    def test_materials_of_what_is_not_there(self):
+        """Ghosts, lines and cells without triangles may have any: nothing is made of them."""
+        data = with_materials(wall(TRIANGLES + ((0, 1), (0, 1, 2)), Lines=[(0, 1)]))
+        ghosts = numpy_to_vtk(np.array([0, 0, 0, 0, 1], np.uint8), deep=True)
+        ghosts.SetName(vtk.vtkDataSetAttributes.GhostArrayName())
+        data.GetCellData().AddArray(ghosts)
+        for cell in (0, 3, 4):
+            data.GetCellData().GetArray("kd").SetValue(cell, -1.0)
+        self.assertEqual(self.warnings(make("CollisionTree"), [data]), [])
+        data.GetCellData().GetArray("kd").SetValue(2, -1.0)
+        self.both_fail(data, "cell 2: kd")
+
+    def test_polygons_of_any_kind_are_triangulated(self):
+        """Quads and strips of a box; a concave polygon, by its area."""
+        strips = vtk.vtkStripper()
+        strips.SetInputData(surfaces())
+        strips.Update()
+        mixed = vtk.vtkAppendPolyData()
+        for part in (surfaces(), strips.GetOutput()):
+            only = vtk.vtkPolyData()
+            only.CopyStructure(part)
+            mixed.AddInputData(only)
+        mixed.Update()
+        tree = make("CollisionTree")
+        self.run_one(tree, [mixed.GetOutput()])
+        self.assertEqual(tree.GetOutput().GetNumberOfPolys(), 24)
+        self.run_one(tree, [wall([range(5)], ((0, 0, 0), (4, 0, 0), (4, 4, 0), (2, 1, 0), (0, 4, 0)))])
+        mass = vtk.vtkMassProperties()
+        mass.SetInputData(tree.GetOutput())
+        self.assertEqual(tree.GetOutput().GetNumberOfPolys(), 3)
+        self.assertAlmostEqual(mass.GetSurfaceArea(), 10.0, delta=1e-12)
+
+
+if __name__ == "__main__":
+    unittest.main()

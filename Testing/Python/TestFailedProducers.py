@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What follows an execution that failed: whoever is updated next says so, by the input port and the first error, and has no
-output; a file stays as it is; the next good input works. As VTK has it, and with errors as data, as ParaView has it."""
-
+"""What follows an execution that failed or was stopped: whoever is updated next says so, by the input port and the first error, and
+has no output; a file stays as it is; the next good input works. As VTK has it, and with errors as data, as ParaView has it."""
 import os
 import shutil
 import tempfile
@@ -13,98 +12,70 @@ from vtk.util import numpy_support
 
 import cloudtools
 from avianlidar import vtkAvianLidar as al
-from echotools import assert_same_bits, box, Messages, RAYS, scan, sensor, town
+from cloudtools import add_field, cloud
+from echotools import RAYS, Messages, assert_same_bits, scan, sensor, town
+from faulttools import algorithms, copy, make, writer
+from scenetools import SHIPPED
 
-FILE = "TestFailedProducers"
 SETTINGS = {"RaysPerBeam": 20, "NumberOfThreads": 1}
+ORIGIN = (31, 121, 3)
 
 
 class Producer:
     """An algorithm of ours that can be made to fail and be mended again."""
 
-    def __init__(self, algorithm, setter, good, bad, words, port=0):
-        self.algorithm, self.setter, self.good, self.bad, self.words = algorithm, setter, good, bad, words
+    def __init__(self, algorithm, setting, good, words, port=0):
+        self.algorithm, self.setting, self.good, self.words = algorithm, setting, good, words
         self.port = algorithm.GetOutputPort(port)
-        self.mend()
+        self.set(good)
 
-    def fail(self):
-        getattr(self.algorithm, self.setter)(self.bad)
-
-    def mend(self):
-        getattr(self.algorithm, self.setter)(self.good)
+    def set(self, value):
+        getattr(self.algorithm, "Set" + self.setting)(value)
 
 
 def beams():
-    return Producer(sensor(), "SetPulseEnergy", 3.6e-4, -1.0, "PulseEnergy")
+    return Producer(sensor(), "PulseEnergy", 3.6e-4, "PulseEnergy")
 
 
-def surfaces(data=None):
+def surfaces(**fields):
+    data = copy(town(3, 1).GetBlock(0)) if fields else town(3, 12)
+    for name, values in fields.items():
+        add_field(data, name, values)
+    return painted(data)
+
+
+def painted(data):
     material = al.vtkAvianLidarMaterial()
     material.SetMaterialToCustom()
-    material.SetInputData(data or town(3, 12))
-    return Producer(material, "SetKd", 0.3, -1.0, "Material: ")
+    material.SetInputData(data)
+    return Producer(material, "Kd", 0.3, "Material: ")
 
 
-def echoes(port=0):
-    filter_ = scan(town(3, 12), **SETTINGS)
-    return Producer(filter_, "SetAttenuationCoefficient", 3.5e-5, -1.0, "AttenuationCoefficient", port)
-
-
-def with_origin():
-    data = vtk.vtkPolyData()
-    data.DeepCopy(town(3, 1).GetBlock(0))
-    origin = vtk.vtkDoubleArray()
-    origin.SetName("geodetic_origin")
-    origin.SetNumberOfComponents(3)
-    origin.InsertNextTuple3(31, 121, 3)
-    data.GetFieldData().AddArray(origin)
-    return surfaces(data)
-
-
-def timed():
-    """A cloud of a time: executed again it is the same scan."""
-    data = vtk.vtkPolyData()
-    data.DeepCopy(town(3, 1).GetBlock(0))
-    time = vtk.vtkDoubleArray()
-    time.SetName("TimeValue")
-    time.InsertNextValue(3.0)
-    data.GetFieldData().AddArray(time)
-    return surfaces(data)
+def echoes(origin=None):
+    data = town(3, 12)
+    if origin:
+        add_field(data, "geodetic_origin", origin)
+    return Producer(scan(data, **SETTINGS), "AttenuationCoefficient", 3.5e-5, "AttenuationCoefficient")
 
 
 def trails():
-    return Producer(al.vtkAvianLidarTracks(), "SetRadius", 500.0, -1.0, "Radius", 1)
+    return Producer(make("Tracks"), "Radius", 500.0, "Radius", 1)
 
 
-# Every class with inputs: the producers of its ports.
+# Every class with inputs: the producers of its ports. A cloud of a time is the same scan when it is executed again.
 FILTERS = {
-    "Advisor": (beams, surfaces),
-    "BeamView": (beams, surfaces),
-    "CloudComparison": (echoes, echoes),
-    "ClutterFilter": (echoes,),
-    "CollisionTree": (surfaces,),
-    "Coverage": (beams, surfaces),
-    "EchoFilter": (beams, surfaces),
-    "GeodeticTransform": (with_origin,),
-    "HSBColorMap": (echoes,),
-    "Material": (surfaces,),
-    "Medium": (lambda: surfaces(box((0, 100, 0), (5, 5, 5))),),
-    "RangeImage": (echoes, lambda: beams_of(echoes)),
-    "Tracker": (timed,),
-    "Tracks": (trails,),
-    "UnitNames": (echoes,),
-}
-WRITERS = {name + "Writer": suffix[1:] for name, suffix in cloudtools.WRITERS.items()}
-
-
-def beams_of(_):
-    """The beams that the echoes of the first port come from, as far as the range image wants to know."""
-    return beams()
+    "Advisor": (beams, surfaces), "BeamView": (beams, surfaces), "CloudComparison": (echoes, echoes), "ClutterFilter": (echoes,),
+    "CollisionTree": (surfaces,), "Coverage": (beams, surfaces), "EchoFilter": (beams, surfaces),
+    "GeodeticTransform": (lambda: surfaces(geodetic_origin=ORIGIN),), "HSBColorMap": (echoes,), "Material": (surfaces,),
+    "Medium": (lambda: painted(town(3, 1).GetBlock(0)),), "RangeImage": (echoes, beams),
+    "Tracker": (lambda: surfaces(TimeValue=(3.0,)),), "Tracks": (trails,), "UnitNames": (echoes,)}
 
 
 def pipeline(name):
     """(filter, its producers)"""
-    filter_ = getattr(al, "vtkAvianLidar" + name)()
+    filter_ = make(name)
+    if name == "Advisor":
+        filter_.SetSampleBeams(50)
     if name == "Tracks":
         filter_.SetPatternToLines()
     if name == "Medium":
@@ -113,7 +84,7 @@ def pipeline(name):
         seen = scan(town(3, 12), **SETTINGS)
         seen.Update()
         filter_.SetBeamId(seen.GetOutput().GetPointData().GetArray("beam_id").GetValue(0))
-    producers = [make() for make in FILTERS[name]]
+    producers = [produce() for produce in FILTERS[name]]
     for port, producer in enumerate(producers):
         filter_.SetInputConnection(port, producer.port)
     return filter_, producers
@@ -124,12 +95,8 @@ def update(algorithm):
     return algorithm.GetExecutive().Update(0)
 
 
-def copies(filter_):
-    result = []
-    for port in range(filter_.GetNumberOfOutputPorts()):
-        result.append(filter_.GetOutputDataObject(port).NewInstance())
-        result[-1].DeepCopy(filter_.GetOutputDataObject(port))
-    return result
+def outputs(algorithm):
+    return [algorithm.GetOutputDataObject(port) for port in range(algorithm.GetNumberOfOutputPorts())]
 
 
 def elements(data):
@@ -142,93 +109,69 @@ def error_of(data):
     return array.GetValue(0) if array else ""
 
 
-def text_of(message):
-    """What an error event says, without the place in the code."""
-    return message.split("): ", 1)[1].strip()
+def content(name):
+    with open(name, "rb") as file:
+        return file.read()
 
 
-class TestFailedProducers(unittest.TestCase):
-    def for_each_port(self, check):
-        for name, ports in FILTERS.items():
-            for port in range(len(ports)):
-                with self.subTest(f"{name}, port {port}"):
-                    check(port, *pipeline(name))
+class Producers(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.mkdtemp()
+        self.addCleanup(shutil.rmtree, folder)
+        self.addCleanup(os.chdir, os.getcwd())
+        os.chdir(folder)
 
     def check_failed(self, filter_, messages, port, words):
-        """One error more, and no output but the error."""
+        """One error, and no output but the error, without the place in the code."""
         self.assertEqual(len(messages.errors), 1, messages.errors)
-        self.assertIn(f"Input port {port}: its producer failed: ", messages.errors[0])
-        self.assertEqual(messages.errors[0].count("its producer failed"), 1)
-        self.assertIn(words, messages.errors[0])
-        for output in range(filter_.GetNumberOfOutputPorts()):
-            data = filter_.GetOutputDataObject(output)
+        said = messages.errors[0].split("): ", 1)[1].strip()
+        self.assertIn(f"Input port {port}: its producer failed: ", said)
+        self.assertEqual(said.count("its producer failed"), 1)
+        self.assertIn(words, said)
+        for data in outputs(filter_):
             if data.IsA("vtkImageData") and filter_.GetErrorsAsData():
                 self.assertTrue(np.isnan(numpy_support.vtk_to_numpy(data.GetPointData().GetScalars())).all())
             else:
                 self.assertEqual(elements(data), 0)
-            self.assertEqual(error_of(data), text_of(messages.errors[0]))
-            self.assertEqual(data.GetFieldData().GetNumberOfArrays(), 1)
-
-    def check_mended(self, filter_, expected):
-        self.assertEqual(update(filter_), 1)
-        for data, before in zip(copies(filter_), expected):
-            self.assertEqual(error_of(data), "")
-            self.assertEqual(elements(data), elements(before))
-            if data.IsA("vtkPolyData"):
-                assert_same_bits(data, before)
+            self.assertEqual((error_of(data), data.GetFieldData().GetNumberOfArrays()), (said, 1))
 
     def test_every_class_with_inputs_is_here(self):
-        found = set()
-        for name in dir(al):
-            if name.startswith("vtkAvianLidar") and name not in ("vtkAvianLidarCloudWriter", "vtkAvianLidarScanFilter"):
-                if getattr(al, name)().GetNumberOfInputPorts():
-                    found.add(name[len("vtkAvianLidar") :])
-        self.assertEqual(found, {*FILTERS, *WRITERS})
+        found = {name[len("vtkAvianLidar"):] for name in dir(al) if name.startswith("vtkAvianLidar")}
+        found = {name for name in found - {"CloudWriter", "ScanFilter"} if make(name).GetNumberOfInputPorts()}
+        self.assertEqual(found, {*FILTERS, *(name + "Writer" for name in cloudtools.WRITERS)})
 
     def test_an_error_upstream_is_not_an_empty_input(self):
-        """VTK considers what failed up to date: the second update runs on its empty outputs."""
-
-        def check(port, filter_, producers):
+        """Plain, VTK considers what failed up to date: the second update runs on its empty outputs. With errors as data one update
+        executes the whole pipeline, and each algorithm says what is wrong, once."""
+        for name, ports in FILTERS.items():
+            filter_, producers = pipeline(name)
             self.assertEqual(update(filter_), 1)
-            expected = copies(filter_)
+            expected = [copy(data) for data in outputs(filter_)]
             self.assertGreater(elements(expected[0]), 0)
             messages = Messages(filter_)
-            upstream = Messages(*(producer.algorithm for producer in producers))
-            producers[port].fail()
-            self.assertEqual(update(filter_), 0)
-            self.assertIn(producers[port].words, "".join(upstream.errors))
-            messages.errors.clear()
-            filter_.Modified()
-            self.assertEqual(update(filter_), 0)
-            self.check_failed(filter_, messages, port, producers[port].words)
-            producers[port].mend()
-            self.check_mended(filter_, expected)
-            self.assertEqual(len(messages.errors), 1)
-
-        self.for_each_port(check)
-
-    def test_errors_as_data(self):
-        """One update, and the whole pipeline has executed: each algorithm has said what is wrong, once."""
-
-        def check(port, filter_, producers):
-            for algorithm in (filter_, *(producer.algorithm for producer in producers)):
-                algorithm.ErrorsAsDataOn()
-            self.assertEqual(update(filter_), 1)
-            expected = copies(filter_)
-            messages = Messages(filter_)
-            for _ in range(2):
-                upstream = Messages(producers[port].algorithm)
-                producers[port].fail()
-                self.assertEqual(update(filter_), 1)
-                self.assertEqual(len(upstream.errors), 1, upstream.errors)
-                self.assertEqual(error_of(producers[port].algorithm.GetOutputDataObject(0)), text_of(upstream.errors[0]))
-                self.check_failed(filter_, messages, port, producers[port].words)
-                messages.errors.clear()
-                producers[port].mend()
-                self.check_mended(filter_, expected)
-            self.assertFalse(messages.errors)
-
-        self.for_each_port(check)
+            for as_data in (False, True):
+                for algorithm in (filter_, *(producer.algorithm for producer in producers)):
+                    algorithm.SetErrorsAsData(as_data)
+                for port in range(len(ports)):
+                    with self.subTest(name, port=port, as_data=as_data):
+                        upstream = Messages(*(producer.algorithm for producer in producers))
+                        producers[port].set(-1.0)
+                        self.assertEqual(update(filter_), as_data)
+                        self.assertEqual(len(upstream.errors), 1, upstream.errors)
+                        self.assertIn(producers[port].words, upstream.errors[0])
+                        if not as_data:
+                            messages.errors.clear()
+                            filter_.Modified()
+                            self.assertEqual(update(filter_), 0)
+                        self.check_failed(filter_, messages, port, producers[port].words)
+                        messages.errors.clear()
+                        producers[port].set(producers[port].good)
+                        self.assertEqual(update(filter_), 1)
+                        for data, before in zip(outputs(filter_), expected):
+                            self.assertEqual((error_of(data), elements(data)), ("", elements(before)))
+                            if data.IsA("vtkPolyData"):
+                                assert_same_bits(data, before)
+                        self.assertEqual(messages.errors, [])
 
     def test_the_first_error_of_a_chain(self):
         for as_data in (False, True):
@@ -242,31 +185,26 @@ class TestFailedProducers(unittest.TestCase):
             for algorithm in chain:
                 algorithm.SetErrorsAsData(as_data)
             update(colours)
-            count = colours.GetOutput().GetNumberOfPoints()
-            builds, traced = tree.GetNumberOfBuilds(), echo.GetNumberOfTracedRays()
+            count, builds, traced = colours.GetOutput().GetNumberOfPoints(), tree.GetNumberOfBuilds(), echo.GetNumberOfTracedRays()
             self.assertTrue(count and builds and traced)
             said = [Messages(algorithm) for algorithm in chain]
-            first.fail()
+            first.set(-1.0)
             for _ in chain:  # without errors as data each update comes one further
                 update(colours)
             self.assertEqual([len(messages.errors) for messages in said], [1, 1, 1, 1])
             for messages, port in zip(said[1:], (0, 1, 0)):
-                self.assertTrue(
-                    text_of(messages.errors[0]).startswith(f"Input port {port}: its producer failed: Material: "),
-                    messages.errors,
-                )
-            first.mend()
+                self.assertIn(f"): Input port {port}: its producer failed: Material: ", messages.errors[0])
+            first.set(0.3)
             self.assertEqual(update(colours), 1)
-            self.assertEqual(colours.GetOutput().GetNumberOfPoints(), count)
             # What was known is still known.
-            self.assertEqual((tree.GetNumberOfBuilds(), echo.GetNumberOfTracedRays()), (builds, 0))
+            self.assertEqual((colours.GetOutput().GetNumberOfPoints(), tree.GetNumberOfBuilds(), echo.GetNumberOfTracedRays()), (count, builds, 0))
 
     def test_a_filter_between_passes_the_error_on(self):
         """As VTK does with the field data of a first input."""
         for as_data in (False, True):
             for between in (vtk.vtkTriangleFilter(), vtk.vtkMultiBlockDataGroupFilter()):
                 with self.subTest(between.GetClassName(), as_data=as_data):
-                    failing = surfaces(town(3, 1).GetBlock(0))
+                    failing = painted(town(3, 1).GetBlock(0))
                     between.SetInputConnection(failing.port)
                     tree = al.vtkAvianLidarCollisionTree()
                     tree.SetInputConnection(between.GetOutputPort())
@@ -275,15 +213,13 @@ class TestFailedProducers(unittest.TestCase):
                     update(tree)
                     whole = tree.GetOutput().GetNumberOfCells()
                     heard, messages = Messages(failing.algorithm, between), Messages(tree)
-                    failing.fail()
-                    update(tree)
-                    if not as_data:
+                    failing.set(-1.0)
+                    for _ in range(1 if as_data else 2):
                         update(tree)
                     self.assertEqual(len(heard.errors), 1)
                     self.check_failed(tree, messages, 0, failing.words)
-                    failing.mend()
-                    self.assertEqual(update(tree), 1)
-                    self.assertEqual(tree.GetOutput().GetNumberOfCells(), whole)
+                    failing.set(0.3)
+                    self.assertEqual((update(tree), tree.GetOutput().GetNumberOfCells()), (1, whole))
 
     def test_a_failed_image_has_the_extent_that_it_promised(self):
         """VTK's imaging filters crash without it."""
@@ -296,156 +232,164 @@ class TestFailedProducers(unittest.TestCase):
             if before:
                 update(shift)
             messages = Messages(image, producers[0].algorithm)
-            producers[0].fail()
-            self.assertEqual(update(shift), 1)
-            self.assertEqual(len(messages.errors), 2)
+            producers[0].set(-1.0)
+            self.assertEqual((update(shift), len(messages.errors)), (1, 2))
             self.assertEqual(shift.GetOutput().GetExtent(), (0, 89, 0, 3, 0, 0))
 
     def test_data_without_a_pipeline(self):
-        """The empty output of what failed, handed on by a script; as a block, too."""
+        """The empty output of what failed, handed on by a script; as a block, too. A field `error` of the user's own is no error."""
         failing = surfaces()
         failing.algorithm.ErrorsAsDataOn()
         heard = Messages(failing.algorithm)
-        failing.fail()
+        failing.set(-1.0)
         update(failing.algorithm)
         self.assertTrue(heard.errors)
+        failed = failing.algorithm.GetOutputDataObject(0)
         blocks = vtk.vtkMultiBlockDataSet()
         blocks.SetBlock(0, town(3, 1).GetBlock(0))
         blocks.SetBlock(1, vtk.vtkPolyData())
-        blocks.GetBlock(1).SetFieldData(failing.algorithm.GetOutputDataObject(0).GetFieldData())
-        for data in (failing.algorithm.GetOutputDataObject(0), blocks):
+        blocks.GetBlock(1).SetFieldData(failed.GetFieldData())
+        for data in (failed, blocks):
             echo = scan(data, **SETTINGS)
             messages = Messages(echo)
             self.assertEqual(update(echo), 0)
             self.check_failed(echo, messages, 1, failing.words)
-
-    def test_numbers_named_error_are_no_error(self):
-        data = vtk.vtkPolyData()
-        data.DeepCopy(town(3, 1).GetBlock(0))
-        numbers = vtk.vtkDoubleArray()
-        numbers.SetName("error")
-        numbers.InsertNextValue(0.5)
-        data.GetFieldData().AddArray(numbers)
-        self.assertEqual(update(scan(data, **SETTINGS)), 1)
+        for own in ((0.5,), ["none"]):
+            data = copy(town(3, 1).GetBlock(0))
+            add_field(data, "error", own)
+            self.assertEqual(update(scan(data, **SETTINGS)), 1)
 
     def test_writers_leave_the_file(self):
-        for name, ending in WRITERS.items():
+        for name in cloudtools.WRITERS:
             for as_data in (False, True):
                 with self.subTest(name, as_data=as_data):
-                    producer = echoes()
-                    origin = vtk.vtkDoubleArray()
-                    origin.SetName("geodetic_origin")
-                    origin.SetNumberOfComponents(3)
-                    origin.InsertNextTuple3(31, 121, 3)
-                    surfaces_ = producer.algorithm.GetInputDataObject(1, 0)
-                    surfaces_.GetFieldData().AddArray(origin)
+                    producer, write = echoes(ORIGIN), writer(name)
                     producer.algorithm.SetErrorsAsData(as_data)
-                    writer = getattr(al, "vtkAvianLidar" + name)()
-                    writer.SetInputConnection(producer.port)
-                    writer.SetFileName(f"{FILE}.{ending}")
-                    self.assertEqual(writer.Write(), 1)
-                    content = np.fromfile(writer.GetFileName(), np.uint8)
-                    messages, upstream = Messages(writer), Messages(producer.algorithm)
-                    producer.fail()
+                    write.SetInputConnection(producer.port)
+                    self.assertEqual(write.Write(), 1)
+                    before = content(write.GetFileName())
+                    messages, upstream = Messages(write), Messages(producer.algorithm)
+                    producer.set(-1.0)
                     for _ in range(2):
-                        writer.Write()
+                        write.Write()
                     self.assertEqual(len(upstream.errors), 1)
                     self.assertIn("Input port 0: its producer failed: Attenuation", messages.errors[-1])
-                    self.assertEqual(writer.GetErrorCode(), vtk.vtkErrorCode.UserError)
-                    np.testing.assert_array_equal(np.fromfile(writer.GetFileName(), np.uint8), content)
-                    producer.mend()
-                    self.assertEqual(writer.Write(), 1)
-                    for extra in (ending, "label"):
-                        if os.path.exists(f"{FILE}.{extra}"):
-                            os.remove(f"{FILE}.{extra}")
+                    self.assertEqual(write.GetErrorCode(), vtk.vtkErrorCode.UserError)
+                    self.assertEqual(content(write.GetFileName()), before)
+                    producer.set(producer.good)
+                    self.assertEqual(write.Write(), 1)
 
-
-class Foreign(unittest.TestCase):
-    """A reader of VTK that leaves an error code."""
-
-    def setUp(self):
-        self.folder = tempfile.mkdtemp()
-        self.addCleanup(shutil.rmtree, self.folder)
-        self.file = os.path.join(self.folder, "box.stl")
-        cube = vtk.vtkCubeSource()
-        cube.SetCenter(50, 0, 0)
-        cube.SetXLength(20)
-        cube.SetYLength(20)
-        cube.SetZLength(20)
+    def test_a_reader_of_vtk_that_leaves_an_error_code(self):
+        """A change downstream does not make its failure an empty scene; a writer leaves the file; another producer may be older."""
         cut = vtk.vtkTriangleFilter()
-        cut.SetInputConnection(cube.GetOutputPort())
-        writer = vtk.vtkSTLWriter()
-        writer.SetInputConnection(cut.GetOutputPort())
-        writer.SetFileName(self.file)
-        writer.Write()
-        self.reader = vtk.vtkSTLReader()
-        self.reader.AddObserver("ErrorEvent", lambda *_: None)  # its own error is not printed
-
-    def chains(self):
-        """Echo filters behind the reader, and behind filters of ours."""
+        cut.SetInputData(town(3, 1).GetBlock(0))
+        stl = vtk.vtkSTLWriter()
+        stl.SetInputConnection(cut.GetOutputPort())
+        stl.SetFileName("box.stl")
+        stl.Write()
+        reader, good = vtk.vtkSTLReader(), vtk.vtkSTLReader()
+        heard = Messages(reader)  # its own error is not printed
+        good.SetFileName("box.stl")
+        good.Update()
         material, tree = al.vtkAvianLidarMaterial(), al.vtkAvianLidarCollisionTree()
         for filter_ in (material, tree):
-            filter_.SetInputConnection(self.reader.GetOutputPort())
-        for filter_ in (self.reader, material, tree):
-            yield filter_.GetClassName(), scan(filter_, **SETTINGS)
-
-    def test_a_change_downstream_does_not_make_it_an_empty_scene(self):
-        for name, echo in self.chains():
-            for first in (echo, self.reader):
-                with self.subTest(name, first=first.GetClassName()):
-                    self.reader.SetFileName(self.file)
-                    echo.Update()
+            filter_.SetInputConnection(reader.GetOutputPort())
+        for filter_ in (reader, material, tree):
+            for first in (True, False):
+                with self.subTest(filter_.GetClassName(), first=first):
+                    reader.SetFileName("box.stl")
+                    echo = scan(filter_, **SETTINGS)
+                    write = writer("PCD")
+                    write.SetInputConnection(echo.GetOutputPort())
+                    self.assertEqual(write.Write(), 1)
                     self.assertGreater(echo.GetOutput().GetNumberOfPoints(), 0)
-                    self.reader.SetFileName(os.path.join(self.folder, "no.stl"))
-                    first.Update()
+                    before = content("echoes.pcd")
+                    heard = Messages(reader, echo, write, filter_)
+                    reader.SetFileName("no.stl")
+                    update(echo if first else reader)
                     for attenuation in (1e-4, 2e-4):
                         echo.SetAttenuationCoefficient(attenuation)
                         self.assertEqual(update(echo), 0)
-                    self.reader.SetFileName(self.file)
-                    echo.Update()
+                        write.Write()
+                        self.assertEqual(content("echoes.pcd"), before)
+                    self.assertTrue(heard.errors)
+                    echo.SetInputConnection(1, good.GetOutputPort())
+                    self.assertEqual(update(echo), 1)
                     self.assertGreater(echo.GetOutput().GetNumberOfPoints(), 0)
 
-    def test_a_writer_leaves_the_file(self):
-        self.reader.SetFileName(self.file)
-        echo = scan(self.reader, **SETTINGS)
-        writer = al.vtkAvianLidarPCDWriter()
-        writer.SetInputConnection(echo.GetOutputPort())
-        writer.SetFileName(os.path.join(self.folder, "echoes.pcd"))
-        self.assertEqual(writer.Write(), 1)
-        with open(writer.GetFileName(), "rb") as file:
-            before = file.read()
-        self.reader.SetFileName(os.path.join(self.folder, "no.stl"))
-        for attenuation in (1e-4, 2e-4, 3e-4):
-            echo.SetAttenuationCoefficient(attenuation)
-            heard = Messages(echo, writer)
-            writer.Write()
-            with open(writer.GetFileName(), "rb") as file:
-                self.assertEqual(file.read(), before, attenuation)
-            del heard
-        self.reader.SetFileName(self.file)
-        self.assertEqual(writer.Write(), 1)
+    def test_an_abort_at_the_first_progress(self):
+        """Every algorithm hears it: no error, no output, no new file; without it all goes on, and progress rises from 0 to 1."""
+        cases = [(make("BeamSource"), []), (make("Tracks"), [])] + [(algorithm, inputs) for algorithm, inputs, _ in algorithms()]
+        cases += [(writer("PCD"), [cloud([])]), (writer("KITTI", WriteLabels=False), [cloud([])]),
+                  (writer("LAS", CoordinateSystem=2), [cloud([])])]
+        good = writer("PCD", "good")
+        good.SetInputData(cloud([(1, 2, 3)]))
+        self.assertEqual(good.Write(), 1)
+        before = content("good.pcd")
+        cases += [(make("PointCloudReader", FileName="good.pcd"), []), (make("SceneReader", FileName=SHIPPED), [])]
+        for algorithm, inputs in cases:
+            for port, data in enumerate(inputs):
+                algorithm.SetInputData(port, data)
+            writes, seen, aborts = isinstance(algorithm, al.vtkAvianLidarCloudWriter), [], [True]
 
-    def test_another_producer_may_be_older(self):
-        good = vtk.vtkSTLReader()
-        good.SetFileName(self.file)
-        good.Update()
-        self.reader.SetFileName(os.path.join(self.folder, "no.stl"))
-        echo = scan(self.reader, **SETTINGS)
-        self.assertEqual(update(echo), 0)
-        echo.SetInputConnection(1, good.GetOutputPort())
-        self.assertEqual(update(echo), 1)
-        self.assertGreater(echo.GetOutput().GetNumberOfPoints(), 0)
+            def stop(caller, _, seen=seen, aborts=aborts):
+                seen.append(caller.GetProgress())
+                if aborts:
+                    caller.SetAbortExecute(1)
 
-    def test_a_field_of_the_users_own_is_no_error(self):
-        data = town(3, 12).GetBlock(0)
-        own = vtk.vtkStringArray()
-        own.SetName("error")
-        own.InsertNextValue("none")
-        data.GetFieldData().AddArray(own)
-        echo = scan(data, **SETTINGS)
-        heard = Messages(echo)
-        echo.Update()
-        self.assertEqual(heard.errors, [])
+            algorithm.AddObserver("ProgressEvent", stop)
+            heard = Messages(algorithm)
+            with self.subTest(algorithm.GetClassName()):
+                if writes:
+                    algorithm.SetFileName("good.pcd")
+                    self.assertEqual((algorithm.Write(), content("good.pcd"), os.listdir()), (0, before, ["good.pcd"]))
+                else:
+                    algorithm.Update()
+                    self.assertEqual([elements(data) for data in outputs(algorithm)], [0] * algorithm.GetNumberOfOutputPorts())
+                self.assertEqual((heard.errors, seen[0]), ([], 0))
+                aborts.clear()
+                seen.clear()
+                algorithm.SetAbortExecute(0)
+                algorithm.Modified()
+                if writes:
+                    algorithm.SetFileName("other" + os.path.splitext(algorithm.GetFileName())[1])
+                    self.assertEqual(algorithm.Write(), 1)
+                    for name in set(os.listdir()) - {"good.pcd"}:
+                        os.remove(name)
+                else:
+                    algorithm.Update()
+                    self.assertGreater(elements(outputs(algorithm)[0]), 0)
+                self.assertEqual((heard.errors, seen), ([], sorted(seen)))
+                self.assertEqual((seen[0], seen[-1]), (0, 1))
+
+    def test_writers_stop_and_report_on_the_way(self):
+        random = np.random.default_rng(3)
+        data = cloud(random.uniform(-100, 100, (100000, 3)))
+        cloudtools.add_array(data, "energy", np.ones(100000), "J")
+        cloudtools.add_array(data, "object_id", np.zeros(100000, int))
+        for name, values in (("geodetic_origin", ORIGIN), ("position", (0.0, 0.0, 0.0))):
+            add_field(data, name, values)
+        for name in cloudtools.WRITERS:
+            write, seen = writer(name), []
+            heard = Messages(write)
+            write.SetInputData(data)
+
+            def stop(caller, _, seen=seen):
+                seen.append(caller.GetProgress())
+                if 0 < seen[-1] < 1:
+                    caller.SetAbortExecute(1)
+
+            tag = write.AddObserver("ProgressEvent", stop)
+            self.assertEqual((write.Write(), heard.errors, os.listdir()), (0, [], []))
+            self.assertTrue(any(0 < one < 1 for one in seen), seen)
+            write.RemoveObserver(tag)
+            write.SetAbortExecute(0)
+            seen.clear()
+            write.AddObserver("ProgressEvent", lambda caller, _, seen=seen: seen.append(caller.GetProgress()))
+            self.assertEqual(write.Write(), 1)
+            self.assertGreater(len(seen), 5)
+            for file in os.listdir():
+                os.remove(file)
 
 
 if __name__ == "__main__":

@@ -1,74 +1,687 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What scenes and clouds are read from: regular files of any folder, and nothing else. No pipe, which would wait for
-ever, no device, which would not end, and never the network."""
+"""Files that are read: wrong scenes, damaged meshes, files on which libraries crash, never end or take all memory, pipes, devices,
+the network. Each is one error that names the file, the key and the fault, with an empty output, and the next good file is read."""
+import base64
+import copy
 import ctypes
 import gzip
 import json
 import multiprocessing
 import os
 import pathlib
+import resource
+import shutil
 import socket
+import struct
 import subprocess
 import sys
 import tempfile
-import threading
 import unittest
 
 import scenetools as st
 from avianlidar import _suffixes, vtkAvianLidar as wrapped
 from cloudtools import cloud
-
-SQUARE = [[0, 0], [0.001, 0], [0.001, 0.001], [0, 0.001], [0, 0]]
-TRIANGLE = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"
-GROUND = {"ground": {"size": 10}}
-
-
-def plan(crs=None):
-    features = [{"type": "Feature", "properties": {}, "geometry": {"type": "Polygon", "coordinates": [SQUARE]}}]
-    return json.dumps({"type": "FeatureCollection", "features": features, **({"crs": crs} if crs else {})})
-
-
-def gml(encoding, doctype, url, inside, name):
-    return (f'<?xml version="1.0" encoding="{encoding}"?>{doctype}<ogr:FeatureCollection '
-            'xmlns:xsi="http://www.w3.org/2001/XMLSchema-instance" xmlns:ogr="http://ogr.maptools.org/" '
-            f'xsi:schemaLocation="http://ogr.maptools.org/ {url}/x.xsd" xmlns:gml="http://www.opengis.net/gml" '
-            f'xmlns:xlink="http://www.w3.org/1999/xlink"><gml:featureMember><ogr:x fid="1"><ogr:geometryProperty {inside}>'
-            f'<gml:Polygon srsName="{name}"><gml:outerBoundaryIs><gml:LinearRing><gml:coordinates>0,0 0.001,0 0.001,0.001 '
-            '0,0</gml:coordinates></gml:LinearRing></gml:outerBoundaryIs></gml:Polygon></ogr:geometryProperty></ogr:x>'
-            '</gml:featureMember></ogr:FeatureCollection>')
-
-
-def gltf(uri):
-    return json.dumps({
-        "asset": {"version": "2.0"}, "buffers": [{"uri": uri, "byteLength": 36}],
-        "bufferViews": [{"buffer": 0, "byteLength": 36}],
-        "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3"}],
-        "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}], "nodes": [{"mesh": 0}], "scenes": [{"nodes": [0]}]})
-
-
-def multiblock(file):
-    return ('<VTKFile type="vtkMultiBlockDataSet" version="1.0"><vtkMultiBlockDataSet>'
-            f'<DataSet index="0" file="{file}"/></vtkMultiBlockDataSet></VTKFile>')
-
-
-def scene(*objects):
-    return json.dumps({"version": 1, "origin": {"latitude": 0, "longitude": 0, "height": 0}, "material_map": {"*": "Wall"},
-                       "objects": list(objects)})
-
-
-# Reads one file in a process of its own, with little memory: what is to be shown may wait for ever, or never end.
-CHILD = """
-import resource, sys
-resource.setrlimit(resource.RLIMIT_AS, (4 << 30, 4 << 30))
-from avianlidar import vtkAvianLidar as wrapped
 from echotools import Messages
-kind = wrapped.vtkAvianLidarSceneReader if sys.argv[1].endswith(".json") else wrapped.vtkAvianLidarPointCloudReader
-reader = kind()
-heard = Messages(reader)
-reader.SetFileName(sys.argv[1])
-reader.Update()
-print(len(heard.errors), " ".join(heard.errors))
-"""
+
+ADDRESSES = 4 << 30  # bytes, of the process that reads
+MESH_GIGABYTES = "0.5"
+STACK = 8 << 20
+SECONDS = 300  # that a process may take before it counts as waiting for ever
+DEEP = 80000
+CHAIN = 20000
+HUGE = 2**60
+TRIANGLE = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"
+SQUARE = [[0, 0], [0.001, 0], [0.001, 0.001], [0, 0.001], [0, 0]]
+NO_FILE = "no regular file"
+
+
+def collection(*features, **more):
+    return json.dumps({"type": "FeatureCollection", "features": [
+        {"type": "Feature", "properties": p, "geometry": {"type": kind, "coordinates": c}} for kind, c, p in features], **more})
+
+
+def plan(**more):
+    return collection(("Polygon", [SQUARE], {"kind": "house", "height": "high"}), **more)
+
+
+def gltf(children=((),), extras="1", uri=None):
+    """A triangle in the last node; `children`: of each node."""
+    uri = uri or "data:application/octet-stream;base64," + base64.b64encode(struct.pack("<9f", 0, 0, 0, 1, 0, 0, 0, 1, 0)).decode()
+    nodes = [{"children": list(c)} if c else {} for c in children]
+    nodes[-1]["mesh"] = 0
+    text = json.dumps({
+        "asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}], "nodes": nodes,
+        "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
+        "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3", "min": [0, 0, 0], "max": [1, 1, 0]}],
+        "bufferViews": [{"buffer": 0, "byteLength": 36}], "buffers": [{"byteLength": 36, "uri": uri}]})
+    return text[:-1] + ', "extras": ' + extras + "}"
+
+
+def chain(length):
+    return gltf([[i + 1] for i in range(length - 1)] + [[]])
+
+
+def glb(text):
+    data = text.encode() + b" " * (-len(text) % 4)
+    return b"glTF" + struct.pack("<IIII", 2, 20 + len(data), len(data), 0x4E4F534A) + data
+
+
+def collada(nodes, library="", encoding="UTF-8"):
+    return (f'<?xml version="1.0" encoding="{encoding}"?>'
+            '<COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" version="1.4.1"><library_geometries>'
+            '<geometry id="g"><mesh><source id="p"><float_array id="pa" count="9">0 0 0 1 0 0 0 1 0</float_array>'
+            '<technique_common><accessor source="#pa" count="3" stride="3"><param name="X" type="float"/>'
+            '<param name="Y" type="float"/><param name="Z" type="float"/></accessor></technique_common></source>'
+            '<vertices id="v"><input semantic="POSITION" source="#p"/></vertices><triangles count="1">'
+            '<input semantic="VERTEX" source="#v" offset="0"/><p>0 1 2</p></triangles></mesh></geometry>'
+            f'</library_geometries><library_nodes>{library}</library_nodes><library_visual_scenes>'
+            f'<visual_scene id="s">{nodes}</visual_scene></library_visual_scenes>'
+            '<scene><instance_visual_scene url="#s"/></scene></COLLADA>')
+
+
+LEAF = '<instance_geometry url="#g"/>'
+TENFOLD = "".join(f'<node id="l{i}">' + f'<instance_node url="#l{i + 1}"/>' * 10 + "</node>" for i in range(12))
+SHAPE = '<Shape><IndexedFaceSet coordIndex="0 1 2 -1"><Coordinate point="0 0 0 1 0 0 0 1 0"/></IndexedFaceSet></Shape>'
+
+
+def x3d(content):
+    return f'<?xml version="1.0"?><X3D profile="Full" version="3.0"><Scene>{content}</Scene></X3D>'
+
+
+def legacy(kind, content, version="3.0", form="ASCII"):
+    return f"# vtk DataFile Version {version}\nt\n{form}\nDATASET {kind}\n{content}"
+
+
+POINTS = "POINTS 3 float\n0 0 0 1 0 0 0 1 0\n"
+WHOLE = POINTS + "POLYGONS 1 4\n3 0 1 2\n"
+FOUR = "POINTS 4 float\n0 0 0 1 0 0 0 1 0 0 0 1\n"
+AXES = "DIMENSIONS 2 2 2\n" + "".join(f"{axis}_COORDINATES 2 double\n0 3\n" for axis in "XYZ")
+
+
+def cells(offsets="vtktypeint64", connectivity="CONNECTIVITY vtktypeint64", count="2", kind="POLYDATA"):
+    """One cell as VTK writes it today."""
+    name, types = ("POLYGONS", "") if kind == "POLYDATA" else ("CELLS", "CELL_TYPES 1\n5\n")
+    return legacy(kind, f"{POINTS}{name} {count} 3\nOFFSETS {offsets}\n0 3\n{connectivity}\n0 1 2\n{types}", "5.1")
+
+
+def binary(first, words=None):
+    """A binary file of one cell, whose first number says how many points it has; with words of before them, as VTK writes it today."""
+    head = legacy("POLYDATA", "POINTS 3 float\n", "5.1" if words else "3.0", "BINARY").encode() + struct.pack(">9f", 0, 0, 0, 1, 0, 0, 0, 1, 0)
+    if not words:
+        return head + b"\nPOLYGONS 1 4\n" + struct.pack(">4i", first, 0, 1, 2)
+    return (head + b"\nPOLYGONS 2 3\nOFFSETS vtktypeint64\n" + struct.pack(">2q", 0, first) + b"\n" + words + struct.pack(">3q", 0, 1, 2) + b"\n")
+
+
+def xml(kind, content):
+    return f'<VTKFile type="{kind}" version="0.1" byte_order="LittleEndian"><{kind}>{content}</{kind}></VTKFile>'
+
+
+def array(name, values, kind="Int64", more=""):
+    return f'<DataArray type="{kind}" Name="{name}" format="ascii" {more}>{values}</DataArray>'
+
+
+def surface(points=3, polys=1, offset=3, more=""):
+    return xml("PolyData", f'<Piece NumberOfPoints="{points}" NumberOfPolys="{polys}">{more}<Points>'
+               + array("p", "0 0 0 1 0 0 0 1 0", "Float64", 'NumberOfComponents="3"') + "</Points><Polys>"
+               + array("connectivity", "0 1 2") + array("offsets", offset) + "</Polys></Piece>")
+
+
+def changed(old, new):
+    return surface().replace(old, new, 1)
+
+
+def grid(kind, points, faces=(), count=1, offset=None):
+    """A file of one cell over its points, or over `faces` (a polyhedron's stream) too."""
+    def numbers(name, values, type_="Int64"):
+        return array(name, " ".join(map(str, values)), type_)
+
+    return xml("UnstructuredGrid", f'<Piece NumberOfPoints="{points}" NumberOfCells="{count}"><Points>'
+               + array("p", " ".join(f"{i % 3} {i // 3 % 3} {i // 9}" for i in range(points)), "Float64", 'NumberOfComponents="3"')
+               + "</Points><Cells>" + numbers("connectivity", range(points)) + numbers("offsets", [offset or points])
+               + numbers("types", [kind], "UInt8") + (numbers("faces", faces) + numbers("faceoffsets", [len(faces)]) if faces else "")
+               + "</Cells></Piece>")
+
+
+def image(*counts):
+    extent = " ".join(f"0 {n}" for n in counts)
+    return xml("ImageData", f'<Piece Extent="{extent}"></Piece>').replace(
+        "<ImageData>", f'<ImageData WholeExtent="{extent}" Origin="0 0 0" Spacing="1 1 1">')
+
+
+def blocks(content):
+    return f'<VTKFile type="vtkMultiBlockDataSet" version="1.0"><vtkMultiBlockDataSet>{content}</vtkMultiBlockDataSet></VTKFile>'
+
+
+def ply(faces, points="0 0 0\n1 0 0\n0 1 0\n"):
+    count = faces.count("\n")
+    return ("ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nelement face "
+            f"{count}\nproperty list uchar int vertex_indices\nend_header\n{points}{faces}")
+
+
+AC3D = 'AC3Db\nMATERIAL "" rgb 1 1 1  amb 0.2 0.2 0.2  emis 0 0 0  spec 0.5 0.5 0.5  shi 10  trans 0\n'
+AC3D_TRIANGLE = ("OBJECT poly\nnumvert 3\n0 0 0\n1 0 0\n0 1 0\nnumsurf 1\nSURF 0x20\nmat 0\nrefs 3\n0 0 0\n1 0 0\n2 0 0\nkids 0\n")
+TORN = gzip.compress(("".join(f"v {i} 0 {i * i}\n" for i in range(5000)) + TRIANGLE).encode())
+IDS = "is broken: a cell has a point id outside 0 to "
+
+# Name, content, what is said; None: an error that names the file, or the one triangle; True: it is sound.
+MESHES = [
+    ("points.obj", "v 0 0 0\nv 1 0 0\n", ""),
+    ("garbage.obj", "\0\1\2 nothing", ""),
+    ("unknown.xyz", "1 2 3\n", "Assimp cannot read it"),
+    ("empty.ply", "", "Assimp cannot read it"),
+    ("torn.obj.gz", TORN[:len(TORN) // 2], "Assimp cannot read it"),
+    ("nan.ply", ply("3 0 1 2\n", "0 0 0\nnan 0 0\n0 1 0\n"), "has a vertex whose coordinates are not finite"),
+    ("far.ply", ply("4 0 1 2 99999999\n"), "is broken: a face has vertex 99999999 of 3"),
+    ("no.ply", ply("0\n"), None),
+    ("endless.ply", ply("").split("property float y")[0] + "comment end_header\n0\n0\n", "is broken: its header has no line end_header"),
+    ("broken.vtp", "<VTKFile type='PolyData'", "VTK cannot read it"),
+    ("strip.vtk", legacy("POLYDATA", POINTS + "TRIANGLE_STRIPS 1 3\n2 0 1\n"), "is broken: a vtkTriangleStrip has 2 points"),
+    ("axes.vtk", legacy("RECTILINEAR_GRID", AXES.replace("X_COORD", "X-COORD")), "is broken: an axis has 0 coordinates, expected 2"),
+    ("axis.vtk", legacy("RECTILINEAR_GRID", AXES.replace("2 2 2", "2 3 2")), "is broken: an axis has 2 coordinates, expected 3"),
+    ("grid.vtk", legacy("STRUCTURED_GRID", "DIMENSIONS 2 2 2\n" + POINTS), "is broken: a grid of 2 x 2 x 2 has 3 points"),
+    ("far.vtk", legacy("POLYDATA", WHOLE.replace("3 0 1 2", "3 5 1 2")), IDS + "2"),
+    ("cell.vtk", legacy("UNSTRUCTURED_GRID", FOUR + "CELLS 1 4\n3 0 1 9\nCELL_TYPES 1\n5\n"), IDS + "3"),
+    ("short.vtk", legacy("UNSTRUCTURED_GRID", FOUR + "CELLS 1 4\n3 0 1 2\nCELL_TYPES 1\n12\n"), "is broken: a vtkHexahedron has 3 points"),
+    ("solid.vtk", legacy("UNSTRUCTURED_GRID", FOUR + "CELLS 1 18\n17 4 3 0 1 2 3 0 1 7 3 0 2 3 3 1 2 3\nCELL_TYPES 1\n42\n"), IDS + "3"),
+    ("line.vtu", grid(4, 1), "is broken: a vtkPolyLine has 1 points"),
+    ("quadratic.vtu", grid(36, 5), "is broken: a vtkQuadraticPolygon has 5 points"),
+    ("quad.vtu", grid(9, 5), "is broken: a vtkQuad has 5 points"),
+    ("polyhedron.vtu", grid(42, 3, [0]), "is broken: a vtkPolyhedron has 3 points"),
+    ("nofaces.vtu", grid(42, 4, [0]), "is broken: a polyhedron's faces are missing"),
+    ("few.vtu", grid(42, 4, [5, 3, 0, 1, 2, 3, 0, 1, 3, 3, 1, 2, 3, 3, 0, 2, 3]), ""),
+    ("three.vtu", grid(42, 4, [3, 3, 0, 1, 2, 3, 0, 1, 3, 3, 1, 2, 3]), "is broken: a polyhedron has 3 faces"),
+    ("edges.vtu", grid(42, 4, [4, 3, 0, 1, 2, 2, 0, 1, 3, 1, 2, 3, 3, 0, 2, 3]), "is broken: a face of a polyhedron has 2 points"),
+    ("faces.vtu", grid(42, 4, [4, 3, 0, 1, 2, 3, 0, 1, 100000000, 3, 1, 2, 3, 3, 0, 2, 3]), IDS + "3"),
+    ("lagrange.vtu", grid(70, 7), "has cells of type 70, of variable order, which are not supported: tessellate"),
+    # Nested, chained or in a circle.
+    ("chain.gltf", chain(CHAIN), None),
+    ("values.gltf", gltf(extras="[" * 10**6 + "]" * 10**6), None),
+    ("list.gltf", "[1]", None),
+    ("cycle.gltf", gltf([[1], [2], [0]]), None),
+    ("double.gltf", gltf([[i + 1] * 2 for i in range(50)] + [[]]), None),
+    ("chain.dae", collada("<node>" * CHAIN + LEAF + "</node>" * CHAIN), None),
+    ("chain16.dae", collada("<node>" * CHAIN + LEAF + "</node>" * CHAIN, encoding="UTF-16").encode("utf-16"), None),
+    ("own.dae", collada(f'<node id="a">{LEAF}<instance_node url="#a"/></node>'), None),
+    ("tenfold.dae", collada('<node id="s0"><instance_node url="#l0"/></node>', TENFOLD + f'<node id="l12">{LEAF}</node>'), None),
+    ("chain.x3d", x3d("<Group>" * CHAIN + SHAPE + "</Group>" * CHAIN), None),
+    ("elements.vtp", "<VTKFile type='PolyData'>" + "<a>" * DEEP + "</a>" * DEEP + "</VTKFile>", None),
+    ("parts.vtm", blocks('<DataSet index="0" file="points.vtp"/>'), None),
+    ("own.vtm", blocks('<DataSet index="0" file="own.vtm"/>'), "names the file"),
+    # Numbers that take all memory, or lead beside it.
+    ("many.vtk", legacy("POLYDATA", POINTS + "POLYGONS 1 4\n99999999 0 1 2\n"), None),
+    ("binary.vtk", binary(99999999), None),
+    ("minus.vtk", legacy("POLYDATA", POINTS + "POLYGONS 1 4\n-3 0 1 2\n"), None),
+    ("cells.vtk", legacy("UNSTRUCTURED_GRID", POINTS + "CELLS 1 4\n99999999 0 1 2\nCELL_TYPES 1\n5\n"), None),
+    ("points.vtk", legacy("POLYDATA", WHOLE.replace("POINTS 3", f"POINTS {HUGE}")), None),
+    ("vectors.vtk", legacy("POLYDATA", WHOLE + f"POINT_DATA {10**12}\nVECTORS v double\n1\n"), None),
+    ("scalars.vtk", legacy("POLYDATA", WHOLE + f"POINT_DATA 3\nSCALARS v double {2 * 10**9}\nLOOKUP_TABLE default\n1\n"), None),
+    ("fields.vtk", legacy("POLYDATA", WHOLE + f"FIELD FieldData 1\nx 1000000 {10**9} double\n1\n"), None),
+    ("graph.vtk", legacy("UNDIRECTED_GRAPH", f"VERTICES {10**12}\nEDGES {10**12}\n0 1\n"), None),
+    ("image.vtk", legacy("STRUCTURED_POINTS", "DIMENSIONS 100000 100000 100000\nORIGIN 0 0 0\nSPACING 1 1 1\n"), None),
+    ("few.vtk", legacy("STRUCTURED_GRID", "DIMENSIONS 1000 1000 1\n" + POINTS), None),
+    ("image.vti", image(10**6, 10**6, 10**3), None),
+    ("points.vtp", surface(points=HUGE), None),
+    ("offsets.vtp", surface(offset=10**15), None),
+    ("components.vtp", surface(more="<PointData>" + array("x", 0, more='NumberOfComponents="2000000000"') + "</PointData>"), None),
+    ("fields.vtp", changed("<Piece", "<FieldData>" + array("x", 1, more=f'NumberOfTuples="{10**12}"') + "</FieldData><Piece"), None),
+    ("type.vtp", changed("<Piece", '<FieldData><Array type="Float" Name="x" NumberOfTuples="1">1</Array></FieldData><Piece'), None),
+    ("compressor.vtp", changed("<VTKFile", '<VTKFile compressor="zip"'), None),
+    ("minus.vtp", changed('NumberOfPolys="1"', 'NumberOfVerts="-7" NumberOfPolys="1"'), None),
+    # Sound files of the same kinds, up to where the errors begin.
+    ("sound.obj", TRIANGLE, True),
+    ("sound.gltf", chain(500), True),
+    ("sound.dae", collada("<node>" * 500 + LEAF + "</node>" * 500), True),
+    ("twice.dae", collada('<node id="s0"><instance_node url="#a"/></node><node id="s1"><instance_node url="#a"/></node>',
+                          f'<node id="a">{LEAF}</node>'), True),
+    ("sound.x3d", x3d(f'<Group DEF="a">{SHAPE}</Group><Transform translation="5 0 0"><Group USE="a"/></Transform>'), True),
+    ("sound.ac", AC3D + "OBJECT world\nkids 3\n" + 3 * AC3D_TRIANGLE, True),
+    ("sound.ply", ply("3 0 1 2\n3 2 1 0\n"), True),
+    ("sound.vtk", legacy("POLYDATA", WHOLE + "POINT_DATA 3\nSCALARS v double 1\nLOOKUP_TABLE default\n1e9 2e9 3e9\n"), True),
+    ("sound3binary.vtk", binary(3), True),
+    ("sound5.vtk", cells(), True),
+    ("sound5binary.vtk", binary(3, b"CONNECTIVITY vtktypeint64\n"), True),
+    ("sound.vtp", surface(), True),
+    ("sound.vtu", grid(5, 3), True),
+    ("sound.vti", image(10, 10, 10), True),
+    ("comment.vtp", changed("<Piece", '<!-- a > b <Piece NumberOfPoints="1e99"/> - -> --><Piece'), True),
+    ("cdata.vtp", changed("</Piece>", '</Piece><![CDATA[<Piece NumberOfPoints="1e99"/> ]]]]>'), True),
+    ("long.vtp", changed("<Piece", f"<Piece Name='{'>' * 70000}' OfNumberOfPoints = '-1'"), True),
+]
+
+PLANS = {
+    "plan.geojson": plan(), "points.geojson": collection(("Point", [0, 0], {})), "lines.geojson": collection(("LineString", SQUARE[:2], {})),
+    "pole.geojson": collection(("Polygon", [[[0, 91], [1, 91], [1, 92], [0, 91]]], {})),
+    "broken.geojson": '{"type": "FeatureCollection", "features": [', "triangle.obj": TRIANGLE,
+    "two.kml": '<kml xmlns="http://www.opengis.net/kml/2.2"><Document>' + "".join(
+        f"<Folder><name>{name}</name><Placemark><Point><coordinates>0,0</coordinates></Point></Placemark></Folder>"
+        for name in ("roads", "trees")) + "</Document></kml>"}
+ORIGIN = {"latitude": 0, "longitude": 0, "height": 0}
+GOOD = {
+    "version": 1, "origin": ORIGIN, "lidar": {"position": [0, 0, 3], "inside": False},
+    "materials": {"Grass": {"kd": 0.2, "ks": 0, "kp": 1}}, "material_map": {"*": "wall"},
+    "objects": [
+        {"file": "triangle.obj", "name": "triangle", "position": [1, 2, 3], "rotation": 30, "scale": 2, "up_axis": "z"},
+        {"footprints": "plan.geojson", "height": 10, "glazing": {"share": 0.5, "bay": 5}, "features": "together"},
+        {"ground": {"size": [100, 80], "height": -1}, "material": "Grass"}]}
+MISSING = object()
+
+# Path of the value to replace (or, MISSING, to remove), the value, what the message must say beside the file's name.
+VALUES = [
+    (["version"], MISSING, "version: is missing"),
+    (["version"], 2, "version: must be 1"),
+    (["objects"], MISSING, "objects: is missing"),
+    (["materials", ""], {"kd": 0.1}, "a material must have a name"),
+    (["origin", "latitude"], 91, "origin.latitude: must be from -90 to 90, is 91"),
+    (["origin", "longitude"], 361, "origin.longitude: must be from -180 to 360"),
+    (["lidar", "position"], [0, 0], "lidar.position: must be an array"),
+    (["materials", "Grass", "kd"], -0.1, "materials.Grass.kd: must be from 0 to 1"),
+    (["materials", "Grass", "ks"], 0.9, "materials.Grass: kd + ks is 1.1"),
+    (["materials", "Grass", "kp"], -1, "materials.Grass.kp: must be from 0 to"),
+    (["materials", "Grass", "kd"], MISSING, "materials.Grass.kd: is missing"),
+    (["materials", "GRASS"], {"kd": 0.1}, "materials.GRASS: this material is there already"),
+    (["material_map", "*"], "velvet", 'material_map.*: unknown material "velvet"; known: Wall, Glass, Metal, Wood, Grass'),
+    (["objects", 0, "file"], "nowhere.obj", "objects[0].file: there is no file "),
+    (["objects", 0, "file"], MISSING, "objects[0]: must have one of file, footprints, ground"),
+    (["objects", 0, "footprints"], "plan.geojson", "objects[0]: must have one of file"),
+    (["objects", 0, "height"], 3, "objects[0].height: unknown key"),
+    (["objects", 0, "scale"], 0, "objects[0].scale: must be greater"),
+    (["objects", 0, "scale"], [1, 1, -1], "objects[0].scale[2]: must be greater"),
+    (["objects", 0, "rotation"], [0, 0, 1], "objects[0].rotation: must be a direction"),
+    (["objects", 0, "rotation"], [0, 0, 0], "objects[0].rotation: must be a direction"),
+    (["objects", 0, "rotation"], [[2, 0, 0], [0, 1, 0], [0, 0, 1]], "objects[0].rotation: must be a rotation: rows"),
+    (["objects", 0, "rotation"], [[-1, 0, 0], [0, 1, 0], [0, 0, 1]], "objects[0].rotation: must be a rotation, not a"),
+    (["objects", 0, "geodetic"], ORIGIN, "objects[0].geodetic: stands beside"),
+    (["objects", 0, "up_axis"], "x", 'objects[0].up_axis: must be "y" or "z"'),
+    (["objects", 0, "crs"], "EPSG:0", 'unknown coordinate reference system "EPSG:0"'),
+    (["objects", 0, "name"], "", "objects[0].name: must not be empty"),
+    (["objects", 0], {"file": "triangle.obj", "crs": "EPSG:4326", "position": [0, 95, 0]}, "triangle.obj: coordinates lie outside"),
+    (["objects", 1, "height"], MISSING, "objects[1]: footprints need height or height_attribute, or flat"),
+    (["objects", 1], {"footprints": "plan.geojson", "height_attribute": "height"}, "has no usable height"),
+    (["objects", 1, "height"], -3, "objects[1].height: must be greater than 0"),
+    (["objects", 1, "flat"], True, "objects[1].height: means nothing"),
+    (["objects", 1, "glazing", "share"], 1.5, "objects[1].glazing.share: must be from 0 to 1"),
+    (["objects", 1, "glazing", "bay"], 1e-9, "more than 100000 bays"),
+    (["objects", 1, "glazing", "bay"], 0, "objects[1].glazing.bay: must be greater"),
+    (["objects", 1, "features"], "apart", 'objects[1].features: must be "separate"'),
+    (["objects", 1, "filter"], {"kind": []}, "objects[1].filter.kind"),
+    (["objects", 1, "filter"], {"kind": "castle"}, "plan.geojson: none of its 1 features fits the filter"),
+    (["objects", 1, "layer"], "roads", 'plan.geojson: has no layer "roads"'),
+    (["objects", 1, "geodetic"], ORIGIN, "plan.geojson: is georeferenced"),
+    (["objects", 1, "footprints"], "two.kml", "has not one layer but 2 (roads, trees)"),
+    (["objects", 1, "footprints"], "broken.geojson", "objects[1].footprints: "),
+    (["objects", 1, "footprints"], "triangle.obj", "triangle.obj: GDAL cannot read it"),
+    (["objects", 1, "footprints"], "points.geojson", "points.geojson: its features have no area"),
+    (["objects", 1, "footprints"], "lines.geojson", "lines.geojson: its features have no area"),
+    (["objects", 1, "footprints"], "pole.geojson", "pole.geojson: coordinates lie outside"),
+    (["origin"], MISSING, "plan.geojson: is georeferenced, so the scene needs an origin"),
+    (["objects", 2, "ground", "size"], [10, 10, 10], "objects[2].ground.size: must be an array"),
+    (["objects", 2, "ground", "size"], 0, "objects[2].ground.size: must be greater than 0"),
+]
+# The text of a whole file, and what the message must say.
+TEXTS = [
+    ("", "is not JSON"),
+    ('{"version": 1, "objects": [}', "is not JSON"),
+    ('{"version": 1e999, "objects": []}', "is not JSON"),
+    ('{"version": NaN, "objects": []}', "is not JSON"),
+    ('{"version": 1, "version": 1}', 'the key "version" stands twice'),
+    ("[1, 2]", "the whole: must be an object"),
+    ('{"version": 1, "objects": [{"file": "triangle.obj", "crs": "EPSG:32631"}]}', "objects[0].crs: needs the scene's origin"),
+    ('{"version": 1, "objects": [{"file": "triangle.obj", "geodetic": %s}]}' % json.dumps(ORIGIN), "objects[0].geodetic: needs the scene's origin"),
+    ('{"version":1,"comment":' + "[" * DEEP + "]" * DEEP + ',"objects":[]}', "is nested more than 100 deep"),
+    ('{"version":1,"objects":' + '{"a":' * DEEP + "1" + "}" * DEEP + "}", "is nested more than 100 deep"),
+    ('{"version":1,"objects":' + "[" * DEEP, "is nested more than 100 deep"),
+]
+
+
+def wrong_types(value, path=()):
+    """(path of a value, one of another type, the path as it is written)"""
+    name = "".join(f"[{key}]" if isinstance(key, int) else f".{key}" for key in path)[1:]
+    other = 1 if isinstance(value, bool) else 5 if isinstance(value, (str, dict)) else "here"
+    if path:
+        yield list(path), other, name + ": must"
+    if isinstance(value, dict):
+        yield [*path, "colour"], 1, (name + "." if path else "") + "colour: "
+    for key, inner in value.items() if isinstance(value, dict) else enumerate(value) if isinstance(value, list) else ():
+        yield from wrong_types(inner, (*path, key))
+
+
+def replaced(path, value):
+    scene = copy.deepcopy(GOOD)
+    owner = scene
+    for key in path[:-1]:
+        owner = owner[key]
+    if value is MISSING:
+        del owner[path[-1]]
+    else:
+        owner[path[-1]] = value
+    return scene
+
+
+def read_all(files):
+    """In the process of its own: one line for each."""
+    for file in files:
+        if file.endswith(".json"):
+            read = st.Read(file)
+            cells_ = sum(block.GetNumberOfCells() for block in read.blocks if block)
+            said = [file, read.errors, cells_, read.strings("error")]
+        else:
+            reader = wrapped.vtkAvianLidarPointCloudReader()
+            heard = Messages(reader)
+            can = reader.CanReadFile(file)
+            reader.SetFileName(file)
+            reader.Update()
+            said = [file, heard.errors, reader.GetOutput().GetNumberOfPoints() + can, []]
+        print(json.dumps(said), flush=True)
+
+
+class Files(unittest.TestCase):
+    def setUp(self):
+        self.folder = pathlib.Path(tempfile.mkdtemp())
+        self.addCleanup(shutil.rmtree, self.folder)
+        self.addCleanup(os.chdir, os.getcwd())
+        os.chdir(self.folder)
+        for name, text in PLANS.items():
+            pathlib.Path(name).write_text(text)
+        self.scenes = 0
+
+    def save(self, name, content):
+        (self.folder / name).write_bytes(content if isinstance(content, bytes) else content.encode())
+        return str(self.folder / name)
+
+    def scene(self, *objects):
+        """A scene file of objects."""
+        self.scenes += 1
+        return st.write_scene(str(self.folder), f"scene{self.scenes}", {"version": 1, "origin": ORIGIN, "material_map": {"*": "Wall"},
+                                                                        "objects": list(objects)})
+
+    def read(self, files, **options):
+        """What was said of each file, by processes with limits; nothing of a file that ended one or was waited for."""
+        def limit():
+            resource.setrlimit(resource.RLIMIT_AS, (ADDRESSES, ADDRESSES))
+            resource.setrlimit(resource.RLIMIT_STACK, (STACK, STACK))
+            resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+
+        said, left = {}, list(files)
+        while left:
+            command = [sys.executable, os.path.abspath(__file__), "--read", *left]
+            try:
+                text = subprocess.run(command, preexec_fn=limit, text=True, errors="replace", stdout=subprocess.PIPE, timeout=SECONDS,
+                                      env={**os.environ, "AVIANLIDAR_MESH_GIGABYTES": MESH_GIGABYTES}, stderr=subprocess.DEVNULL, check=False,
+                                      **options).stdout
+            except subprocess.TimeoutExpired as late:
+                text = (late.stdout or b"").decode()
+            lines = [json.loads(line) for line in text.splitlines() if line.startswith('["')]
+            said.update({file: answer for file, *answer in lines})
+            left = left[len(lines) + 1:]
+        return said
+
+    def assert_errors(self, expected):
+        """@param expected {file: what is said of it; None: anything, or one triangle; True: it is sound}"""
+        said = self.read(expected)
+        for file, words in expected.items():
+            with self.subTest(os.path.basename(file), words=words):
+                self.assertIn(file, said, "it ended the process, or it is waited for")
+                errors, count, field = said[file]
+                if words is True or (words is None and count):
+                    self.assertEqual(errors, [])
+                    self.assertTrue(count == 1 or words)
+                    self.assertGreater(count, 0)
+                    continue
+                self.assertEqual((len(errors), count), (1, 0), errors)
+                self.assertIn(words or "", errors[0])
+                self.assertIn(file, errors[0])
+                self.assertEqual(len(field), 1 if file.endswith(".json") else 0)
+                self.assertTrue(all(text in errors[0] for text in field))
+
+
+class Contents(Files):
+    def test_meshes(self):
+        """A process of their own opens them: what ends it is an error as well."""
+        expected = {}
+        for name, content, words in MESHES:
+            self.save(name, content)
+            expected[self.scene({"file": name})] = words if words in (None, True) else f"objects[0].file: {self.folder / name}: {words}"
+        self.assert_errors(expected)
+
+    def test_values_of_scenes(self):
+        """Each value of another type, a key that is unknown in each object, and values beyond their limits."""
+        read = st.Read(st.write_scene(str(self.folder), "good", GOOD))
+        self.assertEqual((read.errors, read.names), ([], ["triangle", "plan", "Ground"]))
+        cases = [(replaced(path, value), words) for path, value, words in [*wrong_types(GOOD), *VALUES]] + TEXTS
+        files = {}
+        for i, (content, words) in enumerate(cases):
+            files[st.write_scene(str(self.folder), f"bad{i}", content)] = words
+        self.assert_errors({**files, str(self.folder / "none.lidarscene.json"): "cannot be opened"})
+        # In the same reader.
+        read.reader.SetFileName(list(files)[0])
+        read.reader.Update()
+        self.assertEqual((len(read.errors), read.reader.GetOutput().GetNumberOfBlocks()), (1, 0))
+        read.reader.SetFileName(str(self.folder / "good.lidarscene.json"))
+        read.reader.Update()
+        self.assertEqual((len(read.errors), read.reader.GetOutput().GetNumberOfBlocks()), (1, 3))
+        self.assertIn("FileName is not set", "".join(st.Read(None).errors))
+
+    def test_reasons_are_short_and_name_files_that_exist(self):
+        for name in ("torn.obj.gz", "broken.vtp"):
+            self.save(name, next(content for one, content, _ in MESHES if one == name))
+            text = st.Read(self.scene({"file": name})).errors[0].split("): ", 1)[1].strip()
+            self.assertNotRegex(text, r"\n|ERROR:|\.cpp|\.cxx")
+            for word in text.replace('"', " ").replace(": ", " ").split():
+                self.assertTrue(not word.startswith(str(self.folder)) or os.path.exists(word.rstrip(".:")), word)
+
+    def test_a_scale_that_leaves_nothing_warns(self):
+        for scale, warned in ((1e-200, True), ([1, 1e-30, 1], True), (1e-6, False)):
+            read = st.Read(self.scene({"file": "triangle.obj", "scale": scale}))
+            self.assertEqual((read.errors, "triangle: all 1 triangles are points or lines" in " ".join(read.warnings)), ([], warned))
+
+    def test_footprints_nested_deep(self):
+        feature = '{"type":"FeatureCollection","features":[{"type":"Feature","properties":{"a":%s},"geometry":%s}]}'
+        square = '{"type":"Polygon","coordinates":[[[0,0],[0.001,0],[0.001,0.001],[0,0]]]}'
+        inner = '{"type":"GeometryCollection","geometries":['
+        for i, text in enumerate(("[" * DEEP + "]" * DEEP, feature % ("[" * DEEP + "]" * DEEP, square),
+                                  feature % (1, inner * CHAIN + square + "]}" * CHAIN))):
+            self.save(f"{i}.geojson", text)
+        self.assert_errors({self.scene({"footprints": f"{i}.geojson", "height": 3}): "GDAL cannot read it" for i in range(3)})
+
+    def test_compressed_files_as_they_are_now(self):
+        """Damaged, mended, and edited, all under one name; nothing is written beside them."""
+        comments = "# nothing\n" * 30000  # more than one block of GDAL's
+        cases = (("m.obj.gz", "file", comments + TRIANGLE, comments + TRIANGLE.replace("1", "2", 1)),
+                 ("plan.geojson.gz", "footprints", plan(), plan().replace("0.001", "0.002")),
+                 ("plan.csv.gz", "footprints", 'WKT,a\n"POLYGON((0 0,0 1,1 1,0 0))",1\n', 'WKT,a\n"POLYGON((0 0,0 2,2 2,0 0))",1\n'))
+        for name, key, text, edited in cases:
+            file = self.scene({key: name, **({"height": 3, "crs": "EPSG:4326"} if key == "footprints" else {})})
+            good = gzip.compress(text.encode(), 0)  # stored, so that the damage is where it is wanted
+
+            def read(content):
+                self.save(name, bytes(content))
+                found = st.Read(file)
+                return found.errors, found.blocks[0].GetBounds() if found.blocks else None
+
+            with self.subTest(name):
+                want = read(good)
+                self.assertEqual(want[0], [])
+                broken_block, broken_sum = bytearray(good), bytearray(good)
+                broken_block[11] ^= 0xFF  # its length
+                broken_sum[-6] ^= 0xFF
+                for damaged in (broken_block, broken_sum, good[:-20], good[:30]):
+                    self.assertIn(name, read(damaged)[0][0])
+                    self.assertEqual(read(good), want)
+                for level in (0, 9):  # the same size, another
+                    errors, bounds = read(gzip.compress(edited.encode(), level))
+                    self.assertEqual(errors, [])
+                    self.assertAlmostEqual(bounds[1] / want[1][1], 2, delta=2e-3)
+        self.assertEqual([one for one in os.listdir() if one.endswith(".properties")], [])
+
+
+class Places(Files):
+    """Regular files of any folder are read, and nothing else: no pipe, which would wait for ever, no device, which would not end."""
+
+    def make(self, kind, name):
+        if kind == "pipe":
+            os.mkfifo(name)
+        else:
+            os.symlink("/dev/zero", name)
+        return str(self.folder / name)
+
+    def test_neither_pipes_nor_devices(self):
+        expected = {}
+        for kind in ("pipe", "device"):
+            for ending in (".lidarscene.json", *_suffixes.READERS):
+                expected[self.make(kind, kind + ending)] = NO_FILE
+            for ending in (".obj", ".obj.gz", ".vtp", ".vtk"):
+                self.make(kind, kind + ending)
+                expected[self.scene({"file": kind + ending})] = NO_FILE
+            for ending in (".geojson", ".shp", ".osm"):
+                self.make(kind, kind + ending)
+                expected[self.scene({"footprints": kind + ending, "height": 3})] = NO_FILE
+            # What a file names: materials, buffers, parts and neighbours.
+            for ending in (".mtl", ".buf", "2.prj"):
+                self.make(kind, kind + ending)
+            self.save(kind + "n.obj", f"mtllib {kind}.mtl\n" + TRIANGLE)
+            expected[self.scene({"file": kind + "n.obj"})] = True  # a mesh without its materials
+            self.save(kind + "n.gltf", gltf(uri=kind + ".buf"))
+            expected[self.scene({"file": kind + "n.gltf"})] = "could not open"
+            self.save(kind + "n.vtm", blocks(f'<DataSet index="0" file="{kind}.vtp"/>'))
+            expected[self.scene({"file": kind + "n.vtm"})] = NO_FILE
+            self.save(kind + "2.geojson", plan())
+            expected[self.scene({"footprints": kind + "2.geojson", "height": 3})] = NO_FILE
+        # Grids of a reference system.
+        os.mkfifo("grid")
+        for crs in (f"+proj=longlat +nadgrids={self.folder}/grid", f"+proj=longlat +nadgrids=@{self.folder}/grid +type=crs",
+                    f"+proj=longlat +geoidgrids={self.folder}/grid"):
+            for thing in ({"footprints": "plan.geojson", "height": 3}, {"file": "triangle.obj"}):
+                expected[self.scene({**thing, "crs": crs})] = "grid"
+        self.assert_errors(expected)
+
+    def test_a_folder_that_cannot_be_listed(self):
+        """Its files can be opened by name, so they are read; neighbours are still looked at."""
+        nobody = {"user": 65534, "group": 65534, "extra_groups": ()} if os.geteuid() == 0 else {}
+        if nobody and subprocess.run([sys.executable, "-c", "from avianlidar import vtkAvianLidar"], check=False,
+                                     capture_output=True, **nobody).returncode:
+            self.skipTest("another user cannot load the library")
+        file = self.scene({"footprints": "plan.geojson", "height": 3})
+        self.folder.chmod(0o711 if nobody else 0o311)
+        self.addCleanup(self.folder.chmod, 0o700)
+        self.assertEqual(self.read([file], **nobody)[file][0], [])
+        os.mkfifo("plan.prj")
+        self.assertIn("belongs together with plan.prj, and it is no regular file", self.read([file], **nobody)[file][0][0])
+
+    def test_regular_files_of_any_folder(self):
+        """Links to them, too."""
+        with tempfile.TemporaryDirectory() as elsewhere:
+            far = pathlib.Path(elsewhere, "far.obj")
+            far.write_text(TRIANGLE)
+            os.symlink(far, "link.obj")
+            os.symlink("plan.geojson", "link.geojson")
+            file = self.scene({"file": str(far)}, {"file": os.path.relpath(far)}, {"file": "link.obj"},
+                              {"footprints": "link.geojson", "height": 3}, {"file": "triangle.obj", "crs": "EPSG:3857"})
+            os.symlink(file, "link.lidarscene.json")
+            for name in (file, "link.lidarscene.json"):
+                read = st.Read(name)
+                self.assertEqual((read.errors, len(read.names)), ([], 5))
+        writer, reader = wrapped.vtkAvianLidarPCDWriter(), wrapped.vtkAvianLidarPointCloudReader()
+        writer.SetInputData(cloud([(1, 2, 3)]))
+        writer.SetFileName("a.pcd")
+        self.assertEqual(writer.Write(), 1)
+        os.symlink("a.pcd", "b.pcd")
+        reader.SetFileName("b.pcd")
+        reader.Update()
+        self.assertEqual(reader.GetOutput().GetNumberOfPoints(), 1)
+
+    def files_that_ask(self, url):
+        """Files by name, and the object of a scene that uses each."""
+        doctype = f'<!DOCTYPE x SYSTEM "{url}/x.dtd">'
+        vrt = "<OGRVRTDataSource><OGRVRTLayer name='plan'><SrcDataSource>{}</SrcDataSource>{}</OGRVRTLayer></OGRVRTDataSource>"
+
+        def gml(encoding, doctype, inside, name):
+            return (f'<?xml version="1.0" encoding="{encoding}"?>{doctype}<ogr:FeatureCollection xmlns:ogr="http://ogr.maptools.org/" '
+                    'xmlns:xsi="http://www.w3.org/2001/XMLSchema-instance" xmlns:xlink="http://www.w3.org/1999/xlink" '
+                    f'xsi:schemaLocation="http://ogr.maptools.org/ {url}/x.xsd" xmlns:gml="http://www.opengis.net/gml">'
+                    f'<gml:featureMember><ogr:x fid="1"><ogr:geometryProperty {inside}><gml:Polygon srsName="{name}"><gml:outerBoundaryIs>'
+                    '<gml:LinearRing><gml:coordinates>0,0 0.001,0 0.001,0.001 0,0</gml:coordinates></gml:LinearRing></gml:outerBoundaryIs>'
+                    '</gml:Polygon></ogr:geometryProperty></ogr:x></gml:featureMember></ogr:FeatureCollection>')
+
+        plans = {
+            "link.geojson": plan(crs={"type": "link", "properties": {"href": url + "/crs", "type": "proj4"}}),
+            "name.geojson": plan(crs={"type": "name", "properties": {"name": url + "/crs"}}),
+            "next.geojson": collection(links=[{"rel": "next", "href": url}]), "source.vrt": vrt.format(f"/vsicurl/{url}/x.geojson", ""),
+            "system.vrt": vrt.format("plan.geojson", f"<LayerSRS>{url}/crs</LayerSRS>"),
+            "wfs.xml": f"<OGRWFSDataSource><URL>{url}/wfs</URL></OGRWFSDataSource>",
+            "wms.xml": f"<GDAL_WMS><Service name='TMS'><ServerUrl>{url}</ServerUrl></Service></GDAL_WMS>",
+            "plain.gml": gml("utf-8", "", "", "EPSG:4326"), "system.gml": gml("utf-8", "", "", url + "/crs"),
+            "types.gml": gml("ISO-8859-15", doctype, f'xlink:href="{url}/x.xml#1"', "EPSG:4326"),
+            "cards.gml": gml("EBCDIC-CP-US", doctype, f'xlink:href="{url}/x.xml#1"', "EPSG:4326"),
+            "link.kml": f'<kml xmlns="http://www.opengis.net/kml/2.2"><Document><NetworkLink><Link><href>{url}/x.kml</href></Link></NetworkLink>'
+                        f"<Placemark><styleUrl>{url}/s.kml#s</styleUrl></Placemark></Document></kml>"}
+        meshes = {
+            "m1.obj": f"mtllib /vsicurl/{url}/x.mtl\nmtllib {url}/x.mtl\n" + TRIANGLE, "m2.gltf": gltf(uri=url + "/b.bin"),
+            "m3.gltf": gltf(uri=f"/vsicurl/{url}/b.bin"), "m4.vtm": blocks(f'<DataSet index="0" file="{url}/x.vtp"/>'),
+            "m5.dae": f'<?xml version="1.0"?>{doctype}<COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" '
+                      f'version="1.4.1"><scene><instance_visual_scene url="{url}/x"/></scene></COLLADA>',
+            "m6.x3d": f'<X3D><Scene><Inline url="{url}/x.x3d"/></Scene></X3D>'}
+        for name, text in {**plans, **meshes}.items():
+            self.save(name, text)
+        objects = [{"footprints": name, "height": 3} for name in plans] + [{"file": name} for name in meshes]
+        for place in (url + "/crs", "/vsicurl/" + url, "/vsicurl/" + url + "/crs.prj"):
+            objects += [{"file": place}, {"footprints": place, "height": 3}]
+        for crs in (url + "/crs", "/vsicurl/" + url, f"+proj=longlat +nadgrids={url}/g.tif", f"+proj=longlat +nadgrids=@{url}/g.tif",
+                    "+init=" + url, "urn:ogc:def:crs:" + url, "OGC:" + url):
+            objects += [{"footprints": "plan.geojson", "height": 3, "crs": crs}, {"file": "triangle.obj", "crs": crs}]
+        return objects
+
+    def test_nobody_is_asked_over_the_network(self):
+        """Even where users want PROJ to fetch its grids for other programs. What was not fetched is said."""
+        for name, value in (("PROJ_NETWORK", "ON"), ("GDAL_HTTP_TIMEOUT", "5"), ("GDAL_HTTP_MAX_RETRY", "0")):
+            os.environ[name] = value
+        requests = multiprocessing.Value("i", 0)
+        with socket.create_server(("127.0.0.1", 0)) as listener:
+            server = multiprocessing.Process(target=serve, args=(listener, requests), daemon=True)
+            server.start()
+            url = f"http://127.0.0.1:{listener.getsockname()[1]}"
+            said = {}
+            for asking in self.files_that_ask(url):
+                before = requests.value
+                said[json.dumps(asking)] = st.Read(self.scene(asking)).errors
+                self.assertEqual(requests.value - before, 0, asking)
+            with socket.create_connection(listener.getsockname()) as connection:  # the server hears whoever asks
+                connection.sendall(b"GET / HTTP/1.0\r\n\r\n")
+                self.assertIn(b"404", connection.recv(100))
+            self.assertEqual(requests.value, 1)
+            server.terminate()
+        for asking, words in (({"footprints": "link.geojson", "height": 3}, url + "/crs is not fetched"),
+                              ({"footprints": "system.vrt", "height": 3}, "GDAL cannot read it"),
+                              ({"file": "triangle.obj", "crs": url + "/crs"}, "unknown coordinate reference system")):
+            self.assertEqual(len(said[json.dumps(asking)]), 1)
+            self.assertIn(words, said[json.dumps(asking)][0])
+
+    def test_settings_of_gdal_are_as_before(self):
+        """PROJ's switch is of the whole process: off until the last of two readings at the same time has ended."""
+        file = self.scene({"file": "triangle.obj"}, {"file": "triangle.obj", "crs": "EPSG:3857"})
+        st.Read(file)
+        with open("/proc/self/maps", encoding="utf-8") as maps:
+            gdal = ctypes.CDLL(next(line.split()[-1] for line in maps if "libgdal" in line))
+        gdal.CPLGetThreadLocalConfigOption.restype = ctypes.c_char_p
+        options = {b"CPL_VSIL_CURL_ALLOWED_FILENAME": b"mine", b"CPL_VSIL_GZIP_SAVE_INFO": None, b"CPL_VSIL_GZIP_WRITE_PROPERTIES": b"YES"}
+        for name, value in options.items():
+            gdal.CPLSetThreadLocalConfigOption(name, value)
+            self.addCleanup(gdal.CPLSetThreadLocalConfigOption, name, None)
+        self.addCleanup(gdal.OSRSetPROJEnableNetwork, gdal.OSRGetPROJEnableNetwork())
+        gdal.OSRSetPROJEnableNetwork(1)
+        seen = []
+
+        def within(*_):
+            if not seen and gdal.CPLGetThreadLocalConfigOption(b"CPL_VSIL_CURL_ALLOWED_FILENAME", None) == b"none":
+                seen.append(gdal.OSRGetPROJEnableNetwork())
+                st.Read(file)  # another reading, which ends first
+                seen.append(gdal.OSRGetPROJEnableNetwork())
+
+        reader = wrapped.vtkAvianLidarSceneReader()
+        reader.SetFileName(file)
+        reader.AddObserver("ProgressEvent", within)
+        reader.Update()
+        self.assertEqual((seen, gdal.OSRGetPROJEnableNetwork()), ([0, 0], 1))
+        self.assertEqual({name: gdal.CPLGetThreadLocalConfigOption(name, None) for name in options}, options)
 
 
 def serve(listener, requests):
@@ -82,281 +695,8 @@ def serve(listener, requests):
         connection.close()
 
 
-class InputFiles(unittest.TestCase):
-    def setUp(self):
-        temporary = tempfile.TemporaryDirectory()
-        self.addCleanup(temporary.cleanup)
-        self.folder = pathlib.Path(temporary.name)
-        self.addCleanup(os.chdir, os.getcwd())
-        os.chdir(self.folder)
-        (self.folder / "plan.geojson").write_text(plan())
-        (self.folder / "m.obj").write_text(TRIANGLE)
-
-    def write(self, name, text):
-        (self.folder / name).write_text(text)
-        return str(self.folder / name)
-
-    def child(self, file, **options):
-        path = os.pathsep.join([os.path.dirname(os.path.abspath(__file__)), os.environ.get("PYTHONPATH", "")])
-        ended = subprocess.run([sys.executable, "-c", CHILD, file], env={**os.environ, "PYTHONPATH": path}, timeout=20,
-                               capture_output=True, text=True, check=False, **options)
-        self.assertEqual(ended.returncode, 0, ended.stderr)
-        return ended.stdout
-
-    def assert_refused(self, file, words="no regular file"):
-        with self.subTest(file=file):
-            try:
-                said = self.child(file)
-            except subprocess.TimeoutExpired:
-                self.fail("it waits for ever")
-            self.assertEqual(said.split()[0], "1", said)
-            self.assertIn(words, said)
-
-    def make(self, kind, name):
-        """A pipe, a device without an end, or a folder of that name."""
-        if kind == "pipe":
-            os.mkfifo(name)
-        elif kind == "device":
-            os.symlink("/dev/zero", name)
-        else:
-            os.mkdir(name)
-
-    def test_neither_pipes_nor_devices(self):
-        for kind in ("pipe", "device"):
-            self.make(kind, kind + ".lidarscene.json")
-            self.assert_refused(str(self.folder / (kind + ".lidarscene.json")))
-            for ending in _suffixes.READERS:
-                self.make(kind, kind + ending)
-                self.assert_refused(str(self.folder / (kind + ending)))
-                self.assertEqual(wrapped.vtkAvianLidarPointCloudReader().CanReadFile(kind + ending), 0)
-            for ending in (".obj", ".obj.gz", ".vtp", ".vtk"):
-                self.make(kind, kind + ending)
-                self.assert_refused(self.write("s.lidarscene.json", scene({"file": kind + ending})))
-            for ending in (".geojson", ".shp", ".osm"):
-                self.make(kind, kind + ending)
-                self.assert_refused(self.write("s.lidarscene.json", scene({"footprints": kind + ending, "height": 3})))
-
-    def test_what_a_file_names(self):
-        """Materials, buffers, parts and neighbours."""
-        for kind in ("pipe", "device"):
-            for ending in (".mtl", ".bin", ".vtp"):
-                self.make(kind, kind + ending)
-            self.write("n.obj", f"mtllib {kind}.mtl\n" + TRIANGLE)
-            said = self.child(self.write("s.lidarscene.json", scene({"file": "n.obj"})))
-            self.assertEqual(said.split()[0], "0", said)  # a mesh without its materials
-            self.write("n.gltf", gltf(kind + ".bin"))
-            self.assert_refused(self.write("s.lidarscene.json", scene({"file": "n.gltf"})), "could not open")
-            self.write("n.vtm", multiblock(kind + ".vtp"))
-            self.assert_refused(self.write("s.lidarscene.json", scene({"file": "n.vtm"})))
-            self.write("n.vtm", multiblock("n.vtm"))
-            self.assert_refused(self.write("s.lidarscene.json", scene({"file": "n.vtm"})), "expected .vtp")
-            self.write(kind + "2.geojson", plan())
-            self.make(kind, kind + "2.prj")
-            self.assert_refused(self.write("s.lidarscene.json", scene({"footprints": kind + "2.geojson", "height": 3})))
-
-    def test_a_folder_that_cannot_be_listed(self):
-        """Its files can be opened by name, so they are read; neighbours are still looked at."""
-        nobody = {"user": 65534, "group": 65534, "extra_groups": ()} if os.geteuid() == 0 else {}
-        if nobody and subprocess.run([sys.executable, "-c", "from avianlidar import vtkAvianLidar"], check=False,
-                                     capture_output=True, **nobody).returncode:
-            self.skipTest("another user cannot load the library")
-        file = self.write("s.lidarscene.json", scene({"footprints": "plan.geojson", "height": 3}))
-        self.folder.chmod(0o711 if nobody else 0o311)
-        self.addCleanup(self.folder.chmod, 0o700)
-        said = self.child(file, **nobody)
-        self.assertEqual(said.split()[0], "0", said)
-        os.mkfifo("plan.prj")
-        said = self.child(file, **nobody)
-        self.assertIn("belongs together with plan.prj, and it is no regular file", said)
-
-    def test_grids_of_a_reference_system(self):
-        os.mkfifo("grid")
-        for crs in (f"+proj=longlat +nadgrids={self.folder}/grid", f"+proj=longlat +nadgrids=@{self.folder}/grid +type=crs",
-                    f"+proj=longlat +geoidgrids={self.folder}/grid"):
-            for thing in ({"footprints": "plan.geojson", "height": 3}, {"file": "m.obj"}):
-                self.assert_refused(self.write("s.lidarscene.json", scene({**thing, "crs": crs})), "grid")
-
-    def test_regular_files_of_any_folder(self):
-        """Links to them, too."""
-        with tempfile.TemporaryDirectory() as elsewhere:
-            pathlib.Path(elsewhere, "far.obj").write_text(TRIANGLE)
-            os.symlink(os.path.join(elsewhere, "far.obj"), "link.obj")
-            os.symlink("plan.geojson", "link.geojson")
-            file = self.write("s.lidarscene.json", scene(
-                {"file": os.path.join(elsewhere, "far.obj")}, {"file": os.path.relpath(os.path.join(elsewhere, "far.obj"))},
-                {"file": "link.obj"}, {"footprints": "link.geojson", "height": 3}, {"file": "m.obj", "crs": "EPSG:3857"}))
-            os.symlink(file, "link.lidarscene.json")
-            for name in (file, "link.lidarscene.json"):
-                read = st.Read(name)
-                self.assertEqual(read.errors, [])
-                self.assertEqual(len(read.names), 5)
-        writer = wrapped.vtkAvianLidarPCDWriter()
-        writer.SetInputData(cloud([(1, 2, 3)]))
-        writer.SetFileName("a.pcd")
-        self.assertEqual(writer.Write(), 1)
-        os.symlink("a.pcd", "b.pcd")
-        reader = wrapped.vtkAvianLidarPointCloudReader()
-        reader.SetFileName("b.pcd")
-        reader.Update()
-        self.assertEqual(reader.GetOutput().GetNumberOfPoints(), 1)
-
-    def test_compressed_files_as_they_are_now(self):
-        """Damaged, mended, and edited, all under one name; nothing is written beside them."""
-        far_plan = plan().replace("0.001", "0.002")
-        # More than one block of GDAL's, and a format whose reader looks for the end of the file.
-        comments = "# nothing\n" * 30000
-        cases = (("m.obj.gz", "file", comments + TRIANGLE, comments + TRIANGLE.replace("1", "2", 1)),
-                 ("plan.geojson.gz", "footprints", plan(), far_plan),
-                 ("plan.csv.gz", "footprints", 'WKT,a\n"POLYGON((0 0,0 1,1 1,0 0))",1\n',
-                  'WKT,a\n"POLYGON((0 0,0 2,2 2,0 0))",1\n'))
-        for name, key, text, edited in cases:
-            self.assertEqual(len(text), len(edited))
-            more = {"height": 3, "crs": "EPSG:4326"} if key == "footprints" else {}
-            file = self.write("s.lidarscene.json", scene({key: name, **more}))
-            good = gzip.compress(text.encode(), 0)  # stored, so that the damage is where it is wanted
-
-            def read(content):
-                (self.folder / name).write_bytes(content)
-                return st.Read(file)
-
-            with self.subTest(name):
-                want = read(good)
-                self.assertEqual(want.errors, [])
-                broken_block, broken_sum = bytearray(good), bytearray(good)
-                broken_block[11] ^= 0xFF  # its length
-                broken_sum[-6] ^= 0xFF
-                for damaged in (broken_block, broken_sum, good[:-20], good[:30]):
-                    self.assertIn(name, read(damaged).errors[0])
-                    again = read(good)
-                    self.assertEqual(again.errors, [])
-                    self.assertEqual(again.blocks[0].GetBounds(), want.blocks[0].GetBounds())
-                for level in (0, 9):  # the same size, another
-                    other = read(gzip.compress(edited.encode(), level))
-                    self.assertEqual(other.errors, [])
-                    ends, ends_before = other.blocks[0].GetBounds()[1], want.blocks[0].GetBounds()[1]
-                    self.assertAlmostEqual(ends, 2 * ends_before, delta=1e-3 * ends)
-                    self.assertEqual(read(good).errors, [])
-        self.assertEqual([one for one in os.listdir() if one.endswith(".properties")], [])
-
-    def files_that_ask(self, url):
-        """Files by name, and the object of a scene that uses each."""
-        link = {"type": "link", "properties": {"href": url + "/crs", "type": "proj4"}}
-        doctype = f'<!DOCTYPE x SYSTEM "{url}/x.dtd">'
-        inside = f'xlink:href="{url}/x.xml#1"'
-        vrt = "<OGRVRTDataSource><OGRVRTLayer name='plan'><SrcDataSource>{}</SrcDataSource>{}</OGRVRTLayer></OGRVRTDataSource>"
-        plans = {
-            "link.geojson": plan(link),
-            "name.geojson": plan({"type": "name", "properties": {"name": url + "/crs"}}),
-            "next.geojson": json.dumps({"type": "FeatureCollection", "features": [], "links": [{"rel": "next", "href": url}]}),
-            "source.vrt": vrt.format(f"/vsicurl/{url}/x.geojson", ""),
-            "system.vrt": vrt.format("plan.geojson", f"<LayerSRS>{url}/crs</LayerSRS>"),
-            "wfs.xml": f"<OGRWFSDataSource><URL>{url}/wfs</URL></OGRWFSDataSource>",
-            "wms.xml": f"<GDAL_WMS><Service name='TMS'><ServerUrl>{url}</ServerUrl></Service></GDAL_WMS>",
-            "plain.gml": gml("utf-8", "", url, "", "EPSG:4326"),
-            "system.gml": gml("utf-8", "", url, "", url + "/crs"),
-            "types.gml": gml("ISO-8859-15", doctype, url, inside, "EPSG:4326"),
-            "cards.gml": gml("EBCDIC-CP-US", doctype, url, inside, "EPSG:4326"),
-            "link.kml": f'<kml xmlns="http://www.opengis.net/kml/2.2"><Document><NetworkLink><Link><href>{url}/x.kml</href>'
-                        f"</Link></NetworkLink><Placemark><styleUrl>{url}/s.kml#s</styleUrl><Polygon><outerBoundaryIs>"
-                        "<LinearRing><coordinates>0,0 0.001,0 0.001,0.001 0,0</coordinates></LinearRing></outerBoundaryIs>"
-                        "</Polygon></Placemark></Document></kml>"}
-        meshes = {
-            "m1.obj": f"mtllib /vsicurl/{url}/x.mtl\nmtllib {url}/x.mtl\n" + TRIANGLE,
-            "m2.gltf": gltf(url + "/b.bin"), "m3.gltf": gltf(f"/vsicurl/{url}/b.bin"),
-            "m4.vtm": multiblock(url + "/x.vtp"),
-            "m5.dae": f'<?xml version="1.0"?>{doctype}<COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" '
-                      f'version="1.4.1"><scene><instance_visual_scene url="{url}/x"/></scene></COLLADA>',
-            "m6.x3d": f'<X3D><Scene><Inline url="{url}/x.x3d"/></Scene></X3D>'}
-        for name, text in {**plans, **meshes}.items():
-            self.write(name, text)
-        objects = [{"footprints": name, "height": 3} for name in plans] + [{"file": name} for name in meshes]
-        for place in (url + "/crs", "/vsicurl/" + url, "/vsicurl/" + url + "/crs.prj"):
-            objects += [{"file": place}, {"footprints": place, "height": 3}]
-        for crs in (url + "/crs", "/vsicurl/" + url, f"+proj=longlat +nadgrids={url}/g.tif",
-                    f"+proj=longlat +nadgrids=@{url}/g.tif", "+init=" + url, "urn:ogc:def:crs:" + url, "OGC:" + url):
-            objects += [{"footprints": "plan.geojson", "height": 3, "crs": crs}, {"file": "m.obj", "crs": crs}]
-        return objects
-
-    def test_nobody_is_asked_over_the_network(self):
-        # Even where users want PROJ to fetch its grids for other programs.
-        for name, value in (("PROJ_NETWORK", "ON"), ("GDAL_HTTP_TIMEOUT", "5"), ("GDAL_HTTP_MAX_RETRY", "0")):
-            os.environ[name] = value
-        requests = multiprocessing.Value("i", 0)
-        with socket.create_server(("127.0.0.1", 0)) as listener:
-            server = multiprocessing.Process(target=serve, args=(listener, requests), daemon=True)
-            server.start()
-            url = f"http://127.0.0.1:{listener.getsockname()[1]}"
-            for asking in self.files_that_ask(url):
-                with self.subTest(asking):
-                    before = requests.value
-                    st.Read(self.write("s.lidarscene.json", scene(asking)))
-                    self.assertEqual(requests.value - before, 0)
-            # The server hears whoever asks.
-            before = requests.value
-            with socket.create_connection(listener.getsockname()) as connection:
-                connection.sendall(b"GET / HTTP/1.0\r\n\r\n")
-                self.assertIn(b"404", connection.recv(100))
-            self.assertEqual(requests.value - before, 1)
-            server.terminate()
-
-    def test_settings_of_gdal_are_as_before(self):
-        """PROJ's switch is of the whole process: off until the last of two readings at the same time has ended."""
-        file = self.write("s.lidarscene.json", scene({"file": "m.obj"}, {"file": "m.obj", "crs": "EPSG:3857"}))
-        st.Read(file)
-        with open("/proc/self/maps", encoding="utf-8") as maps:
-            gdal = ctypes.CDLL(next(line.split()[-1] for line in maps if "libgdal" in line))
-        option = gdal.CPLGetThreadLocalConfigOption
-        option.restype = ctypes.c_char_p
-        options = {b"CPL_VSIL_CURL_ALLOWED_FILENAME": b"mine", b"CPL_VSIL_GZIP_SAVE_INFO": None,
-                   b"CPL_VSIL_GZIP_WRITE_PROPERTIES": b"YES"}
-        for name, value in options.items():
-            gdal.CPLSetThreadLocalConfigOption(name, value)
-            self.addCleanup(gdal.CPLSetThreadLocalConfigOption, name, None)
-        self.addCleanup(gdal.OSRSetPROJEnableNetwork, gdal.OSRGetPROJEnableNetwork())
-        gdal.OSRSetPROJEnableNetwork(1)
-        second_reads, first_ended, seen = threading.Event(), threading.Event(), []
-
-        def read(within):
-            reader = wrapped.vtkAvianLidarSceneReader()
-            reader.SetFileName(file)
-            waits = []
-
-            def progress(*_):
-                if not waits and option(b"CPL_VSIL_CURL_ALLOWED_FILENAME", None) == b"none":  # within the reading
-                    waits.append(True)
-                    within()
-
-            reader.AddObserver("ProgressEvent", progress)
-            reader.Update()
-            self.assertEqual(waits, [True])
-
-        def second():
-            second_reads.set()
-            first_ended.wait(20)
-            seen.append(gdal.OSRGetPROJEnableNetwork())
-
-        other = threading.Thread(target=read, args=(second,))
-        read(lambda: (other.start(), second_reads.wait(20)))
-        seen.append(gdal.OSRGetPROJEnableNetwork())
-        first_ended.set()
-        other.join()
-        self.assertEqual(seen, [0, 0])
-        self.assertEqual(gdal.OSRGetPROJEnableNetwork(), 1)
-        self.assertEqual({name: option(name, None) for name in options}, options)
-
-    def test_reasons(self):
-        """What was not fetched, and which formats are not read, is said."""
-        url = "http://127.0.0.1:9/crs"
-        self.write("link.geojson", plan({"type": "link", "properties": {"href": url, "type": "proj4"}}))
-        self.write("plan.vrt", "<OGRVRTDataSource><OGRVRTLayer name='plan'><SrcDataSource>plan.geojson</SrcDataSource>"
-                               "</OGRVRTLayer></OGRVRTDataSource>")
-        for asking, words in (({"footprints": "link.geojson", "height": 3}, url + " is not fetched"),
-                              ({"footprints": "plan.vrt", "height": 3}, "GDAL cannot read it"),
-                              ({"file": "m.obj", "crs": url}, "unknown coordinate reference system")):
-            read = st.Read(self.write("s.lidarscene.json", scene(asking)))
-            self.assertEqual(len(read.errors), 1)
-            self.assertIn(words, read.errors[0])
-
-
 if __name__ == "__main__":
-    unittest.main()
+    if sys.argv[1:2] == ["--read"]:
+        read_all(sys.argv[2:])
+    else:
+        unittest.main()

@@ -1,9 +1,12 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Files that are written: whole or not at all, in pairs too; permissions stay; what a killed process leaves goes with the
-next writing."""
+"""Files that are written: whole or not at all, in pairs too, with an error that names the file; permissions, links and what is no
+file stay; what a killed process leaves goes with the next writing."""
+import contextlib
 import fcntl
 import os
 import pathlib
+import resource
+import shutil
 import signal
 import socket
 import stat
@@ -19,7 +22,8 @@ from avianlidar import _suffixes, vtkAvianLidar as wrapped
 from cloudtools import echoes
 from echotools import Messages
 
-NAMES = ["echoes" + suffix for suffix in (*_suffixes.WRITERS, *_suffixes.OWN) if suffix != ".laz"]
+NAMES = ["echoes" + suffix for suffix in (*_suffixes.WRITERS, *_suffixes.OWN)
+         if suffix != ".laz" or os.environ["AVIANLIDAR_LASZIP"] == "1"]
 
 # Writes a file and is killed while it does.
 KILLED = """
@@ -36,39 +40,6 @@ write = _writers.OWN[".csv"]
 _writers.OWN[".csv"] = lambda cloud, name: (write(cloud, name), die())
 al.save(echoes(), sys.argv[1])
 """
-
-# Writes a file for which the disk is too small.
-TOO_SMALL = """
-import resource, signal, sys
-import avianlidar as al
-from cloudtools import echoes
-data = echoes()
-signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
-for size in map(int, sys.argv[2:]):
-    resource.setrlimit(resource.RLIMIT_FSIZE, (size, resource.RLIM_INFINITY))
-    try:
-        al.save(data, sys.argv[1])
-    except (OSError, al.Error) as error:
-        print(type(error).__name__, error)
-"""
-
-# Writes labels that fit and points that do not.
-FULL = """
-import resource, signal
-from avianlidar import vtkAvianLidar as wrapped
-from cloudtools import echoes
-data = echoes()
-signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
-size = 4 * data.GetNumberOfPoints() + 8
-assert 16 * data.GetNumberOfPoints() < 4096, "all is buffered to the end"
-resource.setrlimit(resource.RLIMIT_FSIZE, (size, size))
-writer = wrapped.vtkAvianLidarKITTIWriter()
-writer.SetInputData(data)
-writer.SetFileName("echoes.bin")
-assert writer.Write() == 0
-"""
-
-
 # Writes a pair, and says whether that went well.
 PAIR = """
 from avianlidar import vtkAvianLidar as wrapped
@@ -78,25 +49,49 @@ writer.SetInputData(echoes())
 writer.SetFileName("echoes.bin")
 raise SystemExit(0 if writer.Write() else 3)
 """
+# Writes a file that needs a reference system.
+LAS = """
+import avianlidar as al
+from cloudtools import echoes
+al.save(echoes(), "cloud.las")
+"""
 
 
-class OutputFiles(unittest.TestCase):
+@contextlib.contextmanager
+def disk(size):
+    """Files may not grow beyond this: as if the disk were full then."""
+    limits = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (size, limits[1]))
+    try:
+        yield
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, limits)
+
+
+def parts():
+    return [name for name in os.listdir() if "part" in name]
+
+
+class Written(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         cls.data = echoes()
 
     def setUp(self):
-        temporary = tempfile.TemporaryDirectory()
-        self.addCleanup(temporary.cleanup)
-        self.folder = pathlib.Path(temporary.name)
+        self.folder = pathlib.Path(tempfile.mkdtemp())
+        self.addCleanup(shutil.rmtree, self.folder)
         self.addCleanup(os.chdir, os.getcwd())
         os.chdir(self.folder)
 
     def run_child(self, program, *arguments, **environment):
         path = os.pathsep.join([os.path.dirname(os.path.abspath(__file__)), os.environ.get("PYTHONPATH", "")])
-        return subprocess.run([sys.executable, "-c", program, *arguments],
-                              env={**os.environ, "PYTHONPATH": path, **environment}, stdout=subprocess.PIPE,
-                              stderr=subprocess.PIPE, text=True, timeout=120, check=False)
+        return subprocess.run([sys.executable, "-c", program, *arguments], env={**os.environ, "PYTHONPATH": path, **environment},
+                              capture_output=True, text=True, timeout=120, check=False)
+
+    def refused(self, name, words, kinds=(OSError, al.Error)):
+        with self.assertRaisesRegex(kinds, words) as caught:
+            al.save(self.data, name)
+        self.assertIn(os.path.basename(name), str(caught.exception))
 
     def kitti(self, name="echoes.bin"):
         writer = wrapped.vtkAvianLidarKITTIWriter()
@@ -104,74 +99,98 @@ class OutputFiles(unittest.TestCase):
         writer.SetFileName(name)
         return writer, Messages(writer)
 
-    def test_permissions_stay(self):
-        for name in NAMES:
-            for mode in (0o600, 0o640, 0o755, 0o2750):
-                file = self.folder / name
-                file.write_text("old")
-                file.chmod(mode)
-                al.save(self.data, file)
-                self.assertEqual(oct(stat.S_IMODE(file.stat().st_mode)), oct(mode), name)
-                self.assertNotEqual(file.read_bytes(), b"old")
 
-    def test_a_link_stays_a_link(self):
+class Single(Written):
+    def test_what_was_there_is_replaced(self):
+        """With its permissions; through a link; nothing else is touched."""
         for name in NAMES:
-            os.symlink(name + "-real", name)
-            al.save(self.data, self.folder / name)
-            self.assertTrue(os.path.islink(name), name)
-            self.assertGreater(os.path.getsize(name + "-real"), 100)
+            for mode in (0o600, 0o2750):
+                with self.subTest(name, mode=oct(mode)):
+                    file, other = self.folder / name, self.folder / (name + ".part0")
+                    file.write_text("x" * 2_000_000)
+                    other.write_text("not yours")
+                    file.chmod(mode)
+                    os.symlink(name, "link-" + name)
+                    al.save(self.data, "link-" + name)
+                    self.assertTrue(os.path.islink("link-" + name))
+                    self.assertEqual(stat.S_IMODE(file.stat().st_mode), mode)
+                    self.assertTrue(100 < file.stat().st_size < 1_000_000)
+                    self.assertEqual(other.read_text(), "not yours")
+                    for one in os.listdir():
+                        os.remove(one)
 
-    def things_that_are_no_files(self):
-        """{name: what tells one from another of its kind}; scratch nodes, never those of the system."""
+    def test_what_is_no_ordinary_file_stays(self):
+        """A file moved onto it would take its place: refused, whether it is named or a link leads to it."""
         os.mkfifo("pipe")
         os.mkdir("folder")
         server = socket.socket(socket.AF_UNIX)
         self.addCleanup(server.close)
         server.bind("socket")
-        try:
+        with contextlib.suppress(PermissionError):  # only root may
             os.mknod("device", 0o600 | stat.S_IFCHR, os.makedev(1, 3))
-        except PermissionError:
-            pass  # only root may
-        return {name: os.lstat(name) for name in os.listdir()}
-
-    def test_what_is_no_ordinary_file_stays(self):
-        """A file moved onto it would take its place: refused, whether it is named or a link leads to it."""
-        things = self.things_that_are_no_files()
+        things = {name: os.lstat(name) for name in os.listdir()}
         for name in NAMES:
             for thing, before in things.items():
                 with self.subTest(f"{name}: {thing}"):
                     os.rename(thing, name)
                     os.symlink(name, "link" + name)
                     for one in (name, "link" + name):
-                        with self.assertRaisesRegex((OSError, al.Error), "it is there and no ordinary file"):
-                            al.save(self.data, one)
+                        self.refused(one, "it is there and no ordinary file")
                     self.assertTrue(os.path.samestat(os.lstat(name), before))
                     os.remove("link" + name)
                     os.rename(name, thing)
                     self.assertEqual(set(os.listdir()), set(things))
 
-    def test_links_to_open_pipes(self):
-        """Such as /dev/stdout is: the name that it leads to is none of a file system."""
+    def test_links_that_lead_to_no_file(self):
+        """To an open pipe, such as /dev/stdout is: a name of no file system. To themselves."""
         ends = os.pipe()
         for end in ends:
             self.addCleanup(os.close, end)
         for name in ("echoes.vtp", "echoes.csv"):
             os.symlink(f"/proc/self/fd/{ends[1]}", name)
-            with self.assertRaisesRegex(OSError, "it is there and no ordinary file"):
-                al.save(self.data, name)
+            self.refused(name, "it is there and no ordinary file", OSError)
             self.assertTrue(os.path.islink(name))
-
-    def test_links_that_lead_to_themselves(self):
-        for name in ("echoes.vtp", "echoes.csv"):
+            os.remove(name)
             os.symlink(name, "other" + name)
             os.symlink("other" + name, name)
-            with self.assertRaisesRegex(OSError, name):
-                al.save(self.data, name)
+            self.refused(name, name, OSError)
             self.assertEqual((os.readlink(name), os.readlink("other" + name)), ("other" + name, name))
         self.assertEqual(len(os.listdir()), 4)
 
-    def test_what_a_killed_process_leaves(self):
+    def test_names_that_are_none(self):
         for name in NAMES:
+            self.refused(os.path.join("none", name), "No such file or directory")
+        for make in {_suffixes.WRITERS[os.path.splitext(name)[1]] for name in NAMES if name.endswith(tuple(_suffixes.WRITERS))}:
+            for name in (None, ""):
+                writer = getattr(wrapped, make)()
+                heard = Messages(writer)
+                writer.SetInputData(self.data)
+                writer.SetFileName(name)
+                self.assertEqual((writer.Write(), len(heard.errors)), (0, 1))
+                self.assertIn("FileName is not set", heard.errors[0])
+        os.symlink("b.label", "b.bin")
+        for name in ("x.label", str(self.folder / "x.label"), "./x.label", "b.bin"):  # points that are their own labels
+            writer, heard = self.kitti(name)
+            self.assertEqual((writer.Write(), len(heard.errors)), (0, 1), name)
+            self.assertIn(".label", heard.errors[0])
+        self.assertEqual(os.listdir(), ["b.bin"])
+
+    def test_a_disk_that_is_too_small(self):
+        """For the first byte, for some of them, for the last one: an error, the old file and nothing else."""
+        for name in NAMES:
+            al.save(self.data, name)
+            whole = os.path.getsize(name)
+            for size in (0, 1000, whole // 2, whole - 1):
+                with self.subTest(name, size=size):
+                    pathlib.Path(name).write_text("old")
+                    before = set(os.listdir())
+                    with disk(size):
+                        self.refused(name, "File too large|too large|cannot be written to its end")
+                    self.assertEqual(pathlib.Path(name).read_text(), "old")
+                    self.assertEqual(set(os.listdir()), before)
+
+    def test_what_a_killed_process_leaves(self):
+        for name in ("echoes.las", "echoes.bin", "echoes.vtp", "echoes.csv"):
             with self.subTest(name):
                 (self.folder / name).write_text("old")
                 ended = self.run_child(KILLED, name)
@@ -183,134 +202,6 @@ class OutputFiles(unittest.TestCase):
                 self.assertEqual(set(os.listdir()), left)
                 for one in left:
                     os.remove(one)
-
-    def test_parts_of_those_who_still_write_stay(self):
-        """Two write one file: each its own, the last to end counts."""
-        first, _ = self.kitti()
-        inner = []
-
-        def meanwhile(*_):
-            if not inner:
-                inner.append(0)
-                second, heard = self.kitti()
-                inner[0] = second.Write()
-                self.assertEqual(heard.errors, [])
-
-        first.AddObserver("ProgressEvent", lambda caller, _: meanwhile() if any("part" in n for n in os.listdir()) else None)
-        self.assertEqual(first.Write(), 1)
-        self.assertEqual(inner, [1])
-        self.assertEqual(sorted(os.listdir()), ["echoes.bin", "echoes.label"])
-
-    def assert_pair_is_old(self, labels):
-        if labels is None:
-            self.assertFalse(os.path.exists("echoes.label"))
-        else:
-            self.assertEqual((self.folder / "echoes.label").read_bytes(), labels)
-        self.assertEqual([name for name in os.listdir() if "part" in name], [])
-
-    def test_a_pair_of_which_the_points_fail(self):
-        """At the last moment: something else took their name."""
-        for labels in (b"old", None):
-            if labels:
-                (self.folder / "echoes.label").write_bytes(labels)
-            writer, heard = self.kitti()
-            writer.AddObserver(
-                "ProgressEvent", lambda *_: os.mkdir("echoes.bin") if any("part" in n for n in os.listdir()) and
-                not os.path.exists("echoes.bin") else None)
-            self.assertEqual(writer.Write(), 0)
-            self.assertEqual(len(heard.errors), 1)
-            self.assertIn("cannot be given its name", heard.errors[0])
-            self.assert_pair_is_old(labels)
-            os.rmdir("echoes.bin")
-            if labels:
-                os.remove("echoes.label")
-
-    def write_pair_after(self, action):
-        """Over a pair; the action is called once parts are there."""
-        (self.folder / "echoes.label").write_bytes(b"old")
-        (self.folder / "echoes.bin").write_bytes(b"older")
-        writer, heard = self.kitti()
-        writer.AddObserver("ProgressEvent", lambda *_: action() if any("part" in name for name in os.listdir()) else None)
-        return writer.Write(), heard.errors
-
-    def test_what_others_keep_is_not_in_the_way(self):
-        """The old labels of another writer, which holds them, and of one that was killed."""
-        kept = self.folder / "echoes.label.avianpart0-old"
-        self.assertEqual(self.write_pair_after(lambda: kept.write_bytes(b"others'")), (1, []))
-        self.assertEqual(kept.read_bytes(), b"others'")
-        with open(kept, "rb") as held:
-            fcntl.flock(held, fcntl.LOCK_SH)
-            self.assertEqual(self.kitti()[0].Write(), 1)
-            self.assertEqual(kept.read_bytes(), b"others'")
-        for mode in (0o644, 0o444):
-            kept.write_bytes(b"others'")
-            kept.chmod(mode)
-            self.assertEqual(self.kitti()[0].Write(), 1)
-            self.assertEqual(sorted(os.listdir()), ["echoes.bin", "echoes.label"])
-
-    def test_old_labels_without_links(self):
-        """A copy is kept where there are no hard links. Another writer leaves it alone; half of it does not stay."""
-        preloaded = {"LD_PRELOAD": os.environ["AVIANLIDAR_FAILING_FILES"]}
-
-        def write_pair(**environment):
-            (self.folder / "echoes.label").write_bytes(b"old")
-            (self.folder / "echoes.bin").write_bytes(b"older")
-            return self.run_child(PAIR, **preloaded, **environment)
-
-        (self.folder / "pair.py").write_text(PAIR)
-        second = f"ls > names1; {sys.executable} pair.py && ls > names2"
-        cases = ({}, 0, ""), ({"FAILING_COPY": "1"}, 3, "cannot be kept while it is replaced: No space left"), (
-            {"RENAMED_TO": "echoes.bin", "BEFORE_RENAME": second}, 0, ""), (
-            {"RENAMED_TO": "echoes.bin", "BEFORE_RENAME": "false"}, 3, "cannot be given its name")
-        for environment, code, words in cases:
-            with self.subTest(environment):
-                ended = write_pair(**environment)
-                self.assertEqual(ended.returncode, code, ended.stderr)
-                self.assertIn(words, ended.stderr)
-                self.assertNotIn("filesystem error", ended.stderr)
-                self.assertEqual([name for name in os.listdir() if "part" in name], [])
-                self.assertEqual((self.folder / "echoes.label").read_bytes() == b"old", code != 0)
-                self.assertEqual((self.folder / "echoes.bin").read_bytes() == b"older", code != 0)
-        for names in ("names1", "names2"):
-            self.assertIn("echoes.label.avianpart0-old", (self.folder / names).read_text().split())
-
-    def test_old_labels_that_cannot_be_kept(self):
-        """Folders have all their names: an error, and both files as they were."""
-        folders = [f"echoes.label.avianpart{i}-old" for i in range(16)]
-        result, errors = self.write_pair_after(lambda: [os.makedirs(name + "/full", exist_ok=True) for name in folders])
-        self.assertEqual(result, 0)
-        self.assertEqual(len(errors), 1)
-        self.assertIn("echoes.label cannot be kept while it is replaced: File exists", errors[0])
-        self.assertNotIn("filesystem error", errors[0])
-        self.assertEqual((self.folder / "echoes.label").read_bytes(), b"old")
-        self.assertEqual((self.folder / "echoes.bin").read_bytes(), b"older")
-        self.assertEqual(set(os.listdir()), {"echoes.bin", "echoes.label", *folders})
-
-    def test_a_pair_for_which_the_disk_is_too_small(self):
-        (self.folder / "echoes.label").write_bytes(b"old")
-        (self.folder / "echoes.bin").write_bytes(b"older")
-        ended = self.run_child(FULL)
-        self.assertEqual(ended.returncode, 0, ended.stderr)
-        self.assertIn("cannot be written to its end", ended.stderr)
-        self.assert_pair_is_old(b"old")
-        self.assertEqual((self.folder / "echoes.bin").read_bytes(), b"older")
-
-    def test_a_disk_that_is_too_small(self):
-        """For the first byte, for some of them, for the last one: an exception, the old file and nothing else."""
-        for name in NAMES[-2:]:
-            with self.subTest(name):
-                al.save(self.data, name)
-                whole = os.path.getsize(name)
-                (self.folder / name).write_text("old")
-                ended = self.run_child(TOO_SMALL, name, "0", "1000", "9000", str(whole - 1))
-                self.assertEqual(ended.returncode, 0, ended.stderr)
-                self.assertEqual(ended.stderr, "")
-                self.assertEqual(len(ended.stdout.splitlines()), 4, ended.stdout)
-                for line in ended.stdout.splitlines():
-                    self.assertIn("OSError", line)
-                self.assertEqual((self.folder / name).read_text(), "old")
-                self.assertEqual(os.listdir(), [name])
-                os.remove(name)
 
     def test_the_bytes_of_the_vtp_writer(self):
         """Of any text in the data, too."""
@@ -328,20 +219,92 @@ class OutputFiles(unittest.TestCase):
             self.assertEqual((self.folder / "echoes.vtp").read_bytes(), (self.folder / "plain.vtp").read_bytes())
             self.data.GetFieldData().RemoveArray(name)
 
-    def test_points_that_are_their_own_labels(self):
-        os.symlink("b.label", "b.bin")
-        for name in ("x.label", str(self.folder / "x.label"), "./x.label", "b.bin"):
-            writer, heard = self.kitti(name)
-            self.assertEqual(writer.Write(), 0, name)
-            self.assertEqual(len(heard.errors), 1)
-            self.assertIn(".label", heard.errors[0])
-            self.assertEqual(os.listdir(), ["b.bin"])
+    def test_without_the_database_of_proj(self):
+        ended = self.run_child(LAS, PROJ_DATA=os.devnull, PROJ_LIB=os.devnull)
+        self.assertRegex(ended.stderr, r"GDAL does not know EPSG:\d+ \(is PROJ's database proj.db installed\?\)")
 
-    def test_no_name(self):
-        for name in (None, ""):
-            writer, heard = self.kitti(name)
-            self.assertEqual(writer.Write(), 0)
-            self.assertIn("FileName is not set", heard.errors[0])
+
+class Pairs(Written):
+    """Points and labels of KITTI: both are new, or both as they were."""
+
+    def write_after(self, action, labels=b"old", points=b"older"):
+        """Over a pair; the action is called once parts are there."""
+        for name, content in (("echoes.label", labels), ("echoes.bin", points)):
+            if content:
+                (self.folder / name).write_bytes(content)
+        writer, heard = self.kitti()
+        done = []
+        writer.AddObserver("ProgressEvent", lambda *_: done.append(action()) if parts() and not done else None)
+        return writer.Write(), heard.errors
+
+    def assert_old(self, labels=b"old", points=b"older"):
+        for name, content in (("echoes.label", labels), ("echoes.bin", points)):
+            self.assertEqual((self.folder / name).read_bytes() if os.path.isfile(name) else None, content)
+
+    def test_two_write_one_pair(self):
+        """Each its own parts, the last to end counts."""
+        inner = []
+        self.assertEqual(self.write_after(lambda: inner.append(self.kitti()[0].Write())), (1, []))
+        self.assertEqual((inner, sorted(os.listdir())), ([1], ["echoes.bin", "echoes.label"]))
+
+    def test_the_points_fail(self):
+        """At the last moment: something else took their name; or the labels fit on the disk and the points do not."""
+        for labels in (b"old", None):
+            written, errors = self.write_after(lambda: os.mkdir("echoes.bin"), labels, None)
+            self.assertEqual((written, len(errors), parts()), (0, 1, []))
+            self.assertIn("cannot be given its name", errors[0])
+            self.assert_old(labels, None)
+            os.rmdir("echoes.bin")
+            if labels:
+                os.remove("echoes.label")
+        with disk(4 * self.data.GetNumberOfPoints() + 8):
+            written, errors = self.write_after(lambda: None)
+        self.assertEqual((written, len(errors), parts()), (0, 1, []))
+        self.assertIn("cannot be written to its end", errors[0])
+        self.assert_old()
+
+    def test_what_others_keep_is_not_in_the_way(self):
+        """The old labels of another writer, which holds them, and of one that was killed."""
+        kept = self.folder / "echoes.label.avianpart0-old"
+        self.assertEqual(self.write_after(lambda: kept.write_bytes(b"others'")), (1, []))
+        with open(kept, "rb") as held:
+            fcntl.flock(held, fcntl.LOCK_SH)
+            self.assertEqual(self.kitti()[0].Write(), 1)
+            self.assertEqual(kept.read_bytes(), b"others'")
+        kept.chmod(0o444)
+        self.assertEqual(self.kitti()[0].Write(), 1)
+        self.assertEqual(sorted(os.listdir()), ["echoes.bin", "echoes.label"])
+
+    def test_old_labels_without_links(self):
+        """A copy is kept where there are no hard links. Another writer leaves it alone; half of it does not stay."""
+        (self.folder / "pair.py").write_text(PAIR)
+        second = f"ls > names1; {sys.executable} pair.py && ls > names2"
+        for environment, code, words in (
+                ({}, 0, ""), ({"FAILING_COPY": "1"}, 3, "cannot be kept while it is replaced: No space left"),
+                ({"RENAMED_TO": "echoes.bin", "BEFORE_RENAME": second}, 0, ""),
+                ({"RENAMED_TO": "echoes.bin", "BEFORE_RENAME": "false"}, 3, "cannot be given its name")):
+            with self.subTest(environment):
+                for name, content in (("echoes.label", b"old"), ("echoes.bin", b"older")):
+                    (self.folder / name).write_bytes(content)
+                ended = self.run_child(PAIR, LD_PRELOAD=os.environ["AVIANLIDAR_FAILING_FILES"], **environment)
+                self.assertEqual((ended.returncode, parts()), (code, []), ended.stderr)
+                self.assertIn(words, ended.stderr)
+                self.assertNotIn("filesystem error", ended.stderr)
+                if code:
+                    self.assert_old()
+                else:
+                    self.assertNotEqual((self.folder / "echoes.label").read_bytes(), b"old")
+        for names in ("names1", "names2"):
+            self.assertIn("echoes.label.avianpart0-old", (self.folder / names).read_text().split())
+
+    def test_old_labels_that_cannot_be_kept(self):
+        """Folders have all their names."""
+        folders = [f"echoes.label.avianpart{i}-old" for i in range(16)]
+        written, errors = self.write_after(lambda: [os.makedirs(name + "/full", exist_ok=True) for name in folders])
+        self.assertEqual((written, len(errors)), (0, 1))
+        self.assertIn("echoes.label cannot be kept while it is replaced: File exists", errors[0])
+        self.assert_old()
+        self.assertEqual(set(os.listdir()), {"echoes.bin", "echoes.label", *folders})
 
 
 if __name__ == "__main__":
