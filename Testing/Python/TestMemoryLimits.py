@@ -21,7 +21,7 @@ from cloudtools import WRITERS, add_array, add_field, cloud
 from faulttools import make, writer
 
 MEGABYTE = 1 << 20
-LEAST, MOST = 0.25, 128  # MB that are left to the algorithm: it fails with the first, and does not with the last
+LEAST, MOST = 0.25, 256  # MB that are left to the algorithm: it fails with the first, and does not with the last
 STEPS = 6
 POINTS = 60000
 
@@ -222,7 +222,7 @@ class MemoryLimits(unittest.TestCase):
         """Which algorithm finds how much depends on what malloc kept of those before it; the limits are felt all the same."""
         lines = [line.split(" ", 2) for line in self.run_apart("walk").splitlines() if line.startswith("WALKED")]
         print(", ".join(f"{name}: {failed}" for _, failed, name in lines))
-        self.assertGreater(sum(int(failed) for _, failed, _ in lines), len(lines))
+        self.assertGreater(sum(int(failed) for _, failed, _ in lines), 10)
         self.assertTrue(all(int(failed) < STEPS for _, failed, _ in lines))
 
     def test_a_first_scan_has_the_threads_for_which_there_is_room(self):
