@@ -26,7 +26,7 @@ from echotools import Messages
 ADDRESSES = 4 << 30  # bytes, of the process that reads
 MESH_GIGABYTES = "0.5"
 STACK = 8 << 20
-SECONDS = 300  # that a process may take before it counts as waiting for ever
+SECONDS = 900  # that a process may take for all its files before one counts as waiting for ever
 DEEP = 80000
 CHAIN = 20000
 HUGE = 2**60
@@ -420,7 +420,7 @@ class Files(unittest.TestCase):
         said = self.read(expected)
         for file, words in expected.items():
             with self.subTest(os.path.basename(file), words=words):
-                self.assertIn(file, said, "it ended the process, or it is waited for")
+                self.assertTrue(file in said, "it ended the process, or it is waited for")
                 errors, count, field = said[file]
                 if words is True or (words is None and count):
                     self.assertEqual(errors, [])
