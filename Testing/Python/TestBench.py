@@ -1,21 +1,18 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Predictions held against labels: counts by hand, curves by brute force and by scikit-learn, tracks lost, files and their errors, a loader of
-PyTorch as the page shows it."""
+"""Predictions held against labels: counts by hand, thresholds and curves by brute force, tracks lost, files and their errors."""
 import csv
 import itertools
 import json
 import os
 import pathlib
-import re
 import shutil
-import subprocess
 import sys
 import unittest
-import unittest.mock
 
 import numpy as np
 
 import avianlidar as al
+from avianlidar import _command
 from avianlidar.apps import _bench
 from avianlidar.apps._bench import Bench, Points
 
@@ -82,46 +79,36 @@ class Scores(unittest.TestCase):
         self.assertEqual(found, {"birds": 3.0, "recall": 2 / 3, "precision": 2 / 3, "iou": 2 / 4, "false": 0.5, "others": 0.5})
 
     def test_scores_without_bounds(self):
-        """Points that all have the same infinite score are not told apart."""
+        """Points that all have the same infinite score are not told apart; nothing has no score."""
         bird, other = np.array([True, False, False, False]), np.zeros(4, bool)
-        for value in (-np.inf, 0.0, np.inf):
+        for value in (-np.inf, np.inf):
             rank = _bench.ranked(np.full(4, value, np.float32), bird, other)
             self.assertEqual((rank.birds.tolist(), rank.false.tolist()), ([1], [3]))
             self.assertTrue(np.isnan(_bench.threshold(rank, 1)))
             self.assertEqual(_bench.average_precision(rank), 0.25)
+        rank = _bench.ranked(np.zeros(0, np.float32), np.zeros(0, bool), np.zeros(0, bool))
+        for nothing in (_bench.average_precision(rank), _bench.curve(rank), _bench.threshold(rank, 1)):
+            self.assertTrue(np.isnan(nothing).all())
 
     def test_threshold_by_brute_force(self):
-        for seed, most in itertools.product(range(5), (0, 1, 7, 40)):
+        for seed, most in itertools.product(range(3), (0, 1, 40)):
             score, bird, other = drawn(seed)
             least = _bench.threshold(_bench.ranked(score, bird, other), most)
             fit = [value for value in np.unique(score) if np.count_nonzero((score >= value) & ~bird & ~other) <= most]
             # What lets the most birds through: the same birds, whatever stands between two scores.
             self.assertEqual(np.count_nonzero(bird & (score >= least)), max((np.count_nonzero(bird & (score >= value)) for value in fit), default=0))
 
-    def test_curve_by_brute_force(self):
-        for seed in range(5):
+    def test_curve_and_average_precision_by_brute_force(self):
+        for seed in range(3):
             score, bird, other = drawn(seed)
-            values = _bench.curve(_bench.ranked(score, bird, other))
-            pairs = []
-            for value in np.unique(score[~other]):
+            rank, pairs = _bench.ranked(score, bird, other), []
+            for value in np.unique(score[~other])[::-1]:
                 hit = np.count_nonzero(bird & (score >= value))
                 pairs.append((hit / bird.sum(), hit / np.count_nonzero(~other & (score >= value))))
-            for recall, precision in zip(_bench.RECALLS, values):
+            for recall, precision in zip(_bench.RECALLS, _bench.curve(rank)):
                 self.assertAlmostEqual(precision, max(p for r, p in pairs if r >= recall - 1e-9))
-
-    def test_average_precision_is_that_of_scikit_learn(self):
-        try:
-            from sklearn.metrics import average_precision_score
-        except ImportError:
-            self.skipTest("scikit-learn is not installed")
-        for seed in range(5):
-            score, bird, other = drawn(seed)
-            self.assertAlmostEqual(_bench.average_precision(_bench.ranked(score, bird, other)), average_precision_score(bird[~other], score[~other]))
-
-    def test_nothing_there(self):
-        rank = _bench.ranked(np.zeros(0, np.float32), np.zeros(0, bool), np.zeros(0, bool))
-        self.assertTrue(np.isnan(_bench.average_precision(rank)) and np.isnan(_bench.curve(rank)).all())
-        self.assertTrue(np.isnan(_bench.threshold(rank, 1)))
+            recalls, precisions = np.array([(0.0, 1.0), *pairs]).T
+            self.assertAlmostEqual(_bench.average_precision(rank), np.diff(recalls) @ precisions[1:])  # as scikit-learn defines it
 
     def test_tracks_lost(self):
         """A bird found in every second scan is not lost; one with three missed in a row is; one seen in two scans only is no track."""
@@ -165,9 +152,8 @@ class Files(unittest.TestCase):
     def test_the_page_and_the_tables(self):
         out = OUTPUT / "page"
         shutil.rmtree(out, ignore_errors=True)
-        done = subprocess.run([sys.executable, "-m", "avianlidar", "bench", self.home, "--predictions", OUTPUT / "noisy", OUTPUT / "right", "--first", "2",
-                               "-o", out], capture_output=True, text=True, check=True)
-        self.assertIn("set, rain 2 mm/h: right has the best recall at 1 false point a scan, 100.0", done.stdout.replace("of ", ""))
+        by_name = [OUTPUT / "noisy", OUTPUT / "right"]
+        self.assertIn(_command.main(["bench", str(self.home), "--predictions", *map(str, by_name), "--first", "2", "-o", str(out)]), (None, 0))
         page = (out / "bench.html").read_text()
         self.assertIn("The first 2 scans", page)
         self.assertEqual(page.count("data:image/png"), 1)
@@ -187,72 +173,44 @@ class Files(unittest.TestCase):
         with open(out / "curves.csv", newline="", encoding="utf-8") as stream:
             self.assertEqual(len(list(csv.DictReader(stream))), 2 * len(_bench.RECALLS))
 
-    def test_another_class_of_birds(self):
-        labels = write_set(OUTPUT / "other", bird_class=259)
-        write_predictions(OUTPUT / "of-other", labels, lambda kind: np.where(kind == 259, 259, 0))
-        scored = Bench([OUTPUT / "other"], [OUTPUT / "of-other"]).write(OUTPUT / "out")[0][0]
-        self.assertEqual(scored.value(("all", ""), "iou").value, 1)
-
-    def test_several_sets(self):
-        labels = write_set(OUTPUT / "second", sequences=1)
-        for name, found in (("set", self.labels), ("second", labels)):
-            write_predictions(OUTPUT / "both" / name, found, lambda kind: np.where(kind == BIRD, BIRD, 1))
+    def test_several_sets_and_another_class_of_birds(self):
+        labels = write_set(OUTPUT / "second", bird_class=259, sequences=1)
+        for name, found, bird in (("set", self.labels, BIRD), ("second", labels, 259)):
+            write_predictions(OUTPUT / "both" / name, found, lambda kind, bird=bird: np.where(kind == bird, bird, 1))
         by_set = Bench([self.home, OUTPUT / "second"], [OUTPUT / "both"], ["00"]).write(OUTPUT / "out")
-        self.assertEqual([len(scored.values["all", ""]) for scored, in by_set], [1, 1])
-        with self.assertRaisesRegex(al.Error, r"right: holds no predictions for second, expected second/sequences/NN/predictions$"):
+        self.assertEqual([(len(scored.values["all", ""]), scored.value(("all", ""), "iou").value) for scored, in by_set], [(1, 1), (1, 1)])
+        with self.assertRaisesRegex(al.Error, "right: holds no predictions for second"):
             Bench([OUTPUT / "second", self.home], [OUTPUT / "right"])
 
     def test_bad_input(self):
         wrong = OUTPUT / "wrong"
-
-        def fails(words, folders=(self.home,), predictions=(wrong,), **options):
-            with self.assertRaisesRegex(al.Error, words):
-                Bench(folders, predictions, **options).write(OUTPUT / "out-wrong")
-            self.assertFalse((OUTPUT / "out-wrong").exists())
-        predictions = wrong / "sequences" / "00" / "predictions"
-
-        def again():
-            shutil.rmtree(wrong, ignore_errors=True)
-            shutil.copytree(OUTPUT / "right", wrong)
-        again()
-        fails("holds no manifest.json", [OUTPUT / "right"])
-        fails("has no sequence 07, expected some of 00, 01", numbers=["07"])
-        fails("has no scan from number 6 on", first=6)
-        fails("first is -1, expected 0 or more", first=-1)
-        fails("predictions: two are called wrong", predictions=[wrong, wrong])
-        (predictions / "000003.label").unlink()
-        fails("000003.label: is not there, expected a file for each scan")
-        again()
-        (predictions / "000003.label").write_bytes(b"abcde")
-        fails("000003.label: has 5 bytes, expected 4 for each point")
-        (predictions / "000003.label").write_bytes(b"abcd")
-        fails("000003.label: has 1 values, expected one for each of the")
-        again()
-        np.full(len(self.labels["00", "000002"]), np.nan, "<f4").tofile(predictions / "000002.score")
-        fails("000002.score: has a score that is not a number")
-        again()
-        next(predictions.glob("000002.score")).unlink()
-        fails("000002.score is not there, expected scores of all scans or of none")
         (OUTPUT / "empty").mkdir(exist_ok=True)
         (OUTPUT / "empty" / "manifest.json").write_text("{}")
-        fails("names no sequences", [OUTPUT / "empty"])
 
-    def test_the_loader_of_the_page(self):
-        """Runs as it stands on the page."""
-        try:
-            import torch
-        except ImportError:
-            self.skipTest("PyTorch is not installed")
-        text = (SOURCE / "Documentation" / "filters.md").read_text(encoding="utf-8")
-        code = next(block for block in re.findall(r"```python\n(.*?)```", text, re.S) if "torch" in block)
-        self.assertLessEqual(len(code.splitlines()), 20)
-        names = {}
-        exec(code.replace("build/sequences", str(self.home)), names)  # pylint: disable=exec-used
-        scans = names["Scans"](self.home)
-        self.assertEqual(len(scans), len(self.labels))
-        batch = next(iter(torch.utils.data.DataLoader(scans, batch_size=None)))
-        self.assertEqual(batch[0].shape, (len(self.labels["00", "000000"]), 4))
-        np.testing.assert_array_equal(batch[1].numpy(), self.labels["00", "000000"] == BIRD)
+        def spoilt(name, content):
+            """Predictions with another file, or without it."""
+            def make():
+                file = wrong / "sequences" / "00" / "predictions" / name
+                file.unlink() if content is None else file.write_bytes(content)
+            return make
+        nan = np.full(len(self.labels["00", "000002"]), np.nan, "<f4").tobytes()
+        for words, spoil, folder, options in (
+                ("holds no manifest.json", None, OUTPUT / "right", {}), ("names no sequences", None, OUTPUT / "empty", {}),
+                ("has no sequence 07", None, self.home, {"numbers": ["07"]}), ("no scan from number 6 on", None, self.home, {"first": 6}),
+                ("first is -1", None, self.home, {"first": -1}), ("000003.label: is not there", spoilt("000003.label", None), self.home, {}),
+                ("000003.label: has 5 bytes", spoilt("000003.label", b"abcde"), self.home, {}),
+                ("000003.label: has 1 values", spoilt("000003.label", b"abcd"), self.home, {}),
+                ("000002.score: has a score that is not", spoilt("000002.score", nan), self.home, {}),
+                ("000002.score is not there", spoilt("000002.score", None), self.home, {})):
+            shutil.rmtree(wrong, ignore_errors=True)
+            shutil.copytree(OUTPUT / "right", wrong)
+            if spoil:
+                spoil()
+            with self.subTest(words), self.assertRaisesRegex(al.Error, words):
+                Bench([folder], [wrong], **options).write(OUTPUT / "out-wrong")
+            self.assertFalse((OUTPUT / "out-wrong").exists())
+        with self.assertRaisesRegex(al.Error, "two are called wrong"):
+            Bench([self.home], [wrong, wrong])
 
 
 class Baselines(unittest.TestCase):
@@ -269,8 +227,7 @@ class Baselines(unittest.TestCase):
     def setUpClass(cls):
         sys.path[:0] = [str(SOURCE / "Examples" / "filter_bench")]
         import filters
-        import sets
-        cls.filters, cls.sets = filters, sets
+        cls.filters = filters
 
     def test_nearest_points_by_brute_force(self):
         draw = np.random.default_rng(2)
@@ -284,37 +241,6 @@ class Baselines(unittest.TestCase):
                 least = away.min(initial=self.filters.FAR)
                 self.assertAlmostEqual(distance[k], least)
                 self.assertAlmostEqual(amplitude[k], one.amplitude[there[np.argmin(away)]] if least < self.filters.FAR else 0.0)
-
-    def test_what_is_seen_again_and_again(self):
-        frames = [self.frame(np.random.default_rng(3), self.filters) for _ in range(4)]
-        shares, beside, ago = self.filters.of_history(frames[-1], frames[:-1]).T
-        self.assertTrue((shares == 1).all() and (beside == 1).all() and (ago == 1).all())
-        self.assertEqual(self.filters.of_one_scan(frames[0]).shape[0], 400)
-
-    def test_the_threshold_by_brute_force(self):
-        score, bird, other = drawn(4)
-        label = np.where(bird, BIRD, np.where(other, CAR, WALL))
-        least = self.filters.tuned([(score, label)])
-
-        def iou(value):
-            called = (score >= value) & ~other
-            return np.count_nonzero(called & bird) / np.count_nonzero(called | bird)
-        self.assertEqual(iou(least), max(map(iou, np.unique(score))))
-
-    def test_scenarios(self):
-        from avianlidar.apps._sequence import read_scenario
-        out = OUTPUT / "scenarios"
-        out.mkdir(parents=True, exist_ok=True)
-        with unittest.mock.patch.dict(os.environ, AVIANLIDAR_DATA_DIR="/data"):
-            for name in self.sets.PLACES:
-                for rainy in (False, True):
-                    scenario = read_scenario(self.sets.scenario_of(name, out, rainy, 7))
-                    self.assertEqual((scenario["number_of_scans"], scenario["scans_per_sequence"]), (35, 7))
-                    self.assertTrue(pathlib.Path(scenario["scene"]).is_file())
-                    self.assertEqual(scenario.get("weather"), [self.sets.RAIN] if rainy else None)
-        self.assertIn("/data/osm", (out / "neubrandenburg.lidarscene.json").read_text())
-        with unittest.mock.patch.dict(os.environ, AVIANLIDAR_DATA_DIR=""):
-            self.assertIsNone(self.sets.scenario_of("honolulu", out, False, 7))
 
 
 if __name__ == "__main__":

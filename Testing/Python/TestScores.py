@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Scores of tracks: closed forms, crossings made by hand, axioms of a metric, errors against many draws."""
+"""Scores of tracks: OSPA in closed form and by all permutations, crossings made by hand, errors against the spread of many draws."""
 import itertools
 import math
 import unittest
@@ -43,21 +43,6 @@ class Ospa(unittest.TestCase):
             found = scores.ospa(distance, 12.0, order)
             self.assertAlmostEqual(found.distance, brute(distance, 12.0, order))
             self.assertAlmostEqual(found.distance ** order, found.localisation ** order + found.cardinality ** order)
-
-    def test_is_a_metric(self):
-        random = np.random.default_rng(2)
-        for _ in range(300):
-            a, b, c = (random.uniform(0, 20, (random.integers(0, 5), 3)) for _ in range(3))
-            order = random.choice([1.0, 2.0, 4.0])
-
-            def of(x, y):
-                return scores.ospa(scores.distances(x, y), 8.0, order).distance
-            self.assertAlmostEqual(of(a, b), of(b, a))
-            self.assertLessEqual(of(a, b), of(a, c) + of(c, b) + 1e-12)
-            self.assertLessEqual(of(a, b), 8.0)
-            self.assertAlmostEqual(of(a, a), 0.0)
-            if len(a) != len(b) or not np.allclose(a, b):
-                self.assertGreater(of(a, b), 0.0)
 
     def test_other_settings_are_errors(self):
         for cutoff, order in ((0.0, 1.0), (math.nan, 1.0), (1.0, 0.5), (1.0, math.inf)):
@@ -125,26 +110,6 @@ class Volumes(unittest.TestCase):
 
 
 class Errors(unittest.TestCase):
-    def test_scans_until_two_in_a_row(self):
-        """Detections that are independent with p: (1 + p) / p^2 scans, within three standard errors as `mean` says them."""
-        random = np.random.default_rng(3)
-        for p, wanted in ((0.5, 6.0), (0.8, 2.8125)):
-            seen = random.uniform(size=(4000, 400)) < p
-            scans = np.argmax(seen[:, 1:] & seen[:, :-1], axis=1) + 2
-            found = scores.mean(scans)
-            self.assertEqual(found.number, 4000)
-            self.assertLess(abs(found.value - wanted), 3.0 * found.error)
-            self.assertAlmostEqual(wanted, (1.0 + p) / p ** 2)
-
-    def test_false_tracks(self):
-        """Alarms uniform over a volume, two in a row within a gate confirm: lambda^2 v / V tracks a scan."""
-        random, alarms, gate, scans = np.random.default_rng(4), 20, 2e-4, 4000  # of a line of length 1 whose ends meet
-        places = random.uniform(size=(scans, alarms))
-        off = np.abs(places[1:, :, None] - places[:-1, None])
-        tracks = int(np.count_nonzero(np.minimum(off, 1.0 - off) < gate / 2.0))
-        found = scores.rate(tracks, scans - 1.0)
-        self.assertLess(abs(found.value - alarms ** 2 * gate), 3.0 * found.error)
-
     def test_jackknife_of_a_mean_is_its_error(self):
         values = np.random.default_rng(5).normal(size=50)
         np.testing.assert_allclose(scores.jackknife(np.mean, values), scores.mean(values))
@@ -152,13 +117,14 @@ class Errors(unittest.TestCase):
 
     def test_errors_are_the_spread_of_many_draws(self):
         random = np.random.default_rng(6)
-        shares, ratios, rates = [], [], []
-        for _ in range(2000):
+        shares, ratios, rates, means = [], [], [], []
+        for _ in range(1200):
             shares.append(scores.share(int(random.binomial(60, 0.3)), 60)[:2])
             rates.append(scores.rate(int(random.poisson(25.0)), 0.5)[:2])
+            means.append(scores.mean(random.exponential(2.0, 60))[:2])
             scans = random.integers(1, 40, 60)
             ratios.append(scores.ratio(random.binomial(scans, random.beta(2, 3, 60)), scans)[:2])
-        for values, wanted in ((shares, 0.3), (ratios, 0.4), (rates, 50.0)):
+        for values, wanted in ((shares, 0.3), (ratios, 0.4), (rates, 50.0), (means, 2.0)):
             values, errors = np.transpose(values)
             self.assertAlmostEqual(values.mean() / wanted, 1.0, delta=0.02)
             self.assertAlmostEqual(errors.mean() / values.std(), 1.0, delta=0.06)

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The tracker, scan by scan, against one of NumPy and SciPy; times of clouds, what is forgotten, the same bits for any order of
-the points, bad input; and gulls that a search lidar scans."""
+the points, bad input; and gulls that a search lidar scans. Turns, crossings and false tracks are TestTracker.cxx's (kernel)."""
 
 import unittest
 
@@ -16,7 +16,7 @@ from avianlidar import vtkAvianLidar as wrapped
 from avianlidar.vtkAvianLidar import vtkAvianLidarTracker as Tracker
 
 from cloudtools import add_array, add_field, cloud
-from echotools import Messages, assert_same_bits
+from echotools import Messages, array as point_array, assert_same_bits
 
 EXACT = {"ClusterDistance": 0.0, "ClusterAngle": 0.0, "HalfBeamwidth": 0.0}
 STRAIGHT = {"MotionModel": Tracker.MOTION_CONSTANT_VELOCITY, "AccelerationDensity": 2.0}
@@ -39,10 +39,6 @@ def feed(made, points, time=None, **arrays):
     made.SetInputData(data)
     made.Update()
     return made.GetOutput(0), made.GetOutput(1)
-
-
-def point_array(data, name):
-    return vtk_to_numpy(data.GetPointData().GetArray(name))
 
 
 def cell_array(data, name):
@@ -122,14 +118,14 @@ class TestTracker(unittest.TestCase):
     def test_against_numpy_and_scipy(self):
         """Crowded: many birds, of which some are missed, and false alarms, in each other's gates."""
         random = np.random.default_rng(4)
-        start = random.uniform(-60, 60, (40, 3)) + [200, 0, 60]
-        velocity = random.normal(0, [8, 8, 1], (40, 3))
+        start = random.uniform(-40, 40, (20, 3)) + [200, 0, 60]
+        velocity = random.normal(0, [8, 8, 1], (20, 3))
         made, oracle = tracker(**EXACT, **STRAIGHT), Oracle()
         contested = 0
-        for scan in range(25):
+        for scan in range(15):
             time = 2.0 * scan
             birds = start + velocity * (time % 30)
-            places = np.vstack([birds[random.random(40) < 0.8], random.uniform(-80, 80, (10, 3)) + [200, 0, 60]])
+            places = np.vstack([birds[random.random(20) < 0.8], random.uniform(-50, 50, (6, 3)) + [200, 0, 60]])
             places += random.normal(0, 0.3, places.shape)
             random.shuffle(places)
             tracks, points = feed(made, places, time)
@@ -149,8 +145,8 @@ class TestTracker(unittest.TestCase):
                                            atol=1e-12)
                 self.assertEqual(point_array(tracks, "time")[last], track["time"])
                 self.assertEqual(bool(cell_array(tracks, "confirmed")[cell]), track["confirmed"])
-        self.assertGreater(contested, 500)
-        self.assertGreater(oracle.next, 200)
+        self.assertGreater(contested, 250)
+        self.assertGreater(oracle.next, 60)
 
     def test_arrays_and_fields(self):
         made = tracker(ConfirmHits=2, ConfirmScans=2, SensorPosition=(0, 0, 10), AccelerationDensity=0.1)
@@ -238,10 +234,10 @@ class TestTracker(unittest.TestCase):
     def test_same_bits_for_any_order(self):
         random = np.random.default_rng(2)
         one, other = tracker(), tracker()
-        for scan in range(6):
-            points = random.uniform(0, 150, (150, 3)) + [50, 0, 0]
-            stamps = 2e6 * (scan + random.random(150))
-            order = random.permutation(150)
+        for scan in range(4):
+            points = random.uniform(0, 150, (100, 3)) + [50, 0, 0]
+            stamps = 2e6 * (scan + random.random(100))
+            order = random.permutation(100)
             tracks, labels = feed(one, points, 2.0 * scan, timestamp=stamps)
             shuffled, mixed = feed(other, points[order], 2.0 * scan, timestamp=stamps[order])
             assert_same_bits(tracks, shuffled)
@@ -249,24 +245,22 @@ class TestTracker(unittest.TestCase):
 
     def test_memory_is_bounded(self):
         random = np.random.default_rng(3)
-        made = tracker(HistoryLength=5, KeepTime=4.0)
+        made = tracker(HistoryLength=3, KeepTime=4.0)
         sizes = []
-        for scan in range(120):
-            tracks, _ = feed(made, random.uniform(0, 300, (60, 3)), 2.0 * scan)
+        for scan in range(40):
+            tracks, _ = feed(made, random.uniform(0, 200, (20, 3)), 2.0 * scan)
             sizes.append(tracks.GetNumberOfPoints())
-            self.assertLessEqual(max(tracks.GetCell(i).GetNumberOfPoints() for i in range(tracks.GetNumberOfCells())), 5)
-        self.assertLess(max(sizes[60:]), 1.3 * max(sizes[20:60]))
+            self.assertLessEqual(max(tracks.GetCell(i).GetNumberOfPoints() for i in range(tracks.GetNumberOfCells())), 3)
+        self.assertLess(max(sizes[20:]), 1.3 * max(sizes[8:20]))
 
     def test_a_pause_ends_tracks(self):
-        """What comes after it is another track, near or far; shorter pauses change nothing."""
-        for pause, place, ids in ((29.0, (100, 60, 10), [0]), (31.0, (100, 60, 10), [0, 1]), (6000.0, (-900, 700, 45), [0, 1])):
+        for pause, ids in ((29.0, [0]), (31.0, [0, 1])):
             made = tracker(KeepTime=1e9)
             for scan in range(4):
                 feed(made, [(100, 10 * scan, 10)], 2.0 * scan)
-            tracks, points = feed(made, [place], 6.0 + pause)
+            tracks, points = feed(made, [(100, 60, 10)], 6.0 + pause)
             self.assertEqual(sorted(cell_array(tracks, "track_id")), ids)
             self.assertEqual(int(point_array(points, "track_id")[0]), ids[-1])
-            self.assertEqual(dict(zip(cell_array(tracks, "track_id"), cell_array(tracks, "ended")))[0], len(ids) - 1)
 
     def test_an_empty_cloud_is_a_scan(self):
         made = tracker(MaximumMisses=2)
@@ -277,79 +271,59 @@ class TestTracker(unittest.TestCase):
             self.assertEqual(list(cell_array(tracks, "ended")), [ended])
             self.assertEqual(points.GetNumberOfPoints(), 0)
 
-    def test_turns(self):
-        """Gulls in circles: with a turn in the model fewer are lost between scans."""
-        share = {}
-        for turns in (False, True):
-            made = tracker(**EXACT, MotionModel=turns, AccelerationDensity=0.3)
-            random = np.random.default_rng(6)
-            radius, rate = random.uniform(30, 45, 20), random.choice([-1, 1], 20) * 0.3
-            middle = random.uniform(-800, 800, (20, 2))
-            for scan in range(20):
-                angle = rate * 2 * scan + np.arange(20)
-                places = np.column_stack([middle + radius[:, None] * np.column_stack([np.cos(angle), np.sin(angle)]),
-                                          np.full(20, 50.0)])
-                tracks, _ = feed(made, places + random.normal(0, 0.2, places.shape), 2.0 * scan)
-            share[turns] = cell_array(tracks, "hits").max()
-        self.assertGreater(share[True], share[False])
-
     def test_gulls_of_a_search_lidar(self):
-        """Straight and in circles, in clear air: what is seen often enough is tracked, and no track is of two birds but a few."""
-        for pattern, share, shared in (("Crossings", 0.75, 2), ("Circles", 0.75, 6)):
-            birds = wrapped.vtkAvianLidarTracks()
-            getattr(birds, "SetPatternTo" + pattern)()
-            for name, value in {"NumberOfBirds": 30, "Radius": 300, "Heights": (15, 40), "TimeRange": (0, 80)}.items():
-                getattr(birds, "Set" + name)(value)
-            sensor = al.Sensor("Search905", position=(0, 0, 3), number_of_revolutions=40)
-            scan = al.Scan(al.Scene([(0, 0, -50), (1, 0, -50), (0, 1, -50)], [(0, 1, 2)]), sensor, movers=birds)
-            made = tracker()
-            made.SetInputConnection(scan.algorithm.GetOutputPort(0))
-            seen, tracked, owners = 0, 0, {}
-            for revolution in range(40):
-                made.UpdateTimeStep(2.0 * revolution)
-                cloud_ = al.Cloud(made.GetOutput(1))
-                self.assertEqual(field(made.GetOutput(0), "time"), (2.0 * revolution,))
-                isBird = cloud_["object_id"] >= 10000
-                for bird in np.unique(cloud_["object_id"][isBird]):
-                    own = cloud_["object_id"] == bird
-                    seen += 1
-                    tracked += cloud_["track_confirmed"][own].any()
-                    for track in cloud_["track_id"][own & (cloud_["track_confirmed"] > 0)]:
-                        owners.setdefault(track, set()).add(bird)
-            self.assertGreater(seen, 200)
-            self.assertGreater(tracked / seen, share, pattern)
-            self.assertLessEqual(sum(len(birds_) > 1 for birds_ in owners.values()), shared, pattern)
+        """In clear air: what is seen often enough is tracked, and no track is of two birds but a few."""
+        birds = wrapped.vtkAvianLidarTracks()
+        birds.SetPatternToCrossings()
+        for name, value in {"NumberOfBirds": 50, "Radius": 200, "Heights": (15, 40), "TimeRange": (0, 20)}.items():
+            getattr(birds, "Set" + name)(value)
+        sensor = al.Sensor("Search905", position=(0, 0, 3), number_of_revolutions=10)
+        ground = al.Scene([(0, 0, -50), (1, 0, -50), (0, 1, -50)], [(0, 1, 2)])
+        scan = al.Scan(ground, sensor, movers=birds, rays_per_beam=40)
+        made = tracker()
+        made.SetInputConnection(scan.algorithm.GetOutputPort(0))
+        seen, tracked, owners = 0, 0, {}
+        for revolution in range(10):
+            made.UpdateTimeStep(2.0 * revolution)
+            cloud_ = al.Cloud(made.GetOutput(1))
+            self.assertEqual(field(made.GetOutput(0), "time"), (2.0 * revolution,))
+            for bird in np.unique(cloud_["object_id"][cloud_["object_id"] >= 10000]):
+                own = cloud_["object_id"] == bird
+                seen += revolution >= 3  # from then on a track may be confirmed
+                tracked += revolution >= 3 and cloud_["track_confirmed"][own].any()
+                for track in cloud_["track_id"][own & (cloud_["track_confirmed"] > 0)]:
+                    owners.setdefault(track, set()).add(bird)
+        self.assertGreater(seen, 40)
+        self.assertGreater(tracked / seen, 0.6)
+        self.assertLessEqual(sum(len(of) > 1 for of in owners.values()), 3)  # of 50 birds in 400 m
 
     def test_bad_input(self):
+        """An error names what is wrong, and the memory stays. NaN and numbers far beyond are TestArguments'."""
         made = tracker()
         feed(made, [(100, 0, 10)], 0.0)
-        for name, value in (("ClusterDistance", -1), ("ClusterAngle", 30), ("RangeError", 0), ("HalfBeamwidth", 2),
-                            ("TargetExtent", 0), ("MotionModel", 2), ("AccelerationDensity", float("nan")),
-                            ("MaximumSpeed", 0), ("GateProbability", 1), ("ConfirmHits", 5), ("ConfirmScans", 33),
-                            ("MaximumMisses", 0), ("HistoryLength", 0), ("KeepTime", -1), ("MaximumPause", 0)):
-            with self.subTest(name):
-                before = getattr(made, "Get" + name)()
-                getattr(made, "Set" + name)(value)
-                messages = Messages(made)
-                tracks, _ = feed(made, [(100, 0, 10)], 1.0)
+        messages = Messages(made)
+
+        def fails(words, points=((100, 0, 10),), time=1.0, **arrays):
+            with self.subTest(words):
+                messages.errors.clear()
+                tracks, _ = feed(made, points, time, **arrays)
                 self.assertEqual(len(messages.all()), 1)
-                self.assertIn(name, messages.all()[0])
-                self.assertIn(name, tracks.GetFieldData().GetAbstractArray("error").GetValue(0))
-                getattr(made, "Set" + name)(before)
-        for points, arrays, words in (([(1e10, 0, 0)], {}, "point 0"),
-                                      ([(0, 1, 0), (float("nan"), 0, 0)], {}, "point 1"),
-                                      ([(0, 1, 0)], {"distance_std_error": [-1.0]}, "distance_std_error"),
-                                      ([(0, 1, 0)], {"timestamp": [float("inf")]}, "timestamp"),
-                                      ([(0, 1, 0)], {"is_clutter": [0, 1]}, "is_clutter")):
-            messages = Messages(made)
-            feed(made, points, 1.0, **arrays)
-            self.assertEqual(len(messages.all()), 1)
-            self.assertIn(words, messages.all()[0])
+                self.assertIn(words, messages.all()[0])
+                self.assertIn(words, tracks.GetFieldData().GetAbstractArray("error").GetValue(0))
+        for name, value in (("ClusterDistance", -1), ("ClusterAngle", 30), ("RangeError", 0), ("HalfBeamwidth", 2), ("TargetExtent", 0),
+                            ("MotionModel", 2), ("MaximumSpeed", 0), ("GateProbability", 1), ("ConfirmHits", 5), ("ConfirmScans", 33),
+                            ("MaximumMisses", 0), ("HistoryLength", 0), ("KeepTime", -1), ("MaximumPause", 0)):
+            before = getattr(made, "Get" + name)()
+            getattr(made, "Set" + name)(value)
+            fails(name)
+            getattr(made, "Set" + name)(before)
+        fails("point 0", [(1e10, 0, 0)])
+        fails("point 1", [(0, 1, 0), (float("nan"), 0, 0)])
+        for name, values in (("distance_std_error", [-1.0]), ("timestamp", [float("inf")]), ("is_clutter", [0, 1])):
+            fails(name, **{name: values})
         for time in (float("nan"), float("inf")):
-            messages = Messages(made)
-            feed(made, [(100, 0, 10)], time)
-            self.assertIn("time", messages.all()[0])
-        tracks, _ = feed(made, [(100, 0, 10)], 1.0)  # the memory is as before
+            fails("time", time=time)
+        tracks, _ = feed(made, [(100, 0, 10)], 1.0)
         self.assertEqual(list(cell_array(tracks, "hits")), [2])
 
 
