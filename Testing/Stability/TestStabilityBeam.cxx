@@ -1,14 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Extremes of beam, surface, air and energies: beamwidths, glossiness, attenuation, pulse energies,
-// limits, numbers of rays.
+// numbers of rays. The lobe alone is TestReflectance's.
 #include "EchoTestScene.h"
-#include "Hue.h"
-#include "Propagation.h"
 #include "StabilityTable.h"
 
 #include <gtest/gtest.h>
-
-#include <limits>
 
 using namespace echotest;
 using stability::record;
@@ -77,41 +73,6 @@ TEST(StabilityBeam, Beamwidths)
   record({ "Half-beamwidth", range, "the same in stated standard errors", 5.0, inErrors.value() });
 }
 
-TEST(StabilityBeam, GlossinessOfTheLobe)
-{
-  // The value itself: cos^k from sine and cosine of an angle, beside long double.
-  Worst error;
-  for (int k = 0; k <= 60; ++k)
-  {
-    const double kp = k == 0 ? 0.0 : logStep(1e-3, 1e6, k, 60);
-    for (int step = 0; step <= 400; ++step)
-    {
-      const double angle = logStep(1e-9, 3.1, step, 400);
-      const double cosine = std::cos(angle);
-      const double sine2 = std::pow(std::sin(angle), 2);
-      const double value = lobe(cosine, sine2, kp);
-      if (cosine <= 0.0)
-      {
-        error.see(value == 0.0 ? 0.0 : 1.0);
-        continue;
-      }
-      const long double log2 = cosine > 0.7 ? std::log1p(-static_cast<long double>(sine2))
-                                            : 2.0L * std::log(static_cast<long double>(cosine));
-      const long double right = std::exp(0.5L * kp * log2);
-      if (right > 1e-290L)
-      {
-        error.see(static_cast<double>(std::fabs(value / right - 1.0L)));
-      }
-      else
-      {
-        error.see(value >= 0.0 && value < 1e-280 ? 0.0 : 1.0);
-      }
-    }
-  }
-  record({ "Glossiness", "0 to 1e6, lobe angles 1e-9 rad to 178 deg",
-    "relative error of the specular lobe above 1e-290", 1e-12, error.value() });
-}
-
 TEST(StabilityBeam, GlossinessOfAWall)
 {
   Worst inErrors;
@@ -142,11 +103,10 @@ TEST(StabilityBeam, GlossinessOfAWall)
 TEST(StabilityBeam, Attenuation)
 {
   Worst error;
-  Worst ofTransmission;
   std::size_t unlike = 0;
-  for (int step = 0; step <= 120; ++step)
+  for (int step = 0; step <= 60; ++step)
   {
-    const double mu = step == 0 ? 0.0 : logStep(1e-12, 1e9, step, 120);
+    const double mu = step == 0 ? 0.0 : logStep(1e-12, 1e9, step, 60);
     EchoSettings settings = directSettings(100);
     settings.attenuationCoefficient = mu;
     const double h = 500.0;
@@ -158,9 +118,6 @@ TEST(StabilityBeam, Attenuation)
       const double energy = result.echoes.size() == 1 ? result.echoes[0].returnEnergy : NAN;
       error.see(static_cast<double>(
         std::fabs(energy / (Qs * 0.146L * share) - 1.0L) / (1.0L + 2.0L * mu * h)));
-      const long double alone = transmission(mu, 2.0 * h);
-      ofTransmission.see(
-        static_cast<double>(std::fabs(alone / share - 1.0L) / (1.0L + 2.0L * mu * h)));
     }
     else if (share < 1e-330L)
     {
@@ -169,25 +126,7 @@ TEST(StabilityBeam, Attenuation)
   }
   record({ "Attenuation", "0 and 1e-12 to 1e9 1/m over 1 km",
     "relative error of energy over (1 + length x attenuation)", 1e-14, error.value() });
-  record({ "Attenuation", "0 and 1e-12 to 1e9 1/m over 1 km", "the same of exp alone", 1e-15,
-    ofTransmission.value() });
   record({ "Attenuation", "where exp underflows", "echoes", 0.0, static_cast<double>(unlike) });
-}
-
-namespace
-{
-/// A dihedral corner of two materials with all there is: two reflections, several units.
-Scene corner()
-{
-  Scene scene;
-  for (int side : { -1, 1 })
-  {
-    const Vec3 along = 10.0 * Vec3(-1.0, side, 0.0);
-    scene.plate(
-      Vec3(100.0, 0.0, 0.0) + along, along, Vec3(0.0, 0.0, 20.0), side > 0 ? Metal : Wall, side);
-  }
-  return scene;
-}
 }
 
 TEST(StabilityBeam, PulseEnergies)
@@ -198,7 +137,13 @@ TEST(StabilityBeam, PulseEnergies)
   Sensor sensor;
   sensor.halfBeamwidth = 0.05;
   sensor.lowerEnergyLimit = 1e-8;
-  const Scene scene = corner();
+  Scene scene; // a dihedral corner: two reflections, several units
+  for (int side : { -1, 1 })
+  {
+    const Vec3 along = 10.0 * Vec3(-1.0, side, 0.0);
+    scene.plate(
+      Vec3(100.0, 0.0, 0.0) + along, along, Vec3(0.0, 0.0, 20.0), side > 0 ? Metal : Wall, side);
+  }
   std::size_t differing = 0;
   for (const bool integrated : { true, false })
   {
@@ -206,7 +151,7 @@ TEST(StabilityBeam, PulseEnergies)
     const ScanResult plain = runScan(makeSetup(scene, sensor, settings), oneBeam());
     ASSERT_GT(plain.echoes.size(), 0u);
     ASSERT_GT(plain.echoes[0].secondaryShare, 0.0);
-    for (int exponent = -88; exponent <= 22; ++exponent)
+    for (int exponent = -88; exponent <= 22; exponent += 5)
     {
       const double factor = std::ldexp(1.0, exponent);
       Sensor scaled = sensor;
@@ -228,60 +173,6 @@ TEST(StabilityBeam, PulseEnergies)
   }
   record({ "Energies", "pulse and limits times 2^-88 to 2^22 (1e-30 to 1.5e3 J), two reflections",
     "echoes that change by a bit but for the power of two", 0.0, static_cast<double>(differing) });
-  Worst error;
-  for (int decade = -30; decade <= 3; ++decade)
-  {
-    Sensor open = openSensor(1e-9);
-    open.pulseEnergy = std::pow(10.0, decade);
-    open.upperEnergyLimit = 1e4;
-    const Echo echo = onlyEcho(wall(50.0, { 0.146, 0.0, 0.0 }), open, directSettings(100));
-    error.see(std::fabs(echo.energy / (0.146 * open.pulseEnergy) - 1.0));
-  }
-  record(
-    { "Energies", "pulse of 1e-30 to 1e3 J", "relative error of energy", 1e-14, error.value() });
-}
-
-TEST(StabilityBeam, LimitsThatMeetAndLimitsOfNothing)
-{
-  std::size_t wrong = 0;
-  EchoSettings settings;
-  settings.noise = false;
-  for (int decade = -30; decade <= 3; ++decade)
-  {
-    Sensor sensor;
-    sensor.pulseEnergy = std::pow(10.0, decade);
-    for (const double share : { 0.0, 1e-3, 0.1, 0.5, 1.0 })
-    {
-      const double limit = share * sensor.pulseEnergy;
-      sensor.lowerEnergyLimit = limit;
-      sensor.upperEnergyLimit = limit;
-      wrong += !checkSensor(sensor).empty();
-      const ScanResult result =
-        runScan(makeSetup(wall(100.0, { 0.8, 0.1, 10.0 }), sensor, settings), oneBeam());
-      wrong += share < 0.3 ? result.echoes.empty() : (share == 1.0 && !result.echoes.empty());
-      for (const Echo& echo : result.echoes)
-      {
-        wrong += !(echo.energy == limit && echo.energyReceived > limit);
-        wrong += hueOfEnergy(echo.energy, limit, limit) != 0.0;
-      }
-      // No lower limit, and an open upper one.
-      sensor.lowerEnergyLimit = 0.0;
-      sensor.upperEnergyLimit = 1e4;
-      const ScanResult open =
-        runScan(makeSetup(wall(100.0, { 0.8, 0.1, 10.0 }), sensor, settings), oneBeam());
-      for (const Echo& echo : open.echoes)
-      {
-        wrong += !(echo.energy == echo.energyReceived);
-        const double hue = hueOfEnergy(echo.energy, 0.0, 1e4);
-        wrong += !(hue >= 0.0 && hue <= LargestHue);
-      }
-      const double sum = receivedFrom(open);
-      wrong += !(sum > 0.8 * sensor.pulseEnergy && sum < 0.9 * sensor.pulseEnergy);
-    }
-  }
-  record({ "Limits", "Qlow = Qhigh, and Qlow = 0, pulse of 1e-30 to 1e3 J",
-    "echoes with another energy than Eq. 12 says, or a hue outside 0 to 240 deg", 0.0,
-    static_cast<double>(wrong) });
 }
 
 TEST(StabilityBeam, NumbersOfRays)
@@ -291,8 +182,7 @@ TEST(StabilityBeam, NumbersOfRays)
   std::size_t wrong = 0;
   for (const Sampling sampling : { Sampling::MonteCarlo, Sampling::Stratified })
   {
-    for (const int rays :
-      { 1, 2, 3, 4, 5, 7, 10, 33, 100, 101, 999, 1000, 10001, 100000, 999999, 1000000 })
+    for (const int rays : { 1, 2, 3, 4, 5, 7, 8, 33, 100, 101, 999, 10001, 1000000 })
     {
       EchoSettings settings = directSettings(rays);
       settings.sampling = sampling;

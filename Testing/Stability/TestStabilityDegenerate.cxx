@@ -1,14 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Scenes at the edge of geometry: planes through the lidar or nearly so, triangles twice, without
-// area or turned over, a lidar within, on a surface, on a vertex, and grazing incidence.
-#include "CoincidentTestScene.h"
+// area or turned over, a lidar on a surface, on a vertex, and grazing incidence. Faces that
+// coincide are TestCoincidentFaces', bounds of energy in any scene TestGeometryProperties'.
 #include "CollisionTreeBuilder.h"
 #include "HitsAgainstOracle.h"
 #include "ScanTestTown.h"
 
 #include <gtest/gtest.h>
-
-#include <limits>
 
 using namespace echotest;
 using stability::record;
@@ -40,21 +38,6 @@ std::size_t echoesThatDiffer(const ScanResult& a, const ScanResult& b)
   return differing;
 }
 
-/// Most that range or energy of an echo change by, relative; infinite if another echo is there.
-double largestChange(const ScanResult& a, const ScanResult& b)
-{
-  double largest = a.echoes.size() == b.echoes.size() ? 0.0 : INFINITY;
-  for (std::size_t i = 0; i < std::min(a.echoes.size(), b.echoes.size()); ++i)
-  {
-    const Echo& x = a.echoes[i];
-    const Echo& y = b.echoes[i];
-    largest = std::max({ largest, x.objectId == y.objectId ? 0.0 : INFINITY,
-      std::fabs(y.range / x.range - 1.0), std::fabs(y.energyReceived / x.energyReceived - 1.0),
-      std::fabs(y.returnEnergy / x.returnEnergy - 1.0) });
-  }
-  return largest;
-}
-
 /// Energy that a beam along an infinite plane receives, whatever its height: Qs kd (t - sin t cos
 /// t)/Omega.
 double energyAlongAPlane(double t)
@@ -68,7 +51,7 @@ TEST(StabilityDegenerate, PlanesThroughTheLidarAreNotHit)
 {
   geometrytest::Numbers random(201);
   std::size_t echoes = 0;
-  for (int round = 0; round < 300; ++round)
+  for (int round = 0; round < 100; ++round)
   {
     // In a coordinate plane through the lidar, which may be far out; and a triangle whose plane
     // holds it because the lidar is on the line of a side.
@@ -105,7 +88,7 @@ TEST(StabilityDegenerate, PlanesThroughTheLidarAreNotHit)
       }
     }
   }
-  record({ "Coplanar with the lidar", "exactly: 12,000 triangles in planes through it", "echoes",
+  record({ "Coplanar with the lidar", "exactly: 4,000 triangles in planes through it", "echoes",
     0.0, static_cast<double>(echoes) });
 }
 
@@ -142,37 +125,11 @@ TEST(StabilityDegenerate, PlanesNearlyThroughTheLidar)
     excess.value() });
 }
 
-TEST(StabilityDegenerate, TinyTiltsBoundedEnergy)
-{
-  // One corner off the plane of the lidar by less and less, down to the smallest numbers.
-  Worst excess;
-  for (double off = 1.0; off > 1e-320; off *= 1e-5)
-  {
-    Scene scene;
-    scene.triangle({ 10.0, -3.0, 0.0 }, { 12.0, 3.0, 0.0 }, { 50.0, 0.25, off }, Glass, 0);
-    scene.triangle({ 60.0, -3.0, off }, { 62.0, 3.0, 0.0 }, { 90.0, 0.25, -off }, Glass, 0);
-    for (const bool integrated : { true, false })
-    {
-      EchoSettings settings = quiet();
-      settings.beamSamples = integrated ? BeamSampleSource::Cells : BeamSampleSource::Rays;
-      const ScanResult result = runScan(makeSetup(scene, openSensor(), settings), oneBeam());
-      excess.see(receivedFrom(result) / (3.6e-4 * 0.872));
-      for (const Echo& echo : result.echoes)
-      {
-        excess.see(echo.range / 91.0);
-      }
-    }
-  }
-  record({ "Coplanar with the lidar", "nearly: corners 1 to 1e-320 m off the plane",
-    "energy over (kd + ks) Qs, range over the farthest corner's", 1.0, excess.value() });
-}
-
 TEST(StabilityDegenerate, DuplicatesAndTrianglesWithoutArea)
 {
   const Scene plain = town();
   Scene more = plain;
   more.mesh = std::make_shared<TriangleMesh>(*plain.mesh);
-  geometrytest::Numbers random(202);
   const auto add = [&more](const std::array<std::uint32_t, 3>& t, std::size_t like)
   {
     more.mesh->triangles.push_back(t);
@@ -198,106 +155,22 @@ TEST(StabilityDegenerate, DuplicatesAndTrianglesWithoutArea)
     std::swap(t[1], t[2]);
   }
   const ScanBeams beams = horizon(180, 4);
-  std::size_t withMore = 0;
-  std::size_t whenTurned = 0;
-  std::size_t echoes = 0;
   EchoSettings settings = quiet();
-  settings.beamSamples = BeamSampleSource::Rays; // integrals are rounded otherwise, as below
+  settings.beamSamples = BeamSampleSource::Rays; // integrals are rounded otherwise
   Sensor sensor;
   sensor.lowerEnergyLimit = 1e-8;
-  const ScanResult usualResult = runScan(makeSetup(plain, sensor, settings), beams);
-  echoes += usualResult.echoes.size();
-  withMore += echoesThatDiffer(usualResult, runScan(makeSetup(more, sensor, settings), beams));
-  whenTurned += echoesThatDiffer(usualResult, runScan(makeSetup(turned, sensor, settings), beams));
-  ASSERT_GT(echoes, 200u);
-  // So many rays that the doubled triangles of a beam are few enough to be integrated.
-  settings.beamSamples = BeamSampleSource::Cells;
-  settings.raysPerBeam = 6000;
-  settings.numberOfReflections = 1;
-  const ScanResult integrated = runScan(makeSetup(plain, sensor, settings), beams);
-  EXPECT_GT(integrated.echoes.size(), 200u);
-  EXPECT_LT(largestChange(integrated, runScan(makeSetup(more, sensor, settings), beams)), 4e-6);
-  EXPECT_LT(largestChange(integrated, runScan(makeSetup(turned, sensor, settings), beams)), 4e-6);
+  const ScanResult usually = runScan(makeSetup(plain, sensor, settings), beams);
+  ASSERT_GT(usually.echoes.size(), 200u);
+  const auto differing = [&](const Scene& scene)
+  {
+    return static_cast<double>(
+      echoesThatDiffer(usually, runScan(makeSetup(scene, sensor, settings), beams)));
+  };
+  const std::string promise = "echoes, with two reflections, that change by a bit";
   record(
     { "Duplicated, zero-area", "every triangle three more times, and three without area beside it",
-      "echoes, with two reflections, that change by a bit", 0.0, static_cast<double>(withMore) });
-  record({ "Inverted", "every triangle turned over",
-    "echoes, with two reflections, that change by a bit", 0.0, static_cast<double>(whenTurned) });
-}
-
-TEST(StabilityDegenerate, FacesThatCoincide)
-{
-  using namespace coincidenttest;
-  Worst ofRays;
-  Worst ofCells;
-  for (const int parts : { 20, 60 })
-  {
-    for (const CoincidentPlates& plates : coincidenttest::pairs(parts))
-    {
-      for (const bool wallFirst : { true, false })
-      {
-        const Scene seen = plates.seen(wallFirst);
-        const Scene scene = plates.scene(wallFirst);
-        const double right = receivedAt(Vec3(0.0), seen, inCells());
-        const double byTheseRays = receivedAt(Vec3(0.0), seen, byRays(1000));
-        for (const Vec3& place : { Vec3(0.0), Utm })
-        {
-          ofRays.see(std::fabs(receivedAt(place, scene, byRays(1000)) / byTheseRays - 1.0));
-          ofCells.see(std::fabs(receivedAt(place, scene, inCells()) / right - 1.0));
-        }
-      }
-    }
-  }
-  const std::string range =
-    "a sheet of 800 or 7,200 triangles in a wall, either first; 0 and 4,000 km from the origin";
-  record({ "Coincident faces", range,
-    "relative error of energy, beside the same rays without what is hidden", 1e-6,
-    ofRays.value() });
-  record({ "Coincident faces", range, "the same in cells, beside integrated polygons", 3e-3,
-    ofCells.value() });
-}
-
-TEST(StabilityDegenerate, LidarWithinABox)
-{
-  // Diffuse walls all around return kd <cos incidence>: against the mean over the very rays'
-  // directions in closed form there is none, but every ray hits, and energy has bounds.
-  geometrytest::Numbers random(203);
-  Worst excess;
-  std::size_t lost = 0;
-  for (int round = 0; round < 200; ++round)
-  {
-    const Vec3 half(
-      random.logUniform(1e-6, 1e6), random.logUniform(1e-6, 1e6), random.logUniform(1e-6, 1e6));
-    Scene scene;
-    scene.box(Vec3(0.0), half, Wall, 0);
-    const double t = random.logUniform(1e-9, 1.0);
-    Sensor sensor = openSensor(t);
-    sensor.rangeGate = 1e8;
-    EchoSettings settings = quiet();
-    settings.attenuationCoefficient = 0.0;
-    const Vec3 origin(
-      random(-0.99, 0.99) * half.x, random(-0.99, 0.99) * half.y, random(-0.99, 0.99) * half.z);
-    const ScanBeams beams = oneBeam(random.direction(), origin);
-    for (const bool integrated : { true, false })
-    {
-      settings.beamSamples = integrated ? BeamSampleSource::Cells : BeamSampleSource::Rays;
-      const ScanResult result = runScan(makeSetup(scene, sensor, settings), beams);
-      lost += result.echoes.empty();
-      excess.see(receivedFrom(result) / (0.2 * sensor.pulseEnergy));
-    }
-    // No ray leaves the box.
-    const auto tree = buildCollisionTree(scene.mesh, TreeOptions());
-    OneBeamTracer tracer(*tree);
-    tracer.setBeam(makeBeamFrame(origin, random.direction(), t));
-    std::vector<Hit> hits;
-    tracer.trace(geometrytest::raysInDisc(random, 500), TraceMode::Automatic, hits);
-    lost += static_cast<std::size_t>(
-      std::count_if(hits.begin(), hits.end(), [](const Hit& hit) { return !hit.valid(); }));
-  }
-  record({ "Lidar within", "200 boxes with sides of 2e-6 to 2e6 m",
-    "rays that leave the box, beams without an echo", 0.0, static_cast<double>(lost) });
-  record({ "Lidar within", "200 boxes with sides of 2e-6 to 2e6 m",
-    "energy, with two reflections, over (kd + ks) Qs", 1.0, excess.value() });
+      promise, 0.0, differing(more) });
+  record({ "Inverted", "every triangle turned over", promise, 0.0, differing(turned) });
 }
 
 TEST(StabilityDegenerate, LidarOnASurfaceAnEdgeOrAVertex)

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The photon receiver and its Gaussian noise, from no background light to 1e12 electrons of it,
-// beside the complementary error function of 50 digits and the moments and shares that the noise
-// must have.
+// beside the complementary error function of 50 digits. Moments and shares of the noise are
+// TestPhotonReceiver's. What is out of range is TestPhotonReceiver's and TestStabilitySweep's.
 #include "EchoTestScene.h"
 #include "PhotonReceiver.h"
 #include "RangeUnits.h"
@@ -13,7 +13,6 @@
 #include <gtest/gtest.h>
 
 #include <functional>
-#include <limits>
 
 using namespace echotest;
 using stability::record;
@@ -41,11 +40,11 @@ void forEachReceiver(const std::function<void(const Sensor&, double falseAlarms,
   sensor.backgroundRadiance = 1.0;
   const double electronsOfRadiance = PhotonReceiver(sensor).background;
   int number = 0;
-  for (const double background : { 0.0, 1e-6, 1.0, 1e3, 1e6, 1e9, 1e12 })
+  for (const double background : { 0.0, 1e-6, 1.0, 1e6, 1e12 })
   {
-    for (const double amplifier : { 0.0, 1e-3, 60.0, 1e6 })
+    for (const double amplifier : { 0.0, 1e-3, 1e6 })
     {
-      for (const double excess : { 1.0, 3.0, 30.0, 1e3 })
+      for (const double excess : { 1.0, 3.0, 1e3 })
       {
         if (background + amplifier == 0.0)
         {
@@ -63,7 +62,7 @@ void forEachReceiver(const std::function<void(const Sensor&, double falseAlarms,
       }
     }
   }
-  EXPECT_EQ(number, 432);
+  EXPECT_EQ(number, 168);
 }
 }
 
@@ -113,140 +112,4 @@ TEST(StabilityPhotons, FalseAlarmsAreThoseAskedFor)
     "false alarms drawn off their number, in standard deviations", 4.5, counted.value() });
   record({ "Gaussian noise", range,
     "1 if the noise of a false alarm does not exceed the limit, else 0", 0.0, wrong.value() });
-}
-
-TEST(StabilityPhotons, NoiseHasItsMomentsAndDetectsWithItsProbability)
-{
-  constexpr int Draws = 5000;
-  Worst mean;
-  Worst variance;
-  Worst share;
-  Worst wrong;
-  BeamNoise noise;
-  forEachReceiver(
-    [&](const Sensor& sensor, double, int number)
-    {
-      const PhotonReceiver receiver(sensor);
-      const NoisePlan plan = planNoise(sensor, true);
-      ASSERT_GE(plan.gateUnits, Draws);
-      const double limit = sensor.lowerEnergyLimit;
-      const double threshold = limit * receiver.electronsPerJoule;
-      double before = 0.0;
-      for (const double electrons : { 0.0, 0.5 * threshold, threshold, 2.0 * threshold, 1e12 })
-      {
-        const double light = electrons / receiver.electronsPerJoule;
-        const double deviation = receiver.deviation(electrons);
-        double sum = 0.0;
-        double squares = 0.0;
-        double perceived = 0.0;
-        noise.begin(plan, number, 7, static_cast<int>(std::min(electrons, 1e6)));
-        for (std::int64_t unit = 0; unit < Draws; ++unit)
-        {
-          const double energy = noise.energy(unit, light);
-          const double z = energy * receiver.electronsPerJoule / deviation;
-          sum += z;
-          squares += z * z;
-          perceived += light + energy > limit;
-          const auto& alarms = noise.alarms();
-          const bool alarm = std::binary_search(alarms.begin(), alarms.end(), unit);
-          wrong.see(electrons > 0.0 || (energy > limit) == alarm ? 0.0 : 1.0);
-          wrong.see(
-            light >= plan.faintLight || alarm || noise.isRare(unit) || light + energy <= limit
-              ? 0.0
-              : 1.0);
-        }
-        mean.see(std::fabs(sum) / std::sqrt(Draws));
-        variance.see(std::fabs(squares / Draws - 1.0) / std::sqrt(2.0 / Draws));
-        const double p = receiver.detectionProbability(electrons, threshold);
-        wrong.see(p >= 0.0 && p <= 1.0 && (electrons == 1e12 || p >= before) ? 0.0 : 1.0);
-        before = p;
-        if (p > 0.01 && p < 0.99)
-        {
-          share.see(std::fabs(perceived - p * Draws) / std::sqrt(p * (1.0 - p) * Draws));
-        }
-      }
-    });
-  const std::string range = Range + ", light of 0 to 1e12 electrons";
-  record({ "Gaussian noise", range, "mean off 0, in standard deviations of 5,000 draws", 4.5,
-    mean.value() });
-  record({ "Gaussian noise", range, "variance off F (n + n_b) + n_a^2, likewise", 4.5,
-    variance.value() });
-  record({ "Gaussian noise", range, "units perceived off their probability, likewise", 4.5,
-    share.value() });
-  record({ "Gaussian noise", range,
-    "1 if a unit is perceived that must not be, or a probability is none, else 0", 0.0,
-    wrong.value() });
-}
-
-TEST(StabilityPhotons, ScansHaveEchoesThatAreNumbers)
-{
-  Scene scene;
-  scene.plate(Vec3(100.0, 0.0, 0.0), Vec3(0.0, 20.0, 0.0), Vec3(0.0, 0.0, 20.0), Wall);
-  std::size_t echoes = 0;
-  std::size_t bad = 0;
-  forEachReceiver(
-    [&](const Sensor& sensor, double, int number)
-    {
-      EchoSettings settings;
-      settings.seed = number;
-      // To the end of its last unit.
-      const double gate = sensor.rangeUnitLength() *
-        static_cast<double>(unitsInsideGate(sensor.samplingInterval, sensor.rangeGate));
-      const ScanSetup setup = makeSetup(scene, sensor, settings);
-      for (const Echo& echo : runScan(setup, oneBeam()).echoes)
-      {
-        ++echoes;
-        bad += !(echo.range >= 0.0 && echo.range <= gate &&
-          echo.energyReceived > sensor.lowerEnergyLimit && std::isfinite(echo.energyReceived) &&
-          std::isfinite(echo.returnEnergy) && std::isfinite(echo.energyStdError));
-      }
-      const double times = falseAlarmsOfElectrons(sensor);
-      bad += !(times >= 0.0 && times < std::numeric_limits<double>::infinity());
-    });
-  EXPECT_GT(echoes, 10000u);
-  record({ "Gaussian noise", Range + ", 1 to 1e8 false alarms in 1e6 beams",
-    "echoes outside the gate, not above the limit or with a value that is no number", 0.0,
-    static_cast<double>(bad) });
-}
-
-TEST(StabilityPhotons, WhatLiesBeyondIsNamed)
-{
-  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-  Sensor sensor = dark();
-  sensor.backgroundRadiance = 0.05;
-  std::size_t unnamed = checkSensor(dark()).find("amplifier_noise is 0") == std::string::npos;
-  for (const double falseAlarms : { nan, -1.0, 0.0, 1.001e8, 1e9, 1e308 })
-  {
-    unnamed += setPhotonLimits(sensor, falseAlarms, 40.0, Beams).find("false_alarms_per_scan is") ==
-      std::string::npos;
-  }
-  // A tenth of the units of one beam, and more.
-  for (const double falseAlarms : { 534.0, 1e8 })
-  {
-    unnamed += setPhotonLimits(sensor, falseAlarms, 40.0, 1.0)
-                 .find("less than a tenth of the range units") == std::string::npos;
-  }
-  const auto errorOf = [&](double Sensor::*member, double value)
-  {
-    Sensor other = sensor;
-    other.*member = value;
-    return checkSensor(other);
-  };
-  for (const double value : { nan, -1e-9, 1e-4, 1.1e20 })
-  {
-    unnamed +=
-      errorOf(&Sensor::amplifierNoise, value).find("amplifier_noise is") == std::string::npos;
-  }
-  for (const double value : { nan, 0.0, 0.999, 1.1e6 })
-  {
-    unnamed += errorOf(&Sensor::excessNoiseFactor, value).find("excess_noise_factor is") ==
-      std::string::npos;
-  }
-  for (const double value : { nan, -1e-9, 1.1e10 })
-  {
-    unnamed += errorOf(&Sensor::backgroundRadiance, value).find("background_radiance is") ==
-      std::string::npos;
-  }
-  record({ "Out of range", "photon receiver: no noise, more than 1e8 false alarms, each number",
-    "values without an error that names them", 0.0, static_cast<double>(unnamed) });
 }

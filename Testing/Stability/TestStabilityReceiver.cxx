@@ -11,9 +11,6 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <limits>
-
 using namespace echotest;
 using stability::record;
 using stability::Worst;
@@ -74,71 +71,6 @@ TEST(StabilityReceiver, RangeUnitsOver100Kilometres)
   record({ "Range unit", range, "heap bytes, over paths x (2 + pulse width/unit)", 200.0,
     bytes.value() });
 #endif
-}
-
-TEST(StabilityReceiver, RangesInUnitsOfEverySize)
-{
-  Worst range;
-  Worst energy;
-  for (int decade = -12; decade <= -3; ++decade)
-  {
-    Sensor sensor = openSensor(1e-9);
-    sensor.samplingInterval = std::pow(10.0, decade);
-    sensor.pulseWidth = sensor.samplingInterval;
-    sensor.rangeGate = 2.0 * Farthest;
-    for (const double distance : { 1e-3, 1.0, 123.456, 1e4, Farthest })
-    {
-      Scene scene;
-      scene.plate(Vec3(distance, 0.0, 0.0), Vec3(0.0, distance, 0.0), Vec3(0.0, 0.0, distance),
-        { 0.146, 0.0, 0.0 });
-      const Echo echo = onlyEcho(scene, sensor, directSettings(100));
-      range.see(std::fabs(echo.range / distance - 1.0));
-      energy.see(std::fabs(echo.returnEnergy / (3.6e-4 * 0.146) - 1.0));
-    }
-  }
-  const std::string what = "1e-12 to 1e-3 s, pulse as wide, walls at 1e-3 to 1e5 m";
-  record({ "Range unit", what, "relative error of range", 1e-15, range.value() });
-  record({ "Range unit", what, "relative error of the return's energy", 1e-12, energy.value() });
-}
-
-TEST(StabilityReceiver, FalseAlarmsOver100Kilometres)
-{
-  Worst inDeviations;
-  for (int decade = -12; decade <= -6; ++decade)
-  {
-    Sensor sensor;
-    sensor.samplingInterval = std::pow(10.0, decade);
-    sensor.pulseWidth = sensor.samplingInterval;
-    sensor.rangeGate = Farthest;
-    // One photon in a unit on average, and a limit that some hundred units exceed.
-    sensor.noisePhotonRate = 1.0 / sensor.samplingInterval;
-    const double inGate =
-      static_cast<double>(unitsInsideGate(sensor.samplingInterval, sensor.rangeGate));
-    double limit = 0.0;
-    while (poissonTail(1.0, limit) * inGate > 500.0)
-    {
-      limit += 1.0;
-    }
-    sensor.lowerEnergyLimit = limit * sensor.photonEnergy();
-    const NoisePlan plan = planNoise(sensor, true);
-    EXPECT_EQ(checkNoise(plan, 20), "");
-    Scene empty;
-    ScanBeams beams;
-    for (std::uint64_t b = 0; b < 20; ++b)
-    {
-      beams.ids.push_back(b);
-      beams.origins.push_back(Vec3(0.0));
-      beams.directions.push_back(Vec3(1.0, 0.0, 0.0));
-    }
-    EchoSettings settings;
-    settings.returnMode = ReturnMode::RangeUnits;
-    const ScanResult result = runScan(makeSetup(empty, sensor, settings), beams);
-    const double expected = 20.0 * plan.falseAlarmsPerBeam;
-    inDeviations.see(
-      std::fabs(static_cast<double>(result.echoes.size()) - expected) / std::sqrt(expected));
-  }
-  record({ "Range unit", "1e-12 to 1e-6 s, noise of a photon in each, 100 km",
-    "false alarms off their expected number, in standard deviations", 4.5, inDeviations.value() });
 }
 
 namespace
@@ -225,33 +157,4 @@ TEST(StabilityReceiver, PoissonTailsFrom1e12thToA1e12Photons)
       1e-10, error.value() });
   record({ "Noise", range, "quantiles that are not the smallest count with that probability", 0.0,
     wrong.value() });
-}
-
-TEST(StabilityReceiver, MeanAndVarianceOfTheNoise)
-{
-  Worst mean;
-  Worst variance;
-  for (int decade = -12; decade <= 12; ++decade)
-  {
-    const double m = std::pow(10.0, decade);
-    constexpr int Draws = 20000;
-    double sum = 0.0;
-    double squares = 0.0;
-    for (int n = 0; n < Draws; ++n)
-    {
-      const double u = uniformPair(12, decade + 20, n, RandomPurpose::Noise)[0];
-      const double off = poissonQuantile(m, u, 1.0 - u) - m;
-      sum += off;
-      squares += off * off;
-    }
-    // Below a photon or so per sample the squares of deviations are not Gaussian: add their own
-    // smallest step.
-    mean.see(std::fabs(sum / Draws) / (std::sqrt(m / Draws) + 1.0 / Draws));
-    variance.see(
-      std::fabs(squares / Draws - m) / (std::sqrt((m + 2.0 * m * m) / Draws) + 1.0 / Draws));
-  }
-  const std::string range = "means of 1e-12 to 1e12 photons, 20,000 draws each";
-  record({ "Noise", range, "mean off the exact one, in standard deviations", 4.5, mean.value() });
-  record({ "Noise", range, "variance off the exact one, in standard deviations", 4.5,
-    variance.value() });
 }

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Many beams and many triangles: the same bits for any number of threads and pieces, and the memory
-// that they take.
+// Many beams and many triangles: the same bits for any number of threads, and the memory that they
+// take.
 //
 // The environment variable AVIANLIDAR_STABILITY_TRIANGLES asks for another number of triangles than
-// the half million of an ordinary run, AVIANLIDAR_STABILITY_BEAMS for other than 200,000 beams.
+// the half million of an ordinary run, AVIANLIDAR_STABILITY_BEAMS for other than 50,000 beams.
 #include "Memory.h"
 #include "ScanTestTown.h"
 #include "StabilityTable.h"
@@ -25,16 +25,6 @@ std::size_t asked(const char* variable, std::size_t usually)
   return text ? std::strtoull(text, nullptr, 10) : usually;
 }
 
-std::string inWords(std::size_t count)
-{
-  std::string text = std::to_string(count);
-  for (std::size_t i = text.size(); i > 3; i -= 3)
-  {
-    text.insert(i - 3, ",");
-  }
-  return text;
-}
-
 /// All round, from the horizon to the zenith.
 ScanBeams sky(std::size_t count)
 {
@@ -50,16 +40,6 @@ ScanBeams sky(std::size_t count)
     beams.directions.push_back(Vec3(std::sin(azimuth) * std::cos(elevation),
       std::cos(azimuth) * std::cos(elevation), std::sin(elevation)));
   }
-  return beams;
-}
-
-/// Beams [begin, end).
-ScanBeams piece(const ScanBeams& all, std::size_t begin, std::size_t end)
-{
-  ScanBeams beams;
-  beams.ids.assign(all.ids.begin() + begin, all.ids.begin() + end);
-  beams.origins.assign(all.origins.begin() + begin, all.origins.begin() + end);
-  beams.directions.assign(all.directions.begin() + begin, all.directions.begin() + end);
   return beams;
 }
 
@@ -99,7 +79,7 @@ Scene hills(std::size_t triangles)
 
 TEST(StabilitySize, ManyBeams)
 {
-  const std::size_t count = asked("AVIANLIDAR_STABILITY_BEAMS", 200000);
+  const std::size_t count = asked("AVIANLIDAR_STABILITY_BEAMS", 50000);
   EchoSettings settings = usual();
   settings.raysPerBeam = 4;
   const ScanSetup setup = makeSetup(town(), Sensor(), settings);
@@ -108,22 +88,8 @@ TEST(StabilitySize, ManyBeams)
   ASSERT_GT(whole.echoes.size(), 100u);
   const ScanResult shared = runScan(setup, beams, 3);
   expectSame(whole, shared);
-  // In ten pieces, one after the other.
-  ScanResult joined;
-  for (std::size_t p = 0; p < 10; ++p)
-  {
-    const std::size_t begin = count * p / 10;
-    const ScanResult part = runScan(setup, piece(beams, begin, count * (p + 1) / 10), 2);
-    joined.echoes.insert(joined.echoes.end(), part.echoes.begin(), part.echoes.end());
-    for (const std::size_t beam : part.beamOfEcho)
-    {
-      joined.beamOfEcho.push_back(begin + beam);
-    }
-  }
-  expectSame(whole, joined);
-  record({ "Beams", inWords(count) + " in a scan",
-    "echoes that change by a bit with 1 or 3 threads, 1 or 10 pieces", 0.0,
-    HasFailure() ? 1.0 : 0.0 });
+  record({ "Beams", std::to_string(count) + " in a scan",
+    "echoes that change by a bit with 1 or 3 threads", 0.0, HasFailure() ? 1.0 : 0.0 });
 }
 
 TEST(StabilitySize, ManyTriangles)
@@ -145,7 +111,7 @@ TEST(StabilitySize, ManyTriangles)
   }
   const ScanResult result = runScan(setup, beams, 2);
   EXPECT_GT(result.echoes.size(), 100u);
-  const std::string range = inWords(scene.mesh->size()) + " triangles";
+  const std::string range = std::to_string(scene.mesh->size()) + " triangles";
 #ifndef AVIANLIDAR_SANITIZED
   record({ "Triangles", range, "bytes a triangle: mesh, materials and ids, as given", 100.0,
     static_cast<double>(withMesh - before) / count });

@@ -7,7 +7,7 @@
  * Differs: the Gaussian profile, beams that are not round, the receiver's aperture and the photon
  * receiver are added; the defaults, uniform, round, 0 and the limits, are the paper's.
  * Valid: the ranges of sensorFields(), far beyond any instrument.
- * Test: TestScanReport.cxx, TestStabilityErrors.cxx (bad values are named).
+ * Test: TestScanReport.cxx, TestStabilitySweep.cxx (bad values are named).
  */
 #ifndef avianlidar_Sensor_h
 #define avianlidar_Sensor_h
