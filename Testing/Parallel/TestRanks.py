@@ -1,12 +1,17 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """What several ranks make together is what one makes alone, to the last bit, wherever the surfaces and beams are; a
-scene that has not changed is not sent again."""
+scene that has not changed is not sent again. With the tests of clouds and coverage: one start of the ranks has all."""
+
+import functools
+import sys
 
 import numpy as np
 import vtk
 
-from paralleltools import (CONTROLLER, LAST, RANK, RANKS, assert_same, blocks_of, collect, exchange, field_texts,
-                           in_order, joined, main, point_arrays, table, total, update)
+import TestRanksClouds
+import TestRanksCoverage
+from paralleltools import (CONTROLLER, COSTS, LAST, RANK, RANKS, assert_same, blocks_of, collect, exchange, field_texts,
+                           in_order, joined, main, point_arrays, table, tests_of, total, update)
 import echotools
 from avianlidar import mover, vtkAvianLidar as al
 
@@ -19,6 +24,7 @@ for number in range(0, 24, 3):
 SETTINGS = {"RaysPerBeam": 40, "NumberOfThreads": 1}
 
 
+@functools.lru_cache(maxsize=None)
 def alone(surfaces=TOWN, **settings):
     """The scan of one process: as one piece nothing is exchanged."""
     echo = echotools.scan(surfaces, **{**SETTINGS, **settings})
@@ -26,9 +32,21 @@ def alone(surfaces=TOWN, **settings):
     return echo
 
 
+def interleaved(i):
+    """Blocks that are this rank's."""
+    return i % RANKS == RANK
+
+
+def multiblock(count, block, mine=lambda i: True):
+    """Blocks of which those that are mine are there."""
+    some = vtk.vtkMultiBlockDataSet()
+    for i in range(count):
+        some.SetBlock(i, block(i) if mine(i) else None)
+    return some
+
+
 def merged_town():
-    tree = al.vtkAvianLidarCollisionTree()
-    tree.SetInputData(TOWN)
+    tree = with_tree(TOWN)
     tree.Update()
     bare = vtk.vtkPolyData()
     bare.ShallowCopy(tree.GetOutput())
@@ -107,7 +125,6 @@ def test_one_rank_has_all():
 
 def test_blocks_are_spread():
     expected = alone()
-    check(together(blocks_of(TOWN, lambda i: i % RANKS == RANK)), expected)
     check(together(blocks_of(TOWN, lambda i: (i * i) % RANKS == RANK or i % 5 == 0)), expected)  # some are everywhere
     tree = with_tree(blocks_of(TOWN, lambda i: i % RANKS == LAST - RANK))
     echo = together(tree)
@@ -122,17 +139,15 @@ def test_blocks_are_spread():
 def test_objects_are_numbered_as_alone():
     """Blocks without a name or without a triangle are objects too, in the order of the blocks."""
     def blocks(mine):
-        some = vtk.vtkMultiBlockDataSet()
-        for i in range(8):
-            block = vtk.vtkPolyData() if i in (2, 5) else TOWN.GetBlock(i)
-            some.SetBlock(i, block if mine(i) else None)
-            if i % 3:
-                some.GetMetaData(i).Set(vtk.vtkCompositeDataSet.NAME(), f"block of {i}")
+        some = multiblock(8, lambda i: vtk.vtkPolyData() if i in (2, 5) else TOWN.GetBlock(i), mine)
+        for i in (1, 2, 4, 5, 7):
+            some.GetMetaData(i).Set(vtk.vtkCompositeDataSet.NAME(), f"block of {i}")
         return some
     expected = alone(blocks(lambda i: True))
-    assert field_texts(expected.GetOutput())["object_names"][4:7] == ["block of 4", "block of 5", "block 6"]
-    assert field_texts(expected.GetOutput())["object_classes"] == ["class 0", "", "", "class 3", "", "", "class 6", ""]
-    for mine in (lambda i: i % RANKS == RANK, lambda i: RANK == LAST, lambda i: i >= RANK):
+    texts = field_texts(expected.GetOutput())
+    assert texts["object_names"][4:7] == ["block of 4", "block of 5", "block 6"]
+    assert texts["object_classes"] == ["class 0", "", "", "class 3", "", "", "class 6", ""]
+    for mine in (interleaved, lambda i: i >= RANK):
         check(together(blocks(mine)), expected)
 
 
@@ -152,22 +167,18 @@ def test_media_are_those_of_all_ranks():
              *(medium("Foliage", "Ellipsoid", Center=(12 * k - 30, 20, 2), Lengths=(5, 5, 6), Name=f"tree {k}") for k in range(5))]
 
     def blocks(mine):
-        some = vtk.vtkMultiBlockDataSet()
-        for i in range(24 + len(media)):
-            some.SetBlock(i, (TOWN.GetBlock(i) if i < 24 else media[i - 24]) if mine(i) else None)
-        return some
+        return multiblock(24 + len(media), lambda i: TOWN.GetBlock(i) if i < 24 else media[i - 24], mine)
 
     beams = al.vtkAvianLidarBeamSource()
     beams.SetPresetToSearch905()
-    beams.SetAzimuthStep(4)
+    beams.SetAzimuthStep(24)
     expected = echotools.scan(blocks(lambda i: True), beams, **SETTINGS)
     expected.Update()
     objects = point_arrays(expected.GetOutput())["object_id"]
-    assert (objects == -2).sum() > 100 and len(field_texts(expected.GetOutput())["media"]) == len(media)
+    assert (objects == -2).sum() > 20 and len(field_texts(expected.GetOutput())["media"]) == len(media)
     assert set(field_texts(expected.GetOutput())["object_names"]) >= {f"tree {k}" for k in range(5)}
-    for mine in (lambda i: True, lambda i: RANK == LAST, lambda i: i % RANKS == RANK, lambda i: (i >= 24) == (RANK == LAST)):
-        check(together(blocks(mine), beams), expected, LEFT_OUT)
-        check(together(with_tree(blocks(mine)), beams), expected, LEFT_OUT)
+    check(together(blocks(interleaved), beams), expected, LEFT_OUT)
+    check(together(with_tree(blocks(lambda i: (i >= 24) == (RANK == LAST))), beams), expected, LEFT_OUT)
 
 
 def gull(number):
@@ -180,49 +191,28 @@ def gull(number):
 
 
 def test_movers_are_those_of_all_ranks():
-    def movers(mine):
-        some = vtk.vtkMultiBlockDataSet()
-        for i in range(15):
-            some.SetBlock(i, gull(i) if mine(i) else None)
-        return some
-
-    def with_movers(echo, some):
-        echo.SetMoversData(some)
-        return echo
-    beams = echotools.sensor()
-    beams.SetLowerEnergyLimit(1e-8)
-    beams.SetHalfBeamwidth(1e-2)
-    expected = with_movers(echotools.scan(TOWN, beams, **SETTINGS), movers(lambda i: True))
-    expected.Update()
-    assert expected.GetNumberOfTouchedBeams() > 15
-    costs = ("candidates", "nodes_visited", "rays_traced") + LEFT_OUT
-    for mine in (lambda i: True, lambda i: RANK == LAST, lambda i: i % RANKS == RANK, lambda i: i >= 2 * RANK):
-        echo = update(with_movers(echotools.scan(TOWN, beams, **SETTINGS), movers(mine)))
-        check(echo, expected, costs)
-        touched = (echo.GetNumberOfTouchedBeams(), expected.GetNumberOfTouchedBeams())
-        assert touched[0] == touched[1], touched
-
-
-def test_empty_movers_of_other_ranks_are_none():
-    """A rank without movers may have an empty vtkPolyData, also one with arrays that nobody reads."""
-    beams = echotools.sensor()
-    beams.SetLowerEnergyLimit(1e-8)
-    beams.SetHalfBeamwidth(1e-2)
-    blocks = vtk.vtkMultiBlockDataSet()
-    for i in range(4):
-        blocks.SetBlock(i, gull(i))
-        blocks.GetMetaData(i).Set(vtk.vtkCompositeDataSet.NAME(), f"gull {i}")
+    """A rank without movers may have an empty vtkPolyData, also where others have arrays that nobody reads."""
+    gulls = [gull(i) for i in range(15)]
+    for one in gulls:
         word = vtk.vtkStringArray()  # a user's own
         word.SetName("block_name")
-        blocks.GetBlock(i).GetFieldData().AddArray(word)
-    expected = echotools.scan(TOWN, beams, **SETTINGS)
-    expected.SetMoversData(blocks)
-    expected.Update()
-    costs = ("candidates", "nodes_visited", "rays_traced") + LEFT_OUT
-    for owner in {0, LAST}:
+        one.GetFieldData().AddArray(word)
+    beams = echotools.sensor()
+    beams.SetLowerEnergyLimit(1e-8)
+    beams.SetHalfBeamwidth(1e-2)
+
+    def with_movers(movers):
         echo = echotools.scan(TOWN, beams, **SETTINGS)
-        echo.SetMoversData(blocks if RANK == owner else vtk.vtkPolyData())
-        check(update(echo), expected, costs)
+        echo.SetMoversData(movers)
+        return echo
+    expected = with_movers(multiblock(15, gulls.__getitem__))
+    expected.Update()
+    assert expected.GetNumberOfTouchedBeams() > 15
+    for mine in (lambda i: True, lambda i: RANK == LAST, lambda i: RANK == 0, interleaved):
+        some = multiblock(15, gulls.__getitem__, mine)
+        echo = update(with_movers(some if any(map(mine, range(15))) else vtk.vtkPolyData()))
+        check(echo, expected, COSTS + LEFT_OUT)
+        assert echo.GetNumberOfTouchedBeams() == expected.GetNumberOfTouchedBeams()
 
 
 def test_one_surface_in_pieces():
@@ -243,7 +233,7 @@ def test_field_data_of_one_rank():
         origin.InsertNextValue(value)
     tree, echo = with_tree(TOWN), echotools.scan(TOWN, **SETTINGS)
     for _ in range(2):
-        scene = blocks_of(TOWN, lambda i: i % RANKS == RANK)
+        scene = blocks_of(TOWN, interleaved)
         if RANK == LAST:
             scene.GetFieldData().AddArray(origin)
         tree.SetInputData(scene)
@@ -253,27 +243,9 @@ def test_field_data_of_one_rank():
             assert [found.GetValue(i) for i in range(3)] == [origin.GetValue(i) for i in range(3)]
 
 
-def test_large_blocks():
-    """A block of some MiB."""
-    sphere = vtk.vtkSphereSource()
-    sphere.SetRadius(60)
-    sphere.SetThetaResolution(200)
-    sphere.SetPhiResolution(150)
-    sphere.SetOutputPointsPrecision(vtk.vtkAlgorithm.DOUBLE_PRECISION)
-    sphere.Update()
-    paint = al.vtkAvianLidarMaterial()
-    paint.SetInputData(sphere.GetOutput())
-    paint.Update()
-    surface = paint.GetOutput()
-    echo = together(surface if RANK == LAST else vtk.vtkPolyData())
-    check(echo, alone(surface))
-    if RANKS > 1:
-        assert total(echo.GetNumberOfBytesSent()) > 2 * 2**20
-
-
 def test_second_scan_sends_nothing():
     tree = with_tree(blocks_of(TOWN, lambda i: RANK == 0))
-    for first in (tree, blocks_of(TOWN, lambda i: i % RANKS == RANK)):
+    for first in (tree, blocks_of(TOWN, interleaved)):
         echo = together(first)
         sent = total(echo.GetNumberOfBytesSent()) + total(tree.GetNumberOfBytesSent())
         assert (sent > 0) == (RANKS > 1)
@@ -301,11 +273,10 @@ def test_changed_scene():
 
 
 def test_every_kind_of_tree():
-    expected = alone()
     for volume in (0, 1, 2):
         tree = with_tree(blocks_of(TOWN, lambda i: RANK == LAST))
         tree.SetBoundingVolume(volume)
-        check(together(tree), expected)
+        check(together(tree), alone())
         assert total(tree.GetNumberOfBuilds()) == RANKS
         assert len(set(exchange(str(tree.GetNumberOfNodes())))) == 1
 
@@ -329,7 +300,7 @@ def test_nothing_anywhere():
 
 def test_alone_and_together_in_turn():
     """What one rank merged of its own is not taken for the whole, nor the other way round."""
-    mine = blocks_of(TOWN, lambda i: i % RANKS == RANK)
+    mine = blocks_of(TOWN, interleaved)
     for pipeline in (lambda data: data, with_tree):
         echo = echotools.scan(pipeline(mine), **SETTINGS)
         for _ in range(2):
@@ -340,8 +311,7 @@ def test_alone_and_together_in_turn():
 
 def test_threads_of_each_rank():
     """A choice of each rank's own changes nothing, and keeps nobody waiting."""
-    for threads in ((0, 1), (1, 0), (0, 0)):
-        check(together(TOWN, NumberOfThreads=threads[RANK % 2]), alone())
+    check(together(TOWN, NumberOfThreads=RANK % 2), alone())
 
 
 def check_piece(echo, expected):
@@ -353,7 +323,9 @@ def check_piece(echo, expected):
 
 def test_controllers_of_ones_own():
     """The ranks of another controller work together, those of each parting in turn; without one each works alone."""
-    mine = blocks_of(TOWN, lambda i: i % RANKS == RANK)
+    if RANKS == 1:
+        return
+    mine = blocks_of(TOWN, interleaved)
     echo = echotools.scan(mine, **SETTINGS)
     assert echo.GetController() == CONTROLLER
     for parting in (RANK % 2, RANK // 2, RANK % 2):
@@ -381,11 +353,4 @@ def test_work_of_ones_own():
 
 
 if __name__ == "__main__":
-    main([test_everybody_has_all, test_one_rank_has_all, test_blocks_are_spread,
-          test_objects_are_numbered_as_alone, test_movers_are_those_of_all_ranks,
-          test_empty_movers_of_other_ranks_are_none, test_one_surface_in_pieces,
-          test_field_data_of_one_rank,
-          test_large_blocks, test_second_scan_sends_nothing, test_changed_scene,
-          test_every_kind_of_tree, test_beams_of_any_source, test_nothing_anywhere,
-          test_alone_and_together_in_turn, test_threads_of_each_rank, test_work_of_ones_own]
-         + [test_controllers_of_ones_own] * (RANKS > 1))
+    main(tests_of(sys.modules[__name__], TestRanksClouds, TestRanksCoverage))

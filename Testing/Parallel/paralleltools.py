@@ -38,6 +38,11 @@ def main(tests):
         os._exit(1)  # mpiexec ends the others
 
 
+def tests_of(*modules):
+    """Every test of these modules, so that one start of the ranks has many."""
+    return [test for module in modules for name, test in vars(module).items() if name.startswith("test_")]
+
+
 def failing_new():
     """The functions of FailingNew.cxx, if this process has preloaded it."""
     library = ctypes.CDLL(None)
@@ -88,8 +93,7 @@ def joined(data):
     for part in collect(data):
         for name, values in point_arrays(part).items():
             columns.setdefault(name, []).append(values)
-    arrays = {name: np.concatenate(values) for name, values in columns.items()}
-    return in_order(arrays)
+    return in_order({name: np.concatenate(values) for name, values in columns.items()})
 
 
 def blocks_of(blocks, mine):
@@ -104,10 +108,9 @@ def blocks_of(blocks, mine):
 
 def table(ids):
     """Some beams of the sensor as anyone's script would make them."""
-    source = echotools.sensor()
+    source, beams = echotools.sensor(), vtk.vtkPolyData()
     source.Update()
     whole = source.GetOutput()
-    beams = vtk.vtkPolyData()
     points = vtk.vtkPoints()
     points.SetDataTypeToDouble()
     beams.GetPointData().CopyAllocate(whole.GetPointData())
@@ -135,7 +138,7 @@ def in_order(arrays):
     return {name: values[order] for name, values in arrays.items()}
 
 
-COSTS = ("candidates", "nodes_visited", "rays_traced")
+COSTS = echotools.COSTS
 
 
 def assert_same(found, expected):
