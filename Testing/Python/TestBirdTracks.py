@@ -137,7 +137,7 @@ class Scores(unittest.TestCase):
 
 
 class Files(unittest.TestCase):
-    SCANS = 14
+    SCANS = 10
 
     @classmethod
     def setUpClass(cls):
@@ -150,7 +150,7 @@ class Files(unittest.TestCase):
 
     @classmethod
     def tracks(cls, *inputs, **settings):
-        return al.BirdTracks(inputs or [cls.made], **{"runways": cls.home / "runways.geojson", "learning_scans": 5, **settings})
+        return al.BirdTracks(inputs or [cls.made], **{"runways": cls.home / "runways.geojson", "learning_scans": 3, **settings})
 
     @staticmethod
     def table(file):

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The command: every verb does what the classes do, a mesh of any format is a scene, errors are one line with exit
-status 2, a bar is drawn on a terminal and nowhere else, and help, manual page and completion are the parser's."""
+"""The command: every verb does what the classes do, a mesh is a scene, errors are one line with exit status 2, a bar is drawn on
+a terminal and nowhere else, and manual page and completion are the parser's. Formats are tested where their readers and writers are."""
 import contextlib
 import io
 import os
@@ -17,7 +17,7 @@ import numpy as np
 
 import avianlidar as al
 from avianlidar import _command, reach
-from boxfiles import CORNERS, TRIANGLES, gltf, obj, ply, poly_data, stl, y_up
+from boxfiles import CORNERS, TRIANGLES, poly_data, stl
 from helpertools import from_terminal
 
 SOURCE = pathlib.Path(os.environ["AVIANLIDAR_SOURCE_DIR"])
@@ -26,6 +26,7 @@ OUTPUT = pathlib.Path(os.environ.get("AVIANLIDAR_TEST_OUTPUT_DIR", "/tmp")) / "c
 SHARE = next((folder / "share" for folder in pathlib.Path(al.__file__).resolve().parents if (folder / "share" / "man").is_dir()),
              None)
 CLOUDS = ("las", "pcd", "bin", "vtp", "csv", "geojson")
+FEW = ("--sensor-set", "azimuth_step=1.875")  # beams: 3,072
 
 
 def run(*arguments):
@@ -46,16 +47,14 @@ class Verbs(unittest.TestCase):
         OUTPUT.mkdir(parents=True)
         cls.files = {kind: OUTPUT / f"echoes.{kind}" for kind in (*CLOUDS, "png")}
         outs = [word for file in cls.files.values() for word in ("-o", file)]
-        cls.ran = run("scan", SCENE, "--sensor", "search-905", "--sensor-set", "range_gate=3000", "--scan-set", "seed=3", *outs)
+        cls.ran = run("scan", SCENE, "--sensor", "search-905", *FEW, "--sensor-set", "range_gate=3000", "--scan-set", "seed=3", *outs)
         scene = al.load_scene(SCENE)
-        cls.echoes = al.Scan(scene, al.Sensor("Search905", position=scene.lidar_position, range_gate=3000), seed=3).echoes
+        cls.echoes = al.Scan(scene, al.Sensor("Search905", position=scene.lidar_position, range_gate=3000, azimuth_step=1.875), seed=3).echoes
 
     def test_scan_writes_every_format(self):
         code, lines, errors = self.ran
         self.assertEqual((code, errors), (0, []))
-        self.assertEqual(lines[0], f"{self.files['las']}: {self.echoes.number_of_points} echoes of 15360 beams, "
-                         "1 of them a false alarm of the noise (object_id -1)")
-        self.assertEqual((self.echoes["object_id"] == -1).sum(), 1)
+        self.assertTrue(lines[0].startswith(f"{self.files['las']}: {self.echoes.number_of_points} echoes of 3072 beams"), lines)
         self.assertTrue(lines[2].endswith(", labels in echoes.label"), lines)
         written = al.load_cloud(self.files["vtp"])
         for name, values in self.echoes.items():
@@ -63,29 +62,24 @@ class Verbs(unittest.TestCase):
         self.assertEqual(set(written) - set(self.echoes), {"hue", "rgb", "longitude", "latitude", "height"})
         for kind in ("las", "pcd", "bin", "csv"):
             self.assertEqual(al.load_cloud(self.files[kind]).number_of_points, self.echoes.number_of_points, kind)
-        self.assertEqual(len(self.files["csv"].read_text(encoding="utf-8").splitlines()), self.echoes.number_of_points + 1)
         self.assertEqual(self.files["png"].read_bytes()[:4], b"\x89PNG")
 
     def test_a_mesh_is_a_scene(self):
-        for kind, text in (("stl", stl(CORNERS, TRIANGLES)), ("obj", obj(CORNERS, TRIANGLES)), ("ply", ply(CORNERS, TRIANGLES)),
-                           ("gltf", gltf(y_up(CORNERS - (0.5, 0, 0)), TRIANGLES)), ("vtp", None)):
-            with self.subTest(kind):
-                file = OUTPUT / f"box.{kind}"
-                if text:
-                    file.write_text(text, encoding="utf-8")
-                else:
-                    al.save(poly_data(TRIANGLES), file)
+        (OUTPUT / "box.stl").write_text(stl(CORNERS, TRIANGLES), encoding="utf-8")
+        al.save(poly_data(TRIANGLES), OUTPUT / "box.vtp")
+        for file in (OUTPUT / "box.stl", OUTPUT / "box.vtp"):
+            with self.subTest(file):
                 code, lines, errors = run("info", file)
                 self.assertEqual((code, lines[0]), (0, f"{file}: a scene"), errors)
                 self.assertIn("extent     east 1 to 2, north 2 to 4, up 0 to 3 m", lines)
-                code, lines, errors = run("scan", file, "--scale", "10", "--material", "metal", "--position", "15", "-90", "5",
-                                          "-o", OUTPUT / f"{kind}-echoes.vtp")
+                out = OUTPUT / "mesh-echoes.vtp"
+                code, lines, errors = run("scan", file, "--scale", "10", "--material", "metal", "--position", "15", "-90", "5", "-o", out)
                 self.assertEqual(code, 0, errors)
-                echoes = al.load_cloud(OUTPUT / f"{kind}-echoes.vtp")
+                echoes = al.load_cloud(out)
                 self.assertGreater(echoes.number_of_points, 100)
                 self.assertEqual(set(echoes["material_id"]), {2})
                 self.assertAlmostEqual(echoes["distance_m"].min(), 110, delta=0.1)
-                self.assertEqual(run("convert", OUTPUT / f"{kind}-echoes.vtp", OUTPUT / f"{kind}.las")[0], 0)  # without an origin
+                self.assertEqual(run("convert", out, OUTPUT / "mesh.las")[0], 0)  # without an origin
 
     def test_info(self):
         for file, words in ((self.files["las"], r"a cloud of \d+ points"), (self.files["vtp"], "distance_m +m +[0-9.]+ +[0-9.]+"),
@@ -96,25 +90,26 @@ class Verbs(unittest.TestCase):
             self.assertRegex("\n".join(lines), words)
 
     def test_compare(self):
-        code, lines, errors = run("compare", self.files["las"], self.files["pcd"], "-o", OUTPUT / "distances.vtp")
-        self.assertEqual((code, errors), (0, []))
-        distance = float(re.search(r"Hausdorff distance: (\S+) m", "\n".join(lines)).group(1))
+        def compared(one, other, *more):
+            code, lines, errors = run("compare", one, other, *more)
+            self.assertEqual(code, 0, errors)
+            text = "\n".join(lines)
+            return float(re.search(r"Hausdorff distance: (\S+) m", text).group(1)), text, errors
+        distance, text, errors = compared(self.files["las"], self.files["pcd"], "-o", OUTPUT / "distances.vtp")
         self.assertLess(distance, 2e-4)  # LAS counts in 0.1 mm
-        self.assertRegex("\n".join(lines), r"density-aware Chamfer distance: \S+ \(alpha = 1 1/m\)")
-        with_alarms = [line for line in lines if "no surface has returned" in line]
-        self.assertEqual(len(with_alarms), 1, lines)
-        self.assertIn("echoes.las has", with_alarms[0])
-        # One false alarm more, 5 km above, is the whole distance; without it nothing is left.
-        row = self.files["csv"].read_text(encoding="utf-8").splitlines()[-1].split(",")
-        head = self.files["csv"].read_text(encoding="utf-8").splitlines()[0].split(",")
-        names = [name.partition(" ")[0] for name in head]
-        row[names.index("z")], row[names.index("object_id")] = "5000", "-1"
-        (OUTPUT / "alarm.csv").write_text(self.files["csv"].read_text(encoding="utf-8") + ",".join(row) + "\n", encoding="utf-8")
-        text = "\n".join(run("compare", OUTPUT / "alarm.csv", self.files["csv"])[1])
-        self.assertGreater(float(re.search(r"Hausdorff distance: (\S+) m", text).group(1)), 4900)
-        self.assertIn("alarm.csv has", text)
-        self.assertIn("Without them the Hausdorff distance is 0 m.", text)
+        self.assertEqual(errors, [])
+        self.assertRegex(text, r"density-aware Chamfer distance: \S+ \(alpha = 1 1/m\)")
         self.assertAlmostEqual(al.load_cloud(OUTPUT / "distances.vtp")["nearest_distance"].max(), distance, delta=1e-9)
+        # One false alarm more, 5 km above, is the whole distance; without it nothing is left.
+        head, *rows = self.files["csv"].read_text(encoding="utf-8").splitlines()
+        names, row = [name.partition(" ")[0] for name in head.split(",")], rows[-1].split(",")
+        row[names.index("z")], row[names.index("object_id")] = "5000", "-1"
+        (OUTPUT / "alarm.csv").write_text("\n".join((head, *rows, ",".join(row), "")), encoding="utf-8")
+        distance, text, _ = compared(OUTPUT / "alarm.csv", self.files["csv"])
+        self.assertGreater(distance, 4900)
+        self.assertRegex(text, r"(?s)alarm.csv has .*Without them the Hausdorff distance is 0 m")
+        _, _, errors = compared(self.files["bin"], self.files["las"])
+        self.assertRegex("".join(errors), r"warning: a \.bin file is in the frame of its sensor")
 
     def test_csv_is_read_back(self):
         """All that a table has: numbers to 15 digits, units but that of pure numbers, colours, whole numbers as such."""
@@ -126,11 +121,6 @@ class Verbs(unittest.TestCase):
             unit = "" if wanted.units[name] == "1" else wanted.units[name]
             self.assertEqual((found[name].dtype.kind, found.units[name]), (values.dtype.kind, unit), name)
         self.assertEqual(found.fields, {})
-        code, lines, errors = run("info", self.files["csv"])
-        self.assertEqual((code, errors, lines[0].split(",")[0]), (0, [], f"{self.files['csv']}: a cloud of {self.echoes.number_of_points} points"))
-        self.assertRegex("\n".join(lines), "energy +J +[0-9]")
-        code, lines, errors = run("compare", self.files["csv"], self.files["vtp"])
-        self.assertLess(float(re.search(r"Hausdorff distance: (\S+) m", "\n".join(lines)).group(1)), 1e-9, errors)
         for kind in (*CLOUDS, "ply"):
             self.assertEqual(run("convert", self.files["csv"], OUTPUT / f"from-csv.{kind}")[0], 0, kind)
         self.assertEqual((OUTPUT / "from-csv.csv").read_bytes(), self.files["csv"].read_bytes())
@@ -155,10 +145,8 @@ class Verbs(unittest.TestCase):
                 read(text)
         with self.assertRaisesRegex(ValueError, "others.csv: is no cloud .*decode"):
             read("x,y,z,\u00e4\n1,2,3,4\n", "latin-1")
-        with self.assertRaisesRegex(TypeError, "a .csv file has no properties: frame"):
+        with self.assertRaisesRegex(TypeError, "has no properties: frame"):
             al.load_cloud(file, frame="enu")
-        with self.assertRaisesRegex(FileNotFoundError, "none.csv"):
-            al.load_cloud("none.csv")
 
     def test_footprints_are_told_where_they_belong(self):
         """The scene file of the error, with an origin, is one."""
@@ -172,9 +160,9 @@ class Verbs(unittest.TestCase):
         numbers = iter((31.1979, 121.3363, 3))
         document = re.sub(r"\?", lambda _: str(next(numbers)), re.search(r"\{.*\}", errors[0])[0])
         (OUTPUT / "my.lidarscene.json").write_text(document, encoding="utf-8")
-        code, lines, errors = run("scan", OUTPUT / "my.lidarscene.json", "--position", "0", "0", "3", "-o", OUTPUT / "footprints.las")
+        code, lines, errors = run("scan", OUTPUT / "my.lidarscene.json", "--position", "0", "0", "3", *FEW, "-o", OUTPUT / "footprints.las")
         self.assertEqual(code, 0, errors)
-        self.assertGreater(al.load_cloud(OUTPUT / "footprints.las").number_of_points, 100)
+        self.assertGreater(al.load_cloud(OUTPUT / "footprints.las").number_of_points, 20)
 
     def test_convert(self):
         code, lines, _ = run("convert", self.files["las"], OUTPUT / "again.pcd")
@@ -186,43 +174,31 @@ class Verbs(unittest.TestCase):
     def test_sensors_and_materials(self):
         code, lines, _ = run("sensors")
         self.assertEqual((code, [line.split()[0] for line in lines[1:]]), (0, list(al.Sensor.presets())))
-        row = next(line for line in lines if line.startswith("VLP16 "))
-        for words in ("903 nm", "-15 to 15 deg", "VLP-16 User Manual, 63-9243 Rev. D"):
-            self.assertIn(words, row)
-        code, lines, _ = run("sensors", "VLP-16")
-        self.assertRegex("\n".join(lines), "assumed +pulse_energy, .*\nwhat +Velodyne VLP-16")
-        code, lines, _ = run("sensors", "airport32")
-        self.assertIn("beams            61440", lines)
-        code, lines, _ = run("materials")
+        self.assertRegex("\n".join(lines), r"(?m)^VLP16 .*903 nm")
+        self.assertRegex("\n".join(run("sensors", "VLP-16")[1]), r"(?s)pulse energy +0\.4 .*\(assumed\)")
+        self.assertIn("beams            61440", run("sensors", "airport32")[1])
+        _, lines, _ = run("materials")
         self.assertEqual({line.split()[0]: tuple(map(float, line.split()[1:1 + len(al.materials()["Wall"])])) for line in lines[1:]},
                          al.materials())
-        self.assertRegex("\n".join(lines), r"Plumage +0\.3 .* assumed\n?")
-        self.assertRegex("\n".join(run("sensors", "VLP-16")[1]), r"pulse energy +0\.4 .*\(assumed\)")
 
     def test_errors_are_one_line_with_status_2(self):
         (OUTPUT / "text.stl").write_text("no mesh", encoding="utf-8")
         (OUTPUT / "fake.vtp").write_text("no mesh", encoding="utf-8")
         (OUTPUT / "table.csv").write_text("region,share [1]\nall,0.5\n", encoding="utf-8")
-        cases = ((("scan", "none.stl", "-o", "x.las"), "no such file: none.stl"),
-                 (("scan", SCENE, "-o", "x.doc"), "cannot write 'x.doc' by its suffix; known are .*las.*png"),
-                 (("scan", OUTPUT / "text.stl", "-o", "x.las"), "text.stl"),
-                 (("scan", SCENE, "--sensor", "Airport17", "-o", "x.las"), "did you mean 'Airport16'"),
-                 (("scan", SCENE, "--material", "Glas", "-o", "x.las"), "did you mean 'Glass'"),
-                 (("scan", SCENE, "--scale", "2", "-o", "x.las"), "scale of a scene: expected a mesh file"),
-                 (("scan", SCENE, "--sensor-set", "gate=3", "-o", "x.las"), "'gate' is not known"),
-                 (("scan", SCENE, "--sensor-set", "maximum_elevation=9", "-o", "x.las"), "it is minimum_elevation .* elevation_step: set these"),
-                 (("scan", SCENE, "--position", "0", "0", "-o", "x.las"), "--position"),
+        scan = ("scan", SCENE, "-o", "x.las")
+        cases = ((("scan", "none.stl", "-o", "x.las"), "no such file: none.stl"), (("scan", SCENE, "-o", "x.doc"), "cannot write 'x.doc'"),
+                 (("scan", OUTPUT / "text.stl", "-o", "x.las"), "text.stl"), ((*scan, "--sensor", "Airport17"), "did you mean 'Airport16'"),
+                 ((*scan, "--material", "Glas"), "did you mean 'Glass'"), ((*scan, "--scale", "2"), "scale of a scene"),
+                 ((*scan, "--sensor-set", "gate=3"), "'gate' is not known"), ((*scan, "--position", "0", "0"), "--position"),
+                 ((*scan, "--sensor-set", "maximum_elevation=9"), "it is minimum_elevation .* elevation_step"),
                  (("scan", SCENE), "required: -o/--out"), (("fly",), "invalid choice: 'fly'"), ((), "verb"),
-                 (("scan", SCENE, "-o", "none/x.las"), "none/x.las: there is no folder none"),
-                 (("scan", SCENE, "-o", OUTPUT), "cannot write 'command'"), (("scan", SCENE, "-o", "x.las", "-o", "./x.las"), "is named twice"),
-                 (("scan", OUTPUT / "text.stl", "-o", "x.geojson"), "text.stl"), (("scan", self.files["las"], "-o", "x.las"), "has no surfaces"),
-                 (("scan", SCENE, "--sensor-set", "preset=VLP16", "-o", "x.las"), "'preset' is not known"),
-                 (("scan", SCENE, "--scan-set", "rays_per_beam=1e30", "-o", "x.las"), "rays_per_beam|int"),
-                 (("scan", SCENE, "--scan-set", "attenuation_coefficient=nan", "-o", "x.las"), "--scan-set: attenuation_coefficient=nan is no finite number"),
-                 (("siting", "p.coverage.json", "--siting-set", "bounds=0,1,0,-1e999", "-o", "x"), "--siting-set: bounds=.* is no finite number"),
-                 (("info", OUTPUT / "table.csv"), r"table.csv: is no cloud \(has no column x in metres\): expected a first line of names"), (("info", OUTPUT / "fake.vtp"), "fake.vtp: it is no VTK XML file"),
-                 (("info", "none.las"), "no such file: none.las"), (("compare", self.files["las"], "b.doc"), "cannot read 'b.doc'"),
-                 (("convert", self.files["las"], "x.doc"), "cannot write 'x.doc'"), (("sensors", "VLP99"), "'VLP99' is not known"))
+                 (("scan", SCENE, "-o", "none/x.las"), "there is no folder none"), ((*scan, "-o", "./x.las"), "is named twice"),
+                 (("scan", self.files["las"], "-o", "x.las"), "has no surfaces"), ((*scan, "--scan-set", "rays_per_beam=1e30"), "rays_per_beam|int"),
+                 ((*scan, "--scan-set", "attenuation_coefficient=nan"), "attenuation_coefficient=nan is no finite number"),
+                 (("siting", "p.coverage.json", "--siting-set", "bounds=0,1,0,-1e999", "-o", "x"), "bounds=.* is no finite number"),
+                 (("info", OUTPUT / "table.csv"), r"table.csv: is no cloud"), (("info", OUTPUT / "fake.vtp"), "fake.vtp"),
+                 (("compare", self.files["las"], "b.doc"), "cannot read 'b.doc'"), (("convert", self.files["las"], "x.doc"), "cannot write 'x.doc'"),
+                 (("sensors", "VLP99"), "'VLP99' is not known"))
         for arguments, words in cases:
             with self.subTest(arguments):
                 code, lines, errors = run(*arguments)
@@ -231,7 +207,7 @@ class Verbs(unittest.TestCase):
         self.assertFalse([file for file in os.listdir() if file.startswith("x.")])
 
     def test_values_of_settings(self):
-        code, _, errors = run("scan", SCENE, "--position", "-5e0", "-1e1", "3", "--scan-set", "beam_samples=rays", "--scan-set", "rays_per_beam=1e2",
+        code, _, errors = run("scan", SCENE, "--position", "-5e0", "-1e1", "3", *FEW, "--scan-set", "beam_samples=rays", "--scan-set", "rays_per_beam=1e2",
                               "--sensor-set", "position=1,2,3", "-o", OUTPUT / "set.vtp")
         self.assertEqual((code, errors), (0, []))
         fields = al.load_cloud(OUTPUT / "set.vtp").fields
@@ -243,57 +219,48 @@ class Verbs(unittest.TestCase):
         self.assertEqual((code, lines, len(errors)), (2, [], 1))
         self.assertFalse((OUTPUT / "early.vtp").exists())
 
-    def test_frames_are_compared_with_a_word(self):
-        _, _, errors = run("compare", self.files["bin"], self.files["las"])
-        self.assertEqual(errors, ["avianlidar: warning: a .bin file is in the frame of its sensor, the other file is not"])
-
     def test_what_sees_nothing_is_a_warning(self):
-        code, lines, errors = run("scan", SCENE, "--position", "0", "0", "-50", "-o", OUTPUT / "none.vtp")
-        self.assertEqual((code, lines[0]), (0, f"{OUTPUT / 'none.vtp'}: 0 echoes of 15360 beams"))
+        work = ("scan", SCENE, *FEW, "--position", "0", "0", "-50", "-o", OUTPUT / "none.vtp")
+        code, lines, errors = run(*work)
+        self.assertEqual((code, lines[0]), (0, f"{OUTPUT / 'none.vtp'}: 0 echoes of 3072 beams"))
         self.assertEqual([line.partition(":")[0] for line in lines[1:]], ["modelled", "left out", "perceived"])
-        self.assertEqual(len(run("scan", SCENE, "--position", "0", "0", "-50", "--quiet", "-o", OUTPUT / "none.vtp")[1]), 1)
-        self.assertRegex("\n".join(errors), "^avianlidar: warning: the sensor at .* is below the scene, whose lowest point is at 0 m\n"
-                         "avianlidar: warning: no echoes of 15360 beams: ")
+        self.assertEqual(len(run(*work, "--quiet")[1]), 1)
+        self.assertRegex("\n".join(errors), "(?s)^avianlidar: warning: .*is below the scene.*\navianlidar: warning: no echoes of 3072 beams")
 
 
 class Surroundings(unittest.TestCase):
     def command(self, *arguments):
         return [sys.executable, "-m", "avianlidar", *map(str, arguments)]
 
-    def test_no_bar_in_a_log(self):
+    def test_a_bar_on_a_terminal_and_nowhere_else(self):
         OUTPUT.mkdir(parents=True, exist_ok=True)
-        work = self.command("scan", SCENE, "-o", OUTPUT / "bar.vtp")
+        work = self.command("scan", SCENE, *FEW, "-o", OUTPUT / "bar.vtp")
         self.assertEqual(subprocess.run(work, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, check=True).stderr, b"")
-
-    def test_a_bar_on_a_terminal(self):
-        OUTPUT.mkdir(parents=True, exist_ok=True)
-        work = self.command("scan", SCENE, "-o", OUTPUT / "bar.vtp")
         text, code = from_terminal(self, work, stdout=subprocess.DEVNULL)
         self.assertEqual(code, 0)
         self.assertRegex(text, r"scan: *100%")
 
     def test_streams_that_are_closed(self):
         """As of `| head`, and of daemons."""
-        line = " ".join(f"'{word}'" for word in self.command("sensors"))
-        done = subprocess.run(["bash", "-c", f"set -o pipefail; {line} | true"], stderr=subprocess.PIPE, check=False)
+        done = subprocess.run(["bash", "-c", f"set -o pipefail; {shlex.join(self.command('sensors'))} | true"], stderr=subprocess.PIPE, check=False)
         self.assertEqual((done.returncode, done.stderr), (141, b""))
-        line = " ".join(f"'{word}'" for word in self.command("scan", SCENE, "-o", OUTPUT / "closed.vtp"))
-        for closed in (">&-", "2>&-", "<&-"):
-            (OUTPUT / "closed.vtp").unlink(missing_ok=True)
-            subprocess.run(["bash", "-c", f"{line} {closed}"], stdout=subprocess.DEVNULL, check=True)
-            self.assertTrue((OUTPUT / "closed.vtp").exists(), closed)
+        line = shlex.join(self.command("scan", SCENE, *FEW, "-o", OUTPUT / "closed.vtp"))
+        (OUTPUT / "closed.vtp").unlink(missing_ok=True)
+        subprocess.run(["bash", "-c", f"{line} >&- 2>&- <&-"], check=True)
+        self.assertTrue((OUTPUT / "closed.vtp").exists())
 
     def test_a_picture_is_replaced_as_a_whole_or_not_at_all(self):
         picture = OUTPUT / "kept.png"
         picture.write_bytes(b"before")
-        line = " ".join(f"'{word}'" for word in self.command("scan", SCENE, "-o", picture))
+        line = shlex.join(self.command("scan", SCENE, *FEW, "-o", picture))
         done = subprocess.run(["bash", "-c", f"ulimit -f 2; {line}"], capture_output=True, check=False)
         self.assertNotEqual(done.returncode, 0)
         self.assertEqual((picture.read_bytes(), list(OUTPUT.glob("kept.png.*"))), (b"before", []))
 
     def test_reach_is_that_of_birds_within_beams(self):
         """With the ranges that the fit of a receiver leaves open: those of its bar, 11.3 %."""
-        with unittest.mock.patch.object(reach, "RANGES", 8):
+        few = (*reach.within_beams.__defaults__[:2], 200)  # birds
+        with unittest.mock.patch.object(reach, "RANGES", 8), unittest.mock.patch.object(reach.within_beams, "__defaults__", few):
             code, lines, _ = run("reach", "--sensor", "OS1_64", "--species", "herring gull", "--weather", "fog:500", "-o", OUTPUT / "reach.csv")
             found = reach.within_beams(al.Sensor("OS1_64"), "herring gull", visibility=500.0, air_backscatter=True)
         self.assertEqual(code, 0)
@@ -301,51 +268,31 @@ class Surroundings(unittest.TestCase):
         self.assertGreater(half, 10.0)
         words = f"{half:.2g} m ({(1 - 0.113) * half:.2g} to {1.113 * half:.2g} m)"
         self.assertEqual(re.split("  +", lines[1])[:4], ["OS1_64", "herring gull", f"{found.to(0.9):.2g} m", words])
-        self.assertEqual(lines[2], f"OS1_64 sees half of the herring gulls in its beams to {words}, less than the 280 m that the strip of a large runway is wide.")
+        self.assertTrue(lines[2].startswith(f"OS1_64 sees half of the herring gulls in its beams to {words}, less than the 280 m"))
         table = np.genfromtxt(OUTPUT / "reach.csv", delimiter=",", skip_header=1)
         np.testing.assert_allclose(table[:, 2:4], np.column_stack([found.ranges, found.one_scan]), rtol=1e-5)
 
-    def test_help_of_every_verb_has_examples(self):
-        _, lines, _ = run("--help")
-        for verb, (words, _, examples) in _command.VERBS.items():
-            self.assertRegex("\n".join(lines), rf"{verb}\s+{words}")
-            code, text, _ = run(verb, "--help")
-            self.assertEqual(code, 0)
-            for example in examples.splitlines():
-                self.assertIn(example, text)
-
     def test_examples_are_understood(self):
-        """Every example that is printed is one that the parser takes."""
-        for _, _, examples in _command.VERBS.values():
-            for example in examples.splitlines():
-                words = shlex.split(example)
-                self.assertEqual(_command.parser().parse_args(words[1:]).verb, words[1])
-
-    def test_the_page_as_printed(self):
-        folder = OUTPUT / "page"
-        folder.mkdir(parents=True, exist_ok=True)
+        """Every example of the help and of the page is one that the parser takes, and every verb has one."""
         page = (SOURCE / "Documentation" / "command.md").read_text(encoding="utf-8")
-        blocks = "".join(re.findall(r"```sh\n(.*?)```", page, re.S))
-        script = f"set -e; avianlidar() {{ '{sys.executable}' -m avianlidar \"$@\"; }}; " + blocks.replace("Examples/", f"{SOURCE}/Examples/")
-        done = subprocess.run(["bash", "-c", script], cwd=folder, capture_output=True, text=True, check=False)
-        self.assertEqual((done.returncode, done.stderr), (0, ""))
-        self.assertEqual({file.name for file in folder.iterdir()}, {"echoes.las", "echoes.csv", "range.png", "echoes.pcd", "near.vtp"})
-        for verb in _command.VERBS:
+        lines = [line for _, _, examples in _command.VERBS.values() for line in examples.splitlines()]
+        lines += [line for block in re.findall(r"```sh\n(.*?)```", page, re.S) for line in re.sub(r"\\\n", " ", block).splitlines()]
+        verbs = {_command.parser().parse_args(words[1:]).verb for words in map(shlex.split, lines) if words[:1] == ["avianlidar"]}
+        self.assertEqual(verbs, set(_command.VERBS))
+        for verb in verbs:
             self.assertRegex(page, rf"`{verb}\b")
 
     @unittest.skipUnless(SHARE, "made without python3-shtab and python3-argparse-manpage")
     def test_manual_page_and_completion(self):
         page = (SHARE / "man/man1/avianlidar.1").read_text(encoding="utf-8")
-        bash = (SHARE / "bash-completion/completions/avianlidar").read_text(encoding="utf-8")
         for verb in _command.VERBS:
             self.assertRegex(page, rf"(?m)^\.SH (OPTIONS|COMMAND) .*'avianlidar {verb}'")
         script = f"source {SHARE}/bash-completion/completions/avianlidar; COMP_WORDS=(avianlidar %s); COMP_CWORD=%d; " \
                  "_shtab_avianlidar 2>/dev/null; echo ${COMPREPLY[@]}"
-        for words, at, found in (("s", 1, "scan sequence siting sensors"), ("scan --up-axis y", 3, "y"), ("scan --material Me", 3, "Metal"), ("sensors Airport3", 2, "Airport32"), ("scan --pos", 2, "--position"),
-                                 ("scan --sensor-set range_g", 3, "range_gate="), ("sequence --scan-set attenuation_c", 3, "attenuation_coefficient="),
-                                 ("siting --coverage-set all_s", 3, "all_species="), ("report --siting-set mar", 3, "margin=")):
+        for words, at, found in (("s", 1, "scan sequence siting sensors"), ("scan --material Me", 3, "Metal"), ("sensors Airport3", 2, "Airport32"),
+                                 ("scan --pos", 2, "--position"), ("report --siting-set mar", 3, "margin=")):
             done = subprocess.run(["bash", "-c", script % (words, at)], capture_output=True, text=True, check=True)
-            self.assertEqual(sorted(done.stdout.split()), sorted(found.split()), bash[:200])
+            self.assertEqual(sorted(done.stdout.split()), sorted(found.split()))
 
     @unittest.skipUnless(SHARE, "made without python3-shtab and python3-argparse-manpage")
     def test_a_setting_is_completed_without_a_blank(self):

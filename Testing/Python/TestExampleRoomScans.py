@@ -64,53 +64,32 @@ class Scans(unittest.TestCase):
 
     def test_every_beam_is_found(self):
         directions = vtk_to_numpy(self.hall[0].GetPointData().GetArray("direction"))
+        points = np.sort(vtk_to_numpy(self.hall[1].GetOutput().GetPoints().GetData()), axis=0)
         for kind, file in self.files.items():
             with self.subTest(kind):
                 found = room_data.read_scan(file)
                 self.assertEqual(found.sensor, f"cloud_{kind}")
-                self.assertEqual(len(found.range), COLUMNS * CHANNELS)
                 self.assertTrue(found.answered.all())
                 np.testing.assert_array_equal(np.diff(found.rings()), CHANNELS * [COLUMNS])
-                self.assert_beams(found, directions, 1e-3)
-                points = np.sort(vtk_to_numpy(self.hall[1].GetOutput().GetPoints().GetData()), axis=0)
+                beams = found.directions()
+                for some, others in ((beams, directions), (directions, beams)):  # each direction has a beam, and each beam a direction
+                    nearest = (some @ others.T).max(axis=1)
+                    self.assertLess(np.sqrt(2 * (1 - np.minimum(nearest, 1))).max(), 1e-3)
                 np.testing.assert_allclose(np.sort(found.points()[0], axis=0), points, atol=1e-3)
 
     def test_beams_that_nothing_answered(self):
-        cloud = self.wall[1].GetOutput()
-        directions = vtk_to_numpy(self.wall[0].GetPointData().GetArray("direction"))
-        answered = np.unique(vtk_to_numpy(cloud.GetPointData().GetArray("beam_id")))
-        for kind in WRITERS:
-            with self.subTest(kind):
-                found = room_data.read_scan(write(self.wall[1], et.folder("ExampleRoomScansWall"), kind))
-                self.assertEqual(found.answered.sum(), len(answered))
-                # Where no ring answers for several degrees the sensor may not have looked: these beams are not made up.
-                self.assertLess(len(found.range), 0.3 * len(directions))
+        answered = np.unique(vtk_to_numpy(self.wall[1].GetOutput().GetPointData().GetArray("beam_id")))
+        found = room_data.read_scan(write(self.wall[1], et.folder("ExampleRoomScansWall"), "pcd"))
+        self.assertEqual(found.answered.sum(), len(answered))
+        # Where no ring answers for several degrees the sensor may not have looked: these beams are not made up.
+        self.assertLess(len(found.range), 0.3 * COLUMNS * CHANNELS)
         # A hole in the wall is no such place.
         hall = room_data.read_scan(self.files["pcd"])
         own = (hall.points()[0][np.abs(hall.azimuth - 100) > 2])
-        azimuth, elevation, ring, distance, _ = room_data.beams_of(own, np.ones(len(own)))
+        azimuth, elevation, _, distance, _ = room_data.beams_of(own, np.ones(len(own)))
         self.assertEqual(np.isnan(distance).sum(), len(hall.range) - len(own))
-        self.assertEqual(len(azimuth), len(hall.range))
         np.testing.assert_allclose(azimuth, hall.azimuth, atol=0.02)
         np.testing.assert_allclose(elevation, hall.elevation, atol=0.05)
-
-    def test_points_without_rings(self):
-        """Neither a ring nor clusters of elevations: bands, and every point is a beam of its own."""
-        random = np.random.default_rng(2)
-        own = random.normal(size=(4000, 3)) * (1.0, 1.0, 0.2) + (0.0, 0.0, 0.01)
-        azimuth, elevation, ring, distance, _ = room_data.beams_of(own, np.ones(len(own)))
-        answered = np.isfinite(distance)
-        self.assertGreater(answered.sum(), 0.7 * len(own))
-        self.assertGreater(ring[-1], 10)
-        self.assertTrue((np.diff(ring) >= 0).all())
-
-    def test_several_returns_are_one_beam(self):
-        hall = room_data.read_scan(self.files["pcd"])
-        points = hall.points()[0]
-        both = np.concatenate([points[::2] * 0.5, points])
-        *_, distance, intensity = room_data.beams_of(both, np.r_[np.zeros(len(points[::2])), np.ones(len(points))])
-        np.testing.assert_allclose(distance, hall.range, rtol=1e-6)
-        self.assertEqual(intensity.min(), 1.0)
 
     def test_poses(self):
         file, pose = self.files["pcd"], turned(30.0, (1.0, -2.0, 0.5))
@@ -121,12 +100,16 @@ class Scans(unittest.TestCase):
     def test_a_scan_alone(self):
         for kind, file in self.files.items():
             with self.subTest(kind):
-                _, result = room.main(["--no-pictures", "--only-main", "--scans", str(file), "--rays", "20", "--out",
-                                       et.folder("ExampleRoomScans-" + kind)])
-                own = {row["what"]: row for row in result.errors}["its own scan"]
+                own = self.study("its own scan", "--rays", "10", "--scans", str(file))
                 self.assertGreater(own["beams"], 0.9 * COLUMNS * CHANNELS)
                 self.assertGreater(own["in5cm"], 0.95)
                 self.assertLess(abs(own["median"]), 0.01)
+
+    @staticmethod
+    def study(what, *arguments):
+        """A row of the table of errors."""
+        _, result = room.main(["--no-pictures", "--only-main", "--out", et.folder("ExampleRoomScans-2"), *arguments])
+        return {row["what"]: row for row in result.errors}[what]
 
     def test_scans_of_each_other(self):
         other = self.files["pcd"].with_name("turned.pcd")
@@ -141,24 +124,18 @@ class Scans(unittest.TestCase):
         running.write(mover)
         poses = self.files["pcd"].with_name("poses.json")
         poses.write_text(json.dumps({"turned": {"T": pose.tolist()}}))
-        for arguments, bar in ((["--poses", str(poses)], 0.9), ([], 0.0)):
-            _, result = room.main(["--no-pictures", "--only-main", "--rays", "20", "--out", et.folder("ExampleRoomScans-2"), "--scans",
-                                   str(other), str(self.files["bin"]), "--sensors", "turned", *arguments])
-            error = {row["what"]: row for row in result.errors}["all"]
-            if bar:
-                self.assertGreater(error["in5cm"], bar)
-            else:
-                self.assertLess(error["in5cm"], 0.5)
+        scans = ("--rays", "10", "--scans", str(other), str(self.files["bin"]), "--sensors", "turned")
+        self.assertGreater(self.study("all", *scans, "--poses", str(poses))["in5cm"], 0.9)
+        self.assertLess(self.study("all", *scans)["in5cm"], 0.5)
 
     def test_bad_arguments(self):
         empty = pathlib.Path(self.folder) / "empty.bin"
         empty.write_bytes(b"")
         wrong = pathlib.Path(self.folder) / "wrong.json"
         one = str(self.files["pcd"])
-        for poses, words in (('{"cloud_pcd": {"T": [[1, 0], [0, 1]]}}', "shape"), ('{"cloud_pcd": 1}', "TypeError"),
-                             ('{"other": {"T": []}}', "shape"), ("{", "JSONDecodeError")):
+        for poses in ('{"cloud_pcd": {"T": [[1, 0], [0, 1]]}}', '{"cloud_pcd": 1}', "{"):
             wrong.write_text(poses)
-            with self.assertRaisesRegex(SystemExit, words):
+            with self.assertRaisesRegex(SystemExit, "wrong.json"):
                 room.main(["--no-pictures", "--scans", one, "--poses", str(wrong)])
         with self.assertRaisesRegex(SystemExit, "empty.bin"):
             room.main(["--no-pictures", "--scans", str(empty)])

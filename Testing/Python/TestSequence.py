@@ -293,7 +293,7 @@ class Shipped(unittest.TestCase):
         """The clutter filter that knows the whole sequence, on scans of the shipped scenario."""
         import clutter
         out = emptied("sequence", "shipped")
-        al.Sequence(EXAMPLE / "hongqiao.scenario.json", number_of_scans=20, scans_per_sequence=20).write(out)
+        al.Sequence(EXAMPLE / "hongqiao.scenario.json", number_of_scans=12, scans_per_sequence=12).write(out)
         files = [sorted((out / "sequences" / "00" / "velodyne").glob("*.bin"))]
         found = sum(dict(clutter.measure(files, {"ClutterThreshold": 0.1}))["all scans of its sequence"][0])
         for subset in ("near clutter", "through edges"):
