@@ -6,7 +6,6 @@ import json
 import os
 import pathlib
 import shutil
-import sys
 import unittest
 
 import numpy as np
@@ -211,36 +210,6 @@ class Files(unittest.TestCase):
             self.assertFalse((OUTPUT / "out-wrong").exists())
         with self.assertRaisesRegex(al.Error, "two are called wrong"):
             Bench([self.home], [wrong, wrong])
-
-
-class Baselines(unittest.TestCase):
-    """What the baselines of Examples/filter_bench share."""
-
-    def frame(self, draw, filters):
-        """Points at 6 degrees and 16 levels, some of them in one beam."""
-        azimuth, elevation = np.radians(6 * draw.integers(60, size=400)), np.radians(np.arange(16)[draw.integers(16, size=400)])
-        distance = draw.uniform(20, 200, 400)
-        flat = distance * np.cos(elevation)
-        return filters.Frame(np.column_stack([flat * np.cos(azimuth), -flat * np.sin(azimuth), distance * np.sin(elevation), draw.random(400)]))
-
-    @classmethod
-    def setUpClass(cls):
-        sys.path[:0] = [str(SOURCE / "Examples" / "filter_bench")]
-        import filters
-        cls.filters = filters
-
-    def test_nearest_points_by_brute_force(self):
-        draw = np.random.default_rng(2)
-        one, other = self.frame(draw, self.filters), self.frame(draw, self.filters)
-        self.assertEqual((one.columns, len(one.levels)), (60, 16))
-        for rows, columns in ((0, 0), (1, 0), (-1, 1), (0, -2)):
-            distance, amplitude = (self.filters.unsorted(other, values) for values in one.nearest(other, rows, columns))
-            for k in range(0, 400, 7):
-                there = np.flatnonzero((one.row == other.row[k] + rows) & (one.column == (other.column[k] + columns) % 60))
-                away = abs(one.range[there] - other.range[k])
-                least = away.min(initial=self.filters.FAR)
-                self.assertAlmostEqual(distance[k], least)
-                self.assertAlmostEqual(amplitude[k], one.amplitude[there[np.argmin(away)]] if least < self.filters.FAR else 0.0)
 
 
 if __name__ == "__main__":

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The tracker, scan by scan, against one of NumPy and SciPy; times of clouds, what is forgotten, the same bits for any order of
-the points, bad input; and gulls that a search lidar scans. Turns, crossings and false tracks are TestTracker.cxx's (kernel)."""
+"""The tracker, scan by scan, against one of NumPy and SciPy, with the points of a cloud in any order; times of clouds, what is forgotten,
+bad input. Turns, crossings and false tracks are TestTracker.cxx's (kernel), birds that a lidar scans TestBirdTracks'."""
 
 import unittest
 
@@ -11,8 +11,6 @@ import scipy.stats
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonDataModel import vtkDataObject
 
-import avianlidar as al
-from avianlidar import vtkAvianLidar as wrapped
 from avianlidar.vtkAvianLidar import vtkAvianLidarTracker as Tracker
 
 from cloudtools import add_array, add_field, cloud
@@ -231,18 +229,6 @@ class TestTracker(unittest.TestCase):
             self.assertIn("timestamp", messages.all()[0])
         self.assertEqual(list(point_array(tracks, "time")), [1.5, 3.5, 4, 6, 0.1, 2.1, 4, 6])
 
-    def test_same_bits_for_any_order(self):
-        random = np.random.default_rng(2)
-        one, other = tracker(), tracker()
-        for scan in range(4):
-            points = random.uniform(0, 150, (100, 3)) + [50, 0, 0]
-            stamps = 2e6 * (scan + random.random(100))
-            order = random.permutation(100)
-            tracks, labels = feed(one, points, 2.0 * scan, timestamp=stamps)
-            shuffled, mixed = feed(other, points[order], 2.0 * scan, timestamp=stamps[order])
-            assert_same_bits(tracks, shuffled)
-            np.testing.assert_array_equal(point_array(labels, "track_id")[order], point_array(mixed, "track_id"))
-
     def test_memory_is_bounded(self):
         random = np.random.default_rng(3)
         made = tracker(HistoryLength=3, KeepTime=4.0)
@@ -270,32 +256,6 @@ class TestTracker(unittest.TestCase):
             tracks, points = feed(made, np.empty((0, 3)), float(scan))
             self.assertEqual(list(cell_array(tracks, "ended")), [ended])
             self.assertEqual(points.GetNumberOfPoints(), 0)
-
-    def test_gulls_of_a_search_lidar(self):
-        """In clear air: what is seen often enough is tracked, and no track is of two birds but a few."""
-        birds = wrapped.vtkAvianLidarTracks()
-        birds.SetPatternToCrossings()
-        for name, value in {"NumberOfBirds": 50, "Radius": 200, "Heights": (15, 40), "TimeRange": (0, 20)}.items():
-            getattr(birds, "Set" + name)(value)
-        sensor = al.Sensor("Search905", position=(0, 0, 3), number_of_revolutions=10)
-        ground = al.Scene([(0, 0, -50), (1, 0, -50), (0, 1, -50)], [(0, 1, 2)])
-        scan = al.Scan(ground, sensor, movers=birds, rays_per_beam=40)
-        made = tracker()
-        made.SetInputConnection(scan.algorithm.GetOutputPort(0))
-        seen, tracked, owners = 0, 0, {}
-        for revolution in range(10):
-            made.UpdateTimeStep(2.0 * revolution)
-            cloud_ = al.Cloud(made.GetOutput(1))
-            self.assertEqual(field(made.GetOutput(0), "time"), (2.0 * revolution,))
-            for bird in np.unique(cloud_["object_id"][cloud_["object_id"] >= 10000]):
-                own = cloud_["object_id"] == bird
-                seen += revolution >= 3  # from then on a track may be confirmed
-                tracked += revolution >= 3 and cloud_["track_confirmed"][own].any()
-                for track in cloud_["track_id"][own & (cloud_["track_confirmed"] > 0)]:
-                    owners.setdefault(track, set()).add(bird)
-        self.assertGreater(seen, 40)
-        self.assertGreater(tracked / seen, 0.6)
-        self.assertLessEqual(sum(len(of) > 1 for of in owners.values()), 3)  # of 50 birds in 400 m
 
     def test_bad_input(self):
         """An error names what is wrong, and the memory stays. NaN and numbers far beyond are TestArguments'."""

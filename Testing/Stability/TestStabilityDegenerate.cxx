@@ -3,8 +3,9 @@
 // area or turned over, a lidar on a surface, on a vertex, and grazing incidence. Faces that
 // coincide are TestCoincidentFaces', bounds of energy in any scene TestGeometryProperties'.
 #include "CollisionTreeBuilder.h"
-#include "HitsAgainstOracle.h"
+#include "GeometryTestScene.h"
 #include "ScanTestTown.h"
+#include "StabilityTable.h"
 
 #include <gtest/gtest.h>
 

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Many beams and many triangles: the same bits for any number of threads, and the memory that they
-// take.
+// Many triangles: the memory that they take. Many beams and threads are TestScan's.
 //
 // The environment variable AVIANLIDAR_STABILITY_TRIANGLES asks for another number of triangles than
-// the half million of an ordinary run, AVIANLIDAR_STABILITY_BEAMS for other than 50,000 beams.
+// the half million of an ordinary run.
 #include "Memory.h"
 #include "ScanTestTown.h"
 #include "StabilityTable.h"
@@ -23,24 +22,6 @@ std::size_t asked(const char* variable, std::size_t usually)
   usually /= 20;
 #endif
   return text ? std::strtoull(text, nullptr, 10) : usually;
-}
-
-/// All round, from the horizon to the zenith.
-ScanBeams sky(std::size_t count)
-{
-  ScanBeams beams;
-  const std::size_t channels = 100;
-  for (std::size_t i = 0; i < count; ++i)
-  {
-    const double azimuth =
-      2.0 * Pi * static_cast<double>(i / channels * channels) / static_cast<double>(count);
-    const double elevation = 0.9 * Degree * static_cast<double>(i % channels);
-    beams.ids.push_back(i);
-    beams.origins.push_back(Vec3(0.0));
-    beams.directions.push_back(Vec3(std::sin(azimuth) * std::cos(elevation),
-      std::cos(azimuth) * std::cos(elevation), std::sin(elevation)));
-  }
-  return beams;
 }
 
 /// Hills of about so many triangles in a square of 4 km.
@@ -75,21 +56,6 @@ Scene hills(std::size_t triangles)
   scene.objects.assign(scene.mesh->size(), 0);
   return scene;
 }
-}
-
-TEST(StabilitySize, ManyBeams)
-{
-  const std::size_t count = asked("AVIANLIDAR_STABILITY_BEAMS", 50000);
-  EchoSettings settings = usual();
-  settings.raysPerBeam = 4;
-  const ScanSetup setup = makeSetup(town(), Sensor(), settings);
-  const ScanBeams beams = sky(count);
-  const ScanResult whole = runScan(setup, beams, 1);
-  ASSERT_GT(whole.echoes.size(), 100u);
-  const ScanResult shared = runScan(setup, beams, 3);
-  expectSame(whole, shared);
-  record({ "Beams", std::to_string(count) + " in a scan",
-    "echoes that change by a bit with 1 or 3 threads", 0.0, HasFailure() ? 1.0 : 0.0 });
 }
 
 TEST(StabilitySize, ManyTriangles)
