@@ -55,13 +55,6 @@ class Scans(unittest.TestCase):
         cls.wall = lidar(box((0.0, 20.0, 0.0), (10.0, 1.0, 5.0), "Wall"))
         cls.files = {kind: write(cls.hall[1], cls.folder, kind) for kind in WRITERS}
 
-    def assert_beams(self, found, directions, within):
-        """Each direction has a beam, and each beam a direction."""
-        beams = found.directions()
-        for some, others in ((beams, directions), (directions, beams)):
-            nearest = np.array([(others @ one).max() for one in some])
-            self.assertLess(np.sqrt(2 * (1 - np.minimum(nearest, 1))).max(), within)
-
     def test_every_beam_is_found(self):
         directions = vtk_to_numpy(self.hall[0].GetPointData().GetArray("direction"))
         points = np.sort(vtk_to_numpy(self.hall[1].GetOutput().GetPoints().GetData()), axis=0)
