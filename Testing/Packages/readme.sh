@@ -11,7 +11,7 @@ cd "$1"
 # Where the tree is built already, what the command must make for Python is missing.
 rm -rf build/paraview/python-path build/paraview/lib/python3
 
-# In ParaView. In place of its window: the state that the window is told to open (TestStart.py looks into the window).
+# In ParaView. In place of its window: the state that the window is told to open (TestWindow.py looks into the window).
 command=$(sed -n 's/^\(Examples\/paraview\/run\.sh\).*/\1/p' README.md)
 mkdir /tmp/bin
 cat > /tmp/bin/paraview << 'END'

@@ -6,16 +6,15 @@ Run by pvpython in one process and by pvbatch on two ranks (the argument)."""
 
 import glob
 import os
-import shutil
 import sys
 
 import numpy
-from paraview import servermanager, simple
+from paraview import simple
 from vtkmodules.vtkParallelCore import vtkMultiProcessController
 
-from plugin_testing import OUTPUT_DIR, airport, arrays_of, assert_same, fetch, load_plugin
+from plugin_testing import OUTPUT_DIR, airport, assert_same, fetch, load_plugin
 
-COLUMNS = 120
+COLUMNS = 60
 MOVING = """
 from vtkmodules.vtkFiltersSources import vtkCubeSource
 info = self.GetOutputInformation(0)
@@ -27,21 +26,14 @@ cube.Update()
 self.GetPolyDataOutput().ShallowCopy(cube.GetOutput())
 """
 STEPS = """
-info = self.GetOutputInformation(0)
-executive = self.GetExecutive()
-steps = [float(step) for step in range(0, 11)]
+info, executive = self.GetOutputInformation(0), self.GetExecutive()
 info.Remove(executive.TIME_STEPS())
-for step in steps:
-    info.Append(executive.TIME_STEPS(), step)
 info.Remove(executive.TIME_RANGE())
-info.Append(executive.TIME_RANGE(), steps[0])
-info.Append(executive.TIME_RANGE(), steps[-1])
+for step in range({first}, 11):
+    info.Append(executive.TIME_STEPS(), step)
+for end in ({first}, 10):
+    info.Append(executive.TIME_RANGE(), end)
 """
-
-
-def count(proxy, port=0):
-    proxy.UpdatePipeline(simple.GetAnimationScene().TimeKeeper.Time)
-    return proxy.GetDataInformation(port).GetNumberOfPoints()
 
 
 def fresh():
@@ -51,37 +43,51 @@ def fresh():
 
 def remove(names):
     if vtkMultiProcessController.GetGlobalController().GetLocalProcessId() == 0:
-        for name in names:
-            shutil.rmtree(name) if os.path.isdir(name) else os.remove(name)
+        for name in glob.glob(os.path.join(OUTPUT_DIR, names)):
+            os.remove(name)
+
+
+def played():
+    """The animation of all that is there."""
+    scene = simple.GetAnimationScene()
+    scene.UpdateAnimationUsingDataTimeSteps()
+    return scene
 
 
 def frames_of(scene, look):
     """What `look` sees at each frame while the animation plays."""
     seen = []
     scene.GoToFirst()
-    for _ in range(len(scene.TimeKeeper.TimestepValues) or scene.NumberOfFrames):
+    for _ in scene.TimeKeeper.TimestepValues:
         seen.append(look())
         scene.GoToNext()
     return seen
 
 
+def count(proxy, port=0):
+    proxy.UpdatePipeline(simple.GetAnimationScene().TimeKeeper.Time)
+    return proxy.GetDataInformation(port).GetNumberOfPoints()
+
+
+def nearest(echoes):
+    count(echoes)
+    return echoes.PointData["distance_m"].GetRange()[0]
+
+
 def test_a_static_scene_stays_as_it_is():
     """Without steps to play an animation of a camera has its ten frames, all of them the same scan."""
     fresh()
-    _, _, _, echoes = airport(COLUMNS)
+    echoes = airport(COLUMNS)[3]
     before = fetch(echoes)
-    scene = simple.GetAnimationScene()
-    assert not scene.TimeKeeper.TimestepValues, scene.TimeKeeper.TimestepValues
-    scene.UpdateAnimationUsingDataTimeSteps()
-    assert scene.PlayMode == "Sequence", scene.PlayMode
-    assert scene.NumberOfFrames == 10 and (scene.StartTime, scene.EndTime) == (0.0, 1.0), (
-        scene.NumberOfFrames, scene.StartTime, scene.EndTime)
+    scene = played()
+    assert not scene.TimeKeeper.TimestepValues and scene.PlayMode == "Sequence", scene.TimeKeeper.TimestepValues
+    assert (scene.NumberOfFrames, scene.StartTime, scene.EndTime) == (10, 0.0, 1.0), scene.NumberOfFrames
     echoes.UpdatePipeline(0.7)
-    assert echoes.GetPropertyValue("NumberOfTracedRays") is not None
     assert_same(fetch(echoes), before)
 
 
-def test_playing_sweeps():
+def test_sweeps():
+    """Sensor, echoes and image in one view: the image is the whole scan at every step, filled as far as it was fired."""
     fresh()
     _, _, beams, echoes = airport(COLUMNS)
     whole = fetch(echoes)
@@ -90,22 +96,28 @@ def test_playing_sweeps():
     beams.UpdatePipelineInformation()
     steps = [(k + j / 6) / 0.5 for k in range(2) for j in range(6)]
     assert list(beams.TimestepValues) == steps, beams.TimestepValues
-    scene = simple.GetAnimationScene()
-    scene.UpdateAnimationUsingDataTimeSteps()
-    assert list(scene.TimeKeeper.TimestepValues) == steps
-    assert scene.PlayMode == "Snap To TimeSteps", scene.PlayMode
-    assert (scene.StartTime, scene.EndTime) == (0.0, steps[-1])
-    seen = frames_of(scene, lambda: (scene.TimeKeeper.Time, count(beams), count(beams, 1), count(echoes), count(echoes, 1)))
-    assert [frame[0] for frame in seen] == steps, [frame[0] for frame in seen]
-    for number, (_, fired, rays, received, report) in enumerate(seen):
-        assert fired == report == COLUMNS * 16 * (number % 6 + 1) // 6, seen
-        assert rays == 2 * fired, (number, rays, fired)
-    counts = [frame[3] for frame in seen]
-    assert 0 < counts[1] < counts[2] < counts[5] == len(whole["energy"]) and counts[:6] == counts[6:], counts
-    # Played by ParaView itself.
+    image = simple.AvianLidarRangeImage(Echoes=echoes, Beams=simple.OutputPort(echoes, 1))
     view = simple.CreateRenderView()
-    simple.Show(echoes, view)
+    for shown in (beams, echoes, image):
+        simple.Show(shown, view)
+    simple.ColorBy(simple.GetDisplayProperties(image, view), ("POINTS", "status"))
+    scene = played()
     scene.ViewModules = [view]
+    assert list(scene.TimeKeeper.TimestepValues) == steps and scene.PlayMode == "Snap To TimeSteps", scene.PlayMode
+    assert (scene.StartTime, scene.EndTime) == (0.0, steps[-1])
+
+    def look():
+        simple.Render(view)
+        extent, status = tuple(image.GetDataInformation().GetExtent()), image.PointData["status"].GetRange()[0]
+        return scene.TimeKeeper.Time, count(beams), count(beams, 1), count(echoes), count(echoes, 1), extent, status >= 0
+
+    times, *fired, received, reported, extents, full = zip(*frames_of(scene, look))
+    assert list(times) == steps, times
+    expected = [COLUMNS * 16 * (k % 6 + 1) // 6 for k in range(12)]
+    assert [*map(list, fired)] == [expected, [2 * one for one in expected]] and list(reported) == expected, (fired, reported)
+    assert 0 < received[1] < received[2] < received[5] == len(whole["energy"]) and received[:6] == received[6:], received
+    assert {*extents} == {(0, COLUMNS - 1, 0, 15, 0, 0)} and list(full) == ([False] * 5 + [True]) * 2, (extents, full)
+    # Played by ParaView itself.
     scene.GoToFirst()
     scene.Play()
     assert scene.TimeKeeper.Time == steps[-1]
@@ -114,82 +126,31 @@ def test_playing_sweeps():
     assert_same(found, whole)
 
 
-def test_an_image_sweeps_beside_its_echoes():
-    """Sensor, echoes and image in one view: the image is the whole scan at every step, filled as far as it was fired."""
-    fresh()
-    _, _, beams, echoes = airport(COLUMNS)
-    beams.StepsPerRevolution = 6
-    image = simple.AvianLidarRangeImage(Echoes=echoes, Beams=simple.OutputPort(echoes, 1))
-    view = simple.CreateRenderView()
-    for shown in (beams, echoes, image):
-        simple.Show(shown, view)
-    simple.ColorBy(simple.GetDisplayProperties(image, view), ("POINTS", "status"))
-    scene = simple.GetAnimationScene()
-    scene.UpdateAnimationUsingDataTimeSteps()
-    scene.ViewModules = [view]
-
-    def look():
-        simple.Render(view)
-        report = echoes.GetDataInformation(1).GetNumberOfPoints()
-        extent = tuple(image.GetDataInformation().GetExtent())
-        status = image.PointData["status"].GetRange()
-        return extent, report, status[0]
-
-    seen = frames_of(scene, look)
-    assert [frame[0] for frame in seen] == [(0, COLUMNS - 1, 0, 15, 0, 0)] * 6, seen
-    assert [frame[1] for frame in seen] == [COLUMNS * 16 * (step + 1) // 6 for step in range(6)], seen
-    assert [frame[2] >= 0 for frame in seen] == [False] * 5 + [True], seen
-
-
-def moving():
+def moving(first=0, **settings):
     source = simple.ProgrammableSource(
-        OutputDataSetType="vtkPolyData", Script=MOVING, ScriptRequestInformation=STEPS)
+        OutputDataSetType="vtkPolyData", Script=MOVING, ScriptRequestInformation=STEPS.format(first=first))
     walls = simple.AvianLidarMaterial(Input=source)
-    beams = simple.AvianLidarCorridorC16(RotationRate=0.5, NumberOfRevolutions=3, StepsPerRevolution=2)
-    echoes = simple.AvianLidarEchoFilter(
-        Beams=simple.Transform(Input=beams), Surfaces=simple.AvianLidarCollisionTree(Input=walls))
-    return source, beams, echoes
+    beams = simple.AvianLidarCorridorC16(RotationRate=0.5, AzimuthStep=1, **settings)
+    return simple.AvianLidarEchoFilter(Beams=simple.Transform(Input=beams), Surfaces=simple.AvianLidarCollisionTree(Input=walls))
 
 
-def nearest(echoes):
-    echoes.UpdatePipeline(simple.GetAnimationScene().TimeKeeper.Time)
-    return echoes.PointData["distance_m"].GetRange()[0]
-
-
-def test_a_moving_scene_is_sampled_at_each_revolution():
-    fresh()
-    _, _, echoes = moving()
-    scene = simple.GetAnimationScene()
-    scene.UpdateAnimationUsingDataTimeSteps()
-    times = sorted(set(range(11)) | {0.0, 1.0, 2.0, 3.0, 4.0, 5.0})
-    assert list(scene.TimeKeeper.TimestepValues) == times, scene.TimeKeeper.TimestepValues
-    for time, distance in zip(times, frames_of(scene, lambda: nearest(echoes))):
-        assert abs(distance - 50 - 2 * (time // 2)) < 0.01, (time, distance)
-
-
-def test_one_scan_leaves_the_steps_of_others_alone():
-    """A sensor with nothing to play adds no step to those of data, and follows them."""
-    fresh()
-    source = simple.ProgrammableSource(
-        OutputDataSetType="vtkPolyData", Script=MOVING, ScriptRequestInformation=STEPS.replace("range(0", "range(5"))
-    source.UpdatePipelineInformation()
-    beams = simple.AvianLidarAirport16()
-    beams.UpdatePipelineInformation()
-    echoes = simple.AvianLidarEchoFilter(Beams=beams, Surfaces=simple.AvianLidarMaterial(Input=source))
-    echoes.UpdatePipelineInformation()
-    scene = simple.GetAnimationScene()
-    scene.UpdateAnimationUsingDataTimeSteps()
-    times = [5.0, 6.0, 7.0, 8.0, 9.0, 10.0]
-    assert list(scene.TimeKeeper.TimestepValues) == times, scene.TimeKeeper.TimestepValues
-    assert (scene.StartTime, scene.EndTime) == (5.0, 10.0), (scene.StartTime, scene.EndTime)
-    for time, distance in zip(times, frames_of(scene, lambda: nearest(echoes))):
-        assert abs(distance - 50 - 2 * (time // 2)) < 0.01, (time, distance)
+def test_a_moving_scene():
+    """Is sampled at each revolution. A sensor with nothing to play adds no step to those of data, and follows them."""
+    for first, settings in ((0, {"NumberOfRevolutions": 3, "StepsPerRevolution": 2}), (5, {})):
+        fresh()
+        echoes = moving(first, **settings)
+        echoes.UpdatePipelineInformation()
+        scene, times = played(), [*range(first, 11)]
+        assert list(scene.TimeKeeper.TimestepValues) == times, scene.TimeKeeper.TimestepValues
+        assert (scene.StartTime, scene.EndTime) == (first, 10), (scene.StartTime, scene.EndTime)
+        seen = frames_of(scene, lambda: nearest(echoes))
+        assert numpy.allclose(seen, [50 + 2 * (time // 2) for time in times], rtol=0, atol=0.01), seen
 
 
 def test_saving_every_step(kind):
     """Save Data with "Write timesteps as file-series" leaves a file for each step of the sensor."""
     fresh()
-    _, _, echoes = moving()
+    echoes = moving(NumberOfRevolutions=3, StepsPerRevolution=2)
     stem = os.path.join(OUTPUT_DIR, f"TestAnimation-{kind}")
     label = "Writetimestepsasfileseries" if kind == "vtp" else "Writealltimestepsasfileseries"
     simple.SaveData(f"{stem}.{kind}", proxy=echoes, DataMode="Binary", **{label: 1})
@@ -198,63 +159,44 @@ def test_saving_every_step(kind):
     fresh()
     for step, file in enumerate(files):
         back = simple.OpenDataFile(file)
-        back.UpdatePipeline()
-        assert back.FieldData["revolution"].GetRange()[0] == step // 2
-        assert abs(back.PointData["distance_m"].GetRange()[0] - 50 - 2 * (step // 2)) < 0.01
+        assert abs(nearest(back) - 50 - 2 * (step // 2)) < 0.01 and back.FieldData["revolution"].GetRange()[0] == step // 2
         simple.Delete(back)
-    if kind == "vtp":
-        series = simple.OpenDataFile(files)
-        assert list(series.TimestepValues) == [0.0, 1.0, 2.0, 3.0, 4.0, 5.0], series.TimestepValues
-    remove(glob.glob(f"{stem}_?*"))
+    remove(f"TestAnimation-{kind}_?*")
 
 
-def test_a_series_of_files_is_a_moving_scene(kind):
-    fresh()
-    names = []
-    for k in range(3):
-        box = simple.Box(XLength=40, YLength=2, ZLength=40, Center=[0, 51 + 5 * k, 0])
-        box.UpdatePipeline()
-        names.append(os.path.join(OUTPUT_DIR, f"TestAnimationBox_{k}.{kind}"))
-        simple.SaveData(names[-1], proxy=simple.ExtractSurface(Input=box), DataMode="Binary")
-    reader = simple.OpenDataFile(names)
-    beams = simple.AvianLidarCorridorC16(RotationRate=1, FiringInterval=1e-6, NumberOfRevolutions=3)
-    echoes = simple.AvianLidarEchoFilter(Beams=beams, Surfaces=simple.AvianLidarMaterial(Input=reader))
-    scene = simple.GetAnimationScene()
-    scene.UpdateAnimationUsingDataTimeSteps()
-    seen = frames_of(scene, lambda: nearest(echoes))
-    assert [round(distance, 1) for distance in seen] == [50.0, 55.0, 60.0], seen
-    remove(glob.glob(os.path.join(OUTPUT_DIR, "TestAnimationBox_?*")))
+def series(name, sources):
+    """Files of the sources, in turn; their reader."""
+    files = []
+    for k, source in enumerate(sources):
+        source.UpdatePipeline()
+        files.append(os.path.join(OUTPUT_DIR, f"TestAnimation{name}".replace(".", f"_{k}.")))
+        simple.SaveData(files[-1], proxy=source, DataMode="Binary")
+    return simple.OpenDataFile(files)
 
 
 def test_a_clutter_filter_learns_while_it_plays(kind):
     """A ball that stands and one that moves, whatever executes again meanwhile."""
     fresh()
-    names = []
-    for k in range(4):
-        balls = [simple.Sphere(Radius=2, Center=center) for center in ([-30, 60, 0], [30, 60 + 12 * k, 0])]
-        group = simple.AppendDatasets(Input=balls)
-        group.UpdatePipeline()
-        names.append(os.path.join(OUTPUT_DIR, f"TestAnimationClutter_{k}.{kind}"))
-        simple.SaveData(names[-1], proxy=group, DataMode="Binary")
-    cloud = simple.OpenDataFile(names)
+    balls = ([simple.Sphere(Radius=2, Center=center) for center in ([-30, 60, 0], [30, 60 + 12 * k, 0])] for k in range(4))
+    cloud = series(f"Clutter.{kind}", (simple.AppendDatasets(Input=pair) for pair in balls))
     clutter = simple.AvianLidarClutterFilter(Input=cloud, WarmUp=0)
     view = simple.CreateRenderView()
     for port in (0, 1):
         simple.Show(simple.OutputPort(clutter, port), view)
-    scene = simple.GetAnimationScene()
-    scene.UpdateAnimationUsingDataTimeSteps()
+    scene = played()
     scene.ViewModules = [view]
 
     def look():
         simple.Render(view)
         clutter.ClutterThreshold = 0.05 if clutter.ClutterThreshold == 0.06 else 0.06  # executes again
-        clutter.UpdatePipeline(scene.TimeKeeper.Time)
+        count(clutter)
         return (*clutter.PointData["clutter_probability"].GetRange(), clutter.FieldData["learned_scans"].GetRange()[0])
 
-    assert frames_of(scene, look) == [(0.0, float(k > 0), k + 1.0) for k in range(4)], look()
+    seen = frames_of(scene, look)
+    assert seen == [(0.0, float(k > 0), k + 1.0) for k in range(4)], seen
     scene.GoToFirst()
     assert look() == (0.0, 0.0, 1.0)
-    remove(glob.glob(os.path.join(OUTPUT_DIR, "TestAnimationClutter_?*")))
+    remove("TestAnimationClutter_?*")
 
 
 def main():
@@ -263,12 +205,9 @@ def main():
     load_plugin()
     kind = "vtp" if ranks == 1 else "pvtp"
     test_a_static_scene_stays_as_it_is()
-    test_playing_sweeps()
-    test_an_image_sweeps_beside_its_echoes()
-    test_a_moving_scene_is_sampled_at_each_revolution()
-    test_one_scan_leaves_the_steps_of_others_alone()
+    test_sweeps()
+    test_a_moving_scene()
     test_saving_every_step(kind)
-    test_a_series_of_files_is_a_moving_scene(kind)
     test_a_clutter_filter_learns_while_it_plays(kind.replace("vtp", "vtu"))
 
 

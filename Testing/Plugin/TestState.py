@@ -9,67 +9,39 @@ from paraview import simple, smstate
 from plugin_testing import OUTPUT_DIR, airport, assert_same, fetch, load_plugin
 
 # Values of every kind that are not the defaults: numbers, vectors, a table, choices, switches, texts.
-BEAMS = {
-    "Position": [0.25, -1.5, 3.125],
-    "Orientation": [10, 0.1, -0.2],
-    "ChannelElevations": [0.1, 0.7, 1.3, 2.9],
-    "HalfBeamwidth": 4e-3,
-    "BeamProfile": "Gaussian",
-    "SamplingInterval": 4e-9,
+VALUES = {
+    "beams": {"Position": [0.25, -1.5, 3.125], "Orientation": [10, 0.1, -0.2], "ChannelElevations": [0.1, 0.7, 1.3, 2.9],
+              "HalfBeamwidth": 4e-3, "BeamProfile": "Gaussian", "SamplingInterval": 4e-9},
+    "echoes": {"RaysPerBeam": 17, "BeamSamples": "Rays", "Sampling": "MonteCarlo", "Seed": -5, "AttenuationCoefficient": 5e-5,
+               "NumberOfReflections": 1, "BatchCollisionDetection": "Rays", "FullModel": 1, "ReturnMode": "Strongest"},
+    "tree": {"SplitRule": "Median", "BoundingVolume": "Sphere", "MaximumLeafSize": 7},
+    "material": {"Material": "Custom", "Kd": 0.3, "Ks": 0.1, "Kp": 50, "BlockNamePattern": "Terminal*"},
 }
-ECHOES = {
-    "RaysPerBeam": 37,
-    "BeamSamples": "Rays",
-    "Sampling": "MonteCarlo",
-    "Seed": -5,
-    "AttenuationCoefficient": 5e-5,
-    "NumberOfReflections": 1,
-    "BatchCollisionDetection": "Rays",
-    "FullModel": 1,
-    "ReturnMode": "Strongest",
-}
-TREE = {"SplitRule": "Median", "BoundingVolume": "Sphere", "MaximumLeafSize": 7}
-MATERIAL = {"Material": "Custom", "Kd": 0.3, "Ks": 0.1, "Kp": 50, "BlockNamePattern": "Terminal*"}
 
 
 def build():
-    scene, tree, beams, echoes = airport(240)
-    material = simple.AvianLidarMaterial(registrationName="material", Input=scene)
+    scene, tree, beams, echoes = airport(60)
+    material = simple.AvianLidarMaterial(Input=scene)
     tree.Input = material
-    colours = simple.AvianLidarHSBColorMap(
-        registrationName="colours", Input=echoes, UseFieldDataRange=0, EnergyRange=[1e-6, 5e-5]
-    )
-    for proxy, values in ((beams, BEAMS), (echoes, ECHOES), (tree, TREE), (material, MATERIAL)):
-        for name, value in values.items():
-            proxy.SetPropertyWithName(name, value)
-    simple.RenameSource("tree", tree)
-    simple.RenameSource("beams", beams)
-    simple.RenameSource("echoes", echoes)
+    colours = simple.AvianLidarHSBColorMap(Input=echoes, UseFieldDataRange=0, EnergyRange=[1e-6, 5e-5])
+    for proxy, name in ((beams, "beams"), (echoes, "echoes"), (tree, "tree"), (material, "material"), (colours, "colours")):
+        simple.RenameSource(name, proxy)
+        for prop, value in VALUES.get(name, {}).items():
+            proxy.SetPropertyWithName(prop, value)
     simple.Show(echoes)
     return colours
 
 
-def save(file_name):
-    if file_name.endswith(".py"):
-        with open(file_name, "w", encoding="utf-8") as state:
-            state.write(smstate.get_state())
-    else:
-        simple.SaveState(file_name)
+def check(**others):
+    """What is in the session now is what was saved, but for other values of the echo filter."""
+    for name, values in VALUES.items():
+        for prop, value in {**values, **(others if name == "echoes" else {})}.items():
+            found = simple.FindSource(name).GetPropertyValue(prop)
+            assert (list(found) if isinstance(value, list) else found) == value, (name, prop, found, value)
 
 
-def check(echoes=ECHOES):
-    """What is in the session now is what was saved."""
-    for name, values in (("beams", BEAMS), ("echoes", echoes), ("tree", TREE), ("material", MATERIAL)):
-        proxy = simple.FindSource(name)
-        for prop, value in values.items():
-            found = proxy.GetPropertyValue(prop)
-            found = list(found) if isinstance(value, list) else found
-            assert found == value, (name, prop, found, value)
-
-
-def open_again(file_name):
-    """An empty session, then the state."""
-    save(file_name)
+def load(file_name):
+    """Into an empty session."""
     simple.ResetSession()
     assert not simple.GetSources()
     load_plugin()
@@ -80,25 +52,21 @@ def open_again(file_name):
             exec(compile(state.read(), file_name, "exec"), {"__name__": "state"})
 
 
-def check_sensors(file_name):
-    """Lidars of makers come back with what no property has: offsets and times of channels, prisms."""
-    for name in ("AvianLidarOS164", "AvianLidarMid40"):
-        simple.ResetSession()
-        load_plugin()
-        lidar = getattr(simple, name)(registrationName="lidar", PulseEnergy=5e-7)
-        simple.Show(lidar)
-        expected = fetch(lidar)
-        open_again(file_name)
-        assert simple.FindSource("lidar").PulseEnergy == 5e-7
-        assert_same(fetch(simple.FindSource("lidar")), expected)
+def open_again(file_name):
+    if file_name.endswith(".pvsm"):
+        simple.SaveState(file_name)
+    else:
+        with open(file_name, "w", encoding="utf-8") as state:
+            state.write(smstate.get_state())
+    load(file_name)
 
 
 def main():
     load_plugin()
     expected = fetch(build())
-    assert len(expected["energy"]) > 100
-    for extension in ("py", "pvsm"):
-        file_name = os.path.join(OUTPUT_DIR, "TestState." + extension)
+    assert len(expected["energy"]) > 20
+    states = [os.path.join(OUTPUT_DIR, "TestState." + extension) for extension in ("py", "pvsm")]
+    for file_name in states:
         open_again(file_name)
         check()
         assert_same(fetch(simple.FindSource("colours")), expected)
@@ -107,12 +75,8 @@ def main():
     assert old.count('name="PlaneIntegration"') > 0
     with open(file_name, "w", encoding="utf-8") as state:
         state.write(old)
-    simple.ResetSession()
-    load_plugin()
-    simple.LoadState(file_name)
-    check({**ECHOES, "BeamSamples": "Cells"})
-    for extension in ("py", "pvsm"):
-        check_sensors(os.path.join(OUTPUT_DIR, "TestState_sensor." + extension))
+    load(file_name)
+    check(BeamSamples="Cells")
 
 
 if __name__ == "__main__":

@@ -1,78 +1,52 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""ParaView's window: the echo filter is found by what it does, takes beams alone as Beams, says what is not connected; the
-first Apply colours echoes and shows a range image; undo, delete, reload and reset lead out of every state of error, alone
-and as a client of pvserver.
+"""ParaView's window as a user meets it, started once, with the state that brings the plugin; window_steps.py does all the steps.
 
-Run by the system's Python: TestWindow.py paraview pvpython [server]."""
+Run by the system's Python: TestWindow.py paraview pvpython [--documentation | auto]. With auto the plugin is loaded by itself,
+and macros are taken back. Pictures and the seconds of processor of each part go to the folder TestWindow in the one for temporary
+files; with --documentation (and Debian's libqt5svg5, without which ParaView has no icons) pictures go to Documentation/images."""
 
 import os
+import pathlib
+import shutil
+import subprocess
 import sys
 import tempfile
 
-from gui_testing import OUTPUT_DIR, empty, run_script
-from TestClientServer import server
+from gui_testing import HERE, OUTPUT_DIR, PLUGIN_DIR, SOURCE_DIR, run_script
 
-SIZE = (1400, 900)
-ENTRY = "Avian Lidar Echo Filter: Scan Surfaces and Birds"
-LIMITS = [2e-6, 6.25e-5]
-# What each state of error says, one line for each object that fails.
-SAID = {"value": ["AttenuationCoefficient is -1"], "file": ["is not JSON", "its producer failed"],
-        "input": ["Input port 1 (surfaces) is not connected"]}
-SCENE, BEAMS, ECHOES = "AvianLidarSceneReader1", "AvianLidarAirport161", "AvianLidarEchoFilter1"
-LEFT = {"undo": [BEAMS, ECHOES, SCENE], "delete": [BEAMS, SCENE], "reload": [BEAMS, ECHOES, SCENE], "reset": []}
+SIZE, DOCUMENTED = (1280, 1024), (1600, 1900)
+IMAGES = {"start": "start", "start-view": "start-view", "range-image": "range-image", "airport": "paraview", "sensors": "paraview-sensors",
+          "wizard-1": "paraview-wizard", "beam": "paraview-beam", "sequence": "paraview-sequence", "information": "panel-information",
+          "AvianLidarCoverage-default": "panel-coverage", "AvianLidarEchoFilter-default": "panel-echo-filter",
+          "AvianLidarMaterialCustom-default": "panel-material", "SaveData-LAS-default": "panel-save-las"}
+FINE, COARSE = "SPACING = [12.0, 12.0, 7.5]", "SPACING = [60.0, 60.0, 15.0]"
+AUTO = '<Plugins><Plugin name="AvianLidarPlugin" filename="{}" auto_load="1" /></Plugins>'
 
 
-def check_found(found):
-    assert "Avian Lidar" not in found["found"]["avian"], found["found"]["avian"]  # which would hide the toolbar
-    for word, entries in found["found"].items():
-        assert entries.get(ENTRY) is False, (word, entries)  # a mesh with normals gives no beams
-    assert ENTRY in found["menu"], found["menu"]
-    assert (found["mesh"], found["beams"]) == (False, True), found
-    assert found["tip"].startswith("Requires a point attribute array"), found["tip"]
-    assert len(found["missing"]) == 1 and "Input port 1 (surfaces) is not connected" in found["missing"][0], found["missing"]
-    assert "Edit > Change Input > Surfaces" in found["missing"][0], found["missing"]
-
-
-def check_shown(found):
-    for name, representation, mode in (("echoes", "Points", "3D"), ("image", "Slice", "2D")):
-        shown = found[name]
-        assert shown["array"] == ["POINTS", "energy"] and representation in shown["representation"], shown
-        assert shown["limits"] == LIMITS and shown["legend"] == ["energy (J)", 1] and mode in shown["mode"], shown
-    assert found["image"]["own"] and found["image"]["width"] > 300, found["image"]
-
-
-def check_walk(state, way, walk):
-    assert len(walk["errors"]) == len(SAID[state]), (state, way, walk)
-    for words, error in zip(SAID[state], walk["errors"]):
-        assert words in error, (state, way, walk)
-    assert walk["echoes"] > 500 and not walk["later"], (state, way, walk)
-    assert walk["left"] == sorted(LEFT[way]), (state, way, walk)
-
-
-def check(found, states, ways):
-    check_found(found)
-    check_shown(found)
-    assert sorted(found["walks"]) == sorted(f"{state}/{way}" for state in states for way in ways), found["walks"]
-    for name, walk in found["walks"].items():
-        check_walk(*name.split("/"), walk)
-
-
-def run(paraview, name, arguments, states, ways):
-    folder = os.path.join(OUTPUT_DIR, "TestWindow-" + name)
-    empty(folder)
-    given = {"AVIANLIDAR_STATES": " ".join(states), "AVIANLIDAR_WAYS": " ".join(ways)}
-    found = run_script(paraview, "window_steps.py", folder, SIZE, arguments, expected=("ERR|", "Avian lidar"),
-                       AVIANLIDAR_SERVER=str(len(arguments)), **given)
-    check(found, states, ways)
-
-
-def main(paraview, _, where="window"):
-    if where == "window":
-        run(paraview, where, [], SAID, LEFT)
-        return
-    with tempfile.TemporaryDirectory() as folder, server(folder, 1, "start") as port:
-        # TestErrors.py reloads a file of a server.
-        run(paraview, "server", [f"--server-url=cs://localhost:{port}"], ["value", "input"], ["delete"])
+def main(paraview, _, option=None):
+    with tempfile.TemporaryDirectory() as folder:
+        copy = shutil.copytree(PLUGIN_DIR, os.path.join(folder, "o'brien" if option == "auto" else "AvianLidarPlugin"))
+        given = {"AVIANLIDAR_PLUGIN_COPY": copy}
+        coverage = pathlib.Path(copy, "Macros", "avian_lidar_coverage.py")
+        text = coverage.read_text(encoding="utf-8")
+        assert FINE in text
+        coverage.write_text(text.replace(FINE, COARSE), encoding="utf-8")  # TestMacros.py looks at what it finds
+        if option == "auto":
+            given["PV_PLUGIN_CONFIG_FILE"] = plugins = os.path.join(folder, "plugins.xml")
+            pathlib.Path(plugins).write_text(AUTO.format(os.path.join(copy, "AvianLidarPlugin.so")), encoding="utf-8")
+            run_script(paraview, "TestWindow-auto", SIZE, ["--script", os.path.join(HERE, "window_steps.py")], **given)
+            return
+        if option:
+            scenario = os.path.join(SOURCE_DIR, "Examples", "sequence", "hongqiao.scenario.json")
+            subprocess.run([sys.executable, "-m", "avianlidar", "sequence", scenario, "-o", folder, "--scans", "4"], check=True)
+            given["AVIANLIDAR_DOCUMENTATION"] = os.path.join(folder, "sequences", "00", "times.txt")
+        state = os.path.join(copy, "States", "avian_lidar_airport.py")
+        with open(state, "a", encoding="utf-8") as file:  # ParaView takes no script beside it
+            file.write("\nimport window_steps\n")
+        run_script(paraview, "TestWindow", DOCUMENTED if option else SIZE, ["--state", state], **given)
+    for name, image in IMAGES.items() if option else ():
+        shutil.copyfile(os.path.join(OUTPUT_DIR, "TestWindow", name + ".png"),
+                        os.path.join(SOURCE_DIR, "Documentation", "images", image + ".png"))
 
 
 if __name__ == "__main__":

@@ -1,171 +1,174 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Run in ParaView's window by TestErrors.py, alone or connected to a pvserver: things are made to fail and are mended again,
-as a user does it: by the panel with Apply, and by a file with F5.
-
-The results: {"server": number of its processes, "cases": {name: [what there is to see at first, after the error, mended,
-after the second error, mended again]}, "files": {name: [the same of a file: may one choose Save Data, is it what it was]},
-"applies": may Apply be pressed for what was only made}.
-What there is to see: {"errors": [the sources that have said something new], "shown": {name: points and cells that its
-representation has}, "information": {name: [points and cells, error]}, "picture": checksum of the view}."""
+"""Errors in ParaView's window, alone or as a client: each is said each time by every object that it hits, there is nothing
+to see while it lasts, what comes after it is seen, and undo, delete, reload and reset lead out of it."""
 
 import json
 import os
-import zlib
 
-import client_window
-from client_qt import QAction
-from client_window import FOLDER, Messages, apply, apply_button, find, later, main_window, panel, type_in, until
-from paraview import servermanager, simple
-from vtkmodules.util.numpy_support import vtk_to_numpy
+from client_qt import QtWidgets
+from client_window import (FOLDER, action, app, apply_button, apply_value, delete_all, errors, later, names, points_of, press, take,
+                           until)
+from paraview import simple
 from vtkmodules.vtkCommonDataModel import vtkDataObject
 
 SCENE = os.path.join(FOLDER, "errors.lidarscene.json")
-GOOD, OTHER = 120, 30  # the width of the ground, metres
-FORMATS = {1: ("vtp", "csv", "las", "pcd"), 2: ("csv", "las", "pcd")}  # by the number of the server's processes
-NAMES = ("Scene", "Material", "Tree", "Sensor", "Echoes", "Colours", "Image")
+# What follows what, and the class of each.
+CHAIN = {
+    "Scene": ("Material", "Tree", "Echoes", "Colours", "Image"),
+    "Sensor": ("Echoes", "Colours", "Image"),
+    "Echoes": ("Colours", "Image"),
+}
+CLASSES = {"Scene": "SceneReader", "Material": "Material", "Tree": "CollisionTree", "Sensor": "BeamSource",
+           "Echoes": "EchoFilter", "Colours": "HSBColorMap", "Image": "RangeImage"}
+WRITTEN = ("las", "pcd", "csv")  # ours keep a good file by themselves, ParaView's by the window alone
+ECHOES = "AvianLidarEchoFilter1"
 
 
-def write_scene(width):
-    """A ground; without a width a file that is none."""
-    if width is None:
-        text = '{"version": 1, "objects": ['
-    else:
-        ground = {"ground": {"size": width, "height": -1}, "material": "wall", "name": "ground"}
-        text = json.dumps({"version": 1, "objects": [ground]})
+def write_scene(width=200):
+    """A ground of a width, m; without one a file that is not a scene."""
+    ground = {"ground": {"size": width, "height": -1}, "material": "wall", "name": "ground"}
     with open(SCENE, "w", encoding="utf-8") as file:
-        file.write(text)
+        file.write(json.dumps({"version": 1, "objects": [ground]}) if width else "{")
 
 
 class Pipeline:
+    """Every object of CLASSES, shown."""
+
     def __init__(self):
-        self.scene = simple.OpenDataFile(SCENE)
-        self.material = simple.AvianLidarMaterial(Input=self.scene, Material="Custom")
-        self.tree = simple.AvianLidarCollisionTree(Input=self.material)
-        self.sensor = simple.AvianLidarBeamSource(
-            Position=[0, 0, 3], AzimuthStep=2, MinimumElevation=-30, ElevationStep=1.5
-        )
-        self.echoes = simple.AvianLidarEchoFilter(Beams=self.sensor, Surfaces=self.tree)
-        self.colours = simple.AvianLidarHSBColorMap(Input=self.echoes)
-        self.image = simple.AvianLidarRangeImage(Echoes=self.echoes, Beams=self.sensor)
-        self.all = (self.scene, self.material, self.tree, self.sensor, self.echoes, self.colours, self.image)
+        write_scene(120)
+        scene = simple.OpenDataFile(SCENE)
+        material = simple.AvianLidarMaterial(Input=scene, Material="Custom", Kd=0.5)
+        tree = simple.AvianLidarCollisionTree(Input=material)
+        sensor = simple.AvianLidarBeamSource(Position=[0, 0, 3], AzimuthStep=3, MinimumElevation=-30, ElevationStep=1.5)
+        echoes = simple.AvianLidarEchoFilter(Beams=sensor, Surfaces=tree)
+        parts = (scene, material, tree, sensor, echoes, simple.AvianLidarHSBColorMap(Input=echoes),
+                 simple.AvianLidarRangeImage(Echoes=echoes, Beams=sensor))
+        self.all = dict(zip(CLASSES, parts))
         self.view = simple.GetActiveViewOrCreate("RenderView")
-        for name, proxy in zip(NAMES, self.all):
+        for name, proxy in self.all.items():
             simple.RenameSource(name, proxy)
             simple.Show(proxy, self.view)
-        simple.ResetCamera(self.view)
         simple.Render(self.view)
-        self.messages = Messages()
 
     def look(self):
-        found = {"errors": self.messages.take(), "shown": {}, "information": {}}
-        for name, proxy in zip(NAMES, self.all):
-            information = proxy.GetDataInformation(0).DataInformation
-            error = information.GetArrayInformation("error", vtkDataObject.FIELD)
-            found["information"][name] = [elements(information), bool(error)]
-            representation = simple.GetRepresentation(proxy, self.view).SMProxy
-            found["shown"][name] = elements(representation.GetRepresentedDataInformation())
-        picture = self.view.SMProxy.CaptureWindow(1)
-        found["picture"] = zlib.crc32(vtk_to_numpy(picture.GetPointData().GetScalars()).tobytes())
-        picture.UnRegister(None)
+        """{name: (elements of its output, elements drawn, is there an error)}"""
+        found = {}
+        for name, proxy in self.all.items():
+            data = proxy.GetDataInformation(0).DataInformation
+            drawn = simple.GetRepresentation(proxy, self.view).SMProxy.GetRepresentedDataInformation()
+            error = data.GetArrayInformation("error", vtkDataObject.FIELD)
+            found[name] = (*(one.GetNumberOfPoints() + one.GetNumberOfCells() for one in (data, drawn)), bool(error))
         return found
 
+    def case(self, name, change, values):
+        """Each odd value is wrong, each even one right; to be yielded from."""
+        seen = self.look()
+        hit = (name, *CHAIN[name])
+        for step, value in enumerate(values):
+            yield from change(value)
+            said, look = take(), self.look()
+            if step % 2:
+                assert not said and all(data and drawn and not error for data, drawn, error in look.values()), (name, said, look)
+                assert look["Echoes"] != seen["Echoes"], (name, value, look)  # those of the new value
+                seen = look
+                continue
+            assert len(said) == len(hit), (name, value, said)
+            for each in hit:  # once, the first one what it is
+                (text,) = [text for text in said if f"vtkAvianLidar{CLASSES[each]} (" in text]
+                assert ("its producer failed" in text) == (each != name), text
+            for each, (data, drawn, error) in look.items():
+                assert error == (each in hit), (name, each, look)
+                # An image has its extent, and no numbers.
+                assert each == "Image" or (data == 0, drawn == 0) == (each in hit,) * 2, (name, each, look)
 
-def elements(information):
-    return information.GetNumberOfPoints() + information.GetNumberOfCells()
+    def by_panel(self, name, prop):
+        return lambda value: apply_value(self.all[name], prop, f"{value:.6g}")
 
-
-def by_panel(proxy, prop, values):
-    """Types a value into the panel, and applies it; a generator for each step."""
-
-    def change(step):
-        simple.SetActiveSource(proxy)
-        yield from until(lambda: find(prop, parent=panel()), "the panel with " + prop)
-        yield 0.1
-        type_in(prop, f"{values[step]:.6g}")
-        yield from apply()
-
-    return change
-
-
-def by_file(widths):
-    def change(step):
-        write_scene(widths[step])
-        simple.SetActiveSource(simple.FindSource("Scene"))
-        yield 0.1
-        later(find("actionReloadFiles", QAction, main_window()).trigger)
-        yield 0.7
-
-    return change
-
-
-def case(pipeline, change, steps):
-    """What there is to see at first and after each step; to be yielded from."""
-    pipeline.messages.take()
-    found = [pipeline.look()]
-    for step in range(steps):
-        yield from change(step)
-        found.append(pipeline.look())
-    return found
+    def by_file(self, width):
+        write_scene(width)
+        simple.SetActiveSource(self.all["Scene"])
+        yield 0.2
+        yield from press(action("actionReloadFiles"))
 
 
-def can_save(proxy):
-    simple.SetActiveSource(proxy)
-    return find("actionFileSaveData", QAction, main_window()).isEnabled()
-
-
-def file_of(name):
-    with open(name, "rb") as file:
-        return file.read()
-
-
-def save(pipeline, fail):
-    """Save Data of good data, of what failed, and of good data again; to be yielded from."""
-    found, contents = {}, {}
-    # Filters behind the echoes, which may lose the error.
-    sphere = simple.Sphere()
-    behind = [simple.PassArrays(Input=pipeline.echoes), simple.AppendDatasets(Input=[sphere, pipeline.echoes])]
-    for proxy in behind:
-        proxy.UpdatePipeline()
-    for step in range(3):
-        if step:
-            yield from fail(step - 1)
-        for proxy in behind:
-            proxy.UpdatePipeline()
-            found.setdefault("behind", []).append(can_save(proxy))
-        for name in FORMATS[servermanager.ActiveConnection.GetNumberOfDataPartitions()]:
-            file_name = os.path.join(FOLDER, "echoes." + name)
-            allowed = can_save(pipeline.echoes)
-            yield 0.05
-            # ParaView's own writers are kept from it by the window alone, ours by themselves.
-            if allowed or name not in ("vtp", "csv"):
-                save_data(pipeline.echoes, file_name)
-            content = file_of(file_name)
-            found.setdefault(name, []).append([allowed, contents.setdefault(name, content) == content, len(content)])
-    for proxy in (*behind, sphere):
-        simple.Delete(proxy)
-    return found
-
-
-def save_data(proxy, file_name):
-    options = {"las": {"CoordinateSystem": "Local"}, "vtp": {"DataMode": "Binary"}}.get(file_name[-3:], {})
-    simple.SaveData(file_name, proxy=proxy, **options)
-
-
-def steps(results):
-    results["server"] = servermanager.ActiveConnection.GetNumberOfDataPartitions()
-    write_scene(GOOD)
+def cases(*chosen):
+    """The chosen cases and Save Data of what failed; to be yielded from."""
+    yield from delete_all()
     pipeline = Pipeline()
     yield 0.5
-    results["applies"] = apply_button().isEnabled()
-    results["cases"] = cases = {}
-    air = by_panel(pipeline.echoes, "AttenuationCoefficient", (-1, 0.05, -2, 0.01))
-    cases["Echoes"] = yield from case(pipeline, air, 4)
-    kd = by_panel(pipeline.material, "Kd", (-1, 0.05, -2, 0.5))
-    cases["Material"] = yield from case(pipeline, kd, 4)
-    energy = by_panel(pipeline.sensor, "PulseEnergy", (-1, 5e-5, -2, 3.6e-4))
-    cases["Sensor"] = yield from case(pipeline, energy, 4)
-    cases["Scene"] = yield from case(pipeline, by_file((None, OTHER, None, GOOD)), 4)
-    results["files"] = yield from save(pipeline, by_panel(pipeline.echoes, "AttenuationCoefficient", (-1, 0.02)))
+    assert not apply_button().isEnabled(), "nothing was changed"
+    air = pipeline.by_panel("Echoes", "AttenuationCoefficient")
+    yield from pipeline.case("Echoes", air, (-1, 0.05, -2, 0.01))  # the second time, too
+    given = {"Sensor": (pipeline.by_panel("Sensor", "PulseEnergy"), (-1, 5e-5)), "Scene": (pipeline.by_file, (None, 30))}
+    for name in chosen:
+        yield from pipeline.case(name, *given[name])
+    yield from save(pipeline, air)
+    yield from delete_all()
 
 
-client_window.run(steps)
+def save(pipeline, change):
+    """Save Data is there for good data alone, also for those of a filter behind that loses the error."""
+    echoes = pipeline.all["Echoes"]
+    behind = simple.AppendDatasets(Input=[simple.Sphere(), echoes])
+    contents = {}
+    for value in (None, -1, 0.02):
+        if value:
+            yield from change(value)
+        behind.UpdatePipeline()
+        for proxy in (echoes, behind):
+            simple.SetActiveSource(proxy)
+            yield 0.1
+            assert action("actionFileSaveData").isEnabled() == (value != -1), (value, names())
+        for name in WRITTEN:
+            file_name = os.path.join(FOLDER, "saved." + name)
+            if value != -1 or name != "csv":
+                simple.SaveData(file_name, proxy=echoes, **({"CoordinateSystem": "Local"} if name == "las" else {}))
+            with open(file_name, "rb") as file:
+                content = file.read()
+            assert len(content) > 1000 and (value is None or (content == contents[name]) == (value == -1)), (name, value)
+            contents[name] = content
+        take()
+
+
+def scan_again(surfaces=True):
+    """A scan of the file, shown."""
+    scene = simple.OpenDataFile(SCENE)
+    beams = simple.AvianLidarAirport16(Position=[0, 0, 3], AzimuthStep=4, MinimumElevation=-30)
+    echoes = simple.AvianLidarEchoFilter(Beams=beams, **({"Surfaces": scene} if surfaces else {}))
+    simple.Show(echoes)
+    simple.Render()
+    simple.SetActiveSource(echoes)
+    return echoes
+
+
+def walks():
+    """From an error, by undo, delete and reset, to what is left; the next good scan works beside that."""
+    write_scene()
+    for way, surfaces, words in (("actionEditUndo", True, "AttenuationCoefficient"), ("actionDelete", False, "(surfaces) is not connected"),
+                                 ("actionDelete_All", True, "AttenuationCoefficient")):
+        yield from delete_all()
+        take()
+        echoes = scan_again(surfaces)
+        if surfaces:
+            yield from apply_value(echoes, "AttenuationCoefficient", "-1")
+        (said,) = take()
+        assert words in said, said
+        before = names()
+        if way == "actionDelete_All":
+            later(action(way).trigger)
+            box = yield from until(lambda: app.activeModalWidget() or not names(), "the reset")
+            if box is not True:
+                yield 0.1
+                message = isinstance(box, QtWidgets.QMessageBox)
+                (box.button(QtWidgets.QMessageBox.StandardButton.Yes).click if message else box.accept)()
+            yield from until(lambda: not names(), "an empty session")
+            yield 0.5
+        else:
+            yield from press(action(way))
+        left = {"actionEditUndo": before, "actionDelete": [name for name in before if name != ECHOES], "actionDelete_All": []}[way]
+        assert names() == left, (names(), left)
+        take()
+        again = scan_again()
+        yield 0.2
+        assert points_of(again) > 500 and not errors, errors
+    yield from delete_all()

@@ -3,14 +3,20 @@
 
 import os
 
+import avianlidar.vtkAvianLidar as module
 import numpy
 from paraview import servermanager, simple
+from vtkmodules.vtkImagingCore import vtkImageDifference
+from vtkmodules.vtkIOImage import vtkPNGReader, vtkPNGWriter
 from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.vtkParallelCore import vtkDummyController, vtkMultiProcessController
 
 PLUGIN = os.environ["AVIANLIDAR_PLUGIN"]
 SOURCE_DIR = os.environ["AVIANLIDAR_SOURCE_DIR"]
 OUTPUT_DIR = os.environ["AVIANLIDAR_TEST_OUTPUT_DIR"]
 SCENE = os.path.join(SOURCE_DIR, "Examples", "airport", "scene", "hongqiao.lidarscene.json")
+
+THRESHOLD = 15  # image error
 
 # What a run costs, not what it finds.
 COSTS = ("candidates", "nodes_visited", "rays_traced")
@@ -59,11 +65,39 @@ def assert_same(one, other):
         assert a.tobytes() == b.tobytes(), f"{name} differs in {numpy.count_nonzero(a != b)} values"
 
 
-def assert_state_has_airport(state, echo_filter):
-    """The echo filter of that name in a state that the window has saved gives the echoes that a script gets."""
-    load_plugin()
-    simple.LoadState(state)
-    found = fetch(simple.FindSource(echo_filter))
-    assert len(found["energy"]) > 1000
-    _, _, _, echoes = airport()
-    assert_same(found, fetch(echoes))
+def direct_echoes(columns):
+    """The airport's scan with the classes themselves, in this process alone: (beams, echo filter)."""
+    reader = module.vtkAvianLidarSceneReader()
+    reader.SetFileName(SCENE)
+    beams = module.vtkAvianLidarBeamSource()
+    beams.SetPresetToAirport16()
+    beams.SetPosition(0, 0, 3)
+    beams.SetAzimuthStep(360 / columns)
+    echoes = module.vtkAvianLidarEchoFilter()
+    echoes.SetInputConnection(0, beams.GetOutputPort())
+    echoes.SetInputConnection(1, reader.GetOutputPort())
+    before = vtkMultiProcessController.GetGlobalController()
+    vtkMultiProcessController.SetGlobalController(vtkDummyController())
+    try:
+        echoes.Update()
+    finally:
+        vtkMultiProcessController.SetGlobalController(before)
+    return beams, echoes
+
+
+def compare(name):
+    """The picture in the folder for temporary files with the baseline of that name."""
+    readers = vtkPNGReader(), vtkPNGReader()
+    for reader, folder in zip(readers, (OUTPUT_DIR, os.environ["AVIANLIDAR_BASELINE_DIR"])):
+        reader.SetFileName(os.path.join(folder, name))
+    difference = vtkImageDifference()
+    difference.SetInputConnection(readers[0].GetOutputPort())
+    difference.SetImageConnection(readers[1].GetOutputPort())
+    difference.Update()
+    error = difference.GetThresholdedError()
+    if error > THRESHOLD:
+        writer = vtkPNGWriter()
+        writer.SetFileName(os.path.join(OUTPUT_DIR, name.replace(".png", ".diff.png")))
+        writer.SetInputConnection(difference.GetOutputPort())
+        writer.Write()
+    assert error <= THRESHOLD, f"{name}: image error {error:.3f}, allowed {THRESHOLD}"
