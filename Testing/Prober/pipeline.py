@@ -105,12 +105,6 @@ class Result:
         self.found = contents(data, MAY_DIFFER)
 
 
-def without_fields(result):
-    """vtkAvianLidarBeamView says in field data what its last execution needed, not this one."""
-    result.found = {where: what for where, what in result.found.items() if not where.startswith("/field")}
-    return result
-
-
 class Pipeline:
     def __init__(self, settings):
         self.algorithms = {name: kind() for name, kind in ALGORITHMS.items()}
@@ -198,8 +192,7 @@ class Pipeline:
         else:
             algorithm.UpdateTimeStep(time, piece, pieces, 0)
         own = [text for who, text in self.heard if who == name]
-        result = Result([text for _, text in self.heard], own, self.executions[name] > before, algorithm.GetOutputDataObject(port))
-        return without_fields(result) if name == "view" else result
+        return Result([text for _, text in self.heard], own, self.executions[name] > before, algorithm.GetOutputDataObject(port))
 
 
 SINKS = [(name, port) for name, kind in ALGORITHMS.items() if name not in ("group", "medium", "material", "bird")
