@@ -70,7 +70,9 @@ class Sheets(unittest.TestCase):
         numbers = 3e-4, 60.0, 0.5
         for rho, p, light in ((0.1, 0.9, 0), (0.8, 0.5, 100)):
             with self.subTest(reflectance=rho, light=light):
+                whole = sensor()
                 looking = sensor(directions=np.tile([1.0, 0, 0], (1000, 1)), receiver_aperture=numbers[0], pulse_width=0,
+                                 false_alarms_per_scan=whole.false_alarms_per_scan * 1000 / whole.beams.number_of_points,
                                  filter_bandwidth=numbers[1], sun_azimuth=270, sun_elevation=0,
                                  sunlight=_sheet.irradiance(light, sensor().wavelength))
                 # The simulated board is not quite what fills so much of the beam: 2 % of the signal.
