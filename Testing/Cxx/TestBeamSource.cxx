@@ -171,7 +171,7 @@ void TestHeldOutput()
     "a new yaw makes new azimuths");
 }
 
-// Values that others forbid, and values just beyond a limit. TestArguments.py goes far beyond the
+// Values that others forbid, and values just beyond a limit. TestBadInput.py goes far beyond the
 // limits of every property, TestScanPattern.cxx and TestPointingErrors.cxx have the kernel's.
 void TestBadValues()
 {

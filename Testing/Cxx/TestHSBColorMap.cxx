@@ -153,7 +153,7 @@ void TestLegalButOdd()
     "they have no hue and are black");
 }
 
-// Arrays and fields of wrong values are tested in TestArguments.py.
+// Arrays and fields of wrong values are tested in TestBadInput.py.
 void TestBadInput()
 {
   const auto check = [](Filter* filter, vtkPolyData* cloud, const char* words)

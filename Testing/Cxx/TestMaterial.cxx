@@ -263,7 +263,7 @@ void TestEmptyInput()
   Check(heard.Nothing(), "empty input is legal and silent");
 }
 
-// Just beyond the limits; TestArguments.py goes far beyond those of every property.
+// Just beyond the limits; TestBadInput.py goes far beyond those of every property.
 void TestBadInput()
 {
   for (const auto& [words, set, value] :

@@ -270,7 +270,7 @@ void TestNoBeams()
     "no beams: cells without an echo");
 }
 
-// Arrays of wrong values are tested in TestArguments.py.
+// Arrays of wrong values are tested in TestBadInput.py.
 void TestBadInput()
 {
   using Spoil = std::function<void(vtkPointData * echoes, vtkPointData * beams)>;

@@ -69,7 +69,7 @@ def mesh_files(folder):
         for mode in (0, 1):
             writer.SetInputData(data)
             writer.SetFileName(name)
-            writer.SetFileType(mode + 1) if kind == "vtk" else writer.SetDataMode(mode)
+            writer.SetFileType(mode + 1) if kind == "vtk" else (writer.SetDataModeToAscii, writer.SetDataModeToBinary)[mode]()
             writer.Write()
             with open(name, "rb") as file:
                 files[f"box{mode}.{kind}"] = file.read()

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The clutter filter on scans made by hand: persistence in closed form, time, tables, bad input. Neighbours by brute force, order and
-memory of the map are TestClutterMap's (kernel), NaN in each property TestArguments'."""
+memory of the map are TestClutterMap's (kernel), NaN in each property TestBadInput's."""
 
 import unittest
 
@@ -289,7 +289,7 @@ class Table(unittest.TestCase):
 
 class BadInput(unittest.TestCase):
     def test_messages(self):
-        """NaN and numbers far beyond are TestArguments'."""
+        """NaN and numbers far beyond are TestBadInput's."""
         nan = float("nan")
         for settings, data, words in (
                 ({"Window": 0.5}, cloud(HERE, 0), "Window is 0.5"), ({"ClutterThreshold": 0.0}, cloud(HERE, 0), "ClutterThreshold is 0"),

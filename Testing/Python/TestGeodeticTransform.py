@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The geodetic transform against two outside programs (CartConvert of GeographicLib's tools, cct of PROJ), composites, and
 bad input. Round trips, poles and the date line are tested in TestGeodeticFrame.cxx, properties and arrays of wrong values
-in TestArguments.py.
+in TestBadInput.py.
 
 Tolerance against the programs: 10 nm in each coordinate, of which rounding takes 4 nm, digits of the programs 1 nm and the
 methods themselves a few; 20 nm in UTM, where northings reach 1e7 m and the two series differ. Measured differences are

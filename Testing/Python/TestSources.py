@@ -36,7 +36,6 @@ lists = {
     "Filters/VolumeTree": ("Filters/VolumeTree/CMakeLists.txt", ".cxx"),
     "Testing/Kernel": ("Testing/Kernel/CMakeLists.txt", ".cxx"),
     "Testing/Cxx": ("Testing/Cxx/CMakeLists.txt", ".cxx"),
-    "Testing/Python": ("Testing/Python/CMakeLists.txt", ".py"),
     "Testing/Plugin": ("Testing/Plugin/CMakeLists.txt", ".py"),
     "Plugin": ("Plugin/CMakeLists.txt", ".xml"),
 }

@@ -258,7 +258,7 @@ class TestTracker(unittest.TestCase):
             self.assertEqual(points.GetNumberOfPoints(), 0)
 
     def test_bad_input(self):
-        """An error names what is wrong, and the memory stays. NaN and numbers far beyond are TestArguments'."""
+        """An error names what is wrong, and the memory stays. NaN and numbers far beyond are TestBadInput's."""
         made = tracker()
         feed(made, [(100, 0, 10)], 0.0)
         messages = Messages(made)

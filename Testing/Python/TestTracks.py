@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Tracks: movers as the contract has them, trails, tracks of files and of lines, the bird that they are, and errors that name what is
-wrong. How birds fly is TestFlight's, what they are made of TestBird's (kernel); numbers out of range are TestArguments'."""
+wrong. How birds fly is TestFlight's, what they are made of TestBird's (kernel); numbers out of range are TestBadInput's."""
 import os
 import tempfile
 import unittest
