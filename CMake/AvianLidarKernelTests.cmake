@@ -28,6 +28,7 @@ if (AVIANLIDAR_SANITIZE MATCHES "address" AND CMAKE_CXX_COMPILER_ID STREQUAL "Cl
 endif ()
 
 # Cases of seconds, for their statistics or their many changes: left out of the tests of their files, in Kernel-Slow.
+set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/Testing/Kernel/slow-cases.txt")
 file(STRINGS "${PROJECT_SOURCE_DIR}/Testing/Kernel/slow-cases.txt" avianlidar_slow_kernel_cases REGEX "^[^#]")
 list(JOIN avianlidar_slow_kernel_cases ":" avianlidar_slow_kernel_cases)
 
