@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Advice on a scene: one reflection of a convex sphere and why, two of a corner; what is advised holds on the whole scan with another
-seed; every kind of sensor, movers and weather; the same each time; errors."""
+"""Advice on a scene: one reflection of a convex sphere and why, two of a corner; at the airport what is advised holds on the
+whole scan with other seeds and what surely fails does; every kind of sensor, movers and weather; the same each time; errors."""
 import contextlib
 import io
 import json
@@ -18,7 +18,7 @@ from avianlidar._advice import notes_of
 SOURCE = pathlib.Path(os.environ["AVIANLIDAR_SOURCE_DIR"])
 SCENE = SOURCE / "Examples" / "airport" / "scene" / "hongqiao.lidarscene.json"
 OUTPUT = pathlib.Path(os.environ.get("AVIANLIDAR_TEST_OUTPUT_DIR", "/tmp")) / "advice"
-EASY = {"energy": 0.05, "range": 0.2, "missed": 0.08, "beams": 60}
+EASY = {"energy": 0.05, "range": 0.2, "missed": 0.08, "beams": 150}
 SENSOR = al.Sensor("Airport16", azimuth_range=(-60.0, 60.0))
 CORNER = ([(-30, 50, -30), (0, 80, -30), (30, 50, -30), (-30, 50, 30), (0, 80, 30), (30, 50, 30)],
           [(0, 1, 4), (0, 4, 3), (1, 2, 5), (1, 5, 4)])
@@ -28,8 +28,8 @@ def sphere():
     source = vtkSphereSource()
     source.SetCenter(0, 60, 0)
     source.SetRadius(20)
-    source.SetThetaResolution(16)
-    source.SetPhiResolution(16)
+    source.SetThetaResolution(32)
+    source.SetPhiResolution(32)
     source.Update()
     return al.Scene(source.GetOutput(), material="Metal")
 
@@ -49,7 +49,7 @@ class Advice(unittest.TestCase):
     def test_a_convex_body_needs_one_reflection(self):
         advice = al.Scan(sphere(), SENSOR, seed=2**31 - 1).advise(**EASY)  # the largest
         self.assertEqual(advice.settings["number_of_reflections"], 1)
-        self.assertIn("One reflection is enough: second reflections carry 0 of the light (measured over 60 beams)", str(advice))
+        self.assertIn("One reflection is enough: second reflections carry 0 of the light (measured over 150 beams)", str(advice))
         self.assertIn("a convex body cannot light itself", str(advice))
         self.assertEqual((advice.table["verdict"][advice.row], len(advice.table["verdict"])), (2, 37))
         self.assertNotIn("convex", str(al.Scan(sphere(), al.Sensor("Airport16", azimuth_step=10, position=(0, 60, 0))).advise(**EASY)))  # from inside
@@ -62,25 +62,47 @@ class Advice(unittest.TestCase):
         self.assertNotIn("convex", str(advice))
 
     def test_holds_on_the_whole_scan(self):
-        """Of a sector of the airport, with another seed; bounds of what rays alone leave hold there, too."""
-        scan = al.Scan(SCENE, SENSOR, noise=False)
-        advice = scan.advise(**{**EASY, "energy": 0.02, "missed": 0.03, "beams": 300})
+        scan = al.Scan(SCENE, "Airport16", noise=False)
+        advice = scan.advise(**{**EASY, "energy": 0.01, "missed": 0.02, "beams": 400})
         before = scan.properties()
         self.assertEqual(scan.set(**advice.settings, seed=99).seed, 99)
         self.assertEqual({key for key, value in scan.properties().items() if value != before[key]} - {"seed"},
                          {key for key, value in advice.settings.items() if value != before[key]})
-        truth = al.Scan(scan.scene, SENSOR, noise=False, rays_per_beam=3200, number_of_connections=8, seed=98)
+        truth = al.Scan(scan.scene, "Airport16", noise=False, rays_per_beam=3200, number_of_connections=8, seed=98)
         limit = float(scan.sensor.beams.fields["lower_energy_limit"])
         energy, wrong = errors_of(scan.echoes, truth.echoes, limit)
-        self.assertLess(energy, 0.02)
-        self.assertLess(wrong, 0.03)
+        self.assertLess(energy, 0.01)
+        self.assertLess(wrong, 0.02)
+        # Of those that surely fail, the best one does so on the whole scan, too.
         table = advice.table
-        row, = np.flatnonzero((table["rays_per_beam"] == 25) & (table["beam_samples"] == 1) & (table["number_of_reflections"] == 1))
-        scan.set(beam_samples="Rays", rays_per_beam=25, number_of_reflections=1)
-        energy, wrong = errors_of(scan.echoes, truth.echoes, limit)
-        self.assertTrue(0.02 < energy < table["energy_error_most"][row], (energy, table["energy_error_most"][row]))
-        self.assertLess(wrong, table["missed_share_most"][row])
-        self.assertEqual(table["verdict"][row], 0)
+        failed = np.flatnonzero((table["verdict"] == 0) & (table["energy_error"] > 0.012))
+        worst = failed[np.argmin(table["energy_error"][failed])]
+        scan.set(beam_samples=("Cells", "Rays")[table["beam_samples"][worst]], rays_per_beam=table["rays_per_beam"][worst],
+                 number_of_reflections=table["number_of_reflections"][worst], number_of_connections=table["number_of_connections"][worst])
+        self.assertGreater(errors_of(scan.echoes, truth.echoes, limit)[0], 0.01)
+
+    def test_bounds_hold_with_other_seeds(self):
+        """Thin masts, by rays: errors of a whole scan with a seed of its own, over twenty seeds, beside bounds of 95 %."""
+        random, points = np.random.default_rng(5), []
+        for azimuth, away, half in zip(random.uniform(0, 2 * np.pi, 60), random.uniform(40, 160, 60), random.uniform(0.05, 0.3, 60)):
+            middle, across = away * np.array((np.sin(azimuth), np.cos(azimuth), 0)), half * np.array((np.cos(azimuth), -np.sin(azimuth), 0))
+            points += [middle - across - (0, 0, 20), middle + across - (0, 0, 20), middle + across + (0, 0, 20), middle - across + (0, 0, 20)]
+        faces = [face for k in range(0, 240, 4) for face in ((k, k + 1, k + 2), (k, k + 2, k + 3))]
+        scene, sensor = al.Scene(points, faces, material="Metal"), al.Sensor("Airport16", azimuth_step=2.0)
+        truth = al.Scan(scene, sensor, noise=False, rays_per_beam=6400, seed=98).echoes
+        limit = float(sensor.beams.fields["lower_energy_limit"])
+        broken = np.zeros((2, 2), int)
+        for seed in range(20):
+            scan = al.Scan(scene, sensor, noise=False, number_of_reflections=1, seed=seed)
+            table = scan.advise(energy=0.05, range=0.2, missed=0.08, beams=100).table
+            rows = [row for row, rays in enumerate(table["rays_per_beam"])
+                    if table["beam_samples"][row] == 1 and table["number_of_reflections"][row] == 1 and rays in (25, 100)]
+            self.assertEqual(len(rows), 2, table)
+            for place, row in enumerate(rows):
+                scan.set(seed=1000 + seed, beam_samples="Rays", rays_per_beam=table["rays_per_beam"][row])
+                energy, wrong = errors_of(scan.echoes, truth, limit)
+                broken[place] += energy > table["energy_error_most"][row], wrong > table["missed_share_most"][row]
+        self.assertTrue((broken <= 3).all(), broken)  # 4 of 20 or more in 1.6 % of cases
 
     def test_every_kind_of_sensor(self):
         for name in ("OS1_64", "Mid40"):
@@ -130,8 +152,7 @@ class Advice(unittest.TestCase):
         OUTPUT.mkdir(parents=True, exist_ok=True)
         files = [OUTPUT / f"advice{suffix}" for suffix in (".json", ".csv", ".png")]
         with contextlib.redirect_stdout(io.StringIO()) as out:
-            code = _command.main(["advise", str(SCENE), "--energy", "0.05", "--missed", "0.3", "--beams", "50", "--sensor-set",
-                                  "azimuth_range=-60,60",
+            code = _command.main(["advise", str(SCENE), "--energy", "0.05", "--missed", "0.3", "--beams", "60",
                                   *(word for file in files for word in ("-o", str(file)))])
         self.assertEqual(code, 0)
         found = json.loads(files[0].read_text(encoding="utf-8"))

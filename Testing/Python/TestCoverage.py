@@ -41,14 +41,14 @@ class FreeSpace(unittest.TestCase):
         scene = al.Scene(NOTHING, material="Wall")
         for (preset, changes), (threshold, ranges) in SENSORS.items():
             sensor = al.Sensor(preset, **dict(changes))
-            for area, distance in zip(AREAS, ranges):
-                elevation = math.radians(1.0 if preset == "Automotive16" else 3.0)  # of a channel, or within the band
-                way = np.array([0.0, math.cos(elevation), math.sin(elevation)])
-                cover = al.Coverage(scene, sensor, places=[distance * way, 0.99 * distance * way, 1.01 * distance * way],
-                                    species="", effective_area=area, clutter=False)
-                here, near, far = cover["photoelectrons"]
-                self.assertGreater(near, threshold, (preset, area))
-                self.assertLess(far, threshold, (preset, area))
+            elevation = math.radians(1.0 if preset == "Automotive16" else 3.0)  # of a channel, or within the band
+            way = np.array([0.0, math.cos(elevation), math.sin(elevation)])
+            places = [share * distance * way for distance in ranges for share in (1.0, 0.99, 1.01)]
+            cover = al.Coverage(scene, sensor, places=places, species="", clutter=False)
+            for number, cover.effective_area in enumerate(AREAS):
+                here, near, far = cover["photoelectrons"][3 * number:3 * number + 3]
+                self.assertGreater(near, threshold, (preset, number))
+                self.assertLess(far, threshold, (preset, number))
                 self.assertAlmostEqual(here / threshold, 1.0, delta=0.02)
 
     def test_tracks_follow_the_binomial_law(self):
@@ -157,13 +157,13 @@ class Airport(unittest.TestCase):
 
 class Terrain(unittest.TestCase):
     def test_lines_of_sight_are_those_of_gdal_viewshed(self):
-        n, cell, above, mast = 101, 10.0, 12.0, 5.0
+        n, cell, above, mast = 161, 10.0, 12.0, 5.0
         random = np.random.default_rng(11)
         x = (np.arange(n) - n // 2) * cell
         east, north = np.meshgrid(x, x)
         height = np.zeros((n, n))
-        for _ in range(16):
-            cx, cy, wide = random.uniform(-500, 500), random.uniform(-500, 500), random.uniform(40, 250)
+        for _ in range(40):
+            cx, cy, wide = random.uniform(-800, 800), random.uniform(-800, 800), random.uniform(40, 250)
             height += random.uniform(5, 45) * np.exp(-((east - cx) ** 2 + (north - cy) ** 2) / (2 * wide ** 2))
         height = np.round(height, 3)
         folder = exampletools.folder("TestCoverageTerrain")
@@ -189,7 +189,7 @@ class Terrain(unittest.TestCase):
         status = cover["status"].reshape(n, n)
         self.assertFalse(np.any(status < vtkAvianLidarCoverage.STATUS_SHADOWED))
         ours = status != vtkAvianLidarCoverage.STATUS_SHADOWED
-        self.assertGreater(np.count_nonzero(~ours), 1000)
+        self.assertGreater(np.count_nonzero(~ours), 2000)
         differ = ours != theirs
         self.assertLessEqual(differ.mean(), 0.005)
         # The rest lies within a cell of a shadow's edge.
@@ -200,7 +200,7 @@ class Terrain(unittest.TestCase):
 
 class Work(unittest.TestCase):
     def test_birds_air_and_receivers_trace_no_line_of_sight(self):
-        scene, sensor = al.Scene(WALL, material="Wall"), al.Sensor("Search905", azimuth_range=(-60.0, 60.0))
+        scene, sensor = al.Scene(WALL, material="Wall"), al.Sensor("Search905", azimuth_range=(-30.0, 30.0))
         cover = al.Coverage(scene, sensor, **REGION)
         cover.update()
         self.assertEqual(cover.number_of_traced_places, 21 * 15 * 4)
@@ -227,7 +227,7 @@ class Work(unittest.TestCase):
 
     def test_threads_and_pieces_change_no_bit(self):
         """Pieces of any output and of both kinds of places count each place once, and the clutter is in the first."""
-        scene, sensor = al.Scene(WALL, material="Wall"), al.Sensor("Search905", azimuth_range=(-60.0, 60.0))
+        scene, sensor = al.Scene(WALL, material="Wall"), al.Sensor("Search905", azimuth_range=(-30.0, 30.0))
         wanted = al.Coverage(scene, sensor, **REGION, number_of_threads=1)["detection_probability"]
         image = vtkImageData()
         image.SetDimensions(21, 15, 4)
@@ -274,7 +274,7 @@ class Work(unittest.TestCase):
 
     def test_several_sensors_and_the_same_bird(self):
         scene = al.Scene(NOTHING, material="Wall")
-        sensor, sites = al.Sensor("Search905"), np.array([(0.0, 0.0, 0.0), (700.0, 0.0, 0.0)])
+        sensor, sites = al.Sensor("Search905", azimuth_range=(-60.0, 60.0)), np.array([(0.0, 0.0, 0.0), (700.0, 0.0, 0.0)])
         random = np.random.default_rng(3)
         places = np.column_stack([350 + random.uniform(-60, 60, 100), random.uniform(350, 500, 100), random.uniform(8, 40, 100)])
         alone, by_pose = [], []
@@ -289,7 +289,7 @@ class Work(unittest.TestCase):
             by_pose.append(poses)
         stated = 1.0 - np.prod([1.0 - poses for poses in by_pose], axis=0).mean(axis=1)
         independent = 1.0 - (1.0 - alone[0]) * (1.0 - alone[1])
-        sensors = [al.Sensor("Search905", position=tuple(site)) for site in sites]
+        sensors = [al.Sensor("Search905", azimuth_range=(-60.0, 60.0), position=tuple(site)) for site in sites]
         _, expected = flown.fly(scene, sensors, places, 12, "herring gull", AIR, 400)
         self.assertLess(abs(stated.mean() - expected.mean()), 0.015)
         self.assertGreater(abs(independent.mean() - expected.mean()), 2 * abs(stated.mean() - expected.mean()))
@@ -307,7 +307,7 @@ class Work(unittest.TestCase):
                 siting.value_of_same_birds(scene, sensor, chosen, places, ["herring gull"], of)
 
     def test_places_of_any_kind(self):
-        scene, sensor = al.Scene(WALL, material="Wall"), al.Sensor("Search905")
+        scene, sensor = al.Scene(WALL, material="Wall"), al.Sensor("Search905", azimuth_range=(-30.0, 30.0))
         grid, plain, image = vtkUnstructuredGrid(), vtkPointSet(), vtkImageData()
         for data in (grid, plain):
             data.SetPoints(al.places_of([(0, 200, 1), (100, 200, 1)]).GetPoints())
@@ -320,7 +320,7 @@ class Work(unittest.TestCase):
             self.assertEqual(cover.data.GetClassName(), places.GetClassName())
 
     def test_clutter_is_the_scan_of_the_echo_filter(self):
-        scene, sensor = al.Scene(WALL, material="Wall"), al.Sensor("Search905")
+        scene, sensor = al.Scene(WALL, material="Wall"), al.Sensor("Search905", azimuth_range=(-30.0, 30.0))
         clutter = al.Coverage(scene, sensor, visibility=0.0, attenuation_coefficient=AIR).clutter_map
         echoes = al.Scan(scene, sensor, noise=False, return_mode="RangeUnits",
                          attenuation_coefficient=AIR).echoes
@@ -351,7 +351,7 @@ class Work(unittest.TestCase):
         self.assertEqual(arrays.GetArray("minimum_effective_area").GetValue(0), math.inf)
 
     def test_bad_input_is_named_and_the_next_good_works(self):
-        scene, sensor = al.Scene(WALL, material="Wall"), al.Sensor("Search905")
+        scene, sensor = al.Scene(WALL, material="Wall"), al.Sensor("Search905", azimuth_range=(-30.0, 30.0))
         cover = al.Coverage(scene, sensor, places=[(100, 200, 1)], clutter=False)
         wrong = al.places_of([(100, 200, 1)], {"here": [0]})
         wrong.GetPointData().GetArray("region_id").SetNumberOfTuples(3)
@@ -367,9 +367,13 @@ class Work(unittest.TestCase):
                 ({"places": None, "spacing": (0.0, 1.0, 1.0)}, {"places": [(100, 200, 1)], "spacing": (9.0, 9.0, 9.0)}, "Spacing"),
                 ({"places": None, "spacing": (1e-9, 1e-9, 1e-9)}, {"spacing": (20.0, 20.0, 15.0), "bounds": box}, "Spacing|need"),
                 ({"bounds": (1.0, 0.0, 0.0, 1.0, 0.0, 1.0)}, {"bounds": box}, "Bounds")):
+            for name, value in bad.items():
+                setattr(cover, name, value)
             with self.subTest(words), self.assertRaisesRegex(al.Error, words):
-                cover.set(**bad).update()
-            status = cover.set(**good)["status"]
+                cover.update()
+            for name, value in good.items():
+                setattr(cover, name, value)
+            status = cover["status"]
             self.assertTrue(status.tolist() == [7] or status.shape == (2, 6, 6), bad)
         self.assertEqual(repr(al.Coverage(scene, sensor, places=[(0, 9, 1), (0, 8, 1)], species="crow", visibility=5e3)),
                          "<Coverage: bird crow; air visibility 5000 m; sensor (0, 0, 0) m; places 2>")

@@ -25,6 +25,7 @@ from exampletools import emptied
 BOUNDS = {"pulse_energy": {"from": 1e-4, "to": 4e-3, "logarithmic": True}, "receiver_aperture": [0.005, 0.02]}
 DESIGN = {"share": 0.12, "bounds": BOUNDS, "cost": "1000 * pulse_energy + 100 * receiver_aperture", "designs": 8}
 TARGET = {"species": "", "effective_area": 0.03, "clutter": False}  # m2: quicker than birds
+FAINT = {"coverage": {**TARGET, "effective_area": 0.001}, "places": 3000}  # which more energy sees from farther
 GULL = {"species": "herring gull", "clutter": False}
 NIGHT = {"preset": "Search905", "azimuth_step": 2.0, "background_radiance": 0.0}
 
@@ -91,7 +92,8 @@ class Parts(unittest.TestCase):
 
 class LinkBudget(unittest.TestCase):
     def test_twice_the_aperture_is_twice_the_energy_without_background(self):
-        study = looked(study_of(fresh("energy"), {"bounds": {"pulse_energy": [3.6e-4, 7.2e-4, 1.44e-3], "receiver_aperture": [0.0078539816, 0.0157079632]}}))
+        bounds = {"pulse_energy": [3.6e-4, 7.2e-4, 1.44e-3], "receiver_aperture": [0.0078539816, 0.0157079632]}
+        study = looked(study_of(fresh("energy"), {"bounds": bounds}, **FAINT))
         of = {(round(one.values["pulse_energy"] / 3.6e-4), round(one.values["receiver_aperture"] / 0.0078539816)): one for one in study.candidates}
         self.assertEqual(len(of), 6)
         for energy in (1, 2):
@@ -100,7 +102,7 @@ class LinkBudget(unittest.TestCase):
         self.assertAlmostEqual(of[1, 2].pulses["exposure"], of[1, 1].pulses["exposure"] / 2)
 
     def test_more_energy_detects_more(self):
-        study = looked(study_of(fresh("more"), {"bounds": {"pulse_energy": BOUNDS["pulse_energy"]}, "designs": 12}))
+        study = looked(study_of(fresh("more"), {"bounds": {"pulse_energy": BOUNDS["pulse_energy"]}, "designs": 12}, **FAINT))
         order = sorted(study.candidates, key=lambda one: one.values["pulse_energy"])
         self.assertTrue((np.diff([one.share.value for one in order]) > 0.0).all())
         self.assertTrue(all(one.front for one in order))  # as costs rise with energy
@@ -108,7 +110,7 @@ class LinkBudget(unittest.TestCase):
 
     def test_the_plans_own_lidar_has_the_plans_own_share(self):
         where = fresh("own")
-        clutter = {"coverage": {"species": "herring gull"}, "places": 100}
+        clutter = {"coverage": {"species": "herring gull", "all_species": False}, "places": 100}
         plan = Plan(read_plan(plan_of(where, **clutter)), 1)
         overall = plan.overall
         base = {name: [getattr(plan.sensor, name)] for name in ("pulse_energy", "receiver_aperture", "number_of_channels", "rotation_rate")}
@@ -209,9 +211,9 @@ class Work(unittest.TestCase):
 
     def test_what_the_error_does_not_tell(self):
         only = {"bounds": {"pulse_energy": BOUNDS["pulse_energy"]}}  # so that what costs more detects more
-        study = looked(study_of(fresh("unsure"), only))
+        study = looked(study_of(fresh("unsure"), only, **FAINT))
         middle = sorted(study.candidates, key=lambda one: one.cost)[2]
-        again = looked(study_of(fresh("unsure"), {**only, "share": middle.share.value - middle.share.error}))
+        again = looked(study_of(fresh("unsure"), {**only, "share": middle.share.value - middle.share.error}, **FAINT))
         self.assertIn(middle.number, [one.number for one in again.undecided()])
         self.assertGreater(again.chosen.cost, middle.cost)
         self.assertEqual([is_told(share, 0.01, 0.5) for share in (0.53, 0.515, 0.485, 0.47)], [True, None, None, False])

@@ -31,7 +31,8 @@ import flown  # noqa: E402
 
 PLAN = pathlib.Path(exampletools.EXAMPLES) / "coverage" / "hongqiao.coverage.json"
 HERE = pathlib.Path(exampletools.OUTPUT) / "TestReport"
-TARGET = {"species": "", "effective_area": 0.03, "clutter": False}  # m2: quicker than birds
+TARGET = {"species": "", "effective_area": 0.03, "clutter": False, "all_species": False}  # m2: quicker than birds
+SENSOR = {"preset": "Search905", "name": "Search905", "azimuth_step": 1.0}  # degrees
 
 
 def plan(**changes):
@@ -39,7 +40,7 @@ def plan(**changes):
     wanted = json.loads(PLAN.read_text(encoding="utf-8"))
     for name in ("scene", "runways"):
         wanted[name] = str((PLAN.parent / wanted[name]).resolve())
-    wanted.update({"spacing": 100, "places": 200, "extent": [-600, 600, -600, 600], "compare_with": None, **changes})
+    wanted.update({"spacing": 100, "places": 200, "extent": [-600, 600, -600, 600], "compare_with": None, "sensor": SENSOR, **changes})
     return {name: value for name, value in wanted.items() if value is not None}
 
 
@@ -113,9 +114,11 @@ class Page(unittest.TestCase):
         self.assertIn("{&#34;by&#34;: &#34;&lt;me&gt;&#34;}", self.text)
         self.assertNotIn(str(PLAN.parent), self.text)
         self.assertEqual(self.browser.run("return [...document.querySelectorAll('#first a')].filter(a => !document.querySelector(a.hash)).length"), 0)
+        self.browser.driver.execute_cdp_cmd("Emulation.setEmulatedMedia", {"media": "print"})
         self.assertEqual(self.browser.run("return getComputedStyle(document.querySelector('#first')).breakAfter"), "page")
+        self.browser.driver.execute_cdp_cmd("Emulation.setEmulatedMedia", {"media": ""})
         marked = self.browser.run("return [...document.querySelectorAll('#receivers tr')].filter(r => r.querySelector('.assumed')).length")
-        self.assertEqual(marked, len(al.Sensor("Search905").beams.fields["assumed"]))
+        self.assertEqual(marked, len(al.Sensor("Search905").beams.fields["assumed"]) + 1)  # and the azimuth step, which is changed
 
     def test_pictures_and_captions_say_what_was_asked(self):
         pictures = self.browser.run("return [...document.images].map(i => [i.complete, i.naturalWidth, i.alt])")
@@ -170,14 +173,14 @@ class Page(unittest.TestCase):
                 ground = runway.start + along[:, None] * axis + aside[:, None] * np.array([axis[1], -axis[0]])
                 places.append(np.column_stack([ground, random.uniform(50.0, 100.0, 100)]))
             return np.concatenate(places)
-        sensor = al.Sensor("Search905", position=(0, 0, 3))
+        sensor = al.Sensor("Search905", azimuth_step=1.0, position=(0, 0, 3))
         cover = al.Coverage(scene, sensor, places=drawn(0), visibility=10e3, species="", effective_area=0.03)
 
         def shares(position, clutter):
             sensor.position = position
             cover.set(clutter=clutter)
             return cover["detection_probability"].astype(float)
-        rows = rows_of("report_files/shares.csv", receiver="Search905")
+        rows = rows_of("report_files/shares.csv", receiver="Search905", species="")
         self.assertEqual({row["region"] for row in rows}, {"strips"})
         self.assertEqual({row["height_from [m]"] for row in rows if float(row["places"])}, {"50", "-inf"})
         self.assertAlmostEqual(float(rows[-1]["detection_probability"]), shares((0, 0, 3), True).mean(), delta=1e-6)
@@ -204,7 +207,7 @@ class Page(unittest.TestCase):
 class Less(unittest.TestCase):
     def test_a_plan_of_a_map_alone(self):
         """Of two receivers, one of which is changed, and without sites and runways; the mean of the map within four standard errors."""
-        twice = {"preset": "Search905", "name": "twice the pulse", "pulse_energy": 7.2e-4}
+        twice = {**SENSOR, "name": "twice the pulse", "pulse_energy": 7.2e-4}
         page = report("map", plan(runways=None, siting=None, compare_with=[twice], heights=[20], coverage=TARGET))
         with Browser() as browser:
             browser.open(page)
@@ -214,11 +217,14 @@ class Less(unittest.TestCase):
             known = browser.run("return [...document.querySelectorAll('#receivers tr')].map(r => [...r.cells].map(c => c.textContent.trim()))")
         self.assertEqual(known[0], ["receiver", "Search905", "twice the pulse"])
         self.assertIn(["energy of a pulse (mJ)", "0.36", "0.72 assumed"], known)
-        row, more = (next(row for key, row in rows.items() if key[0] == name and key[3] == -np.inf) for name in ("Search905", "twice the pulse"))
-        self.assertGreater(float(more["detection_probability"]), 1.2 * float(row["detection_probability"]))
-        cover = al.Coverage(plan()["scene"], al.Sensor("Search905", position=(0, 0, 3)), **TARGET, visibility=23e3,
-                            bounds=(-600, 600, -600, 600, 20, 20), spacing=(40, 40, 1))
-        self.assertAlmostEqual(float(row["detection_probability"]), cover["detection_probability"].mean(), delta=4 * float(row["detection_std_error"]))
+        shares = []
+        for name, changes in (("Search905", {}), ("twice the pulse", {"pulse_energy": 7.2e-4})):
+            row = next(row for key, row in rows.items() if key[0] == name and key[3] == -np.inf)
+            cover = al.Coverage(plan()["scene"], al.Sensor("Search905", azimuth_step=1.0, position=(0, 0, 3), **changes), **TARGET, visibility=23e3,
+                                bounds=(-600, 600, -600, 600, 20, 20), spacing=(40, 40, 1))
+            shares.append(cover["detection_probability"].mean())
+            self.assertAlmostEqual(float(row["detection_probability"]), shares[-1], delta=4 * float(row["detection_std_error"]), msg=name)
+        self.assertGreater(shares[1], 1.1 * shares[0])
 
     def test_one_end_and_every_option(self):
         """Regions by runway end; commands that say every option that the report was made with."""
@@ -254,11 +260,25 @@ class Less(unittest.TestCase):
     def test_strikes_weight_sites_as_the_table(self):
         HERE.mkdir(parents=True, exist_ok=True)
         (HERE / "origin.csv").write_text("x,y\n800,0\n")
-        whole = Report(read_plan(written("strikes", plan(sensor={"preset": "Search905", "position": [800, 0, 3]}, coverage={**TARGET, "strike_height_weights": True},
+        whole = Report(read_plan(written("strikes", plan(sensor={**SENSOR, "position": [800, 0, 3]}, coverage={**TARGET, "strike_height_weights": True},
                                                          siting={"points": str(HERE / "origin.csv"), "masts": [3], "draws": 0, "sensors": 1}))))
         self.assertAlmostEqual(whole.sites[0].look().values[0], whole.plans[0].overall["detection_probability"], delta=1e-6)
         heights = {(row["region"], row["heights"]) for row in whole._tables(whole.plans)["heights"]}
         self.assertTrue({("strips", "0.5 to 15 m"), ("strips", "30 to 60 m"), ("approaches", "150 to 202 m")} <= heights, heights)
+
+    def test_sites_are_ranked_by_the_mix(self):
+        HERE.mkdir(parents=True, exist_ok=True)
+        (HERE / "one.csv").write_text("x,y\n800,0\n")
+        wanted = self.small(mix={"starling": 1, "herring gull": 3}, heights=[20, 40], places=50, coverage={"clutter": False, "all_species": False},
+                            siting={"points": str(HERE / "one.csv"), "masts": [5], "draws": 0, "sensors": 1})
+        sites = Sites(wanted).look()
+        sensor = al.Sensor("Search905", azimuth_step=1.0, position=(800, 0, 5))
+        cover = al.Coverage(wanted.scene, sensor, places=wanted.points, visibility=23e3, clutter=False)
+        p = []
+        for cover.species in ("starling", "herring gull"):
+            p.append(cover["detection_probability"].astype(float).mean())
+        self.assertGreater(p[1], 1.1 * p[0])
+        self.assertAlmostEqual(sites.values[0], 0.25 * p[0] + 0.75 * p[1], delta=1e-6)
 
     def small(self, **changes):
         return Plan(read_plan(written("small", plan(**{"siting": None, "coverage": TARGET, **changes}))))
@@ -310,7 +330,7 @@ class Less(unittest.TestCase):
 
     def test_what_is_wrong_is_named(self):
         for change, words in (({"siting": {"draw": 1}}, "'draw' was unexpected"), ({"compare_with": ["Airport17"]}, "Airport17"),
-                              ({"compare_with": ["Search905"]}, "'Search905' is there twice")):
+                              ({"sensor": {"preset": "Search905"}, "compare_with": ["Search905"]}, "'Search905' is there twice")):
             with self.assertRaisesRegex((al.Error, ValueError), words):
                 Report(read_plan(written("bad", plan(heights=[20], **change)))).write(HERE / "bad.html")
             self.assertFalse((HERE / "bad.html").exists())

@@ -38,7 +38,8 @@ def plan(name, **changes):
     for key in ("scene", "runways"):
         wanted[key] = str((PLAN.parent / wanted[key]).resolve())
     wanted["siting"].update(spacing=1000, bounds=[-1200, 1800, -1200, 1800], draws=0, sensors=2)
-    wanted.update({"compare_with": [], "coverage": {**TARGET, "visibility": 23000}, "spacing": 300, "places": 100, "heights": [20], **changes})
+    wanted.update({"compare_with": [], "coverage": {**TARGET, "visibility": 23000}, "spacing": 300, "places": 100, "heights": [20],
+                   "sensor": {"preset": "Search905", "name": "Search905", "azimuth_step": 1.5}, **changes})
     HERE.mkdir(parents=True, exist_ok=True)
     file = HERE / f"{name}.coverage.json"
     file.write_text(json.dumps({key: value for key, value in wanted.items() if value is not None}), encoding="utf-8")
@@ -68,7 +69,7 @@ class Coverage(unittest.TestCase):
         self.assertEqual(tables[1:], 2 * tables[:1])
 
     def test_shares_in_other_airs_trace_nothing_and_leave_the_plan_as_it_was(self):
-        one = Plan(read_plan(plan("airs", mix={"crow": 1, "herring gull": 3}, coverage={}, places=60)))
+        one = Plan(read_plan(plan("airs", mix={"crow": 1, "herring gull": 3}, coverage={"all_species": False}, places=60)))
         before = one.regions.properties()
         airs = ({"visibility": 1000, "air_backscatter": True, "rain_rate": 0}, {"visibility": 23000, "air_backscatter": False, "rain_rate": 10})
         rows = one.in_airs([one.air_of(["fog:1000"]), one.air_of(["rain:10"])])
