@@ -5,7 +5,7 @@
     Testing/Faults/faults.py build/paraview -o faults.csv                # all: half an hour
     Testing/Faults/faults.py build/paraview --only rain_half --suite     # one, against the whole suite of Testing/run.sh
 
-Each fault names the tests that should see it. Faults whose tests differ are planted at the same time, so that seven builds serve all: it patches
+Each fault names the tests that should see it. Faults whose tests differ are planted at the same time, so that five builds serve all: it patches
 source files, builds, runs these tests, and restores the files. A fault that does not compile, or whose text is not found exactly once, is an
 error. A row of the table: fault, kind, layer, the number of tests that fail, their names."""
 import argparse
@@ -124,8 +124,8 @@ def layer(fault):
     return "Kernel" if "/Kernel/" in fault.file else fault.file.split("/", 1)[0]
 
 
-def ctest(build, *arguments):
-    return subprocess.run(["ctest", "--test-dir", build, "-LE", "bare|install", *arguments], capture_output=True, text=True, check=False).stdout
+def ctest(build, *arguments, left_out="bare|install"):
+    return subprocess.run(["ctest", "--test-dir", build, "-LE", left_out, *arguments], capture_output=True, text=True, check=False).stdout
 
 
 def failing(build, names):
@@ -167,8 +167,8 @@ def main():
             print(f"{fault.name:28} {layer(fault):8} {fault.kind:36} {fault.file}")
     if options.list:
         return
-    short = ["-LE", "nightly|more"] if options.short or options.suite else []
-    known = re.findall(r"Test +#\d+: (\S+)$", ctest(options.build, "-N", *short), re.M)
+    left_out = "bare|install" + ("|nightly|more" if options.short or options.suite else "")
+    known = re.findall(r"Test +#\d+: (\S+)$", ctest(options.build, "-N", left_out=left_out), re.M)
     tests = {fault.name: {name for name in known if options.suite or re.search(fault.tests, name)} for fault in chosen}
     for fault in chosen:
         if not tests[fault.name]:
