@@ -196,6 +196,21 @@ TEST(SecondaryConstraints, TheLimitItselfComparesEachSecondPath)
   EXPECT_NEAR(left.reports[0].lost / path, 1.0, 1e-9);
 }
 
+TEST(SecondaryConstraints, InThickAirWhatIsJustAboveTheLimitIsSeen)
+{
+  const Scene scene = groove(45.0 * Degree, { 0.4, 0.25, 1e4 });
+  Sensor sensor = openSensor();
+  EchoSettings settings = secondarySettings(1);
+  settings.numberOfReflections = 1;
+  settings.attenuationCoefficient = 0.05;
+  const double energy = receivedFrom(runScan(makeSetup(scene, sensor, settings), oneBeam()));
+  ASSERT_GT(energy, 0.0);
+  sensor.lowerEnergyLimit = 0.99 * energy;
+  EXPECT_EQ(receivedFrom(runScan(makeSetup(scene, sensor, settings), oneBeam())), energy);
+  sensor.lowerEnergyLimit = 1.01 * energy;
+  EXPECT_EQ(receivedFrom(runScan(makeSetup(scene, sensor, settings), oneBeam())), 0.0);
+}
+
 TEST(SecondaryConstraints, TheLimitItselfLeavesDirectEchoesAlone)
 {
   const Scene scene = rubble(2);
