@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <random>
 
@@ -134,6 +135,31 @@ TEST(Mover, SpheresHoldItWhereverItFliesAndFlaps)
         ASSERT_LE(glm::length(p - path.center), path.radius);
       }
     }
+  }
+}
+
+TEST(Mover, ItsHashIsThatOfEachOfItsMembers)
+{
+  Mover mover = pointMover();
+  mover.parts = { 0, 1, 1 };
+  mover.flaps.resize(1);
+  ASSERT_EQ(prepareMover(mover), "");
+  const std::uint64_t whole = mover.hash;
+  using Change = void (*)(Mover&);
+  const Change changes[] = { [](Mover& m) { m.mesh.points[0].x += 0.5; },
+    [](Mover& m) { m.parts[1] = 0; }, [](Mover& m) { m.materials[0].kd *= 0.5; },
+    [](Mover& m) { m.poses[0].position.z = 1.0; },
+    [](Mover& m) { m.poses[0].orientation = aboutZ(1.0); },
+    [](Mover& m) { m.flaps[0].hinge.y = 1.0; },
+    [](Mover& m) { m.flaps[0].axis = Vec3(0.0, 1.0, 0.0); },
+    [](Mover& m) { m.flaps[0].amplitude = 0.5; }, [](Mover& m) { m.flaps[0].frequency = 2.0; },
+    [](Mover& m) { m.flaps[0].phase = 0.25; } };
+  for (std::size_t i = 0; i < std::size(changes); ++i)
+  {
+    Mover changed = mover;
+    changes[i](changed);
+    ASSERT_EQ(prepareMover(changed), "") << i;
+    EXPECT_NE(changed.hash, whole) << i;
   }
 }
 
