@@ -6,6 +6,8 @@ import gc
 import random
 import sys
 
+import vtk
+
 from pipeline import SINKS
 from steps import World
 
@@ -35,6 +37,10 @@ world = World(random.Random(sys.argv[-1]))
 pipeline = world.fresh()
 pipeline.set("geodetic", "UseFieldDataOrigin", 0)
 found = {name: growth(pipeline, (name, port), world.moment) for name, port in SINKS if port == 0}
+blocks = vtk.vtkMultiBlockDataGroupFilter()
+blocks.AddInputConnection(pipeline.algorithms["echo"].GetOutputPort())
+pipeline.algorithms["geodetic"].SetInputConnection(0, blocks.GetOutputPort())
+found["geodetic, in blocks"] = growth(pipeline, ("geodetic", 0), world.moment)
 print(*(f"{name}: {bytes_:.0f} bytes an execution" for name, bytes_ in found.items()), sep="\n")
 assert not pipeline.heard, pipeline.heard
 sys.exit(f"more than {MOST} bytes" if max(found.values()) > MOST else 0)
