@@ -27,7 +27,7 @@ if (AVIANLIDAR_SANITIZE MATCHES "address" AND CMAKE_CXX_COMPILER_ID STREQUAL "Cl
     "ASAN_OPTIONS=malloc_context_size=2" "LSAN_OPTIONS=suppressions=${CMAKE_BINARY_DIR}/leaks.txt:print_suppressions=0")
 endif ()
 
-# Cases of seconds, for their statistics or their many changes: left out of the tests of their files, in Kernel-Slow.
+# Cases that take seconds. The tests of their files leave them out; Kernel-Slow runs them.
 set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/Testing/Kernel/slow-cases.txt")
 file(STRINGS "${PROJECT_SOURCE_DIR}/Testing/Kernel/slow-cases.txt" avianlidar_slow_kernel_cases REGEX "^[^#]")
 list(JOIN avianlidar_slow_kernel_cases ":" avianlidar_slow_kernel_cases)

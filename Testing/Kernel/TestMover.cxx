@@ -138,7 +138,7 @@ TEST(Mover, SpheresHoldItWhereverItFliesAndFlaps)
   }
 }
 
-TEST(Mover, ItsHashIsThatOfEachOfItsMembers)
+TEST(Mover, EveryMemberChangesTheHash)
 {
   Mover mover = pointMover();
   mover.parts = { 0, 1, 1 };

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Coverage of several ranks is together that of one process: places, table, clutter; and an error of one is one of all. TestRanks runs these."""
+"""Several ranks together compute the coverage of one process: places, table, clutter. An error on one rank is an error on all. TestRanks runs
+these tests."""
 
 import numpy as np
 import vtk

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""A pipeline that is executed again and again holds no more memory, as the C library counts it."""
+"""Memory leaks: a filter that is executed again and again must not hold more and more memory, as counted by the C library."""
 
 import ctypes
 import gc
@@ -13,7 +13,7 @@ from steps import World
 
 MALLINFO = type("mallinfo2", (ctypes.Structure,), {"_fields_": [(name, ctypes.c_size_t) for name in (
     "arena", "ordblks", "smblks", "hblks", "hblkhd", "usmblks", "fsmblks", "uordblks", "fordblks", "keepcost")]})
-ROUNDS, MOST = 15, 1000  # bytes an execution: of a filter without a leak less than 400, an empty polydata alone more than 1,000
+ROUNDS, MOST = 15, 1000  # MOST in bytes per execution: filters without a leak stay below 400, one polydata that leaks takes more than 1,000
 
 
 def in_use():
@@ -24,7 +24,7 @@ def in_use():
 
 
 def growth(pipeline, sink, moment):
-    """Bytes an execution."""
+    """Growth of the memory in use, in bytes per execution."""
     for number in range(2 * ROUNDS):
         if number == ROUNDS:
             before = in_use()

@@ -45,8 +45,8 @@ def dumped(document):
 # ---------------------------------------------------------------- files for the readers
 
 def mesh_files(folder):
-    """{name: content} of a box in every format, as text and binary; but for those of which a library is known to die: Assimp of IFC,
-    VTK of legacy surfaces and unstructured grids."""
+    """{name: content} of a box in every format, as text and binary, except formats whose library is known to crash: IFC (Assimp), legacy
+    surfaces and unstructured grids (VTK)."""
     c, t, q = box.CORNERS, box.TRIANGLES, box.QUADS
     ply = box.ply(c, q)
     head, body = ply.split("end_header\n")
