@@ -97,7 +97,7 @@ struct HitAgreement
   std::size_t rays = 0;
   std::size_t hits = 0;    ///< rays that hit in the first tracer
   std::size_t differ = 0;  ///< range differs by more than 1e-3, relative, or only one has a hit
-  std::size_t atEdges = 0; ///< rays among those that differ within rounding of an edge of one of the triangles
+  std::size_t atEdges = 0; ///< rays that differ within rounding of an edge
 
   /// Share of rays that neither agree nor pass an edge within the rounding of single precision.
   double unexplained() const
