@@ -194,7 +194,7 @@ def echo_filter():
     mesh = simple.Sphere(Radius=20, Center=[0, 60, 0])
     simple.Show(mesh)
     yield 0.3
-    for word in ("bird", "avian"):
+    for word in ("scan", "lidar", "bird", "avian"):
         found = yield from quick_launch(word)
         # A mesh with normals gives no beams; an entry of this name would hide the toolbar.
         assert found.get(ENTRY) is False and "Avian Lidar" not in found, (word, found)

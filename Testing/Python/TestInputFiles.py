@@ -26,7 +26,7 @@ from echotools import Messages
 ADDRESSES = 4 << 30  # bytes, of the process that reads
 MESH_GIGABYTES = "0.5"
 STACK = 8 << 20
-SECONDS = 900  # that a process may take for all its files before one counts as waiting for ever
+SECONDS = 240  # for all files of one process; then the file that is being read counts as one that never ends
 DEEP = 80000
 CHAIN = 20000
 HUGE = 2**60
