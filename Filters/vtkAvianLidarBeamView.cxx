@@ -266,7 +266,6 @@ bool vtkAvianLidarBeamView::Look(const vtkAvianLidarRanks& ranks, vtkFieldData* 
         return "BeamId is " + std::to_string(this->BeamId) +
           ", expected the beam_id of a beam of input port 0 (beams)";
       }
-      in.Setup.settings.fullModel = true; // faint samples, too
       avianlidar::planModel(in.Setup);
       for (vtkDataObject* output : std::initializer_list<vtkDataObject*>{ surfaces, cone, shares })
       {
@@ -278,6 +277,8 @@ bool vtkAvianLidarBeamView::Look(const vtkAvianLidarRanks& ranks, vtkFieldData* 
       {
         return {};
       }
+      in.Setup.settings.fullModel = true; // faint samples, too
+      avianlidar::planModel(in.Setup);
       const auto beam = static_cast<std::size_t>(place - ids.begin());
       const avianlidar::KeepGoing keepGoing =
         vtkAvianLidarAbort::KeepGoing(this, vtkInternals::BuildShare, 1.0);
