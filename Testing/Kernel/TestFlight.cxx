@@ -16,7 +16,7 @@ using namespace avianlidar;
 
 namespace
 {
-constexpr double Degree = Pi / 180.0;
+constexpr double OneDegree = Pi / 180.0;
 
 std::vector<BirdSpecies> shippedSpecies()
 {
@@ -66,7 +66,7 @@ Pose poseAt(const Flight& flight, double time)
 
 const Vec3 RightWing(1.0, 0.0, 0.0);
 const Vec3 Forward(0.0, 1.0, 0.0);
-const Vec3 Up(0.0, 0.0, 1.0);
+const Vec3 Upward(0.0, 0.0, 1.0);
 
 double turnOf(const glm::dquat& q)
 {
@@ -179,7 +179,7 @@ TEST(Flight, WingsTurnAboutTheHingesOfMovers)
       const TriangleMesh level = birdPart(shape, part, 0.0);
       for (const double phase : { 0.0, 0.1, 0.25, 0.4, 0.7, 0.93 })
       {
-        const double angle = 35.0 * Degree * std::sin(2.0 * Pi * phase);
+        const double angle = 35.0 * OneDegree * std::sin(2.0 * Pi * phase);
         const glm::dquat turn = glm::angleAxis(angle, axis);
         const TriangleMesh flapped = birdPart(shape, part, wingAngle(phase, false));
         for (std::size_t i = 0; i < level.points.size(); ++i)
@@ -228,7 +228,7 @@ TEST(Flight, CrossingsAreLevelAndPassTheCenterInTheTimeRange)
     {
       EXPECT_LT(turnOf(pose.orientation), 1e-12);
       expectNear(pose.orientation * Forward, unitVector(v), 1e-9);
-      expectNear(pose.orientation * Up, Up, 1e-12);
+      expectNear(pose.orientation * Upward, Upward, 1e-12);
     }
   }
   // Evenly spread: means within five standard errors.
@@ -256,8 +256,8 @@ TEST(Flight, CirclesAreBankedForTheirRadiusAndCloselyPosed)
       const Pose& second = flight.poses[1];
       const Vec3 ahead = first.orientation * Forward;
       const double bank = -std::asin((first.orientation * RightWing).z);
-      EXPECT_GT(std::fabs(bank), 20.0 * Degree - 1e-9);
-      EXPECT_LT(std::fabs(bank), 40.0 * Degree + 1e-9);
+      EXPECT_GT(std::fabs(bank), 20.0 * OneDegree - 1e-9);
+      EXPECT_LT(std::fabs(bank), 40.0 * OneDegree + 1e-9);
       toTheRight += bank > 0.0;
       // The circle of this chord and turn.
       const double turn = 2.0 * std::asin(0.5 * glm::length(second.orientation * Forward - ahead));
@@ -265,7 +265,7 @@ TEST(Flight, CirclesAreBankedForTheirRadiusAndCloselyPosed)
         0.5 * glm::length(second.position - first.position) / std::sin(0.5 * turn);
       const double speed = radius * turn / (second.time - first.time);
       EXPECT_NEAR(std::tan(std::fabs(bank)), speed * speed / (9.81 * radius), 1e-9);
-      const Vec3 inwards = bank > 0.0 ? glm::cross(ahead, Up) : glm::cross(Up, ahead);
+      const Vec3 inwards = bank > 0.0 ? glm::cross(ahead, Upward) : glm::cross(Upward, ahead);
       const Vec3 center = first.position + radius * inwards;
       EXPECT_LT(std::hypot(center.x - 100.0, center.y + 200.0), 500.0 + 1e-6);
       double worst = 0.0;
@@ -301,7 +301,7 @@ TEST(Flight, ApproachesDescendToTheThreshold)
     {
       const double distance = 1000.0 - pose.position.x;
       EXPECT_GT(distance, 0.0);
-      EXPECT_NEAR(pose.position.z - 3.0, distance * std::tan(3.0 * Degree), 1e-9);
+      EXPECT_NEAR(pose.position.z - 3.0, distance * std::tan(3.0 * OneDegree), 1e-9);
       EXPECT_LT(std::fabs(pose.position.y - 50.0), 75.0 + 0.15 * distance);
     }
     const Pose& last = flight.poses.back();
@@ -461,7 +461,7 @@ TEST(Flight, HeadingPitchAndBankFollowFromThePath)
   for (int i = 2; i < 6; ++i)
   {
     expectNear(stops.poses[i].orientation * Forward, Vec3(1.0, 0.0, 0.0), 1e-12);
-    expectNear(stops.poses[i].orientation * Up, Up, 1e-12);
+    expectNear(stops.poses[i].orientation * Upward, Upward, 1e-12);
   }
   // At rest first: the heading that comes, level.
   Flight waits;

@@ -112,7 +112,7 @@ Outcome compare(const std::shared_ptr<const TriangleMesh>& mesh, const TreeOptio
   return outcome;
 }
 
-void expectSame(const std::string& what, const TriangleMesh& triangles,
+void expectSameHits(const std::string& what, const TriangleMesh& triangles,
   const std::vector<BeamFrame>& frames, const std::vector<Ray>& rays, double leastHits,
   int fill = RayPacket::Width, const TreeOptions& options = {})
 {
@@ -203,8 +203,8 @@ TEST(RayPacket, RandomTrianglesOfAnySizeAndBeamwidth)
         const Vec3 at = mesh.points[random.index(mesh.points.size())];
         frames.push_back(makeBeamFrame(Vec3(-60.0, 3.0, 5.0), at - Vec3(-60.0, 3.0, 5.0), width));
       }
-      expectSame("size " + std::to_string(size) + ", width " + std::to_string(width), mesh, frames,
-        raysOf(random, frames, 2 * RayPacket::Width), 0.0);
+      expectSameHits("size " + std::to_string(size) + ", width " + std::to_string(width), mesh,
+        frames, raysOf(random, frames, 2 * RayPacket::Width), 0.0);
     }
   }
 }
@@ -218,11 +218,11 @@ TEST(RayPacket, OneRayABeamOverManyBeams)
   {
     const std::vector<BeamFrame> inside =
       window(Vec3(0.0), random.direction(), 16, 16, step, 5.6e-3);
-    expectSame(
+    expectSameHits(
       "inside, step " + std::to_string(step), mesh, inside, raysOf(random, inside, 1), 1.0);
     const Vec3 apex = 40.0 * random.direction();
     const std::vector<BeamFrame> outside = window(apex, -apex, 16, 16, step, 5.6e-3);
-    expectSame(
+    expectSameHits(
       "outside, step " + std::to_string(step), mesh, outside, raysOf(random, outside, 1), 0.01);
   }
 }
@@ -253,7 +253,7 @@ TEST(RayPacket, RaysAimedAtEdgesAndVerticesOfAClosedSurface)
         rays.push_back({ frames.size() - 1, u, v });
       }
     }
-    expectSame("width " + std::to_string(width), mesh, frames, rays, 1.0, 4);
+    expectSameHits("width " + std::to_string(width), mesh, frames, rays, 1.0, 4);
   }
 }
 
@@ -265,7 +265,7 @@ TEST(RayPacket, GroundSeenAtGrazingIncidenceAndSlivers)
   {
     const std::vector<BeamFrame> frames =
       window(Vec3(3.1, 4.7, 8.0 + height), Vec3(1.0, 0.3, -0.01), 8, 8, 2e-3, 5.6e-3);
-    expectSame(
+    expectSameHits(
       "height " + std::to_string(height), terrain, frames, raysOf(random, frames, 8), 0.05);
   }
   TriangleMesh needles;
@@ -278,7 +278,7 @@ TEST(RayPacket, GroundSeenAtGrazingIncidenceAndSlivers)
   }
   const std::vector<BeamFrame> frames =
     window(Vec3(-30.0, 1.0, 2.0), Vec3(1.0, 0.0, 0.0), 16, 16, 0.05, 0.03);
-  expectSame("needles", needles, frames, raysOf(random, frames, 8), 0.002);
+  expectSameHits("needles", needles, frames, raysOf(random, frames, 8), 0.002);
 }
 
 TEST(RayPacket, CoplanarDuplicatedAndDegenerateTriangles)
@@ -305,7 +305,7 @@ TEST(RayPacket, CoplanarDuplicatedAndDegenerateTriangles)
   }
   const std::vector<BeamFrame> frames =
     window(Vec3(-25.0, 2.0, 9.0), Vec3(1.0, 0.0, -0.3), 12, 12, 0.04, 0.02);
-  expectSame("duplicates", mesh, frames, raysOf(random, frames, 16), 0.1);
+  expectSameHits("duplicates", mesh, frames, raysOf(random, frames, 16), 0.1);
 }
 
 // On which side of a triangle the apex lies is a matter of rounding then.
@@ -322,7 +322,7 @@ TEST(RayPacket, ApexOnATriangleOrInItsPlane)
     apex += reach * random() * (mesh.points[t[2]] - a);
     const std::vector<BeamFrame> frames =
       window(apex, random.direction(), 4, 4, 0.1, random.logUniform(1e-9, 1.0));
-    expectSame("scene " + std::to_string(i), mesh, frames, raysOf(random, frames, 4), 0.0);
+    expectSameHits("scene " + std::to_string(i), mesh, frames, raysOf(random, frames, 4), 0.0);
   }
 }
 
@@ -348,7 +348,8 @@ TEST(RayPacket, ScenesFarAwayTinyAndHuge)
       {
         const std::vector<BeamFrame> frames = window(
           place + scale * apex, apex.x > 1.0 ? -apex : Vec3(1.0, 2.0, 3.0), 8, 8, 0.03, 5.6e-3);
-        expectSame("scale " + std::to_string(scale), mesh, frames, raysOf(random, frames, 4), 0.9);
+        expectSameHits(
+          "scale " + std::to_string(scale), mesh, frames, raysOf(random, frames, 4), 0.9);
       }
     }
   }
@@ -367,7 +368,7 @@ TEST(RayPacket, AnyVolumeAnyFillAndRaysInAllDirections)
   for (const auto volume :
     { BoundingVolumeType::AABB, BoundingVolumeType::OBB, BoundingVolumeType::Sphere })
   {
-    expectSame("volume " + std::to_string(static_cast<int>(volume)), mesh, frames, rays, 0.3,
+    expectSameHits("volume " + std::to_string(static_cast<int>(volume)), mesh, frames, rays, 0.3,
       RayPacket::Width, { SplitRule::SurfaceAreaHeuristic, volume, 4 });
   }
   const std::vector<BeamFrame> neighbours =
@@ -375,7 +376,7 @@ TEST(RayPacket, AnyVolumeAnyFillAndRaysInAllDirections)
   const std::vector<Ray> close = raysOf(random, neighbours, 3);
   for (const int fill : { 1, 2, 15, 16, 17, 33, RayPacket::Width })
   {
-    expectSame("fill " + std::to_string(fill), mesh, neighbours, close, 0.3, fill,
+    expectSameHits("fill " + std::to_string(fill), mesh, neighbours, close, 0.3, fill,
       { SplitRule::Halves, BoundingVolumeType::AABB, fill % 2 == 0 ? 40 : 1 });
   }
 }
