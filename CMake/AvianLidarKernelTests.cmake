@@ -38,7 +38,6 @@ list(JOIN avianlidar_slow_kernel_cases ":" avianlidar_slow_kernel_cases)
 function (avianlidar_add_kernel_tests target prefix)
   # The tests themselves need no optimised code, which takes half as long again to compile.
   target_compile_options("${target}" PRIVATE -Wall -Wextra -Wshadow -O1)
-  set_target_properties("${target}" PROPERTIES UNITY_BUILD_BATCH_SIZE 20)
   target_link_libraries("${target}"
     PRIVATE
       avianlidarVolumeTree

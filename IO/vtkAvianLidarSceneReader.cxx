@@ -24,6 +24,7 @@
 
 #include <vtksys/SystemTools.hxx>
 
+#include <array>
 #include <new>
 
 vtkStandardNewMacro(vtkAvianLidarSceneReader);
@@ -32,7 +33,8 @@ namespace
 {
 using namespace avianlidar::scene;
 
-void AddTriple(vtkFieldData* fields, const vtkAvianLidarArrays::Name& name, const Vec3& values)
+void AddTriple(
+  vtkFieldData* fields, const vtkAvianLidarArrays::Name& name, const std::array<double, 3>& values)
 {
   auto array = vtkAvianLidarArrays::Make<vtkDoubleArray>(name, 1, 3);
   array->SetTuple(0, values.data());
