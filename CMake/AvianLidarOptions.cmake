@@ -24,7 +24,7 @@ set(AVIANLIDAR_DATA_DIR "$ENV{AVIANLIDAR_DATA_DIR}" CACHE PATH
   "Folder of the rich sceneries; tests that need it are reported as skipped where it is empty")
 
 if (PROJECT_IS_TOP_LEVEL)
-  option(CMAKE_UNITY_BUILD "Compile sources twenty at a time: the whole in a third of the time; OFF to work on single files" ON)
+  option(CMAKE_UNITY_BUILD "Compile sources twenty at a time: the whole in less than half the time; OFF to work on single files" ON)
   set(CMAKE_UNITY_BUILD_BATCH_SIZE 20)
 endif ()
 
