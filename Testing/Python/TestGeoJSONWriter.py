@@ -113,7 +113,6 @@ class TestGeoJSONWriter(unittest.TestCase):
 
     def test_bad_input(self):
         for change, words in (
-                (lambda data: data.GetPointData().RemoveArray("energy"), "'energy'"),
                 (lambda data: data.GetFieldData().RemoveArray("geodetic_origin"), "vtkAvianLidarGeodeticTransform"),
                 (lambda data: add_field(data, "crs_wkt", ["PROJCS[...]"]), "vtkAvianLidarGeodeticTransform"),
                 (lambda data: data.GetPoints().SetPoint(2, np.nan, 0, 0), "point 2")):

@@ -130,10 +130,6 @@ class TestKITTIWriter(unittest.TestCase):
             label.unlink()
             self.assertFalse(read(str(name)).GetPointData().HasArray("semantic_label"))
 
-    def test_no_points(self):
-        self.write(ids([]))
-        self.assertEqual((os.path.getsize(FILE), os.path.getsize(LABELS), read(FILE).GetNumberOfPoints()), (0, 0, 0))
-
     def test_bad_input_leaves_neither_file(self):
         without, broken = cloud([[1, 2, 3]]), ids([1, 2])
         add_field(without, "position", (0.0, 0.0, 0.0))
