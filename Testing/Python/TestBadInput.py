@@ -2,8 +2,6 @@
 """What each class reads and each of its properties, with wrong values: one error that names the input and the quantity, empty
 outputs, and the next good input gives what it gave before. What is legal but suspicious is a warning, once."""
 import os
-import shutil
-import tempfile
 import unittest
 
 import numpy as np
@@ -13,19 +11,13 @@ from vtk.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray, vtk_to
 from avianlidar import _properties, vtkAvianLidar as al
 from avianlidar._scene import COEFFICIENTS
 from cloudtools import add_array, cloud, echoes
-from echotools import CELLS, RAYS, Messages, assert_same_bits, box, scan, sensor, town
+from echotools import CELLS, RAYS, InFolder, Messages, assert_same_bits, box, scan, sensor, town
 from faulttools import INF, NAN, PLACE_OF_VALUE, algorithms, beams, copy, make, spoil, surfaces
 
 NOTHING = (0, 0)
 
 
-class Faults(unittest.TestCase):
-    def setUp(self):
-        folder = tempfile.mkdtemp()
-        self.addCleanup(shutil.rmtree, folder)
-        self.addCleanup(os.chdir, os.getcwd())
-        os.chdir(folder)
-
+class Faults(InFolder):
     def run_one(self, algorithm, inputs):
         """What it says, and what comes out: points, cells and arrays, or the bytes of its files."""
         for port, data in enumerate(inputs):

@@ -2,8 +2,6 @@
 """What follows an execution that failed or was stopped: whoever is updated next says so, by the input port and the first error, and
 has no output; a file stays as it is; the next good input works. As VTK has it, and with errors as data, as ParaView has it."""
 import os
-import shutil
-import tempfile
 import unittest
 
 import numpy as np
@@ -13,7 +11,7 @@ from vtk.util import numpy_support
 import cloudtools
 from avianlidar import vtkAvianLidar as al
 from cloudtools import add_field, cloud
-from echotools import RAYS, Messages, assert_same_bits, scan, sensor, town
+from echotools import RAYS, InFolder, Messages, assert_same_bits, scan, sensor, town
 from faulttools import algorithms, copy, make, writer
 from scenetools import SHIPPED
 
@@ -118,13 +116,7 @@ def content(name):
         return file.read()
 
 
-class Producers(unittest.TestCase):
-    def setUp(self):
-        folder = tempfile.mkdtemp()
-        self.addCleanup(shutil.rmtree, folder)
-        self.addCleanup(os.chdir, os.getcwd())
-        os.chdir(folder)
-
+class Producers(InFolder):
     def check_failed(self, filter_, messages, port, words):
         """One error, and no output but the error, without the place in the code."""
         self.assertEqual(len(messages.errors), 1, messages.errors)

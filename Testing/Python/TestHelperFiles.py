@@ -3,9 +3,7 @@
 import csv
 import errno
 import os
-import pathlib
 import stat
-import tempfile
 import unittest
 from unittest import mock
 
@@ -15,18 +13,14 @@ from vtkmodules.vtkCommonDataModel import vtkPolyData
 import avianlidar as al
 from avianlidar import _disk, _suffixes
 from cloudtools import add_array
+from echotools import InFolder
 from helpertools import WALL, same
 
 
-class Files(unittest.TestCase):
+class Files(InFolder):
     @classmethod
     def setUpClass(cls):
         cls.scan = al.Scan(al.Scene(WALL, name="wall"), al.Sensor(azimuth_step=2))
-
-    def setUp(self):
-        temporary = tempfile.TemporaryDirectory()
-        self.addCleanup(temporary.cleanup)
-        self.folder = pathlib.Path(temporary.name)
 
     def test_vtp(self):
         file = self.folder / "echoes.vtp"

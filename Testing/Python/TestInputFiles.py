@@ -10,7 +10,6 @@ import multiprocessing
 import os
 import pathlib
 import resource
-import shutil
 import socket
 import struct
 import subprocess
@@ -20,7 +19,7 @@ import unittest
 
 import scenetools as st
 from avianlidar import _suffixes, vtkAvianLidar as wrapped
-from echotools import Messages
+from echotools import InFolder, Messages
 
 ADDRESSES = 4 << 30  # bytes, of the process that reads
 MESH_GIGABYTES = "0.5"
@@ -262,12 +261,9 @@ def read_all(files):
         print(json.dumps(said), flush=True)
 
 
-class Files(unittest.TestCase):
+class Files(InFolder):
     def setUp(self):
-        self.folder = pathlib.Path(tempfile.mkdtemp())
-        self.addCleanup(shutil.rmtree, self.folder)
-        self.addCleanup(os.chdir, os.getcwd())
-        os.chdir(self.folder)
+        super().setUp()
         for name, text in PLANS.items():
             pathlib.Path(name).write_text(text)
         self.scenes = 0

@@ -14,7 +14,7 @@ import vtk
 from avianlidar import vtkAvianLidar as al
 from cloudtools import (add_array, add_field, assert_refused, assert_same_arrays, cloud, echoes, field, geodetic,
                         names, points, read, write)
-from echotools import array
+from echotools import InFolder, array
 
 FILE = "TestLASWriter.las"
 EXTRA = ["energy", "energy_received", "return_energy", "energy_std_error", "object_id", "material_id", "secondary_share",
@@ -40,16 +40,16 @@ def positions(found):
     return np.column_stack([found["points"][axis] for axis in "XYZ"])
 
 
-class TestLASWriter(unittest.TestCase):
+class TestLASWriter(InFolder):
     @classmethod
     def setUpClass(cls):
         cls.made = echoes()
 
     def setUp(self):
+        super().setUp()
         self.data = self.made.NewInstance()
         self.data.DeepCopy(self.made)
         self.writer = al.vtkAvianLidarLASWriter()
-        self.addCleanup(lambda: os.path.exists(FILE) and os.remove(FILE))
 
     def write(self, data=None, **properties):
         """What copc reads of the file; nothing is warned of."""

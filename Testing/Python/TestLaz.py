@@ -12,7 +12,7 @@ import numpy as np
 
 from avianlidar import vtkAvianLidar as al
 from cloudtools import add_array, add_field, assert_refused, cloud, names, points, read, read_error, write
-from echotools import array
+from echotools import InFolder, array
 
 LASZIP = os.environ["AVIANLIDAR_LASZIP"] == "1"
 LASPY = importlib.util.find_spec("laspy") and importlib.util.find_spec("laszip")
@@ -52,13 +52,8 @@ def save(whole, name=LAZ):
         file.write(whole)
 
 
-class Files(unittest.TestCase):
-    def setUp(self):
-        self.addCleanup(lambda: [os.remove(name) for name in (LAS, LAZ) if os.path.exists(name)])
-
-
 @unittest.skipUnless(LASZIP, "built without LASzip")
-class TestLaz(Files):
+class TestLaz(InFolder):
     def test_the_same_as_las(self):
         for count in (0, 1, CHUNK + 1):
             for rgb in (False, True):
@@ -134,7 +129,7 @@ class TestLaz(Files):
 
 
 @unittest.skipIf(LASZIP, "built with LASzip")
-class TestWithout(Files):
+class TestWithout(InFolder):
     def test_reading_and_writing(self):
         words = f"{LAZ}: LAZ needs LASzip, which this build is without: install liblaszip-dev"
         assert_refused(self, al.vtkAvianLidarLASWriter(), random_cloud(1, False), LAZ, words)

@@ -3,10 +3,8 @@
 reads them. Expected: the corners that were written, in metres."""
 import json
 import os
-import pathlib
 import re
 import stat
-import tempfile
 import unittest
 import unittest.mock
 import zipfile
@@ -14,6 +12,7 @@ import zipfile
 import numpy as np
 import scenetools as st
 from boxfiles import CORNERS, TRIANGLES, gltf, ifc
+from echotools import InFolder
 
 SINGLE = 2**-23
 
@@ -74,14 +73,10 @@ Connections:  {{
 """
 
 
-class MeshFiles(unittest.TestCase):
+class MeshFiles(InFolder):
     def setUp(self):
-        holder = tempfile.TemporaryDirectory()
-        self.addCleanup(holder.cleanup)
-        self.folder = pathlib.Path(holder.name)
-        kept = unittest.mock.patch.dict(os.environ)
-        kept.start()
-        self.addCleanup(kept.stop)
+        super().setUp()
+        self.enterContext(unittest.mock.patch.dict(os.environ))
 
     def read(self, name, text=None, **more):
         if text is not None:

@@ -6,19 +6,17 @@ import fcntl
 import os
 import pathlib
 import resource
-import shutil
 import signal
 import socket
 import stat
 import subprocess
 import sys
-import tempfile
 import unittest
 
 import avianlidar as al
 from avianlidar import _pipeline, _suffixes, _writers, vtkAvianLidar as wrapped
 from cloudtools import echoes
-from echotools import Messages
+from echotools import InFolder, Messages
 
 NAMES = ["echoes" + suffix for suffix in (*_suffixes.WRITERS, *_suffixes.OWN)
          if suffix != ".laz" or os.environ["AVIANLIDAR_LASZIP"] == "1"]
@@ -51,16 +49,10 @@ def parts():
     return [name for name in os.listdir() if "part" in name]
 
 
-class Written(unittest.TestCase):
+class Written(InFolder):
     @classmethod
     def setUpClass(cls):
         cls.data = echoes()
-
-    def setUp(self):
-        self.folder = pathlib.Path(tempfile.mkdtemp())
-        self.addCleanup(shutil.rmtree, self.folder)
-        self.addCleanup(os.chdir, os.getcwd())
-        os.chdir(self.folder)
 
     def run_child(self, name, **environment):
         """Writes in a process of its own with that environment."""

@@ -12,7 +12,7 @@ import numpy as np
 from avianlidar import vtkAvianLidar as al
 from cloudtools import (add_array, add_field, assert_extremes, assert_refused, cloud, echoes, extremes, field, names, points, read,
                         read_error, unit, write)
-from echotools import array, scan, town
+from echotools import InFolder, array, scan, town
 
 FILE, OTHER, PLY = "TestPCD.pcd", "TestPCD-pcl.pcd", "TestPCD.ply"
 HEADER = {
@@ -74,12 +74,7 @@ def literal(data):
     return b"".join(bytes([len(data[i:i + 32]) - 1]) + data[i:i + 32] for i in range(0, len(data), 32))
 
 
-class Files(unittest.TestCase):
-    def setUp(self):
-        self.addCleanup(lambda: [os.remove(name) for name in (FILE, OTHER, PLY) if os.path.exists(name)])
-
-
-class Reader(Files):
+class Reader(InFolder):
     def test_the_same_two_points(self):
         """Other ends of lines, what a header may leave out, words in any case, COUNT 0 of old converters, plus signs."""
         for changes in ({}, {"data": LINES.replace(b"\n", b"\r\n").replace(b" ", b"\t ") + b"\n\n"}, {"data": LINES[:-1]},
@@ -181,7 +176,7 @@ class Reader(Files):
             self.assertEqual(al.vtkAvianLidarPointCloudReader.CanReadFile(FILE), 0)
 
 
-class Written(Files):
+class Written(InFolder):
     @classmethod
     def setUpClass(cls):
         cls.several, cls.single = echoes(), echoes(ReturnMode=1)  # the strongest echo of a beam only

@@ -15,7 +15,7 @@ from vtkmodules.vtkIOPLY import vtkPLYReader
 import avianlidar
 from avianlidar import vtkAvianLidar as al
 from cloudtools import add_array, assert_extremes, assert_refused, cloud, echoes, extremes, field, names, points, read, read_error, write
-from echotools import array
+from echotools import InFolder, array
 
 FILE, OTHER = "TestPLY.ply", "TestPLY.pcd"
 TYPES = {"char": "i1", "uchar": "u1", "short": "i2", "ushort": "u2", "int": "i4", "uint": "u4", "float": "f4", "double": "f8"}
@@ -40,12 +40,7 @@ def parse(name):
     return [line[8:] for line in lines if line.startswith("comment ")], np.frombuffer(data, record)
 
 
-class Files(unittest.TestCase):
-    def setUp(self):
-        self.addCleanup(lambda: [os.remove(name) for name in (FILE, OTHER) if os.path.exists(name)])
-
-
-class Reader(Files):
+class Reader(InFolder):
     def test_every_type_in_every_form(self):
         other = {"int8": "i1", "uint8": "u1", "int16": "i2", "uint16": "u2", "int32": "i4", "uint32": "u4", "float32": "f4", "float64": "f8"}
         kinds = {f"v_{name}": (name, kind) for name, kind in {**TYPES, **other}.items()}
@@ -115,7 +110,7 @@ class Reader(Files):
             self.assertEqual(al.vtkAvianLidarPointCloudReader.CanReadFile(FILE), 0)
 
 
-class Written(Files):
+class Written(InFolder):
     def setUp(self):
         super().setUp()
         self.data = echoes()

@@ -6,7 +6,6 @@ import io
 import os
 import pathlib
 import struct
-import tempfile
 import unittest
 import warnings
 
@@ -17,7 +16,7 @@ import avianlidar
 from avianlidar import _command
 from avianlidar import vtkAvianLidar as al
 from cloudtools import field, points, read, read_error, unit
-from echotools import Messages, array
+from echotools import InFolder, Messages, array
 
 FILE = "TestPacketReader.pcap"
 REAL = pathlib.Path(os.environ.get("AVIANLIDAR_DATA_DIR", "none")) / "lidar_vlp16_mrpt"
@@ -86,10 +85,7 @@ def turns():
     return found, times_of(reader)
 
 
-class TestPacketReader(unittest.TestCase):
-    def tearDown(self):
-        os.remove(FILE)
-
+class TestPacketReader(InFolder):
     def test_points_in_closed_form(self):
         write(pcap([ethernet(payload(9000, 1000, value=lambda block, shot: (1000 * block + shot, block)))]))
         data = read(FILE)
@@ -201,12 +197,11 @@ class TestPacketReader(unittest.TestCase):
             self.assertEqual((cloud.number_of_points, set(cloud["distance_m"])), (768, {2.0}))
         with self.assertRaisesRegex(avianlidar.Error, "has no packets of the sensor 192.168.1.7, expected"):
             avianlidar.load_cloud(FILE, sensor_address="192.168.1.7")
-        with tempfile.TemporaryDirectory() as folder, contextlib.redirect_stdout(io.StringIO()), contextlib.redirect_stderr(io.StringIO()) as said:
-            out = pathlib.Path(folder) / "out.pcd"
+        with contextlib.redirect_stdout(io.StringIO()), contextlib.redirect_stderr(io.StringIO()) as said:
             for more, code, words in (([], 2, "(--sensor-address)"), (["--sensor-address", "192.168.1.201:2369", "--time", "0"], 0, "")):
-                self.assertEqual(_command.main(["convert", FILE, str(out), *more]), code)
+                self.assertEqual(_command.main(["convert", FILE, "out.pcd", *more]), code)
                 self.assertIn(words, said.getvalue())
-            self.assertEqual(avianlidar.load_cloud(out).number_of_points, 384)
+        self.assertEqual(avianlidar.load_cloud("out.pcd").number_of_points, 384)
 
     def test_two_sensors_of_one_address_are_an_error(self):
         frames = [ethernet(payload((480 * number + turned) % 36000, 1327 * number + turned // 100)) for number in range(20) for turned in (0, 9000)]

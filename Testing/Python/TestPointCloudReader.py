@@ -9,7 +9,7 @@ import numpy as np
 
 from avianlidar import vtkAvianLidar as al
 from cloudtools import add_array, add_field, cloud, echoes, field, names, points, read, read_error, unit, write
-from echotools import Messages, array
+from echotools import InFolder, Messages, array
 
 FILE = "TestPointCloudReader.las"
 # Writer, suffix, settings, types that change, and relative and absolute rounding: LAS has intensities of 16 bits, returns in a byte and time in
@@ -64,11 +64,7 @@ def las(form, n=5, minor=None, records=(), behind=b"", tail=b"", length=None, co
         file.write(bytes(header) + vlrs + b"".join(point(form, i, colour) + behind for i in range(n)) + tail)
 
 
-class TestPointCloudReader(unittest.TestCase):
-    def tearDown(self):
-        if os.path.exists(FILE):
-            os.remove(FILE)
-
+class TestPointCloudReader(InFolder):
     def test_every_array_through_every_format(self):
         data = echoes()
         n, draw = data.GetNumberOfPoints(), np.random.default_rng(3)
@@ -78,7 +74,6 @@ class TestPointCloudReader(unittest.TestCase):
         for kind, suffix, settings, kept, rounding in FORMATS:
             with self.subTest(suffix, **settings):
                 writer, name = kind(), FILE.replace(".las", suffix)
-                self.addCleanup(lambda name=name: os.path.exists(name) and os.remove(name))
                 self.assertEqual(write(writer, data, name, **settings), [])
                 again = read(name)
                 # Turned into another frame, a corner of the box of rounding shows: sqrt(3) as far.
@@ -155,7 +150,6 @@ class TestPointCloudReader(unittest.TestCase):
     def test_scans_of_other_data_sets(self):
         """Other numbers a point than four are an error; intensities of 0 to 255 are taken as they are."""
         name = FILE.replace(".las", ".bin")
-        self.addCleanup(lambda: os.remove(name))
         draw = np.random.default_rng(7)
         places = draw.uniform(-50, 50, (1000, 3))
         ring, bright = draw.integers(0, 32, (1000, 1)), draw.integers(0, 256, (1000, 1))
@@ -221,9 +215,8 @@ class TestPointCloudReader(unittest.TestCase):
         stem = FILE[:-len(".las")]
         self.assertIn("No such file", read_error(stem + "-none.las"))
         self.assertIn("does not end with", read_error(os.path.abspath(__file__)))
-        os.makedirs(stem + "-folder.las", exist_ok=True)
-        self.assertIn("folder", read_error(stem + "-folder.las"))
-        os.rmdir(stem + "-folder.las")
+        os.mkdir("folder.las")
+        self.assertIn("folder", read_error("folder.las"))
         reader = al.vtkAvianLidarPointCloudReader()
         heard = Messages(reader)
         reader.Update()
@@ -232,7 +225,6 @@ class TestPointCloudReader(unittest.TestCase):
         self.assertEqual(can(FILE), 1)
         os.rename(FILE, stem + ".pcd")
         self.assertEqual(can(stem + ".pcd"), 0)
-        os.remove(stem + ".pcd")
         for name in (None, ".", stem + ".bin"):
             self.assertEqual(can(name), 0, name)
 

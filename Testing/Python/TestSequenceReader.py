@@ -3,7 +3,6 @@
 import ast
 import os
 import shutil
-import tempfile
 import unittest
 
 import numpy as np
@@ -12,7 +11,7 @@ from vtkmodules.vtkCommonExecutionModel import vtkStreamingDemandDrivenPipeline
 
 from avianlidar.apps import _labels
 from avianlidar.vtkAvianLidar import vtkAvianLidarSequenceReader
-from echotools import Messages
+from echotools import InFolder, Messages
 
 TURN = np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])  # a quarter to the left
 SHIFT = np.array([100.0, 200.0, 3.0])
@@ -20,10 +19,9 @@ SCANS = [np.array([[10, 1, 0.5, 0.2], [20, -2, 1, 0.4]], "<f4"), np.array([[30, 
 TIMES = (0.0, 0.5, 2.0)
 
 
-class Sequence(unittest.TestCase):
+class Sequence(InFolder):
     def setUp(self):
-        self.folder = tempfile.mkdtemp()
-        self.addCleanup(shutil.rmtree, self.folder)
+        super().setUp()
         for name in ("velodyne", "labels", "boxes"):
             os.mkdir(os.path.join(self.folder, name))
         self.write("times.txt", "".join(f"{time}\n" for time in TIMES))
