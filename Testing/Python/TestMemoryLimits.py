@@ -13,6 +13,7 @@ import unittest
 import numpy as np
 import vtk
 
+import avianlidar
 import echotools
 import scenetools
 from avianlidar import vtkAvianLidar as al
@@ -22,7 +23,7 @@ from faulttools import make, writer
 MEGABYTE = 1 << 20
 LEAST, MOST = 0.25, 256  # MB that are left to the algorithm: it fails with the first, and does not with the last
 STEPS = 4
-POINTS = 30000
+POINTS = 60000
 
 
 class Limit:
@@ -41,8 +42,8 @@ class Limit:
         resource.setrlimit(resource.RLIMIT_AS, self.before)
 
 
-def ball(resolution=80):
-    """About 12,000 triangles around the sensor."""
+def ball(resolution=120):
+    """About 28,000 triangles around the sensor."""
     source = vtk.vtkSphereSource()
     source.SetRadius(50)
     source.SetThetaResolution(resolution)
@@ -73,10 +74,11 @@ def way():
                          ("object_id", np.zeros(POINTS, np.int32)), ("material_id", np.zeros(POINTS, np.int32))):
         add_array(data, name, values)
     add_field(data, "geodetic_origin", (31.2, 121.3, 3.0))
-    for mesh, name in ((vtk.vtkOBJWriter(), "ball.obj"), (vtk.vtkXMLPolyDataWriter(), "ball.vtp")):
-        mesh.SetFileName(name)
-        mesh.SetInputData(surfaces)
-        mesh.Write()
+    avianlidar.save(surfaces, "ball.vtp")
+    mesh = vtk.vtkOBJWriter()
+    mesh.SetFileName("ball.obj")
+    mesh.SetInputData(surfaces)
+    mesh.Write()
     for name in WRITERS:
         on(writer(name, "r"), data).Write()
 
