@@ -91,7 +91,7 @@ FAULTS = [Fault(*fault) for fault in (
      "this->Colours[3 * i + 2 - c] = load<std::uint16_t>(bytes + this->Record.rgb + 2 * c);"),
     ("obstacle_feet", "a wrong unit", "Python-TestSceneObjects$",
      "IO/Private/Footprints.cxx", '(attribute == "AGL" || attribute == "AMSL") ? 0.3048 : 1.0', 'attribute == "AGL" ? 0.3048 : 1.0'),
-    ("pcd_warning", "a lost warning", "Python-Test(PCDReader|InputFiles)$",
+    ("pcd_warning", "a lost warning", "Python-Test(PCD|InputFiles)$",
      "IO/Private/PcdReading.cxx", "      hasMore = hasOneMoreRow(source, header);", "      hasMore = false;"),
     ("ply_of_255", "an off-by-one at a border", "Python-Test(PLY|MeshFiles)$",
      "IO/Private/PlyWriting.cxx", "if (points.size() > 255 || beyond)", "if (points.size() > 256 || beyond)"),
@@ -114,7 +114,7 @@ FAULTS = [Fault(*fault) for fault in (
      'number_of_elements="1" default_values="400">'),
     ("panel_command", "a wrong command in a panel", "Plugin-TestProxies$",
      "Plugin/IO/AvianLidarPointCloudReader.xml", 'command="SetSensorAddress"', 'command="SetFileName"'),
-    ("exchanged_arrays", "an exchanged array name", "Python-Test(EchoFiles|Glossary|UnitNames|PCDWriter|EchoPipeline)$|Cxx-TestEchoFilter",
+    ("exchanged_arrays", "an exchanged array name", "Python-Test(EchoFiles|Glossary|UnitNames|PCD|EchoPipeline)$|Cxx-TestEchoFilter",
      "Filters/Private/Common/vtkAvianLidarNames.h", 'constexpr Name EnergyReceived{ "energy_received", "J" };',
      'constexpr Name EnergyReceived{ "energy_recieved", "J" };'),
 )]

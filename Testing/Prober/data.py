@@ -145,12 +145,6 @@ def _wall(r):
     return [c - along, c + along, c + along + up, c - along + up], [[0, 1, 2, 3]]
 
 
-def _ground(r):
-    n, size, z = r.randint(1, 4), r.choice((40.0, 300.0)), r.uniform(-5, -1)
-    points = [(size * (2 * i / n - 1), size * (2 * j / n - 1), z) for j in range(n + 1) for i in range(n + 1)]
-    return points, [[k, k + 1, k + n + 2, k + n + 1] for k in range(n * (n + 1)) if k % (n + 1) < n]
-
-
 def _soup(r):
     """Triangles anywhere, and now and then some that are none."""
     c, n, size = place(r), r.randint(1, 20), r.choice((0.1, 4, 4))
@@ -158,15 +152,9 @@ def _soup(r):
     return points, [[3 * i, 3 * i + 1, 3 * i + 2] for i in range(n)] + r.choice(([], [[0, 0, 0], [0, 1, 0]]))
 
 
-def _concave(r):
-    c, s = place(r), r.uniform(1, 8)
-    away = np.array([-c[1], c[0], 0.0]) / math.hypot(c[0], c[1])
-    return [c + s * (u * away + np.array([0, 0, v])) for u, v in ((0, 0), (4, 0), (4, 4), (2, 1), (0, 4))], [[0, 1, 2, 3, 4]]
-
-
 def leaf(r):
     """One object of any kind, as polygons, triangles or strips, with or without materials, ids and names."""
-    data = polydata(*r.choice((_box, _box, _wall, _ground, _soup, _concave))(r), double=r.random() < 0.7)
+    data = polydata(*r.choice((_box, _box, _wall, _soup))(r), double=r.random() < 0.7)
     for share, change in ((0.5, vtk.vtkTriangleFilter), (0.15, vtk.vtkStripper)):
         if r.random() < share:
             change = change()

@@ -53,18 +53,9 @@ def number(data, r):
     return data
 
 
-def swap(data, r):
-    """Two words or lines change places."""
-    found = list(re.finditer(r.choice((rb"[A-Za-z_]{3,}", rb"[^\n]+")), data))
-    if len(found) < 2:
-        return data
-    a, b = sorted(r.sample(found, 2), key=lambda one: one.start())
-    return data[: a.start()] + b.group() + data[a.end() : b.start()] + a.group() + data[b.end() :]
-
-
 def mutated(data, r):
     for _ in range(r.choice((1, 1, 1, 2, 3, 5))):
-        data = r.choice((flip, flip, cut, repeat, repeat, put, put, put, number, number, number, swap, swap))(data, r)
+        data = r.choice((flip, flip, cut, repeat, repeat, put, put, put, number, number, number))(data, r)
     return data[: 1 << 20]
 
 

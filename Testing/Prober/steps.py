@@ -18,7 +18,7 @@ class World:
 
     def __init__(self, r):
         self.settings, self.said, self.held = {}, [], []
-        self.data, self.table, self.route, self.moment, self.abort = surfaces.scene(r), None, Route(r), (0, 1, None), None
+        self.data, self.table, self.route, self.moment = surfaces.scene(r), None, Route(r), (0, 1, None)
         self.movers = vtk.vtkMultiBlockDataSet()
         for i in range(r.randint(1, 3)):
             self.movers.SetBlock(i, surfaces.mover(r, surfaces.leaf(r)))
@@ -241,15 +241,9 @@ def hold(world, r):
     world.say(f"{name} is held")
 
 
-def abort(world, r):
-    """A wish to stop in the middle; then as if nothing had been. The driver looks at the outputs in between."""
-    world.abort = (r.choice(("tree", "echo", "echo", "sensor", "material", "image", "coverage")), r.choice((0.0, 0.0, 0.05, 0.3, 0.7)))
-    world.say(f"abort of {world.abort}")
-
-
 KINDS = {**{name: change_property(name) for name in SET}, "edit": edit, "blocks": change_blocks, "data": replace_data,
-         "route": change_route, "moment": change_moment, "hold": hold, "abort": abort, "bad data": lambda world, r: edit(world, r, True),
+         "route": change_route, "moment": change_moment, "hold": hold, "bad data": lambda world, r: edit(world, r, True),
          **{"bad " + name: change_property(name, True) for name in ("sensor", "echo", "tree", "material", "medium")}}
 # How often each is drawn, in place of once.
 WEIGHTS = {"edit": 40, "echo": 6, "sensor": 5, "moment": 4, "route": 3, "material": 2, "blocks": 2}
-WEIGHTS.update({"touch": 3, "scribble": 3, "coverage": 0.3})  # touch and scribble: same_bits.py
+WEIGHTS.update({"scribble": 3, "coverage": 0.3})  # scribble: same_bits.py

@@ -9,6 +9,7 @@ import sys
 
 import vtk
 
+import avianlidar
 from avianlidar import vtkAvianLidar as al
 from echotools import Messages, assert_same_bits, scan, town
 
@@ -17,20 +18,11 @@ echo.Update()
 echoes = echo.GetOutput()
 
 
-def into_file(data, name):
-    writer = vtk.vtkXMLPolyDataWriter()
-    writer.SetFileName(name)
-    writer.SetDataModeToBinary()  # Debian's expat breaks the default, Appended
-    writer.SetInputData(data)
-    assert writer.Write()
-
-
 def through_file(data, name):
-    into_file(data, name)
+    avianlidar.save(data, name)
     reader = vtk.vtkXMLPolyDataReader()
     reader.SetFileName(name)
     reader.Update()
-    os.remove(name)
     return reader.GetOutput()
 
 
@@ -93,10 +85,8 @@ assert other.GetNumberOfTreeBuilds() == 1
 print(len(os.listdir("/proc/self/task")) - before)
 """
 if os.path.isdir("/proc/self/task"):
-    into_file(tree.GetOutput(), "TestEchoFiles.vtp")
     environment = {**os.environ, "OMP_NUM_THREADS": "4", "PYTHONPATH": os.pathsep.join(sys.path)}
     more = subprocess.run([sys.executable, "-c", ONE_THREAD], env=environment, check=True, capture_output=True, text=True).stdout
-    os.remove("TestEchoFiles.vtp")
     assert more.split()[-1] == "0", more
 
 # A tree of another geometry: one warning, and a tree that fits is built.
@@ -113,3 +103,4 @@ assert len(heard.warnings) == 1 and "another geometry" in heard.warnings[0], hea
 other.SetSeed(2)
 other.Update()
 assert len(heard.warnings) == 1
+os.remove("TestEchoFiles.vtp")

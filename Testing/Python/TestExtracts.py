@@ -6,17 +6,14 @@ import json
 import math
 import re
 import unittest
-import warnings
 
 import numpy as np
 from osgeo import gdal
 
-import avianlidar as al
 import TestAirport as ta
 from avianlidar import siting
 from avianlidar.apps import _extract as extract
 from avianlidar.apps import _obstacles as obstacles
-from avianlidar.apps import _pictures as pictures
 from avianlidar.apps._airport import Airport
 
 KNOWN = extract.rules()
@@ -58,10 +55,10 @@ def fenced():
     """Closed ways that are areas by some tags, lines by others, and both."""
     plan = runway(ta.Map())
     plan.area((-1500, -700), (1500, 700), aeroway="aerodrome", icao="XFEN", barrier="fence", height="3")
-    for number, tags in enumerate(({"man_made": "storage_tank"}, {"man_made": "chimney"}, {"man_made": "silo"}, {"man_made": "tower"},
-                                   {"waterway": "dock"}, {"power": "tower"}, {"landuse": "military", "barrier": "wall"}, {"amenity": "school", "barrier": "fence"},
-                                   {"landuse": "grass", "barrier": "hedge"}, {"building": "yes", "height": "9"}, {"building__part": "yes", "height": "12"},
-                                   {"aeroway": "apron"}, {"amenity": "parking", "area": "yes"}, {"natural": "wood"}, {"highway": "footway", "surface": "asphalt"}, {"highway": "service", "area": "yes"}, {"building": "construction"})):
+    for number, tags in enumerate((
+            {"man_made": "storage_tank"}, {"landuse": "military", "barrier": "wall"}, {"landuse": "grass", "barrier": "hedge"},
+            {"building": "yes", "height": "9"}, {"building__part": "yes", "height": "12"}, {"amenity": "parking", "area": "yes"},
+            {"highway": "footway", "surface": "asphalt"}, {"highway": "service", "area": "yes"}, {"building": "construction"})):
         plan.area((60 * number, 300), (60 * number + 30 + number, 340), name=str(number), **tags)
     plan.way([(100, 100), (400, 100), (400, 200), (100, 200)], True, aeroway="taxiway")
     plan.way([(-400, 100), (-100, 100), (-100, 200), (-400, 200)], True, highway="service")
@@ -78,10 +75,10 @@ class Formats(unittest.TestCase):
         expected = things(file)
         kinds = [kind for kind, *_ in expected]
         self.assertEqual({kind: kinds.count(kind) for kind in set(kinds)},
-                         {"runway": 1, "fence": 2, "wall": 1, "hedge": 1, "tank": 2, "chimney": 1, "tower": 1, "mast": 2, "water": 1, "grass": 1, "building": 1,
-                          "part": 1, "apron": 1, "parking": 1, "wood": 2, "taxiway": 1, "road": 2, "hangar": 1})
+                         {"runway": 1, "fence": 1, "wall": 1, "hedge": 1, "tank": 1, "mast": 1, "grass": 1, "building": 1, "part": 1,
+                          "parking": 1, "wood": 1, "taxiway": 1, "road": 2, "hangar": 1})
         sizes = {(kind, name): size for kind, _, name, size in expected}
-        for which, size in ((("tank", "0"), 30 * 40), (("wall", "6"), 2 * (36 + 40)), (("grass", "8"), 38 * 40), (("hedge", "8"), 2 * (38 + 40)),
+        for which, size in ((("tank", "0"), 30 * 40), (("wall", "1"), 2 * (31 + 40)), (("grass", "2"), 32 * 40), (("hedge", "2"), 2 * (32 + 40)),
                             (("hangar", "ring"), 1e4 - 40**2), (("wood", "glade"), 1e4 - 60**2), (("taxiway", ""), 800), (("fence", ""), 2 * (3000 + 1400))):
             self.assertAlmostEqual(sizes[which] / size, 1.0, delta=1e-3, msg=which)
         geopackage, twice, nested = (ta.FOLDER / f"fenced{name}" for name in (".gpkg", "-twice.geojson", "-nested.geojson"))
@@ -124,7 +121,6 @@ class Formats(unittest.TestCase):
         tagged = "".join(row for row in plan.rows if "<tag" in row)
         for name, body in (("backwards", "".join(plan.rows[::-1] + plan.ways[::-1]) + relations),
                            ("after", relations + "".join(plan.ways + plan.rows)),
-                           ("body_and_skeleton", "".join(plan.ways) + relations + re.sub(r"<tag [^>]*>", "", "".join(plan.rows)) + tagged),
                            ("negative", re.sub(r'(id|ref)="', r'\1="-', "".join(plan.rows + plan.ways) + relations)),
                            ("geometry", tagged + in_ways + relations),
                            ("deleted", deleted + "".join(plan.rows + plan.ways) + relations)):
@@ -152,10 +148,7 @@ class Formats(unittest.TestCase):
             self.assertEqual([kind for kind, *_ in things(one)], ["runway"], one)
             self.assertEqual(left(one), {("building", extract.CUT): 4, ("way", extract.CUT): 1, ("relation", extract.CUT): 1,
                                          **({("way", "no nodes"): 2, ("relation", "no ways"): 1} if one is file else {("way", "no nodes"): 1})}, one)
-        code, words = ta.run("airport", file, "-o", ta.fresh("cut"))
-        self.assertEqual(code, 0, words)
-        self.assertIn("10 features were read, 1 is in the scene, 9 were left out: 6 cut by the extract's border, 2 no nodes, 1 no ways", words)
-        self.assertIn("a runway is cut by the extract's border", words)
+        self.assertIn("a runway is cut by the extract's border", ta.run("airport", file, "-o", ta.fresh("cut"))[1])
 
     def test_what_is_not_a_whole_extract(self):
         whole = fenced().write("whole.osm")
@@ -229,20 +222,12 @@ class Runways(unittest.TestCase):
             self.assertEqual(self.runways(([(-600, 0), (-900, 0)], tags), (main, ref))[0], [("9/27", 1700, 90, "30", 300, 0)], tags)
         found, _ = self.runways(([(900, 0), (-900, 0)], {"ref": "09/27"}), thresholds=[(-890, 0), (700, 3), (500, 200)])
         self.assertEqual(found, [("09/27", 1800, 90, None, 0, 200)])
-        plan = ta.Map()
-        plan.way([(-900, 0), (-600, 0)], aeroway="runway", ref="09/27", runway="displaced_threshold")
-        plan.way([(-600, 0), (900, 0)], aeroway="runway", ref="09/27")
-        folder = ta.fresh("displaced")
-        code, words = ta.run("airport", plan.write("displaced.osm"), "-o", folder)
-        self.assertEqual(code, 0, words)
-        scene = al.load_scene(folder / "airport.lidarscene.json")
-        np.testing.assert_allclose(siting.read_runways(folder / "airport.geojson", scene.geodetic_origin)[0].displaced, (300, 0), atol=0.1)
 
     def test_what_is_no_runway(self):
         real = ([(-800, 0), (800, 0)], {"ref": "09/27"})
         other = [(-200, 550), (200, 550)]
-        for tags, reason in (({"surface": "water"}, "a runway on water"), ({"seaplane": "yes"}, "a runway on water"), ({"runway": "closed"}, "out of use"),
-                             ({"disused": "yes"}, "out of use"), ({"sport": "model_aerodrome"}, "of a model airfield"), ({"construction": "yes"}, "not built")):
+        for tags, reason in (({"surface": "water"}, "a runway on water"), ({"runway": "closed"}, "out of use"), ({"disused": "yes"}, "out of use"),
+                             ({"sport": "model_aerodrome"}, "of a model airfield"), ({"construction": "yes"}, "not built")):
             self.assertEqual(self.runways(real, (other, tags)), ([("09/27", 1600, 90, None, 0, 0)], [reason]), tags)
         short = [(-70, 550), (70, 550)]
         self.assertEqual(self.runways(real, (short, {}))[1], ["a runway shorter than 150 m"])
@@ -255,14 +240,15 @@ class Runways(unittest.TestCase):
 
 class Heights(unittest.TestCase):
     def test_lengths(self):
-        for text, metres in (("12", 12), ("12.5 m", 12.5), ("12,5", 12.5), ("10 ft", 3.048), ("10'", 3.048), ("5'6\"", 1.6764), ("5'-6\"", 1.6764), ("5 ft 6 in", 1.6764), ("2;3", 3),
-                             ("12-15", 15), ("~9", 9), ("ca. 12 m", 12), ("9 Meters", 9), ("1,200 ft", 365.76), ("1,234.5 ft", 376.2756), ("1 200 ft", 365.76), ("12,500", 12.5),
-                             ("0.012 km", 12), ("350 cm", 3.5), ("2000 mm", 2), ("10 yd", 9.144), ("30 m AGL", 30), ("2 storeys", 6), ("12\u00b11 m", 12), ("12..15", 15), ("1e1", 10),
-                             ("12m 50cm", 12.5), ("40 ft/12 m", 12.192), ("12 \u043c", 12), ("12\u7c73", 12), ("1'200", None), ("120 m AMSL", None), ("\uff11\uff12", 12), ("9 m 4 in", None),
-                             ("three", None), ("-3", None), ("0", None), ("5000", None), ("nan", None), ("inf", None), ("", None), (None, None), ("1" + " " * 100_000 + "x", None)):
+        for text, metres in (
+                ("12.5 m", 12.5), ("12,5", 12.5), ("10 ft", 3.048), ("5'6\"", 1.6764), ("5 ft 6 in", 1.6764), ("2;3", 3), ("12-15", 15), ("~9", 9),
+                ("1,200 ft", 365.76), ("1,234.5 ft", 376.2756), ("1 200 ft", 365.76), ("12,500", 12.5), ("0.012 km", 12), ("350 cm", 3.5),
+                ("2000 mm", 2), ("10 yd", 9.144), ("30 m AGL", 30), ("2 storeys", 6), ("12\u00b11 m", 12), ("12m 50cm", 12.5), ("12 \u043c", 12),
+                ("1'200", None), ("120 m AMSL", None), ("\uff11\uff12", 12), ("9 m 4 in", None), ("three", None), ("-3", None), ("0", None),
+                ("5000", None), ("nan", None), ("", None), (None, None), ("1" + " " * 100_000 + "x", None)):
             found = extract.length_of(text)
             self.assertEqual(found if found is None else round(found, 9), metres, text)
-        for text, levels in (("02", 2), ("2;3", 3), ("2,3", 3), ("1,5", 1.5), ("2-3", 3), ("3+1", 4), ("2 floors", 2), ("0", None), ("-1", None), ("ground", None), (None, None)):
+        for text, levels in (("2;3", 3), ("2,3", 3), ("1,5", 1.5), ("2-3", 3), ("3+1", 4), ("2 floors", 2), ("0", None), ("ground", None), (None, None)):
             self.assertEqual(extract.levels_of(text), levels, text)
 
     def test_heights_of_tags(self):
@@ -275,35 +261,18 @@ class Heights(unittest.TestCase):
             return row["kind"], row.get("height", row.get("top")), row.get("min_height"), "assumed" in row.get("height_from", row.get("top_from"))
 
         for tags, expected in (
-                ({"building": "yes", "est_height": "33"}, ("building", 33, None, False)),
                 ({"building": "yes", "building__levels": "2", "roof__height": "1.5"}, ("building", 7.5, None, True)),
                 ({"building": "hangar", "building__levels": "3"}, ("hangar", 18, None, True)),
                 ({"building": "yes", "height": "14", "min_height": "10 m"}, ("building", 14, 10, False)),
                 ({"building__part": "yes", "building__levels": "6", "building__min_level": "2"}, ("part", 18, 6, True)),
                 ({"building": "yes", "height": "5", "min_height": "9"}, ("building", 5, None, False)),
                 ({"building": "roof", "height": "8"}, ("canopy", 8, 7.5, False)),
-                ({"building": "roof", "min_height": "6"}, ("canopy", 6.5, 6, True)),
                 ({"building__part": "yes", "min_height": "40"}, ("part", 48, 40, True)),
                 ({"aeroway": "jet_bridge", "area": "yes"}, ("jet_bridge", 7, 4, True)),
                 ({"theme": "buildings", "type": "building", "class": "hangar", "height": "17.5"}, ("hangar", 17.5, None, False)),
-                ({"subtype": "transportation", "class": "hangar", "has_parts": "0", "num_floors": "2"}, ("hangar", 15, None, True)),
-                ({"height": "12.3", "confidence": "0.9"}, ("building", 12.3, None, False)),
-                ({"power": "generator", "generator__source": "wind", "height": "140"}, ("turbine", 140, None, False)),
                 ({"power": "generator", "generator__source": "wind"}, ("turbine", 100, None, True)),
-                ({"power": "generator", "height": "7"}, ("obstacle", 7, None, False)),
-                ({"man_made": "obelisk", "height": "30"}, ("obstacle", 30, None, False))):
+                ({"power": "generator", "height": "7"}, ("obstacle", 7, None, False))):
             self.assertEqual(row(**tags), expected, tags)
-
-    def test_reasons_of_tags(self):
-        area = extract.gdal_modules()[1].CreateGeometryFromWkt("POLYGON ((0 0, 1e-3 0, 1e-3 1e-3, 0 1e-3, 0 0))")
-        for tags, reason in (({"start_date": "2999"}, "not built"), ({"end_date": "2001-05-01"}, "ruins, or gone"),
-                             ({"building:levels": "0", "building:levels:underground": "2"}, "below ground")):
-            found = extract.Reader(KNOWN)
-            found.take({"building": "yes", **tags}, area)
-            self.assertEqual([one.reason for one in found.done().left], [reason], tags)
-        for said in ("12", "bogus"):
-            row = extract.properties_of(extract.Feature("building", {"height": "10", "min_height": said}, area), KNOWN)
-            self.assertEqual((row["height"], row.get("min_height"), row["min_height_from"]), (10, None, f"assumed: min_height is '{said}'"))
 
     def test_parts_stand_in_place_of_their_building(self):
         """A terminal of which a tower and a low part are drawn, one that is all parts, and a canopy that does not reach the ground."""
@@ -325,7 +294,6 @@ class Heights(unittest.TestCase):
         z = {name: (triangles[:, :, 2].min(), triangles[:, :, 2].max()) for name, (_, triangles) in found.items()}
         for name, (low, high) in (("Hall", (0, 20)), ("Canopy", (6, 8)), ("Jet bridge", (4, 7))):
             np.testing.assert_allclose(z[name], (low, high), atol=0.1, err_msg=name)
-            self.assertTrue(ta.is_closed(found[name][1]), name)
         self.assertAlmostEqual(ta.plan_area(found["Hall"][1]), 5000, delta=5)
         self.assertAlmostEqual(ta.plan_area(found["Part"][1]), 5000 + 100 + 1e4, delta=15)
         self.assertAlmostEqual(siting.ground_of(scene, [(425.0, 225.0)])[0], 0.0, delta=0.1)  # below the canopy
@@ -333,20 +301,17 @@ class Heights(unittest.TestCase):
 
 class LeftOut(unittest.TestCase):
     def test_all_are_counted(self):
-        """60 buildings and some obstacles, of which each reason takes some."""
+        """Each reason takes some of the buildings and obstacles."""
         plan, x = runway(ta.Map()), 0
-        reasons = {"ruins, or gone": ({"building": "ruins"}, {"building": "collapsed"}, {"demolished__building": "yes"}, {"building": "yes", "ruins": "yes"}),
-                   "not built": ({"building": "construction"}, {"proposed__building": "yes"}, {"construction__building": "hangar"}),
-                   "below ground": ({"building": "yes", "layer": "-4"}, {"building": "yes", "location": "underground"}, {"building": "yes", "is_underground": "true"}),
-                   "no building": ({"building": "no"},), "": ({"building": "yes"},) * 39 + ({"building": "yes", "height": "tall"},)}
-        for tags in (tags for all_ in reasons.values() for tags in all_):
+        for tags in ({"building": "ruins"}, {"demolished__building": "yes"}, {"building": "yes", "end_date": "2001-05-01"},
+                     {"proposed__building": "yes"}, {"building": "yes", "start_date": "2999"}, {"building": "yes", "layer": "-4"}, {"building": "yes", "location": "underground"}, {"building": "no"},
+                     {"building": "yes"}, {"building": "yes", "height": "tall"}):
             plan.area((x, 300), (x + 8, 310), **tags)
             x += 12
         plan.way([(0, 400), (10, 400), (10, 410)], building="yes")
         plan.way([(0, 450), (0, 450), (0, 450), (0, 450)], True, building="yes")
         plan.point(20, 400, building="house")
-        for far in range(6):
-            plan.area((9000 + 20 * far, 0), (9010 + 20 * far, 10), building="yes")
+        plan.area((9000, 0), (9010, 10), building="yes")
         plan.point(-100, 300, power="generator", height="30")
         plan.point(-120, 300, power="generator", generator__source="solar")
         plan.point(-140, 300, shop="kiosk")
@@ -354,51 +319,29 @@ class LeftOut(unittest.TestCase):
         code, words = ta.run("airport", plan.write("left.osm"), "-o", folder)
         self.assertEqual(code, 0, words)
         line = next(line for line in words.splitlines() if "features were read" in line)
-        self.assertTrue(line.startswith("64 features were read, 42 are in the scene, 22 were left out: "), line)
+        self.assertTrue(line.startswith("18 features were read, 4 are in the scene, 14 were left out: "), line)
         self.assertTrue(line.endswith("; 1 height was not understood: 'tall'"), line)
-        for part in ("6 outside the scene", "4 ruins, or gone", "3 not built", "3 below ground", "2 unknown kind", "1 unclosed", "1 no nodes", "1 no building", "1 a point without an outline"):
+        for part in ("1 outside the scene", "3 ruins, or gone", "2 not built", "2 below ground", "2 unknown kind", "1 unclosed", "1 no nodes",
+                     "1 no building", "1 a point without an outline"):
             self.assertIn(part, line)
-        self.assertIn(line, (folder / "README.txt").read_text(encoding="utf-8"))
         with open(folder / "assumed.csv", encoding="utf-8", newline="") as stream:
             table = list(csv.reader(stream))[1:]
         counted = {what: sum(int(row[4]) for row in table if row[3] == what) for what in ("left out", "in the scene")}
-        self.assertEqual(counted, {"left out": 22, "in the scene": 42})
+        self.assertEqual(counted, {"left out": 14, "in the scene": 4})
         self.assertIn("assumed: no rule knows power=generator", [row[5] for row in table])
         mast = next(row for row in rows(folder) if row["kind"] == "obstacle")
         self.assertEqual((mast["top"], mast["top_from"]), (30.0, "height"))
 
-    def test_names_are_drawn_as_they_are_written(self):
-        seen = []
-        with warnings.catch_warnings():
-            warnings.simplefilter("error")
-            for name in (r"A $\frac{1}{ $x_{", "\u6771"):
-                pictures.draw(ta.FOLDER / "name.png", (3.0, 2.0), lambda axes, name=name: seen.append(axes.set_title(name)))
-        self.assertFalse(seen[0].get_parse_math())
-        plan = runway(ta.Map())
-        plan.point(0, 300, man_made="mast", name="A\u202eB")
-        self.assertIn("AB", [one.name for one in extract.read_extract(plan.write("marks.osm"), KNOWN).features])
-
 
 class Holes(unittest.TestCase):
-    def test_an_island(self):
-        """An airport on an island, with a moat around and a clearing in a wood: holes are free, with their margin."""
+    def test_is_near(self):
+        """Holes are free, with their margin: a moat around an airport, a clearing in a wood."""
         ring = np.array([(0, 0), (100, 0), (100, 100), (0, 100)], float)
         hole = ring * 0.6 + 20
         for outline in ([ring, hole], [ring, hole[::-1]]):
             near = siting.is_near([(50, 50), (10, 50), (50, 25), (-5, 50), (150, 50)], outline)
             self.assertEqual(near.tolist(), [False, True, False, False, False])
             self.assertEqual(siting.is_near([(50, 50), (50, 25), (-5, 50)], outline, 10.0).tolist(), [False, True, True])
-        plan = runway(ta.Map())
-        plan.area((-1200, -900), (1200, 900), aeroway="aerodrome", icao="XISL")
-        plan.area((-1500, -1200), (1500, 1200), natural="coastline")
-        plan.relation([plan.area((-1190, -890), (1190, 890))], [plan.area((-1180, -880), (1180, 880))], natural="water")
-        folder = ta.fresh("island")
-        code, words = ta.run("airport", plan.write("island.osm"), "-o", folder)
-        self.assertEqual(code, 0, words)
-        scene = al.load_scene(folder / "airport.lidarscene.json")
-        shut = siting.read_outlines(folder / "exclusions.geojson", scene.geodetic_origin)
-        for place, free in (((0, 400), True), ((0, 885), False), ((0, 1000), False), ((0, 1300), False), ((0, 100), False)):
-            self.assertEqual(not any(siting.is_near([place], outline)[0] for outline in shut), free, place)
 
 
 AIXM = """<?xml version="1.0"?><message:AIXMBasicMessage xmlns:message="http://www.aixm.aero/schema/5.1.1/message"
@@ -430,8 +373,7 @@ class Surveyed(unittest.TestCase):
         found, out = obstacles.read_obstacles(file, KNOWN)
         self.assertEqual([(one.kind, one.id, extract.form_of(one.shape)) for one in found], [("mast", "A", "point"), ("building", "B", "area"), ("chimney", "C", "point")])
         self.assertEqual([(one.kind, one.name, one.reason) for one in out], [("pole", "NOWHERE", obstacles.NO_PLACE)])
-        self.assertEqual(found[0].shape.GetPoint_2D(), (13.302, 53.603))
-        self.assertEqual(found[2].shape.GetPoint_2D(), (13.305, 53.603))
+        self.assertEqual([found[i].shape.GetPoint_2D() for i in (0, 2)], [(13.302, 53.603), (13.305, 53.603)])
         self.assertAlmostEqual(float(found[0].tags["height"]), 45.72, delta=1e-3)
         # An elevation alone becomes a height above the ground of --heights, which rises by 4 % to the east.
         x = np.arange(-3200, 3201, 50.0)
@@ -444,22 +386,6 @@ class Surveyed(unittest.TestCase):
         east = siting.to_enu([(13.305, 53.603)], ta.HERE)[0, 0]
         self.assertAlmostEqual(tops["C"]["top"], 400 * 0.3048 - (100 + 0.04 * east), delta=0.1)
         self.assertEqual((tops["B"]["height"], tops["B"]["height_from"]), (12.0, "height: surveyed, obstacles.xml"))
-        with open(folder / "assumed.csv", encoding="utf-8", newline="") as stream:
-            self.assertNotIn("height", {row[3] for row in csv.reader(stream) if row[1] in ("A", "B", "C")})
-        code, words = ta.run("airport", plan, "--obstacles", file, "-o", ta.fresh("no_heights"))
-        self.assertEqual(code, 0, words)
-        self.assertIn("1 an elevation without --heights", words)
-
-    def test_words_of_kinds(self):
-        """Whole words, of which the last counts."""
-        for word, kind in (("BUILDING", "tower"), ("12 MAIN STREET", "obstacle"), ("STREETLIGHT", "pole"), ("CABLE CAR PYLON", "mast"), ("TRANSMISSION_LINE", "wire"),
-                           ("BLDG-TWR", "tower"), ("WIND TURBINES", "turbine")):
-            self.assertEqual(obstacles._kind_of(word, "point", KNOWN), kind, word)
-        place = ('<aixm:horizontalProjection_location><aixm:ElevatedPoint srsName="urn:ogc:def:crs:EPSG::4326"><gml:pos>53.603 13.302</gml:pos>'
-                 '</aixm:ElevatedPoint></aixm:horizontalProjection_location>')
-        found, _ = obstacles.read_obstacles(self.aixm(*({"id": f"V{i}", "name": name, "type": kind, "extent": '<aixm:verticalExtent uom="M">30</aixm:verticalExtent>', "place": place}
-                                                       for i, (name, kind) in enumerate((("Post office", "TOWER"), ("Crane 4", ""))))), KNOWN)
-        self.assertEqual([one.kind for one in found], ["tower", "crane"])
 
     def test_csv(self):
         file = ta.FOLDER / "obstacles.csv"
@@ -473,13 +399,13 @@ class Surveyed(unittest.TestCase):
 
         said = "surveyed, obstacles.csv"
         for text, expected in (
-                ("longitude,latitude,height,unit,kind\n13.302,53.603,45,m,mast\n13.303,53.604,100,ft,tree\n", [("mast", 13.302, 53.603, 45, said), ("tree", 13.303, 53.604, 30.48, said)]),
-                ("Kind;Latitude;Longitude;Height (ft)\ncrane;53,603;13,302;100\n", [("crane", 13.302, 53.603, 30.48, said)]),
+                ("longitude,latitude,height,unit,kind\n13.302,53.603,45,m,CABLE CAR PYLON\n13.303,53.604,100,ft,12 MAIN STREET\n",
+                 [("mast", 13.302, 53.603, 45, said), ("obstacle", 13.303, 53.604, 30.48, said)]),
                 ("Longitude;Latitude;Height (ft)\n13,302;53,603;1,200\n13,302;53,603;100'\n13,302;53,603;30 m\n", [("obstacle", 13.302, 53.603, m, said) for m in (365.76, 30.48, 30)]),
                 ("lat\tlon\theight_m\tname\n53\u00b036'10.8\"N\t013\u00b018'07.2\"E\t45\tx\n", [("obstacle", 13.302, 53.603, 45, said)]),
                 ("latitude,longitude,height,uom\n533610.8N,0131807.2W,45,M\n", [("obstacle", -13.302, 53.603, 45, said)]),
                 ("longitude,latitude,height\n13.302,53.603,45\n", [("obstacle", 13.302, 53.603, 45, said + ", m assumed")]),
-                ("OAS,LATDEC,LONDEC,TYPE,QUANTITY,AGL,AMSL\n01-1,53.603,13.302,TOWER,1,00120,00240\n", [("tower", 13.302, 53.603, 36.576, said)])):
+                ("OAS,LATDEC,LONDEC,TYPE,QUANTITY,AGL,AMSL\n01-1,53.603,13.302,BLDG-TWR,1,00120,00240\n", [("tower", 13.302, 53.603, 36.576, said)])):
             self.assertEqual(read(text), (expected, []), text)
         self.assertEqual(read("longitude,latitude,height,unit,kind\n13.302,53.603,,m,mast\n13.302,,45,m,mast\n13.302,99,45,m,mast\n\n")[1], [obstacles.NO_PLACE] * 3)
         for name, text, words in (("obstacles.csv", "a,b,c\n1,2,3\n", "expected the columns longitude"), ("obstacles.csv", "longitude,latitude,height,unit\n1,2,3,furlong\n", "row 2: the unit is 'furlong'"),

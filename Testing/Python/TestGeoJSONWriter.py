@@ -4,7 +4,6 @@
 import csv
 import io
 import json
-import os
 import subprocess
 import unittest
 
@@ -12,7 +11,7 @@ import numpy as np
 
 from avianlidar import vtkAvianLidar as al
 from cloudtools import add_array, add_field, assert_refused, cloud, echoes, field, geodetic, names, write
-from echotools import array
+from echotools import InFolder, array
 
 FILE = "TestGeoJSONWriter.geojson"
 # Half of the ninth decimal of a degree and of the fourth of a metre, and a little for the digits.
@@ -31,14 +30,11 @@ def column(rows, name):
     return np.array([float(row[name]) for row in rows])
 
 
-class TestGeoJSONWriter(unittest.TestCase):
+class TestGeoJSONWriter(InFolder):
     def setUp(self):
+        super().setUp()
         self.data = echoes()
         self.writer = al.vtkAvianLidarGeoJSONWriter()
-
-    def tearDown(self):
-        if os.path.exists(FILE):
-            os.remove(FILE)
 
     def write(self, data=None, **properties):
         self.assertEqual(write(self.writer, data or self.data, FILE, **properties), [])
@@ -113,7 +109,6 @@ class TestGeoJSONWriter(unittest.TestCase):
 
     def test_bad_input(self):
         for change, words in (
-                (lambda data: data.GetPointData().RemoveArray("energy"), "'energy'"),
                 (lambda data: data.GetFieldData().RemoveArray("geodetic_origin"), "vtkAvianLidarGeodeticTransform"),
                 (lambda data: add_field(data, "crs_wkt", ["PROJCS[...]"]), "vtkAvianLidarGeodeticTransform"),
                 (lambda data: data.GetPoints().SetPoint(2, np.nan, 0, 0), "point 2")):

@@ -10,7 +10,6 @@ import multiprocessing
 import os
 import pathlib
 import resource
-import shutil
 import socket
 import struct
 import subprocess
@@ -20,8 +19,7 @@ import unittest
 
 import scenetools as st
 from avianlidar import _suffixes, vtkAvianLidar as wrapped
-from cloudtools import cloud
-from echotools import Messages
+from echotools import InFolder, Messages
 
 ADDRESSES = 4 << 30  # bytes, of the process that reads
 MESH_GIGABYTES = "0.5"
@@ -44,72 +42,25 @@ def plan(**more):
     return collection(("Polygon", [SQUARE], {"kind": "house", "height": "high"}), **more)
 
 
-def gltf(children=((),), extras="1", uri=None):
+def gltf(children=((),), uri=None):
     """A triangle in the last node; `children`: of each node."""
     uri = uri or "data:application/octet-stream;base64," + base64.b64encode(struct.pack("<9f", 0, 0, 0, 1, 0, 0, 0, 1, 0)).decode()
     nodes = [{"children": list(c)} if c else {} for c in children]
     nodes[-1]["mesh"] = 0
-    text = json.dumps({
+    return json.dumps({
         "asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}], "nodes": nodes,
         "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
         "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3", "min": [0, 0, 0], "max": [1, 1, 0]}],
         "bufferViews": [{"buffer": 0, "byteLength": 36}], "buffers": [{"byteLength": 36, "uri": uri}]})
-    return text[:-1] + ', "extras": ' + extras + "}"
 
 
-def chain(length):
-    return gltf([[i + 1] for i in range(length - 1)] + [[]])
-
-
-def glb(text):
-    data = text.encode() + b" " * (-len(text) % 4)
-    return b"glTF" + struct.pack("<IIII", 2, 20 + len(data), len(data), 0x4E4F534A) + data
-
-
-def collada(nodes, library="", encoding="UTF-8"):
-    return (f'<?xml version="1.0" encoding="{encoding}"?>'
-            '<COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" version="1.4.1"><library_geometries>'
-            '<geometry id="g"><mesh><source id="p"><float_array id="pa" count="9">0 0 0 1 0 0 0 1 0</float_array>'
-            '<technique_common><accessor source="#pa" count="3" stride="3"><param name="X" type="float"/>'
-            '<param name="Y" type="float"/><param name="Z" type="float"/></accessor></technique_common></source>'
-            '<vertices id="v"><input semantic="POSITION" source="#p"/></vertices><triangles count="1">'
-            '<input semantic="VERTEX" source="#v" offset="0"/><p>0 1 2</p></triangles></mesh></geometry>'
-            f'</library_geometries><library_nodes>{library}</library_nodes><library_visual_scenes>'
-            f'<visual_scene id="s">{nodes}</visual_scene></library_visual_scenes>'
-            '<scene><instance_visual_scene url="#s"/></scene></COLLADA>')
-
-
-LEAF = '<instance_geometry url="#g"/>'
-TENFOLD = "".join(f'<node id="l{i}">' + f'<instance_node url="#l{i + 1}"/>' * 10 + "</node>" for i in range(12))
-SHAPE = '<Shape><IndexedFaceSet coordIndex="0 1 2 -1"><Coordinate point="0 0 0 1 0 0 0 1 0"/></IndexedFaceSet></Shape>'
-
-
-def x3d(content):
-    return f'<?xml version="1.0"?><X3D profile="Full" version="3.0"><Scene>{content}</Scene></X3D>'
-
-
-def legacy(kind, content, version="3.0", form="ASCII"):
-    return f"# vtk DataFile Version {version}\nt\n{form}\nDATASET {kind}\n{content}"
+def legacy(kind, content):
+    return f"# vtk DataFile Version 3.0\nt\nASCII\nDATASET {kind}\n{content}"
 
 
 POINTS = "POINTS 3 float\n0 0 0 1 0 0 0 1 0\n"
 WHOLE = POINTS + "POLYGONS 1 4\n3 0 1 2\n"
-FOUR = "POINTS 4 float\n0 0 0 1 0 0 0 1 0 0 0 1\n"
 AXES = "DIMENSIONS 2 2 2\n" + "".join(f"{axis}_COORDINATES 2 double\n0 3\n" for axis in "XYZ")
-
-
-def cells(offsets="vtktypeint64", connectivity="CONNECTIVITY vtktypeint64", count="2", kind="POLYDATA"):
-    """One cell as VTK writes it today."""
-    name, types = ("POLYGONS", "") if kind == "POLYDATA" else ("CELLS", "CELL_TYPES 1\n5\n")
-    return legacy(kind, f"{POINTS}{name} {count} 3\nOFFSETS {offsets}\n0 3\n{connectivity}\n0 1 2\n{types}", "5.1")
-
-
-def binary(first, words=None):
-    """A binary file of one cell, whose first number says how many points it has; with words of before them, as VTK writes it today."""
-    head = legacy("POLYDATA", "POINTS 3 float\n", "5.1" if words else "3.0", "BINARY").encode() + struct.pack(">9f", 0, 0, 0, 1, 0, 0, 0, 1, 0)
-    if not words:
-        return head + b"\nPOLYGONS 1 4\n" + struct.pack(">4i", first, 0, 1, 2)
-    return (head + b"\nPOLYGONS 2 3\nOFFSETS vtktypeint64\n" + struct.pack(">2q", 0, first) + b"\n" + words + struct.pack(">3q", 0, 1, 2) + b"\n")
 
 
 def xml(kind, content):
@@ -120,24 +71,20 @@ def array(name, values, kind="Int64", more=""):
     return f'<DataArray type="{kind}" Name="{name}" format="ascii" {more}>{values}</DataArray>'
 
 
-def surface(points=3, polys=1, offset=3, more=""):
-    return xml("PolyData", f'<Piece NumberOfPoints="{points}" NumberOfPolys="{polys}">{more}<Points>'
+def surface(points=3, offset=3):
+    return xml("PolyData", f'<Piece NumberOfPoints="{points}" NumberOfPolys="1"><Points>'
                + array("p", "0 0 0 1 0 0 0 1 0", "Float64", 'NumberOfComponents="3"') + "</Points><Polys>"
                + array("connectivity", "0 1 2") + array("offsets", offset) + "</Polys></Piece>")
 
 
-def changed(old, new):
-    return surface().replace(old, new, 1)
-
-
-def grid(kind, points, faces=(), count=1, offset=None):
+def grid(kind, points, faces=()):
     """A file of one cell over its points, or over `faces` (a polyhedron's stream) too."""
     def numbers(name, values, type_="Int64"):
         return array(name, " ".join(map(str, values)), type_)
 
-    return xml("UnstructuredGrid", f'<Piece NumberOfPoints="{points}" NumberOfCells="{count}"><Points>'
+    return xml("UnstructuredGrid", f'<Piece NumberOfPoints="{points}" NumberOfCells="1"><Points>'
                + array("p", " ".join(f"{i % 3} {i // 3 % 3} {i // 9}" for i in range(points)), "Float64", 'NumberOfComponents="3"')
-               + "</Points><Cells>" + numbers("connectivity", range(points)) + numbers("offsets", [offset or points])
+               + "</Points><Cells>" + numbers("connectivity", range(points)) + numbers("offsets", [points])
                + numbers("types", [kind], "UInt8") + (numbers("faces", faces) + numbers("faceoffsets", [len(faces)]) if faces else "")
                + "</Cells></Piece>")
 
@@ -158,100 +105,52 @@ def ply(faces, points="0 0 0\n1 0 0\n0 1 0\n"):
             f"{count}\nproperty list uchar int vertex_indices\nend_header\n{points}{faces}")
 
 
-AC3D = 'AC3Db\nMATERIAL "" rgb 1 1 1  amb 0.2 0.2 0.2  emis 0 0 0  spec 0.5 0.5 0.5  shi 10  trans 0\n'
-AC3D_TRIANGLE = ("OBJECT poly\nnumvert 3\n0 0 0\n1 0 0\n0 1 0\nnumsurf 1\nSURF 0x20\nmat 0\nrefs 3\n0 0 0\n1 0 0\n2 0 0\nkids 0\n")
 TORN = gzip.compress(("".join(f"v {i} 0 {i * i}\n" for i in range(5000)) + TRIANGLE).encode())
 IDS = "is broken: a cell has a point id outside 0 to "
 
 # Name, content, what is said; None: an error that names the file, or the one triangle; True: it is sound.
 MESHES = [
     ("points.obj", "v 0 0 0\nv 1 0 0\n", ""),
-    ("garbage.obj", "\0\1\2 nothing", ""),
     ("unknown.xyz", "1 2 3\n", "Assimp cannot read it"),
-    ("empty.ply", "", "Assimp cannot read it"),
     ("torn.obj.gz", TORN[:len(TORN) // 2], "Assimp cannot read it"),
     ("nan.ply", ply("3 0 1 2\n", "0 0 0\nnan 0 0\n0 1 0\n"), "has a vertex whose coordinates are not finite"),
     ("far.ply", ply("4 0 1 2 99999999\n"), "is broken: a face has vertex 99999999 of 3"),
-    ("no.ply", ply("0\n"), None),
     ("endless.ply", ply("").split("property float y")[0] + "comment end_header\n0\n0\n", "is broken: its header has no line end_header"),
     ("broken.vtp", "<VTKFile type='PolyData'", "VTK cannot read it"),
     ("strip.vtk", legacy("POLYDATA", POINTS + "TRIANGLE_STRIPS 1 3\n2 0 1\n"), "is broken: a vtkTriangleStrip has 2 points"),
-    ("axes.vtk", legacy("RECTILINEAR_GRID", AXES.replace("X_COORD", "X-COORD")), "is broken: an axis has 0 coordinates, expected 2"),
     ("axis.vtk", legacy("RECTILINEAR_GRID", AXES.replace("2 2 2", "2 3 2")), "is broken: an axis has 2 coordinates, expected 3"),
     ("grid.vtk", legacy("STRUCTURED_GRID", "DIMENSIONS 2 2 2\n" + POINTS), "is broken: a grid of 2 x 2 x 2 has 3 points"),
     ("far.vtk", legacy("POLYDATA", WHOLE.replace("3 0 1 2", "3 5 1 2")), IDS + "2"),
-    ("cell.vtk", legacy("UNSTRUCTURED_GRID", FOUR + "CELLS 1 4\n3 0 1 9\nCELL_TYPES 1\n5\n"), IDS + "3"),
-    ("short.vtk", legacy("UNSTRUCTURED_GRID", FOUR + "CELLS 1 4\n3 0 1 2\nCELL_TYPES 1\n12\n"), "is broken: a vtkHexahedron has 3 points"),
-    ("solid.vtk", legacy("UNSTRUCTURED_GRID", FOUR + "CELLS 1 18\n17 4 3 0 1 2 3 0 1 7 3 0 2 3 3 1 2 3\nCELL_TYPES 1\n42\n"), IDS + "3"),
+    ("cell.vtk", legacy("UNSTRUCTURED_GRID", POINTS + "CELLS 1 4\n3 0 1 3\nCELL_TYPES 1\n5\n"), IDS + "2"),
     ("line.vtu", grid(4, 1), "is broken: a vtkPolyLine has 1 points"),
     ("quadratic.vtu", grid(36, 5), "is broken: a vtkQuadraticPolygon has 5 points"),
     ("quad.vtu", grid(9, 5), "is broken: a vtkQuad has 5 points"),
     ("polyhedron.vtu", grid(42, 3, [0]), "is broken: a vtkPolyhedron has 3 points"),
     ("nofaces.vtu", grid(42, 4, [0]), "is broken: a polyhedron's faces are missing"),
-    ("few.vtu", grid(42, 4, [5, 3, 0, 1, 2, 3, 0, 1, 3, 3, 1, 2, 3, 3, 0, 2, 3]), ""),
     ("three.vtu", grid(42, 4, [3, 3, 0, 1, 2, 3, 0, 1, 3, 3, 1, 2, 3]), "is broken: a polyhedron has 3 faces"),
     ("edges.vtu", grid(42, 4, [4, 3, 0, 1, 2, 2, 0, 1, 3, 1, 2, 3, 3, 0, 2, 3]), "is broken: a face of a polyhedron has 2 points"),
-    ("faces.vtu", grid(42, 4, [4, 3, 0, 1, 2, 3, 0, 1, 100000000, 3, 1, 2, 3, 3, 0, 2, 3]), IDS + "3"),
-    ("lagrange.vtu", grid(70, 7), "has cells of type 70, of variable order, which are not supported: tessellate"),
-    # Nested, chained or in a circle.
-    ("chain.gltf", chain(CHAIN), None),
-    ("values.gltf", gltf(extras="[" * 10**6 + "]" * 10**6), None),
-    ("list.gltf", "[1]", None),
+    ("faces.vtu", grid(42, 4, [4, 3, 0, 1, 2, 3, 0, 1, 4, 3, 1, 2, 3, 3, 0, 2, 3]), IDS + "3"),
+    ("lagrange.vtu", grid(70, 7), "has cells of type 70, of variable order"),
+    # Nested or in a circle: the stack of the program that reads.
+    ("chain.gltf", gltf([[i + 1] for i in range(CHAIN - 1)] + [[]]), None),
     ("cycle.gltf", gltf([[1], [2], [0]]), None),
-    ("double.gltf", gltf([[i + 1] * 2 for i in range(50)] + [[]]), None),
-    ("chain.dae", collada("<node>" * CHAIN + LEAF + "</node>" * CHAIN), None),
-    ("chain16.dae", collada("<node>" * CHAIN + LEAF + "</node>" * CHAIN, encoding="UTF-16").encode("utf-16"), None),
-    ("own.dae", collada(f'<node id="a">{LEAF}<instance_node url="#a"/></node>'), None),
-    ("tenfold.dae", collada('<node id="s0"><instance_node url="#l0"/></node>', TENFOLD + f'<node id="l12">{LEAF}</node>'), None),
-    ("chain.x3d", x3d("<Group>" * CHAIN + SHAPE + "</Group>" * CHAIN), None),
     ("elements.vtp", "<VTKFile type='PolyData'>" + "<a>" * DEEP + "</a>" * DEEP + "</VTKFile>", None),
-    ("parts.vtm", blocks('<DataSet index="0" file="points.vtp"/>'), None),
     ("own.vtm", blocks('<DataSet index="0" file="own.vtm"/>'), "names the file"),
     # Numbers that take all memory, or lead beside it.
     ("many.vtk", legacy("POLYDATA", POINTS + "POLYGONS 1 4\n99999999 0 1 2\n"), None),
-    ("binary.vtk", binary(99999999), None),
-    ("minus.vtk", legacy("POLYDATA", POINTS + "POLYGONS 1 4\n-3 0 1 2\n"), None),
-    ("cells.vtk", legacy("UNSTRUCTURED_GRID", POINTS + "CELLS 1 4\n99999999 0 1 2\nCELL_TYPES 1\n5\n"), None),
     ("points.vtk", legacy("POLYDATA", WHOLE.replace("POINTS 3", f"POINTS {HUGE}")), None),
     ("vectors.vtk", legacy("POLYDATA", WHOLE + f"POINT_DATA {10**12}\nVECTORS v double\n1\n"), None),
-    ("scalars.vtk", legacy("POLYDATA", WHOLE + f"POINT_DATA 3\nSCALARS v double {2 * 10**9}\nLOOKUP_TABLE default\n1\n"), None),
-    ("fields.vtk", legacy("POLYDATA", WHOLE + f"FIELD FieldData 1\nx 1000000 {10**9} double\n1\n"), None),
-    ("graph.vtk", legacy("UNDIRECTED_GRAPH", f"VERTICES {10**12}\nEDGES {10**12}\n0 1\n"), None),
-    ("image.vtk", legacy("STRUCTURED_POINTS", "DIMENSIONS 100000 100000 100000\nORIGIN 0 0 0\nSPACING 1 1 1\n"), None),
-    ("few.vtk", legacy("STRUCTURED_GRID", "DIMENSIONS 1000 1000 1\n" + POINTS), None),
     ("image.vti", image(10**6, 10**6, 10**3), None),
     ("points.vtp", surface(points=HUGE), None),
     ("offsets.vtp", surface(offset=10**15), None),
-    ("components.vtp", surface(more="<PointData>" + array("x", 0, more='NumberOfComponents="2000000000"') + "</PointData>"), None),
-    ("fields.vtp", changed("<Piece", "<FieldData>" + array("x", 1, more=f'NumberOfTuples="{10**12}"') + "</FieldData><Piece"), None),
-    ("type.vtp", changed("<Piece", '<FieldData><Array type="Float" Name="x" NumberOfTuples="1">1</Array></FieldData><Piece'), None),
-    ("compressor.vtp", changed("<VTKFile", '<VTKFile compressor="zip"'), None),
-    ("minus.vtp", changed('NumberOfPolys="1"', 'NumberOfVerts="-7" NumberOfPolys="1"'), None),
-    # Sound files of the same kinds, up to where the errors begin.
-    ("sound.obj", TRIANGLE, True),
-    ("sound.gltf", chain(500), True),
-    ("sound.dae", collada("<node>" * 500 + LEAF + "</node>" * 500), True),
-    ("twice.dae", collada('<node id="s0"><instance_node url="#a"/></node><node id="s1"><instance_node url="#a"/></node>',
-                          f'<node id="a">{LEAF}</node>'), True),
-    ("sound.x3d", x3d(f'<Group DEF="a">{SHAPE}</Group><Transform translation="5 0 0"><Group USE="a"/></Transform>'), True),
-    ("sound.ac", AC3D + "OBJECT world\nkids 3\n" + 3 * AC3D_TRIANGLE, True),
-    ("sound.ply", ply("3 0 1 2\n3 2 1 0\n"), True),
-    ("sound.vtk", legacy("POLYDATA", WHOLE + "POINT_DATA 3\nSCALARS v double 1\nLOOKUP_TABLE default\n1e9 2e9 3e9\n"), True),
-    ("sound3binary.vtk", binary(3), True),
-    ("sound5.vtk", cells(), True),
-    ("sound5binary.vtk", binary(3, b"CONNECTIVITY vtktypeint64\n"), True),
+    # Sound files.
     ("sound.vtp", surface(), True),
     ("sound.vtu", grid(5, 3), True),
     ("sound.vti", image(10, 10, 10), True),
-    ("comment.vtp", changed("<Piece", '<!-- a > b <Piece NumberOfPoints="1e99"/> - -> --><Piece'), True),
-    ("cdata.vtp", changed("</Piece>", '</Piece><![CDATA[<Piece NumberOfPoints="1e99"/> ]]]]>'), True),
-    ("long.vtp", changed("<Piece", f"<Piece Name='{'>' * 70000}' OfNumberOfPoints = '-1'"), True),
 ]
 
 PLANS = {
-    "plan.geojson": plan(), "points.geojson": collection(("Point", [0, 0], {})), "lines.geojson": collection(("LineString", SQUARE[:2], {})),
-    "pole.geojson": collection(("Polygon", [[[0, 91], [1, 91], [1, 92], [0, 91]]], {})),
-    "broken.geojson": '{"type": "FeatureCollection", "features": [', "triangle.obj": TRIANGLE,
+    "plan.geojson": plan(), "points.geojson": collection(("Point", [0, 0], {})), "triangle.obj": TRIANGLE,
     "two.kml": '<kml xmlns="http://www.opengis.net/kml/2.2"><Document>' + "".join(
         f"<Folder><name>{name}</name><Placemark><Point><coordinates>0,0</coordinates></Point></Placemark></Folder>"
         for name in ("roads", "trees")) + "</Document></kml>"}
@@ -269,25 +168,23 @@ MISSING = object()
 VALUES = [
     (["version"], MISSING, "version: is missing"),
     (["version"], 2, "version: must be 1"),
-    (["objects"], MISSING, "objects: is missing"),
     (["materials", ""], {"kd": 0.1}, "a material must have a name"),
     (["origin", "latitude"], 91, "origin.latitude: must be from -90 to 90, is 91"),
+    (["materials", "Grass", "kd"], -0.1, "materials.Grass.kd: must be from 0 to 1"),
     (["origin", "longitude"], 361, "origin.longitude: must be from -180 to 360"),
     (["lidar", "position"], [0, 0], "lidar.position: must be an array"),
-    (["materials", "Grass", "kd"], -0.1, "materials.Grass.kd: must be from 0 to 1"),
-    (["materials", "Grass", "ks"], 0.9, "materials.Grass: kd + ks is 1.1"),
     (["materials", "Grass", "kp"], -1, "materials.Grass.kp: must be from 0 to"),
     (["materials", "Grass", "kd"], MISSING, "materials.Grass.kd: is missing"),
+    (["materials", "Grass", "ks"], 0.9, "materials.Grass: kd + ks is 1.1"),
     (["materials", "GRASS"], {"kd": 0.1}, "materials.GRASS: this material is there already"),
     (["material_map", "*"], "velvet", 'material_map.*: unknown material "velvet"; known: Wall, Glass, Metal, Wood, Grass'),
     (["objects", 0, "file"], "nowhere.obj", "objects[0].file: there is no file "),
     (["objects", 0, "file"], MISSING, "objects[0]: must have one of file, footprints, ground"),
     (["objects", 0, "footprints"], "plan.geojson", "objects[0]: must have one of file"),
-    (["objects", 0, "height"], 3, "objects[0].height: unknown key"),
     (["objects", 0, "scale"], 0, "objects[0].scale: must be greater"),
     (["objects", 0, "scale"], [1, 1, -1], "objects[0].scale[2]: must be greater"),
-    (["objects", 0, "rotation"], [0, 0, 1], "objects[0].rotation: must be a direction"),
     (["objects", 0, "rotation"], [0, 0, 0], "objects[0].rotation: must be a direction"),
+    (["objects", 0, "rotation"], [0, 0, 1], "objects[0].rotation: must be a direction"),
     (["objects", 0, "rotation"], [[2, 0, 0], [0, 1, 0], [0, 0, 1]], "objects[0].rotation: must be a rotation: rows"),
     (["objects", 0, "rotation"], [[-1, 0, 0], [0, 1, 0], [0, 0, 1]], "objects[0].rotation: must be a rotation, not a"),
     (["objects", 0, "geodetic"], ORIGIN, "objects[0].geodetic: stands beside"),
@@ -298,37 +195,27 @@ VALUES = [
     (["objects", 1, "height"], MISSING, "objects[1]: footprints need height or height_attribute, or flat"),
     (["objects", 1], {"footprints": "plan.geojson", "height_attribute": "height"}, "has no usable height"),
     (["objects", 1, "height"], -3, "objects[1].height: must be greater than 0"),
-    (["objects", 1, "flat"], True, "objects[1].height: means nothing"),
     (["objects", 1, "glazing", "share"], 1.5, "objects[1].glazing.share: must be from 0 to 1"),
-    (["objects", 1, "glazing", "bay"], 1e-9, "more than 100000 bays"),
-    (["objects", 1, "glazing", "bay"], 0, "objects[1].glazing.bay: must be greater"),
     (["objects", 1, "features"], "apart", 'objects[1].features: must be "separate"'),
     (["objects", 1, "filter"], {"kind": []}, "objects[1].filter.kind"),
+    (["objects", 1, "flat"], True, "objects[1].height: means nothing"),
+    (["objects", 1, "glazing", "bay"], 1e-9, "more than 100000 bays"),
     (["objects", 1, "filter"], {"kind": "castle"}, "plan.geojson: none of its 1 features fits the filter"),
     (["objects", 1, "layer"], "roads", 'plan.geojson: has no layer "roads"'),
     (["objects", 1, "geodetic"], ORIGIN, "plan.geojson: is georeferenced"),
     (["objects", 1, "footprints"], "two.kml", "has not one layer but 2 (roads, trees)"),
-    (["objects", 1, "footprints"], "broken.geojson", "objects[1].footprints: "),
     (["objects", 1, "footprints"], "triangle.obj", "triangle.obj: GDAL cannot read it"),
     (["objects", 1, "footprints"], "points.geojson", "points.geojson: its features have no area"),
-    (["objects", 1, "footprints"], "lines.geojson", "lines.geojson: its features have no area"),
-    (["objects", 1, "footprints"], "pole.geojson", "pole.geojson: coordinates lie outside"),
     (["origin"], MISSING, "plan.geojson: is georeferenced, so the scene needs an origin"),
-    (["objects", 2, "ground", "size"], [10, 10, 10], "objects[2].ground.size: must be an array"),
-    (["objects", 2, "ground", "size"], 0, "objects[2].ground.size: must be greater than 0"),
 ]
 # The text of a whole file, and what the message must say.
 TEXTS = [
-    ("", "is not JSON"),
-    ('{"version": 1, "objects": [}', "is not JSON"),
-    ('{"version": 1e999, "objects": []}', "is not JSON"),
     ('{"version": NaN, "objects": []}', "is not JSON"),
     ('{"version": 1, "version": 1}', 'the key "version" stands twice'),
     ("[1, 2]", "the whole: must be an object"),
     ('{"version": 1, "objects": [{"file": "triangle.obj", "crs": "EPSG:32631"}]}', "objects[0].crs: needs the scene's origin"),
     ('{"version": 1, "objects": [{"file": "triangle.obj", "geodetic": %s}]}' % json.dumps(ORIGIN), "objects[0].geodetic: needs the scene's origin"),
     ('{"version":1,"comment":' + "[" * DEEP + "]" * DEEP + ',"objects":[]}', "is nested more than 100 deep"),
-    ('{"version":1,"objects":' + '{"a":' * DEEP + "1" + "}" * DEEP + "}", "is nested more than 100 deep"),
     ('{"version":1,"objects":' + "[" * DEEP, "is nested more than 100 deep"),
 ]
 
@@ -374,12 +261,9 @@ def read_all(files):
         print(json.dumps(said), flush=True)
 
 
-class Files(unittest.TestCase):
+class Files(InFolder):
     def setUp(self):
-        self.folder = pathlib.Path(tempfile.mkdtemp())
-        self.addCleanup(shutil.rmtree, self.folder)
-        self.addCleanup(os.chdir, os.getcwd())
-        os.chdir(self.folder)
+        super().setUp()
         for name, text in PLANS.items():
             pathlib.Path(name).write_text(text)
         self.scenes = 0
@@ -394,7 +278,7 @@ class Files(unittest.TestCase):
         return st.write_scene(str(self.folder), f"scene{self.scenes}", {"version": 1, "origin": ORIGIN, "material_map": {"*": "Wall"},
                                                                         "objects": list(objects)})
 
-    def read(self, files, **options):
+    def read(self, files):
         """What was said of each file, by processes with limits; nothing of a file that ended one or was waited for."""
         def limit():
             resource.setrlimit(resource.RLIMIT_AS, (ADDRESSES, ADDRESSES))
@@ -406,8 +290,7 @@ class Files(unittest.TestCase):
             command = [sys.executable, os.path.abspath(__file__), "--read", *left]
             try:
                 text = subprocess.run(command, preexec_fn=limit, text=True, errors="replace", stdout=subprocess.PIPE, timeout=SECONDS,
-                                      env={**os.environ, "AVIANLIDAR_MESH_GIGABYTES": MESH_GIGABYTES}, stderr=subprocess.DEVNULL, check=False,
-                                      **options).stdout
+                                      env={**os.environ, "AVIANLIDAR_MESH_GIGABYTES": MESH_GIGABYTES}, stderr=subprocess.DEVNULL, check=False).stdout
             except subprocess.TimeoutExpired as late:
                 text = (late.stdout or b"").decode()
             lines = [json.loads(line) for line in text.splitlines() if line.startswith('["')]
@@ -429,6 +312,7 @@ class Files(unittest.TestCase):
                     continue
                 self.assertEqual((len(errors), count), (1, 0), errors)
                 self.assertIn(words or "", errors[0])
+                self.assertNotRegex(errors[0].split("): ", 1)[1].strip(), r"\n|ERROR:|\.cpp|\.cxx")
                 self.assertIn(file, errors[0])
                 self.assertEqual(len(field), 1 if file.endswith(".json") else 0)
                 self.assertTrue(all(text in errors[0] for text in field))
@@ -461,14 +345,6 @@ class Contents(Files):
         self.assertEqual((len(read.errors), read.reader.GetOutput().GetNumberOfBlocks()), (1, 3))
         self.assertIn("FileName is not set", "".join(st.Read(None).errors))
 
-    def test_reasons_are_short_and_name_files_that_exist(self):
-        for name in ("torn.obj.gz", "broken.vtp"):
-            self.save(name, next(content for one, content, _ in MESHES if one == name))
-            text = st.Read(self.scene({"file": name})).errors[0].split("): ", 1)[1].strip()
-            self.assertNotRegex(text, r"\n|ERROR:|\.cpp|\.cxx")
-            for word in text.replace('"', " ").replace(": ", " ").split():
-                self.assertTrue(not word.startswith(str(self.folder)) or os.path.exists(word.rstrip(".:")), word)
-
     def test_a_scale_that_leaves_nothing_warns(self):
         for scale, warned in ((1e-200, True), ([1, 1e-30, 1], True), (1e-6, False)):
             read = st.Read(self.scene({"file": "triangle.obj", "scale": scale}))
@@ -487,8 +363,7 @@ class Contents(Files):
         """Damaged, mended, and edited, all under one name; nothing is written beside them."""
         comments = "# nothing\n" * 30000  # more than one block of GDAL's
         cases = (("m.obj.gz", "file", comments + TRIANGLE, comments + TRIANGLE.replace("1", "2", 1)),
-                 ("plan.geojson.gz", "footprints", plan(), plan().replace("0.001", "0.002")),
-                 ("plan.csv.gz", "footprints", 'WKT,a\n"POLYGON((0 0,0 1,1 1,0 0))",1\n', 'WKT,a\n"POLYGON((0 0,0 2,2 2,0 0))",1\n'))
+                 ("plan.geojson.gz", "footprints", plan(), plan().replace("0.001", "0.002")))
         for name, key, text, edited in cases:
             file = self.scene({key: name, **({"height": 3, "crs": "EPSG:4326"} if key == "footprints" else {})})
             good = gzip.compress(text.encode(), 0)  # stored, so that the damage is where it is wanted
@@ -548,24 +423,10 @@ class Places(Files):
             expected[self.scene({"footprints": kind + "2.geojson", "height": 3})] = NO_FILE
         # Grids of a reference system.
         os.mkfifo("grid")
-        for crs in (f"+proj=longlat +nadgrids={self.folder}/grid", f"+proj=longlat +nadgrids=@{self.folder}/grid +type=crs",
-                    f"+proj=longlat +geoidgrids={self.folder}/grid"):
+        for crs in (f"+proj=longlat +nadgrids=@{self.folder}/grid +type=crs", f"+proj=longlat +geoidgrids={self.folder}/grid"):
             for thing in ({"footprints": "plan.geojson", "height": 3}, {"file": "triangle.obj"}):
                 expected[self.scene({**thing, "crs": crs})] = "grid"
         self.assert_errors(expected)
-
-    def test_a_folder_that_cannot_be_listed(self):
-        """Its files can be opened by name, so they are read; neighbours are still looked at."""
-        nobody = {"user": 65534, "group": 65534, "extra_groups": ()} if os.geteuid() == 0 else {}
-        if nobody and subprocess.run([sys.executable, "-c", "from avianlidar import vtkAvianLidar"], check=False,
-                                     capture_output=True, **nobody).returncode:
-            self.skipTest("another user cannot load the library")
-        file = self.scene({"footprints": "plan.geojson", "height": 3})
-        self.folder.chmod(0o711 if nobody else 0o311)
-        self.addCleanup(self.folder.chmod, 0o700)
-        self.assertEqual(self.read([file], **nobody)[file][0], [])
-        os.mkfifo("plan.prj")
-        self.assertIn("belongs together with plan.prj, and it is no regular file", self.read([file], **nobody)[file][0][0])
 
     def test_regular_files_of_any_folder(self):
         """Links to them, too."""
@@ -580,53 +441,35 @@ class Places(Files):
             for name in (file, "link.lidarscene.json"):
                 read = st.Read(name)
                 self.assertEqual((read.errors, len(read.names)), ([], 5))
-        writer, reader = wrapped.vtkAvianLidarPCDWriter(), wrapped.vtkAvianLidarPointCloudReader()
-        writer.SetInputData(cloud([(1, 2, 3)]))
-        writer.SetFileName("a.pcd")
-        self.assertEqual(writer.Write(), 1)
-        os.symlink("a.pcd", "b.pcd")
-        reader.SetFileName("b.pcd")
-        reader.Update()
-        self.assertEqual(reader.GetOutput().GetNumberOfPoints(), 1)
 
     def files_that_ask(self, url):
         """Files by name, and the object of a scene that uses each."""
         doctype = f'<!DOCTYPE x SYSTEM "{url}/x.dtd">'
         vrt = "<OGRVRTDataSource><OGRVRTLayer name='plan'><SrcDataSource>{}</SrcDataSource>{}</OGRVRTLayer></OGRVRTDataSource>"
 
-        def gml(encoding, doctype, inside, name):
-            return (f'<?xml version="1.0" encoding="{encoding}"?>{doctype}<ogr:FeatureCollection xmlns:ogr="http://ogr.maptools.org/" '
-                    'xmlns:xsi="http://www.w3.org/2001/XMLSchema-instance" xmlns:xlink="http://www.w3.org/1999/xlink" '
-                    f'xsi:schemaLocation="http://ogr.maptools.org/ {url}/x.xsd" xmlns:gml="http://www.opengis.net/gml">'
-                    f'<gml:featureMember><ogr:x fid="1"><ogr:geometryProperty {inside}><gml:Polygon srsName="{name}"><gml:outerBoundaryIs>'
-                    '<gml:LinearRing><gml:coordinates>0,0 0.001,0 0.001,0.001 0,0</gml:coordinates></gml:LinearRing></gml:outerBoundaryIs>'
-                    '</gml:Polygon></ogr:geometryProperty></ogr:x></gml:featureMember></ogr:FeatureCollection>')
-
+        gml = (f'<?xml version="1.0" encoding="ISO-8859-15"?>{doctype}<ogr:FeatureCollection xmlns:ogr="http://ogr.maptools.org/" '
+               'xmlns:xsi="http://www.w3.org/2001/XMLSchema-instance" xmlns:xlink="http://www.w3.org/1999/xlink" '
+               f'xsi:schemaLocation="http://ogr.maptools.org/ {url}/x.xsd" xmlns:gml="http://www.opengis.net/gml">'
+               f'<gml:featureMember><ogr:x fid="1"><ogr:geometryProperty xlink:href="{url}/x.xml#1"><gml:Polygon srsName="{url}/crs">'
+               '<gml:outerBoundaryIs><gml:LinearRing><gml:coordinates>0,0 0.001,0 0.001,0.001 0,0</gml:coordinates></gml:LinearRing>'
+               '</gml:outerBoundaryIs></gml:Polygon></ogr:geometryProperty></ogr:x></gml:featureMember></ogr:FeatureCollection>')
         plans = {
             "link.geojson": plan(crs={"type": "link", "properties": {"href": url + "/crs", "type": "proj4"}}),
-            "name.geojson": plan(crs={"type": "name", "properties": {"name": url + "/crs"}}),
-            "next.geojson": collection(links=[{"rel": "next", "href": url}]), "source.vrt": vrt.format(f"/vsicurl/{url}/x.geojson", ""),
+            "source.vrt": vrt.format(f"/vsicurl/{url}/x.geojson", ""),
             "system.vrt": vrt.format("plan.geojson", f"<LayerSRS>{url}/crs</LayerSRS>"),
             "wfs.xml": f"<OGRWFSDataSource><URL>{url}/wfs</URL></OGRWFSDataSource>",
-            "wms.xml": f"<GDAL_WMS><Service name='TMS'><ServerUrl>{url}</ServerUrl></Service></GDAL_WMS>",
-            "plain.gml": gml("utf-8", "", "", "EPSG:4326"), "system.gml": gml("utf-8", "", "", url + "/crs"),
-            "types.gml": gml("ISO-8859-15", doctype, f'xlink:href="{url}/x.xml#1"', "EPSG:4326"),
-            "cards.gml": gml("EBCDIC-CP-US", doctype, f'xlink:href="{url}/x.xml#1"', "EPSG:4326"),
-            "link.kml": f'<kml xmlns="http://www.opengis.net/kml/2.2"><Document><NetworkLink><Link><href>{url}/x.kml</href></Link></NetworkLink>'
-                        f"<Placemark><styleUrl>{url}/s.kml#s</styleUrl></Placemark></Document></kml>"}
+            "types.gml": gml,
+            "link.kml": f'<kml xmlns="http://www.opengis.net/kml/2.2"><Document><NetworkLink><Link><href>{url}/x.kml</href></Link>'
+                        "</NetworkLink></Document></kml>"}
         meshes = {
-            "m1.obj": f"mtllib /vsicurl/{url}/x.mtl\nmtllib {url}/x.mtl\n" + TRIANGLE, "m2.gltf": gltf(uri=url + "/b.bin"),
-            "m3.gltf": gltf(uri=f"/vsicurl/{url}/b.bin"), "m4.vtm": blocks(f'<DataSet index="0" file="{url}/x.vtp"/>'),
-            "m5.dae": f'<?xml version="1.0"?>{doctype}<COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" '
-                      f'version="1.4.1"><scene><instance_visual_scene url="{url}/x"/></scene></COLLADA>',
-            "m6.x3d": f'<X3D><Scene><Inline url="{url}/x.x3d"/></Scene></X3D>'}
+            "m1.obj": f"mtllib /vsicurl/{url}/x.mtl\n" + TRIANGLE, "m2.gltf": gltf(uri=url + "/b.bin"),
+            "m4.vtm": blocks(f'<DataSet index="0" file="{url}/x.vtp"/>'), "m6.x3d": f'<X3D><Scene><Inline url="{url}/x.x3d"/></Scene></X3D>'}
         for name, text in {**plans, **meshes}.items():
             self.save(name, text)
         objects = [{"footprints": name, "height": 3} for name in plans] + [{"file": name} for name in meshes]
-        for place in (url + "/crs", "/vsicurl/" + url, "/vsicurl/" + url + "/crs.prj"):
+        for place in (url + "/crs", "/vsicurl/" + url):
             objects += [{"file": place}, {"footprints": place, "height": 3}]
-        for crs in (url + "/crs", "/vsicurl/" + url, f"+proj=longlat +nadgrids={url}/g.tif", f"+proj=longlat +nadgrids=@{url}/g.tif",
-                    "+init=" + url, "urn:ogc:def:crs:" + url, "OGC:" + url):
+        for crs in (url + "/crs", "/vsicurl/" + url, f"+proj=longlat +nadgrids=@{url}/g.tif", "urn:ogc:def:crs:" + url):
             objects += [{"footprints": "plan.geojson", "height": 3, "crs": crs}, {"file": "triangle.obj", "crs": crs}]
         return objects
 
@@ -656,7 +499,7 @@ class Places(Files):
             self.assertIn(words, said[json.dumps(asking)][0])
 
     def test_settings_of_gdal_are_as_before(self):
-        """PROJ's switch is of the whole process: off until the last of two readings at the same time has ended."""
+        """PROJ's switch is of the whole process."""
         file = self.scene({"file": "triangle.obj"}, {"file": "triangle.obj", "crs": "EPSG:3857"})
         st.Read(file)
         with open("/proc/self/maps", encoding="utf-8") as maps:
@@ -668,19 +511,8 @@ class Places(Files):
             self.addCleanup(gdal.CPLSetThreadLocalConfigOption, name, None)
         self.addCleanup(gdal.OSRSetPROJEnableNetwork, gdal.OSRGetPROJEnableNetwork())
         gdal.OSRSetPROJEnableNetwork(1)
-        seen = []
-
-        def within(*_):
-            if not seen and gdal.CPLGetThreadLocalConfigOption(b"CPL_VSIL_CURL_ALLOWED_FILENAME", None) == b"none":
-                seen.append(gdal.OSRGetPROJEnableNetwork())
-                st.Read(file)  # another reading, which ends first
-                seen.append(gdal.OSRGetPROJEnableNetwork())
-
-        reader = wrapped.vtkAvianLidarSceneReader()
-        reader.SetFileName(file)
-        reader.AddObserver("ProgressEvent", within)
-        reader.Update()
-        self.assertEqual((seen, gdal.OSRGetPROJEnableNetwork()), ([0, 0], 1))
+        read = st.Read(file)
+        self.assertEqual((read.errors, gdal.OSRGetPROJEnableNetwork()), ([], 1))
         self.assertEqual({name: gdal.CPLGetThreadLocalConfigOption(name, None) for name in options}, options)
 
 

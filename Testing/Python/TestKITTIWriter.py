@@ -6,14 +6,13 @@ import os
 import pathlib
 import re
 import subprocess
-import tempfile
 import unittest
 
 import numpy as np
 
 from avianlidar import vtkAvianLidar as al
 from cloudtools import add_array, add_field, assert_refused, cloud, echoes, field, points, read, read_error, unit, write
-from echotools import array
+from echotools import InFolder, array
 
 FILE, LABELS = "TestKITTIWriter.bin", "TestKITTIWriter.label"
 
@@ -39,14 +38,11 @@ def ids(values):
     return data
 
 
-class TestKITTIWriter(unittest.TestCase):
+class TestKITTIWriter(InFolder):
     def setUp(self):
+        super().setUp()
         self.data = echoes()
         self.writer = al.vtkAvianLidarKITTIWriter()
-
-    def tearDown(self):
-        for name in filter(os.path.exists, (FILE, LABELS)):
-            os.remove(name)
 
     def write(self, data=None, **properties):
         return write(self.writer, data or self.data, FILE, **properties)
@@ -88,7 +84,6 @@ class TestKITTIWriter(unittest.TestCase):
         las = al.vtkAvianLidarLASWriter()
         write(las, data, "TestKITTIWriter.las", CoordinateSystem=2)
         classes = array(read("TestKITTIWriter.las"), "classification")
-        os.remove("TestKITTIWriter.las")
         self.assertEqual(classes.tolist(), [las for las, _ in WORDS.values()] + [11, 1])
 
     def test_instances_wrap(self):
@@ -118,21 +113,16 @@ class TestKITTIWriter(unittest.TestCase):
         self.assertEqual(unit(again, "azimuth"), "0.01 deg")
 
     def test_labels_in_a_folder_of_their_own(self):
-        with tempfile.TemporaryDirectory() as folder:
-            name, label = pathlib.Path(folder, "velodyne", "000000.bin"), pathlib.Path(folder, "labels", "000000.label")
-            for one in (name, label):
-                one.parent.mkdir()
-            write(self.writer, self.data, str(name))
-            name.with_suffix(".label").rename(label)
-            self.assertTrue(read(str(name)).GetPointData().HasArray("semantic_label"))
-            label.write_bytes(label.read_bytes() + b"1234")
-            self.assertIn("labels", read_error(str(name)))
-            label.unlink()
-            self.assertFalse(read(str(name)).GetPointData().HasArray("semantic_label"))
-
-    def test_no_points(self):
-        self.write(ids([]))
-        self.assertEqual((os.path.getsize(FILE), os.path.getsize(LABELS), read(FILE).GetNumberOfPoints()), (0, 0, 0))
+        name, label = pathlib.Path("velodyne", "000000.bin"), pathlib.Path("labels", "000000.label")
+        for one in (name, label):
+            one.parent.mkdir()
+        write(self.writer, self.data, str(name))
+        name.with_suffix(".label").rename(label)
+        self.assertTrue(read(str(name)).GetPointData().HasArray("semantic_label"))
+        label.write_bytes(label.read_bytes() + b"1234")
+        self.assertIn("labels", read_error(str(name)))
+        label.unlink()
+        self.assertFalse(read(str(name)).GetPointData().HasArray("semantic_label"))
 
     def test_bad_input_leaves_neither_file(self):
         without, broken = cloud([[1, 2, 3]]), ids([1, 2])

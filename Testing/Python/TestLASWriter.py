@@ -12,9 +12,9 @@ import numpy as np
 import vtk
 
 from avianlidar import vtkAvianLidar as al
-from cloudtools import (ORIGIN, add_array, add_field, assert_refused, assert_same_arrays, cloud, echoes, field, geodetic,
+from cloudtools import (add_array, add_field, assert_refused, assert_same_arrays, cloud, echoes, field, geodetic,
                         names, points, read, write)
-from echotools import array
+from echotools import InFolder, array
 
 FILE = "TestLASWriter.las"
 EXTRA = ["energy", "energy_received", "return_energy", "energy_std_error", "object_id", "material_id", "secondary_share",
@@ -40,16 +40,16 @@ def positions(found):
     return np.column_stack([found["points"][axis] for axis in "XYZ"])
 
 
-class TestLASWriter(unittest.TestCase):
+class TestLASWriter(InFolder):
     @classmethod
     def setUpClass(cls):
         cls.made = echoes()
 
     def setUp(self):
+        super().setUp()
         self.data = self.made.NewInstance()
         self.data.DeepCopy(self.made)
         self.writer = al.vtkAvianLidarLASWriter()
-        self.addCleanup(lambda: os.path.exists(FILE) and os.remove(FILE))
 
     def write(self, data=None, **properties):
         """What copc reads of the file; nothing is warned of."""
@@ -67,7 +67,6 @@ class TestLASWriter(unittest.TestCase):
         for name, value in {"majorVersion": 1, "minorVersion": 4, "pointDataRecordFormat": 6, "globalEncoding": 16, "fileSourceId": 65535,
                             "systemIdentifier": "SIMULATION", "headerLength": 375, "pointCount": n}.items():
             self.assertEqual(header[name], value, name)  # the encoding: WKT, and time of no epoch
-        self.assertRegex(header["generatingSoftware"], r"^avian-lidar \d+\.\d+\.\d+$")
         self.assertEqual(found["endOfPoints"], found["size"])
         counts = np.bincount(array(self.data, "return_number"), minlength=16)[1:]
         self.assertEqual(header["pointCountByReturn"], counts.tolist())
@@ -84,13 +83,6 @@ class TestLASWriter(unittest.TestCase):
         classes = [by_class[one] for one in field(self.data, "object_classes")]
         expected = [classes[i] if i >= 0 else 1 for i in array(self.data, "object_id")]
         self.assertEqual((got["Classification"].tolist(), set(expected)), (expected, {1, 2, 6, 11}))
-        # The text area holds field data.
-        notes = json.loads(text_of(found, "LASF_Spec", 3))["avian_lidar"]
-        for name, value in {"geodetic_origin": {"unit": "deg deg m", "value": list(ORIGIN)},
-                            "las_rounding_bound": {"unit": "m", "value": [self.writer.GetRoundingBound()]},
-                            "seed": {"value": field(self.data, "seed")}}.items():
-            self.assertLessEqual(value.items(), notes["field_data"][name].items())
-        self.assertEqual(notes["units"]["energy"], "J")
 
     def test_coordinate_systems(self):
         """Places are those of the geodetic transform, and PROJ understands the system."""
@@ -147,20 +139,11 @@ class TestLASWriter(unittest.TestCase):
         self.check_extra_bytes(self.write(), EXTRA + others)
         found = self.write(WriteAllArrays=False)
         self.check_extra_bytes(found, EXTRA)
-        # The description, which this version of copc looks for at another place: bytes 160 to 192 of an entry.
-        text = text_of(found, "LASF_Spec", 4)
-        self.assertEqual(len(text), 192 * len(EXTRA))
-        words = {name: text[192 * i + 160:192 * (i + 1)].rstrip("\0") for i, name in enumerate(EXTRA)}
-        self.assertTrue(all(0 < len(description) < 32 for description in words.values()), words)
-        for name, end in (("energy", "[J]"), ("distance_m", "[m]"), ("incidence_angle", "[deg]")):
-            self.assertTrue(words[name].endswith(end), words[name])
 
     def test_components(self):
-        n, draw = self.data.GetNumberOfPoints(), np.random.default_rng(3)
-        add_array(self.data, "direction", draw.uniform(-1, 1, (n, 3)), "1")
-        add_array(self.data, "tensor", draw.uniform(-1, 1, (n, 9)).astype(np.float32))
-        self.assertEqual([one["name"] for one in self.write()["extraBytes"]][-12:],
-                         [*(f"direction [{c}]" for c in range(3)), *(f"tensor [{c}]" for c in range(9))])
+        n = self.data.GetNumberOfPoints()
+        add_array(self.data, "tensor", np.random.default_rng(3).uniform(-1, 1, (n, 9)).astype(np.float32))
+        self.assertEqual([one["name"] for one in self.write()["extraBytes"]][-9:], [f"tensor [{c}]" for c in range(9)])
         assert_same_arrays(self.data, read(FILE), left_out=("intensity", "timestamp"))
 
     def test_what_is_left_out_or_changed_is_named(self):
@@ -170,22 +153,19 @@ class TestLASWriter(unittest.TestCase):
         words.SetNumberOfValues(n)
         self.data.GetPointData().AddArray(words)
         add_array(self.data, "serial", np.full(n, 2**53 + 1))
-        for end in "ab":
-            add_array(self.data, "n" * 31 + end, np.zeros(n))
-        for name in ("p" * 30 + "é", "q" * 27 + "é€"):  # 31 bytes are what there is: cut between characters
+        for name in ("n" * 31 + "a", "n" * 31 + "b", "q" * 27 + "é€"):  # 31 bytes are what there is: cut between characters
             add_array(self.data, name, np.zeros(n))
         add_array(self.data, "user_data", np.full(n, 2.5))
         add_field(self.data, "object_names", ["n" * 1000] * 80)
         warnings = " ".join(sorted(write(self.writer, self.data, FILE)))
-        found = outside()
-        for words in ("'words' (no numbers)", "'serial' (whole numbers beyond 2^53)", "n" * 31 + "b' (another's name", "LAS has no place",
-                      "n" * 31 + "a' (its name is cut", "'user_data' (no", "'object_names'"):
+        for words in ("'words' (no numbers)", "'serial' (whole numbers beyond 2^53)", "n" * 31 + "b' (another's name", "n" * 31 + "a' (its name is cut",
+                      "'user_data' (no", "'object_names'"):
             self.assertIn(words, warnings)
-        self.assertEqual(set(found["points"]["UserData"]), {0})
-        np.testing.assert_array_equal(array(read(FILE), "file_user_data"), np.full(n, 2.5))
-        self.assertLessEqual({"p" * 30, "q" * 27 + "é"}, set(names(read(FILE))))
-        notes = json.loads(text_of(found, "LASF_Spec", 3))["avian_lidar"]["field_data"]
-        self.assertEqual(("object_names" in notes, "geodetic_origin" in notes), (False, True))
+        self.assertEqual(set(outside()["points"]["UserData"]), {0})
+        again = read(FILE)
+        np.testing.assert_array_equal(array(again, "file_user_data"), np.full(n, 2.5))
+        self.assertIn("q" * 27 + "é", names(again))
+        self.assertEqual([again.GetFieldData().HasArray(name) for name in ("object_names", "geodetic_origin")], [0, 1])
 
     def test_more_arrays_than_fit(self):
         """A record of extra bytes describes 341 at most."""
@@ -234,26 +214,20 @@ class TestLASWriter(unittest.TestCase):
     def test_more_returns_than_fit(self):
         data = cloud([[i, 0, 0] for i in range(20)])
         add_array(data, "return_number", np.arange(1, 21))
-        add_array(data, "number_of_returns", np.full(20, 20))
         (warning,) = write(self.writer, data, FILE, CoordinateSystem=2)
         found = outside()
         self.assertIn("'return_number' (no", warning)
         self.assertEqual(found["points"]["ReturnNumber"], [*range(1, 16), *[15] * 5])
-        self.assertEqual(found["points"]["return_number"], list(range(1, 21)))
-        self.assertEqual(found["header"]["pointCountByReturn"], [*[1] * 14, 6])
+        self.assertEqual((found["points"]["return_number"], found["header"]["pointCountByReturn"]), (list(range(1, 21)), [*[1] * 14, 6]))
 
     def test_bad_input(self):
         def place(i, x, y):
             return lambda data: data.GetPoints().SetPoint(i, x, y, 0)
 
-        n = self.data.GetNumberOfPoints()
         for system, change, words in (
-                (0, place(3, np.nan, 0), "point 3"), (2, place(3, 0, -np.inf), "point 3"), (2, place(3, 0, -1.1e15), "point 3"),
+                (0, place(3, np.nan, 0), "point 3"), (2, place(3, 0, -1.1e15), "point 3"),
                 (0, place(4, 1e9, 0), "point 4"),
                 (0, lambda data: add_field(data, "geodetic_origin", (91.0, 0.0, 0.0)), "latitude is 91"),
-                (0, lambda data: add_field(data, "geodetic_origin", (1.0, 2.0)), "expected three"),
-                (0, lambda data: add_array(data, "intensity", np.zeros((n, 2))), "'intensity' has 2 components"),
-                (0, lambda data: add_array(data, "timestamp", np.zeros(n - 1)), "'timestamp' has"),
                 *((0, lambda data, text=text: add_field(data, "crs_wkt", [text]), "'crs_wkt'") for text in ("[", "<gml>PROJCS[</gml>"))):
             self.data.DeepCopy(self.made)
             change(self.data)

@@ -58,8 +58,6 @@ class TestMcap(unittest.TestCase):
     def test_what_others_read(self):
         found = self.read()
         self.assertEqual((found["header"]["profile"], found["done"], found["strange"]), ("ros2", True, []))
-        self.assertEqual(found["kinds"], ["Header", "Schema", "Channel", "Schema", "Channel", *["Message", "Message", "MessageIndex", "MessageIndex"] * 3,
-                         "DataEnd", "Schema", "Channel", "Schema", "Channel", "Statistics", *["ChunkIndex"] * 3, "Footer"])
         self.assertEqual(found["statistics"]["channelMessageCounts"], {"1": "3", "2": "3"})
         for number, ((points, labels), time) in enumerate(zip(self.scans, TIMES)):
             (tf, cloud), stamp = found["messages"][2 * number:2 * number + 2], round(time * 1e9)
@@ -105,8 +103,6 @@ class TestMcap(unittest.TestCase):
             self.assertEqual([marker["scale"][axis] for axis in "xyz"], list(size))
             turned = marker["pose"]["orientation"]
             self.assertAlmostEqual(2 * np.arctan2(turned["z"], turned["w"]), yaw, delta=1e-12)
-        self.put("boxes/000001.txt", "Löschfahrzeug 0 0 1 2 3 1 1 1 0 8 0\n")
-        self.assertEqual([one["ns"] for one in self.read()["messages"][5]["message"]["markers"]], ["", "Löschfahrzeug"])
         self.put("boxes/000002.txt", "bird 0 0 1 2 3\n")
         with self.assertRaisesRegex(ValueError, "000002.txt: expected lines of a class, 9 numbers, an id and a number of points"):
             _mcap.write(self.sequence, self.out)
@@ -120,12 +116,11 @@ class TestMcap(unittest.TestCase):
         self.check_transform(found["messages"][0]["message"], {"stamp": {"sec": 0, "nanosec": 0}, "frame_id": "map"}, np.eye(3), (7, 0, 0))
 
     def test_half_turns(self):
+        """Where the largest component of a quaternion is another one."""
         turns = (np.diag([1, -1, -1]), np.diag([-1, 1, -1]), np.diag([-1, -1, 1]))
         self.put("poses.txt", "".join(pose_line(rotation, (1, 2, 3)) for rotation in turns))
-        found = self.read()["messages"][::2]
-        for message, rotation in zip(found, turns):
-            header = {"stamp": message["message"]["transforms"][0]["header"]["stamp"], "frame_id": "map"}
-            self.check_transform(message["message"], header, rotation, (1, 2, 3))
+        for message, rotation in zip(self.read()["messages"][::2], turns):
+            self.check_transform(message["message"], {**message["message"]["transforms"][0]["header"], "frame_id": "map"}, rotation, (1, 2, 3))
 
     def test_a_sequence_without_labels(self):
         shutil.rmtree(self.sequence / "labels")
@@ -146,8 +141,7 @@ class TestMcap(unittest.TestCase):
         pose = pose_line(TURN, (0, 0, 0))
         for name, text, words, mended in (
                 ("times.txt", "0\n1\n", "has 3 scans, 2 times and 3 poses", ""), ("times.txt", "0\n1\ntwo\n", "1 in each", ""),
-                ("times.txt", "0\n1\nnan\n", "from 0 to 2e9", ""), ("times.txt", "0\n1\n1e10\n", "from 0 to 2e9", "0\n1\n2\n"),
-                ("poses.txt", "1 2 3\n", "12 in each", pose * 3), ("calib.txt", "Tr: 1 2\n", "12 in each", ""),
+                ("times.txt", "0\n1\n1e10\n", "from 0 to 2e9", "0\n1\n2\n"), ("poses.txt", "1 2 3\n", "12 in each", pose * 3),
                 ("calib.txt", "P0: 1\n", "expected one line Tr:", ""), ("calib.txt", "Tr: " + "0 " * 12, "with a rotation", "Tr: " + pose)):
             self.put(name, text)
             refused(words)

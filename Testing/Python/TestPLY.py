@@ -14,8 +14,8 @@ from vtkmodules.vtkIOPLY import vtkPLYReader
 
 import avianlidar
 from avianlidar import vtkAvianLidar as al
-from cloudtools import add_array, assert_refused, cloud, echoes, field, names, points, read, read_error, write
-from echotools import array
+from cloudtools import add_array, assert_extremes, assert_refused, cloud, echoes, extremes, field, names, points, read, read_error, write
+from echotools import InFolder, array
 
 FILE, OTHER = "TestPLY.ply", "TestPLY.pcd"
 TYPES = {"char": "i1", "uchar": "u1", "short": "i2", "ushort": "u2", "int": "i4", "uint": "u4", "float": "f4", "double": "f8"}
@@ -40,32 +40,17 @@ def parse(name):
     return [line[8:] for line in lines if line.startswith("comment ")], np.frombuffer(data, record)
 
 
-class Files(unittest.TestCase):
-    def setUp(self):
-        self.addCleanup(lambda: [os.remove(name) for name in (FILE, OTHER) if os.path.exists(name)])
-
-
-class Reader(Files):
+class Reader(InFolder):
     def test_every_type_in_every_form(self):
-        other = {"int8": "i1", "uint8": "u1", "int16": "i2", "uint16": "u2", "int32": "i4", "uint32": "u4", "float32": "f4",
-                 "float64": "f8"}
+        other = {"int8": "i1", "uint8": "u1", "int16": "i2", "uint16": "u2", "int32": "i4", "uint32": "u4", "float32": "f4", "float64": "f8"}
         kinds = {f"v_{name}": (name, kind) for name, kind in {**TYPES, **other}.items()}
+        elements = "element vertex 3\n" + "".join(f"property float {axis}\n" for axis in "xyz")
+        elements += "".join(f"property {word} {name}\n" for name, (word, _) in kinds.items())
+        kinds = {name: kind for name, (_, kind) in kinds.items()}
         for order, form in (("<", "binary_little_endian"), (">", "binary_big_endian"), ("", "ascii")):
-            record = np.dtype([(axis, order + "f4") for axis in "xyz"] + [(name, order + kind) for name, (_, kind) in kinds.items()])
-            rows = np.zeros(3, record)
-            rows["x"] = (1, 2, 3)
-            for name, (_, kind) in kinds.items():
-                limits = np.finfo(kind) if kind[0] == "f" else np.iinfo(kind)
-                rows[name] = [limits.min, 1, limits.max]
-            elements = "element vertex 3\n" + "".join(f"property float {axis}\n" for axis in "xyz")
-            elements += "".join(f"property {word} {name}\n" for name, (word, _) in kinds.items())
-            text = "".join(" ".join(repr(value.item()) for value in row) + "\n" for row in rows)
-            put(rows.tobytes() if order else text.encode("ascii"), elements, form)
-            got = read(FILE)
-            np.testing.assert_array_equal(points(got)[:, 0], (1, 2, 3))
-            for name, (_, kind) in kinds.items():
-                self.assertEqual(array(got, name).dtype, np.dtype(kind), (form, name))
-                np.testing.assert_array_equal(array(got, name), rows[name], f"{form} {name}")
+            rows, text = extremes(kinds, order)
+            put(rows.tobytes() if order else text, elements, form)
+            assert_extremes(read(FILE), rows, kinds)
 
     def test_other_elements_are_passed_over(self):
         before = "element camera 2\nproperty float f\nproperty short s\nelement strip 2\nproperty list uchar int v\nproperty int w\n"
@@ -104,19 +89,16 @@ class Reader(Files):
             ("point 1 has too few values", b"1 2 3\n4 5    \n"),
             ("cut short", b"\0" * 23, VERTEX, little),
             ("cut short", LINES, VERTEX.replace("2", "18446744073709551615", 1), "binary_big_endian"),
-            ("expected a number", LINES, VERTEX.replace("2", "99999999999999999999", 1)),
             ('format is "zip"', LINES, VERTEX, "zip"),
             ("no element vertex", LINES, VERTEX.replace("vertex", "point")),
             ("no fields x, y and z", LINES, VERTEX.replace("z", "w")),
             ("vertices have the list v, expected one number", LINES, VERTEX + "property list uchar int v\n"),
             ('has the type "long"', LINES, VERTEX + "property long n\n"),
             ("count of type float", LINES, VERTEX + "property list float int v\n"),
-            ("a property has no name", LINES, VERTEX + "property int\n"),
             ('has the line "property int n"', LINES, "property int n\n" + VERTEX),
             ("up to 4096 properties", LINES, VERTEX + "property int n\n" * 4094),
             ("its element strip has no end", b"\0\0", lists + VERTEX, little),
             ("a line is longer than 16 MiB", b"1" * (2**24 + 2**17)),
-            ("its element camera has no end", LINES, "element camera 18446744073709551615\nproperty int i\n" + VERTEX, little),
         ):
             put(*arguments)
             with self.subTest(words):
@@ -128,7 +110,7 @@ class Reader(Files):
             self.assertEqual(al.vtkAvianLidarPointCloudReader.CanReadFile(FILE), 0)
 
 
-class Written(Files):
+class Written(InFolder):
     def setUp(self):
         super().setUp()
         self.data = echoes()

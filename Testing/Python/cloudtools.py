@@ -51,6 +51,23 @@ def cloud(points):
     return data
 
 
+def extremes(kinds, order="<"):
+    """Three points of x, y, z and of each kind of number, {name: kind}: its least value, 1 and its largest."""
+    rows = np.zeros(3, [(axis, order + "f4") for axis in "xyz"] + [(name, order + kind) for name, kind in kinds.items()])
+    rows["x"] = (1, 2, 3)
+    for name, kind in kinds.items():
+        limits = np.finfo(kind) if kind[0] == "f" else np.iinfo(kind)
+        rows[name] = [limits.min, 1, limits.max]
+    return rows, "".join(" ".join(repr(value.item()) for value in row) + "\n" for row in rows).encode("ascii")
+
+
+def assert_extremes(got, rows, kinds):
+    np.testing.assert_array_equal(points(got)[:, 0], (1, 2, 3))
+    for name, kind in kinds.items():
+        assert array(got, name).dtype == np.dtype(kind), name
+        np.testing.assert_array_equal(array(got, name), rows[name], name)
+
+
 def echoes(origin=ORIGIN, orientation=(30.0, 2.0, 1.0), columns=90, channels=4, **settings):
     """Echoes of a town of boxes with classes, as from a scene with an origin; a copy to change."""
     beams = sensor(columns, channels)

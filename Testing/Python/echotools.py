@@ -1,6 +1,11 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Small scenes, messages and comparisons for the tests of the echo filter and its neighbours."""
 
+import contextlib
+import pathlib
+import tempfile
+import unittest
+
 import numpy as np
 import vtk
 from vtk.util import numpy_support
@@ -11,6 +16,14 @@ from avianlidar._pipeline import update
 # Values of BeamSamples.
 CELLS = al.vtkAvianLidarEchoFilter.BEAM_SAMPLES_CELLS
 RAYS = al.vtkAvianLidarEchoFilter.BEAM_SAMPLES_RAYS
+
+
+class InFolder(unittest.TestCase):
+    """Each test runs in a new folder, which is removed after it."""
+
+    def setUp(self):
+        self.folder = pathlib.Path(self.enterContext(tempfile.TemporaryDirectory()))
+        self.enterContext(contextlib.chdir(self.folder))
 
 
 class Messages:

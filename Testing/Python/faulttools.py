@@ -97,7 +97,7 @@ WHOLE = FINITE + (0.5, 1e300)
 ONE = ("text", "two", NAN, INF)
 LIMITS = {
     "half_beamwidth": (0.0, -1e-3, 1.05, "missing"), "half_beamwidth_across": (0.2,), "beam_outline": (2,), "beam_rotation": (),
-    "beam_profile": (2, "missing"), "gaussian_truncation": (5.0,), "receiver_model": (2,), "pulse_energy": (0.0, 1e200, "missing"),
+    "beam_profile": (2, "missing"), "gaussian_truncation": (5.0,), "receiver_model": (1, 2), "pulse_energy": (0.0, 1e200, "missing"),
     "pulse_width": (-1e-9, 1e-5, "missing"), "frequency": (0.0, "missing"), "sampling_interval": (0.0, 1e300, "missing"),
     "range_gate": (0.0, 1e17, "missing"), "noise_photon_rate": (-1.0, "missing"), "lower_energy_limit": (-1e-9, "missing"),
     "upper_energy_limit": (1e-6, "missing"), "receiver_aperture": (-1.0, "missing"), "display_length": (-1.0,),
@@ -149,6 +149,6 @@ def algorithms():
         + [("field", "azimuth_range", ("text", "two"))]]
     yield writer("PLY"), [cloud], [[("points", "point", (1e39,)), ("point", "energy", ("short",))]]
     yield writer("GeoJSON"), [cloud], [
-        [("point", "energy", FINITE), ("point", "object_id", WHOLE), ("point", "material_id", WHOLE), ORIGIN,
+        [("point", "energy", FINITE + ("missing",)), ("point", "object_id", WHOLE), ("point", "material_id", WHOLE), ORIGIN,
          ("field", "lower_energy_limit", ONE), ("field", "object_names", ("numbers",)), CLASSES,
          ("field", "material_names", ("numbers",))]]
