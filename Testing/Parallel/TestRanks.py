@@ -179,7 +179,7 @@ def test_movers_are_those_of_all_ranks():
 
 
 def test_one_surface_in_pieces():
-    """With and without ghost cells. Points on the seams are there twice, so the checksum of the scene is another one; nothing else is."""
+    """With ghost cells or without. Points on the seams are there twice, so the checksum alone is another one."""
     ball, paint = vtk.vtkSphereSource(), al.vtkAvianLidarMaterial()
     ball.SetCenter(60, 0, 0)
     ball.SetRadius(30)

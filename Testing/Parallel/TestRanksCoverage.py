@@ -108,12 +108,13 @@ def test_error_of_one_is_one_of_all():
 
 def test_places_and_settings_are_those_of_all():
     """Places on one rank alone, and settings that differ, are not mixed: an error on all, and the next good ones work."""
-    cases = [("Input port 2 (places) is", lambda one: one.SetInputData(2, points_of(range(10))), lambda one: one.RemoveAllInputConnections(2))]
+    cases = [("Input port 2 (places) is", lambda one: one.SetInputData(2, points_of(range(10))),
+              lambda one: one.RemoveAllInputConnections(2))]
     for name, bad, good in (("Bounds", (0.0, 300.0, 0.0, 400.0, 0.0, 40.0), (0.0, 400.0, 0.0, 400.0, 0.0, 40.0)),
                             ("Spacing", (20.0, 40.0, 10.0), (40.0, 40.0, 10.0)), ("Species", ("starling",), ("",)),
                             ("NumberOfScans", (4,), (3,)), ("Seed", (3,), (0,))):
-        spoil, mend = (lambda one, name=name, values=values: getattr(one, "Set" + name)(*values) for values in (bad, good))
-        cases.append((name, spoil, mend))
+        cases.append((name, *(lambda one, name="Set" + name, values=values: getattr(one, name)(*values)
+                              for values in (bad, good))))
     filter_ = cover(TOWN)
     messages = echotools.Messages(filter_)
     for words, spoil, mend in cases:
