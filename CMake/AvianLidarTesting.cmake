@@ -21,8 +21,10 @@ if (BUILD_TESTING OR AVIANLIDAR_BUILD_BENCHMARKS)
       shanghai_cbd
       zsss_all
       zsss_structures)
+    string(REGEX REPLACE "^zsss_" "" AVIANLIDAR_SCENERY "${scene}")
+    string(REGEX REPLACE "^zsss_.*" "zsss" template "${scene}") # two sceneries of one airport
     configure_file(
-      "${PROJECT_SOURCE_DIR}/Testing/Data/Scenes/${scene}.lidarscene.json.in"
+      "${PROJECT_SOURCE_DIR}/Testing/Data/Scenes/${template}.lidarscene.json.in"
       "${AVIANLIDAR_SCENES_DIR}/${scene}.lidarscene.json"
       @ONLY)
   endforeach ()

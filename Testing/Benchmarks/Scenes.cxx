@@ -7,7 +7,6 @@
 #include <cmath>
 #include <cstdint>
 #include <initializer_list>
-#include <numeric>
 #include <utility>
 
 namespace benchmarks
@@ -56,38 +55,18 @@ void addBox(TriangleMesh& mesh, double x, double y, Vec3 half, double yaw, doubl
   }
 }
 
-/// What hangs together by points is an object: triangles get the number of theirs, in the order of
-/// the mesh.
+/// Each quad, box, part of a sphere or ground is an object: its points lie behind all those before.
 void numberObjects(Scene& scene)
 {
-  const TriangleMesh& mesh = *scene.mesh;
-  std::vector<std::uint32_t> parent(mesh.points.size());
-  std::iota(parent.begin(), parent.end(), 0u);
-  const auto rootOf = [&parent](std::uint32_t p)
-  {
-    while (parent[p] != p)
-    {
-      p = parent[p] = parent[parent[p]];
-    }
-    return p;
-  };
-  for (const auto& corners : mesh.triangles)
-  {
-    const std::uint32_t root = rootOf(corners[0]);
-    parent[rootOf(corners[1])] = root;
-    parent[rootOf(corners[2])] = root;
-  }
-  std::vector<int> numbers(mesh.points.size(), -1);
-  int objects = 0;
+  std::int64_t last = -1; // point
+  int object = -1;
   scene.objectIds.clear();
-  for (const auto& corners : mesh.triangles)
+  for (const auto& corners : scene.mesh->triangles)
   {
-    int& number = numbers[rootOf(corners[0])];
-    if (number < 0)
-    {
-      number = objects++;
-    }
-    scene.objectIds.push_back(number);
+    const auto [least, most] = std::minmax_element(corners.begin(), corners.end());
+    object += static_cast<std::int64_t>(*least) > last ? 1 : 0;
+    last = std::max<std::int64_t>(last, *most);
+    scene.objectIds.push_back(object);
   }
 }
 

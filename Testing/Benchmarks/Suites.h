@@ -11,9 +11,10 @@
 
 #include <fstream>
 #include <functional>
-#include <iomanip>
+#include <iostream>
 #include <sstream>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 namespace benchmarks
@@ -32,10 +33,9 @@ struct RoundLimits
 struct Options
 {
   std::string suite;
-  std::string folder = "."; ///< results go here
-  bool brief = false;       ///< the short form
-  bool smoke = false;       ///< seconds: does everything work, no times worth reading
-  std::string scene;        ///< only this one; empty: all
+  std::string folder; ///< results go here
+  bool brief = false; ///< the short form
+  bool smoke = false; ///< seconds: does everything work, no times worth reading
 
   RoundLimits limits() const;
   /// Rays of a workload, at most.
@@ -60,19 +60,28 @@ public:
   }
 
 private:
-  static std::string quoted(const std::string& text);
-  static std::string quoted(const char* text) { return quoted(std::string(text)); }
-  template <typename Number>
-  static Number quoted(Number number)
+  template <typename Value>
+  static auto quoted(const Value& value)
   {
-    return number;
+    if constexpr (std::is_convertible_v<Value, std::string>)
+    {
+      const std::string text = value;
+      return text.find(',') == std::string::npos ? text : '"' + text + '"';
+    }
+    else
+    {
+      return value;
+    }
   }
 
   std::ofstream File;
 };
 
 /// Writes a line for the user.
-void say(const std::string& text);
+inline void say(const std::string& text)
+{
+  std::cout << text << std::endl;
+}
 
 struct Contender
 {
@@ -85,7 +94,6 @@ struct Timing
   std::string name;
   double median = 0.0; ///< s
   double best = 0.0;   ///< s
-  std::size_t rounds = 0;
 };
 
 /// Everyone runs once to warm up, then in rounds, in random order, so that whatever else the

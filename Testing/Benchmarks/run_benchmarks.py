@@ -45,7 +45,7 @@ def main():
         for file in files:
             (out / f"{file}.csv").unlink(missing_ok=True)
         start = time.monotonic()
-        code = subprocess.run([arguments.program, "--suite", name, "--out", str(out), *form], check=False,
+        code = subprocess.run([arguments.program, name, str(out), *form], check=False,
                               env=environment).returncode
         print(f"-- {name}: {time.monotonic() - start:.0f} s", flush=True)
         empty = [f for f in files if not results.read(out, f)]

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The range image: its grid in degrees, the strongest return of each beam, empty cells, and bad
-// input.
+// The range image: its grid in degrees, the strongest return of each beam, empty cells, beam
+// reports, and bad input. TestBeamMap.py compares maps with reports of whole scans.
 #include "vtkAvianLidarArrays.h"
 #include "vtkAvianLidarBeamSource.h"
 #include "vtkAvianLidarRangeImage.h"
@@ -18,7 +18,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -29,47 +28,72 @@ namespace Arrays = vtkAvianLidarArrays;
 using Filter = vtkAvianLidarRangeImage;
 using checks::Check;
 
-struct Echo
+template <class ArrayT>
+void Add(vtkPolyData* data, const Arrays::Name& name, const std::vector<double>& values)
 {
-  vtkIdType beam;
-  double distance;
-  double received;
-  int object;
-};
+  auto array = Arrays::Make<ArrayT>(name);
+  for (const double value : values)
+  {
+    array->InsertNextTuple1(value);
+  }
+  data->GetPointData()->AddArray(array);
+}
 
-vtkSmartPointer<vtkPolyData> Echoes(const std::vector<Echo>& echoes)
+vtkSmartPointer<vtkPolyData> Points(std::size_t size)
 {
-  auto cloud = vtkSmartPointer<vtkPolyData>::New();
-  const vtkIdType size = static_cast<vtkIdType>(echoes.size());
+  auto data = vtkSmartPointer<vtkPolyData>::New();
   vtkNew<vtkPoints> points;
-  points->SetNumberOfPoints(size);
-  auto beam = Arrays::Make<vtkIdTypeArray>(Arrays::BeamId, size);
-  auto distance = Arrays::Make<vtkDoubleArray>(Arrays::Distance, size);
-  auto energy = Arrays::Make<vtkDoubleArray>(Arrays::Energy, size);
-  auto received = Arrays::Make<vtkDoubleArray>(Arrays::EnergyReceived, size);
-  auto object = Arrays::Make<vtkIntArray>(Arrays::ObjectId, size);
-  for (vtkIdType i = 0; i < size; ++i)
+  points->SetNumberOfPoints(static_cast<vtkIdType>(size));
+  data->SetPoints(points);
+  return data;
+}
+
+vtkSmartPointer<vtkPolyData> Echoes(const std::vector<double>& beams = {},
+  const std::vector<double>& distances = {}, const std::vector<double>& received = {},
+  const std::vector<double>& objects = {})
+{
+  auto cloud = Points(beams.size());
+  std::vector<double> energies;
+  for (const double energy : received)
   {
-    points->SetPoint(i, 0.0, 0.0, 0.0);
-    beam->SetValue(i, echoes[i].beam);
-    distance->SetValue(i, echoes[i].distance);
-    received->SetValue(i, echoes[i].received);
-    energy->SetValue(i, std::min(echoes[i].received, 6.25e-5)); // saturates
-    object->SetValue(i, echoes[i].object);
+    energies.push_back(std::min(energy, 6.25e-5)); // saturates
   }
-  cloud->SetPoints(points);
-  for (vtkDataArray* array :
-    std::initializer_list<vtkDataArray*>{ beam, distance, energy, received, object })
-  {
-    cloud->GetPointData()->AddArray(array);
-  }
+  Add<vtkIdTypeArray>(cloud, Arrays::BeamId, beams);
+  Add<vtkDoubleArray>(cloud, Arrays::Distance, distances);
+  Add<vtkDoubleArray>(cloud, Arrays::EnergyReceived, received);
+  Add<vtkDoubleArray>(cloud, Arrays::Energy, energies);
+  Add<vtkIntArray>(cloud, Arrays::ObjectId, objects);
   return cloud;
 }
 
-double At(vtkImageData* image, const char* name, int column, int row)
+/// A beam report of four beams, two of which share a cell.
+vtkSmartPointer<vtkPolyData> Report()
+{
+  auto report = Points(4);
+  Add<vtkIdTypeArray>(report, Arrays::BeamId, { 10, 11, 12, 13 });
+  Add<vtkDoubleArray>(report, Arrays::Azimuth, { 0, 100, 200, 100 });
+  Add<vtkDoubleArray>(report, Arrays::VerticalAngle, { 0, 0, 0, 0 });
+  Add<vtkIntArray>(report, Arrays::Status, { 0, 2, 1, 3 });
+  Add<vtkIdTypeArray>(report, Arrays::NodesVisited, { 7, 8, 5e9, 10 });
+  Add<vtkDoubleArray>(report, Arrays::SkippedBound, { 1e-9, 2e-9, 0, 3e-9 });
+  return report;
+}
+
+/// The value of a cell in the present image.
+double At(Filter* filter, const char* name, int column, int row)
 {
   int index[3] = { column, row, 0 };
-  return image->GetPointData()->GetArray(name)->GetComponent(image->ComputePointId(index), 0);
+  vtkImageData* image = filter->GetOutput();
+  return checks::At(image->GetPointData(), name, image->ComputePointId(index));
+}
+
+void Run(Filter* filter, vtkPolyData* echoes, vtkPolyData* beams, int columns, int rows)
+{
+  filter->SetInputData(0, echoes);
+  filter->SetInputData(1, beams);
+  filter->SetColumns(columns);
+  filter->SetRows(rows);
+  filter->Update();
 }
 
 // Columns that the pipeline announces to what is downstream.
@@ -87,46 +111,40 @@ void TestStrongest()
   // Beam 16 * 100 + 5: two saturated returns, told apart by what was received; beam 0: equal ones,
   // the nearer wins.
   filter->SetInputData(0,
-    Echoes({ { 1605, 300.0, 7e-5, 2 }, { 1605, 500.0, 9e-5, 3 }, { 0, 90.0, 1e-5, 8 },
-      { 0, 80.0, 1e-5, 7 }, { 15359, 1234.5, 2.5e-6, 0 } }));
+    Echoes({ 1605, 1605, 0, 0, 15359 }, { 300.0, 500.0, 90.0, 80.0, 1234.5 },
+      { 7e-5, 9e-5, 1e-5, 1e-5, 2.5e-6 }, { 2, 3, 8, 7, 0 }));
   filter->SetInputConnection(1, source->GetOutputPort());
   filter->Update();
   vtkImageData* image = filter->GetOutput();
   int size[3];
   image->GetDimensions(size);
   Check(size[0] == 960 && size[1] == 16 && size[2] == 1, "columns by rows");
-  Check(image->GetOrigin()[0] == 0.0 && image->GetOrigin()[1] == 0.0, "origin in degrees");
-  Check(std::abs(image->GetSpacing()[0] - 0.375) < 1e-12 &&
-      std::abs(image->GetSpacing()[1] - 0.375) < 1e-12,
-    "spacing in degrees");
-  Check(At(image, "distance_m", 100, 5) == 500.0 && At(image, "object_id", 100, 5) == 3,
-    "the strongest return");
-  Check(At(image, "energy", 100, 5) == 6.25e-5, "its energy");
-  Check(At(image, "distance_m", 0, 0) == 80.0 && At(image, "object_id", 0, 0) == 7,
-    "of equal returns the nearest");
-  Check(At(image, "distance_m", 959, 15) == 1234.5, "the last beam");
-  Check(std::isnan(At(image, "distance_m", 1, 0)) && std::isnan(At(image, "energy", 1, 0)) &&
-      At(image, "object_id", 1, 0) == -1,
-    "empty cells");
-  vtkIdType filled = 0;
-  for (vtkIdType i = 0; i < image->GetNumberOfPoints(); ++i)
+  for (int axis = 0; axis < 2; ++axis)
   {
-    filled += std::isnan(image->GetPointData()->GetArray("distance_m")->GetComponent(i, 0)) ? 0 : 1;
+    Check(image->GetOrigin()[axis] == 0.0 && std::abs(image->GetSpacing()[axis] - 0.375) < 1e-12,
+      "origin and spacing in degrees");
   }
-  Check(filled == 3, "one cell per beam with an echo");
-  Check(image->GetFieldData()->GetArray("column_azimuths")->GetNumberOfTuples() == 960 &&
-      std::abs(image->GetFieldData()->GetArray("row_elevations")->GetComponent(15, 0) - 5.625) <
-        1e-12,
+  Check(At(filter, "distance_m", 100, 5) == 500.0 && At(filter, "object_id", 100, 5) == 3 &&
+      At(filter, "energy", 100, 5) == 6.25e-5,
+    "the strongest return");
+  Check(At(filter, "distance_m", 0, 0) == 80.0 && At(filter, "object_id", 0, 0) == 7,
+    "of equal returns the nearest");
+  Check(At(filter, "distance_m", 959, 15) == 1234.5, "the last beam");
+  Check(std::isnan(At(filter, "distance_m", 1, 0)) && std::isnan(At(filter, "energy", 1, 0)) &&
+      At(filter, "object_id", 1, 0) == -1,
+    "empty cells");
+  vtkFieldData* fields = image->GetFieldData();
+  Check(fields->GetArray("column_azimuths")->GetNumberOfTuples() == 960 &&
+      std::abs(checks::At(fields, "row_elevations", 15) - 5.625) < 1e-12,
     "the angles are field data");
 
   // What is downstream learns the extent before this filter executes, also after a change upstream.
   Check(AnnouncedColumns(filter) == 960, "the pipeline knows the size");
-  filter->SetInputData(0, Echoes({}));
+  filter->SetInputData(0, Echoes());
   source->SetAzimuthRange(-30.0, 30.0);
   Check(AnnouncedColumns(filter) == 160, "the pipeline knows the new size");
   filter->Update();
-  Check(std::abs(filter->GetOutput()->GetOrigin()[0] + 30.0) < 1e-9,
-    "a sector across north starts below 0");
+  Check(std::abs(filter->GetOutput()->GetOrigin()[0] + 30.0) < 1e-9, "a sector across north");
 }
 
 void TestOtherBeams()
@@ -138,15 +156,15 @@ void TestOtherBeams()
   source->SetChannelElevation(2, 0.0);
   source->Update();
   vtkNew<Filter> filter;
-  filter->SetInputData(0, Echoes({ { 3 * 7 + 1, 50.0, 1e-5, 4 } }));
+  auto echoes = Echoes({ 3 * 7 + 1 }, { 50.0 }, { 1e-5 }, { 4 });
+  filter->SetInputData(0, echoes);
   filter->SetInputConnection(1, source->GetOutputPort());
   filter->Update();
-  Check(At(filter->GetOutput(), "distance_m", 7, 2) == 50.0,
-    "rows of a table are its elevations, sorted");
-  Check(filter->GetOutput()->GetOrigin()[1] == 0.0 && filter->GetOutput()->GetSpacing()[1] == 1.0,
+  vtkImageData* image = filter->GetOutput();
+  Check(At(filter, "distance_m", 7, 2) == 50.0, "rows are the elevations of the table, sorted");
+  Check(image->GetOrigin()[1] == 0.0 && image->GetSpacing()[1] == 1.0 &&
+      checks::At(image->GetFieldData(), "row_elevations", 2) == 10.0,
     "rows that are not equally spaced are counted");
-  Check(filter->GetOutput()->GetFieldData()->GetArray("row_elevations")->GetComponent(2, 0) == 10.0,
-    "their elevations are field data");
 
   // Beams of somebody's script: directions only, numbered as they come.
   vtkNew<vtkPolyData> bare;
@@ -155,134 +173,76 @@ void TestOtherBeams()
   {
     bare->GetPointData()->RemoveArray(name);
   }
-  filter->SetInputData(1, bare);
-  filter->SetColumns(960);
-  filter->SetRows(3);
-  filter->Update();
-  Check(At(filter->GetOutput(), "distance_m", 7, 2) == 50.0, "directions are enough");
-}
-
-// A beam report of four beams, two of which share a cell.
-vtkSmartPointer<vtkPolyData> Report()
-{
-  auto report = vtkSmartPointer<vtkPolyData>::New();
-  vtkNew<vtkPoints> points;
-  points->SetNumberOfPoints(4);
-  report->SetPoints(points);
-  const auto add = [&](auto array, std::initializer_list<double> values)
-  {
-    for (const double value : values)
-    {
-      array->InsertNextTuple1(value);
-    }
-    report->GetPointData()->AddArray(array);
-  };
-  add(Arrays::Make<vtkIdTypeArray>(Arrays::BeamId), { 10, 11, 12, 13 });
-  add(Arrays::Make<vtkDoubleArray>(Arrays::Azimuth), { 0, 100, 200, 100 });
-  add(Arrays::Make<vtkDoubleArray>(Arrays::VerticalAngle), { 0, 0, 0, 0 });
-  add(Arrays::Make<vtkIntArray>(Arrays::Status), { 0, 2, 1, 3 });
-  add(Arrays::Make<vtkIdTypeArray>(Arrays::NodesVisited), { 7, 8, 5000000000.0, 10 });
-  add(Arrays::Make<vtkDoubleArray>(Arrays::SkippedBound), { 1e-9, 2e-9, 0, 3e-9 });
-  return report;
+  Run(filter, echoes, bare, 960, 3);
+  Check(At(filter, "distance_m", 7, 2) == 50.0, "directions are enough");
 }
 
 void TestReport()
 {
   vtkNew<Filter> filter;
-  filter->SetInputData(0, Echoes({}));
-  filter->SetInputData(1, Report());
-  filter->SetColumns(3);
-  filter->SetRows(1);
-  filter->Update();
-  vtkImageData* image = filter->GetOutput();
-  vtkPointData* data = image->GetPointData();
-  Check(At(image, "status", 0, 0) == 0 && At(image, "status", 1, 0) == 2 &&
-      At(image, "status", 2, 0) == 1 && std::isnan(At(image, "distance_m", 0, 0)),
+  Run(filter, Echoes(), Report(), 3, 1);
+  Check(At(filter, "status", 0, 0) == 0 && At(filter, "status", 1, 0) == 2 &&
+      At(filter, "status", 2, 0) == 1 && std::isnan(At(filter, "distance_m", 0, 0)),
     "without echoes a cell shows its first beam");
-  Check(
-    At(image, "nodes_visited", 2, 0) == 5000000000.0 && At(image, "skipped_bound", 1, 0) == 2e-9,
+  Check(At(filter, "nodes_visited", 2, 0) == 5e9 && At(filter, "skipped_bound", 1, 0) == 2e-9,
     "large counts and bounds");
-  auto* units = vtkDataArray::UNITS_LABEL();
-  Check(data->GetArray("skipped_bound")->GetInformation()->Get(units) == std::string("J") &&
-      data->GetArray("nodes_visited")->GetInformation()->Get(units) == std::string("1"),
-    "their units");
-  Check(
-    !data->GetArray("candidates") && !data->GetArray("skipped"), "what is not there is not made");
+  vtkPointData* data = filter->GetOutput()->GetPointData();
+  Check(data->GetArray("skipped_bound")->GetInformation()->Get(vtkDataArray::UNITS_LABEL()) ==
+      std::string("J"),
+    "units");
+  Check(!data->HasArray("candidates") && !data->HasArray("skipped"), "what is not there");
 
-  filter->SetInputData(0, Echoes({ { 13, 20.0, 1e-5, 1 }, { 10, 30.0, 1e-5, 2 } }));
-  filter->Update();
-  image = filter->GetOutput();
-  Check(At(image, "status", 1, 0) == 3 && At(image, "nodes_visited", 1, 0) == 10 &&
-      At(image, "distance_m", 1, 0) == 20.0,
+  Run(filter, Echoes({ 13, 10 }, { 20.0, 30.0 }, { 1e-5, 1e-5 }, { 1, 2 }), Report(), 3, 1);
+  Check(At(filter, "status", 1, 0) == 3 && At(filter, "nodes_visited", 1, 0) == 10 &&
+      At(filter, "distance_m", 1, 0) == 20.0,
     "with echoes a cell shows the beam of the strongest");
 
   // Three azimuths and two elevations, but four beams: two cells have none.
   auto report = Report();
   report->GetPointData()->GetArray("vertical_angle")->SetComponent(3, 0, 1.0);
-  filter->SetInputData(1, report);
-  filter->SetRows(2);
-  filter->Update();
-  image = filter->GetOutput();
-  Check(At(image, "status", 0, 1) == -1 && At(image, "nodes_visited", 2, 1) == -1 &&
-      std::isnan(At(image, "skipped_bound", 2, 1)) && At(image, "status", 1, 1) == 3,
+  Run(filter, Echoes(), report, 3, 2);
+  Check(At(filter, "status", 0, 1) == -1 && At(filter, "nodes_visited", 2, 1) == -1 &&
+      std::isnan(At(filter, "skipped_bound", 2, 1)) && At(filter, "status", 1, 1) == 3,
     "cells without a beam");
 }
 
 // What the pipeline announces, or the properties, has to be the grid of the beams.
 void TestSize()
 {
-  for (const auto& [columns, rows] : { std::pair(0, 0), { 3, 0 }, { 1, 3 }, { 3, 1 } })
+  for (const auto& [columns, rows] : { std::pair(0, 0), { 3, 0 }, { 1, 3 } })
   {
     vtkNew<Filter> filter;
-    checks::Heard heard(filter);
-    filter->SetInputData(0, Echoes({}));
+    filter->SetInputData(0, Echoes());
     filter->SetInputData(1, Report());
     filter->SetColumns(columns);
     filter->SetRows(rows);
-    filter->Update();
-    const bool good = rows == 1;
-    Check(good ? heard.Nothing() : heard.ErrorHas("form 3 columns and 1 rows"), "size");
-    Check(filter->GetOutput()->GetNumberOfPoints() == (good ? 3 : 0), "size of the image");
+    checks::CheckFails(filter, "form 3 columns and 1 rows");
   }
-}
-
-void TestNoBeams()
-{
+  // Without beams it is the size that was announced.
   vtkNew<Filter> filter;
   checks::Heard heard(filter);
   vtkNew<vtkPolyData> nothing;
-  filter->SetInputData(0, nothing);
-  filter->SetInputData(1, nothing);
-  filter->Update();
+  Run(filter, nothing, nothing, 0, 0);
   Check(filter->GetOutput()->GetNumberOfPoints() == 0, "no beams: no image");
-  filter->SetColumns(3);
-  filter->SetRows(2);
-  filter->Update();
-  vtkImageData* image = filter->GetOutput();
-  int extent[6];
-  image->GetExtent(extent);
-  Check(std::equal(extent, extent + 6,
-          filter->GetOutputInformation(0)->Get(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT())),
-    "no beams: the size that was announced");
-  Check(heard.Nothing(), "no beams: no error");
-  Check(image->GetNumberOfPoints() == 6 && std::isnan(At(image, "distance_m", 2, 1)) &&
-      At(image, "object_id", 0, 0) == -1,
+  Run(filter, nothing, nothing, 3, 2);
+  Check(heard.Nothing() && filter->GetOutput()->GetNumberOfPoints() == 6 &&
+      std::isnan(At(filter, "distance_m", 2, 1)) && At(filter, "object_id", 0, 0) == -1,
     "no beams: cells without an echo");
 }
 
 // Arrays of wrong values are tested in TestBadInput.py.
 void TestBadInput()
 {
-  using Spoil = std::function<void(vtkPointData * echoes, vtkPointData * beams)>;
-  const std::vector<std::pair<const char*, Spoil>> cases = {
-    { "'beam_id'", [](auto* e, auto*) { e->RemoveArray("beam_id"); } },
-    { "'energy_received'", [](auto* e, auto*) { e->RemoveArray("energy_received"); } },
-    { "'distance_m'", [](auto* e, auto*) { e->RemoveArray("distance_m"); } },
-    { "'energy'", [](auto* e, auto*) { e->RemoveArray("energy"); } },
-    { "'object_id'", [](auto* e, auto*) { e->RemoveArray("object_id"); } },
-    { "'vertical_angle'", [](auto*, auto* b) { b->RemoveArray("vertical_angle"); } },
+  using Data = vtkPointData*;
+  const std::pair<const char*, void (*)(Data echoes, Data beams)> cases[] = {
+    { "'beam_id'", [](Data e, Data) { e->RemoveArray("beam_id"); } },
+    { "'energy_received'", [](Data e, Data) { e->RemoveArray("energy_received"); } },
+    { "'distance_m'", [](Data e, Data) { e->RemoveArray("distance_m"); } },
+    { "'energy'", [](Data e, Data) { e->RemoveArray("energy"); } },
+    { "'object_id'", [](Data e, Data) { e->RemoveArray("object_id"); } },
+    { "'vertical_angle'", [](Data, Data b) { b->RemoveArray("vertical_angle"); } },
     { "'direction'",
-      [](auto*, auto* b)
+      [](Data, Data b)
       {
         for (const char* name : { "vertical_angle", "azimuth", "direction" })
         {
@@ -290,11 +250,10 @@ void TestBadInput()
         }
       } },
     { "no beam of input port 1",
-      [](auto* e, auto*) { e->GetArray("beam_id")->SetComponent(0, 0, 99999.0); } },
-    { "two beams", [](auto*, auto* b) { b->GetArray("beam_id")->SetComponent(5, 0, 4.0); } },
-    { "beam 9", [](auto*, auto* b) { b->GetArray("azimuth")->SetComponent(9, 0, NAN); } },
+      [](Data e, Data) { e->GetArray("beam_id")->SetComponent(0, 0, 99999.0); } },
+    { "two beams", [](Data, Data b) { b->GetArray("beam_id")->SetComponent(5, 0, 4.0); } },
     { "no grid",
-      [](auto*, auto* b)
+      [](Data, Data b)
       {
         for (vtkIdType i = 0; i < b->GetNumberOfTuples(); ++i)
         {
@@ -309,18 +268,14 @@ void TestBadInput()
   {
     vtkNew<vtkPolyData> beams;
     beams->DeepCopy(source->GetOutput());
-    auto echoes = Echoes({ { 16, 50.0, 1e-5, 4 } });
+    auto echoes = Echoes({ 16 }, { 50.0 }, { 1e-5 }, { 4 });
     spoil(echoes->GetPointData(), beams->GetPointData());
     vtkNew<Filter> filter;
-    checks::Heard heard(filter);
     filter->SetInputData(0, echoes);
     filter->SetInputData(1, beams);
     filter->SetColumns(960);
     filter->SetRows(16);
-    filter->Update();
-    Check(heard.ErrorHas(words), std::string(words) + " is named");
-    Check(filter->GetOutput()->GetPointData()->GetNumberOfArrays() == 0,
-      std::string(words) + ": the image is empty");
+    checks::CheckFails(filter, words);
   }
 }
 }
@@ -331,7 +286,6 @@ int TestRangeImage(int, char*[])
   TestOtherBeams();
   TestReport();
   TestSize();
-  TestNoBeams();
   TestBadInput();
   return checks::Result();
 }

@@ -8,18 +8,17 @@ import traceback
 
 import numpy as np
 import vtk
-from vtk.util import numpy_support
 from vtkmodules.vtkParallelCore import vtkMultiProcessController
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "Python"))
 
+import cloudtools  # noqa: E402
 import echotools  # noqa: E402
 
 CONTROLLER = vtkMultiProcessController.GetGlobalController()
 RANK = CONTROLLER.GetLocalProcessId()
 RANKS = CONTROLLER.GetNumberOfProcesses()
 LAST = RANKS - 1
-TAG = 5381
 
 
 def main(tests):
@@ -60,26 +59,16 @@ def update(algorithm):
 def exchange(text):
     """The texts of all ranks, by rank, on every rank."""
     mine = vtk.vtkPolyData()
-    array = vtk.vtkStringArray()
-    array.SetName("text")
-    array.InsertNextValue(text)
-    mine.GetFieldData().AddArray(array)
+    cloudtools.add_field(mine, "text", [text])
     return [part.GetFieldData().GetAbstractArray("text").GetValue(0) for part in collect(mine)]
 
 
 def collect(data):
     """The data of all ranks, by rank, on every rank."""
-    parts = []
-    for sender in range(RANKS):
-        part = vtk.vtkPolyData()
-        if sender == RANK:
-            part.ShallowCopy(data)
-            for receiver in range(RANKS):
-                if receiver != sender:
-                    CONTROLLER.Send(data, receiver, TAG)
-        else:
-            CONTROLLER.Receive(part, sender, TAG)
-        parts.append(part)
+    parts = [vtk.vtkPolyData() for _ in range(RANKS)]
+    parts[RANK].ShallowCopy(data)
+    for sender, part in enumerate(parts):
+        CONTROLLER.Broadcast(part, sender)
     return parts
 
 
@@ -93,7 +82,7 @@ def joined(data):
     for part in collect(data):
         for name, values in point_arrays(part).items():
             columns.setdefault(name, []).append(values)
-    return in_order({name: np.concatenate(values) for name, values in columns.items()})
+    return in_order({name: np.concatenate(values) for name, values in columns.items()}) if columns else {}
 
 
 def blocks_of(blocks, mine):
@@ -108,33 +97,26 @@ def blocks_of(blocks, mine):
 
 def table(ids):
     """Some beams of the sensor as anyone's script would make them."""
-    source, beams = echotools.sensor(), vtk.vtkPolyData()
+    source = echotools.sensor()
     source.Update()
     whole = source.GetOutput()
-    points = vtk.vtkPoints()
-    points.SetDataTypeToDouble()
+    beams = cloudtools.cloud([whole.GetPoint(beam) for beam in ids])
     beams.GetPointData().CopyAllocate(whole.GetPointData())
     for i, beam in enumerate(ids):
-        points.InsertNextPoint(whole.GetPoint(beam))
         beams.GetPointData().CopyData(whole.GetPointData(), beam, i)
-    beams.SetPoints(points)
     beams.GetFieldData().PassData(whole.GetFieldData())
     return beams
 
 
 def point_arrays(data):
-    points = data.GetPointData()
-    arrays = {}
-    for i in range(points.GetNumberOfArrays()):
-        arrays[points.GetArrayName(i)] = numpy_support.vtk_to_numpy(points.GetArray(i)).copy()
-    if data.GetNumberOfPoints():
-        arrays["points"] = numpy_support.vtk_to_numpy(data.GetPoints().GetData()).copy()
-    return {name: values for name, values in arrays.items() if len(values)}
+    """Point arrays and points, without those that are empty."""
+    return {name: values for name, values in echotools.arrays(data).items() if len(values)}
 
 
 def in_order(arrays):
+    """By beam and return, or by all that there is."""
     keys = [arrays[name] for name in ("return_number", "beam_id") if name in arrays]
-    order = np.lexsort(keys) if keys else []
+    order = np.lexsort(keys or [column for name in sorted(arrays) for column in np.atleast_2d(arrays[name].T)])
     return {name: values[order] for name, values in arrays.items()}
 
 

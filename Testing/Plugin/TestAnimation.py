@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Time through the plugin: the time keeper knows the steps, the animation goes through them, a static scene without
-steps to play stays as it is, series of files move, and what is saved says which revolution it is of.
+steps to play stays as it is, and what is saved says which revolution it is of.
 
 Run by pvpython in one process and by pvbatch on two ranks (the argument)."""
 
@@ -164,41 +164,6 @@ def test_saving_every_step(kind):
     remove(f"TestAnimation-{kind}_?*")
 
 
-def series(name, sources):
-    """Files of the sources, in turn; their reader."""
-    files = []
-    for k, source in enumerate(sources):
-        source.UpdatePipeline()
-        files.append(os.path.join(OUTPUT_DIR, f"TestAnimation{name}".replace(".", f"_{k}.")))
-        simple.SaveData(files[-1], proxy=source, DataMode="Binary")
-    return simple.OpenDataFile(files)
-
-
-def test_a_clutter_filter_learns_while_it_plays(kind):
-    """A ball that stands and one that moves, whatever executes again meanwhile."""
-    fresh()
-    balls = ([simple.Sphere(Radius=2, Center=center) for center in ([-30, 60, 0], [30, 60 + 12 * k, 0])] for k in range(4))
-    cloud = series(f"Clutter.{kind}", (simple.AppendDatasets(Input=pair) for pair in balls))
-    clutter = simple.AvianLidarClutterFilter(Input=cloud, WarmUp=0)
-    view = simple.CreateRenderView()
-    for port in (0, 1):
-        simple.Show(simple.OutputPort(clutter, port), view)
-    scene = played()
-    scene.ViewModules = [view]
-
-    def look():
-        simple.Render(view)
-        clutter.ClutterThreshold = 0.05 if clutter.ClutterThreshold == 0.06 else 0.06  # executes again
-        count(clutter)
-        return (*clutter.PointData["clutter_probability"].GetRange(), clutter.FieldData["learned_scans"].GetRange()[0])
-
-    seen = frames_of(scene, look)
-    assert seen == [(0.0, float(k > 0), k + 1.0) for k in range(4)], seen
-    scene.GoToFirst()
-    assert look() == (0.0, 0.0, 1.0)
-    remove("TestAnimationClutter_?*")
-
-
 def main():
     ranks = int(sys.argv[1]) if len(sys.argv) > 1 else 1
     assert vtkMultiProcessController.GetGlobalController().GetNumberOfProcesses() == ranks
@@ -208,7 +173,6 @@ def main():
     test_sweeps()
     test_a_moving_scene()
     test_saving_every_step(kind)
-    test_a_clutter_filter_learns_while_it_plays(kind.replace("vtp", "vtu"))
 
 
 if __name__ == "__main__":

@@ -59,40 +59,27 @@ def test_macro():
     view = simple.CreateRenderView()
     assert macro.colour(echoes, view) == LIMITS
     display = simple.GetDisplayProperties(echoes, view)
-    assert display.Representation == "Points"
-    assert list(display.ColorArrayName) == ["POINTS", "energy"]
+    assert (list(display.ColorArrayName), display.Representation) == (["POINTS", "energy"], "Points")
     table = simple.GetColorTransferFunction("energy")
     assert_eq_13(table)
-    # New data, other energies: the range stays.
-    beams.PulseEnergy = 1e-4
-    echoes.ReturnMode = "Last"
+    # New data, other energies: the range stays. Other limits of the receiver: the macro follows them.
+    beams.PulseEnergy, echoes.ReturnMode = 1e-4, "Last"
     simple.Render(view)
     assert (table.RGBPoints[0], table.RGBPoints[-4]) == LIMITS
-    # Other limits of the receiver: the macro follows them.
     beams.UpperEnergyLimit = 5e-5
-    assert macro.colour(echoes, view) == (2e-6, 5e-5)
-    assert (table.RGBPoints[0], table.RGBPoints[-4]) == (2e-6, 5e-5)
-
-
-def test_macro_on_a_range_image():
-    """In a view of its own, stretched, with a legend in a unit."""
-    macro = load_macro()
-    _, _, beams, echoes = airport(60)
-    view = simple.CreateRenderView()
+    assert macro.colour(echoes, view) == (2e-6, 5e-5) == (table.RGBPoints[0], table.RGBPoints[-4])
+    # A range image: in a view of its own, stretched; it is in sight, and below it as much again as half its height.
     image = simple.AvianLidarRangeImage(Echoes=echoes, Beams=beams)
-    assert macro.colour(image) == LIMITS
+    assert macro.colour(image) == (2e-6, 5e-5)
     own = simple.GetActiveView()
     assert own != view and own.InteractionMode == "2D"
-    assert simple.GetLayout(own).GetViewLocation(own) >= 0  # else the window does not show it
+    assert simple.GetLayout(own).GetViewLocation(own) >= 0  # else no window shows it
     display = simple.GetDisplayProperties(image, own)
     assert (list(display.ColorArrayName), display.Representation) == (["POINTS", "energy"], "Slice")
     assert abs(display.Scale[1] - 354 / (4 * 5.625)) < 1e-9
-    # All of the image is in sight, and below it as much again as half its height.
     height, middle = 354 / 4, display.Scale[1] * 5.625 / 2
     above, below = (sign * (own.CameraFocalPoint[1] - middle) + own.CameraParallelScale for sign in (1, -1))
     assert above > height / 2 and below > height, (above, below, height)
-    bar = simple.GetScalarBar(simple.GetColorTransferFunction("energy"), own)
-    assert (bar.Title, bar.Visibility) == ("energy (J)", 1)
 
 
 def test_what_has_no_colours():
@@ -112,31 +99,22 @@ def test_what_has_no_colours():
     assert len(view.Representations) == 0, view.Representations
 
 
-def check_status_colours(display):
-    """Five values, five words, five colours, and the image or points that wear them."""
-    assert list(display.ColorArrayName) == ["POINTS", "status"]
-    table = simple.GetColorTransferFunction("status")
-    words = [text for i, name in enumerate(STATUS) for text in (str(i), name)]
-    assert list(table.Annotations) == words and table.InterpretValuesAsCategories
-    assert len({tuple(table.IndexedColors[i : i + 3]) for i in range(0, 15, 3)}) == 5
-
-
 def test_status_macro():
+    """Five values, five words, five colours: of a filter that has a report, of the report, and on a map."""
     macro = load_macro("avian_lidar_status_colours")
     _, _, _, echoes = airport(60)
-    view = simple.CreateRenderView()
-    # Of a filter that has a report, and of the report.
-    for source in (echoes, simple.OutputPort(echoes, 1)):
-        display = macro.colour(source, view)
-        assert display.Representation == "Points" and display.Input.Port == 1
-        check_status_colours(display)
-    # Of a map, in a view of its own.
-    image = simple.AvianLidarRangeImage(Echoes=echoes, Beams=simple.OutputPort(echoes, 1))
-    display = macro.colour(image)
-    check_status_colours(display)
-    assert display.Representation == "Slice" and simple.GetActiveView() != view
-    assert abs(display.Scale[1] - 354 / (4 * 5.625)) < 1e-9
+    view, report = simple.CreateRenderView(), simple.OutputPort(echoes, 1)
+    image = simple.AvianLidarRangeImage(Echoes=echoes, Beams=report)
+    for source in (echoes, report, image):
+        display = macro.colour(source, None if source is image else view)
+        assert list(display.ColorArrayName) == ["POINTS", "status"]
+        table = simple.GetColorTransferFunction("status")
+        assert list(table.Annotations) == [text for i, name in enumerate(STATUS) for text in (str(i), name)]
+        colours = {tuple(table.IndexedColors[i : i + 3]) for i in range(0, 15, 3)}
+        assert table.InterpretValuesAsCategories and len(colours) == 5
+        assert source is image or (display.Representation == "Points" and display.Input.Port == 1)
     own = simple.GetActiveView()
+    assert display.Representation == "Slice" and own != view
     macro.colour(image)
     assert simple.GetActiveView() == own  # where it is shown already
 
@@ -147,6 +125,5 @@ if __name__ == "__main__":
     load_plugin()
     test_plugin_brings_the_presets()
     test_macro()
-    test_macro_on_a_range_image()
     test_what_has_no_colours()
     test_status_macro()

@@ -154,9 +154,9 @@ def follow(scan, count, names=None):
 
 
 def live():
-    """Two steps of each kind of widget, on a few beams."""
+    """Two steps of a slider and of a number, of three objects, on a few beams."""
     yield from delete_all()
-    names = ("Attenuation Coefficient, up", "Kd", "Lower Energy Limit, up", "Noise", "Return Mode")
+    names = ("Attenuation Coefficient, up", "Kd", "Lower Energy Limit, up")
     yield from follow(Scan(AzimuthStep=6), 2, names)
 
 

@@ -89,23 +89,8 @@ def pages(parent, name):
     assert not cut and panel().width() <= WIDTH, (cut, panel().width())
 
 
-def check_samples():
-    """texts_cut() finds texts without enough room."""
-    text, parent = "Greatest wavelength", QtWidgets.QWidget()
-    widgets = [QtWidgets.QLabel(text, parent), QtWidgets.QLineEdit(text, parent), QtWidgets.QCheckBox(text, parent)]
-    widgets += [QtWidgets.QComboBox(parent), QtWidgets.QLabel(f"<p>{text} {text}</p>", parent)]
-    widgets[3].addItems(["short", text])
-    widgets[4].setWordWrap(True)
-    for widget in widgets:
-        widget.setFixedSize(60, 20)
-    parent.show()
-    assert len(texts_cut(parent)) == 5, texts_cut(parent)
-    parent.hide()
-
-
 def panels():
     yield from delete_all()
-    check_samples()
     find("pipelineBrowserDock").setVisible(not client_window.DOCUMENTED)  # leaves its height to the panel
     pipeline = Pipeline()
     for group in ("sources", "filters"):

@@ -9,7 +9,7 @@ import numpy
 from choices_steps import beam, sensors, undo, wizard
 from client_qt import QtCore, QtTest, QtWidgets
 from client_window import (AIRPORT, action, app, apply, apply_button, apply_value, canvas, delete_all, dialog_of, find, later, main_window,
-                           menu, panel, panel_of, photo, pixels, points_of, press, run, shown, take, until)
+                           menu, panel, photo, pixels, points_of, press, run, shown, take, until)
 from error_steps import cases, walks
 from live_steps import live
 from panel_steps import advise, panels
@@ -68,19 +68,6 @@ def start():
     assert simple.GetActiveSource() == scan and points_of(scan) > 1000
 
 
-def question_mark():
-    """In the panel of the selected object: its page of the help."""
-    yield from panel_of(simple.FindSource("Airport 16"), "NumberOfChannels")
-    find("Help", QtWidgets.QAbstractButton, panel()).click()
-
-    def page():
-        top = next((one for one in app.topLevelWidgets() if one.metaObject().className() == "pqHelpWindow"), None)
-        browser = top and top.findChild(QtWidgets.QTextBrowser)
-        return browser and "AvianLidarAirport16" in browser.toPlainText() and top
-
-    (yield from until(page, "the page of the selected object")).close()
-
-
 def information():
     """What a scan left out and why is in the Information panel: each note a line of its own, whole."""
     scan = simple.FindSource("Scan")
@@ -88,27 +75,28 @@ def information():
     fields = servermanager.Fetch(scan).GetFieldData()
     arrays = [fields.GetAbstractArray(i) for i in range(fields.GetNumberOfArrays())]
     expected = {one.GetName(): one.GetValue(0) for one in arrays if one.GetName().startswith("note_")}
-    dock = next(one for one in main_window().findChildren(QtWidgets.QDockWidget) if one.windowTitle() == "Information")
-    find("pipelineBrowserDock").hide()  # leaves its height to the panel
+    browser, window = find("pipelineBrowserDock"), main_window()
+    dock = next(one for one in window.findChildren(QtWidgets.QDockWidget) if one.windowTitle() == "Information")
+    browser.hide()  # leaves its height to the panel
     dock.show()
     dock.raise_()
-    main_window().resizeDocks([dock], [1000], QtCore.Qt.Orientation.Horizontal)
+    window.resizeDocks([dock], [1000], QtCore.Qt.Orientation.Horizontal)
     yield 0.5
     table = next(one for one in dock.findChildren(QtWidgets.QTreeView) if one.objectName() == "dataArraysTable")
+    model = table.model()
 
     def notes():
-        lines = [[table.model().index(row, column) for column in (0, 2)] for row in range(table.model().rowCount())]
-        found = {name.data(): (text.data(), name) for name, text in lines if name.data().startswith("note_")}
-        return found
+        lines = [[model.index(row, column) for column in (0, 2)] for row in range(model.rowCount())]
+        return {name.data(): (text.data(), name) for name, text in lines if name.data().startswith("note_")}
 
     found = yield from until(notes, "notes in the Information panel")
     assert len(expected) > 5 and {name: text for name, (text, _) in found.items()} == expected, (found, expected)
     table.scrollTo(next(iter(found.values()))[1], QtWidgets.QAbstractItemView.ScrollHint.PositionAtTop)
     yield 0.5
     photo("information.png", dock, table)
-    main_window().resizeDocks([dock], [290], QtCore.Qt.Orientation.Horizontal)
+    window.resizeDocks([dock], [290], QtCore.Qt.Orientation.Horizontal)
     find("propertiesDock").raise_()
-    main_window().findChild(QtWidgets.QDockWidget, "pipelineBrowserDock").show()
+    browser.show()
     yield 0.3
 
 
@@ -139,34 +127,6 @@ def image():
     yield from delete_all()
     simple.Delete(own)
     yield 0.3
-
-
-def progress():
-    """The status bar follows a scan."""
-    beams = simple.AvianLidarAirport32(Position=[0, 0, 3], AzimuthStep=4)
-    scan = simple.AvianLidarEchoFilter(Beams=beams, Surfaces=simple.OpenDataFile(AIRPORT), Preset="Reference", NumberOfThreads=1)
-    handler, bar, said = servermanager.ActiveConnection.Session.GetProgressHandler(), find("ProgressBar"), []
-    painted = []
-
-    class Watch(QtCore.QObject):
-        def eventFilter(self, _, event):
-            if event.type() == QtCore.QEvent.Type.Paint:
-                painted.append(bar.isVisible())
-            return False
-
-    watch = Watch(main_window())
-    bar.installEventFilter(watch)
-    usual = handler.GetProgressInterval()
-    handler.SetProgressInterval(0.01)  # s between two events that are shown, the least: on a fast machine there are few
-    tag = handler.AddObserver("ProgressEvent", lambda *_: said.append((handler.GetLastProgressText(), handler.GetLastProgress())))
-    yield 0.2
-    simple.Show(scan)
-    handler.RemoveObserver(tag)
-    handler.SetProgressInterval(usual)
-    bar.removeEventFilter(watch)
-    percents = [percent for text, percent in said if FILTER in text]
-    assert percents == sorted(percents) and len({*percents}) > 5 and sum(painted) > 3, (percents, painted)
-    yield from delete_all()
 
 
 def quick_launch(word):
@@ -274,7 +234,7 @@ def documentation():
 
 
 def failures():
-    yield from cases("Sensor", "Scene")
+    yield from cases("Sensor")
 
 
 def loaded_before():
@@ -292,5 +252,5 @@ if "PV_PLUGIN_CONFIG_FILE" in os.environ:
     run(loaded_before, undo)
 else:
     # Last what leaves Auto Apply on.
-    run(start, question_mark, information, beam, image, progress, echo_filter, unapplied, sensors, wizard, walks, failures, advise,
+    run(start, information, beam, image, echo_filter, unapplied, sensors, wizard, walks, failures, advise,
         panels, documentation, live)
