@@ -56,7 +56,13 @@ std::unique_ptr<CellSamples> ViewFinder::findCrowded(
   const BlockHits& found = this->Tracer.traceBlock(block, this->Setup.settings.traceMode);
   addCounters(found.counters[0], cost);
   const std::uint32_t* const triangles = found.triangles[0];
-  return triangles ? this->Cells.find(triangles) : std::make_unique<CellSamples>();
+  std::unique_ptr<CellSamples> cells =
+    triangles ? this->Cells.find(triangles) : std::make_unique<CellSamples>();
+  if (cells)
+  {
+    cells->isCrowded = true;
+  }
+  return cells;
 }
 
 /// True if a border of a medium may lie in a beam: samples of polygons do not say in which part of
