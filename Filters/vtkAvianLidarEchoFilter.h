@@ -79,7 +79,9 @@
  * `display_length`, 1000 m without it). Point arrays `beam_id`, `laser_id`, `azimuth` 0.01 deg,
  * `vertical_angle` deg (so that vtkAvianLidarRangeImage makes a map of it); `status` (0 echo, 1 no
  * surface, 2 below the lower limit, 3 saturated, 4 direct echoes, all of them from outside the
- * gate), `candidates` (triangles that were looked at for its rays, once for each packet of up to 64
+ * gate), `view`, how its direct echo was found (1 no triangle enters the beam, 2 integrated over
+ * the visible polygons, 3 cells, 4 rays, 5 cells of a beam that more than 2,000 triangles enter),
+ * `candidates` (triangles that were looked at for its rays, once for each packet of up to 64
  * of them), `nodes_visited`, `rays_traced`; `skipped`, what the model did without, a sum of 1
  * (paths over two reflections, some or all), 2 (everything: all its energy together would not be
  * perceived), 4 (noise), 8 (with 2: all it meets lies beyond `perceivable_range`), 16 (some direct

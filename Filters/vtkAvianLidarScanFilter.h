@@ -107,8 +107,8 @@ public:
   /**
    * How the direct echo of a beam is found; see Documentation/beam-samples.md:
    *
-   * - BEAM_SAMPLES_CELLS: a beam that few triangles enter (at most 100 to 200, and no more than
-   *   RaysPerBeam) is integrated over the polygons that it sees, without rays; its
+   * - BEAM_SAMPLES_CELLS: a beam that few triangles enter (at most 100, up to 200 from 5,000
+   *   RaysPerBeam on) is integrated over the polygons that it sees, without rays; its
    *   `energy_std_error` is a bound of the error (1e-6 to 1e-3 of the energy, more where lines of
    *   equal range are curved). A beam that more enter is divided into cells with a dense grid of
    *   rays (3,217 for RaysPerBeam of 32 to 226), and more where a small object (by `object_id`)

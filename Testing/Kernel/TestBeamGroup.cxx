@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Groups of beams: whole and compact; no triangle that a ray hits lies outside its beam's entry
-// points; beams traced in a block have the hits of single rays.
+// points; beams traced in a block have the hits of single rays; the candidates of a beam hold every
+// hit once.
 #include "BeamGroup.h"
 #include "BeamTracer.h"
+#include "Candidates.h"
 #include "CollisionTreeBuilder.h"
 #include "GeometryTestScene.h"
 #include "InstructionTargets.h"
@@ -261,6 +263,30 @@ TEST(BeamGroup, ABlockOfBeamsHasTheHitsOfSingleRays)
       }
     };
     echotest::forEachInstructionTarget(check);
+    for (const bool together : { true, false })
+    {
+      BeamCandidates candidates;
+      std::vector<std::multiset<std::uint32_t>> lists(frames.size());
+      candidates.begin(*tree, frames.data(), frames.size(), together);
+      while (candidates.next())
+      {
+        EXPECT_TRUE(lists[candidates.beam()].empty());
+        lists[candidates.beam()].insert(
+          candidates.triangles().begin(), candidates.triangles().end());
+      }
+      OneBeamTracer alone(*tree);
+      std::vector<Hit> hits;
+      for (std::size_t b = 0; b < frames.size(); ++b)
+      {
+        alone.setBeam(frames[b]);
+        alone.trace(drawn[b], TraceMode::SingleRays, hits);
+        for (const Hit& hit : hits)
+        {
+          ASSERT_TRUE(!hit.valid() || lists[b].count(hit.triangle) == 1)
+            << "round " << round << " beam " << b << " triangle " << hit.triangle;
+        }
+      }
+    }
   }
 }
 

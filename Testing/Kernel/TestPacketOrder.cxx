@@ -135,7 +135,7 @@ TEST(PacketOrder, RaysThatComeWithTheirNeighboursKeepTheirOrder)
   {
     OneBeamTracer tracer(*tree);
     const BeamBlock block{ &frame, 1, count,
-      [&rays](std::size_t) -> const BeamRays& { return rays; }, nullptr, inOrder };
+      [&rays](std::size_t) -> const BeamRays& { return rays; }, inOrder };
     const BlockHits& found = tracer.traceBlock(block, TraceMode::Automatic);
     triangles.assign(found.triangles[0], found.triangles[0] + count);
     return found.counters[0];

@@ -30,7 +30,7 @@ REPORT_UNITS = {
     "0.01 deg": "azimuth",
     "deg": "vertical_angle",
     "1": "candidates nodes_visited rays_traced",
-    "": "beam_id laser_id status skipped",
+    "": "beam_id laser_id status view skipped",
 }
 FIELD_UNITS = {
     "m": "position display_length range_gate perceivable_range range_noise range_noise_floor range_walk range_quantum minimum_range overlap_range defocus_range",

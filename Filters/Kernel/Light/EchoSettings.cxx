@@ -135,11 +135,9 @@ std::string checkUnits(const Sensor& sensor, const EchoSettings& settings)
 
 std::size_t mostTrianglesIntegrated(const EchoSettings& settings)
 {
-  const double rays = settings.raysPerBeam;
-  const double most = std::clamp(TrianglesPerRay * rays, FewTriangles, ManyTriangles);
-  return settings.beamSamples == BeamSampleSource::Cells
-    ? static_cast<std::size_t>(std::min(rays, most))
-    : 0;
+  const double most =
+    std::clamp(TrianglesPerRay * settings.raysPerBeam, FewTriangles, ManyTriangles);
+  return settings.beamSamples == BeamSampleSource::Cells ? static_cast<std::size_t>(most) : 0;
 }
 
 std::string checkSettings(const EchoSettings& s)

@@ -27,8 +27,8 @@ namespace avianlidar
 /// Largest EchoSettings::lightEnergyFraction: as many paths as a beam may have.
 constexpr double MaximumLightEnergyFraction = 1e8;
 
-/// Most triangles that an integrated beam may meet: N/50, but no fewer and no more than these, and
-/// never more than N. Beyond, cells take less time for the same error.
+/// Most triangles that an integrated beam may meet: N/50, but no fewer and no more than these.
+/// Beyond, cells take less time for the same error.
 constexpr double FewTriangles = 100.0;
 constexpr double ManyTriangles = 200.0;
 constexpr double TrianglesPerRay = 1.0 / 50.0;

@@ -5,55 +5,33 @@
 
 namespace avianlidar
 {
-namespace
-{
-/// @param cells null if they have too many strips: rays take their place @return false then
-bool seeCells(std::unique_ptr<CellSamples> cells, BeamTrace& trace)
-{
-  const bool fits = cells != nullptr;
-  trace.view = fits ? BeamView(std::move(cells)) : BeamView(RaysAlone{});
-  return fits;
-}
-}
-
-void addCounters(const TraceCounters& more, TraceCounters& sum)
-{
-  sum.nodesVisited += more.nodesVisited;
-  sum.raysTraced += more.raysTraced;
-  sum.candidates = std::max(sum.candidates, more.candidates);
-}
-
 ScanBlock::ScanBlock(const ScanSetup& setup, const ScanBeams& beams, BeamSampler& sampler)
   : Setup(setup)
   , Width(BeamShape(setup.sensor).width())
   , Beams(beams)
   , Sampler(sampler)
   , Tracer(*setup.tree)
-  , Polygons(*setup.tree, this->Width.isRound ? mostTrianglesIntegrated(setup.settings) : 0,
-      MostTrianglesOfCells)
-  , Quadrature(setup)
-  , Cells(setup)
+  , Views(setup, this->Tracer)
 {
 }
 
 void ScanBlock::followSurfaces()
 {
   this->Tracer.follow(*this->Setup.tree);
-  this->Polygons.follow(*this->Setup.tree);
-  this->Cells.followSurfaces();
+  this->Views.followSurfaces();
   this->Finder.forget();
 }
 
 std::size_t ScanBlock::trace(std::size_t begin, std::size_t end, std::vector<BeamTrace>& traces)
 {
   this->First = begin;
-  this->Traces = &traces;
   this->GeometryBeam = NoBeam;
   this->TracerBeam = NoBeam;
   this->Slots.resize(std::max(this->Slots.size(), end - begin));
   this->Frames.clear();
   this->Traced.clear();
-  this->Crowded.clear();
+  this->FramesOfRays.clear();
+  this->TracedRays.clear();
   for (std::size_t beam = begin; beam < end; ++beam)
   {
     Slot& slot = this->slotOf(beam);
@@ -68,37 +46,26 @@ std::size_t ScanBlock::trace(std::size_t begin, std::size_t end, std::vector<Bea
       this->Traced.push_back(beam);
     }
   }
-  if (this->Traced.empty())
+  if (this->Setup.settings.beamSamples == BeamSampleSource::Rays)
   {
-    return 0;
+    for (const std::size_t beam : this->Traced)
+    {
+      traces[beam].view = RaysAlone{};
+    }
+    this->FramesOfRays = this->Frames;
+    this->TracedRays = this->Traced;
   }
-  const bool rays = this->Setup.settings.beamSamples == BeamSampleSource::Rays;
-  const std::uint32_t count = tracedRaysOf(this->Setup.settings);
-  const BeamBlock block{ this->Frames.data(), this->Frames.size(), count,
-    [this](std::size_t k) -> const BeamRays& { return this->raysOf(this->Traced[k]); },
-    rays ? nullptr : this };
-  const BlockHits& found = this->Tracer.traceBlock(block, this->Setup.settings.traceMode);
-  for (std::size_t k = 0; k < this->Traced.size(); ++k)
+  else
   {
-    Slot& slot = this->slotOf(this->Traced[k]);
-    BeamTrace& trace = traces[this->Traced[k]];
-    avianlidar::addCounters(found.counters[k], slot.counters);
-    if (trace.direct() == DirectEcho::Unknown) // if pre-tested: no triangle may meet its group
-    {
-      trace.view = rays ? BeamView(RaysAlone{}) : BeamView(NoSurfaces{});
-    }
-    if (const std::uint32_t* const triangles = found.triangles[k])
-    {
-      slot.triangles.assign(triangles, triangles + count);
-    }
+    this->findViews(traces);
   }
-  this->traceCells();
+  this->traceRays();
   for (const std::size_t beam : this->Traced)
   {
     if (this->lacksStarts(traces[beam]) && this->slotOf(beam).triangles.empty())
     {
       traces[beam].hits = std::make_unique<BeamSamples>(); // no path starts
-      traces[beam].hits->rays = count;
+      traces[beam].hits->rays = tracedRaysOf(this->Setup.settings);
     }
   }
   return this->Traced.size();
@@ -111,100 +78,50 @@ bool ScanBlock::lacksStarts(const BeamTrace& trace) const
   return trace.cells() && !trace.hits && this->Setup.settings.numberOfReflections > 1;
 }
 
-/// Trace the N rays of a beam.
-void ScanBlock::traceRays(std::size_t beam)
+/// Find the views of the beams being traced, and which of them need rays.
+void ScanBlock::findViews(std::vector<BeamTrace>& traces)
 {
-  const BeamRays& rays = this->raysOf(beam);
-  const BlockHits& found = this->traceAll(beam, rays, false);
-  if (const std::uint32_t* const triangles = found.triangles[0])
+  for (const std::size_t beam : this->Traced)
   {
-    this->slotOf(beam).triangles.assign(triangles, triangles + rays.size());
-  }
-}
-
-/// Trace some rays of a beam.
-const BlockHits& ScanBlock::traceAll(std::size_t beam, const BeamRays& rays, bool inOrder)
-{
-  const BeamBlock block{ &this->frameOf(beam), 1, static_cast<std::uint32_t>(rays.size()),
-    [&rays](std::size_t) -> const BeamRays& { return rays; }, nullptr, inOrder };
-  const BlockHits& found = this->Tracer.traceBlock(block, this->Setup.settings.traceMode);
-  avianlidar::addCounters(found.counters[0], this->slotOf(beam).counters);
-  return found;
-}
-
-/// Trace the rays of the cells of beams that too many triangles enter for lists.
-void ScanBlock::traceCells()
-{
-  for (CrowdedBeam& crowded : this->Crowded)
-  {
-    BeamTrace& trace = (*this->Traces)[crowded.beam];
-    const BeamFrame& frame = this->frameOf(crowded.beam);
-    const BeamRays& rays =
-      this->Cells.place(this->Beams.ids[crowded.beam], frame, crowded.triangles);
-    const BlockHits& found = this->traceAll(crowded.beam, rays, true);
-    const std::uint32_t* const triangles = found.triangles[0];
-    if (!seeCells(triangles ? this->Cells.find(triangles) : std::make_unique<CellSamples>(), trace))
+    if (traces[beam].direct() == DirectEcho::Unknown)
     {
-      this->traceRays(crowded.beam);
+      traces[beam].view = NoSurfaces{};
+    }
+  }
+  this->Candidates.begin(*this->Setup.tree, this->Frames.data(), this->Frames.size(),
+    this->Setup.settings.traceMode == TraceMode::Automatic);
+  while (this->Candidates.next())
+  {
+    const std::size_t beam = this->Traced[this->Candidates.beam()];
+    Slot& slot = this->slotOf(beam);
+    slot.counters.nodesVisited += this->Candidates.nodesVisited();
+    BeamTrace& trace = traces[beam];
+    trace.view = this->Views.find(
+      this->Beams.ids[beam], *slot.frame, this->Candidates.triangles(), slot.counters);
+    if (trace.direct() == DirectEcho::Rays || this->lacksStarts(trace))
+    {
+      this->FramesOfRays.push_back(*slot.frame);
+      this->TracedRays.push_back(beam);
     }
   }
 }
 
-void ScanBlock::begin(std::size_t beam)
+/// Trace the rays of beams.
+void ScanBlock::traceRays()
 {
-  this->PreTested = this->Traced[beam];
-  this->Polygons.begin(this->frameOf(this->PreTested));
-}
-
-void ScanBlock::leaf(const std::uint32_t* triangles, std::uint32_t count)
-{
-  this->Polygons.add(triangles, count);
-}
-
-/// Choose how the direct echo is found.
-bool ScanBlock::end()
-{
-  const std::size_t beam = this->PreTested;
-  BeamTrace& trace = (*this->Traces)[beam];
-  const BeamFrame& frame = this->frameOf(beam);
-  std::unique_ptr<VisiblePolygons> polygons;
-  const SeenByBeam seen = this->Polygons.find(polygons);
-  if (seen == SeenByBeam::Polygons && !this->meetsBorders(frame) &&
-    this->Quadrature.fits(*polygons))
+  const std::uint32_t count = tracedRaysOf(this->Setup.settings);
+  const BeamBlock block{ this->FramesOfRays.data(), this->FramesOfRays.size(), count,
+    [this](std::size_t k) -> const BeamRays& { return this->raysOf(this->TracedRays[k]); } };
+  const BlockHits& found = this->Tracer.traceBlock(block, this->Setup.settings.traceMode);
+  for (std::size_t k = 0; k < this->TracedRays.size(); ++k)
   {
-    trace.view = std::move(polygons);
-    return true;
-  }
-  if (seen == SeenByBeam::Nothing)
-  {
-    trace.view = NoSurfaces{};
-    return true;
-  }
-  const std::vector<const BeamSurface*>& candidates = this->Polygons.candidates();
-  if (candidates.empty())
-  {
-    this->Numbers.clear();
-    this->Polygons.entering().appendNumbers(this->Numbers);
-    this->Cells.leaveSmallObjects(this->Beams.ids[beam], frame, this->Numbers);
-    this->Crowded.push_back({ beam, this->Numbers });
-    trace.view = std::make_unique<CellSamples>(); // until its rays are traced
-    return this->Setup.settings.numberOfReflections == 1;
-  }
-  return seeCells(this->Cells.find(this->Beams.ids[beam], frame, candidates), trace) &&
-    this->Setup.settings.numberOfReflections == 1;
-}
-
-/// True if a border of a medium may lie in a beam: samples of polygons do not say in which part of
-/// the beam they lie. What moves may be anywhere.
-bool ScanBlock::meetsBorders(const BeamFrame& frame) const
-{
-  const std::vector<PlacedMedium>& media = this->Setup.placedMedia;
-  return std::any_of(media.begin(), media.end(),
-    [&](const PlacedMedium& placed)
+    Slot& slot = this->slotOf(this->TracedRays[k]);
+    avianlidar::addCounters(found.counters[k], slot.counters);
+    if (const std::uint32_t* const triangles = found.triangles[k])
     {
-      return placed.volume.velocity != Vec3(0.0) ||
-        mayMeetBorder(placed.volume, frame, this->Setup.sensor.rangeGate);
-    });
+      slot.triangles.assign(triangles, triangles + count);
+    }
+  }
 }
 
 const BeamFrame& ScanBlock::frameOf(std::size_t beam)

@@ -1,15 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file ScanBlock.h
- * @brief First stage of a block of beams: finds what each beam sees, as far as that is not kept
- * from an earlier run.
+ * @brief What each beam of a block sees, as far as that is not kept from an earlier run.
  *
- * A beam that few triangles enter is integrated over the polygons that it sees (VisiblePolygons.h,
- * PolygonQuadrature.h), one that more enter is divided into cells (BeamCells.h). Where settings ask
- * for rays, and where cells are too many, rays are traced through the tree.
+ * The triangles that may enter each beam (Candidates.h) give its view (ViewFinder.h). Where
+ * settings ask for rays, where a view has none of its own, and where paths over two reflections
+ * start, rays are traced through the tree (BeamTracer.h).
  *
  * Source: paper, Algorithm 2 and Sec. 3.2.
- * Differs: see the headers named above; the paper draws N rays for every beam.
+ * Differs: see the headers named above.
  * Valid: what is found depends on geometry alone, not on materials, limits or air. The same for any
  * pieces of the beams and any state of what is kept.
  * Test: TestScan.cxx, TestScanAgain.cxx, TestPolygonScan.cxx, TestBeamCells.cxx.
@@ -17,13 +16,13 @@
 #ifndef avianlidar_ScanBlock_h
 #define avianlidar_ScanBlock_h
 
-#include "BeamCells.h"
 #include "BeamSampler.h"
 #include "BeamTrace.h"
-#include "PolygonQuadrature.h"
+#include "Candidates.h"
 #include "RaySamples.h"
 #include "ScanBeams.h"
 #include "ScanSetup.h"
+#include "ViewFinder.h"
 
 #include <optional>
 #include <vector>
@@ -31,7 +30,7 @@
 namespace avianlidar
 {
 /// Traces blocks of beams. One per thread; setup, beams and sampler must outlive it.
-class ScanBlock : private BeamPreTest
+class ScanBlock
 {
 public:
   ScanBlock(const ScanSetup& setup, const ScanBeams& beams, BeamSampler& sampler);
@@ -39,8 +38,8 @@ public:
   /// The setup has other surfaces now.
   void followSurfaces();
 
-  /// Find what those of beams [begin, end) see of which `traces` (of all beams) does not know it.
-  /// @return their number
+  /// Find what each beam in [begin, end) sees, unless `traces` (of all beams) already holds it.
+  /// @return number of beams for which it looked
   std::size_t trace(std::size_t begin, std::size_t end, std::vector<BeamTrace>& traces);
 
   /// Move the hits of the beam's rays to its trace.
@@ -74,23 +73,12 @@ private:
     std::vector<std::uint32_t> triangles; ///< of each ray, found in this run; empty: none
     TraceCounters counters;               ///< of this run
   };
-  /// A beam that too many triangles enter for lists.
-  struct CrowdedBeam
-  {
-    std::size_t beam;
-    std::vector<std::uint32_t> triangles; ///< of small objects
-  };
   static constexpr std::size_t NoBeam = static_cast<std::size_t>(-1);
 
   Slot& slotOf(std::size_t beam) { return this->Slots[beam - this->First]; }
-  bool meetsBorders(const BeamFrame& frame) const;
   bool lacksStarts(const BeamTrace& trace) const;
-  void traceCells();
-  void traceRays(std::size_t beam);
-  const BlockHits& traceAll(std::size_t beam, const BeamRays& rays, bool inOrder);
-  void begin(std::size_t beam) override;
-  void leaf(const std::uint32_t* triangles, std::uint32_t count) override;
-  bool end() override;
+  void findViews(std::vector<BeamTrace>& traces);
+  void traceRays();
   void makeHits(std::size_t beam, const std::vector<std::uint32_t>& triangles, BeamTrace& trace);
 
   const ScanSetup& Setup;
@@ -100,26 +88,20 @@ private:
   BeamTracer Tracer;
   RaySamples Finder;
   SampleGeometry Geometry;
-  PolygonFinder Polygons;
-  PolygonQuadrature Quadrature;
-  BeamCells Cells;
-  std::vector<BeamTrace>* Traces = nullptr; ///< of all beams
-  std::size_t PreTested = NoBeam;           ///< the beam being pre-tested
-  std::vector<CrowdedBeam> Crowded;         ///< of the block
-  std::vector<std::uint32_t> Numbers;       ///< of triangles that may enter a beam
-  std::vector<std::uint32_t> Own;           ///< triangles of some rays
-  std::size_t First = 0;                    ///< beam of the block
+  BeamCandidates Candidates;
+  ViewFinder Views;
+  std::vector<std::uint32_t> Own; ///< triangles of some rays
+  std::size_t First = 0;          ///< beam of the block
   std::vector<Slot> Slots;
   std::size_t GeometryBeam = NoBeam; ///< beam that `Geometry` belongs to
   std::size_t TracerBeam = NoBeam;   ///< beam that `Tracer` is set to
 
-  // The beams being traced: frames, numbers.
+  // The beams being traced, and those whose rays are: frames, numbers.
   std::vector<BeamFrame> Frames;
   std::vector<std::size_t> Traced;
+  std::vector<BeamFrame> FramesOfRays;
+  std::vector<std::size_t> TracedRays;
 };
-
-/// Add costs of one beam; of its candidates the larger number counts.
-void addCounters(const TraceCounters& more, TraceCounters& sum);
 }
 
 #endif

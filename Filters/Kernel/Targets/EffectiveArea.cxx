@@ -129,7 +129,7 @@ private:
     }
     const auto count = static_cast<std::uint32_t>(this->Rays.size());
     const BeamBlock block{ &this->Frame, 1, count,
-      [this](std::size_t) -> const BeamRays& { return this->Rays; }, nullptr, true };
+      [this](std::size_t) -> const BeamRays& { return this->Rays; }, true };
     const std::uint32_t* const hits =
       count > 0 ? this->Tracer.traceBlock(block, TraceMode::Automatic).triangles[0] : nullptr;
     double sum = 0.0;

@@ -15,6 +15,13 @@ struct BeamTracer::Workspace
   BlockWorkspace block;
 };
 
+void addCounters(const TraceCounters& more, TraceCounters& sum)
+{
+  sum.nodesVisited += more.nodesVisited;
+  sum.raysTraced += more.raysTraced;
+  sum.candidates = std::max(sum.candidates, more.candidates);
+}
+
 std::size_t beamsPerBlock(int raysPerBeam)
 {
   constexpr int FewRays = 16;
@@ -50,11 +57,11 @@ const BlockHits& BeamTracer::traceBlock(const BeamBlock& block, TraceMode mode)
   work.found.counters.assign(block.size, TraceCounters());
   for (TraceCounters& counters : work.found.counters)
   {
-    counters.raysTraced = block.preTest ? 0 : block.rays;
+    counters.raysTraced = block.rays;
   }
   work.triangles.resize(std::max(work.triangles.size(), block.size * block.rays));
   work.used = 0;
-  if (this->Tree->nodes.empty())
+  if (this->Tree->nodes.empty() || block.size == 0)
   {
     return work.found;
   }

@@ -51,6 +51,9 @@ struct TraceCounters
   std::uint64_t raysTraced = 0; ///< primary rays, mirror rays and visibility segments
 };
 
+/// Add costs of one beam; of its candidates the larger number counts.
+void addCounters(const TraceCounters& more, TraceCounters& sum);
+
 /// How beams descend the tree. All modes give the same hits, bit for bit.
 enum class TraceMode
 {
@@ -59,22 +62,6 @@ enum class TraceMode
   /// The paper's batch collision detection (Sec. 3.2): every beam descends to the triangles that
   /// its cone may meet, S_potential; then all its rays are tested against that set.
   Beams = 2
-};
-
-/// Receives the triangles that a beam may meet, and decides whether it needs rays at all.
-class BeamPreTest
-{
-public:
-  virtual ~BeamPreTest() = default;
-
-  /// Begin a beam of the block.
-  virtual void begin(std::size_t beam) = 0;
-
-  /// Triangles that may meet the cone, each once, in any order.
-  virtual void leaf(const std::uint32_t* triangles, std::uint32_t count) = 0;
-
-  /// After the last triangle. @return true if the beam needs no rays
-  virtual bool end() = 0;
 };
 
 /// Beams that are traced together.
@@ -87,8 +74,7 @@ struct BeamBlock
   /// airport meet none, and drawing rays costs more than a descent. May be called twice; the rays
   /// must live until the block is done.
   std::function<const BeamRays&(std::size_t beam)> source;
-  BeamPreTest* preTest = nullptr; ///< null: all beams need their rays
-  bool inOrder = false;           ///< packets take the rays in the order in which they come
+  bool inOrder = false; ///< packets take the rays in the order in which they come
 };
 
 /// Number of beams in a block, 1 to 1024, for beams of so many rays (at least 1): enough neighbours

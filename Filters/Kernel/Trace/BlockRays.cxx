@@ -8,28 +8,6 @@
 
 namespace avianlidar
 {
-namespace
-{
-/// Passes the triangles of the cone to the pre-test.
-class PreTestVisitor
-{
-public:
-  explicit PreTestVisitor(BeamPreTest& preTest)
-    : PreTest(preTest)
-  {
-  }
-  double limit() const { return std::numeric_limits<double>::infinity(); }
-  bool leaf(const std::uint32_t* triangles, std::uint32_t count)
-  {
-    this->PreTest.leaf(triangles, count);
-    return true;
-  }
-
-private:
-  BeamPreTest& PreTest;
-};
-}
-
 BlockRays::BlockRays(const CollisionTree& tree, const BeamBlock& block, BlockRaysWorkspace& work)
   : Tree(tree)
   , Block(block)
@@ -37,30 +15,8 @@ BlockRays::BlockRays(const CollisionTree& tree, const BeamBlock& block, BlockRay
 {
 }
 
-/// Pre-test a beam. @param entryPoints null: the whole tree
-bool BlockRays::needsRays(std::uint32_t b, const EntryPoints* entryPoints)
-{
-  BeamPreTest* const preTest = this->Block.preTest;
-  bool needs = true;
-  if (preTest)
-  {
-    preTest->begin(b);
-    PreTestVisitor visitor(*preTest);
-    TraversalStack& stack = this->Work.packets.stack;
-    this->counters(b).nodesVisited +=
-      descendCone(this->Tree, this->Block.frames[b], visitor, stack, entryPoints);
-    needs = !preTest->end();
-  }
-  this->counters(b).raysTraced = needs ? this->Block.rays : 0;
-  return needs;
-}
-
 void BlockRays::rayByRay(std::uint32_t b)
 {
-  if (!this->needsRays(b, nullptr))
-  {
-    return;
-  }
   const BeamFrame& frame = this->Block.frames[b];
   const BeamRays& rays = this->Block.source(b);
   std::uint32_t* const triangles = this->room();
@@ -97,10 +53,6 @@ void BlockRays::packets(const BeamCluster& cluster, const EntryPoints* entryPoin
 
 void BlockRays::packetsOfBeam(std::uint32_t b, const EntryPoints* entryPoints)
 {
-  if (!this->needsRays(b, entryPoints))
-  {
-    return;
-  }
   const BeamRays& rays = this->Block.source(b);
   const std::size_t count = rays.size();
   const std::vector<std::uint32_t>& order =
@@ -142,16 +94,9 @@ void BlockRays::packetOfBeams(const BeamCluster& cluster, const EntryPoints* ent
   RayPacket& packet = this->Work.packet;
   packet.beam = nullptr;
   packet.count = 0;
-  std::uint32_t beams[RayPacket::Width];
-  std::size_t count = 0;
   for (std::size_t k = 0; k < cluster.count; ++k)
   {
     const std::uint32_t b = cluster.beams[k];
-    if (!this->needsRays(b, entryPoints))
-    {
-      continue;
-    }
-    beams[count++] = b;
     const BeamRays& rays = this->Block.source(b);
     for (std::size_t i = 0; i < rays.size(); ++i)
     {
@@ -160,19 +105,15 @@ void BlockRays::packetOfBeams(const BeamCluster& cluster, const EntryPoints* ent
       packet.y[packet.count++] = rays.y[i];
     }
   }
-  if (count == 0)
-  {
-    return;
-  }
-  this->trace(entryPoints, beams[0]);
+  this->trace(entryPoints, cluster.beams[0]);
   const std::uint32_t* triangles = packet.triangle;
-  for (std::size_t k = 0; k < count; ++k)
+  for (std::size_t k = 0; k < cluster.count; ++k)
   {
     const std::uint32_t rays = this->Block.rays;
     std::copy(triangles, triangles + rays, this->room());
     if (std::any_of(triangles, triangles + rays, [](std::uint32_t t) { return t != NoTriangle; }))
     {
-      this->keep(beams[k], rays);
+      this->keep(cluster.beams[k], rays);
     }
     triangles += rays;
   }

@@ -2,11 +2,11 @@
 /**
  * @file BlockRays.h
  * @brief Traces the rays of a block's beams: in packets from the entry points of their beams on, or
- * one by one. A beam may be pre-tested before it gets any rays (BeamPreTest).
+ * one by one.
  *
  * Source: none.
- * Valid: hits do not depend on packets or order. A beam that its pre-test ends has no hits.
- * Test: TestBeamGroup.cxx, TestPacketOrder.cxx, TestPolygonScan.cxx.
+ * Valid: hits do not depend on packets or order.
+ * Test: TestBeamGroup.cxx, TestPacketOrder.cxx.
  */
 #ifndef avianlidar_BlockRays_h
 #define avianlidar_BlockRays_h
@@ -55,7 +55,6 @@ public:
   void packets(const BeamCluster& cluster, const EntryPoints* entryPoints);
 
 private:
-  bool needsRays(std::uint32_t beam, const EntryPoints* entryPoints);
   void packetsOfBeam(std::uint32_t b, const EntryPoints* entryPoints);
   void packetOfBeams(const BeamCluster& cluster, const EntryPoints* entryPoints);
   void trace(const EntryPoints* entryPoints, std::uint32_t beam);

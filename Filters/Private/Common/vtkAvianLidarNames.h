@@ -129,6 +129,7 @@ constexpr Name LabelShare{ "label_share", "1" };
 constexpr Name IncidenceAngle{ "incidence_angle", "deg" };
 constexpr Name SecondaryShare{ "secondary_share", "1" };
 constexpr Name Status{ "status", "" };
+constexpr Name View{ "view", "" };
 constexpr Name Candidates{ "candidates", "1" };
 constexpr Name NodesVisited{ "nodes_visited", "1" };
 constexpr Name RaysTraced{ "rays_traced", "1" };

@@ -47,6 +47,7 @@ struct CellSamples
   std::vector<double> halves; ///< the same over the diagonal of a quadrilateral; empty: none
   /// The surfaces seen, with hidden parts, for paths over two reflections; null if none are wanted.
   std::unique_ptr<VisiblePolygons> surfaces;
+  bool isCrowded = false; ///< its rays went through the tree (MostTrianglesOfCells)
 
   std::size_t bytes() const
   {

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ViewFinder.h"
+
+#include <algorithm>
+
+namespace avianlidar
+{
+ViewFinder::ViewFinder(const ScanSetup& setup, BeamTracer& tracer)
+  : Setup(setup)
+  , Tracer(tracer)
+  , Polygons(*setup.tree,
+      BeamShape(setup.sensor).width().isRound ? mostTrianglesIntegrated(setup.settings) : 0,
+      MostTrianglesOfCells)
+  , Quadrature(setup)
+  , Cells(setup)
+{
+}
+
+void ViewFinder::followSurfaces()
+{
+  this->Polygons.follow(*this->Setup.tree);
+  this->Cells.followSurfaces();
+}
+
+BeamView ViewFinder::find(std::uint64_t beam, const BeamFrame& frame,
+  const std::vector<std::uint32_t>& candidates, TraceCounters& cost)
+{
+  this->Polygons.begin(frame);
+  this->Polygons.add(candidates.data(), candidates.size());
+  std::unique_ptr<VisiblePolygons> polygons;
+  const SeenByBeam seen = this->Polygons.find(polygons);
+  if (seen == SeenByBeam::Nothing)
+  {
+    return NoSurfaces{};
+  }
+  if (seen == SeenByBeam::Polygons && !this->meetsBorders(frame) &&
+    this->Quadrature.fits(*polygons))
+  {
+    return BeamView(std::move(polygons));
+  }
+  const std::vector<const BeamSurface*>& entering = this->Polygons.candidates();
+  std::unique_ptr<CellSamples> cells = entering.empty() ? this->findCrowded(beam, frame, cost)
+                                                        : this->Cells.find(beam, frame, entering);
+  return cells ? BeamView(std::move(cells)) : BeamView(RaysAlone{});
+}
+
+/// The cells of a beam that too many triangles enter for lists: their rays go through the tree.
+std::unique_ptr<CellSamples> ViewFinder::findCrowded(
+  std::uint64_t beam, const BeamFrame& frame, TraceCounters& cost)
+{
+  this->Numbers.clear();
+  this->Polygons.entering().appendNumbers(this->Numbers);
+  const BeamRays& rays = this->Cells.place(beam, frame, this->Numbers);
+  const BeamBlock block{ &frame, 1, static_cast<std::uint32_t>(rays.size()),
+    [&rays](std::size_t) -> const BeamRays& { return rays; }, true };
+  const BlockHits& found = this->Tracer.traceBlock(block, this->Setup.settings.traceMode);
+  addCounters(found.counters[0], cost);
+  const std::uint32_t* const triangles = found.triangles[0];
+  std::unique_ptr<CellSamples> cells =
+    triangles ? this->Cells.find(triangles) : std::make_unique<CellSamples>();
+  if (cells)
+  {
+    cells->isCrowded = true;
+  }
+  return cells;
+}
+
+/// True if a border of a medium may lie in a beam: samples of polygons do not say in which part of
+/// the beam they lie. What moves may be anywhere.
+bool ViewFinder::meetsBorders(const BeamFrame& frame) const
+{
+  const std::vector<PlacedMedium>& media = this->Setup.placedMedia;
+  return std::any_of(media.begin(), media.end(),
+    [&](const PlacedMedium& placed)
+    {
+      return placed.volume.velocity != Vec3(0.0) ||
+        mayMeetBorder(placed.volume, frame, this->Setup.sensor.rangeGate);
+    });
+}
+}

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file ViewFinder.h
+ * @brief Second stage of a beam: what it sees of its candidates.
+ *
+ * A beam that few triangles enter is integrated over the polygons that it sees (VisiblePolygons.h,
+ * PolygonQuadrature.h). One that more enter is divided into cells (BeamCells.h). Where cells are
+ * too many, the rays of the beam are its samples.
+ *
+ * Source: see the headers named above.
+ * Differs: the paper draws N rays for every beam.
+ * Valid: a view depends on the beam and the triangles that enter it alone, not on materials, limits
+ * or air.
+ * Test: TestScan.cxx, TestPolygonScan.cxx, TestBeamCells.cxx.
+ */
+#ifndef avianlidar_ViewFinder_h
+#define avianlidar_ViewFinder_h
+
+#include "BeamCells.h"
+#include "BeamTrace.h"
+#include "PolygonQuadrature.h"
+#include "ScanSetup.h"
+
+#include <cstdint>
+#include <vector>
+
+namespace avianlidar
+{
+/// Finds the views of one beam after the other. One per thread; setup and tracer must outlive it.
+class ViewFinder
+{
+public:
+  ViewFinder(const ScanSetup& setup, BeamTracer& tracer);
+
+  /// The setup has other surfaces now.
+  void followSurfaces();
+
+  /// @param candidates all triangles that may enter the beam, each once, in any order
+  /// @param cost of rays traced is added
+  BeamView find(std::uint64_t beam, const BeamFrame& frame,
+    const std::vector<std::uint32_t>& candidates, TraceCounters& cost);
+
+private:
+  std::unique_ptr<CellSamples> findCrowded(
+    std::uint64_t beam, const BeamFrame& frame, TraceCounters& cost);
+  bool meetsBorders(const BeamFrame& frame) const;
+
+  const ScanSetup& Setup;
+  BeamTracer& Tracer;
+  PolygonFinder Polygons;
+  PolygonQuadrature Quadrature;
+  BeamCells Cells;
+  std::vector<std::uint32_t> Numbers; ///< triangles that may enter a crowded beam
+};
+}
+
+#endif

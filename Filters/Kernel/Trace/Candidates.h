@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file Candidates.h
+ * @brief First stage of a block of beams: the triangles that the cone of each beam may meet.
+ *
+ * Everything that a beam can meet, reflect in or be hidden by lies in its cone, which is convex.
+ * Neighbouring beams of one apex descend the tree together (BeamGroup.h). From the entry points of
+ * its group each beam goes on alone, down to the leaves.
+ *
+ * Source: paper, Sec. 3.2, where the list is called S_potential.
+ * Differs: the paper descends for each beam from the root.
+ * Valid: each list holds every triangle that a ray of its beam may hit, each once, and others
+ * beside the cone.
+ * Test: TestBeamGroup.cxx.
+ */
+#ifndef avianlidar_Candidates_h
+#define avianlidar_Candidates_h
+
+#include "BeamGroup.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace avianlidar
+{
+/// Goes through the beams of one block after the other. Reusable without allocation; one per
+/// thread.
+class BeamCandidates
+{
+public:
+  /// Begin a block. Tree and frames must live until its last beam.
+  /// @param together false: each beam descends alone from the root
+  void begin(const CollisionTree& tree, const BeamFrame* frames, std::size_t count, bool together);
+
+  /// Go on to a beam that may meet a triangle, in any order. @return false after the last
+  bool next();
+
+  // The beam.
+  std::size_t beam() const { return this->Beam; } ///< number in the block
+  const std::vector<std::uint32_t>& triangles() const { return this->Triangles; }
+  std::uint64_t nodesVisited() const
+  {
+    return this->NodesVisited;
+  } ///< its share of the group's too
+
+private:
+  /// Neighbours, by places in Order.
+  struct Group
+  {
+    std::size_t first, count;
+  };
+  void addGroups(std::size_t first, std::size_t last);
+  bool descendNextGroup();
+  bool collect(const EntryPoints* entryPoints);
+
+  const CollisionTree* Tree = nullptr;
+  const BeamFrame* Frames = nullptr;
+  std::vector<std::uint32_t> Order; ///< beams
+  std::vector<Group> Groups;        ///< still to be descended, the next one last
+  Group Now{ 0, 0 };                ///< the rest of the group that was descended last
+  int Member = 0;                   ///< of the group, the next
+  bool FromRoot = false;            ///< it has no entry points
+  std::uint64_t Share = 0;          ///< nodes visited for each member
+  std::size_t Beam = 0;
+  std::vector<std::uint32_t> Triangles;
+  std::uint64_t NodesVisited = 0;
+  GroupWorkspace Work;
+  std::vector<std::uint32_t> Stretch; ///< beams of one apex and width
+  std::vector<std::uint64_t> Keys;
+};
+}
+
+#endif
