@@ -28,8 +28,15 @@ if (AVIANLIDAR_SANITIZE MATCHES "address" AND CMAKE_CXX_COMPILER_ID STREQUAL "Cl
 endif ()
 
 # Cases that take seconds. The tests of their files leave them out; Kernel-Slow runs them.
-set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/Testing/Kernel/slow-cases.txt")
-file(STRINGS "${PROJECT_SOURCE_DIR}/Testing/Kernel/slow-cases.txt" avianlidar_slow_kernel_cases REGEX "^[^#]")
+set(avianlidar_slow_kernel_cases)
+foreach (list IN ITEMS slow-cases slow-cases-sanitized)
+  set(file "${PROJECT_SOURCE_DIR}/Testing/Kernel/${list}.txt")
+  set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS "${file}")
+  if (list STREQUAL "slow-cases" OR AVIANLIDAR_SANITIZE)
+    file(STRINGS "${file}" cases REGEX "^[^#]")
+    list(APPEND avianlidar_slow_kernel_cases ${cases})
+  endif ()
+endforeach ()
 list(JOIN avianlidar_slow_kernel_cases ":" avianlidar_slow_kernel_cases)
 
 # avianlidar_add_kernel_tests(<executable> <name> <file>...): finish the executable that holds these
