@@ -75,15 +75,6 @@ class ModelNotes(unittest.TestCase):
         rays = 32 * echotools.scan(TOWN).GetRaysPerBeam()
         self.assertAlmostEqual((1.0 - share / 100.0) ** rays, 0.05, delta=2e-3)
 
-    def test_lit_again_they_are_those_of_a_fresh_scan(self):
-        for samples in (echotools.CELLS, echotools.RAYS):  # integrated beams of this town never have a ray
-            echo = echotools.scan(TOWN, NumberOfThreads=1, BeamSamples=samples)
-            for air in (1e-3, 8e-3, 3.5e-5):
-                echo.SetAttenuationCoefficient(air)
-                fresh = echotools.scan(TOWN, AttenuationCoefficient=air, NumberOfThreads=3, BeamSamples=samples)
-                self.assertEqual(notes_of(echo), notes_of(fresh))
-                self.assertEqual(echo.GetNumberOfTracedRays() == 0, samples == echotools.CELLS or air != 1e-3)
-
 
 if __name__ == "__main__":
     unittest.main()

@@ -19,7 +19,6 @@ import avianlidar as al
 import exampletools
 from avianlidar import Coverage, reach, siting
 from avianlidar._command import main, parser
-from avianlidar.apps import _answer
 from avianlidar.apps._maps import Plan, read_plan
 from avianlidar.apps._report import Report
 from avianlidar.apps._sites import Sites
@@ -32,7 +31,8 @@ import flown  # noqa: E402
 PLAN = pathlib.Path(exampletools.EXAMPLES) / "coverage" / "hongqiao.coverage.json"
 HERE = pathlib.Path(exampletools.OUTPUT) / "TestReport"
 TARGET = {"species": "", "effective_area": 0.03, "clutter": False, "all_species": False}  # m2: quicker than birds
-SENSOR = {"preset": "Search905", "name": "Search905", "azimuth_step": 1.0}  # degrees
+STEP = 1.5  # degrees, few beams
+SENSOR = {"preset": "Search905", "name": "Search905", "azimuth_step": STEP}
 
 
 def plan(**changes):
@@ -51,9 +51,9 @@ def written(name, wanted):
     return file
 
 
-def report(name, wanted, *words):
+def report(name, wanted, *words, pictures=False):
     """The page that a plan gives."""
-    with quick():
+    with quick(pictures):
         assert main(["report", str(written(name, wanted)), "-o", str(HERE / f"{name}.html"), *words]) == 0
     return HERE / f"{name}.html"
 
@@ -98,7 +98,7 @@ class Page(unittest.TestCase):
         cls.asked = plan(scene="page.lidarscene.json", description="<script>throw 1</script> & gulls?", heights=[50, 100], regions={"strips": 1},
                          coverage={**TARGET, "clutter": True, "visibility": 10e3},
                          siting={"bounds": [-1200, 800, -1500, 1500], "spacing": 1000, "masts": [5, 10], "draws": 0, "sensors": 2})
-        page = report("report", cls.asked)
+        page = report("report", cls.asked, pictures=True)
         cls.text = page.read_text(encoding="utf-8")
         (HERE / "alone").mkdir()  # without the folder beside it
         shutil.copyfile(page, HERE / "alone" / "report.html")
@@ -134,12 +134,13 @@ class Page(unittest.TestCase):
             self.assertRegex(words, "Search905.*; asked for: .* in strips, 50 to 100 m high")
 
     def test_is_read_on_a_phone(self):
-        with Browser(width=390, height=800) as phone:
-            phone.open(HERE / "report.html")
-            self.assertLessEqual(phone.run("return document.documentElement.scrollWidth"), 390)
-            # Labels of pictures have 9 points of 1/72 inch at 150 pixels an inch.
-            scales = phone.run("return [...document.images].map(i => i.getBoundingClientRect().width / i.naturalWidth)")
-            self.assertGreaterEqual(min(scales) * 9 * 150 / 72, 7.5)
+        shown = {"width": 390, "height": 800, "deviceScaleFactor": 1, "mobile": True}
+        self.browser.driver.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", shown)
+        self.addCleanup(self.browser.driver.execute_cdp_cmd, "Emulation.setDeviceMetricsOverride", {**shown, "width": 1150, "mobile": False})
+        self.assertLessEqual(self.browser.run("return document.documentElement.scrollWidth"), 390)
+        # Labels of pictures have 9 points of 1/72 inch at 150 pixels an inch.
+        scales = self.browser.run("return [...document.images].map(i => i.getBoundingClientRect().width / i.naturalWidth)")
+        self.assertGreaterEqual(min(scales) * 9 * 150 / 72, 7.5)
 
     def test_numbers_are_those_of_the_tables(self):
         cells, _ = same_numbers(self, self.browser, "report_files/shares.csv")
@@ -173,7 +174,7 @@ class Page(unittest.TestCase):
                 ground = runway.start + along[:, None] * axis + aside[:, None] * np.array([axis[1], -axis[0]])
                 places.append(np.column_stack([ground, random.uniform(50.0, 100.0, 100)]))
             return np.concatenate(places)
-        sensor = al.Sensor("Search905", azimuth_step=1.0, position=(0, 0, 3))
+        sensor = al.Sensor("Search905", azimuth_step=STEP, position=(0, 0, 3))
         cover = al.Coverage(scene, sensor, places=drawn(0), visibility=10e3, species="", effective_area=0.03)
 
         def shares(position, clutter):
@@ -220,7 +221,7 @@ class Less(unittest.TestCase):
         shares = []
         for name, changes in (("Search905", {}), ("twice the pulse", {"pulse_energy": 7.2e-4})):
             row = next(row for key, row in rows.items() if key[0] == name and key[3] == -np.inf)
-            cover = al.Coverage(plan()["scene"], al.Sensor("Search905", azimuth_step=1.0, position=(0, 0, 3), **changes), **TARGET, visibility=23e3,
+            cover = al.Coverage(plan()["scene"], al.Sensor("Search905", azimuth_step=STEP, position=(0, 0, 3), **changes), **TARGET, visibility=23e3,
                                 bounds=(-600, 600, -600, 600, 20, 20), spacing=(40, 40, 1))
             shares.append(cover["detection_probability"].mean())
             self.assertAlmostEqual(float(row["detection_probability"]), shares[-1], delta=4 * float(row["detection_std_error"]), msg=name)
@@ -244,14 +245,6 @@ class Less(unittest.TestCase):
         self.assertEqual(dict(made.coverage_set)["reflectance"], 0.15)
         self.assertEqual([(row["region"], row["places"]) for row in rows_of("one end_files/ends.csv")][:2], [("approach 18L", "75"), ("approach 36R", "25")])
 
-    def test_where_a_place_lies_by_runways(self):
-        north, east = siting.Runway("A", (0, 0), (0, 3000), 45), siting.Runway("B", (-1500, -400), (500, -400), 45)
-        for position, words in (((-300, 1000, 5), "300\u00a0m west of A, 1000\u00a0m from its south end"), ((0, 3400, 5), "400\u00a0m north of the north end of A"),
-                                ((0.2, 2900, 5), "on A, 100\u00a0m from its north end"), ((-300, 3300, 5), "420\u00a0m north-west of the north end of A")):
-            self.assertEqual(_answer.beside(position, [north]), words)
-        self.assertEqual(_answer.beside((100, -300, 5), [north, east]), "100\u00a0m north of B, 400\u00a0m from its east end, and 320\u00a0m south of the south end of A")
-        self.assertEqual(_answer.beside((100, -300, 5), []), "")
-
     def test_a_winner_at_the_edge_of_the_lattice(self):
         for bounds, there in (([800, 1600, -400, 400], True), ([-1600, 1600, -2400, 2400], False)):
             sites = Sites(self.small(siting={"bounds": bounds, "spacing": 400, "draws": 0, "sensors": 1})).look()
@@ -269,10 +262,10 @@ class Less(unittest.TestCase):
     def test_sites_are_ranked_by_the_mix(self):
         HERE.mkdir(parents=True, exist_ok=True)
         (HERE / "one.csv").write_text("x,y\n800,0\n")
-        wanted = self.small(mix={"starling": 1, "herring gull": 3}, heights=[20, 40], places=50, coverage={"clutter": False, "all_species": False},
+        wanted = self.small(mix={"starling": 1, "herring gull": 3}, heights=[20, 40], places=16, coverage={"clutter": False, "all_species": False},
                             siting={"points": str(HERE / "one.csv"), "masts": [5], "draws": 0, "sensors": 1})
         sites = Sites(wanted).look()
-        sensor = al.Sensor("Search905", azimuth_step=1.0, position=(800, 0, 5))
+        sensor = al.Sensor("Search905", azimuth_step=STEP, position=(800, 0, 5))
         cover = al.Coverage(wanted.scene, sensor, places=wanted.points, visibility=23e3, clutter=False)
         p = []
         for cover.species in ("starling", "herring gull"):
@@ -322,22 +315,14 @@ class Less(unittest.TestCase):
         self.assertEqual([straight.to(share) for share in (1.0, 0.5, 0.1)], [10.0, 22.5, 30.0])
         self.assertEqual((straight.to(0.5, several=True), straight.to(1.1)), (25.0, 0.0))
 
-    def test_both_spellings_of_a_property(self):
-        wanted = self.small(sensor={"preset": "Search905", "Position": [50, 60, 7]}, coverage={"Species": "crow", "Visibility": 5e3})
-        self.assertEqual((wanted.sensor.position, wanted.mix, wanted.coverage.visibility), ((50, 60, 7), {"crow": 1.0}, 5e3))
-        with self.assertRaisesRegex((al.Error, TypeError, ValueError), "sensor: .*position is given twice"):
-            self.small(sensor={"preset": "Search905", "Position": [0, 0, 3], "position": [0, 0, 4]})
-
     def test_what_is_wrong_is_named(self):
-        for change, words in (({"siting": {"draw": 1}}, "'draw' was unexpected"), ({"compare_with": ["Airport17"]}, "Airport17"),
-                              ({"sensor": {"preset": "Search905"}, "compare_with": ["Search905"]}, "'Search905' is there twice")):
+        for change, words in (({"compare_with": ["Airport17"]}, "Airport17"), ({"sensor": {"preset": "Search905"}, "compare_with": ["Search905"]}, "twice")):
             with self.assertRaisesRegex((al.Error, ValueError), words):
-                Report(read_plan(written("bad", plan(heights=[20], **change)))).write(HERE / "bad.html")
+                Report(read_plan(written("bad", plan(heights=[20], siting=None, **change)))).write(HERE / "bad.html")
             self.assertFalse((HERE / "bad.html").exists())
         good = written("good", plan())
-        for changes, words in (({"siting": {"spaceing": 5}}, "'spaceing' was unexpected"), ({"siting": {"masts": (5, "high")}}, "siting.masts")):
-            with self.assertRaisesRegex(al.Error, words):
-                read_plan(good, **changes)
+        with self.assertRaisesRegex(al.Error, "siting.masts"):
+            read_plan(good, siting={"masts": (5, "high")})
         self.assertEqual(read_plan(good, siting={"masts": 7})["siting"]["masts"], [7])
         self.assertEqual(main(["report", str(good), "-o", os.path.join(HERE, "bad.pdf")]), 2)
 
