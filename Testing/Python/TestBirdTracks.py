@@ -253,7 +253,8 @@ class Files(unittest.TestCase):
         (self.home / "none.geojson").write_text('{"features": []}', encoding="utf-8")
         for inputs, settings, words in (
                 ((empty,), {}, "no manifest.json"), ((cut,), {}, "truth.csv: is not there"), ((changed,), {}, "its files are not those"),
-                ((other,), {}, "another sensor"), ((self.made, self.made), {}, "twice"), ((self.made,), {"learning_scans": self.SCANS}, "more than the"),
+                ((other,), {}, "another sensor"), ((self.made, self.made), {}, "twice"),
+                ((self.made,), {"learning_scans": self.SCANS}, "more than the"),
                 ((self.made,), {"runways": self.home / "none.geojson"}, "holds no runway"), ((self.made,), {"tracker": {"hits": 3}}, "hits"),
                 ((self.made,), {"cutoff": 0.0}, "cutoff is 0"), ((self.made,), {"weather": ["fog:100"]}, "weather")):
             with self.subTest(words), self.assertRaisesRegex((al.Error, ValueError, TypeError), words):

@@ -132,7 +132,8 @@ class Persistence(unittest.TestCase):
         """Cells of other sizes, each of which only its own setting makes; the first point is across north."""
         steps = {"RangeStep": 1.0, "AzimuthStep": 2.0, "ElevationStep": 0.5}
         near = place([359.4, 2, 0, 0, 2, 4], [1.5, 1.5, 2, 1.5, 2, 1.5], [50.5, 50.5, 50.5, 51.5, 51.5, 50.5])
-        for tolerances, expected in (((0, 0), [1, 0, 0, 0, 0, 0]), ((1, 0), [1, 0, 0, 1, 0, 0]), ((0, 1), [1, 1, 1, 0, 0, 0]),
+        for tolerances, expected in (((0, 0), [1, 0, 0, 0, 0, 0]), ((1, 0), [1, 0, 0, 1, 0, 0]),
+                                     ((0, 1), [1, 1, 1, 0, 0, 0]),
                                      ((1, 1), [1, 1, 1, 1, 1, 0]), ((0, 2), [1, 1, 1, 0, 0, 1])):
             stream = Stream(RangeTolerance=tolerances[0], AngularTolerance=tolerances[1], **steps)
             stream.give(cloud(place(0.4, 1.5, 50.5), time=0))
@@ -256,7 +257,8 @@ class Table(unittest.TestCase):
         for change, words in (
                 (without("clutter_cell"), "'clutter_cell' are missing"), (without("learned_scans"), "'learned_scans'"),
                 (field("clutter_azimuth_step", 0.2), "clutter_azimuth_step is 0.2"), (field("learned_scans", -1), "'learned_scans'"),
-                (point("clutter_cell", 4, 960), "point 4: 'clutter_cell'"), (point("clutter_probability", 5, 1.5), "point 5: .* is 1.5")):
+                (point("clutter_cell", 4, 960), "point 4: 'clutter_cell'"),
+                (point("clutter_probability", 5, 1.5), "point 5: .* is 1.5")):
             with self.subTest(words):
                 self.assertRegex(Stream(table=spoilt(change)).error(cloud(HERE, time=0)), r"input port 1 \(table\).*" + words)
 
@@ -280,7 +282,8 @@ class BadInput(unittest.TestCase):
         nan = float("nan")
         for settings, data, words in (
                 ({"Window": 0.5}, cloud(HERE, 0), "Window is 0.5"), ({"WarmUp": -1}, cloud(HERE, 0), "WarmUp is -1"),
-                ({"Learning": False}, cloud(HERE, 0), "Learning is off"), ({}, cloud([[0, 0, 1], [nan, 0, 0]], 0), "input port 0 .*: point 1"),
+                ({"Learning": False}, cloud(HERE, 0), "Learning is off"),
+                ({}, cloud([[0, 0, 1], [nan, 0, 0]], 0), "input port 0 .*: point 1"),
                 ({}, cloud(HERE, nan), "its time"), ({}, cloud(HERE, 0, position=(1, nan, 2)), "'position'")):
             with self.subTest(words):
                 self.assertRegex(Stream(**settings).error(data), words)

@@ -138,8 +138,10 @@ class Verbs(unittest.TestCase):
         np.testing.assert_array_equal(cloud["a, b"], [np.nan, -1000])
         self.assertEqual([cloud[name].dtype.kind for name in cloud], list("ffii"))
         self.assertEqual(read("x,y,z,energy [J]\n").number_of_points, 0)
-        for text, words in (("", "has no column x"), ("x,y,z [mm]\n1,2,3\n", "has no column z in metres"), ("x,y,z,x\n1,2,3,4\n", "'x' is there twice"),
-                            ("x,y,z\n1,2,word\n", "word"), ("x,y,z\n1,2\n", "rows have 2 cells"), ("x,y,z\n1,2,\n", "string")):
+        for text, words in (("", "has no column x"), ("x,y,z [mm]\n1,2,3\n", "has no column z in metres"),
+                            ("x,y,z,x\n1,2,3,4\n", "'x' is there twice"),
+                            ("x,y,z\n1,2,word\n", "word"), ("x,y,z\n1,2\n", "rows have 2 cells"),
+                            ("x,y,z\n1,2,\n", "string")):
             with self.assertRaisesRegex(ValueError, f"others.csv: is no cloud .*{words}"):
                 read(text)
         with self.assertRaisesRegex(ValueError, "others.csv: is no cloud .*decode"):
@@ -178,11 +180,14 @@ class Verbs(unittest.TestCase):
         scan = ("scan", SCENE, "-o", "x.las")
         cases = ((("scan", "none.stl", "-o", "x.las"), "no such file: none.stl"), (("scan", SCENE, "-o", "x.doc"), "cannot write 'x.doc'"),
                  (("scan", OUTPUT / "text.stl", "-o", "x.las"), "text.stl"), ((*scan, "--sensor", "Airport17"), "did you mean 'Airport16'"),
-                 ((*scan, "--scale", "2"), "scale of a scene"), ((*scan, "--sensor-set", "gate=3"), "'gate' is not known"), ((), "verb"),
+                 ((*scan, "--scale", "2"), "scale of a scene"),
+                 ((*scan, "--sensor-set", "gate=3"), "'gate' is not known"), ((), "verb"),
                  (("scan", SCENE, "-o", "none/x.las"), "there is no folder none"), ((*scan, "-o", "./x.las"), "is named twice"),
-                 ((*scan, "--scan-set", "rays_per_beam=1e30"), "rays_per_beam|int"), ((*scan, "--scan-set", "attenuation_coefficient=nan"), "no finite number"),
+                 ((*scan, "--scan-set", "rays_per_beam=1e30"), "rays_per_beam|int"),
+                 ((*scan, "--scan-set", "attenuation_coefficient=nan"), "no finite number"),
                  (("info", OUTPUT / "table.csv"), r"table.csv: is no cloud"), (("info", OUTPUT / "fake.vtp"), "fake.vtp"),
-                 (("convert", self.files["las"], "x.doc"), "cannot write 'x.doc'"), (("sensors", "VLP99"), "'VLP99' is not known"))
+                 (("convert", self.files["las"], "x.doc"), "cannot write 'x.doc'"),
+                 (("sensors", "VLP99"), "'VLP99' is not known"))
         for arguments, words in cases:
             with self.subTest(arguments):
                 code, lines, errors = run(*arguments)

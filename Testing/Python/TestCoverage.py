@@ -273,12 +273,12 @@ class Work(unittest.TestCase):
         self.assertLessEqual(row["outside_99.73_percent"], 0.03)
 
     def test_several_sensors_and_the_same_bird(self):
-        """The mean over poses is the probability, and sensors that see a pose independently miss it by the product. What poses are is
-        TestBirdViews' (kernel)."""
+        """The mean over poses is the probability, and of a pose sensors are independent. What poses are is TestBirdViews'
+        (kernel)."""
         scene = al.Scene(NOTHING, material="Wall")
         sensor, sites = al.Sensor("Search905", azimuth_range=(-60.0, 60.0)), np.array([(0.0, 0.0, 0.0), (700.0, 0.0, 0.0)])
         random = np.random.default_rng(3)
-        places = np.column_stack([350 + random.uniform(-60, 60, 40), random.uniform(350, 500, 40), random.uniform(8, 40, 40)])
+        places = random.uniform((290, 350, 8), (410, 500, 40), (40, 3))
         alone, by_pose = [], []
         for site in sites:
             sensor.position = tuple(site)

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The echo filter in a pipeline: the same bits however it is run, tracing only what is new, progress and abort. And what of the tree is shown."""
+"""The echo filter in a pipeline: the same bits however it is run, tracing only what is new, progress and abort. And what
+the tree shows."""
 import unittest
 
 import numpy as np
@@ -7,7 +8,7 @@ import vtk
 from vtk.util import numpy_support
 
 from avianlidar import vtkAvianLidar as al
-from echotools import RAYS, array, arrays, assert_same_bits, box, scan, sensor, town
+from echotools import RAYS, array, arrays, assert_same_bits, scan, sensor, town
 
 # By default all beams of this town are integrated, and none needs a ray: what is about rays traces them. With 3 rays
 # only those are integrated that at most 3 triangles enter; the others have cells.

@@ -130,16 +130,24 @@ class Sources(unittest.TestCase):
         text.write_text("no mesh", encoding="utf-8")
         points, faces = WALL
         for kind, words, call in (
-                (TypeError, "material=", lambda: al.Scene(self.stl, "Glass")), (TypeError, "not int", lambda: al.Scene(3)),
-                (TypeError, "complex128", lambda: al.Scene(points * 1j, faces)), (ValueError, r"\(8, 2\)", lambda: al.Scene(points[:, :2], faces)),
-                (ValueError, r"\(12,\)", lambda: al.Scene(points, faces[:, 0])), (TypeError, "float64", lambda: al.Scene(points, faces * 1.0)),
-                (IndexError, "there are 8", lambda: al.Scene(points, faces + 1)), (TypeError, r"\(8, 3\) without faces", lambda: al.Scene(points)),
-                (TypeError, "3 is no text", lambda: al.Scene(WALL, name=3)), (ValueError, "scale is nan", lambda: al.Scene(self.stl, scale=float("nan"))),
-                (TypeError, "scale is for mesh files", lambda: al.Scene(WALL, scale=2)), (al.Error, "up_axis: ", lambda: al.Scene(self.stl, up_axis="x")),
+                (TypeError, "material=", lambda: al.Scene(self.stl, "Glass")),
+                (TypeError, "not int", lambda: al.Scene(3)),
+                (TypeError, "complex128", lambda: al.Scene(points * 1j, faces)),
+                (ValueError, r"\(8, 2\)", lambda: al.Scene(points[:, :2], faces)),
+                (ValueError, r"\(12,\)", lambda: al.Scene(points, faces[:, 0])),
+                (TypeError, "float64", lambda: al.Scene(points, faces * 1.0)),
+                (IndexError, "there are 8", lambda: al.Scene(points, faces + 1)),
+                (TypeError, r"\(8, 3\) without faces", lambda: al.Scene(points)),
+                (TypeError, "3 is no text", lambda: al.Scene(WALL, name=3)),
+                (ValueError, "scale is nan", lambda: al.Scene(self.stl, scale=float("nan"))),
+                (TypeError, "scale is for mesh files", lambda: al.Scene(WALL, scale=2)),
+                (al.Error, "up_axis: ", lambda: al.Scene(self.stl, up_axis="x")),
                 (TypeError, "material is 7", lambda: al.Scene(*WALL, material=7)),
                 (ValueError, r"shape \(3,\) for 12 triangles", lambda: al.Scene(*WALL, material=["Glass"] * 3)),
-                (al.Error, "Kd", lambda: al.Scene(*WALL, material=np.full((12, 3), 2.0))), (ValueError, "has no surfaces", lambda: al.Scene(self.las)),
-                (al.Error, "text.stl: ", lambda: al.Scene(text)), (FileNotFoundError, "none.stl", lambda: al.Scene("none.stl")),
+                (al.Error, "Kd", lambda: al.Scene(*WALL, material=np.full((12, 3), 2.0))),
+                (ValueError, "has no surfaces", lambda: al.Scene(self.las)),
+                (al.Error, "text.stl: ", lambda: al.Scene(text)),
+                (FileNotFoundError, "none.stl", lambda: al.Scene("none.stl")),
                 (TypeError, "a sensor is .*not int", lambda: al.Scan(al.Scene(), 7))):
             with self.subTest(words), self.assertRaisesRegex(kind, words):
                 call()

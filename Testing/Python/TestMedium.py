@@ -80,7 +80,8 @@ class Source(unittest.TestCase):
         opened = vtkAvianLidarMedium()
         opened.SetInputConnection(plane.GetOutputPort())
         for source, properties, part in (
-                (None, {"Visibility": -1.0}, "medium 'medium': visibility: "), (None, {"Kind": 7}, "Kind is 7"), (None, {"Top": -2000.0}, "top is -2000"),
+                (None, {"Visibility": -1.0}, "medium 'medium': visibility: "), (None, {"Kind": 7}, "Kind is 7"),
+                (None, {"Top": -2000.0}, "top is -2000"),
                 (None, {"Shape": 2, "Lengths": (0.0, 1.0, 1.0)}, "half an axis is 0"), (None, {"Kind": 5, "Shape": 0}, "for foliage"),
                 (None, {"DisplaySize": 0.0}, "DisplaySize is 0"), (opened, {"Shape": 4}, "4 edges with one triangle")):
             with self.subTest(part):
@@ -224,8 +225,10 @@ class SceneFiles(unittest.TestCase):
 
     def test_bad_ones_are_named(self):
         fog = {"kind": "fog", "visibility": 5, "shape": "layer", "top": 3}
-        for one, part in (({"medium": 3}, "objects[0].medium: "), ({"medium": {"kind": "soup", "shape": "layer"}, "name": "x"}, "kind: "),
-                          ({"medium": {**fog, "rain_rate": 3}}, "rain_rate: unknown key"), ({"medium": {**fog, "shape": "everywhere"}}, "top: unknown key"),
+        for one, part in (({"medium": 3}, "objects[0].medium: "),
+                          ({"medium": {"kind": "soup", "shape": "layer"}, "name": "x"}, "kind: "),
+                          ({"medium": {**fog, "rain_rate": 3}}, "rain_rate: unknown key"),
+                          ({"medium": {**fog, "shape": "everywhere"}}, "top: unknown key"),
                           ({"ground": {"size": 5}, "medium": {"kind": "fog", "visibility": 5, "shape": "box"}}, "objects[0]")):
             with self.subTest(part), tempfile.TemporaryDirectory() as folder, self.assertRaises(al.Error) as raised:
                 al.Scene(str(self.scene(folder, [one])))

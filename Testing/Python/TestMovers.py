@@ -168,12 +168,15 @@ class Movers(unittest.TestCase):
             parts.SetValue(k, min(1, parts.GetValue(k)))
         scan = al.Scan(al.Scene(echotools.town(3, 3)), al.Sensor(**CLOCK), movers=good)
         wanted = scan["energy"].copy()
-        for words, fields in (("pose_position' is missing", dict(pose_position=None)), ("pose_position' holds no numbers", dict(pose_position="here")),
+        for words, fields in (("pose_position' is missing", dict(pose_position=None)),
+                              ("pose_position' holds no numbers", dict(pose_position="here")),
                               ("pose_position' has 2 components", dict(pose_position=[(1, 2), (3, 4)])),
                               ("pose 1: pose_position is not finite", dict(pose_position=[(1, 2, 3), (np.nan, 0, 0)])),
-                              ("pose_time' has 3 values", dict(pose_time=[1, 2, 3])), ("pose 1: pose_time is not later", dict(pose_time=[9, 0])),
+                              ("pose_time' has 3 values", dict(pose_time=[1, 2, 3])),
+                              ("pose 1: pose_time is not later", dict(pose_time=[9, 0])),
                               ("pose 0: length of pose_orientation is 2", dict(pose_orientation=[(2, 0, 0, 0), (1, 0, 0, 0)])),
-                              ("flap_axis' has 0 values", dict(flap_axis=None)), ("part 1: length of flap_axis is 0", dict(flap_axis=[(0, 0, 0)]))):
+                              ("flap_axis' has 0 values", dict(flap_axis=None)),
+                              ("part 1: length of flap_axis is 0", dict(flap_axis=[(0, 0, 0)]))):
             with self.subTest(words):
                 scan.movers = with_fields(good, **fields)
                 with self.assertRaisesRegex(Error, "movers(.|\n)*" + re.escape(words)):
@@ -195,9 +198,11 @@ class Movers(unittest.TestCase):
         row = np.array([(1.0, 2.0, 3.0), (4.0, 5.0, 6.0)])
         turn = np.array([(1.0, 0.0, 0.0, 0.0)] * 3)
         for kind, words, arguments in (
-                (ValueError, r"positions have the shape \(3, 2\)", (row.T, [0, 1])), (ValueError, r"times have the shape \(1, 2\)", (row, [[0, 1]])),
+                (ValueError, r"positions have the shape \(3, 2\)", (row.T, [0, 1])),
+                (ValueError, r"times have the shape \(1, 2\)", (row, [[0, 1]])),
                 (ValueError, r"orientations have the shape \(4, 3\)", (np.ones((3, 3)), [0, 1, 2], turn.T)),
-                (TypeError, "positions are of the type", ([("a", "b", "c")],)), (TypeError, "times are of the type", ([(0.0, 0.0, 0.0)], ["now"]))):
+                (TypeError, "positions are of the type", ([("a", "b", "c")],)),
+                (TypeError, "times are of the type", ([(0.0, 0.0, 0.0)], ["now"]))):
             with self.subTest(words), self.assertRaisesRegex(kind, words):
                 al.mover(bird(), *arguments)
         fields = al.mover(bird(), row, [0, 1], turn[:2]).GetFieldData()

@@ -15,7 +15,7 @@ from vtkmodules.vtkCommonDataModel import vtkPolyData
 from vtkmodules.vtkFiltersSources import vtkCubeSource
 
 import avianlidar
-from avianlidar import Cloud, Error, Scan, Sensor
+from avianlidar import Error, Scan, Sensor
 
 SENSORS = pathlib.Path(os.environ["AVIANLIDAR_SOURCE_DIR"]) / "Filters" / "Sensors"
 FILES = sorted(SENSORS.glob("*.lidarsensor.json"))
@@ -118,12 +118,17 @@ class Files(unittest.TestCase):
             return {**self.good, "values": {name: {"value": value, "unit": unit, "source": "test"}
                                             for name, (value, unit) in entries.items()}}
 
-        cases = [({**self.good, "format": "lidarsensor 2"}, "format: "), ({**self.good, "wings": 2}, "wings: unknown key"),
+        cases = [({**self.good, "format": "lidarsensor 2"}, "format: "),
+                 ({**self.good, "wings": 2}, "wings: unknown key"),
                  ({key: value for key, value in self.good.items() if key != "name"}, "name: is missing"),
-                 (values(pulse_energi=(1, "J")), "values.pulse_energi: "), (values(pulse_energy=(1, "mJ")), "values.pulse_energy: its unit is \"mJ\""),
-                 (values(pulse_energy=(-1, "J")), "PulseEnergy is -1"), (values(number_of_channels=(1.5, "1")), "values.number_of_channels: "),
-                 (values(azimuth_range=([1], "deg")), "values.azimuth_range: "), (values(receiver_model=(1, "1")), "ReceiverAperture is 0"),
-                 (values(channel_firing_times=([0], "s")), "ChannelFiringTimes has 1 values"), ([], "must be an object")]
+                 (values(pulse_energi=(1, "J")), "values.pulse_energi: "),
+                 (values(pulse_energy=(1, "mJ")), "values.pulse_energy: its unit is \"mJ\""),
+                 (values(pulse_energy=(-1, "J")), "PulseEnergy is -1"),
+                 (values(number_of_channels=(1.5, "1")), "values.number_of_channels: "),
+                 (values(azimuth_range=([1], "deg")), "values.azimuth_range: "),
+                 (values(receiver_model=(1, "1")), "ReceiverAperture is 0"),
+                 (values(channel_firing_times=([0], "s")), "ChannelFiringTimes has 1 values"),
+                 ([], "must be an object")]
         sensor = Sensor("CorridorC16")
         before = text_of(sensor)
         for content, words in cases:
@@ -148,8 +153,8 @@ class Receiver(unittest.TestCase):
         self.assertNotIn("photoelectrons", Scan(wall(), Sensor("Airport16")).echoes)
 
     def test_a_changed_receiver_traces_nothing_and_gives_what_a_fresh_one_does(self):
-        changes = {"receiver_efficiency": 0.3, "background_radiance": 0.0, "wavelength": 1064.0, "receiver_aperture": 0.005, "sampling_interval": 4e-9,
-                   "receiver_model": "EnergyLimits"}
+        changes = {"receiver_efficiency": 0.3, "background_radiance": 0.0, "wavelength": 1064.0, "receiver_aperture": 0.005,
+                   "sampling_interval": 4e-9, "receiver_model": "EnergyLimits"}
         settings = {"beam_samples": "rays", "rays_per_beam": 40}
         scene, sensor = wall(), Sensor("Search905", azimuth_step=1.5)
         known = Scan(scene, sensor, **settings)

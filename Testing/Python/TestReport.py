@@ -316,7 +316,8 @@ class Less(unittest.TestCase):
         self.assertEqual((straight.to(0.5, several=True), straight.to(1.1)), (25.0, 0.0))
 
     def test_what_is_wrong_is_named(self):
-        for change, words in (({"compare_with": ["Airport17"]}, "Airport17"), ({"sensor": {"preset": "Search905"}, "compare_with": ["Search905"]}, "twice")):
+        for change, words in (({"compare_with": ["Airport17"]}, "Airport17"),
+                              ({"sensor": {"preset": "Search905"}, "compare_with": ["Search905"]}, "twice")):
             with self.assertRaisesRegex((al.Error, ValueError), words):
                 Report(read_plan(written("bad", plan(heights=[20], siting=None, **change)))).write(HERE / "bad.html")
             self.assertFalse((HERE / "bad.html").exists())

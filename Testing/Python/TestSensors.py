@@ -206,7 +206,8 @@ class Own(unittest.TestCase):
                 (r"positions have the shape \(2,\)", {"directions": np.ones((2, 3)), "positions": [0, 1]}),
                 ("beam 1: point array 'direction' is zero", {"directions": [(0, 1, 0), (0, 0, 0)]}),
                 ("beam 0: position has", {"directions": [(0, 1, 0)], "positions": [(0, np.inf, 0)]}),
-                ("the time of beam 0 is -1", {"directions": [(0, 1, 0)], "times": [-1]}), ("times and positions", {"times": [0]})):
+                ("the time of beam 0 is -1", {"directions": [(0, 1, 0)], "times": [-1]}),
+                ("times and positions", {"times": [0]})):
             with self.subTest(words), self.assertRaisesRegex((ValueError, TypeError, al.Error), words):
                 al.Sensor(**arguments).beams  # noqa: B018
         # Text is no array that is missing; what was refused changes nothing.

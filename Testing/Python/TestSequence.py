@@ -317,8 +317,10 @@ class BadScenarios(unittest.TestCase):
         home = emptied("sequence", "bad")
         bird = {"pattern": "Crossings", "number_of_birds": 3}
         for words, changes in {
-                "number_of_scans: 0": {"number_of_scans": 0}, "birds[0].pattern: 'Swarm'": {"birds": [{"pattern": "Swarm"}]},
-                "Species is 'dodo'": {"birds": [{**bird, "species": "dodo"}]}, "'radios' is not known": {"birds": [{**bird, "radios": 3}]},
+                "number_of_scans: 0": {"number_of_scans": 0},
+                "birds[0].pattern: 'Swarm'": {"birds": [{"pattern": "Swarm"}]},
+                "Species is 'dodo'": {"birds": [{**bird, "species": "dodo"}]},
+                "'radios' is not known": {"birds": [{**bird, "radios": 3}]},
                 "birds[0].first_object_id: ": {"birds": [{**bird, "first_object_id": 7}]},
                 "objects[0].route: ": {"objects": [{**BOX, "route": [[0, 1, 2], [0, 1, 2]]}]},
                 "objects[0].every: more than 9000 objects": {"objects": [{**BOX, "every": 1e-4}]},

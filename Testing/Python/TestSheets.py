@@ -78,8 +78,8 @@ class Sheets(unittest.TestCase):
                 self.check_board(looking, points(_sheet.Receiver(sensor()), numbers, (rho, p, light))[0], 0.5 * numbers[2], 0.05)
 
     def test_presets_see_the_boards_of_their_sheets(self):
-        """Each fitted preset as it is shipped, on the first and the last board of its own points at the ranges that its file says were
-        fitted: 400 beams, whose share has a standard deviation of 0.025."""
+        """Each fitted preset as it is shipped, on the first and the last board of its own points, at the fitted ranges that
+        its file states: 400 beams, whose share has a standard deviation of 0.025."""
         for name in al.Sensor.presets():
             of = al.Sensor(name)
             if "sheet" not in of.description:
@@ -99,7 +99,8 @@ class Sheets(unittest.TestCase):
 
     def test_what_is_wrong_is_named(self):
         good = {"range": 100, "reflectance": 0.1, "source": "x"}
-        for bad, words in (({**good, "range": -1}, r"points\[0\].range is -1"), ({**good, "probability": 1}, "probability is 1"),
+        for bad, words in (({**good, "range": -1}, r"points\[0\].range is -1"),
+                           ({**good, "probability": 1}, "probability is 1"),
                            ({"range": 1, "source": "x"}, "reflectance is missing"), ({**good, "ligth": 100}, "ligth is not known"),
                            ({**good, "range": 700}, "range is 700")):
             with self.assertRaisesRegex(ValueError, words):

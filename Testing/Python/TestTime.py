@@ -241,7 +241,8 @@ class Image(unittest.TestCase):
             for time, fired in ((0, 1), (1.0, 46), (2.5, 23), (1.999, 90)):
                 image.UpdateTimeStep(time)
                 output = image.GetOutput()
-                self.assertEqual((output.GetDimensions(), output.GetInformation().Get(vtk.vtkDataObject.DATA_TIME_STEP())), ((90, 4, 1), time))
+                self.assertEqual(output.GetDimensions(), (90, 4, 1))
+                self.assertEqual(output.GetInformation().Get(vtk.vtkDataObject.DATA_TIME_STEP()), time)
                 if port:  # the report has each beam that was fired
                     np.testing.assert_array_equal((array(output, "status").reshape(4, 90) >= 0).sum(), 4 * fired)
             np.testing.assert_array_equal(array(image.GetOutput(), "distance_m"), expected)

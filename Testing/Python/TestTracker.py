@@ -173,15 +173,6 @@ class TestTracker(unittest.TestCase):
         self.assertEqual(field(made.GetOutput(0), "half_beamwidth"), (0.001,))
         self.assertEqual(field(made.GetOutput(0), "time"), (14.0,))
 
-    def test_errors_of_points(self):
-        """Along the line of sight the error of the range, given or not; across it the beam's width."""
-        for given, expected in ((None, 0.5), (0.1, 0.1)):
-            made = tracker(HalfBeamwidth=0.01)
-            arrays = {} if given is None else {"distance_std_error": [given]}
-            tracks, _ = feed(made, [(0, 400, 0)], 0.0, **arrays)
-            np.testing.assert_allclose(point_array(tracks, "position_covariance")[0],
-                                       [4 + 0.04, expected**2 + 0.04, 4 + 0.04, 0, 0, 0], rtol=1e-12)
-
     def test_a_cloud_of_the_same_time_replaces_the_last(self):
         random = np.random.default_rng(1)
         clouds = [random.uniform(0, 100, (20, 3)) for _ in range(4)]
@@ -251,7 +242,8 @@ class TestTracker(unittest.TestCase):
                 self.assertEqual(len(messages.all()), 1)
                 self.assertIn(words, messages.all()[0])
                 self.assertIn(words, tracks.GetFieldData().GetAbstractArray("error").GetValue(0))
-        for name, value in (("ClusterAngle", 30), ("RangeError", 0), ("MotionModel", 2), ("GateProbability", 1), ("ConfirmHits", 5), ("KeepTime", -1)):
+        for name, value in (("ClusterAngle", 30), ("RangeError", 0), ("MotionModel", 2), ("GateProbability", 1),
+                            ("ConfirmHits", 5), ("KeepTime", -1)):
             before = getattr(made, "Get" + name)()
             getattr(made, "Set" + name)(value)
             fails(name)

@@ -208,9 +208,11 @@ class Tracks(unittest.TestCase):
             self.assertEqual(len(movers(source)), good.GetNumberOfBirds())
 
     def test_bad_values_name_the_property(self):
-        for properties, words in (({"Pattern": 6}, "Pattern is 6"), ({"NumberOfBirds": 100001}, "NumberOfBirds is"), ({"TimeRange": (1, 0)}, "TimeRange is"),
+        for properties, words in (({"Pattern": 6}, "Pattern is 6"), ({"NumberOfBirds": 100001}, "NumberOfBirds is"),
+                                  ({"TimeRange": (1, 0)}, "TimeRange is"),
                                   ({"Radius": -1}, "Radius is -1"), ({"Heights": (3, 2)}, "Heights is 3 to 2"), ({"Origin": (91, 0, 0)}, "Origin: "),
-                                  ({"FirstObjectId": 2**31 - 5}, "FirstObjectId is"), ({"Species": "dodo"}, "Species is 'dodo'"),
+                                  ({"FirstObjectId": 2**31 - 5}, "FirstObjectId is"),
+                                  ({"Species": "dodo"}, "Species is 'dodo'"),
                                   ({"SpeciesFileName": "/nowhere.csv"}, "SpeciesFileName /nowhere.csv"),
                                   ({"Pattern": pattern("Circles"), "NumberOfBirds": 100000, "TimeRange": (0, 1e9)}, "NumberOfBirds, TimeRange")):
             self.assert_fails(tracks(**properties), words)
@@ -229,9 +231,12 @@ class Tracks(unittest.TestCase):
         species.SetName("species")
         numbers.GetCellData().AddArray(species)
         for data, words in (
-                (points, "has points but no lines"), (polyline(TWO_LINES), "no point array 'time'"), (polyline(TWO_LINES, TIMES[:4]), "'time' has 4 values"),
-                (polyline(TWO_LINES, [0, 1, 2, 5, 5]), "line 1 has at point 4 a 'time'"), (polyline([[(0, 0, 0), (0, NAN, 0)]], [0, 1]), "line 0 has at point 1"),
-                (polyline(TWO_LINES, TIMES, ["crow", "dodo"]), "line 1 has a species"), (polyline(TWO_LINES, TIMES, ["crow"]), "'species' has 1 values"),
+                (points, "has points but no lines"), (polyline(TWO_LINES), "no point array 'time'"),
+                (polyline(TWO_LINES, TIMES[:4]), "'time' has 4 values"),
+                (polyline(TWO_LINES, [0, 1, 2, 5, 5]), "line 1 has at point 4 a 'time'"),
+                (polyline([[(0, 0, 0), (0, NAN, 0)]], [0, 1]), "line 0 has at point 1"),
+                (polyline(TWO_LINES, TIMES, ["crow", "dodo"]), "line 1 has a species"),
+                (polyline(TWO_LINES, TIMES, ["crow"]), "'species' has 1 values"),
                 (numbers, "cell array 'species' is not")):
             self.assert_fails(self.from_lines(data), words)
 

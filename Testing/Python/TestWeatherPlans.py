@@ -135,9 +135,12 @@ class Year(unittest.TestCase):
     def test_what_is_wrong_is_named(self):
         half = [{"weather": ["fog:500"], "share": 0.5}]
         plan("wrong").with_name("empty.txt").write_text("# nothing\nstation,valid,metar\n", encoding="utf-8")
-        for changes, words in (({"weather": ["snow:3"]}, "weather: "), ({"weather": ["fog:500"]}, "weather: is there beside visibility"),
-                               ({"year": half}, "year: shares sum to 0.5"), ({"year": [*half, {"weather": ["rain:501"], "share": 0.5}]}, "RainRate is 501"),
-                               ({"year": YEAR, "metar": "year.txt"}, "metar: is there beside 'year'"), ({"metar": "none.txt"}, "none.txt: cannot be read"),
+        for changes, words in (({"weather": ["snow:3"]}, "weather: "),
+                               ({"weather": ["fog:500"]}, "weather: is there beside visibility"),
+                               ({"year": half}, "year: shares sum to 0.5"),
+                               ({"year": [*half, {"weather": ["rain:501"], "share": 0.5}]}, "RainRate is 501"),
+                               ({"year": YEAR, "metar": "year.txt"}, "metar: is there beside 'year'"),
+                               ({"metar": "none.txt"}, "none.txt: cannot be read"),
                                ({"metar": "empty.txt"}, "empty.txt: holds no METAR report")):
             self.assertIn(words, said("coverage", plan("wrong", **changes), "-o", HERE / "wrong"))
 

@@ -7,15 +7,17 @@ import unittest.mock
 
 from avianlidar.apps import _pictures, _report, reach
 
-PIXEL = base64.b64decode("iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAYAAAAfFcSJAAAADUlEQVR42mNk+M9QDwADhgGAWjR9awAAAABJRU5ErkJggg==")
+PIXEL = base64.b64decode("iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAYAAAAfFcSJAAAADUlEQVR42mNk+M9Q"
+                         "DwADhgGAWjR9awAAAABJRU5ErkJggg==")
 
 
 @contextlib.contextmanager
 def quick(pictures=False):
-    """Reports have one visibility, one rain and few ranges, and a pixel for each picture unless `pictures` are asked for."""
+    """Reports have one visibility, one rain and few ranges, and a pixel for each picture unless `pictures` is set."""
     with contextlib.ExitStack() as changed:
         changed.enter_context(unittest.mock.patch.multiple(_report, VISIBILITIES=(_report.ANSWERED,), RAINS=(0.0,)))
         changed.enter_context(unittest.mock.patch.object(reach, "RANGES", 12))
         if not pictures:
-            changed.enter_context(unittest.mock.patch.object(_pictures, "draw", lambda file, *_: pathlib.Path(file).write_bytes(PIXEL)))
+            pixel = unittest.mock.patch.object(_pictures, "draw", lambda file, *_: pathlib.Path(file).write_bytes(PIXEL))
+            changed.enter_context(pixel)
         yield
