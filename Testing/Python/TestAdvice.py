@@ -128,12 +128,9 @@ class Advice(unittest.TestCase):
 
     def test_bad_input(self):
         scan = al.Scan(al.Scene(CORNER), SENSOR)
-        for values, words in (({"energy": 0.0}, "EnergyError is 0"), ({"range": -1.0}, "RangeError is -1"),
-                              ({"missed": float("nan")}, "MissedShare is"), ({"beams": 10}, "SampleBeams is 10")):
+        for values, words in (({"energy": 0.0}, "EnergyError is 0"), ({"beams": 10}, "SampleBeams is 10")):
             with self.assertRaisesRegex(al.Error, words):
                 scan.advise(**values)
-        with self.assertRaisesRegex(al.Error, "RaysPerBeam"):
-            al.Scan(al.Scene(CORNER), SENSOR, rays_per_beam=0).advise()
 
         def progress(share, _):
             if share > 0.3:

@@ -10,7 +10,6 @@ from vtk.util import numpy_support
 from avianlidar import vtkAvianLidar as al
 from echotools import COSTS, RAYS, Messages, array, assert_same_bits, box, scan, sensor, town
 
-PIPELINE = vtk.vtkStreamingDemandDrivenPipeline
 FIELDS = ("sway_amplitude", "sway_frequency", "encoder_jitter", "motion_seed")
 
 

@@ -16,7 +16,6 @@ from avianlidar.apps import _bench
 from avianlidar.apps._bench import Bench, Points
 
 OUTPUT = pathlib.Path(os.environ.get("AVIANLIDAR_TEST_OUTPUT_DIR", "/tmp")) / "bench"
-SOURCE = pathlib.Path(os.environ["AVIANLIDAR_SOURCE_DIR"])
 BIRD, WALL, CAR = 99, 50, 252
 SCANS = 6
 

@@ -215,7 +215,7 @@ class Files(unittest.TestCase):
 
     def test_command_makes_and_compares_scenarios(self):
         out = self.home / "compared"
-        code = _command.main(["track", str(self.file), "-o", str(out), "--sensor", "Search905", "--sensor", "Search1550", "--scans", "3", "--learn",
+        code = _command.main(["track", str(self.file), "-o", str(out), "--sensor", "Search905", "--sensor", "Search1550", "--scans", "2", "--learn",
                               "1", "--weather", "fog:2000", "--tracker-set", "confirm_hits=2"])
         self.assertIn(code, (None, 0))
         self.assertTrue((out / "sequences/small-Search1550/manifest.json").is_file())

@@ -147,22 +147,6 @@ class Verbs(unittest.TestCase):
         with self.assertRaisesRegex(ValueError, "others.csv: is no cloud .*decode"):
             read("x,y,z,\u00e4\n1,2,3,4\n", "latin-1")
 
-    def test_footprints_are_told_where_they_belong(self):
-        """The scene file of the error, with an origin, is one."""
-        scene = SCENE.parent
-        footprints = next(file for file in sorted(scene.glob("*.geojson")))
-        file = OUTPUT / footprints.name
-        shutil.copy(footprints, file)
-        code, _, errors = run("scan", file, "-o", OUTPUT / "never.las")
-        self.assertEqual((code, len(errors)), (2, 1))
-        self.assertIn("holds footprints, which become buildings in a scene file", errors[0])
-        numbers = iter((31.1979, 121.3363, 3))
-        document = re.sub(r"\?", lambda _: str(next(numbers)), re.search(r"\{.*\}", errors[0])[0])
-        (OUTPUT / "my.lidarscene.json").write_text(document, encoding="utf-8")
-        code, lines, errors = run("scan", OUTPUT / "my.lidarscene.json", "--position", "0", "0", "3", *FEW, "-o", OUTPUT / "footprints.las")
-        self.assertEqual(code, 0, errors)
-        self.assertGreater(al.load_cloud(OUTPUT / "footprints.las").number_of_points, 20)
-
     def test_sensors_and_materials(self):
         code, lines, _ = run("sensors")
         self.assertEqual((code, [line.split()[0] for line in lines[1:]]), (0, list(al.Sensor.presets())))
@@ -179,6 +163,7 @@ class Verbs(unittest.TestCase):
         (OUTPUT / "table.csv").write_text("region,share [1]\nall,0.5\n", encoding="utf-8")
         scan = ("scan", SCENE, "-o", "x.las")
         cases = ((("scan", "none.stl", "-o", "x.las"), "no such file: none.stl"), (("scan", SCENE, "-o", "x.doc"), "cannot write 'x.doc'"),
+                 (("scan", SCENE.parent / "hongqiao.geojson", "-o", "x.las"), "holds footprints"),
                  (("scan", OUTPUT / "text.stl", "-o", "x.las"), "text.stl"), ((*scan, "--sensor", "Airport17"), "did you mean 'Airport16'"),
                  ((*scan, "--scale", "2"), "scale of a scene"),
                  ((*scan, "--sensor-set", "gate=3"), "'gate' is not known"), ((), "verb"),
