@@ -200,32 +200,6 @@ class Terrain(unittest.TestCase):
 
 
 class Work(unittest.TestCase):
-    def test_birds_air_and_receivers_trace_no_line_of_sight(self):
-        scene, sensor = al.Scene(WALL, material="Wall"), al.Sensor("Search905", azimuth_range=(-30.0, 30.0))
-        cover = al.Coverage(scene, sensor, **REGION)
-        cover.update()
-        self.assertEqual(cover.number_of_traced_places, math.prod(SHAPE))
-
-        def same_as_fresh():
-            fresh = al.Coverage(scene, sensor, species=cover.species, visibility=cover.visibility, **REGION)
-            for name in ("detection_probability", "status", "photoelectrons", "minimum_effective_area"):
-                np.testing.assert_array_equal(cover[name], fresh[name])
-
-        before = cover["detection_probability"].copy()
-        cover.species = "starling"
-        self.assertTrue(np.all(cover["detection_probability"] <= before))
-        self.assertEqual((cover.number_of_traced_rays, cover.number_of_traced_places), (0, 0))
-        same_as_fresh()
-        cover.visibility = 2000.0
-        sensor.receiver_efficiency = 0.2
-        cover.update()
-        self.assertEqual((cover.number_of_traced_rays, cover.number_of_traced_places), (0, 0))
-        same_as_fresh()
-        sensor.half_beamwidth = 4e-3
-        cover.update()
-        self.assertGreater(cover.number_of_traced_places, 0)
-        same_as_fresh()
-
     def test_threads_and_pieces_change_no_bit(self):
         """Pieces of any output and of both kinds of places count each place once, and the clutter is in the first."""
         scene, sensor = al.Scene(WALL, material="Wall"), al.Sensor("Search905", azimuth_range=(-30.0, 30.0))
@@ -338,7 +312,6 @@ class Work(unittest.TestCase):
         cover = al.Coverage(scene, al.Sensor("Search905"), places=np.zeros((0, 3)))
         self.assertEqual(len(cover["status"]), 0)
         self.assertEqual(cover.table, [])
-
 
     def test_bad_input_is_named_and_the_next_good_works(self):
         scene, sensor = al.Scene(WALL, material="Wall"), al.Sensor("Search905", azimuth_range=(-30.0, 30.0))

@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The echo filter in a pipeline: the same bits however it is run, tracing only what is new, progress and abort. And what
-the tree shows."""
+"""The echo filter in a pipeline: the same bits however it is run, progress and abort. And what the tree shows."""
 import unittest
 
 import numpy as np
@@ -76,27 +75,6 @@ class EchoPipeline(unittest.TestCase):
             append.Update()
             self.assertEqual(count, 360)
             assert_same_bits(echoes, append.GetOutput())
-
-    def test_traced_once_lit_many_times(self):
-        """A changed property gives what a fresh filter gives, without tracing; integrated beams never have a ray."""
-        for has_rays, start in ((False, {}), (True, MIXED), (True, SAMPLED)):
-            properties, known = dict(start), ran(TOWN, **start)
-            for name, value in (("AttenuationCoefficient", 1e-3), ("ReturnMode", al.vtkAvianLidarEchoFilter.RETURN_MODE_STRONGEST),
-                                ("Noise", False), ("ReturnMode", al.vtkAvianLidarEchoFilter.RETURN_MODE_RANGE_UNITS)):
-                properties[name] = value
-                getattr(known, "Set" + name)(value)
-                known.Update()
-                fresh = ran(TOWN, **properties)
-                self.assertEqual((fresh.GetNumberOfTracedRays() > 0, known.GetNumberOfTracedRays()), (has_rays, 0), name)
-                assert_same_bits(known.GetOutput(), fresh.GetOutput())
-        known.SetSeed(3)
-        known.Update()
-        self.assertGreater(known.GetNumberOfTracedRays(), 0)
-        uncached = ran(TOWN, MaximumCacheSize=0, **SAMPLED)  # changes nothing but the work
-        uncached.SetAttenuationCoefficient(1e-3)
-        uncached.Update()
-        self.assertGreater(uncached.GetNumberOfTracedRays(), 0)
-        assert_same_bits(uncached.GetOutput(), ran(TOWN, AttenuationCoefficient=1e-3, **SAMPLED).GetOutput())
 
     def test_progress_and_abort(self):
         """Progress rises from the calling thread; abort within blocks, with empty and valid outputs. Rays take long enough for that."""

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Objects that move: each beam meets them where they are at its own timestamp. What rests is a surface, to the last bit;
-what is static is traced once; bad poses are named and the next good ones work."""
+"""Objects that move: each beam meets them where they are at its own timestamp. Bad poses are
+named and the next good ones work. That what rests is a surface is TestMovedBeams' (kernel)."""
 import re
 import unittest
 
@@ -15,7 +15,6 @@ from avianlidar import Error
 from avianlidar._pipeline import update
 from echotools import bird
 
-COSTS = ("candidates", "nodes_visited", "rays_traced", "skipped", "skipped_bound")
 CLOCK = dict(azimuth_range=(0.0, 360.0), azimuth_step=1.0, rotation_rate=1.0, number_of_channels=4, elevation_step=1.0,
              half_beamwidth=1e-2)
 
@@ -69,22 +68,6 @@ class Movers(unittest.TestCase):
         for name in one.keys() - set(without):
             np.testing.assert_array_equal(one[name], other[name], err_msg=name)
 
-    def test_at_rest_it_is_a_surface(self):
-        gull = bird(Position=(10.0, 30.0, 1.1), Heading=70.0, WingPhase=0.2)
-        town = echotools.town(3, 24)
-        both = vtkMultiBlockDataSet()
-        both.ShallowCopy(town)
-        both.SetBlock(town.GetNumberOfBlocks(), gull)
-        for settings in ({}, {"beam_samples": "rays", "rays_per_beam": 40}):
-            sensor = al.Sensor(**CLOCK)
-            wanted = al.Scan(al.Scene(both), sensor, **settings)
-            moving = al.Scan(al.Scene(town), sensor, movers=al.mover(gull, [(0, 0, 0)]), **settings)
-            self.assert_same(moving.echoes, wanted.echoes)
-            self.assert_same(moving.report, wanted.report, COSTS)
-            self.assertGreater(moving.algorithm.GetNumberOfTouchedBeams(), 0)
-            number = moving.echoes.fields["object_names"].index("herring gull")
-            self.assertTrue((moving["object_id"] == number).any())
-
     def test_wings_flap(self):
         gull = bird()
         radius = 0.5 * np.sqrt(4 * 0.00813 * 0.95**0.666 / np.pi)
@@ -101,18 +84,6 @@ class Movers(unittest.TestCase):
             scans.append(al.Cloud(scan.algorithm.GetOutput(0))["photoelectrons"].sum())
         self.assertAlmostEqual(scans[0] / scans[1], 1, delta=1e-6)
         self.assertNotAlmostEqual(scans[0] / scans[2], 1, delta=0.1)
-
-    def test_static_surfaces_are_traced_once(self):
-        sensor = al.Sensor(**dict(CLOCK, number_of_revolutions=4))
-        gulls = [al.mover(bird(ObjectId=k), [(20.0 + 3 * k, -40, 0.5), (20.0 - 3 * k, 60, 1)], times=[0, 30]) for k in range(5)]
-        scan = al.Scan(al.Scene(echotools.town(3, 24)), sensor, movers=gulls)
-        for revolution in range(4):
-            scan.algorithm.UpdateTimeStep(float(revolution))
-            self.assertEqual(scan.algorithm.GetNumberOfTracedBeams(), 0 if revolution else sensor.beams.number_of_points)
-            self.assertGreater(scan.algorithm.GetNumberOfTouchedBeams(), 0)
-        scan.movers = None
-        scan.algorithm.UpdateTimeStep(0.0)
-        self.assertEqual((scan.algorithm.GetNumberOfTracedBeams(), scan.algorithm.GetNumberOfTouchedBeams()), (0, 0))
 
     def test_the_report_says_what_is_expected_of_each(self):
         # A gull at 500 m and one behind a wall; a third is above the beams, a fourth comes later.
@@ -222,14 +193,6 @@ class Movers(unittest.TestCase):
             places = np.array(report[when + "_position"])
             np.testing.assert_allclose(places[at_seam], (0, 50 + 20e-6 * time[at_seam], 0), atol=1e-9)
             np.testing.assert_allclose(places[aside], (50, 20e-6 * time[aside], 0), atol=1e-9)
-
-    def test_the_report_says_what_is_too_weak_also_without_noise(self):
-        """Not perceived is not hidden: in any setting the report has the light that arrives."""
-        gull = al.mover(bird(), [(0, 900 * np.cos(0.05), 900 * np.sin(0.05))])
-        for preset, noise in (("Search905", True), ("Search905", False), ("Airport16", False)):
-            report = al.Scan(al.Scene(), al.Sensor(preset), noise=noise, movers=gull).mover_report
-            self.assertGreater(report["energy_received"][0], 0)
-            self.assertEqual(report["number_of_echoes"][0], 0)
 
     def test_edits_in_place_are_seen(self):
         for several in (False, True):

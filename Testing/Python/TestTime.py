@@ -1,16 +1,15 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Time: beams sweep in steps and go from revolution to revolution, a moving scene is sampled at the start of each, noise
-is that of the revolution, and nothing known is traced again."""
+"""Time: beams go from revolution to revolution, a moving scene is sampled at the start of each, and noise is that of the
+revolution. Steps of a sweep are TestScanClock's and TestScanSweep's (kernel)."""
 
 import unittest
 
 import numpy as np
 import vtk
-from vtk.util import numpy_support
 from vtk.util.vtkAlgorithm import VTKPythonAlgorithmBase
 
 from avianlidar import vtkAvianLidar as al
-from echotools import RAYS, Messages, array, arrays, assert_same_bits, box, scan, sensor, town
+from echotools import Messages, array, assert_same_bits, box, scan, sensor, town
 
 PIPELINE = vtk.vtkStreamingDemandDrivenPipeline
 
@@ -119,32 +118,6 @@ class Beams(unittest.TestCase):
             self.assertEqual(field(at(lidar, time), "revolution"), revolution)
             self.assertEqual(lidar.GetOutput().GetNumberOfPoints(), 144)
 
-    def test_a_sweep_shows_what_has_been_fired(self):
-        lidar, plain = sweeping(), sensor(36, 4)
-        plain.SetRotationRate(2.0)
-        lidar.Update()
-        plain.Update()
-        assert_same_bits(plain.GetOutput(), lidar.GetOutput())  # without a time: the whole of revolution 0
-        self.assertFalse(lidar.GetOutput().GetInformation().Has(vtk.vtkDataObject.DATA_TIME_STEP()))
-        whole = arrays(lidar.GetOutput())
-        for step, time in enumerate(steps_of(lidar)):
-            beams = at(lidar, time)
-            revolution, j = divmod(step, 9)
-            self.assertEqual(field(beams, "revolution"), revolution)
-            self.assertEqual(beams.GetInformation().Get(vtk.vtkDataObject.DATA_TIME_STEP()), time)
-            shown = array(beams, "beam_id").copy()
-            self.assertEqual(len(shown), 16 * (j + 1))
-            for name in ("beam_id", "direction", "laser_id", "azimuth", "vertical_angle"):
-                np.testing.assert_array_equal(array(beams, name), whole[name][shown], name)
-            np.testing.assert_allclose(array(beams, "timestamp"), whole["timestamp"][shown] + 5e5 * revolution, rtol=1e-12)
-            rays = at(lidar, time, 1)
-            np.testing.assert_array_equal(numpy_support.vtk_to_numpy(rays.GetCellData().GetArray("beam_id")), shown)
-            self.assertEqual(field(rays, "revolution"), revolution)
-        at(lidar, 0.5)
-        lidar.SetHalfBeamwidth(2 * lidar.GetHalfBeamwidth())
-        lidar.Update()  # without a time: for the one before
-        self.assertEqual((field(lidar.GetOutput(), "revolution"), lidar.GetOutput().GetNumberOfPoints()), (1, 16))
-
     def test_a_time_beyond_all_revolutions_is_an_error(self):
         lidar = sweeping()
         quiet = Messages(lidar)
@@ -162,23 +135,6 @@ class Echoes(unittest.TestCase):
             self.assertEqual(steps_of(scan(MovingBox(), sensor_output(90)), port), list(range(11)))
             self.assertEqual(steps_of(scan(MovingBox(), sensor()), port), list(range(11)))
             self.assertEqual(steps_of(scan(town(), sensor()), port), [])
-
-    def test_a_sweep_traces_nothing_twice(self):
-        tree = al.vtkAvianLidarCollisionTree()
-        tree.SetInputData(town())
-        lidar = sweeping(90, 4, 2, 9)
-        one = scan(tree, sensor(90, 4), BeamSamples=RAYS)  # integrated beams have no rays to count
-        one.Update()
-        self.assertGreater(one.GetNumberOfTracedRays(), 0)
-        echo = scan(tree, lidar, BeamSamples=RAYS)
-        rays, counts = [], []
-        for time in steps_of(lidar):
-            counts.append(at(echo, time).GetNumberOfPoints())
-            rays.append(echo.GetNumberOfTracedRays())
-        self.assertEqual((sum(rays[:9]), sum(rays[9:])), (one.GetNumberOfTracedRays(), 0))
-        self.assertEqual(counts, sorted(counts[:9]) * 2)
-        self.assertEqual(counts[8], one.GetOutput().GetNumberOfPoints())
-        self.assertEqual((tree.GetNumberOfBuilds(), echo.GetNumberOfTreeBuilds()), (1, 0))
 
     def test_noise_is_that_of_the_revolution(self):
         wall = box((0, 100, 0), (300, 1, 100), "Wall")
@@ -208,7 +164,6 @@ class Echoes(unittest.TestCase):
         echo.Update()
         for name in ("energy_received", "distance_m"):
             np.testing.assert_array_equal(array(echo.GetOutput(), name), array(first, name))
-
 
     def test_ports_at_different_times(self):
         for pipeline in (sweeping(), scan(town(), sweeping())):

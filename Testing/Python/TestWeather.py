@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Air that sends light back: the lidar equation at the filter's own range units by SciPy's quadrature, its noise over many beams, walls and
-birds behind it, coverage, labels, and what is said of it."""
+"""Air that sends light back: the lidar equation at the filter's own range units by SciPy's quadrature, walls and birds behind
+it, coverage, labels, and what is said of it. Its noise is TestAirEcho's (kernel)."""
 import contextlib
 import io
 import math
@@ -58,23 +58,6 @@ class Law(unittest.TestCase):
                 for unit in (2, 66, 133, 260):
                     truth = electrons_of_air(sensor, unit, extinction(visibility, sensor.wavelength), ratio)
                     self.assertAlmostEqual(found[unit] / truth, 1, delta=1e-3)
-
-    def test_noise_over_many_beams(self):
-        beams = 2000  # the variance is known to sqrt(2/2000) = 0.032
-        sensor = looking(beams=beams, threshold_law="Fixed", dynamic_range=200, false_alarms_per_scan=1)
-        lost = 1 - kept_in_view(5.6e-3, 905e-9, 10) / 2  # of what drops take from the beam; two thirds of their variance are left in a unit
-        for weather, mu, ratio, relative in (
-                (FOG, extinction(1000, 905), 18.8, 0.0), ({"rain_rate": 10, "attenuation_coefficient": 0}, lost * 1.5556e-3, lost * 20, 2 / 3 * 6 / 2355)):
-            echoes = al.Scan(NOTHING, sensor, return_mode="RangeUnits", **weather).echoes
-            unit = 133
-            here = np.floor(np.array(echoes["distance_m"]) / (LIGHT * 2.5e-9)).astype(int) == unit
-            n = np.array(echoes["energy_received"])[here] * per_joule(sensor)
-            self.assertEqual(len(n), beams)
-            mean = electrons_of_air(sensor, unit, mu, ratio)
-            background = per_joule(sensor) * 0.05 * 10 * 4 * np.pi * np.sin(2.8e-3)**2 * sensor.receiver_aperture * 5e-9
-            variance = 3 * (mean + background) + 60**2 + relative * mean**2
-            self.assertAlmostEqual((n.mean() - mean) / np.sqrt(variance / beams), 0, delta=4)
-            self.assertAlmostEqual(n.var() / variance, 1, delta=0.12)
 
     def test_walls_behind_are_weakened(self):
         wall = al.Scene([(-9, 80, -9), (9, 80, -9), (9, 80, 9), (-9, 80, 9)], [(0, 1, 2), (0, 2, 3)], material=(0.5, 0, 1))
