@@ -220,6 +220,20 @@ class Movers(unittest.TestCase):
             scan = al.Scan(al.Scene(echotools.town(3, 3)), al.Sensor(**CLOCK), movers=movers)
             self.assertGreater(scan.echoes.number_of_points, 0)
 
+    def test_an_array_block_name_is_the_users_own(self):
+        """It renames nothing, and an empty one is not read."""
+        named = vtkMultiBlockDataSet()
+        named.SetBlock(0, al.mover(bird(), [(0, 30, 1)]))
+        named.GetMetaData(0).Set(vtkMultiBlockDataSet.NAME(), "visitor")
+        named.GetBlock(0).GetFieldData().RemoveArray("object_names")
+        for array in (None, text_array("other"), text_array(), numpy_to_vtk(np.array([7.0]), deep=True)):
+            named.GetBlock(0).GetFieldData().RemoveArray("block_name")
+            if array:
+                array.SetName("block_name")
+                named.GetBlock(0).GetFieldData().AddArray(array)
+            echoes = al.Scan(al.Scene(echotools.town(3, 3)), al.Sensor(**CLOCK), movers=named).echoes
+            self.assertEqual(list(echoes.fields["object_names"]), ["house 0", "house 1", "house 2", "visitor"])
+
 
 if __name__ == "__main__":
     unittest.main()
