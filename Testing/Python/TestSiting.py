@@ -207,13 +207,16 @@ class Kept(unittest.TestCase):
     def test_a_stopped_run_goes_on(self):
         scene, sensor = al.Scene(WALL, material="Wall"), al.Sensor("Search905", azimuth_range=(-60.0, 60.0), position=(1, 2, 3))
         sites = np.array([(0, 0, 2), (10, 0, 2), (-30, 0, 2)], dtype=float)
-        places, species = np.random.default_rng(1).uniform((-200, 60, 0), (200, 500, 40), (6, 3)), ("crow", "herring gull")
-        wanted = siting.look(scene, sensor, sites, places, species)
-        self.assertEqual((wanted.shape, wanted.dtype), ((3, 2, 6), np.float32))
+        places, target = np.random.default_rng(1).uniform((-200, 60, 0), (200, 500, 40), (20, 3)), {"effective_area": 0.003}
+        wanted = siting.look(scene, sensor, sites, places, [""], **target)
         other = al.Sensor("Search905", azimuth_range=(-60.0, 60.0))
-        cover = al.Coverage(scene, other, places=places, clutter=False, species="crow")
+        cover = al.Coverage(scene, other, places=places, clutter=False, species="", **target)
         for i, other.position in enumerate(sites):
             np.testing.assert_array_equal(wanted[i, 0], cover["detection_probability"])
+        birds = siting.look(scene, sensor, sites[2:], places, ("crow", "herring gull"))
+        self.assertEqual((birds.shape, birds.dtype), ((1, 2, 20), np.float32))
+        cover.species, cover.effective_area = "herring gull", 0.0
+        np.testing.assert_array_equal(birds[0, 1], cover["detection_probability"])
         folder, made = fresh("kept"), []
 
         def stop(done, _):
@@ -221,17 +224,17 @@ class Kept(unittest.TestCase):
                 raise KeyboardInterrupt
 
         with self.assertRaises(KeyboardInterrupt):
-            siting.look(scene, sensor, sites, places, species, folder, progress=stop)
+            siting.look(scene, sensor, sites, places, [""], folder, progress=stop, **target)
         self.assertEqual(len(list(folder.iterdir())), 2)
-        again = siting.look(scene, sensor, sites, places, species, folder, progress=lambda *numbers: made.append(numbers))
+        again = siting.look(scene, sensor, sites, places, [""], folder, progress=lambda *numbers: made.append(numbers), **target)
         np.testing.assert_array_equal(again, wanted)
         self.assertEqual((made, sensor.position), ([(1, 1)], (1, 2, 3)))
         # What differs in anything has files of its own.
-        self.assertGreater(siting.look(scene, sensor, sites[:1], places, ["crow"], folder, area_factor=1.2).sum(), wanted[0, 0].sum())
-        siting.look(scene, sensor, sites[:1], places + 1.0, ["crow"], folder)
-        siting.look(scene, sensor, sites[:1], places, ["crow"], folder, visibility=5e3)
+        self.assertGreater(siting.look(scene, sensor, sites[:1], places, [""], folder, area_factor=1.2, **target).sum(), wanted[0, 0].sum())
+        siting.look(scene, sensor, sites[:1], places + 1.0, [""], folder, **target)
+        siting.look(scene, sensor, sites[:1], places, [""], folder, visibility=5e3, **target)
         sensor.receiver_efficiency = 0.5 * sensor.receiver_efficiency
-        self.assertLess(siting.look(scene, sensor, sites[:1], places, ["crow"], folder).sum(), wanted[0, 0].sum())
+        self.assertLess(siting.look(scene, sensor, sites[:1], places, [""], folder, **target).sum(), wanted[0, 0].sum())
         self.assertEqual(len(list(folder.iterdir())), 3 + 4)
 
     def test_what_is_damaged_is_made_again(self):
@@ -335,7 +338,7 @@ class Airport(unittest.TestCase):
         """Surfaces are those that ObstacleLimits has by hand."""
         def sites(**of):
             return Sites(Plan({**read_plan(COVERAGE), "places": 100,
-                               "siting": {"spacing": 400, "bounds": [-2000, 2600, -2600, 2600], "masts": [5, 10], "draws": 0, **of}}))
+                               "siting": {"spacing": 300, "bounds": [-2000, 2600, -2600, 2600], "masts": [5, 10], "draws": 0, **of}}))
         whole, kept = sites(surfaces=False), sites()
         self.assertEqual(whole.pierced, {})
         self.assertIn("none is kept", whole.words()["obstacle limits"])
@@ -415,7 +418,7 @@ class Plans(unittest.TestCase):
                 self.assertIn(str(file), words)
                 self.assertIn(member, words)
         with unittest.mock.patch.object(siting.os, "sysconf", return_value=200):  # 40 kB of memory
-            self.assertRegex(self.said(self.write(siting={"spacing": 400})), "my.coverage.json: siting: [0-9,]+ candidates, 1 species and 20 places need")
+            self.assertRegex(self.said(self.write(siting={"spacing": 100})), "my.coverage.json: siting: [0-9,]+ candidates, 1 species and 20 places need")
         file = self.write()
         file.write_text(file.read_text().replace('"places": 20', '"seed": NaN'))
         self.assertIn("my.coverage.json: is no JSON", self.said(file))
