@@ -52,7 +52,7 @@ class Extinction(unittest.TestCase):
                                        msg=f"{visibility} m, {wavelength} nm")
 
     def test_metres_of_rain_are_those_of_spheres(self):
-        for rate in (1, 10, 50):
+        for rate in (1, 50):
             efficiency, _, _ = others.rain_of_spheres(rate, drops=200)  # efficiencies differ by parts in a thousand
             moment = 0.25e-6 * math.pi * 8000 * 2 * (rate**0.21 / 4.1)**3  # m^2 of drops in m^3, by Marshall and Palmer
             found = others.extinction_in(905, rain_rate=rate, attenuation_coefficient=0)
