@@ -233,7 +233,8 @@ class Extracts(unittest.TestCase):
         self.assertEqual(sum(siting.is_near([(0.0, 0.0)], outline)[0] for outline in outlines), 2)
         # Its plan, with few places, and the lines of its README.
         plan = json.loads((folder / "siting.coverage.json").read_text())
-        small = {**plan, "places": 50, "spacing": 800, "coverage": {"species": "", "effective_area": 0.03, "clutter": False}}
+        small = {**plan, "places": 50, "spacing": 800, "heights": [15], "sensor": {"preset": "Search905", "azimuth_step": 6},
+                 "coverage": {"species": "", "effective_area": 0.03, "clutter": False}}
         small.pop("mix", None)
         (folder / "small.coverage.json").write_text(json.dumps(small))
         code, words = run("coverage", folder / "small.coverage.json", "-o", folder / "maps")
