@@ -274,12 +274,12 @@ class Shipped(unittest.TestCase):
         sys.path.insert(0, str(EXAMPLE))
 
     def test_clutter_is_neither_too_easy_nor_hopeless(self):
-        """The clutter filter that knows the whole sequence, on scans of the shipped scenario."""
+        """The clutter filter that knows the whole sequence, on six scans of the shipped scenario: a cell met once is none."""
         import clutter
         out = emptied("sequence", "shipped")
         al.Sequence(EXAMPLE / "hongqiao.scenario.json", number_of_scans=6, scans_per_sequence=6).write(out)
         files = [sorted((out / "sequences" / "00" / "velodyne").glob("*.bin"))]
-        found = sum(dict(clutter.measure(files, {"ClutterThreshold": 0.1}))["all scans of its sequence"][0])
+        found = sum(dict(clutter.measure(files, {"ClutterThreshold": 0.2}))["all scans of its sequence"][0])
         for subset in ("near clutter", "through edges"):
             hit, false, missed = found[clutter.SUBSETS.index(subset), 0]
             self.assertTrue(0.05 < hit / (hit + false + missed) < 0.9, (subset, hit, false, missed))
