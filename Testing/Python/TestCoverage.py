@@ -252,12 +252,12 @@ class Work(unittest.TestCase):
         random = np.random.default_rng(3)
         places = random.uniform((290, 350, 8), (410, 500, 40), (40, 3))
         alone, by_pose = [], []
+        cover = al.Coverage(scene, sensor, places=places, species="herring gull", visibility=0.0, attenuation_coefficient=AIR,
+                            pose_probabilities=True)
         for site in sites:
             sensor.position = tuple(site)
-            cover = al.Coverage(scene, sensor, places=places, species="herring gull", visibility=0.0, attenuation_coefficient=AIR)
             alone.append(cover["detection_probability"].copy())
-            cover.pose_probabilities = True
-            poses = cover["pose_probabilities"]
+            poses = cover["pose_probabilities"].copy()
             self.assertEqual(poses.shape, (40, 80))
             np.testing.assert_allclose(poses.mean(axis=1), alone[-1], atol=0.012)
             by_pose.append(poses)
