@@ -105,7 +105,7 @@ FAULTS = [Fault(*fault) for fault in (
      "missing = cutoff * (most - least) / most"),
     ("switch_twice", "an off-by-one", "Python-Test(Scores|Tracks)$",
      "Python/avianlidar/apps/_scores.py", "return sum(a != b for a, b in zip(had, had[1:]))", "return sum(a != b for a, b in zip(had, had[2:]))"),
-    ("image_axes", "a swapped axis", "Python-Test(CoverageMaps|Detection)$",
+    ("image_axes", "a swapped axis", "Python-TestCoverageMaps$",
      "Python/avianlidar/_coverage.py", "values.reshape(data.GetDimensions()[::-1] + values.shape[1:])",
      "values.reshape(data.GetDimensions() + values.shape[1:])"),
     # ParaView's panels.

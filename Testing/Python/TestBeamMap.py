@@ -25,33 +25,18 @@ def image_of(echo, beams):
 
 class BeamMap(unittest.TestCase):
     def test_report_has_the_labels_of_its_beams(self):
-        """Also other labels of the same beams, without a ray, and angles of beams that have none."""
-        lidar = echotools.sensor()
-        lidar.SetOrientation(10.0, 3.0, -2.0)
+        """And angles of beams that have no labels."""
+        lidar, beams = echotools.sensor(), vtk.vtkPolyData()
         lidar.Update()
-        beams = vtk.vtkPolyData()
         beams.DeepCopy(lidar.GetOutput())
         echo = echotools.scan(TOWN, beams)
         echo.Update()
-        before = [echo.GetOutput(1).GetPointData().GetArray(name) for name in LABELS]
         for name in LABELS:
             np.testing.assert_array_equal(echotools.arrays(echo.GetOutput(1))[name], echotools.array(beams, name), name)
-            beams.GetPointData().GetArray(name).SetComponent(5, 0, 17.0)
-            beams.GetPointData().GetArray(name).Modified()
-        echo.Update()
-        for name, old in zip(LABELS, before):
-            self.assertEqual(echo.GetOutput(1).GetPointData().GetArray(name).GetComponent(5, 0), 17.0)
-            self.assertNotEqual(old.GetComponent(5, 0), 17.0)
-        self.assertEqual(echo.GetNumberOfTracedRays(), 0)
-        lidar.SetOrientation(0.0, 0.0, 0.0)
-        lidar.Update()
-        beams.DeepCopy(lidar.GetOutput())
-        for name in LABELS:
             beams.GetPointData().RemoveArray(name)
         echo.Update()
         for name in LABELS[1:]:
-            expected = echotools.array(lidar.GetOutput(), name)
-            np.testing.assert_allclose(echotools.arrays(echo.GetOutput(1))[name], expected, atol=1e-8)
+            np.testing.assert_allclose(echotools.arrays(echo.GetOutput(1))[name], echotools.array(lidar.GetOutput(), name), atol=1e-8)
 
     def test_map_has_the_image_and_the_report(self):
         for orientation in ((0.0, 0.0, 0.0), (20.0, 5.0, -3.0)):

@@ -8,9 +8,8 @@ import vtk
 from vtk.util import numpy_support
 
 from avianlidar import vtkAvianLidar as al
-from echotools import COSTS, RAYS, Messages, array, arrays, assert_same_bits, box, scan, sensor, town
+from echotools import COSTS, RAYS, Messages, array, assert_same_bits, box, scan, sensor, town
 
-PIPELINE = vtk.vtkStreamingDemandDrivenPipeline
 FIELDS = ("sway_amplitude", "sway_frequency", "encoder_jitter", "motion_seed")
 
 
@@ -130,27 +129,6 @@ class Echoes(unittest.TestCase):
         self.assertFalse(np.array_equal(array(first, "energy"), array(second, "energy")))
         assert_same_bits(first, at(echo, 0.0), COSTS)
         assert_same_bits(second, at(scan(town(), moving(0.3, 0.1), BeamSamples=RAYS), 2.0), COSTS)
-
-    def test_a_changed_report_moves_echoes_and_traces_nothing(self):
-        beams = output(moving(0.3))
-        table = table_of(beams)
-        echo = scan(town(), table)
-        echo.Update()
-        before = arrays(echo.GetOutput())
-        values = table.GetPointData().GetArray("reported_direction")
-        numpy_support.vtk_to_numpy(values)[:] = 2 * array(beams, "direction")
-        values.Modified()
-        echo.Update()
-        after = arrays(echo.GetOutput())
-        self.assertEqual(echo.GetNumberOfTracedRays(), 0)
-        np.testing.assert_array_equal(before["energy"], after["energy"])
-        expected = after["distance_m"][:, None] * array(beams, "direction")[after["beam_id"]]
-        np.testing.assert_allclose(after["points"], expected, atol=1e-9)
-        values.SetTuple3(5, 0, 0, 0)
-        values.Modified()
-        messages = Messages(echo)
-        echo.Update()
-        self.assertIn("beam 5: point array 'reported_direction' is zero", messages.errors[0])
 
     def test_a_range_image_has_the_sensors_grid(self):
         """Also of a table without angles, whose grid is that of the directions reported."""

@@ -138,38 +138,14 @@ class Verbs(unittest.TestCase):
         np.testing.assert_array_equal(cloud["a, b"], [np.nan, -1000])
         self.assertEqual([cloud[name].dtype.kind for name in cloud], list("ffii"))
         self.assertEqual(read("x,y,z,energy [J]\n").number_of_points, 0)
-        for text, words in (("", "has no column x"), ("x,y\n1,2\n", "has no column z"), ("x,y,z [mm]\n1,2,3\n", "has no column z in metres"),
-                            ("x,y,z,x\n1,2,3,4\n", "'x' is there twice"), ("x,y,z\n1,2,word\n", "word"), ("x,y,z\n1,2\n", "rows have 2 cells"),
-                            ("x,y,z\n1,2,3\n1,2\n", "columns"), ("1,2,3\n1,2,3\n", "has no column x"), ("x,y,z\n1,2,\n", "string")):
-            with self.assertRaisesRegex(ValueError, f"others.csv: is no cloud .*{words}.*: expected a first line of names, among them x, y and z"):
+        for text, words in (("", "has no column x"), ("x,y,z [mm]\n1,2,3\n", "has no column z in metres"),
+                            ("x,y,z,x\n1,2,3,4\n", "'x' is there twice"),
+                            ("x,y,z\n1,2,word\n", "word"), ("x,y,z\n1,2\n", "rows have 2 cells"),
+                            ("x,y,z\n1,2,\n", "string")):
+            with self.assertRaisesRegex(ValueError, f"others.csv: is no cloud .*{words}"):
                 read(text)
         with self.assertRaisesRegex(ValueError, "others.csv: is no cloud .*decode"):
             read("x,y,z,\u00e4\n1,2,3,4\n", "latin-1")
-        with self.assertRaisesRegex(TypeError, "has no properties: frame"):
-            al.load_cloud(file, frame="enu")
-
-    def test_footprints_are_told_where_they_belong(self):
-        """The scene file of the error, with an origin, is one."""
-        scene = SCENE.parent
-        footprints = next(file for file in sorted(scene.glob("*.geojson")))
-        file = OUTPUT / footprints.name
-        shutil.copy(footprints, file)
-        code, _, errors = run("scan", file, "-o", OUTPUT / "never.las")
-        self.assertEqual((code, len(errors)), (2, 1))
-        self.assertIn("holds footprints, which become buildings in a scene file", errors[0])
-        numbers = iter((31.1979, 121.3363, 3))
-        document = re.sub(r"\?", lambda _: str(next(numbers)), re.search(r"\{.*\}", errors[0])[0])
-        (OUTPUT / "my.lidarscene.json").write_text(document, encoding="utf-8")
-        code, lines, errors = run("scan", OUTPUT / "my.lidarscene.json", "--position", "0", "0", "3", *FEW, "-o", OUTPUT / "footprints.las")
-        self.assertEqual(code, 0, errors)
-        self.assertGreater(al.load_cloud(OUTPUT / "footprints.las").number_of_points, 20)
-
-    def test_convert(self):
-        code, lines, _ = run("convert", self.files["las"], OUTPUT / "again.pcd")
-        self.assertEqual((code, lines), (0, [f"{OUTPUT / 'again.pcd'}: {self.echoes.number_of_points} points of {self.files['las']}"]))
-        again = al.load_cloud(OUTPUT / "again.pcd")
-        self.assertTrue(np.array_equal(again["energy"], self.echoes["energy"]))
-        self.assertLess(np.abs(again.points - self.echoes.points).max(), 2e-4)
 
     def test_sensors_and_materials(self):
         code, lines, _ = run("sensors")
@@ -187,17 +163,15 @@ class Verbs(unittest.TestCase):
         (OUTPUT / "table.csv").write_text("region,share [1]\nall,0.5\n", encoding="utf-8")
         scan = ("scan", SCENE, "-o", "x.las")
         cases = ((("scan", "none.stl", "-o", "x.las"), "no such file: none.stl"), (("scan", SCENE, "-o", "x.doc"), "cannot write 'x.doc'"),
+                 (("scan", SCENE.parent / "hongqiao.geojson", "-o", "x.las"), "holds footprints"),
                  (("scan", OUTPUT / "text.stl", "-o", "x.las"), "text.stl"), ((*scan, "--sensor", "Airport17"), "did you mean 'Airport16'"),
-                 ((*scan, "--material", "Glas"), "did you mean 'Glass'"), ((*scan, "--scale", "2"), "scale of a scene"),
-                 ((*scan, "--sensor-set", "gate=3"), "'gate' is not known"), ((*scan, "--position", "0", "0"), "--position"),
-                 ((*scan, "--sensor-set", "maximum_elevation=9"), "it is minimum_elevation .* elevation_step"),
-                 (("scan", SCENE), "required: -o/--out"), (("fly",), "invalid choice: 'fly'"), ((), "verb"),
+                 ((*scan, "--scale", "2"), "scale of a scene"),
+                 ((*scan, "--sensor-set", "gate=3"), "'gate' is not known"), ((), "verb"),
                  (("scan", SCENE, "-o", "none/x.las"), "there is no folder none"), ((*scan, "-o", "./x.las"), "is named twice"),
-                 (("scan", self.files["las"], "-o", "x.las"), "has no surfaces"), ((*scan, "--scan-set", "rays_per_beam=1e30"), "rays_per_beam|int"),
-                 ((*scan, "--scan-set", "attenuation_coefficient=nan"), "attenuation_coefficient=nan is no finite number"),
-                 (("siting", "p.coverage.json", "--siting-set", "bounds=0,1,0,-1e999", "-o", "x"), "bounds=.* is no finite number"),
+                 ((*scan, "--scan-set", "rays_per_beam=1e30"), "rays_per_beam|int"),
+                 ((*scan, "--scan-set", "attenuation_coefficient=nan"), "no finite number"),
                  (("info", OUTPUT / "table.csv"), r"table.csv: is no cloud"), (("info", OUTPUT / "fake.vtp"), "fake.vtp"),
-                 (("compare", self.files["las"], "b.doc"), "cannot read 'b.doc'"), (("convert", self.files["las"], "x.doc"), "cannot write 'x.doc'"),
+                 (("convert", self.files["las"], "x.doc"), "cannot write 'x.doc'"),
                  (("sensors", "VLP99"), "'VLP99' is not known"))
         for arguments, words in cases:
             with self.subTest(arguments):
@@ -218,14 +192,6 @@ class Verbs(unittest.TestCase):
         code, lines, errors = run("scan", OUTPUT / "box.stl", "-o", OUTPUT / "early.vtp", "-o", OUTPUT / "early.geojson")
         self.assertEqual((code, lines, len(errors)), (2, [], 1))
         self.assertFalse((OUTPUT / "early.vtp").exists())
-
-    def test_what_sees_nothing_is_a_warning(self):
-        work = ("scan", SCENE, *FEW, "--position", "0", "0", "-50", "-o", OUTPUT / "none.vtp")
-        code, lines, errors = run(*work)
-        self.assertEqual((code, lines[0]), (0, f"{OUTPUT / 'none.vtp'}: 0 echoes of 3072 beams"))
-        self.assertEqual([line.partition(":")[0] for line in lines[1:]], ["modelled", "left out", "perceived"])
-        self.assertEqual(len(run(*work, "--quiet")[1]), 1)
-        self.assertRegex("\n".join(errors), "(?s)^avianlidar: warning: .*is below the scene.*\navianlidar: warning: no echoes of 3072 beams")
 
 
 class Surroundings(unittest.TestCase):
@@ -259,8 +225,8 @@ class Surroundings(unittest.TestCase):
 
     def test_reach_is_that_of_birds_within_beams(self):
         """With the ranges that the fit of a receiver leaves open: those of its bar, 11.3 %."""
-        few = (*reach.within_beams.__defaults__[:2], 200)  # birds
-        with unittest.mock.patch.object(reach, "RANGES", 8), unittest.mock.patch.object(reach.within_beams, "__defaults__", few):
+        few = (*reach.within_beams.__defaults__[:2], 40)  # birds
+        with unittest.mock.patch.object(reach, "RANGES", 6), unittest.mock.patch.object(reach.within_beams, "__defaults__", few):
             code, lines, _ = run("reach", "--sensor", "OS1_64", "--species", "herring gull", "--weather", "fog:500", "-o", OUTPUT / "reach.csv")
             found = reach.within_beams(al.Sensor("OS1_64"), "herring gull", visibility=500.0, air_backscatter=True)
         self.assertEqual(code, 0)

@@ -8,7 +8,7 @@ import unittest
 
 import numpy as np
 from vtkmodules.vtkCommonCore import vtkVersion
-from vtkmodules.vtkCommonDataModel import vtkImageData, vtkPointSet, vtkPolyData, vtkRectilinearGrid, vtkUnstructuredGrid
+from vtkmodules.vtkCommonDataModel import vtkImageData, vtkPointSet, vtkRectilinearGrid, vtkUnstructuredGrid
 from vtkmodules.vtkFiltersCore import vtkPassThrough
 
 import avianlidar as al
@@ -28,7 +28,9 @@ SENSORS = {
     ("Search1550", ()): (423.621, (1116.45, 1339.81, 1509.67, 1707.81, 2071.05)),
     ("Automotive16", ()): (326.510, (93.28, 112.40, 127.05, 144.24, 176.08))}
 NOTHING = (np.zeros((0, 3)), np.zeros((0, 3), dtype=int))
-REGION = {"bounds": (-200.0, 200.0, 20.0, 300.0, 0.0, 30.0), "spacing": (20.0, 20.0, 10.0)}
+REGION = {"bounds": (-200.0, 200.0, 20.0, 300.0, 0.0, 30.0), "spacing": (40.0, 40.0, 10.0)}
+SHAPE = (11, 8, 4)  # places of the region
+TARGET = {"species": "", "effective_area": 0.03}  # m2: quicker than a bird, of which many views are made
 WALL = ([(-9, 50, -9), (9, 50, -9), (9, 50, 9), (-9, 50, 9)], [(0, 1, 2), (0, 2, 3)])
 
 
@@ -52,7 +54,7 @@ class FreeSpace(unittest.TestCase):
                 self.assertAlmostEqual(here / threshold, 1.0, delta=0.02)
 
     def test_tracks_follow_the_binomial_law(self):
-        cover = al.Coverage(al.Scene(NOTHING, material="Wall"), al.Sensor("Search905"),
+        cover = al.Coverage(al.Scene(NOTHING, material="Wall"), al.Sensor("Search905"), **TARGET,
                             places=[(0, r, 10) for r in range(300, 800, 20)], required_detections=3, number_of_scans=5)
         p, track = cover["detection_probability"].astype(float), cover["track_probability"]
         self.assertGreater(np.count_nonzero((p > 0.05) & (p < 0.95)), 5)
@@ -117,13 +119,12 @@ class Airport(unittest.TestCase):
         self.assertTrue(0.8 * points[::10].mean() < gull < points[::10].mean(), gull)
 
     def test_table_is_the_mean_of_the_places(self):
-        """Regions, heights and species; weights of strikes by height: 74 % below 152.4 m, the others falling by 0.001265 a metre."""
-        strips = np.isin(np.arange(len(self.points)), self.regions["strips"])[::10]
-        places, heights = self.points[::10], self.points[::10, 2]
-        cover = self.cover("Search905", al.places_of(places, {"strips": np.flatnonzero(strips), "approaches": np.flatnonzero(~strips)}), all_species=True)
+        """Regions and heights; weights of strikes by height: 74 % below 152.4 m, the others falling by 0.001265 a metre."""
+        strips = np.isin(np.arange(len(self.points)), self.regions["strips"])[::20]
+        places, heights = self.points[::20], self.points[::20, 2]
+        cover = self.cover("Search905", al.places_of(places, {"strips": np.flatnonzero(strips), "approaches": np.flatnonzero(~strips)}))
         p = cover["detection_probability"]
         rows = {(r["region"], r["species"], r["height_from"]): r for r in cover.table}
-        self.assertEqual(len({species for _, species, _ in rows}), 6)
         for region, where in (("strips", strips), ("approaches", ~strips), ("all", strips | ~strips)):
             for low, high in ((0.0, 15.0), (60.0, 150.0), (-np.inf, np.inf)):
                 chosen = p[where & (heights >= low) & (heights < high)]
@@ -133,9 +134,7 @@ class Airport(unittest.TestCase):
                 self.assertEqual(row["places"], len(chosen))
                 self.assertAlmostEqual(row["detection_probability"], chosen.mean(), delta=1e-6)
                 self.assertAlmostEqual(row["detection_std_error"], chosen.std(ddof=1) / math.sqrt(len(chosen)), delta=1e-6)
-        gull, goose = (rows["all", species, -np.inf]["detection_probability"] for species in ("herring gull", "Canada goose"))
-        self.assertGreater(goose, gull)
-        cover.set(all_species=False, strike_height_weights=True)
+        cover.set(strike_height_weights=True)
         weight = np.where(heights <= 152.4, 0.74 / 152.4, 0.26 * 0.001265 * np.exp(-0.001265 * (heights - 152.4)))
         self.assertAlmostEqual(cover.table[-1]["detection_probability"], np.average(p, weights=weight), delta=1e-3)
 
@@ -199,46 +198,20 @@ class Terrain(unittest.TestCase):
 
 
 class Work(unittest.TestCase):
-    def test_birds_air_and_receivers_trace_no_line_of_sight(self):
-        scene, sensor = al.Scene(WALL, material="Wall"), al.Sensor("Search905", azimuth_range=(-30.0, 30.0))
-        cover = al.Coverage(scene, sensor, **REGION)
-        cover.update()
-        self.assertEqual(cover.number_of_traced_places, 21 * 15 * 4)
-
-        def same_as_fresh():
-            fresh = al.Coverage(scene, sensor, species=cover.species, visibility=cover.visibility, **REGION)
-            for name in ("detection_probability", "status", "photoelectrons", "minimum_effective_area"):
-                np.testing.assert_array_equal(cover[name], fresh[name])
-
-        before = cover["detection_probability"].copy()
-        cover.species = "starling"
-        self.assertTrue(np.all(cover["detection_probability"] <= before))
-        self.assertEqual((cover.number_of_traced_rays, cover.number_of_traced_places), (0, 0))
-        same_as_fresh()
-        cover.visibility = 2000.0
-        sensor.receiver_efficiency = 0.2
-        cover.update()
-        self.assertEqual((cover.number_of_traced_rays, cover.number_of_traced_places), (0, 0))
-        same_as_fresh()
-        sensor.half_beamwidth = 4e-3
-        cover.update()
-        self.assertGreater(cover.number_of_traced_places, 0)
-        same_as_fresh()
-
     def test_threads_and_pieces_change_no_bit(self):
         """Pieces of any output and of both kinds of places count each place once, and the clutter is in the first."""
         scene, sensor = al.Scene(WALL, material="Wall"), al.Sensor("Search905", azimuth_range=(-30.0, 30.0))
-        wanted = al.Coverage(scene, sensor, **REGION, number_of_threads=1)["detection_probability"]
+        wanted = al.Coverage(scene, sensor, **REGION, **TARGET, number_of_threads=1)["detection_probability"]
         image = vtkImageData()
-        image.SetDimensions(21, 15, 4)
+        image.SetDimensions(SHAPE)
         image.SetOrigin(-200, 20, 0)
-        image.SetSpacing(20, 20, 10)
+        image.SetSpacing(40, 40, 10)
         for places, port, ghosts in ((None, 0, 0), (None, 1, 0), (image, 0, 1), (image, 2, 1)):
-            cover = al.Coverage(scene, sensor, places=places, **REGION)
+            cover = al.Coverage(scene, sensor, places=places, **REGION, **TARGET)
             counts, clutter = [], []
             for piece in range(3):
                 if port == 1:  # VTK 9.3 makes no other piece of a table that is there
-                    cover = al.Coverage(scene, sensor, places=places, **REGION)
+                    cover = al.Coverage(scene, sensor, places=places, **REGION, **TARGET)
                 passed = vtkPassThrough()
                 passed.SetInputConnection(cover.algorithm.GetOutputPort(port))
                 passed.UpdatePiece(piece, 3, ghosts)
@@ -250,49 +223,47 @@ class Work(unittest.TestCase):
                     x0, x1, y0, y1, z0, z1 = data.GetExtent()
                     values = al._cloud.as_numpy(data.GetPointData().GetArray("detection_probability")).reshape(data.GetDimensions()[::-1])
                     np.testing.assert_array_equal(values, wanted[z0:z1 + 1, y0:y1 + 1, x0:x1 + 1])
-            self.assertEqual(sum(counts), 21 * 15 * 4, (places, port, ghosts, counts))
+            self.assertEqual(sum(counts), math.prod(SHAPE), (places, port, ghosts, counts))
             self.assertGreater(clutter[0], 0)
             self.assertEqual(clutter[1:], [0, 0])
         ghostly = al.places_of([(0, 200, 1), (100, 200, 1)])
         ghostly.AllocatePointGhostArray()
         ghostly.GetPointGhostArray().SetValue(0, 1)
-        self.assertEqual(al.Coverage(scene, sensor, places=ghostly).table[-1]["places"], 1)
+        self.assertEqual(al.Coverage(scene, sensor, places=ghostly, **TARGET).table[-1]["places"], 1)
 
     def test_beams_wider_and_narrower_than_the_bird(self):
         """A gull on the axis of a beam that is narrower than itself is seen; everywhere else as often as coverage states."""
         place = 35.0 * np.array([[0.0, math.cos(math.radians(1.0)), math.sin(math.radians(1.0))]])
         p = flown_sensors.stated(al.Sensor("VLP16"), "herring gull", place)[0]
         self.assertGreater(p, 0.9)
-        _, expected = flown.fly(al.Scene(NOTHING, material="Wall"), al.Sensor("VLP16"), place, 60, "herring gull", AIR, 400)
+        _, expected = flown.fly(al.Scene(NOTHING, material="Wall"), al.Sensor("VLP16"), place, 30, "herring gull", AIR, 400)
         self.assertAlmostEqual(p, expected[0], delta=0.05)
-        for name, species in (("VLP16", "herring gull"), ("Automotive16", "starling")):
-            row = flown_sensors.compare(name, species, flown_sensors.flights(name, species, 80, 10), 10)
-            self.assertGreater(row["between"], 5, (name, species))
-            self.assertLess(abs(row["bias"]), 0.03, (name, species))  # 800 flights: at most 0.018 by chance
-            self.assertLess(abs(row["expected"] - row["stated"]), 0.02, (name, species))
-            self.assertLessEqual(row["outside_99.73_percent"], 0.03, (name, species))
+        row = flown_sensors.compare("VLP16", "herring gull", flown_sensors.flights("VLP16", "herring gull", 50, 10), 10)
+        self.assertGreater(row["between"], 5)
+        self.assertLess(abs(row["bias"]), 0.03)  # 500 flights: at most 0.023 by chance
+        self.assertLess(abs(row["expected"] - row["stated"]), 0.02)
+        self.assertLessEqual(row["outside_99.73_percent"], 0.03)
 
     def test_several_sensors_and_the_same_bird(self):
+        """The mean over poses is the probability, and of a pose sensors are independent. What poses are is TestBirdViews'
+        (kernel)."""
         scene = al.Scene(NOTHING, material="Wall")
         sensor, sites = al.Sensor("Search905", azimuth_range=(-60.0, 60.0)), np.array([(0.0, 0.0, 0.0), (700.0, 0.0, 0.0)])
         random = np.random.default_rng(3)
-        places = np.column_stack([350 + random.uniform(-60, 60, 100), random.uniform(350, 500, 100), random.uniform(8, 40, 100)])
+        places = random.uniform((290, 350, 8), (410, 500, 40), (40, 3))
         alone, by_pose = [], []
+        cover = al.Coverage(scene, sensor, places=places, species="herring gull", visibility=0.0, attenuation_coefficient=AIR,
+                            pose_probabilities=True)
         for site in sites:
             sensor.position = tuple(site)
-            cover = al.Coverage(scene, sensor, places=places, species="herring gull", visibility=0.0, attenuation_coefficient=AIR)
             alone.append(cover["detection_probability"].copy())
-            cover.pose_probabilities = True
-            poses = cover["pose_probabilities"]
-            self.assertEqual(poses.shape, (100, 80))
+            poses = cover["pose_probabilities"].copy()
+            self.assertEqual(poses.shape, (40, 80))
             np.testing.assert_allclose(poses.mean(axis=1), alone[-1], atol=0.012)
             by_pose.append(poses)
         stated = 1.0 - np.prod([1.0 - poses for poses in by_pose], axis=0).mean(axis=1)
         independent = 1.0 - (1.0 - alone[0]) * (1.0 - alone[1])
-        sensors = [al.Sensor("Search905", azimuth_range=(-60.0, 60.0), position=tuple(site)) for site in sites]
-        _, expected = flown.fly(scene, sensors, places, 12, "herring gull", AIR, 400)
-        self.assertLess(abs(stated.mean() - expected.mean()), 0.015)
-        self.assertGreater(abs(independent.mean() - expected.mean()), 2 * abs(stated.mean() - expected.mean()))
+        self.assertGreater(np.abs(independent - stated).max(), 0.02)
         image = al.Coverage(scene, sensor, bounds=(0, 100, 300, 340, 10, 20), spacing=(20, 20, 10), pose_probabilities=True, gliding=True)
         self.assertEqual(image["pose_probabilities"].shape, (2, 3, 6, 80))
         point = al.Coverage(scene, sensor, places=[(0, 300, 10)], species="", effective_area=0.03, pose_probabilities=True)
@@ -315,13 +286,13 @@ class Work(unittest.TestCase):
         image.SetOrigin(0, 200, 1)
         image.SetSpacing(100, 1, 1)
         for places in (grid, image, plain):
-            cover = al.Coverage(scene, sensor, places=places)
+            cover = al.Coverage(scene, sensor, places=places, clutter=False, **TARGET)
             self.assertEqual(cover["status"].ravel().tolist(), [4, 7])
             self.assertEqual(cover.data.GetClassName(), places.GetClassName())
 
     def test_clutter_is_the_scan_of_the_echo_filter(self):
         scene, sensor = al.Scene(WALL, material="Wall"), al.Sensor("Search905", azimuth_range=(-30.0, 30.0))
-        clutter = al.Coverage(scene, sensor, visibility=0.0, attenuation_coefficient=AIR).clutter_map
+        clutter = al.Coverage(scene, sensor, visibility=0.0, attenuation_coefficient=AIR, **TARGET).clutter_map
         echoes = al.Scan(scene, sensor, noise=False, return_mode="RangeUnits",
                          attenuation_coefficient=AIR).echoes
         self.assertGreater(len(echoes.points), 100)
@@ -329,42 +300,30 @@ class Work(unittest.TestCase):
         np.testing.assert_array_equal(clutter.points, echoes.points)
         often = clutter["detection_probability"]
         self.assertTrue(np.all((often > 0.49) & (often <= 1.0)))
-        without = al.Coverage(scene, sensor, clutter=False)
+        without = al.Coverage(scene, sensor, clutter=False, **TARGET)
         self.assertEqual(without.clutter_map.number_of_points, 0)
         self.assertFalse(np.any(without["status"] == vtkAvianLidarCoverage.STATUS_IN_CLUTTER))
         self.assertEqual(without.number_of_traced_rays, 0)
 
     def test_nothing_to_look_at_is_no_error(self):
         scene = al.Scene(NOTHING, material="Wall")
-        cover = al.Coverage(scene, al.Sensor("Search905"), places=np.zeros((0, 3)))
+        cover = al.Coverage(scene, al.Sensor("Search905"), places=np.zeros((0, 3)), **TARGET)
         self.assertEqual(len(cover["status"]), 0)
         self.assertEqual(cover.table, [])
-        blind = vtkAvianLidarCoverage()
-        beams = vtkPolyData()
-        beams.GetFieldData().PassData(al.Sensor("Search905").beams.data.GetFieldData())
-        blind.SetInputData(0, beams)
-        blind.SetInputData(1, vtkPolyData())
-        blind.SetPlacesData(al.places_of([(0, 200, 1)]))
-        blind.Update()
-        arrays = blind.GetOutputDataObject(0).GetPointData()
-        self.assertEqual(arrays.GetArray("status").GetValue(0), vtkAvianLidarCoverage.STATUS_BETWEEN_BEAMS)
-        self.assertEqual(arrays.GetArray("minimum_effective_area").GetValue(0), math.inf)
 
     def test_bad_input_is_named_and_the_next_good_works(self):
         scene, sensor = al.Scene(WALL, material="Wall"), al.Sensor("Search905", azimuth_range=(-30.0, 30.0))
-        cover = al.Coverage(scene, sensor, places=[(100, 200, 1)], clutter=False)
+        cover = al.Coverage(scene, sensor, places=[(100, 200, 1)], clutter=False, **TARGET)
         wrong = al.places_of([(100, 200, 1)], {"here": [0]})
         wrong.GetPointData().GetArray("region_id").SetNumberOfTuples(3)
         box = (0.0, 100.0, 0.0, 100.0, 0.0, 15.0)
         for bad, good, words in (
-                ({"species": "dodo"}, {"species": "crow"}, "Species"), ({"effective_area": -1.0}, {"effective_area": 0.0}, "EffectiveArea"),
-                ({"reflectance": 0.0}, {"reflectance": 0.3}, "Reflectance"), ({"visibility": 1e-300}, {"visibility": 23e3}, "Visibility"),
+                ({"species": "dodo"}, {"species": ""}, "Species"), ({"effective_area": -1.0}, {"effective_area": 0.1}, "EffectiveArea"),
                 ({"number_of_scans": 0}, {"number_of_scans": 3}, "NumberOfScans"),
                 ({"required_detections": 4}, {"required_detections": 2}, "RequiredDetections"),
                 ({"height_limits": (10.0, 5.0)}, {"height_limits": (5.0, 10.0)}, "HeightLimits"),
                 ({"places": [(np.nan, 0, 0)]}, {"places": [(100, 200, 1)]}, "port 2"),
                 ({"places": wrong}, {"places": [(100, 200, 1)]}, "region_id"),
-                ({"places": None, "spacing": (0.0, 1.0, 1.0)}, {"places": [(100, 200, 1)], "spacing": (9.0, 9.0, 9.0)}, "Spacing"),
                 ({"places": None, "spacing": (1e-9, 1e-9, 1e-9)}, {"spacing": (20.0, 20.0, 15.0), "bounds": box}, "Spacing|need"),
                 ({"bounds": (1.0, 0.0, 0.0, 1.0, 0.0, 1.0)}, {"bounds": box}, "Bounds")):
             for name, value in bad.items():
@@ -375,8 +334,6 @@ class Work(unittest.TestCase):
                 setattr(cover, name, value)
             status = cover["status"]
             self.assertTrue(status.tolist() == [7] or status.shape == (2, 6, 6), bad)
-        self.assertEqual(repr(al.Coverage(scene, sensor, places=[(0, 9, 1), (0, 8, 1)], species="crow", visibility=5e3)),
-                         "<Coverage: bird crow; air visibility 5000 m; sensor (0, 0, 0) m; places 2>")
         # Before any of them is looked at: 1e15 places would take years.
         for extent, words in (((0, 99999, 0, 99999, 0, 99999), r"port 2 \(places\), 1e\+15 places need about"),
                               ((0, 2147483646, 0, 2147483646, 0, 3), r"port 2 \(places\), 1.8[0-9]*e\+19 places need about"),  # more than 2^63
@@ -390,7 +347,7 @@ class Work(unittest.TestCase):
                 grid.SetExtent(extent)
                 with self.assertRaisesRegex(al.Error, words):
                     al.Coverage(scene, sensor, places=grid).update()
-        self.assertEqual(al.Coverage(scene, sensor, places=vtkImageData())["status"].size, 0)
+        self.assertEqual(al.Coverage(scene, sensor, places=vtkImageData(), **TARGET)["status"].size, 0)
 
 
 if __name__ == "__main__":

@@ -141,14 +141,6 @@ class Paper(unittest.TestCase):
             self.assertGreater(share, 1e-5, sensor)
             self.assertLess(share, 5e-3, sensor)
 
-    def test_the_papers_threshold_leaves_no_path_over_two_reflections(self):
-        for sensor, (subject, lidar) in self.mine.items():
-            found = et.arrays(lidar.GetOutput())
-            self.assertEqual(found["secondary_share"].max(), 0, sensor)
-            once = et.arrays(paper.scan(subject, {**paper.SCAN, "NumberOfReflections": 1}, 0, 1).GetOutput())
-            for name in ("beam_id", "energy_received", "distance_m"):
-                np.testing.assert_array_equal(found[name], once[name], (sensor, name))
-
     def test_fig_17_terminal_1_is_blue(self):
         table = et.read_table(os.path.join(self.folder, "table.md"))
         for sensor in ("Airport16", "Airport32"):

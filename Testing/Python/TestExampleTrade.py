@@ -90,18 +90,6 @@ class Trade(unittest.TestCase):
             self.assertLessEqual(numbers[advice.kind], 1.5 * advice.wanted, advice)
         self.assertGreaterEqual(kept, 4)
 
-    def test_advice_is_a_table_of_wishes(self):
-        """For less error it costs more. The rays of a preset are the preset's, not a setting."""
-        rows = et.parse_table(trade_results.advice_table(self.advice, self.results).splitlines())
-        self.assertEqual(len(rows["use"]), 5)
-        self.assertTrue(all(text and "nan" not in text for column in rows.values() for text in column.values()))
-        times = [a.result.median("cpu") for a in self.advice if a.kind == "energy" and a.result]
-        self.assertEqual(times, sorted(times, reverse=True))
-        for name in trade_grid.PRESETS:
-            preset = next(r for r in self.results if r.choice.family == name)
-            advice = trade_results.Advice("energy", 0.1, preset, {"energy": 0.05})
-            self.assertIn(f"| {preset.choice.words} |", trade_results.advice_table([advice], self.results))
-
     def test_table_is_complete(self):
         with open(os.path.join(self.folder, "results.csv"), encoding="utf-8") as stream:
             rows = list(csv.DictReader(stream))

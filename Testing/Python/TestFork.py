@@ -65,20 +65,13 @@ class TestFork(unittest.TestCase):
         self.assertEqual(work(4), found)
 
     def test_after_a_scan(self):
-        for threads in (4, 1, 0):
-            with self.subTest(threads=threads):
-                expected = work(threads)
-                self.assertEqual(in_child(send, threads), expected)
-                self.assertEqual(work(threads), expected)  # the parent goes on
+        expected = work(0)
+        self.assertEqual(in_child(send, 0), expected)
+        self.assertEqual(work(0), expected)  # the parent goes on
 
     def test_a_child_forks(self):
         expected = work(3)
         self.assertEqual(in_child(send_from_a_grandchild, 3), (expected, expected))
-
-    def test_a_pool(self):
-        expected = work(2)
-        with FORK.Pool(2) as pool:
-            self.assertEqual(pool.map_async(work, [1, 2, 3]).get(4 * HANGS), 3 * [expected])
 
 
 if __name__ == "__main__":

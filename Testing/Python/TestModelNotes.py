@@ -65,25 +65,6 @@ class ModelNotes(unittest.TestCase):
             for name, text in expected.items():
                 self.assertRegex(notes["note_" + name], "^" + text, name)
 
-    def test_with_an_aperture_no_bound_of_light_beside_it_is_held_against_the_limit(self):
-        # Of the light that a wall sends back from 100 m the aperture gathers some 3e-7.
-        notes = notes_of(echotools.scan(TOWN, sensor(ReceiverAperture=0.01, LowerEnergyLimit=1e-12, NoisePhotonRate=0.0)))
-        for name, text in notes.items():
-            for share in re.findall(r"([-+.e0-9]+) % of the lower energy limit", text):
-                self.assertLess(float(share), 100.0, name)
-        share = float(re.search(r"less than ([.0-9]+) %", notes["note_detail_between_rays"])[1])
-        rays = 32 * echotools.scan(TOWN).GetRaysPerBeam()
-        self.assertAlmostEqual((1.0 - share / 100.0) ** rays, 0.05, delta=2e-3)
-
-    def test_lit_again_they_are_those_of_a_fresh_scan(self):
-        for samples in (echotools.CELLS, echotools.RAYS):  # integrated beams of this town never have a ray
-            echo = echotools.scan(TOWN, NumberOfThreads=1, BeamSamples=samples)
-            for air in (1e-3, 8e-3, 3.5e-5):
-                echo.SetAttenuationCoefficient(air)
-                fresh = echotools.scan(TOWN, AttenuationCoefficient=air, NumberOfThreads=3, BeamSamples=samples)
-                self.assertEqual(notes_of(echo), notes_of(fresh))
-                self.assertEqual(echo.GetNumberOfTracedRays() == 0, samples == echotools.CELLS or air != 1e-3)
-
 
 if __name__ == "__main__":
     unittest.main()

@@ -12,7 +12,6 @@ import numpy as np
 from vtkmodules.vtkCommonDataModel import vtkPolyData
 
 import avianlidar as al
-from avianlidar import vtkAvianLidar
 from helpertools import WALL
 
 FILES = pathlib.Path(os.environ["AVIANLIDAR_SOURCE_DIR"]) / "Filters" / "Sensors"
@@ -51,10 +50,7 @@ class Windows(unittest.TestCase):
         # Beams of one's own in their place, and another sensor.
         own = al.Sensor("Mid40", directions=[(0, 1, 0)]).beams.fields
         self.assertFalse({"prism_wedge_angles", "firing_interval"} & set(own))
-        sensor = vtkAvianLidar.vtkAvianLidarBeamSource()
-        sensor.SetPresetToMid360()
-        self.assertEqual(sensor.GetNumberOfPrisms(), 2)
-        self.assertIn("PrismWedgeAngles: (2) 26.4 -26.4\n", str(sensor))
+        sensor = al.Sensor("Mid360").algorithm
         sensor.SetPresetToAirport16()
         self.assertEqual(sensor.GetNumberOfPrisms(), 0)
 
@@ -98,13 +94,12 @@ class Use(unittest.TestCase):
         y = 20.0
         corners = [(-30, y, -30), (30, y, -30), (30, y, 30), (-30, y, 30)]
         scan = al.Scan(al.Scene((corners, [(0, 1, 2), (0, 2, 3)])), al.Sensor("Mid40"), noise=False, rays_per_beam=16)
-        for number in (0, 4):
-            scan.algorithm.UpdateTimeStep(0.1 * number)
-            echoes = al.Cloud(scan.algorithm.GetOutput())
-            self.assertEqual(echoes.number_of_points, 10_000)
-            np.testing.assert_allclose(echoes.points[:, 1], y, atol=0.02)
-            beams = window(al.Sensor("Mid40"), number)
-            np.testing.assert_array_equal(echoes["timestamp"], beams["timestamp"][np.searchsorted(beams["beam_id"], echoes["beam_id"])])
+        scan.algorithm.UpdateTimeStep(0.4)
+        echoes = al.Cloud(scan.algorithm.GetOutput())
+        self.assertEqual(echoes.number_of_points, 10_000)
+        np.testing.assert_allclose(echoes.points[:, 1], y, atol=0.02)
+        beams = window(al.Sensor("Mid40"), 4)
+        np.testing.assert_array_equal(echoes["timestamp"], beams["timestamp"][np.searchsorted(beams["beam_id"], echoes["beam_id"])])
 
     def test_a_range_image_has_a_row_for_each_laser(self):
         scan = al.Scan(al.Scene(WALL), al.Sensor("Avia"), noise=False, rays_per_beam=16)
@@ -114,9 +109,9 @@ class Use(unittest.TestCase):
 
     def test_coverage_is_that_of_the_beams_of_a_window(self):
         sensor, random = al.Sensor("Mid40"), np.random.default_rng(2)
-        lines = np.column_stack([random.uniform(-0.3, 0.3, 500), np.ones(500), random.uniform(-0.3, 0.3, 500)])
-        lines /= np.linalg.norm(lines, axis=1)[:, None]
         beams = np.array(sensor.beams["direction"])
+        lines = beams[::100] + random.normal(0, 2e-3, (100, 3))  # within a beam and beside it
+        lines /= np.linalg.norm(lines, axis=1)[:, None]
         right = np.cross(beams, [0, 0, 1])
         right /= np.linalg.norm(right, axis=1)[:, None]
         ahead = lines @ beams.T
@@ -131,7 +126,7 @@ class Use(unittest.TestCase):
         np.testing.assert_array_equal(cover["track_probability"], cover["detection_probability"])
         near = np.min(np.abs(squares - 1), axis=1) < 1e-9
         np.testing.assert_array_equal(np.array(cover["beams_per_scan"])[~near], np.minimum(held, 255)[~near])
-        self.assertGreater((held > 0).mean(), 0.03)
+        self.assertTrue(0.03 < (held > 0).mean() < 0.97)
 
     def test_a_sequence_has_the_clutter_of_each_scan(self):
         with tempfile.TemporaryDirectory() as folder:
@@ -158,17 +153,13 @@ class BadFiles(unittest.TestCase):
         """Values of their own are those of the kernel, tested in TestPrisms.cxx: the file, the unit, and what does not go with prisms."""
         good = json.loads((FILES / "Mid40.lidarsensor.json").read_text(encoding="utf-8"))
         for name, value, unit, words in (
-                ("prism_wedge_angles", [18, -70], "deg", "PrismWedgeAngles is -70, expected angles within [-60, 60]"),
-                ("prism_refractive_indices", [1.5], "1", "PrismRefractiveIndices has 1 values, expected one for each of the 2"),
+                ("prism_wedge_angles", [18, -70], "deg", "PrismWedgeAngles is -70"),
                 ("prism_rotation_rates", [1, 2, 3], "Hz", "PrismRotationRates has 3 values"),
-                ("prism_phases", [0, 400], "deg", "PrismPhases is 400"), ("prism_axis_elevation", 100, "deg", "PrismAxisElevation is 100"),
-                ("prism_axis_elevation", 10, "rad", 'its unit is "rad", expected "deg"'),
-                ("prism_axis_rotation_rate", 1e7, "Hz", "PrismAxisRotationRate is 10000000"),
+                ("prism_axis_elevation", 10, "rad", 'its unit is "rad"'),
                 ("prism_wedge_angles", None, None, "PrismWedgeAngles is empty"),
-                ("blanked_sectors", [0, 10], "deg", "BlankedSectors has values, expected none with prisms"),
-                ("encoder_jitter", 0.1, "deg", ", expected 0 with prisms, whose beams have no columns"),
-                ("firing_interval", 0, "s", "FiringInterval is 0, expected a time above 0 s with prisms"),
-                ("firing_interval", 1, "s", "expected at most the 0.1 s that RotationRate leaves to a scan")):
+                ("blanked_sectors", [0, 10], "deg", "BlankedSectors has values"),
+                ("encoder_jitter", 0.1, "deg", ", expected 0 with prisms"),
+                ("firing_interval", 1, "s", "expected at most the 0.1 s")):
             values = {key: entry for key, entry in good["values"].items() if key != name}
             if value is not None:
                 values[name] = {"value": value, "unit": unit, "source": "test"}

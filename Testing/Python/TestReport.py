@@ -1,85 +1,19 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The command `avianlidar report`: the page in Chromium without a network; its numbers against its tables, and these against coverage of
-places drawn here; plans that ask for less, or for what is wrong."""
-import csv
-import html
+places drawn here. Plans that ask for less, or for what is wrong, are TestReportPlans'."""
 import json
-import math
-import os
 import pathlib
 import re
-import shlex
 import shutil
-import sys
 import unittest
 
 import numpy as np
 
 import avianlidar as al
-import exampletools
-from avianlidar import Coverage, reach, siting
-from avianlidar._command import main, parser
-from avianlidar.apps import _answer
-from avianlidar.apps._maps import Plan, read_plan
-from avianlidar.apps._report import Report
-from avianlidar.apps._sites import Sites
+import exampletools  # noqa: F401  (finds the examples)
+from avianlidar import siting
 from browser import Browser
-from reporttools import quick
-
-sys.path.append(os.path.join(exampletools.EXAMPLES, "coverage"))
-import flown  # noqa: E402
-
-PLAN = pathlib.Path(exampletools.EXAMPLES) / "coverage" / "hongqiao.coverage.json"
-HERE = pathlib.Path(exampletools.OUTPUT) / "TestReport"
-TARGET = {"species": "", "effective_area": 0.03, "clutter": False, "all_species": False}  # m2: quicker than birds
-SENSOR = {"preset": "Search905", "name": "Search905", "azimuth_step": 1.0}  # degrees
-
-
-def plan(**changes):
-    """The airport's plan, coarse. A change to None takes away."""
-    wanted = json.loads(PLAN.read_text(encoding="utf-8"))
-    for name in ("scene", "runways"):
-        wanted[name] = str((PLAN.parent / wanted[name]).resolve())
-    wanted.update({"spacing": 100, "places": 200, "extent": [-600, 600, -600, 600], "compare_with": None, "sensor": SENSOR, **changes})
-    return {name: value for name, value in wanted.items() if value is not None}
-
-
-def written(name, wanted):
-    HERE.mkdir(parents=True, exist_ok=True)
-    file = HERE / f"{name}.coverage.json"
-    file.write_text(json.dumps(wanted), encoding="utf-8")
-    return file
-
-
-def report(name, wanted, *words):
-    """The page that a plan gives."""
-    with quick():
-        assert main(["report", str(written(name, wanted)), "-o", str(HERE / f"{name}.html"), *words]) == 0
-    return HERE / f"{name}.html"
-
-
-def rows_of(file, **wanted):
-    with open(HERE / file, encoding="utf-8") as stream:
-        return [row for row in csv.DictReader(stream) if all(row[name] == value for name, value in wanted.items())]
-
-
-def same_numbers(test, browser, file):
-    """Numbers of the page are those of the table. @return both"""
-    cells = browser.run("return [...document.querySelectorAll('td[data-column]')].map(c => [{...c.dataset}, c.textContent])")
-    rows = {(row["receiver"], row["region"], row["species"], float(row["height_from [m]"])): row for row in rows_of(file)}
-    for of, text in cells:
-        row = rows[of["receiver"], of["region"], of["species"], float(of["from"])]
-        value, column = float(row[of["column"]]), of["column"]
-        if text == "–":  # an error of a share that is not told from 0 or 1
-            test.assertTrue(column.endswith("_std_error") and (value < 1e-6 or float(row[column.replace("_std_error", "_probability")]) < 5e-4), of)
-        elif text[0] in "<>":
-            test.assertTrue(value <= float(text[2:]) <= 0.5 if text[0] == "<" else value >= float(text[2:]) >= 0.5, (of, text, value))
-        else:
-            digits = len(text.partition(".")[2])
-            test.assertAlmostEqual(float(text), value, delta=0.501 * 10.0 ** -digits, msg=of)
-            if column == "detection_probability" and float(row["detection_std_error"]) > 0.0:  # one digit of the error
-                test.assertTrue(0.1 * float(row["detection_std_error"]) <= 10.0 ** -digits <= 1.001 * float(row["detection_std_error"]) or digits == 0, (of, text))
-    return cells, rows
+from reporttools import HERE, PLAN, STEP, TARGET, plan, report, rows_of, same_numbers
 
 
 class Page(unittest.TestCase):
@@ -97,8 +31,8 @@ class Page(unittest.TestCase):
         (HERE / "page.lidarscene.json").write_text(json.dumps(scene), encoding="utf-8")
         cls.asked = plan(scene="page.lidarscene.json", description="<script>throw 1</script> & gulls?", heights=[50, 100], regions={"strips": 1},
                          coverage={**TARGET, "clutter": True, "visibility": 10e3},
-                         siting={"bounds": [-1200, 800, -1500, 1500], "spacing": 1000, "masts": [5, 10], "draws": 0, "sensors": 2})
-        page = report("report", cls.asked)
+                         siting={"bounds": [-1200, 800, 500, 1500], "spacing": 1000, "masts": [5, 10], "draws": 0, "sensors": 2})
+        page = report("report", cls.asked, pictures=True)
         cls.text = page.read_text(encoding="utf-8")
         (HERE / "alone").mkdir()  # without the folder beside it
         shutil.copyfile(page, HERE / "alone" / "report.html")
@@ -134,12 +68,13 @@ class Page(unittest.TestCase):
             self.assertRegex(words, "Search905.*; asked for: .* in strips, 50 to 100 m high")
 
     def test_is_read_on_a_phone(self):
-        with Browser(width=390, height=800) as phone:
-            phone.open(HERE / "report.html")
-            self.assertLessEqual(phone.run("return document.documentElement.scrollWidth"), 390)
-            # Labels of pictures have 9 points of 1/72 inch at 150 pixels an inch.
-            scales = phone.run("return [...document.images].map(i => i.getBoundingClientRect().width / i.naturalWidth)")
-            self.assertGreaterEqual(min(scales) * 9 * 150 / 72, 7.5)
+        shown = {"width": 390, "height": 800, "deviceScaleFactor": 1, "mobile": True}
+        self.browser.driver.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", shown)
+        self.addCleanup(self.browser.driver.execute_cdp_cmd, "Emulation.setDeviceMetricsOverride", {**shown, "width": 1150, "mobile": False})
+        self.assertLessEqual(self.browser.run("return document.documentElement.scrollWidth"), 390)
+        # Labels of pictures have 9 points of 1/72 inch at 150 pixels an inch.
+        scales = self.browser.run("return [...document.images].map(i => i.getBoundingClientRect().width / i.naturalWidth)")
+        self.assertGreaterEqual(min(scales) * 9 * 150 / 72, 7.5)
 
     def test_numbers_are_those_of_the_tables(self):
         cells, _ = same_numbers(self, self.browser, "report_files/shares.csv")
@@ -173,7 +108,7 @@ class Page(unittest.TestCase):
                 ground = runway.start + along[:, None] * axis + aside[:, None] * np.array([axis[1], -axis[0]])
                 places.append(np.column_stack([ground, random.uniform(50.0, 100.0, 100)]))
             return np.concatenate(places)
-        sensor = al.Sensor("Search905", azimuth_step=1.0, position=(0, 0, 3))
+        sensor = al.Sensor("Search905", azimuth_step=STEP, position=(0, 0, 3))
         cover = al.Coverage(scene, sensor, places=drawn(0), visibility=10e3, species="", effective_area=0.03)
 
         def shares(position, clutter):
@@ -202,144 +137,6 @@ class Page(unittest.TestCase):
         for mast, share in re.findall(r"([0-9]+) m: ([0-9.]+) ± [0-9.]+.% at", self.text):
             best = positions[positions[:, 2] == float(mast)][np.argmax(values[positions[:, 2] == float(mast)])]
             self.assertAlmostEqual(0.01 * float(share), shares(best, True).mean(), delta=5.1e-3)
-
-
-class Less(unittest.TestCase):
-    def test_a_plan_of_a_map_alone(self):
-        """Of two receivers, one of which is changed, and without sites and runways; the mean of the map within four standard errors."""
-        twice = {**SENSOR, "name": "twice the pulse", "pulse_energy": 7.2e-4}
-        page = report("map", plan(runways=None, siting=None, compare_with=[twice], heights=[20], coverage=TARGET))
-        with Browser() as browser:
-            browser.open(page)
-            self.assertEqual(browser.run("return document.images.length"), 2 * (3 + 1) + 1 + 2)  # map, reasons, clutter; the curve; the answer; fog and rain
-            self.assertIsNone(browser.run("return document.querySelector('#section, #sites')"))
-            _, rows = same_numbers(self, browser, "map_files/shares.csv")
-            known = browser.run("return [...document.querySelectorAll('#receivers tr')].map(r => [...r.cells].map(c => c.textContent.trim()))")
-        self.assertEqual(known[0], ["receiver", "Search905", "twice the pulse"])
-        self.assertIn(["energy of a pulse (mJ)", "0.36", "0.72 assumed"], known)
-        shares = []
-        for name, changes in (("Search905", {}), ("twice the pulse", {"pulse_energy": 7.2e-4})):
-            row = next(row for key, row in rows.items() if key[0] == name and key[3] == -np.inf)
-            cover = al.Coverage(plan()["scene"], al.Sensor("Search905", azimuth_step=1.0, position=(0, 0, 3), **changes), **TARGET, visibility=23e3,
-                                bounds=(-600, 600, -600, 600, 20, 20), spacing=(40, 40, 1))
-            shares.append(cover["detection_probability"].mean())
-            self.assertAlmostEqual(float(row["detection_probability"]), shares[-1], delta=4 * float(row["detection_std_error"]), msg=name)
-        self.assertGreater(shares[1], 1.1 * shares[0])
-
-    def test_one_end_and_every_option(self):
-        """Regions by runway end; commands that say every option that the report was made with."""
-        wanted = plan(heights=[20], places=100, spacing=400, regions={"approaches": {"18L": 3, "36R": 1}}, spread="area", coverage=TARGET,
-                      siting={"bounds": [-1200, 0, -1500, -300], "spacing": 1200, "draws": 0, "sensors": 1})
-        HERE.mkdir(parents=True, exist_ok=True)
-        (HERE / "hours.txt").write_text("ZSSS 010000Z 00000KT 9999 15/10 Q1020\nZSSS 010100Z 00000KT 0500 FG 15/14 Q1020\n", encoding="utf-8")
-        words = ["--weather", "fog:1500", "--metar", str(HERE / "hours.txt"), "--sensor-set", "range_gate=1200", "--sensor-set", "azimuth_range=0,360",
-                 "--coverage-set", "effective_area=0.04", "--siting-set", "surfaces=off"]
-        text = html.unescape(report("one end", wanted, *words).read_text(encoding="utf-8"))
-        commands = [shlex.split(found) for found in re.findall("<code>(avianlidar [^<]*)</code>", text)]
-        self.assertTrue({tuple(command[:3]) for command in commands} <= {("avianlidar", verb, "one end.coverage.json") for verb in ("coverage", "report")})
-        made, asked = parser().parse_args(commands[-1][1:]), parser().parse_args(["report", "x.json", "-o", "x.html", *words])
-        self.assertEqual((made.weather, made.metar), (asked.weather, asked.metar))
-        for name in ("sensor_set", "coverage_set", "siting_set"):
-            self.assertEqual(getattr(made, name)[:len(getattr(asked, name))], getattr(asked, name))
-        self.assertEqual(dict(made.coverage_set)["reflectance"], 0.15)
-        self.assertEqual([(row["region"], row["places"]) for row in rows_of("one end_files/ends.csv")][:2], [("approach 18L", "75"), ("approach 36R", "25")])
-
-    def test_where_a_place_lies_by_runways(self):
-        north, east = siting.Runway("A", (0, 0), (0, 3000), 45), siting.Runway("B", (-1500, -400), (500, -400), 45)
-        for position, words in (((-300, 1000, 5), "300\u00a0m west of A, 1000\u00a0m from its south end"), ((0, 3400, 5), "400\u00a0m north of the north end of A"),
-                                ((0.2, 2900, 5), "on A, 100\u00a0m from its north end"), ((-300, 3300, 5), "420\u00a0m north-west of the north end of A")):
-            self.assertEqual(_answer.beside(position, [north]), words)
-        self.assertEqual(_answer.beside((100, -300, 5), [north, east]), "100\u00a0m north of B, 400\u00a0m from its east end, and 320\u00a0m south of the south end of A")
-        self.assertEqual(_answer.beside((100, -300, 5), []), "")
-
-    def test_a_winner_at_the_edge_of_the_lattice(self):
-        for bounds, there in (([800, 1600, -400, 400], True), ([-1600, 1600, -2400, 2400], False)):
-            sites = Sites(self.small(siting={"bounds": bounds, "spacing": 400, "draws": 0, "sensors": 1})).look()
-            self.assertEqual(sites.at_the_edge, there, sites.positions[sites.order[0]])
-
-    def test_strikes_weight_sites_as_the_table(self):
-        HERE.mkdir(parents=True, exist_ok=True)
-        (HERE / "origin.csv").write_text("x,y\n800,0\n")
-        whole = Report(read_plan(written("strikes", plan(sensor={**SENSOR, "position": [800, 0, 3]}, coverage={**TARGET, "strike_height_weights": True},
-                                                         siting={"points": str(HERE / "origin.csv"), "masts": [3], "draws": 0, "sensors": 1}))))
-        self.assertAlmostEqual(whole.sites[0].look().values[0], whole.plans[0].overall["detection_probability"], delta=1e-6)
-        heights = {(row["region"], row["heights"]) for row in whole._tables(whole.plans)["heights"]}
-        self.assertTrue({("strips", "0.5 to 15 m"), ("strips", "30 to 60 m"), ("approaches", "150 to 202 m")} <= heights, heights)
-
-    def test_sites_are_ranked_by_the_mix(self):
-        HERE.mkdir(parents=True, exist_ok=True)
-        (HERE / "one.csv").write_text("x,y\n800,0\n")
-        wanted = self.small(mix={"starling": 1, "herring gull": 3}, heights=[20, 40], places=50, coverage={"clutter": False, "all_species": False},
-                            siting={"points": str(HERE / "one.csv"), "masts": [5], "draws": 0, "sensors": 1})
-        sites = Sites(wanted).look()
-        sensor = al.Sensor("Search905", azimuth_step=1.0, position=(800, 0, 5))
-        cover = al.Coverage(wanted.scene, sensor, places=wanted.points, visibility=23e3, clutter=False)
-        p = []
-        for cover.species in ("starling", "herring gull"):
-            p.append(cover["detection_probability"].astype(float).mean())
-        self.assertGreater(p[1], 1.1 * p[0])
-        self.assertAlmostEqual(sites.values[0], 0.25 * p[0] + 0.75 * p[1], delta=1e-6)
-
-    def small(self, **changes):
-        return Plan(read_plan(written("small", plan(**{"siting": None, "coverage": TARGET, **changes}))))
-
-    def test_how_high_the_band_must_go(self):
-        """By the heights' tangents; what is tried is what a sensor so changed detects."""
-        wanted = self.small(heights=[50, 100])
-        low, high = reach.band(wanted.sensor)
-        rows = reach.heights_in_band(wanted, [3.0, 50.0, 100.0, 700.0], 600.0)
-        self.assertEqual(rows[0]["from"], 0.0)
-        for row in rows[1:]:
-            self.assertAlmostEqual(math.degrees(math.atan2(row["above"], row["from"])), high, delta=1e-9)
-        self.assertAlmostEqual(rows[2]["to"], math.sqrt(600.0 ** 2 - 97.0 ** 2), delta=1e-9)
-        self.assertEqual(rows[3]["to"], 0.0)
-        found = reach.advice(wanted, 600.0)
-        self.assertAlmostEqual(found["needed"], math.degrees(math.atan2(97.0, 0.5 * rows[2]["to"])), delta=1e-9)
-        more = found["ways"][0]["changes"][0]
-        self.assertGreaterEqual(low + (more["number_of_channels"] - 1) * 0.375, found["needed"])
-        self.assertLess(low + (more["number_of_channels"] - 2) * 0.375, found["needed"])
-        changed = wanted.at(wanted.sensor.position, "changed", **more)
-        self.assertEqual(reach.band(changed.sensor)[0], low)
-        self.assertGreater(changed.overall["detection_probability"], wanted.overall["detection_probability"])
-        self.assertIsNone(reach.advice(self.small(), 600.0))  # no heights are asked for
-        self.assertIsNone(reach.advice(self.small(heights=[5, 15]), 600.0))
-        far = reach.advice(self.small(heights=[900]), 600.0)
-        self.assertEqual((far["needed"], far["ways"]), (None, []))
-
-    def test_how_far_a_gull_is_seen(self):
-        """The curve against birds of random heading, wing phase and place in the band that are flown through one scan."""
-        distance, birds = 550.0, 300
-        curve = reach.within_beams(al.Sensor("Search905"), "herring gull", np.array([distance]), visibility=23e3)
-        self.assertLess(curve.error.max(), 0.02)
-        random = np.random.default_rng(5)
-        air = Coverage(al.Scene(), al.Sensor("Search905"), visibility=23e3, places=[(0, 9, 9)]).data.GetFieldData().GetArray("attenuation_coefficient").GetValue(0)
-        about, up = random.uniform(0, 2 * np.pi, birds), np.radians(random.uniform(0.0, 5.625, birds))
-        lines = np.column_stack([np.sin(about) * np.cos(up), np.cos(about) * np.cos(up), np.sin(up)])
-        seen, _ = flown.fly(al.Scene(), al.Sensor("Search905"), distance * lines, 1, "herring gull", air, 2000, int(distance))
-        share = curve.one_scan[0]
-        self.assertAlmostEqual(seen.mean(), share, delta=4 * math.sqrt(share * (1.0 - share) / birds))
-        straight = reach.Reach(np.array([10.0, 20.0, 30.0]), np.array([1.0, 0.6, 0.2]), np.zeros(3), np.array([1.0, 1.0, 0.0]))
-        self.assertEqual([straight.to(share) for share in (1.0, 0.5, 0.1)], [10.0, 22.5, 30.0])
-        self.assertEqual((straight.to(0.5, several=True), straight.to(1.1)), (25.0, 0.0))
-
-    def test_both_spellings_of_a_property(self):
-        wanted = self.small(sensor={"preset": "Search905", "Position": [50, 60, 7]}, coverage={"Species": "crow", "Visibility": 5e3})
-        self.assertEqual((wanted.sensor.position, wanted.mix, wanted.coverage.visibility), ((50, 60, 7), {"crow": 1.0}, 5e3))
-        with self.assertRaisesRegex((al.Error, TypeError, ValueError), "sensor: .*position is given twice"):
-            self.small(sensor={"preset": "Search905", "Position": [0, 0, 3], "position": [0, 0, 4]})
-
-    def test_what_is_wrong_is_named(self):
-        for change, words in (({"siting": {"draw": 1}}, "'draw' was unexpected"), ({"compare_with": ["Airport17"]}, "Airport17"),
-                              ({"sensor": {"preset": "Search905"}, "compare_with": ["Search905"]}, "'Search905' is there twice")):
-            with self.assertRaisesRegex((al.Error, ValueError), words):
-                Report(read_plan(written("bad", plan(heights=[20], **change)))).write(HERE / "bad.html")
-            self.assertFalse((HERE / "bad.html").exists())
-        good = written("good", plan())
-        for changes, words in (({"siting": {"spaceing": 5}}, "'spaceing' was unexpected"), ({"siting": {"masts": (5, "high")}}, "siting.masts")):
-            with self.assertRaisesRegex(al.Error, words):
-                read_plan(good, **changes)
-        self.assertEqual(read_plan(good, siting={"masts": 7})["siting"]["masts"], [7])
-        self.assertEqual(main(["report", str(good), "-o", os.path.join(HERE, "bad.pdf")]), 2)
 
 
 if __name__ == "__main__":

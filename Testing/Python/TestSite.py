@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The documentation as a site: every link of every page leads somewhere, and it can be read and searched in Chromium from
-the disk, on a desktop and on a phone, without a network."""
+"""The documentation as a site: every link of every page leads somewhere, and Chromium shows its menu from the disk, without
+a network."""
 import html.parser
 import os
 import pathlib
@@ -28,14 +28,6 @@ class Page(html.parser.HTMLParser):
         values = dict(attributes)
         self.names.add(values.get("id"))
         self.links |= {values[name] for name in ("href", "src") if values.get(name)}
-
-
-def wait_for(browser, script):
-    """What a script returns, when that is true: within 10 s."""
-    return browser.driver.execute_async_script(f"""const done = arguments[0], began = Date.now();
-        const look = () => {{ const found = (() => {{ {script} }})();
-            if (found || Date.now() - began > 10000) done(found); else setTimeout(look, 50); }};
-        look();""")
 
 
 class Site(unittest.TestCase):
@@ -71,25 +63,12 @@ class Site(unittest.TestCase):
                         self.assertIn(urllib.parse.unquote(parts.fragment), pages[target].names)
         self.assertGreater(count, 4000)
 
-    def pictures_are_shown(self):
-        widths = wait_for(self.browser, """const all = [...document.querySelectorAll('[role=main] img')];
-            return all.length && all.every(i => i.complete) && all.map(i => i.naturalWidth)""")
-        self.assertTrue(widths and all(width > 100 for width in widths), widths)
-
     def test_the_menu_leads_to_every_page(self):
         self.no_network_and_no_complaint(self.browser.open(SITE / "index.html"))
-        self.pictures_are_shown()
         menu = self.browser.run("return [...document.querySelectorAll('.wy-menu a.reference')].map(a => a.href)")
         for file in SITE.rglob("*.html"):
             if file.name not in ("index.html", "README.html", "genindex.html", "py-modindex.html", "search.html"):
                 self.assertIn(file.resolve().as_uri(), menu)
-
-    def test_a_search_finds_a_page(self):
-        self.browser.open(SITE / "index.html")
-        self.browser.run("""const box = document.querySelector('input[name=q]'); box.value = 'saturated'; box.form.submit()""")
-        found = wait_for(self.browser, """return document.body.innerText.includes('Search finished') &&
-            [...document.querySelectorAll('#search-results li a')].map(a => a.href).join(' ')""")
-        self.assertIn("/Documentation/colour-and-range-image.html", found)
 
 
 if __name__ == "__main__":

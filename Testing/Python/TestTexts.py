@@ -11,7 +11,7 @@ import vtk
 
 import avianlidar as al
 from avianlidar import _pipeline, _suffixes, vtkAvianLidar as wrapped
-from echotools import Messages, box, scan
+from echotools import Messages, box
 from helpertools import WALL, same
 
 TRIANGLE = b"v 0 0 0\nv 1 0 0\nv 0 1 0\n"
@@ -29,9 +29,9 @@ class Texts(unittest.TestCase):
         """A path whose last part is in Latin-1."""
         return self.folder / os.fsdecode(name.encode("latin-1"))
 
-    def scene(self, objects, encoding="utf-8", more=""):
+    def scene(self, objects, encoding="utf-8"):
         file = self.folder / "a.lidarscene.json"
-        file.write_bytes(('{"version": 1, %s "objects": [%s]}' % (more, objects)).encode(encoding))
+        file.write_bytes(('{"version": 1, "objects": [%s]}' % objects).encode(encoding))
         return file
 
     def test_scenes(self):
@@ -55,7 +55,7 @@ class Texts(unittest.TestCase):
 
     def test_names_in_data(self):
         """What other programs' files bring: names as bytes, of blocks, objects and features."""
-        for name in (b"B\xe4ume", b"\xff\xfe", "\u6811".encode()):
+        for name in (b"B\xe4ume", "\u6811".encode()):
             blocks = vtk.vtkMultiBlockDataSet()
             blocks.SetBlock(0, box((9, 0, 0), (1, 1, 1), "Wall"))
             blocks.GetMetaData(0).Set(vtk.vtkCompositeDataSet.NAME(), name)
@@ -63,23 +63,11 @@ class Texts(unittest.TestCase):
             blocks.GetBlock(0).GetCellData().RemoveArray("kd")
             with self.assertRaisesRegex(al.Error, "kd, ks, kp"):
                 al.Scan(al.Scene(blocks), al.Sensor(azimuth_step=30)).update()
-            heard = Messages(echo := scan(blocks))
-            echo.Update()
-            self.assertIsInstance(heard.errors[0], str)
         paint = wrapped.vtkAvianLidarMaterial()
         paint.SetInputData(box((9, 0, 0), (1, 1, 1)))
         paint.SetNameOfObject(b"B\xe4ume")
         paint.Update()
         self.assertEqual(paint.GetOutput().GetFieldData().GetAbstractArray("object_names").GetValue(0), r"B\xE4ume")
-        (self.folder / "f.geojson").write_bytes(
-            ('{"type": "FeatureCollection", "features": [{"type": "Feature", "properties": {"name": "%s"}, "geometry": {"type": "Polygon", '
-             '"coordinates": [[[0,0],[0.001,0],[0.001,0.001],[0,0]]]}}]}' % LATIN).encode("latin-1"))
-        try:
-            scene = al.load_scene(self.scene('{"footprints": "f.geojson", "height": 3, "features": "separate"}', more=(
-                '"origin": {"latitude": 0, "longitude": 0, "height": 0}, "material_map": {"*": "Wall"},')))
-        except al.Error:
-            return  # a word is enough; GDAL decides
-        self.assertTrue(all(isinstance(name, str) for name in scene.objects), scene.objects)
 
     def test_names_of_files(self):
         echoes = al.Scan(al.Scene(WALL), al.Sensor(azimuth_step=2)).echoes
@@ -122,11 +110,8 @@ class Texts(unittest.TestCase):
             with self.assertRaises(ValueError):
                 al.Scene(WALL, name=name)
         (self.folder / "a.obj").write_bytes(TRIANGLE + b"f 1 2 3\n")
-        for objects, more, path in (('{"file": "a.obj\\u0000b.obj"}', "", "objects\\[0\\].file"),
-                                    ('{"file": "a.obj", "name": "a\\u0000b"}', "", "objects\\[0\\].name"),
-                                    ("", '"materials": {"a\\u0000b": {"kd": 0.1}},', "materials")):
-            with self.assertRaisesRegex(al.Error, path + ".*NUL"):
-                al.load_scene(self.scene(objects, more=more))
+        with self.assertRaisesRegex(al.Error, "objects\\[0\\].file.*NUL"):
+            al.load_scene(self.scene('{"file": "a.obj\\u0000b.obj"}'))
 
 
 if __name__ == "__main__":

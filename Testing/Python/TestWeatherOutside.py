@@ -52,8 +52,8 @@ class Extinction(unittest.TestCase):
                                        msg=f"{visibility} m, {wavelength} nm")
 
     def test_metres_of_rain_are_those_of_spheres(self):
-        for rate in (1, 10, 50):
-            efficiency, _, _ = others.rain_of_spheres(rate)
+        for rate in (1, 50):
+            efficiency, _, _ = others.rain_of_spheres(rate, drops=200)  # efficiencies differ by parts in a thousand
             moment = 0.25e-6 * math.pi * 8000 * 2 * (rate**0.21 / 4.1)**3  # m^2 of drops in m^3, by Marshall and Palmer
             found = others.extinction_in(905, rain_rate=rate, attenuation_coefficient=0)
             kept = others.kept_in_view(5.6e-3, 905e-9, rate)  # of the half that is diffracted

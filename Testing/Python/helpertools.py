@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Surfaces and comparisons for the tests of the helpers of the package."""
 import contextlib
+import io
 import os
 import pty
 import subprocess
@@ -45,3 +46,12 @@ def from_terminal(test, work, typed="", **options):
                 text += part
     os.close(parent)
     return text.decode(), process.returncode
+
+
+def error_of(*words):
+    """What a command writes to the error stream where it ends with status 2."""
+    from avianlidar._command import main  # not for those who use no command
+    with contextlib.redirect_stderr(io.StringIO()) as stream:
+        code = main([str(word) for word in words])
+    assert code == 2, stream.getvalue()
+    return stream.getvalue()

@@ -1,0 +1,149 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Reports of plans that ask for less than TestReport's, sites by mix and strikes, reach of receivers, and plans that are wrong."""
+import html
+import math
+import os
+import re
+import shlex
+import unittest
+
+import numpy as np
+
+import avianlidar as al
+import exampletools  # noqa: F401  (finds the examples)
+import flown
+from avianlidar import Coverage, reach, siting
+from avianlidar._command import main, parser
+from avianlidar.apps._maps import Plan, read_plan
+from avianlidar.apps._report import Report
+from avianlidar.apps._sites import Sites
+from browser import Browser
+from reporttools import HERE, SENSOR, STEP, TARGET, plan, report, rows_of, same_numbers, written
+
+
+class Less(unittest.TestCase):
+    def test_a_plan_of_a_map_alone(self):
+        """Of two receivers, one of which is changed, and without sites and runways; the mean of the map within four standard errors."""
+        twice = {**SENSOR, "name": "twice the pulse", "pulse_energy": 7.2e-4}
+        page = report("map", plan(runways=None, siting=None, compare_with=[twice], heights=[20], coverage=TARGET))
+        with Browser() as browser:
+            browser.open(page)
+            self.assertEqual(browser.run("return document.images.length"), 2 * (3 + 1) + 1 + 2)  # map, reasons, clutter; the curve; the answer; fog and rain
+            self.assertIsNone(browser.run("return document.querySelector('#section, #sites')"))
+            _, rows = same_numbers(self, browser, "map_files/shares.csv")
+            known = browser.run("return [...document.querySelectorAll('#receivers tr')].map(r => [...r.cells].map(c => c.textContent.trim()))")
+        self.assertEqual(known[0], ["receiver", "Search905", "twice the pulse"])
+        self.assertIn(["energy of a pulse (mJ)", "0.36", "0.72 assumed"], known)
+        shares = []
+        for name, changes in (("Search905", {}), ("twice the pulse", {"pulse_energy": 7.2e-4})):
+            row = next(row for key, row in rows.items() if key[0] == name and key[3] == -np.inf)
+            cover = al.Coverage(plan()["scene"], al.Sensor("Search905", azimuth_step=STEP, position=(0, 0, 3), **changes), **TARGET, visibility=23e3,
+                                bounds=(-600, 600, -600, 600, 20, 20), spacing=(40, 40, 1))
+            shares.append(cover["detection_probability"].mean())
+            self.assertAlmostEqual(float(row["detection_probability"]), shares[-1], delta=4 * float(row["detection_std_error"]), msg=name)
+        self.assertGreater(shares[1], 1.1 * shares[0])
+
+    def test_one_end_and_every_option(self):
+        """Regions by runway end; commands that say every option that the report was made with."""
+        wanted = plan(heights=[20], places=100, spacing=400, regions={"approaches": {"18L": 3, "36R": 1}}, spread="area", coverage=TARGET,
+                      siting={"bounds": [-1200, 0, -1500, -300], "spacing": 1200, "draws": 0, "sensors": 1})
+        HERE.mkdir(parents=True, exist_ok=True)
+        (HERE / "hours.txt").write_text("ZSSS 010000Z 00000KT 9999 15/10 Q1020\nZSSS 010100Z 00000KT 0500 FG 15/14 Q1020\n", encoding="utf-8")
+        words = ["--weather", "fog:1500", "--metar", str(HERE / "hours.txt"), "--sensor-set", "range_gate=1200", "--sensor-set", "azimuth_range=0,360",
+                 "--coverage-set", "effective_area=0.04", "--siting-set", "surfaces=off"]
+        text = html.unescape(report("one end", wanted, *words).read_text(encoding="utf-8"))
+        commands = [shlex.split(found) for found in re.findall("<code>(avianlidar [^<]*)</code>", text)]
+        self.assertTrue({tuple(command[:3]) for command in commands} <= {("avianlidar", verb, "one end.coverage.json") for verb in ("coverage", "report")})
+        made, asked = parser().parse_args(commands[-1][1:]), parser().parse_args(["report", "x.json", "-o", "x.html", *words])
+        self.assertEqual((made.weather, made.metar), (asked.weather, asked.metar))
+        for name in ("sensor_set", "coverage_set", "siting_set"):
+            self.assertEqual(getattr(made, name)[:len(getattr(asked, name))], getattr(asked, name))
+        self.assertEqual(dict(made.coverage_set)["reflectance"], 0.15)
+        self.assertEqual([(row["region"], row["places"]) for row in rows_of("one end_files/ends.csv")][:2], [("approach 18L", "75"), ("approach 36R", "25")])
+
+    def test_a_winner_at_the_edge_of_the_lattice(self):
+        for bounds, there in (([800, 1600, -400, 400], True), ([-1600, 1600, -2400, 2400], False)):
+            sites = Sites(self.small(siting={"bounds": bounds, "spacing": 400, "draws": 0, "sensors": 1})).look()
+            self.assertEqual(sites.at_the_edge, there, sites.positions[sites.order[0]])
+
+    def test_strikes_weight_sites_as_the_table(self):
+        HERE.mkdir(parents=True, exist_ok=True)
+        (HERE / "origin.csv").write_text("x,y\n800,0\n")
+        whole = Report(read_plan(written("strikes", plan(sensor={**SENSOR, "position": [800, 0, 3]}, coverage={**TARGET, "strike_height_weights": True},
+                                                         siting={"points": str(HERE / "origin.csv"), "masts": [3], "draws": 0, "sensors": 1}))))
+        self.assertAlmostEqual(whole.sites[0].look().values[0], whole.plans[0].overall["detection_probability"], delta=1e-6)
+        heights = {(row["region"], row["heights"]) for row in whole._tables(whole.plans)["heights"]}
+        self.assertTrue({("strips", "0.5 to 15 m"), ("strips", "30 to 60 m"), ("approaches", "150 to 202 m")} <= heights, heights)
+
+    def test_sites_are_ranked_by_the_mix(self):
+        HERE.mkdir(parents=True, exist_ok=True)
+        (HERE / "one.csv").write_text("x,y\n800,0\n")
+        wanted = self.small(mix={"starling": 1, "herring gull": 3}, heights=[20, 40], places=16, coverage={"clutter": False, "all_species": False},
+                            siting={"points": str(HERE / "one.csv"), "masts": [5], "draws": 0, "sensors": 1})
+        sites = Sites(wanted)
+        found, weights, _ = sites._look(sites.positions, sites.airs)  # the first of its looks
+        sensor = al.Sensor("Search905", azimuth_step=STEP, position=(800, 0, 5))
+        cover = al.Coverage(wanted.scene, sensor, places=wanted.points, visibility=23e3, clutter=False)
+        p = []
+        for cover.species in ("starling", "herring gull"):
+            p.append(cover["detection_probability"].astype(float).mean())
+        self.assertGreater(p[1], 1.1 * p[0])
+        self.assertAlmostEqual(siting.values_of(found, weights)[0], 0.25 * p[0] + 0.75 * p[1], delta=1e-6)
+
+    def small(self, **changes):
+        return Plan(read_plan(written("small", plan(**{"siting": None, "coverage": TARGET, **changes}))))
+
+    def test_how_high_the_band_must_go(self):
+        """By the heights' tangents; what is tried is what a sensor so changed detects."""
+        wanted = self.small(heights=[50, 100])
+        low, high = reach.band(wanted.sensor)
+        rows = reach.heights_in_band(wanted, [3.0, 50.0, 100.0, 700.0], 600.0)
+        self.assertEqual(rows[0]["from"], 0.0)
+        for row in rows[1:]:
+            self.assertAlmostEqual(math.degrees(math.atan2(row["above"], row["from"])), high, delta=1e-9)
+        self.assertAlmostEqual(rows[2]["to"], math.sqrt(600.0 ** 2 - 97.0 ** 2), delta=1e-9)
+        self.assertEqual(rows[3]["to"], 0.0)
+        found = reach.advice(wanted, 600.0)
+        self.assertAlmostEqual(found["needed"], math.degrees(math.atan2(97.0, 0.5 * rows[2]["to"])), delta=1e-9)
+        more = found["ways"][0]["changes"][0]
+        self.assertGreaterEqual(low + (more["number_of_channels"] - 1) * 0.375, found["needed"])
+        self.assertLess(low + (more["number_of_channels"] - 2) * 0.375, found["needed"])
+        changed = wanted.at(wanted.sensor.position, "changed", **more)
+        self.assertEqual(reach.band(changed.sensor)[0], low)
+        self.assertGreater(changed.overall["detection_probability"], wanted.overall["detection_probability"])
+        self.assertIsNone(reach.advice(self.small(), 600.0))  # no heights are asked for
+        self.assertIsNone(reach.advice(self.small(heights=[5, 15]), 600.0))
+        far = reach.advice(self.small(heights=[900]), 600.0)
+        self.assertEqual((far["needed"], far["ways"]), (None, []))
+
+    def test_how_far_a_gull_is_seen(self):
+        """The curve against birds of random heading, wing phase and place in the band that are flown through one scan."""
+        distance, birds = 550.0, 150
+        curve = reach.within_beams(al.Sensor("Search905"), "herring gull", np.array([distance]), visibility=23e3)
+        self.assertLess(curve.error.max(), 0.02)
+        random = np.random.default_rng(5)
+        air = Coverage(al.Scene(), al.Sensor("Search905"), visibility=23e3, places=[(0, 9, 9)]).data.GetFieldData().GetArray("attenuation_coefficient").GetValue(0)
+        about, up = random.uniform(0, 2 * np.pi, birds), np.radians(random.uniform(0.0, 5.625, birds))
+        lines = np.column_stack([np.sin(about) * np.cos(up), np.cos(about) * np.cos(up), np.sin(up)])
+        seen, _ = flown.fly(al.Scene(), al.Sensor("Search905"), distance * lines, 1, "herring gull", air, 2000, int(distance))
+        share = curve.one_scan[0]
+        self.assertAlmostEqual(seen.mean(), share, delta=4 * math.sqrt(share * (1.0 - share) / birds))
+        straight = reach.Reach(np.array([10.0, 20.0, 30.0]), np.array([1.0, 0.6, 0.2]), np.zeros(3), np.array([1.0, 1.0, 0.0]))
+        self.assertEqual([straight.to(share) for share in (1.0, 0.5, 0.1)], [10.0, 22.5, 30.0])
+        self.assertEqual((straight.to(0.5, several=True), straight.to(1.1)), (25.0, 0.0))
+
+    def test_what_is_wrong_is_named(self):
+        for change, words in (({"compare_with": ["Airport17"]}, "Airport17"),
+                              ({"sensor": {"preset": "Search905"}, "compare_with": ["Search905"]}, "twice")):
+            with self.assertRaisesRegex((al.Error, ValueError), words):
+                Report(read_plan(written("bad", plan(heights=[20], siting=None, coverage=TARGET, **change)))).write(HERE / "bad.html")
+            self.assertFalse((HERE / "bad.html").exists())
+        good = written("good", plan())
+        with self.assertRaisesRegex(al.Error, "siting.masts"):
+            read_plan(good, siting={"masts": (5, "high")})
+        self.assertEqual(read_plan(good, siting={"masts": 7})["siting"]["masts"], [7])
+        self.assertEqual(main(["report", str(good), "-o", os.path.join(HERE, "bad.pdf")]), 2)
+
+
+if __name__ == "__main__":
+    unittest.main()
