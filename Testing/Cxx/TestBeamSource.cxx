@@ -77,6 +77,9 @@ void TestBeamsAndRays()
   Check(At(beams->GetPointData(), "timestamp", east) == 5e5, "microseconds");
   Check(At(beams->GetPointData(), "direction", east) == 1.0, "90 degrees is east");
   Check(At(rays->GetCellData(), "beam_id", east) == east, "rays know their beam");
+  Check(At(rays->GetCellData(), "timestamp", east) == 5e5 &&
+      At(rays->GetCellData(), "laser_id", east + 3) == 3.0,
+    "rays know their time and laser");
   const double* begin = beams->GetPoints()->GetPoint(777);
   Check(begin[0] == 10.0 && begin[1] == 20.0 && begin[2] == 3.0, "beams start at the position");
   const double* end = rays->GetPoints()->GetPoint(2 * east + 1);

@@ -169,6 +169,8 @@ TEST(CoverageSurvey, LooksAgainOnlyWhereSomethingIsAnother)
   EXPECT_EQ(traced(2), 0u);
   site.setup.sensor.rangeGate = 200.0;
   EXPECT_EQ(traced(2), 500u);
+  site.setup.sensor.minimumRange = 50.0;
+  EXPECT_EQ(traced(2), 500u);
   site.setup.sensor.halfBeamwidth *= 2.0;
   EXPECT_EQ(traced(2), 500u);
   for (Vec3& origin : site.beams.origins)
@@ -176,6 +178,19 @@ TEST(CoverageSurvey, LooksAgainOnlyWhereSomethingIsAnother)
     origin.z += 1.0;
   }
   EXPECT_EQ(traced(2), 500u);
+}
+
+TEST(CoverageSurvey, KeepsNoTargetOfOtherViews)
+{
+  const Town site;
+  const Around around(2000);
+  CoverageSurvey survey;
+  CoverageSurvey fresh;
+  ASSERT_TRUE(site.look(survey, around) && site.look(fresh, around));
+  sumsOf(survey, Gull);
+  SurveyTarget other = Gull;
+  other.views = gullOf(1.5);
+  expectSame(sumsOf(survey, other), sumsOf(fresh, other));
 }
 
 TEST(CoverageSurvey, KeepsNoTargetForAnother)

@@ -62,6 +62,7 @@ def test_macro():
     assert (list(display.ColorArrayName), display.Representation) == (["POINTS", "energy"], "Points")
     table = simple.GetColorTransferFunction("energy")
     assert_eq_13(table)
+    assert table.NanOpacity == 0, "what has no echo is not drawn"
     # New data, other energies: the range stays. Other limits of the receiver: the macro follows them.
     beams.PulseEnergy, echoes.ReturnMode = 1e-4, "Last"
     simple.Render(view)

@@ -259,6 +259,22 @@ class Macros(Case):
         self.assertEqual(list(simple.GetDisplayProperties(reader, self.view).ColorArrayName), ["POINTS", "semantic_label"])
         self.assertIn("bird", simple.GetColorTransferFunction("semantic_label").Annotations)
 
+    def test_coverage_is_cut_at_the_height_of_the_title(self):
+        macro = load_macro(COVERAGE)
+        macro.SPACING = [300.0, 300.0, 15.0]
+        _, _, level, _ = macro.cover(self.view)
+        self.assertEqual((level.SliceType.Origin[2], list(level.SliceType.Normal)), (30.0, [0.0, 0.0, 1.0]))
+
+    def test_a_beam_in_the_air_of_its_scan(self):
+        run(AIRPORT, simple.Box(XLength=90, Center=[0, 50, 0]))
+        macro, scan = load_macro(BEAM), simple.GetActiveSource()
+        beam_id, scan.Beams.ReceiverAperture = int(fetch(scan)["beam_id"][0]), 1e-3
+        air = {"AttenuationCoefficient": 1e-4, "MeteorologicalVisibility": 5e3, "AirBackscatter": 1, "RainRate": 4.0}
+        for name, value in air.items():
+            setattr(scan, name, value)
+        beam = macro.show_beam(scan, beam_id)
+        self.assertEqual({name: getattr(beam, name) for name in air}, air)
+
 
 class MoreMacros(Case):
     """Takes minutes."""

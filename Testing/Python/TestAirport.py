@@ -492,7 +492,7 @@ class Terrains(unittest.TestCase):
 
         def above_geoid(unit, metres):
             return (f'COMPD_CS["with heights",{plain.GetProjection()},VERT_CS["EGM96 height",VERT_DATUM["EGM96 geoid",2005],UNIT["{unit}",{metres!r}],AXIS["Up",UP]]]')
-        units = {"ft": 0.3048, "Foot_US": 1200 / 3937, "decimetres": 0.1, "km": 1000.0}
+        units = {"ft": 0.3048, "yd": 0.9144, "Foot_US": 1200 / 3937, "decimetres": 0.1, "km": 1000.0}
         for posts, _, here, words in (*(changed(smooth / metres, unit) for unit, metres in units.items()),
                                       changed(np.round(1000 * (smooth - 20)), kind=gdal.GDT_Int32, Scale=0.001, Offset=20.0),
                                       changed(smooth, system=above_geoid("metre", 1.0)), changed(smooth / 0.9144, system=above_geoid("Indian yard", 0.9144))):

@@ -109,6 +109,16 @@ class ClosedForms(unittest.TestCase):
         echo.Update()
         self.assertAlmostEqual(by_object(view, "energy_received")[3] / array(echo.GetOutput(), "return_energy")[0], 1.0, delta=1e-6)
 
+    def test_slanted_plate(self):
+        slanted = plate(-40, 40, 100, 3)
+        for i in range(4):
+            x, _, z = slanted.GetPoint(i)
+            slanted.GetPoints().SetPoint(i, x, 100 + x, z)
+        view = look(north(), slanted)
+        np.testing.assert_allclose(vtk_to_numpy(view.GetOutputDataObject(0).GetCellData().GetArray("incidence_angle")), 45, atol=0.5)
+        near, far = (100 / (math.cos(HALF) + s * math.sin(HALF)) for s in (1, -1))
+        self.assertTrue(near < rows(view)[0]["nearest_m"] < 99.8 and 100.2 < rows(view)[0]["farthest_m"] < far)
+
 
 class Airport(unittest.TestCase):
     def test_against_the_cell_locator(self):

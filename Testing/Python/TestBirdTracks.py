@@ -135,6 +135,12 @@ class Scores(unittest.TestCase):
         labels = np.array([99 | 10001 << 16, 252 | 1001 << 16, 1, 0, 50 | 3 << 16, 0 | 4 << 16], np.uint32)
         self.assertEqual([ORIGINS[k] for k in _following.origin_of(labels)], ["bird", "vehicle", "air", "false alarm", "surface", "surface"])
 
+    def test_bands_and_warnings_at_their_borders(self):
+        self.assertEqual([_card.band_of(h) for h in (-1, 9.9, 10, 59, 60)],
+                         ["below 10 m", "below 10 m", "10 to 30 m", "30 to 60 m", "above 60 m"])
+        self.assertEqual([score.value for _, _, score in _card.of_warnings(np.array([0.0, 10, 29, 60]))],
+                         [24.75, 0.75, 0.75, 0.25, 0.25])
+
 
 class Files(unittest.TestCase):
     SCANS = 10

@@ -74,6 +74,8 @@ class TestBoxes(unittest.TestCase):
         up = 100 * np.tan(np.radians(ELEVATIONS[1]) + 0.001)
         self.assertEqual(one((0.02, 0.02, 4), (0, 100, 0))[1], "0.00")
         self.assertIn(one((0.02, 0.02, 4), (0, 100, up))[1], ("0.50", "0.49", "0.51"))
+        self.assertIn(one((0.02, 0.02, 4), (0, 100, -up))[1], ("0.50", "0.49", "0.51"))
+        self.assertEqual(one((2, 2, 2), (0, 30, 0), minimum_range=40.0), [])
         self.assertEqual(one((2, 2, 2), (0, 100, 30)), [])
         self.assertEqual(one((2, 2, 2), (0, 503, 0)), [])
         forward = {"azimuth_range": (-45, 45)}

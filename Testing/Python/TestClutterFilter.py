@@ -275,6 +275,13 @@ class Table(unittest.TestCase):
             self.assertEqual(stream.learned(), 6)
         self.assertEqual(stream.table().GetNumberOfPoints(), table.GetNumberOfPoints())
 
+    def test_another_table_begins_anew(self):
+        stream = Stream(table=Stream().stand_still(4).table())
+        stream.give(cloud(HERE, time=7))
+        stream.filter.SetInputDataObject(1, Stream().stand_still(3).table())
+        stream.give(cloud(HERE, time=8))
+        self.assertEqual(stream.learned(), 4)
+
 
 class BadInput(unittest.TestCase):
     def test_messages(self):

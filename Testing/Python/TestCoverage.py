@@ -61,6 +61,35 @@ class FreeSpace(unittest.TestCase):
         wanted = sum(math.comb(5, k) * p ** k * (1 - p) ** (5 - k) for k in (3, 4, 5))
         np.testing.assert_allclose(track, wanted, atol=1e-6)
 
+    def test_a_height_limit_more(self):
+        cover = al.Coverage(al.Scene(WALL, material="Wall"), al.Sensor("Search905"), **TARGET, places=[(0, 200, 1)],
+                            clutter=False, height_limits=[])
+        self.assertEqual(len(cover.table), 1)
+        cover.algorithm.AddHeightLimit(0.0)
+        self.assertEqual(len(cover.table), 2)
+
+    def test_table_of_tracks_and_of_weighted_shares(self):
+        places = np.array([(0, r * math.cos(e), r * math.sin(e)) for e in np.radians((1, 3, 40)) for r in range(100, 1500, 40)])
+        cover = al.Coverage(al.Scene(NOTHING, material="Wall"), al.Sensor("Search905"), **TARGET, places=places,
+                            clutter=False, height_limits=[])
+        track, row, z = cover["track_probability"], cover.table[-1], places[:, 2]
+        self.assertAlmostEqual(row["track_probability"], track.mean(), delta=1e-6)
+        self.assertAlmostEqual(row["track_std_error"], track.std(ddof=1) / math.sqrt(len(track)), delta=1e-6)
+        cover.set(strike_height_weights=True)
+        weight = np.where(z <= 152.4, 0.74 / 152.4, 0.26 * 0.001265 * np.exp(-0.001265 * (z - 152.4)))
+        np.testing.assert_allclose([v for n, v in cover.table[-1].items() if n.startswith("share_")],
+                                   np.bincount(cover["status"], weights=weight, minlength=8) / weight.sum(), atol=1e-3)
+
+    def test_the_same_filter_for_a_bird_that_glides(self):
+        def made(gliding):
+            return al.Coverage(al.Scene(NOTHING, material="Wall"), al.Sensor("Search905"), species="herring gull",
+                               places=[(0, 200, 10)], clutter=False, gliding=gliding)
+        cover = made(False)
+        before = float(cover["photoelectrons"][0])
+        cover.gliding = True
+        self.assertEqual(cover["photoelectrons"][0], made(True)["photoelectrons"][0])
+        self.assertGreater(before, 1.2 * cover["photoelectrons"][0])
+
 
 class Airport(unittest.TestCase):
     """The reference shares are of 12,000 places by an independent program: birds without mutual shadow of body and wings (gull

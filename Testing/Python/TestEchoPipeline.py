@@ -56,6 +56,7 @@ class EchoPipeline(unittest.TestCase):
         for town_, properties, views in ((town_with_wall(), {}, {2, 3}), (TOWN, SAMPLED, {4}), (TOWN, {}, {2})):
             reference = ran(town_, NumberOfThreads=1, **properties)
             echoes, report = reference.GetOutput(), reference.GetOutput(1)
+            self.assertEqual(echoes.GetPointData().GetScalars().GetName(), "energy")
             self.assertGreater(echoes.GetNumberOfPoints(), 50)
             self.assertEqual(echoes.GetNumberOfVerts(), echoes.GetNumberOfPoints())
             self.assertEqual((report.GetNumberOfPoints(), reference.GetNumberOfTreeBuilds()), (360, 1))

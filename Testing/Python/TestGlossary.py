@@ -43,6 +43,11 @@ def of_advisor():
     advisor.SetSampleBeams(50)
     advisor.Update()
     table = advisor.GetTable()
+    asked = {"energy_error_most": advisor.GetEnergyError(), "range_error_most": advisor.GetRangeError(),
+             "missed_share_most": advisor.GetMissedShare()}
+    for row in range(table.GetNumberOfRows()):  # a setting meets what is asked if its bounds do
+        met = all(table.GetValueByName(row, name).ToDouble() <= most for name, most in asked.items())
+        assert (table.GetValueByName(row, "verdict").ToInt() == 2) == met, row
     arrays = [table.GetColumn(i) for i in range(table.GetNumberOfColumns())] + [table.GetFieldData().GetAbstractArray(name) for name in ("advised", "advice")]
     return {array.GetName(): array.GetInformation().Get(vtkDataArray.UNITS_LABEL()) or "" for array in arrays}
 

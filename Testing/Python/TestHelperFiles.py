@@ -12,7 +12,7 @@ from vtkmodules.vtkCommonDataModel import vtkPolyData
 
 import avianlidar as al
 from avianlidar import _disk, _suffixes
-from cloudtools import add_array
+from cloudtools import add_array, cloud
 from echotools import InFolder
 from helpertools import WALL, same
 
@@ -196,6 +196,11 @@ class Pictures(unittest.TestCase):
         axes, _, values = self.drawn("distance_m", al.Scan(al.Scene(WALL), al.Sensor(azimuth_step=2, orientation=(30, 5, 5))))
         self.assertIn("column", axes.get_xlabel())
         self.assertGreater(values.count(), 10)
+
+    def test_no_object_has_no_colour(self):
+        data = cloud([(0, 1, 0), (1, 1, 0)])
+        add_array(data, "object_id", np.array([-1, 3], np.int32))
+        self.assertEqual(al.Cloud(data).plot_map("object_id").collections[0].get_array().mask.tolist(), [True, False])
 
 
 if __name__ == "__main__":

@@ -210,6 +210,7 @@ class Shown(unittest.TestCase):
         self.assertTrue(np.array_equal(frame[["x", "y", "z"]], echoes.points))
         self.assertEqual(frame["energy"].tolist(), echoes["energy"].tolist())
         self.assertEqual((frame.attrs["units"]["energy"], frame.attrs["fields"]["range_gate"]), ("J", 4000))
+        self.assertEqual([frame.attrs["units"].get(axis) for axis in "xyz"], ["m"] * 3)
         self.assertEqual(len(pandas.concat([frame, frame])), 2 * len(frame))  # its attributes can be compared
 
     def test_without_pandas_and_matplotlib(self):

@@ -189,6 +189,18 @@ class Scans(unittest.TestCase):
         self.assertEqual((scan.echoes.points.shape, scan["energy"].shape), ((0, 3), (0,)))
         self.assertTrue(np.isnan(scan.range_image()["distance_m"]).all())
 
+    def test_the_checksum_is_that_of_the_scene_with_its_materials(self):
+        def of(kd, sensor="Search905"):
+            scene = al.Scene()
+            scene.add(al.mesh([(-9, 50, -9), (9, 50, -9), (9, 50, 9)], [(0, 1, 2)]), material=np.array([(kd, 0.0, 1.0)]))
+            return al.Scan(scene, sensor).echoes.fields["scene_checksum"]
+        self.assertEqual(of(0.5), of(0.5, "Search1550"))
+        self.assertNotEqual(of(0.5), of(0.4))
+
+    def test_equal_limits_are_full_intensity(self):
+        scan = al.Scan(al.Scene(WALL), al.Sensor(lower_energy_limit=1e-6, upper_energy_limit=1e-6), noise=False)
+        self.assertEqual(set(scan["intensity"].tolist()), {255.0})
+
 
 class Surfaces(unittest.TestCase):
     def echoes(self, *args, **options):

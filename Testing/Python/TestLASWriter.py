@@ -2,6 +2,7 @@
 """LAS files against a reader that is not ours (the library copc, in Node.js): header, coordinate reference system,
 points within the bound that the writer states, all dimensions, extra bytes. WKT is understood by PROJ's projinfo."""
 
+import datetime
 import json
 import os
 import subprocess
@@ -83,6 +84,14 @@ class TestLASWriter(InFolder):
         classes = [by_class[one] for one in field(self.data, "object_classes")]
         expected = [classes[i] if i >= 0 else 1 for i in array(self.data, "object_id")]
         self.assertEqual((got["Classification"].tolist(), set(expected)), (expected, {1, 2, 6, 11}))
+        made = datetime.date(header["fileCreationYear"], 1, 1) + datetime.timedelta(header["fileCreationDayOfYear"] - 1)
+        self.assertLessEqual(abs((datetime.datetime.now(datetime.timezone.utc).date() - made).days), 1)
+        text = text_of(found, "LASF_Spec", 4)
+        words = {name: text[192 * i + 160:192 * (i + 1)].rstrip("\0") for i, name in enumerate(EXTRA)}
+        self.assertEqual([words[name] for name in ("energy", "incidence_angle", "distance_m", "laser_id")],
+                         ["within receiver limits [J]", "at the surface [deg]", "range [m]", "channel"])
+        notes = json.loads(text_of(found, "LASF_Spec", 3))["avian_lidar"]["field_data"]
+        self.assertEqual(notes["scene_checksum"]["value"], [str(self.data.GetFieldData().GetArray("scene_checksum").GetValue(0))])
 
     def test_coordinate_systems(self):
         """Places are those of the geodetic transform, and PROJ understands the system."""

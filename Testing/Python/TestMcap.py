@@ -94,6 +94,7 @@ class TestMcap(unittest.TestCase):
         found = self.read()
         self.assertEqual((found["strange"], found["statistics"]["channelMessageCounts"]), ([], {"1": "3", "2": "3", "3": "3"}))
         of = [message["message"]["markers"] for message in found["messages"] if message["topic"] == "/boxes"]
+        self.assertEqual([one["color"]["g"] > one["color"]["b"] for one in of[0][1:]], [True, False])  # a bird is green
         self.assertEqual([[one["action"] for one in markers] for markers in of], [[3, 0, 0], [3], [3]])  # all go, then these come
         for marker, name, number, middle, size, yaw, words in zip(
                 of[0][1:], ("bird", "car"), (10000, 7), ((-180.25, -226.5, 27.75), (1, 2, 3)), ((0.5, 1.25, 0.125), (4, 2, 2)), (1.6271, -3),

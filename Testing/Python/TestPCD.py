@@ -175,6 +175,10 @@ class Reader(InFolder):
             self.assertIn("no PCD file", read_error(FILE))
             self.assertEqual(al.vtkAvianLidarPointCloudReader.CanReadFile(FILE), 0)
 
+    def test_rgba(self):
+        one(b"1 2 3 13132900\n", "x y z rgba", "F4 F4 F4 U4")  # 0x00C86464
+        self.assertEqual(array(read(FILE), "rgb").tolist(), [[200, 100, 100]])
+
 
 class Written(InFolder):
     @classmethod

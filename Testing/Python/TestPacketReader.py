@@ -154,6 +154,7 @@ class TestPacketReader(InFolder):
         wanted = points(read(FILE)).tolist()
         tag = struct.pack(">HH", 0x8100, 7)
         kinds = {"turned": pcap([ethernet(data)], order=">"), "nanoseconds": pcap([ethernet(data)], magic=0xA1B23C4D),
+                 "both": pcap([ethernet(data)], order=">", magic=0xA1B23C4D),
                  "tags": pcap([ethernet(data, tags=tag + tag)]),
                  "options": pcap([ethernet(data, options=bytes(8))]), "bare": pcap([datagram(data)], link=101),
                  "cooked": pcap([bytes(14) + b"\x08\x00" + datagram(data)], link=113),

@@ -5,6 +5,7 @@ import math
 import os
 import re
 import shlex
+import types
 import unittest
 
 import numpy as np
@@ -143,6 +144,11 @@ class Less(unittest.TestCase):
             read_plan(good, siting={"masts": (5, "high")})
         self.assertEqual(read_plan(good, siting={"masts": 7})["siting"]["masts"], [7])
         self.assertEqual(main(["report", str(good), "-o", os.path.join(HERE, "bad.pdf")]), 2)
+
+    def test_a_bird_below_the_sensor(self):
+        sensor = al.Sensor(channel_elevations=[-2.0, 6.0], number_of_channels=2, position=(0, 0, 30))
+        row, = reach.heights_in_band(types.SimpleNamespace(sensor=sensor), [10.0], 600.0)
+        self.assertAlmostEqual(row["from"], 20 / math.tan(math.radians(2.0)), delta=1e-9)
 
 
 if __name__ == "__main__":

@@ -391,6 +391,11 @@ class SceneObjects(unittest.TestCase):
                 for array in ("material_id", "kd", "ks", "kp"):
                     np.testing.assert_array_equal(st.cells(block, array), st.cells(own, array))
 
+    def test_many_unmapped_names(self):
+        self.save("many.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\n" + "".join(f"usemtl m{i}\nf 1 2 3\n" for i in range(13)))
+        scene = self.read({"file": "many.obj"}, silent=False, material_map={})
+        self.assertIn(" and 3 more: taken as Wall", scene.warnings[0])
+
 
 if __name__ == "__main__":
     unittest.main()

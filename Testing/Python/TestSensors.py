@@ -142,6 +142,14 @@ class Manuals(unittest.TestCase):
                 steps = np.concatenate([np.diff(np.sort(azimuth[ring == one])) for one in rings])
                 self.assertAlmostEqual(np.median(steps[steps > 0.05]), sensor.azimuth_step, delta=0.002)
 
+    def test_minimum_ranges_are_those_of_the_makers(self):
+        folder = pathlib.Path(os.environ["AVIANLIDAR_SOURCE_DIR"], "Filters", "Sensors")
+        names = [file.name.split(".")[0] for file in folder.glob("*.lidarsensor.json")]
+        least = {name: al.Sensor(name).minimum_range for name in names}
+        self.assertEqual({name: m for name, m in least.items() if m},
+                         {"HDL32E": 0.05, "Helios16P": 0.2, "Mid360": 0.1, "Mid40": 2.0, "OS0_128": 0.3, "OS1_64": 0.8,
+                          "OS2_128": 1.0, "Pandar40P": 0.3, "PandarXT32": 0.05})
+
 class Own(unittest.TestCase):
     def test_beams_go_where_and_when_they_are_told(self):
         rng = np.random.default_rng(1)

@@ -7,6 +7,7 @@ import unittest
 
 import numpy as np
 from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.vtkCommonDataModel import vtkDataObject
 from vtkmodules.vtkCommonExecutionModel import vtkStreamingDemandDrivenPipeline
 
 from avianlidar.apps import _labels
@@ -120,6 +121,13 @@ class Sequence(InFolder):
         classes = next(ast.literal_eval(node.value) for node in macro.body
                        if isinstance(node, ast.Assign) and ast.unparse(node.targets[0]) == "CLASSES")
         self.assertEqual(classes, {label: (one.name, one.color[::-1]) for label, one in _labels.CLASSES.items()})
+
+    def test_a_turned_box_and_the_time_of_both(self):
+        self.write("boxes/000001.txt", "bird 0.00 0.00 30 3 2 2.0 1.0 0.5 0.5 10000 1\n")
+        points, boxes = self.at(self.reader(), 0.5)
+        c, s = np.cos(0.5), np.sin(0.5)
+        np.testing.assert_allclose(boxes.GetPoint(0), np.array([30 - c + 0.5 * s, 3 - s - 0.5 * c, 1.75]) @ TURN.T + SHIFT, atol=1e-9)
+        self.assertEqual([data.GetInformation().Get(vtkDataObject.DATA_TIME_STEP()) for data in (points, boxes)], [0.5, 0.5])
 
 
 if __name__ == "__main__":
