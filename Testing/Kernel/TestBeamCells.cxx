@@ -90,6 +90,7 @@ TEST(BeamCells, ClutterReturnsWhatManyRaysFind)
     const double truth = received(scene, sensor, byRays(200000));
     const ScanResult result = runScan(makeSetup(scene, sensor, inCells()), oneBeam());
     EXPECT_EQ(result.reports[0].direct, DirectEcho::Cells);
+    EXPECT_FALSE(result.reports[0].isCrowded);
     EXPECT_EQ(result.raysTraced, 0u) << "those of the grid are not traced";
     ASSERT_EQ(result.echoes.size(), 1u);
     const double off = receivedFrom(result) / truth - 1.0;
@@ -192,6 +193,7 @@ TEST(BeamCells, WhatNoRayOfTheGridMeetsIsTheSameReused)
       {
         ASSERT_EQ(reused.reports[b].status, fresh.reports[b].status) << b;
         ASSERT_EQ(reused.reports[b].direct, DirectEcho::Cells) << b;
+        ASSERT_TRUE(reused.reports[b].isCrowded) << b;
       }
     }
   }
@@ -201,6 +203,7 @@ TEST(BeamCells, ManySmallObjectsHaveABudget)
 {
   const ScanResult result =
     runScan(makeSetup(specks(5000, 2.3e-3), openSensor(), inCells()), oneBeam());
+  EXPECT_TRUE(result.reports[0].isCrowded);
   EXPECT_GT(result.raysTraced, 3000u);
   EXPECT_LT(result.raysTraced, 400000u);
 }

@@ -25,7 +25,8 @@ void BeamSimulator::light(
   report.range = std::numeric_limits<double>::quiet_NaN();
   const bool meets = trace.polygons() ||
     (trace.cells() ? trace.cells()->samples.size() > 0 : trace.hits && trace.hits->size() > 0);
-  report.direct = trace.cells() && trace.cells()->isCrowded ? DirectEcho::Crowded : trace.direct();
+  report.direct = trace.direct();
+  report.isCrowded = trace.cells() && trace.cells()->isCrowded;
   report.status = meets ? BeamStatus::BelowLimit : BeamStatus::NoSurface;
   const bool isLit =
     !trace.lit || !this->Echoes.receiveAgain(this->Beams.ids[beam], *trace.lit, echoes, report);

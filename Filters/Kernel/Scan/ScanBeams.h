@@ -73,13 +73,13 @@ enum class DirectEcho : std::uint8_t
   Nothing = 1,  ///< no surface enters the beam
   Polygons = 2, ///< integrated over the polygons that it sees
   Cells = 3,    ///< by the strips of its cells
-  Rays = 4,     ///< by its N rays
-  Crowded = 5   ///< by cells whose rays go through the tree: too many triangles enter for lists
+  Rays = 4      ///< by its N rays
 };
 
 struct BeamReport
 {
-  DirectEcho direct = DirectEcho::Unknown; ///< "view" in the output
+  DirectEcho direct = DirectEcho::Unknown;
+  bool isCrowded = false; ///< too many triangles enter for lists: the rays of its cells were traced
   BeamStatus status = BeamStatus::NoSurface;
   double range = 0.0;              ///< range of the strongest return, m; NaN without one
   TraceCounters counters;          ///< cost of all tracing for what is kept of the beam

@@ -195,7 +195,9 @@ void vtkAvianLidarEchoOutput::FillReport(const avianlidar::ScanResult& result,
   SetVertices(report, static_cast<vtkIdType>(all.size()), positionOf);
   AddBeamArrays(beams, report, [](std::size_t i) { return i; });
   Add<vtkIntArray>(report, names::Status, [&](std::size_t i) { return all[i].status; });
-  Add<vtkIntArray>(report, names::View, [&](std::size_t i) { return all[i].direct; });
+  constexpr int crowded = 5; // the others are numbers of DirectEcho
+  Add<vtkIntArray>(report, names::View,
+    [&](std::size_t i) { return all[i].isCrowded ? crowded : static_cast<int>(all[i].direct); });
   Add<vtkIdTypeArray>(
     report, names::Candidates, [&](std::size_t i) { return all[i].counters.candidates; });
   Add<vtkIdTypeArray>(
