@@ -160,6 +160,7 @@ vtk_module_link(AvianLidar::AvianLidar
   PRIVATE
     avianlidarVolumeTree
     avianlidarKernel
+    AvianLidar::boost
     AvianLidar::xxhash
     AvianLidar::geos
     AvianLidar::utf8

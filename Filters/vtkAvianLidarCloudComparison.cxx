@@ -2,7 +2,6 @@
 #include "vtkAvianLidarCloudComparison.h"
 
 #include "ParallelLoop.h"
-#include "PointTree.h"
 #include "ScanBeams.h"
 #include "ValueError.h"
 #include "vtkAvianLidarAbort.h"
@@ -22,8 +21,13 @@
 #include "vtkPolyData.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
 
+#include <boost/geometry.hpp>
+#include <boost/geometry/index/rtree.hpp>
+
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <string>
 #include <utility>
@@ -72,21 +76,66 @@ struct Direction
   double DensityAware = 0.0;
 };
 
-avianlidar::Vec3 PointOf(vtkPointSet* cloud, vtkIdType i)
+// The places of a cloud, each with a number. (VTK's locators either divide space into equal cells,
+// which one point far away makes useless, or round coordinates to single precision.)
+using Place = boost::geometry::model::point<double, 3, boost::geometry::cs::cartesian>;
+using NumberedPlace = std::pair<Place, vtkIdType>;
+using PlaceTree = boost::geometry::index::rtree<NumberedPlace, boost::geometry::index::linear<16>>;
+
+Place PlaceOf(vtkPointSet* cloud, vtkIdType i)
 {
   double p[3];
   cloud->GetPoint(i, p);
   return { p[0], p[1], p[2] };
 }
 
-avianlidar::PointTree TreeOf(vtkPointSet* cloud)
+// Several points in one place have one number; of equally near places the one with the least x,
+// then y, then z has the least number.
+PlaceTree TreeOf(vtkPointSet* cloud)
 {
-  std::vector<avianlidar::Vec3> points(static_cast<std::size_t>(cloud->GetNumberOfPoints()));
+  std::vector<std::array<double, 3>> points(static_cast<std::size_t>(cloud->GetNumberOfPoints()));
   for (std::size_t i = 0; i < points.size(); ++i)
   {
-    points[i] = PointOf(cloud, static_cast<vtkIdType>(i));
+    cloud->GetPoint(static_cast<vtkIdType>(i), points[i].data());
   }
-  return avianlidar::PointTree(std::move(points));
+  std::sort(points.begin(), points.end());
+  points.erase(std::unique(points.begin(), points.end()), points.end());
+  std::vector<NumberedPlace> places;
+  places.reserve(points.size());
+  for (const std::array<double, 3>& p : points)
+  {
+    places.emplace_back(Place(p[0], p[1], p[2]), static_cast<vtkIdType>(places.size()));
+  }
+  return PlaceTree(places.begin(), places.end());
+}
+
+// The square of the distance to the nearest place, and its number: of several the least. `found` is
+// workspace.
+std::pair<double, vtkIdType> NearestIn(
+  const PlaceTree& tree, const Place& place, std::vector<NumberedPlace>& found)
+{
+  const auto squareTo = [&](const NumberedPlace& other)
+  { return boost::geometry::comparable_distance(place, other.first); };
+  for (unsigned most = 2;; most *= 8)
+  {
+    found.clear();
+    tree.query(boost::geometry::index::nearest(place, most), std::back_inserter(found));
+    double nearest = std::numeric_limits<double>::infinity();
+    double farthest = 0.0;
+    vtkIdType number = 0;
+    for (const NumberedPlace& other : found)
+    {
+      const double square = squareTo(other);
+      number = square < nearest ? other.second
+                                : (square > nearest ? number : std::min(number, other.second));
+      nearest = std::min(nearest, square);
+      farthest = std::max(farthest, square);
+    }
+    if (farthest > nearest || found.size() < most) // all that are equally near are among them
+    {
+      return { nearest, number };
+    }
+  }
 }
 
 // Moves the progress of `filter` from `start` to `start` + 0.5.
@@ -95,7 +144,8 @@ void Measure(
 {
   constexpr vtkIdType block = 16384;
   const vtkIdType size = from->GetNumberOfPoints();
-  const avianlidar::PointTree tree = TreeOf(to);
+  const PlaceTree tree = TreeOf(to);
+  std::vector<NumberedPlace> found;
   result.Distances = Arrays::Make<vtkDoubleArray>(Arrays::NearestDistance, size);
   result.Nearest->SetNumberOfValues(size);
   for (vtkIdType i = 0; i < size; ++i)
@@ -108,9 +158,9 @@ void Measure(
         throw avianlidar::WorkStopped{};
       }
     }
-    const auto nearest = tree.nearest(PointOf(from, i));
-    result.Distances->SetValue(i, std::sqrt(nearest.square));
-    result.Nearest->SetValue(i, static_cast<vtkIdType>(nearest.index));
+    const auto [square, number] = NearestIn(tree, PlaceOf(from, i), found);
+    result.Distances->SetValue(i, std::sqrt(square));
+    result.Nearest->SetValue(i, number);
   }
 }
 
