@@ -10,7 +10,9 @@ import io
 import os
 import pathlib
 import shutil
+import signal
 import stat
+import threading
 import unicodedata
 import zlib
 from typing import Any, Callable, Iterator, List, Optional
@@ -204,6 +206,23 @@ def undone(folder) -> Iterator[None]:
 
 
 @contextlib.contextmanager
+def _uninterrupted() -> Iterator[None]:
+    """Ctrl+C waits for the end of the block, so that what was made is known when it comes."""
+    own = threading.current_thread() is threading.main_thread() and signal.getsignal(signal.SIGINT)
+    if not own:  # other threads are not interrupted
+        yield
+        return
+    came: List[int] = []
+    signal.signal(signal.SIGINT, lambda number, _: came.append(number))
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGINT, own)
+    if came:
+        signal.raise_signal(signal.SIGINT)
+
+
+@contextlib.contextmanager
 def only_run(folder, ranks=None, goes_on: bool = True, known: Callable[[], Any] = lambda: None) -> Iterator[None]:
     """The folder, which is made, is of this run alone: `Error` where another one has it. A run that was killed has none. A folder
     that a failed run has made goes again, with what is in it unless the next run goes on with that.
@@ -218,10 +237,11 @@ def only_run(folder, ranks=None, goes_on: bool = True, known: Callable[[], Any] 
     try:
         if ranks is None or ranks.rank == 0:
             try:
-                folder.mkdir(parents=True, exist_ok=True)
-                # The run before may end just now.
-                tries = (_hold(str(name), flags) for _ in range(3) for flags in (os.O_CREAT | os.O_EXCL, 0))
-                handle = next((handle for handle in tries if handle is not None), None)
+                with _uninterrupted():
+                    folder.mkdir(parents=True, exist_ok=True)
+                    # The run before may end just now.
+                    tries = (_hold(str(name), flags) for _ in range(3) for flags in (os.O_CREAT | os.O_EXCL, 0))
+                    handle = next((handle for handle in tries if handle is not None), None)
                 if handle is None and not _has_locks(str(name)):
                     words = f"; files here have no locks: if no other run is there, remove {name}"
             except OSError as error:  # the others are to know before it is said

@@ -3,6 +3,7 @@
 import csv
 import errno
 import os
+import signal
 import stat
 import unittest
 from unittest import mock
@@ -139,6 +140,18 @@ class Files(InFolder):
                 self.assertEqual(part.read_text(encoding="utf-8"), "others'")
             os.remove(part)
             os.remove(file)
+
+    def test_an_interrupt_while_a_folder_is_taken(self):
+        hold = _disk._hold
+
+        def interrupted(*given):
+            held = hold(*given)
+            signal.raise_signal(signal.SIGINT)
+            return held
+
+        with mock.patch.object(_disk, "_hold", interrupted), self.assertRaises(KeyboardInterrupt), _disk.only_run("taken"):
+            self.fail("it goes on")
+        self.assertFalse(os.path.exists("taken"))
 
 
 class Pictures(unittest.TestCase):
