@@ -71,7 +71,7 @@ FAULTS = [Fault(*fault) for fault in (
     ("intensity_of_none", "an offset", "Python-TestEchoPipeline$",
      "Filters/Private/Echoes/vtkAvianLidarEchoOutput.cxx",
      "255.0 * std::min(1.0, std::max(0.0, (energy - sensor.lowerEnergyLimit) / width))", "255.0 * std::min(1.0, std::max(0.0, energy / width))"),
-    ("lost_warning", "a lost warning", "Cxx-TestHSBColorMap|Python-TestDegenerateCells$",
+    ("lost_warning", "a lost warning", "Cxx-TestHSBColorMap|Python-TestBadInput$",
      "Filters/vtkAvianLidarHSBColorMap.cxx", "++withoutNumber;", ";"),
     ("origin_of_the_whole", "a fallback that is gone", "Python-Test(GeodeticTransform|BadInput)$",
      "Filters/vtkAvianLidarGeodeticTransform.cxx",
