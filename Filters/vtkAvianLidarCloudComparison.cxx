@@ -114,8 +114,6 @@ PlaceTree TreeOf(vtkPointSet* cloud)
 std::pair<double, vtkIdType> NearestIn(
   const PlaceTree& tree, const Place& place, std::vector<NumberedPlace>& found)
 {
-  const auto squareTo = [&](const NumberedPlace& other)
-  { return boost::geometry::comparable_distance(place, other.first); };
   for (unsigned most = 2;; most *= 8)
   {
     found.clear();
@@ -125,7 +123,7 @@ std::pair<double, vtkIdType> NearestIn(
     vtkIdType number = 0;
     for (const NumberedPlace& other : found)
     {
-      const double square = squareTo(other);
+      const double square = boost::geometry::comparable_distance(place, other.first);
       number = square < nearest ? other.second
                                 : (square > nearest ? number : std::min(number, other.second));
       nearest = std::min(nearest, square);

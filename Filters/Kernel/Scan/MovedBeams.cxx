@@ -2,7 +2,6 @@
 #include "MovedBeams.h"
 
 #include "CollisionTreeBuilder.h"
-#include "Descents.h"
 #include "ParallelLoop.h"
 #include "PhotonReceiver.h"
 
@@ -28,18 +27,6 @@ TreeOptions optionsOfSmallScene(std::size_t triangles, const EchoSettings& setti
   return { SplitRule::Median, BoundingVolumeType::AABB,
     triangles <= few ? static_cast<int>(few) + 1 : 4 };
 }
-
-/// Collects the triangles of all leaves visited.
-struct LeafCollector
-{
-  std::vector<std::uint32_t>& triangles;
-  double limit() const { return std::numeric_limits<double>::infinity(); }
-  bool leaf(const std::uint32_t* first, std::uint32_t count)
-  {
-    this->triangles.insert(this->triangles.end(), first, first + count);
-    return true;
-  }
-};
 
 /// False if no ray of the beam meets the sphere.
 bool meets(const BeamFrame& beam, const MoverSphere& sphere)
@@ -203,11 +190,11 @@ void MovedBeams::addTriangle(std::size_t number)
 void MovedBeams::addStatic(const BeamFrame& frame)
 {
   const CollisionTree& tree = *this->Setup.tree;
+  this->Candidates.begin(tree, &frame, 1, false);
   this->Static.clear();
-  if (!tree.nodes.empty())
+  if (this->Candidates.next())
   {
-    LeafCollector collector{ this->Static };
-    descendCone(tree, frame, collector, this->Stack);
+    this->Static = this->Candidates.triangles();
   }
   std::sort(this->Static.begin(), this->Static.end());
   TriangleMesh& mesh = *this->Mesh;

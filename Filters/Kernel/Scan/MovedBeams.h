@@ -22,9 +22,9 @@
 #define avianlidar_MovedBeams_h
 
 #include "BeamSimulator.h"
+#include "Candidates.h"
 #include "Mover.h"
 #include "RangeUnits.h"
-#include "Traversal.h"
 
 #include <cstdint>
 #include <functional>
@@ -93,7 +93,7 @@ private:
   std::unique_ptr<BeamSimulator> Simulator; ///< null before the first scene
   RangeUnitAccumulator Units;               ///< of one mover
   std::vector<BeamTrace> Trace;
-  TraversalStack Stack;
+  BeamCandidates Candidates;
   std::vector<std::uint32_t> Static; ///< triangles that the cone may meet
   std::vector<Material> Materials;
   std::vector<int> ObjectIds;

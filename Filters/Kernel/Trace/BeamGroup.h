@@ -32,6 +32,12 @@
 
 namespace avianlidar
 {
+/// True if two beams have one apex and width, and so may descend together.
+inline bool areTogether(const BeamFrame& one, const BeamFrame& two)
+{
+  return one.origin == two.origin && one.halfBeamwidth == two.halfBeamwidth;
+}
+
 /// Order beams, given by their numbers, so that consecutive ones are neighbours: along a Z-order
 /// curve over the two coordinates in which their axes differ most. `keys` is workspace.
 void orderBeams(

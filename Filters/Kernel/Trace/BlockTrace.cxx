@@ -10,12 +10,6 @@ namespace
 /// Beams of fewer rays form no groups.
 constexpr std::uint32_t FewestRaysInGroup = 8;
 
-/// True if two beams have one apex and width, and so may go together.
-bool together(const BeamFrame& one, const BeamFrame& two)
-{
-  return one.origin == two.origin && one.halfBeamwidth == two.halfBeamwidth;
-}
-
 /// A cone that meets more triangles is traced ray by ray, which is then faster.
 constexpr std::size_t MostPotential = 2048;
 
@@ -50,7 +44,7 @@ public:
         continue;
       }
       const BeamFrame& frame = this->Block.frames[b];
-      if (before && !together(*before, frame))
+      if (before && !areTogether(*before, frame))
       {
         this->groups();
       }

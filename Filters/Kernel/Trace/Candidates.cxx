@@ -36,9 +36,7 @@ void BeamCandidates::begin(
   {
     this->Stretch.clear();
     const BeamFrame& begun = frames[first];
-    for (; first < beams && frames[first].origin == begun.origin &&
-         frames[first].halfBeamwidth == begun.halfBeamwidth;
-         ++first)
+    for (; first < beams && areTogether(begun, frames[first]); ++first)
     {
       this->Stretch.push_back(static_cast<std::uint32_t>(first));
     }
@@ -72,7 +70,7 @@ bool BeamCandidates::next()
   return false;
 }
 
-/// @return false if there is none
+/// Descend with the next group. @return false after the last one
 bool BeamCandidates::descendNextGroup()
 {
   if (this->Groups.empty())

@@ -42,7 +42,7 @@ public:
   std::uint64_t nodesVisited() const
   {
     return this->NodesVisited;
-  } ///< its share of the group's too
+  } ///< with its share of the group's
 
 private:
   /// Neighbours, by places in Order.
@@ -50,7 +50,6 @@ private:
   {
     std::size_t first, count;
   };
-  void addGroups(std::size_t first, std::size_t last);
   bool descendNextGroup();
   bool collect(const EntryPoints* entryPoints);
 
@@ -59,8 +58,8 @@ private:
   std::vector<std::uint32_t> Order; ///< beams
   std::vector<Group> Groups;        ///< still to be descended, the next one last
   Group Now{ 0, 0 };                ///< the rest of the group that was descended last
-  int Member = 0;                   ///< of the group, the next
-  bool FromRoot = false;            ///< it has no entry points
+  int Member = 0;                   ///< next member of that group
+  bool FromRoot = false;            ///< the group has no entry points
   std::uint64_t Share = 0;          ///< nodes visited for each member
   std::size_t Beam = 0;
   std::vector<std::uint32_t> Triangles;
