@@ -89,8 +89,7 @@ Place PlaceOf(vtkPointSet* cloud, vtkIdType i)
   return { p[0], p[1], p[2] };
 }
 
-// Several points in one place have one number; of equally near places the one with the least x,
-// then y, then z has the least number.
+// Points in one place share a number. Numbers follow the order of x, then y, then z.
 PlaceTree TreeOf(vtkPointSet* cloud)
 {
   std::vector<std::array<double, 3>> points(static_cast<std::size_t>(cloud->GetNumberOfPoints()));
@@ -109,8 +108,8 @@ PlaceTree TreeOf(vtkPointSet* cloud)
   return PlaceTree(places.begin(), places.end());
 }
 
-// The square of the distance to the nearest place, and its number: of several the least. `found` is
-// workspace.
+// The square of the distance to the nearest place, and its number, the least if several places are
+// equally near. `found` is workspace.
 std::pair<double, vtkIdType> NearestIn(
   const PlaceTree& tree, const Place& place, std::vector<NumberedPlace>& found)
 {

@@ -7,7 +7,8 @@
 
 PYTHONPATH names the Python package of the build. The sceneries that are not part of the repository are scene files in
 AVIANLIDAR_SCENES_DIR (default: build/paraview/Testing/Scenes); a scene without its file is left out, and named.
-Counts of nodes, candidates and rays are costs, not results, and are not compared; nor are arrays that the frozen scans lack."""
+Counts of nodes, candidates and rays are costs, not results, and are not compared. Neither are arrays that the frozen
+scans lack."""
 import argparse
 import math
 import os
@@ -27,9 +28,10 @@ from avianlidar import vtkAvianLidar as al  # noqa: E402
 from data import contents  # noqa: E402
 from pipeline import MAY_DIFFER  # noqa: E402
 
-Filter = al.vtkAvianLidarEchoFilter
+Filter, Source = al.vtkAvianLidarEchoFilter, al.vtkAvianLidarBeamSource
 SENSORS = {"Airport16": 3.0, "VLP16": 4.0}  # degrees between columns: some thousand beams with the two
-PHOTONS = {"ReceiverModel": al.vtkAvianLidarBeamSource.RECEIVER_MODEL_PHOTONS, "ReceiverAperture": 0.01, "BackgroundRadiance": 0.1, "ReceiverEfficiency": 0.3}
+PHOTONS = {"ReceiverModel": Source.RECEIVER_MODEL_PHOTONS, "ReceiverAperture": 0.01, "BackgroundRadiance": 0.1,
+           "ReceiverEfficiency": 0.3}
 # What a variant sets, of the filter and of the sensor, and what else the scene holds.
 VARIANTS = {
     "default": ({}, {}, ""),
@@ -41,7 +43,7 @@ VARIANTS = {
     "25 rays": ({"RaysPerBeam": 25}, {}, ""),
     "400 rays": ({"RaysPerBeam": 400, "NumberOfConnections": 4}, {}, ""),
     "full model": ({"FullModel": 1, "ReflectanceModel": Filter.REFLECTANCE_MODEL_MICROFACET}, {}, ""),
-    "aperture": ({}, {"ReceiverAperture": 0.01, "BeamProfile": al.vtkAvianLidarBeamSource.BEAM_PROFILE_GAUSSIAN, "OverlapRange": 20.0}, ""),
+    "aperture": ({}, {"ReceiverAperture": 0.01, "BeamProfile": Source.BEAM_PROFILE_GAUSSIAN, "OverlapRange": 20.0}, ""),
     "photons": ({"Noise": 1}, PHOTONS, ""),
     "rain": ({"Visibility": 5000.0, "RainRate": 10.0, "AirBackscatter": 1}, {"ReceiverAperture": 0.01}, ""),
     "fog bank": ({"AirBackscatter": 1}, {"ReceiverAperture": 0.01}, "fog"),
@@ -106,9 +108,9 @@ class Scans:
             echoes.SetInputConnection(2, self.birds.GetOutputPort())
         echoes.AddObserver("WarningEvent", lambda *_: None)  # faces that coincide in what others drew
         echoes.Update()
-        return [contents(echoes.GetOutputDataObject(port), MAY_DIFFER) for port in range(echoes.GetNumberOfOutputPorts())], {
-            array: vtk_to_numpy(echoes.GetOutput().GetPointData().GetArray(array)).copy()
-            for array in ("beam_id", "distance_m", "energy_received")}
+        points = echoes.GetOutput().GetPointData()
+        return ([contents(echoes.GetOutputDataObject(port), MAY_DIFFER) for port in range(echoes.GetNumberOfOutputPorts())],
+                {name: vtk_to_numpy(points.GetArray(name)).copy() for name in ("beam_id", "distance_m", "energy_received")})
 
 
 def scan_all(name, file):
@@ -118,7 +120,7 @@ def scan_all(name, file):
 
 def in_words(old, new):
     """How far two scans differ: echoes without a partner, and errors of those with one (by beam and order)."""
-    keys = []
+    keys = []  # of each echo: beam and order
     for echoes in (old, new):
         beam = echoes["beam_id"].astype(np.int64)
         first = np.concatenate([[True], beam[1:] != beam[:-1]]) if len(beam) else np.zeros(0, bool)
@@ -128,8 +130,9 @@ def in_words(old, new):
     energy = np.abs(new["energy_received"][two] / old["energy_received"][one] - 1.0)
     away = np.abs(new["distance_m"][two] - old["distance_m"][one])
     rms = math.sqrt(float(np.mean(energy**2))) if len(both) else 0.0
-    return (f"{len(old['beam_id'])} echoes, {len(keys[0]) - len(both)} gone, {len(keys[1]) - len(both)} new; energy rms {rms:.1e}, "
-            f"at most {energy.max(initial=0.0):.1e}; range at most {away.max(initial=0.0):.1e} m; {np.count_nonzero(energy)} differ")
+    return (f"{len(keys[0])} echoes, {len(keys[0]) - len(both)} gone, {len(keys[1]) - len(both)} new; energy rms {rms:.1e}, "
+            f"at most {energy.max(initial=0.0):.1e}; range at most {away.max(initial=0.0):.1e} m; "
+            f"{np.count_nonzero(energy)} differ")
 
 
 def compare(frozen, found):
@@ -140,7 +143,8 @@ def compare(frozen, found):
                  for where in one if one.get(where) != two.get(where)}
         if names:
             differ += 1
-            print(f"  {', '.join(key)}: {in_words(echoes, found[key][1])}; arrays: {', '.join(sorted(names))[:400]}", flush=True)
+            print(f"  {', '.join(key)}: {in_words(echoes, found[key][1])}; arrays: {', '.join(sorted(names))[:400]}",
+                  flush=True)
     return differ
 
 
@@ -161,7 +165,8 @@ def main():
         found = scan_all(name, source)
         if options.what == "make":
             file.write_bytes(pickle.dumps(found))
-            print(f"{name}: {len(found)} scans, {sum(len(echoes['beam_id']) for _, echoes in found.values())} echoes", flush=True)
+            echoes = sum(len(one["beam_id"]) for _, one in found.values())
+            print(f"{name}: {len(found)} scans, {echoes} echoes", flush=True)
         else:
             count = compare(pickle.loads(file.read_bytes()), found)
             print(f"{name}: {count} of {len(found)} scans differ", flush=True)

@@ -274,7 +274,7 @@ class Shipped(unittest.TestCase):
         sys.path.insert(0, str(EXAMPLE))
 
     def test_clutter_is_neither_too_easy_nor_hopeless(self):
-        """The clutter filter that knows the whole sequence, on six scans of the shipped scenario: a cell met once is none."""
+        """The clutter filter that knows the whole sequence, on six scans of the shipped scenario: a cell met once is not clutter."""
         import clutter
         out = emptied("sequence", "shipped")
         al.Sequence(EXAMPLE / "hongqiao.scenario.json", number_of_scans=6, scans_per_sequence=6).write(out)

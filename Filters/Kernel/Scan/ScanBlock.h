@@ -4,7 +4,7 @@
  * @brief What each beam of a block sees, as far as that is not kept from an earlier run.
  *
  * The triangles that may enter each beam (Candidates.h) give its view (ViewFinder.h). Where
- * settings ask for rays, where a view has none of its own, and where paths over two reflections
+ * settings ask for rays, where a view needs them, and where paths over two reflections
  * start, rays are traced through the tree (BeamTracer.h).
  *
  * Source: paper, Algorithm 2 and Sec. 3.2.
