@@ -25,7 +25,8 @@ void FillEchoes(const avianlidar::ScanResult& result, const vtkAvianLidarBeams& 
  * A vertex for each beam, in their order: at its strongest return, or at the display length, m.
  * Point arrays: `beam_id`, `laser_id`, `azimuth`, 0.01 deg, and `vertical_angle`, deg, as the
  * echoes have them; `status` (BeamStatus; the active scalars), `view` (how its direct echo
- * was found), the counts `candidates`, `nodes_visited` and `rays_traced`, and `skipped` (SkippedPart) with `skipped_bound`, J.
+ * was found), the counts `candidates`, `nodes_visited` and `rays_traced`, and `skipped`
+ * (SkippedPart) with `skipped_bound`, J.
  *
  * @param result of a scan of `beams`: one report for each @param beams read without a problem
  * @param noise of the scan
