@@ -124,7 +124,8 @@ std::vector<Figure9Tree> treesOf(const Scene& scene)
 /// its rays is tested.
 std::pair<double, double> workOf(const CollisionTree& tree, const Workload& work)
 {
-  BeamTracer tracer(tree);
+  const SceneTriangles tracerScene(tree);
+  BeamTracer tracer(tracerScene);
   const auto rays = static_cast<std::uint32_t>(work.raysPerBeam);
   const double packets = std::ceil(static_cast<double>(rays) / 64.0);
   std::pair<double, double> sum{ 0.0, 0.0 };

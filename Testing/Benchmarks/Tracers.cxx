@@ -42,13 +42,14 @@ Tracer ourTracer(const CollisionTree& tree, TraceMode mode)
 {
   return [&tree, mode](const Workload& work, int threads, const Consumer& consumer)
   {
+    const SceneTriangles scene(tree);
     std::vector<std::unique_ptr<BeamTracer>> tracers(threads);
     const auto rays = static_cast<std::uint32_t>(work.raysPerBeam);
     const auto body = [&](std::size_t begin, std::size_t end, int thread)
     {
       if (!tracers[thread])
       {
-        tracers[thread] = std::make_unique<BeamTracer>(tree);
+        tracers[thread] = std::make_unique<BeamTracer>(scene);
       }
       const BeamBlock block{ &work.frames[begin], end - begin, rays,
         [&](std::size_t b) -> const BeamRays& { return work.rays[begin + b]; } };

@@ -83,7 +83,8 @@ public:
 
   SeenInCells(const ScanSetup& setup, const BeamFrame& frame)
     : Setup(setup)
-    , Finder(*setup.tree, 0, MostTrianglesOfCells)
+    , Scene(*setup.tree)
+    , Finder(this->Scene, 0, MostTrianglesOfCells)
   {
     std::vector<std::uint32_t> all(setup.tree->mesh->triangles.size());
     std::iota(all.begin(), all.end(), 0u);
@@ -93,7 +94,7 @@ public:
     EXPECT_EQ(this->Finder.find(none), SeenByBeam::TooMuch);
     this->shares.resize(all.size(), 0.0);
     const std::unique_ptr<CellSamples> found =
-      BeamCells(setup).find(0, frame, this->Finder.candidates());
+      BeamCells(setup, this->Scene).find(0, frame, this->Finder.candidates());
     found->samples.forEachSurface(
       [&](std::uint32_t triangle, std::uint32_t begin, std::uint32_t end)
       {
@@ -120,6 +121,7 @@ public:
 
 private:
   const ScanSetup& Setup;
+  const SceneTriangles Scene;
   PolygonFinder Finder;
 };
 

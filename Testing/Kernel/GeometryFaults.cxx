@@ -30,7 +30,8 @@ std::vector<Hit> loopOverTriangles(
     all[t] = t;
   }
   const BeamPlaneMap map(frame);
-  BeamRayVisitor visitor(tree, frame, map);
+  const SceneTriangles scene(tree);
+  BeamRayVisitor visitor(scene, frame, map);
   std::vector<Hit> hits(rays.size());
   for (std::size_t i = 0; i < rays.size(); ++i)
   {

@@ -47,7 +47,8 @@ public:
   {
     const BeamFrame frame =
       makeBeamFrame(Vec3(0.0), Vec3(1.0, 0.0, 0.0), setup.sensor.halfBeamwidth);
-    BeamTracer tracer(*setup.tree);
+    const SceneTriangles tracerScene(*setup.tree);
+    BeamTracer tracer(tracerScene);
     tracer.setBeam(frame);
     const BeamRays none;
     Throughput throughput;
@@ -57,11 +58,11 @@ public:
       throughput.reflected.assign(this->Samples.size(), 0.0);
     }
     SecondaryTrace trace;
-    SecondaryReflection secondary(setup);
+    SecondaryReflection secondary(setup, tracerScene);
     std::vector<SecondaryPath> paths;
     secondary.collect({ 0, this->Samples, throughput, nullptr, trace,
                         [&]() -> SecondaryReflection::Scene {
-                          return { frame, none, this->Geometry, tracer };
+                          return { tracerScene, frame, none, this->Geometry, tracer };
                         },
                         this->Samples.nearest },
       paths, lost);

@@ -16,7 +16,7 @@ namespace avianlidar
 inline double rangeOnTriangle(
   const CollisionTree& tree, std::uint32_t triangle, const BeamFrame& frame, double x, double y)
 {
-  const SeenTriangle seen = seeTriangle(tree, triangle, frame.origin);
+  const SeenTriangle seen = seeTriangle(SceneTriangles(tree), triangle, frame.origin);
   return rangeOnTriangle(seen, frame, unitDirection(frame.direction(x, y)));
 }
 
@@ -35,11 +35,20 @@ inline std::vector<Hit> hitsOf(const CollisionTree& tree, const BeamFrame& frame
   return hits;
 }
 
-class OneBeamTracer : public BeamTracer
+/// A scene without movers, made before the tracer that needs it.
+struct OwnScene
+{
+  SceneTriangles scene;
+};
+
+class OneBeamTracer
+  : private OwnScene
+  , public BeamTracer
 {
 public:
   explicit OneBeamTracer(const CollisionTree& tree)
-    : BeamTracer(tree)
+    : OwnScene{ SceneTriangles(tree) }
+    , BeamTracer(this->scene)
     , Descended(tree)
   {
   }

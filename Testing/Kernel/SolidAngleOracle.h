@@ -144,7 +144,8 @@ inline Shares compareShares(
   sensor.beamProfile = profile;
   const ScanSetup setup = makeSetup(scene, sensor, directSettings(10000));
   const BeamFrame frame = makeBeamFrame(Vec3(0.0), Vec3(1.0, 0.0, 0.0), halfBeamwidth);
-  PolygonFinder finder(*setup.tree, 100);
+  const SceneTriangles finderScene(*setup.tree);
+  PolygonFinder finder(finderScene, 100);
   finder.begin(frame);
   finder.add(setup.tree->order.data(), setup.tree->order.size());
   std::unique_ptr<VisiblePolygons> seen;

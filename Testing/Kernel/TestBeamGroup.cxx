@@ -241,7 +241,8 @@ TEST(BeamGroup, ABlockOfBeamsHasTheHitsOfSingleRays)
     {
       for (const TraceMode mode : { TraceMode::Automatic, TraceMode::Beams })
       {
-        BeamTracer together(*tree);
+        const SceneTriangles togetherScene(*tree);
+        BeamTracer together(togetherScene);
         OneBeamTracer alone(*tree);
         const BlockHits& found = together.traceBlock(block, mode);
         std::vector<Hit> singly;
@@ -267,7 +268,8 @@ TEST(BeamGroup, ABlockOfBeamsHasTheHitsOfSingleRays)
     {
       BeamCandidates candidates;
       std::vector<std::multiset<std::uint32_t>> lists(frames.size());
-      candidates.begin(*tree, frames.data(), frames.size(), together);
+      const SceneTriangles all(*tree);
+      candidates.begin(all, frames.data(), frames.size(), together);
       while (candidates.next())
       {
         EXPECT_TRUE(lists[candidates.beam()].empty());

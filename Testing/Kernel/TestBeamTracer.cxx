@@ -299,11 +299,11 @@ TEST(BeamTracer, SeenTrianglesFaceTheApex)
   addTriangle(mesh, { 0, 0, 10 }, { 2, 0, 10 }, { 0, 2, 10 });
   addTriangle(mesh, { 0, 0, 10 }, { 0, 2, 10 }, { 2, 0, 10 });
   addTriangle(mesh, { 0, 0, 10 }, { 1, 0, 10 }, { 2, 0, 10 });
-  const SeenTriangle up = seeTriangle(tree, 0, { 0, 0, 4 });
+  const SeenTriangle up = seeTriangle(SceneTriangles(tree), 0, { 0, 0, 4 });
   EXPECT_EQ(up.corners.a, Vec3(0, 0, 6));
   EXPECT_EQ(up.corners.b, Vec3(2, 0, 6));
   EXPECT_EQ(up.normal, Vec3(0, 0, -1));
-  EXPECT_EQ(seeTriangle(tree, 1, { 0, 0, 4 }).normal, Vec3(0, 0, -1));
-  EXPECT_EQ(seeTriangle(tree, 1, { 0, 0, 14 }).normal, Vec3(0, 0, 1));
-  EXPECT_EQ(seeTriangle(tree, 2, { 0, 0, 4 }).normal, Vec3(0, 0, 0));
+  EXPECT_EQ(seeTriangle(SceneTriangles(tree), 1, { 0, 0, 4 }).normal, Vec3(0, 0, -1));
+  EXPECT_EQ(seeTriangle(SceneTriangles(tree), 1, { 0, 0, 14 }).normal, Vec3(0, 0, 1));
+  EXPECT_EQ(seeTriangle(SceneTriangles(tree), 2, { 0, 0, 4 }).normal, Vec3(0, 0, 0));
 }

@@ -29,7 +29,8 @@ Nodes nodesOf(const ScanSetup& setup)
 {
   const BeamFrame frame =
     makeBeamFrame(Vec3(0.0), Vec3(1.0, 0.0, 0.0), BeamWidth(setup.sensor.halfBeamwidth));
-  PolygonFinder finder(*setup.tree, mostTrianglesIntegrated(setup.settings));
+  const SceneTriangles finderScene(*setup.tree);
+  PolygonFinder finder(finderScene, mostTrianglesIntegrated(setup.settings));
   finder.begin(frame);
   std::vector<std::uint32_t> triangles(setup.tree->mesh->size());
   std::iota(triangles.begin(), triangles.end(), 0u);

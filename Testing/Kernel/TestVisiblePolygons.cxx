@@ -184,7 +184,8 @@ TEST(VisiblePolygons, PartitionTheDiscAndShowWhatBruteForceFinds)
     tree->mesh = c.scene.mesh;
     setup.tree = tree;
     const BeamFrame frame = makeBeamFrame(Vec3(0.0), Vec3(1.0, 0.0, 0.0), c.half);
-    PolygonFinder finder(*tree, 100);
+    const SceneTriangles finderScene(*tree);
+    PolygonFinder finder(finderScene, 100);
     std::unique_ptr<VisiblePolygons> found;
     const SeenByBeam outcome = findAll(setup, frame, finder, false, found);
     std::unique_ptr<VisiblePolygons> again;
@@ -239,7 +240,8 @@ TEST(VisiblePolygons, HalvesOfAQuadrilateralAreOnePolygon)
   scene.plate(Vec3(50.0, 0.0, 0.0), Vec3(0.0, 0.1, 0.02), Vec3(0.0, 0.0, 0.1), Wall);
   const ScanSetup setup = makeSetup(scene, openSensor(), directSettings(100));
   const BeamFrame frame = makeBeamFrame(Vec3(0.0), Vec3(1.0, 0.0, 0.0), 5.6e-3);
-  PolygonFinder finder(*setup.tree, 100);
+  const SceneTriangles finderScene(*setup.tree);
+  PolygonFinder finder(finderScene, 100);
   std::unique_ptr<VisiblePolygons> found;
   ASSERT_EQ(findAll(setup, frame, finder, false, found), SeenByBeam::Polygons);
   EXPECT_EQ(found->surfaces.size(), 1u);
@@ -262,9 +264,11 @@ TEST(VisiblePolygons, TooManyTrianglesAreLeftToTheRays)
   const ScanSetup setup = makeSetup(scene, openSensor(), directSettings(100));
   const BeamFrame frame = makeBeamFrame(Vec3(0.0), Vec3(1.0, 0.0, 0.0), 5.6e-3);
   std::unique_ptr<VisiblePolygons> found;
-  PolygonFinder few(*setup.tree, 29);
+  const SceneTriangles fewScene(*setup.tree);
+  PolygonFinder few(fewScene, 29);
   EXPECT_EQ(findAll(setup, frame, few, false, found), SeenByBeam::TooMuch);
-  PolygonFinder enough(*setup.tree, 30);
+  const SceneTriangles enoughScene(*setup.tree);
+  PolygonFinder enough(enoughScene, 30);
   EXPECT_EQ(findAll(setup, frame, enough, false, found), SeenByBeam::Polygons);
 }
 
@@ -274,7 +278,8 @@ TEST(VisiblePolygons, WhatLiesBesideTheDiscIsNothing)
   scene.plate(at(10.0, 2.0, 0.0, 5.6e-3), Vec3(0.0, 0.01, 0.0), Vec3(0.0, 0.0, 0.01), Wall);
   const ScanSetup setup = makeSetup(scene, openSensor(), directSettings(100));
   const BeamFrame frame = makeBeamFrame(Vec3(0.0), Vec3(1.0, 0.0, 0.0), 5.6e-3);
-  PolygonFinder finder(*setup.tree, 100);
+  const SceneTriangles finderScene(*setup.tree);
+  PolygonFinder finder(finderScene, 100);
   std::unique_ptr<VisiblePolygons> found;
   EXPECT_EQ(findAll(setup, frame, finder, false, found), SeenByBeam::Nothing);
 }
@@ -294,7 +299,8 @@ TEST(VisiblePolygons, SurfacesThatFaceEachOtherAreToldFromThoseThatDoNot)
     }
     const ScanSetup setup = makeSetup(scene, openSensor(), directSettings(100));
     const BeamFrame frame = makeBeamFrame(Vec3(0.0), Vec3(1.0, 0.0, 0.0), 5.6e-3);
-    PolygonFinder finder(*setup.tree, 100);
+    const SceneTriangles finderScene(*setup.tree);
+    PolygonFinder finder(finderScene, 100);
     std::unique_ptr<VisiblePolygons> found;
     ASSERT_EQ(findAll(setup, frame, finder, false, found), SeenByBeam::Polygons);
     EXPECT_EQ(found->facing, x < 20.0);
@@ -318,7 +324,8 @@ TEST(VisiblePolygons, TheHalvesOfAPlateStayOneSurfaceInCoordinatesFarAway)
       scene.triangle(corner(-1.0, -1.0), corner(1.0, 1.1), corner(-0.8, 1.2), Wall, 0);
       CollisionTree tree;
       tree.mesh = scene.mesh;
-      PolygonFinder finder(tree, 100);
+      const SceneTriangles finderScene(tree);
+      PolygonFinder finder(finderScene, 100);
       finder.begin(makeBeamFrame(there, Vec3(1.0, 0.0, 0.0), 0.05));
       const std::uint32_t both[] = { 0, 1 };
       finder.add(both, 2);

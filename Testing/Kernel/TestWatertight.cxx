@@ -266,7 +266,7 @@ TEST(Watertight, ARayThroughASharedEdgeOrVertexHasTheRangeOfItsPoint)
     tracer.trace(rays, TraceMode::Automatic, hits);
     // Edge functions are accepted a few units of round-off outside, at a sharp corner some dozens;
     // a steep triangle turns that into range.
-    const SeenTriangle triangle = seeTriangle(*tree, hits[0].triangle, scene.apex);
+    const SeenTriangle triangle = seeTriangle(SceneTriangles(*tree), hits[0].triangle, scene.apex);
     const double cosine = std::fabs(glm::dot(triangle.normal, glm::normalize(target.point)));
     const double range = safeLength(target.point);
     EXPECT_NEAR(hits[0].range, range, range * 1e-13 / cosine);

@@ -172,7 +172,8 @@ bool Coverage::look(const PlaceAt& placeAt, std::size_t count, int threads,
     count, PlacesOfBlock, threads,
     [&](std::size_t begin, std::size_t end, int)
     {
-      BeamTracer tracer(*this->Setup.tree);
+      const SceneTriangles scene(*this->Setup.tree);
+      BeamTracer tracer(scene);
       tracer.setBeam(frame);
       for (std::size_t k = begin; k < end; ++k)
       {

@@ -6,14 +6,14 @@
 
 namespace avianlidar
 {
-double radianceSeen(const ScanSetup& setup, const BeamSamples& samples, const Vec3& origin)
+double radianceSeen(const ScanSetup& setup, const SceneTriangles& scene, const BeamSamples& samples,
+  const Vec3& origin)
 {
   const Sensor& sensor = setup.sensor;
   const double azimuth = RadiansPerDegree * sensor.sunAzimuth;
   const double elevation = RadiansPerDegree * sensor.sunElevation;
   const Vec3 sun(std::cos(elevation) * std::sin(azimuth), std::cos(elevation) * std::cos(azimuth),
     std::sin(elevation));
-  const TriangleMesh& mesh = *setup.tree->mesh;
   double filled = 0.0;
   double ofSurfaces = 0.0;
   samples.forEachSurface(
@@ -24,14 +24,14 @@ double radianceSeen(const ScanSetup& setup, const BeamSamples& samples, const Ve
       {
         share += samples.weight[i];
       }
-      const Vec3 corner = mesh.corner(triangle, 0);
+      const Vec3 corner = scene.corner(triangle, 0);
       const Vec3 normal =
-        glm::cross(mesh.corner(triangle, 1) - corner, mesh.corner(triangle, 2) - corner);
+        glm::cross(scene.corner(triangle, 1) - corner, scene.corner(triangle, 2) - corner);
       const double length = glm::length(normal);
       const double side = glm::dot(normal, origin - corner) < 0.0 ? -1.0 : 1.0;
       const double cosine = length > 0.0 ? side * glm::dot(normal, sun) / length : 0.0;
       filled += share;
-      ofSurfaces += share * setup.materials[triangle].albedo() *
+      ofSurfaces += share * setup.material(triangle).albedo() *
         (sensor.backgroundRadiance + sensor.sunlight * std::max(0.0, cosine) / Pi);
     });
   return ofSurfaces + std::max(0.0, 1.0 - filled) * sensor.backgroundRadiance;

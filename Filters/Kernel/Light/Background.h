@@ -21,11 +21,13 @@
 
 #include "BeamSamples.h"
 #include "ScanSetup.h"
+#include "SceneTriangles.h"
 
 namespace avianlidar
 {
 /// Mean radiance in a beam, W/(m2 sr nm). @param origin of the beam, m
-double radianceSeen(const ScanSetup& setup, const BeamSamples& samples, const Vec3& origin);
+double radianceSeen(const ScanSetup& setup, const SceneTriangles& scene, const BeamSamples& samples,
+  const Vec3& origin);
 }
 
 #endif

@@ -243,7 +243,7 @@ HWY_EXPORT(setUpLanes);
 void BeamTriangles::begin(const BeamFrame& frame)
 {
   this->Frame = frame;
-  this->Joints.resize(this->Mesh->size(), Unknown);
+  this->Joints.resize(this->Scene.tree().mesh->size(), Unknown);
   this->Waiting.clear();
   this->Count = 0;
   this->Nearest.clear();
@@ -254,7 +254,7 @@ void BeamTriangles::add(const std::uint32_t* triangles, std::size_t count)
 {
   for (std::size_t i = 0; i < count; ++i)
   {
-    __builtin_prefetch(&this->Mesh->triangles[triangles[i]]);
+    __builtin_prefetch(&this->Scene.corner(triangles[i], 0));
   }
   this->Waiting.insert(this->Waiting.end(), triangles, triangles + count);
   std::size_t done = 0;
@@ -312,7 +312,7 @@ void BeamTriangles::setUp(const std::uint32_t* triangles, std::size_t count)
   for (std::size_t i = 0; i < LaneCount; ++i)
   {
     const std::uint32_t number = triangles[i < count ? i : 0];
-    const std::uint32_t owner = this->Tree->planeOwner(number);
+    const std::uint32_t owner = this->Scene.planeOwner(number);
     const Corners c = this->cornersOf(number);
     planes[i] = owner == number ? c : this->cornersOf(owner);
     t.onPlane[0][i] = planes[i].a.x;
@@ -356,7 +356,7 @@ void BeamTriangles::setUp(const std::uint32_t* triangles, std::size_t count)
     }
     s.inverse = { t.inverse[0][i], t.inverse[1][i], t.inverse[2][i] };
     s.mostInverse = t.mostInverse[i];
-    s.sortInverse = this->Tree->coincides(triangles[i]) ? t.mostOfPlane[i] : s.mostInverse;
+    s.sortInverse = this->Scene.coincides(triangles[i]) ? t.mostOfPlane[i] : s.mostInverse;
     s.leastInverse = t.leastInverse[i];
     s.height = t.height[i];
     s.area = (t.inside >> i & 1u) != 0u ? t.area[i] : AreaUnknown;
@@ -422,8 +422,8 @@ const std::vector<const BeamSurface*>& BeamTriangles::sort()
 /// Apart
 std::uint8_t BeamTriangles::findJoint(std::uint32_t triangle) const
 {
-  const Corners one = cornersFrom(*this->Mesh, triangle, Vec3(0.0));
-  const Corners two = cornersFrom(*this->Mesh, triangle + 1, Vec3(0.0));
+  const Corners one = this->Scene.cornersFrom(triangle, Vec3(0.0));
+  const Corners two = this->Scene.cornersFrom(triangle + 1, Vec3(0.0));
   const Vec3* const p[] = { &one.a, &one.b, &one.c };
   const Vec3* const q[] = { &two.a, &two.b, &two.c };
   bool same[3][3];
@@ -469,17 +469,25 @@ std::uint8_t BeamTriangles::findJoint(std::uint32_t triangle) const
   return Apart;
 }
 
+/// The same, kept for triangles that do not move.
+std::uint8_t BeamTriangles::jointAfter(std::uint32_t triangle)
+{
+  if (triangle >= this->Joints.size() || this->Scene.isMoved(triangle + 1))
+  {
+    return this->findJoint(triangle);
+  }
+  std::uint8_t& joint = this->Joints[triangle];
+  joint = joint == Unknown ? this->findJoint(triangle) : joint;
+  return joint;
+}
+
 /// Join two triangles, if they can be. @param two with the number after that of `one`
 bool BeamTriangles::join(BeamSurface& one, const BeamSurface& two)
 {
-  std::uint8_t& joint = this->Joints[one.triangle];
-  if (joint == Unknown)
-  {
-    joint = this->findJoint(one.triangle);
-  }
-  const bool coincide = this->Tree->coincides(one.triangle) || this->Tree->coincides(two.triangle);
+  const std::uint8_t joint = this->jointAfter(one.triangle);
+  const bool coincide = this->Scene.coincides(one.triangle) || this->Scene.coincides(two.triangle);
   if (joint == Apart ||
-    (coincide && this->Tree->planeOwner(one.triangle) != this->Tree->planeOwner(two.triangle)))
+    (coincide && this->Scene.planeOwner(one.triangle) != this->Scene.planeOwner(two.triangle)))
   {
     return false;
   }

@@ -20,7 +20,7 @@
 #define avianlidar_BeamTriangles_h
 
 #include "BeamFrame.h"
-#include "CollisionTree.h"
+#include "SceneTriangles.h"
 #include "TriangleTest.h"
 
 #include <cmath>
@@ -80,25 +80,16 @@ struct BeamSurface : PlaneSurface
   double area;           ///< in half-beamwidths squared; AreaUnknown if it crosses the rim
 };
 
-/// Sets up the triangles of one beam after the other. One per thread; the tree must outlive it.
+/// Sets up the triangles of one beam after the other. One per thread; the scene must outlive it.
 class BeamTriangles
 {
 public:
   /// @param most triangles that are set up; of a beam that more enter only the numbers are kept
   explicit BeamTriangles(
-    const CollisionTree& tree, std::size_t most = std::numeric_limits<std::size_t>::max())
-    : Tree(&tree)
-    , Mesh(tree.mesh.get())
+    const SceneTriangles& scene, std::size_t most = std::numeric_limits<std::size_t>::max())
+    : Scene(scene)
     , Most(most)
   {
-  }
-
-  /// Go on to the triangles of another tree.
-  void follow(const CollisionTree& tree)
-  {
-    this->Tree = &tree;
-    this->Mesh = tree.mesh.get();
-    this->Joints.clear();
   }
 
   void begin(const BeamFrame& frame);
@@ -119,7 +110,7 @@ public:
   /// Corners of a triangle, from the apex.
   Corners cornersOf(std::uint32_t triangle) const
   {
-    return cornersFrom(*this->Mesh, triangle, this->Frame.origin);
+    return this->Scene.cornersFrom(triangle, this->Frame.origin);
   }
 
 private:
@@ -127,15 +118,16 @@ private:
   std::uint8_t findJoint(std::uint32_t triangle) const;
   bool join(BeamSurface& one, const BeamSurface& two);
 
-  const CollisionTree* Tree;
-  const TriangleMesh* Mesh;
-  std::size_t Most;
+  std::uint8_t jointAfter(std::uint32_t triangle);
+
+  const SceneTriangles& Scene;
+  const std::size_t Most;
   BeamFrame Frame;
   std::vector<std::uint32_t> Waiting; ///< not yet set up
   std::vector<BeamSurface> Surfaces;  ///< the first `Count`
   std::size_t Count = 0;
   std::vector<const BeamSurface*> Nearest;
-  std::vector<std::uint8_t> Joints; ///< findJoint() of the triangles of this mesh
+  std::vector<std::uint8_t> Joints; ///< findJoint() of the triangles of the tree
   std::vector<std::uint64_t> Keys;
   std::vector<std::uint32_t> ByTriangle;
 };

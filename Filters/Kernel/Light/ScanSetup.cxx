@@ -13,22 +13,15 @@ namespace
 /// Probability of a miss for ModelNeeds::missedDetailEnergy.
 constexpr double MissProbability = 0.05;
 
-/// Most energy, J, that returns from a range over one or more reflections, air included.
-double mostReturned(const ScanSetup& setup, double range)
-{
-  const double aperture = setup.sensor.receiverAperture;
-  const double share = aperture > 0.0
-    ? std::min(1.0, setup.largestGain * aperture / (range * range))
-    : setup.largestReflectance;
-  return setup.sensor.pulseEnergy * share *
-    transmission(setup.settings.attenuationCoefficient, 2.0 * range);
-}
-
 double perceivableRange(const ScanSetup& setup)
 {
   const double limit = setup.sensor.lowerEnergyLimit;
   const auto isPerceivable = [&](double range)
-  { return mostReturned(setup, range) * SurelyAbove > limit; };
+  {
+    return setup.sensor.pulseEnergy * mostReturned(setup, range) *
+      transmission(setup.settings.attenuationCoefficient, 2.0 * range) * SurelyAbove >
+      limit;
+  };
   double near = 1e-3;
   if (!isPerceivable(near))
   {
@@ -59,6 +52,13 @@ double mostReflected(const ScanSetup& setup)
   return gathers ? 1.0 : setup.largestReflectance;
 }
 
+}
+
+double mostReturned(const ScanSetup& setup, double range)
+{
+  const double aperture = setup.sensor.receiverAperture;
+  return aperture > 0.0 ? std::min(1.0, setup.largestGain * aperture / (range * range))
+                        : setup.largestReflectance;
 }
 
 bool dropsFaintPaths(const EchoSettings& settings)
@@ -109,12 +109,16 @@ ModelNeeds needsOf(const ScanSetup& setup)
 
 void includeMovers(ScanSetup& setup)
 {
+  setup.firstTriangles.clear();
   if (!setup.movers)
   {
     return;
   }
+  auto next = static_cast<std::uint32_t>(setup.materials.size());
   for (const Mover& mover : *setup.movers)
   {
+    setup.firstTriangles.push_back(next);
+    next += static_cast<std::uint32_t>(mover.mesh.size());
     for (const Material& material : mover.materials)
     {
       setup.largestReflectance = std::max(setup.largestReflectance, material.albedo());

@@ -30,6 +30,8 @@
 #include "Sensor.h"
 #include "SharedVector.h"
 
+#include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <vector>
@@ -80,6 +82,8 @@ struct ScanSetup
   double largestGain = 0.0;         ///< max of apertureGain() over all triangles, 1/sr
   /// What moves; null: nothing. Largest reflectance and gain are of these, too.
   std::shared_ptr<const std::vector<Mover>> movers;
+  /// Number of the first triangle of each mover (SceneTriangles.h).
+  std::vector<std::uint32_t> firstTriangles;
   Sensor sensor;
   EchoSettings settings;                 ///< attenuation that of all air, the media's included
   std::vector<Medium> media;             ///< air that scatters and fills the scene
@@ -87,9 +91,36 @@ struct ScanSetup
   NoisePlan noise;
   std::int32_t revolution = 0; ///< of the sensor; each has noise of its own
   ModelNeeds needs;
+
+  /// Of a triangle of the tree or of a mover.
+  const Material& material(std::uint32_t triangle) const
+  {
+    return triangle < this->materials.size() ? this->materials[triangle]
+                                             : this->ofMover(triangle, &Mover::materials);
+  }
+  int objectId(std::uint32_t triangle) const
+  {
+    return triangle < this->objectIds.size() ? this->objectIds[triangle]
+                                             : this->ofMover(triangle, &Mover::objectIds);
+  }
+  int materialId(std::uint32_t triangle) const
+  {
+    return triangle < this->materialIds.size() ? this->materialIds[triangle]
+                                               : this->ofMover(triangle, &Mover::materialIds);
+  }
+
+private:
+  template <class T>
+  const T& ofMover(std::uint32_t triangle, std::vector<T> Mover::*values) const
+  {
+    const auto next = std::upper_bound(firstTriangles.begin(), firstTriangles.end(), triangle);
+    const std::size_t m = static_cast<std::size_t>(next - firstTriangles.begin()) - 1;
+    return ((*this->movers)[m].*values)[triangle - this->firstTriangles[m]];
+  }
 };
 
-/// Raise largest reflectance and gain, which are of the surfaces, to those of movers.
+/// Raise largest reflectance and gain, which are of the surfaces, to those of movers, and number
+/// their triangles.
 void includeMovers(ScanSetup& setup);
 
 /// Set noise and needs, which follow from the rest.
@@ -97,6 +128,10 @@ void planModel(ScanSetup& setup);
 
 /// The needs of a setup. @param setup complete but for its needs
 ModelNeeds needsOf(const ScanSetup& setup);
+
+/// Largest share of the light on a surface of the scene that returns. @param range m, of the
+/// surface at least
+double mostReturned(const ScanSetup& setup, double range);
 
 /// True if paths that cannot matter are dropped.
 bool dropsFaintPaths(const EchoSettings& settings);

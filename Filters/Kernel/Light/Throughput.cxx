@@ -4,13 +4,24 @@
 #include "Multiversion.h"
 #include "Propagation.h"
 
+#include <algorithm>
+
 namespace avianlidar
 {
-double specularBound(const ScanSetup& setup, const Material& material, double cosIncidence)
+double mostOverMirror(const ScanSetup& setup, const BeamShape& shape, double nearest)
 {
-  const double second = setup.sensor.receiverAperture > 0.0 ? 1.0 : setup.largestReflectance;
+  const double once = mostReturned(setup, nearest);
+  // On its way back light arrives where the beam may have been denser.
+  return setup.sensor.receiverAperture > 0.0
+    ? std::min(1.0, once * (1.0 + shape.mostDensity() / shape.density(1.0, 0.0)))
+    : once;
+}
+
+double specularBound(
+  const ScanSetup& setup, const Material& material, double cosIncidence, double returned)
+{
   return reflectanceBound(setup.settings.reflectanceModel, material, cosIncidence).specular *
-    second * SurelyAbove;
+    returned * SurelyAbove;
 }
 
 double mostAir(double nearest, double attenuation)
@@ -73,7 +84,7 @@ void Throughput::measure(const ScanSetup& setup, const BeamSamples& samples)
   samples.forEachSurface(
     [&](std::uint32_t triangle, std::uint32_t begin, std::uint32_t end)
     {
-      reflectAll(setup.settings.reflectanceModel, setup.materials[triangle],
+      reflectAll(setup.settings.reflectanceModel, setup.material(triangle),
         setup.sensor.receiverAperture,
         { samples.cosine.data() + begin, samples.range.data() + begin,
           this->reflected.data() + begin, end - begin });

@@ -15,6 +15,7 @@
 #define avianlidar_Throughput_h
 
 #include "BeamSamples.h"
+#include "BeamShape.h"
 #include "ScanSetup.h"
 
 #include <vector>
@@ -39,8 +40,13 @@ double directEnergies(const ScanSetup& setup, const BeamSamples& samples,
 /// nearest surface and back. @param nearest m
 double mostAir(double nearest, double attenuation);
 
-/// Bound of the throughput of a mirror path from a surface.
-double specularBound(const ScanSetup& setup, const Material& material, double cosIncidence);
+/// Largest share that returns of the light that a mirror passes on, both ways of the path together.
+/// @param nearest m: no surface of the beam is nearer
+double mostOverMirror(const ScanSetup& setup, const BeamShape& shape, double nearest);
+
+/// Bound of the throughput of a mirror path from a surface. @param returned mostOverMirror()
+double specularBound(
+  const ScanSetup& setup, const Material& material, double cosIncidence, double returned);
 }
 
 #endif

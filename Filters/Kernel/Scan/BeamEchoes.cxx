@@ -25,15 +25,17 @@ AVIANLIDAR_MULTIVERSION void anglesOfAll(double* cosines, std::size_t count)
 bool EchoLabels::meetsOneThing(
   const BeamSamples& samples, const std::vector<SecondaryPath>& paths) const
 {
-  const int* const objects = this->Setup.objectIds.data();
-  const int* const materials = this->Setup.materialIds.data();
   if (samples.surfaces.empty())
   {
     return false;
   }
   const std::uint32_t first = samples.surfaces[0].triangle;
-  const auto isFirst = [=](const auto& met) {
-    return objects[met.triangle] == objects[first] && materials[met.triangle] == materials[first];
+  const int object = this->Setup.objectId(first);
+  const int material = this->Setup.materialId(first);
+  const auto isFirst = [&](const auto& met)
+  {
+    return this->Setup.objectId(met.triangle) == object &&
+      this->Setup.materialId(met.triangle) == material;
   };
   return std::all_of(samples.surfaces.begin(), samples.surfaces.end(), isFirst) &&
     std::all_of(paths.begin(), paths.end(), isFirst);
@@ -68,8 +70,6 @@ void EchoLabels::findLargest(
   const RangeShares& shares, const BeamSamples& samples, const std::vector<SecondaryPath>& paths)
 {
   const std::size_t direct = samples.size();
-  const int* const objects = this->Setup.objectIds.data();
-  const int* const materials = this->Setup.materialIds.data();
   this->Sums.clear();
   // Neighbouring paths mostly meet the same surface: their energies are summed before they are
   // added to the list.
@@ -82,15 +82,17 @@ void EchoLabels::findLargest(
     if (met != triangle)
     {
       triangle = met;
-      if (objects[met] != object || materials[met] != material)
+      const int itsObject = this->Setup.objectId(met);
+      const int itsMaterial = this->Setup.materialId(met);
+      if (itsObject != object || itsMaterial != material)
       {
         if (run > 0.0)
         {
           this->Sums.add(object, material, run);
         }
         run = 0.0;
-        object = objects[met];
-        material = materials[met];
+        object = itsObject;
+        material = itsMaterial;
       }
     }
     run += energy;
@@ -127,8 +129,8 @@ void EchoLabels::label(const RangeShares& shares, const BeamSamples* samples,
   }
   if (this->meetsOneThing(*samples, paths))
   {
-    echo.objectId = this->Setup.objectIds[samples->surfaces[0].triangle];
-    echo.materialId = this->Setup.materialIds[samples->surfaces[0].triangle];
+    echo.objectId = this->Setup.objectId(samples->surfaces[0].triangle);
+    echo.materialId = this->Setup.materialId(samples->surfaces[0].triangle);
     echo.labelShare = 1.0;
   }
   else

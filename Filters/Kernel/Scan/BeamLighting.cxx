@@ -8,15 +8,17 @@
 
 namespace avianlidar
 {
-BeamLighting::BeamLighting(const ScanSetup& setup, const ScanBeams& beams, ScanBlock& block,
-  BeamSampler& sampler, const BeamReceiver& receiver, std::function<bool()> wanted)
+BeamLighting::BeamLighting(const ScanSetup& setup, const SceneTriangles& scene,
+  const ScanBeams& beams, ScanBlock& block, BeamSampler& sampler, const BeamReceiver& receiver,
+  std::function<bool()> wanted)
   : Setup(setup)
+  , Scene(scene)
   , Beams(beams)
   , Block(block)
   , Sampler(sampler)
   , Receiver(receiver)
   , Wanted(std::move(wanted))
-  , Secondary(setup)
+  , Secondary(setup, scene)
   , Quadrature(setup)
   , Units(setup.sensor.samplingInterval, setup.sensor.pulseWidth, setup.sensor.rangeGate,
       setup.sensor.minimumRange)
@@ -40,7 +42,7 @@ bool BeamLighting::light(std::size_t beam, BeamTrace& trace)
   }
   if (this->Lit && this->Setup.sensor.seesDaylight())
   {
-    this->Radiance = radianceSeen(this->Setup, *this->Lit, this->Beams.origins[beam]);
+    this->Radiance = radianceSeen(this->Setup, this->Scene, *this->Lit, this->Beams.origins[beam]);
   }
   if (!this->Lit)
   {
@@ -50,14 +52,14 @@ bool BeamLighting::light(std::size_t beam, BeamTrace& trace)
   const double most = this->Setup.sensor.pulseEnergy *
     mostAir(this->Lit->nearest, this->Setup.settings.attenuationCoefficient);
   const bool again = this->Setup.settings.numberOfReflections > 1 && (this->Starts || this->Facing);
-  const double ofPaths = again ? most * this->mostOfPaths() : 0.0;
+  const double ofPaths = again ? most * this->Secondary.bound(*this->Lit, this->OfLit) : 0.0;
   if (!this->mayBePerceived(most, ofPaths))
   {
     return false;
   }
-  if (ofPaths > 0.0)
+  if (ofPaths > 0.0 && !this->reflectAgain(beam, trace, ofPaths))
   {
-    this->reflectAgain(beam, trace, ofPaths);
+    return false;
   }
   this->fillUnits();
   return true;
@@ -132,19 +134,23 @@ void BeamLighting::fillUnits()
 }
 
 /// Add paths over two reflections, unless none of the scan can matter. @param most energy of all,
-/// J, at most
-void BeamLighting::reflectAgain(std::size_t beam, BeamTrace& trace, double most)
+/// J, at most @return false if nothing of the beam can be perceived
+bool BeamLighting::reflectAgain(std::size_t beam, BeamTrace& trace, double most)
 {
   const double lostBefore = this->Lost;
   if (this->Setup.needs.secondaryReflections)
   {
-    this->collectPaths(beam, trace);
+    if (!this->collectPaths(beam, trace))
+    {
+      return false;
+    }
   }
   else
   {
     this->Lost += std::min(most, this->Setup.needs.secondaryBound);
   }
   this->Skipped |= this->Lost > lostBefore ? SkippedSecondaryPaths : 0u;
+  return true;
 }
 
 /// Set the rays from which paths start.
@@ -157,16 +163,8 @@ void BeamLighting::startFrom(const BeamSamples& rays)
   }
 }
 
-/// Bound of the sum of the throughputs of all paths over two reflections.
-double BeamLighting::mostOfPaths() const
-{
-  // Paths of an integrated beam start from random points: no sum over its nodes bounds them.
-  // Those of a beam in cells start from rays, which may all miss what the cells show.
-  return this->Facing ? this->Quadrature.extent().mostAlbedo
-                      : this->Secondary.bound(*this->Lit, this->OfLit);
-}
-
-void BeamLighting::collectPaths(std::size_t beam, BeamTrace& trace)
+/// @return false if nothing of the beam can be perceived
+bool BeamLighting::collectPaths(std::size_t beam, BeamTrace& trace)
 {
   const bool byRegions = this->Surfaces && MirrorRegions::takes(*this->Surfaces);
   if (byRegions && connectionsOf(this->Setup.settings) == 0)
@@ -182,7 +180,7 @@ void BeamLighting::collectPaths(std::size_t beam, BeamTrace& trace)
   const auto scene = [&]() -> SecondaryReflection::Scene
   {
     traced = true;
-    return { this->Block.frameOf(beam), this->Block.raysOf(beam),
+    return { this->Scene, this->Block.frameOf(beam), this->Block.raysOf(beam),
       this->Block.geometryOf(beam, samples), this->Block.tracerOf(beam) };
   };
   const bool strata = this->Setup.settings.sampling == Sampling::Stratified;
@@ -217,11 +215,19 @@ void BeamLighting::collectPaths(std::size_t beam, BeamTrace& trace)
     paths.tracer = std::ref(tracer);
     paths.endsAreSeen = !this->Cells;
   }
-  this->Secondary.collect(paths, this->Paths, this->Lost);
+  const double direct = this->Direct + this->Unplaced;
+  if (dropsFaintPaths(this->Setup.settings) &&
+    this->mayBeLeftOut(this->Lit->farthest, this->Lit->nearest))
+  {
+    paths.silentBelow = SurelyBelow * this->Setup.sensor.lowerEnergyLimit - direct;
+  }
+  const bool perceivable = this->Secondary.collect(paths, this->Paths, this->Lost);
   if (traced)
   {
     this->Block.addCounters(beam, this->Block.tracerOf(beam).counters());
   }
+  return perceivable ||
+    !this->isSkipped(direct + this->Lost, this->Lit->farthest, this->Lit->nearest);
 }
 
 /// Set the energies of direct echoes. @param most J, energy of a path of throughput 1 at most
@@ -237,8 +243,7 @@ bool BeamLighting::mayBePerceived(double most, double ofPaths)
   {
     return false;
   }
-  const double sum =
-    this->passMedia(directEnergies(this->Setup, samples, this->OfLit, this->Energies));
+  this->Direct = this->passMedia(directEnergies(this->Setup, samples, this->OfLit, this->Energies));
   if (drops)
   {
     if (this->raysAreLit()) // nodes of an integral are not paths
@@ -246,26 +251,32 @@ bool BeamLighting::mayBePerceived(double most, double ofPaths)
       this->dropFaintPaths();
     }
     this->Skipped |= this->Lost > 0.0 ? SkippedDirectPaths : 0u;
-    return !this->isSkipped(sum + others, samples.farthest, samples.nearest);
+    return !this->isSkipped(this->Direct + others, samples.farthest, samples.nearest);
   }
   return true;
+}
+
+/// False if the beam must be lit although its surfaces send back too little: noise or air may be
+/// perceived, or the report says what arrives outside the gate.
+bool BeamLighting::mayBeLeftOut(double farthest, double nearest) const
+{
+  return !this->LightsAll && !this->Receiver.mayAlarm() && !this->Air.returnsLight() &&
+    nearest >= this->Setup.sensor.minimumRange &&
+    this->Units.lastUnitOf(farthest) < static_cast<double>(this->Units.gateUnits());
 }
 
 /// True if nothing of the beam can be perceived. @param most J, bound of its strongest unit
 bool BeamLighting::isSkipped(double most, double farthest, double nearest)
 {
-  // The report says what arrives outside the gate.
-  const bool perceivable = this->LightsAll || this->Receiver.mayAlarm() ||
-    this->Air.returnsLight() || !(most < SurelyBelow * this->Setup.sensor.lowerEnergyLimit) ||
-    nearest < this->Setup.sensor.minimumRange ||
-    !(this->Units.lastUnitOf(farthest) < static_cast<double>(this->Units.gateUnits()));
-  if (!perceivable)
+  if (!(most < SurelyBelow * this->Setup.sensor.lowerEnergyLimit) ||
+    !this->mayBeLeftOut(farthest, nearest))
   {
-    this->Skipped = SkippedBeam |
-      (nearest > this->Setup.needs.perceivableRange ? SkippedBeyondRange : SkippedPart{});
-    this->Lost = most;
+    return false;
   }
-  return !perceivable;
+  this->Skipped = SkippedBeam |
+    (nearest > this->Setup.needs.perceivableRange ? SkippedBeyondRange : SkippedPart{});
+  this->Lost = most;
+  return true;
 }
 
 /// Apply the light-energy constraint to direct echoes.
@@ -321,7 +332,7 @@ double BeamLighting::errorOfSamples(const RangeShares& shares, std::uint32_t pat
     std::hypot(fromRays ? this->errorOfRays(shares, false) : 0.0, this->errorOfMirrors(shares));
   if (this->Cells)
   {
-    const double ofCells = this->Cells->errorOf(shares, this->Setup.materials);
+    const double ofCells = this->Cells->errorOf(shares, this->Setup);
     return pathsArrive ? std::sqrt(ofCells * ofCells + ofPaths * ofPaths) : ofCells;
   }
   return ofPaths + this->Quadrature.boundOf(shares, this->Energies);

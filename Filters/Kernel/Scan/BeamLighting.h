@@ -43,8 +43,9 @@ class BeamLighting
 public:
   /// @param wanted called every 4096 steps within a beam; if it returns false, WorkStopped
   /// is thrown
-  BeamLighting(const ScanSetup& setup, const ScanBeams& beams, ScanBlock& block,
-    BeamSampler& sampler, const BeamReceiver& receiver, std::function<bool()> wanted);
+  BeamLighting(const ScanSetup& setup, const SceneTriangles& scene, const ScanBeams& beams,
+    ScanBlock& block, BeamSampler& sampler, const BeamReceiver& receiver,
+    std::function<bool()> wanted);
 
   /// Light beams also where bounds show that nothing of them can be perceived.
   void lightAll() { this->LightsAll = true; }
@@ -79,11 +80,11 @@ private:
   bool placeNodes(std::size_t beam);
   bool raysAreLit() const { return this->Lit == this->Starts; }
   bool mayBePerceived(double most, double ofPaths);
+  bool mayBeLeftOut(double farthest, double nearest) const;
   bool isSkipped(double most, double farthest, double nearest);
   void startFrom(const BeamSamples& rays);
-  double mostOfPaths() const;
-  void reflectAgain(std::size_t beam, BeamTrace& trace, double most);
-  void collectPaths(std::size_t beam, BeamTrace& trace);
+  bool reflectAgain(std::size_t beam, BeamTrace& trace, double most);
+  bool collectPaths(std::size_t beam, BeamTrace& trace);
   void dropFaintPaths();
   double passMedia(double sum);
   void fillUnits();
@@ -93,6 +94,7 @@ private:
   double errorOfRays(const RangeShares& shares, bool filled);
 
   const ScanSetup& Setup;
+  const SceneTriangles& Scene;
   const ScanBeams& Beams;
   ScanBlock& Block;
   BeamSampler& Sampler;
@@ -117,6 +119,7 @@ private:
   Throughput OfStarts;          ///< of `Starts`, if those are not what is lit
   std::vector<double> Energies; ///< energies of the direct echoes, J
   std::vector<SecondaryPath> Paths;
+  double Direct = 0.0;   ///< J, sum of these before any is dropped
   double Unplaced = 0.0; ///< J, see PolygonQuadrature::dropped()
   double Radiance = 0.0;
   double Lost = 0.0;

@@ -18,15 +18,15 @@ constexpr int SidesOfDisc = 64;
 
 using SurfaceSums = std::map<std::uint32_t, SeenSurface>;
 
-/// The surface that a triangle of the lit scene is.
-SeenSurface& surfaceOf(const ScanSetup& scene, std::uint32_t triangle, SurfaceSums& sums)
+/// The surface that a triangle is.
+SeenSurface& surfaceOf(const ScanSetup& setup, std::uint32_t triangle, SurfaceSums& sums)
 {
   const auto [place, isNew] = sums.try_emplace(triangle);
   SeenSurface& surface = place->second;
   if (isNew)
   {
-    surface.objectId = scene.objectIds[triangle];
-    surface.materialId = scene.materialIds[triangle];
+    surface.objectId = setup.objectId(triangle);
+    surface.materialId = setup.materialId(triangle);
     surface.nearest = std::numeric_limits<double>::infinity();
   }
   return surface;
@@ -34,25 +34,25 @@ SeenSurface& surfaceOf(const ScanSetup& scene, std::uint32_t triangle, SurfaceSu
 
 /// The corners of a triangle; where the next one or the one before belongs to the same surface and
 /// is not in `sums` itself, those of the quadrilateral.
-std::vector<Vec3> cornersOf(const ScanSetup& scene, std::uint32_t triangle, const SurfaceSums& sums)
+std::vector<Vec3> cornersOf(const ScanSetup& setup, const SceneTriangles& scene,
+  std::uint32_t triangle, const SurfaceSums& sums)
 {
-  const TriangleMesh& mesh = *scene.tree->mesh;
-  std::vector<Vec3> corners = { mesh.corner(triangle, 0), mesh.corner(triangle, 1),
-    mesh.corner(triangle, 2) };
+  std::vector<Vec3> corners = { scene.corner(triangle, 0), scene.corner(triangle, 1),
+    scene.corner(triangle, 2) };
   const Vec3 normal = glm::cross(corners[1] - corners[0], corners[2] - corners[0]);
   for (const std::uint32_t other : { triangle + 1, triangle - 1 })
   {
-    if (other >= mesh.size() || sums.count(other) > 0 ||
-      scene.objectIds[other] != scene.objectIds[triangle] ||
-      scene.materialIds[other] != scene.materialIds[triangle])
+    if (!scene.holds(other) || sums.count(other) > 0 ||
+      setup.objectId(other) != setup.objectId(triangle) ||
+      setup.materialId(other) != setup.materialId(triangle))
     {
       continue;
     }
     for (int c = 0; c < 3; ++c)
     {
-      const Vec3 from = mesh.corner(other, (c + 1) % 3);
-      const Vec3 to = mesh.corner(other, (c + 2) % 3);
-      const Vec3 apart = mesh.corner(other, c) - from;
+      const Vec3 from = scene.corner(other, (c + 1) % 3);
+      const Vec3 to = scene.corner(other, (c + 2) % 3);
+      const Vec3 apart = scene.corner(other, c) - from;
       const bool inPlane =
         std::fabs(glm::dot(normal, apart)) <= 1e-9 * safeLength(normal) * safeLength(apart);
       for (std::size_t k = 0; k < 3 && inPlane; ++k)
@@ -62,7 +62,7 @@ std::vector<Vec3> cornersOf(const ScanSetup& scene, std::uint32_t triangle, cons
         if ((a == from && b == to) || (a == to && b == from))
         {
           corners.insert(
-            corners.begin() + static_cast<std::ptrdiff_t>(k + 1), mesh.corner(other, c));
+            corners.begin() + static_cast<std::ptrdiff_t>(k + 1), scene.corner(other, c));
           return corners;
         }
       }
@@ -93,7 +93,7 @@ void cut(const Vec3& inward, double least, std::vector<Vec3>& polygon)
   polygon.swap(kept);
 }
 
-/// Light the one beam, and call f(scene, lighting).
+/// Light the one beam, and call f(simulator).
 template <class F>
 void light(
   const ScanSetup& setup, const ScanBeams& one, const std::function<bool()>& wanted, const F& f)
@@ -109,7 +109,7 @@ void light(
     {
       std::vector<MoverSight> sights;
       moved.simulate(0, echoes, report, sights);
-      f(moved.scene(), moved.simulator().lighting());
+      f(moved.simulator());
       return;
     }
   }
@@ -118,11 +118,11 @@ void light(
   simulator.lightAll();
   simulator.trace(0, 1, traces);
   simulator.light(0, traces[0], echoes, report);
-  f(setup, simulator.lighting());
+  f(simulator);
 }
 
 /// Add shares, and energies with what belongs to them, if these are wanted.
-void addSamples(const ScanSetup& scene, const BeamLighting& lighting, bool shares, bool energies,
+void addSamples(const ScanSetup& setup, const BeamLighting& lighting, bool shares, bool energies,
   SurfaceSums& sums)
 {
   const BeamSamples* samples = lighting.samples();
@@ -133,7 +133,7 @@ void addSamples(const ScanSetup& scene, const BeamLighting& lighting, bool share
   samples->forEachSurface(
     [&](std::uint32_t triangle, std::uint32_t begin, std::uint32_t end)
     {
-      SeenSurface& surface = surfaceOf(scene, triangle, sums);
+      SeenSurface& surface = surfaceOf(setup, triangle, sums);
       for (std::uint32_t i = begin; i < end; ++i)
       {
         const double weight = samples->weight[i];
@@ -163,12 +163,12 @@ std::vector<SeenSurface> sightAlong(const ScanSetup& setup, const ScanBeams& bea
   SurfaceSums sums;
   const bool uniform = setup.sensor.beamProfile == BeamProfile::Uniform;
   light(setup, one, wanted,
-    [&](const ScanSetup& scene, const BeamLighting& lighting)
+    [&](const BeamSimulator& lit)
     {
-      addSamples(scene, lighting, uniform, true, sums);
+      addSamples(setup, lit.lighting(), uniform, true, sums);
       for (auto& [triangle, surface] : sums)
       {
-        surface.corners = cornersOf(scene, triangle, sums);
+        surface.corners = cornersOf(setup, lit.scene(), triangle, sums);
       }
     });
   if (!uniform)
@@ -176,8 +176,7 @@ std::vector<SeenSurface> sightAlong(const ScanSetup& setup, const ScanBeams& bea
     ScanSetup even = setup;
     even.sensor.beamProfile = BeamProfile::Uniform;
     light(even, one, wanted,
-      [&](const ScanSetup& scene, const BeamLighting& lighting)
-      { addSamples(scene, lighting, true, false, sums); });
+      [&](const BeamSimulator& lit) { addSamples(setup, lit.lighting(), true, false, sums); });
   }
   std::vector<SeenSurface> seen;
   double all = 0.0;

@@ -7,13 +7,14 @@ namespace avianlidar
 {
 BeamSimulator::BeamSimulator(const ScanSetup& setup, const ScanBeams& beams, bool keepsLight,
   BeamSampler& sampler, std::function<bool()> wanted)
-  : Beams(beams)
+  : Scene(*setup.tree)
+  , Beams(beams)
   , KeepsLight(keepsLight && (setup.noise.active || setup.movers) && setup.placedMedia.empty())
-  , Block(setup, beams, sampler)
+  , Block(setup, this->Scene, beams, sampler)
   , Receiver(setup.sensor, setup.noise, setup.settings.seed, setup.settings.returnMode,
       setup.revolution, wanted,
       AirEcho(setup.sensor, setup.media, setup.settings.attenuationCoefficient))
-  , Lighting(setup, beams, this->Block, sampler, this->Receiver, std::move(wanted))
+  , Lighting(setup, this->Scene, beams, this->Block, sampler, this->Receiver, std::move(wanted))
   , Echoes(setup, this->Lighting, this->Receiver)
 {
 }
@@ -62,13 +63,5 @@ void BeamSimulator::lightBeam(
   }
   report.lost = this->Lighting.lost();
   report.skipped = this->Lighting.skipped();
-}
-
-std::uint64_t BeamSimulator::keep(std::size_t beam, BeamTrace& trace)
-{
-  this->Block.takeHits(beam, trace);
-  addCounters(this->Block.countersOf(beam), trace.counters);
-  trace.held = trace.heldBytes();
-  return this->Block.countersOf(beam).raysTraced;
 }
 }

@@ -24,8 +24,8 @@
 
 namespace avianlidar
 {
-/// Simulates blocks of beams. One per thread; setup and beams must outlive it and not change, but
-/// for what followSurfaces() names; a beam may change before it is traced.
+/// Simulates blocks of beams. One per thread; setup and beams must outlive it. The setup does not
+/// change; a beam may, before it is traced.
 class BeamSimulator
 {
 public:
@@ -38,14 +38,15 @@ public:
   BeamSimulator(const BeamSimulator&) = delete;
   BeamSimulator& operator=(const BeamSimulator&) = delete;
 
-  /// The setup has another tree now, other materials and ids, and nothing else is other.
-  void followSurfaces() { this->Block.followSurfaces(); }
+  /// What the beams may meet. Movers are placed there before the one beam of a block is traced.
+  SceneTriangles& scene() { return this->Scene; }
+  const SceneTriangles& scene() const { return this->Scene; }
 
-  /// Find the primary hits of beams [begin, end) that `traces` (of all beams) lacks. @return number
-  /// of beams for which it looked
-  std::size_t trace(std::size_t begin, std::size_t end, std::vector<BeamTrace>& traces)
+  /// See ScanBlock::trace().
+  std::size_t trace(std::size_t begin, std::size_t end, std::vector<BeamTrace>& traces,
+    const std::function<bool(std::size_t)>& leaveOut = {})
   {
-    return this->Block.trace(begin, end, traces);
+    return this->Block.trace(begin, end, traces, leaveOut);
   }
 
   /// Light beam `beam` of the block traced last: add to its trace, append its echoes, and fill its
@@ -65,12 +66,10 @@ public:
   /// What the beam lit last received.
   const BeamLighting& lighting() const { return this->Lighting; }
 
-  /// Add what trace() found of a beam to its trace, without lighting it. @return rays traced now
-  std::uint64_t keep(std::size_t beam, BeamTrace& trace);
-
 private:
   void lightBeam(std::size_t beam, BeamTrace& trace, std::vector<Echo>& echoes, BeamReport& report);
 
+  SceneTriangles Scene;
   const ScanBeams& Beams;
   const bool KeepsLight;
   ScanBlock Block;

@@ -71,11 +71,12 @@ std::vector<CoincidentPair> findCoincidentObjects(
   }
   const auto differ = [&](std::uint32_t one, std::uint32_t two)
   {
-    return setup.objectIds[one] != setup.objectIds[two] ||
-      !(setup.materials[one] == setup.materials[two]);
+    return setup.objectId(one) != setup.objectId(two) ||
+      !(setup.material(one) == setup.material(two));
   };
   std::map<std::pair<int, int>, CoincidentPair> found;
-  BeamTracer tracer(tree);
+  const SceneTriangles scene(tree);
+  BeamTracer tracer(scene);
   for (const SeenPlane& plane : planes)
   {
     const std::vector<std::uint32_t>& all = members[plane.owner];
@@ -99,7 +100,7 @@ std::vector<CoincidentPair> findCoincidentObjects(
       if (isOnPlane(next) && differ(seen.triangle, next.triangle))
       {
         const auto objects =
-          std::minmax(setup.objectIds[seen.triangle], setup.objectIds[next.triangle]);
+          std::minmax(setup.objectId(seen.triangle), setup.objectId(next.triangle));
         found.emplace(objects, CoincidentPair{ seen.triangle, next.triangle });
       }
     }

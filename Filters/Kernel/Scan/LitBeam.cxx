@@ -13,7 +13,7 @@ bool takeOver(LightKey& key, const ScanSetup& setup)
   // A lit beam belongs to a trace, so to its tree (traceKey()). Largest gain and noise plan decide
   // what the needs say. Beams that movers touch are not kept, and revolutions differ by noise
   // alone, which is not kept either.
-  static_assert(memberCount<ScanSetup>() == 14 && memberCount<ModelNeeds>() == 7,
+  static_assert(memberCount<ScanSetup>() == 15 && memberCount<ModelNeeds>() == 7,
     "does a lit beam depend on the new member?");
   const Sensor& sensor = setup.sensor;
   const ModelNeeds& needs = setup.needs;

@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "MovedBeams.h"
 
-#include "CollisionTreeBuilder.h"
-#include "ParallelLoop.h"
 #include "PhotonReceiver.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 namespace avianlidar
 {
@@ -18,15 +17,6 @@ constexpr std::size_t BeamsTogether = 512;
 
 /// Rounding of distances and angles.
 constexpr double Slack = 1e-6;
-
-/// Built for one beam, a tree must be made fast. For a beam that is integrated it is one leaf, as
-/// no rays descend it.
-TreeOptions optionsOfSmallScene(std::size_t triangles, const EchoSettings& settings)
-{
-  const std::size_t few = mostTrianglesIntegrated(settings);
-  return { SplitRule::Median, BoundingVolumeType::AABB,
-    triangles <= few ? static_cast<int>(few) + 1 : 4 };
-}
 
 /// False if no ray of the beam meets the sphere.
 bool meets(const BeamFrame& beam, const MoverSphere& sphere)
@@ -97,10 +87,9 @@ MovedBeams::MovedBeams(const ScanSetup& setup, const ScanBeams& beams, BeamSampl
   : Setup(setup)
   , Beams(beams)
   , Width(BeamShape(setup.sensor).width())
-  , Sampler(sampler)
-  , Wanted(std::move(wanted))
   , Sights(sights)
-  , Scene(setup)
+  , All(setup.movers->size())
+  , Simulator(setup, this->One, false, sampler, std::move(wanted))
   , Units(setup.sensor.samplingInterval, setup.sensor.pulseWidth, setup.sensor.rangeGate,
       setup.sensor.minimumRange)
   , Trace(1)
@@ -108,12 +97,11 @@ MovedBeams::MovedBeams(const ScanSetup& setup, const ScanBeams& beams, BeamSampl
   this->One.ids.resize(1);
   this->One.origins.resize(1);
   this->One.directions.resize(1);
-  std::size_t number = setup.tree->mesh->size();
-  for (const Mover& mover : *setup.movers)
+  this->One.times.resize(1);
+  std::iota(this->All.begin(), this->All.end(), 0u);
+  if (sights)
   {
-    this->All.push_back(static_cast<std::uint32_t>(this->All.size()));
-    this->Numbers.push_back(number);
-    number += mover.mesh.size();
+    this->Simulator.lightAll(); // the mover report says what is not perceived, too
   }
 }
 
@@ -161,7 +149,7 @@ void MovedBeams::find(std::size_t begin, std::size_t end)
     for (const std::uint32_t m : this->OfBlock)
     {
       const Mover& mover = (*this->Setup.movers)[m];
-      Touch touch{ m, {}, 0 };
+      Touch touch{ m, {} };
       if (poseAt(mover, this->Beams.times[beam], touch.pose) &&
         meets(frame, sphereAt(mover, touch.pose)))
       {
@@ -171,78 +159,8 @@ void MovedBeams::find(std::size_t begin, std::size_t end)
   }
 }
 
-/// Begin triangle `number` of the scene of all. Triangles whose numbers are not consecutive there
-/// must not be so here, as two that are may be one surface: one that nothing hits stands between.
-void MovedBeams::addTriangle(std::size_t number)
-{
-  TriangleMesh& mesh = *this->Mesh;
-  if (!mesh.triangles.empty() && number != this->Last + 1)
-  {
-    const std::uint32_t corner = mesh.triangles.back()[0];
-    mesh.triangles.push_back({ corner, corner, corner });
-    this->Materials.push_back(this->Materials.back());
-    this->ObjectIds.push_back(this->ObjectIds.back());
-    this->MaterialIds.push_back(this->MaterialIds.back());
-  }
-  this->Last = number;
-}
-
-void MovedBeams::addStatic(const BeamFrame& frame)
-{
-  const CollisionTree& tree = *this->Setup.tree;
-  this->Candidates.begin(tree, &frame, 1, false);
-  this->Static.clear();
-  if (this->Candidates.next())
-  {
-    this->Static = this->Candidates.triangles();
-  }
-  std::sort(this->Static.begin(), this->Static.end());
-  TriangleMesh& mesh = *this->Mesh;
-  for (const std::uint32_t t : this->Static)
-  {
-    this->addTriangle(t);
-    const auto first = static_cast<std::uint32_t>(mesh.points.size());
-    for (int c = 0; c < 3; ++c)
-    {
-      mesh.points.push_back(tree.mesh->corner(t, c));
-    }
-    mesh.triangles.push_back({ first, first + 1, first + 2 });
-    this->Materials.push_back(this->Setup.materials[t]);
-    this->ObjectIds.push_back(this->Setup.objectIds[t]);
-    this->MaterialIds.push_back(this->Setup.materialIds[t]);
-  }
-}
-
-/// Make the scene of a beam.
-void MovedBeams::makeScene(const BeamFrame& frame, std::vector<Touch>& touching)
-{
-  this->Mesh = std::make_shared<TriangleMesh>();
-  this->Materials.clear();
-  this->ObjectIds.clear();
-  this->MaterialIds.clear();
-  this->addStatic(frame);
-  const auto append = [](const auto& more, auto& all)
-  { all.insert(all.end(), more.begin(), more.end()); };
-  for (Touch& touch : touching)
-  {
-    const Mover& mover = (*this->Setup.movers)[touch.mover];
-    this->addTriangle(this->Numbers[touch.mover]);
-    this->Last = this->Numbers[touch.mover] + mover.mesh.size() - 1;
-    touch.firstTriangle = this->Mesh->size();
-    place(mover, touch.pose, *this->Mesh);
-    append(mover.materials, this->Materials);
-    append(mover.objectIds, this->ObjectIds);
-    append(mover.materialIds, this->MaterialIds);
-  }
-  this->Scene.materials = this->Materials;
-  this->Scene.objectIds = this->ObjectIds;
-  this->Scene.materialIds = this->MaterialIds;
-  this->Scene.tree = buildCollisionTree(
-    this->Mesh, optionsOfSmallScene(this->Mesh->size(), this->Setup.settings), {}, 1);
-}
-
 /// Add the energies of the samples of the beam lit last that lie on triangles [begin, end).
-void MovedBeams::addLightOf(std::size_t begin, std::size_t end, const BeamLighting& lighting)
+void MovedBeams::addLightOf(std::uint32_t begin, std::uint32_t end, const BeamLighting& lighting)
 {
   const std::vector<double>& energies = lighting.energies();
   if (!lighting.samples() || energies.empty())
@@ -265,13 +183,14 @@ MoverSight MovedBeams::sightOf(
   const Touch& touch, const BeamFrame& frame, const BeamLighting& lighting)
 {
   const Mover& mover = (*this->Setup.movers)[touch.mover];
-  const std::size_t end = touch.firstTriangle + mover.mesh.size();
+  const std::uint32_t first = this->Setup.firstTriangles[touch.mover];
+  const auto end = static_cast<std::uint32_t>(first + mover.mesh.size());
   const Vec3 to = touch.pose.position - frame.origin;
   MoverSight sight{ touch.mover, 0, 0.0, 0.0,
     std::atan2(safeLength(glm::cross(frame.axis, to)), glm::dot(frame.axis, to)), false };
   sight.held = this->Width.isRound ? sight.offAxis <= this->Width.half : frame.contains(to);
   this->Units.clear();
-  this->addLightOf(touch.firstTriangle, end, lighting);
+  this->addLightOf(first, end, lighting);
   this->Units.accumulate();
   const Sensor sensor = lookingAt(this->Setup.sensor, lighting.radiance());
   const PhotonReceiver receiver(sensor);
@@ -280,7 +199,7 @@ MoverSight MovedBeams::sightOf(
   {
     sight.energy = std::max(sight.energy, unit.energy);
     missed *= 1.0 -
-      perceptionProbability(sensor, receiver, unit.energy, this->Simulator->followedIn(unit.index));
+      perceptionProbability(sensor, receiver, unit.energy, this->Simulator.followedIn(unit.index));
   }
   sight.probability = 1.0 - missed;
   return sight;
@@ -291,28 +210,27 @@ void MovedBeams::simulate(
 {
   const BeamFrame frame =
     makeBeamFrame(this->Beams.origins[beam], this->Beams.directions[beam], this->Width);
-  std::vector<Touch>& touching = this->Touching[beam - this->First];
-  this->makeScene(frame, touching);
+  const std::vector<Touch>& touching = this->Touching[beam - this->First];
+  SceneTriangles& scene = this->Simulator.scene();
+  scene.clear();
+  for (const Touch& touch : touching)
+  {
+    this->Mesh.points.clear();
+    this->Mesh.triangles.clear();
+    place((*this->Setup.movers)[touch.mover], touch.pose, this->Mesh);
+    scene.place(this->Setup.firstTriangles[touch.mover], this->Mesh);
+  }
+  scene.finish();
   this->One.ids[0] = this->Beams.ids[beam];
   this->One.origins[0] = this->Beams.origins[beam];
   this->One.directions[0] = this->Beams.directions[beam];
-  this->One.times.assign(1, this->Beams.timeOf(beam));
+  this->One.times[0] = this->Beams.timeOf(beam);
   this->Trace[0] = BeamTrace{};
-  if (!this->Simulator)
-  {
-    this->Simulator =
-      std::make_unique<BeamSimulator>(this->Scene, this->One, false, this->Sampler, this->Wanted);
-    if (this->Sights)
-    {
-      this->Simulator->lightAll(); // the mover report says what is not perceived, too
-    }
-  }
-  this->Simulator->followSurfaces();
-  this->Simulator->trace(0, 1, this->Trace);
-  this->Simulator->light(0, this->Trace[0], echoes, report);
+  this->Simulator.trace(0, 1, this->Trace);
+  this->Simulator.light(0, this->Trace[0], echoes, report);
   for (std::size_t k = 0; this->Sights && k < touching.size(); ++k)
   {
-    sights.push_back(this->sightOf(touching[k], frame, this->Simulator->lighting()));
+    sights.push_back(this->sightOf(touching[k], frame, this->Simulator.lighting()));
     sights.back().beam = beam;
   }
 }

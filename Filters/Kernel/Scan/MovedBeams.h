@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file MovedBeams.h
- * @brief Beams that movers may touch: finds them, and simulates each with a scene of its own.
+ * @brief Beams that movers may touch: finds them, and simulates each with the movers placed where
+ * they are at its time.
  *
- * A beam meets movers where they are at its own time. Direct echoes and paths over two reflections
- * lie in the beam's cone, which is convex; so the scene of a beam is the static triangles that its
- * cone may meet, in the order of their numbers, and the triangles of the movers that it may touch,
- * placed at its time. It goes through the same stages as any other beam. Static hits of the beam
- * are left as they are, for the scan in which the movers have gone.
+ * Such a beam goes through the same stages as any other, and nothing of it is kept. What is kept of
+ * it from scans without movers stays for the scan in which they have gone.
  *
  * Movers are found for many beams first, then for a block, by spheres about their paths while it is
  * fired, and then for each beam, by spheres where they are.
@@ -15,14 +13,14 @@
  * Source: none. arXiv 2605.10457 asks which beams a moving triangle can hit, too, instead of
  * building a tree again.
  * Valid: a mover at rest gives the bits of the same triangles at the end of the static mesh, but
- * for costs. Movers of equal content count in the order in which they come.
+ * for costs and where faces of it coincide with others. Movers of equal content count in the order
+ * in which they come.
  * Test: TestMovedBeams.cxx.
  */
 #ifndef avianlidar_MovedBeams_h
 #define avianlidar_MovedBeams_h
 
 #include "BeamSimulator.h"
-#include "Candidates.h"
 #include "Mover.h"
 #include "RangeUnits.h"
 
@@ -53,32 +51,24 @@ public:
   void simulate(std::size_t beam, std::vector<Echo>& echoes, BeamReport& report,
     std::vector<MoverSight>& sights);
 
-  /// What lit the beam simulated last, and its scene.
-  const BeamSimulator& simulator() const { return *this->Simulator; }
-  const ScanSetup& scene() const { return this->Scene; }
+  /// What lit the beam simulated last.
+  const BeamSimulator& simulator() const { return this->Simulator; }
 
 private:
   struct Touch
   {
     std::uint32_t mover;
     Pose pose;
-    std::size_t firstTriangle = 0; ///< in the beam's scene
   };
   void findAmong(const std::vector<std::uint32_t>& movers, std::size_t begin, std::size_t end,
     std::vector<std::uint32_t>& found) const;
-  void makeScene(const BeamFrame& frame, std::vector<Touch>& touching);
-  void addStatic(const BeamFrame& frame);
-  void addTriangle(std::size_t number);
   MoverSight sightOf(const Touch& touch, const BeamFrame& frame, const BeamLighting& lighting);
-  void addLightOf(std::size_t first, std::size_t end, const BeamLighting& lighting);
+  void addLightOf(std::uint32_t first, std::uint32_t end, const BeamLighting& lighting);
 
   const ScanSetup& Setup;
   const ScanBeams& Beams;
   const BeamWidth Width;
-  BeamSampler& Sampler;
-  std::function<bool()> Wanted;
   const bool Sights;
-  std::vector<std::size_t> Numbers;  ///< of each mover's first triangle, after all static ones
   std::vector<std::uint32_t> All;    ///< movers
   std::vector<std::uint32_t> OfMany; ///< that beams [ManyBegin, ManyEnd) may touch
   std::size_t ManyBegin = 0;
@@ -87,19 +77,12 @@ private:
   std::vector<std::uint32_t> OfBlock;       ///< movers that the block may touch
   std::vector<std::vector<Touch>> Touching; ///< by beam of the block
 
-  // The scene of a beam.
-  ScanSetup Scene;
-  ScanBeams One;                            ///< the beam
-  std::unique_ptr<BeamSimulator> Simulator; ///< null before the first scene
-  RangeUnitAccumulator Units;               ///< of one mover
+  // The beam being simulated.
+  ScanBeams One;
+  BeamSimulator Simulator;
+  RangeUnitAccumulator Units; ///< of one mover
   std::vector<BeamTrace> Trace;
-  BeamCandidates Candidates;
-  std::vector<std::uint32_t> Static; ///< triangles that the cone may meet
-  std::vector<Material> Materials;
-  std::vector<int> ObjectIds;
-  std::vector<int> MaterialIds;
-  std::shared_ptr<TriangleMesh> Mesh;
-  std::size_t Last = 0; ///< number of the triangle added last, in the scene of all movers
+  TriangleMesh Mesh; ///< of one mover
 };
 }
 

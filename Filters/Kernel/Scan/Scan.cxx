@@ -168,21 +168,21 @@ private:
       heldBefore += traces[b].held;
     }
     this->Held -= heldBefore;
-    block.beamsTraced += worker.simulator.trace(begin, end, traces);
     if (worker.moved)
     {
       worker.moved->find(begin, end);
     }
+    const auto isTouched = [&](std::size_t b)
+    { return worker.moved && worker.moved->isTouched(b); };
+    block.beamsTraced += worker.simulator.trace(begin, end, traces, isTouched);
     std::size_t raysSince = 0;
     for (std::size_t b = begin; b < end; ++b)
     {
       BeamReport& report = this->Result.reports[b];
-      if (worker.moved && worker.moved->isTouched(b))
+      if (isTouched(b))
       {
         ++block.beamsTouched;
-        const std::uint64_t rays = worker.simulator.keep(b, traces[b]);
         worker.moved->simulate(b, block.echoes, report, block.sights);
-        report.raysTracedNow += rays;
       }
       else
       {

@@ -5,24 +5,21 @@
 
 namespace avianlidar
 {
-ScanBlock::ScanBlock(const ScanSetup& setup, const ScanBeams& beams, BeamSampler& sampler)
+ScanBlock::ScanBlock(
+  const ScanSetup& setup, const SceneTriangles& scene, const ScanBeams& beams, BeamSampler& sampler)
   : Setup(setup)
+  , Scene(scene)
   , Width(BeamShape(setup.sensor).width())
   , Beams(beams)
   , Sampler(sampler)
-  , Tracer(*setup.tree)
-  , Views(setup, this->Tracer)
+  , Tracer(scene)
+  , Finder(scene)
+  , Views(setup, scene, this->Tracer)
 {
 }
 
-void ScanBlock::followSurfaces()
-{
-  this->Tracer.follow(*this->Setup.tree);
-  this->Views.followSurfaces();
-  this->Finder.forget();
-}
-
-std::size_t ScanBlock::trace(std::size_t begin, std::size_t end, std::vector<BeamTrace>& traces)
+std::size_t ScanBlock::trace(std::size_t begin, std::size_t end, std::vector<BeamTrace>& traces,
+  const std::function<bool(std::size_t)>& leaveOut)
 {
   this->First = begin;
   this->GeometryBeam = NoBeam;
@@ -40,7 +37,8 @@ std::size_t ScanBlock::trace(std::size_t begin, std::size_t end, std::vector<Bea
     slot.frame.reset();
     slot.rays.resize(0);
     const BeamTrace& known = traces[beam];
-    if (known.direct() == DirectEcho::Unknown || this->lacksStarts(known))
+    const bool lacks = known.direct() == DirectEcho::Unknown || this->lacksStarts(known);
+    if (lacks && !(leaveOut && leaveOut(beam)))
     {
       this->Frames.push_back(this->frameOf(beam));
       this->Traced.push_back(beam);
@@ -88,7 +86,7 @@ void ScanBlock::findViews(std::vector<BeamTrace>& traces)
       traces[beam].view = NoSurfaces{};
     }
   }
-  this->Candidates.begin(*this->Setup.tree, this->Frames.data(), this->Frames.size(),
+  this->Candidates.begin(this->Scene, this->Frames.data(), this->Frames.size(),
     this->Setup.settings.traceMode == TraceMode::Automatic);
   while (this->Candidates.next())
   {
@@ -159,8 +157,8 @@ void ScanBlock::makeHits(
   std::size_t beam, const std::vector<std::uint32_t>& triangles, BeamTrace& trace)
 {
   trace.hits = std::make_unique<BeamSamples>();
-  this->Finder.find(*this->Setup.tree, this->frameOf(beam), this->raysOf(beam), triangles,
-    *trace.hits, this->Geometry);
+  this->Finder.find(
+    this->frameOf(beam), this->raysOf(beam), triangles, *trace.hits, this->Geometry);
   this->GeometryBeam = beam;
   if (!this->Setup.placedMedia.empty())
   {
@@ -191,8 +189,7 @@ const SampleGeometry& ScanBlock::geometryOf(std::size_t beam, const BeamSamples&
 {
   if (this->GeometryBeam != beam)
   {
-    this->Finder.findAgain(
-      *this->Setup.tree, this->frameOf(beam), this->raysOf(beam), hits, this->Geometry);
+    this->Finder.findAgain(this->frameOf(beam), this->raysOf(beam), hits, this->Geometry);
     this->GeometryBeam = beam;
   }
   return this->Geometry;

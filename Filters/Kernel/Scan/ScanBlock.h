@@ -24,23 +24,24 @@
 #include "ScanSetup.h"
 #include "ViewFinder.h"
 
+#include <functional>
 #include <optional>
 #include <vector>
 
 namespace avianlidar
 {
-/// Traces blocks of beams. One per thread; setup, beams and sampler must outlive it.
+/// Traces blocks of beams. One per thread; the constructor's arguments must outlive it.
 class ScanBlock
 {
 public:
-  ScanBlock(const ScanSetup& setup, const ScanBeams& beams, BeamSampler& sampler);
-
-  /// The setup has other surfaces now.
-  void followSurfaces();
+  ScanBlock(const ScanSetup& setup, const SceneTriangles& scene, const ScanBeams& beams,
+    BeamSampler& sampler);
 
   /// Find what each beam in [begin, end) sees, unless `traces` (of all beams) already holds it.
-  /// @return number of beams for which it looked
-  std::size_t trace(std::size_t begin, std::size_t end, std::vector<BeamTrace>& traces);
+  /// @param leaveOut beams that are not wanted; empty: all are @return number of beams for which it
+  /// looked
+  std::size_t trace(std::size_t begin, std::size_t end, std::vector<BeamTrace>& traces,
+    const std::function<bool(std::size_t)>& leaveOut = {});
 
   /// Move the hits of the beam's rays to its trace.
   void takeHits(std::size_t beam, BeamTrace& trace);
@@ -82,6 +83,7 @@ private:
   void makeHits(std::size_t beam, const std::vector<std::uint32_t>& triangles, BeamTrace& trace);
 
   const ScanSetup& Setup;
+  const SceneTriangles& Scene;
   const BeamWidth Width;
   const ScanBeams& Beams;
   BeamSampler& Sampler;

@@ -5,21 +5,15 @@
 
 namespace avianlidar
 {
-ViewFinder::ViewFinder(const ScanSetup& setup, BeamTracer& tracer)
+ViewFinder::ViewFinder(const ScanSetup& setup, const SceneTriangles& scene, BeamTracer& tracer)
   : Setup(setup)
   , Tracer(tracer)
-  , Polygons(*setup.tree,
+  , Polygons(scene,
       BeamShape(setup.sensor).width().isRound ? mostTrianglesIntegrated(setup.settings) : 0,
       MostTrianglesOfCells)
   , Quadrature(setup)
-  , Cells(setup)
+  , Cells(setup, scene)
 {
-}
-
-void ViewFinder::followSurfaces()
-{
-  this->Polygons.follow(*this->Setup.tree);
-  this->Cells.followSurfaces();
 }
 
 BeamView ViewFinder::find(std::uint64_t beam, const BeamFrame& frame,

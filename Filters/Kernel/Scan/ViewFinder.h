@@ -26,14 +26,12 @@
 
 namespace avianlidar
 {
-/// Finds the views of one beam after the other. One per thread; setup and tracer must outlive it.
+/// Finds the views of one beam after the other. One per thread; the constructor's arguments must
+/// outlive it.
 class ViewFinder
 {
 public:
-  ViewFinder(const ScanSetup& setup, BeamTracer& tracer);
-
-  /// The setup has other surfaces now.
-  void followSurfaces();
+  ViewFinder(const ScanSetup& setup, const SceneTriangles& scene, BeamTracer& tracer);
 
   /// @param candidates all triangles that may enter the beam, each once, in any order
   /// @param cost of rays traced is added

@@ -43,7 +43,8 @@ double shownOf(const std::shared_ptr<const TriangleMesh>& mesh, const Vec3& cent
   CollisionTree tree;
   tree.mesh = mesh;
   constexpr std::size_t few = 16; // pieces of a few triangles may be more than three times as many
-  PolygonFinder finder(tree, mesh->size() + few);
+  const SceneTriangles scene(tree);
+  PolygonFinder finder(scene, mesh->size() + few);
   std::vector<std::uint32_t> triangles(mesh->size());
   std::iota(triangles.begin(), triangles.end(), 0u);
   finder.begin(frame);
@@ -78,7 +79,8 @@ class AreaByRays
 public:
   AreaByRays(std::shared_ptr<const CollisionTree> tree, const BeamFrame& frame)
     : Tree(std::move(tree))
-    , Tracer(*this->Tree)
+    , Scene(*this->Tree)
+    , Tracer(this->Scene)
     , Frame(frame)
   {
     for (const Vec3& point : this->Tree->mesh->points)
@@ -145,7 +147,7 @@ private:
     if (triangle != this->Number)
     {
       this->Number = triangle;
-      this->Seen = seeTriangle(*this->Tree, triangle, this->Frame.origin);
+      this->Seen = seeTriangle(this->Scene, triangle, this->Frame.origin);
     }
     const Vec3 along = this->Frame.direction(x, y);
     const double away = safeLength(along);
@@ -155,6 +157,7 @@ private:
   }
 
   std::shared_ptr<const CollisionTree> Tree;
+  const SceneTriangles Scene;
   BeamTracer Tracer;
   const BeamFrame Frame;
   PlanePoint Low{ 1.0, 1.0 };

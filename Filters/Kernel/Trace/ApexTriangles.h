@@ -54,9 +54,6 @@ public:
   /// @param widest the beam of the largest half-beamwidth among those of the packet
   void begin(const CollisionTree& tree, const BeamFrame& widest);
 
-  /// The tree has other triangles now.
-  void forget() { this->Tree = nullptr; }
-
   /// The record at a position of the tree's order; null if it is not in the table.
   const ApexTriangle* find(std::uint32_t position) const
   {

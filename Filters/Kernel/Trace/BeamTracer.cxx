@@ -30,19 +30,13 @@ std::size_t beamsPerBlock(int raysPerBeam)
     std::clamp(RaysOfBlock / raysPerBeam, 1, raysPerBeam < FewRays ? 1024 : 128));
 }
 
-BeamTracer::BeamTracer(const CollisionTree& tree)
-  : Tree(&tree)
+BeamTracer::BeamTracer(const SceneTriangles& scene)
+  : Scene(scene)
   , Work(std::make_unique<Workspace>())
 {
 }
 
 BeamTracer::~BeamTracer() = default;
-
-void BeamTracer::follow(const CollisionTree& tree)
-{
-  this->Tree = &tree;
-  this->Work->block.rays.packets.forget();
-}
 
 void BeamTracer::setBeam(const BeamFrame& frame)
 {
@@ -61,12 +55,48 @@ const BlockHits& BeamTracer::traceBlock(const BeamBlock& block, TraceMode mode)
   }
   work.triangles.resize(std::max(work.triangles.size(), block.size * block.rays));
   work.used = 0;
-  if (this->Tree->nodes.empty() || block.size == 0)
+  if (!this->Scene.tree().nodes.empty() && block.size > 0)
   {
-    return work.found;
+    avianlidar::traceBlock(this->Scene, block, mode, this->Work->block);
   }
-  avianlidar::traceBlock(*this->Tree, block, mode, this->Work->block);
+  if (!this->Scene.moved().empty() && block.size > 0)
+  {
+    this->traceMoved(block);
+  }
   return work.found;
+}
+
+/// Look which rays of the one beam hit movers first.
+void BeamTracer::traceMoved(const BeamBlock& block)
+{
+  BlockRaysWorkspace& work = this->Work->block.rays;
+  const BeamFrame& frame = block.frames[0];
+  const BeamRays& rays = block.source(0);
+  const BeamPlaneMap map(frame);
+  BeamRayVisitor visitor(this->Scene, frame, map);
+  std::uint32_t* const triangles = work.triangles.data();
+  if (!work.found.triangles[0])
+  {
+    std::fill(triangles, triangles + rays.size(), NoTriangle);
+  }
+  bool any = false;
+  for (std::size_t i = 0; i < rays.size(); ++i)
+  {
+    const Vec3 direction = unitDirection(frame.direction(rays.x[i], rays.y[i]));
+    Hit hit;
+    if (triangles[i] != NoTriangle)
+    {
+      hit = { triangles[i],
+        rangeOnTriangle(seeTriangle(this->Scene, triangles[i], frame.origin), frame, direction) };
+    }
+    visitor.setRay(rays.x[i], rays.y[i], direction, hit);
+    work.found.counters[0].nodesVisited += visitMoved(this->Scene, frame.origin, Vec3(0.0),
+      direction, HitMarginBeam * frame.tanHalf, visitor, this->Work->stack);
+    triangles[i] = hit.triangle;
+    any = any || hit.valid();
+  }
+  work.found.triangles[0] = any ? triangles : nullptr;
+  work.found.counters[0].candidates += this->Scene.moved().size();
 }
 
 Hit BeamTracer::traceFromApex(const Vec3& direction)
@@ -80,7 +110,7 @@ Hit BeamTracer::traceFrom(const Vec3& origin, const Vec3& direction, double mini
   const Vec3 d = unitDirection(direction);
   // From the apex the ranges must have the bits of the rays of the beam.
   const double margin = origin == Vec3(0.0) ? beamRayMargin(this->Frame) : 0.0;
-  FreeRayVisitor visitor(*this->Tree, this->Frame.origin, origin, d, margin);
+  FreeRayVisitor visitor(this->Scene, this->Frame.origin, origin, d, margin);
   visitor.minimum = minimumRange;
   visitor.maximum = maximumRange;
   visitor.ignore1 = ignore;
@@ -98,7 +128,7 @@ bool BeamTracer::occluded(
     return false;
   }
   const Vec3 d = unitDirection(between);
-  FreeRayVisitor visitor(*this->Tree, this->Frame.origin, from, d, 0.0);
+  FreeRayVisitor visitor(this->Scene, this->Frame.origin, from, d, 0.0);
   visitor.minimum = margin;
   visitor.maximum = length - margin;
   visitor.ignore1 = ignore1;
@@ -112,22 +142,25 @@ template <class Visitor>
 void BeamTracer::search(Visitor& visitor, const Vec3& origin, const Vec3& d, double margin)
 {
   ++this->Counters.raysTraced;
-  if (!this->Tree->nodes.empty())
+  const CollisionTree& tree = this->Scene.tree();
+  if (!tree.nodes.empty())
   {
     this->Counters.nodesVisited +=
-      descendRay(*this->Tree, this->Frame.origin, origin, d, margin, visitor, this->Work->stack);
+      descendRay(tree, this->Frame.origin, origin, d, margin, visitor, this->Work->stack);
   }
+  this->Counters.nodesVisited +=
+    visitMoved(this->Scene, this->Frame.origin, origin, d, margin, visitor, this->Work->stack);
 }
 
-SeenTriangle seeTriangle(const CollisionTree& tree, std::uint32_t triangle, const Vec3& origin)
+SeenTriangle seeTriangle(const SceneTriangles& scene, std::uint32_t triangle, const Vec3& origin)
 {
   SeenTriangle seen;
-  seen.corners = cornersFrom(*tree.mesh, triangle, origin);
-  seen.plane = planeOf(tree, triangle, seen.corners, origin);
+  seen.corners = scene.cornersFrom(triangle, origin);
+  seen.plane = scene.planeOf(triangle, seen.corners, origin);
   if (seen.plane.normal != Vec3(0.0))
   {
     seen.normal = (seen.plane.height > 0.0 ? -1.0 : 1.0) * unitDirection(seen.plane.normal);
-    const Vec3 onPlane = tree.mesh->corner(tree.planeOwner(triangle), 0) - origin;
+    const Vec3 onPlane = scene.corner(scene.planeOwner(triangle), 0) - origin;
     seen.height = -glm::dot(seen.normal, onPlane);
   }
   return seen;

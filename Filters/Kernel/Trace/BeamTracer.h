@@ -22,7 +22,7 @@
 
 #include "BeamFrame.h"
 #include "BeamRays.h"
-#include "CollisionTree.h"
+#include "SceneTriangles.h"
 #include "TriangleTest.h"
 
 #include <cstddef>
@@ -89,24 +89,22 @@ struct BlockHits
   std::vector<TraceCounters> counters; ///< one per beam
 };
 
-/// Traces blocks of beams, and single rays of the current beam. One per thread; the tree must
+/// Traces blocks of beams, and single rays of the current beam. One per thread; the scene must
 /// outlive it.
 class BeamTracer
 {
 public:
-  explicit BeamTracer(const CollisionTree& tree);
+  explicit BeamTracer(const SceneTriangles& scene);
   ~BeamTracer();
   BeamTracer(const BeamTracer&) = delete;
   BeamTracer& operator=(const BeamTracer&) = delete;
-
-  /// Go on to another tree, which must outlive the tracer or the next call.
-  void follow(const CollisionTree& tree);
 
   /// Begin a beam: set the frame, and the counters to 0.
   void setBeam(const BeamFrame& frame);
 
   /// Nearest triangle of every ray of all beams of a block, each with a frame of its own;
-  /// neighbours of one apex are traced together. The current beam and its counters do not change.
+  /// neighbours of one apex are traced together. Where movers are placed, the block has one beam.
+  /// The current beam and its counters do not change.
   /// The result is valid until the next call.
   const BlockHits& traceBlock(const BeamBlock& block, TraceMode mode);
 
@@ -131,7 +129,9 @@ private:
   template <class Visitor>
   void search(Visitor& visitor, const Vec3& origin, const Vec3& direction, double margin);
 
-  const CollisionTree* Tree;
+  void traceMoved(const BeamBlock& block);
+
+  const SceneTriangles& Scene;
   BeamFrame Frame;
   TraceCounters Counters;
   std::unique_ptr<Workspace> Work;
@@ -145,7 +145,7 @@ struct SeenTriangle
   Vec3 normal{ 0.0 };  ///< unit, towards the apex (zero if degenerate)
   double height = 0.0; ///< m, of the apex above the plane, along the normal
 };
-SeenTriangle seeTriangle(const CollisionTree& tree, std::uint32_t triangle, const Vec3& origin);
+SeenTriangle seeTriangle(const SceneTriangles& scene, std::uint32_t triangle, const Vec3& origin);
 
 /// Range on a triangle that the ray along the unit direction `d` of the beam hits, m.
 double rangeOnTriangle(const SeenTriangle& triangle, const BeamFrame& frame, const Vec3& d);

@@ -8,8 +8,9 @@
 
 namespace avianlidar
 {
-BlockRays::BlockRays(const CollisionTree& tree, const BeamBlock& block, BlockRaysWorkspace& work)
-  : Tree(tree)
+BlockRays::BlockRays(const SceneTriangles& scene, const BeamBlock& block, BlockRaysWorkspace& work)
+  : Scene(scene)
+  , Tree(scene.tree())
   , Block(block)
   , Work(work)
 {
@@ -21,7 +22,7 @@ void BlockRays::rayByRay(std::uint32_t b)
   const BeamRays& rays = this->Block.source(b);
   std::uint32_t* const triangles = this->room();
   const BeamPlaneMap map(frame);
-  BeamRayVisitor visitor(this->Tree, frame, map);
+  BeamRayVisitor visitor(this->Scene, frame, map);
   bool any = false;
   for (std::size_t i = 0; i < rays.size(); ++i)
   {

@@ -45,7 +45,7 @@ struct BeamCluster
 class BlockRays
 {
 public:
-  BlockRays(const CollisionTree& tree, const BeamBlock& block, BlockRaysWorkspace& work);
+  BlockRays(const SceneTriangles& scene, const BeamBlock& block, BlockRaysWorkspace& work);
 
   /// Trace all rays of a beam, each by a descent of its own.
   void rayByRay(std::uint32_t beam);
@@ -68,6 +68,7 @@ private:
   }
   TraceCounters& counters(std::uint32_t beam) { return this->Work.found.counters[beam]; }
 
+  const SceneTriangles& Scene;
   const CollisionTree& Tree;
   const BeamBlock& Block;
   BlockRaysWorkspace& Work;

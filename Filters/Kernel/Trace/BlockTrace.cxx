@@ -17,12 +17,12 @@ class BlockTrace
 {
 public:
   BlockTrace(
-    const CollisionTree& tree, const BeamBlock& block, TraceMode mode, BlockWorkspace& work)
-    : Tree(tree)
+    const SceneTriangles& scene, const BeamBlock& block, TraceMode mode, BlockWorkspace& work)
+    : Tree(scene.tree())
     , Block(block)
     , Mode(mode)
     , Work(work)
-    , Rays(tree, block, work.rays)
+    , Rays(scene, block, work.rays)
   {
   }
 
@@ -180,8 +180,8 @@ private:
 }
 
 void traceBlock(
-  const CollisionTree& tree, const BeamBlock& block, TraceMode mode, BlockWorkspace& work)
+  const SceneTriangles& scene, const BeamBlock& block, TraceMode mode, BlockWorkspace& work)
 {
-  BlockTrace(tree, block, mode, work).run();
+  BlockTrace(scene, block, mode, work).run();
 }
 }

@@ -36,9 +36,10 @@ struct BlockWorkspace
   BlockRaysWorkspace rays;
 };
 
-/// Trace a block into `work.rays.found`, which the caller has set to no hits and no cost.
+/// Trace a block, movers apart, into `work.rays.found`, which the caller has set to no hits and no
+/// cost.
 void traceBlock(
-  const CollisionTree& tree, const BeamBlock& block, TraceMode mode, BlockWorkspace& work);
+  const SceneTriangles& scene, const BeamBlock& block, TraceMode mode, BlockWorkspace& work);
 }
 
 #endif

@@ -24,14 +24,16 @@ struct LeafCollector
 }
 
 void BeamCandidates::begin(
-  const CollisionTree& tree, const BeamFrame* frames, std::size_t count, bool together)
+  const SceneTriangles& scene, const BeamFrame* frames, std::size_t count, bool together)
 {
+  const CollisionTree& tree = scene.tree();
+  this->Scene = &scene;
   this->Tree = &tree;
   this->Frames = frames;
   this->Order.clear();
   this->Groups.clear();
   this->Now = { 0, 0 };
-  const std::size_t beams = tree.nodes.empty() ? 0 : count;
+  const std::size_t beams = tree.nodes.empty() && scene.moved().empty() ? 0 : count;
   for (std::size_t first = 0; first < beams;)
   {
     this->Stretch.clear();
@@ -114,12 +116,14 @@ bool BeamCandidates::collect(const EntryPoints* entryPoints)
 {
   this->Triangles.clear();
   this->NodesVisited = this->Share;
-  if (!entryPoints || !entryPoints->nodes.empty())
+  if (!this->Tree->nodes.empty() && (!entryPoints || !entryPoints->nodes.empty()))
   {
     LeafCollector leaves{ this->Triangles };
     this->NodesVisited +=
       descendCone(*this->Tree, this->Frames[this->Beam], leaves, this->Work.stack, entryPoints);
   }
+  const std::vector<std::uint32_t>& moved = this->Scene->moved();
+  this->Triangles.insert(this->Triangles.end(), moved.begin(), moved.end());
   return !this->Triangles.empty();
 }
 }

@@ -5,7 +5,8 @@
  *
  * Everything that a beam can meet, reflect in or be hidden by lies in its cone, which is convex.
  * Neighbouring beams of one apex descend the tree together (BeamGroup.h). From the entry points of
- * its group each beam goes on alone, down to the leaves.
+ * its group each beam goes on alone, down to the leaves. The triangles of movers that the beam may
+ * meet follow.
  *
  * Source: paper, Sec. 3.2, where the list is called S_potential.
  * Differs: the paper descends for each beam from the root.
@@ -17,6 +18,7 @@
 #define avianlidar_Candidates_h
 
 #include "BeamGroup.h"
+#include "SceneTriangles.h"
 
 #include <cstddef>
 #include <cstdint>
@@ -29,9 +31,11 @@ namespace avianlidar
 class BeamCandidates
 {
 public:
-  /// Begin a block. Tree and frames must live until its last beam.
+  /// Begin a block. Scene and frames must live until its last beam.
+  /// @param count of beams; one, if movers are placed
   /// @param together false: each beam descends alone from the root
-  void begin(const CollisionTree& tree, const BeamFrame* frames, std::size_t count, bool together);
+  void begin(
+    const SceneTriangles& scene, const BeamFrame* frames, std::size_t count, bool together);
 
   /// Go on to a beam that may meet a triangle, in any order. @return false after the last
   bool next();
@@ -53,6 +57,7 @@ private:
   bool descendNextGroup();
   bool collect(const EntryPoints* entryPoints);
 
+  const SceneTriangles* Scene = nullptr;
   const CollisionTree* Tree = nullptr;
   const BeamFrame* Frames = nullptr;
   std::vector<std::uint32_t> Order; ///< beams

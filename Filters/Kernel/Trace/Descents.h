@@ -13,6 +13,7 @@
 #define avianlidar_Descents_h
 
 #include "BeamTracer.h"
+#include "SceneTriangles.h"
 #include "Traversal.h"
 #include "TriangleTest.h"
 
@@ -69,6 +70,42 @@ std::uint64_t descendRay(const CollisionTree& tree, const Vec3& apex, const Vec3
   return descendWide(tree, ray, visitor, stack);
 }
 
+/// The leaves of the tree of movers, by the numbers of their triangles in the scan.
+template <class Visitor>
+class MovedLeaves
+{
+public:
+  MovedLeaves(const SceneTriangles& scene, Visitor& visitor)
+    : Moved(scene.moved())
+    , Seen(visitor)
+  {
+  }
+  double limit() const { return this->Seen.limit(); }
+  bool leaf(const std::uint32_t* triangles, std::uint32_t count)
+  {
+    return std::all_of(triangles, triangles + count,
+      [this](std::uint32_t place) { return this->Seen.leaf(&this->Moved[place], 1); });
+  }
+
+private:
+  const std::vector<std::uint32_t>& Moved;
+  Visitor& Seen;
+};
+
+/// Test one ray against the movers that are placed, as descendRay() does with the tree.
+template <class Visitor>
+std::uint64_t visitMoved(const SceneTriangles& scene, const Vec3& apex, const Vec3& origin,
+  const Vec3& direction, double angularMargin, Visitor& visitor, TraversalStack& stack)
+{
+  if (scene.movedTree())
+  {
+    MovedLeaves<Visitor> leaves(scene, visitor);
+    return descendRay(*scene.movedTree(), apex, origin, direction, angularMargin, leaves, stack);
+  }
+  visitor.leaf(scene.moved().data(), static_cast<std::uint32_t>(scene.moved().size()));
+  return 0;
+}
+
 /// Replace `hit` if the other is nearer, or as near with a lower triangle number.
 inline void keepNearest(Hit& hit, double range, std::uint32_t triangle)
 {
@@ -92,8 +129,8 @@ inline double limitOf(const CollisionTree& tree, double range)
 class BeamRayVisitor
 {
 public:
-  BeamRayVisitor(const CollisionTree& tree, const BeamFrame& frame, const BeamPlaneMap& map)
-    : Tree(tree)
+  BeamRayVisitor(const SceneTriangles& scene, const BeamFrame& frame, const BeamPlaneMap& map)
+    : Scene(scene)
     , Frame(frame)
     , Map(map)
     , Margin(beamRayMargin(frame))
@@ -108,17 +145,17 @@ public:
     this->Nearest = &hit;
   }
 
-  double limit() const { return limitOf(this->Tree, this->Nearest->range); }
+  double limit() const { return limitOf(this->Scene.tree(), this->Nearest->range); }
 
   bool leaf(const std::uint32_t* triangles, std::uint32_t count)
   {
     for (std::uint32_t i = 0; i < count; ++i)
     {
       const Vec3& apex = this->Frame.origin;
-      const Corners corners = cornersFrom(*this->Tree.mesh, triangles[i], apex);
+      const Corners corners = this->Scene.cornersFrom(triangles[i], apex);
       if (beamRayAccepted(this->Map, corners, this->X, this->Y))
       {
-        const TrianglePlane plane = planeOf(this->Tree, triangles[i], corners, apex);
+        const TrianglePlane plane = this->Scene.planeOf(triangles[i], corners, apex);
         const double range = rangeOf(corners, plane, this->Direction, this->Margin);
         if (range > 0.0)
         {
@@ -130,7 +167,7 @@ public:
   }
 
 private:
-  const CollisionTree& Tree;
+  const SceneTriangles& Scene;
   const BeamFrame& Frame;
   const BeamPlaneMap& Map;
   double Margin;
@@ -144,9 +181,9 @@ private:
 class FreeRayVisitor
 {
 public:
-  FreeRayVisitor(const CollisionTree& tree, const Vec3& apex, const Vec3& origin,
+  FreeRayVisitor(const SceneTriangles& scene, const Vec3& apex, const Vec3& origin,
     const Vec3& direction, double angularMargin)
-    : Tree(tree)
+    : Scene(scene)
     , Apex(apex)
     , Origin(origin)
     , Direction(direction)
@@ -161,7 +198,10 @@ public:
   bool anyHit = false;
   Hit nearest;
 
-  double limit() const { return std::min(this->maximum, limitOf(this->Tree, this->nearest.range)); }
+  double limit() const
+  {
+    return std::min(this->maximum, limitOf(this->Scene.tree(), this->nearest.range));
+  }
 
   bool leaf(const std::uint32_t* triangles, std::uint32_t count)
   {
@@ -186,7 +226,7 @@ private:
     const Corners corners = this->cornersOf(triangle);
     if (rayAccepted(corners, this->Direction))
     {
-      const std::uint32_t owner = this->Tree.planeOwner(triangle);
+      const std::uint32_t owner = this->Scene.planeOwner(triangle);
       const TrianglePlane plane =
         owner == triangle ? planeOf(corners) : planeOf(corners, planeOf(this->cornersOf(owner)));
       const double range = rangeOf(corners, plane, this->Direction, this->Margin);
@@ -200,14 +240,14 @@ private:
   /// From the ray's origin.
   Corners cornersOf(std::uint32_t triangle) const
   {
-    Corners corners = cornersFrom(*this->Tree.mesh, triangle, this->Apex);
+    Corners corners = this->Scene.cornersFrom(triangle, this->Apex);
     corners.a -= this->Origin;
     corners.b -= this->Origin;
     corners.c -= this->Origin;
     return corners;
   }
 
-  const CollisionTree& Tree;
+  const SceneTriangles& Scene;
   Vec3 Apex;
   Vec3 Origin;
   Vec3 Direction;

@@ -54,9 +54,6 @@ public:
     }
   }
 
-  /// The tree has other triangles now.
-  void forget() { this->Tree = nullptr; }
-
   /// The triangle of this number. Valid until the next call.
   const ExactTriangle& operator[](std::uint32_t number)
   {

@@ -250,7 +250,8 @@ std::uint64_t traceAlone(
   const BeamFrame& frame = packet.frameOf(ray);
   const Vec3 direction = packet.direction(ray);
   const BeamPlaneMap map(frame);
-  BeamRayVisitor visitor(tree, frame, map);
+  const SceneTriangles scene(tree);
+  BeamRayVisitor visitor(scene, frame, map);
   Hit hit;
   visitor.setRay(packet.x[ray], packet.y[ray], direction, hit);
   const std::uint64_t nodes = descendRay(

@@ -74,13 +74,6 @@ struct PacketWorkspace
 {
   PacketState state;
   TraversalStack stack;
-
-  /// The tree has other triangles now.
-  void forget()
-  {
-    this->state.known.forget();
-    this->state.exact.forget();
-  }
 };
 
 /// Cost of a packet.

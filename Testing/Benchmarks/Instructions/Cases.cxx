@@ -30,7 +30,8 @@ std::size_t countTracing(const Scene& scene, std::size_t mostRays)
   avianlidarCounted(
     [&]()
     {
-      BeamTracer tracer(*tree);
+      const SceneTriangles tracerScene(*tree);
+      BeamTracer tracer(tracerScene);
       for (std::size_t b = 0; b < work.beams(); ++b)
       {
         const BeamBlock block{ &work.frames[b], 1, 100,

@@ -24,10 +24,9 @@ constexpr int LevelsOfFoot = 5;
 /// m up to which a cell with small objects gets more rays instead of being divided.
 constexpr int MostBlocksOfCell = 3;
 
-/// Most blocks of rays of a beam that are traced through the tree for the sake of small objects: so
-/// many in any case, and so many times those of a beam without.
-constexpr double MostPlannedBlocks = 20000.0;
-constexpr double PlannedPerUsual = 4.0;
+/// Most rays of a beam that are traced through the tree for the sake of small objects, over those
+/// of a beam without.
+constexpr double PlannedPerUsual = 10.0;
 
 /// Parts of a squared half-beamwidth in which the areas of objects are counted, and an area that
 /// is larger than the disc's.
@@ -79,12 +78,13 @@ double areaInRectangle(double x, double y, double width)
 }
 }
 
-BeamCells::BeamCells(const ScanSetup& setup)
+BeamCells::BeamCells(const ScanSetup& setup, const SceneTriangles& scene)
   : Setup(setup)
+  , Scene(scene)
   , Density(densityOfCells(setup.settings.raysPerBeam))
   , Shape(setup.sensor)
   , Strips(setup)
-  , Seen(*setup.tree)
+  , Seen(scene)
 {
   for (std::uint32_t side = 4; side <= 16; side *= 4)
   {
@@ -182,8 +182,8 @@ bool holdsCircle(const BeamSurface& s, double radius)
 
 void BeamCells::addToObject(const BeamSurface& s)
 {
-  const int id = this->Setup.objectIds[s.triangle];
-  const int idOfOther = s.other != NoTriangle ? this->Setup.objectIds[s.other] : id;
+  const int id = this->Setup.objectId(s.triangle);
+  const int idOfOther = s.other != NoTriangle ? this->Setup.objectId(s.other) : id;
   if (s.area != AreaUnknown && id == idOfOther)
   {
     this->addToObject(id, s.area);
@@ -203,9 +203,9 @@ void BeamCells::addToObject(const BeamSurface& s)
 /// Add a triangle's part in the disc to its object, unless that is known to be large.
 void BeamCells::addPart(std::uint32_t triangle)
 {
-  if (triangle != NoTriangle && !this->isLarge(this->Setup.objectIds[triangle]))
+  if (triangle != NoTriangle && !this->isLarge(this->Setup.objectId(triangle)))
   {
-    this->addToObject(this->Setup.objectIds[triangle], this->areaInDiscOf(triangle));
+    this->addToObject(this->Setup.objectId(triangle), this->areaInDiscOf(triangle));
   }
 }
 
@@ -284,11 +284,11 @@ void BeamCells::setSurfaces()
     s.most = outwards * static_cast<float>(scale * from.sortInverse);
     s.slack =
       static_cast<float>(rounding * scale * (std::fabs(w.x) + std::fabs(w.y) + std::fabs(w.z)));
-    const int id = this->Setup.objectIds[from.triangle];
+    const int id = this->Setup.objectId(from.triangle);
     s.share = this->smallShareOf(id);
-    if (from.other != NoTriangle && this->Setup.objectIds[from.other] != id)
+    if (from.other != NoTriangle && this->Setup.objectId(from.other) != id)
     {
-      const float share = this->smallShareOf(this->Setup.objectIds[from.other]);
+      const float share = this->smallShareOf(this->Setup.objectId(from.other));
       s.share = share > 0.0f && (share < s.share || s.share == 0.0f) ? share : s.share;
     }
     this->HasObjects = this->HasObjects || s.share > 0.0f;
@@ -330,7 +330,7 @@ std::unique_ptr<CellSamples> BeamCells::find(
 /// Area of a triangle's part in the disc, in half-beamwidths squared.
 double BeamCells::areaInDiscOf(std::uint32_t triangle) const
 {
-  const Corners t = cornersFrom(*this->Setup.tree->mesh, triangle, this->Frame.origin);
+  const Corners t = this->Scene.cornersFrom(triangle, this->Frame.origin);
   const Vec3 corners[3] = { this->Frame.toPlane(t.a), this->Frame.toPlane(t.b),
     this->Frame.toPlane(t.c) };
   // What lies before the apex: no more than four corners.
@@ -358,8 +358,7 @@ void BeamCells::leaveSmallObjects(
   std::uint64_t beam, const BeamFrame& frame, std::vector<std::uint32_t>& numbers)
 {
   this->begin(beam, frame);
-  const int* const ids = this->Setup.objectIds.data();
-  const auto idOf = [&](std::uint32_t triangle) { return ids[triangle]; };
+  const auto idOf = [&](std::uint32_t triangle) { return this->Setup.objectId(triangle); };
   for (const std::uint32_t number : numbers)
   {
     this->addPart(number);
@@ -382,8 +381,7 @@ void BeamCells::leaveSmallObjects(
 /// Place the rays. Where small objects ask for too many, the smallest are left to the others' rays.
 void BeamCells::planAll()
 {
-  const double usual = this->Density.rays() / CellLanes;
-  const double most = std::max(MostPlannedBlocks, PlannedPerUsual * usual);
+  const double most = PlannedPerUsual * this->Density.rays() / CellLanes;
   do
   {
     this->setSurfaces();

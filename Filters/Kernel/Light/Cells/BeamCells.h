@@ -49,11 +49,11 @@ constexpr std::size_t MostTrianglesOfCells = 2000;
 /// triangles in the disc.
 constexpr double LeastShareOfObject = 1e-6;
 
-/// Finds the samples of one beam after the other. One per thread; the setup must outlive it.
+/// Finds the samples of one beam after the other. One per thread; setup and scene must outlive it.
 class BeamCells
 {
 public:
-  explicit BeamCells(const ScanSetup& setup);
+  BeamCells(const ScanSetup& setup, const SceneTriangles& scene);
 
   /// @param entering the surfaces that enter the disc, nearest first (BeamTriangles::sort())
   /// @return null if there are too many strips
@@ -74,9 +74,6 @@ public:
 
   /// The samples of these rays. @param triangles that they hit
   std::unique_ptr<CellSamples> find(const std::uint32_t* triangles);
-
-  /// The setup has other surfaces now.
-  void followSurfaces() { this->Seen.follow(*this->Setup.tree); }
 
 private:
   struct Cell
@@ -119,6 +116,7 @@ private:
   void plan(const CellRays& block, double share);
 
   const ScanSetup& Setup;
+  const SceneTriangles& Scene;
   const CellDensity Density;
   const BeamShape Shape;
   std::vector<double> Areas; ///< of the cells of the first two levels

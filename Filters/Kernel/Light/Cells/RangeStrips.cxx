@@ -206,8 +206,7 @@ double sumOf(const double* values)
 }
 }
 
-double CellSamples::errorOf(
-  const RangeShares& shares, const SharedVector<Material>& materials) const
+double CellSamples::errorOf(const RangeShares& shares, const ScanSetup& setup) const
 {
   const auto sampleOf = [&](std::size_t s) { return shares.contribution(s); };
   const auto perWeight = [&](std::size_t s)
@@ -216,7 +215,7 @@ double CellSamples::errorOf(
   const auto halvesDiffer = [&](std::size_t k)
   {
     return this->others[k] != NoTriangle && !this->halves.empty() &&
-      materials[this->others[k]] != materials[this->samples.surfaces[k].triangle];
+      setup.material(this->others[k]) != setup.material(this->samples.surfaces[k].triangle);
   };
   auto surface = this->samples.surfaces.begin();
   bool differ = !this->others.empty() && halvesDiffer(0);

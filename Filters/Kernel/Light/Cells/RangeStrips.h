@@ -59,8 +59,8 @@ struct CellSamples
   }
 
   /// Standard error, J, of the energy in some range units. @param shares of which those of the
-  /// samples come first @param materials of triangles
-  double errorOf(const RangeShares& shares, const SharedVector<Material>& materials) const;
+  /// samples come first
+  double errorOf(const RangeShares& shares, const ScanSetup& setup) const;
 };
 
 /// The strips of a surface. Numbers are doubles for the sake of lanes.

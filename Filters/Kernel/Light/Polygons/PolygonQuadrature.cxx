@@ -50,7 +50,7 @@ void PolygonQuadrature::begin(const BeamFrame& frame, const VisiblePolygons& see
   this->Frame = frame;
   this->Seen = &seen;
   this->Polygons.clear();
-  this->Whole = { std::numeric_limits<double>::infinity(), 0.0, 0.0, 0.0, 0.0 };
+  this->Whole = { std::numeric_limits<double>::infinity(), 0.0, 0.0, 0.0 };
   double largest = 0.0;
   seen.forEach(
     [&](const PlaneSurface& surface, const PlaneRing& ring)
@@ -63,11 +63,6 @@ void PolygonQuadrature::begin(const BeamFrame& frame, const VisiblePolygons& see
       this->Whole.mostReturned += bounds.returned * bounds.share;
       this->Whole.mostInUnit += bounds.inUnit;
       largest = std::max(largest, bounds.returned);
-      for (const std::uint32_t triangle : { surface.triangle, surface.other })
-      {
-        this->Whole.mostAlbedo = std::max(this->Whole.mostAlbedo,
-          triangle == NoTriangle ? 0.0 : this->Setup.materials[triangle].albedo());
-      }
     });
   // The cap of throughAperture() must be out of reach.
   this->Gathers = this->Setup.sensor.receiverAperture > 0.0 && largest >= 1.0 - 1e-9;
@@ -83,7 +78,7 @@ void PolygonQuadrature::begin(const BeamFrame& frame, const VisiblePolygons& see
 double PolygonQuadrature::mostReturnedBy(
   std::uint32_t triangle, double height, double mostInverse) const
 {
-  const Material& material = this->Setup.materials[triangle];
+  const Material& material = this->Setup.material(triangle);
   const Reflectance f = mostStraightBack(
     this->Setup.settings.reflectanceModel, material, std::min(1.0, height * mostInverse));
   return throughAperture(f, material, this->Setup.sensor.receiverAperture, 1.0 / mostInverse)
@@ -108,7 +103,7 @@ PolygonQuadrature::Bounds PolygonQuadrature::boundsOf(
   bounds.returned =
     this->mostReturnedBy(surface.triangle, surface.height, bounds.extent.mostInverse);
   if (surface.other != NoTriangle &&
-    this->Setup.materials[surface.other] != this->Setup.materials[surface.triangle])
+    this->Setup.material(surface.other) != this->Setup.material(surface.triangle))
   {
     bounds.returned = std::max(bounds.returned,
       this->mostReturnedBy(surface.other, surface.height, bounds.extent.mostInverse));
@@ -180,9 +175,9 @@ void PolygonQuadrature::forEachPart(F f)
         return;
       }
       if (two == NoTriangle ||
-        (this->Setup.materials[one] == this->Setup.materials[two] &&
-          this->Setup.objectIds[one] == this->Setup.objectIds[two] &&
-          this->Setup.materialIds[one] == this->Setup.materialIds[two]))
+        (this->Setup.material(one) == this->Setup.material(two) &&
+          this->Setup.objectId(one) == this->Setup.objectId(two) &&
+          this->Setup.materialId(one) == this->Setup.materialId(two)))
       {
         f(surface, one, ring, bounds);
       }

@@ -126,7 +126,7 @@ void PolygonRule::set(
 {
   Current& now = this->Now;
   now.triangle = triangle;
-  now.material = this->Setup.materials[triangle];
+  now.material = this->Setup.material(triangle);
   now.height = surface.height;
   now.leastInverse = surface.leastInverse;
   now.base = surface.inverse.z;

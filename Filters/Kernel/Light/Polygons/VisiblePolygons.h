@@ -129,22 +129,19 @@ enum class SeenByBeam : std::uint8_t
   TooMuch = 2   ///< too many triangles or polygons
 };
 
-/// Finds the polygons of one beam after the other. One per thread; the tree must outlive it.
+/// Finds the polygons of one beam after the other. One per thread; the scene must outlive it.
 class PolygonFinder
 {
 public:
   /// @param mostTriangles that may enter the disc; polygons may be three times as many
   /// @param mostCandidates that are set up for others, if more
   PolygonFinder(
-    const CollisionTree& tree, std::size_t mostTriangles, std::size_t mostCandidates = 0)
-    : Entering(tree, std::max(mostTriangles, mostCandidates))
+    const SceneTriangles& scene, std::size_t mostTriangles, std::size_t mostCandidates = 0)
+    : Entering(scene, std::max(mostTriangles, mostCandidates))
     , MostTriangles(mostTriangles)
     , MostCandidates(std::max(mostTriangles, mostCandidates))
   {
   }
-
-  /// Go on to the triangles of another tree, which must outlive the finder or the next call.
-  void follow(const CollisionTree& tree) { this->Entering.follow(tree); }
 
   void begin(const BeamFrame& frame) { this->Entering.begin(frame); }
 

@@ -71,15 +71,18 @@ void addSurface(const SeenTriangle& seen, std::uint32_t triangle, std::size_t be
 }
 }
 
-const SeenTriangle& RaySamples::see(
-  const CollisionTree& tree, std::uint32_t triangle, const Vec3& apex)
+const SeenTriangle& RaySamples::see(std::uint32_t triangle, const Vec3& apex)
 {
+  if (this->Scene.isMoved(triangle))
+  {
+    this->Moved = seeTriangle(this->Scene, triangle, apex);
+    return this->Moved;
+  }
   this->Triangles.resize(Places);
   Known& known = this->Triangles[triangle % Places];
-  if (known.triangle != triangle || known.generation != this->Generation || known.tree != &tree ||
-    known.apex != apex)
+  if (known.triangle != triangle || known.apex != apex)
   {
-    known = { triangle, this->Generation, &tree, apex, seeTriangle(tree, triangle, apex) };
+    known = { triangle, apex, seeTriangle(this->Scene, triangle, apex) };
   }
   return known.seen;
 }
@@ -191,7 +194,7 @@ void RaySamples::findOnSurface(const BeamFrame& frame, const SeenTriangle& seen,
   }
 }
 
-void RaySamples::find(const CollisionTree& tree, const BeamFrame& frame, const BeamRays& rays,
+void RaySamples::find(const BeamFrame& frame, const BeamRays& rays,
   const std::vector<std::uint32_t>& triangles, BeamSamples& samples, SampleGeometry& geometry)
 {
   samples = BeamSamples{};
@@ -207,18 +210,18 @@ void RaySamples::find(const CollisionTree& tree, const BeamFrame& frame, const B
   samples.forEachSurface(
     [&](std::uint32_t triangle, std::uint32_t begin, std::uint32_t end)
     {
-      const SeenTriangle& seen = this->see(tree, triangle, frame.origin);
+      const SeenTriangle& seen = this->see(triangle, frame.origin);
       this->findOnSurface(frame, seen, begin, end, geometry, samples);
       addSurface(seen, triangle, begin, end, geometry);
     });
   samples.coplanar = areCoplanar(samples, geometry);
 }
 
-void RaySamples::findAgain(const CollisionTree& tree, const BeamFrame& frame, const BeamRays& rays,
-  const BeamSamples& samples, SampleGeometry& geometry)
+void RaySamples::findAgain(const BeamFrame& frame, const BeamRays& rays, const BeamSamples& samples,
+  SampleGeometry& geometry)
 {
   this->findDirections(frame, rays, samples, geometry);
   samples.forEachSurface([&](std::uint32_t triangle, std::uint32_t begin, std::uint32_t end)
-    { addSurface(this->see(tree, triangle, frame.origin), triangle, begin, end, geometry); });
+    { addSurface(this->see(triangle, frame.origin), triangle, begin, end, geometry); });
 }
 }

@@ -25,24 +25,27 @@
 
 namespace avianlidar
 {
-/// Samples of one beam after the other. Reusable without allocation; one per thread.
+/// Samples of one beam after the other. Reusable without allocation; one per thread. The scene must
+/// outlive it.
 class RaySamples
 {
 public:
+  explicit RaySamples(const SceneTriangles& scene)
+    : Scene(scene)
+  {
+  }
+
   /// Find the samples of N rays, each of weight 1/N. @param triangles of each ray, NoTriangle if it
   /// hit none
-  void find(const CollisionTree& tree, const BeamFrame& frame, const BeamRays& rays,
+  void find(const BeamFrame& frame, const BeamRays& rays,
     const std::vector<std::uint32_t>& triangles, BeamSamples& samples, SampleGeometry& geometry);
 
   /// Find the geometry of known samples. @param rays all rays, in the order of their numbers
-  void findAgain(const CollisionTree& tree, const BeamFrame& frame, const BeamRays& rays,
-    const BeamSamples& samples, SampleGeometry& geometry);
-
-  /// The tree has other triangles now.
-  void forget() { ++this->Generation; }
+  void findAgain(const BeamFrame& frame, const BeamRays& rays, const BeamSamples& samples,
+    SampleGeometry& geometry);
 
 private:
-  const SeenTriangle& see(const CollisionTree& tree, std::uint32_t triangle, const Vec3& apex);
+  const SeenTriangle& see(std::uint32_t triangle, const Vec3& apex);
   void sortBySurface(const std::vector<std::uint32_t>& triangles, BeamSamples& samples);
   void sortByTriangle(const std::vector<std::uint32_t>& triangles, BeamSamples& samples);
   void findDirections(const BeamFrame& frame, const BeamRays& rays, const BeamSamples& samples,
@@ -50,20 +53,19 @@ private:
   void findOnSurface(const BeamFrame& frame, const SeenTriangle& seen, std::size_t begin,
     std::size_t end, const SampleGeometry& geometry, BeamSamples& samples);
 
+  const SceneTriangles& Scene;
   std::vector<std::uint32_t> Left, Sorted; ///< rays
   std::vector<BeamSamples::Surface> Surfaces;
   /// Last triangles, each in one place: neighbouring beams meet the same.
   struct Known
   {
     std::uint32_t triangle = NoTriangle;
-    std::uint32_t generation = 0;
-    const CollisionTree* tree = nullptr;
     Vec3 apex{ 0.0 };
     SeenTriangle seen;
   };
   static constexpr std::size_t Places = 256;
   std::vector<Known> Triangles;
-  std::uint32_t Generation = 0; ///< times that forget() was called
+  SeenTriangle Moved; ///< the last one of a mover
   std::vector<double> X, Y;
   std::vector<int> Kinds;
 };

@@ -57,11 +57,10 @@ bool isBeside(const Corners& t, const BeamFrame& frame, double slack)
 class MirrorPairs::Search
 {
 public:
-  Search(MirrorPairs& pairs, const CollisionTree& tree, const BeamFrame& frame, double farthest,
-    std::size_t most)
+  Search(MirrorPairs& pairs, const SecondaryScene& scene, double farthest, std::size_t most)
     : Pairs(pairs)
-    , Tree(tree)
-    , Frame(frame)
+    , Scene(scene.triangles)
+    , Frame(scene.frame)
     , Farthest(farthest)
     , Left(most)
   {
@@ -95,7 +94,7 @@ public:
 private:
   void look(std::uint32_t triangle)
   {
-    const Corners corners = cornersFrom(*this->Tree.mesh, triangle, this->Frame.origin);
+    const Corners corners = this->Scene.cornersFrom(triangle, this->Frame.origin);
     const double reach = this->Farthest +
       most(corners,
         [](const Vec3& p)
@@ -112,7 +111,7 @@ private:
   }
 
   MirrorPairs& Pairs;
-  const CollisionTree& Tree;
+  const SceneTriangles& Scene;
   const BeamFrame& Frame;
   double Farthest;
   std::size_t Left;
@@ -194,14 +193,19 @@ double MirrorPairs::measure(const BeamSamples& samples, const SecondaryScene& sc
   return farthest;
 }
 
-void MirrorPairs::find(
-  const CollisionTree& tree, const BeamSamples& samples, const SecondaryScene& scene)
+void MirrorPairs::find(const BeamSamples& samples, const SecondaryScene& scene)
 {
   const double farthest = this->measure(samples, scene);
-  if (farthest > 0.0 && !tree.nodes.empty())
+  if (!(farthest > 0.0))
   {
-    Search search(*this, tree, scene.frame, farthest, TrianglesPerSample * samples.size());
-    descendCone(tree, scene.frame, search, this->Stack);
+    return;
+  }
+  Search search(*this, scene, farthest, TrianglesPerSample * samples.size());
+  const std::vector<std::uint32_t>& moved = scene.triangles.moved();
+  search.leaf(moved.data(), static_cast<std::uint32_t>(moved.size()));
+  if (!scene.triangles.tree().nodes.empty())
+  {
+    descendCone(scene.triangles.tree(), scene.frame, search, this->Stack);
   }
 }
 }

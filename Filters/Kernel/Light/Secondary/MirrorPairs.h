@@ -39,7 +39,7 @@ class MirrorPairs
 {
 public:
   /// Find the surfaces of the samples (SampleGeometry) that have pairs.
-  void find(const CollisionTree& tree, const BeamSamples& samples, const SecondaryScene& scene);
+  void find(const BeamSamples& samples, const SecondaryScene& scene);
 
   /// True if a mirror path from the surface may arrive.
   bool any(std::uint32_t surface) const { return this->Starts[surface].paired; }

@@ -79,8 +79,9 @@ AVIANLIDAR_MULTIVERSION void findFacing(
 }
 }
 
-MirrorRegions::MirrorRegions(const ScanSetup& setup)
+MirrorRegions::MirrorRegions(const ScanSetup& setup, const SceneTriangles& scene)
   : Setup(setup)
+  , Scene(scene)
   , Shape(setup.sensor)
 {
 }
@@ -144,11 +145,11 @@ void MirrorRegions::begin(
     });
 }
 
-double MirrorRegions::bound(std::size_t surface) const
+double MirrorRegions::bound(std::size_t surface, double returned) const
 {
   const Surface& s = this->Surfaces[surface];
   const auto most = [&](std::uint32_t triangle)
-  { return specularBound(this->Setup, this->Setup.materials[triangle], 1.0); };
+  { return specularBound(this->Setup, this->Setup.material(triangle), 1.0, returned); };
   const std::uint32_t one = s.seen->triangle;
   return s.share * std::max(most(one), most(s.seen->other == NoTriangle ? one : s.seen->other));
 }
@@ -223,8 +224,7 @@ void MirrorRegions::fillLanes()
 
 void MirrorRegions::setSurface(Surface& surface) const
 {
-  const SeenTriangle seen =
-    seeTriangle(*this->Setup.tree, surface.seen->triangle, this->Frame.origin);
+  const SeenTriangle seen = seeTriangle(this->Scene, surface.seen->triangle, this->Frame.origin);
   surface.normal = seen.normal;
   surface.height = seen.height;
   surface.along = { this->Frame.tanHalf * glm::dot(surface.normal, this->Frame.e1),

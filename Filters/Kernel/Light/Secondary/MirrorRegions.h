@@ -39,7 +39,7 @@ namespace avianlidar
 class MirrorRegions
 {
 public:
-  explicit MirrorRegions(const ScanSetup& setup);
+  MirrorRegions(const ScanSetup& setup, const SceneTriangles& scene);
 
   /// False if a beam sees too many polygons.
   static bool takes(const VisiblePolygons& seen);
@@ -51,7 +51,7 @@ public:
   std::size_t surfaces() const { return this->Surfaces.size(); }
 
   /// Bound of the sum of the throughputs of the mirror paths that start on a surface.
-  double bound(std::size_t surface) const;
+  double bound(std::size_t surface, double returned) const;
 
   /// Append the paths that start on a surface and end on another. @return samples drawn for them
   std::size_t search(std::size_t surface, std::vector<MirrorPath>& paths);
@@ -110,6 +110,7 @@ private:
   bool findPath(const Region& region, const PlanePoint& p, MirrorPath& path);
 
   const ScanSetup& Setup;
+  const SceneTriangles& Scene;
   const BeamShape Shape;
   std::vector<Surface> Surfaces;
   std::vector<Facet> Facets;   ///< by surface

@@ -15,6 +15,7 @@
 #include "BeamRays.h"
 #include "BeamTracer.h"
 #include "ParallelLoop.h"
+#include "SceneTriangles.h"
 #include "SecondaryTrace.h"
 #include "Throughput.h"
 
@@ -27,6 +28,7 @@ class MirrorRegions;
 /// Inputs for tracing from the hits of a beam.
 struct SecondaryScene
 {
+  const SceneTriangles& triangles;
   const BeamFrame& frame;
   const BeamRays& rays;
   const SampleGeometry& geometry;
@@ -49,6 +51,7 @@ struct SecondaryBeam
   std::function<void(MirrorRegions&)> regions = {};
   std::function<BeamTracer&()> tracer = {}; ///< set to the beam, for regions
   BeamAir* air = nullptr;                   ///< if the beam meets media that do not fill the scene
+  double silentBelow = 0.0;                 ///< J: if all paths bring less, the beam has no echo
   bool endsAreSeen = false; ///< what the regions know of surfaces is visible, all of it
 
   /// Throws WorkStopped if the work is no longer wanted: a beam of 100,000 rays takes longer than a

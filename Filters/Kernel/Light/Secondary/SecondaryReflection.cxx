@@ -23,10 +23,11 @@ double sumOf(const std::vector<double>& values)
 }
 }
 
-SecondaryReflection::SecondaryReflection(const ScanSetup& setup)
+SecondaryReflection::SecondaryReflection(const ScanSetup& setup, const SceneTriangles& scene)
   : Setup(setup)
+  , Shape(setup.sensor)
   , Finder(setup)
-  , Regions(setup)
+  , Regions(setup, scene)
 {
 }
 
@@ -58,25 +59,29 @@ void SecondaryReflection::prepare(const Beam& beam, bool byRegions)
 
 double SecondaryReflection::bound(const BeamSamples& samples, const Throughput& direct) const
 {
-  // No ray returns more than the albedo; from one plane there are mirror paths alone.
-  const bool mirrorsOnly = samples.coplanar && this->Setup.sensor.receiverAperture <= 0.0;
+  const bool gathers = this->Setup.sensor.receiverAperture > 0.0;
+  const double returned = mostReturned(this->Setup, samples.nearest);
+  const double overMirror = mostOverMirror(this->Setup, this->Shape, samples.nearest);
   double budget = 0.0;
-  double mirrors = 0.0;
+  double most = 0.0;
   samples.forEachSurface(
     [&](std::uint32_t triangle, std::uint32_t begin, std::uint32_t end)
     {
-      const Material& material = this->Setup.materials[triangle];
+      const Material& material = this->Setup.material(triangle);
       const double albedo = material.albedo();
       for (std::uint32_t i = begin; i < end; ++i)
       {
         budget += samples.weight[i] * std::max(0.0, albedo - direct.reflected[i]);
-      }
-      for (std::uint32_t i = begin; mirrorsOnly && i < end; ++i)
-      {
-        mirrors += samples.weight[i] * specularBound(this->Setup, material, samples.cosine[i]);
+        const Reflectance passed =
+          reflectanceBound(this->Setup.settings.reflectanceModel, material, samples.cosine[i]);
+        // Through an aperture by connections and by short paths, whatever the incidence.
+        const double matt = gathers
+          ? 2.0 * (samples.cosine[i] > 0.0 ? passed.diffuse / samples.cosine[i] : 1.0)
+          : passed.diffuse;
+        most += samples.weight[i] * (matt * returned + passed.specular * overMirror);
       }
     });
-  return mirrorsOnly ? std::min(mirrors, budget) : budget;
+  return std::min(budget, most * SurelyAbove);
 }
 
 SecondaryReflection::BothWays SecondaryReflection::mirrorThroughput(
@@ -84,8 +89,8 @@ SecondaryReflection::BothWays SecondaryReflection::mirrorThroughput(
 {
   const ReflectanceModel model = this->Setup.settings.reflectanceModel;
   const double aperture = this->Setup.sensor.receiverAperture;
-  const Material& first = this->Setup.materials[path.first];
-  Material second = this->Setup.materials[path.triangle];
+  const Material& first = this->Setup.material(path.first);
+  Material second = this->Setup.material(path.triangle);
   ReflectionGeometry back = path.second;
   if (aperture > 0.0)
   {
@@ -128,7 +133,7 @@ double SecondaryReflection::unsureShare(const MirrorPath& path) const
     return 0.0; // the paper's receiver takes no account of where light arrives
   }
   const double step = path.length - path.rangeOne - path.range;
-  const double deviation = step / std::sqrt(this->Setup.materials[path.first].kp);
+  const double deviation = step / std::sqrt(this->Setup.material(path.first).kp);
   const double across = sensor.halfBeamwidthAcross;
   const double narrower =
     across > 0.0 ? std::min(across, sensor.halfBeamwidth) : sensor.halfBeamwidth;
@@ -139,7 +144,7 @@ double SecondaryReflection::shortThroughput(const Beam& beam, const ShortPath& p
 {
   const ReflectanceModel model = this->Setup.settings.reflectanceModel;
   const Material first = this->Materials[path.one];
-  const Material& second = this->Setup.materials[path.triangle];
+  const Material& second = this->Setup.material(path.triangle);
   ReflectionGeometry back = path.second;
   back.cosIncidence = back.cosOutgoing;
   const double unlike =
@@ -182,13 +187,13 @@ void SecondaryReflection::measure(const Beam& beam)
   samples.forEachSurface(
     [&](std::uint32_t triangle, std::uint32_t begin, std::uint32_t end)
     {
-      const Material& material = this->Setup.materials[triangle];
+      const Material& material = this->Setup.material(triangle);
       this->Materials.fill(begin, end, material);
       for (std::uint32_t i = begin; i < end; ++i)
       {
         this->Triangles[i] = triangle;
-        this->SpecularBounds[i] =
-          samples.weight[i] * specularBound(this->Setup, material, samples.cosine[i]);
+        this->SpecularBounds[i] = samples.weight[i] *
+          specularBound(this->Setup, material, samples.cosine[i], this->OverMirror);
       }
     });
   connectionThroughputs(this->Setup, beam, this->Materials, this->ConnectionThroughputs);
@@ -200,7 +205,7 @@ double SecondaryReflection::mostOfMirrors(bool byRegions) const
   double sum = byRegions ? 0.0 : sumOf(this->SpecularBounds);
   for (std::size_t k = 0; byRegions && k < this->Regions.surfaces(); ++k)
   {
-    sum += this->Regions.bound(k);
+    sum += this->Regions.bound(k, this->OverMirror);
   }
   return sum;
 }
@@ -217,7 +222,7 @@ double SecondaryReflection::placeMirrors(const Beam& beam, double least)
   std::size_t drawn = 0;
   for (std::size_t k = 0; k < trace.searched.size(); ++k)
   {
-    const double most = this->Regions.bound(k);
+    const double most = this->Regions.bound(k, this->OverMirror);
     if (!(most > 0.0 && most >= least))
     {
       left += most;
@@ -354,7 +359,7 @@ AVIANLIDAR_MULTIVERSION void energiesOfAll(
 }
 }
 
-void SecondaryReflection::collect(const Beam& beam, std::vector<SecondaryPath>& paths, double& lost)
+bool SecondaryReflection::collect(const Beam& beam, std::vector<SecondaryPath>& paths, double& lost)
 {
   const EchoSettings& settings = this->Setup.settings;
   const double pulseEnergy = this->Setup.sensor.pulseEnergy;
@@ -363,11 +368,20 @@ void SecondaryReflection::collect(const Beam& beam, std::vector<SecondaryPath>& 
   {
     beam.regions(this->Regions);
   }
+  this->OverMirror = mostOverMirror(this->Setup, this->Shape, beam.nearest);
   this->prepare(beam, byRegions);
   this->measure(beam);
   // What the strongest path can carry.
   const double most = pulseEnergy * mostAir(beam.nearest, settings.attenuationCoefficient);
   const bool gathers = this->Setup.sensor.receiverAperture > 0.0;
+  const double others = sumOf(this->ConnectionThroughputs) + this->mostOfShortPaths(beam);
+  const auto isSilent = [&](double ofMirrors)
+  {
+    const double all = most * (ofMirrors + others);
+    const bool silent = all < beam.silentBelow;
+    lost = silent ? all : lost;
+    return silent;
+  };
   double threshold = 0.0;
   if (dropsFaintPaths(settings) && settings.lightEnergyThreshold == LightEnergyThreshold::Limit)
   {
@@ -376,13 +390,11 @@ void SecondaryReflection::collect(const Beam& beam, std::vector<SecondaryPath>& 
   else if (dropsFaintPaths(settings))
   {
     const double budget = lightEnergyTolerance(this->Setup);
-    const double all = most *
-      (this->mostOfMirrors(byRegions) + sumOf(this->ConnectionThroughputs) +
-        this->mostOfShortPaths(beam));
+    const double all = most * (this->mostOfMirrors(byRegions) + others);
     if (all + lost < budget)
     {
       lost += all;
-      return;
+      return true;
     }
     // Through an aperture mirror paths go back, and short paths are as many as connections.
     threshold = budget / (pathsOfABeam(settings) * (gathers ? 2.0 : 1.0));
@@ -397,12 +409,21 @@ void SecondaryReflection::collect(const Beam& beam, std::vector<SecondaryPath>& 
       threshold > 0.0 && settings.lightEnergyThreshold != LightEnergyThreshold::Limit;
     const double part = MirrorPart * lightEnergyTolerance(this->Setup);
     const double ofSurface = part / static_cast<double>(this->Regions.surfaces());
-    lost += most * this->placeMirrors(beam, throughputOf(shares ? ofSurface : threshold));
+    const double left = this->placeMirrors(beam, throughputOf(shares ? ofSurface : threshold));
+    if (isSilent(left + sumOf(this->MirrorThroughputs)))
+    {
+      return false;
+    }
+    lost += most * left;
     ofMirrors = shares ? part / std::max(1.0, this->NumberWanted) : threshold;
     traceRegions(beam, this->MirrorThroughputs, throughputOf(ofMirrors));
   }
   else
   {
+    if (isSilent(this->mostOfMirrors(false)))
+    {
+      return false;
+    }
     traceMirrors(this->Setup, beam, this->SpecularBounds, throughputOf(threshold), this->Pairs);
     this->measureMirrors(beam);
   }
@@ -427,6 +448,7 @@ void SecondaryReflection::collect(const Beam& beam, std::vector<SecondaryPath>& 
   paths.erase(std::remove_if(paths.begin(), paths.end(),
                 [](const SecondaryPath& path) { return !(path.energy > 0.0); }),
     paths.end());
+  return true;
 }
 
 /// Cut what passes a ray's budget, which is what its direct echo leaves of the albedo: the random

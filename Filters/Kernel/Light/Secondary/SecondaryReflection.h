@@ -80,14 +80,17 @@ public:
   using Beam = SecondaryBeam;
   using Scene = SecondaryScene;
 
-  explicit SecondaryReflection(const ScanSetup& setup);
+  SecondaryReflection(const ScanSetup& setup, const SceneTriangles& scene);
 
-  /// Bound of the sum of the throughputs of all paths that start from the samples.
+  /// Bound of the sum of the throughputs of all paths of a beam. @param samples of its direct echo,
+  /// rays or not. Paths that start from rays may bring somewhat more by chance.
   double bound(const BeamSamples& samples, const Throughput& direct) const;
 
   /// Set the paths of the beam: mirror paths in the order of the samples, then connections.
   /// @param lost sum of the bounds of dropped paths, J; those dropped here are added
-  void collect(const Beam& beam, std::vector<SecondaryPath>& paths, double& lost);
+  /// @return false if all paths together, whatever is in their way, bring less than
+  /// SecondaryBeam::silentBelow: none is traced then, and `lost` is the bound of all
+  bool collect(const Beam& beam, std::vector<SecondaryPath>& paths, double& lost);
 
 private:
   /// Throughputs of a mirror path and, through an aperture, of the same path back.
@@ -109,12 +112,14 @@ private:
   void cutToBudget(const Beam& beam, std::vector<SecondaryPath>& paths);
 
   const ScanSetup& Setup;
+  const BeamShape Shape;
   ConnectionFinder Finder;
   MirrorPairs Pairs;
   MirrorRegions Regions;
   std::vector<std::uint32_t> Triangles;      ///< by sample
   MaterialLanes Materials;                   ///< by sample
   std::vector<double> SpecularBounds;        ///< bounds of mirror paths' throughputs, by sample
+  double OverMirror = 1.0;                   ///< mostOverMirror()
   double NumberWanted = 0.0;                 ///< of mirror paths
   std::vector<char> Wanted;                  ///< by surface: its mirror paths may matter
   std::vector<double> MirrorThroughputs;     ///< by mirror path, both ways, if it is not blocked

@@ -53,7 +53,7 @@ Hit pathEnd(const ScanSetup& setup, const SecondaryBeam& beam, const SecondarySc
   {
     return {};
   }
-  const SeenTriangle triangle = seeTriangle(*setup.tree, end.triangle, scene.frame.origin);
+  const SeenTriangle triangle = seeTriangle(scene.triangles, end.triangle, scene.frame.origin);
   if (glm::dot(triangle.normal, direction) >= 0.0)
   {
     return {}; // it meets the side that looks away from the lidar
@@ -77,7 +77,7 @@ void traceMirror(const ScanSetup& setup, const SecondaryBeam& beam, const Second
     return;
   }
   beam.trace.mirror[hit] = MirrorEnd::Arrives;
-  const SeenTriangle end = seeTriangle(*setup.tree, found.triangle, scene.frame.origin);
+  const SeenTriangle end = seeTriangle(scene.triangles, found.triangle, scene.frame.origin);
   // The range that was found, not the plane's once more: seen edge-on they have little in common.
   const Vec3 point = from.point + found.range * direction;
   const double range = safeLength(point);
@@ -119,7 +119,7 @@ void traceShortPath(const ScanSetup& setup, const SecondaryBeam& beam, const Sec
   {
     return;
   }
-  const SeenTriangle end = seeTriangle(*setup.tree, found.triangle, scene.frame.origin);
+  const SeenTriangle end = seeTriangle(scene.triangles, found.triangle, scene.frame.origin);
   const Vec3 point = from.point + found.range * direction;
   const double range = safeLength(point);
   const ReflectionGeometry first =
@@ -172,7 +172,7 @@ void traceMirrors(const ScanSetup& setup, const SecondaryBeam& beam,
   const bool constrained = setup.settings.beamConstraint;
   if (constrained)
   {
-    pairs.find(*setup.tree, beam.samples, scene);
+    pairs.find(beam.samples, scene);
   }
   for (; hit < beam.samples.size(); ++hit)
   {

@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file SceneTriangles.h
+ * @brief The triangles that a beam may meet: those of the collision tree, and those of movers as
+ * they stand when the beam is fired.
+ *
+ * Triangles of the tree keep their numbers. The triangles of all movers have the numbers after
+ * them, whether they are placed or not, so that a number means one triangle throughout a scan.
+ *
+ * Source: none.
+ * Valid: a mover's triangle takes the plane of no other (CoincidentFaces.h).
+ * Test: TestMovedBeams.cxx.
+ */
+#ifndef avianlidar_SceneTriangles_h
+#define avianlidar_SceneTriangles_h
+
+#include "CollisionTree.h"
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+namespace avianlidar
+{
+/// One per thread; the tree must outlive it.
+class SceneTriangles
+{
+public:
+  explicit SceneTriangles(const CollisionTree& tree)
+    : Tree(tree)
+    , Mesh(*tree.mesh)
+    , Fixed(static_cast<std::uint32_t>(tree.mesh->size()))
+  {
+  }
+
+  const CollisionTree& tree() const { return this->Tree; }
+
+  /// Numbers of the triangles that movers have in the beam, in rising order.
+  const std::vector<std::uint32_t>& moved() const { return this->Numbers; }
+
+  /// A tree of these, by their places among them; null: they are few.
+  const CollisionTree* movedTree() const { return this->MovedTree.get(); }
+
+  /// Remove all movers.
+  void clear();
+
+  /// Place a mover, after those with lower numbers. @param first number of its first triangle
+  /// @param mesh its triangles in scene coordinates, m
+  void place(std::uint32_t first, const TriangleMesh& mesh);
+
+  /// After the last mover.
+  void finish();
+
+  /// True if the triangle is one of the tree, or of a mover that is placed.
+  bool holds(std::uint32_t triangle) const
+  {
+    return triangle < this->Fixed ||
+      std::binary_search(this->Numbers.begin(), this->Numbers.end(), triangle);
+  }
+
+  bool isMoved(std::uint32_t triangle) const { return triangle >= this->Fixed; }
+
+  /// In scene coordinates, m.
+  const Vec3& corner(std::uint32_t triangle, int c) const
+  {
+    return this->isMoved(triangle) ? this->Moved[triangle - this->Fixed][c]
+                                   : this->Mesh.corner(triangle, c);
+  }
+
+  /// The corners relative to a point.
+  Corners cornersFrom(std::uint32_t triangle, const Vec3& point) const
+  {
+    return { this->corner(triangle, 0) - point, this->corner(triangle, 1) - point,
+      this->corner(triangle, 2) - point };
+  }
+
+  /// See CollisionTree.
+  bool coincides(std::uint32_t triangle) const
+  {
+    return !this->isMoved(triangle) && this->Tree.coincides(triangle);
+  }
+  std::uint32_t planeOwner(std::uint32_t triangle) const
+  {
+    return this->isMoved(triangle) ? triangle : this->Tree.planeOwner(triangle);
+  }
+
+  /// The plane on which the ranges of a triangle lie: its own, or that which it takes of another.
+  /// @param corners from the point
+  TrianglePlane planeOf(std::uint32_t triangle, const Corners& corners, const Vec3& point) const
+  {
+    const std::uint32_t owner = this->planeOwner(triangle);
+    return owner == triangle
+      ? avianlidar::planeOf(corners)
+      : avianlidar::planeOf(corners, avianlidar::planeOf(this->cornersFrom(owner, point)));
+  }
+
+private:
+  const CollisionTree& Tree;
+  const TriangleMesh& Mesh;
+  const std::uint32_t Fixed;              ///< number of triangles in the tree
+  std::vector<std::array<Vec3, 3>> Moved; ///< corners of movers' triangles, once placed
+  std::vector<std::uint32_t> Numbers;
+  std::shared_ptr<const CollisionTree> MovedTree;
+};
+}
+
+#endif
