@@ -61,7 +61,7 @@ const BlockHits& BeamTracer::traceBlock(const BeamBlock& block, TraceMode mode)
   }
   work.triangles.resize(std::max(work.triangles.size(), block.size * block.rays));
   work.used = 0;
-  if (this->Tree->nodes.empty() || block.size == 0)
+  if (this->Tree->empty() || block.size == 0)
   {
     return work.found;
   }
@@ -112,7 +112,7 @@ template <class Visitor>
 void BeamTracer::search(Visitor& visitor, const Vec3& origin, const Vec3& d, double margin)
 {
   ++this->Counters.raysTraced;
-  if (!this->Tree->nodes.empty())
+  if (!this->Tree->empty())
   {
     this->Counters.nodesVisited +=
       descendRay(*this->Tree, this->Frame.origin, origin, d, margin, visitor, this->Work->stack);

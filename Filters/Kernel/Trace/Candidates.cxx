@@ -31,7 +31,7 @@ void BeamCandidates::begin(
   this->Order.clear();
   this->Groups.clear();
   this->Now = { 0, 0 };
-  const std::size_t beams = tree.nodes.empty() ? 0 : count;
+  const std::size_t beams = tree.empty() ? 0 : count;
   for (std::size_t first = 0; first < beams;)
   {
     this->Stretch.clear();

@@ -164,7 +164,7 @@ private:
       {
         if (!this->State.known.find(k))
         {
-          for (const std::uint32_t point : this->Tree.leafTriangles[k].corners)
+          for (const std::uint32_t point : this->Mesh.triangles[this->Tree.order[k]])
           {
             prefetch(&this->Mesh.points[point]);
           }
@@ -265,7 +265,7 @@ PacketCost tracePacket(const CollisionTree& tree, RayPacket& packet, PacketWorks
 {
   PacketCost cost;
   std::fill(packet.triangle, packet.triangle + packet.count, NoTriangle);
-  if (tree.nodes.empty())
+  if (tree.empty())
   {
     return cost;
   }

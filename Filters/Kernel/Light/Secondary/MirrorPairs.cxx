@@ -198,7 +198,7 @@ void MirrorPairs::find(
   const CollisionTree& tree, const BeamSamples& samples, const SecondaryScene& scene)
 {
   const double farthest = this->measure(samples, scene);
-  if (farthest > 0.0 && !tree.nodes.empty())
+  if (farthest > 0.0 && !tree.empty())
   {
     Search search(*this, tree, scene.frame, farthest, TrianglesPerSample * samples.size());
     descendCone(tree, scene.frame, search, this->Stack);
