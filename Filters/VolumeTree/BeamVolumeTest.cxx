@@ -4,7 +4,6 @@
 #include "TriangleTest.h"
 
 #include <algorithm>
-#include <limits>
 
 namespace avianlidar
 {

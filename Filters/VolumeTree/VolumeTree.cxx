@@ -179,11 +179,8 @@ std::shared_ptr<const CollisionTree> buildVolumeTree(std::shared_ptr<const Trian
   {
     return nullptr;
   }
-  for (const BinaryNode& node : own->nodes)
-  {
-    tree->leaves += node.children == 0 ? 1 : 0;
-    tree->depth = node.depth; // the last is one of the deepest
-  }
+  tree->leaves = static_cast<std::uint32_t>((own->nodes.size() + 1) / 2);
+  tree->depth = own->nodes.empty() ? 0 : own->nodes.back().depth;
   const bool finished = options.boundingVolume == BoundingVolumeType::OBB
     ? fit(orientedBox, *tree->mesh, tree->order, part(Built, 1.0), threads, *own)
     : fit(boundingSphere, *tree->mesh, tree->order, part(Built, 1.0), threads, *own);

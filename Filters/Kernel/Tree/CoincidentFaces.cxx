@@ -4,9 +4,9 @@
 #include "Traversal.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <cstring>
-#include <numeric>
 
 namespace avianlidar
 {
@@ -187,19 +187,55 @@ AVIANLIDAR_MULTIVERSION std::uint32_t childrenNear(
   return bits;
 }
 
-using NumberPair = std::pair<std::uint32_t, std::uint32_t>;
+/// Sets of triangles that coincide, which several threads unite. The root of a set is its lowest
+/// number, whatever the order of the pairs.
+class Forest
+{
+public:
+  explicit Forest(std::size_t size)
+    : Parents(size)
+  {
+    for (std::size_t i = 0; i < size; ++i)
+    {
+      this->Parents[i] = static_cast<std::uint32_t>(i);
+    }
+  }
+
+  std::uint32_t rootOf(std::uint32_t triangle)
+  {
+    for (std::uint32_t parent = this->Parents[triangle]; parent != triangle;
+         parent = this->Parents[triangle])
+    {
+      this->Parents[triangle] = this->Parents[parent].load(); // shortens the way
+      triangle = parent;
+    }
+    return triangle;
+  }
+
+  void unite(std::uint32_t one, std::uint32_t two)
+  {
+    for (one = this->rootOf(one), two = this->rootOf(two); one != two;
+         one = this->rootOf(one), two = this->rootOf(two))
+    {
+      std::uint32_t higher = std::max(one, two);
+      this->Parents[higher].compare_exchange_strong(higher, std::min(one, two));
+    }
+  }
+
+private:
+  std::vector<std::atomic<std::uint32_t>> Parents;
+};
 
 /// Descends the tree with the box of one node, and compares the triangles of its leaves with those
 /// of the leaves that it meets.
 class LeafSearch : public WidePolicy
 {
 public:
-  LeafSearch(const CollisionTree& tree, const std::vector<Face>& faces, float slack,
-    std::vector<NumberPair>& pairs)
+  LeafSearch(const CollisionTree& tree, const std::vector<Face>& faces, float slack, Forest& sets)
     : Tree(tree)
     , Faces(faces)
     , Slack(slack)
-    , Pairs(pairs)
+    , Sets(sets)
   {
   }
 
@@ -284,16 +320,16 @@ private:
     const Vec3 n(a.normal[0], a.normal[1], a.normal[2]);
     const double level = tolerance + tilt * glm::dot(glm::abs(two.a), Vec3(1.0));
     if (!(std::fabs(glm::dot(n, two.a)) > level) && !isBeside(one, two) && !isBeside(two, one) &&
-      coincide(one, two, tolerance))
+      this->Sets.rootOf(lower) != this->Sets.rootOf(higher) && coincide(one, two, tolerance))
     {
-      this->Pairs.emplace_back(lower, higher);
+      this->Sets.unite(lower, higher);
     }
   }
 
   const CollisionTree& Tree;
   const std::vector<Face>& Faces;
   const float Slack; ///< m, most that boxes may lie apart
-  std::vector<NumberPair>& Pairs;
+  Forest& Sets;
   TraversalStack Stack;
   const WideNode* Parent = nullptr;
   int Lane = 0;
@@ -309,6 +345,7 @@ public:
     , Mesh(*tree.mesh)
     , Team(team)
     , Faces(tree.order.size())
+    , Sets(tree.order.size())
   {
   }
 
@@ -324,19 +361,17 @@ public:
           this->Faces[k] = faceOf(this->Mesh, this->Tree.order[k]);
         }
       });
-    float widest = 0.0f;
-    for (const Face& face : this->Faces)
-    {
-      widest = std::max(widest, face.tolerance);
-    }
+    const float widest = std::max_element(this->Faces.begin(), this->Faces.end(),
+      [](const Face& a, const Face& b) {
+        return a.tolerance < b.tolerance;
+      })->tolerance;
     const float slack = 2.0f * widest + WideRounding * static_cast<float>(tree.wide.extent);
-    std::vector<std::vector<NumberPair>> pairs(static_cast<std::size_t>(this->Team.threads()));
     constexpr std::size_t nodes = 64;
     const bool finished = this->Team.loop(
       tree.wide.nodes.size(), nodes,
-      [&](std::size_t begin, std::size_t end, int thread)
+      [&](std::size_t begin, std::size_t end, int)
       {
-        LeafSearch search(this->Tree, this->Faces, slack, pairs[static_cast<std::size_t>(thread)]);
+        LeafSearch search(this->Tree, this->Faces, slack, this->Sets);
         WideNode root;
         root.clear();
         root.first[0] = 0;
@@ -358,38 +393,15 @@ public:
         }
       },
       keepGoing);
-    this->Parents.resize(this->Faces.size());
-    std::iota(this->Parents.begin(), this->Parents.end(), 0u);
-    bool found = false;
-    for (const std::vector<NumberPair>& some : pairs)
-    {
-      for (const auto& [lower, higher] : some)
-      {
-        // The root of a set is its lowest number, whatever the order of the pairs.
-        const auto roots = std::minmax({ this->rootOf(lower), this->rootOf(higher) });
-        this->Parents[roots.second] = roots.first;
-        found = true;
-      }
-    }
-    if (finished && found)
+    if (finished)
     {
       tree.planeOwners = this->owners();
-      tree.planeDepth = 2.0 * widest;
+      tree.planeDepth = tree.planeOwners.empty() ? 0.0 : 2.0 * widest;
     }
     return finished;
   }
 
 private:
-  std::uint32_t rootOf(std::uint32_t triangle)
-  {
-    while (this->Parents[triangle] != triangle)
-    {
-      // Shortens the way.
-      triangle = this->Parents[triangle] = this->Parents[this->Parents[triangle]];
-    }
-    return triangle;
-  }
-
   double leastAltitudeOf(std::uint32_t triangle) const
   {
     const Corners t = cornersOf(this->Mesh, triangle);
@@ -417,25 +429,28 @@ private:
     return true;
   }
 
+  /// Empty if nothing coincides.
   std::vector<std::uint32_t> owners()
   {
+    bool found = false;
     const auto size = static_cast<std::uint32_t>(this->Faces.size());
     std::vector<std::uint32_t> owners(size, NoTriangle); // of the roots of sets of several
     for (std::uint32_t t = 0; t < size; ++t)
     {
-      const std::uint32_t root = this->rootOf(t);
+      const std::uint32_t root = this->Sets.rootOf(t);
       std::uint32_t& owner = owners[root];
       if (root != t)
       {
+        found = true;
         owner = owner == NoTriangle ? root : owner;
         constexpr double clearly = 1.001; // copies have the plane of the first
         owner = this->leastAltitudeOf(t) > clearly * this->leastAltitudeOf(owner) ? t : owner;
       }
     }
-    std::vector<std::uint32_t> result(size, NoTriangle);
-    for (std::uint32_t t = 0; t < size; ++t)
+    std::vector<std::uint32_t> result(found ? size : 0, NoTriangle);
+    for (std::uint32_t t = 0; t < result.size(); ++t)
     {
-      const std::uint32_t owner = owners[this->rootOf(t)];
+      const std::uint32_t owner = owners[this->Sets.rootOf(t)];
       result[t] = owner != NoTriangle && this->fits(t, owner) ? owner : NoTriangle;
     }
     return result;
@@ -444,8 +459,8 @@ private:
   const CollisionTree& Tree;
   const TriangleMesh& Mesh;
   ParallelTeam& Team;
-  std::vector<Face> Faces;            ///< in the tree's order
-  std::vector<std::uint32_t> Parents; ///< sets of triangles that coincide, as a forest
+  std::vector<Face> Faces; ///< in the tree's order
+  Forest Sets;
 };
 }
 

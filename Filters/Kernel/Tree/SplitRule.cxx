@@ -200,19 +200,12 @@ std::size_t splitTriangles(SplitRule rule, LaneBox* from, LaneBox* to, std::size
   const LaneBox& centers, std::uint32_t depth)
 {
   constexpr std::uint32_t deepest = 96;
-  std::size_t first = 0;
-  if (depth < deepest && rule == SplitRule::Median)
-  {
-    first = splitAtMedian(from, to, count, static_cast<int>(depth % 3));
-  }
-  else if (depth < deepest && rule == SplitRule::PrincipalPlane)
-  {
-    first = splitAtPrincipalPlane(from, to, count);
-  }
-  else if (depth < deepest && rule == SplitRule::SurfaceAreaHeuristic)
-  {
-    first = splitBySurfaceArea(from, to, count, centers);
-  }
+  rule = depth < deepest ? rule : SplitRule::Halves;
+  const std::size_t first = rule == SplitRule::Median
+    ? splitAtMedian(from, to, count, static_cast<int>(depth % 3))
+    : rule == SplitRule::PrincipalPlane       ? splitAtPrincipalPlane(from, to, count)
+    : rule == SplitRule::SurfaceAreaHeuristic ? splitBySurfaceArea(from, to, count, centers)
+                                              : 0;
   return first > 0 ? first : splitInHalves(from, to, count);
 }
 }

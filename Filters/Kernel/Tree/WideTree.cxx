@@ -158,12 +158,12 @@ void EntryPoints::add(const WideNode& node, int lane, float distance)
 void EntryPoints::addLeaf(std::uint32_t first, std::uint32_t count)
 {
   constexpr float Everywhere = 1e30f;
-  const int i = this->nextLane(0.0f);
-  WideNode& target = this->nodes.back();
-  target.x[i] = target.y[i] = target.z[i] = 0.0f;
-  target.halfX[i] = target.halfY[i] = target.halfZ[i] = Everywhere;
-  target.first[i] = first;
-  target.count[i] = count;
+  WideNode node;
+  node.clear();
+  node.halfX[0] = node.halfY[0] = node.halfZ[0] = Everywhere;
+  node.first[0] = first;
+  node.count[0] = count;
+  this->add(node, 0, 0.0f);
 }
 
 bool wideningFor(const WideTree& tree, const Vec3& offset, float& widening)
