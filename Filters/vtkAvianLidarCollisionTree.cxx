@@ -227,30 +227,19 @@ bool vtkAvianLidarCollisionTree::MakeOutputs(
 //------------------------------------------------------------------------------
 int vtkAvianLidarCollisionTree::GetNumberOfNodes() const
 {
-  return this->Internals->Tree ? static_cast<int>(this->Internals->Tree->nodes.size()) : 0;
+  return std::max(0, 2 * this->GetNumberOfLeaves() - 1);
 }
 
 //------------------------------------------------------------------------------
 int vtkAvianLidarCollisionTree::GetNumberOfLeaves() const
 {
-  if (!this->Internals->Tree)
-  {
-    return 0;
-  }
-  const auto& nodes = this->Internals->Tree->nodes;
-  return static_cast<int>(
-    std::count_if(nodes.begin(), nodes.end(), [](const auto& n) { return n.isLeaf(); }));
+  return this->Internals->Tree ? static_cast<int>(this->Internals->Tree->leaves) : 0;
 }
 
 //------------------------------------------------------------------------------
 int vtkAvianLidarCollisionTree::GetDepth() const
 {
-  if (!this->Internals->Tree || this->Internals->Tree->nodes.empty())
-  {
-    return 0;
-  }
-  // Breadth-first numbering: the last node is one of the deepest.
-  return static_cast<int>(this->Internals->Tree->depths().back());
+  return this->Internals->Tree ? static_cast<int>(this->Internals->Tree->depth) : 0;
 }
 
 //------------------------------------------------------------------------------

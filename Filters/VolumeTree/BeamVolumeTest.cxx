@@ -4,82 +4,20 @@
 #include "TriangleTest.h"
 
 #include <algorithm>
-#include <limits>
 
 namespace avianlidar
 {
 namespace
 {
-/// A box relative to the apex, in coordinates of its own, widened by the margin of TriangleTest.h.
-struct LocalBox
-{
-  Vec3 center;
-  Vec3 half;
-};
-
 double sumOfMagnitudes(const Vec3& v)
 {
   return std::fabs(v.x) + std::fabs(v.y) + std::fabs(v.z);
-}
-
-LocalBox localBox(const AABB& volume, const Vec3& apex)
-{
-  const Vec3 lower = volume.lower - apex;
-  const Vec3 upper = volume.upper - apex;
-  const double margin = HitMargin * (sumOfMagnitudes(lower) + sumOfMagnitudes(upper));
-  return { 0.5 * (lower + upper), 0.5 * (upper - lower) + Vec3(margin) };
-}
-
-Vec3 inAxes(const OBB& volume, const Vec3& v)
-{
-  return { glm::dot(volume.axes[0], v), glm::dot(volume.axes[1], v), glm::dot(volume.axes[2], v) };
-}
-
-LocalBox localBox(const OBB& volume, const Vec3& apex)
-{
-  const Vec3 center = volume.center - apex;
-  const double margin = 2.0 * HitMargin * (sumOfMagnitudes(center) + sumOfMagnitudes(volume.half));
-  return { inAxes(volume, center), volume.half + Vec3(margin) };
-}
-
-/// Distance from the coordinates' origin to a box.
-double distanceTo(const LocalBox& box)
-{
-  const Vec3 outside = glm::max(glm::abs(box.center) - box.half, Vec3(0.0));
-  return std::sqrt(glm::dot(outside, outside));
 }
 
 /// Lower bound of ranges from a distance: the last margin, for the rounding of the distance itself.
 double asLowerBound(double distance)
 {
   return distance * (1.0 - HitMargin);
-}
-
-/// Entry of a ray into a box widened by `margin`, or false.
-bool slabs(
-  const LocalBox& box, const Vec3& origin, const Vec3& inverse, double margin, double& nearest)
-{
-  const Vec3 half = box.half + Vec3(margin);
-  const Vec3 center = box.center - origin;
-  double from = 0.0;
-  double to = std::numeric_limits<double>::infinity();
-  for (int axis = 0; axis < 3; ++axis)
-  {
-    const double middle = center[axis] * inverse[axis];
-    const double width = std::fabs(half[axis] * inverse[axis]);
-    from = std::max(from, middle - width);
-    to = std::min(to, middle + width);
-  }
-  nearest = asLowerBound(from);
-  return from <= to;
-}
-
-/// 1 / d with components so small that it would overflow replaced; a box's margin is far greater
-/// than the difference.
-double safeInverse(double d)
-{
-  constexpr double Smallest = 1e-150;
-  return 1.0 / (std::fabs(d) < Smallest ? std::copysign(Smallest, d) : d);
 }
 
 /// True if a rectangle about (x, y) may meet a projection of the cone.
@@ -108,6 +46,25 @@ bool meetsWedge(const ConeWedge& wedge, double x, double y, double halfX, double
 }
 }
 
+BeamVolumeTest::BeamVolumeTest(const BeamFrame& frame)
+  : Apex(frame.origin)
+  , Axis(frame.axis)
+{
+  const BeamCone cone(frame);
+  this->Sine = cone.sine;
+  this->Cosine = cone.cosine;
+}
+
+BeamVolumeTest::BeamVolumeTest(
+  const Vec3& apex, const Vec3& origin, const Vec3& direction, double angularMargin)
+  : Apex(apex)
+  , Origin(origin)
+  , Axis(direction)
+  , Sine(std::sin(angularMargin + HitMargin))
+  , Cosine(std::cos(angularMargin + HitMargin))
+{
+}
+
 bool BeamVolumeTest::separated(const Vec3& axis, const Vec3& center, const Vec3& half) const
 {
   const double z = glm::dot(center, axis);
@@ -123,111 +80,49 @@ bool BeamVolumeTest::separated(const Vec3& axis, const Vec3& center, const Vec3&
   Vec3 radial = center - z * axis;
   radial -= glm::dot(radial, axis) * axis;
   const double distance = std::sqrt(glm::dot(radial, radial));
-  if (!(distance * this->Cone.cosine > z * this->Cone.sine))
+  if (!(distance * this->Cosine > z * this->Sine))
   {
     return false;
   }
-  const Vec3 normal = (this->Cone.cosine / distance) * radial - this->Cone.sine * axis;
+  const Vec3 normal = (this->Cosine / distance) * radial - this->Sine * axis;
   return glm::dot(normal, center) > glm::dot(glm::abs(normal), half);
 }
 
 bool BeamVolumeTest::projectionsMeet(const Vec3& axis, const Vec3& center, const Vec3& half) const
 {
-  return meetsWedge(
-           ConeWedge(this->Cone.sine, axis.y, axis.z), center.y, center.z, half.y, half.z) &&
-    meetsWedge(ConeWedge(this->Cone.sine, axis.z, axis.x), center.z, center.x, half.z, half.x) &&
-    meetsWedge(ConeWedge(this->Cone.sine, axis.x, axis.y), center.x, center.y, half.x, half.y);
-}
-
-bool BeamVolumeTest::meets(const AABB& volume, double& nearest) const
-{
-  const LocalBox box = localBox(volume, this->Cone.apex);
-  const Vec3& c = box.center;
-  const Vec3& h = box.half;
-  if (this->separated(this->Cone.axis, c, h) ||
-    !meetsWedge(this->Cone.wedges[0], c.y, c.z, h.y, h.z) ||
-    !meetsWedge(this->Cone.wedges[1], c.z, c.x, h.z, h.x) ||
-    !meetsWedge(this->Cone.wedges[2], c.x, c.y, h.x, h.y))
-  {
-    return false;
-  }
-  nearest = asLowerBound(distanceTo(box));
-  return true;
+  return meetsWedge(ConeWedge(this->Sine, axis.y, axis.z), center.y, center.z, half.y, half.z) &&
+    meetsWedge(ConeWedge(this->Sine, axis.z, axis.x), center.z, center.x, half.z, half.x) &&
+    meetsWedge(ConeWedge(this->Sine, axis.x, axis.y), center.x, center.y, half.x, half.y);
 }
 
 bool BeamVolumeTest::meets(const OBB& volume, double& nearest) const
 {
-  const LocalBox box = localBox(volume, this->Cone.apex);
-  const Vec3 axis = inAxes(volume, this->Cone.axis);
-  if (this->separated(axis, box.center, box.half) ||
-    !this->projectionsMeet(axis, box.center, box.half))
-  {
-    return false;
-  }
-  nearest = asLowerBound(distanceTo(box));
-  return true;
+  const Vec3 fromApex = volume.center - this->Apex;
+  const double margin = 2.0 * HitMargin *
+    (sumOfMagnitudes(fromApex) + sumOfMagnitudes(this->Origin) + sumOfMagnitudes(volume.half));
+  const Vec3 half = volume.half + Vec3(margin);
+  const Vec3 center = volume.along(fromApex - this->Origin);
+  const Vec3 axis = volume.along(this->Axis);
+  const Vec3 outside = glm::max(glm::abs(center) - half, Vec3(0.0));
+  nearest = asLowerBound(std::sqrt(glm::dot(outside, outside)));
+  return !this->separated(axis, center, half) && this->projectionsMeet(axis, center, half);
 }
 
 bool BeamVolumeTest::meets(const BoundingSphere& volume, double& nearest) const
 {
-  const Vec3 center = volume.center - this->Cone.apex;
+  const Vec3 fromApex = volume.center - this->Apex;
+  const Vec3 center = fromApex - this->Origin;
   const double distance = std::sqrt(glm::dot(center, center));
-  const double radius = volume.radius + 2.0 * HitMargin * (distance + volume.radius);
-  const double z = glm::dot(center, this->Cone.axis);
-  const Vec3 radial = center - z * this->Cone.axis;
+  const double radius = volume.radius +
+    2.0 * HitMargin * (sumOfMagnitudes(fromApex) + sumOfMagnitudes(this->Origin) + volume.radius);
+  const double z = glm::dot(center, this->Axis);
+  const Vec3 radial = center - z * this->Axis;
   const double q = std::sqrt(glm::dot(radial, radial));
   nearest = asLowerBound(std::max(0.0, distance - radius));
-  if (z * this->Cone.cosine + q * this->Cone.sine < 0.0)
+  if (z * this->Cosine + q * this->Sine < 0.0)
   {
     return distance <= radius; // the apex is the cone's nearest point
   }
-  return q * this->Cone.cosine - z * this->Cone.sine <= radius;
-}
-
-RayVolumeTest::RayVolumeTest(
-  const Vec3& apex, const Vec3& origin, const Vec3& direction, double angularMargin)
-  : Apex(apex)
-  , Origin(origin)
-  , Direction(direction)
-  , Inverse(safeInverse(direction.x), safeInverse(direction.y), safeInverse(direction.z))
-  , Angular(angularMargin + HitMargin)
-{
-}
-
-bool RayVolumeTest::meets(const AABB& volume, double& nearest) const
-{
-  const LocalBox box = localBox(volume, this->Apex);
-  const double farthest = sumOfMagnitudes(box.center - this->Origin) + sumOfMagnitudes(box.half);
-  return slabs(box, this->Origin, this->Inverse, this->Angular * farthest, nearest);
-}
-
-bool RayVolumeTest::meets(const OBB& volume, double& nearest) const
-{
-  const LocalBox box = localBox(volume, this->Apex);
-  const Vec3 origin = inAxes(volume, this->Origin);
-  const Vec3 d = inAxes(volume, this->Direction);
-  const Vec3 inverse(safeInverse(d.x), safeInverse(d.y), safeInverse(d.z));
-  const double farthest = sumOfMagnitudes(box.center - origin) + sumOfMagnitudes(box.half);
-  return slabs(
-    box, origin, inverse, this->Angular * farthest + HitMargin * sumOfMagnitudes(origin), nearest);
-}
-
-bool RayVolumeTest::meets(const BoundingSphere& volume, double& nearest) const
-{
-  const Vec3 fromApex = volume.center - this->Apex;
-  const Vec3 center = fromApex - this->Origin;
-  const double along = glm::dot(center, this->Direction);
-  const Vec3 radial = center - along * this->Direction;
-  const double farthest = sumOfMagnitudes(center) + volume.radius;
-  const double radius = volume.radius + this->Angular * farthest +
-    2.0 * HitMargin * (sumOfMagnitudes(fromApex) + sumOfMagnitudes(this->Origin) + volume.radius);
-  const double squared = radius * radius - glm::dot(radial, radial);
-  if (squared < 0.0)
-  {
-    return false;
-  }
-  const double half = std::sqrt(squared);
-  nearest = asLowerBound(std::max(0.0, along - half));
-  return along + half >= 0.0;
+  return q * this->Cosine - z * this->Sine <= radius;
 }
 }

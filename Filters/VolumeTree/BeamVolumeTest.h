@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file BeamVolumeTest.h
- * @brief Tests of a beam's cone, and of a single ray, against the three bounding volumes.
+ * @brief Test of a beam's cone, or of a single ray as a thin cone, against boxes and spheres.
  *
  * Boxes are tested by separating axes, first by two planes in space that separate most boxes: the
  * plane that touches the cone on the side of the box's centre, and the plane through the apex
- * across the axis. Then the projections of cone and box on the three coordinate planes are
+ * across the axis. Then the projections of cone and box on the three planes of the box's axes are
  * compared. A sphere is tested exactly.
  *
  * Source: paper, Sec. 3.2, Fig. 6 and 7.
@@ -24,51 +24,33 @@
 
 namespace avianlidar
 {
-/// The cone of one beam. Half-beamwidth in (0, pi/3].
 class BeamVolumeTest
 {
 public:
-  explicit BeamVolumeTest(const BeamFrame& frame)
-    : Cone(frame)
-  {
-  }
+  /// The cone of one beam. Half-beamwidth in (0, pi/3].
+  explicit BeamVolumeTest(const BeamFrame& frame);
+
+  /// One ray. @param apex scene coordinates, m; @param origin relative to the apex, m
+  /// @param direction unit vector @param angularMargin half-width of the ray, rad, to which
+  /// HitMargin is added
+  BeamVolumeTest(const Vec3& apex, const Vec3& origin, const Vec3& direction, double angularMargin);
 
   /// False if no ray of the beam hits a triangle in `volume` (which must not be empty). Else
   /// `nearest` is a lower bound of the range of such hits, m.
-  bool meets(const AABB& volume, double& nearest) const;
   bool meets(const OBB& volume, double& nearest) const;
   bool meets(const BoundingSphere& volume, double& nearest) const;
 
   /// The paper's test alone, three projections, of a box with centre and half extents relative to
-  /// the apex (already widened); `axis` is the beam's axis in the box's frame.
+  /// the cone's apex (already widened); `axis` is the cone's axis in the box's frame.
   bool projectionsMeet(const Vec3& axis, const Vec3& center, const Vec3& half) const;
 
 private:
   bool separated(const Vec3& axis, const Vec3& center, const Vec3& half) const;
 
-  BeamCone Cone;
-};
-
-/// One ray from a point given relative to the apex.
-class RayVolumeTest
-{
-public:
-  /// @param apex scene coordinates, m; @param origin relative to the apex, m; @param direction unit
-  /// vector
-  /// @param angularMargin half-width of the ray, rad, to which HitMargin is added
-  RayVolumeTest(const Vec3& apex, const Vec3& origin, const Vec3& direction, double angularMargin);
-
-  /// As in BeamVolumeTest.
-  bool meets(const AABB& volume, double& nearest) const;
-  bool meets(const OBB& volume, double& nearest) const;
-  bool meets(const BoundingSphere& volume, double& nearest) const;
-
-private:
   Vec3 Apex;
-  Vec3 Origin;
-  Vec3 Direction;
-  Vec3 Inverse;
-  double Angular;
+  Vec3 Origin{ 0.0 }; ///< of the cone, relative to the apex, m
+  Vec3 Axis;
+  double Sine, Cosine; ///< of the widened half-angle
 };
 }
 

@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file BoundingVolume.h
- * @brief Bounding volumes beside AABB.h: OBB and sphere; of all three fit and, for boxes, area.
+ * @brief The paper's bounding volumes, boxes and spheres, and how they are fitted to triangles.
  *
  * A volume of nothing is empty: it contains no point and has no area.
  *
  * Source: paper, Sec. 3.1; for spheres Badoiu and Clarkson, "Smaller core-sets for balls", SODA
  * 2003.
- * Differs: of Badoiu and Clarkson's method a few steps are made; see fitToTriangles().
+ * Differs: axis-aligned boxes are oriented boxes along the coordinate axes. Of Badoiu and
+ * Clarkson's method a few steps are made, which come within some per cent of the smallest sphere.
  * Valid: coordinates up to MaximumCoordinate in magnitude. Fitting is conservative:
  * contains() holds for every corner that went in, rounding included.
  * Test: TestBoundingVolume.cxx.
@@ -15,7 +16,6 @@
 #ifndef avianlidar_BoundingVolume_h
 #define avianlidar_BoundingVolume_h
 
-#include "AABB.h"
 #include "TriangleMesh.h"
 
 #include <array>
@@ -23,14 +23,19 @@
 
 namespace avianlidar
 {
-/// Oriented bounding box: |axes[i] . (p - center)| <= half[i].
+/// Box along orthonormal axes: |axes[i] . (p - center)| <= half[i].
 struct OBB
 {
   Vec3 center{ 0.0 };
-  std::array<Vec3, 3> axes{ Vec3(1.0, 0.0, 0.0), Vec3(0.0, 1.0, 0.0),
-    Vec3(0.0, 0.0, 1.0) }; ///< orthonormal
+  std::array<Vec3, 3> axes{ Vec3(1.0, 0.0, 0.0), Vec3(0.0, 1.0, 0.0), Vec3(0.0, 0.0, 1.0) };
   Vec3 half{ -1.0 };
+
   bool empty() const { return this->half.x < 0.0; }
+  /// Components of a vector along the axes.
+  Vec3 along(const Vec3& v) const
+  {
+    return { glm::dot(this->axes[0], v), glm::dot(this->axes[1], v), glm::dot(this->axes[2], v) };
+  }
 };
 
 /// Bounding sphere: |p - center| <= radius.
@@ -41,28 +46,26 @@ struct BoundingSphere
   bool empty() const { return this->radius < 0.0; }
 };
 
-bool contains(const AABB& volume, const Vec3& point);
 bool contains(const OBB& volume, const Vec3& point);
 bool contains(const BoundingSphere& volume, const Vec3& point);
 
-/// Surface area, m^2, as the surface area heuristic takes it. 0 if empty.
-inline double surfaceArea(const AABB& volume)
-{
-  if (volume.empty())
-  {
-    return 0.0;
-  }
-  const Vec3 e = volume.upper - volume.lower;
-  return 2.0 * (e.x * e.y + e.y * e.z + e.z * e.x);
-}
+/// m^2; 0 if empty.
 double surfaceArea(const OBB& volume);
 
-/// A volume around the corners of the triangles whose numbers are listed. The AABB is the smallest;
-/// the OBB takes the principal axes of the corners or the coordinate axes, whichever box has the
-/// smaller surface; the sphere is within some per cent of the smallest (Badoiu and Clarkson,
-/// "Smaller core-sets for balls", SODA 2003, a few steps).
-template <class Volume>
-Volume fitToTriangles(const TriangleMesh& mesh, const std::uint32_t* triangles, std::size_t count);
+/// Triangles of a mesh, by their numbers.
+struct TriangleList
+{
+  const TriangleMesh& mesh;
+  const std::uint32_t* numbers;
+  std::size_t count;
+};
+
+/// The smallest box along the coordinate axes.
+OBB alignedBox(const TriangleList& triangles);
+/// A box along the principal axes of the corners or the coordinate axes, whichever has the smaller
+/// surface.
+OBB orientedBox(const TriangleList& triangles);
+BoundingSphere boundingSphere(const TriangleList& triangles);
 }
 
 #endif

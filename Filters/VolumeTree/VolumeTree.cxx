@@ -3,6 +3,7 @@
 
 #include "BeamVolumeTest.h"
 #include "CollisionTreeBuilder.h"
+#include "SplitRule.h"
 
 #include <algorithm>
 #include <stdexcept>
@@ -13,36 +14,26 @@ namespace avianlidar
 {
 namespace
 {
-/// The smallest boxes of all nodes.
-std::vector<AABB> boxesOfNodes(const CollisionTree& tree)
-{
-  std::vector<AABB> boxes(tree.nodes.size());
-  // Children come after their parents.
-  for (std::size_t i = tree.nodes.size(); i-- > 0;)
-  {
-    const TreeNode& node = tree.nodes[i];
-    boxes[i] = node.isLeaf()
-      ? fitToTriangles<AABB>(*tree.mesh, tree.order.data() + node.first, node.count)
-      : merge(boxes[node.first], boxes[node.first + 1]);
-  }
-  return boxes;
-}
-
 /// Visit the leaves whose volume `probe` meets, the nearer child first.
-/// @param probe `bool meets(const Volume&, double& nearest) const`
 /// @return number of nodes whose volume was tested
-template <class Volume, class Probe>
-std::uint64_t descend(const CollisionTree& tree, const std::vector<Volume>& volumes,
-  const Probe& probe, TreeLeaves& leaves, TraversalStack& stack)
+std::uint64_t descend(const VolumeTree& tree, const std::vector<std::uint32_t>& order,
+  const BeamVolumeTest& probe, TreeLeaves& leaves, TraversalStack& stack)
 {
-  std::uint64_t visited = 1;
-  double nearest = 0.0;
+  std::uint64_t visited = 0;
   stack.clear();
-  if (tree.nodes.empty() || !probe.meets(volumes[0], nearest))
+  const auto push = [&](std::uint32_t node)
   {
-    return visited;
+    ++visited;
+    double nearest = 0.0;
+    if (std::visit([&](const auto& all) { return probe.meets(all[node], nearest); }, tree.volumes))
+    {
+      stack.push_back({ node, 0, 0, nearest, 0, 0 });
+    }
+  };
+  if (!tree.nodes.empty())
+  {
+    push(0);
   }
-  stack.push_back({ 0, 0, 0, nearest, 0, 0 });
   while (!stack.empty())
   {
     const DescentEntry entry = stack.back();
@@ -52,101 +43,100 @@ std::uint64_t descend(const CollisionTree& tree, const std::vector<Volume>& volu
     {
       continue;
     }
-    const TreeNode& node = tree.nodes[entry.node];
-    if (node.isLeaf())
+    const BinaryNode& node = tree.nodes[entry.node];
+    if (node.children == 0)
     {
-      if (!leaves.leaf(tree.order.data() + node.first, node.count))
+      if (!leaves.leaf(order.data() + node.begin, node.count))
       {
         break;
       }
       continue;
     }
-    DescentEntry first{ node.first, 0, 0, 0.0, 0, 0 };
-    DescentEntry second{ node.first + 1, 0, 0, 0.0, 0, 0 };
-    const bool meetsFirst = probe.meets(volumes[first.node], first.nearest);
-    const bool meetsSecond = probe.meets(volumes[second.node], second.nearest);
-    visited += 2;
-    if (meetsFirst && meetsSecond)
+    const std::size_t before = stack.size();
+    push(node.children + 1);
+    push(node.children);
+    if (stack.size() == before + 2 && stack[before].nearest < stack[before + 1].nearest)
     {
-      if (second.nearest < first.nearest)
-      {
-        std::swap(first, second);
-      }
-      stack.push_back(second);
-      stack.push_back(first);
-    }
-    else if (meetsFirst || meetsSecond)
-    {
-      stack.push_back(meetsFirst ? first : second);
+      std::swap(stack[before], stack[before + 1]);
     }
   }
   return visited;
 }
 
-class Volumes final : public OtherVolumes
+/// Divide the nodes down to a depth, without volumes. @return false if `keepGoing` returned false
+bool divide(const TriangleMesh& mesh, const TreeOptions& options, std::uint32_t deepest,
+  const KeepGoing& keepGoing, std::vector<BinaryNode>& nodes, std::vector<std::uint32_t>& order)
 {
-public:
-  explicit Volumes(TreeVolumes volumes)
-    : ofNodes(std::make_shared<const TreeVolumes>(std::move(volumes)))
+  TriangleBoxes scene;
+  ParallelTeam::run(
+    1, [&](ParallelTeam& team) { scene = makeTriangleBoxes(mesh, team, keepGoing); });
+  if (mesh.size() == 0)
   {
+    return true;
   }
-
-  std::uint64_t descendCone(const CollisionTree& tree, const BeamFrame& frame, TreeLeaves& leaves,
-    TraversalStack& stack) const override
+  const auto leafSize = static_cast<std::uint32_t>(options.maximumLeafSize);
+  nodes.push_back({ 0, static_cast<std::uint32_t>(mesh.size()), 0, 0 });
+  order.resize(mesh.size());
+  for (std::size_t i = 0; scene.boxes && i < nodes.size(); ++i)
   {
-    return this->descendWith(tree, BeamVolumeTest(frame), leaves, stack);
+    const BinaryNode node = nodes[i];
+    const auto boxesAt = [&](std::uint32_t depth)
+    { return (depth % 2 == 0 ? scene.boxes : scene.room) + node.begin; };
+    LaneBox* const boxes = boxesAt(node.depth);
+    if (node.count <= leafSize || node.depth >= deepest)
+    {
+      std::uint32_t* const leaf = order.data() + node.begin;
+      std::transform(
+        boxes, boxes + node.count, leaf, [](const LaneBox& b) { return b.triangle(); });
+      std::sort(leaf, leaf + node.count);
+      continue;
+    }
+    LaneExtent extent;
+    extent.clear();
+    extent.include(boxes, node.count);
+    const auto first = static_cast<std::uint32_t>(splitTriangles(
+      options.splitRule, boxes, boxesAt(node.depth + 1), node.count, extent.centers, node.depth));
+    nodes[i].children = static_cast<std::uint32_t>(nodes.size());
+    nodes.push_back({ node.begin, first, node.depth + 1, 0 });
+    nodes.push_back({ node.begin + first, node.count - first, node.depth + 1, 0 });
   }
-
-  std::uint64_t descendRay(const CollisionTree& tree, const Vec3& apex, const Vec3& origin,
-    const Vec3& direction, double angularMargin, TreeLeaves& leaves,
-    TraversalStack& stack) const override
-  {
-    return this->descendWith(
-      tree, RayVolumeTest(apex, origin, direction, angularMargin), leaves, stack);
-  }
-
-  const std::shared_ptr<const TreeVolumes> ofNodes;
-
-private:
-  template <class Probe>
-  std::uint64_t descendWith(
-    const CollisionTree& tree, const Probe& probe, TreeLeaves& leaves, TraversalStack& stack) const
-  {
-    return std::visit([&](const auto& volumes)
-      { return descend(tree, volumes, probe, leaves, stack); },
-      *this->ofNodes);
-  }
-};
+  return scene.boxes != nullptr;
+}
 
 /// Fit volumes to the triangles of all nodes. @return false if `keepGoing` returned false
 template <class Volume>
-bool fit(const CollisionTree& tree, const KeepGoing& keepGoing, int threads, TreeVolumes& fitted)
+bool fit(Volume (*fitted)(const TriangleList&), const TriangleMesh& mesh,
+  const std::vector<std::uint32_t>& order, const KeepGoing& keepGoing, int threads,
+  VolumeTree& tree)
 {
-  // A node's triangles are adjacent in the order: where they begin, and how many they are.
-  const std::vector<TreeNode>& nodes = tree.nodes;
-  std::vector<TreeNode> ranges(nodes);
-  for (std::size_t i = nodes.size(); i-- > 0;)
-  {
-    if (!nodes[i].isLeaf())
-    {
-      const TreeNode& first = ranges[nodes[i].first];
-      ranges[i] = { first.first, first.count + ranges[nodes[i].first + 1].count };
-    }
-  }
-  std::vector<Volume> volumes(nodes.size());
+  std::vector<Volume> volumes(tree.nodes.size());
   const auto body = [&](std::size_t begin, std::size_t end, int)
   {
     for (std::size_t i = begin; i < end; ++i)
     {
-      volumes[i] =
-        fitToTriangles<Volume>(*tree.mesh, tree.order.data() + ranges[i].first, ranges[i].count);
+      const BinaryNode& node = tree.nodes[i];
+      volumes[i] = fitted({ mesh, order.data() + node.begin, node.count });
     }
   };
   constexpr std::size_t Block = 16;
-  const bool finished = parallelFor(nodes.size(), Block, threads, body, keepGoing);
-  fitted = std::move(volumes);
+  const bool finished = parallelFor(volumes.size(), Block, threads, body, keepGoing);
+  tree.volumes = std::move(volumes);
   return finished;
 }
+}
+
+std::uint64_t VolumeTree::descendCone(const CollisionTree& tree, const BeamFrame& frame,
+  TreeLeaves& leaves, TraversalStack& stack) const
+{
+  return descend(*this, tree.order, BeamVolumeTest(frame), leaves, stack);
+}
+
+std::uint64_t VolumeTree::descendRay(const CollisionTree& tree, const Vec3& apex,
+  const Vec3& origin, const Vec3& direction, double angularMargin, TreeLeaves& leaves,
+  TraversalStack& stack) const
+{
+  const BeamVolumeTest probe(apex, origin, direction, angularMargin);
+  return descend(*this, tree.order, probe, leaves, stack);
 }
 
 std::shared_ptr<const CollisionTree> buildVolumeTree(std::shared_ptr<const TriangleMesh> mesh,
@@ -162,6 +152,7 @@ std::shared_ptr<const CollisionTree> buildVolumeTree(std::shared_ptr<const Trian
   {
     return buildCollisionTree(std::move(mesh), options, keepGoing, threads);
   }
+  checkTreeInput(mesh.get(), options);
   // Fitting takes most of the time.
   constexpr double Built = 0.2;
   const auto part = [&keepGoing](double from, double to)
@@ -170,20 +161,30 @@ std::shared_ptr<const CollisionTree> buildVolumeTree(std::shared_ptr<const Trian
                          { return keepGoing(std::min(to, from + (to - from) * done)); })
                      : KeepGoing();
   };
-  const auto tree = buildBinaryTree(mesh, options, part(0.0, 0.5 * Built), threads);
-  const auto boxes =
-    tree ? buildCollisionTree(mesh, TreeOptions{}, part(0.5 * Built, Built), threads) : nullptr;
+  // Faces that coincide are found by boxes.
+  const auto boxes = buildCollisionTree(mesh, TreeOptions{}, part(0.0, 0.5 * Built), threads);
   if (!boxes)
   {
     return nullptr;
   }
+  const auto tree = std::make_shared<CollisionTree>();
+  const auto own = std::make_shared<VolumeTree>();
+  tree->mesh = std::move(mesh);
+  tree->options = options;
+  tree->checksum = boxes->checksum;
   tree->planeOwners = boxes->planeOwners;
   tree->planeDepth = boxes->planeDepth;
-  TreeVolumes volumes;
+  constexpr std::uint32_t deepest = std::numeric_limits<std::uint32_t>::max();
+  if (!divide(*tree->mesh, options, deepest, part(0.5 * Built, Built), own->nodes, tree->order))
+  {
+    return nullptr;
+  }
+  tree->leaves = static_cast<std::uint32_t>((own->nodes.size() + 1) / 2);
+  tree->depth = own->nodes.empty() ? 0 : own->nodes.back().depth;
   const bool finished = options.boundingVolume == BoundingVolumeType::OBB
-    ? fit<OBB>(*tree, part(Built, 1.0), threads, volumes)
-    : fit<BoundingSphere>(*tree, part(Built, 1.0), threads, volumes);
-  tree->other = std::make_shared<Volumes>(std::move(volumes));
+    ? fit(orientedBox, *tree->mesh, tree->order, part(Built, 1.0), threads, *own)
+    : fit(boundingSphere, *tree->mesh, tree->order, part(Built, 1.0), threads, *own);
+  tree->other = own;
   return finished ? tree : nullptr;
 }
 
@@ -191,13 +192,20 @@ std::shared_ptr<const CollisionTree> withPlainBoxes(const CollisionTree& tree)
 {
   const auto plain = std::make_shared<CollisionTree>(tree);
   plain->wide = {};
-  plain->other = std::make_shared<Volumes>(boxesOfNodes(tree));
+  plain->other = volumesOf(tree);
   return plain;
 }
 
-std::shared_ptr<const TreeVolumes> volumesOf(const CollisionTree& tree)
+std::shared_ptr<const VolumeTree> volumesOf(const CollisionTree& tree, std::uint32_t deepest)
 {
-  const auto* const kept = dynamic_cast<const Volumes*>(tree.other.get());
-  return kept ? kept->ofNodes : std::make_shared<const TreeVolumes>(boxesOfNodes(tree));
+  if (tree.other)
+  {
+    return std::dynamic_pointer_cast<const VolumeTree>(tree.other);
+  }
+  const auto boxes = std::make_shared<VolumeTree>();
+  std::vector<std::uint32_t> order;
+  divide(*tree.mesh, tree.options, deepest, {}, boxes->nodes, order);
+  fit(alignedBox, *tree.mesh, order, {}, 0, *boxes);
+  return boxes;
 }
 }

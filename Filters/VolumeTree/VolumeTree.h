@@ -4,10 +4,12 @@
  * @brief The paper's binary tree of AABBs, OBBs or spheres in double precision, and its descent:
  * what the paper compares. The kernel's own tree has eight boxes a node.
  *
- * Source: paper, Sec. 3.1 and 3.2.
- * Differs: see CollisionTree.h; the descent is front to back.
+ * Source: paper, Sec. 3.1 and 3.2, Eq. 14, Algorithm 1.
+ * Differs: a leaf holds up to maximumLeafSize triangles (Algorithm 1: one); the descent is front to
+ * back.
  * Valid: visits every leaf whose volumes the cone or ray meets within the limit. A volume whose
  * lower bound equals the limit is visited, as it may hold a hit of equal range and lower number.
+ * Made for comparison, not for speed: one thread divides the nodes.
  * Test: TestCollisionTreeBuilder.cxx, TestBeamTracer.cxx, TestGeometryProperties.cxx.
  */
 #ifndef avianlidar_VolumeTree_h
@@ -15,14 +17,39 @@
 
 #include "BoundingVolume.h"
 #include "CollisionTree.h"
+#include "ParallelLoop.h"
 
+#include <limits>
 #include <memory>
 #include <variant>
 #include <vector>
 
 namespace avianlidar
 {
-using TreeVolumes = std::variant<std::vector<AABB>, std::vector<OBB>, std::vector<BoundingSphere>>;
+/// node_i = {B_i, F_i, p_i1, p_i2} of Eq. 14 without its volume.
+struct BinaryNode
+{
+  std::uint32_t begin; ///< triangles below it: [begin, begin + count) of the order
+  std::uint32_t count;
+  std::uint32_t depth;    ///< root 0
+  std::uint32_t children; ///< number of the first, the second follows; 0: a leaf, or not divided
+};
+
+using TreeVolumes = std::variant<std::vector<OBB>, std::vector<BoundingSphere>>;
+
+/// Nodes are numbered breadth first, as in Algorithm 1 (0-based): the children of a node are
+/// adjacent and follow all nodes of their parent's layer.
+struct VolumeTree final : public OtherVolumes
+{
+  std::vector<BinaryNode> nodes; ///< empty for an empty mesh
+  TreeVolumes volumes; ///< of all nodes, in scene coordinates, conservative for all triangles below
+
+  std::uint64_t descendCone(const CollisionTree& tree, const BeamFrame& frame, TreeLeaves& leaves,
+    TraversalStack& stack) const override;
+  std::uint64_t descendRay(const CollisionTree& tree, const Vec3& apex, const Vec3& origin,
+    const Vec3& direction, double angularMargin, TreeLeaves& leaves,
+    TraversalStack& stack) const override;
+};
 
 /// As buildCollisionTree(), for every TreeOptions::boundingVolume; that of AABBs is the kernel's.
 std::shared_ptr<const CollisionTree> buildVolumeTree(std::shared_ptr<const TriangleMesh> mesh,
@@ -31,9 +58,9 @@ std::shared_ptr<const CollisionTree> buildVolumeTree(std::shared_ptr<const Trian
 /// The same tree with two AABBs a node, in double precision, instead of eight in single.
 std::shared_ptr<const CollisionTree> withPlainBoxes(const CollisionTree& tree);
 
-/// The volumes of all nodes, in scene coordinates, conservative for all triangles below; the boxes
-/// of a wide tree are computed from the triangles.
-std::shared_ptr<const TreeVolumes> volumesOf(const CollisionTree& tree);
+/// Nodes and volumes of a tree. Boxes are made anew, down to a depth.
+std::shared_ptr<const VolumeTree> volumesOf(
+  const CollisionTree& tree, std::uint32_t deepest = std::numeric_limits<std::uint32_t>::max());
 }
 
 #endif

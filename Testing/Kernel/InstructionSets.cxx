@@ -285,15 +285,16 @@ void writeTrees(Writer& out, const Case& c)
         static_cast<BoundingVolumeType>(volume), 4 };
       const auto tree = buildVolumeTree(c.scene.mesh, options);
       Fingerprint all;
-      for (const TreeNode& node : tree->nodes)
+      const auto binary = volumesOf(*tree);
+      for (const BinaryNode& node : binary->nodes)
       {
-        all.add(static_cast<std::uint64_t>(node.first) << 32 | node.count);
+        all.add(static_cast<std::uint64_t>(node.begin) << 32 | node.count);
       }
       for (std::uint32_t value : tree->order)
       {
         all.add(static_cast<std::uint64_t>(value));
       }
-      std::visit([&](const auto& volumes) { addNumbers(volumes, all); }, *volumesOf(*tree));
+      std::visit([&](const auto& volumes) { addNumbers(volumes, all); }, binary->volumes);
       for (const WideNode& node : tree->wide.nodes)
       {
         for (int lane = 0; lane < WideNode::Width; ++lane)

@@ -99,7 +99,7 @@ TEST(ApexTriangles, WhatIsSureIsSo)
     {
       for (std::uint32_t position = 0; position < mesh->size(); ++position)
       {
-        const std::uint32_t number = tree->leafTriangles[position].number;
+        const std::uint32_t number = tree->order[position];
         const Vec3 apex = random.inCube(60.0);
         // Around where single precision, or double precision of a tiny triangle, begins to matter.
         const Vec3 at = besideAnEdge(random, *mesh, number, 1e-9, 0.3);
@@ -187,7 +187,7 @@ TEST(ApexTriangles, ForgetsWithTheApexAndWithWiderBeams)
   fill(frame);
   known.begin(*tree, makeBeamFrame(frame.origin, frame.axis, 1e-3));
   EXPECT_NE(known.find(7), nullptr) << "bounds for wide beams hold for narrow ones";
-  EXPECT_EQ(known.find(7)->number, tree->leafTriangles[7].number);
+  EXPECT_EQ(known.find(7)->number, tree->order[7]);
   known.begin(*tree, makeBeamFrame(frame.origin, frame.axis, 2e-2));
   EXPECT_EQ(known.find(7), nullptr);
   fill(frame);

@@ -31,41 +31,6 @@ std::shared_ptr<TriangleMesh> someMesh(std::size_t count)
   return mesh;
 }
 
-/// Triangles below each node, by recursion.
-template <class Volume>
-std::size_t checkNode(const CollisionTree& tree, const std::vector<Volume>& volumes,
-  std::uint32_t node, std::vector<std::uint32_t>& below, std::vector<int>& seen)
-{
-  const TreeNode& n = tree.nodes[node];
-  below.clear();
-  std::size_t nodes = 1;
-  if (n.isLeaf())
-  {
-    EXPECT_LE(n.count, static_cast<std::uint32_t>(tree.options.maximumLeafSize));
-    for (std::uint32_t i = 0; i < n.count; ++i)
-    {
-      below.push_back(tree.order[n.first + i]);
-      ++seen[below.back()];
-    }
-  }
-  else
-  {
-    EXPECT_GT(n.first, node);
-    std::vector<std::uint32_t> other;
-    nodes += checkNode(tree, volumes, n.first, below, seen);
-    nodes += checkNode(tree, volumes, n.first + 1, other, seen);
-    below.insert(below.end(), other.begin(), other.end());
-  }
-  for (const std::uint32_t t : below)
-  {
-    for (int c = 0; c < 3; ++c)
-    {
-      EXPECT_TRUE(contains(volumes[node], tree.mesh->corner(t, c)));
-    }
-  }
-  return nodes;
-}
-
 class Trees : public testing::TestWithParam<std::tuple<SplitRule, BoundingVolumeType, int>>
 {
 protected:
@@ -88,33 +53,45 @@ void expectSameWideTrees(const WideTree& a, const WideTree& b)
 void expectSameTrees(const CollisionTree& a, const CollisionTree& b)
 {
   EXPECT_EQ(a.order, b.order);
-  ASSERT_EQ(a.nodes.size(), b.nodes.size());
-  EXPECT_EQ(std::memcmp(a.nodes.data(), b.nodes.data(), a.nodes.size() * sizeof(TreeNode)), 0);
-  std::visit(
-    [&](const auto& volumes)
-    {
-      using Volumes = std::decay_t<decltype(volumes)>;
-      const auto kept = volumesOf(b);
-      const auto& others = std::get<Volumes>(*kept);
-      EXPECT_EQ(std::memcmp(volumes.data(), others.data(), volumes.size() * sizeof(volumes[0])), 0);
-    },
-    *volumesOf(a));
+  EXPECT_EQ(a.leaves, b.leaves);
+  EXPECT_EQ(a.depth, b.depth);
   expectSameWideTrees(a.wide, b.wide);
 }
 
-/// Each triangle once, within every volume above it.
+/// Each triangle once, and within every volume above it in the binary tree, whose leaves are those
+/// of the tree.
 void expectWhole(const CollisionTree& tree)
 {
   std::vector<int> seen(tree.mesh->size(), 0);
-  std::vector<std::uint32_t> below;
-  std::visit(
-    [&](const auto& volumes)
+  const auto binary = volumesOf(tree);
+  std::uint32_t leaves = 0;
+  for (std::size_t i = 0; i < binary->nodes.size(); ++i)
+  {
+    const BinaryNode& node = binary->nodes[i];
+    const bool isLeaf = node.children == 0;
+    leaves += isLeaf ? 1 : 0;
+    EXPECT_TRUE(!isLeaf || node.count <= static_cast<std::uint32_t>(tree.options.maximumLeafSize));
+    for (std::uint32_t k = node.begin; k < node.begin + node.count; ++k)
     {
-      EXPECT_EQ(volumes.size(), tree.nodes.size());
-      EXPECT_EQ(checkNode(tree, volumes, 0, below, seen), tree.nodes.size());
-    },
-    *volumesOf(tree));
+      seen[tree.order[k]] += isLeaf ? 1 : 0;
+      for (int c = 0; c < 3; ++c)
+      {
+        const Vec3& corner = tree.mesh->corner(tree.order[k], c);
+        EXPECT_TRUE(std::visit(
+          [&](const auto& volumes) { return contains(volumes[i], corner); }, binary->volumes));
+      }
+    }
+    if (!isLeaf)
+    {
+      const BinaryNode* const children = &binary->nodes[node.children];
+      EXPECT_EQ(children[0].begin, node.begin);
+      EXPECT_EQ(children[1].begin, node.begin + children[0].count);
+      EXPECT_EQ(children[0].count + children[1].count, node.count);
+    }
+  }
   EXPECT_EQ(seen, std::vector<int>(tree.mesh->size(), 1));
+  EXPECT_EQ(leaves, tree.leaves);
+  EXPECT_EQ(binary->nodes.back().depth, tree.depth);
 }
 
 std::string errorOf(const TriangleMesh& mesh, const TreeOptions& options)
@@ -146,36 +123,23 @@ TEST_P(Trees, HoldEachTriangleOnceWithinEveryVolumeAboveIt)
 
 TEST_P(Trees, AreNumberedAsAlgorithm1Does)
 {
-  const auto tree = buildVolumeTree(someMesh(777), this->options());
-  const std::vector<std::uint32_t> depths = tree->depths();
-  ASSERT_EQ(depths.size(), tree->nodes.size());
+  const auto binary = volumesOf(*buildVolumeTree(someMesh(777), this->options()));
   // Layer by layer: depth never falls, and the children of a layer's P nodes follow from j1 = j0 +
   // P, two for each inner node in turn.
-  EXPECT_EQ(depths[0], 0u);
-  std::size_t layerStart = 0;
-  while (layerStart < depths.size())
+  std::uint32_t child = 1;
+  std::uint32_t depth = 0;
+  for (const BinaryNode& node : binary->nodes)
   {
-    std::size_t layerEnd = layerStart;
-    while (layerEnd < depths.size() && depths[layerEnd] == depths[layerStart])
+    EXPECT_GE(node.depth, depth);
+    depth = node.depth;
+    if (node.children != 0)
     {
-      ++layerEnd;
+      EXPECT_EQ(node.children, child);
+      EXPECT_EQ(binary->nodes[child].depth, depth + 1);
+      child += 2;
     }
-    std::size_t child = layerEnd;
-    for (std::size_t node = layerStart; node < layerEnd; ++node)
-    {
-      if (!tree->nodes[node].isLeaf())
-      {
-        EXPECT_EQ(tree->nodes[node].first, child);
-        EXPECT_EQ(depths[child], depths[node] + 1);
-        child += 2;
-      }
-    }
-    if (layerEnd < depths.size())
-    {
-      EXPECT_GT(depths[layerEnd], depths[layerStart]);
-    }
-    layerStart = layerEnd;
   }
+  EXPECT_EQ(child, binary->nodes.size());
 }
 
 TEST_P(Trees, AreDeterministic)
@@ -210,16 +174,15 @@ TEST(CollisionTreeBuilder, HalvesOfSixTrianglesAreThePapersExample)
   options.splitRule = SplitRule::Halves;
   options.maximumLeafSize = 1;
   const auto tree = buildVolumeTree(someMesh(6), options);
-  ASSERT_EQ(tree->nodes.size(), 11u);
-  const std::uint32_t expected[11][2] = { { 1, 0 }, { 3, 0 }, { 5, 0 }, { 0, 1 }, { 7, 0 },
-    { 3, 1 }, { 9, 0 }, { 1, 1 }, { 2, 1 }, { 4, 1 }, { 5, 1 } };
-  for (int i = 0; i < 11; ++i)
-  {
-    EXPECT_EQ(tree->nodes[i].first, expected[i][0]) << i;
-    EXPECT_EQ(tree->nodes[i].count, expected[i][1]) << i;
-  }
+  const auto binary = volumesOf(*tree);
+  ASSERT_EQ(binary->nodes.size(), 11u);
+  const std::uint32_t expected[11][4] = { { 0, 6, 0, 1 }, { 0, 3, 1, 3 }, { 3, 3, 1, 5 },
+    { 0, 1, 2, 0 }, { 1, 2, 2, 7 }, { 3, 1, 2, 0 }, { 4, 2, 2, 9 }, { 1, 1, 3, 0 }, { 2, 1, 3, 0 },
+    { 4, 1, 3, 0 }, { 5, 1, 3, 0 } };
+  EXPECT_EQ(std::memcmp(binary->nodes.data(), expected, sizeof expected), 0);
   EXPECT_EQ(tree->order, (std::vector<std::uint32_t>{ 0, 1, 2, 3, 4, 5 }));
-  EXPECT_EQ(tree->depths(), (std::vector<std::uint32_t>{ 0, 1, 1, 2, 2, 2, 2, 3, 3, 3, 3 }));
+  EXPECT_EQ(tree->leaves, 6u);
+  EXPECT_EQ(tree->depth, 3u);
 }
 
 TEST(CollisionTreeBuilder, GeometricProgressionStaysShallow)
@@ -237,11 +200,11 @@ TEST(CollisionTreeBuilder, GeometricProgressionStaysShallow)
     options.splitRule = static_cast<SplitRule>(rule);
     options.maximumLeafSize = 1;
     const auto tree = buildVolumeTree(mesh, options);
-    EXPECT_LE(tree->depths().back(), 96u + 12u);
+    EXPECT_LE(tree->depth, 96u + 12u);
   }
 }
 
-// Nothing to divide by, in the layers that are divided in chunks, too.
+// Nothing to divide by.
 TEST(CollisionTreeBuilder, EqualTrianglesAreHalvedAsTheyStand)
 {
   const auto mesh = std::make_shared<TriangleMesh>();
@@ -255,7 +218,7 @@ TEST(CollisionTreeBuilder, EqualTrianglesAreHalvedAsTheyStand)
   {
     ASSERT_EQ(tree->order[i], i);
   }
-  EXPECT_EQ(tree->depths().back(), 11u);
+  EXPECT_EQ(tree->depth, 11u);
 }
 
 // Sizes from 1e-3 m beside coordinates of 1e8 m to 1e15 m, tiny, huge and flat scenes: the boxes in
@@ -295,36 +258,24 @@ TEST(CollisionTreeBuilder, WideBoxesHoldTheirTriangles)
   }
 }
 
-TEST(CollisionTreeBuilder, LeafCornersAreTheCornersOfTheMesh)
-{
-  const auto mesh = someMesh(9000);
-  const auto tree = buildVolumeTree(mesh, TreeOptions());
-  ASSERT_EQ(tree->leafTriangles.size(), mesh->size());
-  for (std::size_t i = 0; i < mesh->size(); ++i)
-  {
-    EXPECT_EQ(tree->leafTriangles[i].number, tree->order[i]);
-    for (int c = 0; c < 3; ++c)
-    {
-      EXPECT_EQ(tree->leafTriangles[i].corners[c], mesh->triangles[tree->order[i]][c]);
-    }
-  }
-}
-
-// Asked for, boxes are the triangles' own.
+// Down to a depth, with the numbers of the whole.
 TEST(VolumeTree, BoxesAreMadeWhenAskedFor)
 {
   const auto mesh = someMesh(300);
   const auto tree = buildVolumeTree(mesh, TreeOptions());
-  const auto kept = volumesOf(*tree);
-  const auto& boxes = std::get<std::vector<AABB>>(*kept);
-  ASSERT_EQ(boxes.size(), tree->nodes.size());
-  AABB all;
-  for (const Vec3& point : mesh->points)
+  const auto all = volumesOf(*tree);
+  const auto some = volumesOf(*tree, 4);
+  ASSERT_LT(some->nodes.size(), all->nodes.size());
+  EXPECT_EQ(some->nodes.back().depth, 4u);
+  const auto& boxes = std::get<std::vector<OBB>>(all->volumes);
+  for (std::size_t i = 0; i < some->nodes.size(); ++i)
   {
-    all.extend(point);
+    EXPECT_EQ(some->nodes[i].begin, all->nodes[i].begin);
+    EXPECT_EQ(some->nodes[i].count, all->nodes[i].count);
+    const OBB& box = std::get<std::vector<OBB>>(some->volumes)[i];
+    EXPECT_EQ(box.center, boxes[i].center);
+    EXPECT_EQ(box.half, boxes[i].half);
   }
-  EXPECT_EQ(boxes[0].lower, all.lower);
-  EXPECT_EQ(boxes[0].upper, all.upper);
 }
 
 TEST(CollisionTreeBuilder, OtherVolumesAreNotTheKernels)
@@ -337,9 +288,9 @@ TEST(CollisionTreeBuilder, EmptyMeshGivesAnEmptyTree)
 {
   const auto tree = buildVolumeTree(std::make_shared<TriangleMesh>(), TreeOptions());
   ASSERT_TRUE(tree);
-  EXPECT_TRUE(tree->nodes.empty());
-  EXPECT_TRUE(tree->order.empty());
-  EXPECT_TRUE(tree->depths().empty());
+  EXPECT_TRUE(tree->empty());
+  EXPECT_TRUE(tree->wide.nodes.empty());
+  EXPECT_TRUE(volumesOf(*tree)->nodes.empty());
 }
 
 TEST(CollisionTreeBuilder, BadInputIsNamed)

@@ -2,10 +2,10 @@
 // Rays go together in packets by their number alone: neighbours of a stratified beam, and the same
 // cost whatever a thread has traced before.
 #include "BeamTracer.h"
+#include "BoxTests.h"
 #include "CollisionTreeBuilder.h"
 #include "GeometryTestScene.h"
 #include "PacketOrder.h"
-#include "RayPacketBoxes.h"
 
 #include <gtest/gtest.h>
 

@@ -4,7 +4,6 @@
 #include "CollisionTreeBuilder.h"
 #include "Sensor.h"
 #include "WideTree.h"
-#include "WideTreeBuilder.h"
 
 #include <gtest/gtest.h>
 
@@ -19,56 +18,37 @@ namespace
 {
 constexpr float Never = std::numeric_limits<float>::infinity();
 
-/// A node of eight random boxes about `at`, as a tree of its own.
+/// A tree of eight random boxes about `at`, in one node.
 struct EightBoxes
 {
-  std::vector<TreeNode> nodes;
-  std::vector<AABB> boxes;
+  std::vector<AABB> boxes{ WideNode::Width };
+  std::shared_ptr<const CollisionTree> whole;
   WideTree tree;
 
   EightBoxes(std::mt19937_64& random, const Vec3& at, double extent)
   {
     std::uniform_real_distribution<double> uniform(-1.0, 1.0);
-    // A chain: every inner node has a leaf and the rest.
-    this->nodes.resize(15);
-    this->boxes.resize(15);
-    for (std::uint32_t i = 0; i < 7; ++i)
+    const auto mesh = std::make_shared<TriangleMesh>();
+    for (AABB& box : this->boxes)
     {
-      this->nodes[2 * i] = { 2 * i + 1, 0 };
+      const Vec3 center(uniform(random), uniform(random), uniform(random));
+      const Vec3 half(uniform(random), uniform(random), uniform(random));
+      const double size = std::pow(10.0, -2.0 * (1.0 + uniform(random)));
+      box.extend(at + extent * center - extent * size * half);
+      box.extend(at + extent * center + extent * size * half);
+      // A triangle whose box it is.
+      const auto first = static_cast<std::uint32_t>(mesh->points.size());
+      mesh->points.push_back(box.lower);
+      mesh->points.push_back(box.upper);
+      mesh->triangles.push_back({ first, first + 1, first });
     }
-    for (std::uint32_t i = 1; i < 15; ++i)
-    {
-      if (i % 2 == 1 || i == 14)
-      {
-        this->nodes[i] = { i, 1 };
-        const Vec3 center(uniform(random), uniform(random), uniform(random));
-        const Vec3 half(uniform(random), uniform(random), uniform(random));
-        const double size = std::pow(10.0, -2.0 * (1.0 + uniform(random)));
-        this->boxes[i].extend(at + extent * center - extent * size * half);
-        this->boxes[i].extend(at + extent * center + extent * size * half);
-      }
-    }
-    for (int i = 12; i >= 0; i -= 2)
-    {
-      this->boxes[i] = merge(this->boxes[i + 1], this->boxes[i + 2]);
-    }
-    TriangleMesh mesh;
-    for (std::uint32_t i = 0; i < 15; ++i)
-    {
-      // Their boxes are those of the nodes.
-      mesh.points.push_back(this->boxes[i].lower);
-      mesh.points.push_back(this->boxes[i].upper);
-      mesh.triangles.push_back({ 2 * i, 2 * i + 1, 2 * i });
-    }
-    ParallelTeam::run(1,
-      [&](ParallelTeam& team)
-      {
-        const TriangleBoxes scene = makeTriangleBoxes(mesh, team);
-        std::vector<WideTreeCost> costs(15);
-        const WideTreeInput input{ this->nodes.data(), scene.boxes, costs.data() };
-        input.setCosts(0, 15);
-        this->tree = buildWideTree(input, scene, team);
-      });
+    this->whole = buildCollisionTree(mesh, { SplitRule::Median, BoundingVolumeType::AABB, 1 });
+    this->tree = this->whole->wide;
+  }
+
+  const AABB& boxOf(int lane) const
+  {
+    return this->boxes[this->whole->order[this->tree.nodes[0].first[lane]]];
   }
 };
 
@@ -100,8 +80,7 @@ TEST(WideTree, NoBoxThatARayMeetsIsLeftOut)
     for (int lane = 0; lane < WideNode::Width; ++lane)
     {
       // A point of the box, and a cone that holds it anywhere inside.
-      const std::uint32_t leaf = eight.tree.nodes[0].first[lane];
-      const Vec3 point = pointIn(eight.boxes[leaf], random) - apex;
+      const Vec3 point = pointIn(eight.boxOf(lane), random) - apex;
       const double range = safeLength(point);
       const BeamFrame straight = makeBeamFrame(apex, point, halfBeamwidth);
       const double angle = 2.0 * Pi * uniform(random);

@@ -18,7 +18,7 @@ IN_SOURCE = re.compile(r"FP_CONTRACT|fast-math|associative-math|float_control|op
 # has it: only for what decides where to look.
 EXPLICIT = {
     r"std::fma\(": {"TriangleTest.h", "RangeLanes.cxx"},
-    r"\b(Neg)?Mul(Add|Sub)\(": {"BeamPyramidCones.cxx", "RayPacketBoxes.cxx", "RayPacketTriangles.cxx"},
+    r"\b(Neg)?Mul(Add|Sub)\(": {"BoxTests.cxx", "RayPacketTriangles.cxx"},
 }
 
 

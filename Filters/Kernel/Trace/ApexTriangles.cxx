@@ -137,7 +137,7 @@ void ApexTriangles::begin(const CollisionTree& tree, const BeamFrame& widest)
 float ApexTriangles::errorOfOwner(std::uint32_t position, const float* w) const
 {
   const CollisionTree& tree = *this->Tree;
-  const std::uint32_t number = tree.leafTriangles[position].number;
+  const std::uint32_t number = tree.order[position];
   const std::uint32_t owner = tree.planeOwner(number);
   if (owner == number)
   {
@@ -158,13 +158,12 @@ float ApexTriangles::errorOfOwner(std::uint32_t position, const float* w) const
 void ApexTriangles::see(const std::uint32_t* positions, int count, ApexTriangle* fresh)
 {
   ApexCorners& t = this->Corners;
-  const std::vector<Vec3>& points = this->Tree->mesh->points;
   for (int i = 0; i < count; ++i)
   {
-    const LeafTriangle& triangle = this->Tree->leafTriangles[positions[i]];
+    const std::uint32_t triangle = this->Tree->order[positions[i]];
     for (int c = 0; c < 3; ++c)
     {
-      const Vec3& p = points[triangle.corners[c]];
+      const Vec3& p = this->Tree->mesh->corner(triangle, c);
       t.corner[c][0][i] = p.x - this->Apex.x;
       t.corner[c][1][i] = p.y - this->Apex.y;
       t.corner[c][2][i] = p.z - this->Apex.z;
@@ -189,7 +188,7 @@ void ApexTriangles::see(const std::uint32_t* positions, int count, ApexTriangle*
     }
     one.error = records.error[i] + this->errorOfOwner(positions[i], one.w);
     one.inside = records.inside[i];
-    one.number = this->Tree->leafTriangles[positions[i]].number;
+    one.number = this->Tree->order[positions[i]];
     one.position = positions[i];
   }
 }

@@ -30,11 +30,10 @@ std::uint32_t spread(std::uint32_t v)
 class EntryPointSearch : public WidePolicy
 {
 public:
-  EntryPointSearch(const WideTree& tree, const Pyramid& pyramid, GroupWorkspace& work)
+  EntryPointSearch(const WideTree& tree, GroupWorkspace& work)
     : Tree(tree)
-    , Around(pyramid)
     , Work(work)
-    , EntryPointExtent(static_cast<float>(EntryPointSize * pyramid.widest))
+    , EntryPointExtent(static_cast<float>(EntryPointSize * work.cones.widest))
   {
   }
 
@@ -43,22 +42,14 @@ public:
   template <class Push>
   void open(const WideNode& node, std::uint64_t beams, Push push)
   {
-    meetPyramid(this->Around, node, this->Boxes);
-    for (std::uint32_t i = 0; i < WideNode::Width; ++i)
+    ConeChild children[WideNode::Width];
+    const int count =
+      meetChildren(this->Work.cones, node, static_cast<std::uint32_t>(beams), children);
+    for (const ConeChild* child = children; child < children + count; ++child)
     {
-      const float nearest = this->Boxes.nearest[i];
-      if (!(nearest < FloatInfinity) || node.first[i] == NoChild)
-      {
-        continue;
-      }
-      const std::uint64_t met =
-        beams & meetCones(this->Work.cones, this->Around, this->Boxes, static_cast<int>(i));
-      if (met != 0)
-      {
-        const bool entryPoint = node.count[i] > 0 ||
-          this->Boxes.size[i] <= this->EntryPointExtent || __builtin_popcountll(met) <= FewBeams;
-        push(i, entryPoint ? met | IsEntryPoint : met, nearest);
-      }
+      const bool entryPoint = node.count[child->lane] > 0 ||
+        child->size <= this->EntryPointExtent || __builtin_popcount(child->cones) <= FewBeams;
+      push(child->lane, child->cones | (entryPoint ? IsEntryPoint : 0), child->nearest);
     }
   }
 
@@ -80,10 +71,8 @@ private:
   static constexpr std::uint64_t IsEntryPoint = std::uint64_t{ 1 } << 63;
 
   const WideTree& Tree;
-  const Pyramid& Around;
   GroupWorkspace& Work;
   float EntryPointExtent;
-  NearBoxes Boxes;
 };
 
 /// Makes entry points of leaves; ends when they hold too many triangles.
@@ -151,12 +140,11 @@ std::int64_t findEntryPoints(const WideTree& tree, const Vec3& apex, GroupWorksp
   {
     work.entryPoints[b].clear();
   }
-  Pyramid pyramid;
-  if (!pyramid.set(tree, apex, work.cones))
+  if (!work.cones.setFrustum(tree, apex))
   {
     return -1;
   }
-  EntryPointSearch search(tree, pyramid, work);
+  EntryPointSearch search(tree, work);
   const DescentStart start{ nullptr, (1u << work.cones.count) - 1u };
   return static_cast<std::int64_t>(descendWide(tree, start, search, work.stack));
 }

@@ -4,24 +4,24 @@
  * @brief Up to sixteen neighbouring beams of one apex descend the wide tree together. They end at
  * the boxes, called entry points, from which the packets of their rays go on (RayPacket.h).
  *
- * Eight boxes are tested against the pyramid about the group, then sixteen cones against each box
- * that is left. The descent ends where a box is a leaf, where its half diagonal is at most sixteen
- * half-beamwidths, and where at most three beams meet it. A beam without entry points hits nothing,
- * and its rays are never drawn. Smaller entry points make long lists where all beams hit; larger
- * ones leave the upper levels of the tree to every packet.
+ * Eight boxes are tested against the planes about the group, then sixteen cones against each box
+ * that is left (BoxTests.h). The descent ends where a box is a leaf, where its half diagonal is at
+ * most sixteen half-beamwidths, and where at most three beams meet it. A beam without entry points
+ * hits nothing, and its rays are never drawn. Smaller entry points make long lists where all beams
+ * hit; larger ones leave the upper levels of the tree to every packet.
  *
  * Source: batch collision detection (paper, Sec. 3.2); Z-order curve: Morton, "A Computer Oriented
  * Geodetic Data Base and a New Technique in File Sequencing", 1966.
  * Differs: the paper descends once for the rays of a beam; here once for the rays of sixteen beams,
  * and not down to the triangles. findPotential() is the paper's descent of one beam.
  * Valid: conservative: no triangle that a ray hits lies outside its beam's entry points. A group
- * whose beams lie too far apart (Pyramid::set()) is halved.
+ * whose beams lie too far apart (ConeLanes::setFrustum()) is halved.
  * Test: TestBeamGroup.cxx, TestBeamTracer.cxx.
  */
 #ifndef avianlidar_BeamGroup_h
 #define avianlidar_BeamGroup_h
 
-#include "BeamPyramid.h"
+#include "BoxTests.h"
 #include "CollisionTree.h"
 #include "Traversal.h"
 #include "WideTree.h"
@@ -52,7 +52,7 @@ struct GroupWorkspace
 };
 
 /// Find the entry points of the beams in `work.cones`.
-/// @return number of boxes tested against the group; -1 if there is no pyramid about it
+/// @return number of boxes tested against the group; -1 if there are no planes about it
 std::int64_t findEntryPoints(const WideTree& tree, const Vec3& apex, GroupWorkspace& work);
 
 /// Result of the descent of one cone.

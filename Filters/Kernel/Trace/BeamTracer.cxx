@@ -55,7 +55,7 @@ const BlockHits& BeamTracer::traceBlock(const BeamBlock& block, TraceMode mode)
   }
   work.triangles.resize(std::max(work.triangles.size(), block.size * block.rays));
   work.used = 0;
-  if (!this->Scene.tree().nodes.empty() && block.size > 0)
+  if (!this->Scene.tree().empty() && block.size > 0)
   {
     avianlidar::traceBlock(this->Scene, block, mode, this->Work->block);
   }
@@ -143,7 +143,7 @@ void BeamTracer::search(Visitor& visitor, const Vec3& origin, const Vec3& d, dou
 {
   ++this->Counters.raysTraced;
   const CollisionTree& tree = this->Scene.tree();
-  if (!tree.nodes.empty())
+  if (!tree.empty())
   {
     this->Counters.nodesVisited +=
       descendRay(tree, this->Frame.origin, origin, d, margin, visitor, this->Work->stack);

@@ -33,7 +33,7 @@ void BeamCandidates::begin(
   this->Order.clear();
   this->Groups.clear();
   this->Now = { 0, 0 };
-  const std::size_t beams = tree.nodes.empty() && scene.moved().empty() ? 0 : count;
+  const std::size_t beams = tree.empty() && scene.moved().empty() ? 0 : count;
   for (std::size_t first = 0; first < beams;)
   {
     this->Stretch.clear();
@@ -116,7 +116,7 @@ bool BeamCandidates::collect(const EntryPoints* entryPoints)
 {
   this->Triangles.clear();
   this->NodesVisited = this->Share;
-  if (!this->Tree->nodes.empty() && (!entryPoints || !entryPoints->nodes.empty()))
+  if (!this->Tree->empty() && (!entryPoints || !entryPoints->nodes.empty()))
   {
     LeafCollector leaves{ this->Triangles };
     this->NodesVisited +=

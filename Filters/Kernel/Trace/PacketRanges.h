@@ -36,10 +36,7 @@ public:
   RayBits decide(RayBits rays, std::uint32_t triangle);
 
 private:
-  bool ofOneBeam(int begin) const;
-  std::uint32_t compareGroup(int begin, std::uint32_t rays, std::uint32_t triangle);
   bool compareRay(int ray, std::uint32_t triangle);
-  void keep(int ray, Hit nearest, double range, std::uint32_t triangle);
   double exactRange(std::uint32_t triangle, const Vec3& unit, double margin);
 
   PacketState& State;

@@ -7,7 +7,23 @@ namespace avianlidar
 {
 namespace
 {
-AVIANLIDAR_MULTIVERSION void directionLanes(const BeamFrame& frame, const double* x,
+template <PlaneView View>
+AVIANLIDAR_ALWAYS_INLINE void rangesOf(const Corners& corners, const TrianglePlane& plane,
+  const double* dx, const double* dy, const double* dz, double* ranges, int* kinds, std::size_t n)
+{
+  const Corners t = corners;
+  const TrianglePlane p = plane;
+#pragma omp simd
+  for (std::size_t i = 0; i < n; ++i)
+  {
+    const PlaneRange found = rangeOnPlane<View>(t, p, dx[i], dy[i], dz[i]);
+    ranges[i] = found.range;
+    kinds[i] = found.kind;
+  }
+}
+}
+
+AVIANLIDAR_MULTIVERSION void unitDirections(const BeamFrame& frame, const double* x,
   const double* y, double* dx, double* dy, double* dz, std::size_t n)
 {
   const Vec3 e1 = frame.e1;
@@ -24,22 +40,7 @@ AVIANLIDAR_MULTIVERSION void directionLanes(const BeamFrame& frame, const double
   }
 }
 
-template <PlaneView View>
-AVIANLIDAR_ALWAYS_INLINE void rangesOf(const Corners& corners, const TrianglePlane& plane,
-  const double* dx, const double* dy, const double* dz, double* ranges, int* kinds, std::size_t n)
-{
-  const Corners t = corners;
-  const TrianglePlane p = plane;
-#pragma omp simd
-  for (std::size_t i = 0; i < n; ++i)
-  {
-    const PlaneRange found = rangeOnPlane<View>(t, p, dx[i], dy[i], dz[i]);
-    ranges[i] = found.range;
-    kinds[i] = found.kind;
-  }
-}
-
-AVIANLIDAR_MULTIVERSION void rangesOfAll(PlaneView view, const Corners& t, const TrianglePlane& p,
+AVIANLIDAR_MULTIVERSION void planeRanges(PlaneView view, const Corners& t, const TrianglePlane& p,
   const double* dx, const double* dy, const double* dz, double* ranges, int* kinds, std::size_t n)
 {
   switch (view)
@@ -51,18 +52,5 @@ AVIANLIDAR_MULTIVERSION void rangesOfAll(PlaneView view, const Corners& t, const
     case PlaneView::Any:
       return rangesOf<PlaneView::Any>(t, p, dx, dy, dz, ranges, kinds, n);
   }
-}
-}
-
-void unitDirections(const BeamFrame& frame, const double* x, const double* y, double* dx,
-  double* dy, double* dz, std::size_t n)
-{
-  directionLanes(frame, x, y, dx, dy, dz, n);
-}
-
-void planeRanges(PlaneView view, const Corners& corners, const TrianglePlane& plane,
-  const double* dx, const double* dy, const double* dz, double* ranges, int* kinds, std::size_t n)
-{
-  rangesOfAll(view, corners, plane, dx, dy, dz, ranges, kinds, n);
 }
 }

@@ -4,7 +4,6 @@
 #include "Descents.h"
 #include "Multiversion.h"
 #include "PacketRanges.h"
-#include "RayPacketBoxes.h"
 #include "RayPacketTriangles.h"
 #include "TriangleTest.h"
 
@@ -14,45 +13,21 @@ namespace avianlidar
 {
 namespace
 {
-/// Prefetch memory that is needed soon.
-inline void prefetch(const void* address)
-{
-#if defined(__GNUC__)
-  __builtin_prefetch(address);
-#else
-  static_cast<void>(address);
-#endif
-}
-
 /// BeamFrame::direction() of rays of one beam.
 AVIANLIDAR_MULTIVERSION void roundedLanes(
-  const BeamFrame& frame, const double* x, const double* y, int first, int end, PacketView& view)
+  const BeamFrame& frame, const double* x, const double* y, int end, PacketView& view)
 {
   const Vec3 e1 = frame.e1;
   const Vec3 e2 = frame.e2;
   const Vec3 axis = frame.axis;
   const double t = frame.tanHalf;
 #pragma omp simd
-  for (int i = first; i < end; ++i)
+  for (int i = 0; i < end; ++i)
   {
     view.direction[0][i] = static_cast<float>(axis.x + t * (x[i] * e1.x + y[i] * e2.x));
     view.direction[1][i] = static_cast<float>(axis.y + t * (x[i] * e1.y + y[i] * e2.y));
     view.direction[2][i] = static_cast<float>(axis.z + t * (x[i] * e1.z + y[i] * e2.z));
   }
-}
-
-/// Least number of rays of one beam that are set in a loop of their own.
-constexpr int ShortestRun = 8;
-
-/// One beyond the last ray of the beam of ray `first`, `end` at most.
-int endOfRun(const RayPacket& packet, int first, int end)
-{
-  int next = first + 1;
-  while (next < end && packet.frame[next] == packet.frame[first])
-  {
-    ++next;
-  }
-  return next;
 }
 
 /// Descent of a packet: the members of an entry are rays, its bound is a range over |D|.
@@ -81,13 +56,9 @@ public:
       }
     }
     setDirections(this->Packet, s.view);
-    const Vec3 offset = widest->origin - this->Tree.wide.reference;
-    s.view.apex[0] = static_cast<float>(offset.x);
-    s.view.apex[1] = static_cast<float>(offset.y);
-    s.view.apex[2] = static_cast<float>(offset.z);
-    s.view.spread = static_cast<float>(HitMarginBeam * widest->tanHalf + 2.0 * HitMargin);
+    s.view.frustum.spread = static_cast<float>(HitMarginBeam * widest->tanHalf + 2.0 * HitMargin);
     const double longest = 1.0 / widest->cosHalf;
-    if (!wideningFor(this->Tree.wide, offset, s.view.widening) ||
+    if (!s.view.frustum.setApex(this->Tree.wide, widest->origin) ||
       !s.view.set(this->Packet.count, longest))
     {
       return false;
@@ -164,9 +135,9 @@ private:
       {
         if (!this->State.known.find(k))
         {
-          for (const std::uint32_t point : this->Tree.leafTriangles[k].corners)
+          for (const std::uint32_t point : this->Mesh.triangles[this->Tree.order[k]])
           {
-            prefetch(&this->Mesh.points[point]);
+            __builtin_prefetch(&this->Mesh.points[point]);
           }
         }
       }
@@ -175,7 +146,7 @@ private:
     const auto* node = reinterpret_cast<const char*>(&this->Tree.wide.nodes[first]);
     for (std::size_t line = 0; line < sizeof(WideNode); line += 64)
     {
-      prefetch(node + line);
+      __builtin_prefetch(node + line);
     }
   }
 
@@ -227,11 +198,11 @@ private:
     const int count = this->Packet.count;
     const int end = padded(count);
     std::fill(s.best.triangle, s.best.triangle + count, NoTriangle);
-    std::fill(s.best.low, s.best.low + count, 0.0f);
-    std::fill(s.best.high, s.best.high + count, 0.0f);
-    std::fill(
-      s.best.low + count, s.best.low + end, FloatInfinity); // nothing is nearer than padding
-    std::fill(s.best.high + count, s.best.high + end, FloatInfinity);
+    for (float* const bound : { s.best.low, s.best.high })
+    {
+      std::fill(bound, bound + count, 0.0f);
+      std::fill(bound + count, bound + end, FloatInfinity); // nothing is nearer than padding
+    }
   }
 
   const CollisionTree& Tree;
@@ -266,7 +237,7 @@ PacketCost tracePacket(const CollisionTree& tree, RayPacket& packet, PacketWorks
 {
   PacketCost cost;
   std::fill(packet.triangle, packet.triangle + packet.count, NoTriangle);
-  if (tree.nodes.empty())
+  if (tree.empty())
   {
     return cost;
   }
@@ -294,27 +265,16 @@ void setDirections(RayPacket& packet, PacketView& view)
   }
   if (packet.beam)
   {
-    roundedLanes(*packet.beam, packet.x, packet.y, 0, end, view);
+    roundedLanes(*packet.beam, packet.x, packet.y, end, view);
     return;
   }
-  for (int first = 0; first < end;)
+  for (int i = 0; i < end; ++i)
   {
-    const int next = endOfRun(packet, first, end);
-    if (next - first >= ShortestRun)
+    const Vec3 d = packet.frame[i]->direction(packet.x[i], packet.y[i]);
+    for (int k = 0; k < 3; ++k)
     {
-      roundedLanes(*packet.frame[first], packet.x, packet.y, first, next, view);
+      view.direction[k][i] = static_cast<float>(d[k]);
     }
-    else
-    {
-      for (int i = first; i < next; ++i)
-      {
-        const Vec3 d = packet.frame[i]->direction(packet.x[i], packet.y[i]);
-        view.direction[0][i] = static_cast<float>(d.x);
-        view.direction[1][i] = static_cast<float>(d.y);
-        view.direction[2][i] = static_cast<float>(d.z);
-      }
-    }
-    first = next;
   }
 }
 }

@@ -4,7 +4,7 @@
  * @brief Up to 64 rays from one apex descend the wide tree together, in single precision with
  * bounds of the error.
  *
- * What RayPacketBoxes.h and RayPacketTriangles.h leave undecided goes at once to the exact
+ * What BoxTests.h and RayPacketTriangles.h leave undecided goes at once to the exact
  * functions (PacketRanges.h). A node is a chain of dependent steps that hardly grows with the
  * number of rays, and only groups of sixteen rays that meet a leaf are tested with its triangles.
  * So packets are wider than a vector (128 rays are better for narrow beams and worse for fine

@@ -18,26 +18,27 @@ namespace
 /// A triangle in all lanes.
 struct TriangleLanes
 {
-  Rays x0, y0, z0, x1, y1, z1, x2, y2, z2, wx, wy, wz, error, inside;
+  Rays edge[3][3], w[3], error, inside;
 
   HWY_INLINE explicit TriangleLanes(const ApexTriangle& t)
-    : x0(everywhere(t.edge[0][0]))
-    , y0(everywhere(t.edge[0][1]))
-    , z0(everywhere(t.edge[0][2]))
-    , x1(everywhere(t.edge[1][0]))
-    , y1(everywhere(t.edge[1][1]))
-    , z1(everywhere(t.edge[1][2]))
-    , x2(everywhere(t.edge[2][0]))
-    , y2(everywhere(t.edge[2][1]))
-    , z2(everywhere(t.edge[2][2]))
-    , wx(everywhere(t.w[0]))
-    , wy(everywhere(t.w[1]))
-    , wz(everywhere(t.w[2]))
-    , error(everywhere(t.error))
+    : error(everywhere(t.error))
     , inside(everywhere(t.inside))
   {
+    for (int k = 0; k < 3; ++k)
+    {
+      this->w[k] = everywhere(t.w[k]);
+      for (int e = 0; e < 3; ++e)
+      {
+        this->edge[e][k] = everywhere(t.edge[e][k]);
+      }
+    }
   }
 };
+
+HWY_INLINE Rays dot(const Rays* a, Rays x, Rays y, Rays z)
+{
+  return hn::MulAdd(a[0], x, hn::MulAdd(a[1], y, hn::Mul(a[2], z)));
+}
 
 /// Results of rays at a triangle, one bit each.
 struct Outcome
@@ -57,16 +58,14 @@ HWY_INLINE void testRays(const PacketView& view, const TriangleLanes& t, std::ui
     const Rays x = hn::Load(lanes, view.direction[0] + i);
     const Rays y = hn::Load(lanes, view.direction[1] + i);
     const Rays z = hn::Load(lanes, view.direction[2] + i);
-    const Rays e0 = hn::MulAdd(t.x0, x, hn::MulAdd(t.y0, y, hn::Mul(t.z0, z)));
-    const Rays e1 = hn::MulAdd(t.x1, x, hn::MulAdd(t.y1, y, hn::Mul(t.z1, z)));
-    const Rays e2 = hn::MulAdd(t.x2, x, hn::MulAdd(t.y2, y, hn::Mul(t.z2, z)));
-    const Rays edge = hn::Min(hn::Min(e0, e1), e2);
+    const Rays edge =
+      hn::Min(hn::Min(dot(t.edge[0], x, y, z), dot(t.edge[1], x, y, z)), dot(t.edge[2], x, y, z));
     const auto near = hn::Ge(edge, minusOne);
     if (hn::AllFalse(lanes, near))
     {
       continue;
     }
-    const Rays w = hn::MulAdd(t.wx, x, hn::MulAdd(t.wy, y, hn::Mul(t.wz, z)));
+    const Rays w = dot(t.w, x, y, z);
     const Rays low = hn::Sub(w, t.error);
     const Rays high = hn::Add(w, t.error);
     const Rays bestLow = hn::Load(lanes, best.low + i);

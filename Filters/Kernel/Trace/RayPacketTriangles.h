@@ -48,7 +48,7 @@
 #define avianlidar_RayPacketTriangles_h
 
 #include "ApexTriangles.h"
-#include "RayPacketBoxes.h"
+#include "BoxTests.h"
 
 #include <cstdint>
 

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "CoincidentFaces.h"
 
+#include "Traversal.h"
+
 #include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <cstring>
-#include <memory>
 
 namespace avianlidar
 {
@@ -21,9 +22,8 @@ constexpr float TiltOfRounding = 1e-6f;
 struct Face
 {
   float normal[3];
-  float tilt;           ///< rad, by which rounding may turn it
-  float tolerance;      ///< toleranceOf(), rounded up
-  std::uint32_t number; ///< triangle number
+  float tilt;      ///< rad, by which rounding may turn it
+  float tolerance; ///< toleranceOf(), rounded up
 };
 
 /// Twice the area, along the normal.
@@ -79,7 +79,6 @@ double toleranceOf(const TriangleMesh& mesh, std::uint32_t triangle, const Vec3&
 Face faceOf(const TriangleMesh& mesh, std::uint32_t triangle)
 {
   Face face = {};
-  face.number = triangle;
   const Corners t = cornersOf(mesh, triangle);
   const Vec3 area = areaOf(t);
   const double size = glm::length(area);
@@ -100,33 +99,17 @@ Face faceOf(const TriangleMesh& mesh, std::uint32_t triangle)
   return face;
 }
 
-/// True if a side of the first triangle separates them, seen along one axis.
-bool isSeparated(const double (&one)[3][2], const double (&two)[3][2])
+/// True if a side of the first triangle separates them, seen along its normal.
+bool isBeside(const Corners& one, const Corners& two)
 {
-  for (int k = 0; k < 3; ++k)
+  const Vec3 n = areaOf(one);
+  const auto separates = [&](const Vec3& from, const Vec3& to)
   {
-    const double* const a = one[k];
-    const double* const b = one[(k + 1) % 3];
-    const double x = b[0] - a[0];
-    const double y = b[1] - a[1];
-    const auto side = [&](const double* p) { return x * (p[1] - a[1]) - y * (p[0] - a[0]); };
-    const double sign = side(one[(k + 2) % 3]) > 0.0 ? 1.0 : -1.0;
-    if (sign * side(two[0]) <= 0.0 && sign * side(two[1]) <= 0.0 && sign * side(two[2]) <= 0.0)
-    {
-      return true;
-    }
-  }
-  return false;
-}
-
-/// The same of either. @param along the axis
-bool isSeparated(const Corners& one, const Corners& two, int along)
-{
-  const int u = (along + 1) % 3;
-  const int v = (along + 2) % 3;
-  const double a[3][2] = { { one.a[u], one.a[v] }, { one.b[u], one.b[v] }, { one.c[u], one.c[v] } };
-  const double b[3][2] = { { two.a[u], two.a[v] }, { two.b[u], two.b[v] }, { two.c[u], two.c[v] } };
-  return isSeparated(a, b) || isSeparated(b, a);
+    const Vec3 inwards = glm::cross(n, to - from);
+    const auto isOut = [&](const Vec3& p) { return glm::dot(inwards, p - from) <= 0.0; };
+    return isOut(two.a) && isOut(two.b) && isOut(two.c);
+  };
+  return separates(one.a, one.b) || separates(one.b, one.c) || separates(one.c, one.a);
 }
 
 /// True if two triangles overlap, and are nowhere in their overlap farther apart than `tolerance`.
@@ -182,182 +165,140 @@ bool coincide(const Corners& one, const Corners& two, double tolerance)
     std::fabs(glm::dot(n, overlap)) > std::max(LeastOverlap * least, edge);
 }
 
-/// A box of the wide tree.
-struct Part
+/// Children of a node that lie no farther than `slack` from a child of another, one bit each.
+AVIANLIDAR_MULTIVERSION std::uint32_t childrenNear(
+  const WideNode& node, const WideNode& other, int lane, float slack)
 {
-  float centre[3], half[3];
-  std::uint32_t first, count; ///< as of WideNode
-  bool isLeaf() const { return this->count > 0; }
-  bool operator==(const Part& other) const
+  std::uint32_t near[WideNode::Width];
+#pragma omp simd
+  for (int i = 0; i < WideNode::Width; ++i)
   {
-    return this->first == other.first && this->count == other.count;
+    const float x = std::fabs(node.x[i] - other.x[lane]) - (node.halfX[i] + other.halfX[lane]);
+    const float y = std::fabs(node.y[i] - other.y[lane]) - (node.halfY[i] + other.halfY[lane]);
+    const float z = std::fabs(node.z[i] - other.z[lane]) - (node.halfZ[i] + other.halfZ[lane]);
+    const float apart = x > y ? (x > z ? x : z) : (y > z ? y : z);
+    near[i] = (!(apart > slack) & (node.first[i] != NoChild)) ? 1u : 0u;
   }
-};
-using PartPair = std::pair<Part, Part>;
+  std::uint32_t bits = 0;
+  for (int i = 0; i < WideNode::Width; ++i)
+  {
+    bits |= near[i] << i;
+  }
+  return bits;
+}
 
-class Search
+/// Sets of triangles that coincide, which several threads unite. The root of a set is its lowest
+/// number, whatever the order of the pairs.
+class Forest
 {
 public:
-  Search(const CollisionTree& tree, ParallelTeam& team)
-    : Tree(tree)
-    , Mesh(*tree.mesh)
-    , Team(team)
-    , Faces(tree.order.size())
-    , Parents(new std::atomic<std::uint32_t>[tree.mesh->size()])
+  explicit Forest(std::size_t size)
+    : Parents(size)
   {
+    for (std::size_t i = 0; i < size; ++i)
+    {
+      this->Parents[i] = static_cast<std::uint32_t>(i);
+    }
   }
 
-  /// Set what the tree holds of coincident faces. @return false if stopped
-  bool run(const KeepGoing& keepGoing, CollisionTree& tree)
+  std::uint32_t rootOf(std::uint32_t triangle)
   {
-    constexpr std::size_t block = 1024;
-    std::atomic<float> widest{ 0.0f };
-    this->Team.loop(this->Faces.size(), block,
-      [&](std::size_t begin, std::size_t end, int)
-      {
-        float most = 0.0f;
-        for (std::size_t k = begin; k < end; ++k)
-        {
-          this->Faces[k] = faceOf(this->Mesh, this->Tree.order[k]);
-          this->Parents[k] = static_cast<std::uint32_t>(k);
-          most = std::max(most, this->Faces[k].tolerance);
-        }
-        float known = widest;
-        while (known < most && !widest.compare_exchange_weak(known, most))
-        {
-        }
-      });
-    this->Slack = 2.0f * widest + WideRounding * static_cast<float>(this->Tree.wide.extent);
-    std::vector<PartPair> pairs = this->firstPairs();
-    const bool finished = this->Team.loop(
-      pairs.size(), 1,
-      [&](std::size_t begin, std::size_t end, int)
-      {
-        std::vector<PartPair> stack(pairs.begin() + begin, pairs.begin() + end);
-        while (!stack.empty())
-        {
-          const PartPair pair = stack.back();
-          stack.pop_back();
-          this->visit(pair, stack);
-        }
-      },
-      keepGoing);
-    if (finished && this->Found)
+    for (std::uint32_t parent = this->Parents[triangle]; parent != triangle;
+         parent = this->Parents[triangle])
     {
-      tree.planeOwners = this->owners();
-      tree.planeDepth = 2.0 * widest;
+      this->Parents[triangle] = this->Parents[parent].load(); // shortens the way
+      triangle = parent;
     }
-    return finished;
+    return triangle;
+  }
+
+  void unite(std::uint32_t one, std::uint32_t two)
+  {
+    for (one = this->rootOf(one), two = this->rootOf(two); one != two;
+         one = this->rootOf(one), two = this->rootOf(two))
+    {
+      std::uint32_t higher = std::max(one, two);
+      this->Parents[higher].compare_exchange_strong(higher, std::min(one, two));
+    }
   }
 
 private:
-  /// Enough pairs of boxes to keep many threads busy.
-  std::vector<PartPair> firstPairs()
+  std::vector<std::atomic<std::uint32_t>> Parents;
+};
+
+/// Descends the tree with the box of one node, and compares the triangles of its leaves with those
+/// of the leaves that it meets.
+class LeafSearch : public WidePolicy
+{
+public:
+  LeafSearch(const CollisionTree& tree, const std::vector<Face>& faces, float slack, Forest& sets)
+    : Tree(tree)
+    , Faces(faces)
+    , Slack(slack)
+    , Sets(sets)
   {
-    constexpr std::size_t enough = 2048;
-    const Part root{ {}, {}, 0, 0 };
-    std::vector<PartPair> pairs{ { root, root } };
-    for (bool opened = true; opened && pairs.size() < enough;)
-    {
-      opened = false;
-      std::vector<PartPair> next;
-      for (const PartPair& pair : pairs)
-      {
-        const bool opens = !pair.first.isLeaf() || !pair.second.isLeaf();
-        opens ? this->visit(pair, next) : next.push_back(pair);
-        opened = opened || opens;
-      }
-      pairs = std::move(next);
-    }
-    return pairs;
   }
 
-  static Part childOf(const WideNode& node, int lane)
+  /// @param parent of the node @param lane of the parent
+  void run(const WideNode& parent, int lane)
   {
-    return { { node.x[lane], node.y[lane], node.z[lane] },
-      { node.halfX[lane], node.halfY[lane], node.halfZ[lane] }, node.first[lane],
-      node.count[lane] };
-  }
-
-  /// Children of a node whose boxes meet that of a part, a bit for each.
-  std::uint32_t childrenMet(const WideNode& node, const Part& part) const
-  {
-    const float slack = this->Slack;
-    std::uint32_t met[WideNode::Width];
-#pragma omp simd
+    this->Parent = &parent;
+    this->Lane = lane;
+    this->Own = &this->Tree.wide.nodes[parent.first[lane]];
+    this->First = NoChild;
     for (int i = 0; i < WideNode::Width; ++i)
     {
-      const float x = std::fabs(node.x[i] - part.centre[0]) - (node.halfX[i] + part.half[0]);
-      const float y = std::fabs(node.y[i] - part.centre[1]) - (node.halfY[i] + part.half[1]);
-      const float z = std::fabs(node.z[i] - part.centre[2]) - (node.halfZ[i] + part.half[2]);
-      const float apart = x > y ? (x > z ? x : z) : (y > z ? y : z);
-      met[i] = (!(apart > slack) & (node.first[i] != NoChild)) ? 1u : 0u;
+      this->First =
+        this->Own->count[i] > 0 ? std::min(this->First, this->Own->first[i]) : this->First;
     }
-    std::uint32_t bits = 0;
-    for (int i = 0; i < WideNode::Width; ++i)
+    if (this->First != NoChild)
     {
-      bits |= met[i] << i;
+      descendWide(this->Tree.wide, DescentStart(), *this, this->Stack);
     }
-    return bits;
   }
 
-  void visit(const PartPair& pair, std::vector<PartPair>& more)
+  double limit() const { return 0.0; }
+
+  template <class Push>
+  void open(const WideNode& node, std::uint64_t, Push push)
   {
-    const Part& one = pair.first;
-    const Part& two = pair.second;
-    if (one.isLeaf() && two.isLeaf())
+    for (std::uint32_t near = childrenNear(node, *this->Parent, this->Lane, this->Slack); near != 0;
+         near &= near - 1)
     {
-      this->compare(one, two);
-      return;
+      push(static_cast<std::uint32_t>(__builtin_ctz(near)), 0, 0.0f);
     }
-    const bool opensOne = !one.isLeaf();
-    const WideNode& node = this->Tree.wide.nodes[opensOne ? one.first : two.first];
-    const auto add = [&](std::uint32_t lanes, const Part& part)
+  }
+
+  /// Each pair once.
+  bool end(const DescentEntry& other)
+  {
+    if (other.node < this->First)
     {
-      for (; lanes != 0; lanes &= lanes - 1)
-      {
-        more.emplace_back(childOf(node, __builtin_ctz(lanes)), part);
-      }
-    };
-    if (!(one == two))
-    {
-      const Part other = opensOne ? two : one;
-      add(this->childrenMet(node, other), other);
-      return;
+      return true;
     }
-    for (int i = 0; i < WideNode::Width; ++i)
+    const WideNode& node = this->Tree.wide.nodes[other.parent];
+    for (std::uint32_t near =
+           childrenNear(*this->Own, node, static_cast<int>(other.lane), this->Slack);
+         near != 0; near &= near - 1)
     {
-      if (node.first[i] != NoChild)
+      const int lane = __builtin_ctz(near);
+      const std::uint32_t first = this->Own->first[lane];
+      for (std::uint32_t i = 0; other.node >= first && i < this->Own->count[lane]; ++i)
       {
-        const Part child = childOf(node, i);
-        add(this->childrenMet(node, child) >> i << i, child); // each pair once
+        for (std::uint32_t j = other.node == first ? i + 1 : 0; j < other.count; ++j)
+        {
+          this->compare(first + i, other.node + j);
+        }
       }
     }
+    return true;
   }
 
-  void compare(const Part& one, const Part& two)
+private:
+  void compare(std::uint32_t placeOne, std::uint32_t placeTwo)
   {
-    for (std::uint32_t i = 0; i < one.count; ++i)
-    {
-      for (std::uint32_t j = one == two ? i + 1 : 0; j < two.count; ++j)
-      {
-        this->compare(one.first + i, two.first + j);
-      }
-    }
-  }
-
-  Corners cornersAt(std::uint32_t place, const Vec3& apex) const
-  {
-    const auto& corners = this->Tree.leafTriangles[place].corners;
-    const std::vector<Vec3>& points = this->Mesh.points;
-    return { points[corners[0]] - apex, points[corners[1]] - apex, points[corners[2]] - apex };
-  }
-
-  /// Compare two triangles, by their places in the tree's order.
-  void compare(std::uint32_t one, std::uint32_t two)
-  {
-    const Face& a = this->Faces[one];
-    const Face& b = this->Faces[two];
+    const Face& a = this->Faces[placeOne];
+    const Face& b = this->Faces[placeTwo];
     const float x = a.normal[1] * b.normal[2] - a.normal[2] * b.normal[1];
     const float y = a.normal[2] * b.normal[0] - a.normal[0] * b.normal[2];
     const float z = a.normal[0] * b.normal[1] - a.normal[1] * b.normal[0];
@@ -368,58 +309,99 @@ private:
     {
       return;
     }
-    const bool inOrder = a.number < b.number; // so that nothing depends on the tree
-    const std::uint32_t lower = inOrder ? one : two;
-    const Vec3& apex = this->Mesh.points[this->Tree.leafTriangles[lower].corners[0]];
-    const Corners first = this->cornersAt(lower, apex);
-    const Corners second = this->cornersAt(inOrder ? two : one, apex);
+    // In order, so that nothing depends on the tree.
+    const auto [lower, higher] =
+      std::minmax({ this->Tree.order[placeOne], this->Tree.order[placeTwo] });
+    const Vec3& apex = this->Tree.mesh->corner(lower, 0);
+    const Corners one = cornersFrom(*this->Tree.mesh, lower, apex);
+    const Corners two = cornersFrom(*this->Tree.mesh, higher, apex);
     const double tolerance = static_cast<double>(a.tolerance) + static_cast<double>(b.tolerance);
+    // Most planes that are parallel lie apart.
     const Vec3 n(a.normal[0], a.normal[1], a.normal[2]);
-    const Vec3 size = glm::abs(n);
-    const int along = size.x > size.y ? (size.x > size.z ? 0 : 2) : (size.y > size.z ? 1 : 2);
-    const double level = tolerance + tilt * glm::dot(glm::abs(second.a), Vec3(1.0));
-    if (!(std::fabs(glm::dot(n, second.a)) > level) && !isSeparated(first, second, along) &&
-      this->rootOf(a.number) != this->rootOf(b.number) && coincide(first, second, tolerance))
+    const double level = tolerance + tilt * glm::dot(glm::abs(two.a), Vec3(1.0));
+    if (!(std::fabs(glm::dot(n, two.a)) > level) && !isBeside(one, two) && !isBeside(two, one) &&
+      this->Sets.rootOf(lower) != this->Sets.rootOf(higher) && coincide(one, two, tolerance))
     {
-      this->unite(a.number, b.number);
-      this->Found = true;
+      this->Sets.unite(lower, higher);
     }
   }
 
-  std::uint32_t rootOf(std::uint32_t triangle)
+  const CollisionTree& Tree;
+  const std::vector<Face>& Faces;
+  const float Slack; ///< m, most that boxes may lie apart
+  Forest& Sets;
+  TraversalStack Stack;
+  const WideNode* Parent = nullptr;
+  int Lane = 0;
+  const WideNode* Own = nullptr; ///< the node
+  std::uint32_t First = 0;       ///< of its leaves in the order
+};
+
+class Search
+{
+public:
+  Search(const CollisionTree& tree, ParallelTeam& team)
+    : Tree(tree)
+    , Mesh(*tree.mesh)
+    , Team(team)
+    , Faces(tree.order.size())
+    , Sets(tree.order.size())
   {
-    while (true)
-    {
-      const std::uint32_t parent = this->Parents[triangle].load(std::memory_order_relaxed);
-      if (parent == triangle)
-      {
-        return triangle;
-      }
-      const std::uint32_t next = this->Parents[parent].load(std::memory_order_relaxed);
-      this->Parents[triangle].store(next, std::memory_order_relaxed); // shortens the way
-      triangle = next;
-    }
   }
 
-  /// The root of a set is its lowest number, whatever the order of the pairs.
-  void unite(std::uint32_t one, std::uint32_t two)
+  /// Set what the tree holds of coincident faces. @return false if stopped
+  bool run(const KeepGoing& keepGoing, CollisionTree& tree)
   {
-    while (true)
+    constexpr std::size_t block = 1024;
+    this->Team.loop(this->Faces.size(), block,
+      [this](std::size_t begin, std::size_t end, int)
+      {
+        for (std::size_t k = begin; k < end; ++k)
+        {
+          this->Faces[k] = faceOf(this->Mesh, this->Tree.order[k]);
+        }
+      });
+    const float widest = std::max_element(this->Faces.begin(), this->Faces.end(),
+      [](const Face& a, const Face& b) {
+        return a.tolerance < b.tolerance;
+      })->tolerance;
+    const float slack = 2.0f * widest + WideRounding * static_cast<float>(tree.wide.extent);
+    constexpr std::size_t nodes = 64;
+    const bool finished = this->Team.loop(
+      tree.wide.nodes.size(), nodes,
+      [&](std::size_t begin, std::size_t end, int)
+      {
+        LeafSearch search(this->Tree, this->Faces, slack, this->Sets);
+        WideNode root;
+        root.clear();
+        root.first[0] = 0;
+        root.halfX[0] = root.halfY[0] = root.halfZ[0] = std::numeric_limits<float>::max();
+        for (std::size_t n = begin; n < end; ++n)
+        {
+          for (int i = 0; i < WideNode::Width; ++i)
+          {
+            const WideNode& node = tree.wide.nodes[n];
+            if (node.count[i] == 0 && node.first[i] != NoChild)
+            {
+              search.run(node, i);
+            }
+          }
+          if (n == 0)
+          {
+            search.run(root, 0);
+          }
+        }
+      },
+      keepGoing);
+    if (finished)
     {
-      one = this->rootOf(one);
-      two = this->rootOf(two);
-      if (one == two)
-      {
-        return;
-      }
-      std::uint32_t higher = std::max(one, two);
-      if (this->Parents[higher].compare_exchange_strong(higher, std::min(one, two)))
-      {
-        return;
-      }
+      tree.planeOwners = this->owners();
+      tree.planeDepth = tree.planeOwners.empty() ? 0.0 : 2.0 * widest;
     }
+    return finished;
   }
 
+private:
   double leastAltitudeOf(std::uint32_t triangle) const
   {
     const Corners t = cornersOf(this->Mesh, triangle);
@@ -447,25 +429,28 @@ private:
     return true;
   }
 
+  /// Empty if nothing coincides.
   std::vector<std::uint32_t> owners()
   {
+    bool found = false;
     const auto size = static_cast<std::uint32_t>(this->Faces.size());
     std::vector<std::uint32_t> owners(size, NoTriangle); // of the roots of sets of several
     for (std::uint32_t t = 0; t < size; ++t)
     {
-      const std::uint32_t root = this->rootOf(t);
+      const std::uint32_t root = this->Sets.rootOf(t);
       std::uint32_t& owner = owners[root];
       if (root != t)
       {
+        found = true;
         owner = owner == NoTriangle ? root : owner;
         constexpr double clearly = 1.001; // copies have the plane of the first
         owner = this->leastAltitudeOf(t) > clearly * this->leastAltitudeOf(owner) ? t : owner;
       }
     }
-    std::vector<std::uint32_t> result(size, NoTriangle);
-    for (std::uint32_t t = 0; t < size; ++t)
+    std::vector<std::uint32_t> result(found ? size : 0, NoTriangle);
+    for (std::uint32_t t = 0; t < result.size(); ++t)
     {
-      const std::uint32_t owner = owners[this->rootOf(t)];
+      const std::uint32_t owner = owners[this->Sets.rootOf(t)];
       result[t] = owner != NoTriangle && this->fits(t, owner) ? owner : NoTriangle;
     }
     return result;
@@ -474,11 +459,8 @@ private:
   const CollisionTree& Tree;
   const TriangleMesh& Mesh;
   ParallelTeam& Team;
-  std::vector<Face> Faces;
-  std::unique_ptr<std::atomic<std::uint32_t>[]>
-    Parents;          ///< sets of triangles that coincide, as a forest
-  float Slack = 0.0f; ///< m, most that boxes may lie apart
-  std::atomic<bool> Found{ false };
+  std::vector<Face> Faces; ///< in the tree's order
+  Forest Sets;
 };
 }
 

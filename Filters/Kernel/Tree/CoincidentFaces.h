@@ -11,7 +11,7 @@
  * least altitude is largest, as rounding tilts it least. Rays then have equal ranges on them, bit
  * for bit, and equal ranges go to the lower triangle number.
  *
- * Pairs are found by a descent of the wide tree against itself.
+ * Pairs are found by descents of the tree with the leaves of each of its nodes.
  *
  * Source: none.
  * Valid: any triangles. Depends on the mesh alone, not on the tree or the threads. A triangle that
@@ -22,6 +22,7 @@
 #define avianlidar_CoincidentFaces_h
 
 #include "CollisionTree.h"
+#include "ParallelLoop.h"
 
 #include <cstdint>
 #include <vector>

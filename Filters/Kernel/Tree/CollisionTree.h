@@ -3,13 +3,12 @@
  * @file CollisionTree.h
  * @brief The collision detection tree: structure only.
  *
- * Nodes are numbered breadth first (0-based): the children of a node are adjacent and follow all
- * nodes of their parent's layer. Builders are in CollisionTreeBuilder.h, the descent is in
- * Traversal.h.
+ * Nodes are those of the wide tree, eight boxes each. The paper's binary trees, of boxes and of
+ * other volumes, are beside the kernel (OtherVolumes, VolumeTree.h). The builder is in
+ * CollisionTreeBuilder.h, the descent in Traversal.h.
  *
- * Source: paper, Sec. 3.1, Eq. 14 and the numbering of Algorithm 1.
- * Differs: a leaf holds up to maximumLeafSize triangles (Algorithm 1: one). Volumes are boxes and
- * stand in the wide tree; other volumes are beside the kernel (OtherVolumes, VolumeTree.h).
+ * Source: paper, Sec. 3.1.
+ * Differs: eight children a node; a leaf holds up to maximumLeafSize triangles (Algorithm 1: one).
  * Valid: at most 2^31 - 1 triangles.
  * Test: TestCollisionTreeBuilder.cxx.
  */
@@ -17,7 +16,6 @@
 #define avianlidar_CollisionTree_h
 
 #include "BeamFrame.h"
-#include "ParallelLoop.h"
 #include "TriangleMesh.h"
 #include "TriangleTest.h"
 #include "WideTree.h"
@@ -48,22 +46,6 @@ struct TreeOptions
   SplitRule splitRule = SplitRule::SurfaceAreaHeuristic;
   BoundingVolumeType boundingVolume = BoundingVolumeType::AABB; ///< others: see VolumeTree.h
   int maximumLeafSize = 4; ///< triangles, >= 1; 1 is Algorithm 1
-};
-
-/// node_i = {B_i, F_i, p_i1, p_i2} of Eq. 14 without its volume.
-struct TreeNode
-{
-  /// Inner node: its first child (the second is first + 1); leaf: first entry of `order`.
-  std::uint32_t first;
-  std::uint32_t count; ///< 0: inner node; else triangles of the leaf
-  bool isLeaf() const { return this->count > 0; }
-};
-
-/// A triangle in a leaf, as a descent needs it.
-struct alignas(16) LeafTriangle
-{
-  std::uint32_t corners[3]; ///< numbers of points
-  std::uint32_t number;     ///< of the triangle
 };
 
 /// A volume or node still to be visited.
@@ -112,16 +94,18 @@ struct CollisionTree
 {
   std::shared_ptr<const TriangleMesh> mesh;
   TreeOptions options;
-  std::vector<TreeNode> nodes;             ///< empty for an empty mesh
-  std::vector<std::uint32_t> order;        ///< triangle numbers, leaf by leaf
-  std::vector<LeafTriangle> leafTriangles; ///< one for each entry of `order`
-  std::uint64_t checksum = 0;              ///< of the mesh
-  WideTree wide; ///< boxes eight at a time in single precision; empty with other volumes
+  std::vector<std::uint32_t> order; ///< triangle numbers, leaf by leaf; empty for an empty mesh
+  std::uint64_t checksum = 0;       ///< of the mesh
+  std::uint32_t leaves = 0;         ///< number of leaves
+  std::uint32_t depth = 0; ///< of the deepest leaf in a binary tree, as the rule divides; root 0
+  WideTree wide;           ///< boxes eight at a time in single precision; empty with other volumes
   std::shared_ptr<const OtherVolumes> other; ///< null: boxes
   /// For each triangle that coincides with others the one whose plane they take
   /// (CoincidentFaces.h), for the rest NoTriangle; empty if no faces coincide.
   std::vector<std::uint32_t> planeOwners;
   double planeDepth = 0.0; ///< m, most that rounding moves two of them apart
+
+  bool empty() const { return this->order.empty(); }
 
   bool coincides(std::uint32_t triangle) const
   {
@@ -133,17 +117,11 @@ struct CollisionTree
   {
     return this->coincides(triangle) ? this->planeOwners[triangle] : triangle;
   }
-
-  /// Depth of each node, root 0.
-  std::vector<std::uint32_t> depths() const;
 };
 
 /// Plane of a triangle, or that which it takes of another. @param corners from the apex
 TrianglePlane planeOf(
   const CollisionTree& tree, std::uint32_t triangle, const Corners& corners, const Vec3& apex);
-
-/// Fill `leafTriangles` from order and mesh.
-void collectLeafTriangles(CollisionTree& tree, ParallelTeam& team);
 }
 
 #endif

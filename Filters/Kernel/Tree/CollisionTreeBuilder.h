@@ -1,21 +1,24 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file CollisionTreeBuilder.h
- * @brief Builds the collision detection tree with several threads.
+ * @brief Builds the collision tree of boxes, eight children a node, with several threads.
  *
  * 1. Boxes of all triangles in single precision (TriangleBoxes.h).
- * 2. Large nodes are divided layer by layer, many threads at each node; smaller ones by one
- *    thread, depth first, in its cache (TreeDraft.h). Boxes are copied back and forth between two
- *    arrays: a node's boxes are in the array of its depth's parity.
- * 3. Nodes are numbered breadth first; the wide tree is built.
+ * 2. Large ranges of boxes are divided layer by layer, one thread for each range. Boxes are copied
+ *    back and forth between two arrays: those of a range are in the array of its depth's parity.
+ * 3. Each range that is left is divided down to the leaves, on one thread.
+ * 4. Up to eight ranges become the children of a node, so that the sum of the areas of all nodes is
+ *    least.
+ * 5. Faces that coincide are found (CoincidentFaces.h).
  *
- * Source: paper, Algorithm 1.
- * Differs: leaves of several triangles, the surface area heuristic (SplitRule.h), several threads,
- * and halving below depth 96, so that no tree becomes a list.
+ * Source: paper, Algorithm 1; T. Ylitie, T. Karras, S. Laine, "Efficient Incoherent Ray Traversal
+ * on GPUs Through Compressed Wide BVHs", HPG 2017, Sec. 3.1.
+ * Differs: Algorithm 1 makes two children a node (VolumeTree.h). Here leaves hold several
+ * triangles, the surface area heuristic is added (SplitRule.h), and several threads work.
  * Valid: the tree has the same bits for any number of threads, as the limit between large and
- * small nodes depends on the number of triangles alone. Cost O(n log n); peak about 150 bytes a
+ * small ranges depends on the number of triangles alone. Cost O(n log n); peak about 150 bytes a
  * triangle.
- * Test: TestCollisionTreeBuilder.cxx.
+ * Test: TestCollisionTreeBuilder.cxx, TestWideTree.cxx.
  */
 #ifndef avianlidar_CollisionTreeBuilder_h
 #define avianlidar_CollisionTreeBuilder_h
@@ -35,9 +38,8 @@ namespace avianlidar
 std::shared_ptr<const CollisionTree> buildCollisionTree(std::shared_ptr<const TriangleMesh> mesh,
   const TreeOptions& options, const KeepGoing& keepGoing = {}, int threads = 0);
 
-/// The same without a wide tree, which nothing descends before it has other volumes.
-std::shared_ptr<CollisionTree> buildBinaryTree(std::shared_ptr<const TriangleMesh> mesh,
-  const TreeOptions& options, const KeepGoing& keepGoing = {}, int threads = 0);
+/// Throws std::invalid_argument if there is no mesh, or an option is out of range.
+void checkTreeInput(const TriangleMesh* mesh, const TreeOptions& options);
 }
 
 #endif

@@ -217,7 +217,7 @@ void MediumCrosser::findInSurface(const MediumVolume& volume, const Vec3& origin
 {
   const CollisionTree& tree = *volume.surface;
   this->Hits.clear();
-  if (tree.nodes.empty())
+  if (tree.empty())
   {
     return;
   }

@@ -19,22 +19,22 @@ void rotate(double a[3][3], double v[3][3], int p, int q)
   const double t = std::copysign(1.0, theta) / (std::fabs(theta) + std::hypot(theta, 1.0));
   const double c = 1.0 / std::hypot(t, 1.0);
   const double s = t * c;
-  const double apq = a[p][q];
-  a[p][p] -= t * apq;
-  a[q][q] += t * apq;
-  a[p][q] = a[q][p] = 0.0;
-  const int r = 3 - p - q;
-  const double arp = a[r][p];
-  const double arq = a[r][q];
-  a[r][p] = a[p][r] = c * arp - s * arq;
-  a[r][q] = a[q][r] = s * arp + c * arq;
+  const auto turn = [c, s](double& x, double& y)
+  {
+    const double before = x;
+    x = c * before - s * y;
+    y = s * before + c * y;
+  };
   for (int i = 0; i < 3; ++i)
   {
-    const double vip = v[i][p];
-    const double viq = v[i][q];
-    v[i][p] = c * vip - s * viq;
-    v[i][q] = s * vip + c * viq;
+    turn(a[i][p], a[i][q]);
+    turn(v[i][p], v[i][q]);
   }
+  for (int i = 0; i < 3; ++i)
+  {
+    turn(a[p][i], a[q][i]);
+  }
+  a[p][q] = a[q][p] = 0.0;
 }
 }
 

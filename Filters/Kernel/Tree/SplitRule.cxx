@@ -4,6 +4,8 @@
 #include "PrincipalAxes.h"
 
 #include <algorithm>
+#include <iterator>
+#include <limits>
 
 namespace avianlidar
 {
@@ -57,45 +59,153 @@ std::size_t splitAtPrincipalPlane(const LaneBox* from, LaneBox* to, std::size_t 
       return glm::dot((twiceCenter(box) - reference) - mean, normal) < 0.0;
     }).first;
   const std::size_t first = static_cast<std::size_t>(middle - to);
-  return first > 0 && first < count ? first : splitInHalves(from, to, count);
+  return first < count ? first : 0;
 }
 
+constexpr int MostBins = 16;
+
+/// Maps twice the centre of a box to its bin on each axis.
+struct BinMapping
+{
+  using Numbers = std::int32_t __attribute__((vector_size(16)));
+
+  Lanes lower;
+  Lanes scale{}; ///< bins per metre; 0: all centres are equal on this axis
+  Lanes last;    ///< number of the last bin
+  /// 1/m: scaled by it, areas can be held in floats, even in a tiny scene. Where a box is 1e18
+  /// times as large as the spread of the centres they cannot, and there is nothing to divide by.
+  float unit = 0.0f;
+  int bins; ///< few triangles take few: more would cost more than they gain
+
+  AVIANLIDAR_ALWAYS_INLINE BinMapping(const LaneBox& centers, std::size_t count)
+    : lower(-centers.below)
+    , bins(static_cast<int>(std::min<std::size_t>(MostBins, 4 + count / 16)))
+  {
+    const auto number = static_cast<float>(this->bins);
+    this->last = Lanes{} + (number - 1.0f);
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      const float width = centers.above[axis] + centers.below[axis];
+      const float perMetre = number / width;
+      const bool usable = width > 0.0f && perMetre <= std::numeric_limits<float>::max();
+      this->scale[axis] = usable ? perMetre : 0.0f;
+      // Of the widest axis.
+      this->unit = usable && (this->unit == 0.0f || perMetre < this->unit) ? perMetre : this->unit;
+    }
+  }
+
+  AVIANLIDAR_ALWAYS_INLINE Numbers binsOf(const LaneBox& box) const
+  {
+    const Lanes at = (box.twiceCenter() - this->lower) * this->scale;
+    return __builtin_convertvector(at < this->last ? at : this->last, Numbers);
+  }
+
+  /// Half the surface area of a box, scaled, for comparison.
+  AVIANLIDAR_ALWAYS_INLINE float halfArea(const LaneBox& box) const
+  {
+    const Lanes size = (box.above + box.below) * this->unit;
+    const Lanes next{ size[1], size[2], size[0], 0.0f };
+    const Lanes product = size * next;
+    return product[0] + product[1] + product[2];
+  }
+};
+
+/// What stands in the bins of one axis, merged from one of its ends on.
+struct BinSweep
+{
+  LaneBox box;
+  std::uint32_t number = 0;
+
+  AVIANLIDAR_ALWAYS_INLINE BinSweep() { this->box.clear(); }
+  /// Take one more bin. @return area times number
+  AVIANLIDAR_ALWAYS_INLINE float add(
+    const BinMapping& mapping, const LaneBox& bin, std::uint32_t count)
+  {
+    this->box.include(bin);
+    this->number += count;
+    return mapping.halfArea(this->box) * static_cast<float>(this->number);
+  }
+};
+
+/// Boxes in lower bins of the best axis go to the first child: where the sum of area times number
+/// is least.
 AVIANLIDAR_MULTIVERSION std::size_t splitBySurfaceArea(
   const LaneBox* from, LaneBox* to, std::size_t count, const LaneBox& centers)
 {
-  BinMapping mapping;
-  mapping.set(centers, count);
-  Bins bins;
-  bins.clear(mapping.bins);
-  bins.add(mapping, from, count);
-  const BinChoice choice = bins.choose(mapping);
-  if (choice.axis < 0)
+  const BinMapping mapping(centers, count);
+  const int bins = mapping.bins;
+  LaneBox box[3][MostBins];
+  std::uint32_t number[3][MostBins];
+  for (int axis = 0; axis < 3; ++axis)
   {
-    return 0;
+    for (int bin = 0; bin < bins; ++bin)
+    {
+      box[axis][bin].clear();
+      number[axis][bin] = 0;
+    }
   }
-  const std::size_t first = bins.below(choice);
-  part(mapping, choice, from, count, to, 0, first);
-  return first;
+  for (std::size_t i = 0; i < count; ++i)
+  {
+    const BinMapping::Numbers bin = mapping.binsOf(from[i]);
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      box[axis][bin[axis]].include(from[i]);
+      ++number[axis][bin[axis]];
+    }
+  }
+  float least = std::numeric_limits<float>::infinity();
+  int bestAxis = 0;
+  int bestBin = 0;
+  std::size_t toFirst = 0;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    if (mapping.scale[axis] > 0.0f)
+    {
+      // The outermost bins are never empty.
+      float above[MostBins];
+      BinSweep down;
+      for (int bin = bins - 1; bin > 0; --bin)
+      {
+        above[bin] = down.add(mapping, box[axis][bin], number[axis][bin]);
+      }
+      BinSweep up;
+      for (int bin = 1; bin < bins; ++bin)
+      {
+        const float cost = up.add(mapping, box[axis][bin - 1], number[axis][bin - 1]) + above[bin];
+        if (cost < least)
+        {
+          least = cost;
+          bestAxis = axis;
+          bestBin = bin;
+          toFirst = up.number;
+        }
+      }
+    }
+  }
+  std::size_t first = 0;
+  std::size_t second = toFirst;
+  for (std::size_t i = 0; toFirst > 0 && i < count; ++i)
+  {
+    // No branch: the side of a box cannot be predicted.
+    const std::size_t goesFirst = mapping.binsOf(from[i])[bestAxis] < bestBin ? 1 : 0;
+    to[second ^ ((first ^ second) & (0 - goesFirst))] = from[i];
+    first += goesFirst;
+    second += 1 - goesFirst;
+  }
+  return toFirst;
 }
 }
 
 std::size_t splitTriangles(SplitRule rule, LaneBox* from, LaneBox* to, std::size_t count,
   const LaneBox& centers, std::uint32_t depth)
 {
-  switch (rule)
-  {
-    case SplitRule::Median:
-      return splitAtMedian(from, to, count, static_cast<int>(depth % 3));
-    case SplitRule::PrincipalPlane:
-      return splitAtPrincipalPlane(from, to, count);
-    case SplitRule::SurfaceAreaHeuristic:
-    {
-      const std::size_t first = splitBySurfaceArea(from, to, count, centers);
-      return first > 0 ? first : splitInHalves(from, to, count);
-    }
-    case SplitRule::Halves:
-      break;
-  }
-  return splitInHalves(from, to, count);
+  constexpr std::uint32_t deepest = 96;
+  rule = depth < deepest ? rule : SplitRule::Halves;
+  const std::size_t first = rule == SplitRule::Median
+    ? splitAtMedian(from, to, count, static_cast<int>(depth % 3))
+    : rule == SplitRule::PrincipalPlane       ? splitAtPrincipalPlane(from, to, count)
+    : rule == SplitRule::SurfaceAreaHeuristic ? splitBySurfaceArea(from, to, count, centers)
+                                              : 0;
+  return first > 0 ? first : splitInHalves(from, to, count);
 }
 }

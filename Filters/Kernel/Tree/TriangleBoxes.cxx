@@ -121,11 +121,12 @@ TriangleBoxes makeTriangleBoxes(
       std::to_string(mesh.size()) + " triangles, expected at most 2^31 - 1");
   }
   TriangleBoxes result;
-  const KeepGoing inFirstHalf =
-    keepGoing ? KeepGoing([&](double done) { return keepGoing(0.5 * done); }) : KeepGoing();
-  const KeepGoing inSecondHalf =
-    keepGoing ? KeepGoing([&](double done) { return keepGoing(0.5 + 0.5 * done); }) : KeepGoing();
-  const AABB bounds = boundsOf(mesh, team, inFirstHalf);
+  const auto half = [&keepGoing](double from)
+  {
+    return keepGoing ? KeepGoing([&, from](double done) { return keepGoing(from + 0.5 * done); })
+                     : KeepGoing();
+  };
+  const AABB bounds = boundsOf(mesh, team, half(0.0));
   if (bounds.empty())
   {
     return result;
@@ -144,7 +145,7 @@ TriangleBoxes makeTriangleBoxes(
       boxes[t] = result.boxOf(mesh, static_cast<std::uint32_t>(t));
     }
   };
-  if (team.loop(mesh.size(), Block, body, inSecondHalf))
+  if (team.loop(mesh.size(), Block, body, half(0.5)))
   {
     result.boxes = boxes;
   }

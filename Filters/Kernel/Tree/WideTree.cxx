@@ -19,6 +19,11 @@ float roundedUp(double v)
   return std::nextafter(static_cast<float>(v), std::numeric_limits<float>::infinity());
 }
 
+void meetAll(float* nearest)
+{
+  std::fill(nearest, nearest + WideNode::Width, 0.0f);
+}
+
 double largestOf(const Vec3& v)
 {
   return std::max(std::fabs(v.x), std::max(std::fabs(v.y), std::fabs(v.z)));
@@ -111,6 +116,12 @@ AVIANLIDAR_MULTIVERSION void rayDistances(const WideRay& ray, const WideNode& no
 }
 }
 
+void WideNode::clear()
+{
+  *this = {};
+  std::fill(this->first, this->first + Width, NoChild);
+}
+
 void EntryPoints::clear()
 {
   this->nodes.clear();
@@ -123,11 +134,8 @@ int EntryPoints::nextLane(float distance)
   if (this->Filled == WideNode::Width)
   {
     this->Filled = 0;
-    this->nodes.emplace_back();
+    this->nodes.emplace_back().clear();
     this->nearest.push_back(distance);
-    WideNode& fresh = this->nodes.back();
-    std::fill(fresh.first, fresh.first + WideNode::Width, NoChild);
-    std::fill(fresh.count, fresh.count + WideNode::Width, 0u);
   }
   this->nearest.back() = std::min(this->nearest.back(), distance);
   return this->Filled++;
@@ -150,12 +158,12 @@ void EntryPoints::add(const WideNode& node, int lane, float distance)
 void EntryPoints::addLeaf(std::uint32_t first, std::uint32_t count)
 {
   constexpr float Everywhere = 1e30f;
-  const int i = this->nextLane(0.0f);
-  WideNode& target = this->nodes.back();
-  target.x[i] = target.y[i] = target.z[i] = 0.0f;
-  target.halfX[i] = target.halfY[i] = target.halfZ[i] = Everywhere;
-  target.first[i] = first;
-  target.count[i] = count;
+  WideNode node;
+  node.clear();
+  node.halfX[0] = node.halfY[0] = node.halfZ[0] = Everywhere;
+  node.first[0] = first;
+  node.count[0] = count;
+  this->add(node, 0, 0.0f);
 }
 
 bool wideningFor(const WideTree& tree, const Vec3& offset, float& widening)
@@ -191,12 +199,7 @@ WideCone::WideCone(const WideTree& tree, const BeamFrame& frame)
 
 void WideCone::distances(const WideNode& node, float* nearest) const
 {
-  if (this->everywhere)
-  {
-    std::fill(nearest, nearest + WideNode::Width, 0.0f);
-    return;
-  }
-  coneDistances(*this, node, nearest);
+  this->everywhere ? meetAll(nearest) : coneDistances(*this, node, nearest);
 }
 
 WideRay::WideRay(const WideTree& tree, const Vec3& apex, const Vec3& origin, const Vec3& direction,
@@ -220,11 +223,6 @@ WideRay::WideRay(const WideTree& tree, const Vec3& apex, const Vec3& origin, con
 
 void WideRay::distances(const WideNode& node, float* nearest) const
 {
-  if (this->everywhere)
-  {
-    std::fill(nearest, nearest + WideNode::Width, 0.0f);
-    return;
-  }
-  rayDistances(*this, node, nearest);
+  this->everywhere ? meetAll(nearest) : rayDistances(*this, node, nearest);
 }
 }

@@ -31,6 +31,9 @@ struct alignas(64) WideNode
   std::uint32_t
     first[Width]; ///< inner child: its node; leaf: first entry of the tree's order; NoChild
   std::uint32_t count[Width]; ///< triangles of a leaf; 0: inner
+
+  /// No children.
+  void clear();
 };
 
 constexpr std::uint32_t NoChild = 0xffffffffu;
@@ -43,7 +46,7 @@ constexpr double LeastWideExtent = 1e-12;
 
 struct WideTree
 {
-  std::vector<WideNode> nodes; ///< root first; empty if there is none (see WideTreeBuilder.h)
+  std::vector<WideNode> nodes; ///< root first; empty if there is none
   Vec3 reference{ 0.0 };
   double extent = 0.0;     ///< largest coordinate relative to the reference, m
   std::uint32_t depth = 0; ///< levels below the root

@@ -19,33 +19,21 @@
 #include <string>
 
 /// Cells of as many points each; their points are 0, 1, 2 and so on.
-inline vtkSmartPointer<vtkCellArray> vtkAvianLidarMakeCells(vtkIdType cells, vtkIdType corners)
+template <class Ids = vtkTypeInt64Array>
+vtkSmartPointer<vtkCellArray> vtkAvianLidarMakeCells(vtkIdType cells, vtkIdType corners)
 {
-  vtkNew<vtkTypeInt64Array> offsets;
+  vtkNew<Ids> offsets;
   vtkAvianLidarArrays::SetTuples(offsets.Get(), cells + 1);
+  vtkNew<Ids> points;
+  vtkAvianLidarArrays::SetTuples(points.Get(), cells * corners);
   for (vtkIdType cell = 0; cell <= cells; ++cell)
   {
-    offsets->SetValue(cell, cell * corners);
+    offsets->SetValue(cell, static_cast<typename Ids::ValueType>(cell * corners));
   }
-  vtkNew<vtkTypeInt64Array> points;
-  vtkAvianLidarArrays::SetTuples(points.Get(), cells * corners);
   std::iota(points->GetPointer(0), points->GetPointer(cells * corners), 0);
   auto array = vtkSmartPointer<vtkCellArray>::New();
   array->SetData(offsets, points);
   return array;
-}
-
-/// Triangles from three point ids each.
-template <class Triangles>
-vtkSmartPointer<vtkCellArray> vtkAvianLidarMakeTriangles(const Triangles& triangles)
-{
-  auto cells = vtkAvianLidarMakeCells(static_cast<vtkIdType>(triangles.size()), 3);
-  auto* ids = cells->GetConnectivityArray64()->GetPointer(0);
-  for (const auto& triangle : triangles)
-  {
-    ids = std::copy(triangle.begin(), triangle.end(), ids);
-  }
-  return cells;
 }
 
 /// f(ids, their number): the points of all cells, one cell after the other, whatever integers hold
@@ -56,6 +44,31 @@ auto vtkAvianLidarPointIds(vtkCellArray* cells, F&& f)
   const vtkIdType count = cells->GetNumberOfConnectivityIds();
   return cells->IsStorage64Bit() ? f(cells->GetConnectivityArray64()->GetPointer(0), count)
                                  : f(cells->GetConnectivityArray32()->GetPointer(0), count);
+}
+
+/// Triangles from three point ids each, in integers of 32 bits wherever they fit: half the memory.
+template <class Triangles>
+vtkSmartPointer<vtkCellArray> vtkAvianLidarMakeTriangles(const Triangles& triangles)
+{
+  constexpr std::size_t most = VTK_TYPE_INT32_MAX;
+  const bool fits = triangles.size() <= most / 3 &&
+    std::all_of(triangles.begin(), triangles.end(),
+      [](const auto& triangle) {
+        return static_cast<std::size_t>(*std::max_element(triangle.begin(), triangle.end())) <=
+          most;
+      });
+  const auto count = static_cast<vtkIdType>(triangles.size());
+  auto cells =
+    fits ? vtkAvianLidarMakeCells<vtkTypeInt32Array>(count, 3) : vtkAvianLidarMakeCells<>(count, 3);
+  vtkAvianLidarPointIds(cells,
+    [&](auto* ids, vtkIdType)
+    {
+      for (const auto& triangle : triangles)
+      {
+        ids = std::copy(triangle.begin(), triangle.end(), ids);
+      }
+    });
+  return cells;
 }
 
 /// What is wrong with the places where cells begin; empty if nothing is. O(cells).

@@ -60,12 +60,6 @@ void AddBox(Surface& surface, const Vec3& center, const Vec3& x, const Vec3& y, 
   }
 }
 
-void AddVolume(Surface& surface, const avianlidar::AABB& box)
-{
-  const Vec3 half = 0.5 * (box.upper - box.lower);
-  AddBox(surface, box.center(), { half.x, 0.0, 0.0 }, { 0.0, half.y, 0.0 }, { 0.0, 0.0, half.z });
-}
-
 void AddVolume(Surface& surface, const avianlidar::OBB& box)
 {
   AddBox(surface, box.center, box.half.x * box.axes[0], box.half.y * box.axes[1],
@@ -99,19 +93,6 @@ void AddVolume(Surface& surface, const avianlidar::BoundingSphere& sphere)
     }
   }
 }
-
-/// Triangles below every node, children before parents by the breadth-first numbering.
-std::vector<int> TriangleCounts(const avianlidar::CollisionTree& tree)
-{
-  std::vector<int> counts(tree.nodes.size());
-  for (std::size_t i = tree.nodes.size(); i-- > 0;)
-  {
-    const avianlidar::TreeNode& node = tree.nodes[i];
-    counts[i] =
-      node.isLeaf() ? static_cast<int>(node.count) : counts[node.first] + counts[node.first + 1];
-  }
-  return counts;
-}
 }
 
 //------------------------------------------------------------------------------
@@ -119,25 +100,19 @@ void vtkAvianLidarMakeTreeDisplay(
   const avianlidar::CollisionTree& tree, int level, vtkPolyData* display)
 {
   Surface surface;
-  const std::vector<std::uint32_t> depths = tree.depths();
-  const std::vector<int> counts = TriangleCounts(tree);
-  const auto addShown = [&](const auto& volumes)
+  const auto shown =
+    level < 0 ? nullptr : avianlidar::volumesOf(tree, static_cast<std::uint32_t>(level));
+  for (std::size_t i = 0; shown && i < shown->nodes.size(); ++i)
   {
-    for (std::size_t i = 0; i < tree.nodes.size(); ++i)
+    const avianlidar::BinaryNode& node = shown->nodes[i];
+    const int depth = static_cast<int>(node.depth);
+    if (depth == level || (depth < level && node.children == 0))
     {
-      const int depth = static_cast<int>(depths[i]);
-      if (depth == level || (depth < level && tree.nodes[i].isLeaf()))
-      {
-        surface.node = static_cast<int>(i);
-        surface.count = counts[i];
-        surface.depth = depth;
-        AddVolume(surface, volumes[i]);
-      }
+      surface.node = static_cast<int>(i);
+      surface.count = static_cast<int>(node.count);
+      surface.depth = depth;
+      std::visit([&](const auto& volumes) { AddVolume(surface, volumes[i]); }, shown->volumes);
     }
-  };
-  if (level >= 0)
-  {
-    std::visit(addShown, *avianlidar::volumesOf(tree));
   }
   display->SetPoints(surface.points);
   display->SetPolys(surface.faces);

@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file BoxTests.h
+ * @brief What starts from one apex, rays of a packet or cones of a group of beams, against the
+ * eight boxes of a wide node, in single precision, in vectors (RayLanes.h).
+ *
+ * All directions lie between four planes through the apex, each along one of the two axes that are
+ * not the dominant one of the directions. Eight boxes are tested against these planes in one loop.
+ * Against each box that is left go groups of sixteen rays (slabs) or, where few rays are left, each
+ * ray against eight boxes. Of cones sixteen are tested at a time: by their own four planes, by the
+ * plane that touches the cone on the side of the box's centre, and by the plane through the apex
+ * across its axis.
+ *
+ * Source: frustum of Reshetov, Soupikov and Hurley, 2005 (see RayPacket.h); the tangent plane and
+ * the plane across the axis are those of BeamVolumeTest.h.
+ * Differs: the planes of the frustum go along coordinate axes, and are tested against eight boxes
+ * at a time.
+ * Valid: conservative, rounding included, with the margins of WideTree.h; cones are widened as in
+ * BeamCone.h. setFrustum() fails where the directions do not all lie along one coordinate axis, and
+ * where single precision ends (wideningFor()).
+ * Test: TestRayPacket.cxx, TestBeamGroup.cxx.
+ */
+#ifndef avianlidar_BoxTests_h
+#define avianlidar_BoxTests_h
+
+#include "PacketOrder.h"
+#include "TriangleTest.h"
+#include "WideTree.h"
+
+#include <cstddef>
+#include <cstdint>
+
+namespace avianlidar
+{
+constexpr int PacketWidth = 64;
+
+/// A set of rays of a packet, one bit each.
+using RayBits = std::uint64_t;
+
+/// Number of rays, rounded up to whole groups.
+constexpr int padded(int count)
+{
+  return (count + PacketGroup - 1) / PacketGroup * PacketGroup;
+}
+
+/// Four planes about directions from one apex.
+struct Frustum
+{
+  int axes[3];                    ///< the dominant coordinate axis, and the two others
+  float sign;                     ///< sign of the directions along the dominant axis
+  float lowU, highU, lowV, highV; ///< slopes of the directions
+  float apex[3];                  ///< relative to the tree's reference, m
+  float widening;                 ///< of every box, m
+  float spread = 0.0f;            ///< half-width of the directions, rad
+  float shortening =
+    1.0f - WideRounding; ///< from depth along the dominant axis to a lower bound of range
+
+  /// Set the apex. @return false if scene or apex are too large or small (wideningFor())
+  bool setApex(const WideTree& tree, const Vec3& at);
+  void setAxes(const Vec3& direction);
+};
+
+/// A packet as the tests of boxes and triangles need it. Points along a ray are given by their
+/// range over |D|, with D the direction that stands here; so are Frustum::shortening's ranges.
+struct alignas(64) PacketView
+{
+  float direction[3][PacketWidth]; ///< D = axis + tan(theta0.5) (x e1 + y e2) of the ray's beam
+  float inverse[3][PacketWidth];   ///< inverse of the direction's components
+  float far[PacketWidth];          ///< no hit beyond this range over |D| counts for the ray, m
+  float farthest[PacketWidth / PacketGroup]; ///< largest `far` of each group; 0 without rays
+  Frustum frustum;
+
+  /// Set what follows from `count` directions; lanes that pad the last group repeat one of them.
+  /// @param longest largest length of a direction
+  /// @return false if the rays lie too far apart for one packet
+  bool set(int count, double longest);
+};
+
+/// A child of a node that some rays meet.
+struct PacketChild
+{
+  std::uint32_t lane;
+  RayBits rays;
+  float nearest; ///< lower bound of the range, m
+};
+
+/// Children of a node that some of `rays` meet. @return number of children
+int meetChildren(const PacketView& view, const WideNode& node, RayBits rays, PacketChild* children);
+
+/// Up to sixteen cones from one apex.
+struct alignas(64) ConeLanes
+{
+  static constexpr int Width = 16;
+  float axis[3][Width];
+  float sine[Width], cosine[Width]; ///< of the half-angles, rounding included
+  float lowU[Width], highU[Width], lowV[Width], highV[Width]; ///< slopes, set by setFrustum()
+  int count = 0;
+  Frustum frustum;     ///< about all of them
+  double widest = 0.0; ///< tangent of the widest half-angle
+
+  /// The cone of a beam, or one about several, widened as BeamCone.
+  void add(const BeamFrame* frames, const std::uint32_t* beams, std::size_t number);
+  /// Fill the lanes beyond the last cone with copies of it.
+  void close();
+  /// False if the cones are too wide, or too far apart, or do not all lie along one coordinate
+  /// axis, or where single precision ends.
+  bool setFrustum(const WideTree& tree, const Vec3& apex);
+};
+
+/// A child of a node that some cones meet.
+struct ConeChild
+{
+  std::uint32_t lane;
+  std::uint32_t cones; ///< one bit each
+  float nearest;       ///< lower bound of the distance, m
+  float size;          ///< half diagonal over the distance
+};
+
+/// Children of a node that some of `cones` may meet. @return number of children
+int meetChildren(
+  const ConeLanes& cones, const WideNode& node, std::uint32_t some, ConeChild* children);
+}
+
+#endif
