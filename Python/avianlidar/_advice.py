@@ -12,7 +12,8 @@ import numpy as np
 
 from ._properties import snake
 
-SETTINGS = ("BeamSamples", "RaysPerBeam", "Sampling", "NumberOfReflections", "NumberOfConnections")  # of vtkAvianLidarEchoFilter
+# Of vtkAvianLidarEchoFilter.
+SETTINGS = ("BeamSamples", "RaysPerBeam", "Sampling", "NumberOfReflections", "NumberOfConnections")
 KINDS = ("energy", "range", "missed")  # of errors
 VERDICTS = ("not met", "not told", "met")
 NOT_MET, UNDECIDED, MET = range(3)
@@ -35,7 +36,8 @@ class Setting(NamedTuple):
 
     def properties(self) -> Dict[str, Any]:
         """As `Scan.set` takes them."""
-        values = (("Cells", "Rays")[self.samples], self.rays, ("MonteCarlo", "Stratified")[self.sampling], self.reflections, self.connections)
+        samples, sampling = ("Cells", "Rays")[self.samples], ("MonteCarlo", "Stratified")[self.sampling]
+        values = (samples, self.rays, sampling, self.reflections, self.connections)
         return {"preset": "Custom", **dict(zip(map(snake, SETTINGS), values))}
 
     def as_commands(self) -> List[str]:

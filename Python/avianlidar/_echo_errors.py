@@ -1,16 +1,17 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Errors of echoes against a reference of the same beams: of energy, of range, and echoes missed or invented, with bounds where the
-beams are a weighted sample.
+"""Errors of echoes against a reference of the same beams: of energy, of range, and echoes missed or invented. They have
+bounds, as the beams are a weighted sample.
 
-Echoes are rows of numbers, in the order of beam and range. They are matched within a beam: each is the nearest of the other, within
-a tolerance. Energy and range are judged for strong echoes that are not ghosts (at most half of the energy over two reflections). A
-strong echo that is missed has an energy error of -1. Ghosts count as found or missed alone. Echoes that only some scans of the
-reference have are not judged.
+Echoes are rows of numbers, in the order of beam and range. They are matched within a beam: each is the nearest of the
+other, within a tolerance. Energy and range are judged for strong echoes that are not ghosts (at most half of the energy
+over two reflections). A strong echo that is missed has an energy error of -1. Ghosts count as found or missed alone.
+Echoes that only some scans of the reference have are not judged.
 
-Bounds are one-sided, 95 %, and hold for a scan of all beams with another seed. They follow from the spread among beams (variance
-of a ratio of weighted sums, linearised: Cochran, Sampling Techniques, 3rd ed., section 6, second-hand). The spread counts twice
-where all beams were taken, as both scans are random. Three times the share of a single beam is added, as a few beams that err say
-little about how many do, and the reference's own error. An rms of fewer than 30 beams has no bound.
+Bounds are one-sided, 95 %, and hold for a scan of all beams with another seed. They follow from the spread among beams
+(variance of a ratio of weighted sums, linearised: Cochran, Sampling Techniques, 3rd ed., section 6, second-hand). The
+spread counts twice where all beams were taken, as both scans are random. Three times the share of a single beam is
+added, as a few beams that err say little about how many do, and the reference's own error. An rms of fewer than 30
+beams has no bound.
 """
 from __future__ import annotations
 
@@ -39,7 +40,8 @@ class Known(NamedTuple):
         return Known(parts[0], parts[1], self.x[:, beam:], self.y[:, beam:])
 
     def followed_by(self, other: "Known") -> "Known":
-        sure, unsure = (np.concatenate((mine, rows + np.eye(6)[BEAM] * self.x.shape[1])) for mine, rows in zip(self[:2], other[:2]))
+        sure, unsure = (np.concatenate((mine, rows + np.eye(6)[BEAM] * self.x.shape[1]))
+                        for mine, rows in zip(self[:2], other[:2]))
         return Known(sure, unsure, np.hstack((self.x, other.x)), np.hstack((self.y, other.y)))
 
     def replaced(self, which: np.ndarray, other: "Known") -> "Known":
@@ -73,7 +75,8 @@ class Judge:
             return np.where(np.abs(among[before] - these) <= np.abs(among[after] - these), before, after)
 
         theirs = nearest(keys, others)
-        found = (nearest(others, keys)[theirs] == np.arange(len(keys))) & (np.abs(keys - others[theirs]) < self.tolerance)
+        mutual = nearest(others, keys)[theirs] == np.arange(len(keys))
+        found = mutual & (np.abs(keys - others[theirs]) < self.tolerance)
         return np.flatnonzero(found), theirs[found]
 
     def judged(self, rows: np.ndarray) -> np.ndarray:
@@ -95,12 +98,12 @@ class Judge:
         true, off, number = mean[strong], values[:, strong], found[strong]
         squares = [np.nansum(one**2, axis=0) / (number * (number - 1)) for one in
                    (off[:, :, ENERGY] / true[:, ENERGY] - 1, off[:, :, RANGE] - true[:, RANGE])]
-        return Known(mean[sure], unsure, np.stack((*(per_beam(true, count, one) for one in squares), per_beam(unsure, count))),
-                     np.stack((per_beam(true, count), per_beam(true, count), per_beam(mean[sure], count))))
+        x = np.stack((*(per_beam(true, count, one) for one in squares), per_beam(unsure, count)))
+        return Known(mean[sure], unsure, x, np.stack([per_beam(rows, count) for rows in (true, true, mean[sure])]))
 
     def compare(self, scans: Sequence[np.ndarray], known: Known) -> Tuple[np.ndarray, np.ndarray]:
-        """By beam, of energy and range: the square of what two scans by other means are off by, whose mean is without the error of each,
-        as the two are independent; and the number of echoes."""
+        """By beam, of energy and range: the product of what two scans by other means are off by, and the number of
+        echoes. The two are independent, so the mean of the product is the square of what both have in common."""
         (i, j), (k, l) = (self.match(known.sure, scan) for scan in scans)
         common, first, second = np.intersect1d(i, k, return_indices=True)
         strong = self.judged(known.sure[common])
@@ -117,7 +120,8 @@ class Judge:
         strong = self.judged(known.sure[i])
         true, seen, rest = known.sure[i[strong]], found[j[strong]], np.delete(found, j, axis=0)
         invented = np.delete(rest, self.match(rest, known.unsure)[0], axis=0)
-        energies, ranges, echoes = (per_beam(rows, count) for rows in (known.sure[self.judged(known.sure)], true, known.sure))
+        energies, ranges, echoes = (per_beam(rows, count) for rows in
+                                    (known.sure[self.judged(known.sure)], true, known.sure))
         return (np.stack((per_beam(true, count, (seen[:, ENERGY] / true[:, ENERGY] - 1) ** 2) + energies - ranges,
                           per_beam(true, count, (seen[:, RANGE] - true[:, RANGE]) ** 2),
                           echoes - per_beam(known.sure[i], count) + per_beam(invented, count))),
@@ -154,5 +158,6 @@ def bounds(x: np.ndarray, y: np.ndarray, weights: np.ndarray, own: np.ndarray) -
         elif np.count_nonzero(y[kind]) < FEWEST:
             errors[kind] = np.sqrt(ratio), 0, np.inf
         else:
-            errors[kind] = np.sqrt(ratio), max(0, np.sqrt(max(0, ratio - by)) - own[kind]), np.sqrt(ratio + by) + own[kind]
+            low, value, high = np.sqrt((max(0, ratio - by), ratio, ratio + by))
+            errors[kind] = value, max(0, low - own[kind]), high + own[kind]
     return errors

@@ -20,9 +20,9 @@ ASKED = {"SetEnergyError": "energy", "SetRangeError": "range", "SetMissedShare":
 
 
 class Advisor(VTKPythonAlgorithmBase):
-    """Inputs and properties are those of the echo filter, and what is asked for. Output: the table of an Advice as vtkTable, with the
-    row that is `advised` and the `advice` in words as field data. Where several ranks work together, each asks for all of its inputs,
-    and the first one measures. After an error the table is empty."""
+    """Inputs and properties are those of the echo filter, and what is asked for. The output is the table of an Advice,
+    with the row that is `advised` and the `advice` in words as field data. Where several ranks work together,
+    each asks for all of its inputs, and the first one measures. After an error the table is empty."""
 
     def __init__(self) -> None:
         self._like = _wrapped.vtkAvianLidarEchoFilter()
@@ -63,7 +63,8 @@ class Advisor(VTKPythonAlgorithmBase):
         controller = vtkMultiProcessController.GetGlobalController()
         if controller and controller.GetLocalProcessId() > 0:
             return 1
-        data = [vtkDataObject.GetData(port.GetInformationObject(0)) if port.GetNumberOfInformationObjects() else None for port in inputs]
+        data = [vtkDataObject.GetData(port.GetInformationObject(0)) if port.GetNumberOfInformationObjects() else None
+                for port in inputs]
         asked = {kind: value for kind, value in self._asked.items() if kind != "beams"}
         try:
             advice = measure(self._like, data, asked, self._asked["beams"], lambda share, _: self.UpdateProgress(share))
@@ -87,7 +88,7 @@ class Advisor(VTKPythonAlgorithmBase):
 
 
 def _advised(place: int) -> Any:
-    return lambda self: int(self._advice.setting(self._advice.row)[place]) if self._advice and self._advice.row >= 0 else -1
+    return lambda self: self._advice.setting(self._advice.row)[place] if self._advice and self._advice.row >= 0 else -1
 
 
 for _place, _name in enumerate(SETTINGS):
