@@ -150,7 +150,7 @@ class Scanner:
         for _ in range(TURNS):  # the first one merges the surfaces
             self.scan(some_of(beams, np.zeros(0, int)), None, 0)
             idle.append(self.seconds)
-        self.idle = np.median(idle)  # s, what a scan takes without beams
+        self.idle = float(np.median(idle))  # s, what a scan takes without beams
 
     def scan(self, beams: vtkPolyData, setting: Optional[Setting], seed: int,
              progress: Optional[Progress] = None) -> np.ndarray:
