@@ -2,7 +2,6 @@
 # The module's own lines. Add a public class to `classes`; what shells share goes to a folder of Filters/Private.
 
 set(classes
-  Filters/vtkAvianLidarAdvisor
   Filters/vtkAvianLidarBeamSource
   Filters/vtkAvianLidarBeamView
   Filters/vtkAvianLidarBirdSource
@@ -61,7 +60,6 @@ set(private_sources
   Filters/Private/Movers/vtkAvianLidarBirdTargets.cxx
   Filters/Private/Movers/vtkAvianLidarBirds.cxx
   Filters/Private/Movers/vtkAvianLidarMovers.cxx
-  Filters/Private/Echoes/vtkAvianLidarAdviceNotes.cxx
   Filters/Private/Echoes/vtkAvianLidarEchoOutput.cxx
   Filters/Private/Echoes/vtkAvianLidarImageArrays.cxx
   Filters/Private/Echoes/vtkAvianLidarImageBeams.cxx

@@ -19,12 +19,15 @@ set(avianlidar_python_files
   __init__.py
   __main__.py
   _advice.py
+  _advising.py
   _cloud.py
   _command.py
   _coverage.py
   _disk.py
   _display.py
+  _echo_errors.py
   _files.py
+  _paraview.py
   _pipeline.py
   _plot.py
   _properties.py

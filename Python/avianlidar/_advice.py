@@ -6,18 +6,47 @@ import dataclasses
 import json
 import os
 import pathlib
-from typing import Any, Dict, List, Mapping, Optional, Tuple, Union
+from typing import Any, Dict, List, Mapping, NamedTuple, Optional, Tuple, Union
 
 import numpy as np
 
-from . import vtkAvianLidar as _wrapped
-from ._cloud import as_numpy
-from ._pipeline import update
-from ._properties import get_property, set_properties, snake
+from ._properties import snake
 
+# Of vtkAvianLidarEchoFilter.
 SETTINGS = ("BeamSamples", "RaysPerBeam", "Sampling", "NumberOfReflections", "NumberOfConnections")
+KINDS = ("energy", "range", "missed")  # of errors
 VERDICTS = ("not met", "not told", "met")
+NOT_MET, UNDECIDED, MET = range(3)
+UNITS = {"seconds_per_beam": "s", "range_error": "m", "range_error_most": "m"}  # of columns; of others "1"
 SUFFIXES = (".json", ".csv", ".png")
+
+
+class Setting(NamedTuple):
+    """Values of SETTINGS, choices by their numbers."""
+
+    samples: int  # 0 cells, 1 rays
+    rays: int
+    sampling: int  # 0 Monte Carlo, 1 stratified
+    reflections: int
+    connections: int
+
+    def words(self) -> str:
+        said = f"{self.rays} {('Cells', 'Rays')[self.samples]}" + ("" if self.sampling else ", MonteCarlo")
+        return said + (f", 2 reflections, {self.connections} connections" if self.reflections > 1 else ", 1 reflection")
+
+    def properties(self) -> Dict[str, Any]:
+        """As `Scan.set` takes them."""
+        samples, sampling = ("Cells", "Rays")[self.samples], ("MonteCarlo", "Stratified")[self.sampling]
+        values = (samples, self.rays, sampling, self.reflections, self.connections)
+        return {"preset": "Custom", **dict(zip(map(snake, SETTINGS), values))}
+
+    def as_commands(self) -> List[str]:
+        """For the command, Python and ParaView's panel."""
+        values = self.properties()
+        return ["Command: " + " ".join(f"--scan-set {name}={value}" for name, value in values.items()),
+                "Python: scan.set(" + ", ".join(f'{name}="{value}"' if isinstance(value, str) else f"{name}={value}"
+                                                for name, value in values.items()) + ")",
+                "ParaView: " + ", ".join(f"{name.replace('_', ' ').title()} {value}" for name, value in values.items())]
 
 
 @dataclasses.dataclass(frozen=True)
@@ -45,9 +74,11 @@ class Advice:
 
     def words(self, row: int) -> str:
         """A setting of the table in words."""
-        of = {name: int(self.table[name][row]) for name in map(snake, SETTINGS)}
-        said = f"{of['rays_per_beam']} {('Cells', 'Rays')[of['beam_samples']]}" + ("" if of["sampling"] else ", MonteCarlo")
-        return said + (f", 2 reflections, {of['number_of_connections']} connections" if of["number_of_reflections"] > 1 else ", 1 reflection")
+        return self.setting(row).words()
+
+    def setting(self, row: int) -> Setting:
+        """A setting of the table."""
+        return Setting(*(int(self.table[snake(name)][row]) for name in SETTINGS))
 
     def save(self, file: Union[str, os.PathLike]) -> None:
         """Write it: .json has all, .csv the table, .png a picture of errors over time (with Matplotlib)."""
@@ -93,28 +124,6 @@ class Advice:
 def check_suffix(file: pathlib.Path) -> None:
     if file.suffix.lower() not in SUFFIXES:
         raise ValueError(f"{file}: advice is not written as {file.suffix or 'a file without suffix'}, expected {', '.join(SUFFIXES)}")
-
-
-def advise_scan(scan: Any, asked: Dict[str, float], beams: int, progress=None) -> Advice:
-    """See `Scan.advise`."""
-    advisor = _wrapped.vtkAvianLidarAdvisor()
-    set_properties(advisor, **scan.properties())
-    set_properties(advisor, energy_error=asked["energy"], range_error=asked["range"], missed_share=asked["missed"], sample_beams=beams)
-    for port in (0, 1, 2):
-        if scan.algorithm.GetNumberOfInputConnections(port):
-            advisor.SetInputConnection(port, scan.algorithm.GetInputConnection(port, 0))
-    update(advisor, progress)
-    table = advisor.GetTable()
-    columns = {table.GetColumnName(i): as_numpy(table.GetColumn(i)) for i in range(table.GetNumberOfColumns())}
-    row = int(table.GetFieldData().GetArray("advised").GetValue(0))
-    settings = None
-    if row >= 0:
-        settings = {"preset": "Custom"}
-        for name in SETTINGS:
-            setter = _wrapped.vtkAvianLidarEchoFilter()
-            getattr(setter, "Set" + name)(getattr(advisor, "GetAdvised" + name)())
-            settings[snake(name)] = get_property(setter, name)
-    return Advice(settings, tuple(advisor.GetAdvice().splitlines()), asked, row, columns)
 
 
 def table_rows(advice: Advice, most: int = 12) -> List[Tuple[Any, ...]]:

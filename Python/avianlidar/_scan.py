@@ -13,7 +13,8 @@ from vtkmodules.vtkCommonExecutionModel import vtkAlgorithm
 
 from . import _display
 from . import vtkAvianLidar as _wrapped
-from ._advice import Advice, advise_scan
+from ._advice import Advice
+from ._advising import measure
 from ._cloud import Cloud, as_numpy
 from ._pipeline import Progress, callers_level, is_current, update
 from ._plot import plot_map, plot_range_image
@@ -241,7 +242,13 @@ class Scan(SceneAndSensor):
         1
         """
         self._refresh()
-        return advise_scan(self, {"energy": energy, "range": range, "missed": missed}, beams, progress or self.progress)
+        inputs, progress = [], progress or self.progress
+        for port in (0, 1, 2):
+            known = self.algorithm.GetNumberOfInputConnections(port)
+            if known:
+                update(self.algorithm.GetInputAlgorithm(port, 0), progress)
+            inputs.append(self.algorithm.GetInputDataObject(port, 0) if known else None)
+        return measure(self.algorithm, inputs, {"energy": energy, "range": range, "missed": missed}, beams, progress)
 
     def to_pandas(self):
         """The echoes as a pandas DataFrame; see `Cloud.to_pandas`."""

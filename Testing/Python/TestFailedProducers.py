@@ -66,7 +66,7 @@ def trails():
 
 # Every class with inputs: the producers of its ports. A cloud of a time is the same scan when it is executed again.
 FILTERS = {
-    "Advisor": (few_beams, surfaces), "BeamView": (beams, surfaces), "CloudComparison": (echoes, echoes), "ClutterFilter": (echoes,),
+    "BeamView": (beams, surfaces), "CloudComparison": (echoes, echoes), "ClutterFilter": (echoes,),
     "CollisionTree": (surfaces,), "Coverage": (few_beams, surfaces), "EchoFilter": (beams, surfaces),
     "GeodeticTransform": (lambda: surfaces(geodetic_origin=ORIGIN),), "HSBColorMap": (echoes,), "Material": (surfaces,),
     "Medium": (lambda: painted(town(3, 1).GetBlock(0)),), "RangeImage": (echoes, beams),
@@ -76,8 +76,6 @@ FILTERS = {
 def pipeline(name):
     """(filter, its producers)"""
     filter_ = make(name)
-    if name == "Advisor":
-        filter_.SetSampleBeams(50)
     if name == "Tracks":
         filter_.SetPatternToLines()
     if name == "Medium":

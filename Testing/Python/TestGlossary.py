@@ -10,6 +10,7 @@ from vtkmodules.vtkCommonCore import vtkDataArray
 
 import avianlidar as al
 from avianlidar import vtkAvianLidar as wrapped
+from avianlidar._paraview import Advisor
 from avianlidar._scene import COEFFICIENTS
 from helpertools import WALL
 
@@ -35,19 +36,19 @@ def outputs():
 
 
 def of_advisor():
-    """Names and units of the advisor's table and its field data."""
-    advisor = wrapped.vtkAvianLidarAdvisor()
+    """Names and units of the table that ParaView's button Advise makes, and its field data."""
+    advisor = Advisor()
     scan = al.Scan(al.Scene(WALL), al.Sensor("Airport16", azimuth_step=5))
     for port in (0, 1):
         advisor.SetInputConnection(port, scan.algorithm.GetInputConnection(port, 0))
     advisor.SetSampleBeams(50)
     advisor.Update()
-    table = advisor.GetTable()
-    asked = {"energy_error_most": advisor.GetEnergyError(), "range_error_most": advisor.GetRangeError(),
-             "missed_share_most": advisor.GetMissedShare()}
+    table = advisor.GetOutputDataObject(0)
+    asked = {"energy_error_most": 0.02, "range_error_most": 0.05, "missed_share_most": 0.01}
     for row in range(table.GetNumberOfRows()):  # a setting meets what is asked if its bounds do
         met = all(table.GetValueByName(row, name).ToDouble() <= most for name, most in asked.items())
         assert (table.GetValueByName(row, "verdict").ToInt() == 2) == met, row
+    assert table.GetNumberOfRows() == 37
     arrays = [table.GetColumn(i) for i in range(table.GetNumberOfColumns())] + [table.GetFieldData().GetAbstractArray(name) for name in ("advised", "advice")]
     return {array.GetName(): array.GetInformation().Get(vtkDataArray.UNITS_LABEL()) or "" for array in arrays}
 

@@ -1,0 +1,95 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What ParaView's button Advise runs on the server: the proxy of Plugin/Filters/AvianLidarAdvisor.xml makes it."""
+from __future__ import annotations
+
+from typing import Any, Dict, Optional
+
+from vtkmodules.util.numpy_support import numpy_to_vtk
+from vtkmodules.util.vtkAlgorithm import VTKPythonAlgorithmBase
+from vtkmodules.vtkCommonCore import vtkDataArray, vtkOutputWindow, vtkStringArray
+from vtkmodules.vtkCommonDataModel import vtkDataObject, vtkTable
+from vtkmodules.vtkCommonExecutionModel import vtkAlgorithm, vtkStreamingDemandDrivenPipeline
+from vtkmodules.vtkParallelCore import vtkMultiProcessController
+
+from . import vtkAvianLidar as _wrapped
+from ._advice import SETTINGS, UNITS, Advice
+from ._advising import measure
+from ._pipeline import Error
+
+ASKED = {"SetEnergyError": "energy", "SetRangeError": "range", "SetMissedShare": "missed", "SetSampleBeams": "beams"}
+
+
+class Advisor(VTKPythonAlgorithmBase):
+    """Inputs and properties are those of the echo filter, and what is asked for. The output is the table of an Advice,
+    with the row that is `advised` and the `advice` in words as field data. Where several ranks work together,
+    each asks for all of its inputs, and the first one measures. After an error the table is empty."""
+
+    def __init__(self) -> None:
+        self._like = _wrapped.vtkAvianLidarEchoFilter()
+        self._asked: Dict[str, Any] = {"energy": 0.02, "range": 0.05, "missed": 0.01, "beams": 1000}
+        self._advice: Optional[Advice] = None
+        super().__init__(nInputPorts=3, nOutputPorts=1, outputType="vtkTable")
+
+    def __getattr__(self, name: str) -> Any:
+        """Methods that the server manager calls: of what is asked for, else of the echo filter."""
+        if not name.startswith(("Get", "Set")):
+            raise AttributeError(name)
+
+        def call(*values: Any) -> Any:
+            if name in ASKED:
+                self._asked[ASKED[name]] = values[0]
+                return self.Modified()
+            self.Modified()
+            return getattr(self._like, name)(*values)
+        return call
+
+    def GetAdvice(self) -> str:
+        return str(self._advice or "")
+
+    def FillInputPortInformation(self, port: int, info: Any) -> int:
+        info.Set(vtkAlgorithm.INPUT_REQUIRED_DATA_TYPE(), "vtkDataObject" if port else "vtkPolyData")
+        info.Set(vtkAlgorithm.INPUT_IS_OPTIONAL(), int(port == 2))
+        return 1
+
+    def RequestUpdateExtent(self, request: Any, inputs: Any, outputs: Any) -> int:
+        for info in (port.GetInformationObject(0) for port in inputs if port.GetNumberOfInformationObjects()):
+            info.Set(vtkStreamingDemandDrivenPipeline.UPDATE_PIECE_NUMBER(), 0)
+            info.Set(vtkStreamingDemandDrivenPipeline.UPDATE_NUMBER_OF_PIECES(), 1)
+        return 1
+
+    def RequestData(self, request: Any, inputs: Any, outputs: Any) -> int:
+        table, self._advice = vtkTable.GetData(outputs), None
+        table.Initialize()
+        controller = vtkMultiProcessController.GetGlobalController()
+        if controller and controller.GetLocalProcessId() > 0:
+            return 1
+        data = [vtkDataObject.GetData(port.GetInformationObject(0)) if port.GetNumberOfInformationObjects() else None
+                for port in inputs]
+        asked = {kind: value for kind, value in self._asked.items() if kind != "beams"}
+        try:
+            advice = measure(self._like, data, asked, self._asked["beams"], lambda share, _: self.UpdateProgress(share))
+        except (Error, ValueError) as error:
+            vtkOutputWindow.GetInstance().DisplayErrorText(f"ERROR: {error}\n")
+            return 1
+        self._advice = advice
+        for name, values in advice.table.items():
+            column = numpy_to_vtk(values, deep=True)
+            column.SetName(name)
+            column.GetInformation().Set(vtkDataArray.UNITS_LABEL(), UNITS.get(name, "1"))
+            table.AddColumn(column)
+        row, lines = numpy_to_vtk([advice.row], deep=True), vtkStringArray()
+        row.SetName("advised")
+        lines.SetName("advice")
+        for line in advice.lines:
+            lines.InsertNextValue(line)
+        table.GetFieldData().AddArray(row)
+        table.GetFieldData().AddArray(lines)
+        return 1
+
+
+def _advised(place: int) -> Any:
+    return lambda self: self._advice.setting(self._advice.row)[place] if self._advice and self._advice.row >= 0 else -1
+
+
+for _place, _name in enumerate(SETTINGS):
+    setattr(Advisor, "GetAdvised" + _name, _advised(_place))
