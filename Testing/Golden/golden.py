@@ -3,7 +3,8 @@
 """Freezes what scans of nine scenes with two sensors give, and compares another build with it, array by array.
 
     golden.py make FOLDER       one file for each scene
-    golden.py compare FOLDER    prints what differs; exit status 1 if anything does
+    golden.py compare FOLDER    prints what differs; exit status 1 if anything does. With --tolerance, numbers of double
+                                precision may differ by that much of the largest
 
 PYTHONPATH names the Python package of the build. The sceneries that are not part of the repository are scene files in
 AVIANLIDAR_SCENES_DIR (default: build/paraview/Testing/Scenes); a scene without its file is left out, and named.
@@ -135,12 +136,21 @@ def in_words(old, new):
             f"{np.count_nonzero(energy)} differ")
 
 
-def compare(frozen, found):
+def is_same(one, two, tolerance):
+    """Whether two arrays of contents() have the same bits, or doubles that differ by `tolerance` of the largest at most."""
+    if one == two or not tolerance or one is None or two is None or one[:-1] != two[:-1] or "double" not in one:
+        return one == two
+    one, two = np.frombuffer(one[-1]), np.frombuffer(two[-1])
+    largest = np.max(np.abs(one), initial=0.0, where=np.isfinite(one))
+    return np.allclose(one, two, rtol=0.0, atol=tolerance * largest, equal_nan=True)
+
+
+def compare(frozen, found, tolerance):
     """Prints what differs. @return number of scans that do"""
     differ = 0
     for key, (outputs, echoes) in frozen.items():
         names = {f"{port}{where}" for port, (one, two) in enumerate(zip(outputs, found[key][0]))
-                 for where in one if one.get(where) != two.get(where)}
+                 for where in one if not is_same(one.get(where), two.get(where), tolerance)}
         if names:
             differ += 1
             print(f"  {', '.join(key)}: {in_words(echoes, found[key][1])}; arrays: {', '.join(sorted(names))[:400]}",
@@ -153,6 +163,7 @@ def main():
     parser.add_argument("what", choices=("make", "compare"))
     parser.add_argument("folder", type=pathlib.Path)
     parser.add_argument("--scenes", nargs="+", choices=list(scene_files()), default=list(scene_files()))
+    parser.add_argument("--tolerance", type=float, default=0.0)
     options = parser.parse_args()
     options.folder.mkdir(parents=True, exist_ok=True)
     differ = 0
@@ -168,7 +179,7 @@ def main():
             echoes = sum(len(one["beam_id"]) for _, one in found.values())
             print(f"{name}: {len(found)} scans, {echoes} echoes", flush=True)
         else:
-            count = compare(pickle.loads(file.read_bytes()), found)
+            count = compare(pickle.loads(file.read_bytes()), found, options.tolerance)
             print(f"{name}: {count} of {len(found)} scans differ", flush=True)
             differ += count
     sys.exit(differ > 0)

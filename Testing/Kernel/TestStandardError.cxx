@@ -242,41 +242,30 @@ TEST(StandardError, VarianceHasNoBias)
   }
 }
 
-TEST(StandardError, IsTheSameHoweverEnergiesAreGiven)
+TEST(StandardError, IsTheSameInAnyOrderOfRays)
 {
-  for (const std::size_t count : { 8, 9, 20, 101, 400 })
+  for (const std::size_t count : { 8, 9, 101 })
   {
     const StrataPartition strata(count);
     for (const Sampling sampling : { Sampling::MonteCarlo, Sampling::Stratified })
     {
-      for (const std::size_t stride : { 1, 2, 5, 17 })
+      StandardErrorEstimator forward(sampling, count, &strata);
+      StandardErrorEstimator backward(sampling, count, &strata);
+      for (std::size_t unit = 0; unit < 3; ++unit)
       {
-        StandardErrorEstimator one(sampling, count, &strata);
-        StandardErrorEstimator all(sampling, count, &strata);
-        for (int unit = 0; unit < 3; ++unit)
+        const auto add = [&](StandardErrorEstimator& error, std::size_t n)
+        { error.add(n, n % 3 == 1 ? 0.0 : 1.0 + 0.1 * static_cast<double>(n + unit)); };
+        forward.begin();
+        backward.begin();
+        for (std::size_t n = unit; n < count; ++n)
         {
-          std::vector<std::uint32_t> rays;
-          std::vector<double> energies;
-          one.begin();
-          for (std::size_t n = unit % count; n < count; n += stride)
-          {
-            rays.push_back(static_cast<std::uint32_t>(n));
-            energies.push_back(n % 3 == 1 ? 0.0 : 1.0 + 0.1 * static_cast<double>(n + unit));
-            one.add(n, energies.back());
-          }
-          all.begin(rays.size());
-          for (std::size_t i = 0; i < rays.size(); ++i)
-          {
-            all.add(rays[i], energies[i]);
-          }
-          // A second path of a ray.
-          one.add(rays[0], 0.5);
-          all.add(rays[0], 0.5);
-          EXPECT_EQ(one.largest(), all.largest());
-          EXPECT_EQ(one.smallest(), all.smallest());
-          const UnseenEnergy unseen{ one.smallest(), one.largest() };
-          EXPECT_EQ(all.estimate(unseen), one.estimate(unseen)); // to the last bit
+          add(forward, n);
+          add(backward, count - 1 - n + unit);
         }
+        EXPECT_EQ(forward.largest(), backward.largest());
+        EXPECT_EQ(forward.smallest(), backward.smallest());
+        const UnseenEnergy unseen{ forward.smallest(), forward.largest() };
+        EXPECT_EQ(forward.estimate(unseen), backward.estimate(unseen)); // to the last bit
       }
     }
   }

@@ -2,7 +2,6 @@
 #include "BeamEchoes.h"
 
 #include "LaneMath.h"
-#include "LaneSums.h"
 
 #include <algorithm>
 #include <limits>
@@ -41,26 +40,17 @@ bool EchoLabels::meetsOneThing(
     std::all_of(paths.begin(), paths.end(), isFirst);
 }
 
-/// Set the angles, at least of the contributions that have shares.
+/// Set the angle of incidence of each share.
 void EchoLabels::findAngles(
   const RangeShares& shares, const BeamSamples& samples, const std::vector<SecondaryPath>& paths)
 {
   const std::size_t direct = samples.size();
-  this->Angles.resize(direct + paths.size());
-  if (shares.which)
+  this->Angles.resize(shares.count);
+  for (std::size_t s = 0; s < shares.count; ++s)
   {
-    for (std::size_t s = 0; s < shares.count; ++s)
-    {
-      const std::uint32_t c = shares.which[s];
-      const double cosine = c < direct ? samples.cosine[c] : paths[c - direct].cosIncidence;
-      this->Angles[c] = lanes::acos(std::min(1.0, cosine));
-    }
-    return;
-  }
-  std::copy(samples.cosine.begin(), samples.cosine.end(), this->Angles.begin());
-  for (std::size_t p = 0; p < paths.size(); ++p)
-  {
-    this->Angles[direct + p] = std::min(1.0, paths[p].cosIncidence);
+    const std::uint32_t c = shares.contribution[s];
+    const double cosine = c < direct ? samples.cosine[c] : paths[c - direct].cosIncidence;
+    this->Angles[s] = std::min(1.0, cosine);
   }
   anglesOfAll(this->Angles.data(), this->Angles.size());
 }
@@ -100,15 +90,12 @@ void EchoLabels::findLargest(
   auto surface = samples.surfaces.begin();
   for (std::size_t s = 0; s < shares.count; ++s)
   {
-    const std::size_t c = shares.contribution(s);
+    const std::size_t c = shares.contribution[s];
     while (c < direct && c >= surface->end)
     {
       ++surface;
     }
-    if (shares.energies[s] > 0.0)
-    {
-      book(c < direct ? surface->triangle : paths[c - direct].triangle, shares.energies[s]);
-    }
+    book(c < direct ? surface->triangle : paths[c - direct].triangle, shares.energies[s]);
   }
   this->Sums.add(object, material, run);
 }
@@ -122,7 +109,7 @@ void EchoLabels::label(const RangeShares& shares, const BeamSamples* samples,
     return;
   }
   this->findAngles(shares, *samples, paths);
-  const WeightedSum sum = sumShares(shares, this->Angles.data(), 0.0);
+  const WeightedSum sum = sumShares(shares, [&](std::size_t s) { return this->Angles[s]; });
   if (!(sum.energy > 0.0))
   {
     return; // a false alarm
@@ -142,7 +129,9 @@ void EchoLabels::label(const RangeShares& shares, const BeamSamples* samples,
     echo.labelShare = largest.energy / this->Sums.total();
   }
   echo.incidenceAngle = sum.moment / sum.energy;
-  echo.secondaryShare = paths.empty() ? 0.0 : sumSharesFrom(shares, samples->size()) / sum.energy;
+  const WeightedSum ofPaths = sumShares(
+    shares, [&](std::size_t s) { return shares.contribution[s] < samples->size() ? 0.0 : 1.0; });
+  echo.secondaryShare = ofPaths.moment / sum.energy;
 }
 
 BeamEchoes::BeamEchoes(const ScanSetup& setup, BeamLighting& lighting, BeamReceiver& receiver)

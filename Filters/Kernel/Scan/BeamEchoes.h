@@ -113,7 +113,7 @@ private:
 
   const ScanSetup& Setup;
   LabelSums Sums;
-  std::vector<double> Angles; ///< angles of incidence by contribution, rad
+  std::vector<double> Angles; ///< angles of incidence of the shares, rad
 };
 
 /// Receives one beam after the other. One per thread; the constructor's arguments must outlive it.

@@ -312,7 +312,7 @@ double BeamLighting::errorOfLobes(const RangeShares& shares) const
   double sum = 0.0;
   for (std::size_t s = 0; s < shares.count; ++s)
   {
-    const std::size_t contribution = shares.contribution(s);
+    const std::size_t contribution = shares.contribution[s];
     sum +=
       contribution < direct ? 0.0 : shares.energies[s] * this->Paths[contribution - direct].unsure;
   }
@@ -346,11 +346,11 @@ double BeamLighting::errorOfMirrors(const RangeShares& shares) const
   const std::size_t direct = this->Lit->size();
   const auto isMirror = [&](std::size_t s)
   {
-    const std::size_t contribution = shares.contribution(s);
+    const std::size_t contribution = shares.contribution[s];
     return contribution >= direct && this->Paths[contribution - direct].one == NoSample;
   };
   const auto sampleOf = [&](std::size_t s)
-  { return this->Paths[shares.contribution(s) - direct].two; };
+  { return this->Paths[shares.contribution[s] - direct].two; };
   double variance = 0.0;
   std::uint32_t last = NoSample;
   double waiting = 0.0;
@@ -389,10 +389,10 @@ double BeamLighting::errorOfRays(const RangeShares& shares, bool filled)
   const std::size_t direct = this->Lit->size();
   const std::vector<std::uint32_t>& rays = this->Starts->ray;
   StandardErrorEstimator& error = this->Sampler.error;
-  error.begin(shares.which ? 0 : rays.size());
+  error.begin();
   for (std::size_t s = 0; s < shares.count; ++s)
   {
-    const std::size_t contribution = shares.contribution(s);
+    const std::size_t contribution = shares.contribution[s];
     if (contribution < direct)
     {
       if (this->raysAreLit())

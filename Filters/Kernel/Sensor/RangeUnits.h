@@ -27,8 +27,6 @@
 
 namespace avianlidar
 {
-struct PulseLanes;
-
 /// Energy that came back along one path.
 struct Contribution
 {
@@ -36,19 +34,34 @@ struct Contribution
   double energy = 0.0;     ///< J; contributions of 0 are left out
 };
 
-/// Energies that contributions put into some consecutive range units, in their order: of all
-/// contributions, or only of those that put something there.
+/// Energies that contributions put into some consecutive range units, in the order of the
+/// contributions. Those that put nothing there are left out.
 struct RangeShares
 {
-  const double* energies = nullptr;     ///< J
-  const std::uint32_t* which = nullptr; ///< contribution of each; null: all, and 0 of some
+  const double* energies = nullptr;            ///< J, above 0
+  const std::uint32_t* contribution = nullptr; ///< number of each
   std::size_t count = 0;
-
-  std::size_t contribution(std::size_t share) const
-  {
-    return this->which ? this->which[share] : share;
-  }
 };
+
+/// Energy (J) and energy times a value.
+struct WeightedSum
+{
+  double energy = 0.0;
+  double moment = 0.0;
+};
+
+/// Sums over shares, in their order. @param value called with the number of a share
+template <class F>
+WeightedSum sumShares(const RangeShares& shares, F value)
+{
+  WeightedSum sum;
+  for (std::size_t s = 0; s < shares.count; ++s)
+  {
+    sum.energy += shares.energies[s];
+    sum.moment += shares.energies[s] * value(s);
+  }
+  return sum;
+}
 
 /// A range unit that received energy.
 struct RangeUnit
@@ -60,10 +73,10 @@ struct RangeUnit
 
 /// Reusable: allocates nothing once its workspace has grown to the largest beam. One per thread.
 ///
-/// Pulses no wider than a unit meet two units at most. They are placed in a loop over lanes and
-/// added to a table of units without a branch: some ns each. The shares of paths are found from
-/// that on request: most beams are not perceived, or give one return, for which receiver and labels
-/// request the same shares.
+/// Pulses are placed in a loop over lanes and added, one after the other, to the units that each
+/// meets. A table of a window of units says where each is in the list. Where a beam's units lie
+/// farther apart than the table is long, the window is moved on to the next unit that a pulse
+/// meets.
 class RangeUnitAccumulator
 {
 public:
@@ -108,29 +121,11 @@ public:
   double lastUnitOf(double range) const;
 
 private:
-  /// Energy that a contribution put into the requested units.
-  struct Portion
-  {
-    std::uint32_t contribution;
-    double energy;
-  };
-  /// A unit of the table.
-  struct Cell
-  {
-    double energy = 0.0;
-    std::uint32_t paths = 0;
-  };
-  void clearUnits();
-  PulseLanes pulses() const;
-  void accumulateNarrow(double lowest, std::uint32_t window);
-  void takeCells(std::int64_t lowest, std::uint32_t window);
-  void accumulateWide(double lowest);
-  void sumBeyondGate();
   double recorded(double length, double energy);
-  double addToTable(double from, double to, std::size_t& next);
-  void sortByFirst();
-  void findShares(double from, double to);
-  void findSharesAmongFew(double from, double to);
+  double addWindow(double from, double to);
+  void findShares(double first, double last);
+  const std::vector<std::uint32_t>& contributionsNear(double first, double last);
+  void addShare(std::uint32_t place, std::int64_t unit, double energy);
 
   double UnitPathLength; // c tau_s: twice a unit's length in range
   double RelativeWidth;  // tau_e/tau_s
@@ -147,24 +142,18 @@ private:
   std::vector<double> Widths;
   std::vector<double> Firsts;
   std::vector<double> Lasts;
-  std::vector<double> Portions; ///< shares requested last, in units [ShareFirst, ShareLast)
-  // For pulses that meet two units at most: cell and energy of the first, energy of the next.
-  std::vector<std::uint32_t> Places;
-  std::vector<double> Here;
-  std::vector<double> Next;
-  bool Narrow = false;       ///< these three belong to the beam
-  double LowestNarrow = 0.0; ///< unit of cell 0
 
   std::vector<RangeUnit> Units;
-  std::vector<Cell> Table;            ///< of a window of units; zero between beams
-  std::vector<std::uint64_t> Marks;   ///< a bit for each cell at which pulses begin; likewise
-  int Requests = 0;                   ///< of shares, since accumulate()
-  std::vector<std::uint32_t> ByFirst; ///< contributions by first unit, made when needed
-  bool FewAsked = false;              ///< the shares requested last are those of `Few`, not of all
-  std::vector<Portion> FewPortions;   ///< above 0
-  std::vector<std::uint32_t> Few;     ///< contributions; their shares are in Portions
+  std::vector<std::uint32_t> Table; ///< place in Units of each unit of a window, from 1; 0: none
+  // The shares requested last, in units [ShareFirst, ShareLast).
+  std::vector<double> Portions;
+  std::vector<std::uint32_t> Sharers;
+  std::size_t ShareCount = 0;
   std::int64_t ShareFirst = 0;
   std::int64_t ShareLast = 0;
+  int Requests = 0;                   ///< since accumulate()
+  std::vector<std::uint32_t> ByFirst; ///< contributions by first unit, after some requests
+  std::vector<std::uint32_t> Near;    ///< some of these, by number
 };
 
 /// Number of range units whose beginning lies inside the gate: ceil(2 gate/(c tau_s)), at least 1.

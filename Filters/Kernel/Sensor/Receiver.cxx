@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Receiver.h"
 
-#include "LaneSums.h"
 #include "ParallelLoop.h"
 
 #include <algorithm>
@@ -317,7 +316,9 @@ double BeamReceiver::rangeOf(const Return& run, RangeUnitAccumulator& accumulato
     accumulator.sharesOf(this->Units[run.firstUnit].index, this->Units[run.lastUnit - 1].index + 1);
   const double reference =
     2.0 * this->UnitLength * static_cast<double>(this->Units[run.firstUnit].index);
-  const WeightedSum sum = sumShares(shares, accumulator.pathLengths().data(), reference);
+  const std::vector<double>& lengths = accumulator.pathLengths();
+  const WeightedSum sum =
+    sumShares(shares, [&](std::size_t s) { return lengths[shares.contribution[s]] - reference; });
   return sum.energy > 0.0 ? 0.5 * (reference + sum.moment / sum.energy) : this->rangeOfNoise(run);
 }
 

@@ -49,7 +49,7 @@ struct UnseenEnergy
 };
 
 /// Reusable without allocation; one per thread. The cost of a unit follows the rays that put energy
-/// into it, not N; of many, all rays are taken in loops over lanes, with the same bits.
+/// into it, not N.
 class StandardErrorEstimator
 {
 public:
@@ -58,9 +58,8 @@ public:
   StandardErrorEstimator(
     Sampling sampling, std::size_t numberOfRays, const StrataPartition* strata);
 
-  /// Begin a range unit. @param expected approximate number of rays with energy: it decides whether
-  /// rays are listed, or all rays visited
-  void begin(std::size_t expected = 0);
+  /// Begin a range unit.
+  void begin();
 
   /// Add energy (J) of a path of ray `ray` < N; several paths of a ray add up.
   void add(std::size_t ray, double energy);
@@ -73,16 +72,13 @@ public:
   double estimate(const UnseenEnergy& unseen);
 
 private:
-  template <class F>
-  void forEachRay(F take) const;
   double monteCarlo(const UnseenEnergy& unseen) const;
   double stratified(const UnseenEnergy& unseen);
 
   Sampling Method;
   const StrataPartition* Strata;
   std::vector<double> Energies;     ///< of every ray
-  std::vector<std::size_t> Touched; ///< rays with energy, if listed
-  bool All = false;                 ///< rays are not listed: any may have energy
+  std::vector<std::size_t> Touched; ///< rays with energy
 };
 
 }

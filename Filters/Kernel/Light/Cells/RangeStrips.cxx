@@ -208,7 +208,7 @@ double sumOf(const double* values)
 
 double CellSamples::errorOf(const RangeShares& shares, const ScanSetup& setup) const
 {
-  const auto sampleOf = [&](std::size_t s) { return shares.contribution(s); };
+  const auto sampleOf = [&](std::size_t s) { return shares.contribution[s]; };
   const auto perWeight = [&](std::size_t s)
   { return shares.energies[s] / this->samples.weight[sampleOf(s)]; };
   // What moves over the diagonal changes the material.
@@ -219,7 +219,10 @@ double CellSamples::errorOf(const RangeShares& shares, const ScanSetup& setup) c
   };
   auto surface = this->samples.surfaces.begin();
   bool differ = !this->others.empty() && halvesDiffer(0);
+  std::size_t first = 0; // sample of the surface
   double sum = 0.0;
+  const auto addStep = [&](std::size_t sample, double step)
+  { sum += step * step * (this->moves[sample] + this->moves[sample + 1]); };
   for (std::size_t s = 0; s < shares.count; ++s)
   {
     const std::size_t sample = sampleOf(s);
@@ -229,15 +232,21 @@ double CellSamples::errorOf(const RangeShares& shares, const ScanSetup& setup) c
     }
     while (surface->end <= sample)
     {
+      first = surface->end;
       ++surface;
       differ = halvesDiffer(surface - this->samples.surfaces.begin());
     }
     const double energy = perWeight(s);
-    sum += energy * energy * (this->variance[sample] + (differ ? this->halves[sample] : 0.0));
-    if (s + 1 < shares.count && sampleOf(s + 1) < surface->end)
+    // A neighbour without a share puts nothing here.
+    if (sample > first && (s == 0 || sampleOf(s - 1) + 1 != sample))
     {
-      const double step = energy - perWeight(s + 1);
-      sum += step * step * (this->moves[sample] + this->moves[sampleOf(s + 1)]);
+      addStep(sample - 1, energy);
+    }
+    sum += energy * energy * (this->variance[sample] + (differ ? this->halves[sample] : 0.0));
+    if (sample + 1 < surface->end)
+    {
+      const bool isNext = s + 1 < shares.count && sampleOf(s + 1) == sample + 1;
+      addStep(sample, energy - (isNext ? perWeight(s + 1) : 0.0));
     }
   }
   return std::sqrt(sum);

@@ -231,14 +231,10 @@ double PolygonQuadrature::boundOf(
   std::size_t next = 0; // node whose own uncertainty is not yet counted
   for (std::size_t s = 0; s < shares.count; ++s)
   {
-    const std::size_t node = shares.contribution(s);
+    const std::size_t node = shares.contribution[s];
     if (node >= energies.size())
     {
       break; // paths over two reflections
-    }
-    if (!(shares.energies[s] > 0.0))
-    {
-      continue;
     }
     energy += shares.energies[s];
     // Neighbours are the parts beyond the borders.
