@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ScanSetup.h"
 
-#include "Propagation.h"
-
 #include <algorithm>
 #include <cmath>
 
@@ -20,8 +18,7 @@ double mostReturned(const ScanSetup& setup, double range)
   const double share = aperture > 0.0
     ? std::min(1.0, setup.largestGain * aperture / (range * range))
     : setup.largestReflectance;
-  return setup.sensor.pulseEnergy * share *
-    transmission(setup.settings.attenuationCoefficient, 2.0 * range);
+  return setup.sensor.pulseEnergy * share * transmission(setup.attenuation(), 2.0 * range);
 }
 
 double perceivableRange(const ScanSetup& setup)

@@ -115,7 +115,6 @@ private:
     {
       setup.settings.attenuationCoefficient = 0.0;
       setup.media.clear();
-      setup.placedMedia.clear();
     }
     planModel(setup);
     ScanResult result;
@@ -466,7 +465,7 @@ private:
                               ReferenceSeeds[0], this->Sample),
         this->Without[reflections - 1]);
     }
-    if (!this->Setup.media.empty() || !this->Setup.placedMedia.empty())
+    if (!this->Setup.media.empty())
     {
       for (int turn = 0; turn < MostTurns; ++turn)
       {

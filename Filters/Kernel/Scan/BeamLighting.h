@@ -44,7 +44,7 @@ public:
   /// @param wanted called every 4096 steps within a beam; if it returns false, WorkStopped
   /// is thrown
   BeamLighting(const ScanSetup& setup, const ScanBeams& beams, ScanBlock& block,
-    BeamSampler& sampler, const BeamReceiver& receiver, std::function<bool()> wanted);
+    BeamSampler& sampler, const BeamReceiver& receiver, BeamAir& air, std::function<bool()> wanted);
 
   /// Light beams also where bounds show that nothing of them can be perceived.
   void lightAll() { this->LightsAll = true; }
@@ -101,7 +101,7 @@ private:
   SecondaryReflection Secondary;
   PolygonQuadrature Quadrature;
   RangeUnitAccumulator Units;
-  BeamAir Air;
+  BeamAir& Air;
   bool LightsAll = false;
 
   // The beam being lit.

@@ -155,11 +155,11 @@ std::string Density(const AdviceAnswer& a)
 
 std::string Weather(const avianlidar::ScanSetup& setup, const AdviceAnswer& a)
 {
-  if (!(setup.settings.attenuationCoefficient > 0.0) && setup.placedMedia.empty())
+  if (!(setup.settings.attenuationCoefficient > 0.0) && setup.media.empty())
   {
     return "Weather: none";
   }
-  const bool scatters = !setup.media.empty() || !setup.placedMedia.empty();
+  const bool scatters = !setup.media.empty();
   const double lost = std::max(0.0, 1.0 - 1.0 / (1.0 + a.lostInAir));
   return "Weather: the air takes " + PerCent(std::max(0.0, 1.0 - 1.0 / (1.0 + a.weakenedByAir))) +
     " of the light and " + PerCent(lost) + " of the echoes; " +

@@ -366,7 +366,7 @@ void SecondaryReflection::collect(const Beam& beam, std::vector<SecondaryPath>& 
   this->prepare(beam, byRegions);
   this->measure(beam);
   // What the strongest path can carry.
-  const double most = pulseEnergy * mostAir(beam.nearest, settings.attenuationCoefficient);
+  const double most = pulseEnergy * mostAir(beam.nearest, this->Setup.attenuation());
   const bool gathers = this->Setup.sensor.receiverAperture > 0.0;
   double threshold = 0.0;
   if (dropsFaintPaths(settings) && settings.lightEnergyThreshold == LightEnergyThreshold::Limit)
@@ -414,7 +414,7 @@ void SecondaryReflection::collect(const Beam& beam, std::vector<SecondaryPath>& 
   }
   lost += most * this->untracedSum(beam.trace);
   this->listPaths(beam, paths);
-  energiesOfAll(pulseEnergy, settings.attenuationCoefficient, paths.data(), paths.size());
+  energiesOfAll(pulseEnergy, this->Setup.attenuation(), paths.data(), paths.size());
   for (SecondaryPath& path : paths)
   {
     if (path.energy < (path.one == NoSample ? ofMirrors : threshold))
