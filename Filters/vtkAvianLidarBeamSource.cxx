@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkAvianLidarBeamSource.h"
 
+#include "Air.h"
 #include "AvailableMemory.h"
 #include "PhotonReceiver.h"
-#include "Propagation.h"
 #include "vtkAvianLidarAbort.h"
 #include "vtkAvianLidarArrays.h"
 #include "vtkAvianLidarBeamSourceInternals.h"

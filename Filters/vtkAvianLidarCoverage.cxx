@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkAvianLidarCoverage.h"
 
+#include "Air.h"
 #include "AvailableMemory.h"
 #include "CoverageSurvey.h"
-#include "Propagation.h"
 #include "ValueError.h"
 #include "vtkAvianLidarAbort.h"
 #include "vtkAvianLidarArrays.h"

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkAvianLidarScanFilter.h"
 
+#include "Air.h"
 #include "CollisionTreeBuilder.h"
 #include "EchoSettings.h"
-#include "Propagation.h"
 #include "ValueError.h"
 #include "vtkAvianLidarAbort.h"
 #include "vtkAvianLidarArrays.h"
@@ -20,6 +20,7 @@
 #include "vtkPolyData.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
 
+#include <algorithm>
 #include <utility>
 
 namespace
@@ -209,8 +210,9 @@ std::string vtkAvianLidarScanFilter::PrepareSettings()
     s.attenuationCoefficient = avianlidar::attenuationOfVisibility(
       this->Visibility, avianlidar::SpeedOfLight / this->Internals->Setup.sensor.frequency);
   }
-  std::vector<avianlidar::Medium>& media = this->Internals->Setup.media;
+  std::vector<avianlidar::PlacedMedium>& media = this->Internals->Setup.media;
   media.clear();
+  const bool isDense = this->Visibility > 0.0 && !(s.attenuationCoefficient <= 1e30);
   std::string problem;
   if (!(this->RainRate >= 0.0 && this->RainRate <= avianlidar::MaximumRainRate))
   {
@@ -220,21 +222,22 @@ std::string vtkAvianLidarScanFilter::PrepareSettings()
   {
     if (this->AirBackscatter && this->Visibility > 0.0)
     {
-      media.push_back(vtkAvianLidarMedia::HazeOf(this->Visibility, s.attenuationCoefficient));
+      media.push_back(
+        { vtkAvianLidarMedia::HazeOf(this->Visibility, s.attenuationCoefficient), {} });
+      s.attenuationCoefficient = 0.0;
     }
     if (this->RainRate > 0.0)
     {
-      media.push_back(vtkAvianLidarMedia::RainOf(
-        this->RainRate, avianlidar::viewOf(this->Internals->Setup.sensor)));
-      s.attenuationCoefficient += media.back().extinction;
+      media.push_back({ vtkAvianLidarMedia::RainOf(
+                          this->RainRate, avianlidar::viewOf(this->Internals->Setup.sensor)),
+        {} });
     }
   }
   if (!media.empty() && !(this->Internals->Setup.sensor.receiverAperture > 0.0))
   {
     problem = NoAperture;
   }
-  if (!(this->Visibility >= 0.0 && this->Visibility <= 1e9) ||
-    (this->Visibility > 0.0 && !(s.attenuationCoefficient <= 1e30)))
+  if (!(this->Visibility >= 0.0 && this->Visibility <= 1e9) || isDense)
   {
     problem = avianlidar::valueError(
       "Visibility", this->Visibility, "0, or up to 1e9 m and enough for air of at most 1e30 1/m");
@@ -277,7 +280,7 @@ std::string vtkAvianLidarScanFilter::PlaceMedia()
     in.MediaOf = in.Surfaces.media;
     in.MediaFor = view;
   }
-  in.Setup.placedMedia.clear();
+  std::vector<avianlidar::PlacedMedium>& media = in.Setup.media;
   for (const avianlidar::PlacedMedium& placed : in.Media)
   {
     if (placed.volume.velocity != avianlidar::Vec3(0.0) && in.Beams.beams.size() > 0 &&
@@ -286,16 +289,10 @@ std::string vtkAvianLidarScanFilter::PlaceMedia()
       return "Input port 0 (beams), point array 'timestamp' is missing, expected the time in "
              "microseconds at which each beam meets the media that move (input port 1)";
     }
-    if (placed.volume.shape == avianlidar::MediumShape::Everywhere)
-    {
-      in.Setup.media.push_back(placed.medium);
-      in.Setup.settings.attenuationCoefficient += placed.medium.extinction;
-    }
-    else
-    {
-      in.Setup.placedMedia.push_back(placed);
-    }
+    media.push_back(placed);
   }
+  std::stable_partition(media.begin(), media.end(),
+    [](const avianlidar::PlacedMedium& one) { return one.fillsScene(); });
   return {};
 }
 

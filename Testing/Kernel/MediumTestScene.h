@@ -69,7 +69,7 @@ inline ScanSetup inMedium(const Scene& scene, Sensor sensor, const Medium& mediu
   EchoSettings settings = directSettings(400);
   settings.beamSamples = cells ? BeamSampleSource::Cells : BeamSampleSource::Rays;
   ScanSetup setup = makeSetup(scene, sensor, settings);
-  setup.placedMedia = { { medium, volume } };
+  setup.media = { { medium, volume } };
   planModel(setup);
   return setup;
 }

@@ -20,21 +20,17 @@ TEST(BeamAir, ABoxThatHoldsEverythingIsAirThatFillsTheScene)
   for (Medium medium : { Medium{ 4e-3, 18.8, 0.0 }, rainOf(10.0, 20.0, {}) })
   {
     const double clear = 1e-4;
-    const AirEcho echo(sensor, { medium }, medium.extinction + clear);
-    const std::vector<PlacedMedium> placed = { { medium, boxOf(Vec3(0.0), Vec3(1e4)) } };
-    const std::vector<Medium> none;
-    BeamAir air(sensor, clear, none, placed);
+    BeamAir echo(sensor, { clear, { { medium, {} } } });
+    BeamAir air(sensor, { clear, { { medium, boxOf(Vec3(0.0), Vec3(1e4)) } } });
     air.begin(frame, 0.0);
     ASSERT_TRUE(air.isLocal());
     for (const std::int64_t unit : { 0, 1, 3, 20, 300, 1000 })
     {
-      const double mean = air.followed(echo, unit);
-      EXPECT_NEAR(mean / echo.mean(unit), 1.0, unit == 0 ? 1e-3 : 2e-6) << unit;
+      const double mean = air.followed(unit);
+      EXPECT_NEAR(mean / echo.followed(unit), 1.0, unit == 0 ? 1e-3 : 2e-6) << unit;
       if (medium.drops > 0.0)
       {
-        const BeamAir::Share& share = air.sharesOf(unit)[0];
-        EXPECT_NEAR(
-          share.mean * share.mean * SquareOfDrops / share.drops / echo.variance(unit), 1.0, 1e-5);
+        EXPECT_NEAR(air.sharesOf(unit)[0].drops / echo.sharesOf(unit)[0].drops, 1.0, 1e-5);
       }
     }
     EXPECT_NEAR(air.transmission(500.0), std::exp(-1000.0 * medium.extinction), 1e-12);
@@ -54,10 +50,10 @@ TEST(BeamAir, UnitsAreLookedAtWhereMediaMayBePerceived)
   // A tree, a gap, and a wood that is deeper than light goes.
   const std::vector<PlacedMedium> placed = { { leaves, boxOf(Vec3(105.0, 0.0, 0.0), Vec3(5.0)) },
     { leaves, boxOf(Vec3(650.0, 0.0, 0.0), Vec3(350.0, 50.0, 50.0)) } };
-  const std::vector<Medium> none;
-  const std::vector<Medium> rain = { rainOf(10.0, 20.0, {}) };
+  std::vector<PlacedMedium> andRain = placed;
+  andRain.insert(andRain.begin(), { rainOf(10.0, 20.0, {}), {} });
   const std::int64_t most = std::numeric_limits<std::int64_t>::max();
-  BeamAir air(sensor, 1e-4, none, placed);
+  BeamAir air(sensor, { 1e-4, placed });
   air.begin(frame, 0.0);
   EXPECT_EQ(air.nextLooked(0), unitAt(100.0));
   EXPECT_EQ(air.nextLooked(unitAt(200.0)), unitAt(300.0));
@@ -72,7 +68,8 @@ TEST(BeamAir, UnitsAreLookedAtWhereMediaMayBePerceived)
   }
   EXPECT_EQ(air.nextLooked(unitAt(600.0)), most);
   // Air that fills the scene is looked at as far as the receiver says.
-  BeamAir inRain(sensor, 1e-3, rain, placed, 20);
+  BeamAir inRain(sensor, { 0.0, andRain });
+  inRain.lookAt(20);
   inRain.begin(frame, 0.0);
   EXPECT_EQ(inRain.nextLooked(0), 0);
   EXPECT_EQ(inRain.nextLooked(20), unitAt(100.0));
@@ -83,23 +80,24 @@ TEST(BeamAir, WhatSurfacesMeetTheAirDoesNotReturn)
   const Sensor sensor = search905();
   const BeamFrame frame = makeBeamFrame(Vec3(0.0), Vec3(1.0, 0.0, 0.0), sensor.halfBeamwidth);
   const Medium fog{ 4e-3, 18.8, 0.0 };
-  const AirEcho echo(sensor, { fog }, fog.extinction);
-  const std::vector<Medium> media = { fog };
-  const std::vector<PlacedMedium> none;
-  const std::vector<PlacedMedium> placed = { { { 0.0, 1.0, 0.0 }, boxOf(Vec3(0.0), Vec3(9.0)) } };
-  const double ranges[] = { 100.0, 60.0, 100.2 };
-  const double weights[] = { 0.25, 0.25, 0.5 };
+  BeamAir echo(sensor, { 0.0, { { fog, {} } } });
   for (const bool isLocal : { false, true })
   {
-    BeamAir air(sensor, fog.extinction, media, isLocal ? placed : none);
+    Air all{ 0.0, { { fog, {} } } };
+    if (isLocal)
+    {
+      all.media.push_back({ { 0.0, 1.0, 0.0 }, boxOf(Vec3(0.0), Vec3(9.0)) });
+    }
+    BeamAir air(sensor, all);
     air.begin(frame, 0.0);
     EXPECT_EQ(air.isLocal(), isLocal);
-    air.take({ ranges, weights, nullptr, 3 });
+    air.take({ { 100.0, 0.25, 0 }, { 60.0, 0.25, 0 }, { 100.2, 0.5, 0 } });
     for (const auto& [range, open] : { std::pair(30.0, 1.0), std::pair(80.0, 0.75),
            std::pair(120.0, 0.0), std::pair(3000.0, 0.0), std::pair(30.0, 1.0) })
     {
       const auto unit = static_cast<std::int64_t>(range / sensor.rangeUnitLength());
-      EXPECT_NEAR(air.followed(echo, unit), open * echo.mean(unit), 1e-5 * echo.mean(unit));
+      const double clear = echo.followed(unit);
+      EXPECT_NEAR(air.followed(unit), open * clear, 1e-5 * clear);
     }
   }
 }
@@ -110,20 +108,11 @@ TEST(BeamAir, NoRainIsSeenThroughAWall)
   const Medium rain = rainOf(10.0, 20.0, {});
   EchoSettings settings = directSettings(100);
   settings.noise = true;
-  settings.attenuationCoefficient = rain.extinction;
   int everywhere = 0;
   for (const bool isLocal : { false, true })
   {
     ScanSetup setup = makeSetup(wallAt(60.0), sensor, settings);
-    if (isLocal)
-    {
-      setup.settings.attenuationCoefficient = 0.0;
-      setup.placedMedia = { { rain, boxOf(Vec3(0.0), Vec3(1e4)) } };
-    }
-    else
-    {
-      setup.media = { rain };
-    }
+    setup.media = { { rain, isLocal ? boxOf(Vec3(0.0), Vec3(1e4)) : MediumVolume() } };
     planModel(setup);
     const ScanResult result = runScan(setup, alike(200));
     int before = 0;
@@ -188,7 +177,7 @@ TEST(BeamAir, PathsOverTwoReflectionsPassTheMediumToo)
     uniform.settings.attenuationCoefficient = fog.extinction;
     planModel(uniform);
     ScanSetup placed = clear;
-    placed.placedMedia = { { fog, all } };
+    placed.media = { { fog, all } };
     planModel(placed);
     const ScanBeams beam = oneBeam(Vec3(1.0, 0.0, 0.02));
     const ScanResult a = runScan(uniform, beam);
@@ -247,10 +236,8 @@ TEST(BeamAir, FarAndDenseMediaReturnLight)
     for (const double extinction : { 0.5, 1.5, 20.0 })
     {
       Medium leaves{ extinction, 10.5, 0.0, 6.0, 1.0, false, 9, true };
-      const std::vector<PlacedMedium> placed = { { leaves,
-        boxOf(Vec3(from + 50.0, 0.0, 0.0), Vec3(50.0, 400.0, 400.0)) } };
-      const std::vector<Medium> none;
-      BeamAir air(sensor, 0.0, none, placed);
+      BeamAir air(sensor,
+        { 0.0, { { leaves, boxOf(Vec3(from + 50.0, 0.0, 0.0), Vec3(50.0, 400.0, 400.0)) } } });
       air.begin(makeBeamFrame(Vec3(0.0), Vec3(1.0, 0.0, 0.0), sensor.halfBeamwidth), 0.0);
       const auto unit = static_cast<std::int64_t>((from + 1.0) / sensor.rangeUnitLength());
       const double begin = sensor.rangeUnitLength() * static_cast<double>(unit);
@@ -300,19 +287,25 @@ TEST(BeamAir, LayersSeenFromHighAbove)
 
 TEST(BeamAir, BordersAnywhereInABeam)
 {
-  // What an opaque half leaves of a beam, against the segment of a disc. The half is a box at any
-  // angle, or a layer before a beam of any azimuth, of which the vertical has any angle in the
-  // beam.
+  // What an opaque half leaves of a beam, against the segment of a disc. The half is a box beside a
+  // beam that is turned about its axis, or a layer before a beam of any azimuth, of which the
+  // vertical has any angle in the beam.
   const Sensor sensor = openSensor(5.6e-3);
   constexpr double range = 100.0;
   const double radius = range * std::tan(5.6e-3);
   constexpr int angles = 360;
   constexpr int offsets = 399;
-  const std::vector<Medium> none;
+  const MediumVolume box = boxOf(Vec3(range, 40.0, 0.0), Vec3(1e-3, 40.0, 40.0));
+  MediumVolume below;
+  below.shape = MediumShape::Layer;
+  MediumVolume above = below;
+  above.bottom = 0.0;
+  above.top = 1e3;
   for (const bool isLayer : { false, true })
   {
-    std::vector<PlacedMedium> placed = { { { 1e9, 18.8, 0.0 }, {} } };
-    BeamAir air(sensor, 0.0, none, placed);
+    const Medium opaque{ 1e9, 18.8, 0.0 };
+    BeamAir low(sensor, { 0.0, { { opaque, isLayer ? below : box } } });
+    BeamAir high(sensor, { 0.0, { { opaque, isLayer ? above : box } } });
     double worst = 0.0;
     double squares = 0.0;
     for (int k = 0; k < angles * offsets; ++k)
@@ -320,21 +313,18 @@ TEST(BeamAir, BordersAnywhereInABeam)
       const double angle = 2.0 * Pi * (k % angles) / angles;
       const double offset = 2.0 * (k / angles + 1) / (offsets + 1) - 1.0;
       const Vec3 axis = isLayer ? Vec3(std::cos(angle), std::sin(angle), 0.0) : Vec3(1.0, 0.0, 0.0);
-      const Vec3 normal(0.0, std::cos(angle), std::sin(angle));
-      MediumVolume half = boxOf(range * axis + (offset * radius + 40.0) * normal, Vec3(40.0));
-      half.halfAxes = { Vec3(1e-3, 0.0, 0.0), 40.0 * normal,
-        40.0 * Vec3(0.0, -std::sin(angle), std::cos(angle)) };
-      if (isLayer)
+      const Vec3 origin = -offset * radius * (isLayer ? Vec3(0.0, 0.0, 1.0) : Vec3(0.0, 1.0, 0.0));
+      BeamFrame frame = makeBeamFrame(origin, axis, 5.6e-3);
+      for (Vec3* v : { &frame.e1, &frame.e2 })
       {
-        half = {};
-        half.shape = MediumShape::Layer;
-        (offset < 0.0 ? half.top : half.bottom) = offset * radius;
-        (offset < 0.0 ? half.bottom : half.top) = offset < 0.0 ? -Infinity : 1e3;
+        const double cosine = isLayer ? 1.0 : std::cos(angle);
+        const double sine = isLayer ? 0.0 : std::sin(angle);
+        *v = Vec3(v->x, cosine * v->y + sine * v->z, cosine * v->z - sine * v->y);
       }
       const double left = isLayer && offset < 0.0 ? -offset : offset; // the layer is below the beam
       const double truth = 1.0 - (std::acos(left) - left * std::sqrt(1.0 - left * left)) / Pi;
-      placed[0].volume = half;
-      air.begin(makeBeamFrame(Vec3(0.0), axis, 5.6e-3), 0.0);
+      BeamAir& air = offset < 0.0 ? low : high;
+      air.begin(frame, 0.0);
       const double error = air.transmission(range + 0.1) - truth;
       worst = std::max(worst, std::fabs(error));
       squares += error * error / (angles * offsets);
@@ -379,7 +369,8 @@ TEST(BeamAir, WhatIsKeptOfBeamsDoesNotDependOnTheAirBefore)
   TraceCache cache;
   ScanResult again;
   simulateScan(setup, beams, 1, cache, std::size_t(1) << 30, {}, again);
-  setup.media = { { 4e-3, 18.8, 0.0 } };
+  setup.settings.attenuationCoefficient = 0.0;
+  setup.media = { { { 4e-3, 18.8, 0.0 }, {} } };
   simulateScan(setup, beams, 1, cache, std::size_t(1) << 30, {}, again);
   expectSame(runScan(setup, beams), again);
 }
@@ -395,7 +386,7 @@ TEST(BeamAir, AnyThreadsAndPartsGiveTheSameBits)
   layer.softness = 4.0;
   MediumVolume crown = boxOf(Vec3(40.0, 30.0, 4.0), Vec3(6.0, 5.0, 4.0));
   crown.shape = MediumShape::Ellipsoid;
-  setup.placedMedia = { { { 0.01, 18.8, 0.0 }, layer }, { leaves, crown },
+  setup.media = { { { 0.01, 18.8, 0.0 }, layer }, { leaves, crown },
     { rainOf(20.0, 20.0, {}), boxOf(Vec3(-100.0, 0.0, 0.0), Vec3(60.0, 80.0, 100.0)) } };
   planModel(setup);
   const ScanBeams beams = horizon(180, 4);
@@ -416,7 +407,7 @@ TEST(BeamAir, AnyThreadsAndPartsGiveTheSameBits)
   simulateScan(setup, beams, 2, cache, std::size_t(1) << 30, {}, again);
   expectSame(one, again);
   ScanSetup other = setup;
-  other.placedMedia[0].medium.extinction = 0.05;
+  other.media[0].medium.extinction = 0.05;
   simulateScan(other, beams, 2, cache, std::size_t(1) << 30, {}, again);
   EXPECT_EQ(again.beamsTraced, 0u);
   expectSame(runScan(other, beams, 1), again);

@@ -103,9 +103,7 @@ TEST(BeamCrowns, TheWayBackMeetsOtherLeaves)
   for (const CrownCase& of : CrownCases)
   {
     const Sensor sensor = lidarOf(of);
-    const std::vector<PlacedMedium> placed = { { leavesOf(of.density), crownOf(of) } };
-    const std::vector<Medium> none;
-    BeamAir air(sensor, 0.0, none, placed);
+    BeamAir air(sensor, { 0.0, { { leavesOf(of.density), crownOf(of) } } });
     air.begin(makeBeamFrame(Vec3(0.0), Vec3(1.0, 0.0, 0.0), sensor.halfBeamwidth), 0.0);
     EXPECT_NEAR(air.transmission(of.wall), of.behind[0], 3.0 * of.behind[1]) << of.wall;
     double leaves = 0.0;

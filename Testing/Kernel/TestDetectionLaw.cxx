@@ -16,7 +16,7 @@ using namespace avianlidar;
 namespace
 {
 constexpr double Plumage = 0.3; // reflectance
-constexpr double Air = 8.9e-5;  // 1/m
+constexpr double Haze = 8.9e-5; // 1/m
 
 Sensor search905(double pulseWidth)
 {
@@ -46,7 +46,7 @@ Silhouette slanted(double width, double height, double slope, double area)
 
 double energyAt(const Sensor& sensor, double range, double area = 0.03)
 {
-  return energyFromTarget(sensor, range, area, Plumage, Air);
+  return energyFromTarget(sensor, range, area, Plumage, Haze);
 }
 }
 

@@ -41,7 +41,7 @@ const Row Rows[] = { { 3.6e-4, 905e-9, 5.6e-3, 0.1, 0.4, 0.05, 10.0, 15360.0, 40
     326.510, { 93.28, 112.40, 127.05, 144.24, 176.08, 315.0 } } };
 
 constexpr double Plumage = 0.3; // reflectance
-constexpr double Air = 8.9e-5;  // 1/m
+constexpr double Haze = 8.9e-5; // 1/m
 
 Sensor sensorOf(const Row& row)
 {
@@ -69,7 +69,7 @@ double detectionRange(const Sensor& sensor, double area)
   {
     const double middle = 0.5 * (near + far);
     const bool above =
-      energyFromTarget(sensor, middle, area, Plumage, Air) > sensor.lowerEnergyLimit;
+      energyFromTarget(sensor, middle, area, Plumage, Haze) > sensor.lowerEnergyLimit;
     (above ? near : far) = middle;
   }
   return near;
@@ -151,7 +151,7 @@ TEST(PhotonReceiver, DetectsAsOftenAsItsProbabilitySays)
   for (const auto& c : cases)
   {
     const double electrons =
-      receiver.electronsPerJoule * energyFromTarget(sensor, c.range, Gull, Plumage, Air);
+      receiver.electronsPerJoule * energyFromTarget(sensor, c.range, Gull, Plumage, Haze);
     EXPECT_NEAR(electrons, c.electrons, 1e-4 * c.electrons);
     const double probability = receiver.detectionProbability(electrons, threshold);
     EXPECT_NEAR(probability, c.probability, 2e-4);

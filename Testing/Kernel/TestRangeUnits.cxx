@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Range units: pulse overlap, conservation of energy, order of summation, and a waveform in closed
 // form.
-#include "Propagation.h"
+#include "Air.h"
 #include "RandomContributions.h"
 #include "Sensor.h"
 

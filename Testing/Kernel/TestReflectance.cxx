@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Reflectance models: the paper's in three dimensions, its lobe at every glossiness, the peers, and
 // closed forms.
-#include "Propagation.h"
+#include "Air.h"
 #include "Random.h"
 #include "Reflectance.h"
 #include "Sensor.h"

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Air that sends light back: the lidar equation at the filter's own range units by SciPy's quadrature, walls and birds behind
-it, coverage, labels, and what is said of it. Its noise is TestAirEcho's (kernel)."""
+it, coverage, labels, and what is said of it. Its noise is TestAir's (kernel)."""
 import contextlib
 import io
 import math

@@ -64,7 +64,7 @@ Coverage::Coverage(const ScanSetup& setup, const ScanBeams& beams, const Vec3& u
   , Directions(directions ? std::move(directions)
                           : std::make_shared<const BeamDirections>(beams.directions,
                               this->Shape.width().half, marginsFor(this->Shape.width().half)))
-  , Air(setup.sensor, setup.media, setup.settings.attenuationCoefficient)
+  , Air(setup.sensor, setup.air())
   , Most(static_cast<int>(std::clamp<std::size_t>(this->Directions->mostNear(), 1, 255)))
   , CosineHeld(std::cos(this->Shape.width().half))
   , Lowest(std::numeric_limits<double>::infinity())
@@ -275,14 +275,13 @@ Coverage::PlacedTarget Coverage::placed(const CoverageTarget& target, const Vec3
   double filling = energyFromTarget(
     sensor, range, std::numeric_limits<double>::infinity(), target.reflectance, target.attenuation);
   const auto unit = static_cast<std::int64_t>(range / sensor.rangeUnitLength());
-  double air = this->Air.mean(unit);
-  if (!this->Setup.placedMedia.empty())
+  double air = 0.0;
+  if (!this->Setup.media.empty())
   {
-    BeamAir along(sensor, this->Setup.settings.attenuationCoefficient, this->Setup.media,
-      this->Setup.placedMedia);
+    BeamAir along = this->Air;
     along.beginRay(this->Beams.origins[0], to / range, 0.0);
     filling *= along.transmission(range);
-    air = along.followed(this->Air, unit);
+    air = along.followed(unit);
   }
   double growth = 1.0;
   if (air > 0.0 && sensor.followsAir())

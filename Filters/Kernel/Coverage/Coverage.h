@@ -22,7 +22,7 @@
 #ifndef avianlidar_Coverage_h
 #define avianlidar_Coverage_h
 
-#include "AirEcho.h"
+#include "BeamAir.h"
 #include "BeamDirections.h"
 #include "BeamShape.h"
 #include "DetectionLaw.h"
@@ -156,7 +156,7 @@ private:
   const Vec3 Up;
   const BeamShape Shape;
   std::shared_ptr<const BeamDirections> Directions;
-  AirEcho Air;
+  BeamAir Air; ///< copied for each target
   int Most;
   double CosineHeld;                      ///< of the half-beamwidth
   double Lowest;                          ///< elevations of the band, rad

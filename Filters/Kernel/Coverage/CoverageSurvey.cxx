@@ -88,7 +88,7 @@ bool CoverageSurvey::look(const ScanSetup& setup, const ScanBeams& beams, const 
 const CoverageTarget& CoverageSurvey::targetOf(const SurveyTarget& wanted)
 {
   const Sensor& sensor = this->Covered->setup().sensor;
-  const double air = this->Covered->setup().settings.attenuationCoefficient;
+  const double air = this->Covered->setup().attenuation();
   std::vector<double> of = { air, wanted.reflectance, wanted.area,
     static_cast<double>(this->Covered->mostBeams()), this->Covered->lowest(),
     this->Covered->highest(), static_cast<double>(sensor.receiverModel) };

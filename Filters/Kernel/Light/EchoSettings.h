@@ -14,8 +14,8 @@
 
 #include "BeamRays.h"
 #include "BeamTracer.h"
-#include "Receiver.h"
 #include "Reflectance.h"
+#include "Sensor.h"
 
 #include <cstddef>
 #include <cstdint>
@@ -24,6 +24,16 @@
 
 namespace avianlidar
 {
+/// Which returns of a beam become points.
+enum class ReturnMode
+{
+  All = 0,
+  Strongest = 1, ///< largest energy of the strongest unit; ties to the nearest
+  First = 2,
+  Last = 3,
+  RangeUnits = 4 ///< the paper's literal reading: one point per perceived range unit, at its centre
+};
+
 /// Largest EchoSettings::lightEnergyFraction: as many paths as a beam may have.
 constexpr double MaximumLightEnergyFraction = 1e8;
 

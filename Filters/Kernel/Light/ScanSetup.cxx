@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ScanSetup.h"
 
-#include "Propagation.h"
-
 #include <algorithm>
 #include <cmath>
 
@@ -19,7 +17,7 @@ double perceivableRange(const ScanSetup& setup)
   const auto isPerceivable = [&](double range)
   {
     return setup.sensor.pulseEnergy * mostReturned(setup, range) *
-      transmission(setup.settings.attenuationCoefficient, 2.0 * range) * SurelyAbove >
+      transmission(setup.attenuation(), 2.0 * range) * SurelyAbove >
       limit;
   };
   double near = 1e-3;

@@ -21,10 +21,9 @@
 #ifndef avianlidar_ScanSetup_h
 #define avianlidar_ScanSetup_h
 
+#include "Air.h"
 #include "CollisionTree.h"
 #include "EchoSettings.h"
-#include "Medium.h"
-#include "MediumVolume.h"
 #include "Mover.h"
 #include "Noise.h"
 #include "Sensor.h"
@@ -85,12 +84,19 @@ struct ScanSetup
   /// Number of the first triangle of each mover (SceneTriangles.h).
   std::vector<std::uint32_t> firstTriangles;
   Sensor sensor;
-  EchoSettings settings;                 ///< attenuation that of all air, the media's included
-  std::vector<Medium> media;             ///< air that scatters and fills the scene
-  std::vector<PlacedMedium> placedMedia; ///< that do not fill it
+  EchoSettings settings;           ///< attenuation that of the clear air
+  std::vector<PlacedMedium> media; ///< those that fill the scene first
   NoisePlan noise;
   std::int32_t revolution = 0; ///< of the sensor; each has noise of its own
   ModelNeeds needs;
+
+  /// All air of the scene.
+  Air air() const { return { this->settings.attenuationCoefficient, this->media }; }
+  /// Attenuation coefficient of all that fills the scene, 1/m.
+  double attenuation() const
+  {
+    return attenuationOf(this->settings.attenuationCoefficient, this->media);
+  }
 
   /// Of a triangle of the tree or of a mover.
   const Material& material(std::uint32_t triangle) const

@@ -2,7 +2,6 @@
 #include "Throughput.h"
 
 #include "Multiversion.h"
-#include "Propagation.h"
 
 #include <algorithm>
 
@@ -119,8 +118,7 @@ double directEnergies(const ScanSetup& setup, const BeamSamples& samples,
 {
   energies.resize(samples.size());
   energiesOfAll(samples.weight.data(), throughput.reflected.data(), samples.range.data(),
-    setup.settings.attenuationCoefficient, setup.sensor.pulseEnergy, energies.data(),
-    samples.size());
+    setup.attenuation(), setup.sensor.pulseEnergy, energies.data(), samples.size());
   double sum = 0.0;
   for (const double energy : energies)
   {

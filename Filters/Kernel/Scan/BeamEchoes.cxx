@@ -145,8 +145,7 @@ BeamEchoes::BeamEchoes(const ScanSetup& setup, BeamLighting& lighting, BeamRecei
 void BeamEchoes::receive(
   std::uint64_t beam, LitBeam* keep, std::vector<Echo>& echoes, BeamReport& report)
 {
-  this->Receiver.receive(
-    beam, this->Lighting.units().units(), this->Lighting.radiance(), &this->Lighting.air());
+  this->Receiver.receive(beam, this->Lighting.units().units(), this->Lighting.radiance());
   const auto echoOf = [&](const Return& ret)
   {
     LitBeam::KnownReturn known = this->unitsOf(ret);
@@ -165,9 +164,9 @@ bool BeamEchoes::receiveAgain(
   std::uint64_t beam, const LitBeam& known, std::vector<Echo>& echoes, BeamReport& report)
 {
   BeamAir& air = this->Lighting.air();
-  air.beginEverywhere();
-  air.setOpen(known.firstTaken, known.open);
-  this->Receiver.receive(beam, known.units, known.radiance, &air);
+  air.beginOutside();
+  air.take(known.surfaces);
+  this->Receiver.receive(beam, known.units, known.radiance);
   const auto isKnown = [&](const Return& ret) { return !ret.hasLight || this->find(known, ret); };
   const std::vector<Return>& returns = this->Receiver.returns();
   const Return* strongest = this->Receiver.strongest();

@@ -10,7 +10,7 @@ namespace avianlidar
 {
 BeamLighting::BeamLighting(const ScanSetup& setup, const SceneTriangles& scene,
   const ScanBeams& beams, ScanBlock& block, BeamSampler& sampler, const BeamReceiver& receiver,
-  std::function<bool()> wanted)
+  BeamAir& air, std::function<bool()> wanted)
   : Setup(setup)
   , Scene(scene)
   , Beams(beams)
@@ -22,8 +22,7 @@ BeamLighting::BeamLighting(const ScanSetup& setup, const SceneTriangles& scene,
   , Quadrature(setup)
   , Units(setup.sensor.samplingInterval, setup.sensor.pulseWidth, setup.sensor.rangeGate,
       setup.sensor.minimumRange)
-  , Air(setup.sensor, setup.settings.attenuationCoefficient, setup.media, setup.placedMedia,
-      receiver.airLooked())
+  , Air(air)
 {
 }
 
@@ -49,8 +48,8 @@ bool BeamLighting::light(std::size_t beam, BeamTrace& trace)
     return this->Receiver.mayAlarm() || this->Air.returnsLight();
   }
   this->OfLit.measure(this->Setup, *this->Lit);
-  const double most = this->Setup.sensor.pulseEnergy *
-    mostAir(this->Lit->nearest, this->Setup.settings.attenuationCoefficient);
+  const double most =
+    this->Setup.sensor.pulseEnergy * mostAir(this->Lit->nearest, this->Setup.attenuation());
   const bool again = this->Setup.settings.numberOfReflections > 1 && (this->Starts || this->Facing);
   const double ofPaths = again ? most * this->Secondary.bound(*this->Lit, this->OfLit) : 0.0;
   if (!this->mayBePerceived(most, ofPaths))
@@ -120,10 +119,15 @@ double BeamLighting::passMedia(double sum)
 
 void BeamLighting::fillUnits()
 {
-  if (this->Receiver.air().any() || this->Air.isLocal())
+  if (this->Air.fillsScene() || this->Air.isLocal())
   {
-    this->Air.take({ this->Lit->range.data(), this->Lit->weight.data(),
-      this->Lit->columns.empty() ? nullptr : this->Lit->columns.data(), this->Lit->size() });
+    std::vector<MetSurface> surfaces(this->Lit->size());
+    for (std::size_t i = 0; i < surfaces.size(); ++i)
+    {
+      surfaces[i] = { this->Lit->range[i], this->Lit->weight[i],
+        this->Lit->columns.empty() ? 0 : this->Lit->columns[i] };
+    }
+    this->Air.take(std::move(surfaces));
   }
   this->Units.add(this->Lit->range.data(), this->Energies.data(), this->Energies.size());
   for (const SecondaryPath& path : this->Paths)
@@ -205,7 +209,7 @@ bool BeamLighting::collectPaths(std::size_t beam, BeamTrace& trace)
     traced = true;
     return this->Block.tracerOf(beam);
   };
-  if (!this->Setup.placedMedia.empty())
+  if (haveVolumes(this->Setup.media))
   {
     paths.air = &this->Air;
   }

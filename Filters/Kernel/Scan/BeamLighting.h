@@ -44,7 +44,7 @@ public:
   /// @param wanted called every 4096 steps within a beam; if it returns false, WorkStopped
   /// is thrown
   BeamLighting(const ScanSetup& setup, const SceneTriangles& scene, const ScanBeams& beams,
-    ScanBlock& block, BeamSampler& sampler, const BeamReceiver& receiver,
+    ScanBlock& block, BeamSampler& sampler, const BeamReceiver& receiver, BeamAir& air,
     std::function<bool()> wanted);
 
   /// Light beams also where bounds show that nothing of them can be perceived.
@@ -103,7 +103,7 @@ private:
   SecondaryReflection Secondary;
   PolygonQuadrature Quadrature;
   RangeUnitAccumulator Units;
-  BeamAir Air;
+  BeamAir& Air;
   bool LightsAll = false;
 
   // The beam being lit.

@@ -9,12 +9,13 @@ BeamSimulator::BeamSimulator(const ScanSetup& setup, const ScanBeams& beams, boo
   BeamSampler& sampler, std::function<bool()> wanted)
   : Scene(*setup.tree)
   , Beams(beams)
-  , KeepsLight(keepsLight && (setup.noise.active || setup.movers) && setup.placedMedia.empty())
+  , KeepsLight(keepsLight && (setup.noise.active || setup.movers) && !haveVolumes(setup.media))
   , Block(setup, this->Scene, beams, sampler)
+  , Air(setup.sensor, setup.air())
   , Receiver(setup.sensor, setup.noise, setup.settings.seed, setup.settings.returnMode,
-      setup.revolution, wanted,
-      AirEcho(setup.sensor, setup.media, setup.settings.attenuationCoefficient))
-  , Lighting(setup, this->Scene, beams, this->Block, sampler, this->Receiver, std::move(wanted))
+      setup.revolution, wanted, &this->Air)
+  , Lighting(
+      setup, this->Scene, beams, this->Block, sampler, this->Receiver, this->Air, std::move(wanted))
   , Echoes(setup, this->Lighting, this->Receiver)
 {
 }
@@ -51,8 +52,7 @@ void BeamSimulator::lightBeam(
     trace.lit = std::make_unique<LitBeam>();
     trace.lit->units = this->Lighting.units().units();
     trace.lit->radiance = this->Lighting.radiance();
-    trace.lit->open = this->Lighting.air().open();
-    trace.lit->firstTaken = this->Lighting.air().firstTaken();
+    trace.lit->surfaces = this->Air.surfaces();
     trace.lit->outsideGate = this->Lighting.isOutsideGate();
     trace.lit->lost = this->Lighting.lost();
     trace.lit->skipped = this->Lighting.skipped();

@@ -58,10 +58,7 @@ public:
   void lightAll() { this->Lighting.lightAll(); }
 
   /// What the air of the beam lit last sends back in a unit, of what a threshold may follow, J.
-  double followedIn(std::int64_t unit)
-  {
-    return this->Receiver.followedIn(this->Lighting.air(), unit);
-  }
+  double followedIn(std::int64_t unit) { return this->Air.followed(unit); }
 
   /// What the beam lit last received.
   const BeamLighting& lighting() const { return this->Lighting; }
@@ -73,6 +70,7 @@ private:
   const ScanBeams& Beams;
   const bool KeepsLight;
   ScanBlock Block;
+  BeamAir Air;
   BeamReceiver Receiver;
   BeamLighting Lighting;
   BeamEchoes Echoes;

@@ -13,7 +13,7 @@ bool takeOver(LightKey& key, const ScanSetup& setup)
   // A lit beam belongs to a trace, so to its tree (traceKey()). Largest gain and noise plan decide
   // what the needs say. Beams that movers touch are not kept, and revolutions differ by noise
   // alone, which is not kept either.
-  static_assert(memberCount<ScanSetup>() == 15 && memberCount<ModelNeeds>() == 7,
+  static_assert(memberCount<ScanSetup>() == 14 && memberCount<ModelNeeds>() == 7,
     "does a lit beam depend on the new member?");
   const Sensor& sensor = setup.sensor;
   const ModelNeeds& needs = setup.needs;
@@ -30,10 +30,10 @@ bool takeOver(LightKey& key, const ScanSetup& setup)
   {
     numbers.push_back(setting.get(setup.settings));
   }
-  for (const Medium& medium : setup.media) // surfaces take of its light
+  for (const PlacedMedium& one : setup.media) // surfaces take of its light
   {
-    numbers.push_back(medium.extinction);
-    numbers.push_back(medium.backscatterRatio);
+    numbers.push_back(one.medium.extinction);
+    numbers.push_back(one.medium.backscatterRatio);
   }
   const std::uint64_t now = hashOf(numbers.data(), numbers.size() * sizeof(double), 0);
   const bool same = key.numbers == now && key.materials.sharesWith(setup.materials) &&

@@ -16,6 +16,7 @@
 #ifndef avianlidar_LitBeam_h
 #define avianlidar_LitBeam_h
 
+#include "BeamAir.h"
 #include "Echo.h"
 #include "RangeUnits.h"
 #include "ScanSetup.h"
@@ -38,17 +39,17 @@ struct LitBeam
   };
   std::vector<RangeUnit> units;
   std::vector<KnownReturn> returns;
-  std::vector<double> open; ///< see BeamAir::open()
-  std::int64_t firstTaken = 0;
-  double radiance = 0.0;     ///< see BeamLighting::radiance()
-  bool outsideGate = false;  ///< see BeamLighting::isOutsideGate()
-  double lost = 0.0;         ///< J, see BeamReport
-  std::uint32_t skipped = 0; ///< see BeamReport
+  std::vector<MetSurface> surfaces; ///< that take of the air's light
+  double radiance = 0.0;            ///< see BeamLighting::radiance()
+  bool outsideGate = false;         ///< see BeamLighting::isOutsideGate()
+  double lost = 0.0;                ///< J, see BeamReport
+  std::uint32_t skipped = 0;        ///< see BeamReport
 
   std::size_t bytes() const
   {
     return sizeof(LitBeam) + this->units.capacity() * sizeof(RangeUnit) +
-      this->returns.capacity() * sizeof(KnownReturn) + this->open.capacity() * sizeof(double);
+      this->returns.capacity() * sizeof(KnownReturn) +
+      this->surfaces.capacity() * sizeof(MetSurface);
   }
 };
 

@@ -160,7 +160,7 @@ void ScanBlock::makeHits(
   this->Finder.find(
     this->frameOf(beam), this->raysOf(beam), triangles, *trace.hits, this->Geometry);
   this->GeometryBeam = beam;
-  if (!this->Setup.placedMedia.empty())
+  if (haveVolumes(this->Setup.media))
   {
     const BeamRays& rays = this->raysOf(beam);
     for (const std::uint32_t ray : trace.hits->ray)

@@ -159,8 +159,12 @@ std::uint64_t traceKey(const ScanSetup& setup)
     cells ? sensor.pulseWidth : 0.0, cells ? sensor.rangeGate : 0.0 };
   // Where media are; and that there are some.
   std::vector<double> places;
-  for (const PlacedMedium& placed : setup.placedMedia)
+  for (const PlacedMedium& placed : setup.media)
   {
+    if (placed.fillsScene())
+    {
+      continue;
+    }
     const MediumVolume& volume = placed.volume;
     const bool isStill = volume.velocity == Vec3(0.0);
     places.push_back(isStill ? 1.0 : 0.0);

@@ -63,7 +63,7 @@ std::unique_ptr<CellSamples> ViewFinder::findCrowded(
 /// the beam they lie. What moves may be anywhere.
 bool ViewFinder::meetsBorders(const BeamFrame& frame) const
 {
-  const std::vector<PlacedMedium>& media = this->Setup.placedMedia;
+  const std::vector<PlacedMedium>& media = this->Setup.media;
   return std::any_of(media.begin(), media.end(),
     [&](const PlacedMedium& placed)
     {

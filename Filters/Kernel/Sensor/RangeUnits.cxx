@@ -16,7 +16,7 @@ namespace
 {
 constexpr double Infinite = std::numeric_limits<double>::infinity();
 
-/// Units of the table, which takes 64 kB.
+/// Units of the table.
 constexpr double TableUnits = 16384.0;
 
 /// After so many requests for shares a beam's contributions are sorted by their first units, so
@@ -31,10 +31,10 @@ struct PulseExtent
 };
 
 /// Place `count` pulses by the lengths of their paths. @param unitPathLength m @param relativeWidth
-/// of a pulse, in units
+/// of a pulse, in units @param heads gets the share of each in its first unit
 AVIANLIDAR_MULTIVERSION PulseExtent placePulses(const double* lengths, const double* energies,
   double unitPathLength, double relativeWidth, double* begins, double* widths, double* firsts,
-  double* lasts, std::size_t count)
+  double* lasts, double* heads, std::size_t count)
 {
   double lowest = Infinite;
   double highest = -Infinite;
@@ -53,6 +53,9 @@ AVIANLIDAR_MULTIVERSION PulseExtent placePulses(const double* lengths, const dou
     widths[c] = width;
     firsts[c] = first > 0.0 ? first : 0.0;
     lasts[c] = last;
+    const bool both = last > firsts[c];
+    const double head = (firsts[c] + 1.0 - begin) / (both ? width : 1.0);
+    heads[c] = both ? head : 1.0;
     const bool counts = energies[c] > 0.0;
     const double low = counts ? firsts[c] : Infinite;
     const double high = counts ? last : -Infinite;
@@ -155,13 +158,15 @@ void RangeUnitAccumulator::accumulate()
   this->EnergyBeyondGate = 0.0;
   this->Requests = 0;
   const std::size_t count = this->Lengths.size();
-  for (std::vector<double>* v : { &this->Begins, &this->Widths, &this->Firsts, &this->Lasts })
+  // Portions are free until shares are requested.
+  for (std::vector<double>* v :
+    { &this->Begins, &this->Widths, &this->Firsts, &this->Lasts, &this->Portions })
   {
     v->resize(count);
   }
   const PulseExtent extent = placePulses(this->Lengths.data(), this->Energies.data(),
     this->UnitPathLength, this->RelativeWidth, this->Begins.data(), this->Widths.data(),
-    this->Firsts.data(), this->Lasts.data(), count);
+    this->Firsts.data(), this->Lasts.data(), this->Portions.data(), count);
   const double gate = static_cast<double>(this->GateUnits);
   for (std::size_t c = 0; extent.highest >= gate && c < count; ++c)
   {
@@ -183,56 +188,51 @@ void RangeUnitAccumulator::accumulate()
 /// infinity: there is none
 double RangeUnitAccumulator::addWindow(double from, double to)
 {
-  const auto lowest = static_cast<std::int64_t>(from);
-  const auto sorted = static_cast<std::ptrdiff_t>(this->Units.size());
-  this->Table.resize(std::max(this->Table.size(), static_cast<std::size_t>(to - from)), 0);
+  const auto window = static_cast<std::size_t>(to - from);
+  this->Table.resize(std::max(this->Table.size(), window));
+  this->Marks.resize((this->Table.size() + 63) / 64, 0);
   double next = Infinite;
   for (std::size_t c = 0; c < this->Lengths.size(); ++c)
   {
-    const double begin = this->Begins[c];
-    const double width = this->Widths[c];
+    const double first = this->Firsts[c];
     const double last = this->Lasts[c];
+    const auto shareUpTo = [&](double unit) { return (unit - this->Begins[c]) / this->Widths[c]; };
     if (!(this->Energies[c] > 0.0) || last < from)
     {
       continue;
     }
     if (last >= to)
     {
-      next = std::min(next, std::max(this->Firsts[c], to));
+      next = std::min(next, std::max(first, to));
     }
-    double unit = std::max(this->Firsts[c], from);
-    double before = unit > this->Firsts[c] ? (unit - begin) / width : 0.0;
-    for (; unit <= last && unit < to; unit += 1.0)
+    double unit = std::max(first, from);
+    double before = unit > first ? shareUpTo(unit) : 0.0;
+    auto place = static_cast<std::size_t>(static_cast<std::int64_t>(unit - from));
+    for (; unit <= last && place < window; unit += 1.0, ++place)
     {
-      const double after = unit < last ? (unit + 1.0 - begin) / width : 1.0;
-      if (after > before)
-      {
-        this->addShare(static_cast<std::uint32_t>(unit - from), static_cast<std::int64_t>(unit),
-          this->Energies[c] * (after - before));
-      }
+      const double after = !(unit < last) ? 1.0
+        : unit > first                    ? shareUpTo(unit + 1.0)
+                                          : this->Portions[c]; // of the first unit
+      const bool hasShare = after > before;
+      this->Table[place].energy += hasShare ? this->Energies[c] * (after - before) : 0.0;
+      this->Table[place].paths += hasShare;
+      this->Marks[place / 64] |= std::uint64_t{ hasShare } << (place % 64);
       before = after;
     }
   }
-  std::sort(this->Units.begin() + sorted, this->Units.end(),
-    [](const RangeUnit& a, const RangeUnit& b) { return a.index < b.index; });
-  for (auto unit = this->Units.begin() + sorted; unit != this->Units.end(); ++unit)
+  for (std::size_t word = 0; 64 * word < window; ++word)
   {
-    this->Table[static_cast<std::size_t>(unit->index - lowest)] = 0;
+    for (std::uint64_t left = this->Marks[word]; left != 0; left &= left - 1)
+    {
+      const std::size_t place = 64 * word + static_cast<std::size_t>(__builtin_ctzll(left));
+      RangeUnit& sum = this->Table[place];
+      this->Units.push_back({ static_cast<std::int64_t>(from) + static_cast<std::int64_t>(place),
+        sum.energy, sum.paths });
+      sum = RangeUnit();
+    }
+    this->Marks[word] = 0;
   }
   return next;
-}
-
-void RangeUnitAccumulator::addShare(std::uint32_t place, std::int64_t unit, double energy)
-{
-  std::uint32_t& known = this->Table[place];
-  if (known == 0)
-  {
-    this->Units.push_back({ unit, 0.0, 0 });
-    known = static_cast<std::uint32_t>(this->Units.size());
-  }
-  RangeUnit& sum = this->Units[known - 1];
-  sum.energy += energy;
-  ++sum.paths;
 }
 
 RangeShares RangeUnitAccumulator::sharesOf(std::int64_t first, std::int64_t last)

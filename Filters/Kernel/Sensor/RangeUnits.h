@@ -74,9 +74,8 @@ struct RangeUnit
 /// Reusable: allocates nothing once its workspace has grown to the largest beam. One per thread.
 ///
 /// Pulses are placed in a loop over lanes and added, one after the other, to the units that each
-/// meets. A table of a window of units says where each is in the list. Where a beam's units lie
-/// farther apart than the table is long, the window is moved on to the next unit that a pulse
-/// meets.
+/// meets, in a table of a window of units. Where a beam's units lie farther apart than the table is
+/// long, the window is moved on to the next unit that a pulse meets.
 class RangeUnitAccumulator
 {
 public:
@@ -125,7 +124,6 @@ private:
   double addWindow(double from, double to);
   void findShares(double first, double last);
   const std::vector<std::uint32_t>& contributionsNear(double first, double last);
-  void addShare(std::uint32_t place, std::int64_t unit, double energy);
 
   double UnitPathLength; // c tau_s: twice a unit's length in range
   double RelativeWidth;  // tau_e/tau_s
@@ -144,7 +142,8 @@ private:
   std::vector<double> Lasts;
 
   std::vector<RangeUnit> Units;
-  std::vector<std::uint32_t> Table; ///< place in Units of each unit of a window, from 1; 0: none
+  std::vector<RangeUnit> Table;     ///< sums of a window of units; zero between beams
+  std::vector<std::uint64_t> Marks; ///< a bit for each of these with a share; likewise
   // The shares requested last, in units [ShareFirst, ShareLast).
   std::vector<double> Portions;
   std::vector<std::uint32_t> Sharers;

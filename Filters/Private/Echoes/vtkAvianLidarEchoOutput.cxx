@@ -279,7 +279,9 @@ void vtkAvianLidarEchoOutput::FillFields(const avianlidar::ScanSetup& setup, int
 {
   fields->PassData(beamFields);
   names::SetFieldInteger(fields, { "preset", "1" }, preset);
-  SetSettings(setup.settings, fields);
+  avianlidar::EchoSettings settings = setup.settings;
+  settings.attenuationCoefficient = setup.attenuation(); // of all that fills the scene
+  SetSettings(settings, fields);
   names::SetFieldStrings(fields, { "avian_lidar_version", "" }, { AVIANLIDAR_VERSION });
   auto checksum = names::Make<vtkTypeUInt64Array>({ "scene_checksum", "" }, 1);
   const std::uint64_t parts[] = { sceneChecksum, movers.checksum };

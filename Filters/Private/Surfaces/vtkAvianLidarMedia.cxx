@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkAvianLidarMedia.h"
 
+#include "Air.h"
 #include "ClosedShells.h"
 #include "CollisionTreeBuilder.h"
 #include "JsonNode.h"
-#include "Propagation.h"
 #include "vtkAvianLidarArrays.h"
 #include "vtkAvianLidarBuiltInTexts.h"
 #include "vtkAvianLidarNames.h"

@@ -9,7 +9,7 @@
 #ifndef vtkAvianLidarMedia_h
 #define vtkAvianLidarMedia_h
 
-#include "MediumVolume.h"
+#include "Air.h"
 
 #include "vtkSmartPointer.h"
 

@@ -258,7 +258,7 @@ RangeStrips::RangeStrips(const ScanSetup& setup)
   , Gate(setup.sensor.rangeGate + UnitLength + 0.5 * SpeedOfLight * setup.sensor.pulseWidth)
   , Offset(0.5 * setup.sensor.pulseWidth / setup.sensor.samplingInterval)
   , Shape(setup.sensor)
-  , HasColumns(!setup.placedMedia.empty())
+  , HasColumns(haveVolumes(setup.media))
 {
 }
 

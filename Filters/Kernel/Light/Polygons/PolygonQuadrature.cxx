@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "PolygonQuadrature.h"
 
-#include "Propagation.h"
 #include "Reflectance.h"
 
 #include <algorithm>
@@ -68,7 +67,7 @@ void PolygonQuadrature::begin(const BeamFrame& frame, const VisiblePolygons& see
   this->Gathers = this->Setup.sensor.receiverAperture > 0.0 && largest >= 1.0 - 1e-9;
   this->Whole.mostReturned = Surely * this->Setup.sensor.pulseEnergy *
     std::min(this->Whole.mostReturned, largest) *
-    transmission(this->Setup.settings.attenuationCoefficient, 2.0 * this->Whole.nearest);
+    transmission(this->Setup.attenuation(), 2.0 * this->Whole.nearest);
   this->Whole.mostInUnit = std::min(this->Whole.mostReturned, this->Whole.mostInUnit);
   this->drop();
 }
@@ -120,7 +119,7 @@ PolygonQuadrature::Bounds PolygonQuadrature::boundsOf(
     chord * length * bounds.extent.mostInverse * bounds.extent.mostInverse / slope;
   bounds.inUnit = sensor.pulseEnergy * bounds.returned *
     std::min(1.0, dense * (strip < area ? strip : area)) *
-    transmission(this->Setup.settings.attenuationCoefficient, 2.0 / bounds.extent.mostInverse);
+    transmission(this->Setup.attenuation(), 2.0 / bounds.extent.mostInverse);
   return bounds;
 }
 

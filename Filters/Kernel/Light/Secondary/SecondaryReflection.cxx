@@ -372,7 +372,7 @@ bool SecondaryReflection::collect(const Beam& beam, std::vector<SecondaryPath>& 
   this->prepare(beam, byRegions);
   this->measure(beam);
   // What the strongest path can carry.
-  const double most = pulseEnergy * mostAir(beam.nearest, settings.attenuationCoefficient);
+  const double most = pulseEnergy * mostAir(beam.nearest, this->Setup.attenuation());
   const bool gathers = this->Setup.sensor.receiverAperture > 0.0;
   const double others = sumOf(this->ConnectionThroughputs) + this->mostOfShortPaths(beam);
   const auto isSilent = [&](double ofMirrors)
@@ -435,7 +435,7 @@ bool SecondaryReflection::collect(const Beam& beam, std::vector<SecondaryPath>& 
   }
   lost += most * this->untracedSum(beam.trace);
   this->listPaths(beam, paths);
-  energiesOfAll(pulseEnergy, settings.attenuationCoefficient, paths.data(), paths.size());
+  energiesOfAll(pulseEnergy, this->Setup.attenuation(), paths.data(), paths.size());
   for (SecondaryPath& path : paths)
   {
     if (path.energy < (path.one == NoSample ? ofMirrors : threshold))

@@ -12,10 +12,8 @@ namespace avianlidar
 {
 namespace
 {
-Vec3 offsetOf(const MediumVolume& volume, double seconds)
-{
-  return seconds * volume.velocity;
-}
+/// Above a layer's top, in lengths of its softness, nothing of it is left.
+constexpr double NothingLeft = 60.0;
 
 void addPart(double begin, double end, double density, double fall, double far,
   std::vector<MediumCrossing>& parts)
@@ -54,54 +52,45 @@ void crossLayer(const MediumVolume& layer, const Vec3& from, const Vec3& directi
     const auto above = climb == 0.0 && height <= layer.top
       ? std::pair(1.0, 0.0)
       : between(height, climb, layer.top, Infinity);
-    constexpr double nothingLeft = 60.0; // as an exponent: higher there is nothing
     double begin = std::max(0.0, above.first);
     if (climb < 0.0)
     {
-      begin = std::max(begin, above.second + nothingLeft * layer.softness / climb);
+      begin = std::max(begin, above.second + NothingLeft * layer.softness / climb);
     }
     const double density = std::exp(-(height + begin * climb - layer.top) / layer.softness);
     addPart(begin, above.second, density, climb / layer.softness, far, parts);
   }
 }
 
-void crossBox(const MediumVolume& box, const Vec3& from, const Vec3& direction, double far,
-  std::vector<MediumCrossing>& parts)
+/// A vector by the half axes of a box or an ellipsoid.
+Vec3 byHalfAxes(const MediumVolume& volume, const Vec3& v)
 {
-  double begin = -Infinity;
-  double end = Infinity;
-  for (const Vec3& axis : box.halfAxes)
-  {
-    const double square = glm::dot(axis, axis);
-    const auto inside =
-      between(glm::dot(from, axis) / square, glm::dot(direction, axis) / square, -1.0, 1.0);
-    begin = std::max(begin, inside.first);
-    end = std::min(end, inside.second);
-  }
-  addPart(begin, end, 1.0, 0.0, far, parts);
+  const auto by = [&](const Vec3& axis) { return glm::dot(v, axis) / glm::dot(axis, axis); };
+  return { by(volume.halfAxes[0]), by(volume.halfAxes[1]), by(volume.halfAxes[2]) };
 }
 
-void crossEllipsoid(const MediumVolume& ellipsoid, const Vec3& from, const Vec3& direction,
-  double far, std::vector<MediumCrossing>& parts)
+/// Ranges between which a ray lies in a box. @param p, d origin and direction by its half axes
+std::pair<double, double> insideBox(const Vec3& p, const Vec3& d)
 {
-  Vec3 p(0.0);
-  Vec3 d(0.0);
+  std::pair<double, double> all(-Infinity, Infinity);
   for (int i = 0; i < 3; ++i)
   {
-    const Vec3& axis = ellipsoid.halfAxes[static_cast<std::size_t>(i)];
-    p[i] = glm::dot(from, axis) / glm::dot(axis, axis);
-    d[i] = glm::dot(direction, axis) / glm::dot(axis, axis);
+    const auto inside = between(p[i], d[i], -1.0, 1.0);
+    all = { std::max(all.first, inside.first), std::min(all.second, inside.second) };
   }
+  return all;
+}
+
+/// The same of an ellipsoid.
+std::pair<double, double> insideEllipsoid(const Vec3& p, const Vec3& d)
+{
   // From the point nearest to the centre: a far origin takes no digits.
   const double square = glm::dot(d, d);
   const double middle = -glm::dot(p, d) / square;
   const Vec3 nearest = p + middle * d;
   const double root = 1.0 - glm::dot(nearest, nearest);
-  if (root > 0.0)
-  {
-    const double half = std::sqrt(root / square);
-    addPart(middle - half, middle + half, 1.0, 0.0, far, parts);
-  }
+  const double half = root > 0.0 ? std::sqrt(root / square) : 0.0;
+  return { middle - half, middle + half };
 }
 
 /// Whether a ray that hits a triangle passes its sides at a distance. @param direction unit vector
@@ -115,43 +104,31 @@ bool isAmid(const Corners& corners, const Vec3& direction)
   return std::fabs(a) > least && std::fabs(b) > least && std::fabs(c) > least;
 }
 
-/// All hits of a ray.
-class HitList
+/// Collects all hits of a ray.
+struct HitList
 {
-public:
-  HitList(const TriangleMesh& mesh, const Vec3& origin, const Vec3& direction,
-    std::vector<MediumCrosser::Hit>& hits)
-    : Mesh(mesh)
-    , Origin(origin)
-    , Direction(direction)
-    , Hits(hits)
-  {
-  }
+  const TriangleMesh& mesh;
+  const Vec3 origin;
+  const Vec3 direction;
+  std::vector<MediumCrosser::Hit>& hits;
+
   double limit() const { return Infinity; }
   bool leaf(const std::uint32_t* triangles, std::uint32_t count)
   {
     for (std::uint32_t i = 0; i < count; ++i)
     {
-      const Corners corners = cornersFrom(this->Mesh, triangles[i], this->Origin);
-      if (rayAccepted(corners, this->Direction))
+      const Corners corners = cornersFrom(this->mesh, triangles[i], this->origin);
+      const TrianglePlane plane = planeOf(corners);
+      const double range =
+        rayAccepted(corners, this->direction) ? rangeOf(corners, plane, this->direction, 0.0) : 0.0;
+      if (range > 0.0)
       {
-        const TrianglePlane plane = planeOf(corners);
-        const double range = rangeOf(corners, plane, this->Direction, 0.0);
-        if (range > 0.0)
-        {
-          this->Hits.push_back({ range, glm::dot(plane.normal, this->Direction) < 0.0 ? 1 : -1,
-            isAmid(corners, this->Direction) });
-        }
+        this->hits.push_back({ range, glm::dot(plane.normal, this->direction) < 0.0 ? 1 : -1,
+          isAmid(corners, this->direction) });
       }
     }
     return true;
   }
-
-private:
-  const TriangleMesh& Mesh;
-  const Vec3 Origin;
-  const Vec3 Direction;
-  std::vector<MediumCrosser::Hit>& Hits;
 };
 }
 
@@ -221,7 +198,7 @@ void MediumCrosser::findInSurface(const MediumVolume& volume, const Vec3& origin
   {
     return;
   }
-  HitList list(*tree.mesh, origin, direction, this->Hits);
+  HitList list{ *tree.mesh, origin, direction, this->Hits };
   descendWide(
     tree, WideRay(tree.wide, origin, Vec3(0.0), direction, 2.0 * HitMargin), list, this->Stack);
   std::sort(this->Hits.begin(), this->Hits.end(),
@@ -253,23 +230,25 @@ void MediumCrosser::findInSurface(const MediumVolume& volume, const Vec3& origin
 void MediumCrosser::find(const MediumVolume& volume, const Vec3& origin, const Vec3& direction,
   double far, double seconds, std::vector<MediumCrossing>& parts)
 {
-  const Vec3 from = origin - offsetOf(volume, seconds);
+  const Vec3 from = origin - volume.centreAt(seconds);
+  const auto add = [&](const std::pair<double, double>& inside)
+  { addPart(inside.first, inside.second, 1.0, 0.0, far, parts); };
   switch (volume.shape)
   {
     case MediumShape::Everywhere:
-      addPart(0.0, far, 1.0, 0.0, far, parts);
+      add({ 0.0, far });
       break;
     case MediumShape::Layer:
-      crossLayer(volume, from - volume.centre, direction, far, parts);
+      crossLayer(volume, from, direction, far, parts);
       break;
     case MediumShape::Box:
-      crossBox(volume, from - volume.centre, direction, far, parts);
+      add(insideBox(byHalfAxes(volume, from), byHalfAxes(volume, direction)));
       break;
     case MediumShape::Ellipsoid:
-      crossEllipsoid(volume, from - volume.centre, direction, far, parts);
+      add(insideEllipsoid(byHalfAxes(volume, from), byHalfAxes(volume, direction)));
       break;
     case MediumShape::Surface:
-      this->findInSurface(volume, from, direction, far, parts);
+      this->findInSurface(volume, origin - seconds * volume.velocity, direction, far, parts);
       break;
   }
 }
@@ -281,7 +260,7 @@ bool mayMeet(const MediumVolume& volume, const BeamFrame& frame, double far, dou
     return true;
   }
   const double radius = volume.radius();
-  const Vec3 to = volume.centre + offsetOf(volume, seconds) - frame.origin;
+  const Vec3 to = volume.centreAt(seconds) - frame.origin;
   const double range = safeLength(to);
   if (range <= radius)
   {
@@ -320,9 +299,8 @@ bool mayMeetBorder(const MediumVolume& volume, const BeamFrame& frame, double fa
   const double climb = glm::dot(frame.axis, volume.up);
   const double low = height + far * std::min(0.0, climb - frame.sinHalf);
   const double high = height + far * std::max(0.0, climb + frame.sinHalf);
-  constexpr double nothingLeft = 60.0; // as an exponent
   const bool isInside = low > volume.bottom && high < volume.top;
-  const bool isOutside = high < volume.bottom || low > volume.top + nothingLeft * volume.softness;
+  const bool isOutside = high < volume.bottom || low > volume.top + NothingLeft * volume.softness;
   return !isInside && !isOutside;
 }
 }

@@ -19,7 +19,6 @@
 
 #include "BeamFrame.h"
 #include "CollisionTree.h"
-#include "Medium.h"
 
 #include <array>
 #include <limits>
@@ -52,15 +51,9 @@ struct MediumVolume
   Vec3 velocity{ 0.0 }; ///< m/s; the volume is here at the time 0
 
   bool isBounded() const { return this->shape >= MediumShape::Box; }
+  Vec3 centreAt(double seconds) const { return this->centre + seconds * this->velocity; }
   /// Radius of the ball about its centre that holds it, m.
   double radius() const;
-};
-
-/// A medium that does not fill the scene.
-struct PlacedMedium
-{
-  Medium medium;
-  MediumVolume volume;
 };
 
 /// Part of a ray in a medium, from one range to another, m.

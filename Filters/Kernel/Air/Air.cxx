@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Medium.h"
+#include "Air.h"
 
 #include "ValueError.h"
 #include "Vector.h"
@@ -7,10 +7,44 @@
 #include <boost/math/quadrature/gauss.hpp>
 #include <boost/math/special_functions/bessel.hpp>
 
+#include <algorithm>
 #include <cmath>
 
 namespace avianlidar
 {
+double attenuationOfVisibility(double visibility, double wavelength)
+{
+  const double km = 1e-3 * visibility;
+  const double exponent = km > 50.0 ? 1.6
+    : km > 6.0                      ? 1.3
+    : km > 1.0                      ? 0.16 * km + 0.34
+    : km > 0.5                      ? km - 0.5
+                                    : 0.0;
+  return 3.912 / visibility * std::pow(wavelength / 550e-9, -exponent);
+}
+
+double attenuationOf(double clear, const std::vector<PlacedMedium>& media)
+{
+  double sum = clear;
+  for (const PlacedMedium& one : media)
+  {
+    sum += one.fillsScene() ? one.medium.extinction : 0.0;
+  }
+  return sum;
+}
+
+bool haveVolumes(const std::vector<PlacedMedium>& media)
+{
+  return std::any_of(
+    media.begin(), media.end(), [](const PlacedMedium& one) { return !one.fillsScene(); });
+}
+
+LidarView viewOf(const Sensor& sensor)
+{
+  return { SpeedOfLight / sensor.frequency,
+    2.0 * std::asin(std::min(1.0, std::sqrt(sensor.solidAngle() / (4.0 * Pi)))) };
+}
+
 double keptInView(const LidarView& view, double slope)
 {
   using boost::math::cyl_bessel_j;

@@ -1,27 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "AirEcho.h"
+#include "Drops.h"
 
 #include "Noise.h"
 #include "Random.h"
-#include "RangeUnits.h"
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 
 namespace avianlidar
 {
-namespace
-{
-constexpr std::uint64_t DrawsOfUnit = 256;
-}
-
-LidarView viewOf(const Sensor& sensor)
-{
-  return { SpeedOfLight / sensor.frequency,
-    2.0 * std::asin(std::min(1.0, std::sqrt(sensor.solidAngle() / (4.0 * Pi)))) };
-}
-
 PulseShares::PulseShares(double width)
   : Width(width)
   , Reach(static_cast<std::int64_t>(std::ceil(0.5 * width)))
@@ -49,83 +36,12 @@ void PulseShares::add(double energy, double place, double* units) const
   }
 }
 
-SharedDrops::SharedDrops(const PulseShares& pulse)
-  : Reach(pulse.reach())
-{
-  const auto count = static_cast<std::size_t>(2 * this->Reach + 1);
-  this->Numbers.assign(count, -1);
-  this->Shares.assign(count * count, 0.0);
-}
-
-AirEcho::AirEcho(const Sensor& sensor, const std::vector<Medium>& media, double attenuation)
-  : SolidAngle(sensor.solidAngle())
-  , UnitLength(sensor.rangeUnitLength())
-  , Pulse(sensor.pulseWidth / sensor.samplingInterval)
-  , Nearest(sensor.minimumRange)
-{
-  double all = 0.0;
-  for (const Medium& medium : media)
-  {
-    all += medium.backscatter();
-    // Rain alone has drops that count.
-    this->OfDrops += medium.drops > 0.0 ? medium.backscatter() : 0.0;
-    this->Drops += medium.drops;
-  }
-  if (!(all > 0.0) || !(sensor.receiverAperture > 0.0))
-  {
-    return;
-  }
-  this->OfDrops /= all;
-  const auto light = [&](double r)
-  {
-    return sensor.nearRangeShare(r) * std::min(sensor.receiverAperture / (r * r), 2.0 * Pi) *
-      std::exp(-2.0 * attenuation * r);
-  };
-  const double count = std::min(
-    MostUnits, static_cast<double>(unitsInsideGate(sensor.samplingInterval, sensor.rangeGate)));
-  for (double unit = 0.0; unit < count; unit += 1.0)
-  {
-    const double from = std::max(unit * this->UnitLength, this->Nearest);
-    const double to = (unit + 1.0) * this->UnitLength;
-    const double energy =
-      sensor.pulseEnergy * all * airIntegral(sensor, from, to, 2.0 * attenuation, light);
-    if (!(energy > 0.0) && from < to)
-    {
-      break;
-    }
-    this->Means.push_back(energy);
-  }
-}
-
-/// Drops in a unit, on average.
-double AirEcho::dropsIn(std::int64_t unit) const
-{
-  const double begin = this->UnitLength * static_cast<double>(unit);
-  const double r = std::max(begin, this->Nearest);
-  const double length = this->UnitLength - (r - begin);
-  const double volume = this->SolidAngle * length * (r * r + r * length + length * length / 3.0);
-  return this->Drops * volume;
-}
-
-double AirEcho::variance(std::int64_t unit) const
-{
-  const double mean = this->OfDrops * this->mean(unit);
-  return mean > 0.0 ? mean * mean * SquareOfDrops / this->dropsIn(unit) : 0.0;
-}
-
-void AirEcho::addBeyondMean(std::int32_t seed, std::uint64_t beam, std::int64_t unit,
-  std::int32_t revolution, double open, double* units) const
-{
-  addDropsBeyondMean(seed, beam, static_cast<std::uint64_t>(unit), revolution,
-    open * this->OfDrops * this->mean(unit), open * this->dropsIn(unit), Medium{}, this->Pulse,
-    units);
-}
-
 namespace
 {
-/// A gamma variate of mean 1, less 1, and a uniform number that is independent of it: G. Marsaglia
-/// and W. W. Tsang, ACM Trans. Math. Softw. 26, 2000. @param shape 1 or more @param draw pairs of
-/// uniform numbers
+constexpr std::uint64_t DrawsOfUnit = 256;
+
+/// A gamma variate of mean 1, less 1, and a uniform number that is independent of it. @param shape
+/// 1 or more @param draw pairs of uniform numbers
 template <class F>
 std::array<double, 2> gammaBeyondMean(double shape, F draw)
 {
@@ -156,7 +72,7 @@ void addDrops(std::int32_t seed, std::uint64_t beam, std::uint64_t number, std::
   const auto draw = [&](std::uint64_t k)
   { return uniformPair(seed, beam, first + k, RandomPurpose::Drops, revolution); };
   const double place = pulse.placeOfMany();
-  if (drops > AirEcho::FewDrops)
+  if (drops > FewDrops)
   {
     const double shape = drops / square;
     const auto [beyond, where] = gammaBeyondMean(shape, draw);

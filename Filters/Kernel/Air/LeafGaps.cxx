@@ -24,8 +24,6 @@ void LeafGaps::begin(
 {
   this->clear();
   this->Along = &along;
-  this->Streams.clear();
-  along.findLeaves(this->Leaves);
   const auto [slopeX, slopeY] = along.halfWidths();
   // Leaves are drawn in a rectangle about all ways, as large as a square of this half side.
   const double growth = 0.5 * (slopeX + slopeY);
@@ -41,38 +39,15 @@ void LeafGaps::begin(
     of.range = (std::cbrt(side * side * side + 0.75 * growth * volume) - of.rim) / growth;
     of.range = of.range < of.leaves.end ? of.range : Never;
   };
-  for (const BeamAir::Leaves& leaves : this->Leaves)
-  {
-    const Medium& medium = along.mediumAt(leaves.medium);
-    const double seenArea = medium.extinction / medium.drops;
-    const double radius = std::sqrt(2.0 * seenArea / Pi);
-    const Stream one{ leaves, Always, medium.drops * (1.0 - medium.renewed), radius,
-      radius + along.apertureRadius(), std::uint64_t{ leaves.medium } << 24, leaves.begin };
-    const double across = 2.0 * halfSide(one);
-    const double section = solidAngle * leaves.begin * leaves.begin / seenArea; // leaves
-    if (section > (this->Streams.empty() ? MostLeaves : MostLeavesBehind) ||
-      (this->Streams.empty() && across * across > MostLeavesAcross * seenArea))
-    {
-      this->Streams.clear();
-      return;
-    }
-    Stream two = one;
-    two.scan = revolution;
-    two.perVolume = medium.drops * medium.renewed;
-    this->Streams.push_back(one);
-    this->Streams.push_back(two);
-  }
+  this->makeStreams(growth, solidAngle, revolution);
   if (this->Streams.empty())
   {
     return;
   }
   const auto [turn, shift] = uniformPair(seed, beam, 0, RandomPurpose::Leaves, revolution);
   this->makeRays(turn, shift);
-  for (Stream& stream : this->Streams)
-  {
-    advance(stream);
-  }
-  while (!this->Left.empty())
+  std::for_each(this->Streams.begin(), this->Streams.end(), advance);
+  while (!this->Going.empty())
   {
     Stream& next = *std::min_element(this->Streams.begin(), this->Streams.end(),
       [](const Stream& a, const Stream& b) { return a.range < b.range; });
@@ -93,8 +68,36 @@ void LeafGaps::begin(
   }
   for (std::size_t k = 0; k < this->Rays.size(); ++k)
   {
-    Ray& ray = this->Rays[k];
-    ray.isSeen = (this->shadedAt(ray.leaf.range) >> k & 1) == 0;
+    this->Rays[k].isSeen = (this->shadedAt(this->Rays[k].leaf.range) >> k & 1) == 0;
+  }
+}
+
+/// Two streams for each medium of leaves that the beam meets; none where it is too wide.
+void LeafGaps::makeStreams(double growth, double solidAngle, std::int32_t revolution)
+{
+  this->Streams.clear();
+  this->Along->findLeaves(this->Leaves);
+  for (const BeamAir::Leaves& leaves : this->Leaves)
+  {
+    const Medium& medium = this->Along->mediumAt(leaves.medium);
+    const double seenArea = medium.extinction / medium.drops;
+    const double radius = std::sqrt(2.0 * seenArea / Pi);
+    const double rim = radius + this->Along->apertureRadius();
+    const double across = 2.0 * (rim + growth * leaves.begin);
+    const double section = solidAngle * leaves.begin * leaves.begin / seenArea; // leaves
+    const bool isFirst = this->Streams.empty();
+    if (section > (isFirst ? MostLeaves : MostLeavesBehind) ||
+      (isFirst && across * across > MostLeavesAcross * seenArea))
+    {
+      this->Streams.clear();
+      return;
+    }
+    for (const auto& [scan, share] :
+      { std::pair(Always, 1.0 - medium.renewed), std::pair(revolution, medium.renewed) })
+    {
+      this->Streams.push_back({ leaves, scan, medium.drops * share, radius, rim,
+        std::uint64_t{ leaves.medium } << 24, leaves.begin });
+    }
   }
 }
 
@@ -103,7 +106,7 @@ void LeafGaps::begin(
 void LeafGaps::makeRays(double turn, double shift)
 {
   this->Shadows.clear();
-  this->Left.clear();
+  this->Going.clear();
   const auto [slopeX, slopeY] = this->Along->halfWidths();
   const double cosine = std::cos(2.0 * Pi * turn);
   const double sine = std::sin(2.0 * Pi * turn);
@@ -113,9 +116,10 @@ void LeafGaps::makeRays(double turn, double shift)
     const double away =
       this->Along->apertureRadius() * std::sqrt(nearer < 1.0 ? nearer : nearer - 1.0);
     const auto [x, y] = cell.towards;
-    this->Left.push_back({ this->Rays.size(), { slopeX * cell.x, slopeY * cell.y } });
-    this->Rays.push_back({ { away * (cosine * x - sine * y), away * (cosine * y + sine * x) },
-      cell.weight, this->Along->columnOf(cell), { 0, Never, 0.0 }, true });
+    this->Going.push_back(this->Rays.size());
+    this->Rays.push_back({ { slopeX * cell.x, slopeY * cell.y },
+      { away * (cosine * x - sine * y), away * (cosine * y + sine * x) }, cell.weight,
+      &this->Along->columnOf(cell), { 0, Never, 0.0 }, true });
   }
 }
 
@@ -133,10 +137,11 @@ void LeafGaps::place(const std::array<double, 2>& centre, const Stream& of, F dr
   const auto toLeaf = [&](double x, double y) -> std::array<double, 2> {
     return { x * along + y * beside, (y * along - x * beside) / cosine };
   };
-  for (std::size_t i = this->Left.size(); i-- > 0;)
+  for (std::size_t i = this->Going.size(); i-- > 0;)
   {
-    const double x = this->Left[i].slope[0] * of.range - centre[0];
-    const double y = this->Left[i].slope[1] * of.range - centre[1];
+    Ray& ray = this->Rays[this->Going[i]];
+    const double x = ray.slope[0] * of.range - centre[0];
+    const double y = ray.slope[1] * of.range - centre[1];
     if (x * x + y * y > of.rim * of.rim)
     {
       continue;
@@ -150,7 +155,6 @@ void LeafGaps::place(const std::array<double, 2>& centre, const Stream& of, F dr
       cosine = draw(2)[0];
       isDrawn = true;
     }
-    Ray& ray = this->Rays[this->Left[i].ray];
     // The way back from a range R passes p + s q, s = 1 - r/R: inside where a s^2 + 2 b s + c < 0.
     const auto p = toLeaf(x, y);
     const auto q = toLeaf(ray.aperture[0], ray.aperture[1]);
@@ -160,22 +164,22 @@ void LeafGaps::place(const std::array<double, 2>& centre, const Stream& of, F dr
     const double root = b * b - a * c;
     const bool isMet = c < 0.0;
     if ((!isMet && (b >= 0.0 || root <= 0.0)) ||
-      !(least < this->Along->densityAt(ray.column, of.leaves.medium, of.range)))
+      !(least < this->Along->densityAt(*ray.column, of.leaves.medium, of.range)))
     {
       continue;
     }
     if (isMet)
     {
       ray.leaf = { of.leaves.medium, of.range, cosine };
-      this->Left[i] = this->Left.back();
-      this->Left.pop_back();
+      this->Going[i] = this->Going.back();
+      this->Going.pop_back();
       continue;
     }
     const double enters = c / (std::sqrt(root) - b);
     const double ends = (std::sqrt(root) - b) / a;
     if (enters < 1.0)
     {
-      this->Shadows.push_back({ this->Left[i].ray, of.range / (1.0 - enters),
+      this->Shadows.push_back({ this->Going[i], of.range / (1.0 - enters),
         ends < 1.0 ? of.range / (1.0 - ends) : Never });
     }
   }
@@ -211,7 +215,7 @@ double LeafGaps::returnedBetween(double from, double to, std::uint32_t medium) c
   {
     const MetLeaf& leaf = ray.leaf;
     sum += ray.isSeen && leaf.medium == medium && leaf.range >= from && leaf.range < to
-      ? this->Along->returnedBy(leaf, ray.column, ray.share)
+      ? this->Along->returnedBy(leaf, *ray.column, ray.share)
       : 0.0;
   }
   return sum;

@@ -9,7 +9,7 @@
  * in its unit (BeamNoise::place()): a run of false alarms lies at the mean of these places,
  * weighted with the energies of the units.
  *
- * Where the air scatters (AirEcho.h), each unit of the beam receives of it. A threshold that
+ * Where the air scatters (BeamAir.h), each unit of the beam receives of it. A threshold that
  * follows the air takes off its mean, n_air, and lies as many deviations of the noise above it as
  * without: n_T (1 + F n_air/sigma0^2)^(1/2). So every unit has the same probability of a false
  * alarm, and what is left are echoes of surfaces and what drops return beyond their mean. A fixed
@@ -27,8 +27,9 @@
 #ifndef avianlidar_Receiver_h
 #define avianlidar_Receiver_h
 
-#include "AirEcho.h"
 #include "BeamAir.h"
+#include "Drops.h"
+#include "EchoSettings.h"
 #include "LeafGaps.h"
 #include "Noise.h"
 #include "PhotonReceiver.h"
@@ -43,16 +44,6 @@
 
 namespace avianlidar
 {
-/// Which returns of a beam become points.
-enum class ReturnMode
-{
-  All = 0,
-  Strongest = 1, ///< largest energy of the strongest unit; ties to the nearest
-  First = 2,
-  Last = 3,
-  RangeUnits = 4 ///< the paper's literal reading: one point per perceived range unit, at its centre
-};
-
 /// Dynamic range of the receiver (paper, Eq. 12): 0 for received <= lower, at most upper. lower ==
 /// upper is allowed.
 double perceivedEnergy(double received, double lower, double upper);
@@ -96,14 +87,13 @@ class BeamReceiver
 public:
   /// @param wanted called every 512 units for which noise is drawn, over all beams; if it returns
   /// false, WorkStopped is thrown
-  /// @param air what it sends back
+  /// @param air along each beam, which must outlive this; null: none
   BeamReceiver(const Sensor& sensor, const NoisePlan& noise, std::int32_t seed, ReturnMode mode,
-    std::int32_t revolution = 0, std::function<bool()> wanted = {}, AirEcho air = {});
+    std::int32_t revolution = 0, std::function<bool()> wanted = {}, BeamAir* air = nullptr);
 
   /// Receive a beam. @param units in which light arrives, ascending @param radiance that the beam
-  /// looks at, W/(m2 sr nm) @param along the air of that beam; null: nothing takes of the air
-  void receive(std::uint64_t beam, const std::vector<RangeUnit>& units, double radiance,
-    BeamAir* along = nullptr);
+  /// looks at, W/(m2 sr nm)
+  void receive(std::uint64_t beam, const std::vector<RangeUnit>& units, double radiance);
 
   /// The radiance that the last beam looked at, W/(m2 sr nm).
   double radiance() const { return this->Radiance; }
@@ -117,19 +107,7 @@ public:
   double measured(const Return& run, double range) const;
 
   /// True if units without paths may be perceived: then no beam can be left out.
-  bool mayAlarm() const { return this->Plan.active || this->Air.any(); }
-
-  /// What the air sends back.
-  const AirEcho& air() const { return this->Air; }
-
-  /// Units from the first on in which the air alone may be perceived.
-  std::int64_t airLooked() const { return this->AirLooked; }
-
-  /// The mean, J, of the air's light in a unit of a beam that a threshold may follow.
-  double followedIn(BeamAir& along, std::int64_t unit) const
-  {
-    return along.followed(this->Air, unit);
-  }
+  bool mayAlarm() const { return this->Plan.active || (this->Air && this->Air->fillsScene()); }
 
   /// Units with paths or false alarms, ascending, perceived or not; without those whose light is
   /// faint and whose noise is not rare.
@@ -145,11 +123,11 @@ private:
   void lookAt(double radiance);
   void planAir();
   double lowerIn(double air) const;
-  double followedNow(std::int64_t unit);
-  double fromDrops(std::int64_t unit);
+  bool isLocal() const { return this->Air && this->Air->isLocal(); }
   double varianceWith(const std::vector<BeamAir::Share>& shares) const;
-  void drawLocalDrops(std::int64_t unit, double* units);
-  void drawLocal(std::int64_t unit, double& beyond, ReceivedUnit& received);
+  std::uint64_t drawsOf(const BeamAir::Share& share, std::int64_t unit) const;
+  void drawDrops(std::int64_t unit, double* units);
+  double drawAir(std::int64_t unit, ReceivedUnit& received);
   void collectUnits(const std::vector<RangeUnit>& units);
   void addUnit(std::int64_t index, double light, std::uint32_t paths, bool alarm);
   double noiseOf(std::int64_t unit, double light);
@@ -166,14 +144,13 @@ private:
   double Lower;
   double Upper;
   NoisePlan Plan;
-  AirEcho Air;
+  BeamAir* Air;
   bool FollowsAir;
   PhotonReceiver Photons;
-  std::int64_t AirLooked = 0; ///< units in which the air alone may be perceived
   std::uint64_t Beam = 0;
-  BeamAir* Along = nullptr; ///< of that beam
-  LeafGaps Gaps;            ///< of it, if it is narrow
-  SharedDrops Drops;        ///< drops that share their pulses
+  LeafGaps Gaps; ///< of the beam, if it is narrow
+  PulseShares Pulse;
+  SharedDrops Drops; ///< drops that share their pulses
   std::int32_t Seed;
   std::int32_t Revolution;
   ReturnMode Mode;

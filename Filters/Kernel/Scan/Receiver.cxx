@@ -14,6 +14,12 @@ namespace
 {
 /// Of a unit's variance: from there on drops are drawn.
 constexpr double DropsCount = 0.01;
+
+/// Variance, J^2, of what a medium returns in a unit, by the number and size of its drops.
+double varianceOfDrops(const BeamAir::Share& share, const Medium& medium)
+{
+  return share.drops > 0.0 ? share.mean * share.mean * medium.squareOfDrops / share.drops : 0.0;
+}
 }
 
 double perceivedEnergy(double received, double lower, double upper)
@@ -22,7 +28,7 @@ double perceivedEnergy(double received, double lower, double upper)
 }
 
 BeamReceiver::BeamReceiver(const Sensor& sensor, const NoisePlan& noise, std::int32_t seed,
-  ReturnMode mode, std::int32_t revolution, std::function<bool()> wanted, AirEcho air)
+  ReturnMode mode, std::int32_t revolution, std::function<bool()> wanted, BeamAir* air)
   : Instrument(sensor)
   , Radiance(sensor.backgroundRadiance)
   , Errors(sensor, noise.ofRanges)
@@ -30,16 +36,17 @@ BeamReceiver::BeamReceiver(const Sensor& sensor, const NoisePlan& noise, std::in
   , Lower(sensor.lowerEnergyLimit)
   , Upper(sensor.upperEnergyLimit)
   , Plan(noise)
-  , Air(std::move(air))
+  , Air(air)
   , FollowsAir(sensor.followsAir())
   , Photons(sensor)
-  , Drops(this->Air.pulse())
+  , Pulse(sensor.pulseWidth / sensor.samplingInterval)
+  , Drops(this->Pulse)
   , Seed(seed)
   , Revolution(revolution)
   , Mode(mode)
   , Wanted(std::move(wanted))
 {
-  if (this->Air.any())
+  if (this->Air)
   {
     this->planAir();
   }
@@ -49,16 +56,24 @@ BeamReceiver::BeamReceiver(const Sensor& sensor, const NoisePlan& noise, std::in
 /// brighter background than the sensor's raises what is needed.
 void BeamReceiver::planAir()
 {
-  for (std::int64_t unit = 0; unit < this->Air.units(); ++unit)
+  std::int64_t looked = 0;
+  this->Air->beginOutside();
+  for (std::int64_t unit = 0; unit < this->Air->units(); ++unit)
   {
-    const double mean = this->Air.mean(unit);
-    const double variance = this->Plan.darkVariance + this->Plan.varianceOfEnergy * mean;
-    const bool hasDrops = this->Plan.active && this->Air.variance(unit) > DropsCount * variance;
-    if (hasDrops || (!this->FollowsAir && mean > 1e-6 * this->Lower))
+    const double variance = this->varianceWith(this->Air->sharesOf(unit));
+    double ofDrops = 0.0;
+    for (const BeamAir::Share& share : this->Air->sharesOf(unit))
     {
-      this->AirLooked = unit + 1;
+      ofDrops += varianceOfDrops(share, this->Air->mediumAt(share.medium));
+    }
+    const bool hasDrops = this->Plan.active && ofDrops > DropsCount * variance;
+    if (hasDrops || (!this->FollowsAir && this->Air->followed(unit) > 1e-6 * this->Lower))
+    {
+      looked = unit + 1;
     }
   }
+  this->Air->lookAt(looked);
+  this->Air->beginOutside();
 }
 
 /// The lower limit of a unit, J. @param air mean of what the air sends back, J
@@ -69,10 +84,8 @@ double BeamReceiver::lowerIn(double air) const
     : this->Lower;
 }
 
-void BeamReceiver::receive(
-  std::uint64_t beam, const std::vector<RangeUnit>& units, double radiance, BeamAir* along)
+void BeamReceiver::receive(std::uint64_t beam, const std::vector<RangeUnit>& units, double radiance)
 {
-  this->Along = along;
   if (radiance != this->Radiance)
   {
     this->lookAt(radiance);
@@ -81,9 +94,9 @@ void BeamReceiver::receive(
   this->Beam = beam;
   this->Gaps.clear();
   this->Drops.clear();
-  if (this->Plan.active && along && along->isLocal())
+  if (this->Plan.active && this->isLocal())
   {
-    this->Gaps.begin(*along, this->Instrument.solidAngle(), this->Seed, beam, this->Revolution);
+    this->Gaps.begin(*this->Air, this->Instrument.solidAngle(), this->Seed, beam, this->Revolution);
   }
   this->collectUnits(units);
   this->formReturns();
@@ -106,7 +119,7 @@ void BeamReceiver::lookAt(double radiance)
 void BeamReceiver::collectUnits(const std::vector<RangeUnit>& units)
 {
   this->Units.clear();
-  const bool isLocal = this->Along && this->Along->isLocal();
+  const bool isLocal = this->isLocal();
   if (!this->mayAlarm() && !isLocal)
   {
     this->Units.resize(units.size());
@@ -126,9 +139,8 @@ void BeamReceiver::collectUnits(const std::vector<RangeUnit>& units)
   auto alarm = alarms.begin();
   auto lit = units.begin();
   constexpr std::int64_t none = std::numeric_limits<std::int64_t>::max();
-  const auto lookedFrom = [&](std::int64_t unit) {
-    return isLocal ? this->Along->nextLooked(unit) : unit < this->AirLooked ? unit : none;
-  };
+  const auto lookedFrom = [&](std::int64_t unit)
+  { return this->Air ? this->Air->nextLooked(unit) : none; };
   std::int64_t next = lookedFrom(0); // of those in which the air alone may be perceived
   while (next < none || lit != units.end() || alarm != alarms.end())
   {
@@ -137,7 +149,8 @@ void BeamReceiver::collectUnits(const std::vector<RangeUnit>& units)
     const bool isAlarm = alarm != alarms.end() && *alarm == index;
     const bool isLit = lit != units.end() && lit->index == index;
     const double light = isLit ? lit->energy * this->openAt(index) : 0.0;
-    const bool hasAir = isLocal ? index == next || !this->FollowsAir : this->Air.mean(index) > 0.0;
+    const bool hasAir =
+      isLocal ? index == next || !this->FollowsAir : this->Air && index < this->Air->units();
     if (isAlarm || hasAir || !(light < this->Plan.faintLight) || this->Noise.isRare(index))
     {
       this->addUnit(index, light, isLit ? lit->paths : 0, isAlarm);
@@ -146,31 +159,6 @@ void BeamReceiver::collectUnits(const std::vector<RangeUnit>& units)
     lit += isLit ? 1 : 0;
     next = next == none ? none : lookedFrom(std::max(next, index + 1));
   }
-}
-
-/// The mean, J, of the air's light that a threshold may follow.
-double BeamReceiver::followedNow(std::int64_t unit)
-{
-  return this->Along ? this->followedIn(*this->Along, unit) : this->Air.mean(unit);
-}
-
-/// What drops return in a unit beyond their mean, J.
-double BeamReceiver::fromDrops(std::int64_t unit)
-{
-  const bool isLocal = this->Along && this->Along->isLocal();
-  return this->Drops.in(unit,
-    [&](std::int64_t of, double* units)
-    {
-      if (isLocal)
-      {
-        this->drawLocalDrops(of, units);
-      }
-      else if (of < this->AirLooked)
-      {
-        const double open = this->Along ? this->Along->open(of) : 1.0;
-        this->Air.addBeyondMean(this->Seed, this->Beam, of, this->Revolution, open, units);
-      }
-    });
 }
 
 /// Variance of the noise of a unit with what media return there, J^2.
@@ -184,84 +172,84 @@ double BeamReceiver::varianceWith(const std::vector<BeamAir::Share>& shares) con
   return this->Plan.darkVariance + this->Plan.varianceOfEnergy * all;
 }
 
-/// Add what drops of media that do not fill the scene, and of what is with them, return beyond
-/// their mean, to the units that they reach.
-void BeamReceiver::drawLocalDrops(std::int64_t unit, double* units)
+/// Number of the draws of a medium's drops in a unit.
+std::uint64_t BeamReceiver::drawsOf(const BeamAir::Share& share, std::int64_t unit) const
 {
-  const std::vector<BeamAir::Share>& shares = this->Along->sharesOf(unit);
+  const std::uint64_t stream = this->isLocal() ? share.medium : 0;
+  return static_cast<std::uint64_t>(unit) + static_cast<std::uint64_t>(BeamAir::MostUnits) * stream;
+}
+
+/// Add what drops of media that a threshold follows return beyond their mean, to the units that
+/// they reach.
+void BeamReceiver::drawDrops(std::int64_t unit, double* units)
+{
+  const std::vector<BeamAir::Share>& shares = this->Air->sharesOf(unit);
   const double variance = this->varianceWith(shares);
   for (const BeamAir::Share& share : shares)
   {
-    const Medium& medium = this->Along->mediumAt(share.medium);
-    const double ofDrops = share.mean * share.mean * medium.squareOfDrops;
-    if (medium.isFollowed && ofDrops > DropsCount * variance * share.drops)
+    const Medium& medium = this->Air->mediumAt(share.medium);
+    const bool isDrawn = this->isLocal() ? varianceOfDrops(share, medium) > DropsCount * variance
+                                         : unit < this->Air->looked();
+    if (medium.isFollowed && isDrawn)
     {
-      const auto number = static_cast<std::uint64_t>(unit) +
-        static_cast<std::uint64_t>(AirEcho::MostUnits) * share.medium;
-      addDropsBeyondMean(this->Seed, this->Beam, number, this->Revolution,
-        this->openAt(unit) * share.mean, share.drops, medium, this->Air.pulse(), units);
+      addDropsBeyondMean(this->Seed, this->Beam, this->drawsOf(share, unit), this->Revolution,
+        this->openAt(unit) * share.mean, share.drops, medium, this->Pulse, units);
     }
   }
 }
 
-/// What media that do not fill the scene, and what is with them, return in a unit. @param beyond
-/// the mean, J, of those that a threshold follows @param received gets the light of the others
-void BeamReceiver::drawLocal(std::int64_t unit, double& beyond, ReceivedUnit& received)
+/// Draw what media return in a unit. @param received gets the light of those that no threshold
+/// follows @return J, of the others beyond their mean
+double BeamReceiver::drawAir(std::int64_t unit, ReceivedUnit& received)
 {
-  const std::vector<BeamAir::Share>& shares = this->Along->sharesOf(unit);
+  const std::vector<BeamAir::Share>& shares = this->Air->sharesOf(unit);
   const double from = static_cast<double>(unit) * this->UnitLength;
   const double open = this->openAt(unit);
   const double variance = this->varianceWith(shares);
+  double beyond = 0.0;
   double most = 0.0;
   for (const BeamAir::Share& share : shares)
   {
-    const Medium& medium = this->Along->mediumAt(share.medium);
-    const double ofDrops =
-      share.drops > 0.0 ? share.mean * share.mean * medium.squareOfDrops / share.drops : 0.0;
-    const bool isLeaves = medium.sharesGaps && this->Gaps.any();
-    double energy = isLeaves
-      ? this->Gaps.returnedBetween(from, from + this->UnitLength, share.medium)
-      : open * share.mean;
-    if (!isLeaves && this->Plan.active && !medium.isFollowed && ofDrops > DropsCount * variance)
-    {
-      const auto number = static_cast<std::uint64_t>(unit) +
-        static_cast<std::uint64_t>(AirEcho::MostUnits) * share.medium;
-      double leaves = energy;
-      addDropsBeyondMean(this->Seed, this->Beam, number, this->Revolution, energy, share.drops,
-        medium, PulseShares(), &leaves);
-      energy = std::max(0.0, leaves);
-    }
+    const Medium& medium = this->Air->mediumAt(share.medium);
     if (medium.isFollowed)
     {
-      beyond += energy - share.mean;
+      beyond += open * share.mean - share.mean;
       continue;
     }
-    received.leaves += energy;
-    if (energy > most)
+    double energy = open * share.mean;
+    if (medium.sharesGaps && this->Gaps.any())
     {
-      most = energy;
-      received.medium = medium.objectId;
+      energy = this->Gaps.returnedBetween(from, from + this->UnitLength, share.medium);
     }
+    else if (this->Plan.active && varianceOfDrops(share, medium) > DropsCount * variance)
+    {
+      double drawn = energy;
+      addDropsBeyondMean(this->Seed, this->Beam, this->drawsOf(share, unit), this->Revolution,
+        energy, share.drops, medium, PulseShares(), &drawn);
+      energy = std::max(0.0, drawn);
+    }
+    received.leaves += energy;
+    received.medium = energy > most ? medium.objectId : received.medium;
+    most = std::max(most, energy);
   }
-  beyond += this->Plan.active ? this->fromDrops(unit) : 0.0;
+  if (this->Plan.active)
+  {
+    beyond +=
+      this->Drops.in(unit, [&](std::int64_t of, double* units) { this->drawDrops(of, units); });
+  }
+  return beyond;
 }
 
 /// Add a unit, unless noise and drops are too common for it to be perceived.
 void BeamReceiver::addUnit(std::int64_t index, double light, std::uint32_t paths, bool alarm)
 {
   const bool gaussian = this->Plan.gaussian;
-  const double mean = this->followedNow(index);
-  double beyond = 0.0;
   ReceivedUnit unit;
-  if (this->Along && this->Along->isLocal())
-  {
-    this->drawLocal(index, beyond, unit);
-    light += unit.leaves;
-  }
-  else if (this->Plan.active && index < this->AirLooked)
-  {
-    beyond = this->fromDrops(index);
-  }
+  const double mean = this->Air ? this->Air->followed(index) : 0.0;
+  const bool isDrawn =
+    this->isLocal() || (this->Air && this->Plan.active && index < this->Air->looked());
+  const double beyond = isDrawn ? this->drawAir(index, unit) : 0.0;
+  light += unit.leaves;
   const double all = light + std::max(0.0, mean + beyond);
   const double off = this->FollowsAir ? mean : 0.0;
   const double lower = this->lowerIn(mean);

@@ -9,7 +9,7 @@
  * another leaf stops it on its way back, which lies beside its way there. So a part of a beam may
  * meet a leaf while the rest passes it. A range unit receives the light of the rays that end in it.
  * What stands behind leaves is scaled by the share of rays that get there and back, over its mean.
- * Beams much wider than a leaf are not divided: the compound Poisson law of AirEcho.h stands for
+ * Beams much wider than a leaf are not divided: the compound Poisson law of Drops.h stands for
  * their leaves.
  *
  * Source: the Boolean model of leaves at random places (Nilson, Agricultural Meteorology 8, 1971).
@@ -59,17 +59,12 @@ public:
 private:
   struct Ray
   {
+    std::array<double, 2> slope;    ///< across the beam
     std::array<double, 2> aperture; ///< point to which its light returns, m
     double share;                   ///< share of the pulse
-    std::size_t column;
+    const BeamAir::Column* column;
     MetLeaf leaf; ///< at which it ends; at an infinite range: none
     bool isSeen;  ///< no leaf stops the light of that leaf on its way back
-  };
-  /// A ray that no leaf has stopped so far.
-  struct Going
-  {
-    std::size_t ray;
-    std::array<double, 2> slope; ///< across the beam
   };
   /// A leaf stops the light of a ray on its way back from these ranges, m.
   struct Shadow
@@ -88,13 +83,14 @@ private:
     std::uint64_t number; ///< number of draws
     double range;         ///< m, of the next leaf
   };
+  void makeStreams(double growth, double solidAngle, std::int32_t revolution);
   void makeRays(double turn, double shift);
   template <class F>
   void place(const std::array<double, 2>& centre, const Stream& of, F draw);
   std::uint64_t shadedAt(double range) const;
 
   std::vector<Ray> Rays;
-  std::vector<Going> Left;
+  std::vector<std::size_t> Going; ///< rays that no leaf has stopped so far
   std::vector<Shadow> Shadows;
   std::vector<BeamAir::Leaves> Leaves;
   std::vector<Stream> Streams;

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Air that sends light back: a table calculated by hand, closed forms, and scans of air against
-// counts by std::poisson_distribution.
-#include "AirEcho.h"
+// Air that weakens light (paper, Eq. 9) and sends it back: a table calculated by hand, closed
+// forms, and scans of air against counts by std::poisson_distribution.
+#include "BeamAir.h"
+#include "Drops.h"
 #include "PhotonReceiver.h"
 #include "Receiver.h"
 
@@ -9,6 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <random>
 #include <vector>
@@ -69,11 +71,44 @@ double tail(double z)
   return 0.5 * std::erfc(z / std::sqrt(2.0));
 }
 
+/// Air of one medium that fills the scene.
+BeamAir filledBy(const Sensor& sensor, const Medium& medium)
+{
+  return { sensor, { 0.0, { { medium, {} } } } };
+}
+
+/// Variance by the drops of a unit, J^2.
+double varianceOf(BeamAir& air, std::int64_t unit)
+{
+  double sum = 0.0;
+  for (const BeamAir::Share& share : air.sharesOf(unit))
+  {
+    sum += share.mean * share.mean * air.mediumAt(share.medium).squareOfDrops / share.drops;
+  }
+  return sum;
+}
+
+PulseShares pulseOf(const Sensor& sensor)
+{
+  return PulseShares(sensor.pulseWidth / sensor.samplingInterval);
+}
+
+/// Add what the drops of a unit return beyond their mean.
+void addBeyondMean(BeamAir& air, const PulseShares& pulse, std::int32_t seed, std::uint64_t beam,
+  std::int64_t unit, double* units)
+{
+  for (const BeamAir::Share& share : air.sharesOf(unit))
+  {
+    addDropsBeyondMean(seed, beam, static_cast<std::uint64_t>(unit), 0, share.mean, share.drops,
+      air.mediumAt(share.medium), pulse, units);
+  }
+}
+
 /// Points of so many beams through nothing but air, by unit.
 std::vector<double> pointsOf(
-  const Sensor& sensor, const AirEcho& air, int beams, std::vector<double>* runs = nullptr)
+  const Sensor& sensor, BeamAir air, int beams, std::vector<double>* runs = nullptr)
 {
-  BeamReceiver receiver(sensor, planNoise(sensor, true), 7, ReturnMode::RangeUnits, 0, {}, air);
+  BeamReceiver receiver(sensor, planNoise(sensor, true), 7, ReturnMode::RangeUnits, 0, {}, &air);
   std::vector<double> counts;
   for (int beam = 0; beam < beams; ++beam)
   {
@@ -90,14 +125,6 @@ std::vector<double> pointsOf(
     }
   }
   return counts;
-}
-
-/// What the drops of a unit return beyond their mean, wherever it arrives.
-double whole(const AirEcho& echo, std::int32_t seed, std::uint64_t beam, std::int64_t unit)
-{
-  std::vector<double> units(static_cast<std::size_t>(2 * echo.pulse().reach() + 1), 0.0);
-  echo.addBeyondMean(seed, beam, unit, 0, 1.0, units.data());
-  return std::accumulate(units.begin(), units.end(), 0.0);
 }
 
 double sum(const std::vector<double>& values)
@@ -197,7 +224,40 @@ TEST(Medium, BadOnesAreNamed)
   EXPECT_EQ(checkMedium({ 1.0, 0.0, 0.0 }), "backscatter_ratio is 0, expected 1e-3 to 1e9 sr");
 }
 
-TEST(AirEcho, TheTableHolds)
+TEST(Attenuation, WallAtFiveHundredMetres)
+{
+  EXPECT_NEAR(transmission(3.5e-5, 1000.0), 0.9656054163, 1e-10);
+}
+
+TEST(Attenuation, LegsMultiply)
+{
+  EXPECT_NEAR(
+    transmission(8.8e-5, 120.0) * transmission(8.8e-5, 340.0), transmission(8.8e-5, 460.0), 1e-15);
+}
+
+TEST(Attenuation, EndsOfTheRange)
+{
+  EXPECT_EQ(transmission(0.0, 1e9), 1.0);
+  EXPECT_EQ(transmission(0.0, std::numeric_limits<double>::infinity()), 1.0);
+  EXPECT_EQ(transmission(1.0, 0.0), 1.0);
+  EXPECT_EQ(transmission(1.0, 1e9), 0.0);
+}
+
+TEST(Attenuation, OfHaze)
+{
+  EXPECT_NEAR(attenuationOfVisibility(23e3, 905e-9), 8.9e-5, 0.02e-5);
+  EXPECT_NEAR(attenuationOfVisibility(23e3, 550e-9), 3.912 / 23e3, 1e-12);
+  EXPECT_NEAR(attenuationOfVisibility(200.0, 1550e-9), 3.912 / 200.0, 1e-12); // fog: all colours
+  double before = 1.0;
+  for (double visibility = 100.0; visibility < 1e5; visibility *= 1.01)
+  {
+    const double now = attenuationOfVisibility(visibility, 1550e-9);
+    EXPECT_LT(now, before) << visibility;
+    before = now;
+  }
+}
+
+TEST(Air, TheTableHolds)
 {
   struct Row
   {
@@ -218,7 +278,7 @@ TEST(AirEcho, TheTableHolds)
     const Sensor sensor = sensorOf(row.of);
     const PhotonReceiver receiver(sensor);
     const Medium air = airOf(row.visibility, row.ratio);
-    const AirEcho echo(sensor, { air }, air.extinction);
+    BeamAir echo = filledBy(sensor, air);
     const double length = sensor.rangeUnitLength();
     for (int k = 0; k < 4; ++k)
     {
@@ -233,7 +293,7 @@ TEST(AirEcho, TheTableHolds)
     for (std::int64_t unit = 0; unit < unitsInsideGate(5e-9, sensor.rangeGate); ++unit)
     {
       const double middle = length * (static_cast<double>(unit) + 0.5);
-      const double n = receiver.electronsPerJoule * echo.mean(unit);
+      const double n = receiver.electronsPerJoule * echo.followed(unit);
       airTo = n > threshold ? middle : airTo;
       const double gull =
         receiver.electronsPerJoule * energyFromTarget(sensor, middle, 0.03, 0.3, air.extinction);
@@ -244,7 +304,7 @@ TEST(AirEcho, TheTableHolds)
   }
 }
 
-TEST(AirEcho, UnitsAreIntegralsOfTheLaw)
+TEST(Air, UnitsAreIntegralsOfTheLaw)
 {
   Sensor sensor = sensorOf(Search905);
   for (const double overlap : { 0.0, 6.0 })
@@ -253,37 +313,38 @@ TEST(AirEcho, UnitsAreIntegralsOfTheLaw)
     for (const double extinction : { 1e-5, 4e-3, 0.3, 20.0 })
     {
       const Medium air{ extinction, 30.0, 0.0 };
-      const AirEcho echo(sensor, { air }, extinction);
+      BeamAir echo = filledBy(sensor, air);
       for (const std::int64_t unit : { 1, 2, 10, 300 })
       {
         const double from = sensor.rangeUnitLength() * static_cast<double>(unit);
         const double truth = byMidpoints(sensor, air, from, from + sensor.rangeUnitLength());
-        EXPECT_NEAR(echo.mean(unit), truth, 2e-6 * truth + 1e-300) << unit << " " << extinction;
+        EXPECT_NEAR(echo.followed(unit), truth, 2e-6 * truth + 1e-300) << unit << " " << extinction;
       }
       // Nearest, an aperture gathers no more than half of all.
       const double first = byMidpoints(sensor, air, 0.0, sensor.rangeUnitLength());
-      EXPECT_NEAR(echo.mean(0), first, 1e-4 * first);
-      EXPECT_LT(echo.mean(0), sensor.pulseEnergy * 2.0 * Pi / 30.0);
+      EXPECT_NEAR(echo.followed(0), first, 1e-4 * first);
+      EXPECT_LT(echo.followed(0), sensor.pulseEnergy * 2.0 * Pi / 30.0);
     }
   }
   // Nothing arrives before the gate; the unit in which it begins is recorded in part.
   sensor.minimumRange = 1.7;
   const Medium air{ 1e-4, 30.0, 2.0 };
-  const AirEcho gated(sensor, { air }, 1e-4);
+  BeamAir gated = filledBy(sensor, air);
   const double length = sensor.rangeUnitLength();
-  EXPECT_EQ(gated.mean(0), 0.0);
-  EXPECT_EQ(gated.mean(1), 0.0);
+  EXPECT_EQ(gated.followed(0), 0.0);
+  EXPECT_EQ(gated.followed(1), 0.0);
   const double part = byMidpoints(sensor, air, 1.7, 3.0 * length);
-  EXPECT_NEAR(gated.mean(2), part, 2e-6 * part);
+  EXPECT_NEAR(gated.followed(2), part, 2e-6 * part);
   const double drops =
     2.0 * sensor.solidAngle() * (std::pow(3.0 * length, 3) - std::pow(1.7, 3)) / 3.0;
-  EXPECT_NEAR(gated.variance(2), SquareOfDrops * part * part / drops, 1e-5 * gated.variance(2));
-  EXPECT_FALSE(AirEcho(sensor, {}, 0.1).any());
+  EXPECT_NEAR(
+    varianceOf(gated, 2), SquareOfDrops * part * part / drops, 1e-5 * varianceOf(gated, 2));
+  EXPECT_FALSE(BeamAir(sensor, { 0.1, {} }).fillsScene());
   sensor.receiverAperture = 0.0;
-  EXPECT_FALSE(AirEcho(sensor, { { 0.1, 20.0, 0.0 } }, 0.1).any());
+  EXPECT_FALSE(filledBy(sensor, { 0.1, 20.0, 0.0 }).fillsScene());
 }
 
-TEST(AirEcho, AFogThatExtinguishesTheBeamCalibratesACeilometer)
+TEST(Air, AFogThatExtinguishesTheBeamCalibratesACeilometer)
 {
   // Integrated backscatter over r^2: exp(-2 mu R0)/(2 S).
   Sensor sensor = sensorOf(Search905);
@@ -292,27 +353,28 @@ TEST(AirEcho, AFogThatExtinguishesTheBeamCalibratesACeilometer)
   sensor.rangeGate = 400.0;
   for (const double extinction : { 0.05, 0.2 })
   {
-    const AirEcho echo(sensor, { { extinction, 18.8, 0.0 } }, extinction);
+    BeamAir echo = filledBy(sensor, { extinction, 18.8, 0.0 });
     const double length = sensor.rangeUnitLength();
     double all = 0.0;
     const auto first = static_cast<std::int64_t>(std::ceil(1.0 / length));
     for (std::int64_t unit = first; unit < echo.units(); ++unit)
     {
       const double r = length * static_cast<double>(unit);
-      all += echo.mean(unit) * r * (r + length) / (sensor.pulseEnergy * sensor.receiverAperture);
+      all +=
+        echo.followed(unit) * r * (r + length) / (sensor.pulseEnergy * sensor.receiverAperture);
     }
     const double from = length * static_cast<double>(first);
     EXPECT_NEAR(all / (std::exp(-2.0 * extinction * from) / (2.0 * 18.8)), 1.0, 1e-3);
   }
 }
 
-TEST(AirEcho, FalseAlarmsInFogAreThoseOfItsNoise)
+TEST(Air, FalseAlarmsInFogAreThoseOfItsNoise)
 {
   Sensor sensor = sensorOf(Search905);
   EXPECT_EQ(setPhotonLimits(sensor, 3000.0, 40.0, 15360.0), "");
   const PhotonReceiver receiver(sensor);
   const Medium air = airOf(1000.0, 18.8);
-  const AirEcho echo(sensor, { air }, air.extinction);
+  BeamAir echo = filledBy(sensor, air);
   const double k = sensor.lowerEnergyLimit * receiver.electronsPerJoule / receiver.deviation(0.0);
   constexpr int beams = 3000;
   const auto units = static_cast<double>(unitsInsideGate(5e-9, sensor.rangeGate));
@@ -328,7 +390,7 @@ TEST(AirEcho, FalseAlarmsInFogAreThoseOfItsNoise)
   std::size_t last = 0; // where the air is as likely perceived as not
   for (std::int64_t unit = 0; unit < static_cast<std::int64_t>(units); ++unit)
   {
-    const double n = receiver.electronsPerJoule * echo.mean(unit);
+    const double n = receiver.electronsPerJoule * echo.followed(unit);
     const double p =
       tail((receiver.electronsPerJoule * sensor.lowerEnergyLimit - n) / receiver.deviation(n));
     truth += beams * p;
@@ -341,12 +403,12 @@ TEST(AirEcho, FalseAlarmsInFogAreThoseOfItsNoise)
     0.95 * static_cast<double>(ofAir.size()));
 }
 
-TEST(AirEcho, DropsAreACompoundPoissonLaw)
+TEST(Air, DropsAreACompoundPoissonLaw)
 {
   Sensor sensor = sensorOf(Search905);
   sensor.pulseWidth = 0.0;
   const Medium rain = rainOf(10.0, 20.0, {});
-  const AirEcho echo(sensor, { rain }, rain.extinction);
+  BeamAir echo = filledBy(sensor, rain);
   std::mt19937_64 random(3);
   for (const std::int64_t unit : { 2, 8, 14, 40, 200 })
   {
@@ -357,13 +419,15 @@ TEST(AirEcho, DropsAreACompoundPoissonLaw)
       rain.drops * sensor.solidAngle() * (far * far * far - near * near * near) / 3.0;
     constexpr int draws = 20000;
     double mean = 0.0, square = 0.0, high = 0.0, theirs = 0.0;
-    const double mean0 = echo.mean(unit);
+    const double mean0 = echo.followed(unit);
     const double limit = 1.5 * std::sqrt(SquareOfDrops / number); // over the mean, relative
     std::poisson_distribution<int> poisson(number);
     std::exponential_distribution<double> diameter(1.0);
     for (int beam = 0; beam < draws; ++beam)
     {
-      const double beyond = whole(echo, 1, static_cast<std::uint64_t>(beam), unit) / mean0;
+      double whole = 0.0;
+      addBeyondMean(echo, PulseShares(), 1, static_cast<std::uint64_t>(beam), unit, &whole);
+      const double beyond = whole / mean0;
       mean += beyond / draws;
       square += beyond * beyond / draws;
       high += beyond > limit ? 1.0 / draws : 0.0;
@@ -378,24 +442,25 @@ TEST(AirEcho, DropsAreACompoundPoissonLaw)
     const double variance = SquareOfDrops / number;
     EXPECT_NEAR(mean, 0.0, 4.0 * std::sqrt(variance / draws)) << unit;
     EXPECT_NEAR(square / variance, 1.0, 0.15) << unit;
-    EXPECT_NEAR(echo.variance(unit) / (variance * mean0 * mean0), 1.0, 1e-9);
+    EXPECT_NEAR(varianceOf(echo, unit) / (variance * mean0 * mean0), 1.0, 1e-9);
     EXPECT_NEAR(high, theirs, 0.01) << unit; // of a gamma distribution, in part
   }
 }
 
-TEST(AirEcho, RainMakesPointsByItsLaw)
+TEST(Air, RainMakesPointsByItsLaw)
 {
   const Sensor sensor = sensorOf(Search905);
   const PhotonReceiver receiver(sensor);
   const Medium rain = rainOf(10.0, 20.0, {});
-  const AirEcho echo(sensor, { rain }, rain.extinction);
+  BeamAir echo = filledBy(sensor, rain);
   constexpr int beams = 400;
   std::vector<double> ofAir;
   const std::vector<double> points = pointsOf(sensor, echo, beams, &ofAir);
   // Every unit, by the numbers of the beams.
   const NoisePlan plan = planNoise(sensor, true);
   std::vector<double> all(points.size(), 0.0);
-  SharedDrops drops(echo.pulse());
+  const PulseShares pulse = pulseOf(sensor);
+  SharedDrops drops(pulse);
   for (int beam = 0; beam < beams; ++beam)
   {
     BeamNoise noise;
@@ -406,12 +471,12 @@ TEST(AirEcho, RainMakesPointsByItsLaw)
       const auto u = static_cast<std::int64_t>(unit);
       const double beyond = drops.in(u,
         [&](std::int64_t of, double* units)
-        { echo.addBeyondMean(7, static_cast<std::uint64_t>(beam), of, 0, 1.0, units); });
-      const double drawn = std::max(0.0, echo.mean(u) + beyond);
-      const double energy = drawn - echo.mean(u) + noise.energy(u, drawn);
-      const double lower =
-        sensor.lowerEnergyLimit * receiver.growthInAir(receiver.electronsPerJoule * echo.mean(u));
-      const bool isBlind = sensor.upperEnergyLimit - echo.mean(u) < lower;
+        { addBeyondMean(echo, pulse, 7, static_cast<std::uint64_t>(beam), of, units); });
+      const double drawn = std::max(0.0, echo.followed(u) + beyond);
+      const double energy = drawn - echo.followed(u) + noise.energy(u, drawn);
+      const double lower = sensor.lowerEnergyLimit *
+        receiver.growthInAir(receiver.electronsPerJoule * echo.followed(u));
+      const bool isBlind = sensor.upperEnergyLimit - echo.followed(u) < lower;
       all[std::min(unit, all.size() - 1)] += energy > lower && !isBlind ? 1.0 : 0.0;
     }
   }
@@ -419,9 +484,9 @@ TEST(AirEcho, RainMakesPointsByItsLaw)
   for (std::size_t unit = 0; unit < points.size(); ++unit)
   {
     const auto u = static_cast<std::int64_t>(unit);
-    const double n = receiver.electronsPerJoule * echo.mean(u);
+    const double n = receiver.electronsPerJoule * echo.followed(u);
     const double noise = receiver.deviation(n) / receiver.electronsPerJoule;
-    if (echo.variance(u) > 0.0101 * noise * noise)
+    if (varianceOf(echo, u) > 0.0101 * noise * noise)
     {
       EXPECT_EQ(points[unit], all[unit]) << unit;
       looked = unit;
@@ -432,7 +497,7 @@ TEST(AirEcho, RainMakesPointsByItsLaw)
   EXPECT_LT(sum({ points.begin() + static_cast<std::ptrdiff_t>(looked), points.end() }), 10.0);
 }
 
-TEST(AirEcho, DropsShareTheirPulsesBetweenUnits)
+TEST(Air, DropsShareTheirPulsesBetweenUnits)
 {
   // Drops anywhere: a unit has 1 - w/3 of the variance that it has of short pulses, w/6 in common
   // with the next, and third moments fall to 1 - w/2.
@@ -460,8 +525,7 @@ TEST(AirEcho, DropsShareTheirPulsesBetweenUnits)
       }
       const double variance = SquareOfDrops / number;
       // Of many drops the third moment is that of the gamma distribution; E[D^6]/E[D^2]^3 = 90.
-      const double third =
-        number > AirEcho::FewDrops ? 2.0 * variance * variance : 90.0 / (number * number);
+      const double third = number > FewDrops ? 2.0 * variance * variance : 90.0 / (number * number);
       const bool narrow = width <= 1.0;
       EXPECT_NEAR(mean, 0.0, 0.005);
       EXPECT_NEAR(square / variance,
@@ -472,12 +536,12 @@ TEST(AirEcho, DropsShareTheirPulsesBetweenUnits)
   }
 }
 
-TEST(AirEcho, PointsOfRainAreThoseOfDropsOneByOne)
+TEST(Air, PointsOfRainAreThoseOfDropsOneByOne)
 {
   const Sensor sensor = sensorOf(Search905);
   const PhotonReceiver receiver(sensor);
   const Medium rain = rainOf(10.0, 20.0, viewOf(sensor));
-  const AirEcho echo(sensor, { rain }, rain.extinction);
+  BeamAir echo = filledBy(sensor, rain);
   const double length = sensor.rangeUnitLength();
   const double far = 160.0; // m
   const auto units = static_cast<std::size_t>(far / length) - 2;
@@ -510,7 +574,7 @@ TEST(AirEcho, PointsOfRainAreThoseOfDropsOneByOne)
     }
     for (std::size_t unit = 0; unit < units; ++unit)
     {
-      const double mean = echo.mean(static_cast<std::int64_t>(unit));
+      const double mean = echo.followed(static_cast<std::int64_t>(unit));
       const double noise = normal(random) *
         receiver.deviation(receiver.electronsPerJoule * light[unit]) / receiver.electronsPerJoule;
       const double lower =
@@ -532,7 +596,7 @@ TEST(AirEcho, PointsOfRainAreThoseOfDropsOneByOne)
   std::vector<double> points = pointsOf(sensor, echo, ours);
   Sensor brief = sensor;
   brief.pulseWidth = 0.0;
-  const AirEcho unshared(brief, { rain }, rain.extinction);
+  const BeamAir unshared = filledBy(brief, rain);
   std::vector<double> apart = pointsOf(brief, unshared, ours);
   for (const auto& [from, to] :
     { std::pair(8.0, 50.0), std::pair(50.0, 100.0), std::pair(100.0, 150.0) })
@@ -544,15 +608,15 @@ TEST(AirEcho, PointsOfRainAreThoseOfDropsOneByOne)
   }
 }
 
-TEST(AirEcho, NearAirBlinds)
+TEST(Air, NearAirBlinds)
 {
   // Where the air alone is above the upper limit nothing is perceived.
   Sensor sensor = sensorOf(Search905);
   const Medium air = airOf(200.0, 18.8);
-  const AirEcho echo(sensor, { air }, air.extinction);
-  BeamReceiver receiver(sensor, planNoise(sensor, false), 7, ReturnMode::All, 0, {}, echo);
+  BeamAir echo = filledBy(sensor, air);
+  BeamReceiver receiver(sensor, planNoise(sensor, false), 7, ReturnMode::All, 0, {}, &echo);
   std::int64_t blind = 0;
-  while (echo.mean(blind) > sensor.upperEnergyLimit)
+  while (echo.followed(blind) > sensor.upperEnergyLimit)
   {
     ++blind;
   }
@@ -563,5 +627,5 @@ TEST(AirEcho, NearAirBlinds)
   receiver.receive(1, { { blind + 20, wall, 1 } }, sensor.backgroundRadiance);
   ASSERT_EQ(receiver.returns().size(), 1u);
   EXPECT_NEAR(receiver.returns()[0].energyReceived, wall, 1e-12 * wall);
-  EXPECT_LE(receiver.returns()[0].energy, sensor.upperEnergyLimit - echo.mean(blind + 20));
+  EXPECT_LE(receiver.returns()[0].energy, sensor.upperEnergyLimit - echo.followed(blind + 20));
 }
