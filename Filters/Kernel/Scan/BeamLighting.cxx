@@ -51,7 +51,12 @@ bool BeamLighting::light(std::size_t beam, BeamTrace& trace)
   const double most =
     this->Setup.sensor.pulseEnergy * mostAir(this->Lit->nearest, this->Setup.attenuation());
   const bool again = this->Setup.settings.numberOfReflections > 1 && (this->Starts || this->Facing);
-  const double ofPaths = again ? most * this->Secondary.bound(*this->Lit, this->OfLit) : 0.0;
+  const PolygonQuadrature::Extent& extent = this->Quadrature.extent();
+  const bool mayBeSilent = most * this->OfLit.directSum < this->Setup.sensor.lowerEnergyLimit;
+  const double ofPaths = !again ? 0.0
+                                : most *
+      (this->Facing ? this->Secondary.bound(extent.mostAlbedo, extent.nearest)
+                    : this->Secondary.bound(*this->Lit, this->OfLit, mayBeSilent));
   if (!this->mayBePerceived(most, ofPaths))
   {
     return false;

@@ -100,7 +100,7 @@ std::vector<CoincidentPair> findCoincidentObjects(
       if (isOnPlane(next) && differ(seen.triangle, next.triangle))
       {
         const auto objects =
-          std::minmax(setup.objectId(seen.triangle), setup.objectId(next.triangle));
+          std::minmax({ setup.objectId(seen.triangle), setup.objectId(next.triangle) });
         found.emplace(objects, CoincidentPair{ seen.triangle, next.triangle });
       }
     }

@@ -49,7 +49,7 @@ void PolygonQuadrature::begin(const BeamFrame& frame, const VisiblePolygons& see
   this->Frame = frame;
   this->Seen = &seen;
   this->Polygons.clear();
-  this->Whole = { std::numeric_limits<double>::infinity(), 0.0, 0.0, 0.0 };
+  this->Whole = { std::numeric_limits<double>::infinity(), 0.0, 0.0, 0.0, 0.0 };
   double largest = 0.0;
   seen.forEach(
     [&](const PlaneSurface& surface, const PlaneRing& ring)
@@ -62,6 +62,11 @@ void PolygonQuadrature::begin(const BeamFrame& frame, const VisiblePolygons& see
       this->Whole.mostReturned += bounds.returned * bounds.share;
       this->Whole.mostInUnit += bounds.inUnit;
       largest = std::max(largest, bounds.returned);
+      for (const std::uint32_t triangle : { surface.triangle, surface.other })
+      {
+        this->Whole.mostAlbedo = std::max(this->Whole.mostAlbedo,
+          triangle == NoTriangle ? 0.0 : this->Setup.material(triangle).albedo());
+      }
     });
   // The cap of throughAperture() must be out of reach.
   this->Gathers = this->Setup.sensor.receiverAperture > 0.0 && largest >= 1.0 - 1e-9;

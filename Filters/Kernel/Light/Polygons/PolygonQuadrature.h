@@ -62,6 +62,7 @@ public:
     double farthest;     ///< m
     double mostReturned; ///< J, upper bound of the energy that comes back
     double mostInUnit;   ///< the same of what comes back in one range unit
+    double mostAlbedo;   ///< of what it sees
   };
   const Extent& extent() const { return this->Whole; }
 

@@ -57,7 +57,8 @@ void SecondaryReflection::prepare(const Beam& beam, bool byRegions)
 
 //--- what it is worth -----------------------------------------------------------------------------
 
-double SecondaryReflection::bound(const BeamSamples& samples, const Throughput& direct) const
+double SecondaryReflection::bound(
+  const BeamSamples& samples, const Throughput& direct, bool tight) const
 {
   const bool gathers = this->Setup.sensor.receiverAperture > 0.0;
   const double returned = mostReturned(this->Setup, samples.nearest);
@@ -72,6 +73,9 @@ double SecondaryReflection::bound(const BeamSamples& samples, const Throughput& 
       for (std::uint32_t i = begin; i < end; ++i)
       {
         budget += samples.weight[i] * std::max(0.0, albedo - direct.reflected[i]);
+      }
+      for (std::uint32_t i = begin; tight && i < end; ++i)
+      {
         const Reflectance passed =
           reflectanceBound(this->Setup.settings.reflectanceModel, material, samples.cosine[i]);
         // Through an aperture by connections and by short paths, whatever the incidence.
@@ -81,7 +85,15 @@ double SecondaryReflection::bound(const BeamSamples& samples, const Throughput& 
         most += samples.weight[i] * (matt * returned + passed.specular * overMirror);
       }
     });
-  return std::min(budget, most * SurelyAbove);
+  return tight ? std::min(budget, most * SurelyAbove) : budget;
+}
+
+double SecondaryReflection::bound(double albedo, double nearest) const
+{
+  const double ways = this->Setup.sensor.receiverAperture > 0.0 ? 2.0 : 1.0;
+  const double returned = std::max(
+    ways * mostReturned(this->Setup, nearest), mostOverMirror(this->Setup, this->Shape, nearest));
+  return albedo * std::min(1.0, returned * SurelyAbove);
 }
 
 SecondaryReflection::BothWays SecondaryReflection::mirrorThroughput(

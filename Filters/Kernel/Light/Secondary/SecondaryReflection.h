@@ -83,8 +83,13 @@ public:
   SecondaryReflection(const ScanSetup& setup, const SceneTriangles& scene);
 
   /// Bound of the sum of the throughputs of all paths of a beam. @param samples of its direct echo,
-  /// rays or not. Paths that start from rays may bring somewhat more by chance.
-  double bound(const BeamSamples& samples, const Throughput& direct) const;
+  /// rays or not. Paths that start from rays may bring somewhat more by chance. @param tight false:
+  /// what the direct echoes leave of the albedo suffices
+  double bound(const BeamSamples& samples, const Throughput& direct, bool tight) const;
+
+  /// The same of an integrated beam, which has no samples where nothing comes straight back.
+  /// @param albedo the largest of what it sees @param nearest m: no surface of it is nearer
+  double bound(double albedo, double nearest) const;
 
   /// Set the paths of the beam: mirror paths in the order of the samples, then connections.
   /// @param lost sum of the bounds of dropped paths, J; those dropped here are added
