@@ -106,7 +106,7 @@ set(private_sources
 
 vtk_module_add_module(AvianLidar::AvianLidar
   CLASSES ${classes}
-  NOWRAP_HEADERS Filters/vtkAvianLidarDeprecatedSettings.h Filters/vtkAvianLidarErrorsAsData.h
+  NOWRAP_HEADERS Filters/vtkAvianLidarErrorsAsData.h
     Filters/vtkAvianLidarSensorPresets.h
     Filters/vtkAvianLidarFilePath.h
   SOURCES ${private_sources})

@@ -47,7 +47,6 @@
 #ifndef vtkAvianLidarCollisionTree_h
 #define vtkAvianLidarCollisionTree_h
 
-#include "vtkAvianLidarDeprecatedSettings.h"
 #include "vtkAvianLidarErrorsAsData.h"
 #include "vtkAvianLidarModule.h" // For export macro
 #include "vtkPolyDataAlgorithm.h"
@@ -129,8 +128,6 @@ public:
   vtkSetMacro(DisplayLevel, int);
   vtkGetMacro(DisplayLevel, int);
   ///@}
-
-  vtkAvianLidarDeprecatedEmbedTreeMacro();
 
   /**
    * Nodes, leaves and depth of the tree of the last execution; 0 before, and for an empty scene.

@@ -12,7 +12,6 @@
 #ifndef vtkAvianLidarScanFilter_h
 #define vtkAvianLidarScanFilter_h
 
-#include "vtkAvianLidarDeprecatedSettings.h"
 #include "vtkAvianLidarErrorsAsData.h"
 #include "vtkAvianLidarModule.h" // For export macro
 #include "vtkPolyDataAlgorithm.h"
@@ -123,8 +122,6 @@ public:
   void SetBeamSamplesToCells() { this->SetBeamSamples(BEAM_SAMPLES_CELLS); }
   void SetBeamSamplesToRays() { this->SetBeamSamples(BEAM_SAMPLES_RAYS); }
   ///@}
-
-  vtkAvianLidarDeprecatedSettingsMacro();
 
   ///@{
   /**

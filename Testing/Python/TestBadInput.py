@@ -11,7 +11,7 @@ from vtk.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray, vtk_to
 from avianlidar import _properties, vtkAvianLidar as al
 from avianlidar._scene import COEFFICIENTS
 from cloudtools import add_array, cloud, echoes
-from echotools import CELLS, RAYS, InFolder, Messages, assert_same_bits, box, scan, sensor, town
+from echotools import InFolder, Messages, assert_same_bits, box, scan, sensor, town
 from faulttools import INF, NAN, PLACE_OF_VALUE, algorithms, beams, copy, make, spoil, surfaces
 
 NOTHING = (0, 0)
@@ -208,22 +208,6 @@ class Properties(Faults):
         echo = make("EchoFilter", RaysPerBeam=100000)
         self.fails(echo, [units.GetOutput(), surfaces()], "pulse_width", "RaysPerBeam", "range units")
         self.assertEqual(echo.GetNumberOfTreeBuilds(), 0)
-
-    def test_deprecated_setters(self):
-        """Each warns and names what to use in its place; one still works."""
-        for on, samples in ((False, RAYS), (True, CELLS)):
-            echo = make("EchoFilter", BeamSamples=CELLS + RAYS - samples)
-            heard = Messages(echo)
-            echo.SetPlaneIntegration(on)
-            self.assertEqual((echo.GetBeamSamples(), heard.errors), (samples, []))
-            self.assertIn("SetBeamSamplesTo", heard.warnings[0])
-        for kind, name in (("EchoFilter", "RefineNearLimit"), ("EchoFilter", "TargetRelativeError"), ("EchoFilter", "SmallTargets"),
-                           ("CollisionTree", "EmbedTree")):
-            changed = make(kind)
-            heard = Messages(changed)
-            getattr(changed, "Set" + name)(1)
-            self.assertEqual(len(heard.warnings), 1)
-            self.assertRegex(heard.warnings[0], f"Set{name} is deprecated")
 
 
 class Legal(Faults):
