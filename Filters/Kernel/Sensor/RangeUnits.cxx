@@ -205,6 +205,10 @@ double RangeUnitAccumulator::addWindow(double from, double to)
     {
       next = std::min(next, std::max(first, to));
     }
+    if (first >= to)
+    {
+      continue;
+    }
     double unit = std::max(first, from);
     double before = unit > first ? shareUpTo(unit) : 0.0;
     auto place = static_cast<std::size_t>(static_cast<std::int64_t>(unit - from));
