@@ -2,7 +2,7 @@
 """What ParaView's button Advise runs on the server: the proxy of Plugin/Filters/AvianLidarAdvisor.xml makes it."""
 from __future__ import annotations
 
-from typing import Any, Dict, Optional
+from typing import Any, Dict, Iterable, Optional
 
 from vtkmodules.util.numpy_support import numpy_to_vtk
 from vtkmodules.util.vtkAlgorithm import VTKPythonAlgorithmBase
@@ -19,10 +19,19 @@ from ._pipeline import Error
 ASKED = {"SetEnergyError": "energy", "SetRangeError": "range", "SetMissedShare": "missed", "SetSampleBeams": "beams"}
 
 
+def _words(name: str, lines: Iterable[str]) -> vtkStringArray:
+    array = vtkStringArray()
+    array.SetName(name)
+    for line in lines:
+        array.InsertNextValue(line)
+    return array
+
+
 class Advisor(VTKPythonAlgorithmBase):
     """Inputs and properties are those of the echo filter, and what is asked for. The output is the table of an Advice,
     with the row that is `advised` and the `advice` in words as field data. Where several ranks work together,
-    each asks for all of its inputs, and the first one measures. After an error the table is empty."""
+    each asks for all of its inputs, and the first one measures. After an error the table is empty, and its field data
+    `error` says why."""
 
     def __init__(self) -> None:
         self._like = _wrapped.vtkAvianLidarEchoFilter()
@@ -70,6 +79,7 @@ class Advisor(VTKPythonAlgorithmBase):
             advice = measure(self._like, data, asked, self._asked["beams"], lambda share, _: self.UpdateProgress(share))
         except (Error, ValueError) as error:
             vtkOutputWindow.GetInstance().DisplayErrorText(f"ERROR: {error}\n")
+            table.GetFieldData().AddArray(_words("error", [str(error)]))
             return 1
         self._advice = advice
         for name, values in advice.table.items():
@@ -77,13 +87,10 @@ class Advisor(VTKPythonAlgorithmBase):
             column.SetName(name)
             column.GetInformation().Set(vtkDataArray.UNITS_LABEL(), UNITS.get(name, "1"))
             table.AddColumn(column)
-        row, lines = numpy_to_vtk([advice.row], deep=True), vtkStringArray()
+        row = numpy_to_vtk([advice.row], deep=True)
         row.SetName("advised")
-        lines.SetName("advice")
-        for line in advice.lines:
-            lines.InsertNextValue(line)
         table.GetFieldData().AddArray(row)
-        table.GetFieldData().AddArray(lines)
+        table.GetFieldData().AddArray(_words("advice", advice.lines))
         return 1
 
 

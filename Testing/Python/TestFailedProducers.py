@@ -10,6 +10,7 @@ from vtk.util import numpy_support
 
 import cloudtools
 from avianlidar import vtkAvianLidar as al
+from avianlidar._paraview import Advisor
 from cloudtools import add_field, cloud
 from echotools import RAYS, InFolder, Messages, assert_same_bits, scan, sensor, town
 from faulttools import algorithms, copy, make, writer
@@ -227,6 +228,21 @@ class Producers(InFolder):
         data = copy(town(3, 1).GetBlock(0))
         add_field(data, "error", (0.5,))
         self.assertEqual(update(scan(data, **SETTINGS)), 1)
+
+    def test_the_advisor(self):
+        """A wrong value and a failed producer are said as field data of an empty table; the next good input works."""
+        advisor, given, failing = Advisor(), few_beams(), surfaces()
+        failing.algorithm.SetErrorsAsData(True)
+        Messages(failing.algorithm)
+        advisor.SetInputConnection(0, given.port)
+        advisor.SetInputConnection(1, failing.port)
+        for count, value, said in ((1, failing.good, "beams is 1, expected 50"), (50, -1.0, failing.words), (50, failing.good, "")):
+            advisor.SetSampleBeams(count)
+            failing.set(value)
+            advisor.Update()
+            table = advisor.GetOutputDataObject(0)
+            self.assertIn(said, error_of(table))
+            self.assertEqual((table.GetNumberOfRows(), bool(error_of(table))), (0 if said else 37, bool(said)))
 
     def test_writers_leave_the_file(self):
         for name in cloudtools.WRITERS:
