@@ -173,6 +173,39 @@ TEST(SecondaryConstraints, NoUnitLosesMoreThanTheFraction)
   }
 }
 
+TEST(SecondaryConstraints, ABeamWhosePathsTogetherStayBelowTheLimitTracesNone)
+{
+  // Between the sides of a groove nothing stands in the way, and dark ones leave no path to be cut,
+  // so that all paths are received.
+  const Material dark{ 0.05, 0.0, 1.0 };
+  const Material mirror{ 0.0, 0.4, 1e4 };
+  Sensor sensor = openSensor();
+  for (const auto& [material, samples] :
+    { std::make_pair(dark, BeamSampleSource::Rays), std::make_pair(dark, BeamSampleSource::Cells),
+      std::make_pair(mirror, BeamSampleSource::Cells) })
+  {
+    EchoSettings settings = secondarySettings(100, material.kd > 0.0 ? 2 : 0);
+    settings.beamSamples = samples;
+    const Scene scene = groove(45.0 * Degree, material);
+    const auto scanWith = [&](double limit, int reflections)
+    {
+      sensor.lowerEnergyLimit = limit;
+      settings.numberOfReflections = reflections;
+      return runScan(makeSetup(scene, sensor, settings), oneBeam());
+    };
+    const double all = receivedFrom(scanWith(0.0, 2));
+    const ScanResult seen = scanWith(0.99 * all, 2);
+    const ScanResult silent = scanWith(1.01 * all, 2);
+    EXPECT_EQ(seen.echoes.size(), 1u);
+    EXPECT_TRUE(silent.echoes.empty());
+    EXPECT_GT(seen.raysTraced, silent.raysTraced);
+    // The rays from which paths start, and none of the paths.
+    EXPECT_LE(silent.raysTraced, tracedRaysOf(settings));
+    EXPECT_EQ(silent.reports[0].skipped & SkippedBeam, SkippedBeam);
+    EXPECT_GE(silent.reports[0].lost, all * (1.0 - 1e-9));
+  }
+}
+
 TEST(SecondaryConstraints, TheLimitItselfComparesEachSecondPath)
 {
   const Scene scene = groove(45.0 * Degree, { 0.4, 0.25, 1e4 });

@@ -18,7 +18,8 @@
  * Source: paper, Eq. 4-9 and Sec. 3.4.
  * Differs: the constraint compares with the sum of a range unit, not with a single ray: Qlow for a
  * ray would remove every wall.
- * Valid: no range unit loses more than epsilon Qlow; a beam that ends early has no echo either way.
+ * Valid: no range unit loses more than epsilon Qlow; a beam that ends early has no echo
+ * either way, unless paths that start from random rays bring more than the bound by chance.
  * Test: TestEchoClosedForms.cxx, TestSecondaryConstraints.cxx, TestScanAgain.cxx.
  */
 #ifndef avianlidar_BeamLighting_h
