@@ -48,9 +48,9 @@ private:
   bool separated(const Vec3& axis, const Vec3& center, const Vec3& half) const;
 
   Vec3 Apex;
-  Vec3 Origin{ 0.0 }; ///< of the cone, relative to the apex, m
+  Vec3 Origin{ 0.0 }; ///< where the cone begins, relative to the apex, m
   Vec3 Axis;
-  double Sine, Cosine; ///< of the widened half-angle
+  double Sine, Cosine; ///< sine and cosine of the widened half-angle
 };
 }
 

@@ -42,7 +42,8 @@ using TreeVolumes = std::variant<std::vector<OBB>, std::vector<BoundingSphere>>;
 struct VolumeTree final : public OtherVolumes
 {
   std::vector<BinaryNode> nodes; ///< empty for an empty mesh
-  TreeVolumes volumes; ///< of all nodes, in scene coordinates, conservative for all triangles below
+  /// Volumes of all nodes in scene coordinates; each holds all triangles below its node.
+  TreeVolumes volumes;
 
   std::uint64_t descendCone(const CollisionTree& tree, const BeamFrame& frame, TreeLeaves& leaves,
     TraversalStack& stack) const override;

@@ -66,7 +66,7 @@ struct Medium
   double squareOfDrops = 6.0;
   double renewed = 1.0;   ///< share of the drops that are others in the next scan, 0 to 1
   bool isFollowed = true; ///< by a threshold that follows the air; trees are not
-  int objectId = -2;      ///< of what it returns, ObjectOfAir for air
+  int objectId = -2;      ///< label of its echoes; ObjectOfAir for air
   /// Drops are leaves: light comes back through the gaps that let it in, as far as its two ways lie
   /// nearer to each other than a leaf is wide (BeamAir.h). Without a number of drops they always
   /// do.

@@ -241,7 +241,7 @@ private:
 
   Sensor Instrument;
   std::shared_ptr<const Air> All;
-  double Attenuation; ///< of what fills the scene, 1/m
+  double Attenuation; ///< attenuation coefficient of all that fills the scene, 1/m
   double UnitLength;  ///< m
   double SolidAngle;  ///< sr
   std::int64_t Gate;  ///< units
@@ -249,8 +249,8 @@ private:
   std::array<double, 2> HalfWidths;
   double ApertureRadius;                            ///< m
   std::vector<std::uint32_t> Filling;               ///< media that fill the scene
-  double Backscatter = 0.0;                         ///< of these, 1/(m sr)
-  std::shared_ptr<const std::vector<double>> Means; ///< what these return in units, J
+  double Backscatter = 0.0;                         ///< backscatter of `Filling`, 1/(m sr)
+  std::shared_ptr<const std::vector<double>> Means; ///< energies that `Filling` returns, by unit, J
   std::int64_t LookedEverywhere = 0;
   std::vector<Column> Grid; ///< empty until a beam needs it
 
@@ -265,10 +265,10 @@ private:
   std::int64_t Dark = 0;   ///< from here on no light that matters is left
   double MostOfUnit = 0.0; ///< J per gathered sr: more than media return in a unit
   std::vector<MetSurface> Surfaces;
-  std::size_t Taken = 0;  ///< of these
+  std::size_t Taken = 0;  ///< number of `Surfaces` that took their share
   double TakenTo = 0.0;   ///< m
-  double Left = 1.0;      ///< of the pulse
-  std::int64_t Unit = -1; ///< of Shares
+  double Left = 1.0;      ///< share of the pulse that is left
+  std::int64_t Unit = -1; ///< unit to which `Shares` belong
   std::vector<Share> Shares;
   std::vector<double> Breaks;
   std::vector<Part> Here;        ///< parts of a column between two breaks

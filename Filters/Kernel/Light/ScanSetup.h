@@ -84,8 +84,8 @@ struct ScanSetup
   /// Number of the first triangle of each mover (SceneTriangles.h).
   std::vector<std::uint32_t> firstTriangles;
   Sensor sensor;
-  EchoSettings settings;           ///< attenuation that of the clear air
-  std::vector<PlacedMedium> media; ///< those that fill the scene first
+  EchoSettings settings;           ///< its attenuation coefficient is the clear air's alone
+  std::vector<PlacedMedium> media; ///< media that fill the scene come first
   NoisePlan noise;
   std::int32_t revolution = 0; ///< of the sensor; each has noise of its own
   ModelNeeds needs;

@@ -80,9 +80,9 @@ private:
   // The beam being simulated.
   ScanBeams One;
   BeamSimulator Simulator;
-  RangeUnitAccumulator Units; ///< of one mover
+  RangeUnitAccumulator Units; ///< energies that one mover returns
   std::vector<BeamTrace> Trace;
-  TriangleMesh Mesh; ///< of one mover
+  TriangleMesh Mesh; ///< triangles of one mover, placed
 };
 }
 

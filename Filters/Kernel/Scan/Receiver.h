@@ -148,7 +148,7 @@ private:
   bool FollowsAir;
   PhotonReceiver Photons;
   std::uint64_t Beam = 0;
-  LeafGaps Gaps; ///< of the beam, if it is narrow
+  LeafGaps Gaps; ///< gaps between leaves along a narrow beam
   PulseShares Pulse;
   SharedDrops Drops; ///< drops that share their pulses
   std::int32_t Seed;

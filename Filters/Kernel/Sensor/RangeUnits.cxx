@@ -184,8 +184,7 @@ void RangeUnitAccumulator::accumulate()
   }
 }
 
-/// Add what pulses put into units [from, to). @return the next unit that one of them meets;
-/// infinity: there is none
+/// Add what pulses put into units [from, to). @return the next unit that a pulse meets, or infinity
 double RangeUnitAccumulator::addWindow(double from, double to)
 {
   const auto window = static_cast<std::size_t>(to - from);

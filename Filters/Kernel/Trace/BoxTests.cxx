@@ -164,17 +164,28 @@ struct Passage
   }
 };
 
+/// Centre and half-lengths of one box, in every lane.
+struct BoxInLanes
+{
+  Rays x, y, z, hx, hy, hz;
+
+  HWY_INLINE BoxInLanes(const NearBoxes& boxes, int box)
+    : x(everywhere(boxes.center[0][box]))
+    , y(everywhere(boxes.center[1][box]))
+    , z(everywhere(boxes.center[2][box]))
+    , hx(everywhere(boxes.half[0][box]))
+    , hy(everywhere(boxes.half[1][box]))
+    , hz(everywhere(boxes.half[2][box]))
+  {
+  }
+};
+
 /// The rays that meet one box before they hit something.
 HWY_INLINE RayBits raysThatMeet(
   const PacketView& view, const NearBoxes& boxes, int box, RayBits rays)
 {
   const RayTag lanes;
-  const Rays cx = everywhere(boxes.center[0][box]);
-  const Rays cy = everywhere(boxes.center[1][box]);
-  const Rays cz = everywhere(boxes.center[2][box]);
-  const Rays hx = everywhere(boxes.half[0][box]);
-  const Rays hy = everywhere(boxes.half[1][box]);
-  const Rays hz = everywhere(boxes.half[2][box]);
+  const BoxInLanes at(boxes, box);
   const Rays shortening = everywhere(1.0f - WideRounding);
   RayBits bits = 0;
   for (int group = 0; group < PacketWidth; group += PacketGroup)
@@ -185,8 +196,9 @@ HWY_INLINE RayBits raysThatMeet(
     }
     for (int i = group; i < group + PacketGroup; i += RayLanes)
     {
-      const Passage<Rays> way(cx, cy, cz, hx, hy, hz, hn::Load(lanes, view.inverse[0] + i),
-        hn::Load(lanes, view.inverse[1] + i), hn::Load(lanes, view.inverse[2] + i));
+      const Passage<Rays> way(at.x, at.y, at.z, at.hx, at.hy, at.hz,
+        hn::Load(lanes, view.inverse[0] + i), hn::Load(lanes, view.inverse[1] + i),
+        hn::Load(lanes, view.inverse[2] + i));
       const auto meets = hn::And(hn::Le(way.from, way.to),
         hn::Le(hn::Mul(way.from, shortening), hn::Load(lanes, view.far + i)));
       bits |= bitsOf(lanes, meets) << i;
@@ -277,12 +289,7 @@ HWY_INLINE std::uint32_t conesThatMeet(const ConeLanes& cones, const NearBoxes& 
   const Rays highU = everywhere(center(1) + half(1));
   const Rays lowV = everywhere(center(2) - half(2));
   const Rays highV = everywhere(center(2) + half(2));
-  const Rays x = everywhere(boxes.center[0][box]);
-  const Rays y = everywhere(boxes.center[1][box]);
-  const Rays z = everywhere(boxes.center[2][box]);
-  const Rays hx = everywhere(boxes.half[0][box]);
-  const Rays hy = everywhere(boxes.half[1][box]);
-  const Rays hz = everywhere(boxes.half[2][box]);
+  const BoxInLanes in(boxes, box);
   std::uint32_t met = 0;
   for (int b = 0; b < ConeLanes::Width; b += RayLanes)
   {
@@ -304,11 +311,11 @@ HWY_INLINE std::uint32_t conesThatMeet(const ConeLanes& cones, const NearBoxes& 
     const Rays az = hn::Load(lanes, cones.axis[2] + b);
     const Rays sine = hn::Load(lanes, cones.sine + b);
     const Rays cosine = hn::Load(lanes, cones.cosine + b);
-    const Rays along = dot(x, y, z, ax, ay, az);
+    const Rays along = dot(in.x, in.y, in.z, ax, ay, az);
     // Twice, so that what is left is across the axis to the last bits.
-    Rays rx = hn::NegMulAdd(along, ax, x);
-    Rays ry = hn::NegMulAdd(along, ay, y);
-    Rays rz = hn::NegMulAdd(along, az, z);
+    Rays rx = hn::NegMulAdd(along, ax, in.x);
+    Rays ry = hn::NegMulAdd(along, ay, in.y);
+    Rays rz = hn::NegMulAdd(along, az, in.z);
     const Rays rest = dot(rx, ry, rz, ax, ay, az);
     rx = hn::NegMulAdd(rest, ax, rx);
     ry = hn::NegMulAdd(rest, ay, ry);
@@ -318,11 +325,11 @@ HWY_INLINE std::uint32_t conesThatMeet(const ConeLanes& cones, const NearBoxes& 
     const Rays nx = hn::MulSub(scale, rx, hn::Mul(sine, ax));
     const Rays ny = hn::MulSub(scale, ry, hn::Mul(sine, ay));
     const Rays nz = hn::MulSub(scale, rz, hn::Mul(sine, az));
-    const Rays beyond = dot(nx, ny, nz, x, y, z);
-    const Rays reach = dot(hn::Abs(nx), hn::Abs(ny), hn::Abs(nz), hx, hy, hz);
+    const Rays beyond = dot(nx, ny, nz, in.x, in.y, in.z);
+    const Rays reach = dot(hn::Abs(nx), hn::Abs(ny), hn::Abs(nz), in.hx, in.hy, in.hz);
     const auto outside = hn::Gt(hn::Mul(cosine, radius), hn::Mul(along, sine));
     const auto separated = hn::And(outside, hn::Gt(beyond, reach));
-    const Rays size = dot(hn::Abs(ax), hn::Abs(ay), hn::Abs(az), hx, hy, hz);
+    const Rays size = dot(hn::Abs(ax), hn::Abs(ay), hn::Abs(az), in.hx, in.hy, in.hz);
     const auto behind = hn::Lt(hn::Add(along, size), hn::Zero(lanes));
     met |= static_cast<std::uint32_t>(bitsOf(lanes, hn::AndNot(hn::Or(separated, behind), within)))
       << b;

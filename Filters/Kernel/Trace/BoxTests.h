@@ -50,7 +50,7 @@ struct Frustum
   float sign;                     ///< sign of the directions along the dominant axis
   float lowU, highU, lowV, highV; ///< slopes of the directions
   float apex[3];                  ///< relative to the tree's reference, m
-  float widening;                 ///< of every box, m
+  float widening;                 ///< m, by which every box is widened
   float spread = 0.0f;            ///< half-width of the directions, rad
   float shortening =
     1.0f - WideRounding; ///< from depth along the dominant axis to a lower bound of range
@@ -92,7 +92,7 @@ struct alignas(64) ConeLanes
 {
   static constexpr int Width = 16;
   float axis[3][Width];
-  float sine[Width], cosine[Width]; ///< of the half-angles, rounding included
+  float sine[Width], cosine[Width]; ///< sine and cosine of half-angles, rounding included
   float lowU[Width], highU[Width], lowV[Width], highV[Width]; ///< slopes, set by setFrustum()
   int count = 0;
   Frustum frustum;     ///< about all of them

@@ -25,7 +25,8 @@
 
 namespace avianlidar
 {
-/// One per thread; the tree must outlive it.
+/// The tree's triangles, and those of the movers that were placed since the last clear(). One per
+/// thread; the tree must outlive it.
 class SceneTriangles
 {
 public:
@@ -51,7 +52,7 @@ public:
   /// @param mesh its triangles in scene coordinates, m
   void place(std::uint32_t first, const TriangleMesh& mesh);
 
-  /// After the last mover.
+  /// Call it after the last mover is placed: it builds the tree of their triangles.
   void finish();
 
   /// True if the triangle is one of the tree, or of a mover that is placed.
@@ -91,10 +92,8 @@ public:
   /// @param corners from the point
   TrianglePlane planeOf(std::uint32_t triangle, const Corners& corners, const Vec3& point) const
   {
-    const std::uint32_t owner = this->planeOwner(triangle);
-    return owner == triangle
-      ? avianlidar::planeOf(corners)
-      : avianlidar::planeOf(corners, avianlidar::planeOf(this->cornersFrom(owner, point)));
+    return this->isMoved(triangle) ? avianlidar::planeOf(corners)
+                                   : avianlidar::planeOf(this->Tree, triangle, corners, point);
   }
 
 private:

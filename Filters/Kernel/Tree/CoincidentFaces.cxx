@@ -334,7 +334,7 @@ private:
   const WideNode* Parent = nullptr;
   int Lane = 0;
   const WideNode* Own = nullptr; ///< the node
-  std::uint32_t First = 0;       ///< of its leaves in the order
+  std::uint32_t First = 0;       ///< its first leaf's place in the order
 };
 
 class Search

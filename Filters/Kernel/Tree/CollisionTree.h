@@ -95,10 +95,11 @@ struct CollisionTree
   std::shared_ptr<const TriangleMesh> mesh;
   TreeOptions options;
   std::vector<std::uint32_t> order; ///< triangle numbers, leaf by leaf; empty for an empty mesh
-  std::uint64_t checksum = 0;       ///< of the mesh
+  std::uint64_t checksum = 0;       ///< checksum of the mesh
   std::uint32_t leaves = 0;         ///< number of leaves
-  std::uint32_t depth = 0; ///< of the deepest leaf in a binary tree, as the rule divides; root 0
-  WideTree wide;           ///< boxes eight at a time in single precision; empty with other volumes
+  /// Depth of the deepest leaf in a binary tree that the rule divides; the root has depth 0.
+  std::uint32_t depth = 0;
+  WideTree wide; ///< boxes eight at a time in single precision; empty with other volumes
   std::shared_ptr<const OtherVolumes> other; ///< null: boxes
   /// For each triangle that coincides with others the one whose plane they take
   /// (CoincidentFaces.h), for the rest NoTriangle; empty if no faces coincide.

@@ -355,7 +355,7 @@ private:
   const KeepGoing& Continue;
   TriangleBoxes Scene;
   Ranges Large;              ///< the uppermost layers
-  std::vector<Ranges> Small; ///< what becomes of those among them that are small
+  std::vector<Ranges> Small; ///< ranges into which the small ones among them are divided
 };
 }
 

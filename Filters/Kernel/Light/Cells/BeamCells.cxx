@@ -25,8 +25,8 @@ constexpr int LevelsOfFoot = 5;
 constexpr int MostBlocksOfCell = 3;
 
 /// Most blocks of rays of a beam that are traced through the tree for the sake of small objects: so
-/// many in any case, and so many times those of a beam without. With ten times alone a goose before
-/// a wall of many triangles is off by up to 9 % instead of 6.
+/// many in any case, and so many times the blocks of a beam without. If a beam had ten times these
+/// blocks at most, a goose before a wall of many triangles would be off by up to 9 % instead of 6.
 constexpr double MostPlannedBlocks = 20000.0;
 constexpr double PlannedPerUsual = 4.0;
 

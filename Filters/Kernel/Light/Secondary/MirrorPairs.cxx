@@ -202,8 +202,8 @@ void MirrorPairs::find(const BeamSamples& samples, const SecondaryScene& scene)
   }
   Search search(*this, scene, farthest, TrianglesPerSample * samples.size());
   const std::vector<std::uint32_t>& moved = scene.triangles.moved();
-  search.leaf(moved.data(), static_cast<std::uint32_t>(moved.size()));
-  if (!scene.triangles.tree().empty())
+  const bool open = search.leaf(moved.data(), static_cast<std::uint32_t>(moved.size()));
+  if (open && !scene.triangles.tree().empty())
   {
     descendCone(scene.triangles.tree(), scene.frame, search, this->Stack);
   }

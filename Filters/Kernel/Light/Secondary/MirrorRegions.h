@@ -51,6 +51,7 @@ public:
   std::size_t surfaces() const { return this->Surfaces.size(); }
 
   /// Bound of the sum of the throughputs of the mirror paths that start on a surface.
+  /// @param returned mostOverMirror()
   double bound(std::size_t surface, double returned) const;
 
   /// Append the paths that start on a surface and end on another. @return samples drawn for them
