@@ -201,10 +201,9 @@ public:
 
   ///@{
   /**
-   * Make the mover report, output port 2. Its effective areas take 0.4 ms of one core a mover of 72
-   * triangles, 20 ms one of 1000 (EffectiveArea.h): turn it off where nobody reads it. Echoes do
-   * not depend on it; of the beam report `skipped` and `skipped_bound` may, which are costs.
-   * Default: on.
+   * Make the mover report, output port 2. Its effective areas take about a millisecond of one core
+   * for each mover: turn it off where nobody reads it. Echoes do not depend on it; of the beam
+   * report `skipped` and `skipped_bound` may, which are costs. Default: on.
    */
   vtkSetMacro(ReportMovers, bool);
   vtkGetMacro(ReportMovers, bool);

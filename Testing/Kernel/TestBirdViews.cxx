@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Views of birds against effective areas and probabilities of poses drawn at random.
 #include "BirdViews.h"
-#include "EffectiveArea.h"
 #include "PhotonReceiver.h"
 
 #include <gtest/gtest.h>

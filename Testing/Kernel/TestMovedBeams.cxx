@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Beams meet movers where these are at the beam's own time.
 #include "Bird.h"
-#include "EffectiveArea.h"
 #include "MoverReport.h"
 #include "PhotonReceiver.h"
 #include "ScanTestTown.h"
+#include "Silhouette.h"
 
 #include <gtest/gtest.h>
 
@@ -395,9 +395,9 @@ double worstOfGeese(const Scene& behind, int cuts = 0, BeamProfile profile = Bea
     const double half = 0.5 * k * Pi / 40.0;
     bird.poses = { { 0.0, at, { std::cos(half), 0.0, 0.0, std::sin(half) } } };
     EXPECT_EQ(prepareMover(bird), "");
-    auto mesh = std::make_shared<TriangleMesh>();
-    place(bird, bird.poses[0], *mesh);
-    const double area = effectiveArea(mesh, at, 1.2, Vec3(0.0));
+    TriangleMesh mesh;
+    place(bird, bird.poses[0], mesh);
+    const double area = effectiveArea(mesh, Vec3(1.0, 0.0, 0.0));
     // The bird is small beside the beam, in whose middle a Gaussian one is brighter.
     const double bright = profile == BeamProfile::Gaussian ? 2.0 / (1.0 - std::exp(-2.0)) : 1.0;
     const double wanted =

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Silhouette.h"
 
+#include "BeamFrame.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -19,6 +21,8 @@ constexpr int MostImages = 5;
 constexpr double RadiusInPixels = 3.5;
 /// Of the finest image so many are enough.
 constexpr double LeastRadiusInPixels = 1.0;
+/// Samples along the longer side for an effective area.
+constexpr int SamplesOfArea = 512;
 
 struct Sample
 {
@@ -84,6 +88,31 @@ struct Canvas
   }
 };
 
+/// The points of a mesh by right, up and depth, and their bounds.
+struct Projected
+{
+  Projected(const TriangleMesh& mesh, const Vec3& right, const Vec3& view)
+  {
+    const Vec3 up = glm::cross(right, view);
+    this->Points.reserve(mesh.points.size());
+    for (const Vec3& p : mesh.points)
+    {
+      this->Points.emplace_back(glm::dot(p, right), glm::dot(p, up), glm::dot(p, view));
+      this->Low = glm::min(this->Low, this->Points.back());
+      this->High = glm::max(this->High, this->Points.back());
+    }
+  }
+
+  double longerSide() const
+  {
+    return std::max(this->High.x - this->Low.x, this->High.y - this->Low.y);
+  }
+
+  std::vector<Vec3> Points;
+  Vec3 Low = Vec3(std::numeric_limits<double>::infinity());
+  Vec3 High = -Low;
+};
+
 /// Draw a mesh, its points given by right, up and depth.
 void drawMesh(const TriangleMesh& mesh, const std::vector<Vec3>& points, Canvas& canvas)
 {
@@ -130,23 +159,18 @@ Silhouette::Silhouette(double area)
 
 Silhouette::Silhouette(const TriangleMesh& mesh, const Vec3& view, double unit)
 {
-  const Vec3 right = unitVector(glm::cross(view, Vec3(0.0, 0.0, 1.0)));
-  const Vec3 up = glm::cross(right, view);
-  std::vector<Vec3> points;
-  Vec3 low(std::numeric_limits<double>::infinity());
-  Vec3 high(-low);
-  for (const Vec3& p : mesh.points)
+  const Projected shown(mesh, unitVector(glm::cross(view, Vec3(0.0, 0.0, 1.0))), view);
+  const Vec3& low = shown.Low;
+  const Vec3& high = shown.High;
+  for (const Vec3& p : shown.Points)
   {
-    points.emplace_back(glm::dot(p, right), glm::dot(p, up), glm::dot(p, view));
-    low = glm::min(low, points.back());
-    high = glm::max(high, points.back());
-    this->Reach = std::max(this->Reach, std::hypot(points.back().x, points.back().y));
+    this->Reach = std::max(this->Reach, std::hypot(p.x, p.y));
   }
   Image fine;
-  fine.pixel = std::max(high.x - low.x, high.y - low.y) / LongerSide;
+  fine.pixel = shown.longerSide() / LongerSide;
   if (!(fine.pixel > 0.0) || !std::isfinite(fine.pixel))
   {
-    const bool isEmpty = points.empty() || std::isfinite(fine.pixel);
+    const bool isEmpty = shown.Points.empty() || std::isfinite(fine.pixel);
     this->All.area = isEmpty ? 0.0 : std::numeric_limits<double>::quiet_NaN();
     return;
   }
@@ -164,7 +188,7 @@ Silhouette::Silhouette(const TriangleMesh& mesh, const Vec3& view, double unit)
   canvas.left = fine.left - 0.5 * fine.pixel + 0.5 * canvas.step;
   canvas.below = fine.below - 0.5 * fine.pixel + 0.5 * canvas.step;
   canvas.samples.resize(static_cast<std::size_t>(canvas.columns) * canvas.rows);
-  drawMesh(mesh, points, canvas);
+  drawMesh(mesh, shown.Points, canvas);
   fine.pixels.resize(static_cast<std::size_t>(fine.columns) * fine.rows);
   const double each = canvas.step * canvas.step / unit;
   double area = 0.0, depth = 0.0, square = 0.0;
@@ -177,13 +201,13 @@ Silhouette::Silhouette(const TriangleMesh& mesh, const Vec3& view, double unit)
       {
         Sums& pixel = fine.pixels[static_cast<std::size_t>(row / SamplesOfPixel) * fine.columns +
           column / SamplesOfPixel];
-        const double shown = each * s.cosine;
-        pixel.area += static_cast<float>(shown);
-        pixel.depth += static_cast<float>(shown * s.depth);
-        pixel.square += static_cast<float>(shown * s.depth * s.depth);
-        area += shown;
-        depth += shown * s.depth;
-        square += shown * s.depth * s.depth;
+        const double part = each * s.cosine;
+        pixel.area += static_cast<float>(part);
+        pixel.depth += static_cast<float>(part * s.depth);
+        pixel.square += static_cast<float>(part * s.depth * s.depth);
+        area += part;
+        depth += part * s.depth;
+        square += part * s.depth * s.depth;
       }
     }
   }
@@ -342,5 +366,31 @@ LitPart Silhouette::litBy(const BeamAtTarget& beam) const
   LitPart lit = partOf(sum.area, sum.depth, sum.square);
   lit.area *= beam.radius * beam.radius / radius2 * beam.irradiance(0.0);
   return lit;
+}
+
+double effectiveArea(const TriangleMesh& mesh, const Vec3& view)
+{
+  // Turned about the line of sight, so that edges of level and upright objects cross the rows.
+  constexpr double turn = 0.4;
+  const BeamFrame frame = makeBeamFrame(Vec3(0.0), view, turn);
+  const Projected shown(mesh, std::cos(turn) * frame.e1 + std::sin(turn) * frame.e2, view);
+  const double side = shown.longerSide();
+  if (!(side > 0.0) || !std::isfinite(side))
+  {
+    return mesh.points.empty() || std::isfinite(side) ? 0.0
+                                                      : std::numeric_limits<double>::quiet_NaN();
+  }
+  const double step = side / SamplesOfArea;
+  const auto samplesOf = [&](double length) { return 1 + static_cast<int>(length / step); };
+  Canvas canvas{ shown.Low.x + 0.5 * step, shown.Low.y + 0.5 * step, step,
+    samplesOf(shown.High.x - shown.Low.x), samplesOf(shown.High.y - shown.Low.y), {} };
+  canvas.samples.resize(static_cast<std::size_t>(canvas.columns) * canvas.rows);
+  drawMesh(mesh, shown.Points, canvas);
+  double sum = 0.0;
+  for (const Sample& sample : canvas.samples)
+  {
+    sum += sample.cosine;
+  }
+  return sum * step * step;
 }
 }

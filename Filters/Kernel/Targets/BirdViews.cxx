@@ -54,4 +54,27 @@ TargetViews birdViews(const BirdShape& shape, bool gliding, double meanArea)
   };
   return views;
 }
+
+double meanEffectiveArea(const BirdShape& shape, bool gliding)
+{
+  // The left is as the right: half a turn holds all headings.
+  constexpr int headings = 24;
+  constexpr int phases = 24;
+  constexpr double elevation = 3.0 * RadiansPerDegree;
+  // NaN where a length is not known.
+  double sum = 0.0 * (shape.bodyLength + shape.bodyDiameter + shape.wingLength + shape.wingChord);
+  int count = 0;
+  for (int phase = 0; phase < (gliding ? 1 : phases); ++phase)
+  {
+    const TriangleMesh bird = wholeBird(shape, wingAngle((phase + 0.5) / phases, gliding));
+    for (int k = 0; k < headings; ++k, ++count)
+    {
+      const double heading = Pi * (k + 0.5) / headings;
+      sum += effectiveArea(bird,
+        Vec3(-std::cos(elevation) * std::sin(heading), -std::cos(elevation) * std::cos(heading),
+          std::sin(elevation)));
+    }
+  }
+  return sum / count;
+}
 }

@@ -30,6 +30,10 @@ constexpr std::size_t GlidingHeadings = BirdHeadings * BirdPhases;
 
 /// Views of a bird. @param meanArea to which areas are relative, m^2
 TargetViews birdViews(const BirdShape& shape, bool gliding, double meanArea);
+
+/// Mean effective area, m^2, of a bird in flight, seen from the side at 3 degrees of elevation:
+/// heading and wing phase uniform. NaN if one of its lengths is not known.
+double meanEffectiveArea(const BirdShape& shape, bool gliding);
 }
 
 #endif

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "MoverReport.h"
 
-#include "EffectiveArea.h"
 #include "ParallelLoop.h"
+#include "Silhouette.h"
 
 #include <algorithm>
 #include <array>
@@ -76,11 +76,13 @@ std::vector<MoverReport> reportMovers(const ScanSetup& setup, const ScanBeams& b
         }
         if (report.present)
         {
-          auto mesh = std::make_shared<TriangleMesh>();
-          place(mover, report.pose, *mesh);
+          TriangleMesh mesh;
+          place(mover, report.pose, mesh);
           const MoverSphere sphere = sphereAt(mover, report.pose);
-          report.effectiveArea =
-            effectiveArea(mesh, sphere.center, sphere.radius, origin, [&] { return goOn(thread); });
+          const Vec3 to = sphere.center - origin;
+          const bool isOutside = sphere.radius < safeLength(to);
+          report.effectiveArea = isOutside ? effectiveArea(mesh, unitVector(to))
+                                           : std::numeric_limits<double>::quiet_NaN();
           report.range = safeLength(report.pose.position - origin);
           report.origin = origin;
         }

@@ -31,7 +31,7 @@ struct MoverReport
   std::size_t beam = 0;       ///< that beam, if any may touch it
   Vec3 origin{ 0.0 };         ///< where it starts, m
   double range = 0.0;         ///< m
-  double effectiveArea = 0.0; ///< m^2, see EffectiveArea.h
+  double effectiveArea = 0.0; ///< m^2, see Silhouette.h; NaN from inside it
   bool touched = false;       ///< some beam may touch it
   std::uint32_t beams = 0;    ///< whose cones hold its origin
   double energy = 0.0;        ///< J, largest of MoverSight::energy

@@ -2,7 +2,6 @@
 #include "vtkAvianLidarBirdTargets.h"
 
 #include "BirdViews.h"
-#include "EffectiveArea.h"
 #include "vtkAvianLidarBirds.h"
 
 #include <algorithm>
