@@ -436,7 +436,7 @@ bool SecondaryReflection::collect(const Beam& beam, std::vector<SecondaryPath>& 
     {
       return false;
     }
-    traceMirrors(this->Setup, beam, this->SpecularBounds, throughputOf(threshold), this->Pairs);
+    traceMirrors(this->Setup, beam, this->SpecularBounds, throughputOf(threshold));
     this->measureMirrors(beam);
   }
   const double least = throughputOf(threshold);

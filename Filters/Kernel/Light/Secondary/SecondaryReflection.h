@@ -51,7 +51,6 @@
 #define avianlidar_SecondaryReflection_h
 
 #include "ConnectionFinder.h"
-#include "MirrorPairs.h"
 #include "MirrorRegions.h"
 #include "ScanSetup.h"
 #include "SecondaryBeam.h"
@@ -119,7 +118,6 @@ private:
   const ScanSetup& Setup;
   const BeamShape Shape;
   ConnectionFinder Finder;
-  MirrorPairs Pairs;
   MirrorRegions Regions;
   std::vector<std::uint32_t> Triangles;      ///< by sample
   MaterialLanes Materials;                   ///< by sample

@@ -150,7 +150,7 @@ bool isBlocked(const SecondaryBeam& beam, const SecondaryScene& scene, std::size
 }
 
 void traceMirrors(const ScanSetup& setup, const SecondaryBeam& beam,
-  const std::vector<double>& throughputs, double least, MirrorPairs& pairs)
+  const std::vector<double>& throughputs, double least)
 {
   SecondaryTrace& trace = beam.trace;
   const auto isWanted = [&](std::uint32_t hit)
@@ -169,23 +169,10 @@ void traceMirrors(const ScanSetup& setup, const SecondaryBeam& beam,
   }
   const SecondaryScene scene = beam.scene();
   const BeamShape shape(setup.sensor);
-  const bool constrained = setup.settings.beamConstraint;
-  if (constrained)
-  {
-    pairs.find(beam.samples, scene);
-  }
   for (; hit < beam.samples.size(); ++hit)
   {
     beam.askWhetherWanted(hit);
-    if (!isWanted(hit))
-    {
-      continue;
-    }
-    if (constrained && !pairs.any(scene.geometry.surface[hit]))
-    {
-      trace.mirror[hit] = MirrorEnd::Nowhere;
-    }
-    else
+    if (isWanted(hit))
     {
       traceMirror(setup, beam, scene, shape, hit);
     }

@@ -5,8 +5,7 @@
  * and short paths end, and whether anything stands in the way of connections.
  *
  * The results are geometry and go to the beam's trace. Only paths that may be as strong as the
- * caller needs are traced, and no mirror paths from samples on surfaces that face nothing
- * (MirrorPairs.h).
+ * caller needs are traced.
  *
  * Source: paper, Sec. 3.4.
  * Differs: see SecondaryReflection.h.
@@ -17,7 +16,6 @@
 #define avianlidar_SecondaryTracer_h
 
 #include "ConnectionFinder.h"
-#include "MirrorPairs.h"
 #include "ScanSetup.h"
 #include "SecondaryBeam.h"
 
@@ -26,10 +24,9 @@
 namespace avianlidar
 {
 /// Trace the mirror paths that are not known yet and may have a throughput of at least `least`.
-/// @param throughputs bounds, by sample @param pairs found here; with the beam constraint nothing
-/// is traced from surfaces without pairs
+/// @param throughputs bounds, by sample
 void traceMirrors(const ScanSetup& setup, const SecondaryBeam& beam,
-  const std::vector<double>& throughputs, double least, MirrorPairs& pairs);
+  const std::vector<double>& throughputs, double least);
 
 /// Find which mirror paths by regions (MirrorRegions.h) of at least the throughput `least` are
 /// blocked, if not known yet. @param throughputs by path, if it is not blocked
