@@ -60,11 +60,8 @@ public:
     SecondaryTrace trace;
     SecondaryReflection secondary(setup, tracerScene);
     std::vector<SecondaryPath> paths;
-    secondary.collect({ 0, this->Samples, throughput, nullptr, trace,
-                        [&]() -> SecondaryReflection::Scene {
-                          return { tracerScene, frame, none, this->Geometry, tracer };
-                        },
-                        this->Samples.nearest },
+    secondary.collect({ 0, tracerScene, frame, tracer, none, this->Samples, this->Geometry,
+                        throughput, nullptr, trace, this->Samples.nearest },
       paths, lost);
     return paths;
   }

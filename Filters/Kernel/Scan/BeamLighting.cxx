@@ -184,15 +184,6 @@ bool BeamLighting::collectPaths(std::size_t beam, BeamTrace& trace)
   {
     this->startFrom(this->Facing ? this->Block.pathStartsOf(beam, trace) : *trace.hits);
   }
-  const BeamSamples& samples = *this->Starts;
-  bool traced = false;
-  const auto scene = [&]() -> SecondaryReflection::Scene
-  {
-    traced = true;
-    return { this->Scene, this->Block.frameOf(beam), this->Block.raysOf(beam),
-      this->Block.geometryOf(beam, samples), this->Block.tracerOf(beam) };
-  };
-  const bool strata = this->Setup.settings.sampling == Sampling::Stratified;
   if (!trace.secondary)
   {
     trace.secondary = std::make_unique<SecondaryTrace>();
@@ -200,29 +191,22 @@ bool BeamLighting::collectPaths(std::size_t beam, BeamTrace& trace)
   // A strip of cells lies about its mean range.
   const double nearest =
     this->Cells ? (1.0 - MostOfRange) * this->Lit->nearest : this->Lit->nearest;
-  SecondaryReflection::Beam paths{ this->Beams.ids[beam], samples,
+  const bool strata = this->Setup.settings.sampling == Sampling::Stratified;
+  const bool starts = this->Starts->size() > 0;
+  BeamTracer& tracer = this->Block.tracerOf(beam);
+  SecondaryBeam paths{ this->Beams.ids[beam], this->Scene, this->Block.frameOf(beam), tracer,
+    starts ? this->Block.raysOf(beam) : this->NoRays, *this->Starts,
+    starts ? this->Block.geometryOf(beam, *this->Starts) : this->NoGeometry,
     this->raysAreLit() ? this->OfLit : this->OfStarts, strata ? &this->Sampler.strata : nullptr,
-    *trace.secondary, std::ref(scene), nearest, &this->Wanted };
-  const std::uint64_t id = this->Beams.ids[beam];
-  const auto regions = [&](MirrorRegions& found)
-  {
-    found.begin(id, this->Block.frameOf(beam), *this->Surfaces,
-      this->Cells ? &this->Cells->samples : nullptr);
-  };
-  const auto tracer = [&]() -> BeamTracer&
-  {
-    traced = true;
-    return this->Block.tracerOf(beam);
-  };
+    *trace.secondary, nearest, &this->Wanted };
   if (haveVolumes(this->Setup.media))
   {
     paths.air = &this->Air;
   }
   if (byRegions)
   {
-    paths.regions = std::ref(regions);
-    paths.tracer = std::ref(tracer);
-    paths.endsAreSeen = !this->Cells;
+    paths.surfaces = this->Surfaces;
+    paths.cells = this->Cells ? &this->Cells->samples : nullptr;
   }
   const double direct = this->Direct + this->Unplaced;
   if (dropsFaintPaths(this->Setup.settings) &&
@@ -231,10 +215,7 @@ bool BeamLighting::collectPaths(std::size_t beam, BeamTrace& trace)
     paths.silentBelow = SurelyBelow * this->Setup.sensor.lowerEnergyLimit - direct;
   }
   const bool perceivable = this->Secondary.collect(paths, this->Paths, this->Lost);
-  if (traced)
-  {
-    this->Block.addCounters(beam, this->Block.tracerOf(beam).counters());
-  }
+  this->Block.addCounters(beam, tracer.counters());
   return perceivable ||
     !this->isSkipped(direct + this->Lost, this->Lit->farthest, this->Lit->nearest);
 }

@@ -110,8 +110,11 @@ private:
   // The beam being lit.
   const BeamSamples* Lit = nullptr;    ///< samples of the direct echo
   const BeamSamples* Starts = nullptr; ///< rays from which paths start; null if none do
-  const BeamSamples NoStarts;          ///< no path starts from a ray
-  const CellSamples* Cells = nullptr;  ///< of a beam in cells
+  // Where no path starts from a ray.
+  const BeamSamples NoStarts;
+  const BeamRays NoRays;
+  const SampleGeometry NoGeometry;
+  const CellSamples* Cells = nullptr; ///< of a beam in cells
   /// What it sees, for mirror paths by regions, with hidden parts if it is in cells; null: they
   /// start from the rays.
   const VisiblePolygons* Surfaces = nullptr;

@@ -101,21 +101,20 @@ bool ConnectionFinder::faces(std::uint32_t surface, std::size_t surfaces) const
 
 void ConnectionFinder::find(const SecondaryBeam& beam, std::uint32_t partners)
 {
-  const SecondaryScene scene = beam.scene();
-  if (!this->findFacing(beam.samples, scene.geometry))
+  if (!this->findFacing(beam.samples, beam.geometry))
   {
     return;
   }
-  const std::vector<std::uint32_t>& surface = scene.geometry.surface;
+  const std::vector<std::uint32_t>& surface = beam.geometry.surface;
   const auto mayFace = [&](std::uint32_t one, std::uint32_t two)
   {
     return this->Facing.empty()
       ? surface[one] != surface[two]
-      : this->Facing[surface[one] * scene.geometry.surfaces.size() + surface[two]] != 0;
+      : this->Facing[surface[one] * beam.geometry.surfaces.size() + surface[two]] != 0;
   };
   const std::uint32_t rays = beam.samples.rays;
   this->chooseShifts(beam.id, rays, partners);
-  this->lookAtPairs(beam.samples, scene.geometry);
+  this->lookAtPairs(beam.samples, beam.geometry);
   // A row holds 64 partners, so that they come in the order of path numbers ray by ray.
   const std::uint32_t rows = (partners + 63) / 64;
   std::size_t found = 0;
@@ -150,12 +149,12 @@ void ConnectionFinder::find(const SecondaryBeam& beam, std::uint32_t partners)
           connections.add(one, two, k,
             uniform && distant
               ? weight
-              : this->partnerWeight(beam, n, partner, this->solidAngleShare(scene, partner)));
+              : this->partnerWeight(beam, n, partner, this->solidAngleShare(beam, partner)));
         }
       }
     }
   }
-  connections.measure(beam.samples, scene.geometry);
+  connections.measure(beam.samples, beam.geometry);
 }
 
 /// Fill Partners.
@@ -213,13 +212,13 @@ void ConnectionFinder::chooseShifts(std::uint64_t beam, std::uint32_t rays, std:
 
 /// Uniform solid angle that a ray stands for, over the beam's: where rays are denser they stand for
 /// less.
-double ConnectionFinder::solidAngleShare(const SecondaryScene& scene, std::uint32_t ray) const
+double ConnectionFinder::solidAngleShare(const SecondaryBeam& beam, std::uint32_t ray) const
 {
   if (this->Setup.sensor.beamProfile == BeamProfile::Uniform)
   {
     return 1.0; // wherever the ray is
   }
-  return 1.0 / this->Shape.density(scene.rays.x[ray], scene.rays.y[ray]);
+  return 1.0 / this->Shape.density(beam.rays.x[ray], beam.rays.y[ray]);
 }
 
 /// The sum over the M connections of a ray of weight times value estimates the mean of the value

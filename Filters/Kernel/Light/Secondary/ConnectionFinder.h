@@ -52,7 +52,7 @@ private:
   void chooseShifts(std::uint64_t beam, std::uint32_t rays, std::uint32_t count);
   double partnerWeight(
     const SecondaryBeam& beam, std::uint32_t n, std::uint32_t partner, double partnerShare) const;
-  double solidAngleShare(const SecondaryScene& scene, std::uint32_t ray) const;
+  double solidAngleShare(const SecondaryBeam& beam, std::uint32_t ray) const;
 
   void lookAtPairs(const BeamSamples& hits, const SampleGeometry& geometry);
 

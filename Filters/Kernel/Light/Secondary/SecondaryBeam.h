@@ -18,41 +18,34 @@
 #include "SceneTriangles.h"
 #include "SecondaryTrace.h"
 #include "Throughput.h"
+#include "VisiblePolygons.h"
 
 #include <functional>
 
 namespace avianlidar
 {
-class MirrorRegions;
-
-/// Inputs for tracing from the hits of a beam.
-struct SecondaryScene
-{
-  const SceneTriangles& triangles;
-  const BeamFrame& frame;
-  const BeamRays& rays;
-  const SampleGeometry& geometry;
-  BeamTracer& tracer; ///< set to the beam
-};
-
 /// Inputs and results of the search; all must outlive it.
 struct SecondaryBeam
 {
   std::uint64_t id;
-  const BeamSamples& samples;
-  const Throughput& direct;      ///< of the samples
-  const StrataPartition* strata; ///< null for Monte Carlo
+  const SceneTriangles& scene;
+  const BeamFrame& frame;
+  BeamTracer& tracer; ///< set to the beam
+  const BeamRays& rays;
+  const BeamSamples& samples;     ///< of the rays, where paths start
+  const SampleGeometry& geometry; ///< of the samples
+  const Throughput& direct;       ///< of the samples
+  const StrataPartition* strata;  ///< null for Monte Carlo
   SecondaryTrace& trace;
-  std::function<SecondaryScene()> scene; ///< called when something must be traced
-  double nearest;                        ///< range, m: no surface of the beam is nearer
+  double nearest; ///< range, m: no surface of the beam is nearer
   /// Called every 4096 steps; false ends the work with WorkStopped.
   const std::function<bool()>* wanted = nullptr;
-  /// Begins the regions of mirror paths; empty: they are followed from the samples.
-  std::function<void(MirrorRegions&)> regions = {};
-  std::function<BeamTracer&()> tracer = {}; ///< set to the beam, for regions
-  BeamAir* air = nullptr;                   ///< if the beam meets media that do not fill the scene
-  double silentBelow = 0.0;                 ///< J: if all paths bring less, the beam has no echo
-  bool endsAreSeen = false; ///< what the regions know of surfaces is visible, all of it
+  /// What the beam sees, between whose surfaces mirror paths go (MirrorRegions.h); null: they are
+  /// followed from the samples.
+  const VisiblePolygons* surfaces = nullptr;
+  const BeamSamples* cells = nullptr; ///< if the surfaces have hidden parts: what is seen of them
+  BeamAir* air = nullptr;             ///< if the beam meets media that do not fill the scene
+  double silentBelow = 0.0;           ///< J: if all paths bring less, the beam has no echo
 
   /// Throws WorkStopped if the work is no longer wanted: a beam of 100,000 rays takes longer than a
   /// user waits for an abort.

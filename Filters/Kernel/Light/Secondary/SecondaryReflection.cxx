@@ -33,7 +33,7 @@ SecondaryReflection::SecondaryReflection(const ScanSetup& setup, const SceneTria
 
 //--- what may be connected ------------------------------------------------------------------------
 
-void SecondaryReflection::prepare(const Beam& beam, bool byRegions)
+void SecondaryReflection::prepare(const SecondaryBeam& beam, bool byRegions)
 {
   SecondaryTrace& trace = beam.trace;
   const std::uint32_t partners = connectionsOf(this->Setup.settings);
@@ -97,7 +97,7 @@ double SecondaryReflection::bound(double albedo, double nearest) const
 }
 
 SecondaryReflection::BothWays SecondaryReflection::mirrorThroughput(
-  const Beam& beam, const MirrorPath& path) const
+  const SecondaryBeam& beam, const MirrorPath& path) const
 {
   const ReflectanceModel model = this->Setup.settings.reflectanceModel;
   const double aperture = this->Setup.sensor.receiverAperture;
@@ -152,7 +152,7 @@ double SecondaryReflection::unsureShare(const MirrorPath& path) const
   return std::min(1.0, std::sqrt(2.0 / Pi) * deviation / (path.range * std::tan(narrower)));
 }
 
-double SecondaryReflection::shortThroughput(const Beam& beam, const ShortPath& path) const
+double SecondaryReflection::shortThroughput(const SecondaryBeam& beam, const ShortPath& path) const
 {
   const ReflectanceModel model = this->Setup.settings.reflectanceModel;
   const Material first = this->Materials[path.one];
@@ -170,7 +170,7 @@ double SecondaryReflection::shortThroughput(const Beam& beam, const ShortPath& p
 }
 
 /// Bound of the sum of the throughputs of all short paths.
-double SecondaryReflection::mostOfShortPaths(const Beam& beam) const
+double SecondaryReflection::mostOfShortPaths(const SecondaryBeam& beam) const
 {
   const double aperture = this->Setup.sensor.receiverAperture;
   if (!(aperture > 0.0) || beam.trace.partners == 0 || beam.samples.coplanar)
@@ -190,7 +190,7 @@ double SecondaryReflection::mostOfShortPaths(const Beam& beam) const
 }
 
 /// What each path could bring back.
-void SecondaryReflection::measure(const Beam& beam)
+void SecondaryReflection::measure(const SecondaryBeam& beam)
 {
   const BeamSamples& samples = beam.samples;
   this->Triangles.resize(samples.size());
@@ -225,7 +225,7 @@ double SecondaryReflection::mostOfMirrors(bool byRegions) const
 /// Place mirror paths on the surfaces that may bring at least `least` by them, and set the
 /// throughputs of all: those of others count as lost, also if they are known. @return bound of
 /// these
-double SecondaryReflection::placeMirrors(const Beam& beam, double least)
+double SecondaryReflection::placeMirrors(const SecondaryBeam& beam, double least)
 {
   SecondaryTrace& trace = beam.trace;
   trace.searched.resize(this->Regions.surfaces(), 0);
@@ -245,9 +245,9 @@ double SecondaryReflection::placeMirrors(const Beam& beam, double least)
     {
       drawn += this->Regions.search(k, trace.mirrorPaths);
       trace.searched[k] = 1;
-      if (drawn >= Beam::StepsBetweenLooks)
+      if (drawn >= SecondaryBeam::StepsBetweenLooks)
       {
-        beam.askWhetherWanted(Beam::StepsBetweenLooks - 1);
+        beam.askWhetherWanted(SecondaryBeam::StepsBetweenLooks - 1);
         drawn = 0;
       }
     }
@@ -258,7 +258,7 @@ double SecondaryReflection::placeMirrors(const Beam& beam, double least)
   return left;
 }
 
-void SecondaryReflection::measureMirrors(const Beam& beam)
+void SecondaryReflection::measureMirrors(const SecondaryBeam& beam)
 {
   this->MirrorThroughputs.clear();
   this->BackThroughputs.clear();
@@ -298,7 +298,8 @@ double SecondaryReflection::untracedSum(const SecondaryTrace& trace) const
 //--- paths ----------------------------------------------------------------------------------------
 
 /// List the paths that arrive, with throughputs in place of energies.
-void SecondaryReflection::listPaths(const Beam& beam, std::vector<SecondaryPath>& paths) const
+void SecondaryReflection::listPaths(
+  const SecondaryBeam& beam, std::vector<SecondaryPath>& paths) const
 {
   const SecondaryConnections& connections = beam.trace.connections;
   paths.clear();
@@ -311,14 +312,8 @@ void SecondaryReflection::listPaths(const Beam& beam, std::vector<SecondaryPath>
         beam.air->transmissionBetween(one, two) * beam.air->transmissionBetween(two, apex)
                     : 1.0;
   };
-  const SampleGeometry* const geometry =
-    beam.air && connections.size() > 0 ? &beam.scene().geometry : nullptr;
-  const auto ofConnection = [&](std::uint32_t one, std::uint32_t two)
-  {
-    return geometry ? leftOf(beam.samples.range[one] * geometry->direction(one),
-                        beam.samples.range[two] * geometry->direction(two))
-                    : 1.0;
-  };
+  const auto pointOf = [&](std::uint32_t sample)
+  { return beam.samples.range[sample] * beam.geometry.direction(sample); };
   for (std::size_t p = 0; p < beam.trace.mirrorPaths.size(); ++p)
   {
     const MirrorPath& path = beam.trace.mirrorPaths[p];
@@ -344,7 +339,7 @@ void SecondaryReflection::listPaths(const Beam& beam, std::vector<SecondaryPath>
       const std::uint32_t one = connections.one[i];
       const std::uint32_t two = connections.two[i];
       paths.push_back({ beam.samples.range[one] + connections.length[i] + beam.samples.range[two],
-        this->ConnectionThroughputs[i] * ofConnection(one, two), this->Triangles[two],
+        this->ConnectionThroughputs[i] * leftOf(pointOf(one), pointOf(two)), this->Triangles[two],
         connections.cosIn[i], one, two });
     }
   }
@@ -371,14 +366,15 @@ AVIANLIDAR_MULTIVERSION void energiesOfAll(
 }
 }
 
-bool SecondaryReflection::collect(const Beam& beam, std::vector<SecondaryPath>& paths, double& lost)
+bool SecondaryReflection::collect(
+  const SecondaryBeam& beam, std::vector<SecondaryPath>& paths, double& lost)
 {
   const EchoSettings& settings = this->Setup.settings;
   const double pulseEnergy = this->Setup.sensor.pulseEnergy;
-  const bool byRegions = static_cast<bool>(beam.regions);
+  const bool byRegions = beam.surfaces != nullptr;
   if (byRegions)
   {
-    beam.regions(this->Regions);
+    this->Regions.begin(beam.id, beam.frame, *beam.surfaces, beam.cells);
   }
   this->OverMirror = mostOverMirror(this->Setup, this->Shape, beam.nearest);
   this->prepare(beam, byRegions);
@@ -465,7 +461,7 @@ bool SecondaryReflection::collect(const Beam& beam, std::vector<SecondaryPath>& 
 
 /// Cut what passes a ray's budget, which is what its direct echo leaves of the albedo: the random
 /// weights of its connections may together exceed 1.
-void SecondaryReflection::cutToBudget(const Beam& beam, std::vector<SecondaryPath>& paths)
+void SecondaryReflection::cutToBudget(const SecondaryBeam& beam, std::vector<SecondaryPath>& paths)
 {
   this->Returned.assign(beam.samples.size(), 0.0);
   for (const SecondaryPath& path : paths)

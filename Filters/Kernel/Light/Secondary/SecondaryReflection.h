@@ -76,9 +76,6 @@ struct SecondaryPath
 class SecondaryReflection
 {
 public:
-  using Beam = SecondaryBeam;
-  using Scene = SecondaryScene;
-
   SecondaryReflection(const ScanSetup& setup, const SceneTriangles& scene);
 
   /// Bound of the sum of the throughputs of all paths of a beam. @param samples of its direct echo,
@@ -94,7 +91,7 @@ public:
   /// @param lost sum of the bounds of dropped paths, J; those dropped here are added
   /// @return false if all paths together, whatever is in their way, bring less than
   /// SecondaryBeam::silentBelow: none is traced then, and `lost` is the bound of all
-  bool collect(const Beam& beam, std::vector<SecondaryPath>& paths, double& lost);
+  bool collect(const SecondaryBeam& beam, std::vector<SecondaryPath>& paths, double& lost);
 
 private:
   /// Throughputs of a mirror path and, through an aperture, of the same path back.
@@ -102,18 +99,18 @@ private:
   {
     double there, back;
   };
-  void prepare(const Beam& beam, bool byRegions);
-  double placeMirrors(const Beam& beam, double least);
-  void measureMirrors(const Beam& beam);
+  void prepare(const SecondaryBeam& beam, bool byRegions);
+  double placeMirrors(const SecondaryBeam& beam, double least);
+  void measureMirrors(const SecondaryBeam& beam);
   double mostOfMirrors(bool byRegions) const;
-  void measure(const Beam& beam);
+  void measure(const SecondaryBeam& beam);
   double untracedSum(const SecondaryTrace& trace) const;
-  void listPaths(const Beam& beam, std::vector<SecondaryPath>& paths) const;
-  BothWays mirrorThroughput(const Beam& beam, const MirrorPath& path) const;
+  void listPaths(const SecondaryBeam& beam, std::vector<SecondaryPath>& paths) const;
+  BothWays mirrorThroughput(const SecondaryBeam& beam, const MirrorPath& path) const;
   double unsureShare(const MirrorPath& path) const;
-  double shortThroughput(const Beam& beam, const ShortPath& path) const;
-  double mostOfShortPaths(const Beam& beam) const;
-  void cutToBudget(const Beam& beam, std::vector<SecondaryPath>& paths);
+  double shortThroughput(const SecondaryBeam& beam, const ShortPath& path) const;
+  double mostOfShortPaths(const SecondaryBeam& beam) const;
+  void cutToBudget(const SecondaryBeam& beam, std::vector<SecondaryPath>& paths);
 
   const ScanSetup& Setup;
   const BeamShape Shape;

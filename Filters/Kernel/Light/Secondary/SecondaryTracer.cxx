@@ -33,60 +33,60 @@ double distanceInCone(
 }
 
 /// Where the path of a hit into a direction ends, if that is in the cone and seen by the lidar.
-Hit pathEnd(const ScanSetup& setup, const SecondaryBeam& beam, const SecondaryScene& scene,
-  std::uint32_t hit, const Vec3& direction)
+Hit pathEnd(
+  const ScanSetup& setup, const SecondaryBeam& beam, std::uint32_t hit, const Vec3& direction)
 {
-  const HitPoint from(beam.samples, scene.geometry, hit);
+  const HitPoint from(beam.samples, beam.geometry, hit);
   const double margin = surfaceMargin(from.range);
   // With the beam constraint the search ends where the path leaves the cone.
   const double reach = setup.settings.beamConstraint
-    ? distanceInCone(scene.frame, from.point, from.range, direction)
+    ? distanceInCone(beam.frame, from.point, from.range, direction)
     : std::numeric_limits<double>::infinity();
   const Hit end =
-    scene.tracer.traceFrom(from.point, direction, margin, scene.geometry.triangle(hit), reach);
+    beam.tracer.traceFrom(from.point, direction, margin, beam.geometry.triangle(hit), reach);
   if (!end.valid())
   {
     return {};
   }
   const Vec3 point = from.point + end.range * direction;
-  if (!scene.frame.contains(point))
+  if (!beam.frame.contains(point))
   {
     return {};
   }
-  const SeenTriangle triangle = seeTriangle(scene.triangles, end.triangle, scene.frame.origin);
+  const SeenTriangle triangle = seeTriangle(beam.scene, end.triangle, beam.frame.origin);
   if (glm::dot(triangle.normal, direction) >= 0.0)
   {
     return {}; // it meets the side that looks away from the lidar
   }
-  const Hit seen = scene.tracer.traceFromApex(point);
+  const Hit seen = beam.tracer.traceFromApex(point);
   const double range = safeLength(point);
   const bool visible =
     !seen.valid() || seen.triangle == end.triangle || seen.range >= range - surfaceMargin(range);
   return visible ? end : Hit();
 }
 
-void traceMirror(const ScanSetup& setup, const SecondaryBeam& beam, const SecondaryScene& scene,
-  const BeamShape& shape, std::uint32_t hit)
+void traceMirror(
+  const ScanSetup& setup, const SecondaryBeam& beam, const BeamShape& shape, std::uint32_t hit)
 {
-  const HitPoint from(beam.samples, scene.geometry, hit);
-  const Vec3 direction = mirrorDirection(scene.geometry.direction(hit), from.normal);
-  const Hit found = pathEnd(setup, beam, scene, hit, direction);
+  const HitPoint from(beam.samples, beam.geometry, hit);
+  const Vec3 direction = mirrorDirection(beam.geometry.direction(hit), from.normal);
+  const Hit found = pathEnd(setup, beam, hit, direction);
   if (!found.valid())
   {
     beam.trace.mirror[hit] = MirrorEnd::Nowhere;
     return;
   }
   beam.trace.mirror[hit] = MirrorEnd::Arrives;
-  const SeenTriangle end = seeTriangle(scene.triangles, found.triangle, scene.frame.origin);
+  const SeenTriangle end = seeTriangle(beam.scene, found.triangle, beam.frame.origin);
   // The range that was found, not the plane's once more: seen edge-on they have little in common.
   const Vec3 point = from.point + found.range * direction;
   const double range = safeLength(point);
   const auto densityAt = [&](const Vec3& p)
   {
-    const Vec3 q = scene.frame.toPlane(p);
+    const Vec3 q = beam.frame.toPlane(p);
     return shape.density(q.x / q.z, q.y / q.z);
   };
-  beam.trace.mirrorPaths.push_back({ 0, hit, scene.geometry.triangle(hit), found.triangle,
+  beam.trace.mirrorPaths.push_back({ 0, hit, beam.geometry.triangle(hit), found.triangle,
     beam.samples.weight[hit], densityAt(point) / densityAt(from.point), beam.samples.cosine[hit],
     from.range, from.range + found.range + range, range,
     reflectionGeometry(direction, -point / range, end.normal), from.point, point,
@@ -108,22 +108,22 @@ Vec3 drawDirection(
 }
 
 /// Follow the k-th of a ray's directions.
-void traceShortPath(const ScanSetup& setup, const SecondaryBeam& beam, const SecondaryScene& scene,
-  std::uint32_t hit, std::uint32_t k)
+void traceShortPath(
+  const ScanSetup& setup, const SecondaryBeam& beam, std::uint32_t hit, std::uint32_t k)
 {
-  const HitPoint from(beam.samples, scene.geometry, hit);
+  const HitPoint from(beam.samples, beam.geometry, hit);
   const Vec3 direction = drawDirection(
     setup, beam, std::uint64_t{ beam.samples.ray[hit] } * beam.trace.partners + k, from.normal);
-  const Hit found = pathEnd(setup, beam, scene, hit, direction);
+  const Hit found = pathEnd(setup, beam, hit, direction);
   if (!found.valid())
   {
     return;
   }
-  const SeenTriangle end = seeTriangle(scene.triangles, found.triangle, scene.frame.origin);
+  const SeenTriangle end = seeTriangle(beam.scene, found.triangle, beam.frame.origin);
   const Vec3 point = from.point + found.range * direction;
   const double range = safeLength(point);
   const ReflectionGeometry first =
-    reflectionGeometry(scene.geometry.direction(hit), direction, from.normal);
+    reflectionGeometry(beam.geometry.direction(hit), direction, from.normal);
   const ReflectionGeometry second = reflectionGeometry(direction, -point / range, end.normal);
   const double excess = 1.0 -
     MostFormFactor /
@@ -138,14 +138,14 @@ void traceShortPath(const ScanSetup& setup, const SecondaryBeam& beam, const Sec
 }
 
 /// Whether something stands between the hits of a connection.
-bool isBlocked(const SecondaryBeam& beam, const SecondaryScene& scene, std::size_t connection)
+bool isBlocked(const SecondaryBeam& beam, std::size_t connection)
 {
   const std::uint32_t hit1 = beam.trace.connections.one[connection];
   const std::uint32_t hit2 = beam.trace.connections.two[connection];
-  const HitPoint one(beam.samples, scene.geometry, hit1);
-  const HitPoint two(beam.samples, scene.geometry, hit2);
-  return scene.tracer.occluded(one.point, two.point, surfaceMargin(std::max(one.range, two.range)),
-    scene.geometry.triangle(hit1), scene.geometry.triangle(hit2));
+  const HitPoint one(beam.samples, beam.geometry, hit1);
+  const HitPoint two(beam.samples, beam.geometry, hit2);
+  return beam.tracer.occluded(one.point, two.point, surfaceMargin(std::max(one.range, two.range)),
+    beam.geometry.triangle(hit1), beam.geometry.triangle(hit2));
 }
 }
 
@@ -158,23 +158,13 @@ void traceMirrors(const ScanSetup& setup, const SecondaryBeam& beam,
     const double most = throughputs[hit];
     return trace.mirror[hit] == MirrorEnd::NotTraced && most > 0.0 && most >= least;
   };
-  std::uint32_t hit = 0;
-  while (hit < beam.samples.size() && !isWanted(hit))
-  {
-    ++hit;
-  }
-  if (hit == beam.samples.size())
-  {
-    return;
-  }
-  const SecondaryScene scene = beam.scene();
   const BeamShape shape(setup.sensor);
-  for (; hit < beam.samples.size(); ++hit)
+  for (std::uint32_t hit = 0; hit < beam.samples.size(); ++hit)
   {
     beam.askWhetherWanted(hit);
     if (isWanted(hit))
     {
-      traceMirror(setup, beam, scene, shape, hit);
+      traceMirror(setup, beam, shape, hit);
     }
   }
   std::sort(trace.mirrorPaths.begin(), trace.mirrorPaths.end(),
@@ -184,7 +174,6 @@ void traceMirrors(const ScanSetup& setup, const SecondaryBeam& beam,
 void traceRegions(const SecondaryBeam& beam, const std::vector<double>& throughputs, double least)
 {
   std::vector<MirrorPath>& paths = beam.trace.mirrorPaths;
-  BeamTracer* tracer = nullptr;
   for (std::size_t p = 0; p < paths.size(); ++p)
   {
     MirrorPath& path = paths[p];
@@ -194,13 +183,12 @@ void traceRegions(const SecondaryBeam& beam, const std::vector<double>& throughp
     {
       continue;
     }
-    tracer = tracer ? tracer : &beam.tracer();
     // Of two triangles in one place one is seen.
     const auto isSeen = [&](const Vec3& point, std::uint32_t triangle)
-    { return tracer->traceFromApex(point).triangle == triangle; };
+    { return beam.tracer.traceFromApex(point).triangle == triangle; };
     const bool clear =
-      (beam.endsAreSeen || (isSeen(path.from, path.first) && isSeen(path.end, path.triangle))) &&
-      !tracer->occluded(path.from, path.end, surfaceMargin(std::max(path.rangeOne, path.range)),
+      (!beam.cells || (isSeen(path.from, path.first) && isSeen(path.end, path.triangle))) &&
+      !beam.tracer.occluded(path.from, path.end, surfaceMargin(std::max(path.rangeOne, path.range)),
         path.first, path.triangle);
     path.visibility = clear ? Visibility::Clear : Visibility::Blocked;
   }
@@ -213,15 +201,14 @@ void traceShortPaths(const ScanSetup& setup, const SecondaryBeam& beam, Connecti
     return;
   }
   beam.trace.shortPaths.clear(); // of work that was stopped
-  const SecondaryScene scene = beam.scene();
-  const bool any = finder.findFacing(beam.samples, scene.geometry);
+  const bool any = finder.findFacing(beam.samples, beam.geometry);
   for (std::uint32_t hit = 0; any && hit < beam.samples.size(); ++hit)
   {
     beam.askWhetherWanted(hit);
-    const bool faces = finder.faces(scene.geometry.surface[hit], scene.geometry.surfaces.size());
+    const bool faces = finder.faces(beam.geometry.surface[hit], beam.geometry.surfaces.size());
     for (std::uint32_t k = 0; faces && k < beam.trace.partners; ++k)
     {
-      traceShortPath(setup, beam, scene, hit, k);
+      traceShortPath(setup, beam, hit, k);
     }
   }
   beam.trace.shortTraced = true;
@@ -237,23 +224,13 @@ void traceConnections(
     return connections.visibility[connection] == Visibility::Unknown && throughput > 0.0 &&
       throughput >= least;
   };
-  std::size_t connection = 0;
-  while (connection < connections.size() && !isWanted(connection))
-  {
-    ++connection;
-  }
-  if (connection == connections.size())
-  {
-    return;
-  }
-  const SecondaryScene scene = beam.scene();
-  for (; connection < connections.size(); ++connection)
+  for (std::size_t connection = 0; connection < connections.size(); ++connection)
   {
     beam.askWhetherWanted(connection);
     if (isWanted(connection))
     {
       connections.visibility[connection] =
-        isBlocked(beam, scene, connection) ? Visibility::Blocked : Visibility::Clear;
+        isBlocked(beam, connection) ? Visibility::Blocked : Visibility::Clear;
     }
   }
 }
