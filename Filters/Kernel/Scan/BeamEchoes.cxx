@@ -40,7 +40,6 @@ bool EchoLabels::meetsOneThing(
     std::all_of(paths.begin(), paths.end(), isFirst);
 }
 
-/// Set the angle of incidence of each share.
 void EchoLabels::findAngles(
   const RangeShares& shares, const BeamSamples& samples, const std::vector<SecondaryPath>& paths)
 {
@@ -181,10 +180,10 @@ bool BeamEchoes::receiveAgain(
   return true;
 }
 
-/// Make the echoes of what was received. @param echoOf what follows from the light of a return
-/// @param outsideGate see BeamLighting::isOutsideGate(): direct echoes alone decide that, as
-/// whether paths over two reflections are traced depends on what is kept of the beam @param meets a
-/// surface
+/// Make echoes of the returns. @param echoOf gives the part of an echo that follows from light
+/// @param outsideGate see BeamLighting::isOutsideGate(): it follows from direct echoes alone, as
+/// the cache may change which paths over two reflections are traced @param meets true if the beam
+/// meets a surface
 template <class F>
 void BeamEchoes::finish(
   F echoOf, bool outsideGate, bool meets, std::vector<Echo>& echoes, BeamReport& report)
@@ -220,7 +219,7 @@ void BeamEchoes::finish(
   {
     echoes.push_back(make(ret));
   }
-  // Before the return mode chooses: it selects what is shown, not what was received.
+  // The return mode selects what is shown, not what is received.
   const Return* const strongest = this->Receiver.strongest();
   if (!strongest)
   {
@@ -237,7 +236,7 @@ void BeamEchoes::finish(
     : BeamStatus::Echo;
 }
 
-/// Take what leaves return into the range of an echo of a surface, and into its label.
+/// Include the light of leaves in the range and the label of an echo.
 void BeamEchoes::addLeaves(const Return& ret, Echo& echo) const
 {
   const double share = std::clamp(ret.leaves / ret.returnEnergy, 0.0, 1.0);
@@ -254,7 +253,7 @@ void BeamEchoes::addLeaves(const Return& ret, Echo& echo) const
   }
 }
 
-/// What is known of a return; null: nothing.
+/// The known values of a return; null if there are none.
 const LitBeam::KnownReturn* BeamEchoes::find(const LitBeam& known, const Return& ret) const
 {
   const LitBeam::KnownReturn wanted = this->unitsOf(ret);
@@ -274,7 +273,7 @@ LitBeam::KnownReturn BeamEchoes::unitsOf(const Return& ret) const
     units[ret.strongestUnit].index, {} };
 }
 
-/// What follows from light alone.
+/// The part of an echo that follows from light alone.
 Echo BeamEchoes::echoOfLight(const Return& ret)
 {
   const auto& units = this->Receiver.units();

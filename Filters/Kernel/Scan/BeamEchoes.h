@@ -1,15 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file BeamEchoes.h
- * @brief Third stage of a beam: makes returns of the energies in range units, with standard errors
- * and labels.
+ * @brief Third stage of a beam: makes returns, with standard errors and labels.
  *
- * The labels of a return follow from all paths with a share in it: object and material of the
- * largest share of the energy, mean angle of incidence, and the share that came over two
+ * The labels of a return follow from all paths with a share in it: the object and material with the
+ * most energy, the mean angle of incidence, and the share of the energy that came over two
  * reflections.
  *
  * Source: paper, Eq. 10-12.
- * Differs: the paper gives one point per perceived range unit and labels none; returns are those of
+ * Differs: the paper gives one point per perceived range unit, without labels; returns are those of
  * Receiver.h.
  * Valid: a false alarm has no object, no material and no angle. The standard error is NaN where
  * StandardError.h has none; for an integrated beam it is the bound of PolygonQuadrature.h.
@@ -28,8 +27,8 @@
 
 namespace avianlidar
 {
-/// Energies of a return by object and material. A beam meets few, and neighbouring rays meet the
-/// same, so that a list is faster than a map. Reusable without allocation; one per thread.
+/// Energies of a return by object and material. A beam meets few of them, and its rays mostly the
+/// last one again, so a list is faster than a map. Reusable without allocation; one per thread.
 class LabelSums
 {
 public:
@@ -62,7 +61,7 @@ public:
     bool is(int o, int m) const { return this->object == o && this->material == m; }
   };
 
-  /// Ties go to the lowest object, then material.
+  /// The largest sum. Ties go to the lowest object, then to the lowest material.
   const Sum& largest() const
   {
     return *std::min_element(this->Sums.begin(), this->Sums.end(),
@@ -99,8 +98,8 @@ public:
   {
   }
 
-  /// Set the labels of an echo. @param samples of the beam; null if it has none @param paths over
-  /// two reflections; their contributions come after those of the samples
+  /// Set the labels of an echo. @param samples null if the beam has none @param paths the paths
+  /// over two reflections; their contributions follow those of the samples
   void label(const RangeShares& shares, const BeamSamples* samples,
     const std::vector<SecondaryPath>& paths, Echo& echo);
 
@@ -122,13 +121,12 @@ class BeamEchoes
 public:
   BeamEchoes(const ScanSetup& setup, BeamLighting& lighting, BeamReceiver& receiver);
 
-  /// Append the echoes of the beam lit last. @param keep takes what is known of returns; may be
-  /// null
-  /// @param report out: status and range
+  /// Append the echoes of the beam lit last. @param keep gets the values of returns that do not
+  /// depend on noise; may be null @param report out: status and range
   void receive(std::uint64_t beam, LitBeam* keep, std::vector<Echo>& echoes, BeamReport& report);
 
-  /// Append those of a beam that was lit in an earlier scan. @param report out: status, range and
-  /// what was left out @return false if a return is not known; nothing is changed then
+  /// Append the echoes of a beam lit in an earlier scan. @param report out: status, range and what
+  /// was left out @return false, with echoes and report unchanged, if a return is not known
   bool receiveAgain(
     std::uint64_t beam, const LitBeam& known, std::vector<Echo>& echoes, BeamReport& report);
 

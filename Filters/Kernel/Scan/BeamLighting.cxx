@@ -69,8 +69,8 @@ bool BeamLighting::light(std::size_t beam, BeamTrace& trace)
   return true;
 }
 
-/// Set the samples of the beam: rays, nodes or strips, and what it sees. @return false if, by a
-/// bound, nothing of it can be perceived
+/// Set the samples of the beam (rays, nodes or strips) and the surfaces that it sees. @return false
+/// if a bound shows that nothing of it can be perceived
 bool BeamLighting::placeSamples(std::size_t beam, BeamTrace& trace)
 {
   this->Starts = this->Lit = trace.hits.get();
@@ -86,7 +86,7 @@ bool BeamLighting::placeSamples(std::size_t beam, BeamTrace& trace)
   return !trace.polygons() || this->placeNodes(beam);
 }
 
-/// The same of an integrated beam.
+/// Set the nodes of an integrated beam. @return as placeSamples()
 bool BeamLighting::placeNodes(std::size_t beam)
 {
   this->Starts = this->Lit = nullptr;
@@ -104,7 +104,7 @@ bool BeamLighting::placeNodes(std::size_t beam)
   return true;
 }
 
-/// Weaken direct echoes by media that do not fill the scene. @return their sum, J
+/// Weaken direct echoes by media that do not fill the scene. @return their new sum, J
 double BeamLighting::passMedia(double sum)
 {
   if (!this->Air.isLocal())
@@ -142,8 +142,8 @@ void BeamLighting::fillUnits()
   this->Units.accumulate();
 }
 
-/// Add paths over two reflections, unless none of the scan can matter. @param most energy of all,
-/// J, at most @return false if nothing of the beam can be perceived
+/// Add paths over two reflections, unless none in the scan can matter. @param most bound of their
+/// energy, J @return false if nothing of the beam can be perceived
 bool BeamLighting::reflectAgain(std::size_t beam, BeamTrace& trace, double most)
 {
   const double lostBefore = this->Lost;
@@ -172,7 +172,7 @@ void BeamLighting::startFrom(const BeamSamples& rays)
   }
 }
 
-/// @return false if nothing of the beam can be perceived
+/// Find the paths over two reflections. @return false if nothing of the beam can be perceived
 bool BeamLighting::collectPaths(std::size_t beam, BeamTrace& trace)
 {
   const bool byRegions = this->Surfaces && MirrorRegions::takes(*this->Surfaces);
@@ -188,7 +188,7 @@ bool BeamLighting::collectPaths(std::size_t beam, BeamTrace& trace)
   {
     trace.secondary = std::make_unique<SecondaryTrace>();
   }
-  // A strip of cells lies about its mean range.
+  // A strip of cells begins before its mean range.
   const double nearest =
     this->Cells ? (1.0 - MostOfRange) * this->Lit->nearest : this->Lit->nearest;
   const bool strata = this->Setup.settings.sampling == Sampling::Stratified;
@@ -220,9 +220,9 @@ bool BeamLighting::collectPaths(std::size_t beam, BeamTrace& trace)
     !this->isSkipped(direct + this->Lost, this->Lit->farthest, this->Lit->nearest);
 }
 
-/// Set the energies of direct echoes. @param most J, energy of a path of throughput 1 at most
-/// @param ofPaths J, of all paths over two reflections at most @return false if, by bounds, nothing
-/// of the beam can be perceived; energies may not be set then
+/// Set the energies of direct echoes. @param most bound of the energy of a path of throughput 1, J
+/// @param ofPaths bound of the energy of all paths over two reflections, J @return false if bounds
+/// show that nothing of the beam can be perceived; energies may not be set then
 bool BeamLighting::mayBePerceived(double most, double ofPaths)
 {
   const BeamSamples& samples = *this->Lit;
@@ -246,8 +246,8 @@ bool BeamLighting::mayBePerceived(double most, double ofPaths)
   return true;
 }
 
-/// False if the beam must be lit although its surfaces send back too little: noise or air may be
-/// perceived, or the report says what arrives outside the gate.
+/// False if the beam must be lit even if its surfaces return too little: noise or air may be
+/// perceived, or the report must say that echoes arrive outside the gate.
 bool BeamLighting::mayBeLeftOut(double farthest, double nearest) const
 {
   return !this->LightsAll && !this->Receiver.mayAlarm() && !this->Air.returnsLight() &&
@@ -255,7 +255,8 @@ bool BeamLighting::mayBeLeftOut(double farthest, double nearest) const
     this->Units.lastUnitOf(farthest) < static_cast<double>(this->Units.gateUnits());
 }
 
-/// True if nothing of the beam can be perceived. @param most J, bound of its strongest unit
+/// True if nothing of the beam can be perceived; its report then says so. @param most bound of the
+/// strongest range unit, J @param farthest, nearest ranges of its surfaces, m
 bool BeamLighting::isSkipped(double most, double farthest, double nearest)
 {
   if (!(most < SurelyBelow * this->Setup.sensor.lowerEnergyLimit) ||
@@ -295,7 +296,7 @@ double BeamLighting::errorOf(std::int64_t unit, std::uint32_t paths)
   return ofLobes > 0.0 ? std::hypot(ofSamples, ofLobes) : ofSamples;
 }
 
-/// Error, J, of what came over mirrors into a unit, by the width of their lobes.
+/// Error of the energy that mirror paths put into a unit, by the width of the mirrors' lobes, J.
 double BeamLighting::errorOfLobes(const RangeShares& shares) const
 {
   const std::size_t direct = this->Lit->size();
@@ -309,7 +310,7 @@ double BeamLighting::errorOfLobes(const RangeShares& shares) const
   return sum;
 }
 
-/// Error, J, of what was put into a unit, by the choice of samples.
+/// Sampling error of the energy in a unit, J.
 double BeamLighting::errorOfSamples(const RangeShares& shares, std::uint32_t paths)
 {
   if (this->raysAreLit())
@@ -328,9 +329,9 @@ double BeamLighting::errorOfSamples(const RangeShares& shares, std::uint32_t pat
   return ofPaths + this->Quadrature.boundOf(shares, this->Energies);
 }
 
-/// Standard error, J, of what mirror paths by regions put into a unit: those of two strata are
-/// neighbours, of which one may not arrive. Many regions have two alone, whose difference says
-/// little; twice its square is taken.
+/// Standard error of the energy that mirror paths by regions put into a unit, J. Two neighbouring
+/// samples are a stratum; one of them may not arrive. Many regions have one stratum alone, whose
+/// difference says little, so twice its square is taken.
 double BeamLighting::errorOfMirrors(const RangeShares& shares) const
 {
   const std::size_t direct = this->Lit->size();
@@ -351,7 +352,7 @@ double BeamLighting::errorOfMirrors(const RangeShares& shares) const
       continue;
     }
     double energy = shares.energies[s];
-    // Light goes the path of a sample both ways.
+    // Both directions of a path belong to one sample.
     for (; s + 1 < shares.count && isMirror(s + 1) && sampleOf(s + 1) == sampleOf(s); ++s)
     {
       energy += shares.energies[s + 1];
@@ -371,9 +372,9 @@ double BeamLighting::errorOfMirrors(const RangeShares& shares) const
   return std::sqrt(2.0 * std::max(0.0, variance));
 }
 
-/// Standard error, J, of what the rays put into a unit: of their paths over two reflections, and of
-/// their direct echoes, if they are the samples. @param filled every ray put energy here, and one
-/// plane fills the beam, so that no ray puts less
+/// Standard error of the energy that rays put into a unit, J: on paths over two reflections and, if
+/// the rays are the samples, as direct echoes. @param filled true if every ray put energy here and
+/// one plane fills the beam, so that no ray puts less
 double BeamLighting::errorOfRays(const RangeShares& shares, bool filled)
 {
   const std::size_t direct = this->Lit->size();

@@ -3,23 +3,27 @@
  * @file BeamLighting.h
  * @brief Second stage of a beam: the energies of all its paths, in range units.
  *
- * These are the direct echoes of all samples and the paths over two reflections that the
- * light-energy constraint keeps. A path is dropped when it carries less than epsilon Qlow / (paths
- * of the beam), epsilon being EchoSettings::lightEnergyFraction, and not traced when an upper bound
- * shows that. All secondary paths of a beam are skipped when their bounds, with what is already
- * dropped, sum to less than epsilon Qlow. A beam whose energy would not be perceived even if all of
- * it (of an integrated beam: the most of a unit), by upper bounds, arrived in one range unit ends
- * before anything is traced on from its samples (only with the constraint on, and where noise
- * cannot matter). Of an integrated beam the direct echoes are those of its nodes
- * (PolygonQuadrature.h), and connections start from rays placed on its polygons, if they face each
- * other. Of a beam in cells they are those of its strips (RangeStrips.h), and connections start
- * from its rays. Mirror paths of both are those of MirrorRegions.h.
+ * The paths are the direct echoes of all samples, and the paths over two reflections that the
+ * light-energy constraint keeps. With epsilon = EchoSettings::lightEnergyFraction:
+ *
+ * - A path is dropped if it carries less than epsilon Qlow / (paths of the beam). It is not traced
+ *   if an upper bound shows that.
+ * - All secondary paths of a beam are skipped if their bounds, with what is already dropped, sum to
+ *   less than epsilon Qlow.
+ * - A beam ends before secondary paths are traced if, by upper bounds, it would not be perceived
+ * even with all its energy (an integrated beam: with the most of a unit) in one range unit. This
+ * needs the constraint, and noise that cannot matter.
+ *
+ * The samples of an integrated beam are nodes on its polygons (PolygonQuadrature.h). If these face
+ * each other, connections start from rays placed on them. The samples of a beam in cells are its
+ * strips (RangeStrips.h), and connections start from its rays. Mirror paths of both come from
+ * MirrorRegions.h.
  *
  * Source: paper, Eq. 4-9 and Sec. 3.4.
  * Differs: the constraint compares with the sum of a range unit, not with a single ray: Qlow for a
  * ray would remove every wall.
- * Valid: no range unit loses more than epsilon Qlow; a beam that ends early has no echo
- * either way, unless paths that start from random rays bring more than the bound by chance.
+ * Valid: no range unit loses more than epsilon Qlow. A beam that ends early has no echo either way,
+ * unless paths that start from random rays bring more than the bound by chance.
  * Test: TestEchoClosedForms.cxx, TestSecondaryConstraints.cxx, TestScanAgain.cxx.
  */
 #ifndef avianlidar_BeamLighting_h
@@ -42,13 +46,12 @@ namespace avianlidar
 class BeamLighting
 {
 public:
-  /// @param wanted called every 4096 steps within a beam; if it returns false, WorkStopped
-  /// is thrown
+  /// @param wanted called every 4096 steps within a beam; false ends the work with WorkStopped
   BeamLighting(const ScanSetup& setup, const SceneTriangles& scene, const ScanBeams& beams,
     ScanBlock& block, BeamSampler& sampler, const BeamReceiver& receiver, BeamAir& air,
     std::function<bool()> wanted);
 
-  /// Light beams also where bounds show that nothing of them can be perceived.
+  /// Light beams even where bounds show that nothing can be perceived.
   void lightAll() { this->LightsAll = true; }
 
   /// Light the samples of a beam of the block, if it has any, and add to `trace` what is found.
@@ -61,17 +64,16 @@ public:
   /// Energies of the direct echoes of the samples, J; empty if nothing can be perceived.
   const std::vector<double>& energies() const { return this->Energies; }
   const std::vector<SecondaryPath>& paths() const { return this->Paths; }
-  /// Standard error, J, of the energy in a range unit: of the rays (StandardError.h), or of the
-  /// cells and of the rays from which paths start. The direct echo of an integrated beam has a
-  /// bound of the error instead, to which the standard error of its paths is added.
-  /// The width of mirrors' lobes adds to it, where an aperture gathers their light.
-  /// @param paths number of paths with a share in the unit
+  /// Standard error of the energy in a range unit, J. It comes from the rays (StandardError.h), or
+  /// from the cells and the rays from which paths start. An integrated beam has a bound of the
+  /// error of its direct echo, plus the standard error of its paths. Where an aperture gathers the
+  /// light of mirrors, the width of their lobes adds to it. @param paths number of paths with a
+  /// share in the unit
   double errorOf(std::int64_t unit, std::uint32_t paths);
   /// True if a direct echo arrives outside the gate, and nothing inside.
   bool isOutsideGate() const;
-  /// The air along it.
   BeamAir& air() { return this->Air; }
-  /// Radiance that the beam looks at, W/(m2 sr nm) (Background.h).
+  /// Spectral radiance that the beam looks at, W/(m2 sr nm) (Background.h).
   double radiance() const { return this->Radiance; }
   double lost() const { return this->Lost; }              ///< J, see BeamReport
   std::uint32_t skipped() const { return this->Skipped; } ///< see BeamReport
@@ -110,21 +112,21 @@ private:
   // The beam being lit.
   const BeamSamples* Lit = nullptr;    ///< samples of the direct echo
   const BeamSamples* Starts = nullptr; ///< rays from which paths start; null if none do
-  // Where no path starts from a ray.
+  // Empty, for beams whose paths start from no ray.
   const BeamSamples NoStarts;
   const BeamRays NoRays;
   const SampleGeometry NoGeometry;
-  const CellSamples* Cells = nullptr; ///< of a beam in cells
-  /// What it sees, for mirror paths by regions, with hidden parts if it is in cells; null: they
-  /// start from the rays.
+  const CellSamples* Cells = nullptr; ///< null if the beam is not in cells
+  /// Surfaces that the beam sees, for mirror paths by regions; with hidden parts if it is in cells.
+  /// Null: mirror paths start from the rays.
   const VisiblePolygons* Surfaces = nullptr;
   bool Facing = false;          ///< an integrated beam may have paths over two reflections
-  Throughput OfLit;             ///< direct echoes of `Lit`
-  Throughput OfStarts;          ///< of `Starts`, if those are not what is lit
+  Throughput OfLit;             ///< throughputs of the direct echoes of `Lit`
+  Throughput OfStarts;          ///< throughputs at `Starts`, if these are not `Lit`
   std::vector<double> Energies; ///< energies of the direct echoes, J
   std::vector<SecondaryPath> Paths;
-  double Direct = 0.0;   ///< J, sum of these before any is dropped
-  double Unplaced = 0.0; ///< J, see PolygonQuadrature::dropped()
+  double Direct = 0.0;   ///< sum of `Energies` before any is dropped, J
+  double Unplaced = 0.0; ///< PolygonQuadrature::dropped(), J
   double Radiance = 0.0;
   double Lost = 0.0;
   std::uint32_t Skipped = 0;

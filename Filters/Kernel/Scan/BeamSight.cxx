@@ -18,7 +18,7 @@ constexpr int SidesOfDisc = 64;
 
 using SurfaceSums = std::map<std::uint32_t, SeenSurface>;
 
-/// The surface that a triangle is.
+/// The sums of a triangle, begun if it is new.
 SeenSurface& surfaceOf(const ScanSetup& setup, std::uint32_t triangle, SurfaceSums& sums)
 {
   const auto [place, isNew] = sums.try_emplace(triangle);
@@ -32,8 +32,8 @@ SeenSurface& surfaceOf(const ScanSetup& setup, std::uint32_t triangle, SurfaceSu
   return surface;
 }
 
-/// The corners of a triangle; where the next one or the one before belongs to the same surface and
-/// is not in `sums` itself, those of the quadrilateral.
+/// Corners of a triangle or, if the next or the previous triangle belongs to the same surface and
+/// is not in `sums` itself, of their quadrilateral.
 std::vector<Vec3> cornersOf(const ScanSetup& setup, const SceneTriangles& scene,
   std::uint32_t triangle, const SurfaceSums& sums)
 {
@@ -71,7 +71,7 @@ std::vector<Vec3> cornersOf(const ScanSetup& setup, const SceneTriangles& scene,
   return corners;
 }
 
-/// Keep what lies on the inner side of a plane: where dot(inward, p) >= least.
+/// Keep the part of a polygon where dot(inward, p) >= least.
 void cut(const Vec3& inward, double least, std::vector<Vec3>& polygon)
 {
   std::vector<Vec3> kept;
@@ -93,7 +93,7 @@ void cut(const Vec3& inward, double least, std::vector<Vec3>& polygon)
   polygon.swap(kept);
 }
 
-/// Light the one beam, and call f(simulator).
+/// Light a single beam, and call f(simulator).
 template <class F>
 void light(
   const ScanSetup& setup, const ScanBeams& one, const std::function<bool()>& wanted, const F& f)
@@ -121,7 +121,7 @@ void light(
   f(simulator);
 }
 
-/// Add shares, and energies with what belongs to them, if these are wanted.
+/// Add the samples of the beam lit last: shares, energies with ranges and angles, or both.
 void addSamples(const ScanSetup& setup, const BeamLighting& lighting, bool shares, bool energies,
   SurfaceSums& sums)
 {
@@ -186,7 +186,7 @@ std::vector<SeenSurface> sightAlong(const ScanSetup& setup, const ScanBeams& bea
   }
   for (auto& [triangle, surface] : sums)
   {
-    surface.share /= std::max(1.0, all); // but for rounding there is no more than the beam
+    surface.share /= std::max(1.0, all); // they exceed 1 by rounding alone
     if (surface.weight > 0.0)
     {
       surface.range /= surface.weight;
@@ -229,13 +229,13 @@ std::vector<Vec3> partWithin(
   {
     part.push_back(corner - frame.origin);
   }
-  // One plane after the other cuts off what lies outside (Sutherland, Hodgman).
+  // The planes of the outline cut off one after the other what lies outside (Sutherland, Hodgman).
   for (std::size_t k = 0; k < outline.size() && !part.empty(); ++k)
   {
     const Vec3 inward = glm::cross(outline[k], outline[(k + 1) % outline.size()]);
     cut(glm::dot(inward, frame.axis) < 0.0 ? -inward : inward, 0.0, part);
   }
-  // A share more, lest rounding takes what stands square to the beam.
+  // A margin of 1e-6 keeps surfaces that stand square to the beam in spite of rounding.
   cut(frame.axis, frame.cosHalf * surface.nearest * (1.0 - 1e-6), part);
   cut(-frame.axis, -surface.farthest * (1.0 + 1e-6), part);
   return part.size() < 3 ? std::vector<Vec3>() : part;

@@ -42,7 +42,7 @@ void BeamSimulator::light(
   report.raysTracedNow = this->Block.countersOf(beam).raysTraced;
 }
 
-/// Light a beam, and keep what follows for scans that differ elsewhere alone.
+/// Light a beam, and keep the result for scans that differ in noise or movers elsewhere.
 void BeamSimulator::lightBeam(
   std::size_t beam, BeamTrace& trace, std::vector<Echo>& echoes, BeamReport& report)
 {

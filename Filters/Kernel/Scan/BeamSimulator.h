@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file BeamSimulator.h
- * @brief Echoes of a block of beams: rays, hits, energies, range units, returns.
+ * @brief Simulates a block of beams, from rays to returns, in three stages.
  *
- * Three stages: tracing (ScanBlock.h) finds the triangle of every ray of all beams of the block, as
- * far as it is not kept from an earlier run. Then, one beam after the other, lighting
- * (BeamLighting.h) sums the energies of all paths in range units, and BeamEchoes.h adds noise and
- * makes returns. Where only noise differs from the scan before, lighting is left out (LitBeam.h). A
- * beam without hits costs nothing after tracing unless noise may raise a false alarm.
+ * 1. Tracing (ScanBlock.h) finds what all beams of the block see, unless an earlier run found it.
+ * 2. Lighting (BeamLighting.h) sums the energies of all paths of one beam in range units. It is
+ *    left out where a scan differs from the one before in noise alone (LitBeam.h).
+ * 3. BeamEchoes.h adds noise and makes returns. A beam without hits needs this stage only if noise
+ *    may raise a false alarm.
  *
  * Source: paper, Algorithm 2.
  * Differs: a block of beams is traced together, and lit from what is kept.
@@ -24,21 +24,21 @@
 
 namespace avianlidar
 {
-/// Simulates blocks of beams. One per thread; setup and beams must outlive it. The setup does not
-/// change; a beam may, before it is traced.
+/// Simulates blocks of beams. One per thread; setup and beams must outlive it. The setup must not
+/// change; a beam may change until it is traced.
 class BeamSimulator
 {
 public:
   /// @param keepsLight keep lit beams where noise matters or something moves
   /// @param wanted called every 4096 steps within a beam, and every 512 units for which noise is
   /// drawn; if it returns false, WorkStopped is thrown
-  /// @param sampler of the setup's sampling and N, for its sensor and seed; must outlive this
+  /// @param sampler draws the rays of the setup's sensor, sampling and N; must outlive this
   BeamSimulator(const ScanSetup& setup, const ScanBeams& beams, bool keepsLight,
     BeamSampler& sampler, std::function<bool()> wanted = {});
   BeamSimulator(const BeamSimulator&) = delete;
   BeamSimulator& operator=(const BeamSimulator&) = delete;
 
-  /// What the beams may meet. Movers are placed there before the one beam of a block is traced.
+  /// Triangles that beams may meet. Movers are placed here before a block of one beam is traced.
   SceneTriangles& scene() { return this->Scene; }
   const SceneTriangles& scene() const { return this->Scene; }
 
@@ -53,11 +53,10 @@ public:
   /// report.
   void light(std::size_t beam, BeamTrace& trace, std::vector<Echo>& echoes, BeamReport& report);
 
-  /// Light beams also where bounds show that nothing of them can be perceived: for those who look
-  /// at lighting().
+  /// Light beams even where bounds show that nothing can be perceived, for users of lighting().
   void lightAll() { this->Lighting.lightAll(); }
 
-  /// What the air of the beam lit last sends back in a unit, of what a threshold may follow, J.
+  /// Mean light, J, that the air of the beam lit last returns in a unit and a threshold may follow.
   double followedIn(std::int64_t unit) { return this->Air.followed(unit); }
 
   /// What the beam lit last received.

@@ -2,7 +2,7 @@
 /**
  * @file BeamTrace.h
  * @brief What is kept of one beam: the geometry of its rays and paths, which does not depend on
- * energies, and what was made of it when it was lit.
+ * energies, and its lit beam.
  *
  * Each part is found when it is first needed. A scan with other coefficients, limits, noise or
  * attenuation traces nothing that is kept. A beam that meets nothing takes 72 bytes, a hit 37, a
@@ -29,38 +29,37 @@
 
 namespace avianlidar
 {
-/// What makes the samples of a beam whose rays are its samples.
+/// View of a beam whose rays are its samples.
 struct RaysAlone
 {
 };
-/// Of a beam that no surface enters.
+/// View of a beam that no surface enters.
 struct NoSurfaces
 {
 };
 
-/// What a beam sees, by the producer of its samples; in the order of DirectEcho. Pointers are not
-/// null.
+/// The view of a beam, in the order of DirectEcho. Pointers are not null.
 using BeamView = std::variant<std::monostate, NoSurfaces, std::unique_ptr<VisiblePolygons>,
   std::unique_ptr<CellSamples>, RaysAlone>;
 
 struct BeamTrace
 {
   BeamView view;
-  /// Its rays, from which paths over two reflections start; null if none hit anything. Of an
-  /// integrated beam null until first needed.
+  /// Hits of its rays, from which paths over two reflections start. Null if no ray hits anything,
+  /// and in an integrated beam until first needed.
   std::unique_ptr<BeamSamples> hits;
   std::unique_ptr<SecondaryTrace> secondary; ///< null until first needed
-  std::unique_ptr<LitBeam> lit;              ///< null until it is lit, see LitBeam.h
+  std::unique_ptr<LitBeam> lit;              ///< null unless kept, see LitBeam.h
   TraceCounters counters;                    ///< cost of all tracing so far
   std::size_t held = 0;                      ///< heldBytes() after it was last lit
 
   DirectEcho direct() const { return static_cast<DirectEcho>(this->view.index()); }
-  /// Null if it is not integrated.
+  /// Null unless the beam is integrated.
   const VisiblePolygons* polygons() const { return this->part<VisiblePolygons>(); }
-  /// Null if it is not divided into cells.
+  /// Null unless the beam is divided into cells.
   const CellSamples* cells() const { return this->part<CellSamples>(); }
 
-  /// Bytes that it holds besides itself.
+  /// Memory of all parts, bytes.
   std::size_t heldBytes() const
   {
     const auto bytes = [](const auto& part) { return part ? part->bytes() : 0; };

@@ -56,7 +56,7 @@ std::vector<CoincidentPair> findCoincidentObjects(
     return {};
   }
   const CollisionTree& tree = *setup.tree;
-  std::map<std::uint32_t, std::vector<std::uint32_t>> members; // of the planes seen
+  std::map<std::uint32_t, std::vector<std::uint32_t>> members; // triangles by plane
   for (const SeenPlane& plane : planes)
   {
     members[plane.owner];

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file CoincidentObjects.h
- * @brief Which objects a scan sees that lie on other objects, so that their numbers alone decide
- * which of them is seen.
+ * @brief Finds the objects that a scan sees in place of others with coincident faces.
  *
- * One ray goes to the centroid of each triangle of a plane on which faces coincide (at most
- * MostRaysOfPlane, evenly chosen) and, if it ends on such a triangle, another one behind that.
- * Faces that coincide behind others, as two buildings with a common wall have them, do not count.
+ * Triangle numbers alone decide which of two coincident faces is seen. On a plane with such faces a
+ * ray goes to the centroid of each triangle (at most MostRaysOfPlane, evenly chosen). If it ends on
+ * the plane, a second ray ignores the triangle that it hit. Coincident faces behind others, such as
+ * the common wall of two buildings, do not count.
  *
  * Source: none.
- * Valid: names what rays to centroids find, not everything.
+ * Valid: names the objects that rays to centroids find, not all.
  * Test: TestCoincidentFaces.cxx.
  */
 #ifndef avianlidar_CoincidentObjects_h
@@ -35,18 +35,17 @@ struct SeenPlane
   }
 };
 
-/// Append the planes of faces that coincide and that a beam sees.
+/// Append the planes of coincident faces that a beam sees.
 void addSeenPlanes(const CollisionTree& tree, const BeamTrace& trace, std::size_t beam,
   std::vector<SeenPlane>& planes);
 
-/// Sort, and leave the first beam of each plane.
+/// Sort, and keep only the first beam of each plane.
 void sortSeenPlanes(std::vector<SeenPlane>& planes);
 
-/// Triangles that coincide and differ in object or material: one that is seen, and one on the same
-/// place that is not.
+/// Coincident triangles that differ in object or material: one that is seen, one that it hides.
 using CoincidentPair = std::pair<std::uint32_t, std::uint32_t>;
 
-/// One pair for each pair of objects, in their order. @param planes sorted
+/// One pair of triangles for each pair of objects, in the order of their ids. @param planes sorted
 std::vector<CoincidentPair> findCoincidentObjects(
   const ScanSetup& setup, const ScanBeams& beams, const std::vector<SeenPlane>& planes);
 }

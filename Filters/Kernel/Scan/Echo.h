@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file Echo.h
- * @brief What a lidar puts out.
+ * @brief One return of one beam, as the lidar reports it.
  *
  * Source: paper, Eq. 10 and 12.
  * Differs: returns, labels and standard errors are added (BeamEchoes.h).
@@ -13,28 +13,28 @@
 
 namespace avianlidar
 {
-/// Object of what the air returned.
+/// Object id of echoes from the air.
 constexpr int ObjectOfAir = -2;
 
-// Echoes are compared as bytes: none may be without a member.
+// Echoes are compared as bytes, so padding is an error.
 #pragma GCC diagnostic push
 #pragma GCC diagnostic error "-Wpadded"
 /// One return of one beam.
 struct Echo
 {
-  double range = 0.0;          ///< m along the axis
-  double energyReceived = 0.0; ///< J, Qrec of the strongest unit (Eq. 10)
-  double energy = 0.0;         ///< J, Qen of the strongest unit (Eq. 12)
-  double returnEnergy = 0.0;   ///< J, sum of Qrec over the return
-  double energyStdError = 0.0; ///< J, of energyReceived; NaN below 8 rays
+  double range = 0.0;          ///< range on the beam's axis, m
+  double energyReceived = 0.0; ///< Qrec of the strongest range unit (Eq. 10), J
+  double energy = 0.0;         ///< Qen of the strongest range unit (Eq. 12), J
+  double returnEnergy = 0.0;   ///< sum of Qrec over the return, J
+  double energyStdError = 0.0; ///< standard error of energyReceived, J; NaN below 8 rays
   int returnNumber = 1;
   int numberOfReturns = 1;
-  int objectId = -1; ///< object of the largest share of the energy; -1 for a false alarm, -2: air
+  int objectId = -1; ///< object with the most energy; -1: false alarm, -2: air
   int materialId = -1;
-  double labelShare = 0.0; ///< the largest share
-  double incidenceAngle =
-    0.0;                   ///< rad, energy-weighted mean at the last surface; NaN for a false alarm
-  double background = 0.0; ///< radiance that its beam looks at, W/(m2 sr nm)
+  double labelShare = 0.0; ///< share of object and material in the energy
+  /// Energy-weighted mean angle of incidence at the last surface, rad; NaN for a false alarm.
+  double incidenceAngle = 0.0;
+  double background = 0.0;     ///< spectral radiance seen by the beam, W/(m2 sr nm)
   double secondaryShare = 0.0; ///< share of the energy that came over two reflections
 };
 #pragma GCC diagnostic pop

@@ -1,16 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file LitBeam.h
- * @brief What is kept of a beam that was lit, for scans of the same beams that differ by noise or
- * by movers in other beams alone: energies in range units, and what is known of returns.
+ * @brief Energies in range units and returns of a lit beam, kept for scans of the same beams that
+ * differ in noise, or in movers in other beams, alone.
  *
  * Noise decides which units form a return. Range, labels and standard error of a return follow from
- * its first, last and strongest unit; they are kept for the first MostReturns that occur. For
- * others the beam is lit again.
+ * its first, last and strongest unit. They are kept for the first MostReturns returns that differ
+ * in these; for others the beam is lit again.
  *
  * Source: none.
- * Valid: for one LightKey, and for the samples of the trace that it belongs to. Echoes have the
- * same bits with it and without.
+ * Valid: for one LightKey and the samples of one trace. Echoes have the same bits without it.
  * Test: TestScanAgain.cxx.
  */
 #ifndef avianlidar_LitBeam_h
@@ -31,7 +30,7 @@ struct LitBeam
 {
   static constexpr std::size_t MostReturns = 16;
 
-  /// What does not depend on noise.
+  /// The values of a return that do not depend on noise.
   struct KnownReturn
   {
     std::int64_t first, last, strongest; ///< units
@@ -39,7 +38,7 @@ struct LitBeam
   };
   std::vector<RangeUnit> units;
   std::vector<KnownReturn> returns;
-  std::vector<MetSurface> surfaces; ///< that take of the air's light
+  std::vector<MetSurface> surfaces; ///< samples of surfaces, which shadow the air
   double radiance = 0.0;            ///< see BeamLighting::radiance()
   bool outsideGate = false;         ///< see BeamLighting::isOutsideGate()
   double lost = 0.0;                ///< J, see BeamReport
@@ -53,16 +52,16 @@ struct LitBeam
   }
 };
 
-/// Everything that energies in range units and labels depend on besides what a trace holds.
+/// Everything besides a trace on which energies in range units and labels depend.
 struct LightKey
 {
   SharedVector<Material> materials;
   SharedVector<int> objectIds;
   SharedVector<int> materialIds;
-  std::uint64_t numbers = 0; ///< hash of all others
+  std::uint64_t numbers = 0; ///< hash of all other values
 };
 
-/// Take over a setup. @return false if anything differs
+/// Set the key to that of a setup. @return false if it has changed
 bool takeOver(LightKey& key, const ScanSetup& setup);
 }
 

@@ -15,7 +15,7 @@ namespace
 /// Beams for which movers are found first: some columns of the scan.
 constexpr std::size_t BeamsTogether = 512;
 
-/// Rounding of distances and angles.
+/// Margin for the rounding of distances (relative) and angles (rad).
 constexpr double Slack = 1e-6;
 
 /// False if no ray of the beam meets the sphere.
@@ -34,13 +34,13 @@ bool meets(const BeamFrame& beam, const MoverSphere& sphere)
     sphere.radius + Slack * (sphere.radius + distance * beam.sinHalf);
 }
 
-/// A cone about the beams of a block, and the time while they are fired.
+/// A cone about consecutive beams, and the time in which they are fired.
 struct BlockCone
 {
   Vec3 apex{ 0.0 };
-  double apart = 0.0; ///< m, farthest origin from `apex`
+  double apart = 0.0; ///< distance of the farthest origin from `apex`, m
   Vec3 axis{ 0.0 };
-  double angle = Pi;                                      ///< rad, between the axis and any ray
+  double angle = Pi; ///< largest angle between axis and a ray, rad
   double begin = std::numeric_limits<double>::infinity(); ///< s
   double end = -std::numeric_limits<double>::infinity();
 
@@ -101,11 +101,10 @@ MovedBeams::MovedBeams(const ScanSetup& setup, const ScanBeams& beams, BeamSampl
   std::iota(this->All.begin(), this->All.end(), 0u);
   if (sights)
   {
-    this->Simulator.lightAll(); // the mover report says what is not perceived, too
+    this->Simulator.lightAll(); // the mover report includes what is not perceived
   }
 }
 
-/// Find movers that beams [begin, end) may touch.
 void MovedBeams::findAmong(const std::vector<std::uint32_t>& movers, std::size_t begin,
   std::size_t end, std::vector<std::uint32_t>& found) const
 {
@@ -178,7 +177,6 @@ void MovedBeams::addLightOf(std::uint32_t begin, std::uint32_t end, const BeamLi
     });
 }
 
-/// What the beam lit last receives of a mover.
 MoverSight MovedBeams::sightOf(
   const Touch& touch, const BeamFrame& frame, const BeamLighting& lighting)
 {

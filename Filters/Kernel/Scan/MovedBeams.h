@@ -1,20 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file MovedBeams.h
- * @brief Beams that movers may touch: finds them, and simulates each with the movers placed where
+ * @brief Finds the beams that movers may touch, and simulates each with the movers placed where
  * they are at its time.
  *
- * Such a beam goes through the same stages as any other, and nothing of it is kept. What is kept of
- * it from scans without movers stays for the scan in which they have gone.
+ * Such a beam goes through the same stages as any other, but none of its results are kept. Results
+ * kept from scans without movers stay for scans in which the movers are gone.
  *
- * Movers are found for many beams first, then for a block, by spheres about their paths while it is
- * fired, and then for each beam, by spheres where they are.
+ * Movers are found by spheres: about their paths for many beams, then for a block, and last about
+ * their places when each beam is fired.
  *
- * Source: none. arXiv 2605.10457 asks which beams a moving triangle can hit, too, instead of
+ * Source: none. arXiv 2605.10457 also asks which beams a moving triangle can hit, instead of
  * building a tree again.
- * Valid: a mover at rest gives the bits of the same triangles at the end of the static mesh, but
- * for costs and where faces of it coincide with others. Movers of equal content count in the order
- * in which they come.
+ * Valid: a mover at rest gives the same bits as its triangles at the end of the static mesh, except
+ * for costs and where its faces coincide with others. Movers of equal content count in the order in
+ * which they come.
  * Test: TestMovedBeams.cxx.
  */
 #ifndef avianlidar_MovedBeams_h
@@ -31,13 +31,12 @@
 
 namespace avianlidar
 {
-/// Simulates the beams of one block after the other that movers may touch. One per thread; the
-/// constructor's arguments must outlive it.
+/// Simulates the beams that movers may touch, block by block. One per thread; the constructor's
+/// arguments must outlive it.
 class MovedBeams
 {
 public:
-  /// @param setup with movers @param beams with times @param sights find what beams receive of each
-  /// mover
+  /// @param setup has movers @param beams have times @param sights find what each mover returns
   MovedBeams(const ScanSetup& setup, const ScanBeams& beams, BeamSampler& sampler,
     std::function<bool()> wanted, bool sights);
 
@@ -47,11 +46,11 @@ public:
   /// True if a beam of the block may touch a mover.
   bool isTouched(std::size_t beam) const { return !this->Touching[beam - this->First].empty(); }
 
-  /// Append the echoes of such a beam and what it receives of each mover, and fill its report.
+  /// Append the echoes of a beam with movers and what it receives of each, and fill its report.
   void simulate(std::size_t beam, std::vector<Echo>& echoes, BeamReport& report,
     std::vector<MoverSight>& sights);
 
-  /// What lit the beam simulated last.
+  /// The simulator, which holds the beam simulated last.
   const BeamSimulator& simulator() const { return this->Simulator; }
 
 private:
@@ -69,13 +68,13 @@ private:
   const ScanBeams& Beams;
   const BeamWidth Width;
   const bool Sights;
-  std::vector<std::uint32_t> All;    ///< movers
-  std::vector<std::uint32_t> OfMany; ///< that beams [ManyBegin, ManyEnd) may touch
+  std::vector<std::uint32_t> All;    ///< all movers
+  std::vector<std::uint32_t> OfMany; ///< movers that may touch beams [ManyBegin, ManyEnd)
   std::size_t ManyBegin = 0;
   std::size_t ManyEnd = 0;
-  std::size_t First = 0;                    ///< beam of the block
-  std::vector<std::uint32_t> OfBlock;       ///< movers that the block may touch
-  std::vector<std::vector<Touch>> Touching; ///< by beam of the block
+  std::size_t First = 0;                    ///< first beam of the block
+  std::vector<std::uint32_t> OfBlock;       ///< movers that may touch the block
+  std::vector<std::vector<Touch>> Touching; ///< movers of each beam of the block
 
   // The beam being simulated.
   ScanBeams One;

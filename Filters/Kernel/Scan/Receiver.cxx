@@ -12,10 +12,10 @@ namespace avianlidar
 {
 namespace
 {
-/// Of a unit's variance: from there on drops are drawn.
+/// Drops are drawn where their variance exceeds this share of the variance of a unit's noise.
 constexpr double DropsCount = 0.01;
 
-/// Variance, J^2, of what a medium returns in a unit, by the number and size of its drops.
+/// Variance of the light that a medium returns in a unit, by the number and size of its drops, J^2.
 double varianceOfDrops(const BeamAir::Share& share, const Medium& medium)
 {
   return share.drops > 0.0 ? share.mean * share.mean * medium.squareOfDrops / share.drops : 0.0;
@@ -52,8 +52,8 @@ BeamReceiver::BeamReceiver(const Sensor& sensor, const NoisePlan& noise, std::in
   }
 }
 
-/// Find the units in which the air alone may be perceived, and from where on drops matter there. A
-/// brighter background than the sensor's raises what is needed.
+/// Find up to which unit the air alone may be perceived, or its drops matter. A background brighter
+/// than the sensor's raises the limit, so these units suffice.
 void BeamReceiver::planAir()
 {
   std::int64_t looked = 0;
@@ -76,7 +76,7 @@ void BeamReceiver::planAir()
   this->Air->beginOutside();
 }
 
-/// The lower limit of a unit, J. @param air mean of what the air sends back, J
+/// Lower limit of a unit, J. @param air mean energy that the air returns there, J
 double BeamReceiver::lowerIn(double air) const
 {
   return this->FollowsAir
@@ -141,7 +141,7 @@ void BeamReceiver::collectUnits(const std::vector<RangeUnit>& units)
   constexpr std::int64_t none = std::numeric_limits<std::int64_t>::max();
   const auto lookedFrom = [&](std::int64_t unit)
   { return this->Air ? this->Air->nextLooked(unit) : none; };
-  std::int64_t next = lookedFrom(0); // of those in which the air alone may be perceived
+  std::int64_t next = lookedFrom(0); // next unit in which the air alone may be perceived
   while (next < none || lit != units.end() || alarm != alarms.end())
   {
     const std::int64_t index = std::min(
@@ -161,7 +161,7 @@ void BeamReceiver::collectUnits(const std::vector<RangeUnit>& units)
   }
 }
 
-/// Variance of the noise of a unit with what media return there, J^2.
+/// Variance of the noise of a unit that receives the mean light of media alone, J^2.
 double BeamReceiver::varianceWith(const std::vector<BeamAir::Share>& shares) const
 {
   double all = 0.0;
@@ -172,15 +172,15 @@ double BeamReceiver::varianceWith(const std::vector<BeamAir::Share>& shares) con
   return this->Plan.darkVariance + this->Plan.varianceOfEnergy * all;
 }
 
-/// Number of the draws of a medium's drops in a unit.
+/// Index of the random numbers of a medium's drops in a unit.
 std::uint64_t BeamReceiver::drawsOf(const BeamAir::Share& share, std::int64_t unit) const
 {
   const std::uint64_t stream = this->isLocal() ? share.medium : 0;
   return static_cast<std::uint64_t>(unit) + static_cast<std::uint64_t>(BeamAir::MostUnits) * stream;
 }
 
-/// Add what drops of media that a threshold follows return beyond their mean, to the units that
-/// they reach.
+/// Add the light of drops beyond its mean, for media that a threshold may follow. @param units sums
+/// of the units that the pulses of these drops reach, J
 void BeamReceiver::drawDrops(std::int64_t unit, double* units)
 {
   const std::vector<BeamAir::Share>& shares = this->Air->sharesOf(unit);
@@ -198,8 +198,8 @@ void BeamReceiver::drawDrops(std::int64_t unit, double* units)
   }
 }
 
-/// Draw what media return in a unit. @param received gets the light of those that no threshold
-/// follows @return J, of the others beyond their mean
+/// Draw the light that media return in a unit. @param received gets `leaves` and `medium` @return
+/// light of the other media beyond its mean, J
 double BeamReceiver::drawAir(std::int64_t unit, ReceivedUnit& received)
 {
   const std::vector<BeamAir::Share>& shares = this->Air->sharesOf(unit);
@@ -240,7 +240,7 @@ double BeamReceiver::drawAir(std::int64_t unit, ReceivedUnit& received)
   return beyond;
 }
 
-/// Add a unit, unless noise and drops are too common for it to be perceived.
+/// Add a unit, unless it is too faint to be perceived without rare noise.
 void BeamReceiver::addUnit(std::int64_t index, double light, std::uint32_t paths, bool alarm)
 {
   const bool gaussian = this->Plan.gaussian;
@@ -272,7 +272,7 @@ void BeamReceiver::addUnit(std::int64_t index, double light, std::uint32_t paths
 
 double BeamReceiver::noiseOf(std::int64_t unit, double light)
 {
-  constexpr std::uint64_t interval = 512; // draws of 1e5 photons take 0.1 s
+  constexpr std::uint64_t interval = 512; // with 1e5 photons each they take 0.1 s
   if (++this->Drawn % interval == 0 && this->Wanted && !this->Wanted())
   {
     throw WorkStopped();
@@ -280,7 +280,7 @@ double BeamReceiver::noiseOf(std::int64_t unit, double light)
   return this->Noise.energy(unit, light);
 }
 
-/// Light of what stands in a unit or behind, over its mean, that leaves before it let through.
+/// Light that leaves let through to a unit and back, over its mean; 1 where no leaves are drawn.
 double BeamReceiver::openAt(std::int64_t unit) const
 {
   return this->Gaps.any() ? this->Gaps.openAt(this->centreOf(unit)) : 1.0;
@@ -297,9 +297,8 @@ double BeamReceiver::rangeOf(const Return& run, RangeUnitAccumulator& accumulato
   {
     return run.range;
   }
-  // Means of differences from the beginning of the first unit, a value near them and below them:
-  // the sums then carry no round-off of the range itself, and a unit as long as the scene none of
-  // its own.
+  // Lengths are taken from the beginning of the first unit, which is near and below all of them. So
+  // the sums carry no round-off of the range, nor of a unit that is as long as the scene.
   const RangeShares shares =
     accumulator.sharesOf(this->Units[run.firstUnit].index, this->Units[run.lastUnit - 1].index + 1);
   const double reference =
@@ -317,7 +316,7 @@ double BeamReceiver::measured(const Return& run, double range) const
     return range;
   }
   const ReceivedUnit& unit = this->Units[run.strongestUnit];
-  // Noise of the air makes an echo count for less.
+  // Where the air raises the limit, an echo has the errors of a weaker one in clear air.
   const double share = unit.lower > this->Lower ? this->Lower / unit.lower : 1.0;
   return this->Errors.measured(range, run.energyReceived * share,
     this->Errors.hasNoise() ? this->Noise.rangeDeviate(unit.index) : 0.0);

@@ -1,27 +1,27 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file Receiver.h
- * @brief From energies in range units to returns.
+ * @brief Makes returns from the energies in range units.
  *
  * Sums over paths (RangeUnits.h) plus noise (Noise.h) pass the dynamic range. A **return** is a
  * maximal run of consecutive perceived range units. Its range is the mean range (half the path
- * length) of its paths, weighted with the energies they put into the run. Noise alone lies anywhere
- * in its unit (BeamNoise::place()): a run of false alarms lies at the mean of these places,
- * weighted with the energies of the units.
+ * length) of its paths, weighted with the energies that they put into the run. A run of false
+ * alarms has no paths. Its noise lies anywhere in each unit (BeamNoise::place()), and its range is
+ * the mean of these places, weighted with the energies of the units.
  *
- * Where the air scatters (BeamAir.h), each unit of the beam receives of it. A threshold that
- * follows the air takes off its mean, n_air, and lies as many deviations of the noise above it as
- * without: n_T (1 + F n_air/sigma0^2)^(1/2). So every unit has the same probability of a false
- * alarm, and what is left are echoes of surfaces and what drops return beyond their mean. A fixed
- * one takes nothing off. Either way all light counts for saturation. Leaves of trees are not
- * followed: what they return is light as that of surfaces. Behind a surface there is as much less
- * of the air's light as the surface has met of the pulse.
+ * Where the air scatters (BeamAir.h), each unit receives light from it. A threshold that follows
+ * the air subtracts the mean of this light, n_air, and lies as many deviations of the noise above
+ * it as without air: n_T (1 + F n_air/sigma0^2)^(1/2). So every unit has the same probability of a
+ * false alarm; only echoes of surfaces remain, and what drops return beyond their mean. A fixed
+ * threshold subtracts nothing. All light counts for saturation in either case. No threshold follows
+ * the leaves of trees: their light is treated like light from surfaces. Behind a surface the air
+ * returns less light, by the share of the pulse that the surface has met.
  *
  * Source: paper, Sec. 2.4, Eq. 10-12.
  * Differs: the paper's literal reading, one point per perceived range unit at its centre, is
  * ReturnMode::RangeUnits.
- * Valid: on a plane at any tilt the range of a return lies within theta0.5^2/4, relative, of the
- * axis, while a range unit itself is c tau_s/2 long.
+ * Valid: on a plane at any tilt the range of a return differs from the range on the axis by at most
+ * theta0.5^2/4, relative. A range unit is c tau_s/2 long.
  * Test: TestReceiver.cxx.
  */
 #ifndef avianlidar_Receiver_h
@@ -44,41 +44,41 @@
 
 namespace avianlidar
 {
-/// Dynamic range of the receiver (paper, Eq. 12): 0 for received <= lower, at most upper. lower ==
-/// upper is allowed.
+/// Energy that the receiver perceives (paper, Eq. 12), J: 0 for received <= lower, and at most
+/// upper. lower == upper is allowed.
 double perceivedEnergy(double received, double lower, double upper);
 
 /// A range unit with its noise.
 struct ReceivedUnit
 {
-  std::int64_t index = 0;  ///< m
-  double energy = 0.0;     ///< Qrec, J, noise included
+  std::int64_t index = 0;  ///< number m of the unit
+  double energy = 0.0;     ///< Qrec, noise included, J
   double noise = 0.0;      ///< Qn, J
-  std::uint32_t paths = 0; ///< with a share in it; 0 for a false alarm, or the air alone
-  double air = 0.0;        ///< J of the energy that the air sent back
-  double leaves = 0.0;     ///< J of the energy from media that no threshold follows
-  int medium = -1;         ///< object of the one of these that returns most
-  double lower = 0.0;      ///< limits of this unit, J
-  double upper = 0.0;
+  std::uint32_t paths = 0; ///< paths with a share in it; 0: a false alarm, or the air alone
+  double air = 0.0;        ///< part of `energy` from air that a threshold may follow, J
+  double leaves = 0.0;     ///< part of `energy` from media that no threshold follows, J
+  int medium = -1;         ///< object id of the medium with the largest part of `leaves`
+  double lower = 0.0;      ///< lower limit of this unit, J
+  double upper = 0.0;      ///< upper limit of this unit, J
 };
 
 struct Return
 {
   std::size_t firstUnit = 0; ///< units [firstUnit, lastUnit) of BeamReceiver::units()
   std::size_t lastUnit = 0;
-  std::size_t strongestUnit = 0; ///< one of them: the largest Qrec, ties to the nearest
+  std::size_t strongestUnit = 0; ///< unit of the largest Qrec; ties go to the nearest
   double energyReceived = 0.0;   ///< Qrec of the strongest unit (Eq. 10), J
   double energy = 0.0;           ///< Qen of the strongest unit (Eq. 12), J
   double returnEnergy = 0.0;     ///< sum of Qrec over the run, J
-  bool hasLight = false;         ///< a path has a share in it, not noise or air alone
-  double air = 0.0;              ///< sum over the run of what the air sent back, J
-  double leaves = 0.0;           ///< the same of media that no threshold follows
-  int medium = -1;               ///< object of the one of these in the unit with most of it
-  double rangeOfLeaves = 0.0;    ///< m, mean of the places of their light
+  bool hasLight = false;         ///< false: noise or air alone
+  double air = 0.0;              ///< sum of ReceivedUnit::air, J
+  double leaves = 0.0;           ///< sum of ReceivedUnit::leaves, J
+  int medium = -1;               ///< object id in the unit with most of `leaves`
+  double rangeOfLeaves = 0.0;    ///< mean range of the light in `leaves`, m
   double range = 0.0;            ///< m; see rangeOf()
-  /// In the beam, from 1, nearest first, counted before the choice of ReturnMode.
-  int returnNumber = 1;
-  int numberOfReturns = 1; ///< in the beam, counted before that choice
+  // Counted in the beam before ReturnMode selects returns.
+  int returnNumber = 1;    ///< from 1, nearest first
+  int numberOfReturns = 1; ///< returns of the beam
 };
 
 /// Reusable: allocates nothing once its workspace has grown. One per thread.
@@ -87,30 +87,30 @@ class BeamReceiver
 public:
   /// @param wanted called every 512 units for which noise is drawn, over all beams; if it returns
   /// false, WorkStopped is thrown
-  /// @param air along each beam, which must outlive this; null: none
+  /// @param air media along each beam; must outlive this; null: no light from the air
   BeamReceiver(const Sensor& sensor, const NoisePlan& noise, std::int32_t seed, ReturnMode mode,
     std::int32_t revolution = 0, std::function<bool()> wanted = {}, BeamAir* air = nullptr);
 
-  /// Receive a beam. @param units in which light arrives, ascending @param radiance that the beam
-  /// looks at, W/(m2 sr nm)
+  /// Receive a beam. @param units range units with light, ascending @param radiance spectral
+  /// radiance that the beam looks at, W/(m2 sr nm)
   void receive(std::uint64_t beam, const std::vector<RangeUnit>& units, double radiance);
 
-  /// The radiance that the last beam looked at, W/(m2 sr nm).
+  /// Spectral radiance that the last beam looked at, W/(m2 sr nm).
   double radiance() const { return this->Radiance; }
 
-  /// The range of a return, m. Return::range holds it for returns without light, and in the mode
-  /// RangeUnits. @param accumulator of the beam's paths
+  /// Range of a return, m. Return::range holds it for returns without light and in the mode
+  /// RangeUnits. @param accumulator range units of the beam's paths
   double rangeOf(const Return& run, RangeUnitAccumulator& accumulator) const;
 
-  /// What the receiver says of a range of that return, m: noise, walk, quantum (RangeErrors.h). In
-  /// the mode RangeUnits the range itself.
+  /// The range that the receiver reports for a return at `range`, m: with noise, walk and quantum
+  /// (RangeErrors.h), or `range` itself in the mode RangeUnits.
   double measured(const Return& run, double range) const;
 
-  /// True if units without paths may be perceived: then no beam can be left out.
+  /// True if units without paths may be perceived, so that no beam can be left out.
   bool mayAlarm() const { return this->Plan.active || (this->Air && this->Air->fillsScene()); }
 
-  /// Units with paths or false alarms, ascending, perceived or not; without those whose light is
-  /// faint and whose noise is not rare.
+  /// Units with light or false alarms, ascending, perceived or not. Units are left out if they are
+  /// too faint to be perceived without rare noise.
   const std::vector<ReceivedUnit>& units() const { return this->Units; }
 
   /// The returns that the mode selects, nearest first.
@@ -137,7 +137,7 @@ private:
   double openAt(std::int64_t unit) const;
   double centreOf(std::int64_t unit) const;
 
-  Sensor Instrument; ///< before the sky
+  Sensor Instrument; ///< sensor with the sky as background
   double Radiance;
   RangeErrors Errors;
   double UnitLength;

@@ -8,17 +8,18 @@ namespace avianlidar
 {
 namespace
 {
-/// Rays with hits between two checks for an abort: milliseconds.
+/// Rays with hits between two checks for an abort. They take milliseconds.
 constexpr std::size_t RaysBetweenLooks = 1600;
 
-/// Rays that take about the time of an integrated beam, and rays of a grid that take that of one.
+/// Cost of one beam integrated over polygons, measured in rays.
 constexpr std::size_t RaysLikePolygons = 100;
+/// Rays of a beam's cells that cost as much as one traced ray.
 constexpr double RaysOfGrid = 32.0;
 
-/// Samplers of more rays are not kept.
+/// Samplers of more rays per beam are not kept between runs.
 constexpr int ManyRays = 10000;
 
-/// Results of the beams of a block.
+/// Results of one block of beams.
 struct Block
 {
   std::vector<Echo> echoes;
@@ -30,11 +31,11 @@ struct Block
   std::vector<SeenPlane> planes;
 };
 
-/// What one thread works with.
+/// Simulators of one thread.
 struct Worker
 {
   BeamSimulator simulator;
-  std::unique_ptr<MovedBeams> moved; ///< null: nothing moves
+  std::unique_ptr<MovedBeams> moved; ///< null if nothing moves
 
   Worker(const ScanSetup& setup, const ScanBeams& beams, bool keepsLight, BeamSampler& sampler,
     const std::function<bool()>& wanted, bool sights)
@@ -53,8 +54,7 @@ void append(const std::vector<T>& more, std::vector<T>& all)
   all.insert(all.end(), more.begin(), more.end());
 }
 
-/// Progress of a scan. Reports and requests to stop are exchanged between blocks and within beams,
-/// on the calling thread only.
+/// Progress of a scan. It is reported between blocks and within beams, on the calling thread only.
 class ScanProgress
 {
 public:
@@ -66,7 +66,7 @@ public:
 
   void beamDone() { ++this->Done; }
 
-  /// Report progress, which never falls; on the calling thread only. @return false to stop
+  /// Report the progress, which never falls, on the calling thread. @return false to stop
   bool report(double fraction)
   {
     this->Last = std::max(this->Last, fraction);
@@ -123,7 +123,7 @@ public:
     }
   }
 
-  /// @return false if it was stopped
+  /// @return false if the run was stopped
   bool go()
   {
     const auto body = [this](std::size_t begin, std::size_t end, int thread)
@@ -148,7 +148,7 @@ public:
     }
     if (this->Setup.settings.raysPerBeam > ManyRays)
     {
-      this->Cache.samplers.clear(); // large, and their time does not matter
+      this->Cache.samplers.clear(); // they are large, and fast to make again
     }
     if (finished)
     {
@@ -158,7 +158,7 @@ public:
   }
 
 private:
-  /// Trace the beams that are not known, and light all.
+  /// Trace the beams of a block that are not kept, and light all of them.
   void scan(std::size_t begin, std::size_t end, Worker& worker, Block& block, int thread)
   {
     std::vector<BeamTrace>& traces = this->Cache.beams;
@@ -201,12 +201,12 @@ private:
     sortSeenPlanes(block.planes);
   }
 
-  /// Remove what is kept of a beam if it exceeds the memory.
+  /// Keep a beam only as far as memory allows.
   void keep(BeamTrace& trace)
   {
     if (trace.lit && this->Held + trace.held > this->Maximum)
     {
-      trace.lit.reset(); // hits are worth more
+      trace.lit.reset(); // hits save more time than light
       trace.held = trace.heldBytes();
     }
     const std::size_t bytes = trace.held;
@@ -217,7 +217,7 @@ private:
     }
   }
 
-  /// Check for an abort now and then.
+  /// Check for an abort once `rays`, the cost since the last check, is large enough.
   void lookUp(std::size_t b, int thread, std::size_t& rays)
   {
     const BeamTrace& trace = this->Cache.beams[b];
@@ -234,7 +234,6 @@ private:
     }
   }
 
-  /// Collect the echoes of all blocks.
   void collect()
   {
     std::size_t count = 0;
@@ -263,15 +262,15 @@ private:
   const ScanBeams& Beams;
   const int Threads;
   TraceCache& Cache;
-  const std::size_t Maximum; ///< bytes
+  const std::size_t Maximum; ///< most memory for kept beams, bytes
   ScanResult& Result;
   const bool Sights;
   const std::size_t Size;        ///< beams of a block
-  const std::size_t RaysOfCells; ///< that take about the time of a beam in cells
+  const std::size_t RaysOfCells; ///< cost of a beam in cells, in rays
   ScanProgress Progress;
   std::vector<Block> Blocks;
   std::vector<std::unique_ptr<Worker>> Workers;
-  std::atomic<std::size_t> Held; ///< bytes
+  std::atomic<std::size_t> Held; ///< memory of kept beams, bytes
 };
 }
 

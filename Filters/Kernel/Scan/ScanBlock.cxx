@@ -62,15 +62,14 @@ std::size_t ScanBlock::trace(std::size_t begin, std::size_t end, std::vector<Bea
   {
     if (this->lacksStarts(traces[beam]) && this->slotOf(beam).triangles.empty())
     {
-      traces[beam].hits = std::make_unique<BeamSamples>(); // no path starts
+      traces[beam].hits = std::make_unique<BeamSamples>(); // none of its rays hits anything
       traces[beam].hits->rays = tracedRaysOf(this->Setup.settings);
     }
   }
   return this->Traced.size();
 }
 
-/// True if paths over two reflections may start from the rays of a beam in cells, and those are not
-/// known.
+/// True if paths over two reflections may start from the untraced rays of a beam in cells.
 bool ScanBlock::lacksStarts(const BeamTrace& trace) const
 {
   return trace.cells() && !trace.hits && this->Setup.settings.numberOfReflections > 1;
@@ -104,7 +103,7 @@ void ScanBlock::findViews(std::vector<BeamTrace>& traces)
   }
 }
 
-/// Trace the rays of beams.
+/// Trace the rays of the beams that need them.
 void ScanBlock::traceRays()
 {
   const std::uint32_t count = tracedRaysOf(this->Setup.settings);
@@ -152,7 +151,7 @@ void ScanBlock::takeHits(std::size_t beam, BeamTrace& trace)
   }
 }
 
-/// Make samples of the triangles that the beam's rays hit.
+/// Make samples of the hits of the beam's rays. @param triangles nearest triangle of each ray
 void ScanBlock::makeHits(
   std::size_t beam, const std::vector<std::uint32_t>& triangles, BeamTrace& trace)
 {

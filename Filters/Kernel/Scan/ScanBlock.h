@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file ScanBlock.h
- * @brief What each beam of a block sees, as far as that is not kept from an earlier run.
+ * @brief Finds what each beam of a block sees, unless it is kept from an earlier run.
  *
- * The triangles that may enter each beam (Candidates.h) give its view (ViewFinder.h). Where
- * settings ask for rays, where a view needs them, and where paths over two reflections
- * start, rays are traced through the tree (BeamTracer.h).
+ * The triangles that may enter each beam (Candidates.h) give its view (ViewFinder.h). Rays are
+ * traced through the tree (BeamTracer.h) where settings ask for them, where a view needs them, and
+ * where paths over two reflections start.
  *
  * Source: paper, Algorithm 2 and Sec. 3.2.
  * Differs: see the headers named above.
- * Valid: what is found depends on geometry alone, not on materials, limits or air. The same for any
- * pieces of the beams and any state of what is kept.
+ * Valid: hits depend only on the beam and the inputs of traceKey(), views as in ViewFinder.h. Both
+ * are the same for any division of the beams and any state of the cache.
  * Test: TestScan.cxx, TestScanAgain.cxx, TestPolygonScan.cxx, TestBeamCells.cxx.
  */
 #ifndef avianlidar_ScanBlock_h
@@ -38,8 +38,7 @@ public:
     BeamSampler& sampler);
 
   /// Find what each beam in [begin, end) sees, unless `traces` (of all beams) already holds it.
-  /// @param leaveOut beams that are not wanted; empty: all are @return number of beams for which it
-  /// looked
+  /// @param leaveOut true for beams to skip; empty: none @return number of beams that were searched
   std::size_t trace(std::size_t begin, std::size_t end, std::vector<BeamTrace>& traces,
     const std::function<bool(std::size_t)>& leaveOut = {});
 
@@ -48,20 +47,19 @@ public:
 
   const BeamFrame& frameOf(std::size_t beam);
 
-  /// Points of a beam from which connections start. Of an integrated beam: its rays, each on what
-  /// the polygons show there; they are kept as the hits of the trace.
+  /// Hits from which connections start. Those of an integrated beam lie on its polygons, one for
+  /// each ray that meets one, and are kept in the trace.
   const BeamSamples& pathStartsOf(std::size_t beam, BeamTrace& trace);
 
-  /// The rays of the beam.
   const BeamRays& raysOf(std::size_t beam);
 
   /// Directions and surfaces of the beam's hits. Valid until it is called for another beam.
   const SampleGeometry& geometryOf(std::size_t beam, const BeamSamples& hits);
 
-  /// The tracer, set to the beam with counters at 0. Valid until it is called for another beam.
+  /// The tracer, set to the beam. Counters begin at 0. Valid until it is called for another beam.
   BeamTracer& tracerOf(std::size_t beam);
 
-  /// Cost of tracing in this run.
+  /// Cost of tracing the beam in this run.
   TraceCounters& countersOf(std::size_t beam) { return this->slotOf(beam).counters; }
   void addCounters(std::size_t beam, const TraceCounters& more);
 
@@ -71,8 +69,8 @@ private:
   {
     std::optional<BeamFrame> frame;       ///< none until first needed
     BeamRays rays;                        ///< empty until first needed
-    std::vector<std::uint32_t> triangles; ///< of each ray, found in this run; empty: none
-    TraceCounters counters;               ///< of this run
+    std::vector<std::uint32_t> triangles; ///< hit by each ray in this run; empty: none
+    TraceCounters counters;               ///< cost in this run
   };
   static constexpr std::size_t NoBeam = static_cast<std::size_t>(-1);
 
@@ -92,13 +90,13 @@ private:
   SampleGeometry Geometry;
   BeamCandidates Candidates;
   ViewFinder Views;
-  std::vector<std::uint32_t> Own; ///< triangles of some rays
-  std::size_t First = 0;          ///< beam of the block
+  std::vector<std::uint32_t> Own; ///< triangles at the rays of an integrated beam
+  std::size_t First = 0;          ///< first beam of the block
   std::vector<Slot> Slots;
   std::size_t GeometryBeam = NoBeam; ///< beam that `Geometry` belongs to
   std::size_t TracerBeam = NoBeam;   ///< beam that `Tracer` is set to
 
-  // The beams being traced, and those whose rays are: frames, numbers.
+  // Frames and numbers of the beams being traced, then of those that need rays.
   std::vector<BeamFrame> Frames;
   std::vector<std::size_t> Traced;
   std::vector<BeamFrame> FramesOfRays;

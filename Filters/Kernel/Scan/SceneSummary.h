@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file SceneSummary.h
- * @brief What follows from all materials and ids of a scene together: largest reflectance and gain,
- * and a checksum.
+ * @brief Largest reflectance, largest gain and checksum of all materials and ids of a scene.
  *
- * It costs a pass over the materials (24 bytes a triangle) or ids (8 bytes a triangle), unless they
- * are the same vectors as the time before.
+ * They cost a pass over materials (32 bytes per triangle) or ids (8 bytes per triangle) when these
+ * are not the vectors of the last setup.
  *
  * Source: none.
  * Valid: any scene; equal content gives equal results.
@@ -20,9 +19,8 @@
 
 namespace avianlidar
 {
-/// Summary of one scene after another. Results depend on the last setup alone; earlier ones only
-/// save passes. It shares the vectors of materials and ids, which are constant: other materials or
-/// ids are another vector.
+/// Summarises one scene after another. Results depend on the last setup alone. Vectors of materials
+/// and ids are shared and constant, so the same vector needs no second pass.
 class SceneSummary
 {
 public:
@@ -40,7 +38,7 @@ public:
   std::uint64_t checksum(std::uint64_t geometry) const;
 
 private:
-  SharedVector<Material> Materials; ///< of the last setup, as the two below
+  SharedVector<Material> Materials; ///< materials of the last setup
   SharedVector<int> ObjectIds;
   SharedVector<int> MaterialIds;
   std::uint64_t Hash = 0; ///< hash of the materials

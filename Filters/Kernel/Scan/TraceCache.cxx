@@ -120,7 +120,7 @@ void TraceCache::take(const ScanBeams& scanned)
   }
   std::vector<BeamTrace> rest;
   std::vector<BeamKey> restKeys;
-  if (known.size() < before || scanned.size() == 0) // some are in both, or none asked for
+  if (known.size() < before || scanned.size() == 0) // else no beam is in common
   {
     rest.reserve(known.size());
     restKeys.reserve(known.size());
@@ -145,7 +145,7 @@ std::uint64_t checksumOf(const ScanBeams& beams)
 
 std::uint64_t traceKey(const ScanSetup& setup)
 {
-  // The others are energies, times and limits, or decide what is traced on from hits.
+  // Other members are energies, times and limits, or decide what is traced on from hits.
   static_assert(memberCount<Sensor>() == 34 && memberCount<EchoSettings>() == 16,
     "do a beam's rays depend on the new member? Then it belongs to the key");
   const Sensor& sensor = setup.sensor;
@@ -157,7 +157,7 @@ std::uint64_t traceKey(const ScanSetup& setup)
     static_cast<double>(s.sampling), static_cast<double>(s.raysPerBeam),
     static_cast<double>(s.seed), cells ? sensor.samplingInterval : 0.0,
     cells ? sensor.pulseWidth : 0.0, cells ? sensor.rangeGate : 0.0 };
-  // Where media are; and that there are some.
+  // Places of media that do not fill the scene, and their number.
   std::vector<double> places;
   for (const PlacedMedium& placed : setup.media)
   {

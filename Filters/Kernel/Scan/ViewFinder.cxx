@@ -38,7 +38,7 @@ BeamView ViewFinder::find(std::uint64_t beam, const BeamFrame& frame,
   return cells ? BeamView(std::move(cells)) : BeamView(RaysAlone{});
 }
 
-/// The cells of a beam that too many triangles enter for lists: their rays go through the tree.
+/// Cells of a beam that too many triangles enter for lists. @return null: too many strips
 std::unique_ptr<CellSamples> ViewFinder::findCrowded(
   std::uint64_t beam, const BeamFrame& frame, TraceCounters& cost)
 {
@@ -59,8 +59,8 @@ std::unique_ptr<CellSamples> ViewFinder::findCrowded(
   return cells;
 }
 
-/// True if a border of a medium may lie in a beam: samples of polygons do not say in which part of
-/// the beam they lie. What moves may be anywhere.
+/// True if the border of a medium may lie in a beam, which then cannot be integrated: samples of
+/// polygons do not say in which part of the beam they lie. A moving medium may be anywhere.
 bool ViewFinder::meetsBorders(const BeamFrame& frame) const
 {
   const std::vector<PlacedMedium>& media = this->Setup.media;

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file ViewFinder.h
- * @brief Second stage of a beam: what it sees of its candidates.
+ * @brief Finds what a beam sees of its candidates (Candidates.h).
  *
  * A beam that few triangles enter is integrated over the polygons that it sees (VisiblePolygons.h,
- * PolygonQuadrature.h). One that more enter is divided into cells (BeamCells.h). Where cells are
- * too many, the rays of the beam are its samples.
+ * PolygonQuadrature.h). A beam that more triangles enter is divided into cells (BeamCells.h). Where
+ * this takes too many strips, the rays of the beam are its samples.
  *
  * Source: see the headers named above.
  * Differs: the paper draws N rays for every beam.
- * Valid: a view depends on the beam and the triangles that enter it alone, not on materials, limits
- * or air.
+ * Valid: a view depends only on the beam, the triangles that enter it, the inputs of traceKey() and
+ * the number of reflections: not on materials, limits or attenuation.
  * Test: TestScan.cxx, TestPolygonScan.cxx, TestBeamCells.cxx.
  */
 #ifndef avianlidar_ViewFinder_h
@@ -34,7 +34,7 @@ public:
   ViewFinder(const ScanSetup& setup, const SceneTriangles& scene, BeamTracer& tracer);
 
   /// @param candidates all triangles that may enter the beam, each once, in any order
-  /// @param cost of rays traced is added
+  /// @param cost the cost of traced rays is added to it
   BeamView find(std::uint64_t beam, const BeamFrame& frame,
     const std::vector<std::uint32_t>& candidates, TraceCounters& cost);
 
