@@ -13,7 +13,7 @@ namespace
 {
 constexpr int Batch = ApexTriangles::Batch;
 
-/// Records lane by lane.
+/// Records of a batch, one triangle per lane.
 struct alignas(64) BatchRecords
 {
   float edge[3][3][Batch];
@@ -50,7 +50,7 @@ AVIANLIDAR_ALWAYS_INLINE void edge(double ax, double ay, double az, double bx, d
   const double fx = ex * scale;
   const double fy = ey * scale;
   const double fz = ez * scale;
-  // A value that is not a number decides nothing.
+  // An edge vector of 0 decides nothing.
   const double size = sum(fx, fy, fz);
   constexpr double Largest = 1e30;
   x = static_cast<float>(size < Largest ? fx : 0.0);
@@ -90,7 +90,7 @@ AVIANLIDAR_MULTIVERSION void seeAll(const ApexCorners& t, const BeamBounds& boun
     const double slope = 128.0 * D * std::sqrt(longest) * (far * std::fabs(inverse)) * secant;
     const double relative = slope * far + 64.0 * D * far * reach;
     const double error = Up * ((8.0 * U + 2.0 * relative) * reach + slope);
-    // False for what is not a number, too.
+    // 0 also if a value is not a number.
     const double says =
       (relative < 1e-6 ? 1.0 : 0.0) * (reach > 1e-33 ? 1.0 : 0.0) * (reach < 1e33 ? 1.0 : 0.0);
     r.w[0][i] = static_cast<float>(says > 0.0 ? wx : 0.0);
@@ -133,7 +133,7 @@ void ApexTriangles::begin(const CollisionTree& tree, const BeamFrame& widest)
   this->Used.clear();
 }
 
-/// What the plane of another triangle, which this one takes, may add to the error of w.
+/// Error of w for a triangle that takes the plane of another one; 0 for others.
 float ApexTriangles::errorOfOwner(std::uint32_t position, const float* w) const
 {
   const CollisionTree& tree = *this->Tree;
@@ -150,7 +150,7 @@ float ApexTriangles::errorOfOwner(std::uint32_t position, const float* w) const
   {
     apart = std::max(apart, std::fabs(glm::dot(normal, tree.mesh->corner(number, c) - base)));
   }
-  // Off the plane by d, a ray's hit moves by d / cos(incidence), and 1/r by d |w| / r.
+  // At a distance d from the plane a ray's hit moves by d / cos(incidence), and 1/r by d |w| / r.
   const float size = std::fabs(w[0]) + std::fabs(w[1]) + std::fabs(w[2]);
   return 4.0f * static_cast<float>(apart) * size * size;
 }

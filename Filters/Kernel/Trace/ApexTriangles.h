@@ -5,14 +5,14 @@
  * edge vectors and planes, found once and kept in a table.
  *
  * All beams of a scan begin at one point, and neighbouring beams meet the same triangles. The table
- * has 8192 places; a triangle's place follows from its position in the tree's order, and a later
- * triangle replaces an earlier one in the same place. A record fills one cache line, the table a
- * good part of a core's second-level cache. Preparing eight triangles takes about as long as
- * testing 64 rays against a few of them.
+ * has 8192 places. A triangle's place follows from its position in the tree's order; a later
+ * triangle replaces an earlier one. A record fills one cache line, the table a good part of a
+ * core's second-level cache. Preparing eight triangles takes about as long as testing 64 rays
+ * against a few of them.
  *
  * Source: none; the bounds are derived in RayPacketTriangles.h.
- * Valid: any triangle. Where the bounds decide nothing (`inside` is infinite, or an edge vector 0),
- * the exact functions of TriangleTest.h decide.
+ * Valid: any triangle. Where the bounds decide nothing (`inside` is infinite, or an edge vector is
+ * 0), the exact functions of TriangleTest.h decide.
  * Test: TestApexTriangles.cxx, TestRayPacket.cxx.
  */
 #ifndef avianlidar_ApexTriangles_h
@@ -26,13 +26,13 @@
 
 namespace avianlidar
 {
-/// See RayPacketTriangles.h.
+/// A prepared triangle; symbols as in RayPacketTriangles.h.
 struct alignas(64) ApexTriangle
 {
-  float edge[3][3];       ///< scaled edge vectors: e < -1 means that the ray misses
-  float w[3];             ///< plane
-  float error;            ///< bound of the error of w, as an inverse range
-  float inside;           ///< e of every edge from which on the ray hits; infinity: undecided
+  float edge[3][3];       ///< scaled edge vectors; a ray with e < -1 misses
+  float w[3];             ///< W of the plane
+  float error;            ///< bound of the error of w
+  float inside;           ///< a ray with e >= inside at all edges hits; infinity: undecided
   std::uint32_t number;   ///< number of the triangle in the mesh
   std::uint32_t position; ///< position in the tree's order
 };

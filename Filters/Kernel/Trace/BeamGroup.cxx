@@ -26,7 +26,7 @@ std::uint32_t spread(std::uint32_t v)
   return (v | v << 1) & 0x55555555u;
 }
 
-/// A group's descent: the members of an entry are beams.
+/// Descent of a group; the members of an entry are clusters of beams.
 class EntryPointSearch : public WidePolicy
 {
 public:
@@ -67,7 +67,7 @@ public:
   }
 
 private:
-  /// Bit among the members of an entry: its box is an entry point.
+  /// Bit among the members of an entry whose box is an entry point.
   static constexpr std::uint64_t IsEntryPoint = std::uint64_t{ 1 } << 63;
 
   const WideTree& Tree;
@@ -75,7 +75,7 @@ private:
   float EntryPointExtent;
 };
 
-/// Makes entry points of leaves; ends when they hold too many triangles.
+/// Makes entry points of leaves, until these hold too many triangles.
 class LeafVisitor
 {
 public:

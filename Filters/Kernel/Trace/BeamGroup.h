@@ -2,7 +2,7 @@
 /**
  * @file BeamGroup.h
  * @brief Up to sixteen neighbouring beams of one apex descend the wide tree together. They end at
- * the boxes, called entry points, from which the packets of their rays go on (RayPacket.h).
+ * boxes, called entry points, from which the packets of their rays go on (RayPacket.h).
  *
  * Eight boxes are tested against the planes about the group, then sixteen cones against each box
  * that is left (BoxTests.h). The descent ends where a box is a leaf, where its half diagonal is at
@@ -12,8 +12,8 @@
  *
  * Source: batch collision detection (paper, Sec. 3.2); Z-order curve: Morton, "A Computer Oriented
  * Geodetic Data Base and a New Technique in File Sequencing", 1966.
- * Differs: the paper descends once for the rays of a beam; here once for the rays of sixteen beams,
- * and not down to the triangles. findPotential() is the paper's descent of one beam.
+ * Differs: the paper descends once for the rays of a beam, down to the triangles, as
+ * findPotential() does; a group descends once for the rays of sixteen beams, and not as far.
  * Valid: conservative: no triangle that a ray hits lies outside its beam's entry points. A group
  * whose beams lie too far apart (ConeLanes::setFrustum()) is halved.
  * Test: TestBeamGroup.cxx, TestBeamTracer.cxx.
@@ -52,19 +52,18 @@ struct GroupWorkspace
 };
 
 /// Find the entry points of the beams in `work.cones`.
-/// @return number of boxes tested against the group; -1 if there are no planes about it
+/// @return number of boxes tested; -1 if the beams lie too far apart
 std::int64_t findEntryPoints(const WideTree& tree, const Vec3& apex, GroupWorkspace& work);
 
 /// Result of the descent of one cone.
 struct PotentialTriangles
 {
   std::uint64_t nodesVisited = 0;
-  std::size_t count = 0; ///< triangles; if more than `most`, the search was given up
+  std::size_t count = 0; ///< number of triangles; beyond `most` the search was given up
 };
 
 /// The triangles that the cone of one beam may meet (S_potential of the paper, Sec. 3.2), as entry
-/// points.
-/// @param most number of triangles beyond which the search is given up
+/// points. @param most number of triangles beyond which the search is given up
 PotentialTriangles findPotential(const CollisionTree& tree, const BeamFrame& frame,
   std::size_t most, EntryPoints& entryPoints, TraversalStack& stack);
 }

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file BeamTracer.h
- * @brief Nearest hits of the rays of beams: the one way into the collision tree for the simulation
- * of echoes.
+ * @brief Finds the nearest hits of the rays of beams.
  *
  * Acceptance and range of a (ray, triangle) pair come from one function (TriangleTest.h), the
  * nearest range wins, and equal ranges go to the lower triangle number. So a hit has the same bits
@@ -13,7 +12,7 @@
  * Differs: beams and rays descend in groups and packets (BeamGroup.h, RayPacket.h);
  * TraceMode::Beams is the paper's batch.
  * Valid: as TriangleTest.h; a scene moved to UTM or ECEF coordinates keeps its ranges to a
- * micrometre, grazing incidence apart.
+ * micrometre, except at grazing incidence.
  * Test: TestBeamTracer.cxx, TestBeamTracerAgainstEmbree.cxx, TestFreeRays.cxx, TestWatertight.cxx,
  * TestTraceLimits.cxx, TestGeometryProperties.cxx.
  */
@@ -37,8 +36,7 @@ namespace avianlidar
 struct Hit
 {
   std::uint32_t triangle = NoTriangle;
-  double range =
-    std::numeric_limits<double>::infinity(); ///< m from the ray's origin along its unit direction
+  double range = std::numeric_limits<double>::infinity(); ///< distance along the ray, m
   bool valid() const { return this->triangle != NoTriangle; }
 };
 
@@ -51,7 +49,7 @@ struct TraceCounters
   std::uint64_t raysTraced = 0; ///< primary rays, mirror rays and visibility segments
 };
 
-/// Add costs of one beam; of its candidates the larger number counts.
+/// Add costs of the same beam; candidates become the larger number of both.
 void addCounters(const TraceCounters& more, TraceCounters& sum);
 
 /// How beams descend the tree. All modes give the same hits, bit for bit.
@@ -68,8 +66,8 @@ enum class TraceMode
 struct BeamBlock
 {
   const BeamFrame* frames = nullptr;
-  std::size_t size = 0;   ///< beams
-  std::uint32_t rays = 0; ///< of each beam, at least 1
+  std::size_t size = 0;   ///< number of beams
+  std::uint32_t rays = 0; ///< rays per beam, at least 1
   /// Draws the rays of a beam. Called only if a triangle may meet the beam: most beams of an
   /// airport meet none, and drawing rays costs more than a descent. May be called twice; the rays
   /// must live until the block is done.
@@ -77,8 +75,8 @@ struct BeamBlock
   bool inOrder = false; ///< packets take the rays in the order in which they come
 };
 
-/// Number of beams in a block, 1 to 1024, for beams of so many rays (at least 1): enough neighbours
-/// to go together, few enough that their rays and hits stay in the cache.
+/// Number of beams in a block, 1 to 1024: enough neighbours to be traced together, few enough that
+/// their rays and hits stay in the cache. @param raysPerBeam at least 1
 std::size_t beamsPerBlock(int raysPerBeam);
 
 /// Triangles that the rays of a block hit. Ranges are found where they are used (RaySamples.h).
@@ -102,10 +100,9 @@ public:
   /// Begin a beam: set the frame, and the counters to 0.
   void setBeam(const BeamFrame& frame);
 
-  /// Nearest triangle of every ray of all beams of a block, each with a frame of its own;
-  /// neighbours of one apex are traced together. Where movers are placed, the block has one beam.
-  /// The current beam and its counters do not change.
-  /// The result is valid until the next call.
+  /// Nearest triangle of every ray of all beams of a block. Neighbours of one apex are traced
+  /// together. Where movers are placed, the block has one beam. The current beam and its counters
+  /// do not change. The result is valid until the next call.
   const BlockHits& traceBlock(const BeamBlock& block, TraceMode mode);
 
   /// Nearest hit along `direction` (need not be normalised) from the beam's own apex.
@@ -137,17 +134,17 @@ private:
   std::unique_ptr<Workspace> Work;
 };
 
-/// A triangle relative to a beam's apex: what the ranges of all its rays on it share.
+/// A triangle relative to a beam's apex, prepared for the ranges of its rays.
 struct SeenTriangle
 {
   Corners corners;     ///< relative to the apex
   TrianglePlane plane; ///< shared by faces that coincide (CoincidentFaces.h)
   Vec3 normal{ 0.0 };  ///< unit, towards the apex (zero if degenerate)
-  double height = 0.0; ///< m, of the apex above the plane, along the normal
+  double height = 0.0; ///< height of the apex above the plane, m
 };
 SeenTriangle seeTriangle(const SceneTriangles& scene, std::uint32_t triangle, const Vec3& origin);
 
-/// Range on a triangle that the ray along the unit direction `d` of the beam hits, m.
+/// Range, m, of the ray along the unit direction `d` on a triangle that it hits.
 double rangeOnTriangle(const SeenTriangle& triangle, const BeamFrame& frame, const Vec3& d);
 }
 

@@ -120,7 +120,7 @@ void BlockRays::packetOfBeams(const BeamCluster& cluster, const EntryPoints* ent
   }
 }
 
-/// Trace the packet. @param beam whose counters get the cost
+/// Trace the packet. @param beam the beam whose counters get the cost
 void BlockRays::trace(const EntryPoints* entryPoints, std::uint32_t beam)
 {
   RayPacket& packet = this->Work.packet;

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file BlockRays.h
- * @brief Traces the rays of a block's beams: in packets from the entry points of their beams on, or
- * one by one.
+ * @brief Traces the rays of a block's beams: in packets from their entry points, or one by one.
  *
  * Source: none.
  * Valid: hits do not depend on packets or order.
@@ -40,8 +39,8 @@ struct BeamCluster
   std::size_t count = 0;
 };
 
-/// The rays of one block; hits and costs go to `work.found`. The constructor's arguments must
-/// outlive it.
+/// Traces the rays of one block; hits and costs go to `work.found`. The constructor's arguments
+/// must outlive it.
 class BlockRays
 {
 public:
@@ -51,7 +50,7 @@ public:
   void rayByRay(std::uint32_t beam);
 
   /// Trace all rays of a cluster in packets. The rays of several beams must fit into one packet.
-  /// @param entryPoints of the cluster; null: the whole tree
+  /// @param entryPoints entry points of the cluster; null: the whole tree
   void packets(const BeamCluster& cluster, const EntryPoints* entryPoints);
 
 private:
@@ -59,7 +58,7 @@ private:
   void packetOfBeams(const BeamCluster& cluster, const EntryPoints* entryPoints);
   void trace(const EntryPoints* entryPoints, std::uint32_t beam);
 
-  /// room(): where the triangles of the next beam are written; keep(): makes them its hits.
+  /// Memory for the triangles of the next beam, which keep() makes its hits.
   std::uint32_t* room() { return this->Work.triangles.data() + this->Work.used; }
   void keep(std::uint32_t beam, std::size_t count)
   {

@@ -10,7 +10,7 @@ namespace
 /// Beams of fewer rays form no groups.
 constexpr std::uint32_t FewestRaysInGroup = 8;
 
-/// A cone that meets more triangles is traced ray by ray, which is then faster.
+/// Beams whose cones meet more triangles are traced ray by ray, which is then faster.
 constexpr std::size_t MostPotential = 2048;
 
 class BlockTrace
@@ -55,7 +55,7 @@ public:
   }
 
 private:
-  /// All beams of one apex and width.
+  /// Trace the collected beams, which have one apex and width.
   void groups()
   {
     this->Block.rays < FewestRaysInGroup ? this->consecutive() : this->inGroups();
@@ -73,8 +73,8 @@ private:
     }
   }
 
-  /// Packets of beams in the order of the scan, in which neighbours follow each other: with so few
-  /// rays this is faster than to order them.
+  /// Fill packets in the order of the scan, where neighbours follow each other. With so few rays
+  /// this is faster than sorting.
   void consecutive()
   {
     const std::vector<std::uint32_t>& beams = this->Work.beams;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file BlockTrace.h
- * @brief Traces a block of beams: decides which beams go together, and how.
+ * @brief Traces a block of beams: decides which beams are traced together, and how.
  *
  * Beams of one apex and width are ordered along a Z-order curve and cut into groups of sixteen
  * clusters. A cluster has as many beams as fill a packet of rays, mostly one. Beams of fewer than
@@ -36,8 +36,8 @@ struct BlockWorkspace
   BlockRaysWorkspace rays;
 };
 
-/// Trace a block, movers apart, into `work.rays.found`, which the caller has set to no hits and no
-/// cost.
+/// Trace a block, without its movers, into `work.rays.found`, which the caller has set to no hits
+/// and no cost.
 void traceBlock(
   const SceneTriangles& scene, const BeamBlock& block, TraceMode mode, BlockWorkspace& work);
 }

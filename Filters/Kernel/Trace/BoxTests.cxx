@@ -29,7 +29,7 @@ HWY_INLINE float highest(Rays v)
   return hn::GetLane(hn::MaxOfLanes(RayTag(), v));
 }
 
-/// Inverse directions, and the four planes about them.
+/// Set the inverse directions, and the four planes about the rays.
 bool surroundRays(PacketView& view, int count, float longest)
 {
   const RayTag lanes;
@@ -38,7 +38,7 @@ bool surroundRays(PacketView& view, int count, float longest)
   f.setAxes({ d[0][0], d[1][0], d[2][0] });
   const Rays sign = everywhere(f.sign);
   const Rays infinity = everywhere(std::numeric_limits<float>::infinity());
-  // Depth along the dominant axis, and slopes.
+  // Least and largest depth along the dominant axis, and slopes.
   Rays low[3] = { infinity, infinity, infinity };
   Rays high[3] = { hn::Neg(infinity), hn::Neg(infinity), hn::Neg(infinity) };
   for (int lane = 0; lane < count; lane += RayLanes)
@@ -110,7 +110,7 @@ HWY_INLINE hn::Mask<BoxTag> areChildren(const WideNode& node, int begin)
     BoxTag(), hn::Ne(hn::Load(numbers, node.first + begin), hn::Set(numbers, NoChild)));
 }
 
-/// Boxes that the four planes let through, one bit each, and lower bounds of their ranges.
+/// Boxes between the four planes, one bit each. @param nearest out: lower bounds of ranges
 HWY_INLINE std::uint32_t meetFrustum(
   const Frustum& frustum, const WideNode& node, const NearBoxes& boxes, float* nearest)
 {
@@ -180,7 +180,7 @@ struct BoxInLanes
   }
 };
 
-/// The rays that meet one box before they hit something.
+/// The rays that meet a box before their nearest hit so far.
 HWY_INLINE RayBits raysThatMeet(
   const PacketView& view, const NearBoxes& boxes, int box, RayBits rays)
 {
@@ -207,7 +207,7 @@ HWY_INLINE RayBits raysThatMeet(
   return bits & rays;
 }
 
-/// Few rays, each against all boxes.
+/// Test few rays, each against all boxes.
 HWY_INLINE int meetOneByOne(const PacketView& view, const WideNode& node, const NearBoxes& boxes,
   RayBits rays, PacketChild* children)
 {
@@ -275,8 +275,8 @@ HWY_INLINE Rays dot(Rays ax, Rays ay, Rays az, Rays bx, Rays by, Rays bz)
   return hn::MulAdd(ax, bx, hn::MulAdd(ay, by, hn::Mul(az, bz)));
 }
 
-/// Cones that meet a box, one bit each: their own planes, then for those that are left the tangent
-/// plane on the side of the box's centre, and the plane across the axis (see BeamVolumeTest.cxx).
+/// Cones that meet a box, one bit each, by their own planes, then by the tangent plane on the side
+/// of the box's centre and the plane across the axis (see BeamVolumeTest.cxx).
 HWY_INLINE std::uint32_t conesThatMeet(const ConeLanes& cones, const NearBoxes& boxes, int box)
 {
   const RayTag lanes;
@@ -312,7 +312,7 @@ HWY_INLINE std::uint32_t conesThatMeet(const ConeLanes& cones, const NearBoxes& 
     const Rays sine = hn::Load(lanes, cones.sine + b);
     const Rays cosine = hn::Load(lanes, cones.cosine + b);
     const Rays along = dot(in.x, in.y, in.z, ax, ay, az);
-    // Twice, so that what is left is across the axis to the last bits.
+    // Projected twice, so that the rest is across the axis to the last bits.
     Rays rx = hn::NegMulAdd(along, ax, in.x);
     Rays ry = hn::NegMulAdd(along, ay, in.y);
     Rays rz = hn::NegMulAdd(along, az, in.z);
@@ -435,7 +435,7 @@ void ConeLanes::add(const BeamFrame* frames, const std::uint32_t* beams, std::si
     this->axis[k][i] = static_cast<float>(middle[k]);
   }
   // The sine of a sum is at most the sum of the sines, and a chord is longer than the sine of its
-  // angle; 1e-6 for the rounding of the axis.
+  // angle; 1e-6 covers the rounding of the axis.
   const double wide = std::sqrt(apart) + frames[beams[0]].sinHalf * (1.0 + 2.0 * HitMarginBeam) +
     2.0 * HitMargin + 1e-6;
   const double widened = std::min(wide, 0.999);
@@ -468,8 +468,8 @@ bool ConeLanes::setFrustum(const WideTree& tree, const Vec3& apex)
     const float depth = f.sign * this->axis[f.axes[0]][i];
     const float u = this->axis[f.axes[1]][i] / depth;
     const float v = this->axis[f.axes[2]][i] / depth;
-    // On the plane at depth 1 the cone's trace reaches no farther than tan(a + b) - tan(a) from its
-    // axis, a between axis and normal, b the half-angle.
+    // On the plane at depth 1 the cone reaches at most tan(alpha + beta) - tan(alpha) from its
+    // axis. alpha lies between axis and normal, beta is the half-angle; a and b are their tangents.
     const float a = std::sqrt(u * u + v * v);
     const float b = this->sine[i] / this->cosine[i];
     constexpr float widestSine = 0.99f;

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file BoxTests.h
- * @brief What starts from one apex, rays of a packet or cones of a group of beams, against the
- * eight boxes of a wide node, in single precision, in vectors (RayLanes.h).
+ * @brief Tests the rays of a packet, or the cones of a group of beams, against the eight boxes of a
+ * wide node: from one apex, in single precision, in vectors (RayLanes.h).
  *
- * All directions lie between four planes through the apex, each along one of the two axes that are
- * not the dominant one of the directions. Eight boxes are tested against these planes in one loop.
- * Against each box that is left go groups of sixteen rays (slabs) or, where few rays are left, each
- * ray against eight boxes. Of cones sixteen are tested at a time: by their own four planes, by the
- * plane that touches the cone on the side of the box's centre, and by the plane through the apex
- * across its axis.
+ * All directions lie between four planes through the apex, each along one of the two coordinate
+ * axes that are not the dominant one. Eight boxes are tested against these planes in one loop. Each
+ * box that is left is tested against groups of sixteen rays (slabs) or, where few rays are left,
+ * eight boxes against each ray. Cones are tested sixteen at a time: by their own four planes, by
+ * the plane that touches the cone on the side of the box's centre, and by the plane through the
+ * apex across its axis.
  *
  * Source: frustum of Reshetov, Soupikov and Hurley, 2005 (see RayPacket.h); the tangent plane and
  * the plane across the axis are those of BeamVolumeTest.h.
@@ -50,18 +50,18 @@ struct Frustum
   float sign;                     ///< sign of the directions along the dominant axis
   float lowU, highU, lowV, highV; ///< slopes of the directions
   float apex[3];                  ///< relative to the tree's reference, m
-  float widening;                 ///< m, by which every box is widened
+  float widening;                 ///< widening of every box, m
   float spread = 0.0f;            ///< half-width of the directions, rad
-  float shortening =
-    1.0f - WideRounding; ///< from depth along the dominant axis to a lower bound of range
+  /// Factor from depth along the dominant axis to a lower bound of the range.
+  float shortening = 1.0f - WideRounding;
 
   /// Set the apex. @return false if scene or apex are too large or small (wideningFor())
   bool setApex(const WideTree& tree, const Vec3& at);
   void setAxes(const Vec3& direction);
 };
 
-/// A packet as the tests of boxes and triangles need it. Points along a ray are given by their
-/// range over |D|, with D the direction that stands here; so are Frustum::shortening's ranges.
+/// A packet as the tests of boxes and triangles need it. All ranges along a ray, including those of
+/// Frustum::shortening, are divided by |D|, with D its `direction`.
 struct alignas(64) PacketView
 {
   float direction[3][PacketWidth]; ///< D = axis + tan(theta0.5) (x e1 + y e2) of the ray's beam
@@ -71,8 +71,7 @@ struct alignas(64) PacketView
   Frustum frustum;
 
   /// Set what follows from `count` directions; lanes that pad the last group repeat one of them.
-  /// @param longest largest length of a direction
-  /// @return false if the rays lie too far apart for one packet
+  /// @param longest largest length of a direction @return false if the rays lie too far apart
   bool set(int count, double longest);
 };
 
@@ -81,7 +80,7 @@ struct PacketChild
 {
   std::uint32_t lane;
   RayBits rays;
-  float nearest; ///< lower bound of the range, m
+  float nearest; ///< lower bound of the range over |D|, m
 };
 
 /// Children of a node that some of `rays` meet. @return number of children
@@ -95,15 +94,15 @@ struct alignas(64) ConeLanes
   float sine[Width], cosine[Width]; ///< sine and cosine of half-angles, rounding included
   float lowU[Width], highU[Width], lowV[Width], highV[Width]; ///< slopes, set by setFrustum()
   int count = 0;
-  Frustum frustum;     ///< about all of them
+  Frustum frustum;     ///< planes about all cones
   double widest = 0.0; ///< tangent of the widest half-angle
 
-  /// The cone of a beam, or one about several, widened as BeamCone.
+  /// Add the cone of a beam, or one about several beams, widened as BeamCone.
   void add(const BeamFrame* frames, const std::uint32_t* beams, std::size_t number);
   /// Fill the lanes beyond the last cone with copies of it.
   void close();
-  /// False if the cones are too wide, or too far apart, or do not all lie along one coordinate
-  /// axis, or where single precision ends.
+  /// Set the planes. @return false if the cones are too wide, too far apart or not all along one
+  /// coordinate axis, or where single precision ends (wideningFor())
   bool setFrustum(const WideTree& tree, const Vec3& apex);
 };
 
@@ -111,7 +110,7 @@ struct alignas(64) ConeLanes
 struct ConeChild
 {
   std::uint32_t lane;
-  std::uint32_t cones; ///< one bit each
+  std::uint32_t cones; ///< cones that meet it, one bit each
   float nearest;       ///< lower bound of the distance, m
   float size;          ///< half diagonal over the distance
 };

@@ -99,7 +99,7 @@ bool BeamCandidates::descendNextGroup()
     findEntryPoints(this->Tree->wide, this->Frames[beams[0]].origin, this->Work);
   if (visited < 0)
   {
-    // Its beams lie too far apart.
+    // The beams lie too far apart: halve the group.
     const std::size_t half = this->Now.count / 2;
     this->Groups.push_back({ this->Now.first + half, this->Now.count - half });
     this->Groups.push_back({ this->Now.first, half });
@@ -110,8 +110,8 @@ bool BeamCandidates::descendNextGroup()
   return true;
 }
 
-/// Collect the triangles of the beam. @param entryPoints null: from the root @return false if there
-/// are none
+/// Collect the triangles of the beam. @param entryPoints null: descend from the root @return false
+/// if there are no triangles
 bool BeamCandidates::collect(const EntryPoints* entryPoints)
 {
   this->Triangles.clear();

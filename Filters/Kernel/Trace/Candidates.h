@@ -1,17 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file Candidates.h
- * @brief First stage of a block of beams: the triangles that the cone of each beam may meet.
+ * @brief First step of tracing a block of beams: the triangles that the cone of each beam may meet.
  *
- * Everything that a beam can meet, reflect in or be hidden by lies in its cone, which is convex.
- * Neighbouring beams of one apex descend the tree together (BeamGroup.h). From the entry points of
- * its group each beam goes on alone, down to the leaves. The triangles of movers that the beam may
- * meet follow.
+ * All that a beam can meet, that reflects its light again or that hides other surfaces lies in its
+ * cone, which is convex. Neighbouring beams of one apex descend the tree together (BeamGroup.h).
+ * From the entry points of its group each beam descends alone, down to the leaves. The triangles of
+ * movers that the beam may meet follow.
  *
  * Source: paper, Sec. 3.2, where the list is called S_potential.
  * Differs: the paper descends for each beam from the root.
- * Valid: each list holds every triangle that a ray of its beam may hit, each once, and others
- * beside the cone.
+ * Valid: each list holds every triangle that a ray of its beam may hit, once, and maybe others.
  * Test: TestBeamGroup.cxx.
  */
 #ifndef avianlidar_Candidates_h
@@ -26,30 +25,27 @@
 
 namespace avianlidar
 {
-/// Goes through the beams of one block after the other. Reusable without allocation; one per
-/// thread.
+/// Goes through the beams of a block. Reusable without allocation; one per thread.
 class BeamCandidates
 {
 public:
   /// Begin a block. Scene and frames must live until its last beam.
-  /// @param count of beams; one, if movers are placed
+  /// @param count number of beams; 1 if movers are placed
   /// @param together false: each beam descends alone from the root
   void begin(
     const SceneTriangles& scene, const BeamFrame* frames, std::size_t count, bool together);
 
-  /// Go on to a beam that may meet a triangle, in any order. @return false after the last
+  /// Go on to a beam that may meet a triangle, in no fixed order. @return false after the last
   bool next();
 
-  // The beam.
+  // The current beam.
   std::size_t beam() const { return this->Beam; } ///< number in the block
   const std::vector<std::uint32_t>& triangles() const { return this->Triangles; }
-  std::uint64_t nodesVisited() const
-  {
-    return this->NodesVisited;
-  } ///< with its share of the group's
+  /// Nodes visited, with the beam's share of those that its group visited.
+  std::uint64_t nodesVisited() const { return this->NodesVisited; }
 
 private:
-  /// Neighbours, by places in Order.
+  /// Neighbouring beams, by places in Order.
   struct Group
   {
     std::size_t first, count;
@@ -60,8 +56,8 @@ private:
   const SceneTriangles* Scene = nullptr;
   const CollisionTree* Tree = nullptr;
   const BeamFrame* Frames = nullptr;
-  std::vector<std::uint32_t> Order; ///< beams
-  std::vector<Group> Groups;        ///< still to be descended, the next one last
+  std::vector<std::uint32_t> Order; ///< numbers of the beams, neighbours together
+  std::vector<Group> Groups;        ///< groups still to descend, the next one last
   Group Now{ 0, 0 };                ///< the rest of the group that was descended last
   int Member = 0;                   ///< next member of that group
   bool FromRoot = false;            ///< the group has no entry points

@@ -22,7 +22,7 @@
 
 namespace avianlidar
 {
-/// A visitor, which has the members of TreeLeaves, behind that interface.
+/// Makes a TreeLeaves of a visitor with the same members.
 template <class Visitor>
 class LeavesOf final : public TreeLeaves
 {
@@ -41,8 +41,8 @@ private:
   Visitor& Seen;
 };
 
-/// Descent of a beam's cone through a tree that is not empty. @param entryPoints null: from the
-/// root, as always with other volumes @return nodes visited
+/// Descend a tree that is not empty with a beam's cone. @param entryPoints null: from the root;
+/// trees of other volumes always begin there @return nodes visited
 template <class Visitor>
 std::uint64_t descendCone(const CollisionTree& tree, const BeamFrame& frame, Visitor& visitor,
   TraversalStack& stack, const EntryPoints* entryPoints = nullptr)
@@ -55,7 +55,7 @@ std::uint64_t descendCone(const CollisionTree& tree, const BeamFrame& frame, Vis
   return descendWide(tree, WideCone(tree.wide, frame), visitor, stack, entryPoints);
 }
 
-/// Descent of one ray through a tree that is not empty. @param origin relative to the apex, m
+/// Descend a tree that is not empty with one ray. @param origin relative to the apex, m
 /// @return nodes visited
 template <class Visitor>
 std::uint64_t descendRay(const CollisionTree& tree, const Vec3& apex, const Vec3& origin,
@@ -70,7 +70,7 @@ std::uint64_t descendRay(const CollisionTree& tree, const Vec3& apex, const Vec3
   return descendWide(tree, ray, visitor, stack);
 }
 
-/// The leaves of the tree of movers, by the numbers of their triangles in the scan.
+/// Passes leaves of the movers' tree to a visitor, by the numbers of their triangles in the scan.
 template <class Visitor>
 class MovedLeaves
 {
@@ -92,7 +92,7 @@ private:
   Visitor& Seen;
 };
 
-/// Test one ray against the movers that are placed, as descendRay() does with the tree.
+/// Test one ray against the movers that are placed. @return nodes visited
 template <class Visitor>
 std::uint64_t visitMoved(const SceneTriangles& scene, const Vec3& apex, const Vec3& origin,
   const Vec3& direction, double angularMargin, Visitor& visitor, TraversalStack& stack)
@@ -106,7 +106,7 @@ std::uint64_t visitMoved(const SceneTriangles& scene, const Vec3& apex, const Ve
   return 0;
 }
 
-/// Replace `hit` if the other is nearer, or as near with a lower triangle number.
+/// Replace `hit` if the triangle is nearer, or as near with a lower number.
 inline void keepNearest(Hit& hit, double range, std::uint32_t triangle)
 {
   if (range < hit.range || (range == hit.range && triangle < hit.triangle))
@@ -116,9 +116,9 @@ inline void keepNearest(Hit& hit, double range, std::uint32_t triangle)
   }
 }
 
-/// Ranges up to which volumes are visited for a hit. One that takes the plane of another triangle
-/// may lie before its own volumes by what rounding moves them apart, along a ray by more: rays
-/// within 4 degrees of a plane are not provided for.
+/// Range up to which volumes are visited once a hit is known. A triangle that takes the plane of
+/// another may be hit nearer than its own volumes by as much as rounding moves them apart, along
+/// the ray by more. Rays within 4 degrees of a plane are not covered.
 inline double limitOf(const CollisionTree& tree, double range)
 {
   constexpr double alongRay = 16.0;
@@ -237,7 +237,7 @@ private:
     }
   }
 
-  /// From the ray's origin.
+  /// Corners relative to the ray's origin, m.
   Corners cornersOf(std::uint32_t triangle) const
   {
     Corners corners = this->Scene.cornersFrom(triangle, this->Apex);

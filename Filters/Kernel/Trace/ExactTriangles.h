@@ -54,7 +54,7 @@ public:
     }
   }
 
-  /// The triangle of this number. Valid until the next call.
+  /// The triangle with this number. Valid until the next call.
   const ExactTriangle& operator[](std::uint32_t number)
   {
     const auto at = static_cast<std::uint32_t>(number & (this->Last.size() - 1));
@@ -75,7 +75,7 @@ public:
 private:
   const CollisionTree* Tree = nullptr;
   Vec3 Apex{ 0.0 };
-  std::vector<ExactTriangle> Last; ///< as many as a power of two
+  std::vector<ExactTriangle> Last; ///< number: a power of two
   std::vector<std::uint32_t> Used; ///< occupied places
 };
 }

@@ -42,7 +42,7 @@ RayBits PacketRanges::decide(RayBits rays, std::uint32_t triangle)
   return this->compare(accepted, triangle);
 }
 
-/// A ray whose edge functions were accepted; false if it does not hit the triangle.
+/// Compare a ray whose edge functions were accepted. @return false if it does not hit the triangle
 bool PacketRanges::compareRay(int ray, std::uint32_t triangle)
 {
   const BeamFrame& frame = this->Packet.frameOf(ray);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file PacketRanges.h
- * @brief Applies the exact functions of TriangleTest.h where the bounds of single precision leave a
- * packet's hit open: whether a ray hits a triangle, and which of two triangles it hits first.
+ * @brief Applies the exact functions of TriangleTest.h where the bounds of single precision leave
+ * open whether a ray of a packet hits a triangle, or which of two triangles it hits first.
  *
  * Source: none.
  * Valid: hits are those of single rays, bit for bit.
@@ -27,12 +27,11 @@ public:
   {
   }
 
-  /// For rays that surely hit the triangle, about as far away as their nearest hit so far: keep the
-  /// nearer of the two. @return rays that hit it
+  /// Keep the nearer hit of rays that surely hit the triangle, about as far away as their nearest
+  /// hit so far. @return rays that hit it
   RayBits compare(RayBits rays, std::uint32_t triangle);
 
-  /// For rays that may hit the triangle: test them, and keep the nearer hit.
-  /// @return rays that hit it
+  /// Test rays that may hit the triangle, and keep the nearer hit. @return rays that hit it
   RayBits decide(RayBits rays, std::uint32_t triangle);
 
 private:

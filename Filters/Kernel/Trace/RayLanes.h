@@ -10,7 +10,7 @@
  * vectors have no fixed length are excluded.
  * Test: TestRayPacket.cxx and TestBeamGroup.cxx, for every instruction set of this processor.
  */
-// To be read once for every instruction set.
+// Read once for every instruction set.
 #if defined(avianlidar_RayLanes_h) == defined(HWY_TARGET_TOGGLE)
 #ifdef avianlidar_RayLanes_h
 #undef avianlidar_RayLanes_h

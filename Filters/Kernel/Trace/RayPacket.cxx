@@ -13,7 +13,7 @@ namespace avianlidar
 {
 namespace
 {
-/// BeamFrame::direction() of rays of one beam.
+/// BeamFrame::direction() for rays of one beam, in single precision.
 AVIANLIDAR_MULTIVERSION void roundedLanes(
   const BeamFrame& frame, const double* x, const double* y, int end, PacketView& view)
 {
@@ -43,7 +43,7 @@ public:
   {
   }
 
-  /// False if the rays lie too far apart, or where single precision ends (wideningFor()).
+  /// Begin a packet. @return false if its rays lie too far apart, or where single precision ends
   bool begin()
   {
     PacketState& s = this->State;
@@ -125,7 +125,7 @@ public:
   }
 
 private:
-  /// Prefetch what is needed soon: a node, or corners of a leaf's triangles.
+  /// Prefetch a node, or the corners of a leaf's triangles.
   void askFor(std::uint32_t first, std::uint32_t count) const
   {
     if (count > 0)
@@ -201,7 +201,7 @@ private:
     for (float* const bound : { s.best.low, s.best.high })
     {
       std::fill(bound, bound + count, 0.0f);
-      std::fill(bound + count, bound + end, FloatInfinity); // nothing is nearer than padding
+      std::fill(bound + count, bound + end, FloatInfinity); // padding never has a nearer hit
     }
   }
 
@@ -211,7 +211,7 @@ private:
   RayPacket& Packet;
   PacketRanges Ranges;
   PacketCost Cost;
-  float Scale = 0.0f; ///< from distances to lower bounds of ranges over |D|
+  float Scale = 0.0f; ///< factor from distances to lower bounds of ranges over |D|
 };
 
 /// Descent of one ray.

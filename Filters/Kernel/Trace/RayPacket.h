@@ -4,19 +4,19 @@
  * @brief Up to 64 rays from one apex descend the wide tree together, in single precision with
  * bounds of the error.
  *
- * What BoxTests.h and RayPacketTriangles.h leave undecided goes at once to the exact
- * functions (PacketRanges.h). A node is a chain of dependent steps that hardly grows with the
- * number of rays, and only groups of sixteen rays that meet a leaf are tested with its triangles.
- * So packets are wider than a vector (128 rays are better for narrow beams and worse for fine
- * meshes). Rays that lie closer together share more; they need not belong to one beam.
+ * Hits that RayPacketTriangles.h leaves undecided go at once to the exact functions
+ * (PacketRanges.h). The steps of a node depend on each other, so its time hardly grows with the
+ * number of rays, and only groups of sixteen rays that meet a leaf are tested against its
+ * triangles. So packets are wider than a vector; 128 rays are better for narrow beams and worse for
+ * fine meshes. Rays that lie closer together share more nodes; they need not belong to one beam.
  *
  * Source: Wald, Slusallek, Benthin, Wagner, "Interactive Rendering with Coherent Ray Tracing",
  * Computer Graphics Forum 20(3), 2001; frustum: Reshetov, Soupikov, Hurley, "Multi-level Ray
  * Tracing Algorithm", ACM TOG 24(3), 2005.
  * Differs: rays are tested in groups of sixteen within a packet, eight boxes or triangles at a
  * time.
- * Valid: hits are those of single rays, bit for bit. Rays that lie too far apart, an apex too far
- * away and trees without a wide form are traced ray by ray.
+ * Valid: hits are those of single rays, bit for bit. Rays are traced one by one where they lie too
+ * far apart, where the apex is too far away, and where the tree has no wide form.
  * Test: TestRayPacket.cxx.
  */
 #ifndef avianlidar_RayPacket_h
@@ -41,12 +41,12 @@ struct alignas(64) RayPacket
 
   double x[Width], y[Width];       ///< coordinates in the plane of the ray's beam
   const BeamFrame* beam = nullptr; ///< frame of all rays; null if they belong to several beams
-  const BeamFrame* frame[Width];   ///< then the frame of each ray; all with the same origin
+  const BeamFrame* frame[Width];   ///< frame of each ray, if `beam` is null; all of one origin
   std::uint32_t triangle[Width];   ///< out: nearest triangle of each ray, or NoTriangle
   int count = 0;                   ///< rays, 1 to Width; lanes beyond may be overwritten
 
   const BeamFrame& frameOf(int ray) const { return this->beam ? *this->beam : *this->frame[ray]; }
-  /// unitDirection(), for one ray.
+  /// Unit direction of a ray.
   Vec3 direction(int ray) const
   {
     return unitDirection(this->frameOf(ray).direction(this->x[ray], this->y[ray]));
@@ -62,7 +62,7 @@ struct PacketState
   PacketView view = {};
   PacketBest best = {};
   PacketTriangles triangles = {};
-  int missing = 0; ///< number of these that are not in the table `known`
+  int missing = 0; ///< number of triangles that are not in the table `known`
   std::uint32_t positions[PacketTriangles::Width];
   ApexTriangle fresh[PacketTriangles::Width];
   ApexTriangles known;
@@ -76,20 +76,18 @@ struct PacketWorkspace
   TraversalStack stack;
 };
 
-/// Cost of a packet.
 struct PacketCost
 {
   std::uint64_t nodes = 0;     ///< nodes visited
   std::uint64_t triangles = 0; ///< triangles tested
 };
 
-/// Nearest triangles of the rays of a packet. `entryPoints`: boxes that hold all triangles that
-/// the rays may hit; null: the whole tree.
+/// Find the nearest triangles of the rays of a packet. @param entryPoints boxes that hold all
+/// triangles that the rays may hit; null: the whole tree
 PacketCost tracePacket(const CollisionTree& tree, RayPacket& packet, PacketWorkspace& work,
   const EntryPoints* entryPoints = nullptr);
 
-/// Set the directions of the packet's rays, and of the lanes that pad the last group, in single
-/// precision.
+/// Set the directions of rays and of padding lanes, in single precision.
 void setDirections(RayPacket& packet, PacketView& view);
 }
 

@@ -15,7 +15,7 @@ namespace avianlidar::HWY_NAMESPACE
 {
 namespace
 {
-/// A triangle in all lanes.
+/// One triangle in all lanes.
 struct TriangleLanes
 {
   Rays edge[3][3], w[3], error, inside;
@@ -40,13 +40,13 @@ HWY_INLINE Rays dot(const Rays* a, Rays x, Rays y, Rays z)
   return hn::MulAdd(a[0], x, hn::MulAdd(a[1], y, hn::Mul(a[2], z)));
 }
 
-/// Results of rays at a triangle, one bit each.
+/// Results of the rays at one triangle, one bit each.
 struct Outcome
 {
   RayBits nearest = 0, level = 0, unsure = 0;
 };
 
-/// A group of sixteen rays and one triangle.
+/// Test a group of sixteen rays against one triangle.
 HWY_INLINE void testRays(const PacketView& view, const TriangleLanes& t, std::uint32_t id,
   int group, PacketBest& best, Outcome& outcome)
 {
@@ -73,8 +73,8 @@ HWY_INLINE void testRays(const PacketView& view, const TriangleLanes& t, std::ui
     const auto inside = hn::Ge(edge, t.inside);
     const auto sure = hn::And(inside, hn::Gt(low, bestHigh));
     outcome.level |= bitsOf(lanes, hn::And(hn::AndNot(sure, inside), hn::Ge(high, bestLow))) << i;
-    // A ray that may be accepted beside the triangle has the range of a corner; the range of the
-    // plane where it passes does not apply.
+    // A ray that is accepted just beside the triangle has the range of a corner, not that of the
+    // plane where it passes.
     outcome.unsure |= bitsOf(lanes, hn::AndNot(inside, near)) << i;
     const RayBits changed = bitsOf(lanes, sure);
     if (changed != 0)

@@ -7,7 +7,7 @@ namespace avianlidar
 {
 namespace
 {
-/// Rays are tested against so many triangles one by one.
+/// Movers with at most so many triangles get no tree; rays are tested against each triangle.
 constexpr std::size_t FewMoved = 64;
 }
 

@@ -8,7 +8,7 @@
  * them, whether they are placed or not, so that a number means one triangle throughout a scan.
  *
  * Source: none.
- * Valid: a mover's triangle takes the plane of no other (CoincidentFaces.h).
+ * Valid: a mover's triangle never takes the plane of another one (CoincidentFaces.h).
  * Test: TestMovedBeams.cxx.
  */
 #ifndef avianlidar_SceneTriangles_h
@@ -39,20 +39,19 @@ public:
 
   const CollisionTree& tree() const { return this->Tree; }
 
-  /// Numbers of the triangles that movers have in the beam, in rising order.
+  /// Numbers of the movers' triangles in the beam, in rising order.
   const std::vector<std::uint32_t>& moved() const { return this->Numbers; }
 
-  /// A tree of these, by their places among them; null: they are few.
+  /// Tree of the triangles in moved(), by their places there; null if they are few.
   const CollisionTree* movedTree() const { return this->MovedTree.get(); }
 
-  /// Remove all movers.
   void clear();
 
-  /// Place a mover, after those with lower numbers. @param first number of its first triangle
+  /// Place a mover, after the movers with lower numbers. @param first number of its first triangle
   /// @param mesh its triangles in scene coordinates, m
   void place(std::uint32_t first, const TriangleMesh& mesh);
 
-  /// Call it after the last mover is placed: it builds the tree of their triangles.
+  /// Build the tree of the movers' triangles. Call it after the last mover is placed.
   void finish();
 
   /// True if the triangle is one of the tree, or of a mover that is placed.
@@ -64,21 +63,21 @@ public:
 
   bool isMoved(std::uint32_t triangle) const { return triangle >= this->Fixed; }
 
-  /// In scene coordinates, m.
+  /// A corner in scene coordinates, m.
   const Vec3& corner(std::uint32_t triangle, int c) const
   {
     return this->isMoved(triangle) ? this->Moved[triangle - this->Fixed][c]
                                    : this->Mesh.corner(triangle, c);
   }
 
-  /// The corners relative to a point.
+  /// Corners relative to a point, m.
   Corners cornersFrom(std::uint32_t triangle, const Vec3& point) const
   {
     return { this->corner(triangle, 0) - point, this->corner(triangle, 1) - point,
       this->corner(triangle, 2) - point };
   }
 
-  /// See CollisionTree.
+  /// As in CollisionTree.
   bool coincides(std::uint32_t triangle) const
   {
     return !this->isMoved(triangle) && this->Tree.coincides(triangle);
@@ -88,8 +87,8 @@ public:
     return this->isMoved(triangle) ? triangle : this->Tree.planeOwner(triangle);
   }
 
-  /// The plane on which the ranges of a triangle lie: its own, or that which it takes of another.
-  /// @param corners from the point
+  /// The plane on which the ranges of a triangle lie: its own, or that of its planeOwner().
+  /// @param corners relative to `point`
   TrianglePlane planeOf(std::uint32_t triangle, const Corners& corners, const Vec3& point) const
   {
     return this->isMoved(triangle) ? avianlidar::planeOf(corners)
@@ -100,7 +99,7 @@ private:
   const CollisionTree& Tree;
   const TriangleMesh& Mesh;
   const std::uint32_t Fixed;              ///< number of triangles in the tree
-  std::vector<std::array<Vec3, 3>> Moved; ///< corners of movers' triangles, once placed
+  std::vector<std::array<Vec3, 3>> Moved; ///< corners of movers' triangles that were placed
   std::vector<std::uint32_t> Numbers;
   std::shared_ptr<const CollisionTree> MovedTree;
 };
