@@ -24,7 +24,7 @@
 
 namespace avianlidar
 {
-/// Distance, m, below which a point at `range` from the apex counts as on the surface.
+/// Distance, m, from a surface below which a point at `range` from the apex counts as on it.
 constexpr double surfaceMargin(double range)
 {
   return 1e-9 * range;
@@ -36,25 +36,25 @@ constexpr std::uint32_t NoSample = 0xffffffffu;
 /// 28 bytes a sample, 8 a surface.
 struct BeamSamples
 {
-  /// Samples on a triangle: from the end of the surface before to `end`.
+  /// Samples on a triangle: from the end of the previous surface to `end`.
   struct Surface
   {
     std::uint32_t triangle;
     std::uint32_t end;
   };
-  std::vector<Surface> surfaces; ///< in the order of the samples; nodes may come back to a triangle
-  std::vector<std::uint32_t> ray; ///< number of the ray; empty if the samples are none
+  std::vector<Surface> surfaces;  ///< in the order of the samples; a triangle may occur again
+  std::vector<std::uint32_t> ray; ///< number of the ray; empty unless the samples are rays
   std::vector<double> range;      ///< m, see rangeOf()
-  std::vector<double> cosine;     ///< of incidence, in [0, 1]
-  std::vector<double> weight;     ///< share of the pulse's energy that arrives there
+  std::vector<double> cosine;     ///< cosine of incidence, in [0, 1]
+  std::vector<double> weight;     ///< share of the pulse's energy that arrives
 
-  /// Columns of the air that its rays lie in (BeamAir.h), bits; empty: all of each sample.
+  /// Bits of the columns of air in which the sample's rays lie (BeamAir.h); empty: all columns.
   std::vector<std::uint64_t> columns;
 
-  std::uint32_t rays = 0;                                   ///< N of the beam, with and without hit
-  bool coplanar = false;                                    ///< all lie on one plane
-  double nearest = std::numeric_limits<double>::infinity(); ///< m
-  double farthest = 0.0;                                    ///< m
+  std::uint32_t rays = 0; ///< number of traced rays, with and without hit
+  bool coplanar = false;  ///< whether all samples lie on one plane
+  double nearest = std::numeric_limits<double>::infinity(); ///< least range, m
+  double farthest = 0.0;                                    ///< largest range, m
 
   std::size_t size() const { return this->weight.size(); }
 
@@ -82,7 +82,7 @@ struct BeamSamples
   }
 };
 
-/// Directions and normals of samples, in their order: needed only for paths over two reflections.
+/// Directions and normals of samples, in their order. Only paths over two reflections need them.
 struct SampleGeometry
 {
   struct Surface
@@ -91,10 +91,10 @@ struct SampleGeometry
     Vec3 normal;   ///< unit, towards the apex
     double height; ///< distance of its plane from the apex, m
   };
-  std::vector<double> dx, dy, dz; ///< unit directions
-  std::vector<double> nx, ny, nz; ///< normals of the surfaces
-  std::vector<std::uint32_t> surface;
-  std::vector<Surface> surfaces; ///< surfaces of the samples
+  std::vector<double> dx, dy, dz;     ///< unit directions
+  std::vector<double> nx, ny, nz;     ///< normals of the surfaces at the samples
+  std::vector<std::uint32_t> surface; ///< place in `surfaces` of each sample's surface
+  std::vector<Surface> surfaces;
   std::uint32_t triangle(std::size_t i) const { return this->surfaces[this->surface[i]].triangle; }
   Vec3 normal(std::size_t i) const { return { this->nx[i], this->ny[i], this->nz[i] }; }
   Vec3 direction(std::size_t i) const { return { this->dx[i], this->dy[i], this->dz[i] }; }

@@ -22,26 +22,24 @@ namespace
 {
 constexpr int LaneCount = 8;
 
-/// Of a triangle and the next: not looked at yet, and no quadrilateral.
+/// Entries of BeamTriangles::Joints: not computed yet, and not a quadrilateral.
 constexpr std::uint8_t Unknown = 255;
 constexpr std::uint8_t Apart = 9;
 
-/// Eight triangles in the beam's plane.
 struct EightTriangles
 {
-  double corners[9][LaneCount]; ///< a, b, c from the apex, m
+  double corners[9][LaneCount]; ///< a, b, c relative to the apex, m
   double normal[3][LaneCount];  ///< TrianglePlane::normal
-  double onPlane[3][LaneCount]; ///< a, or a corner of the triangle whose plane it takes, m
+  double onPlane[3][LaneCount]; ///< corner a of the triangle that owns the plane, m
   double lines[9][LaneCount];   ///< ab, bc, ca; slope 1, positive inside
   double inverse[3][LaneCount]; ///< 1/z, 1/m
   double mostInverse[LaneCount], leastInverse[LaneCount], height[LaneCount], area[LaneCount];
   double mostOfPlane[LaneCount]; ///< upper bound of 1/z of the plane in the octagon
-  std::uint64_t crosses[3];      ///< one bit for each: the side meets the octagon
-  std::uint64_t enters;          ///< the triangle enters the disc
-  std::uint64_t inside;          ///< all of it lies there
+  std::uint64_t crosses[3];      ///< bits of the triangles: side k meets the octagon
+  std::uint64_t enters;          ///< bits: the triangle enters the disc
+  std::uint64_t inside;          ///< bits: the triangle lies inside the disc
 };
 
-/// The beam's plane.
 struct PlaneAxes
 {
   Vec3 e1, e2, axis; ///< e1 and e2 times tan(theta0.5)
@@ -94,7 +92,7 @@ HWY_INLINE Eight dot(const Three& a, const Vec3& b)
   return hn::Add(hn::Add(hn::Mul(a.x, all(b.x)), hn::Mul(a.y, all(b.y))), hn::Mul(a.z, all(b.z)));
 }
 
-/// edgeVector(): the bits change their signs alone where the corners change places.
+/// edgeVector() in lanes: exchanging the corners changes nothing but signs, bit for bit.
 HWY_INLINE Three edgeOf(const Three& a, const Three& b)
 {
   const Three d{ hn::Sub(a.x, b.x), hn::Sub(a.y, b.y), hn::Sub(a.z, b.z) };
@@ -107,8 +105,8 @@ HWY_INLINE Three edgeOf(const Three& a, const Three& b)
 struct Side
 {
   Eight x, y, z;
-  EightMask crosses; ///< it meets the octagon
-  EightMask outside; ///< the octagon lies outside
+  EightMask crosses; ///< the side meets the octagon
+  EightMask outside; ///< the octagon lies outside of the side
 };
 
 HWY_INLINE Side sideOf(const Three& edge, Eight sign, const PlaneAxes& plane)
@@ -125,11 +123,11 @@ HWY_INLINE Side sideOf(const Three& edge, Eight sign, const PlaneAxes& plane)
     hn::Not(hn::Or(crosses, hn::Gt(z, hn::Zero(lanes)))) };
 }
 
-/// Another side along the chord of a side in the disc, from the middle of the chord.
+/// Edge function of a side along the chord that another side cuts from the disc.
 struct AlongChord
 {
-  Eight middle, slope;
-  Eight most; ///< on the chord
+  Eight middle, slope; ///< value at the middle of the chord, and slope
+  Eight most;          ///< largest value on the chord
 };
 
 HWY_INLINE AlongChord alongChord(const Side& side, const Side& other, Eight half)
@@ -142,14 +140,14 @@ HWY_INLINE AlongChord alongChord(const Side& side, const Side& other, Eight half
   return { value, slope, hn::Add(value, hn::Mul(half, hn::Abs(slope))) };
 }
 
-/// Where the triangle's side `one` has a part in the disc.
+/// True where a part of the triangle's side `one` lies in the disc.
 HWY_INLINE EightMask hasPart(const Side& one, const Side& two, const Side& three)
 {
   const Eight zero = hn::Zero(EightTag());
   const Eight half = hn::Sqrt(hn::Max(zero, hn::Sub(all(1.0), hn::Mul(one.z, one.z))));
   const AlongChord a = alongChord(one, two, half);
   const AlongChord b = alongChord(one, three, half);
-  // Where they fall in opposite directions both are positive somewhere in between, or nowhere.
+  // If they fall in opposite directions, both are positive between their zeros or nowhere.
   const Eight between =
     hn::Add(hn::Mul(a.middle, hn::Abs(b.slope)), hn::Mul(b.middle, hn::Abs(a.slope)));
   const EightMask both = hn::Or(hn::Gt(between, zero), hn::Ge(hn::Mul(a.slope, b.slope), zero));
@@ -157,7 +155,7 @@ HWY_INLINE EightMask hasPart(const Side& one, const Side& two, const Side& three
     hn::And(both, hn::And(hn::Gt(a.most, zero), hn::Gt(b.most, zero))));
 }
 
-/// Whether a corner, at the depth z, lies in the disc.
+/// True where a corner lies in the disc. @param z its distance along the axis, m
 HWY_INLINE EightMask isInDisc(const Three& corner, Eight z, const PlaneAxes& plane)
 {
   const Eight x = dot(corner, plane.e1);
@@ -286,8 +284,8 @@ void BeamTriangles::appendNumbers(std::vector<std::uint32_t>& numbers) const
 
 namespace
 {
-/// TrianglePlane::normal of eight triangles, where the processor has fused multiply-add without a
-/// call.
+/// TrianglePlane::normal of eight triangles. Compiled for every instruction set, so that std::fma()
+/// is an instruction and not a call.
 AVIANLIDAR_MULTIVERSION void findNormals(const Corners* planes, EightTriangles& t)
 {
   for (int i = 0; i < LaneCount; ++i)
@@ -370,7 +368,7 @@ double largestOf(const Vec3& v)
   return std::max(std::fabs(v.x), std::max(std::fabs(v.y), std::fabs(v.z)));
 }
 
-/// In the order of positive numbers, the largest first.
+/// Key that sorts positive numbers, the largest first.
 std::uint32_t nearestFirst(double inverse)
 {
   const auto single = static_cast<float>(inverse);
@@ -417,9 +415,9 @@ const std::vector<const BeamSurface*>& BeamTriangles::sort()
   return this->Nearest;
 }
 
-/// Whether a triangle and the next have a side and a plane in common, and together are convex.
-/// @return three times the number of that side in the first, plus its number in the second, or
-/// Apart
+/// Find whether a triangle and the next one form a convex quadrilateral in one plane.
+/// @return three times the number of the common side in the first triangle, plus its number in the
+/// second; or Apart
 std::uint8_t BeamTriangles::findJoint(std::uint32_t triangle) const
 {
   const Corners one = this->Scene.cornersFrom(triangle, Vec3(0.0));
@@ -447,15 +445,14 @@ std::uint8_t BeamTriangles::findJoint(std::uint32_t triangle) const
     const Vec3 own = *p[(i + 2) % 3] - a;
     const Vec3 other = *q[(j + 2) % 3] - a;
     const Vec3 n = glm::cross(side, own);
-    // In scene coordinates far from their origin corners are rounded, and a scene that was moved
-    // there is to be seen as before.
+    // Corners far from the origin are rounded, but a scene moved there must look as before.
     constexpr double flat = 1e-13;
     constexpr double rounding = 1e-15;
     const double longest2 =
       std::max(glm::dot(side, side), std::max(glm::dot(own, own), glm::dot(other, other)));
     const double aside = flat * std::sqrt(longest2) +
       rounding * (largestOf(a) + largestOf(*p[(i + 2) % 3]) + largestOf(*q[(j + 2) % 3]));
-    // Corners beyond the sides of the other half, as seen from either end of the diagonal.
+    // True if the quadrilateral is convex at an end of its diagonal.
     const auto isConvexAt = [&](const Vec3& end, const Vec3& along)
     {
       return glm::dot(n, glm::cross(*q[(j + 2) % 3] - end, *p[(i + 2) % 3] - end)) *
@@ -469,7 +466,7 @@ std::uint8_t BeamTriangles::findJoint(std::uint32_t triangle) const
   return Apart;
 }
 
-/// The same, kept for triangles that do not move.
+/// findJoint(), cached for triangles that do not move.
 std::uint8_t BeamTriangles::jointAfter(std::uint32_t triangle)
 {
   if (triangle >= this->Joints.size() || this->Scene.isMoved(triangle + 1))
@@ -481,7 +478,7 @@ std::uint8_t BeamTriangles::jointAfter(std::uint32_t triangle)
   return joint;
 }
 
-/// Join two triangles, if they can be. @param two with the number after that of `one`
+/// Join two triangles with consecutive numbers to one surface, if they form a quadrilateral.
 bool BeamTriangles::join(BeamSurface& one, const BeamSurface& two)
 {
   const std::uint8_t joint = this->jointAfter(one.triangle);

@@ -3,17 +3,17 @@
  * @file BeamTriangles.h
  * @brief The triangles that enter a beam's disc, set up in the beam's plane, nearest first.
  *
- * In the beam's plane (BeamFrame.h) the beam lies in the unit disc; a triangle is the intersection
- * of the half-planes of its edge functions (TriangleTest.h), and 1/z of its plane an affine
- * function, z the distance along the axis. Triangles are set up eight at a time, in SIMD lanes. Two
- * triangles with consecutive numbers that form a convex quadrilateral in one plane, but for the
- * rounding of scene coordinates, are one surface. Triangles that take the plane of another
- * (CoincidentFaces.h) have its 1/z, and come in the order of their numbers.
+ * The beam fills the unit disc of its plane (BeamFrame.h). There a triangle is the intersection of
+ * the half-planes of its edge functions (TriangleTest.h), and 1/z of its points is an affine
+ * function, z being the distance along the axis. Triangles are set up eight at a time, in SIMD
+ * lanes. Two triangles with consecutive numbers become one surface if they form a convex
+ * quadrilateral in one plane, but for the rounding of scene coordinates. Triangles that share a
+ * plane (CoincidentFaces.h) have the same 1/z, and are in the order of their numbers.
  *
  * Source: Pineda, "A Parallel Algorithm for Polygon Rasterization", SIGGRAPH 1988, for half-planes.
  * Differs: the plane is across a beam's axis, and has the unit disc instead of pixels.
  * Valid: any triangles. The result depends on the beam and the triangles that enter the disc alone,
- * not on their order. A triangle that touches the disc in less than rounding may be left out.
+ * not on their order. A triangle that overlaps the disc by less than rounding may be left out.
  * Test: TestVisiblePolygons.cxx, TestBeamCells.cxx.
  */
 #ifndef avianlidar_BeamTriangles_h
@@ -45,17 +45,17 @@ struct PlaneLine
   double slope() const { return std::sqrt(this->x * this->x + this->y * this->y); }
 };
 
-/// Radii, in half-beamwidths, of the circles in and around an octagon that holds the disc by more
-/// than rounding.
+/// Radii, in half-beamwidths, of the inscribed and circumscribed circles of an octagon around the
+/// disc; the margin exceeds rounding.
 constexpr double InRadius = 1.0 + 1e-6;
 constexpr double OutRadius = InRadius * 1.0823922002923940; // 1/cos(pi/8)
 
-/// A plane in the beam: a triangle, or two halves of a quadrilateral.
+/// A plane surface in the beam: a triangle, or a quadrilateral of two triangles.
 struct PlaneSurface
 {
   std::uint32_t triangle;
-  std::uint32_t other; ///< the other half; NoTriangle: there is none
-  PlaneLine diagonal;  ///< negative on the other half
+  std::uint32_t other; ///< the other half, or NoTriangle
+  PlaneLine diagonal;  ///< side between the halves, negative on the other half
   PlaneLine inverse;   ///< 1/z, 1/m
   double height;       ///< distance of the plane from the apex, m
   double leastInverse; ///< lower bound of 1/z, 1/m: no corner is farther
@@ -72,19 +72,19 @@ constexpr double AreaUnknown = -1.0;
 /// A surface that enters the disc.
 struct BeamSurface : PlaneSurface
 {
-  std::uint32_t crosses; ///< of the triangle: bit k, side k meets the octagon
-  int count = 0;         ///< of `lines`
+  std::uint32_t crosses; ///< bit k: side k of the triangle meets the octagon
+  int count = 0;         ///< number of `lines`
   PlaneLine lines[4];    ///< sides that meet the octagon; slope 1, positive inside
   double mostInverse;    ///< upper bound of 1/z in the octagon
-  double sortInverse;    ///< the same; surfaces that coincide have that of their plane
-  double area;           ///< in half-beamwidths squared; AreaUnknown if it crosses the rim
+  double sortInverse;    ///< key of sort(), 1/m: mostInverse, or the bound of a shared plane
+  double area;           ///< half-beamwidths squared; AreaUnknown if it crosses the rim
 };
 
 /// Sets up the triangles of one beam after the other. One per thread; the scene must outlive it.
 class BeamTriangles
 {
 public:
-  /// @param most triangles that are set up; of a beam that more enter only the numbers are kept
+  /// @param most largest number of triangles that are set up; beyond it numbers alone are kept
   explicit BeamTriangles(
     const SceneTriangles& scene, std::size_t most = std::numeric_limits<std::size_t>::max())
     : Scene(scene)
@@ -97,17 +97,18 @@ public:
   /// Add triangles, in any order, each once. All that may enter the cone must be added.
   void add(const std::uint32_t* triangles, std::size_t count);
 
-  /// After the last triangle. @return number of triangles that enter, if not more than `most`
+  /// Call it after the last triangle. @return number of triangles that enter, if at most `most`
   std::size_t finish();
 
-  /// Append the numbers of all that enter, if there are more than `most`, and of some that do not.
+  /// Append the numbers of all triangles that enter, if more than `most` do, and of some others.
   void appendNumbers(std::vector<std::uint32_t>& numbers) const;
 
-  /// Join halves, and sort surfaces, nearest first; after the last triangle. @return them
+  /// Join the halves of quadrilaterals, and sort the surfaces, nearest first. Call it after the
+  /// last triangle. @return the surfaces
   const std::vector<const BeamSurface*>& sort();
   const std::vector<const BeamSurface*>& nearest() const { return this->Nearest; }
 
-  /// Corners of a triangle, from the apex.
+  /// Corners of a triangle relative to the apex, m.
   Corners cornersOf(std::uint32_t triangle) const
   {
     return this->Scene.cornersFrom(triangle, this->Frame.origin);
@@ -123,8 +124,8 @@ private:
   const SceneTriangles& Scene;
   const std::size_t Most;
   BeamFrame Frame;
-  std::vector<std::uint32_t> Waiting; ///< not yet set up
-  std::vector<BeamSurface> Surfaces;  ///< the first `Count`
+  std::vector<std::uint32_t> Waiting; ///< triangles not yet set up
+  std::vector<BeamSurface> Surfaces;  ///< the first `Count` are valid
   std::size_t Count = 0;
   std::vector<const BeamSurface*> Nearest;
   std::vector<std::uint8_t> Joints; ///< findJoint() of the triangles of the tree

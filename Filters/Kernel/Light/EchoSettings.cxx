@@ -13,7 +13,7 @@ namespace avianlidar
 {
 namespace
 {
-/// get() and set() of a member.
+/// EchoSetting::get() and set() of a member.
 template <auto Member>
 struct Access
 {
@@ -49,7 +49,7 @@ void setFidelity(EchoSettings& s, int rays, int connections)
 
 double CellDensity::rays() const
 {
-  // 16 and 256 cells fill the square, of which the disc is pi/4.
+  // The disc is pi/4 of a square of 16 or 256 cells.
   return 0.25 * Pi * 16.0 * (this->levels == 1 ? 16.0 : 256.0) * this->blocks * this->blocks;
 }
 
@@ -145,7 +145,7 @@ std::string checkSettings(const EchoSettings& s)
   for (const EchoSetting& setting : echoSettings())
   {
     const double value = setting.get(s);
-    if (!(value >= setting.least && value <= setting.most)) // not a number, either
+    if (!(value >= setting.least && value <= setting.most)) // refuses NaN, too
     {
       return valueError(setting.property, value, setting.expected);
     }

@@ -28,128 +28,128 @@ namespace avianlidar
 enum class ReturnMode
 {
   All = 0,
-  Strongest = 1, ///< largest energy of the strongest unit; ties to the nearest
+  Strongest = 1, ///< the return with the strongest range unit; the nearest of equal ones
   First = 2,
   Last = 3,
-  RangeUnits = 4 ///< the paper's literal reading: one point per perceived range unit, at its centre
+  RangeUnits = 4 ///< the paper read literally: a point per perceived range unit, at its centre
 };
 
-/// Largest EchoSettings::lightEnergyFraction: as many paths as a beam may have.
+/// Largest EchoSettings::lightEnergyFraction; equal to MaximumPathsPerBeam.
 constexpr double MaximumLightEnergyFraction = 1e8;
 
-/// Most triangles that an integrated beam may meet: N/50, but no fewer and no more than these.
-/// Beyond, cells take less time for the same error.
+/// A beam is integrated if the number of its triangles is at most TrianglesPerRay N, clamped to the
+/// range from FewTriangles to ManyTriangles. With more, cells take less time for the same error.
 constexpr double FewTriangles = 100.0;
 constexpr double ManyTriangles = 200.0;
 constexpr double TrianglesPerRay = 1.0 / 50.0;
 
-/// Rays of the grid of a beam in cells (BeamCells.h), for each of its N rays, as far as densities
-/// come in steps.
+/// Rays in the grid of a beam in cells (BeamCells.h) for each of its N rays, rounded to the next
+/// density in steps.
 constexpr double CellRaysPerRay = 32.0;
 
-/// The grid of a beam in cells: of the cells of the last level each holds 16 m^2 rays. m is at most
-/// MostBlocksAcross, which are a million rays: memory of a beam, and the time until an abort is
-/// heard.
+/// Grid of a beam in cells: each cell of the last level holds m x m blocks of 16 rays.
+/// MostBlocksAcross gives a million rays; it bounds memory and the time until an abort.
 struct CellDensity
 {
   static constexpr int MostBlocksAcross = 18;
-  int levels;          ///< of division
-  int blocks;          ///< m
-  double rays() const; ///< in the disc
-  /// Rays that are to fall on a small object: OnObject, which err by 1.5 % rms of a bird's
-  /// area, by more than 5 % in 1 of 300 (TestBird.cxx), or a 25th of a grid of one level, but 16.
+  int levels;          ///< number of times that cells are divided
+  int blocks;          ///< m, blocks of rays across a cell
+  double rays() const; ///< number of rays in the disc
+  /// Least number of rays on a small object. It is OnObject, where the area of a bird errs by 1.5 %
+  /// rms and by more than 5 % in one of 300 (TestBird.cxx). With one level it is a 25th of the
+  /// grid, but at least 16.
   double raysOnObject() const;
   static constexpr double OnObject = 256.0;
 };
 CellDensity densityOfCells(int raysPerBeam);
 
-/// Of N, for each ray from which connections start, and the least number of those.
+/// One ray in RaysPerStart starts connections, and at least LeastStarts do.
 constexpr int RaysPerStart = 4;
 constexpr int LeastStarts = 16;
 
-/// Most paths of one beam (pathsOfABeam()): bounds memory, and the work between two checks for
-/// an abort.
+/// Largest number of paths of one beam (pathsOfABeam()). It bounds memory and the work between two
+/// checks for an abort.
 constexpr double MaximumPathsPerBeam = 1e8;
 
-/// Most range units that the paths of one beam may meet: bounds memory (about 60 bytes each).
+/// Largest number of range units that the paths of one beam may meet. It bounds memory (about 60
+/// bytes each).
 constexpr double MaximumUnitsPerBeam = 1e8;
 
-/// 1/m, far beyond any air: attenuation times length stays a number.
+/// Largest attenuation coefficient, 1/m: far beyond any air, but all optical depths stay finite.
 constexpr double MaximumAttenuation = 1e30;
 
 /// How the direct echo of a beam is found.
 enum class BeamSampleSource
 {
-  Cells = 0, ///< over the polygons that it sees, or by a dense grid of rays where they are many
-  Rays = 1   ///< by its N rays (paper, Algorithm 2)
+  Cells = 0, ///< integral over visible polygons, or a dense grid of rays where they are many
+  Rays = 1   ///< N rays (paper, Algorithm 2)
 };
 
-/// What the light-energy constraint compares a path with.
+/// Energy below which the light-energy constraint drops a path.
 enum class LightEnergyThreshold
 {
-  ShareOfLimit = 0, ///< lightEnergyFraction of Qlow over the paths of the beam
-  Limit = 1         ///< Qlow, of paths over two reflections alone (paper, Sec. 3.4)
+  ShareOfLimit = 0, ///< lightEnergyFraction times Qlow over the number of paths of the beam
+  Limit = 1         ///< Qlow, for paths over two reflections alone (paper, Sec. 3.4)
 };
 
 struct EchoSettings
 {
   BeamSampleSource beamSamples = BeamSampleSource::Cells;
   int raysPerBeam = 100;                    ///< N, 1 ... 1e6
-  Sampling sampling = Sampling::Stratified; ///< of rays; in cells, connections start from them
+  Sampling sampling = Sampling::Stratified; ///< how rays are drawn; in cells, for connections only
   std::int32_t seed = 0;
   double attenuationCoefficient = 3.5e-5; ///< mu, 1/m, 0 to 1e30
   ReflectanceModel reflectanceModel = ReflectanceModel::LambertBlinnPhong;
   int numberOfReflections = 2; ///< 1 or 2
   bool beamConstraint = true;
   bool lightEnergyConstraint = true;
-  /// epsilon of the light-energy constraint: share of Qlow that a range unit may lose by it, 0 to
-  /// 1e8; the number of a beam's paths compares each of them with Qlow
+  /// epsilon of the light-energy constraint: share of Qlow that a range unit may lose, 0 to 1e8. If
+  /// it is the number of paths of a beam, each path is compared with Qlow.
   double lightEnergyFraction = 1e-3;
   LightEnergyThreshold lightEnergyThreshold = LightEnergyThreshold::ShareOfLimit;
   TraceMode traceMode = TraceMode::Automatic; ///< affects time only, not echoes
   bool noise = true;
-  bool fullModel = false; ///< model parts that cannot matter are not left out
+  bool fullModel = false; ///< whether parts of the model that cannot matter are computed, too
   ReturnMode returnMode = ReturnMode::All;
   int numberOfConnections = 2; ///< M, at least 0, see connectionsOf()
 };
 
-/// A setting, for all that goes through them: checks, keys, field data, agreement of ranks.
+/// Description of a setting, for checks, keys, field data and the agreement of ranks.
 struct EchoSetting
 {
-  const char* property; ///< of vtkAvianLidarScanFilter
-  const char* name;     ///< as field data have it
-  const char* unit;     ///< "1": a pure number; "": no quantity
+  const char* property; ///< name in vtkAvianLidarScanFilter
+  const char* name;     ///< name in field data
+  const char* unit;     ///< "1": a pure number; "": not a quantity
   bool whole;
-  bool decides; ///< changes echoes
+  bool decides; ///< whether it changes echoes
   double least, most;
-  const char* expected; ///< the range in words
+  const char* expected; ///< the allowed range in words
   double (*get)(const EchoSettings&);
   void (*set)(EchoSettings&, double);
 };
 
-/// All settings.
 const std::vector<EchoSetting>& echoSettings();
 
-/// Most triangles that an integrated beam may meet; 0: none is integrated.
+/// Largest number of triangles in an integrated beam; 0 if no beam is integrated.
 std::size_t mostTrianglesIntegrated(const EchoSettings& settings);
 
-/// Empty if the settings are usable; otherwise a sentence that names the value and what was
-/// expected.
+/// Empty if the settings are usable; otherwise a sentence with the value and what was expected.
 std::string checkSettings(const EchoSettings& settings);
 
-/// Rays that are traced for a beam: N with BeamSampleSource::Rays, else those from which
-/// connections start (SecondaryReflection.h), one for each RaysPerStart of N.
+/// Number of rays that are traced for a beam: N with BeamSampleSource::Rays, otherwise the rays
+/// that start connections (SecondaryReflection.h).
 std::uint32_t tracedRaysOf(const EchoSettings& settings);
 
-/// Connections of each of these rays: M, as far as there are others, or none where one reflection
-/// is asked for.
+/// Number of connections of each of these rays: M, but at most one with each other ray; 0 if one
+/// reflection is asked for.
 std::uint32_t connectionsOf(const EchoSettings& settings);
 
-/// Paths of a beam, of one and two reflections, all counted: N (2 + M).
+/// Number of paths of a beam over one and two reflections: N (2 + M).
 double pathsOfABeam(const EchoSettings& settings);
 
 /// Empty if no beam can meet more than MaximumUnitsPerBeam range units; otherwise a sentence that
-/// names pulse width and rays, and what was expected. Both must have passed their own checks.
+/// names pulse width and rays, and what was expected. Sensor and settings must have passed their
+/// own checks.
 std::string checkUnits(const Sensor& sensor, const EchoSettings& settings);
 
 /// Named settings of fidelity.
@@ -161,9 +161,9 @@ enum class EchoPreset
   Reference = 3 ///< converged: others are compared with it
 };
 
-/// Replace the settings that make a simulation fast or accurate, and no others: number of rays,
-/// sampling, reflections, connections. Empty if the preset is one of the four; otherwise a sentence
-/// that names the value and what was expected, and the settings do not change.
+/// Replace the number of rays, the sampling, and the numbers of reflections and connections by
+/// those of a preset. Empty if the preset is one of the four; otherwise a sentence that names the
+/// value and what was expected, and the settings do not change.
 std::string applyPreset(EchoPreset preset, EchoSettings& settings);
 }
 

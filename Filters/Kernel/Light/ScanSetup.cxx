@@ -42,7 +42,7 @@ double perceivableRange(const ScanSetup& setup)
   return far;
 }
 
-/// Largest share of the energy received by a surface that returns.
+/// mostReturned() at any range.
 double mostReflected(const ScanSetup& setup)
 {
   // Near the lidar an aperture gathers everything.
@@ -78,11 +78,11 @@ ModelNeeds needsOf(const ScanSetup& setup)
   const double once = mostReflected(setup);
   ModelNeeds needs;
   needs.perceivableRange = perceivableRange(setup);
-  // Half of the tolerance is left for direct echoes, of which there are as many as mirror paths.
   needs.secondaryBound = setup.sensor.pulseEnergy * setup.largestReflectance * once * SurelyAbove;
-  // All light of longer paths meets that many surfaces first, and leaves one more.
+  // Longer paths are reflected by that many surfaces before the last one.
   needs.furtherBound = setup.sensor.pulseEnergy *
     std::pow(setup.largestReflectance, settings.numberOfReflections) * once * SurelyAbove;
+  // Direct echoes, as many as mirror paths, may lose the other half of the tolerance.
   const double least = settings.lightEnergyThreshold == LightEnergyThreshold::Limit
     ? setup.sensor.lowerEnergyLimit
     : 0.5 * lightEnergyTolerance(setup);
@@ -99,7 +99,7 @@ ModelNeeds needsOf(const ScanSetup& setup)
   const double rays = settings.beamSamples == BeamSampleSource::Cells
     ? densityOfCells(settings.raysPerBeam).rays()
     : settings.raysPerBeam;
-  // Stratified rays miss an object with no greater probability than independent ones.
+  // Stratified rays do not miss an object with a greater probability than independent rays.
   needs.missedDetailEnergy =
     setup.sensor.pulseEnergy * once * -std::expm1(std::log(MissProbability) / rays);
   return needs;

@@ -4,19 +4,19 @@
  * @brief What all beams of a scan share: surfaces, sensor, settings, noise plan, and the parts of
  * the model that the scan needs. It does not change while beams are simulated.
  *
- * The needs follow from bounds that hold for all beams: pulse energy, limits, air, aperture and the
- * most that any surface of the scene returns. They say whether paths over two reflections can
- * matter, and from which range on nothing is perceived. What single beams leave out stands in their
- * reports (SkippedPart). EchoSettings::fullModel leaves nothing out. Attenuation is never left out,
- * as its exponential costs the same at any coefficient. Nor are surfaces beyond the perceivable
- * range: hits must not depend on limits and air, so that a scan can be lit again, and the report
- * distinguishes a beam that meets such a surface from one that meets none.
+ * ModelNeeds follow from bounds that hold for all beams: pulse energy, limits, air, aperture and
+ * the largest reflectance in the scene. They say whether paths over two reflections can matter, and
+ * beyond which range nothing is perceived. The report of a beam says what it left out
+ * (SkippedPart). EchoSettings::fullModel leaves nothing out. Attenuation is always modelled, as its
+ * exponential costs the same at any coefficient. Surfaces beyond the perceivable range are always
+ * traced: hits must not depend on limits and air, so that a scan can be lit again, and the report
+ * distinguishes a beam that meets such a surface from a beam that meets none.
  *
  * Source: none; derived in Documentation/model-needs.md.
  * Valid: no range unit of a beam with an echo differs from the full model by more than
  * ModelNeeds::skippedEnergyBound. Detail between the rays is not bounded (missedDetailEnergy).
- * Test: TestSecondaryConstraints.cxx, TestScanReport.cxx,
- * Testing/Stability/TestStabilitySweep.cxx, Testing/Python/TestModelNeeds.py.
+ * Test: TestSecondaryConstraints.cxx, TestScanReport.cxx, Testing/Stability/TestStabilitySweep.cxx,
+ * Testing/Python/TestModelNeeds.py.
  */
 #ifndef avianlidar_ScanSetup_h
 #define avianlidar_ScanSetup_h
@@ -37,7 +37,7 @@
 
 namespace avianlidar
 {
-/// Factors that cover the different rounding of a bound and of what it bounds.
+/// Factors that cover the rounding of a bound and of the value that it bounds.
 constexpr double SurelyAbove = 1.0 + 1e-9;
 constexpr double SurelyBelow = 1.0 - 1e-9;
 
@@ -45,28 +45,28 @@ constexpr double SurelyBelow = 1.0 - 1e-9;
 enum SkippedPart : std::uint32_t
 {
   SkippedSecondaryPaths = 1, ///< some or all paths over two reflections
-  SkippedBeam = 2,           ///< the whole beam: all its energy together would not be perceived
-  SkippedNoise = 4,          ///< photon noise, which cannot matter; set where the report is output
-  SkippedBeyondRange = 8,    ///< with SkippedBeam: all it meets lies beyond the perceivable range
+  SkippedBeam = 2,           ///< the whole beam, as all its energy together is not perceived
+  SkippedNoise = 4,          ///< photon noise that cannot matter; set where the report is output
+  SkippedBeyondRange = 8,    ///< with SkippedBeam: all surfaces lie beyond the perceivable range
   SkippedDirectPaths = 16    ///< some direct echoes
 };
 
 /// Parts of the model that a scan needs.
 struct ModelNeeds
 {
-  /// Range, m, from which on a surface that fills the beam is not perceived, even if it returns the
-  /// most that any surface of the scene can. Infinity if there is none.
+  /// Range, m, beyond which not even a surface is perceived that fills the beam and returns the
+  /// most that any surface of the scene can. Infinity if there is no such range.
   double perceivableRange = 0.0;
-  bool secondaryReflections = false; ///< false: not asked for, or none can matter
-  double secondaryBound = 0.0;       ///< J, most energy of all paths over two reflections of a beam
-  double furtherBound = 0.0; ///< J, the same of all paths over more reflections than are asked for
-  double lightEnergyBound = 0.0; ///< J, most that a range unit loses by the light-energy constraint
-  /// Most energy, J, that a range unit of a beam with an echo loses by all that is left out, plus
-  /// what skipped noise might have added.
+  bool secondaryReflections = false; ///< false if not asked for, or if none can matter
+  double secondaryBound = 0.0;       ///< J, bound of all paths over two reflections of a beam
+  double furtherBound = 0.0;         ///< J, bound of all paths over more reflections than asked for
+  double lightEnergyBound = 0.0; ///< J, bound of a range unit's loss by the light-energy constraint
+  /// Bound of the energy, J, that a range unit of a beam with an echo loses in all, plus the energy
+  /// that skipped noise might have added.
   double skippedEnergyBound = 0.0;
-  /// Energy, J: an object that returns more than this is missed by all N rays of a beam, or of one
-  /// in cells by all rays of the grid (there small objects with an id of their own get more), with
-  /// a probability below 5 %.
+  /// Energy, J. An object that returns more is missed by all rays of a beam with a probability
+  /// below 5 %. The rays are N, or in cells those of the grid, where small objects with their own
+  /// id get more.
   double missedDetailEnergy = 0.0;
 };
 
@@ -77,9 +77,9 @@ struct ScanSetup
   SharedVector<Material> materials; ///< one per triangle
   SharedVector<int> objectIds;      ///< one per triangle
   SharedVector<int> materialIds;    ///< one per triangle
-  double largestReflectance = 0.0;  ///< max of albedo() over all triangles
-  double largestGain = 0.0;         ///< max of apertureGain() over all triangles, 1/sr
-  /// What moves; null: nothing. Largest reflectance and gain are of these, too.
+  double largestReflectance = 0.0;  ///< largest albedo() of all triangles
+  double largestGain = 0.0;         ///< largest apertureGain() of all triangles, 1/sr
+  /// Movers; null if nothing moves. Their triangles count in the two largest values, too.
   std::shared_ptr<const std::vector<Mover>> movers;
   /// Number of the first triangle of each mover (SceneTriangles.h).
   std::vector<std::uint32_t> firstTriangles;
@@ -87,18 +87,18 @@ struct ScanSetup
   EchoSettings settings;           ///< its attenuation coefficient is the clear air's alone
   std::vector<PlacedMedium> media; ///< media that fill the scene come first
   NoisePlan noise;
-  std::int32_t revolution = 0; ///< of the sensor; each has noise of its own
+  std::int32_t revolution = 0; ///< number of the sensor's revolution; each has its own noise
   ModelNeeds needs;
 
-  /// All air of the scene.
+  /// The clear air and all media of the scene.
   Air air() const { return { this->settings.attenuationCoefficient, this->media }; }
-  /// Attenuation coefficient of all that fills the scene, 1/m.
+  /// Attenuation coefficient of the clear air and the media that fill the scene, 1/m.
   double attenuation() const
   {
     return attenuationOf(this->settings.attenuationCoefficient, this->media);
   }
 
-  /// Of a triangle of the tree or of a mover.
+  /// Material and ids of a triangle of the tree or of a mover.
   const Material& material(std::uint32_t triangle) const
   {
     return triangle < this->materials.size() ? this->materials[triangle]
@@ -125,25 +125,26 @@ private:
   }
 };
 
-/// Raise largest reflectance and gain, which are of the surfaces, to those of movers, and number
-/// their triangles.
+/// Number the triangles of the movers, and raise the largest reflectance and gain, so far of the
+/// surfaces alone, to theirs.
 void includeMovers(ScanSetup& setup);
 
-/// Set noise and needs, which follow from the rest.
+/// Set `noise` and `needs`, which follow from the other members.
 void planModel(ScanSetup& setup);
 
-/// The needs of a setup. @param setup complete but for its needs
+/// Needs of a setup that is complete but for its needs.
 ModelNeeds needsOf(const ScanSetup& setup);
 
-/// Largest share of the light on a surface of the scene that returns. @param range m, of the
-/// surface at least
+/// Upper bound, over all surfaces of the scene, of the light that returns over the light that
+/// arrives.
+/// @param range lower bound of the surface's range, m
 double mostReturned(const ScanSetup& setup, double range);
 
 /// True if paths that cannot matter are dropped.
 bool dropsFaintPaths(const EchoSettings& settings);
 
-/// Most energy, J, that a range unit may lose where faint paths are dropped by the share of the
-/// limit; 0 where the limit itself is the threshold, which leaves direct echoes alone.
+/// Energy, J, that a range unit may lose by dropped paths with LightEnergyThreshold::ShareOfLimit;
+/// otherwise 0, as the limit itself drops no direct echoes.
 double lightEnergyTolerance(const ScanSetup& setup);
 }
 

@@ -10,7 +10,7 @@ namespace avianlidar
 double mostOverMirror(const ScanSetup& setup, const BeamShape& shape, double nearest)
 {
   const double once = mostReturned(setup, nearest);
-  // On its way back light arrives where the beam may have been denser.
+  // The reverse path weighs by the density at P2 over the density at P1 (SecondaryReflection.h).
   return setup.sensor.receiverAperture > 0.0
     ? std::min(1.0, once * (1.0 + shape.mostDensity() / shape.density(1.0, 0.0)))
     : once;
@@ -39,8 +39,8 @@ struct SurfaceLanes
   std::size_t count;
 };
 
-/// Eq. 5-8 for light that returns along its own path: delta = 2 theta_i (Reflectance.h).
-/// Where ks is 0 there is no specular component then, in any model.
+/// Eq. 5-8 for light that returns along its own path: delta = 2 theta_i (Reflectance.h). Without ks
+/// no model has a specular component in this direction.
 template <class Model, bool Glossy>
 AVIANLIDAR_ALWAYS_INLINE double returned(
   Material material, double aperture, double cosine, double range)
@@ -100,7 +100,7 @@ void Throughput::measure(const ScanSetup& setup, const BeamSamples& samples)
 
 namespace
 {
-/// Multiplies throughputs by the transmission() of the way to the sample and back.
+/// Multiply throughputs by the transmission() of the way to the sample and back.
 AVIANLIDAR_MULTIVERSION void energiesOfAll(const double* weights, const double* reflected,
   const double* ranges, double attenuation, double pulseEnergy, double* energies, std::size_t count)
 {

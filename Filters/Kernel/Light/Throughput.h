@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file Throughput.h
- * @brief What the direct echoes of a beam return for each joule of its pulse, without the air.
+ * @brief Throughputs of the direct echoes of a beam: energy received over energy of the pulse,
+ * without the air.
  *
- * Their sum and the nearest range bound the energy of all of them together; for most beams below
- * the limit that bound suffices.
+ * Their sum and the nearest range bound the energy of all direct echoes together. This bound
+ * suffices for most beams below the limit.
  *
  * Source: paper, Eq. 4-9.
  * Differs: see Reflectance.h; the air is applied to the length of the whole path at the end.
- * Valid: the bounds are never below what the paths return, but for rounding (SurelyAbove).
+ * Valid: bounds are never below what the paths return, except by rounding (SurelyAbove).
  * Test: TestScan.cxx, TestScanAgain.cxx, TestEchoClosedForms.cxx.
  */
 #ifndef avianlidar_Throughput_h
@@ -25,26 +26,25 @@ namespace avianlidar
 /// Direct echoes of the samples of a beam.
 struct Throughput
 {
-  std::vector<double> reflected; ///< f_direct of each sample: share of the arriving energy that its
-                                 ///< direct echo returns
-  double directSum = 0.0;        ///< sum of the direct echoes
+  std::vector<double> reflected; ///< f_direct by sample: share of the arriving energy that returns
+  double directSum = 0.0;        ///< throughput of all direct echoes together
 
   void measure(const ScanSetup& setup, const BeamSamples& samples);
 };
 
-/// Energies of the direct echoes, J. @return their sum
+/// Find the energies of the direct echoes, J. @return their sum
 double directEnergies(const ScanSetup& setup, const BeamSamples& samples,
   const Throughput& throughput, std::vector<double>& energies);
 
-/// Largest share of a path's energy that the air leaves: no path is shorter than the way to the
-/// nearest surface and back. @param nearest m
+/// Largest transmission of the air along any path of a beam: no path is shorter than the way to the
+/// nearest surface and back. @param nearest range of that surface, m
 double mostAir(double nearest, double attenuation);
 
-/// Largest share that returns of the light that a mirror passes on, both ways of the path together.
-/// @param nearest m: no surface of the beam is nearer
+/// Largest share of the light leaving a mirror that returns, over both directions of the path
+/// together. @param nearest lower bound of the ranges of the beam's surfaces, m
 double mostOverMirror(const ScanSetup& setup, const BeamShape& shape, double nearest);
 
-/// Bound of the throughput of a mirror path from a surface. @param returned mostOverMirror()
+/// Upper bound of the throughput of a mirror path from a surface. @param returned mostOverMirror()
 double specularBound(
   const ScanSetup& setup, const Material& material, double cosIncidence, double returned);
 }

@@ -12,10 +12,10 @@ namespace avianlidar
 {
 namespace
 {
-/// Up to so many surfaces of a beam are distinguished by looking at each, more by sorting.
+/// Largest number of surfaces that are found one by one; more are sorted by triangle.
 constexpr std::size_t MostListed = 24;
 
-/// Of incidence.
+/// Find cosines of incidence.
 AVIANLIDAR_MULTIVERSION void cosinesOf(const Vec3& surfaceNormal, const double* dx,
   const double* dy, const double* dz, double* cosines, std::size_t count)
 {
@@ -29,7 +29,7 @@ AVIANLIDAR_MULTIVERSION void cosinesOf(const Vec3& surfaceNormal, const double* 
   }
 }
 
-/// Whether all samples lie on the plane of the first.
+/// True if all samples lie on the plane of the first.
 bool areCoplanar(const BeamSamples& samples, const SampleGeometry& geometry)
 {
   const std::vector<SampleGeometry::Surface>& surfaces = geometry.surfaces;
@@ -58,7 +58,7 @@ bool areCoplanar(const BeamSamples& samples, const SampleGeometry& geometry)
   return true;
 }
 
-/// The normal of one more surface, for all its samples.
+/// Append a surface, and set the normals of its samples [begin, end).
 void addSurface(const SeenTriangle& seen, std::uint32_t triangle, std::size_t begin,
   std::size_t end, SampleGeometry& geometry)
 {
@@ -87,8 +87,8 @@ const SeenTriangle& RaySamples::see(std::uint32_t triangle, const Vec3& apex)
   return known.seen;
 }
 
-/// Rays and surfaces of the samples: surfaces in the order in which the rays meet them first. Each
-/// pass takes the rays of one surface from those that are left, without a branch.
+/// Set the rays and surfaces of the samples, with surfaces in the order of their first rays. Each
+/// pass takes the rays of one surface out of the rays that are left, without a branch.
 void RaySamples::sortBySurface(const std::vector<std::uint32_t>& triangles, BeamSamples& samples)
 {
   const std::size_t rays = triangles.size();
@@ -127,7 +127,7 @@ void RaySamples::sortBySurface(const std::vector<std::uint32_t>& triangles, Beam
   samples.surfaces.assign(this->Surfaces.begin(), this->Surfaces.end());
 }
 
-/// The same for many: surfaces in the order of their numbers.
+/// sortBySurface() for many surfaces, which come in the order of their triangle numbers.
 void RaySamples::sortByTriangle(const std::vector<std::uint32_t>& triangles, BeamSamples& samples)
 {
   samples.surfaces.clear();
@@ -172,7 +172,7 @@ void RaySamples::findDirections(const BeamFrame& frame, const BeamRays& rays,
     geometry.dz.data(), count);
 }
 
-/// Ranges and cosines of the samples on one surface.
+/// Set the ranges and cosines of the samples [begin, end) on one surface.
 void RaySamples::findOnSurface(const BeamFrame& frame, const SeenTriangle& seen, std::size_t begin,
   std::size_t end, const SampleGeometry& geometry, BeamSamples& samples)
 {

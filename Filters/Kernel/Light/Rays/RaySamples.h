@@ -3,7 +3,7 @@
  * @file RaySamples.h
  * @brief Samples from rays: where each ray meets its triangle, and at which angle.
  *
- * Rays are taken surface by surface, in SIMD loops: about 10 ns a ray and 0.2 us a surface.
+ * Rays are processed surface by surface, in SIMD loops: about 10 ns a ray and 0.2 us a surface.
  *
  * Source: paper, Eq. 18.
  * Differs: see TriangleTest.h.
@@ -25,8 +25,8 @@
 
 namespace avianlidar
 {
-/// Samples of one beam after the other. Reusable without allocation; one per thread. The scene must
-/// outlive it.
+/// Finds the samples of one beam after the other. Reusable without allocation; one per thread. The
+/// scene must outlive it.
 class RaySamples
 {
 public:
@@ -35,8 +35,8 @@ public:
   {
   }
 
-  /// Find the samples of N rays, each of weight 1/N. @param triangles of each ray, NoTriangle if it
-  /// hit none
+  /// Find the samples of N rays, each of weight 1/N.
+  /// @param triangles triangle that each ray hits, or NoTriangle
   void find(const BeamFrame& frame, const BeamRays& rays,
     const std::vector<std::uint32_t>& triangles, BeamSamples& samples, SampleGeometry& geometry);
 
@@ -54,9 +54,9 @@ private:
     std::size_t end, const SampleGeometry& geometry, BeamSamples& samples);
 
   const SceneTriangles& Scene;
-  std::vector<std::uint32_t> Left, Sorted; ///< rays
+  std::vector<std::uint32_t> Left, Sorted; ///< numbers of rays
   std::vector<BeamSamples::Surface> Surfaces;
-  /// Last triangles, each in one place: neighbouring beams meet the same.
+  /// Cache of triangles, by number modulo Places: neighbouring beams meet the same triangles.
   struct Known
   {
     std::uint32_t triangle = NoTriangle;
@@ -65,7 +65,7 @@ private:
   };
   static constexpr std::size_t Places = 256;
   std::vector<Known> Triangles;
-  SeenTriangle Moved; ///< the last one of a mover
+  SeenTriangle Moved; ///< last triangle of a mover
   std::vector<double> X, Y;
   std::vector<int> Kinds;
 };
