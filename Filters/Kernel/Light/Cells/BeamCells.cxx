@@ -15,31 +15,31 @@ namespace avianlidar
 {
 namespace
 {
-constexpr std::size_t Patterns = 256; ///< of jitter
+constexpr std::size_t Patterns = 256; ///< number of jitter patterns
 
-/// Most levels of division: cells of small objects, and those about the middle of a lobe.
+/// Largest level of cells with small objects, and of cells about the middle of a lobe.
 constexpr int MostLevels = 8;
 constexpr int LevelsOfFoot = 5;
 
-/// m up to which a cell with small objects gets more rays instead of being divided.
+/// Largest m to which a cell with small objects gets more rays before it is divided.
 constexpr int MostBlocksOfCell = 3;
 
-/// Most blocks of rays of a beam that are traced through the tree for the sake of small objects: so
-/// many in any case, and so many times the blocks of a beam without. If a beam had ten times these
-/// blocks at most, a goose before a wall of many triangles would be off by up to 9 % instead of 6.
+/// A beam with small objects traces at most this number of blocks of rays through the tree, or
+/// PlannedPerUsual times the blocks without them. With a limit of ten times these blocks alone a
+/// goose before a wall of many triangles would err by up to 9 % instead of 6.
 constexpr double MostPlannedBlocks = 20000.0;
 constexpr double PlannedPerUsual = 4.0;
 
-/// Parts of a squared half-beamwidth in which the areas of objects are counted, and an area that
-/// is larger than the disc's.
+/// Areas of objects are counted in these parts of a squared half-beamwidth. LargeArea exceeds the
+/// area of the disc.
 constexpr double PartsOfArea = 1099511627776.0; // 2^40
 constexpr double LargeArea = 4.0;
 constexpr std::uint64_t LargeParts = std::uint64_t(1) << 42;
 
-/// A place that no cell holds.
+/// A coordinate outside of all cells.
 constexpr float Nowhere = 1e30f;
 
-/// Area of the disc within a square that does not cross an axis.
+/// Area of a square's part in the disc. The square must not cross an axis.
 double areaInDisc(double x, double y, double width)
 {
   const double x0 = std::min(std::fabs(x), std::fabs(x + width));
@@ -68,7 +68,7 @@ bool isInBeam(const BeamShape& shape, const CellRays& rays, int i)
   return shape.holds(static_cast<double>(rays.x[i]), static_cast<double>(rays.y[i]));
 }
 
-/// Area of the rectangle's half-side within a square that does not cross an axis.
+/// Area of a square's part in a rectangular beam. The square must not cross an axis.
 double areaInRectangle(double x, double y, double width)
 {
   const auto within = [&](double from)
@@ -99,13 +99,13 @@ BeamCells::BeamCells(const ScanSetup& setup, const SceneTriangles& scene)
   }
 }
 
-/// Area of a square in the beam.
+/// Area of a square's part in the beam.
 double BeamCells::areaOf(double x, double y, double width) const
 {
   return this->Shape.width().isRectangle ? areaInRectangle(x, y, width) : areaInDisc(x, y, width);
 }
 
-/// Area of a cell in the beam. All beams have the same cells, and few are smaller than these.
+/// Area of a cell's part in the beam. The first two levels, which hold most cells, have a table.
 double BeamCells::areaOf(int level, std::uint32_t column, std::uint32_t row) const
 {
   const std::uint32_t side = 1u << 2 * level;
@@ -139,7 +139,7 @@ void BeamCells::begin(std::uint64_t beam, const BeamFrame& frame)
   }
 }
 
-/// Objects come in stretches. Sums of integers do not depend on the order of the triangles.
+/// Add an area to an object, mostly that of the last call. Integer sums do not depend on the order.
 void BeamCells::addToObject(int id, double area)
 {
   if (this->Objects.empty() || id != this->Objects.back().first)
@@ -148,7 +148,7 @@ void BeamCells::addToObject(int id, double area)
   }
   std::uint64_t& sum = this->Objects.back().second;
   sum += area < LargeArea ? static_cast<std::uint64_t>(area * PartsOfArea) : LargeParts;
-  // Both sides of the disc have 4 pi.
+  // Twice the area up to which smallShareOf() is positive.
   if (static_cast<double>(sum) >
     4.0 * Pi * this->Density.raysOnObject() / this->Density.rays() * PartsOfArea)
   {
@@ -156,7 +156,7 @@ void BeamCells::addToObject(int id, double area)
   }
 }
 
-/// Whether an object is known not to be small, whatever else it has.
+/// True once the object is known to be large.
 bool BeamCells::isLarge(int id) const
 {
   return std::find(this->Large.begin(), this->Large.end(), id) != this->Large.end();
@@ -164,8 +164,8 @@ bool BeamCells::isLarge(int id) const
 
 namespace
 {
-/// Whether a surface holds a circle in the disc, one of a few, that is too large for a small
-/// object.
+/// True if a surface holds one of seven circles in the disc. @param radius of a circle that is too
+/// large for a small object
 bool holdsCircle(const BeamSurface& s, double radius)
 {
   constexpr double out = 0.55;
@@ -202,7 +202,7 @@ void BeamCells::addToObject(const BeamSurface& s)
   }
 }
 
-/// Add a triangle's part in the disc to its object, unless that is known to be large.
+/// Add a triangle's part in the disc to its object, unless the object is known to be large.
 void BeamCells::addPart(std::uint32_t triangle)
 {
   if (triangle != NoTriangle && !this->isLarge(this->Setup.objectId(triangle)))
@@ -211,7 +211,7 @@ void BeamCells::addPart(std::uint32_t triangle)
   }
 }
 
-/// Sort the stretches, and make one of those of one object.
+/// Sort `Objects` by id, and add up the areas of each object.
 void BeamCells::sumObjects()
 {
   if (this->Objects.empty())
@@ -235,7 +235,7 @@ void BeamCells::sumObjects()
   this->Objects.resize(last + 1);
 }
 
-/// Share of the beam of an object, if it is small against the spacing of the rays; else 0.
+/// Share of the beam that an object fills, if too few rays of the grid fall on it; otherwise 0.
 float BeamCells::smallShareOf(int id) const
 {
   if (this->isLarge(id))
@@ -251,7 +251,7 @@ float BeamCells::smallShareOf(int id) const
     : 0.0f;
 }
 
-/// The surfaces in single precision. 1/z is scaled by its largest, so that it is a number in any
+/// Set the surfaces in single precision. 1/z is divided by its largest value, to be finite in any
 /// scene.
 void BeamCells::setSurfaces()
 {
@@ -261,7 +261,7 @@ void BeamCells::setSurfaces()
   this->HasObjects = false;
   this->Surfaces.resize(this->All->size());
   this->MetIn.resize(std::max(this->MetIn.size(), this->Surfaces.size()), 0);
-  constexpr double least = 1e-30; // of the farthest, whatever lies at the apex
+  constexpr double least = 1e-30; // for the farthest surface, if another one lies at the apex
   const double scale = this->All->empty()
     ? 1.0
     : std::max(1.0 / this->All->front()->sortInverse, least / this->All->back()->sortInverse);
@@ -335,7 +335,7 @@ double BeamCells::areaInDiscOf(std::uint32_t triangle) const
   const Corners t = this->Scene.cornersFrom(triangle, this->Frame.origin);
   const Vec3 corners[3] = { this->Frame.toPlane(t.a), this->Frame.toPlane(t.b),
     this->Frame.toPlane(t.c) };
-  // What lies before the apex: no more than four corners.
+  // The part in front of the apex has at most four corners.
   const double nearest = 1e-9 *
     std::max(std::fabs(corners[0].z), std::max(std::fabs(corners[1].z), std::fabs(corners[2].z)));
   PlaneRing ring;
@@ -367,7 +367,7 @@ void BeamCells::leaveSmallObjects(
   }
   this->sumObjects();
   int id = 0;
-  float share = -1.0f; // of the object before
+  float share = -1.0f; // of object `id`; negative: none yet
   const auto isOfLarge = [&](std::uint32_t number)
   {
     if (share < 0.0f || id != idOf(number))
@@ -380,7 +380,7 @@ void BeamCells::leaveSmallObjects(
   numbers.erase(std::remove_if(numbers.begin(), numbers.end(), isOfLarge), numbers.end());
 }
 
-/// Place the rays. Where small objects ask for too many, the smallest are left to the others' rays.
+/// Place the rays. If small objects need too many, the smallest get no rays of their own.
 void BeamCells::planAll()
 {
   const double usual = this->Density.rays() / CellLanes;
@@ -420,7 +420,7 @@ std::unique_ptr<CellSamples> BeamCells::find(const std::uint32_t* triangles)
     this->Hits.push_back(keyAbove(triangles[i], i));
   }
   sortKeys(this->Hits);
-  this->Whole.clear(); // what they see
+  this->Whole.clear(); // triangles that are hit
   for (const std::uint64_t hit : this->Hits)
   {
     if (keyOf(hit) != NoTriangle && (this->Whole.empty() || this->Whole.back() != keyOf(hit)))
@@ -442,7 +442,7 @@ std::unique_ptr<CellSamples> BeamCells::find(const std::uint32_t* triangles)
       this->Numbers.push_back(keyAbove(s.other, k));
     }
   }
-  this->Numbers.push_back(keyAbove(NoTriangle, 0xffffffffu)); // -1 as a surface
+  this->Numbers.push_back(keyAbove(NoTriangle, 0xffffffffu)); // read as surface -1
   sortKeys(this->Numbers);
   this->OfRays.resize(this->Hits.size());
   auto known = this->Numbers.begin();
@@ -468,7 +468,7 @@ std::unique_ptr<CellSamples> BeamCells::find(const std::uint32_t* triangles)
   return this->TooMany ? nullptr : this->Strips.collect();
 }
 
-/// m for a cell: as for all, or so that enough rays fall on each small object in it.
+/// m of a cell: that of the grid, or more if small objects in the cell need it.
 int BeamCells::blocksFor(const Cell& cell, List list) const
 {
   if (!this->HasObjects)
@@ -530,7 +530,7 @@ void BeamCells::divide(const Cell& cell, List list)
   }
 }
 
-/// Find what a cell shows.
+/// Take a cell as one sample, divide it, or trace its rays.
 void BeamCells::solve(const Cell& cell, List list)
 {
   const double half = 0.5 * cell.width;
@@ -549,8 +549,8 @@ void BeamCells::solve(const Cell& cell, List list)
   divides ? this->divide(cell, list) : this->trace(cell, list, std::min(blocks, most));
 }
 
-/// Rays of a block of a cell: one in each of sixteen squares. @param pull less than 1: towards the
-/// corner that is nearest to the axis
+/// Place the rays of a block of a cell, one in each of sixteen squares. @param pull factor by which
+/// they are drawn towards the corner nearest to the axis; 1: not at all
 void BeamCells::place(const Cell& cell, int block, int blocks, float pull, CellRays& rays) const
 {
   std::uint64_t hash = this->Beam + 1;
@@ -605,7 +605,7 @@ void BeamCells::plan(const CellRays& block, double share)
 }
 
 /// Test the rays of a cell against its list. A surface in the list that no ray meets covers about
-/// one ray's share at most: that share becomes part of the variance.
+/// one ray's share at most, which adds to the variance.
 void BeamCells::trace(const Cell& cell, List list, int blocks)
 {
   const int count = blocks * blocks;
@@ -614,7 +614,7 @@ void BeamCells::trace(const Cell& cell, List list, int blocks)
   float pull = 1.0f;
   if (cell.area < cell.width * cell.width)
   {
-    // Those inside share the cell's area in the disc. If there are none, they are drawn in.
+    // The rays in the beam share the cell's area there. If there are none, rays are drawn inwards.
     rays = 0.0;
     for (pull = 2.0f; rays == 0.0;)
     {
@@ -631,8 +631,8 @@ void BeamCells::trace(const Cell& cell, List list, int blocks)
   }
   const double share = cell.area / rays * this->ShareOfArea;
   ++this->Traced;
-  std::uint32_t met = 0; // surfaces
-  PlanePoint one;        // where a ray meets one
+  std::uint32_t met = 0; // number of surfaces
+  PlanePoint one;        // where a ray meets surface `first`
   std::int32_t first = -1;
   for (int k = 0; k < count && !this->TooMany; ++k)
   {

@@ -1,27 +1,26 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file BeamCells.h
- * @brief Direct echoes of a beam that many triangles enter: the beam's disc is divided into cells,
- * each with a list of the triangles that may be seen in it, and a dense grid of jittered rays is
- * tested against the lists of its cells alone.
+ * @brief Samples of a beam that many triangles enter, from a grid of cells and rays.
  *
- * A cell is divided into 4 x 4 smaller ones. Its surfaces are tested against all sixteen at once
- * (CellLanes.h): a surface is kept where none of its sides separates it from the cell and nothing
- * that covers the cell lies in front of it. A cell that one surface covers within one strip
- * (RangeStrips.h) is one exact sample. The others of the smallest size hold 16 m^2 rays, one in
- * each square of a grid.
+ * 1. The disc is divided into 4 x 4 cells, and these again. The surfaces in the list of a cell are
+ * tested against its sixteen children at once (CellLanes.h). A child keeps a surface unless a side
+ * of the surface separates the two or another surface covers the child in front of it.
+ * 2. A cell that one surface covers within one strip (RangeStrips.h) is one exact sample.
+ * 3. Every other cell of the last level holds 16 m^2 jittered rays, one in each square of a grid,
+ * which are tested against its list alone.
  *
- * The density of rays is fixed by N (densityOfCells()). So nothing is biased by what the first rays
- * missed. A cell gets more rays, or is divided further, if it holds an object on which fewer than
- * CellDensity::raysOnObject() would fall. So is a cell that may hold the middle of a specular lobe,
- * where light comes back from a mirror.
+ * N alone fixes the density of rays (densityOfCells()), so that nothing is biased by what the first
+ * rays missed. A cell gets more rays, or is divided further, if it holds an object on which fewer
+ * than CellDensity::raysOnObject() would fall. It is divided further, too, if it may hold the
+ * middle of a specular lobe.
  *
  * Source: Warnock, "A Hidden Surface Algorithm for Computer Generated Halftone Pictures", 1969, for
  * the division; Catmull, 1978, for lists that are shorter the smaller the cell.
- * Differs: cells end in stratified rays, which have a standard error, and not in pixels.
- * Valid: any triangles. Depends on the beam, the triangles that enter its disc, and which of them
- * are one object; not on their order, their materials or the tree. Specular lobes are resolved to
- * exponents of about 1e8 in a beam of 5.6 mrad.
+ * Differs: the smallest cells hold stratified rays, which have a standard error, and not pixels.
+ * Valid: any triangles. Samples depend on the beam, the triangles that enter its disc and their
+ * object ids, not on the order of the triangles, their materials or the tree. Specular lobes are
+ * resolved up to exponents of about 1e8 in a beam of 5.6 mrad.
  * Test: TestBeamCells.cxx, TestCellErrors.cxx, TestBird.cxx.
  */
 #ifndef avianlidar_BeamCells_h
@@ -42,11 +41,10 @@
 
 namespace avianlidar
 {
-/// Most triangles of a beam whose cells have lists of them; beyond, the rays go through the tree.
+/// Cells of a beam with more triangles have no lists: its rays go through the tree.
 constexpr std::size_t MostTrianglesOfCells = 2000;
 
-/// The smallest share of the beam's disc that an object is looked for with, by the area of its
-/// triangles in the disc.
+/// Smallest share of the disc, by the area of its triangles, for which an object gets more rays.
 constexpr double LeastShareOfObject = 1e-6;
 
 /// Finds the samples of one beam after the other. One per thread; setup and scene must outlive it.
@@ -56,37 +54,37 @@ public:
   BeamCells(const ScanSetup& setup, const SceneTriangles& scene);
 
   /// @param entering the surfaces that enter the disc, nearest first (BeamTriangles::sort())
-  /// @return null if there are too many strips
+  /// @return the samples; null if there are too many strips
   std::unique_ptr<CellSamples> find(
     std::uint64_t beam, const BeamFrame& frame, const std::vector<const BeamSurface*>& entering);
 
-  /// Of triangles, all that enter a beam among them, leave those of small objects: they alone
-  /// decide where the rays of place() lie, and millions may enter.
+  /// Keep only the triangles of small objects, which alone decide where the rays of place() lie.
+  /// The input, maybe of millions, must contain every triangle that enters the beam.
   void leaveSmallObjects(
     std::uint64_t beam, const BeamFrame& frame, std::vector<std::uint32_t>& numbers);
 
-  /// The rays of a beam that too many triangles enter for lists: those of its cells, which are
-  /// divided as small objects ask for it. They have to be traced through the tree. @param numbers
-  /// of triangles, those of all small objects among them, in any order; changed. Valid until the
-  /// next beam.
+  /// Place the rays of a beam that too many triangles enter for lists. Its cells are divided as
+  /// small objects need it, and the rays must be traced through the tree.
+  /// @param numbers triangles in any order, those of all small objects included; changed
+  /// @return valid until the next beam
   const BeamRays& place(
     std::uint64_t beam, const BeamFrame& frame, std::vector<std::uint32_t>& numbers);
 
-  /// The samples of these rays. @param triangles that they hit
+  /// The samples of these rays, or null. @param triangles hit by the rays; NoTriangle: none
   std::unique_ptr<CellSamples> find(const std::uint32_t* triangles);
 
 private:
   struct Cell
   {
     int level;
-    std::uint32_t column, row; ///< of 4^level
-    float occluder;            ///< 1/z of what covers it, scaled; 0: nothing does
-    double x, y, width;        ///< corner and side, in half-beamwidths
-    double area;               ///< of its part in the beam
+    std::uint32_t column, row; ///< place among 4^level
+    float occluder;            ///< CellSurface::inverse of what covers it; 0: nothing does
+    double x, y, width;        ///< corner and side, half-beamwidths
+    double area;               ///< area of its part in the beam, half-beamwidths squared
   };
   struct List
   {
-    const std::uint32_t* surfaces; ///< numbers
+    const std::uint32_t* surfaces; ///< numbers of surfaces
     std::uint32_t count;
   };
   struct Level
@@ -119,38 +117,38 @@ private:
   const SceneTriangles& Scene;
   const CellDensity Density;
   const BeamShape Shape;
-  std::vector<double> Areas; ///< of the cells of the first two levels
-  std::vector<float> Jitter; ///< places of rays in a block, in their spacing
+  std::vector<double> Areas; ///< areas in the beam of the cells of the first two levels
+  std::vector<float> Jitter; ///< places of rays in a block, in units of their spacing
 
-  // The beam.
+  // The current beam.
   std::uint64_t Beam = 0;
   BeamFrame Frame;
   const std::vector<const BeamSurface*>* All = nullptr;
   double Tangent2 = 0.0;
   double ShareOfArea = 0.0;
-  double LeastShare = LeastShareOfObject;             ///< of objects that count as small
-  bool HasObjects = false;                            ///< small ones
-  bool HasFeet = false;                               ///< middles of specular lobes in the disc
-  std::vector<CellSurface> Surfaces;                  ///< as in All
+  double LeastShare = LeastShareOfObject; ///< least share of a small object
+  bool HasObjects = false;                ///< whether small objects enter the disc
+  bool HasFeet = false;                   ///< whether middles of specular lobes may lie in it
+  std::vector<CellSurface> Surfaces;      ///< `All` in single precision
   std::vector<std::pair<int, std::uint64_t>> Objects; ///< id and area of each, after sumObjects()
-  std::vector<int> Large;                             ///< ids of objects that are not small
+  std::vector<int> Large;                             ///< ids of objects known to be large
   std::vector<Level> Levels;
-  std::vector<std::uint64_t> MetIn; ///< last traced cell, by surface
-  std::uint64_t Traced = 0;         ///< cells, of all beams
-  bool TooMany = false;             ///< strips, or blocks of rays
+  std::vector<std::uint64_t> MetIn; ///< last traced cell in which a ray met it, by surface
+  std::uint64_t Traced = 0;         ///< number of cells traced so far, in all beams
+  bool TooMany = false;             ///< whether there are too many strips or blocks of rays
   RangeStrips Strips;
-  std::vector<std::uint32_t> Whole; ///< all surfaces
+  std::vector<std::uint32_t> Whole; ///< numbers of all surfaces, or of triangles that are hit
 
   // A beam whose rays are traced through the tree.
-  bool Plans = false; ///< rays are placed and not tested
+  bool Plans = false; ///< whether rays are only placed, not tested
   BeamTriangles Seen;
-  BeamRays Rays; ///< those in the disc
+  BeamRays Rays; ///< the rays in the beam
   std::vector<CellRays> Blocks;
   std::size_t MostBlocks = 0;
-  std::vector<double> Shares;         ///< of the pulse, of each ray of a block
-  std::vector<std::uint64_t> Hits;    ///< triangle and ray
-  std::vector<std::uint64_t> Numbers; ///< triangle and surface
-  std::vector<std::int32_t> OfRays;   ///< surfaces
+  std::vector<double> Shares;         ///< share of the pulse of each ray, by block
+  std::vector<std::uint64_t> Hits;    ///< keyAbove() triangle and ray
+  std::vector<std::uint64_t> Numbers; ///< keyAbove() triangle and surface
+  std::vector<std::int32_t> OfRays;   ///< surface that each ray sees; -1: none
 };
 }
 

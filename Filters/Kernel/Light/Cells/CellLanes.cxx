@@ -15,20 +15,20 @@ namespace avianlidar::HWY_NAMESPACE
 {
 namespace
 {
-/// Covers the rounding of sides.
+/// Bound of the rounding of sides, half-beamwidths.
 constexpr float SideMargin = 1e-6f;
 
-/// Less than 1 by more than rounding.
+/// Factor that is less than 1 by more than rounding.
 constexpr float Unhidden = 1.0f - 1e-6f;
 
-/// An affine function, not fused.
+/// Value of an affine function, without fused products.
 HWY_INLINE Rays affine(const float* f, Rays x, Rays y)
 {
   return hn::Add(
     hn::Add(hn::Mul(everywhere(f[0]), x), hn::Mul(everywhere(f[1]), y)), everywhere(f[2]));
 }
 
-/// The middles of children from `first` on.
+/// Middles of the children from number `first` on.
 struct Middles
 {
   Rays x, y;
@@ -69,7 +69,7 @@ void distributeLanes(const CellSurface* surfaces, const std::uint32_t* list, std
   }
   const float half = 0.5f * children.width;
   const Rays zero = hn::Zero(lanes);
-  // Most surfaces are kept by few children. So many at once need no branch for each.
+  // Few children keep a surface, as a rule. Four at once need no branch for each child.
   constexpr int atOnce = 4;
   std::uint32_t nowhere[atOnce];
   std::uint32_t* ends[CellLanes + 1];
@@ -80,7 +80,7 @@ void distributeLanes(const CellSurface* surfaces, const std::uint32_t* list, std
     const CellSurface& s = surfaces[number];
     if (k % 8 == 7 && s.most < leastOf(occluders, groups))
     {
-      break; // the nearest come first: all others are hidden everywhere
+      break; // as the nearest come first, all others are hidden everywhere
     }
     std::uint32_t bits = 0;
     for (int g = 0; g < groups; ++g)
@@ -151,7 +151,7 @@ void seeLanes(
     const CellSurface& s = surfaces[list[k]];
     if (k % 4 == 3 && s.most < leastOf(nearest, groups))
     {
-      break; // the nearest come first: no ray sees any other
+      break; // as the nearest come first, no ray sees any other
     }
     for (int g = 0; g < groups; ++g)
     {

@@ -5,10 +5,11 @@
  * cells, and against sixteen rays.
  *
  * Source: Pineda, "A Parallel Algorithm for Polygon Rasterization", SIGGRAPH 1988.
- * Differs: single precision in the beam's plane, whose coordinates are at most 1 in the disc. What
- * two triangles share they have with opposite signs, bit for bit, so nothing passes between them.
- * Valid: sides within 1e-6 half-beamwidths. Surfaces of nearly the same 1/z may change places
- * within CellSurface::slack. Products are not fused: every instruction set gives the same bits.
+ * Differs: single precision in the beam's plane, whose coordinates are at most 1 in the disc. A
+ * side of two triangles has opposite signs in them, bit for bit, so no ray passes between them.
+ * Valid: sides are accurate to 1e-6 half-beamwidths. Surfaces whose 1/z differ by less than
+ * CellSurface::slack may be seen in the wrong order. Products are not fused: every instruction set
+ * gives the same bits.
  * Test: TestBeamCells.cxx, InstructionSets.cxx.
  */
 #ifndef avianlidar_CellLanes_h
@@ -26,22 +27,22 @@ struct CellSurface
 {
   float lines[4][3];
   float slopes[4];    ///< |x| + |y| of each side
-  float inverse[3];   ///< 1/z, 1/m
-  float inverseSlope; ///< |x| + |y|
-  float most;         ///< upper bound of 1/z
-  float slack;        ///< most that rounding changes 1/z
-  float share;        ///< of the beam, of the small object that it is part of; 0: it is of none
-  float foot[2];      ///< where light comes back in the direction of the surface's mirror
+  float inverse[3];   ///< 1/z over its largest value in the beam
+  float inverseSlope; ///< |x| + |y| of `inverse`
+  float most;         ///< upper bound of `inverse`
+  float slack;        ///< bound of the rounding of `inverse`
+  float share;        ///< share of the beam that its small object fills; 0: of no small object
+  float foot[2];      ///< where a ray meets the plane at right angles: middle of the specular lobe
 };
 
 /// Sixteen children of a cell, four by four.
 struct CellChildren
 {
-  float x, y, width;          ///< corner of the first, and their side
-  float occluders[CellLanes]; ///< 1/z of what covers each: nothing behind it is seen; infinite:
-                              ///< it is not wanted
-  std::uint32_t counts[CellLanes]; ///< of their lists
-  std::uint32_t* lists[CellLanes]; ///< each with room for all
+  float x, y, width; ///< corner of the first child, and side of each, half-beamwidths
+  /// CellSurface::inverse of what covers each child and hides all behind it; infinity: skip it.
+  float occluders[CellLanes];
+  std::uint32_t counts[CellLanes]; ///< lengths of `lists`
+  std::uint32_t* lists[CellLanes]; ///< numbers of surfaces; each list has room for all
 };
 
 /// Distribute a list of surfaces, nearest first, over the children in which they may be seen.
@@ -52,10 +53,10 @@ void distribute(const CellSurface* surfaces, const std::uint32_t* list, std::uin
 struct CellRays
 {
   float x[CellLanes], y[CellLanes];
-  std::int32_t seen[CellLanes]; ///< a surface; -1: none
+  std::int32_t seen[CellLanes]; ///< number of the surface that the ray sees; -1: none
 };
 
-/// Find what the rays see of a list, nearest first.
+/// Find which surface of a list, nearest first, each ray sees.
 void see(
   const CellSurface* surfaces, const std::uint32_t* list, std::uint32_t count, CellRays& rays);
 }

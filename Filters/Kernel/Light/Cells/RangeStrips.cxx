@@ -15,7 +15,7 @@ namespace
 {
 constexpr double MostParts = 1e6;
 
-/// Most strips of a beam.
+/// Largest number of strips of a beam.
 constexpr double MostStrips = 4e6;
 
 constexpr std::uint32_t None = 0xffffffffu;
@@ -23,26 +23,25 @@ constexpr std::uint32_t None = 0xffffffffu;
 /// Squared sine of incidence below which strips are not divided further.
 constexpr double LeastSine2 = 1e-8;
 
-/// Half-beamwidth up to which the solid angle of a cell follows from its middle.
+/// Half-beamwidth, rad, up to which the middle of a cell gives its solid angle.
 constexpr double NarrowBeam = 0.02;
 
-/// The greatest integer not above a number of magnitude below 2^51: floor(), also in lanes.
+/// floor() for lanes, of magnitudes below 2^51.
 AVIANLIDAR_ALWAYS_INLINE double whole(double x)
 {
   const double rounded = (x + 0x1.8p52) - 0x1.8p52;
   return rounded > x ? rounded - 1.0 : rounded;
 }
 
-/// Number of the strip between borders of units in which a range lies. Borders of one kind divide
-/// the strips of the other.
+/// Number of the strip between borders of units, of both kinds, in which a range lies.
 AVIANLIDAR_ALWAYS_INLINE double unitStrip(const SurfaceStrips& s, double range)
 {
   const double units = (range < s.gate ? range : s.gate) * s.perMetre;
   return whole(units - s.one) + whole(units - s.two);
 }
 
-/// Number of the strip of incidence in which a range lies, by its squared sine: sixteen for each
-/// doubling, from LeastSine2 on.
+/// Number of the strip of incidence in which a range lies. There are sixteen strips for each
+/// doubling of the squared sine, from LeastSine2 on.
 AVIANLIDAR_ALWAYS_INLINE double lobeStrip(const SurfaceStrips& s, double range)
 {
   const double cosine = s.height / range;
@@ -58,24 +57,24 @@ double numberAt(const SurfaceStrips& s, double range)
   return unitStrip(s, range) + lobeStrip(s, range);
 }
 
-/// Sixteen rays that end, and what they meet. Numbers are doubles for the sake of lanes.
+/// Sixteen rays, and what they meet. Integers are doubles for SIMD lanes.
 struct Block
 {
   double x[CellLanes], y[CellLanes];
-  double secant[CellLanes], weight[CellLanes]; ///< 0 beyond the rim
-  double surface[CellLanes];                   ///< -1: none
-  double key[CellLanes];                       ///< of the strip; -1: none
-  double unit[CellLanes];                      ///< the same for rays of one surface in one unit
-  double moment[CellLanes];                    ///< weight times range
-  double variance[2][CellLanes], moves[2][CellLanes]; ///< by each of two neighbours
-  int lone;                                           ///< rays without a neighbour within the rim
+  double secant[CellLanes], weight[CellLanes]; ///< weights are 0 outside of the beam
+  double surface[CellLanes];                   ///< number of the surface; -1: none
+  double key[CellLanes];                       ///< key of the strip; -1: none
+  double unit[CellLanes];   ///< number that rays of one surface between the same borders share
+  double moment[CellLanes]; ///< weight times range
+  double variance[2][CellLanes], moves[2][CellLanes]; ///< against each of two neighbours
+  int lone;                                           ///< number of rays without a neighbour
 };
 
-/// What the places of rays in the beam's plane mean.
+/// Scales and outline of the beam's plane.
 struct PlaneScales
 {
   double tangent2, flatness2; ///< BeamFrame.h
-  double most;                ///< of |x| and |y|
+  double most;                ///< largest |x| and |y|
   bool isRound;
 };
 
@@ -102,7 +101,7 @@ AVIANLIDAR_MULTIVERSION void weigh(
   }
 }
 
-/// Keys, units and moments of the rays that meet a surface.
+/// Set keys, units and moments of the rays that meet a surface.
 AVIANLIDAR_MULTIVERSION void findStrips(const SurfaceStrips& surface, Block& block)
 {
   const SurfaceStrips s = surface;
@@ -125,9 +124,9 @@ AVIANLIDAR_MULTIVERSION void findStrips(const SurfaceStrips& surface, Block& blo
   }
 }
 
-/// Whether all meet one strip, or nothing, with weights that are not `uneven`. If not, how each ray
-/// differs from its two neighbours in a square of four: a stratum with two rays, twice. Where one
-/// lies beyond the rim, the other stands for both.
+/// Set how each ray differs from its two neighbours in a square of four, which are two strata of
+/// two rays. If one neighbour lies outside of the beam, the other counts twice. @return false, with
+/// nothing set, if all rays meet one strip or nothing and their weights are even
 AVIANLIDAR_MULTIVERSION bool findDifferences(bool uneven, Block& block)
 {
   int others = 0;
@@ -144,7 +143,7 @@ AVIANLIDAR_MULTIVERSION bool findDifferences(bool uneven, Block& block)
   int lone = 0;
   for (int n = 0; n < 2; ++n)
   {
-    Block other; // not read from `block` in the lanes: that would be gathers
+    Block other; // copied beforehand, as lanes would gather from `block`
     double across[CellLanes];
     for (int i = 0; i < CellLanes; ++i)
     {
@@ -171,8 +170,8 @@ AVIANLIDAR_MULTIVERSION bool findDifferences(bool uneven, Block& block)
   return true;
 }
 
-/// The variance of rays without a neighbour within the rim: of all they carry, if another ray of
-/// the sixteen meets something else.
+/// Add the variance of rays without a neighbour in the beam: of their whole weight, if another ray
+/// of the sixteen meets something else.
 void addLoneRays(Block& block)
 {
   for (int i = 0; i < CellLanes; ++i)
@@ -190,7 +189,7 @@ void addLoneRays(Block& block)
   }
 }
 
-/// The sum of sixteen, in an order that does not depend on the width of lanes.
+/// Sum of sixteen values, in an order that does not depend on the width of lanes.
 double sumOf(const double* values)
 {
   double part[CellLanes];
@@ -211,7 +210,7 @@ double CellSamples::errorOf(const RangeShares& shares, const ScanSetup& setup) c
   const auto sampleOf = [&](std::size_t s) { return shares.contribution[s]; };
   const auto perWeight = [&](std::size_t s)
   { return shares.energies[s] / this->samples.weight[sampleOf(s)]; };
-  // What moves over the diagonal changes the material.
+  // Weight that moves over the diagonal counts if the material differs there.
   const auto halvesDiffer = [&](std::size_t k)
   {
     return this->others[k] != NoTriangle && !this->halves.empty() &&
@@ -219,7 +218,7 @@ double CellSamples::errorOf(const RangeShares& shares, const ScanSetup& setup) c
   };
   auto surface = this->samples.surfaces.begin();
   bool differ = !this->others.empty() && halvesDiffer(0);
-  std::size_t first = 0; // sample of the surface
+  std::size_t first = 0; // first sample of the surface
   double sum = 0.0;
   const auto addStep = [&](std::size_t sample, double step)
   { sum += step * step * (this->moves[sample] + this->moves[sample + 1]); };
@@ -237,7 +236,7 @@ double CellSamples::errorOf(const RangeShares& shares, const ScanSetup& setup) c
       differ = halvesDiffer(surface - this->samples.surfaces.begin());
     }
     const double energy = perWeight(s);
-    // A neighbour without a share puts nothing here.
+    // The previous sample has no share in these units.
     if (sample > first && (s == 0 || sampleOf(s - 1) + 1 != sample))
     {
       addStep(sample - 1, energy);
@@ -313,7 +312,7 @@ const SurfaceStrips* RangeStrips::stripsOf(std::uint32_t surface)
 inline RangeStrips::Strip& RangeStrips::sumOf(double number)
 {
   const auto key = static_cast<std::uint32_t>(number);
-  std::uint32_t& place = this->Places[key]; // of an earlier beam, perhaps
+  std::uint32_t& place = this->Places[key]; // may be left from an earlier beam
   if (place >= this->Sums.size() || this->Sums[place].key != key)
   {
     place = static_cast<std::uint32_t>(this->Sums.size());
@@ -338,7 +337,7 @@ bool RangeStrips::addWhole(
   const double inverse = s.inverse.at(middle);
   const double secant2 = this->secant2At(middle);
   const double secant = std::sqrt(secant2);
-  const double bend = this->Tangent2 * width; // of the secant, more than its change
+  const double bend = this->Tangent2 * width; // exceeds the relative change of the secant
   const double first = numberAt(*of, (1.0 - bend) * secant / (inverse + reach));
   const double last =
     inverse > reach ? numberAt(*of, (1.0 + bend) * secant / (inverse - reach)) : Infinity;
@@ -360,13 +359,13 @@ bool RangeStrips::addWhole(
   return true;
 }
 
-/// Squared distance over that along the axis.
+/// Squared secant of the angle between a ray and the axis.
 double RangeStrips::secant2At(const PlanePoint& p) const
 {
   return 1.0 + this->Tangent2 * (p.x * p.x + this->Flatness2 * (p.y * p.y));
 }
 
-/// Add what moves over a diagonal.
+/// Add a variance to CellSamples::halves of a strip.
 void RangeStrips::addHalves(std::size_t strip, double variance)
 {
   if (variance > 0.0)

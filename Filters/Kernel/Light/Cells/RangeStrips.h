@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file RangeStrips.h
- * @brief Samples of a beam in cells: sums of what its rays meet, by strips of range and incidence.
+ * @brief Samples of a beam in cells: sums over its rays by strips of range and incidence.
  *
- * On a plane the range gives the angle of incidence. So rays are not samples by themselves: those
- * of a triangle within a strip of ranges, between two ranges where a pulse begins to enter a range
- * unit or to leave it, are one sample at their mean range. In between the unit's share of a pulse
- * is linear in the range. Strips are divided further by the angle of incidence, for specular lobes.
+ * On a plane the range gives the angle of incidence. So the rays of a triangle within a strip of
+ * ranges are one sample, at their mean range. A strip lies between two ranges at which a pulse
+ * begins to enter a range unit or to leave it: in between the unit's share of the pulse is linear
+ * in the range. Strips are divided further by the angle of incidence, for specular lobes.
  *
  * Source: none.
- * Differs: each ray and two others of a square of four are the strata of the standard error. As
- * neighbours differ more than what lies within a stratum, the estimate is on the large side. What
- * no ray of a cell met is added by addVariance().
- * Valid: at most four million strips of a beam. The same bits for any width of lanes.
+ * Differs: the strata of the standard error are a ray and one of two neighbours in a square of
+ * four. Neighbours differ more than rays of one stratum, so that the estimate is rather too large.
+ * addVariance() adds surfaces that no ray of a cell met.
+ * Valid: at most four million strips of a beam. All widths of lanes give the same bits.
  * Test: TestBeamCells.cxx, TestCellErrors.cxx.
  */
 #ifndef avianlidar_RangeStrips_h
@@ -33,21 +33,21 @@
 
 namespace avianlidar
 {
-/// Strips are no longer than this part of the range.
+/// Largest length of a strip, over its range.
 constexpr double MostOfRange = 0.02;
 
 /// Samples of a beam by cells.
 struct CellSamples
 {
   BeamSamples samples;
-  std::vector<std::uint32_t> others; ///< the other half of each of its surfaces, or NoTriangle
-  std::vector<double> variance;      ///< of the weight of each sample
-  /// The same of what may move between neighbouring samples of one range unit, by incidence alone.
+  std::vector<std::uint32_t> others; ///< other half of each surface of `samples`, or NoTriangle
+  std::vector<double> variance;      ///< variance of the weight of each sample
+  /// Variance of the weight that may move to a neighbouring sample of the same range unit.
   std::vector<double> moves;
-  std::vector<double> halves; ///< the same over the diagonal of a quadrilateral; empty: none
-  /// The surfaces seen, with hidden parts, for paths over two reflections; null if none are wanted.
+  std::vector<double> halves; ///< part of `moves` over diagonals of quadrilaterals; empty if none
+  /// The visible surfaces with hidden parts; null if two reflections are not asked for.
   std::unique_ptr<VisiblePolygons> surfaces;
-  bool isCrowded = false; ///< its rays went through the tree (MostTrianglesOfCells)
+  bool isCrowded = false; ///< whether its rays went through the tree (MostTrianglesOfCells)
 
   std::size_t bytes() const
   {
@@ -58,22 +58,21 @@ struct CellSamples
       sizeof(double);
   }
 
-  /// Standard error, J, of the energy in some range units. @param shares of which those of the
-  /// samples come first
+  /// Standard error, J, of the energy in some range units. @param shares the samples' come first
   double errorOf(const RangeShares& shares, const ScanSetup& setup) const;
 };
 
-/// The strips of a surface. Numbers are doubles for the sake of lanes.
+/// The strips of a surface. Integers are doubles for SIMD lanes.
 struct SurfaceStrips
 {
-  double number; ///< of the surface
+  double number; ///< number of the surface
   PlaneLine inverse, diagonal;
   double height;         ///< distance of the plane from the apex, m
-  double gate, perMetre; ///< m; parts of range units
-  double one, two;       ///< offsets of the borders of units, in parts of them
+  double gate, perMetre; ///< largest range, m; parts of range units in a metre
+  double one, two;       ///< offsets of the two kinds of borders, in parts of range units
   double least;          ///< number of the first strip
-  double first;          ///< its key
-  double count;          ///< of strips, of each half
+  double first;          ///< key of the first strip
+  double count;          ///< number of strips of each half
 };
 
 /// Sums the rays of one beam after the other. One per thread; the setup must outlive it.
@@ -85,14 +84,15 @@ public:
   /// @param surfaces that rays may meet; they must live until collect()
   void begin(const BeamFrame& frame, const std::vector<const BeamSurface*>& surfaces);
 
-  /// Add a square inside the disc that one surface covers. @param share of the pulse
-  /// @return false if it takes more than one sample
+  /// Add a square inside the disc that one surface covers. @param share share of the pulse
+  /// @return false if the square needs more than one sample
   bool addWhole(std::uint32_t surface, const PlanePoint& middle, double width, double share);
 
-  /// Add sixteen rays. @param share of the pulse of each @return false if there are too many strips
+  /// Add sixteen rays. @param share share of the pulse of each ray
+  /// @return false if there are too many strips
   bool add(const CellRays& rays, double share);
 
-  /// Add to the variance where a ray met a surface, which add() took.
+  /// Add to the variance of the strip of a ray that add() took. @param at where it met the surface
   void addVariance(std::uint32_t surface, const PlanePoint& at, double variance);
 
   std::unique_ptr<CellSamples> collect();
@@ -111,21 +111,21 @@ private:
 
   const ScanSetup& Setup;
   const double UnitLength; ///< m
-  const double Gate;       ///< m: nothing beyond is received
-  const double Offset; ///< from a border of a unit to where a pulse begins to enter it, in units
+  const double Gate;       ///< range beyond which nothing is received, m
+  const double Offset;     ///< units from a border to the range at which a pulse begins to enter
   const BeamShape Shape;
   double Tangent2 = 0.0;
   double Flatness2 = 1.0; ///< BeamFrame::flatness2
-  const bool HasColumns;  ///< samples get columns
-  bool Uneven = false;    ///< rays of a cell have unlike weights
+  const bool HasColumns;  ///< whether samples get columns of air
+  bool Uneven = false;    ///< whether weights of the rays of a cell differ
   const std::vector<const BeamSurface*>* All = nullptr;
-  std::vector<std::uint32_t> Of;      ///< place of each surface in Visible
+  std::vector<std::uint32_t> Of;      ///< place of each surface in `Visible`, or None
   std::vector<SurfaceStrips> Visible; ///< in the order of their keys
-  double Used = 0.0;                  ///< strips of all surfaces so far
-  std::vector<Strip> Sums;            ///< strips that hold something
-  std::vector<double> Halves;         ///< see CellSamples, of the first of these; mostly empty
-  std::vector<std::uint32_t> Places;  ///< in Sums, of each key that stands there
-  std::vector<std::uint64_t> Keys;    ///< of strips, in order
+  double Used = 0.0;                  ///< number of strips of all surfaces so far
+  std::vector<Strip> Sums;            ///< strips with rays
+  std::vector<double> Halves;         ///< CellSamples::halves, by the first `Sums`; mostly empty
+  std::vector<std::uint32_t> Places;  ///< by key: place in `Sums`, if the strip there has the key
+  std::vector<std::uint64_t> Keys;    ///< keys of the strips with rays, sorted
 };
 }
 
