@@ -16,7 +16,7 @@ double half(double p)
   return std::sqrt(std::max(0.0, (1.0 - p) * (1.0 + p)));
 }
 
-/// Where a side crosses the unit circle, as p.
+/// Append p of the points where a side crosses the unit circle.
 void addCrossings(const PlanePoint& a, const PlanePoint& b, double* places, int& count)
 {
   const double dx = b.x - a.x;
@@ -129,13 +129,13 @@ void DiscPolygon::set(const PlaneRing& ring, const PlanePoint& along)
 
 namespace
 {
-/// Where the moments of some parts are added.
+/// Moments of some parts.
 struct MomentLanes
 {
   double *area, *p, *pp, *qq, *qqqq;
 };
 
-/// Parts below the line q = a + b p, between the places[i] and the next.
+/// Add the moments below the line q = a + b p, between each place and the next.
 AVIANLIDAR_MULTIVERSION void addLine(
   const double* places, std::size_t parts, double a, double b, double sign, const MomentLanes& into)
 {
@@ -179,7 +179,7 @@ AVIANLIDAR_MULTIVERSION void primitivesOf(const double* places, std::size_t coun
   }
 }
 
-/// Parts below the arc.
+/// Add the moments below the arc.
 AVIANLIDAR_MULTIVERSION void addArc(
   const double* primitives, std::size_t parts, double sign, const MomentLanes& into)
 {
@@ -261,13 +261,13 @@ double cross(const PlanePoint& p, const PlanePoint& q)
   return p.x * q.y - p.y * q.x;
 }
 
-/// Signed area between the directions of two points.
+/// Signed area of the disc's sector between the directions of two points.
 double sectorOf(const PlanePoint& p, const PlanePoint& q)
 {
   return 0.5 * std::atan2(cross(p, q), p.x * q.x + p.y * q.y);
 }
 
-/// Signed area, in the disc, of the triangle of its centre and two points.
+/// Signed area of a triangle's part in the disc. One corner is the centre.
 double wedgeInDisc(const PlanePoint& p, const PlanePoint& q)
 {
   const PlanePoint d{ q.x - p.x, q.y - p.y };

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file DiscPolygon.h
- * @brief Part of a convex polygon inside the unit disc, in strips across a direction, with closed
- * forms for the moments of every strip.
+ * @brief The part of a convex polygon inside the unit disc, in strips across a direction, with
+ * closed forms for the moments of every strip.
  *
- * p is the coordinate along the direction, q the one across. Within a strip each end of the chords
- * is a side or an arc, so that its length is a + b p or follows sqrt(1 - p^2), whose moments are
- * elementary.
+ * p is the coordinate along the direction, q the coordinate across it. In a strip each end of the
+ * chords lies on a side, q = a + b p, or on an arc, q = +-sqrt(1 - p^2). The moments of both are
+ * elementary functions.
  *
  * Source: none.
- * Valid: moments of all strips together are right to 1e-15 of those of the disc.
+ * Valid: moments of all strips together are accurate to 1e-15 of the disc's moments.
  * Test: TestPolygonQuadrature.cxx.
  */
 #ifndef avianlidar_DiscPolygon_h
@@ -22,11 +22,11 @@
 
 namespace avianlidar
 {
-/// Integrals over consecutive parts of the disc: of 1, p, p^2, q^2 and q^4, in SIMD lanes.
+/// Integrals of 1, p, p^2, q^2 and q^4 over consecutive parts of the disc, in SIMD lanes.
 struct PartMoments
 {
   std::vector<double> area, p, pp, qq, qqqq;
-  /// Set the moments of so many parts to 0.
+  /// Set the number of parts, with moments of 0.
   void reset(std::size_t parts)
   {
     for (std::vector<double>* lane : { &this->area, &this->p, &this->pp, &this->qq, &this->qqqq })
@@ -43,7 +43,7 @@ public:
   struct Bound
   {
     bool arc;
-    double a, b; ///< q = a + b p; of an arc the sign of q is in `b`
+    double a, b; ///< q = a + b p; for an arc `b` is the sign of q
     double at(double p) const;
   };
   struct Strip
@@ -53,7 +53,7 @@ public:
   };
   static constexpr int MostStrips = 3 * PlaneRing::MostCorners + 2;
 
-  /// Set the polygon. @param along direction of p; need not be normalised; zero: any
+  /// Set the polygon. @param along direction of p, of any length; zero: any direction
   void set(const PlaneRing& ring, const PlanePoint& along);
 
   bool isEmpty() const { return this->Count == 0; }
@@ -62,10 +62,10 @@ public:
   int count() const { return this->Count; }
   const Strip& strip(int k) const { return this->Strips[k]; }
 
-  /// Moments of the parts between borders, ascending in p. @param borders one more than parts
+  /// Find the moments of the parts between borders. @param borders p, ascending
   void measure(const std::vector<double>& borders, PartMoments& moments);
 
-  /// The chord at p, which lies in one of the strips or between two.
+  /// Ends of the chord at p, which lies in a strip or between two strips.
   struct Chord
   {
     double low, high; ///< q
@@ -77,12 +77,11 @@ private:
 
   Strip Strips[MostStrips];
   int Count = 0;
-  std::vector<double> Places; ///< borders of the parts in a strip
-  std::vector<double> Arcs;   ///< primitives of powers of sqrt(1 - p^2) there
+  std::vector<double> Places; ///< borders of the parts in a strip, p
+  std::vector<double> Arcs;   ///< primitivesOf() `Places`
 };
 
-/// Area of a ring's part in the disc. Its corners may lie anywhere: the error is some 1e-16 of
-/// their distance.
+/// Area of a ring's part in the disc, for any corners. The error is some 1e-16 of their distance.
 double areaInDisc(const PlaneRing& ring);
 }
 

@@ -11,7 +11,7 @@ namespace avianlidar
 {
 namespace
 {
-/// Covers the rounding of bounds.
+/// Factor that covers the rounding of bounds.
 constexpr double Surely = 1.0 + 1e-5;
 
 PolygonRule::Extent extentOf(const PlaneSurface& surface, const PlaneRing& ring)
@@ -68,7 +68,7 @@ void PolygonQuadrature::begin(const BeamFrame& frame, const VisiblePolygons& see
           triangle == NoTriangle ? 0.0 : this->Setup.material(triangle).albedo());
       }
     });
-  // The cap of throughAperture() must be out of reach.
+  // The rules are exact only below the cap of throughAperture().
   this->Gathers = this->Setup.sensor.receiverAperture > 0.0 && largest >= 1.0 - 1e-9;
   this->Whole.mostReturned = Surely * this->Setup.sensor.pulseEnergy *
     std::min(this->Whole.mostReturned, largest) *
@@ -77,7 +77,7 @@ void PolygonQuadrature::begin(const BeamFrame& frame, const VisiblePolygons& see
   this->drop();
 }
 
-/// Upper bound of the reflectance of a triangle through the aperture. @param mostInverse of 1/z,
+/// Upper bound of a triangle's reflectance through the aperture. @param mostInverse largest 1/z,
 /// 1/m
 double PolygonQuadrature::mostReturnedBy(
   std::uint32_t triangle, double height, double mostInverse) const
@@ -96,7 +96,7 @@ PolygonQuadrature::Bounds PolygonQuadrature::boundsOf(
   const PlaneLine& w = surface.inverse;
   const double slope = w.slope();
   Bounds bounds{ extentOf(surface, ring), 0.0, 0.0, 0.0, false, false };
-  double least = 1.0; // across the gradient, inside the disc
+  double least = 1.0; // extent across the gradient, times its slope
   double most = -1.0;
   for (int i = 0; i < ring.size; ++i)
   {
@@ -115,7 +115,7 @@ PolygonQuadrature::Bounds PolygonQuadrature::boundsOf(
   const double dense = Surely * this->Rule.mostDensity() * this->Rule.shareOfArea();
   const double area = ring.area();
   bounds.share = std::min(1.0, dense * area);
-  // A unit gets what lies in a strip across the gradient, whose sides are curved.
+  // The energy of a unit comes from a strip across the gradient, whose sides are curved.
   const double length =
     this->Rule.unitLength() * (1.0 + 2.0 * MostCurved) + this->Rule.pulseLength();
   const double chord =
@@ -128,12 +128,12 @@ PolygonQuadrature::Bounds PolygonQuadrature::boundsOf(
   return bounds;
 }
 
-/// Mark the faintest of the polygons over many units as dropped, and others as faint, as long as no
-/// unit lacks too much.
+/// Mark the faintest polygons over many units as dropped, and the next as faint, as long as no unit
+/// loses too much.
 void PolygonQuadrature::drop()
 {
   this->Dropped = 0.0;
-  // What is faint to the laser may be bright in the sun.
+  // A surface that returns little laser light may be bright in the sun.
   if (!dropsFaintPaths(this->Setup.settings) || this->Setup.sensor.seesDaylight())
   {
     return;
@@ -160,8 +160,8 @@ void PolygonQuadrature::drop()
   }
 }
 
-/// f(surface, triangle, ring, bounds) for each polygon that is not dropped; halves of a
-/// quadrilateral that differ in object or material are two.
+/// Call f(surface, triangle, ring, bounds) for each polygon that is not dropped, and for each half
+/// of a quadrilateral separately if the halves differ in object or material.
 template <class F>
 void PolygonQuadrature::forEachPart(F f)
 {
@@ -214,7 +214,7 @@ const PolygonNodes& PolygonQuadrature::place()
   samples.nearest = this->Whole.nearest;
   samples.farthest = this->Whole.farthest;
   this->Nodes.uncertain.clear();
-  // Sides are rounded as corners are, seen from the apex.
+  // Rounded corners move the sides, as seen from the apex.
   this->Misplaced = this->Seen->lost + 64.0 * RoundOffDouble / this->Frame.tanHalf;
   this->forEachPart(
     [&](const PlaneSurface& surface, std::uint32_t triangle, const PlaneRing& ring,
@@ -232,16 +232,16 @@ double PolygonQuadrature::boundOf(
   const std::vector<double>& uncertain = this->Nodes.uncertain;
   double bound = 0.0;
   double energy = 0.0;
-  std::size_t next = 0; // node whose own uncertainty is not yet counted
+  std::size_t next = 0; // first node whose uncertainty is not yet counted
   for (std::size_t s = 0; s < shares.count; ++s)
   {
     const std::size_t node = shares.contribution[s];
     if (node >= energies.size())
     {
-      break; // paths over two reflections
+      break; // the other shares are of paths over two reflections
     }
     energy += shares.energies[s];
-    // Neighbours are the parts beyond the borders.
+    // The neighbouring nodes are those of the parts beyond the borders.
     const std::size_t first = std::max(next, node >= 2 ? node - 2 : 0);
     next = std::min(node + 3, energies.size());
     for (std::size_t k = first; k < next; ++k)

@@ -13,18 +13,19 @@ namespace avianlidar
 {
 namespace
 {
-/// Most change of the range within a part, relative, and of the lobe's exponent.
+/// Largest relative change of the range within a part, and largest change of the lobe's exponent.
 constexpr double MostStretch = 0.01;
 constexpr double MostFall = 0.05;
 
-/// Parts over which range and lobe change by less take one sample.
+/// Change of range and lobe below which a part takes one sample.
 constexpr double Level = 1e-5;
 
-/// Exponent from which on a lobe counts as zero beside a diffuse component, and by itself.
+/// Exponents above which a lobe counts as zero beside a diffuse component, and by itself.
 constexpr double NoLobe = 42.0;
 constexpr double NothingReturned = 100.0;
 
-/// Wider beams, and lobes of which the beam covers more of the squared width, take rules.
+/// Rules are taken in beams wider than WideBeam, rad, and for lobes if the squared half-beamwidth
+/// exceeds NarrowLobe times the lobe's squared width.
 constexpr double WideBeam = 0.02;
 constexpr double NarrowLobe = 0.03;
 
@@ -37,17 +38,17 @@ constexpr double Weights[Points] = { 0.066671344308688138, 0.149451349150580593,
   0.219086362515982044, 0.269266719309996355, 0.295524224714752870, 0.295524224714752870,
   0.269266719309996355, 0.219086362515982044, 0.149451349150580593, 0.066671344308688138 };
 
-/// Share of a part at borders of units that rules may put beyond them: the mean range of a chord
-/// leaves out the lobe.
+/// Share of a part that rules may put beyond a border of units, as the mean range of a chord does
+/// not weigh by the lobe.
 constexpr double UncertainRules = 1e-4;
 
-/// Most change of the range over one rule.
+/// Largest relative change of the range over one rule.
 constexpr double MostStretchOfRule = 0.5;
 
-/// Most length of one rule where profile or lobe are exp(-x^2) along it.
+/// Largest length of one rule along which profile or lobe are exp(-x^2).
 constexpr double LengthOfRule = 2.5;
 
-/// Far from a lobe whose flanks are powers, a rule reaches so many times as far as the one before.
+/// Ratio of the distances to which successive rules reach from a lobe whose flanks are powers.
 constexpr double GrowthOfRules = 4.0;
 
 double fraction(double x)
@@ -55,9 +56,9 @@ double fraction(double x)
   return x - std::floor(x);
 }
 
-/// Share of a part's energy that may lie beyond its borders. They lie where a chord has the range
-/// of the border on average, so that curvature acts in second order; rounding moves all of a part.
-/// @param near, far 1/z at its ends, 1/m @param curved, rounded m @param pulse its length, m
+/// Share of a part's energy that may lie beyond its borders. A chord at a border has the border's
+/// range on average, so that curvature acts in second order; rounding moves all of a part.
+/// @param near, far 1/z at the ends, 1/m @param curved, rounded m @param pulse length, m
 AVIANLIDAR_ALWAYS_INLINE double uncertainOf(
   double near, double far, double curved, double rounded, double pulse)
 {
@@ -142,14 +143,14 @@ void PolygonRule::set(
   now.faint = faint && !now.byRules;
 }
 
-/// See MostCurved, m.
+/// Difference between ranges on a straight line of equal z, m.
 double PolygonRule::curvatureOf(const Extent& extent) const
 {
   return 0.5 * this->Tangent2 *
     std::min(this->LastBorder, std::sqrt(1.0 + this->Tangent2) / extent.leastInverse);
 }
 
-/// Error of ranges, m.
+/// Error of ranges by rounding, m.
 double PolygonRule::roundingOf(double height, const Extent& extent) const
 {
   const double farthest =
@@ -164,7 +165,7 @@ bool PolygonRule::takesRules() const
     this->Tangent2 > WideBeam * WideBeam;
 }
 
-/// Find whether the lobe matters. @param mostInverse of 1/z, 1/m
+/// Set the width of the lobe, 0 if it does not matter. @param mostInverse largest 1/z, 1/m
 void PolygonRule::setLobe(double mostInverse)
 {
   Current& now = this->Now;
@@ -177,7 +178,7 @@ void PolygonRule::setLobe(double mostInverse)
   }
 }
 
-/// p at which the polygon has a range, on average over its chord.
+/// p of the chord that has a range on average.
 double PolygonRule::placeOf(double range) const
 {
   const Current& now = this->Now;
@@ -199,7 +200,7 @@ void PolygonRule::findBorders()
   this->addSmoothBorders(this->Borders[count - 1], this->Disc.most());
 }
 
-/// Borders of range units, and what lies between them.
+/// Add borders of range units, and smooth borders between them.
 void PolygonRule::addUnitBorders()
 {
   const Current& now = this->Now;
@@ -234,7 +235,7 @@ void PolygonRule::addUnitBorders()
   }
 }
 
-/// The end of a part, and borders inside it beyond which range or lobe change too much.
+/// Add the border `to`, and before it as many borders as the change of range and lobe needs.
 void PolygonRule::addSmoothBorders(double from, double to)
 {
   const Current& now = this->Now;
@@ -266,7 +267,7 @@ void PolygonRule::addSmoothBorders(double from, double to)
   }
 }
 
-/// Share of the node's energy that may lie beyond the borders of its part.
+/// uncertainOf() the part between two borders.
 double PolygonRule::uncertainty(double from, double to) const
 {
   const Current& now = this->Now;
@@ -274,7 +275,7 @@ double PolygonRule::uncertainty(double from, double to) const
     now.inverse(to), now.inverse(from), now.curved, now.rounded, this->PulseLength);
 }
 
-/// Share of the pulse that falls onto an area of the disc at this squared distance from the axis.
+/// Share of the pulse on an area of the disc. @param radius2 its squared distance from the axis
 double PolygonRule::shareOf(double area, double radius2) const
 {
   const double secant2 = 1.0 + this->Tangent2 * radius2;
@@ -282,7 +283,7 @@ double PolygonRule::shareOf(double area, double radius2) const
   return share * rayDensity(this->Shape.profile(), std::min(1.0, radius2));
 }
 
-/// @param range of what arrives with it, m @param inverse of its own range, 1/m
+/// @param range at which its energy arrives, m @param inverse 1 over its own range, 1/m
 void PolygonRule::addNode(double range, double inverse, double weight, double uncertain)
 {
   BeamSamples& samples = this->Nodes->samples;
@@ -292,7 +293,7 @@ void PolygonRule::addNode(double range, double inverse, double weight, double un
   this->Nodes->uncertain.push_back(uncertain);
 }
 
-/// One sample of a part in a lobe, or two along it, and two across where the lobe asks for them.
+/// Place one sample of a part, or two along it, or two more across it if the lobe needs them.
 void PolygonRule::placeNodes(std::size_t part, double uncertain)
 {
   const Current& now = this->Now;
@@ -312,11 +313,11 @@ void PolygonRule::placeNodes(std::size_t part, double uncertain)
   const double near = now.inverse(to);
   const double far = now.inverse(from);
   const double stretch = now.faint ? MostFaintStretch : Level;
-  const bool single = this->Tangent2 <= stretch * now.width2; // across
+  const bool single = this->Tangent2 <= stretch * now.width2; // one sample across suffices
   if (single && near - far <= stretch * far && this->fallAt(far) - this->fallAt(near) <= stretch)
   {
     const double range = this->rangeAt(mean, radius2);
-    const double spread = now.slope * range; // of the logarithm of the range
+    const double spread = now.slope * range; // slope of the logarithm of the range
     this->addNode(range * (1.0 + spread * spread * variance), 1.0 / range, share, uncertain);
     return;
   }
@@ -331,7 +332,7 @@ void PolygonRule::placeNodes(std::size_t part, double uncertain)
     }
     return;
   }
-  // Two values of q^2 with the right mean and variance, neither below 0.
+  // Two values of q^2 with the mean and variance of the part, neither below 0.
   const double beside2 = std::max(0.0, this->Parts.qqqq[part] * inverseArea - across * across);
   const double near2 = std::max(0.0, across - std::sqrt(beside2));
   const double far2 = across > near2 ? across + beside2 / (across - near2) : across;
@@ -348,7 +349,7 @@ void PolygonRule::placeNodes(std::size_t part, double uncertain)
   }
 }
 
-/// How far profile and lobe fall from the axis to the rim, as an exponent. @param lobe count it
+/// Exponent by which the profile and, if `lobe`, the lobe fall from the axis to the rim.
 double PolygonRule::fallOfDisc(bool lobe) const
 {
   const double width2 = lobe ? this->Now.width2 : 0.0;
@@ -358,7 +359,7 @@ double PolygonRule::fallOfDisc(bool lobe) const
   return density + (width2 > 0.0 ? this->Tangent2 / width2 : 0.0) + this->Tangent2;
 }
 
-/// Divide a length into pieces within a lobe and beyond. @param centre of the lobe, on that line
+/// Divide a line into pieces within a lobe and beyond it. @param centre of the lobe on that line
 void PolygonRule::divideAtLobe(
   double from, double to, double centre, std::vector<Piece>& pieces) const
 {
@@ -392,7 +393,7 @@ void PolygonRule::divideAtLobe(
     [](const Piece& one, const Piece& two) { return one.from < two.from; });
 }
 
-/// Samples of a part by rules along and across it.
+/// Place the samples of a part by rules along and across it.
 void PolygonRule::placeRules(double from, double to, double uncertain)
 {
   const Current& now = this->Now;
@@ -400,7 +401,7 @@ void PolygonRule::placeRules(double from, double to, double uncertain)
     std::sqrt(this->fallOfDisc(true)) / LengthOfRule };
   const auto rulesOf = [&](const Piece& piece, double length)
   { return 1 + static_cast<int>(scales[piece.lobe] * length); };
-  // Where the plane is met at right angles: the lobe is there.
+  // The centre of the lobe, where the plane is met at right angles.
   constexpr double far = 1e3;
   const double centre =
     now.base * this->Tangent2 * far > now.slope ? now.slope / (now.base * this->Tangent2) : far;
@@ -422,7 +423,7 @@ void PolygonRule::placeRules(double from, double to, double uncertain)
     this->divideAtLobe(begin, end, centre, this->Along);
     for (const Piece& piece : this->Along)
     {
-      // p = sin(phi): the roots at the ends of arcs vanish.
+      // With p = sin(phi) the integrand has no square roots at the ends of arcs.
       const double phi0 = std::asin(std::clamp(piece.from, -1.0, 1.0));
       const double phi1 = std::asin(std::clamp(piece.to, -1.0, 1.0));
       const int along = rulesOf(piece, piece.to - piece.from);
@@ -434,7 +435,7 @@ void PolygonRule::placeRules(double from, double to, double uncertain)
         const double wide = 0.5 * step * Weights[i % Points] * std::cos(phi);
         const double low = strip.lower.at(p);
         const double high = strip.upper.at(p);
-        // At borders of units all of the chord arrives together, as these suppose.
+        // At borders of units the whole chord arrives at its mean range, as placeOf() assumes.
         const double range =
           this->rangeAt(p, p * p + meanSquare({ low, high }, this->Shape.profile()));
         double together = 0.0;
@@ -475,7 +476,7 @@ struct PlainPolygon
   double curved, rounded, pulse; ///< m
   const double *borders, *ofUnits;
   const double *area, *p, *pp, *qq;
-  double *range, *cosine, *weight, *uncertain; ///< of the nodes
+  double *range, *cosine, *weight, *uncertain; ///< results, by node
 
   AVIANLIDAR_ALWAYS_INLINE double inverse(double place) const
   {
@@ -487,7 +488,7 @@ struct PlainPolygon
   }
 };
 
-/// What a part has in common for its nodes.
+/// Values that the nodes of a part share.
 struct PlainPart
 {
   double mean, variance, across, share, uncertain;
@@ -519,7 +520,7 @@ AVIANLIDAR_MULTIVERSION void placeOne(const PlainPolygon& polygon, std::size_t p
     const PlainPart part = partOf(c, k);
     const double own =
       c.secant(part.mean * part.mean + part.variance + part.across) / c.inverse(part.mean);
-    const double spread = c.slope * own; // of the logarithm of the range
+    const double spread = c.slope * own; // slope of the logarithm of the range
     c.range[k] = own * (1.0 + spread * spread * part.variance);
     c.cosine[k] = lanes::smaller(c.height / own, 1.0);
     c.weight[k] = part.share;
@@ -549,7 +550,7 @@ AVIANLIDAR_MULTIVERSION void placeTwo(const PlainPolygon& polygon, std::size_t p
 }
 }
 
-/// One sample of each part of a polygon without a lobe, or two.
+/// Place one or two samples of each part of a polygon without a lobe.
 void PolygonRule::placePlain()
 {
   const Current& now = this->Now;
@@ -631,7 +632,7 @@ double PolygonRule::count(double height, const Extent& extent) const
   {
     return 2.0 * parts;
   }
-  // See placeRules(). A polygon has a few strips.
+  // See placeRules(). The strips of a polygon add a few parts.
   const double aside = 1.0 + std::floor(2.0 / LengthOfRule * std::sqrt(this->fallOfDisc(false)));
   return (parts + 2.0) * Points * Points * aside * aside;
 }

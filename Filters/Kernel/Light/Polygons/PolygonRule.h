@@ -1,24 +1,27 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file PolygonRule.h
- * @brief Weighted samples of one visible polygon that stand for its direct echo in each range unit.
+ * @brief Weighted samples of one visible polygon that give its direct echo in each range unit.
  *
- * On a plane the range r is sqrt(1 + t^2 rho^2)/w, w the affine 1/z, rho the distance from the axis
- * in half-beamwidths and t = tan(theta0.5), and the cosine of incidence h/r, h the distance of the
- * plane. So a polygon is cut, across the gradient of w, where a pulse begins to enter a range unit
- * or to leave it; in between the unit's share of the pulse is linear in r. Further cuts follow
- * where the range changes by MostStretch or the specular lobe by MostFall. A part becomes one
- * sample at its mean w and mean rho^2, or two at its mean w plus and minus its standard deviation,
- * or four, with rho^2 likewise, all with the exact solid angle (DiscPolygon.h). Where beams are
- * wide or Gaussian, or a lobe is not much wider than the beam, a part takes a product of Gauss's
- * rules instead. They are dense where a narrow lobe is, and not elsewhere.
+ * On a plane at the distance h from the apex the range is r = sqrt(1 + t^2 rho^2)/w and the cosine
+ * of incidence h/r. Here w is the affine 1/z, rho the distance from the axis in half-beamwidths,
+ * and t = tan(theta0.5).
+ *
+ * 1. A polygon is cut across the gradient of w where a pulse begins to enter a range unit or to
+ * leave it; in between the unit's share of the pulse is linear in r. It is cut further where the
+ * range changes by MostStretch or the exponent of the specular lobe by MostFall.
+ * 2. A part becomes one sample at its mean w and mean rho^2, or two at its mean w plus and minus
+ * the standard deviation, or four with two values of rho^2. All have the exact solid angle
+ * (DiscPolygon.h).
+ * 3. In wide or Gaussian beams, and where a lobe is not much wider than the beam, a part takes a
+ * product of Gauss-Legendre rules instead, which are dense only where a narrow lobe is.
  *
  * Source: paper, Eq. 4-9; Gauss-Legendre quadrature.
  * Differs: the paper samples all beams with rays.
- * Valid: relative error of a unit's energy below ErrorOfUnit, but for what curved lines of equal
- * range and the rounding of corners may move across borders of units, which each node's
- * `uncertain` bounds, and 1e-3 of the energy of faint polygons. Polygons over which lines of equal
- * range are curved by more than MostCurved range units have no rule.
+ * Valid: the relative error of a unit's energy is below ErrorOfUnit, except that curved lines of
+ * equal range and rounded corners may move energy across borders of units, which each node's
+ * `uncertain` bounds, and that faint polygons err by 1e-3 of their energy. A polygon has no rule if
+ * lines of equal range are curved by more than MostCurved range units in it.
  * Test: TestPolygonQuadrature.cxx, TestPolygonUnits.cxx, TestPolygonShares.cxx.
  */
 #ifndef avianlidar_PolygonRule_h
@@ -34,22 +37,21 @@
 
 namespace avianlidar
 {
-/// Largest error of a unit's energy, relative, but for what crosses its borders.
+/// Largest relative error of a unit's energy, but for energy that crosses its borders.
 constexpr double ErrorOfUnit = 2e-6;
 
-/// Most difference, in range units, between the ranges of a straight line of equal z.
+/// Largest difference, in range units, between ranges on a straight line of equal z.
 constexpr double MostCurved = 0.1;
 
-/// Most change of the range within a part of a faint polygon, relative. What is wrong in a unit
-/// then is a smaller part of its energy: energy and place of a part are correlated by a twelfth of
-/// the change.
+/// Largest relative change of the range within a part of a faint polygon. The relative error of a
+/// unit's energy is a twelfth of it, from the correlation of energy and range within a part.
 constexpr double MostFaintStretch = 1e-2;
 
 /// Samples of a beam, and bounds of their errors.
 struct PolygonNodes
 {
   BeamSamples samples;
-  std::vector<double> uncertain; ///< share of the node's energy that may lie beyond a border
+  std::vector<double> uncertain; ///< share of each node's energy that may lie beyond a border
 };
 
 /// Places the samples of one polygon after the other. One per thread; the setup must outlive it.
@@ -58,35 +60,35 @@ class PolygonRule
 public:
   explicit PolygonRule(const ScanSetup& setup);
 
-  double unitLength() const { return this->UnitLength; }   ///< of a range unit, m
-  double pulseLength() const { return this->PulseLength; } ///< of range, m
+  double unitLength() const { return this->UnitLength; }   ///< length of a range unit, m
+  double pulseLength() const { return this->PulseLength; } ///< length of the pulse in range, m
   double tangent2() const { return this->Tangent2; }       ///< tan(theta0.5)^2
 
-  /// Share of the pulse that falls onto an area at the centre of the disc, of a uniform profile.
+  /// Share of the pulse per area at the centre of the disc, with a uniform profile.
   double shareOfArea() const { return this->ShareOfArea; }
 
-  /// Most density of the profile, over that of a uniform one.
+  /// Largest density of the profile, over the density of a uniform one.
   double mostDensity() const { return this->Shape.mostDensity(); }
 
-  /// What bounds a polygon.
+  /// Bounds of 1/z over a polygon.
   struct Extent
   {
-    double leastInverse, mostInverse; ///< of 1/z, 1/m; at most 1/height
+    double leastInverse, mostInverse; ///< 1/m, at most 1/height
   };
 
-  /// Begin a polygon of a surface. @param triangle of the surface, for its material
-  /// @param faint one sample a part will do: the polygon puts little into any range unit
+  /// Begin a polygon of a surface. @param triangle the half of the surface whose material counts
+  /// @param faint whether one sample per part suffices, as no range unit gets much energy
   void set(const PlaneSurface& surface, std::uint32_t triangle, const Extent& extent, bool faint);
 
-  /// Estimate of the number of samples of a plane at a height, m, without a lobe; infinite if there
-  /// is no rule.
+  /// Estimated number of samples of a polygon without a lobe; infinity if it has no rule.
+  /// @param height distance of its plane from the apex, m
   double count(double height, const Extent& extent) const;
 
   /// Append the samples of the surface's part within a ring.
   void place(const PlaneSurface& surface, const PlaneRing& ring, PolygonNodes& nodes);
 
 private:
-  /// The polygon at hand.
+  /// The current polygon.
   struct Current
   {
     std::uint32_t triangle;
@@ -94,18 +96,18 @@ private:
     double height, leastInverse; ///< m, 1/m
     double base, slope;          ///< w = base + slope p
     double inverseSlope;
-    double width2;  ///< of the specular lobe; 0: none that matters
-    double curved;  ///< m, see MostCurved
-    double rounded; ///< m, error of ranges
-    bool plain;     ///< no range unit is long against the range
-    bool byRules;   ///< product of rules
-    bool faint;     ///< puts little into any unit
+    double width2;  ///< lobeWidth2(), rad2; 0: no lobe that matters
+    double curved;  ///< curvatureOf(), m
+    double rounded; ///< roundingOf(), m
+    bool plain;     ///< whether every range unit is short against the range
+    bool byRules;   ///< whether parts take products of rules
+    bool faint;     ///< whether no range unit gets much energy
     double inverse(double p) const;
   };
   struct Piece
   {
     double from, to;
-    bool lobe; ///< where the lobe is
+    bool lobe; ///< whether the lobe lies there
   };
   void setLobe(double mostInverse);
   void divideAtLobe(double from, double to, double centre, std::vector<Piece>& pieces) const;
@@ -127,11 +129,11 @@ private:
   double uncertainty(double from, double to) const;
 
   const ScanSetup& Setup;
-  const BeamShape Shape;    ///< round
+  const BeamShape Shape;    ///< a round beam
   const double UnitLength;  ///< m
-  const double PulseLength; ///< m of range
-  const double LastBorder;  ///< m: nothing beyond is received
-  double Offsets[2];        ///< ranges at which a pulse begins or ends at a border, in units
+  const double PulseLength; ///< length of the pulse in range, m
+  const double LastBorder;  ///< range beyond which nothing is received, m
+  double Offsets[2]; ///< ranges of a pulse that begins or ends at a border, in units, modulo 1
   int NumberOfOffsets;
   double Tangent2 = 0.0; ///< t^2
   double ShareOfArea = 0.0;
@@ -139,8 +141,8 @@ private:
   Current Now{};
   DiscPolygon Disc;
   std::vector<double> Ranges;
-  std::vector<double> Borders; ///< p, ascending
-  std::vector<double> OfUnits; ///< 1 for each that is a border of units, otherwise 0
+  std::vector<double> Borders; ///< p of the borders of parts, ascending
+  std::vector<double> OfUnits; ///< 1 for each border of units, 0 for the others
   std::vector<Piece> Along, Across;
   PartMoments Parts;
 };

@@ -7,10 +7,10 @@ namespace avianlidar
 {
 namespace
 {
-/// Pieces smaller than this are left out (the disc has pi).
+/// Area below which pieces are left out (the disc has pi).
 constexpr double LeastArea = 1e-14;
 
-/// Planes whose 1/z differ by less than this part are equally near.
+/// Relative difference of 1/z below which planes are equally near.
 constexpr double SameRange = 1e-12;
 
 }
@@ -239,7 +239,7 @@ SeenByBeam PolygonFinder::find(std::unique_ptr<VisiblePolygons>& found)
   return SeenByBeam::Polygons;
 }
 
-/// True if a candidate, and all after it, lies behind all pieces.
+/// True if a candidate and all candidates after it lie behind all pieces.
 bool PolygonFinder::isBehindAll(const Candidate& candidate) const
 {
   constexpr double inOrder =
@@ -262,7 +262,7 @@ bool PolygonFinder::insert(std::uint32_t number)
   return this->Pieces.size() <= 3 * this->MostTriangles;
 }
 
-/// Let a candidate hide a part of a piece. @return false if it gets too many corners
+/// Let a candidate hide a part of a piece. @return false if the part has too many corners
 bool PolygonFinder::meet(std::size_t k, std::uint32_t number)
 {
   const Candidate& c = *this->candidates()[number];
@@ -330,14 +330,14 @@ bool PolygonFinder::meet(std::size_t k, std::uint32_t number)
   return true;
 }
 
-/// True if a candidate lies before another in a ring, or in a part of it, which takes its place
-/// then. @param nearer room for the part
+/// True if candidate `one` lies before `two` in a ring or in a part of it. @param inner the ring;
+/// set to the part @param nearer room for the part
 bool PolygonFinder::isNearer(
   const Candidate& one, const Candidate& two, const PlaneRing*& inner, PlaneRing& nearer)
 {
   const PlaneLine apart{ one.inverse.x - two.inverse.x, one.inverse.y - two.inverse.y,
     one.inverse.z - two.inverse.z };
-  double most = 0.0; // beyond rounding
+  double most = 0.0; // largest difference beyond rounding
   double least = 0.0;
   for (int i = 0; i < inner->size; ++i)
   {
@@ -359,11 +359,11 @@ bool PolygonFinder::isNearer(
     inner = &nearer;
     return true;
   }
-  // Where they meet in a side alone, one of the two signs is rounding.
+  // If they meet in a side alone, one of the two signs is due to rounding.
   return most > -least;
 }
 
-/// Set centre and radius: those of the box around it.
+/// Set the circle to the one around the ring's box.
 void PolygonFinder::Piece::findCircle(const PlaneRing& ring)
 {
   PlanePoint low = ring.corners[0];
@@ -381,7 +381,7 @@ void PolygonFinder::Piece::findCircle(const PlaneRing& ring)
   this->radius = surely * std::sqrt(x * x + y * y);
 }
 
-/// Put a piece into a place, or leave it out.
+/// Put a piece into a place, or leave it out if it is new and too small.
 void PolygonFinder::keepPiece(const PlaneRing& ring, std::uint32_t candidate, std::size_t place)
 {
   const bool isNew = place == this->Pieces.size();

@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file VisiblePolygons.h
- * @brief Which surface a beam sees where: convex polygons, each of one surface, that partition the
- * beam's disc but for what is open sky.
+ * @brief The surfaces that a beam sees, as convex polygons. They partition the beam's disc but for
+ * open sky.
  *
- * In the beam's plane (BeamTriangles.h) what is seen where is the upper envelope of affine
- * functions over convex polygons. Convex pieces partition an octagon around the disc; triangles are
- * taken front to back. A piece that a triangle overlaps is cut by the triangle's sides and, where
- * both planes overlap, by the line of equal 1/z. The search ends when no piece is open and the next
- * triangle lies behind all of them.
+ * In the beam's plane (BeamTriangles.h) the visible surfaces are the upper envelope of 1/z, an
+ * affine function on each triangle. Convex pieces partition an octagon around the disc, and
+ * triangles are taken front to back. A piece that a triangle overlaps is cut by the triangle's
+ * sides and, where the planes cross, by the line of equal 1/z. The search ends when no piece is
+ * open and the next triangle lies behind all pieces.
  *
- * A line that passes a corner within Snap does not cut there. Pieces that are smaller than
- * LeastArea are left out and their area is summed (VisiblePolygons::lost).
+ * A line that passes a corner within Snap does not cut there. Pieces smaller than LeastArea are
+ * left out, and their area is summed (VisiblePolygons::lost).
  *
  * Source: Weiler and Atherton, "Hidden Surface Removal Using Polygon Area Sorting", SIGGRAPH 1977.
  * Differs: all pieces are convex and partition the view, so that nothing needs a general clipper.
@@ -50,15 +50,15 @@ struct PlaneRing
   }
   void add(const PlanePoint& p) { this->corners[this->size++] = p; }
   double area() const { return std::fabs(this->signedArea()); }
-  double signedArea() const; ///< by the sense of rotation
+  double signedArea() const; ///< positive if counterclockwise
   /// True if another cut does not exceed MostCorners.
   bool mayBeCut() const { return this->size + 2 <= MostCorners; }
 };
 
-/// A line no farther than this from a corner, in half-beamwidths, passes through it.
+/// Distance from a corner, half-beamwidths, within which a line passes through it.
 constexpr double Snap = 1e-11;
 
-/// Where a ring lies: a ring on the line is on the negative side.
+/// Side of a line on which a ring lies: on the line, the negative side.
 enum class SideOfLine
 {
   Positive,
@@ -66,16 +66,16 @@ enum class SideOfLine
   Both
 };
 
-/// Cut a ring that lies on both sides of a line. @param line with a slope of 1: values are
-/// distances
+/// Find on which side of a line a ring lies, and cut it if it lies on both. @param line has the
+/// slope 1, so that its values are distances
 SideOfLine cutRing(
   const PlaneRing& ring, const PlaneLine& line, PlaneRing& positive, PlaneRing& negative);
 
 /// An octagon that holds the disc.
 PlaneRing octagonAround();
 
-/// Keep the part of a ring where a function is positive; all of it, if it has too many corners to
-/// be cut. @return false if nothing is left
+/// Keep the part of a ring where a function is positive, or all if it has too many corners to be
+/// cut. @return false if nothing is left
 bool clipRing(PlaneRing& ring, const PlaneLine& line);
 
 /// Visible polygons of a beam. They may extend beyond the disc.
@@ -84,18 +84,18 @@ struct VisiblePolygons
   struct Polygon
   {
     std::uint32_t surface;
-    std::uint32_t end; ///< of its corners; they begin where those of the polygon before end
+    std::uint32_t end; ///< end of its corners, which begin at the end of the previous polygon's
   };
   std::vector<PlaneSurface> surfaces;
   std::vector<Polygon> polygons;
   std::vector<PlanePoint> corners;
-  double lost = 0.0;   ///< area of the pieces left out, over that of the disc
-  bool facing = false; ///< light may go from one surface to another
+  double lost = 0.0;   ///< area of the pieces left out, over the disc's area
+  bool facing = false; ///< whether light may go from one surface to another
 
-  /// Add a polygon of a surface of its own.
+  /// Add a surface with one polygon.
   void add(const PlaneSurface& surface, const PlaneRing& ring);
 
-  /// f(surface, ring) for each polygon.
+  /// Call f(surface, ring) for each polygon.
   template <class F>
   void forEach(F f) const
   {
@@ -111,7 +111,7 @@ struct VisiblePolygons
     }
   }
 
-  /// The triangle seen at a point; NoTriangle: none.
+  /// The triangle seen at a point, or NoTriangle.
   std::uint32_t triangleAt(const PlanePoint& p) const;
 
   std::size_t bytes() const
@@ -121,11 +121,11 @@ struct VisiblePolygons
   }
 };
 
-/// What a search has found.
+/// Result of a search.
 enum class SeenByBeam : std::uint8_t
 {
   Nothing = 0,  ///< no surface enters the disc
-  Polygons = 1, ///< all that is visible
+  Polygons = 1, ///< all visible polygons were found
   TooMuch = 2   ///< too many triangles or polygons
 };
 
@@ -133,8 +133,8 @@ enum class SeenByBeam : std::uint8_t
 class PolygonFinder
 {
 public:
-  /// @param mostTriangles that may enter the disc; polygons may be three times as many
-  /// @param mostCandidates that are set up for others, if more
+  /// @param mostTriangles largest number in the disc; polygons may be three times as many
+  /// @param mostCandidates largest number of triangles that are set up, if more
   PolygonFinder(
     const SceneTriangles& scene, std::size_t mostTriangles, std::size_t mostCandidates = 0)
     : Entering(scene, std::max(mostTriangles, mostCandidates))
@@ -154,20 +154,20 @@ public:
   /// @param found set if the result is SeenByBeam::Polygons
   SeenByBeam find(std::unique_ptr<VisiblePolygons>& found);
 
-  /// The triangles that were added; sorted after find(), unless there are more than are set up.
+  /// The triangles added. After find() they are sorted, unless more than mostCandidates enter.
   BeamTriangles& entering() { return this->Entering; }
   const std::vector<const BeamSurface*>& candidates() const { return this->Entering.nearest(); }
 
 private:
   using Candidate = BeamSurface;
   static constexpr std::uint32_t Open = 0xffffffffu;
-  /// A piece of the octagon. All are looked at for each candidate, but few of their rings.
+  /// A piece of the octagon. Each candidate is compared with all pieces, but with few rings.
   struct Piece
   {
-    PlanePoint centre; ///< of a circle that holds it
+    PlanePoint centre; ///< centre of a circle around it
     double radius;
-    double leastInverse;     ///< 1/m
-    std::uint32_t candidate; ///< what is seen there; Open: nothing
+    double leastInverse;     ///< lower bound of 1/z, 1/m
+    std::uint32_t candidate; ///< number of the surface seen there, or Open
     void findCircle(const PlaneRing& ring);
   };
   /// Corners and plane of a visible surface.
@@ -192,10 +192,10 @@ private:
   const std::size_t MostTriangles;
   const std::size_t MostCandidates;
   std::vector<Piece> Pieces;
-  std::vector<PlaneRing> Rings; ///< of the pieces
+  std::vector<PlaneRing> Rings; ///< rings of the pieces
   std::size_t PiecesOpen = 0;
   double LostArea = 0.0;
-  PlaneRing Outside[5]; ///< parts of a piece that a triangle leaves
+  PlaneRing Outside[5]; ///< parts of a piece outside of a candidate
   int NumberOutside = 0;
   std::vector<std::uint32_t> Numbers;
   std::vector<Facet> Facets;
