@@ -43,8 +43,7 @@ constexpr double FewTriangles = 100.0;
 constexpr double ManyTriangles = 200.0;
 constexpr double TrianglesPerRay = 1.0 / 50.0;
 
-/// Rays in the grid of a beam in cells (BeamCells.h) for each of its N rays, rounded to the next
-/// density in steps.
+/// Rays in the grid of a beam in cells (BeamCells.h) for each of N; densities come in steps.
 constexpr double CellRaysPerRay = 32.0;
 
 /// Grid of a beam in cells: each cell of the last level holds m x m blocks of 16 rays.
@@ -67,12 +66,10 @@ CellDensity densityOfCells(int raysPerBeam);
 constexpr int RaysPerStart = 4;
 constexpr int LeastStarts = 16;
 
-/// Largest number of paths of one beam (pathsOfABeam()). It bounds memory and the work between two
-/// checks for an abort.
+/// Largest pathsOfABeam(), which bounds memory and the work between two checks for an abort.
 constexpr double MaximumPathsPerBeam = 1e8;
 
-/// Largest number of range units that the paths of one beam may meet. It bounds memory (about 60
-/// bytes each).
+/// Largest number of range units of a beam's paths, which bounds memory (about 60 bytes each).
 constexpr double MaximumUnitsPerBeam = 1e8;
 
 /// Largest attenuation coefficient, 1/m: far beyond any air, but all optical depths stay finite.
@@ -140,16 +137,14 @@ std::string checkSettings(const EchoSettings& settings);
 /// that start connections (SecondaryReflection.h).
 std::uint32_t tracedRaysOf(const EchoSettings& settings);
 
-/// Number of connections of each of these rays: M, but at most one with each other ray; 0 if one
-/// reflection is asked for.
+/// Number of connections of each of these rays: M, but fewer than rays; 0 with one reflection.
 std::uint32_t connectionsOf(const EchoSettings& settings);
 
 /// Number of paths of a beam over one and two reflections: N (2 + M).
 double pathsOfABeam(const EchoSettings& settings);
 
 /// Empty if no beam can meet more than MaximumUnitsPerBeam range units; otherwise a sentence that
-/// names pulse width and rays, and what was expected. Sensor and settings must have passed their
-/// own checks.
+/// names pulse width and rays, and what was expected. Arguments must have passed their own checks.
 std::string checkUnits(const Sensor& sensor, const EchoSettings& settings);
 
 /// Named settings of fidelity.
