@@ -13,7 +13,7 @@ namespace avianlidar
 {
 namespace
 {
-/// More surfaces are not tested in pairs.
+/// Largest number of surfaces that are tested in pairs.
 constexpr std::size_t FewSurfaces = 8;
 
 /// Points, normals and margins of the hits of rays, in lanes.
@@ -28,9 +28,9 @@ struct RayHits
   const double* margin;
 };
 
-/// Sets a bit for each ray whose hit P1 and that of its partner, `shift` rays further, face each
-/// other: the segment leaves P1 and reaches P2 on the sides that face the apex, by more than
-/// rounding. Neighbours on one plane do not.
+/// Set a bit for each ray whose hit P1 faces the hit P2 of its partner, `shift` rays further: the
+/// segment leaves P1 and reaches P2 on the sides that face the apex, by more than rounding. Two
+/// hits on one plane do not face each other.
 AVIANLIDAR_MULTIVERSION void facingPartners(const RayHits& rayHits, std::size_t shift,
   std::uint64_t bit, std::uint64_t* partners, std::size_t count)
 {
@@ -67,7 +67,7 @@ bool ConnectionFinder::findFacing(const BeamSamples& hits, const SampleGeometry&
     return true;
   }
   this->Facing.assign(count * count, 0);
-  // Highest hit of each surface above the plane of each.
+  // Height of each surface's highest hit above the plane of each.
   this->Heights.assign(count * count, 0.0);
   for (std::uint32_t hit = 0; hit < hits.size(); ++hit)
   {
@@ -115,7 +115,7 @@ void ConnectionFinder::find(const SecondaryBeam& beam, std::uint32_t partners)
   const std::uint32_t rays = beam.samples.rays;
   this->chooseShifts(beam.id, rays, partners);
   this->lookAtPairs(beam.samples, beam.geometry);
-  // A row holds 64 partners, so that they come in the order of path numbers ray by ray.
+  // With 64 partners in a row, those of a ray come in the order of path numbers.
   const std::uint32_t rows = (partners + 63) / 64;
   std::size_t found = 0;
   for (const std::uint64_t ofRay : this->Partners)
@@ -144,7 +144,7 @@ void ConnectionFinder::find(const SecondaryBeam& beam, std::uint32_t partners)
         const std::uint32_t two = this->HitOfRay[partner];
         if (mayFace(one, two))
         {
-          // Strata hold three rays at most, and those are neighbours.
+          // A stratum holds at most three rays, and these have consecutive numbers.
           const bool distant = partner > n + 2 || n > partner + 2;
           connections.add(one, two, k,
             uniform && distant
@@ -157,7 +157,7 @@ void ConnectionFinder::find(const SecondaryBeam& beam, std::uint32_t partners)
   connections.measure(beam.samples, beam.geometry);
 }
 
-/// Fill Partners.
+/// Set HitOfRay, Rays and Partners.
 void ConnectionFinder::lookAtPairs(const BeamSamples& hits, const SampleGeometry& geometry)
 {
   const std::size_t rays = hits.rays;
@@ -210,20 +210,19 @@ void ConnectionFinder::chooseShifts(std::uint64_t beam, std::uint32_t rays, std:
   }
 }
 
-/// Uniform solid angle that a ray stands for, over the beam's: where rays are denser they stand for
-/// less.
+/// Solid angle that a ray stands for, over the mean of all rays: less where rays are denser.
 double ConnectionFinder::solidAngleShare(const SecondaryBeam& beam, std::uint32_t ray) const
 {
   if (this->Setup.sensor.beamProfile == BeamProfile::Uniform)
   {
-    return 1.0; // wherever the ray is
+    return 1.0; // for every ray
   }
   return 1.0 / this->Shape.density(beam.rays.x[ray], beam.rays.y[ray]);
 }
 
-/// The sum over the M connections of a ray of weight times value estimates the mean of the value
-/// over the cone. Partners in the ray's own stratum stand for the whole of it, as the ray itself
-/// cannot be its partner.
+/// Weight of a connection: the sum of weight times value over the M connections of a ray estimates
+/// the mean of the value over the cone. Partners in the ray's own stratum stand for the whole
+/// stratum, as a ray is not its own partner. @param partnerShare solidAngleShare() of the partner
 double ConnectionFinder::partnerWeight(
   const SecondaryBeam& beam, std::uint32_t n, std::uint32_t partner, double partnerShare) const
 {
@@ -244,7 +243,7 @@ double ConnectionFinder::partnerWeight(
 
 namespace
 {
-/// min(1, B/(g R2)), see SecondaryReflection.h. @param passedOn g @param direct what P1 returns
+/// secondaryScale() in lanes. @param cosine of incidence at P1
 template <class Model>
 AVIANLIDAR_ALWAYS_INLINE double scaleOf(
   Material first, Material second, double cosine, double direct, double aperture)
@@ -263,9 +262,9 @@ struct ConnectionLanes
   const double *cosIn, *cosLobe, *sin2Lobe, *sin2Half, *differenceTwo;
   const double *cosine, *range, *direct;
   MaterialLanes::View material;
-  double share; ///< of the pulse, of each ray
-  double aperture;
-  double solidAngle; ///< of the cone
+  double share;      ///< share of the pulse of each ray
+  double aperture;   ///< m2
+  double solidAngle; ///< solid angle of the cone, sr
 };
 
 template <class Model>

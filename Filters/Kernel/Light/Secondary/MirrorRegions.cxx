@@ -13,19 +13,19 @@ namespace avianlidar
 {
 namespace
 {
-/// Most polygons.
+/// Largest number of polygons of a beam.
 constexpr std::size_t MostFacets = 1024;
 
-/// Regions of a surface up to which each has samples of its own.
+/// Largest number of regions of a surface of which each has samples of its own.
 constexpr std::size_t FewRegions = 32;
 
-/// Smaller regions, in half-beamwidths squared, are left out.
+/// Area, half-beamwidths squared, up to which regions are left out.
 constexpr double LeastRegion = 1e-12;
 
-/// Turns between neighbours that keep all of them apart.
+/// Step, modulo 1, by which consecutive samples stay far apart.
 constexpr double GoldenRatio = 0.6180339887498949;
 
-/// Samples for each ray that would meet a region; none has less than two.
+/// Number of samples for each ray that would fall in a region.
 constexpr double SamplesPerRay = 2.0;
 
 PlaneLine operator+(const PlaneLine& a, const PlaneLine& b)
@@ -38,13 +38,13 @@ PlaneLine operator*(double s, const PlaneLine& a)
   return { s * a.x, s * a.y, s * a.z };
 }
 
-/// The sense of rotation of a ring.
+/// 1 for a counterclockwise ring, -1 for a clockwise one.
 double signOf(const PlaneRing& ring)
 {
   return ring.signedArea() < 0.0 ? -1.0 : 1.0;
 }
 
-/// Side of a ring between two corners, positive inside.
+/// Side of a ring from corner i to the next, positive inside. @param sign signOf() the ring
 PlaneLine sideOf(const PlaneRing& ring, int i, double sign)
 {
   const PlanePoint& a = ring.corners[i];
@@ -54,8 +54,8 @@ PlaneLine sideOf(const PlaneRing& ring, int i, double sign)
   return { x, y, -(x * a.x + y * a.y) };
 }
 
-/// Boxes and planes of surfaces, in lanes; @param one number of a surface. @param facing set for
-/// those that have, by boxes, a part before its plane, and before the plane of which it has one
+/// Find the surfaces that may face surface `one`: the box of each has a part before the plane of
+/// the other. @param lanes fillLanes() @param facing set to 1 for these, to 0 for others
 AVIANLIDAR_MULTIVERSION void findFacing(
   const double* const* lanes, std::size_t count, std::size_t one, double* facing)
 {
@@ -154,7 +154,7 @@ double MirrorRegions::bound(std::size_t surface, double returned) const
   return s.share * std::max(most(one), most(s.seen->other == NoTriangle ? one : s.seen->other));
 }
 
-/// Take the polygons, by surface.
+/// Set surfaces, facets (sorted by surface) and lanes from the visible polygons.
 void MirrorRegions::addFacets()
 {
   this->Points.clear();
@@ -231,7 +231,7 @@ void MirrorRegions::setSurface(Surface& surface) const
     this->Frame.tanHalf * glm::dot(surface.normal, this->Frame.e2),
     glm::dot(surface.normal, this->Frame.axis) };
   surface.mirror = this->Frame.toPlane(surface.normal);
-  if (surface.height > 0.0) // else seen edge-on
+  if (surface.height > 0.0) // otherwise it is seen edge-on
   {
     surface.inverse = (-1.0 / surface.height) * surface.along;
   }
@@ -264,7 +264,7 @@ std::size_t MirrorRegions::search(std::size_t surface, std::vector<MirrorPath>& 
       this->findRegions(one, this->Surfaces[k]);
     }
   }
-  // Where they are many, small ones share samples.
+  // If there are many regions, all of them share samples.
   const std::size_t step = this->Regions.size() <= FewRegions ? 1 : this->Regions.size();
   for (std::size_t k = 0; k < this->Regions.size(); k += step)
   {
@@ -273,8 +273,8 @@ std::size_t MirrorRegions::search(std::size_t surface, std::vector<MirrorPath>& 
   return this->Sample;
 }
 
-/// Mirror the facets of a surface on the plane of another: what lies behind the mirror is seen
-/// through it. @return box of all of them; an empty one, if none lies before the plane
+/// Mirror the facets of surface `two` on the plane of `one`. @return box of all; empty if none lies
+/// before the plane
 MirrorRegions::Box MirrorRegions::mirror(const Surface& one, const Surface& two)
 {
   this->Mirrored.clear();
@@ -348,7 +348,7 @@ bool MirrorRegions::imageOf(const Surface& one, const Surface& two, Image& image
     return false;
   }
   image.w = (-1.0 / g) * (two.along + (-2.0 * turn) * one.along);
-  // The end mirrored back, times w.
+  // The end of the path, mirrored back, times w.
   const double tangent2 = this->Frame.tanHalf * this->Frame.tanHalf;
   const PlaneLine shift = -2.0 * (one.along + one.height * image.w);
   image.x = PlaneLine{ 1.0, 0.0, 0.0 } + (one.along.x / tangent2) * shift;
@@ -357,7 +357,7 @@ bool MirrorRegions::imageOf(const Surface& one, const Surface& two, Image& image
   return true;
 }
 
-/// The rays that go from one facet to another. @return false if there are none
+/// Find the rays that go from one facet to another. @return false if there are none
 bool MirrorRegions::cutOut(
   const Facet& one, const Facet& two, const Image& image, PlaneRing& ring) const
 {
@@ -379,8 +379,8 @@ bool MirrorRegions::cutOut(
     clipRing(ring, second.along + second.height * first.inverse);
 }
 
-/// Fill some regions with samples, one in each of as many parts of their area. A part lies around a
-/// corner, or goes on in the next region.
+/// Fill regions [first, end) with samples, one in each of equal parts of their area. The parts
+/// follow each other around the first corner of a region, and go on in the next region.
 void MirrorRegions::placeIn(std::size_t first, std::size_t end, std::vector<MirrorPath>& paths)
 {
   double area = 0.0;
@@ -405,7 +405,7 @@ void MirrorRegions::placeIn(std::size_t first, std::size_t end, std::vector<Mirr
   };
   double before = 0.0;
   double own = areaOfPart();
-  // By the pair of surfaces, so that what rounding cuts elsewhere draws the same.
+  // Random numbers depend on the pair of surfaces, so that different rounding does not change them.
   const std::uint64_t pair =
     std::uint64_t{ this->Start } << 32 | (this->Facets[this->Regions[first].two].surface + 1);
   this->Drawn = pair == this->Pair ? this->Drawn : 0;

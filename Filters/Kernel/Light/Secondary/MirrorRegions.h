@@ -1,24 +1,25 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file MirrorRegions.h
- * @brief Mirror paths of a beam whose visible surfaces are known: for each pair of surfaces the
- * part of the beam whose light goes from one to the other.
+ * @brief Mirror paths of a beam whose visible surfaces are known, sampled in the parts of the beam
+ * whose light goes from one surface to another.
  *
- * Behind a plane mirror lies a mirrored world, and in it a path over the mirror is straight. So the
- * rays that go from one surface to another fill a convex polygon of the beam's plane: a point of
- * the second surface is a projective function of the ray, and each of its sides a straight line of
- * rays. The polygon is found by cutting that of the first surface. Samples fill it alone, in strata
- * of equal area, as densely as rays in the disc, and at least two.
+ * In the mirrored world behind a plane mirror a path over the mirror is straight. So the point of
+ * the second surface is a projective function of the ray, and each side of that surface is a
+ * straight line of rays. The rays from one surface to another fill a convex polygon of the beam's
+ * plane, a region, which is cut from the polygon of the first surface. Samples fill regions alone,
+ * in strata of equal area, twice as densely as rays fill the disc (SamplesPerRay), and at least two
+ * in a region.
  *
- * Where polygons are what the beam sees (VisiblePolygons.h), both ends of a path are visible. Of a
- * beam in cells the surfaces are whole triangles, and both ends are looked at from the apex. What
- * lies between the ends is asked of the tree.
+ * Polygons of an integrated beam are visible (VisiblePolygons.h), and so are both ends of a path.
+ * The surfaces of a beam in cells are whole triangles, and rays from the apex test both ends. A ray
+ * through the tree tests the segment between the ends (SecondaryTracer.h).
  *
  * Source: paper, Sec. 3.4, the beam constraint; Heckbert and Hanrahan, "Beam Tracing Polygonal
  * Objects", SIGGRAPH 1984, for the mirrored world.
  * Differs: the paper follows rays.
- * Valid: plane surfaces. Depends on the beam and what it sees alone, not on materials or limits. Of
- * a beam in cells paths start and end on surfaces that its grid of rays meets.
+ * Valid: plane surfaces. Regions depend on the beam and what it sees alone, not on materials or
+ * limits. In a beam in cells paths start and end on surfaces that its grid of rays meets.
  * Test: TestMirrorRegions.cxx, TestPolygonPaths.cxx.
  */
 #ifndef avianlidar_MirrorRegions_h
@@ -44,17 +45,17 @@ public:
   /// False if a beam sees too many polygons.
   static bool takes(const VisiblePolygons& seen);
 
-  /// Begin a beam. @param cells samples of what it sees, if polygons have hidden parts; else null
+  /// Begin a beam. @param cells samples of a beam in cells (polygons have hidden parts), or null
   void begin(std::uint64_t beam, const BeamFrame& frame, const VisiblePolygons& seen,
     const BeamSamples* cells);
 
   std::size_t surfaces() const { return this->Surfaces.size(); }
 
-  /// Bound of the sum of the throughputs of the mirror paths that start on a surface.
+  /// Upper bound of the sum of the throughputs of the mirror paths that start on a surface.
   /// @param returned mostOverMirror()
   double bound(std::size_t surface, double returned) const;
 
-  /// Append the paths that start on a surface and end on another. @return samples drawn for them
+  /// Append the paths that start on a surface. @return number of samples drawn for them
   std::size_t search(std::size_t surface, std::vector<MirrorPath>& paths);
 
 private:
@@ -65,29 +66,29 @@ private:
     void extend(const PlanePoint& p);
     bool meets(const Box& other) const;
   };
-  /// A plane that the beam sees.
+  /// A plane surface that the beam sees.
   struct Surface
   {
     const PlaneSurface* seen;
     Vec3 normal;                       ///< unit, towards the apex
-    Vec3 mirror;                       ///< the same as BeamFrame::toPlane()
+    Vec3 mirror;                       ///< `normal` by BeamFrame::toPlane()
     double height;                     ///< distance of the plane from the apex, m
-    PlaneLine along;                   ///< normal . direction of a ray
+    PlaneLine along;                   ///< scalar product of `normal` and the direction of a ray
     PlaneLine inverse;                 ///< 1/z, 1/m
-    std::uint32_t first, end;          ///< of its facets
-    Vec3 low{ 1e300 }, high{ -1e300 }; ///< box of their corners, as BeamFrame::toPlane()
+    std::uint32_t first, end;          ///< its facets
+    Vec3 low{ 1e300 }, high{ -1e300 }; ///< box of their corners, by BeamFrame::toPlane()
     Box box;
-    double share; ///< of the pulse that arrives, at most
+    double share; ///< share of the pulse that arrives; an upper bound for polygons
   };
-  /// A convex polygon of it.
+  /// A convex polygon of a surface.
   struct Facet
   {
     PlaneRing ring;
     Box box;
     std::uint32_t surface;
-    std::uint32_t firstPoint;
+    std::uint32_t firstPoint; ///< place of its first corner in `Points`
   };
-  /// Where the rays of a surface end on another one: (x, y)/z.
+  /// Where a ray over one surface ends on another, (x, y)/z, as functions of the ray.
   struct Image
   {
     PlaneLine w; ///< 1/z of the second plane, mirrored on the first
@@ -114,22 +115,22 @@ private:
   const SceneTriangles& Scene;
   const BeamShape Shape;
   std::vector<Surface> Surfaces;
-  std::vector<Facet> Facets;   ///< by surface
-  std::vector<Vec3> Points;    ///< corners of all facets, as BeamFrame::toPlane()
-  std::vector<double> Lanes;   ///< planes and boxes of surfaces, one value of all after the other
-  std::vector<double> Facing;  ///< 1 for surfaces that face the one on which paths start
-  std::vector<double> Heights; ///< of corners above the plane of a mirror, m
-  std::vector<Box> Mirrored;   ///< boxes of the facets of a surface, mirrored
+  std::vector<Facet> Facets;   ///< sorted by surface
+  std::vector<Vec3> Points;    ///< corners of all facets, by BeamFrame::toPlane()
+  std::vector<double> Lanes;   ///< fillLanes(): rows of one value for each surface
+  std::vector<double> Facing;  ///< findFacing() of the surface on which paths start
+  std::vector<double> Heights; ///< heights of corners above the plane of a mirror, m
+  std::vector<Box> Mirrored;   ///< boxes of the mirrored facets of a surface
   std::vector<Region> Regions;
 
-  // The beam.
+  // The current beam.
   std::uint64_t Beam = 0;
   BeamFrame Frame;
   const VisiblePolygons* Seen = nullptr;
   double ShareOfArea = 0.0;
-  std::uint32_t Sample = 0; ///< number of the sample on the surface; two neighbours are a stratum
-  std::uint64_t Pair = 0;   ///< surfaces between which paths were placed last
-  std::uint64_t Drawn = 0;  ///< for these
+  std::uint32_t Sample = 0; ///< number of the next sample on `Start`; 2k and 2k + 1 are a stratum
+  std::uint64_t Pair = 0;   ///< pair of surfaces between which paths were placed last
+  std::uint64_t Drawn = 0;  ///< number of samples drawn for this pair
   std::uint32_t Start = 0;  ///< surface on which paths start
 };
 }

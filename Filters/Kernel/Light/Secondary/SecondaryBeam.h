@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file SecondaryBeam.h
- * @brief A beam as the search for paths over two reflections uses it: samples, geometry, tracer,
- * and where results go.
+ * @brief A beam as the search for paths over two reflections takes it, with a place for results.
  *
  * Source: none.
- * Valid: holds references only; everything must outlive the search.
+ * Valid: all that it refers to must outlive the search.
  * Test: TestSecondaryReflection.cxx, TestSecondaryPaths.cxx.
  */
 #ifndef avianlidar_SecondaryBeam_h
@@ -24,31 +23,31 @@
 
 namespace avianlidar
 {
-/// Inputs and results of the search; all must outlive it.
+/// Inputs and results of the search.
 struct SecondaryBeam
 {
   std::uint64_t id;
   const SceneTriangles& scene;
   const BeamFrame& frame;
-  BeamTracer& tracer; ///< set to the beam
+  BeamTracer& tracer; ///< tracer whose current beam this is
   const BeamRays& rays;
-  const BeamSamples& samples;     ///< of the rays, where paths start
-  const SampleGeometry& geometry; ///< of the samples
-  const Throughput& direct;       ///< of the samples
-  const StrataPartition* strata;  ///< null for Monte Carlo
+  const BeamSamples& samples;     ///< rays from which paths start
+  const SampleGeometry& geometry; ///< geometry of `samples`
+  const Throughput& direct;       ///< direct echoes of `samples`
+  const StrataPartition* strata;  ///< strata of `rays`; null for Monte Carlo
   SecondaryTrace& trace;
-  double nearest; ///< range, m: no surface of the beam is nearer
-  /// Called every 4096 steps; false ends the work with WorkStopped.
+  double nearest; ///< lower bound of the ranges of the beam's surfaces, m
+  /// Called every 4096 steps; if it returns false, WorkStopped is thrown.
   const std::function<bool()>* wanted = nullptr;
-  /// What the beam sees, between whose surfaces mirror paths go (MirrorRegions.h); null: they are
-  /// followed from the samples.
+  /// Visible surfaces, between which mirror paths go (MirrorRegions.h); null: mirror paths start
+  /// from `samples`.
   const VisiblePolygons* surfaces = nullptr;
-  const BeamSamples* cells = nullptr; ///< if the surfaces have hidden parts: what is seen of them
-  BeamAir* air = nullptr;             ///< if the beam meets media that do not fill the scene
-  double silentBelow = 0.0;           ///< J: if all paths bring less, the beam has no echo
+  const BeamSamples* cells = nullptr; ///< samples of a beam in cells, for `surfaces`; or null
+  BeamAir* air = nullptr;             ///< air along the beam; null: all media fill the scene
+  double silentBelow = 0.0;           ///< energy of all paths, J, below which there is no echo
 
-  /// Throws WorkStopped if the work is no longer wanted: a beam of 100,000 rays takes longer than a
-  /// user waits for an abort.
+  /// Throw WorkStopped if the work is no longer wanted. A beam of 100,000 rays takes longer than a
+  /// user waits after an abort.
   void askWhetherWanted(std::size_t step) const
   {
     if (this->wanted && *this->wanted && step % StepsBetweenLooks == StepsBetweenLooks - 1 &&
@@ -60,7 +59,7 @@ struct SecondaryBeam
   static constexpr std::size_t StepsBetweenLooks = 4096;
 };
 
-/// Ranges, unit directions and normals of the hits of a beam, for SIMD loops.
+/// Ranges (m), unit directions and normals of the hits of a beam, for SIMD loops.
 struct SampleLanes
 {
   const double *range, *dx, *dy, *dz, *nx, *ny, *nz;
@@ -77,7 +76,7 @@ struct SampleLanes
   }
 };
 
-/// A hit as the start or end of a segment.
+/// A hit as the start or end of a segment, relative to the apex.
 struct HitPoint
 {
   Vec3 point;

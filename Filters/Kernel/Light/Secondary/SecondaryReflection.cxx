@@ -13,8 +13,8 @@ namespace avianlidar
 namespace
 {
 /// Part of the tolerance of the light-energy constraint that mirror paths by regions may lose on
-/// surfaces that are not searched, and the same for paths on the others. Polygons take a half,
-/// connections less than the rest.
+/// surfaces that are not searched. Paths on searched surfaces may lose as much. Polygons take a
+/// half, connections less than the rest.
 constexpr double MirrorPart = 0.125;
 
 double sumOf(const std::vector<double>& values)
@@ -31,7 +31,7 @@ SecondaryReflection::SecondaryReflection(const ScanSetup& setup, const SceneTria
 {
 }
 
-//--- what may be connected ------------------------------------------------------------------------
+//--- connections ----------------------------------------------------------------------------------
 
 void SecondaryReflection::prepare(const SecondaryBeam& beam, bool byRegions)
 {
@@ -47,7 +47,7 @@ void SecondaryReflection::prepare(const SecondaryBeam& beam, bool byRegions)
     trace.shortPaths.clear();
     trace.shortTraced = partners == 0 || beam.samples.coplanar;
     trace.partners = partners;
-    // Points of one plane do not look at each other.
+    // Points of one plane do not face each other.
     if (partners > 0 && !beam.samples.coplanar)
     {
       this->Finder.find(beam, partners);
@@ -55,7 +55,7 @@ void SecondaryReflection::prepare(const SecondaryBeam& beam, bool byRegions)
   }
 }
 
-//--- what it is worth -----------------------------------------------------------------------------
+//--- throughputs ----------------------------------------------------------------------------------
 
 double SecondaryReflection::bound(
   const BeamSamples& samples, const Throughput& direct, bool tight) const
@@ -78,7 +78,7 @@ double SecondaryReflection::bound(
       {
         const Reflectance passed =
           reflectanceBound(this->Setup.settings.reflectanceModel, material, samples.cosine[i]);
-        // Through an aperture by connections and by short paths, whatever the incidence.
+        // With an aperture connections and short paths both carry it, at any incidence.
         const double matt = gathers
           ? 2.0 * (samples.cosine[i] > 0.0 ? passed.diffuse / samples.cosine[i] : 1.0)
           : passed.diffuse;
@@ -107,7 +107,7 @@ SecondaryReflection::BothWays SecondaryReflection::mirrorThroughput(
   if (aperture > 0.0)
   {
     back.cosIncidence = back.cosOutgoing;
-    // The lobes of both mirrors spread the light where it arrives.
+    // The lobes of both mirrors spread the light that arrives.
     const double reach = (path.length - path.rangeOne) / path.range;
     second.kp = 1.0 / (1.0 / second.kp + reach * reach / first.kp);
   }
@@ -129,20 +129,20 @@ SecondaryReflection::BothWays SecondaryReflection::mirrorThroughput(
   }
   const double reverse = f1 * f2.diffuse * path.back *
     this->Setup.sensor.nearRangeShare(path.rangeOne) * scale * path.weight;
-  // Where an aperture gathers nearly everything, both together stay within the bound of one.
+  // If an aperture gathers nearly all light, both ways together stay within the bound of one.
   const double within = std::min(1.0, f1 * path.weight / std::max(there + reverse, 1e-300));
   return { within * there, within * reverse };
 }
 
-/// Share of the light of a mirror path that the width of the mirror's lobe moves across the rim of
-/// the cone, if such paths fill the cone at the second point: circumference times mean excursion,
-/// over area.
+/// Share of a mirror path's light that the width of the mirror's lobe moves across the rim of the
+/// cone, if such paths fill the cone at the second point: circumference times mean excursion over
+/// area.
 double SecondaryReflection::unsureShare(const MirrorPath& path) const
 {
   const Sensor& sensor = this->Setup.sensor;
   if (!(sensor.receiverAperture > 0.0))
   {
-    return 0.0; // the paper's receiver takes no account of where light arrives
+    return 0.0; // with the paper's receiver it does not matter where light arrives
   }
   const double step = path.length - path.rangeOne - path.range;
   const double deviation = step / std::sqrt(this->Setup.material(path.first).kp);
@@ -169,7 +169,7 @@ double SecondaryReflection::shortThroughput(const SecondaryBeam& beam, const Sho
       this->Setup, first, second, beam.samples.cosine[path.one], beam.direct.reflected[path.one]);
 }
 
-/// Bound of the sum of the throughputs of all short paths.
+/// Upper bound of the sum of the throughputs of all short paths.
 double SecondaryReflection::mostOfShortPaths(const SecondaryBeam& beam) const
 {
   const double aperture = this->Setup.sensor.receiverAperture;
@@ -189,7 +189,7 @@ double SecondaryReflection::mostOfShortPaths(const SecondaryBeam& beam) const
   return sum * std::min(1.0, this->Setup.largestReflectance * gathered) * SurelyAbove;
 }
 
-/// What each path could bring back.
+/// Find the bounds of mirror paths and the throughputs of connections.
 void SecondaryReflection::measure(const SecondaryBeam& beam)
 {
   const BeamSamples& samples = beam.samples;
@@ -211,7 +211,7 @@ void SecondaryReflection::measure(const SecondaryBeam& beam)
   connectionThroughputs(this->Setup, beam, this->Materials, this->ConnectionThroughputs);
 }
 
-/// Bound of the sum of the throughputs of all mirror paths.
+/// Upper bound of the sum of the throughputs of all mirror paths.
 double SecondaryReflection::mostOfMirrors(bool byRegions) const
 {
   double sum = byRegions ? 0.0 : sumOf(this->SpecularBounds);
@@ -222,9 +222,8 @@ double SecondaryReflection::mostOfMirrors(bool byRegions) const
   return sum;
 }
 
-/// Place mirror paths on the surfaces that may bring at least `least` by them, and set the
-/// throughputs of all: those of others count as lost, also if they are known. @return bound of
-/// these
+/// Place mirror paths on surfaces whose bound is at least `least`, and find the throughputs. Paths
+/// on other surfaces count as lost even if they are known. @return bound of the lost throughputs
 double SecondaryReflection::placeMirrors(const SecondaryBeam& beam, double least)
 {
   SecondaryTrace& trace = beam.trace;
@@ -274,7 +273,7 @@ void SecondaryReflection::measureMirrors(const SecondaryBeam& beam)
   }
 }
 
-/// Sum of the bounds of the paths not traced.
+/// Sum of the bounds of the paths that are not traced.
 double SecondaryReflection::untracedSum(const SecondaryTrace& trace) const
 {
   double sum = 0.0;
@@ -304,7 +303,7 @@ void SecondaryReflection::listPaths(
   const SecondaryConnections& connections = beam.trace.connections;
   paths.clear();
   const bool bySample = beam.trace.searched.empty();
-  // What media that do not fill the scene leave.
+  // Transmission of the media that do not fill the scene.
   const auto leftOf = [&](const Vec3& one, const Vec3& two)
   {
     const Vec3 apex(0.0);
@@ -354,7 +353,7 @@ void SecondaryReflection::listPaths(
 
 namespace
 {
-/// Sets energies from the throughputs that stand in their place.
+/// Set energies from the throughputs that stand in their place.
 AVIANLIDAR_MULTIVERSION void energiesOfAll(
   double pulseEnergy, double attenuation, SecondaryPath* paths, std::size_t count)
 {
@@ -379,7 +378,7 @@ bool SecondaryReflection::collect(
   this->OverMirror = mostOverMirror(this->Setup, this->Shape, beam.nearest);
   this->prepare(beam, byRegions);
   this->measure(beam);
-  // What the strongest path can carry.
+  // Largest energy of a path whose throughput is 1.
   const double most = pulseEnergy * mostAir(beam.nearest, this->Setup.attenuation());
   const bool gathers = this->Setup.sensor.receiverAperture > 0.0;
   const double others = sumOf(this->ConnectionThroughputs) + this->mostOfShortPaths(beam);
@@ -404,7 +403,7 @@ bool SecondaryReflection::collect(
       lost += all;
       return true;
     }
-    // Through an aperture mirror paths go back, and short paths are as many as connections.
+    // With an aperture there are reverse paths, and as many short paths as connections.
     threshold = budget / (pathsOfABeam(settings) * (gathers ? 2.0 : 1.0));
   }
   const auto throughputOf = [=](double energy)
@@ -412,7 +411,7 @@ bool SecondaryReflection::collect(
   double ofMirrors = threshold;
   if (byRegions)
   {
-    // As many paths as there are share the tolerance, unless each is compared with the limit.
+    // The paths share the tolerance equally, unless each is compared with the limit.
     const bool shares =
       threshold > 0.0 && settings.lightEnergyThreshold != LightEnergyThreshold::Limit;
     const double part = MirrorPart * lightEnergyTolerance(this->Setup);
@@ -459,8 +458,8 @@ bool SecondaryReflection::collect(
   return true;
 }
 
-/// Cut what passes a ray's budget, which is what its direct echo leaves of the albedo: the random
-/// weights of its connections may together exceed 1.
+/// Scale the paths of a ray down to its budget, the part of the albedo that the direct echo leaves:
+/// the random weights of its connections may exceed 1 together.
 void SecondaryReflection::cutToBudget(const SecondaryBeam& beam, std::vector<SecondaryPath>& paths)
 {
   this->Returned.assign(beam.samples.size(), 0.0);

@@ -1,47 +1,46 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file SecondaryReflection.h
- * @brief Paths with two reflections inside the beam, and the light-energy constraint on them.
+ * @brief Paths over two reflections inside the beam, and the light-energy constraint on them.
  *
- * The beam constraint says that the second reflection point P2 lies inside the receiving beam. For
- * a primary hit P1:
+ * By the beam constraint the second reflection point P2 lies inside the receiving beam. Two kinds
+ * of paths start at a primary hit P1:
  *
- * 1. mirror path: the mirror direction of the incident ray is followed, weight 1, with f_s alone at
- * P1. Where what the beam sees is known, such paths start from samples of their own
- * (MirrorRegions.h);
- * 2. diffuse connections: f_d alone at P1 (with f_s the mirror lobe would count twice), to the hit
- * points of M other rays of the beam, which the lidar both lights and sees. The partners come from
- * M random cyclic shifts of the ray numbers, weighted so that the sum estimates the mean over the
- * cone's solid angle.
+ * 1. A mirror path follows the mirror direction of the incident ray, with weight 1 and f_s alone at
+ * P1. If the visible surfaces are known, mirror paths start from samples of their own
+ * (MirrorRegions.h).
+ * 2. Diffuse connections lead to the hit points of M other rays of the beam, which the lidar both
+ * lights and sees, with f_d alone at P1 (f_s would count the mirror lobe twice). The partners
+ * follow from M random cyclic shifts of the ray numbers. With their weights the sum estimates the
+ * mean over the cone's solid angle.
  *
  * At P2 the whole of f_sur acts. A path counts only if P2 lies in the cone and is visible from the
- * apex, and the segment leaves P1 and reaches P2 on the sides that face the apex. A path carries Q
+ * apex, and if the segment leaves P1 and reaches P2 on the sides that face the apex. It carries Q
  * f(P1) f_sur(P2) exp(-mu length).
  *
- * A ray never returns more than its albedo times Q: with B = (albedo - f_direct) the budget that
- * its direct echo leaves at P1, and g the largest share that P1 can pass on, a path to a surface of
- * reflectance R2 = kd2 + ks2 is scaled by min(1, B/(g R2)). For the materials of the paper the
- * factor is 1. Where the random weights of the connections exceed their mean, what would still pass
- * the budget is cut.
+ * A ray never returns more than its albedo times Q. B = albedo - f_direct is the budget that its
+ * direct echo leaves at P1, g the largest share that P1 can pass on, R2 = kd2 + ks2 the reflectance
+ * of the second surface. A path is scaled by min(1, B/(g R2)), which is 1 for the materials of the
+ * paper. If the random weights of connections exceed their mean, the excess over the budget is cut.
  *
  * With a receiver aperture A > 0, and Omega the solid angle of the cone:
  *
- * 1. The matt part of what a mirror path returns at P2 comes back by the reverse path as well,
- * which ends on the mirror. It weighs by the beam's density at P2 over that at P1. The lobes of two
- * mirrors add up where the light arrives.
+ * 1. The matt light that a mirror path returns at P2 also comes back by the reverse path, which
+ * ends on the mirror. The reverse path is weighted by the beam's density at P2 over the density at
+ * P1. The widths of two mirrors' lobes add up where the light arrives.
  * 2. A connection is matt at both ends. It carries the form factor F = cos(out at P1) cos(in at P2)
  * r2^2 Omega/(pi L^2 cos(lidar's incidence at P2)), at most MostFormFactor = 1.
- * 3. Short paths carry the rest: M directions of each ray, drawn as its matt light is spread. A
- * path that ends in the cone with F > 1 carries 1 - 1/F. Then f at P2 takes the cosine of the
- * outgoing direction, as that of connections and mirror paths does.
+ * 3. Short paths carry the excess: M directions of each ray, drawn as its matt light is spread. A
+ * path that ends in the cone with F > 1 carries 1 - 1/F. Like connections and mirror paths, it
+ * takes the cosine of the outgoing direction in f at P2.
  *
- * Geometry is found once and kept (BeamTrace.h), and only as far as energies need it. Throughputs
- * are computed each time a beam is lit.
+ * Geometry is found only as far as energies need it, and kept (BeamTrace.h). Throughputs are
+ * computed each time a beam is lit.
  *
  * Source: paper, Sec. 3.4 and Eq. 6. The sum of bounded connections and short paths: Kollig and
  * Keller, "Illumination in the Presence of Weak Singularities", MCQMC 2004.
- * Differs: the paper leaves open how many secondary directions are followed and with what weight;
- * the scale by the budget and all that an aperture changes are ours.
+ * Differs: the paper leaves open how many secondary directions are followed, and their weight. It
+ * has neither the scale by the budget nor an aperture.
  * Valid: the paths of a ray return at most B together. No range unit loses more than epsilon Qlow
  * by the light-energy constraint (BeamLighting.h).
  * Test: TestSecondaryReflection.cxx, TestSecondaryPaths.cxx, TestSecondaryConstraints.cxx,
@@ -63,38 +62,38 @@ namespace avianlidar
 /// One path over two reflections that arrived.
 struct SecondaryPath
 {
-  double length;          ///< of the whole path, m
+  double length;          ///< length of the whole path, m
   double energy;          ///< J
-  std::uint32_t triangle; ///< at P2
-  double cosIncidence;    ///< at P2
-  std::uint32_t one;      ///< sample at P1; NoSample of a mirror path by regions
-  std::uint32_t two;      ///< sample at P2; else NoSample, by regions the sample of the path
+  std::uint32_t triangle; ///< triangle of the last reflection
+  double cosIncidence;    ///< cosine of incidence at the last reflection
+  std::uint32_t one;      ///< sample at P1; NoSample for mirror paths by regions
+  std::uint32_t two;      ///< sample at P2, or of a mirror path by regions; otherwise NoSample
   double unsure = 0.0;    ///< share of the energy that the width of a mirror's lobe may change
 };
 
-/// Paths of one beam after the other. One per thread.
+/// Finds the paths of one beam after the other. One per thread.
 class SecondaryReflection
 {
 public:
   SecondaryReflection(const ScanSetup& setup, const SceneTriangles& scene);
 
-  /// Bound of the sum of the throughputs of all paths of a beam. @param samples of its direct echo,
-  /// rays or not. Paths that start from rays may bring somewhat more by chance. @param tight false:
-  /// what the direct echoes leave of the albedo suffices
+  /// Upper bound of the sum of the throughputs of all paths of a beam, which paths from rays may
+  /// exceed somewhat by chance. @param samples samples of the direct echo, rays or not
+  /// @param tight false: the bound is the share of the albedo that direct echoes leave
   double bound(const BeamSamples& samples, const Throughput& direct, bool tight) const;
 
-  /// The same of an integrated beam, which has no samples where nothing comes straight back.
-  /// @param albedo the largest of what it sees @param nearest m: no surface of it is nearer
+  /// The same bound for an integrated beam, which has no samples where no light returns directly.
+  /// @param albedo largest of its surfaces @param nearest lower bound of their ranges, m
   double bound(double albedo, double nearest) const;
 
-  /// Set the paths of the beam: mirror paths in the order of the samples, then connections.
-  /// @param lost sum of the bounds of dropped paths, J; those dropped here are added
-  /// @return false if all paths together, whatever is in their way, bring less than
+  /// Set the paths of the beam: mirror paths in the order of the samples, connections, short paths.
+  /// @param lost J; the bounds of the paths dropped here are added
+  /// @return false if all paths together, blocked or not, bring less than
   /// SecondaryBeam::silentBelow: none is traced then, and `lost` is the bound of all
   bool collect(const SecondaryBeam& beam, std::vector<SecondaryPath>& paths, double& lost);
 
 private:
-  /// Throughputs of a mirror path and, through an aperture, of the same path back.
+  /// Throughputs of a mirror path and, with an aperture, of the reverse path.
   struct BothWays
   {
     double there, back;
@@ -116,16 +115,16 @@ private:
   const BeamShape Shape;
   ConnectionFinder Finder;
   MirrorRegions Regions;
-  std::vector<std::uint32_t> Triangles;      ///< by sample
-  MaterialLanes Materials;                   ///< by sample
-  std::vector<double> SpecularBounds;        ///< bounds of mirror paths' throughputs, by sample
+  std::vector<std::uint32_t> Triangles;      ///< triangle of each sample
+  MaterialLanes Materials;                   ///< material of each sample
+  std::vector<double> SpecularBounds;        ///< bound of a mirror path's throughput, by sample
   double OverMirror = 1.0;                   ///< mostOverMirror()
-  double NumberWanted = 0.0;                 ///< of mirror paths
-  std::vector<char> Wanted;                  ///< by surface: its mirror paths may matter
-  std::vector<double> MirrorThroughputs;     ///< by mirror path, both ways, if it is not blocked
-  std::vector<double> BackThroughputs;       ///< the way back of these
-  std::vector<double> ConnectionThroughputs; ///< by connection, if it is not blocked
-  std::vector<double> Returned;              ///< over two reflections, by sample, J
+  double NumberWanted = 0.0;                 ///< number of mirror paths that may matter, both ways
+  std::vector<char> Wanted;                  ///< whether its mirror paths may matter, by surface
+  std::vector<double> MirrorThroughputs;     ///< unblocked throughput of mirror paths, both ways
+  std::vector<double> BackThroughputs;       ///< part of MirrorThroughputs by the reverse paths
+  std::vector<double> ConnectionThroughputs; ///< unblocked throughput of connections
+  std::vector<double> Returned;              ///< energy over two reflections, by sample, J
 };
 
 }

@@ -1,17 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file SecondaryTrace.h
- * @brief What is known of the geometry of a beam's paths over two reflections: where mirror paths
- * and short paths end, and which hits are connected and visible to each other. Found when first
- * needed and kept with the beam.
+ * @brief Geometry of a beam's paths over two reflections: ends of mirror paths and short paths, and
+ * connections of hits. It is found when first needed, and kept with the beam.
  *
- * A connection is a pair of hits that face each other, with all that the energy of a path over both
- * depends on but materials, in SIMD lanes. Where a beam looks into a corner there are M of them for
- * each ray: 85 bytes and some ns each.
+ * A connection is a pair of hits that face each other, with all values but materials on which the
+ * energy of its path depends, in SIMD lanes. A beam that looks into a corner has M connections for
+ * each ray, which take 85 bytes and some ns each.
  *
  * Source: paper, Sec. 3.4; angles as ReflectionGeometry (Reflectance.h).
  * Differs: see SecondaryReflection.h.
- * Valid: for the beam's hits, and connections for `partners` = M.
+ * Valid: for the hits of one beam, and connections for `partners` = M.
  * Test: TestSecondaryPaths.cxx, TestSecondaryReflection.cxx.
  */
 #ifndef avianlidar_SecondaryTrace_h
@@ -26,7 +25,7 @@
 
 namespace avianlidar
 {
-/// Whether anything stands between the hits of a connection.
+/// Whether anything blocks the segment of a path.
 enum class Visibility : std::uint8_t
 {
   Unknown = 0,
@@ -47,7 +46,7 @@ struct SecondaryConnections
   std::vector<double> cosOut;        ///< cosine of the segment at P1
   std::vector<double> differenceOne; ///< cos theta_d at P1
   std::vector<double> cosIn;         ///< cosine of the segment at P2
-  std::vector<double> cosLobe;       ///< at P2, as the two below
+  std::vector<double> cosLobe;       ///< cosLobe, sin2Lobe and sin2Half at P2
   std::vector<double> sin2Lobe;
   std::vector<double> sin2Half;
   std::vector<double> differenceTwo; ///< cos theta_d at P2
@@ -56,7 +55,7 @@ struct SecondaryConnections
   std::size_t bytes() const;
   void clear() { *this = SecondaryConnections{}; }
 
-  /// Reserve memory for so many.
+  /// Reserve memory for a number of connections.
   void reserve(std::size_t connections);
 
   /// Add P1, P2, k and weight; measure() sets the other values of all.
@@ -72,48 +71,48 @@ enum class MirrorEnd : std::uint8_t
   Arrives = 2
 };
 
-/// A mirror path that arrives, with all that its energy depends on but materials.
+/// A mirror path that arrives, with all values but materials on which its energy depends.
 struct MirrorPath
 {
   std::uint32_t start;       ///< by regions: surface on which it starts
-  std::uint32_t one;         ///< hit of the first reflection; by regions: sample of the surface
+  std::uint32_t one;         ///< hit of the first reflection; by regions: number of the sample
   std::uint32_t first;       ///< triangle of the first reflection
-  std::uint32_t triangle;    ///< of the second reflection
+  std::uint32_t triangle;    ///< triangle of the second reflection
   double weight;             ///< share of the pulse's energy
-  double back;               ///< the same of light that goes the other way, over `weight`
-  double cosine;             ///< of incidence at the first point
-  double rangeOne;           ///< of the first point, m
-  double length;             ///< whole path, m
-  double range;              ///< of the second point, m
+  double back;               ///< weight of the reverse path, over `weight`
+  double cosine;             ///< cosine of incidence at the first point
+  double rangeOne;           ///< range of the first point, m
+  double length;             ///< length of the whole path, m
+  double range;              ///< range of the second point, m
   ReflectionGeometry second; ///< angles at the second point
-  Vec3 from, end;            ///< the two points, m, from the apex
-  Visibility visibility;     ///< whether anything stands in its way
+  Vec3 from, end;            ///< the two points relative to the apex, m
+  Visibility visibility;     ///< whether it is blocked
 };
 
 /// A path of matt light whose form factor exceeds MostFormFactor (SecondaryReflection.h).
 struct ShortPath
 {
   std::uint32_t one;         ///< hit of the first reflection
-  std::uint32_t triangle;    ///< of the second reflection
+  std::uint32_t triangle;    ///< triangle of the second reflection
   double weight;             ///< share of the pulse's energy
-  double length;             ///< whole path, m
-  double range;              ///< of the second point, m
+  double length;             ///< length of the whole path, m
+  double range;              ///< range of the second point, m
   ReflectionGeometry first;  ///< angles at the first point
   ReflectionGeometry second; ///< angles at the second point
-  Vec3 from, end;            ///< the two points, m, from the apex
+  Vec3 from, end;            ///< the two points relative to the apex, m
 };
 
 /// Known paths of a beam.
 struct SecondaryTrace
 {
   std::vector<MirrorEnd> mirror; ///< one per hit; empty until first needed
-  /// By surface, if mirror paths are found by regions (MirrorRegions.h): whether they are.
+  /// Whether each surface was searched for mirror paths by regions; empty: they start from hits.
   std::vector<char> searched;
-  std::vector<MirrorPath> mirrorPaths; ///< in the order of hits
+  std::vector<MirrorPath> mirrorPaths; ///< in the order of hits, or of surfaces
   SecondaryConnections connections;
   std::uint32_t partners = 0;        ///< M of `connections`
   std::vector<ShortPath> shortPaths; ///< in the order of hits
-  bool shortTraced = false;          ///< true once `shortPaths` holds all of them
+  bool shortTraced = false;          ///< true once all short paths are known
 
   std::size_t bytes() const
   {

@@ -12,8 +12,9 @@ namespace avianlidar
 {
 namespace
 {
-/// Upper bound of the distance, m, for which a path from `point`, at `range`, stays inside the
-/// cone; infinity for directions within the cone's own, or nearly. All relative to the apex.
+/// Upper bound of the distance, m, over which a path stays inside the cone; infinity if its
+/// direction lies within the cone, or nearly. @param point start relative to the apex, m
+/// @param range distance of `point` from the apex, m
 double distanceInCone(
   const BeamFrame& frame, const Vec3& point, double range, const Vec3& direction)
 {
@@ -26,13 +27,13 @@ double distanceInCone(
   const double c = std::min(0.0, cos2 * range * range - along * along);
   if (!(a > 1e-9))
   {
-    return std::numeric_limits<double>::infinity(); // within the cone of directions, or nearly
+    return std::numeric_limits<double>::infinity();
   }
   const double reach = (std::sqrt(std::max(0.0, b * b - a * c)) - b) / a;
   return reach * (1.0 + 1e-6) + 1e-6 * range;
 }
 
-/// Where the path of a hit into a direction ends, if that is in the cone and seen by the lidar.
+/// End of the path from a hit in a direction; invalid if it is not in the cone or is hidden.
 Hit pathEnd(
   const ScanSetup& setup, const SecondaryBeam& beam, std::uint32_t hit, const Vec3& direction)
 {
@@ -56,7 +57,7 @@ Hit pathEnd(
   const SeenTriangle triangle = seeTriangle(beam.scene, end.triangle, beam.frame.origin);
   if (glm::dot(triangle.normal, direction) >= 0.0)
   {
-    return {}; // it meets the side that looks away from the lidar
+    return {}; // it meets the side that faces away from the lidar
   }
   const Hit seen = beam.tracer.traceFromApex(point);
   const double range = safeLength(point);
@@ -78,7 +79,7 @@ void traceMirror(
   }
   beam.trace.mirror[hit] = MirrorEnd::Arrives;
   const SeenTriangle end = seeTriangle(beam.scene, found.triangle, beam.frame.origin);
-  // The range that was found, not the plane's once more: seen edge-on they have little in common.
+  // Take the range found, not that of the plane: for planes seen edge-on they differ widely.
   const Vec3 point = from.point + found.range * direction;
   const double range = safeLength(point);
   const auto densityAt = [&](const Vec3& p)
@@ -93,7 +94,7 @@ void traceMirror(
     Visibility::Clear });
 }
 
-/// A direction from a surface, drawn as its matt light is spread.
+/// Draw a direction from a surface with a density proportional to its cosine, as matt light has.
 Vec3 drawDirection(
   const ScanSetup& setup, const SecondaryBeam& beam, std::uint64_t number, const Vec3& normal)
 {
@@ -107,7 +108,7 @@ Vec3 drawDirection(
     sine * (std::cos(turn) * e1 + std::sin(turn) * e2) + std::sqrt(1.0 - u[0]) * normal);
 }
 
-/// Follow the k-th of a ray's directions.
+/// Trace the k-th direction of a ray, and keep it if its form factor exceeds MostFormFactor.
 void traceShortPath(
   const ScanSetup& setup, const SecondaryBeam& beam, std::uint32_t hit, std::uint32_t k)
 {
@@ -137,7 +138,7 @@ void traceShortPath(
   }
 }
 
-/// Whether something stands between the hits of a connection.
+/// True if something lies between the hits of a connection.
 bool isBlocked(const SecondaryBeam& beam, std::size_t connection)
 {
   const std::uint32_t hit1 = beam.trace.connections.one[connection];
@@ -183,7 +184,7 @@ void traceRegions(const SecondaryBeam& beam, const std::vector<double>& throughp
     {
       continue;
     }
-    // Of two triangles in one place one is seen.
+    // Only one of two triangles that coincide is seen.
     const auto isSeen = [&](const Vec3& point, std::uint32_t triangle)
     { return beam.tracer.traceFromApex(point).triangle == triangle; };
     const bool clear =
@@ -200,7 +201,7 @@ void traceShortPaths(const ScanSetup& setup, const SecondaryBeam& beam, Connecti
   {
     return;
   }
-  beam.trace.shortPaths.clear(); // of work that was stopped
+  beam.trace.shortPaths.clear(); // may be left from stopped work
   const bool any = finder.findFacing(beam.samples, beam.geometry);
   for (std::uint32_t hit = 0; any && hit < beam.samples.size(); ++hit)
   {

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file SecondaryTracer.h
- * @brief Traces the paths on from the hits of a beam (SecondaryReflection.h): where mirror paths
- * and short paths end, and whether anything stands in the way of connections.
+ * @brief Traces paths over two reflections from the hits of a beam (SecondaryReflection.h): where
+ * mirror paths and short paths end, and whether connections are blocked.
  *
- * The results are geometry and go to the beam's trace. Only paths that may be as strong as the
- * caller needs are traced.
+ * Results are geometry and go to the beam's trace. Only paths are traced whose throughput may reach
+ * the threshold of the caller.
  *
  * Source: paper, Sec. 3.4.
  * Differs: see SecondaryReflection.h.
@@ -23,19 +23,19 @@
 
 namespace avianlidar
 {
-/// Trace the mirror paths that are not known yet and may have a throughput of at least `least`.
-/// @param throughputs bounds, by sample
+/// Trace the mirror paths that are not known and may have a throughput of at least `least`.
+/// @param throughputs upper bounds, by sample
 void traceMirrors(const ScanSetup& setup, const SecondaryBeam& beam,
   const std::vector<double>& throughputs, double least);
 
-/// Find which mirror paths by regions (MirrorRegions.h) of at least the throughput `least` are
-/// blocked, if not known yet. @param throughputs by path, if it is not blocked
+/// Find whether mirror paths by regions (MirrorRegions.h) with a throughput of at least `least` are
+/// blocked, unless it is known. @param throughputs by path, if it is not blocked
 void traceRegions(const SecondaryBeam& beam, const std::vector<double>& throughputs, double least);
 
-/// Find the short paths of the samples, if not known yet.
+/// Find the short paths of the samples, unless they are known.
 void traceShortPaths(const ScanSetup& setup, const SecondaryBeam& beam, ConnectionFinder& finder);
 
-/// Find which connections of at least the throughput `least` are blocked, if not known yet.
+/// Find whether connections with a throughput of at least `least` are blocked, unless it is known.
 /// @param throughputs by connection, if it is not blocked
 void traceConnections(
   const SecondaryBeam& beam, const std::vector<double>& throughputs, double least);
