@@ -44,7 +44,7 @@ struct BeamSamples
   };
   std::vector<Surface> surfaces;  ///< in the order of the samples; a triangle may occur again
   std::vector<std::uint32_t> ray; ///< number of the ray; empty unless the samples are rays
-  std::vector<double> range;      ///< m, see rangeOf()
+  std::vector<double> range;      ///< range, m
   std::vector<double> cosine;     ///< cosine of incidence, in [0, 1]
   std::vector<double> weight;     ///< share of the pulse's energy that arrives
 

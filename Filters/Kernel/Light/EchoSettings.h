@@ -156,9 +156,9 @@ enum class EchoPreset
   Reference = 3 ///< converged: others are compared with it
 };
 
-/// Replace the number of rays, the sampling, and the numbers of reflections and connections by
-/// those of a preset. Empty if the preset is one of the four; otherwise a sentence that names the
-/// value and what was expected, and the settings do not change.
+/// Apply a preset to the number of rays, the sampling, the reflections and the connections. Empty
+/// if the preset is one of the four; otherwise a sentence that names the value and what was
+/// expected, and the settings do not change.
 std::string applyPreset(EchoPreset preset, EchoSettings& settings);
 }
 

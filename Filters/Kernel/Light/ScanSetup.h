@@ -65,12 +65,12 @@ struct ModelNeeds
   /// that skipped noise might have added.
   double skippedEnergyBound = 0.0;
   /// Energy, J. An object that returns more is missed by all rays of a beam with a probability
-  /// below 5 %. The rays are N, or in cells those of the grid, where small objects with their own
-  /// id get more.
+  /// below 5 %. The rays are N, or in cells the grid's, where small objects with an id of their own
+  /// get more.
   double missedDetailEnergy = 0.0;
 };
 
-/// Inputs of a scan, and what follows from them.
+/// Inputs of a scan, and values that follow from them.
 struct ScanSetup
 {
   std::shared_ptr<const CollisionTree> tree;

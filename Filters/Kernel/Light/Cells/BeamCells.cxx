@@ -139,7 +139,7 @@ void BeamCells::begin(std::uint64_t beam, const BeamFrame& frame)
   }
 }
 
-/// Add an area to an object, mostly that of the last call. Integer sums do not depend on the order.
+/// Add an area to an object, often the last one. Integer sums do not depend on the order of areas.
 void BeamCells::addToObject(int id, double area)
 {
   if (this->Objects.empty() || id != this->Objects.back().first)
@@ -468,7 +468,7 @@ std::unique_ptr<CellSamples> BeamCells::find(const std::uint32_t* triangles)
   return this->TooMany ? nullptr : this->Strips.collect();
 }
 
-/// m of a cell: that of the grid, or more if small objects in the cell need it.
+/// m of a cell: CellDensity::blocks, or more if small objects in the cell need it.
 int BeamCells::blocksFor(const Cell& cell, List list) const
 {
   if (!this->HasObjects)

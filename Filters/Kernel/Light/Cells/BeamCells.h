@@ -65,7 +65,7 @@ public:
 
   /// Place the rays of a beam that too many triangles enter for lists. Its cells are divided as
   /// small objects need it, and the rays must be traced through the tree.
-  /// @param numbers triangles in any order, those of all small objects included; changed
+  /// @param numbers triangles in any order, with all of small objects; changed
   /// @return valid until the next beam
   const BeamRays& place(
     std::uint64_t beam, const BeamFrame& frame, std::vector<std::uint32_t>& numbers);

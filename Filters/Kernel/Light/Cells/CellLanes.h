@@ -49,7 +49,7 @@ struct CellChildren
 void distribute(const CellSurface* surfaces, const std::uint32_t* list, std::uint32_t count,
   CellChildren& children);
 
-/// Sixteen rays, and what each sees.
+/// Sixteen rays, and the surface that each ray sees.
 struct CellRays
 {
   float x[CellLanes], y[CellLanes];

@@ -57,7 +57,7 @@ double numberAt(const SurfaceStrips& s, double range)
   return unitStrip(s, range) + lobeStrip(s, range);
 }
 
-/// Sixteen rays, and what they meet. Integers are doubles for SIMD lanes.
+/// Sixteen rays, and the surfaces that they meet. Integers are doubles for SIMD lanes.
 struct Block
 {
   double x[CellLanes], y[CellLanes];

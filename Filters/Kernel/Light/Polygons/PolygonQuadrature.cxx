@@ -241,7 +241,7 @@ double PolygonQuadrature::boundOf(
       break; // the other shares are of paths over two reflections
     }
     energy += shares.energies[s];
-    // The neighbouring nodes are those of the parts beyond the borders.
+    // The neighbouring nodes belong to the parts beyond the borders.
     const std::size_t first = std::max(next, node >= 2 ? node - 2 : 0);
     next = std::min(node + 3, energies.size());
     for (std::size_t k = first; k < next; ++k)

@@ -98,7 +98,7 @@ PolygonRule::PolygonRule(const ScanSetup& setup)
   const double half = 0.5 * setup.sensor.pulseWidth / setup.sensor.samplingInterval;
   this->Offsets[0] = fraction(half);
   this->Offsets[1] = fraction(-half);
-  constexpr double same = 1e-9; // of a unit
+  constexpr double same = 1e-9; // in units
   const double apart = std::fabs(this->Offsets[0] - this->Offsets[1]);
   this->NumberOfOffsets = apart < same || apart > 1.0 - same ? 1 : 2;
   this->Tangent2 = this->Shape.width().tangent * this->Shape.width().tangent;

@@ -115,7 +115,7 @@ void ConnectionFinder::find(const SecondaryBeam& beam, std::uint32_t partners)
   const std::uint32_t rays = beam.samples.rays;
   this->chooseShifts(beam.id, rays, partners);
   this->lookAtPairs(beam.samples, beam.geometry);
-  // With 64 partners in a row, those of a ray come in the order of path numbers.
+  // With rows of 64 partners the partners of a ray come in the order of path numbers.
   const std::uint32_t rows = (partners + 63) / 64;
   std::size_t found = 0;
   for (const std::uint64_t ofRay : this->Partners)

@@ -68,7 +68,7 @@ private:
     std::vector<double> px, py, pz, nx, ny, nz, margin;
   };
   RayLanes Rays;
-  std::vector<std::uint64_t> Partners; ///< rows of 64 partners: bits of those facing each ray
+  std::vector<std::uint64_t> Partners; ///< bits of 64 partners that face a ray, by row and ray
   std::vector<char> Facing;            ///< whether a pair of surfaces may face; empty: unknown
   std::vector<double> Heights;         ///< largest heights of surfaces above planes, m
 };

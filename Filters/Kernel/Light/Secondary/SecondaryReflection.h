@@ -78,7 +78,7 @@ public:
   SecondaryReflection(const ScanSetup& setup, const SceneTriangles& scene);
 
   /// Upper bound of the sum of the throughputs of all paths of a beam, which paths from rays may
-  /// exceed somewhat by chance. @param samples samples of the direct echo, rays or not
+  /// exceed a little by chance. @param samples samples of the direct echo, rays or not
   /// @param tight false: the bound is the share of the albedo that direct echoes leave
   double bound(const BeamSamples& samples, const Throughput& direct, bool tight) const;
 

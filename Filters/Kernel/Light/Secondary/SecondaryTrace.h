@@ -34,7 +34,7 @@ enum class Visibility : std::uint8_t
 };
 
 /// Connections, one value each, in the order of path numbers. The light is reflected first at the
-/// hit P1, then at P2; angles at P2 are those of light from P1 to the apex (ReflectionGeometry).
+/// hit P1, then at P2; angles at P2 belong to light from P1 to the apex (ReflectionGeometry).
 struct SecondaryConnections
 {
   std::vector<std::uint32_t> one;    ///< hit P1

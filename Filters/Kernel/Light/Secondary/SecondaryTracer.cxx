@@ -79,7 +79,7 @@ void traceMirror(
   }
   beam.trace.mirror[hit] = MirrorEnd::Arrives;
   const SeenTriangle end = seeTriangle(beam.scene, found.triangle, beam.frame.origin);
-  // Take the range found, not that of the plane: for planes seen edge-on they differ widely.
+  // Take the range found, not the plane's: for planes seen edge-on the two differ widely.
   const Vec3 point = from.point + found.range * direction;
   const double range = safeLength(point);
   const auto densityAt = [&](const Vec3& p)
