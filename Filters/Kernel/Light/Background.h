@@ -11,8 +11,7 @@
  *
  * Source: radiance of a Lambertian surface under a uniform sky and a sun.
  * Differs: the paper has one rate of noise photons. Shadows are not searched for: a surface that
- * faces the sun counts as lit, and a vertical surface receives as much of the sky as a horizontal
- * one.
+ * faces the sun counts as lit, and a vertical surface gets as much sky as a horizontal one.
  * Valid: matt surfaces; the sun's image in a mirror is not modelled. Faint polygons count, as they
  * are not dropped with sunlight (PolygonQuadrature.h).
  * Test: TestBackground.cxx.

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file BeamSamples.h
- * @brief Weighted samples of the surfaces that a beam sees, surface by surface. Everything after
- * the producers of samples (energies, range units, labels, paths over two reflections) works on
- * these alone.
+ * @brief Weighted samples of the surfaces that a beam sees, surface by surface. Energies, range
+ * units, labels and paths over two reflections follow from the samples alone.
  *
  * Samples are rays of the beam, nodes of an integral over visible polygons, or strips of cells.
  *

@@ -65,8 +65,8 @@ struct ModelNeeds
   /// that skipped noise might have added.
   double skippedEnergyBound = 0.0;
   /// Energy, J. An object that returns more is missed by all rays of a beam with a probability
-  /// below 5 %. The rays are N, or in cells the grid's, where small objects with an id of their own
-  /// get more.
+  /// below 5 %. The rays are N, or in cells the grid's, where small objects with their own id get
+  /// more.
   double missedDetailEnergy = 0.0;
 };
 
@@ -125,8 +125,7 @@ private:
   }
 };
 
-/// Number the triangles of the movers, and raise the largest reflectance and gain, so far of the
-/// surfaces alone, to theirs.
+/// Number the triangles of movers, and raise the surfaces' largest reflectance and gain to theirs.
 void includeMovers(ScanSetup& setup);
 
 /// Set `noise` and `needs`, which follow from the other members.
@@ -135,8 +134,7 @@ void planModel(ScanSetup& setup);
 /// Needs of a setup that is complete but for its needs.
 ModelNeeds needsOf(const ScanSetup& setup);
 
-/// Upper bound, over all surfaces of the scene, of the light that returns over the light that
-/// arrives.
+/// Upper bound, for all surfaces of the scene, of the share of the arriving light that returns.
 /// @param range lower bound of the surface's range, m
 double mostReturned(const ScanSetup& setup, double range);
 

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file Throughput.h
- * @brief Throughputs of the direct echoes of a beam: energy received over energy of the pulse,
- * without the air.
+ * @brief Throughputs of direct echoes: energy received over energy of the pulse, without the air.
  *
  * Their sum and the nearest range bound the energy of all direct echoes together. This bound
  * suffices for most beams below the limit.

@@ -30,8 +30,7 @@ constexpr int MostBlocksOfCell = 3;
 constexpr double MostPlannedBlocks = 20000.0;
 constexpr double PlannedPerUsual = 4.0;
 
-/// Areas of objects are counted in these parts of a squared half-beamwidth. LargeArea exceeds the
-/// area of the disc.
+/// Areas of objects are counted in parts of a squared half-beamwidth. LargeArea exceeds the disc.
 constexpr double PartsOfArea = 1099511627776.0; // 2^40
 constexpr double LargeArea = 4.0;
 constexpr std::uint64_t LargeParts = std::uint64_t(1) << 42;
@@ -251,8 +250,7 @@ float BeamCells::smallShareOf(int id) const
     : 0.0f;
 }
 
-/// Set the surfaces in single precision. 1/z is divided by its largest value, to be finite in any
-/// scene.
+/// Set the surfaces in single precision. 1/z is divided by its largest value, so that it is finite.
 void BeamCells::setSurfaces()
 {
   constexpr float outwards = 1.0f + 1e-6f;

@@ -12,8 +12,8 @@
  *
  * N alone fixes the density of rays (densityOfCells()), so that nothing is biased by what the first
  * rays missed. A cell gets more rays, or is divided further, if it holds an object on which fewer
- * than CellDensity::raysOnObject() would fall. It is divided further, too, if it may hold the
- * middle of a specular lobe.
+ * than CellDensity::raysOnObject() would fall. A cell that may hold the middle of a specular lobe
+ * is divided, too.
  *
  * Source: Warnock, "A Hidden Surface Algorithm for Computer Generated Halftone Pictures", 1969, for
  * the division; Catmull, 1978, for lists that are shorter the smaller the cell.

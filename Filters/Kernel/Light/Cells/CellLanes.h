@@ -8,8 +8,8 @@
  * Differs: single precision in the beam's plane, whose coordinates are at most 1 in the disc. A
  * side of two triangles has opposite signs in them, bit for bit, so no ray passes between them.
  * Valid: sides are accurate to 1e-6 half-beamwidths. Surfaces whose 1/z differ by less than
- * CellSurface::slack may be seen in the wrong order. Products are not fused: every instruction set
- * gives the same bits.
+ * CellSurface::slack may be seen in the wrong order. Products are not fused: all instruction sets
+ * give the same bits.
  * Test: TestBeamCells.cxx, InstructionSets.cxx.
  */
 #ifndef avianlidar_CellLanes_h
@@ -21,8 +21,7 @@ namespace avianlidar
 {
 constexpr int CellLanes = 16;
 
-/// A surface of a beam (BeamTriangles.h) in single precision. Sides that do not meet the disc are
-/// (0, 0, 1).
+/// A BeamSurface in single precision. Sides that do not meet the disc are (0, 0, 1).
 struct CellSurface
 {
   float lines[4][3];

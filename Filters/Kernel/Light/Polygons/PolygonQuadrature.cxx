@@ -77,8 +77,7 @@ void PolygonQuadrature::begin(const BeamFrame& frame, const VisiblePolygons& see
   this->drop();
 }
 
-/// Upper bound of a triangle's reflectance through the aperture. @param mostInverse largest 1/z,
-/// 1/m
+/// Bound of a triangle's reflectance through the aperture. @param mostInverse largest 1/z, 1/m
 double PolygonQuadrature::mostReturnedBy(
   std::uint32_t triangle, double height, double mostInverse) const
 {

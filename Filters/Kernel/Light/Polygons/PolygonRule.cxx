@@ -38,8 +38,8 @@ constexpr double Weights[Points] = { 0.066671344308688138, 0.149451349150580593,
   0.219086362515982044, 0.269266719309996355, 0.295524224714752870, 0.295524224714752870,
   0.269266719309996355, 0.219086362515982044, 0.149451349150580593, 0.066671344308688138 };
 
-/// Share of a part that rules may put beyond a border of units, as the mean range of a chord does
-/// not weigh by the lobe.
+/// Share of a part that rules may put beyond a border: the mean range of a chord leaves out the
+/// lobe.
 constexpr double UncertainRules = 1e-4;
 
 /// Largest relative change of the range over one rule.

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file VisiblePolygons.h
- * @brief The surfaces that a beam sees, as convex polygons. They partition the beam's disc but for
- * open sky.
+ * @brief The surfaces that a beam sees, as convex polygons that partition its disc but for the sky.
  *
  * In the beam's plane (BeamTriangles.h) the visible surfaces are the upper envelope of 1/z, an
  * affine function on each triangle. Convex pieces partition an octagon around the disc, and

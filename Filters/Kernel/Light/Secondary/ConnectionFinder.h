@@ -7,17 +7,15 @@
  * 1. A beam has no connections if no two surfaces each have a hit before the plane of the other, as
  * at the outer corner of two walls.
  * 2. The partners of a ray follow from M cyclic shifts of the ray numbers. Rays are stored twice in
- * a row, so that one SIMD loop tests all pairs of a shift, with some thirty operations for a vector
- * of pairs.
+ * a row, so that one SIMD loop tests all pairs of a shift: some thirty operations for a vector of
+ * pairs.
  * 3. Throughputs are computed in SIMD loops, about 5 ns each.
  *
- * Source: paper, Sec. 3.4; the shifts are drawn by Floyd's algorithm for samples without
- * repetition.
+ * Source: paper, Sec. 3.4; for the shifts, Floyd's algorithm for samples without repetition.
  * Differs: the paper leaves open which secondary directions are followed, and their weight. Here
  * the sum over a ray's connections is an unbiased estimate of the mean over the cone's solid angle;
  * with an aperture it estimates the mean of the form factor, capped at MostFormFactor.
- * Valid: M from 1 to N - 1. Pairs that do not face each other by more than surfaceMargin() have no
- * connection.
+ * Valid: M from 1 to N - 1. Connected pairs face each other by more than surfaceMargin().
  * Test: TestSecondaryReflection.cxx, TestSecondaryPaths.cxx.
  */
 #ifndef avianlidar_ConnectionFinder_h

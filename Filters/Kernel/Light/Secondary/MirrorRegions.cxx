@@ -273,8 +273,7 @@ std::size_t MirrorRegions::search(std::size_t surface, std::vector<MirrorPath>& 
   return this->Sample;
 }
 
-/// Mirror the facets of surface `two` on the plane of `one`. @return box of all; empty if none lies
-/// before the plane
+/// Mirror the facets of `two` on the plane of `one`. @return their box; empty: none lies before it
 MirrorRegions::Box MirrorRegions::mirror(const Surface& one, const Surface& two)
 {
   this->Mirrored.clear();

@@ -8,8 +8,7 @@
  * the second surface is a projective function of the ray, and each side of that surface is a
  * straight line of rays. The rays from one surface to another fill a convex polygon of the beam's
  * plane, a region, which is cut from the polygon of the first surface. Samples fill regions alone,
- * in strata of equal area, twice as densely as rays fill the disc (SamplesPerRay), and at least two
- * in a region.
+ * in strata of equal area, twice as densely as rays fill the disc, and at least two in a region.
  *
  * Polygons of an integrated beam are visible (VisiblePolygons.h), and so are both ends of a path.
  * The surfaces of a beam in cells are whole triangles, and rays from the apex test both ends. A ray

@@ -134,9 +134,8 @@ SecondaryReflection::BothWays SecondaryReflection::mirrorThroughput(
   return { within * there, within * reverse };
 }
 
-/// Share of a mirror path's light that the width of the mirror's lobe moves across the rim of the
-/// cone, if such paths fill the cone at the second point: circumference times mean excursion over
-/// area.
+/// Share of a mirror path's light that the width of the mirror's lobe moves across the cone's rim,
+/// if such paths fill the cone at the second point: circumference times mean excursion over area.
 double SecondaryReflection::unsureShare(const MirrorPath& path) const
 {
   const Sensor& sensor = this->Setup.sensor;

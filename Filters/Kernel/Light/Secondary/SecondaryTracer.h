@@ -4,8 +4,8 @@
  * @brief Traces paths over two reflections from the hits of a beam (SecondaryReflection.h): where
  * mirror paths and short paths end, and whether connections are blocked.
  *
- * Results are geometry and go to the beam's trace. Only paths are traced whose throughput may reach
- * the threshold of the caller.
+ * Results are geometry and go to the beam's trace. Paths below the caller's threshold are not
+ * traced.
  *
  * Source: paper, Sec. 3.4.
  * Differs: see SecondaryReflection.h.
