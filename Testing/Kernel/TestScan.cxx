@@ -178,17 +178,17 @@ TEST(Scan, ALightKeyIsNewWhereMaterialsModelOrApertureAre)
 {
   ScanSetup setup = makeSetup(town(), Sensor{}, usual());
   LightKey light;
-  EXPECT_FALSE(takeOver(light, setup));
-  EXPECT_TRUE(takeOver(light, setup));
+  EXPECT_FALSE(updateKey(light, setup));
+  EXPECT_TRUE(updateKey(light, setup));
   edit(setup.materials, [](std::vector<Material>& materials) { materials[7].kp *= 0.5; });
-  EXPECT_FALSE(takeOver(light, setup));
+  EXPECT_FALSE(updateKey(light, setup));
   setup.settings.reflectanceModel = ReflectanceModel::Phong;
-  EXPECT_FALSE(takeOver(light, setup));
+  EXPECT_FALSE(updateKey(light, setup));
   setup.sensor.receiverAperture = 1.0;
-  EXPECT_FALSE(takeOver(light, setup));
+  EXPECT_FALSE(updateKey(light, setup));
   setup.largestReflectance *= 0.5;
-  EXPECT_FALSE(takeOver(light, setup));
-  EXPECT_TRUE(takeOver(light, setup));
+  EXPECT_FALSE(updateKey(light, setup));
+  EXPECT_TRUE(updateKey(light, setup));
 }
 
 TEST(Scan, ACacheThatIsTooSmallChangesNothing)

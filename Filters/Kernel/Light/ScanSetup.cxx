@@ -16,7 +16,7 @@ double perceivableRange(const ScanSetup& setup)
   const double limit = setup.sensor.lowerEnergyLimit;
   const auto isPerceivable = [&](double range)
   {
-    return setup.sensor.pulseEnergy * mostReturned(setup, range) *
+    return setup.sensor.pulseEnergy * returnBound(setup, range) *
       transmission(setup.attenuation(), 2.0 * range) * SurelyAbove >
       limit;
   };
@@ -42,8 +42,8 @@ double perceivableRange(const ScanSetup& setup)
   return far;
 }
 
-/// mostReturned() at any range.
-double mostReflected(const ScanSetup& setup)
+/// returnBound() at any range.
+double returnBoundAnyRange(const ScanSetup& setup)
 {
   // Near the lidar an aperture gathers everything.
   const bool gathers = setup.sensor.receiverAperture > 0.0 && setup.largestReflectance > 0.0;
@@ -52,7 +52,7 @@ double mostReflected(const ScanSetup& setup)
 
 }
 
-double mostReturned(const ScanSetup& setup, double range)
+double returnBound(const ScanSetup& setup, double range)
 {
   const double aperture = setup.sensor.receiverAperture;
   return aperture > 0.0 ? std::min(1.0, setup.largestGain * aperture / (range * range))
@@ -75,7 +75,7 @@ ModelNeeds needsOf(const ScanSetup& setup)
 {
   const EchoSettings& settings = setup.settings;
   const bool drops = dropsFaintPaths(settings);
-  const double once = mostReflected(setup);
+  const double once = returnBoundAnyRange(setup);
   ModelNeeds needs;
   needs.perceivableRange = perceivableRange(setup);
   needs.secondaryBound = setup.sensor.pulseEnergy * setup.largestReflectance * once * SurelyAbove;

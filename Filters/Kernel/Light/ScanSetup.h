@@ -136,7 +136,7 @@ ModelNeeds needsOf(const ScanSetup& setup);
 
 /// Upper bound, for all surfaces of the scene, of the share of the arriving light that returns.
 /// @param range lower bound of the surface's range, m
-double mostReturned(const ScanSetup& setup, double range);
+double returnBound(const ScanSetup& setup, double range);
 
 /// True if paths that cannot matter are dropped.
 bool dropsFaintPaths(const EchoSettings& settings);

@@ -7,9 +7,9 @@
 
 namespace avianlidar
 {
-double mostOverMirror(const ScanSetup& setup, const BeamShape& shape, double nearest)
+double mirrorReturnBound(const ScanSetup& setup, const BeamShape& shape, double nearest)
 {
-  const double once = mostReturned(setup, nearest);
+  const double once = returnBound(setup, nearest);
   // The reverse path weighs by the density at P2 over the density at P1 (SecondaryReflection.h).
   return setup.sensor.receiverAperture > 0.0
     ? std::min(1.0, once * (1.0 + shape.mostDensity() / shape.density(1.0, 0.0)))
@@ -23,7 +23,7 @@ double specularBound(
     returned * SurelyAbove;
 }
 
-double mostAir(double nearest, double attenuation)
+double transmissionBound(double nearest, double attenuation)
 {
   return transmission(attenuation, 2.0 * nearest) * SurelyAbove;
 }

@@ -37,13 +37,14 @@ double directEnergies(const ScanSetup& setup, const BeamSamples& samples,
 
 /// Largest transmission of the air along any path of a beam: no path is shorter than the way to the
 /// nearest surface and back. @param nearest range of that surface, m
-double mostAir(double nearest, double attenuation);
+double transmissionBound(double nearest, double attenuation);
 
 /// Largest share of the light leaving a mirror that returns, over both directions of the path
 /// together. @param nearest lower bound of the ranges of the beam's surfaces, m
-double mostOverMirror(const ScanSetup& setup, const BeamShape& shape, double nearest);
+double mirrorReturnBound(const ScanSetup& setup, const BeamShape& shape, double nearest);
 
-/// Upper bound of the throughput of a mirror path from a surface. @param returned mostOverMirror()
+/// Upper bound of the throughput of a mirror path from a surface. @param returned
+/// mirrorReturnBound()
 double specularBound(
   const ScanSetup& setup, const Material& material, double cosIncidence, double returned);
 }

@@ -48,15 +48,16 @@ bool BeamLighting::light(std::size_t beam, BeamTrace& trace)
     return this->Receiver.mayAlarm() || this->Air.returnsLight();
   }
   this->OfLit.measure(this->Setup, *this->Lit);
-  const double most =
-    this->Setup.sensor.pulseEnergy * mostAir(this->Lit->nearest, this->Setup.attenuation());
-  const bool again = this->Setup.settings.numberOfReflections > 1 && (this->Starts || this->Facing);
+  const double most = this->Setup.sensor.pulseEnergy *
+    transmissionBound(this->Lit->nearest, this->Setup.attenuation());
+  const bool again =
+    this->Setup.settings.numberOfReflections > 1 && (this->Starts || this->MayReflectTwice);
   const PolygonQuadrature::Extent& extent = this->Quadrature.extent();
   const bool mayBeSilent = most * this->OfLit.directSum < this->Setup.sensor.lowerEnergyLimit;
   const double ofPaths = !again ? 0.0
                                 : most *
-      (this->Facing ? this->Secondary.bound(extent.mostAlbedo, extent.nearest)
-                    : this->Secondary.bound(*this->Lit, this->OfLit, mayBeSilent));
+      (this->MayReflectTwice ? this->Secondary.bound(extent.mostAlbedo, extent.nearest)
+                             : this->Secondary.bound(*this->Lit, this->OfLit, mayBeSilent));
   if (!this->mayBePerceived(most, ofPaths))
   {
     return false;
@@ -76,8 +77,8 @@ bool BeamLighting::placeSamples(std::size_t beam, BeamTrace& trace)
   this->Starts = this->Lit = trace.hits.get();
   this->Cells = trace.cells();
   this->Surfaces = trace.polygons();
-  this->Unplaced = 0.0;
-  this->Facing = false;
+  this->DroppedByQuadrature = 0.0;
+  this->MayReflectTwice = false;
   if (this->Cells)
   {
     this->Lit = this->Cells->samples.size() > 0 ? &this->Cells->samples : nullptr;
@@ -92,15 +93,15 @@ bool BeamLighting::placeNodes(std::size_t beam)
   this->Starts = this->Lit = nullptr;
   this->Quadrature.begin(this->Block.frameOf(beam), *this->Surfaces);
   const PolygonQuadrature::Extent& extent = this->Quadrature.extent();
-  this->Facing = this->Surfaces->facing && this->Setup.settings.numberOfReflections > 1;
-  if (!this->Facing && dropsFaintPaths(this->Setup.settings) &&
+  this->MayReflectTwice = this->Surfaces->facing && this->Setup.settings.numberOfReflections > 1;
+  if (!this->MayReflectTwice && dropsFaintPaths(this->Setup.settings) &&
     this->isSkipped(extent.mostInUnit, extent.farthest, extent.nearest))
   {
     return false;
   }
   this->Lit = &this->Quadrature.place().samples;
-  this->Lost = this->Unplaced = this->Quadrature.dropped();
-  this->Skipped |= this->Unplaced > 0.0 ? SkippedDirectPaths : 0u;
+  this->Lost = this->DroppedByQuadrature = this->Quadrature.dropped();
+  this->Skipped |= this->DroppedByQuadrature > 0.0 ? SkippedDirectPaths : 0u;
   return true;
 }
 
@@ -182,7 +183,7 @@ bool BeamLighting::collectPaths(std::size_t beam, BeamTrace& trace)
   }
   else
   {
-    this->startFrom(this->Facing ? this->Block.pathStartsOf(beam, trace) : *trace.hits);
+    this->startFrom(this->MayReflectTwice ? this->Block.pathStartsOf(beam, trace) : *trace.hits);
   }
   if (!trace.secondary)
   {
@@ -208,7 +209,7 @@ bool BeamLighting::collectPaths(std::size_t beam, BeamTrace& trace)
     paths.surfaces = this->Surfaces;
     paths.cells = this->Cells ? &this->Cells->samples : nullptr;
   }
-  const double direct = this->Direct + this->Unplaced;
+  const double direct = this->Direct + this->DroppedByQuadrature;
   if (dropsFaintPaths(this->Setup.settings) &&
     this->mayBeLeftOut(this->Lit->farthest, this->Lit->nearest))
   {
@@ -227,7 +228,7 @@ bool BeamLighting::mayBePerceived(double most, double ofPaths)
 {
   const BeamSamples& samples = *this->Lit;
   const bool drops = dropsFaintPaths(this->Setup.settings);
-  const double others = this->Unplaced + ofPaths;
+  const double others = this->DroppedByQuadrature + ofPaths;
   if (drops &&
     this->isSkipped(most * this->OfLit.directSum + others, samples.farthest, samples.nearest))
   {

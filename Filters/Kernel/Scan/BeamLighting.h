@@ -120,13 +120,13 @@ private:
   /// Surfaces that the beam sees, for mirror paths by regions; with hidden parts if it is in cells.
   /// Null: mirror paths start from the rays.
   const VisiblePolygons* Surfaces = nullptr;
-  bool Facing = false;          ///< an integrated beam may have paths over two reflections
+  bool MayReflectTwice = false; ///< an integrated beam may have paths over two reflections
   Throughput OfLit;             ///< throughputs of the direct echoes of `Lit`
   Throughput OfStarts;          ///< throughputs at `Starts`, if these are not `Lit`
   std::vector<double> Energies; ///< energies of the direct echoes, J
   std::vector<SecondaryPath> Paths;
-  double Direct = 0.0;   ///< sum of `Energies` before any is dropped, J
-  double Unplaced = 0.0; ///< PolygonQuadrature::dropped(), J
+  double Direct = 0.0;              ///< sum of `Energies` before any is dropped, J
+  double DroppedByQuadrature = 0.0; ///< PolygonQuadrature::dropped(), J
   double Radiance = 0.0;
   double Lost = 0.0;
   std::uint32_t Skipped = 0;

@@ -6,7 +6,7 @@
  *
  * Each part is found when it is first needed. A scan with other coefficients, limits, noise or
  * attenuation traces nothing that is kept. A beam that meets nothing takes 72 bytes, a hit 37, a
- * connection of two hits 85.
+ * connection of two hits 81.
  *
  * Source: none.
  * Valid: geometry for one traceKey() (TraceCache.h), `lit` for one LightKey.
@@ -30,17 +30,17 @@
 namespace avianlidar
 {
 /// View of a beam whose rays are its samples.
-struct RaysAlone
+struct RayView
 {
 };
 /// View of a beam that no surface enters.
-struct NoSurfaces
+struct EmptyView
 {
 };
 
 /// The view of a beam, in the order of DirectEcho. Pointers are not null.
-using BeamView = std::variant<std::monostate, NoSurfaces, std::unique_ptr<VisiblePolygons>,
-  std::unique_ptr<CellSamples>, RaysAlone>;
+using BeamView = std::variant<std::monostate, EmptyView, std::unique_ptr<VisiblePolygons>,
+  std::unique_ptr<CellSamples>, RayView>;
 
 struct BeamTrace
 {

@@ -8,7 +8,7 @@
 
 namespace avianlidar
 {
-bool takeOver(LightKey& key, const ScanSetup& setup)
+bool updateKey(LightKey& key, const ScanSetup& setup)
 {
   // The key leaves out what cannot differ: a lit beam belongs to a trace, and so to a tree
   // (traceKey()); the largest gain and the noise plan act through the needs; beams that movers

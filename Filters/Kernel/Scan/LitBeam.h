@@ -62,7 +62,7 @@ struct LightKey
 };
 
 /// Set the key to that of a setup. @return false if it has changed
-bool takeOver(LightKey& key, const ScanSetup& setup);
+bool updateKey(LightKey& key, const ScanSetup& setup);
 }
 
 #endif

@@ -89,15 +89,15 @@ MovedBeams::MovedBeams(const ScanSetup& setup, const ScanBeams& beams, BeamSampl
   , Width(BeamShape(setup.sensor).width())
   , Sights(sights)
   , All(setup.movers->size())
-  , Simulator(setup, this->One, false, sampler, std::move(wanted))
+  , Simulator(setup, this->CurrentBeam, false, sampler, std::move(wanted))
   , Units(setup.sensor.samplingInterval, setup.sensor.pulseWidth, setup.sensor.rangeGate,
       setup.sensor.minimumRange)
   , Trace(1)
 {
-  this->One.ids.resize(1);
-  this->One.origins.resize(1);
-  this->One.directions.resize(1);
-  this->One.times.resize(1);
+  this->CurrentBeam.ids.resize(1);
+  this->CurrentBeam.origins.resize(1);
+  this->CurrentBeam.directions.resize(1);
+  this->CurrentBeam.times.resize(1);
   std::iota(this->All.begin(), this->All.end(), 0u);
   if (sights)
   {
@@ -131,21 +131,21 @@ void MovedBeams::find(std::size_t begin, std::size_t end)
   {
     this->ManyBegin = begin;
     this->ManyEnd = std::min(this->Beams.size(), std::max(end, begin + BeamsTogether));
-    this->findAmong(this->All, this->ManyBegin, this->ManyEnd, this->OfMany);
+    this->findAmong(this->All, this->ManyBegin, this->ManyEnd, this->NearMany);
   }
-  this->findAmong(this->OfMany, begin, end, this->OfBlock);
+  this->findAmong(this->NearMany, begin, end, this->NearBlock);
   this->Touching.resize(std::max(this->Touching.size(), end - begin));
   for (std::size_t beam = begin; beam < end; ++beam)
   {
     std::vector<Touch>& touching = this->Touching[beam - begin];
     touching.clear();
-    if (this->OfBlock.empty())
+    if (this->NearBlock.empty())
     {
       continue;
     }
     const BeamFrame frame =
       makeBeamFrame(this->Beams.origins[beam], this->Beams.directions[beam], this->Width);
-    for (const std::uint32_t m : this->OfBlock)
+    for (const std::uint32_t m : this->NearBlock)
     {
       const Mover& mover = (*this->Setup.movers)[m];
       Touch touch{ m, {} };
@@ -219,10 +219,10 @@ void MovedBeams::simulate(
     scene.place(this->Setup.firstTriangles[touch.mover], this->Mesh);
   }
   scene.finish();
-  this->One.ids[0] = this->Beams.ids[beam];
-  this->One.origins[0] = this->Beams.origins[beam];
-  this->One.directions[0] = this->Beams.directions[beam];
-  this->One.times[0] = this->Beams.timeOf(beam);
+  this->CurrentBeam.ids[0] = this->Beams.ids[beam];
+  this->CurrentBeam.origins[0] = this->Beams.origins[beam];
+  this->CurrentBeam.directions[0] = this->Beams.directions[beam];
+  this->CurrentBeam.times[0] = this->Beams.timeOf(beam);
   this->Trace[0] = BeamTrace{};
   this->Simulator.trace(0, 1, this->Trace);
   this->Simulator.light(0, this->Trace[0], echoes, report);

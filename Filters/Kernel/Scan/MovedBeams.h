@@ -68,16 +68,16 @@ private:
   const ScanBeams& Beams;
   const BeamWidth Width;
   const bool Sights;
-  std::vector<std::uint32_t> All;    ///< all movers
-  std::vector<std::uint32_t> OfMany; ///< movers that may touch beams [ManyBegin, ManyEnd)
+  std::vector<std::uint32_t> All;      ///< all movers
+  std::vector<std::uint32_t> NearMany; ///< movers that may touch beams [ManyBegin, ManyEnd)
   std::size_t ManyBegin = 0;
   std::size_t ManyEnd = 0;
   std::size_t First = 0;                    ///< first beam of the block
-  std::vector<std::uint32_t> OfBlock;       ///< movers that may touch the block
+  std::vector<std::uint32_t> NearBlock;     ///< movers that may touch the block
   std::vector<std::vector<Touch>> Touching; ///< movers of each beam of the block
 
   // The beam being simulated.
-  ScanBeams One;
+  ScanBeams CurrentBeam;
   BeamSimulator Simulator;
   RangeUnitAccumulator Units; ///< energies that one mover returns
   std::vector<BeamTrace> Trace;

@@ -9,15 +9,15 @@ namespace avianlidar
 namespace
 {
 /// Rays with hits between two checks for an abort. They take milliseconds.
-constexpr std::size_t RaysBetweenLooks = 1600;
+constexpr std::size_t RaysBetweenChecks = 1600;
 
 /// Cost of one beam integrated over polygons, measured in rays.
-constexpr std::size_t RaysLikePolygons = 100;
+constexpr std::size_t CostOfPolygonsInRays = 100;
 /// Rays of a beam's cells that cost as much as one traced ray.
-constexpr double RaysOfGrid = 32.0;
+constexpr double CellRaysPerTracedRay = 32.0;
 
 /// Samplers of more rays per beam are not kept between runs.
-constexpr int ManyRays = 10000;
+constexpr int MostRaysOfKeptSampler = 10000;
 
 /// Results of one block of beams.
 struct Block
@@ -78,7 +78,7 @@ public:
   }
 
   /// Check for an abort, on any thread. @return false to stop
-  bool goOn(int thread)
+  bool shouldContinue(int thread)
   {
     return thread == 0
       ? this->report(static_cast<double>(this->Done) / static_cast<double>(this->Beams))
@@ -107,12 +107,12 @@ public:
     , Result(result)
     , Sights(sights)
     , Size(beamsPerBlock(setup.settings.raysPerBeam))
-    , RaysOfCells(
-        static_cast<std::size_t>(densityOfCells(setup.settings.raysPerBeam).rays() / RaysOfGrid))
+    , CostOfCellsInRays(static_cast<std::size_t>(
+        densityOfCells(setup.settings.raysPerBeam).rays() / CellRaysPerTracedRay))
     , Progress(beams.size(), keepGoing)
     , Blocks((beams.size() + this->Size - 1) / this->Size)
     , Workers(loopThreads(threads))
-    , Held(cache.bytes() - beams.size() * sizeof(BeamTrace))
+    , BytesHeld(cache.bytes() - beams.size() * sizeof(BeamTrace))
   {
     this->Result.reports.resize(beams.size());
     const std::uint32_t rays = tracedRaysOf(setup.settings);
@@ -133,7 +133,7 @@ public:
       {
         worker = std::make_unique<Worker>(
           this->Setup, this->Beams, this->Cache.stays, *this->Cache.samplers[thread],
-          [this, thread] { return this->Progress.goOn(thread); }, this->Sights);
+          [this, thread] { return this->Progress.shouldContinue(thread); }, this->Sights);
       }
       this->scan(begin, end, *worker, this->Blocks[begin / this->Size], thread);
     };
@@ -146,7 +146,7 @@ public:
     catch (const WorkStopped&)
     {
     }
-    if (this->Setup.settings.raysPerBeam > ManyRays)
+    if (this->Setup.settings.raysPerBeam > MostRaysOfKeptSampler)
     {
       this->Cache.samplers.clear(); // they are large, and fast to make again
     }
@@ -167,7 +167,7 @@ private:
     {
       heldBefore += traces[b].held;
     }
-    this->Held -= heldBefore;
+    this->BytesHeld -= heldBefore;
     if (worker.moved)
     {
       worker.moved->find(begin, end);
@@ -195,7 +195,7 @@ private:
       }
       block.raysTraced += report.raysTracedNow;
       this->Progress.beamDone();
-      this->lookUp(b, thread, raysSince);
+      this->checkForAbort(b, thread, raysSince);
       this->keep(traces[b]);
     }
     sortSeenPlanes(block.planes);
@@ -204,30 +204,30 @@ private:
   /// Keep a beam only as far as memory allows.
   void keep(BeamTrace& trace)
   {
-    if (trace.lit && this->Held + trace.held > this->Maximum)
+    if (trace.lit && this->BytesHeld + trace.held > this->Maximum)
     {
       trace.lit.reset(); // hits save more time than light
       trace.held = trace.heldBytes();
     }
     const std::size_t bytes = trace.held;
-    if (bytes > 0 && this->Held.fetch_add(bytes) + bytes > this->Maximum)
+    if (bytes > 0 && this->BytesHeld.fetch_add(bytes) + bytes > this->Maximum)
     {
       trace = BeamTrace{};
-      this->Held -= bytes;
+      this->BytesHeld -= bytes;
     }
   }
 
   /// Check for an abort once `rays`, the cost since the last check, is large enough.
-  void lookUp(std::size_t b, int thread, std::size_t& rays)
+  void checkForAbort(std::size_t b, int thread, std::size_t& rays)
   {
     const BeamTrace& trace = this->Cache.beams[b];
     rays += trace.hits ? this->Result.reports[b].counters.raysTraced
-                       : (trace.polygons() ? RaysLikePolygons : 0);
-    rays += trace.cells() ? this->RaysOfCells : 0;
-    if (rays > RaysBetweenLooks)
+                       : (trace.polygons() ? CostOfPolygonsInRays : 0);
+    rays += trace.cells() ? this->CostOfCellsInRays : 0;
+    if (rays > RaysBetweenChecks)
     {
       rays = 0;
-      if (!this->Progress.goOn(thread))
+      if (!this->Progress.shouldContinue(thread))
       {
         throw WorkStopped();
       }
@@ -265,12 +265,12 @@ private:
   const std::size_t Maximum; ///< most memory for kept beams, bytes
   ScanResult& Result;
   const bool Sights;
-  const std::size_t Size;        ///< beams of a block
-  const std::size_t RaysOfCells; ///< cost of a beam in cells, in rays
+  const std::size_t Size;              ///< beams of a block
+  const std::size_t CostOfCellsInRays; ///< cost of a beam in cells, in rays
   ScanProgress Progress;
   std::vector<Block> Blocks;
   std::vector<std::unique_ptr<Worker>> Workers;
-  std::atomic<std::size_t> Held; ///< memory of kept beams, bytes
+  std::atomic<std::size_t> BytesHeld; ///< memory of kept beams, bytes
 };
 }
 

@@ -24,20 +24,20 @@ std::size_t ScanBlock::trace(std::size_t begin, std::size_t end, std::vector<Bea
   this->First = begin;
   this->GeometryBeam = NoBeam;
   this->TracerBeam = NoBeam;
-  this->Slots.resize(std::max(this->Slots.size(), end - begin));
+  this->BeamStates.resize(std::max(this->BeamStates.size(), end - begin));
   this->Frames.clear();
   this->Traced.clear();
   this->FramesOfRays.clear();
   this->TracedRays.clear();
   for (std::size_t beam = begin; beam < end; ++beam)
   {
-    Slot& slot = this->slotOf(beam);
+    BeamState& slot = this->stateOf(beam);
     slot.triangles.clear();
     slot.counters = {};
     slot.frame.reset();
     slot.rays.resize(0);
     const BeamTrace& known = traces[beam];
-    const bool lacks = known.direct() == DirectEcho::Unknown || this->lacksStarts(known);
+    const bool lacks = known.direct() == DirectEcho::Unknown || this->needsPathStarts(known);
     if (lacks && !(leaveOut && leaveOut(beam)))
     {
       this->Frames.push_back(this->frameOf(beam));
@@ -48,7 +48,7 @@ std::size_t ScanBlock::trace(std::size_t begin, std::size_t end, std::vector<Bea
   {
     for (const std::size_t beam : this->Traced)
     {
-      traces[beam].view = RaysAlone{};
+      traces[beam].view = RayView{};
     }
     this->FramesOfRays = this->Frames;
     this->TracedRays = this->Traced;
@@ -60,7 +60,7 @@ std::size_t ScanBlock::trace(std::size_t begin, std::size_t end, std::vector<Bea
   this->traceRays();
   for (const std::size_t beam : this->Traced)
   {
-    if (this->lacksStarts(traces[beam]) && this->slotOf(beam).triangles.empty())
+    if (this->needsPathStarts(traces[beam]) && this->stateOf(beam).triangles.empty())
     {
       traces[beam].hits = std::make_unique<BeamSamples>(); // none of its rays hits anything
       traces[beam].hits->rays = tracedRaysOf(this->Setup.settings);
@@ -70,7 +70,7 @@ std::size_t ScanBlock::trace(std::size_t begin, std::size_t end, std::vector<Bea
 }
 
 /// True if paths over two reflections may start from the untraced rays of a beam in cells.
-bool ScanBlock::lacksStarts(const BeamTrace& trace) const
+bool ScanBlock::needsPathStarts(const BeamTrace& trace) const
 {
   return trace.cells() && !trace.hits && this->Setup.settings.numberOfReflections > 1;
 }
@@ -82,7 +82,7 @@ void ScanBlock::findViews(std::vector<BeamTrace>& traces)
   {
     if (traces[beam].direct() == DirectEcho::Unknown)
     {
-      traces[beam].view = NoSurfaces{};
+      traces[beam].view = EmptyView{};
     }
   }
   this->Candidates.begin(this->Scene, this->Frames.data(), this->Frames.size(),
@@ -90,12 +90,12 @@ void ScanBlock::findViews(std::vector<BeamTrace>& traces)
   while (this->Candidates.next())
   {
     const std::size_t beam = this->Traced[this->Candidates.beam()];
-    Slot& slot = this->slotOf(beam);
+    BeamState& slot = this->stateOf(beam);
     slot.counters.nodesVisited += this->Candidates.nodesVisited();
     BeamTrace& trace = traces[beam];
     trace.view = this->Views.find(
       this->Beams.ids[beam], *slot.frame, this->Candidates.triangles(), slot.counters);
-    if (trace.direct() == DirectEcho::Rays || this->lacksStarts(trace))
+    if (trace.direct() == DirectEcho::Rays || this->needsPathStarts(trace))
     {
       this->FramesOfRays.push_back(*slot.frame);
       this->TracedRays.push_back(beam);
@@ -112,7 +112,7 @@ void ScanBlock::traceRays()
   const BlockHits& found = this->Tracer.traceBlock(block, this->Setup.settings.traceMode);
   for (std::size_t k = 0; k < this->TracedRays.size(); ++k)
   {
-    Slot& slot = this->slotOf(this->TracedRays[k]);
+    BeamState& slot = this->stateOf(this->TracedRays[k]);
     avianlidar::addCounters(found.counters[k], slot.counters);
     if (const std::uint32_t* const triangles = found.triangles[k])
     {
@@ -123,7 +123,7 @@ void ScanBlock::traceRays()
 
 const BeamFrame& ScanBlock::frameOf(std::size_t beam)
 {
-  Slot& slot = this->slotOf(beam);
+  BeamState& slot = this->stateOf(beam);
   if (!slot.frame)
   {
     slot.frame =
@@ -134,7 +134,7 @@ const BeamFrame& ScanBlock::frameOf(std::size_t beam)
 
 const BeamRays& ScanBlock::raysOf(std::size_t beam)
 {
-  Slot& slot = this->slotOf(beam);
+  BeamState& slot = this->stateOf(beam);
   if (slot.rays.size() == 0)
   {
     this->Sampler.draw(this->Setup.settings.seed, this->Beams.ids[beam], slot.rays);
@@ -144,7 +144,7 @@ const BeamRays& ScanBlock::raysOf(std::size_t beam)
 
 void ScanBlock::takeHits(std::size_t beam, BeamTrace& trace)
 {
-  const std::vector<std::uint32_t>& triangles = this->slotOf(beam).triangles;
+  const std::vector<std::uint32_t>& triangles = this->stateOf(beam).triangles;
   if (!triangles.empty())
   {
     this->makeHits(beam, triangles, trace);
@@ -206,6 +206,6 @@ BeamTracer& ScanBlock::tracerOf(std::size_t beam)
 
 void ScanBlock::addCounters(std::size_t beam, const TraceCounters& more)
 {
-  avianlidar::addCounters(more, this->slotOf(beam).counters);
+  avianlidar::addCounters(more, this->stateOf(beam).counters);
 }
 }

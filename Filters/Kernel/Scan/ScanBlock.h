@@ -60,12 +60,12 @@ public:
   BeamTracer& tracerOf(std::size_t beam);
 
   /// Cost of tracing the beam in this run.
-  TraceCounters& countersOf(std::size_t beam) { return this->slotOf(beam).counters; }
+  TraceCounters& countersOf(std::size_t beam) { return this->stateOf(beam).counters; }
   void addCounters(std::size_t beam, const TraceCounters& more);
 
 private:
   /// A beam of the block.
-  struct Slot
+  struct BeamState
   {
     std::optional<BeamFrame> frame;       ///< none until first needed
     BeamRays rays;                        ///< empty until first needed
@@ -74,8 +74,8 @@ private:
   };
   static constexpr std::size_t NoBeam = static_cast<std::size_t>(-1);
 
-  Slot& slotOf(std::size_t beam) { return this->Slots[beam - this->First]; }
-  bool lacksStarts(const BeamTrace& trace) const;
+  BeamState& stateOf(std::size_t beam) { return this->BeamStates[beam - this->First]; }
+  bool needsPathStarts(const BeamTrace& trace) const;
   void findViews(std::vector<BeamTrace>& traces);
   void traceRays();
   void makeHits(std::size_t beam, const std::vector<std::uint32_t>& triangles, BeamTrace& trace);
@@ -92,7 +92,7 @@ private:
   ViewFinder Views;
   std::vector<std::uint32_t> Own; ///< triangles at the rays of an integrated beam
   std::size_t First = 0;          ///< first beam of the block
-  std::vector<Slot> Slots;
+  std::vector<BeamState> BeamStates;
   std::size_t GeometryBeam = NoBeam; ///< beam that `Geometry` belongs to
   std::size_t TracerBeam = NoBeam;   ///< beam that `Tracer` is set to
 

@@ -74,7 +74,7 @@ void TraceCache::follow(const ScanSetup& setup, const ScanBeams& scanned, std::s
   }
   this->key = wanted;
   this->scan = checksum;
-  if (!takeOver(this->light, setup))
+  if (!updateKey(this->light, setup))
   {
     this->forgetLight();
   }

@@ -25,7 +25,7 @@ BeamView ViewFinder::find(std::uint64_t beam, const BeamFrame& frame,
   const SeenByBeam seen = this->Polygons.find(polygons);
   if (seen == SeenByBeam::Nothing)
   {
-    return NoSurfaces{};
+    return EmptyView{};
   }
   if (seen == SeenByBeam::Polygons && !this->meetsBorders(frame) &&
     this->Quadrature.fits(*polygons))
@@ -35,7 +35,7 @@ BeamView ViewFinder::find(std::uint64_t beam, const BeamFrame& frame,
   const std::vector<const BeamSurface*>& entering = this->Polygons.candidates();
   std::unique_ptr<CellSamples> cells = entering.empty() ? this->findCrowded(beam, frame, cost)
                                                         : this->Cells.find(beam, frame, entering);
-  return cells ? BeamView(std::move(cells)) : BeamView(RaysAlone{});
+  return cells ? BeamView(std::move(cells)) : BeamView(RayView{});
 }
 
 /// Cells of a beam that too many triangles enter for lists. @return null: too many strips

@@ -20,7 +20,7 @@ void BlockRays::rayByRay(std::uint32_t b)
 {
   const BeamFrame& frame = this->Block.frames[b];
   const BeamRays& rays = this->Block.source(b);
-  std::uint32_t* const triangles = this->room();
+  std::uint32_t* const triangles = this->nextHits();
   const BeamPlaneMap map(frame);
   BeamRayVisitor visitor(this->Scene, frame, map);
   bool any = false;
@@ -36,7 +36,7 @@ void BlockRays::rayByRay(std::uint32_t b)
   }
   if (any)
   {
-    this->keep(b, rays.size());
+    this->commitHits(b, rays.size());
   }
 }
 
@@ -58,7 +58,7 @@ void BlockRays::packetsOfBeam(std::uint32_t b, const EntryPoints* entryPoints)
   const std::size_t count = rays.size();
   const std::vector<std::uint32_t>& order =
     this->Block.inOrder ? this->Work.order.asTheyCome(count) : this->Work.order.of(count);
-  std::uint32_t* const triangles = this->room();
+  std::uint32_t* const triangles = this->nextHits();
   RayPacket& packet = this->Work.packet;
   packet.beam = &this->Block.frames[b];
   bool any = false;
@@ -85,7 +85,7 @@ void BlockRays::packetsOfBeam(std::uint32_t b, const EntryPoints* entryPoints)
   }
   if (any)
   {
-    this->keep(b, count);
+    this->commitHits(b, count);
   }
 }
 
@@ -111,10 +111,10 @@ void BlockRays::packetOfBeams(const BeamCluster& cluster, const EntryPoints* ent
   for (std::size_t k = 0; k < cluster.count; ++k)
   {
     const std::uint32_t rays = this->Block.rays;
-    std::copy(triangles, triangles + rays, this->room());
+    std::copy(triangles, triangles + rays, this->nextHits());
     if (std::any_of(triangles, triangles + rays, [](std::uint32_t t) { return t != NoTriangle; }))
     {
-      this->keep(cluster.beams[k], rays);
+      this->commitHits(cluster.beams[k], rays);
     }
     triangles += rays;
   }

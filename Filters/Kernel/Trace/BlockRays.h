@@ -59,10 +59,10 @@ private:
   void trace(const EntryPoints* entryPoints, std::uint32_t beam);
 
   /// Memory for the triangles of the next beam, which keep() makes its hits.
-  std::uint32_t* room() { return this->Work.triangles.data() + this->Work.used; }
-  void keep(std::uint32_t beam, std::size_t count)
+  std::uint32_t* nextHits() { return this->Work.triangles.data() + this->Work.used; }
+  void commitHits(std::uint32_t beam, std::size_t count)
   {
-    this->Work.found.triangles[beam] = this->room();
+    this->Work.found.triangles[beam] = this->nextHits();
     this->Work.used += count;
   }
   TraceCounters& counters(std::uint32_t beam) { return this->Work.found.counters[beam]; }

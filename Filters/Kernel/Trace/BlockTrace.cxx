@@ -40,23 +40,23 @@ public:
       }
       if (this->Mode == TraceMode::Beams)
       {
-        this->alone(b);
+        this->traceAlone(b);
         continue;
       }
       const BeamFrame& frame = this->Block.frames[b];
       if (before && !areTogether(*before, frame))
       {
-        this->groups();
+        this->traceCollected();
       }
       before = &frame;
       this->Work.beams.push_back(b);
     }
-    this->groups();
+    this->traceCollected();
   }
 
 private:
   /// Trace the collected beams, which have one apex and width.
-  void groups()
+  void traceCollected()
   {
     this->Block.rays < FewestRaysInGroup ? this->consecutive() : this->inGroups();
     this->Work.beams.clear();
@@ -110,7 +110,7 @@ private:
     const std::int64_t visited = findEntryPoints(this->Tree.wide, apex, this->Work.group);
     if (visited < 0)
     {
-      this->apart(all, number);
+      this->halveGroup(all, number);
       return;
     }
     const auto share = static_cast<std::uint64_t>(visited) / all.count;
@@ -129,7 +129,7 @@ private:
   }
 
   /// Halve a group whose beams lie too far apart.
-  void apart(const BeamCluster& all, int clusters)
+  void halveGroup(const BeamCluster& all, int clusters)
   {
     if (clusters == 1)
     {
@@ -149,12 +149,12 @@ private:
     }
     else
     {
-      this->alone(cluster.beams[0]);
+      this->traceAlone(cluster.beams[0]);
     }
   }
 
   /// Find the triangles that one beam may meet, then trace its rays against all of them.
-  void alone(std::uint32_t b)
+  void traceAlone(std::uint32_t b)
   {
     EntryPoints& entryPoints = this->Work.group.entryPoints[0];
     const PotentialTriangles found = findPotential(

@@ -94,7 +94,7 @@ public:
     {
       const PacketChild& child = children[i];
       push(child.lane, child.rays, child.nearest);
-      this->askFor(node.first[child.lane], node.count[child.lane]);
+      this->prefetch(node.first[child.lane], node.count[child.lane]);
     }
   }
 
@@ -126,7 +126,7 @@ public:
 
 private:
   /// Prefetch a node, or the corners of a leaf's triangles.
-  void askFor(std::uint32_t first, std::uint32_t count) const
+  void prefetch(std::uint32_t first, std::uint32_t count) const
   {
     if (count > 0)
     {

@@ -354,7 +354,7 @@ double BeamCells::areaInDiscOf(std::uint32_t triangle) const
   return areaInDisc(ring);
 }
 
-void BeamCells::leaveSmallObjects(
+void BeamCells::keepSmallObjects(
   std::uint64_t beam, const BeamFrame& frame, std::vector<std::uint32_t>& numbers)
 {
   this->begin(beam, frame);
@@ -402,7 +402,7 @@ void BeamCells::planAll()
 const BeamRays& BeamCells::place(
   std::uint64_t beam, const BeamFrame& frame, std::vector<std::uint32_t>& numbers)
 {
-  this->leaveSmallObjects(beam, frame, numbers);
+  this->keepSmallObjects(beam, frame, numbers);
   this->Seen.begin(frame);
   this->Seen.add(numbers.data(), numbers.size());
   this->All = &this->Seen.sort();

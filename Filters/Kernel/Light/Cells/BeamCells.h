@@ -60,7 +60,7 @@ public:
 
   /// Keep only the triangles of small objects, which alone decide where the rays of place() lie.
   /// The input, maybe of millions, must contain every triangle that enters the beam.
-  void leaveSmallObjects(
+  void keepSmallObjects(
     std::uint64_t beam, const BeamFrame& frame, std::vector<std::uint32_t>& numbers);
 
   /// Place the rays of a beam that too many triangles enter for lists. Its cells are divided as

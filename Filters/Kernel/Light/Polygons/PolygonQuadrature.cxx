@@ -59,7 +59,7 @@ void PolygonQuadrature::begin(const BeamFrame& frame, const VisiblePolygons& see
       this->Whole.nearest = std::min(this->Whole.nearest, (1.0 - 1e-9) / bounds.extent.mostInverse);
       this->Whole.farthest = std::max(this->Whole.farthest,
         Surely * std::sqrt(1.0 + this->Rule.tangent2()) / bounds.extent.leastInverse);
-      this->Whole.mostReturned += bounds.returned * bounds.share;
+      this->Whole.returnBound += bounds.returned * bounds.share;
       this->Whole.mostInUnit += bounds.inUnit;
       largest = std::max(largest, bounds.returned);
       for (const std::uint32_t triangle : { surface.triangle, surface.other })
@@ -70,10 +70,10 @@ void PolygonQuadrature::begin(const BeamFrame& frame, const VisiblePolygons& see
     });
   // The rules are exact only below the cap of throughAperture().
   this->Gathers = this->Setup.sensor.receiverAperture > 0.0 && largest >= 1.0 - 1e-9;
-  this->Whole.mostReturned = Surely * this->Setup.sensor.pulseEnergy *
-    std::min(this->Whole.mostReturned, largest) *
+  this->Whole.returnBound = Surely * this->Setup.sensor.pulseEnergy *
+    std::min(this->Whole.returnBound, largest) *
     transmission(this->Setup.attenuation(), 2.0 * this->Whole.nearest);
-  this->Whole.mostInUnit = std::min(this->Whole.mostReturned, this->Whole.mostInUnit);
+  this->Whole.mostInUnit = std::min(this->Whole.returnBound, this->Whole.mostInUnit);
   this->drop();
 }
 
@@ -249,6 +249,6 @@ double PolygonQuadrature::boundOf(
     }
   }
   return bound + (this->Gathers ? ErrorOfGathered : ErrorOfUnit) * energy +
-    this->Misplaced * this->Whole.mostReturned;
+    this->Misplaced * this->Whole.returnBound;
 }
 }

@@ -55,11 +55,11 @@ public:
   /// Extent and bounds of a beam, known without its nodes.
   struct Extent
   {
-    double nearest;      ///< lower bound of ranges, m
-    double farthest;     ///< upper bound of ranges, m
-    double mostReturned; ///< upper bound of the energy that returns, J
-    double mostInUnit;   ///< upper bound of the energy that returns in one range unit, J
-    double mostAlbedo;   ///< largest albedo of the visible surfaces
+    double nearest;     ///< lower bound of ranges, m
+    double farthest;    ///< upper bound of ranges, m
+    double returnBound; ///< upper bound of the energy that returns, J
+    double mostInUnit;  ///< upper bound of the energy that returns in one range unit, J
+    double mostAlbedo;  ///< largest albedo of the visible surfaces
   };
   const Extent& extent() const { return this->Whole; }
 

@@ -114,7 +114,7 @@ void ConnectionFinder::find(const SecondaryBeam& beam, std::uint32_t partners)
   };
   const std::uint32_t rays = beam.samples.rays;
   this->chooseShifts(beam.id, rays, partners);
-  this->lookAtPairs(beam.samples, beam.geometry);
+  this->findPartners(beam.samples, beam.geometry);
   // With rows of 64 partners the partners of a ray come in the order of path numbers.
   const std::uint32_t rows = (partners + 63) / 64;
   std::size_t found = 0;
@@ -128,7 +128,7 @@ void ConnectionFinder::find(const SecondaryBeam& beam, std::uint32_t partners)
   const double weight = found > 0 ? this->partnerWeight(beam, 0, rays - 1, 1.0) : 0.0;
   for (std::uint32_t one = 0; one < beam.samples.size(); ++one)
   {
-    beam.askWhetherWanted(one);
+    beam.throwIfStopped(one);
     const std::uint32_t n = beam.samples.ray[one];
     for (std::uint32_t row = 0; row < rows; ++row)
     {
@@ -146,7 +146,7 @@ void ConnectionFinder::find(const SecondaryBeam& beam, std::uint32_t partners)
         {
           // A stratum holds at most three rays, and these have consecutive numbers.
           const bool distant = partner > n + 2 || n > partner + 2;
-          connections.add(one, two, k,
+          connections.add(one, two,
             uniform && distant
               ? weight
               : this->partnerWeight(beam, n, partner, this->solidAngleShare(beam, partner)));
@@ -158,7 +158,7 @@ void ConnectionFinder::find(const SecondaryBeam& beam, std::uint32_t partners)
 }
 
 /// Set HitOfRay, Rays and Partners.
-void ConnectionFinder::lookAtPairs(const BeamSamples& hits, const SampleGeometry& geometry)
+void ConnectionFinder::findPartners(const BeamSamples& hits, const SampleGeometry& geometry)
 {
   const std::size_t rays = hits.rays;
   RayLanes& lanes = this->Rays;

@@ -53,7 +53,7 @@ private:
     const SecondaryBeam& beam, std::uint32_t n, std::uint32_t partner, double partnerShare) const;
   double solidAngleShare(const SecondaryBeam& beam, std::uint32_t ray) const;
 
-  void lookAtPairs(const BeamSamples& hits, const SampleGeometry& geometry);
+  void findPartners(const BeamSamples& hits, const SampleGeometry& geometry);
 
   const ScanSetup& Setup;
   const BeamShape Shape;

@@ -51,7 +51,7 @@ public:
   std::size_t surfaces() const { return this->Surfaces.size(); }
 
   /// Upper bound of the sum of the throughputs of the mirror paths that start on a surface.
-  /// @param returned mostOverMirror()
+  /// @param returned mirrorReturnBound()
   double bound(std::size_t surface, double returned) const;
 
   /// Append the paths that start on a surface. @return number of samples drawn for them

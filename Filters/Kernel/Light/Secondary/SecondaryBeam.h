@@ -48,15 +48,15 @@ struct SecondaryBeam
 
   /// Throw WorkStopped if the work is no longer wanted. A beam of 100,000 rays takes longer than a
   /// user waits after an abort.
-  void askWhetherWanted(std::size_t step) const
+  void throwIfStopped(std::size_t step) const
   {
-    if (this->wanted && *this->wanted && step % StepsBetweenLooks == StepsBetweenLooks - 1 &&
+    if (this->wanted && *this->wanted && step % StepsBetweenChecks == StepsBetweenChecks - 1 &&
       !(*this->wanted)())
     {
       throw WorkStopped();
     }
   }
-  static constexpr std::size_t StepsBetweenLooks = 4096;
+  static constexpr std::size_t StepsBetweenChecks = 4096;
 };
 
 /// Ranges (m), unit directions and normals of the hits of a beam, for SIMD loops.

@@ -61,8 +61,8 @@ double SecondaryReflection::bound(
   const BeamSamples& samples, const Throughput& direct, bool tight) const
 {
   const bool gathers = this->Setup.sensor.receiverAperture > 0.0;
-  const double returned = mostReturned(this->Setup, samples.nearest);
-  const double overMirror = mostOverMirror(this->Setup, this->Shape, samples.nearest);
+  const double returned = returnBound(this->Setup, samples.nearest);
+  const double overMirror = mirrorReturnBound(this->Setup, this->Shape, samples.nearest);
   double budget = 0.0;
   double most = 0.0;
   samples.forEachSurface(
@@ -92,7 +92,7 @@ double SecondaryReflection::bound(double albedo, double nearest) const
 {
   const double ways = this->Setup.sensor.receiverAperture > 0.0 ? 2.0 : 1.0;
   const double returned = std::max(
-    ways * mostReturned(this->Setup, nearest), mostOverMirror(this->Setup, this->Shape, nearest));
+    ways * returnBound(this->Setup, nearest), mirrorReturnBound(this->Setup, this->Shape, nearest));
   return albedo * std::min(1.0, returned * SurelyAbove);
 }
 
@@ -243,9 +243,9 @@ double SecondaryReflection::placeMirrors(const SecondaryBeam& beam, double least
     {
       drawn += this->Regions.search(k, trace.mirrorPaths);
       trace.searched[k] = 1;
-      if (drawn >= SecondaryBeam::StepsBetweenLooks)
+      if (drawn >= SecondaryBeam::StepsBetweenChecks)
       {
-        beam.askWhetherWanted(SecondaryBeam::StepsBetweenLooks - 1);
+        beam.throwIfStopped(SecondaryBeam::StepsBetweenChecks - 1);
         drawn = 0;
       }
     }
@@ -273,7 +273,7 @@ void SecondaryReflection::measureMirrors(const SecondaryBeam& beam)
 }
 
 /// Sum of the bounds of the paths that are not traced.
-double SecondaryReflection::untracedSum(const SecondaryTrace& trace) const
+double SecondaryReflection::untracedBound(const SecondaryTrace& trace) const
 {
   double sum = 0.0;
   for (std::size_t hit = 0; hit < trace.mirror.size(); ++hit)
@@ -374,11 +374,11 @@ bool SecondaryReflection::collect(
   {
     this->Regions.begin(beam.id, beam.frame, *beam.surfaces, beam.cells);
   }
-  this->OverMirror = mostOverMirror(this->Setup, this->Shape, beam.nearest);
+  this->OverMirror = mirrorReturnBound(this->Setup, this->Shape, beam.nearest);
   this->prepare(beam, byRegions);
   this->measure(beam);
   // Largest energy of a path whose throughput is 1.
-  const double most = pulseEnergy * mostAir(beam.nearest, this->Setup.attenuation());
+  const double most = pulseEnergy * transmissionBound(beam.nearest, this->Setup.attenuation());
   const bool gathers = this->Setup.sensor.receiverAperture > 0.0;
   const double others = sumOf(this->ConnectionThroughputs) + this->mostOfShortPaths(beam);
   const auto isSilent = [&](double ofMirrors)
@@ -422,7 +422,7 @@ bool SecondaryReflection::collect(
     }
     lost += most * left;
     ofMirrors = shares ? part / std::max(1.0, this->NumberWanted) : threshold;
-    traceRegions(beam, this->MirrorThroughputs, throughputOf(ofMirrors));
+    traceMirrorPaths(beam, this->MirrorThroughputs, throughputOf(ofMirrors));
   }
   else
   {
@@ -439,7 +439,7 @@ bool SecondaryReflection::collect(
   {
     traceShortPaths(this->Setup, beam, this->Finder);
   }
-  lost += most * this->untracedSum(beam.trace);
+  lost += most * this->untracedBound(beam.trace);
   this->listPaths(beam, paths);
   energiesOfAll(pulseEnergy, this->Setup.attenuation(), paths.data(), paths.size());
   for (SecondaryPath& path : paths)

@@ -103,7 +103,7 @@ private:
   void measureMirrors(const SecondaryBeam& beam);
   double mostOfMirrors(bool byRegions) const;
   void measure(const SecondaryBeam& beam);
-  double untracedSum(const SecondaryTrace& trace) const;
+  double untracedBound(const SecondaryTrace& trace) const;
   void listPaths(const SecondaryBeam& beam, std::vector<SecondaryPath>& paths) const;
   BothWays mirrorThroughput(const SecondaryBeam& beam, const MirrorPath& path) const;
   double unsureShare(const MirrorPath& path) const;
@@ -118,7 +118,7 @@ private:
   std::vector<std::uint32_t> Triangles;      ///< triangle of each sample
   MaterialLanes Materials;                   ///< material of each sample
   std::vector<double> SpecularBounds;        ///< bound of a mirror path's throughput, by sample
-  double OverMirror = 1.0;                   ///< mostOverMirror()
+  double OverMirror = 1.0;                   ///< mirrorReturnBound()
   double NumberWanted = 0.0;                 ///< number of mirror paths that may matter, both ways
   std::vector<char> Wanted;                  ///< whether its mirror paths may matter, by surface
   std::vector<double> MirrorThroughputs;     ///< unblocked throughput of mirror paths, both ways

@@ -71,7 +71,7 @@ AVIANLIDAR_MULTIVERSION void measureAll(const SampleLanes& lanes, const std::uin
 
 std::size_t SecondaryConnections::bytes() const
 {
-  return this->one.capacity() * (3 * sizeof(std::uint32_t) + sizeof(Visibility)) +
+  return this->one.capacity() * (2 * sizeof(std::uint32_t) + sizeof(Visibility)) +
     this->length.capacity() * 9 * sizeof(double);
 }
 
@@ -79,16 +79,13 @@ void SecondaryConnections::reserve(std::size_t connections)
 {
   this->one.reserve(connections);
   this->two.reserve(connections);
-  this->number.reserve(connections);
   this->weight.reserve(connections);
 }
 
-void SecondaryConnections::add(
-  std::uint32_t hit1, std::uint32_t hit2, std::uint32_t k, double meanWeight)
+void SecondaryConnections::add(std::uint32_t hit1, std::uint32_t hit2, double meanWeight)
 {
   this->one.push_back(hit1);
   this->two.push_back(hit2);
-  this->number.push_back(k);
   this->weight.push_back(meanWeight);
 }
 

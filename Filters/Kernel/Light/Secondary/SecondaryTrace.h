@@ -6,7 +6,7 @@
  *
  * A connection is a pair of hits that face each other, with all values but materials on which the
  * energy of its path depends, in SIMD lanes. A beam that looks into a corner has M connections for
- * each ray, which take 85 bytes and some ns each.
+ * each ray, which take 81 bytes and some ns each.
  *
  * Source: paper, Sec. 3.4; angles as ReflectionGeometry (Reflectance.h).
  * Differs: see SecondaryReflection.h.
@@ -37,9 +37,8 @@ enum class Visibility : std::uint8_t
 /// hit P1, then at P2; angles at P2 belong to light from P1 to the apex (ReflectionGeometry).
 struct SecondaryConnections
 {
-  std::vector<std::uint32_t> one;    ///< hit P1
-  std::vector<std::uint32_t> two;    ///< hit P2
-  std::vector<std::uint32_t> number; ///< k: P2 is hit by the k-th partner of the ray of P1
+  std::vector<std::uint32_t> one; ///< hit P1
+  std::vector<std::uint32_t> two; ///< hit P2
   std::vector<Visibility> visibility;
   std::vector<double> weight;        ///< weight in the mean over the cone
   std::vector<double> length;        ///< from P1 to P2, m
@@ -58,8 +57,8 @@ struct SecondaryConnections
   /// Reserve memory for a number of connections.
   void reserve(std::size_t connections);
 
-  /// Add P1, P2, k and weight; measure() sets the other values of all.
-  void add(std::uint32_t hit1, std::uint32_t hit2, std::uint32_t k, double meanWeight);
+  /// Add P1, P2 and the weight; measure() sets the other values of all.
+  void add(std::uint32_t hit1, std::uint32_t hit2, double meanWeight);
   void measure(const BeamSamples& hits, const SampleGeometry& geometry);
 };
 

@@ -162,7 +162,7 @@ void traceMirrors(const ScanSetup& setup, const SecondaryBeam& beam,
   const BeamShape shape(setup.sensor);
   for (std::uint32_t hit = 0; hit < beam.samples.size(); ++hit)
   {
-    beam.askWhetherWanted(hit);
+    beam.throwIfStopped(hit);
     if (isWanted(hit))
     {
       traceMirror(setup, beam, shape, hit);
@@ -172,13 +172,14 @@ void traceMirrors(const ScanSetup& setup, const SecondaryBeam& beam,
     [](const MirrorPath& a, const MirrorPath& b) { return a.one < b.one; });
 }
 
-void traceRegions(const SecondaryBeam& beam, const std::vector<double>& throughputs, double least)
+void traceMirrorPaths(
+  const SecondaryBeam& beam, const std::vector<double>& throughputs, double least)
 {
   std::vector<MirrorPath>& paths = beam.trace.mirrorPaths;
   for (std::size_t p = 0; p < paths.size(); ++p)
   {
     MirrorPath& path = paths[p];
-    beam.askWhetherWanted(p);
+    beam.throwIfStopped(p);
     if (path.visibility != Visibility::Unknown ||
       !(throughputs[p] > 0.0 && throughputs[p] >= least))
     {
@@ -205,7 +206,7 @@ void traceShortPaths(const ScanSetup& setup, const SecondaryBeam& beam, Connecti
   const bool any = finder.findFacing(beam.samples, beam.geometry);
   for (std::uint32_t hit = 0; any && hit < beam.samples.size(); ++hit)
   {
-    beam.askWhetherWanted(hit);
+    beam.throwIfStopped(hit);
     const bool faces = finder.faces(beam.geometry.surface[hit], beam.geometry.surfaces.size());
     for (std::uint32_t k = 0; faces && k < beam.trace.partners; ++k)
     {
@@ -227,7 +228,7 @@ void traceConnections(
   };
   for (std::size_t connection = 0; connection < connections.size(); ++connection)
   {
-    beam.askWhetherWanted(connection);
+    beam.throwIfStopped(connection);
     if (isWanted(connection))
     {
       connections.visibility[connection] =

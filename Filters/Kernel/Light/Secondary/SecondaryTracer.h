@@ -30,7 +30,8 @@ void traceMirrors(const ScanSetup& setup, const SecondaryBeam& beam,
 
 /// Find whether mirror paths by regions (MirrorRegions.h) with a throughput of at least `least` are
 /// blocked, unless it is known. @param throughputs by path, if it is not blocked
-void traceRegions(const SecondaryBeam& beam, const std::vector<double>& throughputs, double least);
+void traceMirrorPaths(
+  const SecondaryBeam& beam, const std::vector<double>& throughputs, double least);
 
 /// Find the short paths of the samples, unless they are known.
 void traceShortPaths(const ScanSetup& setup, const SecondaryBeam& beam, ConnectionFinder& finder);
