@@ -31,20 +31,20 @@ class Turn
 {
 public:
   Turn(double heading, double bank)
+    : Heading(avianlidar::sinCosDegrees(heading))
+    , Bank(avianlidar::sinCosDegrees(bank))
   {
-    avianlidar::sinCosDegrees(heading, this->SinHeading, this->CosHeading);
-    avianlidar::sinCosDegrees(bank, this->SinBank, this->CosBank);
   }
   Vec3 operator()(const Vec3& p) const
   {
-    const double x = this->CosBank * p.x + this->SinBank * p.z;
-    const double z = this->CosBank * p.z - this->SinBank * p.x;
-    return { this->CosHeading * x + this->SinHeading * p.y,
-      this->CosHeading * p.y - this->SinHeading * x, z };
+    const auto [sine, cosine] = this->Bank;
+    const Vec3 level(cosine * p.x + sine * p.z, p.y, cosine * p.z - sine * p.x);
+    const auto [east, north] = this->Heading;
+    return { north * level.x + east * level.y, north * level.y - east * level.x, level.z };
   }
 
 private:
-  double SinHeading, CosHeading, SinBank, CosBank;
+  std::array<double, 2> Heading, Bank; ///< sines and cosines
 };
 }
 

@@ -8,6 +8,7 @@
 #define AvianLidarSensorPose_h
 
 #include "CloudData.h"
+#include "Vector.h"
 
 namespace avianlidar::formats
 {
@@ -30,7 +31,7 @@ public:
 private:
   Point Position{};
   /// The sensor's axes in the scene's frame.
-  std::array<Point, 3> Axes;
+  std::array<Vec3, 3> Axes;
 };
 }
 

@@ -19,7 +19,7 @@ using namespace avianlidar;
 namespace
 {
 constexpr double FullTurn = 2.0 * 3.14159265358979323846;
-const std::array<double, 3> Up{ { 0.0, 0.0, 1.0 } };
+const Vec3 Up(0.0, 0.0, 1.0);
 
 PointingErrors sway(double amplitude, double frequency = 0.5, std::int32_t seed = 0)
 {
@@ -54,12 +54,12 @@ struct Moments
 };
 
 // The beams of a part, as a scan has them.
-std::vector<std::array<double, 3>> directionsOf(
+std::vector<Vec3> directionsOf(
   const ScanPattern& pattern, const PointingErrors& errors, const ScanPart& part, int revolution)
 {
   const ScanGenerator scan(pattern);
   const Pointing pointing(errors, scan.rotor());
-  std::vector<std::array<double, 3>> all(static_cast<std::size_t>(scan.size()));
+  std::vector<Vec3> all(static_cast<std::size_t>(scan.size()));
   for (const std::int64_t i : beamsOf(pattern, part))
   {
     const ScanBeam beam = scan.beam(i);
@@ -201,7 +201,7 @@ TEST(PointingErrors, SwayTurnsAllBeamsOfAMomentAlike)
   const double angle = std::hypot(tilt[0], tilt[1]);
   // A beam along the axis of the tilt stays; one across turns by the whole angle, straight up to
   // the right-hand side of the axis.
-  const std::array<double, 3> along{ { tilt[0] / angle, tilt[1] / angle, 0.0 } };
+  const Vec3 along(tilt[0] / angle, tilt[1] / angle, 0.0);
   const auto still = pointing.direction(along, 0, 0, 12.5);
   const auto up = pointing.direction(Up, 4, 1, 12.5);
   const double expected[3] = { std::sin(angle) * along[1], -std::sin(angle) * along[0],
@@ -279,7 +279,7 @@ TEST(PointingErrors, AnyTimeGivesANumber)
   const Pointing pointing(sway(10.0, 1e6, -2147483647 - 1), Up);
   for (const double time : { 0.0, -1e-300, 2e29, -2e29 })
   {
-    const auto d = pointing.direction({ { 0.0, 1.0, 0.0 } }, std::int64_t(1) << 40, -5, time);
+    const auto d = pointing.direction(Vec3(0.0, 1.0, 0.0), std::int64_t(1) << 40, -5, time);
     EXPECT_NEAR(std::hypot(d[0], d[1], d[2]), 1.0, 1e-14) << time;
   }
 }

@@ -92,7 +92,7 @@ ScanPattern twoPrisms()
 }
 
 /// From the axis y, deg.
-double angleOf(const std::array<double, 3>& d)
+double angleOf(const Vec3& d)
 {
   return std::atan2(std::hypot(d[0], d[2]), d[1]) / static_cast<double>(Degree);
 }
@@ -109,16 +109,16 @@ TEST(Prisms, OneDeflectsByTheClosedFormTowardsItsThickEnd)
       train.phases = { 0.0 };
       const Real a = wedge * Degree;
       train.wedgeAngles = { wedge };
-      const auto leaving = steer(train, 0.0, 0.0, { { 0.0, 1.0, 0.0 } });
+      const auto leaving = steer(train, 0.0, 0.0, Vec3(0.0, 1.0, 0.0));
       const Real left = std::asin(index * std::sin(a)) - a;
       EXPECT_NEAR(std::atan2(leaving[2], leaving[1]), static_cast<double>(left), 1e-15);
       EXPECT_EQ(leaving[0], 0.0);
       train.wedgeAngles = { -wedge };
-      const auto entering = steer(train, 0.0, 0.0, { { 0.0, 1.0, 0.0 } });
+      const auto entering = steer(train, 0.0, 0.0, Vec3(0.0, 1.0, 0.0));
       const Real entered = std::asin(index * std::sin(a - std::asin(std::sin(a) / index)));
       EXPECT_NEAR(std::atan2(entering[2], entering[1]), static_cast<double>(entered), 1e-15);
       train.phases = { 90.0 };
-      const auto right = steer(train, 0.0, 0.0, { { 0.0, 1.0, 0.0 } });
+      const auto right = steer(train, 0.0, 0.0, Vec3(0.0, 1.0, 0.0));
       EXPECT_NEAR(std::atan2(right[0], right[1]), static_cast<double>(entered), 1e-15);
       EXPECT_EQ(right[2], 0.0);
     }
@@ -138,7 +138,7 @@ TEST(Prisms, ThinOnesDrawTheRoseOfTheParaxialFormula)
   for (int i = 0; i < 10000; ++i)
   {
     const double t = 1e-4 * i;
-    const auto d = steer(train, 0.0, t, { { 0.0, 1.0, 0.0 } });
+    const auto d = steer(train, 0.0, t, Vec3(0.0, 1.0, 0.0));
     const double two = 2.0 * static_cast<double>(RealPi) * t;
     EXPECT_NEAR(d[0], thin * (std::sin(7.0 * two) + std::sin(-3.0 * two)), 2e-6 * thin);
     EXPECT_NEAR(d[2], thin * (std::cos(7.0 * two) + std::cos(-3.0 * two)), 2e-6 * thin);
@@ -171,8 +171,8 @@ TEST(Prisms, ThickOnesRefractAsARayTraceByAnglesDoes)
     const double time = 5.0 * (1.0 + uniform(random));
     const Real a = 5 * uniform(random) * Degree, e = 5 * uniform(random) * Degree;
     const Wide enters{ { std::cos(e) * std::sin(a), std::cos(e) * std::cos(a), std::sin(e) } };
-    const std::array<double, 3> narrow{ { static_cast<double>(enters[0]),
-      static_cast<double>(enters[1]), static_cast<double>(enters[2]) } };
+    const Vec3 narrow(static_cast<double>(enters[0]), static_cast<double>(enters[1]),
+      static_cast<double>(enters[2]));
     const Wide expected = traced(train, time, enters);
     if (!(expected[1] > 0.1L)) // NaN where light is totally reflected
     {
@@ -203,12 +203,12 @@ TEST(Prisms, LightThatDoesNotPassIsAnError)
   train.wedgeAngles = { 45.0 };
   train.refractiveIndices = { 1.5 };
   train.rotationRates = { 1.0 };
-  EXPECT_NE(checkPrisms(train, { { { 0.0, 1.0, 0.0 } } }).find("the light of channel 0 is totally"),
+  EXPECT_NE(checkPrisms(train, { Vec3(0.0, 1.0, 0.0) }).find("the light of channel 0 is totally"),
     std::string::npos);
-  EXPECT_THROW(steer(train, 0.0, 0.0, { { 0.0, 1.0, 0.0 } }), std::runtime_error);
-  EXPECT_NE(checkPrisms(train, { { { 0.0, -1.0, 0.0 } } }), ""); // from behind
+  EXPECT_THROW(steer(train, 0.0, 0.0, Vec3(0.0, 1.0, 0.0)), std::runtime_error);
+  EXPECT_NE(checkPrisms(train, { Vec3(0.0, -1.0, 0.0) }), ""); // from behind
   train.wedgeAngles = { 41.0 };
-  EXPECT_EQ(checkPrisms(train, { { { 0.0, 1.0, 0.0 } } }), "");
+  EXPECT_EQ(checkPrisms(train, { Vec3(0.0, 1.0, 0.0) }), "");
 }
 
 TEST(Prisms, TwoOfEighteenDegreesFillTheFieldOfViewOfTheirLidar)

@@ -43,8 +43,7 @@ ScanPattern single(double azimuth, double elevation)
   return p;
 }
 
-void expectVector(
-  const std::array<double, 3>& v, double x, double y, double z, double tolerance = 1e-15)
+void expectVector(const Vec3& v, double x, double y, double z, double tolerance = 1e-15)
 {
   EXPECT_NEAR(v[0], x, tolerance);
   EXPECT_NEAR(v[1], y, tolerance);
@@ -348,8 +347,8 @@ TEST(ScanPattern, BadTablesAreNamed)
 TEST(ScanPattern, ATableOfBeamsIsTurnedAndTimed)
 {
   auto table = std::make_shared<BeamTable>();
-  table->directions = { { { 0.0, 1.0, 0.0 } }, { { 1.0, 0.0, 0.0 } }, { { 0.0, 0.0, 1.0 } } };
-  table->origins = { { { 0.0, 2.0, 0.0 } }, { { 0.0, 0.0, 0.0 } }, { { 0.0, 0.0, 3.0 } } };
+  table->directions = { Vec3(0.0, 1.0, 0.0), Vec3(1.0, 0.0, 0.0), Vec3(0.0, 0.0, 1.0) };
+  table->origins = { Vec3(0.0, 2.0, 0.0), Vec3(0.0, 0.0, 0.0), Vec3(0.0, 0.0, 3.0) };
   table->times = { 0.0, 0.05, 0.1 };
   ScanPattern p = corridor();
   p.elevationStep = -1.0; // no matter

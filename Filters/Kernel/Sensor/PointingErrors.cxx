@@ -3,7 +3,6 @@
 
 #include "Random.h"
 #include "ValueError.h"
-#include "Vector.h"
 
 #include <cmath>
 
@@ -11,52 +10,32 @@ namespace avianlidar
 {
 namespace
 {
-using Vector = std::array<double, 3>;
-
 /// A vector turned about an axis by the axis' length, rad (Rodrigues).
-Vector turned(const Vector& v, const Vector& turn)
+Vec3 turned(const Vec3& v, const Vec3& turn)
 {
-  const double angle = std::hypot(turn[0], turn[1], turn[2]);
+  const double angle = safeLength(turn);
   if (angle == 0.0)
   {
     return v;
   }
-  const Vector k{ { turn[0] / angle, turn[1] / angle, turn[2] / angle } };
-  const Vector cross{ { k[1] * v[2] - k[2] * v[1], k[2] * v[0] - k[0] * v[2],
-    k[0] * v[1] - k[1] * v[0] } };
-  const double along = k[0] * v[0] + k[1] * v[1] + k[2] * v[2];
-  const double sine = std::sin(angle);
-  const double cosine = std::cos(angle);
+  const Vec3 k = turn / angle;
   const double half = std::sin(0.5 * angle);
-  Vector result;
-  for (int i = 0; i < 3; ++i)
-  {
-    result[i] = cosine * v[i] + sine * cross[i] + 2.0 * half * half * along * k[i];
-  }
-  return result;
+  return std::cos(angle) * v + std::sin(angle) * glm::cross(k, v) +
+    (2.0 * half * half * glm::dot(k, v)) * k;
 }
 }
 
 std::string checkPointing(const PointingErrors& errors)
 {
   const char* const angle = "an rms angle of 0 to 10 degrees";
-  if (!(errors.swayAmplitude >= 0.0 && errors.swayAmplitude <= MaximumPointingError))
-  {
-    return valueError("SwayAmplitude", errors.swayAmplitude, angle);
-  }
-  if (!(errors.swayFrequency >= MinimumSwayFrequency &&
-        errors.swayFrequency <= MaximumSwayFrequency))
-  {
-    return valueError("SwayFrequency", errors.swayFrequency, "1e-6 to 1e6 Hz");
-  }
-  if (!(errors.encoderJitter >= 0.0 && errors.encoderJitter <= MaximumPointingError))
-  {
-    return valueError("EncoderJitter", errors.encoderJitter, angle);
-  }
-  return {};
+  return firstError({
+    rangeError("SwayAmplitude", errors.swayAmplitude, 0.0, 10.0, angle),
+    rangeError("SwayFrequency", errors.swayFrequency, 1e-6, 1e6, "1e-6 to 1e6 Hz"),
+    rangeError("EncoderJitter", errors.encoderJitter, 0.0, 10.0, angle),
+  });
 }
 
-Pointing::Pointing(const PointingErrors& errors, const std::array<double, 3>& rotor)
+Pointing::Pointing(const PointingErrors& errors, const Vec3& rotor)
   : Errors(errors)
   , Rotor(rotor)
 {
@@ -100,13 +79,11 @@ double Pointing::azimuthError(std::int64_t column, std::int32_t revolution) cons
   return deviate * this->Errors.encoderJitter * RadiansPerDegree;
 }
 
-std::array<double, 3> Pointing::direction(const std::array<double, 3>& reported,
-  std::int64_t column, std::int32_t revolution, double time) const
+Vec3 Pointing::direction(
+  const Vec3& reported, std::int64_t column, std::int32_t revolution, double time) const
 {
-  const double error = -this->azimuthError(column, revolution);
-  const auto tilts = this->tilt(time);
-  return turned(turned(reported,
-                  { { error * this->Rotor[0], error * this->Rotor[1], error * this->Rotor[2] } }),
-    { { tilts[0], tilts[1], 0.0 } });
+  const auto [east, north] = this->tilt(time);
+  return turned(
+    turned(reported, -this->azimuthError(column, revolution) * this->Rotor), { east, north, 0.0 });
 }
 }

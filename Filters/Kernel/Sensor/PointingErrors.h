@@ -29,6 +29,8 @@
 #ifndef avianlidar_PointingErrors_h
 #define avianlidar_PointingErrors_h
 
+#include "Vector.h"
+
 #include <array>
 #include <cstdint>
 #include <string>
@@ -36,10 +38,7 @@
 namespace avianlidar
 {
 constexpr int SwayTones = 16;
-constexpr double SwayBandwidth = 0.2;         // of SwayFrequency, to each side
-constexpr double MaximumPointingError = 10.0; // deg rms, of either kind
-constexpr double MinimumSwayFrequency = 1e-6; // Hz
-constexpr double MaximumSwayFrequency = 1e6;  // Hz
+constexpr double SwayBandwidth = 0.2; // of SwayFrequency, to each side
 
 struct PointingErrors
 {
@@ -60,7 +59,7 @@ class Pointing
 public:
   /// @param errors good ones (checkPointing()) @param rotor unit vector of the axis about which the
   /// sensor turns, up
-  Pointing(const PointingErrors& errors, const std::array<double, 3>& rotor);
+  Pointing(const PointingErrors& errors, const Vec3& rotor);
 
   /// Tilt about the east and the north axis (right-handed), rad. @param time s
   std::array<double, 2> tilt(double time) const;
@@ -70,8 +69,8 @@ public:
 
   /// The direction in which a beam leaves. @param reported unit vector: where it would without
   /// errors @param time of its firing, s
-  std::array<double, 3> direction(const std::array<double, 3>& reported, std::int64_t column,
-    std::int32_t revolution, double time) const;
+  Vec3 direction(
+    const Vec3& reported, std::int64_t column, std::int32_t revolution, double time) const;
 
 private:
   struct Tone
@@ -80,7 +79,7 @@ private:
     double phase;     ///< turns
   };
   PointingErrors Errors;
-  std::array<double, 3> Rotor;
+  Vec3 Rotor;
   std::array<std::array<Tone, SwayTones>, 2> Tones;
 };
 }

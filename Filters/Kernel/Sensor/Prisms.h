@@ -30,23 +30,19 @@
 #ifndef avianlidar_Prisms_h
 #define avianlidar_Prisms_h
 
-#include <array>
+#include "Vector.h"
+
 #include <string>
 #include <vector>
 
 namespace avianlidar
 {
-constexpr std::size_t MostPrisms = 3;
-constexpr double MaximumWedge = 60.0;            // deg
-constexpr double MaximumRefractiveIndex = 4.0;   // germanium, the highest of common glasses
-constexpr double MaximumPrismRotationRate = 1e6; // Hz
-
 /// Numbers of the prisms, in the order in which light passes them; one of each per prism, of the
 /// phases also none.
 struct PrismTrain
 {
   std::vector<double> wedgeAngles;       ///< deg, -60 to 60
-  std::vector<double> refractiveIndices; ///< 1 to 4
+  std::vector<double> refractiveIndices; ///< 1 to 4, that of germanium
   std::vector<double> rotationRates;     ///< Hz, -1e6 to 1e6; above 0 clockwise
   std::vector<double> phases;            ///< deg, at time 0; none: all 0
   double axisElevation = 0.0;            ///< deg, -90 to 90, of the axis
@@ -58,21 +54,12 @@ struct PrismTrain
 /// The first bad value in words ("PrismWedgeAngles is 70, expected ..."), or an empty string.
 /// @param enters unit vectors of the lasers, in the frame of the axis: whether their light passes
 /// is looked for at phases 30 degrees apart
-std::string checkPrisms(const PrismTrain& train, const std::vector<std::array<double, 3>>& enters);
-
-/// The face's refraction of a unit vector. @param normal unit vector @param ratio index before over
-/// index behind @return false, with `direction` as it was, where no light passes
-bool refract(std::array<double, 3>& direction, const std::array<double, 3>& normal, double ratio);
-
-/// Light through all prisms, each turned by its angle, deg. @return false where no light passes
-bool passPrisms(const PrismTrain& train, const std::array<double, MostPrisms>& angles,
-  std::array<double, 3>& direction);
+std::string checkPrisms(const PrismTrain& train, const std::vector<Vec3>& enters);
 
 /// Where light of a direction in the frame of the axis leaves, in the sensor's frame. @param start
 /// of the scan, s since time 0 @param time s since the start. Throws std::runtime_error where no
 /// light passes. Start and time are apart, so that times of a scan keep their digits.
-std::array<double, 3> steer(
-  const PrismTrain& train, double start, double time, const std::array<double, 3>& enters);
+Vec3 steer(const PrismTrain& train, double start, double time, const Vec3& enters);
 }
 
 #endif

@@ -26,27 +26,16 @@ bool isGood(const ScanClock& clock)
 
 std::string checkClock(const ScanClock& clock, const ScanPattern& pattern)
 {
-  if (clock.revolutions < 1)
-  {
-    return valueError("NumberOfRevolutions", clock.revolutions, "at least 1");
-  }
-  if (clock.steps < 1)
-  {
-    return valueError("StepsPerRevolution", clock.steps, "at least 1");
-  }
-  if (clock.steps > numberOfColumns(pattern))
-  {
-    std::ostringstream text;
-    text << "at most the " << numberOfColumns(pattern) << " columns of a revolution";
-    return valueError("StepsPerRevolution", clock.steps, text.str().c_str());
-  }
-  const double all = static_cast<double>(clock.revolutions) * clock.steps;
-  if (all > static_cast<double>(MaximumSteps))
-  {
-    return valueError(
-      "NumberOfRevolutions times StepsPerRevolution", all, "at most 1e6 steps to play");
-  }
-  return std::string();
+  const auto columns = numberOfColumns(pattern);
+  return firstError({
+    rangeError("NumberOfRevolutions", clock.revolutions, 1.0, LargestFinite, "at least 1"),
+    rangeError("StepsPerRevolution", clock.steps, 1.0, LargestFinite, "at least 1"),
+    rangeError("StepsPerRevolution", clock.steps, 1.0, static_cast<double>(columns),
+      "at most the " + std::to_string(columns) + " columns of a revolution"),
+    rangeError("NumberOfRevolutions times StepsPerRevolution",
+      static_cast<double>(clock.revolutions) * clock.steps, 1.0, MaximumSteps,
+      "at most 1e6 steps to play"),
+  });
 }
 
 double timeOf(const ScanClock& clock, const ScanMoment& moment)
@@ -99,49 +88,32 @@ std::vector<std::int64_t> beamsOf(const ScanPattern& pattern, const ScanPart& pa
   const std::int64_t columns = numberOfColumns(pattern);
   const int channels = numberOfChannels(pattern);
   const std::int64_t shown = part.step + std::int64_t{ 1 };
+  const double share = static_cast<double>(shown) / part.steps; // of the scan
+  const bool isRotor = !pattern.table && pattern.prisms.none();
+  const auto hasFired = [&](std::int64_t column, int channel)
+  {
+    if (shown == part.steps)
+    {
+      return true;
+    }
+    if (!isRotor)
+    {
+      return beamTime(pattern, column, channel) * pattern.rotationRate < share;
+    }
+    // Column c begins when c/columns of the revolution is over; whole numbers, so that none is
+    // early.
+    return column * part.steps < shown * columns &&
+      ((column + 1) * part.steps <= shown * columns ||
+        firingTime(pattern, channel) * pattern.rotationRate <
+          share - static_cast<double>(column) / static_cast<double>(columns));
+  };
   std::vector<std::int64_t> beams;
   beams.reserve(static_cast<std::size_t>(channels * (columns / part.pieces + 1)));
-  if (pattern.table)
+  for (std::int64_t column = part.piece; column < columns; column += part.pieces)
   {
-    const double share = static_cast<double>(shown) / part.steps; // of a scan
-    for (std::int64_t beam = part.piece; beam < columns; beam += part.pieces)
+    for (int channel = isBlanked(pattern, column) ? channels : 0; channel < channels; ++channel)
     {
-      if (shown == part.steps || pattern.table->times[beam] * pattern.rotationRate < share)
-      {
-        beams.push_back(beam);
-      }
-    }
-    return beams;
-  }
-  if (!pattern.prisms.none())
-  {
-    const double end = static_cast<double>(shown) / (part.steps * pattern.rotationRate); // s
-    for (std::int64_t column = part.piece; column < columns; column += part.pieces)
-    {
-      for (int channel = 0; channel < channels; ++channel)
-      {
-        if (shown == part.steps || columnTime(pattern, column) + firingTime(pattern, channel) < end)
-        {
-          beams.push_back(column * channels + channel);
-        }
-      }
-    }
-    return beams;
-  }
-  // Column c begins when c/columns of the revolution is over; whole numbers, so that none is early.
-  for (std::int64_t column = part.piece; column * part.steps < shown * columns;
-       column += part.pieces)
-  {
-    if (isBlanked(pattern, column))
-    {
-      continue;
-    }
-    const bool whole = part.step + 1 == part.steps || (column + 1) * part.steps <= shown * columns;
-    const double left = static_cast<double>(shown) / part.steps -
-      static_cast<double>(column) / static_cast<double>(columns); // of a revolution
-    for (int channel = 0; channel < channels; ++channel)
-    {
-      if (whole || firingTime(pattern, channel) * pattern.rotationRate < left)
+      if (hasFired(column, channel))
       {
         beams.push_back(column * channels + channel);
       }

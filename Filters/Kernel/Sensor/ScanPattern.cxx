@@ -6,78 +6,49 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <sstream>
 
 namespace avianlidar
 {
 namespace
 {
-constexpr double MaximumBeams = 1e9;
-
-using Matrix = std::array<std::array<double, 3>, 3>;
-
-Matrix multiply(const Matrix& a, const Matrix& b)
+/// From the sensor's frame to the scene's. Each matrix is given by its columns.
+glm::dmat3 orientation(double yawDegrees, double pitchDegrees, double rollDegrees)
 {
-  Matrix product{};
-  for (int row = 0; row < 3; ++row)
-  {
-    for (int column = 0; column < 3; ++column)
-    {
-      for (int k = 0; k < 3; ++k)
-      {
-        product[row][column] += a[row][k] * b[k][column];
-      }
-    }
-  }
-  return product;
+  const auto [sy, cy] = sinCosDegrees(yawDegrees);
+  const auto [sp, cp] = sinCosDegrees(pitchDegrees);
+  const auto [sr, cr] = sinCosDegrees(rollDegrees);
+  const glm::dmat3 yaw(Vec3(cy, -sy, 0.0), Vec3(sy, cy, 0.0), Vec3(0.0, 0.0, 1.0));
+  const glm::dmat3 pitch(Vec3(1.0, 0.0, 0.0), Vec3(0.0, cp, sp), Vec3(0.0, -sp, cp));
+  const glm::dmat3 roll(Vec3(cr, 0.0, -sr), Vec3(0.0, 1.0, 0.0), Vec3(sr, 0.0, cr));
+  return yaw * pitch * roll;
 }
 
-Matrix orientation(double yawDegrees, double pitchDegrees, double rollDegrees)
+Vec3 directionOf(double azimuthDegrees, double elevationDegrees)
 {
-  double s, c;
-  sinCosDegrees(yawDegrees, s, c);
-  const Matrix yaw{ { { c, s, 0.0 }, { -s, c, 0.0 }, { 0.0, 0.0, 1.0 } } };
-  sinCosDegrees(pitchDegrees, s, c);
-  const Matrix pitch{ { { 1.0, 0.0, 0.0 }, { 0.0, c, -s }, { 0.0, s, c } } };
-  sinCosDegrees(rollDegrees, s, c);
-  const Matrix roll{ { { c, 0.0, s }, { 0.0, 1.0, 0.0 }, { -s, 0.0, c } } };
-  return multiply(multiply(yaw, pitch), roll);
+  const auto [se, ce] = sinCosDegrees(elevationDegrees);
+  const auto [sa, ca] = sinCosDegrees(azimuthDegrees);
+  return { ce * sa, ce * ca, se };
 }
 
 /// An angle turned into [0, 360).
 double wrapDegrees(double degrees)
 {
   double wrapped = std::fmod(degrees, 360.0);
-  if (wrapped < 0.0)
-  {
-    wrapped += 360.0;
-  }
+  wrapped += wrapped < 0.0 ? 360.0 : 0.0;
   // A tiny negative angle rounds up to 360 itself.
   return wrapped < 360.0 ? wrapped : 0.0;
 }
 
-/// Azimuth and elevation of the direction.
-void takeAngles(ScanBeam& beam)
+double offsetOf(const ScanPattern& pattern, int channel)
 {
-  const double horizontal = std::hypot(beam.direction[0], beam.direction[1]);
-  beam.azimuth = wrapDegrees(std::atan2(beam.direction[0], beam.direction[1]) / RadiansPerDegree);
-  beam.elevation = std::atan2(beam.direction[2], horizontal) / RadiansPerDegree;
+  return pattern.azimuthOffsets.empty() ? 0.0 : pattern.azimuthOffsets[channel];
 }
 
-/// Time of a column with prisms, s.
-double periodOf(const ScanPattern& pattern)
+/// Light of a channel before the prisms, in the frame of their axis.
+Vec3 enterOf(const ScanPattern& pattern, int channel)
 {
-  return numberOfChannels(pattern) * pattern.firingInterval;
-}
-
-/// Of light before the prisms, in the frame of their axis.
-std::array<double, 3> enterOf(const ScanPattern& pattern, int channel)
-{
-  double se, ce, sa, ca;
-  sinCosDegrees(channelElevation(pattern, channel), se, ce);
-  sinCosDegrees(pattern.azimuthOffsets.empty() ? 0.0 : pattern.azimuthOffsets[channel], sa, ca);
-  return { { ce * sa, ce * ca, se } };
+  return directionOf(offsetOf(pattern, channel), channelElevation(pattern, channel));
 }
 
 double columnCount(const ScanPattern& pattern)
@@ -88,149 +59,93 @@ double columnCount(const ScanPattern& pattern)
   }
   if (!pattern.prisms.none())
   {
-    const double columns = 1.0 / (pattern.rotationRate * periodOf(pattern));
+    const double columns =
+      1.0 / (pattern.rotationRate * (numberOfChannels(pattern) * pattern.firingInterval));
     return std::floor(columns * (1.0 + 1e-12) + 1e-9); // in spite of rounding
   }
   const double steps = (pattern.azimuthEnd - pattern.azimuthStart) / pattern.azimuthStep;
   return std::max(1.0, std::ceil(steps - 1e-9)); // the start is in, however short the range
 }
 
-std::string checkElevations(const ScanPattern& pattern)
+/// Time that a column lasts, s.
+double columnLength(const ScanPattern& pattern)
 {
-  if (pattern.elevations.empty())
-  {
-    if (pattern.channels < 1)
-    {
-      return valueError("NumberOfChannels", pattern.channels, "at least 1");
-    }
-    if (!std::isfinite(pattern.minimumElevation))
-    {
-      return valueError("MinimumElevation", pattern.minimumElevation, "a finite angle in degrees");
-    }
-    if (!std::isfinite(pattern.elevationStep) ||
-      (pattern.channels > 1 && !(pattern.elevationStep > 0.0)))
-    {
-      return valueError("ElevationStep", pattern.elevationStep, "an angle above 0 degrees");
-    }
-  }
-  const int channels = numberOfChannels(pattern);
-  // Regular elevations grow, so the last one speaks for all of them.
-  const int first = pattern.elevations.empty() ? channels - 1 : 0;
-  if (pattern.elevations.empty() && !(pattern.minimumElevation >= -90.0))
-  {
-    return valueError(
-      "MinimumElevation", pattern.minimumElevation, "an elevation within [-90, 90] degrees");
-  }
-  for (int channel = first; channel < channels; ++channel)
-  {
-    const double elevation = channelElevation(pattern, channel);
-    if (!(elevation >= -90.0 && elevation <= 90.0))
-    {
-      const std::string name = "the elevation of channel " + std::to_string(channel) +
-        (pattern.elevations.empty() ? " (MinimumElevation + ElevationStep * (NumberOfChannels - 1))"
-                                    : " (its ChannelElevation)");
-      return valueError(name.c_str(), elevation, "an elevation within [-90, 90] degrees");
-    }
-  }
-  return std::string();
+  return pattern.prisms.none() ? 1.0 / (columnCount(pattern) * pattern.rotationRate)
+                               : numberOfChannels(pattern) * pattern.firingInterval;
 }
 
-std::string checkNumberOfBeams(const ScanPattern& pattern, const char* by)
+/// Of a sector of azimuths.
+std::string checkSector(const std::string& name, double from, double to)
 {
-  const double beams = columnCount(pattern) * numberOfChannels(pattern);
-  if (!(beams <= MaximumBeams))
+  return firstError({ rangeError("the start of " + name, from, -360.0, 360.0,
+                        "an angle within [-360, 360] degrees"),
+    rangeError("the end of " + name, to, std::nextafter(from, Infinity), from + 360.0,
+      "an angle after the start and at most 360 degrees after it") });
+}
+
+std::string checkElevations(const ScanPattern& pattern)
+{
+  const char* const expected = "an elevation within [-90, 90] degrees";
+  const int channels = numberOfChannels(pattern);
+  if (pattern.elevations.empty())
   {
-    const std::string expected = std::string("at most 1e9 (") + by + " or " +
-      (pattern.elevations.empty() ? "NumberOfChannels)" : "NumberOfChannelElevations)");
-    return valueError("the number of beams", beams, expected.c_str());
+    // They grow, so the last one speaks for all of them.
+    return firstError({
+      rangeError("NumberOfChannels", channels, 1.0, LargestFinite, "at least 1"),
+      rangeError("MinimumElevation", pattern.minimumElevation, -90.0, LargestFinite, expected),
+      rangeError("ElevationStep", pattern.elevationStep, channels > 1 ? AboveZero : -LargestFinite,
+        LargestFinite, "an angle above 0 degrees"),
+      rangeError("the elevation of channel " + std::to_string(channels - 1) +
+          " (MinimumElevation + ElevationStep * (NumberOfChannels - 1))",
+        channelElevation(pattern, channels - 1), -90.0, 90.0, expected),
+    });
   }
-  return std::string();
+  std::string error;
+  for (int channel = 0; channel < channels && error.empty(); ++channel)
+  {
+    error =
+      rangeError("the elevation of channel " + std::to_string(channel) + " (its ChannelElevation)",
+        pattern.elevations[channel], -90.0, 90.0, expected);
+  }
+  return error;
+}
+
+std::string checkNumberOfBeams(const ScanPattern& pattern, const std::string& by)
+{
+  return rangeError("the number of beams", columnCount(pattern) * numberOfChannels(pattern), 0.0,
+    1e9,
+    "at most 1e9 (" + by + " or " +
+      (pattern.elevations.empty() ? "NumberOfChannels)" : "NumberOfChannelElevations)"));
 }
 
 std::string checkAzimuths(const ScanPattern& pattern)
 {
-  if (!pattern.prisms.none())
-  {
-    return std::string();
-  }
-  if (!(std::abs(pattern.azimuthStart) <= 360.0))
-  {
-    return valueError(
-      "the start of AzimuthRange", pattern.azimuthStart, "an angle within [-360, 360] degrees");
-  }
-  if (!(pattern.azimuthEnd > pattern.azimuthStart &&
-        pattern.azimuthEnd <= pattern.azimuthStart + 360.0))
-  {
-    return valueError("the end of AzimuthRange", pattern.azimuthEnd,
-      "an angle after the start and at most 360 degrees after it");
-  }
-  if (!(pattern.azimuthStep > 0.0 && std::isfinite(pattern.azimuthStep)))
-  {
-    return valueError("AzimuthStep", pattern.azimuthStep, "an angle above 0 degrees");
-  }
-  return checkNumberOfBeams(pattern, "AzimuthStep");
-}
-
-std::string wrongSize(const char* name, std::size_t size, int channels)
-{
-  return std::string(name) + " has " + std::to_string(size) +
-    " values, expected one for each of the " + std::to_string(channels) + " channels";
-}
-
-/// @param column s that a column lasts
-std::string checkFiringTimes(const ScanPattern& pattern, double column)
-{
-  const int channels = numberOfChannels(pattern);
-  if (pattern.firingTimes.size() != static_cast<std::size_t>(channels))
-  {
-    return wrongSize("ChannelFiringTimes", pattern.firingTimes.size(), channels);
-  }
-  for (const double time : pattern.firingTimes)
-  {
-    if (!(time >= 0.0 && time <= column))
-    {
-      std::ostringstream text;
-      text << "0 s to the " << column << " s that a column lasts";
-      return valueError("ChannelFiringTimes", time, text.str().c_str());
-    }
-  }
-  return std::string();
+  return pattern.prisms.none()
+    ? firstError({ checkSector("AzimuthRange", pattern.azimuthStart, pattern.azimuthEnd),
+        rangeError(
+          "AzimuthStep", pattern.azimuthStep, AboveZero, LargestFinite, "an angle above 0 degrees"),
+        checkNumberOfBeams(pattern, "AzimuthStep") })
+    : std::string();
 }
 
 std::string checkTables(const ScanPattern& pattern)
 {
-  const int channels = numberOfChannels(pattern);
+  const auto channels = static_cast<std::size_t>(numberOfChannels(pattern));
   const std::vector<double>& offsets = pattern.azimuthOffsets;
-  if (!offsets.empty() && offsets.size() != static_cast<std::size_t>(channels))
-  {
-    return wrongSize("ChannelAzimuthOffsets", offsets.size(), channels);
-  }
-  for (const double offset : offsets)
-  {
-    if (!(std::abs(offset) <= 180.0))
-    {
-      return valueError("ChannelAzimuthOffsets", offset, "an angle within [-180, 180] degrees");
-    }
-  }
   const std::vector<double>& sectors = pattern.blankedSectors;
-  if (sectors.size() % 2 != 0)
+  std::string error = firstError({
+    sizeError(
+      "ChannelAzimuthOffsets", offsets.empty() ? channels : offsets.size(), channels, "channels"),
+    rangeErrorOf(
+      "ChannelAzimuthOffsets", offsets, -180.0, 180.0, "an angle within [-180, 180] degrees"),
+    sectors.size() % 2 != 0 ? "BlankedSectors has an odd number of values, expected pairs: from, to"
+                            : "",
+  });
+  for (std::size_t i = 0; i + 1 < sectors.size() && error.empty(); i += 2)
   {
-    return "BlankedSectors has an odd number of values, expected pairs: from, to";
+    error = checkSector("BlankedSectors", sectors[i], sectors[i + 1]);
   }
-  for (std::size_t i = 0; i + 1 < sectors.size(); i += 2)
-  {
-    if (!(std::abs(sectors[i]) <= 360.0))
-    {
-      return valueError(
-        "the start of BlankedSectors", sectors[i], "an angle within [-360, 360] degrees");
-    }
-    if (!(sectors[i + 1] > sectors[i] && sectors[i + 1] <= sectors[i] + 360.0))
-    {
-      return valueError("the end of BlankedSectors", sectors[i + 1],
-        "an angle after the start and at most 360 degrees after it");
-    }
-  }
-  return std::string();
+  return error;
 }
 
 /// Of a pattern whose tables are good.
@@ -250,7 +165,7 @@ std::string checkTrain(const ScanPattern& pattern)
     return "BlankedSectors has values, expected none with prisms, whose beams have no columns by "
            "azimuth";
   }
-  std::vector<std::array<double, 3>> enters;
+  std::vector<Vec3> enters;
   for (int channel = 0; channel < numberOfChannels(pattern); ++channel)
   {
     enters.push_back(enterOf(pattern, channel));
@@ -258,108 +173,71 @@ std::string checkTrain(const ScanPattern& pattern)
   return checkPrisms(train, enters);
 }
 
-/// Of a pattern with prisms and a good rate.
-std::string checkPeriod(const ScanPattern& pattern)
+/// Of firings within a column. @param steered by prisms
+std::string checkFirings(const ScanPattern& pattern, bool steered)
 {
-  if (!(pattern.firingInterval > 0.0 && std::isfinite(pattern.firingInterval)))
+  std::string error =
+    rangeError("FiringInterval", pattern.firingInterval, steered ? AboveZero : 0.0, LargestFinite,
+      steered ? "a time above 0 s with prisms" : "a time of at least 0 s");
+  if (!error.empty())
   {
-    return valueError("FiringInterval", pattern.firingInterval, "a time above 0 s with prisms");
+    return error;
   }
-  const double scan = 1.0 / pattern.rotationRate;
-  if (!(columnCount(pattern) >= 1.0))
+  const int channels = numberOfChannels(pattern);
+  const double firings = channels * pattern.firingInterval;
+  const double room = steered ? 1.0 / pattern.rotationRate : columnLength(pattern);
+  // The slack admits a column that is filled to the last firing.
+  const bool fits = steered ? columnCount(pattern) >= 1.0
+                            : !pattern.firingTimes.empty() || firings <= room * (1.0 + 1e-12);
+  std::ostringstream text;
+  if (!fits)
   {
-    std::ostringstream text;
-    text << "FiringInterval is " << pattern.firingInterval << " s, so the "
-         << numberOfChannels(pattern) << " firings of a column take " << periodOf(pattern)
-         << " s, expected at most the " << scan << " s that RotationRate leaves to a scan";
+    text << "FiringInterval is " << pattern.firingInterval << " s, so the " << channels
+         << " firings of a column take " << firings << " s, expected at most the " << room
+         << (steered ? " s that RotationRate leaves to a scan"
+                     : " s that RotationRate and AzimuthStep leave to a column");
     return text.str();
   }
-  const std::string bad = checkNumberOfBeams(pattern, "FiringInterval, RotationRate");
-  return bad.empty() && !pattern.firingTimes.empty() ? checkFiringTimes(pattern, periodOf(pattern))
-                                                     : bad;
-}
-
-/// Of a table of beams.
-std::string checkTimes(const ScanPattern& pattern)
-{
-  const std::vector<double>& times = pattern.table->times;
-  const double turn = 1.0 / pattern.rotationRate;
-  for (std::size_t i = 0; i < times.size(); ++i)
+  error = steered ? checkNumberOfBeams(pattern, "FiringInterval, RotationRate") : "";
+  if (error.empty() && !pattern.firingTimes.empty())
   {
-    if (!(times[i] >= 0.0 && times[i] <= turn))
-    {
-      std::ostringstream text;
-      text << "0 to the " << turn << " s of a scan (RotationRate)";
-      return valueError(
-        ("the time of beam " + std::to_string(i)).c_str(), times[i], text.str().c_str());
-    }
+    text << "0 s to the " << columnLength(pattern) << " s that a column lasts";
+    error = firstError({ sizeError("ChannelFiringTimes", pattern.firingTimes.size(),
+                           static_cast<std::size_t>(channels), "channels"),
+      rangeErrorOf(
+        "ChannelFiringTimes", pattern.firingTimes, 0.0, columnLength(pattern), text.str()) });
   }
-  return std::string();
+  return error;
 }
 
 std::string checkClock(const ScanPattern& pattern)
 {
-  if (!(pattern.rotationRate >= MinimumRotationRate && pattern.rotationRate <= MaximumRotationRate))
+  std::string error = rangeError("RotationRate", pattern.rotationRate, MinimumRotationRate,
+    MaximumRotationRate, "1e-20 to 1e20 Hz");
+  if (!error.empty() || !pattern.table)
   {
-    return valueError("RotationRate", pattern.rotationRate, "1e-20 to 1e20 Hz");
+    return error.empty() ? checkFirings(pattern, !pattern.prisms.none()) : error;
   }
-  if (pattern.table)
+  const double turn = 1.0 / pattern.rotationRate;
+  std::ostringstream text;
+  text << "0 to the " << turn << " s of a scan (RotationRate)";
+  const std::vector<double>& times = pattern.table->times;
+  for (std::size_t i = 0; i < times.size() && error.empty(); ++i)
   {
-    return checkTimes(pattern);
+    error = rangeError("the time of beam " + std::to_string(i), times[i], 0.0, turn, text.str());
   }
-  if (!pattern.prisms.none())
-  {
-    return checkPeriod(pattern);
-  }
-  if (!(pattern.firingInterval >= 0.0 && std::isfinite(pattern.firingInterval)))
-  {
-    return valueError("FiringInterval", pattern.firingInterval, "a time of at least 0 s");
-  }
-  const double column = 1.0 / (columnCount(pattern) * pattern.rotationRate);
-  if (!pattern.firingTimes.empty())
-  {
-    return checkFiringTimes(pattern, column);
-  }
-  const double firings = numberOfChannels(pattern) * pattern.firingInterval;
-  // The slack admits a column that is filled to the last firing.
-  if (!(firings <= column * (1.0 + 1e-12)))
-  {
-    std::ostringstream text;
-    text << "FiringInterval is " << pattern.firingInterval << " s, so the "
-         << numberOfChannels(pattern) << " firings of a column take " << firings
-         << " s, expected at most the " << column
-         << " s that RotationRate and AzimuthStep leave to a column";
-    return text.str();
-  }
-  return std::string();
+  return error;
 }
 }
 
-void sinCosDegrees(double degrees, double& sine, double& cosine)
+std::array<double, 2> sinCosDegrees(double degrees)
 {
   int quadrant = 0;
-  const double rest = std::remquo(degrees, 90.0, &quadrant);
-  const double s = std::sin(rest * RadiansPerDegree);
-  const double c = std::cos(rest * RadiansPerDegree);
-  switch (static_cast<unsigned int>(quadrant) & 3u)
-  {
-    case 0u:
-      sine = s;
-      cosine = c;
-      break;
-    case 1u:
-      sine = c;
-      cosine = -s;
-      break;
-    case 2u:
-      sine = -s;
-      cosine = -c;
-      break;
-    default:
-      sine = -c;
-      cosine = s;
-      break;
-  }
+  const double rest = std::remquo(degrees, 90.0, &quadrant) * RadiansPerDegree;
+  const double s = std::sin(rest);
+  const double c = std::cos(rest);
+  const std::array<double, 2> turned[] = { { s, c }, { c, -s }, { -s, -c }, { -c, s } };
+  return turned[static_cast<unsigned int>(quadrant) & 3u];
 }
 
 int numberOfChannels(const ScanPattern& pattern)
@@ -398,42 +276,44 @@ double firingTime(const ScanPattern& pattern, int channel)
     : pattern.firingTimes[channel];
 }
 
+double beamTime(const ScanPattern& pattern, std::int64_t column, int channel)
+{
+  if (pattern.table)
+  {
+    return pattern.table->times[static_cast<std::size_t>(column)];
+  }
+  return firingTime(pattern, channel) +
+    (pattern.prisms.none() ? column / (columnCount(pattern) * pattern.rotationRate)
+                           : static_cast<double>(column) * columnLength(pattern));
+}
+
 double pulseInterval(const ScanPattern& pattern)
 {
   if (pattern.table)
   {
-    return std::numeric_limits<double>::infinity();
+    return Infinity;
   }
   const bool oneReceiver = pattern.firingTimes.empty() && pattern.firingInterval > 0.0 &&
     (numberOfChannels(pattern) > 1 || !pattern.prisms.none());
-  return oneReceiver ? pattern.firingInterval : columnTime(pattern, 1);
-}
-
-double columnTime(const ScanPattern& pattern, std::int64_t column)
-{
-  return pattern.prisms.none() ? column / (columnCount(pattern) * pattern.rotationRate)
-                               : static_cast<double>(column) * periodOf(pattern);
+  return oneReceiver ? pattern.firingInterval : columnLength(pattern);
 }
 
 bool isBlanked(const ScanPattern& pattern, std::int64_t column)
 {
+  const std::vector<double>& sectors = pattern.blankedSectors;
   const double azimuth = pattern.azimuthStart + column * pattern.azimuthStep;
-  for (std::size_t i = 0; i + 1 < pattern.blankedSectors.size(); i += 2)
+  bool blanked = false;
+  for (std::size_t i = 0; i + 1 < sectors.size() && !pattern.table; i += 2)
   {
-    const double from = pattern.blankedSectors[i];
-    if (wrapDegrees(azimuth - from) < pattern.blankedSectors[i + 1] - from)
-    {
-      return true;
-    }
+    blanked = blanked || wrapDegrees(azimuth - sectors[i]) < sectors[i + 1] - sectors[i];
   }
-  return false;
+  return blanked;
 }
 
 std::int64_t numberOfFirings(const ScanPattern& pattern)
 {
   std::int64_t columns = numberOfColumns(pattern);
-  for (std::int64_t column = columns;
-       !pattern.table && !pattern.blankedSectors.empty() && column-- > 0;)
+  for (std::int64_t column = pattern.blankedSectors.empty() ? 0 : columns; column-- > 0;)
   {
     columns -= isBlanked(pattern, column) ? 1 : 0;
   }
@@ -442,116 +322,69 @@ std::int64_t numberOfFirings(const ScanPattern& pattern)
 
 Vec3 upOf(double yaw, double pitch, double roll)
 {
-  const Matrix turned = orientation(yaw, pitch, roll);
-  return { turned[0][2], turned[1][2], turned[2][2] };
+  return orientation(yaw, pitch, roll)[2];
 }
 
 std::string checkPattern(const ScanPattern& pattern)
 {
-  if (!std::isfinite(pattern.yaw) || !std::isfinite(pattern.pitch) || !std::isfinite(pattern.roll))
+  if (!isFinite({ pattern.yaw, pattern.pitch, pattern.roll }))
   {
     return "Orientation is not finite, expected yaw, pitch and roll in degrees";
   }
-  if (pattern.table)
+  std::string error;
+  for (auto check : { checkElevations, checkAzimuths, checkTables, checkTrain })
   {
-    return checkClock(pattern);
+    error = error.empty() && !pattern.table ? check(pattern) : error;
   }
-  for (auto check : { checkElevations, checkAzimuths, checkTables, checkTrain, checkClock })
-  {
-    std::string bad = check(pattern);
-    if (!bad.empty())
-    {
-      return bad;
-    }
-  }
-  return std::string();
+  return error.empty() ? checkClock(pattern) : error;
 }
 
 ScanGenerator::ScanGenerator(const ScanPattern& pattern, int revolution)
   : Pattern(pattern)
   , Start(revolution / pattern.rotationRate)
   , Channels(numberOfChannels(pattern))
-  , Columns(numberOfColumns(pattern))
   , Beams(numberOfBeams(pattern))
   , Tilted(pattern.pitch != 0.0 || pattern.roll != 0.0)
   , Rotation(orientation(pattern.yaw, pattern.pitch, pattern.roll))
 {
 }
 
-std::array<double, 3> ScanGenerator::toScene(const std::array<double, 3>& local) const
-{
-  std::array<double, 3> turned{};
-  for (int row = 0; row < 3; ++row)
-  {
-    turned[row] = this->Rotation[row][0] * local[0] + this->Rotation[row][1] * local[1] +
-      this->Rotation[row][2] * local[2];
-  }
-  return turned;
-}
-
-ScanBeam ScanGenerator::tableBeam(std::size_t index) const
-{
-  const BeamTable& table = *this->Pattern.table;
-  ScanBeam result;
-  result.channel = 0;
-  result.time = table.times[index];
-  result.direction = this->toScene(table.directions[index]);
-  takeAngles(result);
-  if (!table.origins.empty())
-  {
-    result.origin = this->toScene(table.origins[index]);
-  }
-  return result;
-}
-
-ScanBeam ScanGenerator::prismBeam(std::int64_t index) const
-{
-  ScanBeam result;
-  result.channel = static_cast<int>(index % this->Channels);
-  result.time =
-    columnTime(this->Pattern, this->column(index)) + firingTime(this->Pattern, result.channel);
-  result.direction = this->toScene(
-    steer(this->Pattern.prisms, this->Start, result.time, enterOf(this->Pattern, result.channel)));
-  takeAngles(result);
-  return result;
-}
-
 ScanBeam ScanGenerator::beam(std::int64_t index) const
 {
-  if (this->Pattern.table)
-  {
-    return this->tableBeam(static_cast<std::size_t>(index));
-  }
-  if (!this->Pattern.prisms.none())
-  {
-    return this->prismBeam(index);
-  }
+  const ScanPattern& pattern = this->Pattern;
   const std::int64_t column = this->column(index);
-  const int channel = static_cast<int>(index % this->Channels);
-  const std::vector<double>& offsets = this->Pattern.azimuthOffsets;
-  const double azimuth = this->Pattern.azimuthStart + column * this->Pattern.azimuthStep +
-    (offsets.empty() ? 0.0 : offsets[channel]);
-  const double elevation = channelElevation(this->Pattern, channel);
-
-  ScanBeam result;
-  result.channel = channel;
-  result.time =
-    column / (this->Columns * this->Pattern.rotationRate) + firingTime(this->Pattern, channel);
-
-  double sa, ca, se, ce;
-  sinCosDegrees(elevation, se, ce);
-  if (!this->Tilted)
+  ScanBeam beam;
+  beam.channel = static_cast<int>(index % this->Channels);
+  beam.time = beamTime(pattern, column, beam.channel);
+  const double azimuth =
+    pattern.azimuthStart + column * pattern.azimuthStep + offsetOf(pattern, beam.channel);
+  if (pattern.table)
+  {
+    const auto number = static_cast<std::size_t>(index);
+    beam.direction = this->Rotation * pattern.table->directions[number];
+    beam.origin =
+      pattern.table->origins.empty() ? Vec3(0.0) : this->Rotation * pattern.table->origins[number];
+  }
+  else if (!pattern.prisms.none())
+  {
+    beam.direction = this->Rotation *
+      steer(pattern.prisms, this->Start, beam.time, enterOf(pattern, beam.channel));
+  }
+  else if (this->Tilted)
+  {
+    beam.direction = this->Rotation * directionOf(azimuth, channelElevation(pattern, beam.channel));
+  }
+  else
   {
     // No detour through the arctangent: the angles come out as they were put in.
-    result.azimuth = wrapDegrees(azimuth + this->Pattern.yaw);
-    result.elevation = elevation;
-    sinCosDegrees(azimuth + this->Pattern.yaw, sa, ca);
-    result.direction = { { ce * sa, ce * ca, se } };
-    return result;
+    beam.azimuth = wrapDegrees(azimuth + pattern.yaw);
+    beam.elevation = channelElevation(pattern, beam.channel);
+    beam.direction = directionOf(azimuth + pattern.yaw, beam.elevation);
+    return beam;
   }
-  sinCosDegrees(azimuth, sa, ca);
-  result.direction = this->toScene({ { ce * sa, ce * ca, se } });
-  takeAngles(result);
-  return result;
+  const Vec3& d = beam.direction;
+  beam.azimuth = wrapDegrees(std::atan2(d.x, d.y) / RadiansPerDegree);
+  beam.elevation = std::atan2(d.z, std::hypot(d.x, d.y)) / RadiansPerDegree;
+  return beam;
 }
 }

@@ -29,6 +29,8 @@
 #include "Prisms.h"
 #include "Vector.h"
 
+#include <glm/mat3x3.hpp>
+
 #include <array>
 #include <cstdint>
 #include <memory>
@@ -44,9 +46,9 @@ constexpr double MaximumRotationRate = 1e20;
 /// Any beams, in the frame of the sensor.
 struct BeamTable
 {
-  std::vector<std::array<double, 3>> directions; ///< unit
-  std::vector<std::array<double, 3>> origins;    ///< m, from the sensor's position; or none
-  std::vector<double> times;                     ///< s since the scan began
+  std::vector<Vec3> directions; ///< unit
+  std::vector<Vec3> origins;    ///< m, from the sensor's position; or none
+  std::vector<double> times;    ///< s since the scan began
 };
 
 /// The geometry and the clock of a scan. The defaults are those of the 16-channel airport lidar
@@ -83,12 +85,12 @@ struct ScanPattern
 /// One beam of a scan.
 struct ScanBeam
 {
-  std::array<double, 3> direction; ///< unit, in the scene's frame
-  int channel;                     ///< index of the channel
-  double azimuth;                  ///< deg, in [0, 360), in the scene's frame
-  double elevation;                ///< deg, in the scene's frame
-  double time;                     ///< s since the start of its scan
-  std::array<double, 3> origin{};  ///< m from the sensor's position, in the scene's frame
+  Vec3 direction;     ///< unit, in the scene's frame
+  int channel;        ///< index of the channel
+  double azimuth;     ///< deg, in [0, 360), in the scene's frame
+  double elevation;   ///< deg, in the scene's frame
+  double time;        ///< s since the start of its scan
+  Vec3 origin{ 0.0 }; ///< m from the sensor's position, in the scene's frame
 };
 
 /// Number of channels: the length of the table of elevations, or `channels` without one.
@@ -111,13 +113,13 @@ int firingSlot(int channel, int channels);
 /// Firing of a channel since its column began, s.
 double firingTime(const ScanPattern& pattern, int channel);
 
+/// Firing of a beam since the scan began, s.
+double beamTime(const ScanPattern& pattern, std::int64_t column, int channel);
+
 /// Time from a pulse to the next one into the same receiver, s: the channels of a column that fire
 /// one after the other have one receiver, those with firing times, or that fire together, have one
 /// each. Infinite for a table of beams, whose receivers are not known.
 double pulseInterval(const ScanPattern& pattern);
-
-/// Start of a column since the start of the scan, s.
-double columnTime(const ScanPattern& pattern, std::int64_t column);
 
 /// True if a column does not fire.
 bool isBlanked(const ScanPattern& pattern, std::int64_t column);
@@ -133,7 +135,7 @@ std::string checkPattern(const ScanPattern& pattern);
 Vec3 upOf(double yaw, double pitch, double roll);
 
 /// Sine and cosine of an angle in degrees; exact at multiples of 90.
-void sinCosDegrees(double degrees, double& sine, double& cosine);
+std::array<double, 2> sinCosDegrees(double degrees);
 
 /// Makes the beams of a pattern that checkPattern() found good.
 class ScanGenerator
@@ -151,23 +153,15 @@ public:
   std::int64_t column(std::int64_t index) const { return index / this->Channels; }
 
   /// Unit vector of the axis about which the sensor turns, up, in the scene's frame.
-  std::array<double, 3> rotor() const
-  {
-    return { { this->Rotation[0][2], this->Rotation[1][2], this->Rotation[2][2] } };
-  }
+  Vec3 rotor() const { return this->Rotation[2]; }
 
 private:
-  std::array<double, 3> toScene(const std::array<double, 3>& local) const;
-  ScanBeam tableBeam(std::size_t index) const;
-  ScanBeam prismBeam(std::int64_t index) const;
-
   ScanPattern Pattern;
   double Start; ///< s since time 0
   int Channels;
-  std::int64_t Columns;
   std::int64_t Beams;
   bool Tilted;
-  std::array<std::array<double, 3>, 3> Rotation;
+  glm::dmat3 Rotation; ///< from the sensor's frame to the scene's
 };
 }
 

@@ -6,14 +6,12 @@
 #include "ValueError.h"
 
 #include <algorithm>
-#include <limits>
 #include <sstream>
 
 namespace avianlidar
 {
 const std::vector<SensorField>& sensorFields()
 {
-  constexpr double AboveZero = std::numeric_limits<double>::denorm_min();
   static const std::vector<SensorField> all = {
     { "half_beamwidth", "rad", &Sensor::halfBeamwidth, 1e-9, MaximumHalfBeamwidth,
       "1e-9 to pi/3 rad (60 degrees)", NeededOf::All }, // sampling is exact from 1e-9 on
@@ -124,73 +122,46 @@ std::string warningOnAmbiguity(const Sensor& sensor, double pulseInterval)
 
 std::string checkSensor(const Sensor& s)
 {
-  const auto wrong = [&](const SensorField& field)
-  { return valueError(field.name, s.*field.member, field.expected); };
   for (const SensorField& field : sensorFields())
   {
-    const double value = s.*field.member;
-    if (!(value >= field.least && value <= field.most)) // not a number, either
+    const std::string error =
+      rangeError(field.name, s.*field.member, field.least, field.most, field.expected);
+    if (!error.empty())
     {
-      return wrong(field);
+      return error;
     }
   }
-  if (s.beamProfile != BeamProfile::Uniform && s.beamProfile != BeamProfile::Gaussian)
+  const auto choice = [](const char* name, auto value, const char* expected)
+  { return rangeError(name, static_cast<int>(value), 0.0, 1.0, expected); };
+  const auto require = [&](bool isGood, double Sensor::*member)
   {
-    return valueError(
-      "beam_profile", static_cast<int>(s.beamProfile), "0 (uniform) or 1 (Gaussian)");
-  }
-  if (s.beamOutline != BeamOutline::Ellipse && s.beamOutline != BeamOutline::Rectangle)
-  {
-    return valueError(
-      "beam_outline", static_cast<int>(s.beamOutline), "0 (ellipse) or 1 (rectangle)");
-  }
-  if (!s.hasRoundBeam() && s.halfBeamwidth > MaximumHalfBeamwidthNotRound)
-  {
-    return valueError(
-      "half_beamwidth", s.halfBeamwidth, "at most 0.1 rad of a beam that is not round");
-  }
-  const double ratio = s.halfBeamwidthAcross / s.halfBeamwidth;
-  if (s.halfBeamwidthAcross > 0.0 &&
-    (s.halfBeamwidthAcross < 1e-9 || ratio < 1.0 / MaximumBeamRatio || ratio > MaximumBeamRatio))
-  {
-    return valueError("half_beamwidth_across", s.halfBeamwidthAcross,
-      "0 (the same), or 1e-9 to 0.1 rad and 1/1000 to 1000 times half_beamwidth");
-  }
-  if (s.receiverModel != ReceiverModel::EnergyLimits && s.receiverModel != ReceiverModel::Photons)
-  {
-    return valueError(
-      "receiver_model", static_cast<int>(s.receiverModel), "0 (energy limits) or 1 (photons)");
-  }
-  if (s.thresholdLaw != ThresholdLaw::Fixed && s.thresholdLaw != ThresholdLaw::FollowsAir)
-  {
-    return valueError(
-      "threshold_law", static_cast<int>(s.thresholdLaw), "0 (fixed) or 1 (follows the air)");
-  }
-  if (s.pulseWidth > 1000.0 * s.samplingInterval)
-  {
-    return wrong(sensorField(&Sensor::pulseWidth));
-  }
-  if (2.0 * s.rangeGate > MaximumGateUnits * SpeedOfLight * s.samplingInterval)
-  {
-    return valueError(
-      "range_gate", s.rangeGate, "at most 2^52 range units (c/2 sampling_interval each)");
-  }
-  if (!(s.minimumRange < s.rangeGate))
-  {
-    return wrong(sensorField(&Sensor::minimumRange));
-  }
-  if (s.upperEnergyLimit < s.lowerEnergyLimit)
-  {
-    return wrong(sensorField(&Sensor::upperEnergyLimit));
-  }
-  if (s.amplifierNoise > 0.0 && s.amplifierNoise < 1e-3)
-  {
-    return wrong(sensorField(&Sensor::amplifierNoise));
-  }
-  if (s.rangeQuantum > 0.0 && s.rangeQuantum < 1e-9)
-  {
-    return wrong(sensorField(&Sensor::rangeQuantum));
-  }
-  return s.receiverModel == ReceiverModel::Photons ? checkPhotonReceiver(s) : std::string();
+    const SensorField& field = sensorField(member);
+    return isGood ? std::string() : valueError(field.name, s.*member, field.expected);
+  };
+  const double across = s.halfBeamwidthAcross;
+  const double ratio = across / s.halfBeamwidth;
+  const bool isAcrossGood = across == 0.0 ||
+    (across >= 1e-9 && ratio >= 1.0 / MaximumBeamRatio && ratio <= MaximumBeamRatio);
+  return firstError({
+    choice("beam_profile", s.beamProfile, "0 (uniform) or 1 (Gaussian)"),
+    choice("beam_outline", s.beamOutline, "0 (ellipse) or 1 (rectangle)"),
+    rangeError("half_beamwidth", s.halfBeamwidth, 0.0,
+      s.hasRoundBeam() ? MaximumHalfBeamwidth : MaximumHalfBeamwidthNotRound,
+      "at most 0.1 rad of a beam that is not round"),
+    isAcrossGood ? ""
+                 : valueError("half_beamwidth_across", across,
+                     "0 (the same), or 1e-9 to 0.1 rad and 1/1000 to 1000 times half_beamwidth"),
+    choice("receiver_model", s.receiverModel, "0 (energy limits) or 1 (photons)"),
+    choice("threshold_law", s.thresholdLaw, "0 (fixed) or 1 (follows the air)"),
+    require(s.pulseWidth <= 1000.0 * s.samplingInterval, &Sensor::pulseWidth),
+    rangeError("range_gate", s.rangeGate, 0.0,
+      0.5 * MaximumGateUnits * SpeedOfLight * s.samplingInterval,
+      "at most 2^52 range units (c/2 sampling_interval each)"),
+    require(s.minimumRange < s.rangeGate, &Sensor::minimumRange),
+    require(s.upperEnergyLimit >= s.lowerEnergyLimit, &Sensor::upperEnergyLimit),
+    require(!(s.amplifierNoise > 0.0 && s.amplifierNoise < 1e-3), &Sensor::amplifierNoise),
+    require(!(s.rangeQuantum > 0.0 && s.rangeQuantum < 1e-9), &Sensor::rangeQuantum),
+    s.receiverModel == ReceiverModel::Photons ? checkPhotonReceiver(s) : "",
+  });
 }
 }

@@ -111,21 +111,21 @@ std::string vtkAvianLidarBeamSource::vtkInternals::ReadTable(
   {
     const std::string beam = "beam " + std::to_string(i) + ": ";
     avianlidar::Vec3 d;
-    std::array<double, 3> origin;
+    avianlidar::Vec3 origin;
     directions->GetTuple(i, &d.x);
-    beams->GetPoint(i, origin.data());
+    beams->GetPoint(i, &origin.x);
     if (!avianlidar::isFinite(d) || (d.x == 0.0 && d.y == 0.0 && d.z == 0.0))
     {
       return beam + "point array '" + Arrays::Direction.name +
         "' is zero or not finite, expected any length above 0";
     }
-    const std::string bad = avianlidar::checkPosition({ origin[0], origin[1], origin[2] });
+    const std::string bad = avianlidar::checkPosition(origin);
     if (!bad.empty())
     {
       return beam + bad;
     }
     const avianlidar::Vec3 unit = avianlidar::unitVector(d);
-    table.directions.push_back({ { unit.x, unit.y, unit.z } });
+    table.directions.push_back(unit);
     table.origins.push_back(origin);
     if (timestamps)
     {

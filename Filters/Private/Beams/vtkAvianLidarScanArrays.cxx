@@ -13,7 +13,6 @@
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
 
-#include <array>
 #include <cmath>
 #include <initializer_list>
 #include <vector>
@@ -38,10 +37,10 @@ vtkSmartPointer<vtkDoubleArray> Misdirect(const avianlidar::PointingErrors& erro
   for (vtkIdType i = 0; i < directions->GetNumberOfTuples(); ++i)
   {
     const avianlidar::ScanBeam beam = generator.beam(beams[i]);
-    const std::array<double, 3> actual =
+    const avianlidar::Vec3 actual =
       pointing.direction(beam.direction, generator.column(beams[i]), revolution, start + beam.time);
-    reported->SetTypedTuple(i, beam.direction.data());
-    directions->SetTypedTuple(i, actual.data());
+    reported->SetTypedTuple(i, &beam.direction.x);
+    directions->SetTypedTuple(i, &actual.x);
   }
   return reported;
 }
@@ -76,7 +75,7 @@ void vtkAvianLidarScanArrays::FillBeams(const avianlidar::ScanPattern& pattern,
     points->SetPoint(
       i, position[0] + beam.origin[0], position[1] + beam.origin[1], position[2] + beam.origin[2]);
     ids->SetValue(i, static_cast<vtkIdType>(beams[i]));
-    directions->SetTypedTuple(i, beam.direction.data());
+    directions->SetTypedTuple(i, &beam.direction.x);
     channels->SetValue(i, beam.channel);
     azimuths->SetValue(i, azimuth < 36000.0 ? azimuth : 0.0);
     elevations->SetValue(i, beam.elevation);
