@@ -102,38 +102,36 @@ AVIANLIDAR_ALWAYS_INLINE void drawLanes(const Draw& draw, double* x, double* y, 
   }
 }
 
-AVIANLIDAR_MULTIVERSION void drawUniform(const Draw& draw, double* x, double* y, std::size_t count)
+AVIANLIDAR_MULTIVERSION void drawCoordinates(
+  const Draw& draw, BeamProfile profile, double* x, double* y, std::size_t count)
 {
-  if (draw.cells)
+  if (profile == BeamProfile::Uniform)
   {
-    drawLanes<BeamProfile::Uniform, true>(draw, x, y, count);
+    draw.cells ? drawLanes<BeamProfile::Uniform, true>(draw, x, y, count)
+               : drawLanes<BeamProfile::Uniform, false>(draw, x, y, count);
   }
   else
   {
-    drawLanes<BeamProfile::Uniform, false>(draw, x, y, count);
+    draw.cells ? drawLanes<BeamProfile::Gaussian, true>(draw, x, y, count)
+               : drawLanes<BeamProfile::Gaussian, false>(draw, x, y, count);
   }
 }
 
-AVIANLIDAR_MULTIVERSION void drawGaussian(const Draw& draw, double* x, double* y, std::size_t count)
-{
-  if (draw.cells)
-  {
-    drawLanes<BeamProfile::Gaussian, true>(draw, x, y, count);
-  }
-  else
-  {
-    drawLanes<BeamProfile::Gaussian, false>(draw, x, y, count);
-  }
-}
-}
-
-namespace
-{
 void drawAll(const Draw& draw, BeamProfile profile, std::size_t count, BeamRays& rays)
 {
   rays.resize(count);
-  (profile == BeamProfile::Uniform ? drawUniform : drawGaussian)(
-    draw, rays.x.data(), rays.y.data(), count);
+  drawCoordinates(draw, profile, rays.x.data(), rays.y.data(), count);
+}
+
+AVIANLIDAR_MULTIVERSION void turnAll(const double* fromX, const double* fromY, double cosine,
+  double sine, double* x, double* y, std::size_t count)
+{
+#pragma omp simd
+  for (std::size_t n = 0; n < count; ++n)
+  {
+    x[n] = cosine * fromX[n] - sine * fromY[n];
+    y[n] = sine * fromX[n] + cosine * fromY[n];
+  }
 }
 }
 
@@ -236,20 +234,6 @@ void samplePattern(std::int32_t seed, std::size_t pattern, std::size_t patterns,
   }
   drawAll({ seed, pattern, RandomPurpose::Patterns, PlaneRadius(profile), &cells }, profile.profile,
     strata.numberOfRays(), rays);
-}
-
-namespace
-{
-AVIANLIDAR_MULTIVERSION void turnAll(const double* fromX, const double* fromY, double cosine,
-  double sine, double* x, double* y, std::size_t count)
-{
-#pragma omp simd
-  for (std::size_t n = 0; n < count; ++n)
-  {
-    x[n] = cosine * fromX[n] - sine * fromY[n];
-    y[n] = sine * fromX[n] + cosine * fromY[n];
-  }
-}
 }
 
 void turnRays(const BeamRays& pattern, double turns, BeamRays& rays)

@@ -8,10 +8,11 @@
 #include <boost/math/special_functions/erf.hpp>
 #include <boost/math/special_functions/gamma.hpp>
 #include <boost/math/special_functions/log1p.hpp>
+#include <boost/math/tools/rational.hpp>
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <iterator>
 #include <sstream>
 
 namespace avianlidar
@@ -41,27 +42,11 @@ constexpr double BoundUnits = 1e15;
 /// CommonDeviate: P(z < 3) = 0.99865, among all units.
 constexpr double CommonShare = 0.9986;
 
-struct GammaRatios
+/// P(a, x), or Q(a, x) with `isTail`, by Temme's uniform expansion (DLMF 8.12.3-8.12.10), a >= 1e5:
+/// terms left out are below 1e-13, relative, wherever the result does not underflow.
+double largeGammaRatio(double a, double x, bool isTail)
 {
-  double lower; // P(a, x)
-  double upper; // Q(a, x)
-};
-
-template <std::size_t Terms>
-double polynomial(const double (&coefficients)[Terms], double x)
-{
-  double sum = 0.0;
-  for (std::size_t k = Terms; k-- > 0;)
-  {
-    sum = sum * x + coefficients[k];
-  }
-  return sum;
-}
-
-/// Temme's uniform expansion (DLMF 8.12.3-8.12.10), a >= 1e5: terms left out are below 1e-13,
-/// relative, wherever the result does not underflow.
-GammaRatios largeGammaRatios(double a, double x)
-{
+  using boost::math::tools::evaluate_polynomial;
   static const double c0[] = { -0.33333333333333333, 0.083333333333333333, -0.014814814814814815,
     0.0011574074074074074, 0.0003527336860670194, -0.00017875514403292181, 0.39192631785224378e-4,
     -0.21854485106799922e-5, -0.185406221071516e-5, 0.8296711340953086e-6,
@@ -69,15 +54,15 @@ GammaRatios largeGammaRatios(double a, double x)
   static const double c1[] = { -0.0018518518518518519, -0.0034722222222222222,
     0.0026455026455026455, -0.00099022633744855967, 0.00020576131687242798 };
   const double y = -a * bm::log1pmx((x - a) / a, DoublePolicy()); // a eta^2/2
+  const double sign = isTail ? 1.0 : -1.0;
   if (!(y < 700.0))
   {
-    return x < a ? GammaRatios{ 0.0, 1.0 } : GammaRatios{ 1.0, 0.0 };
+    return sign * (x - a) < 0.0 ? 1.0 : 0.0;
   }
   const double eta = std::copysign(std::sqrt(2.0 * y / a), x - a);
-  const double rest =
-    std::exp(-y) / std::sqrt(2.0 * Pi * a) * (polynomial(c0, eta) + polynomial(c1, eta) / a);
-  const double root = std::copysign(std::sqrt(y), x - a);
-  return { 0.5 * std::erfc(-root) - rest, 0.5 * std::erfc(root) + rest };
+  const double rest = std::exp(-y) / std::sqrt(2.0 * Pi * a) *
+    (evaluate_polynomial(c0, eta, std::size(c0)) + evaluate_polynomial(c1, eta, std::size(c1)) / a);
+  return 0.5 * std::erfc(sign * std::copysign(std::sqrt(y), x - a)) + sign * rest;
 }
 
 /// Smallest whole number for which `good` holds, good(infinity) being true and `good` monotone.
@@ -87,23 +72,16 @@ double smallestCount(double mean, const Predicate& good)
   double step = std::max(1.0, std::floor(std::sqrt(mean)));
   double low = std::floor(mean);
   double high = low;
-  if (good(low))
+  for (; low >= 0.0 && good(low); step *= 2.0)
   {
-    do
-    {
-      high = low;
-      low = std::max(-1.0, low - step);
-      step *= 2.0;
-    } while (low >= 0.0 && good(low));
+    high = low;
+    low = std::max(-1.0, low - step);
   }
-  else
+  for (bool isBracketed = high > low; !isBracketed; step *= 2.0)
   {
-    do
-    {
-      low = high;
-      high += step;
-      step *= 2.0;
-    } while (!good(high));
+    low = high;
+    high += step;
+    isBracketed = good(high);
   }
   while (high - low > 1.0)
   {
@@ -113,65 +91,48 @@ double smallestCount(double mean, const Predicate& good)
   return high;
 }
 
+/// A standard normal deviate. @param below @param above its tails, which sum to 1: the smaller has
+/// the digits
+double deviate(double below, double above)
+{
+  return above < 0.5 ? Root2 * bm::erfc_inv(2.0 * above, DoublePolicy())
+                     : -Root2 * bm::erfc_inv(2.0 * below, DoublePolicy());
+}
+
 /// The most photons whose energy is not above the limit.
 double countWithin(double limit, double photon)
 {
-  double count = std::floor(limit / photon);
-  if (count >= 0x1p52)
-  {
-    return count; // beyond any number of photons that is modelled
-  }
   // The product decides, as it does when noise meets the limit.
-  while (count > 0.0 && count * photon > limit)
-  {
-    count -= 1.0;
-  }
-  while ((count + 1.0) * photon <= limit)
-  {
-    count += 1.0;
-  }
-  return count;
+  const double count = std::floor(limit / photon);
+  return (count + 1.0) * photon <= limit ? count + 1.0
+    : count * photon <= limit            ? count
+                                         : count - 1.0;
 }
-}
-
-double poissonCdf(double mean, double count)
-{
-  if (count < 0.0)
-  {
-    return 0.0;
-  }
-  if (!(mean > 0.0))
-  {
-    return 1.0;
-  }
-  return gammaTail(count + 1.0, mean);
 }
 
 double gammaTail(double shape, double x)
 {
-  return shape >= LargeParameter ? largeGammaRatios(shape, x).upper
+  return shape >= LargeParameter ? largeGammaRatio(shape, x, true)
                                  : bm::gamma_q(shape, x, DoublePolicy());
+}
+
+double poissonCdf(double mean, double count)
+{
+  return count < 0.0 ? 0.0 : gammaTail(count + 1.0, mean);
 }
 
 double poissonTail(double mean, double count)
 {
-  if (count < 0.0)
-  {
-    return 1.0;
-  }
-  if (!(mean > 0.0))
-  {
-    return 0.0;
-  }
-  return count + 1.0 >= LargeParameter ? largeGammaRatios(count + 1.0, mean).lower
-                                       : bm::gamma_p(count + 1.0, mean, DoublePolicy());
+  return count < 0.0                ? 1.0
+    : count + 1.0 >= LargeParameter ? largeGammaRatio(count + 1.0, mean, false)
+                                    : bm::gamma_p(count + 1.0, mean, DoublePolicy());
 }
 
 double poissonQuantile(double mean, double p, double q)
 {
   if (!(q > 0.0))
   {
-    return std::numeric_limits<double>::infinity();
+    return Infinity;
   }
   if (!(mean > 0.0) || !(p > 0.0))
   {
@@ -181,32 +142,13 @@ double poissonQuantile(double mean, double p, double q)
                 : smallestCount(mean, [mean, q](double n) { return poissonTail(mean, n) <= q; });
 }
 
-namespace
-{
-void planGaussian(const Sensor& sensor, NoisePlan& plan)
-{
-  const PhotonReceiver receiver(sensor);
-  const double joules = 1.0 / receiver.electronsPerJoule;
-  plan.active = true;
-  plan.gaussian = true;
-  plan.darkVariance = receiver.darkVariance * joules * joules;
-  plan.varianceOfEnergy = receiver.excess * joules;
-  const double k = sensor.lowerEnergyLimit / std::sqrt(plan.darkVariance);
-  plan.alarmProbability = 0.5 * std::erfc(k / Root2);
-  plan.quietProbability = 0.5 * std::erfc(-k / Root2);
-  plan.falseAlarmsPerBeam =
-    plan.alarmProbability * static_cast<double>(plan.gateUnits - plan.firstUnit);
-  plan.faintLight = leastLight(sensor.lowerEnergyLimit, plan.darkVariance, plan.varianceOfEnergy);
-}
-}
-
 double leastLight(double limit, double dark, double perEnergy)
 {
   const double square = CommonDeviate * CommonDeviate;
   const double half = limit + 0.5 * square * perEnergy;
   const double rest = limit * limit - square * dark;
   return limit > 0.0 && rest > 0.0 ? (1.0 - 1e-9) * rest / (half + std::sqrt(half * half - rest))
-                                   : -std::numeric_limits<double>::infinity();
+                                   : -Infinity;
 }
 
 NoisePlan planNoise(const Sensor& sensor, bool enabled, bool inFull)
@@ -216,35 +158,36 @@ NoisePlan planNoise(const Sensor& sensor, bool enabled, bool inFull)
   plan.firstUnit = firstUnitInsideGate(sensor.samplingInterval, sensor.minimumRange);
   plan.photonEnergy = sensor.photonEnergy();
   plan.ofRanges = enabled;
-  if (sensor.receiverModel == ReceiverModel::Photons)
+  plan.gaussian = enabled && sensor.receiverModel == ReceiverModel::Photons;
+  plan.meanPhotons =
+    enabled && !plan.gaussian ? sensor.noisePhotonRate * sensor.samplingInterval : 0.0;
+  if (plan.gaussian)
   {
-    if (enabled)
-    {
-      planGaussian(sensor, plan);
-    }
-    return plan;
+    const PhotonReceiver receiver(sensor);
+    const double joules = 1.0 / receiver.electronsPerJoule;
+    plan.active = true;
+    plan.darkVariance = receiver.darkVariance * joules * joules;
+    plan.varianceOfEnergy = receiver.excess * joules;
+    const double k = sensor.lowerEnergyLimit / std::sqrt(plan.darkVariance);
+    plan.alarmProbability = 0.5 * std::erfc(k / Root2);
+    plan.quietProbability = 0.5 * std::erfc(-k / Root2);
+    plan.faintLight = leastLight(sensor.lowerEnergyLimit, plan.darkVariance, plan.varianceOfEnergy);
   }
-  plan.meanPhotons = enabled ? sensor.noisePhotonRate * sensor.samplingInterval : 0.0;
-  if (!(plan.meanPhotons > 0.0))
-  {
-    return plan;
-  }
-  if (plan.meanPhotons > MaximumMeanPhotons)
+  else if (plan.meanPhotons > MaximumMeanPhotons)
   {
     plan.active = true; // an error: see checkNoise()
-    return plan;
   }
-  plan.bound =
-    poissonQuantile(plan.meanPhotons, 1.0, BoundProbability / BoundUnits) * plan.photonEnergy;
-  plan.active = inFull || !(plan.bound < NegligibleNoiseShare * sensor.lowerEnergyLimit);
-  if (plan.active)
+  else if (plan.meanPhotons > 0.0)
   {
+    plan.bound =
+      poissonQuantile(plan.meanPhotons, 1.0, BoundProbability / BoundUnits) * plan.photonEnergy;
+    plan.active = inFull || !(plan.bound < NegligibleNoiseShare * sensor.lowerEnergyLimit);
     plan.alarmPhotons = countWithin(sensor.lowerEnergyLimit, plan.photonEnergy);
     plan.alarmProbability = poissonTail(plan.meanPhotons, plan.alarmPhotons);
     plan.quietProbability = poissonCdf(plan.meanPhotons, plan.alarmPhotons);
-    plan.falseAlarmsPerBeam =
-      plan.alarmProbability * static_cast<double>(plan.gateUnits - plan.firstUnit);
   }
+  plan.falseAlarmsPerBeam =
+    plan.alarmProbability * static_cast<double>(plan.gateUnits - plan.firstUnit);
   return plan;
 }
 
@@ -295,15 +238,21 @@ void BeamNoise::begin(
     [&](std::int64_t unit) { this->Alarms.push_back(unit); });
 }
 
+/// Uniform numbers of a unit, or of another number.
+std::array<double, 2> BeamNoise::draw(std::int64_t unit, RandomPurpose purpose) const
+{
+  return uniformPair(
+    this->Seed, this->Beam, static_cast<std::uint64_t>(unit), purpose, this->Revolution);
+}
+
 /// f(unit) for units drawn independently: those between two are geometric, floor(ln u/ln(1 - p)).
 template <class F>
 void BeamNoise::forEachInGaps(
   double logOthers, std::int64_t begin, std::int64_t end, RandomPurpose purpose, F f) const
 {
-  for (auto draw = static_cast<std::uint64_t>(begin); begin < end; ++draw)
+  for (std::int64_t number = begin; begin < end; ++number)
   {
-    const double u = uniformPair(this->Seed, this->Beam, draw, purpose, this->Revolution)[0];
-    const double gap = std::floor(std::log(u) / logOthers);
+    const double gap = std::floor(std::log(this->draw(number, purpose)[0]) / logOthers);
     if (!(gap < static_cast<double>(end - begin)))
     {
       return;
@@ -343,26 +292,16 @@ double BeamNoise::photons(double u, bool alarm) const
     plan.alarmPhotons, poissonQuantile(plan.meanPhotons, u * plan.quietProbability, q));
 }
 
-/// A standard normal deviate. @param below @param above its tails, which sum to 1: the smaller has
-/// the digits
-double BeamNoise::deviate(double below, double above) const
-{
-  return above < 0.5 ? Root2 * bm::erfc_inv(2.0 * above, DoublePolicy())
-                     : -Root2 * bm::erfc_inv(2.0 * below, DoublePolicy());
-}
-
 double BeamNoise::rangeDeviate(std::int64_t unit) const
 {
-  const double u = uniformPair(this->Seed, this->Beam, static_cast<std::uint64_t>(unit),
-    RandomPurpose::RangeNoise, this->Revolution)[0];
-  return this->deviate(u, 1.0 - u);
+  const double u = this->draw(unit, RandomPurpose::RangeNoise)[0];
+  return deviate(u, 1.0 - u);
 }
 
 double BeamNoise::place(std::int64_t unit) const
 {
   // The first number of the pair is that of energy().
-  return uniformPair(this->Seed, this->Beam, static_cast<std::uint64_t>(unit), RandomPurpose::Noise,
-    this->Revolution)[1];
+  return this->draw(unit, RandomPurpose::Noise)[1];
 }
 
 double BeamNoise::energy(std::int64_t unit, double light)
@@ -372,8 +311,7 @@ double BeamNoise::energy(std::int64_t unit, double light)
   {
     return 0.0;
   }
-  const double u = uniformPair(this->Seed, this->Beam, static_cast<std::uint64_t>(unit),
-    RandomPurpose::Noise, this->Revolution)[0];
+  const double u = this->draw(unit, RandomPurpose::Noise)[0];
   const bool alarm = this->isAlarm(unit);
   if (!plan.gaussian)
   {
@@ -383,7 +321,7 @@ double BeamNoise::energy(std::int64_t unit, double light)
   if (alarm)
   {
     const double above = (1.0 - u) * plan.alarmProbability;
-    return deviation * this->deviate(plan.quietProbability + u * plan.alarmProbability, above);
+    return deviation * deviate(plan.quietProbability + u * plan.alarmProbability, above);
   }
   // Shares of the deviates that raise no alarm.
   const bool rare = this->isRare(unit);
@@ -391,7 +329,6 @@ double BeamNoise::energy(std::int64_t unit, double light)
   const double rest =
     rare ? (1.0 - CommonShare) * (1.0 - u) : (1.0 - CommonShare) + CommonShare * (1.0 - u);
   return deviation *
-    this->deviate(
-      below * plan.quietProbability, plan.alarmProbability + rest * plan.quietProbability);
+    deviate(below * plan.quietProbability, plan.alarmProbability + rest * plan.quietProbability);
 }
 }

@@ -31,6 +31,7 @@
 #include "Sensor.h"
 
 #include <algorithm>
+#include <array>
 #include <bitset>
 #include <cstdint>
 #include <string>
@@ -112,6 +113,8 @@ public:
   double place(std::int64_t unit) const;
 
 private:
+  std::array<double, 2> draw(std::int64_t unit, RandomPurpose purpose) const;
+
   /// Units for which rare deviates are drawn together.
   static constexpr std::int64_t UnitsOfBlock = 4096;
 
@@ -119,7 +122,6 @@ private:
   void forEachInGaps(
     double logOthers, std::int64_t begin, std::int64_t end, RandomPurpose purpose, F f) const;
   double photons(double u, bool alarm) const;
-  double deviate(double below, double above) const;
   bool isAlarm(std::int64_t unit) const
   {
     return std::binary_search(this->Alarms.begin(), this->Alarms.end(), unit);

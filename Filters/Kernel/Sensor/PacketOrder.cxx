@@ -2,35 +2,14 @@
 #include "PacketOrder.h"
 
 #include "BeamRays.h"
-#include "LaneMath.h"
 
 #include <algorithm>
-#include <cmath>
 #include <numeric>
 
 namespace avianlidar
 {
 namespace
 {
-/// Expected rays of a uniform beam, in the middle of their cells. The same bits on every processor.
-BeamRays expectedRays(std::size_t count)
-{
-  const StrataPartition strata(count);
-  const StrataPartition::RayCells& cells = strata.rayCells();
-  BeamRays rays;
-  rays.resize(count);
-  for (std::size_t n = 0; n < count; ++n)
-  {
-    const double radius = std::sqrt(cells.v0[n] + 0.5 * cells.dv[n]);
-    double cosine;
-    double sine;
-    lanes::cosSinOfTurns(cells.turn0[n] + 0.5 * cells.dturns[n], cosine, sine);
-    rays.x[n] = radius * cosine;
-    rays.y[n] = radius * sine;
-  }
-  return rays;
-}
-
 void halve(const BeamRays& rays, std::uint32_t* begin, std::uint32_t* end)
 {
   const auto count = static_cast<std::size_t>(end - begin);
@@ -60,7 +39,10 @@ const std::vector<std::uint32_t>& PacketOrder::of(std::size_t rays)
   {
     this->Known.resize(rays);
     std::iota(this->Known.begin(), this->Known.end(), 0u);
-    halve(expectedRays(rays), this->Known.data(), this->Known.data() + rays);
+    const StrataPartition strata(rays);
+    BeamRays drawn;
+    sampleBeam(0, 0, rays, { 1e-3 }, Sampling::Stratified, &strata, drawn);
+    halve(drawn, this->Known.data(), this->Known.data() + rays);
   }
   return this->Known;
 }

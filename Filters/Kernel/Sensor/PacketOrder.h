@@ -4,10 +4,10 @@
  * @brief Decides which rays of a beam share a packet: an order of their numbers in compact groups
  * of sixteen.
  *
- * Stratified rays of equal number lie in the same cells, so one order, found from the cells, serves
- * all beams. It depends on nothing else, so the cost of a beam does not depend on what its thread
- * did before. The order serves independent rays as well as any other. Rays that
- * come with their neighbours keep their order.
+ * Stratified rays of equal number lie in the same cells, so one order, that of some beam, serves
+ * all. It depends on nothing else, so the cost of a beam does not depend on what its thread did
+ * before. The order serves independent rays as well as any other. Rays that come with their
+ * neighbours keep their order.
  *
  * Source: none.
  * Valid: any number of rays, at least 1. The order affects cost only, never hits.

@@ -9,22 +9,18 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <sstream>
 
 namespace avianlidar
 {
 namespace
 {
-
 /// Times as many false alarms as were asked for: more are warned of.
 constexpr double MostFalseAlarmsUnsaid = 10.0;
 
 std::string checkDynamicRange(double dynamicRange)
 {
-  return dynamicRange >= 0.0 && dynamicRange <= 1000.0
-    ? std::string()
-    : valueError("dynamic_range", dynamicRange, "0 to 1000 dB");
+  return rangeError("dynamic_range", dynamicRange, 0.0, 1000.0, "0 to 1000 dB");
 }
 
 void setLimits(Sensor& sensor, double lower, double dynamicRange)
@@ -132,63 +128,46 @@ double rangeUnitsOf(const Sensor& sensor, double beams)
 
 std::string checkPhotonLimits(double falseAlarms, double dynamicRange)
 {
-  if (!(falseAlarms > 0.0) || !(falseAlarms <= MaximumFalseAlarmsPerScan))
-  {
-    return valueError("false_alarms_per_scan", falseAlarms, "more than 0 and at most 1e8");
-  }
-  return checkDynamicRange(dynamicRange);
+  return firstError({ rangeError("false_alarms_per_scan", falseAlarms, AboveZero,
+                        MaximumFalseAlarmsPerScan, "more than 0 and at most 1e8"),
+    checkDynamicRange(dynamicRange) });
 }
 
 std::string setPhotonLimits(Sensor& sensor, double falseAlarms, double dynamicRange, double beams)
 {
   const double units = rangeUnitsOf(sensor, beams);
-  std::string error = checkPhotonLimits(falseAlarms, dynamicRange);
-  if (!error.empty())
+  const std::string error = firstError({ checkPhotonLimits(falseAlarms, dynamicRange),
+    falseAlarms < 0.1 * units
+      ? ""
+      : valueError("false_alarms_per_scan", falseAlarms,
+          "less than a tenth of the range units of the scan (beams times range_gate over c/2 "
+          "sampling_interval)") });
+  if (error.empty())
   {
-    return error;
+    const PhotonReceiver receiver(sensor);
+    setLimits(sensor,
+      thresholdFactor(falseAlarms, units) * receiver.deviation(0.0) / receiver.electronsPerJoule,
+      dynamicRange);
   }
-  if (!(falseAlarms < 0.1 * units))
-  {
-    return valueError("false_alarms_per_scan", falseAlarms,
-      "less than a tenth of the range units of the scan (beams times range_gate over c/2 "
-      "sampling_interval)");
-  }
-  const PhotonReceiver receiver(sensor);
-  setLimits(sensor,
-    thresholdFactor(falseAlarms, units) * receiver.deviation(0.0) / receiver.electronsPerJoule,
-    dynamicRange);
-  return {};
+  return error;
 }
 
 std::string setDataSheetLimits(
   Sensor& sensor, double range, double reflectance, double attenuation, double dynamicRange)
 {
-  if (!(range > 0.0) || !(range <= MaximumRangeGate))
-  {
-    return valueError("range", range, "more than 0 and at most 1e30 m");
-  }
-  if (!(reflectance > 0.0) || !(reflectance <= 1.0))
-  {
-    return valueError("reflectance", reflectance, "more than 0 and at most 1");
-  }
-  if (!(attenuation >= 0.0) || !std::isfinite(attenuation))
-  {
-    return valueError("attenuation", attenuation, "at least 0 1/m");
-  }
-  if (!(sensor.receiverAperture > 0.0))
-  {
-    return valueError("receiver_aperture", sensor.receiverAperture,
-      "more than 0 m2: without it no energy falls with the range");
-  }
-  std::string error = checkDynamicRange(dynamicRange);
+  const double energy = energyFromTarget(sensor, range, Infinity, reflectance, attenuation);
+  const std::string error = firstError({
+    rangeError("range", range, AboveZero, MaximumRangeGate, "more than 0 and at most 1e30 m"),
+    rangeError("reflectance", reflectance, AboveZero, 1.0, "more than 0 and at most 1"),
+    rangeError("attenuation", attenuation, 0.0, LargestFinite, "at least 0 1/m"),
+    rangeError("receiver_aperture", sensor.receiverAperture, AboveZero, LargestFinite,
+      "more than 0 m2: without it no energy falls with the range"),
+    checkDynamicRange(dynamicRange),
+    energy > 0.0 ? ""
+                 : valueError("attenuation", attenuation, "one through which light comes back"),
+  });
   if (error.empty())
   {
-    const double all = std::numeric_limits<double>::infinity();
-    const double energy = energyFromTarget(sensor, range, all, reflectance, attenuation);
-    if (!(energy > 0.0))
-    {
-      return valueError("attenuation", attenuation, "one through which light comes back");
-    }
     setLimits(sensor, energy, dynamicRange);
   }
   return error;
@@ -208,16 +187,12 @@ double energyFromTarget(
 
 std::string checkPhotonReceiver(const Sensor& s)
 {
-  if (!(s.receiverAperture > 0.0))
-  {
-    return valueError(
-      "receiver_aperture", s.receiverAperture, "more than 0 m2 with receiver_model 1 (photons)");
-  }
-  if (!(PhotonReceiver(s).darkVariance > 0.0))
-  {
-    return valueError("amplifier_noise", s.amplifierNoise,
-      "more than 0 where no background light arrives (background_radiance, filter_bandwidth)");
-  }
-  return {};
+  return firstError({ rangeError("receiver_aperture", s.receiverAperture, AboveZero, LargestFinite,
+                        "more than 0 m2 with receiver_model 1 (photons)"),
+    PhotonReceiver(s).darkVariance > 0.0
+      ? ""
+      : valueError("amplifier_noise", s.amplifierNoise,
+          "more than 0 where no background light arrives (background_radiance, "
+          "filter_bandwidth)") });
 }
 }
