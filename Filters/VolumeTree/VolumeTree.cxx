@@ -67,9 +67,7 @@ std::uint64_t descend(const VolumeTree& tree, const std::vector<std::uint32_t>& 
 bool divide(const TriangleMesh& mesh, const TreeOptions& options, std::uint32_t deepest,
   const KeepGoing& keepGoing, std::vector<BinaryNode>& nodes, std::vector<std::uint32_t>& order)
 {
-  TriangleBoxes scene;
-  ParallelTeam::run(
-    1, [&](ParallelTeam& team) { scene = makeTriangleBoxes(mesh, team, keepGoing); });
+  const TriangleBoxes scene = makeTriangleBoxes(mesh, 1, keepGoing);
   if (mesh.size() == 0)
   {
     return true;

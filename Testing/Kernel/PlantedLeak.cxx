@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A leak on purpose, in the parallel loop of the kernel: LeakSanitizer must report it, though it is
-// told to be silent about the OpenMP runtime, which lies below every such loop.
+// told to be silent about the OpenMP runtime.
 #include "ParallelLoop.h"
 
 #include <atomic>

@@ -184,91 +184,14 @@ TEST(ParallelLoop, SlotsDoNotDependOnThreads)
   EXPECT_EQ(run(1), run(5));
 }
 
-TEST(ParallelLoop, LoopsOfATeamFollowEachOther)
-{
-  for (const int threads : { 0, 1, 2, 7 })
-  {
-    // Each loop works on what the one before it left.
-    std::vector<std::size_t> items(3000, 0);
-    std::atomic<int> badThread{ 0 };
-    bool finished = true;
-    ParallelTeam::run(threads,
-      [&](ParallelTeam& team)
-      {
-        EXPECT_EQ(team.threads(), loopThreads(threads));
-        for (std::size_t round = 0; round < 500; ++round)
-        {
-          const std::size_t count = round % 7 == 0 ? 0 : 1 + (round * 37) % items.size();
-          finished &= team.loop(count, round % 50,
-            [&](std::size_t begin, std::size_t end, int thread)
-            {
-              badThread += thread < 0 || thread >= team.threads();
-              for (std::size_t i = begin; i < end; ++i)
-              {
-                items[i] = items[i] * 3 + round;
-              }
-            });
-        }
-      });
-    std::vector<std::size_t> expected(items.size(), 0);
-    for (std::size_t round = 0; round < 500; ++round)
-    {
-      const std::size_t count = round % 7 == 0 ? 0 : 1 + (round * 37) % items.size();
-      for (std::size_t i = 0; i < count; ++i)
-      {
-        expected[i] = expected[i] * 3 + round;
-      }
-    }
-    EXPECT_TRUE(finished);
-    EXPECT_EQ(badThread, 0);
-    EXPECT_EQ(items, expected);
-  }
-}
-
-TEST(ParallelLoop, ATeamStopsAndThrowsAsALoopDoes)
-{
-  for (const int threads : { 1, 4 })
-  {
-    EXPECT_THROW(ParallelTeam::run(threads,
-                   [](ParallelTeam& team)
-                   {
-                     team.loop(100, 1,
-                       [](std::size_t begin, std::size_t, int)
-                       {
-                         if (begin == 40)
-                         {
-                           throw std::runtime_error("forty");
-                         }
-                       });
-                   }),
-      std::runtime_error);
-    EXPECT_THROW(
-      ParallelTeam::run(threads, [](ParallelTeam&) { throw std::invalid_argument("work"); }),
-      std::invalid_argument);
-    int calls = 0;
-    ParallelTeam::run(threads,
-      [&](ParallelTeam& team)
-      {
-        EXPECT_FALSE(team.loop(
-          1000, 1, [](std::size_t, std::size_t, int) {}, [&](double) { return ++calls < 3; }));
-        EXPECT_TRUE(team.loop(10, 1, [](std::size_t, std::size_t, int) {}));
-      });
-    EXPECT_EQ(calls, 3);
-  }
-}
-
 namespace
 {
-/// True if all items were done by a loop and by a team of so many threads.
+/// True if all items were done by a loop of so many threads.
 bool loopsWork(int threads)
 {
   std::atomic<std::size_t> items{ 0 };
   const LoopBody body = [&](std::size_t begin, std::size_t end, int) { items += end - begin; };
-  bool done = parallelFor(1000, 1, threads, body);
-  ParallelTeam::run(threads,
-    [&](ParallelTeam& team)
-    { done = team.threads() == threads && team.loop(1000, 1, body) && done; });
-  return done && items == 2000;
+  return parallelFor(1000, 1, threads, body) && items == 1000;
 }
 
 /// The signal that ended a forked child, or its exit code: 0 if `work` gave true.

@@ -33,8 +33,7 @@ struct Split
 
 Split split(SplitRule rule, const TriangleMesh& mesh, std::uint32_t depth = 0)
 {
-  TriangleBoxes scene;
-  ParallelTeam::run(1, [&](ParallelTeam& team) { scene = makeTriangleBoxes(mesh, team); });
+  const TriangleBoxes scene = makeTriangleBoxes(mesh, 1);
   std::vector<LaneBox> from(scene.boxes, scene.boxes + mesh.size());
   std::vector<LaneBox> to(mesh.size());
   LaneExtent extent;

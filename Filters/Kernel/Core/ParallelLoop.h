@@ -2,14 +2,15 @@
 /**
  * @file ParallelLoop.h
  * @brief The only parallel loop of the project: blocks of a range, handed out as threads become
- * free. Either one loop, or several loops of a team of threads that stays together.
+ * free.
  *
  * All other code is serial code on a range of items. Which thread gets which block is not
  * determined, so the body must write each item's result to a slot of that item alone.
  *
  * Source: none.
- * Valid: any counts, blocks and numbers of threads. The child of a fork starts threads of its own
- * (a fork does not copy OpenMP's, which stay from loop to loop).
+ * Valid: any counts, blocks and numbers of threads. Every loop starts threads of its own: the child
+ * of a fork, which has no threads but the one that forked, runs loops as its parent does. Where the
+ * system refuses a thread, those that run do its share.
  * Test: TestParallelLoop.cxx.
  */
 #ifndef avianlidar_ParallelLoop_h
@@ -46,38 +47,6 @@ struct WorkStopped : std::exception
  */
 bool parallelFor(std::size_t count, std::size_t block, int threads, const LoopBody& body,
   const KeepGoing& keepGoing = {});
-
-/**
- * Threads that stay together for several loops, one after the other.
- *
- * To begin and end a loop costs a team a microsecond or less. Where other programs keep one of its
- * threads from running, the others do its share. Work that is a chain of short loops should have a
- * team. Only the calling thread may begin loops, and not from within one.
- */
-class ParallelTeam
-{
-public:
-  /// Call `work` on the calling thread while the others wait for its loops. Its exceptions are
-  /// thrown here.
-  /// @param threads > 0, or 0 for loopThreads(0)
-  static void run(int threads, const std::function<void(ParallelTeam&)>& work);
-
-  int threads() const { return this->Threads; }
-
-  /// As parallelFor(), with the threads of the team.
-  bool loop(
-    std::size_t count, std::size_t block, const LoopBody& body, const KeepGoing& keepGoing = {});
-
-private:
-  struct Shared;
-  ParallelTeam(int threads, Shared& shared)
-    : Threads(threads)
-    , Common(shared)
-  {
-  }
-  const int Threads;
-  Shared& Common;
-};
 
 /// Threads that a loop asked for `threads` uses at most: `threads`, or OpenMP's choice
 /// (OMP_NUM_THREADS) for 0 or less.

@@ -340,10 +340,10 @@ private:
 class Search
 {
 public:
-  Search(const CollisionTree& tree, ParallelTeam& team)
+  Search(const CollisionTree& tree, int threads)
     : Tree(tree)
     , Mesh(*tree.mesh)
-    , Team(team)
+    , Threads(threads)
     , Faces(tree.order.size())
     , Sets(tree.order.size())
   {
@@ -353,7 +353,7 @@ public:
   bool run(const KeepGoing& keepGoing, CollisionTree& tree)
   {
     constexpr std::size_t block = 1024;
-    this->Team.loop(this->Faces.size(), block,
+    parallelFor(this->Faces.size(), block, this->Threads,
       [this](std::size_t begin, std::size_t end, int)
       {
         for (std::size_t k = begin; k < end; ++k)
@@ -367,8 +367,8 @@ public:
       })->tolerance;
     const float slack = 2.0f * widest + WideRounding * static_cast<float>(tree.wide.extent);
     constexpr std::size_t nodes = 64;
-    const bool finished = this->Team.loop(
-      tree.wide.nodes.size(), nodes,
+    const bool finished = parallelFor(
+      tree.wide.nodes.size(), nodes, this->Threads,
       [&](std::size_t begin, std::size_t end, int)
       {
         LeafSearch search(this->Tree, this->Faces, slack, this->Sets);
@@ -458,14 +458,14 @@ private:
 
   const CollisionTree& Tree;
   const TriangleMesh& Mesh;
-  ParallelTeam& Team;
+  int Threads;
   std::vector<Face> Faces; ///< in the tree's order
   Forest Sets;
 };
 }
 
-bool findPlaneOwners(CollisionTree& tree, ParallelTeam& team, const KeepGoing& keepGoing)
+bool findPlaneOwners(CollisionTree& tree, int threads, const KeepGoing& keepGoing)
 {
-  return Search(tree, team).run(keepGoing, tree);
+  return Search(tree, threads).run(keepGoing, tree);
 }
 }

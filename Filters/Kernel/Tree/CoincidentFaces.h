@@ -31,7 +31,7 @@ namespace avianlidar
 {
 /// Set planeOwners and planeDepth. @param tree wide, complete but for these @return false if
 /// stopped
-bool findPlaneOwners(CollisionTree& tree, ParallelTeam& team, const KeepGoing& keepGoing);
+bool findPlaneOwners(CollisionTree& tree, int threads, const KeepGoing& keepGoing);
 }
 
 #endif

@@ -102,9 +102,9 @@ void setLane(WideNode& node, int lane, const LaneBox& box)
 class Builder
 {
 public:
-  Builder(CollisionTree& tree, ParallelTeam& team, const KeepGoing& keepGoing)
+  Builder(CollisionTree& tree, int threads, const KeepGoing& keepGoing)
     : Tree(tree)
-    , Team(team)
+    , Threads(threads)
     , Continue(keepGoing)
   {
   }
@@ -112,7 +112,7 @@ public:
   /// False if `keepGoing` returned false.
   bool build()
   {
-    this->Scene = makeTriangleBoxes(*this->Tree.mesh, this->Team, this->stage(0.0, 0.05));
+    this->Scene = makeTriangleBoxes(*this->Tree.mesh, this->Threads, this->stage(0.0, 0.05));
     if (this->Tree.mesh->size() == 0)
     {
       return !this->Continue || this->Continue(1.0);
@@ -127,7 +127,7 @@ public:
     wide.reference = this->Scene.reference;
     wide.extent = this->Scene.extent;
     this->Small = {};
-    return findPlaneOwners(this->Tree, this->Team, this->stage(0.55, 1.0));
+    return findPlaneOwners(this->Tree, this->Threads, this->stage(0.55, 1.0));
   }
 
 private:
@@ -154,7 +154,7 @@ private:
         f(i);
       }
     };
-    return this->Team.loop(count, 1, body, this->stage(from, to));
+    return parallelFor(count, 1, this->Threads, body, this->stage(from, to));
   }
 
   LaneBox* boxesOf(const Range& range, std::uint32_t depth) const
@@ -351,7 +351,7 @@ private:
   }
 
   CollisionTree& Tree;
-  ParallelTeam& Team;
+  int Threads;
   const KeepGoing& Continue;
   TriangleBoxes Scene;
   Ranges Large;              ///< the uppermost layers
@@ -395,9 +395,7 @@ std::shared_ptr<const CollisionTree> buildCollisionTree(std::shared_ptr<const Tr
   constexpr std::size_t LeastPerThread = 1024;
   const std::size_t useful = std::max<std::size_t>(1, tree->mesh->size() / LeastPerThread);
   const std::size_t most = static_cast<std::size_t>(loopThreads(threads));
-  bool finished = false;
-  ParallelTeam::run(static_cast<int>(std::min(useful, most)),
-    [&](ParallelTeam& team) { finished = Builder(*tree, team, keepGoing).build(); });
-  return finished ? tree : nullptr;
+  const int team = static_cast<int>(std::min(useful, most));
+  return Builder(*tree, team, keepGoing).build() ? tree : nullptr;
 }
 }

@@ -65,9 +65,9 @@ bool addTriangles(const TriangleMesh& mesh, std::size_t begin, std::size_t end, 
 }
 
 /// The box of all triangles, empty if `keepGoing` returned false.
-AABB boundsOf(const TriangleMesh& mesh, ParallelTeam& team, const KeepGoing& keepGoing)
+AABB boundsOf(const TriangleMesh& mesh, int threads, const KeepGoing& keepGoing)
 {
-  std::vector<AABB> ofThread(team.threads());
+  std::vector<AABB> ofThread(loopThreads(threads));
   std::atomic<bool> good{ true };
   const auto body = [&](std::size_t begin, std::size_t end, int thread)
   {
@@ -76,7 +76,7 @@ AABB boundsOf(const TriangleMesh& mesh, ParallelTeam& team, const KeepGoing& kee
       good = false;
     }
   };
-  const bool finished = team.loop(mesh.size(), Block, body, keepGoing);
+  const bool finished = parallelFor(mesh.size(), Block, threads, body, keepGoing);
   if (!good)
   {
     throwForBadTriangle(mesh);
@@ -112,8 +112,7 @@ LaneBox TriangleBoxes::boxOf(const TriangleMesh& mesh, std::uint32_t triangle) c
   return box;
 }
 
-TriangleBoxes makeTriangleBoxes(
-  const TriangleMesh& mesh, ParallelTeam& team, const KeepGoing& keepGoing)
+TriangleBoxes makeTriangleBoxes(const TriangleMesh& mesh, int threads, const KeepGoing& keepGoing)
 {
   if (mesh.size() > 0x7fffffffu)
   {
@@ -126,7 +125,7 @@ TriangleBoxes makeTriangleBoxes(
     return keepGoing ? KeepGoing([&, from](double done) { return keepGoing(from + 0.5 * done); })
                      : KeepGoing();
   };
-  const AABB bounds = boundsOf(mesh, team, half(0.0));
+  const AABB bounds = boundsOf(mesh, threads, half(0.0));
   if (bounds.empty())
   {
     return result;
@@ -145,7 +144,7 @@ TriangleBoxes makeTriangleBoxes(
       boxes[t] = result.boxOf(mesh, static_cast<std::uint32_t>(t));
     }
   };
-  if (team.loop(mesh.size(), Block, body, half(0.5)))
+  if (parallelFor(mesh.size(), Block, threads, body, half(0.5)))
   {
     result.boxes = boxes;
   }

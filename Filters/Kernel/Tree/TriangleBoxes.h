@@ -133,7 +133,7 @@ struct TriangleBoxes
 /// Throws std::invalid_argument if there are too many triangles, naming the first one whose corner
 /// is missing, not finite or beyond MaximumCoordinate.
 TriangleBoxes makeTriangleBoxes(
-  const TriangleMesh& mesh, ParallelTeam& team, const KeepGoing& keepGoing = {});
+  const TriangleMesh& mesh, int threads, const KeepGoing& keepGoing = {});
 }
 
 #endif
