@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "CoincidentFaces.h"
 
-#include "Traversal.h"
+#include <boost/container/static_vector.hpp>
 
 #include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <cstring>
+#include <utility>
 
 namespace avianlidar
 {
@@ -18,12 +19,16 @@ constexpr double LeastOverlap = 1e-6;
 /// Tilt, rad, that single precision may add to a pair of normals.
 constexpr float TiltOfRounding = 1e-6f;
 
+/// Of several triangles the one of largest altitude has the common plane. Copies have the plane of
+/// the first: an altitude must be larger by this factor.
+constexpr double ClearlyLarger = 1.001;
+
 /// A triangle as the search needs it.
 struct Face
 {
-  float normal[3];
-  float tilt;      ///< rad, by which rounding may turn it
-  float tolerance; ///< toleranceOf(), rounded up
+  glm::vec3 normal{ 0.0f };
+  float tilt = 0.0f;      ///< rad, by which rounding may turn it
+  float tolerance = 0.0f; ///< toleranceOf(), rounded up
 };
 
 /// Twice the area, along the normal.
@@ -37,7 +42,12 @@ double longestSideOf(const Corners& t)
   const Vec3 ab = t.b - t.a;
   const Vec3 bc = t.c - t.b;
   const Vec3 ca = t.a - t.c;
-  return std::sqrt(std::max(glm::dot(ab, ab), std::max(glm::dot(bc, bc), glm::dot(ca, ca))));
+  return std::sqrt(std::max({ glm::dot(ab, ab), glm::dot(bc, bc), glm::dot(ca, ca) }));
+}
+
+double leastAltitudeOf(const Corners& t)
+{
+  return glm::length(areaOf(t)) / longestSideOf(t);
 }
 
 /// Relative to its first corner.
@@ -66,37 +76,29 @@ double toleranceOf(const TriangleMesh& mesh, std::uint32_t triangle, const Vec3&
   for (int c = 0; c < 3; ++c)
   {
     const Vec3& p = mesh.corner(triangle, c);
-    for (int axis = 0; axis < 3; ++axis)
-    {
-      allSingle = allSingle && isSingle(p[axis]);
-      largest[axis] = std::max(largest[axis], std::fabs(p[axis]));
-    }
+    allSingle = allSingle && isSingle(p.x) && isSingle(p.y) && isSingle(p.z);
+    largest = glm::max(largest, glm::abs(p));
   }
-  return ofDouble * std::max(largest.x, std::max(largest.y, largest.z)) +
+  return ofDouble * std::max({ largest.x, largest.y, largest.z }) +
     (allSingle ? std::min(most, ofSingle * glm::dot(glm::abs(normal), largest)) : 0.0);
 }
 
 Face faceOf(const TriangleMesh& mesh, std::uint32_t triangle)
 {
-  Face face = {};
   const Corners t = cornersOf(mesh, triangle);
   const Vec3 area = areaOf(t);
   const double size = glm::length(area);
-  if (size > 0.0)
+  if (!(size > 0.0))
   {
-    const Vec3 n = area / size;
-    const double tolerance = toleranceOf(mesh, triangle, n);
-    const double longest = longestSideOf(t);
-    constexpr float up = 1.0f + 1e-6f;
-    for (int axis = 0; axis < 3; ++axis)
-    {
-      face.normal[axis] = static_cast<float>(n[axis]);
-    }
-    face.tilt =
-      up * static_cast<float>((2.0 * tolerance + 8.0 * RoundOffDouble * longest) * longest / size);
-    face.tolerance = up * static_cast<float>(tolerance);
+    return {};
   }
-  return face;
+  const Vec3 n = area / size;
+  const double tolerance = toleranceOf(mesh, triangle, n);
+  const double longest = longestSideOf(t);
+  constexpr float up = 1.0f + 1e-6f;
+  return { glm::vec3(n),
+    up * static_cast<float>((2.0 * tolerance + 8.0 * RoundOffDouble * longest) * longest / size),
+    up * static_cast<float>(tolerance) };
 }
 
 /// True if a side of the first triangle separates them, seen along its normal.
@@ -106,8 +108,8 @@ bool isBeside(const Corners& one, const Corners& two)
   const auto separates = [&](const Vec3& from, const Vec3& to)
   {
     const Vec3 inwards = glm::cross(n, to - from);
-    const auto isOut = [&](const Vec3& p) { return glm::dot(inwards, p - from) <= 0.0; };
-    return isOut(two.a) && isOut(two.b) && isOut(two.c);
+    return glm::dot(inwards, two.a - from) <= 0.0 && glm::dot(inwards, two.b - from) <= 0.0 &&
+      glm::dot(inwards, two.c - from) <= 0.0;
   };
   return separates(one.a, one.b) || separates(one.b, one.c) || separates(one.c, one.a);
 }
@@ -118,46 +120,44 @@ bool coincide(const Corners& one, const Corners& two, double tolerance)
   const Vec3 area = areaOf(one);
   const double size = glm::length(area);
   const Vec3 n = area / size;
-  const auto height = [&](const Vec3& p) { return glm::dot(n, p - one.a); };
-  Vec3 ring[6] = { two.a, two.b, two.c };
-  int count = 3;
-  const Vec3* const corners[] = { &one.a, &one.b, &one.c };
+  // What is left of the second triangle within the sides of the first.
+  using Ring = boost::container::static_vector<Vec3, 6>;
+  Ring ring{ two.a, two.b, two.c };
+  const Vec3 corners[] = { one.a, one.b, one.c };
   for (int k = 0; k < 3; ++k)
   {
-    const Vec3& from = *corners[k];
-    const Vec3 inwards = glm::cross(n, *corners[(k + 1) % 3] - from);
-    double side[6];
-    Vec3 whole[6];
-    for (int i = 0; i < count; ++i)
+    const Vec3& from = corners[k];
+    const Vec3 inwards = glm::cross(n, corners[(k + 1) % 3] - from);
+    const Ring whole = std::exchange(ring, {});
+    Vec3 before = whole.back();
+    double sideBefore = glm::dot(inwards, before - from);
+    for (const Vec3& p : whole)
     {
-      whole[i] = ring[i];
-      side[i] = glm::dot(inwards, ring[i] - from);
-    }
-    const int before = count;
-    count = 0;
-    for (int i = 0; i < before; ++i)
-    {
-      const int j = i + 1 == before ? 0 : i + 1;
-      if (side[i] >= 0.0)
+      const double side = glm::dot(inwards, p - from);
+      if (sideBefore * side < 0.0)
       {
-        ring[count++] = whole[i];
+        ring.push_back(before + sideBefore / (sideBefore - side) * (p - before));
       }
-      if (side[i] * side[j] < 0.0)
+      if (side >= 0.0)
       {
-        ring[count++] = whole[i] + side[i] / (side[i] - side[j]) * (whole[j] - whole[i]);
+        ring.push_back(p);
       }
+      before = p;
+      sideBefore = side;
     }
-    if (count < 3)
+    if (ring.size() < 3)
     {
       return false;
     }
   }
   Vec3 overlap(0.0);
   double farthest = 0.0;
-  for (int i = 0; i < count; ++i)
+  Vec3 before = ring.back();
+  for (const Vec3& p : ring)
   {
-    overlap += glm::cross(ring[i] - ring[0], ring[i + 1 == count ? 0 : i + 1] - ring[0]);
-    farthest = std::max(farthest, std::fabs(height(ring[i])));
+    overlap += glm::cross(before - ring[0], p - ring[0]);
+    farthest = std::max(farthest, std::fabs(glm::dot(n, p - one.a)));
+    before = p;
   }
   const double least = std::min(size, glm::length(areaOf(two)));
   const double edge = 8.0 * tolerance * std::min(longestSideOf(one), longestSideOf(two));
@@ -169,22 +169,17 @@ bool coincide(const Corners& one, const Corners& two, double tolerance)
 AVIANLIDAR_MULTIVERSION std::uint32_t childrenNear(
   const WideNode& node, const WideNode& other, int lane, float slack)
 {
-  std::uint32_t near[WideNode::Width];
-#pragma omp simd
+  std::uint32_t near = 0;
+#pragma omp simd reduction(| : near)
   for (int i = 0; i < WideNode::Width; ++i)
   {
     const float x = std::fabs(node.x[i] - other.x[lane]) - (node.halfX[i] + other.halfX[lane]);
     const float y = std::fabs(node.y[i] - other.y[lane]) - (node.halfY[i] + other.halfY[lane]);
     const float z = std::fabs(node.z[i] - other.z[lane]) - (node.halfZ[i] + other.halfZ[lane]);
     const float apart = x > y ? (x > z ? x : z) : (y > z ? y : z);
-    near[i] = (!(apart > slack) & (node.first[i] != NoChild)) ? 1u : 0u;
+    near |= (!(apart > slack) & (node.first[i] != NoChild) ? 1u : 0u) << i;
   }
-  std::uint32_t bits = 0;
-  for (int i = 0; i < WideNode::Width; ++i)
-  {
-    bits |= near[i] << i;
-  }
-  return bits;
+  return near;
 }
 
 /// Sets of triangles that coincide, which several threads unite. The root of a set is its lowest
@@ -201,21 +196,18 @@ public:
     }
   }
 
-  std::uint32_t rootOf(std::uint32_t triangle)
+  std::uint32_t rootOf(std::uint32_t t)
   {
-    for (std::uint32_t parent = this->Parents[triangle]; parent != triangle;
-         parent = this->Parents[triangle])
+    while (this->Parents[t] != t)
     {
-      this->Parents[triangle] = this->Parents[parent].load(); // shortens the way
-      triangle = parent;
+      t = this->Parents[t] = this->Parents[this->Parents[t]].load(); // shortens the way
     }
-    return triangle;
+    return t;
   }
 
   void unite(std::uint32_t one, std::uint32_t two)
   {
-    for (one = this->rootOf(one), two = this->rootOf(two); one != two;
-         one = this->rootOf(one), two = this->rootOf(two))
+    while ((one = this->rootOf(one)) != (two = this->rootOf(two)))
     {
       std::uint32_t higher = std::max(one, two);
       this->Parents[higher].compare_exchange_strong(higher, std::min(one, two));
@@ -226,134 +218,37 @@ private:
   std::vector<std::atomic<std::uint32_t>> Parents;
 };
 
-/// Descends the tree with the box of one node, and compares the triangles of its leaves with those
-/// of the leaves that it meets.
-class LeafSearch : public WidePolicy
+/// A child of a node of the tree.
+struct Child
 {
-public:
-  LeafSearch(const CollisionTree& tree, const std::vector<Face>& faces, float slack, Forest& sets)
-    : Tree(tree)
-    , Faces(faces)
-    , Slack(slack)
-    , Sets(sets)
+  const WideNode* node;
+  int lane;
+
+  std::uint32_t first() const { return this->node->first[this->lane]; }
+  std::uint32_t count() const { return this->node->count[this->lane]; }
+  float size() const
   {
+    return this->node->halfX[this->lane] + this->node->halfY[this->lane] +
+      this->node->halfZ[this->lane];
   }
-
-  /// @param parent of the node @param lane of the parent
-  void run(const WideNode& parent, int lane)
-  {
-    this->Parent = &parent;
-    this->Lane = lane;
-    this->Own = &this->Tree.wide.nodes[parent.first[lane]];
-    this->First = NoChild;
-    for (int i = 0; i < WideNode::Width; ++i)
-    {
-      this->First =
-        this->Own->count[i] > 0 ? std::min(this->First, this->Own->first[i]) : this->First;
-    }
-    if (this->First != NoChild)
-    {
-      descendWide(this->Tree.wide, DescentStart(), *this, this->Stack);
-    }
-  }
-
-  double limit() const { return 0.0; }
-
-  template <class Push>
-  void open(const WideNode& node, std::uint64_t, Push push)
-  {
-    for (std::uint32_t near = childrenNear(node, *this->Parent, this->Lane, this->Slack); near != 0;
-         near &= near - 1)
-    {
-      push(static_cast<std::uint32_t>(__builtin_ctz(near)), 0, 0.0f);
-    }
-  }
-
-  /// Each pair once.
-  bool end(const DescentEntry& other)
-  {
-    if (other.node < this->First)
-    {
-      return true;
-    }
-    const WideNode& node = this->Tree.wide.nodes[other.parent];
-    for (std::uint32_t near =
-           childrenNear(*this->Own, node, static_cast<int>(other.lane), this->Slack);
-         near != 0; near &= near - 1)
-    {
-      const int lane = __builtin_ctz(near);
-      const std::uint32_t first = this->Own->first[lane];
-      for (std::uint32_t i = 0; other.node >= first && i < this->Own->count[lane]; ++i)
-      {
-        for (std::uint32_t j = other.node == first ? i + 1 : 0; j < other.count; ++j)
-        {
-          this->compare(first + i, other.node + j);
-        }
-      }
-    }
-    return true;
-  }
-
-private:
-  void compare(std::uint32_t placeOne, std::uint32_t placeTwo)
-  {
-    const Face& a = this->Faces[placeOne];
-    const Face& b = this->Faces[placeTwo];
-    const float x = a.normal[1] * b.normal[2] - a.normal[2] * b.normal[1];
-    const float y = a.normal[2] * b.normal[0] - a.normal[0] * b.normal[2];
-    const float z = a.normal[0] * b.normal[1] - a.normal[1] * b.normal[0];
-    const float cosine =
-      a.normal[0] * b.normal[0] + a.normal[1] * b.normal[1] + a.normal[2] * b.normal[2];
-    const float tilt = a.tilt + b.tilt + TiltOfRounding;
-    if (!(x * x + y * y + z * z <= tilt * tilt) || !(std::fabs(cosine) > 0.5f))
-    {
-      return;
-    }
-    // In order, so that nothing depends on the tree.
-    const auto [lower, higher] =
-      std::minmax({ this->Tree.order[placeOne], this->Tree.order[placeTwo] });
-    const Vec3& apex = this->Tree.mesh->corner(lower, 0);
-    const Corners one = cornersFrom(*this->Tree.mesh, lower, apex);
-    const Corners two = cornersFrom(*this->Tree.mesh, higher, apex);
-    const double tolerance = static_cast<double>(a.tolerance) + static_cast<double>(b.tolerance);
-    // Most planes that are parallel lie apart.
-    const Vec3 n(a.normal[0], a.normal[1], a.normal[2]);
-    const double level = tolerance + tilt * glm::dot(glm::abs(two.a), Vec3(1.0));
-    if (!(std::fabs(glm::dot(n, two.a)) > level) && !isBeside(one, two) && !isBeside(two, one) &&
-      this->Sets.rootOf(lower) != this->Sets.rootOf(higher) && coincide(one, two, tolerance))
-    {
-      this->Sets.unite(lower, higher);
-    }
-  }
-
-  const CollisionTree& Tree;
-  const std::vector<Face>& Faces;
-  const float Slack; ///< m, most that boxes may lie apart
-  Forest& Sets;
-  TraversalStack Stack;
-  const WideNode* Parent = nullptr;
-  int Lane = 0;
-  const WideNode* Own = nullptr; ///< the node
-  std::uint32_t First = 0;       ///< its first leaf's place in the order
 };
 
 class Search
 {
 public:
-  Search(const CollisionTree& tree, int threads)
+  explicit Search(const CollisionTree& tree)
     : Tree(tree)
     , Mesh(*tree.mesh)
-    , Threads(threads)
     , Faces(tree.order.size())
     , Sets(tree.order.size())
   {
   }
 
   /// Set what the tree holds of coincident faces. @return false if stopped
-  bool run(const KeepGoing& keepGoing, CollisionTree& tree)
+  bool run(const KeepGoing& keepGoing, int threads, CollisionTree& tree)
   {
     constexpr std::size_t block = 1024;
-    parallelFor(this->Faces.size(), block, this->Threads,
+    parallelFor(this->Faces.size(), block, threads,
       [this](std::size_t begin, std::size_t end, int)
       {
         for (std::size_t k = begin; k < end; ++k)
@@ -365,31 +260,15 @@ public:
       [](const Face& a, const Face& b) {
         return a.tolerance < b.tolerance;
       })->tolerance;
-    const float slack = 2.0f * widest + WideRounding * static_cast<float>(tree.wide.extent);
+    this->Slack = 2.0f * widest + WideRounding * static_cast<float>(tree.wide.extent);
     constexpr std::size_t nodes = 64;
     const bool finished = parallelFor(
-      tree.wide.nodes.size(), nodes, this->Threads,
+      tree.wide.nodes.size(), nodes, threads,
       [&](std::size_t begin, std::size_t end, int)
       {
-        LeafSearch search(this->Tree, this->Faces, slack, this->Sets);
-        WideNode root;
-        root.clear();
-        root.first[0] = 0;
-        root.halfX[0] = root.halfY[0] = root.halfZ[0] = std::numeric_limits<float>::max();
         for (std::size_t n = begin; n < end; ++n)
         {
-          for (int i = 0; i < WideNode::Width; ++i)
-          {
-            const WideNode& node = tree.wide.nodes[n];
-            if (node.count[i] == 0 && node.first[i] != NoChild)
-            {
-              search.run(node, i);
-            }
-          }
-          if (n == 0)
-          {
-            search.run(root, 0);
-          }
+          this->compareChildren(tree.wide.nodes[n]);
         }
       },
       keepGoing);
@@ -402,10 +281,77 @@ public:
   }
 
 private:
-  double leastAltitudeOf(std::uint32_t triangle) const
+  /// Compare the triangles of different children of a node, and those of each leaf.
+  void compareChildren(const WideNode& node)
   {
-    const Corners t = cornersOf(this->Mesh, triangle);
-    return glm::length(areaOf(t)) / longestSideOf(t);
+    for (int i = 0; i < WideNode::Width && node.first[i] != NoChild; ++i)
+    {
+      for (std::uint32_t k = 1; k < node.count[i]; ++k)
+      {
+        for (std::uint32_t j = 0; j < k; ++j)
+        {
+          this->compare(node.first[i] + j, node.first[i] + k);
+        }
+      }
+      this->compareNear({ &node, i }, node, ~1u << i);
+    }
+  }
+
+  /// Compare the triangles of a child with those of some children of a node, one bit each.
+  void compareNear(const Child& one, const WideNode& node, std::uint32_t some)
+  {
+    some &= childrenNear(node, *one.node, one.lane, this->Slack);
+    for (; some != 0; some &= some - 1)
+    {
+      this->compareBelow(one, { &node, __builtin_ctz(some) });
+    }
+  }
+
+  void compareBelow(Child one, Child two)
+  {
+    if (one.count() > 0 && two.count() > 0)
+    {
+      for (std::uint32_t i = 0; i < one.count(); ++i)
+      {
+        for (std::uint32_t j = 0; j < two.count(); ++j)
+        {
+          this->compare(one.first() + i, two.first() + j);
+        }
+      }
+      return;
+    }
+    if (two.count() > 0 || (one.count() == 0 && one.size() > two.size()))
+    {
+      std::swap(one, two);
+    }
+    this->compareNear(one, this->Tree.wide.nodes[two.first()], ~0u);
+  }
+
+  void compare(std::uint32_t placeOne, std::uint32_t placeTwo)
+  {
+    const Face& a = this->Faces[placeOne];
+    const Face& b = this->Faces[placeTwo];
+    const glm::vec3 sine = glm::cross(a.normal, b.normal);
+    const float tilt = a.tilt + b.tilt + TiltOfRounding;
+    if (!(glm::dot(sine, sine) <= tilt * tilt) || !(std::fabs(glm::dot(a.normal, b.normal)) > 0.5f))
+    {
+      return;
+    }
+    // In order, so that nothing depends on the tree.
+    const auto [lower, higher] =
+      std::minmax({ this->Tree.order[placeOne], this->Tree.order[placeTwo] });
+    const Vec3& apex = this->Mesh.corner(lower, 0);
+    const Corners one = cornersFrom(this->Mesh, lower, apex);
+    const Corners two = cornersFrom(this->Mesh, higher, apex);
+    const double tolerance = static_cast<double>(a.tolerance) + static_cast<double>(b.tolerance);
+    // Most planes that are parallel lie apart.
+    const double level = tolerance + tilt * glm::dot(glm::abs(two.a), Vec3(1.0));
+    if (!(std::fabs(glm::dot(Vec3(a.normal), two.a)) > level) && !isBeside(one, two) &&
+      !isBeside(two, one) && this->Sets.rootOf(lower) != this->Sets.rootOf(higher) &&
+      coincide(one, two, tolerance))
+    {
+      this->Sets.unite(lower, higher);
+    }
   }
 
   /// True if rounding explains how far a triangle lies from the plane of another.
@@ -413,20 +359,16 @@ private:
   {
     const Corners plane = cornersOf(this->Mesh, owner);
     const Corners t = cornersFrom(this->Mesh, triangle, this->Mesh.corner(owner, 0));
-    const Vec3 area = areaOf(plane);
-    const Vec3 n = area / glm::length(area);
-    const double least = this->leastAltitudeOf(owner);
+    const Vec3 n = areaOf(plane) / glm::length(areaOf(plane));
+    const double least = leastAltitudeOf(plane);
     const double own = faceOf(this->Mesh, triangle).tolerance;
     const double ofPlane = faceOf(this->Mesh, owner).tolerance;
-    for (const Vec3* corner : { &t.a, &t.b, &t.c })
+    const auto isOnPlane = [&](const Vec3& corner)
     {
-      const double reach = 1.0 + 4.0 * glm::length(*corner) / least;
-      if (!(std::fabs(glm::dot(n, *corner)) <= own + ofPlane * reach))
-      {
-        return false;
-      }
-    }
-    return true;
+      const double reach = 1.0 + 4.0 * glm::length(corner) / least;
+      return std::fabs(glm::dot(n, corner)) <= own + ofPlane * reach;
+    };
+    return isOnPlane(t.a) && isOnPlane(t.b) && isOnPlane(t.c);
   }
 
   /// Empty if nothing coincides.
@@ -443,8 +385,9 @@ private:
       {
         found = true;
         owner = owner == NoTriangle ? root : owner;
-        constexpr double clearly = 1.001; // copies have the plane of the first
-        owner = this->leastAltitudeOf(t) > clearly * this->leastAltitudeOf(owner) ? t : owner;
+        const auto altitude = [&](std::uint32_t of)
+        { return leastAltitudeOf(cornersOf(this->Mesh, of)); };
+        owner = altitude(t) > ClearlyLarger * altitude(owner) ? t : owner;
       }
     }
     std::vector<std::uint32_t> result(found ? size : 0, NoTriangle);
@@ -458,14 +401,14 @@ private:
 
   const CollisionTree& Tree;
   const TriangleMesh& Mesh;
-  int Threads;
   std::vector<Face> Faces; ///< in the tree's order
+  float Slack = 0.0f;      ///< m, most that boxes of triangles that coincide may lie apart
   Forest Sets;
 };
 }
 
 bool findPlaneOwners(CollisionTree& tree, int threads, const KeepGoing& keepGoing)
 {
-  return Search(tree, threads).run(keepGoing, tree);
+  return Search(tree).run(keepGoing, threads, tree);
 }
 }

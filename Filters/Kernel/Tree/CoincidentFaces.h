@@ -11,7 +11,7 @@
  * least altitude is largest, as rounding tilts it least. Rays then have equal ranges on them, bit
  * for bit, and equal ranges go to the lower triangle number.
  *
- * Pairs are found by descents of the tree with the leaves of each of its nodes.
+ * Pairs are found by a descent of the tree against itself.
  *
  * Source: none.
  * Valid: any triangles. Depends on the mesh alone, not on the tree or the threads. A triangle that
