@@ -3,7 +3,6 @@
 
 #include "BeamVolumeTest.h"
 #include "CollisionTreeBuilder.h"
-#include "SplitRule.h"
 
 #include <algorithm>
 #include <stdexcept>
@@ -63,44 +62,6 @@ std::uint64_t descend(const VolumeTree& tree, const std::vector<std::uint32_t>& 
   return visited;
 }
 
-/// Divide the nodes down to a depth, without volumes. @return false if `keepGoing` returned false
-bool divide(const TriangleMesh& mesh, const TreeOptions& options, std::uint32_t deepest,
-  const KeepGoing& keepGoing, std::vector<BinaryNode>& nodes, std::vector<std::uint32_t>& order)
-{
-  const TriangleBoxes scene = makeTriangleBoxes(mesh, 1, keepGoing);
-  if (mesh.size() == 0)
-  {
-    return true;
-  }
-  const auto leafSize = static_cast<std::uint32_t>(options.maximumLeafSize);
-  nodes.push_back({ 0, static_cast<std::uint32_t>(mesh.size()), 0, 0 });
-  order.resize(mesh.size());
-  for (std::size_t i = 0; scene.boxes && i < nodes.size(); ++i)
-  {
-    const BinaryNode node = nodes[i];
-    const auto boxesAt = [&](std::uint32_t depth)
-    { return (depth % 2 == 0 ? scene.boxes : scene.room) + node.begin; };
-    LaneBox* const boxes = boxesAt(node.depth);
-    if (node.count <= leafSize || node.depth >= deepest)
-    {
-      std::uint32_t* const leaf = order.data() + node.begin;
-      std::transform(
-        boxes, boxes + node.count, leaf, [](const LaneBox& b) { return b.triangle(); });
-      std::sort(leaf, leaf + node.count);
-      continue;
-    }
-    LaneExtent extent;
-    extent.clear();
-    extent.include(boxes, node.count);
-    const auto first = static_cast<std::uint32_t>(splitTriangles(
-      options.splitRule, boxes, boxesAt(node.depth + 1), node.count, extent.centers, node.depth));
-    nodes[i].children = static_cast<std::uint32_t>(nodes.size());
-    nodes.push_back({ node.begin, first, node.depth + 1, 0 });
-    nodes.push_back({ node.begin + first, node.count - first, node.depth + 1, 0 });
-  }
-  return scene.boxes != nullptr;
-}
-
 /// Fit volumes to the triangles of all nodes. @return false if `keepGoing` returned false
 template <class Volume>
 bool fit(Volume (*fitted)(const TriangleList&), const TriangleMesh& mesh,
@@ -153,14 +114,9 @@ std::shared_ptr<const CollisionTree> buildVolumeTree(std::shared_ptr<const Trian
   checkTreeInput(mesh.get(), options);
   // Fitting takes most of the time.
   constexpr double Built = 0.2;
-  const auto part = [&keepGoing](double from, double to)
-  {
-    return keepGoing ? KeepGoing([&keepGoing, from, to](double done)
-                         { return keepGoing(std::min(to, from + (to - from) * done)); })
-                     : KeepGoing();
-  };
   // Faces that coincide are found by boxes.
-  const auto boxes = buildCollisionTree(mesh, TreeOptions{}, part(0.0, 0.5 * Built), threads);
+  const auto boxes =
+    buildCollisionTree(mesh, TreeOptions{}, partOf(keepGoing, 0.0, 0.5 * Built), threads);
   if (!boxes)
   {
     return nullptr;
@@ -172,16 +128,18 @@ std::shared_ptr<const CollisionTree> buildVolumeTree(std::shared_ptr<const Trian
   tree->checksum = boxes->checksum;
   tree->planeOwners = boxes->planeOwners;
   tree->planeDepth = boxes->planeDepth;
-  constexpr std::uint32_t deepest = std::numeric_limits<std::uint32_t>::max();
-  if (!divide(*tree->mesh, options, deepest, part(0.5 * Built, Built), own->nodes, tree->order))
+  BinaryTree binary;
+  if (!binary.divide(*tree->mesh, options, threads, partOf(keepGoing, 0.5 * Built, Built)))
   {
     return nullptr;
   }
+  own->nodes = std::move(binary.nodes);
+  tree->order = std::move(binary.order);
   tree->leaves = static_cast<std::uint32_t>((own->nodes.size() + 1) / 2);
   tree->depth = own->nodes.empty() ? 0 : own->nodes.back().depth;
   const bool finished = options.boundingVolume == BoundingVolumeType::OBB
-    ? fit(orientedBox, *tree->mesh, tree->order, part(Built, 1.0), threads, *own)
-    : fit(boundingSphere, *tree->mesh, tree->order, part(Built, 1.0), threads, *own);
+    ? fit(orientedBox, *tree->mesh, tree->order, partOf(keepGoing, Built, 1.0), threads, *own)
+    : fit(boundingSphere, *tree->mesh, tree->order, partOf(keepGoing, Built, 1.0), threads, *own);
   tree->other = own;
   return finished ? tree : nullptr;
 }
@@ -201,9 +159,10 @@ std::shared_ptr<const VolumeTree> volumesOf(const CollisionTree& tree, std::uint
     return std::dynamic_pointer_cast<const VolumeTree>(tree.other);
   }
   const auto boxes = std::make_shared<VolumeTree>();
-  std::vector<std::uint32_t> order;
-  divide(*tree.mesh, tree.options, deepest, {}, boxes->nodes, order);
-  fit(alignedBox, *tree.mesh, order, {}, 0, *boxes);
+  BinaryTree binary;
+  binary.divide(*tree.mesh, tree.options, 0, {}, deepest);
+  boxes->nodes = std::move(binary.nodes);
+  fit(alignedBox, *tree.mesh, binary.order, {}, 0, *boxes);
   return boxes;
 }
 }

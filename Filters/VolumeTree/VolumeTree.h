@@ -9,12 +9,13 @@
  * back.
  * Valid: visits every leaf whose volumes the cone or ray meets within the limit. A volume whose
  * lower bound equals the limit is visited, as it may hold a hit of equal range and lower number.
- * Made for comparison, not for speed: one thread divides the nodes.
+ * Made for comparison, not for speed.
  * Test: TestCollisionTreeBuilder.cxx, TestBeamTracer.cxx, TestGeometryProperties.cxx.
  */
 #ifndef avianlidar_VolumeTree_h
 #define avianlidar_VolumeTree_h
 
+#include "BinaryTree.h"
 #include "BoundingVolume.h"
 #include "CollisionTree.h"
 #include "ParallelLoop.h"
@@ -26,22 +27,11 @@
 
 namespace avianlidar
 {
-/// node_i = {B_i, F_i, p_i1, p_i2} of Eq. 14 without its volume.
-struct BinaryNode
-{
-  std::uint32_t begin; ///< triangles below it: [begin, begin + count) of the order
-  std::uint32_t count;
-  std::uint32_t depth;    ///< root 0
-  std::uint32_t children; ///< number of the first, the second follows; 0: a leaf, or not divided
-};
-
 using TreeVolumes = std::variant<std::vector<OBB>, std::vector<BoundingSphere>>;
 
-/// Nodes are numbered breadth first, as in Algorithm 1 (0-based): the children of a node are
-/// adjacent and follow all nodes of their parent's layer.
 struct VolumeTree final : public OtherVolumes
 {
-  std::vector<BinaryNode> nodes; ///< empty for an empty mesh
+  std::vector<BinaryNode> nodes; ///< empty for an empty mesh; numbered as in BinaryTree
   /// Volumes of all nodes in scene coordinates; each holds all triangles below its node.
   TreeVolumes volumes;
 

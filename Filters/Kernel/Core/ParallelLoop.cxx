@@ -13,6 +13,17 @@
 
 namespace avianlidar
 {
+KeepGoing partOf(const KeepGoing& keepGoing, double from, double to)
+{
+  if (!keepGoing)
+  {
+    return {};
+  }
+  // Rounding must not lead beyond what the next part begins with.
+  return [&keepGoing, from, to](double done)
+  { return keepGoing(std::min(to, from + (to - from) * done)); };
+}
+
 int loopThreads(int threads)
 {
   // A thread whose first data find no memory ends the process. It needs a stack, an arena of

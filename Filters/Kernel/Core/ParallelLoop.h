@@ -28,6 +28,9 @@ using LoopBody = std::function<void(std::size_t begin, std::size_t end, int thre
 /// Called with the fraction done, in [0, 1], which never falls; returning false stops the work.
 using KeepGoing = std::function<bool(double fraction)>;
 
+/// Progress of a part of the whole work, from one fraction to another; empty as `keepGoing` is.
+KeepGoing partOf(const KeepGoing& keepGoing, double from, double to);
+
 /// Thrown by a body whose result is no longer wanted.
 struct WorkStopped : std::exception
 {

@@ -341,14 +341,18 @@ private:
     const auto [lower, higher] =
       std::minmax({ this->Tree.order[placeOne], this->Tree.order[placeTwo] });
     const Vec3& apex = this->Mesh.corner(lower, 0);
-    const Corners one = cornersFrom(this->Mesh, lower, apex);
-    const Corners two = cornersFrom(this->Mesh, higher, apex);
+    const Vec3 between = this->Mesh.corner(higher, 0) - apex;
     const double tolerance = static_cast<double>(a.tolerance) + static_cast<double>(b.tolerance);
     // Most planes that are parallel lie apart.
-    const double level = tolerance + tilt * glm::dot(glm::abs(two.a), Vec3(1.0));
-    if (!(std::fabs(glm::dot(Vec3(a.normal), two.a)) > level) && !isBeside(one, two) &&
-      !isBeside(two, one) && this->Sets.rootOf(lower) != this->Sets.rootOf(higher) &&
-      coincide(one, two, tolerance))
+    const double level = tolerance + tilt * glm::dot(glm::abs(between), Vec3(1.0));
+    if (std::fabs(glm::dot(Vec3(a.normal), between)) > level)
+    {
+      return;
+    }
+    const Corners one = cornersFrom(this->Mesh, lower, apex);
+    const Corners two = cornersFrom(this->Mesh, higher, apex);
+    if (!isBeside(one, two) && !isBeside(two, one) &&
+      this->Sets.rootOf(lower) != this->Sets.rootOf(higher) && coincide(one, two, tolerance))
     {
       this->Sets.unite(lower, higher);
     }

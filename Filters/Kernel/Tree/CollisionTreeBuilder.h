@@ -3,21 +3,13 @@
  * @file CollisionTreeBuilder.h
  * @brief Builds the collision tree of boxes, eight children a node, with several threads.
  *
- * 1. Boxes of all triangles in single precision (TriangleBoxes.h).
- * 2. Large ranges of boxes are divided layer by layer, one thread for each range. Boxes are copied
- *    back and forth between two arrays: those of a range are in the array of its depth's parity.
- * 3. Each range that is left is divided down to the leaves, on one thread.
- * 4. Up to eight ranges become the children of a node, so that the sum of the areas of all nodes is
- *    least.
- * 5. Faces that coincide are found (CoincidentFaces.h).
+ * Up to eight nodes of a binary tree (BinaryTree.h) become the children of a wide node, so that the
+ * sum of the areas of all wide nodes is least. Then faces that coincide are found
+ * (CoincidentFaces.h).
  *
- * Source: paper, Algorithm 1; T. Ylitie, T. Karras, S. Laine, "Efficient Incoherent Ray Traversal
- * on GPUs Through Compressed Wide BVHs", HPG 2017, Sec. 3.1.
- * Differs: Algorithm 1 makes two children a node (VolumeTree.h). Here leaves hold several
- * triangles, the surface area heuristic is added (SplitRule.h), and several threads work.
- * Valid: the tree has the same bits for any number of threads, as the limit between large and
- * small ranges depends on the number of triangles alone. Cost O(n log n); peak about 150 bytes a
- * triangle.
+ * Source: T. Ylitie, T. Karras, S. Laine, "Efficient Incoherent Ray Traversal on GPUs Through
+ * Compressed Wide BVHs", HPG 2017, Sec. 3.1.
+ * Valid: the tree has the same bits for any number of threads. Peak about 150 bytes a triangle.
  * Test: TestCollisionTreeBuilder.cxx, TestWideTree.cxx.
  */
 #ifndef avianlidar_CollisionTreeBuilder_h

@@ -19,11 +19,12 @@
 #include "AABB.h"
 #include "Multiversion.h"
 #include "ParallelLoop.h"
-#include "ScratchMemory.h"
 #include "TriangleMesh.h"
 
 #include <cstdint>
+#include <cstdlib>
 #include <limits>
+#include <memory>
 
 namespace avianlidar
 {
@@ -124,7 +125,7 @@ struct TriangleBoxes
   std::size_t count = 0;    ///< of triangles
   LaneBox* boxes = nullptr; ///< by number; null if there are none, or the work was stopped
   LaneBox* room = nullptr;  ///< for as many boxes again
-  ScratchMemory memory;     ///< of both
+  std::unique_ptr<LaneBox, void (*)(void*)> memory{ nullptr, std::free }; ///< of both
 
   /// Box of one triangle.
   LaneBox boxOf(const TriangleMesh& mesh, std::uint32_t triangle) const;
