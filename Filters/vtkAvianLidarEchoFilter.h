@@ -15,7 +15,8 @@
  * are kept: changing coefficients of materials, attenuation, limits, noise, return mode, energy of
  * the pulse or reflectance model traces nothing that is already known, and the result is that of a
  * fresh run, bit for bit. With BEAM_SAMPLES_CELLS another pulse width, sampling interval or range
- * gate, and other object ids, trace again. It uses no VTK locator and no vtkSMPTools.
+ * gate, and other object ids, trace again. It uses no VTK locator, and OpenMP instead of
+ * vtkSMPTools.
  *
  * Input port 0, beams: vtkPolyData, one point per beam at the sensor.
  * Point array `direction` (3 components, any numeric type; normalised here; zero or not finite is

@@ -4,15 +4,22 @@
 #include "AvailableMemory.h"
 
 #include <omp.h>
+#include <pthread.h>
 
 #include <algorithm>
 #include <atomic>
 #include <mutex>
-#include <thread>
-#include <vector>
 
 namespace avianlidar
 {
+namespace
+{
+/// GNU OpenMP keeps the threads of its last region for the next one. A fork does not copy them, and
+/// a region of the child would wait for them without end: so they end before a fork.
+[[maybe_unused]] const int Registered =
+  pthread_atfork([]() { omp_pause_resource_all(omp_pause_hard); }, nullptr, nullptr);
+}
+
 KeepGoing partOf(const KeepGoing& keepGoing, double from, double to)
 {
   if (!keepGoing)
@@ -26,8 +33,9 @@ KeepGoing partOf(const KeepGoing& keepGoing, double from, double to)
 
 int loopThreads(int threads)
 {
-  // A thread whose first data find no memory ends the process. It needs a stack, an arena of
-  // malloc, and as much again for its work. Looked at once: callers have room for so many threads.
+  // OpenMP ends the process when it cannot have a thread, and so does a thread whose first data
+  // find no memory. It needs a stack, an arena of malloc, and as much again for its work. Looked at
+  // once: callers have room for so many threads.
   constexpr double bytesOfThread = 160e6;
   static const double room = availableAddresses() / bytesOfThread;
   const double enough = std::max(64, 4 * omp_get_num_procs());
@@ -75,24 +83,10 @@ bool parallelFor(std::size_t count, std::size_t block, int threads, const LoopBo
   };
   const auto wanted = static_cast<std::size_t>(loopThreads(threads));
   const auto team = static_cast<int>(std::min(wanted, (count + size - 1) / size));
-  std::vector<std::thread> others;
-  try
+  if (team > 0)
   {
-    for (int thread = 1; thread < team; ++thread)
-    {
-      others.emplace_back(work, thread);
-    }
-  }
-  catch (const std::exception&) // no more threads, or no memory for them: those that run suffice
-  {
-  }
-  if (count > 0)
-  {
-    work(0);
-  }
-  for (std::thread& other : others)
-  {
-    other.join();
+#pragma omp parallel num_threads(team)
+    work(omp_get_thread_num());
   }
   if (error)
   {

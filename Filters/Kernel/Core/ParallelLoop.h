@@ -8,9 +8,8 @@
  * determined, so the body must write each item's result to a slot of that item alone.
  *
  * Source: none.
- * Valid: any counts, blocks and numbers of threads. Every loop starts threads of its own: the child
- * of a fork, which has no threads but the one that forked, runs loops as its parent does. Where the
- * system refuses a thread, those that run do its share.
+ * Valid: any counts, blocks and numbers of threads. The child of a fork runs loops as its parent
+ * does.
  * Test: TestParallelLoop.cxx.
  */
 #ifndef avianlidar_ParallelLoop_h
