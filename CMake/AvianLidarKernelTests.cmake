@@ -51,8 +51,7 @@ function (avianlidar_add_kernel_tests target prefix)
       AvianLidar::GeographicLib
       AvianLidar::Random123
       hwy::hwy
-      GTest::gtest_main
-      embree)
+      GTest::gtest_main)
   if (AVIANLIDAR_SANITIZE)
     # Tests of millions of rays may take fewer where each costs ten times as much.
     target_compile_definitions("${target}" PRIVATE AVIANLIDAR_SANITIZED)

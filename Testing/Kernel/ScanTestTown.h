@@ -36,6 +36,16 @@ inline Scene town(const Vec3& at = Vec3(0.0), double snap = 0.0)
   return scene;
 }
 
+/// Add a wall of so many parts that beams which meet it are divided into cells.
+inline void addFineWall(Scene& scene)
+{
+  for (int i = 0; i < 1200; ++i)
+  {
+    scene.plate(Vec3(-12.0 + 0.2 * (i % 40), 30.0, 0.2 * (i / 40)), Vec3(0.1, 0.0, 0.0),
+      Vec3(0.0, 0.0, 0.1), i % 2 ? Wall : Metal, 100 + i % 3);
+  }
+}
+
 inline ScanBeams horizon(int columns, int channels, const Vec3& origin = Vec3(0.0))
 {
   ScanBeams beams;

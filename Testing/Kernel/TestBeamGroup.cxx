@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Groups of beams: whole and compact; no triangle that a ray hits lies outside its beam's entry
-// points; beams traced in a block have the hits of single rays; the candidates of a beam hold every
-// hit once.
+// Groups of beams: whole and compact; beams traced in a block have the hits of single rays; the
+// candidates of a beam hold every hit once.
 #include "BeamGroup.h"
 #include "BeamTracer.h"
 #include "Candidates.h"
@@ -44,58 +43,6 @@ std::vector<BeamFrame> grid(
   }
   return frames;
 }
-
-/// Triangles of the leaves below a node, or below one of its lanes.
-void collect(const CollisionTree& tree, const WideNode& node, std::set<std::uint32_t>& found)
-{
-  for (int i = 0; i < WideNode::Width; ++i)
-  {
-    if (node.first[i] == NoChild)
-    {
-      continue;
-    }
-    if (node.count[i] == 0)
-    {
-      collect(tree, tree.wide.nodes[node.first[i]], found);
-    }
-    for (std::uint32_t k = 0; k < node.count[i]; ++k)
-    {
-      found.insert(tree.order[node.first[i] + k]);
-    }
-  }
-}
-
-/// Fails if one comes twice.
-std::set<std::uint32_t> potentialTriangles(const CollisionTree& tree, const BeamFrame& frame)
-{
-  EntryPoints entryPoints;
-  TraversalStack stack;
-  const PotentialTriangles all = findPotential(tree, frame, tree.mesh->size(), entryPoints, stack);
-  std::set<std::uint32_t> found;
-  for (const WideNode& node : entryPoints.nodes)
-  {
-    collect(tree, node, found);
-  }
-  EXPECT_EQ(found.size(), all.count);
-  return found;
-}
-
-bool hitBy(
-  const TriangleMesh& mesh, std::uint32_t triangle, const BeamFrame& frame, const BeamRays& rays)
-{
-  const BeamPlaneMap map(frame);
-  const Corners corners = cornersFrom(mesh, triangle, frame.origin);
-  for (std::size_t i = 0; i < rays.size(); ++i)
-  {
-    if (beamRayAccepted(map, corners, rays.x[i], rays.y[i]) &&
-      rangeOf(corners, planeOf(corners), unitDirection(frame.direction(rays.x[i], rays.y[i])),
-        beamRayMargin(frame)) > 0.0)
-    {
-      return true;
-    }
-  }
-  return false;
-}
 }
 
 TEST(BeamGroup, BeamsInOrderAreAllThereAndNeighbours)
@@ -128,84 +75,6 @@ TEST(BeamGroup, BeamsInOrderAreAllThereAndNeighbours)
   beams.clear();
   orderBeams(frames.data(), beams, keys);
   EXPECT_TRUE(beams.empty());
-}
-
-TEST(BeamGroup, EntryPointsHoldEveryTriangleThatARayHits)
-{
-  Numbers random(22);
-  std::size_t hit = 0;
-  std::size_t kept = 0;
-  std::size_t all = 0;
-  std::size_t grouped = 0;
-  for (int round = 0; round < 60; ++round)
-  {
-    const double half = random.logUniform(1.0, 1e5);
-    auto mesh = std::make_shared<TriangleMesh>(
-      randomTriangles(random, 250, half, half * random.logUniform(1e-3, 1.0)));
-    addGround(*mesh, 3.0 * half, -0.01 * half);
-    const Vec3 apex = round % 4 == 0 ? Vec3(0.0) : random.inCube(half);
-    const auto tree = buildCollisionTree(mesh, TreeOptions());
-    const double width = random.logUniform(1e-6, 0.3);
-    const auto frames =
-      grid(apex, random.direction(), 4, 4, width * random.logUniform(0.1, 10.0), width);
-    GroupWorkspace work;
-    work.cones.count = 0;
-    for (std::uint32_t b = 0; b < frames.size(); ++b)
-    {
-      work.cones.add(frames.data(), &b, 1);
-    }
-    work.cones.close();
-    if (findEntryPoints(tree->wide, apex, work) < 0)
-    {
-      continue;
-    }
-    ++grouped;
-    for (std::size_t b = 0; b < frames.size(); ++b)
-    {
-      std::set<std::uint32_t> found;
-      for (const WideNode& node : work.entryPoints[b].nodes)
-      {
-        collect(*tree, node, found);
-      }
-      const BeamRays rays = raysInDisc(random, 40);
-      for (std::uint32_t t = 0; t < mesh->size(); ++t)
-      {
-        if (hitBy(*mesh, t, frames[b], rays))
-        {
-          ++hit;
-          ASSERT_TRUE(found.count(t)) << "round " << round << " beam " << b << " triangle " << t;
-        }
-      }
-      kept += found.size();
-      all += mesh->size();
-    }
-  }
-  EXPECT_GT(grouped, 40u);
-  EXPECT_GT(hit, 1000u);
-  // It would be easy to keep everything.
-  EXPECT_LT(kept, all / 3);
-}
-
-TEST(BeamGroup, PotentialTrianglesHoldEveryTriangleThatARayOfTheConeHits)
-{
-  Numbers random(7);
-  const auto mesh = std::make_shared<TriangleMesh>(randomTriangles(random, 400, 50.0, 10.0));
-  for (const auto& tree : allTrees(mesh))
-  {
-    const BeamFrame frame = makeBeamFrame({ 1, 2, 3 }, random.direction(), 0.2);
-    const std::set<std::uint32_t> inSet = potentialTriangles(*tree, frame);
-    const BeamRays rays = raysInDisc(random, 20);
-    for (std::size_t i = 0; i < rays.size(); ++i)
-    {
-      for (std::uint32_t t = 0; t < mesh->size(); ++t)
-      {
-        if (testPair(*mesh, t, frame.origin, rayDirection(frame, rays.x[i], rays.y[i])).hit)
-        {
-          EXPECT_TRUE(inSet.count(t));
-        }
-      }
-    }
-  }
 }
 
 TEST(BeamGroup, ABlockOfBeamsHasTheHitsOfSingleRays)

@@ -55,11 +55,6 @@ double meanOver(std::uint64_t beams, std::size_t count, double t, BeamProfile pr
   return sum / static_cast<double>(beams * count);
 }
 
-double cosOffset(double x, double y, double t)
-{
-  return 1.0 / std::hypot(1.0, std::hypot(x, y) * std::tan(t));
-}
-
 double chiSquare(double t, BeamProfile profile, Sampling sampling, std::size_t count)
 {
   constexpr int radial = 20;
@@ -149,104 +144,6 @@ TEST(BeamRays, RadiusIsExactAtEveryBeamwidth)
       ASSERT_NEAR(std::hypot(rays.x[n], rays.y[n]) / expected, 1.0, 4e-15) << t;
     }
   }
-}
-
-TEST(BeamRays, MeanDirectionOfTheCone)
-{
-  for (const double t : { 5.6e-3, 0.3, 1.0 })
-  {
-    const double sinSquared = std::sin(t) * std::sin(t);
-    for (const Sampling sampling : { Sampling::MonteCarlo, Sampling::Stratified })
-    {
-      const double along = meanOver(1000, 100, t, BeamProfile::Uniform, sampling,
-        [t](double x, double y) { return cosOffset(x, y, t); });
-      const double across = meanOver(1000, 100, t, BeamProfile::Uniform, sampling,
-        [t](double x, double y) { return x * std::tan(t) * cosOffset(x, y, t); });
-      // Standard deviations over the cone: (1 - cos t)/sqrt(12), and below sin t/2.
-      const double five = 5.0 / std::sqrt(1e5);
-      EXPECT_NEAR(along, 0.5 * (1.0 + std::cos(t)), five * (1.0 - std::cos(t)) / std::sqrt(12.0));
-      EXPECT_NEAR(across, 0.0, five * 0.5 * std::sqrt(sinSquared));
-    }
-  }
-}
-
-TEST(BeamRays, PlaneAtNormalIncidence)
-{
-  // Qs kd <cos theta>: uniform and Gaussian.
-  const struct
-  {
-    double t;
-    BeamProfile profile;
-    double energy;
-  } cases[] = { { 1e-9, BeamProfile::Uniform, 5.256e-5 },
-    { 1e-4, BeamProfile::Uniform, 5.255999987e-5 },
-    { 5.6e-3, BeamProfile::Uniform, 5.255958793e-5 }, { 0.1, BeamProfile::Uniform, 5.242870946e-5 },
-    { 0.5, BeamProfile::Uniform, 4.934286973e-5 }, { 1.0, BeamProfile::Uniform, 4.047914460e-5 },
-    { 5.6e-3, BeamProfile::Gaussian, 5.255971692e-5 },
-    { 0.5, BeamProfile::Gaussian, 5.034994502e-5 } };
-  for (const auto& item : cases)
-  {
-    const double mean = meanOver(1, 100000, item.t, item.profile, Sampling::Stratified,
-      [&item](double x, double y) { return cosOffset(x, y, item.t); });
-    EXPECT_NEAR(3.6e-4 * 0.146 * mean / item.energy, 1.0, 2e-5 * (1.0 - std::cos(item.t)) + 2e-10)
-      << item.t;
-  }
-}
-
-TEST(BeamRays, FootprintCutByAnEdge)
-{
-  const double t = 5.6e-3;
-  const struct
-  {
-    double angle;
-    BeamProfile profile;
-    double share;
-    double energy; // 0: not known
-  } cases[] = { { 0.0, BeamProfile::Uniform, 0.5, 2.627979397e-5 },
-    { 2e-3, BeamProfile::Uniform, 0.2775666733, 1.458876452e-5 },
-    { 5e-3, BeamProfile::Uniform, 0.02070836416, 1.088415956e-6 },
-    { 2e-3, BeamProfile::Gaussian, 0.2116880303, 0.0 } };
-  for (const auto& item : cases)
-  {
-    const double edge = std::tan(item.angle) / std::tan(t);
-    const auto covered = [edge](double x, double) { return x > edge ? 1.0 : 0.0; };
-    const auto returned = [edge, t](double x, double y)
-    { return x > edge ? 3.6e-4 * 0.146 * cosOffset(x, y, t) : 0.0; };
-    const double one = std::sqrt(item.share * (1.0 - item.share) / 1e6);
-    EXPECT_NEAR(
-      meanOver(10000, 100, t, item.profile, Sampling::MonteCarlo, covered), item.share, 4.5 * one);
-    // At N = 1e5 about 2 sqrt(N) cells lie on the edge: standard error below (2 sqrt(N))^0.5 / N
-    // = 2.5e-4.
-    EXPECT_NEAR(
-      meanOver(1, 100000, t, item.profile, Sampling::Stratified, covered), item.share, 1e-3);
-    EXPECT_NEAR(
-      meanOver(100, 1000, t, item.profile, Sampling::Stratified, covered), item.share, 1e-3);
-    if (item.energy > 0.0)
-    {
-      EXPECT_NEAR(meanOver(100, 10001, t, item.profile, Sampling::Stratified, returned),
-        item.energy, 3.6e-4 * 0.146 * 3e-4);
-    }
-  }
-}
-
-TEST(BeamRays, GaussianShareOfTheInnerDisc)
-{
-  const double t = 5.6e-3;
-  const double radius = std::tan(0.5 * t) / std::tan(t);
-  const auto inside = [radius](double x, double y)
-  { return std::hypot(x, y) < radius ? 1.0 : 0.0; };
-  EXPECT_NEAR(meanOver(10000, 100, t, BeamProfile::Gaussian, Sampling::MonteCarlo, inside),
-    0.4550549214, 4.5 * std::sqrt(0.455 * 0.545 / 1e6));
-  EXPECT_NEAR(meanOver(1000, 101, t, BeamProfile::Gaussian, Sampling::Stratified, inside),
-    0.4550549214, 1.5e-3);
-  const double meanU = meanOver(10000, 100, t, BeamProfile::Gaussian, Sampling::MonteCarlo,
-    [t](double x, double y)
-    {
-      const double s =
-        std::sin(0.5 * std::atan(std::hypot(x, y) * std::tan(t))) / std::sin(0.5 * t);
-      return s * s;
-    });
-  EXPECT_NEAR(meanU, 0.3434823573, 4.5 * 0.27 / 1e3);
 }
 
 TEST(BeamRays, EstimateAtAnEdgeHasNoBiasForAnyNumberOfRays)

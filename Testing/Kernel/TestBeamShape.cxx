@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <random>
 
 using namespace celltest;
@@ -155,34 +154,6 @@ TEST(BeamShape, RaysFollowOutlineAndProfile)
   }
 }
 
-TEST(BeamShape, DensityIsOneOnAverage)
-{
-  for (const Shape& s : Shapes)
-  {
-    const BeamShape shape(sensorOf(s));
-    constexpr int steps = 1000;
-    double sum = 0.0;
-    double area = 0.0;
-    double most = 0.0;
-    for (int i = 0; i < steps * steps; ++i)
-    {
-      const double x = (2.0 * (i % steps) + 1.0) / steps - 1.0;
-      const double y = (2.0 * (i / steps) + 1.0) / steps - 1.0;
-      if (shape.holds(x, y))
-      {
-        area += 4.0 / steps / steps;
-        sum += shape.density(x, y) * 4.0 / steps / steps;
-        most = std::max(most, shape.density(x, y));
-      }
-    }
-    EXPECT_NEAR(area, shape.area(), 8e-3);
-    EXPECT_NEAR(sum / area, 1.0, 4e-3);
-    EXPECT_LE(most, shape.mostDensity());
-    EXPECT_GT(most, 0.99 * shape.mostDensity());
-    EXPECT_NEAR(shape.shareOfArea() * shape.area(), 1.0, shape.isRound() ? 1e-4 : 1e-15);
-  }
-}
-
 TEST(BeamShape, SolidAngleIsThatOfTheOutline)
 {
   for (Shape s : Shapes)
@@ -265,27 +236,6 @@ TEST(BeamShape, AxesFollowTheSensor)
   EXPECT_NEAR(glm::dot(above.e2, above.e2), above.flatness2, 1e-15);
 }
 
-TEST(BeamShape, APlaneReturnsAll)
-{
-  Scene scene;
-  scene.plate(Vec3(100.0, 0.0, 0.0), Vec3(0.0, 5.0, 0.0), Vec3(0.0, 0.0, 5.0), Matt, 1);
-  for (const Shape& s : Shapes)
-  {
-    const Sensor sensor = sensorOf(s);
-    // The mean cosine is 1 - tan^2/2 there.
-    const double truth = sensor.pulseEnergy * Matt.kd;
-    EXPECT_NEAR(received(scene, sensor, byRays(300)), truth, 2e-5 * truth);
-    for (const Scene& wall : { scene, fineWall(30) })
-    {
-      const Echo echo = onlyEcho(wall, sensor, inCells());
-      const bool isUniform = s.profile == BeamProfile::Uniform;
-      EXPECT_NEAR(echo.returnEnergy, truth,
-        isUniform ? 2e-5 * truth : 2e-5 * truth + 4.0 * echo.energyStdError);
-      EXPECT_LT(echo.energyStdError, 0.02 * truth);
-    }
-  }
-}
-
 TEST(BeamShape, AnEdgeCutsAShare)
 {
   // A plate that ends along a line, in any direction, at some distance from the axis.
@@ -336,67 +286,6 @@ TEST(BeamShape, AnEdgeCutsAShare)
   }
 }
 
-namespace
-{
-/// Where a ray from the origin along (1, y, z) meets a triangle, as 1/x; 0: nowhere.
-double meets(const TriangleMesh& mesh, const std::array<std::uint32_t, 3>& t, const Vec3& d)
-{
-  const Vec3 a = mesh.points[t[0]];
-  const Vec3 e = mesh.points[t[1]] - a;
-  const Vec3 f = mesh.points[t[2]] - a;
-  const Vec3 p = glm::cross(d, f);
-  const double det = glm::dot(e, p);
-  const double u = -glm::dot(a, p) / det;
-  const Vec3 q = glm::cross(-a, e);
-  const double v = glm::dot(d, q) / det;
-  const double x = glm::dot(f, q) / det;
-  return u >= 0.0 && v >= 0.0 && u + v <= 1.0 && x > 0.0 ? 1.0 / x : 0.0;
-}
-}
-
-TEST(BeamShape, CellsAreTheMeanOfManyRays)
-{
-  // What each object of a crowded beam returns, against rays that all triangles are tested with.
-  std::mt19937_64 random(12);
-  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
-  for (const Shape& s : Shapes)
-  {
-    const Scene scene = clutter(7);
-    const double a = std::tan(s.along);
-    const double b = std::tan(acrossOf(s));
-    const double turn = s.rotation * Degree;
-    std::vector<double> truth(101, 0.0);
-    double all = 0.0;
-    for (int ray = 0; ray < 20000; ++ray)
-    {
-      const double u = uniform(random);
-      const double v = uniform(random);
-      const double light = isInside(s, u, v) ? lightAt(s, u, v) : 0.0;
-      all += light;
-      const double right = std::cos(turn) * a * u - std::sin(turn) * b * v;
-      const double up = std::sin(turn) * a * u + std::cos(turn) * b * v;
-      double nearest = 0.0;
-      int object = -1;
-      for (std::size_t t = 0; t < scene.mesh->triangles.size() && light > 0.0; ++t)
-      {
-        const double met = meets(*scene.mesh, scene.mesh->triangles[t], { 1.0, -right, up });
-        object = met > nearest ? scene.objects[t] : object;
-        nearest = std::max(nearest, met);
-      }
-      if (object >= 0)
-      {
-        truth[object] += light;
-      }
-    }
-    const ScanSetup setup = makeSetup(scene, sensorOf(s), inCells(400));
-    const SeenInCells seen(setup, frameOf(s));
-    for (int object = 0; object <= 100; ++object)
-    {
-      EXPECT_NEAR(seen.ofObject(object), truth[object] / all, 0.012) << object;
-    }
-  }
-}
-
 TEST(BeamShape, PathsOverTwoReflectionsAreTheSameByCellsAndRays)
 {
   // Two mirrors at right angles send light back; two matt walls some of it.
@@ -438,32 +327,4 @@ TEST(BeamShape, TwoEqualHalfBeamwidthsAreARoundBeam)
     sensor.halfBeamwidthAcross = 0.9999 * sensor.halfBeamwidth;
     EXPECT_NEAR(received(scene, sensor, inCells(400)) / round, 1.0, 0.02);
   }
-}
-
-TEST(BeamShape, BadShapesAreNamed)
-{
-  const auto errorOf = [](auto change)
-  {
-    Sensor sensor;
-    change(sensor);
-    return checkSensor(sensor);
-  };
-  EXPECT_EQ(errorOf([](Sensor& s) { s.halfBeamwidthAcross = 0.25; }),
-    "half_beamwidth_across is 0.25, expected 0 (the same), or 1e-9 to 0.1 rad");
-  EXPECT_EQ(errorOf([](Sensor& s) { s.halfBeamwidthAcross = 1e-8; }),
-    "half_beamwidth_across is 1e-08, expected 0 (the same), or 1e-9 to 0.1 rad and 1/1000 to 1000 "
-    "times half_beamwidth");
-  EXPECT_EQ(errorOf(
-              [](Sensor& s)
-              {
-                s.beamOutline = BeamOutline::Rectangle;
-                s.halfBeamwidth = 0.5;
-              }),
-    "half_beamwidth is 0.5, expected at most 0.1 rad of a beam that is not round");
-  EXPECT_EQ(errorOf([](Sensor& s) { s.gaussianTruncation = 4.0; }),
-    "gaussian_truncation is 4, expected 0.1 to 3");
-  EXPECT_EQ(errorOf([](Sensor& s) { s.beamOutline = static_cast<BeamOutline>(2); }),
-    "beam_outline is 2, expected 0 (ellipse) or 1 (rectangle)");
-  EXPECT_EQ(errorOf([](Sensor& s) { s.beamRotation = std::numeric_limits<double>::quiet_NaN(); }),
-    "beam_rotation is nan, expected -360 to 360 deg");
 }

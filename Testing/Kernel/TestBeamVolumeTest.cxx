@@ -144,8 +144,8 @@ template <class Volume>
 class BeamVolumes : public testing::Test
 {
 };
-using AllVolumes = testing::Types<OBB, BoundingSphere>;
-TYPED_TEST_SUITE(BeamVolumes, AllVolumes);
+using BeamTestVolumes = testing::Types<OBB, BoundingSphere>;
+TYPED_TEST_SUITE(BeamVolumes, BeamTestVolumes);
 }
 
 TYPED_TEST(BeamVolumes, NoVolumeThatARayOfTheConeMeetsIsRejected)
@@ -209,26 +209,6 @@ TYPED_TEST(BeamVolumes, VolumesAimedAtThroughTheirMiddle)
     }
     double nearest = -1.0;
     wrong += BeamVolumeTest(c.frame).meets(volume, nearest) ? 0 : 1;
-  }
-  EXPECT_EQ(wrong, 0);
-}
-
-TYPED_TEST(BeamVolumes, RaysFromOtherPointsMeetTheVolumesTheyPass)
-{
-  Numbers random(42);
-  int wrong = 0;
-  for (int i = 0; i < Cases / 4; ++i)
-  {
-    const Case c = someCase(random);
-    const TypeParam volume = around(c, random, static_cast<TypeParam*>(nullptr));
-    const Vec3 target = c.point;
-    const Vec3 origin = random.inCube(100.0);
-    const Vec3 d = unitDirection(target - origin);
-    double entry = -1.0;
-    wrong += BeamVolumeTest(c.frame.origin, origin, d, 0.0).meets(volume, entry) &&
-        entry <= safeLength(target - origin) * (1.0 + 1e-9)
-      ? 0
-      : 1;
   }
   EXPECT_EQ(wrong, 0);
 }

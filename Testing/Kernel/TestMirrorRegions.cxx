@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <numeric>
-#include <random>
 #include <vector>
 
 using namespace echotest;
@@ -79,44 +78,6 @@ TEST(MirrorRegions, BringWhatRaysBring)
   }
   EXPECT_GT(beamsWith, 50);
   EXPECT_NEAR(all, ofRays, 0.01 * ofRays);
-}
-
-TEST(MirrorRegions, OfTwoSurfacesInOnePlaceOneIsSeen)
-{
-  // A groove of many plates, each of which is there twice, so that the beam is divided into cells.
-  for (const int copies : { 1, 2 })
-  {
-    Scene scene;
-    for (int k = 0; k < 40 * copies; ++k)
-    {
-      const double at = 0.05 * (k / copies) + 0.025;
-      for (const double side : { -1.0, 1.0 })
-      {
-        const Vec3 along = Vec3(-Root2, side * Root2, 0.0) * 0.5;
-        scene.plate(Vec3(100.0, 0.0, 0.0) + at * along, 0.025 * along, Vec3(0.0, 0.0, 3.0), Metal);
-      }
-    }
-    expectSameByRays(scene, 5.6e-3, 0.02);
-  }
-}
-
-TEST(MirrorRegions, WhatStandsBetweenTheSurfacesBlocks)
-{
-  Scene open = groove(45.0 * Degree, Metal);
-  const double width = 5.6e-3;
-  const auto received = [&](const Scene& scene)
-  {
-    return sumOf(
-      secondaryOfBeams(scene, oneBeam(), mirrorSettings(BeamSampleSource::Cells, 100), width));
-  };
-  const double all = received(open);
-  Scene blocked = groove(45.0 * Degree, Metal);
-  // A black plate about the plane of symmetry, seen at a grazing angle.
-  const Material black{ 1e-9, 0.0, 1.0 };
-  blocked.plate(Vec3(98.0, 0.05, 0.0), Vec3(1.9, 0.0, 0.0), Vec3(0.0, 0.0, 5.0), black, 1);
-  EXPECT_GT(all, 0.0);
-  EXPECT_LT(received(blocked), 0.3 * all);
-  expectSameByRays(blocked, width, 0.05);
 }
 
 TEST(MirrorRegions, WhatIsSeenNearlyEdgeOnIsFound)
@@ -270,18 +231,5 @@ TEST(MirrorRegions, ManySmallRegionsLoseNoMoreThanTheTolerance)
       ASSERT_FALSE(some.echoes.empty());
       EXPECT_NEAR(some.echoes[0].energyReceived, brightest, tolerance) << strips << ' ' << limit;
     }
-  }
-}
-
-TEST(MirrorRegions, FewRaysHaveAnError)
-{
-  const Scene scene = groove(45.0 * Degree, Metal);
-  for (const int rays : { 1, 4, 16 })
-  {
-    EchoSettings settings = secondarySettings(rays, 0);
-    settings.beamSamples = BeamSampleSource::Cells;
-    const ScanResult result = runScan(makeSetup(scene, openSensor(), settings), oneBeam());
-    ASSERT_EQ(result.echoes.size(), 1u);
-    EXPECT_GT(result.echoes[0].energyStdError, 0.0) << rays;
   }
 }

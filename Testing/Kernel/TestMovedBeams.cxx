@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Beams meet movers where these are at the beam's own time.
 #include "Bird.h"
+#include "CellTestScene.h"
 #include "MoverReport.h"
 #include "PhotonReceiver.h"
 #include "ScanTestTown.h"
@@ -131,7 +132,7 @@ void expectRestIsSurface(
   for (const int threads : { 1, 2 })
   {
     const ScanResult got = runScan(setup, beams, threads);
-    expectSame(got, wanted);
+    echotest::expectSame(got, wanted);
     expectSameStatus(got, wanted);
     EXPECT_GT(got.beamsTouched, 20u);
   }
@@ -362,17 +363,11 @@ TEST(MovedBeams, OrderAndPiecesChangeNoBit)
 namespace
 {
 /// A wall of many triangles across the beam, 50 m behind a goose.
-Scene fineWall()
+Scene wallBehind()
 {
   Scene wall;
-  for (int i = -20; i < 20; ++i)
-  {
-    for (int j = -20; j < 20; ++j)
-    {
-      wall.plate(Vec3(300.0, 0.1 * i + 0.05, 0.1 * j + 0.05), Vec3(0.0, 0.05, 0.0),
-        Vec3(0.0, 0.0, 0.05), Wall, 0);
-    }
-  }
+  celltest::fine(
+    wall, Vec3(300.0, 0.0, 0.0), Vec3(0.0, 2.0, 0.0), Vec3(0.0, 0.0, 2.0), 40, Wall, 0);
   return wall;
 }
 
@@ -420,14 +415,14 @@ TEST(MovedBeams, WhatAMoverReturnsFollowsFromItsEffectiveArea)
 TEST(MovedBeams, WhatStandsBehindAMoverDoesNotChangeWhatItReturns)
 {
   // Beams that many triangles enter are divided into cells.
-  EXPECT_LT(worstOfGeese(fineWall()), 0.06);
+  EXPECT_LT(worstOfGeese(wallBehind()), 0.06);
   EXPECT_LT(worstOfGeese(goose(Vec3(300.0, 0.0, 0.0), 5)), 0.06);
 }
 
 TEST(MovedBeams, AMoverInAWideGaussianBeam)
 {
   EXPECT_LT(worstOfGeese(Scene(), 0, BeamProfile::Gaussian), 0.06);
-  EXPECT_LT(worstOfGeese(fineWall(), 0, BeamProfile::Gaussian), 0.06);
+  EXPECT_LT(worstOfGeese(wallBehind(), 0, BeamProfile::Gaussian), 0.06);
 }
 
 TEST(MovedBeams, AMoverMayHaveManyTriangles)
@@ -454,23 +449,6 @@ TEST(MovedBeams, TheReportStopsWhenItIsNotWanted)
   EXPECT_THROW(reportMovers(setup, beams, {}, 1, wanted), WorkStopped);
   EXPECT_EQ(calls, 3);
   EXPECT_EQ(reportMovers(setup, beams, {}, 2).size(), 20u);
-}
-
-TEST(MovedBeams, EchoesDoNotDependOnWhetherMoversAreReported)
-{
-  Sensor sensor;
-  sensor.halfBeamwidth = 2e-2;
-  ScanSetup setup = makeSetup(town(), sensor, usual());
-  setMovers(setup, { moverOf(goose(Vec3(3.0, 60.0, 1.0), 100)), moverOf(things()) });
-  const ScanBeams beams = timed(horizon(180, 4), 1e-3);
-  const ScanResult wanted = runScan(setup, beams);
-  EXPECT_FALSE(wanted.sights.empty());
-  TraceCache cache;
-  ScanResult got;
-  simulateScan(setup, beams, 1, cache, std::size_t(1) << 30, {}, got, false);
-  EXPECT_TRUE(got.sights.empty());
-  expectSame(got, wanted);
-  expectSameStatus(got, wanted);
 }
 
 TEST(MovedBeams, NothingStaticIsTracedTwice)

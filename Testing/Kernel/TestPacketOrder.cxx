@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Rays go together in packets by their number alone: neighbours of a stratified beam, and the same
-// cost whatever a thread has traced before.
+// Rays go together in packets by their number alone: neighbours of a stratified beam.
 #include "BeamTracer.h"
 #include "BoxTests.h"
 #include "CollisionTreeBuilder.h"
@@ -65,85 +64,4 @@ TEST(PacketOrder, EveryRayIsThereOnceAndBesideItsNeighbours)
       EXPECT_LT(meanExtent(stratifiedRays(3, count), order), 2.2 * side) << count;
     }
   }
-}
-
-TEST(PacketOrder, DependsOnNothingButTheNumberOfRays)
-{
-  PacketOrder fresh;
-  PacketOrder used;
-  for (std::size_t count = 1; count < 300; ++count)
-  {
-    used.of(count);
-  }
-  for (const std::size_t count : { 299, 100, 3, 64 })
-  {
-    EXPECT_EQ(fresh.of(count), used.of(count));
-  }
-}
-
-TEST(PacketOrder, ABeamCostsTheSameWhateverWasTracedBefore)
-{
-  geometrytest::Numbers random(5);
-  const auto mesh =
-    std::make_shared<TriangleMesh>(geometrytest::randomTriangles(random, 20000, 30.0, 0.3));
-  const auto tree = buildCollisionTree(mesh, TreeOptions());
-  const BeamFrame frame = makeBeamFrame(Vec3(-80.0, 0.0, 0.0), Vec3(1.0, 0.0, 0.0), 0.01);
-  for (const std::size_t count : { 40, 100, 500 })
-  {
-    TraceCounters first;
-    for (std::uint64_t before = 0; before < 6; ++before)
-    {
-      OneBeamTracer tracer(*tree);
-      std::vector<Hit> hits;
-      if (before > 0)
-      {
-        tracer.setBeam(frame);
-        tracer.trace(stratifiedRays(before, count), TraceMode::Automatic, hits);
-      }
-      tracer.setBeam(frame);
-      tracer.trace(stratifiedRays(99, count), TraceMode::Automatic, hits);
-      ASSERT_GT(tracer.counters().candidates, 0u);
-      first = before == 0 ? tracer.counters() : first;
-      EXPECT_EQ(tracer.counters().candidates, first.candidates) << count << " rays";
-      EXPECT_EQ(tracer.counters().nodesVisited, first.nodesVisited) << count << " rays";
-    }
-  }
-}
-
-TEST(PacketOrder, RaysThatComeWithTheirNeighboursKeepTheirOrder)
-{
-  // Those of sixteen small cones, cone by cone, as small targets have them.
-  geometrytest::Numbers random(6);
-  const auto mesh =
-    std::make_shared<TriangleMesh>(geometrytest::randomTriangles(random, 20000, 30.0, 0.3));
-  const auto tree = buildCollisionTree(mesh, TreeOptions());
-  const BeamFrame frame = makeBeamFrame(Vec3(-80.0, 0.0, 0.0), Vec3(1.0, 0.0, 0.0), 0.1);
-  BeamRays rays;
-  for (int cone = 0; cone < 16; ++cone)
-  {
-    const double x = random(-0.7, 0.7);
-    const double y = random(-0.7, 0.7);
-    const BeamRays own = stratifiedRays(static_cast<std::uint64_t>(cone), 16);
-    for (std::size_t i = 0; i < own.size(); ++i)
-    {
-      rays.x.push_back(x + 0.05 * own.x[i]);
-      rays.y.push_back(y + 0.05 * own.y[i]);
-    }
-  }
-  const auto count = static_cast<std::uint32_t>(rays.size());
-  const auto trace = [&](bool inOrder, std::vector<std::uint32_t>& triangles)
-  {
-    OneBeamTracer tracer(*tree);
-    const BeamBlock block{ &frame, 1, count,
-      [&rays](std::size_t) -> const BeamRays& { return rays; }, inOrder };
-    const BlockHits& found = tracer.traceBlock(block, TraceMode::Automatic);
-    triangles.assign(found.triangles[0], found.triangles[0] + count);
-    return found.counters[0];
-  };
-  std::vector<std::uint32_t> triangles[2];
-  const TraceCounters parted = trace(false, triangles[0]);
-  const TraceCounters together = trace(true, triangles[1]);
-  EXPECT_EQ(triangles[0], triangles[1]);
-  EXPECT_LT(5 * together.candidates, 4 * parted.candidates);
-  EXPECT_LT(together.nodesVisited, parted.nodesVisited);
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Integrated beams that see two reflections: whose echoes those are, and what is left out of them.
-#include "GeometryTestScene.h"
+#include "CellTestScene.h"
 #include "IntegrationTestScene.h"
 #include "SecondaryTestScene.h"
 
@@ -60,14 +60,6 @@ ScanSetup withMaterialIds(const Scene& scene, const Sensor& sensor, const EchoSe
   return setup;
 }
 
-void expectFalseAlarm(const Echo& echo)
-{
-  EXPECT_EQ(echo.objectId, -1);
-  EXPECT_EQ(echo.materialId, -1);
-  EXPECT_EQ(echo.labelShare, 0.0);
-  EXPECT_TRUE(std::isnan(echo.incidenceAngle));
-}
-
 void expectMirrors(const Echo& echo)
 {
   EXPECT_TRUE(echo.objectId == 7 || echo.objectId == 9) << echo.objectId;
@@ -114,75 +106,8 @@ TEST(PolygonPaths, AnEchoOfPathsAloneIsLabelledByTheSurfacesThatTheyMeet)
   EXPECT_NEAR(integrated, receivedFrom(sampled), 0.02 * integrated);
 }
 
-TEST(PolygonPaths, AnIntegratedBeamThatBringsNothingHasFalseAlarmsAlone)
-{
-  EchoSettings settings = integrating(100);
-  settings.noise = true;
-  Sensor sensor = sensorOfShortUnits();
-  sensor.noisePhotonRate = 1e11; // 5 photons a unit
-  sensor.lowerEnergyLimit = 8.0 * sensor.photonEnergy();
-  const ScanResult alarms =
-    runScan(withMaterialIds(grooveOfMirrors(), sensor, settings), oneBeam());
-  EXPECT_TRUE(isIntegrated(alarms));
-  EXPECT_GT(alarms.echoes.size(), 100u);
-  for (const Echo& echo : alarms.echoes)
-  {
-    expectFalseAlarm(echo);
-  }
-  // With its paths it has one echo that is no false alarm.
-  settings = secondarySettings(100);
-  settings.beamSamples = BeamSampleSource::Cells;
-  settings.noise = true;
-  const ScanResult both = runScan(withMaterialIds(grooveOfMirrors(), sensor, settings), oneBeam());
-  int labelled = 0;
-  for (const Echo& echo : both.echoes)
-  {
-    if (echo.objectId != -1)
-    {
-      ++labelled;
-      EXPECT_NEAR(echo.range, 100.0, 0.1);
-      EXPECT_TRUE(echo.objectId == 7 || echo.objectId == 9) << echo.objectId;
-      EXPECT_EQ(echo.materialId, 10 * echo.objectId);
-    }
-    else
-    {
-      expectFalseAlarm(echo);
-    }
-  }
-  EXPECT_EQ(labelled, 1);
-  // A wall whose edge touches the beam, by less than rounding or more.
-  for (const double depth : { 0.0, 1e-16, 3e-16, 1e-15, 1e-14, 1e-12, 1e-9 })
-  {
-    Scene scene;
-    scene.plate(Vec3(-50.0, 0.0, 0.0), Vec3(0.0, 9.0, 0.0), Vec3(0.0, 0.0, 9.0), Wall, 3);
-    const double edge = 100.0 * std::tan(sensor.halfBeamwidth) * (1.0 - depth);
-    scene.plate(Vec3(100.0, edge + 9.0, 0.0), Vec3(0.0, 9.0, 0.0), Vec3(0.0, 0.0, 9.0), Wall, 5);
-    const ScanResult touched = runScan(withMaterialIds(scene, sensor, integrating(100)), oneBeam());
-    EXPECT_EQ(touched.reports[0].counters.raysTraced, 0u);
-    for (const Echo& echo : touched.echoes)
-    {
-      EXPECT_EQ(echo.objectId, 5) << depth;
-    }
-  }
-}
-
 namespace
 {
-/// A plate of parts x parts plates.
-void addParts(Scene& scene, const Vec3& center, const Vec3& u, const Vec3& v, int parts,
-  const Material& m, int object)
-{
-  for (int i = 0; i < parts; ++i)
-  {
-    for (int k = 0; k < parts; ++k)
-    {
-      const double a = (2.0 * i + 1.0) / parts - 1.0;
-      const double b = (2.0 * k + 1.0) / parts - 1.0;
-      scene.plate(center + a * u + b * v, u / double(parts), v / double(parts), m, object);
-    }
-  }
-}
-
 /// A corner that the beam looks into, of a mirror and a matt wall, and before it a small mirror
 /// that throws light on the wall, and a small matt plate.
 Scene cornerWithThings(int parts)
@@ -191,8 +116,8 @@ Scene cornerWithThings(int parts)
   const Vec3 edge(100.0, 0.0, 0.0);
   const Vec3 up(0.0, 0.0, 3.0);
   const Material matt{ 0.5, 0.0, 1.0 };
-  addParts(scene, edge + Vec3(-2.5, 2.5, 0.0), Vec3(2.5, -2.5, 0.0), up, parts, Metal, 1);
-  addParts(scene, edge + Vec3(-2.5, -2.5, 0.0), Vec3(2.5, 2.5, 0.0), up, parts, matt, 2);
+  celltest::fine(scene, edge + Vec3(-2.5, 2.5, 0.0), Vec3(2.5, -2.5, 0.0), up, parts, Metal, 1);
+  celltest::fine(scene, edge + Vec3(-2.5, -2.5, 0.0), Vec3(2.5, 2.5, 0.0), up, parts, matt, 2);
   scene.plate(Vec3(97.0, 0.6, 0.2), Vec3(0.1, 0.09, 0.0), Vec3(0.0, 0.0, 0.1), Metal, 3);
   scene.plate(Vec3(98.0, -0.6, 0.2), Vec3(0.0, 0.1, 0.0), Vec3(0.0, 0.0, 0.1), matt, 4);
   return scene;
@@ -384,24 +309,4 @@ TEST(PolygonPaths, NoUnitLosesMoreByPathsThanTheReportSays)
   EXPECT_GT(left, 20);
   EXPECT_GT(withoutPaths, 20);
   EXPECT_GT(byPathsAlone, 5);
-}
-
-TEST(PolygonPaths, WherePathsOfAWholeSceneCannotMatterTheirBoundIsReported)
-{
-  Scene scene = groove(45.0 * Degree, { 1e-4, 0.0, 0.0 });
-  Sensor sensor = openSensor();
-  sensor.pulseEnergy = 1.0;
-  EchoSettings settings = secondarySettings(100);
-  settings.beamSamples = BeamSampleSource::Cells;
-  settings.returnMode = ReturnMode::RangeUnits;
-  settings.lightEnergyConstraint = false;
-  ScanSetup setup = makeSetup(scene, sensor, settings);
-  const ScanResult full = runScan(setup, oneBeam());
-  ASSERT_EQ(full.echoes.size(), 1u);
-  ASSERT_GT(secondaryOf(full), 0.0);
-  setup.sensor.lowerEnergyLimit = 0.5 * full.echoes[0].energyReceived;
-  const BeamReport report = expectWithinBounds(setup, unitsOf(full));
-  EXPECT_EQ(report.status, BeamStatus::Echo);
-  EXPECT_EQ(report.skipped, SkippedSecondaryPaths);
-  EXPECT_GE(report.lost, secondaryOf(full));
 }

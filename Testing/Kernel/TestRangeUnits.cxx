@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Range units: pulse overlap, conservation of energy, order of summation, and a waveform in closed
-// form.
-#include "Air.h"
-#include "RandomContributions.h"
+// Range units: pulse overlap, sums unit by unit, shares of the paths, memory, and the gate.
+#include "Random.h"
+#include "RangeUnits.h"
 #include "Sensor.h"
 
 #include <gtest/gtest.h>
@@ -12,13 +11,26 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <vector>
 
 using namespace avianlidar;
-using echotest::nanosecond;
-using echotest::randomContributions;
 
 namespace
 {
+constexpr double nanosecond = 1e-9; // s
+
+/// @param nearest, farthest m, of path lengths
+std::vector<Contribution> randomContributions(std::size_t count, double nearest, double farthest)
+{
+  std::vector<Contribution> list;
+  for (std::size_t n = 0; n < count; ++n)
+  {
+    const auto u = uniformPair(8, 0, n, RandomPurpose::Rays);
+    list.push_back({ nearest + (farthest - nearest) * u[0], 1e-6 * u[1] });
+  }
+  return list;
+}
+
 double energyOf(const RangeUnitAccumulator& accumulator, std::int64_t index)
 {
   for (const RangeUnit& unit : accumulator.units())
@@ -67,122 +79,10 @@ TEST(RangeUnits, PulseCentredOnItsDelay)
   EXPECT_NEAR(energyOf(accumulator, 668), 0.1281903963, 1e-10);
 }
 
-TEST(RangeUnits, DeltaPulseFallsIntoOneUnit)
-{
-  RangeUnitAccumulator accumulator(nanosecond, 0.0, 1000.0);
-  accumulator.add({ 200.0, 3.0 });
-  accumulator.accumulate();
-  ASSERT_EQ(accumulator.units().size(), 1u);
-  EXPECT_EQ(accumulator.units()[0].index, 667);
-  EXPECT_EQ(accumulator.units()[0].energy, 3.0);
-}
-
-TEST(RangeUnits, WidePulseIsFlat)
-{
-  RangeUnitAccumulator accumulator(nanosecond, 1000.0 * nanosecond, 1000.0);
-  accumulator.add({ 1000.0, 1.0 });
-  accumulator.accumulate();
-  EXPECT_EQ(accumulator.units().size(), 1001u);
-  EXPECT_NEAR(energyOf(accumulator, 3335), 1e-3, 1e-15);
-  EXPECT_NEAR(energyOf(accumulator, 2900), 1e-3, 1e-15);
-  EXPECT_NEAR(totalOf(accumulator), 1.0, 1e-14);
-}
-
-TEST(RangeUnits, EnergyIsConserved)
-{
-  for (const double width : { 0.0, 1e-15, 0.3, 1.0, 2.5, 77.0, 1000.0 })
-  {
-    for (const double gate : { 50.0, 4000.0 })
-    {
-      RangeUnitAccumulator accumulator(nanosecond, width * nanosecond, gate);
-      double sum = 0.0;
-      for (const Contribution& c : randomContributions(500, 0.0, 300.0))
-      {
-        accumulator.add(c);
-        sum += c.energy;
-      }
-      accumulator.accumulate();
-      EXPECT_NEAR(totalOf(accumulator) / sum, 1.0, 1e-13) << width << ' ' << gate;
-      EXPECT_EQ(accumulator.energyBeyondGate() > 0.0, gate == 50.0);
-    }
-  }
-}
-
-TEST(RangeUnits, ManyPathsAtOnceAreTheSamePaths)
-{
-  RangeUnitAccumulator one(nanosecond, 0.8 * nanosecond, 1000.0);
-  RangeUnitAccumulator many(nanosecond, 0.8 * nanosecond, 1000.0);
-  std::vector<double> ranges;
-  std::vector<double> energies;
-  for (const Contribution& c : randomContributions(100, 20.0, 60.0))
-  {
-    one.add(c);
-    ranges.push_back(0.5 * c.pathLength);
-    energies.push_back(c.energy);
-  }
-  many.add(ranges.data(), energies.data(), ranges.size());
-  one.accumulate();
-  many.accumulate();
-  ASSERT_EQ(one.units().size(), many.units().size());
-  for (std::size_t u = 0; u < one.units().size(); ++u)
-  {
-    EXPECT_EQ(one.units()[u].energy, many.units()[u].energy);
-  }
-}
-
-TEST(RangeUnits, WhatWasSummedBeforeChangesNoBitAndTheOrderRoundingAlone)
-{
-  // Near together (a table of units) and kilometres apart (sorting).
-  for (const double farthest : { 60.0, 6e6 })
-  {
-    auto list = randomContributions(300, 50.0, farthest);
-    RangeUnitAccumulator first(nanosecond, 1.7 * nanosecond, 1e7);
-    RangeUnitAccumulator again(nanosecond, 1.7 * nanosecond, 1e7);
-    RangeUnitAccumulator backward(nanosecond, 1.7 * nanosecond, 1e7);
-    again.add({ 1.0, 1.0 }); // another beam before
-    again.accumulate();
-    again.clear();
-    for (const Contribution& c : list)
-    {
-      first.add(c);
-      again.add(c);
-    }
-    std::reverse(list.begin(), list.end());
-    for (const Contribution& c : list)
-    {
-      backward.add(c);
-    }
-    first.accumulate();
-    again.accumulate();
-    backward.accumulate();
-    ASSERT_EQ(first.units().size(), again.units().size());
-    ASSERT_EQ(first.units().size(), backward.units().size());
-    for (std::size_t u = 0; u < first.units().size(); ++u)
-    {
-      const double energy = first.units()[u].energy;
-      EXPECT_EQ(first.units()[u].index, again.units()[u].index);
-      EXPECT_EQ(first.units()[u].index, backward.units()[u].index);
-      EXPECT_EQ(energy, again.units()[u].energy);
-      EXPECT_NEAR(energy, backward.units()[u].energy, 1e-13 * energy);
-      EXPECT_TRUE(u == 0 || first.units()[u - 1].index < first.units()[u].index);
-    }
-  }
-}
-
-TEST(RangeUnits, MemoryFollowsHitsNotRange)
-{
-  RangeUnitAccumulator accumulator(1e-15, 0.0, 1e9);
-  accumulator.add({ 1.0, 1.0 });
-  accumulator.add({ 1e9, 1.0 });
-  accumulator.accumulate();
-  ASSERT_EQ(accumulator.units().size(), 2u);
-  EXPECT_EQ(accumulator.units()[1].index, static_cast<std::int64_t>(1e9 / (SpeedOfLight * 1e-15)));
-}
-
-TEST(RangeUnits, WidePulsesOverManyUnitsAreSummedInTheirOrder)
+TEST(RangeUnits, PulsesAreSummedUnitByUnitInTheirOrder)
 {
   // Near together and far apart, so that the table of sums is moved on, across pulses and over
-  // gaps.
+  // gaps. Added one by one, after other paths, and all at once.
   for (const double farthest : { 100.0, 4e3, 2e5 })
   {
     for (const double pulseWidth : { 0.0, 1.3e-9, 40e-9, 1000e-9 })
@@ -190,6 +90,12 @@ TEST(RangeUnits, WidePulsesOverManyUnitsAreSummedInTheirOrder)
       const double gate = 0.4 * farthest;
       const double width = pulseWidth / nanosecond;
       RangeUnitAccumulator accumulator(nanosecond, pulseWidth, gate);
+      RangeUnitAccumulator atOnce(nanosecond, pulseWidth, gate);
+      accumulator.add({ 1.0, 1.0 });
+      accumulator.accumulate();
+      accumulator.clear();
+      std::vector<double> ranges;
+      std::vector<double> energies;
       std::map<std::int64_t, double> sums;
       std::map<std::int64_t, std::uint32_t> paths;
       double beyond = 0.0;
@@ -197,6 +103,8 @@ TEST(RangeUnits, WidePulsesOverManyUnitsAreSummedInTheirOrder)
       for (const Contribution& c : randomContributions(400, 0.0, farthest))
       {
         accumulator.add(c);
+        ranges.push_back(0.5 * c.pathLength);
+        energies.push_back(c.energy);
         const double delay = c.pathLength / (SpeedOfLight * nanosecond);
         const double begin = delay - 0.5 * width;
         const double pulse = (delay + 0.5 * width) - begin;
@@ -215,16 +123,20 @@ TEST(RangeUnits, WidePulsesOverManyUnitsAreSummedInTheirOrder)
         }
         beyond += c.energy * (1.0 - before);
       }
-      accumulator.accumulate();
-      ASSERT_EQ(accumulator.units().size(), sums.size());
-      EXPECT_EQ(accumulator.energyBeyondGate(), beyond);
-      auto expected = sums.begin();
-      for (const RangeUnit& unit : accumulator.units())
+      atOnce.add(ranges.data(), energies.data(), ranges.size());
+      for (RangeUnitAccumulator* one : { &accumulator, &atOnce })
       {
-        ASSERT_EQ(unit.index, expected->first);
-        ASSERT_EQ(unit.energy, expected->second);
-        ASSERT_EQ(unit.paths, paths[unit.index]);
-        ++expected;
+        one->accumulate();
+        ASSERT_EQ(one->units().size(), sums.size());
+        EXPECT_EQ(one->energyBeyondGate(), beyond);
+        auto expected = sums.begin();
+        for (const RangeUnit& unit : one->units())
+        {
+          ASSERT_EQ(unit.index, expected->first);
+          ASSERT_EQ(unit.energy, expected->second);
+          ASSERT_EQ(unit.paths, paths[unit.index]);
+          ++expected;
+        }
       }
     }
   }
@@ -305,60 +217,54 @@ TEST(RangeUnits, NothingAndZeroEnergyGiveNoUnit)
   EXPECT_TRUE(accumulator.units().empty());
 }
 
-namespace
+TEST(RangeShares, AddUpToTheirUnits)
 {
-/// Echo of a ground plane 3 m below, axis 1 degree below the horizon: dE/dr in closed form, summed
-/// as paths.
-void addGroundWaveform(RangeUnitAccumulator& accumulator, double mu, int nodes)
-{
-  const double h = 3.0;
-  const double t = 5.6e-3;
-  const double eta = Pi / 180.0;
-  const double solidAngle = 4.0 * Pi * std::sin(0.5 * t) * std::sin(0.5 * t);
-  const double nearest = h / std::sin(eta + t);
-  const double farthest = h / std::sin(eta - t);
-  for (int n = 0; n < nodes; ++n)
+  // Pulses narrower than a unit, wider, and as wide as many; more units than requests that look at
+  // every path.
+  for (const double width : { 0.0, 0.6, 1.0, 2.5, 40.0 })
   {
-    const double s = (n + 0.5) / nodes;
-    const double r = nearest + (farthest - nearest) * s * s * (3.0 - 2.0 * s);
-    const double dr = (farthest - nearest) * 6.0 * s * (1.0 - s) / nodes;
-    const double sine = h / r;
-    const double c =
-      (std::cos(t) - sine * std::sin(eta)) / (std::sqrt(1.0 - sine * sine) * std::cos(eta));
-    const double density =
-      2.0 * 3.6e-4 * 0.146 * h * h * std::acos(std::min(1.0, c)) / (solidAngle * r * r * r);
-    accumulator.add({ 2.0 * r, density * dr * transmission(mu, 2.0 * r) });
+    RangeUnitAccumulator accumulator(nanosecond, width * nanosecond, 4000.0);
+    std::map<std::uint32_t, double> ofPath; // contributions are those of the list, in its order
+    const auto list = randomContributions(200, 0.0, 25.0);
+    for (const Contribution& c : list)
+    {
+      accumulator.add(c);
+    }
+    accumulator.accumulate();
+    ASSERT_GT(accumulator.units().size(), 20u);
+    for (const RangeUnit& unit : accumulator.units())
+    {
+      const RangeShares shares = accumulator.sharesOf(unit.index, unit.index + 1);
+      EXPECT_EQ(shares.count, unit.paths);
+      double sum = 0.0;
+      double moment = 0.0;
+      for (std::size_t s = 0; s < shares.count; ++s)
+      {
+        const std::uint32_t c = shares.contribution[s];
+        EXPECT_GT(shares.energies[s], 0.0);
+        EXPECT_TRUE(s == 0 || shares.contribution[s - 1] < c);
+        sum += shares.energies[s];
+        moment += shares.energies[s] * list[c].pathLength;
+        ofPath[c] += shares.energies[s];
+      }
+      EXPECT_NEAR(sum / unit.energy, 1.0, 1e-14) << width;
+      const WeightedSum sums = sumShares(
+        shares, [&](std::size_t s) { return accumulator.pathLengths()[shares.contribution[s]]; });
+      EXPECT_EQ(sums.energy, sum);
+      EXPECT_EQ(sums.moment, moment);
+    }
+    for (std::size_t c = 0; c < list.size(); ++c)
+    {
+      EXPECT_NEAR(ofPath[c], list[c].energy, 1e-20) << width;
+    }
+    // All units but the first three, at once.
+    const std::int64_t third = accumulator.units()[3].index;
+    const RangeShares rest = accumulator.sharesOf(third, accumulator.units().back().index + 1);
+    double expected = 0.0;
+    for (std::size_t u = 3; u < accumulator.units().size(); ++u)
+    {
+      expected += accumulator.units()[u].energy;
+    }
+    EXPECT_NEAR(sumShares(rest, [](std::size_t) { return 1.0; }).energy / expected, 1.0, 1e-13);
   }
-  accumulator.accumulate();
-}
-}
-
-TEST(RangeUnitsWaveform, GroundWithDeltaPulses)
-{
-  RangeUnitAccumulator accumulator(5e-9, 0.0, 4000.0);
-  addGroundWaveform(accumulator, 0.0, 1000000);
-  EXPECT_NEAR(totalOf(accumulator) / 9.172912907e-7, 1.0, 1e-8);
-  EXPECT_EQ(accumulator.units().front().index, 173);
-  EXPECT_EQ(accumulator.units().back().index, 337);
-  const struct
-  {
-    std::int64_t unit;
-    double energy;
-  } cases[] = { { 173, 5.549252487e-10 }, { 174, 3.538478918e-9 }, { 190, 1.069046563e-8 },
-    { 194, 1.079361529e-8 }, { 200, 1.061714625e-8 }, { 250, 5.876652661e-9 },
-    { 300, 2.381221932e-9 }, { 337, 1.092043096e-10 } };
-  for (const auto& item : cases)
-  {
-    // A node or so on the wrong side of a unit's end.
-    EXPECT_NEAR(energyOf(accumulator, item.unit) / item.energy, 1.0, 1e-3) << item.unit;
-  }
-}
-
-TEST(RangeUnitsWaveform, GroundWithFiniteSpreadPulses)
-{
-  RangeUnitAccumulator accumulator(5e-9, 5e-9, 4000.0);
-  addGroundWaveform(accumulator, 3.5e-5, 1000000);
-  EXPECT_EQ(energyOf(accumulator, 172), 0.0);
-  EXPECT_NEAR(energyOf(accumulator, 173) / 7.014949967e-10, 1.0, 1e-7);
-  EXPECT_NEAR(energyOf(accumulator, 200) / 1.050578974e-8, 1.0, 1e-7);
 }

@@ -9,7 +9,6 @@
 
 #include <gtest/gtest.h>
 
-#include <cstring>
 #include <memory>
 #include <string>
 #include <vector>
@@ -160,71 +159,6 @@ std::vector<BeamFrame> window(
   }
   return frames;
 }
-
-/// A ground of small waves seen from `height` above it.
-TriangleMesh ground(double reach, int cells)
-{
-  TriangleMesh mesh;
-  for (int i = 0; i <= cells; ++i)
-  {
-    for (int j = 0; j <= cells; ++j)
-    {
-      const double x = 2.0 * reach * i / cells - reach;
-      const double y = 2.0 * reach * j / cells - reach;
-      mesh.points.emplace_back(x, y, 0.004 * reach * std::sin(0.9 * i) * std::cos(0.7 * j));
-    }
-  }
-  const auto number = [cells](int i, int j)
-  { return static_cast<std::uint32_t>(i * (cells + 1) + j); };
-  for (int i = 0; i < cells; ++i)
-  {
-    for (int j = 0; j < cells; ++j)
-    {
-      mesh.triangles.push_back({ number(i, j), number(i + 1, j), number(i + 1, j + 1) });
-      mesh.triangles.push_back({ number(i, j), number(i + 1, j + 1), number(i, j + 1) });
-    }
-  }
-  return mesh;
-}
-}
-
-TEST(RayPacket, RandomTrianglesOfAnySizeAndBeamwidth)
-{
-  Numbers random(1);
-  for (const double size : { 0.05, 1.0, 20.0 })
-  {
-    const TriangleMesh mesh = randomTriangles(random, 600, 30.0, size);
-    for (const double width : { 1e-9, 1e-6, 1e-4, 5.6e-3, 0.1, Pi / 3.0 })
-    {
-      std::vector<BeamFrame> frames;
-      for (int b = 0; b < 12; ++b)
-      {
-        // At a corner of a triangle, so that narrow beams meet edges.
-        const Vec3 at = mesh.points[random.index(mesh.points.size())];
-        frames.push_back(makeBeamFrame(Vec3(-60.0, 3.0, 5.0), at - Vec3(-60.0, 3.0, 5.0), width));
-      }
-      expectSameHits("size " + std::to_string(size) + ", width " + std::to_string(width), mesh,
-        frames, raysOf(random, frames, 2 * RayPacket::Width), 0.0);
-    }
-  }
-}
-
-TEST(RayPacket, OneRayABeamOverManyBeams)
-{
-  Numbers random(2);
-  const TriangleMesh mesh =
-    closedSurface(5, [](const Vec3& p) { return 10.0 + std::sin(5.0 * p.x); });
-  for (const double step : { 1e-4, 5e-3, 0.05, 0.2 })
-  {
-    const std::vector<BeamFrame> inside =
-      window(Vec3(0.0), random.direction(), 16, 16, step, 5.6e-3);
-    expectSameHits(
-      "inside, step " + std::to_string(step), mesh, inside, raysOf(random, inside, 1), 1.0);
-    const Vec3 apex = 40.0 * random.direction();
-    const std::vector<BeamFrame> outside = window(apex, -apex, 16, 16, step, 5.6e-3);
-    expectSameHits(
-      "outside, step " + std::to_string(step), mesh, outside, raysOf(random, outside, 1), 0.01);
-  }
 }
 
 TEST(RayPacket, RaysAimedAtEdgesAndVerticesOfAClosedSurface)
@@ -255,57 +189,6 @@ TEST(RayPacket, RaysAimedAtEdgesAndVerticesOfAClosedSurface)
     }
     expectSameHits("width " + std::to_string(width), mesh, frames, rays, 1.0, 4);
   }
-}
-
-TEST(RayPacket, GroundSeenAtGrazingIncidenceAndSlivers)
-{
-  Numbers random(4);
-  const TriangleMesh terrain = ground(2000.0, 60);
-  for (const double height : { 0.2, 3.0, 30.0 })
-  {
-    const std::vector<BeamFrame> frames =
-      window(Vec3(3.1, 4.7, 8.0 + height), Vec3(1.0, 0.3, -0.01), 8, 8, 2e-3, 5.6e-3);
-    expectSameHits(
-      "height " + std::to_string(height), terrain, frames, raysOf(random, frames, 8), 0.05);
-  }
-  TriangleMesh needles;
-  for (int i = 0; i < 400; ++i)
-  {
-    const Vec3 a = random.inCube(20.0);
-    const Vec3 b = a + random.logUniform(0.1, 30.0) * random.direction();
-    const Vec3 foot = a + (i % 2 ? 1.0 : random()) * (b - a);
-    addTriangle(needles, a, b, foot + random.logUniform(1e-9, 1.0) * random.direction());
-  }
-  const std::vector<BeamFrame> frames =
-    window(Vec3(-30.0, 1.0, 2.0), Vec3(1.0, 0.0, 0.0), 16, 16, 0.05, 0.03);
-  expectSameHits("needles", needles, frames, raysOf(random, frames, 8), 0.002);
-}
-
-TEST(RayPacket, CoplanarDuplicatedAndDegenerateTriangles)
-{
-  Numbers random(5);
-  TriangleMesh mesh = randomTriangles(random, 80, 10.0, 6.0);
-  for (std::size_t t = 0; t < 80; ++t)
-  {
-    const auto triangle = mesh.triangles[t];
-    mesh.triangles.push_back({ triangle[1], triangle[2], triangle[0] });
-    mesh.triangles.push_back({ triangle[1], triangle[0], triangle[2] });
-    mesh.triangles.push_back({ triangle[0], triangle[0], triangle[1] });
-  }
-  for (int i = 0; i < 60; ++i)
-  {
-    // Overlapping in one plane, oblique to the axes.
-    const auto at = [&]() { return Vec3(random(-9.0, 9.0), random(-9.0, 9.0), 0.0); };
-    Vec3 corner[3] = { at(), at(), at() };
-    for (Vec3& c : corner)
-    {
-      c.z = 0.3 * c.x + 0.2 * c.y;
-    }
-    addTriangle(mesh, corner[0], corner[1], corner[2]);
-  }
-  const std::vector<BeamFrame> frames =
-    window(Vec3(-25.0, 2.0, 9.0), Vec3(1.0, 0.0, -0.3), 12, 12, 0.04, 0.02);
-  expectSameHits("duplicates", mesh, frames, raysOf(random, frames, 16), 0.1);
 }
 
 // On which side of a triangle the apex lies is a matter of rounding then.

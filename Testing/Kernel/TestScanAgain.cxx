@@ -87,10 +87,9 @@ Scene townOf(int kind, std::mt19937_64& random)
       : kind == 1 && scene.objects[t] % 3 != 0 ? Material{ dark, 0.1 * dark, 20.0 }
                                                : scene.materials[t];
   }
-  for (int i = 0; kind == 3 && i < 1200; ++i)
+  if (kind == 3)
   {
-    scene.plate(Vec3(-12.0 + 0.2 * (i % 40), 30.0, 0.2 * (i / 40)), Vec3(0.1, 0.0, 0.0),
-      Vec3(0.0, 0.0, 0.1), i % 2 ? Wall : Metal, 100 + i % 3);
+    addFineWall(scene);
   }
   return scene;
 }

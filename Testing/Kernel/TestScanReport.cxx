@@ -1,14 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a scan says of its beams and echoes: status, ranges, standard errors, false alarms, and the
+// What a scan says of its beams and echoes: labels, status, ranges, standard errors, and the
 // settings it refuses.
+#include "GeometryTestScene.h"
 #include "ScanTestTown.h"
+#include "SecondaryTestScene.h"
 
 #include <gtest/gtest.h>
 
 #include <map>
-#include <random>
 
 using namespace echotest;
+using geometrytest::Numbers;
 
 TEST(ScanReport, TheLabelIsThatOfTheLargestShare)
 {
@@ -67,67 +69,6 @@ TEST(ScanReport, StatusOfABeamTellsWhatBecameOfIt)
   EXPECT_TRUE(gated.echoes.empty());
 }
 
-TEST(ScanReport, FewRaysHaveNoStandardError)
-{
-  Scene scene;
-  scene.plate(Vec3(100.0, 0.0, 0.0), Vec3(0.0, 5.0, 0.0), Vec3(0.0, 0.0, 5.0), Wall);
-  for (const int rays : { 1, 2, 7, 8 })
-  {
-    const Echo echo = onlyEcho(scene, openSensor(), directSettings(rays));
-    EXPECT_GT(echo.energyReceived, 0.0);
-    EXPECT_EQ(std::isnan(echo.energyStdError), rays < 8) << rays;
-  }
-}
-
-TEST(ScanReport, FalseAlarmsComeFromEmptyUnitsOnlyWhereNoiseMatters)
-{
-  Scene empty;
-  Sensor sensor;
-  sensor.noisePhotonRate = 1e9;
-  sensor.lowerEnergyLimit = 8.0 * sensor.photonEnergy(); // mean 5 photons a unit
-  const ScanResult result = runScan(makeSetup(empty, sensor, usual()), horizon(4, 4), 2);
-  ASSERT_GT(result.echoes.size(), 100u);
-  for (const Echo& echo : result.echoes)
-  {
-    EXPECT_EQ(echo.objectId, -1);
-    EXPECT_GT(echo.energyReceived, sensor.lowerEnergyLimit);
-  }
-  expectSame(result, runScan(makeSetup(empty, sensor, usual()), horizon(4, 4), 1));
-}
-
-TEST(ScanReport, ABeamAimedAtTheMiddleOfABoxMeetsItWithAnyTree)
-{
-  // The centres of volumes lie on the axis but for round-off.
-  std::mt19937_64 random(11);
-  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
-  Scene scene;
-  ScanBeams beams;
-  for (int i = 0; i < 200; ++i)
-  {
-    const Vec3 direction = unitVector(Vec3(uniform(random), uniform(random), uniform(random)));
-    const Vec3 center = (100.0 + 900.0 * i / 200.0) * direction;
-    scene.box(center, Vec3(3.0), Wall, i);
-    beams.ids.push_back(i);
-    beams.origins.push_back(Vec3(0.0));
-    beams.directions.push_back(center);
-  }
-  for (int volume = 0; volume < 3; ++volume)
-  {
-    for (const TraceMode mode : { TraceMode::Automatic, TraceMode::SingleRays, TraceMode::Beams })
-    {
-      EchoSettings settings = usual();
-      settings.traceMode = mode;
-      const TreeOptions options{ SplitRule::SurfaceAreaHeuristic,
-        static_cast<BoundingVolumeType>(volume), 4 };
-      const ScanResult result = runScan(makeSetup(scene, Sensor{}, settings, options), beams);
-      for (const BeamReport& report : result.reports)
-      {
-        EXPECT_NE(report.status, BeamStatus::NoSurface) << volume << static_cast<int>(mode);
-      }
-    }
-  }
-}
-
 TEST(ScanReport, StatusAndRangeOfTheReportDoNotDependOnWhatIsShown)
 {
   // A small bright plate before a large wall: two returns, the second stronger and saturated.
@@ -145,23 +86,6 @@ TEST(ScanReport, StatusAndRangeOfTheReportDoNotDependOnWhatIsShown)
     EXPECT_EQ(result.echoes.size(), mode == ReturnMode::All ? 2u : 1u);
     EXPECT_EQ(result.reports[0].status, BeamStatus::Saturated);
     EXPECT_NEAR(result.reports[0].range, 100.0, 0.01);
-  }
-}
-
-TEST(ScanReport, RangesAreNeverNegative)
-{
-  Scene scene;
-  scene.plate(Vec3(3.1, 0.0, 0.0), Vec3(0.0, 5.0, 0.0), Vec3(0.0, 0.0, 5.0), Wall);
-  Sensor sensor;
-  sensor.pulseWidth = 100e-9;
-  sensor.lowerEnergyLimit = 1e-8;
-  EchoSettings settings = usual();
-  settings.returnMode = ReturnMode::RangeUnits;
-  const ScanResult result = runScan(makeSetup(scene, sensor, settings), oneBeam());
-  ASSERT_GT(result.echoes.size(), 5u);
-  for (const Echo& echo : result.echoes)
-  {
-    EXPECT_GT(echo.range, 0.0);
   }
 }
 
@@ -208,26 +132,6 @@ TEST(ScanReport, StandardErrorsHoldWhereAPlaneSpreadsOverRangeUnits)
   }
 }
 
-TEST(ScanReport, DetailIsMissedByAllRaysOnceInTwentyBeams)
-{
-  Scene scene;
-  scene.plate(Vec3(100.0, 0.0, 0.0), Vec3(0.0, 5.0, 0.0), Vec3(0.0, 0.0, 5.0), { 0.25, 0.0, 0.0 });
-  for (const BeamSampleSource source : { BeamSampleSource::Cells, BeamSampleSource::Rays })
-  {
-    for (const auto& [number, grid] :
-      { std::pair<int, double>{ 50, 1024.0 }, { 14, 64.0 }, { 200, 1024.0 }, { 400, 4096.0 } })
-    {
-      EchoSettings settings = directSettings(number);
-      settings.beamSamples = source;
-      const Sensor sensor = openSensor();
-      const double share =
-        makeSetup(scene, sensor, settings).needs.missedDetailEnergy / (0.25 * sensor.pulseEnergy);
-      const double rays = source == BeamSampleSource::Rays ? number : Pi * grid;
-      EXPECT_NEAR(std::pow(1.0 - share, rays), 0.05, 1e-9) << number;
-    }
-  }
-}
-
 TEST(ScanReport, SettingsThatWouldOverflowThePathsAreRefused)
 {
   EchoSettings settings;
@@ -242,4 +146,77 @@ TEST(ScanReport, SettingsThatWouldOverflowThePathsAreRefused)
   sensor.samplingInterval = 1e-21;
   sensor.pulseWidth = 9e-19;
   EXPECT_NE(checkSensor(sensor).find("range_gate"), std::string::npos);
+}
+
+namespace
+{
+/// Specks that no ray meets: corners of a cube, each of three triangles that face each other.
+Scene specks(int count, const Vec3& at)
+{
+  Scene scene;
+  Numbers random(33);
+  constexpr double size = 1e-5;
+  for (int k = 0; k < count; ++k)
+  {
+    const Vec3 tip = at + Vec3(0.1 * k, random(-0.2, 0.2), random(-0.2, 0.2));
+    const Vec3 rim[] = { tip + size * Vec3(-1.0, 1.0, 0.0), tip + size * Vec3(-1.0, -0.5, 0.8),
+      tip + size * Vec3(-1.0, -0.5, -0.8) };
+    for (int i = 0; i < 3; ++i)
+    {
+      scene.triangle(tip, rim[i], rim[(i + 1) % 3], Wall, k);
+    }
+  }
+  return scene;
+}
+
+void expectSameButForCosts(const ScanResult& one, const ScanResult& two)
+{
+  expectSame(one, two);
+  const BeamReport& a = one.reports[0];
+  const BeamReport& b = two.reports[0];
+  EXPECT_EQ(a.status, b.status);
+  EXPECT_TRUE(sameBits(a.range, b.range));
+  EXPECT_EQ(a.skipped, b.skipped);
+  EXPECT_EQ(a.lost, b.lost);
+}
+}
+
+TEST(ScanReport, ABeamWhoseRaysMissWhatEntersItMeetsNothing)
+{
+  for (const BeamSampleSource source : { BeamSampleSource::Cells, BeamSampleSource::Rays })
+  {
+    for (const double limit : { 0.0, 25.0, 12.0 }) // photons, of 5 that are noise; 0: no noise
+    {
+      SCOPED_TRACE(testing::Message() << static_cast<int>(source) << ' ' << limit);
+      EchoSettings settings = secondarySettings(40);
+      settings.beamSamples = source;
+      settings.noise = limit > 0.0;
+      Sensor sensor;
+      sensor.noisePhotonRate = 1e9;
+      sensor.lowerEnergyLimit = limit * sensor.photonEnergy();
+      // More triangles than may be integrated.
+      const ScanSetup setup = makeSetup(specks(40, Vec3(100.0, 0.0, 0.0)), sensor, settings);
+      const ScanSetup without = makeSetup(specks(40, Vec3(-100.0, 0.0, 0.0)), sensor, settings);
+      const ScanResult nothing = runScan(without, oneBeam());
+      EXPECT_EQ(
+        nothing.reports[0].status, limit == 12.0 ? BeamStatus::Echo : BeamStatus::NoSurface);
+      EXPECT_EQ(nothing.echoes.empty(), limit != 12.0);
+      EXPECT_EQ(without.noise.active, limit > 0.0);
+      const ScanResult missed = runScan(setup, oneBeam());
+      EXPECT_EQ(missed.raysTraced, tracedRaysOf(settings));
+      expectSameButForCosts(missed, nothing);
+    }
+  }
+}
+
+TEST(ScanReport, ASpeckThatNoRayMeetsIsIntegrated)
+{
+  EchoSettings settings = directSettings(40);
+  settings.beamSamples = BeamSampleSource::Cells;
+  Sensor sensor;
+  sensor.lowerEnergyLimit = 0.0;
+  const ScanResult speck =
+    runScan(makeSetup(specks(1, Vec3(100.0, 0.0, 0.0)), sensor, settings), oneBeam());
+  EXPECT_EQ(speck.reports[0].counters.raysTraced, 0u);
+  EXPECT_EQ(speck.reports[0].status, BeamStatus::Echo);
 }

@@ -92,110 +92,6 @@ TEST(SecondaryReflection, DiffuseConnectionsOfAnOpenV)
   }
 }
 
-TEST(SecondaryReflection, AnOpenVIsMetByItsShareOfTheCone)
-{
-  const Scene scene = groove(45.0 * Degree, { 0.146, 0.0, 0.0 }, 0.1, 300.0);
-  const auto tree = buildVolumeTree(scene.mesh, {});
-  const BeamFrame frame = makeBeamFrame(Vec3(0.0), Vec3(1.0, 0.0, 0.0), 5.6e-3);
-  constexpr std::size_t count = 1000000;
-  const StrataPartition strata(count);
-  BeamRays rays;
-  sampleBeam(0, 0, count, { frame.halfBeamwidth, BeamProfile::Uniform }, Sampling::Stratified,
-    &strata, rays);
-  OneBeamTracer tracer(*tree);
-  tracer.setBeam(frame);
-  std::vector<Hit> hits;
-  tracer.trace(rays, TraceMode::Automatic, hits);
-  const auto met = std::count_if(hits.begin(), hits.end(), [](const Hit& h) { return h.valid(); });
-  EXPECT_NEAR(met / static_cast<double>(count), 0.7736267092, 2e-4);
-}
-
-namespace
-{
-/// Plates x = 100 - |y| on both sides of the beam's axis, each from its own y on.
-Scene unlikeGroove(const double gaps[2], const Material& m)
-{
-  Scene scene;
-  for (int side : { 0, 1 })
-  {
-    const Vec3 along(-Cosine45, side == 0 ? Cosine45 : -Cosine45, 0.0);
-    const Vec3 center = Vec3(100.0, 0.0, 0.0) + (gaps[side] / Cosine45 + 150.0) * along;
-    scene.plate(center, 150.0 * along, Vec3(0.0, 0.0, 300.0), m, side);
-  }
-  return scene;
-}
-
-/// A point of a plate, with the weights of its piece of the cone: at random, and where the energy
-/// is.
-struct PlatePoint
-{
-  Vec3 point;
-  double solidAngle; ///< share of the cone
-  double energy;     ///< share of a Gaussian beam's energy
-};
-
-/// The cone's share of a plate of unlikeGroove(), cut in n times n pieces.
-std::vector<PlatePoint> platePoints(double gap, int side, double halfBeamwidth, int n)
-{
-  std::vector<PlatePoint> points;
-  const double reach = std::tan(halfBeamwidth);
-  const double first = gap / (100.0 - gap);
-  const double width = 2.0 * std::pow(std::sin(0.5 * halfBeamwidth), 2); // 1 - cos
-  for (int i = 0; i < n; ++i)
-  {
-    // Directions (1, p, q), p^2 + q^2 <= reach^2.
-    const double p = first + (i + 0.5) / n * (reach - first);
-    const double half = std::sqrt(reach * reach - p * p);
-    for (int j = 0; j < n; ++j)
-    {
-      const double q = half * ((2.0 * j + 1.0) / n - 1.0);
-      const double piece = (reach - first) / n * 2.0 * half / n;
-      const double square = 1.0 + p * p + q * q;
-      const double share = piece / (square * std::sqrt(square)) / (2.0 * Pi * width);
-      const double u = (1.0 - 1.0 / std::sqrt(square)) / width;
-      const double x = 100.0 / (1.0 + p);
-      points.push_back({ Vec3(x, side == 0 ? p * x : -p * x, q * x), share,
-        share * 2.0 * std::exp(-2.0 * u) / (1.0 - std::exp(-2.0)) });
-    }
-  }
-  return points;
-}
-}
-
-TEST(SecondaryReflection, AGaussianBeamStillAveragesOverSolidAngle)
-{
-  // The paths start where the energy is, but end anywhere in the cone with equal weight: Qs times
-  // the mean, over the energy of P1 and the solid angle of P2, of kd cos(theta1) kd cos(theta2).
-  const double gaps[2] = { 0.05, 0.35 };
-  const Vec3 normals[2] = { Vec3(-Cosine45, -Cosine45, 0.0), Vec3(-Cosine45, Cosine45, 0.0) };
-  double product = 0.0;
-  for (int side : { 0, 1 })
-  {
-    for (const PlatePoint& one : platePoints(gaps[side], side, 5.6e-3, 40))
-    {
-      const double arrival = -glm::dot(normals[side], glm::normalize(one.point)) * one.energy;
-      for (const PlatePoint& two : platePoints(gaps[1 - side], 1 - side, 5.6e-3, 40))
-      {
-        const Vec3 step = glm::normalize(two.point - one.point);
-        product -= arrival * glm::dot(normals[1 - side], step) * two.solidAngle;
-      }
-    }
-  }
-  EXPECT_NEAR(product, 0.03231779109, 1e-3 * product); // by Gauss-Legendre quadrature
-  const double exact = 3.6e-4 * 0.146 * 0.146 * product;
-  for (Sampling sampling : { Sampling::MonteCarlo, Sampling::Stratified })
-  {
-    Sensor sensor = openSensor();
-    sensor.beamProfile = BeamProfile::Gaussian;
-    EchoSettings settings = secondarySettings(100);
-    settings.sampling = sampling;
-    const Scene scene = unlikeGroove(gaps, { 0.146, 0.0, 0.0 });
-    const Mean mean = meanSecondary(makeSetup(scene, sensor, settings), 2000);
-    EXPECT_LT(mean.error, 0.01 * exact);
-    EXPECT_NEAR(mean.value, exact, 4.0 * mean.error);
-  }
-}
-
 TEST(SecondaryReflection, NoGrooveReturnsMoreThanItReflects)
 {
   const Material materials[] = { { 1.0, 0.0, 1.0 }, { 0.0, 1.0, 0.0 }, { 0.0, 1.0, 1e6 },
@@ -372,19 +268,6 @@ TEST(SecondaryReflection, LightOfTheWayBackIsLabelledByTheMirror)
   EXPECT_EQ(result.echoes[0].objectId, 1);
   EXPECT_GT(result.echoes[0].secondaryShare, 0.5);
   EXPECT_NEAR(result.echoes[0].labelShare, 1.0 - 0.5 * result.echoes[0].secondaryShare, 1e-9);
-}
-
-TEST(SecondaryReflection, GhostsAreLabelled)
-{
-  // A right-angled metal corner sends nearly everything back over two reflections, and hardly
-  // anything directly.
-  const ScanResult result = runScan(
-    makeSetup(groove(45.0 * Degree, Metal), openSensor(), secondarySettings(100)), oneBeam());
-  ASSERT_EQ(result.echoes.size(), 1u);
-  EXPECT_GT(result.echoes[0].secondaryShare, 0.5);
-  const ScanResult direct =
-    runScan(makeSetup(groove(45.0 * Degree, Metal), openSensor(), directSettings(100)), oneBeam());
-  EXPECT_EQ(direct.echoes[0].secondaryShare, 0.0);
 }
 
 TEST(SecondaryReflection, APlateInBetweenBlocksThePath)

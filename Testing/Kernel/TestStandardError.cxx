@@ -9,7 +9,6 @@
 
 #include <cmath>
 #include <functional>
-#include <numeric>
 #include <stdexcept>
 
 using namespace avianlidar;
@@ -118,19 +117,6 @@ TEST(StandardError, MonteCarloByHand)
   EXPECT_GT(estimator.estimate({ 0.0, 5.0 }), 0.0);
 }
 
-TEST(StandardError, HalfCoveredFootprint)
-{
-  // Exact standard deviation of plain Monte Carlo, half covered, N = 100: Qs kd 0.05. The
-  // pseudo-rays change nothing but the number that s^2 is divided by.
-  StandardErrorEstimator estimator(Sampling::MonteCarlo, RayCount, nullptr);
-  const double largest = 3.6e-4 * 0.146 / RayCount;
-  for (std::size_t n = 0; n < RayCount; n += 2)
-  {
-    estimator.add(n, largest);
-  }
-  EXPECT_NEAR(estimator.estimate({ 0.0, largest }), 2.628e-6 * std::sqrt(104.0 / 103.0), 1e-12);
-}
-
 TEST(StandardError, StratifiedByHand)
 {
   const StrataPartition strata(17); // the last cell has 3
@@ -207,39 +193,6 @@ TEST(StandardError, StrataMustFit)
   const StrataPartition strata(6);
   EXPECT_THROW(StandardErrorEstimator(Sampling::Stratified, 5, &strata), std::invalid_argument);
   EXPECT_THROW(StandardErrorEstimator(Sampling::Stratified, 5, nullptr), std::invalid_argument);
-}
-
-TEST(StandardError, VarianceHasNoBias)
-{
-  // Mean of the squared standard error without additions against the variance of the estimate, also
-  // with three rays in the last cell.
-  for (const std::size_t count : { 17, 16 })
-  {
-    const StrataPartition strata(count);
-    StandardErrorEstimator estimator(Sampling::Stratified, count, &strata);
-    BeamRays rays;
-    double predicted = 0.0;
-    double sum = 0.0;
-    double squares = 0.0;
-    constexpr int beams = 60000;
-    for (std::uint64_t beam = 0; beam < beams; ++beam)
-    {
-      sampleBeam(
-        4, beam, count, { 1e-3, BeamProfile::Uniform }, Sampling::Stratified, &strata, rays);
-      estimator.begin();
-      double total = 0.0;
-      for (std::size_t n = 0; n < count; ++n)
-      {
-        const double energy = std::max(0.0, 0.3 + rays.x[n]);
-        estimator.add(n, energy);
-        total += energy;
-      }
-      predicted += std::pow(estimator.estimate({}), 2) / beams;
-      sum += total / beams;
-      squares += total * total / beams;
-    }
-    EXPECT_NEAR(predicted / (squares - sum * sum), 1.0, 0.03) << count;
-  }
 }
 
 TEST(StandardError, IsTheSameInAnyOrderOfRays)

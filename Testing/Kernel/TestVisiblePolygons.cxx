@@ -10,7 +10,6 @@
 
 #include <algorithm>
 #include <cstdlib>
-#include <string>
 
 using namespace echotest;
 using geometrytest::Numbers;
@@ -251,37 +250,6 @@ TEST(VisiblePolygons, HalvesOfAQuadrilateralAreOnePolygon)
   // u + v lies on the diagonal; v is on the other half.
   EXPECT_EQ(found->triangleAt({ 0.1, 0.3 }) + found->triangleAt({ -0.1, -0.3 }), 1u);
   EXPECT_EQ(found->triangleAt({ 0.9, 0.9 }), NoTriangle);
-}
-
-TEST(VisiblePolygons, TooManyTrianglesAreLeftToTheRays)
-{
-  Scene scene;
-  for (int i = 0; i < 30; ++i)
-  {
-    scene.triangle(at(10.0 + i, -0.5, -0.5, 5.6e-3), at(10.0 + i, 0.5, -0.5, 5.6e-3),
-      at(10.0 + i, 0.0, 0.5, 5.6e-3), Wall, i);
-  }
-  const ScanSetup setup = makeSetup(scene, openSensor(), directSettings(100));
-  const BeamFrame frame = makeBeamFrame(Vec3(0.0), Vec3(1.0, 0.0, 0.0), 5.6e-3);
-  std::unique_ptr<VisiblePolygons> found;
-  const SceneTriangles fewScene(*setup.tree);
-  PolygonFinder few(fewScene, 29);
-  EXPECT_EQ(findAll(setup, frame, few, false, found), SeenByBeam::TooMuch);
-  const SceneTriangles enoughScene(*setup.tree);
-  PolygonFinder enough(enoughScene, 30);
-  EXPECT_EQ(findAll(setup, frame, enough, false, found), SeenByBeam::Polygons);
-}
-
-TEST(VisiblePolygons, WhatLiesBesideTheDiscIsNothing)
-{
-  Scene scene;
-  scene.plate(at(10.0, 2.0, 0.0, 5.6e-3), Vec3(0.0, 0.01, 0.0), Vec3(0.0, 0.0, 0.01), Wall);
-  const ScanSetup setup = makeSetup(scene, openSensor(), directSettings(100));
-  const BeamFrame frame = makeBeamFrame(Vec3(0.0), Vec3(1.0, 0.0, 0.0), 5.6e-3);
-  const SceneTriangles finderScene(*setup.tree);
-  PolygonFinder finder(finderScene, 100);
-  std::unique_ptr<VisiblePolygons> found;
-  EXPECT_EQ(findAll(setup, frame, finder, false, found), SeenByBeam::Nothing);
 }
 
 TEST(VisiblePolygons, SurfacesThatFaceEachOtherAreToldFromThoseThatDoNot)

@@ -7,7 +7,7 @@
  * Source: none; the presets follow from the measured trade of time for accuracy
  * (Documentation/results/accuracy.md).
  * Valid: checkSettings() and checkUnits() name values out of range.
- * Test: TestEchoPreset.cxx, TestScanReport.cxx.
+ * Test: TestScanReport.cxx, TestPresets.py.
  */
 #ifndef avianlidar_EchoSettings_h
 #define avianlidar_EchoSettings_h

@@ -11,7 +11,7 @@
  * Differs: see the headers named above.
  * Valid: hits depend only on the beam and the inputs of traceKey(), views as in ViewFinder.h. Both
  * are the same for any division of the beams and any state of the cache.
- * Test: TestScan.cxx, TestScanAgain.cxx, TestPolygonScan.cxx, TestBeamCells.cxx.
+ * Test: TestScan.cxx, TestScanAgain.cxx, TestBeamCells.cxx.
  */
 #ifndef avianlidar_ScanBlock_h
 #define avianlidar_ScanBlock_h

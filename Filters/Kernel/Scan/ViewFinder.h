@@ -11,7 +11,7 @@
  * Differs: the paper draws N rays for every beam.
  * Valid: a view depends only on the beam, the triangles that enter it, the inputs of traceKey() and
  * the number of reflections: not on materials, limits or attenuation.
- * Test: TestScan.cxx, TestPolygonScan.cxx, TestBeamCells.cxx.
+ * Test: TestScan.cxx, TestScanAgain.cxx, TestBeamCells.cxx.
  */
 #ifndef avianlidar_ViewFinder_h
 #define avianlidar_ViewFinder_h

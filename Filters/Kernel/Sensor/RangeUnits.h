@@ -16,7 +16,7 @@
  * Differs: the paper does not place the pulse. A pulse that starts at tau would move every echo c
  * tau_e/4 away, so it is centred.
  * Valid: tau_e from 0 to 1000 tau_s. The sum over units is the sum over paths to round-off.
- * Test: TestRangeUnits.cxx, TestRangeShares.cxx.
+ * Test: TestRangeUnits.cxx.
  */
 #ifndef avianlidar_RangeUnits_h
 #define avianlidar_RangeUnits_h

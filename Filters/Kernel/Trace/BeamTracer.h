@@ -13,8 +13,7 @@
  * TraceMode::Beams is the paper's batch.
  * Valid: as TriangleTest.h; a scene moved to UTM or ECEF coordinates keeps its ranges to a
  * micrometre, except at grazing incidence.
- * Test: TestBeamTracer.cxx, TestBeamTracerAgainstEmbree.cxx, TestFreeRays.cxx, TestWatertight.cxx,
- * TestTraceLimits.cxx, TestGeometryProperties.cxx.
+ * Test: TestBeamTracer.cxx, TestWatertight.cxx, TestGeometryProperties.cxx.
  */
 #ifndef avianlidar_BeamTracer_h
 #define avianlidar_BeamTracer_h

@@ -7,7 +7,7 @@
  * Source: paper, Sec. 3.2 and 3.3.
  * Differs: acceptance and range come from TriangleTest.h, which says how they differ.
  * Valid: as TriangleTest.h.
- * Test: TestFreeRays.cxx, TestBeamTracer.cxx, TestGeometryProperties.cxx.
+ * Test: TestBeamTracer.cxx, TestGeometryProperties.cxx.
  */
 #ifndef avianlidar_Descents_h
 #define avianlidar_Descents_h

@@ -9,7 +9,7 @@
  * Source: none.
  * Valid: visits every leaf whose volumes the policy meets within the limit. A volume whose lower
  * bound equals the limit is visited, as it may hold a hit of equal range and lower number.
- * Test: TestBeamTracer.cxx, TestBeamGroup.cxx, TestBeamTracerAgainstEmbree.cxx,
+ * Test: TestBeamTracer.cxx, TestBeamGroup.cxx,
  * TestGeometryProperties.cxx.
  */
 #ifndef avianlidar_Traversal_h

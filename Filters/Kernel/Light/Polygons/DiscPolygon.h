@@ -10,7 +10,7 @@
  *
  * Source: none.
  * Valid: moments of all strips together are accurate to 1e-15 of the disc's moments.
- * Test: TestPolygonQuadrature.cxx.
+ * Test: TestVisiblePolygons.cxx.
  */
 #ifndef avianlidar_DiscPolygon_h
 #define avianlidar_DiscPolygon_h

@@ -14,9 +14,8 @@
  * may put beyond borders of units and the energy that VisiblePolygons::lost may hide. Units beyond
  * the range gate are not distinguished. A beam does not fit if one of its polygons has no rule, or
  * if it needs more than MostNodes samples. Geometry alone decides that, not materials or limits.
- * Test: TestPolygonQuadrature.cxx, TestPolygonUnits.cxx, TestPolygonShares.cxx,
- * TestPolygonEdges.cxx, TestPolygonScan.cxx, TestPolygonLimits.cxx, TestPolygonPaths.cxx,
- * TestPolygonReports.cxx.
+ * Test: TestEchoClosedForms.cxx, TestPolygonUnits.cxx, TestPolygonEdges.cxx,
+ * TestPolygonLimits.cxx, TestPolygonPaths.cxx.
  */
 #ifndef avianlidar_PolygonQuadrature_h
 #define avianlidar_PolygonQuadrature_h

@@ -22,7 +22,7 @@
  * equal range and rounded corners may move energy across borders of units, which each node's
  * `uncertain` bounds, and that faint polygons err by 1e-3 of their energy. A polygon has no rule if
  * lines of equal range are curved by more than MostCurved range units in it.
- * Test: TestPolygonQuadrature.cxx, TestPolygonUnits.cxx, TestPolygonShares.cxx.
+ * Test: TestEchoClosedForms.cxx, TestPolygonUnits.cxx.
  */
 #ifndef avianlidar_PolygonRule_h
 #define avianlidar_PolygonRule_h

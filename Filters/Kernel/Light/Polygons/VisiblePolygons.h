@@ -16,7 +16,7 @@
  * Differs: all pieces are convex and partition the view, so that nothing needs a general clipper.
  * Valid: any triangles. Pieces and `lost` sum up to the octagon within 1e-12 of its area. The
  * result depends on the beam and the triangles that enter the disc alone, not on their order.
- * Test: TestVisiblePolygons.cxx, TestPolygonScan.cxx.
+ * Test: TestVisiblePolygons.cxx, TestPolygonEdges.cxx.
  */
 #ifndef avianlidar_VisiblePolygons_h
 #define avianlidar_VisiblePolygons_h
