@@ -143,20 +143,6 @@ class Scans(unittest.TestCase):
         self.assertEqual(table["energy"].tobytes(), echoes["energy"].tobytes())
         self.assertEqual(table["points"].shape, echoes.points.shape)
 
-    def test_lit_again_without_a_ray(self):
-        sampled = {"beam_samples": "rays"}  # an integrated wall needs no ray at all
-        scan = al.Scan(al.Scene(WALL), al.Sensor(azimuth_step=2), **sampled)
-        first = scan.echoes
-        self.assertGreater(scan.number_of_traced_rays, 0)
-        scan.attenuation_coefficient = 5e-4
-        second = scan.echoes
-        self.assertEqual(scan.number_of_traced_rays, 0)
-        fresh = al.Scan(al.Scene(WALL), al.Sensor(azimuth_step=2), attenuation_coefficient=5e-4, **sampled)
-        self.assertTrue(same(second, fresh.echoes))
-        self.assertLess(second["energy"].mean(), first["energy"].mean())
-        scan.sensor.position = (0, 10, 0)
-        self.assertLess(scan["distance_m"].min(), first["distance_m"].min() - 9)
-
     def test_another_sensor_and_another_scene(self):
         scan = al.Scan(al.Scene(WALL), al.Sensor(azimuth_step=2))
         first = scan.echoes

@@ -111,17 +111,6 @@ class Echoes(unittest.TestCase):
             self.assertEqual(echoes(tree.GetOutput())["energy_received"].mean(), behind)
             surfaces = group(tree.GetOutput())
 
-    def test_a_medium_everywhere_is_the_weather(self):
-        fog = echoes(group(wall(), medium(Visibility=900.0, Shape=0)), Noise=True)
-        weather = echoes(wall(), Visibility=900.0, AirBackscatter=True, Noise=True)
-        for name in ("energy_received", "distance_m", "object_id"):
-            np.testing.assert_allclose(fog[name], weather[name], rtol=1e-13)
-        rain = echoes(group(wall(), medium(Kind=3, RainRate=20.0, Shape=0)), Noise=True)
-        weather = echoes(wall(), RainRate=20.0, Noise=True)
-        self.assertGreater((rain["object_id"] == -2).sum(), 100)
-        for name in ("energy_received", "distance_m", "object_id"):
-            np.testing.assert_allclose(rain[name], weather[name], rtol=1e-13)
-
     def test_a_tree_by_beer_and_lambert(self):
         crown = medium(Kind=5, LeafAreaDensity=0.4, Shape=3, Center=(0.0, 100.0, 0.0), Lengths=(6.0, 6.0, 6.0), Name="oak")
         seen = echoes(group(wall(), crown))
@@ -154,14 +143,6 @@ class Echoes(unittest.TestCase):
         later = al.Sensor("Search905", directions=[(0, 1, 0)] * 20, times=[6 + 1e-3 * k for k in range(20)]).algorithm
         came = echoes(group(wall(), medium(**shower, Center=(-60.0, 80.0, 0.0))), later, Noise=True)
         self.assertGreater((came["object_id"] == -2).sum(), 50)
-
-    def test_without_an_aperture_media_only_weaken(self):
-        sensor = al.Sensor("Airport16", directions=[(0, 1, 0)], lower_energy_limit=0, upper_energy_limit=1)
-        clear = echoes(wall(), sensor.algorithm)["energy_received"]
-        shower = medium(Kind=6, Extinction=0.01, BackscatterRatio=20.0, Shape=2, Center=(0.0, 100.0, 0.0), Lengths=(99.0, 50.0, 99.0))
-        behind = echoes(group(wall(), shower), sensor.algorithm)
-        self.assertEqual(len(behind["object_id"]), len(clear))
-        np.testing.assert_allclose(behind["energy_received"] / clear, math.exp(-1.0), rtol=1e-5)
 
 
 class Coverage(unittest.TestCase):

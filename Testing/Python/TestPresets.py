@@ -7,7 +7,7 @@ from avianlidar import vtkAvianLidar as al
 from echotools import RAYS, Messages, assert_same_bits, scan, town
 
 OVERRIDDEN = ("RaysPerBeam", "Sampling", "NumberOfReflections", "NumberOfConnections")
-EXPECTED = {"Draft": (25, 1, 2, 0), "Standard": (200, 1, 2, 2)}  # the reference's is TestEchoPreset's (kernel)
+EXPECTED = {"Draft": (25, 1, 2, 0), "Standard": (200, 1, 2, 2), "Reference": (3200, 1, 2, 8)}
 # Values that no preset has, and one that no preset may touch.
 # BeamSamples, which no preset has either, is Rays: presets differ in rays, and integrated beams have none.
 OWN = {"RaysPerBeam": 11, "Sampling": 0, "NumberOfReflections": 1, "NumberOfConnections": 3, "Seed": 5,
