@@ -12,9 +12,9 @@ import sys
 import tempfile
 
 # Header, struct, and the files that must not compile with a member more.
-GUARDED = [("Sensor/Sensor.h", "Sensor", ["Sensor/Sensor.cxx", "Scan/TraceCache.cxx"]),
-           ("Light/EchoSettings.h", "EchoSettings", ["Light/EchoSettings.cxx", "Scan/TraceCache.cxx"]),
-           ("Light/ScanSetup.h", "ModelNeeds", ["Scan/LitBeam.cxx"]), ("Light/ScanSetup.h", "ScanSetup", ["Scan/LitBeam.cxx"])]
+GUARDED = [("Receiver/Sensor.h", "Sensor", ["Receiver/Sensor.cxx", "Scan/TraceCache.cxx"]),
+           ("Beam/Light/EchoSettings.h", "EchoSettings", ["Beam/Light/EchoSettings.cxx", "Scan/TraceCache.cxx"]),
+           ("Beam/Light/ScanSetup.h", "ModelNeeds", ["Scan/LitBeam.cxx"]), ("Beam/Light/ScanSetup.h", "ScanSetup", ["Scan/LitBeam.cxx"])]
 
 
 def compiles(entry, folder, text):
