@@ -74,8 +74,8 @@ bool BinaryTree::divide(const TriangleMesh& mesh, const TreeOptions& options, in
       }
     };
     // How many layers there will be is not known.
-    const double done =
-      1.0 - (1.0 - measured) * std::pow(0.9, static_cast<double>(this->nodes[begin].depth));
+    const double done = std::max(measured,
+      1.0 - (1.0 - measured) * std::pow(0.9, static_cast<double>(this->nodes[begin].depth)));
     constexpr std::size_t blocksOfLayer = 64;
     const std::size_t block = (end - begin) / blocksOfLayer + 1;
     if (!parallelFor(end - begin, block, threads, body, partOf(keepGoing, done, done)))

@@ -430,7 +430,7 @@ bool SecondaryReflection::collect(
     {
       return false;
     }
-    traceMirrors(this->Setup, beam, this->SpecularBounds, throughputOf(threshold));
+    traceMirrors(this->Setup, beam, this->SpecularBounds, throughputOf(threshold), this->Pairs);
     this->measureMirrors(beam);
   }
   const double least = throughputOf(threshold);

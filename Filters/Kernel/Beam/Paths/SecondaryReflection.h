@@ -50,6 +50,7 @@
 #define avianlidar_SecondaryReflection_h
 
 #include "ConnectionFinder.h"
+#include "MirrorPairs.h"
 #include "MirrorRegions.h"
 #include "ScanSetup.h"
 #include "SecondaryBeam.h"
@@ -115,6 +116,7 @@ private:
   const BeamShape Shape;
   ConnectionFinder Finder;
   MirrorRegions Regions;
+  MirrorPairs Pairs;
   std::vector<std::uint32_t> Triangles;      ///< triangle of each sample
   MaterialLanes Materials;                   ///< material of each sample
   std::vector<double> SpecularBounds;        ///< bound of a mirror path's throughput, by sample

@@ -151,7 +151,7 @@ bool isBlocked(const SecondaryBeam& beam, std::size_t connection)
 }
 
 void traceMirrors(const ScanSetup& setup, const SecondaryBeam& beam,
-  const std::vector<double>& throughputs, double least)
+  const std::vector<double>& throughputs, double least, MirrorPairs& pairs)
 {
   SecondaryTrace& trace = beam.trace;
   const auto isWanted = [&](std::uint32_t hit)
@@ -159,11 +159,29 @@ void traceMirrors(const ScanSetup& setup, const SecondaryBeam& beam,
     const double most = throughputs[hit];
     return trace.mirror[hit] == MirrorEnd::NotTraced && most > 0.0 && most >= least;
   };
+  std::uint32_t hit = 0;
+  while (hit < beam.samples.size() && !isWanted(hit))
+  {
+    ++hit;
+  }
+  const bool constrained = hit < beam.samples.size() && setup.settings.beamConstraint;
+  if (constrained)
+  {
+    pairs.find(beam);
+  }
   const BeamShape shape(setup.sensor);
-  for (std::uint32_t hit = 0; hit < beam.samples.size(); ++hit)
+  for (; hit < beam.samples.size(); ++hit)
   {
     beam.throwIfStopped(hit);
-    if (isWanted(hit))
+    if (!isWanted(hit))
+    {
+      continue;
+    }
+    if (constrained && !pairs.any(beam.geometry.surface[hit]))
+    {
+      trace.mirror[hit] = MirrorEnd::Nowhere;
+    }
+    else
     {
       traceMirror(setup, beam, shape, hit);
     }

@@ -5,7 +5,7 @@
  * mirror paths and short paths end, and whether connections are blocked.
  *
  * Results are geometry and go to the beam's trace. Paths below the caller's threshold are not
- * traced.
+ * traced, and neither are mirror paths from samples on surfaces that face nothing (MirrorPairs.h).
  *
  * Source: paper, Sec. 3.4.
  * Differs: see SecondaryReflection.h.
@@ -16,6 +16,7 @@
 #define avianlidar_SecondaryTracer_h
 
 #include "ConnectionFinder.h"
+#include "MirrorPairs.h"
 #include "ScanSetup.h"
 #include "SecondaryBeam.h"
 
@@ -24,9 +25,10 @@
 namespace avianlidar
 {
 /// Trace the mirror paths that are not known and may have a throughput of at least `least`.
-/// @param throughputs upper bounds, by sample
+/// @param throughputs upper bounds, by sample @param pairs found here: with the beam constraint
+/// nothing is traced from surfaces without pairs
 void traceMirrors(const ScanSetup& setup, const SecondaryBeam& beam,
-  const std::vector<double>& throughputs, double least);
+  const std::vector<double>& throughputs, double least, MirrorPairs& pairs);
 
 /// Find whether mirror paths by regions (MirrorRegions.h) with a throughput of at least `least` are
 /// blocked, unless it is known. @param throughputs by path, if it is not blocked

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// From a surface without pairs no mirror path is traced, and none would have arrived.
+#include "RoomTestScene.h"
+
+#include <gtest/gtest.h>
+
+using namespace echotest;
+
+namespace
+{
+/// Rays traced of one beam that meets a scene of metal.
+std::uint64_t tracedOf(const Scene& scene, bool beamConstraint, double& received, int rays = 100)
+{
+  EchoSettings settings = secondarySettings(rays, 0);
+  settings.beamConstraint = beamConstraint;
+  const ScanResult result = runScan(makeSetup(scene, openSensor(), settings), oneBeam());
+  received = secondaryOf(result);
+  return result.raysTraced;
+}
+}
+
+TEST(MirrorPairs, NothingArrivesFromSurfacesWithoutPairs)
+{
+  std::uint64_t constrained = 0;
+  std::uint64_t all = 0;
+  double secondary = 0.0;
+  for (unsigned seed = 0; seed < 60; ++seed)
+  {
+    const Scene scene = room(seed);
+    const ScanBeams beams = around(seed, 40);
+    Sensor sensor = openSensor(Draw(seed)(0.0, 1.0) < 0.5 ? 5.6e-3 : 0.1);
+    EchoSettings settings = secondarySettings(30);
+    settings.beamSamples = BeamSampleSource::Rays;
+    settings.lightEnergyConstraint = false;
+    const ScanResult pairs = runScan(makeSetup(scene, sensor, settings), beams);
+    settings.beamConstraint = false; // every path is traced
+    const ScanResult full = runScan(makeSetup(scene, sensor, settings), beams);
+    ASSERT_EQ(pairs.echoes.size(), full.echoes.size());
+    for (std::size_t i = 0; i < full.echoes.size(); ++i)
+    {
+      EXPECT_EQ(pairs.echoes[i].returnEnergy, full.echoes[i].returnEnergy) << seed;
+      EXPECT_EQ(pairs.echoes[i].range, full.echoes[i].range) << seed;
+      EXPECT_EQ(pairs.echoes[i].secondaryShare, full.echoes[i].secondaryShare) << seed;
+    }
+    secondary += secondaryOf(full);
+    constrained += pairs.raysTraced;
+    all += full.raysTraced;
+  }
+  EXPECT_GT(secondary, 0.0);
+  EXPECT_LT(constrained, 0.8 * all);
+}
+
+TEST(MirrorPairs, AWallAloneIsNotSearched)
+{
+  Scene scene;
+  scene.plate(Vec3(10.0, 0.0, 0.0), Vec3(0.0, 5.0, 0.0), Vec3(0.5, 0.0, 5.0), Metal);
+  double received = 0.0;
+  EXPECT_EQ(tracedOf(scene, true, received), 100u);
+  EXPECT_EQ(tracedOf(scene, false, received), 200u);
+  // Floor and a wall aside, which the beam does not meet before the plane of the first.
+  scene.plate(Vec3(10.0, 0.0, -3.0), Vec3(20.0, 0.0, 0.0), Vec3(0.0, 20.0, 0.0), Metal);
+  scene.plate(Vec3(10.0, 4.0, 0.0), Vec3(20.0, 0.0, 0.0), Vec3(0.0, 0.0, 20.0), Metal);
+  EXPECT_EQ(tracedOf(scene, true, received), 100u);
+}
+
+TEST(MirrorPairs, ACornerIsOneOnlyOnItsInside)
+{
+  // A right angle, seen from within and from without.
+  const Scene within = groove(45.0 * Degree, Metal);
+  const Scene without = groove(135.0 * Degree, Metal);
+  double received = 0.0;
+  EXPECT_GT(tracedOf(within, true, received), 200u); // the ends are looked at from the apex, too
+  EXPECT_GT(received, 0.0);
+  EXPECT_EQ(tracedOf(without, true, received), 100u);
+  EXPECT_EQ(received, 0.0);
+}
+
+TEST(MirrorPairs, WhatIsSeenEdgeOnIsFound)
+{
+  // A wall at 45 degrees sends the light aside to a strip along the beam, which next to no ray
+  // meets. The second strip lies within 5 mm of the wall's plane.
+  for (const double start : { 99.5, 100.293 })
+  {
+    Scene scene;
+    scene.plate(Vec3(100.0, 0.0, 0.0), Vec3(5.0, -5.0, 0.0), Vec3(0.0, 0.0, 5.0), Metal);
+    double found = 0.0;
+    ASSERT_EQ(tracedOf(scene, true, found, 2000), 2000u);
+    const double half = 0.5 * (100.3 - start);
+    scene.plate(Vec3(start + half, -0.3, 0.0), Vec3(half, 0.0, 0.0), Vec3(0.0, 0.0, 0.4), Metal, 1);
+    double received = 0.0;
+    EXPECT_GT(tracedOf(scene, true, found, 2000), 4000u);
+    tracedOf(scene, false, received, 2000);
+    EXPECT_GT(received, 0.0);
+    EXPECT_EQ(found, received);
+  }
+}
