@@ -43,8 +43,7 @@ OBB fitAlong(const TriangleList& triangles, OBB box)
   AABB local;
   forCorners(triangles, [&](const Vec3& p) { local.extend(box.along(p - reference)); });
   const Vec3 middle = local.center();
-  box.center =
-    reference + (middle.x * box.axes[0] + middle.y * box.axes[1] + middle.z * box.axes[2]);
+  box.center = reference + box.axes * middle;
   box.half = Vec3(0.0);
   forCorners(triangles,
     [&](const Vec3& p) { box.half = glm::max(box.half, glm::abs(box.along(p - box.center))); });
@@ -52,17 +51,6 @@ OBB fitAlong(const TriangleList& triangles, OBB box)
   box.half += Vec3(8.0 * Ulp * (box.half.x + box.half.y + box.half.z));
   return box;
 }
-}
-
-bool contains(const OBB& v, const Vec3& p)
-{
-  const Vec3 q = glm::abs(v.along(p - v.center));
-  return q.x <= v.half.x && q.y <= v.half.y && q.z <= v.half.z;
-}
-
-bool contains(const BoundingSphere& v, const Vec3& p)
-{
-  return v.radius >= 0.0 && glm::length(p - v.center) <= v.radius;
 }
 
 double surfaceArea(const OBB& v)
@@ -81,10 +69,15 @@ OBB orientedBox(const TriangleList& triangles)
   Vec3 mean(0.0);
   forCorners(triangles, [&](const Vec3& p) { mean += p - aligned.center; });
   mean /= 3.0 * static_cast<double>(triangles.count);
-  SecondMoments moments;
-  forCorners(triangles, [&](const Vec3& p) { moments.add((p - aligned.center) - mean); });
+  glm::dmat3 moments(0.0);
+  forCorners(triangles,
+    [&](const Vec3& p)
+    {
+      const Vec3 off = (p - aligned.center) - mean;
+      moments += glm::outerProduct(off, off);
+    });
   OBB principal;
-  principal.axes = principalAxes(moments.sums);
+  principal.axes = principalAxes(moments);
   principal = fitAlong(triangles, principal);
   return surfaceArea(principal) < surfaceArea(aligned) ? principal : aligned;
 }

@@ -10,7 +10,7 @@
  * Differs: axis-aligned boxes are oriented boxes along the coordinate axes. Of Badoiu and
  * Clarkson's method a few steps are made, which come within some per cent of the smallest sphere.
  * Valid: coordinates up to MaximumCoordinate in magnitude. Fitting is conservative:
- * contains() holds for every corner that went in, rounding included.
+ * a volume holds every corner that went in, rounding included.
  * Test: TestBoundingVolume.cxx.
  */
 #ifndef avianlidar_BoundingVolume_h
@@ -18,7 +18,8 @@
 
 #include "TriangleMesh.h"
 
-#include <array>
+#include <glm/mat3x3.hpp>
+
 #include <cstdint>
 
 namespace avianlidar
@@ -27,15 +28,12 @@ namespace avianlidar
 struct OBB
 {
   Vec3 center{ 0.0 };
-  std::array<Vec3, 3> axes{ Vec3(1.0, 0.0, 0.0), Vec3(0.0, 1.0, 0.0), Vec3(0.0, 0.0, 1.0) };
+  glm::dmat3 axes{ 1.0 }; ///< in columns
   Vec3 half{ -1.0 };
 
   bool empty() const { return this->half.x < 0.0; }
   /// Components of a vector along the axes.
-  Vec3 along(const Vec3& v) const
-  {
-    return { glm::dot(this->axes[0], v), glm::dot(this->axes[1], v), glm::dot(this->axes[2], v) };
-  }
+  Vec3 along(const Vec3& v) const { return v * this->axes; }
 };
 
 /// Bounding sphere: |p - center| <= radius.
@@ -45,9 +43,6 @@ struct BoundingSphere
   double radius = -1.0;
   bool empty() const { return this->radius < 0.0; }
 };
-
-bool contains(const OBB& volume, const Vec3& point);
-bool contains(const BoundingSphere& volume, const Vec3& point);
 
 /// m^2; 0 if empty.
 double surfaceArea(const OBB& volume);

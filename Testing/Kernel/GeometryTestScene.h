@@ -10,6 +10,8 @@
 #include "TriangleMesh.h"
 #include "VolumeTree.h"
 
+#include <glm/vector_relational.hpp>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -334,6 +336,16 @@ inline TriangleMesh randomTriangles(Numbers& random, std::size_t count, double h
     addTriangle(mesh, a, b, center + random.inCube(size));
   }
   return mesh;
+}
+
+/// True if a volume of a tree holds a point.
+inline bool contains(const avianlidar::OBB& v, const Vec3& p)
+{
+  return glm::all(glm::lessThanEqual(glm::abs(v.along(p - v.center)), v.half));
+}
+inline bool contains(const avianlidar::BoundingSphere& v, const Vec3& p)
+{
+  return v.radius >= 0.0 && glm::length(p - v.center) <= v.radius;
 }
 
 /// Same triangle, same bits of the range.

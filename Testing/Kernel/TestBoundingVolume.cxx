@@ -224,24 +224,18 @@ TEST(BoundingVolume, PrincipalAxes)
     const double big = random.logUniform(1e-20, 1e20);
     const double value[3] = { big, big * random(0.1, 0.9), big * random(0.0, 0.05) };
     const Vec3 axis[3] = { turn.axis, turn.e1, turn.e2 };
-    std::array<double, 6> m{};
+    glm::dmat3 m(0.0);
     for (int k = 0; k < 3; ++k)
     {
-      const Vec3& a = axis[k];
-      const double products[] = { a.x * a.x, a.x * a.y, a.x * a.z, a.y * a.y, a.y * a.z,
-        a.z * a.z };
-      for (int n = 0; n < 6; ++n)
-      {
-        m[n] += value[k] * products[n];
-      }
+      m += value[k] * glm::outerProduct(axis[k], axis[k]);
     }
-    const std::array<Vec3, 3> found = principalAxes(m);
+    const glm::dmat3 found = principalAxes(m);
     for (int k = 0; k < 3; ++k)
     {
       EXPECT_NEAR(std::fabs(glm::dot(found[k], axis[k])), 1.0, 1e-10);
     }
     EXPECT_NEAR(glm::dot(glm::cross(found[0], found[1]), found[2]), 1.0, 1e-12);
   }
-  EXPECT_EQ(principalAxes({})[0], Vec3(1, 0, 0));
-  EXPECT_EQ(principalAxes({ 1.0, NAN, 0.0, 1.0, 0.0, 1.0 })[0], Vec3(1, 0, 0));
+  EXPECT_EQ(principalAxes(glm::dmat3(0.0))[0], Vec3(1, 0, 0));
+  EXPECT_EQ(principalAxes(glm::dmat3(NAN))[0], Vec3(1, 0, 0));
 }

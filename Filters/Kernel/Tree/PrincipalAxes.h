@@ -1,41 +1,50 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file PrincipalAxes.h
- * @brief Principal axes of a set of vectors: second moments, and the eigenvectors of a symmetric
- * matrix by cyclic Jacobi rotations.
+ * @brief Principal axes of a set of vectors, of their second moments (the sum of their outer
+ * products).
  *
- * Source: G. H. Golub, C. F. Van Loan, "Matrix Computations", 4th ed., Sec. 8.5.
- * Valid: any numbers; see principalAxes() for those that are not finite.
+ * Source: power iteration by squaring: G. H. Golub, C. F. Van Loan, "Matrix Computations", 4th ed.,
+ * Sec. 8.2.
+ * Valid: symmetric matrices without negative eigenvalues; see principalAxes() for others.
  * Test: TestBoundingVolume.cxx.
  */
 #ifndef avianlidar_PrincipalAxes_h
 #define avianlidar_PrincipalAxes_h
 
-#include "Vector.h"
+#include "BeamFrame.h"
 
-#include <array>
+#include <glm/mat3x3.hpp>
+#include <glm/matrix.hpp>
 
 namespace avianlidar
 {
-/// Sum of the products of two components over vectors: xx, xy, xz, yy, yz, zz.
-struct SecondMoments
+/// Eigenvectors (orthonormal, right-handed, of decreasing eigenvalue), in columns; the coordinate
+/// axes if the matrix is zero or not finite.
+inline glm::dmat3 principalAxes(const glm::dmat3& moments)
 {
-  std::array<double, 6> sums{};
-  void add(const Vec3& d)
+  // Squared again and again, the matrix tends to the projection on its first axis.
+  glm::dmat3 power = moments;
+  for (int step = 0; step < 40; ++step)
   {
-    this->sums[0] += d.x * d.x;
-    this->sums[1] += d.x * d.y;
-    this->sums[2] += d.x * d.z;
-    this->sums[3] += d.y * d.y;
-    this->sums[4] += d.y * d.z;
-    this->sums[5] += d.z * d.z;
+    power /= power[0][0] + power[1][1] + power[2][2];
+    power = power * power;
   }
-};
-
-/// Eigenvectors (orthonormal, right-handed, of decreasing eigenvalue) of a symmetric matrix given
-/// by its upper half xx, xy, xz, yy, yz, zz; cyclic Jacobi. The coordinate axes if the matrix is
-/// zero or not finite.
-std::array<Vec3, 3> principalAxes(const std::array<double, 6>& covariance);
+  const int longest = power[0][0] >= power[1][1] ? (power[0][0] >= power[2][2] ? 0 : 2)
+                                                 : (power[1][1] >= power[2][2] ? 1 : 2);
+  if (!(power[longest][longest] > 0.0))
+  {
+    return glm::dmat3(1.0);
+  }
+  // In the plane across it the other two are at an angle that is known in closed form.
+  const BeamFrame frame = makeBeamFrame(Vec3(0.0), power[longest], 1.0);
+  const Vec3 one = moments * frame.e1;
+  const Vec3 two = moments * frame.e2;
+  const double angle = 0.5 *
+    std::atan2(2.0 * glm::dot(frame.e2, one), glm::dot(frame.e1, one) - glm::dot(frame.e2, two));
+  const Vec3 second = std::cos(angle) * frame.e1 + std::sin(angle) * frame.e2;
+  return { frame.axis, second, glm::cross(frame.axis, second) };
+}
 }
 
 #endif

@@ -47,12 +47,13 @@ std::size_t splitAtPrincipalPlane(const LaneBox* from, LaneBox* to, std::size_t 
     mean += twiceCenter(from[i]) - reference;
   }
   mean /= static_cast<double>(count);
-  SecondMoments moments;
+  glm::dmat3 moments(0.0);
   for (std::size_t i = 0; i < count; ++i)
   {
-    moments.add((twiceCenter(from[i]) - reference) - mean);
+    const Vec3 off = (twiceCenter(from[i]) - reference) - mean;
+    moments += glm::outerProduct(off, off);
   }
-  const Vec3 normal = principalAxes(moments.sums)[0];
+  const Vec3 normal = principalAxes(moments)[0];
   const LaneBox* const middle = std::partition_copy(from, from + count, to,
     std::reverse_iterator<LaneBox*>(to + count),
     [&](const LaneBox& box) {
