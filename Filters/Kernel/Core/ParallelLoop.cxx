@@ -9,15 +9,17 @@
 #include <algorithm>
 #include <atomic>
 #include <mutex>
+#include <thread>
+#include <vector>
 
 namespace avianlidar
 {
 namespace
 {
-/// GNU OpenMP keeps the threads of its last region for the next one. A fork does not copy them, and
-/// a region of the child would wait for them without end: so they end before a fork.
-[[maybe_unused]] const int Registered =
-  pthread_atfork([]() { omp_pause_resource_all(omp_pause_hard); }, nullptr, nullptr);
+/// This process is the child of a fork. GNU OpenMP keeps the threads of its last region for the
+/// next one. A fork does not copy them, and a region of the child would wait for them without end.
+bool Forked = false;
+[[maybe_unused]] const int Noticing = pthread_atfork(nullptr, nullptr, []() { Forked = true; });
 }
 
 KeepGoing partOf(const KeepGoing& keepGoing, double from, double to)
@@ -83,10 +85,29 @@ bool parallelFor(std::size_t count, std::size_t block, int threads, const LoopBo
   };
   const auto wanted = static_cast<std::size_t>(loopThreads(threads));
   const auto team = static_cast<int>(std::min(wanted, (count + size - 1) / size));
-  if (team > 0)
+  if (!Forked && team > 1)
   {
 #pragma omp parallel num_threads(team)
     work(omp_get_thread_num());
+  }
+  else if (team > 0)
+  {
+    std::vector<std::thread> others;
+    try
+    {
+      for (int thread = 1; thread < team; ++thread)
+      {
+        others.emplace_back(work, thread);
+      }
+    }
+    catch (const std::exception&) // no more threads, or no memory for them: those that run suffice
+    {
+    }
+    work(0);
+    for (std::thread& other : others)
+    {
+      other.join();
+    }
   }
   if (error)
   {

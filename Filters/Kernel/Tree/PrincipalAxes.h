@@ -24,11 +24,12 @@ namespace avianlidar
 inline glm::dmat3 principalAxes(const glm::dmat3& moments)
 {
   // Squared again and again, the matrix tends to the projection on its first axis.
-  glm::dmat3 power = moments;
+  const glm::dmat3 scaled = moments / (moments[0][0] + moments[1][1] + moments[2][2]);
+  glm::dmat3 power = scaled;
   for (int step = 0; step < 40; ++step)
   {
-    power /= power[0][0] + power[1][1] + power[2][2];
     power = power * power;
+    power /= power[0][0] + power[1][1] + power[2][2];
   }
   const int longest = power[0][0] >= power[1][1] ? (power[0][0] >= power[2][2] ? 0 : 2)
                                                  : (power[1][1] >= power[2][2] ? 1 : 2);
@@ -38,11 +39,18 @@ inline glm::dmat3 principalAxes(const glm::dmat3& moments)
   }
   // In the plane across it the other two are at an angle that is known in closed form.
   const BeamFrame frame = makeBeamFrame(Vec3(0.0), power[longest], 1.0);
-  const Vec3 one = moments * frame.e1;
-  const Vec3 two = moments * frame.e2;
-  const double angle = 0.5 *
-    std::atan2(2.0 * glm::dot(frame.e2, one), glm::dot(frame.e1, one) - glm::dot(frame.e2, two));
-  const Vec3 second = std::cos(angle) * frame.e1 + std::sin(angle) * frame.e2;
+  const Vec3 one = scaled * frame.e1;
+  const Vec3 two = scaled * frame.e2;
+  // Half of the angle whose sine and cosine are these two, by square roots alone: they have the
+  // same bits whatever the mathematical library.
+  const double sine = 2.0 * glm::dot(frame.e2, one);
+  const double cosine = glm::dot(frame.e1, one) - glm::dot(frame.e2, two);
+  const double length = std::sqrt(sine * sine + cosine * cosine);
+  const double larger = std::sqrt(0.5 * (length + std::fabs(cosine)));
+  const double smaller = larger > 0.0 ? 0.5 * sine / larger : 0.0;
+  const Vec3 across =
+    cosine >= 0.0 ? larger * frame.e1 + smaller * frame.e2 : smaller * frame.e1 + larger * frame.e2;
+  const Vec3 second = larger > 0.0 ? unitVector(across) : frame.e1;
   return { frame.axis, second, glm::cross(frame.axis, second) };
 }
 }
