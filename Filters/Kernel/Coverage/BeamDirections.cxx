@@ -9,10 +9,10 @@ namespace avianlidar
 {
 namespace
 {
-/// Cells along an edge of the cube at most: 25 MB.
+/// Largest number of cells along an edge of the cube (25 MB).
 constexpr double MostCells = 1024.0;
 
-/// The face of the cube that a direction meets, and the two coordinates there, -1 to 1.
+/// The face of the cube that a direction meets, and the coordinates there, -1 to 1.
 struct OnCube
 {
   int face;
@@ -32,7 +32,7 @@ OnCube onCube(const Vec3& d)
                 : OnCube{ d.z < 0.0 ? 5 : 4, d.x / z, d.y / z };
 }
 
-/// The direction of a place on a face, not normalised.
+/// Direction of a point on a face, not normalised.
 Vec3 fromCube(int face, double u, double v)
 {
   const double sign = face % 2 == 0 ? 1.0 : -1.0;
@@ -45,13 +45,13 @@ std::size_t placeOf(double u, std::size_t side)
   return std::min(side - 1, static_cast<std::size_t>(std::max(0.0, place)));
 }
 
-/// f(cell) for the cells that a cone may meet.
+/// Calls f(cell) for each cell that a cone may meet. @param side cells along an edge of the cube
 template <class F>
 void forEachCell(std::size_t side, const Vec3& axis, double halfBeamwidth, F f)
 {
   const double size = 2.0 / static_cast<double>(side);
-  // No point of a cell is farther than this from its middle: on a face, angles are smaller than
-  // distances.
+  // Largest angle between a cell's middle and its points, or more: on a face, angles are smaller
+  // than distances.
   const double cell = 0.5 * size * std::sqrt(2.0);
   for (int face = 0; face < 6; ++face)
   {
@@ -63,7 +63,7 @@ void forEachCell(std::size_t side, const Vec3& axis, double halfBeamwidth, F f)
     {
       continue;
     }
-    // The cone's section with the face lies in a square about the axis, unless it is too oblique.
+    // The cone meets the face within a square about the axis, unless it is too oblique.
     std::size_t range[4] = { 0, side - 1, 0, side - 1 };
     const double reach = angle + halfBeamwidth;
     if (reach < 1.4)

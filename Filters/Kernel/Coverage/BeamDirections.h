@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file BeamDirections.h
- * @brief Finds the beams of a scan whose cones hold a direction.
+ * @brief Finds the beams of a scan whose cones contain a direction.
  *
- * The sphere of directions is cut into the cells of a cube's faces; each cell lists the beams that
- * may hold a direction of it, or be near it. For beams farther away there are coarser cells.
+ * The faces of a cube are divided into cells. Each cell lists the beams whose cones, widened by a
+ * margin, may contain one of its directions. Larger margins have coarser cells.
  *
  * Source: none.
- * Valid: any directions; a half-beamwidth with margin up to pi/3. On the border of a cone rounding
- * decides.
- * Test: TestBeamDirections.cxx (all beams one by one).
+ * Valid: any directions; half-beamwidth plus margin up to pi/3. Rounding decides on a cone's
+ * border.
+ * Test: TestBeamDirections.cxx (against all beams one by one).
  */
 #ifndef avianlidar_BeamDirections_h
 #define avianlidar_BeamDirections_h
@@ -26,13 +26,13 @@ namespace avianlidar
 class BeamDirections
 {
 public:
-  /// @param directions of the beams, finite and not zero @param halfBeamwidth rad @param margins
-  /// rad, rising, how far outside a cone forEachNear() finds its beam; coarser cells for each
+  /// @param directions of the beams, finite and not zero @param halfBeamwidth rad
+  /// @param margins angles outside a cone up to which forEachNear() finds its beam, rising, rad
   BeamDirections(const std::vector<Vec3>& directions, double halfBeamwidth,
     const std::vector<double>& margins = { 0.0 });
 
-  /// f(number of the beam, cosine of the angle from its axis) for each beam whose cone, wider by
-  /// `reach`, holds a direction, and maybe some more, in the order of their numbers.
+  /// Calls f(number of the beam, cosine of the angle to its axis), in the order of the beams, for
+  /// each beam whose cone, widened by `reach`, contains a direction, and possibly for other beams.
   /// @param direction unit vector @param reach rad, at most the largest margin
   template <class F>
   void forEachNear(const Vec3& direction, double reach, F f) const
@@ -51,12 +51,11 @@ public:
     }
   }
 
-  /// Cells of the least margin, and the one of a direction: directions of one cell are near the
-  /// same beams.
+  /// Number of cells of the least margin, and the cell whose beams a direction is near.
   std::size_t cells() const { return this->Grids[0].begins.size() - 1; }
   std::size_t cellOf(const Vec3& direction) const { return cellOf(direction, this->Grids[0].side); }
 
-  /// f(number of the beam) for the beams that directions of a cell are near.
+  /// Calls f(number of the beam) for the beams that directions of a cell are near.
   template <class F>
   void forEachOfCell(std::size_t cell, F f) const
   {
@@ -65,7 +64,7 @@ public:
       grid.beams.begin() + grid.begins[cell], grid.beams.begin() + grid.begins[cell + 1], f);
   }
 
-  /// The most beams within the least margin of a direction.
+  /// Upper bound of the number of beams within the least margin of a direction.
   std::size_t mostNear() const { return this->Most; }
 
   double leastMargin() const { return this->Grids[0].margin; }       ///< rad
@@ -78,7 +77,7 @@ private:
   {
     double margin;                     ///< rad
     std::size_t side;                  ///< cells along an edge of the cube
-    std::vector<std::uint32_t> begins; ///< of the cells' beams
+    std::vector<std::uint32_t> begins; ///< by cell: its first index in beams
     std::vector<std::uint32_t> beams;
   };
   static std::size_t cellOf(const Vec3& direction, std::size_t side);

@@ -14,13 +14,12 @@ namespace avianlidar
 namespace
 {
 constexpr std::size_t PlacesOfBlock = 4096;
-/// rad beyond the border of a beam, in which beams are looked for: where targets are far, nearer,
-/// and very near.
+/// Angles outside a beam up to which it is found, rad: for far, near and very near targets.
 constexpr double Margins[] = { 4e-3, 4e-2, 0.4 };
-/// Probabilities that are known this well are not looked at more closely.
+/// Error of a probability below which it is not refined.
 constexpr double Negligible = 0.004;
 
-/// Half the angle, rad, at which a target appears. @param reach m, from its middle
+/// Half the angle that a target subtends, rad. @param reach m, from its middle @param range m
 double angleOf(double reach, double range)
 {
   return std::asin(std::min(1.0, reach / range));
@@ -99,7 +98,7 @@ Coverage::Coverage(const ScanSetup& setup, const ScanBeams& beams, const Vec3& u
   }
 }
 
-/// True if a target's echo may share a unit with that of a surface.
+/// True if the echo of a point target may share a range unit with an echo of a surface.
 bool Coverage::isInClutter(std::uint32_t beam, double range) const
 {
   const Sensor& sensor = this->Setup.sensor;
@@ -113,7 +112,7 @@ bool Coverage::isInClutter(std::uint32_t beam, double range) const
   return next != end && *next <= last;
 }
 
-/// Whether a beam holds a direction. @param cosine of the angle from its axis
+/// True if a beam contains a direction. @param cosine of the angle between direction and beam axis
 bool Coverage::holds(std::uint32_t beam, const Vec3& direction, double cosine) const
 {
   return cosine >= this->CosineHeld &&
@@ -204,16 +203,16 @@ CoverageTarget::CoverageTarget(const Sensor& sensor, double air, double meanArea
   }
 }
 
-/// A target at a place, and the energies, J, that beams receive of it.
+/// A target at a place, and the energies that beams receive of it.
 struct Coverage::PlacedTarget
 {
   const CoverageTarget& target;
   double range;   ///< m
   Vec3 direction; ///< unit vector
-  Vec3 right, up; ///< across it, unit vectors, as in Silhouette.h
-  double filling; ///< of a target that fills the beam
-  double energy;  ///< where the beam holds all of the target
-  double growth;  ///< of the threshold by the air: energies are those over it
+  Vec3 right, up; ///< unit vectors across the direction, as in Silhouette.h
+  double filling; ///< energy of a target that fills the beam, J
+  double energy;  ///< energy if the beam contains the whole target, J
+  double growth;  ///< factor of the threshold in air; the energies are divided by it
   DetectionLaw::Between elevation;
 
   double probability(double step, int beams) const
@@ -221,7 +220,7 @@ struct Coverage::PlacedTarget
     return this->target.law.probabilityAt(step, beams, this->elevation);
   }
 
-  /// Fill in what so many beams that hold all of the target detect.
+  /// Sets the results for `beams` beams, each of which contains the whole target.
   void fill(CoverageValue& value, int beams) const
   {
     const double received = std::min(this->energy, this->filling);
@@ -237,19 +236,19 @@ struct Coverage::PlacedTarget
   }
 };
 
-/// The beams that may light a target and are not in clutter there; of too many the nearest.
+/// Beams that may light a target and are not in clutter there; if they are too many, the nearest.
 struct Coverage::NearBeams
 {
   struct Beam
   {
     std::uint32_t number;
-    double nearness; ///< larger: nearer
-    bool isHeld;     ///< it holds the place
+    double nearness; ///< larger for beams that are nearer
+    bool isHeld;     ///< true if the beam contains the place
   };
-  Beam beams[DetectionLaw::MostBeams]; ///< not initialised: this is made for each place
+  Beam beams[DetectionLaw::MostBeams]; ///< not initialised, since it is made for each place
   std::size_t count = 0;
-  int clear = 0; ///< hold the place
-  int whole = 0; ///< hold all of the target
+  int clear = 0; ///< beams that contain the place
+  int whole = 0; ///< beams that contain the whole target
 
   void add(const Beam& beam)
   {
@@ -298,7 +297,7 @@ Coverage::PlacedTarget Coverage::placed(const CoverageTarget& target, const Vec3
     energy / growth, growth, target.law.betweenAt(elevationOf(to, this->Up)) };
 }
 
-/// True if no number of beams detects the target, and none that may be near is in clutter.
+/// True if no number of beams detects the target and no beam that may be near has clutter.
 bool Coverage::isHopeless(const PlacedTarget& at, double step) const
 {
   return this->Setup.sensor.beamProfile != BeamProfile::Gaussian &&
@@ -309,7 +308,7 @@ bool Coverage::isHopeless(const PlacedTarget& at, double step) const
 
 Coverage::NearBeams Coverage::clearBeams(const PlacedTarget& at) const
 {
-  // Beams whose borders the target does not reach hold all of it, or nothing.
+  // A beam whose border does not cross the target lights all or nothing of it.
   const double halfBeamwidth = this->Shape.width().half;
   const double reach =
     std::min(angleOf(at.target.law.reach(), at.range), this->Directions->largestMargin());
@@ -320,7 +319,7 @@ Coverage::NearBeams Coverage::clearBeams(const PlacedTarget& at) const
     [&](std::uint32_t beam, double cosine)
     {
       const bool isHeld = this->holds(beam, at.direction, cosine);
-      // The cone of a beam that is not round holds more than the beam.
+      // The cone around a beam that is not round is larger than the beam.
       const double away = this->Shape.isRound() ? 0.0 : this->beamAt(at, beam).beyond();
       const bool isNear = isHeld || (cosine > beyond && away < at.target.law.reach());
       if (isNear && !this->isInClutter(beam, at.range))
@@ -333,7 +332,7 @@ Coverage::NearBeams Coverage::clearBeams(const PlacedTarget& at) const
   return near;
 }
 
-/// True if it does not matter how much of the target the beams light whose borders cross it.
+/// True if the parts lit by beams whose borders cross the target do not change its probability.
 bool Coverage::isCertain(const PlacedTarget& at, double step, const NearBeams& near) const
 {
   const int all = static_cast<int>(near.count);
@@ -343,7 +342,7 @@ bool Coverage::isCertain(const PlacedTarget& at, double step, const NearBeams& n
         at.probability(step, all) - at.probability(step, near.whole) < Negligible));
 }
 
-/// A beam in the plane across the line of sight to a target, right and up as in Silhouette.h.
+/// Returns a beam in the plane across the line of sight to a target, see Silhouette.h.
 BeamAtTarget Coverage::beamAt(const PlacedTarget& at, std::uint32_t beam) const
 {
   const Sensor& sensor = this->Setup.sensor;
@@ -371,13 +370,12 @@ BeamAtTarget Coverage::beamAt(const PlacedTarget& at, std::uint32_t beam) const
   return found;
 }
 
-/// Replace what beams that hold all of a target detect by what they do of the parts that they
-/// light.
+/// Replaces results for the whole target by results for the parts that the beams light.
 void Coverage::share(
   const PlacedTarget& at, const NearBeams& near, double* ofPoses, CoverageValue& value) const
 {
   std::array<BeamAtTarget, DetectionLaw::MostBeams> beams;
-  double irradiance = 0.0; // of the beams that hold the place
+  double irradiance = 0.0; // sum over the beams that contain the place
   for (std::size_t b = 0; b < near.count; ++b)
   {
     beams[b] = this->beamAt(at, near.beams[b].number);
@@ -393,8 +391,8 @@ void Coverage::share(
   }
 }
 
-/// What is detected at a place that a beam is near and no surface hides. @param ofPoses each 0; or
-/// null
+/// Detection at a place that is near a beam and not hidden.
+/// @param ofPoses filled with 0, one for each pose; or null
 CoverageValue Coverage::valueOf(
   const PlacedTarget& at, const CoverageSight& sight, double* ofPoses) const
 {
@@ -405,7 +403,7 @@ CoverageValue Coverage::valueOf(
   {
     return value;
   }
-  const double step = at.target.law.stepOf(at.energy); // a bound: parts receive no more
+  const double step = at.target.law.stepOf(at.energy); // upper bound: parts receive no more
   if (sight.beams > 0 && this->isHopeless(at, step))
   {
     at.fill(value, sight.beams);
@@ -456,7 +454,7 @@ CoverageValue Coverage::valueAt(
   {
     return this->valueOf(at, sight, nullptr);
   }
-  // By the heading from the line of sight; between two, linearly, by the heading from north.
+  // The law's headings count from the line of sight. Those from north are interpolated linearly.
   std::vector<double> found(poses, 0.0);
   const CoverageValue value = this->valueOf(at, sight, found.data());
   const std::size_t headings = target.headings;

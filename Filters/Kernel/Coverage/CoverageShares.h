@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file CoverageShares.h
- * @brief What share of places is covered: sums over places, means with their standard errors.
+ * @brief Share of places that is covered: weighted means over places and their standard errors.
  *
  * Source: heights of bird strikes: R. A. Dolbeer, J. Wildl. Manage. 70 (2006).
- * Differs: strikes at or below 500 feet are taken as even over these heights.
- * Valid: standard errors are those of places drawn at random; places far apart on a lattice have
- * about the same, neighbours that are alike count as several.
+ * Differs: strikes at or below 500 feet are uniformly distributed over these heights.
+ * Valid: standard errors hold for places drawn at random. They are about right for places far apart
+ * on a lattice, and too small where neighbours are alike.
  * Test: TestCoverageShares.cxx.
  */
 #ifndef avianlidar_CoverageShares_h
@@ -22,12 +22,12 @@ namespace avianlidar
 struct WeightedMean
 {
   std::array<double, 3> weight{}; ///< sums of 1, w, w^2
-  std::array<double, 2> value{};  ///< of w v, w^2 v
-  double square = 0.0;            ///< of w^2 v^2
+  std::array<double, 2> value{};  ///< sums of w v, w^2 v
+  double square = 0.0;            ///< sum of w^2 v^2
   void add(double w, double v);
   void add(const WeightedMean& other);
-  double mean() const;     ///< NaN without weight
-  double stdError() const; ///< NaN below two values
+  double mean() const;     ///< NaN if the sum of weights is 0
+  double stdError() const; ///< NaN for fewer than two values
 };
 
 /// Sums over the places of a region and height band.
@@ -36,13 +36,13 @@ struct CoverageShares
   static constexpr std::size_t Statuses = 8;
   WeightedMean detected;
   WeightedMean tracked;
-  std::array<double, Statuses> byStatus{}; ///< weights
+  std::array<double, Statuses> byStatus{}; ///< sums of weights
 
   void add(double weight, const CoverageValue& value, double trackProbability);
   void add(const CoverageShares& other);
 };
 
-/// Density of bird strikes over the height above ground, 1/m, of 1 in all; 0 below ground.
+/// Probability density of the height of bird strikes above ground, 1/m; 0 below ground.
 double strikeHeightDensity(double height);
 }
 

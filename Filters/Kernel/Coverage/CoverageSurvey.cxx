@@ -55,7 +55,7 @@ bool CoverageSurvey::look(const ScanSetup& setup, const ScanBeams& beams, const 
     static_cast<double>(setup.sensor.beamOutline), setup.sensor.halfBeamwidthAcross,
     setup.sensor.beamRotation, setup.sensor.up.x, setup.sensor.up.y, setup.sensor.up.z,
     setup.sensor.minimumRange };
-  // In order: of an exclusive or, parts that are equal would leave nothing.
+  // The parts are hashed in order: in an exclusive or, equal parts would cancel.
   const std::uint64_t parts[] = { directionsOf, places.hash, geometry,
     hashOf(outline, sizeof(outline), 0) };
   const std::uint64_t sightsOf =
@@ -84,7 +84,7 @@ bool CoverageSurvey::look(const ScanSetup& setup, const ScanBeams& beams, const 
   return true;
 }
 
-/// The last ones are kept, as they are the same from site to site.
+/// Returns a kept target if its inputs are equal: they often are from site to site.
 const CoverageTarget& CoverageSurvey::targetOf(const SurveyTarget& wanted)
 {
   const Sensor& sensor = this->Covered->setup().sensor;

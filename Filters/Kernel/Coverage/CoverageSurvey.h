@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file CoverageSurvey.h
- * @brief Coverage of many places: values of each, sums over them, and what is kept from one target
- * or scan to the next.
+ * @brief Coverage of many places: the value of each place, and sums over regions and height bands.
  *
- * Lines of sight, beams by direction and laws of detection are found again only where something
- * that they depend on is another. Blocks of places are summed in their order, so the sums are the
- * same for any number of threads.
+ * Lines of sight, beam directions and detection laws are kept from one target or scan to the next
+ * and recomputed only if their inputs change. Blocks of places are summed in a fixed order, so the
+ * sums are the same for any number of threads.
  *
  * Source: none.
  * Valid: see Coverage.h.
@@ -32,58 +31,60 @@ struct SurveyPlaces
 
   PlaceAt at;
   std::size_t count = 0;
-  std::uint64_t hash = 0; ///< of all coordinates
-  /// In the sums of which region a place counts, or NoRegion.
+  std::uint64_t hash = 0; ///< hash of all coordinates
+  /// Returns the region to whose sums a place is added, or NoRegion.
   std::function<std::size_t(std::size_t place)> regionOf;
 };
 
-/// What is looked for.
+/// Target of a survey.
 struct SurveyTarget
 {
   double area; ///< mean effective area, m^2
   double reflectance;
-  std::shared_ptr<const TargetViews> views; ///< areas relative to the mean
+  std::shared_ptr<const TargetViews> views; ///< silhouettes, their areas relative to the mean
 };
 
-/// How places are judged and summed.
+/// Rules of track detection (M of N scans) and of the sums over places.
 struct SurveyRules
 {
-  int requiredDetections = 1; ///< of so many scans for a track, 1 to scans
-  int scans = 1;              ///< 1 to MostScans
+  int requiredDetections = 1; ///< M: detections that make a track, 1 to scans
+  int scans = 1;              ///< N: number of scans, 1 to MostScans
   bool strikeHeightWeights = false;
-  std::vector<double> heightLimits; ///< m, rising; each band holds its lower limit
+  std::vector<double> heightLimits; ///< rising borders of bands, m; a band includes its lower one
 
   std::size_t bands() const { return this->heightLimits.size() + 1; }
 };
 
-/// Empty, or what is wrong with a rule.
+/// Returns an empty string, or what is wrong with the first invalid rule.
 std::string checkRules(const SurveyRules& rules);
 
 class CoverageSurvey
 {
 public:
-  /// Take a place's result; any thread calls it.
+  /// Receives the result of a place and the probability of a track; any thread calls it.
   using EachPlace =
     std::function<void(std::size_t place, const CoverageValue& value, double track)>;
 
-  /// Where the probabilities of a place's poses go, see Coverage::valueAt().
+  /// Returns where to store the probabilities of a place's poses, see Coverage::valueAt().
   using PosesOf = std::function<float*(std::size_t place)>;
 
-  /// Look at places. All that is given must outlive the next evaluate(). @param beams of one
-  /// origin, or none @param still see Coverage @param geometry hash of the surfaces @return false
-  /// if keepGoing returned false
+  /// Finds the lines of sight to places. The arguments must outlive the next evaluate().
+  /// @param beams of one origin, or empty @param still see Coverage
+  /// @param geometry hash of the surfaces
+  /// @return false if keepGoing returned false
   bool look(const ScanSetup& setup, const ScanBeams& beams, const ScanResult& still,
     const SurveyPlaces& places, std::uint64_t geometry, int threads, const KeepGoing& keepGoing);
 
-  /// What is detected of a target at these places. @param sums by region, then height band: added
-  /// to @return as above; the sums are as before then
+  /// Computes the detection of a target at the places of the last look().
+  /// @param each may be empty @param sums by region, then height band; results are added
+  /// @param posesOf may be empty @return false if keepGoing returned false; sums are then unchanged
   bool evaluate(const SurveyTarget& target, const SurveyRules& rules, int threads,
     const KeepGoing& keepGoing, const EachPlace& each, CoverageShares* sums,
     const PosesOf& posesOf = {});
 
-  std::size_t size() const { return this->Sights.size(); } ///< places that are kept
+  std::size_t size() const { return this->Sights.size(); } ///< number of places
 
-  /// Places to which the last look() found the line of sight.
+  /// Number of places whose line of sight the last look() found anew.
   std::size_t traced() const { return this->Traced; }
 
 private:
@@ -91,21 +92,21 @@ private:
 
   SurveyPlaces Places;
   std::vector<CoverageSight> Sights;
-  std::uint64_t SightsOf = 0;        ///< hash of what they depend on
+  std::uint64_t SightsOf = 0;        ///< hash of the inputs of Sights
   std::unique_ptr<Coverage> Covered; ///< null without beams
-  std::uint64_t DirectionsOf = 0;    ///< hash of what its BeamDirections depend on
+  std::uint64_t DirectionsOf = 0;    ///< hash of the inputs of its BeamDirections
   std::size_t Traced = 0;
-  /// A target after what it depends on.
+  /// A target and the inputs that it was made from.
   struct KeptTarget
   {
     std::vector<double> numbers;
     std::shared_ptr<const TargetViews> views;
     std::unique_ptr<const CoverageTarget> target;
   };
-  std::vector<KeptTarget> Targets; ///< the last ones
+  std::vector<KeptTarget> Targets; ///< the most recent ones
 };
 
-/// In which share of scans with noise each echo of a scan without is perceived.
+/// Returns, for each echo of a scan without noise, the share of scans with noise that perceive it.
 std::vector<double> shareOfScans(const Sensor& sensor, const std::vector<Echo>& echoes);
 }
 

@@ -15,28 +15,28 @@ namespace avianlidar
 {
 namespace
 {
-/// Places in half a range unit over which the mean is taken.
+/// Positions in half a range unit over which the mean is taken.
 constexpr int PlacesInHalfUnit = 20;
-/// Places in a whole one where beams light parts: middles of every fifth of those.
+/// Positions in a whole range unit where beams light parts: every fifth of those above.
 constexpr int PlacesOfParts = 8;
-/// A pose stands for those around it. Their energies differ: a normal distribution of this standard
-/// deviation of the logarithm, in the quantiles (k + 0.5)/PlacesOfParts, one for each place.
+/// A pose represents similar poses. The logarithm of their energy is normally distributed with this
+/// standard deviation, sampled at one quantile (k + 0.5)/PlacesOfParts for each position.
 constexpr double SpreadOfEnergies = 0.15;
 constexpr double Quantiles[PlacesOfParts] = { 1.5341, -0.4888, -0.8871, -0.1570, 0.1570, 0.8871,
   0.4888, -1.5341 };
-/// Parts that change the probability of a pose by less are not looked at.
+/// Change of a pose's probability below which the lit parts are not computed.
 constexpr double NegligiblePart = 0.004;
-/// A normal distribution ends here.
+/// Standard deviations at which a normal distribution is cut.
 constexpr double Deviations = 3.0;
-/// Standard deviations of depth are rounded to as many, up to this share of the target's reach.
+/// Classes of the standard deviation of depth, and the last one over the target's reach.
 constexpr std::size_t DepthClasses = 9;
 constexpr double DeepestOfReach = 0.6;
-/// Of more units only as many are looked at, each for its neighbours.
+/// Largest number of range units that are evaluated; if there are more, each stands for neighbours.
 constexpr double MostUnits = 64.0;
-/// J: in place of a lower limit of 0.
+/// Replaces a lower limit of 0, J.
 constexpr double LeastLimit = 1e-280;
 
-/// Linear interpolation; the first and last value go on. @param at in steps of the table
+/// Linear interpolation, constant beyond both ends. @param at in steps of the table
 double between(const double* table, std::size_t count, double at)
 {
   if (!(at > 0.0))
@@ -52,8 +52,8 @@ double between(const double* table, std::size_t count, double at)
   return table[below] + share * (table[below + 1] - table[below]);
 }
 
-/// Share of an echo that lies before `t`, 0 where its middle is. @param width of the pulse
-/// @param deviation of the target's depth
+/// Share of an echo that lies before `t`, counted from its middle. @param width of the pulse
+/// @param deviation standard deviation of the target's depth, in the unit of `t`
 double shareBefore(double t, double width, double deviation)
 {
   if (!(deviation > 0.0))
@@ -71,15 +71,16 @@ double shareBefore(double t, double width, double deviation)
     deviation / width;
 }
 
-/// Shares of an echo in units, and of how many units each is the share.
+/// Shares of an echo in range units; each value stands for `units` of them.
 struct Shares
 {
   std::vector<double> values;
   double units = 1.0;
 };
 
-/// Shares of an echo in the units that it overlaps. @param place of its middle in a unit, 0 to 1
-/// @param width of the pulse @param deviation of the target's depth, both in units
+/// Shares of an echo in the range units that it overlaps.
+/// @param place of its middle in a unit, 0 to 1 @param width of the pulse
+/// @param deviation of the target's depth, both in range units
 Shares sharesOf(double place, double width, double deviation)
 {
   const double half = 0.5 * width + Deviations * deviation;
@@ -89,7 +90,7 @@ Shares sharesOf(double place, double width, double deviation)
   shares.units = std::ceil(count / MostUnits);
   for (double unit = first; unit < first + count; unit += shares.units)
   {
-    // The middle one of so many.
+    // The middle unit represents its neighbours.
     const double begin = unit + std::floor(0.5 * (shares.units - 1.0)) - place;
     shares.values.push_back(
       shareBefore(begin + 1.0, width, deviation) - shareBefore(begin, width, deviation));
@@ -97,7 +98,7 @@ Shares sharesOf(double place, double width, double deviation)
   return shares;
 }
 
-/// Probability that no unit of a beam is perceived.
+/// Probability that no range unit of a beam is perceived.
 double missedBy(
   const Sensor& sensor, const PhotonReceiver& receiver, double energy, const Shares& shares)
 {
@@ -141,7 +142,7 @@ DetectionLaw::DetectionLaw(
       static_cast<double>(DepthClasses - 1);
     for (int place = 0; place < places; ++place)
     {
-      // The second half of a unit is as the first.
+      // The two halves of a unit are mirror images.
       const Shares shares = sharesOf(0.5 * (place + 0.5) / places, width, deviation);
       for (std::size_t k = 0; k < Points; ++k)
       {
@@ -159,7 +160,7 @@ DetectionLaw::DetectionLaw(
   }
   for (std::size_t i = 0; i < this->poses(); ++i)
   {
-    // Evenly between 0 and 1, in any part of the poses, too.
+    // The thresholds are spread evenly between 0 and 1, also within any run of poses.
     constexpr double golden = 0.6180339887498949;
     const double turned = golden * (static_cast<double>(i) + 0.5);
     this->Thresholds.push_back(turned - std::floor(turned));
@@ -194,7 +195,7 @@ void DetectionLaw::tabulate(const TargetPoses& poses)
   }
   for (double& p : table)
   {
-    p = std::min(1.0, p); // rounding of the sums
+    p = std::min(1.0, p); // rounding of the sums may exceed 1
   }
 }
 
@@ -233,14 +234,15 @@ DetectionLaw::Received DetectionLaw::received(double energy, const LitPart& lit)
     lit.depth / this->UnitLength };
 }
 
-/// What a quantile of the energies around a pose adds to its own, in steps.
+/// Steps that a quantile of the energies around a pose adds to the pose's own energy.
 double DetectionLaw::spreadAt(std::size_t quantile) const
 {
   constexpr double steps = SpreadOfEnergies * PointsPerDecade / 2.302585092994046;
   return this->Deepest > 0.0 ? steps * Quantiles[quantile] : 0.0;
 }
 
-/// Probability that a beam perceives nothing. @param place of the target's middle in its unit
+/// Probability that a beam perceives nothing.
+/// @param place of the target's middle in its range unit, 0 to 1
 /// @param shift of the energy, in steps
 double DetectionLaw::missed(const Received& beam, double place, double shift) const
 {
@@ -252,8 +254,10 @@ double DetectionLaw::missed(const Received& beam, double place, double shift) co
   return between(tables[std::min(number, tables.size() - 1)].data(), Points, beam.step + shift);
 }
 
-/// Probability that one of the beams perceives something, mean over places in the unit. @param
-/// whole number of further beams that hold all of the target @param all what they receive
+/// Probability that a beam perceives something, mean over positions in the range unit.
+/// @param parts received by beams that light parts @param count of parts
+/// @param all received by each beam that contains the whole target
+/// @param whole number of such beams
 double DetectionLaw::detected(
   const Received* parts, std::size_t count, const Received& all, std::size_t whole) const
 {
@@ -280,7 +284,7 @@ double DetectionLaw::detected(
   return 1.0 - missed / PlacesOfParts;
 }
 
-/// The elevation from which a pose is seen, between two.
+/// Index of the view that a pose is taken from.
 std::size_t DetectionLaw::viewOf(std::size_t pose, const Between& at) const
 {
   return at.below + (this->Thresholds[pose] < at.share ? 1 : 0);
@@ -290,7 +294,7 @@ double DetectionLaw::probability(double energy, double most, const BeamAtTarget*
   std::size_t count, const Between& at, double* ofPoses) const
 {
   const std::size_t used = std::min<std::size_t>(count, MostBeams);
-  std::array<double, MostBeams> away; // m, beyond the border
+  std::array<double, MostBeams> away; // of the target's middle beyond the border, m
   for (std::size_t b = 0; b < used; ++b)
   {
     away[b] = beams[b].beyond();
@@ -319,7 +323,7 @@ double DetectionLaw::probability(double energy, double most, const BeamAtTarget*
     Received all = this->Whole[view][i];
     all.step = std::min(mostStep, all.step + stepOfAll);
     double p = whole > 0 ? this->detected(nullptr, 0, all, whole) : 0.0;
-    // Beams that hold all of it receive no less than those that hold a part.
+    // A beam receives no more from a part than from the whole target, which bounds the change.
     if (crossings > 0 &&
       (beams[0].profile != BeamProfile::Uniform ||
         this->detected(nullptr, 0, all, whole + crossings) - p > NegligiblePart))
@@ -375,8 +379,8 @@ double DetectionLaw::energyFor(double wanted, int beams, std::size_t view) const
 
 double trackProbability(double p, int needed, int scans)
 {
-  // From no detection on: the law of one scan more, scan by scan.
-  std::array<double, MostScans> exactly; // so many detections
+  // The binomial distribution, built up scan by scan.
+  std::array<double, MostScans> exactly; // probabilities of exactly n detections
   std::fill_n(exactly.begin(), needed, 0.0);
   exactly[0] = 1.0;
   for (int scan = 0; scan < scans; ++scan)

@@ -1,29 +1,31 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file DetectionLaw.h
- * @brief The probability that a target is detected in one scan, as a function of the energy that
- * one beam receives of it and of the number of beams that do.
+ * @brief Probability that one scan detects a target, as a function of the energy that a beam
+ * receives of it and of the number of beams on it.
  *
- * A beam receives the energy of the part of the target that it lights (Silhouette.h), whatever is
- * larger, beam or target. The echo, a pulse as wide as that part is deep, is shared by the range
- * units that it overlaps; where in a unit the target lies is uniform over its ranges and the same
- * for all beams, as they begin at one point. The depth is taken as a normal distribution about the
- * mean of that part. A beam detects the target if one of its units is perceived: with a photon
- * receiver with the probability of PhotonReceiver.h, otherwise if the energy exceeds Qlow. Noise is
- * independent from pulse to pulse, while the target is the same for all beams of a scan. So the
- * probability is the mean over poses and places in the unit of 1 - product of (1 - p) over beams.
- * Where K beams hold all of the target, it is tabulated over the logarithm of the energy.
+ * A beam receives energy from the part of the target that it lights (Silhouette.h), whether the
+ * beam or the target is larger. The echo is a pulse lengthened by the depth of that part, which is
+ * taken as a normal distribution about its mean. The range units that the echo overlaps share its
+ * energy. The position of the target within a range unit is uniformly distributed and the same for
+ * all beams, as they have one origin. A beam detects the target if it perceives one of these units:
+ * with a photon receiver with the probability of PhotonReceiver.h, otherwise if the energy exceeds
+ * Qlow. Noise is independent from pulse to pulse, while the pose is the same for all beams of a
+ * scan. The probability is therefore the mean, over poses and positions in the unit, of 1 - product
+ * of (1 - p) over beams. Where K beams contain the whole target, it is tabulated over the logarithm
+ * of their energy.
  *
- * What a target shows depends on the elevation of the line of sight. It is drawn for some of them;
- * between two each pose takes that of one or of the other, as many as a linear interpolation would.
+ * What a target shows depends on the elevation of the line of sight. Silhouettes are drawn at
+ * regular steps of elevation. Between two steps each pose is taken from one or the other, in linear
+ * proportion.
  *
- * A pose stands for those around it: its energies are spread by 15 %.
+ * Each pose represents similar poses: its energies are spread by 15 %.
  *
  * Source: none.
- * Differs: the paper perceives what exceeds Qlow in a unit at the target's own range.
- * Valid: 1 to MostBeams beams (more count as so many, or as the most that are asked for). Off by
- * less than 3e-4 with a photon receiver where beams hold all of the target; without noise the step
- * of one area lies within 0.8 % of its energy.
+ * Differs: the paper perceives a unit at the target's own range if its energy exceeds Qlow.
+ * Valid: 1 to MostBeams beams (more count as MostBeams, or as the largest number in the tables).
+ * The error is below 3e-4 with a photon receiver where beams contain the whole target; without
+ * noise, the step of the probability for one area lies within 0.8 % of its energy.
  * Test: TestDetectionLaw.cxx.
  */
 #ifndef avianlidar_DetectionLaw_h
@@ -37,24 +39,24 @@
 
 namespace avianlidar
 {
-/// What a target shows of itself: one of equally likely poses.
+/// Silhouettes of a target in equally likely poses.
 using TargetPoses = std::vector<Silhouette>;
 
-/// What a target shows in all directions.
+/// Silhouettes of a target from all directions.
 struct TargetViews
 {
-  /// Poses from an elevation of the line of sight, rad, positive where the target is above the
-  /// sensor: from every one as many, in the same order, their areas relative to a mean of all.
+  /// Returns the poses at an elevation of the line of sight, rad, positive if the target is above
+  /// the sensor. Each elevation has the same poses in the same order; areas are relative to a mean
+  /// of all poses.
   std::function<TargetPoses(double elevation)> from;
-  double reach = 0.0;    ///< m, from the middle; nothing lies beyond
-  double step = Pi;      ///< rad, between the elevations that are looked at
-  std::size_t poses = 1; ///< how many there are
-  /// Poses that follow each other differ by so many of a whole turn, clockwise; 1: all look alike
-  /// from all azimuths.
+  double reach = 0.0;    ///< largest distance of any part from the middle, m
+  double step = Pi;      ///< between the elevations that are drawn, rad
+  std::size_t poses = 1; ///< number of poses
+  /// Successive poses differ by 1/headings of a turn, clockwise; 1 if all azimuths look alike.
   std::size_t headings = 1;
 };
 
-/// A target that is the same from all elevations.
+/// Views of a target that looks the same from all elevations.
 TargetViews viewsOf(TargetPoses poses, double reach = 0.0);
 
 class DetectionLaw
@@ -62,68 +64,70 @@ class DetectionLaw
 public:
   static constexpr int MostBeams = 64;
 
-  /// @param sensor with its limits set @param lowest @param highest elevations at which it will be
-  /// asked for, rad; beyond them the nearest counts @param mostBeams that are asked for, 1 to
-  /// MostBeams
+  /// @param sensor with its limits set
+  /// @param lowest, highest elevations of the line of sight, rad; beyond them the nearest is used
+  /// @param mostBeams largest number of beams in the tables, 1 to MostBeams
   DetectionLaw(const Sensor& sensor, const TargetViews& views, double lowest = 0.0,
     double highest = 0.0, int mostBeams = MostBeams);
 
-  /// Where an elevation, rad, lies between those that were looked at.
+  /// Position of an elevation, rad, between two views.
   struct Between
   {
-    std::size_t below; ///< number of the lower one
-    double share;      ///< of the next one, 0 to 1
+    std::size_t below; ///< index of the lower view
+    double share;      ///< weight of the next view, 0 to 1
   };
   Between betweenAt(double elevation) const;
 
-  /// Probability of detection in one scan. @param energy that one beam receives of the target at
-  /// its mean area, J @param beams that receive it
+  /// Probability of detection in one scan.
+  /// @param energy that one beam receives of the target at its mean area, J
+  /// @param beams number of beams that receive it
   double probability(double energy, int beams, const Between& at = { 0, 0.0 }) const
   {
     return energy > 0.0 ? this->probabilityAt(this->stepOf(energy), beams, at) : 0.0;
   }
 
-  /// Where an energy, J, above 0, lies in the tables, in steps.
+  /// Position of an energy in the tables, in steps. @param energy J, above 0
   double stepOf(double energy) const;
 
-  /// The probability of an energy that lies there.
+  /// Probability of detection by position of the energy in the tables, in steps.
   double probabilityAt(double step, int beams, const Between& at = { 0, 0.0 }) const;
 
-  /// The same where beams light parts of the target. @param energy that a beam that holds all of
-  /// the target's mean area receives, J @param most that a beam receives which the target fills, J
-  /// @param ofPoses takes the probability of each pose; may be null
+  /// Probability of detection where beams light parts of the target.
+  /// @param energy of a beam that contains the whole target at its mean area, J
+  /// @param most energy of a beam that the target fills, J
+  /// @param ofPoses receives the probability of each pose; may be null
   double probability(double energy, double most, const BeamAtTarget* beams, std::size_t count,
     const Between& at = { 0, 0.0 }, double* ofPoses = nullptr) const;
 
-  /// The same of each pose where so many beams hold all of it.
+  /// Probability of each pose where `beams` beams contain the whole target.
   void ofPoses(double energy, int beams, const Between& at, double* probabilities) const;
 
-  /// m: a beam farther from the target has no part of it.
+  /// Distance of the target's middle from a beam's border beyond which the beam lights nothing, m.
   double reach() const { return this->Reach; }
 
   std::size_t poses() const { return this->Views[0].size(); }
 
-  /// The beams of tables: more count as so many.
+  /// Largest number of beams in the tables; more beams count as this many.
   int mostBeams() const { return this->Most; }
 
-  /// The least energy, J, at which it is `wanted`; infinity if it never is. @param wanted above 0
-  /// @param view number of an elevation that was looked at
+  /// Least energy at which the probability is `wanted`, J; infinity if it never is.
+  /// @param wanted above 0 @param view index of an elevation
   double energyFor(double wanted, int beams, std::size_t view = 0) const;
 
   std::size_t views() const { return this->Views.size(); }
 
 private:
   static constexpr std::size_t PointsPerDecade = 300;
-  static constexpr double FirstDecade = -3.0; ///< of energies over Qlow
+  static constexpr double FirstDecade = -3.0; ///< decimal logarithm of the first energy over Qlow
   static constexpr std::size_t Decades = 7;
   static constexpr std::size_t Points = Decades * PointsPerDecade + 1;
 
-  /// A beam that may detect a pose.
+  /// What a beam receives of a pose.
   struct Received
   {
-    double step;        ///< of its energy
-    std::size_t spread; ///< class of depths
-    double depth;       ///< units behind the target's middle
+    double step;        ///< position of its energy in the tables
+    std::size_t spread; ///< depth class
+    double depth;       ///< mean depth behind the target's middle, range units
   };
   Received received(double energy, const LitPart& lit) const;
   double spreadAt(std::size_t quantile) const;
@@ -133,20 +137,20 @@ private:
   std::size_t viewOf(std::size_t pose, const Between& at) const;
   void tabulate(const TargetPoses& poses);
 
-  int Most;                       ///< beams
+  int Most;                       ///< beams in the tables
   double Limit;                   ///< Qlow, J
   double UnitLength;              ///< m
   double Reach;                   ///< m
-  double Deepest;                 ///< m, standard deviation of the last class of depths
+  double Deepest;                 ///< standard deviation of the last depth class, m
   double Lowest;                  ///< elevation of the first view, rad
-  double Step;                    ///< to the next one
+  double Step;                    ///< from one view to the next, rad
   std::vector<TargetPoses> Views; ///< by elevation
-  /// Of each pose, by elevation: what a beam that holds all of it receives at an energy of 1 J.
+  /// What a beam that contains a whole pose receives at an energy of 1 J; by elevation, pose.
   std::vector<std::vector<Received>> Whole;
-  std::vector<double> Thresholds; ///< of each pose: from this share on it takes the next elevation
-  /// Probability that a beam perceives nothing: by class of depths, place in the unit, energy.
+  std::vector<double> Thresholds; ///< by pose: weight above which the next view is taken
+  /// Probability that a beam perceives nothing, by depth class, position in the unit, energy.
   std::vector<std::vector<std::vector<double>>> Missed;
-  std::vector<std::vector<double>> Tables; ///< by elevation; number of beams, then energy
+  std::vector<std::vector<double>> Tables; ///< by elevation; then number of beams and energy
 };
 
 constexpr int MostScans = 100;

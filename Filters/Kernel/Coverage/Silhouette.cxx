@@ -12,14 +12,14 @@ namespace avianlidar
 {
 namespace
 {
-/// Pixels along the longer side, and samples along a pixel.
+/// Pixels along the longer side of the finest image, and samples along a pixel.
 constexpr int LongerSide = 96;
 constexpr int SamplesOfPixel = 3;
-/// Images, each half as fine as the one before.
+/// Number of images, each half as fine as the one before.
 constexpr int MostImages = 5;
-/// A beam's radius holds so many pixels, or more.
+/// Least radius of a beam in the image that it uses, in pixels.
 constexpr double RadiusInPixels = 3.5;
-/// Of the finest image so many are enough.
+/// Least radius of a beam in the finest image, in pixels.
 constexpr double LeastRadiusInPixels = 1.0;
 /// Samples along the longer side for an effective area.
 constexpr int SamplesOfArea = 512;
@@ -30,17 +30,17 @@ struct Sample
   float cosine = 0.0F;
 };
 
-/// Samples of the nearest surface in the cells of a rectangle.
+/// Depth buffer: samples of the nearest surface on a rectangle.
 struct Canvas
 {
   double left, below, step; ///< m
   int columns, rows;
   std::vector<Sample> samples;
 
-  /// Draw a triangle. @param p right, up and depth of its corners, m
+  /// Draws a triangle. @param p right, up and depth of its corners, m @param cosine of incidence
   void draw(const std::array<Vec3, 3>& p, double cosine)
   {
-    // Depth is a linear function of the place.
+    // Depth is linear over the triangle.
     const double x1 = p[1].x - p[0].x, y1 = p[1].y - p[0].y;
     const double x2 = p[2].x - p[0].x, y2 = p[2].y - p[0].y;
     const double twice = x1 * y2 - x2 * y1;
@@ -88,7 +88,7 @@ struct Canvas
   }
 };
 
-/// The points of a mesh by right, up and depth, and their bounds.
+/// Points of a mesh in the coordinates right, up and depth, and their bounds.
 struct Projected
 {
   Projected(const TriangleMesh& mesh, const Vec3& right, const Vec3& view)
@@ -113,7 +113,7 @@ struct Projected
   Vec3 High = -Low;
 };
 
-/// Draw a mesh, its points given by right, up and depth.
+/// Draws a mesh. @param points its points by right, up and depth, m
 void drawMesh(const TriangleMesh& mesh, const std::vector<Vec3>& points, Canvas& canvas)
 {
   for (const auto& t : mesh.triangles)
@@ -134,10 +134,10 @@ LitPart partOf(double area, double depth, double square)
   return { area, mean, std::sqrt(std::max(0.0, square / area - mean * mean)) };
 }
 
-/// exp(-2u) for u from 0 to 2, off by less than 1e-3 of it.
+/// exp(-2u) for u from 0 to 2, with a relative error below 1e-3.
 float gaussian(float u)
 {
-  const float x = 0.125F * u; // -2u is 16 times this
+  const float x = 0.125F * u; // exp(-2u) is exp(-x) to the 16th
   float e = 1.0F - x * (1.0F - x * (0.5F - x * (1.0F / 6.0F)));
   for (int k = 0; k < 4; ++k)
   {
@@ -174,7 +174,7 @@ Silhouette::Silhouette(const TriangleMesh& mesh, const Vec3& view, double unit)
     this->All.area = isEmpty ? 0.0 : std::numeric_limits<double>::quiet_NaN();
     return;
   }
-  // Whole pixels of the coarsest image.
+  // Each side is a whole number of pixels of the coarsest image.
   constexpr int whole = 1 << (MostImages - 1);
   const auto pixelsOf = [&](double length) {
     return whole * std::max(1, static_cast<int>(std::ceil(length / (whole * fine.pixel) - 1e-9)));
@@ -249,7 +249,7 @@ const Silhouette::Image& Silhouette::imageFor(const BeamAtTarget& beam) const
   return *image;
 }
 
-/// Pixels [begin, end) of a row or column within a reach of a place.
+/// Finds the pixels [begin, end) of a row or column within a reach of a place.
 void Silhouette::rangeOf(
   double place, double reach, double first, double pixel, int count, int& begin, int& end)
 {
@@ -259,7 +259,7 @@ void Silhouette::rangeOf(
   end = std::min(count, indexOf(place + reach) + 1);
 }
 
-/// The same as litBy() for any beam.
+/// litBy() for beams that are not usual (BeamAtTarget::isUsual()).
 LitPart Silhouette::litByOther(const BeamAtTarget& beam) const
 {
   const Image& image = this->imageFor(beam);
@@ -277,8 +277,7 @@ LitPart Silhouette::litByOther(const BeamAtTarget& beam) const
     beam.x, reachOf(beam.cosine, beam.sine), image.left, image.pixel, image.columns, left, right);
   rangeOf(
     beam.y, reachOf(beam.sine, beam.cosine), image.below, image.pixel, image.rows, below, above);
-  // The share of a pixel changes linearly from half a pixel within the border to half a pixel
-  // beyond.
+  // The share of a pixel falls linearly, from half a pixel inside the border to half outside.
   const auto within = [&](double length, double square)
   { return std::clamp(0.5 + length / image.pixel * (1.0 - std::sqrt(square)), 0.0, 1.0); };
   const auto shareOf = [&](const Squares& at)
@@ -328,8 +327,8 @@ LitPart Silhouette::litBy(const BeamAtTarget& beam) const
   }
   const Image* const image = &this->imageFor(beam);
   const double radius = std::max(beam.radius, LeastRadiusInPixels * image->pixel);
-  // The share of a pixel changes linearly with the square of its distance, from 1 half a pixel
-  // within the border to 0 half a pixel beyond it; so the disc holds its area.
+  // The share of a pixel is linear in its squared distance, from 1 half a pixel inside the border
+  // to 0 half a pixel outside, so that the disc keeps its area.
   const double radius2 = radius * radius;
   const double edge = radius * image->pixel;
   const double reach = std::sqrt(radius2 + edge);
@@ -344,7 +343,7 @@ LitPart Silhouette::litBy(const BeamAtTarget& beam) const
   for (int row = below; row < above; ++row)
   {
     const auto y = static_cast<float>(image->below + row * image->pixel - beam.y);
-    // Past the last one where the beam lies beside the image.
+    // This points past the last pixel if the beam lies beside the image.
     const Sums* pixel =
       image->pixels.data() + static_cast<std::size_t>(row) * image->columns + left;
     auto x = static_cast<float>(image->left + left * image->pixel - beam.x);
@@ -370,7 +369,7 @@ LitPart Silhouette::litBy(const BeamAtTarget& beam) const
 
 double effectiveArea(const TriangleMesh& mesh, const Vec3& view)
 {
-  // Turned about the line of sight, so that edges of level and upright objects cross the rows.
+  // The image is turned about the line of sight, so that level and upright edges cross the rows.
   constexpr double turn = 0.4;
   const BeamFrame frame = makeBeamFrame(Vec3(0.0), view, turn);
   const Projected shown(mesh, std::cos(turn) * frame.e1 + std::sin(turn) * frame.e2, view);

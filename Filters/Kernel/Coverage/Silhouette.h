@@ -1,19 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file Silhouette.h
- * @brief What a target shows of itself in one pose, by place: its effective area (silhouette
- * weighted by the cosine of incidence) and its depth in the pixels of a small image, and how much
- * of it a beam lights.
+ * @brief Effective area (silhouette weighted by the cosine of incidence) and depth of a target in
+ * one pose, as a small image, and the part of the target that a beam lights.
  *
- * The image is drawn from afar, with a depth buffer, by 3 x 3 samples for each pixel: mutual shadow
- * is in it. Coarser images are sums of its pixels; a beam takes the coarsest of which its radius
- * spans RadiusInPixels, so that a round beam costs some fifty pixels, and others as many times that
- * as they are longer than wide. effectiveArea() draws a finer image that nobody keeps.
+ * The image is drawn as seen from afar, with a depth buffer and 3 x 3 samples for each pixel, so it
+ * includes mutual shadowing. Coarser images sum its pixels. A beam uses the coarsest image in which
+ * its radius spans RadiusInPixels: a round beam costs about fifty pixels, other beams more by the
+ * ratio of their length to their width. effectiveArea() draws a finer image that is not kept.
  *
  * Source: none.
- * Valid: beams of more than 0.02 of the longer side; narrower ones count as so wide, with their
- * energy alike. Areas are off by 1 % of the target's at most, and of what a beam lights by 10 %
- * of what fills it, or of the target.
+ * Valid: beams wider than 0.02 of the target's longer side; narrower beams count as this wide, with
+ * the same energy. Areas are wrong by at most 1 % of the target's area. The area that a beam lights
+ * is wrong by at most 10 % of the area that fills the beam, or of the target's area.
  * Test: TestSilhouette.cxx, TestEffectiveArea.cxx.
  */
 #ifndef avianlidar_Silhouette_h
@@ -39,23 +38,23 @@ struct Squares
 /// A beam at a target, in the plane across the line of sight through the target's middle.
 struct BeamAtTarget
 {
-  double radius = 0.0; ///< m, half the longer side of an ellipse or rectangle
-  double x, y;         ///< beam axis relative to the middle, m right and up
+  double radius = 0.0; ///< half the longer side of an ellipse or rectangle, m
+  double x, y;         ///< beam axis relative to the target's middle, m right and up
   BeamProfile profile = BeamProfile::Uniform;
-  // Of beams that are not round, or have another Gaussian:
-  double across = radius; ///< m, half the shorter side
-  double cosine = 1.0;    ///< of the turn of the longer one, from the right upwards
+  // For beams that are not round or whose Gaussian does not fall to 1/e^2 at the border:
+  double across = radius; ///< half the shorter side, m
+  double cosine = 1.0;    ///< of the angle from right to the longer side, towards up
   double sine = 0.0;
   bool isRectangle = false;
-  double fall = 2.0;                     ///< the Gaussian is exp(-fall s), s see squareOf()
-  double most = 2.0 / -std::expm1(-2.0); ///< its irradiance on the axis, over the beam's mean
+  double fall = 2.0; ///< rate of the Gaussian exp(-fall s), s = squaresOf().sum()
+  double most = 2.0 / -std::expm1(-2.0); ///< irradiance on the axis over the beam's mean
 
   bool isRound() const { return !this->isRectangle && this->across == this->radius; }
 
-  /// Round, and uniform or 1/e^2 at the border.
+  /// True if the beam is round, and uniform or 1/e^2 at the border.
   bool isUsual() const { return this->isRound() && this->fall == 2.0; }
 
-  /// Squares of the coordinates of a place along the sides, each over that of half the side.
+  /// Squared coordinates of a point along the beam's sides, in units of half the side.
   /// @param right, above m from the axis
   Squares squaresOf(double right, double above) const
   {
@@ -64,7 +63,8 @@ struct BeamAtTarget
     return { along * along, beside * beside };
   }
 
-  /// How far the middle lies beyond the border, m, or less; negative: how far within, or less far.
+  /// Distance of the target's middle outside the border, m; negative inside. Its magnitude is a
+  /// lower bound if the beam is not round.
   double beyond() const
   {
     if (this->isRound())
@@ -75,10 +75,10 @@ struct BeamAtTarget
     return this->across * (std::sqrt(this->isRectangle ? at.most() : at.sum()) - 1.0);
   }
 
-  /// Irradiance at the middle, over the beam's mean; also beyond its border.
+  /// Irradiance at the target's middle over the beam's mean; also defined beyond the border.
   double irradiance() const { return this->irradiance(this->squaresOf(this->x, this->y).sum()); }
 
-  /// The same at a place. @param square sum of its squares
+  /// Irradiance at a point over the beam's mean. @param square squaresOf() of the point, summed
   double irradiance(double square) const
   {
     return this->profile == BeamProfile::Gaussian ? this->most * std::exp(-this->fall * square)
@@ -89,34 +89,35 @@ struct BeamAtTarget
 /// Part of a target, or all of it.
 struct LitPart
 {
-  double area = 0.0;   ///< effective, in the unit of the silhouette, weighted by the irradiance
-  double depth = 0.0;  ///< m, its mean behind the target's middle
-  double spread = 0.0; ///< m, standard deviation of its depth
+  double area = 0.0;   ///< effective area times irradiance, in the unit of the silhouette
+  double depth = 0.0;  ///< mean depth behind the target's middle, m
+  double spread = 0.0; ///< standard deviation of the depth, m
 };
 
 class Silhouette
 {
 public:
-  /// A point that shows the area 1.
+  /// A point of area 1.
   Silhouette();
 
-  /// A point. @param area that it shows
+  /// A point of the given area.
   explicit Silhouette(double area);
 
-  /// @param view unit vector from the observer, far away, to the target, not vertical; its middle
-  /// is the origin @param unit of areas, m^2
+  /// @param mesh target with its middle at the origin
+  /// @param view unit vector from the distant observer to the target, not vertical
+  /// @param unit of areas, m^2
   Silhouette(const TriangleMesh& mesh, const Vec3& view, double unit);
 
-  const LitPart& all() const { return this->All; } ///< by a wide uniform beam
+  const LitPart& all() const { return this->All; } ///< part that a wide uniform beam lights
 
-  /// m: nothing lies farther from the middle, across the line of sight.
+  /// Largest distance of any point from the middle, across the line of sight, m.
   double reach() const { return this->Reach; }
 
-  /// What a beam lights of it.
+  /// Returns the part that a beam lights.
   LitPart litBy(const BeamAtTarget& beam) const;
 
 private:
-  /// Sums over pixels' effective areas, of those times depth, and times its square.
+  /// Sums of effective areas, areas times depth, and areas times squared depth.
   struct Sums
   {
     float area = 0.0F, depth = 0.0F, square = 0.0F;
@@ -124,7 +125,7 @@ private:
   struct Image
   {
     double pixel = 0.0;             ///< m
-    double left = 0.0, below = 0.0; ///< m, centre of the first pixel
+    double left = 0.0, below = 0.0; ///< centre of the first pixel, m
     int columns = 0, rows = 0;
     std::vector<Sums> pixels; ///< row by row
   };
@@ -136,14 +137,14 @@ private:
 
   LitPart All;
   double Reach = 0.0;        ///< m
-  std::vector<Image> Images; ///< the finest first; none: a point
+  std::vector<Image> Images; ///< finest first; empty for a point
 };
 
-/// What an object shows of itself to an observer far away, m^2: the silhouette weighted by the
-/// cosine of incidence. A lidar receives of a matt object that one beam holds in proportion to it.
-/// The samples are 1/512 of the longer side apart: birds are off by 0.2 % at most. The distance
-/// does not count: an object of half the angle `a` shows about `a/2` less of itself. @param view
-/// unit vector from the observer to the object
+/// Effective area of an object seen from far away, m^2: the silhouette weighted by the cosine of
+/// incidence. The energy that a lidar receives of a matt object inside one beam is proportional to
+/// it. The samples are 1/512 of the longer side apart: areas of birds are wrong by at most 0.2 %.
+/// Perspective is ignored: an object of the half angle `a` shows about `a/2` less.
+/// @param view unit vector from the observer to the object
 double effectiveArea(const TriangleMesh& mesh, const Vec3& view);
 }
 
