@@ -19,8 +19,7 @@ constexpr double Gliding = 5.0 * Pi / 180.0;
 constexpr double Attack = 6.0 * Pi / 180.0;
 constexpr double Thickness = 0.001;
 
-// Polygons around the body's axis, and rings along it. Few: a beam with a bird in it can then be
-// integrated instead of sampled.
+// Sides around the body's axis and steps along it: few, so that a beam on a bird is integrated.
 constexpr std::uint32_t Around = 8;
 constexpr std::uint32_t Along = 4;
 
@@ -56,9 +55,8 @@ TriangleMesh roundBody(double radius, double half)
   return mesh;
 }
 
-/// What a convex body with a centre shows from a direction, its silhouette weighted by the cosine
-/// of incidence, is half a quadratic form of the direction: the integral of n n^T over its surface.
-/// Its values along the axis and across it.
+/// The effective area of a convex body with a centre is half a quadratic form of the direction: the
+/// integral of n n^T over its surface. These are its values along the axis and across it.
 struct Shown
 {
   double along;
@@ -79,7 +77,8 @@ Shown shownBy(const TriangleMesh& mesh)
   return sum;
 }
 
-/// The same of an ellipsoid of revolution, by the midpoint rule.
+/// The values for an ellipsoid of revolution, by the midpoint rule. @param b radius
+/// @param a half its length
 Shown shownByEllipsoid(double b, double a)
 {
   constexpr int steps = 2000;
@@ -98,7 +97,7 @@ Shown shownByEllipsoid(double b, double a)
   return sum;
 }
 
-/// A polyhedron that shows as much as the ellipsoid from every direction.
+/// A polyhedron with the effective area of the ellipsoid from every direction.
 TriangleMesh body(const BirdShape& shape)
 {
   const double b = 0.5 * shape.bodyDiameter;
@@ -108,7 +107,7 @@ TriangleMesh body(const BirdShape& shape)
   double half = a;
   for (int step = 0; step < 40; ++step)
   {
-    // Along the axis grows with the radius' square, across it with radius times length.
+    // The value along the axis grows with the squared radius, across it with radius times length.
     const Shown now = shownBy(roundBody(radius, half));
     const double wider = std::sqrt(wanted.along / now.along);
     half *= wanted.across / now.across / wider;
@@ -125,14 +124,14 @@ TriangleMesh wing(const BirdShape& shape, double side, double angle)
     const double along = (corner & 1) ? shape.wingLength : 0.0;
     const double forward = (corner & 2) ? 0.5 * shape.wingChord : -0.5 * shape.wingChord;
     const double up = (corner & 4) ? 0.5 * shape.wingThickness : -0.5 * shape.wingThickness;
-    // The leading edge up by the angle of attack, then the tip up by that of the wing.
+    // The leading edge rises by the angle of attack, then the tip by the angle of the wing.
     const double y = forward * std::cos(Attack) - up * std::sin(Attack);
     const double z = forward * std::sin(Attack) + up * std::cos(Attack);
     mesh.points.emplace_back(
       side * (0.5 * shape.bodyDiameter + along * std::cos(angle) - z * std::sin(angle)), y,
       along * std::sin(angle) + z * std::cos(angle));
   }
-  // Corners of the six sides of a box whose x, y, z are the bits 1, 2, 4.
+  // Corners of the six sides of a box; bits 1, 2, 4 of a corner's number are its x, y, z.
   const std::array<std::array<std::uint32_t, 4>, 6> sides = { { { 0, 4, 6, 2 }, { 1, 3, 7, 5 },
     { 0, 1, 5, 4 }, { 2, 6, 7, 3 }, { 0, 2, 3, 1 }, { 4, 5, 7, 6 } } };
   for (const auto& s : sides)

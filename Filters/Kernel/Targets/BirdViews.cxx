@@ -10,7 +10,7 @@ namespace avianlidar
 namespace
 {
 constexpr double ElevationStep = 4.0 * RadiansPerDegree;
-/// A direction is not taken nearer to the vertical than this.
+/// Largest elevation of a line of sight, which must not be vertical.
 constexpr double Steepest = 89.9 * RadiansPerDegree;
 }
 
@@ -21,7 +21,7 @@ TargetViews birdViews(const BirdShape& shape, bool gliding, double meanArea)
   std::vector<TriangleMesh> birds;
   for (std::size_t phase = 0; phase < phases; ++phase)
   {
-    // Up and down the wings pass the same angles.
+    // The wings pass the same angles up and down, so half a beat is enough.
     const double beat = 0.5 * (static_cast<double>(phase) + 0.5) / static_cast<double>(phases);
     birds.push_back(wholeBird(shape, wingAngle(beat - 0.25, gliding)));
   }
@@ -40,8 +40,7 @@ TargetViews birdViews(const BirdShape& shape, bool gliding, double meanArea)
     {
       for (std::size_t k = 0; k < headings; ++k)
       {
-        // The bird heads north; one of heading h seen to the north is one that heads north, seen
-        // along -h.
+        // The mesh heads north. A bird of heading h to the north looks like the mesh along -h.
         const double shift = (static_cast<double>(phase) + 0.5) / static_cast<double>(phases);
         const double heading =
           2.0 * Pi * (static_cast<double>(k) + shift) / static_cast<double>(headings);
@@ -57,11 +56,11 @@ TargetViews birdViews(const BirdShape& shape, bool gliding, double meanArea)
 
 double meanEffectiveArea(const BirdShape& shape, bool gliding)
 {
-  // The left is as the right: half a turn holds all headings.
+  // A bird is symmetric, so half a turn covers all headings.
   constexpr int headings = 24;
   constexpr int phases = 24;
   constexpr double elevation = 3.0 * RadiansPerDegree;
-  // NaN where a length is not known.
+  // The sum is NaN if a length is NaN.
   double sum = 0.0 * (shape.bodyLength + shape.bodyDiameter + shape.wingLength + shape.wingChord);
   int count = 0;
   for (int phase = 0; phase < (gliding ? 1 : phases); ++phase)

@@ -23,7 +23,7 @@ constexpr double Degree = Pi / 180.0;
 constexpr double Largest = LargestOfFlight;
 constexpr int MostBirds = 100000;
 
-// All assumed.
+// These values are assumed.
 constexpr double SpeedSpread = 0.1;
 constexpr double MostSpread = 0.3;
 constexpr double LeastCircleBank = 20.0 * Degree;
@@ -36,12 +36,12 @@ constexpr double SpansPerBird = 4.0;
 constexpr double BorderExcess = 1.0; // density at the border over that in the middle, less 1
 
 // Ballerini et al. 2008.
-constexpr double FlockWidth = 2.8; // over its thickness
+constexpr double FlockWidth = 2.8; // times its thickness
 constexpr double FlockLength = 5.6;
 
 constexpr double PathError = 0.01; // m
 
-/// What is drawn of the numbers of a bird.
+/// Purposes of a bird's random numbers.
 enum Draw : std::uint64_t
 {
   DrawSpeed = 0,
@@ -91,7 +91,7 @@ Vec3 right(double heading)
   return { std::cos(heading), -std::sin(heading), 0.0 };
 }
 
-/// @param heading clockwise from north @param pitch up @param bank to the right, rad
+/// @param heading clockwise from north, rad @param pitch up, rad @param bank to the right, rad
 glm::dquat orientationOf(double heading, double pitch, double bank)
 {
   return glm::angleAxis(-heading, Vec3(0.0, 0.0, 1.0)) *
@@ -122,7 +122,7 @@ Flight flightOf(const BirdNumbers& numbers, int bird, std::size_t species)
   return flight;
 }
 
-/// A straight course: where it is at a time, and its velocity.
+/// A straight course: position at a time, and velocity.
 struct Course
 {
   double time;
@@ -130,7 +130,7 @@ struct Course
   Vec3 velocity;
 };
 
-/// A course past the center, level. @param room that is kept free below and above
+/// A level course past the center. @param room kept free below and above, m
 Course crossing(
   const FlightSettings& settings, const BirdSpecies& species, std::uint64_t bird, double room)
 {
@@ -175,9 +175,9 @@ struct Circle
   Vec3 center;
   double radius;    ///< m
   double bank;      ///< to the right, rad
-  double turn;      ///< of the heading, rad/s
-  double heading;   ///< at the beginning, rad
-  double intervals; ///< between poses
+  double turn;      ///< rate of the heading, rad/s
+  double heading;   ///< at the beginning of the time range, rad
+  double intervals; ///< number of intervals between poses
 };
 
 Circle circleOf(const FlightSettings& settings, const BirdSpecies& species, int bird)
@@ -191,13 +191,12 @@ Circle circleOf(const FlightSettings& settings, const BirdSpecies& species, int 
   circle.bank = sense * bank;
   circle.turn = sense * speed / circle.radius;
   circle.heading = 2.0 * Pi * numbers(DrawCourse)[0];
-  // Evenly spread in the disc.
+  // The centres are uniformly distributed in the disc.
   circle.center = settings.center +
     settings.radius * std::sqrt(numbers(DrawCourse)[1]) *
       forward(2.0 * Pi * numbers(DrawPassage)[0]) +
     Vec3(0, 0, between(settings.heights[0], settings.heights[1], numbers(DrawPassage)[1]));
-  // A chord of the angle a is r (1 - cos(a / 2)) away from its arc; a is at most an eighth of a
-  // circle.
+  // The chord of an angle a is up to r (1 - cos(a / 2)) from its arc; a is at most 45 degrees.
   const double half = std::acos(std::max(1.0 - PathError / circle.radius, std::cos(Pi / 8.0)));
   circle.intervals = std::ceil(
     (settings.timeRange[1] - settings.timeRange[0]) * std::fabs(circle.turn) / (2.0 * half));
@@ -220,7 +219,7 @@ void fly(Flight& flight, const Circle& circle, const std::array<double, 2>& time
   }
 }
 
-/// Memory of a pose here and in the arrays of two outputs.
+/// Memory of a pose here and in the arrays of two outputs, bytes.
 constexpr double BytesOfPose = sizeof(Pose) + 14 * sizeof(double);
 
 std::vector<Flight> circles(
@@ -241,7 +240,7 @@ std::vector<Flight> circles(
   return flights;
 }
 
-/// Half the thickness of a flock, in spans.
+/// Half the thickness of a flock, in wingspans.
 double halfThickness(std::size_t birds)
 {
   const double volume = birds * SpansPerBird * SpansPerBird * SpansPerBird;
@@ -252,7 +251,7 @@ std::vector<Flight> flock(
   const FlightSettings& settings, const BirdSpecies& species, std::size_t index)
 {
   const auto places = flockPlaces(settings.seed, settings.numberOfBirds, species.span);
-  // The flock itself is bird 0.
+  // The random numbers of bird 0 place the flock.
   const Course middle = crossing(settings, species, 0, species.span * halfThickness(places.size()));
   const double lies = 2.0 * Pi * BirdNumbers(settings.seed, 0)(DrawWings)[0];
   std::vector<Flight> flights;
@@ -268,11 +267,11 @@ std::vector<Flight> flock(
   return flights;
 }
 
-/// Points with a least distance of 1 from each other.
+/// Points at least 1 apart.
 class SparsePoints
 {
 public:
-  /// False if a point is nearer than 1.
+  /// Adds a point. @return false if another point is nearer than 1
   bool add(const Vec3& point)
   {
     const Vec3 cell = glm::floor(point);
@@ -294,7 +293,7 @@ public:
   }
 
 private:
-  /// Cells within 2^20 of the origin.
+  /// Unique for cells within 2^20 of the origin.
   static std::uint64_t keyOf(const Vec3& cell)
   {
     const auto part = [](double value)
@@ -305,7 +304,7 @@ private:
   std::unordered_map<std::uint64_t, std::vector<Vec3>> Cells;
 };
 
-/// A point in the unit ball whose density grows with the square of its radius.
+/// Draws a point in the unit ball, denser with the squared radius. @return false if it is rejected
 bool drawInBall(std::int32_t seed, std::uint64_t bird, std::uint64_t attempt, Vec3& point)
 {
   const auto first = uniformPair(seed, bird, 2 * attempt, RandomPurpose::FlockPlaces);
@@ -538,7 +537,7 @@ void orientAlongPath(Flight& flight)
     {
       const Vec3 before = velocity(i - 1, i);
       const Vec3 after = velocity(i, i + 1);
-      // The angle between two level directions; 0 if one of them is none.
+      // The angle between two horizontal directions; 0 if one of them is a zero vector.
       const double turned = std::atan2(
         before.y * after.x - before.x * after.y, before.x * after.x + before.y * after.y);
       const double seconds = 0.5 * (poses[i + 1].time - poses[i - 1].time);
@@ -553,7 +552,7 @@ void orientAlongPath(Flight& flight)
   }
   for (std::size_t i = 0; i <= last; ++i)
   {
-    // Of q and -q, which are one rotation, the one nearer to that before.
+    // q and -q are the same rotation; the one nearer to the orientation before is taken.
     const glm::dquat q = orientationOf(headings[i], pitches[i], banks[i]);
     poses[i].orientation = i > 0 && glm::dot(q, poses[i - 1].orientation) < 0.0 ? -q : q;
   }

@@ -1,29 +1,28 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file Flight.h
- * @brief Flights of birds: poses over time, by patterns with random numbers, or from tracks.
+ * @brief Flights of birds: poses over time, from random patterns or from tracks.
  *
- * - Crossings: straight, level flights at random headings through a disc. The bird passes a random
- *   line through it, evenly spread across, at a time evenly spread over the time range.
+ * - Crossings: straight, level flights through a disc. Heading, offset from the centre of the disc,
+ *   height and time of passage are uniformly distributed.
  * - Circles: gliding in level, banked circles of radius r with tan(bank) = v^2 / (g r), to the left
- *   or to the right, with a bank of 20 to 40 degrees. Their centres are evenly spread in a disc.
- * - Flock: a body of birds with one velocity, on one straight, level crossing (flockPlaces()).
- * - Approach: birds that descend at 3 degrees along the approach of a runway, in straight lines
- *   towards its threshold, evenly spread within 75 m + 0.15 d to either side, d the distance. It
- *   stands for birds that come in to feed or roost there and meet arriving aircraft.
- * - Tracks (readFlights()): measured or made elsewhere; heading, pitch and bank follow from the
- *   path.
+ *   or to the right, with a bank of 20 to 40 degrees. Centres are uniformly distributed in a disc.
+ * - Flock: birds with one velocity on one straight, level crossing (flockPlaces()).
+ * - Approach: birds that descend at 3 degrees in straight lines towards the threshold of a runway,
+ *   uniformly distributed within 75 m + 0.15 d to either side, d the distance. This pattern stands
+ *   for birds that come in to feed or roost there and meet arriving aircraft.
+ * - Tracks (readFlights()): measured or made elsewhere; attitudes follow from the path.
  *
- * Speeds are normally distributed about the species' airspeed with 10 %, cut at 30 %. Between two
- * poses flight is straight; those of a circle are so close that this errs by less than 1 cm.
+ * Speeds are normally distributed about the species' airspeed with a standard deviation of 10 %,
+ * cut at 30 %. Flight is straight between two poses; in a circle this errs by less than 1 cm.
  *
  * Source: flocks of starlings: M. Ballerini et al., "Empirical investigation of starling flocks",
- * Animal Behaviour 76 (2008): thin, lying flat, sides as 1 : 2.8 : 5.6 whatever the size; no
- * neighbour nearer than about a wingspan; denser at the border; nearest neighbours' distances do
- * not depend on the size.
- * Differs: a flock is rigid, an ellipsoid with its short axis upright. Assumed: a bird in (4
- * wingspans)^3 on average, twice as dense at the border as in the middle; speeds, banks and
- * scatters above. No wind.
+ * Animal Behaviour 76 (2008): thin and flat, with sides of 1 : 2.8 : 5.6 for any size; no neighbour
+ * nearer than about a wingspan; denser at the border; distances of nearest neighbours do not depend
+ * on the size.
+ * Differs: a flock is a rigid ellipsoid with its short axis upright. Assumed: one bird in (4
+ * wingspans)^3 on average, twice the density at the border as in the middle; speeds, banks and
+ * spreads above. No wind.
  * Valid: coordinates and times up to 1e9 m and s.
  * Test: TestFlight.cxx.
  */
@@ -48,9 +47,9 @@ constexpr double LargestOfFlight = 1e9;
 struct Flight
 {
   std::string number;      ///< unique
-  std::size_t species = 0; ///< in a table of species
+  std::size_t species = 0; ///< index in a table of species
   bool gliding = false;
-  double wingPhase = 0.0; ///< of the wingbeat at time 0, 1 is a whole one
+  double wingPhase = 0.0; ///< phase at time 0, in wingbeats
   std::vector<Pose> poses;
 };
 
@@ -62,7 +61,7 @@ enum class FlightPattern
   Approach = 3
 };
 
-/// Flights that are made of random numbers.
+/// Settings of random flights.
 struct FlightSettings
 {
   FlightPattern pattern = FlightPattern::Crossings;
@@ -71,39 +70,39 @@ struct FlightSettings
   std::array<double, 2> timeRange{ 0.0, 60.0 }; ///< s
   Vec3 center{ 0.0 };                           ///< m
   double radius = 500.0;                        ///< of the disc, m; half the approach's length
-  std::array<double, 2> heights{ 10.0, 150.0 }; ///< above the center, m; not of approaches
-  Vec3 thresholdPosition{ 0.0 };                ///< of approaches, m
-  double thresholdHeading = 0.0;                ///< in which arrivals land, degrees from north
+  std::array<double, 2> heights{ 10.0, 150.0 }; ///< above the center, m; unused for approaches
+  Vec3 thresholdPosition{ 0.0 };                ///< threshold of the runway, m
+  double thresholdHeading = 0.0; ///< heading of landings, degrees clockwise from north
 };
 
-/// Empty, or which of the settings is wrong and what was expected, by the names of
+/// Returns an empty string, or which setting is wrong and what is expected, with the names of
 /// vtkAvianLidarTracks.
 std::string checkFlights(const FlightSettings& settings);
 
-/// Flights for the whole time range. Bird k, counted from 1, depends on how many follow it in a
-/// flock only. Throws MemoryError if there is not enough memory.
-/// @param index of the species, which is handed on
+/// Makes flights for the whole time range. Bird k, counted from 1, does not depend on the number of
+/// birds, except in a flock. Throws MemoryError if there is not enough memory.
+/// @param index of the species, copied into the flights
 std::vector<Flight> makeFlights(
   const FlightSettings& settings, const BirdSpecies& species, std::size_t index);
 
-/// Places of birds in a flock about its middle, m: x along its longest axis, z along its shortest
-/// one, upright. None is nearer to another than the span.
+/// Positions of birds in a flock relative to its middle, m: x along its longest axis, z upright
+/// along its shortest one. No two birds are nearer than the span.
 /// @param span m
 std::vector<Vec3> flockPlaces(std::int32_t seed, std::size_t birds, double span);
 
-/// Orientations from the path: forward along the velocity, banked by atan(v w / g) for a turn of w
-/// rad/s, at most 60 degrees. Where a path does not move forward, the bird is level and keeps its
-/// heading. At least two poses, times rise.
+/// Sets orientations from the path: forward along the velocity, with the bank atan(v w / g) of a
+/// turn of w rad/s, at most 60 degrees. Where the path does not move horizontally, the bird is
+/// level and keeps its heading. Requires at least two poses and increasing times.
 void orientAlongPath(Flight& flight);
 
-/// The part of the wingbeat with which a track begins at time 0, by its place among the tracks.
+/// Phase of the wingbeat of a track at time 0, by its index among the tracks.
 double trackWingPhase(std::int32_t seed, std::size_t track);
 
-/// A table of tracks: a header "id,species,time,x,y,z" or
+/// Reads a table of tracks: a header "id,species,time,x,y,z" or
 /// "id,species,time,longitude,latitude,height", lines that begin with # are comments. Rows of
 /// several tracks may alternate. Throws std::runtime_error naming file, line and column.
 /// @param file for messages @param known all species
-/// @param origin of the scene: latitude, longitude in degrees, height above the ellipsoid, m
+/// @param origin of the scene: latitude, longitude in degrees, height above the ellipsoid in m
 /// (checked by the caller, GeodeticFrame::checkOrigin())
 std::vector<Flight> readFlights(const std::string& text, const std::string& file,
   const std::vector<BirdSpecies>& known, const std::array<double, 3>& origin, std::int32_t seed);

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file MoverReport.h
- * @brief What the beams of a scan receive of each mover, and where it is then.
+ * @brief What the beams of a scan receive of each mover, and where the mover is at that time.
  *
  * Source: none.
- * Valid: movers and beams of one scan; the same for any number of threads.
+ * Valid: movers and beams of one scan; the same result for any number of threads.
  * Test: TestMovedBeams.cxx.
  */
 #ifndef avianlidar_MoverReport_h
@@ -23,24 +23,24 @@ namespace avianlidar
 /// What the beams of a scan receive of one mover.
 struct MoverReport
 {
-  bool present = false; ///< at the time of `pose`; nothing else is known without
-  Pose pose;            ///< when the beam is fired that receives most of it, else in the middle
-  /// When the first and the last beam are fired that hold its origin or receive something of it;
-  /// else `pose`. A whole revolution apart where it crosses from the last column to the first.
+  bool present = false; ///< true if it exists at the time of `pose`; the rest is valid only then
+  Pose pose; ///< when the beam that receives most of it fires, or mid-scan if none touches it
+  /// Poses when the first and the last beam fire that contain its origin or receive energy of it,
+  /// otherwise `pose`. They are a revolution apart if it crosses from the last column to the first.
   Pose first, last;
-  std::size_t beam = 0;       ///< that beam, if any may touch it
-  Vec3 origin{ 0.0 };         ///< where it starts, m
-  double range = 0.0;         ///< m
-  double effectiveArea = 0.0; ///< m^2, see Silhouette.h; NaN from inside it
-  bool touched = false;       ///< some beam may touch it
-  std::uint32_t beams = 0;    ///< whose cones hold its origin
-  double energy = 0.0;        ///< J, largest of MoverSight::energy
-  double probability = 0.0;   ///< that any beam perceives it
+  std::size_t beam = 0;       ///< beam that receives most of it, 0 if none may touch it
+  Vec3 origin{ 0.0 };         ///< origin of this beam, m
+  double range = 0.0;         ///< from this origin to `pose`, m
+  double effectiveArea = 0.0; ///< m^2, see Silhouette.h; NaN from inside its bounding sphere
+  bool touched = false;       ///< true if a beam may touch it
+  std::uint32_t beams = 0;    ///< beams that contain its origin
+  double energy = 0.0;        ///< largest of MoverSight::energy, J
+  double probability = 0.0;   ///< probability that any beam perceives it
 };
 
-/// Reports in the order of the movers. Their effective areas take most of the time. Throws
-/// WorkStopped. @param sights of a scan of these beams @param threads > 0, or 0 for loopThreads(0)
-/// @param wanted called now and then, on the calling thread; if it returns false, the work stops
+/// One report for each mover. Effective areas take most of the time. Throws WorkStopped.
+/// @param sights of a scan of these beams @param threads > 0, or 0 for loopThreads(0)
+/// @param wanted called now and then, on the calling thread; the work stops if it returns false
 std::vector<MoverReport> reportMovers(const ScanSetup& setup, const ScanBeams& beams,
   const std::vector<MoverSight>& sights, int threads, const std::function<bool()>& wanted = {});
 }
