@@ -28,10 +28,10 @@ public:
   {
   }
 
-  /// Give the row a column, and others another one where that is better.
+  /// Assigns a column to the row, and other columns to other rows where that costs less.
   void add(std::size_t row)
   {
-    // Of prices whose costs are not below 0.
+    // This price leaves no reduced cost of the row below 0.
     double& least = this->RowPrice[row];
     least = std::numeric_limits<double>::infinity();
     this->forEach(row,
@@ -46,7 +46,7 @@ public:
       this->forEach(at,
         [&](std::size_t column, double cost)
         {
-          // Rounding must not make a way shorter than what was scanned before.
+          // Rounding must not make a path shorter than those scanned before.
           const double distance =
             walked + std::max(0.0, cost - this->RowPrice[at] - this->ColumnPrice[column]);
           if (distance < this->Distance[column])
@@ -59,7 +59,7 @@ public:
         });
       while (this->Next.top().first > this->Distance[this->Next.top().second])
       {
-        this->Next.pop(); // reached on a shorter way since
+        this->Next.pop(); // replaced by a shorter path
       }
       std::tie(walked, end) = this->Next.top();
       this->Next.pop();
@@ -103,7 +103,7 @@ private:
     {
       work(pair.column, pair.cost);
     }
-    work(this->Columns + row, this->CostWithout); // a column of its own: to go without
+    work(this->Columns + row, this->CostWithout); // the row's own column: unassigned
   }
 
   void forget()
@@ -123,7 +123,7 @@ private:
   std::vector<double> ColumnPrice;
   std::vector<std::size_t> RowOf;
   std::vector<std::size_t> ColumnOf;
-  std::vector<double> Distance; ///< along the shortest way, as far as it is known
+  std::vector<double> Distance; ///< length of the shortest path found so far
   std::vector<std::size_t> From;
   std::vector<std::size_t> Reached;
   using Step = std::pair<double, std::size_t>;

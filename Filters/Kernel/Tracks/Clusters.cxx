@@ -12,10 +12,10 @@ namespace avianlidar
 {
 namespace
 {
-/// Cells are not smaller, m: where all that joins is points in one place.
+/// Least reach of cells, m: it applies where only points in one place are neighbours.
 constexpr double LeastCell = 1e-3;
 
-/// The size of a cell is 2 to the power of the first; then its place along x, y and z.
+/// Level of the cell, which is 2^level m wide, then its place along x, y and z.
 using Cell = std::array<std::int64_t, 4>;
 
 struct CellHash
@@ -38,7 +38,7 @@ auto contentOf(const CloudPoint& point)
     point.position.x, point.position.y, point.position.z, point.time, point.rangeError);
 }
 
-/// Where the values are, sorted by content.
+/// Indices of the values, sorted by content.
 template <class T, class Content>
 std::vector<std::size_t> orderOf(const std::vector<T>& values, Content content)
 {
@@ -49,7 +49,7 @@ std::vector<std::size_t> orderOf(const std::vector<T>& values, Content content)
   return order;
 }
 
-/// Points that belong to no cluster yet, by cells.
+/// Points that belong to no cluster yet, by cell.
 class Grid
 {
 public:
@@ -66,12 +66,12 @@ public:
     }
   }
 
-  /// Takes the neighbours of a point out of their cells, and the point itself.
+  /// Takes a point and its neighbours out of their cells.
   void take(std::size_t point, std::vector<std::size_t>& taken)
   {
     const Vec3& place = this->Places[point];
     const double mine = this->reach(this->Ranges[point]);
-    // |difference of ranges| is at most the distance: so far a neighbour can be.
+    // Ranges of two points differ by at most their distance, so no neighbour is farther away.
     const double farthest = mine / (1.0 - 0.5 * this->Angle) * (1.0 + 1e-9);
     const double change = this->Angle * farthest;
     for (int level = levelOf(mine - change); level <= levelOf(mine + change); ++level)
@@ -129,12 +129,12 @@ private:
 
   double Distance;
   double Angle;
-  std::vector<Vec3> Places; ///< from the sensor
+  std::vector<Vec3> Places; ///< relative to the sensor, m
   std::vector<double> Ranges;
   std::unordered_map<Cell, std::vector<std::size_t>, CellHash> Cells;
 };
 
-/// Members come in an order that their content decides, so rounding is the same.
+/// Mean of a cluster. The order of members depends on their content only, so rounding does, too.
 Cluster meanOf(const std::vector<CloudPoint>& points, const std::vector<std::size_t>& members)
 {
   const CloudPoint& first = points[members[0]];

@@ -15,7 +15,7 @@ namespace
 // Bits of a key: azimuth above elevation above range.
 constexpr int RangeBits = 26;
 constexpr int ElevationBits = 18;
-// Neighbours of the first cells are numbers of their own.
+// Ranges begin at Margin, so that neighbours below the first range have keys of their own.
 constexpr int Margin = ClutterMap::MostTolerance;
 constexpr int LowestElevation = (1 << (ElevationBits - 1));
 
@@ -31,7 +31,7 @@ std::vector<ClutterMap::Key> distinct(std::vector<ClutterMap::Key> keys)
   return keys;
 }
 
-/// The first place at or after `from` whose key is not less: near ones are found in few steps.
+/// First index from `from` on whose key is not less than `key`. Near ones take few steps.
 std::size_t gallop(const std::vector<ClutterMap::Key>& keys, std::size_t from, ClutterMap::Key key)
 {
   std::size_t step = 1;
@@ -203,7 +203,7 @@ ClutterMap ClutterMap::restored(
   {
     if (!result.Keys.empty() && result.Keys.back() == key)
     {
-      result.Sums.back() = sum; // the largest
+      result.Sums.back() = sum; // pairs are sorted: this is the largest
       continue;
     }
     result.Keys.push_back(key);

@@ -1,21 +1,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file ClutterMap.h
- * @brief Where a sensor that stands still has echoes again and again: persistence of cells of
- * azimuth, elevation and range.
+ * @brief Where a fixed sensor has echoes again and again: persistence by azimuth, elevation and
+ * range.
  *
- * With W the window and n the scans learned, each scan weighs q = 1 - 1/W as much as the next one.
- * Persistence of a cell: sum of the weights of the scans in which it held an echo, over the sum of
- * all n weights, W (1 - q^n). Cells below persistenceKept() are forgotten.
+ * With W the window and n the number of scans learned, each scan has q = 1 - 1/W times the weight
+ * of the next one. The persistence of a cell is the sum of the weights of scans with an echo in it,
+ * over the sum of all n weights, W (1 - q^n). Cells below persistenceKept() are forgotten.
  *
- * A sorted list of cells: a scan is sorted and merged with it, and a scan that asks for its
- * probabilities walks along it once for each row of neighbours, so that both take about
- * n log n + m steps for n points and m cells.
+ * The map is a sorted list of cells. A new scan is sorted and merged with the list. To find
+ * probabilities, a scan walks along the list once for each row of neighbours. Both take about n log
+ * n + m steps for n points and m cells.
  *
  * Source: background subtraction by the share of scans, as in Examples/sequence; the exponential
  * window is ours.
- * Valid: finite points. The same bits for any order of the points. Azimuths beyond +-180 degrees
- * are neighbours, the other side of the zenith is not.
+ * Valid: finite points. The order of the points changes no bit. Neighbours wrap around at azimuths
+ * of +-180 degrees, but not across the zenith.
  * Test: TestClutterMap.cxx; TestClutterFilter.py (NumPy, point by point).
  */
 #ifndef avianlidar_ClutterMap_h
@@ -29,15 +29,14 @@
 
 namespace avianlidar
 {
-/// Cells about the sensor. Angles are nearest to a multiple of their step, ranges are from a
-/// multiple of theirs on.
+/// Cells about the sensor. Angles are rounded to the nearest multiple of their step, ranges down.
 struct ClutterGrid
 {
   double rangeStep = 1.5;       ///< m, 0.001 to 1000
-  double azimuthStep = 0.375;   ///< degrees, 0.001 to 90; the whole circle has a whole number
+  double azimuthStep = 0.375;   ///< degrees, 0.001 to 90; rounded to fit the whole circle
   double elevationStep = 0.375; ///< degrees, 0.001 to 90
 
-  int columns() const; ///< of the whole circle
+  int columns() const; ///< cells of the whole circle
 };
 
 struct ClutterCell
@@ -50,47 +49,47 @@ struct ClutterCell
 class ClutterMap
 {
 public:
-  /// Of a cell; a larger one is later in the list.
+  /// Number of a cell; the list is sorted by it.
   using Key = std::uint64_t;
 
   static constexpr double LongestWindow = 100000.0;
   static constexpr int MostTolerance = 10;
-  /// More ranges are one cell.
+  /// Number of ranges; the last one includes all beyond.
   static constexpr int MostRanges = (1 << 26) - 2 * MostTolerance - 1;
 
-  /// @param window W, scans, 1 to LongestWindow
+  /// @param window W, in scans, 1 to LongestWindow
   explicit ClutterMap(const ClutterGrid& grid = {}, double window = 200.0);
 
-  /// What is wrong with a grid or a window, or an empty string.
+  /// Returns what is wrong with a grid or a window, or an empty string.
   static std::string check(const ClutterGrid& grid, double window);
 
-  /// The cell of a point. @param offset m, from the sensor
+  /// The cell of a point. @param offset from the sensor, m
   static Key keyOf(const ClutterGrid& grid, const Vec3& offset);
   static Key keyOf(const ClutterCell& cell);
   static ClutterCell cellOf(Key key);
-  /// Is it a cell of the grid?
+  /// True if the grid has this cell.
   static bool holds(const ClutterGrid& grid, const ClutterCell& cell);
-  /// The middle of a cell, m from the sensor.
+  /// The middle of a cell relative to the sensor, m.
   static Vec3 middleOf(const ClutterGrid& grid, const ClutterCell& cell);
 
-  /// The map after one scan more. @param points keys of its points, in any order
+  /// The map after one more scan. @param points keys of its points, in any order
   ClutterMap learned(std::vector<Key> points) const;
 
-  /// The map that has these cells. @param scans that were learned
+  /// A map with the given cells. @param scans number of scans learned
   ClutterMap restored(
     const std::vector<Key>& cells, const std::vector<double>& persistences, int scans) const;
 
   /// The largest persistence of the cells around each point.
-  /// @param rangeTolerance, angularTolerance in cells to each side, 0 to MostTolerance
+  /// @param rangeTolerance, angularTolerance cells to each side, 0 to MostTolerance
   std::vector<double> probabilities(
     const std::vector<Key>& points, int rangeTolerance, int angularTolerance) const;
 
-  const std::vector<Key>& keys() const { return this->Keys; } ///< rising
+  const std::vector<Key>& keys() const { return this->Keys; } ///< increasing
   double persistence(std::size_t index) const { return this->shareOf(this->Sums[index]); }
   int scans() const { return this->Scans; }
   const ClutterGrid& grid() const { return this->Grid; }
 
-  /// Cells below it are forgotten: a thousandth, or half of one echo in a long window.
+  /// Persistence below which cells are forgotten: 0.001, or half of one echo in a long window.
   double persistenceKept() const;
 
 private:
@@ -101,7 +100,7 @@ private:
   double Window;
   int Scans = 0;
   std::vector<Key> Keys;
-  std::vector<double> Sums; ///< of the weights of scans with an echo
+  std::vector<double> Sums; ///< by cell: sum of the weights of scans with an echo
 };
 }
 

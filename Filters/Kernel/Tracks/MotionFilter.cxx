@@ -8,7 +8,7 @@ namespace avianlidar
 namespace
 {
 constexpr std::size_t Size = MotionState::Size;
-constexpr std::size_t Turn = 6; // the turn rate's place
+constexpr std::size_t Turn = 6; // index of the turn rate
 using Matrix = std::array<MotionState::Row, Size>;
 
 glm::dmat3 differenceError(const MotionState& state, const glm::dmat3& error)
@@ -24,15 +24,15 @@ glm::dmat3 differenceError(const MotionState& state, const glm::dmat3& error)
   return sum;
 }
 
-/// Moves the mean. @return the derivatives of what comes out
+/// Moves the mean by `seconds`. @return derivatives of the new mean with respect to the old one
 Matrix move(MotionState::Row& mean, double seconds)
 {
   const double rate = mean[Turn];
   const double angle = rate * seconds;
   const double sine = std::sin(angle);
   const double cosine = std::cos(angle);
-  // How far a unit of velocity carries, along it and to its left, and how that changes with the
-  // rate; of small angles by series, exact to 1e-13 of them.
+  // Distances that a unit of velocity covers along itself and to its left, and their derivatives
+  // with respect to the rate. Small angles take series with a relative error of 1e-13.
   const bool small = std::fabs(angle) < 1e-3;
   const double along = small ? seconds * (1.0 - angle * angle / 6.0) : sine / rate;
   const double across =

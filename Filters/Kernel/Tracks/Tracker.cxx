@@ -16,7 +16,7 @@ struct Measured
 {
   const std::vector<Cluster>& clusters; ///< by x
   std::vector<glm::dmat3> errors;
-  double largestError = 0.0; ///< m, root of the largest trace
+  double largestError = 0.0; ///< square root of the largest trace, m
   double lastTime = -Infinity;
 };
 
@@ -34,8 +34,8 @@ Measured measure(const std::vector<Cluster>& clusters, const Vec3& sensor, const
   return measured;
 }
 
-/// How far from a track's last position, m, its gate reaches at most. Standard deviations of sums
-/// are not above the sums of standard deviations.
+/// Upper bound of the distance from a track's last position to the end of its gate, m. Standard
+/// deviations of sums are not above the sums of standard deviations.
 double reachOf(const Track& track, const Measured& measured, const TrackerSettings& s)
 {
   const double seconds = std::max(0.0, measured.lastTime - track.positions.back().time);
@@ -53,7 +53,7 @@ double reachOf(const Track& track, const Measured& measured, const TrackerSettin
       measured.largestError);
 }
 
-/// The pairs within the gate, with their costs. @param largest ln det S is made larger
+/// Pairs of a track within the gate, with their costs. @param largest ln det S so far, updated
 Row pairsOf(const Track& track, const Measured& measured, const TrackerSettings& s, double& largest)
 {
   Row pairs;
@@ -63,7 +63,7 @@ Row pairsOf(const Track& track, const Measured& measured, const TrackerSettings&
   auto next = std::lower_bound(begin, measured.clusters.end(), last.position.x - reach,
     [](const Cluster& cluster, double x) { return cluster.center.x < x; });
   MotionState state;
-  double stateTime = -Infinity; // without timestamps all have the same
+  double stateTime = -Infinity; // without timestamps, all clusters have the same time
   for (; next != measured.clusters.end() && next->center.x <= last.position.x + reach; ++next)
   {
     const Vec3 apart = next->center - last.position;
@@ -127,7 +127,7 @@ glm::dmat3 positionError(
 {
   const Vec3 line = cluster.center - sensor;
   const double range = safeLength(line);
-  // Of a place anywhere in a disc of radius a, each coordinate has the variance a^2 / 4.
+  // Each coordinate of a point anywhere in a disc of radius a has the variance a^2 / 4.
   const double radius = range * halfBeamwidth;
   const double across = 0.25 * radius * radius;
   const Vec3 u = range > 0.0 ? unitVector(line) : Vec3(0.0);
@@ -144,7 +144,7 @@ std::vector<int> Tracker::update(const std::vector<Cluster>& clusters, const Vec
     this->Tracks.erase(
       std::remove_if(this->Tracks.begin(), this->Tracks.end(), isOver), this->Tracks.end());
   };
-  // What is there after a pause is another bird, and no state is predicted that far.
+  // An echo after a pause is of another bird, and no state is predicted that far.
   for (Track& track : this->Tracks)
   {
     if (!track.ended && time - track.positions.back().time > s.maximumPause)
@@ -158,7 +158,7 @@ std::vector<int> Tracker::update(const std::vector<Cluster>& clusters, const Vec
   const Measured measured = measure(clusters, sensor, s);
   std::vector<Row> rows(this->Tracks.size());
   double largest = -Infinity;
-  constexpr std::size_t interval = 64; // tracks, each of which may look at all clusters
+  constexpr std::size_t interval = 64; // tracks, each compared with up to all clusters
   for (std::size_t i = 0; i < rows.size(); ++i)
   {
     if (goOn && i % interval == 0 &&

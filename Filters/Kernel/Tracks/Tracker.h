@@ -3,15 +3,15 @@
  * @file Tracker.h
  * @brief Tracks of targets from clusters, scan by scan.
  *
- * Of each track and cluster a Kalman filter says how far apart they are (MotionFilter.h). Pairs
- * within the gate are assigned one to one (Assignment.h) so that the sum of d2 + ln det S is least:
- * minus twice the log likelihood but for a constant. A track without a cluster costs the gate and
- * the largest ln det S of the scan, so that no pair costs more. What is left over begins tracks.
+ * A Kalman filter gives the distance of each track and cluster (MotionFilter.h). Pairs within the
+ * gate are assigned one to one (Assignment.h) so that the sum of d2 + ln det S is least: up to a
+ * constant, this is minus twice the log likelihood. A track without a cluster costs the gate plus
+ * the largest ln det S of the scan, so that no pair costs more. Unassigned clusters begin tracks.
  *
  * Source: global nearest neighbour tracking with M of N confirmation: S. Blackman and R. Popoli,
  * "Design and Analysis of Modern Tracking Systems", 1999 (second-hand).
- * Differs: the price of a track without a cluster, for which probabilities of detection and
- * densities of clutter would have to be known.
+ * Differs: the price of a track without a cluster, which would require probabilities of detection
+ * and densities of clutter.
  * Valid: each update is a whole scan, later than the one before.
  * Test: TestTracker.cxx, TestTracker.py.
  */
@@ -32,16 +32,16 @@ namespace avianlidar
 struct TrackerSettings
 {
   double halfBeamwidth = 0.0; ///< rad
-  double targetExtent = 0.0;  ///< m, of echoes about their target's middle, rms along each axis
+  double targetExtent = 0.0;  ///< rms offset of echoes from the target's middle along each axis, m
   MotionModel motion;
-  double gate = 0.0;              ///< largest square of the distance in standard deviations
-  int confirmHits = 1;            ///< of the last confirmScans scans
-  int confirmScans = 1;           ///< at most 32
-  double minimumSpeed = 0.0;      ///< m/s, of a track that is confirmed
-  int maximumMisses = 1;          ///< in a row, of a confirmed track
-  double maximumPause = Infinity; ///< s, without a cluster
-  std::size_t historyLength = 1;
-  double keepTime = 0.0; ///< s
+  double gate = 0.0;              ///< largest squared distance in standard deviations
+  int confirmHits = 1;            ///< M: hits of the last N scans that confirm a track
+  int confirmScans = 1;           ///< N: number of scans for a confirmation, at most 32
+  double minimumSpeed = 0.0;      ///< least speed that confirms a track, m/s
+  int maximumMisses = 1;          ///< misses in a row that end a confirmed track
+  double maximumPause = Infinity; ///< longest time without a cluster, s
+  std::size_t historyLength = 1;  ///< positions kept for a track
+  double keepTime = 0.0;          ///< time for which ended tracks are kept, s
 };
 
 struct TrackPosition
@@ -49,7 +49,7 @@ struct TrackPosition
   double time; ///< s
   Vec3 position;
   Vec3 velocity;
-  std::array<double, 6> covariance; ///< m2: xx, yy, zz, xy, yz, xz
+  std::array<double, 6> covariance; ///< covariance of the position, m2: xx, yy, zz, xy, yz, xz
   int echoes;
 };
 
@@ -59,27 +59,27 @@ struct Track
   bool confirmed = false;
   bool ended = false;
   int hits = 0;
-  int misses = 0; ///< in a row
-  std::uint32_t recent =
-    0;                  ///< a bit for each of the last scans, the lowest of the last: was it hit
-  double endTime = 0.0; ///< s
-  MotionState state;    ///< at the time of the last position
-  std::vector<TrackPosition> positions; ///< the last ones
+  int misses = 0;           ///< in a row
+  std::uint32_t recent = 0; ///< a bit for each of the last scans, 1: hit; the lowest is the latest
+  double endTime = 0.0;     ///< s
+  MotionState state;        ///< at the time of the last position
+  std::vector<TrackPosition> positions; ///< the last historyLength
 };
 
-/// The covariance (m2) of a cluster's centre as the position of a target.
+/// Covariance of a cluster's centre as the position of a target, m2.
 glm::dmat3 positionError(
   const Cluster& cluster, const Vec3& sensor, double halfBeamwidth, double targetExtent);
 
 class Tracker
 {
 public:
-  /// One scan more. @param time s, of the scan @param goOn asked now and then; if it is false,
-  /// WorkStopped is thrown @return the id of each cluster's track
+  /// Updates the tracks with one more scan. @param time of the scan, s
+  /// @param goOn called now and then; WorkStopped is thrown if it returns false; may be empty
+  /// @return id of each cluster's track
   std::vector<int> update(const std::vector<Cluster>& clusters, const Vec3& sensor, double time,
     const TrackerSettings& settings, const KeepGoing& goOn = {});
 
-  /// By id; those that ended, too, as long as they are kept.
+  /// Sorted by id. Tracks that ended are included as long as they are kept.
   const std::vector<Track>& tracks() const { return this->Tracks; }
 
 private:
