@@ -9,9 +9,9 @@ namespace avianlidar
 {
 namespace
 {
-/// Cells inside the next smaller circle when `cells` lie inside this one and all are about as wide
-/// as high (Beckers and Beckers, "A general rule for disk and hemisphere partition into equal-area
-/// cells", Computational Geometry 45(7), 2012, Eq. 5).
+/// Number of cells inside the next smaller circle if `cells` lie inside this one and all are about
+/// as wide as high (Beckers and Beckers, "A general rule for disk and hemisphere partition into
+/// equal-area cells", Computational Geometry 45(7), 2012, Eq. 5).
 std::size_t cellsInsideRing(std::size_t cells)
 {
   const double root = std::sqrt(static_cast<double>(cells)) - std::sqrt(Pi);
@@ -22,7 +22,7 @@ std::size_t cellsInsideRing(std::size_t cells)
   return std::min(cells - 1, static_cast<std::size_t>(std::llround(root * root)));
 }
 
-/// From the share of the energy that lies inside to the place in the beam's plane.
+/// Radius in the beam's plane of the circle that contains a share of the energy.
 class PlaneRadius
 {
 public:
@@ -34,9 +34,9 @@ public:
   {
   }
 
-  /// tan theta / tan theta0.5 at sin^2(theta/2) = u sin^2(theta0.5/2), where u = (1 - cos
-  /// theta)/(1 - cos theta0.5) is the share itself, or for the Gaussian profile -ln(1 - v (1 -
-  /// e^(-2 k^2)))/(2 k^2).
+  /// Returns tan theta / tan theta0.5, where sin^2(theta/2) = u sin^2(theta0.5/2). For a uniform
+  /// profile u = (1 - cos theta)/(1 - cos theta0.5) is the share v itself, for a Gaussian one -ln(1
+  /// - v (1 - e^(-2 k^2)))/(2 k^2).
   template <BeamProfile Profile>
   AVIANLIDAR_ALWAYS_INLINE double of(double v) const
   {
@@ -49,7 +49,7 @@ public:
     const double s = std::sqrt(u) * this->SinQuarter;
     const double tangent = 2.0 * s * std::sqrt((1.0 - s) * (1.0 + s)) / (1.0 - 2.0 * s * s);
     const double radius = tangent * this->InverseTangent;
-    // Some units of round-off inside, so that x^2 + y^2 <= 1 after rounding.
+    // The limit is some units of round-off inside, so that x^2 + y^2 <= 1 after rounding.
     constexpr double rim = 1.0 - 0x1p-50;
     return radius < rim ? radius : rim;
   }
@@ -61,7 +61,7 @@ private:
   double Within;
 };
 
-/// What all rays of a beam are drawn with. `cells` is null for Monte Carlo.
+/// What all rays of a beam have in common. `cells` is null for Monte Carlo rays.
 struct Draw
 {
   std::int32_t seed;
@@ -225,7 +225,7 @@ void samplePattern(std::int32_t seed, std::size_t pattern, std::size_t patterns,
   StrataPartition::RayCells cells = strata.rayCells();
   for (std::size_t n = 0; n < cells.v0.size(); ++n)
   {
-    // pattern -> odd * pattern + first is a permutation for each ray.
+    // (odd * pattern + first) % patterns is a permutation of the patterns for each ray.
     const auto u = uniformPair(seed, patterns, n, RandomPurpose::Patterns);
     const auto odd = 2 * static_cast<std::size_t>(u[0] * static_cast<double>(patterns)) + 1;
     const auto first = static_cast<std::size_t>(u[1] * static_cast<double>(patterns));

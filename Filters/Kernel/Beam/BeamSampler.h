@@ -1,19 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file BeamSampler.h
- * @brief Strata of the beam, patterns of rays, and the estimator of the standard error, made once
- * for a number of rays.
+ * @brief Draws the rays of beams, from strata and patterns made once for a number of rays.
  *
- * Drawing stratified rays takes longer than tracing them. So beams of up to MostRaysOfAPattern
- * rays share PatternsOfRays patterns: each beam has one of them, turned about its axis by an angle
- * of its own, both at random. Over patterns and angles the rays of a beam are distributed as if
- * drawn for it alone; beams of one pattern differ by the turn. Monte Carlo rays (the paper) are
- * drawn for each beam.
+ * Drawing stratified rays takes longer than tracing them. Beams of up to MostRaysOfAPattern rays
+ * therefore share PatternsOfRays patterns: each beam has a random one, turned about its axis by a
+ * random angle. Over patterns and angles, the rays of a beam are distributed as if they were drawn
+ * for it alone. Monte Carlo rays (the paper) are drawn for each beam.
  *
  * Source: none.
- * Valid: as BeamRays.h. Beams that share a pattern are not independent; over all patterns a ray
- * comes once into each part of its cell's range of radii, so means over many beams have next to no
- * error of the patterns.
+ * Valid: as BeamRays.h. Beams that share a pattern differ by the turn only, so they are not
+ * independent; for means over many beams see samplePattern().
  * Test: TestBeamRays.cxx.
  */
 #ifndef avianlidar_BeamSampler_h
@@ -39,7 +36,7 @@ public:
   BeamSampler(const BeamSampler&) = delete;
   BeamSampler& operator=(const BeamSampler&) = delete;
 
-  /// The rays of a beam.
+  /// Draws the rays of a beam.
   void draw(std::int32_t seed, std::uint64_t beam, BeamRays& rays);
 
   StrataPartition strata;
@@ -48,7 +45,7 @@ public:
 private:
   const BeamShape Shape;
   const Sampling Method;
-  std::vector<BeamRays> Patterns; ///< empty until one is needed
+  std::vector<BeamRays> Patterns; ///< each is empty until it is needed
 };
 }
 

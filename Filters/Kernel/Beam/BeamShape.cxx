@@ -8,14 +8,14 @@ namespace avianlidar
 {
 namespace
 {
-/// So narrow that what is uniform in solid angle is uniform over the plane, to rounding.
+/// Half-beamwidth at which a profile uniform in solid angle is uniform over the plane, to rounding.
 constexpr double Flat = 1e-9; // rad
 
-/// Of the unit square.
+/// Diagonal of the unit square.
 constexpr double Diagonal = 1.4142135623730951;
 
-/// x in [0, 1] with erf(root2 k x) = share erf(root2 k), by Newton's steps: erf bends downwards, so
-/// that they rise to it.
+/// Solves erf(root2 k x) = share erf(root2 k) for x in [0, 1] by Newton's method. As erf is
+/// concave, the steps rise to the solution.
 double placeOfShare(double share, double k)
 {
   const double all = std::erf(Diagonal * k);
@@ -73,9 +73,9 @@ BeamShape::BeamShape(const Sensor& sensor)
   }
 }
 
-/// From the disc to the square so that equal areas stay equal: Shirley and Chiu, "A Low Distortion
-/// Map Between Disk and Square", Journal of Graphics Tools 2(3), 1997; then along each side to the
-/// place with the same share of the Gaussian.
+/// The disc is mapped to the square so that areas keep their ratio: Shirley and Chiu, "A Low
+/// Distortion Map Between Disk and Square", Journal of Graphics Tools 2(3), 1997. Each coordinate
+/// then moves to the place with the same share of the Gaussian.
 void BeamShape::fit(BeamRays& rays) const
 {
   for (std::size_t n = 0; this->Width.isRectangle && n < rays.size(); ++n)

@@ -3,15 +3,16 @@
  * @file BeamShape.h
  * @brief Outline and profile of the sensor's beams in the coordinates of their plane (BeamFrame.h).
  *
- * An ellipse is the unit disc there, a rectangle the square whose corners lie on its rim; the axis
- * of x is the one along which the beam is wider. A round beam is uniform in solid angle, or falls
- * with it. One that is not round is narrow: its energy is uniform over the plane, or falls with the
- * squared distance from the axis, in half-beamwidths: exp(-2 k^2 (x^2 + y^2)), for a rectangle with
- * x and y from -1 to 1.
+ * An ellipse is the unit disc of the plane, a rectangle the square with its corners on the rim of
+ * the disc; a beam is wider along x. The energy of a round beam is uniform in solid angle, or falls
+ * with it. A beam that is not round is narrow: its energy is uniform over the plane, or falls with
+ * the squared distance from the axis, in half-beamwidths, as exp(-2 k^2 (x^2 + y^2)); for a
+ * rectangle, x and y here go from -1 to 1.
  *
  * Source: none.
  * Valid: any sensor that checkSensor() accepts. At 0.1 rad a beam uniform over its plane is 1.5 %
- * brighter at its rim (3 % at the corners of a square), per solid angle, than one uniform in that.
+ * brighter per solid angle at its rim (3 % at the corners of a square) than a beam uniform in solid
+ * angle.
  * Test: TestBeamShape.cxx.
  */
 #ifndef avianlidar_BeamShape_h
@@ -28,14 +29,14 @@ class BeamShape
 public:
   explicit BeamShape(const Sensor& sensor);
 
-  /// What frames of the beams are made of.
+  /// Width from which the frames of the beams are made.
   const BeamWidth& width() const { return this->Width; }
   bool isRound() const { return this->Width.isRound; }
 
-  /// Half the side of a rectangle, in the unit of the plane: the root of 1/2.
+  /// Half the side of a rectangle, in the unit of the plane: the square root of 1/2.
   static constexpr double HalfSide = 0.70710678118654752;
 
-  /// Whether a point of the disc lies in the outline.
+  /// True if a point of the disc lies in the outline.
   template <class T>
   bool holds(T x, T y) const
   {
@@ -43,27 +44,27 @@ public:
                                    : x * x + y * y <= 1;
   }
 
-  /// Area of the outline.
+  /// Area of the outline, in the squared unit of the plane.
   double area() const { return this->Width.isRectangle ? 2.0 : Pi; }
 
-  /// Share of the pulse of a uniform profile for an area of the plane at the axis.
+  /// Share of the pulse per area of the plane at the axis, for a uniform profile.
   double shareOfArea() const { return this->ShareOfArea; }
 
-  /// Density of the energy over that of a uniform profile.
+  /// Density of the energy over the density of a uniform profile.
   double density(double x, double y) const
   {
     return this->isRound() ? rayDensity(this->Profile, x * x + y * y)
                            : this->PerMean * std::exp(-this->Fall * (x * x + y * y));
   }
 
-  /// The largest density, or more.
+  /// Upper bound of the density.
   double mostDensity() const { return this->MostDensity; }
 
-  /// What rays are drawn with.
+  /// Profile that the rays are drawn with.
   const RadialProfile& profile() const { return this->Profile; }
 
-  /// Move rays of profile() into a rectangle, so that they have its profile; into other outlines
-  /// they fit.
+  /// Moves rays drawn with profile() to the profile of a rectangle; does nothing for other
+  /// outlines.
   void fit(BeamRays& rays) const;
 
 private:
@@ -71,9 +72,9 @@ private:
   RadialProfile Profile;
   double ShareOfArea;
   double MostDensity;
-  double Truncation = 0.0; ///< k of a Gaussian in a rectangle; 0: it is uniform
-  double Fall = 0.0;       ///< of a Gaussian, over x^2 + y^2; 0: it is uniform
-  double PerMean = 1.0;    ///< 1 over the mean of exp()
+  double Truncation = 0.0; ///< k of a Gaussian in a rectangle; 0: uniform
+  double Fall = 0.0;       ///< rate of a Gaussian over x^2 + y^2; 0: uniform
+  double PerMean = 1.0;    ///< 1 over the mean of the Gaussian
 };
 }
 

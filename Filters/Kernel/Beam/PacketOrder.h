@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file PacketOrder.h
- * @brief Decides which rays of a beam share a packet: an order of their numbers in compact groups
- * of sixteen.
+ * @brief Groups the rays of a beam into packets: orders their numbers in compact groups of sixteen.
  *
- * Stratified rays of equal number lie in the same cells, so one order, that of some beam, serves
- * all. It depends on nothing else, so the cost of a beam does not depend on what its thread did
- * before. The order serves independent rays as well as any other. Rays that come with their
- * neighbours keep their order.
+ * Stratified rays of equal number lie in the same cells in all beams, so the order found for one
+ * beam serves all. It depends on the number of rays only, so the cost of a beam does not depend on
+ * what its thread did before. For independent rays this order is as good as any other. Rays that
+ * come with their neighbours keep their order.
  *
  * Source: none.
  * Valid: any number of rays, at least 1. The order affects cost only, never hits.
@@ -30,7 +29,7 @@ class PacketOrder
 {
 public:
   /// Numbers of `rays` (at least 1) rays in compact groups of PacketGroup; the last group may have
-  /// fewer. Valid until the next call; found anew where the number differs from that of the last.
+  /// fewer. Valid until the next call; found anew if `rays` differs from the last call.
   const std::vector<std::uint32_t>& of(std::size_t rays);
 
   /// Numbers 0, 1, 2, ... of at least `rays` rays. Valid until the next call.

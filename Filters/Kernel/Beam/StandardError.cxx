@@ -11,11 +11,10 @@ namespace avianlidar
 {
 namespace
 {
-/// Fewer rays say too little of how much energies differ.
+/// Least number of rays; fewer say too little of how much energies differ.
 constexpr std::size_t FewestRays = 8;
 
-/// Student's t over the normal distribution's 1.96, for intervals of 95 % from FewestRays ... 15
-/// values.
+/// Student's t over the normal 1.96, for 95 % intervals from FewestRays to 15 values.
 constexpr double SmallSample[] = { 1.2066, 1.1765, 1.1541, 1.1367, 1.1230, 1.1117, 1.1020, 1.0943 };
 }
 
@@ -115,7 +114,7 @@ double StandardErrorEstimator::stratified(const UnseenEnergy& unseen)
   const double* const x = this->Energies.data();
   const std::size_t last = this->Energies.size() / 2 - 1; // every cell before it holds two rays
   double variance = step * step;
-  std::size_t next = 0; // pair not yet counted
+  std::size_t next = 0; // first pair not yet counted
   for (const std::size_t ray : this->Touched)
   {
     const std::size_t pair = ray / 2;
@@ -131,7 +130,7 @@ double StandardErrorEstimator::stratified(const UnseenEnergy& unseen)
   {
     return std::sqrt(variance + a * a);
   }
-  // Three: 3 s^2, and the sum of squared deviations, 2 s^2, is a third of the squared differences.
+  // Three rays add 3 s^2. Their squared deviations, 2 s^2, are a third of the squared differences.
   const double b = x[2 * last + 1] - x[2 * last + 2];
   const double c = x[2 * last + 2] - x[2 * last];
   return std::sqrt(variance + 0.5 * (a * a + b * b + c * c));
