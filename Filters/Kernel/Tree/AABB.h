@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file AABB.h
- * @brief Axis-aligned bounding box, exact. A box of nothing contains no point and is neutral in a
- * merge.
+ * @brief Axis-aligned bounding box in double precision. An empty box contains no point and changes
+ * no box that it is merged with.
  *
  * Source: none.
  * Valid: coordinates up to MaximumCoordinate in magnitude.
@@ -25,7 +25,7 @@ struct AABB
   Vec3 lower{ std::numeric_limits<double>::infinity() };
   Vec3 upper{ -std::numeric_limits<double>::infinity() };
   bool empty() const { return this->lower.x > this->upper.x; }
-  /// Coordinates that are not numbers are left out.
+  /// Extend the box to a point. Coordinates that are NaN are left out.
   void extend(const Vec3& p)
   {
     for (int axis = 0; axis < 3; ++axis)
@@ -37,7 +37,7 @@ struct AABB
   Vec3 center() const { return 0.5 * this->lower + 0.5 * this->upper; }
 };
 
-/// A box that holds both.
+/// The smallest box that holds both.
 inline AABB merge(const AABB& a, const AABB& b)
 {
   AABB box = a;

@@ -27,8 +27,8 @@ BeamCone::BeamCone(const BeamFrame& frame)
   : apex(frame.origin)
   , axis(frame.axis)
 {
-  // A margin of tan(theta0.5) is at most half of itself times sin(2 theta0.5) as an angle; this is
-  // twice as much.
+  // A relative margin m of tan(theta0.5) turns the cone's edge by at most m sin(2 theta0.5) / 2.
+  // The cone is widened by at least twice as much.
   const double widened =
     frame.halfBeamwidth + 2.0 * HitMarginBeam * frame.sinHalf + 2.0 * HitMargin;
   this->sine = std::sin(widened);

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file BeamCone.h
- * @brief The cone of one beam, widened, and its projections on the three coordinate planes.
+ * @brief The widened cone of one beam, and its projections on the three coordinate planes.
  *
  * Source: paper, Sec. 3.2, Fig. 6 and 7.
- * Differs: the paper takes a projected wedge of half-angle theta0.5. The projection of a cone is
- * wider than that: with psi the angle between the axis and the plane's normal, sin(phi) =
- * sin(theta0.5) / sin(psi), and the whole plane where psi <= theta0.5 or psi >= pi - theta0.5.
+ * Differs: the paper projects the cone to a wedge of half-angle theta0.5. The true half-angle phi
+ * is larger: sin(phi) = sin(theta0.5) / sin(psi), with psi the angle between the axis and the
+ * plane's normal. The projection is the whole plane where psi <= theta0.5 or psi >= pi - theta0.5.
  * Valid: half-beamwidths in (0, pi/3]. Widened by HitMarginBeam tan(theta0.5) + HitMargin, the cone
- * holds every ray that TriangleTest.h lets hit.
+ * holds every ray for which TriangleTest.h finds a hit.
  * Test: TestBeamVolumeTest.cxx, TestGeometryProperties.cxx.
  */
 #ifndef avianlidar_BeamCone_h
@@ -22,11 +22,12 @@ namespace avianlidar
 struct ConeWedge
 {
   bool wholePlane = true;
-  double leftX = 0.0, leftY = 0.0;   ///< direction of its left edge
-  double rightX = 0.0, rightY = 0.0; ///< direction of its right edge
+  double leftX = 0.0, leftY = 0.0;   ///< direction of the left edge
+  double rightX = 0.0, rightY = 0.0; ///< direction of the right edge
 
   ConeWedge() = default;
-  /// @param sine of the cone's half-angle; @param axisX,axisY of its unit axis in the plane
+  /// @param sine sine of the cone's half-angle @param axisX,axisY components of its unit axis in
+  /// the plane
   ConeWedge(double sine, double axisX, double axisY);
 };
 
@@ -36,9 +37,9 @@ struct BeamCone
 
   Vec3 apex;
   Vec3 axis;
-  double sine; ///< of the widened half-angle
+  double sine; ///< sine of the widened half-angle
   double cosine;
-  ConeWedge wedges[3]; ///< on the planes yz, zx, xy
+  ConeWedge wedges[3]; ///< projections on the planes yz, zx, xy
 };
 }
 

@@ -21,7 +21,7 @@ AVIANLIDAR_MULTIVERSION void measure(const LaneBox* boxes, std::size_t count, La
 bool BinaryTree::divide(const TriangleMesh& mesh, const TreeOptions& options, int threads,
   const KeepGoing& keepGoing, std::uint32_t deepest)
 {
-  constexpr double measured = 0.1; // of the whole work
+  constexpr double measured = 0.1; // share of the whole work
   const TriangleBoxes scene = makeTriangleBoxes(mesh, threads, partOf(keepGoing, 0.0, measured));
   if (mesh.size() == 0 || !scene.boxes)
   {
@@ -73,7 +73,7 @@ bool BinaryTree::divide(const TriangleMesh& mesh, const TreeOptions& options, in
         divideNode(begin + i);
       }
     };
-    // How many layers there will be is not known.
+    // The number of layers is not known: each is taken to do a tenth of the rest.
     const double done = std::max(measured,
       1.0 - (1.0 - measured) * std::pow(0.9, static_cast<double>(this->nodes[begin].depth)));
     constexpr std::size_t blocksOfLayer = 64;

@@ -13,25 +13,25 @@ namespace avianlidar
 {
 namespace
 {
-/// Overlaps of a smaller part of the smaller triangle are those of neighbours by rounding.
+/// Least overlap, as a share of the smaller triangle: rounding makes neighbours overlap by less.
 constexpr double LeastOverlap = 1e-6;
 
-/// Tilt, rad, that single precision may add to a pair of normals.
+/// Angle, rad, that single precision may add between two normals.
 constexpr float TiltOfRounding = 1e-6f;
 
-/// Of several triangles the one of largest altitude has the common plane. Copies have the plane of
-/// the first: an altitude must be larger by this factor.
+/// Factor by which an altitude must be larger to change the owner of a plane: among copies, the
+/// first one stays the owner.
 constexpr double ClearlyLarger = 1.001;
 
-/// A triangle as the search needs it.
+/// Plane of a triangle in single precision.
 struct Face
 {
   glm::vec3 normal{ 0.0f };
-  float tilt = 0.0f;      ///< rad, by which rounding may turn it
-  float tolerance = 0.0f; ///< toleranceOf(), rounded up
+  float tilt = 0.0f;      ///< angle by which rounding may turn it, rad
+  float tolerance = 0.0f; ///< toleranceOf(), rounded up, m
 };
 
-/// Twice the area, along the normal.
+/// Vector along the normal whose length is twice the area, m2.
 Vec3 areaOf(const Corners& t)
 {
   return glm::cross(t.b - t.a, t.c - t.a);
@@ -50,14 +50,14 @@ double leastAltitudeOf(const Corners& t)
   return glm::length(areaOf(t)) / longestSideOf(t);
 }
 
-/// Relative to its first corner.
+/// Corners relative to the first one.
 Corners cornersOf(const TriangleMesh& mesh, std::uint32_t triangle)
 {
   return cornersFrom(mesh, triangle, mesh.corner(triangle, 0));
 }
 
-/// Whether a number has the digits of single precision alone. By its bits, as GCC 12 leaves out
-/// roundings to single precision and back where it vectorises them.
+/// True if a number has no more digits than single precision. Its bits are tested because GCC 12
+/// drops roundings to single precision and back where it vectorises them.
 bool isSingle(double x)
 {
   std::uint64_t bits;
@@ -65,7 +65,8 @@ bool isSingle(double x)
   return (bits & 0x1fffffffu) == 0;
 }
 
-/// Most that rounding moves a corner of the triangle off its plane, m. @param normal unit
+/// Largest distance, m, by which rounding moves a corner of the triangle off its plane. @param
+/// normal unit
 double toleranceOf(const TriangleMesh& mesh, std::uint32_t triangle, const Vec3& normal)
 {
   constexpr double ofDouble = 32.0 * RoundOffDouble;
@@ -101,7 +102,7 @@ Face faceOf(const TriangleMesh& mesh, std::uint32_t triangle)
     up * static_cast<float>(tolerance) };
 }
 
-/// True if a side of the first triangle separates them, seen along its normal.
+/// True if, seen along the normal of the first triangle, one of its sides separates the two.
 bool isBeside(const Corners& one, const Corners& two)
 {
   const Vec3 n = areaOf(one);
@@ -120,7 +121,7 @@ bool coincide(const Corners& one, const Corners& two, double tolerance)
   const Vec3 area = areaOf(one);
   const double size = glm::length(area);
   const Vec3 n = area / size;
-  // What is left of the second triangle within the sides of the first.
+  // Part of the second triangle within the sides of the first.
   using Ring = boost::container::static_vector<Vec3, 6>;
   Ring ring{ two.a, two.b, two.c };
   const Vec3 corners[] = { one.a, one.b, one.c };
@@ -165,7 +166,8 @@ bool coincide(const Corners& one, const Corners& two, double tolerance)
     std::fabs(glm::dot(n, overlap)) > std::max(LeastOverlap * least, edge);
 }
 
-/// Children of a node that lie no farther than `slack` from a child of another, one bit each.
+/// Children of `node` that lie no farther than `slack` (m) from the child `lane` of `other`, one
+/// bit each.
 AVIANLIDAR_MULTIVERSION std::uint32_t childrenNear(
   const WideNode& node, const WideNode& other, int lane, float slack)
 {
@@ -182,8 +184,8 @@ AVIANLIDAR_MULTIVERSION std::uint32_t childrenNear(
   return near;
 }
 
-/// Sets of triangles that coincide, which several threads unite. The root of a set is its lowest
-/// number, whatever the order of the pairs.
+/// Sets of coincident triangles, united by several threads. The root of a set is its lowest
+/// triangle number, whatever the order of the pairs.
 class Forest
 {
 public:
@@ -200,7 +202,7 @@ public:
   {
     while (this->Parents[t] != t)
     {
-      t = this->Parents[t] = this->Parents[this->Parents[t]].load(); // shortens the way
+      t = this->Parents[t] = this->Parents[this->Parents[t]].load(); // shortens the path
     }
     return t;
   }
@@ -244,7 +246,7 @@ public:
   {
   }
 
-  /// Set what the tree holds of coincident faces. @return false if stopped
+  /// Set planeOwners and planeDepth of the tree. @return false if stopped
   bool run(const KeepGoing& keepGoing, int threads, CollisionTree& tree)
   {
     constexpr std::size_t block = 1024;
@@ -281,7 +283,7 @@ public:
   }
 
 private:
-  /// Compare the triangles of different children of a node, and those of each leaf.
+  /// Compare the triangles of different children of a node, and the triangles within each leaf.
   void compareChildren(const WideNode& node)
   {
     for (int i = 0; i < WideNode::Width && node.first[i] != NoChild; ++i)
@@ -297,7 +299,7 @@ private:
     }
   }
 
-  /// Compare the triangles of a child with those of some children of a node, one bit each.
+  /// Compare the triangles of a child with the triangles of some children of a node, one bit each.
   void compareNear(const Child& one, const WideNode& node, std::uint32_t some)
   {
     some &= childrenNear(node, *one.node, one.lane, this->Slack);
@@ -337,13 +339,13 @@ private:
     {
       return;
     }
-    // In order, so that nothing depends on the tree.
+    // The order of their numbers makes the result independent of the tree.
     const auto [lower, higher] =
       std::minmax({ this->Tree.order[placeOne], this->Tree.order[placeTwo] });
     const Vec3& apex = this->Mesh.corner(lower, 0);
     const Vec3 between = this->Mesh.corner(higher, 0) - apex;
     const double tolerance = static_cast<double>(a.tolerance) + static_cast<double>(b.tolerance);
-    // Most planes that are parallel lie apart.
+    // Most parallel planes lie apart and need no exact comparison.
     const double level = tolerance + tilt * glm::dot(glm::abs(between), Vec3(1.0));
     if (std::fabs(glm::dot(Vec3(a.normal), between)) > level)
     {
@@ -358,7 +360,7 @@ private:
     }
   }
 
-  /// True if rounding explains how far a triangle lies from the plane of another.
+  /// True if rounding explains the distance of a triangle from the plane of another.
   bool fits(std::uint32_t triangle, std::uint32_t owner) const
   {
     const Corners plane = cornersOf(this->Mesh, owner);
@@ -375,12 +377,12 @@ private:
     return isOnPlane(t.a) && isOnPlane(t.b) && isOnPlane(t.c);
   }
 
-  /// Empty if nothing coincides.
+  /// Owner of the plane of each triangle, or NoTriangle; empty if nothing coincides.
   std::vector<std::uint32_t> owners()
   {
     bool found = false;
     const auto size = static_cast<std::uint32_t>(this->Faces.size());
-    std::vector<std::uint32_t> owners(size, NoTriangle); // of the roots of sets of several
+    std::vector<std::uint32_t> owners(size, NoTriangle); // by root of a set of several
     for (std::uint32_t t = 0; t < size; ++t)
     {
       const std::uint32_t root = this->Sets.rootOf(t);
@@ -406,7 +408,7 @@ private:
   const CollisionTree& Tree;
   const TriangleMesh& Mesh;
   std::vector<Face> Faces; ///< in the tree's order
-  float Slack = 0.0f;      ///< m, most that boxes of triangles that coincide may lie apart
+  float Slack = 0.0f;      ///< largest distance between the boxes of coincident triangles, m
   Forest Sets;
 };
 }

@@ -1,21 +1,23 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file CoincidentFaces.h
- * @brief Finds triangles that lie on each other, and gives them one plane, so that rounding does
- * not decide which of them is seen.
+ * @brief Finds triangles that coincide and gives them one plane, so that rounding does not decide
+ * which of them is seen.
  *
  * Two triangles coincide if they overlap and are nowhere in their overlap farther apart than the
- * rounding of their corners: 32 u_d (sixteen roundings to double precision) of the largest
- * coordinate of each and, if all its coordinates are numbers in single precision, 4 u of that, at
- * most half a millimetre. All that coincide, directly or by others, take the plane of the one whose
- * least altitude is largest, as rounding tilts it least. Rays then have equal ranges on them, bit
- * for bit, and equal ranges go to the lower triangle number.
+ * sum of their tolerances. A triangle's tolerance is the rounding of its corners: 32 u_d (sixteen
+ * roundings to double precision) of its largest coordinate. If all its coordinates are numbers of
+ * single precision, 4 u_s of its largest coordinates, projected on its normal, are added, at most
+ * half a millimetre.
  *
- * Pairs are found by a descent of the tree against itself.
+ * Pairs are found by descending the tree against itself. Triangles that coincide, directly or
+ * through others, then take the plane of the one whose least altitude is largest, because rounding
+ * tilts that plane least. The ranges of a ray on them are equal bit for bit, and the lower triangle
+ * number is seen.
  *
  * Source: none.
- * Valid: any triangles. Depends on the mesh alone, not on the tree or the threads. A triangle that
- * lies farther from the common plane than rounding explains keeps its own.
+ * Valid: any triangles. The result depends on the mesh alone, not on the tree or the threads. A
+ * triangle that lies farther from the common plane than rounding explains keeps its own plane.
  * Test: TestCoincidentFaces.cxx.
  */
 #ifndef avianlidar_CoincidentFaces_h
@@ -29,8 +31,8 @@
 
 namespace avianlidar
 {
-/// Set planeOwners and planeDepth. @param tree wide, complete but for these @return false if
-/// stopped
+/// Set planeOwners and planeDepth of a wide tree that is otherwise complete. @return false if
+/// `keepGoing` returned false
 bool findPlaneOwners(CollisionTree& tree, int threads, const KeepGoing& keepGoing);
 }
 

@@ -3,9 +3,9 @@
  * @file CollisionTree.h
  * @brief The collision detection tree: structure only.
  *
- * Nodes are those of the wide tree, eight boxes each. The paper's binary trees, of boxes and of
- * other volumes, are beside the kernel (OtherVolumes, VolumeTree.h). The builder is in
- * CollisionTreeBuilder.h, the descent in Traversal.h.
+ * A node has eight boxes (WideTree.h). CollisionTreeBuilder.h builds the tree, Traversal.h descends
+ * it. The paper's binary trees of boxes and other volumes are outside the kernel (VolumeTree.h) and
+ * enter as OtherVolumes.
  *
  * Source: paper, Sec. 3.1.
  * Differs: eight children a node; a leaf holds up to maximumLeafSize triangles (Algorithm 1: one).
@@ -45,38 +45,38 @@ struct TreeOptions
 {
   SplitRule splitRule = SplitRule::SurfaceAreaHeuristic;
   BoundingVolumeType boundingVolume = BoundingVolumeType::AABB; ///< others: see VolumeTree.h
-  int maximumLeafSize = 4; ///< triangles, >= 1; 1 is Algorithm 1
+  int maximumLeafSize = 4; ///< largest number of triangles in a leaf, >= 1; Algorithm 1 has 1
 };
 
-/// A volume or node still to be visited.
+/// Entry of the traversal stack: a node or leaf still to be visited.
 struct DescentEntry
 {
-  std::uint32_t node;    ///< or, in the wide tree, first entry of a leaf
-  std::uint32_t count;   ///< triangles of that leaf; else 0
-  std::uint64_t members; ///< of the wide tree: a bit for each ray or beam that meets the volume
-  double nearest;        ///< lower bound of ranges in it
-  std::uint32_t parent;  ///< of the wide tree: the node whose child this is
-  std::uint32_t lane;    ///< of that node
+  std::uint32_t node;  ///< number; for a leaf of the wide tree, first of its triangles in the order
+  std::uint32_t count; ///< number of triangles of a leaf of the wide tree; 0 for other nodes
+  std::uint64_t members; ///< a bit for each ray or beam that meets the volume (wide tree only)
+  double nearest;        ///< lower bound of ranges in the volume, m
+  std::uint32_t parent;  ///< node whose child this is (wide tree only)
+  std::uint32_t lane;    ///< lane of the parent that holds this child
 };
 
-/// Kept between descents, so that no descent allocates.
+/// Kept between descents, so that a descent does not allocate.
 using TraversalStack = std::vector<DescentEntry>;
 
-/// Receives the leaves that a descent meets.
+/// Visitor of the leaves that a descent meets.
 class TreeLeaves
 {
 public:
   virtual ~TreeLeaves() = default;
-  /// Volumes whose lower bound is greater are left out.
+  /// Range, m: volumes whose lower bound is greater are left out.
   virtual double limit() const = 0;
-  /// @return false to end the descent
+  /// Visit a leaf. @return false to end the descent
   virtual bool leaf(const std::uint32_t* triangles, std::uint32_t count) = 0;
 };
 
 struct CollisionTree;
 
-/// Volumes of a binary tree instead of the wide tree's boxes. Descents return the number of nodes
-/// visited and are conservative, as those of the wide tree.
+/// Binary tree of volumes that replaces the boxes of the wide tree. Its descents return the number
+/// of visited nodes and are conservative, like the descents of the wide tree.
 class OtherVolumes
 {
 public:
@@ -100,11 +100,11 @@ struct CollisionTree
   /// Depth of the deepest leaf in a binary tree that the rule divides; the root has depth 0.
   std::uint32_t depth = 0;
   WideTree wide; ///< boxes eight at a time in single precision; empty with other volumes
-  std::shared_ptr<const OtherVolumes> other; ///< null: boxes
-  /// For each triangle that coincides with others the one whose plane they take
-  /// (CoincidentFaces.h), for the rest NoTriangle; empty if no faces coincide.
+  std::shared_ptr<const OtherVolumes> other; ///< null if the tree has boxes
+  /// For each triangle the owner of the plane that it takes (CoincidentFaces.h), or NoTriangle if
+  /// it coincides with no other; empty if no faces coincide.
   std::vector<std::uint32_t> planeOwners;
-  double planeDepth = 0.0; ///< m, most that rounding moves two of them apart
+  double planeDepth = 0.0; ///< most by which rounding moves two coincident triangles apart, m
 
   bool empty() const { return this->order.empty(); }
 
@@ -113,14 +113,15 @@ struct CollisionTree
     return !this->planeOwners.empty() && this->planeOwners[triangle] != NoTriangle;
   }
 
-  /// Number of the triangle whose plane a triangle takes, or its own.
+  /// Number of the triangle whose plane a triangle takes; its own number if it coincides with no
+  /// other.
   std::uint32_t planeOwner(std::uint32_t triangle) const
   {
     return this->coincides(triangle) ? this->planeOwners[triangle] : triangle;
   }
 };
 
-/// Plane of a triangle, or that which it takes of another. @param corners from the apex
+/// Plane that a triangle takes, its own or its owner's. @param corners relative to the apex
 TrianglePlane planeOf(
   const CollisionTree& tree, std::uint32_t triangle, const Corners& corners, const Vec3& apex);
 }

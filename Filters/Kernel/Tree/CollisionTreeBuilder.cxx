@@ -16,15 +16,15 @@ namespace
 {
 constexpr int Width = WideNode::Width;
 
-/// [k - 1]: least sum of the areas of the wide nodes below a node of the binary tree, if it takes
-/// up to k lanes of the wide node above. A descent visits a node as often as its box is met, that
-/// is, in proportion to its area, and tests its eight children at once.
+/// Element k - 1: least sum of the areas of the wide nodes below a node of the binary tree if the
+/// node takes up to k lanes of the wide node above. A descent visits a node in proportion to its
+/// area and tests its eight children at once.
 using Costs = std::array<float, Width>;
 
 std::vector<Costs> costsOf(const BinaryTree& tree)
 {
   std::vector<Costs> costs(tree.nodes.size(), Costs{});
-  // Areas so scaled are floats.
+  // Areas in this unit stay within the range of floats.
   const double unit = tree.extent > 0.0 ? 1.0 / (tree.extent * tree.extent) : 0.0;
   for (std::size_t i = tree.nodes.size(); i-- > 0;)
   {
@@ -33,7 +33,7 @@ std::vector<Costs> costsOf(const BinaryTree& tree)
     {
       continue;
     }
-    // The least of all ways in which two children share the lanes.
+    // The two children share the lanes in the way that costs least.
     const Costs& first = costs[children];
     const Costs& second = costs[children + 1];
     Costs least;
@@ -57,7 +57,7 @@ std::vector<Costs> costsOf(const BinaryTree& tree)
 void setLane(WideNode& node, int lane, const LaneBox& box)
 {
   const Lanes center = 0.5f * box.twiceCenter();
-  // Sums of two floats that are rounded once.
+  // Each is a sum of two floats with one rounding, which roundedUp() covers.
   const Lanes half = roundedUp(larger(box.above - center, box.below + center));
   node.x[lane] = center[0];
   node.y[lane] = center[1];
@@ -67,7 +67,7 @@ void setLane(WideNode& node, int lane, const LaneBox& box)
   node.halfZ[lane] = half[2];
 }
 
-/// Makes wide nodes of a binary tree.
+/// Makes the wide nodes from a binary tree.
 class WideBuilder
 {
 public:
@@ -83,7 +83,9 @@ public:
   }
 
 private:
-  /// What takes the lanes of a wide node, or shares `lanes` of them. @return how many
+  /// List the nodes, at or below a node of the binary tree, that take up to `lanes` lanes of a wide
+  /// node.
+  /// @return their number
   int lanesOf(std::uint32_t number, int lanes, std::uint32_t* list) const
   {
     const std::uint32_t children = this->From.nodes[number].children;
@@ -107,7 +109,8 @@ private:
     return count + this->lanesOf(children + 1, lanes - toFirst, list + count);
   }
 
-  /// Add a node and all below it, depth first. @return its number
+  /// Add the wide node below a node of the binary tree, and all wide nodes below it, depth first.
+  /// @return its number
   std::uint32_t addNode(std::uint32_t whole, std::uint32_t level)
   {
     const auto number = static_cast<std::uint32_t>(this->To.nodes.size());
@@ -130,7 +133,7 @@ private:
 
   const BinaryTree& From;
   WideTree& To;
-  std::vector<Costs> Least; ///< of all nodes
+  std::vector<Costs> Least; ///< costs of each node of the binary tree
 };
 }
 
@@ -166,7 +169,7 @@ std::shared_ptr<const CollisionTree> buildCollisionTree(std::shared_ptr<const Tr
   tree->mesh = std::move(mesh);
   tree->options = options;
   tree->checksum = tree->mesh->checksum();
-  // To begin a loop costs about as much as the boxes of a few hundred triangles.
+  // Starting a parallel loop takes about as long as making the boxes of a few hundred triangles.
   constexpr std::size_t LeastPerThread = 1024;
   const std::size_t useful = std::max<std::size_t>(1, tree->mesh->size() / LeastPerThread);
   const int team =

@@ -4,12 +4,12 @@
  * @brief Builds the collision tree of boxes, eight children a node, with several threads.
  *
  * Up to eight nodes of a binary tree (BinaryTree.h) become the children of a wide node, so that the
- * sum of the areas of all wide nodes is least. Then faces that coincide are found
- * (CoincidentFaces.h).
+ * sum of the areas of all wide nodes is least. Coincident faces are found last (CoincidentFaces.h).
  *
  * Source: T. Ylitie, T. Karras, S. Laine, "Efficient Incoherent Ray Traversal on GPUs Through
  * Compressed Wide BVHs", HPG 2017, Sec. 3.1.
- * Valid: the tree has the same bits for any number of threads. Peak about 150 bytes a triangle.
+ * Valid: the tree has the same bits for any number of threads. Peak memory: about 150 bytes per
+ * triangle.
  * Test: TestCollisionTreeBuilder.cxx, TestWideTree.cxx.
  */
 #ifndef avianlidar_CollisionTreeBuilder_h
@@ -20,13 +20,13 @@
 
 namespace avianlidar
 {
-/// Build a tree over all triangles of `mesh` (degenerate ones included: they are never hit but keep
-/// their number).
-/// @param keepGoing called repeatedly with the fraction done on the calling thread; returning false
-/// stops the work
+/// Build a tree over all triangles of `mesh`. Degenerate triangles keep their number and are never
+/// hit. Throws std::invalid_argument that names the option out of range, or the triangle whose
+/// corner is missing or not finite.
+/// @param keepGoing called on the calling thread with the fraction done; returning false stops the
+/// work
 /// @param threads > 0, or 0 for loopThreads(0)
-/// @return null if `keepGoing` returned false. Throws std::invalid_argument naming the option if it
-/// is out of range, or the triangle whose corner is missing or not finite. Deterministic.
+/// @return null if `keepGoing` returned false
 std::shared_ptr<const CollisionTree> buildCollisionTree(std::shared_ptr<const TriangleMesh> mesh,
   const TreeOptions& options, const KeepGoing& keepGoing = {}, int threads = 0);
 

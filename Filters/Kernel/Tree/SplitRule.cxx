@@ -26,7 +26,7 @@ std::size_t splitInHalves(const LaneBox* from, LaneBox* to, std::size_t count)
 std::size_t splitAtMedian(LaneBox* from, LaneBox* to, std::size_t count, int axis)
 {
   const std::size_t middle = count / 2;
-  // The number settles ties, so that the two sets do not depend on the library's selection
+  // The triangle number breaks ties, so that the two sets do not depend on the library's selection
   // algorithm.
   std::nth_element(from, from + middle, from + count,
     [axis](const LaneBox& a, const LaneBox& b)
@@ -73,10 +73,11 @@ struct BinMapping
   Lanes lower;
   Lanes scale{}; ///< bins per metre; 0: all centres are equal on this axis
   Lanes last;    ///< number of the last bin
-  /// 1/m: scaled by it, areas can be held in floats, even in a tiny scene. Where a box is 1e18
-  /// times as large as the spread of the centres they cannot, and there is nothing to divide by.
+  /// Scale of lengths, 1/m, by which areas fit in floats even in a tiny scene. They do not fit
+  /// where a box is 1e18 times as large as the spread of the centres; the rule then does not
+  /// divide.
   float unit = 0.0f;
-  int bins; ///< few triangles take few: more would cost more than they gain
+  int bins; ///< number of bins; a small node gains less by more bins than they cost
 
   AVIANLIDAR_ALWAYS_INLINE BinMapping(const LaneBox& centers, std::size_t count)
     : lower(-centers.below)
@@ -90,7 +91,7 @@ struct BinMapping
       const float perMetre = number / width;
       const bool usable = width > 0.0f && perMetre <= std::numeric_limits<float>::max();
       this->scale[axis] = usable ? perMetre : 0.0f;
-      // Of the widest axis.
+      // The widest axis has the fewest bins per metre.
       this->unit = usable && (this->unit == 0.0f || perMetre < this->unit) ? perMetre : this->unit;
     }
   }
@@ -101,7 +102,7 @@ struct BinMapping
     return __builtin_convertvector(at < this->last ? at : this->last, Numbers);
   }
 
-  /// Half the surface area of a box, scaled, for comparison.
+  /// Half the surface area of a box in units of 1 / unit^2, for comparison.
   AVIANLIDAR_ALWAYS_INLINE float halfArea(const LaneBox& box) const
   {
     const Lanes size = (box.above + box.below) * this->unit;
@@ -111,14 +112,14 @@ struct BinMapping
   }
 };
 
-/// What stands in the bins of one axis, merged from one of its ends on.
+/// Bins of one axis, merged from one of its ends on.
 struct BinSweep
 {
   LaneBox box;
   std::uint32_t number = 0;
 
   AVIANLIDAR_ALWAYS_INLINE BinSweep() { this->box.clear(); }
-  /// Take one more bin. @return area times number
+  /// Merge one more bin. @return area times number of triangles
   AVIANLIDAR_ALWAYS_INLINE float add(
     const BinMapping& mapping, const LaneBox& bin, std::uint32_t count)
   {
@@ -128,8 +129,8 @@ struct BinSweep
   }
 };
 
-/// Boxes in lower bins of the best axis go to the first child: where the sum of area times number
-/// is least.
+/// Boxes in the lower bins of the best axis go to the first child. Axis and bin make the sum of
+/// area times number of triangles over both children least.
 AVIANLIDAR_MULTIVERSION std::size_t splitBySurfaceArea(
   const LaneBox* from, LaneBox* to, std::size_t count, const LaneBox& centers)
 {

@@ -4,13 +4,12 @@
  * @brief descendWide(), the descent of the wide tree, front to back, for a ray, a cone, a packet of
  * rays or a group of beams.
  *
- * What descends is a template argument: a policy, or a query and a visitor.
+ * A template argument says what descends: a policy, or a query and a visitor.
  *
  * Source: none.
  * Valid: visits every leaf whose volumes the policy meets within the limit. A volume whose lower
  * bound equals the limit is visited, as it may hold a hit of equal range and lower number.
- * Test: TestBeamTracer.cxx, TestBeamGroup.cxx,
- * TestGeometryProperties.cxx.
+ * Test: TestBeamTracer.cxx, TestBeamGroup.cxx, TestGeometryProperties.cxx.
  */
 #ifndef avianlidar_Traversal_h
 #define avianlidar_Traversal_h
@@ -28,18 +27,18 @@ struct DescentStart
 {
   const EntryPoints* entryPoints = nullptr; ///< null: the root of the tree
   std::uint64_t members = 0;                ///< members with which every entry begins
-  float scale = 1.0f; ///< from the entry points' distances to those of the policy
+  float scale = 1.0f; ///< factor from the entry points' distances to the policy's distances
 };
 
 /// Base of most policies of descendWide(). A policy also has:
-///   `limit() const`: volumes whose lower bound is greater are left out;
+///   `limit() const`: range, m; volumes whose lower bound is greater are left out;
 ///   `open(node, members, push)`: calls `push(lane, members, nearest)` for each child that is met;
-///   `bool end(entry)`: takes a leaf; false ends the descent.
+///   `bool end(entry)`: visits a leaf; false ends the descent.
 struct WidePolicy
 {
-  /// The descent goes no deeper here.
+  /// True if the descent goes no deeper than this entry.
   static bool isEnd(const DescentEntry& entry) { return entry.count > 0; }
-  /// Called before an inner node that follows ends, and at the end of the descent.
+  /// Called before each inner node and at the end of the descent.
   void afterEnds() {}
 };
 
@@ -50,7 +49,7 @@ std::uint64_t descendWide(
   const WideTree& tree, const DescentStart& start, Policy& policy, TraversalStack& stack)
 {
   constexpr std::size_t Width = WideNode::Width;
-  // Set in DescentEntry::node: a node of the entry points, not of the tree.
+  // Flag in DescentEntry::node: the node belongs to the entry points, not to the tree.
   constexpr std::uint32_t FromEntryPoints = 0x80000000u;
   const std::size_t beginnings = start.entryPoints ? start.entryPoints->nodes.size() : 1;
   // Every level leaves at most seven entries behind.
@@ -66,7 +65,7 @@ std::uint64_t descendWide(
   std::uint64_t visited = 0;
   while (top != bottom)
   {
-    // Read where it stands: it was mostly written just before, and a copy would wait for that.
+    // A reference: the entry was mostly written just before, and a copy would wait for that write.
     const DescentEntry& entry = *--top;
     if (policy.isEnd(entry))
     {
@@ -104,8 +103,8 @@ std::uint64_t descendWide(
   return visited;
 }
 
-/// One cone or ray down the wide tree: the policy of a query (WideCone or WideRay) and a visitor
-/// with the members of TreeLeaves.
+/// Policy of one cone or ray (WideCone or WideRay) with a visitor that has the members of
+/// TreeLeaves.
 template <class Query, class Visitor>
 class QueryPolicy : public WidePolicy
 {
@@ -144,7 +143,7 @@ private:
   Visitor& Leaves;
 };
 
-/// The descent of a query. @param entryPoints null: from the root of the tree
+/// Descent of one cone or ray. @param entryPoints null: the descent begins at the root of the tree
 template <class Query, class Visitor>
 std::uint64_t descendWide(const CollisionTree& tree, const Query& query, Visitor& visitor,
   TraversalStack& stack, const EntryPoints* entryPoints = nullptr)

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file TriangleBoxes.h
- * @brief Boxes of triangles in single precision, in lanes: what trees are built from.
+ * @brief Boxes of triangles in single precision, in SIMD lanes, from which trees are built.
  *
  * Coordinates are relative to the middle of the scene and rounded outwards. Lower coordinates are
- * kept negated: to merge two boxes is to take the larger number in each lane.
+ * negated, so two boxes are merged by taking the larger number in each lane.
  *
  * Source: the primitive references of I. Wald, "On fast Construction of SAH-based Bounding Volume
  * Hierarchies", 2007.
@@ -30,8 +30,8 @@ namespace avianlidar
 {
 /// Four numbers in one register, on every target of GCC and Clang. Plain loops over four numbers
 /// build the same trees in 1.7 to 1.85 times the time (Hongqiao with everything, rolling ground and
-/// a sphere of a million triangles, one thread and two, GCC 12). Highway is scalar code on plain
-/// x86-64 without its dispatch, which would take every loop of the builder in a form of its own.
+/// a sphere of a million triangles, one thread and two, GCC 12). Without its dispatch, Highway is
+/// scalar code on plain x86-64; with it, every loop of the builder would need a form of its own.
 using Lanes = float __attribute__((vector_size(16)));
 
 AVIANLIDAR_ALWAYS_INLINE Lanes larger(Lanes a, Lanes b)
@@ -39,7 +39,7 @@ AVIANLIDAR_ALWAYS_INLINE Lanes larger(Lanes a, Lanes b)
   return a > b ? a : b;
 }
 
-/// Not smaller than any number that has this one as its nearest float.
+/// Upper bound of all numbers whose nearest float is this one.
 AVIANLIDAR_ALWAYS_INLINE Lanes roundedUp(Lanes nearest)
 {
   // The product is one or two units in the last place; the constant covers underflow.
@@ -47,8 +47,8 @@ AVIANLIDAR_ALWAYS_INLINE Lanes roundedUp(Lanes nearest)
   return (nearest + size * std::numeric_limits<float>::epsilon()) + 2e-38f;
 }
 
-/// Lanes 0 to 2 are coordinates, m. Lane 3 holds a triangle's number, half below and half above,
-/// and has no meaning in a box of several.
+/// Lanes 0 to 2 hold coordinates, m. Lane 3 holds the triangle's number, its low half in `below`
+/// and its high half in `above`; it has no meaning in a box of several triangles.
 struct LaneBox
 {
   Lanes below; ///< the lower corner, negated
@@ -66,11 +66,10 @@ struct LaneBox
     this->above = larger(this->above, other.above);
   }
 
-  /// Twice the centre: a sum needs no halving to be compared.
+  /// Twice the centre, m: comparisons need no halving.
   AVIANLIDAR_ALWAYS_INLINE Lanes twiceCenter() const { return this->above - this->below; }
 
-  /// Half the surface area, m^2; in double precision, as floats cannot hold areas of a large or
-  /// tiny scene.
+  /// Half the surface area, m2. Floats cannot hold the areas of a very large or tiny scene.
   AVIANLIDAR_ALWAYS_INLINE double halfArea() const
   {
     const Lanes size = this->above + this->below;
@@ -121,18 +120,18 @@ struct LaneExtent
 struct TriangleBoxes
 {
   Vec3 reference{ 0.0 };    ///< middle of the triangles, m
-  double extent = 0.0;      ///< largest coordinate relative to it, m
-  std::size_t count = 0;    ///< of triangles
-  LaneBox* boxes = nullptr; ///< by number; null if there are none, or the work was stopped
-  LaneBox* room = nullptr;  ///< for as many boxes again
-  std::unique_ptr<LaneBox, void (*)(void*)> memory{ nullptr, std::free }; ///< of both
+  double extent = 0.0;      ///< largest coordinate relative to the reference, m
+  std::size_t count = 0;    ///< number of triangles
+  LaneBox* boxes = nullptr; ///< by triangle number; null if there are none, or if stopped
+  LaneBox* room = nullptr;  ///< space for as many boxes again
+  std::unique_ptr<LaneBox, void (*)(void*)> memory{ nullptr, std::free }; ///< owner of both arrays
 
   /// Box of one triangle.
   LaneBox boxOf(const TriangleMesh& mesh, std::uint32_t triangle) const;
 };
 
-/// Throws std::invalid_argument if there are too many triangles, naming the first one whose corner
-/// is missing, not finite or beyond MaximumCoordinate.
+/// Throws std::invalid_argument if there are too many triangles, or if a corner is missing, not
+/// finite or beyond MaximumCoordinate; the message names the first such triangle.
 TriangleBoxes makeTriangleBoxes(
   const TriangleMesh& mesh, int threads, const KeepGoing& keepGoing = {});
 }

@@ -8,7 +8,7 @@ namespace avianlidar
 {
 namespace
 {
-/// A corner seen along the ray: s along the longest projected side, r across, z along the ray.
+/// A corner seen along the ray, m: s along the longest projected side, r across, z along the ray.
 struct SeenCorner
 {
   double s, r, z;
@@ -99,7 +99,7 @@ double largest(const Vec3& v)
 }
 }
 
-// Neither the edge functions nor the plane alone say reliably where along a sliver the ray passes.
+// Neither the edge functions nor the plane alone give reliably where along a sliver the ray passes.
 double rangeOnSliver(const Corners& t, const Vec3& d, double planeRange, double angularMargin)
 {
   const Vec3 corner[3] = { t.a, t.b, t.c };
@@ -142,7 +142,7 @@ double rangeOnSliver(const Corners& t, const Vec3& d, double planeRange, double 
   return range > 0.0 ? range : NoRange;
 }
 
-// Several versions: where the processor has fused multiply-add, no function is called for it.
+// In several versions: where the processor has fused multiply-add, std::fma() needs no call.
 AVIANLIDAR_MULTIVERSION TrianglePlane planeOf(const Corners& t)
 {
   const Vec3 ab = t.b - t.a;
@@ -165,7 +165,7 @@ AVIANLIDAR_MULTIVERSION TrianglePlane planeOf(const Corners& t)
 TrianglePlane planeOf(const Corners& t, const TrianglePlane& owner)
 {
   TrianglePlane plane = planeOf(t);
-  // The sides give the normal its sign.
+  // The triangle's own sides give the normal its sign.
   const double sign = glm::dot(plane.normal, owner.normal) < 0.0 ? -1.0 : 1.0;
   plane.normal = sign * owner.normal;
   plane.height = sign * owner.height;
@@ -176,7 +176,8 @@ TrianglePlane planeOf(const Corners& t, const TrianglePlane& owner)
 
 PlaneView viewOfCone(const TrianglePlane& plane, const Vec3& axis, double sine, double cosine)
 {
-  // v . d lies within cos(t) v . axis -+ sin(t) |v| for every d of the cone.
+  // For every direction d of a cone of half-angle t, v . d lies within cos(t) v . axis -+ sin(t)
+  // |v|.
   constexpr double Margin = 1.0 + 1e-9;
   const double length = std::sqrt(glm::dot(plane.normal, plane.normal)) * Margin;
   const double onAxis = std::fabs(glm::dot(plane.normal, axis));

@@ -1,46 +1,45 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file TriangleTest.h
- * @brief Whether a ray hits a triangle, and at which range: one function for every traversal.
+ * @brief Tests whether a ray hits a triangle and finds the range: one test for every traversal.
  *
- * - Corners are moved to the apex in double precision. A shared edge whose end points have the
- *   same bits has the same edge vector but for its sign, bit for bit: (a - b) x (a + b) = 2 a x b
- *   changes its sign, and nothing else, when a and b are exchanged, as long as no product is fused
- *   with a sum (compile with -ffp-contract=off). Unlike a x b it is accurate for small triangles
- *   far away.
+ * - Corners are moved to the apex in double precision. The edge vector of a side is E = (a - b) x
+ *   (a + b) = 2 a x b. Exchanging a and b changes its sign and no other bit, as long as no product
+ *   is fused with a sum (compile with -ffp-contract=off), so triangles that share an edge agree on
+ *   it. Unlike a x b, it is accurate for small triangles far away.
  * - In the beam's own plane the edge function of the ray (x, y) is ex x + ey y + ez with ex =
- *   tan(theta0.5) e1 . E, ey = tan(theta0.5) e2 . E, ez = axis . E: linear in E, so the sign rule
- *   survives.
- * - An edge function is accepted down to -(4 u_d |e|_1 + (8 + 14 tan(theta0.5)) u_d spread), u_d
- *   the unit round-off of double and spread >= |E|_1 the sum of the magnitudes of the products in
- *   E: bounds of the rounding of the evaluation and of E. So a ray aimed at an edge or vertex of a
- *   closed surface is always accepted by one of its triangles.
- * - Seen exactly edge-on (n . a = 0) a triangle has no solid angle and is not hit; nor is one
- *   thinner than 4 u_d of its longest side. Both sides of a triangle are hit.
- * - A ray that passes inside by more than rounding takes the plane's range as it is: every edge
- *   function is at least 64 u_d L R, L the longest side and R the farthest corner's distance. With
- *   |n| within 3 u_d of the cross product of the rounded sides, the computed plane is, to first
- *   order, that of a triangle whose corners lie within sqrt(3) u_d L of ours, and the rounding of
- *   n, n . a, n . d and the quotient moves the hit off it by at most 13 u_d R, that is, along the
- *   ray, by 13 u_d R / cos(incidence angle). Seen along the ray the hit does not move, and the ray
- *   passes every side at 16.5 u_d R or more (an edge function is twice that times the side's
- *   projected length, its own error at most 28 u_d L R). So where the hit has moved within the
- *   plane it is still above the triangle. That holds as long as |n . d| / |n| is far above
- *   rounding: it must be 2^-30.
- * - The range is n . a / n . d; n, the cross product of two sides, has no cancellation error
- *   (Kahan's difference of products). Relative error: a few u_d / cos(incidence angle). It is
- *   clamped to the ranges that the triangle's corners, or where it is seen nearly edge-on its part
- *   beside the ray, have along the ray.
+ *   tan(theta0.5) e1 . E, ey = tan(theta0.5) e2 . E, ez = axis . E. It is linear in E, so
+ *   exchanging the corners still changes the sign alone.
+ * - An edge function is accepted down to -(4 u_d |e|_1 + (8 + 14 tan(theta0.5)) u_d spread), with
+ *   u_d the unit round-off of double and spread >= |E|_1 the sum of the magnitudes of the products
+ *   in E. The two terms bound the rounding of the evaluation and of E. A ray aimed at an edge or
+ *   vertex of a closed surface is therefore always accepted by one of its triangles.
+ * - A triangle seen exactly edge-on (n . a = 0) has no solid angle and is not hit. A triangle
+ *   thinner than 4 u_d of its longest side is not hit either. Both sides of a triangle can be hit.
+ * - The range is n . a / n . d. The normal n, the cross product of two sides, has no cancellation
+ *   error (Kahan's difference of products), so the relative error of the range is a few u_d /
+ *   cos(incidence angle). The range is clamped to the ranges of the triangle's corners along the
+ *   ray. Where the triangle is seen nearly edge-on, it is clamped to the ranges of the part beside
+ *   the ray.
+ * - A ray that passes inside by more than rounding takes the plane's range without clamping. Every
+ *   edge function must be at least 64 u_d L R, with L the longest side and R the distance of the
+ *   farthest corner, and |n . d| / |n| at least 2^-30, far above rounding. The hit then lies on the
+ *   triangle, for three reasons. First, |n| is within 3 u_d of the cross product of the rounded
+ *   sides: to first order, the computed plane is that of a triangle whose corners lie within
+ *   sqrt(3) u_d L of the given ones. Second, the rounding of n, n . a, n . d and the quotient moves
+ *   the hit off this plane by at most 13 u_d R, which is 13 u_d R / cos(incidence angle) along the
+ *   ray. Third, the ray passes every side at 16.5 u_d R or more, because an edge function is twice
+ *   this distance times the side's projected length, with an error of at most 28 u_d L R. So a hit
+ *   that moves along the ray stays above the triangle.
  *
  * Source: paper, Sec. 3.3, Eq. 15-18.
  * Differs: Eq. 16 says that d lies in the tetrahedron OABC if alpha, beta, gamma >= 0. Up to a
  * common factor these are the edge functions d . (p_B x p_C), d . (p_C x p_A), d . (p_A x p_B),
- * which are computed here: Eq. 16 solved triangle by triangle (divided by its determinant) leaks
+ * which are computed here. Eq. 16 itself divides by the determinant of each triangle and leaks
  * where triangles meet.
- * Valid: coordinates that are 0 or from 1e-30 to 1e30 m. For every accepted pair the ray passes
- * the triangle, and the hit lies off it, by no more than HitMargin times the triangle's farthest
- * coordinate from the apex (plus HitMarginBeam tan(theta0.5) times the distance for rays of a
- * beam).
+ * Valid: coordinates that are 0 or from 1e-30 to 1e30 m. An accepted ray passes the triangle, and
+ * its hit lies off the triangle, by no more than HitMargin times the triangle's farthest coordinate
+ * from the apex (plus HitMarginBeam tan(theta0.5) times the distance for rays of a beam).
  * Test: TestTriangleTest.cxx, TestWatertight.cxx, TestGeometryProperties.cxx.
  */
 #ifndef avianlidar_TriangleTest_h
@@ -58,11 +57,12 @@ namespace avianlidar
 constexpr double RoundOffDouble = 1.0 / 9007199254740992.0; // 2^-53
 constexpr double RoundOffSingle = 1.0 / 16777216.0;         // 2^-24
 
-/// See the file comment. Every test of a volume widens its volume, ray or cone by these.
+/// Margins of a hit, see Valid above. Every test of a volume widens its volume, ray or cone by
+/// them.
 constexpr double HitMargin = 1.0 / 549755813888.0; // 2^-39
 constexpr double HitMarginBeam = 1.0 / 512.0;
 
-/// Corners of a triangle relative to a ray's origin.
+/// Corners of a triangle relative to the ray's origin, m.
 struct Corners
 {
   Vec3 a, b, c;
@@ -74,7 +74,7 @@ inline Corners cornersFrom(const TriangleMesh& mesh, std::uint32_t triangle, con
     mesh.corner(triangle, 2) - apex };
 }
 
-/// Edge vector of the side a-b: 2 a x b.
+/// Edge vector of the side a-b, 2 a x b, and its spread (see above), m2.
 struct EdgeVector
 {
   Vec3 e;
@@ -91,24 +91,25 @@ inline EdgeVector edgeVector(const Vec3& a, const Vec3& b)
   return { plus - minus, size.x + size.y + size.z };
 }
 
-/// Plane of a triangle, for ranges: found only for triangles that some ray hits.
+/// Plane of a triangle, from which ranges follow. It is computed only for triangles that a ray
+/// hits.
 struct TrianglePlane
 {
-  Vec3 normal;           ///< not normalised: twice the area
-  double height;         ///< normal . a, 0: edge-on or degenerate
+  Vec3 normal;           ///< not normalised; its length is twice the area
+  double height;         ///< normal . a; 0 if edge-on or degenerate
   double longestSquared; ///< square of the longest side
-  double leastSlope;     ///< of |normal . d|: below it the plane's range alone is not accurate
-  double leastEdge;    ///< of edge functions: above it the ray passes inside, see the file comment
-  EdgeVector sides[3]; ///< ab, bc, ca
+  double leastSlope;     ///< least |normal . d| at which the plane's range alone is accurate
+  double leastEdge;      ///< least edge function of a ray that passes inside by more than rounding
+  EdgeVector sides[3];   ///< edge vectors of ab, bc, ca
 };
 TrianglePlane planeOf(const Corners& corners);
 
-/// The same of a triangle that takes the plane of another: ranges are those on that plane.
+/// Plane of a triangle that takes the plane of another: the owner's plane with the triangle's own
+/// sides.
 TrianglePlane planeOf(const Corners& corners, const TrianglePlane& owner);
 
 /// a b - c d to one and a half units in the last place (Kahan; Jeannerod, Louvet and Muller, Math.
-/// Comp. 82, 2013). std::fma is exact on every machine, so unlike contraction it costs no
-/// reproducibility.
+/// Comp. 82, 2013). std::fma gives the same bits on every machine, which contraction does not.
 AVIANLIDAR_ALWAYS_INLINE double differenceOfProducts(double a, double b, double c, double d)
 {
   const double cd = c * d;
@@ -116,7 +117,7 @@ AVIANLIDAR_ALWAYS_INLINE double differenceOfProducts(double a, double b, double 
   return std::fma(a, b, -cd) + error;
 }
 
-/// TrianglePlane::normal; 0 for needles.
+/// TrianglePlane::normal; 0 if the triangle is thinner than rounding.
 AVIANLIDAR_ALWAYS_INLINE Vec3 normalOf(const Corners& t)
 {
   const Vec3 u = t.b - t.a;
@@ -131,26 +132,26 @@ AVIANLIDAR_ALWAYS_INLINE Vec3 normalOf(const Corners& t)
 
 constexpr double NoRange = -1.0;
 
-/// The range of the plane along the unit direction d, and whether it can stand as the range of the
-/// triangle: 0 no hit, 1 it stands, 2 the triangle is a sliver here and needs a second look. Plain
-/// arithmetic without branches, for loops over lanes.
+/// Range of the plane along the unit direction d, m, and its kind: 0 no hit, 1 it is the range of
+/// the triangle, 2 the triangle is a sliver along d, and rangeOnSliver() must decide.
+/// rangeOnPlane() has no branches, for loops over lanes.
 struct PlaneRange
 {
   double range;
   int kind;
 };
 
-/// Facts that hold for all rays at hand, so that they need not be computed for each.
+/// What is known of all rays of a group and need not be computed for each.
 enum class PlaneView
 {
   Any,
-  WellShaped, ///< no projected angle is small for any of them
-  Inside      ///< all pass inside a triangle that is a sliver for all of them
+  WellShaped, ///< no projected angle of the triangle is small along any ray
+  Inside      ///< every ray passes inside, and the triangle is a sliver along every ray
 };
 
-constexpr double WellShaped = 1.0 / 32.0; ///< of |slope| over the longest side squared
+constexpr double WellShaped = 1.0 / 32.0; ///< least |slope| over the longest side squared
 constexpr double EdgeNoise =
-  64.0 * RoundOffDouble; ///< of an edge function over longest side times farthest corner
+  64.0 * RoundOffDouble; ///< least edge function inside, over longest side times farthest corner
 
 template <PlaneView View = PlaneView::Any>
 AVIANLIDAR_ALWAYS_INLINE PlaneRange rangeOnPlane(
@@ -189,14 +190,16 @@ AVIANLIDAR_ALWAYS_INLINE PlaneRange rangeOnPlane(
   return { result, static_cast<int>(faces) * kind };
 }
 
-/// Facts that hold for every ray of a cone about `axis` (a margin for rounding included).
+/// PlaneView of all rays of a cone about `axis`, with a margin for rounding. @param sine,cosine of
+/// its half-angle
 PlaneView viewOfCone(const TrianglePlane& plane, const Vec3& axis, double sine, double cosine);
 
-/// The second look at a sliver.
+/// Range of a ray on a sliver, m: the plane's range, clamped to the part of the triangle beside the
+/// ray. NoRange if there is no such part. @param angularMargin as for rangeOf()
 double rangeOnSliver(const Corners& t, const Vec3& d, double planeRange, double angularMargin);
 
-/// Range along the unit direction `d` at which a ray whose edge functions were accepted hits;
-/// NoRange if it does not (edge-on, behind, or beside the end of a needle).
+/// Range, m, along the unit direction `d`, of a ray whose edge functions were accepted. NoRange if
+/// the triangle is edge-on or behind, or if the ray passes beside the end of a needle.
 /// @param angularMargin half-width of the ray, rad: beamRayMargin() for rays of a beam, 0 for
 /// others
 double rangeOf(
@@ -223,10 +226,11 @@ AVIANLIDAR_ALWAYS_INLINE double inversePowerOfTwo(double magnitude)
   return power;
 }
 
-/// Normalised without overflow or underflow; powers of two change no bit of the result.
+/// Unit vector along a direction, without overflow or underflow. Powers of two change no bit of the
+/// result.
 Vec3 unitDirection(const Vec3& direction);
 
-/// The same for SIMD loops.
+/// unitDirection() for loops over lanes.
 AVIANLIDAR_ALWAYS_INLINE void unitDirectionOf(
   double x, double y, double z, double& dx, double& dy, double& dz)
 {
@@ -244,21 +248,21 @@ AVIANLIDAR_ALWAYS_INLINE void unitDirectionOf(
   dz = sz * inverse;
 }
 
-/// Edge function of a side in the beam's plane, turned so that it is positive inside.
+/// Edge function of a side in the beam's plane, with the sign that is positive inside.
 struct BeamEdge
 {
   double x, y, z, tolerance;
-  /// Not negative if the ray is accepted.
+  /// Edge function plus its tolerance; not negative if the ray is accepted.
   double slack(double rayX, double rayY) const
   {
     return ((this->x * rayX + this->y * rayY) + this->z) + this->tolerance;
   }
 };
 
-/// Takes edge vectors to the beam's plane.
+/// Turns edge vectors into edge functions in the beam's plane.
 struct BeamPlaneMap
 {
-  Vec3 e1, e2, axis; ///< e1 and e2 times tan(theta0.5)
+  Vec3 e1, e2, axis; ///< axes of the beam, e1 and e2 times tan(theta0.5)
   double spreadFactor;
 
   explicit BeamPlaneMap(const BeamFrame& frame)
@@ -283,7 +287,7 @@ struct BeamTriangle
 {
   BeamEdge edges[3] = {};
 
-  /// False if the triangle is seen edge-on: no ray hits it.
+  /// @return false if the triangle is seen edge-on: no ray hits it
   bool set(const BeamPlaneMap& map, const Corners& t)
   {
     const EdgeVector sides[3] = { edgeVector(t.a, t.b), edgeVector(t.b, t.c),
@@ -291,7 +295,7 @@ struct BeamTriangle
     return this->set(map, t, sides);
   }
 
-  /// The same where the sides are known (TrianglePlane).
+  /// As above, with the known edge vectors of the sides (TrianglePlane).
   bool set(const BeamPlaneMap& map, const Corners& t, const EdgeVector* sides)
   {
     const double determinant = glm::dot(t.c, sides[0].e);
@@ -329,8 +333,8 @@ inline bool beamRayAccepted(const BeamPlaneMap& map, const Corners& t, double x,
     map.edge(edgeVector(t.c, t.a), sign).slack(x, y) >= 0.0;
 }
 
-/// The same test for any ray: `d` is a unit direction, the corners are relative to the
-/// ray's origin.
+/// True if a ray outside a beam's frame is accepted. @param t relative to the ray's origin @param d
+/// unit vector
 inline bool rayAccepted(const Corners& t, const Vec3& d)
 {
   const EdgeVector ab = edgeVector(t.a, t.b);

@@ -29,8 +29,8 @@ double largestOf(const Vec3& v)
   return std::max(std::fabs(v.x), std::max(std::fabs(v.y), std::fabs(v.z)));
 }
 
-/// True if a rectangle lies to the left of the left edge of a projection, or to the right of the
-/// right one.
+/// True if a rectangle lies to the left of the left edge of a projection, or to the right of its
+/// right edge.
 AVIANLIDAR_ALWAYS_INLINE bool besideWedge(
   const WideCone& c, int plane, float x, float y, float halfX, float halfY, float error)
 {
@@ -55,7 +55,7 @@ AVIANLIDAR_MULTIVERSION void coneDistances(
     const float hy = node.halfY[i] + c.widening;
     const float hz = node.halfZ[i] + c.widening;
     const float error = Rounding * (std::fabs(x) + std::fabs(y) + std::fabs(z) + hx + hy + hz);
-    // Tangent plane of the cone on the side of the centre (BeamVolumeTest.cxx says why).
+    // Tangent plane of the cone on the side of the centre (explained in BeamVolumeTest.cxx).
     const float along = x * c.axisX + y * c.axisY + z * c.axisZ;
     float rx = x - along * c.axisX;
     float ry = y - along * c.axisY;
@@ -169,7 +169,7 @@ void EntryPoints::addLeaf(std::uint32_t first, std::uint32_t count)
 bool wideningFor(const WideTree& tree, const Vec3& offset, float& widening)
 {
   widening = roundedUp(4e-7 * (tree.extent + largestOf(offset)));
-  // Without boxes of its own (see EntryPoints::addLeaf()) nothing is squared.
+  // Leaves without a box of their own (see EntryPoints::addLeaf()) need no squares.
   const bool square = tree.nodes.empty() || tree.extent + largestOf(offset) > LeastWideExtent;
   return square && tree.extent < LargestWideExtent && largestOf(offset) < LargestWideExtent;
 }

@@ -2,14 +2,14 @@
 /**
  * @file WideTree.h
  * @brief A collision tree of axis-aligned boxes with eight children a node, in single precision,
- * for speed; its cone and ray tests; and the entry points from which rays go on down it.
+ * for speed; its cone and ray tests; and the entry points at which rays begin their descent.
  *
- * Eight boxes are tested in one loop over lanes. Boxes are relative to the middle of the scene and
- * are widened by the rounding of that.
+ * Eight boxes are tested in one loop over lanes. Boxes are relative to the middle of the scene, and
+ * tests widen them by the rounding of single precision.
  *
  * Source: Wald, Benthin and Boulos, "Getting Rid of Packets", IEEE RT 2008; tests as in
  * BeamVolumeTest.h of the other volumes.
- * Differs: single rays are one of several users; packets and groups of beams descend it, too.
+ * Differs: packets of rays and groups of beams descend the tree, too.
  * Valid: conservative. Below LeastWideExtent and beyond LargestWideExtent all boxes are met.
  * Test: TestWideTree.cxx, TestBeamGroup.cxx and TestBeamTracer.cxx (entry points).
  */
@@ -28,39 +28,41 @@ struct alignas(64) WideNode
   static constexpr int Width = 8;
   float x[Width], y[Width], z[Width];             ///< centres relative to WideTree::reference, m
   float halfX[Width], halfY[Width], halfZ[Width]; ///< half extents, rounded up, m
-  std::uint32_t
-    first[Width]; ///< inner child: its node; leaf: first entry of the tree's order; NoChild
-  std::uint32_t count[Width]; ///< triangles of a leaf; 0: inner
+  std::uint32_t first[Width]; ///< inner child: its number; leaf: first of its triangles in the
+                              ///< order; or NoChild
+  std::uint32_t count[Width]; ///< number of triangles of a leaf; 0 for an inner child
 
-  /// No children.
+  /// Remove all children.
   void clear();
 };
 
 constexpr std::uint32_t NoChild = 0xffffffffu;
 
-/// Larger scenes, and apexes farther away, are too large for products in single precision, m.
+/// Largest extent of a scene, and largest distance of an apex, m: products of larger numbers
+/// may overflow in single precision.
 constexpr double LargestWideExtent = 1e15;
 
-/// Squares of smaller coordinates, m, are not normal numbers in single precision.
+/// Least extent, m: squares of smaller coordinates may not be normal numbers in single precision.
 constexpr double LeastWideExtent = 1e-12;
 
 struct WideTree
 {
   std::vector<WideNode> nodes; ///< root first; empty if there is none
-  Vec3 reference{ 0.0 };
-  double extent = 0.0;     ///< largest coordinate relative to the reference, m
-  std::uint32_t depth = 0; ///< levels below the root
+  Vec3 reference{ 0.0 };       ///< origin of the boxes, m
+  double extent = 0.0;         ///< largest coordinate relative to the reference, m
+  std::uint32_t depth = 0;     ///< levels below the root
 };
 
-/// Relative rounding of the single-precision tests, several times over.
+/// Bound, several times over, of the relative rounding of the single-precision tests.
 constexpr float WideRounding = 2e-6f;
 
-/// What boxes must be widened by when they are moved to `offset` (of an apex from the reference) in
-/// single precision, m; false if the scene or the offset is too large, or both are too small.
+/// Find by how much boxes must be widened, m, in single precision relative to an apex at `offset`
+/// from the reference.
+/// @return false if the scene or the offset is too large, or both are too small
 bool wideningFor(const WideTree& tree, const Vec3& offset, float& widening);
 
-/// Boxes from which the rays of one beam go on down the wide tree: eight at a time, front to back
-/// except for overlaps.
+/// Boxes at which the rays of one beam enter the wide tree: eight at a time, front to back except
+/// for overlaps.
 struct EntryPoints
 {
   std::vector<WideNode> nodes;
@@ -68,45 +70,47 @@ struct EntryPoints
 
   void clear();
   void add(const WideNode& node, int lane, float distance);
-  /// A leaf whose volume is not known as a box.
+  /// Add a leaf whose box is not known.
   void addLeaf(std::uint32_t first, std::uint32_t count);
 
 private:
   int nextLane(float distance);
 
-  int Filled = WideNode::Width; ///< lanes of the last node
+  int Filled = WideNode::Width; ///< number of lanes in use in the last node
 };
 
-/// The cone of a beam against eight boxes.
+/// Test of a beam's cone against eight boxes.
 struct WideCone
 {
-  float apexX, apexY, apexZ; ///< relative to the reference
+  float apexX, apexY, apexZ; ///< apex relative to the reference, m
   float axisX, axisY, axisZ;
-  float sine, cosine; ///< of the widened half-beamwidth
-  float widening;     ///< of every box, m
-  /// Edges of the cone's projections on the planes yz, zx, xy (see BeamCone.h); 0 for a whole
-  /// plane.
+  float sine, cosine; ///< sine and cosine of the widened half-beamwidth
+  float widening;     ///< widening of every box, m
+  /// Edges of the cone's projections on the planes yz, zx, xy (see BeamCone.h); 0 if a projection
+  /// is the whole plane.
   float leftX[3], leftY[3], rightX[3], rightY[3];
 
-  bool everywhere; ///< too large, small or far for single precision: meets all boxes
+  bool everywhere; ///< true if single precision does not suffice: all boxes are met
 
   WideCone(const WideTree& tree, const BeamFrame& frame);
 
-  /// Lower bounds of the distances of the boxes that the cone may meet; infinity for the others.
+  /// Lower bounds, m, of the distances of the boxes that the cone may meet; infinity for the
+  /// others.
   void distances(const WideNode& node, float* nearest) const;
 };
 
-/// One ray against eight boxes.
+/// Test of one ray against eight boxes.
 struct WideRay
 {
-  float originX, originY, originZ;    ///< relative to the reference
-  float inverseX, inverseY, inverseZ; ///< of the unit direction
+  float originX, originY, originZ;    ///< origin relative to the reference, m
+  float inverseX, inverseY, inverseZ; ///< inverse components of the unit direction
   float widening;
   float spread; ///< half-width of the ray, rad
 
-  bool everywhere; ///< as of WideCone
+  bool everywhere; ///< as in WideCone
 
-  /// @param origin relative to the apex
+  /// @param origin relative to the apex, m @param direction unit vector @param angularMargin
+  /// half-width of the ray, rad
   WideRay(const WideTree& tree, const Vec3& apex, const Vec3& origin, const Vec3& direction,
     double angularMargin);
   void distances(const WideNode& node, float* nearest) const;
