@@ -14,7 +14,7 @@ double sumOfMagnitudes(const Vec3& v)
   return std::fabs(v.x) + std::fabs(v.y) + std::fabs(v.z);
 }
 
-/// Lower bound of ranges from a distance: the last margin, for the rounding of the distance itself.
+/// Lower bound of ranges from a distance, m: the margin covers the rounding of the distance itself.
 double asLowerBound(double distance)
 {
   return distance * (1.0 - HitMargin);
@@ -27,7 +27,7 @@ bool meetsWedge(const ConeWedge& wedge, double x, double y, double halfX, double
   {
     return true;
   }
-  // All corners to the left of the left edge, or to the right of the right one (paper, Fig. 7:
+  // All corners lie to the left of the left edge, or to the right of the right one (paper, Fig. 7:
   // cross products).
   const double left = wedge.leftX * y - wedge.leftY * x;
   const double right = wedge.rightX * y - wedge.rightY * x;
@@ -36,7 +36,7 @@ bool meetsWedge(const ConeWedge& wedge, double x, double y, double halfX, double
   {
     return false;
   }
-  // The sides of the rectangle.
+  // The whole wedge lies beyond a side of the rectangle.
   const double mostX = std::max(wedge.leftX, wedge.rightX);
   const double leastX = std::min(wedge.leftX, wedge.rightX);
   const double mostY = std::max(wedge.leftY, wedge.rightY);
@@ -73,10 +73,10 @@ bool BeamVolumeTest::separated(const Vec3& axis, const Vec3& center, const Vec3&
   {
     return true;
   }
-  // Tangent plane of the cone on the side of the centre: the cone lies where normal . p <= 0, for
-  // any `radial` across the axis. Of a centre on the axis the difference below is nothing but
-  // round-off, which may point along the axis: so a second step makes it perpendicular, and a
-  // centre inside the cone needs no plane at all.
+  // Tangent plane of the cone on the side of the centre: normal . p <= 0 for every p in the cone,
+  // for any unit vector `radial` across the axis. If the centre lies on the axis, the difference
+  // below is round-off alone and may point along the axis, so a second step makes it perpendicular.
+  // A centre inside the cone needs no plane.
   Vec3 radial = center - z * axis;
   radial -= glm::dot(radial, axis) * axis;
   const double distance = std::sqrt(glm::dot(radial, radial));

@@ -23,7 +23,7 @@ void forCorners(const TriangleList& triangles, F&& f)
   }
 }
 
-/// Middle of the coordinates.
+/// Centre of the axis-aligned box.
 Vec3 middleOf(const TriangleList& triangles)
 {
   AABB box;
@@ -31,8 +31,8 @@ Vec3 middleOf(const TriangleList& triangles)
   return box.center();
 }
 
-/// Box along the axes of `box`. The second pass measures from the rounded centre, so that its
-/// rounding costs nothing.
+/// Smallest box along the axes of `box`. The second pass measures from the rounded centre, so that
+/// the rounding of the centre does not matter.
 OBB fitAlong(const TriangleList& triangles, OBB box)
 {
   if (triangles.count == 0)
@@ -47,7 +47,7 @@ OBB fitAlong(const TriangleList& triangles, OBB box)
   box.half = Vec3(0.0);
   forCorners(triangles,
     [&](const Vec3& p) { box.half = glm::max(box.half, glm::abs(box.along(p - box.center))); });
-  // The axes are orthonormal to rounding only; other code may multiply in another order.
+  // Rounding leaves the axes not quite orthonormal, and other code may multiply in another order.
   box.half += Vec3(8.0 * Ulp * (box.half.x + box.half.y + box.half.z));
   return box;
 }
@@ -89,8 +89,8 @@ BoundingSphere boundingSphere(const TriangleList& triangles)
   {
     return best;
   }
-  // Steps towards the farthest point, ever shorter, from the centre of the box; the best centre
-  // seen is kept.
+  // The centre moves from the middle of the box towards the farthest point in ever shorter steps;
+  // the best centre is kept.
   best.radius = std::numeric_limits<double>::infinity();
   Vec3 center = middleOf(triangles);
   constexpr int Steps = 12;

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file BoundingVolume.h
- * @brief The paper's bounding volumes, boxes and spheres, and how they are fitted to triangles.
+ * @brief The paper's bounding volumes, boxes and spheres, and their fit to triangles.
  *
- * A volume of nothing is empty: it contains no point and has no area.
+ * An empty volume contains no point and has no area.
  *
  * Source: paper, Sec. 3.1; for spheres Badoiu and Clarkson, "Smaller core-sets for balls", SODA
  * 2003.
- * Differs: axis-aligned boxes are oriented boxes along the coordinate axes. Of Badoiu and
- * Clarkson's method a few steps are made, which come within some per cent of the smallest sphere.
- * Valid: coordinates up to MaximumCoordinate in magnitude. Fitting is conservative:
- * a volume holds every corner that went in, rounding included.
+ * Differs: axis-aligned boxes are oriented boxes along the coordinate axes. A few steps of Badoiu
+ * and Clarkson's method come within some per cent of the smallest sphere.
+ * Valid: coordinates up to MaximumCoordinate in magnitude. A fitted volume holds every corner of
+ * its triangles, rounding included.
  * Test: TestBoundingVolume.cxx.
  */
 #ifndef avianlidar_BoundingVolume_h
@@ -28,7 +28,7 @@ namespace avianlidar
 struct OBB
 {
   Vec3 center{ 0.0 };
-  glm::dmat3 axes{ 1.0 }; ///< in columns
+  glm::dmat3 axes{ 1.0 }; ///< unit vectors in columns
   Vec3 half{ -1.0 };
 
   bool empty() const { return this->half.x < 0.0; }
@@ -44,10 +44,10 @@ struct BoundingSphere
   bool empty() const { return this->radius < 0.0; }
 };
 
-/// m^2; 0 if empty.
+/// Surface area, m2; 0 if empty.
 double surfaceArea(const OBB& volume);
 
-/// Triangles of a mesh, by their numbers.
+/// Some triangles of a mesh, given by their numbers.
 struct TriangleList
 {
   const TriangleMesh& mesh;
@@ -55,10 +55,10 @@ struct TriangleList
   std::size_t count;
 };
 
-/// The smallest box along the coordinate axes.
+/// Smallest box along the coordinate axes.
 OBB alignedBox(const TriangleList& triangles);
-/// A box along the principal axes of the corners or the coordinate axes, whichever has the smaller
-/// surface.
+/// Smallest box along the principal axes of the corners or along the coordinate axes, whichever has
+/// the smaller surface.
 OBB orientedBox(const TriangleList& triangles);
 BoundingSphere boundingSphere(const TriangleList& triangles);
 }

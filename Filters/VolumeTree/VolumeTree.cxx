@@ -13,7 +13,7 @@ namespace avianlidar
 {
 namespace
 {
-/// Visit the leaves whose volume `probe` meets, the nearer child first.
+/// Visit the leaves whose volumes `probe` meets, the nearer child first.
 /// @return number of nodes whose volume was tested
 std::uint64_t descend(const VolumeTree& tree, const std::vector<std::uint32_t>& order,
   const BeamVolumeTest& probe, TreeLeaves& leaves, TraversalStack& stack)
@@ -37,7 +37,7 @@ std::uint64_t descend(const VolumeTree& tree, const std::vector<std::uint32_t>& 
   {
     const DescentEntry entry = stack.back();
     stack.pop_back();
-    // An equal bound may still hold a hit of equal range and lower number.
+    // A volume at the limit may still hold a hit of equal range and lower number.
     if (entry.nearest > leaves.limit())
     {
       continue;
@@ -62,7 +62,7 @@ std::uint64_t descend(const VolumeTree& tree, const std::vector<std::uint32_t>& 
   return visited;
 }
 
-/// Fit volumes to the triangles of all nodes. @return false if `keepGoing` returned false
+/// Fit a volume to each node's triangles. @return false if `keepGoing` returned false
 template <class Volume>
 bool fit(Volume (*fitted)(const TriangleList&), const TriangleMesh& mesh,
   const std::vector<std::uint32_t>& order, const KeepGoing& keepGoing, int threads,
@@ -112,9 +112,9 @@ std::shared_ptr<const CollisionTree> buildVolumeTree(std::shared_ptr<const Trian
     return buildCollisionTree(std::move(mesh), options, keepGoing, threads);
   }
   checkTreeInput(mesh.get(), options);
-  // Fitting takes most of the time.
+  // Share of the work before the volumes are fitted.
   constexpr double Built = 0.2;
-  // Faces that coincide are found by boxes.
+  // Coincident faces are found by a tree of boxes.
   const auto boxes =
     buildCollisionTree(mesh, TreeOptions{}, partOf(keepGoing, 0.0, 0.5 * Built), threads);
   if (!boxes)

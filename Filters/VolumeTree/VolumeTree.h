@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file VolumeTree.h
- * @brief The paper's binary tree of AABBs, OBBs or spheres in double precision, and its descent:
- * what the paper compares. The kernel's own tree has eight boxes a node.
+ * @brief The paper's binary tree of AABBs, OBBs or spheres in double precision, and its descent.
+ *
+ * It serves to compare the paper's volumes. The kernel's own tree has eight boxes a node.
  *
  * Source: paper, Sec. 3.1 and 3.2, Eq. 14, Algorithm 1.
  * Differs: a leaf holds up to maximumLeafSize triangles (Algorithm 1: one); the descent is front to
  * back.
  * Valid: visits every leaf whose volumes the cone or ray meets within the limit. A volume whose
- * lower bound equals the limit is visited, as it may hold a hit of equal range and lower number.
- * Made for comparison, not for speed.
+ * lower bound equals the limit is visited because it may hold a hit of equal range and lower
+ * number. Not optimised for speed.
  * Test: TestCollisionTreeBuilder.cxx, TestBeamTracer.cxx, TestGeometryProperties.cxx.
  */
 #ifndef avianlidar_VolumeTree_h
@@ -32,7 +33,7 @@ using TreeVolumes = std::variant<std::vector<OBB>, std::vector<BoundingSphere>>;
 struct VolumeTree final : public OtherVolumes
 {
   std::vector<BinaryNode> nodes; ///< empty for an empty mesh; numbered as in BinaryTree
-  /// Volumes of all nodes in scene coordinates; each holds all triangles below its node.
+  /// Volume of each node in scene coordinates; it holds all triangles below the node.
   TreeVolumes volumes;
 
   std::uint64_t descendCone(const CollisionTree& tree, const BeamFrame& frame, TreeLeaves& leaves,
@@ -42,14 +43,16 @@ struct VolumeTree final : public OtherVolumes
     TraversalStack& stack) const override;
 };
 
-/// As buildCollisionTree(), for every TreeOptions::boundingVolume; that of AABBs is the kernel's.
+/// As buildCollisionTree(), but for every TreeOptions::boundingVolume. For AABBs it returns the
+/// kernel's tree.
 std::shared_ptr<const CollisionTree> buildVolumeTree(std::shared_ptr<const TriangleMesh> mesh,
   const TreeOptions& options, const KeepGoing& keepGoing = {}, int threads = 0);
 
-/// The same tree with two AABBs a node, in double precision, instead of eight in single.
+/// The same tree with two AABBs a node in double precision, instead of eight in single precision.
 std::shared_ptr<const CollisionTree> withPlainBoxes(const CollisionTree& tree);
 
-/// Nodes and volumes of a tree. Boxes are made anew, down to a depth.
+/// Nodes and volumes of a tree. If the tree has the wide boxes, AABBs are fitted anew down to the
+/// depth `deepest`.
 std::shared_ptr<const VolumeTree> volumesOf(
   const CollisionTree& tree, std::uint32_t deepest = std::numeric_limits<std::uint32_t>::max());
 }
