@@ -19,7 +19,7 @@ Triangle turnedOver(const Triangle& t)
   return { t[0], t[2], t[1] };
 }
 
-/// Sets that are joined, and whether a member is turned against the first of its set.
+/// Disjoint sets, with the turn of each member against the first of its set.
 class JoinedSets
 {
 public:
@@ -42,7 +42,8 @@ public:
     }
     return { i, turned };
   }
-  /// False if they are joined the other way already. @param turned one against the other
+  /// Join the sets of two members. @param turned true if one is turned against the other
+  /// @return false if they are already joined with the other turn
   bool join(std::uint32_t a, std::uint32_t b, bool turned)
   {
     const auto [one, oneTurned] = this->find(a);
@@ -59,15 +60,15 @@ public:
 
 private:
   std::vector<std::uint32_t> Parent;
-  std::vector<bool> Turned; ///< against the parent, which has its own entry false if it is first
+  std::vector<bool> Turned; ///< against the parent; false for the first of a set
 };
 
-/// A side of a triangle, from the lower to the higher point of the merged ones.
+/// Side of a triangle, from the lower to the higher of its two merged points.
 struct Side
 {
   std::uint32_t low, high, triangle;
   bool forth;                                    ///< the triangle runs from low to high
-  std::pair<std::uint32_t, std::uint32_t> given; ///< the points as they were given, lower first
+  std::pair<std::uint32_t, std::uint32_t> given; ///< the points as given, lower first
   std::uint32_t apex;
 };
 
@@ -95,7 +96,8 @@ std::vector<Side> sidesOf(
   return sides;
 }
 
-/// Pairs by their angle about the edge: coincident triangles are not of one pair if that can be.
+/// Pair sides by their angle about the edge; coincident triangles are not paired if this can be
+/// avoided.
 void pairByAngle(const std::vector<Vec3>& points, std::vector<Side>& sides)
 {
   const Vec3 from = points[sides[0].low];
@@ -130,7 +132,7 @@ void pairByAngle(const std::vector<Vec3>& points, std::vector<Side>& sides)
   sides = std::move(ordered);
 }
 
-/// Sides of one edge, two by two of one shell.
+/// Order the sides of one edge so that each two in turn belong to one shell.
 void pairSides(const std::vector<Vec3>& points, std::vector<Side>& sides)
 {
   if (sides.size() == 2)
@@ -159,11 +161,11 @@ void pairSides(const std::vector<Vec3>& points, std::vector<Side>& sides)
   sides = std::move(pairs);
 }
 
-/// How often a shell that faces outward winds about a place: 1 inside, 1/2 on a face, else 0.
+/// Winding number, about a place, of a shell that faces outward: 1 inside, 1/2 on a face, else 0.
 double windingOf(
   const std::vector<Vec3>& points, const std::vector<Triangle>& triangles, const Vec3& place)
 {
-  double sum = 0.0; // of solid angles: Van Oosterom and Strackee 1983
+  double sum = 0.0; // sum of solid angles (Van Oosterom and Strackee 1983)
   for (const Triangle& t : triangles)
   {
     const Vec3 a = points[t[0]] - place;
@@ -189,10 +191,10 @@ struct Shell
   std::vector<Triangle> triangles; ///< facing outward
   Vec3 low{ Infinity };
   Vec3 high{ -Infinity };
-  double volume = 0.0; ///< m3
-  double given = 0.0;  ///< m3, as the triangles were wound
+  double volume = 0.0; ///< volume, m3
+  double given = 0.0;  ///< signed volume as the triangles were wound, m3
 
-  /// How it was wound: 1 outward, -1 inward, 0 both ways.
+  /// How the triangles were wound: 1 outward, -1 inward, 0 both ways.
   int wound() const
   {
     const double most = (1.0 - 1e-9) * this->volume;
@@ -200,7 +202,8 @@ struct Shell
   }
 };
 
-/// Whether no part of a shell is outside another one, and most of it is not in its faces either.
+/// True if no part of a shell lies outside another one, and most of it does not lie in the other's
+/// faces.
 bool isInside(const std::vector<Vec3>& points, const Shell& one, const Shell& other)
 {
   if (glm::any(glm::lessThan(one.low, other.low)) ||
@@ -209,7 +212,7 @@ bool isInside(const std::vector<Vec3>& points, const Shell& one, const Shell& ot
     return false;
   }
   const std::size_t step = std::max<std::size_t>(one.triangles.size() / 32, 1);
-  int amid = 0; // those that do not lie in a face of the other one, over the others
+  int amid = 0; // triangles amid the other shell, less triangles in its faces
   for (std::size_t i = 0; i < one.triangles.size(); i += step)
   {
     const Triangle& t = one.triangles[i];
@@ -224,7 +227,7 @@ bool isInside(const std::vector<Vec3>& points, const Shell& one, const Shell& ot
   return amid > 0;
 }
 
-/// Turn holes: shells that are wound against the smallest shell about them.
+/// Turn the holes, which are wound against the smallest shell about them.
 void turnHoles(const std::vector<Vec3>& points, std::vector<Shell>& shells)
 {
   std::vector<std::size_t> order(shells.size());
@@ -258,7 +261,7 @@ void turnHoles(const std::vector<Vec3>& points, std::vector<Shell>& shells)
 
 TriangleMesh closedShells(const TriangleMesh& mesh, std::string& problem)
 {
-  // Corners in one place are one point.
+  // Corners with equal coordinates become one point.
   std::map<std::array<double, 3>, std::uint32_t> known;
   std::vector<std::uint32_t> merged;
   std::vector<Vec3> points;

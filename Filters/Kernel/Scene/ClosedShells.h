@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file ClosedShells.h
- * @brief Closed shells of a set of triangles, each facing outward, whichever way the triangles
- * wind.
+ * @brief Finds the closed shells of a set of triangles and makes each face outward, however its
+ * triangles were wound.
  *
- * Triangles that share an edge belong to one shell. Where more than two share it, those that name
- * the same two points do if they are two; the others are paired by their angle about the edge, so
- * that bodies which touch are shells of their own or one shell that is closed all the same. A shell
- * faces outward, except a hole: a shell inside another one that is wound the other way.
- *
+ * At each edge triangles are paired, and paired triangles belong to one shell. If more than two
+ * share an edge, two that name the same given points are paired first, and the others are paired by
+ * their angle about the edge. Bodies that touch thus become shells of their own, or one shell that
+ * is closed all the same. A shell faces outward, except a hole: a shell inside another one and
+ * wound the other way.
  * Source: none.
- * Valid: finite points; corners with equal coordinates are one point. Whether a shell is inside
- * another is asked of some 32 of its triangles.
+ * Valid: finite points; corners with equal coordinates are one point. Some 32 triangles of a shell
+ * decide whether it lies inside another one.
  * Test: TestClosedShells.cxx.
  */
 #ifndef avianlidar_ClosedShells_h
@@ -23,8 +23,8 @@
 
 namespace avianlidar
 {
-/// The same surface with merged points, without triangles of which two corners are one.
-/// @param problem receives what is wrong with the surface, which is then empty
+/// The same surface with merged points and without triangles that have two equal corners.
+/// @param problem receives what is wrong with the surface; the result is then empty
 TriangleMesh closedShells(const TriangleMesh& mesh, std::string& problem);
 }
 

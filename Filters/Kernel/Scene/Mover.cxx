@@ -12,13 +12,13 @@ namespace avianlidar
 {
 namespace
 {
-/// m, as for all coordinates of a scene.
+/// Farthest position, m: the limit of all coordinates of a scene.
 constexpr double FarthestPosition = 1e30;
 
-/// How far from 1 the length of a quaternion or an axis may be.
+/// Largest deviation of the length of a quaternion or an axis from 1.
 constexpr double UnitWithin = 1e-6;
 
-/// Rounding of spheres.
+/// Factor by which rounding widens spheres.
 constexpr double Wider = 1.0 + 1e-9;
 
 std::string checkPose(const Pose& pose, std::size_t number, bool always)
@@ -52,7 +52,7 @@ std::string checkFlap(const Flap& flap, std::size_t number)
     : which + valueError("length of flap_axis", length, "1");
 }
 
-/// The bound wherever the parts flap: a point of a part stays on a sphere about its hinge.
+/// Bound for every position of the parts: a point of a part stays on a sphere about its hinge.
 MoverSphere boundOf(const Mover& mover)
 {
   Vec3 lower(std::numeric_limits<double>::infinity());

@@ -78,7 +78,7 @@ ReflectionGeometry reflectionGeometry(
   ReflectionGeometry g;
   g.cosIncidence = -glm::dot(incident, normal);
   g.cosOutgoing = glm::dot(outgoing, normal);
-  // Small angles from cross products: 1 - cos^2 would lose half the digits, and kp multiplies the
+  // Cross products give small angles: 1 - cos^2 would lose half the digits, and kp multiplies the
   // error.
   const Vec3 mirror = mirrorDirection(incident, normal);
   const Vec3 off = glm::cross(mirror, outgoing);
@@ -94,7 +94,8 @@ ReflectionGeometry reflectionGeometry(
   }
   else
   {
-    // Straight through: every half vector is as good, and the difference angle is 90 degrees.
+    // The ray goes straight through: any half vector will do, and the difference angle is 90
+    // degrees.
     g.sin2Half = 0.0;
     g.cosDifference = 0.0;
   }
@@ -118,7 +119,7 @@ Reflectance mostStraightBack(ReflectanceModel model, const Material& material, d
   Reflectance most = reflectance(model, material, monostaticGeometry(mostCosine));
   if (model == ReflectanceModel::OrenNayar)
   {
-    // A rough surface is brightest at an angle, where A c + B (1 - c^2) is largest.
+    // A rough surface is brightest at the angle where A c + B (1 - c^2) is largest.
     const OrenNayar::Shares by = OrenNayar::sharesOf(material);
     if (by.even < 2.0 * by.rough * mostCosine)
     {

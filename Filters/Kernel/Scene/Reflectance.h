@@ -20,13 +20,13 @@
  * - OrenNayar: f_d = kd cos theta_i (A + B max(0, cos dphi) sin alpha tan beta), alpha the larger
  *   and beta the smaller of theta_i and theta_o, dphi between the two around the normal, A = 1 -
  *   s^2/(2 s^2 + 0.66), B = 0.45 s^2/(s^2 + 0.09), s the roughness; f_s as LambertBlinnPhong.
- *   Straight back kd (A cos theta_i + B sin^2 theta_i): grazing, kd B is left, where a surface
- *   that is not rough returns nothing.
+ *   Straight back, f_d = kd (A cos theta_i + B sin^2 theta_i): at grazing incidence a rough surface
+ *   returns kd B and a smooth one nothing.
  *
- * Each model is written once, as a type with inline functions of plain doubles without branches:
- * single values and loops over lanes call the same.
+ * Each model is a type with inline functions of plain doubles without branches, which both single
+ * values and loops over lanes use.
  *
- * Source: LambertBlinnPhong: paper, Sec. 2.2, Eq. 4-8; its lobe is that of Phong (CACM 18(6),
+ * Source: LambertBlinnPhong: paper, Sec. 2.2, Eq. 4-8; its lobe is Phong's (CACM 18(6),
  * 1975). Phong: the modified, reciprocal model of Lafortune and Willems (report CW197, K.U.
  * Leuven, 1994). Microfacet: Cook and Torrance (ACM TOG 1(1), 1982) with the distribution and the
  * height-correlated masking of Trowbridge-Reitz/GGX (Walter et al., EGSR 2007; Heitz, JCGT 3(2),
@@ -57,10 +57,10 @@ namespace avianlidar
 /// Coefficients of a surface; the defaults are the paper's wall (Table 1).
 struct Material
 {
-  double kd = 0.146; ///< diffuse, >= 0
-  double ks = 0.054; ///< specular, >= 0, kd + ks <= 1
-  double kp = 112.0; ///< glossiness, in [0, 1e6]
-  /// Standard deviation of the slope of its facets, rad, in [0, pi/2]; OrenNayar alone uses it.
+  double kd = 0.146; ///< diffuse coefficient, >= 0
+  double ks = 0.054; ///< specular coefficient, >= 0; kd + ks <= 1
+  double kp = 112.0; ///< glossiness coefficient, in [0, 1e6]
+  /// Standard deviation of facet slopes, rad, in [0, pi/2]; used by OrenNayar alone.
   double roughness = 0.0;
 
   /// Largest share of a ray's energy that the surface returns.
@@ -75,18 +75,19 @@ struct Material
   bool operator!=(const Material& other) const { return !(*this == other); }
 };
 
-/// A coefficient as seen by all code except the models of reflectance: at least 0.
+/// Description of a coefficient of at least 0, for all code except the models of reflectance.
 struct MaterialCoefficient
 {
   const char* name; ///< name of its cell array and key in scene files
   const char* unit; ///< "1": a pure number
   double Material::*member;
-  double most;
-  bool isShare;         ///< a share of the energy; all shares add up to at most 1
-  const char* expected; ///< in words
-  /// True if a scene file must give it, given the coefficients before it.
+  double most;          ///< upper limit of the coefficient
+  bool isShare;         ///< true for a share of the energy; all shares add up to at most 1
+  const char* expected; ///< expected range, in words
+  /// True if a scene file must give the coefficient, for a material with the coefficients before
+  /// it.
   bool (*isNeeded)(const Material&);
-  bool isOptional; ///< surfaces without its cell array have the default of Material
+  bool isOptional; ///< true if surfaces without its cell array have the default of Material
 };
 
 /// In the order in which messages name them.
@@ -97,12 +98,12 @@ inline constexpr MaterialCoefficient MaterialCoefficients[] = {
     false },
   { "kp", "1", &Material::kp, 1e6, false, "from 0 to 1e6",
     [](const Material& material) { return material.isGlossy(); }, false },
-  // A pi/2 of single precision passes.
+  // The limit lets pi/2 in single precision pass.
   { "roughness", "rad", &Material::roughness, 0.5 * Pi + 1e-7, false, "from 0 to pi/2 rad",
     [](const Material&) { return false; }, true },
 };
 
-/// Materials of samples, for loops over lanes.
+/// Materials of samples, one array per coefficient, for loops over lanes.
 class MaterialLanes
 {
 public:
@@ -140,11 +141,12 @@ private:
   std::vector<double> Lanes[std::size(MaterialCoefficients)];
 };
 
-/// Empty if the material is usable; otherwise a sentence that names the value and what was
-/// expected. A sum kd + ks that exceeds 1 by less than 1e-12 passes: it is a rounded 1.
+/// @return empty if the material is usable, else a sentence that names the value and what was
+/// expected. A sum kd + ks that exceeds 1 by less than 1e-12 passes as a rounded 1.
 std::string checkMaterial(const Material& material);
 
-/// "kd, ks, kp": those whose cell arrays a surface must have, or none.
+/// "kd, ks, kp": the coefficients whose cell arrays a surface must have, unless it has none of
+/// them.
 std::string namesOfCoefficients();
 
 /// "kd 0.146, ks 0.054, kp 112, roughness 0"
@@ -158,7 +160,7 @@ enum class ReflectanceModel
   OrenNayar = 3
 };
 
-/// The angles at one reflection; cosines are not cut off.
+/// Angles at one reflection; negative cosines are kept.
 struct ReflectionGeometry
 {
   double cosIncidence = 1.0;  ///< between the reversed incident direction and the normal
@@ -170,7 +172,8 @@ struct ReflectionGeometry
   double roughTerm = 0.0;     ///< max(0, cos dphi) sin alpha tan beta (OrenNayar)
 };
 
-/// roughTerm. @param cosBetween between the two directions, both away from the surface
+/// ReflectionGeometry::roughTerm. @param cosBetween cosine of the angle between the two directions,
+/// both away from the surface
 AVIANLIDAR_ALWAYS_INLINE double roughTermOf(
   double cosIncidence, double cosOutgoing, double cosBetween)
 {
@@ -215,7 +218,7 @@ struct Reflectance
 /// exponent 0.
 AVIANLIDAR_ALWAYS_INLINE double lobe(double cosine, double sineSquared, double exponent)
 {
-  // ln cos^2: where the angle is small, from its sine.
+  // Where the angle is small, ln cos^2 is taken from the sine.
   const bool small = cosine > 0.7;
   const bool lit = cosine > 0.0;
   const double square = lit ? cosine * cosine : 1.0;
@@ -227,8 +230,8 @@ AVIANLIDAR_ALWAYS_INLINE double lobe(double cosine, double sineSquared, double e
 }
 
 /// @name The models.
-/// f_d and f_s, the largest of each over all outgoing directions at an incidence, and f_d/(kd cos
-/// theta_i), by which a surface differs from Lambert's.
+/// of() gives f_d and f_s, bound() upper bounds of each over all outgoing directions at an
+/// incidence, and unlikeLambert() the ratio f_d/(kd cos theta_i) to a Lambertian surface.
 /// @{
 struct LambertBlinnPhong
 {
@@ -324,7 +327,7 @@ struct OrenNayar
 };
 /// @}
 
-/// f(model), model a value of one of the four types.
+/// Call `f` with a value of the type that implements `model`. @return its result
 template <class F>
 AVIANLIDAR_ALWAYS_INLINE auto withModel(ReflectanceModel model, F f)
 {
@@ -353,25 +356,25 @@ inline double specularReflectance(
   return reflectance(model, material, geometry).specular;
 }
 
-/// The largest f_d and f_s over all outgoing directions at this incidence (upper bounds; each on
-/// its own).
+/// Upper bounds of f_d and of f_s over all outgoing directions at this incidence.
 Reflectance reflectanceBound(ReflectanceModel model, const Material& material, double cosIncidence);
 
-/// The largest f_d and f_s straight back over all angles of incidence whose cosine is at most this.
+/// Largest f_d and largest f_s straight back over all incidence angles whose cosine is at most
+/// `mostCosine`.
 Reflectance mostStraightBack(ReflectanceModel model, const Material& material, double mostCosine);
 
 /**
- * f as collected by a receiver of aperture `aperture` (m^2) at distance `distance` (m): f_d A/(pi
- * r^2) and f_s (kp + 1) A/(2 pi r^2), both scaled by one factor so that their total does not
- * exceed 1. Aperture 0 is the paper's radiometry: f unchanged. Distance 0 with an aperture: the
- * cap.
+ * Share of a ray's energy that a receiver of aperture `aperture` (m2) at distance `distance` (m)
+ * collects: f_d A/(pi r^2) and f_s (kp + 1) A/(2 pi r^2), both scaled by one factor so that their
+ * total does not exceed 1. Aperture 0 leaves f unchanged, as in the paper. At distance 0 an
+ * aperture collects a total of 1.
  */
 AVIANLIDAR_ALWAYS_INLINE Reflectance throughAperture(
   Reflectance f, Material material, double aperture, double distance)
 {
   const double perSteradian = aperture / (Pi * distance * distance);
   const double specular = 0.5 * (material.kp + 1.0) * f.specular;
-  // Divided by their own sum first: the product may overflow where the distance is all but 0.
+  // Dividing by the sum first avoids overflow of the product at distances near 0.
   const double gathered = f.diffuse + specular;
   const double total = lanes::smaller(gathered * perSteradian, 1.0);
   const bool any = gathered > 0.0;
@@ -382,12 +385,12 @@ AVIANLIDAR_ALWAYS_INLINE Reflectance throughAperture(
     gathers ? specular / whole * scale : f.specular };
 }
 
-/// Upper bound, 1/sr, of what reaches an aperture of A m2 at r m from a surface, over A/r2: the
-/// value on the lobe's axis, or that of a diffuse surface.
+/// Upper bound, 1/sr, of the share of energy that reaches an aperture of A m2 at r m from a
+/// surface, over A/r2: the value on the lobe's axis or of a diffuse surface, whichever is larger.
 double apertureGain(const Material& material);
 
-/// Square of the angle of incidence at which the specular lobe has fallen to e^-1, rad2; 0 if there
-/// is none.
+/// Square of the incidence angle, rad2, at which the specular lobe straight back has fallen to 1/e;
+/// 0 without a lobe.
 double lobeWidth2(const Material& material);
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file TriangleMesh.h
- * @brief The geometry of the scene: an indexed set of triangles in scene coordinates (double, m).
+ * @brief Geometry of the scene: an indexed set of triangles in scene coordinates (double, m).
  *
  * Source: none.
  * Valid: at most 2^31 - 1 triangles with coordinates of at most 1e30 m (checked when a tree is
@@ -42,7 +42,8 @@ struct TriangleMesh
     static_assert(sizeof(Vec3) == 3 * sizeof(double), "points must be packed to be hashed");
     static_assert(sizeof(this->triangles[0]) == 3 * sizeof(std::uint32_t),
       "triangles must be packed to be hashed");
-    // Seeded with the first hash, the second also changes if bytes move between the arrays.
+    // The hash of the points seeds the second hash, which thus changes if bytes move between the
+    // arrays.
     const std::uint64_t ofPoints =
       hashOf(this->points.data(), this->points.size() * sizeof(Vec3), this->points.size());
     return hashOf(
