@@ -17,10 +17,11 @@ namespace
 {
 constexpr double Kilobyte = 1024.0;
 constexpr double Unlimited = std::numeric_limits<double>::infinity();
-// Below it nothing is gained by a look.
+// Smaller requests are not worth a check, bytes.
 constexpr double LeastToLookAt = 64e6;
 
-/// The number behind a word of a file ("MemAvailable:", kB), in the file's unit; else `otherwise`.
+/// Number after a word of a file ("MemAvailable:"), in the file's unit, or `otherwise` if there is
+/// none.
 double numberBehind(const std::string& file, const std::string& word, double otherwise)
 {
   std::ifstream stream(file);
@@ -38,7 +39,7 @@ double numberBehind(const std::string& file, const std::string& word, double oth
   return otherwise;
 }
 
-/// The one number of a file; else (no file, "max") `otherwise`.
+/// The only number of a file, or `otherwise` if there is no file or no number ("max").
 double numberIn(const std::string& file, double otherwise)
 {
   std::ifstream stream(file);
@@ -46,7 +47,7 @@ double numberIn(const std::string& file, double otherwise)
   return stream >> number ? number : otherwise;
 }
 
-/// What one control group leaves.
+/// Bytes that one control group leaves.
 double leftByGroup(const std::string& folder, const char* limit, const char* usage)
 {
   const double cached = numberBehind(folder + "/memory.stat", "inactive_file", 0.0) +
@@ -55,7 +56,7 @@ double leftByGroup(const std::string& folder, const char* limit, const char* usa
   return numberIn(folder + "/" + limit, Unlimited) - std::max(0.0, used - cached);
 }
 
-/// What the group at `path` and all above it leave.
+/// Least number of bytes that the group at `path` or a group above it leaves.
 double leftByGroups(
   const std::string& mount, std::string path, const char* limit, const char* usage)
 {
@@ -71,7 +72,8 @@ double leftByGroups(
   }
 }
 
-/// Lines of /proc/self/cgroup are "0::/path" (version 2) and "4:memory:/path" (version 1).
+/// Bytes that control groups leave. Lines of /proc/self/cgroup are "0::/path" (version 2) and
+/// "4:memory:/path" (version 1).
 double leftByControlGroups(const std::string& root)
 {
   double left = Unlimited;
@@ -102,7 +104,7 @@ double leftByControlGroups(const std::string& root)
   return left;
 }
 
-/// 100000000 as "100,000,000"; beyond what a double counts, as "1.2e+18".
+/// 100000000 as "100,000,000", or as "1.2e+18" if a double cannot count so far.
 std::string grouped(double count)
 {
   char text[64];

@@ -1,18 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file AvailableMemory.h
- * @brief How much memory the process may still take, and an error before a request that needs
- * more.
+ * @brief How much memory the process may still take, and an error before a request that needs more.
  *
  * A system that overcommits grants any request and ends the process when the memory is written to.
- * So the few requests whose size a property or a file decides are estimated first.
+ * Requests whose size a property or a file decides are therefore estimated first.
  *
  * Source: none.
- * Valid: on Linux the smallest of what the address limit (RLIMIT_AS) leaves, what the control
- * group and those above it leave (version 1 or 2; file caches count as free), and MemAvailable.
- * Elsewhere nothing is known and nothing is refused. Other processes may take the memory
- * afterwards: an estimate is no promise.
- * Test: TestAvailableMemory.cxx.
+ * Valid: on Linux the smallest of three numbers: what the address limit (RLIMIT_AS) leaves, what
+ * the control group and the groups above it leave (version 1 or 2; file caches count as free), and
+ * MemAvailable. On other systems nothing is known and nothing is refused. Other processes may take
+ * the memory after the estimate.
  */
 #ifndef avianlidar_AvailableMemory_h
 #define avianlidar_AvailableMemory_h
@@ -22,25 +20,25 @@
 
 namespace avianlidar
 {
-/// A request that is larger than the memory there is.
+/// Thrown for a request that is larger than the available memory.
 class MemoryError : public std::runtime_error
 {
 public:
   using std::runtime_error::runtime_error;
 };
 
-/// Bytes; infinite if nothing limits them.
+/// Available memory, bytes; infinite if nothing limits it.
 double availableMemory();
 
-/// Bytes that the address limit alone leaves; costs nothing where there is none.
+/// Bytes that the address limit alone leaves. Without a limit the call costs nothing.
 double availableAddresses();
 
-/// The same, from the files of a system below `root` and with an address limit in bytes.
+/// Available memory from the system files below `root` and an address limit, bytes.
 double availableMemory(const std::string& root, double addressLimit);
 
-/// Throws MemoryError, "100,000,000 beams need about 12 GB, 3 GB are available", unless `bytes` are
+/// Throw MemoryError, "100,000,000 beams need about 12 GB, 3 GB are available", unless `bytes` are
 /// available. Requests below 64 MB are not checked.
-/// @param what "beams"
+/// @param count number of items @param what items in words, such as "beams"
 void requireMemory(double count, const std::string& what, double bytes);
 }
 

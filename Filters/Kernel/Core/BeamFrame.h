@@ -3,12 +3,11 @@
  * @file BeamFrame.h
  * @brief A beam: apex, axis, half-beamwidth, and the orthogonal frame about its axis.
  *
- * A ray of the beam is a point (x, y) of the beam's own plane at unit distance, in units of
- * tan(theta0.5). Its direction is axis + tan(theta0.5) (x e1 + y e2), not normalised, and x^2 +
- * y^2 <= 1. In a round beam e2 is a unit vector. In others it is as much shorter as the beam is
- * narrower there: an ellipse is the unit disc, too, and a rectangle the square in it. The cone of
- * the half-beamwidth holds them all.
- *
+ * A ray of the beam is a point (x, y), x^2 + y^2 <= 1, of the beam's own plane at unit distance, in
+ * units of tan(theta0.5). Its direction is axis + tan(theta0.5) (x e1 + y e2), not normalised. In a
+ * round beam e2 is a unit vector. In other beams the length of e2 is the ratio of the two
+ * beamwidths' tangents: an elliptic beam is then the unit disc, too, and a rectangular beam the
+ * square in the disc. The cone of the half-beamwidth holds all of them.
  * Source: frame of Duff et al., "Building an Orthonormal Basis, Revisited", JCGT 6(1), 2017.
  * Differs: the axis is normalised twice, so that it is a unit vector to the last bits.
  * Valid: finite directions other than zero, half-beamwidth in (0, pi/3]. The frame is continuous
@@ -32,20 +31,21 @@ struct BeamFrame
   Vec3 e1{ 1.0, 0.0, 0.0 };
   Vec3 e2{ 0.0, 1.0, 0.0 };
   double halfBeamwidth = 0.0; ///< rad
-  double tanHalf = 0.0;
-  double sinHalf = 0.0;
-  double cosHalf = 1.0;
-  double flatness2 = 1.0; ///< squared length of e2
+  double tanHalf = 0.0;       ///< tangent of the half-beamwidth
+  double sinHalf = 0.0;       ///< sine of the half-beamwidth
+  double cosHalf = 1.0;       ///< cosine of the half-beamwidth
+  double flatness2 = 1.0;     ///< squared length of e2
   bool isRectangle = false;
 
-  /// x and y of a vector's direction, both times its component along the axis, and that.
+  /// (x z, y z, z) of a vector, with z its component along the axis and (x, y) its ray.
   Vec3 toPlane(const Vec3& v) const
   {
     return { glm::dot(v, this->e1) / this->tanHalf,
       glm::dot(v, this->e2) / (this->tanHalf * this->flatness2), glm::dot(v, this->axis) };
   }
 
-  /// Squared tangent of the angle of a ray from the axis, over that of the half-beamwidth.
+  /// Squared tangent of the angle between a ray and the axis, over the squared tangent of the
+  /// half-beamwidth.
   double radius2(double x, double y) const { return x * x + this->flatness2 * (y * y); }
 
   /// Direction of the ray (x, y), not normalised: its component along the axis is 1.
@@ -54,7 +54,7 @@ struct BeamFrame
     return this->axis + this->tanHalf * (x * this->e1 + y * this->e2);
   }
 
-  /// True if the point at `v` from the apex lies in the beam, its outline included.
+  /// True if the point `v`, relative to the apex, lies in the beam or on its outline.
   bool contains(const Vec3& v) const
   {
     const Vec3 p = this->toPlane(v);
@@ -64,16 +64,16 @@ struct BeamFrame
   }
 };
 
-/// Half-beamwidth of many beams, with its sine, cosine and tangent.
+/// Half-beamwidth and outline that many beams share.
 struct BeamWidth
 {
-  double half, tangent, sine, cosine;
+  double half, tangent, sine, cosine; ///< half-beamwidth, rad, and its tangent, sine and cosine
   bool isRound = true;
-  // Of beams that are not:
+  // For beams that are not round:
   bool isRectangle = false;
-  double flatness = 1.0;    ///< tangents along e2 over those along e1, at most 1
-  double turn = 0.0;        ///< rad, of e1 from the horizontal towards `up`
-  Vec3 up{ 0.0, 0.0, 1.0 }; ///< unit vector, at right angles to the horizontal
+  double flatness = 1.0;    ///< tangents along e2 over tangents along e1, at most 1
+  double turn = 0.0;        ///< angle of e1 from the horizontal towards `up`, rad
+  Vec3 up{ 0.0, 0.0, 1.0 }; ///< unit vector at right angles to the horizontal
   explicit BeamWidth(double halfBeamwidth)
     : half(halfBeamwidth)
     , tangent(std::tan(halfBeamwidth))
@@ -83,8 +83,8 @@ struct BeamWidth
   }
 };
 
-/// Turn e1 and e2 of a frame to the axes of a beam that is not round. Looking along a beam that
-/// points up or down, e1 stays as it is before it is turned.
+/// Turn e1 and e2 of a frame to the axes of a beam that is not round. If the beam points along `up`
+/// or against it, e1 itself is turned, instead of the horizontal.
 inline void setAxes(const BeamWidth& width, BeamFrame& frame)
 {
   const Vec3 across = glm::cross(frame.axis, width.up);
@@ -98,8 +98,7 @@ inline void setAxes(const BeamWidth& width, BeamFrame& frame)
   frame.isRectangle = width.isRectangle;
 }
 
-/// Frame of a beam; `direction` need not be normalised but must be finite and not zero (checked by
-/// the caller).
+/// Frame of a beam. @param direction finite and not zero (checked by the caller), of any length
 inline BeamFrame makeBeamFrame(const Vec3& origin, const Vec3& direction, const BeamWidth& width)
 {
   BeamFrame frame;

@@ -20,8 +20,8 @@ using Point = std::array<double, 3>;
 
 constexpr double FalseEasting = 500e3;
 constexpr double FalseNorthing = 10000e3;
-// Where the series of the transverse Mercator projection hold to 5 nm, and a little beyond the
-// poles.
+// Greatest easting, m, for which the series of the transverse Mercator projection hold to 5 nm, and
+// greatest northing, a little beyond the poles.
 constexpr double GreatestEasting = 3900e3;
 constexpr double GreatestNorthing = 10500e3;
 
@@ -157,8 +157,8 @@ std::array<double, 3> GeodeticFrame::convert(Frame from, Frame to, const Point& 
   {
     return point;
   }
-  // ENU and ECEF are one rotation apart, geodetic and UTM one projection; between the two pairs is
-  // the ellipsoid.
+  // A rotation converts between ENU and ECEF, a projection between geodetic and UTM, and the
+  // ellipsoid between the two pairs.
   Point p = point;
   if (isOnEllipsoid(from))
   {

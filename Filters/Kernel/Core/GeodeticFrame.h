@@ -11,10 +11,10 @@
  * | ECEF     | geocentric x (to 0 N 0 E), y (to 0 N 90 E), z (to the north pole) in metres   |
  * | UTM      | easting, northing of a zone in metres, height above the ellipsoid in metres   |
  *
- * The order is x, y, z, as points have it: longitude before latitude, unlike the origin's.
+ * The order is x, y, z, as in points: longitude before latitude, unlike setOrigin().
  *
  * Source: GeographicLib.
- * Differs: UTM beyond GeographicLib's reach is refused.
+ * Differs: UTM coordinates beyond the reach of GeographicLib are refused.
  * Valid: GeographicLib's own error is 7 nm between geodetic and ECEF within 5000 km of the surface
  * and 5 nm in UTM within 3900 km of the zone's central meridian. The rounding of the numbers adds
  * 3 nm for a longitude in degrees and 1 nm for ECEF. At the poles, where any longitude fits, the
@@ -41,31 +41,32 @@ enum class Frame
 class GeodeticFrame
 {
 public:
-  /// With the origin at latitude 0, longitude 0, height 0 and zone 31 north.
+  /// Frame with the origin at latitude 0, longitude 0, height 0 and with zone 31 north.
   GeodeticFrame();
   ~GeodeticFrame();
   GeodeticFrame(const GeodeticFrame&) = delete;
   GeodeticFrame& operator=(const GeodeticFrame&) = delete;
 
-  /// Error of an origin in words, or an empty string: latitude in [-90, 90] and longitude in
-  /// [-360, 360] degrees, height finite.
+  /// @return empty if the origin is valid, else the error in words: latitude in [-90, 90] and
+  /// longitude in [-360, 360] degrees, finite height
   static std::string checkOrigin(double latitude, double longitude, double height);
 
-  /// Set the origin of ENU (checked by the caller).
+  /// Set the origin of ENU, degrees and m (checked by the caller).
   void setOrigin(double latitude, double longitude, double height);
 
-  /// UTM zone of a place, 1 to 60, negative in the south; with the exceptions of Norway and
+  /// UTM zone of a place, 1 to 60, negative in the south, with the exceptions of Norway and
   /// Svalbard. Near the poles, where UTM ends, the longitude alone decides.
   static int zoneOf(double latitude, double longitude);
 
-  /// Use this zone (1 to 60, negative in the south).
+  /// Set the zone of UTM, 1 to 60, negative in the south.
   void setZone(int zone);
 
-  /// Error of a point of a frame in words, or an empty string: not finite, latitude outside [-90,
-  /// 90] degrees, easting or northing outside the reach of UTM.
+  /// @return empty if the point is valid, else the error in words: a coordinate that is not finite,
+  /// a latitude outside [-90, 90] degrees, an easting or northing outside the reach of UTM
   static std::string checkPoint(Frame frame, const std::array<double, 3>& point);
 
-  /// The point in another frame; the result of UTM may lie outside its reach, see checkPoint().
+  /// Convert a point to another frame. The result in UTM may lie outside its reach, see
+  /// checkPoint().
   std::array<double, 3> convert(Frame from, Frame to, const std::array<double, 3>& point) const;
 
 private:

@@ -4,7 +4,7 @@
  * @brief Checksums of bytes, 64 bits, fast enough to be computed at every run.
  *
  * Source: XXH3 (Y. Collet, library xxHash).
- * Valid: the same on every machine of one byte order. No protection against bytes made to collide.
+ * Valid: equal on all machines of one byte order. No protection against bytes made to collide.
  * Test: TestTriangleMesh.cxx.
  */
 #ifndef avianlidar_Hash_h
@@ -15,7 +15,7 @@
 
 namespace avianlidar
 {
-/// @param seed the hash of what comes before, if that belongs to it
+/// Hash of some bytes. @param seed hash of the bytes before them, if both belong together
 std::uint64_t hashOf(const void* data, std::size_t bytes, std::uint64_t seed);
 }
 

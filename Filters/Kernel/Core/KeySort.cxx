@@ -9,7 +9,7 @@ namespace avianlidar
 {
 namespace
 {
-/// Numbers of which fewer are sorted faster without lanes.
+/// Fewer keys are sorted faster without SIMD lanes.
 constexpr std::size_t FewKeys = 64;
 }
 

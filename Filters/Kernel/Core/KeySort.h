@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file KeySort.h
- * @brief Sorts integers, each of which holds a key and, below it, a number.
+ * @brief Sorts integers that hold a key in their high bits and a number in their low bits.
  *
  * Source: Wassenberg et al., "Vectorized and performance-portable Quicksort", 2022 (Highway's
  * VQSort).
- * Differs: few are sorted by std::sort(), which is faster then.
- * Valid: any integers. Not for two threads and one vector.
+ * Differs: few integers are sorted by std::sort(), which is then faster.
+ * Valid: any integers. Two threads must not sort one vector.
  * Test: TestBeamCells.cxx, TestVisiblePolygons.cxx.
  */
 #ifndef avianlidar_KeySort_h
@@ -17,7 +17,7 @@
 
 namespace avianlidar
 {
-/// A key above a number of 32 bits.
+/// Integer of a key (high 32 bits) and a number below 2^32 (low 32 bits).
 inline std::uint64_t keyAbove(std::uint32_t key, std::size_t number)
 {
   return static_cast<std::uint64_t>(key) << 32 | number;

@@ -27,9 +27,9 @@ namespace avianlidar
 {
 namespace lanes
 {
-/// std::max() and std::min() by value, for loops over lanes. What is handed on by reference, also
-/// to a lambda, has a place in memory; where that is not optimised away (clang 14 under sanitizers)
-/// the vectorised loop takes the places of all lanes for one.
+/// std::max() and std::min() by value, for loops over lanes. A value passed by reference, also to a
+/// lambda, has an address. Where the address is not optimised away (clang 14 under sanitizers), the
+/// vectorised loop uses one address for all lanes.
 template <class T>
 AVIANLIDAR_ALWAYS_INLINE T larger(T a, T b)
 {
@@ -41,7 +41,7 @@ AVIANLIDAR_ALWAYS_INLINE T smaller(T a, T b)
   return b < a ? b : a;
 }
 
-/// Cut off to [0, 1].
+/// Value clamped to [0, 1].
 AVIANLIDAR_ALWAYS_INLINE double unit(double value)
 {
   const double positive = value > 0.0 ? value : 0.0;
@@ -62,7 +62,8 @@ AVIANLIDAR_ALWAYS_INLINE double fromBits(std::uint64_t bits)
   return value;
 }
 
-/// Adding it leaves the nearest whole number, of magnitude below 2^51, in the low bits of the sum.
+/// Added to a number of magnitude below 2^51, it leaves the nearest whole number in the low bits of
+/// the sum.
 constexpr double Rounder = 6755399441055744.0; // 1.5 * 2^52
 
 /// 2^n for the whole number in the low bits of `rounded` = n + Rounder, |n| <= 1022.
@@ -98,8 +99,8 @@ AVIANLIDAR_ALWAYS_INLINE double exp(double x)
   return value * powerOfTwo(half) * powerOfTwo(rest + Rounder);
 }
 
-/// ln(y) + correction/y for a normal number y > 0; `correction` is what the rounding of y cut
-/// off.
+/// ln(y) + correction/y for a normal number y > 0. @param correction part of y that rounding cut
+/// off
 AVIANLIDAR_ALWAYS_INLINE double logOf(double y, double correction)
 {
   constexpr double Ln2High = 6.93147180369123816490e-01;

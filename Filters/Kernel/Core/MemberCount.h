@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file MemberCount.h
- * @brief How many members an aggregate has, known to the compiler: where all members of a struct
- * must be named, one that was forgotten does not compile.
+ * @brief Number of members of an aggregate at compile time. Code that must name all members of a
+ * struct can check the number, so that a forgotten member does not compile.
  *
- * Source: none; as many members as an aggregate takes initialisers.
+ * Source: none. An aggregate takes as many initialisers as it has members.
  * Valid: aggregates of C++17 without base classes, arrays or references as members.
  * Test: Testing/Kernel/check_kept_beams.py.
  */
@@ -17,7 +17,7 @@
 
 namespace avianlidar
 {
-/// Stands for a member of any type. Is only declared.
+/// Converts to a member of any type; declared only.
 struct AnyMember
 {
   template <class T>

@@ -4,15 +4,14 @@
  * @brief Functions compiled for several instruction sets; the best is chosen when the program
  * starts.
  *
- * Only for loops over independent lanes whose results must have the same bits everywhere. What
- * only decides where to look uses Highway's vectors (RayLanes.h). As nothing is contracted or
- * reassociated, every version gives the same bits.
+ * Only for loops over independent lanes whose results must have the same bits everywhere. As
+ * nothing is contracted or reassociated, every version gives the same bits. Code that only decides
+ * where to look uses Highway's vectors (RayLanes.h).
  *
- * These loops are plain C++ and not Highway because they call the very functions that single rays
- * call, rangeOnPlane() for one. So the bits agree by construction and nothing is written twice.
- * Ranges and cosines of a beam's hits took 8.0 ns a ray in the corridor on a processor with
- * AVX-512, and 13.4 ns without the versions.
- *
+ * The loops are plain C++ because they call the functions that single rays call, such as
+ * rangeOnPlane(). The bits therefore agree by construction, and nothing is written twice. Ranges
+ * and cosines of a beam's hits took 8.0 ns a ray in the corridor on a processor with AVX-512, and
+ * 13.4 ns without the versions.
  * Source: none.
  * Valid: versions with GCC on x86-64; elsewhere the functions are compiled once.
  * Test: InstructionSets.cxx with compare_instruction_sets.py (the same bits on several
@@ -28,8 +27,8 @@
 #define AVIANLIDAR_MULTIVERSION
 #endif
 
-/// For functions that such a loop calls: only when inlined are they compiled for the loop's
-/// instruction set.
+/// For functions that such a loop calls: they are compiled for the loop's instruction set only if
+/// inlined.
 #if defined(__GNUC__)
 #define AVIANLIDAR_ALWAYS_INLINE inline __attribute__((always_inline))
 #define AVIANLIDAR_INLINE_LAMBDA __attribute__((always_inline))

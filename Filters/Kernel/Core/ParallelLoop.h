@@ -8,8 +8,7 @@
  * determined, so the body must write each item's result to a slot of that item alone.
  *
  * Source: none.
- * Valid: any counts, blocks and numbers of threads. The child of a fork runs loops as its parent
- * does.
+ * Valid: any counts, blocks and numbers of threads. Loops also work in the child of a fork.
  * Test: TestParallelLoop.cxx.
  */
 #ifndef avianlidar_ParallelLoop_h
@@ -24,10 +23,11 @@ namespace avianlidar
 /// Work on items [begin, end) as thread number `thread`, 0 <= thread < loopThreads(threads).
 using LoopBody = std::function<void(std::size_t begin, std::size_t end, int thread)>;
 
-/// Called with the fraction done, in [0, 1], which never falls; returning false stops the work.
+/// Receives the fraction done, in [0, 1], which never falls; returning false stops the work.
 using KeepGoing = std::function<bool(double fraction)>;
 
-/// Progress of a part of the whole work, from one fraction to another; empty as `keepGoing` is.
+/// Progress of a part of the work, from one fraction of the whole to another; empty if `keepGoing`
+/// is empty. It refers to `keepGoing`, which must outlive it.
 KeepGoing partOf(const KeepGoing& keepGoing, double from, double to);
 
 /// Thrown by a body whose result is no longer wanted.
@@ -39,19 +39,20 @@ struct WorkStopped : std::exception
 /**
  * Call `body` for all of [0, count) in blocks of `block` items (0 is taken as 1).
  *
- * Thread 0 is the calling thread. Only there, before each of its blocks and once with 1 at the end,
- * `keepGoing` (which may be empty) is called, so it may touch what belongs to that thread. When it
- * returns false no further block begins; blocks under way are finished. An exception of the body or
- * of keepGoing stops the work in the same way and is thrown again here: the first one, if there
- * were several.
+ * Thread 0 is the calling thread. It alone calls `keepGoing` (which may be empty), before each of
+ * its blocks and once with 1 at the end, so `keepGoing` may use data of that thread. If it returns
+ * false, blocks under way are finished and no further block begins. An exception of `body` or
+ * `keepGoing` stops the work in the same way and is thrown again here; of several exceptions, the
+ * first.
  * @param threads > 0, or 0 for loopThreads(0)
  * @return true if all items were done and keepGoing never returned false
  */
 bool parallelFor(std::size_t count, std::size_t block, int threads, const LoopBody& body,
   const KeepGoing& keepGoing = {});
 
-/// Threads that a loop asked for `threads` uses at most: `threads`, or OpenMP's choice
-/// (OMP_NUM_THREADS) for 0 or less.
+/// Largest number of threads of a loop that is asked for `threads`; 0 or less asks for OpenMP's
+/// choice (OMP_NUM_THREADS). It is at most 64 or four per processor, whichever is larger, and less
+/// if address space is scarce.
 int loopThreads(int threads);
 }
 

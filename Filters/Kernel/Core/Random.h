@@ -3,11 +3,11 @@
  * @file Random.h
  * @brief Counter-based random numbers: each is a pure function of (seed, beam, index, purpose).
  *
- * So results do not depend on threads, order, pieces, or on how many numbers anything else has
- * drawn.
+ * Results thus do not depend on threads, order, pieces, or the number of random numbers drawn
+ * elsewhere.
  *
  * Source: Philox4x32-10 (Salmon et al., SC'11), written out for SIMD loops.
- * Differs: doubles are odd multiples of 2^-53, so never 0 or 1.
+ * Differs: doubles are odd multiples of 2^-53, so they are never 0 or 1.
  * Valid: all seeds, beams and indices; with a revolution, index < 2^52 and purpose < 4096.
  * Test: TestRandom.cxx (the authors' known answers; their library Random123).
  */
@@ -21,44 +21,43 @@
 
 namespace avianlidar
 {
-/// Purpose of a number; each purpose is a stream of its own. Numbers that are not used any more
-/// stay free.
+/// Purpose of a number; each purpose has its own stream. Numbers of former purposes stay free.
 enum class RandomPurpose : std::uint32_t
 {
   Rays = 0,
   Connections = 1,
   Noise = 2,
   FalseAlarms = 3,
-  Patterns = 6,       ///< of rays that beams share; the pattern's number replaces the beam's
-  Turns = 7,          ///< which pattern a beam has, and how it is turned
-  MastSway = 9,       ///< the axis replaces the beam
+  Patterns = 6, ///< rays of a pattern that beams share; the pattern's number replaces the beam's
+  Turns = 7,    ///< pattern of a beam, and its turn
+  MastSway = 9, ///< the axis replaces the beam
   EncoderJitter = 10, ///< the column replaces the beam
-  Flights = 11,       ///< of birds; the bird's number replaces the beam's
-  FlockPlaces = 12,   ///< likewise, where in a flock it flies
-  RareNoise = 13,     ///< which units have a rare deviate
-  Cells = 14,         ///< of jittered rays; the pattern's number replaces the beam's
-  Mirrors = 15,       ///< of rays over mirrors
-  RangeNoise = 16,    ///< of the range of a return, by its strongest unit
-  Drops = 17,         ///< of rain, by range unit
-  Leaves = 18,        ///< that parts of a beam end at
+  Flights = 11,       ///< flights of birds; the bird's number replaces the beam's
+  FlockPlaces = 12,   ///< place of a bird in its flock; the bird's number replaces the beam's
+  RareNoise = 13,     ///< range units with a rare deviate
+  Cells = 14,         ///< cells of jittered rays; the pattern's number replaces the beam's
+  Mirrors = 15,       ///< rays over mirrors
+  RangeNoise = 16,    ///< noise of a return's range, by its strongest range unit
+  Drops = 17,         ///< rain drops, by range unit
+  Leaves = 18,        ///< leaves at which parts of a beam end
   ShortPaths = 19     ///< directions of paths from a hit to a near one
 };
 
 /// Two independent uniform doubles in the open interval (0, 1), 53 bits each.
-/// @param seed any int; @param beam beam id; @param index ray, range unit or draw number
+/// @param seed any int; @param beam beam id; @param index number of the ray, range unit or draw
 std::array<double, 2> uniformPair(
   std::int32_t seed, std::uint64_t beam, std::uint64_t index, RandomPurpose purpose);
 
-/// The same for numbers that differ between revolutions of the sensor. Each revolution has a stream
-/// of its own; that of revolution 0 is the stream of the function above.
+/// Two uniform doubles as above that differ between revolutions of the sensor. Revolution 0 has the
+/// stream of the function above.
 /// @param index below 2^52 @param purpose below 4096
 std::array<double, 2> uniformPair(std::int32_t seed, std::uint64_t beam, std::uint64_t index,
   RandomPurpose purpose, std::int32_t revolution);
 
 namespace lanes
 {
-/// 52 of the 64 bits and a last bit of 1: an odd multiple of 2^-53, so neither 0 nor 1, and 1 - u
-/// is as exact as u.
+/// Uniform double in (0, 1) from 52 of the 64 bits and a last bit of 1. It is an odd multiple of
+/// 2^-53, so 1 - u is as exact as u.
 AVIANLIDAR_ALWAYS_INLINE double openInterval(std::uint32_t low, std::uint32_t high)
 {
   const std::uint64_t bits = (static_cast<std::uint64_t>(high) << 32) | low;

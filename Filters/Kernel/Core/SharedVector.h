@@ -3,8 +3,8 @@
  * @file SharedVector.h
  * @brief A constant vector whose copies share their elements.
  *
- * What belongs to every triangle of a large scene is held by the surfaces, by the tree's output
- * and by the scan: in memory once, not three times.
+ * Surfaces, the output of the tree and the scan share the data of every triangle of a large scene,
+ * which are thus in memory once and not three times.
  *
  * Source: none.
  * Valid: any elements; shareWith() needs elements that can be copied as bytes, without gaps
@@ -41,7 +41,7 @@ public:
   const T& operator[](std::size_t i) const { return (*this->Values)[i]; }
   bool sharesWith(const SharedVector& other) const { return this->Values == other.Values; }
 
-  /// Share the elements of another vector if they are the same bytes. @tparam T without gaps
+  /// Share the elements of another vector if they have the same bytes. @tparam T without gaps
   /// between its members
   void shareWith(const SharedVector& other)
   {

@@ -3,10 +3,11 @@
  * @file Table.h
  * @brief Tables as text: comma-separated values below a header, without quotes.
  *
- * Empty lines are skipped, and comments, which begin with #. Blanks around values do not count.
+ * Empty lines and comments, which begin with #, are skipped. Blanks around values do not count.
  *
  * Source: none.
- * Valid: text of any kind; a mark of UTF-8 at its beginning, as spreadsheets write it, is skipped.
+ * Valid: text of any kind; a UTF-8 byte order mark at its beginning, as spreadsheets write it, is
+ * skipped.
  * Test: TestBird.cxx (species), TestFlight.cxx (tracks).
  */
 #ifndef avianlidar_Table_h
@@ -23,17 +24,17 @@ namespace avianlidar
 class TableLine
 {
 public:
-  /// @param place "own.csv: line 3", for messages
+  /// @param place file and line for messages, such as "own.csv: line 3"
   TableLine(const std::string& text, std::string place);
 
   std::size_t size() const { return this->Cells.size(); }
   const std::string& text(std::size_t column) const { return this->Cells[column]; }
 
-  /// The number of a column; an error unless it lies between least and most. @param name for the
+  /// Number in a column; throws as fail() unless it lies in [least, most]. @param name name for the
   /// message
   double number(std::size_t column, const char* name, double least, double most) const;
 
-  /// Throws std::runtime_error with file and line before the message.
+  /// Throw std::runtime_error with file and line before the message.
   [[noreturn]] void fail(const std::string& message) const;
 
 private:
@@ -41,12 +42,12 @@ private:
   std::vector<std::string> Cells;
 };
 
-/// Called with a line and the index of the table's header.
+/// Receives a line and the index of the table's header among the allowed headers.
 using UseLine = std::function<void(const TableLine& line, std::size_t header)>;
 
 /// Call `use` for each line below the header; each has as many columns as the header. Throws
 /// std::runtime_error naming file and line.
-/// @param file for messages @param headers those that are allowed
+/// @param file name for messages @param headers allowed headers
 void readTable(const std::string& text, const std::string& file,
   const std::vector<std::string>& headers, const UseLine& use);
 }

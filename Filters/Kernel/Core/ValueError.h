@@ -18,9 +18,9 @@
 
 namespace avianlidar
 {
-/// The least number above 0, for ranges without their lower end.
+/// Least number above 0: lower end of ranges that exclude 0.
 constexpr double AboveZero = std::numeric_limits<double>::denorm_min();
-/// The largest finite number.
+/// Largest finite number.
 constexpr double LargestFinite = std::numeric_limits<double>::max();
 
 /// "name is value, expected what"
@@ -33,15 +33,14 @@ std::string valueError(const std::string& name, T value, const std::string& expe
   return text.str();
 }
 
-/// The error of a value outside a range, which holds both of its ends, or that is not a number;
-/// else empty.
+/// @return empty if least <= value <= most, else the error of the value (also if it is NaN)
 inline std::string rangeError(
   const std::string& name, double value, double least, double most, const std::string& expected)
 {
   return value >= least && value <= most ? std::string() : valueError(name, value, expected);
 }
 
-/// The same of the first bad one of many values.
+/// Error of the first of many values that is outside its range; empty if there is none.
 template <class Values>
 std::string rangeErrorOf(const std::string& name, const Values& values, double least, double most,
   const std::string& expected)
@@ -54,7 +53,8 @@ std::string rangeErrorOf(const std::string& name, const Values& values, double l
   return error;
 }
 
-/// Empty if there is one value for each of so many things, else "name has size values, ..."
+/// Empty if `size` equals `count`, else "name has size values, expected one for each of the count
+/// things".
 inline std::string sizeError(
   const std::string& name, std::size_t size, std::size_t count, const std::string& things)
 {
@@ -63,7 +63,7 @@ inline std::string sizeError(
       " values, expected one for each of the " + std::to_string(count) + " " + things;
 }
 
-/// The first text that is not empty, or an empty one.
+/// First text that is not empty, or an empty text.
 inline std::string firstError(std::initializer_list<std::string> errors)
 {
   for (const std::string& error : errors)

@@ -36,12 +36,12 @@ inline double safeLength(const Vec3& v)
   return std::hypot(v.x, v.y, v.z);
 }
 
-/// The unit vector along any finite vector that is not zero, however long or short.
+/// Unit vector along any finite vector that is not zero, however long or short.
 inline Vec3 unitVector(const Vec3& v)
 {
   const double largest = std::fmax(std::fabs(v.x), std::fmax(std::fabs(v.y), std::fabs(v.z)));
   const Vec3 scaled =
-    v / largest; // components of at most 1: nothing over- or underflows that matters
+    v / largest; // components of at most 1: no overflow, no underflow that matters
   return scaled / safeLength(scaled);
 }
 
