@@ -27,8 +27,7 @@ bool meetsWedge(const ConeWedge& wedge, double x, double y, double halfX, double
   {
     return true;
   }
-  // All corners lie to the left of the left edge, or to the right of the right one (paper, Fig. 7:
-  // cross products).
+  // All corners lie left of the left edge or right of the right edge (paper, Fig. 7).
   const double left = wedge.leftX * y - wedge.leftY * x;
   const double right = wedge.rightX * y - wedge.rightY * x;
   if (left > std::fabs(wedge.leftX) * halfY + std::fabs(wedge.leftY) * halfX ||

@@ -7,9 +7,8 @@
  *
  * Source: paper, Sec. 3.1 and 3.2, Eq. 14, Algorithm 1.
  * Differs: a leaf holds up to maximumLeafSize triangles (Algorithm 1: one); the descent is front to
- * back.
- * Valid: visits every leaf whose volumes the cone or ray meets within the limit. A volume whose
- * lower bound equals the limit is visited because it may hold a hit of equal range and lower
+ * back. Valid: visits every leaf whose volumes the cone or ray meets within the limit. A volume
+ * whose lower bound equals the limit is visited because it may hold a hit of equal range and lower
  * number. Not optimised for speed.
  * Test: TestCollisionTreeBuilder.cxx, TestBeamTracer.cxx, TestGeometryProperties.cxx.
  */
@@ -43,16 +42,14 @@ struct VolumeTree final : public OtherVolumes
     TraversalStack& stack) const override;
 };
 
-/// As buildCollisionTree(), but for every TreeOptions::boundingVolume. For AABBs it returns the
-/// kernel's tree.
+/// As buildCollisionTree(), for every bounding volume; AABBs have the kernel's tree.
 std::shared_ptr<const CollisionTree> buildVolumeTree(std::shared_ptr<const TriangleMesh> mesh,
   const TreeOptions& options, const KeepGoing& keepGoing = {}, int threads = 0);
 
 /// The same tree with two AABBs a node in double precision, instead of eight in single precision.
 std::shared_ptr<const CollisionTree> withPlainBoxes(const CollisionTree& tree);
 
-/// Nodes and volumes of a tree. If the tree has the wide boxes, AABBs are fitted anew down to the
-/// depth `deepest`.
+/// Nodes and volumes of a tree. For a wide tree, AABBs are fitted, down to the depth `deepest`.
 std::shared_ptr<const VolumeTree> volumesOf(
   const CollisionTree& tree, std::uint32_t deepest = std::numeric_limits<std::uint32_t>::max());
 }

@@ -20,8 +20,7 @@ constexpr double Unlimited = std::numeric_limits<double>::infinity();
 // Smaller requests are not worth a check, bytes.
 constexpr double LeastToLookAt = 64e6;
 
-/// Number after a word of a file ("MemAvailable:"), in the file's unit, or `otherwise` if there is
-/// none.
+/// Number after a word of a file ("MemAvailable:"), in the file's unit; else `otherwise`.
 double numberBehind(const std::string& file, const std::string& word, double otherwise)
 {
   std::ifstream stream(file);

@@ -44,8 +44,7 @@ struct BeamFrame
       glm::dot(v, this->e2) / (this->tanHalf * this->flatness2), glm::dot(v, this->axis) };
   }
 
-  /// Squared tangent of the angle between a ray and the axis, over the squared tangent of the
-  /// half-beamwidth.
+  /// Squared tangent of the angle between ray and axis, over tanHalf^2.
   double radius2(double x, double y) const { return x * x + this->flatness2 * (y * y); }
 
   /// Direction of the ray (x, y), not normalised: its component along the axis is 1.

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file GeodeticFrame.h
- * @brief Positions on the Earth in four frames on the WGS84 ellipsoid; the only user of
- * GeographicLib.
+ * @brief Positions in four frames on the WGS84 ellipsoid; the only user of GeographicLib.
  *
  * | frame    | coordinates                                                                   |
  * |----------|-------------------------------------------------------------------------------|
@@ -65,8 +64,7 @@ public:
   /// a latitude outside [-90, 90] degrees, an easting or northing outside the reach of UTM
   static std::string checkPoint(Frame frame, const std::array<double, 3>& point);
 
-  /// Convert a point to another frame. The result in UTM may lie outside its reach, see
-  /// checkPoint().
+  /// Convert a point. The result in UTM may lie outside its reach, see checkPoint().
   std::array<double, 3> convert(Frame from, Frame to, const std::array<double, 3>& point) const;
 
 private:

@@ -22,8 +22,7 @@ inline bool globMatches(const std::string& pattern, const std::string& name)
 {
   std::size_t p = 0;
   std::size_t n = 0;
-  // Where the search resumes if the text after the last star does not match: the star then takes
-  // one more character.
+  // Where the search resumes after a mismatch: the last star takes one more character.
   std::size_t star = std::string::npos;
   std::size_t taken = 0;
   while (n < name.size())

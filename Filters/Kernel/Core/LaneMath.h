@@ -62,8 +62,7 @@ AVIANLIDAR_ALWAYS_INLINE double fromBits(std::uint64_t bits)
   return value;
 }
 
-/// Added to a number of magnitude below 2^51, it leaves the nearest whole number in the low bits of
-/// the sum.
+/// Added to a number below 2^51 in magnitude, it leaves the nearest whole number in the low bits.
 constexpr double Rounder = 6755399441055744.0; // 1.5 * 2^52
 
 /// 2^n for the whole number in the low bits of `rounded` = n + Rounder, |n| <= 1022.
@@ -99,8 +98,7 @@ AVIANLIDAR_ALWAYS_INLINE double exp(double x)
   return value * powerOfTwo(half) * powerOfTwo(rest + Rounder);
 }
 
-/// ln(y) + correction/y for a normal number y > 0. @param correction part of y that rounding cut
-/// off
+/// ln(y) + correction/y for a normal number y > 0. @param correction rounding error of y
 AVIANLIDAR_ALWAYS_INLINE double logOf(double y, double correction)
 {
   constexpr double Ln2High = 6.93147180369123816490e-01;

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file Multiversion.h
- * @brief Functions compiled for several instruction sets; the best is chosen when the program
- * starts.
+ * @brief Functions compiled for several instruction sets; the best is chosen at the start.
  *
  * Only for loops over independent lanes whose results must have the same bits everywhere. As
  * nothing is contracted or reassociated, every version gives the same bits. Code that only decides
@@ -27,8 +26,7 @@
 #define AVIANLIDAR_MULTIVERSION
 #endif
 
-/// For functions that such a loop calls: they are compiled for the loop's instruction set only if
-/// inlined.
+/// For functions that such a loop calls: only inlined do they take the loop's instruction set.
 #if defined(__GNUC__)
 #define AVIANLIDAR_ALWAYS_INLINE inline __attribute__((always_inline))
 #define AVIANLIDAR_INLINE_LAMBDA __attribute__((always_inline))

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file ParallelLoop.h
- * @brief The only parallel loop of the project: blocks of a range, handed out as threads become
- * free.
+ * @brief The only parallel loop of the project: free threads take blocks of a range.
  *
  * All other code is serial code on a range of items. Which thread gets which block is not
  * determined, so the body must write each item's result to a slot of that item alone.
@@ -42,8 +41,7 @@ struct WorkStopped : std::exception
  * Thread 0 is the calling thread. It alone calls `keepGoing` (which may be empty), before each of
  * its blocks and once with 1 at the end, so `keepGoing` may use data of that thread. If it returns
  * false, blocks under way are finished and no further block begins. An exception of `body` or
- * `keepGoing` stops the work in the same way and is thrown again here; of several exceptions, the
- * first.
+ * `keepGoing` stops the work in the same way, and the first one is thrown again here.
  * @param threads > 0, or 0 for loopThreads(0)
  * @return true if all items were done and keepGoing never returned false
  */

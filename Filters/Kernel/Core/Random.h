@@ -3,8 +3,7 @@
  * @file Random.h
  * @brief Counter-based random numbers: each is a pure function of (seed, beam, index, purpose).
  *
- * Results thus do not depend on threads, order, pieces, or the number of random numbers drawn
- * elsewhere.
+ * Results thus do not depend on threads, order, pieces, or numbers drawn elsewhere.
  *
  * Source: Philox4x32-10 (Salmon et al., SC'11), written out for SIMD loops.
  * Differs: doubles are odd multiples of 2^-53, so they are never 0 or 1.

@@ -41,8 +41,7 @@ public:
   const T& operator[](std::size_t i) const { return (*this->Values)[i]; }
   bool sharesWith(const SharedVector& other) const { return this->Values == other.Values; }
 
-  /// Share the elements of another vector if they have the same bytes. @tparam T without gaps
-  /// between its members
+  /// Share the elements of another vector if they have the same bytes.
   void shareWith(const SharedVector& other)
   {
     static_assert(std::is_trivially_copyable<T>::value, "elements are compared as bytes");

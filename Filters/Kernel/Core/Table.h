@@ -6,8 +6,7 @@
  * Empty lines and comments, which begin with #, are skipped. Blanks around values do not count.
  *
  * Source: none.
- * Valid: text of any kind; a UTF-8 byte order mark at its beginning, as spreadsheets write it, is
- * skipped.
+ * Valid: text of any kind; a UTF-8 byte order mark, as spreadsheets write it, is skipped.
  * Test: TestBird.cxx (species), TestFlight.cxx (tracks).
  */
 #ifndef avianlidar_Table_h
@@ -30,8 +29,7 @@ public:
   std::size_t size() const { return this->Cells.size(); }
   const std::string& text(std::size_t column) const { return this->Cells[column]; }
 
-  /// Number in a column; throws as fail() unless it lies in [least, most]. @param name name for the
-  /// message
+  /// Number in a column; throws as fail() unless in [least, most]. @param name for the message
   double number(std::size_t column, const char* name, double least, double most) const;
 
   /// Throw std::runtime_error with file and line before the message.

@@ -53,8 +53,7 @@ std::string rangeErrorOf(const std::string& name, const Values& values, double l
   return error;
 }
 
-/// Empty if `size` equals `count`, else "name has size values, expected one for each of the count
-/// things".
+/// Empty if `size` equals `count`, else "name has size values, expected one for each of ...".
 inline std::string sizeError(
   const std::string& name, std::size_t size, std::size_t count, const std::string& things)
 {

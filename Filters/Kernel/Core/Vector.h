@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file Vector.h
- * @brief The vector type of the kernel: double precision, right-handed, metres unless said
- * otherwise.
+ * @brief The vector type of the kernel: doubles, right-handed, metres unless said otherwise.
  *
  * Source: GLM.
  * Differs: safeLength() and unitVector() neither overflow nor underflow, as GLM's do.

@@ -96,8 +96,7 @@ std::vector<Side> sidesOf(
   return sides;
 }
 
-/// Pair sides by their angle about the edge; coincident triangles are not paired if this can be
-/// avoided.
+/// Pair sides by their angle about the edge, and coincident triangles only if unavoidable.
 void pairByAngle(const std::vector<Vec3>& points, std::vector<Side>& sides)
 {
   const Vec3 from = points[sides[0].low];
@@ -202,8 +201,7 @@ struct Shell
   }
 };
 
-/// True if no part of a shell lies outside another one, and most of it does not lie in the other's
-/// faces.
+/// True if no part of a shell lies outside another one, and most of it is not in its faces.
 bool isInside(const std::vector<Vec3>& points, const Shell& one, const Shell& other)
 {
   if (glm::any(glm::lessThan(one.low, other.low)) ||

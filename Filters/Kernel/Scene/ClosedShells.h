@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file ClosedShells.h
- * @brief Finds the closed shells of a set of triangles and makes each face outward, however its
- * triangles were wound.
+ * @brief Finds the closed shells of a set of triangles and makes each face outward.
  *
  * At each edge triangles are paired, and paired triangles belong to one shell. If more than two
  * share an edge, two that name the same given points are paired first, and the others are paired by

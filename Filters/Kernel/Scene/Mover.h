@@ -78,15 +78,13 @@ std::uint64_t orderMovers(std::vector<Mover>& movers);
 /// Find the pose at a time, s. @return false if the object is absent
 bool poseAt(const Mover& mover, double time, Pose& pose);
 
-/// Find a sphere that holds the object at all times in [begin, end], s. @return false if it is
-/// absent
+/// Find a sphere about the object at all times in [begin, end], s. @return false if absent
 bool sphereBetween(const Mover& mover, double begin, double end, MoverSphere& sphere);
 
 /// Bound of an object in a pose, in scene coordinates.
 MoverSphere sphereAt(const Mover& mover, const Pose& pose);
 
-/// Append the object's points and triangles in scene coordinates, with its parts as they are at the
-/// pose's time.
+/// Append the object's points and triangles, at the pose and its time, in scene coordinates.
 void place(const Mover& mover, const Pose& pose, TriangleMesh& mesh);
 }
 

@@ -78,8 +78,7 @@ ReflectionGeometry reflectionGeometry(
   ReflectionGeometry g;
   g.cosIncidence = -glm::dot(incident, normal);
   g.cosOutgoing = glm::dot(outgoing, normal);
-  // Cross products give small angles: 1 - cos^2 would lose half the digits, and kp multiplies the
-  // error.
+  // Cross products: 1 - cos^2 loses half the digits of small angles, and kp multiplies the error.
   const Vec3 mirror = mirrorDirection(incident, normal);
   const Vec3 off = glm::cross(mirror, outgoing);
   g.cosLobe = glm::dot(mirror, outgoing);
@@ -94,8 +93,7 @@ ReflectionGeometry reflectionGeometry(
   }
   else
   {
-    // The ray goes straight through: any half vector will do, and the difference angle is 90
-    // degrees.
+    // Straight through, any half vector will do, and the difference angle is 90 degrees.
     g.sin2Half = 0.0;
     g.cosDifference = 0.0;
   }

@@ -84,8 +84,7 @@ struct MaterialCoefficient
   double most;          ///< upper limit of the coefficient
   bool isShare;         ///< true for a share of the energy; all shares add up to at most 1
   const char* expected; ///< expected range, in words
-  /// True if a scene file must give the coefficient, for a material with the coefficients before
-  /// it.
+  /// True if a scene file must give it, for a material with the coefficients before it.
   bool (*isNeeded)(const Material&);
   bool isOptional; ///< true if surfaces without its cell array have the default of Material
 };
@@ -145,8 +144,7 @@ private:
 /// expected. A sum kd + ks that exceeds 1 by less than 1e-12 passes as a rounded 1.
 std::string checkMaterial(const Material& material);
 
-/// "kd, ks, kp": the coefficients whose cell arrays a surface must have, unless it has none of
-/// them.
+/// "kd, ks, kp": coefficients whose cell arrays a surface has, all or none.
 std::string namesOfCoefficients();
 
 /// "kd 0.146, ks 0.054, kp 112, roughness 0"
@@ -356,11 +354,10 @@ inline double specularReflectance(
   return reflectance(model, material, geometry).specular;
 }
 
-/// Upper bounds of f_d and of f_s over all outgoing directions at this incidence.
+/// Upper bounds of f_d and of f_s over all outgoing directions at an incidence.
 Reflectance reflectanceBound(ReflectanceModel model, const Material& material, double cosIncidence);
 
-/// Largest f_d and largest f_s straight back over all incidence angles whose cosine is at most
-/// `mostCosine`.
+/// Largest f_d and largest f_s straight back at cosines of incidence of at most `mostCosine`.
 Reflectance mostStraightBack(ReflectanceModel model, const Material& material, double mostCosine);
 
 /**
@@ -389,8 +386,7 @@ AVIANLIDAR_ALWAYS_INLINE Reflectance throughAperture(
 /// surface, over A/r2: the value on the lobe's axis or of a diffuse surface, whichever is larger.
 double apertureGain(const Material& material);
 
-/// Square of the incidence angle, rad2, at which the specular lobe straight back has fallen to 1/e;
-/// 0 without a lobe.
+/// Squared incidence angle, rad2, at which the lobe straight back is 1/e; 0 without a lobe.
 double lobeWidth2(const Material& material);
 }
 

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file BinaryTree.h
- * @brief The binary tree of Algorithm 1, from which wide nodes (CollisionTreeBuilder.h) or other
- * volumes (VolumeTree.h) are made.
+ * @brief The binary tree of Algorithm 1, for CollisionTreeBuilder.h and VolumeTree.h.
  *
  * Each layer of nodes is divided in one parallel loop. The triangles' boxes (TriangleBoxes.h)
  * alternate between two arrays, because a rule cannot divide them in place.

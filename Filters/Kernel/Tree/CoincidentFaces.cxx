@@ -65,8 +65,7 @@ bool isSingle(double x)
   return (bits & 0x1fffffffu) == 0;
 }
 
-/// Largest distance, m, by which rounding moves a corner of the triangle off its plane. @param
-/// normal unit
+/// Most by which rounding moves a corner of the triangle off its plane, m. @param normal unit
 double toleranceOf(const TriangleMesh& mesh, std::uint32_t triangle, const Vec3& normal)
 {
   constexpr double ofDouble = 32.0 * RoundOffDouble;
@@ -166,8 +165,7 @@ bool coincide(const Corners& one, const Corners& two, double tolerance)
     std::fabs(glm::dot(n, overlap)) > std::max(LeastOverlap * least, edge);
 }
 
-/// Children of `node` that lie no farther than `slack` (m) from the child `lane` of `other`, one
-/// bit each.
+/// Bits of the children of `node` within `slack` (m) of the child `lane` of `other`.
 AVIANLIDAR_MULTIVERSION std::uint32_t childrenNear(
   const WideNode& node, const WideNode& other, int lane, float slack)
 {

@@ -31,8 +31,7 @@
 
 namespace avianlidar
 {
-/// Set planeOwners and planeDepth of a wide tree that is otherwise complete. @return false if
-/// `keepGoing` returned false
+/// Set planeOwners and planeDepth of an otherwise complete wide tree. @return false if stopped
 bool findPlaneOwners(CollisionTree& tree, int threads, const KeepGoing& keepGoing);
 }
 

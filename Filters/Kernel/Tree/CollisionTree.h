@@ -113,8 +113,7 @@ struct CollisionTree
     return !this->planeOwners.empty() && this->planeOwners[triangle] != NoTriangle;
   }
 
-  /// Number of the triangle whose plane a triangle takes; its own number if it coincides with no
-  /// other.
+  /// Number of the triangle whose plane a triangle takes: the owner or itself.
   std::uint32_t planeOwner(std::uint32_t triangle) const
   {
     return this->coincides(triangle) ? this->planeOwners[triangle] : triangle;

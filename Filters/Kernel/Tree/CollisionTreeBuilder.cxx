@@ -83,8 +83,7 @@ public:
   }
 
 private:
-  /// List the nodes, at or below a node of the binary tree, that take up to `lanes` lanes of a wide
-  /// node.
+  /// List the binary nodes, at or below one, that take up to `lanes` lanes of a wide node.
   /// @return their number
   int lanesOf(std::uint32_t number, int lanes, std::uint32_t* list) const
   {

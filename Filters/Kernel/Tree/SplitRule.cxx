@@ -26,8 +26,7 @@ std::size_t splitInHalves(const LaneBox* from, LaneBox* to, std::size_t count)
 std::size_t splitAtMedian(LaneBox* from, LaneBox* to, std::size_t count, int axis)
 {
   const std::size_t middle = count / 2;
-  // The triangle number breaks ties, so that the two sets do not depend on the library's selection
-  // algorithm.
+  // Triangle numbers break ties, so that the sets do not depend on std::nth_element().
   std::nth_element(from, from + middle, from + count,
     [axis](const LaneBox& a, const LaneBox& b)
     {
@@ -73,9 +72,8 @@ struct BinMapping
   Lanes lower;
   Lanes scale{}; ///< bins per metre; 0: all centres are equal on this axis
   Lanes last;    ///< number of the last bin
-  /// Scale of lengths, 1/m, by which areas fit in floats even in a tiny scene. They do not fit
-  /// where a box is 1e18 times as large as the spread of the centres; the rule then does not
-  /// divide.
+  /// Scale of lengths, 1/m, by which areas fit in floats even in a tiny scene. Where a box is 1e18
+  /// times the spread of the centres they do not fit, and no division is found.
   float unit = 0.0f;
   int bins; ///< number of bins; a small node gains less by more bins than they cost
 

@@ -10,12 +10,10 @@
  * Source: paper, Sec. 3.1, Algorithm 1, line 9; for the surface area heuristic I. Wald, "On fast
  * Construction of SAH-based Bounding Volume Hierarchies", IEEE Symposium on Interactive Ray
  * Tracing, 2007.
- * Differs: the surface area heuristic is not in the paper. Its number of bins, 4 to 16, grows with
- * the number of triangles.
- * Valid: boxes are in single precision relative to the middle of the scene. Triangles smaller than
- * the rounding there may be divided differently than by exact centres, which costs a little time
- * and changes no hit.
- * Test: TestSplitRule.cxx, TestCollisionTreeBuilder.cxx.
+ * Differs: the surface area heuristic is not in the paper. More triangles take more bins, 4 to 16.
+ * Valid: boxes are in single precision relative to the middle of the scene. Its rounding may divide
+ * small triangles differently than exact centres would. This costs a little time and changes no
+ * hit. Test: TestSplitRule.cxx, TestCollisionTreeBuilder.cxx.
  */
 #ifndef avianlidar_SplitRule_h
 #define avianlidar_SplitRule_h
@@ -31,8 +29,7 @@ namespace avianlidar
 /// @param from may be reordered
 /// @param centers box of twice the centres of the boxes
 /// @param depth depth of the node, root 0, which chooses the axis of SplitRule::Median. From depth
-/// 96 on every rule halves the list: a rule that separates one triangle at a time would make a list
-/// instead of a tree
+/// 96 on every rule halves the list: a rule that splits off single triangles would make a list
 /// @return number of boxes of the first child, in [1, count - 1]. Where a rule cannot divide (equal
 /// centres), the list is halved as it stands.
 std::size_t splitTriangles(SplitRule rule, LaneBox* from, LaneBox* to, std::size_t count,

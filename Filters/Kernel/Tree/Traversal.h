@@ -103,8 +103,7 @@ std::uint64_t descendWide(
   return visited;
 }
 
-/// Policy of one cone or ray (WideCone or WideRay) with a visitor that has the members of
-/// TreeLeaves.
+/// Policy of one cone or ray (WideCone or WideRay); a visitor has the members of TreeLeaves.
 template <class Query, class Visitor>
 class QueryPolicy : public WidePolicy
 {

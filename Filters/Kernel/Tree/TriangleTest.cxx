@@ -176,8 +176,7 @@ TrianglePlane planeOf(const Corners& t, const TrianglePlane& owner)
 
 PlaneView viewOfCone(const TrianglePlane& plane, const Vec3& axis, double sine, double cosine)
 {
-  // For every direction d of a cone of half-angle t, v . d lies within cos(t) v . axis -+ sin(t)
-  // |v|.
+  // For every d within an angle t of the axis, v . d is within cos(t) v . axis -+ sin(t) |v|.
   constexpr double Margin = 1.0 + 1e-9;
   const double length = std::sqrt(glm::dot(plane.normal, plane.normal)) * Margin;
   const double onAxis = std::fabs(glm::dot(plane.normal, axis));

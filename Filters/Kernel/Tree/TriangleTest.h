@@ -57,8 +57,7 @@ namespace avianlidar
 constexpr double RoundOffDouble = 1.0 / 9007199254740992.0; // 2^-53
 constexpr double RoundOffSingle = 1.0 / 16777216.0;         // 2^-24
 
-/// Margins of a hit, see Valid above. Every test of a volume widens its volume, ray or cone by
-/// them.
+/// Margins of a hit, see Valid above. Every test of a volume widens volume, ray or cone by them.
 constexpr double HitMargin = 1.0 / 549755813888.0; // 2^-39
 constexpr double HitMarginBeam = 1.0 / 512.0;
 
@@ -91,8 +90,7 @@ inline EdgeVector edgeVector(const Vec3& a, const Vec3& b)
   return { plus - minus, size.x + size.y + size.z };
 }
 
-/// Plane of a triangle, from which ranges follow. It is computed only for triangles that a ray
-/// hits.
+/// Plane of a triangle, for ranges; it is computed only for triangles that a ray hits.
 struct TrianglePlane
 {
   Vec3 normal;           ///< not normalised; its length is twice the area
@@ -104,8 +102,7 @@ struct TrianglePlane
 };
 TrianglePlane planeOf(const Corners& corners);
 
-/// Plane of a triangle that takes the plane of another: the owner's plane with the triangle's own
-/// sides.
+/// Plane of a triangle that takes its owner's plane but keeps its own sides.
 TrianglePlane planeOf(const Corners& corners, const TrianglePlane& owner);
 
 /// a b - c d to one and a half units in the last place (Kahan; Jeannerod, Louvet and Muller, Math.
@@ -190,8 +187,7 @@ AVIANLIDAR_ALWAYS_INLINE PlaneRange rangeOnPlane(
   return { result, static_cast<int>(faces) * kind };
 }
 
-/// PlaneView of all rays of a cone about `axis`, with a margin for rounding. @param sine,cosine of
-/// its half-angle
+/// PlaneView of all rays of a cone, with a margin for rounding. @param sine,cosine half-angle
 PlaneView viewOfCone(const TrianglePlane& plane, const Vec3& axis, double sine, double cosine);
 
 /// Range of a ray on a sliver, m: the plane's range, clamped to the part of the triangle beside the
@@ -226,8 +222,7 @@ AVIANLIDAR_ALWAYS_INLINE double inversePowerOfTwo(double magnitude)
   return power;
 }
 
-/// Unit vector along a direction, without overflow or underflow. Powers of two change no bit of the
-/// result.
+/// Unit vector, without overflow or underflow. Powers of two change no bit of the result.
 Vec3 unitDirection(const Vec3& direction);
 
 /// unitDirection() for loops over lanes.
@@ -333,8 +328,7 @@ inline bool beamRayAccepted(const BeamPlaneMap& map, const Corners& t, double x,
     map.edge(edgeVector(t.c, t.a), sign).slack(x, y) >= 0.0;
 }
 
-/// True if a ray outside a beam's frame is accepted. @param t relative to the ray's origin @param d
-/// unit vector
+/// True if any ray, with unit direction `d`, is accepted. @param t relative to its origin
 inline bool rayAccepted(const Corners& t, const Vec3& d)
 {
   const EdgeVector ab = edgeVector(t.a, t.b);

@@ -29,8 +29,7 @@ double largestOf(const Vec3& v)
   return std::max(std::fabs(v.x), std::max(std::fabs(v.y), std::fabs(v.z)));
 }
 
-/// True if a rectangle lies to the left of the left edge of a projection, or to the right of its
-/// right edge.
+/// True if a rectangle lies left of a projection's left edge or right of its right edge.
 AVIANLIDAR_ALWAYS_INLINE bool besideWedge(
   const WideCone& c, int plane, float x, float y, float halfX, float halfY, float error)
 {

@@ -56,13 +56,11 @@ struct WideTree
 /// Bound, several times over, of the relative rounding of the single-precision tests.
 constexpr float WideRounding = 2e-6f;
 
-/// Find by how much boxes must be widened, m, in single precision relative to an apex at `offset`
-/// from the reference.
+/// Find how much single precision must widen boxes, m, for an apex at `offset` from the reference.
 /// @return false if the scene or the offset is too large, or both are too small
 bool wideningFor(const WideTree& tree, const Vec3& offset, float& widening);
 
-/// Boxes at which the rays of one beam enter the wide tree: eight at a time, front to back except
-/// for overlaps.
+/// Boxes at which the rays of a beam enter the wide tree, front to back except for overlaps.
 struct EntryPoints
 {
   std::vector<WideNode> nodes;
@@ -86,16 +84,14 @@ struct WideCone
   float axisX, axisY, axisZ;
   float sine, cosine; ///< sine and cosine of the widened half-beamwidth
   float widening;     ///< widening of every box, m
-  /// Edges of the cone's projections on the planes yz, zx, xy (see BeamCone.h); 0 if a projection
-  /// is the whole plane.
+  /// Edges of the projections on the planes yz, zx, xy (BeamCone.h); 0 for a whole plane.
   float leftX[3], leftY[3], rightX[3], rightY[3];
 
   bool everywhere; ///< true if single precision does not suffice: all boxes are met
 
   WideCone(const WideTree& tree, const BeamFrame& frame);
 
-  /// Lower bounds, m, of the distances of the boxes that the cone may meet; infinity for the
-  /// others.
+  /// Lower bounds of distances, m, of boxes that the cone may meet; infinity for other boxes.
   void distances(const WideNode& node, float* nearest) const;
 };
 
