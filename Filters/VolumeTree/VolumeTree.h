@@ -7,7 +7,8 @@
  *
  * Source: paper, Sec. 3.1 and 3.2, Eq. 14, Algorithm 1.
  * Differs: a leaf holds up to maximumLeafSize triangles (Algorithm 1: one); the descent is front to
- * back. Valid: visits every leaf whose volumes the cone or ray meets within the limit. A volume
+ * back.
+ * Valid: visits every leaf whose volumes the cone or ray meets within the limit. A volume
  * whose lower bound equals the limit is visited because it may hold a hit of equal range and lower
  * number. Not optimised for speed.
  * Test: TestCollisionTreeBuilder.cxx, TestBeamTracer.cxx, TestGeometryProperties.cxx.

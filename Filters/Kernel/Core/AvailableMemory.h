@@ -11,6 +11,7 @@
  * the control group and the groups above it leave (version 1 or 2; file caches count as free), and
  * MemAvailable. On other systems nothing is known and nothing is refused. Other processes may take
  * the memory after the estimate.
+ * Test: TestAvailableMemory.cxx.
  */
 #ifndef avianlidar_AvailableMemory_h
 #define avianlidar_AvailableMemory_h

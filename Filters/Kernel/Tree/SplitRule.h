@@ -11,9 +11,10 @@
  * Construction of SAH-based Bounding Volume Hierarchies", IEEE Symposium on Interactive Ray
  * Tracing, 2007.
  * Differs: the surface area heuristic is not in the paper. More triangles take more bins, 4 to 16.
- * Valid: boxes are in single precision relative to the middle of the scene. Its rounding may divide
- * small triangles differently than exact centres would. This costs a little time and changes no
- * hit. Test: TestSplitRule.cxx, TestCollisionTreeBuilder.cxx.
+ * Valid: boxes are in single precision relative to the middle of the scene. Small
+ * triangles may be divided differently than by exact centres. This costs a little time and changes
+ * no hit.
+ * Test: TestSplitRule.cxx, TestCollisionTreeBuilder.cxx.
  */
 #ifndef avianlidar_SplitRule_h
 #define avianlidar_SplitRule_h
