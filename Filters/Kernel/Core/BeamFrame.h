@@ -8,6 +8,7 @@
  * round beam e2 is a unit vector. In other beams the length of e2 is the ratio of the two
  * beamwidths' tangents: an elliptic beam is then the unit disc, too, and a rectangular beam the
  * square in the disc. The cone of the half-beamwidth holds all of them.
+ *
  * Source: frame of Duff et al., "Building an Orthonormal Basis, Revisited", JCGT 6(1), 2017.
  * Differs: the axis is normalised twice, so that it is a unit vector to the last bits.
  * Valid: finite directions other than zero, half-beamwidth in (0, pi/3]. The frame is continuous

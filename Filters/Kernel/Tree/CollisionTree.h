@@ -102,7 +102,7 @@ struct CollisionTree
   WideTree wide; ///< boxes eight at a time in single precision; empty with other volumes
   std::shared_ptr<const OtherVolumes> other; ///< null if the tree has boxes
   /// For each triangle the owner of the plane that it takes (CoincidentFaces.h), or NoTriangle if
-  /// it coincides with no other; empty if no faces coincide.
+  /// it takes none; empty if no faces coincide.
   std::vector<std::uint32_t> planeOwners;
   double planeDepth = 0.0; ///< most by which rounding moves two coincident triangles apart, m
 
