@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "CoincidentFaces.h"
 
-#include <boost/container/static_vector.hpp>
+#include <boost/container/small_vector.hpp>
 
 #include <algorithm>
 #include <atomic>
@@ -121,7 +121,7 @@ bool coincide(const Corners& one, const Corners& two, double tolerance)
   const double size = glm::length(area);
   const Vec3 n = area / size;
   // Part of the second triangle within the sides of the first.
-  using Ring = boost::container::static_vector<Vec3, 6>;
+  using Ring = boost::container::small_vector<Vec3, 6>; // six, and where rounding bends a side more
   Ring ring{ two.a, two.b, two.c };
   const Vec3 corners[] = { one.a, one.b, one.c };
   for (int k = 0; k < 3; ++k)
