@@ -22,7 +22,7 @@ constexpr double Opaque = 60.0;
 /// Of the lower limit: media return less than that from behind what counts as opaque.
 constexpr double Faint = 1e-6;
 
-/// Of a pulse: less is left of it by rounding alone.
+/// Share of a pulse below which rounding alone leaves as much.
 constexpr double Rounding = 1e-9;
 
 /// Places on the aperture, over its radius, and their shares of its area: Gauss's rule.

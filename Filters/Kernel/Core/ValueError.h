@@ -40,7 +40,7 @@ inline std::string rangeError(
   return value >= least && value <= most ? std::string() : valueError(name, value, expected);
 }
 
-/// Error of the first of many values that is outside its range; empty if there is none.
+/// Error of the first value outside of a range, or an empty text.
 template <class Values>
 std::string rangeErrorOf(const std::string& name, const Values& values, double least, double most,
   const std::string& expected)

@@ -74,7 +74,7 @@ double columnLength(const ScanPattern& pattern)
                                : numberOfChannels(pattern) * pattern.firingInterval;
 }
 
-/// Of a sector of azimuths.
+/// Error of a sector of azimuths, deg; empty if it is good.
 std::string checkSector(const std::string& name, double from, double to)
 {
   return firstError({ rangeError("the start of " + name, from, -360.0, 360.0,
@@ -148,7 +148,7 @@ std::string checkTables(const ScanPattern& pattern)
   return error;
 }
 
-/// Of a pattern whose tables are good.
+/// Error of the prisms of a pattern whose tables are good; empty if they are good, too.
 std::string checkTrain(const ScanPattern& pattern)
 {
   const PrismTrain& train = pattern.prisms;
@@ -173,7 +173,7 @@ std::string checkTrain(const ScanPattern& pattern)
   return checkPrisms(train, enters);
 }
 
-/// Of firings within a column. @param steered by prisms
+/// Error of the firings within a column. @param steered true if prisms steer the beams
 std::string checkFirings(const ScanPattern& pattern, bool steered)
 {
   std::string error =

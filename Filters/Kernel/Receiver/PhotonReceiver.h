@@ -108,7 +108,7 @@ double energyFromTarget(
 std::string setDataSheetLimits(
   Sensor& sensor, double range, double reflectance, double attenuation, double dynamicRange);
 
-/// Of a sensor whose other values are right; what a photon receiver needs, where it has one.
+/// Error of a sensor with a photon receiver whose other values are right: what the receiver lacks.
 std::string checkPhotonReceiver(const Sensor& sensor);
 }
 

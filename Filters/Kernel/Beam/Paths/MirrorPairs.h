@@ -1,24 +1,24 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file MirrorPairs.h
- * @brief Which surfaces of a beam face a triangle that mirror paths from them may end on. From the
- * others no path is traced.
+ * @brief Finds the surfaces of a beam from which mirror paths may arrive. No path is traced from
+ * the others.
  *
- * A triangle makes a pair with a surface if, as far as bounds can tell,
+ * A triangle makes a pair with a surface if bounds do not exclude that
  *
  * 1. the beam's cone meets its plane before the plane of the surface, and the pyramid around the
  *    cone meets the triangle;
- * 2. a part of it lies before the plane of the surface;
+ * 2. a part of the triangle lies before the plane of the surface;
  * 3. hits of the surface lie before the side of the triangle that faces the apex.
  *
- * One descent of the cone finds the triangles, as far as the cone lies before a surface. Without a
- * pair the bound of what comes back is 0, whatever the materials.
+ * One descent of the cone finds the triangles, up to the farthest surface. Paths from a surface
+ * without a pair return nothing, whatever the materials.
  *
- * Source: paper, Sec. 3.4, the beam constraint, for a surface at once.
- * Differs: the paper looks at each ray.
- * Valid: conservative: a path from a surface without pairs does not arrive. Surfaces that the
- * cone's edge grazes, and all of a beam that meets many triangles for each of its samples, count as
- * having pairs.
+ * Source: paper, Sec. 3.4, the beam constraint, applied to whole surfaces.
+ * Differs: the paper tests each ray.
+ * Valid: conservative: no path from a surface without pairs arrives. Surfaces that the cone's edge
+ * grazes count as having pairs, and so do all surfaces of a beam that meets more than two triangles
+ * for each sample.
  * Test: TestMirrorPairs.cxx, TestSecondaryConstraints.cxx.
  */
 #ifndef avianlidar_MirrorPairs_h
@@ -48,13 +48,13 @@ private:
   /// Where the mirror paths of a surface start.
   struct Start
   {
-    Vec3 normal;     ///< of the plane, towards the apex
-    double height;   ///< of the apex above the plane, m
-    double farthest; ///< m, from the apex: all paths end nearer
-    double least;    ///< m, above the plane: all paths end higher
-    double off;      ///< m, largest distance of a hit from the plane
-    AABB hits;       ///< relative to the apex
-    bool paired;
+    Vec3 normal;     ///< unit normal of the plane, towards the apex
+    double height;   ///< height of the apex above the plane, m
+    double farthest; ///< bound of the distance from the apex at which paths end, m
+    double least;    ///< lower bound of the height above the plane at which paths end, m
+    double off;      ///< largest distance of a hit from the plane, m
+    AABB hits;       ///< box of the hits, relative to the apex, m
+    bool paired;     ///< true once a path may arrive
   };
   class Search;
   double measure(const SecondaryBeam& beam);
