@@ -19,10 +19,10 @@ constexpr std::int64_t NoUnit = std::numeric_limits<std::int64_t>::max();
 /// Optical depth, there and back, behind which nothing is looked for.
 constexpr double Opaque = 60.0;
 
-/// Of the lower limit: media return less than that from behind what counts as opaque.
+/// Share of the lower limit: media behind an opaque one return less.
 constexpr double Faint = 1e-6;
 
-/// Share of a pulse below which rounding alone leaves as much.
+/// Share of a pulse that rounding alone may leave.
 constexpr double Rounding = 1e-9;
 
 /// Places on the aperture, over its radius, and their shares of its area: Gauss's rule.

@@ -122,6 +122,8 @@ public:
 private:
   double recorded(double length, double energy);
   double addWindow(double from, double to);
+  void findShares(double first, double last);
+  const std::vector<std::uint32_t>& contributionsNear(double first, double last);
 
   double UnitPathLength; // c tau_s: twice a unit's length in range
   double RelativeWidth;  // tau_e/tau_s
@@ -140,11 +142,18 @@ private:
   std::vector<double> Lasts;
 
   std::vector<RangeUnit> Units;
-  std::vector<RangeUnit> Table;     ///< sums of a window of units; zero between beams
-  std::vector<std::uint64_t> Marks; ///< a bit for each of these with a share; likewise
-  // The shares requested last.
+  std::vector<RangeUnit> Table; ///< sums of a window of units; zero between beams
+  std::vector<std::uint64_t>
+    Marks; ///< a bit for each unit of the table with a share; 0 between beams
+  // The shares requested last, in units [ShareFirst, ShareLast).
   std::vector<double> Portions;
   std::vector<std::uint32_t> Sharers;
+  std::size_t ShareCount = 0;
+  std::int64_t ShareFirst = 0;
+  std::int64_t ShareLast = 0;
+  int Requests = 0;                   ///< number of requests since accumulate()
+  std::vector<std::uint32_t> ByFirst; ///< contributions by first unit, after some requests
+  std::vector<std::uint32_t> Near;    ///< contributions near the requested units, by number
 };
 
 /// Number of range units whose beginning lies inside the gate: ceil(2 gate/(c tau_s)), at least 1.
