@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "CoincidentFaces.h"
 
-#include <boost/container/small_vector.hpp>
+#include <boost/container/static_vector.hpp>
 
 #include <algorithm>
 #include <atomic>
@@ -120,8 +120,10 @@ bool coincide(const Corners& one, const Corners& two, double tolerance)
   const Vec3 area = areaOf(one);
   const double size = glm::length(area);
   const Vec3 n = area / size;
-  // Part of the second triangle within the sides of the first.
-  using Ring = boost::container::small_vector<Vec3, 6>; // six, and where rounding bends a side more
+  // Part of the second triangle within the sides of the first. It has six corners at most, but a
+  // side that rounding bends may cross each line more than twice: a ring of 3, 4 and 6 corners then
+  // gets 4, 6 and 9, half of them kept and one for each crossing.
+  using Ring = boost::container::static_vector<Vec3, 9>;
   Ring ring{ two.a, two.b, two.c };
   const Vec3 corners[] = { one.a, one.b, one.c };
   for (int k = 0; k < 3; ++k)
