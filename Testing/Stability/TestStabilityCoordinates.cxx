@@ -1,19 +1,219 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The same scene scaled and turned. Moved ones are TestScan's, hits of triangles of any size and
-// place TestBeamTracer's and TestGeometryProperties'.
+// Coordinates and sizes: far from the origin, near it, large and small triangles in one scene,
+// needles; the same scene moved, scaled and turned.
+#include "CollisionTreeBuilder.h"
 #include "GeometryTestScene.h"
 #include "ScanTestTown.h"
 #include "StabilityTable.h"
 
 #include <gtest/gtest.h>
 
-using namespace echotest;
-using geometrytest::Numbers;
-using stability::record;
-using stability::Worst;
+using namespace stability;
+using namespace geometrytest;
+using avianlidar::NoTriangle;
+using avianlidar::OneBeamTracer;
+using avianlidar::TraceMode;
+using echotest::Degree;
+
+namespace
+{
+/// Bound of a range's error in units of RangeUnit(): the tracer's own statement is "a few".
+constexpr double RangeBar = 32.0;
+
+struct Comparison
+{
+  Worst rangeError; ///< in units of round-off of double times farthest corner / cosine
+  std::size_t compared = 0;
+  std::size_t hits = 0;
+  std::size_t undecided = 0; ///< rays so near an edge that rounding decides
+  std::size_t wrong = 0;     ///< another triangle, or none, or one too many
+  std::size_t otherBits = 0; ///< one descent per ray differs from the batch
+};
+
+/// Angle within which rounding may decide whether a ray passes an edge, rad.
+constexpr long double EdgeTolerance = 32.0L * 0x1p-53L;
+
+void compareRay(const TriangleMesh& mesh, const BeamFrame& frame, double x, double y,
+  const Hit& hit, Comparison& sum)
+{
+  const Vec3L d = rayDirection(frame, x, y);
+  const OracleHit oracle = bruteForce(mesh, frame.origin, d, EdgeTolerance);
+  sum.hits += hit.valid();
+  if (oracle.nearEdge)
+  {
+    ++sum.undecided;
+    return;
+  }
+  ++sum.compared;
+  if (hit.valid() != (oracle.triangle != NoTriangle))
+  {
+    ++sum.wrong;
+    return;
+  }
+  if (!hit.valid())
+  {
+    return;
+  }
+  // Of coplanar triangles another one may be as near.
+  const PairResult pair = testPair(mesh, hit.triangle, frame.origin, d);
+  sum.wrong += !pair.hit;
+  const long double unit = 0x1p-53L * std::fmax(pair.size, oracle.range) / pair.cosine;
+  sum.rangeError.see(static_cast<double>(std::fabs(hit.range - oracle.range) / unit));
+}
+
+/// Trace the rays of one beam and compare all of them.
+void compareBeam(
+  const CollisionTree& tree, const BeamFrame& frame, const BeamRays& rays, Comparison& sum)
+{
+  OneBeamTracer tracer(tree);
+  std::vector<Hit> hits;
+  std::vector<Hit> singly;
+  tracer.setBeam(frame);
+  tracer.trace(rays, TraceMode::Automatic, hits);
+  tracer.trace(rays, TraceMode::SingleRays, singly);
+  for (std::size_t i = 0; i < rays.size(); ++i)
+  {
+    sum.otherBits += !sameBits(hits[i], singly[i]);
+    compareRay(*tree.mesh, frame, rays.x[i], rays.y[i], hits[i], sum);
+  }
+}
+
+/// Beams of several widths aimed at points of random triangles.
+void compareBeams(const std::shared_ptr<const TriangleMesh>& mesh, const Vec3& apex,
+  Numbers& random, int beams, Comparison& sum)
+{
+  const auto tree = buildCollisionTree(mesh, TreeOptions());
+  const double widths[] = { 1e-6, 1e-4, 5.6e-3, 0.1, 1.0 };
+  for (int i = 0; i < beams; ++i)
+  {
+    const auto t = static_cast<std::uint32_t>(random.index(mesh->size()));
+    const double u = random();
+    const double v = random() * (1.0 - u);
+    const Vec3 a = mesh->corner(t, 0) - apex;
+    const Vec3 target = a + u * (mesh->corner(t, 1) - mesh->corner(t, 0)) +
+      v * (mesh->corner(t, 2) - mesh->corner(t, 0));
+    const double width = widths[i % 5];
+    const BeamRays rays = raysInDisc(random, 20);
+    if (glm::dot(target, target) == 0.0)
+    {
+      continue; // the lidar is that point
+    }
+    compareBeam(*tree, avianlidar::makeBeamFrame(apex, target, width), rays, sum);
+  }
+}
+
+/// The rows that every comparison gives.
+void recordComparison(const std::string& extreme, const std::string& range, const Comparison& sum)
+{
+  record({ extreme, range,
+    "hits unlike brute force in long double, or unlike one descent per ray, of " +
+      std::to_string(sum.compared) + " rays",
+    0.0, static_cast<double>(sum.wrong + sum.otherBits) });
+  record({ extreme, range,
+    "error of range, in 2^-53 times the triangle's farthest corner / cos(incidence)", RangeBar,
+    sum.rangeError.value() });
+}
+Vec3 farAway(double distance)
+{
+  return distance * glm::normalize(Vec3(0.6, -0.5, 0.62));
+}
+
+TriangleMesh moved(TriangleMesh mesh, const Vec3& offset)
+{
+  for (Vec3& p : mesh.points)
+  {
+    p += offset;
+  }
+  return mesh;
+}
+
+}
+
+TEST(StabilityCoordinates, HitsAreThoseOfBruteForce)
+{
+  Numbers random(101);
+  Comparison far;
+  for (int decade = -3; decade <= 8; ++decade)
+  {
+    const Vec3 apex = farAway(std::pow(10.0, decade));
+    compareBeams(
+      std::make_shared<TriangleMesh>(moved(randomTriangles(random, 200, 100.0, 20.0), apex)), apex,
+      random, 25, far);
+  }
+  recordComparison("Coordinates", "scene of 200 m, 1e-3 to 1e8 m from the origin", far);
+  Comparison tiny;
+  for (const double distance : { 0.0, 1e-3, 1.0, 1e3, 1e6 })
+  {
+    const Vec3 apex = farAway(distance); // a millimetre across, seen from its middle
+    compareBeams(
+      std::make_shared<TriangleMesh>(moved(randomTriangles(random, 200, 1e-3, 1e-6), apex)), apex,
+      random, 40, tiny);
+  }
+  recordComparison("Coordinates", "triangles of 1e-6 m, up to 1e6 m from the origin", tiny);
+  Comparison sizes;
+  Comparison needles;
+  for (int round = 0; round < 4; ++round)
+  {
+    const auto mixed = std::make_shared<TriangleMesh>();
+    const auto thin = std::make_shared<TriangleMesh>();
+    for (int i = 0; i < 200; ++i)
+    {
+      const double size = random.logUniform(1e-6, 1e5);
+      const Vec3 center = 3.0 * size * random.direction() * (1.0 + random());
+      const Vec3 a = center + random.inCube(size);
+      const Vec3 b = center + random.inCube(size);
+      addTriangle(*mixed, a, b, center + random.inCube(size));
+      // Needles (third corner beside an end) and flat ones (beside the middle).
+      const double length = random.logUniform(0.1, 100.0);
+      const Vec3 from = random.inCube(50.0);
+      const Vec3 along = length * random.direction();
+      const Vec3 aside = glm::normalize(glm::cross(along, random.direction()));
+      const Vec3 foot = from + (i % 2 ? 1.0 : random()) * along;
+      addTriangle(*thin, from, from + along, foot + length / random.logUniform(1.0, 1e8) * aside);
+    }
+    compareBeams(mixed, Vec3(0.0), random, 60, sizes);
+    compareBeams(thin, Vec3(0.0), random, 60, needles);
+  }
+  recordComparison("Sizes", "triangles of 1e-6 to 1e5 m in one scene", sizes);
+  recordComparison("Aspect ratio", "1 to 1e8, needles and flat ones", needles);
+  for (const Comparison* sum : { &far, &tiny, &sizes, &needles })
+  {
+    EXPECT_GT(sum->hits, 400u);
+    EXPECT_LT(sum->undecided, sum->compared / 50);
+  }
+}
+
+TEST(StabilityCoordinates, SceneMovedByWhatRoundsNothingKeepsItsBits)
+{
+  using namespace echotest;
+  const double grid = 0x1p-20;
+  const ScanBeams beams = horizon(90, 4);
+  const ScanResult here = runScan(makeSetup(town(Vec3(0.0), grid), Sensor(), usual()), beams);
+  ASSERT_GT(here.echoes.size(), 50u);
+  std::size_t differing = 0;
+  for (const double distance : { 0x1p-10, 1.0, 1e3, 1e6, 1e7, 1e8 })
+  {
+    const Vec3 at(distance, -distance, distance);
+    const ScanResult there =
+      runScan(makeSetup(town(at, grid), Sensor(), usual()), horizon(90, 4, at));
+    differing += here.echoes.size() != there.echoes.size();
+    for (std::size_t i = 0; i < std::min(here.echoes.size(), there.echoes.size()); ++i)
+    {
+      const Echo& a = here.echoes[i];
+      const Echo& b = there.echoes[i];
+      differing += !(echotest::sameBits(a.range, b.range) &&
+        echotest::sameBits(a.energyReceived, b.energyReceived) &&
+        echotest::sameBits(a.returnEnergy, b.returnEnergy) && a.objectId == b.objectId);
+    }
+  }
+  record({ "Coordinates", "scene moved by 1e-3 to 1e8 m along each axis, double points",
+    "echoes whose range, energies or object change by a bit", 0.0,
+    static_cast<double>(differing) });
+}
 
 TEST(StabilityCoordinates, SceneScaledByPowersOfTwoKeepsItsBits)
 {
+  using namespace echotest;
   EchoSettings settings = usual();
   settings.attenuationCoefficient = 0.0;
   settings.noise = false;
@@ -42,8 +242,8 @@ TEST(StabilityCoordinates, SceneScaledByPowersOfTwoKeepsItsBits)
       differing += plain.echoes.size() != result.echoes.size();
       for (std::size_t i = 0; i < std::min(plain.echoes.size(), result.echoes.size()); ++i)
       {
-        differing += !(sameBits(plain.echoes[i].range * factor, result.echoes[i].range) &&
-          sameBits(plain.echoes[i].returnEnergy, result.echoes[i].returnEnergy));
+        differing += !(echotest::sameBits(plain.echoes[i].range * factor, result.echoes[i].range) &&
+          echotest::sameBits(plain.echoes[i].returnEnergy, result.echoes[i].returnEnergy));
       }
     }
   }
@@ -54,6 +254,7 @@ TEST(StabilityCoordinates, SceneScaledByPowersOfTwoKeepsItsBits)
 
 TEST(StabilityCoordinates, SceneTurnedKeepsRangesAndEnergies)
 {
+  using namespace echotest;
   Numbers random(106);
   Worst range;
   Worst energy;

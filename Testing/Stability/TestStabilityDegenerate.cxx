@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Scenes at the edge of geometry: planes through the lidar or nearly so, triangles twice, without
-// area or turned over, a lidar on a surface or on a vertex. Faces that coincide are
-// TestCoincidentFaces', bounds of energy in any scene TestGeometryProperties'.
+// area or turned over, a lidar on a surface, on a vertex, and grazing incidence. Faces that
+// coincide are TestCoincidentFaces', bounds of energy in any scene TestGeometryProperties'.
 #include "CollisionTreeBuilder.h"
 #include "GeometryTestScene.h"
 #include "ScanTestTown.h"
@@ -219,4 +219,49 @@ TEST(StabilityDegenerate, LidarOnASurfaceAnEdgeOrAVertex)
   ASSERT_GT(echoes, 400u);
   record({ "Lidar on a surface, an edge, a vertex", "at the origin and 1e6 m away, exactly",
     "echoes of the rest of the scene that change by a bit", 0.0, static_cast<double>(differing) });
+}
+
+TEST(StabilityDegenerate, LidarALittleAboveASurface)
+{
+  Worst error;
+  for (double height = 1e-12; height < 1e4; height *= 10.0)
+  {
+    Scene scene;
+    scene.plate(
+      Vec3(0.0, 0.0, -height), Vec3(1e4 * height, 0.0, 0.0), Vec3(0.0, 1e4 * height, 0.0), Diffuse);
+    Sensor sensor = openSensor(1e-4);
+    sensor.samplingInterval = 4.0 * height / SpeedOfLight;
+    const Echo echo = onlyEcho(scene, sensor, directSettings(1000), { 0.0, 0.6, -0.8 });
+    error.see(std::fabs(echo.returnEnergy / (3.6e-4 * 0.146 * 0.8) - 1.0));
+    error.see(std::fabs(echo.range / (1.25 * height) - 1.0));
+  }
+  record({ "Lidar above a surface", "1e-12 to 1e3 m",
+    "relative error of energy and range, incidence 37 deg", 1e-5, error.value() });
+}
+
+TEST(StabilityDegenerate, GrazingIncidence)
+{
+  Worst energy;
+  Worst range;
+  for (const double degrees : { 0.0, 45.0, 80.0, 89.0, 89.9, 89.99, 89.999, 89.9999 })
+  {
+    const double cosine = std::sin((90.0 - degrees) * Degree);
+    const double sine = std::cos((90.0 - degrees) * Degree);
+    const double distance = 100.0;
+    const double t = 1e-3 * cosine;
+    Scene scene;
+    scene.plate(
+      Vec3(distance, 0.0, 0.0), 50.0 * Vec3(-sine, cosine, 0.0), Vec3(0.0, 0.0, 50.0), Diffuse);
+    EchoSettings settings = directSettings(1000);
+    Sensor sensor = openSensor(t);
+    sensor.samplingInterval = 1e-6;
+    const Echo echo = onlyEcho(scene, sensor, settings);
+    const double right = 3.6e-4 * 0.146 * cosine * std::pow(std::cos(0.5 * t), 2);
+    energy.see(std::fabs(echo.returnEnergy / right - 1.0));
+    range.see(std::fabs(echo.range / distance - 1.0));
+  }
+  record({ "Grazing incidence", "0 to 89.9999 deg, half-beamwidth 1e-3 cos(incidence)",
+    "relative error of energy", 1e-5, energy.value() });
+  record({ "Grazing incidence", "0 to 89.9999 deg, half-beamwidth 1e-3 cos(incidence)",
+    "relative error of range", 1e-5, range.value() });
 }
