@@ -133,11 +133,13 @@ void EchoLabels::label(const RangeShares& shares, const BeamSamples* samples,
   echo.secondaryShare = ofPaths.moment / sum.energy;
 }
 
-BeamEchoes::BeamEchoes(const ScanSetup& setup, BeamLighting& lighting, BeamReceiver& receiver)
+BeamEchoes::BeamEchoes(const ScanSetup& setup, BeamLighting& lighting, BeamReceiver& receiver,
+  StandardErrorEstimator& ofRays)
   : Setup(setup)
   , Lighting(lighting)
   , Receiver(receiver)
   , Labels(setup)
+  , Errors(setup, lighting, ofRays)
 {
 }
 
@@ -283,7 +285,8 @@ Echo BeamEchoes::echoOfLight(const Return& ret)
     this->Lighting.units().sharesOf(units[ret.firstUnit].index, units[ret.lastUnit - 1].index + 1),
     this->Lighting.samples(), this->Lighting.paths(), echo);
   const ReceivedUnit& strongest = units[ret.strongestUnit];
-  echo.energyStdError = this->Lighting.errorOf(strongest.index, strongest.paths);
+  echo.energyStdError = this->Errors.of(
+    this->Lighting.units().sharesOf(strongest.index, strongest.index + 1), strongest.paths);
   return echo;
 }
 }

@@ -18,6 +18,7 @@
 #define avianlidar_BeamEchoes_h
 
 #include "BeamLighting.h"
+#include "EnergyErrors.h"
 #include "LitBeam.h"
 
 #include <algorithm>
@@ -119,7 +120,8 @@ private:
 class BeamEchoes
 {
 public:
-  BeamEchoes(const ScanSetup& setup, BeamLighting& lighting, BeamReceiver& receiver);
+  BeamEchoes(const ScanSetup& setup, BeamLighting& lighting, BeamReceiver& receiver,
+    StandardErrorEstimator& ofRays);
 
   /// Append the echoes of the beam lit last. @param keep gets the values of returns that do not
   /// depend on noise; may be null @param report out: status and range
@@ -143,6 +145,7 @@ private:
   BeamLighting& Lighting;
   BeamReceiver& Receiver;
   EchoLabels Labels;
+  EnergyErrors Errors;
 };
 }
 

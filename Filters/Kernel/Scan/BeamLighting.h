@@ -64,12 +64,11 @@ public:
   /// Energies of the direct echoes of the samples, J; empty if nothing can be perceived.
   const std::vector<double>& energies() const { return this->Energies; }
   const std::vector<SecondaryPath>& paths() const { return this->Paths; }
-  /// Standard error of the energy in a range unit, J. It comes from the rays (StandardError.h), or
-  /// from the cells and the rays from which paths start. An integrated beam has a bound of the
-  /// error of its direct echo, plus the standard error of its paths. Where an aperture gathers the
-  /// light of mirrors, the width of their lobes adds to it. @param paths number of paths with a
-  /// share in the unit
-  double errorOf(std::int64_t unit, std::uint32_t paths);
+  /// Rays from which paths start; null if none do.
+  const BeamSamples* starts() const { return this->Starts; }
+  bool raysAreLit() const { return this->Lit == this->Starts; }
+  const CellSamples* cells() const { return this->Cells; } ///< null if it is not in cells
+  const PolygonQuadrature& quadrature() const { return this->Quadrature; } ///< if it is integrated
   /// True if a direct echo arrives outside the gate, and nothing inside.
   bool isOutsideGate() const;
   BeamAir& air() { return this->Air; }
@@ -81,7 +80,6 @@ public:
 private:
   bool placeSamples(std::size_t beam, BeamTrace& trace);
   bool placeNodes(std::size_t beam);
-  bool raysAreLit() const { return this->Lit == this->Starts; }
   bool mayBePerceived(double most, double ofPaths);
   bool mayBeLeftOut(double farthest, double nearest) const;
   bool isSkipped(double most, double farthest, double nearest);
@@ -91,10 +89,6 @@ private:
   void dropFaintPaths();
   double passMedia(double sum);
   void fillUnits();
-  double errorOfSamples(const RangeShares& shares, std::uint32_t paths);
-  double errorOfLobes(const RangeShares& shares) const;
-  double errorOfMirrors(const RangeShares& shares) const;
-  double errorOfRays(const RangeShares& shares, bool filled);
 
   const ScanSetup& Setup;
   const SceneTriangles& Scene;

@@ -16,7 +16,7 @@ BeamSimulator::BeamSimulator(const ScanSetup& setup, const ScanBeams& beams, boo
       setup.revolution, wanted, &this->Air)
   , Lighting(
       setup, this->Scene, beams, this->Block, sampler, this->Receiver, this->Air, std::move(wanted))
-  , Echoes(setup, this->Lighting, this->Receiver)
+  , Echoes(setup, this->Lighting, this->Receiver, sampler.error)
 {
 }
 

@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "EnergyErrors.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace avianlidar
+{
+EnergyErrors::EnergyErrors(
+  const ScanSetup& setup, const BeamLighting& lighting, StandardErrorEstimator& ofRays)
+  : Setup(setup)
+  , Lighting(lighting)
+  , OfRays(ofRays)
+{
+}
+
+double EnergyErrors::of(const RangeShares& shares, std::uint32_t paths) const
+{
+  if (paths == 0)
+  {
+    return 0.0; // a false alarm: no sample has a share in it
+  }
+  const double sampling = this->ofSamples(shares, paths);
+  const double lobes = this->ofLobes(shares);
+  return lobes > 0.0 ? std::hypot(sampling, lobes) : sampling;
+}
+
+/// Error of the energy that mirror paths put into a unit, by the width of the mirrors' lobes, J.
+double EnergyErrors::ofLobes(const RangeShares& shares) const
+{
+  const std::size_t direct = this->Lighting.samples()->size();
+  double sum = 0.0;
+  for (std::size_t s = 0; s < shares.count; ++s)
+  {
+    const std::size_t contribution = shares.contribution[s];
+    sum += contribution < direct
+      ? 0.0
+      : shares.energies[s] * this->Lighting.paths()[contribution - direct].unsure;
+  }
+  return sum;
+}
+
+/// Sampling error of the energy in a unit, J.
+double EnergyErrors::ofSamples(const RangeShares& shares, std::uint32_t paths) const
+{
+  if (this->Lighting.raysAreLit())
+  {
+    return this->ofRays(
+      shares, paths >= this->Lighting.samples()->rays && this->Lighting.samples()->onOnePlane());
+  }
+  const bool pathsArrive = !this->Lighting.paths().empty();
+  const bool fromRays = pathsArrive && this->Lighting.paths().back().one != NoSample;
+  const double ofPaths =
+    std::hypot(fromRays ? this->ofRays(shares, false) : 0.0, this->ofMirrors(shares));
+  if (this->Lighting.cells())
+  {
+    const double ofCells = this->Lighting.cells()->errorOf(shares, this->Setup);
+    return pathsArrive ? std::sqrt(ofCells * ofCells + ofPaths * ofPaths) : ofCells;
+  }
+  return ofPaths + this->Lighting.quadrature().boundOf(shares, this->Lighting.energies());
+}
+
+/// Standard error of the energy that mirror paths by regions put into a unit, J. Two neighbouring
+/// samples are a stratum; one of them may not arrive. Many regions have one stratum alone, whose
+/// difference says little, so twice its square is taken.
+double EnergyErrors::ofMirrors(const RangeShares& shares) const
+{
+  const std::size_t direct = this->Lighting.samples()->size();
+  const auto isMirror = [&](std::size_t s)
+  {
+    const std::size_t contribution = shares.contribution[s];
+    return contribution >= direct && this->Lighting.paths()[contribution - direct].one == NoSample;
+  };
+  const auto sampleOf = [&](std::size_t s)
+  { return this->Lighting.paths()[shares.contribution[s] - direct].two; };
+  double variance = 0.0;
+  std::uint32_t last = NoSample;
+  double waiting = 0.0;
+  for (std::size_t s = 0; s < shares.count; ++s)
+  {
+    if (!isMirror(s))
+    {
+      continue;
+    }
+    double energy = shares.energies[s];
+    // Both directions of a path belong to one sample.
+    for (; s + 1 < shares.count && isMirror(s + 1) && sampleOf(s + 1) == sampleOf(s); ++s)
+    {
+      energy += shares.energies[s + 1];
+    }
+    const std::uint32_t stratum = sampleOf(s) / 2;
+    if (stratum == last)
+    {
+      variance -= waiting * waiting;
+      variance += (energy - waiting) * (energy - waiting);
+      last = NoSample;
+      continue;
+    }
+    variance += energy * energy;
+    waiting = energy;
+    last = stratum;
+  }
+  return std::sqrt(2.0 * std::max(0.0, variance));
+}
+
+/// Standard error of the energy that rays put into a unit, J: on paths over two reflections and, if
+/// the rays are the samples, as direct echoes. @param filled true if every ray put energy here and
+/// one plane fills the beam, so that no ray puts less
+double EnergyErrors::ofRays(const RangeShares& shares, bool filled) const
+{
+  const std::size_t direct = this->Lighting.samples()->size();
+  const std::vector<std::uint32_t>& rays = this->Lighting.starts()->ray;
+  StandardErrorEstimator& error = this->OfRays;
+  error.begin();
+  for (std::size_t s = 0; s < shares.count; ++s)
+  {
+    const std::size_t contribution = shares.contribution[s];
+    if (contribution < direct)
+    {
+      if (this->Lighting.raysAreLit())
+      {
+        error.add(rays[contribution], shares.energies[s]);
+      }
+      continue;
+    }
+    // A connection depends on both its rays.
+    const SecondaryPath& path = this->Lighting.paths()[contribution - direct];
+    if (path.one == NoSample)
+    {
+      continue;
+    }
+    error.add(rays[path.one], shares.energies[s]);
+    if (path.two != NoSample)
+    {
+      error.add(rays[path.two], shares.energies[s]);
+    }
+  }
+  return error.estimate({ filled ? error.smallest() : 0.0, error.largest() });
+}
+}
