@@ -30,7 +30,8 @@ struct vtkAvianLidarSurfaceLeaf;
 struct vtkAvianLidarSurfaces
 {
   std::shared_ptr<const avianlidar::TriangleMesh> mesh;
-  std::uint64_t checksum = 0;                               ///< of the mesh
+  std::uint64_t checksum = 0; ///< of the mesh
+  std::uint64_t geometry = 0; ///< hash of points, cells and ghost cells of the input
   avianlidar::SharedVector<avianlidar::Material> materials; ///< one per triangle
   avianlidar::SharedVector<int> objectIds;                  ///< one per triangle
   avianlidar::SharedVector<int> materialIds;                ///< one per triangle
@@ -38,27 +39,18 @@ struct vtkAvianLidarSurfaces
   std::vector<std::string> objectClasses;                   ///< likewise; empty: none brings any
   std::vector<std::string> materialNames;                   ///< by material id
   std::vector<std::string> media; ///< texts (vtkAvianLidarMedia.h), which are no surfaces
-  /// What a leaf held when its triangles were taken, to see what a change leaves as it was.
-  struct LeafState
+  struct Range
   {
-    std::uint64_t words;        ///< hash of its name and the texts of its objects and materials
-    std::uint64_t geometry;     ///< hash of points, cells and ghosts
-    std::uint64_t ids;          ///< hash of its ids
-    std::uint64_t coefficients; ///< hash of those of its materials
-    std::size_t begin;          ///< triangles [begin, end)
-    std::size_t end;
-    bool plain; ///< its cells are these triangles, one by one, and have materials
+    std::size_t begin, end; ///< [begin, end)
   };
-  std::vector<LeafState> leaves;
-  std::uint64_t words = 0; ///< hash of the texts that the whole input brings
-  std::string problem;     ///< what is wrong with the input, and where
-  std::string warning;     ///< suspicious but usable: to be said once per scene
+  std::vector<Range> leaves; ///< triangles of each leaf
+  std::string problem;       ///< what is wrong with the input, and where
+  std::string warning;       ///< suspicious but usable: to be said once per scene
 
   /// Merge every vtkPolyData of `input` (itself or the leaves of a composite) in leaf order.
   /// Ghost cells, vertices and lines are skipped; polygons and strips are triangulated.
-  /// @param known an earlier result: its mesh is taken if points and cells are the same, and of its
-  /// materials and ids what has the same values. If nothing but materials of some leaves changed,
-  /// their cells alone are merged anew @param threads that look at the leaves, > 0, or 0 for all
+  /// @param known an earlier result, may be null: its mesh, materials and ids are shared where the
+  /// values are the same @param threads that check the leaves, > 0, or 0 for all
   static vtkAvianLidarSurfaces Merge(
     vtkDataObject* input, const vtkAvianLidarSurfaces* known = nullptr, int threads = 0);
 

@@ -4,12 +4,12 @@
 #include "AABB.h"
 #include "ParallelLoop.h"
 #include "vtkAvianLidarCells.h"
+#include "vtkAvianLidarContent.h"
 #include "vtkAvianLidarMaterials.h"
 #include "vtkAvianLidarMedia.h"
 #include "vtkAvianLidarNames.h"
 #include "vtkAvianLidarSurfaceIds.h"
 #include "vtkAvianLidarSurfaceLeaf.h"
-#include "vtkAvianLidarSurfaceState.h"
 
 #include "vtkFieldData.h"
 #include "vtkPoints.h"
@@ -28,9 +28,8 @@ using avianlidar::Material;
 using avianlidar::TriangleMesh;
 using avianlidar::Vec3;
 using Leaf = vtkAvianLidarSurfaceLeaf;
-using LeafState = vtkAvianLidarSurfaces::LeafState;
+using Range = vtkAvianLidarSurfaces::Range;
 using Column = vtkAvianLidarColumn;
-namespace Surfaces = vtkAvianLidarSurfaceState;
 
 using vtkAvianLidarMaterials::NamedMaterials;
 
@@ -66,36 +65,28 @@ public:
     this->Arrays.resize(leaves.size());
     this->Result.leaves.resize(leaves.size());
     ForAll(leaves, this->Threads,
-      [&](std::size_t i)
-      {
-        this->Arrays[i] = vtkAvianLidarSurfaceArrays(leaves[i].data);
-        this->Result.leaves[i] = Surfaces::StateOf(leaves[i], this->Arrays[i]);
-      });
-    this->Result.words = Surfaces::HashOfNames(fields, 0);
-    const bool sameMesh = known && Surfaces::IsGeometryOf(*known, this->Result.leaves);
-    if (sameMesh &&
-      Surfaces::IsRepaintingOf(
-        *known, this->Result.words, leaves, this->Arrays, this->Result.leaves))
-    {
-      this->Repaint(*known);
-      return;
-    }
+      [&](std::size_t i) { this->Arrays[i] = vtkAvianLidarSurfaceArrays(leaves[i].data); });
     if (!this->Check(leaves))
     {
       return;
     }
     this->Ids.Begin(fields, leaves);
-    this->MeshIsKnown = sameMesh;
+    for (std::size_t i = 0; i < leaves.size(); ++i)
+    {
+      this->Result.geometry = vtkAvianLidarContent::HashOf(this->Arrays[i].ghosts,
+        vtkAvianLidarContent::HashOfGeometry(leaves[i].data, this->Result.geometry));
+    }
+    this->MeshIsKnown = known && known->mesh && known->geometry == this->Result.geometry;
     this->Reserve(leaves);
     for (std::size_t i = 0; i < leaves.size(); ++i)
     {
-      LeafState& state = this->Result.leaves[i];
-      state.begin = this->Materials.size();
-      if (!this->AddLeaf(leaves[i], this->Arrays[i], state))
+      Range& range = this->Result.leaves[i];
+      range.begin = this->Materials.size();
+      if (!this->AddLeaf(leaves[i], this->Arrays[i]))
       {
         return;
       }
-      state.end = this->Materials.size();
+      range.end = this->Materials.size();
     }
     this->AddMedia(leaves);
     this->FindWarnings(leaves);
@@ -197,7 +188,7 @@ private:
     this->Result.materialIds = std::move(this->MaterialIds);
     if (known)
     {
-      // Nobody need look again at what is the same.
+      // Equal values share one copy, which is summarised once.
       this->Result.materials.shareWith(known->materials);
       this->Result.objectIds.shareWith(known->objectIds);
       this->Result.materialIds.shareWith(known->materialIds);
@@ -205,41 +196,6 @@ private:
     this->Result.objectNames = std::move(this->Ids.ObjectNames);
     this->Result.objectClasses = std::move(this->Ids.ObjectClasses);
     this->Result.materialNames = std::move(this->Ids.MaterialNames);
-  }
-
-  /// Take over all but the materials of leaves that have others.
-  void Repaint(const vtkAvianLidarSurfaces& known)
-  {
-    std::vector<LeafState> states = std::move(this->Result.leaves);
-    this->Result = known;
-    this->Result.leaves = std::move(states);
-    const auto isSame = [](const LeafState& now, const LeafState& before)
-    { return now.coefficients == before.coefficients; };
-    if (std::equal(
-          this->Result.leaves.begin(), this->Result.leaves.end(), known.leaves.begin(), isSame))
-    {
-      return;
-    }
-    this->Materials.reserve(known.materials.size());
-    for (std::size_t i = 0; i < known.leaves.size(); ++i)
-    {
-      const LeafState& state = this->Result.leaves[i];
-      if (isSame(state, known.leaves[i]))
-      {
-        const Material* before = known.materials.begin();
-        this->Materials.insert(this->Materials.end(), before + state.begin, before + state.end);
-      }
-      else
-      {
-        const vtkAvianLidarMaterialColumns columns(this->Arrays[i]);
-        const auto cells = static_cast<vtkIdType>(state.end - state.begin);
-        for (vtkIdType cell = 0; cell < cells; ++cell)
-        {
-          columns.Read(cell, this->Materials.emplace_back());
-        }
-      }
-    }
-    this->Result.materials = std::move(this->Materials);
   }
 
   /// Input that can be used but may be a mistake.
@@ -304,7 +260,7 @@ private:
     return false;
   }
 
-  bool AddLeaf(const Leaf& leaf, const vtkAvianLidarSurfaceArrays& own, LeafState& state)
+  bool AddLeaf(const Leaf& leaf, const vtkAvianLidarSurfaceArrays& own)
   {
     if (vtkAvianLidarMedia::IsMedium(leaf.data))
     {
@@ -335,8 +291,6 @@ private:
     }
     const vtkAvianLidarSurfaceArrays arrays = asItIs ? own : vtkAvianLidarSurfaceArrays(poly);
     this->AddCells(leaf, poly, arrays);
-    state.plain = arrays.HasMaterials() && asItIs &&
-      this->Materials.size() - state.begin == static_cast<std::size_t>(cells);
     return true;
   }
 
