@@ -49,7 +49,7 @@ double keptInView(const LidarView& view, double slope)
 {
   using boost::math::cyl_bessel_j;
   using boost::math::quadrature::gauss;
-  constexpr double largest = 30.0; // drops, over 1/slope
+  constexpr double largest = 30.0; // largest diameter, in units of 1/slope
   const double scale = Pi * view.halfAngle / (view.wavelength * slope);
   const auto within = [](double x)
   { return 1.0 - std::pow(cyl_bessel_j(0, x), 2) - std::pow(cyl_bessel_j(1, x), 2); };
@@ -65,10 +65,10 @@ Medium rainOf(
   double rate, double backscatterRatio, const LidarView& view, double perVolume, double fall)
 {
   const double lambda = fall * std::pow(rate, -0.21);                  // 1/mm
-  const double squares = perVolume * 2.0 / (lambda * lambda * lambda); // mm^2/m^3, sum of D^2
+  const double squares = perVolume * 2.0 / (lambda * lambda * lambda); // sum of D^2, mm^2/m^3
   const double areas = 0.25 * Pi * squares * 1e-6;                     // 1/m
-  // Drops take twice their areas from the light. The lidar loses less, as diffracted light stays
-  // in its view; the backscatter ratio refers to twice the areas.
+  // A drop takes twice its area from the beam. The lidar loses less, as diffracted light stays in
+  // view. The backscatter ratio refers to twice the area.
   const double lost = 2.0 - keptInView(view, 1e3 * lambda);
   return { lost * areas, 0.5 * lost * backscatterRatio, perVolume / lambda };
 }

@@ -5,28 +5,28 @@
  * backscatter.
  *
  * Air is a list of media, and the attenuation coefficient of the clear air between them. A medium
- * weakens light by its extinction mu, and sends back mu/S of it per metre and steradian, S its
- * extinction-to-backscatter ratio. It fills the scene, or a volume (MediumVolume.h). Along a beam
- * BeamAir.h follows it.
+ * has an extinction mu. Its backscatter is mu/S per metre and steradian, S its
+ * extinction-to-backscatter ratio. It fills the scene or a volume (MediumVolume.h). BeamAir.h
+ * follows the air along a beam.
  *
- * Droplets of fog are so many that their number does not matter. Drops of rain are few: their
- * diameters are exponential, N(D) = N0 exp(-Lambda D), N0 = 8000/(m3 mm), Lambda = 4.1 R^-0.21/mm,
- * R the rain rate in mm/h, and each takes twice its area from the beam. Half of that is diffracted
- * into about lambda/D, and most of it stays in the view of a lidar (keptInView()): it is not lost.
- * Leaves of a tree are few, too, and of one size, Lambertian, facing all ways. Drops are others in
- * each scan, leaves as far as the wind moves them.
+ * Fog has so many droplets that their number does not matter. Rain has few drops. Their diameters
+ * are exponential, N(D) = N0 exp(-Lambda D), N0 = 8000/(m3 mm), Lambda = 4.1 R^-0.21/mm, R the rain
+ * rate in mm/h. Each drop takes twice its area from the beam. Half of this light is diffracted into
+ * an angle of about lambda/D. Most of it stays in the view of a lidar and is not lost
+ * (keptInView()). Trees have few leaves, too. All leaves have one size, are Lambertian and face all
+ * ways. Drops are drawn anew in each scan, and so is the share of the leaves that the wind moves.
  *
- * Coefficients are in 1/m everywhere (the paper's 0.088 and 0.035 have no unit; here they are read
- * as 1/km).
+ * Coefficients are in 1/m everywhere. The paper's 0.088 and 0.035 have no unit and are read as
+ * 1/km.
  *
- * Source: paper, Sec. 2.3, Eq. 9; of a visibility: P. W. Kruse et al., Elements of Infrared
- * Technology (1962), with the exponents of I. I. Kim et al., Proc. SPIE 4214 (2001); J. S. Marshall
- * and W. McK. Palmer, The Distribution of Raindrops with Size, Journal of Meteorology 5, 1948;
- * geometric optics; of the diffracted light M. Born and E. Wolf, Principles of Optics, Sec. 8.5.2
- * (Airy's pattern).
+ * Source: paper, Sec. 2.3, Eq. 9; for haze P. W. Kruse et al., Elements of Infrared Technology
+ * (1962), with the exponents of I. I. Kim et al., Proc. SPIE 4214 (2001); for rain J. S. Marshall
+ * and W. McK. Palmer, The Distribution of Raindrops with Size, Journal of Meteorology 5, 1948, and
+ * geometric optics; for diffraction M. Born and E. Wolf, Principles of Optics, Sec. 8.5.2 (Airy's
+ * pattern).
  * Differs: the paper's air only attenuates.
- * Valid: single scattering, besides light that is diffracted and stays in view. Where a
- * transmission underflows it is 0.
+ * Valid: single scattering, except for diffracted light that stays in view. A transmission that
+ * underflows is 0.
  * Test: TestAir.cxx.
  */
 #ifndef avianlidar_Air_h
@@ -41,48 +41,47 @@
 
 namespace avianlidar
 {
-/// Share of the energy that is left after `length` metres of air: exp(-mu l) (paper, Eq. 9).
-/// @param attenuation 1/m, >= 0 @param length m, >= 0, the whole way (a direct echo travels 2 r). 0
-/// where it underflows.
+/// Transmission of `length` metres of air: exp(-mu l) (paper, Eq. 9), 0 where it underflows.
+/// @param attenuation 1/m, >= 0 @param length m, >= 0, the whole way (a direct echo travels 2 r)
 inline double transmission(double attenuation, double length)
 {
-  // 0 * infinity is no length of air at all.
+  // Without attenuation even an infinite length transmits all light; 0 * infinity is NaN.
   return attenuation > 0.0 ? std::exp(-attenuation * length) : 1.0;
 }
 
-/// Visibility of clear air, m, for which makers' ranges are taken to hold (assumed).
+/// Visibility of clear air, m, at which data sheets are assumed to give their ranges.
 constexpr double ClearVisibility = 23e3;
 
 /// Attenuation coefficient of haze, 1/m. @param visibility at 550 nm, m, above 0
 /// @param wavelength m
 double attenuationOfVisibility(double visibility, double wavelength);
 
+/// Optical properties of a medium.
 struct Medium
 {
-  double extinction = 0.0;       ///< mu, 1/m, 0 to 1e30: light that the lidar loses
-  double backscatterRatio = 1.0; ///< S, sr, 1e-3 to 1e9: of that extinction
-  double drops = 0.0;            ///< or leaves, 1/m^3; 0: beyond number
-  /// Mean square of a drop's energy over the square of its mean: SquareOfDrops, or SquareOfLeaves.
+  double extinction = 0.0;       ///< mu, light that the lidar loses, 1/m, 0 to 1e30
+  double backscatterRatio = 1.0; ///< S, this extinction over backscatter, sr, 1e-3 to 1e9
+  double drops = 0.0;            ///< drops or leaves, 1/m^3, 0 to 1e12; 0: too many to count
+  /// Mean square of a drop's energy over its squared mean: SquareOfDrops or SquareOfLeaves.
   double squareOfDrops = 6.0;
-  double renewed = 1.0;   ///< share of the drops that are others in the next scan, 0 to 1
-  bool isFollowed = true; ///< by a threshold that follows the air; trees are not
+  double renewed = 1.0;   ///< share of the drops that are drawn anew in each scan, 0 to 1
+  bool isFollowed = true; ///< true if a threshold may follow its mean light; false for trees
   int objectId = -2;      ///< label of its echoes; ObjectOfAir for air
-  /// Drops are leaves: light comes back through the gaps that let it in, as far as its two ways lie
-  /// nearer to each other than a leaf is wide (BeamAir.h). Without a number of drops they always
-  /// do.
+  /// True if drops are leaves. Light comes back through the gaps that let it in if its two ways are
+  /// closer than a leaf is wide (BeamAir.h). Without a number of drops it always does.
   bool sharesGaps = false;
 
-  /// mu/S, 1/(m sr).
+  /// Backscatter coefficient mu/S, 1/(m sr).
   double backscatter() const { return this->extinction / this->backscatterRatio; }
 };
 
 /// E[D^4]/E[D^2]^2 of exponential diameters.
 constexpr double SquareOfDrops = 6.0;
 
-/// The same of Lambertian leaves that face all ways: E[cos^4]/E[cos^2]^2.
+/// E[cos^4]/E[cos^2]^2 of Lambertian leaves that face all ways.
 constexpr double SquareOfLeaves = 1.8;
 
-/// A medium, and where it is. Without a volume of its own it fills the scene.
+/// A medium and its volume. By default it fills the scene.
 struct PlacedMedium
 {
   Medium medium;
@@ -91,24 +90,24 @@ struct PlacedMedium
   bool fillsScene() const { return this->volume.shape == MediumShape::Everywhere; }
 };
 
-/// Attenuation coefficient, 1/m, of clear air and of all media that fill the scene. @param clear
-/// 1/m
+/// Attenuation coefficient, 1/m, of the clear air and of all media that fill the scene.
+/// @param clear attenuation coefficient of the clear air, 1/m
 double attenuationOf(double clear, const std::vector<PlacedMedium>& media);
 
 struct Air
 {
   double clear = 0.0;              ///< attenuation coefficient of the clear air, 1/m
-  std::vector<PlacedMedium> media; ///< the clear air's extinction is not in theirs
+  std::vector<PlacedMedium> media; ///< their extinctions exclude the clear air's
 };
 
-/// Whether some media do not fill the scene.
+/// True if a medium does not fill the scene.
 bool haveVolumes(const std::vector<PlacedMedium>& media);
 
-/// What a lidar sees of light that drops turn by a small angle.
+/// View of a lidar, for light that drops diffract by a small angle.
 struct LidarView
 {
   double wavelength = 905e-9; ///< m, above 0
-  double halfAngle = 0.0;     ///< rad; at 0 no diffracted light stays in view
+  double halfAngle = 0.0;     ///< rad; 0: no diffracted light stays in view
 };
 
 inline bool operator==(const LidarView& a, const LidarView& b)
@@ -116,25 +115,24 @@ inline bool operator==(const LidarView& a, const LidarView& b)
   return a.wavelength == b.wavelength && a.halfAngle == b.halfAngle;
 }
 
-/// The view of a sensor. A beam that is not round has the half angle of a round one of its solid
-/// angle.
+/// View of a sensor. Its half angle is the half angle of a round beam of the same solid angle.
 LidarView viewOf(const Sensor& sensor);
 
-/// Share of the light that drops on the way to a target and back diffract which stays in view.
-/// Drops at a share 1 - u of the way move it at the target by u of the angle, so it is the mean
-/// over u of the energy that Airy's pattern has within halfAngle/u, weighted with the areas of the
-/// drops. Within 6e-4. @param slope Lambda of exponential diameters, 1/m
+/// Share of the diffracted light that stays in view on the way to a target and back. A drop at a
+/// share 1 - u of the way shifts light at the target by u times the angle of diffraction. So the
+/// result is the mean over u of the energy of Airy's pattern within halfAngle/u, weighted with the
+/// areas of the drops. The error is below 6e-4. @param slope Lambda of exponential diameters, 1/m
 double keptInView(const LidarView& view, double slope);
 
-/// Rain of so many mm/h, above 0. @param backscatterRatio sr, of twice the area of the drops @param
-/// perVolume N0, 1/(m^3 mm) @param fall Lambda at 1 mm/h, 1/mm
+/// Rain. @param rate mm/h, above 0 @param backscatterRatio twice the drops' areas over their
+/// backscatter, sr @param perVolume N0, 1/(m^3 mm) @param fall Lambda at 1 mm/h, 1/mm
 Medium rainOf(double rate, double backscatterRatio, const LidarView& view,
   double perVolume = 8000.0, double fall = 4.1);
 
-/// Largest rain rate, mm/h; the law of Marshall and Palmer is from rates up to 23.
+/// Largest rain rate, mm/h. The law of Marshall and Palmer comes from rates up to 23 mm/h.
 constexpr double MaximumRainRate = 500.0;
 
-/// Empty, or a sentence that names the value and what was expected.
+/// Error that names the value and what was expected, or an empty text.
 std::string checkMedium(const Medium& medium);
 }
 

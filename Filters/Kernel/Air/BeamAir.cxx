@@ -16,52 +16,52 @@ namespace
 {
 constexpr std::int64_t NoUnit = std::numeric_limits<std::int64_t>::max();
 
-/// Optical depth, there and back, behind which nothing is looked for.
+/// Optical depth of volumes, there and back, behind which media return nothing.
 constexpr double Opaque = 60.0;
 
-/// Share of the lower limit: media behind an opaque one return less.
+/// Share of the lower limit below which the light of all media in a unit does not matter.
 constexpr double Faint = 1e-6;
 
-/// Share of a pulse that rounding alone may leave.
+/// Share of a pulse that may be left by rounding alone.
 constexpr double Rounding = 1e-9;
 
-/// Places on the aperture, over its radius, and their shares of its area: Gauss's rule.
+/// Distances from the aperture's middle, over its radius, and shares of its area: Gauss's rule.
 constexpr double PlacesOnAperture[][2] = { { 0.21234054, 0.13965396 }, { 0.59053314, 0.45848221 },
   { 0.91141204, 0.40186383 } };
 
-/// Points across a cell of the grid, each way, by which its share of the pulse is known.
+/// Points across a cell of the grid, each way, over which its share of the pulse is summed.
 constexpr int PointsOfCell = 16;
 
-/// The axis and points of the rim; of a rectangle its corners.
+/// Axis and eight points of the unit circle. The last four are the corners of a rectangular beam.
 constexpr double H = BeamShape::HalfSide;
 constexpr double Rim[][2] = { { 0.0, 0.0 }, { 1.0, 0.0 }, { -1.0, 0.0 }, { 0.0, 1.0 },
   { 0.0, -1.0 }, { H, H }, { H, -H }, { -H, H }, { -H, -H } };
 
-/// The share of leaves before one of two ways that are not before the other. @param x distance of
-/// the ways over a leaf's diameter
+/// Share of the leaves on one of two ways that miss the other. @param x distance of the ways over a
+/// leaf's diameter
 double beforeOneWay(double x)
 {
   return x < 1.0 ? x * (2.0 - x) : 1.0;
 }
 
-/// Integral of f over the ranges from one to another, m, which falls no faster than 1/r^2, but for
-/// the range up to which an aperture gathers half of all, and exp(-decay r). @param reach that
-/// range, m @param decay 1/m @param change 1/m, of the logarithm of f besides
+/// Integral of f over ranges, m. f falls no faster than exp(-(decay + change) r)/r^2, with a kink.
+/// @param reach range of the kink, m, up to which the aperture gathers half of all light
+/// @param decay by extinction, 1/m @param change of densities, 1/m
 template <class F>
 double airIntegral(double reach, double from, double to, double decay, double change, F f)
 {
-  // Panels grow by this, and none is longer than so many lengths of extinction, there and back.
+  // Panels grow by `growth`. None is longer than `longestPanel`/(decay + change).
   constexpr double growth = 1.5;
   constexpr double longestPanel = 2.0;
-  constexpr double nothingLeft = 700.0; // as an exponent
+  constexpr double nothingLeft = 700.0; // exponent at which f has vanished
   const double longest = longestPanel / std::max(1e-300, decay + change);
   double sum = 0.0;
   for (double begin = from; begin < to && decay * (begin - from) < nothingLeft;)
   {
-    // A step, even where light goes no farther than the last digit.
+    // The step must change `begin` even where extinction is shorter than the last digit.
     const double step = std::max(longest, 1e-15 * begin);
     const double end = std::min({ begin < reach ? reach : growth * begin, begin + step, to });
-    // Where a panel is short against its range a rule of few points does as well, to 1e-8.
+    // On a panel that is short against range and extinction three points suffice, to 1e-8.
     constexpr double isShort = 0.05;
     sum += end - begin < std::min(isShort * begin, 0.25 * longest)
       ? boost::math::quadrature::gauss<double, 3>::integrate(f, begin, end)
@@ -120,7 +120,7 @@ void BeamAir::makeMeans()
   this->Means = std::move(means);
 }
 
-/// The cells of the grid in the beam.
+/// Make the cells of the grid that lie in the beam.
 void BeamAir::makeGrid()
 {
   const BeamShape shape(this->Instrument);
@@ -146,14 +146,14 @@ void BeamAir::makeGrid()
     {
       continue;
     }
-    // Points of rows and columns of cells lie at different places, so that no straight border
-    // passes many at once; in cells at the rim, in their middle.
+    // Directions are staggered between cells, so that no straight border passes many at once. Where
+    // one would miss the beam, the mean of the cell's part in the beam replaces it.
     const double x = -1.0 + width * (i + std::fmod(0.5 + 0.7320508 * i + 0.6180340 * j, 1.0));
     const double y = -1.0 + width * (j + std::fmod(0.5 + 0.4142136 * i + 0.2360680 * j, 1.0));
     const bool isIn = shape.holds(x, y);
     column.x = isIn ? x : column.x / column.weight;
     column.y = isIn ? y : column.y / column.weight;
-    // A sequence that fills the square evenly, in any order of the cells.
+    // This sequence fills a square evenly, in whatever order the cells come.
     const auto number = static_cast<double>(this->Grid.size());
     const double angle = 2.0 * Pi * 0.5698402910 * number;
     column.towards = { std::cos(angle), std::sin(angle) };
@@ -221,7 +221,7 @@ void BeamAir::beginRay(const Vec3& origin, const Vec3& direction, double seconds
   this->findLooked();
 }
 
-/// Divide a beam into as many columns as the volumes met ask for, and find their parts.
+/// Divide a beam into the columns that its volumes require, and find the parts of each.
 void BeamAir::divide(const BeamFrame& frame)
 {
   const Vec3* up = nullptr;
@@ -257,8 +257,8 @@ void BeamAir::divide(const BeamFrame& frame)
   this->findParts(frame);
 }
 
-/// Whether the rim of a beam crosses all volumes where its axis does, to a quarter of a range unit
-/// and a hundredth of the way through, and as deep, to 0.02 of optical depth there and back.
+/// True if the rim crosses all volumes where the axis does, to a quarter of a range unit plus a
+/// hundredth of the way through. Optical depths there and back must agree within 0.02, too.
 bool BeamAir::rimAgrees() const
 {
   const Column& axis = this->Columns[0];
@@ -276,7 +276,7 @@ bool BeamAir::rimAgrees() const
       const PartRange inside = this->partsOf(axis);
       const PartRange parts = this->partsOf(column);
       bool agrees = std::equal(inside.begin(), inside.end(), parts.begin(), parts.end(), isClose);
-      // Nor does the density differ across it.
+      // Densities may still differ across the beam.
       for (const double range : { 0.125 * d, 0.25 * d, 0.5 * d, d })
       {
         agrees = agrees && std::fabs(this->depth(column, range) - this->depth(axis, range)) < 0.02;
@@ -285,7 +285,7 @@ bool BeamAir::rimAgrees() const
     });
 }
 
-/// Of layers heights alone count: columns of about one height are one.
+/// Merge columns of similar height into at most eight rows, as layers depend on height alone.
 void BeamAir::mergeRows(const BeamFrame& frame, const Vec3& up)
 {
   const auto heightOf = [&](const Column& c)
@@ -332,7 +332,7 @@ void BeamAir::findParts(Column& column, const Vec3& origin, const Vec3& directio
     this->Found.clear();
     this->Crosser.find(
       volume, origin, direction, this->Instrument.rangeGate, this->Seconds, this->Found);
-    // Seen from all sides a disc is half as large as from its front.
+    // The mean projection of a disc over all directions is half its area.
     const bool isLeaves = medium.sharesGaps && medium.extinction > 0.0;
     const double perLeaf =
       isLeaves ? std::sqrt(Pi * medium.drops / (8.0 * medium.extinction)) : 0.0;
@@ -345,7 +345,7 @@ void BeamAir::findParts(Column& column, const Vec3& origin, const Vec3& directio
   column.lastPart = this->Parts.size();
 }
 
-/// Find the units in which media return light that may be perceived.
+/// Find the units in which media may be perceived by themselves.
 void BeamAir::findLooked()
 {
   this->Looked.clear();
@@ -363,7 +363,7 @@ void BeamAir::findLooked()
     {
       continue;
     }
-    // Pulses of drops reach beyond.
+    // Pulses of drops reach into neighbouring units.
     const std::int64_t reach = medium.isFollowed ? this->Reach : 0;
     const auto unitOf = [&](double range)
     { return static_cast<std::int64_t>(std::floor(range / this->UnitLength)); };
@@ -397,7 +397,7 @@ std::int64_t BeamAir::nextLooked(std::int64_t unit) const
   return next < this->Dark + this->Reach ? next : NoUnit;
 }
 
-/// Sum over the parts of a column. @param of what a part adds
+/// Sum over the parts of a column. @param of gives the term of a part
 template <class F>
 double BeamAir::sumOver(const Column& column, F of) const
 {
@@ -409,14 +409,14 @@ double BeamAir::sumOver(const Column& column, F of) const
   return sum;
 }
 
-/// Optical depth of volumes, there and back; of leaves, there.
+/// Optical depth of volumes to a range, m, and back. Leaves count on the way there only.
 double BeamAir::depth(const Column& column, double range) const
 {
   return this->sumOver(
     column, [&](const Part& part) { return part.extinction * part.crossing.upTo(range); });
 }
 
-/// What leaves let through on the way back of what they let through on the way there.
+/// Transmission of leaves on the way back, for light that they transmitted on the way there.
 double BeamAir::wayBack(const Column& column, double range) const
 {
   std::array<double, std::size(PlacesOnAperture)> depths{};
@@ -434,7 +434,7 @@ double BeamAir::wayBack(const Column& column, double range) const
     const double end = 1.0 - std::min(part.crossing.end, range) / range;
     for (std::size_t k = 0; k < depths.size(); ++k)
     {
-      // Simpson's rule: exact as long as the ways are nearer to each other than a leaf's width.
+      // Simpson's rule is exact at constant density if the ways are closer than a leaf is wide.
       const double x = PlacesOnAperture[k][0] * perLeaf;
       depths[k] += stops / 6.0 *
         (beforeOneWay(x * begin) + 4.0 * beforeOneWay(0.5 * x * (begin + end)) +
@@ -486,7 +486,7 @@ double BeamAir::transmissionBetween(const Vec3& from, const Vec3& to)
 
 void BeamAir::take(std::vector<MetSurface> surfaces)
 {
-  this->TakenTo = Infinity; // from the beginning
+  this->TakenTo = Infinity; // makes takeUpTo() begin anew
   this->Unit = -1;
   this->Surfaces.clear();
   const auto isNearer = [](const MetSurface& a, const MetSurface& b) { return a.range < b.range; };
@@ -496,7 +496,7 @@ void BeamAir::take(std::vector<MetSurface> surfaces)
     std::stable_sort(this->Surfaces.begin(), this->Surfaces.end(), isNearer);
     return;
   }
-  // Without columns those by whose middle a unit has lost light are one.
+  // Without columns, all surfaces between the middles of two consecutive units are merged.
   const auto unitOf = [&](double range)
   {
     return static_cast<std::size_t>(
@@ -519,7 +519,7 @@ void BeamAir::take(std::vector<MetSurface> surfaces)
   }
 }
 
-/// Take off what surfaces meet up to a range, m.
+/// Reduce the columns by all surfaces nearer than a range, m.
 void BeamAir::takeUpTo(double range)
 {
   if (range < this->TakenTo)
@@ -539,8 +539,8 @@ void BeamAir::takeUpTo(double range)
   }
 }
 
-/// Take a share of the pulse off some columns. No column has less than nothing, and all together
-/// have what is left.
+/// Reduce the columns that a surface meets by its share of the pulse. No column becomes negative,
+/// and all together keep the share of the pulse that is left.
 void BeamAir::takeOne(const MetSurface& surface)
 {
   const auto isMet = [&](const Column& column)
@@ -565,14 +565,14 @@ void BeamAir::takeOne(const MetSurface& surface)
   }
 }
 
-/// Solid angle, sr, from which light of a range, m, is gathered, less what misses the detector.
+/// Solid angle of the aperture seen from a range, m, at most 2 pi, times the near range share, sr.
 double BeamAir::gathered(double range) const
 {
   return this->Instrument.nearRangeShare(range) *
     std::min(this->Instrument.receiverAperture / (range * range), 2.0 * Pi);
 }
 
-/// Add what a column sends back from between two ranges, m.
+/// Add the light that a column returns from between two ranges, m.
 void BeamAir::addColumn(const Column& column, double from, double to)
 {
   const double before = this->depth(column, from);
@@ -599,12 +599,12 @@ void BeamAir::addColumn(const Column& column, double from, double to)
   }
 }
 
-/// The same where no border of a volume lies between. @param before optical depth of volumes there
+/// Add the light of a piece without borders. @param before optical depth of volumes up to `from`
 void BeamAir::addPiece(const Column& column, double before, double from, double to)
 {
   const double middle = 0.5 * (from + to);
-  double decay = 2.0 * this->Attenuation; // 1/m, at most
-  double change = 0.0;                    // of densities, 1/m
+  double decay = 2.0 * this->Attenuation; // upper bound, 1/m
+  double change = 0.0;                    // largest slope of the logarithm of a density, 1/m
   this->Here.clear();
   for (Part part : this->partsOf(column))
   {
@@ -636,7 +636,7 @@ void BeamAir::addPiece(const Column& column, double before, double from, double 
         return this->gathered(r) * density.densityAt(r) * std::exp(-depth);
       });
   };
-  // Media of which the density does not change share one integral, and columns of one slope, too.
+  // Media of constant density share one integral, and so do columns of the same decay.
   const MediumCrossing everywhere{ from, to, 1.0, 0.0 };
   const std::array<double, 3> wanted{ from, to, decay };
   if (change == 0.0 && this->Known != wanted)
@@ -652,7 +652,7 @@ void BeamAir::addPiece(const Column& column, double before, double from, double 
     const Medium& medium = this->mediumAt(this->Seen[number]);
     this->Sums[number].mean += seen * medium.backscatter() *
       (change == 0.0 ? crossing.density * steady : integralOf(crossing));
-    // Those whose middle lies in the beam, and leaves that reach into it.
+    // Drops count if their middle lies in the beam, leaves also if they reach into it.
     const double met = medium.drops * this->SolidAngle * (to * to * to - from * from * from) / 3.0 +
       (medium.sharesGaps && medium.drops > 0.0 ? medium.extinction * (to - from) : 0.0);
     this->Sums[number].drops += weight * crossing.densityAt(middle) * met;
@@ -679,7 +679,7 @@ const std::vector<BeamAir::Share>& BeamAir::sharesOf(std::int64_t unit)
   const double from = std::max(to - this->UnitLength, this->Instrument.minimumRange);
   if (!(this->Instrument.receiverAperture > 0.0) || !(from < to))
   {
-    return this->Shares; // nothing is known of what comes back
+    return this->Shares; // the aperture is unknown, or the unit before the minimum range
   }
   this->takeUpTo(to - 0.5 * this->UnitLength);
   if (!this->isLocal())
@@ -715,7 +715,7 @@ const std::vector<BeamAir::Share>& BeamAir::sharesOf(std::int64_t unit)
 
 double BeamAir::followed(std::int64_t unit)
 {
-  if (!this->isLocal()) // all that fills the scene is followed
+  if (!this->isLocal()) // media that fill the scene are followed
   {
     this->takeUpTo(this->UnitLength * (static_cast<double>(unit) + 0.5));
     return unit < this->units()
@@ -776,7 +776,7 @@ double BeamAir::returnedBy(const MetLeaf& leaf, const Column& column, double sha
       const bool isLeaves = this->mediumOf(part).sharesGaps;
       return isLeaves ? 0.0 : part.extinction * part.crossing.upTo(leaf.range);
     });
-  // Seen leaves have a mean cosine of 2/3.
+  // The mean cosine of the leaves that a ray meets is 2/3.
   return this->Instrument.pulseEnergy * share * column.open * 1.5 * leaf.cosine /
     this->mediumAt(leaf.medium).backscatterRatio * this->gathered(leaf.range) *
     std::exp(-2.0 * this->Attenuation * leaf.range - depth);

@@ -13,7 +13,7 @@ PulseShares::PulseShares(double width)
   : Width(width)
   , Reach(static_cast<std::int64_t>(std::ceil(0.5 * width)))
 {
-  // With a share e in the next unit, e (1 - e) is its mean over drops anywhere: w/6.
+  // The share e of the next unit is such that e (1 - e) is w/6, its mean over all places.
   const double part = std::min(1.0, width);
   const double end = 0.5 * part * (1.0 - std::sqrt(1.0 - 2.0 * part / 3.0)) - 0.5 * width;
   this->Place = end - std::floor(end);
@@ -40,8 +40,8 @@ namespace
 {
 constexpr std::uint64_t DrawsOfUnit = 256;
 
-/// A gamma variate of mean 1, less 1, and a uniform number that is independent of it. @param shape
-/// 1 or more @param draw pairs of uniform numbers
+/// A gamma variate of mean 1, less 1, and an independent uniform number. @param shape 1 or more
+/// @param draw gives pairs of uniform numbers
 template <class F>
 std::array<double, 2> gammaBeyondMean(double shape, F draw)
 {
@@ -60,7 +60,7 @@ std::array<double, 2> gammaBeyondMean(double shape, F draw)
   }
 }
 
-/// Add the drops of one scan.
+/// Add the drops of one scan. @param square see Medium::squareOfDrops
 void addDrops(std::int32_t seed, std::uint64_t beam, std::uint64_t number, std::int32_t revolution,
   double mean, double drops, double square, const PulseShares& pulse, double* units)
 {
@@ -88,7 +88,7 @@ void addDrops(std::int32_t seed, std::uint64_t beam, std::uint64_t number, std::
   {
     const auto [size, at] = draw(k);
     const double d = std::log(size);
-    // The square of a diameter, or of a cosine, over its mean.
+    // Square of the diameter, or of the leaf's cosine, over its mean.
     const double light = square == SquareOfLeaves ? 3.0 * size * size : 0.5 * d * d;
     pulse.add(mean * light / drops, at, units);
   }
@@ -104,7 +104,7 @@ void addDropsBeyondMean(std::int32_t seed, std::uint64_t beam, std::uint64_t num
     addDrops(
       seed, beam, number, scan, share * mean, share * drops, medium.squareOfDrops, pulse, units);
   };
-  // Those that stay are the same in every scan.
+  // Drops that stay are the same in every scan.
   constexpr std::int32_t always = -1;
   add(revolution, medium.renewed);
   add(always, 1.0 - medium.renewed);

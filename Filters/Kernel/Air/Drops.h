@@ -1,22 +1,22 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file Drops.h
- * @brief How the drops of a medium change what it sends back in a range unit, beside the mean.
+ * @brief Draws the light that the drops of a medium return in a range unit beyond its mean.
  *
- * Drops are a Poisson number in the unit's part of the beam's cone, and the energy of each is the
- * square of an exponential diameter, or of a leaf's cosine (Air.h): up to FewDrops are drawn one by
- * one, more are a gamma distribution of the same mean and variance.
+ * The number of drops in the unit's part of the beam is Poisson distributed. The energy of a drop
+ * is the square of an exponential diameter or of a leaf's cosine (Air.h). Up to FewDrops are drawn
+ * one by one. More follow a gamma distribution of the same mean and variance.
  *
- * A drop shares its pulse with the units that the pulse overlaps, as surfaces do (RangeUnits.h), so
- * drops vary less in a unit, and neighbouring units vary together. Each of few drops has a place of
- * its own in its unit. Many vary as if all were at one of two places, either equally likely, which
- * are chosen such that variances, covariances and third moments of units are those of drops
- * anywhere (of pulses no wider than a unit, or of whole units).
+ * The pulse of a drop is divided among the units that it overlaps, as for surfaces (RangeUnits.h).
+ * So the energy of a unit varies less, and neighbouring units vary together. If drops are few, each
+ * has its own place in its unit. If they are many, all lie at one of two equally likely places.
+ * These places give units the variances, covariances and third moments of drops anywhere, for
+ * pulses no wider than a unit or as wide as whole units.
  *
  * Source: G. Marsaglia and W. W. Tsang, ACM Trans. Math. Softw. 26, 2000 (gamma variates).
  * Differs: the paper's air sends nothing back.
- * Valid: the mean changes little within a pulse, as beyond the first few units; the beam is evenly
- * lit as far as drops are concerned.
+ * Valid: the mean changes little within a pulse, as beyond the first few units. Drops count as
+ * evenly lit across the beam.
  * Test: TestAir.cxx.
  */
 #ifndef avianlidar_Drops_h
@@ -30,21 +30,21 @@
 
 namespace avianlidar
 {
-/// How the pulse of a drop is divided among range units.
+/// Divides the pulse of a drop among range units.
 class PulseShares
 {
 public:
-  /// @param width tau_e/tau_s, 0 to 1000
+  /// @param width of the pulse, tau_e/tau_s, 0 to 1000
   explicit PulseShares(double width = 0.0);
 
-  /// Units that a pulse reaches before and behind its own.
+  /// Number of units that a pulse reaches before, and behind, its own.
   std::int64_t reach() const { return this->Reach; }
 
-  /// Add the energy of a pulse to 2 reach() + 1 units, its own in the middle. @param place in its
-  /// own unit, 0 to 1
+  /// Add the energy of a pulse to 2 reach() + 1 units, with its own in the middle. @param place of
+  /// the drop in its own unit, 0 to 1
   void add(double energy, double place, double* units) const;
 
-  /// One of the two places of many drops, in [0, 1]; the other is as far from the other end.
+  /// One of the two places of many drops, in [0, 1]. The other one is 1 - placeOfMany().
   double placeOfMany() const { return this->Place; }
 
 private:
@@ -53,18 +53,18 @@ private:
   double Place;
 };
 
-/// Up to so many drops in a unit, on average, are drawn one by one.
+/// Largest mean number of drops in a unit that are drawn one by one.
 constexpr double FewDrops = 40.0;
 
-/// Add what the drops of a unit return beyond their mean to 2 reach() + 1 units: a compound Poisson
-/// law. @param mean J @param drops on average @param number of the unit, or one that no other has
-/// @param medium whose squareOfDrops and `renewed` count
+/// Add the light of a unit's drops beyond its mean to 2 reach() + 1 units: a compound Poisson law.
+/// @param number of the unit, or another unique number @param mean J @param drops mean number of
+/// drops @param medium gives `squareOfDrops` and `renewed` @param units sums, J
 void addDropsBeyondMean(std::int32_t seed, std::uint64_t beam, std::uint64_t number,
   std::int32_t revolution, double mean, double drops, const Medium& medium,
   const PulseShares& pulse, double* units);
 
-/// What all drops of a beam return beyond their mean in each unit. Units are drawn once, if they
-/// are asked for in order. One per thread.
+/// Sums the light of a beam's drops beyond its mean, unit by unit. Requests in ascending order draw
+/// each unit once. One per thread.
 class SharedDrops
 {
 public:
@@ -78,7 +78,7 @@ public:
   /// Begin a beam.
   void clear() { this->Numbers.assign(this->Numbers.size(), -1); }
 
-  /// J. @param draw called with a unit and a pointer to its 2 reach() + 1 sums, which are 0
+  /// Light in a unit, J. @param draw adds the drops of a unit to its 2 reach() + 1 sums, all 0
   template <class F>
   double in(std::int64_t unit, F draw)
   {
@@ -102,8 +102,8 @@ public:
 
 private:
   std::int64_t Reach;
-  std::vector<std::int64_t> Numbers; ///< units whose drops are known
-  std::vector<double> Shares;        ///< J, of each in 2 Reach + 1 units
+  std::vector<std::int64_t> Numbers; ///< units whose drops are drawn
+  std::vector<double> Shares;        ///< light of each of `Numbers` in 2 Reach + 1 units, J
 };
 }
 

@@ -13,7 +13,7 @@ namespace
 {
 constexpr double Never = std::numeric_limits<double>::infinity();
 
-/// The scan of leaves that stay: they are the same in every scan.
+/// Scan of the leaves that stay, which are the same in every scan.
 constexpr std::int32_t Always = -1;
 
 constexpr std::uint64_t DrawsOfLeaf = 3;
@@ -32,7 +32,7 @@ void LeafGaps::begin(
   { return uniformPair(seed, beam, of.number + number, RandomPurpose::Leaves, of.scan); };
   const auto advance = [&](Stream& of)
   {
-    // The volume up to the next leaf, the integral of 4 (rim + growth r)^2, is exponential.
+    // The volume up to the next leaf is exponential. It is the integral of 4 (rim + growth r)^2.
     of.number += DrawsOfLeaf;
     const double side = halfSide(of);
     const double volume = -std::log(draw(of, 0)[0]) / of.perVolume;
@@ -55,7 +55,7 @@ void LeafGaps::begin(
     {
       break;
     }
-    // One number has digits enough for two.
+    // One random number has enough digits for two coordinates.
     constexpr double digits = 67108864.0; // 2^26
     const double place = digits * draw(next, 0)[1];
     const double u = std::floor(place) / digits;
@@ -72,7 +72,7 @@ void LeafGaps::begin(
   }
 }
 
-/// Two streams for each medium of leaves that the beam meets; none where it is too wide.
+/// Make two streams for each medium of leaves that the beam meets, or none if the beam is too wide.
 void LeafGaps::makeStreams(double growth, double solidAngle, std::int32_t revolution)
 {
   this->Streams.clear();
@@ -84,7 +84,7 @@ void LeafGaps::makeStreams(double growth, double solidAngle, std::int32_t revolu
     const double radius = std::sqrt(2.0 * seenArea / Pi);
     const double rim = radius + this->Along->apertureRadius();
     const double across = 2.0 * (rim + growth * leaves.begin);
-    const double section = solidAngle * leaves.begin * leaves.begin / seenArea; // leaves
+    const double section = solidAngle * leaves.begin * leaves.begin / seenArea; // in leaves
     const bool isFirst = this->Streams.empty();
     if (section > (isFirst ? MostLeaves : MostLeavesBehind) ||
       (isFirst && across * across > MostLeavesAcross * seenArea))
@@ -101,8 +101,8 @@ void LeafGaps::makeStreams(double growth, double solidAngle, std::int32_t revolu
   }
 }
 
-/// Set the rays; no leaf has stopped them yet. @param turn of their points on the aperture about
-/// its middle, in whole turns @param shift of the share of its area that is nearer to the middle
+/// Make rays that no leaf has stopped yet. @param turn of their points on the aperture about its
+/// middle, in whole turns @param shift of the share of its area that is nearer to the middle
 void LeafGaps::makeRays(double turn, double shift)
 {
   this->Shadows.clear();
@@ -123,13 +123,13 @@ void LeafGaps::makeRays(double turn, double shift)
   }
 }
 
-/// Place a leaf: end the rays that meet it, and note those whose light it stops on its way back.
-/// @param draw two of its random numbers
+/// Place a leaf. End the rays that meet it, and note the rays whose light it stops on the way back.
+/// @param centre across the beam, m @param draw gives a pair of the leaf's random numbers, 1 or 2
 template <class F>
 void LeafGaps::place(const std::array<double, 2>& centre, const Stream& of, F draw)
 {
   bool isDrawn = false;
-  double least = 0.0; // density of the medium from which on this leaf exists
+  double least = 0.0; // the leaf exists where the medium's density is larger
   double cosine = 1.0;
   double along = 0.0;
   double beside = 0.0;
@@ -155,7 +155,7 @@ void LeafGaps::place(const std::array<double, 2>& centre, const Stream& of, F dr
       cosine = draw(2)[0];
       isDrawn = true;
     }
-    // The way back from a range R passes p + s q, s = 1 - r/R: inside where a s^2 + 2 b s + c < 0.
+    // The way back from a range R passes p + s q, s = 1 - r/R. Inside, a s^2 + 2 b s + c < 0.
     const auto p = toLeaf(x, y);
     const auto q = toLeaf(ray.aperture[0], ray.aperture[1]);
     const double a = q[0] * q[0] + q[1] * q[1];
@@ -185,7 +185,7 @@ void LeafGaps::place(const std::array<double, 2>& centre, const Stream& of, F dr
   }
 }
 
-/// Rays, as bits, whose light a leaf stops on its way back from a range, m.
+/// Bits of the rays whose light a leaf stops on its way back from a range, m.
 std::uint64_t LeafGaps::shadedAt(double range) const
 {
   std::uint64_t shaded = 0;

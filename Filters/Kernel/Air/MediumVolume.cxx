@@ -12,7 +12,7 @@ namespace avianlidar
 {
 namespace
 {
-/// Above a layer's top, in lengths of its softness, nothing of it is left.
+/// Height above a layer's top, in units of its softness, above which its density counts as 0.
 constexpr double NothingLeft = 60.0;
 
 void addPart(double begin, double end, double density, double fall, double far,
@@ -27,7 +27,7 @@ void addPart(double begin, double end, double density, double fall, double far,
   }
 }
 
-/// Ranges between which the coordinate p + t d lies between two values.
+/// Ranges t between which the coordinate p + t d lies between `low` and `high`.
 std::pair<double, double> between(double p, double d, double low, double high)
 {
   if (d == 0.0)
@@ -48,7 +48,7 @@ void crossLayer(const MediumVolume& layer, const Vec3& from, const Vec3& directi
   addPart(dense.first, dense.second, 1.0, 0.0, far, parts);
   if (layer.softness > 0.0)
   {
-    // A level ray at the top is in the dense part.
+    // A level ray at the top lies in the dense part.
     const auto above = climb == 0.0 && height <= layer.top
       ? std::pair(1.0, 0.0)
       : between(height, climb, layer.top, Infinity);
@@ -62,14 +62,14 @@ void crossLayer(const MediumVolume& layer, const Vec3& from, const Vec3& directi
   }
 }
 
-/// A vector by the half axes of a box or an ellipsoid.
+/// Components of a vector in units of the half axes of a box or an ellipsoid.
 Vec3 byHalfAxes(const MediumVolume& volume, const Vec3& v)
 {
   const auto by = [&](const Vec3& axis) { return glm::dot(v, axis) / glm::dot(axis, axis); };
   return { by(volume.halfAxes[0]), by(volume.halfAxes[1]), by(volume.halfAxes[2]) };
 }
 
-/// Ranges between which a ray lies in a box. @param p, d origin and direction by its half axes
+/// Ranges between which a ray lies in a box. @param p, d origin and direction in half axes
 std::pair<double, double> insideBox(const Vec3& p, const Vec3& d)
 {
   std::pair<double, double> all(-Infinity, Infinity);
@@ -81,10 +81,10 @@ std::pair<double, double> insideBox(const Vec3& p, const Vec3& d)
   return all;
 }
 
-/// The same of an ellipsoid.
+/// Ranges between which a ray lies in an ellipsoid. @param p, d as for a box
 std::pair<double, double> insideEllipsoid(const Vec3& p, const Vec3& d)
 {
-  // From the point nearest to the centre: a far origin takes no digits.
+  // A start at the point nearest to the centre loses no digits to a far origin.
   const double square = glm::dot(d, d);
   const double middle = -glm::dot(p, d) / square;
   const Vec3 nearest = p + middle * d;
@@ -93,13 +93,13 @@ std::pair<double, double> insideEllipsoid(const Vec3& p, const Vec3& d)
   return { middle - half, middle + half };
 }
 
-/// Whether a ray that hits a triangle passes its sides at a distance. @param direction unit vector
+/// True if a ray hits a triangle away from its sides. @param corners relative to the ray's origin
 bool isAmid(const Corners& corners, const Vec3& direction)
 {
   const double a = glm::dot(direction, glm::cross(corners.b, corners.c));
   const double b = glm::dot(direction, glm::cross(corners.c, corners.a));
   const double c = glm::dot(direction, glm::cross(corners.a, corners.b));
-  constexpr double margin = 1e-9; // of the triangle: more than rounding, less than matters
+  constexpr double margin = 1e-9; // share of the triangle; above rounding, too small to matter
   const double least = margin * std::fabs(a + b + c);
   return std::fabs(a) > least && std::fabs(b) > least && std::fabs(c) > least;
 }
@@ -204,13 +204,13 @@ void MediumCrosser::findInSurface(const MediumVolume& volume, const Vec3& origin
   std::sort(this->Hits.begin(), this->Hits.end(),
     [](const Hit& a, const Hit& b)
     { return std::tie(a.range, a.entered) < std::tie(b.range, b.entered); });
-  // Hits on a side that two triangles share are one; those amid two triangles in one place are two.
+  // Hits on a side that two triangles share count once. Hits amid two triangles count each.
   const auto isSame = [](const Hit& a, const Hit& b)
   {
     return a.entered == b.entered && b.range - a.range <= 1e-9 * b.range && !(a.isAmid && b.isAmid);
   };
   this->Hits.erase(std::unique(this->Hits.begin(), this->Hits.end(), isSame), this->Hits.end());
-  int shells = 0; // that enclose the origin
+  int shells = 0; // number of shells about the origin
   for (const Hit& hit : this->Hits)
   {
     shells -= hit.entered;
@@ -270,7 +270,7 @@ bool mayMeet(const MediumVolume& volume, const BeamFrame& frame, double far, dou
   {
     return false;
   }
-  // The cosine of the half-beamwidth and the half of the angle at which the ball appears.
+  // Cosine of the half-beamwidth plus half the angle at which the ball appears.
   const double sine = radius / range;
   const double least = frame.cosHalf * std::sqrt(1.0 - sine * sine) - frame.sinHalf * sine;
   return glm::dot(frame.axis, to) >= (least - 1e-9) * range;

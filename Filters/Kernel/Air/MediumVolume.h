@@ -1,16 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file MediumVolume.h
- * @brief Where a medium is: in a layer, a box, an ellipsoid or a closed surface; and where rays
- * cross it.
+ * @brief Volumes of media (layers, boxes, ellipsoids, closed surfaces), and how rays cross them.
  *
- * A ray crosses a medium in parts. In each the density falls exponentially along the ray: that of a
- * layer falls above its top, that of the others is constant. So the optical depth of a part, and of
- * any piece of it, is a closed form.
+ * A ray crosses a medium in parts. In a part the density is constant or changes exponentially along
+ * the ray. It changes only above the top of a layer. So the optical depth of a part, and of any
+ * piece of it, has a closed form.
  *
  * Source: none.
- * Valid: exact but for rounding. A closed surface is crossed where the tree's triangle test says
- * so; its shells face outward but for holes, as closedShells() turns them, and what they enclose is
+ * Valid: exact up to rounding. The tree's triangle test decides where a ray crosses a closed
+ * surface. Shells face outward, except for holes (closedShells()). The space that they enclose is
  * inside.
  * Test: TestMediumVolume.cxx.
  */
@@ -31,8 +30,8 @@ namespace avianlidar
 enum class MediumShape
 {
   Everywhere = 0,
-  Layer = 1, ///< between two heights, and fading above
-  Box = 2,   ///< parallelepiped with right angles
+  Layer = 1, ///< between two heights, and fading above them
+  Box = 2,   ///< box with right angles, in any orientation
   Ellipsoid = 3,
   Surface = 4 ///< inside a closed surface
 };
@@ -40,51 +39,52 @@ enum class MediumShape
 struct MediumVolume
 {
   MediumShape shape = MediumShape::Everywhere;
-  /// Of box and ellipsoid, and of a box about a closed surface, m. A layer's heights count from it.
+  /// Centre of a box, an ellipsoid or the box about a closed surface, m; zero of a layer's heights.
   Vec3 centre{ 0.0 };
   std::array<Vec3, 3> halfAxes{ Vec3(1.0, 0.0, 0.0), Vec3(0.0, 1.0, 0.0), Vec3(0.0, 0.0, 1.0) };
-  Vec3 up{ 0.0, 0.0, 1.0 };                                 ///< of a layer, unit vector
-  double bottom = -std::numeric_limits<double>::infinity(); ///< of a layer, m
-  double top = 0.0;      ///< of a layer: the height up to which it is dense, m
-  double softness = 0.0; ///< m, by which the density above falls to 1/e; 0: none there
+  Vec3 up{ 0.0, 0.0, 1.0 }; ///< upward direction of a layer, unit vector
+  double bottom = -std::numeric_limits<double>::infinity(); ///< lowest height of a layer, m
+  double top = 0.0;      ///< height up to which a layer is dense, m
+  double softness = 0.0; ///< height above `top` at which the density is 1/e, m; 0: no density there
   std::shared_ptr<const CollisionTree> surface;
-  Vec3 velocity{ 0.0 }; ///< m/s; the volume is here at the time 0
+  Vec3 velocity{ 0.0 }; ///< m/s; the volume has its given place at the time 0
 
   bool isBounded() const { return this->shape >= MediumShape::Box; }
   Vec3 centreAt(double seconds) const { return this->centre + seconds * this->velocity; }
-  /// Radius of the ball about its centre that holds it, m.
+  /// Radius of a ball about the centre that holds a bounded volume, m.
   double radius() const;
 };
 
-/// Part of a ray in a medium, from one range to another, m.
+/// Part of a ray in a medium.
 struct MediumCrossing
 {
-  double begin, end;
-  double density; ///< at the beginning, over that of the medium
-  double fall;    ///< 1/m: exp(-fall (range - begin)) times that
+  double begin, end; ///< ranges, m
+  double density;    ///< relative density at `begin`; 1 where the medium is dense
+  double fall;       ///< 1/m: the density is density exp(-fall (range - begin))
 
-  /// Integral of the density up to a range, m.
+  /// Integral of the relative density from `begin` to a range, m.
   double upTo(double range) const;
   double densityAt(double range) const;
 };
 
-/// Empty, or a sentence that names what is wrong with a volume, and what was expected.
+/// Error that names what is wrong with a volume and what was expected, or an empty text.
 std::string checkVolume(const MediumVolume& volume);
 
-/// Finds crossings. One per thread.
+/// Finds the parts of rays that lie in a volume. One per thread.
 class MediumCrosser
 {
 public:
-  /// Append the parts of a ray up to `far`, m, that lie in a volume. @param direction unit vector
-  /// @param seconds when the ray passes
+  /// Append the parts of a ray that lie in a volume. @param direction unit vector @param far length
+  /// of the ray, m @param seconds time of the ray, s
   void find(const MediumVolume& volume, const Vec3& origin, const Vec3& direction, double far,
     double seconds, std::vector<MediumCrossing>& parts);
 
+  /// Hit of a ray on a closed surface.
   struct Hit
   {
     double range; ///< m
-    int entered;  ///< shells that the ray enters: 1 or -1
-    bool isAmid;  ///< not on a side of the triangle
+    int entered;  ///< 1 if the ray enters the shell, -1 if it leaves it
+    bool isAmid;  ///< true if the hit does not lie on a side of the triangle
   };
 
 private:
@@ -94,14 +94,14 @@ private:
   std::vector<Hit> Hits;
 };
 
-/// Whether a volume is, to each side of its middle, wider than a beam at its far end, so that none
-/// of it lies between the beam's axis and its rim.
+/// True if each half axis of a volume at rest exceeds the beam's width at the volume's far end. It
+/// then fits nowhere between axis and rim. Always true for layers, never for closed surfaces.
 bool isWiderThan(const MediumVolume& volume, const BeamFrame& frame, double far);
 
-/// Whether a border of a volume at rest, or where a layer fades, may lie in a beam: conservative.
+/// True if a border or the fading part of a volume at rest may lie in a beam. Conservative.
 bool mayMeetBorder(const MediumVolume& volume, const BeamFrame& frame, double far);
 
-/// Whether a beam may meet a volume within `far`, m: conservative.
+/// True if a beam may meet a volume within `far`, m. Conservative. @param seconds time, s
 bool mayMeet(const MediumVolume& volume, const BeamFrame& frame, double far, double seconds);
 }
 
