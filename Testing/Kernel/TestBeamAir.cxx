@@ -75,6 +75,51 @@ TEST(BeamAir, UnitsAreLookedAtWhereMediaMayBePerceived)
   EXPECT_EQ(inRain.nextLooked(20), unitAt(100.0));
 }
 
+TEST(BeamAir, AVolumeThatABeamPassesReturnsNothing)
+{
+  // A thin box along a diagonal: the ball about it reaches the beam, the box does not.
+  const Sensor sensor = search905();
+  const BeamFrame frame = makeBeamFrame(Vec3(0.0), Vec3(1.0, 0.0, 0.0), sensor.halfBeamwidth);
+  const std::vector<PlacedMedium> rain = { { rainOf(10.0, 20.0, {}), {} } };
+  std::vector<PlacedMedium> andBox = rain;
+  andBox.push_back({ { 0.15, 11.8, 30.0 }, boxOf(Vec3(100.0, 50.0, 0.0), Vec3(1.0, 40.0, 60.0)) });
+  ASSERT_TRUE(mayMeet(andBox[1].volume, frame, sensor.rangeGate, 0.0));
+  BeamAir alone(sensor, { 0.0, rain });
+  alone.begin(frame, 0.0);
+  BeamAir air(sensor, { 0.0, andBox });
+  const auto expectRain = [&]()
+  {
+    EXPECT_FALSE(air.isLocal());
+    for (const std::int64_t unit : { 3, 20, 70, 300 })
+    {
+      ASSERT_EQ(air.sharesOf(unit).size(), 1u) << unit;
+      EXPECT_EQ(air.sharesOf(unit)[0].mean, alone.sharesOf(unit)[0].mean) << unit;
+    }
+  };
+  air.begin(frame, 0.0);
+  expectRain();
+  air.beginRay(Vec3(0.0), Vec3(1.0, 0.0, 0.0), 0.0);
+  expectRain();
+}
+
+TEST(BeamAir, AVolumeAboutALidarWithoutNearViewIsLookedAtBeyondIt)
+{
+  // Nothing is gathered from range 0, but light remains for later units.
+  Sensor sensor = search905();
+  sensor.minimumRange = 0.0;
+  sensor.overlapRange = 20.0;
+  const BeamFrame frame = makeBeamFrame(Vec3(0.0), Vec3(1.0, 0.0, 0.0), sensor.halfBeamwidth);
+  Medium smoke{ 4e-3, 18.8, 0.0 };
+  smoke.isFollowed = false;
+  BeamAir air(sensor, { 0.0, { { smoke, boxOf(Vec3(0.0), Vec3(200.0)) } } });
+  air.begin(frame, 0.0);
+  for (const std::int64_t unit : { 0, 1, 2, 20 })
+  {
+    EXPECT_EQ(air.nextLooked(unit), unit);
+    air.sharesOf(unit);
+  }
+}
+
 TEST(BeamAir, WhatSurfacesMeetTheAirDoesNotReturn)
 {
   const Sensor sensor = search905();

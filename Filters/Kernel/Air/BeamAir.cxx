@@ -201,7 +201,20 @@ void BeamAir::begin(const BeamFrame& frame, double seconds)
   if (this->Seen.size() > this->Filling.size())
   {
     this->divide(frame);
+    this->beginLocal();
+  }
+}
+
+/// Look for light where the beam crosses volumes, or begin outside if it crosses none.
+void BeamAir::beginLocal()
+{
+  if (this->isLocal())
+  {
     this->findLooked();
+  }
+  else
+  {
+    this->beginOutside();
   }
 }
 
@@ -218,7 +231,7 @@ void BeamAir::beginRay(const Vec3& origin, const Vec3& direction, double seconds
     }
   }
   this->findParts(this->Columns[0], origin, direction);
-  this->findLooked();
+  this->beginLocal();
 }
 
 /// Divide a beam into the columns that its volumes require, and find the parts of each.
@@ -230,7 +243,7 @@ void BeamAir::divide(const BeamFrame& frame)
   for (std::size_t k = this->Filling.size(); k < this->Seen.size(); ++k)
   {
     const MediumVolume& volume = this->All->media[this->Seen[k]].volume;
-    isWide = isWide && isWiderThan(volume, frame, this->Instrument.rangeGate);
+    isWide = isWide && isWiderThan(volume, frame, this->Instrument.rangeGate, this->Seconds);
     isLayered = isLayered && !volume.isBounded() && (!up || *up == volume.up);
     up = &volume.up;
   }
@@ -568,16 +581,22 @@ void BeamAir::takeOne(const MetSurface& surface)
 /// Solid angle of the aperture seen from a range, m, at most 2 pi, times the near range share, sr.
 double BeamAir::gathered(double range) const
 {
-  return this->Instrument.nearRangeShare(range) *
-    std::min(this->Instrument.receiverAperture / (range * range), 2.0 * Pi);
+  return this->Instrument.nearRangeShare(range) * this->collected(range);
+}
+
+/// Solid angle, sr, in which the aperture appears from a range, m.
+double BeamAir::collected(double range) const
+{
+  return std::min(this->Instrument.receiverAperture / (range * range), 2.0 * Pi);
 }
 
 /// Add the light that a column returns from between two ranges, m.
 void BeamAir::addColumn(const Column& column, double from, double to)
 {
   const double before = this->depth(column, from);
+  // What the near range misses does not bound the light from farther ranges.
   const double light =
-    this->MostOfUnit * this->gathered(from) * std::exp(-2.0 * this->Attenuation * from - before);
+    this->MostOfUnit * this->collected(from) * std::exp(-2.0 * this->Attenuation * from - before);
   this->Dark = light > Faint * this->Instrument.lowerEnergyLimit ? this->Gate : this->Dark;
   this->Breaks.assign({ from, to });
   for (const Part& part : this->partsOf(column))
@@ -772,10 +791,7 @@ double BeamAir::returnedBy(const MetLeaf& leaf, const Column& column, double sha
 {
   const double depth = this->sumOver(column,
     [&](const Part& part)
-    {
-      const bool isLeaves = this->mediumOf(part).sharesGaps;
-      return isLeaves ? 0.0 : part.extinction * part.crossing.upTo(leaf.range);
-    });
+    { return part.perLeaf > 0.0 ? 0.0 : part.extinction * part.crossing.upTo(leaf.range); });
   // The mean cosine of the leaves that a ray meets is 2/3.
   return this->Instrument.pulseEnergy * share * column.open * 1.5 * leaf.cosine /
     this->mediumAt(leaf.medium).backscatterRatio * this->gathered(leaf.range) *

@@ -222,6 +222,7 @@ private:
   }
   const Medium& mediumOf(const Part& part) const { return this->mediumAt(this->Seen[part.seen]); }
   void makeMeans();
+  void beginLocal();
   void makeGrid();
   void divide(const BeamFrame& frame);
   bool rimAgrees() const;
@@ -234,6 +235,7 @@ private:
   double depth(const Column& column, double range) const;
   double wayBack(const Column& column, double range) const;
   double gathered(double range) const;
+  double collected(double range) const;
   void takeUpTo(double range);
   void takeOne(const MetSurface& surface);
   void addColumn(const Column& column, double from, double to);

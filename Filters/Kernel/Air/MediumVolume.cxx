@@ -276,9 +276,10 @@ bool mayMeet(const MediumVolume& volume, const BeamFrame& frame, double far, dou
   return glm::dot(frame.axis, to) >= (least - 1e-9) * range;
 }
 
-bool isWiderThan(const MediumVolume& volume, const BeamFrame& frame, double far)
+bool isWiderThan(const MediumVolume& volume, const BeamFrame& frame, double far, double seconds)
 {
-  const double range = std::min(far, safeLength(volume.centre - frame.origin) + volume.radius());
+  const double range =
+    std::min(far, safeLength(volume.centreAt(seconds) - frame.origin) + volume.radius());
   const auto isWide = [&](const Vec3& axis)
   { return safeLength(axis) > 2.0 * frame.tanHalf * range; };
   return volume.shape != MediumShape::Surface &&
@@ -297,8 +298,9 @@ bool mayMeetBorder(const MediumVolume& volume, const BeamFrame& frame, double fa
   }
   const double height = glm::dot(frame.origin - volume.centre, volume.up);
   const double climb = glm::dot(frame.axis, volume.up);
-  const double low = height + far * std::min(0.0, climb - frame.sinHalf);
-  const double high = height + far * std::max(0.0, climb + frame.sinHalf);
+  // The tangent, as the sine alone would be short by an eighth of the half-beamwidth cubed.
+  const double low = height + far * std::min(0.0, climb - frame.tanHalf);
+  const double high = height + far * std::max(0.0, climb + frame.tanHalf);
   const bool isInside = low > volume.bottom && high < volume.top;
   const bool isOutside = high < volume.bottom || low > volume.top + NothingLeft * volume.softness;
   return !isInside && !isOutside;

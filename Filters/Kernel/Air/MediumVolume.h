@@ -94,9 +94,9 @@ private:
   std::vector<Hit> Hits;
 };
 
-/// True if each half axis of a volume at rest exceeds the beam's width at the volume's far end. It
+/// True if each half axis of a volume exceeds the beam's width at the volume's far end. It
 /// then fits nowhere between axis and rim. Always true for layers, never for closed surfaces.
-bool isWiderThan(const MediumVolume& volume, const BeamFrame& frame, double far);
+bool isWiderThan(const MediumVolume& volume, const BeamFrame& frame, double far, double seconds);
 
 /// True if a border or the fading part of a volume at rest may lie in a beam. Conservative.
 bool mayMeetBorder(const MediumVolume& volume, const BeamFrame& frame, double far);
