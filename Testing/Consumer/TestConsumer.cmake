@@ -14,12 +14,17 @@ if (TREE STREQUAL "Install")
   run("${CMAKE_COMMAND}" --install "${BUILD_DIR}" --prefix "${prefix}")
 endif ()
 
-# Only this tree is given: the package finds its VTK itself.
-run("${CMAKE_COMMAND}" -G Ninja -S "${SOURCE_DIR}" -B "${WORK_DIR}/build"
-  "-DCMAKE_PREFIX_PATH=${prefix}")
-file(STRINGS "${WORK_DIR}/build/CMakeCache.txt" found REGEX "^AvianLidar_DIR:")
-if (NOT found MATCHES "=${prefix}(/|$)")
-  message(FATAL_ERROR "Another package was found: ${found}, expected one in ${prefix}")
+if (TREE STREQUAL "Host")
+  run("${CMAKE_COMMAND}" -G Ninja -S "${SOURCE_DIR}" -B "${WORK_DIR}/build"
+    "-DAVIANLIDAR_SOURCE_DIR=${AVIANLIDAR_SOURCE_DIR}" "-DVTK_DIR=${VTK_DIR}")
+else ()
+  # Only this tree is given: the package finds its VTK itself.
+  run("${CMAKE_COMMAND}" -G Ninja -S "${SOURCE_DIR}" -B "${WORK_DIR}/build"
+    "-DCMAKE_PREFIX_PATH=${prefix}")
+  file(STRINGS "${WORK_DIR}/build/CMakeCache.txt" found REGEX "^AvianLidar_DIR:")
+  if (NOT found MATCHES "=${prefix}(/|$)")
+    message(FATAL_ERROR "Another package was found: ${found}, expected one in ${prefix}")
+  endif ()
 endif ()
 run("${CMAKE_COMMAND}" --build "${WORK_DIR}/build")
 set(echoes "${WORK_DIR}/echoes.vtp")
@@ -32,7 +37,7 @@ if (PYTHON_DESTINATION)
   run("${PYTHON}" "${COMPARE}" "${SCENE}" "${echoes}" 10000)
 endif ()
 
-if (PLUGIN)
+if (PLUGIN AND NOT TREE STREQUAL "Host")
   unset(ENV{PYTHONPATH})
   run("${PVPYTHON}" -c
     "from paraview.simple import LoadPlugin\nLoadPlugin('${prefix}/${PLUGIN}', remote=False)")

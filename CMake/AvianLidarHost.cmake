@@ -1,0 +1,18 @@
+# SPDX-License-Identifier: BSD-3-Clause
+# What the module needs where another project builds it with vtk_module_scan() and vtk_module_build(): the kernel and the
+# program that reads mesh files; no tests, no Python package, no plugin.
+
+set(BUILD_TESTING OFF)
+foreach (part IN ITEMS BUILD_PYTHON BUILD_PLUGIN KERNEL_TESTS RENDERING_TESTS BUILD_BENCHMARKS BUILD_FUZZERS)
+  set("AVIANLIDAR_${part}" OFF)
+endforeach ()
+set(PROJECT_SOURCE_DIR "${CMAKE_CURRENT_SOURCE_DIR}")
+file(STRINGS CMakeLists.txt version REGEX "^  VERSION ")
+string(REGEX REPLACE ".* " "" PROJECT_VERSION "${version}")
+list(APPEND CMAKE_MODULE_PATH "${CMAKE_CURRENT_SOURCE_DIR}/CMake")
+include(GNUInstallDirs)
+include(AvianLidarOptions)
+include(AvianLidarDependencies)
+add_subdirectory(Filters/Kernel)
+add_subdirectory(Filters/VolumeTree)
+add_subdirectory(IO/MeshReader)
