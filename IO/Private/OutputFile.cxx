@@ -3,13 +3,14 @@
 
 #include "CloudData.h"
 
+#include <fcntl.h>
 #include <sys/file.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
-#include <utility>
 
 namespace avianlidar::formats
 {
@@ -25,12 +26,6 @@ std::string partOf(const std::string& name, int number)
   return name + ".avianpart" + std::to_string(number);
 }
 
-/// The name of a file that is being replaced, until its partner is replaced, too.
-std::string keptOf(const std::string& name, int number)
-{
-  return partOf(name, number) + "-old";
-}
-
 bool isStillCalled(std::FILE* file, const std::string& name)
 {
   struct stat open = {}, named = {};
@@ -43,7 +38,7 @@ bool lock(std::FILE* file)
   return flock(fileno(file), LOCK_EX | LOCK_NB) == 0;
 }
 
-/// Removes a part, or a kept file, whose writer was killed: nobody holds its lock.
+/// Removes a part whose writer was killed: nobody holds its lock.
 void removeAbandoned(const std::string& part)
 {
   std::error_code ignored;
@@ -66,103 +61,11 @@ void removeAbandoned(const std::string& part)
   }
 }
 
-/// A second name, never one that is there, or a copy where the file system has no links.
-std::error_code linkOrCopy(const std::string& name, const std::string& second)
+/// Exchanges the names of two files; false where the file system cannot do so.
+bool exchangeNames(const std::string& one, const std::string& two)
 {
-  std::error_code problem;
-  fs::create_hard_link(name, second, problem);
-  if (problem && problem != std::errc::file_exists)
-  {
-    fs::copy_file(name, second, problem);
-    if (problem && problem != std::errc::file_exists)
-    {
-      std::error_code ignored;
-      fs::remove(second, ignored); // half a copy
-    }
-  }
-  return problem;
+  return renameat2(AT_FDCWD, one.c_str(), AT_FDCWD, two.c_str(), RENAME_EXCHANGE) == 0;
 }
-
-/// A file that is about to be replaced, kept under another name as long as one lives. It is locked,
-/// or other writers would take it for what a killed one left.
-class KeptFile
-{
-public:
-  KeptFile() = default;
-  ~KeptFile()
-  {
-    if (!this->Kept.empty())
-    {
-      std::remove(this->Kept.c_str());
-    }
-    this->unlock();
-  }
-  KeptFile(const KeptFile&) = delete;
-  KeptFile& operator=(const KeptFile&) = delete;
-
-  /// Keeps that file; false, with errno, if it cannot be kept.
-  bool keep(const std::string& name)
-  {
-    std::error_code problem = std::make_error_code(std::errc::file_exists);
-    for (int i = 0; i < MostParts && problem == std::errc::file_exists; ++i)
-    {
-      const std::string kept = keptOf(name, i);
-      problem = linkOrCopy(name, kept);
-      if (!problem)
-      {
-        this->Kept = kept;
-        if (this->lockKept())
-        {
-          return true;
-        }
-        this->Kept.clear();
-        problem = std::make_error_code(std::errc::file_exists);
-      }
-    }
-    errno = problem.value();
-    return false;
-  }
-
-  /// Gives the file its name again. Where that is not possible it stays, under the name that is
-  /// returned.
-  std::string giveBack(const std::string& name)
-  {
-    const std::string kept = std::exchange(this->Kept, std::string());
-    return std::rename(kept.c_str(), name.c_str()) == 0 ? std::string() : kept;
-  }
-
-private:
-  /// False if another writer took it for abandoned before it was locked.
-  bool lockKept()
-  {
-    errno = 0;
-    this->Lock = std::fopen(this->Kept.c_str(), "rbe");
-    if (!this->Lock)
-    {
-      return errno != ENOENT; // nor can others open it
-    }
-    // Shared: two writers may keep the same file. Some file systems have no locks.
-    flock(fileno(this->Lock), LOCK_SH | LOCK_NB);
-    if (isStillCalled(this->Lock, this->Kept))
-    {
-      return true;
-    }
-    this->unlock();
-    return false;
-  }
-
-  void unlock()
-  {
-    if (this->Lock)
-    {
-      std::fclose(this->Lock);
-      this->Lock = nullptr;
-    }
-  }
-
-  std::string Kept;
-  std::FILE* Lock = nullptr;
-};
 }
 
 OutputFile::OutputFile(const std::string& name)
@@ -192,12 +95,8 @@ OutputFile::~OutputFile()
 {
   if (this->File)
   {
-    std::fclose(this->File);
-  }
-  if (this->Lock)
-  {
     std::remove(this->Part.c_str());
-    std::fclose(this->Lock);
+    std::fclose(this->File);
   }
 }
 
@@ -206,37 +105,27 @@ void OutputFile::openPart()
   for (int i = 0; i < MostParts; ++i)
   {
     removeAbandoned(partOf(this->Name, i));
-    removeAbandoned(keptOf(this->Name, i));
   }
-  for (int i = 0; i < MostParts && !this->Lock; ++i)
+  for (int i = 0; i < MostParts && !this->File; ++i)
   {
     this->Part = partOf(this->Name, i);
     errno = 0;
     // 'x': never somebody else's file.
-    this->Lock = std::fopen(this->Part.c_str(), "wbxe");
-    if (!this->Lock && errno != EEXIST)
+    this->File = std::fopen(this->Part.c_str(), "wbxe");
+    if (!this->File && errno != EEXIST)
     {
       break;
     }
     // Another writer may have taken it for abandoned. Some file systems have no locks.
-    if (this->Lock &&
-      ((!lock(this->Lock) && errno == EWOULDBLOCK) || !isStillCalled(this->Lock, this->Part)))
+    if (this->File &&
+      ((!lock(this->File) && errno == EWOULDBLOCK) || !isStillCalled(this->File, this->Part)))
     {
-      std::fclose(this->Lock);
-      this->Lock = nullptr;
+      std::fclose(this->File);
+      this->File = nullptr;
     }
   }
-  this->File = this->Lock ? std::fopen(this->Part.c_str(), "r+be") : nullptr;
   if (!this->File)
   {
-    const int reason = errno;
-    if (this->Lock)
-    {
-      std::remove(this->Part.c_str());
-      std::fclose(this->Lock);
-      this->Lock = nullptr;
-    }
-    errno = reason;
     this->fail("cannot be opened for writing");
   }
 }
@@ -281,12 +170,12 @@ void OutputFile::commitBoth(OutputFile& first, OutputFile& second)
   second.finish();
   std::error_code ignored;
   const bool replaces = fs::exists(first.Name, ignored);
-  KeptFile kept;
-  if (replaces && !kept.keep(first.Name))
+  // The old file is kept under the name of the part.
+  const bool isKept = replaces && exchangeNames(first.Part, first.Name);
+  if (!isKept)
   {
-    first.fail("the old " + first.Name + " cannot be kept while it is replaced");
+    first.takeName();
   }
-  first.takeName();
   try
   {
     second.takeName();
@@ -297,9 +186,9 @@ void OutputFile::commitBoth(OutputFile& first, OutputFile& second)
     {
       fs::remove(first.Name, ignored);
     }
-    else if (const std::string left = kept.giveBack(first.Name); !left.empty())
+    else if (!isKept || !exchangeNames(first.Part, first.Name))
     {
-      throw FormatError(error.what() + ("; the old " + first.Name + " is now " + left));
+      throw FormatError(error.what() + ("; " + first.Name + " is the new one already"));
     }
     throw;
   }
@@ -308,10 +197,8 @@ void OutputFile::commitBoth(OutputFile& first, OutputFile& second)
 void OutputFile::finish()
 {
   errno = 0;
-  std::FILE* file = this->File;
-  this->File = nullptr;
-  // What was buffered may fail only now.
-  if (std::fclose(file) != 0)
+  // What was buffered may fail only now, and on some file systems when a descriptor is closed.
+  if (std::fflush(this->File) != 0 || close(dup(fileno(this->File))) != 0)
   {
     this->fail("cannot be written to its end");
   }
@@ -324,7 +211,7 @@ void OutputFile::takeName()
   {
     this->fail("cannot be given its name");
   }
-  std::fclose(this->Lock);
-  this->Lock = nullptr;
+  std::fclose(this->File);
+  this->File = nullptr;
 }
 }

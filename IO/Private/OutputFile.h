@@ -43,8 +43,8 @@ public:
   /// Ends the file and gives it its name. A file that had the name leaves it its permissions.
   void commit();
 
-  /// The same for two files: both, or a FormatError and neither. What the first replaces is kept
-  /// beside it, under a part's name and "-old", until the second has its name.
+  /// Commits two files: both, or a FormatError and neither. Where the file system cannot exchange
+  /// two names, the error may say that the first is new already.
   static void commitBoth(OutputFile& first, OutputFile& second);
 
 private:
@@ -56,8 +56,7 @@ private:
 
   std::string Name;
   std::string Part;
-  std::FILE* Lock = nullptr; ///< of the part, until it has its name or is removed
-  std::FILE* File = nullptr;
+  std::FILE* File = nullptr; ///< the part, locked until it has its name or is removed
 };
 }
 

@@ -1,15 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// File system calls of a process that preloads this library. There are no hard links; a copy ends
-// half-way if FAILING_COPY is set; and before a file gets a name that ends with RENAMED_TO, the
-// command BEFORE_RENAME runs, once.
+// File system calls of a process that preloads this library: before a file gets a name that ends
+// with RENAMED_TO, the command BEFORE_RENAME runs, once; where it fails, so does the renaming.
+// Names cannot be exchanged if NO_EXCHANGE is set.
 #include <cerrno>
 #include <cstdio>
 #include <cstdlib>
 #include <string>
 
 #include <dlfcn.h>
-#include <sys/sendfile.h>
-#include <unistd.h>
 
 namespace
 {
@@ -18,36 +16,17 @@ Function* next(Function*, const char* name)
 {
   return reinterpret_cast<Function*>(dlsym(RTLD_NEXT, name));
 }
+}
 
-// One byte gets there.
-ssize_t fillDisk(int out)
+extern "C" int renameat2(
+  int fromFolder, const char* from, int toFolder, const char* to, unsigned int flags) noexcept
 {
-  if (write(out, "x", 1) == 1)
+  if (std::getenv("NO_EXCHANGE"))
   {
-    errno = ENOSPC;
+    errno = EINVAL;
+    return -1;
   }
-  return -1;
-}
-}
-
-extern "C" int link(const char*, const char*) noexcept
-{
-  errno = EPERM;
-  return -1;
-}
-
-extern "C" ssize_t sendfile(int out, int in, off_t* offset, std::size_t count) noexcept
-{
-  return std::getenv("FAILING_COPY") ? fillDisk(out)
-                                     : next(sendfile, "sendfile")(out, in, offset, count);
-}
-
-extern "C" ssize_t copy_file_range(
-  int in, off64_t* from, int out, off64_t* to, std::size_t count, unsigned int flags)
-{
-  return std::getenv("FAILING_COPY")
-    ? fillDisk(out)
-    : next(copy_file_range, "copy_file_range")(in, from, out, to, count, flags);
+  return next(renameat2, "renameat2")(fromFolder, from, toFolder, to, flags);
 }
 
 extern "C" int rename(const char* from, const char* to) noexcept
