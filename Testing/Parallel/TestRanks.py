@@ -66,6 +66,14 @@ def with_tree(surfaces):
     return tree
 
 
+def with_tree_output(surfaces):
+    """All surfaces as one vtkPolyData, made by a tree of this rank alone."""
+    tree = with_tree(surfaces)
+    tree.SetController(None)
+    tree.Update()
+    return tree.GetOutput()
+
+
 def test_everybody_has_all():
     """Trees of all kinds; a choice of threads of each rank's own changes nothing, and keeps nobody waiting."""
     echo = together(TOWN, NumberOfThreads=RANK % 2)
@@ -197,6 +205,21 @@ def test_one_surface_in_pieces():
         assert part.HasAnyGhostCells() == bool(ghosts)
         for pipeline in (lambda data: data, with_tree):
             check(together(pipeline(part)), expected, () if RANKS == 1 else ("scene_checksum",))
+
+
+def test_triangles_of_one_surface_in_turn():
+    """Each rank has every RANKS-th triangle of a town; all others are ghosts there."""
+    surface = vtk.vtkPolyData()
+    surface.DeepCopy(with_tree_output(TOWN))
+    surface.GetFieldData().RemoveArray("tree_checksum")
+    expected = alone(surface)
+    ghosts = vtk.vtkUnsignedCharArray()
+    ghosts.SetName(vtk.vtkDataSetAttributes.GhostArrayName())
+    for i in range(surface.GetNumberOfCells()):
+        ghosts.InsertNextValue(0 if interleaved(i) else vtk.vtkDataSetAttributes.DUPLICATECELL)
+    surface.GetCellData().AddArray(ghosts)
+    for pipeline in (lambda data: data, with_tree):
+        check(together(pipeline(surface)), expected, () if RANKS == 1 else ("scene_checksum",))
 
 
 def test_field_data_of_one_rank():

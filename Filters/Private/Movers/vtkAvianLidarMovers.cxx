@@ -422,7 +422,7 @@ std::string vtkAvianLidarMovers::ReadAll(
     return problem;
   }
   const vtkAvianLidarSurfaces merged =
-    vtkAvianLidarSurfaces::Merge(leaves, input->GetFieldData(), nullptr, 1);
+    vtkAvianLidarSurfaces::Merge(leaves, input->GetFieldData(), nullptr, 1, true);
   if (!merged.problem.empty())
   {
     return merged.problem;

@@ -267,7 +267,7 @@ try
         }
         else if (scene.changed)
         {
-          result = vtkAvianLidarSurfaces::Merge(scene.leaves, this->Fields, &known, share);
+          result = vtkAvianLidarSurfaces::Merge(scene.leaves, this->Fields, &known, share, false);
         }
         else if (&result != &known)
         {

@@ -51,7 +51,7 @@ std::string CheckMaterials(vtkPolyData* poly, const vtkAvianLidarSurfaceArrays& 
       {
         good = material;
       }
-      else if (cells->GetCellSize(i) >= 3 && !(arrays.ghosts && arrays.ghosts->GetValue(cell)))
+      else if (cells->GetCellSize(i) >= 3 && !arrays.IsGhost(cell))
       {
         return "cell " + std::to_string(cell) + ": " + wrong;
       }

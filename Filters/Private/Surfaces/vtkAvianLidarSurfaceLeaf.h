@@ -10,6 +10,7 @@
 
 #include "vtkDataArray.h"
 #include "vtkSmartPointer.h"
+#include "vtkUnsignedCharArray.h"
 
 #include <cstddef>
 #include <iterator>
@@ -18,7 +19,6 @@
 
 class vtkDataObject;
 class vtkPolyData;
-class vtkUnsignedCharArray;
 
 /// The cell arrays of a leaf; null where it has none.
 struct vtkAvianLidarSurfaceArrays
@@ -34,6 +34,8 @@ struct vtkAvianLidarSurfaceArrays
 
   /// True if there are coefficients, given that Check() finds nothing wrong.
   bool HasMaterials() const { return this->coefficients[0] != nullptr; }
+
+  bool IsGhost(vtkIdType cell) const { return this->ghosts && this->ghosts->GetValue(cell); }
 
   /// All but ghosts.
   std::vector<vtkDataArray*> Numbers() const;

@@ -70,8 +70,8 @@ std::string vtkAvianLidarSurfaces::WarningOnCoincidence(
   }
   const std::string more =
     pairs.size() > shown ? " and " + std::to_string(pairs.size() - shown) + " more" : "";
-  return "surfaces: faces coincide, so that their order alone decides which is seen: " + list +
+  return "surfaces: faces coincide, so that their object ids alone decide which is seen: " + list +
     more +
-    ". The triangle with the lower number is seen, that of the surface that comes first. Remove "
-    "one of the two, or move it by a millimetre or more.";
+    ". The face of the object with the lower id is seen. Remove one of the two, or move it by a "
+    "millimetre or more.";
 }

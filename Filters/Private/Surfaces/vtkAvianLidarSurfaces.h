@@ -30,8 +30,9 @@ struct vtkAvianLidarSurfaceLeaf;
 struct vtkAvianLidarSurfaces
 {
   std::shared_ptr<const avianlidar::TriangleMesh> mesh;
-  std::uint64_t checksum = 0; ///< of the mesh
-  std::uint64_t geometry = 0; ///< hash of points, cells and ghost cells of the input
+  std::uint64_t checksum = 0;                    ///< of the mesh
+  std::uint64_t geometry = 0;                    ///< hash of the input apart from its materials
+  avianlidar::SharedVector<std::uint32_t> order; ///< of triangles (TriangleOrder.h), or as given
   avianlidar::SharedVector<avianlidar::Material> materials; ///< one per triangle
   avianlidar::SharedVector<int> objectIds;                  ///< one per triangle
   avianlidar::SharedVector<int> materialIds;                ///< one per triangle
@@ -43,21 +44,22 @@ struct vtkAvianLidarSurfaces
   {
     std::size_t begin, end; ///< [begin, end)
   };
-  std::vector<Range> leaves; ///< triangles of each leaf
+  std::vector<Range> leaves; ///< triangles of each leaf, as long as these keep their order
   std::string problem;       ///< what is wrong with the input, and where
   std::string warning;       ///< suspicious but usable: to be said once per scene
 
-  /// Merge every vtkPolyData of `input` (itself or the leaves of a composite) in leaf order.
-  /// Ghost cells, vertices and lines are skipped; polygons and strips are triangulated.
+  /// Merge every vtkPolyData of `input` (itself or the leaves of a composite). Triangles are sorted
+  /// (TriangleOrder.h), so that surfaces give the same echoes however they are divided. Ghost
+  /// cells, vertices and lines are skipped; polygons and strips are triangulated.
   /// @param known an earlier result, may be null: its mesh, materials and ids are shared where the
   /// values are the same @param threads that check the leaves, > 0, or 0 for all
   static vtkAvianLidarSurfaces Merge(
     vtkDataObject* input, const vtkAvianLidarSurfaces* known = nullptr, int threads = 0);
 
-  /// The same of leaves that were collected already. @param fields that come with all of them, may
-  /// be null
+  /// Merge leaves that were collected already. @param fields that come with all of them, may be
+  /// null @param keepsOrder if true, triangles are in the order of leaves and cells
   static vtkAvianLidarSurfaces Merge(const std::vector<vtkAvianLidarSurfaceLeaf>& leaves,
-    vtkFieldData* fields, const vtkAvianLidarSurfaces* known = nullptr, int threads = 0);
+    vtkFieldData* fields, const vtkAvianLidarSurfaces* known, int threads, bool keepsOrder);
 
   /// The same as one vtkPolyData: double points, triangles, ids and coefficients, names and
   /// `fields` besides, if not null.

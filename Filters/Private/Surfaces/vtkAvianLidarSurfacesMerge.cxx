@@ -2,7 +2,9 @@
 #include "vtkAvianLidarSurfaces.h"
 
 #include "AABB.h"
+#include "Hash.h"
 #include "ParallelLoop.h"
+#include "TriangleOrder.h"
 #include "vtkAvianLidarCells.h"
 #include "vtkAvianLidarContent.h"
 #include "vtkAvianLidarMaterials.h"
@@ -10,6 +12,7 @@
 #include "vtkAvianLidarNames.h"
 #include "vtkAvianLidarSurfaceIds.h"
 #include "vtkAvianLidarSurfaceLeaf.h"
+#include "vtkAvianLidarSurfaceState.h"
 
 #include "vtkFieldData.h"
 #include "vtkPoints.h"
@@ -53,8 +56,9 @@ class Merger
 public:
   vtkAvianLidarSurfaces Result;
 
-  explicit Merger(int threads)
+  Merger(int threads, bool keepsOrder)
     : Threads(threads)
+    , KeepsOrder(keepsOrder)
   {
   }
 
@@ -71,11 +75,7 @@ public:
       return;
     }
     this->Ids.Begin(fields, leaves);
-    for (std::size_t i = 0; i < leaves.size(); ++i)
-    {
-      this->Result.geometry = vtkAvianLidarContent::HashOf(this->Arrays[i].ghosts,
-        vtkAvianLidarContent::HashOfGeometry(leaves[i].data, this->Result.geometry));
-    }
+    this->Result.geometry = this->HashOfGeometry(leaves, fields);
     this->MeshIsKnown = known && known->mesh && known->geometry == this->Result.geometry;
     this->Reserve(leaves);
     for (std::size_t i = 0; i < leaves.size(); ++i)
@@ -96,6 +96,7 @@ public:
 
 private:
   const int Threads;
+  const bool KeepsOrder;
   std::vector<Material> Materials;
   std::vector<int> ObjectIds;
   std::vector<int> MaterialIds;
@@ -105,6 +106,22 @@ private:
   vtkAvianLidarSurfaceIds Ids;
   std::vector<vtkAvianLidarSurfaceArrays> Arrays; ///< of the leaves
   vtkIdType WithoutMaterial = 0;
+
+  /// Hash of everything that the mesh and the order of its triangles depend on.
+  std::uint64_t HashOfGeometry(const std::vector<Leaf>& leaves, vtkFieldData* fields) const
+  {
+    std::uint64_t hash = vtkAvianLidarSurfaceState::HashOfNames(fields, 0);
+    for (std::size_t i = 0; i < leaves.size(); ++i)
+    {
+      hash = avianlidar::hashOf(leaves[i].name.data(), leaves[i].name.size(), hash);
+      hash = vtkAvianLidarSurfaceState::HashOfNames(leaves[i].data->GetFieldData(), hash);
+      hash = vtkAvianLidarContent::HashOfGeometry(leaves[i].data, hash);
+      hash = vtkAvianLidarContent::HashOf(this->Arrays[i].ghosts, hash);
+      hash = vtkAvianLidarContent::HashOf(this->Arrays[i].object, hash);
+      hash = vtkAvianLidarContent::HashOf(this->Arrays[i].material, hash);
+    }
+    return hash;
+  }
 
   /// @return false if something is wrong with the input
   bool Check(const std::vector<Leaf>& leaves)
@@ -181,6 +198,19 @@ private:
   /// The result from what was gathered of all leaves.
   void Finish(const vtkAvianLidarSurfaces* known)
   {
+    if (this->MeshIsKnown)
+    {
+      this->Result.order = known->order;
+    }
+    else if (!this->KeepsOrder)
+    {
+      this->Result.order =
+        avianlidar::triangleOrder(*this->Mesh, this->ObjectIds, this->MaterialIds);
+      avianlidar::reorder(this->Mesh->triangles, this->Result.order);
+    }
+    avianlidar::reorder(this->Materials, this->Result.order);
+    avianlidar::reorder(this->ObjectIds, this->Result.order);
+    avianlidar::reorder(this->MaterialIds, this->Result.order);
     this->Result.mesh = this->MeshIsKnown ? known->mesh : this->Mesh;
     this->Result.checksum = this->MeshIsKnown ? known->checksum : this->Mesh->checksum();
     this->Result.materials = std::move(this->Materials);
@@ -313,15 +343,65 @@ private:
     return true;
   }
 
+  /// From the ids of a leaf's cells to those of the scene, given in ascending order of the former:
+  /// the order of cells does not count.
+  class Renumbering
+  {
+  public:
+    /// @param ids may be null: all have the id `none` @param idOf id in the scene of an id
+    template <class F>
+    Renumbering(const vtkAvianLidarSurfaceArrays& arrays, vtkDataArray* ids, int none,
+      vtkIdType cells, F idOf)
+      : Ids(ids)
+      , None(none)
+      , Last(Scene.end())
+    {
+      for (vtkIdType cell = 0; cell < cells; ++cell)
+      {
+        const int id = this->IdOf(cell);
+        if (!arrays.IsGhost(cell) && (this->Scene.empty() || id != this->Last->first))
+        {
+          this->Last = this->Scene.emplace(id, 0).first;
+        }
+      }
+      for (auto& [id, inScene] : this->Scene)
+      {
+        inScene = idOf(id);
+      }
+    }
+    int operator[](vtkIdType cell)
+    {
+      const int id = this->IdOf(cell);
+      this->Last = id == this->Last->first ? this->Last : this->Scene.find(id);
+      return this->Last->second;
+    }
+
+  private:
+    int IdOf(vtkIdType cell) const
+    {
+      return this->Ids ? static_cast<int>(this->Ids[cell]) : this->None;
+    }
+    const Column Ids;
+    const int None;
+    std::map<int, int> Scene;
+    std::map<int, int>::iterator Last; ///< of the last cell: most have the id of the one before
+  };
+
   void AddCells(const Leaf& leaf, vtkPolyData* poly, const vtkAvianLidarSurfaceArrays& arrays)
   {
-    LeafWalk walk(arrays);
+    const vtkIdType cells = poly->GetNumberOfPolys();
+    const bool hasMaterials = arrays.HasMaterials();
+    const vtkAvianLidarMaterialColumns coefficients(arrays);
+    std::size_t objects = 0;
+    Renumbering objectIds(arrays, arrays.object, 0, cells,
+      [&](int id) { return this->Ids.AddObject(leaf, poly, id, objects++); });
+    Renumbering materialIds(arrays, arrays.material, -1, hasMaterials ? cells : 0,
+      [&](int id) { return this->Ids.MaterialOf(poly, id); });
     const auto add = [&](const auto* ids, vtkIdType)
     {
-      const vtkIdType cells = poly->GetNumberOfPolys();
       for (vtkIdType cell = 0; cell < cells; ++cell, ids += 3)
       {
-        if (arrays.ghosts && arrays.ghosts->GetValue(cell))
+        if (arrays.IsGhost(cell))
         {
           continue;
         }
@@ -331,80 +411,13 @@ private:
             this->FirstPoint + static_cast<std::uint32_t>(ids[1]),
             this->FirstPoint + static_cast<std::uint32_t>(ids[2]) });
         }
-        this->AddMaterial(poly, walk, cell);
-        this->AddObject(leaf, poly, walk, cell);
+        coefficients.Read(cell, this->Materials.emplace_back(NamedMaterials[0].material));
+        this->ObjectIds.push_back(objectIds[cell]);
+        this->MaterialIds.push_back(hasMaterials ? materialIds[cell] : 0);
+        this->WithoutMaterial += !hasMaterials;
       }
     };
     vtkAvianLidarPointIds(poly->GetPolys(), add);
-  }
-
-  /// Of the cells of one leaf: their arrays, and what the last of them had, as most have what the
-  /// one before had.
-  struct LeafWalk
-  {
-    explicit LeafWalk(const vtkAvianLidarSurfaceArrays& arrays)
-      : hasMaterials(arrays.HasMaterials())
-      , coefficients(arrays)
-      , materialId(arrays.material)
-      , objectId(arrays.object)
-    {
-    }
-    const bool hasMaterials;
-    const vtkAvianLidarMaterialColumns coefficients;
-    const Column materialId, objectId;
-    std::map<int, int> objects;   ///< from ids of the leaf to those of the scene
-    std::map<int, int> materials; ///< likewise
-    bool first = true;
-    Material material;
-    int localMaterial = 0;
-    int globalMaterial = 0;
-    int localObject = 0;
-    int globalObject = 0;
-  };
-
-  void AddMaterial(vtkPolyData* poly, LeafWalk& walk, vtkIdType cell)
-  {
-    Material& material = this->Materials.emplace_back(NamedMaterials[0].material);
-    int id = 0;
-    if (walk.hasMaterials)
-    {
-      walk.coefficients.Read(cell, material);
-      const int local = walk.materialId ? static_cast<int>(walk.materialId[cell]) : -1;
-      const bool same = !walk.first && material == walk.material && local == walk.localMaterial;
-      if (!same)
-      {
-        const auto found = walk.materials.find(local);
-        walk.globalMaterial = found != walk.materials.end()
-          ? found->second
-          : (walk.materials[local] = this->Ids.MaterialOf(poly, local));
-        walk.material = material;
-        walk.localMaterial = local;
-      }
-      id = walk.globalMaterial;
-    }
-    else
-    {
-      ++this->WithoutMaterial;
-    }
-    this->MaterialIds.push_back(id);
-  }
-
-  void AddObject(const Leaf& leaf, vtkPolyData* poly, LeafWalk& walk, vtkIdType cell)
-  {
-    const int local = walk.objectId ? static_cast<int>(walk.objectId[cell]) : 0;
-    if (walk.first || local != walk.localObject)
-    {
-      auto found = walk.objects.find(local);
-      if (found == walk.objects.end())
-      {
-        const int global = this->Ids.AddObject(leaf, poly, local, walk.objects.size());
-        found = walk.objects.emplace(local, global).first;
-      }
-      walk.localObject = local;
-      walk.globalObject = found->second;
-      walk.first = false;
-    }
-    this->ObjectIds.push_back(walk.globalObject);
   }
 };
 }
@@ -415,15 +428,15 @@ vtkAvianLidarSurfaces vtkAvianLidarSurfaces::Merge(
 {
   vtkAvianLidarSurfaces bad;
   const std::vector<Leaf> leaves = Leaf::Collect(input, bad.problem);
-  return bad.problem.empty() ? Merge(leaves, input->GetFieldData(), known, threads) : bad;
+  return bad.problem.empty() ? Merge(leaves, input->GetFieldData(), known, threads, false) : bad;
 }
 
 //------------------------------------------------------------------------------
 vtkAvianLidarSurfaces vtkAvianLidarSurfaces::Merge(
   const std::vector<vtkAvianLidarSurfaceLeaf>& leaves, vtkFieldData* fields,
-  const vtkAvianLidarSurfaces* known, int threads)
+  const vtkAvianLidarSurfaces* known, int threads, bool keepsOrder)
 {
-  Merger merger(threads);
+  Merger merger(threads, keepsOrder);
   merger.Run(leaves, fields, known);
   return std::move(merger.Result);
 }

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "TriangleOrder.h"
 #include "vtkAvianLidarArrays.h"
 #include "vtkAvianLidarCells.h"
 #include "vtkAvianLidarMaterials.h"
@@ -10,6 +11,9 @@
 #include "vtkPolyData.h"
 
 #include <algorithm>
+#include <cstdint>
+#include <type_traits>
+#include <vector>
 
 namespace
 {
@@ -29,14 +33,27 @@ vtkSmartPointer<vtkPoints> MakePoints(const avianlidar::TriangleMesh& mesh)
 vtkSmartPointer<vtkPolyData> vtkAvianLidarSurfaces::ToPolyData(vtkFieldData* fields) const
 {
   namespace Arrays = vtkAvianLidarArrays;
+  // Cells come in the order of the input.
+  std::vector<std::uint32_t> given(this->order.size());
+  for (std::uint32_t i = 0; i < given.size(); ++i)
+  {
+    given[this->order[i]] = i;
+  }
+  const auto asGiven = [&](const auto& values)
+  {
+    std::vector<std::decay_t<decltype(values[0])>> ordered(values.begin(), values.end());
+    avianlidar::reorder(ordered, given);
+    return ordered;
+  };
   auto poly = vtkSmartPointer<vtkPolyData>::New();
   poly->SetPoints(MakePoints(*this->mesh));
-  poly->SetPolys(vtkAvianLidarMakeTriangles(this->mesh->triangles));
+  poly->SetPolys(vtkAvianLidarMakeTriangles(asGiven(this->mesh->triangles)));
   vtkCellData* cells = poly->GetCellData();
-  cells->AddArray(Arrays::MakeOf<vtkIntArray>(Arrays::ObjectId, this->objectIds));
-  cells->AddArray(Arrays::MakeOf<vtkIntArray>(Arrays::MaterialId, this->materialIds));
+  cells->AddArray(Arrays::MakeOf<vtkIntArray>(Arrays::ObjectId, asGiven(this->objectIds)));
+  cells->AddArray(Arrays::MakeOf<vtkIntArray>(Arrays::MaterialId, asGiven(this->materialIds)));
   vtkAvianLidarMaterials::AddCoefficients(cells, static_cast<vtkIdType>(this->materials.size()),
-    [&](vtkIdType i) -> const avianlidar::Material& { return this->materials[i]; });
+    [&](vtkIdType i) -> const avianlidar::Material&
+    { return this->materials[given.empty() ? i : given[i]]; });
   if (fields)
   {
     poly->GetFieldData()->PassData(fields);

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file TriangleOrder.h
+ * @brief An order of triangles that does not depend on the order in which they are given.
+ *
+ * Ties between coincident faces and the rounding of sums depend on the order of triangles. In this
+ * order a surface gives the same echoes however it is divided among files, blocks or processes.
+ * Triangles are sorted by object and, within an object, by the place of the middle of their longest
+ * side on a Morton curve: neighbours in space are neighbours in memory, and the halves of a
+ * rectangle, which share that side, follow each other (BeamTriangles.h joins them).
+ *
+ * Source: G. M. Morton, A Computer Oriented Geodetic Data Base, IBM, 1966.
+ * Differs: 21 bits an axis; triangles in one place of the curve are ordered by that middle, by
+ * their corners, and equal ones by material.
+ * Valid: finite coordinates. Triangles that are equal in all of this keep their order.
+ * Test: TestTriangleOrder.cxx.
+ */
+#ifndef avianlidar_TriangleOrder_h
+#define avianlidar_TriangleOrder_h
+
+#include "TriangleMesh.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <vector>
+
+namespace avianlidar
+{
+/// Numbers of the triangles in that order; empty if they have it already.
+/// @param objectIds one per triangle @param materialIds likewise
+std::vector<std::uint32_t> triangleOrder(
+  const TriangleMesh& mesh, const std::vector<int>& objectIds, const std::vector<int>& materialIds);
+
+/// Elements of a vector in an order by triangleOrder(); an empty order leaves them as they are.
+template <class T, class Order>
+void reorder(std::vector<T>& values, const Order& order)
+{
+  const auto isFirst = [&](const T& value) { return value == values.front(); };
+  if (order.empty() || std::all_of(values.begin(), values.end(), isFirst))
+  {
+    return;
+  }
+  std::vector<T> sorted;
+  sorted.reserve(order.size());
+  for (const std::uint32_t i : order)
+  {
+    sorted.push_back(values[i]);
+  }
+  values.swap(sorted);
+}
+}
+
+#endif
