@@ -19,16 +19,11 @@ def cover(surfaces, places=None, controller=CONTROLLER):
     filter_.SetController(controller)
     beams = al.vtkAvianLidarBeamSource()
     beams.SetPresetToSearch905()
-    beams.SetAzimuthRange(0.0, 90.0)
-    beams.SetAzimuthStep(0.5)
-    beams.SetPosition(0.0, 0.0, 2.0)
+    echotools.given(beams, AzimuthRange=(0.0, 90.0), AzimuthStep=0.5, Position=(0.0, 0.0, 2.0))
     filter_.SetInputConnection(0, beams.GetOutputPort())
     filter_.SetInputData(1, surfaces)
-    filter_.SetNumberOfThreads(1)
-    filter_.SetBounds(0.0, 400.0, 0.0, 400.0, 0.0, 40.0)
-    filter_.SetSpacing(40.0, 40.0, 10.0)
-    filter_.SetSpecies("")
-    filter_.SetEffectiveArea(0.003)  # m2: quicker than birds
+    echotools.given(filter_, NumberOfThreads=1, Bounds=(0.0, 400.0, 0.0, 400.0, 0.0, 40.0), Spacing=(40.0, 40.0, 10.0), Species="",
+                    EffectiveArea=0.003)  # m2: quicker than birds
     if places is not None:
         filter_.SetInputData(2, places)
     return filter_

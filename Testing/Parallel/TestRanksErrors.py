@@ -134,9 +134,9 @@ def test_settings_that_differ():
 def test_beams_of_two_sensors():
     source = echotools.sensor()
     source.Update()
-    whole = faulttools.copy(source.GetOutput())
-    part = faulttools.copy(update(source).GetOutput())
-    other = faulttools.copy(part)
+    whole = echotools.copy_of(source.GetOutput())
+    part = echotools.copy_of(update(source).GetOutput())
+    other = echotools.copy_of(part)
     other.GetFieldData().GetArray("pulse_energy").SetValue(0, 1e-4)
     echo = echotools.scan(TOWN, whole, **SETTINGS)
     messages = echotools.Messages(echo)

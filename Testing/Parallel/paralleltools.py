@@ -125,11 +125,7 @@ COSTS = echotools.COSTS
 
 def assert_same(found, expected):
     """The same arrays, bit for bit; costs may differ."""
-    assert found.keys() == expected.keys(), (sorted(found), sorted(expected))
-    for name in found:
-        a, b = found[name], expected[name]
-        assert a.shape == b.shape and a.dtype == b.dtype, (name, a.shape, b.shape, a.dtype, b.dtype)
-        assert name in COSTS or a.tobytes() == b.tobytes(), f"{name} differs"
+    echotools.assert_same(found, expected, COSTS)
 
 
 def field_texts(data, without=()):

@@ -55,8 +55,7 @@ def said(work):
 def run(path, active=None):
     """What ParaView does with a macro: runs the text, with `__file__`."""
     simple.SetActiveSource(active)
-    with open(path, encoding="utf-8") as file:
-        code = compile(file.read(), path, "exec")
+    code = compile(pathlib.Path(path).read_text(encoding="utf-8"), path, "exec")
     return said(lambda: exec(code, {"__name__": "__main__", "__file__": path}))
 
 
@@ -250,10 +249,6 @@ class Macros(Case):
         times = pathlib.Path(folder, "times.txt")
         times.write_text("0\n0.5\n", encoding="utf-8")
         reader = simple.OpenDataFile(str(times))
-        self.assertEqual(list(reader.TimestepValues), [0, 0.5])
-        for k, time in enumerate((0, 0.5)):
-            reader.UpdatePipeline(time)
-            self.assertEqual(reader.GetDataInformation().GetNumberOfPoints(), k + 1)
         simple.Show(reader, self.view)
         self.assertEqual(run(CLASSES, reader), "")
         self.assertEqual(list(simple.GetDisplayProperties(reader, self.view).ColorArrayName), ["POINTS", "semantic_label"])

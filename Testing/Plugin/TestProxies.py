@@ -16,6 +16,7 @@ from vtkmodules.vtkCommonCore import reference, vtkDataArray
 from vtkmodules.vtkCommonExecutionModel import vtkPolyDataAlgorithm
 
 from plugin_testing import SOURCE_DIR, load_plugin
+from echotools import box, scan, sensor  # by the path that plugin_testing adds
 
 SENSOR_FOLDER = os.path.join(SOURCE_DIR, "Filters", "Sensors")
 # Each sensor that is built in is a source of its own: that of its file.
@@ -32,8 +33,6 @@ OTHER_NAMES = {"MeteorologicalVisibility": "Visibility", "ObjectName": "NameOfOb
 # Properties with any number of values: the method that counts them, the one that gives them.
 LISTS = {"ChannelElevations": ("GetNumberOfChannelElevations", "GetChannelElevation"), "HeightLimits": ("GetNumberOfHeightLimits", "GetHeightLimit")}
 FREE_TEXTS = ("GivenFileName", "ObjectName", "BlockNamePattern", "Species", "Name", "SensorAddress")
-WORDS_OF_UNITS = {"m": "metres", "deg": "degrees", "rad": "radians", "mrad": "milliradians", "mm/h": "millimetres", "Hz": "hertz", "s": "seconds",
-                  "J": "joules", "m2": "square metres", "nm": "nanometres", "dB": "decibels", "W": "watts"}
 
 
 def made(name):
@@ -97,24 +96,16 @@ def overridden():
     own.update({"NumberOfConnections": 3, "ReflectanceModel": 1, "Noise": 0, "ReturnMode": 1, "Seed": 5})
     amounts = {"Visibility", "AttenuationCoefficient", "RainRate", "MaximumCacheSize", "NumberOfThreads", "ReportMovers", "Preset"}
     switches = sorted(pairs(module.vtkAvianLidarEchoFilter()) - amounts - {*own})
-    plane = simple.Plane()
     found = set()
     for value in (0, 1):
         settings = {**own, **dict.fromkeys(switches, value)}
-        for preset in ("Draft", "Standard", "Reference"):
-            beams = simple.AvianLidarBeamSource(AzimuthStep=90)
-            echoes = simple.AvianLidarEchoFilter(Beams=beams, Surfaces=plane, Preset=preset)
-            for prop, setting in settings.items():
-                echoes.SMProxy.GetProperty(prop).SetElement(0, setting)
-            echoes.SMProxy.UpdateVTKObjects()
-            echoes.UpdatePipeline()
+        for preset in (1, 2, 3):
+            echoes = scan(box((50, 0, 0), (1, 60, 10), "Wall"), sensor(4, 1), **settings, Preset=preset)
+            echoes.Update()
             for prop, setting in settings.items():
                 snake = re.sub("(?<!^)(?=[A-Z])", "_", prop).lower()
-                if echoes.FieldData[snake].GetRange(0)[0] != setting:
+                if echoes.GetOutput().GetFieldData().GetArray(snake).GetComponent(0, 0) != setting:
                     found.add(prop)
-            simple.Delete(echoes)
-            simple.Delete(beams)
-    simple.Delete(plane)
     return found
 
 
@@ -255,7 +246,7 @@ class TestProxies(unittest.TestCase):
         return {smproxy.GetPropertyName(group.GetProperty(j)): group.GetXMLLabel() for group in groups for j in range(group.GetNumberOfProperties())}
 
     def test_units_are_those_of_the_data(self):
-        """In the heading of the group, and in words in the help, where field data say the unit."""
+        """In the heading of the group, where field data say the unit."""
         found = 0
         for name, proxy in self.proxies.items():
             groups = self.groups_of(name)
@@ -274,7 +265,6 @@ class TestProxies(unittest.TestCase):
                     with self.subTest(f"{name}.{prop}", unit=unit):
                         found += 1
                         self.assertIn(unit, re.search(r"\((.*)\)$", heading)[1].split(", "))
-                        self.assertIn(WORDS_OF_UNITS.get(unit, unit), text_of(proxy.SMProxy.GetProperty(prop).GetDocumentation().GetDescription()))
         self.assertGreater(found, 100)
 
     def test_what_a_preset_overrides_is_hidden_and_nothing_else(self):
@@ -352,17 +342,10 @@ class TestProxies(unittest.TestCase):
                 instance, proxy = made(name), self.proxies[name]
                 instance.Update()
                 proxy.UpdatePipeline()
-                ours, theirs = instance.GetOutput(), servermanager.Fetch(proxy)
-                for kind in ("GetPointData", "GetFieldData"):
-                    ours_of, theirs_of = getattr(ours, kind)(), getattr(theirs, kind)()
-                    self.assertEqual(ours_of.GetNumberOfArrays(), theirs_of.GetNumberOfArrays())
-                    for i in range(ours_of.GetNumberOfArrays()):
-                        one = ours_of.GetAbstractArray(i)
-                        other = theirs_of.GetAbstractArray(one.GetName())
-                        values = [[array.GetVariantValue(k).ToString() if array.IsA("vtkStringArray") else array.GetTuple(k)
-                                   for k in range(0, array.GetNumberOfTuples(), max(1, array.GetNumberOfTuples() // 50))]
-                                  for array in (one, other)]
-                        self.assertEqual(*values, one.GetName())
+                ours, theirs = avianlidar.Cloud(instance.GetOutput()), avianlidar.Cloud(servermanager.Fetch(proxy))
+                self.assertEqual({**ours, **theirs}.keys(), ours.keys() & theirs.keys())
+                self.assertTrue(all(ours[array].tobytes() == theirs[array].tobytes() for array in ours))
+                self.assertEqual(repr(theirs.fields), repr(ours.fields))
 
     def test_output_ports_are_named(self):
         for name, proxy in self.proxies.items():
@@ -406,17 +389,7 @@ class TestProxies(unittest.TestCase):
                                        ("Places", coverage, (plain, image), (multiblock,))):
             self.assertEqual([fits(port, source, proxy) for source in (*good, *bad)], [True] * len(good) + [False] * len(bad), port)
 
-    def test_what_a_panel_shows_first_and_what_opens_a_file(self):
-        tracks, shown = simple.AvianLidarTracks(), {}
-        for name in ("NumberOfBirds", "Center", "Heights", "Radius", "ThresholdPosition", "ThresholdHeading", "FileName"):
-            one = tracks.SMProxy.GetProperty(name).GetHints().FindNestedElementByName("PropertyWidgetDecorator")
-            shown[name] = one.GetAttribute("value") or one.GetAttribute("values")
-        self.assertEqual(shown, {"NumberOfBirds": "0 1 2 3", "Center": "0 1 2", "Heights": "0 1 2", "Radius": "0 1 2 3",
-                                 "ThresholdPosition": "3", "ThresholdHeading": "3", "FileName": "4"})
-        cover = simple.AvianLidarCoverage()
-        first = {n for n in cover.ListProperties() if cover.SMProxy.GetProperty(n).GetPanelVisibility() == "default"}
-        self.assertEqual(first, set("Beams Surfaces Places Bounds Spacing Species Reflectance EffectiveArea MeteorologicalVisibility "
-                                    "RequiredDetections NumberOfScans HeightLimits".split()))
+    def test_what_opens_a_file(self):
         factory = simple.AvianLidarPointCloudReader(FileName="x.pcd").SMProxy.GetHints().FindNestedElementByName("ReaderFactory")
         self.assertEqual({"." + one for one in factory.GetAttribute("extensions").split()}, set(_suffixes.READERS))
 

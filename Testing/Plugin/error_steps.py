@@ -27,8 +27,7 @@ WRITTEN = ("las", "pcd", "csv")  # ours keep a good file by themselves, ParaView
 def write_scene(width=200):
     """A ground of a width, m; without one a file that is not a scene."""
     ground = {"ground": {"size": width, "height": -1}, "material": "wall", "name": "ground"}
-    with open(SCENE, "w", encoding="utf-8") as file:
-        file.write(json.dumps({"version": 1, "objects": [ground]}) if width else "{")
+    pathlib.Path(SCENE).write_text(json.dumps({"version": 1, "objects": [ground]}) if width else "{", encoding="utf-8")
 
 
 class Pipeline:

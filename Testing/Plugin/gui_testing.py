@@ -4,6 +4,7 @@
 import contextlib
 import json
 import os
+import pathlib
 import shutil
 import signal
 import socket
@@ -53,8 +54,7 @@ def display(width, height):
 
 
 def text_of(file_name):
-    with open(file_name, encoding="utf-8", errors="replace") as file:
-        return file.read()
+    return pathlib.Path(file_name).read_text(encoding="utf-8", errors="replace")
 
 
 @contextlib.contextmanager
@@ -103,8 +103,7 @@ def run_script(paraview, name, size, arguments, timeout=TIMEOUT, **environment):
                 assert process.poll() is None and "Traceback" not in said, said[-2000:]
                 assert time.monotonic() - start < timeout, "the script does not come to its end"
                 time.sleep(0.2)
-    with open(results, encoding="utf-8") as file:
-        found = json.load(file)
+    found = json.loads(pathlib.Path(results).read_text(encoding="utf-8"))
     assert not found["error"], found["error"]
     assert "critical:" not in text_of(log_name), text_of(log_name)  # of Qt; errors of the plugin are looked at by the script
     return found

@@ -2,13 +2,12 @@
 """What the tests of the plugin share."""
 
 import os
+import sys
 
 import avianlidar.vtkAvianLidar as module
-import numpy
 from paraview import servermanager, simple
 from vtkmodules.vtkImagingCore import vtkImageDifference
 from vtkmodules.vtkIOImage import vtkPNGReader, vtkPNGWriter
-from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkParallelCore import vtkDummyController, vtkMultiProcessController
 
 PLUGIN = os.environ["AVIANLIDAR_PLUGIN"]
@@ -18,8 +17,9 @@ SCENE = os.path.join(SOURCE_DIR, "Examples", "airport", "scene", "hongqiao.lidar
 
 THRESHOLD = 15  # image error
 
-# What a run costs, not what it finds.
-COSTS = ("candidates", "nodes_visited", "rays_traced")
+sys.path.insert(0, os.path.join(SOURCE_DIR, "Testing", "Python"))
+import echotools  # noqa: E402
+from echotools import assert_same  # noqa: E402,F401  # for the tests
 
 
 def load_plugin():
@@ -38,31 +38,12 @@ def airport(columns=960, **settings):
 
 def arrays_of(dataset):
     """Points and point arrays of a data set by name, sorted by (beam_id, return_number), without costs."""
-    data = dataset.GetPointData()
-    arrays = {
-        data.GetArrayName(i): vtk_to_numpy(data.GetArray(i)).copy()
-        for i in range(data.GetNumberOfArrays())
-        if data.GetArrayName(i) not in COSTS
-    }
-    if dataset.GetNumberOfPoints():
-        arrays["points"] = vtk_to_numpy(dataset.GetPoints().GetData()).copy()
-    keys = [arrays[name] for name in ("return_number", "beam_id") if name in arrays]
-    order = numpy.lexsort(keys)
-    return {name: values[order] for name, values in arrays.items()}
+    return {name: values.copy() for name, values in echotools.arrays(dataset).items() if name not in echotools.COSTS}
 
 
 def fetch(source, port=0):
     """The output of a proxy as sorted arrays in this process."""
     return arrays_of(servermanager.Fetch(source, idx=port))
-
-
-def assert_same(one, other):
-    """The same arrays, bit for bit."""
-    assert sorted(one) == sorted(other), (sorted(one), sorted(other))
-    for name in one:
-        a, b = one[name], other[name]
-        assert a.dtype == b.dtype and a.shape == b.shape, (name, a.dtype, b.dtype, a.shape, b.shape)
-        assert a.tobytes() == b.tobytes(), f"{name} differs in {numpy.count_nonzero(a != b)} values"
 
 
 def direct_echoes(columns):

@@ -1,9 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """`avianlidar airport`: extracts and terrains that the tests write, areas and heights against closed forms, an ellipsoid's curve,
 edits that stay, extracts that are wrong; extracts of real airports, where the data folder is there."""
-import contextlib
-import csv
-import io
 import json
 import os
 import pathlib
@@ -19,9 +16,11 @@ from osgeo import gdal, osr
 
 import avianlidar as al
 import exampletools
+import helpertools
+import scenetools
 from avianlidar import siting
 from avianlidar._cloud import field_values
-from avianlidar._command import main, parser
+from avianlidar._command import parser
 from avianlidar.apps import _airport as airport
 from avianlidar.apps._maps import coordinate_system
 
@@ -41,13 +40,8 @@ def fresh(name):
 
 def run(*words):
     """The exit code of the command, and what it says on both streams."""
-    out, err = io.StringIO(), io.StringIO()
-    with contextlib.redirect_stdout(out), contextlib.redirect_stderr(err):
-        try:
-            code = main([str(word) for word in words])
-        except SystemExit as stop:
-            code = stop.code
-    return code, out.getvalue() + err.getvalue()
+    code, *said = helpertools.run(*words)
+    return code, "".join(said)
 
 
 class Map:
@@ -170,20 +164,13 @@ def blocks(folder):
 
 def plan_area(triangles):
     """Of the sides that are seen from above, m2."""
-    a, b = (triangles[:, i, :2] - triangles[:, 0, :2] for i in (1, 2))
-    area = 0.5 * (a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0])
+    area = scenetools.normals(triangles)[:, 2]
     return area[area > 1e-9].sum()
 
 
 def is_closed(triangles):
-    """Whether each edge has two sides."""
-    points = np.round(triangles.reshape(-1, 3), 3)
-    _, ids = np.unique(points, axis=0, return_inverse=True)
-    ids = ids.reshape(-1, 3)
-    edges = np.concatenate([ids[:, [0, 1]], ids[:, [1, 2]], ids[:, [2, 0]]])
-    edges = edges[edges[:, 0] != edges[:, 1]]
-    forth, back = (sorted(map(tuple, way.tolist())) for way in (edges, edges[:, ::-1]))
-    return forth == back
+    """Whether each edge has two sides, of corners in whole millimetres."""
+    return scenetools.is_closed(np.round(triangles, 3))
 
 
 def write_heights(name, heights, low, spacing, driver="GTiff"):
@@ -222,8 +209,7 @@ class Extracts(unittest.TestCase):
         # The ground curves: a point at the far end of the fence lies lower.
         low = found["Fence"][1][:, :, 2].min()
         self.assertAlmostEqual(low, -(900**2 + 400**2) / 2 / 6.37e6, delta=0.02)
-        with open(folder / "assumed.csv", encoding="utf-8", newline="") as stream:
-            assumed = {(row[0], row[3]): row[4] for row in list(csv.reader(stream))[1:]}
+        assumed = {(row[0], row[3]): row[4] for row in (list(row.values()) for row in helpertools.rows_of(folder / "assumed.csv"))}
         self.assertEqual(assumed[("building", "height")], "8.0")
         self.assertEqual(assumed[("runway", "width")], "45.0")
         self.assertNotIn(("hangar", "height"), assumed)

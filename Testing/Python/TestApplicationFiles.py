@@ -1,13 +1,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Files and folders of the applications (sequence, coverage, siting, report): names that become file names, what is read, one
 run in a folder, files that are whole or as they were, and folders that go on with the same inputs only."""
-import contextlib
 import errno
 import gzip
-import io
 import json
 import os
-import pathlib
 import resource
 import shutil
 import signal
@@ -20,14 +17,14 @@ import unittest.mock
 import numpy as np
 
 import avianlidar as al
-from avianlidar._command import main
 from avianlidar._disk import only_run
 from avianlidar.apps import _maps, _report
 from avianlidar.apps._pictures import draw
 from osgeo import gdal
+import helpertools
+from exampletools import emptied
 from reporttools import quick
 
-OUTPUT = pathlib.Path(os.environ.get("AVIANLIDAR_TEST_OUTPUT_DIR", "/tmp")) / "applications"
 ORIGIN = (0.0, 0.0, 0.0)
 SCENE = {"version": 1, "origin": {"latitude": 0, "longitude": 0, "height": 0}, "lidar": {"position": [5, -8, 3]}, "objects": [
     {"name": "Ground", "class": "ground", "ground": {"size": 4000, "height": 0}, "material": "Wall"},
@@ -68,9 +65,7 @@ def child(program, *arguments, **options):
 
 def run(*arguments):
     """The command, here. @return its status, what it says to the error stream"""
-    with contextlib.redirect_stderr(io.StringIO()) as said, contextlib.redirect_stdout(io.StringIO()):
-        status = main([str(argument) for argument in arguments])
-    return status, said.getvalue()
+    return helpertools.run(*arguments)[::2]
 
 
 def tree(folder):
@@ -81,9 +76,7 @@ def tree(folder):
 class Applications(unittest.TestCase):
     def setUp(self):
         self.enterContext(quick())
-        self.home = OUTPUT / self.id().rpartition(".")[2]
-        shutil.rmtree(self.home, ignore_errors=True)
-        self.home.mkdir(parents=True)
+        self.home = emptied("applications", self.id().rpartition(".")[2])
         (self.home / "board.obj").write_text(BOARD)
         self.write("s.lidarscene.json", SCENE)
         self.write("runways.geojson", {"type": "FeatureCollection", "features": [RUNWAY]})

@@ -11,8 +11,8 @@ from vtk.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray, vtk_to
 from avianlidar import _properties, vtkAvianLidar as al
 from avianlidar._scene import COEFFICIENTS
 from cloudtools import add_array, cloud, echoes
-from echotools import InFolder, Messages, assert_same_bits, box, scan, sensor, town
-from faulttools import INF, NAN, PLACE_OF_VALUE, algorithms, beams, copy, make, spoil, surfaces
+from echotools import InFolder, Messages, assert_same_bits, box, given, sensor, town
+from faulttools import INF, NAN, PLACE_OF_VALUE, algorithms, beams, copy_of, make, spoil, surfaces
 
 NOTHING = (0, 0)
 
@@ -123,7 +123,7 @@ class Arrays(Faults):
     def test_clouds_that_formats_cannot_hold(self):
         data = cloud(np.zeros((5, 3)))
         for colours, words in ((np.zeros((5, 4), "u1"), "4 components"), (np.zeros((5, 3)), "double"), (np.zeros((2, 3), "u1"), "2")):
-            bad = copy(data)
+            bad = copy_of(data)
             add_array(bad, "rgb", colours)
             for name in ("LAS", "PCD"):
                 self.fails(make(name + "Writer", FileName="x"), [bad], "'rgb'.*" + words)
@@ -145,7 +145,11 @@ class Properties(Faults):
                               "AttenuationCoefficient": (-1e-9,), "ReflectanceModel": (4,), "NumberOfReflections": (0, 3),
                               "LightEnergyFraction": (-1e-9, 1.1e8), "LightEnergyThreshold": (-1, 2), "ReturnMode": (-1, 5),
                               "NumberOfConnections": (-1,), "BatchCollisionDetection": (3,), "MaximumCacheSize": (-1,)},
-               "CollisionTree": {"SplitRule": (4,), "BoundingVolume": (-1,), "MaximumLeafSize": (0,)}}
+               "CollisionTree": {"SplitRule": (4,), "BoundingVolume": (-1,), "MaximumLeafSize": (0,)},
+               "Tracker": {"ClusterAngle": (30.0,), "RangeError": (0.0,), "MotionModel": (2,), "GateProbability": (1.0,),
+                           "ConfirmHits": (5,), "KeepTime": (-1.0,)},
+               "ClutterFilter": {"Window": (0.5,), "WarmUp": (-1,)}, "CloudComparison": {"ChamferAlpha": (0.0, 2e6)},
+               "GeodeticTransform": {"UTMZone": (61,)}, "Tracks": {"Pattern": (6,), "NumberOfBirds": (100001,), "Radius": (-1.0,)}}
 
     def test_every_property(self):
         """NaN is refused by each; beyond its range, each says its own name."""
@@ -201,9 +205,7 @@ class Properties(Faults):
         loud, units = sensor(36, 2), sensor(36, 2)
         for source, values in ((loud, {"NoisePhotonRate": 1e15, "SamplingInterval": 1e-11, "PulseWidth": 0, "LowerEnergyLimit": 1e-18}),
                                (units, {"SamplingInterval": 1e-12, "PulseWidth": 1e-9, "RangeGate": 1e5})):
-            for name, value in values.items():
-                getattr(source, "Set" + name)(value)
-            source.Update()
+            given(source, **values).Update()
         self.fails(make("EchoFilter"), [loud.GetOutput(), surfaces()], "false alarms")
         echo = make("EchoFilter", RaysPerBeam=100000)
         self.fails(echo, [units.GetOutput(), surfaces()], "pulse_width", "RaysPerBeam", "range units")

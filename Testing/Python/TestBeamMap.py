@@ -3,7 +3,6 @@
 import unittest
 
 import numpy as np
-import vtk
 
 import echotools
 from avianlidar import vtkAvianLidar as al
@@ -26,9 +25,9 @@ def image_of(echo, beams):
 class BeamMap(unittest.TestCase):
     def test_report_has_the_labels_of_its_beams(self):
         """And angles of beams that have no labels."""
-        lidar, beams = echotools.sensor(), vtk.vtkPolyData()
+        lidar = echotools.sensor()
         lidar.Update()
-        beams.DeepCopy(lidar.GetOutput())
+        beams = echotools.copy_of(lidar.GetOutput())
         echo = echotools.scan(TOWN, beams)
         echo.Update()
         for name in LABELS:

@@ -1,23 +1,17 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What a beam sees: closed forms, VTK's cell locator on the airport, movers, and what is refused."""
+"""What a beam sees: closed forms, movers, and what is refused. Shares of many triangles are TestVisiblePolygons's (kernel)."""
 import math
-import os
 import unittest
 
 import numpy as np
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
-from vtkmodules.vtkCommonCore import mutable
-from vtkmodules.vtkCommonDataModel import vtkStaticCellLocator
 from vtkmodules.vtkFiltersCore import vtkAppendPolyData
 
 import avianlidar as al
-import exampletools
 from avianlidar.vtkAvianLidar import vtkAvianLidarBeamSource, vtkAvianLidarBeamView, vtkAvianLidarTracks
-from echotools import Messages, array, scan
+from echotools import Messages, array, given, scan
 
-AIRPORT = os.path.join(exampletools.EXAMPLES, "airport", "scene", "hongqiao.lidarscene.json")
 HALF = 5.6e-3  # rad
-RAYS = 3000
 
 
 def plate(x0, x1, distance, object_id, kd=0.5, z=40.0):
@@ -41,13 +35,7 @@ def both(*plates):
 
 def north(**properties):
     """One beam, level to the north."""
-    source = vtkAvianLidarBeamSource()
-    source.SetNumberOfChannels(1)
-    source.SetAzimuthRange(0, 1)
-    source.SetAzimuthStep(1)
-    for name, value in properties.items():
-        getattr(source, "Set" + name)(value)
-    return source
+    return given(vtkAvianLidarBeamSource(), NumberOfChannels=1, AzimuthRange=(0, 1), AzimuthStep=1, **properties)
 
 
 def look(source, surfaces, beam=0, movers=None):
@@ -120,68 +108,12 @@ class ClosedForms(unittest.TestCase):
         self.assertTrue(near < rows(view)[0]["nearest_m"] < 99.8 and 100.2 < rows(view)[0]["farthest_m"] < far)
 
 
-class Airport(unittest.TestCase):
-    def test_against_the_cell_locator(self):
-        """The beams of mixed echoes: shares of the solid angle are those of rays that VTK follows."""
-        scene = al.load_scene(AIRPORT)
-        source = vtkAvianLidarBeamSource()
-        source.SetPosition(0, 0, 3)
-        seen = al.Scan(scene, al.Sensor("Airport16", position=(0, 0, 3)), noise=False)
-        beams = np.array(seen["beam_id"])[np.argsort(seen["label_share"], kind="stable")]
-        mesh = scene.tree.GetOutput()
-        locator = vtkStaticCellLocator()
-        locator.SetDataSet(mesh)
-        locator.BuildLocator()
-        objects = vtk_to_numpy(mesh.GetCellData().GetArray("object_id"))
-        random = np.random.default_rng(1)
-        found, view = 0, look(source, mesh)
-        for beam in beams[:100]:
-            view.SetBeamId(int(beam))
-            view.Update()
-            shares = by_object(view, "solid_angle_share")
-            self.assertAlmostEqual(sum(shares.values()), 1.0, delta=1e-9)
-            if found == 2 or len(shares) < 3:
-                continue
-            found += 1
-            cone = view.GetOutputDataObject(1)
-            ring = vtk_to_numpy(cone.GetPoints().GetData())[1:] - cone.GetPoint(0)
-            axis = ring.mean(axis=0) / np.linalg.norm(ring.mean(axis=0))
-            hits = rays_of(locator, np.array(cone.GetPoint(0)), axis, HALF, random, RAYS)
-            for thing, share in shares.items():
-                counted = np.count_nonzero(hits < 0) if thing == -1 else np.count_nonzero(objects[hits[hits >= 0]] == thing)
-                error = 4 * math.sqrt(max(share * (1 - share), 1e-4) / RAYS) + 2e-3
-                self.assertAlmostEqual(share, counted / RAYS, delta=error, msg=(beam, thing))
-        self.assertEqual(found, 2)
-
-
-def rays_of(locator, apex, axis, half, random, count):
-    """The cells that rays, uniform in the solid angle of a cone, hit first; -1: none."""
-    side = np.cross(axis, [0, 0, 1.0])
-    side /= np.linalg.norm(side)
-    up = np.cross(side, axis)
-    cosine = 1 - random.random(count) * (1 - math.cos(half))
-    turn = 2 * math.pi * random.random(count)
-    sine = np.sqrt(1 - cosine**2)
-    ways = cosine[:, None] * axis + sine[:, None] * (np.cos(turn)[:, None] * side + np.sin(turn)[:, None] * up)
-    found = np.full(count, -1)
-    t, sub, cell, x, p = mutable(0.0), mutable(0), mutable(0), [0.0] * 3, [0.0] * 3
-    for i, way in enumerate(ways):
-        if locator.IntersectWithLine(apex, apex + 5000.0 * way, 0.0, t, x, p, sub, cell):
-            found[i] = int(cell)
-    return found
-
-
 class Movers(unittest.TestCase):
     def test_a_bird_before_a_wall(self):
-        tracks = vtkAvianLidarTracks()
+        tracks = given(vtkAvianLidarTracks(), NumberOfBirds=40, Center=(0, 0, 0), Radius=60, Heights=(3, 6))
         tracks.SetPatternToCircles()
-        tracks.SetNumberOfBirds(40)
-        tracks.SetCenter(0, 0, 0)
-        tracks.SetRadius(60)
-        tracks.SetHeights(3, 6)
-        source = vtkAvianLidarBeamSource()
+        source = given(vtkAvianLidarBeamSource(), Position=(0, 0, 3))
         source.SetPresetToSearch905()
-        source.SetPosition(0, 0, 3)
         wall = plate(-900, 900, 500, 3, z=200)
         echoes = scan(wall, source)
         echoes.SetInputConnection(2, tracks.GetOutputPort())

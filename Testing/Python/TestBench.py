@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Predictions held against labels: counts by hand, thresholds and curves by brute force, tracks lost, files and their errors."""
-import csv
 import itertools
 import json
 import os
@@ -14,6 +13,7 @@ import avianlidar as al
 from avianlidar import _command
 from avianlidar.apps import _bench
 from avianlidar.apps._bench import Bench, Points
+from helpertools import rows_of
 
 OUTPUT = pathlib.Path(os.environ.get("AVIANLIDAR_TEST_OUTPUT_DIR", "/tmp")) / "bench"
 BIRD, WALL, CAR = 99, 50, 252
@@ -155,8 +155,7 @@ class Files(unittest.TestCase):
         page = (out / "bench.html").read_text()
         self.assertIn("The first 2 scans", page)
         self.assertEqual(page.count("data:image/png"), 1)
-        with open(out / "bench.csv", newline="", encoding="utf-8") as stream:
-            rows = {(row["predictions"], row["by"], row["group"], row["score"]): row for row in csv.DictReader(stream)}
+        rows = {(row["predictions"], row["by"], row["group"], row["score"]): row for row in rows_of(out / "bench.csv")}
         row = rows["noisy", "all", "", "recall at 1 false point a scan"]
         values = []
         for number in ("00", "01"):
@@ -168,8 +167,7 @@ class Files(unittest.TestCase):
         self.assertAlmostEqual(float(row["value"]), np.mean(values), places=5)
         self.assertEqual(int(row["sequences"]), 2)
         self.assertNotIn(("noisy", "species", "crow", "IoU"), rows)
-        with open(out / "curves.csv", newline="", encoding="utf-8") as stream:
-            self.assertEqual(len(list(csv.DictReader(stream))), 2 * len(_bench.RECALLS))
+        self.assertEqual(len(rows_of(out / "curves.csv")), 2 * len(_bench.RECALLS))
 
     def test_several_sets_and_another_class_of_birds(self):
         labels = write_set(OUTPUT / "second", bird_class=259, sequences=1)

@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The report card of tracks: scores of tracks made by hand, times of points, bad input, small sequences as a whole, work that goes on."""
-import csv
 import json
 import shutil
 import unittest
@@ -14,6 +13,7 @@ from avianlidar.apps._following import ORIGINS, Input, Live, Scorer
 from avianlidar.apps.siting import Runway
 from boxfiles import CORNERS, LOW, TRIANGLES, stl
 from exampletools import emptied
+from helpertools import rows_of
 from reporttools import quick
 
 BIRD, CLUTTER, VEHICLE = (ORIGINS.index(name) for name in ("bird", "surface", "vehicle"))
@@ -158,15 +158,10 @@ class Files(unittest.TestCase):
     def tracks(cls, *inputs, **settings):
         return al.BirdTracks(inputs or [cls.made], **{"runways": cls.home / "runways.geojson", "learning_scans": 3, **settings})
 
-    @staticmethod
-    def table(file):
-        with open(file, newline="", encoding="utf-8") as stream:
-            return list(csv.DictReader(stream))
-
     def test_times_of_points(self):
         """A point's time is that of the beam that it lies on: those of birds lie between the truth's first and last time."""
         of, checked = Input(self.made, "made"), 0
-        truth = {(int(r["scan"]), int(r["bird"])): r for r in self.table(self.made / "sequences/01/truth.csv") if r["x_m"]}
+        truth = {(int(r["scan"]), int(r["bird"])): r for r in rows_of(self.made / "sequences/01/truth.csv") if r["x_m"]}
         for scan, start, points, placed, times, labels in of.scans("01"):
             self.assertTrue(((times >= 1e6 * start) & (times < 1e6 * (start + 2.0))).all())
             np.testing.assert_allclose(np.linalg.norm(points, axis=1), np.linalg.norm(placed - of.sensor.position, axis=1), atol=1e-3)
@@ -182,20 +177,20 @@ class Files(unittest.TestCase):
         self.assertGreater(checked, 20)
 
     def test_birds_are_tracked(self):
-        scores = {r["score"]: r for r in self.table(self.out / "card.csv") if r["by"] == "all"}
+        scores = {r["score"]: r for r in rows_of(self.out / "card.csv") if r["by"] == "all"}
         self.assertGreater(float(scores["birds tracked"]["value"]), 0.4)
         self.assertGreater(float(scores["birds tracked"]["std_error"]), 0.0)
         self.assertLess(float(scores["OSPA distance"]["value"]), 20.0)
-        birds = self.table(self.out / "birds.csv")
+        birds = rows_of(self.out / "birds.csv")
         self.assertEqual(int(scores["birds tracked"]["count"]), len(birds))
         self.assertEqual(float(scores["birds tracked"]["value"]), sum(bool(b["found_s"]) for b in birds) / len(birds))
         # Positions of tracks lie at birds, to the errors of a beam.
-        truth = {(int(r["scan"]), int(r["bird"])): r for k in "01" for r in self.table(self.made / f"sequences/0{k}/truth.csv") if r["x_m"]}
-        states = [s for s in self.table(self.out / "tracks.csv") if s["bird"] != "-1"]
+        truth = {(int(r["scan"]), int(r["bird"])): r for k in "01" for r in rows_of(self.made / f"sequences/0{k}/truth.csv") if r["x_m"]}
+        states = [s for s in rows_of(self.out / "tracks.csv") if s["bird"] != "-1"]
         off = [np.hypot(*(float(s[n]) - float(truth[int(s["scan"]), int(s["bird"])][n]) for n in ("x_m", "y_m"))) for s in states]
         self.assertGreater(len(off), 20)
         self.assertLess(np.median(off), 2.0)
-        groups = [r for r in self.table(self.out / "card.csv") if r["by"] == "species" and r["score"] == "birds tracked"]
+        groups = [r for r in rows_of(self.out / "card.csv") if r["by"] == "species" and r["score"] == "birds tracked"]
         self.assertEqual(sum(int(r["count"]) for r in groups), len(birds))
 
     def test_page(self):
@@ -225,7 +220,7 @@ class Files(unittest.TestCase):
                               "1", "--weather", "fog:2000", "--tracker-set", "confirm_hits=2"])
         self.assertIn(code, (None, 0))
         self.assertTrue((out / "sequences/small-Search1550/manifest.json").is_file())
-        weathers = {(r["input"], r["group"]) for r in self.table(out / "card.csv") if r["by"] == "weather"}
+        weathers = {(r["input"], r["group"]) for r in rows_of(out / "card.csv") if r["by"] == "weather"}
         self.assertEqual(weathers, {(f"small-{name}", "visibility 2000 m") for name in ("Search905", "Search1550")})
         self.assertNotIn("Warning", (out / "card.html").read_text(encoding="utf-8"))  # without runways
 

@@ -1,13 +1,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The command: every verb does what the classes do, a mesh is a scene, errors are one line with exit status 2, a bar is drawn on
 a terminal and nowhere else, and manual page and completion are the parser's. Formats are tested where their readers and writers are."""
-import contextlib
-import io
 import os
 import pathlib
 import re
 import shlex
-import shutil
 import subprocess
 import sys
 import unittest
@@ -16,8 +13,10 @@ import unittest.mock
 import numpy as np
 
 import avianlidar as al
+import exampletools
 from avianlidar import _command, reach
 from boxfiles import CORNERS, TRIANGLES, poly_data, stl
+import helpertools
 from helpertools import from_terminal
 
 SOURCE = pathlib.Path(os.environ["AVIANLIDAR_SOURCE_DIR"])
@@ -31,20 +30,14 @@ FEW = ("--sensor-set", "azimuth_step=1.875")  # beams: 3,072
 
 def run(*arguments):
     """(exit status, lines of output, lines of errors) of the command."""
-    out, err = io.StringIO(), io.StringIO()
-    with contextlib.redirect_stdout(out), contextlib.redirect_stderr(err):
-        try:
-            code = _command.main([str(argument) for argument in arguments])
-        except SystemExit as end:
-            code = end.code
-    return code, out.getvalue().splitlines(), err.getvalue().splitlines()
+    code, *said = helpertools.run(*arguments)
+    return code, *(stream.splitlines() for stream in said)
 
 
 class Verbs(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        shutil.rmtree(OUTPUT, ignore_errors=True)
-        OUTPUT.mkdir(parents=True)
+        exampletools.emptied("command")
         cls.files = {kind: OUTPUT / f"echoes.{kind}" for kind in (*CLOUDS, "png")}
         outs = [word for file in cls.files.values() for word in ("-o", file)]
         cls.ran = run("scan", SCENE, "--sensor", "search-905", *FEW, "--sensor-set", "range_gate=3000", "--scan-set", "seed=3", *outs)

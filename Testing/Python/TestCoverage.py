@@ -53,32 +53,12 @@ class FreeSpace(unittest.TestCase):
                 self.assertLess(far, threshold, (preset, number))
                 self.assertAlmostEqual(here / threshold, 1.0, delta=0.02)
 
-    def test_tracks_follow_the_binomial_law(self):
-        cover = al.Coverage(al.Scene(NOTHING, material="Wall"), al.Sensor("Search905"), **TARGET,
-                            places=[(0, r, 10) for r in range(300, 800, 20)], required_detections=3, number_of_scans=5)
-        p, track = cover["detection_probability"].astype(float), cover["track_probability"]
-        self.assertGreater(np.count_nonzero((p > 0.05) & (p < 0.95)), 5)
-        wanted = sum(math.comb(5, k) * p ** k * (1 - p) ** (5 - k) for k in (3, 4, 5))
-        np.testing.assert_allclose(track, wanted, atol=1e-6)
-
     def test_a_height_limit_more(self):
         cover = al.Coverage(al.Scene(WALL, material="Wall"), al.Sensor("Search905"), **TARGET, places=[(0, 200, 1)],
                             clutter=False, height_limits=[])
         self.assertEqual(len(cover.table), 1)
         cover.algorithm.AddHeightLimit(0.0)
         self.assertEqual(len(cover.table), 2)
-
-    def test_table_of_tracks_and_of_weighted_shares(self):
-        places = np.array([(0, r * math.cos(e), r * math.sin(e)) for e in np.radians((1, 3, 40)) for r in range(100, 1500, 40)])
-        cover = al.Coverage(al.Scene(NOTHING, material="Wall"), al.Sensor("Search905"), **TARGET, places=places,
-                            clutter=False, height_limits=[])
-        track, row, z = cover["track_probability"], cover.table[-1], places[:, 2]
-        self.assertAlmostEqual(row["track_probability"], track.mean(), delta=1e-6)
-        self.assertAlmostEqual(row["track_std_error"], track.std(ddof=1) / math.sqrt(len(track)), delta=1e-6)
-        cover.set(strike_height_weights=True)
-        weight = np.where(z <= 152.4, 0.74 / 152.4, 0.26 * 0.001265 * np.exp(-0.001265 * (z - 152.4)))
-        np.testing.assert_allclose([v for n, v in cover.table[-1].items() if n.startswith("share_")],
-                                   np.bincount(cover["status"], weights=weight, minlength=8) / weight.sum(), atol=1e-3)
 
     def test_the_same_filter_for_a_bird_that_glides(self):
         def made(gliding):
@@ -152,20 +132,23 @@ class Airport(unittest.TestCase):
         strips = np.isin(np.arange(len(self.points)), self.regions["strips"])[::20]
         places, heights = self.points[::20], self.points[::20, 2]
         cover = self.cover("Search905", al.places_of(places, {"strips": np.flatnonzero(strips), "approaches": np.flatnonzero(~strips)}))
-        p = cover["detection_probability"]
+        p, track = cover["detection_probability"], cover["track_probability"]
         rows = {(r["region"], r["species"], r["height_from"]): r for r in cover.table}
         for region, where in (("strips", strips), ("approaches", ~strips), ("all", strips | ~strips)):
             for low, high in ((0.0, 15.0), (60.0, 150.0), (-np.inf, np.inf)):
-                chosen = p[where & (heights >= low) & (heights < high)]
-                if not len(chosen):
+                chosen = where & (heights >= low) & (heights < high)
+                if not chosen.any():
                     continue
                 row = rows[region, "herring gull", low]
-                self.assertEqual(row["places"], len(chosen))
-                self.assertAlmostEqual(row["detection_probability"], chosen.mean(), delta=1e-6)
-                self.assertAlmostEqual(row["detection_std_error"], chosen.std(ddof=1) / math.sqrt(len(chosen)), delta=1e-6)
+                self.assertEqual(row["places"], chosen.sum())
+                for name, values in (("detection", p[chosen]), ("track", track[chosen])):
+                    self.assertAlmostEqual(row[f"{name}_probability"], values.mean(), delta=1e-6)
+                    self.assertAlmostEqual(row[f"{name}_std_error"], values.std(ddof=1) / math.sqrt(len(values)), delta=1e-6)
         cover.set(strike_height_weights=True)
         weight = np.where(heights <= 152.4, 0.74 / 152.4, 0.26 * 0.001265 * np.exp(-0.001265 * (heights - 152.4)))
         self.assertAlmostEqual(cover.table[-1]["detection_probability"], np.average(p, weights=weight), delta=1e-3)
+        np.testing.assert_allclose([v for n, v in cover.table[-1].items() if n.startswith("share_")],
+                                   np.bincount(cover["status"], weights=weight, minlength=8) / weight.sum(), atol=1e-3)
 
     def test_birds_that_are_flown(self):
         """The mean of 40 places varies by up to 0.5/sqrt(400) = 0.025 of a scan's result, that of the expected probabilities by a third."""

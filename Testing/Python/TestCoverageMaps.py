@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The command `avianlidar coverage`: maps as GDAL's programs read them, shares, and plans that are wrong."""
-import csv
 import json
 import os
 import subprocess
@@ -13,6 +12,7 @@ import exampletools
 from avianlidar import siting
 from avianlidar._command import main
 from avianlidar.apps._maps import Plan, coordinate_system, read_plan
+from helpertools import rows_of
 from osgeo import osr
 
 PLAN = os.path.join(exampletools.EXAMPLES, "coverage", "hongqiao.coverage.json")
@@ -95,8 +95,7 @@ class Maps(unittest.TestCase):
             np.testing.assert_allclose(found, points[:, :2], atol=0.012)
 
     def test_shares_are_the_table(self):
-        with open(os.path.join(self.folder, "shares.csv"), encoding="utf-8") as file:
-            rows = list(csv.DictReader(file))
+        rows = rows_of(os.path.join(self.folder, "shares.csv"))
         self.assertEqual({row["region"] for row in rows}, {"strips", "approaches", "all"})
         self.assertEqual(len({row["species"] for row in rows}), 6)
         points, regions = siting.strips_and_approaches(siting.read_runways(self.plan["runways"], ORIGIN), 100, heights=(30.0, 30.0))

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Designs: closed forms of the link budget, the front against brute force, formulas that attack, bounds that are wrong, work that goes on."""
 import contextlib
-import csv
 import io
 import json
 import math
@@ -21,6 +20,7 @@ from avianlidar.apps._design_page import Designs
 from avianlidar.apps._formula import Formula
 from avianlidar.apps._maps import Plan, read_plan
 from exampletools import emptied
+from helpertools import rows_of
 
 BOUNDS = {"pulse_energy": {"from": 1e-4, "to": 4e-3, "logarithmic": True}, "receiver_aperture": [0.005, 0.02]}
 DESIGN = {"share": 0.12, "bounds": BOUNDS, "cost": "1000 * pulse_energy + 100 * receiver_aperture", "designs": 8}
@@ -169,7 +169,7 @@ class Pulses(unittest.TestCase):
         self.assertRegex(study.candidates[1].refused, "the 4000 firings of a column take")
         study.look()
         _design_page.write(study)
-        rows = list(csv.DictReader((study.folder / "design.csv").read_text(encoding="utf-8").splitlines()))
+        rows = rows_of(study.folder / "design.csv")
         self.assertEqual([row["detected [1]"] == "nan" for row in rows], [False, True])
 
 
@@ -181,7 +181,7 @@ class Work(unittest.TestCase):
             self.assertEqual(main(["design", str(file), "-o", str(where / "out")]), 0)
         self.assertEqual({path.name for path in (where / "out").iterdir()},
                          {"coverage", "design.csv", "design.html", "front.png", "sensitivities.csv", "sensitivities.png"})
-        rows = list(csv.DictReader((where / "out" / "design.csv").read_text(encoding="utf-8").splitlines()))
+        rows = rows_of(where / "out" / "design.csv")
         self.assertEqual(len(rows), 8)
         for row in rows:
             self.assertAlmostEqual(float(row["radiant_exposure [J/m2]"]), float(row["pulse_energy [J]"]) / float(row["receiver_aperture [m2]"]), delta=1e-5)
@@ -197,7 +197,7 @@ class Work(unittest.TestCase):
         for answer in (said.getvalue().splitlines()[0], re.search('<p class="said">(.*?)</p>', page)[1]):
             first = re.search(r"^The cheapest of .*; eye safety is not assessed: at 905 nm each pulse puts (\S+) µJ through a pupil of 7 mm", answer)
             self.assertAlmostEqual(float(first[1]) / microjoules, 1.0, delta=0.05)
-        for _, changed in ((row["field"], row) for row in csv.DictReader((where / "out" / "sensitivities.csv").read_text(encoding="utf-8").splitlines())):
+        for changed in rows_of(where / "out" / "sensitivities.csv"):
             up = float(changed["to"]) > float(changed["from"])
             self.assertEqual(float(changed["change_of_detected [1]"]) > 0.0, up)
             self.assertAlmostEqual(float(changed["to"]) / float(changed["from"]), 1.2 if up else 0.8, delta=1e-5)
@@ -255,7 +255,7 @@ class Work(unittest.TestCase):
         self.assertIs(study.chosen, strong)
         folders = sorted((where / "out" / "tracks").iterdir(), key=lambda folder: folder.stat().st_mtime_ns)
         self.assertEqual(len(folders), 2)
-        birds = list(csv.DictReader((folders[1] / "birds.csv").read_text(encoding="utf-8").splitlines()))
+        birds = rows_of(folders[1] / "birds.csv")
         gulls = [bird for bird in birds if bird["species"] == "herring gull"]
         self.assertEqual((strong.tracked.number, strong.tracked.value), (len(gulls), sum(bird["found_s"] != "" for bird in gulls) / len(gulls)))
         _design_page.write(study)

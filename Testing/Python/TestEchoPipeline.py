@@ -7,7 +7,7 @@ import vtk
 from vtk.util import numpy_support
 
 from avianlidar import vtkAvianLidar as al
-from echotools import RAYS, array, arrays, assert_same_bits, scan, sensor, town
+from echotools import RAYS, array, arrays, assert_same_bits, copy_of, scan, sensor, town
 
 # By default all beams of this town are integrated, and none needs a ray: what is about rays traces them. Beams that meet the
 # wall, of which more than 100 triangles enter each, have cells.
@@ -43,12 +43,6 @@ def shuffled_beams():
         shuffled.GetPointData().CopyData(beams.GetPointData(), int(old), new)
     shuffled.GetFieldData().PassData(beams.GetFieldData())
     return shuffled
-
-
-def copy_of(data):
-    copy = vtk.vtkPolyData()
-    copy.DeepCopy(data)
-    return copy
 
 
 class EchoPipeline(unittest.TestCase):

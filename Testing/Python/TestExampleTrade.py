@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The trade of speed for accuracy on a small scene: the front is one, the reference is better than what it judges, what
 is recommended keeps its word on a new seed, and the table has every column."""
-import csv
 import os
 import unittest
 
 import numpy as np
 
 import exampletools as et
+from helpertools import rows_of
 import accuracy_speed
 import trade_grid
 import trade_results
@@ -91,8 +91,7 @@ class Trade(unittest.TestCase):
         self.assertGreaterEqual(kept, 4)
 
     def test_table_is_complete(self):
-        with open(os.path.join(self.folder, "results.csv"), encoding="utf-8") as stream:
-            rows = list(csv.DictReader(stream))
+        rows = rows_of(os.path.join(self.folder, "results.csv"))
         self.assertEqual(len(rows), len(trade_grid.choices(True)))
         for row, result in zip(rows, self.results):
             self.assertTrue(all(np.isfinite(float(row[name])) for name in accuracy_speed.COLUMNS), row)

@@ -13,7 +13,7 @@ from avianlidar import vtkAvianLidar as al
 from avianlidar._paraview import Advisor
 from cloudtools import add_field, cloud
 from echotools import RAYS, InFolder, Messages, assert_same_bits, scan, sensor, town
-from faulttools import algorithms, copy, make, writer
+from faulttools import algorithms, copy_of, make, writer
 from scenetools import SHIPPED
 
 SETTINGS = {"RaysPerBeam": 20, "NumberOfThreads": 1}
@@ -41,7 +41,7 @@ def few_beams():
 
 
 def surfaces(**fields):
-    data = copy(town(3, 1).GetBlock(0)) if fields else town(3, 12)
+    data = copy_of(town(3, 1).GetBlock(0)) if fields else town(3, 12)
     for name, values in fields.items():
         add_field(data, name, values)
     return painted(data)
@@ -141,7 +141,7 @@ class Producers(InFolder):
         for name, ports in FILTERS.items():
             filter_, producers = pipeline(name)
             self.assertEqual(update(filter_), 1)
-            expected = [copy(data) for data in outputs(filter_)]
+            expected = [copy_of(data) for data in outputs(filter_)]
             self.assertGreater(elements(expected[0]), 0)
             messages = Messages(filter_)
             for as_data in (False, True):
@@ -225,7 +225,7 @@ class Producers(InFolder):
             messages = Messages(echo)
             self.assertEqual(update(echo), 0)
             self.check_failed(echo, messages, 1, failing.words)
-        data = copy(town(3, 1).GetBlock(0))
+        data = copy_of(town(3, 1).GetBlock(0))
         add_field(data, "error", (0.5,))
         self.assertEqual(update(scan(data, **SETTINGS)), 1)
 

@@ -8,11 +8,9 @@ import tempfile
 import unittest
 
 import numpy as np
-from vtkmodules.util.numpy_support import numpy_to_vtk
-from vtkmodules.vtkCommonCore import vtkPoints
-from vtkmodules.vtkCommonDataModel import vtkPolyData
 
 import avianlidar as al
+import cloudtools
 import exampletools
 import falloff
 
@@ -22,13 +20,9 @@ ELEVATIONS = np.arange(-15.0, 16.0, 2.0)
 
 
 def cloud(points, ring, **fields):
-    data, places = vtkPolyData(), vtkPoints()
-    places.SetData(numpy_to_vtk(np.ascontiguousarray(points), deep=True))
-    data.SetPoints(places)
+    data = cloudtools.cloud(points)
     for name, values in {"laser_id": ring.astype(np.uint16), **fields}.items():
-        array = numpy_to_vtk(values, deep=True)
-        array.SetName(name)
-        data.GetPointData().AddArray(array)
+        cloudtools.add_array(data, name, values)
     return al.Cloud(data)
 
 

@@ -4,6 +4,7 @@
 import csv
 import io
 import json
+import pathlib
 import subprocess
 import unittest
 
@@ -54,8 +55,7 @@ class TestGeoJSONWriter(InFolder):
             self.assertIn(words, told)
         rows = features()
         self.assert_places(rows)
-        with open(FILE, encoding="utf-8") as file:
-            whole = json.load(file)
+        whole = json.loads(pathlib.Path(FILE).read_text(encoding="utf-8"))
         for name in names(self.data):  # GDAL writes 15 digits; the file has them all
             np.testing.assert_allclose(column(rows, name), array(self.data, name), rtol=1e-14, err_msg=name)
             np.testing.assert_array_equal([one["properties"][name] for one in whole["features"]], array(self.data, name), name)
@@ -92,8 +92,7 @@ class TestGeoJSONWriter(InFolder):
         for data in (self.data, cloud([])):
             self.write(data, UseFieldDataLimit=False, MinimumEnergy=1.0)
             self.assertIn("successful", self.ogrinfo())
-            with open(FILE, encoding="utf-8") as file:
-                self.assertEqual(json.load(file)["features"], [])
+            self.assertEqual(json.loads(pathlib.Path(FILE).read_text(encoding="utf-8"))["features"], [])
 
     def test_what_json_has_no_words_for(self):
         data = cloud([[0, 0, 0], [1, 0, 0]])
@@ -103,8 +102,7 @@ class TestGeoJSONWriter(InFolder):
         add_array(data, "object_id", np.array([0, 7]))
         add_field(data, "object_names", ['a "quoted" name\\\n\u00e9'])
         self.write(data)
-        with open(FILE, encoding="utf-8") as file:
-            properties = [one["properties"] for one in json.load(file)["features"]]
+        properties = [one["properties"] for one in json.loads(pathlib.Path(FILE).read_text(encoding="utf-8"))["features"]]
         self.assertEqual([(one["share"], one["object"]) for one in properties], [(None, 'a "quoted" name\\\n\u00e9'), (None, "")])
 
     def test_bad_input(self):

@@ -12,13 +12,14 @@ import subprocess
 import unittest
 
 import numpy as np
-from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
-from vtkmodules.vtkCommonCore import VTK_DOUBLE, vtkPoints
+from vtkmodules.vtkCommonCore import VTK_DOUBLE
 from vtkmodules.vtkCommonDataModel import vtkImageData, vtkMultiBlockDataSet, vtkPolyData, vtkUnstructuredGrid
 
 from avianlidar.vtkAvianLidar import vtkAvianLidarGeodeticTransform as Transform
 
-from echotools import Messages, array
+import cloudtools
+from cloudtools import points as coordinates
+from echotools import Messages, array, given
 
 NANO, NANO_UTM, EARTH = 10e-9, 20e-9, 6378137.0
 ENU, GEODETIC, UTM, ECEF = Transform.FRAME_ENU, Transform.FRAME_GEODETIC, Transform.FRAME_UTM, Transform.FRAME_ECEF
@@ -33,29 +34,14 @@ TO_RADIANS = "+proj=unitconvert +xy_in=deg +xy_out=rad"
 
 
 def cloud(points, kind=vtkPolyData, origin=None):
-    data, holder = kind(), vtkPoints()
-    holder.SetData(numpy_to_vtk(np.ascontiguousarray(points, dtype=float), deep=1))
-    data.SetPoints(holder)
+    data = cloudtools.cloud(points, kind)
     if origin is not None:
-        add_origin(data, origin)
+        cloudtools.add_field(data, "geodetic_origin", origin)
     return data
 
 
-def add_origin(data, origin):
-    values = numpy_to_vtk(np.array([origin], dtype=float), deep=1)
-    values.SetName("geodetic_origin")
-    data.GetFieldData().AddArray(values)
-
-
-def coordinates(data):
-    return vtk_to_numpy(data.GetPoints().GetData())
-
-
 def run(data, **properties):
-    transform = Transform()
-    transform.SetInputDataObject(data)
-    for name, value in properties.items():
-        getattr(transform, "Set" + name)(value)
+    transform = given(Transform(), InputDataObject=data, **properties)
     messages = Messages(transform)
     transform.Update()
     return transform.GetOutputDataObject(0), messages
@@ -107,10 +93,7 @@ class OutsidePrograms(unittest.TestCase):
 
 
 class Behaviour(unittest.TestCase):
-    def test_defaults_units_and_types(self):
-        t = Transform()
-        self.assertEqual((t.GetSourceFrame(), t.GetTargetFrame(), t.GetMovePoints(), t.GetUseFieldDataOrigin(),
-                          t.GetUTMZone(), t.GetOrigin()), (ENU, GEODETIC, False, True, 0, (0.0, 0.0, 0.0)))
+    def test_units_and_types(self):
         data, messages = run(cloud([[0.0, 0.0, 5.0]], vtkUnstructuredGrid), UseFieldDataOrigin=False, Origin=ORIGINS[0])
         self.assertEqual(messages.all(), [])
         self.assertIsInstance(data, vtkUnstructuredGrid)
@@ -133,7 +116,7 @@ class Behaviour(unittest.TestCase):
         inner.SetBlock(0, cloud([[1.0, 2.0, 3.0]], vtkUnstructuredGrid))
         for number, block in enumerate((cloud([[1.0, 2.0, 3.0]]), None, inner)):
             scene.SetBlock(number, block)
-        add_origin(scene, ORIGINS[1])
+        cloudtools.add_field(scene, "geodetic_origin", ORIGINS[1])
         data, messages = run(scene, TargetFrame=ECEF, MovePoints=True)
         self.assertEqual(messages.all(), [])
         first, second = data.GetBlock(0), data.GetBlock(2).GetBlock(0)
@@ -146,20 +129,19 @@ class Behaviour(unittest.TestCase):
             self.assertEqual(run(empty)[1].all(), [])
 
     def test_bad_input(self):
-        one, given = [[0.0, 0.0, 0.0]], dict(UseFieldDataOrigin=False)
+        one, here = [[0.0, 0.0, 0.0]], dict(UseFieldDataOrigin=False)
         volume, block = vtkMultiBlockDataSet(), vtkMultiBlockDataSet()
         volume.SetBlock(0, vtkImageData())
         block.SetBlock(0, cloud([[math.nan, 0.0, 0.0]]))
         for scene in (volume, block):
             scene.GetMetaData(0).Set(scene.NAME(), "volume")
         for text, data, properties in (
-                ("latitude is 91", cloud(one), dict(Origin=(91.0, 0.0, 0.0), **given)),
+                ("latitude is 91", cloud(one), dict(Origin=(91.0, 0.0, 0.0), **here)),
                 ("latitude is -90.5", cloud(one, origin=(-90.5, 0.0, 0.0)), {}),
                 ("'geodetic_origin'", cloud(one), {}),
                 ("latitude (y) is 91", cloud([[0.0, 91.0, 0.0]]), dict(SourceFrame=GEODETIC)),
                 ("easting", cloud([[5e6, 0.0, 0.0]]), dict(SourceFrame=UTM, UTMZone=31)),
-                ("UTMZone is 61", cloud(one, origin=ORIGINS[0]), dict(UTMZone=61)),
-                ("'volume'", volume, given), ("block 'volume'", block, given)):
+                ("'volume'", volume, here), ("block 'volume'", block, here)):
             with self.subTest(text):
                 output, messages = run(data, **properties)
                 self.assertTrue(any(text in said for said in messages.errors), messages.all())

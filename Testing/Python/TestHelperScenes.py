@@ -5,7 +5,6 @@ import copy
 import os
 import pathlib
 import pickle
-import shutil
 import subprocess
 import sys
 import types
@@ -17,6 +16,7 @@ from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonDataModel import vtkPolyData
 
 import avianlidar as al
+import exampletools
 from avianlidar import _sight
 from boxfiles import CORNERS, TRIANGLES, obj, stl, y_up
 from helpertools import WALL, box, same
@@ -42,8 +42,7 @@ def said(run):
 class Sources(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        shutil.rmtree(OUTPUT, ignore_errors=True)
-        OUTPUT.mkdir(parents=True)
+        exampletools.emptied("helper-scenes")
         cls.stl = OUTPUT / "hangar.stl"
         cls.stl.write_text(stl(CORNERS, TRIANGLES), encoding="utf-8")
         cls.las = OUTPUT / "cloud.las"

@@ -15,7 +15,7 @@ import vtk
 from avianlidar import vtkAvianLidar as al
 from cloudtools import (add_array, add_field, assert_refused, assert_same_arrays, cloud, echoes, field, geodetic,
                         names, points, read, write)
-from echotools import InFolder, array
+from echotools import InFolder, array, copy_of
 
 FILE = "TestLASWriter.las"
 EXTRA = ["energy", "energy_received", "return_energy", "energy_std_error", "object_id", "material_id", "secondary_share",
@@ -48,8 +48,7 @@ class TestLASWriter(InFolder):
 
     def setUp(self):
         super().setUp()
-        self.data = self.made.NewInstance()
-        self.data.DeepCopy(self.made)
+        self.data = copy_of(self.made)
         self.writer = al.vtkAvianLidarLASWriter()
 
     def write(self, data=None, **properties):

@@ -4,6 +4,7 @@ without LASzip says so."""
 
 import importlib.util
 import os
+import pathlib
 import resource
 import struct
 import unittest
@@ -43,13 +44,11 @@ def bits(data):
 
 
 def content(name):
-    with open(name, "rb") as file:
-        return file.read()
+    return pathlib.Path(name).read_bytes()
 
 
 def save(whole, name=LAZ):
-    with open(name, "wb") as file:
-        file.write(whole)
+    pathlib.Path(name).write_bytes(whole)
 
 
 @unittest.skipUnless(LASZIP, "built without LASzip")

@@ -4,17 +4,17 @@ them, known coefficients come back with and without noise, and files that are wr
 import contextlib
 import io
 import json
-import pathlib
-import tempfile
 import unittest
 
 import numpy as np
+from scipy.spatial.transform import Rotation
 
 import avianlidar as al
 import exampletools  # noqa: F401  (finds the examples)
 import check_fit
 import fit
 import running
+from echotools import InFolder
 
 MODELS = ("LambertBlinnPhong", "Phong", "Microfacet")
 # kd, ks, kp: glossy, a mirror, broad.
@@ -25,13 +25,7 @@ def merl_cell(source, viewer):
     """Number of the cell of two unit vectors: by the rotations of Rusinkiewicz and the indices of Matusik's reader."""
     half = (source + viewer) / np.linalg.norm(source + viewer)
     theta, phi = np.arccos(half[2]), np.arctan2(half[1], half[0])
-
-    def turned(v, angle, axis):
-        c, s = np.cos(angle), np.sin(angle)
-        rows = {"z": [[c, -s, 0], [s, c, 0], [0, 0, 1]], "y": [[c, 0, s], [0, 1, 0], [-s, 0, c]]}
-        return np.array(rows[axis]) @ v
-
-    difference = turned(turned(source, -phi, "z"), -theta, "y")
+    difference = Rotation.from_euler("zy", (-phi, -theta)).apply(source)
     theta_d, phi_d = np.arccos(min(difference[2], 1.0)), np.arctan2(difference[1], difference[0]) % np.pi
     i = int(np.sqrt(np.degrees(theta) / 90 * 90 * 90))
     j, k = int(np.degrees(theta_d)), int(np.degrees(phi_d))
@@ -60,11 +54,9 @@ class Models(unittest.TestCase):
                     np.testing.assert_allclose(fit.reflected(model, material, g)[0], seen, rtol=1e-3, err_msg=f"{angle} {material} {model}")
 
 
-class Merl(unittest.TestCase):
+class Merl(InFolder):
     def setUp(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.folder = pathlib.Path(folder.name)
+        super().setUp()
         self.g, _ = fit.merl_geometry((1, 1, 1))
 
     def test_cells_lie_where_its_authors_put_them(self):
@@ -101,12 +93,7 @@ class Merl(unittest.TestCase):
             self.assertTrue(kd >= 0 and ks >= 0 and 0 <= kp <= 1e6 and 0.99 < kd + ks <= 1.0, (kd, ks, kp))
 
 
-class Command(unittest.TestCase):
-    def setUp(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.folder = pathlib.Path(folder.name)
-
+class Command(InFolder):
     def table(self, name, header, rows):
         file = self.folder / name
         file.write_text("\n".join([header, *(",".join(f"{value:.10g}" for value in row) for row in rows)]) + "\n", "utf-8")

@@ -11,6 +11,7 @@ import tempfile
 import unittest
 
 import numpy as np
+from scipy.spatial.transform import Rotation
 
 import avianlidar
 from avianlidar.apps import _mcap
@@ -81,11 +82,9 @@ class TestMcap(unittest.TestCase):
         (one,) = message["transforms"]
         self.assertEqual((one["header"], one["child_frame_id"]), (header, "lidar"))
         self.assertEqual([one["transform"]["translation"][axis] for axis in "xyz"], list(place))
-        x, y, z, w = (one["transform"]["rotation"][axis] for axis in "xyzw")
-        turned = [[1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
-                  [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
-                  [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)]]
-        self.assertLess(np.abs(np.array(turned) - rotation).max(), 1e-9)
+        turn = [one["transform"]["rotation"][axis] for axis in "xyzw"]
+        self.assertAlmostEqual(np.linalg.norm(turn), 1, 9)
+        self.assertLess(np.abs(Rotation.from_quat(turn).as_matrix() - rotation).max(), 1e-9)
 
     def test_boxes(self):
         (self.sequence / "boxes").mkdir()

@@ -9,7 +9,6 @@ Skipped where scikit-learn is not installed."""
 import json
 import os
 import pathlib
-import shutil
 import sys
 import unittest
 
@@ -26,6 +25,7 @@ except ImportError:
     sys.exit(77)
 
 import avianlidar as al
+import exampletools
 
 OUTPUT = pathlib.Path(os.environ.get("AVIANLIDAR_TEST_OUTPUT_DIR", "/tmp")) / "no-leak"
 MOST = 0.02     # gain of the AUC
@@ -153,8 +153,7 @@ def gains(points, pair):
 class NoLeak(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        shutil.rmtree(OUTPUT, ignore_errors=True)
-        OUTPUT.mkdir(parents=True)
+        exampletools.emptied("no-leak")
         cls.draw = np.random.default_rng(1)
         cls.fair = Points([cls.make(f"fair{k}", 2500, (80, 800), (0.04, 0.8), 3, sensor=sensor, seed=k, birds=BIRDS)
                            for k, sensor in enumerate((STILL, MOVED) * 3)])

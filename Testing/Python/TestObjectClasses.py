@@ -2,8 +2,6 @@
 """Classes of objects go with their objects: through scenes put together from several producers, new numbers, the
 collision tree and the echo filter, to the labels of a file."""
 
-import os
-import tempfile
 import unittest
 
 import numpy as np
@@ -11,15 +9,8 @@ import vtk
 from vtk.util import numpy_support
 
 from avianlidar import vtkAvianLidar as al
-from echotools import array, box, scan, sensor
-
-
-def texts(name, values):
-    result = vtk.vtkStringArray()
-    result.SetName(name)
-    for value in values:
-        result.InsertNextValue(value)
-    return result
+from cloudtools import add_field, field
+from echotools import InFolder, array, bird, box, given, scan, sensor
 
 
 def thing(name, azimuth, classes=None, ids=None):
@@ -30,9 +21,9 @@ def thing(name, azimuth, classes=None, ids=None):
         holder = numpy_support.numpy_to_vtk(np.array(ids, dtype=np.int32), deep=True)
         holder.SetName("object_id")
         data.GetCellData().AddArray(holder)
-        data.GetFieldData().AddArray(texts("object_names", [f"{name} {i}" for i in range(max(ids) + 1)]))
+        add_field(data, "object_names", [f"{name} {i}" for i in range(max(ids) + 1)])
     if classes:
-        data.GetFieldData().AddArray(texts("object_classes", classes))
+        add_field(data, "object_classes", classes)
     return data
 
 
@@ -41,13 +32,8 @@ def group(*parts, classes=None):
     for i, part in enumerate(parts):
         blocks.SetBlock(i, part)
     if classes:
-        blocks.GetFieldData().AddArray(texts("object_classes", classes))
+        add_field(blocks, "object_classes", classes)
     return blocks
-
-
-def field(data, name):
-    strings = data.GetFieldData().GetAbstractArray(name)
-    return [strings.GetValue(i) for i in range(strings.GetNumberOfValues())] if strings else None
 
 
 def tree_of(surfaces):
@@ -57,13 +43,10 @@ def tree_of(surfaces):
 
 
 def lidar():
-    beams = sensor(180, 4)
-    beams.SetHalfBeamwidth(0.02)
-    beams.SetLowerEnergyLimit(1e-8)  # a bird is faint
-    return beams
+    return given(sensor(180, 4), HalfBeamwidth=0.02, LowerEnergyLimit=1e-8)  # a bird is faint
 
 
-class ObjectClasses(unittest.TestCase):
+class ObjectClasses(InFolder):
     def check(self, surfaces, names, classes):
         """Tree and echo filter, with and without the tree, say the same; each echo has the class of its object."""
         tree = tree_of(surfaces)
@@ -112,7 +95,7 @@ class ObjectClasses(unittest.TestCase):
         tree = tree_of(surfaces)
         plain, treed = scan(surfaces, lidar()), scan(tree, lidar())
         for classes in (["hangar", "bird"], ["hangar", "aircraft"], ["hangar", "bird"]):
-            surfaces.GetBlock(1).GetFieldData().AddArray(texts("object_classes", classes[1:]))
+            add_field(surfaces.GetBlock(1), "object_classes", classes[1:])
             surfaces.Modified()
             for echo in (plain, treed):
                 echo.Update()
@@ -121,19 +104,12 @@ class ObjectClasses(unittest.TestCase):
         self.assertEqual(plain.GetNumberOfTracedRays(), 0)
 
     def test_labels_of_a_bird_over_an_airport(self):
-        bird = al.vtkAvianLidarBirdSource()
-        bird.SetSpecies("Canada goose")
-        bird.SetPosition(0, 60, 2)
-        bird.Update()
-        surfaces = group(thing("hangar", 90, ["hangar"]), bird.GetOutput(), thing("runway", 180, ["runway"]))
+        goose = bird(Species="Canada goose", Position=(0, 60, 2))
+        surfaces = group(thing("hangar", 90, ["hangar"]), goose, thing("runway", 180, ["runway"]))
         echoes = self.check(surfaces, ["hangar", "Canada goose", "runway"], ["hangar", "bird", "runway"])
         self.assertEqual(set(array(echoes, "object_id")), {0, 1, 2})
-        with tempfile.TemporaryDirectory() as folder:
-            writer = al.vtkAvianLidarKITTIWriter()
-            writer.SetInputData(echoes)
-            writer.SetFileName(os.path.join(folder, "a.bin"))
-            self.assertTrue(writer.Write())
-            labels = np.fromfile(os.path.join(folder, "a.label"), dtype="<u4")
+        self.assertTrue(given(al.vtkAvianLidarKITTIWriter(), InputData=echoes, FileName="a.bin").Write())
+        labels = np.fromfile("a.label", dtype="<u4")
         self.assertEqual((labels & 0xFFFF).tolist(), [{0: 50, 1: 99, 2: 40}[i] for i in array(echoes, "object_id")])
 
 

@@ -8,11 +8,12 @@ import unittest
 
 import numpy as np
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
-from vtkmodules.vtkCommonCore import vtkDoubleArray
 from vtkmodules.vtkFiltersSources import vtkSphereSource
 
 import avianlidar as al
 from avianlidar.vtkAvianLidar import vtkAvianLidarEchoFilter
+from cloudtools import add_array, add_field
+from echotools import given
 
 sys.path.insert(0, os.path.join(os.environ["AVIANLIDAR_SOURCE_DIR"], "Testing", "Oracles"))
 import oracles  # noqa: E402
@@ -27,33 +28,25 @@ ONE_UNIT = 1e-4
 
 def beam(case, sampling_interval=ONE_UNIT, pulse_width=0.0):
     """One beam as the echo filter wants it."""
-    given = case["beam"]
-    data = al.mesh([given["origin_m"]], np.empty((0, 3), int))
-    direction = numpy_to_vtk(np.array([given["direction"]]), deep=True)
-    direction.SetName("direction")
-    data.GetPointData().AddArray(direction)
-    sensor = {"half_beamwidth": given["half_beamwidth_rad"],
-              "beam_profile": ("uniform", "gaussian").index(given["profile"]),
-              "pulse_energy": given["pulse_energy_J"], "pulse_width": pulse_width, "frequency": 3.313e14,
+    of = case["beam"]
+    data = al.mesh([of["origin_m"]], np.empty((0, 3), int))
+    add_array(data, "direction", np.array([of["direction"]]))
+    sensor = {"half_beamwidth": of["half_beamwidth_rad"],
+              "beam_profile": ("uniform", "gaussian").index(of["profile"]),
+              "pulse_energy": of["pulse_energy_J"], "pulse_width": pulse_width, "frequency": 3.313e14,
               "sampling_interval": sampling_interval, "range_gate": 1e5, "noise_photon_rate": 0.0,
               "lower_energy_limit": 0.0, "upper_energy_limit": 1.0, "receiver_aperture": 0.0}
     for name, value in sensor.items():
-        array = vtkDoubleArray()
-        array.SetName(name)
-        array.InsertNextValue(value)
-        data.GetFieldData().AddArray(array)
+        add_field(data, name, (value,))
     return data
 
 
 def surfaces(case):
     """The scene with its coefficients."""
     if "sphere" in case["scene"]:
-        ball = vtkSphereSource()
-        ball.SetCenter(case["scene"]["sphere"]["centre_m"])
-        ball.SetRadius(case["scene"]["sphere"]["radius_m"])
-        ball.SetThetaResolution(FACETS)
-        ball.SetPhiResolution(FACETS // 2)
-        ball.SetOutputPointsPrecision(vtkSphereSource.DOUBLE_PRECISION)
+        sphere = case["scene"]["sphere"]
+        ball = given(vtkSphereSource(), Center=sphere["centre_m"], Radius=sphere["radius_m"], ThetaResolution=FACETS, PhiResolution=FACETS // 2,
+                     OutputPointsPrecision=vtkSphereSource.DOUBLE_PRECISION)
         ball.Update()
         data = ball.GetOutput()
     else:

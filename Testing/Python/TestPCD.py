@@ -3,16 +3,18 @@
 Library's own programs, and what they write of it is the same."""
 
 import os
+import pathlib
 import struct
 import subprocess
 import unittest
 
 import numpy as np
+from scipy.spatial.transform import Rotation
 
 from avianlidar import vtkAvianLidar as al
 from cloudtools import (add_array, add_field, assert_extremes, assert_refused, cloud, echoes, extremes, field, names, points, read,
                         read_error, unit, write)
-from echotools import InFolder, array, scan, town
+from echotools import InFolder, array, copy_of, given, scan, town
 
 FILE, OTHER, PLY = "TestPCD.pcd", "TestPCD-pcl.pcd", "TestPCD.ply"
 HEADER = {
@@ -27,8 +29,7 @@ KINDS_OF_FILE = (Writer.FILE_TYPE_BINARY, Writer.FILE_TYPE_ASCII)
 
 def parse(name=FILE):
     """Header and fields of a binary PCD file, read by NumPy."""
-    with open(name, "rb") as file:
-        data = file.read()
+    data = pathlib.Path(name).read_bytes()
     header, at = {}, 0
     while "DATA" not in header:
         end = data.index(b"\n", at)
@@ -58,8 +59,7 @@ def value_of(data, name):
 def put(data=LINES, comments=(), **changes):
     lines = [f"# {comment}" for comment in comments]
     lines += [f"{key} {value}" for key, value in {**HEADER, **changes}.items() if value is not None]
-    with open(FILE, "wb") as file:
-        file.write("\n".join(lines).encode("utf-8") + b"\n" + data)
+    pathlib.Path(FILE).write_bytes("\n".join(lines).encode("utf-8") + b"\n" + data)
 
 
 def one(data, fields, types, **changes):
@@ -170,8 +170,7 @@ class Reader(InFolder):
             put(**changes)
             self.assertIn(words, read_error(FILE), changes)
         for data in (b"\x89PNG\r\n\x1a\n" + bytes(range(256)) * 10, b""):
-            with open(FILE, "wb") as file:
-                file.write(data)
+            pathlib.Path(FILE).write_bytes(data)
             self.assertIn("no PCD file", read_error(FILE))
             self.assertEqual(al.vtkAvianLidarPointCloudReader.CanReadFile(FILE), 0)
 
@@ -187,8 +186,7 @@ class Written(InFolder):
 
     def setUp(self):
         super().setUp()
-        self.data = self.several.NewInstance()
-        self.data.DeepCopy(self.several)
+        self.data = copy_of(self.several)
         self.writer = Writer()
 
     def write(self, data=None, **properties):
@@ -238,12 +236,9 @@ class Written(InFolder):
         self.assert_echoes(data, parse()[1])
 
     def test_unequal_elevations(self):
-        beams = al.vtkAvianLidarBeamSource()
-        beams.SetNumberOfChannelElevations(3)
+        beams = given(al.vtkAvianLidarBeamSource(), NumberOfChannelElevations=3, AzimuthRange=(10, 100), AzimuthStep=2)
         for channel, elevation in enumerate((1.0, -0.5, 2.0)):
             beams.SetChannelElevation(channel, elevation)
-        beams.SetAzimuthRange(10, 100)
-        beams.SetAzimuthStep(2)
         lidar = scan(town(), beams, ReturnMode=1)
         lidar.Update()
         self.write(lidar.GetOutput())
@@ -280,22 +275,13 @@ class Written(InFolder):
 
     def test_viewpoint(self):
         """Yaw is clockwise seen from above, pitch nose up about x (right), roll to the right about y (forward)."""
-        def about(axis, degrees):
-            c, s = np.cos(np.radians(degrees)), np.sin(np.radians(degrees))
-            i, j = (axis + 1) % 3, (axis + 2) % 3
-            result = np.eye(3)
-            result[i, i], result[j, j], result[i, j], result[j, i] = c, c, -s, s
-            return result
-
         for yaw, pitch, roll in ((30.0, 2.0, 1.0), (180.0, 0.0, 0.0), (0.0, 180.0, 0.0), (0.0, 0.0, 180.0)):
             self.write(echoes(orientation=(yaw, pitch, roll), columns=180))
             viewpoint = [float(word) for word in parse()[0]["VIEWPOINT"]]
-            w, x, y, z = viewpoint[3:]
-            turn = [[1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
-                    [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
-                    [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)]]
             self.assertEqual(viewpoint[:3], [10, 20, 3])
-            np.testing.assert_allclose(turn, about(2, -yaw) @ about(0, pitch) @ about(1, roll), rtol=0, atol=1e-12)
+            self.assertAlmostEqual(np.linalg.norm(viewpoint[3:]), 1, 12)
+            turn, wanted = Rotation.from_quat(np.roll(viewpoint[3:], -1)), Rotation.from_euler("ZXY", (-yaw, pitch, roll), degrees=True)
+            np.testing.assert_allclose(turn.as_matrix(), wanted.as_matrix(), rtol=0, atol=1e-12)
 
     def test_single_precision_far_away_is_warned_of_or_refused(self):
         far, beyond = cloud([[340000.123, 3450000.456, 3.0]]), cloud([[1, 2, 3], [1, 1e39, 3]])
@@ -311,8 +297,7 @@ class Written(InFolder):
         add_array(self.data, "rgb", rgb, "1")
         self.write()
         subprocess.run(["pcl_pcd2ply", "-format", "0", FILE, PLY], check=True, capture_output=True)
-        with open(PLY, encoding="ascii") as file:
-            head, body = file.read().split("end_header\n")
+        head, body = pathlib.Path(PLY).read_text(encoding="ascii").split("end_header\n")
         place = [line.split()[-1] for line in head.splitlines() if line.startswith("property") and "list" not in line]
         rows = [line.split() for line in body.splitlines()[:n]]
         got = [[int(row[place.index(c)]) for c in ("red", "green", "blue")] for row in rows]

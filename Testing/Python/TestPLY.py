@@ -4,6 +4,7 @@ Point Cloud Library's programs and by NumPy."""
 
 import json
 import os
+import pathlib
 import subprocess
 import unittest
 
@@ -24,14 +25,12 @@ LINES = b"1 2 3\n4 5 6\n"
 
 
 def put(data=LINES, elements=VERTEX, form="ascii"):
-    with open(FILE, "wb") as file:
-        file.write(f"ply\nformat {form} 1.0\n{elements}end_header\n".encode("ascii") + data)
+    pathlib.Path(FILE).write_bytes(f"ply\nformat {form} 1.0\n{elements}end_header\n".encode("ascii") + data)
 
 
 def parse(name):
     """Comments, and vertices as a structured array, of a binary file that has nothing else, read by NumPy."""
-    with open(name, "rb") as file:
-        head, data = file.read().split(b"end_header\n", 1)
+    head, data = pathlib.Path(name).read_bytes().split(b"end_header\n", 1)
     lines = head.decode("ascii").splitlines()
     assert lines[:2] == ["ply", "format binary_little_endian 1.0"], lines
     record = np.dtype([(words[2], "<" + TYPES[words[1]]) for words in map(str.split, lines) if words[0] == "property"])
@@ -104,8 +103,7 @@ class Reader(InFolder):
             with self.subTest(words):
                 self.assertIn(words, read_error(FILE))
         for whole, words in ((b"", "does not begin with"), (b"plyx\n", "does not begin with"), (b"ply\nformat ascii 1.0\n", "no line end_header")):
-            with open(FILE, "wb") as file:
-                file.write(whole)
+            pathlib.Path(FILE).write_bytes(whole)
             self.assertIn(words, read_error(FILE))
             self.assertEqual(al.vtkAvianLidarPointCloudReader.CanReadFile(FILE), 0)
 

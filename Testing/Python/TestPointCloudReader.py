@@ -2,6 +2,7 @@
 """Every array through every format that keeps arrays; LAS of all formats made by hand; wrong files; real frames."""
 
 import os
+import pathlib
 import struct
 import unittest
 
@@ -60,8 +61,7 @@ def las(form, n=5, minor=None, records=(), behind=b"", tail=b"", length=None, co
         struct.pack_into("<QIQ", header, 235, size + len(vlrs) + n * length if tail else 0, 1 if tail else 0, n)
     for offset, (kind, value) in patch.get("patch", {}).items():
         struct.pack_into(kind, header, offset, value)
-    with open(FILE, "wb") as file:
-        file.write(bytes(header) + vlrs + b"".join(point(form, i, colour) + behind for i in range(n)) + tail)
+    pathlib.Path(FILE).write_bytes(bytes(header) + vlrs + b"".join(point(form, i, colour) + behind for i in range(n)) + tail)
 
 
 class TestPointCloudReader(InFolder):
@@ -189,11 +189,9 @@ class TestPointCloudReader(InFolder):
 
     def test_las_errors(self):
         las(6)
-        with open(FILE, "rb") as file:
-            whole = file.read()
+        whole = pathlib.Path(FILE).read_bytes()
         for cut, words in ((0, "not a LAS file"), (226, "not a LAS file"), (len(whole) - 1, "cut short")):
-            with open(FILE, "wb") as file:
-                file.write(whole[:cut])
+            pathlib.Path(FILE).write_bytes(whole[:cut])
             self.assertIn(words, read_error(FILE), cut)
         tail = struct.pack("<H16sHQ32s", 0, b"x", 1, 2**63, b"")
         for words, changes in [

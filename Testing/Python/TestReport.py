@@ -21,8 +21,7 @@ class Page(unittest.TestCase):
 
     @classmethod
     def setUpClass(cls):
-        shutil.rmtree(HERE, ignore_errors=True)
-        HERE.mkdir(parents=True)
+        exampletools.emptied("TestReport")
         where = pathlib.Path(plan()["scene"])
         scene = {**json.loads(where.read_text(encoding="utf-8")), "comment": {"by": "<me>"}}
         for item in scene["objects"]:

@@ -4,6 +4,7 @@ import gzip
 import json
 import math
 import os
+import pathlib
 import subprocess
 import tempfile
 import unittest
@@ -43,8 +44,7 @@ class SceneObjects(unittest.TestCase):
         cls.save("z.dae", collada(CORNERS, TRIANGLES, "Z_UP"))
         cls.save("box.ac", ac3d(y_up(CORNERS), TRIANGLES))
         cls.save("box.ifc", ifc(CORNERS, TRIANGLES))
-        with open(os.path.join(cls.folder, "box.3ds"), "wb") as file:
-            file.write(three_ds(CORNERS, TRIANGLES))
+        pathlib.Path(os.path.join(cls.folder, "box.3ds")).write_bytes(three_ds(CORNERS, TRIANGLES))
         with gzip.open(os.path.join(cls.folder, "packed.obj.gz"), "wt") as file:
             file.write(obj(CORNERS, TRIANGLES))
         cls.write_vtk_files()
@@ -84,8 +84,7 @@ class SceneObjects(unittest.TestCase):
 
     @classmethod
     def save(cls, name, text):
-        with open(os.path.join(cls.folder, name), "w", encoding="utf-8") as file:
-            file.write(text)
+        pathlib.Path(os.path.join(cls.folder, name)).write_text(text, encoding="utf-8")
 
     def read(self, *objects, silent=True, **keys):
         scene = {"version": 1, "material_map": {"*": "wall"}, "objects": list(objects), **keys}
@@ -178,31 +177,12 @@ class SceneObjects(unittest.TestCase):
         origin = {"latitude": 31.1979, "longitude": 121.3363, "height": 3}
         place = {"latitude": 31.3, "longitude": 121.6, "height": 70}
         got = st.corners(self.read({"file": "box.obj", "geodetic": place, "rotation": 20}, origin=origin).blocks[0])
-        position, rotation = self.frame(origin, place)
+        position, rotation = st.frame(origin, place)
         yaw = math.radians(20)
         turn = np.array([[math.cos(yaw), math.sin(yaw), 0], [-math.sin(yaw), math.cos(yaw), 0], [0, 0, 1]])
         expected = st.corners(self.read({"file": "box.obj", "position": position.tolist(),
                                          "rotation": (rotation @ turn).tolist()}, origin=origin).blocks[0])
         np.testing.assert_allclose(got, expected, atol=1e-8)
-
-    @staticmethod
-    def frame(origin, place):
-        """Position and rotation of the tangent frame of a place in that of the origin, by ECEF."""
-        def ecef(p):
-            a, f = 6378137.0, 1 / 298.257223563
-            lat, lon = math.radians(p["latitude"]), math.radians(p["longitude"])
-            n = a / math.sqrt(1 - f * (2 - f) * math.sin(lat) ** 2)
-            return np.array([(n + p["height"]) * math.cos(lat) * math.cos(lon),
-                             (n + p["height"]) * math.cos(lat) * math.sin(lon),
-                             (n * (1 - f) ** 2 + p["height"]) * math.sin(lat)])
-
-        def axes(p):
-            lat, lon = math.radians(p["latitude"]), math.radians(p["longitude"])
-            return np.array([[-math.sin(lon), math.cos(lon), 0],
-                             [-math.sin(lat) * math.cos(lon), -math.sin(lat) * math.sin(lon), math.cos(lat)],
-                             [math.cos(lat) * math.cos(lon), math.cos(lat) * math.sin(lon), math.sin(lat)]])
-
-        return axes(origin) @ (ecef(place) - ecef(origin)), axes(origin) @ axes(place).T
 
     def test_projected_coordinates(self):
         origin = {"latitude": 48.7608, "longitude": 11.4235, "height": 412}
@@ -213,7 +193,7 @@ class SceneObjects(unittest.TestCase):
         text = subprocess.run(["cs2cs", "-f", "%.12f", "EPSG:32632", "EPSG:4979"], input=lines, text=True,
                               capture_output=True, check=True).stdout
         places = [list(map(float, line.split())) for line in text.splitlines()]
-        local = np.array([self.frame(origin, {"latitude": lat, "longitude": lon, "height": corner[2] + offset[2]})[0] for (lat, lon, _),
+        local = np.array([st.frame(origin, {"latitude": lat, "longitude": lon, "height": corner[2] + offset[2]})[0] for (lat, lon, _),
                           corner in zip(places, CORNERS)])
         np.testing.assert_allclose(got, local[np.array(TRIANGLES)], atol=1e-6)
 

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Sequences: files that SemanticKITTI's programs read, labels that name the owner of the light, birds as often seen as
 expected, the same bits from the manifest, and work that goes on after a kill."""
-import csv
 import json
 import os
 import pathlib
@@ -23,6 +22,7 @@ from avianlidar.apps._sequence import STATUSES, SUBSETS, TRUTH, Clutter
 from boxfiles import CORNERS, LOW, TRIANGLES, stl
 from echotools import bird as bird_of
 from exampletools import emptied
+from helpertools import rows_of
 
 EXAMPLE = pathlib.Path(os.environ["AVIANLIDAR_SOURCE_DIR"]) / "Examples" / "sequence"
 BOX = {"name": "box", "material": "Wall", "class": "car", "boxes": [[-1, 1, -2, 2, 0, 2]], "speed": 10.0, "every": 30,
@@ -50,11 +50,7 @@ def scenario_file(where, **changes):
 
 
 def truth_of(out):
-    rows = []
-    for path in sorted(out.glob("sequences/*/truth.csv")):
-        with open(path, newline="", encoding="utf-8") as stream:
-            rows += list(csv.DictReader(stream))
-    return rows
+    return [row for path in sorted(out.glob("sequences/*/truth.csv")) for row in rows_of(path)]
 
 
 def check_files(test, out, bird):

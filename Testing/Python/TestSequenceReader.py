@@ -2,6 +2,7 @@
 """A sequence as one time series: which scan at which time, poses, labels, boxes, and what is refused."""
 import ast
 import os
+import pathlib
 import shutil
 import unittest
 
@@ -35,8 +36,7 @@ class Sequence(InFolder):
         self.write("boxes/000001.txt", "bird 0.00 0.00 30 3 2 2.0 1.0 0.5 0 10000 1\n")
 
     def write(self, name, text):
-        with open(os.path.join(self.folder, name), "w", encoding="utf-8") as file:
-            file.write(text)
+        pathlib.Path(os.path.join(self.folder, name)).write_text(text, encoding="utf-8")
 
     def reader(self):
         reader = vtkAvianLidarSequenceReader()
@@ -116,8 +116,7 @@ class Sequence(InFolder):
 
     def test_the_macro_has_the_colours_of_the_classes(self):
         path = os.path.join(os.environ["AVIANLIDAR_SOURCE_DIR"], "Plugin", "Macros", "avian_lidar_class_colours.py")
-        with open(path, encoding="utf-8") as file:
-            macro = ast.parse(file.read())
+        macro = ast.parse(pathlib.Path(path).read_text(encoding="utf-8"))
         classes = next(ast.literal_eval(node.value) for node in macro.body
                        if isinstance(node, ast.Assign) and ast.unparse(node.targets[0]) == "CLASSES")
         self.assertEqual(classes, {label: (one.name, one.color[::-1]) for label, one in _labels.CLASSES.items()})

@@ -1,33 +1,17 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The documentation as a site: every link of every page leads somewhere, and Chromium shows its menu from the disk, without
-a network."""
-import html.parser
+"""The documentation as a site: it is made without a warning, and Chromium shows its menu from the disk, without a network. Links are
+TestDocumentation's."""
 import os
 import pathlib
 import shutil
 import subprocess
 import unittest
-import urllib.parse
 
 import exampletools
 from browser import Browser
 
 SITE = pathlib.Path(exampletools.OUTPUT) / "TestSite"
 MAKE = pathlib.Path(os.environ["AVIANLIDAR_SOURCE_DIR"]) / "Documentation" / "make_site.sh"
-
-
-class Page(html.parser.HTMLParser):
-    """Names of a page, and what it links to."""
-
-    def __init__(self, file):
-        super().__init__()
-        self.names, self.links = set(), set()
-        self.feed(file.read_text(encoding="utf-8"))
-
-    def handle_starttag(self, tag, attributes):
-        values = dict(attributes)
-        self.names.add(values.get("id"))
-        self.links |= {values[name] for name in ("href", "src") if values.get(name)}
 
 
 class Site(unittest.TestCase):
@@ -45,23 +29,6 @@ class Site(unittest.TestCase):
     def no_network_and_no_complaint(self, asked):
         self.assertEqual([address for address in asked if not address.startswith(("file:", "data:"))], [])
         self.assertEqual(self.browser.complaints(), [])
-
-    def test_links_lead_somewhere(self):
-        pages = {file.resolve(): Page(file) for file in SITE.rglob("*.html")}
-        self.assertGreater(len(pages), 50)
-        count = 0
-        for file, page in pages.items():
-            for link in page.links:
-                parts = urllib.parse.urlsplit(link)
-                if parts.scheme in ("http", "https", "data", "mailto"):
-                    continue
-                with self.subTest(page=file.name, link=link):
-                    count += 1
-                    target = (file.parent / urllib.parse.unquote(parts.path)).resolve() if parts.path else file
-                    self.assertTrue(target.is_file())
-                    if parts.fragment and target in pages:
-                        self.assertIn(urllib.parse.unquote(parts.fragment), pages[target].names)
-        self.assertGreater(count, 4000)
 
     def test_the_menu_leads_to_every_page(self):
         self.no_network_and_no_complaint(self.browser.open(SITE / "index.html"))

@@ -1,9 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Siting: outlines, weights, searches against brute force, coverage that is kept, the airport's reference curve, files, plans
 that are wrong."""
-import contextlib
 import gzip
-import io
 import itertools
 import json
 import math
@@ -21,10 +19,10 @@ import avianlidar as al
 import exampletools
 import TestCoverage
 from avianlidar import siting
-from avianlidar._command import main
 from avianlidar.apps._maps import Plan, read_plan
 from avianlidar.apps._sites import Sites
 from avianlidar.apps._surfaces import Surfaces, code_of, pierced
+from helpertools import error_of
 
 AIRPORT = pathlib.Path(exampletools.EXAMPLES) / "airport" / "scene"
 PLAN, SCENE = AIRPORT / "hongqiao.geojson", AIRPORT / "hongqiao.lidarscene.json"
@@ -388,11 +386,10 @@ class Plans(unittest.TestCase):
 
     def said(self, file):
         """What the command says of a plan that is refused before any site is looked at."""
-        words = io.StringIO()
-        with unittest.mock.patch.object(siting, "look", side_effect=AssertionError("looked")), contextlib.redirect_stderr(words):
-            self.assertEqual(main(["siting", str(file), "-o", str(self.folder / "out")]), 2)
-        self.assertEqual(words.getvalue().count("\n"), 1)
-        return words.getvalue()
+        with unittest.mock.patch.object(siting, "look", side_effect=AssertionError("looked")):
+            words = error_of("siting", file, "-o", self.folder / "out")
+        self.assertEqual(words.count("\n"), 1)
+        return words
 
     def test_what_is_wrong_is_named(self):
         lattice = {"spacing": 1500}

@@ -1,9 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Text that is not UTF-8 or holds a NUL, in files and in their names: no message is lost, no name is cut, and Python reads them all."""
 import os
-import pathlib
-import shutil
-import tempfile
 import unittest
 import warnings
 
@@ -11,20 +8,14 @@ import vtk
 
 import avianlidar as al
 from avianlidar import _pipeline, _suffixes, vtkAvianLidar as wrapped
-from echotools import Messages, box
+from echotools import InFolder, Messages, box
 from helpertools import WALL, same
 
 TRIANGLE = b"v 0 0 0\nv 1 0 0\nv 0 1 0\n"
 LATIN = "B\u00e4ume"  # in Latin-1 no UTF-8
 
 
-class Texts(unittest.TestCase):
-    def setUp(self):
-        self.folder = pathlib.Path(tempfile.mkdtemp())
-        self.addCleanup(shutil.rmtree, self.folder)
-        self.addCleanup(os.chdir, os.getcwd())
-        os.chdir(self.folder)
-
+class Texts(InFolder):
     def latin_name(self, name):
         """A path whose last part is in Latin-1."""
         return self.folder / os.fsdecode(name.encode("latin-1"))

@@ -1,19 +1,19 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Tracks: movers as the contract has them, trails, tracks of files and of lines, the bird that they are, and errors that name what is
 wrong. How birds fly is TestFlight's, what they are made of TestBird's (kernel); numbers out of range are TestBadInput's."""
-import os
-import tempfile
+import itertools
 import unittest
 
 import numpy as np
 import vtk
+from scipy.spatial.transform import Rotation
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 
 from avianlidar import Error, _scene
 from avianlidar._pipeline import update
 from avianlidar.vtkAvianLidar import vtkAvianLidarTracks
-from cloudtools import add_array
-from echotools import Messages, bird
+from cloudtools import add_array, cloud
+from echotools import InFolder, Messages, bird, given
 
 NAN = float("nan")
 PATTERNS = ("Crossings", "Circles", "Flock", "Approach")
@@ -26,10 +26,7 @@ FLAPS = {"flap_hinge", "flap_axis", "flap_amplitude", "flap_frequency", "flap_ph
 
 
 def tracks(**properties):
-    source = vtkAvianLidarTracks()
-    for name, value in properties.items():
-        getattr(source, "Set" + name)(*value if isinstance(value, tuple) else (value,))
-    return source
+    return given(vtkAvianLidarTracks(), **properties)
 
 
 def pattern(name):
@@ -57,8 +54,7 @@ def names_of(attributes):
 
 def rotated(q, points):
     """By a unit quaternion w, x, y, z."""
-    w, v = q[0], np.asarray(q[1:])
-    return points + 2 * np.cross(v, np.cross(v, points) + w * points)
+    return Rotation.from_quat(np.roll(q, -1)).apply(points)
 
 
 def placed(block, time):
@@ -79,13 +75,9 @@ def placed(block, time):
 
 def polyline(points, times=None, species=None, where="cell"):
     """One line for each list of points."""
-    data, cells, all_points = vtk.vtkPolyData(), vtk.vtkCellArray(), vtk.vtkPoints()
-    all_points.SetDataTypeToDouble()
+    data, cells, ids = cloud(np.concatenate(points)), vtk.vtkCellArray(), itertools.count()
     for line in points:
-        cells.InsertNextCell(len(line))
-        for point in line:
-            cells.InsertCellPoint(all_points.InsertNextPoint(point))
-    data.SetPoints(all_points)
+        cells.InsertNextCell(len(line), [next(ids) for _ in line])
     data.SetLines(cells)
     if times is not None:
         add_array(data, "time", np.array(times, dtype=float))
@@ -102,17 +94,11 @@ TWO_LINES = [[(0, 0, 5), (10, 0, 5), (20, 0, 5)], [(0, 0, 9), (0, 30, 9)]]
 TIMES = [0, 1, 2, 5, 7]
 
 
-class Tracks(unittest.TestCase):
-    def setUp(self):
-        temporary = tempfile.TemporaryDirectory()
-        self.addCleanup(temporary.cleanup)
-        self.folder = temporary.name
-
+class Tracks(InFolder):
     def file(self, content, name="own.csv"):
-        path = os.path.join(self.folder, name)
-        with open(path, "w", encoding="utf-8") as stream:
-            stream.write(content)
-        return path
+        path = self.folder / name
+        path.write_text(content, encoding="utf-8")
+        return str(path)
 
     def from_lines(self, data, **properties):
         source = tracks(Pattern=pattern("Lines"), **properties)
@@ -208,9 +194,7 @@ class Tracks(unittest.TestCase):
             self.assertEqual(len(movers(source)), good.GetNumberOfBirds())
 
     def test_bad_values_name_the_property(self):
-        for properties, words in (({"Pattern": 6}, "Pattern is 6"), ({"NumberOfBirds": 100001}, "NumberOfBirds is"),
-                                  ({"TimeRange": (1, 0)}, "TimeRange is"),
-                                  ({"Radius": -1}, "Radius is -1"), ({"Heights": (3, 2)}, "Heights is 3 to 2"), ({"Origin": (91, 0, 0)}, "Origin: "),
+        for properties, words in (({"TimeRange": (1, 0)}, "TimeRange is"), ({"Heights": (3, 2)}, "Heights is 3 to 2"), ({"Origin": (91, 0, 0)}, "Origin: "),
                                   ({"FirstObjectId": 2**31 - 5}, "FirstObjectId is"),
                                   ({"Species": "dodo"}, "Species is 'dodo'"),
                                   ({"SpeciesFileName": "/nowhere.csv"}, "SpeciesFileName /nowhere.csv"),

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Air that sends light back: walls and birds behind it, coverage, labels, and what is said of it. The lidar equation in each
 range unit and its noise are TestAir's (kernel)."""
-import contextlib
-import io
 import math
 import os
 import pathlib
@@ -14,7 +12,7 @@ import numpy as np
 from scipy import integrate, stats
 
 import avianlidar as al
-from avianlidar._command import main
+from helpertools import run
 
 sys.path.insert(0, os.path.join(os.environ["AVIANLIDAR_SOURCE_DIR"], "Examples", "weather"))
 from others import kept_in_view  # noqa: E402
@@ -116,16 +114,11 @@ class Words(unittest.TestCase):
             for words, wrong in (("fog:2000 rain:5", ""), ("snow:3", "weather 'snow:3'"),
                                  ("fog:-1", "weather 'fog:-1'"),
                                  ("fog:800 rain:1 haze:5000", "weather 'haze:5000' after 'fog:800'")):
-                out, error = io.StringIO(), io.StringIO()
-                with contextlib.redirect_stdout(out), contextlib.redirect_stderr(error):
-                    try:
-                        code = main(["scan", scene, "--sensor", "Search905", "--sensor-set", "azimuth_step=6", "-o",
-                                     os.path.join(folder, "a.vtp"), "--weather", *words.split()])
-                    except SystemExit as end:
-                        code = end.code
+                code, out, error = run("scan", scene, "--sensor", "Search905", "--sensor-set", "azimuth_step=6", "-o",
+                                       os.path.join(folder, "a.vtp"), "--weather", *words.split())
                 self.assertEqual(code, 2 if wrong else 0, words)
-                self.assertIn(wrong, error.getvalue())
-                self.assertEqual("of the air (object_id -2)" in out.getvalue(), not wrong)
+                self.assertIn(wrong, error)
+                self.assertEqual("of the air (object_id -2)" in out, not wrong)
 
 
 if __name__ == "__main__":

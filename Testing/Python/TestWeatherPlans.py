@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Weather in plans and reports: words and properties by hand give the same, years are weighted sums, METAR reports by known
 answers, errors."""
-import csv
 import json
 import math
 import os
@@ -21,7 +20,7 @@ from avianlidar.apps._air import extinction_of_rain
 from avianlidar.apps._maps import Plan, read_plan
 from avianlidar.apps._report import Report
 from avianlidar.apps._sites import OTHER_PLACES, Sites
-from helpertools import error_of
+from helpertools import error_of, rows_of
 from reporttools import quick
 
 HERE = pathlib.Path(os.environ.get("AVIANLIDAR_TEST_OUTPUT_DIR", "/tmp")) / "TestWeatherPlans"
@@ -111,8 +110,8 @@ class Year(unittest.TestCase):
         with quick():
             Report(read_plan(plan("report", year=YEAR, **question)), 2).write(HERE / "report.html")
         text = (HERE / "report.html").read_text(encoding="utf-8")
-        with open(HERE / "report_files" / "weather.csv", encoding="utf-8") as stream:
-            rows = {(row["weather"], row["region"]): float(row["detection_probability"]) for row in csv.DictReader(stream)}
+        rows = {(row["weather"], row["region"]): float(row["detection_probability"])
+                for row in rows_of(HERE / "report_files" / "weather.csv")}
         in_fog = Plan(read_plan(plan("fog", coverage={**TARGET}, weather=["fog:1000"], **question))).overall["detection_probability"]
         self.assertAlmostEqual(rows["visibility 1000 m", "map"], in_fog, delta=1e-6)
         self.assertGreater(rows["rain 0 mm/h", "map"], in_fog)

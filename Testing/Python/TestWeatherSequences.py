@@ -1,18 +1,15 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Weather in sequences: labels of drops, birds that air hides, media of the scene, and folders that are of one weather."""
-import csv
 import json
-import os
-import pathlib
-import shutil
 import unittest
 
 import numpy as np
 
 from avianlidar._command import main
+import helpertools
+from exampletools import emptied
 from helpertools import error_of
 
-HERE = pathlib.Path(os.environ["AVIANLIDAR_TEST_OUTPUT_DIR"]) / "TestWeatherSequences"
 HOUSE = {"version": 1, "lidar": {"position": [0, 0, 3]}, "objects": [
     {"name": "Ground", "class": "ground", "ground": {"size": 4000, "height": 0}, "material": "Wall"}]}
 SCENARIO = {"scene": "field.lidarscene.json", "number_of_scans": 2, "scans_per_sequence": 2, "seed": 5,
@@ -21,8 +18,7 @@ SCENARIO = {"scene": "field.lidarscene.json", "number_of_scans": 2, "scans_per_s
 
 
 def rows_of(out):
-    with open(out / "sequences" / "00" / "truth.csv", newline="", encoding="utf-8") as stream:
-        return list(csv.DictReader(stream))
+    return helpertools.rows_of(out / "sequences" / "00" / "truth.csv")
 
 
 def labels_of(out):
@@ -32,9 +28,7 @@ def labels_of(out):
 class Sequences(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        cls.home = HERE
-        shutil.rmtree(cls.home, ignore_errors=True)
-        cls.home.mkdir(parents=True)
+        cls.home = emptied("TestWeatherSequences")
         (cls.home / "field.lidarscene.json").write_text(json.dumps(HOUSE), encoding="utf-8")
         cls.file = cls.scenario("field")
         for name, words in (("clear", []), ("fog", ["fog:400"]), ("rain", ["rain:10"])):

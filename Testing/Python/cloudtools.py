@@ -8,7 +8,7 @@ import vtk
 from vtk.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 
 from avianlidar import _suffixes, vtkAvianLidar as al
-from echotools import Messages, array, scan, sensor, town
+from echotools import Messages, array, copy_of, given, scan, sensor, town
 
 # The package's own table, so that a new writer is in every test of all: {"LAS": ".las", ...}, the first suffix of each.
 WRITERS = {}
@@ -41,12 +41,12 @@ def add_array(data, name, values, unit=None):
     data.GetPointData().AddArray(holder)
 
 
-def cloud(points):
-    """Points without anything else."""
-    data = vtk.vtkPolyData()
+def cloud(points, kind=vtk.vtkPolyData):
+    """Points without anything else; single precision stays so."""
+    data = kind()
     holder = vtk.vtkPoints()
-    holder.SetDataTypeToDouble()
-    holder.SetData(numpy_to_vtk(np.ascontiguousarray(points, dtype=float).reshape(-1, 3), deep=1))
+    points = np.asarray(points)
+    holder.SetData(numpy_to_vtk(points.astype(np.result_type(points, np.float32)).reshape(-1, 3), deep=1))
     data.SetPoints(holder)
     return data
 
@@ -76,8 +76,7 @@ def echoes(origin=ORIGIN, orientation=(30.0, 2.0, 1.0), columns=90, channels=4, 
     beams.SetHalfBeamwidth(0.03)  # wide enough for several returns
     filter_ = scan(town(), beams, **settings)
     filter_.Update()
-    data = vtk.vtkPolyData()
-    data.DeepCopy(filter_.GetOutput())
+    data = copy_of(filter_.GetOutput())
     if origin:
         add_field(data, "geodetic_origin", origin, "deg deg m")
     classes = ("terminal", "ground", "runway", "fence", "no such word")
@@ -110,10 +109,7 @@ def write(writer, data, name, **properties):
     """Writes and returns the warnings; nothing may go wrong, and nothing but the file may be left."""
     before = set(os.listdir("."))
     heard = Messages(writer)
-    writer.SetInputData(data)
-    writer.SetFileName(name)
-    for key, value in properties.items():
-        getattr(writer, "Set" + key)(value)
+    given(writer, InputData=data, FileName=name, **properties)
     assert writer.Write() == 1 and not heard.errors, heard.errors
     left = {one for one in set(os.listdir(".")) - before if ".part" in one}
     assert os.path.exists(name) and not left, left
@@ -123,8 +119,7 @@ def write(writer, data, name, **properties):
 def assert_refused(test, writer, data, name, words):
     """Writing it fails with one error that says so, and leaves no file."""
     heard = Messages(writer)
-    writer.SetInputData(data)
-    writer.SetFileName(name)
+    given(writer, InputData=data, FileName=name)
     test.assertEqual(writer.Write(), 0)
     test.assertEqual(len(heard.errors), 1, heard.errors)
     test.assertIn(words, heard.errors[0])
@@ -135,10 +130,7 @@ def read(name, said=(), **properties):
     """The cloud in a file; nothing may be said, or one warning that names the file and has these words."""
     reader = al.vtkAvianLidarPointCloudReader()
     heard = Messages(reader)
-    reader.SetFileName(name)
-    for key, value in properties.items():
-        getattr(reader, "Set" + key)(value)
-    reader.Update()
+    given(reader, FileName=name, **properties).Update()
     assert not heard.errors and len(heard.warnings) == bool(said), (heard.errors, heard.warnings)
     assert all(words in heard.warnings[0] for words in (*said, *([name] if said else ()))), heard.warnings
     data = reader.GetOutput()

@@ -84,11 +84,23 @@ def town(seed=1, count=40):
     return blocks
 
 
+def copy_of(data):
+    """A copy to change, or to keep beyond the next run."""
+    copy = data.NewInstance()
+    copy.DeepCopy(data)
+    return copy
+
+
+def given(algorithm, **properties):
+    """An algorithm with properties."""
+    for name, value in properties.items():
+        getattr(algorithm, "Set" + name)(value)
+    return algorithm
+
+
 def bird(**properties):
     """The surface of a bird."""
-    source = al.vtkAvianLidarBirdSource()
-    for name, value in properties.items():
-        getattr(source, "Set" + name)(*value if isinstance(value, tuple) else (value,))
+    source = given(al.vtkAvianLidarBirdSource(), **properties)
     update(source)
     return source.GetOutput()
 
@@ -114,9 +126,7 @@ def scan(surfaces, beams=None, **properties):
         echo.SetInputConnection(1, surfaces.GetOutputPort())
     else:
         echo.SetInputData(1, surfaces)
-    for name, value in properties.items():
-        getattr(echo, "Set" + name)(value)
-    return echo
+    return given(echo, **properties)
 
 
 def array(data, name):
@@ -130,9 +140,9 @@ def arrays(data):
     result = {name: array(data, name) for name in names}
     if data.GetNumberOfPoints():
         result["points"] = numpy_support.vtk_to_numpy(data.GetPoints().GetData())
-    if "return_number" in result:
-        order = np.lexsort((result["return_number"], result["beam_id"]))
-        result = {name: values[order] for name, values in result.items()}
+    keys = [result[name] for name in ("return_number", "beam_id") if name in result]
+    if keys:
+        result = {name: values[np.lexsort(keys)] for name, values in result.items()}
     return result
 
 
@@ -142,9 +152,14 @@ COSTS = ("candidates", "nodes_visited", "rays_traced")
 
 def assert_same_bits(one, two, without=()):
     """The same echoes or reports, bit for bit (NaN included)."""
-    first, second = ({name: values for name, values in arrays(data).items() if name not in without} for data in (one, two))
-    assert first.keys() == second.keys(), (first.keys(), second.keys())
-    for name, values in first.items():
+    assert_same(arrays(one), arrays(two), without)
+
+
+def assert_same(first, second, without=()):
+    """The same arrays of two dictionaries."""
+    assert first.keys() - without == second.keys() - without, (first.keys(), second.keys())
+    for name in first.keys() - without:
+        values = first[name]
         assert values.dtype == second[name].dtype, name
         assert values.shape == second[name].shape, (name, values.shape, second[name].shape)
         assert values.tobytes() == second[name].tobytes(), f"{name} differs"

@@ -10,8 +10,10 @@ import subprocess
 import sys
 
 import numpy as np
-from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.util.numpy_support import vtk_to_numpy  # noqa: F401  # for the tests of the examples, as arrays
 from vtkmodules.vtkIOXML import vtkXMLPolyDataReader
+
+from echotools import arrays  # noqa: F401
 
 EXAMPLES = os.path.join(os.environ["AVIANLIDAR_SOURCE_DIR"], "Examples")
 OUTPUT = os.environ["AVIANLIDAR_TEST_OUTPUT_DIR"]
@@ -37,14 +39,6 @@ def emptied(*names):
     return path
 
 
-def arrays(echoes):
-    """Point arrays by name, and the places as `points`."""
-    data = echoes.GetPointData()
-    result = {data.GetArrayName(i): vtk_to_numpy(data.GetArray(i)) for i in range(data.GetNumberOfArrays())}
-    result["points"] = vtk_to_numpy(echoes.GetPoints().GetData())
-    return result
-
-
 def strings(data, name):
     array = data.GetFieldData().GetAbstractArray(name)
     return [array.GetValue(i) for i in range(array.GetNumberOfValues())]
@@ -63,8 +57,7 @@ def read(file):
 
 def read_table(file):
     """{column: {row: text}} of a Markdown table."""
-    with open(file, encoding="utf-8") as stream:
-        return parse_table(stream.read().splitlines())
+    return parse_table(pathlib.Path(file).read_text(encoding="utf-8").splitlines())
 
 
 def parse_table(lines):

@@ -6,17 +6,14 @@ from vtk.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 
 from avianlidar import vtkAvianLidar as al
 from cloudtools import WRITERS, add_field, echoes
-from echotools import box, scan, sensor
+from echotools import box, copy_of, given, scan, sensor
 
 NAN, INF = float("nan"), float("inf")
 PLACE_OF_VALUE = 3  # of the one value of an array that is spoilt
 
 
 def make(name, **properties):
-    algorithm = getattr(al, "vtkAvianLidar" + name)()
-    for key, value in properties.items():
-        getattr(algorithm, "Set" + key)(value)
-    return algorithm
+    return given(getattr(al, "vtkAvianLidar" + name)(), **properties)
 
 
 def writer(name, file="echoes", **properties):
@@ -34,12 +31,6 @@ def surfaces():
     surface = box((50, 0, 0), (1, 60, 10), "Wall", "wall")
     add_field(surface, "object_classes", ["fence"])
     return surface
-
-
-def copy(data):
-    result = data.NewInstance()
-    result.DeepCopy(data)
-    return result
 
 
 def attributes(data, where):
@@ -65,7 +56,7 @@ SPOILERS = {
 
 def spoil(data, where, name, how):
     """A copy with that array, or the points, changed: a key of SPOILERS, "missing", or a value (or tuple) for one element."""
-    data = copy(data)
+    data = copy_of(data)
     if where == "points":
         data.GetPoints().SetPoint(PLACE_OF_VALUE, how, 0, 0)
         return data

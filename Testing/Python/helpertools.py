@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Surfaces and comparisons for the tests of the helpers of the package."""
 import contextlib
+import csv
 import io
 import os
 import pty
@@ -48,10 +49,25 @@ def from_terminal(test, work, typed="", **options):
     return text.decode(), process.returncode
 
 
+def run(*words):
+    """Exit status of a command, and what it writes to the streams of output and of errors."""
+    from avianlidar._command import main  # not for those who use no command
+    with contextlib.redirect_stdout(io.StringIO()) as out, contextlib.redirect_stderr(io.StringIO()) as err:
+        try:
+            code = main([str(word) for word in words])
+        except SystemExit as end:
+            code = end.code
+    return code, out.getvalue(), err.getvalue()
+
+
 def error_of(*words):
     """What a command writes to the error stream where it ends with status 2."""
-    from avianlidar._command import main  # not for those who use no command
-    with contextlib.redirect_stderr(io.StringIO()) as stream:
-        code = main([str(word) for word in words])
-    assert code == 2, stream.getvalue()
-    return stream.getvalue()
+    code, _, said = run(*words)
+    assert code == 2, said
+    return said
+
+
+def rows_of(file):
+    """The rows of a table with a head, {column: text} each."""
+    with open(file, newline="", encoding="utf-8") as stream:
+        return list(csv.DictReader(stream))

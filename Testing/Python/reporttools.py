@@ -2,7 +2,6 @@
 """Reports that are made in seconds, of the airport's plan, and their tables."""
 import base64
 import contextlib
-import csv
 import json
 import pathlib
 import sys
@@ -11,6 +10,7 @@ import unittest.mock
 import exampletools
 from avianlidar._command import main
 from avianlidar.apps import _pictures, _report, reach
+import helpertools
 
 PIXEL = base64.b64decode("iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAYAAAAfFcSJAAAADUlEQVR42mNk+M9Q"
                          "DwADhgGAWjR9awAAAABJRU5ErkJggg==")
@@ -59,8 +59,7 @@ def report(name, wanted, *words, pictures=False):
 
 
 def rows_of(file, **wanted):
-    with open(HERE / file, encoding="utf-8") as stream:
-        return [row for row in csv.DictReader(stream) if all(row[name] == value for name, value in wanted.items())]
+    return [row for row in helpertools.rows_of(HERE / file) if all(row[name] == value for name, value in wanted.items())]
 
 
 def same_numbers(test, browser, file):

@@ -1,14 +1,15 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """What the tests of the scene reader share: reading with messages caught, and measures of triangles."""
 import json
+import math
 import os
+import pathlib
 
 import numpy as np
-from vtkmodules.util.misc import calldata_type
 from vtkmodules.util.numpy_support import vtk_to_numpy
-from vtkmodules.util.vtkConstants import VTK_STRING
 
 from avianlidar.vtkAvianLidar import vtkAvianLidarSceneReader
+from echotools import Messages
 
 SOURCE = os.environ["AVIANLIDAR_SOURCE_DIR"]
 SHIPPED = os.path.join(SOURCE, "Examples", "airport", "scene", "hongqiao.lidarscene.json")
@@ -18,10 +19,9 @@ class Read:
     """A scene, read: output, its blocks by name, and what was said."""
 
     def __init__(self, file, piece=None):
-        self.errors, self.warnings = [], []
         self.reader = vtkAvianLidarSceneReader()
-        self._listen(self.reader)
-        self._listen(self.reader.GetExecutive(), errors=[])
+        heard = Messages(self.reader)
+        self.errors, self.warnings = heard.errors, heard.warnings
         self.reader.SetFileName(file)
         if piece is None:
             self.reader.Update()
@@ -30,16 +30,6 @@ class Read:
         self.output = self.reader.GetOutput()
         self.names = self.strings("object_names")
         self.blocks = [self.output.GetBlock(i) for i in range(self.output.GetNumberOfBlocks())]
-
-    def _listen(self, subject, errors=None):
-        keep = {"ErrorEvent": self.errors if errors is None else errors, "WarningEvent": self.warnings}
-
-        @calldata_type(VTK_STRING)
-        def listen(_, event, text):
-            keep[event].append(text)
-
-        for event in keep:
-            subject.AddObserver(event, listen)
 
     def strings(self, name, data=None):
         array = (data or self.output).GetFieldData().GetAbstractArray(name)
@@ -89,9 +79,23 @@ def is_closed(triangles):
 def write_scene(folder, name, scene):
     """Write a scene file and return its name."""
     file = os.path.join(folder, name + ".lidarscene.json")
-    with open(file, "w", encoding="utf-8") as stream:
-        if isinstance(scene, str):
-            stream.write(scene)
-        else:
-            json.dump(scene, stream)
+    pathlib.Path(file).write_text(scene if isinstance(scene, str) else json.dumps(scene), encoding="utf-8")
     return file
+
+
+def frame(origin, place):
+    """Position and rotation of the tangent frame of a place in that of the origin, by ECEF (WGS84, the textbook's formula)."""
+    def ecef(p):
+        a, f = 6378137.0, 1 / 298.257223563
+        lat, lon = math.radians(p["latitude"]), math.radians(p["longitude"])
+        n = a / math.sqrt(1 - f * (2 - f) * math.sin(lat) ** 2)
+        return np.array([(n + p["height"]) * math.cos(lat) * math.cos(lon), (n + p["height"]) * math.cos(lat) * math.sin(lon),
+                         (n * (1 - f) ** 2 + p["height"]) * math.sin(lat)])
+
+    def axes(p):
+        lat, lon = math.radians(p["latitude"]), math.radians(p["longitude"])
+        return np.array([[-math.sin(lon), math.cos(lon), 0],
+                         [-math.sin(lat) * math.cos(lon), -math.sin(lat) * math.sin(lon), math.cos(lat)],
+                         [math.cos(lat) * math.cos(lon), math.cos(lat) * math.sin(lon), math.sin(lat)]])
+
+    return axes(origin) @ (ecef(place) - ecef(origin)), axes(origin) @ axes(place).T
