@@ -1,8 +1,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Documentation/glossary.md has every array of the echo filter's outputs, and every name in it is there with its unit."""
+"""Documentation/arrays.md is the table of vtkAvianLidarNames.h and has every array of the echo filter's outputs with its unit; what
+Documentation/glossary.md names exists."""
 import os
 import pathlib
 import re
+import sys
 import unittest
 
 from vtkmodules.vtkCommonCore import vtkDataArray
@@ -14,9 +16,15 @@ from avianlidar._scene import COEFFICIENTS
 from helpertools import WALL
 
 SOURCE = pathlib.Path(os.environ["AVIANLIDAR_SOURCE_DIR"])
+sys.path.insert(0, str(SOURCE / "CMake"))
+import arrays_page  # noqa: E402
+
 ROWS = [[cell.strip() for cell in row.split("|")] for row in re.findall(
     r"^\| (?!paper|-)(.*) \|$", (SOURCE / "Documentation" / "glossary.md").read_text(encoding="utf-8"), re.M)]
-NAMED = {name: unit.replace("–", "") for row in ROWS
+UNITS = {name: unit for name, unit, _, _ in arrays_page.rows()}
+# Names of the glossary; those that are not in the header have their units there.
+GLOSSARY = {name for row in ROWS for name in re.findall(r"`([^`]+)`", row[2])}
+NAMED = {name: unit.replace("–", "") for row in ROWS if len(row) > 3
          for names in [re.findall(r"`([^`]+)`", row[2])]
          for name, unit in zip(names, row[3].split(", ") * (1 if "," in row[3] else len(names)))}
 CLASSES = [getattr(wrapped, name) for name in dir(wrapped) if name.startswith("vtkAvianLidar")]
@@ -63,23 +71,31 @@ class Glossary(unittest.TestCase):
                 self.assertEqual(beams.units.get(name, ""), unit, name)
         self.assertTrue(echoes["intensity"].max() <= 255 and beams["laser_id"].min() == 0 and 1e5 < beams["timestamp"].max() < 2e6)
 
+    def test_the_table_of_arrays_is_current(self):
+        """Else run CMake/arrays_page.py."""
+        page = arrays_page.PAGE.read_text(encoding="utf-8")
+        self.assertEqual(arrays_page.with_table(page), page)
+        declared = re.findall(r'\bName \w+\{ "', arrays_page.HEADER.read_text(encoding="utf-8"))
+        self.assertEqual(len(arrays_page.rows()), len(declared))
+        self.assertEqual(len(UNITS), len(declared))
+
     def test_every_array_and_every_name(self):
         """Arrays have the unit of the page; field data are there, or are properties; what the page names exists."""
         clouds, advised = list(outputs()), of_advisor()
+        units = {**NAMED, **UNITS}
         for name, unit in [*advised.items(), *((name, cloud.units.get(name, "")) for cloud in clouds for name in cloud)]:
-            self.assertEqual(NAMED.get(name), unit, name)
+            self.assertEqual(units.get(name), unit, name)
         for name, unit in ((name, unit) for cloud in clouds for name, unit in cloud.field_units.items()):
             prop = "".join(word.title() for word in name.split("_"))
-            self.assertTrue(name in NAMED or any(hasattr(one, "Set" + prop) for one in CLASSES), name)
-            self.assertEqual(NAMED.get(name, unit), unit, name)
-        header = (SOURCE / "Filters" / "Private" / "Common" / "vtkAvianLidarNames.h").read_text(encoding="utf-8")
-        declared = dict(re.findall(r'constexpr Name \w+\{ "(\w+)", "([^"]*)" \};', header))
-        units = {**declared, **advised, "semantic_label": ""}  # the last: by the reader
+            self.assertTrue(name in units or any(hasattr(one, "Set" + prop) for one in CLASSES), name)
+            self.assertEqual(units.get(name, unit), unit, name)
+        there = {**UNITS, **advised, "semantic_label": ""}  # the last: by the reader
         others = set(COEFFICIENTS).union({"in clutter"}, *(cloud.fields for cloud in clouds))
-        self.assertGreater(len(NAMED), 90)
+        self.assertGreater(len(GLOSSARY), 90)
         for name, unit in NAMED.items():
-            self.assertEqual(unit, units.get(name, unit), name)
-            self.assertTrue(name in units or name in others or any(hasattr(one, "Set" + name) or hasattr(one, name) for one in CLASSES), name)
+            self.assertEqual(unit, there.get(name, unit), name)
+        for name in GLOSSARY:
+            self.assertTrue(name in there or name in others or any(hasattr(one, "Set" + name) or hasattr(one, name) for one in CLASSES), name)
 
 
 if __name__ == "__main__":

@@ -1,0 +1,48 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Writes the table of Documentation/arrays.md: names, units, places and meanings of arrays, as
+Filters/Private/Common/vtkAvianLidarNames.h declares them.
+
+    arrays_page.py
+
+In that header a comment `// Where.` stands above each group, and `/// meaning` above each name."""
+import pathlib
+import re
+
+SOURCE = pathlib.Path(__file__).resolve().parents[1]
+HEADER = SOURCE / "Filters" / "Private" / "Common" / "vtkAvianLidarNames.h"
+PAGE = SOURCE / "Documentation" / "arrays.md"
+BEGIN, END = "<!-- table: arrays -->\n", "<!-- end -->"
+
+
+def rows():
+    """[(name, unit, where, meaning)] in the order of the header."""
+    found, where, meaning = [], "", []
+    for line in HEADER.read_text(encoding="utf-8").partition("struct Name\n")[2].splitlines():
+        declared = re.fullmatch(r'constexpr Name \w+\{ "(\w+)", "([^"]*)" \};', line)
+        if declared:
+            if not (where and meaning):
+                raise ValueError(f"{HEADER.name}: {declared[1]} needs a group and a meaning")
+            found.append((*declared.groups(), where, " ".join(meaning)))
+            meaning = []
+        elif line.startswith("/// "):
+            meaning.append(line[4:])
+        elif line.startswith("// "):
+            where = line[3:].rstrip(".")
+    return found
+
+
+def table():
+    lines = ["| name | unit | where | meaning |", "|---|---|---|---|"]
+    lines += [f"| `{name}` | {unit or '–'} | {where} | {meaning.replace(' * ', ' · ')} |" for name, unit, where, meaning in rows()]
+    return "\n".join(lines) + "\n"
+
+
+def with_table(page):
+    """The page with the table of today. @param page its text"""
+    before, begin, rest = page.partition(BEGIN)
+    _, end, after = rest.partition(END)
+    return before + begin + table() + end + after
+
+
+if __name__ == "__main__":
+    PAGE.write_text(with_table(PAGE.read_text(encoding="utf-8")), encoding="utf-8")
