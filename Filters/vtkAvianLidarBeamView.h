@@ -3,35 +3,26 @@
  * @class vtkAvianLidarBeamView
  * @brief What one beam of a scan sees: its cone, the surfaces in it, and the share of each.
  *
- * Traces the beam BeamId again, as the echo filter does it, but without noise, limits and paths
- * over two reflections, and sums its samples by triangle. Inputs are those of
- * vtkAvianLidarEchoFilter (beams, surfaces, movers); so are the properties, of which those of
- * noise, returns and constraints do nothing here.
+ * Traces the beam BeamId again as vtkAvianLidarEchoFilter does, without noise, limits and second
+ * reflections, and sums its samples by triangle. Inputs and properties are those of the echo
+ * filter; noise, returns and constraints have no effect.
  *
- * **Output port 0**, surfaces (vtkPolyData): of each triangle that the beam sees (or quadrilateral
- * of two triangles with consecutive numbers), the part within the beam's outline and between its
- * nearest and farthest range, which others may hide in part, in scene coordinates. Cell data:
- * `solid_angle_share` (of the beam's solid angle; of a beam that is not round, of the area of its
- * plane), `energy_share` (of all energy that the beam receives), `energy_received` (J, direct, from
- * all ranges), `distance_m` and `incidence_angle` (deg; means over the light that arrives),
- * `object_id`, `material_id`.
+ * - Output port 0, surfaces (vtkPolyData): the part of each triangle, or of two that form a
+ *   quadrilateral, within the beam's outline and between its nearest and farthest range; others may
+ *   hide some of it. Cell arrays: `solid_angle_share` (of a beam that is not round: share of the
+ *   area of its plane), `energy_share`, `energy_received`, `distance_m`, `incidence_angle`,
+ *   `object_id`, `material_id`.
+ * - Output port 1, beam (vtkPolyData): its cone, to the farthest surface that it sees, or to
+ *   `display_length` of the beams (1000 m without it) if it sees none.
+ * - Output port 2, shares (vtkTable): a row for each pair of object and material, brightest first,
+ *   with `object`, `material`, `nearest_m`, `farthest_m` and the arrays above. The last row, `no
+ *   surface`, is the sky. Both shares sum to one; energy_share is 0 if nothing is received.
  *
- * **Output port 1**, beam (vtkPolyData): its cone from the lidar to the farthest surface that it
- * sees, or `display_length` of the beams (1000 m without it) where it sees none.
+ * Shares are exact but for rounding where few triangles enter the beam, and else sampled by about
+ * 32 RaysPerBeam rays. A `beam_id` that does not exist is an error that names BeamId. No beams:
+ * empty outputs.
  *
- * **Output port 2**, shares (vtkTable): a row for each pair of `object_id` and `material_id`, those
- * that return most first: `object`, `material` (names, if they have some), the ids, the shares and
- * the energy as above, `distance_m`, `nearest_m` and `farthest_m`. The last row, `no surface`, with
- * the ids -1, is the sky. Both shares sum to one over the rows; energy_share is 0 if nothing is
- * received.
- *
- * Field data of all: those of the echo filter, and `beam_id`.
- *
- * Shares are exact, but for rounding, where few triangles enter the beam; else sampled, with some
- * 32 times RaysPerBeam rays (BeamSamples). The sum of the shares and of the sky is one whatever the
- * error. Deterministic, as the echo filter is.
- *
- * A beam that is not there is an error that names BeamId. No beams: empty outputs.
+ * Example, with the inputs of an echo filter: `view->SetBeamId(123)`. Documentation: paraview.md.
  *
  * @sa vtkAvianLidarEchoFilter
  */
@@ -50,9 +41,7 @@ public:
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
   ///@{
-  /**
-   * The `beam_id` of the beam to look along, as echoes have it. Default 0.
-   */
+  /** The `beam_id` of the beam to look along, as echoes have it. Default 0. */
   vtkSetMacro(BeamId, vtkIdType);
   vtkGetMacro(BeamId, vtkIdType);
   ///@}

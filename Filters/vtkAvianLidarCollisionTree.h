@@ -1,46 +1,34 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class vtkAvianLidarCollisionTree
- * @brief Builds the collision detection tree of a scene once, so that any number of scans can share
- * it.
+ * @brief Builds the collision detection tree of a scene once, so that many scans can share it.
  *
- * Implements the collision detection tree of "Research on Ground Object Echo Simulation of Avian
- * Lidar", Photonics 2024, 11(2), 153: Sec. 3.1, Eq. 14, Algorithm 1, with its three tree structures
- * and three bounding volumes, and a surface area heuristic beside them. Every combination gives the
- * same echoes, bit for bit; they differ in cost.
+ * Implements the tree of "Research on Ground Object Echo Simulation of Avian Lidar", Photonics
+ * 2024, 11(2), 153: Sec. 3.1, Eq. 14, Algorithm 1, with its three structures and three bounding
+ * volumes, and a surface area heuristic besides. All give the same echoes, bit for bit, at
+ * different cost.
  *
- * Passes: merge the surfaces (see below), find a tree that came with them and fits, otherwise build
- * one with several threads, attach it. It uses no VTK locator and no vtkSMPTools.
+ * - Input port 0: vtkPolyData, or a composite of it, each leaf an object. Polygons and strips are
+ *   triangulated; vertices, lines and ghost cells are dropped. Optional: cell arrays `object_id`,
+ *   `material_id` and the coefficients of vtkAvianLidarMaterial; field data `object_names`,
+ *   `object_classes`, `material_names`. Without coefficients the material is Wall, with a warning.
+ * - Output port 0: one vtkPolyData of all triangles with these arrays. The field array
+ *   `tree_checksum` holds the tree by reference: copies within the process keep it, files do not.
+ * - Output port 1: the bounding volumes of DisplayLevel as surfaces, with the cell arrays
+ *   `node_id`, `triangles` and `depth`.
  *
- * Input port 0: vtkPolyData, or a composite data set of vtkPolyData (each leaf an object). Polygons
- * and strips are triangulated; vertices, lines and ghost cells are dropped. Cell arrays read if
- * present: `object_id`, `material_id`, and the coefficients of vtkAvianLidarMaterial; field data
- * `object_names`, `object_classes`, `material_names`. Where coefficients are missing the material
- * is Wall, with one warning per changed scene.
+ * Object ids are kept if every leaf brings its own and no two leaves share one; else they are given
+ * in leaf order. MPI ranks that ask for their own pieces exchange surfaces; rank 0 has the output.
  *
- * Output port 0: one vtkPolyData of triangles, points double, metres, with cell arrays `object_id`,
- * `material_id` (int), coefficients (double, 1), field arrays `object_names`, `object_classes` (if
- * any surface has them), `material_names` (string) and `tree_checksum` (one unsigned 64-bit value)
- * whose information holds the tree by reference under COLLISION_TREE(). The tree so survives
- * shallow and deep copies within one process, and is dropped in files and other processes, which
- * build it again.
+ * A bad input or option is an error with empty outputs. No triangles: empty outputs. The same input
+ * gives the same tree. It uses no VTK locator and no vtkSMPTools.
  *
- * Output port 1: the bounding volumes of DisplayLevel as a surface to look at; cell arrays
- * `node_id`, `triangles` (below the node) and `depth` (of the node: leaves above the level appear,
- * too), int.
+ * @code{.cpp}
+ * tree->SetInputConnection(reader->GetOutputPort());
+ * echoes->SetSurfacesConnection(tree->GetOutputPort());
+ * @endcode
  *
- * MPI ranks (pvserver, pvbatch) work together when the controller has several processes and
- * each asks for its own piece of as many: surfaces are exchanged, and each rank builds the tree.
- * Rank 0 then has the merged surfaces as output; that of the others has no triangles, but by
- * reference what is known of them, for the echo filter. An error on one rank is one on all.
- *
- * Object ids are kept when every leaf brings its own and no two leaves share one; otherwise they
- * are given in leaf order.
- *
- * Bad input (coordinates that are not finite, only some of the coefficients, or out of range,
- * arrays of another kind or shape, identifiers that are no whole numbers of 32 bits,
- * blocks that are not vtkPolyData, options out of range) gives an error and empty outputs. No
- * triangles: empty outputs, no error. Deterministic: the same input gives the same tree.
+ * Documentation: collision-detection.md, parallel.md.
  *
  * @sa vtkAvianLidarEchoFilter, vtkAvianLidarMaterial, vtkAvianLidarSceneReader
  */
@@ -83,10 +71,9 @@ public:
 
   ///@{
   /**
-   * How a node's triangles are parted: SPLIT_RULE_HALVES (first and second half of the list, the
-   * paper's BVH), SPLIT_RULE_MEDIAN (median along axes that alternate with depth, the paper's k-D),
-   * SPLIT_RULE_PRINCIPAL_PLANE (plane normal to the principal axis, the paper's BSP),
-   * SPLIT_RULE_SURFACE_AREA_HEURISTIC (binned). Default: SPLIT_RULE_SURFACE_AREA_HEURISTIC.
+   * How a node's triangles are parted: halves of the list (the paper's BVH), median along
+   * alternating axes (k-D), principal plane (BSP), or the binned surface area heuristic. Default:
+   * SPLIT_RULE_SURFACE_AREA_HEURISTIC.
    */
   vtkSetMacro(SplitRule, int);
   vtkGetMacro(SplitRule, int);
@@ -101,8 +88,7 @@ public:
 
   ///@{
   /**
-   * The volume around a node's triangles: BOUNDING_VOLUME_AABB (axis-aligned box),
-   * BOUNDING_VOLUME_OBB (oriented box) or BOUNDING_VOLUME_SPHERE. Default: BOUNDING_VOLUME_AABB.
+   * Volume around a node: axis-aligned box, oriented box or sphere. Default: BOUNDING_VOLUME_AABB.
    */
   vtkSetMacro(BoundingVolume, int);
   vtkGetMacro(BoundingVolume, int);
@@ -112,49 +98,36 @@ public:
   ///@}
 
   ///@{
-  /**
-   * Most triangles a leaf may hold, at least 1 (1 is Algorithm 1 as printed). Default: 4.
-   */
+  /** Most triangles of a leaf, at least 1 (1 is Algorithm 1 as printed). Default: 4. */
   vtkSetMacro(MaximumLeafSize, int);
   vtkGetMacro(MaximumLeafSize, int);
   ///@}
 
   ///@{
   /**
-   * Level of the tree whose bounding volumes appear on port 1; the root is level 0. Leaves above
-   * the level appear too, so that the volumes together always cover the scene. A negative value
-   * shows nothing. Default: 0.
+   * Level whose bounding volumes, and leaves above it, appear on port 1; the root is 0. Negative:
+   * none. Default: 0.
    */
   vtkSetMacro(DisplayLevel, int);
   vtkGetMacro(DisplayLevel, int);
   ///@}
 
-  /**
-   * Nodes, leaves and depth of the tree of the last execution; 0 before, and for an empty scene.
-   */
+  /// Nodes, leaves and depth of the tree of the last execution; 0 before, and for an empty scene.
   int GetNumberOfNodes() const;
   int GetNumberOfLeaves() const;
   int GetDepth() const;
 
-  /**
-   * How many trees this filter has built; one that came with the input and fits is not built again.
-   */
+  /// Trees that this filter has built; one that came with the input and fits is not built again.
   int GetNumberOfBuilds() const;
 
-  /// Bytes of surfaces that this rank has given to the others so far, for tests and
-  /// measurements.
+  /// Bytes of surfaces that this rank has given to the others so far, for tests and measurements.
   double GetNumberOfBytesSent() const;
 
-  /**
-   * Key under which the information of the field array `tree_checksum` holds the tree.
-   */
+  /// Key under which the information of the field array `tree_checksum` holds the tree.
   static vtkInformationObjectBaseKey* COLLISION_TREE();
 
   ///@{
-  /**
-   * The processes that may work together. Default: the global controller when the filter was
-   * made; null: this process works alone.
-   */
+  /** Processes that may work together; null: this one alone. Default: the global controller. */
   void SetController(vtkMultiProcessController* controller);
   vtkGetObjectMacro(Controller, vtkMultiProcessController);
   ///@}

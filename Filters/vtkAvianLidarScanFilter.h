@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class vtkAvianLidarScanFilter
- * @brief What filters share that look at surfaces along the beams of a scan: the two inputs, the
- * properties of tracing and lighting, and what is kept from one execution to the next.
+ * @brief Base of filters that look at surfaces along the beams of a scan: the two inputs, settings
+ * of tracing and lighting, and what is kept from one execution to the next.
  *
- * Input port 0 are the beams, input port 1 the surfaces or their collision tree: see
- * vtkAvianLidarEchoFilter.
+ * Input port 0 is the beams, input port 1 the surfaces or their collision tree, as
+ * vtkAvianLidarEchoFilter describes them. Paper: "Research on Ground Object Echo Simulation of
+ * Avian Lidar", Photonics 2024, 11(2), 153.
  *
  * @sa vtkAvianLidarEchoFilter, vtkAvianLidarCoverage
  */
@@ -72,17 +73,14 @@ public:
 
   ///@{
   /**
-   * Fidelity by name: PRESET_CUSTOM (the properties as they are), PRESET_DRAFT (a fast look),
-   * PRESET_STANDARD (what most want), PRESET_REFERENCE (converged). All but PRESET_CUSTOM override
-   * RaysPerBeam, Sampling, NumberOfReflections and NumberOfConnections at execution; they write no
-   * property, and field data hold what was used. All three are SAMPLING_STRATIFIED, with 2
-   * reflections:
+   * Fidelity by name. At execution all but PRESET_CUSTOM override RaysPerBeam, NumberOfConnections,
+   * Sampling (stratified) and NumberOfReflections (2); field data hold what was used:
    *
    * - PRESET_DRAFT: 25 rays, 0 connections
    * - PRESET_STANDARD: 200 rays, 2 connections
    * - PRESET_REFERENCE: 3200 rays, 8 connections
    *
-   * Errors and times are measured in Documentation/results/accuracy.md. Default: PRESET_CUSTOM.
+   * Errors and times: Documentation/results/accuracy.md. Default: PRESET_CUSTOM.
    */
   vtkSetMacro(Preset, int);
   vtkGetMacro(Preset, int);
@@ -94,9 +92,8 @@ public:
 
   ///@{
   /**
-   * N, rays per beam (Eq. 1-3), each of energy Qs/N, with BEAM_SAMPLES_RAYS. With
-   * BEAM_SAMPLES_CELLS the density of a beam's grid, of about 32 N rays in steps, a million at most
-   * (Documentation/beam-samples.md), and of paths over two reflections. 1 to 1000000. Default: 100.
+   * N, rays per beam (Eq. 1-3), 1 to 1000000. With BEAM_SAMPLES_CELLS it sets the density of a
+   * beam's grid, about 32 N rays, and of paths over two reflections. Default: 100.
    */
   vtkSetMacro(RaysPerBeam, int);
   vtkGetMacro(RaysPerBeam, int);
@@ -104,16 +101,11 @@ public:
 
   ///@{
   /**
-   * How the direct echo of a beam is found; see Documentation/beam-samples.md:
+   * How the direct echo of a beam is found (Documentation/beam-samples.md):
    *
-   * - BEAM_SAMPLES_CELLS: a beam that few triangles enter (at most 100, up to 200 from 5,000
-   *   RaysPerBeam on) is integrated over the polygons that it sees, without rays; its
-   *   `energy_std_error` is a bound of the error (1e-6 to 1e-3 of the energy, more where lines of
-   *   equal range are curved). A beam that more enter is divided into cells with a dense grid of
-   *   rays (3,217 for RaysPerBeam of 32 to 226), and more where a small object (by `object_id`)
-   *   would have fewer than 256 (a 25th below 32). Mirror paths start where one surface shows
-   *   another, connections from a quarter of RaysPerBeam rays, at least 16.
-   * - BEAM_SAMPLES_RAYS: RaysPerBeam rays of each beam are traced, as in the paper.
+   * - BEAM_SAMPLES_CELLS: by integration over the polygons that the beam sees where few triangles
+   *   enter it, else by cells with a dense grid of rays
+   * - BEAM_SAMPLES_RAYS: by RaysPerBeam rays, as in the paper
    *
    * Default: BEAM_SAMPLES_CELLS.
    */
@@ -126,8 +118,8 @@ public:
   ///@{
   /**
    * How the RaysPerBeam rays are drawn: SAMPLING_MONTE_CARLO (independent, the paper) or
-   * SAMPLING_STRATIFIED (two independent rays in each of N/2 compact cells of equal solid angle; at
-   * an edge the error of six times as many random rays). Default: SAMPLING_STRATIFIED.
+   * SAMPLING_STRATIFIED (two in each of N/2 cells of equal solid angle). Default:
+   * SAMPLING_STRATIFIED.
    */
   vtkSetMacro(Sampling, int);
   vtkGetMacro(Sampling, int);
@@ -136,17 +128,15 @@ public:
   ///@}
 
   ///@{
-  /**
-   * Seed of all random numbers, any int. Default: 0.
-   */
+  /** Seed of all random numbers, any int. Default: 0. */
   vtkSetMacro(Seed, int);
   vtkGetMacro(Seed, int);
   ///@}
 
   ///@{
   /**
-   * Atmospheric attenuation coefficient (Eq. 9), 1/m, 0 to 1e30. Counts where Visibility is 0.
-   * Default: 3.5e-5 (a clear day; 8.8e-5 is haze of 23 km visibility at 905 nm).
+   * Attenuation of the air (Eq. 9), 1/m, 0 to 1e30, used if Visibility is 0. Default: 3.5e-5
+   * (clear).
    */
   vtkSetMacro(AttenuationCoefficient, double);
   vtkGetMacro(AttenuationCoefficient, double);
@@ -154,9 +144,9 @@ public:
 
   ///@{
   /**
-   * Visibility, m, above 0 to 1e9: the air's attenuation at the lidar's wavelength follows by the
-   * law of Kruse and Kim (Documentation/reflectance.md). 0: AttenuationCoefficient counts. Default:
-   * 0 of vtkAvianLidarEchoFilter, 23000 (clear) of vtkAvianLidarCoverage.
+   * Visibility, m, to 1e9: sets the attenuation at the lidar's wavelength by the law of Kruse and
+   * Kim (Documentation/reflectance.md). 0: AttenuationCoefficient counts. Default: 0 of
+   * vtkAvianLidarEchoFilter, 23000 (clear) of vtkAvianLidarCoverage.
    */
   vtkSetMacro(Visibility, double);
   vtkGetMacro(Visibility, double);
@@ -164,11 +154,8 @@ public:
 
   ///@{
   /**
-   * Whether the air of Visibility sends light back, by its extinction-to-backscatter ratio: 18.8 sr
-   * of fog (a visibility up to 1000 m), 50 sr of haze (assumed). It needs a sensor with an
-   * aperture; what a receiver makes of it is its threshold law
-   * (vtkAvianLidarBeamSource::SetThresholdLaw()). Of no account where Visibility is 0. Default:
-   * off.
+   * Whether the air of Visibility sends light back (Documentation/weather.md). It needs a sensor
+   * with an aperture, and does nothing if Visibility is 0. Default: off.
    */
   vtkSetMacro(AirBackscatter, bool);
   vtkGetMacro(AirBackscatter, bool);
@@ -177,10 +164,7 @@ public:
 
   ///@{
   /**
-   * Rain rate in millimetres per hour, 0 to 500. Rain weakens light in addition to the air and
-   * sends it back, drop by drop, as Marshall and Palmer distribute them, each like twice its area
-   * (geometric optics), with 20 sr (assumed). What drops diffract into the view, as wide as the
-   * beam, is not lost. Default: 0, none.
+   * Rain rate, mm/h, 0 to 500. Rain weakens light and sends it back, besides the air. Default: 0.
    */
   vtkSetMacro(RainRate, double);
   vtkGetMacro(RainRate, double);
@@ -188,10 +172,8 @@ public:
 
   ///@{
   /**
-   * How a surface reflects: REFLECTANCE_MODEL_LAMBERT_BLINN_PHONG (Eq. 5-8, the paper),
-   * REFLECTANCE_MODEL_PHONG or REFLECTANCE_MODEL_MICROFACET (the peers of Fig. 10), or
-   * REFLECTANCE_MODEL_OREN_NAYAR: rough surfaces, which return light also at grazing incidence
-   * (roughness of their materials; formulas in Documentation/reflectance.md). Default:
+   * How surfaces reflect: the paper's model (Eq. 5-8), its peers Phong and microfacet (Fig. 10), or
+   * Oren and Nayar's for rough surfaces (Documentation/reflectance.md). Default:
    * REFLECTANCE_MODEL_LAMBERT_BLINN_PHONG.
    */
   vtkSetMacro(ReflectanceModel, int);
@@ -209,17 +191,15 @@ public:
   ///@}
 
   ///@{
-  /**
-   * Reflections followed, 1 (direct echoes only) or 2 (Sec. 3.4). Default: 2.
-   */
+  /** Reflections followed, 1 (direct echoes only) or 2 (Sec. 3.4). Default: 2. */
   vtkSetMacro(NumberOfReflections, int);
   vtkGetMacro(NumberOfReflections, int);
   ///@}
 
   ///@{
   /**
-   * Look for second reflection points only among the triangles that the cone may meet, instead of
-   * the whole scene. The echoes are the same, only the work differs. Default: on.
+   * Look for second reflection points only among triangles in the beam's cone; same echoes.
+   * Default: on.
    */
   vtkSetMacro(BeamConstraint, bool);
   vtkGetMacro(BeamConstraint, bool);
@@ -227,10 +207,7 @@ public:
   ///@}
 
   ///@{
-  /**
-   * Drop paths that carry less than the LightEnergyThreshold (paper, Sec. 3.4). The default
-   * threshold loses nothing that matters. Default: on.
-   */
+  /** Drop paths that carry less than the LightEnergyThreshold (paper, Sec. 3.4). Default: on. */
   vtkSetMacro(LightEnergyConstraint, bool);
   vtkGetMacro(LightEnergyConstraint, bool);
   vtkBooleanMacro(LightEnergyConstraint, bool);
@@ -238,12 +215,8 @@ public:
 
   ///@{
   /**
-   * Fraction of the lower energy limit that a range unit of a beam may lose by
-   * LightEnergyConstraint, a pure number, 0 to 1e8. Direct echoes and paths over two reflections
-   * are dropped if they carry less than this fraction of the limit over the number of paths of
-   * their beam. Above 1 echoes get lost. No effect with the constraint off, or with
-   * LIGHT_ENERGY_THRESHOLD_LIMIT. What other values cost and gain is measured in
-   * Documentation/results/paper-figures.md. Default: 1e-3.
+   * Fraction of the lower energy limit that a range unit may lose by LightEnergyConstraint, 1, 0 to
+   * 1e8. Above 1 echoes get lost. Not used with LIGHT_ENERGY_THRESHOLD_LIMIT. Default: 1e-3.
    */
   vtkSetMacro(LightEnergyFraction, double);
   vtkGetMacro(LightEnergyFraction, double);
@@ -251,14 +224,10 @@ public:
 
   ///@{
   /**
-   * What LightEnergyConstraint compares a path with: LIGHT_ENERGY_THRESHOLD_SHARE_OF_LIMIT (see
-   * LightEnergyFraction; no range unit loses more than that), or LIGHT_ENERGY_THRESHOLD_LIMIT:
-   * paths over two reflections that carry less than the lower energy limit are not followed, direct
-   * echoes are left alone (paper, Sec. 3.4). Such paths may be many, and together matter: field
-   * data `light_energy_constraint_bound`. What a path carries depends on how finely light is cut
-   * into rays (1/N of the pulse): with the paper's 100 rays
-   * no path over two reflections comes back in the scenes that were measured. Meant for comparison
-   * with the paper. Default: LIGHT_ENERGY_THRESHOLD_SHARE_OF_LIMIT.
+   * What LightEnergyConstraint compares a path with: its share of LightEnergyFraction, or the lower
+   * energy limit itself (paper, Sec. 3.4), for comparison with the paper: no path over two
+   * reflections may be left (Documentation/echoes.md). Default:
+   * LIGHT_ENERGY_THRESHOLD_SHARE_OF_LIMIT.
    */
   vtkSetMacro(LightEnergyThreshold, int);
   vtkGetMacro(LightEnergyThreshold, int);
@@ -277,10 +246,9 @@ public:
    * What goes down the tree together; the echoes are the same:
    *
    * - BATCH_COLLISION_DETECTION_RAYS (Off): every ray by itself
-   * - BATCH_COLLISION_DETECTION_GROUPS (On): neighbouring beams, then their rays in packets; the
-   *   fastest
-   * - BATCH_COLLISION_DETECTION_BEAMS: every beam by itself to the set of triangles that it may
-   *   meet, then all its rays against that set (the paper, Sec. 3.2)
+   * - BATCH_COLLISION_DETECTION_GROUPS (On): neighbouring beams, then packets of rays; the fastest
+   * - BATCH_COLLISION_DETECTION_BEAMS: every beam by itself, then all its rays (the paper, Sec.
+   *   3.2)
    *
    * Default: BATCH_COLLISION_DETECTION_GROUPS.
    */
@@ -303,11 +271,8 @@ public:
 
   ///@{
   /**
-   * Leave out nothing of what the beam report calls `skipped`: every path is followed whatever
-   * LightEnergyConstraint says, no beam is skipped, and noise (if Noise is on) is modelled even
-   * where it cannot matter. The echoes are the same within `skipped_bound` of their beam; it is
-   * slower, and to check just that. It adds no rays.
-   * Default: off.
+   * Leave out nothing of what the beam report calls `skipped`. The echoes are the same within
+   * `skipped_bound`; it is slower and serves to check that. It adds no rays. Default: off.
    */
   vtkSetMacro(FullModel, bool);
   vtkGetMacro(FullModel, bool);
@@ -316,9 +281,8 @@ public:
 
   ///@{
   /**
-   * M, diffuse connections of each ray from which they start (N, with BEAM_SAMPLES_CELLS N/4 and at
-   * least 16) to others; at least 0, more than there are others means all. Default: 2, as accurate
-   * as 8 (Documentation/results/accuracy.md).
+   * M, diffuse connections of a ray that starts some, at least 0. Rays that start some: N, with
+   * cells N/4 and at least 16. Default: 2, as accurate as 8.
    */
   vtkSetMacro(NumberOfConnections, int);
   vtkGetMacro(NumberOfConnections, int);
@@ -326,9 +290,8 @@ public:
 
   ///@{
   /**
-   * Threads, at least 0. 0: OpenMP's choice (all cores, or OMP_NUM_THREADS); where several MPI
-   * ranks work together, this rank's share of the cores of its node. Never changes the echoes.
-   * Default: 0.
+   * Threads, at least 0; echoes do not depend on it. 0, the default: OpenMP's choice (all cores, or
+   * OMP_NUM_THREADS), and with several MPI ranks this rank's share of its node.
    */
   vtkSetMacro(NumberOfThreads, int);
   vtkGetMacro(NumberOfThreads, int);
@@ -336,50 +299,36 @@ public:
 
   ///@{
   /**
-   * Most memory for what is kept from one execution to the next, MiB, at least 0: hits and paths of
-   * beams, and energies in range units where noise matters. Beams that do not fit are traced again.
-   * Not counted: beams and surfaces as read, a tree built here, patterns of rays (some MiB a
-   * thread), and about 120 bytes a beam. Default: 1024.
+   * Most memory for what is kept between executions, MiB, at least 0. Beams that do not fit are
+   * traced again. Beams and surfaces as read, a tree built here, patterns of rays (some MiB a
+   * thread) and about 120 bytes a beam are not counted. Default: 1024.
    */
   vtkSetMacro(MaximumCacheSize, int);
   vtkGetMacro(MaximumCacheSize, int);
   ///@}
 
   ///@{
-  /**
-   * Connect the surfaces (port 1).
-   */
+  /** Input port 1, the surfaces. */
   void SetSurfacesConnection(vtkAlgorithmOutput* output) { this->SetInputConnection(1, output); }
   void SetSurfacesData(vtkDataObject* surfaces) { this->SetInputData(1, surfaces); }
   ///@}
 
-  /**
-   * Rays (primary, mirror, visibility) traced by the last execution, by all ranks together; 0 when
-   * it only lit what was known.
-   */
+  /// Rays (primary, mirror, visibility) that the last execution traced, of all ranks; 0 if it only
+  /// lit.
   double GetNumberOfTracedRays() const;
 
-  /**
-   * Beams whose surfaces the last execution looked for, by all ranks together; 0 when all were
-   * known. Movers are not counted.
-   */
+  /// Beams whose surfaces the last execution looked for, of all ranks, movers not counted; 0 if all
+  /// were known.
   double GetNumberOfTracedBeams() const;
 
-  /**
-   * How many collision trees this filter had to build because none that fits came with the
-   * surfaces.
-   */
+  /// Collision trees that this filter has built, because none that fits came with the surfaces.
   int GetNumberOfTreeBuilds() const;
 
-  /// Bytes of surfaces that this rank has given to the others so far, for tests and
-  /// measurements.
+  /// Bytes of surfaces that this rank has given to the others so far, for tests and measurements.
   double GetNumberOfBytesSent() const;
 
   ///@{
-  /**
-   * The processes that may work together. Default: the global controller when the filter was
-   * made; null: this process works alone.
-   */
+  /** Processes that may work together; null: this one alone. Default: the global controller. */
   void SetController(vtkMultiProcessController* controller);
   vtkGetObjectMacro(Controller, vtkMultiProcessController);
   ///@}

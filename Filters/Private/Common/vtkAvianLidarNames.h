@@ -234,7 +234,7 @@ constexpr Name Candidates{ "candidates", "1" };
 constexpr Name NodesVisited{ "nodes_visited", "1" };
 /// rays traced
 constexpr Name RaysTraced{ "rays_traced", "1" };
-/// what the model left out, a sum of 1, 2, 4, 8 and 16 (echoes.md) (int)
+/// what the model left out, a sum of 1, 2, 4, 8 and 16 (model-needs.md) (int)
 constexpr Name Skipped{ "skipped", "" };
 /// most by which a range unit so differs from the full model
 constexpr Name SkippedBound{ "skipped_bound", "J" };
