@@ -1,35 +1,29 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class vtkAvianLidarMedium
- * @brief Air that weakens light and sends it back, in a part of the scene: ground fog, a bank, a
+ * @brief Air that weakens light and sends it back in a part of the scene: ground fog, a bank, a
  * shower, the crown of a tree.
  *
- * **Input** (optional, vtkPolyData): the closed surface that bounds the medium, for SHAPE_SURFACE,
- * in metres. **Output** (vtkPolyData): the surface that bounds the medium, to be drawn translucent:
- * a box, an ellipsoid, and of a layer or of air everywhere a box of DisplaySize. Its field data
- * make it a medium for whatever looks at surfaces (echo filter, coverage, collision tree), where it
- * is no surface: combine it with the scene by Group Datasets. `medium` is its description (text,
- * JSON: kind, numbers, shape), `object_names` its Name, `object_classes` "air", or "vegetation" of
- * foliage.
+ * - Input port 0 (optional, for SHAPE_SURFACE): vtkPolyData, the closed surface that bounds the
+ *   medium, m; its triangles may be wound either way.
+ * - Output port 0: vtkPolyData, the surface that bounds the medium, to be drawn translucent. Its
+ *   field data make it a medium for all filters that look at surfaces: `medium` (description as
+ *   JSON), `object_names` and `object_classes` ("air", or "vegetation" of foliage).
  *
- * Numbers follow from Kind and one quantity:
+ * Kind says what the medium is, one quantity how dense: Visibility of haze, fog and snow, RainRate
+ * of drizzle and rain, LeafAreaDensity of foliage, Extinction and BackscatterRatio of KIND_CUSTOM.
+ * All numbers, their sources and what is assumed: Documentation/weather.md,
+ * Filters/Media/media.json.
  *
- * - KIND_HAZE, KIND_FOG: Visibility (Koschmieder; at the lidar's wavelength by the law of Kruse and
- *   Kim), extinction-to-backscatter ratio 50 and 18.8 sr
- * - KIND_DRIZZLE, KIND_RAIN: RainRate (Joss et al. 1968; Marshall and Palmer 1948), 20 sr, drops
- *   that are few
- * - KIND_SNOW: Visibility, 20 sr, flakes
- * - KIND_FOLIAGE: LeafAreaDensity; leaves are Lambertian discs and face all ways; light comes back
- *   through the gaps that let it in, as far as these are wider than the aperture; no threshold
- *   follows it, and its echoes belong to an object
- * - KIND_CUSTOM: Extinction and BackscatterRatio, beyond number
+ * A bad value or an open surface is an error that names the key of the description, with empty
+ * output; setters keep any value. Each rank asks for all of the surface.
  *
- * Sources of all numbers, and which are assumed, stand in Filters/Media/media.json and
- * Documentation/weather.md.
+ * Combine the output with the scene, in ParaView by Group Datasets:
  *
- * **Bad values** are an error that names the key of the description, with empty output; setters
- * keep what they are given. An open surface is an error; its triangles may be wound either way.
- * Each rank asks for all of the surface, as a piece of it is open.
+ * @code{.cpp}
+ * fog->SetVisibility(300);
+ * scene->SetBlock(1, fog->GetOutput());
+ * @endcode
  *
  * @sa vtkAvianLidarEchoFilter, vtkAvianLidarCoverage, vtkAvianLidarSceneReader
  */
@@ -72,9 +66,7 @@ public:
   };
 
   ///@{
-  /**
-   * What fills the air; see above. Default KIND_FOG.
-   */
+  /** What fills the air. Default KIND_FOG. */
   vtkSetMacro(Kind, int);
   vtkGetMacro(Kind, int);
   void SetKindToHaze() { this->SetKind(KIND_HAZE); }
@@ -87,50 +79,41 @@ public:
   ///@}
 
   ///@{
-  /**
-   * Meteorological visibility in haze, fog or snow, m, 0.001 to 1e9. Default 300.
-   */
+  /** Visibility in haze, fog or snow, m, 0.001 to 1e9. Default 300. */
   vtkSetMacro(Visibility, double);
   vtkGetMacro(Visibility, double);
   ///@}
 
   ///@{
-  /**
-   * Of rain or drizzle, mm/h, 1e-6 to 500. Default 10.
-   */
+  /** Rate of rain or drizzle, mm/h, 1e-6 to 500. Default 10. */
   vtkSetMacro(RainRate, double);
   vtkGetMacro(RainRate, double);
   ///@}
 
   ///@{
   /**
-   * One-sided leaf area for each volume, m2/m3, 1e-6 to 1000. Crowns have some 0.3 to 3. Default 1
-   * (assumed).
+   * One-sided leaf area per volume, m2/m3, 1e-6 to 1000; crowns have 0.3 to 3. Default 1 (assumed).
    */
   vtkSetMacro(LeafAreaDensity, double);
   vtkGetMacro(LeafAreaDensity, double);
   ///@}
 
   ///@{
-  /**
-   * mu, 1/m, 0 to 1e30, of KIND_CUSTOM. Default 0.01.
-   */
+  /** Extinction mu of KIND_CUSTOM, 1/m, 0 to 1e30. Default 0.01. */
   vtkSetMacro(Extinction, double);
   vtkGetMacro(Extinction, double);
   ///@}
 
   ///@{
-  /**
-   * S, extinction over backscatter, sr, 0.001 to 1e9, of KIND_CUSTOM. Default 18.8.
-   */
+  /** Extinction over backscatter S of KIND_CUSTOM, sr, 0.001 to 1e9. Default 18.8. */
   vtkSetMacro(BackscatterRatio, double);
   vtkGetMacro(BackscatterRatio, double);
   ///@}
 
   ///@{
   /**
-   * Share of the drops or leaves that are others from scan to scan, 0 to 1; -1: as the kind has it
-   * (1 of drops and flakes, 0.3 of leaves, assumed). Haze and fog have none. Default -1.
+   * Share of drops or leaves that change from scan to scan, 1, 0 to 1; -1, the default: by the kind
+   * (1 of drops and flakes, 0.3 of leaves, assumed). Haze and fog have none.
    */
   vtkSetMacro(RenewedShare, double);
   vtkGetMacro(RenewedShare, double);
@@ -138,9 +121,8 @@ public:
 
   ///@{
   /**
-   * Where the medium is: SHAPE_EVERYWHERE; SHAPE_LAYER between Bottom and Top, and fading above by
-   * Softness; SHAPE_BOX and SHAPE_ELLIPSOID of Lengths about Center, turned by Heading;
-   * SHAPE_SURFACE inside the closed surface of the input. Default SHAPE_LAYER.
+   * Where the medium is: everywhere; in a layer between Bottom and Top; in a box or ellipsoid of
+   * Lengths about Center, turned by Heading; inside the surface of the input. Default SHAPE_LAYER.
    */
   vtkSetMacro(Shape, int);
   vtkGetMacro(Shape, int);
@@ -152,52 +134,41 @@ public:
   ///@}
 
   ///@{
-  /**
-   * Heights of a layer, m, finite, Bottom below Top. Default -1000 and 20.
-   */
+  /** Lower limit of a layer, m, below Top. Default -1000. */
   vtkSetMacro(Bottom, double);
   vtkGetMacro(Bottom, double);
+  /** Upper limit of a layer, m. Default 20. */
   vtkSetMacro(Top, double);
   vtkGetMacro(Top, double);
   ///@}
 
   ///@{
-  /**
-   * Height over which a layer fades to 1/e above its top, m, 0 to 1e6; 0: it ends there. Default 5.
-   */
+  /** Height over which a layer fades to 1/e above its top, m, 0 to 1e6. Default 5. */
   vtkSetMacro(Softness, double);
   vtkGetMacro(Softness, double);
   ///@}
 
   ///@{
-  /**
-   * Middle of a box or an ellipsoid, m (x east, y north, z up). Default (0, 0, 0).
-   */
+  /** Middle of a box or an ellipsoid, m. Default (0, 0, 0). */
   vtkSetVector3Macro(Center, double);
   vtkGetVector3Macro(Center, double);
   ///@}
 
   ///@{
-  /**
-   * Whole lengths of a box or an ellipsoid, m, 2e-6 to 2e7. Default (100, 100, 20).
-   */
+  /** Whole lengths of a box or an ellipsoid, m, 2e-6 to 2e7. Default (100, 100, 20). */
   vtkSetVector3Macro(Lengths, double);
   vtkGetVector3Macro(Lengths, double);
   ///@}
 
   ///@{
-  /**
-   * Direction in which the second of the Lengths points, degrees from north (y), clockwise. Default
-   * 0.
-   */
+  /** Direction of the second of the Lengths, deg from north, clockwise. Default 0. */
   vtkSetMacro(Heading, double);
   vtkGetMacro(Heading, double);
   ///@}
 
   ///@{
   /**
-   * Velocity of the medium, m/s; it is where the other properties say at the time 0 of the beams.
-   * Default (0, 0, 0).
+   * Velocity, m/s; the medium is where it is said to be at time 0 of the beams. Default (0, 0, 0).
    */
   vtkSetVector3Macro(Velocity, double);
   vtkGetVector3Macro(Velocity, double);
@@ -205,17 +176,15 @@ public:
 
   ///@{
   /**
-   * Name of the medium, in messages, and of foliage among the objects; empty: that of its block, as
-   * of any surface. Default "medium".
+   * Name of the medium in messages, of foliage among the objects; empty: of its block. Default
+   * "medium".
    */
   vtkSetMacro(Name, std::string);
   vtkGetMacro(Name, std::string);
   ///@}
 
   ///@{
-  /**
-   * Side, m, of what is drawn of a layer or of air everywhere. More than 0, default 2000.
-   */
+  /** Side of what is drawn of a layer or of air everywhere, m, above 0. Default 2000. */
   vtkSetMacro(DisplaySize, double);
   vtkGetMacro(DisplaySize, double);
   ///@}

@@ -3,67 +3,39 @@
  * @class vtkAvianLidarTracker
  * @brief Tracks of birds from point clouds that come one after the other.
  *
- * Each execution takes one cloud, a scan. Its points are grouped into clusters, each cluster goes
- * to at most one track, each track takes at most one cluster, and what remains begins new tracks.
+ * Each execution takes one cloud, a whole scan: points are grouped into clusters, each track takes
+ * at most one cluster, and the others begin new tracks. Motion is filtered by Kalman filters of
+ * constant velocity or of a coordinated turn (Bar-Shalom, Li and Kirubarajan, Estimation with
+ * Applications to Tracking and Navigation, 2001); clusters are assigned one to one by least cost.
+ * Method, times and limits: Documentation/tracks.md, The tracker.
  *
- * **Input** (port 0): vtkPolyData, a cloud: points in metres, whose vertices do not matter. Point
- * arrays, all optional, one component: `is_clutter` (points where it is not 0 are left out),
- * `timestamp` (us: when a point was measured; else all have the cloud's time), `distance_std_error`
- * (m, of the range; else RangeError). Field data, optional: `position` (m, of the sensor; wins over
- * SensorPosition), `half_beamwidth` (rad; wins over HalfBeamwidth).
+ * - Input port 0: vtkPolyData, points in metres. Optional point arrays: `is_clutter` (points with
+ *   other values than 0 are left out), `timestamp` (us), `distance_std_error` (m). Optional field
+ *   data: `position`, `half_beamwidth`.
+ * - Output port 0, tracks: vtkPolyData, a polyline for each track, a vertex for one of a single
+ *   position (these first), by `track_id`. Point arrays: `time`, `velocity` (0 at the first
+ *   position), `position_covariance`, `number_of_echoes`. Cell arrays: `track_id`, `confirmed`,
+ *   `ended`, `hits`.
+ * - Output port 1, points: the input with `track_id` and `track_confirmed`.
+ * - Field data of both: `time` and the settings in snake case.
  *
- * **Time** of a cloud, s: DATA_TIME_STEP of the input; else field data `TimeValue`; else the start
- * of its `revolution`; else that of the cloud before and 1, unless the data are the same, not
- * modified since. Steps of a revolution that sweeps have the time of its start. A cloud of the same
- * time as the last one replaces it, with the settings of now: nothing is counted twice. A cloud of
- * an earlier time empties the memory, with a warning. Clouds are whole scans: a track without a
- * cluster in a cloud was missed. Timestamps that do not lie after all of the cloud before
- * (timestamps that begin anew in each cloud) are not used, with a warning.
+ * The time of a cloud is DATA_TIME_STEP of the input, else the field data `TimeValue`, else the
+ * start of its `revolution`, else 1 s after the cloud before. The same time again replaces the last
+ * cloud; an earlier time empties the memory, with a warning. Timestamps that do not all lie after
+ * the cloud before are not used, with a warning.
  *
- * **Output port 0** (vtkPolyData), the tracks: a polyline for each through its positions as
- * estimated, a vertex for one with a single position; first the tracks of one position, then the
- * others, by `track_id`. Point arrays: `time` (s), `velocity` (3, m/s; 0 at the first position,
- * when nothing is known), `position_covariance` (6, m2: xx, yy, zz, xy, yz, xz, as VTK's symmetric
- * tensors), `number_of_echoes` (int, points of the cluster). Cell arrays: `track_id` (int, from 0,
- * never used again until the memory is emptied), `confirmed`, `ended` (unsigned char), `hits` (int,
- * scans with a cluster).
+ * Bad settings, points and arrays are an error with empty outputs; the memory stays. An empty cloud
+ * is a scan in which all tracks are missed. The tracks have the same bits for any order of the
+ * points. Of several ranks with a piece of the cloud each, rank 0 has the tracks, each its own
+ * points.
  *
- * **Output port 1** (vtkPolyData): the input, with the point arrays `track_id` (int; -1: none) and
- * `track_confirmed` (unsigned char).
+ * @code{.cpp}
+ * tracker->SetInputConnection(echoes->GetOutputPort(0));
+ * for (int scan = 0; scan < 30; ++scan)
+ *   tracker->UpdateTimeStep(2.0 * scan);
+ * @endcode
  *
- * Field data of both: `time` (s, of the cloud) and the settings in snake case.
- *
- * **Method.** *Clusters*: two points belong together if they are at most ClusterDistance +
- * ClusterAngle times their mean range apart; a cluster is whatever hangs together so. Its position
- * and time are the means. *Errors* of a position: along the line of sight RangeError; across it
- * that of a target that lies anywhere within the beam, half_beamwidth range / 2 along each axis; in
- * all directions TargetExtent; squares are added and divided by the number of points. *Motion*: a
- * Kalman filter of constant velocity with white noise acceleration, or an extended one of a
- * coordinated turn, whose horizontal velocity turns at an unknown rate (textbook forms: Y.
- * Bar-Shalom, X. R. Li and T. Kirubarajan, Estimation with Applications to Tracking and Navigation,
- * 2001). A new track's velocity is normal about 0, so wide that its gate reaches what MaximumSpeed
- * and MaximumClimbRate reach. *Gate*: a cluster may belong to a track if the square of its distance
- * from the predicted position, in standard deviations, d2, is at most the quantile GateProbability
- * of chi square of three degrees. *Assignment*: one to one, so that the sum of d2 + ln det S (S:
- * covariance of the difference; minus twice the log likelihood but for a constant) is least; a
- * track without a cluster costs the quantile and the largest ln det S of the scan, no less than any
- * pair. *Life*: a cluster of no track begins one. It is confirmed once ConfirmHits of its last
- * ConfirmScans scans had a cluster. Before, it ends after ConfirmScans - ConfirmHits + 1 misses in
- * a row and is forgotten; then after MaximumMisses, and stays in the output for KeepTime.
- *
- * **Limits.** Positions are means of echoes, which lie on the axes of beams. Two birds in one
- * cluster are one. A bird that crosses the azimuth where revolutions begin may be in one scan
- * twice: the second time begins a track. Memory holds the tracks of the last scans, at most
- * HistoryLength positions each, and those that ended within KeepTime.
- *
- * **Bad input**: settings beyond their range, points or arrays that are not finite or not numbers,
- * arrays without one value per point are an error with empty outputs; the memory is as before. An
- * empty cloud is a scan in which all tracks are missed.
- *
- * **Determinism**: the same bits for any order of the points. On several ranks, each of which has a
- * piece of the cloud, all know all points; rank 0 has the tracks, each its own points.
- *
- * @sa vtkAvianLidarEchoFilter, vtkAvianLidarTracks (which makes flights to be simulated)
+ * @sa vtkAvianLidarClutterFilter, vtkAvianLidarEchoFilter, vtkAvianLidarTracks
  */
 #ifndef vtkAvianLidarTracker_h
 #define vtkAvianLidarTracker_h
@@ -93,43 +65,42 @@ public:
 
   ///@{
   /**
-   * Points of one cluster are at most so far apart: ClusterDistance, m (0 to 1000; default 1.5),
-   * and ClusterAngle, deg (0 to 20; default 0.6, more than the diagonal of a grid of 0.375 deg),
-   * times their range.
+   * Largest distance within a cluster, m, 0 to 1000, besides ClusterAngle times the range. Default
+   * 1.5.
    */
   vtkSetMacro(ClusterDistance, double);
   vtkGetMacro(ClusterDistance, double);
+  /**
+   * Largest angle within a cluster, deg, 0 to 20. Default 0.6, above the diagonal of 0.375 deg
+   * cells.
+   */
   vtkSetMacro(ClusterAngle, double);
   vtkGetMacro(ClusterAngle, double);
   ///@}
 
   ///@{
-  /**
-   * The sensor, for clouds that do not say it: standard error of a range, m (0.001 to 1000; default
-   * 0.5); half of the beam's divergence, rad (0 to 1; default 0.0056); position, m (default: the
-   * origin).
-   */
+  /** Standard error of ranges, m, 0.001 to 1000, for points without their own. Default 0.5. */
   vtkSetMacro(RangeError, double);
   vtkGetMacro(RangeError, double);
+  /** Half of the beam's divergence, rad, 0 to 1, for clouds without it. Default 0.0056. */
   vtkSetMacro(HalfBeamwidth, double);
   vtkGetMacro(HalfBeamwidth, double);
+  /** Position of the sensor, m, for clouds without it. Default (0, 0, 0). */
   vtkSetVector3Macro(SensorPosition, double);
   vtkGetVector3Macro(SensorPosition, double);
   ///@}
 
   ///@{
   /**
-   * How far echoes lie from the middle of what they belong to, rms along each axis, m. 0.001 to
-   * 1000; default 0.2 (assumed).
+   * Rms distance of echoes from the target's middle, along each axis, m, 0.001 to 1000. Default 0.2
+   * (assumed).
    */
   vtkSetMacro(TargetExtent, double);
   vtkGetMacro(TargetExtent, double);
   ///@}
 
   ///@{
-  /**
-   * How birds move between scans. Default MOTION_COORDINATED_TURN.
-   */
+  /** How birds move between scans. Default MOTION_COORDINATED_TURN. */
   vtkSetMacro(MotionModel, int);
   vtkGetMacro(MotionModel, int);
   void SetMotionModelToConstantVelocity() { this->SetMotionModel(MOTION_CONSTANT_VELOCITY); }
@@ -137,82 +108,67 @@ public:
   ///@}
 
   ///@{
-  /**
-   * Power spectral density of the acceleration, m2/s3 (default 10): within t s each component of
-   * the velocity changes by the root of this times t, rms. And of the turn rate, deg2/s3 (default
-   * 40), of MOTION_COORDINATED_TURN. Both 0 to 1e6.
-   */
+  /** Power spectral density of the acceleration, m2/s3, 0 to 1e6. Default 10. */
   vtkSetMacro(AccelerationDensity, double);
   vtkGetMacro(AccelerationDensity, double);
+  /** Power spectral density of the turn rate's change, deg2/s3, 0 to 1e6. Default 40. */
   vtkSetMacro(TurnRateDensity, double);
   vtkGetMacro(TurnRateDensity, double);
   ///@}
 
   ///@{
-  /**
-   * What a new track may do: largest speed over ground, m/s (default 25), and climb or descent, m/s
-   * (default 5), both 0.1 to 1000: how far its second cluster may be from the first; with
-   * MOTION_COORDINATED_TURN largest turn rate, deg/s (0 to 360; default 40). Assumed.
-   */
+  /** Largest speed over ground of a new track, m/s, 0.1 to 1000. Default 25 (assumed). */
   vtkSetMacro(MaximumSpeed, double);
   vtkGetMacro(MaximumSpeed, double);
+  /** Largest climb or descent of a new track, m/s, 0.1 to 1000. Default 5 (assumed). */
   vtkSetMacro(MaximumClimbRate, double);
   vtkGetMacro(MaximumClimbRate, double);
+  /** Largest turn rate of a new track, deg/s, 0 to 360. Default 40 (assumed). */
   vtkSetMacro(MaximumTurnRate, double);
   vtkGetMacro(MaximumTurnRate, double);
   ///@}
 
   ///@{
-  /**
-   * Share of a track's own clusters that its gate lets in. 0.5 to 0.999999; default 0.99.
-   */
+  /** Share of a track's own clusters that its gate lets in, 1, 0.5 to 0.999999. Default 0.99. */
   vtkSetMacro(GateProbability, double);
   vtkGetMacro(GateProbability, double);
   ///@}
 
   ///@{
   /**
-   * A track is confirmed once it had a cluster in ConfirmHits of its last ConfirmScans scans (both
-   * 1 to 32, the first not above the second; default 3 of 4) and its speed is at least
-   * MinimumSpeed, m/s (0 to 1000; default 0): what stands still, as leaves that a clutter filter
-   * has left, is no bird on the wing.
+   * Scans with a cluster, of the last ConfirmScans, that confirm a track, 1 to ConfirmScans.
+   * Default 3.
    */
   vtkSetMacro(ConfirmHits, int);
   vtkGetMacro(ConfirmHits, int);
+  /** Scans of which ConfirmHits confirm a track, 1 to 32. Default 4. */
   vtkSetMacro(ConfirmScans, int);
   vtkGetMacro(ConfirmScans, int);
+  /** Least speed of a track that is confirmed, m/s, 0 to 1000. Default 0. */
   vtkSetMacro(MinimumSpeed, double);
   vtkGetMacro(MinimumSpeed, double);
   ///@}
 
   ///@{
-  /**
-   * A confirmed track ends after MaximumMisses scans in a row without a cluster (1 to 1000; default
-   * 3), any track once it had none for more than MaximumPause, s (0.001 to 1e9; default 30): what
-   * is there after a pause of the data is another bird. It stays in the output for KeepTime, s on
-   * the clock of the clouds (0 to 1e9; default 60), and keeps its last HistoryLength positions (1
-   * to 1,000,000; default 200).
-   */
+  /** Misses in a row after which a confirmed track ends, 1 to 1000. Default 3. */
   vtkSetMacro(MaximumMisses, int);
   vtkGetMacro(MaximumMisses, int);
+  /** Time without a cluster after which any track ends, s, 0.001 to 1e9. Default 30. */
   vtkSetMacro(MaximumPause, double);
   vtkGetMacro(MaximumPause, double);
+  /** Time for which an ended track stays in the output, s, 0 to 1e9. Default 60. */
   vtkSetMacro(KeepTime, double);
   vtkGetMacro(KeepTime, double);
+  /** Positions that a track keeps, 1 to 1,000,000. Default 200. */
   vtkSetMacro(HistoryLength, int);
   vtkGetMacro(HistoryLength, int);
   ///@}
 
-  /**
-   * Empty the memory: the next cloud is the first one, ids begin at 0.
-   */
+  /// Empty the memory: the next cloud is the first one, ids begin at 0.
   void Reset();
 
   ///@{
-  /**
-   * The processes that may work together. Default: the global controller when the filter was
-   * made; null: this process works alone.
-   */
+  /** Processes that may work together; null: this one alone. Default: the global controller. */
   void SetController(vtkMultiProcessController* controller);
   vtkGetObjectMacro(Controller, vtkMultiProcessController);
   ///@}

@@ -3,57 +3,30 @@
  * @class vtkAvianLidarTracks
  * @brief Flights of birds, by patterns or from tracks, as movers for the echo filter.
  *
- * **Input** (port 0, optional, for the pattern Lines): vtkPolyData whose lines and polylines are
- * tracks in scene coordinates (m), with the point array `time` (s) and, optionally, the cell array
- * `species` (text) or field data `species` (one text for all lines, or one for each).
+ * - Input port 0 (optional, for PATTERN_LINES): vtkPolyData whose lines are tracks in scene
+ *   coordinates, m, with the point array `time` (s) and the cell array or field data `species`
+ *   (optional).
+ * - Output port 0, movers: vtkMultiBlockDataSet, a block for each bird, named as the object. It has
+ *   the triangles of vtkAvianLidarBirdSource in the bird's own frame (x right, y forward, z up),
+ *   and as field data `pose_time`, `pose_position`, `pose_orientation`, where wings flap
+ *   `flap_hinge` and so on, `object_names`, `material_names` and `species` (Documentation/time.md,
+ *   Movers).
+ * - Output port 1, trails: vtkPolyData, a polyline for each bird, with the point array `time`, the
+ *   cell arrays `object_id` and `species_id`, and the field data `species_names`.
  *
- * **Output port 0**, the movers (vtkMultiBlockDataSet): one block for each bird, named as the
- * object ("herring gull 17"): the triangles of vtkAvianLidarBirdSource in the bird's own frame, in
- * metres (x right, y forward, z up, wings at angle 0, or 5 degrees up in a glide), with its cell
- * arrays, and field data:
+ * Outputs hold all poses, whatever time or piece is asked for; time 0 is the start of the scan. The
+ * same seed gives the same bits, and a bird depends on those after it only in a flock. Patterns,
+ * file format and what is assumed: Documentation/birds.md, Birds that fly.
  *
- * - `pose_time` (double, s, rising), `pose_position` (3 doubles, m) and `pose_orientation`
- *   (4 doubles: unit quaternion w, x, y, z, from the bird's frame to the scene's). Between poses:
- *   linear, and slerp; before the first and after the last the bird is absent.
- * - where wings flap, a row for each: `flap_hinge` (3, m), `flap_axis` (3, unit),
- *   `flap_amplitude` (rad), `flap_frequency` (Hz), `flap_phase` (wingbeats). The cells whose `part`
- *   is p turn about row p - 1 by amplitude sin(2 pi (frequency t + phase)) at the time t, by the
- *   right-hand rule. In a glide there are neither these nor `part`.
- * - `object_names` (the block's name), `material_names`, `species`.
+ * A bad file, times that do not rise, an unknown species or a number out of its range is an error
+ * that names the property, or file and line, or line of the input, with empty outputs. No birds:
+ * empty outputs.
  *
- * **Output port 1**, the trails (vtkPolyData), to draw: a polyline for each bird through its poses,
- * with the point array `time` (s), cell arrays `object_id` and `species_id` (int) and field data
- * `species_names`.
- *
- * Outputs hold all poses, whatever time or piece is asked for. The times are those of the scan: 0
- * is its beginning.
- *
- * **Patterns.** Of Crossings, Circles, Flock and Approach all birds are there for the whole
- * TimeRange:
- * - Crossings: straight, level flights at random headings past Center, at most Radius away when
- *   they are nearest, at a random time in TimeRange. Before and after they are farther away.
- * - Circles: gliding in level circles whose centres lie within Radius; banked 20 to 40 degrees,
- *   tan(bank) = v^2 / (g r).
- * - Flock: one flock on a straight, level flight, as in Crossings, that is thin, lies flat, and has
- *   sides as 1 : 2.8 : 5.6; starlings were measured so (M. Ballerini et al., "Empirical
- *   investigation of starling flocks", Animal Behaviour 76, 2008). It does not change its shape.
- *   Where a bird flies in it depends on the number of birds.
- * - Approach: birds descend at 3 degrees, one after the other, along the approach to a runway's
- *   threshold: the birds that arriving aircraft meet. At the end of TimeRange they are evenly
- *   spread over 2 Radius before the threshold and over 75 m + 0.15 times the distance to either
- *   side. Center and Heights do not matter.
- * - File: tracks of a CSV file. Lines: tracks of the input. TimeRange, Center and the like do not
- *   matter; heading, pitch and bank follow from the path.
- *
- * Speeds vary by 10 % about the airspeed of the species, cut at 30 %; birds flap but in circles.
- * Banks, speeds, spreads and the density of flocks are assumed. There is no wind.
- *
- * **Determinism**: the same seed gives the same bits. A bird does not depend on how many follow it,
- * but in a flock.
- *
- * **Bad input** (a file that is missing or wrong, times that do not rise, an unknown species, a
- * number out of its range) is an error that names the property, or file and line, or line of the
- * input, with empty outputs. No birds: empty outputs, silence.
+ * @code{.cpp}
+ * birds->SetPatternToCircles();
+ * birds->SetTimeRange(0, 20);
+ * echoes->SetMoversConnection(birds->GetOutputPort());
+ * @endcode
  *
  * @sa vtkAvianLidarBirdSource, vtkAvianLidarEchoFilter
  */
@@ -86,9 +59,7 @@ public:
   };
 
   ///@{
-  /**
-   * How the birds fly, or where their tracks come from; see above. Default PATTERN_CROSSINGS.
-   */
+  /** How the birds fly, or where their tracks come from. Default PATTERN_CROSSINGS. */
   vtkSetMacro(Pattern, int);
   vtkGetMacro(Pattern, int);
   void SetPatternToCrossings() { this->SetPattern(PATTERN_CROSSINGS); }
@@ -101,19 +72,16 @@ public:
 
   ///@{
   /**
-   * Tracks for the pattern File (CSV): a header "id,species,time,x,y,z" or
-   * "id,species,time,longitude,latitude,height"; then one pose a line: name of the track, species,
-   * s, and m in the scene's coordinates, or degrees and m above the WGS84 ellipsoid. Lines that
-   * begin with # are comments. A track has at least two poses; its times rise. Default: none.
+   * File of tracks for PATTERN_FILE (CSV), with the header "id,species,time,x,y,z" (s, m) or
+   * "id,species,time,longitude,latitude,height" (s, deg, m above WGS84). Default: none.
    */
   vtkAvianLidarFilePathMacro(FileName);
   ///@}
 
   ///@{
   /**
-   * Origin of the scene, for longitudes and latitudes in a file: latitude in [-90, 90] and
-   * longitude in [-360, 360] degrees, height above the ellipsoid in metres, in the order of
-   * vtkAvianLidarGeodeticTransform. Default (0, 0, 0).
+   * Origin of the scene for degrees in a file: latitude in [-90, 90] and longitude in [-360, 360],
+   * deg, height above the ellipsoid, m. Default (0, 0, 0).
    */
   vtkSetVector3Macro(Origin, double);
   vtkGetVector3Macro(Origin, double);
@@ -121,104 +89,74 @@ public:
 
   ///@{
   /**
-   * Name of a species, as of vtkAvianLidarBirdSource. Not used where a file or the input's lines
-   * have their own. Default: empty, a starling for flocks and a herring gull otherwise.
+   * Species, as of vtkAvianLidarBirdSource; those of a file or of lines come first. Default: empty,
+   * a starling for flocks and a herring gull else.
    */
   vtkSetMacro(Species, std::string);
   vtkGetMacro(Species, std::string);
   ///@}
 
   ///@{
-  /**
-   * A table of species of your own (CSV, columns as in Filters/Birds/species.csv), which comes
-   * before the built-in one. Default: none.
-   */
+  /** A table of species of your own, as for vtkAvianLidarBirdSource. Default: none. */
   vtkAvianLidarFilePathMacro(SpeciesFileName);
   ///@}
 
   ///@{
-  /**
-   * Number of birds, 0 to 100,000. Not used by File and Lines. Default 10.
-   */
+  /** Number of birds, 0 to 100,000; not used by files and lines. Default 10. */
   vtkSetMacro(NumberOfBirds, int);
   vtkGetMacro(NumberOfBirds, int);
   ///@}
 
   ///@{
-  /**
-   * Seed of all random numbers, any int. Default 0.
-   */
+  /** Seed of all random numbers, any int. Default 0. */
   vtkSetMacro(Seed, int);
   vtkGetMacro(Seed, int);
   ///@}
 
   ///@{
-  /**
-   * Begin and end of the flights that are made, in seconds, rising, at most 1e9 in magnitude.
-   * Default 0 to 60.
-   */
+  /** Begin and end of the flights, s, rising, at most 1e9 in magnitude. Default (0, 60). */
   vtkSetVector2Macro(TimeRange, double);
   vtkGetVector2Macro(TimeRange, double);
   ///@}
 
   ///@{
-  /**
-   * Middle of the region, in metres (x east, y north, z up), at most 1e9 in magnitude. Default (0,
-   * 0, 0).
-   */
+  /** Middle of the region, m, at most 1e9 in magnitude. Default (0, 0, 0). */
   vtkSetVector3Macro(Center, double);
   vtkGetVector3Macro(Center, double);
   ///@}
 
   ///@{
-  /**
-   * Half the horizontal width of the region, in metres, 0 to 1e9. Default 500.
-   */
+  /** Half the horizontal width of the region, m, 0 to 1e9. Default 500. */
   vtkSetMacro(Radius, double);
   vtkGetMacro(Radius, double);
   ///@}
 
   ///@{
-  /**
-   * Lowest and highest flight above Center, in metres, at most 1e9 in magnitude; of a flock, whose
-   * birds stay between them if it is not too thick. Default 10 to 150.
-   */
+  /** Lowest and highest flight above Center, m, at most 1e9 in magnitude. Default (10, 150). */
   vtkSetVector2Macro(Heights, double);
   vtkGetVector2Macro(Heights, double);
   ///@}
 
   ///@{
-  /**
-   * The runway's threshold, for the pattern Approach, in metres, at most 1e9 in magnitude. Default
-   * (0, 0, 0).
-   */
+  /** Runway's threshold, for PATTERN_APPROACH, m, at most 1e9 in magnitude. Default (0, 0, 0). */
   vtkSetVector3Macro(ThresholdPosition, double);
   vtkGetVector3Macro(ThresholdPosition, double);
   ///@}
 
   ///@{
-  /**
-   * Direction in which arrivals land there, in degrees from north (y), clockwise, at most 1e9 in
-   * magnitude. Default 0.
-   */
+  /** Direction of landing, deg from north, clockwise, at most 1e9 in magnitude. Default 0. */
   vtkSetMacro(ThresholdHeading, double);
   vtkGetMacro(ThresholdHeading, double);
   ///@}
 
   ///@{
-  /**
-   * Reflectance of the plumage at the lidar's wavelength, Lambertian, 0 to 1. Default 0.3 (assumed;
-   * dark birds 0.15, white ones 0.6).
-   */
+  /** Reflectance of the plumage at the lidar's wavelength, 1, 0 to 1. Default 0.3 (assumed). */
   vtkSetMacro(Reflectance, double);
   vtkGetMacro(Reflectance, double);
   ///@}
 
   ///@{
-  /**
-   * Value of `object_id` of the first bird, at least 0; those that follow count upwards. No other
-   * object of the scene may have these. Default 10000.
-   */
+  /** First `object_id` of the birds, at least 0; no other object may have these. Default 10000. */
   vtkSetMacro(FirstObjectId, int);
   vtkGetMacro(FirstObjectId, int);
   ///@}
