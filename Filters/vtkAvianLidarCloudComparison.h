@@ -4,51 +4,33 @@
  * @brief How alike two point clouds are: Hausdorff distance, root mean square error and
  * density-aware Chamfer distance, both ways.
  *
- * **Input port 0**: the simulated cloud, **input port 1**: the reference (the actual scan); any
- * vtkPointSet, in the same coordinates. **Output ports 0 and 1**: shallow copies of the two with
- * the point array `nearest_distance` (double, m), the distance d to the nearest point of the other
- * cloud. With S and R the clouds of n_S and n_R points:
+ * - Input ports 0, the simulated cloud, and 1, the reference: any vtkPointSet, in the same
+ *   coordinates.
+ * - Output ports 0 and 1: shallow copies with the point array `nearest_distance`, and all measures
+ *   as field data.
  *
- * - Hausdorff distance (paper, Eq. 19: "Research on Ground Object Echo Simulation of Avian Lidar",
- * Photonics 2024, 11(2), 153): the larger one of the largest d of S and the largest d of R;
- * - RMSE (paper, Eq. 20): sqrt(sum of d^2 over the points of one cloud / its number of points). The
- * paper sums over the actual cloud but divides by the number of simulated points; here each
- * direction is divided by the number of points that it sums over, and both are given. Eq. 20 so
- * corrected is the one from reference to simulated;
- * - density-aware Chamfer distance (DCD; Wu et al., "Density-aware Chamfer Distance as a
- * Comprehensive Metric for Point Cloud Completion", NeurIPS 2021, arXiv:2111.12702; the equation
- * second-hand): the mean of the two directions, of which the one from S to R is the mean over S of
- * 1 - exp(-alpha d) / n. There n is the number of points of S that have the same nearest place of
- * R. All are within [0, 1]; 0 says that each point of either cloud has a point of the other in its
- * place, and for itself. A direction is at least 1 - (number of places in the cloud that it leads
- * to) / (number of points that it starts from), so a cloud with several points in a place is not 0
- * from itself. The authors' program differs: it has squares of distances, and a factor for
- * different numbers of points.
+ * Hausdorff distance and RMSE are Eq. 19 and 20 of "Research on Ground Object Echo Simulation of
+ * Avian Lidar", Photonics 2024, 11(2), 153. Eq. 20 as printed sums over one cloud and divides by
+ * the number of points of the other; here each direction is divided by its own number of points.
+ * The Chamfer distance is that of Wu et al., NeurIPS 2021, arXiv:2111.12702. Formulas and limits:
+ * Documentation/cloud-comparison.md.
  *
- * Points in the same place are one place. Of equally near places the one with the least x, then y,
- * then z is the nearest, so the order of points does not matter.
+ * Distances are Euclidean, in double precision. Points in the same place are one place; of equally
+ * near places the first by x, y, z is the nearest, so the order of points does not matter. It takes
+ * one thread and n log n steps; points equally far from a whole cloud, such as the centre of a
+ * sphere, look at all of it.
  *
- * The numbers are there as getters and as field data of both outputs: `hausdorff_distance`,
- * `hausdorff_simulated_to_reference`, `hausdorff_reference_to_simulated`,
- * `rmse_simulated_to_reference`, `rmse_reference_to_simulated` (double, m),
- * `density_aware_chamfer_distance`, `density_aware_chamfer_simulated_to_reference`,
- * `density_aware_chamfer_reference_to_simulated` (double, 1).
+ * A bad alpha is an error. A cloud without points, or with coordinates that are not finite or
+ * beyond 1e30 m, is an error that names port and point. Outputs are then empty and the getters NaN,
+ * as after an abort. MPI ranks with a piece of each cloud measure their own points against the
+ * whole other cloud.
  *
- * Distances are Euclidean, in double precision (a relative error of a few 1e-16, and the rounding
- * of the coordinates). One thread; the same bits always. Outliers,
- * clusters and points in one place cost no more than others: n log n steps. Points that are nearly
- * equally far from a whole cloud, as the centre of a sphere is, look at all of it.
- *
- * **Pieces.** MPI ranks that execute together have one piece of each cloud each: every rank
- * measures its own points against the other cloud of all ranks, and passes on its own points alone.
- * The distances are those of one process, RMSE and DCD to the rounding of their sums; the numbers
- * are on all ranks. Otherwise both clouds are asked for as a whole, and of several pieces the first
- * has all points, the others have field data alone.
- *
- * **Bad input**: an alpha out of its range or other than on other ranks is an error; a cloud
- * without points (the distance to nothing is not defined) or with coordinates that are not finite
- * or beyond 1e30 m is an error that names port and point; both outputs are empty and the getters
- * give NaN. After an abort, too.
+ * @code{.cpp}
+ * comparison->SetInputConnection(0, echoes->GetOutputPort());
+ * comparison->SetInputConnection(1, reader->GetOutputPort());
+ * comparison->Update();
+ * double farthest = comparison->GetHausdorffDistance();
+ * @endcode
  *
  * @sa vtkAvianLidarPointCloudReader
  */
@@ -70,11 +52,7 @@ public:
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
   ///@{
-  /**
-   * Result of the last execution in metres: the Hausdorff distance (paper, Eq. 19), and the largest
-   * nearest-neighbour distance of the simulated points to the reference and the other way round.
-   * NaN before the first.
-   */
+  /** Hausdorff distance of the last execution (paper, Eq. 19) and its directions, m; NaN before. */
   vtkGetMacro(HausdorffDistance, double);
   vtkGetMacro(HausdorffSimulatedToReference, double);
   vtkGetMacro(HausdorffReferenceToSimulated, double);
@@ -82,9 +60,7 @@ public:
 
   ///@{
   /**
-   * Result of the last execution in metres: root mean square of the nearest-neighbour distances of
-   * the simulated points to the reference, and the other way round (paper, Eq. 20, see the class).
-   * NaN before the first.
+   * Root mean square distance of the last execution (paper, Eq. 20), by direction, m; NaN before.
    */
   vtkGetMacro(RMSESimulatedToReference, double);
   vtkGetMacro(RMSEReferenceToSimulated, double);
@@ -92,9 +68,8 @@ public:
 
   ///@{
   /**
-   * Result of the last execution, a pure number within [0, 1], 0 for the most alike: the
-   * density-aware Chamfer distance (see the class), and its two directions, of which it is the
-   * mean. NaN before the first.
+   * Density-aware Chamfer distance of the last execution, 0 (alike) to 1, the mean of its
+   * directions; NaN before.
    */
   vtkGetMacro(DensityAwareChamferDistance, double);
   vtkGetMacro(DensityAwareChamferSimulatedToReference, double);
@@ -102,20 +77,13 @@ public:
   ///@}
 
   ///@{
-  /**
-   * Alpha of the density-aware Chamfer distance, per metre, 1e-6 to 1e6: at a distance of 1 / alpha
-   * a nearest point counts for 1 / e of one in the same place. Default 1 (assumed, for scans in
-   * metres: clouds of the paper are scaled to a size of about 1, second-hand, with another alpha).
-   */
+  /** Alpha of the Chamfer distance, 1/m, 1e-6 to 1e6. Default 1 (assumed, for scans in metres). */
   vtkSetMacro(ChamferAlpha, double);
   vtkGetMacro(ChamferAlpha, double);
   ///@}
 
   ///@{
-  /**
-   * The processes that may work together. Default: the global controller when the filter was
-   * made; null: this process works alone.
-   */
+  /** Processes that may work together; null: this one alone. Default: the global controller. */
   void SetController(vtkMultiProcessController* controller);
   vtkGetObjectMacro(Controller, vtkMultiProcessController);
   ///@}

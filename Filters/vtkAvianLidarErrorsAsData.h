@@ -3,9 +3,9 @@
  * @file vtkAvianLidarErrorsAsData.h
  * @brief The property ErrorsAsData, which every algorithm of the module has.
  *
- * Whether an execution that fails counts as done, so that the pipeline goes on, on empty outputs
- * whose field data `error` hold the message. Default: off, an error is a failure of the pipeline,
- * too. The proxies of ParaView turn it on, as ParaView never updates again what failed.
+ * If on, an execution that fails counts as done: the pipeline goes on with empty outputs whose
+ * field data `error` hold the message. ParaView's proxies turn it on, as ParaView never updates
+ * again what failed. Default: off.
  */
 #ifndef vtkAvianLidarErrorsAsData_h
 #define vtkAvianLidarErrorsAsData_h

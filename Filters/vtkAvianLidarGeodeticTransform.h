@@ -4,37 +4,25 @@
  * @brief Where points lie on the Earth: local east-north-up, geodetic, geocentric and UTM
  * coordinates.
  *
- * **Input** (port 0): any vtkPointSet, or a composite (vtkMultiBlockDataSet, vtkPartitionedDataSet,
- * vtkPartitionedDataSetCollection) of them, whose points are coordinates of SourceFrame.
- * **Output**: the same, shallow copies with three point arrays more (double, one component each):
+ * - Input port 0: any vtkPointSet, or a composite of them, with coordinates of SourceFrame.
+ * - Output port 0: the same, shallow copies with the point arrays `longitude` (in [-180, 180]; 0 at
+ *   a pole), `latitude` and `height` (above the WGS84 ellipsoid), and with MovePoints the points in
+ *   TargetFrame. Vectors are not turned. Field data: `geodetic_origin` and `utm_zone` if they were
+ *   used; `crs_wkt` is removed if points move.
  *
- * - `longitude` (deg): in [-180, 180]; 0 at a pole
- * - `latitude` (deg): in [-90, 90]
- * - `height` (m): above the WGS84 ellipsoid (not above sea level)
+ * All frames are on WGS84: ENU (metres on the tangent plane of the origin), geodetic (longitude and
+ * latitude in degrees, height in metres), ECEF (geocentric metres), UTM (easting, northing, height
+ * in metres).
  *
- * and, if MovePoints is on, with the points moved to TargetFrame, in double precision. Vectors
- * (directions, normals) are not turned. Field data: `geodetic_origin` (one tuple: latitude deg,
- * longitude deg, height m) where an origin was used, and `utm_zone` (int, negative in the south)
- * where one of the frames is UTM; `crs_wkt` (of vtkAvianLidarPointCloudReader) goes when points
- * move.
+ * The conversions are GeographicLib's (Karney, J. Geodesy 85(8), 2011), with errors below 10 nm
+ * within 5000 km of the surface, and the rounding of the numbers. UTM holds up to 3900 km from the
+ * central meridian. Measured: Documentation/geodetic-frames.md.
  *
- * **Frames**, all on WGS84, coordinates in the order x, y, z:
- * - ENU: metres east, north and up of the origin, on its tangent plane;
- * - geodetic: longitude and latitude in degrees, height in metres (moved there, points draw a
- * needle: degrees and metres do not mix in a picture);
- * - ECEF: geocentric metres;
- * - UTM: easting and northing in metres, height above the ellipsoid.
+ * A missing origin, bad angles, coordinates that are not finite or beyond UTM, a bad zone or a
+ * block that is not a vtkPointSet is an error that names it, with an empty output; so is the output
+ * after an abort. No points: empty output. The result does not depend on pieces.
  *
- * **Error**: the conversions are GeographicLib's (Karney, J. Geodesy 85(8), 2011): below 10 nm
- * within 5000 km of the Earth's surface, plus the rounding of the numbers (a longitude in degrees
- * is rounded to 3 nm, an ECEF coordinate to 1 nm). UTM holds up to 3900 km from the central
- * meridian of its zone; points beyond are refused.
- *
- * **Bad input**: an origin that is needed but missing, a latitude outside [-90, 90] degrees (of the
- * origin or of a geodetic point), longitudes of the origin outside [-360, 360], coordinates that
- * are not finite or beyond the reach of UTM, a zone outside [-60, 60], a block that is no
- * vtkPointSet: an error that names it, with an empty output. No points: empty output, silence.
- * After an abort the output is empty. The result does not depend on pieces.
+ * Example: `toUtm->SetTargetFrameToUTM(); toUtm->MovePointsOn();`
  *
  * @sa vtkAvianLidarSceneReader
  */
@@ -62,9 +50,7 @@ public:
   };
 
   ///@{
-  /**
-   * The frame in which the points are given. Default FRAME_ENU.
-   */
+  /** Frame in which the points are given. Default FRAME_ENU. */
   vtkSetMacro(SourceFrame, int);
   vtkGetMacro(SourceFrame, int);
   void SetSourceFrameToENU() { this->SetSourceFrame(FRAME_ENU); }
@@ -74,9 +60,7 @@ public:
   ///@}
 
   ///@{
-  /**
-   * The frame to which the points are moved if MovePoints is on. Default FRAME_GEODETIC.
-   */
+  /** Frame to which the points are moved if MovePoints is on. Default FRAME_GEODETIC. */
   vtkSetMacro(TargetFrame, int);
   vtkGetMacro(TargetFrame, int);
   void SetTargetFrameToENU() { this->SetTargetFrame(FRAME_ENU); }
@@ -86,9 +70,7 @@ public:
   ///@}
 
   ///@{
-  /**
-   * Move the points to TargetFrame; otherwise only arrays are added. Default off.
-   */
+  /** Whether points are moved to TargetFrame; else only arrays are added. Default: off. */
   vtkSetMacro(MovePoints, bool);
   vtkGetMacro(MovePoints, bool);
   vtkBooleanMacro(MovePoints, bool);
@@ -96,8 +78,8 @@ public:
 
   ///@{
   /**
-   * Take the origin from the field data `geodetic_origin` (three numbers: latitude deg, longitude
-   * deg, height m) of the block or else of the whole input, instead of Origin. Default on.
+   * Take the origin from field data `geodetic_origin` of the block, or else of the input. Default:
+   * on.
    */
   vtkSetMacro(UseFieldDataOrigin, bool);
   vtkGetMacro(UseFieldDataOrigin, bool);
@@ -106,10 +88,9 @@ public:
 
   ///@{
   /**
-   * Origin of ENU, used when UseFieldDataOrigin is off: latitude within [-90, 90] and longitude
-   * within [-360, 360] in degrees, height above the ellipsoid in metres. Also gives the automatic
-   * zone of UTM. An origin is needed if, and only if, one of the frames in use is ENU, or UTM with
-   * an automatic zone. Default (0, 0, 0).
+   * Origin if UseFieldDataOrigin is off: latitude in [-90, 90], longitude in [-360, 360], deg,
+   * height above the ellipsoid, m. Needed by ENU, and by UTM with an automatic zone. Default (0, 0,
+   * 0).
    */
   vtkSetVector3Macro(Origin, double);
   vtkGetVector3Macro(Origin, double);
@@ -117,9 +98,8 @@ public:
 
   ///@{
   /**
-   * Zone of UTM: 1 to 60 in the northern hemisphere, -1 to -60 in the southern one (northings from
-   * 10,000 km), or 0, automatic: zone and hemisphere of the origin, with the exceptions of Norway
-   * and Svalbard. Default 0.
+   * Zone of UTM: 1 to 60 north, -1 to -60 south (northings from 10,000 km), 0 by the origin.
+   * Default 0.
    */
   vtkSetMacro(UTMZone, int);
   vtkGetMacro(UTMZone, int);

@@ -3,26 +3,21 @@
  * @class vtkAvianLidarHSBColorMap
  * @brief The colour of an echo in the HSB mode: Qlow is blue, Qhigh is red.
  *
- * The hue of an energy Q is 240 degrees * (Qhigh - Q) / (Qhigh - Qlow), saturation and brightness
- * are 1 (paper, Eq. 13: "Research on Ground Object Echo Simulation of Avian Lidar", Photonics 2024,
- * 11(2), 153; the sentence before the equation swaps the two ends, the equation is right). An
- * energy outside the limits takes the colour of the nearer end, and where both limits are equal the
- * hue is 0.
+ * The hue of an energy Q is 240 degrees (Qhigh - Q) / (Qhigh - Qlow), with saturation and
+ * brightness 1 (Eq. 13 of "Research on Ground Object Echo Simulation of Avian Lidar", Photonics
+ * 2024, 11(2), 153). Energies outside the limits take the colour of the nearer end; with equal
+ * limits the hue is 0.
  *
- * **Input** (port 0): any vtkPointSet with a numeric point array of one component in joules; by
- * default `energy`, another by SetInputArrayToProcess(). **Output**: a shallow copy with two point
- * arrays more:
+ * - Input port 0: any vtkPointSet with a numeric point array of one component, J; by default
+ *   `energy`, another by SetInputArrayToProcess().
+ * - Output port 0: a shallow copy with the point arrays `hue` and `rgb`. NaN is black, with one
+ *   warning.
  *
- * - `hue` (double, deg): 240 (Qlow) to 0 (Qhigh)
- * - `rgb` (unsigned char, 3 components): the colour in 0 to 255, rounded; for VTK's mappers and
- *   writers
+ * A missing array or limit, several components, and limits that are not finite or the wrong way
+ * round are an error that names them, with an empty output. No points: both arrays without values.
  *
- * An energy that is not a number has a hue that is not a number and is black; their count is said
- * in one warning.
- *
- * **Bad input**: no such array, more than one component, limits that are missing in the field data,
- * more than one number, not finite or the wrong way round are an error that names them, with an
- * empty output. No points: no points with both arrays, silence.
+ * Example: `colors->SetInputConnection(echoes->GetOutputPort());` Documentation:
+ * colour-and-range-image.md.
  *
  * @sa vtkAvianLidarEchoFilter
  */
@@ -44,10 +39,7 @@ public:
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
   ///@{
-  /**
-   * Take the limits from the input's field data `lower_energy_limit` and `upper_energy_limit`,
-   * where the sensor leaves them, instead of EnergyRange. Default on.
-   */
+  /** Take the limits from field data `lower_energy_limit` and `upper_energy_limit`. Default: on. */
   vtkSetMacro(UseFieldDataRange, bool);
   vtkGetMacro(UseFieldDataRange, bool);
   vtkBooleanMacro(UseFieldDataRange, bool);
@@ -55,24 +47,19 @@ public:
 
   ///@{
   /**
-   * Qlow and Qhigh in joules, used when UseFieldDataRange is off; Qlow must not exceed Qhigh.
-   * Default (2e-6, 6.25e-5), the paper's Table 2.
+   * Qlow and Qhigh if UseFieldDataRange is off, J, rising. Default (2e-6, 6.25e-5), the paper's
+   * Table 2.
    */
   vtkSetVector2Macro(EnergyRange, double);
   vtkGetVector2Macro(EnergyRange, double);
   ///@}
 
-  /**
-   * A lookup table of these colours over the limits of the last execution (before the first:
-   * EnergyRange), for a mapper that colours by energy itself, or for a scalar bar. Owned by this
-   * object and changed by the next call.
-   */
+  /// Lookup table of these colours over the limits of the last execution (before: EnergyRange), for
+  /// a mapper or a scalar bar. This object owns it, and the next call changes it.
   vtkLookupTable* GetLookupTable();
 
-  /**
-   * Make `table` such a lookup table: its range and its colours, of which it keeps its number (at
-   * least 2). Its ends are exactly blue and red; below, above and NaN are blue, red and black.
-   */
+  /// Give `table` these colours and limits; it keeps its number of colours (at least 2). Its ends
+  /// are exactly blue and red; values below, above and NaN are blue, red and black.
   void FillLookupTable(vtkLookupTable* table);
 
   vtkAvianLidarErrorsAsDataMacro();

@@ -3,33 +3,23 @@
  * @class vtkAvianLidarMaterial
  * @brief Gives surfaces a material: how they reflect the light of the lidar.
  *
- * **Input** (port 0): vtkPolyData, or a composite (vtkMultiBlockDataSet, vtkPartitionedDataSet,
- * vtkPartitionedDataSetCollection) whose leaves are vtkPolyData. **Output**: the same, shallow
- * copies with these cell arrays, one component each, always all six, so that appending such
- * surfaces never loses one:
+ * - Input port 0: vtkPolyData, or a composite whose leaves are vtkPolyData.
+ * - Output port 0: the same, shallow copies with the cell arrays `object_id`, `material_id` (index
+ *   into `material_names`), `kd`, `ks`, `kp` and `roughness` (rad), always all six. Field data of
+ *   each leaf: `material_names` (those of the input or the four of the paper, and this one behind
+ *   them), `object_names` (one value) and `object_classes`, where the input has them; several
+ *   classes of a leaf that becomes one object become one, or an empty one if they differ. A
+ *   composite carries `material_names`, too.
  *
- * - `object_id` (int): see ObjectId
- * - `material_id` (int): index into `material_names`; 0 to 3 are Wall, Glass, Metal, Wood
- * - `kd` (double, unit 1): diffuse coefficient (paper, Eq. 6)
- * - `ks` (double, unit 1): specular coefficient (paper, Eq. 7)
- * - `kp` (double, unit 1): glossiness, the exponent of the specular lobe (paper, Eq. 7)
- * - `roughness` (double, rad): standard deviation of the slope of its facets (Oren and Nayar 1994)
+ * Only blocks that fit BlockNamePattern get the material, so that one filter after the other can
+ * name the materials of a scene. Coefficients are those of "Research on Ground Object Echo
+ * Simulation of Avian Lidar", Photonics 2024, 11(2), 153 (Eq. 6, 7, Table 1);
+ * Documentation/reflectance.md.
  *
- * Field data of each leaf: `material_names`, the materials that are there already or the four
- * standard ones, with another one put behind them when it is used; and `object_names`, one value:
- * NameOfObject, else the name that the leaf already has, else the name of its block; a leaf without
- * any name stays without, and is given one when the surfaces are merged. `object_classes` are kept;
- * several become one where the leaf becomes one object, an empty one if they differ. A composite
- * carries `material_names` too.
+ * Coefficients out of range, kd + ks above 1, an unknown material or a chosen leaf that is not
+ * vtkPolyData is an error, with empty output. A pattern that fits no block gives a warning.
  *
- * In a composite, only blocks that fit BlockNamePattern get the material; the others are passed on
- * as they are, so that one filter after the other can name the materials of a scene.
- *
- * **Bad input**: coefficients that are negative, not finite, kd + ks > 1, kp > 1e6 or roughness >
- * pi/2, an unknown material, an ObjectId below -1, a chosen leaf that is not vtkPolyData: an error,
- * empty output. A pattern that fits no block: one warning. Empty surfaces are legal. The
- * coefficients are those of "Research on Ground Object Echo Simulation of Avian Lidar", Photonics
- * 2024, 11(2), 153, Table 1, and of Material.
+ * Example: `glass->SetMaterialToGlass(); glass->SetBlockNamePattern("window*");`
  *
  * @sa vtkAvianLidarCollisionTree, vtkAvianLidarEchoFilter, vtkAvianLidarSceneReader
  */
@@ -66,11 +56,9 @@ public:
 
   ///@{
   /**
-   * The material: one of the paper's Table 1 (kd, ks, kp: wall 0.146, 0.054, 112; glass 0.020,
-   * 0.852, 8046; metal 0.075, 0.634, 6803; wood 0.107, 0.100, 82); one that only scatters, at
-   * 905 nm (kd: concrete 0.3104, asphalt 0.1298, grass 0.2204, of the USGS Spectral Library 7;
-   * plumage 0.3, assumed); or custom, which takes Kd, Ks, Kp and Roughness. MATERIAL_UNCHANGED, to
-   * name surfaces alone: materials stay as they are, or missing. Default MATERIAL_WALL.
+   * The material: one of the paper's Table 1 (wall, glass, metal, wood); one that only scatters, at
+   * 905 nm (concrete, asphalt, grass of the USGS Spectral Library 7; plumage, assumed); custom, by
+   * Kd, Ks, Kp and Roughness; or unchanged, to name surfaces only. Default MATERIAL_WALL.
    */
   vtkSetMacro(Material, int);
   vtkGetMacro(Material, int);
@@ -87,10 +75,9 @@ public:
 
   ///@{
   /**
-   * What a value of Material stands for, without an execution: its name; where its numbers are
-   * from, "assumed" where nobody measured them; a coefficient by its number (0 kd, 1 ks, 2 kp, 3
-   * roughness); and a colour to look at (red, green, blue, 0 to 1). For MATERIAL_CUSTOM and unknown
-   * values null, not a number, or false, and the colour stays as it is.
+   * Name of a value of Material, source of its numbers ("assumed" if not measured), a coefficient
+   * (0 kd, 1 ks, 2 kp, 3 roughness) and a colour (red, green, blue, 0 to 1). Of MATERIAL_CUSTOM and
+   * unknown values null, NaN, or false, and the colour stays.
    */
   static const char* GetMaterialName(int material);
   static const char* GetMaterialSource(int material);
@@ -98,14 +85,12 @@ public:
   static bool GetMaterialColor(int material, double color[3]);
   ///@}
 
-  /**
-   * Name of a coefficient's cell array, from 0 on; null beyond the last.
-   */
+  /// Name of a coefficient's cell array, from 0 on; null beyond the last.
   static const char* GetCoefficientName(int coefficient);
 
   ///@{
   /**
-   * Diffuse coefficient of a custom material, at least 0; kd + ks is at most 1. Default 0.146.
+   * Diffuse coefficient of a custom material, 1, at least 0; kd + ks is at most 1. Default 0.146.
    */
   vtkSetMacro(Kd, double);
   vtkGetMacro(Kd, double);
@@ -113,24 +98,22 @@ public:
 
   ///@{
   /**
-   * Specular coefficient of a custom material, at least 0; kd + ks is at most 1. Default 0.054.
+   * Specular coefficient of a custom material, 1, at least 0; kd + ks is at most 1. Default 0.054.
    */
   vtkSetMacro(Ks, double);
   vtkGetMacro(Ks, double);
   ///@}
 
   ///@{
-  /**
-   * Glossiness of a custom material, within [0, 1e6]. Default 112.
-   */
+  /** Glossiness of a custom material, 1, 0 to 1e6. Default 112. */
   vtkSetMacro(Kp, double);
   vtkGetMacro(Kp, double);
   ///@}
 
   ///@{
   /**
-   * Roughness of a custom material, rad, within [0, pi/2]: the standard deviation of the slope of
-   * its facets, which reflectance model OrenNayar of the echo filter uses. Default 0, even.
+   * Standard deviation of facet slopes, rad, 0 to pi/2, for REFLECTANCE_MODEL_OREN_NAYAR. Default
+   * 0.
    */
   vtkSetMacro(Roughness, double);
   vtkGetMacro(Roughness, double);
@@ -138,10 +121,9 @@ public:
 
   ///@{
   /**
-   * Object id of the surfaces, at least 0, or -1, automatic: ids that are there are kept (a leaf
-   * that becomes one object has that of its first cell), other leaves get their number in leaf
-   * order. Ids that are not unique over a whole scene are given
-   * anew when its surfaces are merged. Default -1.
+   * Object id of the surfaces, at least 0; or -1: ids are kept, other leaves get their number in
+   * leaf order. Ids that are not unique in a scene are given anew when its surfaces are merged.
+   * Default -1.
    */
   vtkSetMacro(ObjectId, int);
   vtkGetMacro(ObjectId, int);
@@ -149,8 +131,8 @@ public:
 
   ///@{
   /**
-   * Name of the object, written to `object_names` of each leaf, which then is one object. Empty:
-   * names that are there are kept, else the block's name is taken. Default: empty.
+   * Name of each leaf, which so becomes one object; empty: its own name, or its block's. Default:
+   * empty.
    */
   vtkSetMacro(NameOfObject, std::string);
   vtkGetMacro(NameOfObject, std::string);
@@ -158,9 +140,8 @@ public:
 
   ///@{
   /**
-   * Which blocks of a composite input get the material: those whose name, or the name of a block
-   * around them, fits this pattern of text, `*` (any text) and `?` (any character). Not used for
-   * vtkPolyData. Default `*`, all blocks; empty means the same.
+   * Blocks that get the material, by their name or that of a block around them, with `*` (any text)
+   * and `?` (any character). Default `*`, all; empty means the same.
    */
   vtkSetMacro(BlockNamePattern, std::string);
   vtkGetMacro(BlockNamePattern, std::string);

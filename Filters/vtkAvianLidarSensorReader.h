@@ -3,13 +3,13 @@
  * @class vtkAvianLidarSensorReader
  * @brief The sensor of a file (`.lidarsensor.json`): the beam source with the file's values.
  *
- * Outputs and field data are the beam source's. The file is read when FileName is set: what it does
- * not name gets the default of the beam source, but Position, Orientation, NumberOfRevolutions,
- * StepsPerRevolution and MotionSeed stay as they are. Properties that are set later count until
- * the file is read again.
+ * Outputs are those of vtkAvianLidarBeamSource. The file is read when FileName is set; what it does
+ * not name gets its default, but Position, Orientation, NumberOfRevolutions, StepsPerRevolution and
+ * MotionSeed stay. Properties that are set later count until the file is read again.
  *
- * **Errors** name the file, the key and what was expected: no file name, not there, no sensor, a
- * value out of its range. Outputs are empty then.
+ * Errors name the file, the key and what was expected, with empty outputs.
+ *
+ * Example: `reader->SetFileName("my.lidarsensor.json");` Documentation: sensors.md, Files.
  *
  * @sa vtkAvianLidarBeamSource
  */
@@ -27,8 +27,7 @@ public:
 
   ///@{
   /**
-   * The file to read. Default: none, which is an error. A change of the file on disk is not
-   * noticed: call Reload().
+   * The file to read. A change of the file on disk is not noticed: call Reload(). Default: none.
    */
   void SetFileName(VTK_FILEPATH const char* fileName);
   vtkGetFilePathMacro(FileName);

@@ -1,23 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class vtkAvianLidarCloudWriter
- * @brief What the writers of point clouds have in common: a file that is there as a whole or not at
- * all.
+ * @brief Base of the writers of point clouds: a file is written as a whole or not at all.
  *
- * **Input** (port 0): a vtkPointSet. Write() returns 1 if the file was written, else 0.
+ * Input port 0 is a vtkPointSet. Write() returns 1 if the file was written, else 0.
  *
- * Bytes go to a part in the same folder (the name with .avianpart and a digit), which takes the
- * name FileName at the end: whatever goes wrong, nothing half-written is left and a file that had
- * the name stays as it was. A file that is replaced keeps its permissions, a link stays a link. The
- * part of a process that was killed stays until the file is written again. **Errors**: no file
- * name, an input whose producer failed, a file that cannot be opened, written to its end (the disk
- * is full) or given its name, an array or a field that is missing or of another kind or shape than
- * said, a value that is not finite or no whole number where one is said: a message that names file
- * and reason. After an abort (vtkAlgorithm::SetAbortExecute() from an observer of its progress)
- * nothing is left either. Points are taken one after the other; no copy of the cloud is made.
+ * Bytes go to a temporary file in the same folder (FileName with .avianpart and a digit), which is
+ * renamed at the end. After an error, an abort or a full disk the old file stays as it was. A file
+ * that is replaced keeps its permissions, a link stays a link (Documentation/reliability.md).
+ * Points are taken one after the other, without a copy of the cloud.
  *
- * @sa vtkAvianLidarLASWriter vtkAvianLidarPCDWriter vtkAvianLidarPLYWriter vtkAvianLidarKITTIWriter
- * vtkAvianLidarGeoJSONWriter vtkAvianLidarPointCloudReader
+ * Errors name file and reason: no file name, an input whose producer failed, a file that cannot be
+ * written, an array or field that is missing or of another kind, shape or range than the format
+ * takes.
+ *
+ * @sa vtkAvianLidarPointCloudReader
  */
 #ifndef vtkAvianLidarCloudWriter_h
 #define vtkAvianLidarCloudWriter_h
@@ -34,18 +31,16 @@ public:
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
   ///@{
-  /**
-   * The file to write. Default: none, which is an error.
-   */
+  /** The file to write. Default: none, which is an error. */
   vtkSetFilePathMacro(FileName);
   vtkGetFilePathMacro(FileName);
   ///@}
 
   ///@{
   /**
-   * For writers that make FileName of another name, as ParaView's do for every step of a series:
-   * the name as it was given. They put a slash before names without a folder, which would then be
-   * files of the root folder: SetMadeFileName() sets FileName without it. Default: none.
+   * Name as it was given, for writers that make FileName of it, as ParaView's do for every step of
+   * a series. They put a slash before names without a folder; SetMadeFileName() sets FileName
+   * without it. Default: none.
    */
   vtkSetFilePathMacro(GivenFileName);
   vtkGetFilePathMacro(GivenFileName);
@@ -59,7 +54,7 @@ protected:
   int FillInputPortInformation(int port, vtkInformation* info) override;
   void WriteData() override;
 
-  /// Writes the input to FileName; what is wrong is an exception.
+  /// Writes the input to FileName; errors are exceptions.
   virtual void WriteCloud(vtkPointSet* input) = 0;
 
   char* FileName;

@@ -1,19 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class vtkAvianLidarGeoJSONWriter
- * @brief Writes the echoes from a certain energy on as GeoJSON (RFC 7946), for maps.
+ * @brief Writes echoes from a certain energy on as GeoJSON (RFC 7946), for maps.
  *
- * One point feature an echo: longitude and latitude in degrees (9 decimals), height above the WGS84
- * ellipsoid in metres (4 decimals): at most 0.06 mm off. Its properties are all numeric point
- * arrays of one component, with the digits that give the same numbers back, and, where `object_id`
- * and `material_id` lead to names in the field data, `object`, `object_class` and `material`. Units
- * of the properties stand in the collection's member `units`.
+ * Input port 0 is a vtkPointSet with the point array `energy` and a place: the point arrays
+ * `longitude`, `latitude` and `height`, else the field data `geodetic_origin` for points in metres
+ * east, north and up. Without a place: an error.
  *
- * **Place.** From the point arrays `longitude`, `latitude`, `height` (degrees, metres) of
- * vtkAvianLidarGeodeticTransform if they are there (then they are no properties), else from the
- * points, in metres east, north and up of the field data `geodetic_origin`. Without either: an
- * error. The point array `energy` (J) is needed. A file is written as a whole or not at all, see
- * vtkAvianLidarCloudWriter. No echo at or above the limit: a collection of none.
+ * Each echo is a point feature, to 9 decimals of a degree and 4 of a metre. Its properties are all
+ * numeric point arrays of one component, and `object`, `object_class` and `material` by their names
+ * in field data; units stand in the collection's member `units`. No echo: a collection of none.
+ *
+ * Example: `writer->SetFileName("echoes.geojson"); writer->Write();` Documentation: formats.md.
+ *
+ * @sa vtkAvianLidarCloudWriter, vtkAvianLidarGeodeticTransform
  */
 #ifndef vtkAvianLidarGeoJSONWriter_h
 #define vtkAvianLidarGeoJSONWriter_h
@@ -28,20 +28,14 @@ public:
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
   ///@{
-  /**
-   * Take the limit from the input's field data `lower_energy_limit`, where the sensor leaves it (0
-   * where it is not), instead of MinimumEnergy. Default on.
-   */
+  /** Take the limit from field data `lower_energy_limit` (0 if missing). Default: on. */
   vtkSetMacro(UseFieldDataLimit, bool);
   vtkGetMacro(UseFieldDataLimit, bool);
   vtkBooleanMacro(UseFieldDataLimit, bool);
   ///@}
 
   ///@{
-  /**
-   * Echoes whose `energy` is below are left out, in joules; used when UseFieldDataLimit is off.
-   * Default 0.
-   */
+  /** Least `energy` of the echoes written if UseFieldDataLimit is off, J. Default 0. */
   vtkSetMacro(MinimumEnergy, double);
   vtkGetMacro(MinimumEnergy, double);
   ///@}

@@ -4,27 +4,23 @@
  * @brief Writes echoes as PCD 0.7, the format of the Point Cloud Library, in rows and columns where
  * the scan has them.
  *
- * Fields: `x`, `y`, `z` (m), `intensity` (0 to 255, float as PCL's point types have it), then every
- * other numeric point array of one component, of its own type, and `rgb` (three unsigned chars)
- * packed as PCL does. `beam_id` and other integers of 64 bits are written as doubles, exact up to
- * 2^53, since PCL's tools of today do not all know such integers. The sensor's `position` and
- * `orientation` (field data) become the VIEWPOINT; units and field data stand as one line of JSON
- * in a comment. An array whose name another field has (blanks of names become underscores) is left
- * out with a warning. A file is written as a whole or not at all, see vtkAvianLidarCloudWriter.
+ * Input port 0 is a vtkPointSet. Fields are `x`, `y`, `z` (m), `intensity` (float), every other
+ * numeric point array of one component in its own type (64-bit integers as doubles, exact up to
+ * 2^53), and `rgb` packed as PCL does. The field data `position` and `orientation` become the
+ * VIEWPOINT; units and field data are one line of JSON in a comment. An array whose name another
+ * field has is left out with a warning.
  *
- * **Rounding.** With Precision Single, which is what PCL's point types take, a coordinate is off by
- * at most 2^-25 of the next power of two above it: 4 micrometres at 100 m, 0.12 mm at 4 km. From 1
- * mm on (16 km) a warning says so; beyond 3.4e38 m it is an error. ASCII has the shortest digits
- * that give the same numbers back.
+ * A file is organised (columns and channels, highest channel first; NaN, -1 or 0 where no echo is)
+ * if the field data of the beam source give the grid, and `beam_id` and `laser_id` fit it. A cell
+ * holds one echo: see Organisation.
  *
- * **Organised** (WIDTH columns, HEIGHT channels, the highest first; not-a-number in x, y, z where
- * no echo is, -1 in identifiers, 0 in counts): if the field data of the beam source say what the
- * grid is (`number_of_channels`, `azimuth_range`, `azimuth_step`) and `beam_id` and `laser_id` fit
- * it. A cell has room for one echo: Automatic organises only if no beam has more (return modes
- * Strongest, First, Last), Organised keeps the strongest (`energy_received`, else the first) and is
- * an error without a grid, List never organises (HEIGHT 1). No points: a list of none.
+ * In single precision a coordinate is off by 4 micrometres at 100 m, 0.12 mm at 4 km; from 1 mm on
+ * a warning says so, and beyond 3.4e38 m it is an error. Source: The PCD file format,
+ * pointclouds.org.
  *
- * Source: The PCD file format, pointclouds.org.
+ * Example: `writer->SetFileName("echoes.pcd"); writer->Write();` Documentation: formats.md, PCD.
+ *
+ * @sa vtkAvianLidarCloudWriter, vtkAvianLidarPointCloudReader
  */
 #ifndef vtkAvianLidarPCDWriter_h
 #define vtkAvianLidarPCDWriter_h
@@ -62,7 +58,7 @@ public:
 
   ///@{
   /**
-   * Binary or text. Default FILE_TYPE_BINARY.
+   * Binary, or text with the shortest digits that give the same numbers. Default FILE_TYPE_BINARY.
    */
   vtkSetClampMacro(FileType, int, FILE_TYPE_BINARY, FILE_TYPE_ASCII);
   vtkGetMacro(FileType, int);
@@ -72,7 +68,8 @@ public:
 
   ///@{
   /**
-   * Whether points stand in rows and columns, see the class. Default ORGANISATION_AUTOMATIC.
+   * Rows and columns: automatic (if no beam has several echoes), organised (the strongest by
+   * `energy_received` is kept; an error without a grid), or a list. Default ORGANISATION_AUTOMATIC.
    */
   vtkSetClampMacro(Organisation, int, ORGANISATION_AUTOMATIC, ORGANISATION_LIST);
   vtkGetMacro(Organisation, int);
@@ -82,9 +79,7 @@ public:
   ///@}
 
   ///@{
-  /**
-   * Type of x, y and z. Default PRECISION_SINGLE; PCL's own point types do not take doubles.
-   */
+  /** Type of x, y, z; PCL's point types take no doubles. Default PRECISION_SINGLE. */
   vtkSetClampMacro(Precision, int, PRECISION_SINGLE, PRECISION_DOUBLE);
   vtkGetMacro(Precision, int);
   void SetPrecisionToSingle() { this->SetPrecision(PRECISION_SINGLE); }

@@ -1,23 +1,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class vtkAvianLidarPLYWriter
- * @brief Writes echoes as the points of a PLY file.
+ * @brief Writes echoes as the points of a PLY file, and polygons as its faces.
  *
- * The element `vertex` has the properties `x`, `y`, `z` (m), `intensity` (0 to 255, float), then
- * every other numeric point array of its own type: `name_0`, `name_1`, ... where it has several
- * components, `red`, `green`, `blue` for `rgb` (three unsigned chars). Integers of 64 bits are
- * written as doubles, exact up to 2^53: PLY has none. Units and field data, the sensor's place
- * among them, stand as JSON in comments (one that begins with a plus sign continues the one before:
- * VTK and others do not take long lines), which vtkAvianLidarPointCloudReader reads back. Polygons
- * become the element `face`: ParaView, which takes a writer by the ending of the name, saves meshes
- * by this one; triangle strips are an error. An array of one component whose name another property
- * has (blanks of names become underscores) is left out with a warning, of several it is an error. A
- * file is written as a whole or not at all, see vtkAvianLidarCloudWriter.
+ * Input port 0 is a vtkPointSet. The element `vertex` has `x`, `y`, `z` (m), `intensity` (float),
+ * then every other numeric point array in its own type (64-bit integers as doubles, exact up to
+ * 2^53): `name_0`, `name_1`, ... of several components, and `red`, `green`, `blue` for `rgb`. Units
+ * and field data are JSON in comments, which vtkAvianLidarPointCloudReader reads back. Polygons
+ * become the element `face`.
  *
- * **Rounding.** As vtkAvianLidarPCDWriter has it. ASCII has the shortest digits that give the same
- * numbers back.
+ * An array of one component whose name another property has is left out with a warning; of several
+ * components, and triangle strips, are an error. Rounding is that of vtkAvianLidarPCDWriter.
  *
+ * Example: `writer->SetFileName("echoes.ply"); writer->Write();` Documentation: formats.md, PLY.
  * Source: G. Turk, "The PLY Polygon File Format", 1994.
+ *
+ * @sa vtkAvianLidarCloudWriter, vtkAvianLidarPointCloudReader
  */
 #ifndef vtkAvianLidarPLYWriter_h
 #define vtkAvianLidarPLYWriter_h
@@ -47,7 +45,7 @@ public:
 
   ///@{
   /**
-   * Binary or text. Default FILE_TYPE_BINARY.
+   * Binary, or text with the shortest digits that give the same numbers. Default FILE_TYPE_BINARY.
    */
   vtkSetClampMacro(FileType, int, FILE_TYPE_BINARY, FILE_TYPE_ASCII);
   vtkGetMacro(FileType, int);
@@ -56,9 +54,7 @@ public:
   ///@}
 
   ///@{
-  /**
-   * Type of x, y and z. Default PRECISION_SINGLE.
-   */
+  /** Type of x, y and z. Default PRECISION_SINGLE. */
   vtkSetClampMacro(Precision, int, PRECISION_SINGLE, PRECISION_DOUBLE);
   vtkGetMacro(Precision, int);
   void SetPrecisionToSingle() { this->SetPrecision(PRECISION_SINGLE); }

@@ -4,26 +4,21 @@
  * @brief Reads a labelled sequence of scans, as `avianlidar sequence` writes it, as one time
  * series.
  *
- * The file is the `times.txt` of a sequence in the layout of SemanticKITTI: a time (s) in each
- * line, rising, for the scans `velodyne/000000.bin`, `000001.bin`, ... beside it, with labels in
- * `labels`. Each scan is a time step (TIME_STEPS, TIME_RANGE); any other time has the last scan
- * before it, or the first.
+ * FileName is the `times.txt` (s, rising) of a sequence in SemanticKITTI's layout, with `velodyne`,
+ * `labels`, `boxes`, `poses.txt` and `calib.txt` beside it. Each scan is a time step; any other
+ * time has the last scan before it, or the first.
  *
- * **Output port 0**, points (vtkPolyData): a scan as vtkAvianLidarPointCloudReader reads it. Active
- * scalars are `semantic_label`, where there are labels.
+ * - Output port 0, points: vtkPolyData as vtkAvianLidarPointCloudReader reads a scan; active
+ *   scalars are `semantic_label`, if there are labels.
+ * - Output port 1, boxes: vtkPolyData, six quadrilaterals each, with the cell arrays `object`
+ *   (class, text) and `object_id`; empty without a file of boxes.
  *
- * **Output port 1**, boxes (vtkPolyData): the boxes of `boxes/000000.txt` about what moves, six
- * quadrilaterals each; empty where there is no such file. Cell data: `object` (the class, a text),
- * `object_id`.
+ * Poses and the line `Tr:` carry points to the frame of the poses: east, north and up of the
+ * scene's origin for this project's sequences. Without `poses.txt` x is right and y forward.
  *
- * **Frame.** The poses of `poses.txt` (3 x 4 numbers in each line) and the line `Tr:` of
- * `calib.txt` carry points from the sensor's frame (x forward, y left, z up) to that of the poses:
- * of this project's sequences metres east, north and up of the scene's origin. Without `poses.txt`
- * points are in the frame of vtkAvianLidarPointCloudReader (x right, y forward).
+ * Errors name the file and what is wrong, with empty outputs. All is piece 0.
  *
- * **Errors** name the file and what is wrong: no file name, not there, no times, times that do not
- * rise, no pose for a scan, and all that a scan may have wrong. Outputs are empty then. Pieces: all
- * is piece 0.
+ * Example: `reader->SetFileName("sequences/00/times.txt");` Documentation: sequences.md.
  *
  * @sa vtkAvianLidarPointCloudReader
  */
@@ -45,16 +40,13 @@ public:
 
   ///@{
   /**
-   * The `times.txt` of the sequence. Default: none, which is an error. A change of the files on
-   * disk is not noticed: call Modified().
+   * The `times.txt`. A change of the files on disk is not noticed: call Modified(). Default: none.
    */
   vtkSetFilePathMacro(FileName);
   vtkGetFilePathMacro(FileName);
   ///@}
 
-  /**
-   * Whether a file is a `times.txt` with a folder `velodyne` beside it. 1 or 0.
-   */
+  /// 1 if a file is a `times.txt` with a folder `velodyne` beside it, else 0.
   static int CanReadFile(VTK_FILEPATH const char* fileName);
 
   vtkAvianLidarErrorsAsDataMacro();

@@ -3,16 +3,13 @@
  * @class vtkAvianLidarUnitNames
  * @brief Puts the units of arrays into their names, for tables: `energy` becomes `energy [J]`.
  *
- * VTK's XML files keep the unit of an array (vtkDataArray::UNITS_LABEL); CSV files have nothing but
- * names. With this filter before a CSV writer (precision 15) the header says the units.
+ * VTK's XML files keep the unit of an array (vtkDataArray::UNITS_LABEL); CSV files have only names.
+ * Put this filter before a CSV writer of precision 15. The brackets are square, as VTK's own names
+ * have round ones.
  *
- * **Input** (port 0): any vtkDataSet or vtkTable. **Output**: the same, shallow, with renamed
- * point, cell and row arrays; values are shared. Arrays without a unit and pure numbers (unit "1")
- * keep their names; field data stay.
- *
- * The brackets are square, as in the descriptions of extra bytes of the LAS writer: a program
- * that takes names apart finds the unit, as names of arrays have round brackets of their own
- * (`speed (mean)`).
+ * - Input port 0: any vtkDataSet or vtkTable.
+ * - Output port 0: the same, shallow, with renamed point, cell and row arrays. Arrays without a
+ *   unit or with the unit "1" keep their names, and so do field data.
  */
 #ifndef vtkAvianLidarUnitNames_h
 #define vtkAvianLidarUnitNames_h
@@ -30,10 +27,8 @@ public:
   vtkTypeMacro(vtkAvianLidarUnitNames, vtkPassInputTypeAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
-  /**
-   * The name with its unit, as every table of this project has it: `energy` and `J` give
-   * `energy [J]`; without a unit, or with that of pure numbers ("1"), the name as it is.
-   */
+  /// The name with its unit: `energy` and `J` give `energy [J]`; without a unit or with "1" the
+  /// name.
   static std::string NameWithUnit(const std::string& name, const std::string& unit);
 
   vtkAvianLidarErrorsAsDataMacro();
