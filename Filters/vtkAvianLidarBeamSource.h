@@ -236,9 +236,8 @@ public:
 
   ///@{
   /**
-   * Threshold of a photon receiver where the air sends light back. THRESHOLD_LAW_FIXED: unchanged,
-   * so that near air becomes echoes. THRESHOLD_LAW_FOLLOWS_AIR, the default: the mean of that light
-   * is subtracted, and the threshold lies as many standard deviations of its noise above.
+   * Threshold of a photon receiver where the air sends light back: fixed, or above the mean of that
+   * light and as many standard deviations of its noise. Default THRESHOLD_LAW_FOLLOWS_AIR.
    */
   vtkSetMacro(ThresholdLaw, int);
   vtkGetMacro(ThresholdLaw, int);
@@ -313,18 +312,13 @@ public:
   ///@}
 
   ///@{
-  /**
-   * Wavelength of the light, nm, 1e-6 to 3e17, rounded to 1e-9; sets Frequency. Default
-   * 904.897247208.
-   */
+  /** Wavelength of the light, nm, 1e-6 to 3e17; sets Frequency. Default 904.897247208. */
   void SetWavelength(double nanometres);
   double GetWavelength();
   ///@}
 
   ///@{
-  /**
-   * Length of a range unit in time tau_s, s, 1e-30 to 1e20; it is c tau_s / 2 long. Default 5e-9.
-   */
+  /** Length of a range unit in time tau_s, s, 1e-30 to 1e20. Default 5e-9 (0.75 m). */
   vtkSetMacro(SamplingInterval, double);
   vtkGetMacro(SamplingInterval, double);
   ///@}
@@ -358,20 +352,15 @@ public:
   ///@}
 
   ///@{
-  /**
-   * Area of the receiver's aperture, m2, 0 to 1e20. With 0, the default, energies do not fall with
-   * the square of the range, as in the paper. A sensor with an aperture needs limits of its own.
-   */
+  /** Aperture of the receiver, m2, 0 to 1e20. Default 0: no fall with the square of the range. */
   vtkSetMacro(ReceiverAperture, double);
   vtkGetMacro(ReceiverAperture, double);
   ///@}
 
   ///@{
   /**
-   * What turns energies into echoes. RECEIVER_MODEL_ENERGY_LIMITS, the default, is the paper's,
-   * with LowerEnergyLimit, UpperEnergyLimit and NoisePhotonRate. RECEIVER_MODEL_PHOTONS counts
-   * electrons, with a threshold from FalseAlarmsPerScan, and needs an aperture
-   * (Documentation/sensors.md).
+   * What turns energies into echoes: the limits in joules of the paper, or a photon receiver, which
+   * needs an aperture (Documentation/sensors.md). Default RECEIVER_MODEL_ENERGY_LIMITS.
    */
   vtkSetMacro(ReceiverModel, int);
   vtkGetMacro(ReceiverModel, int);
@@ -380,10 +369,7 @@ public:
   ///@}
 
   ///@{
-  /**
-   * Electrons per photon at the aperture eta, 1, above 0 to 1. Photon receiver. Default 0.4
-   * (assumed).
-   */
+  /** Electrons per photon eta, 1, above 0 to 1. Photon receiver. Default 0.4 (assumed). */
   vtkSetMacro(ReceiverEfficiency, double);
   vtkGetMacro(ReceiverEfficiency, double);
   ///@}
@@ -402,7 +388,8 @@ public:
 
   ///@{
   /**
-   * Amplifier noise n_a, electrons rms, 0 or 1e-3 to 1e20. Photon receiver. Default 60 (assumed).
+   * Noise of the amplifier n_a, electrons, 0 or 1e-3 to 1e20. Photon receiver. Default 60
+   * (assumed).
    */
   vtkSetMacro(AmplifierNoise, double);
   vtkGetMacro(AmplifierNoise, double);
@@ -416,9 +403,7 @@ public:
 
   ///@{
   /**
-   * Spectral irradiance of the sun on a surface that faces it, W/(m2 nm), 0 to 1e10. Above 0 each
-   * beam has the background of what it looks at (Documentation/sensors.md). Photon receiver.
-   * Default 0.
+   * Spectral irradiance of the sun, W/(m2 nm), 0 to 1e10. Photon receiver. Default 0: no daylight.
    */
   vtkSetMacro(Sunlight, double);
   vtkGetMacro(Sunlight, double);
@@ -443,9 +428,7 @@ public:
   ///@}
 
   ///@{
-  /**
-   * Range r_o in the share of light in the view, 1 - exp(-(r/r_o)^2), m, 0 to 1e9. Default 0: all.
-   */
+  /** Range r_o in the share of light in view, 1 - exp(-(r/r_o)^2), m, 0 to 1e9. Default 0: all. */
   vtkSetMacro(OverlapRange, double);
   vtkGetMacro(OverlapRange, double);
   ///@}
@@ -458,9 +441,8 @@ public:
 
   ///@{
   /**
-   * Standard deviation b of ranges at S = 1, m, 0 to 1e9; in general sqrt(a^2 + b^2/S^p), S the
-   * signal-to-noise ratio of a pulse's flanks, a RangeNoiseFloor, p RangeNoiseExponent
-   * (Documentation/sensors.md). Drawn if the echo filter has Noise. Photon receiver. Default 0:
+   * Standard deviation b of ranges at S = 1, m, 0 to 1e9; else sqrt(a^2 + b^2/S^p), a
+   * RangeNoiseFloor, p RangeNoiseExponent (Documentation/sensors.md). Photon receiver. Default 0:
    * exact.
    */
   vtkSetMacro(RangeNoise, double);
@@ -468,9 +450,7 @@ public:
   ///@}
 
   ///@{
-  /**
-   * Exponent p of the signal-to-noise ratio in RangeNoise, 1, 0 to 10. Photon receiver. Default 2.
-   */
+  /** Exponent p of S in RangeNoise, 1, 0 to 10. Photon receiver. Default 2. */
   vtkSetMacro(RangeNoiseExponent, double);
   vtkGetMacro(RangeNoiseExponent, double);
   ///@}
@@ -495,8 +475,7 @@ public:
 
   ///@{
   /**
-   * False alarms expected in a scan of empty sky, 1, above 0 to 1e8 and below a tenth of the range
-   * units. Photon receiver. Default 1.
+   * False alarms expected in a scan of empty sky, 1, above 0 to 1e8. Photon receiver. Default 1.
    */
   vtkSetMacro(FalseAlarmsPerScan, double);
   vtkGetMacro(FalseAlarmsPerScan, double);

@@ -37,17 +37,14 @@ public:
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
   ///@{
-  /**
-   * Species: starling, kestrel, pigeon, crow, herring gull, Canada goose, or one of
-   * SpeciesFileName. Default "herring gull".
-   */
+  /** Name of a species, built in or of SpeciesFileName. Default "herring gull". */
   vtkSetMacro(Species, std::string);
   vtkGetMacro(Species, std::string);
   ///@}
 
   ///@{
   /**
-   * Table of species of your own, columns as in Filters/Birds/species.csv, before ours. Default:
+   * Species of your own (CSV, as Filters/Birds/species.csv), before the built-in ones. Default:
    * none.
    */
   vtkAvianLidarFilePathMacro(SpeciesFileName);

@@ -59,18 +59,13 @@ public:
   ///@}
 
   ///@{
-  /**
-   * Root mean square distance of the last execution (paper, Eq. 20), by direction, m; NaN before.
-   */
+  /** Root mean square distances of the last execution (paper, Eq. 20), m; NaN before. */
   vtkGetMacro(RMSESimulatedToReference, double);
   vtkGetMacro(RMSEReferenceToSimulated, double);
   ///@}
 
   ///@{
-  /**
-   * Density-aware Chamfer distance of the last execution, 0 (alike) to 1, the mean of its
-   * directions; NaN before.
-   */
+  /** Density-aware Chamfer distance, 0 (alike) to 1, the mean of its directions; NaN before. */
   vtkGetMacro(DensityAwareChamferDistance, double);
   vtkGetMacro(DensityAwareChamferSimulatedToReference, double);
   vtkGetMacro(DensityAwareChamferReferenceToSimulated, double);

@@ -60,9 +60,7 @@ public:
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
   ///@{
-  /**
-   * Memory in scans, 1 to 100,000: a scan so long ago weighs 1 / e of the last one. Default 200.
-   */
+  /** Memory in scans, 1 to 100,000; a scan so long ago weighs 1 / e. Default 200. */
   vtkSetMacro(Window, double);
   vtkGetMacro(Window, double);
   ///@}
@@ -77,12 +75,15 @@ public:
   /** Size of the cells in range, m, 0.001 to 1000. Default 1.5, as of the sensor Search905. */
   vtkSetMacro(RangeStep, double);
   vtkGetMacro(RangeStep, double);
-  /**
-   * Size of the cells in azimuth, deg, 0.001 to 90; the nearest that divides 360 is used. Default
-   * 0.375.
-   */
+  ///@}
+
+  ///@{
+  /** Size of the cells in azimuth, deg, 0.001 to 90, made to divide 360. Default 0.375. */
   vtkSetMacro(AzimuthStep, double);
   vtkGetMacro(AzimuthStep, double);
+  ///@}
+
+  ///@{
   /** Size of the cells in elevation, deg, 0.001 to 90. Default 0.375. */
   vtkSetMacro(ElevationStep, double);
   vtkGetMacro(ElevationStep, double);
@@ -92,6 +93,9 @@ public:
   /** Cells nearer and farther than a point's own that count, 0 to 10. Default 1. */
   vtkSetMacro(RangeTolerance, int);
   vtkGetMacro(RangeTolerance, int);
+  ///@}
+
+  ///@{
   /** Cells beside, above and below a point's own that count, 0 to 10. Default 1. */
   vtkSetMacro(AngularTolerance, int);
   vtkGetMacro(AngularTolerance, int);
@@ -99,7 +103,7 @@ public:
 
   ///@{
   /**
-   * First scans in which all points are clutter, 0 to 100,000; scans of a table count. Default 5.
+   * First scans in which all points are clutter, 0 to 100,000. Scans of a table count. Default 5.
    */
   vtkSetMacro(WarmUp, int);
   vtkGetMacro(WarmUp, int);

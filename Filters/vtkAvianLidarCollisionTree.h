@@ -87,9 +87,7 @@ public:
   ///@}
 
   ///@{
-  /**
-   * Volume around a node: axis-aligned box, oriented box or sphere. Default: BOUNDING_VOLUME_AABB.
-   */
+  /** Volume around a node: box, oriented box or sphere. Default: BOUNDING_VOLUME_AABB. */
   vtkSetMacro(BoundingVolume, int);
   vtkGetMacro(BoundingVolume, int);
   void SetBoundingVolumeToAABB() { this->SetBoundingVolume(BOUNDING_VOLUME_AABB); }
@@ -105,8 +103,7 @@ public:
 
   ///@{
   /**
-   * Level whose bounding volumes, and leaves above it, appear on port 1; the root is 0. Negative:
-   * none. Default: 0.
+   * Level whose volumes, with leaves above it, are on port 1; negative: none. Default: 0, the root.
    */
   vtkSetMacro(DisplayLevel, int);
   vtkGetMacro(DisplayLevel, int);

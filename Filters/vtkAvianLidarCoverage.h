@@ -75,10 +75,7 @@ public:
   };
 
   ///@{
-  /**
-   * Least and greatest x, y, z of the image, m; not used with places. Default: (-1000, 1000, -1000,
-   * 1000, 0, 150).
-   */
+  /** Limits of the image in x, y, z, m. Default: (-1000, 1000, -1000, 1000, 0, 150). */
   vtkSetVector6Macro(Bounds, double);
   vtkGetVector6Macro(Bounds, double);
   ///@}
@@ -91,15 +88,15 @@ public:
 
   ///@{
   /**
-   * Species of the bird: starling, kestrel, pigeon, crow, herring gull, Canada goose, or one of
-   * SpeciesFileName. Empty: a target that always shows EffectiveArea. Default: herring gull.
+   * Name of a species, or empty for a target that always shows EffectiveArea. Default: herring
+   * gull.
    */
   vtkSetMacro(Species, std::string);
   vtkGetMacro(Species, std::string);
   ///@}
 
   ///@{
-  /** A table of species of your own, as for vtkAvianLidarBirdSource. Default: none. */
+  /** Species of your own, as for vtkAvianLidarBirdSource. Default: none. */
   vtkAvianLidarFilePathMacro(SpeciesFileName);
   ///@}
 
@@ -112,18 +109,15 @@ public:
 
   ///@{
   /**
-   * Mean effective area from the side at 3 degrees of elevation, m2, 0 to 1e6; the bird is scaled
-   * to it. 0: that of the species. 0.018 is the standard avian optical target, about a crow.
-   * Default: 0.
+   * Mean effective area from the side at 3 degrees of elevation, m2, 0 to 1e6, to which the bird is
+   * scaled. 0: that of the species. 0.018 is the standard avian optical target. Default: 0.
    */
   vtkSetMacro(EffectiveArea, double);
   vtkGetMacro(EffectiveArea, double);
   ///@}
 
   ///@{
-  /**
-   * Reflectance of the plumage at the lidar's wavelength, 1, above 0 to 1. Default: 0.3 (assumed).
-   */
+  /** Reflectance of the plumage, 1, above 0 to 1. Default: 0.3 (assumed; 0.15 dark, 0.6 white). */
   vtkSetMacro(Reflectance, double);
   vtkGetMacro(Reflectance, double);
   ///@}
@@ -149,8 +143,7 @@ public:
 
   ///@{
   /**
-   * Limits of the table's height bands, m (z), rising; each band holds its lower limit. Places
-   * below all bands count for all heights only. Default: 0, 15, 30, 60, 150.
+   * Limits of the height bands, m (z), rising, each in the band above. Default: 0, 15, 30, 60, 150.
    */
   void AddHeightLimit(double height);
   void RemoveAllHeightLimits();
@@ -159,9 +152,7 @@ public:
   ///@}
 
   ///@{
-  /**
-   * Weight the places of the table by StrikeHeightDensity() at z, the ground being 0. Default: off.
-   */
+  /** Weight the places of the table by StrikeHeightDensity() at their z. Default: off. */
   vtkSetMacro(StrikeHeightWeights, bool);
   vtkGetMacro(StrikeHeightWeights, bool);
   vtkBooleanMacro(StrikeHeightWeights, bool);
@@ -180,9 +171,7 @@ public:
 
   ///@{
   /**
-   * Whether the point array `pose_probabilities` is made, by which several sensors are compared
-   * pose by pose: 1 - product (1 - p), averaged over poses, is the probability that one of them
-   * detects. Default: off.
+   * Whether `pose_probabilities` is made, to compare several sensors pose by pose. Default: off.
    */
   vtkSetMacro(PoseProbabilities, bool);
   vtkGetMacro(PoseProbabilities, bool);

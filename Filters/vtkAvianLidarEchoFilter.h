@@ -89,8 +89,8 @@ public:
 
   ///@{
   /**
-   * Returns of a beam that become points; a return is a run of consecutive perceived range units.
-   * RETURN_MODE_RANGE_UNITS makes a point of each unit, as the paper. Default: RETURN_MODE_ALL.
+   * Which returns become points; range units: a point of each, as the paper. Default:
+   * RETURN_MODE_ALL.
    */
   vtkSetMacro(ReturnMode, int);
   vtkGetMacro(ReturnMode, int);
@@ -102,10 +102,7 @@ public:
   ///@}
 
   ///@{
-  /**
-   * Make the mover report, about 1 ms of one core for each mover. Echoes do not depend on it;
-   * `skipped` and `skipped_bound` of the beam report may. Default: on.
-   */
+  /** Make the mover report, 1 ms of one core a mover. Echoes do not depend on it. Default: on. */
   vtkSetMacro(ReportMovers, bool);
   vtkGetMacro(ReportMovers, bool);
   vtkBooleanMacro(ReportMovers, bool);

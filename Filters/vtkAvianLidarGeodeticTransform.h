@@ -77,10 +77,7 @@ public:
   ///@}
 
   ///@{
-  /**
-   * Take the origin from field data `geodetic_origin` of the block, or else of the input. Default:
-   * on.
-   */
+  /** Take the origin from field data `geodetic_origin` of the block or the input. Default: on. */
   vtkSetMacro(UseFieldDataOrigin, bool);
   vtkGetMacro(UseFieldDataOrigin, bool);
   vtkBooleanMacro(UseFieldDataOrigin, bool);
@@ -97,10 +94,7 @@ public:
   ///@}
 
   ///@{
-  /**
-   * Zone of UTM: 1 to 60 north, -1 to -60 south (northings from 10,000 km), 0 by the origin.
-   * Default 0.
-   */
+  /** Zone of UTM: 1 to 60 north, -1 to -60 south, 0 that of the origin. Default 0. */
   vtkSetMacro(UTMZone, int);
   vtkGetMacro(UTMZone, int);
   ///@}

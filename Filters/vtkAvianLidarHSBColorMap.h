@@ -46,10 +46,7 @@ public:
   ///@}
 
   ///@{
-  /**
-   * Qlow and Qhigh if UseFieldDataRange is off, J, rising. Default (2e-6, 6.25e-5), the paper's
-   * Table 2.
-   */
+  /** Qlow and Qhigh if UseFieldDataRange is off, J. Default (2e-6, 6.25e-5), paper, Table 2. */
   vtkSetVector2Macro(EnergyRange, double);
   vtkGetVector2Macro(EnergyRange, double);
   ///@}

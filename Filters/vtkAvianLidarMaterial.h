@@ -89,17 +89,13 @@ public:
   static const char* GetCoefficientName(int coefficient);
 
   ///@{
-  /**
-   * Diffuse coefficient of a custom material, 1, at least 0; kd + ks is at most 1. Default 0.146.
-   */
+  /** Diffuse coefficient of a custom material, 1, 0 to 1 - Ks. Default 0.146. */
   vtkSetMacro(Kd, double);
   vtkGetMacro(Kd, double);
   ///@}
 
   ///@{
-  /**
-   * Specular coefficient of a custom material, 1, at least 0; kd + ks is at most 1. Default 0.054.
-   */
+  /** Specular coefficient of a custom material, 1, 0 to 1 - Kd. Default 0.054. */
   vtkSetMacro(Ks, double);
   vtkGetMacro(Ks, double);
   ///@}
@@ -111,10 +107,7 @@ public:
   ///@}
 
   ///@{
-  /**
-   * Standard deviation of facet slopes, rad, 0 to pi/2, for REFLECTANCE_MODEL_OREN_NAYAR. Default
-   * 0.
-   */
+  /** Standard deviation of facet slopes of a custom material, rad, 0 to pi/2. Default 0. */
   vtkSetMacro(Roughness, double);
   vtkGetMacro(Roughness, double);
   ///@}
@@ -130,10 +123,7 @@ public:
   ///@}
 
   ///@{
-  /**
-   * Name of each leaf, which so becomes one object; empty: its own name, or its block's. Default:
-   * empty.
-   */
+  /** Name of each leaf, which becomes one object; empty: its own or its block's. Default: empty. */
   vtkSetMacro(NameOfObject, std::string);
   vtkGetMacro(NameOfObject, std::string);
   ///@}

@@ -91,9 +91,7 @@ public:
   ///@}
 
   ///@{
-  /**
-   * One-sided leaf area per volume, m2/m3, 1e-6 to 1000; crowns have 0.3 to 3. Default 1 (assumed).
-   */
+  /** One-sided leaf area per volume, m2/m3, 1e-6 to 1000. Default 1 (assumed; crowns: 0.3 to 3). */
   vtkSetMacro(LeafAreaDensity, double);
   vtkGetMacro(LeafAreaDensity, double);
   ///@}
@@ -137,6 +135,9 @@ public:
   /** Lower limit of a layer, m, below Top. Default -1000. */
   vtkSetMacro(Bottom, double);
   vtkGetMacro(Bottom, double);
+  ///@}
+
+  ///@{
   /** Upper limit of a layer, m. Default 20. */
   vtkSetMacro(Top, double);
   vtkGetMacro(Top, double);
@@ -167,18 +168,13 @@ public:
   ///@}
 
   ///@{
-  /**
-   * Velocity, m/s; the medium is where it is said to be at time 0 of the beams. Default (0, 0, 0).
-   */
+  /** Velocity, m/s, from the place at time 0 of the beams. Default (0, 0, 0). */
   vtkSetVector3Macro(Velocity, double);
   vtkGetVector3Macro(Velocity, double);
   ///@}
 
   ///@{
-  /**
-   * Name of the medium in messages, of foliage among the objects; empty: of its block. Default
-   * "medium".
-   */
+  /** Name in messages, and of foliage as an object; empty: of its block. Default "medium". */
   vtkSetMacro(Name, std::string);
   vtkGetMacro(Name, std::string);
   ///@}

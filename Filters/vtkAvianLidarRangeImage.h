@@ -54,12 +54,13 @@ public:
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
   ///@{
-  /**
-   * Columns of the image for beams that come from no beam source; 0, the default: by the pipeline.
-   */
+  /** Columns of the image for beams that come from no beam source; 0, the default: automatic. */
   vtkSetClampMacro(Columns, int, 0, VTK_INT_MAX);
   vtkGetMacro(Columns, int);
-  /** Rows of the image for beams that come from no beam source; 0, the default: by the pipeline. */
+  ///@}
+
+  ///@{
+  /** Rows of the image for beams that come from no beam source; 0, the default: automatic. */
   vtkSetClampMacro(Rows, int, 0, VTK_INT_MAX);
   vtkGetMacro(Rows, int);
   ///@}

@@ -117,9 +117,8 @@ public:
 
   ///@{
   /**
-   * How the RaysPerBeam rays are drawn: SAMPLING_MONTE_CARLO (independent, the paper) or
-   * SAMPLING_STRATIFIED (two in each of N/2 cells of equal solid angle). Default:
-   * SAMPLING_STRATIFIED.
+   * How rays are drawn: independently (the paper), or two in each of N/2 cells of equal solid
+   * angle. Default: SAMPLING_STRATIFIED.
    */
   vtkSetMacro(Sampling, int);
   vtkGetMacro(Sampling, int);
@@ -134,10 +133,7 @@ public:
   ///@}
 
   ///@{
-  /**
-   * Attenuation of the air (Eq. 9), 1/m, 0 to 1e30, used if Visibility is 0. Default: 3.5e-5
-   * (clear).
-   */
+  /** Attenuation of the air (Eq. 9), 1/m, 0 to 1e30, unless Visibility is set. Default: 3.5e-5. */
   vtkSetMacro(AttenuationCoefficient, double);
   vtkGetMacro(AttenuationCoefficient, double);
   ///@}
@@ -153,28 +149,22 @@ public:
   ///@}
 
   ///@{
-  /**
-   * Whether the air of Visibility sends light back (Documentation/weather.md). It needs a sensor
-   * with an aperture, and does nothing if Visibility is 0. Default: off.
-   */
+  /** Whether the air of Visibility sends light back to a sensor with an aperture. Default: off. */
   vtkSetMacro(AirBackscatter, bool);
   vtkGetMacro(AirBackscatter, bool);
   vtkBooleanMacro(AirBackscatter, bool);
   ///@}
 
   ///@{
-  /**
-   * Rain rate, mm/h, 0 to 500. Rain weakens light and sends it back, besides the air. Default: 0.
-   */
+  /** Rain rate, mm/h, 0 to 500. Rain weakens light and sends it back. Default: 0. */
   vtkSetMacro(RainRate, double);
   vtkGetMacro(RainRate, double);
   ///@}
 
   ///@{
   /**
-   * How surfaces reflect: the paper's model (Eq. 5-8), its peers Phong and microfacet (Fig. 10), or
-   * Oren and Nayar's for rough surfaces (Documentation/reflectance.md). Default:
-   * REFLECTANCE_MODEL_LAMBERT_BLINN_PHONG.
+   * How surfaces reflect: by the paper (Eq. 5-8), a peer of it (Fig. 10), or Oren and Nayar (rough
+   * surfaces; Documentation/reflectance.md). Default: REFLECTANCE_MODEL_LAMBERT_BLINN_PHONG.
    */
   vtkSetMacro(ReflectanceModel, int);
   vtkGetMacro(ReflectanceModel, int);
@@ -197,10 +187,7 @@ public:
   ///@}
 
   ///@{
-  /**
-   * Look for second reflection points only among triangles in the beam's cone; same echoes.
-   * Default: on.
-   */
+  /** Look for second reflection points in the beam's cone only; same echoes. Default: on. */
   vtkSetMacro(BeamConstraint, bool);
   vtkGetMacro(BeamConstraint, bool);
   vtkBooleanMacro(BeamConstraint, bool);
@@ -214,20 +201,16 @@ public:
   ///@}
 
   ///@{
-  /**
-   * Fraction of the lower energy limit that a range unit may lose by LightEnergyConstraint, 1, 0 to
-   * 1e8. Above 1 echoes get lost. Not used with LIGHT_ENERGY_THRESHOLD_LIMIT. Default: 1e-3.
-   */
+  /** Share of the lower limit that LightEnergyConstraint may take, 1, 0 to 1e8. Default: 1e-3. */
   vtkSetMacro(LightEnergyFraction, double);
   vtkGetMacro(LightEnergyFraction, double);
   ///@}
 
   ///@{
   /**
-   * What LightEnergyConstraint compares a path with: its share of LightEnergyFraction, or the lower
-   * energy limit itself (paper, Sec. 3.4), for comparison with the paper: no path over two
-   * reflections may be left (Documentation/echoes.md). Default:
-   * LIGHT_ENERGY_THRESHOLD_SHARE_OF_LIMIT.
+   * What LightEnergyConstraint compares a path with: its share of LightEnergyFraction of the lower
+   * limit, or the limit itself (paper, Sec. 3.4), to compare with the paper
+   * (Documentation/echoes.md). Default: LIGHT_ENERGY_THRESHOLD_SHARE_OF_LIMIT.
    */
   vtkSetMacro(LightEnergyThreshold, int);
   vtkGetMacro(LightEnergyThreshold, int);
@@ -270,39 +253,26 @@ public:
   ///@}
 
   ///@{
-  /**
-   * Leave out nothing of what the beam report calls `skipped`. The echoes are the same within
-   * `skipped_bound`; it is slower and serves to check that. It adds no rays. Default: off.
-   */
+  /** Leave out nothing of what the beam report calls `skipped`; slower, to check. Default: off. */
   vtkSetMacro(FullModel, bool);
   vtkGetMacro(FullModel, bool);
   vtkBooleanMacro(FullModel, bool);
   ///@}
 
   ///@{
-  /**
-   * M, diffuse connections of a ray that starts some, at least 0. Rays that start some: N, with
-   * cells N/4 and at least 16. Default: 2, as accurate as 8.
-   */
+  /** M, diffuse connections of a ray that starts some, at least 0. Default: 2, as accurate as 8. */
   vtkSetMacro(NumberOfConnections, int);
   vtkGetMacro(NumberOfConnections, int);
   ///@}
 
   ///@{
-  /**
-   * Threads, at least 0; echoes do not depend on it. 0, the default: OpenMP's choice (all cores, or
-   * OMP_NUM_THREADS), and with several MPI ranks this rank's share of its node.
-   */
+  /** Threads, which never change the echoes; 0, the default: this process's share of the cores. */
   vtkSetMacro(NumberOfThreads, int);
   vtkGetMacro(NumberOfThreads, int);
   ///@}
 
   ///@{
-  /**
-   * Most memory for what is kept between executions, MiB, at least 0. Beams that do not fit are
-   * traced again. Beams and surfaces as read, a tree built here, patterns of rays (some MiB a
-   * thread) and about 120 bytes a beam are not counted. Default: 1024.
-   */
+  /** Most memory for what is kept between executions, MiB, at least 0. Default: 1024. */
   vtkSetMacro(MaximumCacheSize, int);
   vtkGetMacro(MaximumCacheSize, int);
   ///@}

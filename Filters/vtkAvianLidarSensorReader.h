@@ -26,9 +26,7 @@ public:
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
   ///@{
-  /**
-   * The file to read. A change of the file on disk is not noticed: call Reload(). Default: none.
-   */
+  /** The file to read. Changes on disk are noticed by Reload() only. Default: none. */
   void SetFileName(VTK_FILEPATH const char* fileName);
   vtkGetFilePathMacro(FileName);
   ///@}

@@ -64,16 +64,13 @@ public:
   };
 
   ///@{
-  /**
-   * Largest distance within a cluster, m, 0 to 1000, besides ClusterAngle times the range. Default
-   * 1.5.
-   */
+  /** Largest gap in a cluster, m, 0 to 1000, besides ClusterAngle times the range. Default 1.5. */
   vtkSetMacro(ClusterDistance, double);
   vtkGetMacro(ClusterDistance, double);
-  /**
-   * Largest angle within a cluster, deg, 0 to 20. Default 0.6, above the diagonal of 0.375 deg
-   * cells.
-   */
+  ///@}
+
+  ///@{
+  /** Largest gap in a cluster as an angle, deg, 0 to 20. Default 0.6. */
   vtkSetMacro(ClusterAngle, double);
   vtkGetMacro(ClusterAngle, double);
   ///@}
@@ -82,19 +79,22 @@ public:
   /** Standard error of ranges, m, 0.001 to 1000, for points without their own. Default 0.5. */
   vtkSetMacro(RangeError, double);
   vtkGetMacro(RangeError, double);
+  ///@}
+
+  ///@{
   /** Half of the beam's divergence, rad, 0 to 1, for clouds without it. Default 0.0056. */
   vtkSetMacro(HalfBeamwidth, double);
   vtkGetMacro(HalfBeamwidth, double);
+  ///@}
+
+  ///@{
   /** Position of the sensor, m, for clouds without it. Default (0, 0, 0). */
   vtkSetVector3Macro(SensorPosition, double);
   vtkGetVector3Macro(SensorPosition, double);
   ///@}
 
   ///@{
-  /**
-   * Rms distance of echoes from the target's middle, along each axis, m, 0.001 to 1000. Default 0.2
-   * (assumed).
-   */
+  /** Rms distance of echoes from the target's middle, m, 0.001 to 1000. Default 0.2 (assumed). */
   vtkSetMacro(TargetExtent, double);
   vtkGetMacro(TargetExtent, double);
   ///@}
@@ -111,6 +111,9 @@ public:
   /** Power spectral density of the acceleration, m2/s3, 0 to 1e6. Default 10. */
   vtkSetMacro(AccelerationDensity, double);
   vtkGetMacro(AccelerationDensity, double);
+  ///@}
+
+  ///@{
   /** Power spectral density of the turn rate's change, deg2/s3, 0 to 1e6. Default 40. */
   vtkSetMacro(TurnRateDensity, double);
   vtkGetMacro(TurnRateDensity, double);
@@ -120,9 +123,15 @@ public:
   /** Largest speed over ground of a new track, m/s, 0.1 to 1000. Default 25 (assumed). */
   vtkSetMacro(MaximumSpeed, double);
   vtkGetMacro(MaximumSpeed, double);
+  ///@}
+
+  ///@{
   /** Largest climb or descent of a new track, m/s, 0.1 to 1000. Default 5 (assumed). */
   vtkSetMacro(MaximumClimbRate, double);
   vtkGetMacro(MaximumClimbRate, double);
+  ///@}
+
+  ///@{
   /** Largest turn rate of a new track, deg/s, 0 to 360. Default 40 (assumed). */
   vtkSetMacro(MaximumTurnRate, double);
   vtkGetMacro(MaximumTurnRate, double);
@@ -135,15 +144,18 @@ public:
   ///@}
 
   ///@{
-  /**
-   * Scans with a cluster, of the last ConfirmScans, that confirm a track, 1 to ConfirmScans.
-   * Default 3.
-   */
+  /** Scans of the last ConfirmScans with a cluster that confirm a track, at least 1. Default 3. */
   vtkSetMacro(ConfirmHits, int);
   vtkGetMacro(ConfirmHits, int);
+  ///@}
+
+  ///@{
   /** Scans of which ConfirmHits confirm a track, 1 to 32. Default 4. */
   vtkSetMacro(ConfirmScans, int);
   vtkGetMacro(ConfirmScans, int);
+  ///@}
+
+  ///@{
   /** Least speed of a track that is confirmed, m/s, 0 to 1000. Default 0. */
   vtkSetMacro(MinimumSpeed, double);
   vtkGetMacro(MinimumSpeed, double);
@@ -153,12 +165,21 @@ public:
   /** Misses in a row after which a confirmed track ends, 1 to 1000. Default 3. */
   vtkSetMacro(MaximumMisses, int);
   vtkGetMacro(MaximumMisses, int);
+  ///@}
+
+  ///@{
   /** Time without a cluster after which any track ends, s, 0.001 to 1e9. Default 30. */
   vtkSetMacro(MaximumPause, double);
   vtkGetMacro(MaximumPause, double);
+  ///@}
+
+  ///@{
   /** Time for which an ended track stays in the output, s, 0 to 1e9. Default 60. */
   vtkSetMacro(KeepTime, double);
   vtkGetMacro(KeepTime, double);
+  ///@}
+
+  ///@{
   /** Positions that a track keeps, 1 to 1,000,000. Default 200. */
   vtkSetMacro(HistoryLength, int);
   vtkGetMacro(HistoryLength, int);

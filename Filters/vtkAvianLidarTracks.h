@@ -88,16 +88,13 @@ public:
   ///@}
 
   ///@{
-  /**
-   * Species, as of vtkAvianLidarBirdSource; those of a file or of lines come first. Default: empty,
-   * a starling for flocks and a herring gull else.
-   */
+  /** Name of a species. Default: empty, a starling for flocks and a herring gull else. */
   vtkSetMacro(Species, std::string);
   vtkGetMacro(Species, std::string);
   ///@}
 
   ///@{
-  /** A table of species of your own, as for vtkAvianLidarBirdSource. Default: none. */
+  /** Species of your own, as for vtkAvianLidarBirdSource. Default: none. */
   vtkAvianLidarFilePathMacro(SpeciesFileName);
   ///@}
 

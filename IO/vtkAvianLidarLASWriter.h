@@ -51,10 +51,7 @@ public:
   };
 
   ///@{
-  /**
-   * Coordinates of the file: UTM, geocentric, or local (as they are). Default
-   * COORDINATE_SYSTEM_UTM.
-   */
+  /** Coordinates of the file, local: as they are. Default COORDINATE_SYSTEM_UTM. */
   vtkSetClampMacro(CoordinateSystem, int, COORDINATE_SYSTEM_UTM, COORDINATE_SYSTEM_LOCAL);
   vtkGetMacro(CoordinateSystem, int);
   void SetCoordinateSystemToUTM() { this->SetCoordinateSystem(COORDINATE_SYSTEM_UTM); }

@@ -44,9 +44,7 @@ public:
   };
 
   ///@{
-  /**
-   * Binary, or text with the shortest digits that give the same numbers. Default FILE_TYPE_BINARY.
-   */
+  /** Binary, or text with the shortest exact digits. Default FILE_TYPE_BINARY. */
   vtkSetClampMacro(FileType, int, FILE_TYPE_BINARY, FILE_TYPE_ASCII);
   vtkGetMacro(FileType, int);
   void SetFileTypeToBinary() { this->SetFileType(FILE_TYPE_BINARY); }

@@ -50,17 +50,13 @@ public:
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
   ///@{
-  /**
-   * The file to read. A change of the file on disk is not noticed: call Modified(). Default: none.
-   */
+  /** The file to read. After a change on disk call Modified(). Default: none, which is an error. */
   vtkSetFilePathMacro(FileName);
   vtkGetFilePathMacro(FileName);
   ///@}
 
   ///@{
-  /**
-   * Convert to metres east, north and up of the `geodetic_origin` that the file names. Default: on.
-   */
+  /** Convert to metres east, north and up of the file's `geodetic_origin`. Default: on. */
   vtkSetMacro(LocalCoordinates, bool);
   vtkGetMacro(LocalCoordinates, bool);
   vtkBooleanMacro(LocalCoordinates, bool);

@@ -47,10 +47,7 @@ public:
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
   ///@{
-  /**
-   * The scene file; files that it names are sought from its folder. A change of the file on disk is
-   * not noticed: call Modified(). Default: none, which is an error.
-   */
+  /** The scene file. After a change on disk call Modified(). Default: none, which is an error. */
   vtkSetFilePathMacro(FileName);
   vtkGetFilePathMacro(FileName);
   ///@}

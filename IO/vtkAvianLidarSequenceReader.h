@@ -39,9 +39,7 @@ public:
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
   ///@{
-  /**
-   * The `times.txt`. A change of the files on disk is not noticed: call Modified(). Default: none.
-   */
+  /** The `times.txt`. After a change on disk call Modified(). Default: none, which is an error. */
   vtkSetFilePathMacro(FileName);
   vtkGetFilePathMacro(FileName);
   ///@}
