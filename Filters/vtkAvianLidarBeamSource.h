@@ -23,8 +23,7 @@
  * Setters keep any value; it is checked when the source executes. A bad value, or more beams than
  * memory holds, is an error that names the property, and both outputs are empty.
  *
- * @code{.cpp}
- * vtkNew<vtkAvianLidarBeamSource> sensor;
+ * @code
  * sensor->SetPresetToSearch905();
  * sensor->SetPosition(0, 0, 3);
  * echoes->SetInputConnection(0, sensor->GetOutputPort());
@@ -58,28 +57,24 @@ public:
   vtkTypeMacro(vtkAvianLidarBeamSource, vtkPolyDataAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
-  /// Values of BeamProfile.
   enum BeamProfiles
   {
     BEAM_PROFILE_UNIFORM = 0,
     BEAM_PROFILE_GAUSSIAN = 1
   };
 
-  /// Values of BeamOutline.
   enum BeamOutlines
   {
     BEAM_OUTLINE_ELLIPSE = 0,
     BEAM_OUTLINE_RECTANGLE = 1
   };
 
-  /// Values of ReceiverModel.
   enum ReceiverModels
   {
     RECEIVER_MODEL_ENERGY_LIMITS = 0,
     RECEIVER_MODEL_PHOTONS = 1
   };
 
-  /// Values of ThresholdLaw.
   enum ThresholdLaws
   {
     THRESHOLD_LAW_FIXED = 0,
@@ -88,9 +83,9 @@ public:
 
   ///@{
   /**
-   * Set all properties but ErrorsAsData to those of a built-in sensor. What its file in
-   * Filters/Sensors does not name, position and orientation among it, gets the default of this
-   * class. The file says where each number comes from (Documentation/sensors.md).
+   * Set all properties but ErrorsAsData to those of a built-in sensor, by its file in
+   * Filters/Sensors, and to the defaults of this class where the file has none
+   * (Documentation/sensors.md).
    */
   vtkAvianLidarSensorPresetsMacro();
   ///@}
@@ -203,9 +198,8 @@ public:
 
   ///@{
   /**
-   * Half of the opening angle across the direction of HalfBeamwidth, rad, 1e-9 to 0.1 and 1/1000 to
-   * 1000 times HalfBeamwidth. Default 0: the same. The energy of a beam that is not round is
-   * uniform, or Gaussian, over the plane across its axis.
+   * Half of the opening angle across HalfBeamwidth, rad, 1e-9 to 0.1, 1/1000 to 1000 times it.
+   * Default 0: the same. The energy is then uniform, or Gaussian, over the plane across the axis.
    */
   vtkSetMacro(HalfBeamwidthAcross, double);
   vtkGetMacro(HalfBeamwidthAcross, double);

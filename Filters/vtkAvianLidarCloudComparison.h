@@ -10,22 +10,18 @@
  *   as field data.
  *
  * Hausdorff distance and RMSE are Eq. 19 and 20 of "Research on Ground Object Echo Simulation of
- * Avian Lidar", Photonics 2024, 11(2), 153. Eq. 20 as printed sums over one cloud and divides by
- * the number of points of the other; here each direction is divided by its own number of points.
- * The Chamfer distance is that of Wu et al., NeurIPS 2021, arXiv:2111.12702. Formulas and limits:
- * Documentation/cloud-comparison.md.
+ * Avian Lidar", Photonics 2024, 11(2), 153; here each direction of Eq. 20 is divided by its own
+ * number of points. The Chamfer distance is that of Wu et al., NeurIPS 2021, arXiv:2111.12702.
+ * Distances are Euclidean, in double precision; the order of points does not matter. It takes one
+ * thread and n log n steps; points equally far from a whole cloud look at all of it. Formulas and
+ * limits: Documentation/cloud-comparison.md.
  *
- * Distances are Euclidean, in double precision. Points in the same place are one place; of equally
- * near places the first by x, y, z is the nearest, so the order of points does not matter. It takes
- * one thread and n log n steps; points equally far from a whole cloud, such as the centre of a
- * sphere, look at all of it.
+ * A bad alpha is an error; so is a cloud without points or with coordinates that are not finite or
+ * beyond 1e30 m, with port and point. Outputs are then empty and the getters NaN, as after an
+ * abort. MPI ranks with a piece of each cloud measure their own points against the whole other
+ * cloud.
  *
- * A bad alpha is an error. A cloud without points, or with coordinates that are not finite or
- * beyond 1e30 m, is an error that names port and point. Outputs are then empty and the getters NaN,
- * as after an abort. MPI ranks with a piece of each cloud measure their own points against the
- * whole other cloud.
- *
- * @code{.cpp}
+ * @code
  * comparison->SetInputConnection(0, echoes->GetOutputPort());
  * comparison->SetInputConnection(1, reader->GetOutputPort());
  * comparison->Update();

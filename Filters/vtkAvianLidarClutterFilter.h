@@ -15,7 +15,7 @@
  * - Output port 0: a shallow copy of the scan with the point arrays `clutter_probability` and
  *   `is_clutter`.
  * - Output port 1, the table: vtkPolyData, a vertex in the middle of each cell that is kept, in the
- *   order of cells, with `clutter_probability` and `clutter_cell`. Of several ranks rank 0 has it.
+ *   order of cells, with `clutter_probability` and `clutter_cell`. Rank 0 has that of all ranks.
  * - Field data of both: `learned_scans`, `position` and the settings as `clutter_window` and so on.
  *
  * The time of a scan is DATA_TIME_STEP of the input, else the field data `TimeValue`, else the
@@ -27,7 +27,7 @@
  * with empty outputs; the memory stays. A scan without points is a scan. The result has the same
  * bits for any order of the points and any number of ranks.
  *
- * @code{.cpp}
+ * @code
  * clutter->SetInputConnection(echoes->GetOutputPort(0));
  * tracker->SetInputConnection(clutter->GetOutputPort(0));
  * @endcode

@@ -23,7 +23,7 @@
  * A bad input or option is an error with empty outputs. No triangles: empty outputs. The same input
  * gives the same tree. It uses no VTK locator and no vtkSMPTools.
  *
- * @code{.cpp}
+ * @code
  * tree->SetInputConnection(reader->GetOutputPort());
  * echoes->SetSurfacesConnection(tree->GetOutputPort());
  * @endcode
@@ -71,9 +71,8 @@ public:
 
   ///@{
   /**
-   * How a node's triangles are parted: halves of the list (the paper's BVH), median along
-   * alternating axes (k-D), principal plane (BSP), or the binned surface area heuristic. Default:
-   * SPLIT_RULE_SURFACE_AREA_HEURISTIC.
+   * How a node's triangles are parted: halves of the list (paper: BVH), median (k-D), principal
+   * plane (BSP), or the binned surface area heuristic. Default: SPLIT_RULE_SURFACE_AREA_HEURISTIC.
    */
   vtkSetMacro(SplitRule, int);
   vtkGetMacro(SplitRule, int);

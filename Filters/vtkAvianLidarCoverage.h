@@ -31,7 +31,7 @@
  * an aborted run leaves empty outputs. Points have the same bits for any number of threads and
  * pieces; sums over ranks may differ in the last digits.
  *
- * @code{.cpp}
+ * @code
  * coverage->SetInputConnection(sensor->GetOutputPort());
  * coverage->SetSurfacesConnection(tree->GetOutputPort());
  * coverage->SetSpecies("crow");

@@ -39,8 +39,7 @@
  * and `skipped` depend on order, pieces, tree and earlier runs. MPI ranks that ask for their own
  * pieces work together.
  *
- * @code{.cpp}
- * vtkNew<vtkAvianLidarEchoFilter> echoes;
+ * @code
  * echoes->SetInputConnection(sensor->GetOutputPort());
  * echoes->SetSurfacesConnection(tree->GetOutputPort());
  * echoes->Update();

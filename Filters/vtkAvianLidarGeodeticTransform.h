@@ -40,7 +40,6 @@ public:
   vtkTypeMacro(vtkAvianLidarGeodeticTransform, vtkPassInputTypeAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
-  /// Values of SourceFrame and TargetFrame.
   enum Frames
   {
     FRAME_ENU = 0,
@@ -85,9 +84,8 @@ public:
 
   ///@{
   /**
-   * Origin if UseFieldDataOrigin is off: latitude in [-90, 90], longitude in [-360, 360], deg,
-   * height above the ellipsoid, m. Needed by ENU, and by UTM with an automatic zone. Default (0, 0,
-   * 0).
+   * Origin for ENU and automatic UTM, if UseFieldDataOrigin is off: latitude in [-90, 90],
+   * longitude in [-360, 360], deg, height above the ellipsoid, m. Default (0, 0, 0).
    */
   vtkSetVector3Macro(Origin, double);
   vtkGetVector3Macro(Origin, double);

@@ -39,7 +39,6 @@ public:
   vtkTypeMacro(vtkAvianLidarMaterial, vtkPassInputTypeAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
-  /// Values of Material.
   enum MaterialChoices
   {
     MATERIAL_UNCHANGED = -1,
@@ -76,8 +75,8 @@ public:
   ///@{
   /**
    * Name of a value of Material, source of its numbers ("assumed" if not measured), a coefficient
-   * (0 kd, 1 ks, 2 kp, 3 roughness) and a colour (red, green, blue, 0 to 1). Of MATERIAL_CUSTOM and
-   * unknown values null, NaN, or false, and the colour stays.
+   * (0 kd, 1 ks, 2 kp, 3 roughness) and a colour (red, green, blue, 0 to 1). MATERIAL_CUSTOM and
+   * unknown values give null, NaN, or false with the colour unchanged.
    */
   static const char* GetMaterialName(int material);
   static const char* GetMaterialSource(int material);
@@ -114,9 +113,9 @@ public:
 
   ///@{
   /**
-   * Object id of the surfaces, at least 0; or -1: ids are kept, other leaves get their number in
-   * leaf order. Ids that are not unique in a scene are given anew when its surfaces are merged.
-   * Default -1.
+   * Object id of the surfaces, at least 0; or -1, the default: ids are kept, other leaves get their
+   * number in leaf order. Ids that are not unique in a scene are given anew when surfaces are
+   * merged.
    */
   vtkSetMacro(ObjectId, int);
   vtkGetMacro(ObjectId, int);

@@ -20,8 +20,9 @@
  *
  * Combine the output with the scene, in ParaView by Group Datasets:
  *
- * @code{.cpp}
+ * @code
  * fog->SetVisibility(300);
+ * fog->Update();
  * scene->SetBlock(1, fog->GetOutput());
  * @endcode
  *
@@ -43,7 +44,6 @@ public:
   vtkTypeMacro(vtkAvianLidarMedium, vtkPolyDataAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
-  /// Values of Kind.
   enum Kinds
   {
     KIND_HAZE = 0,
@@ -55,7 +55,6 @@ public:
     KIND_CUSTOM = 6
   };
 
-  /// Values of Shape.
   enum Shapes
   {
     SHAPE_EVERYWHERE = 0,

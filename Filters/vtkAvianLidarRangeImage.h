@@ -27,7 +27,7 @@
  * another than announced are an error that names array and port, with an empty image. No beams: an
  * image of the announced size without echoes.
  *
- * @code{.cpp}
+ * @code
  * image->SetInputConnection(0, echoes->GetOutputPort(0));
  * image->SetInputConnection(1, echoes->GetOutputPort(1));
  * @endcode

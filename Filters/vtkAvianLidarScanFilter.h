@@ -140,9 +140,8 @@ public:
 
   ///@{
   /**
-   * Visibility, m, to 1e9: sets the attenuation at the lidar's wavelength by the law of Kruse and
-   * Kim (Documentation/reflectance.md). 0: AttenuationCoefficient counts. Default: 0 of
-   * vtkAvianLidarEchoFilter, 23000 (clear) of vtkAvianLidarCoverage.
+   * Visibility, m, to 1e9, by the law of Kruse and Kim (Documentation/reflectance.md). 0: by
+   * AttenuationCoefficient. Default: 0 of the echo filter, 23000 (clear) of vtkAvianLidarCoverage.
    */
   vtkSetMacro(Visibility, double);
   vtkGetMacro(Visibility, double);
@@ -163,8 +162,8 @@ public:
 
   ///@{
   /**
-   * How surfaces reflect: by the paper (Eq. 5-8), a peer of it (Fig. 10), or Oren and Nayar (rough
-   * surfaces; Documentation/reflectance.md). Default: REFLECTANCE_MODEL_LAMBERT_BLINN_PHONG.
+   * How surfaces reflect (Documentation/reflectance.md): the paper's model, Eq. 5-8; its peers of
+   * Fig. 10; Oren and Nayar's for rough surfaces. Default: REFLECTANCE_MODEL_LAMBERT_BLINN_PHONG.
    */
   vtkSetMacro(ReflectanceModel, int);
   vtkGetMacro(ReflectanceModel, int);
@@ -208,9 +207,9 @@ public:
 
   ///@{
   /**
-   * What LightEnergyConstraint compares a path with: its share of LightEnergyFraction of the lower
-   * limit, or the limit itself (paper, Sec. 3.4), to compare with the paper
-   * (Documentation/echoes.md). Default: LIGHT_ENERGY_THRESHOLD_SHARE_OF_LIMIT.
+   * What LightEnergyConstraint compares a path with: a share of the lower limit, by
+   * LightEnergyFraction, or all of it, as the paper (Sec. 3.4). Default:
+   * LIGHT_ENERGY_THRESHOLD_SHARE_OF_LIMIT.
    */
   vtkSetMacro(LightEnergyThreshold, int);
   vtkGetMacro(LightEnergyThreshold, int);

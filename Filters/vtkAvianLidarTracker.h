@@ -3,33 +3,31 @@
  * @class vtkAvianLidarTracker
  * @brief Tracks of birds from point clouds that come one after the other.
  *
- * Each execution takes one cloud, a whole scan: points are grouped into clusters, each track takes
- * at most one cluster, and the others begin new tracks. Motion is filtered by Kalman filters of
- * constant velocity or of a coordinated turn (Bar-Shalom, Li and Kirubarajan, Estimation with
- * Applications to Tracking and Navigation, 2001); clusters are assigned one to one by least cost.
- * Method, times and limits: Documentation/tracks.md, The tracker.
+ * Each execution takes one cloud, a whole scan. Its points are grouped into clusters, clusters are
+ * assigned to tracks one to one by least cost, and the others begin new tracks. Kalman filters
+ * follow the motion (Bar-Shalom, Li and Kirubarajan, Estimation with Applications to Tracking and
+ * Navigation, 2001). Method, times and limits: Documentation/tracks.md, The tracker.
  *
- * - Input port 0: vtkPolyData, points in metres. Optional point arrays: `is_clutter` (points with
- *   other values than 0 are left out), `timestamp` (us), `distance_std_error` (m). Optional field
- *   data: `position`, `half_beamwidth`.
- * - Output port 0, tracks: vtkPolyData, a polyline for each track, a vertex for one of a single
- *   position (these first), by `track_id`. Point arrays: `time`, `velocity` (0 at the first
- *   position), `position_covariance`, `number_of_echoes`. Cell arrays: `track_id`, `confirmed`,
- *   `ended`, `hits`.
+ * - Input port 0: vtkPolyData, points in metres. Optional: point arrays `is_clutter` (points where
+ *   it is not 0 are left out), `timestamp`, `distance_std_error`; field data `position`,
+ *   `half_beamwidth`.
+ * - Output port 0, tracks: vtkPolyData, a polyline for each (first a vertex for each of a single
+ *   position), by `track_id`, with the point arrays `time`, `velocity` (0 at the first position),
+ *   `position_covariance`, `number_of_echoes` and the cell arrays `track_id`, `confirmed`, `ended`,
+ *   `hits`.
  * - Output port 1, points: the input with `track_id` and `track_confirmed`.
  * - Field data of both: `time` and the settings in snake case.
  *
- * The time of a cloud is DATA_TIME_STEP of the input, else the field data `TimeValue`, else the
- * start of its `revolution`, else 1 s after the cloud before. The same time again replaces the last
- * cloud; an earlier time empties the memory, with a warning. Timestamps that do not all lie after
- * the cloud before are not used, with a warning.
+ * The time of a cloud is DATA_TIME_STEP, else the field data `TimeValue`, else the start of its
+ * `revolution`, else 1 s after the cloud before. The same time replaces the last cloud; an earlier
+ * one empties the memory, with a warning. Timestamps that do not all lie after the cloud before are
+ * not used, with a warning.
  *
- * Bad settings, points and arrays are an error with empty outputs; the memory stays. An empty cloud
- * is a scan in which all tracks are missed. The tracks have the same bits for any order of the
- * points. Of several ranks with a piece of the cloud each, rank 0 has the tracks, each its own
- * points.
+ * Bad settings, points and arrays are an error with empty outputs; the memory stays. The tracks
+ * have the same bits for any order of the points. Rank 0 has the tracks of all ranks, each rank its
+ * own points.
  *
- * @code{.cpp}
+ * @code
  * tracker->SetInputConnection(echoes->GetOutputPort(0));
  * for (int scan = 0; scan < 30; ++scan)
  *   tracker->UpdateTimeStep(2.0 * scan);

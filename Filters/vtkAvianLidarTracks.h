@@ -22,7 +22,7 @@
  * that names the property, or file and line, or line of the input, with empty outputs. No birds:
  * empty outputs.
  *
- * @code{.cpp}
+ * @code
  * birds->SetPatternToCircles();
  * birds->SetTimeRange(0, 20);
  * echoes->SetMoversConnection(birds->GetOutputPort());
@@ -47,7 +47,6 @@ public:
   vtkTypeMacro(vtkAvianLidarTracks, vtkMultiBlockDataSetAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
-  /// Values of Pattern.
   enum Patterns
   {
     PATTERN_CROSSINGS = 0,

@@ -38,9 +38,9 @@ public:
 
   ///@{
   /**
-   * Name as it was given, for writers that make FileName of it, as ParaView's do for every step of
-   * a series. They put a slash before names without a folder; SetMadeFileName() sets FileName
-   * without it. Default: none.
+   * Name as it was given, for writers that derive FileName from it, as ParaView's do for each time
+   * step. SetMadeFileName() removes the slash that these put before names without a folder.
+   * Default: none.
    */
   vtkSetFilePathMacro(GivenFileName);
   vtkGetFilePathMacro(GivenFileName);

@@ -32,7 +32,6 @@ public:
   vtkTypeMacro(vtkAvianLidarKITTIWriter, vtkAvianLidarCloudWriter);
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
-  /// Values of LabelSource.
   enum LabelSources
   {
     LABEL_SOURCE_OBJECT_CLASS = 0,

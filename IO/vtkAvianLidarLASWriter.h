@@ -19,7 +19,7 @@
  * Errors: vtkAvianLidarCloudWriter; also LAZ in a build without LASzip, and `crs_wkt` that is not
  * WKT.
  *
- * @code{.cpp}
+ * @code
  * writer->SetInputConnection(echoes->GetOutputPort());
  * writer->SetFileName("echoes.las");
  * writer->Write();
@@ -42,7 +42,6 @@ public:
   vtkTypeMacro(vtkAvianLidarLASWriter, vtkAvianLidarCloudWriter);
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
-  /// Values of CoordinateSystem.
   enum CoordinateSystems
   {
     COORDINATE_SYSTEM_UTM = 0,

@@ -34,14 +34,12 @@ public:
   vtkTypeMacro(vtkAvianLidarPCDWriter, vtkAvianLidarCloudWriter);
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
-  /// Values of FileType.
   enum FileTypes
   {
     FILE_TYPE_BINARY = 0,
     FILE_TYPE_ASCII = 1
   };
 
-  /// Values of Organisation.
   enum Organisations
   {
     ORGANISATION_AUTOMATIC = 0,
@@ -49,7 +47,6 @@ public:
     ORGANISATION_LIST = 2
   };
 
-  /// Values of Precision.
   enum Precisions
   {
     PRECISION_SINGLE = 0,

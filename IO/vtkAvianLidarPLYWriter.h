@@ -9,8 +9,9 @@
  * and field data are JSON in comments, which vtkAvianLidarPointCloudReader reads back. Polygons
  * become the element `face`.
  *
- * An array of one component whose name another property has is left out with a warning; of several
- * components, and triangle strips, are an error. Rounding is that of vtkAvianLidarPCDWriter.
+ * An array of one component whose name another property has is left out with a warning. With
+ * several components it is an error, and so are triangle strips. Rounding: as
+ * vtkAvianLidarPCDWriter.
  *
  * Example: `writer->SetFileName("echoes.ply"); writer->Write();` Documentation: formats.md, PLY.
  * Source: G. Turk, "The PLY Polygon File Format", 1994.
@@ -29,14 +30,12 @@ public:
   vtkTypeMacro(vtkAvianLidarPLYWriter, vtkAvianLidarCloudWriter);
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
-  /// Values of FileType.
   enum FileTypes
   {
     FILE_TYPE_BINARY = 0,
     FILE_TYPE_ASCII = 1
   };
 
-  /// Values of Precision.
   enum Precisions
   {
     PRECISION_SINGLE = 0,

@@ -25,7 +25,7 @@
  *
  * Errors name the file and what is wrong; the output is then empty, as after an abort.
  *
- * @code{.cpp}
+ * @code
  * reader->SetFileName("scan.las");
  * reader->Update();
  * @endcode
@@ -64,9 +64,8 @@ public:
 
   ///@{
   /**
-   * Sensor whose packets are read of a recording of several: IPv4 address, with the port of the
-   * receiver if only that differs ("192.168.1.201:2368"). Without it such a recording is an error.
-   * Default: none.
+   * Sensor to read from packets of several: its IPv4 address, with the port if only that differs
+   * ("192.168.1.201:2368"). Default: none; packets of several sensors are then an error.
    */
   vtkSetStringMacro(SensorAddress);
   vtkGetStringMacro(SensorAddress);

@@ -23,7 +23,7 @@
  * Piece 0 is the whole scene; others have the same blocks without cells, and the same field data
  * but an empty `scene_report`.
  *
- * @code{.cpp}
+ * @code
  * reader->SetFileName("airport.lidarscene.json");
  * tree->SetInputConnection(reader->GetOutputPort());
  * @endcode
