@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The beam source: the paper's presets, angles and times, the table of elevations, pieces, held
-// outputs, and values that others forbid.
+// outputs. Bad values are TestScanPattern's, TestScanClock's and TestBadInput.py's.
 #include "vtkAvianLidarBeamSource.h"
 
 #include "Checks.h"
@@ -148,32 +148,6 @@ void TestHeldOutput()
   Check(At(beams->GetPointData(), "azimuth") == 100.0 && At(held->GetPointData(), "azimuth") == 0.0,
     "new azimuths");
 }
-
-// Values that others forbid; TestBadInput.py goes beyond the limits of each property by itself.
-void TestBadValues()
-{
-  const std::pair<const char*, void (*)(Source*)> cases[] = {
-    { "channel 15", [](Source* s) { s->SetElevationStep(7.0); } },
-    { "AzimuthRange", [](Source* s) { s->SetAzimuthRange(180.0, 0.0); } },
-    { "AzimuthStep", [](Source* s) { s->SetAzimuthStep(0.0); } },
-    { "FiringInterval", [](Source* s) { s->SetFiringInterval(1e-3); } },
-    { "960 columns", [](Source* s) { s->SetStepsPerRevolution(961); } },
-    { "NumberOfRevolutions times", [](Source* s) { s->SetNumberOfRevolutions(1000001); } },
-    { "SwayAmplitude is", [](Source* s) { s->SetSwayAmplitude(11.0); } },
-    { "BeamwidthMilliradians is 6", [](Source* s) { s->SetBeamwidthMilliradians(6.0); } },
-    { "HalfBeamwidth is", [](Source* s) { s->SetHalfBeamwidth(1.05); } }, // 60.2 degrees
-    { "PulseWidth is", [](Source* s) { s->SetPulseWidth(5.1e-6); } },     // more than 1000 units
-    { "UpperEnergyLimit is", [](Source* s) { s->SetUpperEnergyLimit(1e-6); } }, // below the lower
-    { "DisplayLength is", [](Source* s) { s->SetDisplayLength(0.0); } },
-  };
-  for (const auto& [words, spoil] : cases)
-  {
-    vtkNew<Source> source;
-    source->Update(); // so that there is something that must go
-    spoil(source);
-    checks::CheckFails(source, words);
-  }
-}
 }
 
 int TestBeamSource(int, char*[])
@@ -183,6 +157,5 @@ int TestBeamSource(int, char*[])
   TestTable();
   TestPiecesOfBothPorts();
   TestHeldOutput();
-  TestBadValues();
   return checks::Result();
 }

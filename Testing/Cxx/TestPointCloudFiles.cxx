@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Every writer of clouds and the reader, in C++, where sanitizers look: what is written comes back,
-// what goes wrong is said and leaves nothing.
+// Writers of clouds and the reader, in C++, where sanitizers look: what is written comes back.
 #include "vtkAvianLidarArrays.h"
 #include "vtkAvianLidarCloudWriter.h"
-#include "vtkAvianLidarGeoJSONWriter.h"
 #include "vtkAvianLidarKITTIWriter.h"
 #include "vtkAvianLidarLASWriter.h"
 #include "vtkAvianLidarPCDWriter.h"
@@ -20,7 +18,6 @@
 
 #include <cmath>
 #include <cstdio>
-#include <fstream>
 #include <string>
 
 namespace
@@ -88,24 +85,6 @@ void CheckFile(vtkAvianLidarCloudWriter* writer, const std::string& name, double
     Check(same, what + ": the same echoes");
   }
 }
-
-void CheckErrors(vtkAvianLidarCloudWriter* writer, const std::string& name)
-{
-  checks::Heard heard(writer);
-  auto echoes = Echoes(10);
-  writer->SetInputData(echoes);
-  writer->SetFileName(("no-such-folder/" + name).c_str());
-  Check(writer->Write() == 0 && heard.ErrorHas("cannot be opened"), name + ": no folder");
-  echoes->GetPoints()->SetPoint(7, NAN, 0.0, 0.0);
-  writer->SetFileName(name.c_str());
-  std::remove(name.c_str());
-  // In PCD and PLY such a point is an empty cell.
-  if (!writer->IsA("vtkAvianLidarPCDWriter") && !writer->IsA("vtkAvianLidarPLYWriter"))
-  {
-    Check(writer->Write() == 0 && heard.ErrorHas("point 7"), name + ": not a number");
-    Check(!std::ifstream(name), name + ": nothing is left");
-  }
-}
 }
 
 int TestPointCloudFiles(int, char*[])
@@ -114,7 +93,6 @@ int TestPointCloudFiles(int, char*[])
   vtkNew<vtkAvianLidarPCDWriter> pcd;
   vtkNew<vtkAvianLidarPLYWriter> ply;
   vtkNew<vtkAvianLidarKITTIWriter> kitti;
-  vtkNew<vtkAvianLidarGeoJSONWriter> geoJson;
   const std::string stem = "TestPointCloudFiles.";
   CheckFile(las, stem + "las", 1e-5);
   las->SetCoordinateSystemToGeocentric();
@@ -129,10 +107,5 @@ int TestPointCloudFiles(int, char*[])
   CheckFile(ply, stem + "ply", 0.0);
   CheckFile(kitti, stem + "bin", 5e-4);
   std::remove((stem + "label").c_str());
-  CheckErrors(las, stem + "las");
-  CheckErrors(pcd, stem + "pcd");
-  CheckErrors(ply, stem + "ply");
-  CheckErrors(kitti, stem + "bin");
-  CheckErrors(geoJson, stem + "geojson");
   return checks::Result();
 }

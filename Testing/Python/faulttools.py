@@ -131,7 +131,7 @@ def algorithms():
         ("points", "point", (1e39,)), ("point", "intensity", FINITE), ("point", "return_number", WHOLE),
         ("point", "number_of_returns", WHOLE), ("point", "timestamp", FINITE), ("point", "vertical_angle", FINITE),
         ("point", "object_id", WHOLE), ("point", "energy", ARRAY), CLASSES, ORIGIN]]
-    yield writer("KITTI"), [cloud], [[("points", "point", (1e39,)), ("point", "intensity", FINITE), ("point", "object_id", WHOLE), CLASSES] + PLACE]
+    yield writer("KITTI"), [cloud], [[("points", "point", (1e39, NAN)), ("point", "intensity", FINITE), ("point", "object_id", WHOLE), CLASSES] + PLACE]
     yield writer("KITTI", LabelSource=1), [cloud], [[("point", "material_id", WHOLE)]]
     yield writer("PCD", Organisation=1), [cloud], [
         [("points", "point", (1e39,)), ("point", "beam_id", WHOLE), ("point", "laser_id", WHOLE), ("point", "energy_received", FINITE),
