@@ -189,7 +189,7 @@ std::vector<Timing> timesOf(const std::vector<Method>& methods, const Options& o
   std::vector<Contender> contenders;
   for (const Method& m : methods)
   {
-    contenders.push_back({ m.name, [&m]() { freshScan(m.setup, m.beams, 1); } });
+    contenders.push_back({ m.name, [&m]() { runScan(m.setup, m.beams, 1); } });
   }
   return compete(contenders, figureLimits(options));
 }
@@ -289,7 +289,7 @@ bool suiteFigure10(const Options& options)
       {
         const ScanBeams& run = methods[k - 1].beams;
         same = same &&
-          sameEchoes(freshScan(methods[k - 1].setup, run, 2), freshScan(methods[k].setup, run, 2));
+          sameEchoes(runScan(methods[k - 1].setup, run, 2), runScan(methods[k].setup, run, 2));
       }
       good = good && same;
       const std::vector<Timing> timings = timesOf(methods, options);
@@ -313,7 +313,7 @@ std::uint64_t secondRays(ScanSetup setup, const ScanBeams& beams, const ScanResu
 {
   setup.settings.numberOfReflections = 1;
   finishSetup(setup);
-  return result.raysTraced - freshScan(setup, beams, 2).raysTraced;
+  return result.raysTraced - runScan(setup, beams, 2).raysTraced;
 }
 
 /// Energy of all echoes, J, and of it what came over two reflections.
@@ -355,7 +355,7 @@ bool ablation(const Scene& scene, const Options& options, Table& times, Table& r
       s.traceMode = (bits & 4) != 0 ? TraceMode::Beams : TraceMode::SingleRays;
     };
     methods.push_back({ names[k], makePaperSetup(scene, tree, change), beams });
-    results.push_back(freshScan(methods[k].setup, beams, 2));
+    results.push_back(runScan(methods[k].setup, beams, 2));
     if (k < 4 || k == share)
     {
       const auto [energy, second] = energyOf(results[k]);
@@ -402,7 +402,7 @@ void measureEpsilon(const Scene& scene, const Options& options, Table& table)
   const std::vector<Timing> timings = timesOf(methods, options);
   for (std::size_t k = 0; k < methods.size(); ++k)
   {
-    const ScanResult result = freshScan(methods[k].setup, beams, 2);
+    const ScanResult result = runScan(methods[k].setup, beams, 2);
     table.row(scene.name, scene.mesh->size(), methods[k].name, choices[k].second, timings[k].best,
       secondRays(methods[k].setup, beams, result), result.echoes.size(), energyOf(result).first);
   }

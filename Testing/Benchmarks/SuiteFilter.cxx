@@ -94,7 +94,7 @@ void measureFilter(const Scene& scene, const SceneEntry& entry, int channels, in
   line.scan();
   measure({
     { "tracing primary rays", [&]() { tracer(work, threads, nullptr); } },
-    { "scan without VTK", [&]() { freshScan(setup, beams, threads); } },
+    { "scan without VTK", [&]() { runScan(setup, beams, threads); } },
     { "energies, hits known", [&]() { light(threads); } },
     { "Update(), tree ready", [&]() { line.scan(); } },
   });

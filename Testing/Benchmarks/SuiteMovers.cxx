@@ -161,7 +161,7 @@ bool suiteMovers(const Options& options)
         [&]()
         {
           buildCollisionTree(moved.mesh, {}, {}, 1);
-          freshScan(anew, beams, 1);
+          runScan(anew, beams, 1);
         } });
       RoundLimits limits = options.limits();
       limits.processorTime = true;

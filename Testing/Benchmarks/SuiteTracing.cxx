@@ -189,7 +189,7 @@ bool suiteScan(const Options& options)
         setup.settings.numberOfConnections = connections;
         setup.settings.beamSamples = source;
         finishSetup(setup);
-        contenders.push_back({ name, [setup, &beams]() { freshScan(setup, beams, 1); } });
+        contenders.push_back({ name, [setup, &beams]() { runScan(setup, beams, 1); } });
       };
       add("one reflection", 1, 0);
       add("two reflections, 2 connections", 2, 2);

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Workload.h"
 
-#include "FinishSetup.h"
-
 #include <algorithm>
 
 namespace benchmarks
@@ -88,13 +86,5 @@ ScanBeams makeBeams(const Scene& scene, std::int64_t stride)
     }
   }
   return beams;
-}
-
-ScanResult freshScan(const ScanSetup& setup, const ScanBeams& beams, int threads)
-{
-  TraceCache cache;
-  ScanResult result;
-  simulateScan(setup, beams, threads, cache, std::size_t(1) << 30, {}, result);
-  return result;
 }
 }

@@ -10,12 +10,13 @@
 #include "BeamFrame.h"
 #include "BeamRays.h"
 #include "BeamTracer.h"
+#include "EchoTestScene.h"
 #include "SameEchoes.h"
-#include "Scan.h"
 #include "Scenes.h"
 
 namespace benchmarks
 {
+using echotest::runScan;
 using echotest::sameEchoes;
 
 /// One cell of the matrix, apart from scene and threads.
@@ -52,10 +53,6 @@ avianlidar::ScanSetup makeSetup(
 
 /// The beams of the scene's scan with the time of each, every `stride`-th column of it.
 avianlidar::ScanBeams makeBeams(const Scene& scene, std::int64_t stride = 1);
-
-/// The result of a scan of which nothing is known.
-avianlidar::ScanResult freshScan(
-  const avianlidar::ScanSetup& setup, const avianlidar::ScanBeams& beams, int threads);
 }
 
 #endif

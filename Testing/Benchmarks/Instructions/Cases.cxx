@@ -53,7 +53,7 @@ std::size_t countScan()
   const ScanSetup setup = makeSetup(scene, buildCollisionTree(scene.mesh, TreeOptions{}));
   const ScanBeams beams = makeBeams(scene, 12);
   std::size_t echoes = 0;
-  avianlidarCounted([&]() { echoes = freshScan(setup, beams, 1).echoes.size(); });
+  avianlidarCounted([&]() { echoes = runScan(setup, beams, 1).echoes.size(); });
   return echoes;
 }
 }
