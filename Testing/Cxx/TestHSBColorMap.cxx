@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Colours of Eq. 13 (TestHue.cxx has its numbers): limits from field data or given, any array, the
+// Colours of Eq. 13 (other hues are TestHue.cxx's): limits from field data or given, any array, the
 // lookup table, energies that are not numbers, bad limits.
 #include "vtkAvianLidarArrays.h"
 #include "vtkAvianLidarHSBColorMap.h"
@@ -24,7 +24,7 @@ using Filter = vtkAvianLidarHSBColorMap;
 using checks::At;
 using checks::Check;
 
-// Limits 1 and 3: hue 240, 180, 120, 60, 0, and both ends again outside.
+// Limits 1 and 3: hue 240, 180, 120, 60, 0, and both ends again outside (paper, Eq. 13).
 const std::vector<double> Energies{ 1.0, 1.5, 2.0, 2.5, 3.0, 0.0, 9.0 };
 const double Hues[] = { 240.0, 180.0, 120.0, 60.0, 0.0, 240.0, 0.0 };
 const double Colours[][3] = { { 0, 0, 255 }, { 0, 255, 255 }, { 0, 255, 0 }, { 255, 255, 0 },

@@ -20,19 +20,6 @@ using geometrytest::Numbers;
 
 const Material Matt{ 0.5, 0.0, 1.0 };
 
-inline EchoSettings inCells(int rays = 100)
-{
-  EchoSettings settings = directSettings(rays);
-  settings.beamSamples = BeamSampleSource::Cells;
-  return settings;
-}
-
-inline EchoSettings byRays(int rays)
-{
-  EchoSettings settings = directSettings(rays);
-  return settings;
-}
-
 /// Add a plate of parts x parts quadrilaterals.
 inline void fine(Scene& scene, const Vec3& center, const Vec3& u, const Vec3& v, int parts,
   const Material& m, int object)

@@ -90,6 +90,14 @@ inline EchoSettings directSettings(int rays)
   return settings;
 }
 
+/// The same without rays, where beams need none.
+inline EchoSettings inCells(int rays = 100)
+{
+  EchoSettings settings = directSettings(rays);
+  settings.beamSamples = BeamSampleSource::Cells;
+  return settings;
+}
+
 /// Replace shared elements by a changed copy.
 template <class T, class Change>
 void edit(SharedVector<T>& values, Change change)

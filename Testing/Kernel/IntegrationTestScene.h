@@ -10,11 +10,9 @@ namespace echotest
 /// So many rays that any integral takes less time.
 constexpr int Very = 10000;
 
-inline EchoSettings integrating(int rays = Very)
+inline EchoSettings integrating()
 {
-  EchoSettings settings = directSettings(rays);
-  settings.beamSamples = BeamSampleSource::Cells;
-  return settings;
+  return inCells(Very);
 }
 
 /// The one beam of a scan, or its first.

@@ -8,30 +8,12 @@
 
 #include "CollisionTreeBuilder.h"
 #include "EchoTestScene.h"
-#include "PhotonReceiver.h"
-
-#include <gtest/gtest.h>
+#include "Search905.h"
 
 #include <memory>
 
 namespace echotest
 {
-inline Sensor search905()
-{
-  Sensor sensor;
-  sensor.receiverModel = ReceiverModel::Photons;
-  sensor.pulseEnergy = 3.6e-4;
-  sensor.frequency = SpeedOfLight / 905e-9;
-  sensor.halfBeamwidth = 5.6e-3;
-  sensor.receiverAperture = 0.0078539816;
-  sensor.receiverEfficiency = 0.4;
-  sensor.backgroundRadiance = 0.05;
-  sensor.filterBandwidth = 10.0;
-  sensor.rangeGate = 4000.0;
-  EXPECT_EQ(setPhotonLimits(sensor, 1.0, 40.0, 15360.0), "");
-  return sensor;
-}
-
 inline MediumVolume boxOf(const Vec3& centre, const Vec3& half)
 {
   MediumVolume box;
@@ -66,9 +48,7 @@ inline MediumVolume meshOf(const MediumVolume& box)
 inline ScanSetup inMedium(const Scene& scene, Sensor sensor, const Medium& medium,
   const MediumVolume& volume, bool cells = true)
 {
-  EchoSettings settings = directSettings(400);
-  settings.beamSamples = cells ? BeamSampleSource::Cells : BeamSampleSource::Rays;
-  ScanSetup setup = makeSetup(scene, sensor, settings);
+  ScanSetup setup = makeSetup(scene, sensor, cells ? inCells(400) : directSettings(400));
   setup.media = { { medium, volume } };
   planModel(setup);
   return setup;

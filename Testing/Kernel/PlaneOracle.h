@@ -17,6 +17,7 @@ namespace planeoracle
 {
 using namespace echotest;
 using Real = long double;
+using geometrytest::unit;
 
 /// Gauss's rule on [0, 1] by Newton's method on Legendre's polynomial.
 template <int N>
@@ -47,7 +48,7 @@ std::array<std::array<Real, 2>, N> gauss()
 
 /// A line on the plane: where m . d is positive and negative, d a direction in the axes (axis of
 /// the beam, towards the normal, across).
-using Line = std::array<Real, 3>;
+using Line = geometrytest::Vec3L;
 
 struct Case
 {
@@ -75,8 +76,7 @@ inline Case drawCase(geometrytest::Numbers& random, double near, double mostUnit
   c.sensor.samplingInterval = 2.0 * (last - first) / units / SpeedOfLight;
   c.sensor.pulseWidth = random() < 0.2 ? 0.0 : c.sensor.samplingInterval * random(0.1, 3.0);
   c.sensor.beamProfile = random() < 0.3 ? BeamProfile::Gaussian : BeamProfile::Uniform;
-  c.settings = directSettings(10000);
-  c.settings.beamSamples = BeamSampleSource::Cells;
+  c.settings = inCells(10000);
   c.settings.returnMode = ReturnMode::RangeUnits;
   c.settings.attenuationCoefficient = random() * 1e-3;
   c.settings.reflectanceModel = static_cast<ReflectanceModel>(random.index(4));
@@ -161,38 +161,24 @@ inline std::vector<Real> bordersOf(const Case& c, Real m)
   return borders;
 }
 
-inline Real dot(const Line& a, const Line& b)
-{
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-inline Line cross(const Line& a, const Line& b)
-{
-  return { a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0] };
-}
-inline Line unit(const Line& a)
-{
-  const Real length = std::sqrt(dot(a, a));
-  return { a[0] / length, a[1] / length, a[2] / length };
-}
-
 /// Angles from the axis at which lines meet each other, the axis and circles of incidence.
 inline void addLineRings(const Case& c, const std::vector<Real>& borders, std::vector<Real>& rings)
 {
   const Line normal = { std::cos(Real(c.tilt)), std::sin(Real(c.tilt)), 0 };
   const auto add = [&](const Line& d)
   {
-    const Real across = std::sqrt(d[1] * d[1] + d[2] * d[2]);
-    rings.push_back(std::atan2(across, std::fabs(d[0])));
+    const Real across = std::sqrt(d.y * d.y + d.z * d.z);
+    rings.push_back(std::atan2(across, std::fabs(d.x)));
   };
   for (std::size_t k = 0; k < c.lines.size(); ++k)
   {
     const Line m = unit(c.lines[k]);
-    rings.push_back(std::asin(std::fabs(m[0])));
+    rings.push_back(std::asin(std::fabs(m.x)));
     for (std::size_t j = 0; j < k; ++j)
     {
       add(unit(cross(m, c.lines[j])));
     }
-    const Line f = unit(cross(m, std::fabs(m[0]) < 0.5 ? Line{ 1, 0, 0 } : Line{ 0, 1, 0 }));
+    const Line f = unit(cross(m, std::fabs(m.x) < 0.5 ? Line{ 1, 0, 0 } : Line{ 0, 1, 0 }));
     const Line g = cross(m, f);
     const Real nf = dot(normal, f);
     const Real ng = dot(normal, g);
@@ -204,8 +190,7 @@ inline void addLineRings(const Case& c, const std::vector<Real>& borders, std::v
         if (std::fabs(x) < 1)
         {
           const Real s = std::atan2(ng, nf) + side * std::acos(x);
-          add({ f[0] * std::cos(s) + g[0] * std::sin(s), f[1] * std::cos(s) + g[1] * std::sin(s),
-            f[2] * std::cos(s) + g[2] * std::sin(s) });
+          add(std::cos(s) * f + std::sin(s) * g);
         }
       }
     }
@@ -241,12 +226,12 @@ inline std::vector<Real> turnsOf(const Case& c, const std::vector<Real>& borders
   }
   for (const Line& m : c.lines)
   {
-    const Real x = -m[0] * std::cos(ring) / (std::sin(ring) * std::hypot(m[1], m[2]));
+    const Real x = -m.x * std::cos(ring) / (std::sin(ring) * std::hypot(m.y, m.z));
     for (const int side : { -1, 1 })
     {
       if (std::fabs(x) < 1)
       {
-        const Real turn = std::atan2(m[2], m[1]) + side * std::acos(x);
+        const Real turn = std::atan2(m.z, m.y) + side * std::acos(x);
         turns.push_back(turn < 0 ? turn + 2 * pi : turn);
       }
     }

@@ -3,41 +3,21 @@
 #ifndef RoomTestScene_h
 #define RoomTestScene_h
 
+#include "GeometryTestScene.h"
 #include "SecondaryTestScene.h"
 
 #include <cmath>
-#include <random>
 
 namespace echotest
 {
-class Draw
-{
-public:
-  explicit Draw(unsigned seed)
-    : Random(seed)
-  {
-  }
-  double operator()(double from, double to)
-  {
-    return std::uniform_real_distribution<double>(from, to)(this->Random);
-  }
-  Vec3 point(double half)
-  {
-    const double x = (*this)(-half, half);
-    const double y = (*this)(-half, half);
-    return { x, y, (*this)(-half, half) };
-  }
-
-private:
-  std::mt19937_64 Random;
-};
+using geometrytest::Numbers;
 
 /// A room about the lidar with boxes on its floor, slivers in the air, and every wall of two
 /// triangles.
 inline Scene room(unsigned seed)
 {
   const Material materials[] = { Wall, Glass, Metal, Wood };
-  Draw draw(seed);
+  Numbers draw(seed);
   Scene scene;
   const double size = draw(1.0, 30.0);
   const double y = draw(1.0, size);
@@ -51,16 +31,16 @@ inline Scene room(unsigned seed)
   }
   for (int i = 8; i < 40; ++i)
   {
-    const Vec3 a = 0.3 * size * glm::normalize(draw.point(1.0)) + draw.point(0.3 * size);
-    const Vec3 b = a + draw.point(0.2);
-    scene.triangle(a, b, b + draw.point(i % 4 ? 0.2 : 1e-9), materials[i % 4], i);
+    const Vec3 a = 0.3 * size * glm::normalize(draw.inCube(1.0)) + draw.inCube(0.3 * size);
+    const Vec3 b = a + draw.inCube(0.2);
+    scene.triangle(a, b, b + draw.inCube(i % 4 ? 0.2 : 1e-9), materials[i % 4], i);
   }
   return scene;
 }
 
 inline ScanBeams around(unsigned seed, int count)
 {
-  Draw draw(seed + 1000);
+  Numbers draw(seed + 1000);
   ScanBeams beams;
   for (int i = 0; i < count; ++i)
   {

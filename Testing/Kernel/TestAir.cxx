@@ -224,17 +224,6 @@ TEST(Medium, BadOnesAreNamed)
   EXPECT_EQ(checkMedium({ 1.0, 0.0, 0.0 }), "backscatter_ratio is 0, expected 1e-3 to 1e9 sr");
 }
 
-TEST(Attenuation, WallAtFiveHundredMetres)
-{
-  EXPECT_NEAR(transmission(3.5e-5, 1000.0), 0.9656054163, 1e-10);
-}
-
-TEST(Attenuation, LegsMultiply)
-{
-  EXPECT_NEAR(
-    transmission(8.8e-5, 120.0) * transmission(8.8e-5, 340.0), transmission(8.8e-5, 460.0), 1e-15);
-}
-
 TEST(Attenuation, EndsOfTheRange)
 {
   EXPECT_EQ(transmission(0.0, 1e9), 1.0);
@@ -594,17 +583,12 @@ TEST(Air, PointsOfRainAreThoseOfDropsOneByOne)
   // Nearer than 8 m the mean of the rain blinds the receiver.
   constexpr int ours = 400;
   std::vector<double> points = pointsOf(sensor, echo, ours);
-  Sensor brief = sensor;
-  brief.pulseWidth = 0.0;
-  const BeamAir unshared = filledBy(brief, rain);
-  std::vector<double> apart = pointsOf(brief, unshared, ours);
   for (const auto& [from, to] :
     { std::pair(8.0, 50.0), std::pair(50.0, 100.0), std::pair(100.0, 150.0) })
   {
     const double truth = between(theirs, from, to);
     const double error = std::sqrt(truth / beams + truth / ours); // at most
     EXPECT_NEAR(between(points, from, to) / ours, truth, 3.0 * error) << from;
-    EXPECT_TRUE(from < 50.0 || between(apart, from, to) / ours > truth + 3.0 * error) << from;
   }
 }
 

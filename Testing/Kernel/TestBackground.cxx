@@ -49,18 +49,6 @@ EchoSettings noisySettings(BeamSampleSource samples = BeamSampleSource::Cells)
   return settings;
 }
 
-ScanBeams manyBeams(std::uint64_t count)
-{
-  ScanBeams beams = oneBeam();
-  for (std::uint64_t id = 1; id < count; ++id)
-  {
-    beams.ids.push_back(id);
-    beams.origins.push_back(beams.origins[0]);
-    beams.directions.push_back(beams.directions[0]);
-  }
-  return beams;
-}
-
 /// Radiance that the first echo with light says.
 double radianceOf(const Scene& scene, const Sensor& sensor, BeamSampleSource samples)
 {
@@ -104,7 +92,7 @@ TEST(Background, GroundThatIsFaintToTheLaserCounts)
   sensor.backgroundRadiance = 0.01; // the ground is brighter
   ASSERT_EQ(setPhotonLimits(sensor, 20.0, 40.0, 2000.0), "");
   const double angle = 0.4 * RadiansPerDegree;
-  ScanBeams beams = manyBeams(2000);
+  ScanBeams beams = alike(2000);
   beams.directions.assign(2000, { std::cos(angle), 0.0, -std::sin(angle) });
   for (const bool constraint : { false, true })
   {
@@ -143,7 +131,7 @@ TEST(Background, NoiseOfEchoesFollows)
     const double mean = receiver.electronsPerJoule * light.energyReceived;
     double squares = 0.0;
     int count = 0;
-    for (const Echo& echo : runScan(setup, manyBeams(4000)).echoes)
+    for (const Echo& echo : runScan(setup, alike(4000)).echoes)
     {
       if (echo.objectId >= 0 && std::fabs(echo.range - Far) < 1.0)
       {
@@ -171,7 +159,7 @@ TEST(Background, BrightWallsRaiseNoMoreFalseAlarmsThanTheSky)
     {
       settings.seed = seed;
       for (const Echo& echo :
-        runScan(makeSetup(plateFrom(-50.0, kd), sensor, settings), manyBeams(2000)).echoes)
+        runScan(makeSetup(plateFrom(-50.0, kd), sensor, settings), alike(2000)).echoes)
       {
         alarms += echo.objectId < 0 ? 1 : 0;
       }
@@ -186,7 +174,7 @@ TEST(Background, WhatFollowsIsKeptAsItIs)
 {
   // Scans that keep light, and again with another seed and another sun, as fresh ones.
   ScanSetup setup = makeSetup(plateFrom(0.0, 0.9), noonSensor(), noisySettings());
-  const ScanBeams beams = manyBeams(300);
+  const ScanBeams beams = alike(300);
   TraceCache cache;
   ScanResult result;
   for (int scan = 0; scan < 6; ++scan)

@@ -67,7 +67,7 @@ TEST(BeamCells, ClutterReturnsWhatManyRaysFind)
   {
     const Scene scene = clutter(seed);
     const Sensor sensor = openSensor();
-    const double truth = received(scene, sensor, byRays(200000));
+    const double truth = received(scene, sensor, directSettings(200000));
     const ScanResult result = runScan(makeSetup(scene, sensor, inCells()), oneBeam());
     EXPECT_EQ(result.reports[0].direct, DirectEcho::Cells);
     EXPECT_FALSE(result.reports[0].isCrowded);
@@ -194,7 +194,7 @@ TEST(BeamCells, GlintsAreThoseOfOnePlate)
     plate.plate(Vec3(100.0, 0.0, 0.0), Vec3(0.1, 4.0, 0.0), Vec3(0.0, 0.0, 4.0), shiny, 1);
     Scene parts;
     fine(parts, Vec3(100.0, 0.0, 0.0), Vec3(0.1, 4.0, 0.0), Vec3(0.0, 0.0, 4.0), 20, shiny, 1);
-    const double one = received(plate, openSensor(), byRays(1000000));
+    const double one = received(plate, openSensor(), directSettings(1000000));
     EXPECT_NEAR(received(parts, openSensor(), inCells()) / one, 1.0, 0.01) << exponent;
   }
 }

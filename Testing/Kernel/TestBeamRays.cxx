@@ -193,15 +193,6 @@ TEST(BeamRays, StratifiedBeatsMonteCarloSixfoldAtAnEdge)
   EXPECT_NEAR(rms(Sampling::Stratified), 0.015, 0.001);
 }
 
-TEST(BeamRays, Deterministic)
-{
-  BeamRays a;
-  BeamRays b;
-  sampleBeam(1, 2, 50, { 0.01, BeamProfile::Uniform }, Sampling::MonteCarlo, nullptr, a);
-  sampleBeam(1, 2, 60, { 0.01, BeamProfile::Uniform }, Sampling::MonteCarlo, nullptr, b);
-  EXPECT_TRUE(std::equal(a.x.begin(), a.x.end(), b.x.begin()));
-}
-
 TEST(BeamRays, StrataThatDoNotFitAreRefused)
 {
   BeamRays rays;

@@ -280,7 +280,7 @@ TEST(BeamShape, AnEdgeCutsAShare)
         EXPECT_NEAR(mean, truth, 1.5e-3 * one + 4.0 * std::sqrt(variance / 40.0))
           << s.rotation << " " << angle << " " << at;
         EXPECT_LT(std::sqrt(variance), 0.03 * one);
-        EXPECT_NEAR(received(scene, sensor, byRays(20000)), truth, 6e-3 * one);
+        EXPECT_NEAR(received(scene, sensor, directSettings(20000)), truth, 6e-3 * one);
       }
     }
   }
@@ -300,7 +300,7 @@ TEST(BeamShape, PathsOverTwoReflectionsAreTheSameByCellsAndRays)
       fine(scene, Vec3(50.0 - half, -half, 0.0), Vec3(half, half, 0.0), Vec3(0.0, 0.0, 1.0), 8,
         material, 2);
       EchoSettings cells = inCells(400);
-      EchoSettings rays = byRays(4000);
+      EchoSettings rays = directSettings(4000);
       cells.numberOfReflections = rays.numberOfReflections = 2;
       const auto mean = [&](const EchoSettings& settings)
       { return receivedFrom(runScan(makeSetup(scene, sensorOf(s), settings), alike(30))) / 30.0; };

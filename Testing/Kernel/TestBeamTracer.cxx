@@ -147,31 +147,6 @@ TEST_P(TracerScene, EqualsBruteForce)
 
 INSTANTIATE_TEST_SUITE_P(BeamTracer, TracerScene, testing::Range(0, 9), sceneName);
 
-TEST(BeamTracer, EqualRangesGoToTheLowerNumber)
-{
-  Numbers random(5);
-  const auto mesh = std::make_shared<TriangleMesh>();
-  for (int copy = 0; copy < 7; ++copy)
-  {
-    addTriangle(*mesh, { -5, -5, 20 }, { 5, -5, 21 }, { 0, 5, 22 });
-  }
-  for (const auto& tree : allTrees(mesh))
-  {
-    OneBeamTracer tracer(*tree);
-    tracer.setBeam(makeBeamFrame(Vec3(0.0), { 0, 0, 1 }, 0.05));
-    const BeamRays rays = raysInDisc(random, 50);
-    for (const TraceMode mode : { TraceMode::Automatic, TraceMode::Beams, TraceMode::SingleRays })
-    {
-      std::vector<Hit> hits;
-      tracer.trace(rays, mode, hits);
-      for (const Hit& hit : hits)
-      {
-        EXPECT_EQ(hit.triangle, 0u);
-      }
-    }
-  }
-}
-
 TEST(BeamTracer, EmptyTreeAndNoRays)
 {
   const auto tree = buildCollisionTree(std::make_shared<TriangleMesh>(), TreeOptions());

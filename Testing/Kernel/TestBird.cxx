@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Birds: closed surfaces, effective areas of body and wings alone against integrals over the ideal
 // shapes, of whole birds against a raster image, and tables of species.
-#include "Bird.h"
+#include "BirdTestScene.h"
 #include "EchoTestScene.h"
 #include "GeometryTestScene.h"
 #include "PhotonReceiver.h"
@@ -12,26 +12,15 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
-#include <fstream>
-#include <limits>
 #include <map>
 #include <numeric>
-#include <sstream>
 
+using namespace birdtest;
 using namespace echotest;
 using geometrytest::Numbers;
 
 namespace
 {
-std::vector<BirdSpecies> shippedSpecies()
-{
-  const std::string file = AVIANLIDAR_SOURCE_DIR "/Filters/Birds/species.csv";
-  std::ifstream stream(file);
-  std::ostringstream text;
-  text << stream.rdbuf();
-  return readSpecies(text.str(), file);
-}
-
 const BirdPart Parts[] = { BirdPart::Body, BirdPart::LeftWing, BirdPart::RightWing };
 
 /// Silhouette weighted by the cosine of incidence, of a convex mesh seen from a direction, m^2.
@@ -72,72 +61,6 @@ double ellipsoidArea(double diameter, double length, const Vec3& towards)
   return sum * Pi / n * 2.0 * Pi / n;
 }
 
-/// The same of any mesh, of an image of square pixels across the direction: the nearest triangle
-/// counts.
-double rasterArea(const TriangleMesh& mesh, const Vec3& towards, double pixel)
-{
-  const Vec3 across =
-    unitVector(glm::cross(std::fabs(towards.z) < 0.9 ? Vec3(0, 0, 1) : Vec3(1, 0, 0), towards));
-  const Vec3 up = glm::cross(towards, across);
-  struct Nearest
-  {
-    double depth = -std::numeric_limits<double>::infinity();
-    double cosine = 0.0;
-  };
-  std::map<std::pair<int, int>, Nearest> image;
-  for (std::uint32_t t = 0; t < mesh.size(); ++t)
-  {
-    double x[3], y[3], z[3];
-    for (int c = 0; c < 3; ++c)
-    {
-      x[c] = glm::dot(mesh.corner(t, c), across) / pixel;
-      y[c] = glm::dot(mesh.corner(t, c), up) / pixel;
-      z[c] = glm::dot(mesh.corner(t, c), towards);
-    }
-    const double twice = (x[1] - x[0]) * (y[2] - y[0]) - (x[2] - x[0]) * (y[1] - y[0]);
-    const Vec3 normal =
-      glm::cross(mesh.corner(t, 1) - mesh.corner(t, 0), mesh.corner(t, 2) - mesh.corner(t, 0));
-    if (!(twice > 0.0))
-    {
-      continue; // seen from behind
-    }
-    const double cosine = glm::dot(normal, towards) / glm::length(normal);
-    for (int i = static_cast<int>(std::floor(*std::min_element(x, x + 3)));
-         i <= *std::max_element(x, x + 3); ++i)
-    {
-      for (int k = static_cast<int>(std::floor(*std::min_element(y, y + 3)));
-           k <= *std::max_element(y, y + 3); ++k)
-      {
-        const double px = i + 0.5;
-        const double py = k + 0.5;
-        double w[3];
-        for (int c = 0; c < 3; ++c)
-        {
-          const int d = (c + 1) % 3;
-          const int e = (c + 2) % 3;
-          w[c] = ((x[d] - px) * (y[e] - py) - (x[e] - px) * (y[d] - py)) / twice;
-        }
-        if (w[0] < 0.0 || w[1] < 0.0 || w[2] < 0.0)
-        {
-          continue;
-        }
-        Nearest& nearest = image[{ i, k }];
-        const double depth = w[0] * z[0] + w[1] * z[1] + w[2] * z[2];
-        if (depth > nearest.depth)
-        {
-          nearest = { depth, cosine };
-        }
-      }
-    }
-  }
-  double sum = 0.0;
-  for (const auto& entry : image)
-  {
-    sum += entry.second.cosine;
-  }
-  return sum * pixel * pixel;
-}
-
 /// The same as a lidar at `range` receives it.
 double receivedArea(const TriangleMesh& mesh, const Vec3& towards, double span)
 {
@@ -150,10 +73,8 @@ double receivedArea(const TriangleMesh& mesh, const Vec3& towards, double span)
   {
     scene.triangle(mesh.corner(t, 0), mesh.corner(t, 1), mesh.corner(t, 2), matt, 0);
   }
-  EchoSettings settings = directSettings(100);
-  settings.beamSamples = BeamSampleSource::Cells; // 72 triangles: without rays
   const ScanResult result =
-    runScan(makeSetup(scene, sensor, settings), oneBeam(-towards, range * towards));
+    runScan(makeSetup(scene, sensor, inCells()), oneBeam(-towards, range * towards));
   const double energy = result.echoes.empty() ? 0.0 : result.echoes[0].energyReceived;
   const double small = 1e-3; // m^2
   return small * energy / energyFromTarget(sensor, range, small, matt.kd, 0.0);
@@ -300,7 +221,7 @@ TEST(Bird, TheLidarReceivesTheEffectiveAreaThatAnImageHas)
       const TriangleMesh mesh = wholeBird(BirdShape(species), wingAngle(random(0.0, 1.0), false));
       const Vec3 towards = sideView(random(0.0, 2.0 * Pi));
       received.push_back(receivedArea(mesh, towards, species.span));
-      seen.push_back(rasterArea(mesh, towards, 0.002 * species.length));
+      seen.push_back(areaOfImage(mesh, -towards, 0.002 * species.length));
     }
     EXPECT_NEAR(sumOf(received) / sumOf(seen), 1.0, 0.01) << species.name;
     std::sort(received.begin(), received.end());
@@ -367,8 +288,7 @@ TEST_P(BirdBeforeAWall, IsFoundWithItsArea)
             (2.0 * (i / parts) - parts + 1.0) * two,
           one, two, black, 1);
       }
-      EchoSettings settings = directSettings(100);
-      settings.beamSamples = BeamSampleSource::Cells;
+      EchoSettings settings = inCells();
       settings.seed = k;
       const double wanted = receivedFrom(runScan(makeSetup(alone, sensor, settings), oneBeam()));
       const double found = receivedFrom(runScan(makeSetup(scene, sensor, settings), oneBeam()));
@@ -419,21 +339,20 @@ TEST(Bird, TablesThatAreWrongSayWhere)
   };
   EXPECT_EQ(errorOf(header + "\n# swifts\nswift,0.04,0.17,0.42,0.016,no,10\n"), "");
   EXPECT_EQ(errorOf("\xEF\xBB\xBF" + header + "swift,0.04,0.17,0.42,0.016,no,10\n"), "");
-  EXPECT_NE(errorOf(header + "swift,0.04,0.17,0.1,0.016,no,10\n").find("broader than the bird"),
-    std::string::npos);
-  EXPECT_EQ(errorOf(header), "own.csv: holds no species");
-  EXPECT_NE(errorOf("name\n").find("own.csv: line 1: is not the header"), std::string::npos);
-  EXPECT_NE(errorOf(header + "swift,0.04,0.17\n").find("line 2: has 3 columns, expected 7"),
-    std::string::npos);
-  EXPECT_NE(errorOf(header + "swift,-1,0.17,0.42,0.016,no,10\n")
-              .find("line 2: mass is '-1', expected 0.001 to 100"),
-    std::string::npos);
-  EXPECT_NE(errorOf(header + "swift,0.04,0.17,0.42,0.016,maybe,10\n")
-              .find("passerine is 'maybe', expected yes or no"),
-    std::string::npos);
-  EXPECT_NE(
-    errorOf(header + "swift,0.04,0.17,nan,0.016,no,10\n").find("span is 'nan'"), std::string::npos);
-  EXPECT_NE(errorOf(header + "swift,90,0.17,0.42,0.016,no,10\n").find("smaller than the body"),
-    std::string::npos);
-  EXPECT_NE(errorOf(header + ",0.04,0.17,0.42,0.016,no,10\n").find("no name"), std::string::npos);
+  const std::pair<std::string, std::string> cases[] = {
+    { header, "own.csv: holds no species" },
+    { "name\n", "own.csv: line 1: is not the header" },
+    { header + "swift,0.04,0.17\n", "line 2: has 3 columns, expected 7" },
+    { header + "swift,-1,0.17,0.42,0.016,no,10\n", "line 2: mass is '-1', expected 0.001 to 100" },
+    { header + "swift,0.04,0.17,0.42,0.016,maybe,10\n",
+      "passerine is 'maybe', expected yes or no" },
+    { header + "swift,0.04,0.17,nan,0.016,no,10\n", "span is 'nan'" },
+    { header + "swift,90,0.17,0.42,0.016,no,10\n", "smaller than the body" },
+    { header + "swift,0.04,0.17,0.1,0.016,no,10\n", "broader than the bird" },
+    { header + ",0.04,0.17,0.42,0.016,no,10\n", "no name" },
+  };
+  for (const auto& [text, message] : cases)
+  {
+    EXPECT_NE(errorOf(text).find(message), std::string::npos) << errorOf(text) << "\n" << message;
+  }
 }

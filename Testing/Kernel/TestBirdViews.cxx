@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Views of birds against effective areas and probabilities of poses drawn at random.
+#include "BirdTestScene.h"
 #include "BirdViews.h"
-#include "PhotonReceiver.h"
+#include "Search905.h"
 
 #include <gtest/gtest.h>
 
@@ -10,12 +11,10 @@
 #include <numeric>
 #include <random>
 
-using namespace avianlidar;
+using namespace birdtest;
 
 namespace
 {
-const BirdShape ViewedGull({ "gull", 0.95, 0.60, 1.35, 0.20, false, 12.5 });
-
 double meanArea(const TargetPoses& poses)
 {
   return std::accumulate(poses.begin(), poses.end(), 0.0,
@@ -28,11 +27,11 @@ TEST(BirdViews, HaveTheMeanAreaOfTheBird)
 {
   for (const bool gliding : { false, true })
   {
-    const double area = meanEffectiveArea(ViewedGull, gliding);
-    const TargetViews views = birdViews(ViewedGull, gliding, area);
+    const double area = meanEffectiveArea(HerringGull, gliding);
+    const TargetViews views = birdViews(HerringGull, gliding, area);
     EXPECT_NEAR(meanArea(views.from(3.0 * Pi / 180.0)), 1.0, 0.015);
     // A larger bird shows the same of its area.
-    const BirdShape large = ViewedGull.scaled(2.0);
+    const BirdShape large = HerringGull.scaled(2.0);
     EXPECT_NEAR(meanEffectiveArea(large, gliding), 4.0 * area, 1e-6 * area);
     EXPECT_NEAR(
       meanArea(birdViews(large, gliding, 4.0 * area).from(0.2)), meanArea(views.from(0.2)), 1e-5);
@@ -43,7 +42,7 @@ TEST(BirdViews, NothingLiesBeyondTheirReach)
 {
   for (const double size : { 0.3, 1.0 })
   {
-    const TargetViews views = birdViews(ViewedGull.scaled(size), false, 1.0);
+    const TargetViews views = birdViews(HerringGull.scaled(size), false, 1.0);
     for (const double elevation : { -1.57, -0.3, 0.0, 0.4, 1.57 })
     {
       const TargetPoses poses = views.from(elevation);
@@ -61,7 +60,7 @@ TEST(BirdViews, APoseIsSeenFromTheSideThatItsHeadingSays)
 {
   // A bird that heads to the right of the line of sight has its body across: it reaches as far as
   // from the left, and is the mirror image.
-  const TargetPoses poses = birdViews(ViewedGull, true, 1.0).from(0.1);
+  const TargetPoses poses = birdViews(HerringGull, true, 1.0).from(0.1);
   const std::size_t n = GlidingHeadings;
   for (std::size_t k = 0; k < n; ++k)
   {
@@ -77,13 +76,9 @@ TEST(BirdViews, APoseIsSeenFromTheSideThatItsHeadingSays)
 
 TEST(BirdViews, HaveTheProbabilitiesOfPosesDrawnAtRandom)
 {
-  Sensor sensor;
-  sensor.receiverModel = ReceiverModel::Photons;
-  sensor.frequency = SpeedOfLight / 905e-9;
-  sensor.receiverAperture = 0.25 * Pi * 0.01;
-  ASSERT_EQ(setPhotonLimits(sensor, 1.0, 40.0, 15360.0), "");
-  const double mean = meanEffectiveArea(ViewedGull, false);
-  const TargetViews views = birdViews(ViewedGull, false, mean);
+  const Sensor sensor = echotest::search905();
+  const double mean = meanEffectiveArea(HerringGull, false);
+  const TargetViews views = birdViews(HerringGull, false, mean);
   const DetectionLaw law(sensor, views, 0.0, 0.2, 1);
   std::mt19937_64 random(3);
   std::uniform_real_distribution<double> uniform(0.0, 1.0);
@@ -93,7 +88,7 @@ TEST(BirdViews, HaveTheProbabilitiesOfPosesDrawnAtRandom)
     for (int i = 0; i < 1500; ++i)
     {
       const double heading = 2.0 * Pi * uniform(random);
-      drawn.emplace_back(wholeBird(ViewedGull, wingAngle(uniform(random), false)),
+      drawn.emplace_back(wholeBird(HerringGull, wingAngle(uniform(random), false)),
         Vec3(std::cos(elevation) * std::sin(heading), std::cos(elevation) * std::cos(heading),
           std::sin(elevation)),
         mean);

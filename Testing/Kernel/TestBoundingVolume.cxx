@@ -105,71 +105,11 @@ TYPED_TEST(BoundingVolumes, OfNothingAreEmpty)
   EXPECT_FALSE(fitTo<TypeParam>({ { 1, 2, 3 }, { 4, 5, 7 } }).empty());
 }
 
-TYPED_TEST(BoundingVolumes, OfTrianglesHoldTheirCornersAndNothingOfOthers)
-{
-  Numbers random(53);
-  TriangleMesh mesh;
-  for (int i = 0; i < 50; ++i)
-  {
-    addTriangle(mesh, random.inCube(5.0), random.inCube(5.0), random.inCube(5.0));
-  }
-  addTriangle(mesh, Vec3(1e6), Vec3(1e6), Vec3(1e6));
-  std::vector<std::uint32_t> numbers(50);
-  std::iota(numbers.begin(), numbers.end(), 0u);
-  const auto volume = TypeParam::fit({ mesh, numbers.data(), numbers.size() });
-  for (const std::uint32_t t : numbers)
-  {
-    for (int c = 0; c < 3; ++c)
-    {
-      EXPECT_TRUE(contains(volume, mesh.corner(t, c)));
-    }
-  }
-  EXPECT_FALSE(contains(volume, Vec3(20.0)));
-  const std::uint32_t last = 50;
-  const auto point = TypeParam::fit({ mesh, &last, 1 });
-  EXPECT_TRUE(contains(point, Vec3(1e6)));
-  EXPECT_LT(sizeOf(point), 1e-12);
-}
-
 TEST(BoundingVolume, BoxIsTheSmallest)
 {
   const OBB box = fitTo<Aligned>({ { 1, -2, 3 }, { 4, 5, -6 }, { 0, 0, 0 } });
   EXPECT_EQ(box.center, Vec3(2, 1.5, -1.5));
   EXPECT_NEAR(surfaceArea(box), 2.0 * (4 * 7 + 7 * 9 + 9 * 4), 1e-12 * surfaceArea(box));
-}
-
-TEST(BoundingVolume, MergedBoxesHoldWhatBothHeld)
-{
-  Numbers random(52);
-  for (int i = 0; i < 20000; ++i)
-  {
-    const std::vector<Vec3> first = somePoints(random);
-    const std::vector<Vec3> second = somePoints(random);
-    AABB boxes[2];
-    for (int k = 0; k < 2; ++k)
-    {
-      for (const Vec3& p : k == 0 ? first : second)
-      {
-        boxes[k].extend(p);
-      }
-    }
-    const AABB both = merge(boxes[0], boxes[1]);
-    for (const std::vector<Vec3>& points : { first, second })
-    {
-      for (const Vec3& p : points)
-      {
-        ASSERT_EQ(glm::clamp(p, both.lower, both.upper), p);
-      }
-    }
-  }
-  AABB some;
-  some.extend({ 1, 2, 3 });
-  for (const AABB& same : { merge(some, AABB()), merge(AABB(), some) })
-  {
-    EXPECT_EQ(same.lower, some.lower);
-    EXPECT_EQ(same.upper, some.upper);
-  }
-  EXPECT_TRUE(merge(AABB(), AABB()).empty());
 }
 
 TEST(BoundingVolume, OrientedBoxFollowsAnObliqueBar)

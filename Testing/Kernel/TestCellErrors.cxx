@@ -48,7 +48,7 @@ TEST(CellErrors, LobesAreInTheStandardError)
     plate.plate(Vec3(100.0, 0.0, 0.0), Vec3(0.004, 4.0, 0.0), Vec3(0.003, 0.0, 4.0), shiny, 1);
     Scene parts;
     fine(parts, Vec3(100.0, 0.0, 0.0), Vec3(0.004, 4.0, 0.0), Vec3(0.003, 0.0, 4.0), 60, shiny, 1);
-    const double truth = received(plate, openSensor(), byRays(1000000));
+    const double truth = received(plate, openSensor(), directSettings(1000000));
     const Spread spread =
       spreadAbout(runScan(makeSetup(parts, openSensor(), inCells()), alike(24)), truth);
     EXPECT_LT(spread.rms, 2.0 * spread.stated + 1e-3 * truth) << exponent;

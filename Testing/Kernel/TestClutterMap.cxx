@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <map>
 #include <random>
 
@@ -211,64 +210,4 @@ TEST(TestClutterMap, MemoryIsBounded)
     EXPECT_NEAR(static_cast<double>(map.keys().size()), points * (age + 1.0), points);
   }
   EXPECT_EQ(ClutterMap({}, 100.0).persistenceKept(), 0.001);
-}
-
-TEST(TestClutterMap, RestoredGoesOnAsBefore)
-{
-  std::mt19937_64 random(3);
-  std::uniform_int_distribution<int> any(0, 20);
-  ClutterMap map({}, 30.0);
-  const auto scan = [&]()
-  {
-    std::vector<Key> keys;
-    for (int i = 0; i < 50; ++i)
-    {
-      keys.push_back(ClutterMap::keyOf({ any(random), 0, any(random) }));
-    }
-    return keys;
-  };
-  for (int i = 0; i < 25; ++i)
-  {
-    map = map.learned(scan());
-  }
-  std::vector<Key> cells(map.keys().rbegin(), map.keys().rend());
-  std::vector<double> shares;
-  for (std::size_t k = cells.size(); k-- > 0;)
-  {
-    shares.push_back(map.persistence(k));
-  }
-  ClutterMap again = ClutterMap({}, 30.0).restored(cells, shares, map.scans());
-  for (int i = 0; i < 10; ++i)
-  {
-    const std::vector<Key> keys = scan();
-    const std::vector<double> one = map.probabilities(keys, 1, 1);
-    const std::vector<double> other = again.probabilities(keys, 1, 1);
-    for (std::size_t k = 0; k < keys.size(); ++k)
-    {
-      EXPECT_NEAR(one[k], other[k], 1e-14);
-    }
-    map = map.learned(keys);
-    again = again.learned(keys);
-    EXPECT_EQ(map.scans(), again.scans());
-  }
-}
-
-TEST(TestClutterMap, NothingLearnedNothingKnown)
-{
-  const ClutterMap empty;
-  EXPECT_EQ(empty.probabilities({ ClutterMap::keyOf({}, Vec3(1.0)) }, 1, 1)[0], 0.0);
-  EXPECT_TRUE(empty.probabilities({}, 1, 1).empty());
-  const ClutterMap map = empty.learned({});
-  EXPECT_EQ(map.scans(), 1);
-  EXPECT_TRUE(map.keys().empty());
-}
-
-TEST(TestClutterMap, BadValuesAreNamed)
-{
-  const double nan = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_TRUE(ClutterMap::check({}, 1.0).empty());
-  EXPECT_NE(ClutterMap::check({ 0.0, 1.0, 1.0 }, 1.0).find("RangeStep is 0"), std::string::npos);
-  EXPECT_NE(ClutterMap::check({ 1.0, nan, 1.0 }, 1.0).find("AzimuthStep"), std::string::npos);
-  EXPECT_NE(ClutterMap::check({ 1.0, 1.0, 91.0 }, 1.0).find("ElevationStep"), std::string::npos);
-  EXPECT_NE(ClutterMap::check({}, 0.5).find("Window is 0.5"), std::string::npos);
 }

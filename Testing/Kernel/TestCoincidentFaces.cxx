@@ -35,7 +35,7 @@ TEST(CoincidentFaces, TheLowerNumberIsSeenByRays)
     {
       for (const bool wallFirst : { true, false })
       {
-        const double right = receivedAt(Vec3(0.0), pair.seen(wallFirst), byRays(1000));
+        const double right = receivedAt(Vec3(0.0), pair.seen(wallFirst), directSettings(1000));
         for (const Vec3& place : { Vec3(0.0), Utm })
         {
           for (int volume = 0; volume < (parts > 20 ? 1 : 3); ++volume)
@@ -43,7 +43,8 @@ TEST(CoincidentFaces, TheLowerNumberIsSeenByRays)
             TreeOptions options;
             options.boundingVolume = static_cast<BoundingVolumeType>(volume);
             EXPECT_NEAR(
-              receivedAt(place, pair.scene(wallFirst), byRays(1000), options) / right, 1.0, 1e-6)
+              receivedAt(place, pair.scene(wallFirst), directSettings(1000), options) / right, 1.0,
+              1e-6)
               << parts << ' ' << pair.u.x << ' ' << wallFirst << ' ' << place.x << ' ' << volume;
           }
         }
@@ -97,7 +98,7 @@ TEST(CoincidentFaces, CornersInSinglePrecisionCoincide)
       roundToSingle(scene);
       const double right = received(pair.seen(wallFirst), openSensor(), inCells());
       EXPECT_NEAR(received(scene, openSensor(), inCells()) / right, 1.0, 3e-3);
-      EXPECT_NEAR(received(scene, openSensor(), byRays(1000)) / right, 1.0, 1e-2);
+      EXPECT_NEAR(received(scene, openSensor(), directSettings(1000)) / right, 1.0, 1e-2);
     }
   }
 }
@@ -118,7 +119,7 @@ TEST(CoincidentFaces, LightOfSecondReflectionsIsNotStoppedByTheHiddenFace)
         {
           roundToSingle(scene);
         }
-        EchoSettings settings = byRays(1000);
+        EchoSettings settings = directSettings(1000);
         const double direct = received(scene, sensor, settings);
         settings.numberOfReflections = 2;
         return received(scene, sensor, settings) / direct - 1.0;
@@ -174,7 +175,7 @@ TEST(CoincidentFaces, AScanNamesObjectsOfWhichOneIsSeen)
     return objects;
   };
   using Objects = std::vector<std::pair<int, int>>;
-  for (const EchoSettings& settings : { byRays(100), inCells(), inCells(9000) })
+  for (const EchoSettings& settings : { directSettings(100), inCells(), inCells(9000) })
   {
     Scene scene = pairs(6)[3].scene(true);
     EXPECT_EQ(pairsOf(scene, settings), (Objects{ { 1, 2 } }));

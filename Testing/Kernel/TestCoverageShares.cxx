@@ -51,29 +51,6 @@ TEST(CoverageShares, ErrorsOfWeightedMeansAreThoseOfRepeatedDraws)
   EXPECT_NEAR(errors / repeats, spread, 0.06 * spread);
 }
 
-TEST(CoverageShares, AddUpInParts)
-{
-  CoverageShares whole;
-  CoverageShares parts[2];
-  for (int i = 0; i < 50; ++i)
-  {
-    CoverageValue value;
-    value.status = static_cast<CoverageStatus>(i % 8);
-    value.probability = 0.02 * i;
-    whole.add(1.0 + i, value, 0.5 * value.probability);
-    parts[i % 2].add(1.0 + i, value, 0.5 * value.probability);
-  }
-  parts[0].add(parts[1]);
-  EXPECT_NEAR(parts[0].detected.mean(), whole.detected.mean(), 1e-12);
-  EXPECT_NEAR(parts[0].detected.stdError(), whole.detected.stdError(), 1e-12);
-  EXPECT_NEAR(parts[0].tracked.mean(), 0.5 * whole.detected.mean(), 1e-12);
-  for (std::size_t s = 0; s < CoverageShares::Statuses; ++s)
-  {
-    EXPECT_NEAR(parts[0].byStatus[s], whole.byStatus[s], 1e-12);
-    EXPECT_GT(whole.byStatus[s], 0.0);
-  }
-}
-
 TEST(CoverageShares, StrikeHeightsAreDolbeers)
 {
   constexpr double foot = 0.3048;

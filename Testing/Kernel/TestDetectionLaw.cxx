@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The law of detection against values calculated by hand, closed forms, and targets that are drawn
-// one by one.
+// The law of detection against closed forms and targets that are drawn one by one.
+#include "BirdTestScene.h"
 #include "DetectionLaw.h"
-#include "PhotonReceiver.h"
+#include "Search905.h"
 
 #include <gtest/gtest.h>
 
@@ -12,56 +12,26 @@
 #include <vector>
 
 using namespace avianlidar;
+using echotest::search905;
 
 namespace
 {
 constexpr double Plumage = 0.3; // reflectance
 constexpr double Haze = 8.9e-5; // 1/m
 
-Sensor search905(double pulseWidth)
-{
-  Sensor sensor;
-  sensor.receiverModel = ReceiverModel::Photons;
-  sensor.frequency = SpeedOfLight / 905e-9;
-  sensor.receiverAperture = 0.25 * Pi * 0.01;
-  sensor.pulseWidth = pulseWidth;
-  EXPECT_EQ(setPhotonLimits(sensor, 1.0, 40.0, 15360.0), "");
-  return sensor;
-}
-
 const TargetViews PointViews = viewsOf({ Silhouette() });
 
 /// A plate across the line of sight, or slanted, that shows an area.
 Silhouette slanted(double width, double height, double slope, double area)
 {
-  const double w = 0.5 * width;
-  const double h = 0.5 * height;
-  TriangleMesh mesh;
-  mesh.points = { { -w, -w * slope, -h }, { w, w * slope, -h }, { w, w * slope, h },
-    { -w, -w * slope, h } };
-  mesh.triangles = { { 0, 1, 2 }, { 0, 2, 3 } };
-  return Silhouette(
-    mesh, Vec3(0.0, 1.0, 0.0), width * height / (area * std::sqrt(1.0 + slope * slope)));
+  return Silhouette(birdtest::plateOfSlope(width, height, slope), Vec3(0.0, 1.0, 0.0),
+    width * height / (area * std::sqrt(1.0 + slope * slope)));
 }
 
 double energyAt(const Sensor& sensor, double range, double area = 0.03)
 {
   return energyFromTarget(sensor, range, area, Plumage, Haze);
 }
-}
-
-TEST(DetectionLaw, ValuesCalculatedByHand)
-{
-  const Sensor whole = search905(0.0);
-  const DetectionLaw inOneUnit(whole, PointViews);
-  EXPECT_NEAR(inOneUnit.probability(energyAt(whole, 600.0), 1), 0.997821, 1e-4);
-  EXPECT_NEAR(inOneUnit.probability(energyAt(whole, 700.0), 1), 0.184228, 1e-4);
-  const Sensor divided = search905(5e-9);
-  const DetectionLaw shared(divided, PointViews);
-  EXPECT_NEAR(shared.probability(energyAt(divided, 600.0), 1), 0.7154, 3e-4);
-  EXPECT_NEAR(shared.probability(energyAt(divided, 700.0), 1), 0.0449, 3e-4);
-  // Half of the gulls of mean area at 624 m.
-  EXPECT_NEAR(shared.probability(energyAt(divided, 624.0), 1), 0.5, 0.01);
 }
 
 TEST(DetectionLaw, PulsesOfOtherBeamsAreIndependent)
@@ -165,17 +135,6 @@ TEST(DetectionLaw, EnergyForAProbability)
     EXPECT_GT(law.energyFor(0.5, beams), law.energyFor(0.5, beams + 1));
   }
   EXPECT_TRUE(std::isinf(law.energyFor(0.5, 0)));
-}
-
-TEST(DetectionLaw, Tracks)
-{
-  for (const double p : { 0.0, 0.1, 0.5, 0.9, 1.0 })
-  {
-    EXPECT_NEAR(trackProbability(p, 1, 1), p, 1e-15);
-    EXPECT_NEAR(trackProbability(p, 1, 3), 1.0 - std::pow(1.0 - p, 3), 1e-14);
-    EXPECT_NEAR(trackProbability(p, 2, 3), 3.0 * p * p * (1.0 - p) + p * p * p, 1e-14);
-    EXPECT_NEAR(trackProbability(p, 3, 3), p * p * p, 1e-14);
-  }
 }
 
 TEST(DetectionLaw, WholeTargetsInSeveralBeams)

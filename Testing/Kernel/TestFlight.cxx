@@ -1,31 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Flights: courses, circles and their poses, flocks against what was measured, tracks of files, and
-// wings that flap as the hinges of movers say.
+// Flights: courses, circles and their poses, flocks against what was measured, tracks of files.
+#include "BirdTestScene.h"
 #include "Flight.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <limits>
 #include <set>
-#include <sstream>
 
-using namespace avianlidar;
+using namespace birdtest;
 
 namespace
 {
 constexpr double OneDegree = Pi / 180.0;
-
-std::vector<BirdSpecies> shippedSpecies()
-{
-  const std::string file = AVIANLIDAR_SOURCE_DIR "/Filters/Birds/species.csv";
-  std::ifstream stream(file);
-  std::ostringstream text;
-  text << stream.rdbuf();
-  return readSpecies(text.str(), file);
-}
 
 const BirdSpecies& species(const std::string& name)
 {
@@ -163,32 +152,6 @@ std::string errorOf(const std::string& text)
 }
 
 const std::string Header = "id,species,time,x,y,z\n";
-}
-
-// A part p of a mover turns about row p - 1 of its hinges: as birdPart() flaps.
-TEST(Flight, WingsTurnAboutTheHingesOfMovers)
-{
-  for (const BirdSpecies& bird : shippedSpecies())
-  {
-    const BirdShape shape(bird);
-    for (const double side : { -1.0, 1.0 })
-    {
-      const Vec3 hinge(side * 0.5 * shape.bodyDiameter, 0.0, 0.0);
-      const Vec3 axis(0.0, -side, 0.0);
-      const BirdPart part = side < 0.0 ? BirdPart::LeftWing : BirdPart::RightWing;
-      const TriangleMesh level = birdPart(shape, part, 0.0);
-      for (const double phase : { 0.0, 0.1, 0.25, 0.4, 0.7, 0.93 })
-      {
-        const double angle = 35.0 * OneDegree * std::sin(2.0 * Pi * phase);
-        const glm::dquat turn = glm::angleAxis(angle, axis);
-        const TriangleMesh flapped = birdPart(shape, part, wingAngle(phase, false));
-        for (std::size_t i = 0; i < level.points.size(); ++i)
-        {
-          expectNear(hinge + turn * (level.points[i] - hinge), flapped.points[i], 1e-12);
-        }
-      }
-    }
-  }
 }
 
 TEST(Flight, CrossingsAreLevelAndPassTheCenterInTheTimeRange)
@@ -485,15 +448,6 @@ TEST(Flight, TracksOfFiles)
   EXPECT_EQ(flights[0].poses[1].position, Vec3(0.0, 25.0, 20.0));
   expectNear(flights[1].poses[0].orientation * Forward, Vec3(1.0, 0.0, 0.0), 1e-12);
   EXPECT_NE(flights[0].wingPhase, flights[1].wingPhase);
-
-  const auto geodetic =
-    readFlights("id,species,time,longitude,latitude,height\n1,crow,0,121.0,31.0,13\n"
-                "1,crow,1,121.0001,31.0,13\n",
-      "own.csv", shippedSpecies(), { 31.0, 121.0, 3.0 }, 0);
-  expectNear(geodetic[0].poses[0].position, Vec3(0.0, 0.0, 10.0), 1e-6);
-  expectNear(geodetic[0].poses[1].position, Vec3(9.55, 0.0, 10.0), 0.01);
-
-  EXPECT_TRUE(readFlights(Header, "own.csv", shippedSpecies(), {}, 0).empty());
 }
 
 TEST(Flight, FilesThatAreWrongSayWhere)
@@ -521,37 +475,4 @@ TEST(Flight, FilesThatAreWrongSayWhere)
   {
     EXPECT_NE(errorOf(text).find(message), std::string::npos) << errorOf(text) << "\n" << message;
   }
-}
-
-TEST(Flight, BadSettingsAreNamed)
-{
-  const double nan = std::numeric_limits<double>::quiet_NaN();
-  const auto errorWith = [](const auto& change)
-  {
-    FlightSettings settings;
-    change(settings);
-    return checkFlights(settings);
-  };
-  EXPECT_EQ(errorWith([](FlightSettings&) {}), "");
-  EXPECT_EQ(errorWith([](FlightSettings& s) { s.numberOfBirds = -1; }),
-    "NumberOfBirds is -1, expected 0 to 100000");
-  EXPECT_EQ(errorWith([](FlightSettings& s) { s.radius = -1.0; }).find("Radius is -1"), 0u);
-  EXPECT_EQ(errorWith([&](FlightSettings& s) { s.center.y = nan; }).find("Center is nan"), 0u);
-  EXPECT_EQ(errorWith(
-              [](FlightSettings& s) {
-                s.timeRange = { 5.0, 5.0 };
-              }),
-    "TimeRange is 5 to 5, expected the first before the second");
-  EXPECT_EQ(errorWith(
-              [](FlightSettings& s) {
-                s.heights = { 5.0, 4.0 };
-              }),
-    "Heights is 5 to 4, expected the first not above the second");
-  EXPECT_EQ(errorWith([&](FlightSettings& s) { s.heights[1] = nan; }).find("Heights is nan"), 0u);
-  EXPECT_EQ(
-    errorWith([](FlightSettings& s) { s.thresholdPosition.x = 1e10; }).find("ThresholdPosition is"),
-    0u);
-  EXPECT_EQ(
-    errorWith([&](FlightSettings& s) { s.thresholdHeading = nan; }).find("ThresholdHeading is"),
-    0u);
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Frames of the Earth: places that are known in closed form, round trips, poles, date line, and
-// what is refused. Outside checks (CartConvert, cct) are made by the Python test of the filter.
+// Frames of the Earth: zones, round trips, poles, date line, and what is refused. Places as outside
+// programs (CartConvert, cct) convert them, latitudes and eastings are TestGeodeticTransform.py's.
 #include "GeodeticFrame.h"
 
 #include <gtest/gtest.h>
@@ -17,7 +17,6 @@ using Point = std::array<double, 3>;
 constexpr double A = 6378137.0; // WGS84, m
 constexpr double F = 1.0 / 298.257223563;
 constexpr double B = A * (1.0 - F);
-constexpr double Radian = 3.14159265358979323846 / 180.0;
 
 // Two roundings of an ECEF coordinate (0.9 nm each) and of a longitude in degrees at 180 (3.2 nm),
 // with GeographicLib's own 5 to 7 nm: 15 nm.
@@ -29,46 +28,6 @@ void expectPoint(const Point& p, double x, double y, double z, double tolerance 
   EXPECT_NEAR(p[1], y, tolerance);
   EXPECT_NEAR(p[2], z, tolerance);
 }
-}
-
-TEST(GeodeticFrame, ClosedFormOnTheEllipsoid)
-{
-  const GeodeticFrame frame;
-  expectPoint(frame.convert(Frame::Geodetic, Frame::ECEF, { 0.0, 0.0, 0.0 }), A, 0.0, 0.0);
-  expectPoint(
-    frame.convert(Frame::Geodetic, Frame::ECEF, { 90.0, 0.0, 100.0 }), 0.0, A + 100.0, 0.0);
-  expectPoint(
-    frame.convert(Frame::Geodetic, Frame::ECEF, { 77.0, -90.0, 5.0 }), 0.0, 0.0, -(B + 5.0));
-  const double latitude = 31.2 * Radian, longitude = 121.3 * Radian, height = 12.0;
-  const double e2 = F * (2.0 - F);
-  const double n = A / std::sqrt(1.0 - e2 * std::sin(latitude) * std::sin(latitude));
-  expectPoint(frame.convert(Frame::Geodetic, Frame::ECEF, { 121.3, 31.2, height }),
-    (n + height) * std::cos(latitude) * std::cos(longitude),
-    (n + height) * std::cos(latitude) * std::sin(longitude),
-    (n * (1.0 - e2) + height) * std::sin(latitude));
-}
-
-TEST(GeodeticFrame, AxesOfTheTangentPlane)
-{
-  GeodeticFrame frame;
-  frame.setOrigin(
-    0.0, 90.0, 10.0); // x points to 180 E, y to the pole, z away from the Earth along ECEF y
-  expectPoint(frame.convert(Frame::ENU, Frame::ECEF, { 1.0, 2.0, 3.0 }), -1.0, A + 13.0, 2.0);
-  expectPoint(frame.convert(Frame::ECEF, Frame::ENU, { -1.0, A + 13.0, 2.0 }), 1.0, 2.0, 3.0);
-  expectPoint(frame.convert(Frame::ENU, Frame::Geodetic, { 0.0, 0.0, 0.0 }), 90.0, 0.0, 10.0);
-}
-
-TEST(GeodeticFrame, CentralMeridianOfUtm)
-{
-  // On the central meridian the easting is 500 km and the northing 0.9996 times the meridian arc; a
-  // quarter of the meridian of WGS84 is 10001965.729312 m.
-  GeodeticFrame frame;
-  frame.setZone(51);
-  expectPoint(frame.convert(Frame::Geodetic, Frame::UTM, { 123.0, 0.0, 7.0 }), 500e3, 0.0, 7.0);
-  expectPoint(frame.convert(Frame::Geodetic, Frame::UTM, { 123.0, 90.0, 7.0 }), 500e3,
-    0.9996 * 10001965.729312, 7.0, 1e-5);
-  frame.setZone(-51);
-  expectPoint(frame.convert(Frame::Geodetic, Frame::UTM, { 123.0, 0.0, 7.0 }), 500e3, 10000e3, 7.0);
 }
 
 TEST(GeodeticFrame, Zones)
@@ -140,18 +99,12 @@ TEST(GeodeticFrame, Poles)
 TEST(GeodeticFrame, BadValuesAreNamed)
 {
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_NE(GeodeticFrame::checkOrigin(91.0, 0.0, 0.0).find("latitude is 91"), std::string::npos);
-  EXPECT_NE(GeodeticFrame::checkOrigin(nan, 0.0, 0.0).find("latitude"), std::string::npos);
   EXPECT_NE(GeodeticFrame::checkOrigin(0.0, 361.0, 0.0).find("longitude"), std::string::npos);
   EXPECT_NE(GeodeticFrame::checkOrigin(0.0, nan, 0.0).find("longitude"), std::string::npos);
   EXPECT_NE(GeodeticFrame::checkOrigin(0.0, 0.0, nan).find("height"), std::string::npos);
   EXPECT_TRUE(GeodeticFrame::checkOrigin(-90.0, -180.0, -400.0).empty());
-  EXPECT_NE(GeodeticFrame::checkPoint(Frame::Geodetic, { 0.0, 91.0, 0.0 }).find("latitude"),
-    std::string::npos);
   EXPECT_NE(
     GeodeticFrame::checkPoint(Frame::ENU, { 0.0, nan, 0.0 }).find("finite"), std::string::npos);
-  EXPECT_NE(
-    GeodeticFrame::checkPoint(Frame::UTM, { 5e6, 0.0, 0.0 }).find("easting"), std::string::npos);
   EXPECT_NE(
     GeodeticFrame::checkPoint(Frame::UTM, { 5e5, 3e7, 0.0 }).find("northing"), std::string::npos);
   EXPECT_TRUE(GeodeticFrame::checkPoint(Frame::ECEF, { 7e6, 0.0, 0.0 }).empty());

@@ -1,40 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Hue of an energy (paper, Eq. 13): both ends, the middle, outside, and its colour.
+// Colours of hues, and the hue of an empty range; others are TestHSBColorMap.cxx's.
 #include "Hue.h"
 
 #include <gtest/gtest.h>
 
-#include <cmath>
+#include <array>
 
 using namespace avianlidar;
-
-TEST(Hue, EndsAndMiddle)
-{
-  EXPECT_EQ(hueOfEnergy(2e-6, 2e-6, 6.25e-5), 240.0);
-  EXPECT_EQ(hueOfEnergy(6.25e-5, 2e-6, 6.25e-5), 0.0);
-  EXPECT_NEAR(hueOfEnergy(3.225e-5, 2e-6, 6.25e-5), 120.0, 1e-12);
-}
-
-TEST(Hue, DiffuseWallAtFiveHundredMetres)
-{
-  const double energy = 3.6e-4 * 0.146 * std::exp(-0.035);
-  EXPECT_NEAR(hueOfEnergy(energy, 2e-6, 6.25e-5), 46.60276094, 1e-8);
-}
-
-TEST(Hue, OutsideTheRangeIsTheNearerEnd)
-{
-  EXPECT_EQ(hueOfEnergy(0.0, 1.0, 2.0), 240.0);
-  EXPECT_EQ(hueOfEnergy(9.0, 1.0, 2.0), 0.0);
-}
 
 TEST(Hue, EmptyRangeIsRed)
 {
   EXPECT_EQ(hueOfEnergy(1.0, 1.0, 1.0), 0.0);
-}
-
-TEST(Hue, NotANumberStaysSo)
-{
-  EXPECT_TRUE(std::isnan(hueOfEnergy(std::nan(""), 1.0, 2.0)));
 }
 
 TEST(HueColor, CornersAndEdgesOfTheHexagon)

@@ -46,22 +46,6 @@ Vec3 errorOf(Random& random)
 }
 }
 
-TEST(MotionFilter, ConstantVelocityHasItsClosedForm)
-{
-  const MotionModel model = gull(false);
-  MotionState state = startMotion({ 1.0, 2.0, 3.0 }, someError(), model);
-  state.mean = { 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 0.0 };
-  const double t = 2.0;
-  const MotionState later = predicted(state, t, model);
-  EXPECT_EQ(later.position(), Vec3(9.0, 12.0, 15.0));
-  EXPECT_EQ(later.velocity(), Vec3(4.0, 5.0, 6.0));
-  EXPECT_DOUBLE_EQ(later.covariance[0][0], 2.0 + 49.0 * t * t + 2.0 * t * t * t / 3.0);
-  EXPECT_DOUBLE_EQ(later.covariance[0][3], 49.0 * t + 2.0 * t * t / 2.0);
-  EXPECT_DOUBLE_EQ(later.covariance[5][5], 4.0 + 2.0 * t);
-  EXPECT_DOUBLE_EQ(later.covariance[0][1], 0.5);
-  EXPECT_EQ(later.covariance[6][6], 0.0);
-}
-
 TEST(MotionFilter, TurnsInCircles)
 {
   MotionState state;

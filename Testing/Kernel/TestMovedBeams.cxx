@@ -187,13 +187,10 @@ TEST(MovedBeams, TrianglesThatAreNotNeighboursInTheSceneAreNotJoined)
 TEST(MovedBeams, APlateThatCrossesIsSeenByTheBeamsOfThoseTimes)
 {
   // One direction, a beam each millisecond; a plate of 2 m crosses it at 100 m and 20 m/s.
-  ScanBeams beams;
-  for (int i = 0; i < 1000; ++i)
+  ScanBeams beams = timed(alike(1000), 1e-3);
+  for (double& time : beams.times)
   {
-    beams.ids.push_back(i);
-    beams.origins.emplace_back(0.0);
-    beams.directions.emplace_back(1.0, 0.0, 0.0);
-    beams.times.push_back(5.0 + 1e-3 * i);
+    time += 5.0;
   }
   Scene plate;
   plate.plate(Vec3(0.0), Vec3(0.0, 1.0, 0.0), Vec3(0.0, 0.0, 1.0), Wall, 1);

@@ -165,25 +165,6 @@ TEST(ParallelLoop, ExceptionOfTheProgress)
     std::logic_error);
 }
 
-TEST(ParallelLoop, SlotsDoNotDependOnThreads)
-{
-  const auto run = [](int threads)
-  {
-    std::vector<double> slots(3000);
-    parallelFor(slots.size(), 7, threads,
-      [&](std::size_t begin, std::size_t end, int)
-      {
-        for (std::size_t i = begin; i < end; ++i)
-        {
-          slots[i] = 1.0 / static_cast<double>(i + 1);
-        }
-      });
-    return slots;
-  };
-  EXPECT_EQ(run(1), run(2));
-  EXPECT_EQ(run(1), run(5));
-}
-
 namespace
 {
 /// True if all items were done by a loop of so many threads.

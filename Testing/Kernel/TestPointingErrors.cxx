@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Mast sway and encoder jitter: their size, spectrum and independence, and what they do to a beam.
 #include "PointingErrors.h"
-#include "ScanClock.h"
 #include "ScanPattern.h"
 #include "Vector.h"
 
@@ -9,9 +8,6 @@
 
 #include <cmath>
 #include <complex>
-#include <limits>
-#include <set>
-#include <string>
 #include <vector>
 
 using namespace avianlidar;
@@ -53,18 +49,18 @@ struct Moments
   double rms() const { return std::sqrt(this->squares / this->count); }
 };
 
-// The beams of a part, as a scan has them.
+// The beams of a revolution.
 std::vector<Vec3> directionsOf(
-  const ScanPattern& pattern, const PointingErrors& errors, const ScanPart& part, int revolution)
+  const ScanPattern& pattern, const PointingErrors& errors, int revolution)
 {
   const ScanGenerator scan(pattern);
   const Pointing pointing(errors, scan.rotor());
-  std::vector<Vec3> all(static_cast<std::size_t>(scan.size()));
-  for (const std::int64_t i : beamsOf(pattern, part))
+  std::vector<Vec3> all;
+  for (std::int64_t i = 0; i < scan.size(); ++i)
   {
     const ScanBeam beam = scan.beam(i);
-    all[i] = pointing.direction(
-      beam.direction, scan.column(i), revolution, revolution / pattern.rotationRate + beam.time);
+    all.push_back(pointing.direction(
+      beam.direction, scan.column(i), revolution, revolution / pattern.rotationRate + beam.time));
   }
   return all;
 }
@@ -168,6 +164,7 @@ TEST(PointingErrors, JitterHasTheRmsAndIsIndependent)
   EXPECT_NEAR(fourth / columns / std::pow(rms, 4), 3.0, 3.0 * std::sqrt(96.0) * error); // normal
   EXPECT_NEAR(neighbours / columns / (rms * rms), 0.0, 3.0 * error);
   EXPECT_NEAR(revolutions / columns / (rms * rms), 0.0, 3.0 * error);
+  EXPECT_NE(Pointing(jitter(0.05, 1), Up).azimuthError(7, 5), pointing.azimuthError(7, 5));
 }
 
 TEST(PointingErrors, JitterTurnsAColumnAsAWhole)
@@ -179,7 +176,7 @@ TEST(PointingErrors, JitterTurnsAColumnAsAWhole)
     pattern.pitch = pitch;
     const ScanGenerator scan(pattern);
     const Pointing pointing(jitter(0.3), scan.rotor());
-    const auto directions = directionsOf(pattern, jitter(0.3), ScanPart{}, -2);
+    const auto directions = directionsOf(pattern, jitter(0.3), -2);
     for (std::int64_t i = 0; i < scan.size(); ++i)
     {
       // The same scan with another azimuth of this column.
@@ -220,58 +217,11 @@ TEST(PointingErrors, NoneIsExactlyOff)
   EXPECT_TRUE(sway(0.0).none());
   EXPECT_FALSE(sway(1e-9).none());
   EXPECT_FALSE(jitter(1e-9).none());
-  const auto directions = directionsOf(pattern, sway(0.0, 7.0, 5), ScanPart{}, 3);
+  const auto directions = directionsOf(pattern, sway(0.0, 7.0, 5), 3);
   for (std::int64_t i = 0; i < scan.size(); ++i)
   {
     ASSERT_EQ(directions[i], scan.beam(i).direction);
   }
-}
-
-TEST(PointingErrors, PiecesAndStepsHaveTheSameBits)
-{
-  ScanPattern pattern;
-  pattern.azimuthStep = 5.0;
-  PointingErrors errors = sway(0.02);
-  errors.encoderJitter = 0.01;
-  const auto whole = directionsOf(pattern, errors, ScanPart{}, 1);
-  for (const int pieces : { 2, 7 })
-  {
-    for (const int step : { 1, 3 })
-    {
-      std::set<std::int64_t> seen;
-      for (int piece = 0; piece < pieces; ++piece)
-      {
-        const ScanPart part{ piece, pieces, step, 4 };
-        const auto some = directionsOf(pattern, errors, part, 1);
-        for (const std::int64_t i : beamsOf(pattern, part))
-        {
-          ASSERT_EQ(some[i], whole[i]);
-          seen.insert(i);
-        }
-      }
-      EXPECT_EQ(seen.size(), whole.size() * (step + 1) / 4);
-    }
-  }
-  EXPECT_NE(directionsOf(pattern, errors, ScanPart{}, 2), whole);
-  errors.seed = 1;
-  EXPECT_NE(directionsOf(pattern, errors, ScanPart{}, 1), whole);
-}
-
-TEST(PointingErrors, BadValuesAreNamed)
-{
-  const double nan = std::numeric_limits<double>::quiet_NaN();
-  const double infinity = std::numeric_limits<double>::infinity();
-  for (const double bad : { -1e-9, 10.1, nan, infinity })
-  {
-    EXPECT_EQ(checkPointing(sway(bad)).rfind("SwayAmplitude is", 0), 0u) << bad;
-    EXPECT_EQ(checkPointing(jitter(bad)).rfind("EncoderJitter is", 0), 0u) << bad;
-  }
-  for (const double bad : { 0.0, -1.0, 1e7, nan })
-  {
-    EXPECT_EQ(checkPointing(sway(0.1, bad)).rfind("SwayFrequency is", 0), 0u) << bad;
-  }
-  EXPECT_EQ(checkPointing(sway(10.0, 1e6)), "");
-  EXPECT_EQ(checkPointing(PointingErrors{}), "");
 }
 
 TEST(PointingErrors, AnyTimeGivesANumber)

@@ -22,7 +22,7 @@ TEST(PolygonEdges, AWallWhoseEdgeJustEntersTheBeam)
     const double edge = 100.0 * std::tan(5.6e-3) * (1.0 - depth);
     scene.plate(Vec3(100.0, edge - 600.0, 0.0), Vec3(0.0, 600.0, 0.0), Vec3(0.0, 0.0, 20.0),
       { 0.146, 0.0, 0.0 });
-    const ScanResult result = runScan(makeSetup(scene, openSensor(), integrating(100)), oneBeam());
+    const ScanResult result = runScan(makeSetup(scene, openSensor(), inCells(100)), oneBeam());
     ASSERT_TRUE(isIntegrated(result));
     ASSERT_EQ(result.echoes.size(), 1u);
     // The segment beyond the edge.

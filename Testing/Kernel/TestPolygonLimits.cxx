@@ -81,7 +81,7 @@ TEST(PolygonLimits, GroundOverMoreRangeUnitsThanNodesAllowIsDividedIntoCells)
           // Two nodes a unit.
           const double units = 0.5 * share * MostNodes;
           const double last = first + units * sensor.rangeUnitLength();
-          EchoSettings settings = integrating(rays);
+          EchoSettings settings = inCells(rays);
           settings.fullModel = full;
           const ScanSetup setup = makeSetup(groundUpTo(last), sensor, settings);
           EXPECT_EQ(runScan(setup, oneBeam()).reports[0].direct,

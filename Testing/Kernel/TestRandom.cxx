@@ -63,62 +63,6 @@ TEST(Random, KnownAnswersOfTheAuthors)
   }
 }
 
-TEST(Random, OpenIntervalWithExactComplement)
-{
-  for (std::uint64_t index = 0; index < 100000; ++index)
-  {
-    for (const double u : uniformPair(-7, 3, index, RandomPurpose::Noise))
-    {
-      ASSERT_GT(u, 0.0);
-      ASSERT_LT(u, 1.0);
-      ASSERT_EQ(1.0 - (1.0 - u), u);
-    }
-  }
-}
-
-TEST(Random, EveryArgumentMakesAnotherStream)
-{
-  std::set<double> seen;
-  const std::uint64_t high = std::uint64_t{ 1 } << 32;
-  for (const std::int32_t seed : { -1, 0, 1 })
-  {
-    for (const std::uint64_t beam : { std::uint64_t{ 0 }, std::uint64_t{ 1 }, high })
-    {
-      for (const std::uint64_t index : { std::uint64_t{ 0 }, std::uint64_t{ 1 }, high })
-      {
-        for (const RandomPurpose purpose : { RandomPurpose::Rays, RandomPurpose::Connections,
-               RandomPurpose::Noise, RandomPurpose::FalseAlarms, RandomPurpose::Cells })
-        {
-          const auto pair = uniformPair(seed, beam, index, purpose);
-          seen.insert(pair.begin(), pair.end());
-        }
-      }
-    }
-  }
-  EXPECT_EQ(seen.size(), 3u * 3u * 3u * 5u * 2u);
-}
-
-TEST(Random, PairsFillTheSquareEvenly)
-{
-  constexpr int side = 16;
-  constexpr int draws = 256000;
-  int counts[side * side] = {};
-  for (std::uint64_t n = 0; n < draws; ++n)
-  {
-    const auto pair = uniformPair(5, n / 100, n % 100, RandomPurpose::Rays);
-    ++counts[static_cast<int>(pair[0] * side) * side + static_cast<int>(pair[1] * side)];
-  }
-  const double mean = static_cast<double>(draws) / (side * side);
-  double chiSquare = 0.0;
-  for (const int count : counts)
-  {
-    chiSquare += (count - mean) * (count - mean) / mean;
-  }
-  // 255 degrees of freedom: 0.1 % and 99.9 % quantiles.
-  EXPECT_GT(chiSquare, 190.0);
-  EXPECT_LT(chiSquare, 331.0);
-}
-
 TEST(Random, GivesTheBitsOfTheLibrary)
 {
   for (const RandomPurpose purpose : { RandomPurpose::Rays, RandomPurpose::Noise })

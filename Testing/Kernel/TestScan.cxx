@@ -191,10 +191,7 @@ TEST(Scan, AbortIsHeardWithinABeamOfManyRays)
   EchoSettings settings = usual();
   settings.raysPerBeam = 100000;
   settings.beamSamples = BeamSampleSource::Rays;
-  ScanBeams beams = horizon(4, 1);
-  beams.ids.resize(1);
-  beams.origins.resize(1);
-  beams.directions.assign(1, Vec3(0.0, 0.0, -1.0));
+  const ScanBeams beams = oneBeam(Vec3(0.0, 0.0, -1.0));
   const ScanSetup setup = makeSetup(town(), Sensor{}, settings);
   TraceCache cache;
   ScanResult result;

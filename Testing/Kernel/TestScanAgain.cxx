@@ -244,16 +244,6 @@ TEST(ScanAgain, StandardErrorsAreThoseOfAFreshScanWhateverReturnsAreKnown)
   }
 }
 
-TEST(ScanAgain, AStoppedRunLeavesNothing)
-{
-  ScanSeries series;
-  series.beams = horizon(90, 4);
-  int calls = 0;
-  EXPECT_FALSE(series.scan([&calls](double) { return ++calls < 2; }));
-  EXPECT_TRUE(series.result.echoes.empty() && series.cache.beams.empty());
-  series.check("after the stop");
-}
-
 TEST(ScanAgain, WhatWasTooFaintIsHeardInOtherAir)
 {
   // A surface 20 m away that reflects towards a wall 11 m beside it, at which the lidar looks

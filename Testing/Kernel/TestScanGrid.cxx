@@ -51,36 +51,6 @@ bool covers(const ScanGrid& grid)
 }
 }
 
-TEST(ScanGrid, FullCircle)
-{
-  const ScanGrid grid = gridOf(beamsOf(ScanPattern()));
-  EXPECT_EQ(grid.azimuths.size(), 960u);
-  EXPECT_EQ(grid.elevations.size(), 16u);
-  EXPECT_TRUE(covers(grid));
-  EXPECT_FALSE(grid.byChannel);
-  EXPECT_EQ(grid.column[16 * 7 + 3], 7);
-  EXPECT_EQ(grid.row[16 * 7 + 3], 3);
-  double origin, spacing;
-  EXPECT_TRUE(equallySpaced(grid.azimuths, origin, spacing));
-  EXPECT_EQ(origin, 0.0);
-  EXPECT_NEAR(spacing, 0.375, 1e-12);
-}
-
-TEST(ScanGrid, SectorAcrossNorthStaysWhole)
-{
-  ScanPattern p;
-  p.azimuthStart = -30.0;
-  p.azimuthEnd = 30.0;
-  const ScanGrid grid = gridOf(beamsOf(p));
-  EXPECT_EQ(grid.azimuths.size(), 160u);
-  EXPECT_TRUE(covers(grid));
-  EXPECT_EQ(grid.column[0], 0);
-  double origin, spacing;
-  EXPECT_TRUE(equallySpaced(grid.azimuths, origin, spacing));
-  EXPECT_NEAR(origin, -30.0, 1e-12);
-  EXPECT_NEAR(spacing, 0.375, 1e-12);
-}
-
 TEST(ScanGrid, YawWithRoundingStillFallsOnColumns)
 {
   ScanPattern p;
@@ -89,18 +59,6 @@ TEST(ScanGrid, YawWithRoundingStillFallsOnColumns)
   const ScanGrid grid = gridOf(beamsOf(p));
   EXPECT_EQ(grid.azimuths.size(), 3600u);
   EXPECT_TRUE(covers(grid));
-}
-
-TEST(ScanGrid, UnequalElevationsAreRows)
-{
-  ScanPattern p;
-  p.elevations = { 7.0, -3.0, 0.0, 1.0 };
-  const ScanGrid grid = gridOf(beamsOf(p));
-  EXPECT_EQ(grid.elevations, (std::vector<double>{ -3.0, 0.0, 1.0, 7.0 }));
-  EXPECT_EQ(grid.row[0], 3);
-  EXPECT_TRUE(covers(grid));
-  double origin, spacing;
-  EXPECT_FALSE(equallySpaced(grid.elevations, origin, spacing));
 }
 
 TEST(ScanGrid, PieceThatEndsWithinAColumn)

@@ -54,40 +54,6 @@ ScanBeams fan()
 }
 }
 
-TEST(SecondaryConstraints, BeamConstraintAndBatchChangeNothing)
-{
-  const Scene scene = rubble(1);
-  Sensor sensor;
-  for (double t : { 5.6e-3, 0.02 })
-  {
-    sensor.halfBeamwidth = t;
-    std::vector<ScanResult> results;
-    for (bool constraint : { true, false })
-    {
-      for (const TraceMode mode : { TraceMode::Automatic, TraceMode::SingleRays, TraceMode::Beams })
-      {
-        EchoSettings settings = secondarySettings(60);
-        settings.beamConstraint = constraint;
-        settings.traceMode = mode;
-        results.push_back(runScan(makeSetup(scene, sensor, settings), fan()));
-      }
-    }
-    double secondary = 0.0;
-    for (const ScanResult& result : results)
-    {
-      ASSERT_EQ(result.echoes.size(), results[0].echoes.size());
-      for (std::size_t i = 0; i < result.echoes.size(); ++i)
-      {
-        EXPECT_EQ(result.echoes[i].energyReceived, results[0].echoes[i].energyReceived);
-        EXPECT_EQ(result.echoes[i].range, results[0].echoes[i].range);
-        EXPECT_EQ(result.echoes[i].secondaryShare, results[0].echoes[i].secondaryShare);
-        secondary += result.echoes[i].secondaryShare;
-      }
-    }
-    EXPECT_GT(secondary, 0.0);
-  }
-}
-
 namespace
 {
 /// Energies of perceived range units, J, by beam and unit.

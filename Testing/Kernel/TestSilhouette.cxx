@@ -1,64 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Silhouettes against closed forms, exact effective areas, and rays cast one by one.
-#include "Bird.h"
-#include "Silhouette.h"
+#include "BirdTestScene.h"
 
 #include <gtest/gtest.h>
 
-#include <array>
 #include <cmath>
 #include <random>
 
-using namespace avianlidar;
+using namespace birdtest;
 
 namespace
 {
-const BirdShape SeenGull({ "gull", 0.95, 0.60, 1.35, 0.20, false, 12.5 });
 const Vec3 SeenAlong = glm::normalize(Vec3(0.6, 0.75, 0.1));
-
-TriangleMesh plateOfSlope(double width, double height, double slope)
-{
-  const double w = 0.5 * width;
-  const double h = 0.5 * height;
-  TriangleMesh mesh;
-  mesh.points = { { -w, -w * slope, -h }, { w, w * slope, -h }, { w, w * slope, h },
-    { -w, -w * slope, h } };
-  mesh.triangles = { { 0, 1, 2 }, { 0, 2, 3 } };
-  return mesh;
-}
-
-/// What a parallel ray through a place across the view meets: cosine of incidence and depth.
-struct RayHit
-{
-  double cosine = 0.0;
-  double depth = 1e9;
-};
-
-RayHit castRay(const TriangleMesh& mesh, const Vec3& view, double x, double y)
-{
-  const Vec3 right = glm::normalize(glm::cross(view, Vec3(0.0, 0.0, 1.0)));
-  const Vec3 origin = x * right + y * glm::cross(right, view);
-  RayHit met;
-  for (std::uint32_t t = 0; t < mesh.size(); ++t)
-  {
-    const Vec3 a = mesh.corner(t, 0) - origin;
-    const Vec3 b = mesh.corner(t, 1) - origin;
-    const Vec3 c = mesh.corner(t, 2) - origin;
-    const double ab = glm::dot(view, glm::cross(a, b));
-    const double bc = glm::dot(view, glm::cross(b, c));
-    const double ca = glm::dot(view, glm::cross(c, a));
-    if ((ab > 0 && bc > 0 && ca > 0) || (ab < 0 && bc < 0 && ca < 0))
-    {
-      const Vec3 normal = glm::normalize(glm::cross(b - a, c - a));
-      const double depth = glm::dot(normal, a) / glm::dot(normal, view);
-      if (depth < met.depth)
-      {
-        met = { std::fabs(glm::dot(normal, view)), depth };
-      }
-    }
-  }
-  return met;
-}
 }
 
 TEST(Silhouette, OfAPlateIsItsAreaTimesTheSquareOfTheCosine)
@@ -90,7 +43,7 @@ TEST(Silhouette, OfBirdsIsTheirEffectiveArea)
   double sum = 0.0;
   for (int k = 0; k < 30; ++k)
   {
-    const TriangleMesh bird = wholeBird(SeenGull, 0.6 * uniform(random));
+    const TriangleMesh bird = wholeBird(HerringGull, 0.6 * uniform(random));
     const Vec3 d = glm::normalize(Vec3(uniform(random), uniform(random), 0.2 * uniform(random)));
     const double wanted = effectiveArea(bird, d);
     const double found = Silhouette(bird, d, 1.0).all().area;
@@ -102,29 +55,12 @@ TEST(Silhouette, OfBirdsIsTheirEffectiveArea)
 
 TEST(Silhouette, ABeamLightsWhatRaysInItMeet)
 {
-  const TriangleMesh bird = wholeBird(SeenGull, 0.3);
+  const TriangleMesh bird = wholeBird(HerringGull, 0.3);
   const Silhouette shown(bird, SeenAlong, 1.0);
   std::mt19937_64 random(8);
   std::uniform_real_distribution<double> uniform(0.0, 1.0);
-  // Rays that meet it, of a lattice.
-  struct Ray
-  {
-    double x, y;
-    RayHit met;
-  };
   constexpr double step = 0.004;
-  std::vector<Ray> rays;
-  for (double x = -0.8; x < 0.8; x += step)
-  {
-    for (double y = -0.5; y < 0.5; y += step)
-    {
-      const RayHit met = castRay(bird, SeenAlong, x, y);
-      if (met.cosine > 0.0)
-      {
-        rays.push_back({ x, y, met });
-      }
-    }
-  }
+  const std::vector<Pixel> rays = imageOf(bird, SeenAlong, step);
   struct Shape
   {
     double ratio; ///< of the sides
@@ -165,7 +101,7 @@ TEST(Silhouette, ABeamLightsWhatRaysInItMeet)
         const bool isUniform = shape.profile == BeamProfile::Uniform;
         double area = 0.0;
         double depth = 0.0;
-        for (const Ray& ray : rays)
+        for (const Pixel& ray : rays)
         {
           const double x = ray.x - beam.x;
           const double y = ray.y - beam.y;
@@ -175,9 +111,9 @@ TEST(Silhouette, ABeamLightsWhatRaysInItMeet)
             shape.profile == BeamProfile::Gaussian ? std::exp(-fall * (u * u + v * v)) / mean : 1.0;
           const bool isLit =
             shape.isRectangle ? std::max(std::fabs(u), std::fabs(v)) < 1.0 : u * u + v * v < 1.0;
-          const double lit = isLit ? step * step * ray.met.cosine * light : 0.0;
+          const double lit = isLit ? step * step * ray.cosine * light : 0.0;
           area += lit;
-          depth += lit * ray.met.depth;
+          depth += lit * ray.depth;
         }
         const LitPart lit = shown.litBy(beam);
         const double scale = (isUniform ? 1.0 : std::max(1.0, 0.5 * beam.most)) *

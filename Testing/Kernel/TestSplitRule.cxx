@@ -76,20 +76,6 @@ TEST_P(SplitRules, GiveTwoNonEmptyPartsThatTogetherAreTheWhole)
   }
 }
 
-TEST_P(SplitRules, AreDeterministic)
-{
-  Numbers random(62);
-  std::vector<Vec3> centers(300);
-  for (Vec3& c : centers)
-  {
-    c = glm::floor(random.inCube(5.0));
-  }
-  const TriangleMesh boxes = cubesAt(centers, 0.5);
-  const Split once = split(GetParam(), boxes, 2);
-  const Split again = split(GetParam(), boxes, 2);
-  EXPECT_EQ(once.first, again.first);
-}
-
 INSTANTIATE_TEST_SUITE_P(SplitRule, SplitRules,
   testing::Values(SplitRule::Halves, SplitRule::Median, SplitRule::PrincipalPlane,
     SplitRule::SurfaceAreaHeuristic));

@@ -129,52 +129,6 @@ TEST(WideTree, MostBoxesBesideTheConeAreLeftOut)
   EXPECT_LT(met, 2000 * 8 / 100);
 }
 
-TEST(WideTree, HoldsEveryTriangleOfTheTreeOnce)
-{
-  std::mt19937_64 random(3);
-  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
-  const auto mesh = std::make_shared<TriangleMesh>();
-  for (std::uint32_t i = 0; i < 3000; ++i)
-  {
-    mesh->points.push_back(Vec3(uniform(random), uniform(random), uniform(random)));
-  }
-  for (std::uint32_t i = 0; i + 2 < 3000; ++i)
-  {
-    mesh->triangles.push_back({ i, i + 1, i + 2 });
-  }
-  for (int rule = 0; rule < 4; ++rule)
-  {
-    const auto tree =
-      buildCollisionTree(mesh, { static_cast<SplitRule>(rule), BoundingVolumeType::AABB, 4 });
-    std::vector<int> seen(mesh->size(), 0);
-    std::vector<std::uint32_t> todo = { 0 };
-    while (!todo.empty())
-    {
-      const WideNode& node = tree->wide.nodes[todo.back()];
-      todo.pop_back();
-      for (int lane = 0; lane < WideNode::Width; ++lane)
-      {
-        if (node.first[lane] == NoChild)
-        {
-          continue;
-        }
-        if (node.count[lane] == 0)
-        {
-          todo.push_back(node.first[lane]);
-        }
-        for (std::uint32_t k = 0; k < node.count[lane]; ++k)
-        {
-          ++seen[tree->order[node.first[lane] + k]];
-        }
-      }
-    }
-    for (int count : seen)
-    {
-      ASSERT_EQ(count, 1);
-    }
-  }
-}
-
 TEST(WideTree, AllBoxesAreMetBeyondSinglePrecision)
 {
   std::mt19937_64 random(4);

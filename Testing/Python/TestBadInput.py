@@ -145,6 +145,7 @@ class Properties(Faults):
                               "AttenuationCoefficient": (-1e-9,), "ReflectanceModel": (4,), "NumberOfReflections": (0, 3),
                               "LightEnergyFraction": (-1e-9, 1.1e8), "LightEnergyThreshold": (-1, 2), "ReturnMode": (-1, 5),
                               "NumberOfConnections": (-1,), "BatchCollisionDetection": (3,), "MaximumCacheSize": (-1,)},
+               "BeamSource": {"SwayAmplitude": (-1e-9, 10.1), "SwayFrequency": (0.0, 1e7), "EncoderJitter": (-1e-9, 10.1)},
                "CollisionTree": {"SplitRule": (4,), "BoundingVolume": (-1,), "MaximumLeafSize": (0,)},
                "Tracker": {"ClusterAngle": (30.0,), "RangeError": (0.0,), "MotionModel": (2,), "GateProbability": (1.0,),
                            "ConfirmHits": (5,), "KeepTime": (-1.0,)},

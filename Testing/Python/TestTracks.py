@@ -194,7 +194,7 @@ class Tracks(InFolder):
             self.assertEqual(len(movers(source)), good.GetNumberOfBirds())
 
     def test_bad_values_name_the_property(self):
-        for properties, words in (({"TimeRange": (1, 0)}, "TimeRange is"), ({"Heights": (3, 2)}, "Heights is 3 to 2"), ({"Origin": (91, 0, 0)}, "Origin: "),
+        for properties, words in (({"TimeRange": (1, 1)}, "TimeRange is"), ({"Heights": (3, 2)}, "Heights is 3 to 2"), ({"Origin": (91, 0, 0)}, "Origin: "),
                                   ({"FirstObjectId": 2**31 - 5}, "FirstObjectId is"),
                                   ({"Species": "dodo"}, "Species is 'dodo'"),
                                   ({"SpeciesFileName": "/nowhere.csv"}, "SpeciesFileName /nowhere.csv"),
