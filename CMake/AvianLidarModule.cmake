@@ -113,27 +113,8 @@ vtk_module_add_module(AvianLidar::AvianLidar
 
 # Data files that are built in, as text.
 set(built_in_texts "")
-foreach(built_in IN ITEMS
-  Birds/species.csv
-  Sensors/Airport16.lidarsensor.json
-  Sensors/Airport32.lidarsensor.json
-  Sensors/Automotive16.lidarsensor.json
-  Sensors/Avia.lidarsensor.json
-  Sensors/CorridorC16.lidarsensor.json
-  Media/media.json
-  Sensors/HDL32E.lidarsensor.json
-  Sensors/Helios16P.lidarsensor.json
-  Sensors/Mid360.lidarsensor.json
-  Sensors/Mid40.lidarsensor.json
-  Sensors/OS0_128.lidarsensor.json
-  Sensors/OS1_64.lidarsensor.json
-  Sensors/OS2_128.lidarsensor.json
-  Sensors/Pandar40P.lidarsensor.json
-  Sensors/PandarXT32.lidarsensor.json
-  Sensors/Search1550.lidarsensor.json
-  Sensors/Search905.lidarsensor.json
-  Sensors/VLP16.lidarsensor.json
-  Sensors/VLP32C.lidarsensor.json)
+include("${CMAKE_CURRENT_LIST_DIR}/AvianLidarBuiltIn.cmake")
+foreach(built_in IN LISTS built_in_files)
   set(built_in_file "${CMAKE_CURRENT_SOURCE_DIR}/Filters/${built_in}")
   set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS "${built_in_file}")
   file(READ "${built_in_file}" built_in_text)

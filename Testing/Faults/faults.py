@@ -108,10 +108,9 @@ FAULTS = [Fault(*fault) for fault in (
      "values.reshape(data.GetDimensions() + values.shape[1:])"),
     # ParaView's panels.
     ("panel_default", "a wrong default in a panel", "Plugin-TestProxies$",
-     "Plugin/Filters/AvianLidarBeamSource.xml", 'number_of_elements="1" default_values="4000">',
-     'number_of_elements="1" default_values="400">'),
+     "Plugin/Filters/AvianLidarBeamSource.xml", 'name="RangeGate" default_values="4000"', 'name="RangeGate" default_values="400"'),
     ("panel_command", "a wrong command in a panel", "Plugin-TestProxies$",
-     "Plugin/IO/AvianLidarPointCloudReader.xml", 'command="SetSensorAddress"', 'command="SetFileName"'),
+     "Plugin/IO/AvianLidarPointCloudReader.xml", 'name="SensorAddress"', 'name="SensorAddress" command="SetFileName"'),
     ("exchanged_arrays", "an exchanged array name", "Python-Test(EchoFiles|Glossary|UnitNames|PCD|EchoPipeline)$|Cxx-TestEchoFilter",
      "Filters/Private/Common/vtkAvianLidarNames.h", 'constexpr Name EnergyReceived{ "energy_received", "J" };',
      'constexpr Name EnergyReceived{ "energy_recieved", "J" };'),

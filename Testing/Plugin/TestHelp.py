@@ -13,7 +13,7 @@ from html.parser import HTMLParser
 PLUGIN = os.environ["AVIANLIDAR_PLUGIN"]
 SOURCE_DIR = os.environ["AVIANLIDAR_SOURCE_DIR"]
 QCH = sys.argv.pop(1) if len(sys.argv) > 1 else ""
-SENSORS = os.path.join(os.path.dirname(os.path.dirname(QCH)), "AvianLidarSensors.xml")  # made beside the help
+PROXIES = os.path.join(os.path.dirname(os.path.dirname(QCH)), "AvianLidarProxies.xml")  # made beside the help
 
 
 def proxies():
@@ -21,7 +21,7 @@ def proxies():
     pages = set()
     folders = [os.path.join(SOURCE_DIR, "Plugin", kind) for kind in ("Filters", "IO")]
     files = [os.path.join(folder, file) for folder in folders for file in os.listdir(folder)]
-    for file in (*files, SENSORS):
+    for file in (*files, PROXIES):
         for group in ElementTree.parse(file).getroot().iter("ProxyGroup"):
             if not group.get("name").startswith("internal"):
                 pages |= {f"{group.get('name')}.{proxy.get('name')}.html" for proxy in group}

@@ -4,7 +4,7 @@ What can be set, and between which values, is read from the panels (Plugin/*.xml
 
 import glob
 import os
-from xml.etree import ElementTree
+import sys
 
 import vtk
 
@@ -12,6 +12,8 @@ from avianlidar import vtkAvianLidar as al
 from data import contents, polydata
 
 SOURCE = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..")
+sys.path.append(os.path.join(SOURCE, "Plugin"))
+import make_proxies
 # What the classes say may be another number in a filter that has run before: costs, and what is known of skipped energy, of
 # which there is less where more has been traced. Threads change nothing, and are not the same here.
 MAY_DIFFER = ("candidates", "nodes_visited", "rays_traced", "skipped", "skipped_bound")
@@ -46,13 +48,12 @@ SMALL = {("coverage", "Bounds"): VALUES["Bounds"][0], ("coverage", "Spacing"): V
 def _read_panels():
     """{class: {property: (its element, domain or None)}} of all properties with a setter and a getter."""
     found = {}
-    for file in glob.glob(os.path.join(SOURCE, "Plugin", "*", "*.xml")):
-        for proxy in ElementTree.parse(file).iter("SourceProxy"):
-            kind = getattr(al, proxy.get("class") or "", None)
-            for element in proxy.iterfind("./*[@default_values]") if kind else ():
-                name = (element.get("command") or "")[3:]
-                if hasattr(kind, "Set" + name) and hasattr(kind, "Get" + name) and name not in NOT_SET and name != "ChannelElevation":
-                    found.setdefault(proxy.get("class"), {})[name] = element, element.find("./*[@name]")
+    for proxy in make_proxies.expanded(glob.glob(os.path.join(SOURCE, "Plugin", "*", "*.xml"))).iter("SourceProxy"):
+        kind = getattr(al, proxy.get("class") or "", None)
+        for element in proxy.iterfind("./*[@default_values]") if kind else ():
+            name = (element.get("command") or "")[3:]
+            if hasattr(kind, "Set" + name) and hasattr(kind, "Get" + name) and name not in NOT_SET and name != "ChannelElevation":
+                found.setdefault(proxy.get("class"), {})[name] = element, element.find("./*[@name]")
     return found
 
 

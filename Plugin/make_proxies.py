@@ -1,0 +1,288 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Writes the XML that ParaView reads: make_proxies.py proxies... sensors... proxies.xml contents.xml
+
+The files of the proxies (Filters/X.xml, IO/X.xml) are ParaView's XML, but leave out what follows from the rest:
+
+- A proxy has the class `vtk` + its name, its name in words as label, and the base AvianLidarAlgorithm. `icon` puts it
+  into the menu Avian Lidar. A file's endings, `extensions`, and `file_description` make a reader.
+- A property has its name in words as label, `Set` + its name as command (`Get` if it is information only), and as many
+  elements as it has defaults.
+- A property stands in the PropertyGroup that shows it.
+- `<Property name="X" of="Y">` is the property X of the proxy Y. Its own attributes and elements replace those of Y.
+- `type` and `composite` of an input make its domains. `entries` of an enumeration count from 0.
+- `visible_if` and `enabled_if`, as in "Kind=0 1" or "Kind!=4", make decorators; "" makes none.
+- A PSWriterProxy has the properties of its core, which ParaView's writer for several ranks contains.
+
+Each sensor file makes one more source: the beam source with the file's values as defaults, in a category of its maker.
+Tables that are not properties come by the sensor's name. contents.xml is the help's table of contents. CMake runs
+this."""
+
+import copy
+import json
+import pathlib
+import re
+import sys
+import xml.etree.ElementTree as ElementTree
+
+CATEGORY = "Avian Lidar"
+BASE = "AvianLidarBeamSource"
+# The help's chapters of what is not listed as a reader, a writer or a filter, and their first pages.
+CHAPTERS = {"Beam Source": "Sensors", "Bird Source": "Birds", "Tracks": "Birds", "Medium": "Air",
+            "Medium In Surface": "Air"}
+FIRST_PAGES = {"Sensors": f"sources.{BASE}.html", "Birds": "sources.AvianLidarBirdSource.html",
+               "Air": "sources.AvianLidarMedium.html", "Filters": "filters.AvianLidarEchoFilter.html",
+               "Readers": "Readers.html", "Writers": "Writers.html"}
+# What all writers have beside their own properties. On several ranks the first one gathers the points and writes them.
+# ParaView's writer of series puts a slash before names without a folder; by GivenFileName the core leaves it out.
+WRITER = """<ServerManagerConfiguration>
+<Proxy name="{name}Core" class="vtk{name}">
+  <StringVectorProperty name="GivenFileName" number_of_elements="1" panel_visibility="never">
+    <Documentation>The name of the file as it was given, without the number of a step.</Documentation>
+  </StringVectorProperty>
+</Proxy>
+<PSWriterProxy name="{name}" class="vtkParallelSerialWriter" file_name_method="SetMadeFileName" label="{label}"
+  base_proxygroup="internal_writers" base_proxyname="ParallelSerialWriter">
+  <InputProperty name="Input" command="SetInputConnection" panel_visibility="never">
+    <DataTypeDomain name="input_type" composite_data_supported="0"><DataType value="vtkPolyData" /></DataTypeDomain>
+    <Documentation>Echoes: points in metres.</Documentation>
+  </InputProperty>
+  <StringVectorProperty name="FileName" number_of_elements="1" panel_visibility="never">
+    <Documentation>The file to write. It is there as a whole or not at all.</Documentation>
+  </StringVectorProperty>
+  <SubProxy>
+    <Proxy name="Writer" proxygroup="internal_writers" proxyname="{name}Core" />
+    <ExposedProperties />
+    <LinkProperties><Property name="GivenFileName" with_property="FileName" /></LinkProperties>
+  </SubProxy>
+  <SubProxy><Proxy name="PostGatherHelper" proxygroup="filters" proxyname="AppendPolyData" /></SubProxy>
+</PSWriterProxy>
+</ServerManagerConfiguration>"""
+
+
+def words(name):
+    """RaysPerBeam -> Rays Per Beam, UTMZone -> UTM Zone, Airport16 -> Airport 16."""
+    return re.sub(r"(?<=[a-z])(?=[A-Z\d])|(?<=[A-Z])(?=[A-Z][a-z])", " ", name)
+
+
+def element(parent, tag, **attributes):
+    return ElementTree.SubElement(parent, tag, attributes)
+
+
+def child(parent, tag):
+    """The element of that tag, which is made if there is none."""
+    found = parent.find(tag)
+    return element(parent, tag) if found is None else found
+
+
+def is_property(one):
+    """Whether it defines a property; a group and a link only name one."""
+    return one.tag.endswith("Property") and (one.tag != "Property" or len(one) > 0 or "of" in one.attrib)
+
+
+def ungroup(proxy):
+    """Properties out of their groups, which then name them."""
+    for group in proxy.findall("PropertyGroup"):
+        for i, prop in enumerate(list(group)):
+            if is_property(prop):
+                group[i] = ElementTree.Element("Property", name=prop.get("name"))
+                if "function" in prop.attrib:
+                    group[i].set("function", prop.attrib.pop("function"))
+                proxy.insert(list(proxy).index(group), prop)
+
+
+def resolved(prop, proxies):
+    """The property, after that of another proxy where it says so."""
+    if "of" not in prop.attrib:
+        return prop
+    known = {one.get("name"): one for one in proxies[prop.get("of")] if is_property(one)}
+    found = copy.deepcopy(resolved(known[prop.get("name")], proxies))
+    found.attrib.update((key, value) for key, value in prop.items() if key != "of")
+    for part in prop:
+        for old in found.findall(part.tag):
+            found.remove(old)
+        found.append(part)
+    return found
+
+
+def complete_input(prop):
+    if "type" in prop.attrib:
+        groups = ElementTree.Element("ProxyGroupDomain", name="groups")
+        groups.extend(ElementTree.Element("Group", name=name) for name in ("sources", "filters"))
+        types = ElementTree.Element("DataTypeDomain", name="input_type")
+        if "composite" in prop.attrib:
+            types.set("composite_data_supported", prop.attrib.pop("composite"))
+        types.extend(ElementTree.Element("DataType", value=name) for name in prop.attrib.pop("type").split())
+        prop[:0] = groups, types
+    prop.attrib.setdefault("command", "SetInputConnection")
+
+
+def complete_values(prop):
+    """A property with values."""
+    kind, name = prop.tag.replace("VectorProperty", ""), prop.get("name")
+    result = "information_only" in prop.attrib
+    if result and not any(one.tag.endswith("Helper") for one in prop):
+        prop.insert(0, ElementTree.Element(f"Simple{kind}InformationHelper"))
+        prop.attrib.update(number_of_elements="1", default_values="none")
+    if prop.find("TimeStepsInformationHelper") is None:
+        prop.attrib.setdefault("command", ("Get" if result else "Set") + name)
+    default = prop.get("default_values")
+    if default is not None:
+        prop.attrib.setdefault("number_of_elements", "1" if kind == "String" else str(len(default.split())))
+    for domain in prop.findall("EnumerationDomain[@entries]"):
+        for i, text in enumerate(domain.attrib.pop("entries").split()):
+            element(domain, "Entry", text=text, value=str(i))
+    for key, mode in (("visible_if", "visibility"), ("enabled_if", "enabled_state")):
+        condition = prop.attrib.pop(key, "")
+        if condition:
+            other, inverse, values = re.fullmatch(r"(\w+)(!?)=(.+)", condition).groups()
+            decorator = {"type": "GenericDecorator", "mode": mode, "property": other}
+            decorator["values" if " " in values else "value"] = values
+            if inverse:
+                decorator["inverse"] = "1"
+            element(child(prop, "Hints"), "PropertyWidgetDecorator", **decorator)
+
+
+def complete(proxy):
+    """All that ParaView needs, of a proxy whose properties are there."""
+    for prop in filter(is_property, proxy):
+        prop.attrib.setdefault("label", words(prop.get("name")))
+        if prop.tag == "InputProperty":
+            complete_input(prop)
+        elif prop.tag.endswith("VectorProperty"):
+            complete_values(prop)
+    if "icon" in proxy.attrib:
+        icon = f":/AvianLidar/Icons/{proxy.attrib.pop('icon')}.svg"
+        child(proxy, "Hints").insert(0, ElementTree.Element("ShowInMenu", category=CATEGORY, icon=icon))
+    if "extensions" in proxy.attrib:
+        files = {name: proxy.attrib.pop(name) for name in ("extensions", "file_description")}
+        element(child(proxy.find("*[@name='FileName']"), "Hints"), "FileChooser", **files)
+        if "filename_patterns" in proxy.attrib:
+            files["filename_patterns"] = proxy.attrib.pop("filename_patterns")
+            del files["extensions"]
+        hints = child(proxy, "Hints")
+        hints[:0] = ElementTree.Element("ReloadFiles", property="Reload"), ElementTree.Element("ReaderFactory", files)
+
+
+def complete_header(proxy):
+    proxy.attrib.setdefault("class", "vtk" + proxy.get("name"))
+    proxy.attrib.setdefault("label", words(proxy.get("name")))
+    if "base_proxyname" not in proxy.attrib:
+        proxy.attrib.update(base_proxygroup="internal_avian_lidar", base_proxyname="AvianLidarAlgorithm")
+
+
+def writer(short):
+    """(core, writer) of a writer's proxy."""
+    name = short.get("name")
+    core, proxy = ElementTree.fromstring(WRITER.format(name=name, label=short.get("label", words(name))))
+    homes = {"PropertyGroup": proxy.find("SubProxy/ExposedProperties"), "InputArrayDomain": proxy.find("InputProperty")}
+    for part in list(short):
+        (core if is_property(part) else homes.get(part.tag, proxy)).append(part)
+    files = {name: short.get(name) for name in ("extensions", "file_description")}
+    element(child(proxy, "Hints"), "WriterFactory", **files)
+    complete(core)
+    complete(proxy)
+    return core, proxy
+
+
+def expanded(files):
+    """The proxies of files as ParaView reads them, in one element."""
+    root = ElementTree.Element("ServerManagerConfiguration")
+    for file in files:
+        read = ElementTree.parse(file).getroot()
+        root.extend([read] if read.tag == "ProxyGroup" else read)
+    proxies = {proxy.get("name"): proxy for group in root for proxy in group}
+    for proxy in proxies.values():
+        ungroup(proxy)
+    for proxy in proxies.values():
+        proxy[:] = [resolved(one, proxies) if is_property(one) else one for one in proxy]
+    cores = element(root, "ProxyGroup", name="internal_writers")
+    for group in root.findall("ProxyGroup"):
+        for i, proxy in enumerate(list(group)):
+            if proxy.tag == "PSWriterProxy":
+                core, group[i] = writer(proxy)
+                cores.append(core)
+            elif group is not cores:
+                complete(proxy)
+                if not group.get("name").startswith("internal"):
+                    complete_header(proxy)
+    return root
+
+
+def overridden(prop, value):
+    """The property with another default."""
+    found = copy.deepcopy(prop)
+    values = value if isinstance(value, list) else [value]
+    text = value if isinstance(value, str) else " ".join(map(repr, values))
+    found.attrib.update(default_values=text, number_of_elements=str(len(values)), override="1")
+    return found
+
+
+def sensor_source(sensor, base):
+    """(the lidar with its maker, the source of it) of a sensor file."""
+    name, model, maker = sensor["name"], sensor.get("model", words(sensor["name"])), sensor.get("maker")
+    full = model if maker in (None, "assumed") else f"{maker} {model}"
+    # Without "_", at which ParaView's help splits names.
+    proxy = ElementTree.Element("SourceProxy", {
+        "name": "AvianLidar" + name.replace("_", ""), "class": "vtk" + BASE,
+        "label": f"{CATEGORY} {name.replace('_', ' ') if maker not in (None, 'assumed') else model}",
+        "base_proxygroup": "sources", "base_proxyname": BASE})
+    documentation = element(proxy, "Documentation", short_help=f"The sensor {full}.", long_help=sensor["comment"] + ".")
+    documentation.text = (
+        f"The beam source with the values of this sensor: {sensor['comment']}. Each number's source is in the sensor file "
+        f"{name}; the field data assumed names what nobody has measured. Values can be changed here as of any beam source.")
+    values = {key.title().replace("_", ""): number["value"] for key, number in sensor["values"].items()}
+    if "HalfBeamwidth" in values:
+        values["BeamwidthMilliradians"] = round(2000 * values["HalfBeamwidth"], 9)
+    properties = {prop.get("name"): prop for prop in base if is_property(prop)}
+    proxy.extend(overridden(properties[key], value) for key, value in values.items() if key in properties)
+    proxy.append(overridden(properties["TablesOfPreset"], name))
+    hints = element(proxy, "Hints")
+    category = f"{CATEGORY}: {maker[0].upper() + maker[1:]}" if maker else CATEGORY
+    element(hints, "ShowInMenu", category=category, icon=":/AvianLidar/Icons/sensor.svg")
+    if full != model:
+        element(hints, "AvianLidarMenu", text=full, pipeline="1")  # what the menu and the pipeline call it
+    hints.extend(base.find("Hints")[1:])
+    return full, proxy
+
+
+def contents(root, sensors):
+    """The help's table of contents: chapters of (title, page)."""
+    chapters = {chapter: [] for chapter in FIRST_PAGES}
+    for group in root:
+        for proxy in () if group.get("name").startswith("internal") else group:
+            kind = "Readers" if proxy.find("Hints/ReaderFactory") is not None else group.get("name").capitalize()
+            title, page = proxy.get("label")[len(CATEGORY) + 1:], f"{group.get('name')}.{proxy.get('name')}.html"
+            chapters[CHAPTERS.get(title, kind)].append((title, page))
+    toc = ElementTree.Element("toc")
+    top = element(toc, "section", title=CATEGORY, ref="index.html")
+    element(top, "section", title="Start here", ref="index.html")
+    for chapter, pages in chapters.items():
+        section = element(top, "section", title=chapter, ref=FIRST_PAGES[chapter])
+        if chapter == "Sensors":
+            pages += ((full, f"sources.{proxy.get('name')}.html") for full, proxy in sensors)
+        for title, page in sorted(pages, key=lambda one: (one[0] != "Beam Source", one)):
+            element(section, "section", title=title, ref=page)
+    return toc
+
+
+def write(path, root):
+    """Not anew what is there: all that is built of it would be, too."""
+    ElementTree.indent(root)
+    text = ElementTree.tostring(root, encoding="unicode") + "\n"
+    if not path.exists() or path.read_text(encoding="utf-8") != text:
+        path.write_text(text, encoding="utf-8")
+
+
+def main(*files):
+    *sources, proxies, toc = map(pathlib.Path, files)
+    root = expanded(file for file in sources if file.suffix == ".xml")
+    base = root.find(f"ProxyGroup/SourceProxy[@name='{BASE}']")
+    files = (file for file in sources if file.suffix == ".json")
+    sensors = [sensor_source(json.loads(file.read_text(encoding="utf-8")), base) for file in files]
+    write(toc, contents(root, sensors))
+    element(root, "ProxyGroup", name="sources").extend(proxy for _, proxy in sensors)
+    write(proxies, root)
+
+
+if __name__ == "__main__":
+    main(*sys.argv[1:])
