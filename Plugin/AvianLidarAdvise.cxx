@@ -19,13 +19,11 @@
 #include "vtkSMUncheckedPropertyHelper.h"
 #include "vtkSmartPointer.h"
 
-#include <QCoreApplication>
 #include <QDoubleSpinBox>
 #include <QFormLayout>
 #include <QLabel>
 #include <QPushButton>
 #include <QString>
-#include <QTimer>
 
 #include <cstring>
 
@@ -201,14 +199,5 @@ void AdviseWidget::Take(vtkSMSourceProxy* advisor)
 void AvianLidarAddAdvise()
 {
   pqApplicationCore* core = pqApplicationCore::instance();
-  if (core && core->interfaceTracker())
-  {
-    core->interfaceTracker()->addInterface(new Maker(core));
-  }
-  else if (QCoreApplication* application = QCoreApplication::instance())
-  {
-    // A plugin that is loaded at every start (Auto Load) comes before ParaView's application. Not
-    // at once: Qt handles events that handlers post before it goes on, and would never go on.
-    QTimer::singleShot(50, application, AvianLidarAddAdvise);
-  }
+  core->interfaceTracker()->addInterface(new Maker(core));
 }

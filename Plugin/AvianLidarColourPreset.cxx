@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "AvianLidarColourPreset.h"
+#include "AvianLidarInitializers.h"
 
 #include "vtkSMTransferFunctionPresets.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "AvianLidarDomains.h"
+#include "AvianLidarInitializers.h"
 
 #include "vtkAvianLidarMaterial.h"
 #include "vtkClientServerInterpreter.h"

@@ -14,9 +14,6 @@
 #include "vtkType.h"
 
 #include <QAction>
-#include <QApplication>
-#include <QPointer>
-#include <QWidget>
 
 #include <algorithm>
 #include <set>
@@ -25,104 +22,63 @@
 namespace
 {
 //------------------------------------------------------------------------------
-// Lives as long as the application of the window.
-class Errors : public QObject
+bool IsOurs(pqPipelineSource* source)
 {
-public:
-  explicit Errors(pqApplicationCore* application)
-    : QObject(application)
-  {
-    pqServerManagerModel* model = application->getServerManagerModel();
-    connect(model, &pqServerManagerModel::dataUpdated, this, [this] { this->LookAgain(); });
-    connect(&pqActiveObjects::instance(), &pqActiveObjects::portChanged, this,
-      [this] { this->GuardSaving(); });
-  }
+  const char* name = source->getProxy()->GetXMLName();
+  return name && std::string(name).rfind("AvianLidar", 0) == 0;
+}
 
-private:
-  static bool IsOurs(pqPipelineSource* source)
+//------------------------------------------------------------------------------
+// True if all ranks' data of an output, or one that it is made from, is an error: filters
+// between may have lost it.
+bool HasError(pqOutputPort* port, std::set<pqPipelineSource*>& seen)
+{
+  pqPipelineSource* source = port ? port->getSource() : nullptr;
+  if (!source)
   {
-    const char* name = source->getProxy()->GetXMLName();
-    return name && std::string(name).rfind("AvianLidar", 0) == 0;
+    return false;
   }
-
-  // True if all ranks' data of an output, or one that it is made from, is an error: filters
-  // between may have lost it.
-  static bool HasError(pqOutputPort* port, std::set<pqPipelineSource*>& seen)
+  vtkPVDataInformation* data = IsOurs(source) ? port->getDataInformation() : nullptr;
+  vtkPVArrayInformation* error =
+    data ? data->GetArrayInformation("error", vtkDataObject::FIELD) : nullptr;
+  if (error && error->GetDataType() == VTK_STRING)
   {
-    pqPipelineSource* source = port ? port->getSource() : nullptr;
-    if (!source)
-    {
-      return false;
-    }
-    vtkPVDataInformation* data = IsOurs(source) ? port->getDataInformation() : nullptr;
-    vtkPVArrayInformation* error =
-      data ? data->GetArrayInformation("error", vtkDataObject::FIELD) : nullptr;
-    if (error && error->GetDataType() == VTK_STRING)
-    {
-      return true;
-    }
-    auto* filter = qobject_cast<pqPipelineFilter*>(source);
-    const QList<pqOutputPort*> inputs =
-      filter && seen.insert(source).second ? filter->getAllInputs() : QList<pqOutputPort*>();
-    return std::any_of(
-      inputs.begin(), inputs.end(), [&seen](pqOutputPort* input) { return HasError(input, seen); });
+    return true;
   }
+  auto* filter = qobject_cast<pqPipelineFilter*>(source);
+  const QList<pqOutputPort*> inputs =
+    filter && seen.insert(source).second ? filter->getAllInputs() : QList<pqOutputPort*>();
+  return std::any_of(
+    inputs.begin(), inputs.end(), [&seen](pqOutputPort* input) { return HasError(input, seen); });
+}
+}
 
+//------------------------------------------------------------------------------
+void AvianLidarGuardSaving(QAction* saving)
+{
   // ParaView enables the action for each output that becomes the active one.
-  void GuardSaving()
+  const auto guard = [saving]
   {
-    if (!this->Saving)
-    {
-      this->Saving = FindAction();
-      if (this->Saving)
-      {
-        connect(this->Saving, &QAction::changed, this, [this] { this->GuardSaving(); });
-      }
-    }
     std::set<pqPipelineSource*> seen;
-    if (this->Saving && this->Saving->isEnabled() &&
-      HasError(pqActiveObjects::instance().activePort(), seen))
+    if (saving->isEnabled() && HasError(pqActiveObjects::instance().activePort(), seen))
     {
-      this->Saving->setEnabled(false);
+      saving->setEnabled(false);
     }
-  }
-
+  };
   // What was bad may be good now: ParaView decides anew.
-  void LookAgain()
+  const auto lookAgain = [saving, guard]
   {
-    for (QObject* reaction : this->Saving ? this->Saving->children() : QObjectList())
+    for (QObject* reaction : saving->children())
     {
       if (reaction->inherits("pqSaveDataReaction"))
       {
         QMetaObject::invokeMethod(reaction, "updateEnableState");
       }
     }
-    this->GuardSaving();
-  }
-
-  static QAction* FindAction()
-  {
-    for (QWidget* top : QApplication::topLevelWidgets())
-    {
-      if (auto* action = top->findChild<QAction*>("actionFileSaveData"))
-      {
-        return action;
-      }
-    }
-    return nullptr;
-  }
-
-  QPointer<QAction> Saving;
-};
-}
-
-//------------------------------------------------------------------------------
-void AvianLidarGuardSaving()
-{
-  pqApplicationCore* application = pqApplicationCore::instance();
-  static QPointer<Errors> errors;
-  if (application && application->getServerManagerModel() && !errors)
-  {
-    errors = new Errors(application);
-  }
+    guard();
+  };
+  pqServerManagerModel* model = pqApplicationCore::instance()->getServerManagerModel();
+  QObject::connect(saving, &QAction::changed, saving, guard);
+  QObject::connect(&pqActiveObjects::instance(), &pqActiveObjects::portChanged, saving, guard);
+  QObject::connect(model, &pqServerManagerModel::dataUpdated, saving, lookAgain);
 }

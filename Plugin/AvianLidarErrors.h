@@ -2,10 +2,12 @@
 #ifndef AvianLidarErrors_h
 #define AvianLidarErrors_h
 
+class QAction;
+
 /**
- * Called when the plugin is loaded in ParaView's window: File > Save Data cannot be chosen for an
- * output that holds an error (property ErrorsAsData), so that a good file stays as it is.
+ * Disables the action of File > Save Data for an output that holds an error (property
+ * ErrorsAsData), so that a good file stays as it is.
  */
-void AvianLidarGuardSaving();
+void AvianLidarGuardSaving(QAction* saving);
 
 #endif

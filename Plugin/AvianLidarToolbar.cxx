@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "AvianLidarToolbar.h"
+#include "AvianLidarAdvise.h"
+#include "AvianLidarErrors.h"
+#include "AvianLidarInitializers.h"
 #include "AvianLidarUndo.h"
 #include "AvianLidarWizard.h"
 
@@ -362,7 +364,7 @@ void Toolbar::Colour(pqProxy* applied)
 }
 
 //------------------------------------------------------------------------------
-void AvianLidarAddToolbar()
+void AvianLidarAddToWindow()
 {
   auto* window = pqApplicationCore::instance()
     ? qobject_cast<QMainWindow*>(pqCoreUtilities::mainWidget())
@@ -373,11 +375,17 @@ void AvianLidarAddToolbar()
     window->addToolBar(toolbar);
     toolbar->show(); // also in a window that is there already
     AddHelp();
+    AvianLidarAddAdvise();
+    if (auto* saving = window->findChild<QAction*>("actionFileSaveData"))
+    {
+      AvianLidarGuardSaving(saving);
+    }
   }
   else if (QCoreApplication* application = QCoreApplication::instance())
   {
     // A plugin that is loaded at every start (Auto Load) comes before the window, and before
-    // ParaView's application.
-    QTimer::singleShot(50, application, AvianLidarAddToolbar);
+    // ParaView's application. Not at once: Qt handles events that handlers post before it goes on,
+    // and would never go on.
+    QTimer::singleShot(50, application, AvianLidarAddToWindow);
   }
 }
