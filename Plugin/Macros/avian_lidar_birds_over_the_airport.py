@@ -10,14 +10,11 @@ made and the reason is given in Output Messages.
 In ParaView: the button is there with the plugin; click it. In a script: scan(view).
 """
 
-import importlib.util
-import os
+from avian_lidar_plugin import (
+    ENERGY_COLOURS, airport_and_tree, frame, free_name, hide_scans, lidar_place, neighbour, run, show, show_grey,
+    show_sensor, start, update_first_step)
+from paraview import simple
 
-from paraview import servermanager, simple
-from vtkmodules.vtkCommonCore import vtkOutputWindow
-
-PLUGIN = "AvianLidarPlugin"
-AIRPORT = "avian_lidar_airport_scan"
 REVOLUTIONS = 10
 AIR = 8.9e-5  # 1/m, haze
 # Object ids: of the first bird, and how many a kind of birds may have.
@@ -37,139 +34,60 @@ WEST, EAST, SIDE = 260.0, 480.0, 330.0
 CAMERA_ELEVATION = 40
 
 
-def say(text):
-    """A word in Output Messages, which ParaView opens by itself."""
-    vtkOutputWindow.GetInstance().DisplayErrorText(f"Avian lidar birds over the airport: {text}.\n")
-
-
-def macro_folders():
-    """Where the other macros may be: beside this file or, if this is a copy elsewhere, beside the plugin."""
-    folders = []
-    if "__file__" in globals():
-        folders.append(os.path.dirname(os.path.abspath(__file__)))
-    plugins = servermanager.vtkSMProxyManager.GetProxyManager().GetPluginManager().GetLocalInformation()
-    for i in range(plugins.GetNumberOfPlugins()):
-        if plugins.GetPluginName(i) == PLUGIN and plugins.GetPluginLoaded(i):
-            folders.append(os.path.join(os.path.dirname(os.path.abspath(plugins.GetPluginFileName(i))), "Macros"))
-    return folders
-
-
-def airport_macro():
-    """The macro that scans the airport."""
-    for folder in macro_folders():
-        path = os.path.join(folder, AIRPORT + ".py")
-        if os.path.exists(path):
-            spec = importlib.util.spec_from_file_location(AIRPORT, path)
-            macro = importlib.util.module_from_spec(spec)
-            spec.loader.exec_module(macro)
-            macro.CAMERA_ELEVATION = CAMERA_ELEVATION
-            return macro
-    raise ValueError(f"there is no {AIRPORT}.py in {' nor in '.join(macro_folders()) or 'any folder: load the plugin'}")
-
-
-def of_kind(name):
-    return [source for source in simple.GetSources().values() if source.SMProxy.GetXMLName() == name]
-
-
-def scene_and_tree(airport):
-    """The airport and its collision tree, those of the pipeline if they are there."""
-    file_name = os.path.basename(airport.EXAMPLE)
-    for tree in of_kind("AvianLidarCollisionTree"):
-        scene = tree.Input
-        if scene and scene.SMProxy.GetXMLName() == "AvianLidarSceneReader" and os.path.basename(scene.FileName) == file_name:
-            tree.UpdatePipeline()
-            return scene, tree
-    known = (scene for scene in of_kind("AvianLidarSceneReader") if os.path.basename(scene.FileName) == file_name)
-    scene = next(known, None) or airport.open_example()
-    return scene, airport.tree_of(scene)
-
-
-def flights(airport, position, seconds):
+def flights(kinds, position, seconds):
     """A source of tracks for each kind of birds."""
     found = []
-    for number, (name, (_, properties)) in enumerate(BIRDS.items()):
+    for number, (name, (_, properties)) in enumerate(kinds.items()):
         simple.SetActiveSource(None)  # else it becomes the input Lines
-        tracks = simple.AvianLidarTracks(registrationName=airport.free_name(name), Center=[*position[:2], 0.0],
+        tracks = simple.AvianLidarTracks(registrationName=free_name(name), Center=[*position[:2], 0.0],
                                          TimeRange=[0.0, seconds], FirstObjectId=FIRST + IDS * number, **properties)
         tracks.UpdatePipeline()
         found.append(tracks)
     return found
 
 
-def show_birds(airport, tracks, echoes, view):
+def show_birds(kinds, tracks, echoes, view, trail_width=TRAIL_WIDTH):
     """Ways as thin lines, echoes of each kind as large points of the same colour; returns these echoes."""
     found = []
-    for number, (source, (name, (colour, _))) in enumerate(zip(tracks, BIRDS.items())):
+    for number, (source, (name, (colour, _))) in enumerate(zip(tracks, kinds.items())):
         simple.Hide(source, view)
-        display = simple.Show(simple.OutputPort(source, 1), view, "GeometryRepresentation")
-        display.ColorArrayName = ["POINTS", ""]
-        display.AmbientColor = display.DiffuseColor = colour
-        display.LineWidth = TRAIL_WIDTH
-        display.Opacity = 0.6
-        points = simple.Threshold(registrationName=airport.free_name(f"Echoes of {name.lower()}"), Input=echoes,
+        show(simple.OutputPort(source, 1), view, colour, LineWidth=trail_width, Opacity=0.6)
+        points = simple.Threshold(registrationName=free_name(f"Echoes of {name.lower()}"), Input=echoes,
                                   Scalars=["POINTS", "object_id"], ThresholdMethod="Between",
                                   LowerThreshold=FIRST + IDS * number, UpperThreshold=FIRST + IDS * (number + 1) - 1)
-        display = simple.Show(points, view, "UnstructuredGridRepresentation")
-        display.Representation = "Points"
-        display.ColorArrayName = ["POINTS", ""]
-        display.AmbientColor = display.DiffuseColor = colour
         # Not as spheres: software rendering leaves out most of them. Squares lie over the point coloured by energy.
-        display.PointSize = BIRD_SIZE
+        show(points, view, colour, Representation="Points", PointSize=BIRD_SIZE)
         found.append(points)
     return found
 
 
-def show(airport, scene, tree, beams, echoes, view):
-    """Grey surfaces, the sensor as a large point, echoes by energy."""
-    simple.Hide(scene, view)
-    airport.show_grey(tree, view)
-    display = simple.Show(beams, view, "GeometryRepresentation")
-    display.Representation = "Points"
-    display.PointSize = airport.SENSOR_SIZE
-    display.RenderPointsAsSpheres = 1
-    airport.colouring().colour(echoes, view)
-    display = simple.Show(echoes, view, "GeometryRepresentation")
-    display.Representation = "Points"
-    display.PointSize = CLUTTER_SIZE
-
-
-def scan(view=None):
+def scan(view=None, revolutions=REVOLUTIONS, trail_width=TRAIL_WIDTH):
     """Scans the airport with birds: returns (tracks, sensor, echo filter, echoes of each kind of birds)."""
-    airport = airport_macro()
-    airport.plugin_folder(on_server=True)
-    simple._DisableFirstRenderCameraReset()
-    view = view or simple.GetActiveViewOrCreate("RenderView")
-    scene, tree = scene_and_tree(airport)
-    position = airport.lidar_place(tree)
-    beams = simple.AvianLidarSearch905(registrationName=airport.free_name("Search 905"), Position=position,
-                                       NumberOfRevolutions=REVOLUTIONS)
+    colour = neighbour(ENERGY_COLOURS, globals().get("__file__")).colour
+    view = start(view)
+    scene, tree = airport_and_tree()
+    position = lidar_place(tree)
+    beams = simple.AvianLidarSearch905(registrationName=free_name("Search 905"), Position=position,
+                                       NumberOfRevolutions=revolutions)
     beams.UpdatePipelineInformation()
-    tracks = flights(airport, position, REVOLUTIONS / beams.RotationRate)
-    movers = simple.GroupDatasets(registrationName=airport.free_name("Birds"), Input=tracks)
-    echoes = simple.AvianLidarEchoFilter(registrationName=airport.free_name("Scan with birds"), Beams=beams, Surfaces=tree,
+    tracks = flights(BIRDS, position, revolutions / beams.RotationRate)
+    movers = simple.GroupDatasets(registrationName=free_name("Birds"), Input=tracks)
+    echoes = simple.AvianLidarEchoFilter(registrationName=free_name("Scan with birds"), Beams=beams, Surfaces=tree,
                                          Movers=movers, AttenuationCoefficient=AIR, NumberOfReflections=1)
-    animation = simple.GetAnimationScene()
-    animation.UpdateAnimationUsingDataTimeSteps()
-    animation.GoToFirst()
-    echoes.UpdatePipeline(animation.TimeKeeper.Time)
-    airport.hide_scans(view)
-    show(airport, scene, tree, beams, echoes, view)
+    update_first_step(echoes)
+    hide_scans(view)
+    simple.Hide(scene, view)
+    show_grey(tree, view)
+    show_sensor(beams, view)
+    colour(echoes, view)
+    show(echoes, view, Representation="Points", PointSize=CLUTTER_SIZE)
     simple.Hide(movers, view)
-    birds = show_birds(airport, tracks, echoes, view)
+    birds = show_birds(BIRDS, tracks, echoes, view, trail_width)
     x, y = position[:2]
-    airport.frame(view, 0.0, (x - WEST, x + EAST, y - SIDE, y + SIDE, 0.0, 20.0))
+    frame(view, 0.0, CAMERA_ELEVATION, (x - WEST, x + EAST, y - SIDE, y + SIDE, 0.0, 20.0))
     simple.SetActiveSource(echoes)
     return tracks, beams, echoes, birds
 
 
-def main():
-    try:
-        scan()
-    except ValueError as problem:
-        say(problem)
-        return
-    simple.Render()
-
-
 if __name__ in ("__main__", "__vtkconsole__"):
-    main()
+    run("birds over the airport", scan)

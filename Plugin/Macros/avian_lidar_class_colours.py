@@ -7,8 +7,8 @@ semantic-kitti.yaml. The boxes of what moves are drawn as lines.
 In ParaView: it is in the menu Macros with the plugin; select the points and click it. In a script: colour(source, view).
 """
 
+from avian_lidar_plugin import run, show
 from paraview import simple
-from vtkmodules.vtkCommonCore import vtkOutputWindow
 
 ARRAY = "semantic_label"
 READER = "AvianLidarSequenceReader"
@@ -39,19 +39,12 @@ FONT_SIZE, LEGEND = 10, 0.6  # of the legend; share of the view's height
 BOX_COLOUR = (1.0, 1.0, 1.0)
 
 
-def say(text):
-    """A word in Output Messages, which ParaView opens by itself."""
-    vtkOutputWindow.GetInstance().DisplayErrorText(f"Avian lidar class colours: {text}.\n")
-
-
 def colour(source, view=None):
     """Colours the points of the source by class, and shows a sequence's boxes: returns the display."""
     if source is None or not source.GetPointDataInformation().GetArray(ARRAY):
         raise ValueError(f"select labelled points first (point array {ARRAY}), such as a sequence that was opened")
     view = view or simple.GetActiveViewOrCreate("RenderView")
-    display = simple.Show(source, view)
-    display.Representation = "Points"
-    display.PointSize = POINT_SIZE
+    display = show(source, view, Representation="Points", PointSize=POINT_SIZE)
     simple.ColorBy(display, ("POINTS", ARRAY))
     table = simple.GetColorTransferFunction(ARRAY)
     table.InterpretValuesAsCategories = 1
@@ -64,21 +57,9 @@ def colour(source, view=None):
     bar.LabelFontSize, bar.ScalarBarLength, bar.WindowLocation = FONT_SIZE, LEGEND, "Upper Left Corner"
     display.SetScalarBarVisibility(view, True)
     if source.SMProxy.GetXMLName() == READER:
-        boxes = simple.Show(simple.OutputPort(source, 1), view)
-        boxes.Representation = "Wireframe"
-        boxes.ColorArrayName = ["POINTS", ""]
-        boxes.AmbientColor = boxes.DiffuseColor = BOX_COLOUR
+        show(simple.OutputPort(source, 1), view, BOX_COLOUR, Representation="Wireframe")
     return display
 
 
-def main():
-    try:
-        colour(simple.GetActiveSource())
-    except ValueError as problem:
-        say(problem)
-        return
-    simple.Render()
-
-
 if __name__ in ("__main__", "__vtkconsole__"):
-    main()
+    run("class colours", colour, simple.GetActiveSource())

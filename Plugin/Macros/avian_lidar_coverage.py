@@ -11,15 +11,11 @@ is hidden. If something does not fit, nothing is made and the reason is given in
 In ParaView: the button is there with the plugin; click it. In a script: cover(view).
 """
 
-import importlib.util
-import os
+from avian_lidar_plugin import (
+    airport_and_tree, colour_by, frame, free_name, hide_scans, lidar_place, neighbour, run, show, show_grey, show_sensor,
+    start)
+from paraview import simple
 
-from paraview import servermanager, simple
-from vtkmodules.vtkCommonCore import vtkOutputWindow
-
-PLUGIN = "AvianLidarPlugin"
-AIRPORT = "avian_lidar_airport_scan"
-BIRDS = "avian_lidar_birds_over_the_airport"
 STATUS = "avian_lidar_status_colours"
 SPECIES = "herring gull"
 # Metres: the region to either side of the lidar and above the ground, the distances of its points, the slice.
@@ -37,35 +33,6 @@ CAMERA_ELEVATION = 40
 EAST = 0.0
 ROOM = 820.0
 REASONS = "Reasons"  # the second view
-
-
-def say(text):
-    """A word in Output Messages, which ParaView opens by itself."""
-    vtkOutputWindow.GetInstance().DisplayErrorText(f"Avian lidar coverage: {text}.\n")
-
-
-def macro_folders():
-    """Where the other macros may be: beside this file or, if this is a copy elsewhere, beside the plugin."""
-    folders = []
-    if "__file__" in globals():
-        folders.append(os.path.dirname(os.path.abspath(__file__)))
-    plugins = servermanager.vtkSMProxyManager.GetProxyManager().GetPluginManager().GetLocalInformation()
-    for i in range(plugins.GetNumberOfPlugins()):
-        if plugins.GetPluginName(i) == PLUGIN and plugins.GetPluginLoaded(i):
-            folders.append(os.path.join(os.path.dirname(os.path.abspath(plugins.GetPluginFileName(i))), "Macros"))
-    return folders
-
-
-def neighbour(name):
-    """Another macro of the plugin."""
-    for folder in macro_folders():
-        path = os.path.join(folder, name + ".py")
-        if os.path.exists(path):
-            spec = importlib.util.spec_from_file_location(name, path)
-            macro = importlib.util.module_from_spec(spec)
-            spec.loader.exec_module(macro)
-            return macro
-    raise ValueError(f"there is no {name}.py in {' nor in '.join(macro_folders()) or 'any folder: load the plugin'}")
 
 
 def region(place):
@@ -91,15 +58,6 @@ def second_view(view):
     return other, (width // 2, height)
 
 
-def show_airport(airport, tree, beams, view):
-    """Grey surfaces, the sensor as a large point."""
-    airport.show_grey(tree, view)
-    display = simple.Show(beams, view, "GeometryRepresentation")
-    display.Representation = "Points"
-    display.PointSize = airport.SENSOR_SIZE
-    display.RenderPointsAsSpheres = 1
-
-
 def show_legend(display, table, view, title, horizontal):
     """Below the map, in letters of one size."""
     bar = simple.GetScalarBar(table, view)
@@ -116,21 +74,12 @@ def show_legend(display, table, view, title, horizontal):
 
 def show_probability(probable, surface, view):
     """The slice, and the surface, through which it is seen."""
-    display = simple.Show(probable, view, "UnstructuredGridRepresentation")
-    display.Ambient, display.Diffuse = 1.0, 0.0  # colours as in the legend
-    simple.ColorBy(display, ("POINTS", PROBABILITY))
-    table = simple.GetColorTransferFunction(PROBABILITY)
-    table.AutomaticRescaleRangeMode = "Never"
-    table.ApplyPreset("Viridis (matplotlib)", True)
-    table.RescaleTransferFunction(0.0, 1.0)
+    display = show(probable, view, Ambient=1.0, Diffuse=0.0)  # colours as in the legend
+    table = colour_by(display, "POINTS", PROBABILITY, "Viridis (matplotlib)", (0.0, 1.0))
     title = f"probability of detection at {HEIGHT:g} m; surface: {LIMIT:g}"
     show_legend(display, table, view, title, horizontal=True)
-    display = simple.Show(surface, view, "GeometryRepresentation")
-    display.ColorArrayName = ["POINTS", ""]
-    display.AmbientColor = display.DiffuseColor = SURFACE_COLOUR
-    display.Opacity = SURFACE_OPACITY
     # Its upper side alone: one layer needs no order of drawing.
-    display.BackfaceRepresentation = "Cull Backface"
+    show(surface, view, SURFACE_COLOUR, Opacity=SURFACE_OPACITY, BackfaceRepresentation="Cull Backface")
 
 
 def show_reasons(status, level, view):
@@ -143,49 +92,37 @@ def show_reasons(status, level, view):
 
 def cover(view=None):
     """The coverage of the airport: returns (sensor, coverage, slice, surface)."""
-    airport = neighbour(AIRPORT)
-    birds, status = neighbour(BIRDS), neighbour(STATUS)
-    airport.CAMERA_ELEVATION = CAMERA_ELEVATION
-    airport.plugin_folder(on_server=True)
-    simple._DisableFirstRenderCameraReset()
-    view = view or simple.GetActiveViewOrCreate("RenderView")
-    scene, tree = birds.scene_and_tree(airport)
-    place = airport.lidar_place(tree)
-    beams = simple.AvianLidarSearch905(registrationName=airport.free_name("Search 905"), Position=place)
+    status = neighbour(STATUS, globals().get("__file__"))
+    view = start(view)
+    scene, tree = airport_and_tree()
+    place = lidar_place(tree)
+    beams = simple.AvianLidarSearch905(registrationName=free_name("Search 905"), Position=place)
     simple.SetActiveSource(None)  # else it becomes the input Places
-    coverage = simple.AvianLidarCoverage(registrationName=airport.free_name("Coverage map"), Beams=beams, Surfaces=tree,
+    coverage = simple.AvianLidarCoverage(registrationName=free_name("Coverage map"), Beams=beams, Surfaces=tree,
                                          Bounds=region(place), Spacing=SPACING, Species=SPECIES)
     coverage.UpdatePipeline()
-    level = simple.Slice(registrationName=airport.free_name(f"Coverage at {HEIGHT:g} m"), Input=coverage)
+    level = simple.Slice(registrationName=free_name(f"Coverage at {HEIGHT:g} m"), Input=coverage)
     level.SliceType.Origin = [*place[:2], HEIGHT]
     level.SliceType.Normal = [0.0, 0.0, 1.0]
-    probable = simple.Threshold(registrationName=airport.free_name("Probable"), Input=level, Scalars=["POINTS", PROBABILITY],
+    probable = simple.Threshold(registrationName=free_name("Probable"), Input=level, Scalars=["POINTS", PROBABILITY],
                                 ThresholdMethod="Above Upper Threshold", UpperThreshold=LEAST)
-    surface = simple.Contour(registrationName=airport.free_name("Every other scan"), Input=coverage,
+    surface = simple.Contour(registrationName=free_name("Every other scan"), Input=coverage,
                              ContourBy=["POINTS", PROBABILITY], Isosurfaces=[LIMIT])
     other, pixels = second_view(view)
     for each in (view, other):
-        airport.hide_scans(each)
+        hide_scans(each)
         simple.Hide(scene, each)
-        show_airport(airport, tree, beams, each)
+        show_grey(tree, each)
+        show_sensor(beams, each)
     show_probability(probable, surface, view)
     show_reasons(status, level, other)
     west, *others = region(place)
     for each in (view, other):
-        airport.frame(each, EAST, (west - ROOM, *others), pixels=pixels)
+        frame(each, EAST, CAMERA_ELEVATION, (west - ROOM, *others), pixels=pixels)
     simple.SetActiveView(view)
     simple.SetActiveSource(coverage)
     return beams, coverage, level, surface
 
 
-def main():
-    try:
-        cover()
-    except ValueError as problem:
-        say(problem)
-        return
-    simple.RenderAllViews()
-
-
 if __name__ in ("__main__", "__vtkconsole__"):
-    main()
+    run("coverage", cover, render=simple.RenderAllViews)

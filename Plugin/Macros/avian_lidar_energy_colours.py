@@ -9,6 +9,7 @@ nothing is changed and the reason is printed. ParaView's window runs it at the f
 In ParaView: the button is there with the plugin; select the echoes and click it. In a script: colour(source, view).
 """
 
+from avian_lidar_plugin import colour_by, run, write
 from paraview import servermanager, simple
 
 PRESET = "Avian lidar HSB"
@@ -96,6 +97,8 @@ def legend(table, view, title):
 
 def colour(source, view=None):
     """Colours an output by energy with the preset over the receiver's limits; returns (Qlow, Qhigh)."""
+    if source is None:
+        raise ValueError("select the echoes first")
     if source.GetPointDataInformation().GetArray(ARRAY) is None:
         raise ValueError(f"there is no point array {ARRAY}")
     low, high = energy_limits(source)
@@ -106,12 +109,7 @@ def colour(source, view=None):
     else:
         view = view or simple.GetActiveViewOrCreate("RenderView")
         display = simple.Show(source, view)
-    simple.ColorBy(display, ("POINTS", ARRAY))
-    table = simple.GetColorTransferFunction(ARRAY)
-    # First: setting the range would otherwise be undone by the next update.
-    table.AutomaticRescaleRangeMode = "Never"
-    table.ApplyPreset(PRESET, True)
-    table.RescaleTransferFunction(low, high)
+    table = colour_by(display, "POINTS", ARRAY, PRESET, (low, high))
     simple.GetOpacityTransferFunction(ARRAY).RescaleTransferFunction(low, high)
     table.NanOpacity = 0  # no echo
     bar = legend(table, view, "energy (J)")
@@ -121,18 +119,5 @@ def colour(source, view=None):
     return low, high
 
 
-def main():
-    source = simple.GetActiveSource()
-    if source is None:
-        print("Avian lidar colours: select the echoes first.")
-        return
-    try:
-        colour(source)
-    except ValueError as problem:
-        print(f"Avian lidar colours: {problem}.")
-        return
-    simple.Render()
-
-
 if __name__ in ("__main__", "__vtkconsole__"):
-    main()
+    run("colours", colour, simple.GetActiveSource(), report=write)

@@ -10,76 +10,42 @@ given in Output Messages.
 In ParaView: it is in the menu Macros with the plugin. In a script: cover(view).
 """
 
-import importlib.util
-import os
+from avian_lidar_plugin import (
+    ENERGY_COLOURS, airport_and_tree, free_name, hide_scans, lidar_place, neighbour, run, show, start)
+from paraview import simple
 
-from paraview import servermanager, simple
-from vtkmodules.vtkCommonCore import vtkOutputWindow
-
-PLUGIN = "AvianLidarPlugin"
 AIRPORT = "avian_lidar_airport_scan"
-BIRDS = "avian_lidar_birds_over_the_airport"
 # m: visibility, height of the dense part, and over which it fades above.
 VISIBILITY, TOP, SOFTNESS = 400.0, 5.0, 3.0
 FOG_COLOUR, FOG_OPACITY = (0.9, 0.95, 1.0), 0.45
 
 
-def say(text):
-    """A word in Output Messages, which ParaView opens by itself."""
-    vtkOutputWindow.GetInstance().DisplayErrorText(f"Avian lidar ground fog: {text}.\n")
+def fog_above(bottom):
+    return simple.AvianLidarMedium(registrationName=free_name("Ground fog"), Name="ground fog", Bottom=bottom,
+                                   MeteorologicalVisibility=VISIBILITY, Top=bottom + TOP, Softness=SOFTNESS)
 
 
-def neighbour(name):
-    """Another macro of the plugin, beside this file or, if this is a copy elsewhere, beside the plugin."""
-    folders = [os.path.dirname(os.path.abspath(__file__))] if "__file__" in globals() else []
-    plugins = servermanager.vtkSMProxyManager.GetProxyManager().GetPluginManager().GetLocalInformation()
-    for i in range(plugins.GetNumberOfPlugins()):
-        if plugins.GetPluginName(i) == PLUGIN and plugins.GetPluginLoaded(i):
-            folders.append(os.path.join(os.path.dirname(os.path.abspath(plugins.GetPluginFileName(i))), "Macros"))
-    for folder in folders:
-        path = os.path.join(folder, name + ".py")
-        if os.path.exists(path):
-            spec = importlib.util.spec_from_file_location(name, path)
-            macro = importlib.util.module_from_spec(spec)
-            spec.loader.exec_module(macro)
-            return macro
-    raise ValueError(f"there is no {name}.py in {' nor in '.join(folders) or 'any folder: load the plugin'}")
+def show_fog(fog, view):
+    show(fog, view, FOG_COLOUR, Ambient=1.0, Diffuse=0.0, Opacity=FOG_OPACITY)
 
 
 def cover(view=None):
     """The airport in ground fog: returns (sensor, medium, group, scan)."""
-    airport, birds = neighbour(AIRPORT), neighbour(BIRDS)
-    airport.plugin_folder(on_server=True)
-    colour = airport.colouring().colour
-    simple._DisableFirstRenderCameraReset()
-    view = view or simple.GetActiveViewOrCreate("RenderView")
-    scene, tree = birds.scene_and_tree(airport)
-    beams = simple.AvianLidarSearch905(registrationName=airport.free_name("Search 905"), Position=airport.lidar_place(tree))
+    airport, colours = (neighbour(name, globals().get("__file__")) for name in (AIRPORT, ENERGY_COLOURS))
+    view = start(view)
+    scene, tree = airport_and_tree()
+    beams = simple.AvianLidarSearch905(registrationName=free_name("Search 905"), Position=lidar_place(tree))
     simple.SetActiveSource(None)
-    fog = simple.AvianLidarMedium(registrationName=airport.free_name("Ground fog"), Name="ground fog",
-                                  MeteorologicalVisibility=VISIBILITY, Bottom=0.0, Top=TOP, Softness=SOFTNESS)
-    together = simple.GroupDatasets(registrationName=airport.free_name("Airport in fog"), Input=[tree, fog])
-    echoes = simple.AvianLidarEchoFilter(registrationName=airport.free_name("Scan in fog"), Beams=beams, Surfaces=together)
+    fog = fog_above(0.0)
+    together = simple.GroupDatasets(registrationName=free_name("Airport in fog"), Input=[tree, fog])
+    echoes = simple.AvianLidarEchoFilter(registrationName=free_name("Scan in fog"), Beams=beams, Surfaces=together)
     echoes.UpdatePipeline()
-    airport.hide_scans(view)
-    airport.show(scene, tree, beams, echoes, view, colour)
-    display = simple.Show(fog, view, "GeometryRepresentation")
-    display.ColorArrayName = ["POINTS", ""]
-    display.AmbientColor = display.DiffuseColor = FOG_COLOUR
-    display.Ambient, display.Diffuse = 1.0, 0.0
-    display.Opacity = FOG_OPACITY
+    hide_scans(view)
+    airport.show_scan(scene, tree, beams, echoes, view, colours.colour)
+    show_fog(fog, view)
     simple.SetActiveSource(fog)
     return beams, fog, together, echoes
 
 
-def main():
-    try:
-        cover()
-    except ValueError as problem:
-        say(problem)
-        return
-    simple.Render()
-
-
 if __name__ in ("__main__", "__vtkconsole__"):
-    main()
+    run("ground fog", cover)

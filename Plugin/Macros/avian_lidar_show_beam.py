@@ -9,14 +9,10 @@ a table. If something does not fit, nothing is made and the reason is given in O
 In ParaView: the button is there with the plugin. In a script: show_beam(echoes, beam_id, view).
 """
 
-import importlib.util
-import os
-
+from avian_lidar_plugin import colour_by, free_name, plugin_folder, run, say, show, start
 from paraview import servermanager, simple
-from vtkmodules.vtkCommonCore import vtkOutputWindow
 
-PLUGIN = "AvianLidarPlugin"
-AIRPORT = "avian_lidar_airport_scan"
+TITLE = "show beam"
 ARRAY, SHARE = "beam_id", "energy_share"
 SCAN, VIEW = "AvianLidarEchoFilter", "AvianLidarBeamView"
 WHAT_TO_SELECT = "select an echo first (Select Points On in the view, or a row of a spreadsheet)"
@@ -26,30 +22,6 @@ CONE_COLOUR, CONE_OPACITY = (1.0, 0.7, 0.2), 0.25
 NEARER, NEARER_SHARE = 0.01, 0.002
 TABLE = "Shares of the beam"
 HEIGHT = 0.75  # of the view, that is not the table's
-
-
-def say(text, failed=True):
-    """A word in Output Messages, which ParaView opens by itself for a failure."""
-    window = vtkOutputWindow.GetInstance()
-    display = window.DisplayErrorText if failed else window.DisplayWarningText
-    display(f"Avian lidar show beam: {text}.\n")
-
-
-def neighbour(name):
-    """Another macro of the plugin, beside this file or, if this is a copy elsewhere, beside the plugin."""
-    folders = [os.path.dirname(os.path.abspath(__file__))] if "__file__" in globals() else []
-    plugins = servermanager.vtkSMProxyManager.GetProxyManager().GetPluginManager().GetLocalInformation()
-    for i in range(plugins.GetNumberOfPlugins()):
-        if plugins.GetPluginName(i) == PLUGIN and plugins.GetPluginLoaded(i):
-            folders.append(os.path.join(os.path.dirname(os.path.abspath(plugins.GetPluginFileName(i))), "Macros"))
-    for folder in folders:
-        path = os.path.join(folder, name + ".py")
-        if os.path.exists(path):
-            spec = importlib.util.spec_from_file_location(name, path)
-            macro = importlib.util.module_from_spec(spec)
-            spec.loader.exec_module(macro)
-            return macro
-    raise ValueError(f"there is no {name}.py in {' nor in '.join(folders) or 'any folder: load the plugin'}")
 
 
 def scan_of(source):
@@ -83,7 +55,7 @@ def selected_beam():
         ids = [int(ids.GetTuple1(i)) for i in range(ids.GetNumberOfTuples())] if ids else []
         if ids:
             if len(set(ids)) > 1:
-                say(f"echoes of {len(set(ids))} beams are selected: this is the beam {ids[0]}", failed=False)
+                say(TITLE, f"echoes of {len(set(ids))} beams are selected: this is the beam {ids[0]}", failed=False)
             return source, ids[0]
     raise ValueError(WHAT_TO_SELECT)
 
@@ -107,23 +79,14 @@ def show_parts(beam, view):
     """The surfaces by their share of the energy, a little nearer to the lidar than they are; the cone."""
     cone = simple.OutputPort(beam, 1)
     data = servermanager.Fetch(beam, idx=1)
-    display = simple.Show(cone, view, "GeometryRepresentation")
-    display.ColorArrayName = ["POINTS", ""]
-    display.AmbientColor = display.DiffuseColor = CONE_COLOUR
-    display.Opacity = CONE_OPACITY
-    display = simple.Show(beam, view, "GeometryRepresentation")
-    display.Representation = "Surface With Edges"
-    display.Ambient, display.Diffuse = 1.0, 0.0  # colours as in the legend
+    show(cone, view, CONE_COLOUR, Opacity=CONE_OPACITY)
+    display = show(beam, view, Representation="Surface With Edges", Ambient=1.0, Diffuse=0.0)
     apex, count = data.GetPoint(0), data.GetNumberOfPoints()
     middle = [sum(data.GetPoint(i)[axis] for i in range(1, count)) / (count - 1) for axis in range(3)]
     length = sum((a - b) ** 2 for a, b in zip(middle, apex)) ** 0.5
     place = "Translation" if "Translation" in display.ListProperties() else "Position"  # from ParaView 5.12 on, and before
     display.SetPropertyWithName(place, [-(NEARER / length + NEARER_SHARE) * (a - b) for a, b in zip(middle, apex)])
-    simple.ColorBy(display, ("CELLS", SHARE))
-    table = simple.GetColorTransferFunction(SHARE)
-    table.AutomaticRescaleRangeMode = "Never"
-    table.ApplyPreset("Viridis (matplotlib)", True)
-    table.RescaleTransferFunction(0.0, 1.0)
+    table = colour_by(display, "CELLS", SHARE, "Viridis (matplotlib)", (0.0, 1.0))
     bar = simple.GetScalarBar(table, view)
     bar.Title, bar.ComponentTitle, bar.WindowLocation = "share of the energy", "", "Upper Right Corner"
     display.SetScalarBarVisibility(view, True)
@@ -146,22 +109,20 @@ def show_table(beam, view):
 
 def show_beam(source=None, beam_id=None, view=None):
     """Shows the beam of the selected echo, or the one of that number in a scan: returns the beam view."""
-    airport = neighbour(AIRPORT)
-    airport.plugin_folder(on_server=True)
+    plugin_folder(on_server=True)
     if beam_id is None:
         source, beam_id = selected_beam()
     scan = scan_of(source)
     if scan is None:
         raise ValueError(WHAT_TO_SELECT)
-    simple._DisableFirstRenderCameraReset()
-    view = view or simple.GetActiveViewOrCreate("RenderView")
+    view = start(view)
     if view.SMProxy.GetXMLName() != "RenderView":  # the echo was selected in a spreadsheet
         view = next((one for one in simple.GetRenderViews()), None) or simple.CreateView("RenderView")
     beam = view_of(scan)
     is_new = beam is None
     if is_new:
         inputs = {name: getattr(scan, name) for name in ("Beams", "Surfaces", "Movers") if getattr(scan, name) is not None}
-        beam = simple.AvianLidarBeamView(registrationName=airport.free_name("Beam"), **inputs)
+        beam = simple.AvianLidarBeamView(registrationName=free_name("Beam"), **inputs)
     beam.BeamId = beam_id
     for name in AIR:
         setattr(beam, name, getattr(scan, name))
@@ -177,14 +138,5 @@ def show_beam(source=None, beam_id=None, view=None):
     return beam
 
 
-def main():
-    try:
-        show_beam()
-    except ValueError as problem:
-        say(problem)
-        return
-    simple.RenderAllViews()
-
-
 if __name__ in ("__main__", "__vtkconsole__"):
-    main()
+    run(TITLE, show_beam, render=simple.RenderAllViews)

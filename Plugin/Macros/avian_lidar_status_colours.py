@@ -9,13 +9,9 @@ own. Without an array `status`, or without the preset, nothing is changed and th
 In ParaView: the button is there with the plugin; select the output and click it. In a script: colour(source, view).
 """
 
-import importlib.util
-import os
-
+from avian_lidar_plugin import ENERGY_COLOURS, neighbour, run, write
 from paraview import servermanager, simple
 
-PLUGIN = "AvianLidarPlugin"
-ENERGY = "avian_lidar_energy_colours"
 PRESET = "Avian lidar status"
 COVERAGE_PRESET = "Avian lidar coverage status"
 ARRAY = "status"
@@ -40,30 +36,16 @@ def of_coverage(source):
     return source.GetPointDataInformation().GetArray(OF_COVERAGE) is not None
 
 
-def neighbour():
-    """The macro of energy colours, which shows images: beside this file or, of a copy elsewhere, beside the plugin."""
-    plugins = servermanager.vtkSMProxyManager.GetProxyManager().GetPluginManager().GetLocalInformation()
-    files = [globals().get("__file__", "")]
-    files += [os.path.join(plugins.GetPluginFileName(i), "..", "Macros", "*") for i in range(plugins.GetNumberOfPlugins())
-              if plugins.GetPluginName(i) == PLUGIN]
-    paths = [os.path.join(os.path.dirname(os.path.abspath(file)), ENERGY + ".py") for file in files]
-    path = next((path for path in paths if os.path.exists(path)), None)
-    if not path:
-        raise ValueError(f"there is no {ENERGY}.py in {' nor in '.join(map(os.path.dirname, paths))}")
-    spec = importlib.util.spec_from_file_location(ENERGY, path)
-    macro = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(macro)
-    return macro
-
-
 def colour(source, view=None):
     """Colours an output by status; returns its display."""
+    if source is None:
+        raise ValueError("select the beam report first")
     source = with_status(source)
     places = of_coverage(source)
     preset = COVERAGE_PRESET if places else PRESET
     if not servermanager.vtkSMTransferFunctionPresets.GetInstance().HasPreset(preset):
         raise ValueError(f"there is no colour preset {preset}: load the plugin, or import {FILES.get(preset, 'it')}")
-    images = neighbour()
+    images = neighbour(ENERGY_COLOURS, globals().get("__file__"))
     image = images.is_image(source)
     if image and not places:
         display, view = images.show_image(source, view)
@@ -83,18 +65,5 @@ def colour(source, view=None):
     return display
 
 
-def main():
-    source = simple.GetActiveSource()
-    if source is None:
-        print("Avian lidar colours: select the beam report first.")
-        return
-    try:
-        colour(source)
-    except ValueError as problem:
-        print(f"Avian lidar colours: {problem}.")
-        return
-    simple.Render()
-
-
 if __name__ in ("__main__", "__vtkconsole__"):
-    main()
+    run("colours", colour, simple.GetActiveSource(), report=write)

@@ -7,13 +7,13 @@ group), an echo filter with ten scans to play, and in ground fog a medium. If so
 reason is given in Output Messages. In a script: make(scene, sensor, species, number, weather, view).
 """
 
-import importlib.util
 import os
 
+from avian_lidar_plugin import (
+    ENERGY_COLOURS, airport_and_tree, frame, free_name, hide_scans, lidar_place, neighbour, plugin_folder, run, start,
+    tree_of, update_first_step)
 from paraview import servermanager, simple
-from vtkmodules.vtkCommonCore import vtkOutputWindow
 
-PLUGIN = "AvianLidarPlugin"
 AIRPORT, BIRDS, FOG = "avian_lidar_airport_scan", "avian_lidar_birds_over_the_airport", "avian_lidar_ground_fog"
 REVOLUTIONS = 10
 BIRD_COLOUR = (0.9, 0.1, 0.5)
@@ -29,28 +29,6 @@ WEATHER = {
 SCATTERS = ("fog", "rain", "ground fog")
 
 
-def say(text):
-    """A word in Output Messages, which ParaView opens by itself."""
-    vtkOutputWindow.GetInstance().DisplayErrorText(f"Avian lidar wizard: {text}.\n")
-
-
-def neighbour(name):
-    """Another macro of the plugin, beside this file or, if this is a copy elsewhere, beside the plugin."""
-    folders = [os.path.dirname(os.path.abspath(__file__))] if "__file__" in globals() else []
-    plugins = servermanager.vtkSMProxyManager.GetProxyManager().GetPluginManager().GetLocalInformation()
-    for i in range(plugins.GetNumberOfPlugins()):
-        if plugins.GetPluginName(i) == PLUGIN and plugins.GetPluginLoaded(i):
-            folders.append(os.path.join(os.path.dirname(os.path.abspath(plugins.GetPluginFileName(i))), "Macros"))
-    for folder in folders:
-        path = os.path.join(folder, name + ".py")
-        if os.path.exists(path):
-            spec = importlib.util.spec_from_file_location(name, path)
-            macro = importlib.util.module_from_spec(spec)
-            spec.loader.exec_module(macro)
-            return macro
-    raise ValueError(f"there is no {name}.py in {' nor in '.join(folders) or 'any folder: load the plugin'}")
-
-
 def check(sensor, weather):
     """Nothing is made before all fits."""
     if weather not in WEATHER:
@@ -63,16 +41,16 @@ def check(sensor, weather):
                          f"{prototype.GetXMLLabel()} has none")
 
 
-def open_scene(airport, birds, scene):
+def open_scene(scene):
     """The scene, its collision tree."""
     if scene is None:
-        return birds.scene_and_tree(airport)
+        return airport_and_tree()
     surfaces = simple.OpenDataFile(scene)
     if surfaces is None:
         raise ValueError(f"ParaView does not read {scene}, expected a scene (.lidarscene.json) or surfaces")
     name = os.path.basename(scene).split(".")[0] or "Scene"
-    simple.RenameSource(airport.free_name(name), surfaces)
-    return surfaces, airport.tree_of(surfaces)
+    simple.RenameSource(free_name(name), surfaces)
+    return surfaces, tree_of(surfaces)
 
 
 def name_of(sensor):
@@ -82,67 +60,56 @@ def name_of(sensor):
     return hint.GetAttribute("text") if hint else prototype.GetXMLLabel().replace("Avian Lidar ", "")
 
 
-def build(airport, birds, view, scene, sensor, species, number, weather):
+def build(macros, view, scene, sensor, species, number, weather):
     """The pipeline, and what the view shows of it."""
-    colour = airport.colouring().colour
-    surfaces, tree = open_scene(airport, birds, scene)
-    place = airport.lidar_place(tree) or airport.place_beside(tree)
+    airport, birds, fogs, colours = macros
+    surfaces, tree = open_scene(scene)
+    place = lidar_place(tree) or airport.place_beside(tree)
     beams = getattr(simple, "".join(one for one in servermanager.ProxyManager().GetPrototypeProxy("sources", sensor).GetXMLLabel()
                                     if one.isalnum() or one == "_"))(
-        registrationName=airport.free_name(name_of(sensor)), Position=place, NumberOfRevolutions=REVOLUTIONS)
+        registrationName=free_name(name_of(sensor)), Position=place, NumberOfRevolutions=REVOLUTIONS)
     beams.UpdatePipelineInformation()
     solid, fog = tree, None
     if weather == "ground fog":
-        macro = neighbour(FOG)
         simple.SetActiveSource(None)
-        bottom = tree.GetDataInformation().GetBounds()[4]
-        fog = simple.AvianLidarMedium(registrationName=airport.free_name("Ground fog"), Name="ground fog", Bottom=bottom,
-                                      MeteorologicalVisibility=macro.VISIBILITY, Top=bottom + macro.TOP, Softness=macro.SOFTNESS)
-        solid = simple.GroupDatasets(registrationName=airport.free_name("Scene in fog"), Input=[tree, fog])
+        fog = fogs.fog_above(tree.GetDataInformation().GetBounds()[4])
+        solid = simple.GroupDatasets(registrationName=free_name("Scene in fog"), Input=[tree, fog])
     tracks, inputs = [], {}
     if number > 0:
-        birds.BIRDS = {species.capitalize(): (BIRD_COLOUR, {"Pattern": "Crossings", "Species": species, "NumberOfBirds": number,
-                                                           "Radius": RADIUS, "Heights": HEIGHTS})}
-        tracks = birds.flights(airport, place, REVOLUTIONS / beams.RotationRate)
+        flight = {"Pattern": "Crossings", "Species": species, "NumberOfBirds": number, "Radius": RADIUS, "Heights": HEIGHTS}
+        kinds = {species.capitalize(): (BIRD_COLOUR, flight)}
+        tracks = birds.flights(kinds, place, REVOLUTIONS / beams.RotationRate)
         for each in tracks if scene else ():
             each.Center = [*place[:2], place[2] - airport.HEIGHT]  # heights are above the lidar's foot
-        inputs["Movers"] = simple.GroupDatasets(registrationName=airport.free_name("Birds"), Input=tracks)
-    echoes = simple.AvianLidarEchoFilter(registrationName=airport.free_name("Scan"), Beams=beams, Surfaces=solid,
+        inputs["Movers"] = simple.GroupDatasets(registrationName=free_name("Birds"), Input=tracks)
+    echoes = simple.AvianLidarEchoFilter(registrationName=free_name("Scan"), Beams=beams, Surfaces=solid,
                                          NumberOfReflections=1, **inputs, **WEATHER[weather])
-    animation = simple.GetAnimationScene()
-    animation.UpdateAnimationUsingDataTimeSteps()
-    animation.GoToFirst()
-    echoes.UpdatePipeline(animation.TimeKeeper.Time)
-    airport.hide_scans(view)
-    airport.show(surfaces, tree, beams, echoes, view, colour)
+    update_first_step(echoes)
+    hide_scans(view)
+    airport.show_scan(surfaces, tree, beams, echoes, view, colours.colour, birds.CAMERA_ELEVATION)
     if number > 0:
         simple.Hide(inputs["Movers"], view)
-        birds.show_birds(airport, tracks, echoes, view)
+        birds.show_birds(kinds, tracks, echoes, view)
         x, y, z = place
         reach = (birds.WEST, birds.EAST, birds.SIDE) if scene is None else (RADIUS, RADIUS, RADIUS)
         about = (x - reach[0], x + reach[1], y - reach[2], y + reach[2], z - airport.HEIGHT, z + HEIGHTS[1])
-        airport.frame(view, 0.0, about)
+        frame(view, 0.0, birds.CAMERA_ELEVATION, about)
     if fog is not None:
         simple.Hide(solid, view)
-        display = simple.Show(fog, view, "GeometryRepresentation")
-        display.ColorArrayName = ["POINTS", ""]
-        display.AmbientColor = display.DiffuseColor = macro.FOG_COLOUR
-        display.Ambient, display.Diffuse, display.Opacity = 1.0, 0.0, macro.FOG_OPACITY
+        fogs.show_fog(fog, view)
     simple.SetActiveSource(echoes)
     return beams, tracks, echoes
 
 
 def make(scene=None, sensor="AvianLidarSearch905", species="herring gull", number=12, weather="clear", view=None):
     """A scan as asked for: returns (sensor, tracks, echo filter). After an error nothing is left of it."""
-    airport, birds = neighbour(AIRPORT), neighbour(BIRDS)
-    airport.CAMERA_ELEVATION = birds.CAMERA_ELEVATION
-    airport.plugin_folder(on_server=True)
+    macros = [neighbour(name, globals().get("__file__")) for name in (AIRPORT, BIRDS, FOG, ENERGY_COLOURS)]
+    plugin_folder(on_server=True)
     check(sensor, weather)
-    simple._DisableFirstRenderCameraReset()
-    view = view or simple.GetActiveViewOrCreate("RenderView")
+    view = start(view)
     before = list(simple.GetSources().values())
     try:
-        return build(airport, birds, view, scene, sensor, species, number, weather)
+        return build(macros, view, scene, sensor, species, number, weather)
     except Exception:
         made = [source for source in simple.GetSources().values() if source not in before]
         for source in sorted(made, key=lambda one: -one.SMProxy.GetGlobalID()):  # consumers first
@@ -150,14 +117,5 @@ def make(scene=None, sensor="AvianLidarSearch905", species="herring gull", numbe
         raise
 
 
-def main():
-    try:
-        make(**globals().get("avian_lidar_answers", {}))
-    except (ValueError, RuntimeError) as problem:
-        say(problem)
-        return
-    simple.Render()
-
-
 if __name__ in ("__main__", "__vtkconsole__"):
-    main()
+    run("wizard", lambda: make(**globals().get("avian_lidar_answers", {})))

@@ -6,31 +6,16 @@ it lies beside, if ParaView has not, and finds its files from its own place. On 
 loaded: else nothing is made, and the reason is printed.
 """
 
-import importlib.util
 import os
 
 from paraview import simple
 
-HERE = os.path.dirname(os.path.abspath(__file__))
-FOLDER = os.path.dirname(HERE)
+FOLDER = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 
-
-def load_macro(name):
-    path = os.path.join(FOLDER, "Macros", name + ".py")
-    spec = importlib.util.spec_from_file_location(name, path)
-    macro = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(macro)
-    return macro
-
-
-macro = load_macro("avian_lidar_airport_scan")
 try:
-    macro.plugin_folder()
-except ValueError:
+    import avian_lidar_plugin
+except ImportError:
     simple.LoadPlugin(os.path.join(FOLDER, "AvianLidarPlugin.so"), remote=False, ns=vars(simple))
-try:
-    macro.scan()
-except ValueError as problem:
-    print(f"Avian lidar airport: {problem}.")
-else:
-    simple.Render()
+    import avian_lidar_plugin
+
+avian_lidar_plugin.run("airport", avian_lidar_plugin.neighbour("avian_lidar_airport_scan").scan, report=avian_lidar_plugin.write)

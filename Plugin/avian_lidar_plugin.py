@@ -1,0 +1,258 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What the macros share. This module is in the plugin's library: `import avian_lidar_plugin` works wherever the plugin
+is loaded, also in a copy of a macro."""
+
+import importlib.util
+import itertools
+import math
+import os
+
+from paraview import servermanager, simple
+from vtkmodules.vtkCommonCore import vtkOutputWindow
+
+PLUGIN = "AvianLidarPlugin"
+EXAMPLE = os.path.join("Scenes", "hongqiao.lidarscene.json")
+ENERGY_COLOURS = "avian_lidar_energy_colours"
+POSITION = "lidar_position"
+# What a scan is made of.
+SENSORS = ("vtkAvianLidarBeamSource", "vtkAvianLidarSensorReader")  # classes: there are many sources of them
+PARTS = ("AvianLidarCollisionTree", "AvianLidarMedium", "AvianLidarMediumInSurface", "AvianLidarTracks")
+RESULTS = ("AvianLidarEchoFilter", "AvianLidarCoverage", "AvianLidarClutterFilter", "AvianLidarTracker")
+# What shows some of a result.
+SOME = ("Threshold", "Cut", "Contour")
+WHAT_TO_SELECT = "select surfaces, or nothing for the airport that comes with the plugin"
+SENSOR_SIZE = 12  # pixels
+# Diffuse reflectances that are drawn black and white: concrete is then a middle grey, and echoes stand out.
+GREY_RANGE = (-0.05, 0.6)
+MARGIN = 1.15
+
+
+def plugin_folder(on_server=False):
+    """The folder of the loaded plugin; where a file is read by a remote server, as that server names it."""
+    manager = servermanager.vtkSMProxyManager.GetProxyManager().GetPluginManager()
+    remote = on_server and servermanager.ActiveConnection.IsRemote()
+    plugins = manager.GetLocalInformation()
+    if remote:
+        plugins = manager.GetRemoteInformation(servermanager.ActiveConnection.Session)
+    for i in range(plugins.GetNumberOfPlugins()):
+        if plugins.GetPluginName(i) == PLUGIN and plugins.GetPluginLoaded(i):
+            file_name = plugins.GetPluginFileName(i)
+            return os.path.dirname(file_name if remote else os.path.abspath(file_name))
+    where = "on the server, too" if remote else "first"
+    raise ValueError(f"load the plugin {where} (Tools > Manage Plugins)")
+
+
+def neighbour(name, file=None):
+    """Another macro as a module: beside the file of a macro or, if that is a copy elsewhere, the plugin's."""
+    folders = [os.path.dirname(os.path.abspath(file))] if file else []
+    folders.append(os.path.join(plugin_folder(), "Macros"))
+    for folder in folders:
+        path = os.path.join(folder, name + ".py")
+        if os.path.exists(path):
+            spec = importlib.util.spec_from_file_location(name, path)
+            macro = importlib.util.module_from_spec(spec)
+            spec.loader.exec_module(macro)
+            return macro
+    raise ValueError(f"there is no {name}.py in {' nor in '.join(folders)}")
+
+
+def say(title, text, failed=True):
+    """A word in Output Messages, which ParaView opens by itself for a failure."""
+    window = vtkOutputWindow.GetInstance()
+    display = window.DisplayErrorText if failed else window.DisplayWarningText
+    display(f"Avian lidar {title}: {text}.\n")
+
+
+def write(title, text):
+    """A word in the terminal, or in the Python shell."""
+    print(f"Avian lidar {title}: {text}.")
+
+
+def run(title, macro, *arguments, report=say, render=simple.Render):
+    """What a click on a macro does: its views are drawn, or the problem is reported."""
+    try:
+        macro(*arguments)
+    except (ValueError, RuntimeError) as problem:
+        report(title, problem)
+    else:
+        render()
+
+
+def start(view=None):
+    """The view to use, once the plugin is known to be loaded."""
+    plugin_folder(on_server=True)
+    # As in every script that ParaView writes: the camera stays where it is put.
+    simple._DisableFirstRenderCameraReset()
+    return view or simple.GetActiveViewOrCreate("RenderView")
+
+
+def name_of(source):
+    """Its name in the pipeline."""
+    return next((key[0] for key, known in simple.GetSources().items() if known == source), "surfaces")
+
+
+def free_name(name, surfaces=None):
+    """The name; if it is taken in the pipeline, with that of the surfaces; if that is taken, with a number."""
+    taken = {key[0] for key in simple.GetSources()}
+    long = f"{name} of {name_of(surfaces)}" if surfaces else name
+    names = itertools.chain([name, long], (f"{long} {i}" for i in itertools.count(2)))
+    return next(candidate for candidate in names if candidate not in taken)
+
+
+def of_kind(name):
+    return [source for source in simple.GetSources().values() if source.SMProxy.GetXMLName() == name]
+
+
+def of_result(source):
+    """Whether it is a result, or some of one: echoes of birds, slices of a coverage."""
+    name = source.SMProxy.GetXMLName()
+    return name in RESULTS or (name in SOME and source.Input is not None and of_result(source.Input))
+
+
+def is_part(source):
+    """Whether it belongs to a scan."""
+    return source.SMProxy.GetXMLName() in PARTS or source.SMProxy.GetVTKClassName() in SENSORS or of_result(source)
+
+
+def hide_scans(view):
+    """Hides what earlier scans show."""
+    for source in simple.GetSources().values():
+        if is_part(source):
+            for port in range(source.SMProxy.GetNumberOfOutputPorts()):
+                simple.Hide(source[port], view)
+
+
+def apply(source):
+    """Applies what has just been opened, before it has consumers: a script cannot press the button. ParaView's window,
+    which keeps to itself what is not applied, is told anew of a source that has never been shown, and takes it as one
+    that a script has made. Without this, Apply would later show the bare surfaces over the scan."""
+    manager = servermanager.ProxyManager()
+    name = manager.GetProxyName("sources", source)
+    inputs = (display.SMProxy.GetProperty("Input") for display in simple.GetRepresentations().values())
+    if name and not any(shown and shown.IsProxyAdded(source.SMProxy) for shown in inputs):
+        manager.UnRegisterProxy("sources", name, source)
+        manager.RegisterProxy("sources", name, source)
+
+
+def open_example():
+    """The airport that comes with the plugin."""
+    path = os.path.join(plugin_folder(on_server=True), EXAMPLE)
+    return simple.AvianLidarSceneReader(registrationName=free_name("Airport Hongqiao"), FileName=path)
+
+
+def tree_of(surfaces):
+    """The surfaces, applied, with a collision tree."""
+    surfaces.UpdatePipeline()
+    if surfaces.SMProxy.GetXMLName() == "AvianLidarCollisionTree":
+        apply(surfaces)
+        return surfaces
+    name = surfaces.SMProxy.GetXMLLabel()
+    data = surfaces.GetDataInformation().DataInformation
+    if not data.DataSetTypeIsA("vtkPolyData"):
+        raise ValueError(f"{name} gives no surfaces: {WHAT_TO_SELECT}")
+    apply(surfaces)
+    tree = simple.AvianLidarCollisionTree(registrationName=free_name("Collision tree", surfaces), Input=surfaces)
+    tree.UpdatePipeline()
+    if tree.GetDataInformation().GetNumberOfCells() == 0:
+        simple.Delete(tree)
+        raise ValueError(f"{name} gives no surfaces: {WHAT_TO_SELECT}")
+    return tree
+
+
+def is_example(source):
+    return (source is not None and source.SMProxy.GetXMLName() == "AvianLidarSceneReader" and
+            os.path.basename(source.FileName) == os.path.basename(EXAMPLE))
+
+
+def airport_and_tree():
+    """The airport and its collision tree, those of the pipeline if they are there."""
+    for tree in of_kind("AvianLidarCollisionTree"):
+        if is_example(tree.Input):
+            tree.UpdatePipeline()
+            return tree.Input, tree
+    scene = next(filter(is_example, of_kind("AvianLidarSceneReader")), None) or open_example()
+    return scene, tree_of(scene)
+
+
+def lidar_place(tree):
+    """Where the sensor stands, as the scene says, or None."""
+    position = tree.GetFieldDataInformation().GetArray(POSITION)
+    return position and [position.GetRange(i)[0] for i in range(3)]
+
+
+def update_first_step(echoes):
+    """The animation has the steps of the data, and is at the first."""
+    animation = simple.GetAnimationScene()
+    animation.UpdateAnimationUsingDataTimeSteps()
+    animation.GoToFirst()
+    echoes.UpdatePipeline(animation.TimeKeeper.Time)
+
+
+def show(source, view, colour=None, **properties):
+    """The display of a source with these properties, in one colour if there is one."""
+    display = simple.Show(source, view)
+    if colour:
+        display.ColorArrayName = ["POINTS", ""]
+        display.AmbientColor = display.DiffuseColor = colour
+    for name, value in properties.items():
+        setattr(display, name, value)
+    return display
+
+
+def colour_by(display, kind, array, preset, limits):
+    """The table of colours of an array, of a range that stays."""
+    simple.ColorBy(display, (kind, array))
+    table = simple.GetColorTransferFunction(array)
+    # First: setting the range would otherwise be undone by the next update.
+    table.AutomaticRescaleRangeMode = "Never"
+    table.ApplyPreset(preset, True)
+    table.RescaleTransferFunction(*limits)
+    return table
+
+
+def show_grey(tree, view):
+    """The surfaces in shades of grey: the lighter, the more they reflect."""
+    display = show(tree, view, Representation="Surface")
+    colour_by(display, "CELLS", "kd", "Grayscale", GREY_RANGE)
+    display.SetScalarBarVisibility(view, False)
+
+
+def show_sensor(beams, view, as_ball=1):
+    show(beams, view, Representation="Points", PointSize=SENSOR_SIZE, RenderPointsAsSpheres=as_ball)
+
+
+def axes_of_camera(azimuth, elevation):
+    """Right, up and towards the eye. The azimuth is in radians, from east to north, the elevation in degrees."""
+    elevation = math.radians(elevation)
+    ahead = [math.cos(azimuth), math.sin(azimuth)]
+    right = [ahead[1], -ahead[0], 0]
+    up = [math.sin(elevation) * ahead[0], math.sin(elevation) * ahead[1], math.cos(elevation)]
+    back = [-math.cos(elevation) * ahead[0], -math.cos(elevation) * ahead[1], math.sin(elevation)]
+    return right, up, back
+
+
+def frame(view, azimuth, elevation, *boxes, pixels=None):
+    """Looks at the boxes from above, along the azimuth, in a view of so many pixels (default: as it is); without
+    perspective, whose depth buffer cannot tell an apron from the grass 2 cm below it."""
+    low, high = ([choose(values) for values in zip(*(b[start::2] for b in boxes))]
+                 for choose, start in ((min, 0), (max, 1)))
+    corners = [corner for box in boxes for corner in itertools.product(box[:2], box[2:4], box[4:])]
+    right, up, back = axes_of_camera(azimuth, elevation)
+    spans = []
+    for axis in (right, up):
+        along = [sum(a * b for a, b in zip(axis, corner)) for corner in corners]
+        spans.append((min(along), max(along)))
+    middle = [(low + high) / 2 for low, high in spans]
+    # The point of the boxes' midst that the middle of the picture shows.
+    centre = [(a + b) / 2 for a, b in zip(low, high)]
+    for axis, value in zip((right, up), middle):
+        shift = value - sum(a * b for a, b in zip(axis, centre))
+        centre = [c + shift * a for c, a in zip(centre, axis)]
+    far = 10 * max(b - a for a, b in zip(low, high))
+    view.CameraParallelProjection = 1
+    view.CameraFocalPoint = centre
+    view.CameraPosition = [c + far * b for c, b in zip(centre, back)]
+    view.CameraViewUp = [0, 0, 1]
+    pixels = pixels or view.ViewSize
+    across, upright = (high - low for low, high in spans)
+    view.CameraParallelScale = MARGIN * max(across * pixels[1] / pixels[0], upright) / 2
