@@ -8,30 +8,29 @@ programs, three pictures and a table.
     airport.py --preset Airport32 --rays 1000 --seed 7 --out build/scan
     airport.py --scene my.lidarscene.json
 
-PYTHONPATH has to name the Python package (`cat build/paraview/python-path`), pictures need a display (`xvfb-run -a`).
+PYTHONPATH has to name the Python package (`cat build/paraview/python-path`).
 """
 import pathlib
 import sys
 
-import avianlidar as al
+import numpy as np
+from vtkmodules.util.numpy_support import vtk_to_numpy
 
-HERE = pathlib.Path(__file__).resolve().parent
-sys.path.insert(0, str(HERE.parent / "common"))
-sys.path.insert(0, str(HERE))
-import running  # noqa: E402
-import tables  # noqa: E402
+import avianlidar as al
+import tools
+
+SCENE = pathlib.Path(__file__).resolve().parent / "scene" / "hongqiao.lidarscene.json"
 
 
 def arguments(argv=None):
-    parser = running.Parser(description=__doc__.split("\n\n")[0])
-    parser.add_argument("--scene", type=running.file, default=HERE / "scene" / "hongqiao.lidarscene.json",
-                        help="a .lidarscene.json file; default: Shanghai Hongqiao")
+    parser = tools.Parser(description=__doc__.split("\n\n")[0])
+    parser.add_argument("--scene", type=tools.file, default=SCENE, help="a .lidarscene.json file; default: Shanghai Hongqiao")
     parser.add_argument("--preset", choices=["Airport16", "Airport32", "both"], default="both", help="the sensor")
-    parser.add_argument("--unit", type=running.above_zero, help="range unit and pulse width, ns; default: the preset's")
-    running.add_arguments(parser, "build/airport")
+    parser.add_argument("--unit", type=tools.above_zero, help="range unit and pulse width, ns; default: the preset's")
+    tools.add_arguments(parser, "build/airport")
     parser.add_argument("--focus", default="Terminal 1", help="object of the close view, default 'Terminal 1'")
     parser.add_argument("--all-wall", action="store_true", help="make everything of the paper's wall material")
-    return running.parse(parser, argv)
+    return parser.parse_args(argv)
 
 
 def scan(scene, preset, options, clock):
@@ -40,45 +39,61 @@ def scan(scene, preset, options, clock):
     if options.unit:
         sensor.set(sampling_interval=1e-9 * options.unit, pulse_width=1e-9 * options.unit)
     with clock("beams"):
-        running.run(lambda: sensor.beams)
+        tools.run(lambda: sensor.beams)
     result = al.Scan(scene, sensor, rays_per_beam=options.rays, seed=options.seed, number_of_threads=options.threads)
-    tables.show_progress(result.algorithm, preset)
     with clock("trace and light"):
-        running.run(result.update)
+        tools.run(result.update)
     with clock("colour, coordinates"):
-        return result, running.run(result.echoes.annotated), running.run(result.range_image)
+        return result, tools.run(result.echoes.annotated), tools.run(result.range_image)
+
+
+def focus(surfaces, echoes, name):
+    """Title and limits of the close view: the object, or else the 500 m with the most echoes."""
+    names = tools.strings(surfaces, "object_names")
+    if name in names:
+        return name, tools.around(vtk_to_numpy(surfaces.GetBlock(names.index(name)).GetPoints().GetData()), 0.06)
+    points = echoes.points if echoes.number_of_points else np.array([echoes.fields["position"]])
+    squares, count = np.unique(np.floor(points[:, :2] / 500), axis=0, return_counts=True)
+    return "Where most echoes are", tuple((500 * x, 500 * x + 500) for x in squares[count.argmax()])
+
+
+def draw(surfaces, result, echoes, preset, options):
+    """Write <preset>-top.png, <preset>-close.png and <preset>-range.png."""
+    words = f"{preset}, {options.rays} rays per beam"
+    title, limits = focus(surfaces, echoes, options.focus)
+    for view, said, bounds in (("top", "From above", tools.extent(surfaces, echoes)), ("close", title, limits)):
+        with tools.figure(options.out / f"{preset}-{view}.png", figsize=(11, 9)) as axes:
+            tools.from_above(axes, surfaces, echoes, bounds, f"{said}, {words}")
+    tools.range_images(options.out / f"{preset}-range.png", result, words)
 
 
 def main(argv=None):
     options = arguments(argv)
-    common = tables.Clock()
+    common = tools.Clock()
     with common("read the scene"):
-        seen = running.run(lambda: al.Scene(options.scene))
+        seen = tools.run(lambda: al.Scene(options.scene))
         scene = al.Scene(seen.surfaces, material="Wall") if options.all_wall else seen
     surfaces = seen.surfaces.GetBlock(0)
     if not surfaces.GetNumberOfPoints():
         sys.exit(f"{options.scene}: no surfaces")
     with common("build the tree"):
-        running.update(scene.tree)  # shared by both sensors
+        tools.run(lambda: tools.update(scene.tree))  # shared by both sensors
 
     columns, results = {}, {}
     for preset in ["Airport16", "Airport32"] if options.preset == "both" else [options.preset]:
-        clock = tables.Clock(common.seconds)
+        clock = tools.Clock(common.seconds)
         result, echoes, image = scan(scene, preset, options, clock)
         options.out.mkdir(parents=True, exist_ok=True)
         with clock("write"):
             for kind in ("vtp", "csv", "las", "pcd", "geojson")[:5 if scene.geodetic_origin else 4]:
-                running.run(lambda: al.save(echoes, options.out / f"{preset}.{kind}"))  # noqa: B023
+                tools.run(lambda: al.save(echoes, options.out / f"{preset}.{kind}"))  # noqa: B023
         if not options.no_pictures:
-            import airport_pictures  # only here: numbers need no display
             with clock("pictures"):
-                airport_pictures.draw(surfaces, echoes.data, image, preset, options)
+                draw(surfaces, result, echoes, preset, options)
         results[preset] = echoes.data, result.algorithm, image
-        columns[preset] = [*tables.counts(scene.tree, echoes.data, result.algorithm), *tables.hue_of(options.focus, echoes.data),
+        columns[preset] = [*tools.counts(scene.tree, echoes.data, result.algorithm), *tools.hue_of(options.focus, echoes.data),
                            *clock.rows()]
-    table = tables.table(columns)
-    tables.write(options.out, "table", table)
-    print(table)
+    tools.leave(options.out, "table", *tools.columns(columns))
     return surfaces, results
 
 

@@ -7,22 +7,20 @@ and a table of what became of the birds, birds-over-airport.md.
     birds_over_airport.py --out build/birds-over-airport
     birds_over_airport.py --scans 20 --no-pictures
 
-PYTHONPATH has to name the Python package (`cat build/paraview/python-path`), pictures need a display (`xvfb-run -a`).
+PYTHONPATH has to name the Python package (`cat build/paraview/python-path`).
 """
 import pathlib
 import sys
 
 import numpy as np
-from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
-from vtkmodules.vtkCommonCore import vtkPoints
-from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData
+from vtkmodules.util.numpy_support import vtk_to_numpy
 
 import avianlidar as al
 from avianlidar.apps._sequence import TRUTH
 
 HERE = pathlib.Path(__file__).resolve().parent
-sys.path[:0] = [str(HERE.parent / "common")]
-import running  # noqa: E402
+sys.path.append(str(HERE.parent / "airport"))
+import tools  # noqa: E402
 
 COLORS = {"herring gull": (204, 0, 102), "crow": (0, 0, 0), "kestrel": (230, 97, 0), "Canada goose": (0, 125, 80),
           "starling": (120, 60, 200), "pigeon": (0, 110, 190)}
@@ -36,24 +34,18 @@ FEWEST = 20  # birds in a bin of the curves
 
 
 def arguments(argv=None):
-    parser = running.Parser(description=__doc__.split("\n\n")[0])
-    parser.add_argument("--scenario", type=running.file, default=HERE.parent / "sequence" / "hongqiao.scenario.json",
+    parser = tools.Parser(description=__doc__.split("\n\n")[0])
+    parser.add_argument("--scenario", type=tools.file, default=HERE.parent / "sequence" / "hongqiao.scenario.json",
                         help="default: birds over Shanghai Hongqiao")
-    parser.add_argument("--scans", type=running.whole(1, 100000), default=200, help="in all, default 200")
-    parser.add_argument("--shown", type=running.whole(1, 1000), default=20,
+    parser.add_argument("--scans", type=tools.number(int, 1, 100000), default=200, help="in all, default 200")
+    parser.add_argument("--shown", type=tools.number(int, 1, 1000), default=20,
                         help="successive scans from above, default 20; after as many there are other birds")
-    parser.add_argument("--seed", type=running.whole(-2**31, 2**31 - 1), help="default: that of the scenario")
-    parser.add_argument("--threads", type=running.whole(0, 4096), default=0, help="default 0: as many as there are cores")
+    parser.add_argument("--seed", type=tools.number(int, -2**31, 2**31 - 1), help="default: that of the scenario")
+    parser.add_argument("--threads", type=tools.number(int, 0, 4096), default=0, help="default 0: as many as there are cores")
     parser.add_argument("--out", type=pathlib.Path, default=pathlib.Path("build/birds-over-airport"),
                         help="folder for results")
-    parser.add_argument("--no-pictures", action="store_true", help="needs no display")
-    return running.parse(parser, argv)
-
-
-def copy_of(output):
-    copy = vtkPolyData()
-    copy.DeepCopy(output)
-    return copy
+    parser.add_argument("--no-pictures", action="store_true", help="leave the table alone")
+    return parser.parse_args(argv)
 
 
 def run(options):
@@ -66,7 +58,7 @@ def run(options):
         for k, scan, species in sequence.frames(number):
             rows += sequence.truth(k, species)
             if number == 0:
-                echoes.append(copy_of(scan.algorithm.GetOutput(0)))
+                echoes.append(scan.echoes)
             if k == 0:
                 first = {"image": {name: np.array(scan.range_image()[name]) for name in
                                    ("distance_m", "column_azimuths", "row_elevations")},
@@ -97,172 +89,105 @@ def trails(movers, species, end):
 
 
 def table_of(truth):
-    """How often each species was what, as Markdown."""
-    lines = ["| a bird in a scan | " + " | ".join(STATUSES) + " |", "|---|" + "---:|" * len(STATUSES)]
-    known = sorted(set(truth["species"]))
-    for name in [*known, "all"]:
-        of = truth["species"] == name if name != "all" else np.ones(len(truth["species"]), bool)
-        lines.append(f"| {name} | " + " | ".join(str(int((of & (truth["status"] == s)).sum())) for s in STATUSES) + " |")
-    return "\n".join(lines) + "\n"
+    """Head and rows: how often each species was what."""
+    found = [(name, truth["species"] == name) for name in sorted(set(truth["species"]))] + [("all", True)]
+    return ("a bird in a scan", *STATUSES), [(name, *(int((of & (truth["status"] == s)).sum()) for s in STATUSES)) for name, of in found]
 
 
-def lines_of(ways, height):
-    """Ways as polylines."""
-    lines, points, cells = vtkPolyData(), vtkPoints(), vtkCellArray()
-    for way in ways:
-        cells.InsertNextCell(len(way))
-        for x, y in way:
-            cells.InsertCellPoint(points.InsertNextPoint(x, y, height))
-    lines.SetPoints(points)
-    lines.SetLines(cells)
-    return lines
+def colour_of(name):
+    return np.array(COLORS.get(name, OTHER)) / 255
 
 
-def dots_of(places, rgb, height):
-    """Points with the array `rgb`."""
-    dots, points = vtkPolyData(), vtkPoints()
-    places = np.array(places, float)
-    places[:, 2] = height
-    points.SetData(numpy_to_vtk(places, deep=True))
-    dots.SetPoints(points)
-    colors = numpy_to_vtk(np.ascontiguousarray(rgb, np.uint8), deep=True)
-    colors.SetName("rgb")
-    dots.GetPointData().AddArray(colors)
-    return dots
-
-
-def draw_from_above(made, options):
+def draw_from_above(made, file):
     """Birds' echoes of the shown scans, their ways, and the clutter of the first scan."""
-    import pictures  # only here: numbers need no display
-    import views
-
-    class Wide(pictures.Picture):
-        right = 220  # for the names of species
-
-    sequence, species = made["sequence"], made["species"]
-    x, y, _ = views.lidar_position(made["echoes"][0])
-    bounds = (x - HALF, x + HALF, y - HALF, y + HALF)
-    scans = len(made["echoes"])
-    size = 1100
-    picture = Wide("Birds over an airport, from above", "", size + Wide.right - Wide.above - Wide.below + Wide.left, size)
-    for kind, shape in views.plan(running.read_scene(sequence.scenario["scene"]).GetOutput()):
-        if kind in views.PAVED:
-            picture.faces(shape, (0.96, 0.96, 0.96))
-        else:
-            picture.outlines(shape, (0.6, 0.6, 0.6))
-    metres = picture.look_down(bounds)
-    echoes = made["echoes"][0]
-    of_bird = np.isin(vtk_to_numpy(echoes.GetPointData().GetArray("object_id")), list(species))
-    energy = vtk_to_numpy(echoes.GetPointData().GetArray("energy"))[~of_bird]
-    low, high = views.limits(echoes)
-
-    def decibels(values, begin, end):
-        return 255 - PALE * (255 - pictures.hue_colors(values, begin, end).astype(float))
-    span = 10 * np.log10(high / low)
-    order = np.argsort(energy)  # the strongest on top
-    picture.dots(dots_of(views.places(echoes)[~of_bird][order], decibels(10 * np.log10(energy[order] / low), 0, span),
-                         2000 + np.arange(len(order)) / max(len(order), 1)), 5 * metres)
-    count = {}
-    for name, ways in made["trails"].items():
-        color = np.array(COLORS.get(name, OTHER)) / 255
-        picture.outlines(lines_of(ways, 3000), tuple(0.45 + 0.55 * color), 1.5)
-    for echoes in made["echoes"]:
-        ids = vtk_to_numpy(echoes.GetPointData().GetArray("object_id"))
-        for name in made["trails"]:
-            places = views.places(echoes)[np.isin(ids, [bird for bird, its in species.items() if its == name])]
-            count[name] = count.get(name, 0) + len(places)
-            if len(places):
-                picture.dots(dots_of(places, [COLORS.get(name, OTHER)] * len(places), 3500), 7 * metres)
-    picture.lidar((x, y, 4000), 14 * metres)
-    picture.subtitle(f"{scans} scans in {scans / sequence.sensor.rotation_rate:g} s; large dots: points of birds; lines: where "
-                     "they flew; small dots: clutter of the first scan")
-    left, top = picture.width - picture.right + 12, picture.height - picture.above - 50
-    picture.text(left, top + 32, "points of birds:", 18, color=pictures.GREY)
-    for k, name in enumerate(made["trails"]):
-        color = np.array(COLORS.get(name, OTHER), np.uint8)
-        picture.pixels(left, top - 30 * k - 6, np.broadcast_to(color, (12, 12, 3)).copy())
-        picture.text(left + 20, top - 30 * k, f"{name}: {count[name]}", 18)
-    picture.hue_bar(0, span, left + 8, 140, 380, lambda *what: decibels(*what).astype(np.uint8), "clutter (dB)", 1, "{:.0f}")
-    picture.note(views.where_is(x, y, bounds))
-    picture.save(options.out / "from-above.png")
+    from matplotlib.colors import ListedColormap, LogNorm
+    sequence, species, first = made["sequence"], made["species"], made["echoes"][0]
+    pale = ListedColormap(1 - PALE * (1 - al.hue_colors()(np.linspace(0, 1, 256))))
+    low, high = (1e6 * first.fields[name] for name in ("lower_energy_limit", "upper_energy_limit"))
+    with tools.figure(file, figsize=(11, 9)) as axes:
+        tools.plan(axes, al.Scene(sequence.scenario["scene"]).surfaces.GetBlock(0), "0.6")
+        clutter = np.flatnonzero(~np.isin(first["object_id"], list(species)))
+        clutter = clutter[np.argsort(first["energy"][clutter])]
+        dots = axes.scatter(*first.points[clutter, :2].T, s=3, c=1e6 * first["energy"][clutter], cmap=pale, norm=LogNorm(low, high))
+        for name, ways in made["trails"].items():
+            for way in ways:
+                axes.plot(*way.T, color=1 - PALE * (1 - colour_of(name)), linewidth=0.8)
+            own = [bird for bird, its in species.items() if its == name]
+            places = np.concatenate([echoes.points[np.isin(echoes["object_id"], own)] for echoes in made["echoes"]])
+            axes.plot(*places[:, :2].T, "o", color=colour_of(name), markersize=4, label=f"{name}: {len(places)}", zorder=3)
+        x, y, _ = first.fields["position"]
+        axes.plot(x, y, "r+", markersize=12, markeredgewidth=2.5, zorder=4)
+        scans = len(made["echoes"])
+        axes.set(xlim=(x - HALF, x + HALF), ylim=(y - HALF, y + HALF), aspect="equal", xlabel="east (m)", ylabel="north (m)")
+        axes.set_title(f"{scans} scans in {scans / sequence.sensor.rotation_rate:g} s: points of birds, where they flew, "
+                       "and clutter of the first scan", loc="left")
+        axes.legend(loc="upper left", title="points of birds")
+        axes.figure.colorbar(dots, ax=axes, label="energy of clutter (µJ)", shrink=0.6)
 
 
 def draw_range_image(made, file):
     """Range of every beam of the first scan, and the birds."""
-    import matplotlib
-    matplotlib.use("Agg")
-    import matplotlib.pyplot as plt
     from matplotlib.colors import ListedColormap
     image, truth = made["image"], made["truth"]
     azimuths, elevations = image["column_azimuths"], image["row_elevations"]
     greys = ListedColormap(np.repeat(np.linspace(0, 0.82, 256)[:, None], 3, axis=1))
-    figure, axes = plt.subplots(2, 1, figsize=(13, 5.6), constrained_layout=True)
-    now = truth["scan"] == 0
-    for axis, begin in zip(axes, (0, 180)):
-        mesh = axis.pcolormesh(azimuths, elevations, np.ma.masked_invalid(image["distance_m"]), cmap=greys, vmin=0,
-                               vmax=FAR, shading="nearest", rasterized=True)
-        for name in made["trails"]:
-            of = now & (truth["species"] == name) & np.isfinite(truth["azimuth_deg"])
-            color = np.array(COLORS.get(name, OTHER)) / 255
-            seen = of & (truth["status"] == "seen")
-            axis.scatter(truth["azimuth_deg"][seen], truth["elevation_deg"][seen], s=42, color=[color], edgecolors="white",
-                         linewidths=0.8, label=name, zorder=3)
-            rest = of & ~seen
-            axis.scatter(truth["azimuth_deg"][rest], truth["elevation_deg"][rest], s=38, facecolors="none",
-                         edgecolors=[color], linewidths=1.4, zorder=3)
-        step = azimuths[1] - azimuths[0]
-        axis.set(xlim=(begin - step, begin + 180), ylim=(-0.6, elevations[-1] + 0.6), ylabel="elevation (deg)")
-        axis.set_xticks(range(begin, begin + 181, 30))
-    axes[0].scatter([], [], s=38, facecolors="none", edgecolors="grey", linewidths=1.4, label="not seen")
-    axes[0].legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncol=len(made["trails"]) + 1, frameon=False)
-    axes[1].set_xlabel("azimuth from north, clockwise (deg)")
-    figure.colorbar(mesh, ax=axes, label="range of the strongest echo (m)", shrink=0.8, extend="max")
-    figure.savefig(file, dpi=100)
-    plt.close(figure)
+    with tools.figure(file, 2, 1, figsize=(13, 5.6)) as axes:
+        now = truth["scan"] == 0
+        for axis, begin in zip(axes, (0, 180)):
+            mesh = axis.pcolormesh(azimuths, elevations, np.ma.masked_invalid(image["distance_m"]), cmap=greys, vmin=0,
+                                   vmax=FAR, shading="nearest", rasterized=True)
+            for name in made["trails"]:
+                of = now & (truth["species"] == name) & np.isfinite(truth["azimuth_deg"])
+                color = colour_of(name)
+                seen = of & (truth["status"] == "seen")
+                axis.scatter(truth["azimuth_deg"][seen], truth["elevation_deg"][seen], s=42, color=[color], edgecolors="white",
+                             linewidths=0.8, label=name, zorder=3)
+                rest = of & ~seen
+                axis.scatter(truth["azimuth_deg"][rest], truth["elevation_deg"][rest], s=38, facecolors="none",
+                             edgecolors=[color], linewidths=1.4, zorder=3)
+            step = azimuths[1] - azimuths[0]
+            axis.set(xlim=(begin - step, begin + 180), ylim=(-0.6, elevations[-1] + 0.6), ylabel="elevation (deg)")
+            axis.set_xticks(range(begin, begin + 181, 30))
+        axes[0].scatter([], [], s=38, facecolors="none", edgecolors="grey", linewidths=1.4, label="not seen")
+        axes[0].legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncol=len(made["trails"]) + 1, frameon=False)
+        axes[1].set_xlabel("azimuth from north, clockwise (deg)")
+        axes[0].figure.colorbar(mesh, ax=axes, label="range of the strongest echo (m)", shrink=0.8, extend="max")
 
 
 def draw_points(made, file):
     """Of birds that nothing hides, by range: points, and the share seen against the expected one."""
-    import matplotlib
-    matplotlib.use("Agg")
-    import matplotlib.pyplot as plt
     truth = made["truth"]
-    figure, (left, right) = plt.subplots(1, 2, figsize=(12, 4.4), constrained_layout=True)
     free = np.isin(truth["status"], ("seen", "missed", "too weak"))
-    for name in made["trails"]:
-        of = free & (truth["species"] == name)
-        color = np.array(COLORS.get(name, OTHER)) / 255
-        bins = np.floor(truth["range_m"][of] / BIN).astype(int)
-        kept = [k for k in np.unique(bins) if (bins == k).sum() >= FEWEST and (k + 0.5) * BIN < 1000]
-        at = [(k + 0.5) * BIN for k in kept]
+    with tools.figure(file, 1, 2, figsize=(12, 4.4)) as (left, right):
+        for name in made["trails"]:
+            of = free & (truth["species"] == name)
+            color = colour_of(name)
+            bins = np.floor(truth["range_m"][of] / BIN).astype(int)
+            kept = [k for k in np.unique(bins) if (bins == k).sum() >= FEWEST and (k + 0.5) * BIN < 1000]
+            at = [(k + 0.5) * BIN for k in kept]
 
-        def means(values):
-            return [values[of][bins == k].mean() for k in kept]
-        left.plot(at, means(truth["points"]), marker="o", color=color, label=name)
-        right.plot(at, means(truth["expected_probability"]), color=color)
-        right.plot(at, means((truth["status"] == "seen").astype(float)), "o", color=color)
-    left.set(xlabel="range (m)", ylabel="points of a bird in a scan, mean")
-    right.set(xlabel="range (m)", ylabel="share of birds seen", ylim=(-0.03, 1.03))
-    right.plot([], [], color="grey", label="expected")
-    right.plot([], [], "o", color="grey", label="scanned")
-    for axis in (left, right):
-        axis.grid(alpha=0.3)
-        axis.set_xlim(0, None)
-        axis.legend()
-    left.set_ylim(0, None)
-    figure.savefig(file, dpi=100)
-    plt.close(figure)
+            def means(values):
+                return [values[of][bins == k].mean() for k in kept]
+            left.plot(at, means(truth["points"]), marker="o", color=color, label=name)
+            right.plot(at, means(truth["expected_probability"]), color=color)
+            right.plot(at, means((truth["status"] == "seen").astype(float)), "o", color=color)
+        left.set(xlabel="range (m)", ylabel="points of a bird in a scan, mean")
+        right.set(xlabel="range (m)", ylabel="share of birds seen", ylim=(-0.03, 1.03))
+        right.plot([], [], color="grey", label="expected")
+        right.plot([], [], "o", color="grey", label="scanned")
+        for axis in (left, right):
+            axis.grid(alpha=0.3)
+            axis.set_xlim(0, None)
+            axis.legend()
+        left.set_ylim(0, None)
 
 
 def main(argv=None):
     options = arguments(argv)
-    options.out.mkdir(parents=True, exist_ok=True)
     made = run(options)
-    table = table_of(made["truth"])
-    (options.out / "birds-over-airport.md").write_text(table, encoding="utf-8")
-    print(table)
+    tools.leave(options.out, "birds-over-airport", *table_of(made["truth"]))
     if not options.no_pictures:
-        draw_from_above(made, options)
+        draw_from_above(made, options.out / "from-above.png")
         draw_range_image(made, options.out / "range-image.png")
         draw_points(made, options.out / "points.png")
     return made

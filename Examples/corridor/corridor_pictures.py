@@ -1,14 +1,16 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Pictures of the corridor: what the lidar sees of the door, the stairwell and the corridor, as in paper, Fig. 13-15.
-Colour is energy, the diameter of a dot tells its distance: near is large."""
+Colour is energy; the larger a dot, the nearer."""
 import numpy as np
+import vtkmodules.vtkRenderingOpenGL2  # noqa: F401  (VTK's factories)
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
-from vtkmodules.vtkCommonCore import vtkPoints
-from vtkmodules.vtkCommonDataModel import vtkPolyData
-from vtkmodules.vtkFiltersCore import vtkTriangleFilter
+from vtkmodules.vtkFiltersSources import vtkSphereSource
+from vtkmodules.vtkRenderingCore import (vtkActor, vtkGlyph3DMapper, vtkPolyDataMapper, vtkRenderer, vtkRenderWindow,
+                                         vtkWindowToImageFilter)
 
-import pictures
-import views
+import avianlidar as al
+import tools
+from avianlidar._cloud import vertices
 
 # Pale colours of the materials of Table 1.
 FACES = {0: (0.95, 0.95, 0.94), 1: (0.78, 0.87, 0.93), 2: (0.72, 0.72, 0.75), 3: (0.90, 0.82, 0.70)}
@@ -19,52 +21,90 @@ AREAS = (("door", "The door, its window and the hydrant cabinet", (-3.5, 0, 1.3)
          ("corridor", "The corridor and its bulletin board", (24, 0.6, 1.3), 66))
 
 
-def seen_from(eye, echoes, pull=0.9):
-    """A copy with the diameters of the dots: as the square root of the distance, so that what is nearer looks larger.
-    Dots are pulled a little towards the eye, which they seem not to leave, so that surfaces do not cut them."""
-    copy, places = vtkPolyData(), vtkPoints()
-    copy.ShallowCopy(echoes)
-    places.SetData(numpy_to_vtk(np.add(eye, pull * (vtk_to_numpy(echoes.GetPoints().GetData()) - eye)), deep=True))
-    copy.SetPoints(places)
-    distance = vtk_to_numpy(echoes.GetPointData().GetArray("distance_m"))
-    diameter = numpy_to_vtk(0.028 * pull * np.sqrt(distance), deep=True)
-    diameter.SetName("diameter")
-    copy.GetPointData().AddArray(diameter)
-    return copy
+class View:
+    """Surfaces, lines and dots in perspective, as an image for Matplotlib."""
+
+    def __init__(self, width=1150, height=800):
+        self.renderer, self.window = vtkRenderer(), vtkRenderWindow()
+        self.renderer.SetBackground(1, 1, 1)
+        self.window.SetOffScreenRendering(True)
+        self.window.SetMultiSamples(8)
+        self.window.SetSize(width, height)
+        self.window.AddRenderer(self.renderer)
+
+    def show(self, data, colour=(0, 0, 0), width=1.2, mapper=None):
+        """Draw data in one colour or, by another mapper, in those of its scalars."""
+        if mapper is None:
+            mapper = vtkPolyDataMapper()
+            mapper.ScalarVisibilityOff()
+            mapper.SetResolveCoincidentTopologyToPolygonOffset()
+        mapper.SetInputData(data)
+        actor = vtkActor()
+        actor.SetMapper(mapper)
+        actor.GetProperty().LightingOff()
+        actor.GetProperty().SetColor(*colour)
+        actor.GetProperty().SetLineWidth(width)
+        self.renderer.AddActor(actor)
+        return actor
+
+    def dots(self, points, colours, diameters):
+        """Balls at points (m). @param colours rows of 3 bytes @param diameters one or as many as there are points, m"""
+        data, ball, mapper = vertices(points), vtkSphereSource(), vtkGlyph3DMapper()
+        for name, values in (("rgb", np.ascontiguousarray(colours, np.uint8)), ("size", np.broadcast_to(diameters, len(points)).astype(float))):
+            array = numpy_to_vtk(np.ascontiguousarray(values), deep=True)
+            array.SetName(name)
+            data.GetPointData().AddArray(array)
+        ball.SetThetaResolution(12)
+        mapper.SetSourceConnection(ball.GetOutputPort())
+        mapper.SetScalarModeToUsePointFieldData()
+        mapper.SelectColorArray("rgb")
+        mapper.SetColorModeToDirectScalars()
+        mapper.OrientOff()
+        mapper.SetScaleModeToScaleByMagnitude()
+        mapper.SetScaleArray("size")
+        self.show(data, mapper=mapper)
+
+    def image(self, eye, target, angle):
+        """Rows of pixels, seen from a place. @param angle height of the view, deg"""
+        camera, grab = self.renderer.GetActiveCamera(), vtkWindowToImageFilter()
+        camera.SetPosition(*eye)
+        camera.SetFocalPoint(*target)
+        camera.SetViewUp(0, 0, 1)
+        camera.SetViewAngle(angle)
+        self.renderer.ResetCameraClippingRange()
+        self.window.Render()
+        grab.SetInput(self.window)
+        grab.ReadFrontBufferOff()
+        grab.Update()
+        width, height, _ = grab.GetOutput().GetDimensions()
+        pixels = vtk_to_numpy(grab.GetOutput().GetPointData().GetScalars()).reshape(height, width, -1)[::-1, :, :3].copy()
+        self.window.Finalize()
+        return pixels
 
 
-def triangulated(surfaces):
-    triangles = vtkTriangleFilter()
-    triangles.SetInputData(surfaces)
-    triangles.Update()
-    return triangles.GetOutput()
-
-
-def area_view(scene, echoes, title, words, target, angle):
-    eye = views.lidar_position(echoes)
-    picture = pictures.Picture(title, "", 1300, 900)
+def area_view(file, scene, echoes, title, target, angle):
+    eye, view = np.array(echoes.fields["position"]), View()
     for i in range(scene.GetNumberOfBlocks()):
-        surfaces = triangulated(scene.GetBlock(i))
-        material = int(vtk_to_numpy(surfaces.GetCellData().GetArray("material_id"))[0])
-        picture.faces(surfaces, FACES.get(material, FACES[0]))
-        picture.outlines(pictures.edges(surfaces, 40), (0.3, 0.3, 0.3))
-    if echoes.GetNumberOfPoints():
-        picture.dots(seen_from(eye, echoes), "diameter")
-    picture.look(eye, target, angle)
-    picture.subtitle(f"{words}, {views.count_in_words(picture, echoes)}")
-    picture.hue_bar(*views.limits(echoes))
-    picture.note("seen from the lidar; the larger a dot, the nearer")
-    return picture
+        block = scene.GetBlock(i)
+        view.show(block, FACES.get(int(block.GetCellData().GetArray("material_id").GetTuple1(0)), FACES[0]))
+        view.show(tools.edges(block, 40), (0.3, 0.3, 0.3))
+    if echoes.number_of_points:
+        # Dots are pulled a little towards the eye, so that surfaces do not cut them.
+        view.dots(eye + 0.9 * (echoes.points - eye), echoes["rgb"], 0.025 * np.sqrt(echoes["distance_m"]))
+    with tools.figure(file, figsize=(13, 8.5)) as axes:
+        axes.imshow(view.image(eye, target, angle))
+        axes.set_axis_off()
+        axes.set_title(title, loc="left")
+        low, high = (1e6 * echoes.fields[name] for name in ("lower_energy_limit", "upper_energy_limit"))
+        bar = axes.scatter([], [], c=[], cmap=al.hue_colors(), vmin=low, vmax=high)
+        axes.figure.colorbar(bar, ax=axes, label="energy (µJ)", shrink=0.6)
 
 
-def draw(scene, echoes, image, built, options):
+def draw(scene, scan, echoes, built, options):
     """Write door.png, stairwell.png, corridor.png (of the built scene), top.png and range.png."""
     words = f"C16, {options.rays} rays per beam"
     for name, title, target, angle in AREAS if built else ():
-        area_view(scene, echoes, title, words, target, angle).save(options.out / f"{name}.png")
-    shapes = [("", pictures.edges(triangulated(scene.GetBlock(i)), 40)) for i in range(scene.GetNumberOfBlocks())]
-    bounds = views.around(views.site(scene, echoes), 0.05)
-    views.from_above(shapes, echoes, "Echoes from above", words, bounds, 6).save(options.out / "top.png")
-    title = f"Range image: {words}, {echoes.GetNumberOfPoints()} echoes"
-    page = pictures.range_picture(image, title, views.limits(echoes))
-    page.save(options.out / "range.png")
+        area_view(options.out / f"{name}.png", scene, echoes, f"{title}, seen from the lidar; {words}", target, angle)
+    with tools.figure(options.out / "top.png", figsize=(13, 5)) as axes:
+        tools.from_above(axes, scene, echoes, tools.extent(scene, echoes, 0.05), f"From above, {words}")
+    tools.range_images(options.out / "range.png", scan, words)

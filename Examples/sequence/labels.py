@@ -10,12 +10,10 @@ import argparse
 import pathlib
 import sys
 
-import matplotlib
 import numpy as np
-from avianlidar._command import main as avianlidar
+from matplotlib.figure import Figure
 
-matplotlib.use("Agg")
-from matplotlib import pyplot as plt  # noqa: E402
+from avianlidar._command import main as avianlidar
 
 HERE = pathlib.Path(__file__).resolve().parent
 # Classes of SemanticKITTI that are drawn: name, colour, size of a point.
@@ -44,7 +42,8 @@ def main(arguments=None):
     if avianlidar(["sequence", str(HERE / "hongqiao.scenario.json"), "-o", str(folder), "--scans", str(options.scans)]):
         sys.exit(1)
     places, labels = points(folder)
-    figure, axes = plt.subplots(figsize=(8, 6), layout="constrained")
+    figure = Figure(figsize=(8, 6), layout="constrained")
+    axes = figure.subplots()
     for label, (name, colour, size) in CLASSES.items():
         x, y = places[labels == label].T
         if len(x):
@@ -53,7 +52,6 @@ def main(arguments=None):
              title=f"Labelled points of {options.scans} scans")
     axes.legend(loc="upper left", markerscale=3, fontsize=8)
     figure.savefig(options.out / "labels.png", dpi=125)
-    plt.close(figure)
     return {int(label): int(count) for label, count in zip(*np.unique(labels, return_counts=True))}
 
 

@@ -9,7 +9,7 @@ import unittest
 from ranktools import SOURCE, fresh, on_ranks, run
 
 EXAMPLES = SOURCE / "Examples"
-PLAN, DESIGN = EXAMPLES / "coverage" / "hongqiao.coverage.json", EXAMPLES / "design" / "hongqiao.coverage.json"
+PLAN, DESIGN = EXAMPLES / "coverage" / "hongqiao.coverage.json", EXAMPLES / "coverage" / "design.coverage.json"
 TARGET = {"species": "", "effective_area": 0.03, "clutter": False}  # m2: quicker than birds
 
 

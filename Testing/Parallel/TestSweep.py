@@ -19,7 +19,7 @@ from avianlidar.vtkAvianLidar import vtkAvianLidarBeamSource
 
 from ranktools import LAUNCHER, SOURCE, fresh, on_ranks
 
-EXAMPLE = SOURCE / "Examples" / "sweep" / "sweep.py"
+EXAMPLE = SOURCE / "Examples" / "sequence" / "sweep.py"
 sys.path.insert(0, str(EXAMPLE.parent))
 import sweep  # noqa: E402
 

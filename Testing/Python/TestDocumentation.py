@@ -8,7 +8,7 @@ import sys
 import unittest
 
 SOURCE = pathlib.Path(os.environ["AVIANLIDAR_SOURCE_DIR"])
-sys.path.insert(0, str(SOURCE / "Examples" / "paper"))
+sys.path.insert(0, str(SOURCE / "Testing" / "Studies" / "paper"))
 sys.path.insert(0, str(SOURCE / "Testing"))
 import reliability_tables  # noqa: E402
 import verdicts  # noqa: E402

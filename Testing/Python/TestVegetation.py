@@ -1,13 +1,11 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What Examples/weather/vegetation.py measures of crowns, on beams of known extinction."""
-import os
-import sys
+"""What Testing/Studies/weather/vegetation.py measures of crowns, on beams of known extinction."""
 import unittest
 
 import numpy as np
 
-sys.path.insert(0, os.path.join(os.environ["AVIANLIDAR_SOURCE_DIR"], "Examples", "weather"))
-import vegetation  # noqa: E402
+import exampletools  # noqa: F401  (finds the studies)
+import vegetation
 
 EXTINCTION = 0.7  # 1/m
 

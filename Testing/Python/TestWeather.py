@@ -4,7 +4,6 @@ range unit and its noise are TestAir's (kernel)."""
 import math
 import os
 import pathlib
-import sys
 import tempfile
 import unittest
 
@@ -14,8 +13,8 @@ from scipy import integrate, stats
 import avianlidar as al
 from helpertools import run
 
-sys.path.insert(0, os.path.join(os.environ["AVIANLIDAR_SOURCE_DIR"], "Examples", "weather"))
-from others import kept_in_view  # noqa: E402
+import exampletools  # noqa: F401  (finds the studies)
+from others import kept_in_view
 
 LIGHT, PLANCK = 299792458.0, 6.626e-34  # the constants of the receiver
 NOTHING = al.Scene(np.zeros((0, 3)), np.zeros((0, 3), dtype=int), material="Wall")

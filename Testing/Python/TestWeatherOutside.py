@@ -3,8 +3,6 @@
 on Real LiDAR Point Clouds, ICCV 2021, after R. H. Rasshofer et al., Adv. Radio Sci. 9, 2011), its hard and its soft target; Mie's theory of
 droplets and drops; light scattered more than once."""
 import math
-import os
-import sys
 import unittest
 
 import numpy as np
@@ -12,9 +10,9 @@ from scipy import integrate
 
 import avianlidar as al
 
-sys.path.insert(0, os.path.join(os.environ["AVIANLIDAR_SOURCE_DIR"], "Examples", "weather"))
-import multiple_scattering  # noqa: E402
-import others  # noqa: E402
+import exampletools  # noqa: F401  (finds the studies)
+import multiple_scattering
+import others
 
 LIGHT = 299792458.0
 NOTHING = al.Scene(np.zeros((0, 3)), np.zeros((0, 3), dtype=int), material="Wall")

@@ -17,9 +17,8 @@ from echotools import arrays  # noqa: F401
 
 EXAMPLES = os.path.join(os.environ["AVIANLIDAR_SOURCE_DIR"], "Examples")
 OUTPUT = os.environ["AVIANLIDAR_TEST_OUTPUT_DIR"]
-for folder in ("common", "airport", "birds", "corridor", "coverage", "materials", "measured", "outdoor", "paper", "reflections", "room",
-               "accuracy_speed"):
-    sys.path.insert(0, os.path.join(EXAMPLES, folder))
+for home in (pathlib.Path(EXAMPLES), pathlib.Path(EXAMPLES).parent / "Testing" / "Studies"):
+    sys.path[:0] = [str(folder) for folder in home.iterdir() if folder.is_dir()]
 
 
 def folder(name):

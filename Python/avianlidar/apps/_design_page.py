@@ -190,7 +190,7 @@ def _bounds(name: str, given: Any) -> str:
 class Designs(Study):
     """Designs of a plan within its bounds: `write` finds their shares and leaves tables, pictures and a page.
 
-    >>> study = Designs("Examples/design/hongqiao.coverage.json", "build/design").write()   # doctest: +SKIP
+    >>> study = Designs("Examples/coverage/design.coverage.json", "build/design").write()   # doctest: +SKIP
     >>> study.chosen.values, study.chosen.cost, study.chosen.share                          # doctest: +SKIP
     """
 

@@ -1,0 +1,211 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What the examples share: arguments, errors in one line, the table of a scan, and pictures by Matplotlib."""
+import argparse
+import contextlib
+import csv
+import math
+import os
+import pathlib
+import sys
+import time
+
+import numpy as np
+from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.vtkFiltersCore import vtkCleanPolyData, vtkFeatureEdges, vtkTriangleFilter
+
+import avianlidar as al
+from avianlidar._pipeline import update
+
+LARGEST = sys.float_info.max
+STATUS = ("with echoes below saturation", "that meet nothing", "too weak to be perceived", "saturated",
+          "that meet things outside the gate only")
+PAVED = {"apron": "0.93", "runway": "0.84"}
+
+
+class Parser(argparse.ArgumentParser):
+    """A bad argument ends with one line and the exit code 2."""
+
+    def error(self, message):
+        self.exit(2, f"{self.prog}: {message} (--help says more)\n")
+
+
+def number(kind, low, high=LARGEST):
+    """The type of an argument: an int or a float from low to high."""
+    def convert(text):
+        try:
+            value = kind(text)
+        except ValueError:
+            value = math.nan
+        if not low <= value <= high:
+            raise argparse.ArgumentTypeError(f"expected {kind.__name__} from {low:g} to {high:g}, not '{text}'")
+        return value
+    return convert
+
+
+above_zero, finite = number(float, sys.float_info.min), number(float, -LARGEST)
+
+
+def file(text):
+    """The type of an argument: a file that can be read."""
+    if not os.path.isfile(text) or not os.access(text, os.R_OK):
+        raise argparse.ArgumentTypeError(f"there is no file {text} to read")
+    return pathlib.Path(text)
+
+
+def add_arguments(parser, out):
+    """The arguments of all scans."""
+    parser.add_argument("--rays", type=number(int, 1, 1000000), default=100, help="rays per beam, default 100")
+    parser.add_argument("--seed", type=number(int, -2**31, 2**31 - 1), default=0, help="of the random numbers, default 0")
+    parser.add_argument("--threads", type=number(int, 0, 4096), default=0, help="default 0: as many as there are cores")
+    parser.add_argument("--out", type=pathlib.Path, default=pathlib.Path(out), help=f"folder for results, default {out}")
+    parser.add_argument("--no-pictures", action="store_true", help="leave files and tables alone")
+
+
+def run(work):
+    """Return what the work gives; an error ends the script in one line with the exit code 1."""
+    try:
+        return work()
+    except (al.Error, OSError, ValueError) as error:
+        sys.exit(" ".join(str(error).split()))
+
+
+class Clock:
+    """with clock("read"): ...   keeps the wall time of each stage."""
+
+    def __init__(self, before=()):
+        self.seconds = dict(before)
+
+    @contextlib.contextmanager
+    def __call__(self, stage):
+        start = time.perf_counter()
+        yield
+        self.seconds[stage] = time.perf_counter() - start
+
+    def rows(self):
+        return [(f"{stage} (s)", f"{seconds:.3f}") for stage, seconds in self.seconds.items()]
+
+
+def strings(data, name):
+    array = data.GetFieldData().GetAbstractArray(name)
+    return [array.GetValue(i) for i in range(array.GetNumberOfValues())] if array else []
+
+
+def counts(tree, echoes, lidar):
+    """The rows of a scan's table that are not times."""
+    status = vtk_to_numpy(lidar.GetOutput(1).GetPointData().GetArray("status"))
+    energy, secondary = (vtk_to_numpy(echoes.GetPointData().GetArray(name)) for name in ("return_energy", "secondary_share"))
+    return [("triangles", tree.GetOutput().GetNumberOfPolys()), ("beams", len(status)),
+            *((f"- {name}", int((status == i).sum())) for i, name in enumerate(STATUS)),
+            ("rays emitted", len(status) * lidar.GetRaysPerBeam()), ("rays traced", int(lidar.GetNumberOfTracedRays())),
+            ("echoes", echoes.GetNumberOfPoints()),
+            ("secondary share of the energy", f"{100 * (secondary @ energy) / max(energy.sum(), 1e-300):.2f} %"),
+            ("ghosts (mostly secondary)", int((secondary > 0.5).sum()))]
+
+
+def hue_of(name, echoes):
+    """The row with the median hue of an object's echoes; no row if the scene has no such object."""
+    known = strings(echoes, "object_names")
+    if name not in known:
+        return []
+    ids, hues = (vtk_to_numpy(echoes.GetPointData().GetArray(array)) for array in ("object_id", "hue"))
+    hues = hues[ids == known.index(name)]
+    return [(f"median hue of {name} (deg)", f"{np.median(hues):.0f}" if len(hues) else "none")]
+
+
+def columns(of):
+    """Head and rows of a table from {column: [(label, value)]}; all columns have the same labels."""
+    return ("", *of), [(rows[0][0], *(row[1] for row in rows)) for rows in zip(*of.values())]
+
+
+def markdown(head, rows, left=1):
+    """A table in Markdown; columns behind the first `left` are flush right."""
+    rule = ["---" if i < left else "---:" for i in range(len(head))]
+    return "\n".join("| " + " | ".join(map(str, row)) + " |" for row in (head, rule, *rows)) + "\n"
+
+
+def leave(folder, name, head, rows, left=1):
+    """Write a table as <name>.md and <name>.csv, and print it."""
+    folder.mkdir(parents=True, exist_ok=True)
+    text = markdown(head, rows, left)
+    (folder / f"{name}.md").write_text(text, encoding="utf-8")
+    with open(folder / f"{name}.csv", "w", newline="", encoding="utf-8") as stream:
+        csv.writer(stream).writerows([head, *rows])
+    print(text)
+
+
+@contextlib.contextmanager
+def figure(name, *shape, figsize, dpi=100, **options):
+    """with figure("map.png", 1, 2, figsize=(9, 4)) as axes: ...   writes a picture of axes as `subplots` makes them."""
+    from matplotlib.figure import Figure
+    pathlib.Path(name).parent.mkdir(parents=True, exist_ok=True)
+    page = Figure(figsize, layout="constrained")
+    yield page.subplots(*shape, **options)
+    page.savefig(name, dpi=dpi)
+
+
+def edges(surfaces, angle=20):
+    """The lines where faces end or meet at more than this angle (degrees)."""
+    triangles, clean, found = vtkTriangleFilter(), vtkCleanPolyData(), vtkFeatureEdges()
+    triangles.SetInputData(surfaces)
+    clean.SetInputConnection(triangles.GetOutputPort())
+    found.SetInputConnection(clean.GetOutputPort())
+    found.SetFeatureAngle(angle)
+    found.ColoringOff()
+    update(found)
+    return found.GetOutput()
+
+
+def plan(axes, scene, colour="black"):
+    """Draw blocks from above: pavement as areas, what stands on the ground as its edges, the ground not at all."""
+    from matplotlib.collections import LineCollection, PolyCollection
+    kinds = strings(scene, "object_classes") or [""] * scene.GetNumberOfBlocks()
+    for number, kind in enumerate(kinds):
+        shape = scene.GetBlock(number)
+        if kind == "ground" or not shape or not shape.GetNumberOfCells():
+            continue
+        shape = shape if kind in PAVED else edges(shape, 20 if kind else 40)
+        if shape.GetNumberOfCells():
+            cells = (shape.GetPolys() if kind in PAVED else shape.GetLines()).GetConnectivityArray()
+            corners = vtk_to_numpy(shape.GetPoints().GetData())[vtk_to_numpy(cells).reshape(-1, 3 if kind in PAVED else 2), :2]
+            axes.add_collection(PolyCollection(corners, facecolors=PAVED[kind], edgecolors="face") if kind in PAVED else
+                                LineCollection(corners, colors=colour, linewidths=0.7))
+
+
+def around(points, margin):
+    """x and y limits about points, with a margin that is this share of their extent."""
+    low, high = points[:, :2].min(axis=0), points[:, :2].max(axis=0)
+    grow = margin * (high - low).max() or 100.0
+    return tuple(np.column_stack([low - grow, high + grow]))
+
+
+def extent(scene, echoes, margin=0.03):
+    """Limits about lidar, echoes, and all but the ground within the range gate."""
+    lidar, gate = np.array(echoes.fields["position"]), echoes.fields["range_gate"]
+    kinds = strings(scene, "object_classes") or [""] * scene.GetNumberOfBlocks()
+    blocks = [scene.GetBlock(i) for i, kind in enumerate(kinds) if kind != "ground"]
+    points = np.vstack([lidar[None], *(vtk_to_numpy(one.GetPoints().GetData()) for one in blocks if one and one.GetNumberOfPoints())])
+    near = (abs(points[:, :2] - lidar[:2]) <= gate).all(axis=1)
+    return around(np.vstack([points[near], echoes.points]), margin)
+
+
+def from_above(axes, scene, echoes, limits, title, size=6):
+    """Draw echoes over the plan in the colours of their energy, the strongest on top, and the lidar as a red plus."""
+    plan(axes, scene)
+    order = np.argsort(echoes["energy"])
+    low, high = (1e6 * echoes.fields[name] for name in ("lower_energy_limit", "upper_energy_limit"))
+    dots = axes.scatter(*echoes.points[order, :2].T, s=size, c=1e6 * echoes["energy"][order], cmap=al.hue_colors(), vmin=low, vmax=high,
+                        linewidths=0, zorder=3)
+    axes.plot(*echoes.fields["position"][:2], "r+", markersize=12, markeredgewidth=2.5, zorder=4)
+    (west, east), (south, north) = limits
+    shown = ((echoes.points[:, :2] >= (west, south)) & (echoes.points[:, :2] <= (east, north))).all(axis=1).sum()
+    axes.set(xlim=(west, east), ylim=(south, north), aspect="equal", xlabel="east (m)", ylabel="north (m)")
+    axes.set_title(f"{title}: {shown} of {len(order)} echoes", loc="left")
+    axes.figure.colorbar(dots, ax=axes, label="energy (µJ)", shrink=0.6)
+
+
+def range_images(name, scan, title):
+    """Range and energy of a scan over azimuth and elevation."""
+    with figure(name, 2, 1, figsize=(13, 5)) as axes:
+        scan.plot_range_image("distance_m", axes[0], cmap="gray")
+        scan.plot_range_image("energy", axes[1])
+        axes[0].set_title(f"{title}: {scan.echoes.number_of_points} echoes", loc="left")

@@ -1,0 +1,90 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""One airport in clear air, in fog and in rain, as Search905 receives it: echoes of surfaces, points of drops, and how far a gull is seen.
+
+    PYTHONPATH=$(cat build/paraview/python-path) /usr/bin/python3 Examples/airport/weather.py --out build/weather
+"""
+import argparse
+import pathlib
+import warnings
+
+import numpy as np
+
+import avianlidar as al
+import tools
+from avianlidar import reach
+from avianlidar.vtkAvianLidar import vtkAvianLidarMedium
+
+SCENE = pathlib.Path(__file__).resolve().parent / "scene" / "hongqiao.lidarscene.json"
+SENSOR, SPECIES = "Search905", "herring gull"
+WEATHER = (
+    ("clear, 23 km", {"visibility": 23e3, "air_backscatter": True}),
+    ("haze, 5 km", {"visibility": 5e3, "air_backscatter": True}),
+    ("fog, 1 km", {"visibility": 1e3, "air_backscatter": True}),
+    ("fog, 200 m", {"visibility": 200, "air_backscatter": True}),
+    ("ground fog, 400 m below 5 m", {"visibility": 23e3, "air_backscatter": True}, {"Visibility": 400.0, "Top": 5.0, "Softness": 3.0}),
+    ("rain, 1 mm/h", {"visibility": 23e3, "air_backscatter": True, "rain_rate": 1}),
+    ("rain, 10 mm/h", {"visibility": 10e3, "air_backscatter": True, "rain_rate": 10}),
+    ("rain, 50 mm/h", {"visibility": 5e3, "air_backscatter": True, "rain_rate": 50}),
+)
+SHOWN = ("clear, 23 km", "ground fog, 400 m below 5 m", "fog, 1 km", "rain, 10 mm/h")
+WIDE = 900.0  # m, that the picture shows to each side
+
+
+def fog(properties):
+    """A layer of fog."""
+    source = vtkAvianLidarMedium()
+    for name, value in properties.items():
+        getattr(source, "Set" + name)(value)
+    source.Update()
+    return source.GetOutput()
+
+
+def scan(scene, weather):
+    sensor = al.Sensor(SENSOR, position=scene.lidar_position)
+    return al.Scan(scene, sensor, **weather).echoes
+
+
+def row(name, weather, echoes, layered):
+    objects, away = np.array(echoes["object_id"]), np.array(echoes["distance_m"])
+    air = away[objects == -2]
+    to = None if layered else reach.within_beams(al.Sensor(SENSOR), SPECIES, **weather).to(0.5)
+    return (name, f"{(objects >= 0).sum():,}", f"{len(air):,}", f"{(objects == -1).sum():,}", f"{air.max():.0f} m" if len(air) else "–",
+            f"{float(f'{to:.2g}'):g} m" if to else "–")
+
+
+def draw(axes, name, scene, echoes):
+    objects, points = np.array(echoes["object_id"]), np.array(echoes.points)
+    at = points[:, :2] - np.array(scene.lidar_position)[:2]
+    for wanted, colour, size in ((objects == -2, "C0", 0.05), (objects >= 0, "k", 1.5)):
+        axes.plot(*at[wanted].T, ",", color=colour) if size < 1 else axes.plot(*at[wanted].T, ".", color=colour, markersize=size)
+    axes.plot(0, 0, "r^", markersize=5)
+    axes.set(xlim=(-WIDE, WIDE), ylim=(-WIDE, WIDE), aspect="equal")
+    drops = f", {(objects == -2).sum():,} of drops" if (objects == -2).any() else ""
+    axes.set_title(f"{name}\n{(objects >= 0).sum():,} echoes of surfaces{drops}", fontsize=9)
+    axes.tick_params(labelsize=8)
+
+
+def main(arguments=None):
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--out", type=pathlib.Path, default=pathlib.Path("build/weather"), help="folder, default build/weather")
+    options = parser.parse_args(arguments)
+    warnings.simplefilter("ignore", RuntimeWarning)  # weather without an echo is expected
+    clear, foggy = al.load_scene(SCENE), al.load_scene(SCENE)
+    rows = []
+    with tools.figure(options.out / "weather.png", 1, len(SHOWN), figsize=(14.0, 4.2), dpi=90) as panels:
+        for name, weather, *layers in WEATHER:
+            for layer in layers:
+                foggy.add(fog(layer), name=name)
+            echoes = scan(foggy if layers else clear, weather)
+            rows.append(row(name, weather, echoes, layers))
+            if name in SHOWN:
+                draw(panels[SHOWN.index(name)], name, clear, echoes)
+        panels[0].figure.supxlabel("east of the lidar, m", fontsize=9)
+        panels[0].figure.supylabel("north, m", fontsize=9)
+    tools.leave(options.out, "weather-gulls", ("weather", "echoes of surfaces", "points of the air", "of noise", "the last of the air",
+                                               "half of the gulls, to"), rows)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,117 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What the studies share: their arguments, pipelines of VTK classes, and beams."""
+import functools
+import os
+import pathlib
+import sys
+
+from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
+
+from avianlidar import _pipeline
+from avianlidar._cloud import vertices
+from avianlidar.vtkAvianLidar import vtkAvianLidarEchoFilter, vtkAvianLidarSceneReader
+
+import tools
+from tools import above_zero, file, finite  # noqa: F401  (types of arguments)
+
+AIRPORT = pathlib.Path(__file__).resolve().parents[3] / "Examples" / "airport" / "scene" / "hongqiao.lidarscene.json"
+FOOTPRINTS = AIRPORT.with_name("hongqiao.geojson")
+
+
+def whole(low, high):
+    """The type of an argument: an integer from low to high."""
+    return tools.number(int, low, high)
+
+
+def argument(*flags, **options):
+    """An argument of a study, as argparse has it."""
+    return flags, options
+
+
+def study(*arguments, data=(), out=None):
+    """Make `main(options)` of a study take arguments: `main(argv)`, with --out and those given here.
+
+    data  files and folders below --data (default: AVIANLIDAR_DATA_DIR) that have to be there
+    out   folder for results below build/, default: the name of the study
+    """
+    def decorate(work):
+        @functools.wraps(work)
+        def main(argv=None):
+            name = work.__module__
+            parser = tools.Parser(prog=f"run.py {name}", description=sys.modules[name].__doc__.split("\n\n")[0])
+            folder = pathlib.Path("build", out or name)
+            parser.add_argument("-o", "--out", type=pathlib.Path, default=folder, help=f"folder for results, default {folder}")
+            for flags, more in arguments:
+                parser.add_argument(*flags, **more)
+            if data:
+                parser.add_argument("--data", type=pathlib.Path, default=pathlib.Path(os.environ.get("AVIANLIDAR_DATA_DIR", "")),
+                                    help="the data folder, default AVIANLIDAR_DATA_DIR")
+            options = parser.parse_args(argv)
+            missing = [str(options.data / one) for one in data if not (options.data / one).exists()]
+            if missing:
+                parser.error(f"--data: there is no {missing[0]}")
+            return work(options)
+        return main
+    return decorate
+
+
+def update(algorithm, work=None):
+    """Bring it up to date, or let it work; its first error ends the study in one line with the exit code 1."""
+    tools.run(lambda: _pipeline.update(algorithm, run=work))
+
+
+def write(writer):
+    """Let it write, as `update`."""
+    update(writer, writer.Write)
+
+
+def set_all(algorithm, properties):
+    """Set properties by their names in C++, values of several numbers as tuples."""
+    for name, value in properties.items():
+        getattr(algorithm, "Set" + name)(*value if isinstance(value, tuple) else (value,))
+    return algorithm
+
+
+def made(algorithm, **properties):
+    """The output of a source or filter with these properties."""
+    update(set_all(algorithm, properties))
+    return algorithm.GetOutputDataObject(0)
+
+
+def scanned(beams, tree, **properties):
+    """An echo filter that has scanned. @param beams data, or an algorithm"""
+    lidar = vtkAvianLidarEchoFilter()
+    if beams.IsA("vtkDataObject"):
+        lidar.SetInputDataObject(0, beams)
+    else:
+        lidar.SetInputConnection(0, beams.GetOutputPort())
+    lidar.SetSurfacesConnection(tree.GetOutputPort())
+    update(set_all(lidar, properties))
+    return lidar
+
+
+def column(data, name):
+    """A copy of a point array."""
+    return vtk_to_numpy(data.GetPointData().GetArray(name)).copy()
+
+
+def some_beams(beams, numbers):
+    """A copy of some beams."""
+    found = vertices(vtk_to_numpy(beams.GetPoints().GetData())[numbers])
+    for i in range(beams.GetPointData().GetNumberOfArrays()):
+        array = beams.GetPointData().GetArray(i)
+        copy = numpy_to_vtk(vtk_to_numpy(array)[numbers], deep=True, array_type=array.GetDataType())
+        copy.SetName(array.GetName())
+        found.GetPointData().AddArray(copy)
+    found.GetFieldData().DeepCopy(beams.GetFieldData())
+    return found
+
+
+def read_scene(name):
+    """The reader of a scene that has surfaces."""
+    reader = vtkAvianLidarSceneReader()
+    reader.SetFileName(str(name))
+    update(reader)
+    if reader.GetOutput().GetNumberOfBlocks() == 0:
+        sys.exit(f"{name}: no surfaces")
+    return reader
