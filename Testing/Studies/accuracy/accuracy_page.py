@@ -4,13 +4,13 @@ about ten minutes on two cores.
 
     Testing/Studies/run.py pages accuracy_page
 """
-import csv
 import shutil
 
 import accuracy_speed
 import tools
 import trade_grid
-from running import argument, study
+import trade_results
+from running import study
 
 # Name in the page, arguments, which plots the page shows.
 RUNS = (("airport16", ["airport", "--sensor", "airport16"], ("energy", "range", "detection")),
@@ -18,51 +18,29 @@ RUNS = (("airport16", ["airport", "--sensor", "airport16"], ("energy", "range", 
         ("corridor", ["corridor"], ("energy",)))
 
 
-def rows(file):
-    with open(file, encoding="utf-8") as stream:
-        return list(csv.reader(stream))
+def in_words(r):
+    bound = "" if r.resolved("energy") else "≤ "
+    return (f"{r.median('cpu'):.2g} s, {r.mean('rays'):.0f} rays a beam; energy {bound}{100 * r.error('energy'):.2g} % "
+            f"(median {100 * r.mean('energy_median'):.2g} %), range {1000 * r.error('range'):.2g} mm, "
+            f"{100 * r.error('detection'):.2g} % missed or false")
 
 
-def results(file):
-    head, *body = rows(file)
-    return [dict(zip(head, row)) for row in body]
-
-
-def in_words(row):
-    def value(name, factor=1):
-        return f"{factor * float(row[name]):.2g}"
-
-    def energy(kind):
-        return value(f"energy {kind} error with missed as -1 [1]", 100)
-
-    bound = "" if float(row["energy error told by the reference [1]"]) else "≤ "
-    return (f"{value('time of one core [s]')} s, {float(row['rays traced per beam [1]']):.0f} rays a beam; energy "
-            f"{bound}{energy('rms')} % (median {energy('median')} %), range "
-            f"{value('range rms error [m]', 1000)} mm, {value('missed and false of the true [1]', 100)} % missed or false")
-
-
-def joined(folder, part):
-    """Head and rows of the tables of all scenes below one another, with the scene in front."""
-    found = {name: rows(folder / name / f"{part}.csv") for name, *_ in RUNS}
-    subjects = {name: results(folder / name / "results.csv")[0] for name in found}
-    return ("scene", *found[RUNS[0][0]][0]), [(f"{subjects[name]['scene']}, {subjects[name]['sensor']}", *row)
-                                              for name, (_, *body) in found.items() for row in body]
-
-
-@study(argument("--scenes", nargs="*", choices=[name for name, *_ in RUNS], default=[name for name, *_ in RUNS],
-                help="measure these and take the others from an earlier run; default: all"))
+@study()
 def main(options):
-    for name, arguments, _ in RUNS:
-        if name in options.scenes:
-            accuracy_speed.main([*arguments, "--out", str(options.out / name)])
-    known = {name: results(options.out / name / "results.csv") for name, *_ in RUNS}
-    tools.leave(options.out, "trade-presets", ("preset", *(f"{t[0]['scene']}, {t[0]['sensor']}" for t in known.values())), [
-        (f"`{preset}`", *(in_words(next(row for row in table if row["setting"] == preset)) for table in known.values()))
-        for preset in trade_grid.PRESETS])
-    tools.leave(options.out, "trade-advice", *joined(options.out, "advice"), 3)
-    tools.leave(options.out, "trade-rates", *joined(options.out, "rates"), 2)
-    for name, _, pictures in RUNS:
+    found = {}
+    for name, arguments, pictures in RUNS:
+        subject, _, results, advice = accuracy_speed.main([*arguments, "--out", str(options.out / name)])
+        found[f"{subject.name}, {subject.sensor_name}"] = results, advice
         for part in ("head", "table") if pictures else ("head",):
             shutil.copyfile(options.out / name / f"{part}.md", options.out / f"trade-{part}-{name}.md")
         for kind in pictures:
             shutil.copyfile(options.out / name / f"{kind}.png", options.out / f"{name}-{kind}.png")
+    tools.leave(options.out, "trade-presets", ("preset", *found), [
+        (f"`{preset}`", *(in_words(next(r for r in results if r.choice.family == preset)) for results, _ in found.values()))
+        for preset in trade_grid.PRESETS])
+    for name, left, tables in (
+            ("advice", 3, {scene: trade_results.advice_table(advice, results) for scene, (results, advice) in found.items()}),
+            ("rates", 2, {scene: accuracy_speed.rates(results) for scene, (results, _) in found.items()})):
+        head = next(iter(tables.values()))[0]
+        tools.leave(options.out, f"trade-{name}", ("scene", *head), [
+            (scene, *row) for scene, (_, rows) in tables.items() for row in rows], left)

@@ -63,14 +63,9 @@ def next_faster(advice):
 
 def judge(reference, settings):
     """(the largest errors of the scans: energy, range, missed; s of one core, the median)."""
-    found, times = [], []
-    for seed in SEEDS:
-        run = trade_runs.scan(reference.subject, settings, seed)
-        errors = trade_runs.judge(reference, run)
-        found.append((trade_runs.rms(errors["energy"]), trade_runs.rms(errors["range"]),
-                      (errors["missed"] + errors["false"]) / max(errors["true"], 1)))
-        times.append(run.cpu)
-    return tuple(np.nan_to_num(np.max(found, axis=0))), float(np.median(times))
+    runs = trade_runs.judged(reference, settings, SEEDS)
+    found = [(trade_runs.rms(one["energy"]), trade_runs.rms(one["range"]), trade_runs.wrong(one)) for one, _ in runs]
+    return tuple(np.nan_to_num(np.max(found, axis=0))), float(np.median([run.cpu for _, run in runs]))
 
 
 def in_words(errors):

@@ -29,13 +29,9 @@ def measure(name, sensor, options):
 
 
 def result(reference, values, seeds):
-    runs = []
-    for seed in range(seeds):
-        scan = trade_runs.scan(reference.subject, values, seed)
-        judged = trade_runs.judge(reference, scan)
-        runs.append((judged["energy"], scan.cpu, (judged["missed"] + judged["false"]) / max(judged["true"], 1), judged["held"]))
-    energies, times, wrong, held = zip(*runs)
-    return trade_runs.rms(np.concatenate(energies)), min(times), float(np.mean(wrong)), float(np.mean(np.concatenate(held)))
+    runs = trade_runs.judged(reference, values, range(seeds))
+    return (trade_runs.rms_of(runs, "energy"), min(run.cpu for _, run in runs), np.mean([trade_runs.wrong(found) for found, _ in runs]),
+            np.mean(np.concatenate([found["held"] for found, _ in runs])))
 
 
 def errors(found):

@@ -59,9 +59,8 @@ def judged(subject, options):
     reference = trade_runs.Reference(subject, options.reference_rays)
     found = {}
     for setting, values in JUDGED.items():
-        runs = [trade_runs.judge(reference, trade_runs.scan(subject, values, seed)) for seed in range(options.seeds)]
-        found[setting] = (trade_runs.rms(np.concatenate([run["energy"] for run in runs])),
-                          float(np.mean([(run["missed"] + run["false"]) / run["true"] for run in runs])))
+        runs = trade_runs.judged(reference, values, range(options.seeds))
+        found[setting] = trade_runs.rms_of(runs, "energy"), np.mean([trade_runs.wrong(one) for one, _ in runs])
     return found, reference
 
 

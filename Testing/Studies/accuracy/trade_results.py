@@ -56,14 +56,13 @@ class Result:
 
 def summary(found, cost, wall):
     """The numbers of one seed."""
-    true = max(found["true"], 1)
     away = abs(found["range"])
     return {"energy": trade_runs.rms(found["energy"]), "range": trade_runs.rms(found["range"]),
             "total": trade_runs.rms(found["total"]),
             "energy_median": float(np.median(abs(found["energy"]))) if len(found["energy"]) else math.nan,
             "range_95": float(np.percentile(away, 95)) if len(away) else math.nan,
             "bias": float(np.mean(found["energy"])) if len(found["energy"]) else math.nan,
-            "held": float(np.mean(found["held"])), "detection": (found["missed"] + found["false"]) / true, "missed": found["missed"],
+            "held": float(np.mean(found["held"])), "detection": trade_runs.wrong(found), "missed": found["missed"],
             "missed_strong": found["missed_strong"], "false": found["false"], "true": found["true"],
             "cpu": cost.cpu, "wall": wall, "rays": cost.rays, "used": cost.used}
 

@@ -198,3 +198,19 @@ def judge(reference, found):
     return {"energy": energy[reference.strong], "held": held[reference.strong], "range": away[strong], "total": total,
             "missed": len(truth["beam_id"]) - len(i), "missed_strong": int(reference.strong.sum() - strong.sum()),
             "false": len(rest["beam_id"]) - excused, "true": len(truth["beam_id"])}
+
+
+def wrong(found):
+    """The share of the true echoes that is missed or made up."""
+    return (found["missed"] + found["false"]) / max(found["true"], 1)
+
+
+def judged(reference, settings, seeds, subject=None):
+    """[(differences, cost)] of scans with several seeds."""
+    runs = [scan(subject or reference.subject, settings, seed) for seed in seeds]
+    return [(judge(reference, run), run) for run in runs]
+
+
+def rms_of(runs, kind):
+    """The rms of the differences of all runs."""
+    return rms(np.concatenate([found[kind] for found, _ in runs]))

@@ -65,17 +65,13 @@ def scan(subject, settings, seed, threads):
 def errors(reference, subject, settings, seeds):
     """Rows about the returns, runs of range units, of several scans against the reference, and the time of one core."""
     settings = {**settings, "ReturnMode": Filter.RETURN_MODE_ALL}
-    judged, seconds = [], []
-    for seed in range(seeds):
-        found = trade_runs.scan(subject, settings, seed)
-        judged.append(trade_runs.judge(reference, found))
-        seconds.append(found.cpu)
+    runs = trade_runs.judged(reference, settings, range(seeds), subject)
     true = len(reference.echoes["beam_id"])
-    energy = trade_runs.rms(np.concatenate([one["energy"] for one in judged]))
-    return [*((f"- {kind}", f"{100 * np.mean([one[name] for one in judged]) / true:.1f} %")
+    energy = trade_runs.rms_of(runs, "energy")
+    return [*((f"- {kind}", f"{100 * np.mean([one[name] for one, _ in runs]) / true:.1f} %")
               for kind, name in (("missed", "missed"), ("invented", "false"))),
             ("rms error of energy", trade_results.amount("energy", energy)),
-            ("time of one core (s)", f"{np.median(seconds):.3f}")]
+            ("time of one core (s)", f"{np.median([run.cpu for _, run in runs]):.3f}")]
 
 
 def times(subject, turns):
