@@ -89,6 +89,6 @@ def main(options):
     rows = measure()
     shown = [row for row in rows if row["unit"] == "no air" or row["unit"].removesuffix(", one way") in NAMED]
     tools.leave(options.out, "table", ("", *list(rows[0])[1:]), [list(map(text, row.values())) for row in shown])
-    tools.leave(options.out / "all", "grid", list(rows[0]), [list(map(text, row.values())) for row in rows])
+    tools.leave(options.out, "grid", list(rows[0]), [list(map(text, row.values())) for row in rows])
     print(f"{len(rows) - 1} units, of which fit both figures: {len(both(rows))}")
     return rows
