@@ -144,8 +144,7 @@ def table_rows(advice: Advice, most: int = 12) -> List[Tuple[Any, ...]]:
 def notes_of(fields: Mapping[str, Any]) -> List[str]:
     """What was modelled of a scan and what was left out, by field data of its echoes: nothing where there are none."""
     def note(name: str) -> str:
-        value = fields.get("note_" + name, "")
-        return value if isinstance(value, str) else " ".join(map(str, value))
+        return " ".join(fields.get("note_" + name, ()))
 
     if not note("two_reflections") or "rays_per_beam" not in fields:
         return []

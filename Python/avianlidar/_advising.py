@@ -22,13 +22,11 @@ import time
 from typing import Any, Dict, List, Optional, Sequence, Tuple
 
 import numpy as np
-from vtkmodules.util.numpy_support import numpy_to_vtk
-from vtkmodules.vtkCommonCore import VTK_ID_TYPE, vtkPoints
 from vtkmodules.vtkCommonDataModel import vtkPolyData
 
 from . import vtkAvianLidar as _wrapped
 from ._advice import KINDS, MET, NOT_MET, SETTINGS, UNDECIDED, Advice, Setting
-from ._cloud import Cloud, as_numpy
+from ._cloud import Cloud, add_array, as_numpy, with_points
 from ._echo_errors import (BEAM, ENERGY, OBJECT, RANGE, SECONDARY, SURELY, TOTAL, Judge, Known, bounds, in_order,
                            per_beam, ratio_of)
 from ._pipeline import Progress, update
@@ -60,6 +58,7 @@ class Trial:
     def __init__(self, setting: Setting):
         self.setting = setting
         self.x = self.y = np.zeros((3, 0))  # by kind of error and beam: sums, and what they are divided by
+        self.batches = 0  # of the sample
         self.errors = np.full((3, 3), np.nan)  # by kind: value, least, most
         self.verdicts = np.zeros(3, int)
         self.times: List[float] = []  # s of a beam, each turn
@@ -98,23 +97,11 @@ def spread(items: np.ndarray, start: float) -> np.ndarray:
 
 def some_of(beams: vtkPolyData, which: np.ndarray) -> vtkPolyData:
     """Some of the beams, with the ids that they have."""
-    some, points, data = vtkPolyData(), vtkPoints(), some_arrays(beams.GetPointData())
-    if "beam_id" not in data:
-        data["beam_id"] = (np.arange(beams.GetNumberOfPoints()), VTK_ID_TYPE)
-    points.SetData(numpy_to_vtk(as_numpy(beams.GetPoints().GetData())[which], deep=True))
-    some.SetPoints(points)
+    some = with_points(as_numpy(beams.GetPoints().GetData())[which])
     some.GetFieldData().ShallowCopy(beams.GetFieldData())
-    for name, (values, kind) in data.items():
-        array = numpy_to_vtk(np.ascontiguousarray(values[which]), deep=True, array_type=kind)
-        array.SetName(name)
-        some.GetPointData().AddArray(array)
+    for name, values in {"beam_id": np.arange(beams.GetNumberOfPoints()), **Cloud(beams)}.items():
+        add_array(some.GetPointData(), name, values[which])
     return some
-
-
-def some_arrays(data: Any) -> Dict[str, Tuple[np.ndarray, int]]:
-    """The arrays of numbers by name, and their types of VTK."""
-    arrays = (data.GetArray(i) for i in range(data.GetNumberOfArrays()))
-    return {array.GetName(): (as_numpy(array), array.GetDataType()) for array in arrays if array}
 
 
 def is_convex(surfaces: vtkPolyData, place: np.ndarray) -> bool:
@@ -192,7 +179,7 @@ class Measurement:
         length = 0.5 * 299792458.0 * np.array((fields["sampling_interval"], fields["pulse_width"]))  # m
         self.judge = Judge(length.sum(), 2 * fields["lower_energy_limit"])
         self.sample = np.zeros(0, int)  # of the candidates
-        self.truth = Known(np.zeros((0, 6)), np.zeros((0, 6)), np.zeros((3, 0)), np.zeros((3, 0)))
+        self.batches: List[Tuple[np.ndarray, Known]] = []  # of the sample, with what is taken for true
         self.bias = np.zeros(2)  # of the reference, squares
 
     def scan(self, beams: vtkPolyData, setting: Setting, seed: int, by: Optional[Scanner] = None) -> np.ndarray:
@@ -259,15 +246,16 @@ class Measurement:
             beams = self.beams_of(new[coarse])
             finer = self.judge.average([self.scan(beams, FINER, seed) for seed in FINER_SEEDS], len(coarse))
             known = known.replaced(coarse, finer)
-        self.truth = self.truth.followed_by(known)
+        self.batches.append((new, known))
         return scans[0]
 
     def look_at_scene(self, first: np.ndarray) -> None:
         """What the reference's light consists of, by its first scan, and how far plain rays are from it."""
-        beams, weights = self.beams_of(self.sample), self.weights()
+        (new, truth), weights = self.batches[0], self.weights()
+        beams = self.beams_of(new)
         witness = [self.scan(beams, WITNESS, seed) for seed in WITNESS_SEEDS]
         self.bias = np.array([max(0.0, ratio - SURELY * deviation) for ratio, deviation in (
-            ratio_of(x, y, weights) for x, y in zip(*self.judge.compare(witness, self.truth)))])
+            ratio_of(x, y, weights) for x, y in zip(*self.judge.compare(witness, truth)))])
 
         def light(rows):
             return weights[rows[:, BEAM].astype(int)] * rows[:, TOTAL]
@@ -281,7 +269,7 @@ class Measurement:
         self.secondary = (light(first) * first[:, SECONDARY]).sum() / energy
         self.largest = first[:, SECONDARY].max(initial=0)
         self.connected = 1 - light(unconnected).sum() / energy
-        self.without = [self.errors_of(*self.judge.count(rows, self.truth)) for rows in (one, unconnected)]
+        self.without = [self.errors_of(*self.judge.count(rows, truth)) for rows in (one, unconnected)]
         self.reflects_twice = self.secondary >= 1e-6 or self.without[0][0, 0] >= 1e-4 or self.without[0][2, 0] > 0
 
         tree, before = _wrapped.vtkAvianLidarCollisionTree(), time.process_time()
@@ -307,7 +295,8 @@ class Measurement:
 
     def own(self) -> np.ndarray:
         """Errors of the reference."""
-        errors = np.array([ratio_of(x, y, self.weights())[0] for x, y in zip(self.truth.x, self.truth.y)])
+        x, y = (np.hstack(parts) for parts in zip(*((truth.x, truth.y) for _, truth in self.batches)))
+        errors = np.array([ratio_of(*kind, self.weights())[0] for kind in zip(x, y)])
         return np.append(np.sqrt(errors[:2] + self.bias), errors[2])
 
     # Settings.
@@ -317,10 +306,10 @@ class Measurement:
 
     def measure(self, trial: Trial) -> None:
         """The errors on the beams of the sample that it has not scanned yet."""
-        known = trial.x.shape[1]
-        found = self.scan(self.beams_of(self.sample[known:]), trial.setting, self.seed + 1)
-        x, y = self.judge.count(found, self.truth.since(known))
-        trial.x, trial.y = np.hstack((trial.x, x)), np.hstack((trial.y, y))
+        for new, truth in self.batches[trial.batches:]:
+            x, y = self.judge.count(self.scan(self.beams_of(new), trial.setting, self.seed + 1), truth)
+            trial.x, trial.y = np.hstack((trial.x, x)), np.hstack((trial.y, y))
+        trial.batches = len(self.batches)
         trial.errors = self.errors_of(trial.x, trial.y)
         _, low, high = trial.errors.T
         trial.verdicts = np.where(high <= self.asked, MET, np.where(low > self.asked, NOT_MET, UNDECIDED))
@@ -395,9 +384,9 @@ def cost(trial: Trial, other: Trial) -> str:
 def lines_of(m: Measurement, advised: Optional[Trial]) -> List[str]:
     """What is advised and why."""
     number = m.beams.GetNumberOfPoints()
-    lines = [f"Asked: {errors_in_words(m.asked)}; measured on {len(m.sample)} of {number} beams "
-             f"with {len(m.truth.sure)} echoes"]
-    if not len(m.truth.sure):
+    sure = sum(len(truth.sure) for _, truth in m.batches)
+    lines = [f"Asked: {errors_in_words(m.asked)}; measured on {len(m.sample)} of {number} beams with {sure} echoes"]
+    if not sure:
         return [*lines, "Advised: nothing, as none of these beams has an echo"]
     of = {trial.setting: trial for trial in m.trials[1:]}
     seconds = number * (advised or of[DEFAULT]).seconds

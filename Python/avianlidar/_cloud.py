@@ -31,23 +31,36 @@ def unit_of(array) -> str:
     return array.GetInformation().Get(vtkDataArray.UNITS_LABEL()) or ""
 
 
-def _field_value(array) -> Any:
-    """Text as a list of strings; one number as it is; more numbers as a NumPy array."""
-    if isinstance(array, vtkStringArray):
-        return [array.GetValue(i) for i in range(array.GetNumberOfValues())]
-    values = as_numpy(array)
-    values = values[0] if len(values) == 1 else values
-    return values if values.ndim else values.item()
-
-
 def _field_arrays(data) -> List[Any]:
     fields = data.GetFieldData()
     return [fields.GetAbstractArray(i) for i in range(fields.GetNumberOfArrays())]
 
 
 def field_values(data) -> Dict[str, Any]:
-    """The field data of a VTK data set by name."""
-    return {array.GetName(): _field_value(array) for array in _field_arrays(data)}
+    """The field data of a VTK data set by name: text as a list, one number as it is, more numbers as a NumPy array."""
+    found: Dict[str, Any] = {}
+    for array in _field_arrays(data):
+        if isinstance(array, vtkStringArray):
+            found[array.GetName()] = [array.GetValue(i) for i in range(array.GetNumberOfValues())]
+        else:
+            values = as_numpy(array)[0] if array.GetNumberOfTuples() == 1 else as_numpy(array)
+            found[array.GetName()] = values if values.ndim else values.item()
+    return found
+
+
+def leaves_of(data) -> Iterator[Any]:
+    """The data sets in a composite."""
+    nodes = data.NewIterator()
+    nodes.InitTraversal()
+    while not nodes.IsDoneWithTraversal():
+        yield nodes.GetCurrentDataObject()
+        nodes.GoToNextItem()
+
+
+def triangles_of(surface) -> Tuple[np.ndarray, np.ndarray]:
+    """Points (n x 3) of vtkPolyData and the numbers of the corners of its triangles (m x 3)."""
+    corners = vtk_to_numpy(surface.GetPolys().GetConnectivityArray()).reshape(-1, 3)
+    return vtk_to_numpy(surface.GetPoints().GetData()), corners
 
 
 def rows_of(what: str, values, row: Tuple[int, ...]) -> np.ndarray:
@@ -60,13 +73,32 @@ def rows_of(what: str, values, row: Tuple[int, ...]) -> np.ndarray:
     return np.ascontiguousarray(rows, dtype=float)
 
 
+def add_array(arrays, name: str, values, unit: str = "") -> None:
+    """Add a copy of numbers (a NumPy array) or of texts to point, cell or field data."""
+    if isinstance(values, np.ndarray):
+        array = numpy_to_vtk(np.ascontiguousarray(values), deep=True)
+    else:
+        array = vtkStringArray()
+        for value in values:
+            array.InsertNextValue(str(value))
+    array.SetName(name)
+    if unit:
+        array.GetInformation().Set(vtkDataArray.UNITS_LABEL(), unit)
+    arrays.AddArray(array)
+
+
+def with_points(rows) -> vtkPolyData:
+    """vtkPolyData with a copy of n rows of x, y, z as points, and no cells."""
+    data, places = vtkPolyData(), vtkPoints()
+    places.SetData(numpy_to_vtk(np.ascontiguousarray(rows), deep=True))
+    data.SetPoints(places)
+    return data
+
+
 def vertices(points) -> vtkPolyData:
     """A vertex for each of n rows of x, y, z; a copy."""
-    rows = rows_of("points", points, (3,))
-    places, cells, data = vtkPoints(), vtkCellArray(), vtkPolyData()
-    places.SetData(numpy_to_vtk(rows, deep=True))
-    cells.SetData(1, numpy_to_vtkIdTypeArray(np.arange(len(rows)), deep=True))
-    data.SetPoints(places)
+    data, cells = with_points(rows_of("points", points, (3,))), vtkCellArray()
+    cells.SetData(1, numpy_to_vtkIdTypeArray(np.arange(data.GetNumberOfPoints()), deep=True))
     data.SetVerts(cells)
     return data
 
@@ -102,10 +134,6 @@ class Cloud(Mapping):
         self.data = data.NewInstance()
         self.data.ShallowCopy(data)
 
-    def _names(self):
-        arrays = self.data.GetPointData()
-        return [arrays.GetArrayName(i) for i in range(arrays.GetNumberOfArrays()) if arrays.GetArray(i)]
-
     def __getitem__(self, name: str) -> np.ndarray:
         """Point array by name, in its unit (`units`): n values, or n rows of its components."""
         array = self.data.GetPointData().GetArray(name) if isinstance(name, str) else None
@@ -114,10 +142,11 @@ class Cloud(Mapping):
         return as_numpy(array)
 
     def __iter__(self) -> Iterator[str]:
-        return iter(self._names())
+        arrays = self.data.GetPointData()
+        return iter([arrays.GetArrayName(i) for i in range(arrays.GetNumberOfArrays()) if arrays.GetArray(i)])
 
     def __len__(self) -> int:
-        return len(self._names())
+        return len([*iter(self)])
 
     def __repr__(self) -> str:
         return f"<{type(self).__name__} of {self.data.GetNumberOfPoints()} points: {', '.join(self)}>"
@@ -152,8 +181,7 @@ class Cloud(Mapping):
     def structured(self) -> np.ndarray:
         """A copy as one structured array: `points` (m) and every point array as a field of its own name and unit."""
         columns = {"points": self.points, **self}
-        types = [(name, values.dtype, values.shape[1:]) for name, values in columns.items()]
-        result = np.empty(self.number_of_points, dtype=types)
+        result = np.empty(self.number_of_points, [(name, of.dtype, of.shape[1:]) for name, of in columns.items()])
         for name, values in columns.items():
             result[name] = values
         return result
@@ -203,7 +231,7 @@ class Cloud(Mapping):
         if frame == "enu":
             return self.points
         if frame == "sensor":
-            return self._to_sensor()
+            return self._to_sensor(self.fields)
         if frame not in FRAMES:
             raise ValueError(f"frame {frame!r} is not known; known are {', '.join(FRAMES)}")
         if "geodetic_origin" not in self.fields:
@@ -215,8 +243,7 @@ class Cloud(Mapping):
         update(transform)
         return Cloud(transform.GetOutputDataObject(0)).points
 
-    def _to_sensor(self) -> np.ndarray:
-        fields = self.fields
+    def _to_sensor(self, fields: Mapping[str, Any]) -> np.ndarray:
         if "position" not in fields or "orientation" not in fields:
             raise ValueError("the frame 'sensor' needs field data 'position' and 'orientation'")
         angles = np.radians(fields["orientation"])

@@ -5,13 +5,11 @@ from __future__ import annotations
 from typing import Any, Dict, List, Mapping, Optional, Sequence
 
 import numpy as np
-from vtkmodules.vtkCommonCore import vtkPoints, vtkStringArray
 from vtkmodules.vtkCommonDataModel import vtkDataSet, vtkImageData, vtkPolyData
-from vtkmodules.util.numpy_support import numpy_to_vtk
 
 from . import _display
 from . import vtkAvianLidar as _wrapped
-from ._cloud import Cloud, as_numpy
+from ._cloud import Cloud, add_array, as_numpy, field_values, with_points
 from ._pipeline import Progress
 from ._properties import wraps
 from ._scan import SceneAndSensor
@@ -21,25 +19,16 @@ from ._sensor import Sensor
 def places_of(points, regions: Optional[Mapping[str, Any]] = None) -> vtkPolyData:
     """Places to look at. @param points n x 3, m @param regions names, each with the numbers of its points; those that no
     region has are of the region "elsewhere" """
-    points = np.ascontiguousarray(points, dtype=float)
+    points = np.asarray(points, dtype=float)
     if points.ndim != 2 or points.shape[1] != 3:
         raise ValueError(f"places have the shape {points.shape}, expected n x 3 coordinates in metres")
-    data, coordinates = vtkPolyData(), vtkPoints()
-    coordinates.SetData(numpy_to_vtk(points, deep=True))
-    data.SetPoints(coordinates)
+    data = with_points(points)
     if regions is not None:
         ids = np.full(len(points), len(regions), dtype=np.int32)
-        names = vtkStringArray()
-        names.SetName("region_names")
-        for number, (name, members) in enumerate(regions.items()):
-            members = np.asarray(members)
+        for number, members in enumerate(map(np.asarray, regions.values())):
             ids[members if members.dtype == bool else members.astype(int)] = number
-            names.InsertNextValue(name)
-        names.InsertNextValue("elsewhere")
-        array = numpy_to_vtk(ids, deep=True)
-        array.SetName("region_id")
-        data.GetPointData().AddArray(array)
-        data.GetFieldData().AddArray(names)
+        add_array(data.GetPointData(), "region_id", ids)
+        add_array(data.GetFieldData(), "region_names", [*regions, "elsewhere"])
     return data
 
 
@@ -100,9 +89,9 @@ class Coverage(SceneAndSensor):
         """`detection_probability`, `track_probability`, `photoelectrons`, `beams_per_scan`, `minimum_effective_area` (m2)
         or `status`: of an image by z, y, x. `pose_probabilities`, where they are asked for, have a last axis of poses."""
         data = self.data
-        array = data.GetPointData().GetArray(name)
+        points = data.GetPointData()
+        array = points.GetArray(name)
         if array is None:
-            points = data.GetPointData()
             known = [points.GetArrayName(i) for i in range(points.GetNumberOfArrays())]
             raise KeyError(f"there is no array {name!r}; known are {', '.join(known)}")
         values = as_numpy(array)
@@ -111,14 +100,13 @@ class Coverage(SceneAndSensor):
     @property
     def status_names(self) -> List[str]:
         """What the numbers of `status` mean."""
-        names = self.data.GetFieldData().GetAbstractArray("status_names")
-        return [names.GetValue(i) for i in range(names.GetNumberOfValues())]
+        return field_values(self.data)["status_names"]
 
     @staticmethod
     def strike_height_density(heights) -> np.ndarray:
         """Density of bird strikes over height, 1/m, by which `strike_height_weights` weights the table. @param heights n, m above
         ground"""
-        return np.array([_wrapped.vtkAvianLidarCoverage.StrikeHeightDensity(height) for height in np.asarray(heights, dtype=float)])
+        return np.array([*map(_wrapped.vtkAvianLidarCoverage.StrikeHeightDensity, np.asarray(heights, dtype=float))])
 
     def __repr__(self) -> str:
         return _display.line(self, _display.coverage_rows)

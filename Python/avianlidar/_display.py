@@ -10,6 +10,7 @@ from typing import Any, Callable, Dict, Optional
 import numpy as np
 from vtkmodules.util.numpy_support import vtk_to_numpy
 
+from ._cloud import triangles_of
 from ._sight import extent
 
 MOST = 20000  # triangles or beams that a picture shows
@@ -68,9 +69,7 @@ def draw_from_above(scene, axes) -> None:
     from matplotlib.collections import PolyCollection
     if not scene.number_of_triangles:
         return
-    surfaces = scene.tree.GetOutput()
-    corners = vtk_to_numpy(surfaces.GetPoints().GetData())
-    triangles = vtk_to_numpy(surfaces.GetPolys().GetConnectivityArray()).reshape(-1, 3)
+    corners, triangles = triangles_of(scene.tree.GetOutput())
     least, greatest = corners[:, 2].min(), corners[:, 2].max()
     shades: Dict[str, Any] = {"cmap": "Greys", "clim": (1.5 * least - 0.5 * greatest - 1, 1.5 * greatest - 0.5 * least + 1)}
     if len(triangles) > MOST:  # the highest corner in each cell of a raster

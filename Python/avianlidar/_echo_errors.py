@@ -34,16 +34,6 @@ class Known(NamedTuple):
     x: np.ndarray  # by kind of error and beam: spread of the mean, ...
     y: np.ndarray  # ... and what it is divided by
 
-    def since(self, beam: int) -> "Known":
-        """Of the beams from this one on, counted from 0."""
-        parts = [rows[rows[:, BEAM] >= beam] - np.eye(6)[BEAM] * beam for rows in self[:2]]
-        return Known(parts[0], parts[1], self.x[:, beam:], self.y[:, beam:])
-
-    def followed_by(self, other: "Known") -> "Known":
-        sure, unsure = (np.concatenate((mine, rows + np.eye(6)[BEAM] * self.x.shape[1]))
-                        for mine, rows in zip(self[:2], other[:2]))
-        return Known(sure, unsure, np.hstack((self.x, other.x)), np.hstack((self.y, other.y)))
-
     def replaced(self, which: np.ndarray, other: "Known") -> "Known":
         """With what another one has of some beams."""
         parts = []

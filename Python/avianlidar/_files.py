@@ -11,11 +11,9 @@ import warnings
 from typing import Any, Dict, List, Optional, Tuple
 
 import numpy as np
-from vtkmodules.util.numpy_support import numpy_to_vtk
-from vtkmodules.vtkCommonCore import vtkDataArray
 
 from . import vtkAvianLidar as _wrapped
-from ._cloud import Cloud, vertices
+from ._cloud import Cloud, add_array, vertices
 from ._disk import read_regular
 from ._pipeline import callers_level, file_name, update
 from ._properties import set_properties
@@ -27,12 +25,6 @@ _AXIS = re.compile(r"(?://)?\s*([xyz])(?:\s*[(\[]m[)\]])?", re.I)  # of CloudCom
 _POINTS = [stem + mark for stem in ("Points", "Points_m_XYZ") for mark in ":_"]  # of ParaView and VeloView, before a number
 # What HELIOS++ writes, without a first line of names; and what any table of places has.
 _HELIOS = ("x y z intensity echo_width return_number number_of_returns fullwave_index hit_object_id classification gps_time").split()
-
-
-def _delimiter(line: str) -> str:
-    """What stands between the names of the first line, quoted ones aside: a tab, a semicolon (spreadsheets in much of Europe) or a comma."""
-    bare = re.sub(r'"[^"]*"', "", line)
-    return max(",;\t", key=bare.count)
 
 
 def _axes(names: List[str]) -> List[str]:
@@ -61,7 +53,7 @@ def _names_and_rows(path: pathlib.Path) -> Tuple[List[str], io.StringIO, Optiona
     if first.lower().startswith("sep=") and len(first) == 5:  # of Excel
         text, delimiter = text.partition("\n")[2], first[4]
     else:
-        delimiter = _delimiter(first)
+        delimiter = max(",;\t", key=re.sub(r'"[^"]*"', "", first).count)  # outside of quotes
     if path.suffix.lower() == ".xyz":
         delimiter = max(",;", key=first.count)
         words = first.replace(delimiter, " ").split()
@@ -123,11 +115,8 @@ def _read_table(path: pathlib.Path) -> Cloud:
         if (np.abs(values) < 2.0**53).all() and (values == np.floor(values)).all():  # of NaN neither
             colours = stem[:-1] == "rgb" and len(parts) == 3 and ((values >= 0) & (values < 256)).all()
             values = values.astype(np.uint8 if colours else np.int64)
-        array = numpy_to_vtk(values if len(parts) > 1 else values[:, 0].copy(), deep=True)
-        array.SetName(stem[:-1] if len(parts) > 1 else name)
-        if units[name]:
-            array.GetInformation().Set(vtkDataArray.UNITS_LABEL(), units[name])
-        data.GetPointData().AddArray(array)
+        several = len(parts) > 1
+        add_array(data.GetPointData(), stem[:-1] if several else name, values if several else values[:, 0], units[name])
     return Cloud(data)
 
 

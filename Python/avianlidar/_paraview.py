@@ -2,11 +2,11 @@
 """What ParaView's button Advise runs on the server: the proxy of Plugin/Filters/AvianLidarAdvisor.xml makes it."""
 from __future__ import annotations
 
-from typing import Any, Dict, Iterable, Optional
+from typing import Any, Dict, Optional
 
-from vtkmodules.util.numpy_support import numpy_to_vtk
+import numpy as np
 from vtkmodules.util.vtkAlgorithm import VTKPythonAlgorithmBase
-from vtkmodules.vtkCommonCore import vtkDataArray, vtkOutputWindow, vtkStringArray
+from vtkmodules.vtkCommonCore import vtkOutputWindow
 from vtkmodules.vtkCommonDataModel import vtkDataObject, vtkTable
 from vtkmodules.vtkCommonExecutionModel import vtkAlgorithm, vtkStreamingDemandDrivenPipeline
 from vtkmodules.vtkParallelCore import vtkMultiProcessController
@@ -14,17 +14,10 @@ from vtkmodules.vtkParallelCore import vtkMultiProcessController
 from . import vtkAvianLidar as _wrapped
 from ._advice import SETTINGS, UNITS, Advice
 from ._advising import measure
+from ._cloud import add_array
 from ._pipeline import Error
 
 ASKED = {"SetEnergyError": "energy", "SetRangeError": "range", "SetMissedShare": "missed", "SetSampleBeams": "beams"}
-
-
-def _words(name: str, lines: Iterable[str]) -> vtkStringArray:
-    array = vtkStringArray()
-    array.SetName(name)
-    for line in lines:
-        array.InsertNextValue(line)
-    return array
 
 
 class Advisor(VTKPythonAlgorithmBase):
@@ -79,18 +72,13 @@ class Advisor(VTKPythonAlgorithmBase):
             advice = measure(self._like, data, asked, self._asked["beams"], lambda share, _: self.UpdateProgress(share))
         except (Error, ValueError) as error:
             vtkOutputWindow.GetInstance().DisplayErrorText(f"ERROR: {error}\n")
-            table.GetFieldData().AddArray(_words("error", [str(error)]))
+            add_array(table.GetFieldData(), "error", [error])
             return 1
         self._advice = advice
         for name, values in advice.table.items():
-            column = numpy_to_vtk(values, deep=True)
-            column.SetName(name)
-            column.GetInformation().Set(vtkDataArray.UNITS_LABEL(), UNITS.get(name, "1"))
-            table.AddColumn(column)
-        row = numpy_to_vtk([advice.row], deep=True)
-        row.SetName("advised")
-        table.GetFieldData().AddArray(row)
-        table.GetFieldData().AddArray(_words("advice", advice.lines))
+            add_array(table.GetRowData(), name, values, UNITS.get(name, "1"))
+        add_array(table.GetFieldData(), "advised", np.array([advice.row]))
+        add_array(table.GetFieldData(), "advice", advice.lines)
         return 1
 
 

@@ -7,7 +7,6 @@ import warnings
 from typing import Any, Dict, Iterator, Optional
 
 import numpy as np
-from vtkmodules.util.numpy_support import numpy_to_vtk
 from vtkmodules.vtkCommonDataModel import vtkMultiBlockDataSet, vtkPolyData
 from vtkmodules.vtkCommonExecutionModel import vtkAlgorithm
 
@@ -15,7 +14,7 @@ from . import _display
 from . import vtkAvianLidar as _wrapped
 from ._advice import Advice
 from ._advising import measure
-from ._cloud import Cloud, as_numpy
+from ._cloud import Cloud, add_array, as_numpy
 from ._pipeline import Progress, callers_level, is_current, update
 from ._plot import plot_map, plot_range_image
 from ._properties import PropertyOwner, wraps
@@ -202,9 +201,7 @@ class Scan(SceneAndSensor):
         self.update()
         numbered, echoes = vtkPolyData(), self.algorithm.GetOutput(0)
         numbered.ShallowCopy(echoes)
-        numbers = numpy_to_vtk(np.arange(echoes.GetNumberOfPoints(), dtype=np.int32), deep=True)
-        numbers.SetName("object_id")
-        numbered.GetPointData().AddArray(numbers)
+        add_array(numbered.GetPointData(), "object_id", np.arange(echoes.GetNumberOfPoints(), dtype=np.int32))
         image = _wrapped.vtkAvianLidarRangeImage()
         image.SetInputData(0, numbered)
         image.SetInputConnection(1, self.algorithm.GetOutputPort(1))

@@ -10,7 +10,7 @@ from typing import Any, Dict, Iterator, List, Mapping, Optional, Sequence, Tuple
 import numpy as np
 from vtkmodules.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray, vtk_to_numpy
 from vtkmodules.util.vtkConstants import VTK_CHAR
-from vtkmodules.vtkCommonCore import vtkCharArray, vtkPoints, vtkStringArray
+from vtkmodules.vtkCommonCore import vtkCharArray
 from vtkmodules.vtkCommonDataModel import (vtkCellArray, vtkCompositeDataSet, vtkDataObject, vtkFieldData,
                                            vtkMultiBlockDataSet, vtkPolyData)
 from vtkmodules.vtkCommonExecutionModel import vtkAlgorithm, vtkAlgorithmOutput
@@ -18,7 +18,7 @@ from vtkmodules.vtkParallelCore import vtkCommunicator
 
 from . import _display
 from . import vtkAvianLidar as _wrapped
-from ._cloud import field_values, rows_of
+from ._cloud import add_array, field_values, rows_of, with_points
 from ._pipeline import Error, Progress, file_name, is_current, text_of, update
 from ._properties import choices, choose, get_property, property_names, set_properties, set_property
 from ._suffixes import PACKETS, TABLES
@@ -48,10 +48,8 @@ def mesh(points, triangles) -> vtkPolyData:
         raise TypeError(f"triangles are of the type {corners.dtype}, expected integers")
     if corners.size and (corners.min() < 0 or corners.max() >= len(places)):
         raise IndexError(f"triangles name points {corners.min()} to {corners.max()}, there are {len(places)}")
-    vertices, cells, surface = vtkPoints(), vtkCellArray(), vtkPolyData()
-    vertices.SetData(numpy_to_vtk(places, deep=True))
+    surface, cells = with_points(places), vtkCellArray()
     cells.SetData(3, numpy_to_vtkIdTypeArray(np.ascontiguousarray(corners.ravel(), dtype=np.int64), deep=True))
-    surface.SetPoints(vertices)
     surface.SetPolys(cells)
     return surface
 
@@ -76,9 +74,7 @@ def mover(surface: vtkPolyData, positions, times=None, orientations=None) -> vtk
     for name, what, values, row in (("pose_position", "positions", positions, (3,)), ("pose_time", "times", times, ()),
                                     ("pose_orientation", "orientations", orientations, (4,))):
         if values is not None:
-            array = numpy_to_vtk(rows_of(what, values, row), deep=True)
-            array.SetName(name)
-            moving.GetFieldData().AddArray(array)
+            add_array(moving.GetFieldData(), name, rows_of(what, values, row))
     return moving
 
 
@@ -151,12 +147,6 @@ def materials() -> Dict[str, Tuple[float, ...]]:
             for name, value in known.items() if _wrapped.vtkAvianLidarMaterial.GetMaterialName(value)}
 
 
-def _of_each_triangle(material) -> bool:
-    """Whether it is a material for each triangle: names, or rows of coefficients."""
-    return not isinstance(material, str) and material is not None and \
-        (np.ndim(material) > 1 or np.asarray(material).dtype.kind in "UO")
-
-
 def _only_block(data):
     while isinstance(data, vtkMultiBlockDataSet) and data.GetNumberOfBlocks() == 1:
         data = data.GetBlock(0)
@@ -190,14 +180,8 @@ def _paint_triangles(data, material, name: Optional[str]) -> vtkPolyData:
     painted.ShallowCopy(_only_block(_painter(data, "Wall", name).GetOutputDataObject(0)))
     cells, ids = painted.GetCellData(), numbers.reshape(-1).astype(np.int32)
     for key, column in (("material_id", ids), *((key, row[ids]) for key, row in zip(COEFFICIENTS, rows.T))):
-        array = numpy_to_vtk(np.ascontiguousarray(column), deep=True)
-        array.SetName(key)
-        cells.AddArray(array)
-    texts = vtkStringArray()
-    texts.SetName("material_names")
-    for word in names:
-        texts.InsertNextValue(str(word))
-    painted.GetFieldData().AddArray(texts)
+        add_array(cells, key, column)
+    add_array(painted.GetFieldData(), "material_names", names)
     return painted
 
 
@@ -317,7 +301,8 @@ class Scene:
         if not isinstance(data, (vtkPolyData, vtkMultiBlockDataSet)):
             raise TypeError(f"surfaces are vtkPolyData or a vtkMultiBlockDataSet of it, not {data.GetClassName()}")
         fields = data.GetFieldData()
-        if _of_each_triangle(material):
+        is_one = material is None or isinstance(material, str)
+        if not is_one and (np.asarray(material).ndim > 1 or np.asarray(material).dtype.kind in "UO"):
             data = _paint_triangles(data, material, name)
         elif material is not None or name:
             self._painters.append(_painter(data, material, name))

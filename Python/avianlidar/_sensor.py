@@ -7,13 +7,10 @@ import os
 from typing import Any, Dict, Tuple, Union
 
 import numpy as np
-from vtkmodules.util.numpy_support import numpy_to_vtk
-from vtkmodules.vtkCommonCore import vtkPoints
-from vtkmodules.vtkCommonDataModel import vtkPolyData
 
 from . import _display
 from . import vtkAvianLidar as _wrapped
-from ._cloud import Cloud
+from ._cloud import Cloud, add_array, with_points
 from ._pipeline import file_name, is_current, update
 from ._properties import PropertyOwner, choices, choose, wraps
 
@@ -75,14 +72,9 @@ class Sensor(PropertyOwner):
             if values.shape != shape or not count:
                 expected = "n rows of x, y, z" if name == "directions" else f"{shape}, as directions have {count} rows"
                 raise ValueError(f"Sensor: {name} have the shape {values.shape}, expected {expected}")
-        beams = vtkPolyData()
-        points = vtkPoints()
-        points.SetData(numpy_to_vtk(np.ascontiguousarray(given["positions"][0]), deep=True))
-        beams.SetPoints(points)
-        for name, values in (("direction", directions), ("timestamp", 1e6 * given["times"][0])):
-            array = numpy_to_vtk(np.ascontiguousarray(values), deep=True)
-            array.SetName(name)
-            beams.GetPointData().AddArray(array)
+        beams = with_points(given["positions"][0])
+        add_array(beams.GetPointData(), "direction", directions)
+        add_array(beams.GetPointData(), "timestamp", 1e6 * given["times"][0])
         update(self.algorithm, run=lambda: self.algorithm.SetBeams(beams))
         return float(given["times"][0].max())
 

@@ -5,9 +5,8 @@ from __future__ import annotations
 from typing import Any, Iterator, Tuple
 
 import numpy as np
-from vtkmodules.util.numpy_support import vtk_to_numpy
 
-from ._cloud import Cloud, field_values
+from ._cloud import Cloud, field_values, triangles_of
 from ._plot import STATUS
 
 WIDE, TALL = 50e3, 1e3  # m: what is wider, or taller and without echoes, may be in millimetres
@@ -23,8 +22,7 @@ def extent(bounds) -> str:
 
 def above_and_below(surfaces, place) -> Tuple[int, int]:
     """How many triangles are straight above a place and how many below or at it."""
-    points = vtk_to_numpy(surfaces.GetPoints().GetData())
-    triangles = vtk_to_numpy(surfaces.GetPolys().GetConnectivityArray()).reshape(-1, 3)
+    points, triangles = triangles_of(surfaces)
     for axis in range(2):  # those with corners on both sides, by bits: there may be millions
         beyond = (points[:, axis] > place[axis])[triangles]
         triangles = triangles[beyond.any(axis=1) & ~beyond.all(axis=1)]
