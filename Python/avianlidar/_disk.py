@@ -4,6 +4,7 @@ folder."""
 from __future__ import annotations
 
 import contextlib
+import csv
 import fcntl
 import gzip
 import io
@@ -15,7 +16,7 @@ import stat
 import threading
 import unicodedata
 import zlib
-from typing import Any, Callable, Iterator, List, Optional
+from typing import Any, Callable, Iterable, Iterator, List, Optional, Sequence
 
 from ._pipeline import Error
 
@@ -38,30 +39,22 @@ def read_regular(file) -> bytes:
     """What a regular file holds, or a link to one; of a file compressed by gzip what it holds then. A pipe may wait for ever,
     a device never end: they are an error, as in the library's RegularFile.h."""
     try:
-        _check_regular(os.stat(file).st_mode, file)
-        handle = os.open(file, os.O_RDONLY | os.O_CLOEXEC | os.O_NONBLOCK)
-        with open(handle, "rb") as stream:
-            _check_regular(os.fstat(handle).st_mode, file)  # another thing may have its name by now
-            content = stream.read()
+        kind = os.stat(file).st_mode
+        if not stat.S_ISREG(kind):
+            what = "it is a folder" if stat.S_ISDIR(kind) else "it is no regular file but a pipe or a device"
+            raise Error(f"{file}: {what}")
+        content = pathlib.Path(file).read_bytes()
     except (OSError, ValueError) as error:  # ValueError of names that no file has
         raise Error(f"{file}: cannot be read ({getattr(error, 'strerror', error)})") from None
-    return _decompressed(content, file) if content.startswith(b"\x1f\x8b") else content
-
-
-def _check_regular(kind: int, file) -> None:
-    if not stat.S_ISREG(kind):
-        raise Error(f"{file}: {'it is a folder' if stat.S_ISDIR(kind) else 'it is no regular file but a pipe or a device'}")
-
-
-def _decompressed(content: bytes, file) -> bytes:
+    if not content.startswith(b"\x1f\x8b"):
+        return content
     try:
-        with gzip.GzipFile(fileobj=io.BytesIO(content)) as stream:
-            found = stream.read(LARGEST + 1)
+        content = gzip.GzipFile(fileobj=io.BytesIO(content)).read(LARGEST + 1)
     except (OSError, EOFError, zlib.error) as error:
         raise Error(f"{file}: its compression by gzip is damaged ({error})") from None
-    if len(found) > LARGEST:
+    if len(content) > LARGEST:
         raise Error(f"{file}: holds more than {LARGEST >> 20} MiB, once decompressed")
-    return found
+    return content
 
 
 def _lock(handle: int) -> Optional[bool]:
@@ -108,22 +101,16 @@ def _has_locks(name: str) -> bool:
         os.close(handle)
 
 
-def _is_there(path: pathlib.Path) -> bool:
-    """Whether there is a file, at the end of links; OSError for anything else than a file, and links without an end."""
-    try:
-        kind = path.stat().st_mode
-    except FileNotFoundError:
-        return False
-    if not stat.S_ISREG(kind):
-        raise FileExistsError(f"{path}: it is there and no ordinary file")
-    return True
-
-
 @contextlib.contextmanager
 def replacing(path: pathlib.Path) -> Iterator[str]:
     """A name beside `path` that takes its place at the end, once all is on the disk; nothing is left if something goes wrong,
     and what a killed process leaves goes when the file is written again: as in the library's OutputFile.h."""
-    replaces = _is_there(path)  # before links are followed: those to open pipes lead to no name
+    try:
+        mode = path.stat().st_mode  # before links are followed: those to open pipes lead to no name
+    except FileNotFoundError:
+        mode = 0
+    if mode and not stat.S_ISREG(mode):
+        raise FileExistsError(f"{path}: it is there and no ordinary file")
     path = path.resolve()  # a link stays a link
     parts = [f"{path}.avianpart{i}" for i in range(PARTS)]
     for part in parts:
@@ -137,7 +124,7 @@ def replacing(path: pathlib.Path) -> Iterator[str]:
     if not name:
         raise FileExistsError(f"{path} is being written by {PARTS} others")
     try:
-        mode = stat.S_IMODE((path if replaces else pathlib.Path(name)).stat().st_mode)
+        mode = stat.S_IMODE(mode or os.fstat(handle).st_mode)
         os.chmod(name, mode | stat.S_IWUSR)
         yield name
         os.chmod(name, mode)
@@ -156,10 +143,8 @@ def replacing(path: pathlib.Path) -> Iterator[str]:
 def synchronize(folder: pathlib.Path) -> None:
     """Names in the folder are on the disk."""
     number = os.open(folder, os.O_RDONLY)
-    try:
-        os.fsync(number)
-    finally:
-        os.close(number)
+    os.fsync(number)
+    os.close(number)
 
 
 def write_whole(path, content: bytes) -> None:
@@ -171,12 +156,19 @@ def write_whole(path, content: bytes) -> None:
     synchronize(path.resolve().parent)
 
 
+def as_csv(rows: Iterable[Sequence[Any]], end: str = "\n") -> bytes:
+    """Rows as a file of CSV holds them."""
+    text = io.StringIO(newline="")
+    csv.writer(text, lineterminator=end).writerows(rows)
+    return text.getvalue().encode()
+
+
 def _new(folder: pathlib.Path) -> List[pathlib.Path]:
     """Of a folder and those above it, what is not there."""
     return [path for path in (folder, *folder.parents) if not os.path.lexists(path)]
 
 
-def _remove_empty(folders: List[pathlib.Path]) -> None:
+def _remove_empty(folders: Iterable[pathlib.Path]) -> None:
     for path in folders:
         with contextlib.suppress(OSError):  # something is in it, or it is a file
             path.rmdir()

@@ -143,11 +143,6 @@ class _Listener:
             self.unfinished.append(caller)
 
 
-def _give_back(number, ours, handler) -> None:
-    if signal.getsignal(number) is ours:  # a handler may have set another one
-        signal.signal(number, handler)
-
-
 @contextlib.contextmanager
 def _signals(listener: _Listener):
     """Handlers of signals, which Python calls in the main thread, are guarded by the listener. One that raises while
@@ -158,7 +153,8 @@ def _signals(listener: _Listener):
                 handler = signal.getsignal(number)
                 if callable(handler):
                     ours = listener.guarded(handler)
-                    stack.callback(_give_back, number, ours, handler)
+                    stack.callback(lambda number=number, ours=ours, handler=handler:  # who set another one keeps it
+                                   signal.getsignal(number) is ours and signal.signal(number, handler))
                     signal.signal(number, ours)
         try:
             yield

@@ -79,12 +79,7 @@ class Ranks:
 
     def first_says(self, so: bool) -> bool:
         """On all ranks what the first one says."""
-        if self.size == 1:
-            return so
-        said = vtkIntArray()
-        said.InsertNextValue(so)
-        self.controller.Broadcast(said, 0)
-        return bool(said.GetValue(0))
+        return self._all(so or self.rank > 0)
 
 
 def as_json(value: Any) -> bytes:

@@ -10,7 +10,7 @@ import numpy as np
 from vtkmodules.vtkCommonCore import vtkPoints
 
 from . import vtkAvianLidar as _wrapped
-from ._disk import replacing
+from ._disk import as_csv, replacing
 from ._pipeline import Error, file_name, update
 from ._properties import set_properties
 from ._suffixes import WRITERS
@@ -31,27 +31,25 @@ def _write(writer, file: str) -> None:
         raise Error(f"{writer.GetClassName()}: {file} was not written")
 
 
-def _write_vtp(cloud, name: str) -> None:
-    """Of VTK only the text is taken: its writer ends the process where a disk is full."""
+def vtp(surface) -> bytes:
+    """A file of vtkPolyData. VTK makes the text only: its writer ends the process where a disk is full."""
     from vtkmodules.vtkIOXML import vtkXMLPolyDataWriter
     writer = vtkXMLPolyDataWriter()
     writer.SetDataModeToBinary()  # VTK with Debian's libexpat does not read Appended data back
-    data = cloud.data.NewInstance()
-    data.ShallowCopy(cloud.data)
+    data = surface.NewInstance()
+    data.ShallowCopy(surface)
     if not data.GetPoints():
         data.SetPoints(vtkPoints())  # without, VTK writes what it does not read
     writer.SetInputData(data)
     writer.WriteToOutputStringOn()
-    _write(writer, name)
+    _write(writer, "the text")
     text = writer.GetOutputString()  # bytes where a name in the data is not UTF-8
     del writer  # with its copy of the text
-    with open(name, "wb") as file:
-        file.write(text.encode() if isinstance(text, str) else text)
+    return text.encode() if isinstance(text, str) else text
 
 
-def _quoted(name: str) -> str:
-    """A cell of CSV: in quotes if it has to be."""
-    return '"' + name.replace('"', '""') + '"' if any(c in name for c in ',"\r\n') else name
+def _write_vtp(cloud, name: str) -> None:
+    pathlib.Path(name).write_bytes(vtp(cloud.data))
 
 
 def _write_csv(cloud, name: str) -> None:
@@ -60,21 +58,22 @@ def _write_csv(cloud, name: str) -> None:
     for key, values in cloud.items():
         parts = [(key, values)] if values.ndim == 1 else [(f"{key}_{i}", part) for i, part in enumerate(values.T)]
         columns += [(part, cloud.units[key], numbers) for part, numbers in parts]
-    header = ",".join(_quoted(_wrapped.vtkAvianLidarUnitNames.NameWithUnit(key, unit)) for key, unit, _ in columns)
+    names = [_wrapped.vtkAvianLidarUnitNames.NameWithUnit(key, unit) for key, unit, _ in columns]
     table = np.empty(cloud.number_of_points, dtype=[(f"c{i}", c[2].dtype) for i, c in enumerate(columns)])
     for i, (_, __, values) in enumerate(columns):
         table[f"c{i}"] = values
     formats = ["%.15g" if values.dtype.kind == "f" else "%d" for _, __, values in columns]
+    header = as_csv([names], "\r\n")[:-2].decode()
     np.savetxt(name, table, fmt=formats, delimiter=",", header=header, comments="", encoding="utf-8")
 
 
 OWN = {".vtp": _write_vtp, ".csv": _write_csv}
 
 
-def check_suffix(file) -> None:
-    """ValueError for a file that `save` would not write, by its suffix."""
+def check_suffix(file, more: Sequence[str] = ()) -> None:
+    """ValueError for a file that `save` would not write, by its suffix. @param more suffixes that are written, too"""
     path = pathlib.Path(file)
-    known = suffixes(WRITERS)
+    known = [*suffixes(WRITERS), *more]
     if path.suffix.lower() not in known:
         raise refuse("write", path, known)
 
