@@ -10,7 +10,7 @@ import re
 import sys
 import traceback
 import warnings
-from typing import Any, Dict, List, Optional
+from typing import Any, List, Optional
 
 from ._suffixes import READERS, WRITERS, listed
 from ._weather import WEATHER
@@ -233,9 +233,11 @@ def parser() -> Parser:
     track.add_argument("--sensor", action="append", default=[], help="of scenarios, in place of their own: a name or a .lidarsensor.json file; may be given "
                        "many times")
     track.add_argument("--scans", type=int, help="number of scans of scenarios, instead of their own")
-    track.add_argument("--learn", type=int, help="scans at the beginning of a sequence of which only clutter is learned; default 20")
-    track.add_argument("--cutoff", type=float, help="m: a track that far from a bird is none of it; also of OSPA; default 20")
-    track.add_argument("--order", type=float, help="of OSPA, default 2")
+    track.add_argument("--learn", type=int, default=20,
+                       help="scans at the beginning of a sequence of which only clutter is learned; default 20")
+    track.add_argument("--cutoff", type=float, default=20.0,
+                       help="m: a track that far from a bird is none of it; also of OSPA; default %(default)g")
+    track.add_argument("--order", type=float, default=2.0, help="of OSPA, default %(default)g")
     _out(track, "folder")
     _settings(track, "clutter", "clutter_threshold=0.1")
     _settings(track, "tracker", "confirm_hits=2")
@@ -273,6 +275,7 @@ def parser() -> Parser:
 def main(argv: Optional[List[str]] = None) -> int:
     """Run the command. @return 0; 2 after an error, which is said in one line"""
     from . import _verbs
+    from ._ranks import Ranks
     sys.stdout = sys.stdout or open(os.devnull, "w", encoding="utf-8")  # of daemons
     sys.stderr = sys.stderr or open(os.devnull, "w", encoding="utf-8")
     options = parser().parse_args(argv)
@@ -298,14 +301,9 @@ def main(argv: Optional[List[str]] = None) -> int:
     finally:  # also after what is not expected, which is raised with its traceback
         if code != 141:
             sys.stdout.flush()
-        if code and _is_parallel():
+        if code and Ranks().size > 1:
             if sys.exc_info()[0]:
                 traceback.print_exc()
             sys.stderr.flush()
             os._exit(code)  # the other ranks must not wait for this one
     return code
-
-
-def _is_parallel() -> bool:
-    from ._ranks import Ranks
-    return Ranks().size > 1

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import contextlib
+import itertools
 import pathlib
 import sys
 import warnings
-from typing import Any, Dict, Iterable, Iterator, List, Tuple
+from typing import Any, Callable, Dict, Iterable, Iterator, List, Tuple
 
 from ._suffixes import PACKETS, TABLES
 
@@ -62,18 +63,14 @@ def _scene(options, bars: Bars):
                  progress=lambda share, _: bars("scene", round(100 * share), 100))
 
 
-def _check_outs(options) -> None:
-    """Errors of names before the work."""
-    from ._writers import check_suffix, check_target
+def _check_outs(options, check: Callable[[pathlib.Path], None]) -> None:
+    """Errors of names before the work. @param check by suffix"""
+    from ._writers import check_target
     for number, out in enumerate(options.out):
+        check(out)
         if out.suffix.lower() == ".png":
             import matplotlib
             matplotlib.use("Agg")
-        else:
-            try:
-                check_suffix(out)
-            except ValueError as error:
-                raise ValueError(f"{error}, .png") from None
         check_target(out, [*options.out[:number], pathlib.Path(options.scene)])
 
 
@@ -99,7 +96,8 @@ def scan(options) -> None:
     from . import save
     from ._advice import notes_of
     from ._disk import replacing
-    _check_outs(options)
+    from ._writers import check_suffix
+    _check_outs(options, lambda out: check_suffix(out, (".png",)))
     bars = Bars()
     scene = _scene(options, bars)
     if not scene.geodetic_origin:
@@ -123,13 +121,7 @@ def scan(options) -> None:
 
 def advise(options) -> None:
     from ._advice import check_suffix, table_rows
-    from ._writers import check_target
-    for number, out in enumerate(options.out):
-        check_suffix(out)
-        if out.suffix.lower() == ".png":
-            import matplotlib
-            matplotlib.use("Agg")
-        check_target(out, [*options.out[:number], pathlib.Path(options.scene)])
+    _check_outs(options, check_suffix)
     bars = Bars()
     scan = _scan_of(options, bars, _scene(options, bars))
     advice = scan.advise(options.energy, options.range, options.missed, options.beams)
@@ -384,17 +376,10 @@ def sequence(options) -> None:
         if values:
             changes[part] = {**scenario.get(part, {}), **in_snake_case(PROPERTIES[part], dict(values), f"--{part}-set")}
     sequence = Sequence(options.scenario, threads=options.threads or (1 if ranks.size > 1 else 0), **changes)
-    bars, finished, total = Bars(), 0, 0
-
-    def progress(number: int, done: int, all_of_them: int) -> None:
-        nonlocal finished, total
-        if ranks.rank:
-            return
-        total = total or sequence.scans_to_do
-        finished += 1
-        bars("scans" if ranks.size == 1 else "scans of the first rank", finished, total)
+    bars, done, what = Bars(), itertools.count(1), "scans" if ranks.size == 1 else "scans of the first rank"
     with _goes_on(options.out, "sequences/[0-9]*/done.json", "whole sequences"):
-        manifest = sequence.write(options.out, ranks, progress)
+        manifest = sequence.write(options.out, ranks, None if ranks.rank else
+                                  lambda *_: bars(what, next(done), sequence.scans_to_do))
     bars.close()
     if ranks.rank == 0:
         parts = manifest["sequences"].values()
@@ -411,10 +396,9 @@ def track(options) -> None:
     changes: Dict[str, Any] = {} if options.scans is None else {"number_of_scans": options.scans}
     if options.weather:
         changes["weather"] = options.weather
-    given = {"learning_scans": options.learn, "cutoff": options.cutoff, "order": options.order}
-    tracks = BirdTracks(options.inputs, options.runways, clutter=dict(options.clutter_set), tracker=dict(options.tracker_set), sensors=options.sensor,
-                        threads=options.threads or (1 if ranks.size > 1 else 0), **changes,
-                        **{name: value for name, value in given.items() if value is not None})
+    tracks = BirdTracks(options.inputs, options.runways, options.learn, options.cutoff, options.order,
+                        dict(options.clutter_set), dict(options.tracker_set), options.sensor,
+                        options.threads or (1 if ranks.size > 1 else 0), **changes)
     with _goes_on(options.out, "followed/*/*.json", "sequences followed"):
         card = tracks.write(options.out, ranks, (lambda *_: None) if ranks.rank else bars)
     bars.close()

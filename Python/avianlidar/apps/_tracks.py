@@ -2,9 +2,10 @@
 """A report card of tracks in labelled sequences: the command `avianlidar track`."""
 from __future__ import annotations
 
+import itertools
 import os
 import pathlib
-from typing import Any, Callable, Dict, List, Optional, Sequence as Many, Union
+from typing import Any, Callable, Dict, Optional, Sequence as Many, Union
 
 import numpy as np
 
@@ -104,7 +105,8 @@ class BirdTracks:
     def _write(self, out: pathlib.Path, ranks: Ranks, progress: Progress) -> Dict[str, Any]:
         for name in self.made:
             self.folders[name] = out / "sequences" / name
-            self._make(name, ranks, progress)
+            made, scans, what = self.made[name], itertools.count(1), f"scans of {name}"
+            made.write(self.folders[name], ranks, lambda *_: progress(what, next(scans), made.scans_to_do))
         inputs = [Input(path, name) for name, path in self.folders.items()]
         chains = [Chain(of.sensor, self.learning, self.clutter, self.tracker) for of in inputs]
         everywhere = [of.runways(self.runways) for of in inputs]
@@ -116,9 +118,8 @@ class BirdTracks:
             file = out / FOLLOWED / of.name / f"{number}.json"
             identity = self._identity(of, number, chain, everywhere[one])
             if not _is_of(file, identity):
-                def step(scans: int, before: int = done) -> None:
-                    progress("scans followed", before + scans, total)
-                found = self._follow(of, number, chain, everywhere[one], step)
+                found = self._follow(of, number, chain, everywhere[one],
+                                     lambda scans: progress("scans followed", done + scans, total))
                 file.parent.mkdir(parents=True, exist_ok=True)
                 write_whole(file, as_json({"identity": identity, **found}))
             done += int(of.content[number]["scans"])
@@ -131,16 +132,6 @@ class BirdTracks:
             card = write_card(out, inputs, results, everywhere, settings, progress)
         ranks.wait()
         return card
-
-    def _make(self, name: str, ranks: Ranks, progress: Progress) -> None:
-        """The sequences of a scenario."""
-        sequence, done = self.made[name], 0
-
-        def step(*_: int) -> None:
-            nonlocal done
-            done += 1
-            progress(f"scans of {name}", done, sequence.scans_to_do)
-        sequence.write(self.folders[name], ranks, step)
 
     def _identity(self, of: Input, number: str, chain: Chain, runways: Many[Runway]) -> str:
         """Of all that decides what is found in a sequence."""
