@@ -83,6 +83,7 @@ set(avianlidar_python_files
   apps/macros.html.jinja
   apps/osmconf.ini
   apps/page.css.jinja
+  apps/page.html.jinja
   apps/report.html.jinja
   apps/scenario.schema.json
   apps/surfaces.json)
