@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import math
 import pathlib
+import re
 import struct
 import zlib
 from typing import Dict, Iterator, List, Sequence, Tuple
@@ -18,98 +19,37 @@ from .._version import __version__
 
 _MAGIC = b"\x89MCAP0\r\n"
 _HEADER, _FOOTER, _SCHEMA, _CHANNEL, _MESSAGE, _CHUNK, _MESSAGES, _CHUNKS, _STATISTICS, _END = 1, 2, 3, 4, 5, 6, 7, 8, 11, 15
-_LINE = "=" * 80
-_TIME = f"{_LINE}\nMSG: std_msgs/Header\nbuiltin_interfaces/Time stamp\nstring frame_id\n{_LINE}\nMSG: builtin_interfaces/Time\nint32 sec\nuint32 nanosec\n"
-_VECTOR = f"{_LINE}\nMSG: geometry_msgs/Vector3\nfloat64 x\nfloat64 y\nfloat64 z\n"
-_QUATERNION = f"{_LINE}\nMSG: geometry_msgs/Quaternion\nfloat64 x\nfloat64 y\nfloat64 z\nfloat64 w\n"
 _TF, _POINTS, _BOXES = 1, 2, 3  # channels, and their schemas
-_TOPICS = {
-    _TF: ("/tf", "tf2_msgs/msg/TFMessage", f"""\
-geometry_msgs/TransformStamped[] transforms
-{_LINE}
-MSG: geometry_msgs/TransformStamped
-std_msgs/Header header
-string child_frame_id
-geometry_msgs/Transform transform
-{_LINE}
-MSG: geometry_msgs/Transform
-geometry_msgs/Vector3 translation
-geometry_msgs/Quaternion rotation
-{_VECTOR}{_QUATERNION}{_TIME}"""),
-    _POINTS: ("/points", "sensor_msgs/msg/PointCloud2", f"""\
-std_msgs/Header header
-uint32 height
-uint32 width
-sensor_msgs/PointField[] fields
-bool is_bigendian
-uint32 point_step
-uint32 row_step
-uint8[] data
-bool is_dense
-{_LINE}
-MSG: sensor_msgs/PointField
-string name
-uint32 offset
-uint8 datatype
-uint32 count
-{_TIME}"""),
-    _BOXES: ("/boxes", "visualization_msgs/msg/MarkerArray", f"""\
-visualization_msgs/Marker[] markers
-{_LINE}
-MSG: visualization_msgs/Marker
-std_msgs/Header header
-string ns
-int32 id
-int32 type
-int32 action
-geometry_msgs/Pose pose
-geometry_msgs/Vector3 scale
-std_msgs/ColorRGBA color
-builtin_interfaces/Duration lifetime
-bool frame_locked
-geometry_msgs/Point[] points
-std_msgs/ColorRGBA[] colors
-string texture_resource
-sensor_msgs/CompressedImage texture
-visualization_msgs/UVCoordinate[] uv_coordinates
-string text
-string mesh_resource
-visualization_msgs/MeshFile mesh_file
-bool mesh_use_embedded_materials
-{_LINE}
-MSG: geometry_msgs/Pose
-geometry_msgs/Point position
-geometry_msgs/Quaternion orientation
-{_LINE}
-MSG: geometry_msgs/Point
-float64 x
-float64 y
-float64 z
-{_LINE}
-MSG: std_msgs/ColorRGBA
-float32 r
-float32 g
-float32 b
-float32 a
-{_LINE}
-MSG: builtin_interfaces/Duration
-int32 sec
-uint32 nanosec
-{_LINE}
-MSG: sensor_msgs/CompressedImage
-std_msgs/Header header
-string format
-uint8[] data
-{_LINE}
-MSG: visualization_msgs/UVCoordinate
-float32 u
-float32 v
-{_LINE}
-MSG: visualization_msgs/MeshFile
-string filename
-uint8[] data
-{_VECTOR}{_QUATERNION}{_TIME}"""),
-}
+_TOPICS = {_TF: ("/tf", "tf2_msgs/TFMessage"), _POINTS: ("/points", "sensor_msgs/PointCloud2"),
+           _BOXES: ("/boxes", "visualization_msgs/MarkerArray")}
+_STAMPED = "std_msgs/Header header"
+_XYZ = "float64 x, float64 y, float64 z"
+_TYPES = {
+    "builtin_interfaces/Duration": "int32 sec, uint32 nanosec",
+    "builtin_interfaces/Time": "int32 sec, uint32 nanosec",
+    "geometry_msgs/Point": _XYZ,
+    "geometry_msgs/Pose": "geometry_msgs/Point position, geometry_msgs/Quaternion orientation",
+    "geometry_msgs/Quaternion": f"{_XYZ}, float64 w",
+    "geometry_msgs/Transform": "geometry_msgs/Vector3 translation, geometry_msgs/Quaternion rotation",
+    "geometry_msgs/TransformStamped": f"{_STAMPED}, string child_frame_id, geometry_msgs/Transform transform",
+    "geometry_msgs/Vector3": _XYZ,
+    "sensor_msgs/CompressedImage": f"{_STAMPED}, string format, uint8[] data",
+    "sensor_msgs/PointCloud2": f"{_STAMPED}, uint32 height, uint32 width, sensor_msgs/PointField[] fields, "
+                               "bool is_bigendian, uint32 point_step, uint32 row_step, uint8[] data, bool is_dense",
+    "sensor_msgs/PointField": "string name, uint32 offset, uint8 datatype, uint32 count",
+    "std_msgs/ColorRGBA": "float32 r, float32 g, float32 b, float32 a",
+    "std_msgs/Header": "builtin_interfaces/Time stamp, string frame_id",
+    "tf2_msgs/TFMessage": "geometry_msgs/TransformStamped[] transforms",
+    "visualization_msgs/Marker":
+        f"{_STAMPED}, string ns, int32 id, int32 type, int32 action, geometry_msgs/Pose pose, "
+        "geometry_msgs/Vector3 scale, std_msgs/ColorRGBA color, builtin_interfaces/Duration lifetime, "
+        "bool frame_locked, geometry_msgs/Point[] points, std_msgs/ColorRGBA[] colors, string texture_resource, "
+        "sensor_msgs/CompressedImage texture, visualization_msgs/UVCoordinate[] uv_coordinates, string text, "
+        "string mesh_resource, visualization_msgs/MeshFile mesh_file, bool mesh_use_embedded_materials",
+    "visualization_msgs/MarkerArray": "visualization_msgs/Marker[] markers",
+    "visualization_msgs/MeshFile": "string filename, uint8[] data",
+    "visualization_msgs/UVCoordinate": "float32 u, float32 v"}
+_CODES = {"bool": "?", "uint8": "B", "int32": "i", "uint32": "I", "float32": "f", "float64": "d"}  # of struct
 _CUBE, _ADD, _DELETE_ALL = 1, 0, 3  # of markers
 _COLOURS = {True: (0.1, 0.7, 0.3, 0.5), False: (0.6, 0.3, 0.8, 0.5)}  # of birds, of others: red, green, blue, opacity
 _FLOAT, _UINT = ("<f4", 7), ("<u2", 4)  # types, and what PointField calls them
@@ -117,98 +57,82 @@ _FIELDS = {"x": _FLOAT, "y": _FLOAT, "z": _FLOAT, "intensity": _FLOAT, "label": 
 _POINT = np.dtype([(name, kind) for name, (kind, _) in _FIELDS.items()])
 
 
-class _Cdr:
-    """A message: each number at a multiple of its size."""
+def _schema(name: str) -> str:
+    """The definition of a message, followed by those of the types in it."""
+    names = [name]
+    for one in names:
+        names += [kind for kind in dict.fromkeys(re.findall(r"\w+/\w+", _TYPES[one])) if kind not in names]
+    texts = [_TYPES[one].replace(", ", "\n") + "\n" for one in names]
+    return f"{'=' * 80}\n".join([texts[0], *(f"MSG: {one}\n{text}" for one, text in zip(names[1:], texts[1:]))])
 
-    def __init__(self) -> None:
-        self.data = bytearray()
 
-    def put(self, code: str, *values) -> None:
-        for value in values:
-            self.data += bytes(-len(self.data) % struct.calcsize(code)) + struct.pack("<" + code, value)
+def _put(data: bytearray, kind: str, value) -> bytearray:
+    """Append a value of a type, a message as the tuple of its fields. Each number is at a multiple of its size."""
+    if kind.endswith("[]"):
+        _put(data, "uint32", len(value))
+        if kind == "uint8[]":
+            data += value
+        else:
+            for one in value:
+                _put(data, kind[:-2], one)
+    elif kind == "string":
+        _put(data, "uint8[]", value.encode() + b"\0")
+    elif kind in _CODES:
+        data += bytes(-len(data) % struct.calcsize(_CODES[kind])) + struct.pack("<" + _CODES[kind], value)
+    else:
+        for field, one in zip(_TYPES[kind].split(", "), value):
+            _put(data, field.split()[0], one)
+    return data
 
-    def text(self, word: str) -> None:
-        content = word.encode() + b"\0"
-        self.put("I", len(content))
-        self.data += content
 
-    def header(self, time: int, frame: str) -> None:
-        self.put("i", time // 10**9)
-        self.put("I", time % 10**9)
-        self.text(frame)
+def _message(key: int, *fields) -> bytes:
+    """A message of a channel, little endian."""
+    return b"\0\1\0\0" + _put(bytearray(), _TOPICS[key][1], fields)
 
-    def message(self) -> bytes:
-        return b"\0\1\0\0" + self.data  # little endian
+
+def _stamp(time: int) -> Tuple[int, int]:
+    return time // 10**9, time % 10**9
 
 
 def _transform(time: int, pose: np.ndarray) -> bytes:
-    """TFMessage of one: from the sensor's frame to the map. The quaternion is the eigenvector of the largest eigenvalue (Bar-Itzhack 2000)."""
+    """From the sensor's frame to the map, by the eigenvector of the largest eigenvalue (Bar-Itzhack 2000)."""
     (a, b, c), (d, e, f), (g, h, i) = pose[:, :3]
     rotation = np.linalg.eigh([[a - e - i, d + b, g + c, h - f], [d + b, e - a - i, h + f, c - g],
                                [g + c, h + f, i - a - e, d - b], [h - f, c - g, d - b, a + e + i]])[1][:, -1]
-    cdr = _Cdr()
-    cdr.put("I", 1)
-    cdr.header(time, "map")
-    cdr.text("lidar")
-    cdr.put("d", *pose[:, 3], *(rotation * (-1 if rotation[3] < 0 else 1)))
-    return cdr.message()
+    return _message(_TF, [((_stamp(time), "map"), "lidar", (pose[:, 3], rotation * (-1 if rotation[3] < 0 else 1)))])
 
 
 def _cloud(time: int, points: np.ndarray) -> bytes:
-    """PointCloud2."""
-    cdr = _Cdr()
-    cdr.header(time, "lidar")
-    cdr.put("I", 1, len(points), len(_FIELDS))
-    offset = 0
-    for name, (kind, number) in _FIELDS.items():
-        cdr.text(name)
-        cdr.put("I", offset)
-        cdr.put("B", number)
-        cdr.put("I", 1)
-        offset += np.dtype(kind).itemsize
-    cdr.put("B", 0)
-    cdr.put("I", _POINT.itemsize, points.nbytes, points.nbytes)
-    cdr.data += points.tobytes()
-    cdr.put("B", 1)
-    return cdr.message()
+    fields = [(name, _POINT.fields[name][1], number, 1) for name, (_, number) in _FIELDS.items()]  # type: ignore[index]
+    data = points.tobytes()
+    header = _stamp(time), "lidar"
+    return _message(_POINTS, header, 1, len(points), fields, False, _POINT.itemsize, len(data), data, True)
 
 
-def _marker(cdr: _Cdr, time: int, name: str, number: int, action: int, numbers: Sequence[float], words: str = "") -> None:
-    """A marker of a box. @param numbers middle, size and heading, as of a line of boxes @param words its text"""
-    x, y, z, length, width, height, yaw = numbers
-    cdr.header(time, "lidar")
-    cdr.text(name)
-    cdr.put("i", number, _CUBE, action)
-    cdr.put("d", x, y, z, 0, 0, math.sin(yaw / 2), math.cos(yaw / 2), length, width, height)
-    cdr.put("f", *_COLOURS[name == "bird"])
-    cdr.put("i", 0)  # it stays until the next scan takes all away
-    cdr.put("I", 0)
-    cdr.put("B", 0)
-    cdr.put("I", 0, 0)
-    cdr.text("")
-    cdr.header(0, "")
-    cdr.text("")
-    cdr.put("I", 0, 0)
-    cdr.text(words)
-    cdr.text("")  # no mesh
-    cdr.text("")
-    cdr.put("I", 0)
-    cdr.put("B", 0)
+def _marker(time: int, name: str, number: int, action: int, numbers: Sequence[float], words: str = "") -> Tuple:
+    """A marker of a box, which stays until the next scan takes all away.
+
+    numbers  middle, size and heading, as of a line of boxes
+    words    its text
+    """
+    pose = numbers[:3], (0, 0, math.sin(numbers[6] / 2), math.cos(numbers[6] / 2))
+    texture = (_stamp(0), ""), "", b""
+    return ((_stamp(time), "lidar"), name, number, _CUBE, action, pose, numbers[3:6], _COLOURS[name == "bird"], (0, 0),
+            False, (), (), "", texture, (), words, "", ("", b""), False)
 
 
 def _boxes(time: int, file: pathlib.Path) -> bytes:
-    """MarkerArray: those of the scan before go, and a box of each line comes."""
-    cdr = _Cdr()
+    """The boxes of the scan before go, and one of each line comes."""
     try:
-        lines = [line.split() for line in read_regular(file).decode().splitlines()]
-        cdr.put("I", 1 + len(lines))
-        _marker(cdr, time, "", 0, _DELETE_ALL, (0,) * 7)
-        for name, truncated, hidden, *numbers, number, points in lines:
+        markers = [_marker(time, "", 0, _DELETE_ALL, (0,) * 7)]
+        for line in read_regular(file).decode().splitlines():
+            name, truncated, hidden, *numbers, number, points = line.split()
+            x, y, z, length, width, height, yaw = map(float, numbers)
             words = f"truncated {float(truncated):.2f}, hidden {float(hidden):.2f}, points {int(points)}"
-            _marker(cdr, time, name, int(number), _ADD, [float(word) for word in numbers], words)
+            markers.append(_marker(time, name, int(number), _ADD, (x, y, z, length, width, height, yaw), words))
+        return _message(_BOXES, markers)
     except (ValueError, struct.error):  # also words that are no UTF-8
         raise ValueError(f"{file}: expected lines of a class, 9 numbers, an id and a number of points") from None
-    return cdr.message()
 
 
 def _table(file: pathlib.Path, columns: int, least: float = -2e9, key: str = "") -> np.ndarray:
@@ -259,9 +183,10 @@ def _bytes(content: bytes) -> bytes:
 def write(folder: pathlib.Path, out: pathlib.Path) -> int:
     """Write a sequence; returns the number of scans. Each scan is a chunk with an index, not compressed."""
     topics = {key: topic for key, topic in _TOPICS.items() if key != _BOXES or (folder / "boxes").is_dir()}
-    known = b"".join(_record(_SCHEMA, struct.pack("<H", key) + _bytes(schema.encode()) + _bytes(b"ros2msg") + _bytes(text.encode()))
+    known = b"".join(_record(_SCHEMA, struct.pack("<H", key) + b"".join(
+        map(_bytes, (kind.replace("/", "/msg/").encode(), b"ros2msg", _schema(kind).encode()))))
                      + _record(_CHANNEL, struct.pack("<HH", key, key) + _bytes(topic.encode()) + _bytes(b"cdr") + _bytes(b""))
-                     for key, (topic, schema, text) in topics.items())
+                     for key, (topic, kind) in topics.items())
     indices: List[bytes] = []
     times: List[int] = []
     with replacing(out) as name, open(name, "wb") as file:
