@@ -2,16 +2,15 @@
 """The report card of tracks: scores by species, height and weather, pictures, and a page of HTML."""
 from __future__ import annotations
 
-import csv
-import io
+import itertools
 import math
 import pathlib
 from types import SimpleNamespace
-from typing import Any, Callable, Dict, Iterable, List, Mapping, Sequence, Tuple
+from typing import Any, Callable, Dict, List, Mapping, Sequence, Tuple
 
 import numpy as np
 
-from .._disk import write_whole
+from .._disk import as_csv, write_whole
 from .._pipeline import Error
 from .._ranks import as_json
 from .._version import __version__
@@ -96,12 +95,6 @@ def cell(value: Value, factor: float = 1.0, unit: str = "") -> str:
     return f"{number:.{digits}f}" + ("" if math.isnan(error) else f" ± {error:.{digits}f}") + (f"\u00a0{unit}" if unit else "")
 
 
-def _text(rows: Iterable[Sequence[Any]]) -> bytes:
-    text = io.StringIO(newline="")
-    csv.writer(text, lineterminator="\n").writerows(rows)
-    return text.getvalue().encode()
-
-
 def _number(value: float) -> str:
     return "" if math.isnan(value) else f"{value:.6g}"
 
@@ -131,11 +124,12 @@ def write_card(out: pathlib.Path, inputs: Sequence[Input], results: Sequence[Map
         for volume, seconds in warned:
             for words, unit, value in of_warnings(seconds[k]):
                 add(name, "volume", volume, words, "1" if unit == "%" else unit, value)
-    write_whole(out / "card.csv", _text(table))
-    write_whole(out / "tracks.csv", _text([["input", "sequence", *STATES], *([name, number, *state] for name, of in zip(names, results)
-                                                                            for number, one in of.items() for state in one["states"])]))
+    write_whole(out / "card.csv", as_csv(table))
+    states = [(name, number, *state) for name, of in zip(names, results) for number, one in of.items()
+              for state in one["states"]]
+    write_whole(out / "tracks.csv", as_csv([("input", "sequence", *STATES), *states]))
     columns = [name for name in birds[0][0]] if any(birds) and birds[0] else []
-    write_whole(out / "birds.csv", _text([["input", "sequence", *columns], *(
+    write_whole(out / "birds.csv", as_csv([["input", "sequence", *columns], *(
         [name, number, *("" if bird[key] is None else f"{bird[key]:.6g}" if isinstance(bird[key], float) else bird[key] for key in columns)]
         for name, of in zip(names, results) for number, one in of.items() for bird in one["birds"])]))
 
@@ -233,7 +227,7 @@ def _draw_strip(axes, ground, sequence: Dict[str, Any]) -> None:
     for ax, title in zip(axes, ("echoes", "left by the clutter filter", "confirmed tracks", "birds: tracked (green), not (red)")):
         pictures.draw_airport(ax, ground, "0.85")
         ax.set_title(title, fontsize=9)
-        ax.set_ylabel("m north" if ax is axes[0] else "", fontsize=9)
+        ax.set_ylabel("m north" if ax is axes[0] else "")
     for ax, chosen in ((axes[0], np.ones(len(points), bool)), (axes[1], ~clutter)):
         for number, colour in enumerate(COLOURS):
             part = points[chosen & (origins == number)]
@@ -257,19 +251,16 @@ def _draw_begin(axes, ground, tracks: Results) -> None:
         places = np.array([track["begin"][:2] for track in tracks if track["origin"] == name]).reshape(-1, 2)
         if len(places):
             axes.plot(*places.T, "o", color=colour, markersize=4, label=f"{name}: {len(places)}")
-    axes.legend(fontsize=8)
+    axes.legend()
 
 
 def _draw_ospa(axes, of: Mapping[str, List[List[float]]], periods: Sequence[float]) -> None:
     for (name, sequences), period in zip(of.items(), periods):
-        longest = max(map(len, sequences))
-        values = np.array([sequence + [math.nan] * (longest - len(sequence)) for sequence in sequences])
-        axes.plot(period * np.arange(longest), np.nanmean(values, axis=0), label=name)
-    axes.set_ylim(0.0, None)
-    axes.set_xlabel("s since tracking began", fontsize=9)
-    axes.set_ylabel("OSPA distance, m", fontsize=9)
-    axes.grid(alpha=0.4)
-    axes.legend(fontsize=8)
+        values = np.array([*itertools.zip_longest(*sequences, fillvalue=math.nan)])
+        axes.plot(period * np.arange(len(values)), np.nanmean(values, axis=1), label=name)
+    axes.set(ylim=(0.0, None), xlabel="s since tracking began", ylabel="OSPA distance, m")
+    axes.grid()
+    axes.legend()
 
 
 def _draw_warnings(axes, names: Sequence[str], warned: Sequence[Tuple[str, List[np.ndarray]]]) -> None:
@@ -279,10 +270,7 @@ def _draw_warnings(axes, names: Sequence[str], warned: Sequence[Tuple[str, List[
                 least = np.concatenate([[0.0], np.sort(seconds[seconds > 0.0])])
                 shares = [float(np.mean(seconds >= t)) if t > 0.0 else float(np.mean(seconds > 0.0)) for t in least]
                 axes.step(least, shares, where="pre", linestyle=style, color=f"C{number}", label=f"{name}, {volume} ({len(seconds)} birds)")
-    axes.set_ylim(0.0, 1.02)
-    axes.set_xlim(0.0, None)
-    axes.set_xlabel("warning, s", fontsize=9)
-    axes.set_ylabel("share of birds", fontsize=9)
-    axes.grid(alpha=0.4)
+    axes.set(ylim=(0.0, 1.02), xlim=(0.0, None), xlabel="warning, s", ylabel="share of birds")
+    axes.grid()
     if axes.lines:
-        axes.legend(fontsize=8)
+        axes.legend()

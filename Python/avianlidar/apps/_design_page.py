@@ -124,11 +124,9 @@ def _draw_front(axes, study: Study) -> None:
     axes.axhline(100 * study.asked, color="red", linewidth=0.8, label=f"asked: {100 * study.asked:g} %")
     about = study.about
     axes.plot(about.cost, 100 * study.of(about).value, "*", color="red", markersize=14, zorder=5, label="the cheapest that has it" if study.chosen else "the best")
-    axes.set_ylim(0.0, None)
-    axes.set_xlabel(f"cost{', ' + study.unit if study.unit else ''}", fontsize=9)
-    axes.set_ylabel("share of birds, %", fontsize=9)
-    axes.grid(alpha=0.4)
-    axes.legend(fontsize=8)
+    axes.set(ylim=(0.0, None), xlabel=f"cost{', ' + study.unit if study.unit else ''}", ylabel="share of birds, %")
+    axes.grid()
+    axes.legend()
 
 
 def _draw_sensitivities(axes, study: Study) -> None:
@@ -141,11 +139,11 @@ def _draw_sensitivities(axes, study: Study) -> None:
             axes.barh(order.index(row["field"]) + (0.19 if up else -0.19), 100 * row["share"].value, 0.36, xerr=100 * row["share"].error, color="C0" if up else "C1")
     for up, colour in ((True, "C0"), (False, "C1")):
         axes.barh([0], [0], color=colour, label="more" if up else "less")
-    axes.set_yticks(np.arange(len(order)), [FIELDS[name].words for name in order], fontsize=9)
+    axes.set_yticks(np.arange(len(order)), [FIELDS[name].words for name in order])
     axes.axvline(0.0, color="0.3", linewidth=0.8)
-    axes.set_xlabel("change of the share detected, percentage points", fontsize=9)
-    axes.grid(axis="x", alpha=0.4)
-    axes.legend(fontsize=8)
+    axes.set_xlabel("change of the share detected, percentage points")
+    axes.grid(axis="x")
+    axes.legend()
 
 
 def write(study: Study) -> None:

@@ -10,7 +10,7 @@ from typing import Any, Callable, Dict, List, Mapping, Sequence, Tuple
 import numpy as np
 from vtkmodules.util.numpy_support import vtk_to_numpy
 
-from .._cloud import as_numpy, field_values
+from .._cloud import as_numpy, field_values, leaves_of, triangles_of
 from .._coverage import Coverage
 from .._disk import write_whole
 from ._maps import Plan
@@ -50,14 +50,13 @@ def draw(file, size: Tuple[float, float], work: Callable[[Any], Any], columns: i
     content = io.BytesIO()
     known = {font.name for font in font_manager.fontManager.ttflist}
     fonts = ["DejaVu Sans", *(name for name in CJK if name in known)]
-    with rc_context({"text.parse_math": False, "font.family": fonts}), warnings.catch_warnings():  # names are drawn as they are written, with their $
+    style = {**dict.fromkeys(("axes.labelsize", "xtick.labelsize", "ytick.labelsize"), 9), "legend.fontsize": 8,
+             "grid.alpha": 0.4, "font.family": fonts, "text.parse_math": False}  # names keep their $
+    with rc_context(style), warnings.catch_warnings():
         warnings.filterwarnings("ignore", "Glyph .* missing from")  # boxes stand for letters that no font has
         figure = Figure(figsize=size, layout="constrained")
         FigureCanvasAgg(figure)
-        axes = figure.subplots(1, columns)
-        for one in np.ravel(axes):
-            one.tick_params(labelsize=9)
-        work(axes)
+        work(figure.subplots(1, columns))
         figure.savefig(content, format="png", dpi=PIXELS)
     write_whole(file, content.getvalue())
     return pathlib.Path(file)
@@ -66,15 +65,12 @@ def draw(file, size: Tuple[float, float], work: Callable[[Any], Any], columns: i
 def _roofs(plan: Plan) -> Tuple[np.ndarray, np.ndarray]:
     """Triangles of what counts as a building, and their points."""
     surfaces = plan.scene.tree.GetOutput()
-    points = vtk_to_numpy(surfaces.GetPoints().GetData())
-    cells = vtk_to_numpy(surfaces.GetPolys().GetConnectivityArray()).reshape(-1, 3)
+    points, cells = triangles_of(surfaces)
     roofs = points[cells][:, :, 2].min(axis=1) > (plan.ground or 0.0) + TALL
     classes = field_values(surfaces).get("object_classes", ())
     if len(classes):
-        flat = np.array([name in FLAT for name in ([classes] if isinstance(classes, str) else classes)])
-        roofs &= ~flat[as_numpy(surfaces.GetCellData().GetArray("object_id"))]
-    roofs = cells[roofs]
-    return roofs, points
+        roofs &= ~np.isin(classes, FLAT)[as_numpy(surfaces.GetCellData().GetArray("object_id"))]
+    return cells[roofs], points
 
 
 def map_size(extent: Sequence[float], width: float, beside: float = 0.0, above: float = 0.0) -> Tuple[float, float]:
@@ -85,24 +81,17 @@ def map_size(extent: Sequence[float], width: float, beside: float = 0.0, above: 
 
 def _bar(axes, dots, words: str) -> None:
     """A colour bar as high as the map."""
-    bar = axes.figure.colorbar(dots, cax=axes.inset_axes([1.03, 0.0, 0.04, 1.0]))
-    bar.set_label(words, fontsize=9)
-    bar.ax.tick_params(labelsize=9)
+    axes.figure.colorbar(dots, cax=axes.inset_axes([1.03, 0.0, 0.04, 1.0]), label=words)
 
 
 def draw_land(axes, plan: Plan) -> None:
     """Woods and water of the scene, from above."""
     from matplotlib.collections import PolyCollection
-    iterator = plan.scene.surfaces.NewIterator()
-    iterator.InitTraversal()
-    while not iterator.IsDoneWithTraversal():
-        block = iterator.GetCurrentDataObject()
-        iterator.GoToNextItem()
+    for block in leaves_of(plan.scene.surfaces):
+        polygons = block.GetPolys()
         if not block.GetNumberOfPolys():
             continue
-        fields, polygons = field_values(block), block.GetPolys()
-        classes = fields.get("object_classes", ())
-        classes = np.array([classes] if isinstance(classes, str) else list(classes) or [""])
+        classes = np.array(field_values(block).get("object_classes", [""]))
         ids = block.GetCellData().GetArray("object_id")
         of = classes[as_numpy(ids)] if ids and len(classes) > 1 else np.full(block.GetNumberOfPolys(), classes[0])
         points = vtk_to_numpy(block.GetPoints().GetData())[:, :2]
@@ -122,12 +111,8 @@ def draw_airport(axes, plan: Plan, colour: str = "0.25") -> None:
         if len(roofs):
             axes.tripcolor(points[:, 0], points[:, 1], roofs, facecolors=np.zeros(len(roofs)), cmap=ListedColormap([colour]))
     axes.plot(*plan.sensor.position[:2], "r^", markersize=5)
-    axes.set_xlim(plan.extent[:2])
-    axes.set_ylim(plan.extent[2:])
-    axes.set_aspect("equal")
+    axes.set(xlim=plan.extent[:2], ylim=plan.extent[2:], aspect="equal", xlabel="m east", ylabel="m north")
     axes.locator_params(nbins=5)
-    axes.set_xlabel("m east", fontsize=9)
-    axes.set_ylabel("m north", fontsize=9)
 
 
 def draw_map(axes, plan: Plan, cover: Coverage, quantity: str) -> None:
@@ -199,12 +184,11 @@ def draw_answer(axes, plan: Plan, found: Sequence[Tuple[float, np.ndarray]], ext
             label = "\n".join(filter(None, (name.partition(" ")[2], shares.get(name, ""))))
             axes.text(*at, label, fontsize=7, color="0.1", ha="center", va="center", bbox=box, zorder=4)
     draw_airport(axes, plan, "0.55")
-    axes.set_xlim(x0, x1)
-    axes.set_ylim(y0, y1)
+    axes.set(xlim=(x0, x1), ylim=(y0, y1))
     axes.plot(*plan.sensor.position[:2], "r^", markersize=11, markeredgecolor="white", zorder=5)
     axes.annotate(plan.name, plan.sensor.position[:2], (9, 9), textcoords="offset points", fontsize=9, color="red", zorder=5,
                   bbox={"facecolor": "white", "alpha": 0.8, "pad": 1, "linewidth": 0})
-    axes.legend(handles=legend, loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=min(len(legend), 2), fontsize=8, frameon=False)
+    axes.legend(handles=legend, loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=min(len(legend), 2), frameon=False)
 
 
 def section(plan: Plan, runway: Runway) -> Tuple[np.ndarray, Tuple[float, float, float, float]]:
@@ -230,10 +214,7 @@ def draw_section(axes, plan: Plan, runway: Runway, values: np.ndarray, extent: T
         axes.plot([start, start + sign * APPROACH_LENGTH], [THRESHOLD_HEIGHT, top], "w--", linewidth=1)
     for height in plan.asked or ():
         axes.axhline(height, color="red", linewidth=0.8)
-    axes.set_xlim(extent[:2])
-    axes.set_ylim(0.0, extent[3])
-    axes.set_xlabel("m along the runway from its first end", fontsize=9)
-    axes.set_ylabel("m up", fontsize=9)
+    axes.set(xlim=extent[:2], ylim=(0.0, extent[3]), xlabel="m along the runway from its first end", ylabel="m up")
 
 
 def draw_reach(axes, reaches: Mapping[str, Reach], several: str) -> None:
@@ -244,12 +225,9 @@ def draw_reach(axes, reaches: Mapping[str, Reach], several: str) -> None:
         axes.errorbar(reach.ranges, reach.one_scan, reach.error, color=colour, linewidth=1.5, elinewidth=1.0, label=f"{name}, one scan")
         axes.plot(reach.ranges, reach.several_scans, "--", color=colour, linewidth=1.2)
     axes.plot([], [], "--", color="0.4", linewidth=1.2, label=several)
-    axes.set_xlim(0.0, None)
-    axes.set_ylim(0.0, 1.02)
-    axes.set_xlabel("range, m", fontsize=9)
-    axes.set_ylabel("share of birds detected", fontsize=9)
-    axes.grid(alpha=0.4)
-    axes.legend(fontsize=8)
+    axes.set(xlim=(0.0, None), ylim=(0.0, 1.02), xlabel="range, m", ylabel="share of birds detected")
+    axes.grid()
+    axes.legend()
 
 
 def draw_weather(axes, curves: Mapping[str, Tuple[Sequence[float], Sequence[float], Sequence[float]]], words: str, logarithmic: bool) -> None:
@@ -261,11 +239,9 @@ def draw_weather(axes, curves: Mapping[str, Tuple[Sequence[float], Sequence[floa
         axes.set_xscale("log")
         axes.set_xticks(weathers, [f"{weather:,g}" for weather in weathers], fontsize=8)
         axes.minorticks_off()
-    axes.set_ylim(0.0, None)
-    axes.set_xlabel(words, fontsize=9)
-    axes.set_ylabel("share of birds detected", fontsize=9)
-    axes.grid(alpha=0.4)
-    axes.legend(fontsize=8)
+    axes.set(ylim=(0.0, None), xlabel=words, ylabel="share of birds detected")
+    axes.grid()
+    axes.legend()
 
 
 def draw_clutter(axes, plan: Plan, clutter) -> None:
@@ -298,10 +274,9 @@ def draw_sites(axes, sites) -> None:
                       bbox={"facecolor": "white", "alpha": 0.8, "pad": 1, "linewidth": 0})
     axes.plot([], [], "r^", markersize=5, label="where the plan puts the sensor")
     axes.scatter(*sites.positions[sites.order[0], :2], s=80, marker="x", color="red", linewidths=2, label="best alone")
-    axes.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=3, fontsize=8, handletextpad=0.2, columnspacing=1.0, frameon=False)
+    axes.legend(loc="lower center", bbox_to_anchor=(0.5, 1), ncols=3, handletextpad=0.2, columnspacing=1, frameon=False)
     x0, x1, y0, y1 = sites_extent(sites)
-    axes.set_xlim(x0, x1)
-    axes.set_ylim(y0, y1)
+    axes.set(xlim=(x0, x1), ylim=(y0, y1))
 
 
 def sites_extent(sites) -> Tuple[float, float, float, float]:
@@ -314,8 +289,6 @@ def draw_gain(axes, sites) -> None:
     """What each more sensor adds."""
     rows = sites.gain()
     axes.errorbar([row["sensors"] for row in rows], [row["value"] for row in rows], [row["std_error"] for row in rows], marker="o")
-    axes.set_ylim(0.0, None)
+    axes.set(ylim=(0.0, None), xlabel="sensors", ylabel="probability of one scan")
     axes.set_xticks([row["sensors"] for row in rows])
-    axes.set_xlabel("sensors", fontsize=9)
-    axes.set_ylabel("probability of one scan", fontsize=9)
-    axes.grid(alpha=0.4)
+    axes.grid()
