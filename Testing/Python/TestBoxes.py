@@ -9,8 +9,9 @@ from vtkmodules.util.numpy_support import numpy_to_vtk
 from vtkmodules.vtkCommonDataModel import vtkMultiBlockDataSet, vtkPolyData
 
 import avianlidar as al
+from avianlidar._cloud import add_array as _set
 from avianlidar.apps._boxes import Boxes, _rotation
-from avianlidar.apps._sequence import Sequence, _set
+from avianlidar.apps._sequence import Sequence
 from helpertools import box
 from TestSequence import scenario_file
 

@@ -6,27 +6,19 @@ import math
 from typing import Any, Tuple
 
 import numpy as np
-from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonCore import reference
 from vtkmodules.vtkCommonDataModel import vtkPolyData, vtkStaticCellLocator
 
-from .._cloud import Cloud, as_numpy, field_values
+from .._cloud import Cloud, field_values, leaves_of, triangles_of
 
 RAYS = 72  # at least, to a mover: the triangles of a bird
 
 
 def _rotation(times: np.ndarray, quaternions: np.ndarray, time: float) -> np.ndarray:
-    """From a mover's frame to the scene's at a time, s: slerp of unit quaternions w, x, y, z."""
-    k = int(np.clip(np.searchsorted(times, time, "right") - 1, 0, max(len(times) - 2, 0)))
-    a, b = quaternions[k], quaternions[min(k + 1, len(quaternions) - 1)]
-    b = -b if a @ b < 0 else b
-    share = np.clip((time - times[k]) / (times[k + 1] - times[k]), 0, 1) if len(times) > 1 else 0.0
-    angle = np.arccos(min(a @ b, 1.0))
-    mixed = a if angle < 1e-9 else (np.sin((1 - share) * angle) * a + np.sin(share * angle) * b)
-    w, x, y, z = mixed / np.linalg.norm(mixed)
-    return np.array([[1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
-                     [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
-                     [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)]])
+    """From a mover's frame to the scene's at a time, s. @param quaternions w, x, y, z"""
+    from scipy.spatial.transform import Rotation, Slerp
+    turns = Rotation.from_quat(quaternions[:, [1, 2, 3, 0]])
+    return (Slerp(times, turns)(np.clip(time, times[0], times[-1])) if len(times) > 1 else turns[0]).as_matrix()
 
 
 def _parts(n: int) -> np.ndarray:
@@ -67,10 +59,7 @@ class Boxes:
 
     def lines(self, report: Cloud, movers) -> str:
         """A line for each mover in the field of view. @param report the mover report @param movers the composite that the scan had"""
-        blocks = {}
-        for k in range(movers.GetNumberOfBlocks()):
-            block = movers.GetBlock(k)
-            blocks[int(block.GetCellData().GetArray("object_id").GetTuple1(0))] = block
+        blocks = {int(block.GetCellData().GetArray("object_id").GetTuple1(0)): block for block in leaves_of(movers)}
         columns = zip(report["object_id"], report["timestamp"], report["number_of_echoes"], report.points) if report.number_of_points else ()
         return "".join(self._line(blocks[int(number)], int(number), 1e-6 * time, int(points), place)
                        for number, time, points, place in columns)
@@ -79,8 +68,8 @@ class Boxes:
         fields = field_values(block)
         quaternions = np.reshape(fields.get("pose_orientation", [1.0, 0, 0, 0]), (-1, 4))
         rotation = _rotation(np.ravel(fields.get("pose_time", [0.0])), quaternions, time)
-        corners = as_numpy(block.GetPoints().GetData()) @ rotation.T + place
-        truncated, hidden = self._shares(corners[vtk_to_numpy(block.GetPolys().GetConnectivityArray()).reshape(-1, 3)])
+        corners, cells = triangles_of(block)
+        truncated, hidden = self._shares((corners @ rotation.T + place)[cells])
         if truncated >= 1:
             return ""
         bounds = np.reshape(block.GetBounds(), (3, 2))
@@ -104,10 +93,7 @@ class Boxes:
         inside &= (ranges >= self.gate[0]) & (ranges <= self.gate[1])
         if not weights[inside].sum() > 0:
             return 1.0, 0.0
-        covered = np.array([self._is_covered(place, centre) for centre in centres[inside]])
+        hit: Any = (reference(0.0), [0.0] * 3, [0.0] * 3, reference(0))
+        covered = np.array([self.has_surfaces and bool(self.locator.IntersectWithLine(place, centre, 0.0, *hit))
+                            for centre in centres[inside]])
         return float(weights[~inside].sum() / weights.sum()), float(weights[inside] @ covered / weights[inside].sum())
-
-    def _is_covered(self, place: np.ndarray, centre: np.ndarray) -> bool:
-        share: Any = reference(0.0)
-        hit = [0.0, 0.0, 0.0]
-        return self.has_surfaces and bool(self.locator.IntersectWithLine(place, centre, 0.0, share, hit, [0.0] * 3, reference(0)))

@@ -16,7 +16,7 @@ import numpy as np
 from vtkmodules.util.numpy_support import vtk_to_numpy
 
 from .._coverage import Coverage, places_of
-from .._disk import read_regular, write_whole
+from .._disk import read_regular
 from .._pipeline import Error, Updates, update
 from .._ranks import Ranks
 from .._sensor import Sensor
@@ -362,21 +362,10 @@ class Study:
             self._set(values)
             files += siting._files(cover, np.array([self.plan.sensor.position]), places, known, folder)
         with self.ranks.together():
-            todo = [i for i, file in enumerate(files) if not siting._read_kept(file, found[i])]
-            self.ranks.wait()  # all have looked before anybody adds anything
             hard = [tuple(value for name, value in values.items() if not FIELDS[name].light) for values in designs]
-            groups = [list(of) for _, of in itertools.groupby(todo, key=lambda i: hard[i])]
-            mine = [i for group in groups[self.ranks.rank::self.ranks.size] for i in group]
             with Updates(cover.algorithm) as again:
-                for number, i in enumerate(mine):
-                    found[i] = self._at_places(cover, designs[i], again)
-                    files[i].unlink(missing_ok=True)  # a damaged one may be a pipe
-                    write_whole(files[i], siting._kept(found[i]))
-                    self._tell(what, number + 1, len(mine))
-            self.ranks.wait()
-            for i in sorted(set(todo) - set(mine)):
-                if not siting._read_kept(files[i], found[i]):
-                    raise Error(f"{files[i]}: is damaged, which another rank has just written")
+                siting._fill(found, files, self.ranks, lambda i: self._at_places(cover, designs[i], again),
+                             lambda *done: self._tell(what, *done), lambda i: hard[i])
         return found
 
     def _at_places(self, cover: Coverage, values: Mapping[str, float], again: Callable[[], Any]) -> np.ndarray:
@@ -436,9 +425,8 @@ class Study:
                                     number_of_scans=max(scans * self.scenario["number_of_scans"] // each, 1))
             folder = self.folder / "tracks" / hashlib.sha256(repr(one.values).encode()).hexdigest()[:16]
 
-            def step(what: str, done: int, total: int, which: str = f"design {number + 1} of {len(self.finalists)}") -> None:
-                self._tell(f"{which}: {what}", done, total)
-            tracks.write(folder, self.ranks, step)
+            which = f"design {number + 1} of {len(self.finalists)}"
+            tracks.write(folder, self.ranks, lambda what, *done, which=which: self._tell(f"{which}: {what}", *done))
             with naming(f"{self.plan.file}: design.scenario"):
                 one.tracked = self._tracked(read_regular(folder / "birds.csv").decode())
 

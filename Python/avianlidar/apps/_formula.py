@@ -4,16 +4,12 @@ from __future__ import annotations
 
 import ast
 import math
-import operator
 from typing import Any, Callable, Dict, Iterable, Mapping
 
 LONGEST = 1000  # characters
 FUNCTIONS: Dict[str, Callable[..., float]] = {"sqrt": math.sqrt, "exp": math.exp, "log": math.log, "log10": math.log10, "abs": abs, "min": min,
                                               "max": max, "ceil": lambda x: float(math.ceil(x)), "floor": lambda x: float(math.floor(x))}
-# math.pow, as ** gives complex numbers of negative ones. All numbers are floats: huge powers overflow at once.
-BINARY: Dict[type, Callable[[float, float], float]] = {ast.Add: operator.add, ast.Sub: operator.sub, ast.Mult: operator.mul,
-                                                       ast.Div: operator.truediv, ast.Pow: math.pow}
-UNARY: Dict[type, Callable[[float], float]] = {ast.UAdd: operator.pos, ast.USub: operator.neg}
+OPERATORS = (ast.Add, ast.Sub, ast.Mult, ast.Div, ast.Pow, ast.UAdd, ast.USub)
 Values = Mapping[str, float]
 
 
@@ -34,47 +30,44 @@ class Formula:
         if len(text) > LONGEST:
             raise ValueError(f"{text[:40]}...: has {len(text)} characters, expected a formula of at most {LONGEST}")
         try:
-            body = ast.parse(text.strip(), mode="eval").body
+            tree = ast.parse(text.strip(), mode="eval")
         except (SyntaxError, ValueError, MemoryError, RecursionError) as error:
             raise ValueError(f"{text}: is no formula ({getattr(error, 'msg', error) or 'it is nested too deeply'})") from None
+        called = [node.func for node in ast.walk(tree) if isinstance(node, ast.Call)]
+        for node in ast.walk(tree):
+            if not self._may_stand(node):
+                raise ValueError(f"{text}: {ast.unparse(node)[:40]!r} may not stand in a formula, expected numbers, "
+                                 "names, + - * / ** ( ) and functions")
+            if isinstance(node, ast.Name) and node in called and node.id not in FUNCTIONS:
+                raise ValueError(f"{text}: {node.id!r} is no function here, expected one of {', '.join(FUNCTIONS)}")
+            if isinstance(node, ast.Name) and node not in called and node.id not in self.names:
+                known = ", ".join(self.names)
+                raise ValueError(f"{text}: {node.id!r} is not known, expected one of the numbers {known}")
+            if isinstance(node, ast.Constant):
+                try:
+                    node.value = float(node.value)  # huge powers of floats overflow at once
+                except OverflowError:
+                    raise ValueError(f"{text[:40]}...: has a number of more than 308 digits") from None
         try:
-            self._work = self._compiled(body)
+            self._code = compile(tree, "formula", "eval")
         except RecursionError:
             raise ValueError(f"{text[:40]}...: is no formula (it is nested too deeply)") from None
 
-    def _compiled(self, node: ast.AST) -> Callable[[Values], float]:
-        if isinstance(node, ast.Constant) and type(node.value) in (int, float):
-            number = self._float(node.value)
-            return lambda _: number
-        if isinstance(node, ast.Name):
-            name = node.id
-            if name not in self.names:
-                raise ValueError(f"{self.text}: {name!r} is not known, expected one of the numbers {', '.join(self.names)}")
-            return lambda values: float(values[name])
-        if isinstance(node, ast.BinOp) and type(node.op) in BINARY:
-            work, left, right = BINARY[type(node.op)], self._compiled(node.left), self._compiled(node.right)
-            return lambda values: work(left(values), right(values))
-        if isinstance(node, ast.UnaryOp) and type(node.op) in UNARY:
-            one, operand = UNARY[type(node.op)], self._compiled(node.operand)
-            return lambda values: one(operand(values))
-        if isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and not node.keywords:
-            if node.func.id not in FUNCTIONS:
-                raise ValueError(f"{self.text}: {node.func.id!r} is no function here, expected one of {', '.join(FUNCTIONS)}")
-            function, arguments = FUNCTIONS[node.func.id], [self._compiled(argument) for argument in node.args]
-            return lambda values: function(*(argument(values) for argument in arguments))
-        raise ValueError(f"{self.text}: {ast.unparse(node)[:40]!r} may not stand in a formula, expected numbers, names, + - * / ** ( ) and functions")
-
-    def _float(self, number: Any) -> float:
-        try:
-            return float(number)
-        except OverflowError:
-            raise ValueError(f"{self.text[:40]}...: has a number of more than 308 digits") from None
+    @staticmethod
+    def _may_stand(node: ast.AST) -> bool:
+        if isinstance(node, ast.Constant):
+            return type(node.value) in (int, float)
+        if isinstance(node, (ast.BinOp, ast.UnaryOp)):
+            return isinstance(node.op, OPERATORS)
+        if isinstance(node, ast.Call):
+            return isinstance(node.func, ast.Name) and not node.keywords
+        return isinstance(node, (ast.Expression, ast.Name, ast.expr_context, *OPERATORS))
 
     def __call__(self, values: Values) -> float:
         """What it gives, a finite number. ValueError says for which values it gives none."""
         problem: Any = "it is not finite"
         try:
-            result = self._work(values)
+            result = eval(self._code, {"__builtins__": {}, **FUNCTIONS}, {**values})
             if math.isfinite(result):
                 return result
         except (ArithmeticError, ValueError, TypeError, RecursionError) as error:

@@ -2,11 +2,10 @@
 """Labelled sequences of scans with birds, to train and to test on."""
 from __future__ import annotations
 
+import collections
 import contextlib
-import csv
 import functools
 import hashlib
-import io
 import json
 import math
 import os
@@ -14,14 +13,14 @@ import pathlib
 import secrets
 import shutil
 import warnings
-from typing import Any, Callable, Dict, Iterator, List, Optional, Tuple, Union
+from typing import Any, Callable, Counter, Dict, Iterator, List, Optional, Tuple, Union
 
 import numpy as np
 from vtkmodules.vtkCommonDataModel import vtkFieldData, vtkMultiBlockDataSet, vtkPolyData
 
 from .. import vtkAvianLidar as _wrapped
-from .._cloud import Cloud, as_numpy, field_values
-from .._disk import only_run, read_regular, synchronize, write_whole
+from .._cloud import Cloud, add_array, as_numpy, field_values
+from .._disk import as_csv, only_run, read_regular, synchronize, write_whole
 from .._pipeline import Error, Updates, callers_level, update
 from .._properties import in_snake_case, set_properties
 from .._ranks import Ranks, as_json, digest_of, digest_of_arrays
@@ -50,6 +49,7 @@ FOLDERS = (("velodyne", ".bin", 16), ("labels", ".label", 4), ("subsets", ".subs
 BOXES = ("boxes", ".txt", 0)
 ALL: Tuple[Tuple[str, str, int], ...] = (*FOLDERS, BOXES)
 TEXTS = ("truth.csv", "times.txt", "poses.txt", "calib.txt")  # of a whole sequence
+TABLES = ("points_of_classes", "birds_of_statuses", "birds_seen_of_subsets")  # of DONE
 _AGAIN = "Remove the folder: it is made again"
 _FEWER = "ask for as many scans as there are, or choose another folder"
 # Whose properties the parts of a scenario name.
@@ -58,12 +58,6 @@ SHOWN = 3  # inputs that differ, in an error
 CONFIGURATION = "semantic-kitti.yaml"
 
 Progress = Callable[[int, int, int], None]
-
-
-def _seed(*parts: Any) -> int:
-    """A seed of 32 bits for each combination."""
-    digest = hashlib.sha256(json.dumps(parts).encode()).digest()
-    return int.from_bytes(digest[:4], "little", signed=True)
 
 
 def checked(scenario: Any, what: str) -> Dict[str, Any]:
@@ -211,7 +205,7 @@ class Sequence:
         surfaces.ShallowCopy(self.scene.tree.GetOutput())
         surfaces.SetFieldData(vtkFieldData())
         surfaces.GetFieldData().PassData(self.scene.tree.GetOutput().GetFieldData())
-        _set(surfaces.GetFieldData(), "media", media)
+        add_array(surfaces.GetFieldData(), "media", media)
         scan.algorithm.SetSurfacesData(surfaces)
         return scan
 
@@ -232,8 +226,9 @@ class Sequence:
         blocks, species, first = [], {}, FIRST_BIRD
         for place, group in enumerate(self.scenario.get("birds", ())):
             tracks = _wrapped.vtkAvianLidarTracks()
-            ours = {"time_range": (scans[0] / rate, (scans[-1] + 1) / rate), "seed": _seed(self.seed, number, place),
-                    "first_object_id": first, **group}
+            seed = hashlib.sha256(json.dumps((self.seed, number, place)).encode()).digest()[:4]
+            ours = {"time_range": (scans[0] / rate, (scans[-1] + 1) / rate), "first_object_id": first,
+                    "seed": int.from_bytes(seed, "little", signed=True), **group}
             with naming(f"{self.file}: birds[{place}]"):
                 set_properties(tracks, "vtkAvianLidarTracks", **ours)
                 update(tracks)
@@ -295,9 +290,9 @@ class Sequence:
         names = scene.tree.GetOutput().GetFieldData().GetAbstractArray("material_names")
         surface.GetFieldData().AddArray(names)
         ids = np.full(surface.GetNumberOfCells(), number, np.int32)
-        _set(surface.GetCellData(), "object_id", ids)
-        _set(surface.GetFieldData(), "object_names", [thing["name"]])
-        _set(surface.GetFieldData(), "object_classes", [thing.get("class", "vehicle")])
+        add_array(surface.GetCellData(), "object_id", ids)
+        add_array(surface.GetFieldData(), "object_names", [thing["name"]])
+        add_array(surface.GetFieldData(), "object_classes", [thing.get("class", "vehicle")])
         # It turns where two legs meet: each leg has its own heading, and two poses.
         heading = np.arctan2(legs[:, 0], legs[:, 1])
         turn = np.stack([np.cos(heading / 2), 0 * heading, 0 * heading, -np.sin(heading / 2)], axis=1)
@@ -376,15 +371,15 @@ class Sequence:
             (folder / name).mkdir(parents=True)
         boxes = Boxes(self.scene.tree.GetOutput(), self.at_rest, self._pose())
         writer = _wrapped.vtkAvianLidarKITTIWriter()
-        text, times = io.StringIO(newline=""), []
-        table = csv.writer(text, lineterminator="\n")
-        table.writerow(TRUTH)
-        classes: Dict[int, int] = {}
-        with_birds, done = 0, 0
-        statuses, subsets = dict.fromkeys(STATUSES, 0), dict.fromkeys(SUBSETS, 0)
+        table: List[Any] = [TRUTH]
+        times: List[float] = []
+        classes: Counter[int] = collections.Counter()
+        statuses: Counter[str] = collections.Counter()
+        subsets: Counter[str] = collections.Counter()
+        with_birds = 0
         with Updates(writer) as write:
             for k, scan, species in self.frames(number):
-                echoes, name = scan.algorithm.GetOutput(0), f"{done:06d}"
+                echoes, name = scan.algorithm.GetOutput(0), f"{len(times):06d}"
                 writer.SetInputData(echoes)
                 writer.SetFileName(str(folder / "velodyne" / f"{name}.bin"))
                 write(writer.Write)
@@ -397,26 +392,24 @@ class Sequence:
                 (folder / "boxes" / f"{name}.txt").write_text(
                     boxes.lines(Cloud(scan.algorithm.GetOutput(2)), scan.movers), encoding="utf-8")
                 rows = self.truth(k, species)
-                table.writerows(rows)
-                times.append(f"{k / self.sensor.rotation_rate:.6f}\n")
-                for label, count in zip(*np.unique(labels & 0xffff, return_counts=True)):
-                    classes[int(label)] = classes.get(int(label), 0) + int(count)
-                for row in rows:
-                    statuses[row[3]] += 1
-                    if row[3] == "seen":
-                        subsets[row[4]] += 1
-                with_birds += any(row[3] == "seen" for row in rows)
-                done += 1
+                table += rows
+                times.append(k / self.sensor.rotation_rate)
+                classes.update((labels & 0xffff).tolist())
+                statuses.update(row[3] for row in rows)
+                seen = [row[4] for row in rows if row[3] == "seen"]
+                subsets.update(seen)
+                with_birds += bool(seen)
                 if progress:
-                    progress(number, done, len(self.span(number)))
-        (folder / "truth.csv").write_text(text.getvalue(), encoding="utf-8")
-        (folder / "times.txt").write_text("".join(times), encoding="utf-8")
+                    progress(number, len(times), len(self.span(number)))
         pose = " ".join(f"{value:.9g}" for value in self._pose().ravel())
-        (folder / "poses.txt").write_text(f"{pose}\n" * done, encoding="utf-8")
+        (folder / "truth.csv").write_bytes(as_csv(table))
+        (folder / "times.txt").write_text("".join(f"{time:.6f}\n" for time in times), encoding="utf-8")
+        (folder / "poses.txt").write_text(f"{pose}\n" * len(times), encoding="utf-8")
         (folder / "calib.txt").write_text(
             "".join(f"{name}: 1 0 0 0 0 1 0 0 0 0 1 0\n" for name in ("P0", "P1", "P2", "P3", "Tr")), encoding="utf-8")
-        return {"scans": done, "scans_with_birds_seen": with_birds, "points_of_classes": classes,
-                "birds_of_statuses": statuses, "birds_seen_of_subsets": subsets}
+        return {"scans": len(times), "scans_with_birds_seen": with_birds, "points_of_classes": dict(classes),
+                "birds_of_statuses": {name: statuses[name] for name in STATUSES},
+                "birds_seen_of_subsets": {name: subsets[name] for name in SUBSETS}}
 
     def _pose(self) -> np.ndarray:
         """3 x 4: from the coordinates of points (x forward, y left, z up) to the scene's."""
@@ -459,7 +452,10 @@ class Sequence:
     def _write(self, out: pathlib.Path, ranks: Ranks, progress: Optional[Progress]) -> Dict[str, Any]:
         home, common = out / "sequences", self._inputs()
         home.mkdir(exist_ok=True)
-        missing = self._missing(home, common)
+        for folder in sorted(home.glob("[0-9]*")):
+            if folder.name.isdigit() and int(folder.name) >= len(self):
+                raise Error(f"{folder}: is there, and number_of_scans is {self.scans}: {_FEWER}")
+        missing = [k for k in range(len(self)) if not self._is_there(home / f"{k:02d}", k, common)]
         self.scans_to_do = sum(len(self.span(k)) for k in missing[ranks.rank::ranks.size])
         shorter = [home / f"{k:02d}" for k in missing if (home / f"{k:02d}").exists()]
         if shorter and ranks.rank == 0:
@@ -490,11 +486,15 @@ class Sequence:
         ranks.wait()
         contents = {f"{k:02d}": {key: value for key, value in load_json(home / f"{k:02d}" / DONE).items() if key != "inputs"}
                     for k in range(len(self))}
-        manifest = {**self._manifest(out), "sequences": contents}
+        assumed = self.sensor.beams.fields.get("assumed", [])
+        manifest = {"scenario": _with_files(self.scenario, lambda name: os.path.relpath(name, out)),
+                    "scene_digest": digest_of(self.scene.tree.GetOutput()), "avian_lidar_version": __version__,
+                    "beams": self.sensor.beams.number_of_points, "assumed": assumed, "sequences": contents}
         if ranks.rank == 0:
+            points = {int(label): count for label, count in _sums(manifest, "points_of_classes").items()}
             write_whole(out / "manifest.json", as_json(manifest))
             write_whole(out / "datasheet.md", datasheet(manifest).encode())
-            write_whole(out / CONFIGURATION, self._configuration(contents).encode())
+            write_whole(out / CONFIGURATION, configuration(self.bird_class, points, map(int, contents)).encode())
         ranks.wait()
         return manifest
 
@@ -503,14 +503,8 @@ class Sequence:
         span = self.span(number)
         return {**common, "scans": f"{span.start} to {span.start + scans if scans else span.stop}"}
 
-    def _missing(self, home: pathlib.Path, common: Dict[str, str]) -> List[int]:
-        """Sequences that are not there, or have fewer scans; `Error` unless the others are there as a whole, made of the same."""
-        for folder in sorted(home.glob("[0-9]*")):
-            if folder.name.isdigit() and int(folder.name) >= len(self):
-                raise Error(f"{folder}: is there, and number_of_scans is {self.scans}: {_FEWER}")
-        return [k for k in range(len(self)) if not self._is_there(home / f"{k:02d}", k, common)]
-
     def _is_there(self, folder: pathlib.Path, number: int, common: Dict[str, str]) -> bool:
+        """False for a sequence that has fewer scans, too; `Error` unless it is whole, made of the same."""
         if not folder.exists():
             return False
         if not (folder / DONE).exists():
@@ -535,35 +529,6 @@ class Sequence:
             raise Error(f"{folder}: its files are not those that its {DONE} has the sha256 of: something else has changed, added or removed "
                         f"some. {_AGAIN}")
         return True
-
-    def _configuration(self, contents: Dict[str, Any]) -> str:
-        points: Dict[int, int] = {}
-        for part in contents.values():
-            for label, count in part["points_of_classes"].items():
-                points[int(label)] = points.get(int(label), 0) + count
-        return configuration(self.bird_class, points, map(int, contents))
-
-    def _manifest(self, out: pathlib.Path) -> Dict[str, Any]:
-        beams = self.sensor.beams
-        scenario = _with_files(self.scenario, lambda name: os.path.relpath(name, out))
-        assumed = beams.fields.get("assumed", ())
-        return {"scenario": scenario, "scene_digest": digest_of(self.scene.tree.GetOutput()),
-                "avian_lidar_version": __version__, "beams": beams.number_of_points,
-                "assumed": [assumed] if isinstance(assumed, str) else list(assumed)}
-
-
-def _set(arrays, name: str, values) -> None:
-    """Put an array of numbers or of text."""
-    from vtkmodules.util.numpy_support import numpy_to_vtk
-    from vtkmodules.vtkCommonCore import vtkStringArray
-    if isinstance(values, np.ndarray):
-        array = numpy_to_vtk(values, deep=True)
-    else:
-        array = vtkStringArray()
-        for value in values:
-            array.InsertNextValue(value)
-    array.SetName(name)
-    arrays.AddArray(array)
 
 
 def _short(value: Any) -> str:
@@ -600,8 +565,7 @@ def _check_scans(folder: pathlib.Path, count: int) -> None:
 
 def _wrong_member(content: Dict[str, Any], bird: int) -> str:
     """The member of what DONE holds that is missing or no count, "" if there is none."""
-    tables = {"points_of_classes": map(str, classes_of(bird)), "birds_of_statuses": STATUSES, "birds_seen_of_subsets": SUBSETS}
-    for name, keys in tables.items():
+    for name, keys in zip(TABLES, (map(str, classes_of(bird)), STATUSES, SUBSETS)):
         table = content.get(name)
         if not isinstance(table, dict) or not {*table} <= {*keys} or not all(isinstance(count, int) for count in table.values()):
             return name
@@ -617,18 +581,16 @@ def _digest(folder: pathlib.Path) -> str:
     return digest.hexdigest()
 
 
+def _sums(manifest: Dict[str, Any], key: str) -> Counter[str]:
+    """A table of counts, over all sequences."""
+    return sum((collections.Counter(part[key]) for part in manifest["sequences"].values()), collections.Counter())
+
+
 def datasheet(manifest: Dict[str, Any]) -> str:
     """What is in a set of sequences, as Markdown."""
     parts = list(manifest["sequences"].values())
     scans = sum(part["scans"] for part in parts)
-
-    def sums(key):
-        total: Dict[str, int] = {}
-        for part in parts:
-            for name, count in part[key].items():
-                total[name] = total.get(name, 0) + count
-        return total
-    points, statuses, subsets = sums("points_of_classes"), sums("birds_of_statuses"), sums("birds_seen_of_subsets")
+    points, statuses, subsets = (_sums(manifest, key) for key in TABLES)
     seen = sum(part["scans_with_birds_seen"] for part in parts)
     scenario = manifest["scenario"]
     classes = classes_of(scenario.get("bird_class", BIRD))
@@ -644,7 +606,7 @@ def datasheet(manifest: Dict[str, Any]) -> str:
     lines += [f"| {label} | {classes[label].name}: {classes[label].here} | {count} | {100 * count / total:.3f} % |"
               for label, count in sorted((int(name), count) for name, count in points.items())]
     lines += ["", "| a bird in a scan | times |", "|---|---:|"]
-    lines += [f"| {name} | {statuses.get(name, 0)} |" for name in STATUSES]
-    lines += ["", "| birds seen | times |", "|---|---:|"] + [f"| {name} | {subsets.get(name, 0)} |" for name in SUBSETS]
+    lines += [f"| {name} | {statuses[name]} |" for name in STATUSES]
+    lines += ["", "| birds seen | times |", "|---|---:|"] + [f"| {name} | {subsets[name]} |" for name in SUBSETS]
     lines += ["", "## Scenario", "", "```json", json.dumps(scenario, indent=1), "```", ""]
     return "\n".join(lines)

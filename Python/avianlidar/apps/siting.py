@@ -20,15 +20,15 @@ import os
 import pathlib
 import re
 import warnings
-from typing import Any, Callable, Dict, Iterator, List, Mapping, Optional, Sequence, Tuple
+from typing import Any, Callable, Dict, List, Mapping, Optional, Sequence, Tuple
 
 import numpy as np
-from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
+from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkIdList, vtkPoints
-from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkStaticCellLocator
+from vtkmodules.vtkCommonDataModel import vtkStaticCellLocator
 
 from .. import vtkAvianLidar as _wrapped
-from .._cloud import field_values
+from .._cloud import add_array, field_values, vertices
 from .._coverage import Coverage, places_of
 from .._disk import read_regular, write_whole
 from .._files import save
@@ -51,8 +51,7 @@ WINDS = ("north", "north-east", "east", "south-east", "south", "south-west", "we
 LETTERS = "ABCDEFGHIJKLMNOPQRSTUVWXYZ"
 MOST_CANDIDATES = 100_000
 SAME_PLACE = 1e-3  # m: candidates whose coordinates are the same to this are one
-RUN = 64  # edges of an outline in one box
-PAIRS = 1 << 18  # of points and edges that are looked at together
+POINTS = 32  # that are looked at together, with the edges beside them
 SAME_BIRDS = 20_000  # places whose poses are held together: 6 MB a sensor and air
 
 
@@ -367,51 +366,23 @@ def is_near(points, outline, margin: float = 0.0) -> np.ndarray:
     for ring in rings:
         if ring.ndim != 2 or ring.shape[1] != 2 or len(ring) < 3:
             raise ValueError(f"an outline has the shape {ring.shape}, expected n x 2 with n at least 3")
-    outline, ends = np.concatenate(rings), np.concatenate([np.roll(ring, -1, axis=0) for ring in rings])
+    starts, ends = np.concatenate(rings), np.concatenate([np.roll(ring, -1, axis=0) for ring in rings])
     reach = max(margin, 0.0)
-    near = ((points >= outline.min(axis=0) - reach) & (points <= outline.max(axis=0) + reach)).all(axis=1)
-    chosen = np.flatnonzero(near)[np.argsort(points[near, 1], kind="stable")]  # from south to north
-    places = points[chosen]
-    crossed, close = np.zeros(len(places), dtype=int), np.zeros(len(places), dtype=bool)
-    for place, edge in _pairs(places, np.minimum(outline, ends), np.maximum(outline, ends), reach):
-        crosses, within = _beside(places[place], outline[edge], ends[edge], margin)
-        crossed += np.bincount(place[crosses], minlength=len(places))
-        close[place[within]] = True
-    near[chosen] = (crossed % 2 == 1) | close
+    low, high = np.minimum(starts, ends) - reach, np.maximum(starts, ends) + reach
+    near = ((points >= low.min(axis=0)) & (points <= high.max(axis=0))).all(axis=1)
+    chosen = np.flatnonzero(near)[np.argsort(points[near, 1])]  # from south to north
+    for part in np.array_split(chosen, len(chosen) // POINTS + 1) if len(chosen) else ():
+        place, (_, south), (_, north) = points[part, None], points[part[0]], points[part[-1]]
+        edges = (low[:, 1] <= north) & (high[:, 1] >= south) & (high[:, 0] >= place[..., 0].min())
+        start, end = starts[edges], ends[edges]
+        way, off = end - start, place - start
+        upward = off[..., 1] >= 0.0
+        left = way[:, 0] * off[..., 1] - way[:, 1] * off[..., 0] > 0.0
+        crossed = (upward != (place[..., 1] >= end[:, 1])) & (left == upward)  # by the ray to the east
+        along = np.clip((off * way).sum(axis=2) / np.maximum((way ** 2).sum(axis=1), 1e-300), 0.0, 1.0)
+        close = np.linalg.norm(off - along[..., None] * way, axis=2) < margin
+        near[part] = (crossed.sum(axis=1) % 2 == 1) | close.any(axis=1)
     return near
-
-
-def _pairs(places, low, high, reach: float) -> Iterator[Tuple[np.ndarray, np.ndarray]]:
-    """Numbers of places and of edges that a ray to the east may cross or that are within reach, some PAIRS at a time: all edges
-    of a run of RUN whose box is so. @param places by y, n x 2 @param low, high corners of each edge's box, m x 2"""
-    runs = np.arange(0, len(low), RUN)
-    (west, south), (east, north) = np.minimum.reduceat(low, runs).T, np.maximum.reduceat(high, runs).T
-    first = np.searchsorted(places[:, 1], south - reach, "left")
-    count = np.searchsorted(places[:, 1], north + reach, "right") - first
-    number = np.cumsum(count) // PAIRS
-    cuts = np.r_[0, np.flatnonzero(np.diff(number)) + 1, len(count)]
-    for begin, end in zip(cuts, cuts[1:]):
-        run = np.repeat(np.arange(begin, end), count[begin:end])
-        before = np.cumsum(count[begin:end]) - count[begin:end]
-        place = np.arange(len(run)) - np.repeat(before - first[begin:end], count[begin:end])
-        x, y = places[place].T
-        wanted = (x <= east[run] + reach) & ((x >= west[run] - reach) | ((y >= south[run]) & (y <= north[run])))
-        run, place = run[wanted], place[wanted]
-        for part in np.array_split(np.arange(len(run)), len(run) * RUN // PAIRS + 1):
-            edge = runs[run[part], None] + np.arange(RUN)
-            there = edge < len(low)
-            yield np.broadcast_to(place[part, None], edge.shape)[there], edge[there]
-
-
-def _beside(points, starts, ends, margin: float) -> Tuple[np.ndarray, np.ndarray]:
-    """Of pairs of points and edges (n x 2 each): whether the ray to the east crosses the edge, and whether the edge is nearer
-    than `margin`."""
-    way, off = ends - starts, points - starts
-    side = way[:, 0] * off[:, 1] - way[:, 1] * off[:, 0]
-    upward = starts[:, 1] <= points[:, 1]
-    crosses = (upward != (ends[:, 1] <= points[:, 1])) & ((side > 0.0) == upward)
-    along = np.clip((off * way).sum(axis=1) / np.maximum((way ** 2).sum(axis=1), 1e-300), 0.0, 1.0)
-    return crosses, np.linalg.norm(off - along[:, None] * way, axis=1) < margin
 
 
 def lattice(bounds: Sequence[float], spacing: float) -> np.ndarray:
@@ -541,76 +512,80 @@ def look(scene, sensor, sites, places, species: Sequence[str], folder=None, rank
             known = [list(species), array, area_factor, inputs, *([[dict(air) for air in airs]] if any(airs) else [])]
             files = _files(cover, sites, places, known, folder)
             ranks.agree(folder, lambda: [file.name for file in files])
-            found = np.empty((len(sites), len(species) * len(airs), len(places)), dtype=np.float32)
-            kept = {i for i, file in enumerate(files) if _read_kept(file, found[i])}
-            damaged = [str(file) for i, file in enumerate(files) if i not in kept and os.path.lexists(file)]
-            ranks.wait()  # all have looked before anybody adds anything
-            if damaged and ranks.rank == 0:
-                warnings.warn(f"kept coverage is damaged and is made again: {', '.join(damaged)}", RuntimeWarning, stacklevel=callers_level())
-            todo = [i for i in range(len(sites)) if i not in kept]
-            mine = todo[ranks.rank::ranks.size]
             if len(sites):
                 sensor.position = tuple(sites[0])  # who is warned of a place is warned of one that was asked for
             areas = [cover.effective_area] * len(species)
             if area_factor != 1.0:
-                areas = [area_factor * _area(cover, name) for name in species]
+                areas = [area_factor * float(np.ravel(field_values(cover.set(species=name).data)["effective_area"])[0])
+                         for name in species]
             with Updates(cover.algorithm) as again:
-                for number, i in enumerate(mine):
+                def look_from(i: int) -> List[np.ndarray]:
                     sensor.position = tuple(sites[i])
-                    for row, ((name, area), air) in enumerate(itertools.product(zip(species, areas), airs)):
+                    rows = []
+                    for (name, area), air in itertools.product(zip(species, areas), airs):
                         cover.set(species=name, effective_area=area, **air)
                         again()
                         values = cover.algorithm.GetOutputDataObject(0).GetPointData().GetArray(array)
                         if values is None:
                             raise ValueError(f"array is {array!r}, expected a point array of vtkAvianLidarCoverage")
-                        found[i, row] = vtk_to_numpy(values)
-                    if folder is not None:
-                        files[i].unlink(missing_ok=True)  # a damaged one may be a pipe
-                        write_whole(files[i], _kept(found[i]))
-                    if progress:
-                        progress(number + 1, len(mine))
+                        rows.append(vtk_to_numpy(values))
+                    return rows
+                found = np.empty((len(sites), len(species) * len(airs), len(places)), dtype=np.float32)
+                _fill(found, files, ranks, look_from, progress)
         finally:
             sensor.position = before
-        ranks.wait()
-        for i in sorted(set(todo) - set(mine)):  # of other ranks
-            if not _read_kept(files[i], found[i]):
-                raise Error(f"{files[i]}: is damaged, which another rank has just written")
     return found
 
 
-def _head(values: np.ndarray) -> bytes:
-    """What a file of values of this shape begins with (.npy)."""
-    stream = io.BytesIO()
-    np.lib.format.write_array_header_1_0(stream, {"descr": values.dtype.str, "fortran_order": False, "shape": values.shape})
-    return stream.getvalue()
+def _fill(found: np.ndarray, files: Sequence[pathlib.Path], ranks: Ranks, make: Callable[[int], Any],
+          progress: Optional[Callable[[int, int], Any]] = None, key: Callable[[int], Any] = lambda i: i) -> None:
+    """Read each row from its file; make and write what is missing. Ranks share that work.
+
+    make  a row, by its number
+    key   equal for neighbouring rows that one rank makes
+    """
+    kept = {i for i, file in enumerate(files) if _read_kept(file, found[i])}
+    damaged = [str(file) for i, file in enumerate(files) if i not in kept and os.path.lexists(file)]
+    ranks.wait()  # all have looked before anybody adds anything
+    if damaged and ranks.rank == 0:
+        warnings.warn(f"kept coverage is damaged and is made again: {', '.join(damaged)}", RuntimeWarning,
+                      stacklevel=callers_level())
+    todo = [i for i in range(len(found)) if i not in kept]
+    groups = [list(of) for _, of in itertools.groupby(todo, key=key)]
+    mine = [i for group in groups[ranks.rank::ranks.size] for i in group]
+    for number, i in enumerate(mine):
+        found[i] = make(i)
+        if files:
+            files[i].unlink(missing_ok=True)  # a damaged one may be a pipe
+            write_whole(files[i], _kept(found[i]))
+        if progress:
+            progress(number + 1, len(mine))
+    ranks.wait()
+    for i in sorted(set(todo) - set(mine)):  # of other ranks
+        if not _read_kept(files[i], found[i]):
+            raise Error(f"{files[i]}: is damaged, which another rank has just written")
 
 
 def _kept(values: np.ndarray) -> bytes:
     """A file of values: .npy, and behind it the digest of all that."""
-    content = _head(values) + values.tobytes()
-    return content + hashlib.sha256(content).digest()
+    stream = io.BytesIO()
+    np.save(stream, values)
+    return stream.getvalue() + hashlib.sha256(stream.getvalue()).digest()
 
 
 def _read_kept(file: pathlib.Path, values: np.ndarray) -> bool:
     """Whether a file is whole, as it was written; its values are read into `values`."""
-    head = _head(values)
     try:
-        if not file.is_file() or file.stat().st_size != len(head) + values.nbytes + hashlib.sha256().digest_size:
-            return False
-        content = file.read_bytes()
+        content = file.read_bytes() if file.is_file() else b""
     except OSError:
         return False
-    read = np.frombuffer(content[len(head):len(head) + values.nbytes], dtype=values.dtype).reshape(values.shape)
-    if content != _kept(read):
+    if hashlib.sha256(content[:-32]).digest() != content[-32:]:
+        return False
+    read = np.load(io.BytesIO(content[:-32]))
+    if (read.shape, read.dtype) != (values.shape, values.dtype):
         return False
     values[:] = read
     return True
-
-
-def _area(cover: Coverage, species: str) -> float:
-    """The mean effective area of the target, m2."""
-    cover.species = species
-    return float(np.ravel(field_values(cover.data)["effective_area"])[0])
 
 
 def _files(cover: Coverage, sites, places, inputs, folder) -> List[pathlib.Path]:
@@ -786,10 +761,8 @@ def search(found: np.ndarray, weights: np.ndarray, count: int = 3, largest: int 
 
 def rank_correlation(a, b) -> float:
     """Spearman's, of two rows of numbers; equal ones share their mean rank."""
-    def ranks(values):
-        _, inverse, counts = np.unique(values, return_inverse=True, return_counts=True)
-        return (np.cumsum(counts) - 0.5 * (counts - 1))[inverse]
-    return float(np.corrcoef(ranks(a), ranks(b))[0, 1])
+    from scipy.stats import spearmanr
+    return float(spearmanr(a, b)[0])
 
 
 def _height(value: Any) -> float:
@@ -849,7 +822,7 @@ def write_sites(folder, sites, columns: Mapping[str, Any], origin: Optional[Sequ
     origin   latitude, longitude (deg), height (m) of the scene's origin
     description  in words, of sites.geojson
     """
-    out, data = pathlib.Path(folder), places_of(sites)
+    out, data = pathlib.Path(folder), vertices(sites)
     columns = dict(columns)
     if origin is not None:
         degrees = to_geodetic(sites, origin)
@@ -857,13 +830,7 @@ def write_sites(folder, sites, columns: Mapping[str, Any], origin: Optional[Sequ
     for name, values in columns.items():
         if len(values) != len(sites):
             raise ValueError(f"column {name!r} has {len(values)} values, expected {len(sites)}, one for each site")
-        array = numpy_to_vtk(np.ascontiguousarray(values), deep=True)
-        array.SetName(name)
-        data.GetPointData().AddArray(array)
-    vertices = vtkCellArray()
-    for i in range(len(sites)):
-        vertices.InsertNextCell(1, [i])
-    data.SetVerts(vertices)
+        add_array(data.GetPointData(), name, np.asarray(values))
     out.mkdir(parents=True, exist_ok=True)
     save(data, out / "sites.vtp")
     save(data, out / "sites.csv")
