@@ -4,24 +4,22 @@ footprints, lays areas on the terrain and places crowns."""
 from __future__ import annotations
 
 import collections
-import csv
 import hashlib
-import io
 import json
 import math
 import pathlib
 import re
 import warnings
-from typing import Any, Callable, Dict, Iterator, List, Optional, Sequence, Tuple
+from typing import Any, Callable, Counter, Dict, Iterator, List, Optional, Sequence, Tuple
 
 import numpy as np
-from vtkmodules.util.numpy_support import vtk_to_numpy
 
-from .._cloud import field_values
-from .._disk import read_regular, write_whole
+from .._cloud import field_values, leaves_of, triangles_of
+from .._disk import as_csv, read_regular, write_whole
 from .._pipeline import Error, update
 from .._scene import Scene, load_scene
 from .._scene import mesh as _surface
+from .._writers import vtp
 from . import _heights, _pictures, siting
 from ._extract import COAST, CUT, Feature, Left, height_name, properties_of, read_extract, rules, sea, without_parts
 from ._extract import degrees as _degrees
@@ -79,9 +77,10 @@ def read_heights(file: pathlib.Path, origin: Sequence[float], rectangle: Sequenc
         if missing.any():
             gdal.FillNodata(band, None, 20, 0)
             heights = band.ReadAsArray()
-            heights = _feathered(heights, ~(np.abs(heights) < 1e8), spacing, known["feather"])
+            missing = ~(np.abs(heights) < 1e8)
+            heights = _feathered(heights, missing, spacing, known["feather"]) if missing.any() else heights
     heights = heights[::-1]
-    here = float(_at(heights, (west, south), spacing, (0.0, 0.0)))
+    here = _at(heights, (west, south), spacing, (0.0, 0.0))
     words = f"heights: {file.name}, {heights.min():.1f} to {heights.max():.1f} m, taken every {spacing:.3g} m" + (f" (it has them every {own:.3g} m)" if spacing > 1.01 * own else "")
     if unit and _heights.metres_of(unit) != 1.0:
         words += f", in {unit}, which it says"
@@ -95,13 +94,8 @@ def read_heights(file: pathlib.Path, origin: Sequence[float], rectangle: Sequenc
 
 def _feathered(heights: np.ndarray, missing: np.ndarray, spacing: float, width: float) -> np.ndarray:
     """Level where heights are missing, at the mean of the border, and fading into that within `width` (m)."""
-    gdal, _, _ = _gdal()
-    if not missing.any():
-        return heights
-    raster = gdal.GetDriverByName("MEM").Create("", missing.shape[1], missing.shape[0], 2, gdal.GDT_Float32)
-    raster.GetRasterBand(1).WriteArray(missing.astype(np.float32))
-    gdal.ComputeProximity(raster.GetRasterBand(1), raster.GetRasterBand(2), ["VALUES=1"])
-    away = raster.GetRasterBand(2).ReadAsArray() * spacing
+    from scipy.ndimage import distance_transform_edt
+    away = distance_transform_edt(~missing) * spacing
     level = heights[(away > 0.0) & (away < 1.5 * spacing)].mean()
     share = np.clip(away / max(width, spacing), 0.0, 1.0)
     return level + np.where(missing, 0.0, share * share * (3.0 - 2.0 * share) * (heights - level))
@@ -109,11 +103,9 @@ def _feathered(heights: np.ndarray, missing: np.ndarray, spacing: float, width: 
 
 def _at(values: np.ndarray, corner: Sequence[float], spacing: float, place: Sequence[float]) -> float:
     """Between four posts."""
-    x, y = ((place[i] - corner[i]) / spacing for i in (0, 1))
-    column, row = (min(max(int(c), 0), n - 2) for c, n in ((x, values.shape[1]), (y, values.shape[0])))
-    u, v = x - column, y - row
-    (a, b), (c, d) = values[row:row + 2, column:column + 2]
-    return (a * (1 - u) + b * u) * (1 - v) + (c * (1 - u) + d * u) * v
+    from scipy.ndimage import map_coordinates
+    at = [[(place[i] - corner[i]) / spacing] for i in (1, 0)]
+    return float(map_coordinates(values, at, order=1, mode="nearest")[0])
 
 
 def curvature(origin: Sequence[float], x, y):
@@ -328,16 +320,6 @@ class Airport:
         self.terrain_words += f"; triangles within {self.error:g} m of that"
         return posts, (west, south), spacing
 
-    def _terrain(self, posts: np.ndarray, corner: Sequence[float], spacing: float) -> bytes:
-        from vtkmodules.vtkIOXML import vtkXMLPolyDataWriter
-        surface = terrain(posts, corner, spacing, self.origin, self.error)
-        writer = vtkXMLPolyDataWriter()
-        writer.SetInputData(surface)
-        writer.SetDataModeToBinary()
-        writer.WriteToOutputStringOn()
-        update(writer)
-        return writer.GetOutputString().encode("latin-1")
-
     def write(self, folder) -> "Kept":
         """Leave all files in a folder, which is there; those that were edited stay."""
         out = pathlib.Path(folder)
@@ -347,7 +329,7 @@ class Airport:
         with _quiet():
             chosen = self._chosen(*posts)
             mapped = kept.put("airport.geojson", lambda: self._mapped(chosen))
-        kept.put("terrain.vtp", lambda: self._terrain(*posts))
+        kept.put("terrain.vtp", lambda: vtp(terrain(*posts, self.origin, self.error)))
         if "terrain.vtp" in kept.edited:
             self.terrain_words = "heights: terrain.vtp as it was edited"
         self.rows = [feature["properties"] for feature in siting._features(mapped)]
@@ -373,11 +355,7 @@ class Airport:
         kept.put("airport.scenario.json", lambda: _json(self.scenario()))
         kept.put("assumed.csv", self._assumed)
         self.progress("files", 8, len(WHAT))
-        picture = out / "airport.png"
-        if kept.is_edited(picture.name):
-            kept.edited.append(picture.name)
-        else:
-            kept.put(picture.name, self._picture)
+        kept.put("airport.png", self._picture)
         kept.put("README.txt", self._readme)
         self.progress("files", len(WHAT), len(WHAT))
         return kept
@@ -516,14 +494,11 @@ class Airport:
                     yield row["kind"], row.get("id", ""), row.get("name") or row.get("ref") or "", what, row.get(what, 0.0), row[f"{what}_from"]
 
     def _assumed(self) -> bytes:
-        table = io.StringIO(newline="")
-        writer = csv.writer(table, lineterminator="\n")
-        writer.writerow(("kind", "id", "name", "what", "value (m, or a material)", "from"))
-        writer.writerows(self._assumed_rows())
-        writer.writerows((one.kind, one.id, one.name, "left out", one.count, one.reason) for one in self.left)
-        writer.writerows(("unknown kind", "", name, "left out", count, "no rule knows it") for name, count in self.unknown.most_common())
-        writer.writerows((kind, "", "", "in the scene", count, "") for kind, count in self.there.items())
-        return table.getvalue().encode()
+        return as_csv([
+            ("kind", "id", "name", "what", "value (m, or a material)", "from"), *self._assumed_rows(),
+            *((one.kind, one.id, one.name, "left out", one.count, one.reason) for one in self.left),
+            *(("unknown kind", "", name, "left out", n, "no rule knows it") for name, n in self.unknown.most_common()),
+            *((kind, "", "", "in the scene", count, "") for kind, count in self.there.items())])
 
     def _count(self, chosen: Sequence[Feature]) -> None:
         """How many of each kind are in the scene; what its reader leaves out becomes part of `self.left`."""
@@ -531,19 +506,24 @@ class Airport:
         for one in chosen:
             self.there[one.kind] += one.count
         kinds = {kind.replace("_", " "): kind for kind in self.known["kinds"]}
-        report = field_values(self.scene.surfaces.GetBlock(0)).get("scene_report", ())
-        for name, count, reason in re.findall(r"^(.*): (\d+) (.*) were left out$", "\n".join([report] if isinstance(report, str) else report), re.MULTILINE):
+        report = "\n".join(field_values(self.scene.surfaces.GetBlock(0)).get("scene_report", ()))
+        for name, count, reason in re.findall(r"^(.*): (\d+) (.*) were left out$", report, re.MULTILINE):
             kind = kinds.get(name.split(" of ")[0].lower())
             if kind is not None:
                 self.left.append(Left(kind, reason, count=int(count)))
                 self.there[kind] -= int(count)
 
+    def _reasons(self) -> Dict[str, Counter[str]]:
+        """How many features of each kind are left out for which reason."""
+        found: Dict[str, Counter[str]] = collections.defaultdict(collections.Counter)
+        for one in self.left:
+            found[one.kind][one.reason] += one.count
+        return found
+
     @property
     def counts(self) -> str:
         """What was read, what is in the scene and what is not, by reason, in one line."""
-        reasons = collections.Counter(self.unknown and {"unknown kind": sum(self.unknown.values())})
-        for one in self.left:
-            reasons[one.reason] += one.count
+        reasons = sum(self._reasons().values(), collections.Counter({"unknown kind": sum(self.unknown.values())}))
         there, left = sum(self.there.values()), sum(reasons.values())
 
         def verb(count: int, one: str, more: str) -> str:
@@ -556,13 +536,10 @@ class Airport:
 
     def _counts(self) -> str:
         """The same by kind."""
-        lines, outside = [f"  {self.counts}"], "outside the scene"
+        lines, outside, found = [f"  {self.counts}"], "outside the scene", self._reasons()
         away: List[str] = []
         for kind in dict.fromkeys([*self.there, *(one.kind for one in self.left)]):
-            reasons: Dict[str, int] = collections.Counter()
-            for one in self.left:
-                reasons[one.reason] += one.count * (one.kind == kind)
-            out = {reason: count for reason, count in reasons.items() if count}
+            out = {reason: count for reason, count in found[kind].items() if count}
             if not self.there[kind] and set(out) == {outside}:
                 away.append(f"{kind} ({out[outside]:,})")
             elif out:
@@ -661,19 +638,14 @@ Check on site
         for runway in self.sides:
             axes.annotate(runway.name, runway.start, color="white", fontsize=8, ha="center", zorder=21,
                           bbox={"facecolor": "black", "pad": 1, "linewidth": 0})
-        axes.legend(handles=[Patch(color=colour, label=word) for word, colour in shown.items()], fontsize=8, loc="upper left").set_zorder(30)
-        axes.set_xlim(self.rectangle[:2])
-        axes.set_ylim(self.rectangle[2:])
-        axes.set_aspect("equal")
-        axes.set_xlabel("m east")
-        axes.set_ylabel("m north")
-        axes.set_title(f"{self.name}: the scene from above; red: the lidar")
+        patches = [Patch(color=colour, label=word) for word, colour in shown.items()]
+        axes.legend(handles=patches, loc="upper left").set_zorder(30)
+        axes.set(xlim=self.rectangle[:2], ylim=self.rectangle[2:], aspect="equal", xlabel="m east", ylabel="m north",
+                 title=f"{self.name}: the scene from above; red: the lidar")
 
 
 def parts_of(scene: Scene) -> Iterator[Tuple[str, str, np.ndarray]]:
     """Of each object of a scene file its name, class and triangles (n x 3 x 3, m)."""
-    data = scene.surfaces.GetBlock(0)
-    for block in (data.GetBlock(i) for i in range(data.GetNumberOfBlocks())):
-        fields = field_values(block)
-        cells = vtk_to_numpy(block.GetPolys().GetConnectivityArray()).reshape(-1, 3)
-        yield fields["object_names"][0], fields["object_classes"][0], vtk_to_numpy(block.GetPoints().GetData())[cells]
+    for block in leaves_of(scene.surfaces):
+        fields, (points, cells) = field_values(block), triangles_of(block)
+        yield fields["object_names"][0], fields["object_classes"][0], points[cells]

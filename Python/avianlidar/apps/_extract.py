@@ -436,14 +436,7 @@ def _is_closed(shape) -> bool:
 
 def _as_area(shape):
     """The polygon in a closed line; polygons are as they are."""
-    _, ogr, _ = gdal_modules()
-    if form_of(shape) == "area":
-        return shape.Clone()
-    ring, area = ogr.Geometry(ogr.wkbLinearRing), ogr.Geometry(ogr.wkbPolygon)
-    for point in shape.GetPoints():
-        ring.AddPoint_2D(*point[:2])
-    area.AddGeometry(ring)
-    return area
+    return shape.Clone() if form_of(shape) == "area" else gdal_modules()[1].ForceToPolygon(shape.Clone())
 
 
 def _union(areas: List[Any]):
@@ -473,13 +466,6 @@ def _memberless(file: pathlib.Path) -> int:
                    for one in re.finditer(rb"<relation [^>]*[^/]>(.*?)</relation>", data, re.DOTALL))
 
 
-def _elements(file: pathlib.Path) -> Iterator[Tuple[str, Any]]:
-    try:
-        yield from ElementTree.iterparse(file, ("start", "end"))
-    except ElementTree.ParseError as error:
-        raise Error(f"{file}: GDAL cannot read it as an extract ({error})") from None
-
-
 def _in_order(file: pathlib.Path, out: pathlib.Path) -> pathlib.Path:
     """A copy of XML of OpenStreetMap with nodes, then ways, then relations, each once, by their ids."""
     found: Dict[str, Dict[int, Tuple[int, bytes]]] = {"node": {}, "way": {}, "relation": {}}
@@ -497,7 +483,7 @@ def _in_order(file: pathlib.Path, out: pathlib.Path) -> pathlib.Path:
             keep("node", int(node.get("ref")), 0, b'<node id="%s" lat="%s" lon="%s"/>' % tuple(word.encode() for word in (node.get("ref"), *where)))
 
     root = None
-    for event, one in _elements(file):
+    for event, one in ElementTree.iterparse(file, ("start", "end")):
         root = one if root is None else root
         if event == "start" or one.tag not in found:
             continue
@@ -547,8 +533,12 @@ def read_extract(file: pathlib.Path, known: Dict[str, Any]) -> Extract:
     with contextlib.ExitStack() as stack:
         source = file
         if file.suffix.lower() == ".osm" and file.is_file() and file.stat().st_size and _needs_order(file):
-            with naming("its nodes, ways and relations"):
-                source = _in_order(file, pathlib.Path(stack.enter_context(tempfile.TemporaryDirectory())) / "in_order.osm")
+            try:
+                with naming("its nodes, ways and relations"):
+                    folder = stack.enter_context(tempfile.TemporaryDirectory())
+                    source = _in_order(file, pathlib.Path(folder) / "in_order.osm")
+            except ElementTree.ParseError as error:
+                raise Error(f"{file}: GDAL cannot read it as an extract ({error})") from None
         if file.suffix.lower() == ".osm" and source.is_file():
             reader.found.left += [Left("relation", "no ways")] * _memberless(source)
         data = open_file(source, "an extract", [driver], gdal.OF_VECTOR, options)

@@ -39,29 +39,23 @@ def metres_of(name: str) -> Optional[float]:
     return None
 
 
-def unit_of(data) -> Tuple[str, float]:
-    """The unit of a raster's heights, and metres of it: that of its band or of its vertical system; "" and 1 where neither says one."""
+def unit_of(data) -> Tuple[str, float, str]:
+    """The unit of a raster's heights, and metres of it: that of its band or of its vertical system; "" and 1 where
+    neither says one. The third is the likely unit then: that of the coordinates, where it is not the metre."""
     from osgeo import osr
     system = osr.SpatialReference()
     system.ImportFromWkt(data.GetProjection())
     named = data.GetRasterBand(1).GetUnitType()
     vertical, factor = system.GetAttrValue("VERT_CS|UNIT", 0), float(system.GetAttrValue("VERT_CS|UNIT", 1) or 1.0)
     if not named:
-        return vertical or "", factor
+        likely = not vertical and system.IsProjected() and abs(system.GetLinearUnits() - 1.0) > 1e-9
+        return vertical or "", factor, system.GetLinearUnitsName() if likely else ""
     metres = metres_of(named)
     if metres is None:
         raise Error(f"its heights are in {named!r}, expected one of {', '.join(METRES)}")
     if vertical and not math.isclose(metres, factor, rel_tol=1e-4):
         raise Error(f"its band says heights in {named!r}, and its vertical system in {vertical!r}, expected one unit")
-    return named, metres
-
-
-def likely_unit(data) -> str:
-    """The unit of the coordinates, where it is not the metre; "" else."""
-    from osgeo import osr
-    system = osr.SpatialReference()
-    system.ImportFromWkt(data.GetProjection())
-    return system.GetLinearUnitsName() if system.IsProjected() and abs(system.GetLinearUnits() - 1.0) > 1e-9 else ""
+    return named, metres, ""
 
 
 def in_metres(file: pathlib.Path, data):
@@ -74,8 +68,7 @@ def in_metres(file: pathlib.Path, data):
     if band.DataType == gdal.GDT_Byte:
         raise Error(f"holds bytes in {data.RasterCount} {'bands' if data.RasterCount > 1 else 'band'}, as a picture or a hillshade does, expected heights "
                     "of 16 bits or more")
-    unit, metres = unit_of(data)
-    likely = "" if unit else likely_unit(data)
+    unit, metres, likely = unit_of(data)
     if likely:
         warnings.warn(f"{file}: says no unit of its heights, and its coordinates are in {likely}: they are taken for metres, and are likely in {likely}, too; "
                       f"`gdal_edit.py -units '{likely}' {file.name}` says so", RuntimeWarning, stacklevel=4)

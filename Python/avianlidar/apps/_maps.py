@@ -2,9 +2,7 @@
 """Plans of coverage, and maps as files: the command `avianlidar coverage`."""
 from __future__ import annotations
 
-import csv
 import functools
-import io
 import json
 import math
 import pathlib
@@ -15,7 +13,7 @@ import numpy as np
 
 from .. import vtkAvianLidar as _wrapped
 from .._coverage import Coverage, places_of
-from .._disk import checked_name, replacing, write_whole
+from .._disk import as_csv, checked_name, replacing, write_whole
 from .._files import save
 from .._pipeline import Error, update
 from .._properties import in_snake_case
@@ -66,49 +64,42 @@ def read_plan(file, words: Optional[Sequence[str]] = None, metar=None, **changes
             plan["metar"] = str(pathlib.Path(metar).resolve())
     for part, values in changes.items():
         if values and isinstance(plan, dict) and isinstance(plan.get(part, {}), dict):
-            lists = {name: list(value) if isinstance(value, tuple) else value for name, value in values.items()}
-            lists.update({name: [lists[name]] for name in ("masts", "exclusions") if name in lists and not isinstance(lists[name], list)})
-            plan[part] = {**plan.get(part, {}), **lists}
+            plan[part] = {**plan.get(part, {}), **{
+                name: list(value) if isinstance(value, tuple) else value if isinstance(value, list) or
+                name not in ("masts", "exclusions") else [value] for name, value in values.items()}}
     check_json(plan, "coverage.schema.json", str(file))
 
-    def absolute(name: str) -> str:
+    def from_here(name: str) -> str:
         return str((path.parent / name).resolve())
 
-    def sensor(given: Union[str, Dict[str, Any]]) -> Dict[str, Any]:
-        known = {"preset": given} if isinstance(given, str) else in_snake_case(_wrapped.vtkAvianLidarBeamSource, given, "Sensor")
-        if known["preset"].endswith(".json"):
-            known["preset"] = absolute(known["preset"])
+    def absolute(*keys: str) -> None:
+        """Makes the file or files of a member of the plan, if it is there, absolute."""
+        *of, name = keys
+        part = functools.reduce(lambda one, key: one.get(key, {}), of, plan)
+        if name in part:
+            with naming(f"{file}: {'.'.join(keys)}"):
+                part[name] = from_here(part[name]) if isinstance(part[name], str) else list(map(from_here, part[name]))
+
+    def sensor(given: Union[str, Dict[str, Any]], what: str) -> Dict[str, Any]:
+        with naming(f"{file}: {what}"):
+            given = {"preset": given} if isinstance(given, str) else given
+            known = in_snake_case(_wrapped.vtkAvianLidarBeamSource, given, "Sensor")
+            if known["preset"].endswith(".json"):
+                known["preset"] = from_here(known["preset"])
+        sensor_name(known, f"{file}: {what}")
         return known
 
     with naming(f"{file}: coverage"):
         if "coverage" in plan:
             plan["coverage"] = in_snake_case(_wrapped.vtkAvianLidarCoverage, plan["coverage"], "Coverage")
-    with naming(f"{file}: scene"):
-        plan["scene"] = absolute(plan["scene"])
-    with naming(f"{file}: sensor"):
-        plan["sensor"] = sensor(plan["sensor"])
-    with naming(f"{file}: compare_with"):
-        plan["compare_with"] = [sensor(other) for other in plan.get("compare_with", ())]
-    for what, known in (("sensor", plan["sensor"]), *((f"compare_with[{i}]", other) for i, other in enumerate(plan["compare_with"]))):
-        sensor_name(known, f"{file}: {what}")
-    if "runways" in plan:
-        with naming(f"{file}: runways"):
-            plan["runways"] = absolute(plan["runways"])
-    for name in ("metar", "tracks"):
-        if name in plan:
-            with naming(f"{file}: {name}"):
-                plan[name] = absolute(plan[name])
-    if "scenario" in plan.get("design", {}):
-        with naming(f"{file}: design.scenario"):
-            plan["design"]["scenario"] = absolute(plan["design"]["scenario"])
+    plan["sensor"] = sensor(plan["sensor"], "sensor")
+    plan["compare_with"] = [sensor(other, f"compare_with[{i}]") for i, other in enumerate(plan.get("compare_with", ()))]
     if "siting" in plan:
         if "runways" not in plan:
             raise Error(f"{file}: siting: needs runways")
-        with naming(f"{file}: siting.exclusions"):
-            plan["siting"]["exclusions"] = [absolute(name) for name in plan["siting"].get("exclusions", ())]
-        if "points" in plan["siting"]:
-            with naming(f"{file}: siting.points"):
-                plan["siting"]["points"] = absolute(plan["siting"]["points"])
+        plan["siting"].setdefault("exclusions", [])
+    for member in ("scene", "runways", "metar", "tracks", "design.scenario", "siting.exclusions", "siting.points"):
+        absolute(*member.split("."))
     _check_question(plan, str(file))
     if "metar" in plan:
         with naming(f"{file}: metar"):
@@ -312,7 +303,9 @@ class Plan:
         if member == "sensor":  # else they are those of the plan before
             self._check_settings()
             for name in plan.get("mix", ()):
-                self.check_species(name, "mix")
+                with naming(f"{self.file}: mix"), warnings.catch_warnings():
+                    warnings.simplefilter("ignore")
+                    self.tried.set(species=name).update()
         self.mix = self._mix()
         self.settings["species"] = next(iter(self.mix))
         self.runways: List[Runway] = []
@@ -344,13 +337,6 @@ class Plan:
             with naming(f"{self.file}: year: {air.name}"), warnings.catch_warnings():
                 warnings.simplefilter("ignore")
                 Coverage(Scene(), self.sensor, places=[(0.0, 0.0, 0.0)], **{**self.settings, **air.settings}).update()
-
-    def check_species(self, name: str, member: str) -> None:
-        """`Error` for a species that is not known. @param member of the plan that names it"""
-        with naming(f"{self.file}: {member}"), warnings.catch_warnings():
-            warnings.simplefilter("ignore")
-            self.tried.species = name
-            self.tried.update()
 
     def air_of(self, words: Sequence[str] = (), **air: Any) -> Dict[str, Any]:
         """Settings of coverage in a weather: where it says nothing of the visibility, the plan's own; without rain, dry.
@@ -488,9 +474,8 @@ class Plan:
     @property
     def assumed(self) -> Tuple[str, ...]:
         """Properties of the sensor whose numbers are assumed: by its file, or as the plan sets them."""
-        known = self.sensor.beams.fields.get("assumed", ())
         changed = [name for name in self.plan["sensor"] if name not in ("preset", "name", "position", "orientation")]
-        return ((known,) if isinstance(known, str) else tuple(known)) + tuple(changed)
+        return (*self.sensor.beams.fields.get("assumed", ()), *changed)
 
     def map_at(self, height: float) -> Coverage:
         """Coverage of the plan's extent at a height, m, of the first species."""
@@ -625,10 +610,6 @@ def sensor_name(sensor: Mapping[str, Any], what: str = "sensor") -> str:
 def write_table(file, rows: Sequence[Dict[str, Any]]) -> None:
     """Write rows as CSV, units in the header."""
     units = {"height_from": "m", "height_to": "m"}
-    text = io.StringIO(newline="")
-    writer = csv.writer(text)
-    if rows:
-        writer.writerow([f"{name} [{units[name]}]" if name in units else name for name in rows[0]])
-    for row in rows:
-        writer.writerow([f"{value:.6g}" if isinstance(value, float) else value for value in row.values()])
-    write_whole(file, text.getvalue().encode())
+    head = [[f"{name} [{units[name]}]" if name in units else name for name in rows[0]]] if rows else []
+    table = [[f"{value:.6g}" if isinstance(value, float) else value for value in row.values()] for row in rows]
+    write_whole(file, as_csv(head + table, "\r\n"))
