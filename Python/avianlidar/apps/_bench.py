@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import csv
-import io
 import itertools
 import math
 import pathlib
@@ -11,7 +10,7 @@ from typing import Any, Callable, Dict, List, NamedTuple, Optional, Sequence, Tu
 
 import numpy as np
 
-from .._disk import only_run, read_regular, write_whole
+from .._disk import as_csv, only_run, read_regular, write_whole
 from .._pipeline import Error
 from .._version import __version__
 from .._weather import in_words
@@ -116,10 +115,6 @@ def scores(points: Points, among: np.ndarray, scans: int, least: Sequence[float]
     return found
 
 
-def range_words(low: float, high: float) -> str:
-    return f"{low:g} to {high:g} m" if math.isfinite(high) else f"beyond {low:g} m"
-
-
 class Set:
     """A folder that `avianlidar sequence` has made."""
 
@@ -178,7 +173,9 @@ class Set:
         """Which points are in a group: by what, and its name."""
         found: Dict[Tuple[str, str], np.ndarray] = {("all", ""): np.ones(len(points.bird), bool)}
         found.update({("subset", words.replace("_", " ")): points.subset == place for place, words in enumerate(SUBSETS)})
-        found.update({("range", range_words(low, high)): (points.range >= low) & (points.range < high) for low, high in zip(RANGES, RANGES[1:])})
+        for low, high in zip(RANGES, RANGES[1:]):
+            words = f"{low:g} to {high:g} m" if math.isfinite(high) else f"beyond {low:g} m"
+            found["range", words] = (points.range >= low) & (points.range < high)
         names = self.species(number)
         for name in sorted({*names.values()}):
             found["species", name] = points.bird & np.isin(points.instance, [one for one, species in names.items() if species == name])
@@ -273,15 +270,12 @@ class Bench:
             raise Error(f"first is {first}, expected 0 or more")
         self.sets = [Set(folder, numbers, first) for folder in folders]
         self.predictions = [pathlib.Path(folder) for folder in predictions]
-        for what, names in (("sets", [one.name for one in self.sets]), ("predictions", [self.name_of(folder) for folder in self.predictions])):
+        for what, names in (("sets", [one.name for one in self.sets]),
+                            ("predictions", [folder.resolve().name for folder in self.predictions])):
             twice = {name for name in names if names.count(name) > 1}
             if twice:
                 raise Error(f"{what}: two are called {min(twice)}, expected folders of different names")
         self.jobs = [(one, folder, self._folder_of(one, folder)) for one in self.sets for folder in self.predictions]
-
-    @staticmethod
-    def name_of(folder: pathlib.Path) -> str:
-        return folder.resolve().name
 
     def _folder_of(self, one: Set, folder: pathlib.Path) -> pathlib.Path:
         for place in (folder / one.name, *([folder] if len(self.sets) == 1 else ())):
@@ -295,7 +289,8 @@ class Bench:
         out = pathlib.Path(out)
         total, done = sum(len(one.numbers) for one, _, _ in self.jobs), itertools.count(1)
         with only_run(out):
-            scored = [Scored(one, place, self.name_of(folder), lambda: progress("sequences", next(done), total)) for one, folder, place in self.jobs]
+            scored = [Scored(one, place, folder.resolve().name, lambda: progress("sequences", next(done), total))
+                      for one, folder, place in self.jobs]
             by_set = [scored[k * len(self.predictions):(k + 1) * len(self.predictions)] for k in range(len(self.sets))]
             self._write_tables(out, scored)
             shown = [self._shown(out, of) for of in by_set]
@@ -316,10 +311,8 @@ class Bench:
                                      value.number, one.points(group)])
             if one.curves:
                 lines += [[one.set.name, one.name, f"{recall:g}", f"{precision:.6g}"] for recall, precision in zip(RECALLS, np.nanmean(one.curves, axis=0))]
-        for name, table in (("bench.csv", rows), ("curves.csv", lines)):
-            text = io.StringIO(newline="")
-            csv.writer(text, lineterminator="\n").writerows(table)
-            write_whole(out / name, text.getvalue().encode())
+        write_whole(out / "bench.csv", as_csv(rows))
+        write_whole(out / "curves.csv", as_csv(lines))
 
     @staticmethod
     def _shown(out: pathlib.Path, scored: Sequence[Scored]) -> Dict[str, Any]:
@@ -356,5 +349,5 @@ def _draw_curves(axes, curves: Sequence[Tuple[str, np.ndarray]]) -> None:
             error = np.nanstd(values, axis=0, ddof=1) / math.sqrt(len(values))
             axes.fill_between(RECALLS, middle - error, middle + error, color=line.get_color(), alpha=0.2, linewidth=0)
     axes.set(xlabel="recall", ylabel="precision", xlim=(0.0, 1.0), ylim=(0.0, 1.02))
-    axes.grid(alpha=0.3)
-    axes.legend(fontsize=8)
+    axes.grid()
+    axes.legend()

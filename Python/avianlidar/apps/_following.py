@@ -15,7 +15,7 @@ from typing import Any, Dict, List, NamedTuple, Optional, Sequence as Many, Tupl
 import numpy as np
 
 from .. import vtkAvianLidar as _wrapped
-from .._cloud import as_numpy
+from .._cloud import add_array, as_numpy
 from .._disk import read_regular
 from .._pipeline import Error, Updates, update
 from .._properties import get_property, property_names, set_properties
@@ -25,7 +25,7 @@ from .._sensor import Sensor
 from . import _scores as scores
 from ._json import load_json, naming
 from ._labels import FIRST_BIRD, FIRST_OBJECT
-from ._sequence import DONE, _digest, _set, _short, read_scenario
+from ._sequence import DONE, _digest, _short, read_scenario
 from .siting import (APPROACH_HALF_WIDTH, APPROACH_HEIGHT, APPROACH_LENGTH, STRIP_HALF_WIDTH, STRIP_HEIGHTS, Runway, read_runways)
 
 VOLUMES = ("strip", "glide path")
@@ -87,9 +87,9 @@ class Chain:
         self._filtered()
         clutter = as_numpy(self.filter.GetOutputDataObject(0).GetPointData().GetArray("is_clutter")).astype(np.uint8)
         rest = _cloud(placed, time, self.position)
-        _set(rest.GetPointData(), "is_clutter", clutter)
+        add_array(rest.GetPointData(), "is_clutter", clutter)
         if times is not None:
-            _set(rest.GetPointData(), "timestamp", times)
+            add_array(rest.GetPointData(), "timestamp", times)
         self.tracker.SetInputData(rest)
         self._tracked()
         of_points = as_numpy(self.tracker.GetOutputDataObject(1).GetPointData().GetArray("track_id")).astype(int)
@@ -99,8 +99,8 @@ class Chain:
 
 def _cloud(points: np.ndarray, time: float, position: np.ndarray):
     cloud = mesh(points, np.empty((0, 3), int))
-    _set(cloud.GetFieldData(), "TimeValue", np.array([time]))
-    _set(cloud.GetFieldData(), "position", position.reshape(1, 3))
+    add_array(cloud.GetFieldData(), "TimeValue", np.array([time]))
+    add_array(cloud.GetFieldData(), "position", position.reshape(1, 3))
     return cloud
 
 
@@ -137,18 +137,13 @@ def read_truth(file) -> Dict[int, List[Dict[str, Any]]]:
     for number, row in enumerate(rows):
         with naming(f"{file}: line {number + 2}"):
             of_scan = found[int(row["scan"])]
+            weather = [f"visibility {float(row['visibility_m']):g} m"] if row["visibility_m"] else []
+            weather += [f"rain {float(row['rain_mm_h']):g} mm/h"] if float(row["rain_mm_h"] or 0) > 0.0 else []
             if row["x_m"]:
                 of_scan.append({"bird": int(row["bird"]), "species": row["species"], "in": row["status"] not in ("absent", "outside"),
                                 "time": float(row["time_s"]), "place": [float(row[name]) for name in ("x_m", "y_m", "z_m")],
-                                "range": float(row["range_m"]), "weather": weather_words(row["visibility_m"], row["rain_mm_h"])})
+                                "range": float(row["range_m"]), "weather": ", ".join(weather) or "clear"})
     return found
-
-
-def weather_words(visibility: str, rain: str) -> str:
-    """The weather of a row of the truth."""
-    said = [f"visibility {float(visibility):g} m"] if visibility else []
-    said += [f"rain {float(rain):g} mm/h"] if rain and float(rain) > 0.0 else []
-    return ", ".join(said) or "clear"
 
 
 def inside(volume: str, runways: Many[Runway], places) -> np.ndarray:

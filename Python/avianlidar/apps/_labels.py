@@ -66,14 +66,6 @@ def relabel(labels: np.ndarray, bird: int) -> np.ndarray:
     return (labels & 0xffff0000) | changed
 
 
-def split_of(sequences: Iterable[int]) -> Dict[str, List[int]]:
-    """Of five sequences three to train, one to validate and one to test; more sequences change no role."""
-    split: Dict[str, List[int]] = {"train": [], "valid": [], "test": []}
-    for number in sequences:
-        split[{1: "valid", 2: "test"}.get(number % 5, "train")].append(number)
-    return split
-
-
 def configuration(bird: int, points: Mapping[int, int], sequences: Iterable[int]) -> str:
     """The configuration (YAML) by which SemanticKITTI's programs read, train on and score sequences.
 
@@ -81,7 +73,7 @@ def configuration(bird: int, points: Mapping[int, int], sequences: Iterable[int]
     points     number of points of each label
     sequences  numbers of the sequences
     """
-    classes, total = classes_of(bird), max(sum(points.values()), 1)
+    classes, total, numbers = classes_of(bird), max(sum(points.values()), 1), list(sequences)
     learned = {label: number for number, label in enumerate(classes)}  # each class is told from all others; 0 is not learned
     lines = ["# Labels of avian-lidar for programs that read SemanticKITTI's configuration: birds are counted, and what moves",
              "# has a class of its own. Only 0 is left out of loss and score.", 'name: "avian-lidar"']
@@ -92,7 +84,10 @@ def configuration(bird: int, points: Mapping[int, int], sequences: Iterable[int]
         ("learning_map", [(label, learned[label]) for label in sorted(classes)]),
         ("learning_map_inv", [(number, label) for label, number in learned.items()]),
         ("learning_ignore", [(number, number == 0) for number in learned.values()]),
-        ("split:  # numbers of sequences", list(split_of(sequences).items())))
+        # Of five sequences three to train, one to validate and one to test; more sequences change no role.
+        ("split:  # numbers of sequences", [
+            (role, [number for number in numbers if number % 5 in rests])
+            for role, rests in (("train", (0, 3, 4)), ("valid", (1,)), ("test", (2,)))]))
     for name, entries in parts:
         lines += [name if ":" in name else f"{name}:", *(f"  {key}: {value}" for key, value in entries)]
     return "\n".join(lines) + "\n"
