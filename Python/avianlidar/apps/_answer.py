@@ -167,30 +167,21 @@ def by_end(view: Plan) -> List[str]:
 
 def _how_far(view: Plan, reaches: Dict[str, Any]) -> str:
     """How far birds are seen, and where that is at the heights asked for."""
+    found = []
+    for name, one in reaches["of"].items():
+        half = f"half of {name}s to {metres(one.to(0.5))}" if one.to(0.5) > 0.0 else f"at no range half of {name}s"
+        found.append(f"{half} and a tenth to {metres(one.to(0.1))}" if one.to(0.1) > 0.0 else
+                     f"less than a tenth of {name}s at any range")
     low, high = reach.band(view.sensor)
-    said = f"Within its beams, {low:.1f} to {high:.1f}° up, one scan detects {half_and_tenth(reaches)}"
+    said = f"Within its beams, {low:.1f} to {high:.1f}° up, one scan detects {'; '.join(found)}"
     if not view.asked:
         return f"{said}."
-    seen, never = in_band(view, reaches, "\u00a0m up")
-    where = [*(["at " + ", ".join(seen)] if seen else []), *([f"nowhere at {listed(never)} m"] if never else [])]
-    return f"{said}; half are in its beams and near enough {', and '.join(where)}."
-
-
-def half_and_tenth(reaches: Dict[str, Any]) -> str:
-    """To which range a half and a tenth of each species are detected."""
-    def of(name: str, found: reach.Reach) -> str:
-        if found.to(0.1) == 0.0:
-            return f"less than a tenth of {name}s at any range"
-        half = f"half of {name}s to {metres(found.to(0.5))}" if found.to(0.5) > 0.0 else f"at no range half of {name}s"
-        return f"{half} and a tenth to {metres(found.to(0.1))}"
-    return "; ".join(of(*one) for one in reaches["of"].items())
-
-
-def in_band(view: Plan, reaches: Dict[str, Any], unit: str) -> Tuple[List[str], List[str]]:
-    """From where to where half of the birds are in the beams and near enough at the heights asked for; and heights (m) where nowhere."""
     rows = reach.heights_in_band(view, view.heights, max(one.to(0.5) for one in reaches["of"].values()))
-    return ([f"{row['height']:g}{unit} from {metres(row['from']) if row['from'] else '0 m'} to {metres(row['to'])} away" for row in rows if row["to"] > row["from"]],
-            [f"{row['height']:g}" for row in rows if not row["to"] > row["from"]])
+    seen = [f"{row['height']:g}\u00a0m up from {metres(row['from']) if row['from'] else '0 m'} to {metres(row['to'])} "
+            "away" for row in rows if row["to"] > row["from"]]
+    never = [f"{row['height']:g}" for row in rows if not row["to"] > row["from"]]
+    where = ["at " + ", ".join(seen)] * bool(seen) + [f"nowhere at {listed(never)} m"] * bool(never)
+    return f"{said}; half are in its beams and near enough {', and '.join(where)}."
 
 
 def command(view: Plan, verb: str, out: str, **settings: str) -> str:

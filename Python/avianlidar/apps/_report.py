@@ -14,7 +14,6 @@ from .._cloud import field_values
 from .._disk import only_run, write_whole
 from .._pipeline import Error
 from .._version import __version__
-from .._weather import in_words
 from . import _pictures as pictures
 from . import _answer, reach, siting
 from ._answer import LEAST, LEAST_WORDS, birds_of, cell, decimals, metres, percent, place, share_of
@@ -263,30 +262,19 @@ class Report:
             found["ways"] = [way for way in found["ways"] if way["then"]["detection_probability"] > view.overall["detection_probability"]]
         return found
 
-    def _answer(self, plan: Plan, view: Plan, site: Optional[Dict[str, Any]], reaches: Dict[str, Any]) -> List[str]:
-        """Two sentences or more: the share and where it is, how far birds are seen, at the heights asked for and elsewhere. @param view
-        the plan's sensor at its best site, or the plan itself"""
-        share = share_of(view.overall)
-        birds = birds_of(view)
-        air = f" in {in_words(view.air)}" if view.air else f" at {metres(view.coverage.visibility)} visibility" if view.year else ""
-        by_year = ", by the year's weather," if view.year else ""
-        several = f" by one scan of {plan.name}" if len(self.plans) > 1 else " by one scan"
-        if not site:
-            said = [f"{plan.name} stands {place(view.sensor.position)}: one scan detects {share} of {birds} {view.where}{air}."]
-        elif view is plan:
-            said = [f"None of {site['count']} candidates, of {site['lattice']}, detects {LEAST_WORDS} of {birds} {view.where}{several}{by_year.rstrip(',') or air}."]
-        else:
-            alike = f"; as good within the error: {site['alike']} more" if site["alike"] else ""
-            degrees = f"; {site['degrees']}" if site["degrees"] else ""
-            edge = " It lies at the lattice's edge: what is beyond was not looked at, wider bounds may have a better one." if site["edge"] else ""
-            said = [f"Of {site['count']} candidates, of {site['lattice']}, the best for {plan.name}{by_year} stands {place(view.sensor.position)} (from the "
-                    f"scene's origin{degrees}{alike}): one scan detects {share} of {birds} {view.where}{air}.{edge}"]
-        said += [self._range_words(view, reaches)]
-        if site and view is not plan and plan is self.plans[0]:
+    def _besides(self, plan: Plan, view: Plan, site: Optional[Dict[str, Any]]) -> List[str]:
+        """What else there is to say of the best site: how sure it is, and what the plan's own place detects."""
+        if not site or view is plan:
+            return []
+        alike, said = site["alike"], []
+        if alike:
+            said.append(f"{alike} more candidate{'s are' if alike > 1 else ' is'} as good within the error.")
+        if site["edge"]:
+            said.append("It lies at the lattice's edge: wider bounds may have a better one.")
+        if plan is self.plans[0]:
             who = "the plan" if "position" in plan.plan["sensor"] else "the scene"
-            nobody = ", but nothing may stand there" if site["taken"] else ""
-            own = share_of(plan.overall)
-            said += [f"Where {who} puts it, {place(plan.sensor.position)}, it is {own}{nobody}."]
+            said.append(f"Where {who} puts it, {place(plan.sensor.position)}, it is {share_of(plan.overall)}"
+                        f"{', but nothing may stand there' if site['taken'] else ''}.")
         return said
 
     def _first_picture(self, view: Plan, folder: pathlib.Path) -> Dict[str, str]:
@@ -300,14 +288,6 @@ class Report:
                           f"Map of the airport with {view.title}, {place(view.sensor.position)}. {view.bird}, {seen}.",
                           f"{view.name} (red triangle), {place(view.sensor.position)}. Filled: one scan detects half or more of the birds, dashed: a tenth{regions}",
                           lambda axes: pictures.draw_answer(axes, view, found, extent, shares))
-
-    def _range_words(self, view: Plan, reaches: Dict[str, Any]) -> str:
-        said = f"Within the band of {view.name}, in free air, one scan detects {_answer.half_and_tenth(reaches)}"
-        if not view.asked:
-            return f"{said}."
-        seen, never = _answer.in_band(view, reaches, " m")
-        return (f"{said}. At the heights asked for, half of them are in its band and near enough at "
-                f"{', '.join(seen) if seen else 'none'}{f'; nowhere at {_answer.listed(never)} m' if seen and never else ''}.")
 
     def write(self, file) -> pathlib.Path:
         """Write the page, and beside it a folder of its name and `_files` with shares.csv, ends.csv, range.csv, weather.csv, pictures and tables of sites.
@@ -335,26 +315,27 @@ class Report:
         shown = [self._view(view, folder, view.name if view in self.plans else f"{view.name}-best") for view in views]
         answering = [next((view for view in best if view.name == plan.name), plan) for plan in self.plans]
         weather = self._weather(views, folder)
-        answers = [sentence for number, (plan, view) in enumerate(zip(self.plans, answering))
-                   for sentence in self._answer(plan, view, sited[number] if sited else None, reaches[number])]
+        site_of: List[Any] = [*sited] or [None] * len(self.plans)
+        said = [_answer.two_sentences(plan, view, site, of, weather["over_the_year"][views.index(view)])
+                for plan, view, site, of in zip(self.plans, answering, site_of, reaches)]
+        answers = [sentence for words, plan, view, site in zip(said, self.plans, answering, site_of)
+                   for sentence in (*words, *self._besides(plan, view, site))]
         weather["words"] = [self._weather_words(views.index(view), view, weather) for view in answering]
         answers.append(weather["words"][0])
         advices = [self._advice(view, of) for view, of in zip(answering, reaches)]
-        site = sited[0] if sited else None
         write_table(folder / "shares.csv", [{"receiver": view.title, **row} for view in views for row in view.shares])
         write_table(folder / "ends.csv", [{"receiver": view.title, **row} for view in views for row in view.by_end])
         write_table(folder / "range.csv", [row for found in reaches for row in found["table"]])
         known = field_values(first.regions.data)
         made = ("file", "hours", "options", *(["year"] if "metar" in self.plan else []))
         asked = {name: part for name, part in self.plan.items() if name not in made}
-        at_first = views.index(answering[0])
         return render(
             "report.html.jinja", filter_metres=metres, filter_share=percent, filter_of_row=share_of, filter_cell=cell, filter_rounded=siting.rounded,
             question=self.plan.get("description") or f"Where is a {first.bird} detected?",
             asked=self.asked, chance=share_of(answering[0].overall),
-            said=_answer.two_sentences(first, answering[0], site, reaches[0], weather["over_the_year"][at_first]),
+            said=said[0],
             first=self._first_picture(answering[0], folder),
-            steps=_answer.next_steps(first, answering[0], site, advices[0]), answer=answers,
+            steps=_answer.next_steps(first, answering[0], site_of[0], advices[0]), answer=answers,
             bird=first.bird, cover=first.coverage, area=float(np.ravel(known["effective_area"])[0]),
             attenuation=float(known["attenuation_coefficient"]), plan=first, places=int(first.overall["places"]),
             assumptions=assumptions(self.plans), names=[plan.name for plan in self.plans], views=shown, reaches=reaches,

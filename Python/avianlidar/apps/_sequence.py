@@ -275,34 +275,25 @@ class Sequence:
 
     @staticmethod
     def _under_way(thing: Dict[str, Any], route, legs, times, number: int) -> vtkPolyData:
-        corners: List[Tuple[float, float, float]] = []
-        triangles: List[Tuple[int, int, int]] = []
         sides = ((0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3))
-        for box in thing["boxes"]:
-            at = len(corners)
-            corners += [(box[x], box[2 + y], box[4 + z]) for x in (0, 1) for y in (0, 1) for z in (0, 1)]
-            triangles += [(at + s[i], at + s[j], at + s[k]) for s in sides for i, j, k in ((0, 1, 2), (0, 2, 3))]
+        corners = [(box[x], box[2 + y], box[4 + z]) for box in thing["boxes"] for x, y, z in np.ndindex(2, 2, 2)]
+        triangles = [(at + a, at + b, at + c) for at in range(0, len(corners), 8) for a, *rest in sides
+                     for b, c in zip(rest, rest[1:])]
         scene = Scene((np.array(corners, float), triangles), material=thing.get("material", "Metal"))
         update(scene.tree)
         surface = vtkPolyData()
         surface.ShallowCopy(scene.tree.GetOutput())
         surface.SetFieldData(vtkFieldData())
-        names = scene.tree.GetOutput().GetFieldData().GetAbstractArray("material_names")
-        surface.GetFieldData().AddArray(names)
-        ids = np.full(surface.GetNumberOfCells(), number, np.int32)
-        add_array(surface.GetCellData(), "object_id", ids)
+        surface.GetFieldData().AddArray(scene.tree.GetOutput().GetFieldData().GetAbstractArray("material_names"))
+        add_array(surface.GetCellData(), "object_id", np.full(surface.GetNumberOfCells(), number, np.int32))
         add_array(surface.GetFieldData(), "object_names", [thing["name"]])
         add_array(surface.GetFieldData(), "object_classes", [thing.get("class", "vehicle")])
         # It turns where two legs meet: each leg has its own heading, and two poses.
         heading = np.arctan2(legs[:, 0], legs[:, 1])
         turn = np.stack([np.cos(heading / 2), 0 * heading, 0 * heading, -np.sin(heading / 2)], axis=1)
-        eps = 1e-6
-        where, when, how = [], [], []
-        for k in range(len(legs)):
-            where += [route[k], route[k + 1]]
-            when += [times[k] + (eps if k else 0.0), times[k + 1]]
-            how += [turn[k], turn[k]]
-        return mover(surface, where, when, how)
+        when = np.repeat(times, 2)[1:-1]
+        when[2::2] += 1e-6
+        return mover(surface, np.repeat(route, 2, axis=0)[1:-1], when, np.repeat(turn, 2, axis=0))
 
     def frames(self, number: int) -> Iterator[Tuple[int, Scan, Dict[int, str]]]:
         """The scans of a sequence: (number of the scan, the scan as it is then, species of the birds by id)."""
