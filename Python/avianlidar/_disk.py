@@ -143,8 +143,10 @@ def replacing(path: pathlib.Path) -> Iterator[str]:
 def synchronize(folder: pathlib.Path) -> None:
     """Names in the folder are on the disk."""
     number = os.open(folder, os.O_RDONLY)
-    os.fsync(number)
-    os.close(number)
+    try:
+        os.fsync(number)
+    finally:
+        os.close(number)
 
 
 def write_whole(path, content: bytes) -> None:

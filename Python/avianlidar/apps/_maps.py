@@ -73,7 +73,7 @@ def read_plan(file, words: Optional[Sequence[str]] = None, metar=None, **changes
         return str((path.parent / name).resolve())
 
     def absolute(*keys: str) -> None:
-        """Makes the file or files of a member of the plan, if it is there, absolute."""
+        """Make the files of a member absolute, if the plan has it."""
         *of, name = keys
         part = functools.reduce(lambda one, key: one.get(key, {}), of, plan)
         if name in part:
