@@ -76,7 +76,7 @@ class ObjectClasses(InFolder):
                                    (collect.GetOutput(), {"faces 0": "runway", "faces 1": "apron", "faces 2": "fence", "cone": "", "goose": "bird"}),
                                    (leaf, {"faces 0": "runway", "faces 1": "", "faces 2": "fence"}),
                                    (group(*unnamed, classes=["tower", "sign"]), {"block 1": "tower", "block 0": "sign"}),
-                                   (group(leaf, other), {"faces 2": "fence", "faces 0": "runway", "faces 1": "", "more 0": "tree", "more 1": "car"})):
+                                   (group(leaf, other), {"faces 0": "runway", "faces 1": "", "faces 2": "fence", "more 0": "tree", "more 1": "car"})):
             self.check(surfaces, list(expected), list(expected.values()))
 
     def test_material_keeps_it(self):
