@@ -49,7 +49,7 @@ void AddGeometry(const Mesh& mesh, vtkPolyData* block)
     points->SetPoint(static_cast<vtkIdType>(i), mesh.points[i].data());
   }
   block->SetPoints(points);
-  block->SetPolys(vtkAvianLidarMakeTriangles(mesh.triangles));
+  block->SetPolys(vtkAvianLidarMakeTriangles(mesh.triangles, [](std::size_t i) { return i; }));
 }
 
 void AddCellArrays(

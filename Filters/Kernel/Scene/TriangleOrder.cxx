@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "TriangleOrder.h"
 
+#include "KeySort.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -109,11 +111,36 @@ std::vector<std::uint32_t> triangleOrder(
   {
     return order;
   }
-  std::sort(entries.begin(), entries.end(), before);
-  order.reserve(entries.size());
+  // By the high bits of places with fast integers, then by object, then the few that are left.
+  constexpr std::uint64_t low = 0xffffffff;
+  std::vector<std::uint64_t> keys;
+  keys.reserve(entries.size());
   for (const Entry& entry : entries)
   {
-    order.push_back(entry.triangle);
+    keys.push_back((entry.place << 1 & ~low) | entry.triangle);
+  }
+  sortKeys(keys);
+  order.reserve(entries.size());
+  for (const std::uint64_t key : keys)
+  {
+    order.push_back(numberOf(key));
+  }
+  std::stable_sort(order.begin(), order.end(),
+    [&](std::uint32_t a, std::uint32_t b) { return objectIds[a] < objectIds[b]; });
+  const auto isTie = [&](std::uint32_t a, std::uint32_t b)
+  {
+    return objectIds[a] == objectIds[b] && ((entries[a].place ^ entries[b].place) << 1 & ~low) == 0;
+  };
+  for (auto begin = order.begin(); begin != order.end();)
+  {
+    const auto end =
+      std::find_if(begin, order.end(), [&](std::uint32_t t) { return !isTie(*begin, t); });
+    if (end - begin > 1)
+    {
+      std::sort(begin, end,
+        [&](std::uint32_t a, std::uint32_t b) { return before(entries[a], entries[b]); });
+    }
+    begin = end;
   }
   return order;
 }

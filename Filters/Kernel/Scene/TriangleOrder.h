@@ -40,11 +40,10 @@ void reorder(std::vector<T>& values, const Order& order)
   {
     return;
   }
-  std::vector<T> sorted;
-  sorted.reserve(order.size());
-  for (const std::uint32_t i : order)
+  std::vector<T> sorted(values.size());
+  for (std::size_t i = 0; i < sorted.size(); ++i)
   {
-    sorted.push_back(values[i]);
+    sorted[i] = values[order[i]];
   }
   values.swap(sorted);
 }

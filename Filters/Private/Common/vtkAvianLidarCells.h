@@ -47,8 +47,9 @@ auto vtkAvianLidarPointIds(vtkCellArray* cells, F&& f)
 }
 
 /// Triangles from three point ids each, in integers of 32 bits wherever they fit: half the memory.
-template <class Triangles>
-vtkSmartPointer<vtkCellArray> vtkAvianLidarMakeTriangles(const Triangles& triangles)
+/// @param cellOf the cell that a triangle, by its number, becomes
+template <class Triangles, class F>
+vtkSmartPointer<vtkCellArray> vtkAvianLidarMakeTriangles(const Triangles& triangles, F cellOf)
 {
   constexpr std::size_t most = VTK_TYPE_INT32_MAX;
   const bool fits = triangles.size() <= most / 3 &&
@@ -63,9 +64,9 @@ vtkSmartPointer<vtkCellArray> vtkAvianLidarMakeTriangles(const Triangles& triang
   vtkAvianLidarPointIds(cells,
     [&](auto* ids, vtkIdType)
     {
-      for (const auto& triangle : triangles)
+      for (std::size_t i = 0; i < triangles.size(); ++i)
       {
-        ids = std::copy(triangle.begin(), triangle.end(), ids);
+        std::copy(triangles[i].begin(), triangles[i].end(), ids + 3 * cellOf(i));
       }
     });
   return cells;

@@ -14,20 +14,42 @@
 
 namespace vtkAvianLidarMaterials
 {
+/// The cell arrays of all coefficients.
+class Coefficients
+{
+public:
+  /// Add the arrays, whose values are not set yet.
+  Coefficients(vtkCellData* cells, vtkIdType count)
+  {
+    for (std::size_t k = 0; k < std::size(avianlidar::MaterialCoefficients); ++k)
+    {
+      const avianlidar::MaterialCoefficient& coefficient = avianlidar::MaterialCoefficients[k];
+      auto array =
+        vtkAvianLidarArrays::Make<vtkDoubleArray>({ coefficient.name, coefficient.unit }, count);
+      cells->AddArray(array);
+      this->Values[k] = array->GetPointer(0);
+    }
+  }
+  void Set(vtkIdType cell, const avianlidar::Material& material)
+  {
+    for (std::size_t k = 0; k < std::size(this->Values); ++k)
+    {
+      this->Values[k][cell] = material.*avianlidar::MaterialCoefficients[k].member;
+    }
+  }
+
+private:
+  double* Values[std::size(avianlidar::MaterialCoefficients)];
+};
+
 /// Add the cell arrays of all coefficients. @param materialOf the material of a cell, by its index
 template <class F>
 void AddCoefficients(vtkCellData* cells, vtkIdType count, const F& materialOf)
 {
-  for (const avianlidar::MaterialCoefficient& coefficient : avianlidar::MaterialCoefficients)
+  Coefficients coefficients(cells, count);
+  for (vtkIdType i = 0; i < count; ++i)
   {
-    auto array =
-      vtkAvianLidarArrays::Make<vtkDoubleArray>({ coefficient.name, coefficient.unit }, count);
-    for (vtkIdType i = 0; i < count; ++i)
-    {
-      const avianlidar::Material& material = materialOf(i);
-      array->SetValue(i, material.*coefficient.member);
-    }
-    cells->AddArray(array);
+    coefficients.Set(i, materialOf(i));
   }
 }
 }

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "TriangleOrder.h"
 #include "vtkAvianLidarArrays.h"
 #include "vtkAvianLidarCells.h"
 #include "vtkAvianLidarMaterials.h"
@@ -11,9 +10,7 @@
 #include "vtkPolyData.h"
 
 #include <algorithm>
-#include <cstdint>
-#include <type_traits>
-#include <vector>
+#include <cstddef>
 
 namespace
 {
@@ -34,26 +31,24 @@ vtkSmartPointer<vtkPolyData> vtkAvianLidarSurfaces::ToPolyData(vtkFieldData* fie
 {
   namespace Arrays = vtkAvianLidarArrays;
   // Cells come in the order of the input.
-  std::vector<std::uint32_t> given(this->order.size());
-  for (std::uint32_t i = 0; i < given.size(); ++i)
-  {
-    given[this->order[i]] = i;
-  }
-  const auto asGiven = [&](const auto& values)
-  {
-    std::vector<std::decay_t<decltype(values[0])>> ordered(values.begin(), values.end());
-    avianlidar::reorder(ordered, given);
-    return ordered;
-  };
+  const auto cellOf = [this](std::size_t i)
+  { return static_cast<vtkIdType>(this->order.empty() ? i : this->order[i]); };
   auto poly = vtkSmartPointer<vtkPolyData>::New();
   poly->SetPoints(MakePoints(*this->mesh));
-  poly->SetPolys(vtkAvianLidarMakeTriangles(asGiven(this->mesh->triangles)));
-  vtkCellData* cells = poly->GetCellData();
-  cells->AddArray(Arrays::MakeOf<vtkIntArray>(Arrays::ObjectId, asGiven(this->objectIds)));
-  cells->AddArray(Arrays::MakeOf<vtkIntArray>(Arrays::MaterialId, asGiven(this->materialIds)));
-  vtkAvianLidarMaterials::AddCoefficients(cells, static_cast<vtkIdType>(this->materials.size()),
-    [&](vtkIdType i) -> const avianlidar::Material&
-    { return this->materials[given.empty() ? i : given[i]]; });
+  poly->SetPolys(vtkAvianLidarMakeTriangles(this->mesh->triangles, cellOf));
+  const auto count = static_cast<vtkIdType>(this->materials.size());
+  auto objects = Arrays::Make<vtkIntArray>(Arrays::ObjectId, count);
+  auto kinds = Arrays::Make<vtkIntArray>(Arrays::MaterialId, count);
+  poly->GetCellData()->AddArray(objects);
+  poly->GetCellData()->AddArray(kinds);
+  vtkAvianLidarMaterials::Coefficients coefficients(poly->GetCellData(), count);
+  for (std::size_t i = 0; i < this->materials.size(); ++i)
+  {
+    const vtkIdType cell = cellOf(i);
+    objects->SetValue(cell, this->objectIds[i]);
+    kinds->SetValue(cell, this->materialIds[i]);
+    coefficients.Set(cell, this->materials[i]);
+  }
   if (fields)
   {
     poly->GetFieldData()->PassData(fields);
