@@ -37,10 +37,7 @@ def interleaved(i):
 
 def multiblock(count, block, mine=lambda i: True):
     """Blocks of which those that are mine are there."""
-    some = vtk.vtkMultiBlockDataSet()
-    for i in range(count):
-        some.SetBlock(i, block(i) if mine(i) else None)
-    return some
+    return echotools.group(*(block(i) if mine(i) else None for i in range(count)))
 
 
 def together(surfaces, beams=None, **settings):

@@ -11,11 +11,8 @@ import subprocess
 import sys
 import time
 import unittest
-import unittest.mock
 
 from vtkmodules.vtkIOXML import vtkXMLPolyDataReader
-
-from avianlidar.vtkAvianLidar import vtkAvianLidarBeamSource
 
 from ranktools import LAUNCHER, SOURCE, fresh, on_ranks
 
@@ -101,47 +98,6 @@ class Sweep(unittest.TestCase):
             self.sweep(out, *here, *bad, *there, "--attenuation", "3.5e-5", "8.8e-5", "--seed", "0", "1")
         self.assertEqual(end.exception.code, 1)
         self.assertFalse(list(out.glob("*1e+31*")))
-
-    def test_manifest_names_everything(self):
-        out = self.sweep(fresh("SweepManifest"), "--seed", "3", "--attenuation", "1e-4")
-        (entry,) = json.loads((out / "manifest.json").read_text())["scans"]
-        self.assertTrue((out / entry["file"]).exists())
-        self.assertEqual((entry["preset"], entry["seed"], entry["position"]), ("Airport16", 3, [0, 0, 3]))
-        sensor = vtkAvianLidarBeamSource()
-        sensor.SetPresetToAirport16()
-        for name, value in (("seed", 3), ("attenuation_coefficient", 1e-4), ("rays_per_beam", 10),
-                            ("pulse_energy", sensor.GetPulseEnergy()), ("range_gate", sensor.GetRangeGate())):
-            self.assertEqual(entry["field_data"][name], value, name)
-        self.assertEqual(entry["field_data"]["avian_lidar_version"], entry["avian_lidar_version"])
-
-    def test_crash_while_writing(self):
-        """Between the last byte and the name: nothing of the file stays."""
-        out, replace = fresh("SweepCrash"), os.replace
-        for at in (1, 2):  # the .vtp, the .json
-            calls = []
-
-            def crash(one, other):
-                calls.append(other)
-                if len(calls) == at:
-                    raise OSError("crash")
-                replace(one, other)
-
-            with unittest.mock.patch("os.replace", crash), self.assertRaises(OSError):
-                self.sweep(out)
-            self.assertEqual(len(list(out.glob("*"))), at - 1)
-            self.assertEqual([file.name for file in out.glob("*") if "part" in file.name], [])
-        self.assertEqual(len(list(self.sweep(out).iterdir())), 3)
-
-    def test_other_files_are_made_again_and_other_parameters_have_other_names(self):
-        out = self.sweep(fresh("SweepDamaged"))
-        (file,) = out.glob("*.vtp")
-        whole = file.read_bytes()
-        for damaged, more in ((whole[:-7], ()), (b"x" + whole[1:], ("--verify",))):
-            file.write_bytes(damaged)
-            self.sweep(out, *more)
-            self.assertEqual(file.read_bytes(), whole)
-        self.sweep(out, "--rays", "11")
-        self.assertEqual(len(list(out.glob("*.vtp"))), 2)
 
 
 if __name__ == "__main__":

@@ -3,24 +3,16 @@
 became of each beam has colours and words of its own, on the beam report and on its map."""
 
 import colorsys
-import importlib.util
 import os
 
 from paraview import servermanager, simple
 
-from plugin_testing import SOURCE_DIR, airport, load_plugin
+from plugin_testing import SOURCE_DIR, airport, load_macro, load_plugin
 
+MACROS = os.path.join(SOURCE_DIR, "Plugin", "Macros")
 PRESET = "Avian lidar HSB"
 LIMITS = (2e-6, 6.25e-5)
 STATUS = ("echo", "no surface", "below the lower limit", "saturated", "outside the gate")
-
-
-def load_macro(name="avian_lidar_energy_colours"):
-    path = os.path.join(SOURCE_DIR, "Plugin", "Macros", f"{name}.py")
-    spec = importlib.util.spec_from_file_location("macro", path)
-    macro = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(macro)
-    return macro
 
 
 def colour_of(function, energy):
@@ -54,7 +46,7 @@ def test_plugin_brings_the_presets():
 
 
 def test_macro():
-    macro = load_macro()
+    macro = load_macro(os.path.join(MACROS, "avian_lidar_energy_colours.py"))
     _, _, beams, echoes = airport(60)
     view = simple.CreateRenderView()
     assert macro.colour(echoes, view) == LIMITS
@@ -89,7 +81,7 @@ def test_what_has_no_colours():
     sphere, view = simple.Sphere(), simple.CreateRenderView()
     for name, word in (("avian_lidar_energy_colours", "energy"), ("avian_lidar_status_colours", "status")):
         for source, preset, words in ((sphere, None, word), (echoes, "no such", "no colour preset no such")):
-            macro = load_macro(name)
+            macro = load_macro(os.path.join(MACROS, name + ".py"))
             macro.PRESET = preset or macro.PRESET
             try:
                 macro.colour(source, view)
@@ -102,7 +94,7 @@ def test_what_has_no_colours():
 
 def test_status_macro():
     """Five values, five words, five colours: of a filter that has a report, of the report, and on a map."""
-    macro = load_macro("avian_lidar_status_colours")
+    macro = load_macro(os.path.join(MACROS, "avian_lidar_status_colours.py"))
     _, _, _, echoes = airport(60)
     view, report = simple.CreateRenderView(), simple.OutputPort(echoes, 1)
     image = simple.AvianLidarRangeImage(Echoes=echoes, Beams=report)

@@ -389,7 +389,17 @@ class TestProxies(unittest.TestCase):
                                        ("Places", coverage, (plain, image), (multiblock,))):
             self.assertEqual([fits(port, source, proxy) for source in (*good, *bad)], [True] * len(good) + [False] * len(bad), port)
 
-    def test_what_opens_a_file(self):
+    def test_what_a_panel_shows_first_and_what_opens_a_file(self):
+        tracks, shown = simple.AvianLidarTracks(), {}
+        for name in ("NumberOfBirds", "Center", "Heights", "Radius", "ThresholdPosition", "ThresholdHeading", "FileName"):
+            one = tracks.SMProxy.GetProperty(name).GetHints().FindNestedElementByName("PropertyWidgetDecorator")
+            shown[name] = one.GetAttribute("value") or one.GetAttribute("values")
+        self.assertEqual(shown, {"NumberOfBirds": "0 1 2 3", "Center": "0 1 2", "Heights": "0 1 2", "Radius": "0 1 2 3",
+                                 "ThresholdPosition": "3", "ThresholdHeading": "3", "FileName": "4"})
+        cover = simple.AvianLidarCoverage()
+        first = {n for n in cover.ListProperties() if cover.SMProxy.GetProperty(n).GetPanelVisibility() == "default"}
+        self.assertEqual(first, set("Beams Surfaces Places Bounds Spacing Species Reflectance EffectiveArea MeteorologicalVisibility "
+                                    "RequiredDetections NumberOfScans HeightLimits".split()))
         factory = simple.AvianLidarPointCloudReader(FileName="x.pcd").SMProxy.GetHints().FindNestedElementByName("ReaderFactory")
         self.assertEqual({"." + one for one in factory.GetAttribute("extensions").split()}, set(_suffixes.READERS))
 

@@ -41,16 +41,13 @@ class TestWriters(unittest.TestCase):
         return got
 
     def test_clouds_come_back(self):
-        places = dict.fromkeys(("points", "energy", "distance_m", "object_id", "beam_id"), 0)
-        for ending, options, accuracies in (
-                *(("las", {"CoordinateSystem": system}, {**places, "points": 2e-6})
-                  for system in ("UTM", "Geocentric", "Local")),
-                *((ending, {"FileType": kind, "Precision": "Double"}, {"points": 0, "energy": 0})
-                  for ending in ("pcd", "ply") for kind in ("Binary", "ASCII"))):
+        """By one setting of each format; what every setting keeps is TestPointCloudReader's (Python)."""
+        text = {"FileType": "ASCII", "Precision": "Double"}
+        for ending, options, accuracy in (("las", {"CoordinateSystem": "Geocentric"}, 2e-6), ("pcd", text, 0), ("ply", text, 0)):
             self.save(ending, **options)
             got = self.open(ending)
-            for name, accuracy in accuracies.items():
-                numpy.testing.assert_allclose(got[name], self.expected[name], 0, accuracy, err_msg=f"{options} {name}")
+            numpy.testing.assert_allclose(got["points"], self.expected["points"], 0, accuracy, err_msg=ending)
+            numpy.testing.assert_array_equal(got["energy"], self.expected["energy"], ending)
 
     def test_a_mesh_stays_one(self):
         """ParaView takes our writer for it, by the name, and its own reader."""

@@ -1,13 +1,12 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """What the tests of the plugin share."""
 
+import importlib.util
 import os
 import sys
 
 import avianlidar.vtkAvianLidar as module
 from paraview import servermanager, simple
-from vtkmodules.vtkImagingCore import vtkImageDifference
-from vtkmodules.vtkIOImage import vtkPNGReader, vtkPNGWriter
 from vtkmodules.vtkParallelCore import vtkDummyController, vtkMultiProcessController
 
 PLUGIN = os.environ["AVIANLIDAR_PLUGIN"]
@@ -19,7 +18,15 @@ THRESHOLD = 15  # image error
 
 sys.path.insert(0, os.path.join(SOURCE_DIR, "Testing", "Python"))
 import echotools  # noqa: E402
+import pictures  # noqa: E402
 from echotools import assert_same  # noqa: E402,F401  # for the tests
+
+
+def load_macro(path):
+    spec = importlib.util.spec_from_file_location("macro", path)
+    macro = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(macro)
+    return macro
 
 
 def load_plugin():
@@ -68,17 +75,4 @@ def direct_echoes(columns):
 
 def compare(name):
     """The picture in the folder for temporary files with the baseline of that name."""
-    readers = vtkPNGReader(), vtkPNGReader()
-    for reader, folder in zip(readers, (OUTPUT_DIR, os.environ["AVIANLIDAR_BASELINE_DIR"])):
-        reader.SetFileName(os.path.join(folder, name))
-    difference = vtkImageDifference()
-    difference.SetInputConnection(readers[0].GetOutputPort())
-    difference.SetImageConnection(readers[1].GetOutputPort())
-    difference.Update()
-    error = difference.GetThresholdedError()
-    if error > THRESHOLD:
-        writer = vtkPNGWriter()
-        writer.SetFileName(os.path.join(OUTPUT_DIR, name.replace(".png", ".diff.png")))
-        writer.SetInputConnection(difference.GetOutputPort())
-        writer.Write()
-    assert error <= THRESHOLD, f"{name}: image error {error:.3f}, allowed {THRESHOLD}"
+    pictures.compare(os.path.join(OUTPUT_DIR, name), name, THRESHOLD)

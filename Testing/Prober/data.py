@@ -5,7 +5,9 @@ import math
 
 import numpy as np
 import vtk
-from vtk.util.numpy_support import numpy_to_vtk, vtk_to_numpy
+from vtk.util.numpy_support import vtk_to_numpy
+
+from avianlidar._cloud import add_array
 
 NAME = vtk.vtkCompositeDataSet.NAME()
 CELLS = ("Verts", "Lines", "Polys", "Strips")
@@ -105,17 +107,6 @@ def _array(array):
 
 
 # ---------------------------------------------------------------- random surfaces
-
-def add_array(attributes, name, values):
-    if isinstance(values[0], str):
-        array = vtk.vtkStringArray()
-        for value in values:
-            array.InsertNextValue(value)
-    else:
-        array = numpy_to_vtk(np.ascontiguousarray(values), deep=True)
-    array.SetName(name)
-    attributes.AddArray(array)
-
 
 def polydata(points, cells, double=True):
     data, holder, polygons = vtk.vtkPolyData(), vtk.vtkPoints(), vtk.vtkCellArray()

@@ -44,6 +44,14 @@ def run(*words):
     return code, "".join(said)
 
 
+def made(name, file, *words):
+    """The folder that the command makes of an extract, and what it says."""
+    folder = fresh(name)
+    code, said = run("airport", file, *words, "-o", folder)
+    assert code == 0, said
+    return folder, said
+
+
 class Map:
     """Raw OSM of things in metres about a place."""
 
@@ -188,9 +196,7 @@ def write_heights(name, heights, low, spacing, driver="GTiff"):
 
 class Extracts(unittest.TestCase):
     def test_runways_that_cross(self):
-        folder = fresh("crossing")
-        code, words = run("airport", crossing().write("crossing.osm"), "-o", folder)
-        self.assertEqual(code, 0, words)
+        folder, _ = made("crossing", crossing().write("crossing.osm"))
         self.assertEqual(sorted(path.name for path in folder.iterdir()), sorted([*airport.WHAT, airport.RECORD]))
         scene, found = blocks(folder)
         runways = {one.name: one for one in siting.read_runways(folder / "airport.geojson", scene.geodetic_origin)}
@@ -247,9 +253,7 @@ class Extracts(unittest.TestCase):
         plan.way([(-300, 200), (-280, 200), (-280, 200), (-280, 220), (-300, 220)], True, building="yes", name="a node twice")
         plan.way([(-200, 240), (-180, 240)], True, building="yes", name="two nodes")
         plan.way([(-200, 260), (-200, 260)], barrier="wall")
-        folder = fresh("tags")
-        code, words = run("airport", plan.write("tags.osm"), "--icao", "XREL", "-o", folder)
-        self.assertEqual(code, 0, words)
+        folder, _ = made("tags", plan.write("tags.osm"), "--icao", "XREL")
         kinds = [feature["properties"]["kind"] for feature in json.loads((folder / "airport.geojson").read_text(encoding="utf-8"))["features"]]
         self.assertEqual([kinds.count(kind) for kind in ("runway", "road", "tree", "wall", "building")], [3, 0, 1, 0, 1])
         scene, parts = blocks(folder)
@@ -268,9 +272,7 @@ class Extracts(unittest.TestCase):
         plan.way([(-500, -300), (500, -300)], barrier="fence", height="3")
         x = np.arange(-3200, 3201, 50.0)
         dem = write_heights("slope.tif", np.broadcast_to(100 + 0.04 * x, (len(x), len(x))), (-3200, -3200), 50.0)
-        folder = fresh("slope")
-        code, words = run("airport", plan.write("slope.osm"), "--heights", dem, "-o", folder)
-        self.assertEqual(code, 0, words)
+        folder, _ = made("slope", plan.write("slope.osm"), "--heights", dem)
         scene, found = blocks(folder)
         self.assertAlmostEqual(scene.geodetic_origin[2], 100.0, delta=0.01)
         error = KNOWN["terrain_error"]
@@ -297,9 +299,8 @@ class Extracts(unittest.TestCase):
         self.assertGreater(scene.lidar_position[2], -30)
 
     def test_edits_stay(self):
-        folder = fresh("edits")
         file = crossing().write("edits.osm")
-        self.assertEqual(run("airport", file, "-o", folder)[0], 0)
+        folder, _ = made("edits", file)
         before = {path.name: path.read_bytes() for path in folder.iterdir()}
         scene = json.loads(before["airport.lidarscene.json"])
         scene["comment"] = "mine"
@@ -319,13 +320,12 @@ class Extracts(unittest.TestCase):
         self.assertAlmostEqual(z.max() - z.min(), 17.0, delta=2e-3)
         # An edited terrain keeps the height of the origin.
         heights = write_heights("edited.tif", np.full((130, 130), 60.0), (-3225, -3225), 50.0)
-        words = ("airport", file, "--heights", heights, "-o", fresh("edited_terrain"))
-        self.assertEqual(run(*words)[0], 0)
-        terrain = FOLDER / "edited_terrain" / "terrain.vtp"
+        folder, _ = made("edited_terrain", file, "--heights", heights)
+        terrain = folder / "terrain.vtp"
         terrain.write_text(terrain.read_text().replace("<VTKFile", "<!-- edited -->\n<VTKFile", 1))
-        code, said = run(*words)
+        code, said = run("airport", file, "--heights", heights, "-o", folder)
         self.assertEqual((code, said.count("was edited and stays as it is")), (0, 1), said)
-        self.assertEqual(json.loads((FOLDER / "edited_terrain" / "airport.lidarscene.json").read_text())["origin"]["height"], 60.0)
+        self.assertEqual(json.loads((folder / "airport.lidarscene.json").read_text())["origin"]["height"], 60.0)
         # What others have left is not written over.
         other = fresh("others")
         other.mkdir()
@@ -342,9 +342,7 @@ class Extracts(unittest.TestCase):
         plan.way([(-6000, -1000), (6000, -1000)], natural="coastline")
         plan.area((100, -1700), (500, -1400), natural="coastline")
         plan.way([(-1000, 300), (1000, 300)], highway="service", width="8")
-        folder = fresh("coast")
-        code, said = run("airport", plan.write("coast.osm"), "-o", folder)
-        self.assertEqual(code, 0, said)
+        folder, _ = made("coast", plan.write("coast.osm"))
         _, found = blocks(folder)
         west, east, south, _ = airport.Airport(FOLDER / "coast.osm").rectangle
         self.assertAlmostEqual(plan_area(found["Water"][1]), (east - west) * (-1000 - south) - 400 * 300, delta=0.004 * (east - west) * 1000)  # a box of degrees
@@ -364,8 +362,8 @@ class Extracts(unittest.TestCase):
         plan = Map()
         plan.way([(-800, 0), (800, 0)], aeroway="runway", ref="09/27", width="30")
         plan.area((300, 300), (340, 340), building="yes", height="eleven")
-        folder, file = fresh("none"), plan.write("none.osm")
-        self.assertEqual(run("airport", file, "-o", folder)[0], 0)
+        file = plan.write("none.osm")
+        folder, _ = made("none", file)
         mapped = json.loads((folder / "airport.geojson").read_text())
         row = next(row["properties"] for row in mapped["features"] if row["properties"]["kind"] == "building")
         self.assertEqual(row["height"], 8.0)
@@ -386,12 +384,10 @@ class Extracts(unittest.TestCase):
         self.assertIn("runways of 2 airports: XAAA Crossing, XBBB", words)
         self.assertFalse((FOLDER / "two").exists())
         self.assertIn("but: XAAA Crossing, XBBB", run("airport", file, "--icao", "EDDF", "-o", FOLDER / "two")[1])
-        code, words = run("airport", file, "--icao", "xbbb", "-o", FOLDER / "two")
-        self.assertEqual(code, 0, words)
+        made("two", file, "--icao", "xbbb")
         lon, lat, _ = siting.to_geodetic([(12500, 0, 0)], HERE)[0]
         bounds = (lon - 0.02, lat - 0.01, lon + 0.02, lat + 0.01)
-        code, words = run("airport", file, "--bounds", *bounds, "-o", fresh("bounds"))
-        self.assertEqual(code, 0, words)
+        made("bounds", file, "--bounds", *bounds)
         for name in ("two", "bounds"):
             scene, found = blocks(FOLDER / name)
             np.testing.assert_allclose(scene.geodetic_origin[:2], (lat, lon), atol=1e-6)
@@ -646,9 +642,7 @@ class StandsOn(unittest.TestCase):
 class RealAirports(unittest.TestCase):
     def test_hongqiao(self):
         """Areas as its source states them; heights are those of the extract."""
-        folder = fresh("hongqiao")
-        code, words = run("airport", pathlib.Path(DATA) / "airport_zsss" / "osm" / "ZSSS_osm.geojson", "-o", folder)
-        self.assertEqual(code, 0, words)
+        folder, words = made("hongqiao", pathlib.Path(DATA) / "airport_zsss" / "osm" / "ZSSS_osm.geojson")
         _, found = blocks(folder)
         for name, area in (("Terminal 1", 54459), ("Terminal 2", 139673)):
             self.assertAlmostEqual(plan_area(found[name][1]), area, delta=area * 1e-4)

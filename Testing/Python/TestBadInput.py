@@ -8,7 +8,7 @@ import numpy as np
 import vtk
 from vtk.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray, vtk_to_numpy
 
-from avianlidar import _properties, vtkAvianLidar as al
+from avianlidar import _cloud, _properties, vtkAvianLidar as al
 from avianlidar._scene import COEFFICIENTS
 from cloudtools import add_array, cloud, echoes
 from echotools import InFolder, Messages, assert_same_bits, box, given, sensor, town
@@ -309,9 +309,7 @@ OFFSETS = "the offsets of its cells do not fit their points"
 def cells_of(cells):
     array = vtk.vtkCellArray()
     for cell in cells:
-        array.InsertNextCell(len(cell))
-        for point in cell:
-            array.InsertCellPoint(point)
+        array.InsertNextCell(len(cell), cell)
     return array
 
 
@@ -339,9 +337,7 @@ def with_materials(data, **changes):
     count = data.GetNumberOfCells()
     for name, values in {"kd": np.arange(count) / 100, "ks": np.full(count, 0.1), "kp": np.full(count, 50.0),
                          "object_id": np.arange(count, dtype=np.int32), **changes}.items():
-        array = numpy_to_vtk(np.ascontiguousarray(values), deep=True)
-        array.SetName(name)
-        data.GetCellData().AddArray(array)
+        _cloud.add_array(data.GetCellData(), name, np.asarray(values))
     return data
 
 
@@ -419,9 +415,7 @@ class Cells(Faults):
     def test_materials_of_what_is_not_there(self):
         """Ghosts, lines and cells without triangles may have any: nothing is made of them."""
         data = with_materials(wall(TRIANGLES + ((0, 1), (0, 1, 2)), Lines=[(0, 1)]))
-        ghosts = numpy_to_vtk(np.array([0, 0, 0, 0, 1], np.uint8), deep=True)
-        ghosts.SetName(vtk.vtkDataSetAttributes.GhostArrayName())
-        data.GetCellData().AddArray(ghosts)
+        _cloud.add_array(data.GetCellData(), vtk.vtkDataSetAttributes.GhostArrayName(), np.array([0, 0, 0, 0, 1], np.uint8))
         for cell in (0, 3, 4):
             data.GetCellData().GetArray("kd").SetValue(cell, -1.0)
         self.assertEqual(self.warnings(make("CollisionTree"), [data]), [])

@@ -4,10 +4,11 @@ import math
 import unittest
 
 import numpy as np
-from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
+from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkFiltersCore import vtkAppendPolyData
 
 import avianlidar as al
+from avianlidar._cloud import add_array
 from avianlidar.vtkAvianLidar import vtkAvianLidarBeamSource, vtkAvianLidarBeamView, vtkAvianLidarTracks
 from echotools import Messages, array, given, scan
 
@@ -19,9 +20,7 @@ def plate(x0, x1, distance, object_id, kd=0.5, z=40.0):
     corners = [(x, distance, y) for x, y in ((x0, -z), (x1, -z), (x1, z), (x0, z))]
     data = al.mesh(corners, [(0, 1, 2), (0, 2, 3)])
     for name, value in (("kd", kd), ("ks", 0.0), ("kp", 1.0), ("object_id", object_id)):
-        values = numpy_to_vtk(np.full(2, value, dtype=np.int32 if name == "object_id" else float), deep=True)
-        values.SetName(name)
-        data.GetCellData().AddArray(values)
+        add_array(data.GetCellData(), name, np.full(2, value, dtype=np.int32 if name == "object_id" else float))
     return data
 
 

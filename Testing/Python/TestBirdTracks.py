@@ -6,12 +6,12 @@ import unittest
 
 import numpy as np
 
+import TestSequence
 import avianlidar as al
 from avianlidar import _command
 from avianlidar.apps import _card, _following, _maps, _report
 from avianlidar.apps._following import ORIGINS, Input, Live, Scorer
 from avianlidar.apps.siting import Runway
-from boxfiles import CORNERS, LOW, TRIANGLES, stl
 from exampletools import emptied
 from helpertools import rows_of
 from reporttools import quick
@@ -19,9 +19,7 @@ from reporttools import quick
 BIRD, CLUTTER, VEHICLE = (ORIGINS.index(name) for name in ("bird", "surface", "vehicle"))
 EAST = {"type": "Feature", "properties": {"kind": "runway", "name": "09/27"},
         "geometry": {"type": "LineString", "coordinates": [[8.0030, 47.0], [8.0130, 47.0]]}}
-SCENE = {"version": 1, "origin": {"latitude": 47.0, "longitude": 8.0, "height": 400.0}, "lidar": {"position": [0, 0, 3]}, "objects": [
-    {"name": "Ground", "class": "ground", "ground": {"size": 4000, "height": 0}, "material": "Wall"},
-    {"name": "House", "class": "building", "file": "house.stl", "material": "Wall"}]}
+SCENE = {**TestSequence.SCENE, "origin": {"latitude": 47.0, "longitude": 8.0, "height": 400.0}, "lidar": {"position": [0, 0, 3]}}
 SCENARIO = {
     "scene": "small.lidarscene.json", "number_of_scans": 50, "scans_per_sequence": 25, "seed": 5,
     "sensor": {"preset": "Search905", "orientation": [30.0, 0.0, 0.0]}, "scan": {"attenuation_coefficient": 8.9e-5, "rays_per_beam": 50},
@@ -31,13 +29,8 @@ SCENARIO = {
 
 
 def scenario_file(where, **changes):
-    (where / "small.lidarscene.json").write_text(json.dumps(SCENE), encoding="utf-8")
-    house = np.where(CORNERS == LOW, (-40.0, 300.0, 0.0), (40.0, 310.0, 12.0))
-    (where / "house.stl").write_text(stl(house, TRIANGLES), encoding="utf-8")
     (where / "runways.geojson").write_text(json.dumps({"type": "FeatureCollection", "features": [EAST]}), encoding="utf-8")
-    path = where / "small.scenario.json"
-    path.write_text(json.dumps({**SCENARIO, **changes}), encoding="utf-8")
-    return path
+    return TestSequence.scenario_file(where, SCENE, **{**SCENARIO, **changes})
 
 
 def row(bird, time, place, within=True):

@@ -5,13 +5,13 @@ import tempfile
 import unittest
 
 import numpy as np
-from vtkmodules.util.numpy_support import numpy_to_vtk
-from vtkmodules.vtkCommonDataModel import vtkMultiBlockDataSet, vtkPolyData
+from vtkmodules.vtkCommonDataModel import vtkPolyData
 
 import avianlidar as al
 from avianlidar._cloud import add_array as _set
 from avianlidar.apps._boxes import Boxes, _rotation
 from avianlidar.apps._sequence import Sequence
+from echotools import group
 from helpertools import box
 from TestSequence import scenario_file
 
@@ -31,17 +31,13 @@ def one(size, place, heading=0.0, surfaces=None, points=3, name="car", **setting
     thing = al.mover(al.mesh(*box(low, -low)), [place, place], [0, 10], [turned(heading)] * 2)
     _set(thing.GetCellData(), "object_id", np.full(thing.GetNumberOfCells(), 1007, np.int32))
     _set(thing.GetFieldData(), "object_classes", [name])
-    movers = vtkMultiBlockDataSet()
-    movers.SetBlock(0, thing)
     report = al.mesh([place], np.empty((0, 3), int))
     for name, value in (("object_id", np.int32(1007)), ("timestamp", 2e6), ("number_of_echoes", np.int32(points))):
-        array = numpy_to_vtk(np.array([value]), deep=True)
-        array.SetName(name)
-        report.GetPointData().AddArray(array)
+        _set(report.GetPointData(), name, np.array([value]))
     sensor = al.Sensor(**{"channel_elevations": list(np.linspace(*ELEVATIONS, 5)), "number_of_channels": 5, "half_beamwidth": 0.001,
                           "range_gate": 500.0, **settings})
     boxes = Boxes(al.mesh(*surfaces) if surfaces else vtkPolyData(), sensor, POSE)
-    return boxes.lines(al.Cloud(report), movers).split()
+    return boxes.lines(al.Cloud(report), group(thing)).split()
 
 
 class TestBoxes(unittest.TestCase):

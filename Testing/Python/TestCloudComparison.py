@@ -120,11 +120,6 @@ class DensityAware(unittest.TestCase):
         for distance, alpha in ((0.0, 1.0), (0.3, 10.0), (2.0, 0.01), (1e5, 1e6)):
             for value in chamfer([[1.0, 2.0, 3.0]], [[1.0, 2.0, 3.0 + distance]], alpha):
                 self.assertAlmostEqual(value, 1 - math.exp(-alpha * distance), delta=1e-15 * (1 + 1e3 * alpha))
-        # Every point twice: alone each is the only one for its place; of a pair each is one of two.
-        points = np.random.default_rng(30).normal(size=(400, 3))
-        twice = np.repeat(points, 2, axis=0)
-        self.assertEqual(chamfer(points, twice), [0.25, 0, 0.5])
-        self.assertEqual(chamfer(twice, twice), [0.5, 0.5, 0.5])
         # 1 point at 1 m from 5 in one place: 1 - exp(-1) forth, 1 - exp(-1) / 5 back.
         _, forth, back = chamfer([[0.0, 0.0, 0.0]], np.tile((1.0, 0.0, 0.0), (5, 1)))
         self.assertAlmostEqual(forth, 1 - math.exp(-1), delta=1e-15)

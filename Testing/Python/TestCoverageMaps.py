@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The command `avianlidar coverage`: maps as GDAL's programs read them, shares, and plans that are wrong."""
+"""The command `avianlidar coverage`: maps as GDAL's programs read them. Shares are TestReport's, plans that are wrong
+TestSiting's."""
 import json
 import os
 import subprocess
@@ -11,8 +12,7 @@ import avianlidar as al
 import exampletools
 from avianlidar import siting
 from avianlidar._command import main
-from avianlidar.apps._maps import Plan, coordinate_system, read_plan
-from helpertools import rows_of
+from avianlidar.apps._maps import coordinate_system
 from osgeo import osr
 
 PLAN = os.path.join(exampletools.EXAMPLES, "coverage", "hongqiao.coverage.json")
@@ -93,27 +93,6 @@ class Maps(unittest.TestCase):
             there = osr.CoordinateTransformation(degrees, system)
             found = [there.TransformPoint(lon, lat)[:2] for lon, lat, _ in siting.to_geodetic(points, origin)]
             np.testing.assert_allclose(found, points[:, :2], atol=0.012)
-
-    def test_shares_are_the_table(self):
-        rows = rows_of(os.path.join(self.folder, "shares.csv"))
-        self.assertEqual({row["region"] for row in rows}, {"strips", "approaches", "all"})
-        self.assertEqual(len({row["species"] for row in rows}), 6)
-        points, regions = siting.strips_and_approaches(siting.read_runways(self.plan["runways"], ORIGIN), 100, heights=(30.0, 30.0))
-        cover = al.Coverage(self.plan["scene"], self.cover.sensor, species="crow", visibility=23000.0, places=al.places_of(points, regions))
-        wanted = next(row for row in cover.table if row["region"] == "strips")
-        found = next(row for row in rows if (row["region"], row["species"]) == ("strips", "crow") and row["height_from [m]"] == "-inf")
-        self.assertAlmostEqual(float(found["detection_probability"]), wanted["detection_probability"], places=5)
-        self.assertEqual(float(found["places"]), wanted["places"])
-
-    def test_plans_that_are_wrong_say_where(self):
-        for change, words in (({"sensor": {}}, "preset"), ({"heigts": [3]}, "heigts"),
-                              ({"coverage": {"species": "dodo"}}, "Species")):
-            with open(self.file + ".bad", "w", encoding="utf-8") as file:
-                json.dump({**self.plan, **change}, file)
-            with self.assertRaises(al.Error) as caught:
-                Plan(read_plan(self.file + ".bad")).map_at(30.0).update()
-            self.assertIn(words, str(caught.exception))
-        self.assertEqual(main(["coverage", self.file + ".none", "-o", self.folder]), 2)
 
 
 if __name__ == "__main__":

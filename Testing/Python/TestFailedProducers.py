@@ -12,7 +12,7 @@ import cloudtools
 from avianlidar import vtkAvianLidar as al
 from avianlidar._paraview import Advisor
 from cloudtools import add_field, cloud
-from echotools import RAYS, InFolder, Messages, assert_same_bits, scan, sensor, town
+from echotools import RAYS, InFolder, Messages, assert_same_bits, group, scan, sensor, town
 from faulttools import algorithms, copy_of, make, writer
 from scenetools import SHIPPED
 
@@ -216,9 +216,7 @@ class Producers(InFolder):
         update(failing.algorithm)
         self.assertTrue(heard.errors)
         failed = failing.algorithm.GetOutputDataObject(0)
-        blocks = vtk.vtkMultiBlockDataSet()
-        blocks.SetBlock(0, town(3, 1).GetBlock(0))
-        blocks.SetBlock(1, vtk.vtkPolyData())
+        blocks = group(town(3, 1).GetBlock(0), vtk.vtkPolyData())
         blocks.GetBlock(1).SetFieldData(failed.GetFieldData())
         for data in (failed, blocks):
             echo = scan(data, **SETTINGS)

@@ -19,7 +19,7 @@ from avianlidar.vtkAvianLidar import vtkAvianLidarGeodeticTransform as Transform
 
 import cloudtools
 from cloudtools import points as coordinates
-from echotools import Messages, array, given
+from echotools import Messages, array, given, group
 
 NANO, NANO_UTM, EARTH = 10e-9, 20e-9, 6378137.0
 ENU, GEODETIC, UTM, ECEF = Transform.FRAME_ENU, Transform.FRAME_GEODETIC, Transform.FRAME_UTM, Transform.FRAME_ECEF
@@ -112,10 +112,7 @@ class Behaviour(unittest.TestCase):
         self.assertAlmostEqual(array(data, "longitude")[0], 123.0, places=12)
 
     def test_composite_takes_the_origin_of_the_whole(self):
-        inner, scene = vtkMultiBlockDataSet(), vtkMultiBlockDataSet()
-        inner.SetBlock(0, cloud([[1.0, 2.0, 3.0]], vtkUnstructuredGrid))
-        for number, block in enumerate((cloud([[1.0, 2.0, 3.0]]), None, inner)):
-            scene.SetBlock(number, block)
+        scene = group(cloud([[1.0, 2.0, 3.0]]), None, group(cloud([[1.0, 2.0, 3.0]], vtkUnstructuredGrid)))
         cloudtools.add_field(scene, "geodetic_origin", ORIGINS[1])
         data, messages = run(scene, TargetFrame=ECEF, MovePoints=True)
         self.assertEqual(messages.all(), [])
@@ -130,9 +127,7 @@ class Behaviour(unittest.TestCase):
 
     def test_bad_input(self):
         one, here = [[0.0, 0.0, 0.0]], dict(UseFieldDataOrigin=False)
-        volume, block = vtkMultiBlockDataSet(), vtkMultiBlockDataSet()
-        volume.SetBlock(0, vtkImageData())
-        block.SetBlock(0, cloud([[math.nan, 0.0, 0.0]]))
+        volume, block = group(vtkImageData()), group(cloud([[math.nan, 0.0, 0.0]]))
         for scene in (volume, block):
             scene.GetMetaData(0).Set(scene.NAME(), "volume")
         for text, data, properties in (

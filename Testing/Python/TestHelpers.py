@@ -10,14 +10,14 @@ from unittest import mock
 import numpy as np
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkDataArray
-from vtkmodules.vtkCommonDataModel import vtkImageData, vtkMultiBlockDataSet
+from vtkmodules.vtkCommonDataModel import vtkImageData
 from vtkmodules.vtkFiltersSources import vtkCubeSource
 from vtkmodules.vtkCommonExecutionModel import vtkAlgorithm
 
 import avianlidar as al
 from avianlidar import reach, siting, vtkAvianLidar as wrapped
 from cloudtools import cloud
-from echotools import assert_same_bits, box as colored_box, copy_of, given, scan as plain_scan, town
+from echotools import assert_same_bits, box as colored_box, copy_of, given, group, scan as plain_scan, town
 from helpertools import WALL, box, same
 
 SCENE = os.path.join(os.environ["AVIANLIDAR_SOURCE_DIR"], "Examples", "airport", "scene", "hongqiao.lidarscene.json")
@@ -231,9 +231,8 @@ class EditsInPlace(unittest.TestCase):
 
     def test_edits_with_each_kind_of_modified(self):
         for material in (None, "Glass"):
-            data, inner, whole = colored_box((0, 51, 5), (20, 1, 10), "Metal"), vtkMultiBlockDataSet(), vtkMultiBlockDataSet()
-            inner.SetBlock(0, data)
-            whole.SetBlock(0, inner)
+            data = colored_box((0, 51, 5), (20, 1, 10), "Metal")
+            whole = group(group(data))
             scene = al.Scene(whole, material=material)
             scan = al.Scan(scene, al.Sensor(azimuth_step=4))
             before = scan.echoes

@@ -11,7 +11,7 @@ from vtkmodules.vtkFiltersSources import vtkCubeSource, vtkPlaneSource
 import avianlidar as al
 from avianlidar.vtkAvianLidar import vtkAvianLidarCollisionTree, vtkAvianLidarCoverage, vtkAvianLidarEchoFilter, vtkAvianLidarMedium
 from cloudtools import field as texts
-from echotools import InFolder, Messages, array, box, given
+from echotools import InFolder, Messages, array, box, given, group
 
 WALL = 200.0  # m north
 
@@ -28,13 +28,6 @@ def medium(source=None, **properties):
 
 def wall():
     return box((0, WALL + 1, 0), (500, 1, 500), "Concrete", "wall")
-
-
-def group(*blocks):
-    grouped = vtkMultiBlockDataSet()
-    for number, block in enumerate(blocks):
-        grouped.SetBlock(number, block)
-    return grouped
 
 
 def beams(sensor="Search905", **properties):

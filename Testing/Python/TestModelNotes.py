@@ -4,6 +4,7 @@ known before and however many threads there are."""
 import re
 import unittest
 
+from avianlidar._cloud import field_values
 import echotools
 
 NOTES = ("note_all_left_out", "note_noise", "note_two_reflections", "note_further_reflections", "note_faint_paths", "note_small_objects",
@@ -11,16 +12,9 @@ NOTES = ("note_all_left_out", "note_noise", "note_two_reflections", "note_furthe
 TOWN = echotools.town(count=20)
 
 
-def fields(data):
-    """{name: first value} of field data."""
-    all_fields = data.GetFieldData()
-    return {all_fields.GetArrayName(i): all_fields.GetAbstractArray(i).GetVariantValue(0)
-            for i in range(all_fields.GetNumberOfArrays())}
-
-
 def notes_of(echo, port=0):
     echo.Update()
-    return {name: value.ToString() for name, value in fields(echo.GetOutput(port)).items() if name.startswith("note_")}
+    return {name: value[0] for name, value in field_values(echo.GetOutput(port)).items() if name.startswith("note_")}
 
 
 class ModelNotes(unittest.TestCase):
@@ -28,7 +22,7 @@ class ModelNotes(unittest.TestCase):
         echo = echotools.scan(TOWN, echotools.given(echotools.sensor(), LowerEnergyLimit=7e-6), LightEnergyFraction=0.25)
         notes = notes_of(echo)
         self.assertEqual((tuple(notes), notes_of(echo, 1)), (NOTES, notes))
-        found = {name: value.ToDouble() for name, value in fields(echo.GetOutput()).items()}
+        found = field_values(echo.GetOutput())
         for note, field, unit in (("all_left_out", "skipped_energy_bound", "J"), ("noise", "noise_bound", "J"),
                                   ("further_reflections", "further_reflections_bound", "J"),
                                   ("faint_paths", "light_energy_constraint_bound", "J"),
@@ -39,6 +33,26 @@ class ModelNotes(unittest.TestCase):
             self.assertAlmostEqual(number / found[field], 1.0, delta=6e-3, msg=note)
         self.assertIn("(25 % of the lower energy limit)", notes["note_faint_paths"])
         self.assertEqual((found["light_energy_constraint_bound"], found["light_energy_fraction"]), (0.25 * 7e-6, 0.25))
+
+    def test_each_setting_changes_its_notes(self):
+        def scanned(sensor=(), **settings):
+            return echotools.scan(TOWN, echotools.given(echotools.sensor(), **dict(sensor)), **settings)
+
+        for echo, expected in (
+                (scanned(), {"all_left_out": "at most", "noise": "left out", "two_reflections": "modelled, but", "faint_paths": "left out",
+                             "small_objects": "more rays", "planes": "integrated", "perceivable_range": "nothing beyond .* km"}),
+                # No light over two reflections reaches such a limit.
+                (scanned({"PulseEnergy": 1e-3, "LowerEnergyLimit": 10.0, "UpperEnergyLimit": 20.0}),
+                 {"two_reflections": "left out", "perceivable_range": "nothing beyond 0 m"}),
+                (scanned(AttenuationCoefficient=0.0, FullModel=True),
+                 {"all_left_out": "nothing", "noise": "modelled", "two_reflections": "modelled$", "faint_paths": "followed",
+                  "perceivable_range": "without end"}),
+                (scanned({"ReceiverAperture": 0.01}, NumberOfReflections=1, Noise=False, BeamSamples=echotools.RAYS),
+                 {"noise": "not modelled", "two_reflections": "not modelled", "further_reflections": "not modelled: paths over two",
+                  "planes": "sampled"})):
+            notes = notes_of(echo)
+            for name, text in expected.items():
+                self.assertRegex(notes["note_" + name], "^" + text, name)
 
 
 if __name__ == "__main__":

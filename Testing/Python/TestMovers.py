@@ -10,7 +10,7 @@ from vtkmodules.vtkCommonDataModel import vtkMultiBlockDataSet, vtkPolyData
 
 import avianlidar as al
 import echotools
-from avianlidar import Error
+from avianlidar import Error, _cloud
 from avianlidar._pipeline import update
 from echotools import bird, copy_of
 from faulttools import text_array
@@ -41,9 +41,7 @@ def with_fields(surface, **fields):
     for name, values in fields.items():
         changed.GetFieldData().RemoveArray(name)
         if values is not None:
-            array = text_array(1) if isinstance(values, str) else numpy_to_vtk(np.ascontiguousarray(values, dtype=float), deep=True)
-            array.SetName(name)
-            changed.GetFieldData().AddArray(array)
+            _cloud.add_array(changed.GetFieldData(), name, [values] if isinstance(values, str) else np.array(values, dtype=float))
     return changed
 
 

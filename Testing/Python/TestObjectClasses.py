@@ -6,11 +6,11 @@ import unittest
 
 import numpy as np
 import vtk
-from vtk.util import numpy_support
 
 from avianlidar import vtkAvianLidar as al
+from avianlidar._cloud import add_array
 from cloudtools import add_field, field
-from echotools import InFolder, array, bird, box, given, scan, sensor
+from echotools import InFolder, array, bird, box, given, group, scan, sensor
 
 
 def thing(name, azimuth, classes=None, ids=None):
@@ -18,22 +18,11 @@ def thing(name, azimuth, classes=None, ids=None):
     angle = np.radians(azimuth)
     data = box((60 * np.sin(angle), 60 * np.cos(angle), 2), (5, 5, 5), "Wall", name)
     if ids is not None:
-        holder = numpy_support.numpy_to_vtk(np.array(ids, dtype=np.int32), deep=True)
-        holder.SetName("object_id")
-        data.GetCellData().AddArray(holder)
+        add_array(data.GetCellData(), "object_id", np.array(ids, dtype=np.int32))
         add_field(data, "object_names", [f"{name} {i}" for i in range(max(ids) + 1)])
     if classes:
         add_field(data, "object_classes", classes)
     return data
-
-
-def group(*parts, classes=None):
-    blocks = vtk.vtkMultiBlockDataSet()
-    for i, part in enumerate(parts):
-        blocks.SetBlock(i, part)
-    if classes:
-        add_field(blocks, "object_classes", classes)
-    return blocks
 
 
 def tree_of(surfaces):
@@ -68,6 +57,8 @@ class ObjectClasses(InFolder):
         unnamed = [thing("a", 0, None, [1] * 6), thing("b", 90, None, [0] * 6)]
         for part in unnamed:
             part.GetFieldData().RemoveArray("object_names")
+        unnamed = group(*unnamed)
+        add_field(unnamed, "object_classes", ["tower", "sign"])
         collect = vtk.vtkMultiBlockDataGroupFilter()  # it hands on the field data of its first input
         for part in (thing("faces", 0, ["runway", "apron", "fence"], (0, 0, 1, 1, 2, 2)), cone, goose):
             collect.AddInputData(part)
@@ -75,7 +66,7 @@ class ObjectClasses(InFolder):
         for surfaces, expected in ((group(hangar, cone, goose), {"hangar": "hangar", "cone": "", "goose": "bird"}),
                                    (collect.GetOutput(), {"faces 0": "runway", "faces 1": "apron", "faces 2": "fence", "cone": "", "goose": "bird"}),
                                    (leaf, {"faces 0": "runway", "faces 1": "", "faces 2": "fence"}),
-                                   (group(*unnamed, classes=["tower", "sign"]), {"block 1": "tower", "block 0": "sign"}),
+                                   (unnamed, {"block 1": "tower", "block 0": "sign"}),
                                    (group(leaf, other), {"faces 0": "runway", "faces 1": "", "faces 2": "fence", "more 0": "tree", "more 1": "car"})):
             self.check(surfaces, list(expected), list(expected.values()))
 

@@ -7,13 +7,13 @@ import sys
 import unittest
 
 import numpy as np
-from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.vtkFiltersSources import vtkSphereSource
 
 import avianlidar as al
+from avianlidar._cloud import add_array
 from avianlidar.vtkAvianLidar import vtkAvianLidarEchoFilter
-from cloudtools import add_array, add_field
-from echotools import given
+from cloudtools import add_field
+from echotools import CELLS, RAYS as RAYS_ALONE, given
 
 sys.path.insert(0, os.path.join(os.environ["AVIANLIDAR_SOURCE_DIR"], "Testing", "Oracles"))
 import oracles  # noqa: E402
@@ -30,7 +30,7 @@ def beam(case, sampling_interval=ONE_UNIT, pulse_width=0.0):
     """One beam as the echo filter wants it."""
     of = case["beam"]
     data = al.mesh([of["origin_m"]], np.empty((0, 3), int))
-    add_array(data, "direction", np.array([of["direction"]]))
+    add_array(data.GetPointData(), "direction", np.array([of["direction"]]))
     sensor = {"half_beamwidth": of["half_beamwidth_rad"],
               "beam_profile": ("uniform", "gaussian").index(of["profile"]),
               "pulse_energy": of["pulse_energy_J"], "pulse_width": pulse_width, "frequency": 3.313e14,
@@ -55,28 +55,19 @@ def surfaces(case):
     count = data.GetNumberOfPolys()
     for name, value in {**case["material"], "object_id": 0, "material_id": 4}.items():
         kind = np.int32 if name.endswith("_id") else float
-        array = numpy_to_vtk(np.full(count, value, kind), deep=True)
-        array.SetName(name)
-        data.GetCellData().AddArray(array)
+        add_array(data.GetCellData(), name, np.full(count, value, kind))
     return data
 
 
 def scan(case, sensor, rays=RAYS, integrate=False, **properties):
     """Echoes of the beam as {name: array}. Integrated, only paths over two reflections may trace any ray."""
-    lidar = vtkAvianLidarEchoFilter()
+    lidar = given(vtkAvianLidarEchoFilter(), RaysPerBeam=rays, AttenuationCoefficient=case["attenuation_per_m"],
+                  NumberOfReflections=case["reflections"], LightEnergyConstraint=False, BeamSamples=CELLS if integrate else RAYS_ALONE,
+                  SurfacesData=surfaces(case), **properties)
     lidar.SetInputData(0, sensor)
-    lidar.SetSurfacesData(surfaces(case))
-    lidar.SetRaysPerBeam(rays)
-    lidar.SetAttenuationCoefficient(case["attenuation_per_m"])
-    lidar.SetNumberOfReflections(case["reflections"])
-    lidar.SetLightEnergyConstraint(False)
-    lidar.SetBeamSamples(lidar.BEAM_SAMPLES_CELLS if integrate else lidar.BEAM_SAMPLES_RAYS)
-    for name, value in properties.items():
-        getattr(lidar, f"Set{name}")(value)
     lidar.Update()
     assert not integrate or case["reflections"] > 1 or lidar.GetNumberOfTracedRays() == 0, case["name"]
-    points = lidar.GetOutput().GetPointData()
-    return {points.GetArrayName(i): vtk_to_numpy(points.GetArray(i)) for i in range(points.GetNumberOfArrays())}
+    return al.Cloud(lidar.GetOutput())
 
 
 def row(case, quantity, expected, found, error, how):

@@ -70,13 +70,6 @@ class FieldsOfView(unittest.TestCase):
         self.assertAlmostEqual(elevation.max(), 52, delta=0.2)
         self.assertLess(np.diff(np.sort(azimuth)).max(), 0.2)
 
-    def test_angles_of_ouster(self):
-        for name, low, high, most in (("OS0-128", -46.26, 45.75, 11.35), ("OS2-128", -11.09, 10.76, 2.11)):
-            sensor = al.Sensor(name)
-            self.assertEqual(sensor.beams.number_of_points * sensor.rotation_rate, 1_310_720)
-            self.assertEqual((min(sensor.channel_elevations), max(sensor.channel_elevations)), (low, high))
-            self.assertAlmostEqual(np.abs(sensor.beams.fields["channel_azimuth_offsets"]).max(), most)
-
 
 class Use(unittest.TestCase):
     """What uses beams that differ from scan to scan."""

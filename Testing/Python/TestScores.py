@@ -25,20 +25,12 @@ class Ospa(unittest.TestCase):
         self.assertEqual(scores.ospa(np.zeros((0, 0)), 10.0), (0.0, 0.0, 0.0))
         self.assertEqual(scores.ospa(np.zeros((0, 3)), 10.0), (10.0, 0.0, 10.0))
         self.assertEqual(scores.ospa(np.zeros((2, 0)), 10.0, 1.0), (10.0, 0.0, 10.0))
-        # m points at their places and n - m that are missing: c ((n - m) / n)^(1 / p); all are off by d: d, at most c.
-        for order, m, n in itertools.product((1.0, 2.0, 3.5), (1, 3), (4, 7)):
-            truth = np.arange(3.0 * n).reshape(n, 3) * 100.0
-            self.assertAlmostEqual(scores.ospa(scores.distances(truth[:m], truth), 10.0, order).distance, 10.0 * ((n - m) / n) ** (1.0 / order))
-            for off in (3.0, 30.0):
-                found = scores.ospa(scores.distances(truth + (off, 0.0, 0.0), truth), 10.0, order)
-                self.assertAlmostEqual(found.distance, min(off, 10.0))
-                self.assertAlmostEqual(found.cardinality, 0.0)
         # Order 1 is the mean distance of each object: 2 m, 4 m and one that is missing with 10 m.
         self.assertAlmostEqual(scores.ospa([[2.0, 99.0], [99.0, 4.0], [99.0, 99.0]], 10.0, 1.0).distance, 16.0 / 3.0)
 
     def test_all_permutations_and_parts(self):
         random = np.random.default_rng(1)
-        for m, n, order in itertools.product((0, 1, 2, 4), (0, 1, 3, 5), (1.0, 2.0)):
+        for m, n, order in itertools.product((0, 1, 2, 4), (0, 1, 3, 5), (1.0, 3.5)):
             distance = scores.distances(random.uniform(0, 30, (m, 3)), random.uniform(0, 30, (n, 3)))
             found = scores.ospa(distance, 12.0, order)
             self.assertAlmostEqual(found.distance, brute(distance, 12.0, order))

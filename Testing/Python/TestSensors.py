@@ -21,7 +21,7 @@ from helpertools import same
 FILES = pathlib.Path(os.environ["AVIANLIDAR_SOURCE_DIR"]) / "Filters" / "Sensors"
 DATA = os.environ.get("AVIANLIDAR_DATA_DIR", "")
 REAL = {"VLP-16": 300_000, "VLP-32C": 600_000, "HDL-32E": 700_000, "Pandar40P": 720_000, "PandarXT-32": 640_000,
-        "OS1-64": 655_360, "Helios-16P": 576_000}  # and the points a second of one return
+        "OS0-128": 1_310_720, "OS1-64": 655_360, "OS2-128": 1_310_720, "Helios-16P": 576_000}  # and the points a second of one return
 
 
 def frame(name):
@@ -142,6 +142,13 @@ class Manuals(unittest.TestCase):
                 # Neighbours of a ring are a step of the pattern apart.
                 steps = np.concatenate([np.diff(np.sort(azimuth[ring == one])) for one in rings])
                 self.assertAlmostEqual(np.median(steps[steps > 0.05]), sensor.azimuth_step, delta=0.002)
+
+    def test_minimum_ranges_are_those_of_the_makers(self):
+        least = {file.name.split(".")[0]: al.Sensor(file.name.split(".")[0]).minimum_range for file in FILES.glob("*.lidarsensor.json")}
+        self.assertEqual({name: m for name, m in least.items() if m},
+                         {"HDL32E": 0.05, "Helios16P": 0.2, "Mid360": 0.1, "Mid40": 2.0, "OS0_128": 0.3, "OS1_64": 0.8,
+                          "OS2_128": 1.0, "Pandar40P": 0.3, "PandarXT32": 0.05})
+
 
 class Own(unittest.TestCase):
     def test_beams_go_where_and_when_they_are_told(self):

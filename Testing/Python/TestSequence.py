@@ -39,9 +39,9 @@ SCENARIO = {
     "objects": [BOX]}
 
 
-def scenario_file(where, **changes):
+def scenario_file(where, around=SCENE, **changes):
     """A scenario with a scene of its own."""
-    (where / "small.lidarscene.json").write_text(json.dumps(SCENE), encoding="utf-8")
+    (where / "small.lidarscene.json").write_text(json.dumps(around), encoding="utf-8")
     house = np.where(CORNERS == LOW, (-40.0, 300.0, 0.0), (40.0, 310.0, 12.0))
     (where / "house.stl").write_text(stl(house, TRIANGLES), encoding="utf-8")
     path = where / "small.scenario.json"

@@ -7,7 +7,6 @@ import json
 import math
 import os
 import pathlib
-import shutil
 import unittest
 import unittest.mock
 import warnings
@@ -33,9 +32,7 @@ GREEDY = (0.105, 0.206, 0.292, 0.357, 0.405, 0.446)
 
 
 def fresh(name):
-    folder = pathlib.Path(exampletools.OUTPUT) / "TestSiting" / name
-    shutil.rmtree(folder, ignore_errors=True)
-    return folder
+    return exampletools.emptied("TestSiting", name)
 
 
 def drawn(sites, species, places, seed):
@@ -292,7 +289,6 @@ class Airport(unittest.TestCase):
     def test_heights_may_be_texts(self):
         """As the scene reader takes them; what it takes for no height is left alone."""
         folder = fresh("texts")
-        folder.mkdir(parents=True)
         square = next(f for f in siting.load_json(PLAN)["features"] if f["properties"].get("height"))
         heights = [15, "15", "15 m", "15m", "tall", True, -3, None, "15 ft", {}]
         (folder / "town.json").write_text(json.dumps({"type": "FeatureCollection", "features": [
@@ -307,7 +303,6 @@ class Airport(unittest.TestCase):
     def test_a_plan_says_where_nothing_may_stand(self):
         """The best pair of the others, by brute force; draws of the unknown."""
         folder = fresh("plan")
-        folder.mkdir(parents=True)
         square = siting.to_geodetic([(100, -700, 0), (500, -700, 0), (500, 700, 0), (100, 700, 0), (100, -700, 0)], self.scene.geodetic_origin)[:, :2].tolist()
         (folder / "taken.geojson").write_text(json.dumps({"type": "FeatureCollection", "features": [
             {"type": "Feature", "properties": None, "geometry": {"type": "Polygon", "coordinates": [square]}}]}))
@@ -369,7 +364,6 @@ class Plans(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         cls.folder = fresh("plans")
-        cls.folder.mkdir(parents=True)
         cls.shapes = json.loads(PLAN.read_text(encoding="utf-8"))
 
     def write(self, name="my", **changes):
@@ -397,6 +391,7 @@ class Plans(unittest.TestCase):
         (self.folder / "nowhere.lidarscene.json").write_text('{"version": 1, "objects": [{"ground": {"size": 100}, "material": "wall"}]}')
         for member, change in (
                 ("siting.spacing: ", {"siting": {"spacing": 0.001}}), ("extent: ", {"extent": [1, 0, 0, 1]}),
+                ("preset", {"sensor": {}}), ("heigts", {"heigts": [3]}), ("Species", {"coverage": {"species": "dodo"}}),
                 ("heights: ", {"heights": [15, 15.0]}),
                 ("mix: ", {"mix": {"crow": 1.0, "dodo": 1.0}}),
                 ("coverage.species: ", {"mix": {"crow": 1}, "coverage": {"species": "crow"}}),

@@ -61,9 +61,7 @@ def at(algorithm, time, port=0):
 
 def steps_of(algorithm, port=0):
     algorithm.UpdateInformation()
-    information = algorithm.GetOutputInformation(port)
-    count = information.Length(PIPELINE.TIME_STEPS())
-    return [information.Get(PIPELINE.TIME_STEPS(), i) for i in range(count)]
+    return list(algorithm.GetOutputInformation(port).Get(PIPELINE.TIME_STEPS()) or ())
 
 
 def sensor_output(columns):

@@ -7,12 +7,12 @@ import unittest
 import numpy as np
 import vtk
 from scipy.spatial.transform import Rotation
-from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
+from vtkmodules.util.numpy_support import vtk_to_numpy
 
-from avianlidar import Error, _scene
+from avianlidar import Error, _cloud, _scene
 from avianlidar._pipeline import update
 from avianlidar.vtkAvianLidar import vtkAvianLidarTracks
-from cloudtools import add_array, cloud
+from cloudtools import add_array, cloud, field as text
 from echotools import InFolder, Messages, bird, given
 
 NAN = float("nan")
@@ -41,11 +41,6 @@ def movers(source):
 
 def field(block, name):
     return vtk_to_numpy(block.GetFieldData().GetArray(name))
-
-
-def text(block, name):
-    array = block.GetFieldData().GetAbstractArray(name)
-    return [array.GetValue(i) for i in range(array.GetNumberOfValues())]
 
 
 def names_of(attributes):
@@ -82,11 +77,7 @@ def polyline(points, times=None, species=None, where="cell"):
     if times is not None:
         add_array(data, "time", np.array(times, dtype=float))
     if species is not None:
-        array = vtk.vtkStringArray()
-        array.SetName("species")
-        for name in species:
-            array.InsertNextValue(name)
-        (data.GetCellData() if where == "cell" else data.GetFieldData()).AddArray(array)
+        _cloud.add_array(data.GetCellData() if where == "cell" else data.GetFieldData(), "species", species)
     return data
 
 
@@ -211,9 +202,7 @@ class Tracks(InFolder):
         self.assert_fails(tracks(Pattern=pattern("Lines")), "port 0 has no connection")
         points, numbers = vtk.vtkPolyData(), polyline(TWO_LINES, TIMES)
         points.SetPoints(numbers.GetPoints())
-        species = numpy_to_vtk(np.zeros(2), deep=1)
-        species.SetName("species")
-        numbers.GetCellData().AddArray(species)
+        _cloud.add_array(numbers.GetCellData(), "species", np.zeros(2))
         for data, words in (
                 (points, "has points but no lines"), (polyline(TWO_LINES), "no point array 'time'"),
                 (polyline(TWO_LINES, TIMES[:4]), "'time' has 4 values"),

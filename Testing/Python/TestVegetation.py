@@ -21,11 +21,6 @@ class Vegetation(unittest.TestCase):
         self.reached = leave > enter
         self.enter, self.leave = enter[self.reached], leave[self.reached]
 
-    def test_rays_cross_a_box(self):
-        enter, leave = self.outline.crossing(np.array([(0.0, 1, 0), (0, -1, 0), (0.6, 0.8, 0)]))
-        np.testing.assert_allclose((enter[0], leave[0]), (18, 22))
-        self.assertTrue(leave[1] < 0 and enter[2] > leave[2])  # behind the lidar, beside it
-
     def test_a_known_extinction_is_found(self):
         depths = np.random.default_rng(1).exponential(1 / EXTINCTION, len(self.enter))
         ranges = np.where(depths < self.leave - self.enter, self.enter + depths, 60.0)

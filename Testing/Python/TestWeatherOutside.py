@@ -75,15 +75,6 @@ class AnotherSimulator(unittest.TestCase):
 
 
 class Mie(unittest.TestCase):
-    def test_efficiencies_are_those_of_wiscombe(self):
-        # W. J. Wiscombe, NCAR/TN-140+STR, 1979: index 1.5 (second-hand).
-        found = others.mie([10, 100, 1000], 1.5)[0]
-        np.testing.assert_allclose(found, [2.881999, 2.094388, 2.013945], atol=1e-6)
-        # A sphere much smaller than the wavelength: Rayleigh.
-        part = (1.33**2 - 1) / (1.33**2 + 2)
-        extinction, backscatter = others.mie(0.01, 1.33)
-        self.assertAlmostEqual(extinction[0] / (8 / 3 * 1e-8 * part**2), 1, delta=1e-3)
-        self.assertAlmostEqual(backscatter[0] / (4e-8 * part**2), 1, delta=1e-3)
 
     def test_droplets_return_what_ceilometers_found(self):
         for fog in others.FOGS:

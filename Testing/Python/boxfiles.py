@@ -5,8 +5,10 @@ import json
 import struct
 
 import numpy as np
-from vtkmodules.vtkCommonCore import vtkIntArray, vtkPoints, vtkStringArray
+from vtkmodules.vtkCommonCore import vtkPoints
 from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData
+
+from avianlidar._cloud import add_array
 
 # A box of three different sides, so that no axis can be taken for another; corners in binary order.
 LOW, HIGH = (1.0, 2.0, 0.0), (2.0, 4.0, 3.0)
@@ -141,24 +143,13 @@ def poly_data(faces):
     for p in CORNERS:
         points.InsertNextPoint(p)
     # Cells that no ray hits, before those that count.
-    lines.InsertNextCell(2)
-    lines.InsertCellPoint(0)
-    lines.InsertCellPoint(7)
+    lines.InsertNextCell(2, (0, 7))
     for face in faces:
-        polys.InsertNextCell(len(face))
-        for k in face:
-            polys.InsertCellPoint(k)
+        polys.InsertNextCell(len(face), face)
     data = vtkPolyData()
     data.SetPoints(points)
     data.SetLines(lines)
     data.SetPolys(polys)
-    ids, names = vtkIntArray(), vtkStringArray()
-    ids.SetName("material_id")
-    names.SetName("material_names")
-    for i in range(1 + len(faces)):
-        ids.InsertNextValue(0 if i == 0 else i % 2)
-    for name in ("painted", "glazed"):
-        names.InsertNextValue(name)
-    data.GetCellData().AddArray(ids)
-    data.GetFieldData().AddArray(names)
+    add_array(data.GetCellData(), "material_id", np.arange(1 + len(faces), dtype=np.int32) % 2)
+    add_array(data.GetFieldData(), "material_names", ["painted", "glazed"])
     return data

@@ -7,7 +7,7 @@ import numpy as np
 import vtk
 from vtk.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 
-from avianlidar import _suffixes, vtkAvianLidar as al
+from avianlidar import _cloud, _suffixes, vtkAvianLidar as al
 from echotools import Messages, array, copy_of, given, scan, sensor, town
 
 # The package's own table, so that a new writer is in every test of all: {"LAS": ".las", ...}, the first suffix of each.
@@ -19,26 +19,11 @@ ORIGIN = (31.1979, 121.3363, 3.0)  # the paper's airport
 
 def add_field(data, name, values, unit=None):
     """A tuple of numbers, or a list of texts, as field data."""
-    if isinstance(values, list):
-        holder = vtk.vtkStringArray()
-        for value in values:
-            holder.InsertNextValue(value)
-    else:
-        holder = vtk.vtkDoubleArray()
-        holder.SetNumberOfComponents(len(values))
-        holder.InsertNextTuple(values)
-    holder.SetName(name)
-    if unit:
-        holder.GetInformation().Set(vtk.vtkDataArray.UNITS_LABEL(), unit)
-    data.GetFieldData().AddArray(holder)
+    _cloud.add_array(data.GetFieldData(), name, values if isinstance(values, list) else np.array([values], dtype=float), unit)
 
 
 def add_array(data, name, values, unit=None):
-    holder = numpy_to_vtk(np.ascontiguousarray(values), deep=1)
-    holder.SetName(name)
-    if unit:
-        holder.GetInformation().Set(vtk.vtkDataArray.UNITS_LABEL(), unit)
-    data.GetPointData().AddArray(holder)
+    _cloud.add_array(data.GetPointData(), name, np.asarray(values), unit)
 
 
 def cloud(points, kind=vtk.vtkPolyData):

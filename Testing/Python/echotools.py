@@ -69,6 +69,14 @@ def box(center, half, material=None, name=None):
     return paint.GetOutput()
 
 
+def group(*parts):
+    """A multiblock of parts, of which some may be None."""
+    blocks = vtk.vtkMultiBlockDataSet()
+    for number, part in enumerate(parts):
+        blocks.SetBlock(number, part)
+    return blocks
+
+
 def town(seed=1, count=40):
     """A multiblock of boxes around the origin."""
     random = np.random.default_rng(seed)

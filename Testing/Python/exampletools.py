@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """What the tests of the examples share: their modules, results as numpy arrays, and comparison of pictures."""
-import contextlib
-import io
 import os
 import pathlib
 import re
@@ -11,23 +9,14 @@ import sys
 
 import numpy as np
 from vtkmodules.util.numpy_support import vtk_to_numpy  # noqa: F401  # for the tests of the examples, as arrays
-from vtkmodules.vtkIOXML import vtkXMLPolyDataReader
 
+from cloudtools import field as strings  # noqa: F401
 from echotools import arrays  # noqa: F401
 
 EXAMPLES = os.path.join(os.environ["AVIANLIDAR_SOURCE_DIR"], "Examples")
 OUTPUT = os.environ["AVIANLIDAR_TEST_OUTPUT_DIR"]
 for home in (pathlib.Path(EXAMPLES), pathlib.Path(EXAMPLES).parent / "Testing" / "Studies"):
     sys.path[:0] = [str(folder) for folder in home.iterdir() if folder.is_dir()]
-
-
-def folder(name):
-    """A folder for the results, without those of an earlier run."""
-    path = os.path.join(OUTPUT, name)
-    os.makedirs(path, exist_ok=True)
-    for file in os.listdir(path):
-        os.remove(os.path.join(path, file))
-    return path
 
 
 def emptied(*names):
@@ -38,20 +27,13 @@ def emptied(*names):
     return path
 
 
-def strings(data, name):
-    array = data.GetFieldData().GetAbstractArray(name)
-    return [array.GetValue(i) for i in range(array.GetNumberOfValues())]
+def folder(name):
+    """The same as text, which arguments of examples are."""
+    return str(emptied(name))
 
 
 def number(data, name):
     return data.GetFieldData().GetArray(name).GetValue(0)
-
-
-def read(file):
-    reader = vtkXMLPolyDataReader()
-    reader.SetFileName(file)
-    reader.Update()
-    return reader.GetOutput()
 
 
 def read_table(file):
@@ -83,32 +65,6 @@ def assert_documented(test, table, page, name):
             if text.isdigit():
                 found, wanted = int(table[column][row]), int(text)
                 test.assertAlmostEqual(found, wanted, delta=2 + (traced if row == "rays traced" else 0.003) * wanted, msg=(column, row))
-
-
-BAD_ARGUMENTS = (("--rays", "0"), ("--rays", "-3"), ("--rays", "1000001"), ("--rays", "many"), ("--threads", "-1"),
-                 ("--seed", "99999999999"), ("--scene", "no-such-scene.json"))
-
-
-def assert_bad_arguments(test, main, script):
-    """Each ends with one line that names what is wrong: 2 for arguments, 1 for a file that is no scene."""
-    out = os.path.join(folder("ExampleBadArguments"), "out")
-    for option, value in BAD_ARGUMENTS:
-        said = io.StringIO()
-        with test.subTest(option=option, value=value), contextlib.redirect_stderr(said):
-            with test.assertRaises(SystemExit) as end:
-                main(["--no-pictures", option, value, "--out", out])
-            test.assertEqual(end.exception.code, 2)
-            line, rest = said.getvalue().split("\n", 1)
-            test.assertEqual(rest, "")
-            test.assertIn(option, line)
-            test.assertIn(value, line)
-            test.assertFalse(os.path.exists(out))
-    page = os.path.join(os.environ["AVIANLIDAR_SOURCE_DIR"], "README.md")
-    with test.assertRaises(SystemExit) as end:
-        main(["--no-pictures", "--scene", page, "--out", out])
-    test.assertRegex(end.exception.code, "README.md: (is not JSON|.*No suitable reader)")  # Python prints it, returns 1
-    test.assertNotIn("\n", end.exception.code)
-    test.assertFalse(os.path.exists(out))
 
 
 def expected_energy(found, pulse_energy, attenuation):
