@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Live changes in ParaView's window: with Auto Apply each step of a value in the panel lights the scan anew and draws it, tracing
-nothing that is known; the echoes are those of a new scan, bit for bit. Testing/Benchmarks/live.py runs this file to measure."""
+nothing that is known; the echoes are those of a new scan, bit for bit. Testing/Studies/speed/live.py runs this file to measure."""
 
 import os
 import time

@@ -165,10 +165,10 @@ class Seen:
         self.factors = (1 - bar)**2 * low / high, (1 + bar)**2
 
     def least(self, distance):
-        air = np.exp(2 * falloff.AIR * distance)  # sheets and limits are of clear air
         if not self.photons:
-            return self.reflectance * (distance / self.range)**2 * air
+            return self.reflectance * (distance / self.range)**2 * np.exp(2 * falloff.AIR * (distance - self.range))
         numbers = float(self.sensor.receiver_aperture), float(self.sensor.filter_bandwidth), np.nan  # surfaces fill the beam
+        air = np.exp(2 * falloff.AIR * distance)  # sheets and limits are of clear air
         return air * np.exp(brentq(lambda x: self.receiver.excess_of(distance, {"reflectance": np.exp(x)}, *numbers), -20, 5))
 
 

@@ -14,7 +14,7 @@ import statistics
 import sys
 import time
 
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "Golden"))
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "Golden"))
 from golden import al, scene_files, surfaces_of  # noqa: E402
 from vtkmodules.vtkCommonDataModel import vtkDataObjectTreeIterator  # noqa: E402
 

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Measures how fast ParaView's window follows a value that is changed step by step, and writes the page about it.
 
-    Testing/Benchmarks/live.py BUILD_FOLDER [steps]
+    Testing/Studies/speed/live.py BUILD_FOLDER [steps]
 
 A scan of the airport by Airport32, Auto Apply on, a window of 1600 x 1000 pixels drawn by software on a display of its
 own (Testing/Plugin/live_steps.py). Says how busy the machine was."""
@@ -11,13 +11,13 @@ import pathlib
 import statistics
 import sys
 
-SOURCE = pathlib.Path(__file__).resolve().parents[2]
+SOURCE = pathlib.Path(__file__).resolve().parents[3]
 PAGE = SOURCE / "Documentation" / "results" / "live.md"
 
 PAGE_TEXT = """# Live changes in ParaView: results
 
 How fast ParaView's window follows a changed property. What it means: [In ParaView](../paraview.md#live-changes).
-Made by `Testing/Benchmarks/live.py build/paraview {steps}`: not to be edited.
+Made by `Testing/Studies/speed/live.py build/paraview {steps}`: not to be edited.
 
 The airport Hongqiao, Airport32 (61,440 beams x 100 rays), tree and echoes in one view, all other settings at their
 defaults. {cores} cores; load average {load_before:.1f} before and {load_after:.1f} after, so clock times are those of {busy} machine.
