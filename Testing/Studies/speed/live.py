@@ -6,6 +6,7 @@
 
 A scan of the airport by Airport32, Auto Apply on, a window of 1600 x 1000 pixels drawn by software on a display of its
 own (Testing/Plugin/live_steps.py). Says how busy the machine was."""
+import argparse
 import os
 import pathlib
 import statistics
@@ -46,8 +47,12 @@ def row(name, change):
     return f"| {name} | {' | '.join(cells)} | {1 / min(change['wall']):.1f} | {change['rays']:,.0f} |\n"
 
 
-def main(build, steps="30"):
-    build = pathlib.Path(build).resolve()
+def main(argv):
+    parser = argparse.ArgumentParser(description=__doc__.split("\n\n", maxsplit=1)[0])
+    parser.add_argument("build", type=pathlib.Path, help="folder of the build")
+    parser.add_argument("steps", nargs="?", default="30", help="steps of each property, default 30")
+    options = parser.parse_args(argv)
+    build, steps = options.build.resolve(), options.steps
     os.environ["AVIANLIDAR_SOURCE_DIR"] = str(SOURCE)
     os.environ["AVIANLIDAR_TEST_OUTPUT_DIR"] = str(build / "Testing" / "Temporary")
     plugin = next((build / "lib").glob("paraview-*/plugins/AvianLidarPlugin/AvianLidarPlugin.so"))
@@ -68,4 +73,4 @@ def main(build, steps="30"):
 
 
 if __name__ == "__main__":
-    main(*sys.argv[1:])
+    main(sys.argv[1:])

@@ -59,11 +59,11 @@ def scan(tree, position, reflections, factor):
     return time.process_time() - begin, echoes.GetOutput().GetNumberOfPoints()
 
 
-def main():
+def main(argv=None):
     parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0])
     parser.add_argument("--turns", type=int, default=5)
     parser.add_argument("--factor", type=float, default=4.0)
-    options = parser.parse_args()
+    options = parser.parse_args(argv)
     print("scene              place                  mirrors  one, ms  two, ms  factor  echoes")
     for name, position, mirrors in PLACES:
         file = scene_files()[name]
