@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "TriangleOrder.h"
 
-#include "KeySort.h"
-
 #include <algorithm>
-#include <cmath>
+#include <functional>
 #include <limits>
+#include <numeric>
 #include <tuple>
 
 namespace avianlidar
@@ -13,13 +12,6 @@ namespace avianlidar
 namespace
 {
 constexpr double Steps = 2097152.0; // 2^21
-
-struct Entry
-{
-  std::uint64_t place; ///< on the curve
-  int object;
-  std::uint32_t triangle;
-};
 
 /// The lowest 21 bits, two zeros before each.
 std::uint64_t spread(std::uint64_t bits)
@@ -55,93 +47,79 @@ bool isLess(const Vec3& p, const Vec3& q)
   return std::tie(p.x, p.y, p.z) < std::tie(q.x, q.y, q.z);
 }
 
-bool isBefore(
-  const TriangleMesh& mesh, const std::vector<int>& materialIds, const Entry& a, const Entry& b)
+/// Compares triangles by their numbers.
+class IsBefore
 {
-  if (a.object != b.object || a.place != b.place)
+public:
+  IsBefore(const TriangleMesh& mesh, const std::vector<int>& objectIds,
+    const std::vector<int>& materialIds)
+    : Mesh(mesh)
+    , Objects(objectIds)
+    , Materials(materialIds)
   {
-    return std::tie(a.object, a.place) < std::tie(b.object, b.place);
-  }
-  const Vec3 middleOfA = middleOf(mesh, a.triangle);
-  const Vec3 middleOfB = middleOf(mesh, b.triangle);
-  if (middleOfA != middleOfB)
-  {
-    return isLess(middleOfA, middleOfB);
-  }
-  for (int c = 0; c < 3; ++c)
-  {
-    if (mesh.corner(a.triangle, c) != mesh.corner(b.triangle, c))
+    Vec3 lower(std::numeric_limits<double>::infinity());
+    Vec3 upper = -lower;
+    this->Middles.reserve(mesh.size());
+    for (std::uint32_t t = 0; t < mesh.size(); ++t)
     {
-      return isLess(mesh.corner(a.triangle, c), mesh.corner(b.triangle, c));
+      this->Middles.push_back(middleOf(mesh, t));
+      lower = glm::min(lower, this->Middles[t]);
+      upper = glm::max(upper, this->Middles[t]);
+    }
+    this->Places.reserve(mesh.size());
+    for (const Vec3& middle : this->Middles)
+    {
+      std::uint64_t place = 0;
+      for (int axis = 0; axis < 3; ++axis)
+      {
+        const double size = upper[axis] - lower[axis];
+        const double share = size > 0.0 ? (middle[axis] - lower[axis]) / size : 0.0;
+        place |= spread(static_cast<std::uint64_t>(std::min(Steps * share, Steps - 1.0))) << axis;
+      }
+      this->Places.push_back(place);
     }
   }
-  return std::tie(materialIds[a.triangle], a.triangle) <
-    std::tie(materialIds[b.triangle], b.triangle);
-}
+
+  bool operator()(std::uint32_t a, std::uint32_t b) const
+  {
+    if (this->Objects[a] != this->Objects[b] || this->Places[a] != this->Places[b])
+    {
+      return std::tie(this->Objects[a], this->Places[a]) <
+        std::tie(this->Objects[b], this->Places[b]);
+    }
+    if (this->Middles[a] != this->Middles[b])
+    {
+      return isLess(this->Middles[a], this->Middles[b]);
+    }
+    for (int c = 0; c < 3; ++c)
+    {
+      if (this->Mesh.corner(a, c) != this->Mesh.corner(b, c))
+      {
+        return isLess(this->Mesh.corner(a, c), this->Mesh.corner(b, c));
+      }
+    }
+    return std::tie(this->Materials[a], a) < std::tie(this->Materials[b], b);
+  }
+
+private:
+  const TriangleMesh& Mesh;
+  const std::vector<int>&Objects, &Materials;
+  std::vector<Vec3> Middles;
+  std::vector<std::uint64_t> Places; ///< on the curve
+};
 }
 
 std::vector<std::uint32_t> triangleOrder(
   const TriangleMesh& mesh, const std::vector<int>& objectIds, const std::vector<int>& materialIds)
 {
-  Vec3 lower(std::numeric_limits<double>::infinity());
-  Vec3 upper = -lower;
-  for (std::uint32_t t = 0; t < mesh.size(); ++t)
+  const IsBefore isBefore(mesh, objectIds, materialIds);
+  std::vector<std::uint32_t> order(mesh.size());
+  std::iota(order.begin(), order.end(), 0u);
+  if (std::is_sorted(order.begin(), order.end(), std::cref(isBefore)))
   {
-    const Vec3 middle = middleOf(mesh, t);
-    lower = glm::min(lower, middle);
-    upper = glm::max(upper, middle);
+    return {};
   }
-  std::vector<Entry> entries(mesh.size());
-  for (std::uint32_t t = 0; t < mesh.size(); ++t)
-  {
-    const Vec3 middle = middleOf(mesh, t);
-    std::uint64_t place = 0;
-    for (int axis = 0; axis < 3; ++axis)
-    {
-      const double size = upper[axis] - lower[axis];
-      const double share = size > 0.0 ? (middle[axis] - lower[axis]) / size : 0.0;
-      place |= spread(static_cast<std::uint64_t>(std::min(Steps * share, Steps - 1.0))) << axis;
-    }
-    entries[t] = { place, objectIds[t], t };
-  }
-  const auto before = [&](const Entry& a, const Entry& b)
-  { return isBefore(mesh, materialIds, a, b); };
-  std::vector<std::uint32_t> order;
-  if (std::is_sorted(entries.begin(), entries.end(), before))
-  {
-    return order;
-  }
-  // By the high bits of places with fast integers, then by object, then the few that are left.
-  constexpr std::uint64_t low = 0xffffffff;
-  std::vector<std::uint64_t> keys;
-  keys.reserve(entries.size());
-  for (const Entry& entry : entries)
-  {
-    keys.push_back((entry.place << 1 & ~low) | entry.triangle);
-  }
-  sortKeys(keys);
-  order.reserve(entries.size());
-  for (const std::uint64_t key : keys)
-  {
-    order.push_back(numberOf(key));
-  }
-  std::stable_sort(order.begin(), order.end(),
-    [&](std::uint32_t a, std::uint32_t b) { return objectIds[a] < objectIds[b]; });
-  const auto isTie = [&](std::uint32_t a, std::uint32_t b)
-  {
-    return objectIds[a] == objectIds[b] && ((entries[a].place ^ entries[b].place) << 1 & ~low) == 0;
-  };
-  for (auto begin = order.begin(); begin != order.end();)
-  {
-    const auto end =
-      std::find_if(begin, order.end(), [&](std::uint32_t t) { return !isTie(*begin, t); });
-    if (end - begin > 1)
-    {
-      std::sort(begin, end,
-        [&](std::uint32_t a, std::uint32_t b) { return before(entries[a], entries[b]); });
-    }
-    begin = end;
-  }
+  std::sort(order.begin(), order.end(), std::cref(isBefore));
   return order;
 }
 }

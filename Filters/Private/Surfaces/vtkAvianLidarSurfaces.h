@@ -30,9 +30,10 @@ struct vtkAvianLidarSurfaceLeaf;
 struct vtkAvianLidarSurfaces
 {
   std::shared_ptr<const avianlidar::TriangleMesh> mesh;
-  std::uint64_t checksum = 0;                    ///< of the mesh
-  std::uint64_t geometry = 0;                    ///< hash of the input apart from its materials
-  avianlidar::SharedVector<std::uint32_t> order; ///< of triangles (TriangleOrder.h), or as given
+  std::uint64_t checksum = 0; ///< checksum of the mesh
+  std::uint64_t geometry = 0; ///< hash of the input apart from its materials
+  avianlidar::SharedVector<std::uint32_t>
+    order; ///< order of triangles (TriangleOrder.h); empty: as given
   avianlidar::SharedVector<avianlidar::Material> materials; ///< one per triangle
   avianlidar::SharedVector<int> objectIds;                  ///< one per triangle
   avianlidar::SharedVector<int> materialIds;                ///< one per triangle

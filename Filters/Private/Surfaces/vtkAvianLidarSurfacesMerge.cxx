@@ -118,6 +118,9 @@ private:
       hash = vtkAvianLidarContent::HashOfGeometry(leaves[i].data, hash);
       hash = vtkAvianLidarContent::HashOf(this->Arrays[i].ghosts, hash);
       hash = vtkAvianLidarContent::HashOf(this->Arrays[i].object, hash);
+      const bool hasMaterials =
+        this->Arrays[i].HasMaterials(); // else ids of materials do not count
+      hash = avianlidar::hashOf(&hasMaterials, sizeof(hasMaterials), hash);
       hash = vtkAvianLidarContent::HashOf(this->Arrays[i].material, hash);
     }
     return hash;
@@ -384,7 +387,8 @@ private:
     const Column Ids;
     const int None;
     std::map<int, int> Scene;
-    std::map<int, int>::iterator Last; ///< of the last cell: most have the id of the one before
+    std::map<int, int>::iterator
+      Last; ///< entry of the last cell, as most cells have the id of the one before
   };
 
   void AddCells(const Leaf& leaf, vtkPolyData* poly, const vtkAvianLidarSurfaceArrays& arrays)
