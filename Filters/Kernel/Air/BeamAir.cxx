@@ -178,8 +178,6 @@ const std::vector<BeamAir::Column>& BeamAir::grid()
 
 void BeamAir::beginOutside()
 {
-  this->Seen = this->Filling;
-  this->Columns.assign(1, { 0.0, 0.0, 1.0, ~std::uint64_t{ 0 } });
   this->Parts.clear();
   this->findLooked();
   this->take({});
@@ -201,20 +199,7 @@ void BeamAir::begin(const BeamFrame& frame, double seconds)
   if (this->Seen.size() > this->Filling.size())
   {
     this->divide(frame);
-    this->beginLocal();
-  }
-}
-
-/// Look for light where the beam crosses volumes, or begin outside if it crosses none.
-void BeamAir::beginLocal()
-{
-  if (this->isLocal())
-  {
     this->findLooked();
-  }
-  else
-  {
-    this->beginOutside();
   }
 }
 
@@ -231,7 +216,7 @@ void BeamAir::beginRay(const Vec3& origin, const Vec3& direction, double seconds
     }
   }
   this->findParts(this->Columns[0], origin, direction);
-  this->beginLocal();
+  this->findLooked();
 }
 
 /// Divide a beam into the columns that its volumes require, and find the parts of each.
@@ -361,6 +346,11 @@ void BeamAir::findParts(Column& column, const Vec3& origin, const Vec3& directio
 /// Find the units in which media may be perceived by themselves.
 void BeamAir::findLooked()
 {
+  if (!this->isLocal()) // whatever volumes it passes
+  {
+    this->Seen = this->Filling;
+    this->Columns.assign(1, { 0.0, 0.0, 1.0, ~std::uint64_t{ 0 } });
+  }
   this->Looked.clear();
   this->Dark = this->Gate;
   this->MostOfUnit = this->Instrument.pulseEnergy * this->UnitLength * this->Backscatter;

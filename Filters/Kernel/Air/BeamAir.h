@@ -222,7 +222,6 @@ private:
   }
   const Medium& mediumOf(const Part& part) const { return this->mediumAt(this->Seen[part.seen]); }
   void makeMeans();
-  void beginLocal();
   void makeGrid();
   void divide(const BeamFrame& frame);
   bool rimAgrees() const;
