@@ -124,8 +124,8 @@ def hide_scans(view):
 
 def apply(source):
     """Applies what has just been opened, before it has consumers: a script cannot press the button. ParaView's window,
-    which keeps to itself what is not applied, is told anew of a source that has never been shown, and takes it as one
-    that a script has made. Without this, Apply would later show the bare surfaces over the scan."""
+    which keeps a source to itself until it is applied, registers a source that has never been shown anew, as one that a
+    script has made. Without this, Apply would later show the bare surfaces over the scan."""
     manager = servermanager.ProxyManager()
     name = manager.GetProxyName("sources", source)
     inputs = (display.SMProxy.GetProperty("Input") for display in simple.GetRepresentations().values())

@@ -69,7 +69,7 @@ def element(parent, tag, **attributes):
 
 
 def child(parent, tag):
-    """The element of that tag, which is made if there is none."""
+    """The element of that tag, made where it is missing."""
     found = parent.find(tag)
     return element(parent, tag) if found is None else found
 

@@ -188,7 +188,7 @@ void OutputFile::commitBoth(OutputFile& first, OutputFile& second)
     }
     else if (!isKept || !exchangeNames(first.Part, first.Name))
     {
-      throw FormatError(error.what() + ("; " + first.Name + " is the new one already"));
+      throw FormatError(error.what() + ("; the old " + first.Name + " is replaced already"));
     }
     throw;
   }

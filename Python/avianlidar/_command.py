@@ -236,7 +236,7 @@ def parser() -> Parser:
     track.add_argument("--learn", type=int, default=20,
                        help="scans at the beginning of a sequence of which only clutter is learned; default 20")
     track.add_argument("--cutoff", type=float, default=20.0,
-                       help="m: a track that far from a bird is none of it; also of OSPA; default %(default)g")
+                       help="m: a track this far from a bird does not count as its track; also the cutoff of OSPA; default %(default)g")
     track.add_argument("--order", type=float, default=2.0, help="of OSPA, default %(default)g")
     _out(track, "folder")
     _settings(track, "clutter", "clutter_threshold=0.1")

@@ -41,7 +41,7 @@ def read_regular(file) -> bytes:
     try:
         kind = os.stat(file).st_mode
         if not stat.S_ISREG(kind):
-            what = "it is a folder" if stat.S_ISDIR(kind) else "it is no regular file but a pipe or a device"
+            what = "it is a folder" if stat.S_ISDIR(kind) else "it is not a regular file but a pipe or a device"
             raise Error(f"{file}: {what}")
         content = pathlib.Path(file).read_bytes()
     except (OSError, ValueError) as error:  # ValueError of names that no file has

@@ -48,7 +48,7 @@ struct Pixel
 {
   double x = 0.0, y = 0.0;                                ///< to the right and up, m
   double depth = std::numeric_limits<double>::infinity(); ///< along the view, m
-  double cosine = 0.0;                                    ///< of incidence
+  double cosine = 0.0;                                    ///< cosine of the angle of incidence
 };
 
 /// Square pixels of a closed mesh that is seen along a unit direction. @param size of a pixel, m

@@ -133,7 +133,7 @@ class Inputs(Applications):
         os.symlink("/dev/zero", self.home / "device")
         (self.home / "bomb.coverage.json").write_bytes(gzip.compress(b" " * (1 << 26)) * 32)
         (self.home / "good.coverage.json").write_bytes(gzip.compress(self.plan.read_bytes()))
-        expected = [(command, f"{kind}.*it is no regular file but a pipe or a device")
+        expected = [(command, f"{kind}.*it is not a regular file but a pipe or a device")
                     for kind in ("pipe", "device") for command in self.commands(kind)]
         expected += [([verb, str(self.home), "-o", str(self.home / "out.html")], "it is a folder")
                      for verb in ("coverage", "siting", "report", "sequence")]

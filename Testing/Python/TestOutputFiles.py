@@ -226,7 +226,7 @@ class Pairs(Written):
         """The points get no name after the labels got theirs: these are the old ones again, or the error says that they are not."""
         failing = {"RENAMED_TO": "echoes.bin", "BEFORE_RENAME": "false"}
         for environment, code, words in (({"NO_EXCHANGE": "1"}, 0, ""), (failing, 3, "cannot be given its name: Input/output error"),
-                                         ({"NO_EXCHANGE": "1", **failing}, 3, "echoes.label is the new one already")):
+                                         ({"NO_EXCHANGE": "1", **failing}, 3, "echoes.label is replaced already")):
             with self.subTest(environment):
                 for name, content in (("echoes.label", b"old"), ("echoes.bin", b"older")):
                     (self.folder / name).write_bytes(content)

@@ -22,7 +22,7 @@ inline std::string whyNotRegular(const std::string& file)
     return {};
   }
   return std::filesystem::is_directory(status) ? "it is a folder"
-                                               : "it is no regular file but a pipe or a device";
+                                               : "it is not a regular file but a pipe or a device";
 }
 }
 

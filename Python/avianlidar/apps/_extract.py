@@ -128,7 +128,7 @@ def open_file(file: pathlib.Path, what: str, drivers: List[str], kind: int, opti
     if not file.exists():
         raise FileNotFoundError(f"no such file: {file}")
     if not file.is_file():
-        raise Error(f"{file}: it is no regular file")
+        raise Error(f"{file}: it is not a regular file")
     try:
         return gdal.OpenEx(str(file.resolve()), kind | gdal.OF_READONLY, allowed_drivers=drivers, open_options=list(options))
     except RuntimeError as error:

@@ -24,7 +24,7 @@ from ._json import load_json, naming
 from ._sequence import Sequence, _identity, _short, read_scenario
 from .siting import Runway
 
-CUTOFF = 20.0  # m: a track that far from a bird is none of it
+CUTOFF = 20.0  # m: a track at this distance from a bird does not count as its track
 ORDER = 2.0  # of OSPA
 FOLLOWED = "followed"  # folder of what was found in sequences
 LEARNING = 20  # scans at the beginning of a sequence of which only clutter is learned
@@ -47,7 +47,7 @@ class BirdTracks:
         inputs          folders that `Sequence.write` has made, and scenarios, which are made first; compared side by side
         runways         a GeoJSON file: how long before strip and glide path a bird is tracked
         learning_scans  at the beginning of a sequence, of which only clutter is learned; they are not scored
-        cutoff          m: a track that far from a bird is none of it; also of OSPA
+        cutoff          m: a track at this distance from a bird does not count as its track; also of OSPA
         order           of OSPA
         clutter         properties of vtkAvianLidarClutterFilter by name
         tracker         properties of vtkAvianLidarTracker by name
