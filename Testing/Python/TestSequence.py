@@ -304,6 +304,7 @@ class BadScenarios(unittest.TestCase):
                 "birds[0].first_object_id: ": {"birds": [{**bird, "first_object_id": 7}]},
                 "objects[0].route: ": {"objects": [{**BOX, "route": [[0, 1, 2], [0, 1, 2]]}]},
                 "objects[0].every: more than 9000 objects": {"objects": [{**BOX, "every": 1e-4}]},
+                "objects[0]: ": {"objects": [{**BOX, "boxes": [[-1, 1, -2, 2, 0, 1e40]]}]},
                 "there is no.lidarscene.json": {"scene": "there is no.lidarscene.json"}}.items():
             file = scenario_file(home, **changes)
             with self.subTest(words), self.assertRaisesRegex(al.Error, re.escape(words)):

@@ -266,7 +266,8 @@ class Sequence:
             if math.isfinite(every) and begin - times[-1] > first:
                 start = first + every * math.ceil((begin - times[-1] - first) / every)
             while start < end:
-                blocks.append(self._under_way(thing, route, legs, start + times, FIRST_OBJECT + len(blocks)))
+                with naming(f"{self.file}: objects[{place}]"):
+                    blocks.append(self._under_way(thing, route, legs, start + times, FIRST_OBJECT + len(blocks)))
                 start += every
         if FIRST_OBJECT + len(blocks) > FIRST_BIRD:
             raise Error(f"{self.file}: objects: {len(blocks)} under way in one sequence, expected at most "
