@@ -34,10 +34,10 @@
  * A bad input is an error that names port and array, with empty outputs. Without beams or surfaces
  * the echoes are empty. An aborted run leaves empty outputs and keeps nothing.
  *
- * The echoes have the same bits for any number of threads, order and pieces of the beams, tree, and
- * state of what is kept, on one kind of CPU. Costs (`candidates`, `nodes_visited`, `rays_traced`)
- * and `skipped` depend on order, pieces, tree and earlier runs. MPI ranks that ask for their own
- * pieces work together.
+ * The echoes have the same bits for any number of threads, order and pieces of the beams, order and
+ * division of the surfaces, tree, and state of what is kept, on one kind of CPU. Costs
+ * (`candidates`, `nodes_visited`, `rays_traced`) and `skipped` depend on order, pieces, tree and
+ * earlier runs. MPI ranks that ask for their own pieces work together.
  *
  * @code
  * echoes->SetInputConnection(sensor->GetOutputPort());

@@ -26,12 +26,12 @@
 
 namespace avianlidar
 {
-/// Numbers of the triangles in that order; empty if they have it already.
+/// Numbers of the triangles in this order; empty if they are in it already.
 /// @param objectIds one per triangle @param materialIds likewise
 std::vector<std::uint32_t> triangleOrder(
   const TriangleMesh& mesh, const std::vector<int>& objectIds, const std::vector<int>& materialIds);
 
-/// Elements of a vector in an order by triangleOrder(); an empty order leaves them as they are.
+/// Bring one value per triangle into the order that triangleOrder() returned.
 template <class T, class Order>
 void reorder(std::vector<T>& values, const Order& order)
 {

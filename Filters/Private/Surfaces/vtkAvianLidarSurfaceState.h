@@ -13,8 +13,8 @@ class vtkPolyData;
 
 namespace vtkAvianLidarSurfaceState
 {
-/// Hash of the names of objects and materials, and of the classes of objects. @param seed hash of
-/// what belongs to it besides
+/// Hash of the names of objects and materials, and of the classes of objects. @param seed hash to
+/// continue
 std::uint64_t HashOfNames(vtkFieldData* fields, std::uint64_t seed);
 
 /// Hash of everything that vtkAvianLidarSurfaces::Merge() reads of a vtkPolyData.
