@@ -245,6 +245,15 @@ def loaded_before():
     assert {entry.objectName() for entry in menu("menu_Macros").actions()} >= macros(), macros()
     yield from press(action("avian_lidar_show_beam"))
     assert "select an echo" in take()[-1]
+    beams = simple.AvianLidarAirport16()
+    for energy in (5e-5, -1, 5e-5):  # an output with an error cannot be saved
+        beams.PulseEnergy = energy
+        beams.UpdatePipeline()
+        simple.SetActiveSource(beams)
+        yield 0.3
+        assert action("actionFileSaveData").isEnabled() == (energy > 0), energy
+    assert "PulseEnergy" in take()[-1]
+    simple.Delete(beams)
     fewer_beams()
 
 
