@@ -82,7 +82,7 @@ OutputFile::OutputFile(const std::string& name)
   const fs::file_status status = fs::status(this->Name, ignored);
   if (fs::exists(status) && !fs::is_regular_file(status))
   {
-    throw FormatError("it is there and no ordinary file");
+    throw FormatError("it exists and is not a regular file");
   }
   this->openPart();
   if (fs::exists(status))

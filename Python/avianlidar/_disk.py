@@ -110,7 +110,7 @@ def replacing(path: pathlib.Path) -> Iterator[str]:
     except FileNotFoundError:
         mode = 0
     if mode and not stat.S_ISREG(mode):
-        raise FileExistsError(f"{path}: it is there and no ordinary file")
+        raise FileExistsError(f"{path}: it exists and is not a regular file")
     path = path.resolve()  # a link stays a link
     parts = [f"{path}.avianpart{i}" for i in range(PARTS)]
     for part in parts:

@@ -195,7 +195,7 @@ def _mesh_scene(file: str, painted: bool, options: Dict[str, Any]) -> Dict[str, 
     if not os.path.exists(file):
         raise FileNotFoundError(f"no such file: {file}")
     if not os.path.isfile(file):
-        raise ValueError(f"{file}: is no ordinary file")
+        raise ValueError(f"{file}: is not a regular file")
     if not os.access(file, os.R_OK):
         raise PermissionError(f"{file}: may not be read")
     suffix = os.path.splitext(name)[1].lower()

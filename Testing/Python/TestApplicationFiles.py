@@ -273,7 +273,7 @@ class Sequences(Applications):
                 file.write_bytes(kept)
         done = first / "done.json"
         kept = json.loads(done.read_text())
-        for text, words in (("{", "done.json: is no JSON"), ("[]", "00 is of another scenario"), (None, "00: is there without done.json")):
+        for text, words in (("{", "done.json: is not JSON"), ("[]", "00 is of another scenario"), (None, "00: is there without done.json")):
             done.unlink()
             if text:
                 done.write_text(text)

@@ -30,7 +30,7 @@ CHAIN = 20000
 HUGE = 2**60
 TRIANGLE = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"
 SQUARE = [[0, 0], [0.001, 0], [0.001, 0.001], [0, 0.001], [0, 0]]
-NO_FILE = "no regular file"
+NO_FILE = "not a regular file"
 
 
 def collection(*features, **more):

@@ -123,7 +123,7 @@ class Single(Written):
                     os.rename(thing, name)
                     os.symlink(name, "link" + name)
                     for one in (name, "link" + name):
-                        self.refused(one, "it is there and no ordinary file")
+                        self.refused(one, "it exists and is not a regular file")
                     self.assertTrue(os.path.samestat(os.lstat(name), before))
                     os.remove("link" + name)
                     os.rename(name, thing)
@@ -135,7 +135,7 @@ class Single(Written):
         for end in ends:
             self.addCleanup(os.close, end)
         for name in ("echoes.vtp", "echoes.csv"):
-            for place, words in ((f"/proc/self/fd/{ends[1]}", "it is there and no ordinary file"), (name, name)):
+            for place, words in ((f"/proc/self/fd/{ends[1]}", "it exists and is not a regular file"), (name, name)):
                 os.symlink(place, name)
                 self.refused(name, words, OSError)
                 self.assertEqual(os.readlink(name), place)

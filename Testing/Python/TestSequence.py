@@ -310,7 +310,7 @@ class BadScenarios(unittest.TestCase):
             with self.subTest(words), self.assertRaisesRegex(al.Error, re.escape(words)):
                 al.Sequence(file)
         file.write_text("{")
-        with self.assertRaisesRegex(al.Error, "is no JSON"):
+        with self.assertRaisesRegex(al.Error, "is not JSON"):
             al.Sequence(file)
 
 

@@ -413,7 +413,7 @@ class Plans(unittest.TestCase):
             self.assertRegex(self.said(self.write(siting={"spacing": 100})), "my.coverage.json: siting: [0-9,]+ candidates, 1 species and 20 places need")
         file = self.write()
         file.write_text(file.read_text().replace('"places": 20', '"seed": NaN'))
-        self.assertIn("my.coverage.json: is no JSON", self.said(file))
+        self.assertIn("my.coverage.json: is not JSON", self.said(file))
 
     def test_runways_that_are_wrong_are_named(self):
         features = self.shapes["features"]

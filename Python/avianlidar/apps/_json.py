@@ -33,9 +33,9 @@ def load_json(file) -> Any:
     try:
         return json.loads(read_regular(file), parse_constant=_finite, parse_float=_finite, parse_int=_integer)
     except RecursionError:
-        raise Error(f"{file}: is no JSON that can be read: nested too deeply") from None
+        raise Error(f"{file}: is not JSON that can be read: nested too deeply") from None
     except ValueError as error:
-        raise Error(f"{file}: is no JSON ({error})") from None
+        raise Error(f"{file}: is not JSON ({error})") from None
 
 
 def check_json(document: Any, schema: str, what: str) -> None:
