@@ -9,7 +9,7 @@
 namespace avianlidar
 {
 BeamLighting::BeamLighting(const ScanSetup& setup, const SceneTriangles& scene,
-  const ScanBeams& beams, ScanBlock& block, BeamSampler& sampler, const BeamReceiver& receiver,
+  const ScanBeams& beams, BlockBeams& block, BeamSampler& sampler, const BeamReceiver& receiver,
   BeamAir& air, std::function<bool()> wanted)
   : Setup(setup)
   , Scene(scene)
@@ -216,7 +216,7 @@ bool BeamLighting::collectPaths(std::size_t beam, BeamTrace& trace)
     paths.silentBelow = SurelyBelow * this->Setup.sensor.lowerEnergyLimit - direct;
   }
   const bool perceivable = this->Secondary.collect(paths, this->Paths, this->Lost);
-  this->Block.addCounters(beam, tracer.counters());
+  addCounters(tracer.counters(), this->Block.counters(beam));
   return perceivable ||
     !this->isSkipped(direct + this->Lost, this->Lit->farthest, this->Lit->nearest);
 }

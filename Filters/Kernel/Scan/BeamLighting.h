@@ -31,10 +31,10 @@
 
 #include "BeamAir.h"
 #include "BeamTrace.h"
+#include "BlockBeams.h"
 #include "PolygonQuadrature.h"
 #include "RangeUnits.h"
 #include "Receiver.h"
-#include "ScanBlock.h"
 #include "SecondaryReflection.h"
 
 #include <functional>
@@ -48,7 +48,7 @@ class BeamLighting
 public:
   /// @param wanted called every 4096 steps within a beam; false ends the work with WorkStopped
   BeamLighting(const ScanSetup& setup, const SceneTriangles& scene, const ScanBeams& beams,
-    ScanBlock& block, BeamSampler& sampler, const BeamReceiver& receiver, BeamAir& air,
+    BlockBeams& block, BeamSampler& sampler, const BeamReceiver& receiver, BeamAir& air,
     std::function<bool()> wanted);
 
   /// Light beams even where bounds show that nothing can be perceived.
@@ -93,7 +93,7 @@ private:
   const ScanSetup& Setup;
   const SceneTriangles& Scene;
   const ScanBeams& Beams;
-  ScanBlock& Block;
+  BlockBeams& Block;
   BeamSampler& Sampler;
   const BeamReceiver& Receiver;
   std::function<bool()> Wanted;

@@ -11,6 +11,7 @@ BeamSimulator::BeamSimulator(const ScanSetup& setup, const ScanBeams& beams, boo
   , Beams(beams)
   , KeepsLight(keepsLight && (setup.noise.active || setup.movers) && !haveVolumes(setup.media))
   , Block(setup, this->Scene, beams, sampler)
+  , Tracing(setup, this->Scene, beams, this->Block)
   , Air(setup.sensor, setup.air())
   , Receiver(setup.sensor, setup.noise, setup.settings.seed, setup.settings.returnMode,
       setup.revolution, wanted, &this->Air)
@@ -36,10 +37,10 @@ void BeamSimulator::light(
   {
     this->lightBeam(beam, trace, echoes, report);
   }
-  addCounters(this->Block.countersOf(beam), trace.counters);
+  addCounters(this->Block.counters(beam), trace.counters);
   trace.held = isLit ? trace.heldBytes() : trace.held;
   report.counters = trace.counters;
-  report.raysTracedNow = this->Block.countersOf(beam).raysTraced;
+  report.raysTracedNow = this->Block.counters(beam).raysTraced;
 }
 
 /// Light a beam, and keep the result for scans that differ in noise or movers elsewhere.

@@ -18,6 +18,7 @@
 #define avianlidar_BeamSimulator_h
 
 #include "BeamEchoes.h"
+#include "ScanBlock.h"
 
 #include <functional>
 #include <vector>
@@ -46,7 +47,7 @@ public:
   std::size_t trace(std::size_t begin, std::size_t end, std::vector<BeamTrace>& traces,
     const std::function<bool(std::size_t)>& leaveOut = {})
   {
-    return this->Block.trace(begin, end, traces, leaveOut);
+    return this->Tracing.trace(begin, end, traces, leaveOut);
   }
 
   /// Light beam `beam` of the block traced last: add to its trace, append its echoes, and fill its
@@ -68,7 +69,8 @@ private:
   SceneTriangles Scene;
   const ScanBeams& Beams;
   const bool KeepsLight;
-  ScanBlock Block;
+  BlockBeams Block;
+  ScanBlock Tracing;
   BeamAir Air;
   BeamReceiver Receiver;
   BeamLighting Lighting;

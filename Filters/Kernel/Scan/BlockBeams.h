@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file BlockBeams.h
+ * @brief The beams of a block: frames, rays, the hits of rays, and the tracer set to one beam.
+ *
+ * Each value is made when a stage first asks for it, so that beams which need no rays draw none.
+ *
+ * Valid: a value depends only on the beam and the arguments of the constructor, not on the order of
+ * the calls.
+ * Test: TestScan.cxx, TestScanAgain.cxx.
+ */
+#ifndef avianlidar_BlockBeams_h
+#define avianlidar_BlockBeams_h
+
+#include "BeamSampler.h"
+#include "BeamTrace.h"
+#include "BeamTracer.h"
+#include "RaySamples.h"
+#include "ScanBeams.h"
+#include "ScanSetup.h"
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+namespace avianlidar
+{
+/// One per thread; the constructor's arguments must outlive it.
+class BlockBeams
+{
+public:
+  BlockBeams(const ScanSetup& setup, const SceneTriangles& scene, const ScanBeams& beams,
+    BeamSampler& sampler);
+
+  /// Go on to the beams [begin, end).
+  void begin(std::size_t begin, std::size_t end);
+
+  const BeamFrame& frameOf(std::size_t beam);
+  const BeamRays& raysOf(std::size_t beam);
+
+  /// Triangle that each ray of the beam hits, if rays were traced in this run; otherwise empty.
+  std::vector<std::uint32_t>& triangles(std::size_t beam) { return this->stateOf(beam).triangles; }
+
+  /// Move the hits of the beam's rays to its trace.
+  void takeHits(std::size_t beam, BeamTrace& trace);
+
+  /// Hits from which connections start. Those of an integrated beam lie on its polygons, one for
+  /// each ray that meets one, and are kept in the trace.
+  const BeamSamples& pathStartsOf(std::size_t beam, BeamTrace& trace);
+
+  /// Directions and surfaces of the beam's hits. Valid until it is called for another beam.
+  const SampleGeometry& geometryOf(std::size_t beam, const BeamSamples& hits);
+
+  BeamTracer& tracer() { return this->Tracer; }
+  /// The tracer, set to the beam. Counters begin at 0. Valid until it is called for another beam.
+  BeamTracer& tracerOf(std::size_t beam);
+
+  /// Cost of the beam in this run.
+  TraceCounters& counters(std::size_t beam) { return this->stateOf(beam).counters; }
+
+private:
+  struct BeamState
+  {
+    std::optional<BeamFrame> frame;       ///< none until first needed
+    BeamRays rays;                        ///< empty until first needed
+    std::vector<std::uint32_t> triangles; ///< hit by each ray in this run; empty: none
+    TraceCounters counters;               ///< cost in this run
+  };
+  static constexpr std::size_t NoBeam = static_cast<std::size_t>(-1);
+
+  BeamState& stateOf(std::size_t beam) { return this->BeamStates[beam - this->First]; }
+  void makeHits(std::size_t beam, const std::vector<std::uint32_t>& triangles, BeamTrace& trace);
+
+  const ScanSetup& Setup;
+  const BeamWidth Width;
+  const ScanBeams& Beams;
+  BeamSampler& Sampler;
+  BeamTracer Tracer;
+  RaySamples Finder;
+  SampleGeometry Geometry;
+  std::vector<std::uint32_t> Own; ///< triangles at the rays of an integrated beam
+  std::size_t First = 0;          ///< first beam of the block
+  std::vector<BeamState> BeamStates;
+  std::size_t GeometryBeam = NoBeam; ///< beam that `Geometry` belongs to
+  std::size_t TracerBeam = NoBeam;   ///< beam that `Tracer` is set to
+};
+}
+
+#endif
