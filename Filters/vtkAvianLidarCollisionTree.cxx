@@ -85,13 +85,20 @@ int vtkAvianLidarCollisionTree::FillInputPortInformation(int, vtkInformation* in
 //------------------------------------------------------------------------------
 std::string vtkAvianLidarCollisionTree::CheckOptions() const
 {
+  if (this->Preset != PRESET_CUSTOM)
+  {
+    return this->Preset == PRESET_PAPER
+      ? std::string()
+      : avianlidar::valueError("Preset", this->Preset, "0 (custom) or 1 (paper)");
+  }
   if (this->SplitRule < SPLIT_RULE_HALVES || this->SplitRule > SPLIT_RULE_SURFACE_AREA_HEURISTIC)
   {
     return avianlidar::valueError("SplitRule", this->SplitRule, "0 to 3");
   }
-  if (this->BoundingVolume < BOUNDING_VOLUME_AABB || this->BoundingVolume > BOUNDING_VOLUME_SPHERE)
+  if (this->BoundingVolume < BOUNDING_VOLUME_AABB ||
+    this->BoundingVolume > BOUNDING_VOLUME_BINARY_AABB)
   {
-    return avianlidar::valueError("BoundingVolume", this->BoundingVolume, "0 to 2");
+    return avianlidar::valueError("BoundingVolume", this->BoundingVolume, "0 to 3");
   }
   if (this->MaximumLeafSize < 1)
   {
@@ -172,8 +179,12 @@ bool vtkAvianLidarCollisionTree::MergeSurfaces(
 bool vtkAvianLidarCollisionTree::MakeTree(const vtkAvianLidarRanks& ranks, vtkDataObject* input)
 {
   vtkInternals& in = *this->Internals;
-  const avianlidar::TreeOptions options{ static_cast<avianlidar::SplitRule>(this->SplitRule),
-    static_cast<avianlidar::BoundingVolumeType>(this->BoundingVolume), this->MaximumLeafSize };
+  using avianlidar::BoundingVolumeType;
+  using avianlidar::TreeOptions;
+  const TreeOptions options = this->Preset == PRESET_PAPER
+    ? TreeOptions{ avianlidar::SplitRule::Median, BoundingVolumeType::BinaryAABB, 1 }
+    : TreeOptions{ static_cast<avianlidar::SplitRule>(this->SplitRule),
+        static_cast<BoundingVolumeType>(this->BoundingVolume), this->MaximumLeafSize };
   const int threads = ranks.Threads(0);
   const Outcome outcome = ranks.Together(this,
     [&]() -> std::string
@@ -260,6 +271,7 @@ void vtkAvianLidarCollisionTree::PrintSelf(ostream& os, vtkIndent indent)
   this->Superclass::PrintSelf(os, indent);
   os << indent << "Controller: " << this->Controller << "\n";
   os << indent << "ErrorsAsData: " << this->ErrorsAsData << "\n";
+  os << indent << "Preset: " << this->Preset << "\n";
   os << indent << "SplitRule: " << this->SplitRule << "\n";
   os << indent << "BoundingVolume: " << this->BoundingVolume << "\n";
   os << indent << "MaximumLeafSize: " << this->MaximumLeafSize << "\n";

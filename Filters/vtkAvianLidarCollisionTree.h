@@ -66,8 +66,27 @@ public:
   {
     BOUNDING_VOLUME_AABB = 0,
     BOUNDING_VOLUME_OBB = 1,
-    BOUNDING_VOLUME_SPHERE = 2
+    BOUNDING_VOLUME_SPHERE = 2,
+    BOUNDING_VOLUME_BINARY_AABB = 3
   };
+
+  enum PresetType
+  {
+    PRESET_CUSTOM = 0,
+    PRESET_PAPER = 1
+  };
+
+  ///@{
+  /**
+   * PRESET_PAPER builds the paper's k-D tree (Sec. 3.1, 5.1 and Algorithm 1): at execution it
+   * overrides SplitRule (median), BoundingVolume (boxes, two a node) and MaximumLeafSize (1).
+   * Default: PRESET_CUSTOM, which overrides nothing.
+   */
+  vtkSetMacro(Preset, int);
+  vtkGetMacro(Preset, int);
+  void SetPresetToCustom() { this->SetPreset(PRESET_CUSTOM); }
+  void SetPresetToPaper() { this->SetPreset(PRESET_PAPER); }
+  ///@}
 
   ///@{
   /**
@@ -86,12 +105,17 @@ public:
   ///@}
 
   ///@{
-  /** Volume around a node: box, oriented box or sphere. Default: BOUNDING_VOLUME_AABB. */
+  /**
+   * Volume around a node. BOUNDING_VOLUME_AABB has boxes in single precision, eight a node; the
+   * others have two volumes a node in double precision, as in the paper: oriented boxes, spheres or
+   * boxes (BOUNDING_VOLUME_BINARY_AABB). Default: BOUNDING_VOLUME_AABB.
+   */
   vtkSetMacro(BoundingVolume, int);
   vtkGetMacro(BoundingVolume, int);
   void SetBoundingVolumeToAABB() { this->SetBoundingVolume(BOUNDING_VOLUME_AABB); }
   void SetBoundingVolumeToOBB() { this->SetBoundingVolume(BOUNDING_VOLUME_OBB); }
   void SetBoundingVolumeToSphere() { this->SetBoundingVolume(BOUNDING_VOLUME_SPHERE); }
+  void SetBoundingVolumeToBinaryAABB() { this->SetBoundingVolume(BOUNDING_VOLUME_BINARY_AABB); }
   ///@}
 
   ///@{
@@ -138,6 +162,7 @@ protected:
   int ModifyRequest(vtkInformation* request, int when) override;
   int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
 
+  int Preset = PRESET_CUSTOM;
   int SplitRule = SPLIT_RULE_SURFACE_AREA_HEURISTIC;
   int BoundingVolume = BOUNDING_VOLUME_AABB;
   int MaximumLeafSize = 4;

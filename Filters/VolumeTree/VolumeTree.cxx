@@ -102,10 +102,10 @@ std::shared_ptr<const CollisionTree> buildVolumeTree(std::shared_ptr<const Trian
   const TreeOptions& options, const KeepGoing& keepGoing, int threads)
 {
   const int volume = static_cast<int>(options.boundingVolume);
-  if (volume < 0 || volume > 2)
+  if (volume < 0 || volume > 3)
   {
     throw std::invalid_argument(
-      "bounding volume is " + std::to_string(volume) + ", expected 0 to 2");
+      "bounding volume is " + std::to_string(volume) + ", expected 0 to 3");
   }
   if (options.boundingVolume == BoundingVolumeType::AABB)
   {
@@ -137,19 +137,13 @@ std::shared_ptr<const CollisionTree> buildVolumeTree(std::shared_ptr<const Trian
   tree->order = std::move(binary.order);
   tree->leaves = static_cast<std::uint32_t>((own->nodes.size() + 1) / 2);
   tree->depth = own->nodes.empty() ? 0 : own->nodes.back().depth;
-  const bool finished = options.boundingVolume == BoundingVolumeType::OBB
-    ? fit(orientedBox, *tree->mesh, tree->order, partOf(keepGoing, Built, 1.0), threads, *own)
-    : fit(boundingSphere, *tree->mesh, tree->order, partOf(keepGoing, Built, 1.0), threads, *own);
+  const KeepGoing rest = partOf(keepGoing, Built, 1.0);
+  const bool finished = options.boundingVolume == BoundingVolumeType::Sphere
+    ? fit(boundingSphere, *tree->mesh, tree->order, rest, threads, *own)
+    : fit(options.boundingVolume == BoundingVolumeType::OBB ? orientedBox : alignedBox, *tree->mesh,
+        tree->order, rest, threads, *own);
   tree->other = own;
   return finished ? tree : nullptr;
-}
-
-std::shared_ptr<const CollisionTree> withPlainBoxes(const CollisionTree& tree)
-{
-  const auto plain = std::make_shared<CollisionTree>(tree);
-  plain->wide = {};
-  plain->other = volumesOf(tree);
-  return plain;
 }
 
 std::shared_ptr<const VolumeTree> volumesOf(const CollisionTree& tree, std::uint32_t deepest)

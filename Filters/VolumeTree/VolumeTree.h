@@ -43,12 +43,10 @@ struct VolumeTree final : public OtherVolumes
     TraversalStack& stack) const override;
 };
 
-/// As buildCollisionTree(), for every bounding volume; AABBs have the kernel's tree.
+/// As buildCollisionTree(), for every bounding volume. BoundingVolumeType::AABB makes the kernel's
+/// tree with eight boxes a node, every other volume a binary tree.
 std::shared_ptr<const CollisionTree> buildVolumeTree(std::shared_ptr<const TriangleMesh> mesh,
   const TreeOptions& options, const KeepGoing& keepGoing = {}, int threads = 0);
-
-/// The same tree with two AABBs a node in double precision, instead of eight in single precision.
-std::shared_ptr<const CollisionTree> withPlainBoxes(const CollisionTree& tree);
 
 /// Nodes and volumes of a tree. For a wide tree, AABBs are fitted, down to the depth `deepest`.
 std::shared_ptr<const VolumeTree> volumesOf(

@@ -359,7 +359,8 @@ inline std::vector<std::shared_ptr<const CollisionTree>> allTrees(
   const std::shared_ptr<const TriangleMesh>& mesh)
 {
   std::vector<std::shared_ptr<const CollisionTree>> trees;
-  trees.push_back(withPlainBoxes(*buildVolumeTree(mesh, TreeOptions())));
+  trees.push_back(buildVolumeTree(
+    mesh, TreeOptions{ SplitRule::SurfaceAreaHeuristic, BoundingVolumeType::BinaryAABB, 4 }));
   for (int rule = 0; rule < 4; ++rule)
   {
     for (int volume = 0; volume < 3; ++volume)

@@ -141,12 +141,12 @@ class Properties(Faults):
            ("BeamSource", "Orientation"), ("GeoJSONWriter", "MinimumEnergy"), ("EchoFilter", "NumberOfConnections"),
            ("HSBColorMap", "EnergyRange"), ("Tracks", "Seed")}
     # The last value before the border of a choice or a number.
-    BORDERS = {"EchoFilter": {"Preset": (-1, 4), "RaysPerBeam": (0, 1000001), "Sampling": (2,), "BeamSamples": (2,), "NumberOfThreads": (-1,),
+    BORDERS = {"EchoFilter": {"Preset": (-1, 6), "RaysPerBeam": (0, 1000001), "Sampling": (2,), "BeamSamples": (2,), "NumberOfThreads": (-1,),
                               "AttenuationCoefficient": (-1e-9,), "ReflectanceModel": (4,), "NumberOfReflections": (0, 3),
                               "LightEnergyFraction": (-1e-9, 1.1e8), "LightEnergyThreshold": (-1, 2), "ReturnMode": (-1, 5),
                               "NumberOfConnections": (-1,), "BatchCollisionDetection": (3,), "MaximumCacheSize": (-1,)},
                "BeamSource": {"SwayAmplitude": (-1e-9, 10.1), "SwayFrequency": (0.0, 1e7), "EncoderJitter": (-1e-9, 10.1)},
-               "CollisionTree": {"SplitRule": (4,), "BoundingVolume": (-1,), "MaximumLeafSize": (0,)},
+               "CollisionTree": {"Preset": (2,), "SplitRule": (4,), "BoundingVolume": (-1, 4), "MaximumLeafSize": (0,)},
                "Tracker": {"ClusterAngle": (30.0,), "RangeError": (0.0,), "MotionModel": (2,), "GateProbability": (1.0,),
                            "ConfirmHits": (5,), "KeepTime": (-1.0,)},
                "ClutterFilter": {"Window": (0.5,), "WarmUp": (-1,)}, "CloudComparison": {"ChamferAlpha": (0.0, 2e6)},

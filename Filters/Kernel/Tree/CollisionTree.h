@@ -38,13 +38,14 @@ enum class BoundingVolumeType
 {
   AABB = 0,
   OBB = 1,
-  Sphere = 2
+  Sphere = 2,
+  BinaryAABB = 3 ///< AABBs in double precision, two a node, as the paper has them
 };
 
 struct TreeOptions
 {
   SplitRule splitRule = SplitRule::SurfaceAreaHeuristic;
-  BoundingVolumeType boundingVolume = BoundingVolumeType::AABB; ///< others: see VolumeTree.h
+  BoundingVolumeType boundingVolume = BoundingVolumeType::AABB; ///< others: VolumeTree.h
   int maximumLeafSize = 4; ///< largest number of triangles in a leaf, >= 1; Algorithm 1 has 1
 };
 

@@ -174,7 +174,23 @@ std::string applyPreset(EchoPreset preset, EchoSettings& settings)
     case EchoPreset::Reference:
       setFidelity(settings, 3200, 8);
       return {};
+    case EchoPreset::Paper:
+      setFidelity(settings, 100, 2);                 // Table 2
+      settings.beamSamples = BeamSampleSource::Rays; // Sec. 2.1
+      settings.sampling = Sampling::MonteCarlo;      // Sec. 2.1
+      settings.traceMode = TraceMode::Beams;         // Sec. 3.2 and 3.3
+      settings.beamConstraint = true;                // Sec. 3.4
+      settings.lightEnergyConstraint = true;         // Sec. 3.4
+      settings.lightEnergyThreshold = LightEnergyThreshold::Limit;
+      settings.reflectanceModel = ReflectanceModel::LambertBlinnPhong; // Eq. 8
+      settings.returnMode = ReturnMode::RangeUnits;                    // Eq. 10 and 12
+      return {};
+    case EchoPreset::Preview:
+      setFidelity(settings, 100, 0);
+      settings.beamSamples = BeamSampleSource::Rays;
+      settings.numberOfReflections = 1;
+      return {};
   }
-  return valueError("Preset", static_cast<int>(preset), "0 (custom) to 3 (reference)");
+  return valueError("Preset", static_cast<int>(preset), "0 (custom) to 5 (preview)");
 }
 }

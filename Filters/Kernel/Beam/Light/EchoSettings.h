@@ -150,14 +150,16 @@ std::string checkUnits(const Sensor& sensor, const EchoSettings& settings);
 /// Named settings of fidelity.
 enum class EchoPreset
 {
-  Custom = 0,   ///< the settings as they are
-  Draft = 1,    ///< a fast look
-  Standard = 2, ///< for most uses
-  Reference = 3 ///< converged: others are compared with it
+  Custom = 0,    ///< the settings as they are
+  Draft = 1,     ///< a fast look
+  Standard = 2,  ///< for most uses
+  Reference = 3, ///< converged: others are compared with it
+  Paper = 4,     ///< the method of the paper: N = 100 rays, its constraints, a point per range unit
+  Preview = 5    ///< 100 rays and one reflection: the fastest
 };
 
-/// Apply a preset to the number of rays, the sampling, the reflections and the connections. Empty
-/// if the preset is one of the four; otherwise a sentence that names the value and what was
+/// Apply a preset to the settings of fidelity; Paper also sets the settings that say which method
+/// is used. Empty if the preset is known; otherwise a sentence that names the value and what was
 /// expected, and the settings do not change.
 std::string applyPreset(EchoPreset preset, EchoSettings& settings);
 }
