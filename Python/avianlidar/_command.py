@@ -16,6 +16,9 @@ from ._suffixes import READERS, WRITERS, listed
 from ._weather import WEATHER
 
 WRITTEN, READ = listed(WRITERS), listed(READERS)
+PRESETS = {"Preview": "100 rays alone, one reflection: 7.7 %%, 0.07 s; 9.2 %%, 0.08 s", "Draft": "0.41 %%, 0.13 s; 0.97 %%, 0.52 s",
+           "Standard": "0.21 %%, 0.24 s; 0.40 %%, 0.94 s", "Reference": "0.12 %%, 0.85 s; 0.14 %%, 4.4 s",
+           "Paper": "the paper's method, its noise of 100 rays: 16 %%, 0.11 s; 16 %%, 0.16 s"}
 SCENE = "a mesh (STL, OBJ, PLY, glTF, VTP, ...; metres, z up) or a .lidarscene.json file"
 
 # By verb: what it does in a few words, in a sentence, and examples.
@@ -171,6 +174,9 @@ def parser() -> Parser:
         if name == "scan":
             _out(scan, f"file: {WRITTEN}; .png is a picture of the range image; may be given many times", action="append")
             scan.add_argument("--quiet", action="store_true", help="no lines on what was modelled and what was left out")
+            scan.add_argument("--preset", choices=tuple(PRESETS), help=f"fidelity by name, with its error of energy and seconds of one core for 15,360 beams at the "
+                              f"airport, and with masts and fences there: {', '.join(f'{name} ({words})' for name, words in PRESETS.items())}; "
+                              "Paper also builds the tree of the paper; default: 100 rays, 2 connections (0.23 %%, 0.15 s; 0.57 %%, 1.0 s)")
         else:
             scan.add_argument("--energy", type=float, default=0.02, metavar="SHARE", help="error of energies that is allowed, rms, relative; default 0.02")
             scan.add_argument("--range", type=float, default=0.05, metavar="METRES", help="error of ranges that is allowed, rms, m; default 0.05")

@@ -89,6 +89,10 @@ def _scan_of(options, bars: Bars, scene):
     from ._weather import weather
     sensor = Sensor(options.sensor, position=options.position or scene.lidar_position or (0, 0, 0)).set(**dict(options.sensor_set))
     scan = Scan(scene, sensor, progress=lambda share, _: bars(options.verb, round(100 * share), 100))
+    preset = getattr(options, "preset", None)
+    if preset:
+        scan.preset = preset
+        scene.tree.SetPreset(preset == "Paper")
     return scan.set(**{"number_of_threads": options.threads, **weather(options.weather), **dict(options.scan_set)})
 
 

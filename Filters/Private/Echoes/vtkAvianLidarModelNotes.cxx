@@ -36,47 +36,49 @@ std::string Noise(const ScanSetup& setup)
   const avianlidar::NoisePlan& noise = setup.noise;
   if (!setup.settings.noise)
   {
-    return "not modelled, as Noise is off";
+    return "not modelled because Noise is off";
   }
   if (noise.active)
   {
-    return "modelled; false alarms expected per beam: " + Number(noise.falseAlarmsPerBeam);
+    return "modelled; " + Number(noise.falseAlarmsPerBeam) + " false alarms expected per beam";
   }
   if (!(noise.bound > 0.0))
   {
     return "none: the sensor receives no noise photons";
   }
-  return "left out: at most " + OfLimit(setup, noise.bound) + " in any range unit";
+  return "left out: it changes a range unit by at most " + OfLimit(setup, noise.bound);
 }
 
 std::string TwoReflections(const ScanSetup& setup)
 {
   if (setup.settings.numberOfReflections < 2)
   {
-    return "not modelled, as NumberOfReflections is 1";
+    return "not modelled because NumberOfReflections is 1";
   }
   if (!setup.needs.secondaryReflections)
   {
-    return "left out: of a beam at most " + OfLimit(setup, setup.needs.secondaryBound);
+    return "left out: they return at most " + OfLimit(setup, setup.needs.secondaryBound) +
+      " of a beam";
   }
   if (!avianlidar::dropsFaintPaths(setup.settings))
   {
     return "modelled";
   }
   return setup.settings.lightEnergyThreshold == avianlidar::LightEnergyThreshold::Limit
-    ? "modelled, but for paths below the lower energy limit"
-    : "modelled, but for faint paths";
+    ? "modelled, without paths below the lower energy limit"
+    : "modelled, without faint paths";
 }
 
 std::string FurtherReflections(const ScanSetup& setup)
 {
   const std::string paths = "not modelled: paths over " +
-    std::string(setup.settings.numberOfReflections > 1 ? "three" : "two") + " and more";
-  // The bound has all that surfaces send back. An aperture gathers a small part of it, which
-  // depends on how near they are.
-  return setup.sensor.receiverAperture > 0.0
-    ? paths + "; no useful bound is known with a receiver aperture"
-    : paths + " return at most " + OfLimit(setup, setup.needs.furtherBound) + " of a beam";
+    std::string(setup.settings.numberOfReflections > 1 ? "three" : "two") + " and more reflections";
+  // The bound holds all light that surfaces send back. An aperture gathers a small, unknown share
+  // of it. A bound above the limit says nothing, either.
+  return setup.sensor.receiverAperture > 0.0 ||
+      setup.needs.furtherBound > setup.sensor.lowerEnergyLimit
+    ? paths
+    : paths + ", which return at most " + OfLimit(setup, setup.needs.furtherBound) + " of a beam";
 }
 
 std::string FaintPaths(const ScanSetup& setup)
@@ -85,11 +87,10 @@ std::string FaintPaths(const ScanSetup& setup)
   {
     const std::string most = OfLimit(setup, setup.needs.lightEnergyBound);
     return setup.settings.lightEnergyThreshold == avianlidar::LightEnergyThreshold::Limit
-      ? "over two reflections left out, each below the lower energy limit; together at most " +
-        most + " of a beam"
-      : "left out: at most " + most + " of any range unit";
+      ? "left out below the lower energy limit: together at most " + most + " of a beam"
+      : "left out: at most " + most + " in a range unit";
   }
-  return std::string("followed to the end, as ") +
+  return std::string("followed to the end because ") +
     (setup.settings.fullModel ? "FullModel is on" : "LightEnergyConstraint is off");
 }
 
@@ -101,25 +102,25 @@ bool HasCells(const ScanSetup& setup)
 std::string SmallObjects(const ScanSetup& setup)
 {
   return HasCells(setup) ? "more rays where an object_id would have few"
-                         : "no more rays than all else, as BeamSamples is Rays";
+                         : "no extra rays because BeamSamples is Rays";
 }
 
 std::string Detail(const ScanSetup& setup)
 {
   const double most = setup.needs.missedDetailEnergy;
   // Here, too, an aperture gathers a small part of what comes back.
-  return "may be missed, with more than 5 % probability, if " +
+  return "missed with more than 5 % probability if " +
     (setup.sensor.receiverAperture > 0.0 ? "less than " +
           Number(100.0 * most / setup.sensor.pulseEnergy) + " % of the pulse meets it"
                                          : "it returns less than " + Joules(most)) +
-    (HasCells(setup) ? " and has no object_id of its own" : "");
+    (HasCells(setup) ? " and it has no object_id of its own" : "");
 }
 
 std::string Planes(const ScanSetup& setup)
 {
   return HasCells(setup)
     ? "integrated without rays where few triangles enter a beam, divided into cells where many do"
-    : "sampled by rays as all else is";
+    : "sampled by rays, like everything else";
 }
 
 std::string PerceivableRange(const ScanSetup& setup)
@@ -131,18 +132,18 @@ std::string PerceivableRange(const ScanSetup& setup)
   }
   const bool far = range >= 1000.0;
   const bool photons = setup.sensor.receiverModel == avianlidar::ReceiverModel::Photons;
-  return std::string(photons ? "nothing by its mean energy" : "nothing") + " beyond " +
-    (far ? Number(range / 1000.0) + " km" : Number(range) + " m");
+  return "nothing beyond " + (far ? Number(range / 1000.0) + " km" : Number(range) + " m") +
+    (photons ? ", by its mean energy" : "");
 }
 
 std::string All(const ScanSetup& setup)
 {
   if (!(setup.needs.skippedEnergyBound > 0.0))
   {
-    return "nothing that the properties ask for, but for further reflections";
+    return "nothing that the properties ask for";
   }
   return "at most " + OfLimit(setup, setup.needs.skippedEnergyBound) +
-    " of any range unit of a beam with an echo, but for further reflections";
+    " in a range unit of a beam with an echo";
 }
 }
 
