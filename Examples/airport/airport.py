@@ -5,6 +5,7 @@
 programs, three pictures and a table.
 
     Examples/airport/run.sh                                      builds everything and runs this script
+    Examples/airport/run.sh --paper --out build/airport-paper    by the method of the paper
     airport.py --preset Airport32 --rays 1000 --seed 7 --out build/scan
     airport.py --scene my.lidarscene.json
 
@@ -40,7 +41,8 @@ def scan(scene, preset, options, clock):
         sensor.set(sampling_interval=1e-9 * options.unit, pulse_width=1e-9 * options.unit)
     with clock("beams"):
         tools.run(lambda: sensor.beams)
-    result = al.Scan(scene, sensor, rays_per_beam=options.rays, seed=options.seed, number_of_threads=options.threads)
+    result = al.Scan(scene, sensor, rays_per_beam=options.rays, seed=options.seed, number_of_threads=options.threads,
+                     preset=tools.preset(options))
     with clock("trace and light"):
         tools.run(result.update)
     with clock("colour, coordinates"):
@@ -59,7 +61,7 @@ def focus(surfaces, echoes, name):
 
 def draw(surfaces, result, echoes, preset, options):
     """Write <preset>-top.png, <preset>-close.png and <preset>-range.png."""
-    words = f"{preset}, {options.rays} rays per beam"
+    words = f"{preset}, {'preset Paper' if options.paper else f'{options.rays} rays per beam'}"
     title, limits = focus(surfaces, echoes, options.focus)
     for view, said, bounds in (("top", "From above", tools.extent(surfaces, echoes)), ("close", title, limits)):
         with tools.figure(options.out / f"{preset}-{view}.png", figsize=(11, 9)) as axes:
@@ -76,6 +78,7 @@ def main(argv=None):
     surfaces = seen.surfaces.GetBlock(0)
     if not surfaces.GetNumberOfPoints():
         sys.exit(f"{options.scene}: no surfaces")
+    scene.tree.SetPreset(options.paper)
     with common("build the tree"):
         tools.run(lambda: tools.update(scene.tree))  # shared by both sensors
 

@@ -58,7 +58,13 @@ def add_arguments(parser, out):
     parser.add_argument("--seed", type=number(int, -2**31, 2**31 - 1), default=0, help="of the random numbers, default 0")
     parser.add_argument("--threads", type=number(int, 0, 4096), default=0, help="default 0: as many as there are cores")
     parser.add_argument("--out", type=pathlib.Path, default=pathlib.Path(out), help=f"folder for results, default {out}")
+    parser.add_argument("--paper", action="store_true", help="the method and the tree of the paper: the presets named Paper")
     parser.add_argument("--no-pictures", action="store_true", help="leave files and tables alone")
+
+
+def preset(options):
+    """Of the scan, as the arguments say."""
+    return "Paper" if options.paper else "Custom"
 
 
 def run(work):

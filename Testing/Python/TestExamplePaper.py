@@ -66,8 +66,7 @@ class Paper(unittest.TestCase):
             self.assertEqual(tree.GetNumberOfLeaves(), triangles, sensor)
             self.assertEqual(tree.GetNumberOfNodes(), 2 * triangles - 1)
             self.assertEqual(tree.GetDepth(), math.ceil(math.log2(triangles)))  # halves at every node
-            self.assertEqual(tree.GetBoundingVolume(), tree.BOUNDING_VOLUME_AABB)
-            self.assertEqual(tree.GetSplitRule(), tree.SPLIT_RULE_MEDIAN)
+            self.assertEqual(tree.GetPreset(), tree.PRESET_PAPER)
 
     def test_every_beam_has_its_100_rays(self):
         for sensor, (_, lidar) in self.mine.items():

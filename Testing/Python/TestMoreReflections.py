@@ -36,7 +36,7 @@ class ToTheLetter(unittest.TestCase):
     def corner(self, **material):
         """Two perpendicular plates with the edge upright."""
         paint = mr.vtkAvianLidarMaterial()
-        paint.SetInputData(mr.corridor_scene.quads([[(0, 0, -3), (3, 0, -3), (3, 0, 3), (0, 0, 3)],
+        paint.SetInputData(mr.running.quads([[(0, 0, -3), (3, 0, -3), (3, 0, 3), (0, 0, 3)],
                                                     [(0, 0, -3), (0, 3, -3), (0, 3, 3), (0, 0, 3)]]))
         paint.SetMaterialToCustom()
         for name, value in material.items():

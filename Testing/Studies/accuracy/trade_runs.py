@@ -13,7 +13,6 @@ from vtkmodules.util.numpy_support import vtk_to_numpy
 
 from avianlidar.vtkAvianLidar import vtkAvianLidarBeamSource, vtkAvianLidarCollisionTree, vtkAvianLidarEchoFilter
 
-import corridor
 import corridor_scene
 import field_scene
 import running
@@ -70,7 +69,7 @@ class Subject:
     def _scene(name):
         """Surfaces, place of the lidar, attenuation coefficient."""
         if name == "corridor":
-            return corridor_scene.build(), corridor_scene.LIDAR, corridor.HAZE
+            return corridor_scene.build(), corridor_scene.LIDAR, corridor_scene.HAZE
         if name == "field":
             return field_scene.build(), field_scene.LIDAR, vtkAvianLidarEchoFilter().GetAttenuationCoefficient()
         scene = running.read_scene(AIRPORT if name == "airport" else name).GetOutput()

@@ -5,11 +5,14 @@ import os
 import pathlib
 import sys
 
+import numpy as np
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
+from vtkmodules.vtkCommonCore import vtkPoints
+from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData
 
 from avianlidar import _pipeline
 from avianlidar._cloud import vertices
-from avianlidar.vtkAvianLidar import vtkAvianLidarEchoFilter, vtkAvianLidarSceneReader
+from avianlidar.vtkAvianLidar import vtkAvianLidarEchoFilter, vtkAvianLidarMaterial, vtkAvianLidarSceneReader
 
 import tools
 from tools import above_zero, file, finite  # noqa: F401  (types of arguments)
@@ -105,6 +108,30 @@ def some_beams(beams, numbers):
         found.GetPointData().AddArray(copy)
     found.GetFieldData().DeepCopy(beams.GetFieldData())
     return found
+
+
+def quads(corners):
+    """Surfaces of n quadrangles from n x 4 x 3 coordinates; corners in one place are one point."""
+    data, points, cells = vtkPolyData(), vtkPoints(), vtkCellArray()
+    places, number = np.unique(np.array(corners, dtype=float).reshape(-1, 3), axis=0, return_inverse=True)
+    points.SetData(numpy_to_vtk(places, deep=True))
+    for quad in number.reshape(-1, 4):
+        cells.InsertNextCell(4, quad)
+    data.SetPoints(points)
+    data.SetPolys(cells)
+    return data
+
+
+def painted(scene, materials):
+    """Blocks with their materials. @param materials patterns of names, each with its material, the later ones win"""
+    for pattern, material in materials:
+        painter = vtkAvianLidarMaterial()
+        painter.SetInputData(scene)
+        painter.SetBlockNamePattern(pattern)
+        getattr(painter, "SetMaterialTo" + material)()
+        painter.Update()
+        scene = painter.GetOutputDataObject(0)
+    return scene
 
 
 def read_scene(name):

@@ -52,7 +52,7 @@ def scan(subject, mu):
 
 def measure():
     """A row for each unit of the grid, the clear air first."""
-    corridor, airport = (paper.configured(trade_runs.Subject(name, sensor), paper.TREE)
+    corridor, airport = (paper.configured(trade_runs.Subject(name, sensor), paper.CONFIGURATIONS["paper"][0])
                          for name, sensor in (("corridor", "corridor"), ("airport", "airport16")))
     rows = []
     for name, factor in [("no air", 0.0), *grid()]:

@@ -17,7 +17,7 @@ import avianlidar as al
 import tools
 import trade_runs
 from avianlidar.vtkAvianLidar import vtkAvianLidarEchoFilter as Filter
-from corridor_scene import painted
+from running import painted
 from running import argument, study, whole
 
 FILE = "mesh_ingolstadt_lod3/ingolstadt_lod3.obj.gz"

@@ -195,8 +195,8 @@ def mirrors(name, quads, towards, floor="Glass"):
     """Glass plates about the origin, the first of another material if named, and a beam of Airport16 from `towards`."""
     towards = np.array(towards) / np.linalg.norm(towards)
     blocks = vtkMultiBlockDataSet()
-    blocks.SetBlock(0, painted(corridor_scene.quads(quads[:1]), floor))
-    blocks.SetBlock(1, painted(corridor_scene.quads(quads[1:]), "Glass"))
+    blocks.SetBlock(0, painted(running.quads(quads[:1]), floor))
+    blocks.SetBlock(1, painted(running.quads(quads[1:]), "Glass"))
     return subject(name, blocks, "Airport16", RANGE * towards, 3.5e-5, -towards)
 
 

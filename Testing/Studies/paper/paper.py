@@ -4,8 +4,8 @@ echoes that are invented or missed, and leaves a table and a picture.
 
     Testing/Studies/run.py paper
 
-TREE and SCAN are the paper's configuration: copy them. Documentation/paper.md says sentence by sentence what the paper
-claims and where this project differs.
+The paper's configuration is that of the presets Paper, set one by one (paper_times.py) where a run differs in one of them.
+Documentation/evidence/paper.md has the paper's claims and where this project differs.
 """
 import copy
 
@@ -16,35 +16,19 @@ from avianlidar.vtkAvianLidar import vtkAvianLidarCollisionTree as Tree
 from avianlidar.vtkAvianLidar import vtkAvianLidarEchoFilter as Filter
 from avianlidar.vtkAvianLidar import vtkAvianLidarHSBColorMap
 
+import paper_times
 import running
 import tools
 import trade_results
 import trade_runs
+from paper_times import SCAN
 from running import argument, column, study, whole
 
-# Properties of vtkAvianLidarCollisionTree: a k-D tree of boxes (Sec. 5.1), one triangle in a leaf (Algorithm 1).
-TREE = {"SplitRule": Tree.SPLIT_RULE_MEDIAN, "BoundingVolume": Tree.BOUNDING_VOLUME_AABB, "MaximumLeafSize": 1}
-
-# Properties of vtkAvianLidarEchoFilter.
-SCAN = {"RaysPerBeam": 100,                                                     # N of Table 2
-        "Sampling": Filter.SAMPLING_MONTE_CARLO,                                # Sec. 2.1: no strata
-        "BatchCollisionDetection": Filter.BATCH_COLLISION_DETECTION_BEAMS,      # Sec. 3.2, 3.3: to S_potential
-        "BeamConstraint": True, "LightEnergyConstraint": True,                  # Sec. 3.4
-        "LightEnergyThreshold": Filter.LIGHT_ENERGY_THRESHOLD_LIMIT,            # Sec. 3.4
-        "NumberOfReflections": 2,                                               # Sec. 3.4
-        "ReflectanceModel": Filter.REFLECTANCE_MODEL_LAMBERT_BLINN_PHONG,       # Eq. 8
-        "Noise": True,                                                          # Eq. 11
-        "ReturnMode": Filter.RETURN_MODE_RANGE_UNITS,                           # Eq. 10, 12: one point per range unit
-        "BeamSamples": Filter.BEAM_SAMPLES_RAYS}                                # Sec. 2.1: N rays
-
-# What original ray tracing does without.
-ORIGINAL = {"BatchCollisionDetection": Filter.BATCH_COLLISION_DETECTION_RAYS, "BeamConstraint": False, "LightEnergyConstraint": False}
-PAPER_RATIOS = {"CorridorC16": "130/83 = 1.57", "Airport16": "1439/1122 = 1.28", "Airport32": "1831/1633 = 1.12"}
-
 SENSORS = (("corridor", "corridor"), ("airport", "airport16"), ("airport", "airport32"))
-CONFIGURATIONS = {"paper": (TREE, SCAN), "default": ({}, {})}
+CONFIGURATIONS = {"paper": ({"Preset": Tree.PRESET_PAPER}, SCAN), "default": ({}, {})}
 
-# Of the picture: the northern end of the facade of Terminal 1 that faces the lidar, m.
+# Of the pictures, x and y in m: the facade of Terminal 1, and its northern end, which faces the lidar.
+TERMINAL_1 = (445, 565), (-460, 0)
 FACADE = (440, 500), (-102, -32)
 
 
@@ -72,19 +56,6 @@ def errors(reference, subject, settings, seeds):
               for kind, name in (("missed", "missed"), ("invented", "false"))),
             ("rms error of energy", trade_results.amount("energy", energy)),
             ("time of one core (s)", f"{np.median([run.cpu for _, run in runs]):.3f}")]
-
-
-def times(subject, turns):
-    """Rows of the time of one core, in turns: original ray tracing, without the three accelerations, and the paper's method."""
-    ways = {"original ray tracing (s)": {**SCAN, **ORIGINAL}, "proposed (s)": SCAN}
-    seconds = {name: [] for name in ways}
-    for turn in range(turns):
-        for name, settings in ways.items():
-            seconds[name].append(trade_runs.scan(subject, settings, turn).cpu)
-    original, proposed = (np.median(seconds[name]) for name in ways)
-    return [("triangles", subject.tree.GetOutput().GetNumberOfCells()),
-            *((name, f"{np.median(values):.3f}") for name, values in seconds.items()),
-            ("original / proposed", f"{original / proposed:.2f}"), ("the paper", PAPER_RATIOS[subject.sensor_name])]
 
 
 def hue_of(name, echoes):
@@ -123,14 +94,16 @@ def main(options):
             columns[f"{subject.sensor_name}, {words}"] = [
                 *counts(mine, lidar, returns.GetOutput().GetNumberOfPoints()), ("returns of the reference", len(reference.echoes["beam_id"])),
                 *errors(reference, mine, settings, options.seeds)]
-            if words == "paper":
-                ratios[subject.sensor_name] = times(mine, options.turns)
-            if subject.sensor_name == "Airport16":
-                shown.append((mine.tree.GetInputDataObject(0, 0), al.Cloud(lidar.GetOutput()), f"Terminal 1, {words}"))
+            if name == "airport":
+                shown.append((mine.tree.GetInputDataObject(0, 0), al.Cloud(lidar.GetOutput()), f"{subject.sensor_name}, {words}"))
+        ratios[subject.sensor_name] = paper_times.times(paper_times.on_a_kd_tree(subject), options.turns)
     tools.leave(options.out, "paper-times", *tools.columns(ratios))
     tools.leave(options.out, "table", *tools.columns(columns))
     if not options.no_pictures:
         with tools.figure(options.out / "facade.png", 1, 2, figsize=(16, 8)) as axes:
             for axis, (scene, echoes, title) in zip(axes, shown):
-                tools.from_above(axis, scene, echoes, FACADE, title, 40)
+                tools.from_above(axis, scene, echoes, FACADE, f"Terminal 1, {title}", 40)
+        with tools.figure(options.out / "terminal-1.png", 1, 4, figsize=(18, 10)) as axes:
+            for axis, (scene, echoes, title) in zip(axes, shown):
+                tools.from_above(axis, scene, echoes, TERMINAL_1, title)
     return scans

@@ -13,7 +13,6 @@ from avianlidar._cloud import vertices
 from avianlidar.vtkAvianLidar import vtkAvianLidarBeamSource, vtkAvianLidarCloudComparison, vtkAvianLidarCollisionTree
 from avianlidar.vtkAvianLidar import vtkAvianLidarEchoFilter as Filter
 
-import corridor
 import corridor_scene
 import running
 import tools
@@ -21,7 +20,7 @@ from running import argument, column, study, whole
 
 DENSE_STEP, STEP, THINNING = 0.09, 2.0, 22  # degrees, degrees, times (paper, Sec. 5.2)
 
-# The areas of Fig. 13 to 15: objects of the built corridor (corridor_scene.py) from x to x in metres. How much borders
+# The areas of Fig. 13 to 15: objects of the corridor from x to x in metres. How much borders
 # matter is seen from the end wall with and without the walls beside it, and from the near part of the corridor.
 _END = ("Near end", "Door", "Window of the door", "Hydrant cabinet")
 _LONG = ("North wall", "Bulletin board", "South wall", "Door at*", "Floor", "Ceiling", "Far end")
@@ -45,7 +44,7 @@ def scan(tree, step, yaw, seed, mode):
     sensor.SetPresetToCorridorC16()
     running.set_all(sensor, {"Position": corridor_scene.LIDAR, "Orientation": (yaw, 0, 0), "AzimuthStep": step,
                              "RotationRate": 0.1})  # slow enough for 4,000 columns; nothing moves
-    echoes = running.scanned(sensor, tree, AttenuationCoefficient=corridor.HAZE, Seed=seed, ReturnMode=mode).GetOutput()
+    echoes = running.scanned(sensor, tree, AttenuationCoefficient=corridor_scene.HAZE, Seed=seed, ReturnMode=mode).GetOutput()
     places, names = echoes.GetPoints().GetData(), tools.strings(echoes, "object_names")
     places, beams, objects = np.array(places), column(echoes, "beam_id"), column(echoes, "object_id")
     within = {}

@@ -1,0 +1,14 @@
+#!/bin/sh
+# SPDX-License-Identifier: BSD-3-Clause
+# The one command for the corridor, as Examples/airport/run.sh: installs, builds, scans and leaves pictures and files in
+# build/corridor. Arguments go to corridor.py.
+set -eu
+
+cd "$(dirname "$0")/../.."
+CMake/install-packages.sh plugin python drawing
+cmake --preset paraview -DBUILD_TESTING=OFF
+cmake --build --preset paraview --target vtkAvianLidarPython AvianLidarPlugin
+
+export PYTHONPATH="$(cat build/paraview/python-path)${PYTHONPATH:+:$PYTHONPATH}"
+xvfb-run -a /usr/bin/python3 Examples/corridor/corridor.py --out build/corridor "$@"
+echo "Pictures and files: $PWD/build/corridor"
