@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# Debian packages: `cpack` in the build tree makes one of each install component (Documentation/install.md). They are for
+# Debian packages: `cpack` in the build tree makes one of each install component (Documentation/start/install.md). They are for
 # the Debian and the ParaView that they are built on.
 
 set(CPACK_GENERATOR DEB)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Writes the table of Documentation/arrays.md: names, units, places and meanings of arrays, as
+"""Writes the table of Documentation/reference/arrays.md: names, units, places and meanings of arrays, as
 Filters/Private/Common/vtkAvianLidarNames.h declares them.
 
     arrays_page.py
@@ -10,7 +10,7 @@ import re
 
 SOURCE = pathlib.Path(__file__).resolve().parents[1]
 HEADER = SOURCE / "Filters" / "Private" / "Common" / "vtkAvianLidarNames.h"
-PAGE = SOURCE / "Documentation" / "arrays.md"
+PAGE = SOURCE / "Documentation" / "reference" / "arrays.md"
 BEGIN, END = "<!-- table: arrays -->\n", "<!-- end -->"
 
 
@@ -32,8 +32,12 @@ def rows():
 
 
 def table():
-    lines = ["| name | unit | where | meaning |", "|---|---|---|---|"]
-    lines += [f"| `{name}` | {unit or '–'} | {where} | {meaning.replace(' * ', ' · ')} |" for name, unit, where, meaning in rows()]
+    lines, group = [], None
+    for name, unit, where, meaning in rows():
+        if where != group:
+            lines += [*[""] * (group is not None), f"## {where}", "", "|name|unit|meaning|", "|---|---|---|"]
+        group = where
+        lines.append(f"|`{name}`|{unit or '–'}|{meaning.replace(' * ', ' · ')}|")
     return "\n".join(lines) + "\n"
 
 

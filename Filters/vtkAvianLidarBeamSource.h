@@ -29,8 +29,8 @@
  * echoes->SetInputConnection(0, sensor->GetOutputPort());
  * @endcode
  *
- * Documentation: beams-and-scan-patterns.md (pattern, clock, prisms), sensors.md (presets, files,
- * receivers), time.md (revolutions, sway), arrays.md (all arrays).
+ * Documentation: reference/sensor-files.md (pattern, clock, prisms, files), guide/lidars.md
+ * (presets, receivers), guide/moving.md (revolutions, sway), reference/arrays.md.
  *
  * @sa vtkAvianLidarEchoFilter, vtkAvianLidarRangeImage
  */
@@ -85,7 +85,7 @@ public:
   /**
    * Set all properties but ErrorsAsData to those of a built-in sensor, by its file in
    * Filters/Sensors, and to the defaults of this class where the file has none
-   * (Documentation/sensors.md).
+   * (Documentation/reference/sensor-files.md).
    */
   vtkAvianLidarSensorPresetsMacro();
   ///@}
@@ -97,13 +97,13 @@ public:
   void SetTablesOfPreset(const char* name);
 
   /// Set all properties from a file (`.lidarsensor.json`), and what files alone can set: azimuth
-  /// offsets and firing times of channels, blanked sectors, prisms (Documentation/sensors.md,
-  /// Files).
+  /// offsets and firing times of channels, blanked sectors, prisms
+  /// (Documentation/reference/sensor-files.md, Files).
   /// @return false, with an error that names the file and the key, for a bad file: nothing changes.
   bool LoadSensor(VTK_FILEPATH const char* fileName);
 
   /// Number of rotating prisms that steer the beams, 0 to 3; only a file sets them. Default 0. With
-  /// prisms AzimuthRange and AzimuthStep are not used (Documentation/beams-and-scan-patterns.md).
+  /// prisms AzimuthRange and AzimuthStep are not used (Documentation/reference/sensor-files.md).
   int GetNumberOfPrisms() const;
 
   /// As LoadSensor(), from the text of a file, as GetDescription() returns it. Errors name "the
@@ -324,7 +324,8 @@ public:
   ///@}
 
   /// Range, m, from which echoes arrive after the next pulse has left; infinite for SetBeams(). A
-  /// RangeGate beyond it is warned of once; echoes stay where they are (Documentation/sensors.md).
+  /// RangeGate beyond it is warned of once; echoes stay where they are
+  /// (Documentation/reference/sensor-files.md).
   double GetUnambiguousRange();
 
   ///@{
@@ -354,7 +355,8 @@ public:
   ///@{
   /**
    * What turns energies into echoes: the limits in joules of the paper, or a photon receiver, which
-   * needs an aperture (Documentation/sensors.md). Default RECEIVER_MODEL_ENERGY_LIMITS.
+   * needs an aperture (Documentation/reference/sensor-files.md). Default
+   * RECEIVER_MODEL_ENERGY_LIMITS.
    */
   vtkSetMacro(ReceiverModel, int);
   vtkGetMacro(ReceiverModel, int);
@@ -436,8 +438,8 @@ public:
   ///@{
   /**
    * Standard deviation b of ranges at S = 1, m, 0 to 1e9; else sqrt(a^2 + b^2/S^p), a
-   * RangeNoiseFloor, p RangeNoiseExponent (Documentation/sensors.md). Photon receiver. Default 0:
-   * exact.
+   * RangeNoiseFloor, p RangeNoiseExponent (Documentation/reference/sensor-files.md). Photon
+   * receiver. Default 0: exact.
    */
   vtkSetMacro(RangeNoise, double);
   vtkGetMacro(RangeNoise, double);
@@ -487,7 +489,7 @@ public:
    * the sensor sees a Lambertian surface of `reflectance` (above 0 to 1) that fills the beam until
    * `range`, m, in air of `attenuation`, 1/m (default: GetClearAirAttenuation()). Needs
    * ReceiverAperture and RECEIVER_MODEL_ENERGY_LIMITS. A bad value changes nothing. One point is a
-   * guess (Documentation/sensors.md, Fitted to a sheet).
+   * guess (Documentation/reference/sensor-files.md).
    */
   void SetLimitsFromDataSheet(double range, double reflectance);
   void SetLimitsFromDataSheet(double range, double reflectance, double attenuation);

@@ -22,7 +22,8 @@
  * 32 RaysPerBeam rays. A `beam_id` that does not exist is an error that names BeamId. No beams:
  * empty outputs.
  *
- * Example, with the inputs of an echo filter: `view->SetBeamId(123)`. Documentation: paraview.md.
+ * Example, with the inputs of an echo filter: `view->SetBeamId(123)`. Documentation:
+ * reference/paraview.md.
  *
  * @sa vtkAvianLidarEchoFilter
  */

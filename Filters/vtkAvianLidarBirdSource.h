@@ -10,7 +10,7 @@
  *
  * The body is an ellipsoid of revolution whose frontal area follows from the mass (Hedenstrom and
  * Rosen 2003; Pennycuick 1988); its effective area is exact from every direction. The wings are
- * thin plates that flap. Shape, what is assumed, and species: Documentation/birds.md.
+ * thin plates that flap. Shape, what is assumed, and species: Documentation/guide/birds.md.
  *
  * An unknown species, a bad table or number is an error that names the property, with empty output;
  * setters keep any value.

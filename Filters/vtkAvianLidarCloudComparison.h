@@ -14,7 +14,7 @@
  * number of points. The Chamfer distance is that of Wu et al., NeurIPS 2021, arXiv:2111.12702.
  * Distances are Euclidean, in double precision; the order of points does not matter. It takes one
  * thread and n log n steps; points equally far from a whole cloud look at all of it. Formulas and
- * limits: Documentation/cloud-comparison.md.
+ * limits: Documentation/guide/clouds.md.
  *
  * A bad alpha is an error; so is a cloud without points or with coordinates that are not finite or
  * beyond 1e30 m, with port and point. Outputs are then empty and the getters NaN, as after an

@@ -6,8 +6,8 @@
  * Space about the sensor is divided into cells of range, azimuth and elevation. The persistence of
  * a cell is the weighted share of scans with an echo in it; each scan weighs 1 - 1/Window as much
  * as the next one. The clutter probability of a point is the largest persistence of the cells
- * around its own before this scan. Method, times and limits: Documentation/filters.md. The sensor
- * must stand still.
+ * around its own before this scan. Method, times and limits: Documentation/guide/filters.md. The
+ * sensor must stand still.
  *
  * - Input port 0, a scan: any vtkPointSet, m: echoes, or the cloud of a reader.
  * - Input port 1, a table (optional): vtkPolyData, output port 1 of an earlier run, also from a

@@ -28,7 +28,7 @@
  * echoes->SetSurfacesConnection(tree->GetOutputPort());
  * @endcode
  *
- * Documentation: collision-detection.md, parallel.md.
+ * Documentation: method/collision.md, guide/parallel.md.
  *
  * @sa vtkAvianLidarEchoFilter, vtkAvianLidarMaterial, vtkAvianLidarSceneReader
  */

@@ -7,8 +7,8 @@
  * For each place the filter finds the beams that hold it, surfaces in the way, clutter in the same
  * range units, and the probability of detection in closed form, averaged over the bird's poses. No
  * bird is traced. Lines of sight are kept: another bird, air or receiver evaluates them again, with
- * the bits of a fresh run. Method and limits: Documentation/coverage.md. No measured ranges of
- * birds are known for this kind of lidar.
+ * the bits of a fresh run. Method and limits: Documentation/guide/coverage.md. No measured ranges
+ * of birds are known for this kind of lidar.
  *
  * - Input ports 0, beams of one sensor, and 1, surfaces: as for vtkAvianLidarEchoFilter. All beams
  *   are asked for, whatever the piece.

@@ -5,7 +5,7 @@
  * with energies out.
  *
  * Implements "Research on Ground Object Echo Simulation of Avian Lidar", Photonics 2024, 11(2), 153
- * (Algorithm 2, Eq. 1-18); Documentation/paper.md lists where the code differs and why.
+ * (Algorithm 2, Eq. 1-18); Documentation/evidence/paper.md lists where the code differs and why.
  *
  * Passes: read beams and sensor, merge the surfaces, take the tree that came with them or build
  * one, find what each beam sees, light it, sum energies in range units, form returns. What beams
@@ -45,8 +45,8 @@
  * echoes->Update();
  * @endcode
  *
- * Documentation: echoes.md (method, inputs), arrays.md (all arrays), model-needs.md (bounds),
- * time.md (movers, moving scenes), parallel.md (ranks).
+ * Documentation: method/echoes.md (method, inputs), reference/arrays.md, guide/accuracy.md
+ * (bounds), guide/moving.md (movers, moving scenes), guide/parallel.md (ranks).
  *
  * @sa vtkAvianLidarBeamSource, vtkAvianLidarCollisionTree, vtkAvianLidarMaterial,
  * vtkAvianLidarMedium

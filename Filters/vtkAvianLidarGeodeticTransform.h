@@ -16,7 +16,7 @@
  *
  * The conversions are GeographicLib's (Karney, J. Geodesy 85(8), 2011), with errors below 10 nm
  * within 5000 km of the surface, and the rounding of the numbers. UTM holds up to 3900 km from the
- * central meridian. Measured: Documentation/geodetic-frames.md.
+ * central meridian. Measured: Documentation/reference/scene-files.md.
  *
  * A missing origin, bad angles, coordinates that are not finite or beyond UTM, a bad zone or a
  * block that is not a vtkPointSet is an error that names it, with an empty output; so is the output

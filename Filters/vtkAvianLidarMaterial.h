@@ -14,7 +14,7 @@
  * Only blocks that fit BlockNamePattern get the material, so that one filter after the other can
  * name the materials of a scene. Coefficients are those of "Research on Ground Object Echo
  * Simulation of Avian Lidar", Photonics 2024, 11(2), 153 (Eq. 6, 7, Table 1);
- * Documentation/reflectance.md.
+ * Documentation/method/reflectance.md.
  *
  * Coefficients out of range, kd + ks above 1, an unknown material or a chosen leaf that is not
  * vtkPolyData is an error, with empty output. A pattern that fits no block gives a warning.

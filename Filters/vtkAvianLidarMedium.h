@@ -12,7 +12,7 @@
  *
  * Kind says what the medium is, one quantity how dense: Visibility of haze, fog and snow, RainRate
  * of drizzle and rain, LeafAreaDensity of foliage, Extinction and BackscatterRatio of KIND_CUSTOM.
- * All numbers, their sources and what is assumed: Documentation/weather.md,
+ * All numbers, their sources and what is assumed: Documentation/guide/weather.md,
  * Filters/Media/media.json.
  *
  * A bad value or an open surface is an error that names the key of the description, with empty

@@ -17,7 +17,7 @@
  * Columns and rows are the distinct azimuths and elevations, to 1e-4 degrees, of the sensor's whole
  * scan if the beams come from a vtkAvianLidarBeamSource through the pipeline, else of the beams
  * given. Rows of a tilted sensor are channels. Grids, spacing and maps:
- * Documentation/colour-and-range-image.md.
+ * Documentation/guide/clouds.md.
  *
  * The size is known before execution, from the beam source or from Columns and Rows (then with
  * origin 0 and spacing 1 until the data come). MPI ranks share echoes and beams; each makes one

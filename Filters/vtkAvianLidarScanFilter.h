@@ -113,7 +113,7 @@ public:
 
   ///@{
   /**
-   * How the direct echo of a beam is found (Documentation/beam-samples.md):
+   * How the direct echo of a beam is found (Documentation/method/beam.md):
    *
    * - BEAM_SAMPLES_CELLS: by integration over the polygons that the beam sees where few triangles
    *   enter it, else by cells with a dense grid of rays
@@ -152,7 +152,7 @@ public:
 
   ///@{
   /**
-   * Visibility, m, to 1e9, by the law of Kruse and Kim (Documentation/reflectance.md). 0: by
+   * Visibility, m, to 1e9, by the law of Kruse and Kim (Documentation/method/reflectance.md). 0: by
    * AttenuationCoefficient. Default: 0 of the echo filter, 23000 (clear) of vtkAvianLidarCoverage.
    */
   vtkSetMacro(Visibility, double);
@@ -174,8 +174,9 @@ public:
 
   ///@{
   /**
-   * How surfaces reflect (Documentation/reflectance.md): the paper's model, Eq. 5-8; its peers of
-   * Fig. 10; Oren and Nayar's for rough surfaces. Default: REFLECTANCE_MODEL_LAMBERT_BLINN_PHONG.
+   * How surfaces reflect (Documentation/method/reflectance.md): the paper's model, Eq. 5-8; its
+   * peers of Fig. 10; Oren and Nayar's for rough surfaces. Default:
+   * REFLECTANCE_MODEL_LAMBERT_BLINN_PHONG.
    */
   vtkSetMacro(ReflectanceModel, int);
   vtkGetMacro(ReflectanceModel, int);

@@ -9,7 +9,7 @@
  *
  * Errors name the file, the key and what was expected, with empty outputs.
  *
- * Example: `reader->SetFileName("my.lidarsensor.json");` Documentation: sensors.md, Files.
+ * Example: `reader->SetFileName("my.lidarsensor.json");` Documentation: reference/sensor-files.md.
  *
  * @sa vtkAvianLidarBeamSource
  */

@@ -6,7 +6,7 @@
  * Each execution takes one cloud, a whole scan. Its points are grouped into clusters, clusters are
  * assigned to tracks one to one by least cost, and the others begin new tracks. Kalman filters
  * follow the motion (Bar-Shalom, Li and Kirubarajan, Estimation with Applications to Tracking and
- * Navigation, 2001). Method, times and limits: Documentation/tracks.md, The tracker.
+ * Navigation, 2001). Method, times and limits: Documentation/guide/tracks.md.
  *
  * - Input port 0: vtkPolyData, points in metres. Optional: point arrays `is_clutter` (points where
  *   it is not 0 are left out), `timestamp`, `distance_std_error`; field data `position`,

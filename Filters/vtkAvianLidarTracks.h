@@ -9,14 +9,14 @@
  * - Output port 0, movers: vtkMultiBlockDataSet, a block for each bird, named as the object. It has
  *   the triangles of vtkAvianLidarBirdSource in the bird's own frame (x right, y forward, z up),
  *   and as field data `pose_time`, `pose_position`, `pose_orientation`, where wings flap
- *   `flap_hinge` and so on, `object_names`, `material_names` and `species` (Documentation/time.md,
- *   Movers).
+ *   `flap_hinge` and so on, `object_names`, `material_names` and `species`
+ * (Documentation/guide/moving.md, Movers).
  * - Output port 1, trails: vtkPolyData, a polyline for each bird, with the point array `time`, the
  *   cell arrays `object_id` and `species_id`, and the field data `species_names`.
  *
  * Outputs hold all poses, whatever time or piece is asked for; time 0 is the start of the scan. The
  * same seed gives the same bits, and a bird depends on those after it only in a flock. Patterns,
- * file format and what is assumed: Documentation/birds.md, Birds that fly.
+ * file format and what is assumed: Documentation/guide/birds.md.
  *
  * A bad file, times that do not rise, an unknown species or a number out of its range is an error
  * that names the property, or file and line, or line of the input, with empty outputs. No birds:

@@ -7,8 +7,9 @@
  *
  * Bytes go to a temporary file in the same folder (FileName with .avianpart and a digit), which is
  * renamed at the end. After an error, an abort or a full disk the old file stays as it was. A file
- * that is replaced keeps its permissions, a link stays a link (Documentation/reliability.md).
- * Points are taken one after the other, without a copy of the cloud.
+ * that is replaced keeps its permissions, a link stays a link
+ * (Documentation/evidence/reliability.md). Points are taken one after the other, without a copy of
+ * the cloud.
  *
  * Errors name file and reason: no file name, an input whose producer failed, a file that cannot be
  * written, an array or field that is missing or of another kind, shape or range than the format

@@ -11,7 +11,8 @@
  * numeric point arrays of one component, and `object`, `object_class` and `material` by their names
  * in field data; units stand in the collection's member `units`. No echo: a collection of none.
  *
- * Example: `writer->SetFileName("echoes.geojson"); writer->Write();` Documentation: formats.md.
+ * Example: `writer->SetFileName("echoes.geojson"); writer->Write();` Documentation:
+ * reference/formats.md.
  *
  * @sa vtkAvianLidarCloudWriter, vtkAvianLidarGeodeticTransform
  */

@@ -14,7 +14,7 @@
  *
  * Both files are written as a whole, or neither is. Sources: Geiger et al., "Vision meets Robotics:
  * The KITTI Dataset", IJRR 2013; Behley et al., "SemanticKITTI", ICCV 2019. Classes and rounding:
- * Documentation/formats.md.
+ * Documentation/reference/formats.md.
  *
  * Example: `writer->SetFileName("000000.bin"); writer->Write();`
  *

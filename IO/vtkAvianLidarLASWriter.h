@@ -25,8 +25,8 @@
  * writer->Write();
  * @endcode
  *
- * Source: LAS Specification 1.4 - R15, ASPRS 2019. Fields and rounding: Documentation/formats.md,
- * LAS.
+ * Source: LAS Specification 1.4 - R15, ASPRS 2019. Fields and rounding:
+ * Documentation/reference/formats.md, LAS.
  *
  * @sa vtkAvianLidarCloudWriter, vtkAvianLidarPointCloudReader
  */

@@ -18,7 +18,8 @@
  * a warning says so, and beyond 3.4e38 m it is an error. Source: The PCD file format,
  * pointclouds.org.
  *
- * Example: `writer->SetFileName("echoes.pcd"); writer->Write();` Documentation: formats.md, PCD.
+ * Example: `writer->SetFileName("echoes.pcd"); writer->Write();` Documentation:
+ * reference/formats.md.
  *
  * @sa vtkAvianLidarCloudWriter, vtkAvianLidarPointCloudReader
  */

@@ -13,8 +13,8 @@
  * several components it is an error, and so are triangle strips. Rounding: as
  * vtkAvianLidarPCDWriter.
  *
- * Example: `writer->SetFileName("echoes.ply"); writer->Write();` Documentation: formats.md, PLY.
- * Source: G. Turk, "The PLY Polygon File Format", 1994.
+ * Example: `writer->SetFileName("echoes.ply"); writer->Write();` Documentation:
+ * reference/formats.md. Source: G. Turk, "The PLY Polygon File Format", 1994.
  *
  * @sa vtkAvianLidarCloudWriter, vtkAvianLidarPointCloudReader
  */

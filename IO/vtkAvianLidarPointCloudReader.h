@@ -6,7 +6,7 @@
  * The ending of FileName gives the format: `.las` (1.0 to 1.4), `.laz` (with LASzip), `.pcd`,
  * `.ply` (vertices), `.bin` (KITTI, with SemanticKITTI's labels beside it or in the folder
  * `labels`), `.pcap` and `.pcapng` (a Velodyne VLP-16). What of each is read, refused or left out
- * with a warning: Documentation/formats.md.
+ * with a warning: Documentation/reference/formats.md.
  *
  * It has no input. Output port 0 is vtkPolyData, a vertex for each point, in double precision.
  * Arrays keep name and type of the file, but `intensity` (0 to 255), `laser_id`, `distance_m`,

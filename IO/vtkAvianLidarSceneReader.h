@@ -4,8 +4,8 @@
  * @brief Reads a scene file (.lidarscene.json): meshes, building footprints and ground, placed and
  * with materials.
  *
- * Keys, formats (by VTK, Assimp and GDAL), placement and limits: Documentation/scene-format.md. It
- * has no input.
+ * Keys, formats (by VTK, Assimp and GDAL), placement and limits:
+ * Documentation/reference/scene-files.md. It has no input.
  *
  * Output port 0 is vtkMultiBlockDataSet: one block per object in the order of the file, or per
  * feature of footprints with `"features": "separate"`. Each is vtkPolyData of triangles with double

@@ -18,7 +18,7 @@
  *
  * Errors name the file and what is wrong, with empty outputs. All is piece 0.
  *
- * Example: `reader->SetFileName("sequences/00/times.txt");` Documentation: sequences.md.
+ * Example: `reader->SetFileName("sequences/00/times.txt");` Documentation: guide/sequences.md.
  *
  * @sa vtkAvianLidarPointCloudReader
  */

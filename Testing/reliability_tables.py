@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Writes the tables of Documentation/reliability.md.
+"""Writes the tables of Documentation/evidence/reliability.md.
 
     reliability_tables.py branches build/coverage    what run_branches.sh measured there
     reliability_tables.py fuzzing                    the sums of Fuzzing/runs.csv
@@ -8,12 +8,11 @@
 import csv
 import json
 import pathlib
-import re
 import sys
 
+import pages
+
 SOURCE = pathlib.Path(__file__).resolve().parents[1]
-PAGE = SOURCE / "Documentation" / "reliability.md"
-FEWEST = 12  # files
 ALL, ALL_OF_KERNEL = "IO, Filters and Python", "kernel"
 
 
@@ -42,9 +41,6 @@ def branches(tree):
     yield "branches", "| folder | lines | of them run, % | branches | of them taken, % |\n|---|---:|---:|---:|---:|\n" + "".join(
         f"| {folder if folder in (ALL, ALL_OF_KERNEL) else f'`{folder}`'} | {lines:,} | {share(run, lines)} | {count:,} | {share(taken, count)} |\n"
         for folder, (lines, run, count, taken) in sorted(folders.items(), key=lambda one: (one[0] in (ALL, ALL_OF_KERNEL), one[0])))
-    fewest = sorted(files.items(), key=lambda one: one[1][3] - one[1][2])[:FEWEST]
-    yield "files", "| file | branches | not taken |\n|---|---:|---:|\n" + "".join(
-        f"| `{name}` | {count} | {count - taken} |\n" for name, (_, _, count, taken) in fewest)
 
 
 def fuzzing():
@@ -64,13 +60,9 @@ def fuzzing():
 
 
 def main(which, *arguments):
-    page = PAGE.read_text(encoding="utf-8")
     for name, table in {"branches": branches, "fuzzing": fuzzing}[which](*arguments):
-        page, count = re.subn(rf"(<!-- table: {name} -->\n).*?(<!-- end -->)", lambda found: found[1] + table + found[2], page,
-                              flags=re.S)
-        assert count == 1, name
+        pages.put(name, table)
         print(table)
-    PAGE.write_text(page, encoding="utf-8")
 
 
 if __name__ == "__main__":

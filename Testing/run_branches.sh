@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # Which lines and branches of IO, Filters and the Python package the tests take: builds them with gcc's counters in
 # build/coverage (the kernel without: its loops would take many times as long), runs the tests and writes the tables of
-# Documentation/reliability.md. The kernel is built a second time with counters, for its own tests. The program that reads meshes
+# Documentation/evidence/reliability.md. The kernel is built a second time with counters, for its own tests. The program that reads meshes
 # ends without writing its counters. Branches of exceptions that pass through are not counted. Left out are tests with the labels
 # `nightly`, `bare`, `install` (packages hold no paths of a build tree, counters do) and `plugin` (ParaView's windows take minutes),
 # and those on three and four ranks. Arguments go to ctest; with --report nothing is built or run.

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file SceneDescription.h
- * @brief A scene file, parsed and checked; Documentation/scene-format.md describes its keys.
+ * @brief A scene file, parsed and checked; Documentation/reference/scene-files.md describes its
+ * keys.
  */
 #ifndef AvianLidarSceneDescription_h
 #define AvianLidarSceneDescription_h

@@ -2,7 +2,7 @@
 /**
  * @file SemanticLabels.h
  * @brief What the classes of a scene's objects are called by others: point classes of LAS and
- * labels of SemanticKITTI. The table is in Documentation/formats.md, too.
+ * labels of SemanticKITTI. The table is in Documentation/reference/formats.md, too.
  */
 #ifndef AvianLidarSemanticLabels_h
 #define AvianLidarSemanticLabels_h

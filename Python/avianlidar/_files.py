@@ -125,7 +125,7 @@ def save(cloud, file, **properties: Any) -> None:
 
     .vtp      VTK's: everything, units and field data too
     .csv      15 digits, units in the header (`energy [J]`); x, y, z are in metres
-    others    as far as this build has the writers (Documentation/formats.md); `properties` are theirs, by name. LAS and LAZ
+    others    as far as this build has the writers (Documentation/reference/formats.md); `properties` are theirs, by name. LAS and LAZ
               are in UTM, of a scene without an origin on the Earth in its own frame
 
     The file is replaced as a whole or not at all. An unknown suffix is a ValueError that says what is known.
@@ -138,7 +138,7 @@ def save(cloud, file, **properties: Any) -> None:
 
 def load_cloud(file, time: Optional[float] = None, **properties: Any) -> Cloud:
     """Read a cloud: .vtp, .csv as `save` and other programs write it, .xyz, and as far as this build has the reader other formats
-    (Documentation/formats.md), whose `properties` are given by name. Coordinates are metres; arrays have the units that the file says (`Cloud.units`).
+    (Documentation/reference/formats.md), whose `properties` are given by name. Coordinates are metres; arrays have the units that the file says (`Cloud.units`).
 
     Of packets (.pcap, .pcapng) it is the revolution at `time` (s since the full hour); default: the first, with a warning if there are more.
     `sensor_address` chooses among the sensors of a recording, as "192.168.1.201"."""

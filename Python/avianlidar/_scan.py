@@ -232,7 +232,7 @@ class Scan(SceneAndSensor):
         progress  as of the scan, whose own it is by default
 
         Sensor, scene, movers and air are the scan's, and nothing of the scan changes: `scan.set(**advice.settings)` takes the
-        settings over. It takes seconds. How it is measured: Documentation/advise.md.
+        settings over. It takes seconds. How it is measured: Documentation/guide/accuracy.md.
 
         >>> scene = Scene(([(-5, 50, -5), (5, 50, -5), (0, 50, 9)], [(0, 1, 2)]), material="Glass")
         >>> Scan(scene, Sensor(azimuth_step=1)).advise(energy=0.05, missed=0.5).settings["number_of_reflections"]

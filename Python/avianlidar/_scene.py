@@ -205,7 +205,7 @@ def _mesh_scene(file: str, painted: bool, options: Dict[str, Any]) -> Dict[str, 
         words = json.dumps({"version": 1, "origin": dict.fromkeys(("latitude", "longitude", "height"), "?"),
                             "objects": [{"footprints": name, "height": 10}]}).replace('"?"', "?")
         raise ValueError(f"{file}: holds footprints, which become buildings in a scene file: scan a file my{SCENE} beside it with {words}, "
-                         "the origin in degrees and metres (Documentation/scene-format.md)")
+                         "the origin in degrees and metres (Documentation/reference/scene-files.md)")
     if suffix in (".las", ".laz", ".pcd", ".bin", *TABLES, *PACKETS):
         raise ValueError(f"{file}: has no surfaces, expected a mesh or a scene file")
     text_of(file)
@@ -272,7 +272,7 @@ class Scene:
             up_axis: Optional[str] = None, progress: Optional[Progress] = None) -> None:
         """Add surfaces, coordinates in metres east, north and up of the scene's origin.
 
-        surfaces  a mesh file (STL, OBJ, PLY, glTF, VTP, ...: Documentation/scene-format.md), a scene file
+        surfaces  a mesh file (STL, OBJ, PLY, glTF, VTP, ...: Documentation/reference/scene-files.md), a scene file
                   (.lidarscene.json) or a mapping with the keys of one; vtkPolyData (also that of PyVista) or a multiblock
                   of it; a VTK algorithm, which is run; n rows of x, y, z, with `faces`; or a pair of both, as for `mesh`;
                   a mesh of Open3D or trimesh: `vertices` with `triangles` or `faces`, of which a copy is kept

@@ -5,7 +5,7 @@ A sheet says at which range a board of a reflectance is seen with which probabil
 by 1/r^2 a board of 80 % is seen 2.83 times as far as one of 10 %, sheets say 1.7 to 2.5. A board at R fills f = min(1, w^2/(Omega R^2))
 of a round beam, w its width, (1 - exp(-2 k^2 f))/(1 - exp(-2 k^2)) of a Gaussian one, k its truncation; it gives n = eta E rho A exp(-2 mu R)/(pi R^2 h nu) electrons for what it fills, mu that of clear air
 (a visibility of 23 km), and, lit by sky and sun, its daylight as
-background, beside the sky past it: the sensor's `background_radiance` in 100 klx, less in less light. It is seen with the probability that n and Gaussian noise exceed the threshold (Documentation/sensors.md). Fitted are, as
+background, beside the sky past it: the sensor's `background_radiance` in 100 klx, less in less light. It is seen with the probability that n and Gaussian noise exceed the threshold (Documentation/reference/sensor-files.md). Fitted are, as
 far as the points tell them: the aperture A (how much light), the filter's bandwidth (how much daylight, also that of a view wider than the beam; at most BANDWIDTH) and, where no point has it,
 the width of the boards without one, which is not the receiver's but unknown. SciPy's least squares, over logarithms of ranges.
 """
@@ -122,7 +122,7 @@ def share_on_board(sensor, tangent):
 
 
 class Receiver:
-    """What the fit needs of a sensor (Documentation/sensors.md has the formulas)."""
+    """What the fit needs of a sensor (Documentation/reference/sensor-files.md has the formulas)."""
 
     def __init__(self, sensor):
         from scipy.special import erfcinv

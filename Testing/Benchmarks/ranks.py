@@ -5,7 +5,7 @@
     PYTHONPATH=$(cat build/paraview/python-path) /usr/bin/python3 Testing/Benchmarks/ranks.py --page
 
 starts itself under `pvbatch --sym` on 1 and 2 ranks of one thread each, in turns, and prints tables;
---page brings the tables into Documentation/results/parallel.md. Times are the least of all rounds: whatever else the
+--page brings the tables into Documentation/guide/parallel.md. Times are the least of all rounds: whatever else the
 machine does only adds to them. Tracing, and the constant of merging and building, are processor time, all else wall
 time. The page says how many rounds there were, and the load before each of them.
 """
@@ -186,10 +186,10 @@ def main():
         return
     best, loads = measure(options.out.resolve(), options.rounds)
     machine = [*results.machine(), ("rounds", len(loads)), ("load before each", ", ".join(f"{load:.1f}" for load in loads))]
-    tables = {"machine": results.table(["machine", ""], machine, words=True), "times": times_table(best)}
+    tables = {"machine": results.table(["machine", ""], machine, words=True), "ranks-times": times_table(best)}
     print(*tables.values(), sep="\n")
     if options.page:
-        results.put_into_page("parallel", tables)
+        results.put_into_pages(tables)
 
 
 if __name__ == "__main__":

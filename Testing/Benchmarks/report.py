@@ -3,18 +3,15 @@
 """Tables (Markdown) and plots (PNG) of a run of the benchmarks, from its CSV files.
 
     report.py FOLDER            tables.md and *.png into the same folder
-    report.py FOLDER --page     also into Documentation/results/speed.md and Documentation/images/speed-*.png
-    report.py FOLDER --page movers    also into Documentation/results/movers.md
-    report.py FOLDER --page paper-figures    also into Documentation/results/paper-figures.md and its pictures
-
-In a page, tables stand between <!-- table: NAME --> and <!-- end -->; the words around them stay as they are."""
+    report.py FOLDER --pages    also into Documentation/ (Testing/pages.py), pictures as images/speed-*.png or images/paper-*.png
+"""
 import argparse
 import pathlib
 import shutil
 
 import paper_figures
 import plots
-from results import PAGES, columns_of, count, pivot, put_into_page, ratio_text, read, seconds, table
+from results import columns_of, count, pages, pivot, put_into_pages, ratio_text, read, seconds, table
 
 AIRPORTS = ("Hongqiao", "Hongqiao, structures", "Hongqiao, everything", "Honolulu")
 
@@ -165,15 +162,15 @@ def make(folder):
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("folder", type=pathlib.Path)
-    parser.add_argument("--page", nargs="?", const="speed", help="of the results: speed, movers, paper-figures")
+    parser.add_argument("--pages", action="store_true", help="also into Documentation/")
     arguments = parser.parse_args()
     make(arguments.folder)
-    if arguments.page:
-        text = put_into_page(arguments.page, {name: body(arguments.folder) for name, body in TABLES.items()})
+    if arguments.pages:
+        put_into_pages({name: body(arguments.folder) for name, body in TABLES.items()})
         for picture in arguments.folder.glob("*.png"):
-            target = PAGES.parent / "images" / f"{arguments.page.split('-')[0]}-{picture.name}"
-            if f"images/{target.name}" in text:
-                shutil.copyfile(picture, target)
+            for target in pages.DOCUMENTATION.glob(f"images/*-{picture.name}"):
+                if target.name in (f"speed-{picture.name}", f"paper-{picture.name}"):
+                    shutil.copyfile(picture, target)
 
 
 if __name__ == "__main__":

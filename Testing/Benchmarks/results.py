@@ -6,11 +6,13 @@ import os
 import pathlib
 import platform
 import re
+import sys
 import time
 
 import numpy as np
 
-PAGES = pathlib.Path(__file__).resolve().parents[2] / "Documentation" / "results"
+sys.path.append(str(pathlib.Path(__file__).resolve().parents[1]))
+import pages  # noqa: E402
 
 
 def read(folder, name):
@@ -79,13 +81,6 @@ def machine():
             ("load before the run", f"{os.getloadavg()[0]:.1f}"), ("date", time.strftime("%Y-%m-%d"))]
 
 
-def put_into_page(name, tables):
-    """Tables that have a row into a page of results, which is returned."""
-    page = PAGES / f"{name}.md"
-    text = page.read_text(encoding="utf-8")
-    for key, body in tables.items():
-        if body.count("\n") > 2:
-            block = rf"(<!-- table: {key} -->\n).*?(<!-- end -->)"
-            text = re.sub(block, lambda m, body=body: m[1] + body + m[2], text, flags=re.S)
-    page.write_text(text, encoding="utf-8")
-    return text
+def put_into_pages(tables):
+    """Tables that have a row into the pages and CSV files that have them, which are returned."""
+    return {place for name, body in tables.items() if body.count("\n") > 2 for place in pages.put(name, body)}

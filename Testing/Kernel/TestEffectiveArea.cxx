@@ -133,7 +133,7 @@ TEST(EffectiveArea, OfBirdsInFlightIsTheMeanOfPosesDrawnAtRandom)
   EXPECT_NEAR(meanEffectiveArea(HerringGull, false), sum / 4800.0, 3e-4);
 }
 
-// The numbers of both tests stand in Documentation/coverage.md.
+// The numbers of both tests stand in Documentation/guide/coverage.md.
 TEST(EffectiveArea, OfOneBirdForTwoSensorsIsNotIndependent)
 {
   // What two sensors detect together, less what two independent ones would, by the angle between

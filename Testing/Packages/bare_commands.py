@@ -1,11 +1,12 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
 """The README's two commands on a bare Debian with today's updates, made by debootstrap and thrown away: the airport, and all
-tests; then again, where nothing is left to do. Their times and sizes, and checksums of results (bits.py), become a row of a
-page; checksums that differ from those of the other system at the same commit are a failure.
+tests; then again, where nothing is left to do. Their times and sizes, and checksums of results (bits.py), become a row of
+Documentation/evidence/tables/two-commands.csv; checksums that differ from those of the other system at the same commit are a failure.
 
 Needs root, the network and 20 GB in $TMPDIR. What is not committed takes no part. AVIANLIDAR_DATA_DIR is seen there, too."""
 import argparse
+import csv
 import datetime
 import os
 import pathlib
@@ -18,7 +19,7 @@ import tempfile
 import time
 
 SOURCE = pathlib.Path(__file__).resolve().parents[2]
-PAGE = SOURCE / "Documentation/results/first-steps.md"
+TABLE = SOURCE / "Documentation/evidence/tables/two-commands.csv"
 SYSTEMS = {"bookworm": "Debian 12", "trixie": "Debian 13"}
 AIRPORT, TESTS = "Examples/airport/run.sh", "Testing/run.sh"
 BITS = "PYTHONPATH=$(cat build/paraview/python-path) /usr/bin/python3 Testing/Packages/bits.py"
@@ -61,7 +62,7 @@ class System:
 
 
 def row(release, folder):
-    """A row of the page, in Markdown."""
+    """A row of the table."""
     system = System(release, folder)
     bare = system.size("")
     steps = {}
@@ -77,15 +78,9 @@ def row(release, folder):
     minutes = [f"{steps[name][which] / 60.0:.1f}" for name in ("airport", "tests") for which in (0, 1)]
     commit = subprocess.run(["git", "-C", SOURCE, "rev-parse", "--short", "HEAD"], check=True, capture_output=True,
                             text=True).stdout.strip()
-    return (f"| {SYSTEMS[release]} | {datetime.date.today()}, {commit} | {minutes[0]} ({minutes[1]}) | {steps['airport again'][0]:.0f} | "
-            f"{minutes[2]} ({minutes[3]}) | {steps['tests again'][0]:.0f} | {int(tests) - int(skipped)} and {skipped} | "
-            f"{system.size('var/cache/apt/archives') / 1e6:.0f} | {(system.size('') - bare - built) / 1e9:.1f} and {built / 1e9:.1f} | {bits} |")
-
-
-def cells(line):
-    """Commit and checksums of a row."""
-    words = [word.strip() for word in line.split("|")]
-    return words[2].rpartition(" ")[2], words[-2]
+    return [SYSTEMS[release], f"{datetime.date.today()}, {commit}", f"{minutes[0]} ({minutes[1]})", f"{steps['airport again'][0]:.0f}",
+            f"{minutes[2]} ({minutes[3]})", f"{steps['tests again'][0]:.0f}", f"{int(tests) - int(skipped)} and {skipped}",
+            f"{system.size('var/cache/apt/archives') / 1e6:.0f}", f"{(system.size('') - bare - built) / 1e9:.1f} and {built / 1e9:.1f}", bits]
 
 
 def main():
@@ -97,15 +92,14 @@ def main():
         return 77
     with tempfile.TemporaryDirectory(prefix="avian-lidar-bare.", dir=os.environ.get("TMPDIR", "/var/tmp")) as folder:
         line = row(release, pathlib.Path(folder))
-    print(line)
-    commit, bits = cells(line)
-    for other in re.findall(r"^\| Debian .*$", PAGE.read_text(), re.MULTILINE):
-        if cells(other)[0] == commit and cells(other)[1] != bits:
-            sys.exit(f"ERROR: other checksums than\n{other}")
-    text, found = re.subn(rf"^\| {SYSTEMS[release]} \|.*$", line, PAGE.read_text(), flags=re.MULTILINE)
-    if found != 1:
-        sys.exit(f"ERROR: {PAGE}: expected one row that begins with '| {SYSTEMS[release]} |', found {found}")
-    PAGE.write_text(text)
+    print(*line, sep=", ")
+    with open(TABLE, encoding="utf-8", newline="") as file:
+        rows = list(csv.reader(file))
+    for other in rows[1:]:
+        if other[1].split()[-1] == line[1].split()[-1] and other[-1] != line[-1]:
+            sys.exit(f"ERROR: other checksums than {', '.join(other)}")
+    with open(TABLE, "w", encoding="utf-8", newline="") as file:
+        csv.writer(file, lineterminator="\n").writerows(line if one[0] == line[0] else one for one in rows)
     return 0
 
 

@@ -222,7 +222,6 @@ class Macros(Case):
         self.assertEqual(simple.GetActiveSource(), fog)
         self.check_shown((fog, scan), True)
         self.assertLess(simple.GetDisplayProperties(fog, self.view).Opacity, 0.6)
-        document("paraview-fog.png", self.view, [1000, 600])
         counts = points_of("Scan in fog")
         for visibility in (2000.0, 50.0):
             fog.MeteorologicalVisibility = visibility
@@ -321,7 +320,6 @@ class MoreMacros(Case):
         self.assertGreater(min(points_of(*parts)), 0)
         self.check_shown([echoes], False)
         simple.Render(self.view)
-        document("paraview-tracked.png", self.view, [1200, 800])
         # Back at the beginning all is forgotten, and the airport's scan hides the tracks.
         scene.AnimationTime = 0
         tracker.UpdatePipeline(0)

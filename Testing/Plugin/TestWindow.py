@@ -15,10 +15,8 @@ import tempfile
 from gui_testing import HERE, OUTPUT_DIR, PLUGIN_DIR, SOURCE_DIR, run_script
 
 SIZE, DOCUMENTED = (1280, 1024), (1600, 1900)
-IMAGES = {"start": "start", "start-view": "start-view", "range-image": "range-image", "airport": "paraview", "sensors": "paraview-sensors",
-          "wizard-1": "paraview-wizard", "beam": "paraview-beam", "sequence": "paraview-sequence", "information": "panel-information",
-          "AvianLidarCoverage-default": "panel-coverage", "AvianLidarEchoFilter-default": "panel-echo-filter",
-          "AvianLidarMaterialCustom-default": "panel-material", "SaveData-LAS-default": "panel-save-las"}
+IMAGES = {"start": "start", "start-view": "start-view", "sensors": "paraview-sensors", "beam": "paraview-beam",
+          "sequence": "paraview-sequence", "AvianLidarEchoFilter-default": "panel-echo-filter"}
 FINE, COARSE = "SPACING = [12.0, 12.0, 7.5]", "SPACING = [60.0, 60.0, 15.0]"
 AUTO = '<Plugins><Plugin name="AvianLidarPlugin" filename="{}" auto_load="1" /></Plugins>'
 

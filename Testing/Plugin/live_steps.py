@@ -11,7 +11,7 @@ from client_window import AIRPORT, action, delete_all, find, later, panel, panel
 from paraview import servermanager, simple
 from vtkmodules.util.numpy_support import vtk_to_numpy
 
-# What may depend on what is known from before (Documentation/model-needs.md).
+# What may depend on what is known from before (Documentation/guide/accuracy.md).
 COSTS = ("candidates", "nodes_visited", "rays_traced", "skipped", "skipped_bound")
 WEAK = 1e-5  # share of the first scan's rays that a step may trace: some weak paths were left out before
 

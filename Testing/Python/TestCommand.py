@@ -233,7 +233,7 @@ class Surroundings(unittest.TestCase):
 
     def test_examples_are_understood(self):
         """Every example of the help and of the page is one that the parser takes, and every verb has one."""
-        page = (SOURCE / "Documentation" / "command.md").read_text(encoding="utf-8")
+        page = (SOURCE / "Documentation" / "reference" / "commands.md").read_text(encoding="utf-8")
         lines = [line for _, _, examples in _command.VERBS.values() for line in examples.splitlines()]
         lines += [line for block in re.findall(r"```sh\n(.*?)```", page, re.S) for line in re.sub(r"\\\n", " ", block).splitlines()]
         verbs = {_command.parser().parse_args(words[1:]).verb for words in map(shlex.split, lines) if words[:1] == ["avianlidar"]}

@@ -10,6 +10,7 @@ import unittest
 SOURCE = pathlib.Path(os.environ["AVIANLIDAR_SOURCE_DIR"])
 sys.path.insert(0, str(SOURCE / "Testing" / "Studies" / "paper"))
 sys.path.insert(0, str(SOURCE / "Testing"))
+import pages  # noqa: E402
 import reliability_tables  # noqa: E402
 import verdicts  # noqa: E402
 
@@ -57,55 +58,50 @@ class Documentation(unittest.TestCase):
                     self.assertIn(name, NAMES, page.name)
         self.assertGreater(found, 100)
 
-    def test_tests_that_a_page_names_exist(self):
-        files = {file.stem for file in (SOURCE / "Testing").rglob("Test*")}
-        named = set(re.findall(r"\bTest[A-Z]\w+", (SOURCE / "Documentation" / "tests.md").read_text(encoding="utf-8")))
-        self.assertGreater(len(named), 80)
-        self.assertEqual(sorted(named - files), [])
-
     def test_hours_of_fuzzing_are_the_sums_of_the_runs(self):
-        for _, table in reliability_tables.fuzzing():
-            self.assertIn(table, reliability_tables.PAGE.read_text(encoding="utf-8"))
+        for name, table in reliability_tables.fuzzing():
+            self.assertEqual(pages.cells_of(table), pages.rows(name))
 
 
 class Paper(unittest.TestCase):
-    """The page on the paper has a row with a verdict for every equation, figure, table and algorithm, and names tests
-    that are there."""
+    """The page of the paper's claims has a row for every equation, figure, table and algorithm, verdicts and numbers that agree with
+    the tables, and names tests that exist."""
 
     @classmethod
     def setUpClass(cls):
-        cls.text = (SOURCE / "Documentation" / "paper.md").read_text(encoding="utf-8")
-        cls.figures = verdicts.FIGURES.read_text(encoding="utf-8")
+        cls.text = verdicts.PAGE.read_text(encoding="utf-8")
         cls.rows = verdicts.rows_of(cls.text)
         cls.kernel = "".join(file.read_text(encoding="utf-8") for file in (SOURCE / "Testing" / "Kernel").glob("*.*"))
 
-    def test_counts_and_verdicts_are_those_of_the_measurements(self):
-        self.assertEqual(sum(verdicts.counts(self.text).values()) // 2, len(self.rows))
-        self.assertEqual(verdicts.with_counts(self.text), self.text)
-        self.assertEqual(verdicts.differences(self.text, self.figures), [])
-        self.assertEqual({verdicts.word_of(row[4]) for row in self.rows}, set(verdicts.VERDICTS))
+    def test_rows_are_numbered_and_short(self):
+        self.assertEqual([row[0] for row in self.rows], [str(number + 1) for number in range(len(self.rows))])
+        for number, _, verdict, finding, _ in self.rows:
+            self.assertIn(verdict, verdicts.VERDICTS, number)
+            self.assertLessEqual(len(finding.split()), 40, number)
+
+    def test_every_part_of_the_paper_has_a_row(self):
+        places = " ".join(row[1].partition(":")[0] for row in self.rows)
+        for kind, last in (("Eq.", 20), ("Fig.", 17), ("Table", 2), ("Algorithm", 2)):
+            for number in range(1, last + 1):
+                self.assertRegex(places, rf"{kind} {number}\b")
+
+    def test_counts_verdicts_and_numbers_are_those_of_the_tables(self):
+        self.assertEqual(verdicts.differences(self.text), [])
+        for word, number in verdicts.counts(self.text).items():
+            self.assertIn(f"| {word} | {number} |", self.text)
 
     def test_what_shows_a_row_is_there(self):
-        for row in self.rows:
-            names = re.findall(r"`([^`]+)`", row[3])
-            self.assertTrue(names or row[3] == "nothing to run", row[0])
+        for number, *_, shown in self.rows:
+            names = re.findall(r"`([^`]+)`", shown)
+            self.assertTrue(names or "](" in shown, number)
             for name in names:
-                with self.subTest(row=row[0], name=name):
-                    self.assertTrue(self.is_there(name))
+                self.assertTrue(self.is_there(*name.split(".")), (number, name))
 
-    def is_there(self, name):
-        """A file, `Kind-TestX` with or without a method, or `Suite.Case` of the kernel."""
-        kind, _, test = name.partition("-")
-        test, _, method = test.partition(": ")
-        if "/" in name:
-            return (SOURCE / name).is_file()
-        if test:
-            file = SOURCE / "Testing" / kind / f"{test}.py"
-            there = file.is_file() and (not method or f"def {method}(" in file.read_text(encoding="utf-8"))
-            return there or test == "InstructionSets" or f"{test}.cxx" in NAMES
-        suite, case = name.split(".")
-        case = "" if case == "*" else rf"{case}\)"
-        return re.search(rf"^(TYPED_)?TEST(_F|_P)?\({suite}, {case}", self.kernel, re.M) is not None
+    def is_there(self, suite, case):
+        """`TestX.test_y` of Python or `Suite.Case` of the kernel."""
+        file = next((SOURCE / "Testing").rglob(f"{suite}.py"), None)
+        return f"def {case}(" in file.read_text(encoding="utf-8") if file else \
+            re.search(rf"^(TYPED_)?TEST(_F|_P)?\({suite}, {case}\)", self.kernel, re.M) is not None
 
 
 if __name__ == "__main__":

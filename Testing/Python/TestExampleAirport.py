@@ -72,7 +72,7 @@ class AllWall(unittest.TestCase):
         self.assertAlmostEqual(np.median(found["hue"][terminal]), 190, delta=2)
 
     def test_hue_in_range_units_of_1_ns(self):
-        # As Documentation/airport.md says.
+        # As Documentation/guide/airport.md says.
         folder = et.folder("ExampleAirportUnit")
         airport.main(["--no-pictures", "--all-wall", "--preset", "Airport16", "--unit", "1", "--rays", "100", "--out", folder])
         rows = et.read_table(os.path.join(folder, "table.md"))["Airport16"]
@@ -83,7 +83,7 @@ class Documentation(unittest.TestCase):
     def test_numbers_of_the_page(self):
         folder = et.folder("ExampleAirportPage")
         airport.main(["--no-pictures", "--out", folder])
-        et.assert_documented(self, et.read_table(os.path.join(folder, "table.md")), "airport.md", "airport")
+        et.assert_documented(self, et.read_table(os.path.join(folder, "table.md")), "airport")
 
 
 class Arguments(unittest.TestCase):

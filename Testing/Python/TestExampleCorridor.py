@@ -132,7 +132,7 @@ class Corridor(unittest.TestCase):
         self.assertAlmostEqual(found["distance_m"][wall].max(), 12.2, delta=0.5)
 
     def test_numbers_of_the_page(self):
-        et.assert_documented(self, et.read_table(self.folder + "/table.md"), "corridor.md", "corridor")
+        et.assert_documented(self, et.read_table(self.folder + "/table.md"), "corridor")
 
 
 if __name__ == "__main__":

@@ -159,7 +159,7 @@ class Paper(unittest.TestCase):
         self.assertAlmostEqual(rms[1], 0.85, delta=0.04)
 
     def test_numbers_of_the_page(self):
-        et.assert_documented(self, et.read_table(os.path.join(self.folder, "table.md")), "paper.md", "paper")
+        et.assert_documented(self, et.read_table(os.path.join(self.folder, "table.md")), "paper")
 
 
 class Attenuation(unittest.TestCase):
@@ -181,7 +181,7 @@ class Attenuation(unittest.TestCase):
         self.assertAlmostEqual(attenuation.reach("corridor", factor * attenuation.CORRIDOR), 163, delta=0.5)
 
     def test_numbers_of_the_page(self):
-        et.assert_documented(self, et.read_table(os.path.join(self.folder, "table.md")), "paper.md", "attenuation")
+        et.assert_documented(self, et.read_table(os.path.join(self.folder, "table.md")), "attenuation")
 
 
 class Protocol(unittest.TestCase):
@@ -200,7 +200,7 @@ class Protocol(unittest.TestCase):
         self.assertLess(self.found["door"][:, 2].max(), 1.05 * step.max())
 
     def test_numbers_of_the_page(self):
-        documented = et.documented_table("corridor.md", "protocol")
+        documented = et.documented_table("protocol")
         table = et.read_table(os.path.join(self.folder, "table.md"))
         self.assertEqual(list(table), list(documented))
         for column, rows in documented.items():

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Documentation/arrays.md is the table of vtkAvianLidarNames.h and has every array of the echo filter's outputs with its unit; what
-Documentation/glossary.md names exists."""
+"""Documentation/reference/arrays.md is the table of vtkAvianLidarNames.h and has every array of the echo filter's outputs with its unit; what
+Documentation/reference/glossary.md names exists."""
 import os
 import pathlib
 import re
@@ -20,7 +20,7 @@ sys.path.insert(0, str(SOURCE / "CMake"))
 import arrays_page  # noqa: E402
 
 ROWS = [[cell.strip() for cell in row.split("|")] for row in re.findall(
-    r"^\| (?!paper|-)(.*) \|$", (SOURCE / "Documentation" / "glossary.md").read_text(encoding="utf-8"), re.M)]
+    r"^\| (?!paper|-)(.*) \|$", (SOURCE / "Documentation" / "reference" / "glossary.md").read_text(encoding="utf-8"), re.M)]
 UNITS = {name: unit for name, unit, _, _ in arrays_page.rows()}
 # Names of the glossary; those that are not in the header have their units there.
 GLOSSARY = {name for row in ROWS for name in re.findall(r"`([^`]+)`", row[2])}

@@ -17,7 +17,7 @@ from echotools import InFolder, array
 FILE, LABELS = "TestKITTIWriter.bin", "TestKITTIWriter.label"
 
 # (LAS, SemanticKITTI) of the words for classes of objects, as the page has them; a few as the standards do.
-with open(os.path.join(os.environ["AVIANLIDAR_SOURCE_DIR"], "Documentation", "formats.md"), encoding="utf-8") as page:
+with open(os.path.join(os.environ["AVIANLIDAR_SOURCE_DIR"], "Documentation", "reference", "formats.md"), encoding="utf-8") as page:
     ROWS = re.findall(r"^\| ((?:`\w+`(?:, )?)+) \| (\d+)[^|]*\| (\d+)[^|]*\|$", page.read(), re.M)
 WORDS = {word: (int(las), int(kitti)) for words, las, kitti in ROWS for word in re.findall(r"`(\w+)`", words)}
 STANDARD = {"ground": (2, 72), "water": (9, 49), "runway": (11, 40), "building": (6, 50), "bridge": (17, 52), "fence": (1, 51), "pole": (1, 80),

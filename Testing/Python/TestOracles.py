@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The echo filter gives what closed forms give (Testing/Oracles), sampled and integrated. With --table it prints the numbers
-of Documentation/results/oracles.md instead. For another simulator, this is the file to write anew."""
+of Documentation/evidence/oracles.md instead. For another simulator, this is the file to write anew."""
 import math
 import os
 import sys

@@ -8,7 +8,7 @@ import numpy as np
 import avianlidar as al
 
 UNIT = 0.5 * 299792458.0 * 5e-9  # m
-DARK, EXCESS = 119.062, 3.0  # of Search905: sigma0, F (Documentation/sensors.md)
+DARK, EXCESS = 119.062, 3.0  # of Search905: sigma0, F (Documentation/reference/sensor-files.md)
 PER_JOULE = 0.4 / (6.626e-34 * 299792458.0 / 905e-9)  # electrons
 WALL = 200.0  # m, from the middle of the places
 

@@ -13,7 +13,11 @@ from vtkmodules.util.numpy_support import vtk_to_numpy  # noqa: F401  # for the 
 from cloudtools import field as strings  # noqa: F401
 from echotools import arrays  # noqa: F401
 
-EXAMPLES = os.path.join(os.environ["AVIANLIDAR_SOURCE_DIR"], "Examples")
+SOURCE = os.environ["AVIANLIDAR_SOURCE_DIR"]
+sys.path.append(os.path.join(SOURCE, "Testing"))
+import pages  # noqa: E402
+
+EXAMPLES = os.path.join(SOURCE, "Examples")
 OUTPUT = os.environ["AVIANLIDAR_TEST_OUTPUT_DIR"]
 for home in (pathlib.Path(EXAMPLES), pathlib.Path(EXAMPLES).parent / "Testing" / "Studies"):
     sys.path[:0] = [str(folder) for folder in home.iterdir() if folder.is_dir()]
@@ -46,19 +50,18 @@ def parse_table(lines):
     return {name: {row[0]: row[i + 1] for row in rows[2:]} for i, name in enumerate(rows[0][1:])}
 
 
-def documented_table(page, name):
-    """The table between <!-- table: name --> and <!-- end --> of a page of Documentation/."""
-    file = os.path.join(os.environ["AVIANLIDAR_SOURCE_DIR"], "Documentation", page)
-    with open(file, encoding="utf-8") as stream:
-        return parse_table(stream.read().split(f"<!-- table: {name} -->\n")[1].split("<!-- end -->")[0].splitlines())
+def documented_table(name):
+    """{column: {row: text}} of a table of Documentation/."""
+    head, *rows = pages.rows(name)
+    return {column: {row[0]: row[i + 1] for row in rows} for i, column in enumerate(head[1:])}
 
 
-def assert_documented(test, table, page, name):
-    """The counts of a table are those of the page. Another processor may differ by a beam or two, and GEOS from 3.13 on
+def assert_documented(test, table, name):
+    """The counts of a table are those of the documentation. Another processor may differ by a beam or two, and GEOS from 3.13 on
     divides roofs into other triangles, which changes how many rays are traced."""
     geos = tuple(map(int, re.findall(r"\d+", subprocess.run(["geos-config", "--version"], capture_output=True, text=True).stdout)[:2]))
     traced = 0.01 if geos >= (3, 13) else 0.003
-    documented = documented_table(page, name)
+    documented = documented_table(name)
     test.assertEqual(list(table), list(documented))
     for column, rows in documented.items():
         for row, text in rows.items():

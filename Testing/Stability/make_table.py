@@ -1,13 +1,14 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Runs avianlidarStabilityTests and writes what it recorded into the table of Documentation/results/stability.md.
+"""Runs avianlidarStabilityTests and writes what it recorded into Documentation/evidence/tables/extremes.csv.
 
-With --check nothing is written: the page must have the very rows that the tests make, with their ranges and promises.
-The worst errors are those of the run that wrote the page; they may differ in their last digits between processors, and
+With --check nothing is written: the file must have the very rows that the tests make, with their ranges and promises.
+The worst errors are those of the run that wrote the file; they may differ in their last digits between processors, and
 what they may be at most the tests check themselves.
 
 With --large the rows on size are those of ten million triangles (about 3 GB, a minute)."""
 import argparse
+import csv
 import os
 import pathlib
 import re
@@ -15,9 +16,7 @@ import subprocess
 import sys
 import tempfile
 
-BEGIN = "<!-- table: extremes -->"
-END = "<!-- end -->"
-HEADER = "| extreme | input range | what is measured | promised: at most | worst seen |\n|---|---|---|---:|---:|\n"
+HEAD = ["extreme", "input range", "what is measured", "promised: at most", "worst seen"]
 LARGE = {"AVIANLIDAR_STABILITY_TRIANGLES": "10000000"}
 
 
@@ -32,47 +31,31 @@ def recorded(program, large):
         return [line.split("\t") for line in rows.read_text().splitlines()]
 
 
-def in_markdown(rows):
-    """The table, each extreme named once."""
-    text = HEADER
-    extreme = None
-    for row in rows:
-        text += "| {} | {} | {} | {} | {} |\n".format(row[0] if row[0] != extreme else "", *row[1:])
-        extreme = row[0]
-    return text
-
-
-def promises(table):
-    """What does not depend on machine and build: all but the last column, numbers that tell of size, and the order."""
-    rows, extreme = [], None
-    for line in table.splitlines():
-        first, *rest = line.split("|")[1:-2]
-        extreme = first if first.strip() else extreme
-        rows.append("|".join([extreme, *rest]))
-    return sorted(re.sub(r"[0-9,]+ triangles", "triangles", row) for row in rows)
+def promises(rows):
+    """What does not depend on machine and build: all but the last column and numbers that tell of size."""
+    return sorted(re.sub(r"[0-9,]+ triangles", "triangles", " | ".join(row[:-1])) for row in rows)
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--program", required=True)
-    parser.add_argument("--page", required=True, type=pathlib.Path)
+    parser.add_argument("--table", required=True, type=pathlib.Path)
     parser.add_argument("--check", action="store_true")
     parser.add_argument("--large", action="store_true")
     arguments = parser.parse_args()
-    page = arguments.page.read_text()
-    before, rest = page.split(BEGIN + "\n")
-    old, after = rest.split(END, 1)
+    with open(arguments.table, encoding="utf-8", newline="") as lines:
+        old = list(csv.reader(lines))[1:]
+    known = [row[0] for row in old]
     rows = recorded(arguments.program, arguments.large)
-    rows.sort(key=lambda row: old.find(f"| {row[0]} |") % (len(old) + 1))  # as on the page, whichever ran first; new ones last
-    table = in_markdown(rows)
+    rows.sort(key=lambda row: known.index(row[0]) if row[0] in known else len(known))  # whichever ran first; new ones last
     if not arguments.check:
-        arguments.page.write_text(before + BEGIN + "\n" + table + END + after)
+        with open(arguments.table, "w", encoding="utf-8", newline="") as lines:
+            csv.writer(lines, lineterminator="\n").writerows([HEAD, *rows])
         return 0
-    if promises(table) != promises(old):
-        for line in set(promises(table)) ^ set(promises(old)):
-            print("only on one side:", line)
-        return 1
-    return 0
+    wrong = set(promises(rows)) ^ set(promises(old))
+    for line in sorted(wrong):
+        print("only on one side:", line)
+    return 1 if wrong else 0
 
 
 if __name__ == "__main__":

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
 """Scans an airport, moves it by its place in UTM, turns it about the vertical, the lidar with it, scans it again, and
-writes what differs into the table of Documentation/results/stability.md:
+writes what differs into Documentation/evidence/tables/moved.csv:
 
     PYTHONPATH=$(cat build/paraview/python-path) /usr/bin/python3 Testing/Stability/moved_scenes.py
 
@@ -20,9 +20,10 @@ import avianlidar as al
 from avianlidar._pipeline import update
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
+sys.path.append(str(ROOT / "Testing"))
+import pages  # noqa: E402
+
 SHIPPED = ROOT / "Examples" / "airport" / "scene" / "hongqiao.lidarscene.json"
-PAGE = ROOT / "Documentation" / "results" / "stability.md"
-BEGIN, END = "<!-- table: moved -->\n", "<!-- end -->"
 HEADER = """\
 | scene | moved by | turned by (deg) | echoes, before | after | the same | energy differs by 1e-6 | by 1 % | by 10 % \
 | most | rms | most, in stated standard errors | range: most (m) | rms (m) | all energy |
@@ -112,18 +113,14 @@ def percent(share):
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--scenes", type=pathlib.Path, help="folder with zsss_structures.lidarscene.json")
-    parser.add_argument("--page", type=pathlib.Path, default=PAGE)
     arguments = parser.parse_args()
-    page = arguments.page.read_text()
-    before, rest = page.split(BEGIN)
-    old, after = rest.split(END, 1)
     text = HEADER + "".join(rows("Hongqiao", SHIPPED))
     structures = "Hongqiao, structures"
     if arguments.scenes:
         text += "".join(rows(structures, arguments.scenes / "zsss_structures.lidarscene.json"))
     else:
-        text += "".join(line + "\n" for line in old.splitlines() if line.startswith(f"| {structures} |"))
-    arguments.page.write_text(before + BEGIN + text + END + after)
+        text += "".join(f"| {' | '.join(row)} |\n" for row in pages.rows("moved") if row[0] == structures)
+    pages.put("moved", text)
     return 0
 
 

@@ -13,38 +13,33 @@ measure those, too.
 """
 import importlib
 import pathlib
-import re
 import shutil
 import sys
 
 HERE = pathlib.Path(__file__).resolve().parent
-DOCUMENTATION = HERE.parents[1] / "Documentation"
 FOLDERS = [folder for home in (HERE, HERE.parents[1] / "Examples") for folder in home.iterdir() if folder.is_dir()]
-sys.path[:0] = map(str, [*FOLDERS, HERE.parent / "Python"])
+sys.path[:0] = map(str, [*FOLDERS, HERE.parent / "Python", HERE.parent])
 BUILT = HERE.parents[1] / "build" / "paraview" / "python-path"
 sys.path += BUILT.read_text(encoding="utf-8").strip().split(":") if BUILT.exists() else []
+import pages as tables  # noqa: E402
 import tools  # noqa: E402
 
-# Runs for pages, by name: {picture: name in Documentation/images}, arguments and module if it is called otherwise.
+# Runs for pages, by name: {picture: name in Documentation/images}.
 RUNS = {
-    "accuracy_page": {f"{name}-{kind}": f"accuracy-{name}-{kind}" for name, kind in (
-        ("airport16", "energy"), ("airport16", "range"), ("airport16", "detection"), ("corridor", "energy"))},
+    "accuracy_page": {"airport16-energy": "accuracy-airport16-energy"},
     "advice": {},
-    "airport": {"Airport16-top": "airport-top-16", "Airport32-top": "airport-top-32", "Airport16-close": "airport-terminal-1-16",
-                "Airport32-close": "airport-terminal-1-32", "Airport16-range": "airport-range-16"},
-    "airport-all-wall": ({"Airport32-close": "airport-terminal-1-32-all-wall"}, "airport", "--all-wall"),
-    "airport_search": {"tree": "search-tree", "status": "search-status", "cost": "search-cost"},
-    "airport_time": {"sweep": "time-sweep", "revolutions": "time-revolutions"},
+    "airport": {"Airport16-top": "airport-top-16"},
+    "airport_search": {"tree": "search-tree"},
+    "airport_time": {"revolutions": "time-revolutions"},
     "attenuation": {},
     "beam_shapes": {"shapes": "beams-shapes"},
     "birds": {"species": "birds-species", "detection": "birds-detection"},
-    "birds_over_airport": {"from-above": "birds-over-airport", "range-image": "birds-range-image", "points": "birds-points"},
+    "birds_over_airport": {"from-above": "birds-over-airport"},
     "check_fit": {"silver-metallic-paint": "materials-silver-metallic-paint"},
-    "corridor": {"door": "corridor-door", "stairwell": "corridor-stairwell", "corridor": "corridor-corridor", "range": "corridor-range",
-                 "top": "corridor-top"},
+    "corridor": {"corridor": "corridor-corridor"},
     "design": {"head": "design-head"},
     "detail": {},
-    "falloff": {"signal": "falloff-signal", "beams": "falloff-beams"},
+    "falloff": {},
     "labels": {"labels": "sequences-labels"},
     "media_time": {},
     "more_reflections": {},
@@ -54,16 +49,14 @@ RUNS = {
     "paper_times": {},
     "patterns": {"prisms": "sensors-prisms", "rotors": "sensors-rotors"},
     "presets": {},
-    "predicted_measured": {"ground": "measured-ground", "least": "measured-least"},
+    "predicted_measured": {"least": "measured-least"},
     "protocol": {},
-    "quadcopter": {"points": "measured-quadcopter"},
+    "quadcopter": {},
     "ranges": {"ranges": "coverage-ranges"},
-    "render_notebook": {"energy-image": "python-range-image", "map": "python-map"},
+    "render_notebook": {"energy-image": "python-range-image"},
     "report_card": {"scan": "tracks-scan"},
-    "room": {"errors": "room-errors", "xt32-clouds": "room-xt32-clouds", "xt32-ranges": "room-xt32-ranges",
-             "pandar40p-clouds": "room-pandar40p-clouds", "xt32-intensity": "room-xt32-intensity"},
-    "screenshots": {"head": "coverage-report", "maps": "coverage-maps", "reasons": "coverage-reasons", "section": "coverage-section",
-                    "weather": "coverage-weather", "sites": "coverage-sites"},
+    "room": {"xt32-ranges": "room-xt32-ranges"},
+    "screenshots": {"head": "coverage-report"},
     "second_reflection": {},
     "sequence_costs": {},
     "tracked_gulls": {},
@@ -74,29 +67,19 @@ RUNS = {
 LONG = ("accuracy_page", "sequence_costs")  # only when they are named
 
 
-def put_table(name, text):
-    """Between the lines <!-- table: name --> and <!-- end --> of every page."""
-    for page in DOCUMENTATION.rglob("*.md"):
-        old = page.read_text(encoding="utf-8")
-        new = re.sub(rf"(<!-- table: {name} -->\n).*?(<!-- end -->)", lambda found: found[1] + text + found[2], old, flags=re.S)
-        if new != old:
-            page.write_text(new, encoding="utf-8")
-
-
 def pages(words):
     """Run what is named, or take results that are there, and bring them into the pages."""
     folder, run = pathlib.Path("build"), True
     if words[:1] == ["--from"]:
         folder, run, words = pathlib.Path(words[1]), False, words[2:]
     for name in words or [name for name in RUNS if name not in LONG]:
-        pictures, module, *arguments = RUNS[name] if isinstance(RUNS.get(name), tuple) else (RUNS.get(name, {}), name)
         out = folder / name
         if run:
-            importlib.import_module(module).main([*arguments, "--out", str(out)])
-        for picture, target in pictures.items():
-            shutil.copyfile(out / f"{picture}.png", DOCUMENTATION / "images" / f"{target}.png")
+            importlib.import_module(name).main(["--out", str(out)])
+        for picture, target in RUNS.get(name, {}).items():
+            shutil.copyfile(out / f"{picture}.png", tables.DOCUMENTATION / "images" / f"{target}.png")
         for table in out.glob("*.md"):
-            put_table(name if table.stem == "table" else table.stem, table.read_text(encoding="utf-8"))
+            tables.put(name if table.stem == "table" else table.stem, table.read_text(encoding="utf-8"))
 
 
 def main(words):

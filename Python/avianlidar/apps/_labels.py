@@ -21,7 +21,7 @@ class Class(NamedTuple):
     color: Tuple[int, int, int]    # blue, green, red
 
 
-# Every class that a sequence can have, by its id in SemanticKITTI (Documentation/formats.md): what is looked for comes first.
+# Every class that a sequence can have, by its id in SemanticKITTI (Documentation/reference/formats.md): what is looked for comes first.
 CLASSES = {
     0: Class("unlabeled", "false alarms, objects of no known class", (0, 0, 0)),
     BIRD: Class("bird", "birds", (110, 0, 215)),

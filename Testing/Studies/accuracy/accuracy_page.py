@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The trade of speed for accuracy on the scenes of Documentation/results/accuracy.md, as tables and plots of that page. It takes
+"""The trade of speed for accuracy on the scenes of Documentation/evidence/accuracy.md, as tables and plots of that page. It takes
 about ten minutes on two cores.
 
     Testing/Studies/run.py pages accuracy_page

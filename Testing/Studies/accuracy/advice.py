@@ -19,7 +19,7 @@ from running import argument, study
 import avianlidar as al
 from avianlidar.vtkAvianLidar import vtkAvianLidarEchoFilter as Filter
 
-# The kinds of scenes of results/accuracy.md: title, file among those that the build makes; the first is shipped.
+# The kinds of scenes of evidence/accuracy.md: title, file among those that the build makes; the first is shipped.
 SCENES = (("footprints alone (Hongqiao)", None), ("towers (Shanghai)", "shanghai_cbd"),
           ("masts and jetways (Hongqiao)", "zsss_structures"), ("airport with terrain (Honolulu)", "phnl"),
           ("town and airport (Neubrandenburg)", "neubrandenburg"), ("houses in detail (Ingolstadt)", "ingolstadt"))

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The folder that `avianlidar airport` leaves of Neubrandenburg, from raw OSM of the town in the data folder: the picture of
-Documentation/your-airport.md.
+Documentation/guide/airport.md.
 
     PYTHONPATH=$(cat build/paraview/python-path) /usr/bin/python3 your_airport.py [--out DIR]
 """

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """What coverage costs, beside gdal_viewshed on as many cells, and what share of strips and approaches is covered.
 
-    Testing/Studies/run.py coverage_costs --scenes build/paraview/Testing/Scenes --flown flown.csv --page Documentation/results/coverage.md
+    Testing/Studies/run.py coverage_costs --scenes build/paraview/Testing/Scenes --flown flown.csv
 
 Scenes: the airport that is shipped, and up to five of a folder. `flown.csv` is what flown.py leaves.
 """
@@ -125,46 +125,34 @@ def search():
 
 @study(argument("--scenes", type=pathlib.Path, required=True, help="folder with .lidarscene.json files"),
        argument("--flown", type=pathlib.Path, help="what flown left"), argument("--flown-scans", type=int, default=100),
-       argument("--flown-sensors", type=pathlib.Path, help="what flown_sensors left"), argument("--page", type=pathlib.Path, required=True))
+       argument("--flown-sensors", type=pathlib.Path, help="what flown_sensors left"))
 def main(options):
-    lines = ["# Coverage: what it costs, and what it says", "",
-             "Made by `Testing/Studies/coverage/coverage_costs.py` on two cores; times in seconds: another species, and what stands beside gdal_viewshed, are medians of several turns.", "", "## Cost", "",
-             "Ten million places, 4 x 4 km, 150 m high, `Search905`, after tree and beams. The first map scans the clutter and traces all",
-             "lines of sight; another species or air traces none.", ""]
     scenes = [AIRPORT]
     for path in sorted(options.scenes.glob("*.lidarscene.json")):
         if len(scenes) < 6 and "osm" not in path.name and "all" not in path.name:
             scenes.append(path)
-    lines.append(tools.markdown(("scene", "places", "first map", "another species", "another air"), [
-        (row["scene"], f"{row['places']:,}", f"{row['first']:.2f}", f"{row['species']:.2f}", f"{row['air']:.2f}") for row in map(costs, scenes)]).rstrip())
+    tools.leave(options.out, "coverage-costs", ("scene", "places", "first map, s", "another species, s", "another air, s"), [
+        (row["scene"], f"{row['places']:,}", f"{row['first']:.2f}", f"{row['species']:.2f}", f"{row['air']:.2f}") for row in map(costs, scenes)])
     with tempfile.TemporaryDirectory() as folder:
-        row = beside_viewshed(pathlib.Path(folder))
-    lines += ["", f"One map of Hongqiao at 30 m, {row['cells']:,} cells of 1.5 m, in turns with `gdal_viewshed` on the same cells (one "
-              f"core), which finds lines of sight alone over a raster: {row['coverage']:.2f} s with clutter and probabilities against "
-              f"{row['gdal_viewshed']:.2f} s, {row['ratio']:.0f} times as long. Hidden are {100 * row['hidden']:.2f} % of the cells, as far as "
-              f"beams are near, and {100 * row['hidden_there']:.2f} % by the viewshed.", "", "## Shares at Hongqiao", "",
-              "Of 12,000 places, half in strips and half in approaches to 3 km, 3 m above the middle of runway 18L/36R; detected in one "
-              "scan, visibility 23 km. All receivers but the paper's (`Airport16`) are assumed, and so are the birds.", "",]
-    lines.append(tools.markdown(("sensor", *SPECIES), [
+        one = beside_viewshed(pathlib.Path(folder))
+    found = search()
+    notes = [("cells of 1.5 m of one map at 30 m", f"{one['cells']:,}"), ("with clutter and probabilities, s", f"{one['coverage']:.2f}"),
+             ("gdal_viewshed, s", f"{one['gdal_viewshed']:.2f}"), ("ratio", f"{one['ratio']:.0f}"),
+             ("hidden where beams are near, %", f"{100 * one['hidden']:.2f}"), ("hidden there by the viewshed, %", f"{100 * one['hidden_there']:.2f}"),
+             ("siting: sites", f"{found['sites']}"), ("siting: look, s", f"{found['look']:.1f}"), ("siting: search of one to three sites, s", f"{found['search']:.1f}")]
+    tools.leave(options.out, "coverage-species", ("sensor", *SPECIES), [
         (sensor, *(f"{rows[s]['detection_probability']:.3f} ± {rows[s]['detection_std_error']:.3f}" for s in SPECIES))
-        for sensor, rows in shares().items()]).rstrip())
-    row = search()
-    lines += ["", "## Siting", "", f"{row['sites']} sites, 12,000 places and three species without clutter, on one thread: {row['look']:.1f} s; the "
-              f"search for networks of one to three sites: {row['search']:.1f} s."]
+        for sensor, rows in shares().items()])
     if options.flown:
         with options.flown.open(encoding="utf-8") as file:
             rows = list(csv.DictReader(file))
-        p, seen, expected = (np.array([float(row[name]) for row in rows]) for name in ("probability", "seen", "expected by the echo filter"))
-        result = flown.compare(p, seen, options.flown_scans)
-        lines += ["", "## Against birds that are flown", "",
-                  f"A gull of random heading and wing phase at each of {len(rows):,} places in strips and approaches, {options.flown_scans} "
-                  "scans through the echo filter with 10,000 rays (`Testing/Studies/coverage/flown.py`): mean probability "
-                  f"{p.mean():.4f}, seen {seen.mean():.4f}, bias {result['bias']:+.4f}; {100 * result['beyond_3_std_errors']:.2f} % of the places "
-                  f"beyond three standard errors, {100 * result['outside_99.73_percent']:.2f} % outside 99.73 % of the binomial law. Of the "
-                  f"{np.count_nonzero((p > 0.01) & (p < 0.99))} places that are neither certain nor hopeless "
-                  f"{100 * np.mean((np.abs(seen - p) > 3 * np.sqrt(p * (1 - p) / options.flown_scans))[(p > 0.01) & (p < 0.99)]):.1f} % "
-                  "are beyond three standard errors."]
+        p, seen = (np.array([float(row[name]) for row in rows]) for name in ("probability", "seen"))
+        result, open_ = flown.compare(p, seen, options.flown_scans), (p > 0.01) & (p < 0.99)
+        beyond = np.abs(seen - p) > 3 * np.sqrt(p * (1 - p) / options.flown_scans)
+        notes += [("flown: places", f"{len(rows):,}"), ("flown: mean probability", f"{p.mean():.4f}"), ("flown: seen", f"{seen.mean():.4f}"),
+                  ("flown: bias", f"{result['bias']:+.4f}"), ("flown: beyond three standard errors, %", f"{100 * result['beyond_3_std_errors']:.2f}"),
+                  ("flown: outside 99.73 % of the binomial law, %", f"{100 * result['outside_99.73_percent']:.2f}"),
+                  ("flown: neither certain nor hopeless", f"{np.count_nonzero(open_)}"), ("flown: beyond three of these, %", f"{100 * beyond[open_].mean():.1f}")]
+    tools.leave(options.out, "coverage-notes", ("what", "value"), notes)
     if options.flown_sensors:
-        lines += ["", "For sensors of narrow and of wide beams, in free space: azimuths, elevations of 0 to 10 degrees and distances from 5 m to where birds "
-                  "are no longer seen are uniform (`Testing/Studies/coverage/flown_sensors.py`).", "", tools.markdown(flown_sensors.HEAD, flown_sensors.lines_of(options.flown_sensors), 2).rstrip()]
-    options.page.write_text("\n".join(lines) + "\n", encoding="utf-8")
+        tools.leave(options.out, "coverage-flown", flown_sensors.HEAD, flown_sensors.lines_of(options.flown_sensors), 2)

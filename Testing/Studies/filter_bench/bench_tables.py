@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The tables and the picture of Documentation/filters.md from what `avianlidar bench` has written.
+"""The tables and the picture of Documentation/guide/filters.md from what `avianlidar bench` has written.
 
     Testing/Studies/run.py bench_tables
     Testing/Studies/run.py pages --from build/bench scores

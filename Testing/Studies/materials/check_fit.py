@@ -5,7 +5,7 @@
 
 The MERL tables themselves are not at hand. For each material three tables are written in their format and fitted: this
 project's model with the material's numbers, the same with noise of 10 %, and the Blinn-Phong lobe of the fit. Leaves
-tables of what comes back (Documentation/results/materials.md) and a picture.
+tables of what comes back (Documentation/evidence/materials.md) and a picture.
 """
 import csv
 import pathlib

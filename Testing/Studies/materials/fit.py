@@ -6,7 +6,7 @@
 
 A table is a MERL file (.binary), or a CSV file with the header `incidence,view,azimuth,brdf` or, straight back alone,
 `incidence,brdf`: angles in degrees to the normal, azimuth from the source to the viewer about it (180: the mirror's side).
-Leaves materials.json, whose content goes into a .lidarscene.json, and a picture for each table. Documentation/reflectance.md says what is fitted and why.
+Leaves materials.json, whose content goes into a .lidarscene.json, and a picture for each table. Documentation/method/reflectance.md says what is fitted and why.
 """
 import csv
 import dataclasses

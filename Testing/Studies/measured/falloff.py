@@ -9,7 +9,7 @@ Planes are found by random samples (Fischler and Bolles, CACM 24(6), 1981). On a
 is h/r, so the signal cos/r^n of a matt plane is h/r^(n + 1): n is the slope of ln signal over ln r with its sign turned,
 less one. Slopes are fitted to medians of bins of range, of each beam and of all beams of a plane. Leaves tables and pictures.
 
-Documentation/results/falloff.md says what they are and what comes out.
+Documentation/evidence/real-scans.md says what they are and what comes out.
 """
 import dataclasses
 import os
@@ -189,7 +189,7 @@ def own_gain(distance, signal, scale, top):
 
 
 def near_range(distance, gain):
-    """Overlap and defocus range (m) of a sensor (Documentation/sensors.md) fitted to its own gain up to its largest, with a level
+    """Overlap and defocus range (m) of a sensor (Documentation/reference/sensor-files.md) fitted to its own gain up to its largest, with a level
     of its own, and the rms of what is left, of the level."""
     there = distance <= distance[np.argmax(gain)]
     r, y = distance[there], gain[there]

@@ -46,7 +46,7 @@ ROUND = 0.5        # of a whole number
 EDGES = (5, 10, 20, 30, 40, 60, 80, 120, 160)  # m, of bins of distance
 FEW = 20           # points of a bin, at least
 LEAST = 1.0        # % of the points of a bin that are darker than the least reflectance
-ONE_POINT = 0.58   # of a range, the most that a sensor known by one point errs elsewhere (Documentation/sensors.md)
+ONE_POINT = 0.58   # of a range, the most that a sensor known by one point errs elsewhere (Documentation/reference/sensor-files.md)
 UNTOLD = {"VLP16": (0.1, 0.8)}  # reflectance where the sheet tells none: from what others' sheets have to what the preset assumes
 
 

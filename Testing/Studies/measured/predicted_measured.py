@@ -4,7 +4,7 @@ false alarms, the least reflectance, what frames and their simulations lack.
 
     Testing/Studies/run.py predicted_measured --data DATA       # default: AVIANLIDAR_DATA_DIR
 
-Leaves tables (Markdown, CSV) and a picture. Documentation/results/predicted-measured.md says what each comparison knew before, and has
+Leaves tables (Markdown, CSV) and a picture. Documentation/evidence/predicted-and-measured.md says what each comparison knew before, and has
 them all, also those that fail. PYTHONPATH has to name the Python package (`cat build/paraview/python-path`).
 """
 import numpy as np
@@ -60,7 +60,7 @@ def ground_of(data):
 
 
 def rough(kd, s, cosine):
-    """What a rough surface returns straight back (Documentation/reflectance.md, OrenNayar)."""
+    """What a rough surface returns straight back (Documentation/method/reflectance.md, OrenNayar)."""
     return kd * ((1 - 0.5 * s**2 / (s**2 + 0.33)) * cosine + 0.45 * s**2 / (s**2 + 0.09) * (1 - cosine**2))
 
 

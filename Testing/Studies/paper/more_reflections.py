@@ -5,7 +5,7 @@ mirrors, in the corridor and at the airport. Its first two orders are compared w
 
     Testing/Studies/run.py more_reflections
 
-A path O, P1, ..., Pm, O follows the rules that Documentation/echoes.md has for two reflections. From each hit but the last
+A path O, P1, ..., Pm, O follows the rules that Documentation/method/echoes.md has for two reflections. From each hit but the last
 it goes on in the mirror direction, with f_s = ks, or, at most twice, to the hit point of another ray of the beam, with
 f_d = kd cos(theta_i). At the last hit the whole f_sur towards O acts; it counts only if Pm lies in the beam's cone, is
 visible from O, and is met on the side that faces O. Between mirrors a path may leave the cone. Diffuse light from outside

@@ -2,7 +2,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # The one command for every table and picture of the paper: installs the packages that are missing, builds, and leaves each
 # part's tables (Markdown and CSV) and pictures in a folder below build/paper, and the seconds that each took in times.csv.
-# How long it takes: Documentation/paper.md, "How this page is kept".
 #   --quick     few rays, benchmarks whose times mean nothing, and without the fits to MERL
 #   --pages     also brings tables, pictures, verdicts and counts into Documentation/
 #   --no-build  uses what is built in build/paraview, with its benchmarks
@@ -76,10 +75,9 @@ export PYTHONPATH="$package${PYTHONPATH:+:$PYTHONPATH}"
 
 # Fig. 9 to 11, Sec. 5.2 and 5.3: times.
 step figures benchmarks --out "$out/figures" --suites machine figure9 figure10 figure11 epsilon section5 ${quick:+--smoke}
-# Fig. 12 to 15, Tables 1 and 2: the corridor. Fig. 16 and 17: the airport, also all of the wall's material.
+# Fig. 12 to 15, Tables 1 and 2: the corridor. Fig. 16 and 17: the airport.
 study corridor
 study airport
-step airport-all-wall Testing/Studies/run.py airport --all-wall --out "$out/airport-all-wall"
 # Both scenes with the paper's configuration; the distances of clouds in Fig. 13 to 15; the unit of its attenuation.
 study paper ${quick:+--reference-rays 1000 --seeds 1 --turns 1}
 study protocol ${quick:+--seeds 1}
@@ -97,12 +95,12 @@ fi
 
 echo "all,$(($(date +%s) - begin))" >>"$out/times.csv"
 if [ -n "$pages" ]; then
-  /usr/bin/python3 Testing/Benchmarks/report.py "$out/figures" --page paper-figures
-  Testing/Studies/run.py pages --from "$out" corridor airport airport-all-wall paper protocol attenuation second_reflection more_reflections \
+  /usr/bin/python3 Testing/Benchmarks/report.py "$out/figures" --pages
+  Testing/Studies/run.py pages --from "$out" corridor airport paper protocol attenuation second_reflection more_reflections \
     detail check_fit
-  Testing/Studies/run.py verdicts --times "$out/times.csv" || {
+  Testing/Studies/run.py verdicts || {
     [ $? -eq 1 ] || exit 2
-    echo "Read the rows above again: Documentation/paper.md"
+    echo "Read the rows above again: Documentation/evidence/paper.md"
   }
 fi
 cat "$out/times.csv"

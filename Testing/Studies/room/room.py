@@ -10,7 +10,7 @@ place with its real beams, and compared with what it saw. Leaves clouds (.vtp), 
 A scan is a file of one turn in the sensor's frame, or with the sensor's place in its header. Poses are
 {"a": {"T": [4 rows of 4 numbers]}, ...}, from the coordinates of the file to common ones; without one they are the same.
 
-Documentation/results/reality.md says what they are and what comes out.
+Documentation/evidence/real-scans.md says what they are and what comes out.
 """
 import csv
 import os

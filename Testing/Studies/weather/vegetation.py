@@ -4,7 +4,7 @@ deep in the crown the others end.
 
     Testing/Studies/run.py vegetation --data DATA   # default: AVIANLIDAR_DATA_DIR
 
-The data are not part of the project: Documentation/results/falloff.md says what they are."""
+The data are not part of the project: Documentation/evidence/real-scans.md says what they are."""
 import dataclasses
 import pathlib
 import warnings

@@ -5,7 +5,7 @@
  * nor to the surfaces, their limits, and their presets.
  *
  * Source: none; the presets follow from the measured trade of time for accuracy
- * (Documentation/results/accuracy.md).
+ * (Documentation/evidence/accuracy.md).
  * Valid: checkSettings() and checkUnits() name values out of range.
  * Test: TestScanReport.cxx, TestPresets.py.
  */

@@ -12,7 +12,7 @@
  * traced: hits must not depend on limits and air, so that a scan can be lit again, and the report
  * distinguishes a beam that meets such a surface from a beam that meets none.
  *
- * Source: none; derived in Documentation/model-needs.md.
+ * Source: none; derived in Documentation/guide/accuracy.md.
  * Valid: no range unit of a beam with an echo differs from the full model by more than
  * ModelNeeds::skippedEnergyBound. Detail between the rays is not bounded (missedDetailEnergy).
  * Test: TestSecondaryConstraints.cxx, TestScanReport.cxx, Testing/Stability/TestStabilitySweep.cxx,
