@@ -17,8 +17,8 @@ void record(const Row& row)
   {
     std::ofstream out(file, std::ios::app);
     out.precision(3);
-    out << row.extreme << '\t' << row.range << '\t' << row.promise << '\t' << row.bar << '\t'
-        << row.worst << '\n';
+    out << row.extreme << '\t' << row.range << '\t' << row.view << '\t' << row.promise << '\t'
+        << row.bar << '\t' << row.worst << '\n';
   }
 }
 }

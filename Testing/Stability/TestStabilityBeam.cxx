@@ -68,9 +68,10 @@ TEST(StabilityBeam, Beamwidths)
     }
   }
   const std::string range = "1e-9 to 1 rad, uniform and Gaussian";
-  record({ "Half-beamwidth", range,
+  record({ "Half-beamwidth", range, "rays",
     "relative error of energy, wall at normal incidence, 20,000 rays", 1e-4, relative.value() });
-  record({ "Half-beamwidth", range, "the same in stated standard errors", 5.0, inErrors.value() });
+  record({ "Half-beamwidth", range, "rays", "the same in stated standard errors", 5.0,
+    inErrors.value() });
 }
 
 TEST(StabilityBeam, GlossinessOfAWall)
@@ -94,10 +95,11 @@ TEST(StabilityBeam, GlossinessOfAWall)
   }
   const std::string range =
     "0 to 1e6, half-beamwidth 1e-6 to 0.9 rad, where 50 of 20,000 rays fall into the lobe";
-  record({ "Glossiness", range, "deviation from the integral, in stated standard errors", 5.0,
-    inErrors.value() });
+  record({ "Glossiness", range, "rays", "deviation from the integral, in stated standard errors",
+    5.0, inErrors.value() });
   // One last place: a sum of equal numbers may be rounded up.
-  record({ "Glossiness", range, "energy over its bound ks Qs", 1.0 + 1e-12, excess.value() });
+  record(
+    { "Glossiness", range, "rays", "energy over its bound ks Qs", 1.0 + 1e-12, excess.value() });
 }
 
 TEST(StabilityBeam, Attenuation)
@@ -124,9 +126,10 @@ TEST(StabilityBeam, Attenuation)
       unlike += !result.echoes.empty();
     }
   }
-  record({ "Attenuation", "0 and 1e-12 to 1e9 1/m over 1 km",
+  record({ "Attenuation", "0 and 1e-12 to 1e9 1/m over 1 km", "rays",
     "relative error of energy over (1 + length x attenuation)", 1e-14, error.value() });
-  record({ "Attenuation", "where exp underflows", "echoes", 0.0, static_cast<double>(unlike) });
+  record(
+    { "Attenuation", "where exp underflows", "rays", "echoes", 0.0, static_cast<double>(unlike) });
 }
 
 TEST(StabilityBeam, PulseEnergies)
@@ -172,7 +175,8 @@ TEST(StabilityBeam, PulseEnergies)
     }
   }
   record({ "Energies", "pulse and limits times 2^-88 to 2^22 (1e-30 to 1.5e3 J), two reflections",
-    "echoes that change by a bit but for the power of two", 0.0, static_cast<double>(differing) });
+    "both", "echoes that change by a bit but for the power of two", 0.0,
+    static_cast<double>(differing) });
 }
 
 TEST(StabilityBeam, NumbersOfRays)
@@ -204,11 +208,11 @@ TEST(StabilityBeam, NumbersOfRays)
       }
     }
   }
-  record({ "Rays per beam", "1 to 1e6, odd and even, both samplings",
+  record({ "Rays per beam", "1 to 1e6, odd and even, both samplings", "rays",
     "relative error of energy, wall at normal incidence (t^2/4 is 8e-6)", 8e-6, relative.value() });
-  record({ "Rays per beam", "2 to 1e6, half of the beam covered",
+  record({ "Rays per beam", "2 to 1e6, half of the beam covered", "rays",
     "error of energy in standard deviations of plain Monte Carlo", 4.5, halfCovered.value() });
-  record(
-    { "Rays per beam", "1 to 1e6", "standard errors that are NaN from 8 rays on, or a number below",
-      0.0, static_cast<double>(wrong) });
+  record({ "Rays per beam", "1 to 1e6", "rays",
+    "standard errors that are NaN from 8 rays on, or a number below", 0.0,
+    static_cast<double>(wrong) });
 }

@@ -105,11 +105,11 @@ void compareBeams(const std::shared_ptr<const TriangleMesh>& mesh, const Vec3& a
 /// The rows that every comparison gives.
 void recordComparison(const std::string& extreme, const std::string& range, const Comparison& sum)
 {
-  record({ extreme, range,
+  record({ extreme, range, "rays",
     "hits unlike brute force in long double, or unlike one descent per ray, of " +
       std::to_string(sum.compared) + " rays",
     0.0, static_cast<double>(sum.wrong + sum.otherBits) });
-  record({ extreme, range,
+  record({ extreme, range, "rays",
     "error of range, in 2^-53 times the triangle's farthest corner / cos(incidence)", RangeBar,
     sum.rangeError.value() });
 }
@@ -206,7 +206,7 @@ TEST(StabilityCoordinates, SceneMovedByWhatRoundsNothingKeepsItsBits)
         echotest::sameBits(a.returnEnergy, b.returnEnergy) && a.objectId == b.objectId);
     }
   }
-  record({ "Coordinates", "scene moved by 1e-3 to 1e8 m along each axis, double points",
+  record({ "Coordinates", "scene moved by 1e-3 to 1e8 m along each axis, double points", "default",
     "echoes whose range, energies or object change by a bit", 0.0,
     static_cast<double>(differing) });
 }
@@ -247,7 +247,7 @@ TEST(StabilityCoordinates, SceneScaledByPowersOfTwoKeepsItsBits)
       }
     }
   }
-  record({ "Scale", "scene, pulse and gate times 2^-30 to 2^20",
+  record({ "Scale", "scene, pulse and gate times 2^-30 to 2^20", "both",
     "echoes whose scaled range or whose energy changes by a bit", 0.0,
     static_cast<double>(differing) });
 }
@@ -277,9 +277,9 @@ TEST(StabilityCoordinates, SceneTurnedKeepsRangesAndEnergies)
     energy.see(
       std::fabs(echo.returnEnergy / (3.6e-4 * 0.146 * std::cos(tilt)) - 1.0) * std::cos(tilt));
   }
-  record({ "Rotation", "400 random ones, plates at 1e-3 to 1e5 m, tilted up to 89 deg",
+  record({ "Rotation", "400 random ones, plates at 1e-3 to 1e5 m, tilted up to 89 deg", "rays",
     "relative error of range times cos(incidence), half-beamwidth 1e-9 rad", 2e-9, range.value() });
-  record({ "Rotation", "400 random ones, plates at 1e-3 to 1e5 m, tilted up to 89 deg",
+  record({ "Rotation", "400 random ones, plates at 1e-3 to 1e5 m, tilted up to 89 deg", "rays",
     "relative error of energy times cos(incidence), half-beamwidth 1e-9 rad", 2e-9,
     energy.value() });
 }

@@ -64,11 +64,11 @@ TEST(StabilityReceiver, RangeUnitsOver100Kilometres)
     }
   }
   const std::string range = "1e-12 to 1e-3 s, pulse 0 to 1000 of them, 20,000 paths over 100 km";
-  record({ "Range unit", range, "relative loss of energy", 1e-12, energy.value() });
-  record({ "Range unit", range, "units that are kept, over paths x (2 + pulse width/unit)", 1.0,
-    units.value() });
+  record({ "Range unit", range, "-", "relative loss of energy", 1e-12, energy.value() });
+  record({ "Range unit", range, "-", "units that are kept, over paths x (2 + pulse width/unit)",
+    1.0, units.value() });
 #ifndef AVIANLIDAR_SANITIZED
-  record({ "Range unit", range, "heap bytes, over paths x (2 + pulse width/unit)", 200.0,
+  record({ "Range unit", range, "-", "heap bytes, over paths x (2 + pulse width/unit)", 200.0,
     bytes.value() });
 #endif
 }
@@ -152,9 +152,9 @@ TEST(StabilityReceiver, PoissonTailsFrom1e12thToA1e12Photons)
     }
   }
   const std::string range = "means of 1e-12 to 1e12 photons, tails of 0.3 to 1e-200";
-  record(
-    { "Noise", range, "relative error of the tails, beside the sum of the distribution's terms",
-      1e-10, error.value() });
-  record({ "Noise", range, "quantiles that are not the smallest count with that probability", 0.0,
-    wrong.value() });
+  record({ "Noise", range, "-",
+    "relative error of the tails, beside the sum of the distribution's terms", 1e-10,
+    error.value() });
+  record({ "Noise", range, "-", "quantiles that are not the smallest count with that probability",
+    0.0, wrong.value() });
 }

@@ -244,7 +244,7 @@ TEST(StabilitySweep, OneNumberAfterTheOther)
     EXPECT_GT(accepted, 0u) << number.name;
   }
   record({ "Out of range", "each number of sensor, air, materials and beams, 1e-320 to 1e308",
-    "scans with neither an error that names it nor echoes that are numbers", 0.0,
+    "both", "scans with neither an error that names it nor echoes that are numbers", 0.0,
     static_cast<double>(bad) });
 }
 
@@ -315,7 +315,7 @@ TEST(StabilitySweep, WhatLiesBeyondTheLimitsIsNamed)
   fine.lowerEnergyLimit = 0.0;
   expect(checkNoise(planNoise(fine, true), 1), "noise_photon_rate");
   record({ "Out of range", "limits of each number of the sensor, of rays, noise and range units",
-    "values beyond without an error that names them, legal ones with one", 0.0,
+    "-", "values beyond without an error that names them, legal ones with one", 0.0,
     static_cast<double>(bad) });
 }
 
@@ -353,7 +353,7 @@ TEST(StabilitySweep, ThePatternOfAScan)
       }
     }
   }
-  record({ "Out of range", "each number of a scan's pattern, 1e-320 to 1e308 and below 0",
+  record({ "Out of range", "each number of a scan's pattern, 1e-320 to 1e308 and below 0", "-",
     "patterns with neither an error that names it nor beams and times that are numbers", 0.0,
     static_cast<double>(bad) });
 }
@@ -397,7 +397,7 @@ TEST(StabilitySweep, AllNumbersAtOnce)
   }
   EXPECT_GT(10 * scans, seeds);
   EXPECT_GT(echoes, seeds);
-  record({ "Out of range", "all numbers of sensor, air, materials and beams at once, drawn",
+  record({ "Out of range", "all numbers of sensor, air, materials and beams at once, drawn", "both",
     "scans with neither an error that says what was expected nor echoes that are numbers", 0.0,
     static_cast<double>(bad) });
 }

@@ -16,7 +16,7 @@ import subprocess
 import sys
 import tempfile
 
-HEAD = ["extreme", "input range", "what is measured", "promised: at most", "worst seen"]
+HEAD = ["extreme", "input range", "view", "what is measured", "promised: at most", "worst seen"]
 LARGE = {"AVIANLIDAR_STABILITY_TRIANGLES": "10000000"}
 
 
