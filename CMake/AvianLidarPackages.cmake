@@ -5,7 +5,7 @@
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME avian-lidar)
 set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "") # it would come before the packages' own
-# The changelog says version, revision and maintainer.
+# The version is that of project(). Debian's changelog, which adds the revision and the maintainer, and CITATION.cff repeat it.
 set(avianlidar_debian "${CMAKE_CURRENT_LIST_DIR}/debian")
 file(READ "${avianlidar_debian}/changelog" changelog)
 string(REGEX MATCH "^avian-lidar \\(([0-9.]+)-([0-9]+)\\)" ignored "${changelog}")
@@ -14,7 +14,11 @@ set(CPACK_DEBIAN_PACKAGE_RELEASE "${CMAKE_MATCH_2}")
 if (NOT CPACK_DEBIAN_PACKAGE_VERSION STREQUAL PROJECT_VERSION)
   message(FATAL_ERROR "${avianlidar_debian}/changelog begins with version ${CPACK_DEBIAN_PACKAGE_VERSION}, not with ${PROJECT_VERSION}")
 endif ()
-string(REGEX MATCH "\n -- (.*)  " ignored "${changelog}")
+file(READ "${PROJECT_SOURCE_DIR}/CITATION.cff" citation)
+if (NOT citation MATCHES "\nversion: ${PROJECT_VERSION}\n")
+  message(FATAL_ERROR "${PROJECT_SOURCE_DIR}/CITATION.cff has another version than ${PROJECT_VERSION}")
+endif ()
+string(REGEX MATCH "\n -- ([^\n]*)  " ignored "${changelog}")
 set(CPACK_PACKAGE_CONTACT "${CMAKE_MATCH_1}")
 set(CPACK_PACKAGE_DIRECTORY "${CMAKE_BINARY_DIR}/packages")
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
@@ -23,7 +27,7 @@ set(CPACK_STRIP_FILES ON)
 set(CPACK_INSTALL_DEFAULT_DIRECTORY_PERMISSIONS
   OWNER_READ OWNER_WRITE OWNER_EXECUTE GROUP_READ GROUP_EXECUTE WORLD_READ WORLD_EXECUTE)
 
-set(CPACK_COMPONENTS_ALL runtime python development)
+set(CPACK_COMPONENTS_ALL runtime python development doc)
 set(CPACK_DEB_COMPONENT_INSTALL ON)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_COMPRESSION_TYPE xz)
@@ -79,6 +83,18 @@ set(CPACK_COMPONENT_DEVELOPMENT_DESCRIPTION "headers and CMake package of the av
 ${avianlidar_description}
 .
 This package has what find_package(AvianLidar) finds for programs in C++.")
+
+set(CPACK_DEBIAN_DOC_PACKAGE_NAME avian-lidar-doc)
+set(CPACK_DEBIAN_DOC_PACKAGE_SECTION doc)
+set(CPACK_DEBIAN_DOC_PACKAGE_ARCHITECTURE all)
+set(CPACK_DEBIAN_DOC_PACKAGE_SUGGESTS python3-avianlidar)
+set(CPACK_COMPONENT_DOC_DESCRIPTION "documentation and examples of the avian-lidar simulator
+${avianlidar_description}
+.
+This package has the pages, and the scenes, plans and scripts to copy from.")
+install(FILES README.md CONTRIBUTING.md DESTINATION share/doc/avian-lidar-doc COMPONENT doc EXCLUDE_FROM_ALL)
+install(DIRECTORY Documentation Examples DESTINATION share/doc/avian-lidar-doc COMPONENT doc EXCLUDE_FROM_ALL
+  PATTERN site EXCLUDE PATTERN make_site.sh EXCLUDE PATTERN __pycache__ EXCLUDE)
 
 # What makes paraview, pvpython, pvbatch and pvserver list the plugin and load it. They read one paraview.conf when they
 # start, a list of lists of plugins. Debian 13's names a list for other packages, /usr/share/paraview/plugins, which is ours.

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # Installs this project for all users: the packages that are missing, then a build, then this project's own Debian packages by
 # apt. ParaView then has the plugin, Python the package avianlidar, and the shell the command. Works on a bare Debian 12 or 13; asks
-# for your password where it needs root. Argument: "all" for the development package, too.
+# for your password where it needs root. Argument: "all" for the packages for development and of the documentation, too.
 set -eu
 
 cd "$(dirname "$0")/.."

@@ -11,7 +11,8 @@ import unittest
 BUILD = pathlib.Path(os.environ["AVIANLIDAR_BUILD_DIR"])
 SOURCE = pathlib.Path(os.environ["AVIANLIDAR_SOURCE_DIR"])
 GIVEN = pathlib.Path(os.environ["AVIANLIDAR_TEST_OUTPUT_DIR"]) / "Packages"  # to overlay.sh
-VERSION = "0.1.0-1"
+RELEASE = re.search(r"project\(AvianLidar\s+VERSION ([\d.]+)", (SOURCE / "CMakeLists.txt").read_text(encoding="utf-8"))[1]
+VERSION = f"{RELEASE}-1"
 PARAVIEW = next(BUILD.glob("lib/paraview-*")).name
 PLUGINS = f"usr/lib/{PARAVIEW}/plugins/"
 DOCUMENTS = r"usr/share/doc/[\w-]+/(copyright|changelog\.gz|changelog\.Debian\.gz)"
@@ -20,7 +21,7 @@ PACKAGES = {
     "avian-lidar": (
         {"Section": "science", "Recommends": "python3-avianlidar",
          "Depends": r".*libassimp5 .*libgdal3\d .*libqt(5widgets5|6widgets6) .*paraview \(>= (5\.\d+).*paraview \(<< \2"},
-        [r"usr/(bin/paraview\.conf|share/paraview/plugins)", r"usr/lib/libvtkAvianLidar\.so\.0\.1(\.0)?", r"usr/lib/avianlidar/mesh-reader",
+        [r"usr/(bin/paraview\.conf|share/paraview/plugins)", rf"usr/lib/libvtkAvianLidar\.so\.({RELEASE}|{RELEASE.rpartition('.')[0]})", r"usr/lib/avianlidar/mesh-reader",
          PLUGINS + r"avianlidar\.plugins\.xml",
          PLUGINS + r"AvianLidarPlugin/(AvianLidarPlugin\.so|[A-Z][a-z]+/\w[\w.-]+)"]),
     "python3-avianlidar": (
@@ -33,6 +34,7 @@ PACKAGES = {
         {"Section": "libdevel", "Depends": r"avian-lidar \(= \S+\), .*paraview-dev"},
         [r"usr/include/avianlidar/\w+\.h", r"usr/lib/cmake/AvianLidar/\S+", r"usr/lib/libvtkAvianLidar(\.so|CS\.a)",
          r"usr/lib/vtk/hierarchy/AvianLidar/\S+"]),
+    "avian-lidar-doc": ({"Section": "doc", "Architecture": "all"}, [r"usr/share/doc/avian-lidar-doc/((README|CONTRIBUTING)\.md|(Documentation|Examples)/\S+)"]),
 }
 
 
@@ -72,7 +74,7 @@ class Packages(unittest.TestCase):
                 files = [line.split()[5][2:] for line in listed if not line.startswith("d")]
                 wrong = [file for file in files if not any(re.fullmatch(place, file) for place in [*places, DOCUMENTS])]
                 self.assertEqual(wrong, [])
-                self.assertEqual(sum("/doc/" in file for file in files), 3)
+                self.assertEqual(sum(re.fullmatch(DOCUMENTS, file) is not None for file in files), 3)
                 self.assertEqual({line.split()[1] for line in listed}, {"root/root"})
                 seen[name] = set(files)
         self.assertEqual(sum(map(len, seen.values())), len(set().union(*seen.values())))

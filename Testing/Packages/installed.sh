@@ -29,7 +29,7 @@ files > /tmp/before
 install /given/first/*.deb
 files > /tmp/installed
 grep "Need to get" /tmp/apt.log
-[ "$(ldconfig -p | grep -c libvtkAvianLidar.so.0.1)" = 1 ] || fail "ldconfig does not know the library"
+[ "$(ldconfig -p | grep -c 'libvtkAvianLidar.so.[0-9]')" = 1 ] || fail "ldconfig does not know the library"
 
 # ParaView's programs list the plugin and have loaded it.
 others=$(grep -c "<Plugin " /usr/lib/*/paraview-*/plugins/paraview.plugins.xml)
@@ -64,12 +64,12 @@ cmake -S /given/cxx -B /tmp/cxx > /tmp/out 2>&1 && cmake --build /tmp/cxx >> /tm
 
 # An upgrade replaces all files; purging leaves none.
 install /given/second/*.deb
-for package in avian-lidar python3-avianlidar libavian-lidar-dev; do
+for package in avian-lidar python3-avianlidar libavian-lidar-dev avian-lidar-doc; do
   dpkg-query -W -f "\${Version}\n" $package | grep "later\$" || fail "$package is not upgraded"
 done
 unchanged /tmp/installed || fail "the upgrade left or lost files"
 python3 -c 'import avianlidar'
-apt-get -qq -y purge avian-lidar > /tmp/apt.log 2>&1 || { cat /tmp/apt.log; fail purge; }
+apt-get -qq -y purge avian-lidar avian-lidar-doc > /tmp/apt.log 2>&1 || { cat /tmp/apt.log; fail purge; }
 if [ "$1" = bare ]; then
   apt-get -qq -y purge cmake g++ make > /tmp/apt.log 2>&1
   apt-get -qq -y --purge autoremove > /tmp/apt.log 2>&1
