@@ -14,7 +14,7 @@ copyright = re.search(r"Copyright \(c\) (.*)", (SOURCE / "LICENSE").read_text(en
 version = release = re.search(r"project\(\s*AvianLidar\s+VERSION\s+([\d.]+)", (SOURCE / "CMakeLists.txt").read_text(encoding="utf-8"))[1]
 extensions = ["myst_parser", "sphinx.ext.autodoc"]
 root_doc = "README"
-include_patterns = ["*.md", "Documentation/**/*.md", "Testing/*/README.md", "Examples/*/README.md", "Examples/airport/scene/*.md"]
+include_patterns = ["*.md", "Documentation/*.md", "Documentation/*/*.md", "Testing/*/README.md", "Examples/*/README.md", "Examples/airport/scene/*.md"]
 exclude_patterns = ["build", ".git"]  # are not looked through
 myst_enable_extensions = ["html_image"]
 myst_heading_anchors = 5
