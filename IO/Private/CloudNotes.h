@@ -15,7 +15,7 @@ namespace avianlidar::formats
 {
 struct CloudNotes
 {
-  std::map<std::string, std::string> units; ///< of arrays
+  std::map<std::string, std::string> units; ///< units by array
   std::vector<Note> notes;
 };
 

@@ -13,7 +13,7 @@
 
 namespace avianlidar::formats
 {
-constexpr std::uint64_t MostFields = 4096; ///< of a table that is read
+constexpr std::uint64_t MostFields = 4096; ///< most fields of a table that is read
 
 struct TableField
 {
@@ -27,7 +27,7 @@ struct FieldTable
 {
   std::vector<TableField> fields;
   std::uint64_t points = 0;
-  std::uint64_t begin = 0; ///< of the rows
+  std::uint64_t begin = 0; ///< offset of the rows, bytes
   bool bigEndian = false;
 
   /// Bytes of a point.

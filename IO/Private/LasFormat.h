@@ -61,7 +61,7 @@ struct LasAxis
 {
   double scale = 1e-6;
   double offset = 0.0;
-  double low = 0.0; ///< of the points as they come out of the file
+  double low = 0.0; ///< lowest coordinate of the points as read
   double high = 0.0;
 
   std::int32_t encode(double coordinate) const;
@@ -97,7 +97,7 @@ struct LasOutput
   bool colours = false;
   bool compressed = false; ///< LAZ
   bool simulated = false;  ///< the system that made the points is a simulation
-  int sourceId = 0;        ///< of the file
+  int sourceId = 0;        ///< source id of the file
   std::string software;
   std::string crs;         ///< WKT 1, or empty
   std::string description; ///< goes to a text area; at most LasLongestVlr bytes

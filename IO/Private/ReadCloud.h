@@ -19,7 +19,7 @@ namespace avianlidar::formats
 /// A format of files. Whoever asks for formats asks cloudFormats(), so a new one is a row there.
 struct CloudFormat
 {
-  std::vector<std::string> endings; ///< of names, in lower case
+  std::vector<std::string> endings; ///< endings of names, in lower case
   bool (*fits)(ByteSource& file);   ///< by its first bytes; may throw, which is no
   Cloud (*read)(ByteSource& file, ByteSource* labels, const KeepGoing& keepGoing);
   bool hasLabels = false; ///< in a file of their own, see labelFileOf(); else they are null

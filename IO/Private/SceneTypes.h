@@ -106,7 +106,7 @@ enum class ObjectKind
   Mesh,
   Footprints,
   Ground,
-  Medium ///< of a shape of its own
+  Medium ///< a medium with a shape of its own
 };
 
 struct Object

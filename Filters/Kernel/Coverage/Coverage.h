@@ -71,7 +71,7 @@ struct CoverageValue
   CoverageStatus status = CoverageStatus::OutsideGate;
   int beams = 0;               ///< beams that contain the place
   double probability = 0.0;    ///< probability of detection in one scan
-  double photoelectrons = 0.0; ///< of the whole target in a beam; 0 without a photon receiver
+  double photoelectrons = 0.0; ///< photoelectrons of the whole target; 0 without a photon receiver
   /// Mean effective area of which half of the targets inside the beams are detected, m^2; infinity
   /// if there is none.
   double leastArea = std::numeric_limits<double>::infinity();

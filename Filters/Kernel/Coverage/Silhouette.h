@@ -43,7 +43,7 @@ struct BeamAtTarget
   BeamProfile profile = BeamProfile::Uniform;
   // For beams that are not round or whose Gaussian does not fall to 1/e^2 at the border:
   double across = radius; ///< half the shorter side, m
-  double cosine = 1.0;    ///< of the angle from right to the longer side, towards up
+  double cosine = 1.0;    ///< cosine of the angle from right to the longer side, towards up
   double sine = 0.0;
   bool isRectangle = false;
   double fall = 2.0; ///< rate of the Gaussian exp(-fall s), s = squaresOf().sum()

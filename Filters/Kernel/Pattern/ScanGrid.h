@@ -32,8 +32,8 @@ struct ScanGrid
 {
   std::vector<double> azimuths; ///< deg, one per column; in case 2 those of the lowest row's beams
   std::vector<double> elevations; ///< deg, one per row, ascending; in case 2 means
-  std::vector<int> column;        ///< of each beam
-  std::vector<int> row;           ///< of each beam
+  std::vector<int> column;        ///< column of each beam
+  std::vector<int> row;           ///< row of each beam
   bool byChannel = false;         ///< case 2
 
   bool empty() const { return this->azimuths.empty(); }

@@ -48,10 +48,10 @@ struct NoisePlan
   double meanPhotons = 0.0;  ///< b tau_s, in one unit
   double photonEnergy = 0.0; ///< J
   std::int64_t gateUnits = 0;
-  std::int64_t firstUnit = 0; ///< in which the gate begins
+  std::int64_t firstUnit = 0; ///< unit in which the gate begins
   /// K, the largest number of photons that alone is not perceived: K h nu <= Qlow < (K+1) h nu.
   double alarmPhotons = 0.0;
-  bool gaussian = false; ///< of a photon receiver; otherwise photons are counted
+  bool gaussian = false; ///< true for a photon receiver; otherwise photons are counted
   /// Variance of Gaussian noise where no light arrives, J^2, and what it grows by with the energy
   /// that does, J.
   double darkVariance = 0.0;
@@ -132,7 +132,7 @@ private:
   std::uint64_t Beam = 0;
   std::int32_t Revolution = 0;
   std::vector<std::int64_t> Alarms;
-  std::bitset<UnitsOfBlock> Rare; ///< of units from RareBegin on
+  std::bitset<UnitsOfBlock> Rare; ///< rare units from RareBegin on
   std::int64_t RareBegin = -1;    ///< none drawn
 };
 

@@ -73,7 +73,7 @@ struct Sensor
   BeamOutline beamOutline = BeamOutline::Ellipse;
   double halfBeamwidthAcross = 0.0;  ///< rad, across the first one, 1e-9 to 0.1; 0: the same
   double beamRotation = 0.0;         ///< deg, of the first one from the horizontal, towards `up`
-  Vec3 up{ 0.0, 0.0, 1.0 };          ///< of the sensor, unit vector in scene coordinates
+  Vec3 up{ 0.0, 0.0, 1.0 };          ///< up axis of the sensor, unit vector in scene coordinates
   double pulseEnergy = 3.6e-4;       ///< Qs, J, 1e-50 to 1e50
   double pulseWidth = 5e-9;          ///< tau_e, s, >= 0 and <= 1000 tau_s
   double frequency = 3.313e14;       ///< nu, Hz, 1 to 1e30
@@ -86,7 +86,7 @@ struct Sensor
 
   // The photon receiver; the defaults are assumed.
   ReceiverModel receiverModel = ReceiverModel::EnergyLimits;
-  ThresholdLaw thresholdLaw = ThresholdLaw::FollowsAir; ///< of photons
+  ThresholdLaw thresholdLaw = ThresholdLaw::FollowsAir; ///< law of the photon threshold
   double receiverEfficiency = 0.4;  ///< eta, electrons per photon at the aperture, > 0, <= 1
   double filterBandwidth = 10.0;    ///< nm, 0 to 1e6
   double backgroundRadiance = 0.05; ///< L, W/(m^2 sr nm), 0 to 1e10
@@ -95,7 +95,7 @@ struct Sensor
 
   // Daylight by what a beam looks at (Background.h); 0: all look at the background radiance.
   double sunlight = 0.0;      ///< E, W/(m^2 nm), of the sun on what faces it, 0 to 1e10
-  double sunAzimuth = 180.0;  ///< of the sun, deg from north, clockwise
+  double sunAzimuth = 180.0;  ///< azimuth of the sun, deg from north, clockwise
   double sunElevation = 45.0; ///< deg, -90 to 90
 
   // What a receiver loses of near echoes, see nearRangeShare(); 0: nothing.

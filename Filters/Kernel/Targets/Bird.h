@@ -40,7 +40,7 @@ struct BirdSpecies
   double mass = 0.0;     ///< kg, 1e-3 to 100
   double length = 0.0;   ///< from bill to tail, m, 0.01 to 10
   double span = 0.0;     ///< m, 0.01 to 10, more than the width of the body
-  double wingArea = 0.0; ///< of both wings and the body between them, m^2, 1e-5 to 10
+  double wingArea = 0.0; ///< area of both wings and the body between them, m^2, 1e-5 to 10
   bool passerine = false;
   double airspeed = 0.0; ///< m/s, 0.1 to 100
 };
@@ -58,7 +58,7 @@ struct BirdShape
   explicit BirdShape(const BirdSpecies& species);
   double bodyDiameter;  ///< m
   double bodyLength;    ///< m
-  double wingLength;    ///< of one wing, m
+  double wingLength;    ///< length of one wing, m
   double wingChord;     ///< m
   double wingThickness; ///< m
 

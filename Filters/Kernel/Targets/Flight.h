@@ -69,7 +69,7 @@ struct FlightSettings
   std::int32_t seed = 0;
   std::array<double, 2> timeRange{ 0.0, 60.0 }; ///< s
   Vec3 center{ 0.0 };                           ///< m
-  double radius = 500.0;                        ///< of the disc, m; half the approach's length
+  double radius = 500.0; ///< radius of the disc, m; half the approach's length
   std::array<double, 2> heights{ 10.0, 150.0 }; ///< above the center, m; unused for approaches
   Vec3 thresholdPosition{ 0.0 };                ///< threshold of the runway, m
   double thresholdHeading = 0.0; ///< heading of landings, degrees clockwise from north

@@ -32,7 +32,7 @@ struct vtkAvianLidarBeams
   std::vector<double> timestamps;     ///< us, as given, else 0
   bool isTimed = false;               ///< timestamps were given
   double displayLength = 1000.0;      ///< m
-  std::int32_t revolution = 0;        ///< of the sensor, as given, else 0
+  std::int32_t revolution = 0;        ///< revolution of the sensor, as given, else 0
   std::string problem;                ///< what is wrong with the input
 
   /// Azimuth of a direction, 0.01 deg clockwise from north, in [0, 36000).

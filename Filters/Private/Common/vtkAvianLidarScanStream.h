@@ -28,7 +28,7 @@ public:
   void Accept(vtkDataObject* cloud, double time);
 
   bool Begun() const { return this->Has; }
-  double Time() const { return this->Last; } ///< of the last cloud
+  double Time() const { return this->Last; } ///< time of the last cloud
 
   /// Where the sensor was: field data `position` if there is, else `position` stays.
   /// @return what is wrong, or nothing

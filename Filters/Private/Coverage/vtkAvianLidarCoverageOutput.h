@@ -100,7 +100,7 @@ struct vtkAvianLidarCoverageTable
   std::vector<avianlidar::CoverageShares> sums;
 
   std::size_t Bands() const { return this->heightLimits.size() + 1; }
-  std::size_t Cells() const { return this->regions.size() * this->Bands(); } ///< of a species
+  std::size_t Cells() const { return this->regions.size() * this->Bands(); } ///< cells of a species
 
   /// Add the sums of all ranks up, on each of them.
   void SumOverRanks(const vtkAvianLidarRanks& ranks);

@@ -75,12 +75,13 @@ private:
   vtkSmartPointer<vtkDataSet> Points;
   vtkSmartPointer<vtkUnsignedCharArray> Ghosts; ///< null: none
   int Extent[6] = { 0, -1, 0, -1, 0, -1 };
-  int Mine[6] = { 0, -1, 0, -1, 0, -1 }; ///< of these without the last ones where others go on
+  int Mine[6] = { 0, -1, 0, -1, 0,
+    -1 }; ///< extent without the last points where another rank goes on
   bool HasMine = false;
   double Origin[3] = { 0.0, 0.0, 0.0 };
   double Spacing[3] = { 1.0, 1.0, 1.0 };
   std::vector<std::string> Names = { "all" };
-  std::vector<std::size_t> Regions; ///< of each place; empty: one region
+  std::vector<std::size_t> Regions; ///< region of each place; empty: one region
 };
 
 #endif

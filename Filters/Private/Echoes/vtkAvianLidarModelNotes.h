@@ -17,7 +17,7 @@
 
 struct vtkAvianLidarModelNote
 {
-  const char* name; ///< of the field array that holds it
+  const char* name; ///< name of the field array that holds it
   std::string text; ///< one line; energies in J, ranges in m
 };
 

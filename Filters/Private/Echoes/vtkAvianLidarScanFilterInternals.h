@@ -32,23 +32,24 @@ struct vtkAvianLidarScanFilter::vtkInternals
   avianlidar::TraceCache Cache;
   vtkAvianLidarBeams Beams;
   vtkAvianLidarSurfaces Surfaces;
-  vtkAvianLidarSurfaceExchange Exchange;       ///< of surfaces between ranks
-  std::vector<avianlidar::PlacedMedium> Media; ///< of the surfaces
+  vtkAvianLidarSurfaceExchange Exchange;       ///< exchange of surfaces between ranks
+  std::vector<avianlidar::PlacedMedium> Media; ///< media of the surfaces
   std::vector<std::string> MediaOf;            ///< their texts
   avianlidar::LidarView MediaFor;              ///< view of the lidar
-  avianlidar::SceneSummary Summary;            ///< of them
+  avianlidar::SceneSummary Summary;            ///< summary of the surfaces
   std::shared_ptr<const avianlidar::CollisionTree> OwnTree;
-  vtkAvianLidarContent::State State; ///< of the surfaces merged last
-  const void* MergedBy = nullptr;    ///< ranks that they were of; null: alone
+  vtkAvianLidarContent::State State; ///< state of the surfaces merged last
+  const void* MergedBy = nullptr;    ///< ranks that merged them; null: one process
   std::uint64_t Geometry = 0;        ///< checksum of the mesh
   std::uint64_t Scene = 0;           ///< checksum of mesh and materials
   vtkAvianLidarWarnings Warnings;
   std::uint64_t StaleFor = 0;
-  double TracedRays = 0.0;  ///< of all ranks, as the one below
-  double TracedBeams = 0.0; ///< whose surfaces were looked for
+  double TracedRays = 0.0;  ///< rays traced by all ranks
+  double TracedBeams = 0.0; ///< beams whose surfaces were searched
   int TreeBuilds = 0;
   int Threads = 0;
-  vtkAvianLidarRanks::Outcome Last = vtkAvianLidarRanks::Outcome::Done; ///< of the execution so far
+  vtkAvianLidarRanks::Outcome Last =
+    vtkAvianLidarRanks::Outcome::Done; ///< outcome of the execution so far
 
   /// A property that is a number, a choice or a switch.
   struct Property

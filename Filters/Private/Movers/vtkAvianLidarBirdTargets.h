@@ -35,7 +35,7 @@ private:
   {
     avianlidar::BirdSpecies Species;
     bool Gliding;
-    double MeanArea; ///< of the species, m^2
+    double MeanArea; ///< mean area of the species, m^2
     std::vector<Target> Sizes;
   };
   const Target& TargetOf(const avianlidar::BirdSpecies& species, bool gliding, double area);

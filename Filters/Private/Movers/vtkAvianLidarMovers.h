@@ -29,7 +29,7 @@ struct vtkAvianLidarSurfaces;
 struct vtkAvianLidarMovers
 {
   std::shared_ptr<const std::vector<avianlidar::Mover>> movers; ///< null: none
-  std::uint64_t checksum = 0;                                   ///< of all; 0 without any
+  std::uint64_t checksum = 0; ///< checksum of all movers; 0 without any
   /// Names by id, of the surfaces and the movers.
   std::vector<std::string> objectNames;
   std::vector<std::string> objectClasses; ///< likewise; empty: none brings any
@@ -44,9 +44,9 @@ struct vtkAvianLidarMovers
 private:
   /// @param named the blocks come from other ranks, too, with their names as field data
   std::string ReadAll(vtkDataObject* input, bool named, const vtkAvianLidarSurfaces& surfaces);
-  vtkAvianLidarContent::State State;     ///< of the input read last
-  std::vector<std::string> SurfaceNames; ///< of objects, their classes and materials then
-  const void* ReadBy = nullptr;          ///< ranks then
+  vtkAvianLidarContent::State State;     ///< state of the input read last
+  std::vector<std::string> SurfaceNames; ///< names of objects, then of classes and materials
+  const void* ReadBy = nullptr;          ///< ranks that read it
   bool Known = false;
 };
 

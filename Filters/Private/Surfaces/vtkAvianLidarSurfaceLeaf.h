@@ -44,8 +44,8 @@ struct vtkAvianLidarSurfaceArrays
 struct vtkAvianLidarSurfaceLeaf
 {
   vtkPolyData* data = nullptr;
-  std::string name;       ///< of the block; empty for a vtkPolyData that is the whole scene
-  unsigned int index = 0; ///< of the block, flat; 0 for a vtkPolyData that is the whole scene
+  std::string name;       ///< name of the block; empty for a vtkPolyData that is the whole scene
+  unsigned int index = 0; ///< flat index of the block; 0 for a vtkPolyData that is the whole scene
   bool named = false;     ///< by the composite; else by its number
 
   /// The name of a block without one. @param number among the leaves
