@@ -8,7 +8,7 @@ import re
 import unittest
 
 import numpy as np
-from osgeo import gdal
+from osgeo import gdal, ogr, osr
 
 import TestAirport as ta
 from avianlidar import siting
@@ -31,7 +31,7 @@ def things(file):
 
 
 def to_local():
-    return extract.gdal_modules()[2].CoordinateTransformation(extract.degrees(), ta.coordinate_system(ta.HERE))
+    return osr.CoordinateTransformation(extract.degrees(), ta.coordinate_system(ta.HERE))
 
 
 def left(file):
@@ -253,8 +253,8 @@ class Heights(unittest.TestCase):
 
     def test_heights_of_tags(self):
         def row(**tags):
-            found = extract.Reader(KNOWN)
-            shape = extract.gdal_modules()[1].CreateGeometryFromWkt("POLYGON ((0 0, 1e-3 0, 1e-3 1e-3, 0 1e-3, 0 0))")
+            found = extract.Extract(KNOWN)
+            shape = ogr.CreateGeometryFromWkt("POLYGON ((0 0, 1e-3 0, 1e-3 1e-3, 0 1e-3, 0 0))")
             found.take({key.replace("__", ":"): value for key, value in tags.items()}, shape)
             one, = found.done().features
             row = extract.properties_of(one, KNOWN)

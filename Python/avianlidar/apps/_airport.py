@@ -13,6 +13,7 @@ import warnings
 from typing import Any, Callable, Counter, Dict, Iterator, List, Optional, Sequence, Tuple
 
 import numpy as np
+from osgeo import gdal, ogr, osr
 
 from .._cloud import field_values, leaves_of, triangles_of
 from .._disk import as_csv, read_regular, write_whole
@@ -21,12 +22,9 @@ from .._scene import Scene, load_scene
 from .._scene import mesh as _surface
 from .._writers import vtp
 from . import _heights, _pictures, siting
-from ._extract import COAST, CUT, Feature, Left, height_name, properties_of, read_extract, rules, sea, without_parts
+from ._extract import COAST, CUT, Feature, geometry, height_name, moved, open_file, properties_of, quiet, read_extract, rules, sea, valid, without_parts
 from ._extract import degrees as _degrees
 from ._extract import form_of as _form
-from ._extract import gdal_modules as _gdal
-from ._extract import open_file as _open
-from ._extract import quiet as _quiet
 from ._json import load_json, naming
 from ._maps import coordinate_system
 from ._obstacles import read_obstacles
@@ -54,9 +52,8 @@ def read_heights(file: pathlib.Path, origin: Sequence[float], rectangle: Sequenc
                  ) -> Tuple[np.ndarray, float, float, str]:
     """Heights of a raster at posts that cover a rectangle (m about the origin), rows from south to north: where the raster says
     none they are level, and it fades into that. @return heights (m), spacing (m), height at the origin (m), words for the reader"""
-    gdal, _, _ = _gdal()
-    raw = _open(file, _heights.WHAT, list(_heights.DRIVERS), gdal.OF_RASTER)
-    with naming(str(file)), _quiet():
+    raw = open_file(file, _heights.WHAT, list(_heights.DRIVERS), gdal.OF_RASTER)
+    with naming(str(file)), quiet():
         data, unit = _heights.in_metres(file, raw)
         system = coordinate_system((*origin[:2], 0.0)).ExportToWkt()
         own = abs(gdal.AutoCreateWarpedVRT(data, None, system).GetGeoTransform()[1])
@@ -225,10 +222,10 @@ class Airport:
             seas = sea(coasts, self.box)
             self.features += [Feature("water", {"name": "sea"}, shape, 0) for shape in seas]
             near = sum(one.shape.Intersects(self.box) for one in coasts)
-            self.left += [Left(COAST, "outside the scene", count=len(coasts) - near)] * (near < len(coasts))
+            self.left += [Feature(COAST, {}, count=len(coasts) - near, reason="outside the scene")] * (near < len(coasts))
             self.used.update({COAST: near} if seas else {})
             if near and not seas:
-                self.left.append(Left(COAST, "a coast that does not part the scene", count=near))
+                self.left.append(Feature(COAST, {}, count=near, reason="a coast that does not part the scene"))
                 warnings.warn(f"{self.extract}: its coastlines do not part the scene: the sea is land there; draw it as natural=water, or cut the extract "
                               "wider", RuntimeWarning, stacklevel=2)
         ground = aerodrome.shape if aerodrome and _form(aerodrome.shape) == "area" else None
@@ -238,7 +235,6 @@ class Airport:
 
     def _place(self, bounds: Optional[Sequence[float]]) -> None:
         """Origin, and the rectangle that the scene holds."""
-        _, ogr, osr = _gdal()
         ends = np.array([one.shape.GetPoint_2D(i) for one in self.runways for i in (0, one.shape.GetPointCount() - 1)])
         if np.ptp(ends[:, 0]) > 180.0:
             raise Error(f"{self.extract}: its runways cross the meridian of 180 degrees, where scenes of this command end")
@@ -278,13 +274,13 @@ class Airport:
                 place.Transform(self.to_local)
                 above = float(one.tags["elevation"]) - self.origin[2] - _at(posts, corner, spacing, (place.GetX(), place.GetY()))
                 if self.dem is None or not above > 0.0:
-                    self.left.append(Left(one.kind, "an elevation without --heights" if self.dem is None else "below ground", one.id, one.name))
+                    self.left.append(one.left("an elevation without --heights" if self.dem is None else "below ground"))
                     continue
                 one.tags = {**one.tags, "height": f"{above:.3f}", "height_source": f"{one.tags['height_source']}, elevation less that of the ground"}
             found.append(one)
-        self.left += [Left(kind, "outside the scene", count=count) for kind, count in outside.items()]
+        self.left += [Feature(kind, {}, count=count, reason="outside the scene") for kind, count in outside.items()]
         found, drawn = without_parts(found, self.known)
-        self.left += [Left(one.kind, "drawn by its parts", one.id, one.name) for one in drawn]
+        self.left += [one.left("drawn by its parts") for one in drawn]
         self.cut = [one for one in found if CUT in one.tags]
         if any(one.kind == "runway" for one in self.cut):
             warnings.warn(f"{self.extract}: a runway is {CUT}, and ends there: cut the extract wider", RuntimeWarning, stacklevel=3)
@@ -326,7 +322,7 @@ class Airport:
         kept = Kept(out)
         self.progress("files", 0, len(WHAT))
         posts = self._posts()
-        with _quiet():
+        with quiet():
             chosen = self._chosen(*posts)
             mapped = kept.put("airport.geojson", lambda: self._mapped(chosen))
         kept.put("terrain.vtp", lambda: vtp(terrain(*posts, self.origin, self.error)))
@@ -398,7 +394,6 @@ class Airport:
     def _exclusions(self, mapped: pathlib.Path) -> bytes:
         """Where no lidar may stand beside buildings: around runways and taxiways, on aprons, roads and water, in woods, and outside
         the aerodrome, if the extract has its outline."""
-        _, ogr, _ = _gdal()
         rows = []
         if self.ground is not None:
             rows.append(({"what": "outside the aerodrome"}, self.box.Difference(self.ground)))
@@ -510,7 +505,7 @@ class Airport:
         for name, count, reason in re.findall(r"^(.*): (\d+) (.*) were left out$", report, re.MULTILINE):
             kind = kinds.get(name.split(" of ")[0].lower())
             if kind is not None:
-                self.left.append(Left(kind, reason, count=int(count)))
+                self.left.append(Feature(kind, {}, count=int(count), reason=reason))
                 self.there[kind] -= int(count)
 
     def _reasons(self) -> Dict[str, Counter[str]]:

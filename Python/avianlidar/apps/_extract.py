@@ -11,10 +11,11 @@ import mmap
 import pathlib
 import re
 import tempfile
-from typing import Any, Callable, Dict, Iterable, Iterator, List, Optional, Set, Tuple
+from typing import Any, Callable, Counter, Dict, Iterable, Iterator, List, Optional, Set, Tuple
 from xml.etree import ElementTree
 
 import numpy as np
+from osgeo import gdal, ogr, osr
 
 from .._pipeline import Error
 from ._json import load_json, naming
@@ -40,6 +41,9 @@ MIN_LEVELS = ("building:min_level", "min_level", "min_floor")
 NOTHING = re.compile(r"\s*(?:-\d+(?:\.\d+)?|0*\.?0*)\s*m?\s*")  # no height
 WIDTHS = ("width", "width_m", "diameter", "diameter_crown")
 
+for module in (gdal, ogr, osr):
+    module.UseExceptions()
+
 
 @dataclasses.dataclass
 class Feature:
@@ -47,8 +51,9 @@ class Feature:
 
     kind: str
     tags: Dict[str, str]
-    shape: Any
+    shape: Any = None
     count: int = 1  # of the file's features that it is made of
+    reason: str = ""  # why it is not in the scene
 
     @property
     def id(self) -> str:
@@ -59,32 +64,9 @@ class Feature:
     def name(self) -> str:
         return self.tags.get("name") or self.tags.get("ref") or ""
 
-
-@dataclasses.dataclass
-class Left:
-    """Features that are not in the scene."""
-
-    kind: str
-    reason: str
-    id: str = ""
-    name: str = ""
-    count: int = 1
-
-
-@dataclasses.dataclass
-class Extract:
-    """What an extract holds."""
-
-    features: List[Feature] = dataclasses.field(default_factory=list)
-    aerodromes: List[Feature] = dataclasses.field(default_factory=list)
-    models: List[Feature] = dataclasses.field(default_factory=list)  # model airfields
-    thresholds: List[Feature] = dataclasses.field(default_factory=list)  # of runways, points
-    used: collections.Counter = dataclasses.field(default_factory=collections.Counter)  # features that the scene follows but does not draw
-    left: List[Left] = dataclasses.field(default_factory=list)
-    unknown: collections.Counter = dataclasses.field(default_factory=collections.Counter)  # by tag
-
-    def leave(self, feature: Feature, reason: str) -> None:
-        self.left.append(Left(feature.kind, reason, feature.id, feature.name, feature.count))
+    def left(self, reason: str) -> Feature:
+        """The feature as one that is not in the scene."""
+        return dataclasses.replace(self, shape=None, reason=reason)
 
 
 def rules() -> Dict[str, Any]:
@@ -92,18 +74,10 @@ def rules() -> Dict[str, Any]:
     return load_json(pathlib.Path(__file__).with_name("airport.json"))
 
 
-def gdal_modules():
-    from osgeo import gdal, ogr, osr
-    for module in (gdal, ogr, osr):
-        module.UseExceptions()
-    return gdal, ogr, osr
-
-
 @contextlib.contextmanager
 def quiet(hear: Optional[Callable[[str], Any]] = None) -> Iterator[None]:
     """Without GDAL's warnings, as of rings that cross, which the scene reader repairs and counts. @param hear is called with them,
     and with what the OSM driver says of ways and relations"""
-    gdal, _, _ = gdal_modules()
     before = gdal.GetConfigOption("CPL_DEBUG")
     gdal.PushErrorHandler("CPLQuietErrorHandler" if hear is None else lambda _, number, words: hear(words))
     gdal.SetConfigOption("CPL_DEBUG", before if hear is None else "OSM")
@@ -115,20 +89,38 @@ def quiet(hear: Optional[Callable[[str], Any]] = None) -> Iterator[None]:
 
 
 def degrees():
-    _, _, osr = gdal_modules()
     system = osr.SpatialReference()
     system.ImportFromEPSG(4326)
     system.SetAxisMappingStrategy(osr.OAMS_TRADITIONAL_GIS_ORDER)
     return system
 
 
-def open_file(file: pathlib.Path, what: str, drivers: List[str], kind: int, options: Tuple[str, ...] = ()):
-    """A regular file with one of GDAL's drivers."""
-    gdal, _, _ = gdal_modules()
+def geometry(kind: str, coordinates: Any):
+    """A geometry (ogr). @param kind as in GeoJSON, as are the coordinates"""
+    return ogr.CreateGeometryFromJson(json.dumps({"type": kind, "coordinates": np.asarray(coordinates, dtype=float).tolist()}))
+
+
+def moved(shape, to):
+    """A copy in other coordinates. @param to a transformation (osr)"""
+    shape = shape.Clone()
+    shape.Transform(to)
+    return shape
+
+
+def valid(shape):
+    return shape if shape.IsValid() else shape.MakeValid()
+
+
+def expect_file(file: pathlib.Path) -> None:
     if not file.exists():
         raise FileNotFoundError(f"no such file: {file}")
     if not file.is_file():
         raise Error(f"{file}: it is not a regular file")
+
+
+def open_file(file: pathlib.Path, what: str, drivers: List[str], kind: int, options: Tuple[str, ...] = ()):
+    """A regular file with one of GDAL's drivers."""
+    expect_file(file)
     try:
         return gdal.OpenEx(str(file.resolve()), kind | gdal.OF_READONLY, allowed_drivers=drivers, open_options=list(options))
     except RuntimeError as error:
@@ -137,12 +129,8 @@ def open_file(file: pathlib.Path, what: str, drivers: List[str], kind: int, opti
 
 def fits(tags: Dict[str, str], wanted: Dict[str, Any]) -> bool:
     """Whether tags have all of these: a word, several, `*` for any, `-*` for any that begins so."""
-    for name, words in wanted.items():
-        said = tags.get(name)
-        if said is None or (words != "*" and said not in (words if isinstance(words, list) else [words])
-                            and not (words == "-*" and said.startswith("-"))):
-            return False
-    return True
+    return all(name in tags and any(tags[name] == word or (word[-1] == "*" and tags[name].startswith(word[:-1]))
+                                    for word in ([words] if isinstance(words, str) else words)) for name, words in wanted.items())
 
 
 class Table:
@@ -155,7 +143,7 @@ class Table:
 
     def find(self, tags: Dict[str, str]) -> Optional[str]:
         found = [(number, name) for key in tags if key in self.rows for number, name, wanted in self.rows[key] if fits(tags, wanted)]
-        return min(found)[1] if found else None
+        return min(found, default=(0, None))[1]
 
 
 def form_of(shape) -> str:
@@ -168,30 +156,25 @@ def parts_of(shape) -> List[Any]:
     """Points, lines and polygons of a geometry (ogr)."""
     if form_of(shape) and "MULTI" not in shape.GetGeometryName():
         return [shape]
-    return [part for i in range(shape.GetGeometryCount()) for part in parts_of(shape.GetGeometryRef(i))]
+    return [part for i in range(shape.GetGeometryCount()) for part in parts_of(shape.GetGeometryRef(i).Clone())]
 
 
 def _outer(shape) -> np.ndarray:
     """The corners (n x 2) of points, lines and outer rings."""
-    rings = [part.GetGeometryRef(0) if part.GetGeometryCount() else part for part in parts_of(shape)]
-    return np.array([point for ring in rings for point in ring.GetPoints() or ()], dtype=float).reshape(-1, 2)
+    points = [point for part in parts_of(shape) for point in (part.GetGeometryRef(0) if part.GetGeometryCount() else part).GetPoints() or ()]
+    return np.array(points, dtype=float).reshape(-1, 2)
 
 
 def _has_extent(corners: np.ndarray, form: str) -> bool:
-    """False of lines and areas of which nodes are missing, or the same."""
-    if form == "point":
-        return True
-    away = corners - corners[0]
-    far = away[np.argmax(np.hypot(*away.T))]
-    least = 1e-9 * np.hypot(*far)  # of 0.1 mm
-    return least > 0.0 and (form == "line" or bool(np.abs(away[:, 0] * far[1] - away[:, 1] * far[0]).max() > least))
+    """False of lines and areas of which nodes are missing, or the same (to 0.1 mm)."""
+    return form == "point" or bool(np.linalg.matrix_rank(corners - corners[0], 1e-9) >= (1 if form == "line" else 2))
 
 
 def number_of(text: str, most: float = np.inf) -> float:
     """Of "1,200.5", "1 200", "12,5". @param most above which a comma is taken for that of decimals"""
     thousands = re.fullmatch(rf"\d{{1,3}}({THOUSANDS}\d{{3}})+(\.\d+)?", text)
     value = float(re.sub(THOUSANDS, "", text) if thousands else text.replace(",", "."))
-    return value if value <= most or "," not in text else float(text.replace(",", ".", 1).replace(",", ""))
+    return value if value <= most or "," not in text or "." in text else float(text.replace(",", ".", 1).replace(",", ""))
 
 
 def length_of(text: Any) -> Optional[float]:
@@ -269,91 +252,92 @@ def _as_osm(tags: Dict[str, str], known: Dict[str, Any]) -> Dict[str, str]:
     return tags
 
 
-class Reader:
-    """Takes features one by one."""
+class Extract:
+    """What an extract holds. It takes features one by one."""
 
     def __init__(self, known: Dict[str, Any]):
         self.known = known
         self.kinds = {form: Table((kind, tags) for kind, rule in known["kinds"].items() if form in rule["from"] for tags in rule["tags"])
                       for form in ("point", "line", "area")}
         self.reasons = Table((reason, tags) for reason, rows in known["left_out"].items() for tags in rows)
-        self.lines, self.models = (Table(("", tags) for tags in known[name]) for name in ("lines", "models"))
-        self.found = Extract()
+        self.lines, self.model_tags = (Table(("", tags) for tags in known[name]) for name in ("lines", "models"))
+        self.features: List[Feature] = []  # after `done`
+        self.aerodromes: List[Feature] = []
+        self.models: List[Feature] = []  # model airfields
+        self.thresholds: List[Feature] = []  # of runways, points
+        self.left: List[Feature] = []
+        self.used: Counter[str] = collections.Counter()  # features that the scene follows but does not draw
+        self.unknown: Counter[str] = collections.Counter()  # by tag
         self.seen: Dict[Any, List[Tuple[int, Feature]]] = collections.defaultdict(list)  # with ranks: of two alike the greater counts
         self.today = datetime.date.today().isoformat()
         self.cut: Set[str] = set()  # ways of which nodes are missing
 
+    def leave(self, feature: Feature, reason: str) -> None:
+        self.left.append(feature.left(reason))
+
     def hear(self, words: str) -> None:
         """What GDAL's OSM driver says: it leaves out relations that are not complete, and ways of fewer than two nodes."""
         part = re.search(r"For way (-?\d+), got only", words)
+        gone = re.search(r"(Way|Relation) (-?\d+) (?:has missing ways|with \d+ nodes( that)?)", words)
         if part:
             self.cut.add(part[1])
-        gone = re.search(r"(Way|Relation) (-?\d+) (?:has missing ways|with \d+ nodes( that)?)", words)
         if gone:
-            self.found.left.append(Left(gone[1].lower(), CUT if gone[3] or "missing" in words else "no nodes", gone[2]))
+            self.leave(Feature(gone[1].lower(), {"id": gone[2]}), CUT if gone[3] or "missing" in words else "no nodes")
         elif words.startswith("Non closed ring detected"):
-            self.found.left.append(Left("relation", "unclosed"))
+            self.leave(Feature("relation", {}), "unclosed")
 
-    def _kinds(self, tags: Dict[str, str], shape) -> List[Tuple[str, str]]:
+    def _kinds(self, tags: Dict[str, str], form: str, closed: bool) -> List[Tuple[str, str]]:
         """Kinds of a feature, each with the form that it takes: what is closed may be an area, a line, and both."""
-        form = form_of(shape)
-        if form == "point":
-            found = [(self.kinds["point"].find(tags), "point")]
-        else:
-            is_area = tags.get("area") == "yes"
-            closed = form == "area" or _is_closed(shape)
-            # GDAL's own idea of polygons: closed ways of aeroway, and others with area=yes, which it drops.
-            is_way = form == "line" or ("aeroway" in tags) == ("osm_way_id" in tags)
-            linear = is_way and not is_area and self.lines.find(tags) is not None
-            area = self.kinds["area"].find(tags) if closed and not linear else None
-            line = self.kinds["line"].find(tags) if not (closed and is_area) or "barrier" in tags else None
-            found = [(area, "area"), (line if line != area else None, "line")]
-        known = [(kind, form) for kind, form in found if kind is not None]
+        is_area, is_point = tags.get("area") == "yes", form == "point"
+        # GDAL's own idea of polygons: closed ways of aeroway, and others with area=yes, which it drops.
+        is_way = form == "line" or ("aeroway" in tags) == ("osm_way_id" in tags)
+        solid = closed and (is_area or not is_way or self.lines.find(tags) is None)
+        takes = {"point": is_point, "area": solid, "line": not is_point and (not (closed and is_area) or "barrier" in tags)}
+        found = {one: self.kinds[one].find(tags) for one, fitting in takes.items() if fitting}
+        known = [(kind, one) for one, kind in found.items() if kind is not None and (one, kind) != ("line", found.get("area"))]
         has_height = any(length_of(tags[name]) for name in HEIGHTS if name in tags)
-        if not known and has_height and (form == "point" or (closed and not linear and not any(name in tags for name in self.known["low"]))):
-            known = [("obstacle", "point" if form == "point" else "area")]
+        if not known and has_height and (is_point or (solid and not any(name in tags for name in self.known["low"]))):
+            known = [("obstacle", "point" if is_point else "area")]
         return known
 
     def take(self, tags: Dict[str, str], shape) -> None:
         """A feature. @param shape ogr, degrees; may be None"""
-        left = self.found.leave
-        tags = _as_osm(tags, self.known)
-        form = form_of(shape)
-        one = Feature("", tags, shape)
+        tags, form = _as_osm(tags, self.known), form_of(shape)
         if fits(tags, {"type": "building", "building": "*"}) and not form and shape is not None:  # a relation of outlines and parts
             shape, form = _union([_as_area(part) for part in parts_of(shape) if form_of(part) == "area" or _is_closed(part)]), "area"
-        corners = _outer(shape) if form else np.empty((0, 2))
+        one, corners = Feature("", tags, shape), _outer(shape) if form else np.empty((0, 2))
         if not len(corners):
             if shape is None or shape.IsEmpty():
-                left(one, "without a geometry")
+                self.leave(one, "without a geometry")
             elif tags.get("type") == "building":  # whose members are read by themselves
-                self.found.used["relation"] += 1
+                self.used["relation"] += 1
             else:
                 self._do_not_know(tags)
             return
-        is_closed = form == "area" or _is_closed(shape)
-        if self.models.find(tags) is not None:
-            self.found.models.append(one)
-        is_threshold = tags.get("aeroway") == "threshold" and form == "point"
-        if is_threshold:
-            self.found.thresholds.append(one)
-        is_aerodrome = tags.get("aeroway") == "aerodrome" and "heliport" not in (tags.get("aerodrome:type"), tags.get("aerodrome"))
-        if is_aerodrome:
-            self.found.aerodromes.append(Feature("", tags, _as_area(shape) if form == "line" and is_closed else shape))
+        is_closed, use = form == "area" or _is_closed(shape), ""
+        if self.model_tags.find(tags) is not None:
+            self.models.append(one)
+        if tags.get("aeroway") == "threshold" and form == "point":
+            use = "threshold"
+            self.thresholds.append(one)
+        elif tags.get("aeroway") == "aerodrome" and "heliport" not in (tags.get("aerodrome:type"), tags.get("aerodrome")):
+            use = "aerodrome"
+            self.aerodromes.append(Feature("", tags, _as_area(shape) if form == "line" and is_closed else shape))
         if tags.get("natural") == COAST and form != "point":
-            self._keep(Feature(COAST, tags, shape), form, corners, None)
+            self._keep(Feature(COAST, tags, shape), form, corners)
             return
-        kinds = self._kinds(tags, shape)
+        kinds = self._kinds(tags, form, is_closed)
         if not kinds:
-            self._leave_unknown(one, form, "threshold" if is_threshold else "aerodrome" if is_aerodrome else None)
+            self._leave_unknown(one, form, use)
+        reason = self._reason(tags) if kinds else None
         for kind, taken in kinds:
             one = Feature(kind, tags, shape)
-            reason = self._reason(tags)
-            if reason is None and not _has_extent(corners, taken):
-                reason = CUT if one.tags.get("osm_way_id") in self.cut else "no nodes"
-            elif reason is None and form != taken:
-                one.shape = _as_area(shape) if taken == "area" else gdal_modules()[1].ForceToMultiLineString(shape)
-            self._keep(one, taken, corners, reason)
+            if reason or not _has_extent(corners, taken):
+                self.leave(one, reason or (CUT if tags.get("osm_way_id") in self.cut else "no nodes"))
+                continue
+            if form != taken:
+                one.shape = _as_area(shape) if taken == "area" else ogr.ForceToMultiLineString(shape)
+            self._keep(one, taken, corners)
 
     def _reason(self, tags: Dict[str, str]) -> Optional[str]:
         """Why a feature of a known kind stands nowhere, by its tags and dates."""
@@ -365,41 +349,37 @@ class Reader:
         underground = tags.get("building:levels") == "0" and levels_of(tags.get("building:levels:underground"))
         return self.reasons.find(tags) or ("below ground" if underground and not any(name in tags for name in (*HEIGHTS, "roof:levels")) else None)
 
-    def _leave_unknown(self, one: Feature, form: str, use: Optional[str]) -> None:
+    def _leave_unknown(self, one: Feature, form: str, use: str) -> None:
         """What no rule takes: what is gone or is not there yet, what is not closed, points of what has an outline, all else.
-        @param use what it is used for, if it is"""
+        @param use what it is used for, or empty"""
         gone = {rest: (word, self.known["lifecycle"][state]) for name, word in one.tags.items() for state, _, rest in [name.partition(":")]
                 if rest and state in self.known["lifecycle"]}
-        one.kind = self.kinds["area" if form == "line" else form].find({name: word for name, (word, _) in gone.items()}) or ""
-        if one.kind:
-            self.found.leave(one, next(iter(gone.values()))[1])
-            return
-        one.kind = self.kinds["area"].find(one.tags) or "" if form != "area" else ""
-        if "height" in self.known["kinds"].get(one.kind, ()):
+        was = self.kinds["area" if form == "line" else form].find({name: word for name, (word, _) in gone.items()})
+        one.kind = was or (form != "area" and self.kinds["area"].find(one.tags)) or ""
+        if was:
+            self.leave(one, next(iter(gone.values()))[1])
+        elif "height" in self.known["kinds"].get(one.kind, ()):
             reason = "a point without an outline" if form == "point" else CUT if one.tags.get("osm_way_id") in self.cut else "unclosed"
-            self.found.leave(one, self._reason(one.tags) or reason)
+            self.leave(one, self._reason(one.tags) or reason)
         elif use:
-            self.found.used[use] += 1
+            self.used[use] += 1
         else:
             self._do_not_know(one.tags)
 
     def _do_not_know(self, tags: Dict[str, str]) -> None:
         name = next((name for name in self.known["main"] if name in tags), None)
-        self.found.unknown[f"{name}={tags[name]}" if name else "others"] += 1
+        self.unknown[f"{name}={tags[name]}" if name else "others"] += 1
 
-    def _keep(self, one: Feature, form: str, corners: np.ndarray, reason: Optional[str]) -> None:
+    def _keep(self, one: Feature, form: str, corners: np.ndarray) -> None:
         """Once each: extracts repeat closed ways as lines and areas, and the outer way of a relation. What stands above or beyond
-        another of the same corners is another. @param reason to leave it out"""
-        if reason is not None:
-            self.found.leave(one, reason)
-            return
+        another of the same corners is another."""
         alike = self.seen[one.kind, frozenset(map(tuple, np.round(corners, 9).tolist()))]
         rank = 99 if form == "line" else sum(max(part.GetGeometryCount(), 1) for part in parts_of(one.shape))
         for number, (other_rank, other) in enumerate(alike):
             greater = self._greater(one, other)
             if greater is not None:
                 lesser = other if greater is one else one
-                self.found.leave(lesser, TWICE)
+                self.leave(lesser, TWICE)
                 alike[number] = max(rank, other_rank), Feature(one.kind, {**lesser.tags, **greater.tags}, (one if rank > other_rank else other).shape)
                 return
         alike.append((rank, one))
@@ -411,8 +391,7 @@ class Reader:
         if "height" not in rule:
             return other
         name, spans = height_name(rule), []
-        for each in (one, other):
-            row = properties_of(each, self.known)
+        for row in (properties_of(each, self.known) for each in (one, other)):
             spans.append((row[f"{name}_from"].startswith("assumed") and "min_height" not in row, row.get("min_height", 0.0), row[name]))
         (is_assumed, low, high), (is_other_assumed, other_low, other_high) = spans
         if is_assumed or (not is_other_assumed and other_low <= low and high <= other_high):
@@ -423,11 +402,10 @@ class Reader:
         for _, one in (pair for alike in self.seen.values() for pair in alike):
             is_cut = one.tags.get("osm_way_id") in self.cut
             if is_cut and form_of(one.shape) == "area":
-                self.found.leave(one, CUT)
-                continue
-            one.tags = {**one.tags, CUT: "yes"} if is_cut else one.tags
-            self.found.features.append(one)
-        return self.found
+                self.leave(one, CUT)
+            else:
+                self.features.append(dataclasses.replace(one, tags={**one.tags, **({CUT: "yes"} if is_cut else {})}))
+        return self
 
 
 def _is_closed(shape) -> bool:
@@ -436,17 +414,13 @@ def _is_closed(shape) -> bool:
 
 def _as_area(shape):
     """The polygon in a closed line; polygons are as they are."""
-    return shape.Clone() if form_of(shape) == "area" else gdal_modules()[1].ForceToPolygon(shape.Clone())
+    return shape.Clone() if form_of(shape) == "area" else ogr.ForceToPolygon(shape.Clone())
 
 
 def _union(areas: List[Any]):
-    _, ogr, _ = gdal_modules()
     whole = ogr.Geometry(ogr.wkbMultiPolygon)
-    for area in areas:
-        valid = area if area.IsValid() else area.MakeValid()
-        for part in parts_of(valid):
-            if form_of(part) == "area":
-                whole.AddGeometry(part)
+    for part in (part for area in areas for part in parts_of(valid(area)) if form_of(part) == "area"):
+        whole.AddGeometry(part)
     return whole.UnionCascaded()
 
 
@@ -471,31 +445,25 @@ def _in_order(file: pathlib.Path, out: pathlib.Path) -> pathlib.Path:
     found: Dict[str, Dict[int, Tuple[int, bytes]]] = {"node": {}, "way": {}, "relation": {}}
     places: Dict[Tuple[str, str], str] = {}
 
-    def keep(tag: str, number: int, size: int, text: bytes) -> None:
-        if size > found[tag].get(number, (-1, b""))[0]:
-            found[tag][number] = size, text
-
-    def place(node) -> None:
-        """A node of what Overpass writes by `out geom`: without a number in members of relations."""
-        where = node.get("lat"), node.get("lon")
-        if where[0]:
-            node.set("ref", node.get("ref") or places.setdefault(where, str(-(1 << 40) - len(places))))
-            keep("node", int(node.get("ref")), 0, b'<node id="%s" lat="%s" lon="%s"/>' % tuple(word.encode() for word in (node.get("ref"), *where)))
+    def keep(tag: str, number: str, size: int, text: bytes) -> None:
+        found[tag][int(number)] = max(found[tag].get(int(number), (-1, b"")), (size, text), key=lambda one: one[0])
 
     root = None
     for event, one in ElementTree.iterparse(file, ("start", "end")):
         root = one if root is None else root
         if event == "start" or one.tag not in found:
             continue
-        for node in one.iter("nd"):
-            place(node)
+        for node in one.iter("nd"):  # of what Overpass writes by `out geom`: with places, without a number in members of relations
+            where = node.get("lat"), node.get("lon")
+            if where[0]:
+                node.set("ref", node.get("ref") or places.setdefault(where, str(-(1 << 40) - len(places))))
+                keep("node", node.get("ref"), 0, b'<node id="%s" lat="%s" lon="%s"/>' % tuple(word.encode() for word in (node.get("ref"), *where)))
         for member in one.iter("member"):
-            nodes = [node for node in member.iter("nd") if node.get("ref")]
+            nodes = [b'<nd ref="%s"/>' % node.get("ref").encode() for node in member.iter("nd") if node.get("ref")]
             if nodes and member.get("type") == "way":
-                keep("way", int(member.get("ref")), 0, b'<way id="%s">%s</way>' % (member.get("ref").encode(),
-                     b"".join(b'<nd ref="%s"/>' % node.get("ref").encode() for node in nodes)))
+                keep("way", member.get("ref"), 0, b'<way id="%s">%s</way>' % (member.get("ref").encode(), b"".join(nodes)))
         if one.get("action") != "delete" and one.get("visible") != "false" and (one.tag != "node" or one.get("lat")):
-            keep(one.tag, int(one.get("id")), len(one) + 1, ElementTree.tostring(one))
+            keep(one.tag, one.get("id"), len(one) + 1, ElementTree.tostring(one))
         root.clear()
     with open(out, "wb") as stream:
         stream.write(b'<?xml version="1.0" encoding="UTF-8"?><osm version="0.6">\n')
@@ -507,8 +475,6 @@ def _in_order(file: pathlib.Path, out: pathlib.Path) -> pathlib.Path:
 
 def _expect_map(file: pathlib.Path) -> None:
     """Say what a file is that tools leave where an extract was expected."""
-    if not file.is_file():
-        return
     with open(file, "rb") as stream:
         head = stream.read(2000).lstrip(b"\xef\xbb\xbf \r\n\t").lower()
     what = ("is empty" if not head else "is in UTF-16" if head[:2] in (b"\xff\xfe", b"\xfe\xff") else "is a web page" if head.startswith((b"<!doctype html", b"<html"))
@@ -519,31 +485,30 @@ def _expect_map(file: pathlib.Path) -> None:
 
 def read_extract(file: pathlib.Path, known: Dict[str, Any]) -> Extract:
     """What the rules know, aerodromes, and what is left out."""
-    gdal, _, osr = gdal_modules()
     driver = SUFFIXES.get(file.suffix.lower())
     if not driver:
         raise Error(f"{file}: is no extract by its name, expected .osm, .osm.pbf, .geojson or .gpkg")
-    if file.exists() and file.stat().st_size > LARGEST:
+    expect_file(file)
+    if file.stat().st_size > LARGEST:
         raise Error(f"{file}: holds {file.stat().st_size >> 20} MiB, expected at most {LARGEST >> 20}: cut it to the airport and some "
                     "kilometres around it first, as `osmium extract --bbox W,S,E,N` does")
     _expect_map(file)
     options = (f"CONFIG_FILE={pathlib.Path(__file__).with_name('osmconf.ini')}", "USE_CUSTOM_INDEXING=NO") if driver == "OSM" else ()
-    reader = Reader(known)
     aliases = {name.replace(":", "_"): name for name in known["colons"]}
+    found, source = Extract(known), file
     with contextlib.ExitStack() as stack:
-        source = file
-        if file.suffix.lower() == ".osm" and file.is_file() and file.stat().st_size and _needs_order(file):
-            try:
-                with naming("its nodes, ways and relations"):
-                    folder = stack.enter_context(tempfile.TemporaryDirectory())
-                    source = _in_order(file, pathlib.Path(folder) / "in_order.osm")
-            except ElementTree.ParseError as error:
-                raise Error(f"{file}: GDAL cannot read it as an extract ({error})") from None
-        if file.suffix.lower() == ".osm" and source.is_file():
-            reader.found.left += [Left("relation", "no ways")] * _memberless(source)
+        if file.suffix.lower() == ".osm":
+            if _needs_order(file):
+                folder = stack.enter_context(tempfile.TemporaryDirectory())
+                try:
+                    with naming("its nodes, ways and relations"):
+                        source = _in_order(file, pathlib.Path(folder) / "in_order.osm")
+                except ElementTree.ParseError as error:
+                    raise Error(f"{file}: GDAL cannot read it as an extract ({error})") from None
+            found.left += [Feature("relation", {}, reason="no ways")] * _memberless(source)
         data = open_file(source, "an extract", [driver], gdal.OF_VECTOR, options)
         stack.enter_context(naming(str(file)))
-        stack.enter_context(quiet(reader.hear if driver == "OSM" else None))
+        stack.enter_context(quiet(found.hear if driver == "OSM" else None))
         layers: Dict[str, Tuple[List[str], Any]] = {}
         while True:
             try:
@@ -561,17 +526,17 @@ def read_extract(file: pathlib.Path, known: Dict[str, Any]) -> Extract:
                                            osr.CoordinateTransformation(own, degrees()) if own is not None and not own.IsSame(degrees()) else None)
             names, to_degrees = layers[layer.GetName()]
             tags = _tags(feature, names)
-            if not tags:
-                tags = {"feature": str(feature.GetFID())} if driver != "OSM" else tags
-            if driver == "OSM" and layer.GetName() == "lines":
+            if driver != "OSM":
+                tags = tags or {"feature": str(feature.GetFID())}
+            elif layer.GetName() == "lines":
                 tags["osm_way_id"] = tags.get("osm_id", "")
             if tags:
-                reader.take(tags, _plain(feature.GetGeometryRef(), to_degrees))
+                found.take(tags, plain(feature.GetGeometryRef(), to_degrees))
         del data
-    return reader.done()
+    return found.done()
 
 
-def _plain(shape, to_degrees):
+def plain(shape, to_degrees):
     """A geometry of straight lines in degrees; what consists of one part is that part, and rings are closed."""
     if shape is None:
         return None
@@ -594,6 +559,11 @@ def _first(tags: Dict[str, str], names: Tuple[str, ...], read: Callable[[Any], O
     return next(((value, name) for name in names for value in [read(tags.get(name))] if value is not None), (None, "assumed"))
 
 
+def _not_understood(tags: Dict[str, str], names: Tuple[str, ...]) -> str:
+    """Which of some tags holds something else than no height."""
+    return next((f"assumed: {name} is {tags[name][:40]!r}" for name in names if name in tags and not NOTHING.fullmatch(tags[name])), "")
+
+
 def _height(tags: Dict[str, str], rule: Dict[str, Any], floor: float) -> Tuple[float, str]:
     """m above the ground, and what it is from. @param floor height of one, m"""
     value, source = _first(tags, HEIGHTS, length_of)
@@ -607,8 +577,7 @@ def _height(tags: Dict[str, str], rule: Dict[str, Any], floor: float) -> Tuple[f
         if lowest and levels:
             return lowest + floor * (levels - 1.0) + up, f"{source}, {lowest:g} m for the lowest and {floor:g} m for others assumed"
         return each * levels + up, f"{source if levels else 'roof:levels'}, {each:g} m each assumed"
-    said = next((name for name in HEIGHTS if name in tags and not NOTHING.fullmatch(tags[name])), None)
-    return rule["height"], f"assumed: {said} is {str(tags[said])[:40]!r}" if said else "assumed"
+    return rule["height"], _not_understood(tags, HEIGHTS) or "assumed"
 
 
 def properties_of(feature: Feature, known: Dict[str, Any]) -> Dict[str, Any]:
@@ -622,16 +591,15 @@ def properties_of(feature: Feature, known: Dict[str, Any]) -> Dict[str, Any]:
         height, source = _height(tags, rule, floor)
         under, why = _first(tags, MIN_HEIGHTS, length_of)
         if under is None:
-            below, why = _first(tags, MIN_LEVELS, levels_of)
-            under = rule.get("level_height", floor) * below if below else None
-            why = f"{why}, {rule.get('level_height', floor):g} m each assumed" if below else why
+            each, (below, why) = rule.get("level_height", floor), _first(tags, MIN_LEVELS, levels_of)
+            under, why = (each * below, f"{why}, {each:g} m each assumed") if below else (None, why)
         if under is not None and "assumed" in source and (source.startswith("assumed") or under >= height):
             height, source = under + rule.get("thickness", height), f"{source}, above {why}"
-        said = next((name for name in (*MIN_HEIGHTS, *MIN_LEVELS) if name in tags and not NOTHING.fullmatch(tags[name])), None)
+        strange = _not_understood(tags, MIN_HEIGHTS + MIN_LEVELS)
         if under is None and "thickness" in rule and not tags.get("min_height", "").startswith("0"):
             under, why = height - rule["thickness"], "assumed"
-        elif said and not (under and under < height):
-            under, why = 0.0, f"assumed: {said} is {str(tags[said])[:40]!r}"
+        elif strange and not (under and under < height):
+            under, why = 0.0, strange
         properties.update({name: round(float(height), 3), f"{name}_from": source})
         if under is not None and 0.0 <= under < height:
             properties.update(min_height=round(float(under), 3) or None, min_height_from=why)
@@ -650,49 +618,37 @@ def without_parts(features: List[Feature], known: Dict[str, Any]) -> Tuple[List[
     """Buildings of which parts are drawn lose the ground below these, so that parts may be lower than their outline. @return features,
     and the buildings that are nothing but their parts"""
     parts = [one for one in features if one.kind == "part" and "min_height" not in properties_of(one, known)]
-    outlines = [one for one in features if "level_height" in known["kinds"][one.kind] or known["kinds"][one.kind]["class"] in ("building", "house")]
-    outlines = [one for one in outlines if one.kind != "part" and form_of(one.shape) == "area"]
-    drawn: Set[int] = set()
-    if not parts or not outlines:
-        return features, []
-    boxes = np.array([one.shape.GetEnvelope() for one in outlines])
-    below: Dict[int, List[Any]] = collections.defaultdict(list)
-    for part in parts:
-        x, y = part.shape.GetEnvelope()[:2], part.shape.GetEnvelope()[2:]
-        for number in np.flatnonzero((boxes[:, 0] <= x[1]) & (boxes[:, 1] >= x[0]) & (boxes[:, 2] <= y[1]) & (boxes[:, 3] >= y[0])):
-            below[number].append(part.shape)
-    for number, shapes in below.items():
-        outline = outlines[number]
-        whole = outline.shape if outline.shape.IsValid() else outline.shape.MakeValid()
-        rest = whole.Difference(_union(shapes))
-        if rest.Area() < known["drawn_by_parts"] * whole.Area():
-            drawn.add(id(outline))
-        elif rest.Area() < whole.Area():
-            outline.shape = rest
-    return [one for one in features if id(one) not in drawn], [one for one in features if id(one) in drawn]
+    boxes = np.array([part.shape.GetEnvelope() for part in parts]).reshape(-1, 4)
+    kept: List[Feature] = []
+    drawn: List[Feature] = []
+    for one in features:
+        rule, rest = known["kinds"][one.kind], None
+        if one.kind != "part" and form_of(one.shape) == "area" and ("level_height" in rule or rule["class"] in ("building", "house")):
+            west, east, south, north = one.shape.GetEnvelope()
+            near = (boxes[:, 0] <= east) & (boxes[:, 1] >= west) & (boxes[:, 2] <= north) & (boxes[:, 3] >= south)
+            whole = valid(one.shape)
+            rest = whole.Difference(_union([parts[i].shape for i in np.flatnonzero(near)])) if near.any() else None
+        if rest is not None and rest.Area() < known["drawn_by_parts"] * whole.Area():
+            drawn.append(one)
+            continue
+        if rest is not None and rest.Area() < whole.Area():
+            one.shape = rest
+        kept.append(one)
+    return kept, drawn
 
 
 def sea(features: List[Feature], box) -> List[Any]:
     """Areas of a box that lie to the right of its coastlines, as OpenStreetMap draws them. A polygon is an island. None where
     coastlines end within the box. @param box ogr, degrees, as the areas"""
-    _, ogr, _ = gdal_modules()
     lines, right = box.Boundary(), []
-    for part in (part for one in features if one.kind == COAST for part in parts_of(one.shape)):
+    for part in (part for one in features for part in parts_of(one.shape)):
         points = _outer(part)
         if form_of(part) == "area" and np.sum(points[:-1, 0] * points[1:, 1] - points[1:, 0] * points[:-1, 1]) < 0.0:
             points = points[::-1]  # land is to the left
-        coast = ogr.Geometry(ogr.wkbLineString)
-        for point in points:
-            coast.AddPoint_2D(*point)
-        coast = coast.Intersection(box)
+        coast = geometry("LineString", points).Intersection(box)
         lines = lines.Union(coast)
-        for piece in parts_of(coast):
-            ends = _outer(piece)
+        for ends in map(_outer, parts_of(coast)):
             ways = np.diff(ends, axis=0)
-            right += list((ends[:-1] + ends[1:]) / 2 + 1e-3 * np.column_stack([ways[:, 1], -ways[:, 0]]))
-    faces: Any = lines.Polygonize() if right else None
-    found = []
-    for face in parts_of(faces) if faces is not None else ():
-        if any(face.Contains(ogr.CreateGeometryFromWkt(f"POINT ({x!r} {y!r})")) for x, y in (map(float, point) for point in right)):
-            found.append(face.Clone())
+            right += [geometry("Point", at) for at in (ends[:-1] + ends[1:]) / 2 + 1e-3 * np.column_stack([ways[:, 1], -ways[:, 0]])]
+    found = [face for face in parts_of(lines.Polygonize()) if any(map(face.Contains, right))] if right else []
     return [] if sum(face.Area() for face in found) > 0.999 * box.Area() else found

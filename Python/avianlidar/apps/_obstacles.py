@@ -4,16 +4,17 @@ from __future__ import annotations
 
 import csv
 import io
+import math
 import pathlib
 import re
 from typing import Any, Dict, Iterator, List, Optional, Tuple
 from xml.etree import ElementTree
 
-import numpy as np
+from osgeo import ogr, osr
 
 from .._disk import read_regular
 from .._pipeline import Error
-from ._extract import CONTROLS, NUMBER, TALLEST, Feature, Left, degrees, form_of, gdal_modules, number_of
+from ._extract import CONTROLS, NUMBER, TALLEST, Feature, degrees, form_of, geometry, number_of, plain
 
 METRES = {"'": 0.3048, "′": 0.3048, "m": 1.0, "metre": 1.0, "metres": 1.0, "meter": 1.0, "meters": 1.0, "ft": 0.3048, "foot": 0.3048, "feet": 0.3048}
 COLUMNS = {"longitude": ("longitude", "lon", "long", "lng", "londec", "x"), "latitude": ("latitude", "lat", "latdec", "y"),
@@ -26,23 +27,26 @@ MOST = {"height": TALLEST, "elevation": 9000.0}  # m
 NO_PLACE = "without a place or a height"
 
 
-def read_obstacles(file: pathlib.Path, known: Dict[str, Any]) -> Tuple[List[Feature], List[Left]]:
+def read_obstacles(file: pathlib.Path, known: Dict[str, Any]) -> Tuple[List[Feature], List[Feature]]:
     """Obstacles as features of the rules, and what is left out. Their tag `height` is in metres above the ground; where a file gives
     only the elevation of the top, that is in `elevation`, m."""
     suffix = file.suffix.lower()
     if suffix not in (".xml", ".csv"):
         raise Error(f"{file}: is no file of obstacles by its name, expected .xml (AIXM 5.1) or .csv")
     found: List[Feature] = []
-    left: List[Left] = []
+    left: List[Feature] = []
     for tags, shape in (_aixm if suffix == ".xml" else _csv)(file, read_regular(file)):
         kind = _kind_of(tags.pop("word"), form_of(shape) if shape is not None else "", known)
         tags = {name: CONTROLS.sub("", value) for name, value in tags.items()}
-        one = Feature(kind, {**tags, "height_source": f"surveyed, {file.name}" + tags.pop("note", "")}, shape)
-        reason = "a wire" if kind == "wire" else "ruins, or gone" if tags.pop("gone", "") else ""
-        if shape is None or not ("height" in tags or "elevation" in tags):
-            reason = NO_PLACE
-        found += [] if reason else [one]
-        left += [Left("obstacle" if kind == "wire" else kind, reason, one.id, one.name)] if reason else []
+        one = Feature(kind, {**tags, "height_source": f"surveyed, {file.name}{tags.get('note', '')}"}, shape)
+        if shape is None or not {"height", "elevation"} & tags.keys():
+            left.append(one.left(NO_PLACE))
+        elif kind == "wire" or tags.get("gone"):
+            left.append(one.left("a wire" if kind == "wire" else "ruins, or gone"))
+        else:
+            found.append(one)
+    for one in left:
+        one.kind = one.kind.replace("wire", "obstacle")
     return found, left
 
 
@@ -75,40 +79,37 @@ def _csv(file: pathlib.Path, content: bytes) -> Iterator[Tuple[Dict[str, str], A
     head = text.split("\n", 1)[0]
     rows = csv.reader(io.StringIO(text, newline=""), delimiter=max(",;\t", key=head.count), skipinitialspace=True)
     names = [name.strip().lower() for name in next(rows, [])]
-    plain = [UNIT.sub("", name) for name in names]
-    at = {column: next((plain.index(word) for word in words if word in plain), None) for column, words in COLUMNS.items()}
-    if at["longitude"] is None or at["latitude"] is None or at["height"] is at["elevation"] is None:
+    plain_names = [UNIT.sub("", name) for name in names]
+    at = {column: next((plain_names.index(word) for word in words if word in plain_names), len(names)) for column, words in COLUMNS.items()}
+    if len(names) in (at["longitude"], at["latitude"]) or at["height"] == at["elevation"]:
         raise Error(f"{file}: expected the columns longitude, latitude, and height or elevation (and unit, kind, name), found {', '.join(names)[:200]}")
     is_faa = {"latdec", "londec", "agl"} <= set(names)  # the Digital Obstacle File of the FAA, in feet
+    units = {column: "".join(filter(None, own.groups())) if own else "" for column in MOST for own in [UNIT.search([*names, ""][at[column]])]}
     for number, row in enumerate(rows, 2):
         if not any(cell.strip() for cell in row):
             continue
-        cells = {column: row[place].strip() if place is not None and place < len(row) else "" for column, place in at.items()}
+        cells = {column: row[place].strip() if place < min(len(row), len(names)) else "" for column, place in at.items()}
         tags = {"id": cells["name"] or str(number), "name": cells["name"], "word": cells["kind"], "gone": "yes" if cells["action"].upper() == "D" else ""}
-        for column in ("height", "elevation"):
-            place = at[column]
-            own = UNIT.search(names[place]) if place is not None else None
-            unit = cells["unit"] or (own and (own[1] or own[2])) or ("ft" if is_faa else "")
-            value = _metres(cells[column], unit or "m", f"{file}: row {number}", MOST[column])
+        for column, most in MOST.items():
+            unit = cells["unit"] or units[column] or ("ft" if is_faa else "")
+            value = _metres(cells[column], unit or "m", f"{file}: row {number}", most)
             if value is not None:
-                tags[column] = f"{value:.3f}"
-                tags["note"] = "" if unit or not cells[column][-1].isdigit() else ", m assumed"
+                tags.update({column: f"{value:.3f}", "note": "" if unit or not cells[column][-1].isdigit() else ", m assumed"})
         longitude, latitude = _angle(cells["longitude"]), _angle(cells["latitude"])
-        is_place = longitude is not None and latitude is not None and abs(longitude) <= 180.0 and abs(latitude) <= 90.0
-        yield tags, gdal_modules()[1].CreateGeometryFromWkt(f"POINT ({longitude!r} {latitude!r})") if is_place else None
+        is_place = abs(longitude) <= 180.0 and abs(latitude) <= 90.0
+        yield tags, geometry("Point", [longitude, latitude]) if is_place else None
 
 
-def _angle(text: str) -> Optional[float]:
-    """Degrees of "13.302", "13,302", "0131807.2E", "53°36'10\"N"."""
+def _angle(text: str) -> float:
+    """Degrees of "13.302", "13,302", "0131807.2E", "53°36'10\"N"; NaN where there is none."""
     found = ANGLE.fullmatch(text)
     if found and (found[1] or found[5]):
         value = int(found[2]) + int(found[3]) / 60.0 + float(found[4].replace(",", ".")) / 3600.0
         return -value if (found[1] or found[5]).upper() in "SW" else value
     try:
-        value = float(text.replace(",", "."))
+        return float(text.replace(",", "."))
     except ValueError:
-        return None
-    return value if np.isfinite(value) else None
+        return math.nan
 
 
 def _local(element) -> str:
@@ -148,34 +149,21 @@ def _aixm(file: pathlib.Path, content: bytes) -> Iterator[Tuple[Dict[str, str], 
 
 def _shape(part, what: str):
     """The place of a part (ogr, degrees), or None."""
-    _, ogr, _ = gdal_modules()
     for place in _all(part, "ElevatedPoint", "ElevatedCurve", "ElevatedSurface", "Point", "Curve", "Surface"):
-        form = _local(place).replace("Elevated", "")
-        rings = _all(place, "exterior", "interior") if form == "Surface" else [place]
         srs = next((one.get("srsName") for one in place.iter() if one.get("srsName")), "urn:ogc:def:crs:EPSG::4326")
-        size = int(next((one.get("srsDimension") for one in place.iter() if one.get("srsDimension")), 2))
-        shape = ogr.Geometry({"Point": ogr.wkbPoint, "Curve": ogr.wkbLineString, "Surface": ogr.wkbPolygon}[form])
-        for ring in rings:
-            words = " ".join(one.text or "" for one in _all(ring, "pos", "posList")).replace(",", " ").split()
+        words = " ".join(one.text or "" for one in _all(place, "pos", "posList"))
+        if words.strip():
             try:
-                points = np.array(words, dtype=float).reshape(-1, size)[:, :2]
-            except ValueError:
-                raise Error(f"{what}: {' '.join(words)[:60]!r}: expected coordinates in groups of {size}") from None
-            line = ogr.Geometry(ogr.wkbLinearRing) if form == "Surface" else shape
-            for point in points:
-                line.AddPoint_2D(*map(float, point))
-            if form == "Surface" and len(points):
-                shape.AddGeometry(line)
-        if not shape.IsEmpty():
-            shape.CloseRings()
-            shape.Transform(_to_degrees(srs, what))
-            return shape
+                [float(word) for word in words.replace(",", " ").split()]  # GDAL takes other words for 0
+                shape = ogr.CreateGeometryFromGML(ElementTree.tostring(place, "unicode").replace("Elevated", ""))
+            except (RuntimeError, ValueError) as error:
+                raise Error(f"{what}: {words[:60]!r}: cannot be read as coordinates of GML ({error})") from None
+            return plain(shape, _to_degrees(srs, what))
     return None
 
 
 def _to_degrees(srs: str, what: str):
     """From a coordinate system by its name, with its own order of axes, to longitude and latitude. Nothing is fetched."""
-    _, _, osr = gdal_modules()
     code = re.search(r"EPSG[:/]+(?:[\d.]*[:/])?(\d+)$", srs)
     if srs.endswith("CRS84"):
         return osr.CoordinateTransformation(degrees(), degrees())

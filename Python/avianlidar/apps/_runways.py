@@ -9,9 +9,11 @@ import re
 from typing import Any, Dict, List, Optional, Sequence, Set, Tuple
 
 import numpy as np
+from osgeo import osr
+from scipy.sparse.csgraph import connected_components
 
 from .._pipeline import Error
-from ._extract import Extract, Feature, degrees, form_of, gdal_modules, parts_of
+from ._extract import Extract, Feature, degrees, form_of, geometry, moved, parts_of
 from ._maps import coordinate_system
 
 NEAR_AERODROME = 3000.0  # m: a runway belongs to the nearest aerodrome within
@@ -22,27 +24,22 @@ THRESHOLD_BESIDE, THRESHOLD_BEYOND = 30.0, 30.0  # m: a threshold lies on a runw
 
 
 def box_of(west_south_east_north: Sequence[float]):
-    _, ogr, _ = gdal_modules()
     west, south, east, north = west_south_east_north
-    return ogr.CreateGeometryFromWkt(f"POLYGON (({west} {south}, {east} {south}, {east} {north}, {west} {north}, {west} {south}))")
+    return geometry("Polygon", [[(west, south), (east, south), (east, north), (west, north), (west, south)]])
 
 
-def _axis_of(area) -> Tuple[np.ndarray, float]:
-    """Ends of the line between the short sides of the smallest rectangle about an area, and the rectangle's width. @param area ogr, m"""
-    hull = area.ConvexHull()
-    ring = hull.GetGeometryRef(0)
-    corners = np.array([ring.GetPoint_2D(i) for i in range(ring.GetPointCount())])
-    best: Any = None
-    for way in np.diff(corners, axis=0):
-        along = way / np.linalg.norm(way)
-        turned = corners @ np.array([along, (-along[1], along[0])]).T
-        low, high = turned.min(axis=0), turned.max(axis=0)
-        if best is None or np.prod(high - low) < best[0]:
-            best = np.prod(high - low), along, low, high
-    _, along, low, high = best
+def _axis_of(hull) -> Tuple[np.ndarray, float]:
+    """Ends of the line between the short sides of the smallest rectangle about a convex area, and the rectangle's width. @param hull ogr, m"""
+    corners = np.array(hull.Boundary().GetPoints())[:, :2]
+    ways = np.diff(corners, axis=0)
+    ways /= np.linalg.norm(ways, axis=1, keepdims=True)
+    axes = np.stack([ways, ways[:, ::-1] * (-1, 1)], axis=1)  # each side's way, and across it
+    turned = axes @ corners.T
+    axis = axes[np.argmin(np.ptp(turned, axis=2).prod(axis=1))]
+    low, high = (axis @ corners.T).min(axis=1), (axis @ corners.T).max(axis=1)
     middle, sides = (low + high) / 2, high - low
     ends = np.array([middle + sign * 0.5 * sides * (sides == sides.max()) for sign in (-1, 1)])
-    return ends @ np.array([along, (-along[1], along[0])]), float(sides.min())
+    return ends @ axis, float(sides.min())
 
 
 def _designators(tags: Dict[str, str]) -> Set[str]:
@@ -76,13 +73,13 @@ class _Piece:
 def _joined(pieces: List[_Piece], known: Dict[str, Any]) -> List[Tuple[Feature, np.ndarray, List[float]]]:
     """Runways of pieces: features without a geometry, ends (2 x 2, m), and by how much each end's threshold is displaced, m. The first end is that of the
     first number of `ref`."""
-    groups: List[List[_Piece]] = []
-    for piece in sorted(pieces, key=lambda one: -one.length):
-        fitting = [group for group in groups if any(piece.goes_on(one, known) for one in group)]
-        groups = [group for group in groups if not any(group is one for one in fitting)] + [[*(one for group in fitting for one in group), piece]]
+    pieces = sorted(pieces, key=lambda one: -one.length)
+    fit = np.array([[one.goes_on(other, known) for other in pieces] for one in pieces])
+    labels = connected_components(fit)[1] if pieces else fit
+    members = sorted((np.flatnonzero(labels == label) for label in np.unique(labels)), key=lambda of: of[-1])
     found = []
-    for group in groups:
-        group.sort(key=lambda one: (one.is_displaced, -one.length))
+    for group in ([pieces[i] for i in of] for of in members):
+        group.sort(key=lambda one: one.is_displaced)  # the longest first
         tags = {name: value for one in reversed(group) for name, value in one.tags.items() if name != "runway"}
         points, along, start = np.concatenate([one.points for one in group]), group[0].along, group[0].points[0]
         number = re.match(r"(\d{1,2})[LCR]?\s*/", tags.get("ref", ""))
@@ -117,7 +114,6 @@ def choose_runways(file: pathlib.Path, extract: Extract, known: Dict[str, Any], 
                    ) -> Tuple[List[Feature], Optional[Feature]]:
     """The runways of one airport as lines (degrees), and its aerodrome if the extract has it. What is too short for a runway is left out.
     @param icao its code, if given @param box west, south, east, north, degrees: runways that meet it, if given"""
-    _, ogr, osr = gdal_modules()
     lines = [one for one in extract.features if one.kind == "runway" and form_of(one.shape) == "line"]
     areas = [one for one in extract.features if one.kind == "runway" and form_of(one.shape) == "area"]
     if not lines + areas:
@@ -131,13 +127,8 @@ def choose_runways(file: pathlib.Path, extract: Extract, known: Dict[str, Any], 
     local = coordinate_system((middle.GetY(), middle.GetX(), 0.0))
     to_local, to_degrees = osr.CoordinateTransformation(degrees(), local), osr.CoordinateTransformation(local, degrees())
 
-    def metres(shape):
-        shape = shape.Clone()
-        shape.Transform(to_local)
-        return shape
-
     def points_of(shape) -> np.ndarray:
-        return np.array([point[:2] for point in metres(shape).GetPoints()])
+        return np.array(moved(shape, to_local).GetPoints())[:, :2]
 
     pieces = []
     for one in lines:
@@ -145,59 +136,49 @@ def choose_runways(file: pathlib.Path, extract: Extract, known: Dict[str, Any], 
         pieces += of_line
         if not of_line:
             extract.leave(one, "a runway of no length")
-    drawn = [(piece, ogr.CreateGeometryFromWkt("LINESTRING (" + ", ".join(f"{float(at[0])!r} {float(at[1])!r}" for at in piece.points) + ")")) for piece in pieces]
+    drawn = [(piece, geometry("LineString", piece.points)) for piece in pieces]
     for one in areas:
-        hull = metres(one.shape).ConvexHull()
+        hull = moved(one.shape, to_local).ConvexHull()
         ends, width = _axis_of(hull)
         area = _Piece(one, ends, width=f"{width:.1f}")
         inside = sum(line.Intersection(hull).Length() for piece, line in drawn if abs(piece.along @ area.along) > ALONG)
         if inside < area.length / 2:  # no line is drawn along it
             pieces.append(area)
             extract.features.remove(one)
-    places = [metres(one.shape) for one in extract.aerodromes]
-    models = [metres(one.shape) for one in extract.models]
+    models = [moved(one.shape, to_local) for one in extract.models]
     thresholds = [points_of(one.shape)[0] for one in extract.thresholds]
-    runways: List[Feature] = []
-    groups: Dict[Any, List[Feature]] = collections.defaultdict(list)
-    away_of: List[Any] = []
+    runways: List[Tuple[Feature, Any]] = []  # with their lines, m
     for one, ends, by_pieces in _joined(pieces, known):
-        line = ogr.Geometry(ogr.wkbLineString)
-        for x, y in ends:
-            line.AddPoint_2D(float(x), float(y))
-        one.shape = line.Clone()
-        one.shape.Transform(to_degrees)
+        line = geometry("LineString", ends)
+        one.shape = moved(line, to_degrees)
         is_model = line.Length() < known["model_runway"] and any(model.Distance(line) <= MODEL_NEAR for model in models)
         if is_model or line.Length() < known["shortest_runway"]:
             extract.leave(one, "of a model airfield" if is_model else f"a runway shorter than {known['shortest_runway']:g} m")
             continue
-        for name, away in zip(("displaced_start", "displaced_end"), _displaced(ends, by_pieces, thresholds)):
-            one.tags = {**one.tags, **({name: f"{away:.1f}"} if away > 1.0 else {})}
-        runways.append(one)
-        away_of.append(line)
+        displaced = zip(("displaced_start", "displaced_end"), _displaced(ends, by_pieces, thresholds))
+        one.tags = {**one.tags, **{name: f"{away:.1f}" for name, away in displaced if away > 1.0}}
+        runways.append((one, line))
     if not runways:
         raise Error(f"{file}: holds no runway of {known['shortest_runway']:g} m or more")
-    if box is not None:
-        inside = box_of(box)
-        kept = [number for number, one in enumerate(runways) if one.shape.Intersects(inside)]
-        if not kept:
-            raise Error(f"{file}: --bounds {' '.join(f'{x:g}' for x in box)} holds none of its runways")
-        for number, one in enumerate(runways):
-            if number not in kept:
-                extract.leave(one, "outside the scene")
-        runways, away_of = [runways[number] for number in kept], [away_of[number] for number in kept]
-    lines_of: Dict[Any, List[Any]] = collections.defaultdict(list)
-    for one, line in zip(runways, away_of):
-        near = min(((place.Distance(line), number) for number, place in enumerate(places)), default=(math.inf, -1))
-        if near[0] <= NEAR_AERODROME:
-            code = extract.aerodromes[near[1]].tags.get("icao")
+    places = [moved(one.shape, to_local) for one in extract.aerodromes]
+    groups: Dict[Any, List[Tuple[Feature, Any]]] = collections.defaultdict(list)
+    for one, line in runways:
+        if box is not None and not one.shape.Intersects(box_of(box)):
+            extract.leave(one, "outside the scene")
+            continue
+        away, near = min(((place.Distance(line), number) for number, place in enumerate(places)), default=(math.inf, -1))
+        if away <= NEAR_AERODROME:
+            code = extract.aerodromes[near].tags.get("icao")
             key: Any = next(number for number, place in enumerate(extract.aerodromes)
-                            if number == near[1] or (code and place.tags.get("icao") == code))
+                            if number == near or (code and place.tags.get("icao") == code))
         else:  # by the runways themselves
-            key = next((key for key, members in lines_of.items() if isinstance(key, str)
-                        and min(other.Distance(line) for other in members) <= ONE_AIRPORT), f"runway {one.tags.get('ref', '?')}")
-        groups[key].append(one)
-        lines_of[key].append(line)
+            key = next((key for key, members in groups.items() if isinstance(key, str)
+                        and min(other.Distance(line) for _, other in members) <= ONE_AIRPORT), f"runway {one.tags.get('ref', '?')}")
+        groups[key].append((one, line))
+    if not groups:
+        raise Error(f"{file}: --bounds {' '.join(f'{x:g}' for x in box or ())} holds none of its runways")
     names = {key: _name_of(extract.aerodromes[key]) if isinstance(key, int) else key for key in groups}
+    chosen = list(groups)
     if icao is not None:
         chosen = [key for key in groups if isinstance(key, int) and extract.aerodromes[key].tags.get("icao", "").upper() == icao.upper()]
         if not chosen:
@@ -205,9 +186,7 @@ def choose_runways(file: pathlib.Path, extract: Extract, known: Dict[str, Any], 
     elif len(groups) > 1 and box is None:
         raise Error(f"{file}: holds runways of {len(groups)} airports: {', '.join(names.values())}; expected one, or --icao CODE or "
                     "--bounds W S E N to say which")
-    else:
-        chosen = list(groups)
-    for one in (one for key in groups if key not in chosen for one in groups[key]):
+    for one in (one for key in groups if key not in chosen for one, _ in groups[key]):
         extract.leave(one, "of another airport")
     aerodrome = next((extract.aerodromes[key] for key in chosen if isinstance(key, int)), None)
-    return [one for key in chosen for one in groups[key]], aerodrome
+    return [one for key in chosen for one, _ in groups[key]], aerodrome
