@@ -22,7 +22,7 @@ from .._scene import Scene, load_scene
 from .._scene import mesh as _surface
 from .._writers import vtp
 from . import _heights, _pictures, siting
-from ._extract import COAST, CUT, Feature, geometry, height_name, moved, open_file, properties_of, quiet, read_extract, rules, sea, valid, without_parts
+from ._extract import COAST, CUT, UNKNOWN, Feature, geometry, height_name, moved, open_file, properties_of, quiet, read_extract, rules, sea, valid, without_parts
 from ._extract import degrees as _degrees
 from ._extract import form_of as _form
 from ._json import load_json, naming
@@ -67,15 +67,12 @@ def read_heights(file: pathlib.Path, origin: Sequence[float], rectangle: Sequenc
                          overviewLevel="NONE", options=["-novshift"])
         band = grid.GetRasterBand(1)
         heights = band.ReadAsArray()
-        missing = ~(np.abs(heights) < 1e8)
-        if missing.all():
+        holes = 100.0 * np.mean(~(np.abs(heights) < 1e8))
+        if holes == 100.0:
             raise Error(f"holds no heights from {_heights.LOWEST:,g} to {_heights.HIGHEST:,g} m at the airport")
-        holes = 100.0 * missing.mean()
-        if missing.any():
+        if holes:
             gdal.FillNodata(band, None, 20, 0)
-            heights = band.ReadAsArray()
-            missing = ~(np.abs(heights) < 1e8)
-            heights = _feathered(heights, missing, spacing, known["feather"]) if missing.any() else heights
+            heights = _feathered(band.ReadAsArray(), spacing, known["feather"])
     heights = heights[::-1]
     here = _at(heights, (west, south), spacing, (0.0, 0.0))
     words = f"heights: {file.name}, {heights.min():.1f} to {heights.max():.1f} m, taken every {spacing:.3g} m" + (f" (it has them every {own:.3g} m)" if spacing > 1.01 * own else "")
@@ -89,9 +86,12 @@ def read_heights(file: pathlib.Path, origin: Sequence[float], rectangle: Sequenc
     return heights, spacing, here, words
 
 
-def _feathered(heights: np.ndarray, missing: np.ndarray, spacing: float, width: float) -> np.ndarray:
+def _feathered(heights: np.ndarray, spacing: float, width: float) -> np.ndarray:
     """Level where heights are missing, at the mean of the border, and fading into that within `width` (m)."""
     from scipy.ndimage import distance_transform_edt
+    missing = ~(np.abs(heights) < 1e8)
+    if not missing.any():
+        return heights
     away = distance_transform_edt(~missing) * spacing
     level = heights[(away > 0.0) & (away < 1.5 * spacing)].mean()
     share = np.clip(away / max(width, spacing), 0.0, 1.0)
@@ -158,23 +158,16 @@ class Kept:
         if strange:
             raise Error(f"{folder}: {strange[0]} is there and was not made by this command; choose another folder")
 
-    def _sum(self, name: str) -> str:
-        path = self.folder / name
-        return hashlib.sha256(read_regular(path)).hexdigest() if path.exists() else ""
-
-    def is_edited(self, name: str) -> bool:
-        found = self._sum(name)
-        return bool(found) and found not in self.made[name]
-
     def put(self, name: str, make: Callable[[], bytes]) -> pathlib.Path:
         """The file, made unless it was edited."""
         path = self.folder / name
-        if self.is_edited(name):
-            self.edited.append(name)
+        found = hashlib.sha256(read_regular(path)).hexdigest() if path.exists() else ""
+        if found and found not in self.made[name]:
+            self.edited = [*dict.fromkeys([*self.edited, name])]
             return path
         content = make()
         # A run that is stopped between the record and the file leaves the one before: both are as they were made.
-        self.made[name] = sorted({hashlib.sha256(content).hexdigest(), self._sum(name)} - {""})
+        self.made[name] = sorted({hashlib.sha256(content).hexdigest(), found} - {""})
         write_whole(self.record, (json.dumps(self.made, indent=2) + "\n").encode())
         write_whole(path, content)
         return path
@@ -218,46 +211,37 @@ class Airport:
         self._place(bounds)
         coasts = [one for one in self.features if one.kind == COAST]
         self.features = [one for one in self.features if one.kind != COAST]
-        if coasts:
-            seas = sea(coasts, self.box)
-            self.features += [Feature("water", {"name": "sea"}, shape, 0) for shape in seas]
-            near = sum(one.shape.Intersects(self.box) for one in coasts)
-            self.left += [Feature(COAST, {}, count=len(coasts) - near, reason="outside the scene")] * (near < len(coasts))
-            self.used.update({COAST: near} if seas else {})
-            if near and not seas:
-                self.left.append(Feature(COAST, {}, count=near, reason="a coast that does not part the scene"))
-                warnings.warn(f"{self.extract}: its coastlines do not part the scene: the sea is land there; draw it as natural=water, or cut the extract "
-                              "wider", RuntimeWarning, stacklevel=2)
-        ground = aerodrome.shape if aerodrome and _form(aerodrome.shape) == "area" else None
-        if ground is not None and not ground.IsValid():
-            ground = ground.MakeValid()
+        seas, near = sea(coasts, self.box), sum(one.shape.Intersects(self.box) for one in coasts)
+        self.features += [Feature("water", {"name": "sea"}, shape, 0) for shape in seas]
+        if near < len(coasts):
+            self.left.append(Feature(COAST, {}, count=len(coasts) - near, reason="outside the scene"))
+        if seas:
+            self.used[COAST] = near
+        elif near:
+            self.left.append(Feature(COAST, {}, count=near, reason="a coast that does not part the scene"))
+            warnings.warn(f"{self.extract}: its coastlines do not part the scene: the sea is land there; draw it as natural=water, or cut the extract "
+                          "wider", RuntimeWarning, stacklevel=2)
+        ground = valid(aerodrome.shape) if aerodrome and _form(aerodrome.shape) == "area" else None
         self.ground = ground if ground is not None and all(ground.Contains(one.shape.Centroid()) for one in self.runways) else None
 
     def _place(self, bounds: Optional[Sequence[float]]) -> None:
         """Origin, and the rectangle that the scene holds."""
-        ends = np.array([one.shape.GetPoint_2D(i) for one in self.runways for i in (0, one.shape.GetPointCount() - 1)])
-        if np.ptp(ends[:, 0]) > 180.0:
+        ends = np.array([one.shape.GetPoints() for one in self.runways])[:, :, :2]
+        low, high = ends.min(axis=(0, 1)), ends.max(axis=(0, 1))
+        if high[0] - low[0] > 180.0:
             raise Error(f"{self.extract}: its runways cross the meridian of 180 degrees, where scenes of this command end")
-        middle = (ends.min(axis=0) + ends.max(axis=0)) / 2
-        self.origin = (round(float(middle[1]), 7), round(float(middle[0]), 7), 0.0)
-        self.degrees = _degrees()
-        self.local = coordinate_system((*self.origin[:2], 0.0))
-        self.to_local = osr.CoordinateTransformation(self.degrees, self.local)
-        self.to_degrees = osr.CoordinateTransformation(self.local, self.degrees)
-        shape = _box(bounds) if bounds is not None else None
-        if shape is None:
-            shape = ogr.Geometry(ogr.wkbMultiLineString)
-            for one in self.runways:
-                shape.AddGeometry(one.shape)
-        shape.Transform(self.to_local)
+        longitude, latitude = (low + high) / 2
+        self.origin = (round(float(latitude), 7), round(float(longitude), 7), 0.0)
+        local = coordinate_system(self.origin)
+        self.to_local, self.to_degrees = osr.CoordinateTransformation(_degrees(), local), osr.CoordinateTransformation(local, _degrees())
+        shape = moved(_box(bounds) if bounds is not None else geometry("MultiLineString", ends), self.to_local)
         margin = 0.0 if bounds is not None else self.known["margin"]
         west, east, south, north = shape.GetEnvelope()
         self.rectangle = (west - margin, east + margin, south - margin, north + margin)
-        around = _box([self.rectangle[i] for i in (0, 2, 1, 3)])
-        around.Transform(self.to_degrees)
-        if np.ptp(around.GetEnvelope()[:2]) > 180.0:
+        around = moved(_box([self.rectangle[i] for i in (0, 2, 1, 3)]), self.to_degrees).GetEnvelope()
+        if np.ptp(around[:2]) > 180.0:
             raise Error(f"{self.extract}: the scene would reach over the meridian of 180 degrees; set --bounds to the runways' side of it")
-        self.box = _box([around.GetEnvelope()[i] for i in (0, 2, 1, 3)])
+        self.box = _box([around[i] for i in (0, 2, 1, 3)])
 
     def _chosen(self, posts: np.ndarray, corner: Sequence[float], spacing: float) -> List[Feature]:
         """What becomes part of the scene; `self.left` gets all else, with its reason. The ground is that of `_posts`."""
@@ -270,8 +254,7 @@ class Airport:
                 outside[one.kind] += one.count
                 continue
             if "elevation" in one.tags and "height" not in one.tags:
-                place = shape.Centroid()
-                place.Transform(self.to_local)
+                place = moved(shape.Centroid(), self.to_local)
                 above = float(one.tags["elevation"]) - self.origin[2] - _at(posts, corner, spacing, (place.GetX(), place.GetY()))
                 if self.dem is None or not above > 0.0:
                     self.left.append(one.left("an elevation without --heights" if self.dem is None else "below ground"))
@@ -292,7 +275,7 @@ class Airport:
         for one in chosen:
             shape, rule = one.shape, self.known["kinds"][one.kind]
             if ("flat" in rule or "medium" in rule or _form(shape) == "line") and one.kind != "runway" and not self.box.Contains(shape):
-                shape = (shape if shape.IsValid() else shape.MakeValid()).Intersection(self.box)
+                shape = valid(shape).Intersection(self.box)
                 if shape is None or shape.IsEmpty():
                     continue
             rows.append((properties_of(one, self.known), shape))
@@ -337,8 +320,7 @@ class Airport:
                 if name in row and (not isinstance(row[name], (int, float)) or not 0.0 < row[name] <= 1e4):
                     raise Error(f"{mapped}: features[{number}] ({row['kind']} {row.get('id', '')}): {name} is {row[name]!r}, expected metres above 0")
         scene_file = out / "airport.lidarscene.json"
-        if not kept.is_edited(scene_file.name):
-            kept.put(scene_file.name, lambda: _json(self.scene_of()))
+        kept.put(scene_file.name, lambda: _json(self.scene_of()))
         self.progress("files", 3, len(WHAT))
         self.scene = load_scene(scene_file)
         self._count(chosen)
@@ -399,17 +381,15 @@ class Airport:
             rows.append(({"what": "outside the aerodrome"}, self.box.Difference(self.ground)))
         for runway in self.sides:
             corners = siting.to_geodetic(np.column_stack([siting.runway_outline(runway), np.zeros(4)]), self.scene.geodetic_origin)[:, :2]
-            ring = ", ".join(f"{x:.9f} {y:.9f}" for x, y in [*corners, corners[0]])
-            rows.append(({"what": "around a runway", "name": runway.name}, ogr.CreateGeometryFromWkt(f"POLYGON (({ring}))")))
+            rows.append(({"what": "around a runway", "name": runway.name}, geometry("Polygon", [[*corners, corners[0]]])))
         for feature in siting._features(mapped):
             kind = feature["properties"]["kind"]
             if kind not in ("taxiway", "apron", "road", "water", "wood", "scrub"):
                 continue
             shape = ogr.CreateGeometryFromJson(json.dumps(feature["geometry"]))
             if _form(shape) == "line":
-                shape.Transform(self.to_local)
-                shape = shape.Buffer(self.known["beside_taxiways"] if kind == "taxiway" else feature["properties"].get("width", 0.0) / 2)
-                shape.Transform(self.to_degrees)
+                beside = self.known["beside_taxiways"] if kind == "taxiway" else feature["properties"].get("width", 0.0) / 2
+                shape = moved(moved(shape, self.to_local).Buffer(beside), self.to_degrees)
             rows.append(({"what": kind}, shape))
         return _geojson(rows)
 
@@ -518,7 +498,7 @@ class Airport:
     @property
     def counts(self) -> str:
         """What was read, what is in the scene and what is not, by reason, in one line."""
-        reasons = sum(self._reasons().values(), collections.Counter({"unknown kind": sum(self.unknown.values())}))
+        reasons = sum(self._reasons().values(), collections.Counter({UNKNOWN: sum(self.unknown.values())}))
         there, left = sum(self.there.values()), sum(reasons.values())
 
         def verb(count: int, one: str, more: str) -> str:
@@ -531,21 +511,18 @@ class Airport:
 
     def _counts(self) -> str:
         """The same by kind."""
-        lines, outside, found = [f"  {self.counts}"], "outside the scene", self._reasons()
-        away: List[str] = []
+        lines, outside, away, found = [f"  {self.counts}"], "outside the scene", [], self._reasons()
         for kind in dict.fromkeys([*self.there, *(one.kind for one in self.left)]):
-            out = {reason: count for reason, count in found[kind].items() if count}
-            if not self.there[kind] and set(out) == {outside}:
+            out, there = +found[kind], self.there[kind]
+            if not there and set(out) == {outside}:
                 away.append(f"{kind} ({out[outside]:,})")
             elif out:
-                lines.append(f"  {kind or 'others'}: {self.there[kind] + sum(out.values()):,} read, {self.there[kind]:,} in the scene; left out: "
+                lines.append(f"  {kind or 'others'}: {there + sum(out.values()):,} read, {there:,} in the scene; left out: "
                              + ", ".join(f"{count:,} {reason}" for reason, count in out.items()))
-        lines += [f"  all {outside}: {', '.join(away)}"] * bool(away)
         named = [f"{name} ({count:,})" for name, count in self.unknown.most_common(7) if name != "others"]
-        lines += [f"  among those of unknown kind: {', '.join(named[:6])}"] * bool(named)
-        if self.cut:
-            lines.append(f"  {CUT}, and shorter than they are: " + ", ".join(
-                f"{count:,} {kind}" for kind, count in collections.Counter(one.kind for one in self.cut).items()))
+        cut = [f"{count:,} {kind}" for kind, count in collections.Counter(one.kind for one in self.cut).items()]
+        lines += [f"  {words}: {', '.join(some)}" for words, some in (
+            (f"all {outside}", away), ("among those of unknown kind", named[:6]), (f"{CUT}, and shorter than they are", cut)) if some]
         if self.cut or any(one.reason == CUT for one in self.left):
             lines.append("  what is cut by the border is whole in an extract that is cut by `osmium extract --strategy smart`")
         return "\n".join(lines)

@@ -12,7 +12,7 @@ import numpy as np
 from .._weather import in_words
 from . import reach, siting
 from ._maps import Plan
-from ._sites import FEWEST_DRAWS
+from ._sites import FEWEST_DRAWS, listed
 
 LEAST = 0.0005  # share that is given as a number; a site that detects less is no answer
 LEAST_WORDS = f"{100.0 * LEAST:g}\u00a0%"
@@ -70,11 +70,6 @@ def metres(value: float) -> str:
     return f"{float(f'{value:.2g}') if value < 100.0 else 10.0 * round(value / 10.0):g}\u00a0m" if value > 0.0 else "no range"
 
 
-def listed(words: Sequence[str]) -> str:
-    """a, b and c."""
-    return " and ".join(filter(None, (", ".join(words[:-1]), words[-1])))
-
-
 def beside(position: Sequence[float], runways: Sequence[siting.Runway]) -> str:
     """Where a place lies by the two nearest runways, in words: beside a runway how far from its middle line and from an end, else
     how far from an end."""
@@ -83,18 +78,15 @@ def beside(position: Sequence[float], runways: Sequence[siting.Runway]) -> str:
     for runway in runways:
         axis, length = runway.axis()
         along = float((at - runway.start) @ axis)
-        nearer, way = (runway.start, -axis) if along < length / 2 else (runway.end, axis)
+        off = at - (runway.start + min(max(along, 0.0), length) * axis)
+        away, end = float(np.hypot(*off)), f"{siting.wind(-axis if along < length / 2 else axis)} end"
         if 0.0 <= along <= length:
-            off = at - (runway.start + along * axis)
-            away = float(np.hypot(*off))
             found.append((away, f"{metres(away)} {siting.wind(off)} of {runway.name}" if away >= 1.0 else f"on {runway.name}",
-                          f", {metres(min(along, length - along))} from its {siting.wind(way)} end"))
+                          f", {metres(min(along, length - along))} from its {end}"))
         else:
-            off = at - nearer
-            away = float(np.hypot(*off))
-            found.append((away, f"{metres(away)} {siting.wind(off)} of the {siting.wind(way)} end of {runway.name}", ""))
+            found.append((away, f"{metres(away)} {siting.wind(off)} of the {end} of {runway.name}", ""))
     found = sorted(found)[:2]
-    return f"{found[0][1]}{found[0][2]}" + (f", and {found[1][1]}" if len(found) > 1 else "") if found else ""
+    return ", and ".join(nearest + more * (not number) for number, (_, nearest, more) in enumerate(found))
 
 
 def birds_of(view: Plan) -> str:

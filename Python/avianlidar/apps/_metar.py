@@ -14,7 +14,7 @@ import itertools
 import math
 import pathlib
 import re
-from typing import Any, Counter, Dict, Iterator, List, NamedTuple, Optional, Tuple
+from typing import Any, Dict, Iterator, List, NamedTuple, Optional, Tuple
 
 from .._disk import read_regular
 from .._pipeline import Error
@@ -115,15 +115,9 @@ class Hours:
 
     def weighted(self) -> Iterator[Tuple[float, Hour]]:
         """Reports, each with its share of an hour."""
-        several: Counter[Tuple[int, str]] = collections.Counter()
-        keys, before, number = [], None, 0
-        for one in self.reports:
-            number += before not in (None, one.time[:4])  # the same day and hour come again next month
-            before = one.time[:4]
-            keys.append((number, before))
-            several[keys[-1]] += 1
-        for key, one in zip(keys, self.reports):
-            yield 1.0 / several[key], one
+        for _, group in itertools.groupby(self.reports, key=lambda one: one.time[:4]):  # the same day and hour come again next month
+            together = list(group)
+            yield from ((1.0 / len(together), one) for one in together)
 
     def classes(self) -> Dict[Tuple[str, ...], float]:
         """Words of weather, with their hours. In a class without rain the visibility is that of the mean extinction, to two digits; with
@@ -153,11 +147,9 @@ class Hours:
         hours = sum(share for share, _ in self.weighted())
         stations = ", ".join(dict.fromkeys(one.station for one in self.reports))
         said = f"{pathlib.Path(self.file).name}: {len(self.reports):,} METAR reports of {stations}, {hours:,.0f} hours"
-        left_out: Dict[str, List[Tuple[int, str]]] = {}
-        for number, line, wrong in self.bad:
-            left_out.setdefault(wrong, []).append((number, line))
-        for wrong, lines in left_out.items():
-            said += f"; left out: {len(lines):,}, the first in line {lines[0][0]}, '{lines[0][1][:60]}' ({wrong})"
+        for why, count in collections.Counter(wrong for _, _, wrong in self.bad).items():
+            number, line = next((number, line) for number, line, wrong in self.bad if wrong == why)
+            said += f"; left out: {count:,}, the first in line {number}, '{line[:60]}' ({why})"
         others = collections.Counter(name for one in self.reports for name in set(one.others))
         if others:
             said += "; not modelled, but for the visibility: " + ", ".join(f"{name} ({count} reports)" for name, count in others.most_common())

@@ -112,16 +112,12 @@ def _angle(text: str) -> float:
         return math.nan
 
 
-def _local(element) -> str:
-    return element.tag.rsplit("}", 1)[-1]
-
-
 def _all(element, *names: str) -> List[Any]:
-    return [one for one in element.iter() if _local(one) in names]
+    return [one for one in element.iter() if one.tag.rsplit("}", 1)[-1] in names]
 
 
 def _text(element, *names: str) -> str:
-    return next(((one.text or "").strip() for one in _all(element, *names) if (one.text or "").strip()), "")
+    return next(filter(None, ((one.text or "").strip() for one in _all(element, *names))), "")
 
 
 def _aixm(file: pathlib.Path, content: bytes) -> Iterator[Tuple[Dict[str, str], Any]]:
@@ -140,8 +136,8 @@ def _aixm(file: pathlib.Path, content: bytes) -> Iterator[Tuple[Dict[str, str], 
             what = f"{file}: {name}"
             tags = {"id": next((value for key, value in structure.attrib.items() if key.endswith("}id")), name), "name": name,
                     "word": _text(part, "type") or _text(last, "type") or name}
-            for column, names in (("height", ("verticalExtent",)), ("elevation", ("elevation",))):
-                for one in _all(part, *names)[:1]:
+            for column, element in (("height", "verticalExtent"), ("elevation", "elevation")):
+                for one in _all(part, element)[:1]:
                     value = _metres((one.text or "").strip(), one.get("uom", "M"), what, MOST[column])
                     tags.update({column: f"{value:.3f}"} if value is not None else {})
             yield tags, _shape(part, what)

@@ -48,6 +48,11 @@ class Change:
         return sorted(self.winner.sites) != sorted(networks[len(self.winner.sites) - 1].sites)
 
 
+def listed(words: Sequence[str]) -> str:
+    """a, b and c."""
+    return " and ".join(filter(None, (", ".join(words[:-1]), words[-1])))
+
+
 def _read_points(name: str) -> np.ndarray:
     """The columns x and y of a CSV file, n x 2, m."""
     text = read_regular(name)
@@ -118,8 +123,8 @@ class Sites:
     def _keep_below(self) -> None:
         """Leave out candidates whose masts pierce an obstacle limitation surface."""
         asked = self.options.get("surfaces", True)
-        changes = asked if isinstance(asked, dict) else {}
-        self.surfaces = [Surfaces.of(runway, self.plan.scene, changes) for runway in self.plan.runways] if asked is not False else []
+        self.changed = asked if isinstance(asked, dict) else {}  # of the surfaces
+        self.surfaces = [Surfaces.of(runway, self.plan.scene, self.changed) for runway in self.plan.runways] if asked is not False else []
         found = pierced(self.surfaces, self.positions)
         self.pierced = {name: int(np.count_nonzero(found == number)) for number, name in enumerate(NAMES, 1)
                         if self.surfaces and name in self.surfaces[0].kept}
@@ -136,11 +141,9 @@ class Sites:
         """Which surfaces masts keep below, by which codes, and how many candidates did not, in words."""
         if not self.pierced:
             return "none is kept, as the plan switches them off"
-        given = self.options.get("surfaces")
-        given = given if isinstance(given, dict) else {}
-        code = "code number" if "code" in given else "code number by its length, assumed:"
-        category = self.surfaces[0].category + ("" if "category" in given else " (assumed)")
-        changed = [name for name in self.pierced if isinstance(given.get(name), dict)]
+        code = "code number" if "code" in self.changed else "code number by its length, assumed:"
+        category = self.surfaces[0].category + ("" if "category" in self.changed else " (assumed)")
+        changed = [name for name in self.pierced if isinstance(self.changed.get(name), dict)]
         return (f"masts keep below {', '.join(self.pierced)} surfaces of ICAO Annex 14 ({table()['year']}) for {category} approaches, "
                 f"{'; '.join(f'{one.runway.name}: {code} {one.code}' for one in self.surfaces)}"
                 f"{'; the plan changes ' + ', '.join(changed) if changed else ''}; {sum(self.pierced.values())} of "
@@ -151,10 +154,8 @@ class Sites:
         """What was looked at where a mast may stand, for the first page."""
         if not self.pierced:
             return "It is clear of runways, buildings and what the plan excludes; the plan switches obstacle limitation surfaces off"
-        given = self.options.get("surfaces")
-        assumed = "" if isinstance(given, dict) and "category" in given else ", assumed"
-        names = list(self.pierced)
-        return (f"It keeps below the {' and '.join(filter(None, (', '.join(names[:-1]), names[-1])))} surfaces of ICAO Annex 14 "
+        assumed = "" if "category" in self.changed else ", assumed"
+        return (f"It keeps below the {listed(list(self.pierced))} surfaces of ICAO Annex 14 "
                 f"({self.surfaces[0].category} approaches{assumed}), which {sum(self.pierced.values())} others pierce ({self._counted()}), and is clear "
                 "of buildings and what the plan excludes")
 
@@ -291,11 +292,9 @@ class Sites:
     def count_alike(self) -> int:
         """The number of other candidates that are as good as the best within twice the standard error, at the places by which they were ranked."""
         first = self.found[self.order[0]].astype(float)
-        count = 0
-        for site in self.order[1:]:
-            less = ((first - self.found[site]) * self.weights).sum(axis=0)
-            count += less.sum() <= 2.0 * np.sqrt(sum(len(members) * np.var(less[members]) for members in self.regions.values()))
-        return int(count)
+        all_less = (((first - self.found[site]) * self.weights).sum(axis=0) for site in self.order[1:])
+        return sum(bool(less.sum() <= 2.0 * np.sqrt(sum(len(members) * np.var(less[members]) for members in self.regions.values())))
+                   for less in all_less)
 
     def rank_of(self, site: int) -> int:
         """1 for the best candidate."""
@@ -312,15 +311,12 @@ class Sites:
     def robustness(self, changes: List[Change]) -> List[Dict[str, Any]]:
         """A row for each kind of change and number of sensors: draws, how often another network wins, and by how much more at
         most, as a share of the original winner's value. None for fewer than FEWEST_DRAWS draws: they say nothing."""
-        rows: List[Dict[str, Any]] = []
-        for what, size in dict.fromkeys((c.what, len(c.winner.sites)) for c in changes):
-            of_it = [c for c in changes if (c.what, len(c.winner.sites)) == (what, size)]
-            if len(of_it) < FEWEST_DRAWS:
-                continue
-            rows.append({"change": what, "sensors": size, "draws": len(of_it),
-                         "another winner": sum(c.is_another(self.networks) for c in of_it),
-                         "gain at most": max(c.winner.value / c.value - 1.0 if c.value > 0.0 else 0.0 for c in of_it)})
-        return rows
+        alike: Dict[Tuple[str, int], List[Change]] = {}
+        for change in changes:
+            alike.setdefault((change.what, len(change.winner.sites)), []).append(change)
+        return [{"change": what, "sensors": size, "draws": len(of), "another winner": sum(one.is_another(self.networks) for one in of),
+                 "gain at most": max(one.winner.value / one.value - 1.0 if one.value > 0.0 else 0.0 for one in of)}
+                for (what, size), of in alike.items() if len(of) >= FEWEST_DRAWS]
 
     @property
     def lattice(self) -> str:

@@ -10,6 +10,7 @@ one, two, three or more of them.
 """
 from __future__ import annotations
 
+import contextlib
 import dataclasses
 import hashlib
 import io
@@ -76,6 +77,11 @@ class Runway:
         way = np.subtract(self.end, self.start)
         length = float(np.hypot(*way))
         return way / length, length
+
+    def axes(self) -> np.ndarray:
+        """The unit vectors from start to end and to the right of that, 2 x 2."""
+        axis, _ = self.axis()
+        return np.array([axis, (axis[1], -axis[0])])
 
 
 def _transformed(points, origin: Sequence[float], to_geodetic: bool) -> np.ndarray:
@@ -211,8 +217,7 @@ def region_outlines(runways: Sequence[Runway]) -> Dict[str, np.ndarray]:
     """Each strip and approach from above, 4 x 2, m, by its name."""
     names, found = region_names(runways), {}
     for number, runway in enumerate(runways):
-        axis, _ = runway.axis()
-        across = np.array([axis[1], -axis[0]])
+        axis, across = runway.axes()
         found[names["strips"][number]] = runway_outline(runway, 0.0, STRIP_HALF_WIDTH)
         for name, end, way in zip(names["approaches"][2 * number:], (runway.start, runway.end), (-axis, axis)):
             near, far = APPROACH_HALF_WIDTH[0] * across, (APPROACH_HALF_WIDTH[0] + APPROACH_HALF_WIDTH[1] * APPROACH_LENGTH) * across
@@ -268,29 +273,25 @@ def places_by_region(runways: Sequence[Runway], count: int = 12000, seed: int = 
     random = np.random.default_rng(seed)
     strips = int(count * sum(wanted["strips"].values()) + 1e-9)
     numbers = [*_split(strips, list(wanted["strips"].values())), *_split(count - strips, list(wanted["approaches"].values()))]
-    places = []
-    for runway, n in zip(runways, numbers):
-        axis, length = runway.axis()
-        across = np.array([axis[1], -axis[0]])
-        along = random.uniform(0.0, length, n)
-        aside = random.uniform(-STRIP_HALF_WIDTH, STRIP_HALF_WIDTH, n)
-        ground = np.asarray(runway.start) + along[:, None] * axis + aside[:, None] * across
-        places.append(np.column_stack([ground, random.uniform(*region_heights("strips", heights), n)]))
+    strip_of = [(runway, runway.start, 1.0) for runway in runways]
     ends = [(runway, point, sign) for runway in runways for point, sign in ((runway.start, -1.0), (runway.end, 1.0))]
-    for (runway, point, sign), n in zip(ends, numbers[len(runways):]):
-        axis, _ = runway.axis()
-        across = np.array([axis[1], -axis[0]])
-        away = random.uniform(0.0, APPROACH_LENGTH, n)
-        if spread == "area":  # the width of an approach rises evenly with the distance
-            base, wider = APPROACH_HALF_WIDTH
-            area = away / APPROACH_LENGTH * (base * APPROACH_LENGTH + 0.5 * wider * APPROACH_LENGTH ** 2)
-            away = (np.sqrt(base ** 2 + 2.0 * wider * area) - base) / wider
-        aside = random.uniform(-1.0, 1.0, n) * (APPROACH_HALF_WIDTH[0] + APPROACH_HALF_WIDTH[1] * away)
-        ground = np.asarray(point) + (sign * away)[:, None] * axis + aside[:, None] * across
-        if heights is None:
-            height = random.uniform(APPROACH_LOWEST, 1.0, n) * (APPROACH_HEIGHT[0] + APPROACH_HEIGHT[1] * away)
+    places = []
+    for number, ((runway, point, sign), n) in enumerate(zip(strip_of + ends, numbers)):
+        if number < len(runways):
+            away = random.uniform(0.0, runway.axis()[1], n)
+            aside = random.uniform(-STRIP_HALF_WIDTH, STRIP_HALF_WIDTH, n)
+            height = random.uniform(*region_heights("strips", heights), n)
         else:
-            height = random.uniform(*heights, n)
+            away = random.uniform(0.0, APPROACH_LENGTH, n)
+            base, wider = APPROACH_HALF_WIDTH
+            if spread == "area":  # the width of an approach rises evenly with the distance
+                area = away / APPROACH_LENGTH * (base * APPROACH_LENGTH + 0.5 * wider * APPROACH_LENGTH ** 2)
+                away = (np.sqrt(base ** 2 + 2.0 * wider * area) - base) / wider
+            aside = random.uniform(-1.0, 1.0, n) * (base + wider * away)
+            top = APPROACH_HEIGHT[0] + APPROACH_HEIGHT[1] * away
+            height = random.uniform(APPROACH_LOWEST, 1.0, n) * top if heights is None else random.uniform(*heights, n)
+        axis, across = runway.axes()
+        ground = np.asarray(point) + (sign * away)[:, None] * axis + aside[:, None] * across
         places.append(np.column_stack([ground, height]))
     names = [name for of in wanted.values() for name in of]
     parts = np.split(np.arange(count), np.cumsum(numbers)[:-1])
@@ -333,16 +334,14 @@ def read_outlines(file, origin: Sequence[float], attribute: str = "") -> List[An
                 if not isinstance(polygons, list):
                     raise ValueError("the coordinates of a MultiPolygon are no list")
                 for rings in polygons:
-                    if rings != []:
-                        found.append(_ring(rings, origin))
-                        if len(rings) > 1:
-                            found[-1] = [found[-1], *(_ring([ring], origin) for ring in rings[1:])]
+                    outline = [_ring(ring, origin) for ring in (rings if isinstance(rings, list) else [None])]
+                    found += [outline if len(outline) > 1 else outline[0]] if outline else []
     return found
 
 
-def _ring(rings: Any, origin: Sequence[float]) -> np.ndarray:
-    """The outer ring of a polygon in GeoJSON, n x 2, m, open."""
-    corners = _corners(rings[0] if isinstance(rings, list) else None, origin, 3)
+def _ring(coordinates: Any, origin: Sequence[float]) -> np.ndarray:
+    """A ring of a polygon in GeoJSON, n x 2, m, open."""
+    corners = _corners(coordinates, origin, 3)
     ring = corners[:-1] if np.array_equal(corners[0], corners[-1]) else corners
     if len(ring) < 3:
         raise ValueError("a ring has fewer than 3 corners")
@@ -352,9 +351,8 @@ def _ring(rings: Any, origin: Sequence[float]) -> np.ndarray:
 def runway_outline(runway: Runway, beyond: float = 60.0, beside: float = 185.0) -> np.ndarray:
     """The rectangle (4 x 2, m) around a runway where nothing may stand. @param beyond of its ends, m @param beside of its
     middle, m"""
-    axis, _ = runway.axis()
-    across = beside * np.array([axis[1], -axis[0]])
-    start, end = np.array(runway.start) - beyond * axis, np.array(runway.end) + beyond * axis
+    axis, across = runway.axes() * [[beyond], [beside]]
+    start, end = runway.start - axis, runway.end + axis
     return np.array([start - across, end - across, end + across, start + across])
 
 
@@ -474,6 +472,13 @@ def weights_of(count: int, regions: Mapping[str, Any], shares: Mapping[str, floa
     return np.outer(species / species.sum(), weights / weights.sum())
 
 
+def _checked_sites(sites) -> np.ndarray:
+    sites = np.asarray(sites, dtype=float)
+    if sites.ndim != 2 or sites.shape[1] != 3 or not np.isfinite(sites).all():
+        raise ValueError(f"sites have the shape {sites.shape}, expected n x 3 finite coordinates in metres")
+    return sites
+
+
 def look(scene, sensor, sites, places, species: Sequence[str], folder=None, ranks: Optional[Ranks] = None,
          progress: Optional[Callable[[int, int], Any]] = None, array: str = "detection_probability", area_factor: float = 1.0,
          airs: Sequence[Mapping[str, Any]] = ({},), **settings: Any) -> np.ndarray:
@@ -495,9 +500,7 @@ def look(scene, sensor, sites, places, species: Sequence[str], folder=None, rank
 
     @throws ValueError that names the argument, Error of Coverage
     """
-    sites, places, ranks = np.asarray(sites, dtype=float), np.asarray(places, dtype=float), ranks or Ranks()
-    if sites.ndim != 2 or sites.shape[1] != 3 or not np.isfinite(sites).all():
-        raise ValueError(f"sites have the shape {sites.shape}, expected n x 3 finite coordinates in metres")
+    sites, places, ranks = _checked_sites(sites), np.asarray(places, dtype=float), ranks or Ranks()
     if not area_factor > 0.0:
         raise ValueError(f"area_factor is {area_factor}, expected a number above 0")
     if ranks.size > 1 and folder is None:
@@ -575,17 +578,13 @@ def _kept(values: np.ndarray) -> bytes:
 
 def _read_kept(file: pathlib.Path, values: np.ndarray) -> bool:
     """Whether a file is whole, as it was written; its values are read into `values`."""
-    try:
+    with contextlib.suppress(OSError):
         content = file.read_bytes() if file.is_file() else b""
-    except OSError:
-        return False
-    if hashlib.sha256(content[:-32]).digest() != content[-32:]:
-        return False
-    read = np.load(io.BytesIO(content[:-32]))
-    if (read.shape, read.dtype) != (values.shape, values.dtype):
-        return False
-    values[:] = read
-    return True
+        read = np.load(io.BytesIO(content[:-32])) if hashlib.sha256(content[:-32]).digest() == content[-32:] else np.empty(0)
+        if (read.shape, read.dtype) == (values.shape, values.dtype):
+            values[:] = read
+            return True
+    return False
 
 
 def _files(cover: Coverage, sites, places, inputs, folder) -> List[pathlib.Path]:
@@ -616,8 +615,7 @@ class Network:
 
 def values_of(found: np.ndarray, weights: np.ndarray) -> np.ndarray:
     """The weighted share that each site alone detects. @param found sites x species x places @param weights species x places"""
-    if found.shape[1:] != weights.shape:
-        raise ValueError(f"weights have the shape {weights.shape}, expected that of each site's coverage, {found.shape[1:]}")
+    _check_weights(found, weights)
     return np.array([np.vdot(site.astype(float), weights) for site in found])
 
 
@@ -637,9 +635,7 @@ def value_of_same_birds(scene, sensor, sites, places, species: Sequence[str], we
 
     @throws ValueError that names the argument, Error of Coverage
     """
-    sites, places = np.asarray(sites, dtype=float), np.asarray(places, dtype=float)
-    if sites.ndim != 2 or sites.shape[1] != 3 or not np.isfinite(sites).all():
-        raise ValueError(f"sites have the shape {sites.shape}, expected n x 3 finite coordinates in metres")
+    sites, places = _checked_sites(sites), np.asarray(places, dtype=float)
     rows = len(species) * len(airs)
     if weights.shape != (rows, len(places)):
         raise ValueError(f"weights have the shape {weights.shape}, expected species x places, {(rows, len(places))}")
@@ -688,15 +684,18 @@ def greedy(found: np.ndarray, weights: np.ndarray, count: int) -> List[Network]:
     chosen: List[Network] = []
     sites: Tuple[int, ...] = ()
     for _ in range(_count(found, weights, count)):
-        gains = _gains(found, weights, sites)
-        sites += (int(np.argmax(gains)),)
+        sites += (int(np.argmax(_gains(found, weights, sites))),)
         chosen.append(Network(sites, value_of(found, weights, sites)))
     return chosen
 
 
-def _count(found, weights, count) -> int:
+def _check_weights(found, weights) -> None:
     if found.shape[1:] != weights.shape:
         raise ValueError(f"weights have the shape {weights.shape}, expected that of each site's coverage, {found.shape[1:]}")
+
+
+def _count(found, weights, count) -> int:
+    _check_weights(found, weights)
     if not 1 <= count <= len(found):
         raise ValueError(f"count is {count}, expected 1 to {len(found)}, the number of sites")
     return count
@@ -751,12 +750,8 @@ def search(found: np.ndarray, weights: np.ndarray, count: int = 3, largest: int 
     found    sites x species x places, from look
     weights  species x places, from weights_of
     """
-    best = []
-    for start in greedy(found, weights, count):
-        n = len(start.sites)
-        all_of_them = n == 1 or (n <= 3 and len(found) <= largest)
-        best.append(exhaustive(found, weights, n) if all_of_them else exchange(found, weights, start))
-    return best
+    return [exhaustive(found, weights, n) if n == 1 or (n <= 3 and len(found) <= largest) else exchange(found, weights, start)
+            for n, start in enumerate(greedy(found, weights, count), 1)]
 
 
 def rank_correlation(a, b) -> float:
@@ -787,24 +782,25 @@ def with_other_heights(scene_file, folder, offset: Callable[[], float]) -> pathl
             if key in item:
                 item[key] = str((path.parent / item[key]).resolve())
         name, height = item.get("footprints"), item.get("height_attribute")
-        if name and height and re.search(r"json(\.gz)?$", name, re.IGNORECASE):
-            if name not in changed:
-                file = pathlib.Path(name)
-                new = out.resolve() / f"footprints{len(changed)}" / (file.stem if file.suffix == ".gz" else file.name)
-                changed[name] = new, load_json(name)
-            item["footprints"], shapes = str(changed[name][0]), changed[name][1]
-            features = shapes.get("features") if isinstance(shapes, dict) else None
-            for feature in features if isinstance(features, list) else ():
-                properties = feature.get("properties") if isinstance(feature, dict) else None
-                if not isinstance(properties, dict):
-                    continue
-                value = _height(properties.get(height))
-                if value and (id(feature), height) not in moved:
-                    properties[height] = max(value + offset(), 0.1)
-                    under = _height(properties.get(item.get("min_height_attribute")))
-                    if under:  # what does not reach the ground keeps its thickness
-                        properties[item["min_height_attribute"]] = max(under + properties[height] - value, 0.0)
-                    moved.add((id(feature), height))
+        if not (name and height and re.search(r"json(\.gz)?$", name, re.IGNORECASE)):
+            continue
+        if name not in changed:
+            file = pathlib.Path(name)
+            new = out.resolve() / f"footprints{len(changed)}" / (file.stem if file.suffix == ".gz" else file.name)
+            changed[name] = new, load_json(name)
+        item["footprints"], shapes = str(changed[name][0]), changed[name][1]
+        features = shapes.get("features") if isinstance(shapes, dict) else None
+        for feature in features if isinstance(features, list) else ():
+            properties = feature.get("properties") if isinstance(feature, dict) else None
+            if not isinstance(properties, dict):
+                continue
+            value = _height(properties.get(height))
+            if value and (id(feature), height) not in moved:
+                properties[height] = max(value + offset(), 0.1)
+                under = _height(properties.get(item.get("min_height_attribute")))
+                if under:  # what does not reach the ground keeps its thickness
+                    properties[item["min_height_attribute"]] = max(under + properties[height] - value, 0.0)
+                moved.add((id(feature), height))
     out.mkdir(parents=True, exist_ok=True)
     for file, shapes in changed.values():
         file.parent.mkdir(exist_ok=True)
@@ -823,11 +819,9 @@ def write_sites(folder, sites, columns: Mapping[str, Any], origin: Optional[Sequ
     description  in words, of sites.geojson
     """
     out, data = pathlib.Path(folder), vertices(sites)
-    columns = dict(columns)
-    if origin is not None:
-        degrees = to_geodetic(sites, origin)
-        columns.update(longitude=degrees[:, 0], latitude=degrees[:, 1])
-    for name, values in columns.items():
+    degrees = to_geodetic(sites, origin) if origin is not None else np.empty((0, 3))
+    in_degrees = {} if origin is None else {"longitude": degrees[:, 0], "latitude": degrees[:, 1]}
+    for name, values in {**columns, **in_degrees}.items():
         if len(values) != len(sites):
             raise ValueError(f"column {name!r} has {len(values)} values, expected {len(sites)}, one for each site")
         add_array(data.GetPointData(), name, np.asarray(values))
@@ -836,9 +830,7 @@ def write_sites(folder, sites, columns: Mapping[str, Any], origin: Optional[Sequ
     save(data, out / "sites.csv")
     if origin is None:
         return
-    rows = [{name: np.asarray(values)[i].item() for name, values in columns.items() if name not in ("longitude", "latitude")}
-            for i in range(len(sites))]
-    features = [{"type": "Feature", "properties": row,
-                 "geometry": {"type": "Point", "coordinates": [round(lon, 9), round(lat, 9), round(height, 4)]}}
-                for row, (lon, lat, height) in zip(rows, (map(float, place) for place in degrees))]
+    features = [{"type": "Feature", "properties": {name: np.asarray(values)[i].item() for name, values in columns.items()},
+                 "geometry": {"type": "Point", "coordinates": [round(float(lon), 9), round(float(lat), 9), round(float(height), 4)]}}
+                for i, (lon, lat, height) in enumerate(degrees)]
     write_whole(out / "sites.geojson", as_json({"type": "FeatureCollection", "description": description, "features": features}))
