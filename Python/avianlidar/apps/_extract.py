@@ -166,8 +166,13 @@ def _outer(shape) -> np.ndarray:
 
 
 def _has_extent(corners: np.ndarray, form: str) -> bool:
-    """False of lines and areas of which nodes are missing, or the same (to 0.1 mm)."""
-    return form == "point" or bool(np.linalg.matrix_rank(corners - corners[0], 1e-9) >= (1 if form == "line" else 2))
+    """False of lines and areas of which nodes are missing, or the same."""
+    if form == "point":
+        return True
+    away = corners - corners[0]
+    far = away[np.argmax(np.hypot(*away.T))]
+    least = 1e-9 * np.hypot(*far)  # of 0.1 mm
+    return least > 0.0 and (form == "line" or bool(np.abs(away[:, 0] * far[1] - away[:, 1] * far[0]).max() > least))
 
 
 def number_of(text: str, most: float = np.inf) -> float:
