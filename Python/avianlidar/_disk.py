@@ -10,20 +10,18 @@ import gzip
 import io
 import os
 import pathlib
-import shutil
-import signal
 import stat
-import threading
 import unicodedata
 import zlib
-from typing import Any, Callable, Iterable, Iterator, List, Optional, Sequence
+from typing import Any, Callable, Iterable, Iterator, Sequence
 
-from ._pipeline import Error
+from ._pipeline import Error, signals_kept
 
 LARGEST = 256 << 20  # bytes that a compressed file may hold
 LONGEST = 200  # bytes of a name: a file's name is longer by what stands behind it
 LOCK = ".avianlidar.lock"  # in a folder while a run writes there
 PARTS = 16  # so many may write one file at the same time
+NOT_HELD, NO_LOCKS = -1, -2  # in place of a descriptor
 
 
 def checked_name(name: str, what: str) -> str:
@@ -57,48 +55,29 @@ def read_regular(file) -> bytes:
     return content
 
 
-def _lock(handle: int) -> Optional[bool]:
-    """Whether a file is locked now, False where others have locked it, None where the file system has no locks."""
-    try:
-        fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
-    except BlockingIOError:
-        return False
-    except OSError:
-        return None
-    return True
-
-
-def _hold(name: str, flags: int = 0) -> Optional[int]:
-    """A file, locked, as a descriptor; None where others have it or it is gone. A file that is made here (O_EXCL) counts as held
-    also where the file system has no locks."""
+def _hold(name: str, flags: int = 0) -> int:
+    """A file, locked, as a descriptor; NOT_HELD where others have it or it is gone; NO_LOCKS where the file system has none.
+    A file that is made here (O_EXCL) counts as held also there."""
     try:
         handle = os.open(name, flags | os.O_RDWR | os.O_CLOEXEC | os.O_NOFOLLOW | os.O_NONBLOCK, 0o666)
     except FileExistsError:
-        return None
+        return NOT_HELD
     except FileNotFoundError:
         if flags & os.O_CREAT:  # its folder
             raise
-        return None
+        return NOT_HELD
+    found = handle
     try:
-        locked = _lock(handle)
-        if (locked or locked is None and flags & os.O_EXCL) and os.path.samestat(os.fstat(handle), os.lstat(name)):
-            return handle
+        fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except BlockingIOError:
+        found = NOT_HELD
     except OSError:
-        pass
+        found = handle if flags & os.O_EXCL else NO_LOCKS
+    with contextlib.suppress(OSError):
+        if found == handle and os.path.samestat(os.fstat(handle), os.lstat(name)):
+            return handle
     os.close(handle)
-    return None
-
-
-def _has_locks(name: str) -> bool:
-    """Whether a file can be locked; of one that is gone nobody knows."""
-    try:
-        handle = os.open(name, os.O_RDONLY | os.O_CLOEXEC | os.O_NOFOLLOW | os.O_NONBLOCK)
-    except FileNotFoundError:
-        return True
-    try:
-        return _lock(handle) is not None
-    finally:
-        os.close(handle)
+    return min(found, NOT_HELD)
 
 
 @contextlib.contextmanager
@@ -116,11 +95,11 @@ def replacing(path: pathlib.Path) -> Iterator[str]:
     for part in parts:
         with contextlib.suppress(OSError):  # somebody else's
             abandoned = _hold(part)
-            if abandoned is not None:
+            if abandoned >= 0:
                 os.unlink(part)
                 os.close(abandoned)
     held = ((part, _hold(part, os.O_CREAT | os.O_EXCL)) for part in parts)
-    name, handle = next(((part, handle) for part, handle in held if handle is not None), ("", -1))
+    name, handle = next(((part, handle) for part, handle in held if handle >= 0), ("", NOT_HELD))
     if not name:
         raise FileExistsError(f"{path} is being written by {PARTS} others")
     try:
@@ -165,55 +144,14 @@ def as_csv(rows: Iterable[Sequence[Any]], end: str = "\n") -> bytes:
     return text.getvalue().encode()
 
 
-def _new(folder: pathlib.Path) -> List[pathlib.Path]:
-    """Of a folder and those above it, what is not there."""
-    return [path for path in (folder, *folder.parents) if not os.path.lexists(path)]
-
-
-def _remove_empty(folders: Iterable[pathlib.Path]) -> None:
-    for path in folders:
-        with contextlib.suppress(OSError):  # something is in it, or it is a file
-            path.rmdir()
-
-
-def _clear(folder: pathlib.Path) -> None:
-    """Remove what is in a folder but for its lock."""
-    for path in folder.iterdir():
-        if path.is_dir() and not path.is_symlink():
-            shutil.rmtree(path, ignore_errors=True)
-        elif path.name != LOCK:
-            path.unlink(missing_ok=True)
-
-
-@contextlib.contextmanager
-def undone(folder) -> Iterator[None]:
-    """A folder that is made inside, and those above it, go again if what is done inside fails."""
-    folder = pathlib.Path(folder)
-    new = _new(folder)
-    try:
-        yield
-    except BaseException:
-        if folder in new:
-            _clear(folder)
-        _remove_empty(new)
-        raise
-
-
-@contextlib.contextmanager
-def _uninterrupted() -> Iterator[None]:
-    """Ctrl+C waits for the end of the block, so that what was made is known when it comes."""
-    own = threading.current_thread() is threading.main_thread() and signal.getsignal(signal.SIGINT)
-    if not own:  # other threads are not interrupted
-        yield
-        return
-    came: List[int] = []
-    signal.signal(signal.SIGINT, lambda number, _: came.append(number))
-    try:
-        yield
-    finally:
-        signal.signal(signal.SIGINT, own)
-    if came:
-        signal.raise_signal(signal.SIGINT)
+def _remove(paths: Iterable[pathlib.Path], files: bool) -> None:
+    """Remove folders that are empty. @param files whether files go, too"""
+    for path in paths:
+        with contextlib.suppress(OSError):
+            if path.is_dir() and not path.is_symlink():
+                path.rmdir()
+            elif files:
+                path.unlink()
 
 
 @contextlib.contextmanager
@@ -226,34 +164,33 @@ def only_run(folder, ranks=None, goes_on: bool = True, known: Callable[[], Any] 
     folder = pathlib.Path(folder)
     if ranks is not None:
         ranks.agree(folder, known)
-    name, new = folder / LOCK, _new(folder)
-    handle, failed, problem, words = None, True, None, ""
+    name, new = folder / LOCK, [path for path in (folder, *folder.parents) if not os.path.lexists(path)]
+    handle, failed, problem = NOT_HELD, True, None
     try:
         if ranks is None or ranks.rank == 0:
             try:
-                with _uninterrupted():
+                with signals_kept():  # so that what was made is known when Ctrl+C comes
                     folder.mkdir(parents=True, exist_ok=True)
-                    # The run before may end just now.
-                    tries = (_hold(str(name), flags) for _ in range(3) for flags in (os.O_CREAT | os.O_EXCL, 0))
-                    handle = next((handle for handle in tries if handle is not None), None)
-                if handle is None and not _has_locks(str(name)):
-                    words = f"; files here have no locks: if no other run is there, remove {name}"
+                    for flags in 3 * (os.O_CREAT | os.O_EXCL, 0):  # the run before may end just now
+                        handle = _hold(str(name), flags)
+                        if handle >= 0:
+                            break
             except OSError as error:  # the others are to know before it is said
                 problem = error
-        has_it = handle is not None
-        agreed = has_it if ranks is None else ranks.first_says(has_it)
+        has_it = handle >= 0 if ranks is None else ranks.first_says(handle >= 0)
         if problem:
             raise problem
-        if not agreed:
+        if not has_it:
+            words = f"; files here have no locks: if no other run is there, remove {name}" if handle == NO_LOCKS else ""
             raise Error(f"{folder}: another run writes there; wait for its end, or choose another folder{words}")
         yield
         failed = False
     finally:
-        if handle is not None:
+        if handle >= 0:
             if failed and folder in new:  # while it is locked
-                _remove_empty(sorted(folder.rglob("*"), reverse=True)) if goes_on else _clear(folder)
+                _remove((path for path in sorted(folder.rglob("*"), reverse=True) if path != name), not goes_on)
             with contextlib.suppress(FileNotFoundError):  # with its folder
                 os.unlink(name)
             os.close(handle)
         if failed:
-            _remove_empty(new)
+            _remove(new, False)

@@ -9,9 +9,9 @@ import signal
 import sys
 import threading
 import warnings
-from typing import Any, Callable, List, Optional
+from typing import Any, Callable, Dict, Iterator, List, Optional
 
-from vtkmodules.vtkCommonCore import vtkCommand, vtkObject
+from vtkmodules.vtkCommonCore import vtkObject
 
 Progress = Callable[[float, str], Any]
 
@@ -20,19 +20,14 @@ class Error(RuntimeError):
     """What a VTK class reported as an error, in its own words."""
 
 
-def upstream(algorithm) -> List[Any]:
+def upstream(algorithm, found: Optional[List[Any]] = None) -> List[Any]:
     """The algorithm and all that it depends on, sources first."""
-    found: List[Any] = []
-
-    def visit(one):
-        if one is None or one in found:
-            return
-        for port in range(one.GetNumberOfInputPorts()):
-            for i in range(one.GetNumberOfInputConnections(port)):
-                visit(one.GetInputAlgorithm(port, i))
-        found.append(one)
-
-    visit(algorithm)
+    found = [] if found is None else found
+    if algorithm is not None and algorithm not in found:
+        for port in range(algorithm.GetNumberOfInputPorts()):
+            for i in range(algorithm.GetNumberOfInputConnections(port)):
+                upstream(algorithm.GetInputAlgorithm(port, i), found)
+        found.append(algorithm)
     return found
 
 
@@ -60,106 +55,36 @@ def plain(message: str) -> str:
     return re.sub(r"^(\w+) \((?:0x)?[0-9a-fA-F]+\): ", r"\1: ", message).strip()
 
 
-class _Listener:
-    """What a chain of algorithms says while it runs, and the wish to stop it."""
-
-    def __init__(self, progress: Optional[Progress]):
-        self.errors: List[str] = []
-        self.warnings: List[str] = []
-        self.failures: List[str] = []  # said by executives, mostly of what the algorithms said already
-        self.running = True
-        self.failure: Optional[BaseException] = None  # raised by the caller's progress or by a signal's handler
-        self.unfinished: List[Any] = []  # what failed or was stopped
-        self._progress = progress
-        self._tags: List[Any] = []
-
-    def listen_to(self, algorithms):
-        for algorithm in algorithms:
-            self._observe(algorithm, vtkCommand.ErrorEvent, self._text(self.errors, self.unfinished))
-            self._observe(algorithm, vtkCommand.WarningEvent, self._text(self.warnings, []))
-            self._observe(algorithm, vtkCommand.ProgressEvent, self._advanced)
-            self._observe(algorithm.GetExecutive(), vtkCommand.ErrorEvent, self._failed)
-
-    def begin(self):
-        """Forget what was said before."""
-        for said in (self.errors, self.warnings, self.failures, self.unfinished):
-            said.clear()
-        self.running, self.failure = True, None
-
-    def remove(self):
-        for caller, tag in self._tags:
-            caller.RemoveObserver(tag)
-
-    def guarded(self, handler):
-        """A signal's handler that keeps what is raised while VTK works: it would leave an observer, and be printed."""
-
-        def handle(number, frame):
-            if not self.running:
-                handler(number, frame)
-                return
-            try:
-                handler(number, frame)
-            except BaseException as failure:  # noqa: B902
-                self.failure = self.failure or failure
-
-        return handle
-
-    def _observe(self, caller, event, heard):
-        self._tags.append((caller, caller.AddObserver(event, heard)))
-
-    @staticmethod
-    def _text(texts: List[str], callers: List[Any]):
-        def heard(caller, _, message):
-            # VTK decodes the text, and brings none where that fails.
-            texts.append(f"{caller.GetClassName()}: a message that is not UTF-8" if message is None else plain(message))
-            callers.append(caller)
-
-        setattr(heard, "CallDataType", "string0")  # how VTK is told what the event brings
-        return heard
-
-    def fail(self, algorithm, text: str = ""):
-        why = "without a message" if vtkObject.GetGlobalWarningDisplay() else \
-            "and VTK's messages are off: vtkObject.GlobalWarningDisplayOn() shows why"
-        self.failures.append(text or f"{algorithm.GetClassName()}: failed, {why}")
-        self.unfinished.append(algorithm)
-
-    def _failed(self, caller, _, message):
-        algorithm, text = caller.GetAlgorithm(), plain(message or "").partition("\n")[0]
-        if "returned failure for request" in text:
-            text = ""
-        self.fail(algorithm, text)
-
-    setattr(_failed, "CallDataType", "string0")
-
-    def _advanced(self, caller, _):
-        # An exception must not leave an observer: VTK would print it, and end the process at a KeyboardInterrupt.
-        if self._progress and not self.failure:
-            try:
-                self._progress(caller.GetProgress(), caller.GetClassName())
-            except BaseException as failure:  # noqa: B902
-                self.failure = failure
-        if self.failure:
-            caller.SetAbortExecute(True)
-            self.unfinished.append(caller)
-
-
 @contextlib.contextmanager
-def _signals(listener: _Listener):
-    """Handlers of signals, which Python calls in the main thread, are guarded by the listener. One that raises while
-    they are given back may leave some behind: those pass on all that they get."""
-    with contextlib.ExitStack() as stack:
-        if threading.current_thread() is threading.main_thread():
-            for number in signal.valid_signals():
-                handler = signal.getsignal(number)
-                if callable(handler):
-                    ours = listener.guarded(handler)
-                    stack.callback(lambda number=number, ours=ours, handler=handler:  # who set another one keeps it
-                                   signal.getsignal(number) is ours and signal.signal(number, handler))
-                    signal.signal(number, ours)
+def signals_kept() -> Iterator[List[BaseException]]:
+    """What handlers of signals raise in the main thread while the block runs is kept in a list, and the first is raised at
+    the end. A handler that raises while they are given back may leave some behind: those pass on all that they get."""
+    kept: List[BaseException] = []
+    handlers: Dict[int, Any] = {}
+    inside = True
+
+    def handle(number, frame):
         try:
-            yield
-        finally:
-            listener.running = False
+            handlers[number](number, frame)
+        except BaseException as failure:  # noqa: B902
+            if not inside:
+                raise
+            kept.append(failure)
+
+    if threading.current_thread() is threading.main_thread():
+        known = {number: signal.getsignal(number) for number in signal.valid_signals()}
+        handlers.update((number, handler) for number, handler in known.items() if callable(handler))
+    try:
+        for number in handlers:
+            signal.signal(number, handle)
+        yield kept
+    finally:
+        inside = False
+        for number, handler in handlers.items():
+            if signal.getsignal(number) is handle:  # who set another one keeps it
+                signal.signal(number, handler)
+    if kept:
+        raise kept[0]
 
 
 def callers_level() -> int:
@@ -178,39 +103,83 @@ class Updates:
     """
 
     def __init__(self, algorithm, progress: Optional[Progress] = None):
-        self._algorithm, self._listener = algorithm, _Listener(progress)
+        self._algorithm, self._progress = algorithm, progress
+        self._tags: List[Any] = []
+        self._errors: List[str] = []
+        self._warnings: List[str] = []
+        self._failures: List[str] = []  # of executives
+        self._unfinished: List[Any] = []  # what failed or was stopped
+        self._stops: List[BaseException] = []  # of the caller's progress or a signal's handler
 
     def __enter__(self) -> "Updates":
         try:
-            self._listener.listen_to(upstream(self._algorithm))
+            for one in upstream(self._algorithm):
+                for event in ("ErrorEvent", "WarningEvent"):
+                    self._observe(one, event, self._heard)
+                self._observe(one, "ProgressEvent", self._advanced)
+                self._observe(one.GetExecutive(), "ErrorEvent", self._heard)
         except BaseException:
-            self._listener.remove()
+            self.__exit__()
             raise
         return self
 
     def __exit__(self, *_) -> None:
-        self._listener.remove()
+        for caller, tag in self._tags:
+            caller.RemoveObserver(tag)
+
+    def _observe(self, caller, event, heard):
+        self._tags.append((caller, caller.AddObserver(event, heard)))
+
+    def _heard(self, caller, event, message):
+        # VTK decodes the text, and brings none where that fails.
+        text = f"{caller.GetClassName()}: a message that is not UTF-8" if message is None else plain(message)
+        if caller.IsA("vtkExecutive"):  # mostly of what the algorithm said already
+            first = text.partition("\n")[0]
+            self._fail(caller.GetAlgorithm(), "" if "returned failure for request" in first else first)
+        elif event == "WarningEvent":
+            self._warnings.append(text)
+        else:
+            self._errors.append(text)
+            self._unfinished.append(caller)
+
+    setattr(_heard, "CallDataType", "string0")  # how VTK is told what the event brings
+
+    def _fail(self, algorithm, text: str = ""):
+        why = "without a message" if vtkObject.GetGlobalWarningDisplay() else \
+            "and VTK's messages are off: vtkObject.GlobalWarningDisplayOn() shows why"
+        self._failures.append(text or f"{algorithm.GetClassName()}: failed, {why}")
+        self._unfinished.append(algorithm)
+
+    def _advanced(self, caller, _):
+        # An exception must not leave an observer: VTK would print it, and end the process at a KeyboardInterrupt.
+        if self._progress and not self._stops:
+            try:
+                self._progress(caller.GetProgress(), caller.GetClassName())
+            except BaseException as stop:  # noqa: B902
+                self._stops.append(stop)
+        if self._stops:
+            caller.SetAbortExecute(True)
+            self._unfinished.append(caller)
 
     def __call__(self, run: Optional[Callable[[], Any]] = None) -> Any:
         """As `update`."""
-        algorithm, listener = self._algorithm, self._listener
-        listener.begin()
-        with _signals(listener):
+        for said in (self._errors, self._warnings, self._failures, self._unfinished):
+            said.clear()
+        algorithm = self._algorithm
+        with signals_kept() as self._stops:
             try:
                 port = 0 if algorithm.GetNumberOfOutputPorts() else -1
                 result = run() if run else algorithm.GetExecutive().Update(port)
-                if not run and result == 0 and not listener.failures:
-                    listener.fail(algorithm)
+                if not run and result == 0 and not self._failures:
+                    self._fail(algorithm)
             finally:
-                for one in listener.unfinished:
+                for one in self._unfinished:
                     one.SetAbortExecute(False)
                     one.Modified()  # else its empty output would count as up to date
-        if listener.failure:
-            raise listener.failure
-        for text in listener.warnings:
+        for text in self._warnings:
             warnings.warn(text, RuntimeWarning, stacklevel=callers_level())
-        if listener.errors or listener.failures:
-            raise Error("\n".join(listener.errors or listener.failures))
+        if self._errors or self._failures:
+            raise Error("\n".join(self._errors or self._failures))
         return result
 
 

@@ -457,7 +457,7 @@ def _say_before(plan) -> None:
 
 
 def coverage(options) -> None:
-    from ._disk import only_run, undone
+    from ._disk import only_run
     from .apps._maps import Plan
     plans = Plan.all_of(_plan(options), options.threads)
     _say_before(plans[0])
@@ -465,7 +465,7 @@ def coverage(options) -> None:
         for plan in plans:
             bars = Bars()
             folder = options.out / plan.name if len(plans) > 1 else options.out
-            with undone(folder):
+            with only_run(folder, goes_on=False) if len(plans) > 1 else contextlib.nullcontext():
                 names = plan.write(folder, lambda done, total, name=plan.name, bars=bars: bars(f"files of {name}", done, total))
             bars.close()
             row = plan.overall

@@ -68,8 +68,8 @@ class Written(InFolder):
 
         child = os.fork()
         if not child:
-            advanced, csv = _pipeline._Listener._advanced, _writers.OWN[".csv"]
-            _pipeline._Listener._advanced = lambda listener, caller, event: (
+            advanced, csv = _pipeline.Updates._advanced, _writers.OWN[".csv"]
+            _pipeline.Updates._advanced = lambda listener, caller, event: (
                 die() if caller.GetProgress() < 1 and parts() else advanced(listener, caller, event))
             _writers.OWN[".csv"] = lambda cloud, file: (csv(cloud, file), die())
             al.save(self.data, name)

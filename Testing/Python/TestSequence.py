@@ -204,7 +204,7 @@ class Files(unittest.TestCase):
 
     def test_observers_are_added_once_for_all_scans(self):
         """VTK looks through all observers that there ever were when one is removed."""
-        added, observe = [], _pipeline._Listener._observe
+        added, observe = [], _pipeline.Updates._observe
 
         def count(listener, caller, event, heard):
             added.append(event)
@@ -213,7 +213,7 @@ class Files(unittest.TestCase):
         for scans in (1, 2):
             sequence = al.Sequence(self.file, threads=1, number_of_scans=scans, birds=[])
             added.clear()
-            with unittest.mock.patch.object(_pipeline._Listener, "_observe", count):
+            with unittest.mock.patch.object(_pipeline.Updates, "_observe", count):
                 sequence.write(emptied("sequence", "observers"))
             numbers.append(len(added))
         self.assertGreater(numbers[0], 0)
