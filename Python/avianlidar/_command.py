@@ -132,21 +132,29 @@ def _value(text: str) -> Any:
     return name, parts[0] if len(parts) == 1 else tuple(parts)
 
 
-def _settings(verb, part: str, example: str) -> None:
-    verb.add_argument(f"--{part}-set", action="append", default=[], type=_value, metavar="NAME=VALUE",
-                      help=f"a property of the {part}, for example {example}; may be given many times")
+def _settings(verb, **examples: str) -> None:
+    """Options that set parts of what a verb does. @param examples by part: one, or all words of the help"""
+    for part, words in examples.items():
+        help = words if " " in words else f"a property of the {part}, for example {words}; may be given many times"
+        verb.add_argument(f"--{part}-set", action="append", default=[], type=_value, metavar="NAME=VALUE", help=help)
 
 
-def _weather(verb) -> None:
+def _weather(verb, threads: bool = False) -> None:
     verb.add_argument("--weather", nargs="+", metavar="KIND:NUMBER", help=WEATHER)
+    if threads:
+        _threads(verb)
+
+
+def _threads(verb) -> None:
+    verb.add_argument("--threads", type=int, default=0, help="default 0: as many as there are cores")
 
 
 def _out(verb, what: str, **options: Any) -> None:
     verb.add_argument("-o", "--out", type=pathlib.Path, help=what, **{"required": True, **options})
 
 
-def _threads(verb) -> None:
-    verb.add_argument("--threads", type=int, default=0, help="default 0: as many as there are cores")
+SENSOR = "a name that `avianlidar sensors` lists, or a .lidarsensor.json file"
+MANY = "may be given many times"
 
 
 def parser() -> Parser:
@@ -161,33 +169,30 @@ def parser() -> Parser:
             for name, (words, sentence, examples) in VERBS.items()}
 
     for name in ("scan", "advise"):
-        scan = verb[name]
-        scan.add_argument("scene", help=SCENE)
-        scan.add_argument("--sensor", default="Airport16", help="a name that `avianlidar sensors` lists, or a .lidarsensor.json file; "
-                          "default Airport16")
-        scan.add_argument("--position", nargs=3, type=float, metavar=("X", "Y", "Z"),
-                          help="of the sensor, m; default: where the scene says, else 0 0 0")
-        scan.add_argument("--material", help="of the whole scene, a name that `avianlidar materials` lists; default: what the file "
-                          "says, else Wall")
-        scan.add_argument("--scale", type=float, help="metres of a mesh's unit, 0.001 for millimetres; default 1")
-        scan.add_argument("--up-axis", choices=("y", "z"), help="of a mesh: the axis that points up; default: as its format has it")
+        add = verb[name].add_argument
+        add("scene", help=SCENE)
+        add("--sensor", default="Airport16", help=f"{SENSOR}; default Airport16")
+        add("--position", nargs=3, type=float, metavar=("X", "Y", "Z"),
+            help="of the sensor, m; default: where the scene says, else 0 0 0")
+        add("--material",
+            help="of the whole scene, a name that `avianlidar materials` lists; default: what the file says, else Wall")
+        add("--scale", type=float, help="metres of a mesh's unit, 0.001 for millimetres; default 1")
+        add("--up-axis", choices=("y", "z"), help="of a mesh: the axis that points up; default: as its format has it")
         if name == "scan":
-            _out(scan, f"file: {WRITTEN}; .png is a picture of the range image; may be given many times", action="append")
-            scan.add_argument("--quiet", action="store_true", help="no lines on what was modelled and what was left out")
-            scan.add_argument("--preset", choices=tuple(PRESETS), help=f"fidelity by name, with its error of energy and seconds of one core for 15,360 beams at the "
-                              f"airport, and with masts and fences there: {', '.join(f'{name} ({words})' for name, words in PRESETS.items())}; "
-                              "Paper also builds the tree of the paper; default: 100 rays, 2 connections (0.23 %%, 0.15 s; 0.57 %%, 1.0 s)")
+            _out(verb[name], f"file: {WRITTEN}; .png is a picture of the range image; {MANY}", action="append")
+            add("--quiet", action="store_true", help="no lines on what was modelled and what was left out")
+            add("--preset", choices=tuple(PRESETS), help="fidelity by name, with its error of energy and seconds of one core for 15,360 beams at the "
+                f"airport, and with masts and fences there: {', '.join(f'{name} ({words})' for name, words in PRESETS.items())}; "
+                "Paper also builds the tree of the paper; default: 100 rays, 2 connections (0.23 %%, 0.15 s; 0.57 %%, 1.0 s)")
         else:
-            scan.add_argument("--energy", type=float, default=0.02, metavar="SHARE", help="error of energies that is allowed, rms, relative; default 0.02")
-            scan.add_argument("--range", type=float, default=0.05, metavar="METRES", help="error of ranges that is allowed, rms, m; default 0.05")
-            scan.add_argument("--missed", type=float, default=0.01, metavar="SHARE",
-                              help="echoes that may be missed or invented, of the true ones; default 0.01")
-            scan.add_argument("--beams", type=int, default=1000, help="to measure on; default 1000")
-            _out(scan, "file: .json (all), .csv (the table) or .png (a picture); may be given many times", action="append", required=False, default=[])
-        _settings(scan, "sensor", "range_gate=800")
-        _settings(scan, "scan", "rays_per_beam=400")
-        _weather(scan)
-        _threads(scan)
+            add("--energy", type=float, default=0.02, metavar="SHARE", help="error of energies that is allowed, rms, relative; default 0.02")
+            add("--range", type=float, default=0.05, metavar="METRES", help="error of ranges that is allowed, rms, m; default 0.05")
+            add("--missed", type=float, default=0.01, metavar="SHARE",
+                help="echoes that may be missed or invented, of the true ones; default 0.01")
+            add("--beams", type=int, default=1000, help="to measure on; default 1000")
+            _out(verb[name], f"file: .json (all), .csv (the table) or .png (a picture); {MANY}", action="append", required=False, default=[])
+        _settings(verb[name], sensor="range_gate=800", scan="rays_per_beam=400")
+        _weather(verb[name], threads=True)
 
     verb["info"].add_argument("file", type=pathlib.Path, help="a scene, mesh, cloud, sensor, plan or scenario")
     verb["info"].add_argument("--quiet", action="store_true", help="of a cloud no lines on what was modelled and what was left out")
@@ -196,83 +201,77 @@ def parser() -> Parser:
     _out(verb["compare"], "file: the first cloud, with nearest_distance (m) of every point", required=False)
     verb["convert"].add_argument("file", type=pathlib.Path, help=f"a cloud: {READ}; or the folder of a sequence")
     verb["convert"].add_argument("out", type=pathlib.Path, help=f"file: {WRITTEN}; of a sequence .mcap")
-    for reads in ("info", "compare", "convert"):
-        verb[reads].add_argument("--sensor-address", metavar="ADDRESS", help="of packets (.pcap): the sensor, as 192.168.1.201 or 192.168.1.201:2368; default: the "
-                                 "only one")
-        verb[reads].add_argument("--time", type=float, metavar="S", help="of packets: the revolution at that time, seconds since the full hour; default: the first")
+    for name in ("info", "compare", "convert"):
+        add = verb[name].add_argument
+        add("--sensor-address", metavar="ADDRESS",
+            help="of packets (.pcap): the sensor, as 192.168.1.201 or 192.168.1.201:2368; default: the only one")
+        add("--time", type=float, metavar="S", help="of packets: the revolution at that time, seconds since the full hour; default: the first")
     verb["sensors"].add_argument("name", nargs="?", help="one of them, or a .lidarsensor.json file")
     verb["sensors"].add_argument("--fit", metavar="FILE", help="a sensor file with a sheet, or a name: its receiver fitted to all "
                                  "points of the sheet; needs SciPy")
     _out(verb["sensors"], "file: the sensor with the fitted receiver (.lidarsensor.json)", required=False)
 
-    airport = verb["airport"]
-    airport.add_argument("extract", type=pathlib.Path, help="of a map: .osm, .osm.pbf, .geojson, .gpkg")
-    airport.add_argument("--heights", type=pathlib.Path, metavar="DEM", help="of the ground: a GeoTIFF, ASCII grid, SRTM .hgt or GDAL .vrt; default: level")
-    airport.add_argument("--obstacles", type=pathlib.Path, metavar="FILE", action="append", default=[],
-                         help="surveyed obstacles: AIXM 5.1 (.xml), or .csv with columns longitude, latitude, height, unit, kind; may be repeated")
-    which = airport.add_mutually_exclusive_group()
+    add = verb["airport"].add_argument
+    add("extract", type=pathlib.Path, help="of a map: .osm, .osm.pbf, .geojson, .gpkg")
+    add("--heights", type=pathlib.Path, metavar="DEM", help="of the ground: a GeoTIFF, ASCII grid, SRTM .hgt or GDAL .vrt; default: level")
+    add("--obstacles", type=pathlib.Path, metavar="FILE", action="append", default=[],
+        help="surveyed obstacles: AIXM 5.1 (.xml), or .csv with columns longitude, latitude, height, unit, kind; may be repeated")
+    which = verb["airport"].add_mutually_exclusive_group()
     which.add_argument("--icao", metavar="CODE", help="of the airport, where the extract holds several")
     which.add_argument("--bounds", nargs=4, type=float, metavar=("W", "S", "E", "N"),
                        help="degrees: the scene holds what lies inside; default: 2 km around the runways")
-    _out(airport, "folder")
+    _out(verb["airport"], "folder")
 
-    reach = verb["reach"]
-    reach.add_argument("--sensor", action="append", required=True, help="a name that `avianlidar sensors` lists, or a .lidarsensor.json file; may be given many "
-                       "times")
-    reach.add_argument("--species", action="append", help="of the bird, default herring gull; may be given many times")
-    _settings(reach, "sensor", "range_gate=800")
-    _weather(reach)
-    _out(reach, "file: .csv, shares by range", required=False)
+    add = verb["reach"].add_argument
+    add("--sensor", action="append", required=True, help=f"{SENSOR}; {MANY}")
+    add("--species", action="append", help=f"of the bird, default herring gull; {MANY}")
+    _settings(verb["reach"], sensor="range_gate=800")
+    _weather(verb["reach"])
+    _out(verb["reach"], "file: .csv, shares by range", required=False)
 
-    sequence = verb["sequence"]
-    sequence.add_argument("scenario", help="a scenario file, or the manifest.json of another sequence")
-    sequence.add_argument("--scans", type=int, help="number of scans, instead of the scenario's")
-    _out(sequence, "folder")
-    _settings(sequence, "sensor", "range_gate=800")
-    _settings(sequence, "scan", "rays_per_beam=400")
-    _weather(sequence)
-    _threads(sequence)
+    add = verb["sequence"].add_argument
+    add("scenario", help="a scenario file, or the manifest.json of another sequence")
+    add("--scans", type=int, help="number of scans, instead of the scenario's")
+    _out(verb["sequence"], "folder")
+    _settings(verb["sequence"], sensor="range_gate=800", scan="rays_per_beam=400")
+    _weather(verb["sequence"], threads=True)
 
-    track = verb["track"]
-    track.add_argument("inputs", nargs="+", help="folders that `avianlidar sequence` has made, or scenario files")
-    track.add_argument("--runways", type=pathlib.Path, help="a GeoJSON file with lines of kind runway: how long before strip and glide path a bird is tracked")
-    track.add_argument("--sensor", action="append", default=[], help="of scenarios, in place of their own: a name or a .lidarsensor.json file; may be given "
-                       "many times")
-    track.add_argument("--scans", type=int, help="number of scans of scenarios, instead of their own")
-    track.add_argument("--learn", type=int, default=20,
-                       help="scans at the beginning of a sequence of which only clutter is learned; default 20")
-    track.add_argument("--cutoff", type=float, default=20.0,
-                       help="m: a track this far from a bird does not count as its track; also the cutoff of OSPA; default %(default)g")
-    track.add_argument("--order", type=float, default=2.0, help="of OSPA, default %(default)g")
-    _out(track, "folder")
-    _settings(track, "clutter", "clutter_threshold=0.1")
-    _settings(track, "tracker", "confirm_hits=2")
-    _weather(track)
-    _threads(track)
+    add = verb["track"].add_argument
+    add("inputs", nargs="+", help="folders that `avianlidar sequence` has made, or scenario files")
+    add("--runways", type=pathlib.Path, help="a GeoJSON file with lines of kind runway: how long before strip and glide path a bird is tracked")
+    add("--sensor", action="append", default=[],
+        help=f"of scenarios, in place of their own: a name or a .lidarsensor.json file; {MANY}")
+    add("--scans", type=int, help="number of scans of scenarios, instead of their own")
+    add("--learn", type=int, default=20,
+        help="scans at the beginning of a sequence of which only clutter is learned; default 20")
+    add("--cutoff", type=float, default=20.0,
+        help="m: a track this far from a bird does not count as its track; also the cutoff of OSPA; default %(default)g")
+    add("--order", type=float, default=2.0, help="of OSPA, default %(default)g")
+    _out(verb["track"], "folder")
+    _settings(verb["track"], clutter="clutter_threshold=0.1", tracker="confirm_hits=2")
+    _weather(verb["track"], threads=True)
 
-    bench = verb["bench"]
-    bench.add_argument("folders", nargs="+", type=pathlib.Path, help="folders that `avianlidar sequence` has made")
-    bench.add_argument("--predictions", nargs="+", type=pathlib.Path, required=True, help="folders with sequences/NN/predictions/NNNNNN.label, and .score "
-                       "(float32) if scores are known; of several sets in a folder with the set's name each")
-    bench.add_argument("--sequences", nargs="+", default=[], metavar="NN", help="numbers of the sequences that are scored, as 02; default: all")
-    bench.add_argument("--first", type=int, default=0, help="scan of each sequence from which on it is scored, default 0")
-    _out(bench, "folder")
+    add = verb["bench"].add_argument
+    add("folders", nargs="+", type=pathlib.Path, help="folders that `avianlidar sequence` has made")
+    add("--predictions", nargs="+", type=pathlib.Path, required=True, help="folders with sequences/NN/predictions/NNNNNN.label, and .score "
+        "(float32) if scores are known; of several sets in a folder with the set's name each")
+    add("--sequences", nargs="+", default=[], metavar="NN", help="numbers of the sequences that are scored, as 02; default: all")
+    add("--first", type=int, default=0, help="scan of each sequence from which on it is scored, default 0")
+    _out(verb["bench"], "folder")
 
     for name in ("coverage", "siting", "design", "report"):
-        verb[name].add_argument("plan", help="a .coverage.json file")
+        add = verb[name].add_argument
+        add("plan", help="a .coverage.json file")
         _out(verb[name], "file: .html" if name == "report" else "folder")
-        _settings(verb[name], "sensor", "range_gate=3000")
-        _settings(verb[name], "coverage", "species=crow")
+        _settings(verb[name], sensor="range_gate=3000", coverage="species=crow")
         _weather(verb[name])
         if name != "coverage":
-            verb[name].add_argument("--metar", type=pathlib.Path, help="file of METAR reports: the year's weather by the hour, "
-                                    "of which shares are")
+            add("--metar", type=pathlib.Path, help="file of METAR reports: the year's weather by the hour, of which shares are")
         if name in ("siting", "report"):
-            verb[name].add_argument("--siting-set", action="append", default=[], type=_value, metavar="NAME=VALUE",
-                                    help="a part of the plan's siting, for example spacing=100; files are named from the plan's folder")
+            _settings(
+                verb[name], siting="a part of the plan's siting, for example spacing=100; files are named from the plan's folder")
         if name == "design":
-            verb[name].add_argument("--design-set", action="append", default=[], type=_value, metavar="NAME=VALUE",
-                                    help="a part of the plan's design, for example share=0.4 or designs=500")
+            _settings(verb[name], design="a part of the plan's design, for example share=0.4 or designs=500")
         if name != "siting":  # one thread a site; ranks share them
             _threads(verb[name])
     return whole

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import os
 import re
-from typing import Any, Dict, Iterator, List, Mapping, Optional, Sequence, Tuple, Union
+from typing import Any, Dict, List, Mapping, Optional, Sequence, Tuple, Union
 
 import numpy as np
 from vtkmodules.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray, vtk_to_numpy
@@ -78,34 +78,25 @@ def mover(surface: vtkPolyData, positions, times=None, orientations=None) -> vtk
     return moving
 
 
-def _leaf_times(data: vtkPolyData) -> Iterator[int]:
-    yield data.GetMTime()  # of its arrays, too, but for those of cells
-    for cells in (data.GetVerts(), data.GetLines(), data.GetPolys(), data.GetStrips()):
-        if cells.GetNumberOfCells():  # asking for arrays is slow
-            yield from (array.GetMTime() for array in (cells.GetOffsetsArray(), cells.GetConnectivityArray()) if array)
-
-
-def _times(data) -> Iterator[int]:
+def time_of(data) -> int:
+    """When data or anything in them were last modified: VTK asks a composite, which does not ask its blocks."""
+    times = [data.GetMTime()]  # of its arrays, too, but for those of cells
     if isinstance(data, vtkPolyData):
-        yield from _leaf_times(data)
-        return
-    yield data.GetMTime()
-    if isinstance(data, vtkCompositeDataSet):
+        for cells in (data.GetVerts(), data.GetLines(), data.GetPolys(), data.GetStrips()):
+            if cells.GetNumberOfCells():  # asking for arrays is slow
+                times += [array.GetMTime() for array in (cells.GetOffsetsArray(), cells.GetConnectivityArray()) if array]
+    elif isinstance(data, vtkCompositeDataSet):
         nodes = data.NewIterator()
         if hasattr(nodes, "VisitOnlyLeavesOff"):
             nodes.VisitOnlyLeavesOff()
+            nodes.TraverseSubTreeOff()
         nodes.InitTraversal()
         while not nodes.IsDoneWithTraversal():
             if nodes.HasCurrentMetaData():
-                yield nodes.GetCurrentMetaData().GetMTime()
-            node = nodes.GetCurrentDataObject()
-            yield from _leaf_times(node) if isinstance(node, vtkPolyData) else (node.GetMTime(),)
+                times.append(nodes.GetCurrentMetaData().GetMTime())
+            times.append(time_of(nodes.GetCurrentDataObject()))
             nodes.GoToNextItem()
-
-
-def time_of(data) -> int:
-    """When data or anything in them were last modified: VTK asks a composite, which does not ask its blocks."""
-    return max(_times(data))
+    return max(times)
 
 
 def _painter(surfaces, material: Optional[Material], name: Optional[str]):
@@ -147,12 +138,6 @@ def materials() -> Dict[str, Tuple[float, ...]]:
             for name, value in known.items() if _wrapped.vtkAvianLidarMaterial.GetMaterialName(value)}
 
 
-def _only_block(data):
-    while isinstance(data, vtkMultiBlockDataSet) and data.GetNumberOfBlocks() == 1:
-        data = data.GetBlock(0)
-    return data
-
-
 def _paint_triangles(data, material, name: Optional[str]) -> vtkPolyData:
     """A copy of triangles with a material for each: m names, or m rows of coefficients."""
     try:
@@ -160,16 +145,16 @@ def _paint_triangles(data, material, name: Optional[str]) -> vtkPolyData:
         values = values.astype(str if values.dtype.kind in "UO" and all(isinstance(value, str) for value in values.flat) else float)
     except (TypeError, ValueError):
         raise TypeError(f"materials of the triangles are neither names nor rows ({_ALL}) alone") from None
-    one = _only_block(data)
-    number = one.GetNumberOfCells() if isinstance(one, vtkPolyData) else None
+    while isinstance(data, vtkMultiBlockDataSet) and data.GetNumberOfBlocks() == 1:
+        data = data.GetBlock(0)
+    number = data.GetNumberOfCells() if isinstance(data, vtkPolyData) else None
     if number is None or values.shape[:1] != (number,) or values.shape[1:] not in ((), *((n,) for n in _NUMBERS)):
         raise ValueError(f"materials of the shape {values.shape} for {number or 'a composite of'} triangles, expected one name "
                          f"or one row ({_ALL}) for each triangle of one mesh")
     if values.ndim == 1:
         words = {word: choose(_wrapped.vtkAvianLidarMaterial, "Material", word) for word in np.unique(values)}
-        found, numbers = np.unique([words[word] for word in values], return_inverse=True)
-        known = materials()
-        names, rows = list(found), np.array([known[name] for name in found])
+        names, numbers = np.unique([words[word] for word in values], return_inverse=True)
+        rows = np.array([materials()[name] for name in names])
     else:
         rows, numbers = np.unique(values, axis=0, return_inverse=True)
         names = [f"Custom {i + 1}" for i in range(len(rows))]
@@ -177,11 +162,11 @@ def _paint_triangles(data, material, name: Optional[str]) -> vtkPolyData:
         for row in {*sums.argmin(axis=0), *sums.argmax(axis=0)}:  # of NaN these are the NaN
             _painter(mesh(*_ONE), rows[row], None)  # coefficients out of their range are an error
     painted = vtkPolyData()
-    painted.ShallowCopy(_only_block(_painter(data, "Wall", name).GetOutputDataObject(0)))
+    painted.ShallowCopy(_painter(data, "Wall", name).GetOutputDataObject(0))
     cells, ids = painted.GetCellData(), numbers.reshape(-1).astype(np.int32)
     for key, column in (("material_id", ids), *((key, row[ids]) for key, row in zip(COEFFICIENTS, rows.T))):
         add_array(cells, key, column)
-    add_array(painted.GetFieldData(), "material_names", names)
+    add_array(painted.GetFieldData(), "material_names", list(names))
     return painted
 
 
@@ -300,14 +285,20 @@ class Scene:
             material = "Wall"
         if not isinstance(data, (vtkPolyData, vtkMultiBlockDataSet)):
             raise TypeError(f"surfaces are vtkPolyData or a vtkMultiBlockDataSet of it, not {data.GetClassName()}")
-        fields = data.GetFieldData()
-        is_one = material is None or isinstance(material, str)
-        if not is_one and (np.asarray(material).ndim > 1 or np.asarray(material).dtype.kind in "UO"):
+        fields, number, kinds = data.GetFieldData(), self.surfaces.GetNumberOfBlocks(), np.asarray(material)
+        if not isinstance(material, str) and (kinds.ndim > 1 or kinds.ndim == 1 and kinds.dtype.kind in "UO"):
             data = _paint_triangles(data, material, name)
         elif material is not None or name:
             self._painters.append(_painter(data, material, name))
             data = self._painters[-1].GetOutputDataObject(0)
-        self._append(data, name, fields)
+        self.surfaces.SetBlock(number, data)
+        if name:
+            self.surfaces.GetMetaData(number).Set(vtkCompositeDataSet.NAME(), name)
+        # Where the scene stands is said by its root; the first that says it counts.
+        for field in ("geodetic_origin", "lidar_position"):
+            array = fields.GetAbstractArray(field)
+            if array and not self.surfaces.GetFieldData().HasArray(field):
+                self.surfaces.GetFieldData().AddArray(array)
 
     @staticmethod
     def _data_of(surfaces, progress: Optional[Progress], painted: bool, **options: Any):
@@ -316,12 +307,11 @@ class Scene:
         for key, value in options.items():
             if value is not None:
                 raise TypeError(f"{key} is for mesh files; scale and turn what is no file before it is added")
+        if isinstance(surfaces, vtkAlgorithm):
+            surfaces = surfaces.GetOutputPort()
         if isinstance(surfaces, vtkAlgorithmOutput):
             update(surfaces.GetProducer(), progress)
             return surfaces.GetProducer().GetOutputDataObject(surfaces.GetIndex())
-        if isinstance(surfaces, vtkAlgorithm):
-            update(surfaces, progress)
-            return surfaces.GetOutputDataObject(0)
         if isinstance(surfaces, vtkDataObject):
             return surfaces
         if isinstance(surfaces, (tuple, list)) and len(surfaces) == 2 and not isinstance(surfaces[0], (str, os.PathLike)):
@@ -354,9 +344,8 @@ class Scene:
         buffer = vtkCharArray()
         if not vtkCommunicator.MarshalDataObject(self.surfaces, buffer):
             raise ValueError("the surfaces cannot be copied")
-        wrapped = type(self.tree)
         return {"surfaces": vtk_to_numpy(buffer).tobytes(),
-                "tree": {name: get_property(self.tree, name) for name in property_names(wrapped).values()}}
+                "tree": {name: get_property(self.tree, name) for name in property_names(type(self.tree)).values()}}
 
     def __setstate__(self, state: Dict[str, Any]) -> None:
         Scene.__init__(self)
@@ -365,35 +354,21 @@ class Scene:
         for name, value in state["tree"].items():
             set_property(self.tree, name, value)
 
-    def _append(self, data, name: Optional[str], fields: vtkFieldData) -> None:
-        number = self.surfaces.GetNumberOfBlocks()
-        self.surfaces.SetBlock(number, data)
-        if name:
-            self.surfaces.GetMetaData(number).Set(vtkCompositeDataSet.NAME(), name)
-        # Where the scene stands is said by its root; the first that says it counts.
-        for field in ("geodetic_origin", "lidar_position"):
-            array = fields.GetAbstractArray(field)
-            if array and not self.surfaces.GetFieldData().HasArray(field):
-                self.surfaces.GetFieldData().AddArray(array)
-
     def _merged(self) -> vtkPolyData:
         self.refresh()
         if not is_current(self.tree):
             update(self.tree)
         return self.tree.GetOutput()
 
-    def _fields(self) -> Dict[str, Any]:
-        return field_values(self._merged())
-
     @property
     def objects(self) -> List[str]:
         """Names of the objects, in the order of `object_id`."""
-        return self._fields().get("object_names", [])
+        return field_values(self._merged()).get("object_names", [])
 
     @property
     def materials(self) -> List[str]:
         """Names of the materials, in the order of `material_id`."""
-        return self._fields().get("material_names", [])
+        return field_values(self._merged()).get("material_names", [])
 
     @property
     def number_of_triangles(self) -> int:

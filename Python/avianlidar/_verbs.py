@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What the verbs of the command `avianlidar` do; each imports what it needs."""
+"""What the verbs of the command `avianlidar` do; of `apps` each imports what not all of them need."""
 from __future__ import annotations
 
 import contextlib
@@ -9,63 +9,80 @@ import sys
 import warnings
 from typing import Any, Callable, Dict, Iterable, Iterator, List, Tuple
 
+import numpy as np
+
+from . import BirdTracks, Cloud, Scan, Scene, Sensor, Sequence, _display, _scene, _sheet, load_cloud, save
+from . import vtkAvianLidar as _wrapped
+from ._advice import check_suffix as check_advice
+from ._advice import notes_of, table_rows
+from ._cloud import vertices
+from ._disk import only_run, replacing
+from ._pipeline import update
+from ._properties import in_snake_case
+from ._ranks import Ranks
+from ._sight import extent, of_scene
 from ._suffixes import PACKETS, TABLES
+from ._weather import weather, without_air
+from ._writers import check_suffix, check_target
+from .apps import _design_page, _pictures
+from .apps import reach as ranges
+from .apps._answer import percent
+from .apps._maps import Plan, read_plan, write_table
+from .apps._report import Report
+from .apps._sequence import PROPERTIES, read_scenario
+from .apps._sites import Sites
+
+_shown: List[Any] = []  # the bar on the terminal
 
 
-class Bars:
+def bar(what: str, done: float, total: float) -> None:
     """A bar on a terminal for each work that is named; nothing in a log."""
+    if not _shown or _shown[0].desc != what:
+        close_bar()
+        if not sys.stderr.isatty():
+            return
+        from tqdm import tqdm
+        _shown.append(tqdm(total=total, file=sys.stderr))
+        _shown[0].desc = what
+    _shown[0].update(done - _shown[0].n)
 
-    shown: Any = None  # the bar that is on the terminal
 
-    def __call__(self, what: str, done: float, total: float) -> None:
-        if Bars.shown is None or Bars.shown.desc != what:
-            self.close()
-            if not sys.stderr.isatty():
-                return
-            from tqdm import tqdm
-            Bars.shown = tqdm(total=total, file=sys.stderr)
-            Bars.shown.desc = what
-        Bars.shown.update(done - Bars.shown.n)
+def close_bar(leave: bool = True) -> None:
+    """@param leave it on the terminal"""
+    while _shown:
+        last = _shown.pop()
+        last.leave = leave
+        last.close()
 
-    @staticmethod
-    def close(leave: bool = True) -> None:
-        """Be done with it. @param leave it on the terminal"""
-        if Bars.shown is not None:
-            Bars.shown.leave = leave
-            Bars.shown.close()
-            Bars.shown = None
+
+def tell(*lines: Any) -> None:
+    """Lines to the output, below the bar."""
+    close_bar()
+    print(*lines, sep="\n")
 
 
 def say(text: str) -> None:
     """One line to the error stream, at the end of the work."""
-    Bars.close(leave=False)
+    close_bar(leave=False)
     print(f"avianlidar: {' '.join(text.split())}", file=sys.stderr)
 
 
 def warn(text: str) -> None:
     """One line to the error stream, above a bar."""
-    if Bars.shown is not None:
-        Bars.shown.clear()
+    for shown in _shown:
+        shown.clear()
     print(f"avianlidar: warning: {' '.join(text.split())}", file=sys.stderr)
 
 
-def _table(rows: Iterable[Tuple[Any, ...]], file=None) -> None:
+def _table(rows: Iterable[Tuple[Any, ...]]) -> None:
     """Columns as wide as their words."""
     lines = [[str(cell) for cell in row] for row in rows]
     widths = [max(map(len, column)) for column in zip(*lines)]
-    for line in lines:
-        print("  ".join(cell.ljust(width) for cell, width in zip(line, widths)).rstrip(), file=file)
-
-
-def _scene(options, bars: Bars):
-    from . import Scene
-    return Scene(options.scene, material=options.material, scale=options.scale, up_axis=options.up_axis,
-                 progress=lambda share, _: bars("scene", round(100 * share), 100))
+    tell(*("  ".join(cell.ljust(width) for cell, width in zip(line, widths)).rstrip() for line in lines))
 
 
 def _check_outs(options, check: Callable[[pathlib.Path], None]) -> None:
     """Errors of names before the work. @param check by suffix"""
-    from ._writers import check_target
     for number, out in enumerate(options.out):
         check(out)
         if out.suffix.lower() == ".png":
@@ -76,19 +93,20 @@ def _check_outs(options, check: Callable[[pathlib.Path], None]) -> None:
 
 def _alarms(cloud) -> str:
     """How many echoes no surface has given."""
-    said = ""
-    for number, words in ((-1, "a false alarm of the noise"), (-2, "of the air")):
-        found = int((cloud["object_id"] == number).sum()) if "object_id" in cloud else 0
-        said += f", {found} of them {words} (object_id {number})" if found else ""
-    return said
+    ids = list(cloud.get("object_id", ()))
+    return "".join(f", {ids.count(number)} of them {words} (object_id {number})" for number, words in
+                   ((-1, "a false alarm of the noise"), (-2, "of the air")) if number in ids)
 
 
-def _scan_of(options, bars: Bars, scene):
+def _scan_of(options) -> Scan:
     """The scan that options describe."""
-    from . import Scan, Sensor
-    from ._weather import weather
+    def percent_of(what: str):
+        return lambda share, _: bar(what, round(100 * share), 100)
+
+    scene = Scene(options.scene, material=options.material, scale=options.scale, up_axis=options.up_axis,
+                  progress=percent_of("scene"))
     sensor = Sensor(options.sensor, position=options.position or scene.lidar_position or (0, 0, 0)).set(**dict(options.sensor_set))
-    scan = Scan(scene, sensor, progress=lambda share, _: bars(options.verb, round(100 * share), 100))
+    scan = Scan(scene, sensor, progress=percent_of(options.verb))
     preset = getattr(options, "preset", None)
     if preset:
         scan.preset = preset
@@ -97,20 +115,12 @@ def _scan_of(options, bars: Bars, scene):
 
 
 def scan(options) -> None:
-    from . import save
-    from ._advice import notes_of
-    from ._disk import replacing
-    from ._writers import check_suffix
     _check_outs(options, lambda out: check_suffix(out, (".png",)))
-    bars = Bars()
-    scene = _scene(options, bars)
-    if not scene.geodetic_origin:
-        for out in options.out:
-            if out.suffix.lower() == ".geojson":
-                raise ValueError(f"{out}: GeoJSON needs longitude and latitude, and the scene has no origin on the Earth")
-    scan = _scan_of(options, bars, scene)
+    scan = _scan_of(options)
+    for out in options.out:
+        if out.suffix.lower() == ".geojson" and not scan.scene.geodetic_origin:
+            raise ValueError(f"{out}: GeoJSON needs longitude and latitude, and the scene has no origin on the Earth")
     echoes = scan.echoes.annotated()
-    bars.close()
     for out in options.out:
         if out.suffix.lower() == ".png":
             with replacing(out) as name:
@@ -118,28 +128,23 @@ def scan(options) -> None:
         else:
             save(echoes, out)
         labels = f", labels in {out.with_suffix('.label').name}" if out.suffix.lower() == ".bin" else ""
-        print(f"{out}: {echoes.number_of_points} echoes of {scan.report.number_of_points} beams{_alarms(echoes)}{labels}")
+        tell(f"{out}: {echoes.number_of_points} echoes of {scan.report.number_of_points} beams{_alarms(echoes)}{labels}")
     if not options.quiet:
-        print(*notes_of(echoes.fields), sep="\n")
+        tell(*notes_of(echoes.fields))
 
 
 def advise(options) -> None:
-    from ._advice import check_suffix, table_rows
-    _check_outs(options, check_suffix)
-    bars = Bars()
-    scan = _scan_of(options, bars, _scene(options, bars))
-    advice = scan.advise(options.energy, options.range, options.missed, options.beams)
-    bars.close()
+    _check_outs(options, check_advice)
+    advice = _scan_of(options).advise(options.energy, options.range, options.missed, options.beams)
     _table(table_rows(advice))
-    print(advice)
+    tell(advice)
     for out in options.out:
         advice.save(out)
-        print(f"{out}: the advice")
+        tell(f"{out}: the advice")
 
 
 def _cloud(file, options=None):
     """A cloud in the scene's frame, where the file says it; of packets what the options `time` and `sensor_address` choose."""
-    from . import load_cloud
     suffix = file.suffix.lower()
     chosen = {name: getattr(options, name) for name in ("time", "sensor_address") if getattr(options, name, None) is not None} if suffix in PACKETS else {}
     return load_cloud(file, **({"local_coordinates": True} if suffix in (".las", ".laz") else chosen))
@@ -171,10 +176,6 @@ def _words(value: Any) -> str:
 
 
 def _say_cloud(file: pathlib.Path, options) -> None:
-    import numpy as np
-
-    from ._advice import notes_of
-    from ._sight import extent
     cloud = _cloud(file, options)
     print(f"{file}: a cloud of {cloud.number_of_points} points{_alarms(cloud)}")
     if not cloud.number_of_points:
@@ -195,15 +196,10 @@ def _say_cloud(file: pathlib.Path, options) -> None:
         rows.append((name, cloud.units[name] or "-", *ends))
     _table(rows)
     if not options.quiet:
-        for line in notes_of(fields):
-            print(line)
+        print(*(line + "\n" for line in notes_of(fields)), sep="", end="")
 
 
 def info(options) -> None:
-    from . import Scene, Sensor, _display
-    from ._sight import of_scene
-    from .apps._maps import read_plan
-    from .apps._sequence import read_scenario
     file, name = options.file, options.file.name.lower()
     if not file.is_file():
         raise FileNotFoundError(f"no such file: {file}")
@@ -234,74 +230,62 @@ def info(options) -> None:
             warn(text)
 
 
-def _without_alarms(clouds) -> str:
-    """The Hausdorff distance of echoes that surfaces have returned."""
-    from . import vtkAvianLidar as wrapped
-    from ._cloud import vertices
-    from ._pipeline import update
-    left = [cloud.points[cloud["object_id"] >= 0] if "object_id" in cloud else cloud.points for cloud in clouds]
-    if not all(map(len, left)):
-        return ""
-    measure = wrapped.vtkAvianLidarCloudComparison()
-    for port, points in enumerate(left):
-        measure.SetInputDataObject(port, vertices(points))
+def _compared(*clouds) -> Any:
+    """The comparison of two clouds of VTK."""
+    measure = _wrapped.vtkAvianLidarCloudComparison()
+    for port, cloud in enumerate(clouds):
+        measure.SetInputDataObject(port, cloud)
     update(measure)
-    return f" Without them the Hausdorff distance is {measure.GetHausdorffDistance():.6g} m."
+    return measure
 
 
 def compare(options) -> None:
-    from . import Cloud, save
-    from . import vtkAvianLidar as wrapped
-    from ._pipeline import update
-    from ._writers import check_suffix, check_target
+    files = options.a, options.b
     if options.out:
         check_suffix(options.out)
-        check_target(options.out, [options.a, options.b])
-    _check_packets(options, options.a, options.b)
-    measure = wrapped.vtkAvianLidarCloudComparison()
-    clouds = [_cloud(file, options) for file in (options.a, options.b)]
-    of_sensor = [file.suffix for file in (options.a, options.b) if file.suffix.lower() in (".bin", *PACKETS)]
+        check_target(options.out, files)
+    _check_packets(options, *files)
+    clouds = [_cloud(file, options) for file in files]
+    of_sensor = [file.suffix for file in files if file.suffix.lower() in (".bin", *PACKETS)]
     if len(of_sensor) == 1:
         warn(f"a {of_sensor[0]} file is in the frame of its sensor, the other file is not")
-    for port, cloud in enumerate(clouds):
-        measure.SetInputDataObject(port, cloud.data)
-    update(measure)
-    there, back = f"{options.a.name} to {options.b.name}", f"{options.b.name} to {options.a.name}"
-    _table([("distance of nearest points (m)", there, back),
-            ("root mean square", f"{measure.GetRMSESimulatedToReference():.6g}", f"{measure.GetRMSEReferenceToSimulated():.6g}"),
-            ("largest", f"{measure.GetHausdorffSimulatedToReference():.6g}", f"{measure.GetHausdorffReferenceToSimulated():.6g}"),
-            ("density-aware Chamfer distance (1)", f"{measure.GetDensityAwareChamferSimulatedToReference():.6g}",
-             f"{measure.GetDensityAwareChamferReferenceToSimulated():.6g}"),
+    ways = "SimulatedToReference", "ReferenceToSimulated"
+    measure, (a, b) = _compared(*(cloud.data for cloud in clouds)), (file.name for file in files)
+    _table([("distance of nearest points (m)", f"{a} to {b}", f"{b} to {a}"),
+            *((words, *(f"{getattr(measure, f'Get{name}{way}')():.6g}" for way in ways)) for words, name in (
+                ("root mean square", "RMSE"), ("largest", "Hausdorff"),
+                ("density-aware Chamfer distance (1)", "DensityAwareChamfer"))),
             ("number of points", *(cloud.number_of_points for cloud in clouds))])
     print(f"Hausdorff distance: {measure.GetHausdorffDistance():.6g} m")
-    alarms = [f"{file.name} has {cloud.number_of_points} echoes{_alarms(cloud)}" for file, cloud in zip((options.a, options.b), clouds) if _alarms(cloud)]
+    alarms = [f"{file.name} has {cloud.number_of_points} echoes{_alarms(cloud)}" for file, cloud in zip(files, clouds) if _alarms(cloud)]
     if alarms:
-        print(f"All numbers here count echoes that no surface has returned: {'; '.join(alarms)}.{_without_alarms(clouds)}")
+        left = [cloud.points[cloud["object_id"] >= 0] if "object_id" in cloud else cloud.points for cloud in clouds]
+        print(f"All numbers here count echoes that no surface has returned: {'; '.join(alarms)}." +
+              (f" Without them the Hausdorff distance is {_compared(*map(vertices, left)).GetHausdorffDistance():.6g} m."
+               if all(map(len, left)) else ""))
     print(f"density-aware Chamfer distance: {measure.GetDensityAwareChamferDistance():.6g} "
           f"(alpha = {measure.GetChamferAlpha():g} 1/m)")
     if options.out:
         save(Cloud(measure.GetOutputDataObject(0)), options.out)
-        print(f"{options.out}: {options.a.name} with nearest_distance (m)")
+        print(f"{options.out}: {a} with nearest_distance (m)")
 
 
 def convert(options) -> None:
-    from . import save
-    from ._writers import check_suffix, check_target
     _check_packets(options, options.file)
-    if options.out.suffix.lower() == ".mcap":
+    to_mcap = options.out.suffix.lower() == ".mcap"
+    if not to_mcap:
+        check_suffix(options.out)
+    check_target(options.out)
+    if to_mcap:
         from .apps import _mcap
-        check_target(options.out)
         print(f"{options.out}: {_mcap.write(options.file, options.out)} scans of {options.file}")
         return
-    check_suffix(options.out)
-    check_target(options.out)
     cloud = _cloud(options.file, options)
     save(cloud, options.out)
     print(f"{options.out}: {cloud.number_of_points} points of {options.file}")
 
 
 def sensors(options) -> None:
-    from . import Sensor, _display
     if options.fit:
         if options.name:
             raise ValueError(f"sensors: {options.name} and --fit {options.fit}, expected one of them")
@@ -320,9 +304,6 @@ def sensors(options) -> None:
 
 
 def _fit(options) -> None:
-    from . import Sensor
-    from ._sheet import HALF, write
-    from ._writers import check_target
     if options.out:
         check_target(options.out)
     sensor = Sensor(options.fit)
@@ -330,7 +311,7 @@ def _fit(options) -> None:
     found = sensor.fit()
     points = description["sheet"]["points"]
     _table([("reflectance", "light (klx)", "seen with", "range of the sheet (m)", "fitted (m)", "off", "off if left out", "source"),
-            *((f"{point['reflectance']:g}", f"{point.get('light', 0):g}", f"{point.get('probability', HALF):g}"
+            *((f"{point['reflectance']:g}", f"{point.get('light', 0):g}", f"{point.get('probability', _sheet.HALF):g}"
                + ("" if "probability" in point else ", assumed"), f"{point['range']:g}", f"{predicted:.1f}", f"{100 * off:+.1f} %",
                "-" if left != left else f"{100 * left:+.1f} %", point["source"])
               for point, predicted, off, left in zip(points, found.predicted, found.residuals, found.left_out))])
@@ -341,17 +322,14 @@ def _fit(options) -> None:
     print(f"ranges by this receiver are good for {100 * found.bar:.0f} %" if found.bar == found.bar else
           "what ranges by this receiver are good for is not known: no point can be left out of the fit")
     if options.out:
-        write(description, found, options.out)
+        _sheet.write(description, found, options.out)
         print(options.out)
 
 
 def materials(_) -> None:
-    from . import materials as known
-    from . import vtkAvianLidar as wrapped
-    from ._scene import COEFFICIENTS
-    of = {wrapped.vtkAvianLidarMaterial.GetMaterialName(i): wrapped.vtkAvianLidarMaterial.GetMaterialSource(i) for i in range(100)}
-    _table([("name", *COEFFICIENTS, "source"),
-            *((name, *(f"{value:g}" for value in values), of[name]) for name, values in known().items())])
+    of = {_wrapped.vtkAvianLidarMaterial.GetMaterialName(i): _wrapped.vtkAvianLidarMaterial.GetMaterialSource(i) for i in range(100)}
+    _table([("name", *_scene.COEFFICIENTS, "source"),
+            *((name, *(f"{value:g}" for value in values), of[name]) for name, values in _scene.materials().items())])
 
 
 @contextlib.contextmanager
@@ -364,73 +342,64 @@ def _goes_on(folder: pathlib.Path, pattern: str, what: str) -> Iterator[None]:
         raise KeyboardInterrupt(*[f"{folder}: {what}: {count}; the same command goes on"] if count else []) from None
 
 
-def sequence(options) -> None:
-    from . import Sequence
-    from ._properties import in_snake_case
-    from ._ranks import Ranks
-    from ._weather import without_air
-    from .apps._sequence import PROPERTIES, read_scenario
+def _job(options, draws: bool = True) -> Tuple[Ranks, int]:
+    """The ranks of a job, and threads for each; ImportError where a job that draws has no Matplotlib."""
+    if draws:
+        _pictures.gradient()
     ranks = Ranks(ends_job=True)
-    scenario = read_scenario(options.scenario)
-    changes: Dict[str, Any] = {} if options.scans is None else {"number_of_scans": options.scans}
+    return ranks, getattr(options, "threads", 0) or (1 if ranks.size > 1 else 0)
+
+
+def _changes(options) -> Dict[str, Any]:
+    """What options change of a scenario."""
+    changes = {"number_of_scans": options.scans, "weather": options.weather}
+    return {name: value for name, value in changes.items() if value is not None}
+
+
+def sequence(options) -> None:
+    ranks, threads = _job(options, draws=False)
+    scenario, changes = read_scenario(options.scenario), _changes(options)
     if options.weather:
-        scenario["scan"] = without_air(scenario.get("scan", {}))
-        changes.update(weather=options.weather, scan=scenario["scan"])
+        changes["scan"] = scenario["scan"] = without_air(scenario.get("scan", {}))
     for part, values in (("sensor", options.sensor_set), ("scan", options.scan_set)):
         if values:
             changes[part] = {**scenario.get(part, {}), **in_snake_case(PROPERTIES[part], dict(values), f"--{part}-set")}
-    sequence = Sequence(options.scenario, threads=options.threads or (1 if ranks.size > 1 else 0), **changes)
-    bars, done, what = Bars(), itertools.count(1), "scans" if ranks.size == 1 else "scans of the first rank"
+    sequence = Sequence(options.scenario, threads=threads, **changes)
+    done, what = itertools.count(1), "scans" if ranks.size == 1 else "scans of the first rank"
     with _goes_on(options.out, "sequences/[0-9]*/done.json", "whole sequences"):
         manifest = sequence.write(options.out, ranks, None if ranks.rank else
-                                  lambda *_: bars(what, next(done), sequence.scans_to_do))
-    bars.close()
+                                  lambda *_: bar(what, next(done), sequence.scans_to_do))
     if ranks.rank == 0:
         parts = manifest["sequences"].values()
-        print(f"{options.out}: {sum(p['scans'] for p in parts)} scans in {len(parts)} sequences, birds seen in "
-              f"{sum(p['scans_with_birds_seen'] for p in parts)} of them; datasheet.md says more")
+        tell(f"{options.out}: {sum(p['scans'] for p in parts)} scans in {len(parts)} sequences, birds seen in "
+             f"{sum(p['scans_with_birds_seen'] for p in parts)} of them; datasheet.md says more")
 
 
 def track(options) -> None:
-    from . import BirdTracks
-    from ._ranks import Ranks
-    from .apps import _pictures  # needs Matplotlib: said before the work
-    _pictures.gradient()
-    ranks, bars = Ranks(ends_job=True), Bars()
-    changes: Dict[str, Any] = {} if options.scans is None else {"number_of_scans": options.scans}
-    if options.weather:
-        changes["weather"] = options.weather
+    ranks, threads = _job(options)
     tracks = BirdTracks(options.inputs, options.runways, options.learn, options.cutoff, options.order,
-                        dict(options.clutter_set), dict(options.tracker_set), options.sensor,
-                        options.threads or (1 if ranks.size > 1 else 0), **changes)
+                        dict(options.clutter_set), dict(options.tracker_set), options.sensor, threads, **_changes(options))
     with _goes_on(options.out, "followed/*/*.json", "sequences followed"):
-        card = tracks.write(options.out, ranks, (lambda *_: None) if ranks.rank else bars)
-    bars.close()
+        card = tracks.write(options.out, ranks, None if ranks.rank else bar)
     if ranks.rank == 0:
         _table([("score", *card["names"]), *((row["words"], *row["cells"]) for row in card["overall"])])
         print(f"{options.out / 'card.html'}: the report card; its tables and pictures are beside it")
 
 
 def bench(options) -> None:
-    from .apps import _pictures  # needs Matplotlib: said before the work
     from .apps._bench import Bench, verdict
-    _pictures.gradient()
-    bars = Bars()
-    found = Bench(options.folders, options.predictions, options.sequences, options.first).write(options.out, bars)
-    bars.close()
-    for scored in found:
-        print(f"{scored[0].set.name}, {scored[0].set.weather}: {verdict(scored)}")
-    print(f"{options.out / 'bench.html'}: the page; its tables and pictures are beside it")
+    _pictures.gradient()  # needs Matplotlib: said before the work
+    found = Bench(options.folders, options.predictions, options.sequences, options.first).write(options.out, bar)
+    tell(*(f"{scored[0].set.name}, {scored[0].set.weather}: {verdict(scored)}" for scored in found),
+         f"{options.out / 'bench.html'}: the page; its tables and pictures are beside it")
 
 
 def airport(options) -> None:
-    from ._disk import only_run
     from .apps._airport import Airport
-    bars = Bars()
-    made = Airport(options.extract, options.heights, options.icao, options.bounds, options.obstacles, bars)
+    made = Airport(options.extract, options.heights, options.icao, options.bounds, options.obstacles, bar)
     with only_run(options.out, goes_on=False):
         kept = made.write(options.out)
-    bars.close()
+    close_bar()
     for name in kept.edited:
         warn(f"{options.out / name} was edited and stays as it is; remove it to have it made again")
     buildings = [row for row in made.rows if "height" in row]
@@ -443,7 +412,6 @@ def airport(options) -> None:
 
 def _plan(options) -> Dict[str, Any]:
     """The plan with what options change."""
-    from .apps._maps import read_plan
     return read_plan(options.plan, options.weather, getattr(options, "metar", None),
                      **{part: dict(getattr(options, f"{part}_set", ())) for part in ("sensor", "coverage", "siting", "design")})
 
@@ -457,48 +425,36 @@ def _say_before(plan) -> None:
 
 
 def coverage(options) -> None:
-    from ._disk import only_run
-    from .apps._maps import Plan
     plans = Plan.all_of(_plan(options), options.threads)
     _say_before(plans[0])
     with only_run(options.out, goes_on=len(plans) > 1):  # maps of a sensor that are whole stay
         for plan in plans:
-            bars = Bars()
             folder = options.out / plan.name if len(plans) > 1 else options.out
             with only_run(folder, goes_on=False) if len(plans) > 1 else contextlib.nullcontext():
-                names = plan.write(folder, lambda done, total, name=plan.name, bars=bars: bars(f"files of {name}", done, total))
-            bars.close()
+                names = plan.write(folder, lambda done, total, name=plan.name: bar(f"files of {name}", done, total))
             row = plan.overall
-            print(f"{folder}: {len(names)} files; {plan.coverage.species or 'the target'} detected in one scan: "
-                  f"{row['detection_probability']:.3f} +- {row['detection_std_error']:.3f} {plan.where} (assumed: bird"
-                  f"{', receiver' if plan.assumed else ''})")
+            tell(f"{folder}: {len(names)} files; {plan.coverage.species or 'the target'} detected in one scan: "
+                 f"{row['detection_probability']:.3f} +- {row['detection_std_error']:.3f} {plan.where} (assumed: bird"
+                 f"{', receiver' if plan.assumed else ''})")
 
 
 def siting(options) -> None:
-    from ._disk import only_run
-    from ._ranks import Ranks
-    from .apps import _pictures  # needs Matplotlib: said before the work
-    from .apps._maps import Plan
-    from .apps._sites import Sites
-    _pictures.gradient()
-    ranks, bars = Ranks(ends_job=True), Bars()
+    ranks, _ = _job(options)
     plans = Plan.all_of(_plan(options), 1)
     if not ranks.rank:
         _say_before(plans[0])
-    everywhere = [Sites(plan, options.out / "coverage", ranks, bars) for plan in plans]
+    everywhere = [Sites(plan, options.out / "coverage", ranks, bar) for plan in plans]
     with _goes_on(options.out, "coverage/*.npy", "candidates kept"), only_run(options.out, ranks, goes_on=True, known=plans[0].decides):
         for number, sites in enumerate(everywhere):
             changes = list(sites.look().changes())
-            bars.close()
             if not ranks.rank:
                 sites.write(options.out / sites.plan.name if number else options.out, changes)
                 _say_sites(sites, changes)
 
 
 def _say_sites(sites, changes) -> None:
-    from .apps._answer import percent
     name = sites.plan.name
-    print(f"{name}: {len(sites.positions)} candidates, of {sites.lattice}, for a {sites.plan.bird} {sites.plan.where}")
+    tell(f"{name}: {len(sites.positions)} candidates, of {sites.lattice}, for a {sites.plan.bird} {sites.plan.where}")
     print(f"obstacle limits: {sites.kept_surfaces}")
     for row in sites.gain():
         where = "), (".join(row["sites"].replace(" ", ", ").split(";, "))
@@ -512,30 +468,23 @@ def _say_sites(sites, changes) -> None:
 
 
 def design(options) -> None:
-    from ._ranks import Ranks
-    from .apps import _design_page, _pictures  # needs Matplotlib: said before the work
-    from .apps._maps import Plan
-    _pictures.gradient()
-    ranks, bars = Ranks(ends_job=True), Bars()
-    plan = Plan(_plan(options), options.threads or (1 if ranks.size > 1 else 0))
+    ranks, threads = _job(options)
+    plan = Plan(_plan(options), threads)
     if not ranks.rank:
         _say_before(plan)
-    study = _design_page.Designs(plan, options.out, ranks, bars)
+    study = _design_page.Designs(plan, options.out, ranks, bar)
     with _goes_on(options.out, "coverage/*.npy", "designs kept"):
         study.write()
-    bars.close()
     if not ranks.rank:
+        close_bar()
         refused = [one.refused for one in study.candidates if one.refused]
         if refused:
             warn(f"{len(refused)} of {len(study.candidates)} designs are none, as the sensor refuses them: {refused[0]}")
-        print("\n".join(_design_page.answers(study)))
-        print(f"{options.out / 'design.html'}: the page; its tables and pictures are beside it")
+        tell(*_design_page.answers(study),
+             f"{options.out / 'design.html'}: the page; its tables and pictures are beside it")
 
 
 def reach(options) -> None:
-    from . import Sensor
-    from .apps import reach as ranges
-    from .apps._maps import write_table
     if options.out and options.out.suffix.lower() != ".csv":
         raise ValueError(f"{options.out}: is not the name of a table, expected one that ends in .csv")
     rows: List[Tuple[Any, ...]] = [("sensor", "bird", "9 of 10, to", "half, to", "a tenth, to", "9 of 10 by 2 of 3 scans, to")]
@@ -558,10 +507,7 @@ def reach(options) -> None:
 
 
 def report(options) -> None:
-    from .apps._report import Report
-    bars = Bars()
-    report = Report(_plan(options), options.threads, bars)
+    report = Report(_plan(options), options.threads, bar)
     _say_before(report.plans[0])
     folder = report.write(options.out)
-    bars.close()
-    print(f"{options.out}: the report; {folder}: its tables and pictures")
+    tell(f"{options.out}: the report; {folder}: its tables and pictures")
