@@ -50,6 +50,7 @@ FASTER = 1.5  # times as fast as the fastest that is good: worth more beams
 AS_FAST = 1.03  # times of one setting differ by that much from one start of a program to the next
 COARSE = 0.25  # of an error asked: the reference of a beam is made finer
 OF_AIR = -2  # object_id of echoes
+COLUMNS = ("distance_m", "energy_received", "secondary_share", "return_energy", "object_id")  # RANGE to OBJECT
 
 
 class Trial:
@@ -115,10 +116,10 @@ def is_convex(surfaces: vtkPolyData, place: np.ndarray) -> bool:
     areas = np.linalg.norm(normals, axis=1)
     outside, total = False, np.zeros(3)
     for i in np.flatnonzero(areas > 1e-12 * size**2):  # without the degenerate ones at the poles of a sphere
-        heights = (corners - a[i]) @ normals[i] / areas[i]
-        if min(heights.max(), -heights.min()) > 1e-6 * size:
-            return False
+        heights = (corners - a[i]) @ normals[i]
         outwards = normals[i] if heights.max() < -heights.min() else -normals[i]
+        if min(heights.max(), -heights.min()) > 1e-6 * size * areas[i]:
+            return False
         outside, total = outside or a[i] @ outwards < 0, total + outwards
     return bool(outside and np.linalg.norm(total) < 1e-3 * areas.sum())
 
@@ -146,19 +147,13 @@ class Scanner:
             set_properties(self.filter, **setting.properties())
         self.filter.SetSeed((seed + 2**31) % 2**32 - 2**31)
         self.filter.SetInputDataObject(0, beams)
-        update(self.filter, progress, self._run)
+        before = time.thread_time()
+        update(self.filter, progress)
+        self.seconds = time.thread_time() - before
         echoes, ids = Cloud(self.filter.GetOutput(0)), as_numpy(beams.GetPointData().GetArray("beam_id"))
         order = np.argsort(ids)
-        columns = {BEAM: order[np.searchsorted(ids, echoes["beam_id"], sorter=order)], RANGE: echoes["distance_m"],
-                   ENERGY: echoes["energy_received"], SECONDARY: echoes["secondary_share"],
-                   TOTAL: echoes["return_energy"], OBJECT: echoes["object_id"]}
-        return in_order(np.stack([columns[column] for column in sorted(columns)], axis=1).astype(float))
-
-    def _run(self) -> Any:
-        before = time.thread_time()
-        result = self.filter.GetExecutive().Update(0)
-        self.seconds = time.thread_time() - before
-        return result
+        columns = [order[np.searchsorted(ids, echoes["beam_id"], sorter=order)], *(echoes[name] for name in COLUMNS)]
+        return in_order(np.stack(columns, axis=1).astype(float))
 
 
 class Measurement:
@@ -169,7 +164,7 @@ class Measurement:
         """@param like an echo filter with its properties @param inputs beams, surfaces, movers or None"""
         self.like, (self.beams, self.surfaces, self.movers) = like, inputs
         self.asked, self.count = np.array([asked[kind] for kind in KINDS]), count
-        self.progress, self.done = progress, 0.0
+        self.progress, self.done = progress or (lambda *_: None), 0.0
         self.seed, self.threads = like.GetSeed(), like.GetNumberOfThreads()
         self.scanner = Scanner(like, self.beams, self.surfaces, self.movers, self.threads)
         self.timer = Scanner(like, self.beams, self.surfaces, self.movers, 1)
@@ -183,11 +178,7 @@ class Measurement:
         self.bias = np.zeros(2)  # of the reference, squares
 
     def scan(self, beams: vtkPolyData, setting: Setting, seed: int, by: Optional[Scanner] = None) -> np.ndarray:
-        return (by or self.scanner).scan(beams, setting, seed, self.report)
-
-    def report(self, *_: Any) -> None:
-        if self.progress:
-            self.progress(self.done, "advise")
+        return (by or self.scanner).scan(beams, setting, seed, lambda *_: self.progress(self.done, "advise"))
 
     # Beams.
 
@@ -463,9 +454,8 @@ def measure(like: Any, inputs: Sequence[Any], asked: Dict[str, float], beams: in
     settings, row = (advised.setting.properties(), m.trials.index(advised)) if advised else (None, -1)
     lines = lines_of(m, advised) + (advised.setting.as_commands() if advised else [])
 
-    columns = {**{snake(name): [trial.setting[i] for trial in m.trials] for i, name in enumerate(SETTINGS)},
-               "turns": [len(trial.times) for trial in m.trials], "verdict": [trial.verdict for trial in m.trials]}
-    table = {name: np.array(values, np.int32) for name, values in columns.items()}
+    numbers = np.array([(*trial.setting, len(trial.times), trial.verdict) for trial in m.trials], np.int32)
+    table = dict(zip((*map(snake, SETTINGS), "turns", "verdict"), numbers.T.copy()))
     table["seconds_per_beam"] = np.array([trial.seconds for trial in m.trials])
     for i, name in enumerate(("energy_error", "range_error", "missed_share")):
         table[name] = np.array([trial.errors[i, 0] for trial in m.trials])

@@ -13,7 +13,7 @@ from . import vtkAvianLidar as _wrapped
 from ._pipeline import update
 from ._plot import plot_map
 from ._properties import set_property, unknown
-from ._writers import write
+from ._writers import columns_of, write
 
 FRAMES = ("enu", "sensor", "geodetic", "utm", "ecef")
 
@@ -55,6 +55,20 @@ def leaves_of(data) -> Iterator[Any]:
     while not nodes.IsDoneWithTraversal():
         yield nodes.GetCurrentDataObject()
         nodes.GoToNextItem()
+
+
+def array_names(data) -> List[str]:
+    """Names of the point arrays of numbers."""
+    arrays = data.GetPointData()
+    return [arrays.GetArrayName(i) for i in range(arrays.GetNumberOfArrays()) if arrays.GetArray(i)]
+
+
+def point_array(data, name: str) -> np.ndarray:
+    """A point array by name."""
+    array = data.GetPointData().GetArray(name) if isinstance(name, str) else None
+    if array is None:
+        raise KeyError(unknown("array", str(name), array_names(data)))
+    return as_numpy(array)
 
 
 def triangles_of(surface) -> Tuple[np.ndarray, np.ndarray]:
@@ -136,17 +150,13 @@ class Cloud(Mapping):
 
     def __getitem__(self, name: str) -> np.ndarray:
         """Point array by name, in its unit (`units`): n values, or n rows of its components."""
-        array = self.data.GetPointData().GetArray(name) if isinstance(name, str) else None
-        if array is None:
-            raise KeyError(unknown("array", str(name), self))
-        return as_numpy(array)
+        return point_array(self.data, name)
 
     def __iter__(self) -> Iterator[str]:
-        arrays = self.data.GetPointData()
-        return iter([arrays.GetArrayName(i) for i in range(arrays.GetNumberOfArrays()) if arrays.GetArray(i)])
+        return iter(array_names(self.data))
 
     def __len__(self) -> int:
-        return len([*iter(self)])
+        return len(array_names(self.data))
 
     def __repr__(self) -> str:
         return f"<{type(self).__name__} of {self.data.GetNumberOfPoints()} points: {', '.join(self)}>"
@@ -204,11 +214,7 @@ class Cloud(Mapping):
             import pandas
         except ImportError:
             raise ImportError("a table needs pandas, which is not there: install python3-pandas, or pandas with pip") from None
-        columns = dict(zip("xyz", self.points.T.copy()))
-        for name, values in self.items():
-            columns.update({name: values.copy()} if values.ndim == 1 else
-                           {f"{name}_{i}": part.copy() for i, part in enumerate(values.T)})
-        frame = pandas.DataFrame(columns)
+        frame = pandas.DataFrame({name: values.copy() for name, _, values in columns_of(self)})
         fields = {name: value.tolist() if isinstance(value, np.ndarray) else value for name, value in self.fields.items()}
         frame.attrs = {"units": {**dict.fromkeys("xyz", "m"), **self.units}, "fields": fields}  # pandas compares them
         return frame
@@ -231,7 +237,7 @@ class Cloud(Mapping):
         if frame == "enu":
             return self.points
         if frame == "sensor":
-            return self._to_sensor(self.fields)
+            return self._to_sensor()
         if frame not in FRAMES:
             raise ValueError(f"frame {frame!r} is not known; known are {', '.join(FRAMES)}")
         if "geodetic_origin" not in self.fields:
@@ -243,7 +249,8 @@ class Cloud(Mapping):
         update(transform)
         return Cloud(transform.GetOutputDataObject(0)).points
 
-    def _to_sensor(self, fields: Mapping[str, Any]) -> np.ndarray:
+    def _to_sensor(self) -> np.ndarray:
+        fields = self.fields
         if "position" not in fields or "orientation" not in fields:
             raise ValueError("the frame 'sensor' needs field data 'position' and 'orientation'")
         angles = np.radians(fields["orientation"])

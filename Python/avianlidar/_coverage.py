@@ -9,7 +9,7 @@ from vtkmodules.vtkCommonDataModel import vtkDataSet, vtkImageData, vtkPolyData
 
 from . import _display
 from . import vtkAvianLidar as _wrapped
-from ._cloud import Cloud, add_array, as_numpy, field_values, with_points
+from ._cloud import Cloud, add_array, array_names, field_values, point_array, with_points
 from ._pipeline import Progress
 from ._properties import wraps
 from ._scan import SceneAndSensor
@@ -89,12 +89,9 @@ class Coverage(SceneAndSensor):
         """`detection_probability`, `track_probability`, `photoelectrons`, `beams_per_scan`, `minimum_effective_area` (m2)
         or `status`: of an image by z, y, x. `pose_probabilities`, where they are asked for, have a last axis of poses."""
         data = self.data
-        points = data.GetPointData()
-        array = points.GetArray(name)
-        if array is None:
-            known = [points.GetArrayName(i) for i in range(points.GetNumberOfArrays())]
-            raise KeyError(f"there is no array {name!r}; known are {', '.join(known)}")
-        values = as_numpy(array)
+        if name not in array_names(data):
+            raise KeyError(f"there is no array {name!r}; known are {', '.join(array_names(data))}")
+        values = point_array(data, name)
         return values.reshape(data.GetDimensions()[::-1] + values.shape[1:]) if isinstance(data, vtkImageData) else values
 
     @property

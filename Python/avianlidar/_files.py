@@ -131,9 +131,7 @@ def save(cloud, file, **properties: Any) -> None:
     The file is replaced as a whole or not at all. An unknown suffix is a ValueError that says what is known.
     """
     file_name(pathlib.Path(file))
-    if hasattr(cloud, "echoes"):
-        cloud = cloud.echoes
-    write(cloud if isinstance(cloud, Cloud) else Cloud(cloud), file, **properties)
+    write(Cloud(getattr(cloud, "echoes", cloud)), file, **properties)
 
 
 def load_cloud(file, time: Optional[float] = None, **properties: Any) -> Cloud:

@@ -14,7 +14,7 @@ from . import _display
 from . import vtkAvianLidar as _wrapped
 from ._advice import Advice
 from ._advising import measure
-from ._cloud import Cloud, add_array, as_numpy
+from ._cloud import Cloud, add_array, array_names, as_numpy, point_array
 from ._pipeline import Progress, callers_level, is_current, update
 from ._plot import plot_map, plot_range_image
 from ._properties import PropertyOwner, wraps
@@ -43,9 +43,8 @@ class SceneAndSensor(PropertyOwner):
 
     @scene.setter
     def scene(self, scene) -> None:
-        scene = scene if isinstance(scene, Scene) else Scene(scene, progress=self.progress)
-        self._scene = scene
-        self.algorithm.SetSurfacesConnection(scene.tree.GetOutputPort())
+        self._scene = scene if isinstance(scene, Scene) else Scene(scene, progress=self.progress)
+        self.algorithm.SetSurfacesConnection(self._scene.tree.GetOutputPort())
 
     @property
     def sensor(self):
@@ -57,11 +56,11 @@ class SceneAndSensor(PropertyOwner):
     def sensor(self, sensor) -> None:
         if sensor is None or isinstance(sensor, (str, os.PathLike)):
             sensor = Sensor("Airport16" if sensor is None else sensor, position=self.scene.lidar_position or (0, 0, 0))
-        source = getattr(sensor, "algorithm", sensor)
+        source = getattr(sensor, "algorithm", getattr(sensor, "data", sensor))
         if isinstance(source, vtkAlgorithm):
             self.algorithm.SetInputConnection(0, source.GetOutputPort())
-        elif isinstance(getattr(sensor, "data", sensor), vtkPolyData):
-            self.algorithm.SetInputDataObject(0, getattr(sensor, "data", sensor))
+        elif isinstance(source, vtkPolyData):
+            self.algorithm.SetInputDataObject(0, source)
         else:
             raise TypeError("a sensor is a Sensor, a preset's name, a sensor file, or beams (vtkPolyData, Cloud, algorithm), not "
                             f"{type(sensor).__name__}")
@@ -138,13 +137,12 @@ class Scan(SceneAndSensor):
         if isinstance(movers, vtkAlgorithm):
             self.algorithm.SetMoversConnection(movers.GetOutputPort())
             return
-        if isinstance(movers, (list, tuple)):
-            blocks = vtkMultiBlockDataSet()
-            for number, block in enumerate(movers):
-                blocks.SetBlock(number, block)
-            movers = blocks
         self._blocks = movers
-        self.algorithm.SetMoversData(movers)
+        if isinstance(movers, (list, tuple)):
+            self._blocks = vtkMultiBlockDataSet()
+            for number, block in enumerate(movers):
+                self._blocks.SetBlock(number, block)
+        self.algorithm.SetMoversData(self._blocks)
 
     def _refresh(self) -> None:
         super()._refresh()
@@ -212,12 +210,11 @@ class Scan(SceneAndSensor):
         update(image)
         data = image.GetOutput()
         columns, rows, _ = data.GetDimensions()
-        points, fields = data.GetPointData(), data.GetFieldData()
-        result = {points.GetArrayName(i): as_numpy(points.GetArray(i)).reshape(rows, columns)
-                  for i in range(points.GetNumberOfArrays())}
-        result.update({name: as_numpy(fields.GetArray(name)) for name in ("column_azimuths", "row_elevations")})
+        result = {name: point_array(data, name).reshape(rows, columns) for name in array_names(data)}
+        for name in ("column_azimuths", "row_elevations"):
+            result[name] = as_numpy(data.GetFieldData().GetArray(name))
         result["echo"] = result["object_id"]
-        objects = np.append(as_numpy(echoes.GetPointData().GetArray("object_id")), -1)  # the last: no echo
+        objects = np.append(point_array(echoes, "object_id"), -1)  # the last: no echo
         result["object_id"] = objects[result["echo"]]
         return result
 

@@ -153,8 +153,8 @@ def _paint_triangles(data, material, name: Optional[str]) -> vtkPolyData:
                          f"or one row ({_ALL}) for each triangle of one mesh")
     if values.ndim == 1:
         words = {word: choose(_wrapped.vtkAvianLidarMaterial, "Material", word) for word in np.unique(values)}
-        names, numbers = np.unique([words[word] for word in values], return_inverse=True)
-        rows = np.array([materials()[name] for name in names])
+        found, numbers = np.unique([words[word] for word in values], return_inverse=True)
+        names, rows = list(found), np.array([materials()[name] for name in found])
     else:
         rows, numbers = np.unique(values, axis=0, return_inverse=True)
         names = [f"Custom {i + 1}" for i in range(len(rows))]
@@ -166,7 +166,7 @@ def _paint_triangles(data, material, name: Optional[str]) -> vtkPolyData:
     cells, ids = painted.GetCellData(), numbers.reshape(-1).astype(np.int32)
     for key, column in (("material_id", ids), *((key, row[ids]) for key, row in zip(COEFFICIENTS, rows.T))):
         add_array(cells, key, column)
-    add_array(painted.GetFieldData(), "material_names", list(names))
+    add_array(painted.GetFieldData(), "material_names", names)
     return painted
 
 

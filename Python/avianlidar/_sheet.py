@@ -61,21 +61,21 @@ def check(points: Sequence[Dict[str, Any]]) -> None:
     if isinstance(points, (str, dict)) or not points:
         raise ValueError("the sheet has no points, expected at least one of range, reflectance, source")
     for i, point in enumerate(points):
+        at = f"sheet.points[{i}]"
         if not isinstance(point, dict):
-            raise ValueError(f"sheet.points[{i}] is {point!r}, expected range, reflectance, source by name")
+            raise ValueError(f"{at} is {point!r}, expected range, reflectance, source by name")
         for key in ("range", "reflectance", "source"):
             if key not in point:
-                raise ValueError(f"sheet.points[{i}]: {key} is missing")
-        for key in point:
-            if key not in (*MOST, "source"):
-                raise ValueError(f"sheet.points[{i}]: {key} is not known, expected {', '.join((*MOST, 'source'))}")
-        if not isinstance(point["source"], str):
-            raise ValueError(f"sheet.points[{i}].source is {point['source']!r}, expected a text")
-        for key, most in MOST.items():
-            value = point.get(key, most)
-            least = 0.0 if key == "light" else 1e-4
-            if isinstance(value, bool) or not isinstance(value, numbers.Real) or not least <= float(value) <= most:
-                raise ValueError(f"sheet.points[{i}].{key} is {value!r}, expected {least:g} to {most:g}{UNITS[key]}")
+                raise ValueError(f"{at}: {key} is missing")
+        for key, value in point.items():
+            least, most = 0.0 if key == "light" else 1e-4, MOST.get(key, 0.0)
+            if key == "source":
+                if not isinstance(value, str):
+                    raise ValueError(f"{at}.source is {value!r}, expected a text")
+            elif key not in MOST:
+                raise ValueError(f"{at}: {key} is not known, expected {', '.join((*MOST, 'source'))}")
+            elif isinstance(value, bool) or not isinstance(value, numbers.Real) or not least <= float(value) <= most:
+                raise ValueError(f"{at}.{key} is {value!r}, expected {least:g} to {most:g}{UNITS[key]}")
 
 
 def irradiance(light: float, wavelength: float) -> float:
@@ -256,13 +256,11 @@ def write(description: Dict[str, Any], found: Fit, file) -> None:
 
 def _text(value, indent: int = 0) -> str:
     """JSON with a line for each mapping of plain values."""
-    rows = isinstance(value, list) and value and all(isinstance(one, dict) for one in value)
-    plain = isinstance(value, dict) and not any(isinstance(one, dict) or (isinstance(one, list) and one and isinstance(one[0], dict))
-                                                for one in value.values())
-    if not rows and (not isinstance(value, dict) or (plain and indent)):
+    is_map = isinstance(value, dict)
+    parts = [*value.values()] if is_map else value if isinstance(value, list) else []
+    deep = any(isinstance(one, dict) or (isinstance(one, list) and one and isinstance(one[0], dict)) for one in parts)
+    if not deep and (indent or not is_map):
         return json.dumps(value, ensure_ascii=False)
-    pad = "  " * (indent + 1)
-    parts = [_text(one, indent + 1) for one in value] if rows else \
-        [f"{json.dumps(key)}: {_text(one, indent + 1)}" for key, one in value.items()]
-    left, right = ("[", "]") if rows else ("{", "}")
-    return f"{left}\n" + ",\n".join(pad + part for part in parts) + f"\n{'  ' * indent}{right}"
+    names, pad = [f"{json.dumps(key)}: " for key in value] if is_map else [""] * len(parts), "\n" + "  " * indent
+    rows = ",".join(f"{pad}  {name}{_text(one, indent + 1)}" for name, one in zip(names, parts))
+    return f"{{{rows}{pad}}}" if is_map else f"[{rows}{pad}]"

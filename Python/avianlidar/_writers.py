@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import pathlib
-from typing import Any, Dict, List, Sequence
+from typing import Any, Dict, Iterator, List, Sequence, Tuple
 
 import numpy as np
 from vtkmodules.vtkCommonCore import vtkPoints
@@ -52,16 +52,22 @@ def _write_vtp(cloud, name: str) -> None:
     pathlib.Path(name).write_bytes(vtp(cloud.data))
 
 
+def columns_of(cloud) -> Iterator[Tuple[str, str, np.ndarray]]:
+    """Name, unit and numbers of the columns of a table: x, y, z, and each component of each array."""
+    units = cloud.units
+    yield from ((axis, "m", part) for axis, part in zip("xyz", cloud.points.T))
+    for name, values in cloud.items():
+        if values.ndim == 1:
+            yield name, units[name], values
+        else:
+            yield from ((f"{name}_{i}", units[name], part) for i, part in enumerate(values.T))
+
+
 def _write_csv(cloud, name: str) -> None:
     """One row per point; names and units as vtkAvianLidarUnitNames joins them, quoted where CSV wants it (RFC 4180)."""
-    columns = [(axis, "m", cloud.points[:, i]) for i, axis in enumerate("xyz")]
-    for key, values in cloud.items():
-        parts = [(key, values)] if values.ndim == 1 else [(f"{key}_{i}", part) for i, part in enumerate(values.T)]
-        columns += [(part, cloud.units[key], numbers) for part, numbers in parts]
+    columns = list(columns_of(cloud))
     names = [_wrapped.vtkAvianLidarUnitNames.NameWithUnit(key, unit) for key, unit, _ in columns]
-    table = np.empty(cloud.number_of_points, dtype=[(f"c{i}", c[2].dtype) for i, c in enumerate(columns)])
-    for i, (_, __, values) in enumerate(columns):
-        table[f"c{i}"] = values
+    table = np.rec.fromarrays([values for _, __, values in columns])
     formats = ["%.15g" if values.dtype.kind == "f" else "%d" for _, __, values in columns]
     header = as_csv([names], "\r\n")[:-2].decode()
     np.savetxt(name, table, fmt=formats, delimiter=",", header=header, comments="", encoding="utf-8")
