@@ -59,9 +59,7 @@ def scene_rows(scene) -> Dict[str, Any]:
     if scene.number_of_triangles:
         used = np.unique(vtk_to_numpy(scene.tree.GetOutput().GetCellData().GetArray("material_id")))
         rows["materials"] = ", ".join(scene.materials[number] for number in used if 0 <= number < len(scene.materials))
-    known = place_rows(scene)
-    known.pop("cells")
-    return {**rows, **known}
+    return {**rows, **{key: value for key, value in place_rows(scene).items() if key != "cells"}}
 
 
 def draw_from_above(scene, axes) -> None:

@@ -2,6 +2,7 @@
 """Clouds to and from files."""
 from __future__ import annotations
 
+import contextlib
 import csv
 import io
 import math
@@ -32,18 +33,11 @@ def _axes(names: List[str]) -> List[str]:
     if set("xyz") <= {_NAME_AND_UNIT.fullmatch(name)[1] for name in names}:  # type: ignore[index]
         return names
     for points in _POINTS:
-        if all(points + str(i) in names for i in range(3)):
-            return ["xyz"[int(name[len(points):])] if name in (points + "0", points + "1", points + "2") else name for name in names]
+        axes = {f"{points}{i}": axis for i, axis in enumerate("xyz")}
+        if axes.keys() <= set(names):
+            return [axes.get(name, name) for name in names]
     found = [_AXIS.fullmatch(name) for name in names]
     return [axis[1].lower() if axis else name for axis, name in zip(found, names)]
-
-
-def _is_number(word: str) -> bool:
-    try:
-        float(word)
-        return True
-    except ValueError:
-        return False
 
 
 def _names_and_rows(path: pathlib.Path) -> Tuple[List[str], io.StringIO, Optional[str]]:
@@ -59,8 +53,8 @@ def _names_and_rows(path: pathlib.Path) -> Tuple[List[str], io.StringIO, Optiona
         words = first.replace(delimiter, " ").split()
         if len(words) == 1:
             raise ValueError("the first line has one word, as files of molecules have it")
-        if all(map(_is_number, words)):
-            count = len(words)
+        with contextlib.suppress(ValueError):
+            count = len([float(word) for word in words])
             names = _HELIOS if count == len(_HELIOS) else [*"xyz", *(f"column_{i}" for i in range(4, count + 1))][:count]
             return names, io.StringIO(text), delimiter if delimiter in first else None
         if delimiter not in first:
@@ -147,24 +141,22 @@ def load_cloud(file, time: Optional[float] = None, **properties: Any) -> Cloud:
         raise TypeError(f"a {suffix} file has no revolutions, expected no time: it is {time!r}")
     if time is not None and not math.isfinite(time):
         raise ValueError(f"time is {time}, expected seconds since the full hour")
+    if suffix not in (".vtp", *TABLES) and not hasattr(_wrapped, READERS.get(suffix, "")):
+        raise refuse("read", path, [*suffixes(READERS), *TABLES[1:]])
+    if not (path.exists() if suffix in TABLES else path.is_file()):
+        raise FileNotFoundError(f"no such file: {path}")
     if suffix in TABLES:
         if properties:
             raise TypeError(f"a {suffix} file has no properties: {', '.join(properties)}")
-        if path.exists():
-            return _read_table(path)
-    elif suffix == ".vtp":
+        return _read_table(path)
+    if suffix == ".vtp":
         from vtkmodules.vtkIOXML import vtkXMLPolyDataReader
         reader = vtkXMLPolyDataReader()
-        if path.is_file():
-            with open(path, "rb") as stream:
-                if b"<VTKFile" not in stream.read(4096):  # of which VTK says more than one thing
-                    raise ValueError(f"{path}: it is no VTK XML file")
-    elif suffix in READERS and hasattr(_wrapped, READERS[suffix]):
-        reader = getattr(_wrapped, READERS[suffix])()
+        with open(path, "rb") as stream:
+            if b"<VTKFile" not in stream.read(4096):  # of which VTK says more than one thing
+                raise ValueError(f"{path}: it is no VTK XML file")
     else:
-        raise refuse("read", path, [*suffixes(READERS), *TABLES[1:]])
-    if not path.is_file():
-        raise FileNotFoundError(f"no such file: {path}")
+        reader = getattr(_wrapped, READERS[suffix])()
     set_properties(reader, **properties)
     reader.SetFileName(file_name(path))
     update(reader, run=(lambda: reader.UpdateTimeStep(time)) if time is not None else None)

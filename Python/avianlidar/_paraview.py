@@ -33,7 +33,7 @@ class Advisor(VTKPythonAlgorithmBase):
         super().__init__(nInputPorts=3, nOutputPorts=1, outputType="vtkTable")
 
     def __getattr__(self, name: str) -> Any:
-        """Methods that the server manager calls: of what is asked for, else of the echo filter."""
+        """Methods that the server manager calls: of what is asked for and advised, else of the echo filter."""
         if not name.startswith(("Get", "Set")):
             raise AttributeError(name)
 
@@ -41,6 +41,9 @@ class Advisor(VTKPythonAlgorithmBase):
             if name in ASKED:
                 self._asked[ASKED[name]] = values[0]
                 return self.Modified()
+            if name.startswith("GetAdvised"):
+                place = SETTINGS.index(name[len("GetAdvised"):])
+                return self._advice.setting(self._advice.row)[place] if self._advice and self._advice.row >= 0 else -1
             self.Modified()
             return getattr(self._like, name)(*values)
         return call
@@ -80,11 +83,3 @@ class Advisor(VTKPythonAlgorithmBase):
         add_array(table.GetFieldData(), "advised", np.array([advice.row]))
         add_array(table.GetFieldData(), "advice", advice.lines)
         return 1
-
-
-def _advised(place: int) -> Any:
-    return lambda self: self._advice.setting(self._advice.row)[place] if self._advice and self._advice.row >= 0 else -1
-
-
-for _place, _name in enumerate(SETTINGS):
-    setattr(Advisor, "GetAdvised" + _name, _advised(_place))

@@ -117,8 +117,7 @@ def plot_range_image(scan, array: str = "distance_m", axes=None, **options):
     x, across = _axis(image["column_azimuths"], "azimuth", "deg from north", "column")
     y, up = _axis(image["row_elevations"], "elevation", "deg", "channel")
     mesh = axes.pcolormesh(x, y, values, **{"shading": "nearest", "rasterized": True, **options})
-    axes.set_xlabel(across)
-    axes.set_ylabel(up)
+    axes.set(xlabel=across, ylabel=up)
     if array not in ("object_id", "status"):
         axes.figure.colorbar(mesh, ax=axes, label=label)
     return axes

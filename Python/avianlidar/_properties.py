@@ -13,9 +13,8 @@ from ._pipeline import text_of
 F = TypeVar("F", bound=Callable[..., Any])
 
 
-def _once(function: F) -> F:
-    """Keeps what a function says of a class."""
-    return functools.lru_cache(maxsize=None)(function)  # type: ignore[return-value]  # to mypy a class has no hash
+# Keeps what a function says of a class, which to mypy has no hash.
+_once: Callable[[F], F] = functools.lru_cache(maxsize=None)  # type: ignore[assignment]
 
 
 def snake(name: str) -> str:

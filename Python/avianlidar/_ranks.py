@@ -8,7 +8,9 @@ import json
 import sys
 from typing import Any, Callable, Iterator
 
-from vtkmodules.vtkCommonCore import vtkDataArray, vtkIntArray, vtkUnsignedCharArray
+import numpy as np
+from vtkmodules.util.numpy_support import numpy_to_vtk
+from vtkmodules.vtkCommonCore import vtkDataArray
 from vtkmodules.vtkCommonDataModel import vtkPolyData
 from vtkmodules.vtkParallelCore import vtkCommunicator, vtkMultiProcessController
 
@@ -57,9 +59,7 @@ class Ranks:
     def _all(self, mine: bool) -> bool:
         if self.size == 1:
             return mine
-        said, least = vtkIntArray(), vtkIntArray()
-        said.InsertNextValue(mine)
-        least.InsertNextValue(0)
+        said, least = (numpy_to_vtk(np.array([mine], np.int32), deep=True) for _ in range(2))
         self.controller.AllReduce(said, least, vtkCommunicator.MIN_OP)
         return bool(least.GetValue(0))
 
@@ -70,9 +70,7 @@ class Ranks:
             return
         with self.together():
             mine = hashlib.sha256(repr((__version__, str(folder), known())).encode()).digest()
-        first = vtkUnsignedCharArray()
-        for byte in mine:
-            first.InsertNextValue(byte)
+        first = numpy_to_vtk(np.frombuffer(mine, np.uint8), deep=True)
         self.controller.Broadcast(first, 0)
         if not self._all(as_numpy(first).tobytes() == mine):
             raise Error(f"{folder}: the ranks are to write different things there, expected the same files, settings and version on all")

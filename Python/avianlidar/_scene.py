@@ -196,11 +196,9 @@ def _mesh_scene(file: str, painted: bool, options: Dict[str, Any]) -> Dict[str, 
     text_of(file)
     if "scale" in options:
         try:
-            options["scale"] = np.asarray(options["scale"], dtype=float).tolist()
+            options["scale"] = np.asarray_chkfinite(options["scale"], dtype=float).tolist()
         except (TypeError, ValueError):
-            raise TypeError(f"scale is {options['scale']!r}, expected a number or one for each axis") from None
-        if not np.isfinite(options["scale"]).all():
-            raise ValueError(f"scale is {options['scale']!r}, expected finite numbers")
+            raise ValueError(f"scale is {options['scale']!r}, expected a finite number or one for each axis") from None
     stem = os.path.splitext(name[:-3] if suffix == ".gz" else name)[0]
     rules = {known: known for known in choices(_wrapped.vtkAvianLidarMaterial, "Material") if known != "Custom"}
     unnamed = {"*" if painted else "DefaultMaterial": "Wall"}  # Assimp's word for none
@@ -209,13 +207,11 @@ def _mesh_scene(file: str, painted: bool, options: Dict[str, Any]) -> Dict[str, 
 
 def _read(source, progress: Optional[Progress], painted: bool, **options: Any):
     """The scene of a scene file; of a mapping with the keys of one; of a mesh file with options of its object."""
-    reader = _wrapped.vtkAvianLidarSceneReader()
-    file = "scene" if isinstance(source, Mapping) else os.fsdecode(source)
+    reader, is_map = _wrapped.vtkAvianLidarSceneReader(), isinstance(source, Mapping)
+    file = "scene" if is_map else os.fsdecode(source)
     reader.SetFileName(file_name(file))
     options = {key: value for key, value in options.items() if value is not None}
-    if isinstance(source, Mapping):
-        reader.SetText(text_of(json.dumps(source)))
-    elif not file.lower().endswith(SCENE):
+    if not is_map and not file.lower().endswith(SCENE):
         reader.SetText(json.dumps(_mesh_scene(file, painted, options)))
         try:
             update(reader, progress)
@@ -223,8 +219,10 @@ def _read(source, progress: Optional[Progress], painted: bool, **options: Any):
             raise Error(re.sub(r"^\w+: ", "", str(error)).replace("objects[0].file: " + os.path.abspath(file) + ": ", "").replace(
                 "objects[0].", "")) from None
         return reader.GetOutput()
-    if options and (isinstance(source, Mapping) or file.lower().endswith(SCENE)):
+    if options:
         raise TypeError(f"{' and '.join(options)} of a scene: expected a mesh file; a scene file says them of each object")
+    if is_map:
+        reader.SetText(text_of(json.dumps(source)))
     update(reader, progress)
     return reader.GetOutput()
 

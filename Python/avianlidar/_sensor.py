@@ -63,20 +63,18 @@ class Sensor(PropertyOwner):
 
     def _take_beams(self, directions, times, positions) -> float:
         """Makes them the beams; the time of the last one, s."""
-        directions = np.asarray(directions, dtype=float)
-        count = len(directions) if directions.ndim else 0
-        given = {"directions": (directions, (count, 3)),
-                 "times": (np.zeros(count) if times is None else np.asarray(times, dtype=float), (count,)),
-                 "positions": (np.zeros((count, 3)) if positions is None else np.asarray(positions, dtype=float), (count, 3))}
-        for name, (values, shape) in given.items():
-            if values.shape != shape or not count:
+        count, rows = len(directions) if np.ndim(directions) else 0, {}
+        for name, values, shape in (("directions", directions, (count, 3)), ("times", times, (count,)),
+                                    ("positions", positions, (count, 3))):
+            rows[name] = np.zeros(shape) if values is None else np.asarray(values, dtype=float)
+            if rows[name].shape != shape or not count:
                 expected = "n rows of x, y, z" if name == "directions" else f"{shape}, as directions have {count} rows"
-                raise ValueError(f"Sensor: {name} have the shape {values.shape}, expected {expected}")
-        beams = with_points(given["positions"][0])
-        add_array(beams.GetPointData(), "direction", directions)
-        add_array(beams.GetPointData(), "timestamp", 1e6 * given["times"][0])
+                raise ValueError(f"Sensor: {name} have the shape {rows[name].shape}, expected {expected}")
+        beams = with_points(rows["positions"])
+        add_array(beams.GetPointData(), "direction", rows["directions"])
+        add_array(beams.GetPointData(), "timestamp", 1e6 * rows["times"])
         update(self.algorithm, run=lambda: self.algorithm.SetBeams(beams))
-        return float(given["times"][0].max())
+        return float(rows["times"].max())
 
     @staticmethod
     def presets() -> Tuple[str, ...]:

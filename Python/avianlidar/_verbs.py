@@ -143,17 +143,20 @@ def advise(options) -> None:
         tell(f"{out}: the advice")
 
 
-def _cloud(file, options=None):
-    """A cloud in the scene's frame, where the file says it; of packets what the options `time` and `sensor_address` choose."""
+def _of_packets(options, *files) -> Dict[str, Any]:
+    """What options choose of packets."""
+    chosen = {name: getattr(options, name) for name in ("time", "sensor_address") if getattr(options, name) is not None}
+    for name, value in chosen.items():
+        if not any(file.suffix.lower() in PACKETS for file in files):
+            raise ValueError(f"--{name.replace('_', '-')} {value} chooses packets, expected a file {' or '.join(PACKETS)}: "
+                             f"it is {files[0]}")
+    return chosen
+
+
+def _cloud(file, chosen: Dict[str, Any]):
+    """A cloud in the scene's frame, where the file says it. @param chosen of packets"""
     suffix = file.suffix.lower()
-    chosen = {name: getattr(options, name) for name in ("time", "sensor_address") if getattr(options, name, None) is not None} if suffix in PACKETS else {}
-    return load_cloud(file, **({"local_coordinates": True} if suffix in (".las", ".laz") else chosen))
-
-
-def _check_packets(options, *files) -> None:
-    for name in ("time", "sensor_address"):
-        if getattr(options, name) is not None and not any(file.suffix.lower() in PACKETS for file in files):
-            raise ValueError(f"--{name.replace('_', '-')} {getattr(options, name)} chooses packets, expected a file {' or '.join(PACKETS)}: it is {files[0]}")
+    return load_cloud(file, **{"local_coordinates": True} if suffix in (".las", ".laz") else chosen if suffix in PACKETS else {})
 
 
 def _has_points_only(file: pathlib.Path) -> bool:
@@ -163,7 +166,7 @@ def _has_points_only(file: pathlib.Path) -> bool:
         with open(file, "rb") as stream:
             header = stream.read(65536).partition(b"end_header")[0]
         return not any(line.split()[1:2] == [b"face"] and line.split()[2:] != [b"0"] for line in header.splitlines())
-    return suffix in (".las", ".laz", ".pcd", ".bin", *TABLES, *PACKETS) or suffix == ".vtp" and not _cloud(file).data.GetNumberOfPolys()
+    return suffix in (".las", ".laz", ".pcd", ".bin", *TABLES, *PACKETS) or suffix == ".vtp" and not load_cloud(file).data.GetNumberOfPolys()
 
 
 def _words(value: Any) -> str:
@@ -175,8 +178,7 @@ def _words(value: Any) -> str:
         else str(parts)
 
 
-def _say_cloud(file: pathlib.Path, options) -> None:
-    cloud = _cloud(file, options)
+def _say_cloud(file: pathlib.Path, cloud: Cloud, quiet: bool) -> None:
     print(f"{file}: a cloud of {cloud.number_of_points} points{_alarms(cloud)}")
     if not cloud.number_of_points:
         return
@@ -191,21 +193,20 @@ def _say_cloud(file: pathlib.Path, options) -> None:
     _table(known.items())
     rows: List[Tuple[Any, ...]] = [("array", "unit", "least", "greatest")]
     for name, values in cloud.items():
-        finite = values[np.isfinite(values)]
-        ends = (f"{finite.min():.6g}", f"{finite.max():.6g}") if len(finite) else ("nan", "nan")
-        rows.append((name, cloud.units[name] or "-", *ends))
+        finite = values[np.isfinite(values)] if np.isfinite(values).any() else np.array([np.nan])
+        rows.append((name, cloud.units[name] or "-", f"{finite.min():.6g}", f"{finite.max():.6g}"))
     _table(rows)
-    if not options.quiet:
-        print(*(line + "\n" for line in notes_of(fields)), sep="", end="")
+    for line in () if quiet else notes_of(fields):
+        print(line)
 
 
 def info(options) -> None:
     file, name = options.file, options.file.name.lower()
     if not file.is_file():
         raise FileNotFoundError(f"no such file: {file}")
-    _check_packets(options, file)
+    chosen = _of_packets(options, file)
     rows: Dict[str, Any]
-    scene = None
+    bounds = None
     if name.endswith(".lidarsensor.json"):
         what, rows = "a sensor", _display.sensor_rows(Sensor(file))
     elif name.endswith(".coverage.json"):
@@ -218,16 +219,15 @@ def info(options) -> None:
         scenario = read_scenario(file)
         what, rows = "a scenario of sequences", {key: scenario[key] for key in ("scene", "sensor", "weather", "number_of_scans") if key in scenario}
     elif _has_points_only(file):
-        _say_cloud(file, options)
+        _say_cloud(file, _cloud(file, chosen), options.quiet)
         return
     else:
         scene = Scene(file)
-        what, rows = "a scene", _display.scene_rows(scene)
+        what, rows, bounds = "a scene", _display.scene_rows(scene), scene.bounds if scene.number_of_triangles else None
     print(f"{file}: {what}")
     _table((key, _words(value)) for key, value in rows.items())
-    if scene and scene.number_of_triangles:
-        for text in of_scene(scene.bounds):
-            warn(text)
+    for text in of_scene(bounds) if bounds else ():
+        warn(text)
 
 
 def _compared(*clouds) -> Any:
@@ -244,8 +244,8 @@ def compare(options) -> None:
     if options.out:
         check_suffix(options.out)
         check_target(options.out, files)
-    _check_packets(options, *files)
-    clouds = [_cloud(file, options) for file in files]
+    chosen = _of_packets(options, *files)
+    clouds = [_cloud(file, chosen) for file in files]
     of_sensor = [file.suffix for file in files if file.suffix.lower() in (".bin", *PACKETS)]
     if len(of_sensor) == 1:
         warn(f"a {of_sensor[0]} file is in the frame of its sensor, the other file is not")
@@ -271,7 +271,7 @@ def compare(options) -> None:
 
 
 def convert(options) -> None:
-    _check_packets(options, options.file)
+    chosen = _of_packets(options, options.file)
     to_mcap = options.out.suffix.lower() == ".mcap"
     if not to_mcap:
         check_suffix(options.out)
@@ -280,7 +280,7 @@ def convert(options) -> None:
         from .apps import _mcap
         print(f"{options.out}: {_mcap.write(options.file, options.out)} scans of {options.file}")
         return
-    cloud = _cloud(options.file, options)
+    cloud = _cloud(options.file, chosen)
     save(cloud, options.out)
     print(f"{options.out}: {cloud.number_of_points} points of {options.file}")
 
@@ -497,12 +497,11 @@ def reach(options) -> None:
             said.append(ranges.sentence(name, species, sensor, found))
             curve += [{"sensor": name, "species": species, "range": float(to), "one_scan": float(one), "one_scan_std_error": float(error), "two_of_three": float(two)}
                       for to, one, error, two in zip(found.ranges, found.one_scan, found.error, found.several_scans)]
-    if options.out:
-        write_table(options.out, curve)
     _table(rows)
     print(*said, sep="\n")
     print("Birds lie evenly between the lowest and the highest beam; sizes of birds are assumed. In brackets: what the fit of the receiver to its sheet leaves open.")
     if options.out:
+        write_table(options.out, curve)
         print(f"{options.out}: the shares by range")
 
 
