@@ -57,8 +57,8 @@ def plain(message: str) -> str:
 
 @contextlib.contextmanager
 def signals_kept() -> Iterator[List[BaseException]]:
-    """What handlers of signals raise in the main thread while the block runs is kept in a list, and the first is raised at
-    the end. A handler that raises while they are given back may leave some behind: those pass on all that they get."""
+    """What handlers of signals raise in the main thread while the block runs is kept in a list, and the first is raised
+    at the end. A handler that raises while they are given back may leave some behind: those pass on what they get."""
     kept: List[BaseException] = []
     handlers: Dict[int, Any] = {}
     inside = True
