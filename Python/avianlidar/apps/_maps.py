@@ -7,7 +7,7 @@ import json
 import math
 import pathlib
 import warnings
-from typing import Any, Dict, List, Mapping, Optional, Sequence, Tuple, Union
+from typing import Any, Dict, Iterator, List, Mapping, Optional, Sequence, Tuple, Union
 
 import numpy as np
 
@@ -24,6 +24,7 @@ from .._weather import AIR, in_weather, weather, without_air
 from . import _metar
 from ._air import Air, weakening
 from ._json import check_json, load_json, naming
+from ._scores import weighted
 from .siting import Runway, by_kind, ground_of, places_by_region, read_runways, region_heights, region_names, require_memory
 
 QUANTITIES = {"detection_probability": "1", "track_probability": "1", "photoelectrons": "1",
@@ -38,8 +39,6 @@ FLAT = 0.5  # m: z of a ground that counts as 0
 IN_MEMORY = "/vsimem/avianlidar/"  # GDAL's
 MOST_PIXELS = 100_000_000  # of a map
 BYTES_OF_PLACE = 200  # of a place that is drawn, and of what is found there
-
-
 SUM = 1e-6  # to which the shares of a year are 1
 
 
@@ -54,31 +53,21 @@ def read_plan(file, words: Optional[Sequence[str]] = None, metar=None, **changes
     path = pathlib.Path(file)
     plan = load_json(path)
     if isinstance(plan, dict):
-        if words or metar:
-            plan = {name: part for name, part in plan.items() if name not in ("year", "metar")}
+        plan = {name: part for name, part in plan.items() if not (words or metar) or name not in ("year", "metar")}
         if words:
             plan["weather"] = list(words)
             if isinstance(plan.get("coverage"), dict):
                 plan["coverage"] = without_air(plan["coverage"])
         if metar:
             plan["metar"] = str(pathlib.Path(metar).resolve())
-    for part, values in changes.items():
-        if values and isinstance(plan, dict) and isinstance(plan.get(part, {}), dict):
-            plan[part] = {**plan.get(part, {}), **{
-                name: list(value) if isinstance(value, tuple) else value if isinstance(value, list) or
-                name not in ("masts", "exclusions") else [value] for name, value in values.items()}}
+        for part, values in changes.items():
+            if values and isinstance(plan.get(part, {}), dict):
+                plan[part] = {**plan.get(part, {}), **{name: list(value) if isinstance(value, (tuple, list)) else
+                                                       [value] if name in ("masts", "exclusions") else value for name, value in values.items()}}
     check_json(plan, "coverage.schema.json", str(file))
 
-    def from_here(name: str) -> str:
-        return str((path.parent / name).resolve())
-
-    def absolute(*keys: str) -> None:
-        """Make the files of a member absolute, if the plan has it."""
-        *of, name = keys
-        part = functools.reduce(lambda one, key: one.get(key, {}), of, plan)
-        if name in part:
-            with naming(f"{file}: {'.'.join(keys)}"):
-                part[name] = from_here(part[name]) if isinstance(part[name], str) else list(map(from_here, part[name]))
+    def from_here(name: Any) -> Any:
+        return str((path.parent / name).resolve()) if isinstance(name, str) else [*map(from_here, name)]
 
     def sensor(given: Union[str, Dict[str, Any]], what: str) -> Dict[str, Any]:
         with naming(f"{file}: {what}"):
@@ -99,15 +88,18 @@ def read_plan(file, words: Optional[Sequence[str]] = None, metar=None, **changes
             raise Error(f"{file}: siting: needs runways")
         plan["siting"].setdefault("exclusions", [])
     for member in ("scene", "runways", "metar", "tracks", "design.scenario", "siting.exclusions", "siting.points"):
-        absolute(*member.split("."))
+        of, _, name = member.rpartition(".")
+        holder = plan.get(of, {}) if of else plan
+        if name in holder:
+            with naming(f"{file}: {member}"):
+                holder[name] = from_here(holder[name])
     _check_question(plan, str(file))
     if "metar" in plan:
         with naming(f"{file}: metar"):
             hours = _metar.read_metar(plan["metar"])
             plan.update(year=hours.year(), hours=hours.words())
-    plan["file"] = str(file)
-    plan["options"] = [*([["--weather", *words]] if words else []), *([["--metar", str(metar)]] if metar else []),
-                       *([f"--{part}-set", f"{name}={_as_option(value)}"] for part, values in changes.items() for name, value in (values or {}).items())]
+    options = [[f"--{part}-set", f"{name}={_as_option(value)}"] for part, values in changes.items() for name, value in (values or {}).items()]
+    plan.update(file=str(file), options=[["--weather", *(words or ())]] * bool(words) + [["--metar", str(metar)]] * bool(metar) + options)
     return plan
 
 
@@ -167,11 +159,10 @@ def write_geotiff(file, values: np.ndarray, corner: Sequence[float], spacing: Se
     """
     from osgeo import gdal
     gdal.UseExceptions()
-    whole = np.issubdtype(values.dtype, np.integer)
-    rows, columns = values.shape
-    pixels = np.ascontiguousarray(values[::-1], dtype=np.uint8 if whole else np.float32)
-    image = gdal.GetDriverByName("GTiff").Create(IN_MEMORY + "map.tif", columns, rows, 1, gdal.GDT_Byte if whole else gdal.GDT_Float32,
-                                                 ["COMPRESS=DEFLATE"])
+    kind, code = (np.uint8, gdal.GDT_Byte) if np.issubdtype(values.dtype, np.integer) else (np.float32, gdal.GDT_Float32)
+    pixels = values[::-1].astype(kind)
+    rows, columns = pixels.shape
+    image = gdal.GetDriverByName("GTiff").Create(IN_MEMORY + "map.tif", columns, rows, 1, code, ["COMPRESS=DEFLATE"])
     image.SetGeoTransform((corner[0] - spacing[0] / 2, spacing[0], 0.0, corner[1] + (rows - 0.5) * spacing[1], 0.0, -spacing[1]))
     if origin is not None:
         image.SetProjection(coordinate_system(origin).ExportToWkt())
@@ -184,10 +175,12 @@ def write_geotiff(file, values: np.ndarray, corner: Sequence[float], spacing: Se
         band.SetNoDataValue(float("inf"))
     if categories:
         band.SetCategoryNames(list(categories))
-    band.WriteRaster(0, 0, columns, rows, pixels.tobytes())
+    band.WriteArray(pixels)
     del band, image  # written now
-    content, beside = _taken("map.tif"), _taken("map.tif.aux.xml")
-    _check_map(file, content, pixels)
+    with naming(f"{file}: GDAL has not written the whole map"):
+        if not np.array_equal(gdal.Open(IN_MEMORY + "map.tif").ReadAsArray(), pixels, equal_nan=True):
+            raise ValueError("it holds other values")
+        content, beside = _taken("map.tif"), _taken("map.tif.aux.xml")
     names = pathlib.Path(f"{file}.aux.xml")
     if beside:
         with replacing(names) as part:
@@ -210,22 +203,9 @@ def _taken(name: str) -> bytes:
     content = bytes(gdal.VSIFReadL(1, found.size, stream) or b"")
     gdal.VSIFCloseL(stream)
     gdal.Unlink(name)
+    if len(content) != found.size:
+        raise ValueError(f"{len(content)} of {found.size} bytes can be read")
     return content
-
-
-def _check_map(file, content: bytes, pixels: np.ndarray) -> None:
-    """`Error` unless a map has these values when it is read back."""
-    from osgeo import gdal
-    name = IN_MEMORY + "back.tif"
-    gdal.FileFromMemBuffer(name, content)
-    try:
-        same = np.array_equal(gdal.Open(name).ReadAsArray(), pixels, equal_nan=pixels.dtype.kind == "f")
-    except RuntimeError:
-        same = False
-    finally:
-        gdal.Unlink(name)
-    if not same:
-        raise Error(f"{file}: GDAL has not written the whole map")
 
 
 def write_areas(file, geotiff, description: str, limits: Sequence[float] = LIMITS) -> None:
@@ -251,16 +231,13 @@ def write_areas(file, geotiff, description: str, limits: Sequence[float] = LIMIT
         for name, value in zip(bounds, (limits[number - 1], limits[number] if number < len(limits) else 1.0)):
             feature.SetField(name, value)
         layer.SetFeature(feature)
-    written = gdal.VectorTranslate(IN_MEMORY + "areas.geojson", areas, format="GeoJSON", selectFields=list(bounds),
-                                   layerCreationOptions=["RFC7946=YES", f"DESCRIPTION={description}"])
-    del written
-    content = _taken("areas.geojson")
-    try:
-        count = len(json.loads(content)["features"])
-    except ValueError:
-        count = -1
-    if count != layer.GetFeatureCount():
-        raise Error(f"{file}: GDAL has not written all areas")
+    gdal.VectorTranslate(IN_MEMORY + "areas.geojson", areas, format="GeoJSON", selectFields=list(bounds),
+                         layerCreationOptions=["RFC7946=YES", f"DESCRIPTION={description}"])
+    with naming(f"{file}: GDAL has not written all areas"):
+        content = _taken("areas.geojson")
+        count, wanted = len(json.loads(content)["features"]), layer.GetFeatureCount()
+        if count != wanted:
+            raise ValueError(f"{count} of {wanted} are there")
     write_whole(file, content)
 
 
@@ -301,17 +278,15 @@ class Plan:
         if self.asked and self.asked[0] < self.asked[1]:
             self.settings.setdefault("height_limits", sorted(self.heights))
         if member == "sensor":  # else they are those of the plan before
-            self._check_settings()
+            self._try("coverage")
+            for air in self.year:
+                self._try(f"year: {air.name}", **air.settings)
             for name in plan.get("mix", ()):
-                with naming(f"{self.file}: mix"), warnings.catch_warnings():
-                    warnings.simplefilter("ignore")
-                    self.tried.set(species=name).update()
+                self._try("mix", species=name)
         self.mix = self._mix()
         self.settings["species"] = next(iter(self.mix))
-        self.runways: List[Runway] = []
-        if "runways" in plan:
-            with naming(f"{self.file}: runways"):
-                self.runways = self._runways()
+        with naming(f"{self.file}: runways"):
+            self.runways = self._runways() if "runways" in plan else []
         self.extent = tuple(plan.get("extent") or self._extent())
         self.spacing = float(plan.get("spacing", 10.0))
         self._check_maps()
@@ -327,16 +302,11 @@ class Plan:
         ground = ground_of(self.scene, [(x, y)])[0]
         self.ground = None if np.isnan(ground) else float(ground)
 
-    def _check_settings(self) -> None:
-        """Of coverage: tried at one place of an empty scene."""
-        with naming(f"{self.file}: coverage"), warnings.catch_warnings():
+    def _try(self, member: str, **changes: Any) -> None:
+        """`Error` where coverage refuses settings, at one place of an empty scene."""
+        with naming(f"{self.file}: {member}"), warnings.catch_warnings():
             warnings.simplefilter("ignore")  # they come with the work
-            self.tried = Coverage(Scene(), self.sensor, places=[(0.0, 0.0, 0.0)], **self.settings)
-            self.tried.update()
-        for air in self.year:
-            with naming(f"{self.file}: year: {air.name}"), warnings.catch_warnings():
-                warnings.simplefilter("ignore")
-                Coverage(Scene(), self.sensor, places=[(0.0, 0.0, 0.0)], **{**self.settings, **air.settings}).update()
+            Coverage(Scene(), self.sensor, places=[(0.0, 0.0, 0.0)], **{**self.settings, **changes}).update()
 
     def air_of(self, words: Sequence[str] = (), **air: Any) -> Dict[str, Any]:
         """Settings of coverage in a weather: where it says nothing of the visibility, the plan's own; without rain, dry.
@@ -356,13 +326,11 @@ class Plan:
         return float(self.sensor.beams.fields.get("receiver_aperture", 0.0)) > 0.0
 
     def _mix(self) -> Dict[str, float]:
-        mix = {str(name): float(share) for name, share in self.plan.get("mix", {}).items()}
-        if mix and not 0.0 < sum(mix.values()) < math.inf:
+        mix = self.plan.get("mix") or {Coverage(Scene(), self.sensor, **self.settings).species: 1.0}
+        total = float(sum(mix.values()))
+        if not 0.0 < total < math.inf:
             raise Error(f"{self.file}: mix: is {mix}, expected numbers from 0 with a sum above 0")
-        if not mix:
-            mix = {Coverage(Scene(), self.sensor, **self.settings).species: 1.0}
-        greatest_first = sorted(mix.items(), key=lambda item: -item[1])
-        return {name: share / sum(mix.values()) for name, share in greatest_first if share > 0.0}
+        return {name: share / total for name, share in sorted(mix.items(), key=lambda item: -item[1]) if share > 0.0}
 
     def _extent(self) -> Tuple[float, float, float, float]:
         """What maps hold: surroundings of the sensor and of the runways' ends."""
@@ -377,9 +345,8 @@ class Plan:
     def at(self, position: Sequence[float], title: str, seed: Optional[int] = None, **changes: Any) -> Plan:
         """The same with the sensor elsewhere, on the same maps. @param position m @param title of pictures and tables @param seed
         of the places, default the same @param changes properties of the sensor"""
-        plan = {**self.plan, "extent": self.extent, "seed": self.seed if seed is None else seed, "sensor": {**self.plan["sensor"], "name": self.name, **changes,
-                                                               "position": [float(c) for c in position]}}
-        other = Plan(plan, self.threads, self.scene, "siting")
+        sensor = {**self.plan["sensor"], "name": self.name, **changes, "position": [float(c) for c in position]}
+        other = Plan({**self.plan, "extent": self.extent, "seed": self.seed if seed is None else seed, "sensor": sensor}, self.threads, self.scene, "siting")
         other.title = title
         return other
 
@@ -410,12 +377,11 @@ class Plan:
 
     def _drawn(self, seed: int) -> Tuple[np.ndarray, Dict[str, np.ndarray]]:
         """Where shares are of: n x 3, m, and the numbers of those in each strip and the approach to each end."""
-        count = self.count
-        require_memory(BYTES_OF_PLACE * count, f"{count:,} places", "take fewer")
+        require_memory(BYTES_OF_PLACE * self.count, f"{self.count:,} places", "take fewer")
         if self.runways:
-            return places_by_region(self.runways, count, seed, self.plan.get("regions"), self.asked, self.spread)
+            return places_by_region(self.runways, self.count, seed, self.plan.get("regions"), self.asked, self.spread)
         low, high = np.transpose([self.extent[:2], self.extent[2:], (min(self.heights), max(self.heights))])
-        return np.random.default_rng(seed).uniform(low, high, (count, 3)), {"map": np.arange(count)}
+        return np.random.default_rng(seed).uniform(low, high, (self.count, 3)), {"map": np.arange(self.count)}
 
     def weights(self, points: np.ndarray) -> np.ndarray:
         """What each place (n x 3) counts for each species: species x places, the sum 1. As in the table."""
@@ -495,12 +461,12 @@ class Plan:
         """Rows of shares of the regions: those of each species, then those of the mix. Its standard errors are the most that those
         of the species allow."""
         rows = self.regions.table
-        if len(self.mix) == 1:
-            return rows
-        return rows + self._of_mix([[row for row in rows if row["species"] == species] for species in self.mix])
+        return rows + self._of_mix([[row for row in rows if row["species"] == species] for species in self.mix]) * (len(self.mix) > 1)
 
-    def _of_mix(self, of_species: Sequence[Sequence[Dict[str, Any]]]) -> List[Dict[str, Any]]:
+    def _of_mix(self, of_species: Sequence[List[Dict[str, Any]]]) -> List[Dict[str, Any]]:
         """Rows of the mix. @param of_species rows of each species"""
+        if len(self.mix) == 1:
+            return of_species[0]
         mixed = []
         for same in zip(*of_species):
             means = {name: sum(share * row[name] for share, row in zip(self.mix.values(), same)) for name, value in same[0].items()
@@ -518,24 +484,18 @@ class Plan:
             regions.species = species
             found.append([[row for row in regions.set(**air).table if math.isinf(row["height_from"]) and math.isinf(row["height_to"])] for air in airs])
         regions.set(**own)
-        return [self._of_mix(of_species) if len(self.mix) > 1 else list(of_species[0]) for of_species in zip(*found)]
+        return [*map(self._of_mix, zip(*found))]
 
     @functools.cached_property
     def by_end(self) -> List[Dict[str, Any]]:
         """A row for each strip and the approach to each end: the share of all heights, for the birds asked for, with its standard error as
         in the table."""
         weights = self.weights(self.points).sum(axis=0)
-        names = ("detection", "track")
-        values = [self.mixed(self.regions, f"{name}_probability") for name in names]
-        rows = []
-        for region, members in self.ends.items():
-            row: Dict[str, Any] = {"region": region, "species": self.bird, "places": len(members)}
-            w = weights[members]
-            for name, p in zip(names, values):
-                mean = np.vdot(w, p[members]) / w.sum() if w.sum() else math.nan
-                spread = np.sum((w * (p[members] - mean)) ** 2) * len(w) / max(len(w) - 1, 1)
-                row.update({f"{name}_probability": float(mean), f"{name}_std_error": float(np.sqrt(spread) / w.sum()) if w.sum() else math.nan})
-            rows.append(row)
+        values = {name: self.mixed(self.regions, f"{name}_probability") for name in ("detection", "track")}
+        rows: List[Dict[str, Any]] = [{"region": region, "species": self.bird, "places": len(members)} for region, members in self.ends.items()]
+        for row, members in zip(rows, self.ends.values()):
+            for name, p in values.items():
+                row[f"{name}_probability"], row[f"{name}_std_error"], _ = weighted(p[members], weights[members])
         return rows
 
     @property
@@ -558,39 +518,35 @@ class Plan:
     def write(self, folder, progress=None) -> List[str]:
         """Write all files: a GeoTIFF for each height and quantity, shares.csv, ends.csv, clutter.vtp. @param progress called with the
         files done and their number @return their names"""
-        folder = pathlib.Path(folder)
-        folder.mkdir(parents=True, exist_ok=True)
         names: List[str] = []
-        origin = self.scene.geodetic_origin
-        total = len(self.heights) * (len(QUANTITIES) + (origin is not None)) + 3
-
-        def done(name: str) -> None:
+        total = len(self.heights) * (len(QUANTITIES) + (self.scene.geodetic_origin is not None)) + 3
+        for name in self._files(pathlib.Path(folder)):
             names.append(name)
             if progress:
                 progress(len(names), total)
-
-        for height in self.heights:
-            cover = self.map_at(height)
-            data = cover.data
-            for quantity, unit in QUANTITIES.items():
-                name = f"{quantity}_{height_name(height)}.tif"
-                values = self.mixed(cover, quantity) if quantity.endswith("_probability") else cover[quantity]
-                write_geotiff(folder / name, values[0], data.GetOrigin()[:2], data.GetSpacing()[:2], origin,
-                              f"{quantity} at {height:g} m", unit, cover.status_names if quantity == "status" else (),
-                              {**self.notes(), "height_m": f"{height:g}"})
-                done(name)
-            if origin is not None:
-                name = f"detection_probability_{height_name(height)}"
-                words = "; ".join(f"{key}: {value}" for key, value in {**self.notes(), "height_m": f"{height:g}"}.items())
-                write_areas(folder / f"{name}.geojson", folder / f"{name}.tif", words)
-                done(f"{name}.geojson")
-        save(self.coverage.clutter_map, folder / "clutter.vtp")
-        done("clutter.vtp")
-        write_table(folder / "shares.csv", self.shares)
-        done("shares.csv")
-        write_table(folder / "ends.csv", self.by_end)
-        done("ends.csv")
         return names
+
+    def _files(self, folder: pathlib.Path) -> Iterator[str]:
+        """Names of files, each once it is written."""
+        folder.mkdir(parents=True, exist_ok=True)
+        origin = self.scene.geodetic_origin
+        for height in self.heights:
+            cover, at = self.map_at(height), height_name(height)
+            for quantity, unit in QUANTITIES.items():
+                values = self.mixed(cover, quantity) if quantity.endswith("_probability") else cover[quantity]
+                notes = {**self.notes(), "height_m": f"{height:g}"}
+                write_geotiff(folder / f"{quantity}_{at}.tif", values[0], cover.data.GetOrigin()[:2], cover.data.GetSpacing()[:2], origin,
+                              f"{quantity} at {height:g} m", unit, cover.status_names if quantity == "status" else (), notes)
+                yield f"{quantity}_{at}.tif"
+            if origin is not None:
+                name = f"detection_probability_{at}"
+                write_areas(folder / f"{name}.geojson", folder / f"{name}.tif", "; ".join(map(": ".join, notes.items())))
+                yield f"{name}.geojson"
+        save(self.coverage.clutter_map, folder / "clutter.vtp")
+        yield "clutter.vtp"
+        for name, rows in (("shares.csv", self.shares), ("ends.csv", self.by_end)):
+            write_table(folder / name, rows)
+            yield name
 
 
 def height_name(height: float) -> str:
@@ -609,7 +565,6 @@ def sensor_name(sensor: Mapping[str, Any], what: str = "sensor") -> str:
 
 def write_table(file, rows: Sequence[Dict[str, Any]]) -> None:
     """Write rows as CSV, units in the header."""
-    units = {"height_from": "m", "height_to": "m"}
-    head = [[f"{name} [{units[name]}]" if name in units else name for name in rows[0]]] if rows else []
+    head = [[f"{name} [m]" if name in ("height_from", "height_to") else name for name in rows[0]]] if rows else []
     table = [[f"{value:.6g}" if isinstance(value, float) else value for value in row.values()] for row in rows]
     write_whole(file, as_csv(head + table, "\r\n"))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import Any, Callable, Dict, Hashable, List, Mapping, NamedTuple, Optional, Sequence, Tuple
+from typing import Any, Dict, Hashable, List, Mapping, NamedTuple, Optional, Sequence, Tuple
 
 import numpy as np
 
@@ -22,12 +22,6 @@ class Ospa(NamedTuple):
     distance: float
     localisation: float
     cardinality: float
-
-
-def distances(a, b) -> np.ndarray:
-    """n x m distances of points. @param a n x 3 @param b m x 3"""
-    a, b = (np.asarray(points, float).reshape(-1, 3) for points in (a, b))
-    return np.linalg.norm(a[:, None] - b[None], axis=2)
 
 
 def assign(distance, cutoff: float) -> Pairs:
@@ -77,41 +71,24 @@ def switches(tracks: Sequence[Optional[Hashable]]) -> int:
 def in_strip(points, start, end, half_width: float, height: float) -> np.ndarray:
     """Which points lie in the box over a runway. @param points n x 3, m @param start, end of its middle, m east and north @param half_width m
     to either side @param height m, of its top"""
-    points, way = np.asarray(points, float).reshape(-1, 3), np.subtract(end, start)
+    way = np.subtract(end, start)
     length = math.hypot(*way)
-    along, aside = _along(points, start, way / length)
-    return (along >= 0.0) & (along <= length) & (np.abs(aside) <= half_width) & (points[:, 2] <= height)
+    return in_wedge(points, start, way / length, length, (half_width, 0.0), (height, 0.0))
 
 
 def in_wedge(points, threshold, outwards, length: float, half_width: Tuple[float, float], height: Tuple[float, float]) -> np.ndarray:
     """Which points lie below and beside the glide path before a threshold. @param outwards unit vector away from the runway
     @param half_width, height m at the threshold, and by how much they grow a metre outwards"""
-    points = np.asarray(points, float).reshape(-1, 3)
-    along, aside = _along(points, threshold, np.asarray(outwards, float))
+    points, (x, y) = np.asarray(points, float).reshape(-1, 3), outwards
+    along, aside = ((points[:, :2] - np.asarray(threshold)) @ [[x, y], [y, -x]]).T
     return (along >= 0.0) & (along <= length) & (np.abs(aside) <= half_width[0] + half_width[1] * along) & (
         points[:, 2] <= height[0] + height[1] * along)
-
-
-def _along(points: np.ndarray, start, axis: np.ndarray) -> Tuple[np.ndarray, np.ndarray]:
-    off = points[:, :2] - np.asarray(start, float)
-    return off @ axis, off @ np.array([axis[1], -axis[0]])
 
 
 def entry(times: np.ndarray, inside: np.ndarray) -> float:
     """The first time inside any of the volumes in which it does not begin; nan without. @param inside volumes x times"""
     entered = (inside & ~inside[:, :1]).any(axis=0)
     return float(times[np.argmax(entered)]) if entered.any() else math.nan
-
-
-def jackknife(statistic: Callable[..., float], *columns) -> Value:
-    """A statistic of birds and its standard error by leaving out one bird at a time. @param columns arrays with a value for each bird"""
-    columns = tuple(np.asarray(column, float) for column in columns)
-    count = len(columns[0])
-    if not count:
-        return Value(math.nan, math.nan, 0)
-    without = [statistic(*(np.delete(column, i) for column in columns)) for i in range(count)] if count > 1 else []
-    error = math.sqrt((count - 1) / count * float(np.sum(np.subtract(without, np.mean(without)) ** 2))) if without else math.nan
-    return Value(float(statistic(*columns)), error, count)
 
 
 def mean(values) -> Value:
@@ -121,11 +98,22 @@ def mean(values) -> Value:
     return Value(float(values.mean()) if count else math.nan, float(values.std(ddof=1)) / math.sqrt(count) if count > 1 else math.nan, count)
 
 
+def weighted(values: np.ndarray, weights: np.ndarray) -> Value:
+    """The weighted mean over places, with the standard error of places drawn at random; nan where nothing counts."""
+    count, total = len(values), float(weights.sum())
+    if not total:
+        return Value(math.nan, math.nan, count)
+    mean = float(np.vdot(weights, values.astype(float))) / total
+    return Value(mean, math.sqrt(float(np.sum((weights * (values - mean)) ** 2)) * count / max(count - 1, 1)) / total, count)
+
+
 def ratio(parts, wholes) -> Value:
-    """Sum of the parts over that of the wholes, with the error of leaving out one bird at a time."""
+    """Sum of the parts over the sum of the wholes, with the error by leaving out one bird at a time (jackknife)."""
     parts, wholes = np.asarray(parts, float), np.asarray(wholes, float)
     parts, wholes = parts[wholes > 0.0], wholes[wholes > 0.0]
-    return jackknife(lambda a, b: a.sum() / b.sum(), parts, wholes)
+    count, part, whole = len(parts), float(parts.sum()), float(wholes.sum())
+    error = math.sqrt(count - 1) * float(np.std((part - parts) / (whole - wholes))) if count > 1 else math.nan
+    return Value(part / whole if count else math.nan, error, count)
 
 
 def share(count: int, of: int) -> Value:
