@@ -5,7 +5,7 @@ from __future__ import annotations
 import io
 import pathlib
 import warnings
-from typing import Any, Callable, Dict, List, Mapping, Sequence, Tuple
+from typing import Any, Callable, List, Mapping, Sequence, Tuple
 
 import numpy as np
 from vtkmodules.util.numpy_support import vtk_to_numpy
@@ -62,15 +62,12 @@ def draw(file, size: Tuple[float, float], work: Callable[[Any], Any], columns: i
     return pathlib.Path(file)
 
 
-def _roofs(plan: Plan) -> Tuple[np.ndarray, np.ndarray]:
-    """Triangles of what counts as a building, and their points."""
-    surfaces = plan.scene.tree.GetOutput()
-    points, cells = triangles_of(surfaces)
-    roofs = points[cells][:, :, 2].min(axis=1) > (plan.ground or 0.0) + TALL
-    classes = field_values(surfaces).get("object_classes", ())
-    if len(classes):
-        roofs &= ~np.isin(classes, FLAT)[as_numpy(surfaces.GetCellData().GetArray("object_id"))]
-    return cells[roofs], points
+def finish(axes, **settings: Any) -> None:
+    """Limits and words of axes, a grid, and a legend where something has a label."""
+    axes.set(**settings)
+    axes.grid()
+    if axes.get_legend_handles_labels()[0]:
+        axes.legend()
 
 
 def map_size(extent: Sequence[float], width: float, beside: float = 0.0, above: float = 0.0) -> Tuple[float, float]:
@@ -88,12 +85,11 @@ def draw_land(axes, plan: Plan) -> None:
     """Woods and water of the scene, from above."""
     from matplotlib.collections import PolyCollection
     for block in leaves_of(plan.scene.surfaces):
-        polygons = block.GetPolys()
-        if not block.GetNumberOfPolys():
+        polygons, ids = block.GetPolys(), block.GetCellData().GetArray("object_id")
+        if not polygons.GetNumberOfCells():
             continue
         classes = np.array(field_values(block).get("object_classes", [""]))
-        ids = block.GetCellData().GetArray("object_id")
-        of = classes[as_numpy(ids)] if ids and len(classes) > 1 else np.full(block.GetNumberOfPolys(), classes[0])
+        of = classes[as_numpy(ids)] if ids and len(classes) > 1 else np.full(polygons.GetNumberOfCells(), classes[0])
         points = vtk_to_numpy(block.GetPoints().GetData())[:, :2]
         cells = np.split(vtk_to_numpy(polygons.GetConnectivityArray()), vtk_to_numpy(polygons.GetOffsetsArray())[1:-1])
         for wanted, colour in ((np.isin(of, PLANTS), "#b5d6a7"), (of == "water", "#a9cfe8")):
@@ -107,9 +103,14 @@ def draw_airport(axes, plan: Plan, colour: str = "0.25") -> None:
     for runway in plan.runways:
         axes.plot(*np.transpose([runway.start, runway.end]), color=colour, linewidth=1.5, solid_capstyle="butt")
     if plan.scene is not None:
-        roofs, points = _roofs(plan)
-        if len(roofs):
-            axes.tripcolor(points[:, 0], points[:, 1], roofs, facecolors=np.zeros(len(roofs)), cmap=ListedColormap([colour]))
+        surfaces = plan.scene.tree.GetOutput()
+        points, cells = triangles_of(surfaces)
+        roofs = points[cells][:, :, 2].min(axis=1) > (plan.ground or 0.0) + TALL
+        classes = field_values(surfaces).get("object_classes", ())
+        if len(classes):
+            roofs &= ~np.isin(classes, FLAT)[as_numpy(surfaces.GetCellData().GetArray("object_id"))]
+        if roofs.any():
+            axes.tripcolor(*points[:, :2].T, cells[roofs], facecolors=np.zeros(roofs.sum()), cmap=ListedColormap([colour]))
     axes.plot(*plan.sensor.position[:2], "r^", markersize=5)
     axes.set(xlim=plan.extent[:2], ylim=plan.extent[2:], aspect="equal", xlabel="m east", ylabel="m north")
     axes.locator_params(nbins=5)
@@ -118,16 +119,16 @@ def draw_airport(axes, plan: Plan, colour: str = "0.25") -> None:
 def draw_map(axes, plan: Plan, cover: Coverage, quantity: str) -> None:
     """A map of probabilities, or of statuses."""
     from matplotlib.colors import BoundaryNorm, ListedColormap
-    style: Dict[str, Any] = {"cmap": "viridis", "vmin": 0.0, "vmax": 1.0}
+    number, colour, values, style = len(STATUS_COLOURS), "0.75", cover["status"], {"cmap": "viridis", "vmin": 0.0, "vmax": 1.0}
     if quantity == "status":
-        number = len(STATUS_COLOURS)
-        style = {"cmap": ListedColormap(STATUS_COLOURS), "norm": BoundaryNorm(np.arange(number + 1) - 0.5, number)}
+        colour, style = "0.1", {"cmap": ListedColormap(STATUS_COLOURS), "norm": BoundaryNorm(np.arange(number + 1) - 0.5, number)}
+    else:
+        values = plan.mixed(cover, quantity)
     data = cover.data
     first, step, count = (np.array(values[:2]) for values in (data.GetOrigin(), data.GetSpacing(), data.GetDimensions()))
-    low, high = first - 0.5 * step, first + (count - 0.5) * step
-    values = cover["status"] if quantity == "status" else plan.mixed(cover, quantity)
-    axes.imshow(values[0], origin="lower", extent=(low[0], high[0], low[1], high[1]), interpolation="nearest", **style)
-    draw_airport(axes, plan, "0.1" if quantity == "status" else "0.75")
+    extent = np.transpose([first - 0.5 * step, first + (count - 0.5) * step]).ravel()
+    axes.imshow(values[0], origin="lower", extent=extent, interpolation="nearest", **style)
+    draw_airport(axes, plan, colour)
 
 
 def answer_extent(plan: Plan) -> Tuple[float, float, float, float]:
@@ -137,9 +138,9 @@ def answer_extent(plan: Plan) -> Tuple[float, float, float, float]:
     low, high = corners.min(axis=0), corners.max(axis=0)
     middle, size = 0.5 * (low + high), (1.0 + 2.0 * AROUND) * np.maximum(high - low, 1.0) if outlines else high - low
     width = max(size[0], size[1] / SIDES[1])
-    height = max(size[1], width * SIDES[0])
-    (x0, y0), (x1, y1) = middle - [0.5 * width, 0.5 * height], middle + [0.5 * width, 0.5 * height]
-    return float(x0), float(x1), float(y0), float(y1)
+    half = 0.5 * np.array([width, max(size[1], width * SIDES[0])])
+    x0, x1, y0, y1 = np.transpose([middle - half, middle + half]).ravel().tolist()
+    return x0, x1, y0, y1
 
 
 def found_at(plan: Plan, extent: Sequence[float]) -> List[Tuple[float, np.ndarray]]:
@@ -225,9 +226,7 @@ def draw_reach(axes, reaches: Mapping[str, Reach], several: str) -> None:
         axes.errorbar(reach.ranges, reach.one_scan, reach.error, color=colour, linewidth=1.5, elinewidth=1.0, label=f"{name}, one scan")
         axes.plot(reach.ranges, reach.several_scans, "--", color=colour, linewidth=1.2)
     axes.plot([], [], "--", color="0.4", linewidth=1.2, label=several)
-    axes.set(xlim=(0.0, None), ylim=(0.0, 1.02), xlabel="range, m", ylabel="share of birds detected")
-    axes.grid()
-    axes.legend()
+    finish(axes, xlim=(0.0, None), ylim=(0.0, 1.02), xlabel="range, m", ylabel="share of birds detected")
 
 
 def draw_weather(axes, curves: Mapping[str, Tuple[Sequence[float], Sequence[float], Sequence[float]]], words: str, logarithmic: bool) -> None:
@@ -239,9 +238,7 @@ def draw_weather(axes, curves: Mapping[str, Tuple[Sequence[float], Sequence[floa
         axes.set_xscale("log")
         axes.set_xticks(weathers, [f"{weather:,g}" for weather in weathers], fontsize=8)
         axes.minorticks_off()
-    axes.set(ylim=(0.0, None), xlabel=words, ylabel="share of birds detected")
-    axes.grid()
-    axes.legend()
+    finish(axes, ylim=(0.0, None), xlabel=words, ylabel="share of birds detected")
 
 
 def draw_clutter(axes, plan: Plan, clutter) -> None:
@@ -287,8 +284,6 @@ def sites_extent(sites) -> Tuple[float, float, float, float]:
 
 def draw_gain(axes, sites) -> None:
     """What each more sensor adds."""
-    rows = sites.gain()
-    axes.errorbar([row["sensors"] for row in rows], [row["value"] for row in rows], [row["std_error"] for row in rows], marker="o")
-    axes.set(ylim=(0.0, None), xlabel="sensors", ylabel="probability of one scan")
-    axes.set_xticks([row["sensors"] for row in rows])
-    axes.grid()
+    sensors, *bars = ([row[name] for row in sites.gain()] for name in ("sensors", "value", "std_error"))
+    axes.errorbar(sensors, *bars, marker="o")
+    finish(axes, ylim=(0.0, None), xlabel="sensors", ylabel="probability of one scan", xticks=sensors)
