@@ -16,22 +16,21 @@ from .._version import __version__
 from .._weather import in_words
 from . import _pictures as pictures
 from ._card import cell
-from ._json import load_json
 from ._labels import BIRD, MOVING
 from ._page import embedded, render
 from ._scores import Value, mean
-from ._sequence import FOLDERS, SUBSETS
+from ._sequence import FOLDERS, SUBSETS, read_manifest
 
 RANGES = (0.0, 200.0, 400.0, 600.0, 1000.0, math.inf)  # m
 LOST = 3  # scans with points, one after the other, of which none is called bird, end the track of a bird
 FALSE = (1, 10)  # points a scan that may be false
 RECALLS = np.linspace(0.0, 1.0, 101)  # of the curve
 SURE = 2.0  # standard errors that a difference is larger than, to be called one
-# Of a score: words, factor and unit of the page.
-SCORES = {**{f"recall_at_{most}": (f"recall at {most} false point{'s' if most > 1 else ''} a scan", 100.0, "%") for most in FALSE}, "average_precision": ("average precision", 1.0, ""), "iou": ("IoU", 1.0, ""),
-          "recall": ("recall", 100.0, "%"), "precision": ("precision", 100.0, "%"), "false": ("false points a scan", 1.0, ""),
-          "lost": ("tracks lost", 100.0, "%"), "others": ("others under way called birds", 100.0, "%")}
-PREDICTIONS = (("predictions", ".label", "<u4"), ("predictions", ".score", "<f4"))
+# Of a score: words and unit of the page.
+SCORES = {**{f"recall_at_{most}": (f"recall at {most} false point{'s' if most > 1 else ''} a scan", "%") for most in FALSE},
+          "average_precision": ("average precision", ""), "iou": ("IoU", ""), "recall": ("recall", "%"), "precision": ("precision", "%"),
+          "false": ("false points a scan", ""), "lost": ("tracks lost", "%"), "others": ("others under way called birds", "%")}
+ALL = ("all", "")  # the group of all points
 
 
 class Points(NamedTuple):
@@ -70,14 +69,13 @@ def threshold(rank: Threshold, most: float) -> float:
 
 def average_precision(rank: Threshold) -> float:
     """The mean of the precision, each weighted with the recall that is won there; nan without a bird."""
-    if not len(rank.birds) or not rank.birds[-1]:
-        return math.nan
-    return float(np.sum(np.diff(rank.birds, prepend=0) * rank.birds / (rank.birds + rank.false)) / rank.birds[-1])
+    won = np.diff(rank.birds, prepend=0)
+    return float(np.sum(won * rank.birds / (rank.birds + rank.false)) / rank.birds[-1]) if rank.birds.any() else math.nan
 
 
 def curve(rank: Threshold) -> np.ndarray:
     """The greatest precision at each of `RECALLS` or more."""
-    if not len(rank.birds) or not rank.birds[-1]:
+    if not rank.birds.any():
         return np.full(len(RECALLS), math.nan)
     best = np.maximum.accumulate((rank.birds / (rank.birds + rank.false))[::-1])[::-1]
     place = np.searchsorted(rank.birds / rank.birds[-1], RECALLS - 1e-9)
@@ -120,18 +118,11 @@ class Set:
 
     def __init__(self, folder, numbers: Sequence[str] = (), first: int = 0):
         """@param numbers of the sequences that are scored, default all @param first scan of each that is: those before are history"""
-        self.folder, self.first = pathlib.Path(folder), first
-        file = self.folder / "manifest.json"
-        if not file.is_file():
-            raise Error(f"{folder}: holds no manifest.json, expected a folder that `avianlidar sequence` has made")
-        manifest = load_json(file)
-        parts = manifest.get("sequences") if isinstance(manifest, dict) else None
-        if not isinstance(parts, dict) or not parts:
-            raise Error(f"{file}: names no sequences, expected the manifest of a folder that `avianlidar sequence` has made")
-        self.numbers = [number for number in sorted(parts) if not numbers or number in numbers]
+        self.folder, self.first, manifest = pathlib.Path(folder), first, read_manifest(folder)
+        parts, scenario = sorted(manifest["sequences"]), manifest["scenario"]
+        self.numbers = [number for number in parts if not numbers or number in numbers]
         if {*numbers} - {*parts}:
-            raise Error(f"{file}: has no sequence {min({*numbers} - {*parts})}, expected some of {', '.join(sorted(parts))}")
-        scenario = manifest["scenario"]
+            raise Error(f"{self.folder / 'manifest.json'}: has no sequence {min({*numbers} - {*parts})}, expected some of {', '.join(parts)}")
         self.name = self.folder.resolve().name
         self.bird_class = int(scenario.get("bird_class", BIRD))
         self.weather = in_words(scenario.get("weather", ())) or "clear"
@@ -148,26 +139,25 @@ class Set:
         names = [file.stem for file in sorted((home / "velodyne").glob("*.bin"))][self.first:]
         if not names:
             raise Error(f"{home}: has no scan from number {self.first} on, expected longer sequences or a smaller --first")
-        scored = [(theirs / "predictions" / f"{name}.score").exists() for name in names]
-        has_scores = any(scored)
-        if has_scores and not all(scored):
-            raise Error(f"{theirs / 'predictions'}: {names[scored.index(False)]}.score is not there, expected scores of all scans or of none")
+        kinds = [(home / folder, suffix, kind) for (folder, suffix, _), kind in zip(FOLDERS, ("<f4", "<u4", "u1"))]
+        kinds.append((theirs / "predictions", ".label", "<u4"))
+        if any((theirs / "predictions" / f"{name}.score").exists() for name in names):  # then of all scans
+            kinds.append((theirs / "predictions", ".score", "<f4"))
         columns = []
         for scan, name in enumerate(names):
-            kinds: List[Tuple[pathlib.Path, Any]] = [(home / folder / f"{name}{suffix}", kind) for (folder, suffix, _), kind in zip(FOLDERS, ("<f4", "<u4", np.uint8))]
-            kinds += [(theirs / folder / f"{name}{suffix}", kind) for folder, suffix, kind in PREDICTIONS[:1 + has_scores]]
-            found = [np.frombuffer(_content(file), kind) for file, kind in kinds]
-            places = found[0].reshape(-1, 4)[:, :3].astype(float)
-            for (file, _), values in zip(kinds[1:], found[1:]):
+            first, *found = (_content(folder / f"{name}{suffix}", kind) for folder, suffix, kind in kinds)
+            places = first.reshape(-1, 4)[:, :3].astype(float)
+            for (folder, suffix, _), values in zip(kinds[1:], found):
                 if len(values) != len(places):
-                    raise Error(f"{file}: has {len(values)} values, expected one for each of the {len(places)} points of the scan")
-            if has_scores and np.isnan(found[4]).any():
-                raise Error(f"{kinds[4][0]}: has a score that is not a number")
-            kind, called = found[1] & 0xffff, (found[3] & 0xffff) == self.bird_class
+                    raise Error(f"{folder / name}{suffix}: has {len(values)} values, expected one for each of the {len(places)} points of the scan")
+                if np.isnan(values).any():
+                    raise Error(f"{folder / name}{suffix}: has a score that is not a number")
+            labels, subset, predicted, *score = found
+            kind, called = labels & 0xffff, (predicted & 0xffff) == self.bird_class
             columns.append((np.full(len(places), scan), kind == self.bird_class, np.isin(kind, [*MOVING.values()]) & (kind != self.bird_class),
-                            found[1] >> 16, found[2], np.linalg.norm(places, axis=1), called, *found[4:]))
+                            labels >> 16, subset, np.linalg.norm(places, axis=1), called, *score))
         arrays: List[Any] = [np.concatenate(column) for column in zip(*columns)]
-        return Points(*(arrays if has_scores else [*arrays, None])), len(names)
+        return Points(*arrays[:7], *(arrays[7:] or [None])), len(names)
 
     def groups(self, number: str, points: Points) -> Dict[Tuple[str, str], np.ndarray]:
         """Which points are in a group: by what, and its name."""
@@ -182,14 +172,14 @@ class Set:
         return found
 
 
-def _content(file: pathlib.Path) -> bytes:
+def _content(file: pathlib.Path, kind: str) -> np.ndarray:
     if not file.exists():
-        raise Error(f"{file}: is not there, expected a file for each scan, of the same number")
-    content = read_regular(file)
-    unit = {".bin": 16, ".subset": 1}.get(file.suffix, 4)
+        expected = "scores of all scans or of none" if file.suffix == ".score" else "a file for each scan, of the same number"
+        raise Error(f"{file}: is not there, expected {expected}")
+    content, unit = read_regular(file), 16 if file.suffix == ".bin" else np.dtype(kind).itemsize
     if len(content) % unit:
         raise Error(f"{file}: has {len(content)} bytes, expected {unit} for each point")
-    return content
+    return np.frombuffer(content, kind)
 
 
 class Scored:
@@ -198,7 +188,7 @@ class Scored:
     def __init__(self, of: Set, predictions: pathlib.Path, name: str, step: Callable[[], Any] = lambda: None):
         self.set, self.name = of, name
         self.values: Dict[Tuple[str, str], List[Dict[str, float]]] = {}
-        self.curves = []
+        self.curves: List[np.ndarray] = []
         self.scans = 0
         for number in of.numbers:
             points, scans = of.points(number, predictions)
@@ -232,32 +222,26 @@ class Scored:
         return int(sum(values["birds"] for values in self.values.get(group, ())))
 
 
-def difference(one: Scored, other: Scored, score: str) -> Value:
-    """Of two predictions for a set, by sequences that both have."""
-    values = [scored.of_sequences(("all", ""), score) for scored in (one, other)]
-    found = values[0] - values[1]
-    return mean(found[~np.isnan(found)])
-
-
 def verdict(scored: Sequence[Scored]) -> str:
     """Which predictions for a set are best, and by how much: by recall, if all have scores, and by intersection over union."""
     return " ".join(_best(scored, score) for score in (f"recall_at_{FALSE[0]}", "iou") if score == "iou" or all(one.curves for one in scored))
 
 
 def _best(scored: Sequence[Scored], score: str) -> str:
-    words, factor, unit = SCORES[score]
-    values = {one.name: one.value(("all", ""), score) for one in scored}
+    words, unit = SCORES[score]
+    values = {one.name: one.value(ALL, score) for one in scored}
     ordered = sorted((one for one in scored if values[one.name].number), key=lambda one: -values[one.name].value)
     if not ordered:
         return "No bird has a point."
     best = ordered[0]
     parts = []
     for other in ordered[1:]:
-        by = difference(best, other, score)
+        differences = best.of_sequences(ALL, score) - other.of_sequences(ALL, score)
+        by = mean(differences[~np.isnan(differences)])  # by sequences that both have
         sure = by.value > SURE * by.error  # never with one sequence
-        parts.append(f"{cell(by, factor)}{' percentage points' if unit else ''} more than {other.name}{'' if sure else ' (no sure difference)'}")
+        parts.append(f"{cell(by, unit, ' percentage points' if unit else '')} more than {other.name}{'' if sure else ' (no sure difference)'}")
     end = f": {'; '.join(parts)}." if parts else "."
-    return f"{best.name} has the best {words}, {cell(values[best.name], factor, unit)}{end}"
+    return f"{best.name} has the best {words}, {cell(values[best.name], unit)}{end}"
 
 
 class Bench:
@@ -270,19 +254,18 @@ class Bench:
             raise Error(f"first is {first}, expected 0 or more")
         self.sets = [Set(folder, numbers, first) for folder in folders]
         self.predictions = [pathlib.Path(folder) for folder in predictions]
-        for what, names in (("sets", [one.name for one in self.sets]),
-                            ("predictions", [folder.resolve().name for folder in self.predictions])):
-            twice = {name for name in names if names.count(name) > 1}
-            if twice:
-                raise Error(f"{what}: two are called {min(twice)}, expected folders of different names")
+        for what, names in (("sets", [one.name for one in self.sets]), ("predictions", [folder.resolve().name for folder in self.predictions])):
+            if len({*names}) < len(names):
+                raise Error(f"{what}: two are called {max(names, key=names.count)}, expected folders of different names")
         self.jobs = [(one, folder, self._folder_of(one, folder)) for one in self.sets for folder in self.predictions]
 
     def _folder_of(self, one: Set, folder: pathlib.Path) -> pathlib.Path:
-        for place in (folder / one.name, *([folder] if len(self.sets) == 1 else ())):
+        places = [folder / one.name] + [folder] * (len(self.sets) == 1)
+        for place in places:
             if (place / "sequences").is_dir():
                 return place
-        raise Error(f"{folder}: holds no predictions for {one.name}, expected {one.name}/sequences/NN/predictions"
-                    + (" or sequences/NN/predictions" if len(self.sets) == 1 else ""))
+        expected = " or ".join(str((place / "sequences/NN/predictions").relative_to(folder)) for place in places)
+        raise Error(f"{folder}: holds no predictions for {one.name}, expected {expected}")
 
     def write(self, out, progress: Callable[[str, int, int], Any] = lambda *_: None) -> List[List[Scored]]:
         """Write bench.csv, curves.csv, pictures and bench.html into a folder. @return what each set's predictions score"""
@@ -304,7 +287,7 @@ class Bench:
         lines: List[List[Any]] = [["set", "predictions", "recall", "precision"]]
         for one in scored:
             for group in one.values:
-                for score, (words, _, _) in SCORES.items():
+                for score, (words, _) in SCORES.items():
                     value = one.value(group, score)
                     if value.number:
                         rows.append([one.set.name, one.set.weather, one.name, *group, words, "1", *("" if math.isnan(x) else f"{x:.6g}" for x in value[:2]),
@@ -320,8 +303,8 @@ class Bench:
         first = scored[0]
 
         def row(name: str, group: Tuple[str, str], keys: Sequence[str]) -> Dict[str, Any]:
-            return {"name": name, "points": first.points(group), "cells": [[cell(one.value(group, key), *SCORES[key][1:]) for key in keys] for one in scored]}
-        keys = [key for key in SCORES if any(one.value(("all", ""), key).number for one in scored)]
+            return {"name": name, "points": first.points(group), "cells": [[cell(one.value(group, key), SCORES[key][1]) for key in keys] for one in scored]}
+        keys = [key for key in SCORES if any(one.value(ALL, key).number for one in scored)]
         best = [key for key in (f"recall_at_{FALSE[0]}", "iou") if key in keys]
         parts = []
         for by in ("subset", "range", "species"):
@@ -329,13 +312,13 @@ class Bench:
             chosen = [key for key in ((f"recall_at_{FALSE[0]}", "recall") if by == "species" else best) if key in keys]
             parts.append({"by": by, "head": [SCORES[key][0] for key in chosen], "rows": [row(name, (by, name), chosen) for name in names]})
         found = {"name": first.set.name, "weather": first.set.weather, "scene": first.set.scene, "sensor": first.set.sensor, "scans": first.scans,
-                 "sequences": len(first.set.numbers), "points": first.points(("all", "")), "verdict": verdict(scored), "names": [one.name for one in scored],
+                 "sequences": len(first.set.numbers), "points": first.points(ALL), "verdict": verdict(scored), "names": [one.name for one in scored],
                  "head": [SCORES[key][0] for key in keys], "groups": parts,
-                 "all": [{"name": one.name, "cells": [cell(one.value(("all", ""), key), *SCORES[key][1:]) for key in keys]} for one in scored], "picture": None}
+                 "all": [{"name": one.name, "cells": [cell(one.value(ALL, key), SCORES[key][1]) for key in keys]} for one in scored], "picture": None}
         curves = [(one.name, np.array(one.curves)) for one in scored if one.curves]
         if curves:
             file = pictures.draw(out / f"curves-{first.set.name}.png", (5.6, 3.6), lambda axes: _draw_curves(axes, curves))
-            areas = ", ".join(f"{one.name} {one.value(('all', ''), 'average_precision').value:.3f}" for one in scored if one.curves)
+            areas = ", ".join(f"{one.name} {one.value(ALL, 'average_precision').value:.3f}" for one in scored if one.curves)
             found["picture"] = {"source": embedded(file), "alt": f"Precision over recall at {first.set.name}; average precision: {areas}.",
                                 "caption": f"{first.set.name}, {first.set.weather}: the mean of the sequences, and one standard error to either side"}
         return found
@@ -348,6 +331,4 @@ def _draw_curves(axes, curves: Sequence[Tuple[str, np.ndarray]]) -> None:
         if len(values) > 1:
             error = np.nanstd(values, axis=0, ddof=1) / math.sqrt(len(values))
             axes.fill_between(RECALLS, middle - error, middle + error, color=line.get_color(), alpha=0.2, linewidth=0)
-    axes.set(xlabel="recall", ylabel="precision", xlim=(0.0, 1.0), ylim=(0.0, 1.02))
-    axes.grid()
-    axes.legend()
+    pictures.finish(axes, xlabel="recall", ylabel="precision", xlim=(0.0, 1.0), ylim=(0.0, 1.02))

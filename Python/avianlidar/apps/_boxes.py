@@ -42,14 +42,12 @@ class Boxes:
         self.has_surfaces = surfaces.GetNumberOfCells() > 0
         if self.has_surfaces:
             self.locator.BuildLocator()
-        beams = sensor.beams
-        turned, up = self._angles(beams["direction"] @ pose[:, :3])
-        margin = float(sensor.half_beamwidth)
+        turned, up = self._angles(sensor.beams["direction"] @ pose[:, :3])
+        turned, margin = np.sort(turned), float(sensor.half_beamwidth)
         self.low, self.high = up.min() - margin, up.max() + margin
-        sorted_ = np.sort(turned)
-        gaps = np.diff(np.append(sorted_, sorted_[0] + 2 * np.pi))
+        gaps = np.diff(np.append(turned, turned[0] + 2 * np.pi))
         widest = int(gaps.argmax())  # behind it the field of view begins
-        self.begin = sorted_[(widest + 1) % len(sorted_)] - margin
+        self.begin = turned[(widest + 1) % len(turned)] - margin
         self.width = 2 * np.pi if gaps[widest] < np.radians(10) else 2 * np.pi - gaps[widest] + 2 * margin
 
     @staticmethod
@@ -60,9 +58,8 @@ class Boxes:
     def lines(self, report: Cloud, movers) -> str:
         """A line for each mover in the field of view. @param report the mover report @param movers the composite that the scan had"""
         blocks = {int(block.GetCellData().GetArray("object_id").GetTuple1(0)): block for block in leaves_of(movers)}
-        columns = zip(report["object_id"], report["timestamp"], report["number_of_echoes"], report.points) if report.number_of_points else ()
-        return "".join(self._line(blocks[int(number)], int(number), 1e-6 * time, int(points), place)
-                       for number, time, points, place in columns)
+        columns = [report[name].tolist() for name in ("object_id", "timestamp", "number_of_echoes")] if report.number_of_points else [[]]
+        return "".join(self._line(blocks[number], number, 1e-6 * time, points, place) for number, time, points, place in zip(*columns, report.points))
 
     def _line(self, block: vtkPolyData, number: int, time: float, points: int, place: np.ndarray) -> str:
         fields = field_values(block)

@@ -6,7 +6,7 @@ import itertools
 import math
 import pathlib
 from types import SimpleNamespace
-from typing import Any, Callable, Dict, List, Mapping, Sequence, Tuple
+from typing import Any, Callable, Dict, List, Mapping, Optional, Sequence, Tuple
 
 import numpy as np
 
@@ -23,12 +23,13 @@ from ._scores import Value
 
 HEIGHTS = (0.0, 10.0, 30.0, 60.0, math.inf)  # m, bands of a bird's mean height
 WARNED = (10.0, 30.0, 60.0)  # s
-# Of groups of birds: name, words, factor and unit of the page.
-OF_BIRDS = (("tracked", "birds tracked", 100.0, "%"), ("near", "or beside a track", 100.0, "%"), ("time", "share of time", 100.0, "%"),
-            ("delay", "delay", 1.0, "s"), ("switches", "identity switches", 1.0, ""))
-OF_TRACKS = (("false", "false tracks an hour", 1.0, ""), ("vehicle", "tracks of vehicles an hour", 1.0, ""),
-             ("second", "second tracks of a bird an hour", 1.0, ""), ("ospa", "OSPA distance", 1.0, "m"), ("ospa_localisation", "OSPA: localisation", 1.0, "m"),
-             ("ospa_cardinality", "OSPA: without partner", 1.0, "m"))
+Named = List[Tuple[str, str, Value]]  # words, unit and value of scores
+# Of groups of birds: name, words and unit of the page.
+OF_BIRDS = (("tracked", "birds tracked", "%"), ("near", "or beside a track", "%"), ("time", "share of time", "%"),
+            ("delay", "delay", "s"), ("switches", "identity switches", ""))
+OF_TRACKS = (("false", "false tracks an hour", ""), ("vehicle", "tracks of vehicles an hour", ""),
+             ("second", "second tracks of a bird an hour", ""), ("ospa", "OSPA distance", "m"), ("ospa_localisation", "OSPA: localisation", "m"),
+             ("ospa_cardinality", "OSPA: without partner", "m"))
 NEAREST = 300.0  # m that maps hold around the sensor at least
 FEWEST = 5  # birds of a curve of warnings
 COLOURS = ("#1b9e77", "#66c2a5", "#7570b3", "#d95f02", "#e7298a", "#66a6ff")  # of ORIGINS
@@ -58,7 +59,7 @@ def warnings_of(birds: Results, volume: str) -> np.ndarray:
     return np.array([max(bird[volume] - bird["near_s"], 0.0) if bird["near_s"] is not None else 0.0 for bird in birds if bird[volume] is not None])
 
 
-def of_warnings(seconds: np.ndarray) -> List[Tuple[str, str, Value]]:
+def of_warnings(seconds: np.ndarray) -> Named:
     """Name, unit and score of the warnings of a volume."""
     return [("mean warning", "s", scores.mean(seconds)), ("warned at all", "%", scores.share(int((seconds > 0.0).sum()), len(seconds))),
             *((f"warned {least:g} s before or more", "%", scores.share(int((seconds >= least).sum()), len(seconds))) for least in WARNED)]
@@ -86,17 +87,23 @@ def _groups(everywhere: Sequence[Results]) -> List[Dict[str, Any]]:
     return found
 
 
-def cell(value: Value, factor: float = 1.0, unit: str = "") -> str:
-    """A score with its standard error, both to the second digit of the error or hundredths."""
-    number, error = factor * value.value, factor * value.error
+def cell(value: Value, unit: str = "", words: Optional[str] = None) -> str:
+    """A score with its standard error, both to the second digit of the error or hundredths. @param words in place of the unit"""
+    number, error = ((100.0 if unit == "%" else 1.0) * part for part in value[:2])
     if math.isnan(number):
         return "–"
     digits = min(max(1 - math.floor(math.log10(error)), 0), 2) if error > 0.0 else 1
-    return f"{number:.{digits}f}" + ("" if math.isnan(error) else f" ± {error:.{digits}f}") + (f"\u00a0{unit}" if unit else "")
+    of = (f"\u00a0{unit}" if unit else "") if words is None else words
+    return f"{number:.{digits}f}{'' if math.isnan(error) else f' ± {error:.{digits}f}'}{of}"
 
 
-def _number(value: float) -> str:
-    return "" if math.isnan(value) else f"{value:.6g}"
+def _named(kinds: Sequence[Tuple[str, str, str]], of: Mapping[str, Value]) -> Named:
+    return [(words, unit, of[key]) for key, words, unit in kinds]
+
+
+def _rows(parts: Sequence[Named]) -> List[Dict[str, Any]]:
+    """A row for each score. @param parts of each input"""
+    return [{"words": same[0][0], "cells": [cell(value, unit) for _, unit, value in same]} for same in zip(*parts)]
 
 
 def write_card(out: pathlib.Path, inputs: Sequence[Input], results: Sequence[Mapping[str, Any]], runways: Sequence[Sequence[Any]], settings: Dict[str, Any],
@@ -111,27 +118,19 @@ def write_card(out: pathlib.Path, inputs: Sequence[Input], results: Sequence[Map
     names = [of.name for of in inputs]
 
     table: List[List[Any]] = [["input", "by", "group", "score", "unit", "value", "std_error", "count"]]
-
-    def add(name: str, by: str, group: str, score: str, unit: str, value: Value) -> None:
-        table.append([name, by, group, score, unit, _number(value.value), _number(value.error), value.number])
+    everything = [_named((*OF_BIRDS, *OF_TRACKS), of) for of in overall]
     for k, name in enumerate(names):
-        for key, words, _, unit in (*OF_BIRDS, *OF_TRACKS):
-            add(name, "all", "", words, "1" if unit in ("%", "") else unit, overall[k][key])
-        for group in groups:
-            for row in group["rows"]:
-                for key, words, _, unit in OF_BIRDS:
-                    add(name, group["by"], row["name"], words, "1" if unit in ("%", "") else unit, row["cells"][k][key])
-        for volume, seconds in warned:
-            for words, unit, value in of_warnings(seconds[k]):
-                add(name, "volume", volume, words, "1" if unit == "%" else unit, value)
+        parts = [("all", "", everything[k]), *((group["by"], row["name"], _named(OF_BIRDS, row["cells"][k])) for group in groups for row in group["rows"]),
+                 *(("volume", volume, of_warnings(seconds[k])) for volume, seconds in warned)]
+        table += [[name, by, group, words, "1" if unit in ("%", "") else unit, *("" if math.isnan(x) else f"{x:.6g}" for x in value[:2]), value.number]
+                  for by, group, found in parts for words, unit, value in found]
     write_whole(out / "card.csv", as_csv(table))
-    states = [(name, number, *state) for name, of in zip(names, results) for number, one in of.items()
-              for state in one["states"]]
-    write_whole(out / "tracks.csv", as_csv([("input", "sequence", *STATES), *states]))
-    columns = [name for name in birds[0][0]] if any(birds) and birds[0] else []
+    followed = [(name, number, one) for name, of in zip(names, results) for number, one in of.items()]
+    write_whole(out / "tracks.csv", as_csv([("input", "sequence", *STATES), *((name, number, *state) for name, number, one in followed for state in one["states"])]))
+    columns = [*birds[0][0]] if birds[0] else []
     write_whole(out / "birds.csv", as_csv([["input", "sequence", *columns], *(
         [name, number, *("" if bird[key] is None else f"{bird[key]:.6g}" if isinstance(bird[key], float) else bird[key] for key in columns)]
-        for name, of in zip(names, results) for number, one in of.items() for bird in one["birds"])]))
+        for name, number, one in followed for bird in one["birds"])]))
 
     card: Dict[str, Any] = {
         "version": __version__, "names": names, "cutoff": settings["cutoff"], "order": settings["order"], "learning_scans": settings["learning_scans"],
@@ -142,14 +141,11 @@ def write_card(out: pathlib.Path, inputs: Sequence[Input], results: Sequence[Map
                     "seconds": sum(one["seconds"] for one in found), "birds": len(flock), "assumed": of.assumed,
                     "false": {origin: sum(track["origin"] == origin for one in found for track in one["tracks"]) for origin in FALSE}}
                    for of, found, flock in zip(inputs, sequences, birds)],
-        "overall": [{"words": words, "cells": [cell(of[key], factor, unit) for of in overall]} for key, words, factor, unit in (*OF_BIRDS, *OF_TRACKS)],
-        "head": [words for _, words, _, _ in OF_BIRDS],
+        "overall": _rows(everything), "head": [words for _, words, _ in OF_BIRDS],
         "groups": [{"by": group["by"], "rows": [{"name": row["name"], "counts": [of["tracked"].number for of in row["cells"]],
-                                                 "cells": [[cell(of[key], factor, unit) for of in row["cells"]] for key, _, factor, unit in OF_BIRDS]}
+                                                 "cells": [one["cells"] for one in _rows([_named(OF_BIRDS, of) for of in row["cells"]])]}
                                                 for row in group["rows"]]} for group in groups],
-        "warnings": [{"volume": volume, "counts": [len(of) for of in seconds],
-                      "rows": [{"words": parts[0][0], "cells": [cell(value, 100.0 if unit == "%" else 1.0, unit) for _, unit, value in parts]}
-                               for parts in zip(*map(of_warnings, seconds))]} for volume, seconds in warned]}
+        "warnings": [{"volume": volume, "counts": [len(of) for of in seconds], "rows": _rows([*map(of_warnings, seconds)])} for volume, seconds in warned]}
     card["pictures"] = _pictures(out, inputs, results, runways, warned, progress)
     write_whole(out / "card.json", as_json(card))
     write_whole(out / "card.html", render("card.html.jinja", card=shown(out, card)))
@@ -158,9 +154,9 @@ def write_card(out: pathlib.Path, inputs: Sequence[Input], results: Sequence[Map
 
 def _answer(name: str, of: Dict[str, Value], warned: Sequence[Tuple[str, np.ndarray]]) -> str:
     """The card of an input in a sentence."""
-    mean = ", ".join(f"a warning of {cell(scores.mean(seconds), 1.0, 's')} before the {volume} ({len(seconds)} birds)"
+    mean = ", ".join(f"a warning of {cell(scores.mean(seconds), 's')} before the {volume} ({len(seconds)} birds)"
                      for volume, seconds in warned if len(seconds) >= FEWEST)
-    return (f"{name}: {cell(of['tracked'], 100.0, '%')} of birds tracked, {cell(of['near'], 100.0, '%')} in or beside a track, "
+    return (f"{name}: {cell(of['tracked'], '%')} of birds tracked, {cell(of['near'], '%')} in or beside a track, "
             f"{cell(of['false'])} false tracks an hour{', and on average ' + mean if mean else ''}.")
 
 
@@ -183,12 +179,11 @@ def shown(folder: pathlib.Path, card: Dict[str, Any]) -> Dict[str, Any]:
 def _pictures(out: pathlib.Path, inputs: Sequence[Input], results: Sequence[Mapping[str, Any]], runways: Sequence[Sequence[Any]],
               warned: Sequence[Tuple[str, List[np.ndarray]]], progress: Callable[[str, int, int], Any]) -> List[Dict[str, str]]:
     found: List[Dict[str, str]] = []
-    total = 2 * len(inputs) + 1 + bool(warned)
 
     def add(kind: str, name: str, size: Tuple[float, float], alt: str, caption: str, work, columns: int = 1) -> None:
         pictures.draw(out / name, size, work, columns)
         found.append({"kind": kind, "file": name, "alt": alt, "caption": caption})
-        progress("pictures", len(found), total)
+        progress("pictures", len(found), 2 * len(inputs) + 1 + bool(warned))
     for of, one, lines in zip(inputs, results, runways):
         number, first = next(iter(one.items()))
         last = first["shown"]
@@ -258,19 +253,14 @@ def _draw_ospa(axes, of: Mapping[str, List[List[float]]], periods: Sequence[floa
     for (name, sequences), period in zip(of.items(), periods):
         values = np.array([*itertools.zip_longest(*sequences, fillvalue=math.nan)])
         axes.plot(period * np.arange(len(values)), np.nanmean(values, axis=1), label=name)
-    axes.set(ylim=(0.0, None), xlabel="s since tracking began", ylabel="OSPA distance, m")
-    axes.grid()
-    axes.legend()
+    pictures.finish(axes, ylim=(0.0, None), xlabel="s since tracking began", ylabel="OSPA distance, m")
 
 
 def _draw_warnings(axes, names: Sequence[str], warned: Sequence[Tuple[str, List[np.ndarray]]]) -> None:
     for (volume, of), style in zip(warned, ("-", "--")):
         for number, (name, seconds) in enumerate(zip(names, of)):
             if len(seconds) >= FEWEST:
-                least = np.concatenate([[0.0], np.sort(seconds[seconds > 0.0])])
-                shares = [float(np.mean(seconds >= t)) if t > 0.0 else float(np.mean(seconds > 0.0)) for t in least]
-                axes.step(least, shares, where="pre", linestyle=style, color=f"C{number}", label=f"{name}, {volume} ({len(seconds)} birds)")
-    axes.set(ylim=(0.0, 1.02), xlim=(0.0, None), xlabel="warning, s", ylabel="share of birds")
-    axes.grid()
-    if axes.lines:
-        axes.legend()
+                least = np.sort(seconds[seconds > 0.0])
+                shares = [np.mean(seconds > 0.0), *(np.mean(seconds >= t) for t in least)]
+                axes.step([0.0, *least], shares, where="pre", linestyle=style, color=f"C{number}", label=f"{name}, {volume} ({len(seconds)} birds)")
+    pictures.finish(axes, ylim=(0.0, 1.02), xlim=(0.0, None), xlabel="warning, s", ylabel="share of birds")

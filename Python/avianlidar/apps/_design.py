@@ -84,14 +84,10 @@ def on_the_front(costs, shares) -> np.ndarray:
     """Of each design whether none of the others has a share as large at a lower cost, or a larger one at a cost as low: n of bool.
     NaN: never."""
     costs, shares = np.asarray(costs, float), np.asarray(shares, float)
-    found, best = np.zeros(len(costs), bool), -math.inf
-    order = sorted(np.flatnonzero(np.isfinite(costs) & np.isfinite(shares)), key=lambda i: (costs[i], -shares[i]))
-    for cost, of_it in itertools.groupby(order, key=lambda i: costs[i]):
-        same = list(of_it)
-        top = shares[same[0]]
-        if top > best:
-            found[[i for i in same if shares[i] == top]] = True
-            best = top
+    order, found = np.lexsort((-shares, costs)), np.zeros(len(costs), bool)
+    order = order[np.isfinite(costs + shares)[order]]
+    first = order[np.searchsorted(np.maximum.accumulate(shares[order]), shares[order])]  # the cheapest with a share as large
+    found[order] = (shares[first] == shares[order]) & (costs[first] == costs[order])
     return found
 
 
@@ -132,16 +128,16 @@ class Study:
         plan = plan if isinstance(plan, Plan) else Plan(read_plan(plan))
         if "design" not in plan.plan:
             raise Error(f"{plan.file}: design: is not in the plan, expected share, bounds and cost of designs")
-        self.plan, self.folder, self.ranks, self.progress = plan, pathlib.Path(folder), ranks or Ranks(), progress
+        self.plan, self.folder, self.ranks = plan, pathlib.Path(folder), ranks or Ranks()
+        self.progress: Progress = progress if progress and not self.ranks.rank else lambda *_: None
         self.options: Dict[str, Any] = plan.plan["design"]
         self.asked, self.measure = float(self.options["share"]), self.options.get("measure", "detected")
         self.within = float(self.options.get("within", 0.0))
         self.unit = str(self.options.get("cost_unit", ""))
         self.airs = plan.year or [Air(plan.air, 1.0, {})]
         self.base = self._base()
-        bounds: Dict[str, Any] = self.options["bounds"]
-        self.swept = [name for name in FIELDS if name in bounds]
-        self.levels = {name: self._levels(name, bounds[name]) for name in self.swept}
+        self.swept = [name for name in FIELDS if name in self.options["bounds"]]
+        self.levels = {name: self._levels(name) for name in self.swept}
         self._check()
         names = [*FIELDS, *PULSES]
         with naming(f"{plan.file}: design.cost"):
@@ -157,25 +153,28 @@ class Study:
 
     def _base(self) -> Dict[str, float]:
         sensor = self.plan.sensor
-        x, y, z = sensor.position
-        found = {name: float(getattr(sensor, name)) for name in FIELDS if name not in ("mast", "maximum_elevation")}
-        found["maximum_elevation"] = sensor.minimum_elevation + (sensor.number_of_channels - 1) * sensor.elevation_step
-        self.ground = 0.0 if self.plan.ground is None else self.plan.ground
-        found["mast"] = z - self.ground
-        return {name: found[name] for name in FIELDS}
+        self.ground = self.plan.ground or 0.0
+        highest = sensor.minimum_elevation + (sensor.number_of_channels - 1) * sensor.elevation_step
+        ours = {"mast": sensor.position[2] - self.ground, "maximum_elevation": highest}
+        return {name: ours[name] if name in ours else float(getattr(sensor, name)) for name in FIELDS}
 
-    def _levels(self, name: str, given: Any) -> Callable[[float], float]:
+    def _ends(self, name: str) -> List[float]:
+        """Values of a bound, or its ends; of a number that is not swept the sensor's own."""
+        given = self.options["bounds"].get(name, [self.base[name]])
+        return [float(value) for value in (given if isinstance(given, list) else (given["from"], given["to"]))]
+
+    def _levels(self, name: str) -> Callable[[float], float]:
         """From 0 to 1 all values of a bound. Bounds are checked."""
-        what = f"{self.plan.file}: design.bounds.{name}"
-        ends = given if isinstance(given, list) else [given["from"], given["to"]]
-        field = FIELDS[name]
-        if not all(value > field.least for value in ends):
+        what, given = f"{self.plan.file}: design.bounds.{name}", self.options["bounds"][name]
+        field, ends = FIELDS[name], self._ends(name)
+        broken = [value for value in ends if not value.is_integer()]
+        if min(ends) <= field.least:
             raise Error(f"{what}: holds {min(ends):g}, expected values above {field.least:g} {field.unit}")
-        if field.whole and not all(float(value).is_integer() for value in ends):
-            raise Error(f"{what}: holds {next(value for value in ends if not float(value).is_integer()):g}, expected whole numbers")
+        if field.whole and broken:
+            raise Error(f"{what}: holds {broken[0]:g}, expected whole numbers")
         if isinstance(given, list):
-            return lambda u: float(given[min(int(u * len(given)), len(given) - 1)])
-        low, high, logarithmic = float(ends[0]), float(ends[1]), bool(given.get("logarithmic", False))
+            return lambda u: ends[min(int(u * len(ends)), len(ends) - 1)]
+        (low, high), logarithmic = ends, given.get("logarithmic", False)
         if not low < high:
             raise Error(f"{what}: is from {low:g} to {high:g}, expected the smaller one first")
         if logarithmic and not low > 0.0:
@@ -199,38 +198,27 @@ class Study:
             raise Error(f"{what}.bounds.{of_band[0]}: the sensor's beams are a table of its own, expected channels at even steps, as of Search905")
         if "receiver_aperture" in self.swept and not self.plan.gathers_light:
             raise Error(f"{what}.bounds.receiver_aperture: the sensor has no aperture, expected a photon receiver, as of Search905")
-        low, high = (self._ends(name) for name in ("minimum_elevation", "maximum_elevation"))
-        if of_band and not low[1] < high[0]:
-            raise Error(f"{what}.bounds: beams begin at up to {low[1]:g} deg and end from {high[0]:g} deg on, expected bounds of minimum_elevation below "
+        low, high = max(self._ends("minimum_elevation")), min(self._ends("maximum_elevation"))
+        if of_band and not low < high:
+            raise Error(f"{what}.bounds: beams begin at up to {low:g} deg and end from {high:g} deg on, expected bounds of minimum_elevation below "
                         "those of maximum_elevation")
-        if of_band and self._ends("number_of_channels")[0] < 2.0:
+        if of_band and min(self._ends("number_of_channels")) < 2.0:
             raise Error(f"{what}.bounds.number_of_channels: begins at 1, expected 2 or more, of which the lowest and the highest are the band's ends")
 
     def _scans(self, values: Mapping[str, float]) -> int:
         """Within the time that a bird is given."""
         return int(self.within * values["rotation_rate"] * (1.0 + 1e-12))
 
-    def _ends(self, name: str) -> Tuple[float, float]:
-        """Least and greatest value of a number."""
-        if name not in self.swept:
-            return self.base[name], self.base[name]
-        given = self.options["bounds"][name]
-        ends = given if isinstance(given, list) else [given["from"], given["to"]]
-        return float(min(ends)), float(max(ends))
-
     def _all_values(self) -> List[Dict[str, float]]:
         """The numbers of all designs; those of one geometry stand together."""
-        bounds, wanted = self.options["bounds"], self.options.get("designs")
+        bounds, count = self.options["bounds"], int(self.options.get("designs", DESIGNS))
         sizes = [len(of) if isinstance(of, list) else int(of.get("levels", 0)) for of in (bounds[name] for name in self.swept)]
-        every = math.prod(sizes)  # 0 where there are intervals
-        self.factorial = 0 < every <= (DESIGNS if wanted is None else wanted)
+        self.factorial = 0 < math.prod(sizes) <= count  # 0 where there are intervals
         if self.factorial:
             places = [[(k + 0.5) / size for k in range(size)] for size in sizes]
             units = [dict(zip(self.swept, point)) for point in itertools.product(*places)]
         else:
-            light = [name for name in self.swept if FIELDS[name].light]
-            hard = [name for name in self.swept if not FIELDS[name].light]
-            count = DESIGNS if wanted is None else int(wanted)
+            light, hard = ([name for name in self.swept if FIELDS[name].light == wanted] for wanted in (True, False))
             of_one = LIGHTS if light and hard else 1
             of_light, of_hard = spread(max(len(light), 1), count), spread(max(len(hard), 1), -(-count // of_one))
             units = [{**dict(zip(hard, of_hard[k // of_one])), **dict(zip(light, of_light[k]))} for k in range(count)]
@@ -260,18 +248,16 @@ class Study:
 
     def _judge(self, one: Candidate) -> None:
         """Pulses and cost of a design."""
-        if self._scans(one.values) > MOST_SCANS:
-            one.refused = f"{self._scans(one.values)} scans in {self.within:g} s, expected at most {MOST_SCANS}"
-            return
         try:
+            if self._scans(one.values) > MOST_SCANS:
+                raise Error(f"{self._scans(one.values)} scans in {self.within:g} s, expected at most {MOST_SCANS}")
             self._set(one.values)
+            gate, limit = self.plan.sensor.range_gate, self.plan.sensor.algorithm.GetUnambiguousRange()
+            if gate > limit and not self.options.get("ambiguous_ranges", False):
+                raise Error(f"range_gate is {gate:g} m, expected at most the {limit:.4g} m from which an echo arrives before the next pulse leaves, "
+                            "or design.ambiguous_ranges true")
         except Error as error:
             one.refused = str(error)
-            return
-        gate, limit = self.plan.sensor.range_gate, self.plan.sensor.algorithm.GetUnambiguousRange()
-        if gate > limit and not self.options.get("ambiguous_ranges", False):
-            one.refused = (f"range_gate is {gate:g} m, expected at most the {limit:.4g} m from which an echo arrives before the next pulse leaves, "
-                           "or design.ambiguous_ranges true")
             return
         beams = self.plan.sensor.beams
         times = np.sort(1e-6 * np.asarray(beams["timestamp"], float))
@@ -297,27 +283,22 @@ class Study:
             raise Error(f"{what}: is of the scene {found['scene']}, expected that of the plan")
         return found
 
-    def _tell(self, what: str, done: int, total: int) -> None:
-        if self.progress and self.ranks.rank == 0:
-            self.progress(what, done, total)
-
     def look(self) -> Study:
         """Find what each design detects, and of the finalists what is tracked. @return this"""
         possible = [one for one in self.candidates if not one.refused]
         self.weights = self.plan.weights(self.plan.points).sum(axis=0)
         found = self._found("designs", [one.values for one in possible], self.plan.points)
         for one, values in zip(possible, found):
-            one.share = self._share(values, self.weights)
+            one.share = scores.weighted(values, self.weights)
         for one, is_on in zip(possible, on_the_front([one.cost for one in possible], [one.share.value for one in possible])):
             one.front = bool(is_on)
-        self.chosen = self._cheapest(possible, lambda one: one.share)
-        if self.measure == "tracked":
-            self._track()
-            self.chosen = self._cheapest(self.finalists, lambda one: one.tracked)
+        self.front = sorted((one for one in possible if one.front), key=lambda one: one.cost)
+        self.finalists = self._tracked_ones() if self.measure == "tracked" else []
+        self.chosen = min((one for one in self.judged if self.has_it(one)), key=lambda one: one.cost, default=None)
         self.about = self.chosen or max(self.judged, key=lambda one: self.of(one).value)
         points, _ = self.plan.places(self.plan.seed + OTHER_PLACES)
         weights = self.plan.weights(points).sum(axis=0)
-        self.elsewhere = self._share(self._found("other places", [self.about.values], points)[0], weights)
+        self.elsewhere = scores.weighted(self._found("other places", [self.about.values], points)[0], weights)
         self.sensitivities = self._sensitivities(found[possible.index(self.about)])
         return self
 
@@ -330,31 +311,23 @@ class Study:
         """The share by the measure asked for."""
         return one.tracked if self.measure == "tracked" else one.share
 
-    def _cheapest(self, of: Sequence[Candidate], share: Callable[[Candidate], scores.Value]) -> Optional[Candidate]:
-        good = [one for one in of if is_told(share(one).value, share(one).error, self.asked)]
-        return min(good, key=lambda one: one.cost) if good else None
+    def has_it(self, one: Candidate) -> Optional[bool]:
+        """Whether a design has the asked share; None where the error does not tell."""
+        return is_told(*self.of(one)[:2], self.asked)
 
     def undecided(self) -> List[Candidate]:
         """Designs that are cheaper than the chosen one, all if there is none, and of which the error does not tell whether they have the
         asked share."""
         limit = self.chosen.cost if self.chosen else math.inf
-        return [one for one in self.judged if one.cost < limit and is_told(self.of(one).value, self.of(one).error, self.asked) is None]
-
-    @staticmethod
-    def _share(values: np.ndarray, weights: np.ndarray) -> scores.Value:
-        """The weighted mean over places, with the standard error of places drawn at random."""
-        mean = float(np.vdot(weights, values.astype(float)) / weights.sum())
-        error = math.sqrt(float(np.sum((weights * (values - mean)) ** 2))) / float(weights.sum())
-        return scores.Value(mean, error * math.sqrt(len(values) / max(len(values) - 1, 1)), len(values))
+        return [one for one in self.judged if one.cost < limit and self.has_it(one) is None]
 
     def _found(self, what: str, designs: Sequence[Mapping[str, float]], points: np.ndarray) -> np.ndarray:
         """The probability at each place for the birds and weathers asked for: float32, designs x places. Ranks share designs, those of one
         geometry together; what is kept in the folder is not found again."""
         siting.require_memory(4.0 * len(designs) * len(points), f"{len(designs):,} designs and {len(points):,} places", "take fewer")
         folder, places = self.folder / "coverage", np.ascontiguousarray(points, float)
-        cover = Coverage(self.plan.scene, self.plan.sensor, places=places_of(places))
         settings = {name: value for name, value in self.plan.settings.items() if name != "height_limits"}
-        cover.set(**settings)
+        cover = Coverage(self.plan.scene, self.plan.sensor, places=places_of(places), **settings)
         known = [self.plan.mix, [[air.share, air.settings] for air in self.airs], self.within,
                  {name: repr(value) for name, value in settings.items() if name != "number_of_threads"}]
         found, files = np.empty((len(designs), len(points)), np.float32), []
@@ -365,7 +338,7 @@ class Study:
             hard = [tuple(value for name, value in values.items() if not FIELDS[name].light) for values in designs]
             with Updates(cover.algorithm) as again:
                 siting._fill(found, files, self.ranks, lambda i: self._at_places(cover, designs[i], again),
-                             lambda *done: self._tell(what, *done), lambda i: hard[i])
+                             lambda *done: self.progress(what, *done), lambda i: hard[i])
         return found
 
     def _at_places(self, cover: Coverage, values: Mapping[str, float], again: Callable[[], Any]) -> np.ndarray:
@@ -389,9 +362,8 @@ class Study:
     def _sensitivities(self, found: np.ndarray) -> List[Dict[str, Any]]:
         """Rows: each swept number of the design lower and higher by CHANGE (elevations by CHANGE of the band), one at a time: what
         that changes of the detected share, at the same places, and of the cost."""
-        about = self.about.values
+        about, changed = self.about.values, []
         width = about["maximum_elevation"] - about["minimum_elevation"]
-        changed = []
         for name in self.swept:
             step = CHANGE * (width if name.endswith("_elevation") else about[name])
             for sign in (-1.0, 1.0):
@@ -403,20 +375,18 @@ class Study:
                     one.refused = str(error)
                 changed.append((name, value, one))
         possible = [one for _, _, one in changed if not one.refused]
-        shares = {id(one): self._share(values - found, self.weights)
-                  for one, values in zip(possible, self._found("sensitivities", [one.values for one in possible], self.plan.points))}
+        for one, values in zip(possible, self._found("sensitivities", [one.values for one in possible], self.plan.points)):
+            one.share = scores.weighted(values - found, self.weights)
         return [{"field": name, "unit": FIELDS[name].unit, "from": about[name], "to": value, "refused": one.refused, "cost": one.cost - self.about.cost,
-                 "share": shares.get(id(one), scores.Value(math.nan, math.nan, 0))} for name, value, one in changed]
+                 "share": one.share} for name, value, one in changed]
 
-    def _track(self) -> None:
-        """Of designs on the front, evenly by their order, how many birds of the scenario are tracked."""
-        front = sorted((one for one in self.candidates if one.front), key=lambda one: one.cost)
-        count = min(int(self.options.get("finalists", FINALISTS)), len(front))
-        chosen = np.unique(np.round(np.linspace(0, len(front) - 1, count)).astype(int))
-        self.finalists = [front[i] for i in chosen]
+    def _tracked_ones(self) -> List[Candidate]:
+        """Designs on the front, evenly by their order, with how many birds of the scenario are tracked."""
+        count = min(int(self.options.get("finalists", FINALISTS)), len(self.front))
+        finalists = [self.front[i] for i in np.unique(np.round(np.linspace(0, len(self.front) - 1, count)).astype(int))]
         with naming(f"{self.plan.file}: design.scenario"):
             rate = Sensor(**self.scenario["sensor"]).rotation_rate
-        for number, one in enumerate(self.finalists):
+        for number, one in enumerate(finalists):
             sensor = {**self.scenario["sensor"], **{name: value for name, value in self.plan.plan["sensor"].items() if name != "name"}, **self.changes(one.values)}
             each = int(self.scenario.get("scans_per_sequence", 100))
             scans, learning = (max(round(count * one.values["rotation_rate"] / rate), 1) for count in (each, LEARNING))  # in the same time
@@ -425,10 +395,11 @@ class Study:
                                     number_of_scans=max(scans * self.scenario["number_of_scans"] // each, 1))
             folder = self.folder / "tracks" / hashlib.sha256(repr(one.values).encode()).hexdigest()[:16]
 
-            which = f"design {number + 1} of {len(self.finalists)}"
-            tracks.write(folder, self.ranks, lambda what, *done, which=which: self._tell(f"{which}: {what}", *done))
+            which = f"design {number + 1} of {len(finalists)}"
+            tracks.write(folder, self.ranks, lambda what, *done, which=which: self.progress(f"{which}: {what}", *done))
             with naming(f"{self.plan.file}: design.scenario"):
                 one.tracked = self._tracked(read_regular(folder / "birds.csv").decode())
+        return finalists
 
     def _tracked(self, text: str) -> scores.Value:
         """The share of birds tracked, of the plan's species at its heights. @param text birds.csv"""

@@ -18,9 +18,7 @@ from ._page import embedded, render
 from ._report import place
 from ._scores import Value
 
-
-def _percent(value: Value) -> str:
-    return cell(value, 100.0, "%")
+TOLD_WORDS = {True: "yes", False: "no", None: "not told"}
 
 
 def _cost(study: Study, cost: float) -> str:
@@ -66,19 +64,15 @@ def unassessed(study: Study, one: Candidate) -> str:
 def answers(study: Study) -> List[str]:
     """The question answered."""
     count, asked = len(study.judged), f"{100.0 * study.asked:g} %"
-    about, share = study.about, study.of(study.about)
-    if study.chosen:
-        found = [f"The cheapest of {count} designs that {does(study).replace(' ', f' {asked} of ', 1)} "
-                 f"costs {_cost(study, about.cost)} by the plan's formula and has {_percent(share)}; {unassessed(study, about)}."]
-    else:
-        found = [f"None of {count} designs surely {does(study).replace(' ', f' {asked} of ', 1)}: "
-                 f"the best has {_percent(share)} and costs {_cost(study, about.cost)} by the plan's formula; "
-                 f"{unassessed(study, about)}."]
-    found.append(f"It is number {about.number}: {in_words(study, about)}; {pulses(study, about)}.")
+    about, share = study.about, cell(study.of(study.about), "%")
+    question, cost = does(study).replace(" ", f" {asked} of ", 1), f"costs {_cost(study, about.cost)} by the plan's formula"
+    first = (f"The cheapest of {count} designs that {question} {cost} and has {share}" if study.chosen else
+             f"None of {count} designs surely {question}: the best has {share} and {cost}")
+    found = [f"{first}; {unassessed(study, about)}.", f"It is number {about.number}: {in_words(study, about)}; {pulses(study, about)}."]
     other = study.elsewhere
     same = is_told(other.value, other.error, study.asked)
     words = {True: "the asked share or more", False: "less than the asked share", None: "so the error does not tell"}[same]
-    found.append(f"At {other.number:,} other places, by which no design was chosen, it detects {_percent(other)}"
+    found.append(f"At {other.number:,} other places, by which no design was chosen, it detects {cell(other, '%')}"
                  + (f": {words}." if study.measure == "detected" and study.chosen else "."))
     unsure = study.undecided()
     if unsure:
@@ -93,50 +87,46 @@ def table(study: Study) -> List[Dict[str, Any]]:
     """Rows of design.csv, in SI units."""
     rows = []
     for one in study.candidates:
-        of = one.pulses
         row: Dict[str, Any] = {"design": one.number, **{f"{name} [{FIELDS[name].unit}]": one.values[name] for name in FIELDS},
                                "detected [1]": one.share.value, "detected_std_error [1]": one.share.error}
         if study.measure == "tracked":
             row.update({"tracked [1]": one.tracked.value, "tracked_std_error [1]": one.tracked.error, "tracked_of [1]": one.tracked.number})
-        told = None if math.isnan(study.of(one).value) else is_told(study.of(one).value, study.of(one).error, study.asked)
         row.update({f"cost [{study.unit or '1'}]": one.cost, "wavelength [nm]": float(study.plan.sensor.wavelength),
-                    "pulse_width [s]": float(study.plan.sensor.pulse_width),
-                    "exit_aperture [m2]": of.get("exit_aperture", math.nan), "radiant_exposure [J/m2]": of.get("exposure", math.nan),
-                    "through_7_mm_pupil [J]": of.get("pupil", math.nan),
-                    "pulse_rate [Hz]": of.get("pulse_rate", math.nan), "shortest_interval [s]": of.get("shortest_interval", math.nan),
-                    "average_power [W]": of.get("average_power", math.nan), "on_the_front": int(one.front),
-                    "has_the_asked_share": {True: "yes", False: "no", None: "not told"}[told] if not math.isnan(study.of(one).value) else "",
+                    "pulse_width [s]": float(study.plan.sensor.pulse_width), **{f"{name}]": one.pulses.get(key, math.nan) for name, key in (
+                        ("exit_aperture [m2", "exit_aperture"), ("radiant_exposure [J/m2", "exposure"), ("through_7_mm_pupil [J", "pupil"),
+                        ("pulse_rate [Hz", "pulse_rate"), ("shortest_interval [s", "shortest_interval"), ("average_power [W", "average_power"))},
+                    "on_the_front": int(one.front), "has_the_asked_share": _verdict(study, one, ""),
                     "chosen": int(one is study.chosen), "refused": one.refused})
         rows.append(row)
     return rows
 
 
+def _verdict(study: Study, one: Candidate, unknown: str) -> str:
+    """Whether a design has the asked share, in words. @param unknown for designs without a share"""
+    return unknown if math.isnan(study.of(one).value) else TOLD_WORDS[study.has_it(one)]
+
+
 def _draw_front(axes, study: Study) -> None:
-    known = [one for one in study.candidates if not one.refused]
-    front = sorted((one for one in known if one.front), key=lambda one: one.cost)
-    others = [one for one in known if not one.front]
+    def bars(of: List[Candidate], shares: List[Value], **style: Any) -> None:
+        axes.errorbar([one.cost for one in of], [100 * share.value for share in shares], [100 * share.error for share in shares], **style)
+    others, front = [one for one in study.candidates if not (one.refused or one.front)], study.front
     for of, style in ((others, {"color": "0.6", "label": "designs"}), (front, {"color": "C0", "label": "on the front"})):
-        axes.errorbar([one.cost for one in of], [100 * one.share.value for one in of], [100 * one.share.error for one in of], fmt="o", markersize=4, **style)
+        bars(of, [one.share for one in of], fmt="o", markersize=4, **style)
     axes.step([one.cost for one in front], [100 * one.share.value for one in front], where="post", color="C0", linewidth=1)
-    if study.measure == "tracked":
-        of = study.finalists
-        axes.errorbar([one.cost for one in of], [100 * one.tracked.value for one in of], [100 * one.tracked.error for one in of], fmt="s-", color="C1", label="tracked")
+    if study.finalists:
+        bars(study.finalists, [one.tracked for one in study.finalists], fmt="s-", color="C1", label="tracked")
     axes.axhline(100 * study.asked, color="red", linewidth=0.8, label=f"asked: {100 * study.asked:g} %")
     about = study.about
     axes.plot(about.cost, 100 * study.of(about).value, "*", color="red", markersize=14, zorder=5, label="the cheapest that has it" if study.chosen else "the best")
-    axes.set(ylim=(0.0, None), xlabel=f"cost{', ' + study.unit if study.unit else ''}", ylabel="share of birds, %")
-    axes.grid()
-    axes.legend()
+    pictures.finish(axes, ylim=(0.0, None), xlabel=f"cost{', ' + study.unit if study.unit else ''}", ylabel="share of birds, %")
 
 
 def _draw_sensitivities(axes, study: Study) -> None:
-    rows = study.sensitivities
-    largest = {name: max((abs(row["share"].value) for row in rows if row["field"] == name and not row["refused"]), default=0.0) for name in study.swept}
-    order = sorted(study.swept, key=lambda name: largest[name])
+    rows = [row for row in study.sensitivities if not row["refused"]]
+    order = sorted(study.swept, key=lambda name: max((abs(row["share"].value) for row in rows if row["field"] == name), default=0.0))
     for row in rows:
         up = row["to"] > row["from"]
-        if not row["refused"]:
-            axes.barh(order.index(row["field"]) + (0.19 if up else -0.19), 100 * row["share"].value, 0.36, xerr=100 * row["share"].error, color="C0" if up else "C1")
+        axes.barh(order.index(row["field"]) + (0.19 if up else -0.19), 100 * row["share"].value, 0.36, xerr=100 * row["share"].error, color="C0" if up else "C1")
     for up, colour in ((True, "C0"), (False, "C1")):
         axes.barh([0], [0], color=colour, label="more" if up else "less")
     axes.set_yticks(np.arange(len(order)), [FIELDS[name].words for name in order])
@@ -155,21 +145,19 @@ def write(study: Study) -> None:
          "change_std_error [1]": row["share"].error, f"change_of_cost [{study.unit or '1'}]": row["cost"], "refused": row["refused"]} for row in study.sensitivities])
     pictures.draw(out / "front.png", (6.4, 4.2), lambda axes: _draw_front(axes, study))
     pictures.draw(out / "sensitivities.png", (6.4, 4.2), lambda axes: _draw_sensitivities(axes, study))
-    front = sorted((one for one in study.candidates if one.front), key=lambda one: one.cost)
-    shown = sorted({one.number: one for one in [*front, *(study.finalists if study.measure == 'tracked' else ()), study.about]}.values(), key=lambda one: one.cost)
+    shown = sorted({one.number: one for one in [*study.front, study.about]}.values(), key=lambda one: one.cost)
     plan, refused = study.plan, [one for one in study.candidates if one.refused]
     bounds = study.options["bounds"]
     base = [{"words": FIELDS[name].words, "base": FIELDS[name].text(study.base[name]),
              "bounds": _bounds(name, bounds[name]) if name in bounds else "the same in all designs", "swept": name in bounds} for name in FIELDS]
     write_whole(out / "design.html", render(
         "design.html.jinja", question=plan.plan.get("description") or f"What must the lidar be that {does(study).replace(' ', f' {100 * study.asked:g} % of ', 1)}?",
-        answer=answers(study), study=study, stands=stands(study), front=front, shown=shown, fields=[FIELDS[name] for name in study.swept],
+        answer=answers(study), study=study, stands=stands(study), shown=shown, fields=[FIELDS[name] for name in study.swept],
         names=study.swept, told=TOLD, change=CHANGE, refused=refused,
         base=base, version=__version__, does=does(study), places=len(plan.points), name=plan.name, count=len(study.candidates),
         cells=lambda one: [FIELDS[name].text(one.values[name]) for name in study.swept],
-        verdict=lambda one: "–" if math.isnan(study.of(one).value) else
-        {True: "yes", False: "no", None: "not told"}[is_told(study.of(one).value, study.of(one).error, study.asked)],
-        cost=lambda one: _cost(study, one.cost), added=lambda value: f"{value:+.3g}", words=FIELDS, filter_percent=_percent,
+        verdict=lambda one: _verdict(study, one, "–"),
+        cost=lambda one: _cost(study, one.cost), added=lambda value: f"{value:+.3g}", words=FIELDS, filter_percent=lambda value: cell(value, "%"),
         filter_points=lambda value: "–" if math.isnan(value.value) else f"{100 * value.value:+.2f} ± {100 * value.error:.2f}",
         pictures=[{"source": embedded(out / "front.png"), "alt": f"Share of birds by cost of {len(study.candidates)} designs; {answers(study)[0]}",
                    "caption": "Share of birds by cost, with one standard error; blue: on the front; red: what is asked"},

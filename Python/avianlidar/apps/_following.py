@@ -25,7 +25,7 @@ from .._sensor import Sensor
 from . import _scores as scores
 from ._json import load_json, naming
 from ._labels import FIRST_BIRD, FIRST_OBJECT
-from ._sequence import DONE, _digest, _short, read_scenario
+from ._sequence import DONE, _digest, _short, read_manifest, read_scenario
 from .siting import (APPROACH_HALF_WIDTH, APPROACH_HEIGHT, APPROACH_LENGTH, STRIP_HALF_WIDTH, STRIP_HEIGHTS, Runway, read_runways)
 
 VOLUMES = ("strip", "glide path")
@@ -52,7 +52,7 @@ class Chain:
 
     def __init__(self, sensor: Sensor, learning: int, clutter: Dict[str, Any], tracker: Dict[str, Any]):
         """What is not set is the sensor's: steps of the grid, width of the beam."""
-        steps = {name: value for name, value in (("azimuth_step", sensor.azimuth_step), ("elevation_step", sensor.elevation_step)) if value > 0.0}
+        steps = {name: getattr(sensor, name) for name in ("azimuth_step", "elevation_step") if getattr(sensor, name) > 0.0}
         widest = max(steps.values(), default=0.0)
         self.filter, self.tracker = _wrapped.vtkAvianLidarClutterFilter(), _wrapped.vtkAvianLidarTracker()
         self.filter.SetController(None)  # ranks have sequences of their own
@@ -71,9 +71,8 @@ class Chain:
         """Another sequence begins: nothing is known."""
         self.filter.Forget()
         self.tracker.Reset()
-        with contextlib.ExitStack() as stack:
-            self._filtered, self._tracked = (stack.enter_context(Updates(one)) for one in (self.filter, self.tracker))
-            self._stack = stack.pop_all()
+        self._stack = contextlib.ExitStack()
+        self._filtered, self._tracked = (self._stack.enter_context(Updates(one)) for one in (self.filter, self.tracker))
         return self
 
     def __exit__(self, *_) -> None:
@@ -82,8 +81,7 @@ class Chain:
     def __call__(self, points: np.ndarray, placed: np.ndarray, times: Optional[np.ndarray], time: float) -> Live:
         """@param points m right, forward and up of the sensor, so that cells lie as its beams do @param placed the same in the scene
         @param times of points, us @param time of the scan, s"""
-        scan = _cloud(points, time, np.zeros(3))
-        self.filter.SetInputData(scan)
+        self.filter.SetInputData(_cloud(points, time, np.zeros(3)))
         self._filtered()
         clutter = as_numpy(self.filter.GetOutputDataObject(0).GetPointData().GetArray("is_clutter")).astype(np.uint8)
         rest = _cloud(placed, time, self.position)
@@ -93,8 +91,7 @@ class Chain:
         self.tracker.SetInputData(rest)
         self._tracked()
         of_points = as_numpy(self.tracker.GetOutputDataObject(1).GetPointData().GetArray("track_id")).astype(int)
-        ids, confirmed, last, places, velocities = _last(self.tracker.GetOutputDataObject(0))
-        return Live(ids, confirmed, last, places, velocities, of_points, clutter != 0)
+        return Live(*_last(self.tracker.GetOutputDataObject(0)), of_points, clutter != 0)
 
 
 def _cloud(points: np.ndarray, time: float, position: np.ndarray):
@@ -104,12 +101,10 @@ def _cloud(points: np.ndarray, time: float, position: np.ndarray):
     return cloud
 
 
-def _last(tracks) -> Tuple[np.ndarray, ...]:
+def _last(tracks) -> Tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
     """Ids, whether confirmed, times, places and velocities of the last positions of tracks that have not ended."""
-    ends = []
-    for cells in (tracks.GetVerts(), tracks.GetLines()):
-        if cells.GetNumberOfCells():
-            ends.append(as_numpy(cells.GetConnectivityArray())[as_numpy(cells.GetOffsetsArray())[1:] - 1])
+    ends = [as_numpy(cells.GetConnectivityArray())[as_numpy(cells.GetOffsetsArray())[1:] - 1]
+            for cells in (tracks.GetVerts(), tracks.GetLines()) if cells.GetNumberOfCells()]
     if not ends:
         return np.empty(0, int), np.empty(0, bool), np.empty(0), np.empty((0, 3)), np.empty((0, 3))
     of_cells, of_points = tracks.GetCellData(), tracks.GetPointData()
@@ -150,14 +145,11 @@ def inside(volume: str, runways: Many[Runway], places) -> np.ndarray:
     """Which of n places (n x 3, m) lie in each volume of the runways, volumes x n: their strips, 150 m to either side of the middle and 60 m
     high; their glide paths, two a runway, beyond its ends to 3 km, 75 m to either side and 45 m high at the end, widening by 0.15 and rising
     by 3 degrees."""
-    found = []
-    for runway in runways:
-        if volume == "strip":
-            found.append(scores.in_strip(places, runway.start, runway.end, STRIP_HALF_WIDTH, STRIP_HEIGHTS[1]))
-            continue
-        axis, _ = runway.axis()
-        for threshold, outwards in ((runway.start, -axis), (runway.end, axis)):
-            found.append(scores.in_wedge(places, threshold, outwards, APPROACH_LENGTH, APPROACH_HALF_WIDTH, APPROACH_HEIGHT))
+    if volume == "strip":
+        found = [scores.in_strip(places, runway.start, runway.end, STRIP_HALF_WIDTH, STRIP_HEIGHTS[1]) for runway in runways]
+    else:
+        found = [scores.in_wedge(places, threshold, sign * runway.axis()[0], APPROACH_LENGTH, APPROACH_HALF_WIDTH, APPROACH_HEIGHT)
+                 for runway in runways for threshold, sign in ((runway.start, -1.0), (runway.end, 1.0))]
     return np.array(found, bool).reshape(-1, len(places))
 
 
@@ -172,11 +164,10 @@ class Scorer:
 
     def add(self, scan: int, rows: List[Dict[str, Any]], live: Live, origins: np.ndarray) -> None:
         """@param rows of the truth @param origins of points"""
-        for track, origin in zip(live.of_points, origins):
-            if track >= 0:
-                self.points[int(track)][origin] += 1
-        for track, place in zip(live.ids, live.places):
-            self.begin.setdefault(int(track), [round(float(x), 2) for x in place])
+        for track, origin in zip(live.of_points.tolist(), origins):
+            self.points[track][origin] += 1  # of no track, too
+        for track, place in zip(live.ids.tolist(), live.places.tolist()):
+            self.begin.setdefault(track, [round(x, 2) for x in place])
         self.scans.append((scan, rows, live))
 
     def results(self) -> Dict[str, Any]:
@@ -218,14 +209,14 @@ class Scorer:
 
     def _of_bird(self, rows: Many[Dict[str, Any]], tracks: Many[Optional[int]], near: Many[bool]) -> Dict[str, Any]:
         """What a bird's rows of the truth come to. @param tracks that it had @param near whether a track of a bird was within the cut-off"""
-        times, places = np.array([row["time"] for row in rows]), np.array([row["place"] for row in rows])
-        within, had, beside = np.array([row["in"] for row in rows]), np.array([track is not None for track in tracks]), np.array(near)
+        times, places, within, ranges = (np.array([row[name] for row in rows]) for name in ("time", "place", "in", "range"))
+        had, beside = np.array([track is not None for track in tracks]), np.array(near)
 
         def first(when: np.ndarray) -> Optional[float]:
             return float(times[when][0]) if when.any() else None
         entries = {volume: scores.entry(times, inside(volume, self.runways, places)) for volume in VOLUMES}
         return {**{name: rows[0][name] for name in ("bird", "species", "weather")}, "height": float(places[within, 2].mean()),
-                "range": float(np.array([row["range"] for row in rows])[within].mean()), "scans": int(within.sum()), "tracked": int((had & within).sum()),
+                "range": float(ranges[within].mean()), "scans": int(within.sum()), "tracked": int((had & within).sum()),
                 "near": int((beside & within).sum()), "came_s": first(within), "found_s": first(had & within), "near_s": first(beside),
                 "switches": scores.switches(tracks), **{volume: None if math.isnan(when) else when for volume, when in entries.items()}}
 
@@ -234,16 +225,9 @@ class Input:
     """A folder of sequences."""
 
     def __init__(self, folder: pathlib.Path, name: str):
-        self.folder, self.name = folder, name
-        self.manifest = folder / "manifest.json"
-        if not self.manifest.is_file():
-            raise Error(f"{folder}: holds no manifest.json, expected a folder that `avianlidar sequence` has made, or a scenario")
-        known = load_json(self.manifest)
-        parts = known.get("sequences") if isinstance(known, dict) else None
-        if not isinstance(parts, dict) or not parts:
-            raise Error(f"{self.manifest}: names no sequences, expected the manifest of a folder that `avianlidar sequence` has made")
-        self.scenario, self.assumed = read_scenario(self.manifest), list(known.get("assumed", ()))
-        self.numbers = sorted(parts)
+        self.folder, self.name, self.manifest = folder, name, folder / "manifest.json"
+        known = read_manifest(folder, ", or a scenario")
+        self.scenario, self.assumed, self.numbers = read_scenario(self.manifest), list(known.get("assumed", ())), sorted(known["sequences"])
         self.content = {number: self._whole(number) for number in self.numbers}
         first = self.content[self.numbers[0]]["inputs"]
         with naming(f"{self.manifest}: sensor"):
@@ -290,10 +274,8 @@ class Input:
         home, first = self.folder / "sequences" / number, int(self.content[number]["inputs"]["scans"].split()[0])
         starts, poses = (np.loadtxt(home / name, ndmin=1) for name in ("times.txt", "poses.txt"))
         pose = poses.reshape(-1, 12)[0].reshape(3, 4)
-        simple = self.sensor.algorithm.GetNumberOfPrisms() == 0
-        beams = self.sensor.beams
-        nearest = cKDTree(np.array(beams["direction"])) if simple else None
-        fired = np.array(beams["timestamp"])
+        beams, fired = self.sensor.beams, np.array(self.sensor.beams["timestamp"])
+        nearest = cKDTree(np.array(beams["direction"])) if self.sensor.algorithm.GetNumberOfPrisms() == 0 else None
         for k, start in enumerate(starts):
             points = np.fromfile(home / "velodyne" / f"{k:06d}.bin", "<f4").reshape(-1, 4)[:, :3].astype(float)
             labels = np.fromfile(home / "labels" / f"{k:06d}.label", "<u4")

@@ -19,7 +19,7 @@ import numpy as np
 from vtkmodules.vtkCommonDataModel import vtkFieldData, vtkMultiBlockDataSet, vtkPolyData
 
 from .. import vtkAvianLidar as _wrapped
-from .._cloud import Cloud, add_array, as_numpy, field_values
+from .._cloud import Cloud, add_array, field_values, leaves_of
 from .._disk import as_csv, only_run, read_regular, synchronize, write_whole
 from .._pipeline import Error, Updates, callers_level, update
 from .._properties import in_snake_case, set_properties
@@ -46,10 +46,10 @@ LONGEST = 1e9  # s that an object is under way, or sets out later
 DONE = "done.json"
 PART = ".part"  # ends the name of a folder that is being written
 FOLDERS = (("velodyne", ".bin", 16), ("labels", ".label", 4), ("subsets", ".subset", 1))  # suffix, bytes of a point
-BOXES = ("boxes", ".txt", 0)
-ALL: Tuple[Tuple[str, str, int], ...] = (*FOLDERS, BOXES)
+ALL = (*FOLDERS, ("boxes", ".txt", 1))
 TEXTS = ("truth.csv", "times.txt", "poses.txt", "calib.txt")  # of a whole sequence
 TABLES = ("points_of_classes", "birds_of_statuses", "birds_seen_of_subsets")  # of DONE
+COUNTS = ("scans", "scans_with_birds_seen")
 _AGAIN = "Remove the folder: it is made again"
 _FEWER = "ask for as many scans as there are, or choose another folder"
 # Whose properties the parts of a scenario name.
@@ -62,28 +62,24 @@ Progress = Callable[[int, int, int], None]
 
 def checked(scenario: Any, what: str) -> Dict[str, Any]:
     """A scenario whose properties have their names in snake case, as its schema wants it. @param what its file, for errors"""
+    def here(wrapped: type, value: Any, part: str) -> Any:
+        if isinstance(value, list):
+            return [here(wrapped, one, f"{part}[{place}]") for place, one in enumerate(value)]
+        return in_snake_case(wrapped, value, part) if isinstance(value, dict) else value
     if isinstance(scenario, dict):
-        scenario = dict(scenario)
         with naming(what):
-            for part, wrapped in PROPERTIES.items():
-                value = scenario.get(part)
-                if isinstance(value, dict):
-                    scenario[part] = in_snake_case(wrapped, value, part)
-                elif isinstance(value, list):
-                    scenario[part] = [in_snake_case(wrapped, one, f"{part}[{place}]") if isinstance(one, dict) else one
-                                      for place, one in enumerate(value)]
+            scenario = {part: here(PROPERTIES[part], value, part) if part in PROPERTIES else value for part, value in scenario.items()}
     check_json(scenario, "scenario.schema.json", what)
     return scenario
 
 
 def _with_files(scenario: Dict[str, Any], change: Callable[[str], str]) -> Dict[str, Any]:
     """The scenario with other words for the files that it names."""
-    sensor = dict(scenario["sensor"])
-    if str(sensor["preset"]).endswith(".json"):
-        sensor["preset"] = change(sensor["preset"])
-    birds = [{**group, **{name: change(group[name]) for name in ("file_name", "species_file_name") if name in group}}
+    preset = scenario["sensor"]["preset"]
+    birds = [{name: change(value) if name in ("file_name", "species_file_name") else value for name, value in group.items()}
              for group in scenario.get("birds", ())]
-    return {**scenario, "scene": change(scenario["scene"]), "sensor": sensor, "birds": birds}
+    return {**scenario, "scene": change(scenario["scene"]), "birds": birds,
+            "sensor": {**scenario["sensor"], "preset": change(preset) if preset.endswith(".json") else preset}}
 
 
 def read_scenario(file) -> Dict[str, Any]:
@@ -92,13 +88,20 @@ def read_scenario(file) -> Dict[str, Any]:
     scenario = load_json(path)
     if isinstance(scenario, dict) and "sequences" in scenario:
         scenario = scenario.get("scenario")  # a manifest
-    scenario = checked(scenario, str(file))
     with naming(str(file)):
-        return _with_files(scenario, lambda name: str((path.parent / name).resolve()))
+        return _with_files(checked(scenario, str(file)), lambda name: str((path.parent / name).resolve()))
 
 
-def _content(name: str) -> str:
-    return hashlib.sha256(read_regular(name)).hexdigest()
+def read_manifest(folder, others: str = "") -> Dict[str, Any]:
+    """The manifest of a folder of sequences. @param others what else could be given, in words"""
+    file, made = pathlib.Path(folder) / "manifest.json", "a folder that `avianlidar sequence` has made"
+    if not file.is_file():
+        raise Error(f"{folder}: holds no manifest.json, expected {made}{others}")
+    manifest = load_json(file)
+    parts = manifest.get("sequences") if isinstance(manifest, dict) else None
+    if not isinstance(parts, dict) or not parts:
+        raise Error(f"{file}: names no sequences, expected the manifest of {made}")
+    return manifest
 
 
 class Clutter:
@@ -111,9 +114,8 @@ class Clutter:
     def __init__(self, scan: Scan, near: float):
         echoes = scan.echoes
         order = np.lexsort((echoes["distance_m"], echoes["beam_id"]))
-        order = order[np.array(echoes["object_id"])[order] != AIR]  # those of the air are no clutter
-        self.beams, self.ranges = np.array(echoes["beam_id"])[order], np.array(echoes["distance_m"])[order]
-        self.energies = np.array(echoes["energy_received"])[order]
+        order = order[echoes["object_id"][order] != AIR]  # those of the air are not clutter
+        self.beams, self.ranges, self.energies = (echoes[name][order] for name in ("beam_id", "distance_m", "energy_received"))
         self.near = near
 
     def look(self, beams, ranges) -> Tuple[np.ndarray, np.ndarray]:
@@ -121,19 +123,15 @@ class Clutter:
         beams, ranges = np.asarray(beams), np.asarray(ranges)
         distance = np.full(len(beams), np.inf)
         begin, end = np.searchsorted(self.beams, beams, "left"), np.searchsorted(self.beams, beams, "right")
-        nearer = np.zeros(len(beams), bool)
         for k in range(int((end - begin).max(initial=0))):
             has = begin + k < end
-            away = ranges[has] - self.ranges[begin[has] + k]
-            distance[has] = np.minimum(distance[has], np.abs(away))
-            nearer[has] |= away > self.near
-        subset = np.where(nearer, 2, np.where(np.isfinite(distance), 1, 0))
-        return distance, subset.astype(np.uint8)
+            distance[has] = np.minimum(distance[has], np.abs(ranges[has] - self.ranges[begin[has] + k]))
+        first = np.append(self.ranges, np.inf)[np.where(begin < end, begin, -1)]  # of each beam
+        return distance, np.where(ranges - first > self.near, 2, begin < end).astype(np.uint8)
 
     def energy(self, beam: int) -> float:
         """Of all static echoes of a beam, J."""
-        begin, end = np.searchsorted(self.beams, [beam, beam + 1])
-        return float(self.energies[begin:end].sum())
+        return float(self.energies[slice(*np.searchsorted(self.beams, [beam, beam + 1]))].sum())
 
 
 class Sequence:
@@ -156,9 +154,8 @@ class Sequence:
         self.threads = threads
         self.scans = int(self.scenario["number_of_scans"])
         self.scans_to_do = 0  # of this process, known when `write` has looked
-        self.length = int(self.scenario.get("scans_per_sequence", 100))
-        self.seed = int(self.scenario.get("seed", 0))
-        self.bird_class = int(self.scenario.get("bird_class", BIRD))
+        self.length, self.seed, self.bird_class = (int(self.scenario.get(name, default)) for name, default in (
+            ("scans_per_sequence", 100), ("seed", 0), ("bird_class", BIRD)))
         with naming(self.file):
             classes_of(self.bird_class)
         with naming(f"{self.file}: scene"):
@@ -187,15 +184,14 @@ class Sequence:
             self.clear = self.bare = self._in_media(crowns, others)
         if crowns:
             self.bare = self._in_media([], others)
-        self._flights(0)  # what is wrong with birds and objects is said before the work
-        self._objects(0)
+        self._moving(0)  # what is wrong with birds and objects is said before the work
         # Where clutter is, without what differs from scan to scan.
         sensor.update(number_of_revolutions=1, sway_amplitude=0.0, encoder_jitter=0.0)
         settings["noise"] = False
         self.at_rest = Sensor(**sensor)
         with naming(f"{self.file}: scan"):
             self._still = Scan(self.scene, self.at_rest, **settings)
-            self._look_at_rest()
+            self.clutter = self._clutter()
 
     def _in_media(self, media: List[str], settings: Dict[str, Any]) -> Scan:
         """A scan to compare with, of the surfaces of the scene with other media."""
@@ -203,14 +199,12 @@ class Sequence:
         scan.set(report_movers=True, noise=False)
         surfaces = vtkPolyData()
         surfaces.ShallowCopy(self.scene.tree.GetOutput())
-        surfaces.SetFieldData(vtkFieldData())
-        surfaces.GetFieldData().PassData(self.scene.tree.GetOutput().GetFieldData())
         add_array(surfaces.GetFieldData(), "media", media)
         scan.algorithm.SetSurfacesData(surfaces)
         return scan
 
-    def _look_at_rest(self) -> None:
-        self.clutter = Clutter(self._still, float(self.scenario.get("near_clutter_distance", 15.0)))
+    def _clutter(self) -> Clutter:
+        return Clutter(self._still, float(self.scenario.get("near_clutter_distance", 15.0)))
 
     def __len__(self) -> int:
         """Number of sequences."""
@@ -220,41 +214,45 @@ class Sequence:
         """The scans of a sequence."""
         return range(number * self.length, min((number + 1) * self.length, self.scans))
 
-    def _flights(self, number: int) -> Tuple[List[vtkPolyData], Dict[int, str]]:
-        """Birds of a sequence, and their species by id."""
+    def _moving(self, number: int) -> Tuple[vtkMultiBlockDataSet, Dict[int, str]]:
+        """Birds and other objects under way in a sequence, and the species of the birds by id."""
         scans, rate = self.span(number), self.sensor.rotation_rate
-        blocks, species, first = [], {}, FIRST_BIRD
+        time = scans.start / rate, scans.stop / rate
+        birds, species = self._flights(number, time)
+        blocks = vtkMultiBlockDataSet()
+        for k, block in enumerate(birds + self._objects(*time)):
+            blocks.SetBlock(k, block)
+        return blocks, species
+
+    def _flights(self, number: int, time: Tuple[float, float]) -> Tuple[List[vtkPolyData], Dict[int, str]]:
+        """Birds of a sequence, and their species by id."""
+        blocks: List[vtkPolyData] = []
+        species: Dict[int, str] = {}
         for place, group in enumerate(self.scenario.get("birds", ())):
             tracks = _wrapped.vtkAvianLidarTracks()
             seed = hashlib.sha256(json.dumps((self.seed, number, place)).encode()).digest()[:4]
-            ours = {"time_range": (scans[0] / rate, (scans[-1] + 1) / rate), "first_object_id": first,
-                    "seed": int.from_bytes(seed, "little", signed=True), **group}
+            ours = {"time_range": time, "first_object_id": FIRST_BIRD + len(blocks), "seed": int.from_bytes(seed, "little", signed=True), **group}
             with naming(f"{self.file}: birds[{place}]"):
                 set_properties(tracks, "vtkAvianLidarTracks", **ours)
                 update(tracks)
-            made = tracks.GetOutput()
-            for k in range(made.GetNumberOfBlocks()):
-                block = made.GetBlock(k)
-                species[first + k] = field_values(block)["species"][0]
+            for block in leaves_of(tracks.GetOutput()):
+                species[FIRST_BIRD + len(blocks)] = field_values(block)["species"][0]
                 blocks.append(block)
-            first += made.GetNumberOfBlocks()
-            if first > LAST_ID:
-                raise Error(f"{self.file}: birds: {first - FIRST_BIRD} and more, expected at most {LAST_ID - FIRST_BIRD}: labels hold "
-                            "no more")
+            if len(blocks) > LAST_ID - FIRST_BIRD:
+                raise Error(f"{self.file}: birds: {len(blocks)} and more, expected at most {LAST_ID - FIRST_BIRD}: labels hold no more")
         return blocks, species
 
-    def _objects(self, number: int) -> List[vtkPolyData]:
-        """Other objects under way in a sequence."""
-        scans, rate = self.span(number), self.sensor.rotation_rate
-        begin, end = scans[0] / rate, (scans[-1] + 1) / rate
+    def _objects(self, begin: float, end: float) -> List[vtkPolyData]:
+        """Other objects under way at some time between, s."""
         blocks: List[vtkPolyData] = []
         for place, thing in enumerate(self.scenario.get("objects", ())):
             route = np.array(thing["route"], float)
             legs = np.diff(route, axis=0)
-            if (np.linalg.norm(legs, axis=1) < 1e-5 * thing["speed"]).any():
+            lengths = np.linalg.norm(legs, axis=1)
+            if (lengths < 1e-5 * thing["speed"]).any():
                 raise Error(f"{self.file}: objects[{place}].route: two points that follow each other are the same")
             with np.errstate(all="ignore"):
-                times = np.concatenate([[0.0], np.cumsum(np.linalg.norm(legs, axis=1)) / thing["speed"]])
+                times = np.concatenate([[0.0], np.cumsum(lengths) / thing["speed"]])
             first, every = float(thing.get("first", 0)), float(thing.get("every", math.inf))
             if not times[-1] <= LONGEST or abs(first) > LONGEST:
                 raise Error(f"{self.file}: objects[{place}]: is under way from {first:g} s for {times[-1]:g} s, expected at most "
@@ -298,24 +296,18 @@ class Sequence:
 
     def frames(self, number: int) -> Iterator[Tuple[int, Scan, Dict[int, str]]]:
         """The scans of a sequence: (number of the scan, the scan as it is then, species of the birds by id)."""
-        birds, species = self._flights(number)
-        blocks = vtkMultiBlockDataSet()
-        for k, block in enumerate(birds + self._objects(number)):
-            blocks.SetBlock(k, block)
-        others = [scan for scan in dict.fromkeys((self.clear, self.bare)) if scan is not self.scan]
-        for scan in (self.scan, *others):
-            scan.movers = blocks
-        algorithm, rate = self.scan.algorithm, self.sensor.rotation_rate
+        movers, species = self._moving(number)
+        scans = [*dict.fromkeys((self.scan, self.clear, self.bare))]
+        for scan in scans:
+            scan.movers = movers
         differ = self.sensor.algorithm.GetNumberOfPrisms() > 0  # beams, from scan to scan
-        with Updates(algorithm) as again, Updates(self._still.algorithm) as look, contextlib.ExitStack() as stack:
-            compare = [(stack.enter_context(Updates(scan.algorithm)), scan.algorithm.UpdateTimeStep) for scan in others]
+        with contextlib.ExitStack() as stack:
+            runs = [(stack.enter_context(Updates(scan.algorithm)), scan.algorithm.UpdateTimeStep) for scan in scans + [self._still] * differ]
             for k in self.span(number):
-                again(lambda: algorithm.UpdateTimeStep(k / rate))
-                for run, step in compare:
-                    run(functools.partial(step, k / rate))
+                for run, step in runs:
+                    run(functools.partial(step, k / self.sensor.rotation_rate))
                 if differ:
-                    look(lambda: self._still.algorithm.UpdateTimeStep(k / rate))
-                    self._look_at_rest()
+                    self.clutter = self._clutter()
                 yield k, self.scan, species
 
     def truth(self, k: int, species: Dict[int, str]) -> List[List[Any]]:
@@ -327,33 +319,27 @@ class Sequence:
             return list(rows.values())
         without, bare = ({bird: both for bird, *both in zip(found["object_id"], found["energy_received"], found["detection_probability"])}
                          for found in (Cloud(scan.algorithm.GetOutput(2)) for scan in (self.clear, self.bare)))
-        places = np.array(report.points)
-        columns = {name: np.array(report[name]) for name in report}
-        distance, subset = self.clutter.look(columns["beam_id"], columns["distance_m"])
-        electrons = columns.get("photoelectrons")
-        for i, bird in enumerate(columns["object_id"]):
-            if bird not in rows:
-                if not FIRST_OBJECT <= bird < FIRST_BIRD:
-                    raise Error(f"scan {k}: the mover report names object {bird}, which is neither a bird nor an object")
+        distances, subsets = self.clutter.look(report["beam_id"], report["distance_m"])
+        for one, place, distance, subset in zip(report.structured(), report.points, distances, subsets):
+            bird, beams, energy, probability, points = (one[name].item() for name in (
+                "object_id", "number_of_beams", "energy_received", "detection_probability", "number_of_echoes"))
+            if bird not in rows:  # another object under way
                 continue
-            beams, energy = int(columns["number_of_beams"][i]), float(columns["energy_received"][i])
-            probability, points = float(columns["detection_probability"][i]), int(columns["number_of_echoes"][i])
             light, chance = without.get(bird, (energy, probability))
-            in_gate = self.sensor.minimum_range <= columns["distance_m"][i] <= self.sensor.range_gate
+            in_gate = self.sensor.minimum_range <= one["distance_m"] <= self.sensor.range_gate
             outside = not in_gate or (beams == 0 and light == 0)
-            static = self.clutter.energy(columns["beam_id"][i])
+            static = self.clutter.energy(one["beam_id"])
             status = ("seen" if points else "outside" if outside else "hidden" if light == 0 else
                       "missed" if probability >= WEAK else "air" if chance >= WEAK else
                       "hidden" if bare.get(bird, (0.0, chance))[1] >= WEAK else "too weak")
-            rows[bird] = [k, bird, species[bird], status, SUBSETS[subset[i]] if status != "outside" else "",
-                          f"{1e-6 * columns['timestamp'][i]:.6f}", *(f"{x:.4f}" for x in places[i]),
-                          f"{columns['distance_m'][i]:.4f}", f"{columns['azimuth'][i] / 100:.4f}",
-                          f"{columns['vertical_angle'][i]:.4f}", f"{columns['effective_area'][i]:.6g}", beams,
-                          f"{energy:.6g}", f"{electrons[i]:.6g}" if electrons is not None else "",
-                          f"{probability:.6g}", points, f"{distance[i]:.4f}" if status != "outside" else "",
-                          f"{static / (static + energy):.4f}" if static + energy > 0 else "",
-                          *(text for when in ("first", "last") for text in
-                            (f"{1e-6 * columns[when + '_timestamp'][i]:.6f}", *(f"{x:.4f}" for x in columns[when + "_position"][i]))),
+            times, places = zip(*((one[f"{when}timestamp"], one[f"{when}position"] if when else place) for when in ("", "first_", "last_")))
+            now, first, last = ([f"{1e-6 * time:.6f}", *(f"{x:.4f}" for x in at)] for time, at in zip(times, places))
+            rows[bird] = [k, bird, species[bird], status, SUBSETS[subset] if status != "outside" else "", *now,
+                          f"{one['distance_m']:.4f}", f"{one['azimuth'] / 100:.4f}",
+                          f"{one['vertical_angle']:.4f}", f"{one['effective_area']:.6g}", beams,
+                          f"{energy:.6g}", f"{one['photoelectrons']:.6g}" if "photoelectrons" in report else "",
+                          f"{probability:.6g}", points, f"{distance:.4f}" if status != "outside" else "",
+                          f"{static / (static + energy):.4f}" if static + energy > 0 else "", *first, *last,
                           *weather, f"{chance:.6g}" if self.clear is not self.scan else ""]
         return list(rows.values())
 
@@ -363,45 +349,35 @@ class Sequence:
             (folder / name).mkdir(parents=True)
         boxes = Boxes(self.scene.tree.GetOutput(), self.at_rest, self._pose())
         writer = _wrapped.vtkAvianLidarKITTIWriter()
-        table: List[Any] = [TRUTH]
-        times: List[float] = []
+        table: List[Any] = []
         classes: Counter[int] = collections.Counter()
-        statuses: Counter[str] = collections.Counter()
-        subsets: Counter[str] = collections.Counter()
-        with_birds = 0
+        scans = self.span(number)
         with Updates(writer) as write:
             for k, scan, species in self.frames(number):
-                echoes, name = scan.algorithm.GetOutput(0), f"{len(times):06d}"
+                echoes, name = scan.algorithm.GetOutput(0), f"{k - scans.start:06d}"
                 writer.SetInputData(echoes)
                 writer.SetFileName(str(folder / "velodyne" / f"{name}.bin"))
                 write(writer.Write)
                 labels = relabel(np.fromfile(folder / "velodyne" / f"{name}.label", np.uint32), self.bird_class)
                 labels.tofile(folder / "labels" / f"{name}.label")
                 os.remove(folder / "velodyne" / f"{name}.label")
-                points = echoes.GetPointData()
-                _, subset = self.clutter.look(as_numpy(points.GetArray("beam_id")), as_numpy(points.GetArray("distance_m")))
-                (folder / "subsets" / f"{name}.subset").write_bytes(subset.tobytes())
+                points = Cloud(echoes)
+                self.clutter.look(points["beam_id"], points["distance_m"])[1].tofile(folder / "subsets" / f"{name}.subset")
                 (folder / "boxes" / f"{name}.txt").write_text(
                     boxes.lines(Cloud(scan.algorithm.GetOutput(2)), scan.movers), encoding="utf-8")
-                rows = self.truth(k, species)
-                table += rows
-                times.append(k / self.sensor.rotation_rate)
+                table += self.truth(k, species)
                 classes.update((labels & 0xffff).tolist())
-                statuses.update(row[3] for row in rows)
-                seen = [row[4] for row in rows if row[3] == "seen"]
-                subsets.update(seen)
-                with_birds += bool(seen)
                 if progress:
-                    progress(number, len(times), len(self.span(number)))
+                    progress(number, k - scans.start + 1, len(scans))
         pose = " ".join(f"{value:.9g}" for value in self._pose().ravel())
-        (folder / "truth.csv").write_bytes(as_csv(table))
-        (folder / "times.txt").write_text("".join(f"{time:.6f}\n" for time in times), encoding="utf-8")
-        (folder / "poses.txt").write_text(f"{pose}\n" * len(times), encoding="utf-8")
-        (folder / "calib.txt").write_text(
-            "".join(f"{name}: 1 0 0 0 0 1 0 0 0 0 1 0\n" for name in ("P0", "P1", "P2", "P3", "Tr")), encoding="utf-8")
-        return {"scans": len(times), "scans_with_birds_seen": with_birds, "points_of_classes": dict(classes),
-                "birds_of_statuses": {name: statuses[name] for name in STATUSES},
-                "birds_seen_of_subsets": {name: subsets[name] for name in SUBSETS}}
+        texts = {"times.txt": "".join(f"{k / self.sensor.rotation_rate:.6f}\n" for k in scans), "poses.txt": f"{pose}\n" * len(scans),
+                 "calib.txt": "".join(f"{name}: 1 0 0 0 0 1 0 0 0 0 1 0\n" for name in ("P0", "P1", "P2", "P3", "Tr"))}
+        for name, text in {**texts, "truth.csv": as_csv([TRUTH, *table]).decode()}.items():
+            (folder / name).write_text(text, encoding="utf-8")
+        statuses, seen = [row[3] for row in table], [row for row in table if row[3] == "seen"]
+        return {"scans": len(scans), "scans_with_birds_seen": len({row[0] for row in seen}), "points_of_classes": dict(classes),
+                "birds_of_statuses": {name: statuses.count(name) for name in STATUSES},
+                "birds_seen_of_subsets": {name: [row[4] for row in seen].count(name) for name in SUBSETS}}
 
     def _pose(self) -> np.ndarray:
         """3 x 4: from the coordinates of points (x forward, y left, z up) to the scene's."""
@@ -414,7 +390,7 @@ class Sequence:
     def _inputs(self) -> Dict[str, str]:
         """All that every file depends on, by name, as it was found: of the scenario, the files that it names, the scene, and each
         property of sensor and scan whoever sets it."""
-        scenario = _with_files({**self.scenario, "scene": ""}, lambda name: name and _content(name))
+        scenario = _with_files({**self.scenario, "scene": ""}, lambda name: name and hashlib.sha256(read_regular(name)).hexdigest())
         no_bit = ("number_of_threads", "controller", "maximum_cache_size", "batch_collision_detection",
                   "number_of_revolutions")  # the last one says which scans there are
         parts = {"scenario": {name: part for name, part in scenario.items() if name not in ("scene", "sensor", "scan", "number_of_scans")},
@@ -448,7 +424,8 @@ class Sequence:
             if folder.name.isdigit() and int(folder.name) >= len(self):
                 raise Error(f"{folder}: is there, and number_of_scans is {self.scans}: {_FEWER}")
         missing = [k for k in range(len(self)) if not self._is_there(home / f"{k:02d}", k, common)]
-        self.scans_to_do = sum(len(self.span(k)) for k in missing[ranks.rank::ranks.size])
+        mine = missing[ranks.rank::ranks.size]
+        self.scans_to_do = sum(len(self.span(k)) for k in mine)
         shorter = [home / f"{k:02d}" for k in missing if (home / f"{k:02d}").exists()]
         if shorter and ranks.rank == 0:
             warnings.warn(f"{shorter[0]}: has fewer scans than are wanted now, and is made again: flights depend on the length of a "
@@ -458,14 +435,12 @@ class Sequence:
             for part in home.glob(f".*{PART}"):
                 shutil.rmtree(part)
         ranks.wait()
-        for number in missing[ranks.rank::ranks.size]:
+        for number in mine:
             name, inputs = f"{number:02d}", self._inputs_of(common, number)
             part, old = (home / f".{name}.{secrets.token_hex(4)}{PART}" for _ in range(2))
             try:
                 content = self._write_one(part, number, progress)
-                _check_scans(part, len(self.span(number)))
-                content.update(inputs=inputs, identity=_identity(inputs), sha256=_digest(part))
-                write_whole(part / DONE, as_json(content))
+                write_whole(part / DONE, as_json({**content, "inputs": inputs, "identity": _identity(inputs), "sha256": _digest(part)}))
                 os.sync()
                 if home / name in shorter:
                     os.replace(home / name, old)
@@ -478,10 +453,10 @@ class Sequence:
         ranks.wait()
         contents = {f"{k:02d}": {key: value for key, value in load_json(home / f"{k:02d}" / DONE).items() if key != "inputs"}
                     for k in range(len(self))}
-        assumed = self.sensor.beams.fields.get("assumed", [])
         manifest = {"scenario": _with_files(self.scenario, lambda name: os.path.relpath(name, out)),
                     "scene_digest": digest_of(self.scene.tree.GetOutput()), "avian_lidar_version": __version__,
-                    "beams": self.sensor.beams.number_of_points, "assumed": assumed, "sequences": contents}
+                    "beams": self.sensor.beams.number_of_points,
+                    "assumed": self.sensor.beams.fields.get("assumed", []), "sequences": contents}
         if ranks.rank == 0:
             points = {int(label): count for label, count in _sums(manifest, "points_of_classes").items()}
             write_whole(out / "manifest.json", as_json(manifest))
@@ -501,21 +476,23 @@ class Sequence:
             return False
         if not (folder / DONE).exists():
             raise Error(f"{folder}: is there without {DONE}, so it is no whole sequence; choose another folder or remove it")
-        known = load_json(folder / DONE)
-        known = known if isinstance(known, dict) else {}
+        content = load_json(folder / DONE)
+        known: Dict[str, Any] = content if isinstance(content, dict) else {}
         scans, wanted = known.get("scans"), len(self.span(number))
         scans = scans if isinstance(scans, int) and 0 < scans <= self.length else wanted
         if known.get("identity") != _identity(self._inputs_of(common, number, scans)):
             inputs = self._inputs_of(common, number)
             raise Error(f"{folder} is of another scenario, scene or version: {_difference(known.get('inputs'), inputs)}; choose another "
                         "folder or remove it")
-        if scans != wanted:
-            if scans > wanted:
-                raise Error(f"{folder}: has {scans} scans, and number_of_scans is {self.scans}: {_FEWER}")
+        if scans > wanted:
+            raise Error(f"{folder}: has {scans} scans, and number_of_scans is {self.scans}: {_FEWER}")
+        if scans < wanted:
             return False
-        wrong = _wrong_member(known, self.bird_class)
+        wrong = [name for name, keys in zip(TABLES, (map(str, classes_of(self.bird_class)), STATUSES, SUBSETS)) if not isinstance(known.get(name), dict)
+                 or not {*known[name]} <= {*keys} or not all(isinstance(count, int) for count in known[name].values())]
+        wrong += [name for name in COUNTS if not isinstance(known.get(name), int)]
         if wrong:
-            raise Error(f"{folder / DONE}: {wrong} is missing or no count. {_AGAIN}")
+            raise Error(f"{folder / DONE}: {wrong[0]} is missing or no count. {_AGAIN}")
         _check_scans(folder, wanted)
         if known.get("sha256") != _digest(folder):
             raise Error(f"{folder}: its files are not those that its {DONE} has the sha256 of: something else has changed, added or removed "
@@ -545,23 +522,11 @@ def _difference(before: Any, now: Dict[str, str]) -> str:
 
 def _check_scans(folder: pathlib.Path, count: int) -> None:
     """`Error` unless a sequence has all its scans and no more, with a label and a subset for each point."""
-    points: List[Dict[str, float]] = []
-    for name, suffix, size in FOLDERS:
-        points.append({file.name[:-len(suffix)]: file.stat().st_size / size for file in (folder / name).glob(f"*{suffix}")})
-    names = [f"{number:06d}" for number in range(count)]
-    whole = sum(name in points[0] and points[0][name] == points[1].get(name) == points[2].get(name) for name in names)
-    if whole < count or any(len(of) != count for of in points) or len([*(folder / BOXES[0]).glob(f"*{BOXES[1]}")]) != count:
+    points = [{file.stem: file.stat().st_size / size for file in (folder / name).glob(f"*{suffix}")} for name, suffix, size in ALL]
+    whole = sum(len({of.get(f"{number:06d}", ~i) for i, of in enumerate(points[:len(FOLDERS)])}) == 1 for number in range(count))
+    if whole < count or any(len(of) != count for of in points):
         raise Error(f"{folder}: {whole} of {count} scans are whole, and there are {len(points[0])}: something else has changed files "
                     f"there. {_AGAIN}")
-
-
-def _wrong_member(content: Dict[str, Any], bird: int) -> str:
-    """The member of what DONE holds that is missing or no count, "" if there is none."""
-    for name, keys in zip(TABLES, (map(str, classes_of(bird)), STATUSES, SUBSETS)):
-        table = content.get(name)
-        if not isinstance(table, dict) or not {*table} <= {*keys} or not all(isinstance(count, int) for count in table.values()):
-            return name
-    return next((name for name in ("scans", "scans_with_birds_seen") if not isinstance(content.get(name), int)), "")
 
 
 def _digest(folder: pathlib.Path) -> str:
@@ -581,9 +546,8 @@ def _sums(manifest: Dict[str, Any], key: str) -> Counter[str]:
 def datasheet(manifest: Dict[str, Any]) -> str:
     """What is in a set of sequences, as Markdown."""
     parts = list(manifest["sequences"].values())
-    scans = sum(part["scans"] for part in parts)
     points, statuses, subsets = (_sums(manifest, key) for key in TABLES)
-    seen = sum(part["scans_with_birds_seen"] for part in parts)
+    scans, seen = (sum(part[key] for part in parts) for key in COUNTS)
     scenario = manifest["scenario"]
     classes = classes_of(scenario.get("bird_class", BIRD))
     lines = ["# Data sheet", "", f"{scans} scans of {manifest['beams']} beams in {len(parts)} sequences; avian-lidar "

@@ -110,16 +110,13 @@ class BirdTracks:
         inputs = [Input(path, name) for name, path in self.folders.items()]
         chains = [Chain(of.sensor, self.learning, self.clutter, self.tracker) for of in inputs]
         everywhere = [of.runways(self.runways) for of in inputs]
-        todo = [(one, number) for one, of in enumerate(inputs) for number in of.numbers]
-        mine, done = todo[ranks.rank::ranks.size], 0
-        total = sum(int(inputs[one].content[number]["scans"]) for one, number in mine)
-        for one, number in mine:
-            of, chain = inputs[one], chains[one]
+        mine = [(*one, number) for one in zip(inputs, chains, everywhere) for number in one[0].numbers][ranks.rank::ranks.size]
+        done, total = 0, sum(int(of.content[number]["scans"]) for of, _, _, number in mine)
+        for of, chain, runways, number in mine:
             file = out / FOLLOWED / of.name / f"{number}.json"
-            identity = self._identity(of, number, chain, everywhere[one])
+            identity = self._identity(of, number, chain, runways)
             if not _is_of(file, identity):
-                found = self._follow(of, number, chain, everywhere[one],
-                                     lambda scans: progress("scans followed", done + scans, total))
+                found = self._follow(of, number, chain, runways, lambda scans: progress("scans followed", done + scans, total))
                 file.parent.mkdir(parents=True, exist_ok=True)
                 write_whole(file, as_json({"identity": identity, **found}))
             done += int(of.content[number]["scans"])
@@ -159,8 +156,6 @@ class BirdTracks:
 
 def _is_of(file: pathlib.Path, identity: str) -> bool:
     """Whether a file holds the results of these inputs and settings."""
-    if not file.is_file():
-        return False
     try:
         known = load_json(file)
     except Error:
