@@ -6,7 +6,7 @@ import json
 import math
 import os
 import pathlib
-from typing import Any, Callable, Dict, List, Optional, Sequence, Tuple
+from typing import Any, Callable, Dict, List, Optional, Tuple
 
 import numpy as np
 
@@ -46,15 +46,10 @@ LIMITS = (("lower_energy_limit", "lower energy limit", "J", 1.0), ("upper_energy
 
 def assumptions(plans: List[Plan]) -> List[Dict[str, Any]]:
     """Numbers of the receivers: words, unit, and a pair (text, whether assumed) for each receiver."""
-    bands = []
-    for plan in plans:
-        low, high = reach.band(plan.sensor)
-        bands.append((f"{low:.2f} to {high:.2f}", "elevation_step" in plan.assumed or "minimum_elevation" in plan.assumed))
-    rows = [{"words": "elevation of the beams' middles", "unit": "°", "cells": bands}]
-    turned = [any(plan.sensor.orientation) for plan in plans]
-    if any(turned):
-        rows.append({"words": "yaw, pitch, roll", "unit": "°",
-                     "cells": [(", ".join(f"{angle:g}" for angle in plan.sensor.orientation), False) for plan in plans]})
+    rows = [{"words": "elevation of the beams' middles", "unit": "°", "cells": [
+        ("{:.2f} to {:.2f}".format(*reach.band(plan.sensor)), bool({"elevation_step", "minimum_elevation"} & {*plan.assumed})) for plan in plans]}]
+    if any(any(plan.sensor.orientation) for plan in plans):
+        rows.append({"words": "yaw, pitch, roll", "unit": "°", "cells": [("{:g}, {:g}, {:g}".format(*plan.sensor.orientation), False) for plan in plans]})
     fields = [plan.sensor.beams.fields for plan in plans]
     photons = [int(beams["receiver_model"]) == 1 for beams in fields]
     for facts, concerned in ((COMMON, [True] * len(plans)), (PHOTONS, photons), (LIMITS, [not p for p in photons])):
@@ -73,6 +68,7 @@ class Report:
     def __init__(self, plan: Dict[str, Any], threads: int = 0, progress: Optional[Callable[[str, int, int], Any]] = None):
         self.plan, self.progress = plan, progress
         self.plans = Plan.all_of(plan, threads)
+        self.asked = f"asked for: {self.plans[0].bird} {self.plans[0].where}"  # in every caption
         self.scene = load_json(plan["scene"])
         with naming(f"{plan['file']}: tracks"):
             self.tracks = read_card(plan["tracks"]) if "tracks" in plan else None
@@ -80,17 +76,11 @@ class Report:
             if "siting" in plan else []
         self.done = 0
 
-    @property
-    def asked(self) -> str:
-        """What every caption says: whom and what the plan asks for."""
-        return f"asked for: {self.plans[0].bird} {self.plans[0].where}"
-
     def _draw(self, file: pathlib.Path, size: Tuple[float, float], alt: str, caption: str, work) -> Dict[str, str]:
         pictures.draw(file, size, work)
         self.done += 1
         if self.progress:
-            first = self.plans[0]
-            each = 2 * len(first.heights) + 1 + len(first.runways)
+            each = 2 * len(self.plans[0].heights) + 1 + len(self.plans[0].runways)
             self.progress("pictures", self.done, (each * (2 if self.sites else 1) + 1) * len(self.plans) + 3)
         return {"source": embedded(file), "alt": alt, "caption": f"{caption}; {self.asked}"}
 
@@ -114,15 +104,16 @@ class Report:
                                       lambda axes, cover=cover: pictures.draw_map(axes, plan, cover, "status")))
         clutter = plan.coverage.clutter_map
         count = int(np.count_nonzero(clutter["detection_probability"] >= 0.5)) if clutter.number_of_points else 0
-        found: Dict[str, Any] = {
-            "name": plan.title, "maps": maps, "reasons": reasons, "overall": plan.overall, "position": place(plan.sensor.position), "sections": [],
+        sections: List[Dict[str, str]] = []
+        found = {
+            "name": plan.title, "maps": maps, "reasons": reasons, "overall": plan.overall, "position": place(plan.sensor.position), "sections": sections,
             "clutter": self._draw(folder / f"{name}-clutter.png", pictures.map_size(plan.extent, 4.0, 0.8),
                                   f"Map of echoes of surfaces with {plan.title}: {count} in at least every second scan.",
                                   f"{plan.title}: {count} echoes of surfaces in at least every second scan",
                                   lambda axes: pictures.draw_clutter(axes, plan, clutter))}
         for number, runway in enumerate(plan.runways):
             values, extent = pictures.section(plan, runway)
-            found["sections"].append(self._draw(
+            sections.append(self._draw(
                 folder / f"{name}-section{number + 1}.png", (5.6, 2.6),
                 f"Section along {runway.name} with {plan.title}: at least 0.5 on {percent(float(np.mean(values >= 0.5)))} of it, mean {percent(float(values.mean()))}.",
                 f"{plan.title}, along the middle of {runway.name} (white) and its approaches to 3 km; dashed: glide paths of "
@@ -204,41 +195,32 @@ class Report:
 
     def _weather(self, views: List[Plan], folder: pathlib.Path) -> Dict[str, Any]:
         """Shares of the places in fog and in rain, and over the plan's year, for each view."""
-        visibility = views[0].air_of()["visibility"]
-        kinds: List[Tuple[str, Sequence[float], str, List[Dict[str, Any]]]] = [
-            ("visibility", VISIBILITIES, "visibility, m", [{"visibility": v, "air_backscatter": True} for v in VISIBILITIES]),
-            ("rain", RAINS, "rain, mm/h", [{"rain_rate": rain, "air_backscatter": True} for rain in RAINS])]
-        found: Dict[str, Any] = {"beside": visibility, "weaken": [plan.name for plan in self.plans if not plan.gathers_light], "pictures": []}
+        probability = ("detection_probability", "detection_std_error")
+        found: Dict[str, Any] = {"beside": views[0].air_of()["visibility"], "weaken": [plan.name for plan in self.plans if not plan.gathers_light], "pictures": []}
         table: List[Dict[str, Any]] = []
-        shares = []  # by view, then by air
+        shares, year = [], views[0].year  # by view, then by air
+        names = [*(f"visibility {v:.10g} m" for v in VISIBILITIES), *(f"rain {rain:.10g} mm/h" for rain in RAINS), *(air.name for air in year)]
         for view in views:
-            airs = [view.air_of(**air) for _, _, _, airs in kinds for air in airs] + [air.settings for air in view.year]
-            rows = view.in_airs(airs)
+            rows = view.in_airs([*(view.air_of(visibility=v, air_backscatter=True) for v in VISIBILITIES),
+                                 *(view.air_of(rain_rate=rain, air_backscatter=True) for rain in RAINS), *(air.settings for air in view.year)])
             shares.append([row[-1] for row in rows])
-            names = [*(f"visibility {v:.10g} m" for v in VISIBILITIES), *(f"rain {rain:.10g} mm/h" for rain in RAINS), *(air.name for air in view.year)]
-            table += [{"receiver": view.title, "weather": name, "region": row["region"], "species": row["species"], "places": row["places"],
-                       "detection_probability": row["detection_probability"], "detection_std_error": row["detection_std_error"]}
+            table += [{"receiver": view.title, "weather": name, **{key: row[key] for key in ("region", "species", "places", *probability)}}
                       for name, of in zip(names, rows) for row in of]
         write_table(folder / "weather.csv", table)
-        first = 0
-        for kind, values, words, airs in kinds:
-            part = slice(first, first + len(airs))
-            first = part.stop
-            curves = {view.title: (values, [row["detection_probability"] for row in of[part]], [row["detection_std_error"] for row in of[part]])
-                      for view, of in zip(views, shares)}
+        first, last = len(VISIBILITIES), len(VISIBILITIES) + len(RAINS)
+        for kind, values, words, part in (("visibility", VISIBILITIES, "visibility, m", slice(first)), ("rain", RAINS, "rain, mm/h", slice(first, last))):
+            curves = {view.title: (values, *([row[name] for row in of[part]] for name in probability)) for view, of in zip(views, shares)}
             said = "; ".join(f"{name}: {', '.join(f'{value:g}: {percent(share)}' for value, share in zip(values, of))}" for name, (_, of, _) in curves.items())
             caption = f"{', '.join(view.title for view in views)}: share detected by one scan, by {words}; bars: standard error"
             found["pictures"].append(self._draw(folder / f"weather-{kind}.png", (4.6, 3.4), f"Share of birds detected by {words}. {said}.", caption,
                                                 lambda axes, curves=curves, words=words, kind=kind:
                                                 pictures.draw_weather(axes, curves, words, kind == "visibility")))
             found[kind] = [{"value": value, "shares": of} for value, of in zip(values, zip(*(of[part] for of in shares)))]
-        year = views[0].year
-        found["year"] = [{"name": air.name, "share": air.share, "shares": of} for air, of in zip(year, zip(*(of[first:] for of in shares)))]
+        found["year"] = [{"name": air.name, "share": air.share, "shares": of} for air, of in zip(year, zip(*(of[last:] for of in shares)))]
         # Places are the same in all weathers: the error of the mean is at most the mean of errors.
-        found["over_the_year"] = [{"places": of[0]["places"], **{name: sum(air.share * row[name] for air, row in zip(year, of[first:]))
-                                                                 for name in ("detection_probability", "detection_std_error")}} for of in shares]
-        at = VISIBILITIES.index(ANSWERED)
-        found["answered"] = [of[at] for of in shares]
+        found["over_the_year"] = [{"places": of[0]["places"], **{name: sum(air.share * row[name] for air, row in zip(year, of[last:]))
+                                                                 for name in probability}} for of in shares]
+        found["answered"] = [of[VISIBILITIES.index(ANSWERED)] for of in shares]
         return found
 
     def _weather_words(self, number: int, view: Plan, weather: Dict[str, Any]) -> str:
@@ -266,11 +248,9 @@ class Report:
         """What else there is to say of the best site: how sure it is, and what the plan's own place detects."""
         if not site or view is plan:
             return []
-        alike, said = site["alike"], []
-        if alike:
-            said.append(f"{alike} more candidate{'s are' if alike > 1 else ' is'} as good within the error.")
-        if site["edge"]:
-            said.append("It lies at the lattice's edge: wider bounds may have a better one.")
+        alike = site["alike"]
+        said = [f"{alike} more candidate{'s are' if alike > 1 else ' is'} as good within the error."] * (alike > 0)
+        said += ["It lies at the lattice's edge: wider bounds may have a better one."] * site["edge"]
         if plan is self.plans[0]:
             who = "the plan" if "position" in plan.plan["sensor"] else "the scene"
             said.append(f"Where {who} puts it, {place(plan.sensor.position)}, it is {share_of(plan.overall)}"

@@ -55,13 +55,8 @@ class Reach:
         """The greatest range to which at least a share of birds is detected, m; 0 where there is none."""
         values = self.several_scans if several else self.one_scan
         above = np.flatnonzero(values >= share)
-        if not len(above):
-            return 0.0
-        last = int(above[-1])
-        if last + 1 == len(values):
-            return float(self.ranges[last])
-        low, high = values[last], values[last + 1]
-        return float(self.ranges[last] + (self.ranges[last + 1] - self.ranges[last]) * (low - share) / (low - high))
+        last = slice(above[-1], above[-1] + 2) if len(above) else slice(0)
+        return float(np.interp(share, values[last][::-1], self.ranges[last][::-1])) if len(above) else 0.0
 
 
 def band(sensor: Sensor) -> Tuple[float, float]:
@@ -112,17 +107,15 @@ def within_beams(sensor: Sensor, species: str = "herring gull", ranges: Optional
             return cover["detection_probability"].reshape(len(distances), -1), cover["track_probability"].reshape(len(distances), -1)
 
     if ranges is None:
-        end = sensor.range_gate
+        end, found = math.inf, sensor.range_gate
         for _ in range(4):
-            tried = np.linspace(end / RANGES, end, RANGES)
-            seen = np.flatnonzero(at(tried, lines[:FEW])[0].mean(axis=1) > LEAST)
-            found = tried[min(seen[-1] + 1, RANGES - 1)] if len(seen) else tried[0]
             if found > 0.5 * end:
                 break
-            end = found
-        distances = np.linspace(found / RANGES, found, RANGES)
-    else:
-        distances = np.asarray(ranges, dtype=float)
+            end, tried = found, np.linspace(found / RANGES, found, RANGES)
+            seen = np.flatnonzero(at(tried, lines[:FEW])[0].mean(axis=1) > LEAST)
+            found = tried[min(seen[-1] + 1, RANGES - 1)] if len(seen) else tried[0]
+        ranges = np.linspace(found / RANGES, found, RANGES)
+    distances = np.asarray(ranges, dtype=float)
     one, several = at(distances, lines)
     return Reach(distances, one.mean(axis=1, dtype=float), one.std(axis=1, dtype=float) / math.sqrt(birds), several.mean(axis=1, dtype=float))
 
@@ -130,8 +123,8 @@ def within_beams(sensor: Sensor, species: str = "herring gull", ranges: Optional
 def air_of(sensor: Sensor, words: Optional[Sequence[str]] = None) -> Dict[str, Any]:
     """Settings of `within_beams` in a weather, by words as of `--weather`; CLEAR where they say no visibility. Where a receiver has no aperture,
     air and drops only weaken."""
-    default = _wrapped.vtkAvianLidarCoverage()
-    air = {"attenuation_coefficient": default.GetAttenuationCoefficient(), "visibility": CLEAR, "air_backscatter": False, "rain_rate": 0.0, **weather(words)}
+    attenuation = _wrapped.vtkAvianLidarCoverage().GetAttenuationCoefficient()
+    air = {"attenuation_coefficient": attenuation, "visibility": CLEAR, "air_backscatter": False, "rain_rate": 0.0, **weather(words)}
     return air if float(sensor.beams.fields.get("receiver_aperture", 0.0)) > 0.0 else weakening(sensor, air)
 
 
@@ -199,7 +192,7 @@ def advice(plan: Plan, detected_to: float) -> Optional[Dict[str, Any]]:
     sensor = plan.sensor
     regular = (not sensor.channel_elevations and sensor._beams is None and sensor.elevation_step > 0.0 and
                not any(sensor.orientation) and not sensor.algorithm.GetNumberOfPrisms())
-    if needed > high and needed < 90.0 and regular:
+    if high < needed < 90.0 and regular:
         number = sensor.number_of_channels
         more = number + math.ceil((needed - high) / sensor.elevation_step - 1e-9)
         raised = [{"minimum_elevation": sensor.minimum_elevation + (needed - high) * k / RAISES} for k in range(1, RAISES + 1)]
