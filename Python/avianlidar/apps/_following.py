@@ -178,16 +178,16 @@ class Scorer:
         before: Dict[int, int] = {}
         ospa, states, last = [], [], []
         for scan, rows, live in self.scans:
-            ids, times = live.ids[live.confirmed].tolist(), live.times[live.confirmed]
-            places, velocities = live.places[live.confirmed], live.velocities[live.confirmed]
+            times, places, velocities = (part[live.confirmed] for part in (live.times, live.places, live.velocities))
+            ids = live.ids[live.confirmed].tolist()
             # Where each track is when the bird's beam is fired.
             away = np.array([np.linalg.norm(places + velocities * (row["time"] - times)[:, None] - row["place"], axis=1) for row in rows])
             away = away.reshape(len(rows), len(ids))
             of_birds = np.array([origins.get(track) == "bird" for track in ids], bool)
             before = scores.follow(away[:, of_birds], [row["bird"] for row in rows], np.array(ids, int)[of_birds].tolist(), self.cutoff, before)
             bird_of = {track: bird for bird, track in before.items()}
-            for row, distance in zip(rows, away[:, of_birds]):
-                birds[row["bird"]].append((row, before.get(row["bird"]), bool((distance < self.cutoff).any())))
+            for row, near in zip(rows, (away[:, of_birds] < self.cutoff).any(axis=1).tolist()):
+                birds[row["bird"]].append((row, before.get(row["bird"]), near))
             for i, track in enumerate(ids):
                 known = tracks.setdefault(track, {"track": track, "origin": origins.get(track, "surface"), "begin": self.begin[track],
                                                   "confirmed_s": float(times[i]), "end_s": -math.inf, "scans": 0, "assigned": 0})

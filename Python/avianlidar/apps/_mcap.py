@@ -90,23 +90,18 @@ def _message(key: int, *fields) -> bytes:
     return b"\0\1\0\0" + _put(bytearray(), _TOPICS[key][1], fields)
 
 
-def _stamp(time: int) -> Tuple[int, int]:
-    return time // 10**9, time % 10**9
-
-
 def _transform(time: int, pose: np.ndarray) -> bytes:
     """From the sensor's frame to the map, by the eigenvector of the largest eigenvalue (Bar-Itzhack 2000)."""
     (a, b, c), (d, e, f), (g, h, i) = pose[:, :3]
     rotation = np.linalg.eigh([[a - e - i, d + b, g + c, h - f], [d + b, e - a - i, h + f, c - g],
                                [g + c, h + f, i - a - e, d - b], [h - f, c - g, d - b, a + e + i]])[1][:, -1]
-    return _message(_TF, [((_stamp(time), "map"), "lidar", (pose[:, 3], rotation * (-1 if rotation[3] < 0 else 1)))])
+    return _message(_TF, [((divmod(time, 10**9), "map"), "lidar", (pose[:, 3], rotation * (-1 if rotation[3] < 0 else 1)))])
 
 
 def _cloud(time: int, points: np.ndarray) -> bytes:
     fields = [(name, _POINT.fields[name][1], number, 1) for name, (_, number) in _FIELDS.items()]  # type: ignore[index]
     data = points.tobytes()
-    header = _stamp(time), "lidar"
-    return _message(_POINTS, header, 1, len(points), fields, False, _POINT.itemsize, len(data), data, True)
+    return _message(_POINTS, (divmod(time, 10**9), "lidar"), 1, len(points), fields, False, _POINT.itemsize, len(data), data, True)
 
 
 def _marker(time: int, name: str, number: int, action: int, numbers: Sequence[float], words: str = "") -> Tuple:
@@ -116,8 +111,8 @@ def _marker(time: int, name: str, number: int, action: int, numbers: Sequence[fl
     words    its text
     """
     pose = numbers[:3], (0, 0, math.sin(numbers[6] / 2), math.cos(numbers[6] / 2))
-    texture = (_stamp(0), ""), "", b""
-    return ((_stamp(time), "lidar"), name, number, _CUBE, action, pose, numbers[3:6], _COLOURS[name == "bird"], (0, 0),
+    texture = ((0, 0), ""), "", b""
+    return ((divmod(time, 10**9), "lidar"), name, number, _CUBE, action, pose, numbers[3:6], _COLOURS[name == "bird"], (0, 0),
             False, (), (), "", texture, (), words, "", ("", b""), False)
 
 

@@ -362,7 +362,8 @@ class Sequence:
                 labels.tofile(folder / "labels" / f"{name}.label")
                 os.remove(folder / "velodyne" / f"{name}.label")
                 points = Cloud(echoes)
-                self.clutter.look(points["beam_id"], points["distance_m"])[1].tofile(folder / "subsets" / f"{name}.subset")
+                _, subset = self.clutter.look(points["beam_id"], points["distance_m"])
+                (folder / "subsets" / f"{name}.subset").write_bytes(subset.tobytes())
                 (folder / "boxes" / f"{name}.txt").write_text(
                     boxes.lines(Cloud(scan.algorithm.GetOutput(2)), scan.movers), encoding="utf-8")
                 table += self.truth(k, species)
@@ -440,6 +441,7 @@ class Sequence:
             part, old = (home / f".{name}.{secrets.token_hex(4)}{PART}" for _ in range(2))
             try:
                 content = self._write_one(part, number, progress)
+                _check_scans(part, len(self.span(number)))
                 write_whole(part / DONE, as_json({**content, "inputs": inputs, "identity": _identity(inputs), "sha256": _digest(part)}))
                 os.sync()
                 if home / name in shorter:
