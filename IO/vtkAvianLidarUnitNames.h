@@ -4,12 +4,12 @@
  * @brief Puts the units of arrays into their names, for tables: `energy` becomes `energy [J]`.
  *
  * VTK's XML files keep the unit of an array (vtkDataArray::UNITS_LABEL); CSV files have only names.
- * Put this filter before a CSV writer of precision 15. The brackets are square, as VTK's own names
- * have round ones.
+ * Put this filter before a CSV writer with the precision 15. The brackets are square, because names
+ * of arrays may have round ones, as in `speed (mean)`.
  *
  * - Input port 0: any vtkDataSet or vtkTable.
- * - Output port 0: the same, shallow, with renamed point, cell and row arrays. Arrays without a
- *   unit or with the unit "1" keep their names, and so do field data.
+ * - Output port 0: a shallow copy with renamed point, cell and row arrays. Arrays without a unit or
+ *   with the unit "1" keep their names, and so do field data.
  */
 #ifndef vtkAvianLidarUnitNames_h
 #define vtkAvianLidarUnitNames_h
@@ -27,8 +27,7 @@ public:
   vtkTypeMacro(vtkAvianLidarUnitNames, vtkPassInputTypeAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
-  /// The name with its unit: `energy` and `J` give `energy [J]`; without a unit or with "1" the
-  /// name.
+  /// The name with its unit, such as `energy [J]`, or only the name if the unit is empty or "1".
   static std::string NameWithUnit(const std::string& name, const std::string& unit);
 
   vtkAvianLidarErrorsAsDataMacro();

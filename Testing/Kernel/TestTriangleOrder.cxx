@@ -15,8 +15,8 @@ namespace
 /// Triangles and object ids in a shuffled order, each with points of its own.
 struct Shuffled
 {
-  Shuffled(const TriangleMesh& mesh, const std::vector<int>& objects,
-    const std::vector<int>& materials, unsigned seed)
+  Shuffled(const TriangleMesh& mesh, const std::vector<int>& ofObjects,
+    const std::vector<int>& ofMaterials, unsigned seed)
   {
     std::vector<std::uint32_t> order(mesh.size());
     std::iota(order.begin(), order.end(), 0u);
@@ -29,8 +29,8 @@ struct Shuffled
         this->of.points.push_back(mesh.corner(t, c));
       }
       this->of.triangles.push_back({ first, first + 1, first + 2 });
-      this->objects.push_back(objects[t]);
-      this->materials.push_back(materials[t]);
+      this->objects.push_back(ofObjects[t]);
+      this->materials.push_back(ofMaterials[t]);
     }
     const std::vector<std::uint32_t> sorted =
       triangleOrder(this->of, this->objects, this->materials);

@@ -46,6 +46,9 @@ class ModelNotes(unittest.TestCase):
                 (scanned(AttenuationCoefficient=0.0, FullModel=True),
                  {"all_left_out": "nothing", "noise": "modelled", "two_reflections": "modelled$", "faint_paths": "followed",
                   "perceivable_range": "without end"}),
+                # Each faint path is below the limit, but the bound of their sum is far above it.
+                (scanned(LightEnergyThreshold=1), {"all_left_out": "paths over two reflections below the lower energy limit$",
+                                                   "faint_paths": "left out below the lower energy limit$"}),
                 (scanned({"ReceiverAperture": 0.01}, NumberOfReflections=1, Noise=False, BeamSamples=echotools.RAYS),
                  {"noise": "not modelled", "two_reflections": "not modelled", "further_reflections": "not modelled: paths over two",
                   "planes": "sampled"})):

@@ -135,7 +135,7 @@ def without_a_mode(text):
     lines = [line for line in text.splitlines() if not re.match(r"\s*(?:#include|from|import)\b", line)]
     found = [line.strip() for number, line in enumerate(lines) if XML_WRITER.search(line) and not MODE.search(" ".join(lines[number:number + 10]))]
     if re.search(r"[.\"'`]p?vt[a-z]\b", text):
-        found += [call[0] for call in PARAVIEW.finditer(text) if not MODE.search(call[0] if "**" not in call[0] else text)]
+        found += [call[0] for call in PARAVIEW.finditer(text) if not re.search(r"\.(?:las|laz|pcd|ply|csv|geojson)\"", call[0]) and not MODE.search(call[0] if "**" not in call[0] else text)]
     return found
 
 

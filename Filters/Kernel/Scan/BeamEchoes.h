@@ -4,7 +4,7 @@
  * @brief Third stage of a beam: makes returns, with standard errors and labels.
  *
  * The labels of a return follow from all paths with a share in it: the object and material with the
- * most energy, the mean angle of incidence, and the share of the energy that came over two
+ * most energy, the mean angle of incidence, and the share of the energy from paths with two
  * reflections.
  *
  * Source: paper, Eq. 10-12.
@@ -28,8 +28,9 @@
 
 namespace avianlidar
 {
-/// Energies of a return by object and material. A beam meets few of them, and its rays mostly the
-/// last one again, so a list is faster than a map. Reusable without allocation; one per thread.
+/// Energies of a return by object and material. A beam meets few pairs of object and material, and
+/// each ray mostly the pair of the ray before, so a list is faster than a map. Reusable without
+/// allocation; one per thread.
 class LabelSums
 {
 public:
@@ -89,18 +90,18 @@ private:
   std::size_t Last = 0;
 };
 
-/// Labels of echoes. Reusable without allocation; one per thread. A share costs some ns.
+/// Labels of echoes. Reusable without allocation; one per thread.
 class EchoLabels
 {
 public:
-  /// The setup must outlive it.
+  /// The setup must outlive this.
   explicit EchoLabels(const ScanSetup& setup)
     : Setup(setup)
   {
   }
 
-  /// Set the labels of an echo. @param samples null if the beam has none @param paths the paths
-  /// over two reflections; their contributions follow those of the samples
+  /// Set the labels of an echo. @param samples null without samples @param paths paths with two
+  /// reflections; their contributions follow those of the samples
   void label(const RangeShares& shares, const BeamSamples* samples,
     const std::vector<SecondaryPath>& paths, Echo& echo);
 
@@ -116,7 +117,8 @@ private:
   std::vector<double> Angles; ///< angles of incidence of the shares, rad
 };
 
-/// Receives one beam after the other. One per thread; the constructor's arguments must outlive it.
+/// Receives one beam after the other. One per thread; the constructor's arguments must outlive
+/// this.
 class BeamEchoes
 {
 public:
@@ -128,7 +130,7 @@ public:
   void receive(std::uint64_t beam, LitBeam* keep, std::vector<Echo>& echoes, BeamReport& report);
 
   /// Append the echoes of a beam lit in an earlier scan. @param report out: status, range and what
-  /// was left out @return false, with echoes and report unchanged, if a return is not known
+  /// was left out @return false, with echoes and report unchanged, if `known` lacks a return
   bool receiveAgain(
     std::uint64_t beam, const LitBeam& known, std::vector<Echo>& echoes, BeamReport& report);
 

@@ -3,27 +3,27 @@
  * @file BeamLighting.h
  * @brief Second stage of a beam: the energies of all its paths, in range units.
  *
- * The paths are the direct echoes of all samples, and the paths over two reflections that the
+ * The paths are the direct echoes of all samples, and the paths with two reflections that the
  * light-energy constraint keeps. With epsilon = EchoSettings::lightEnergyFraction:
  *
- * - A path is dropped if it carries less than epsilon Qlow / (paths of the beam). It is not traced
- *   if an upper bound shows that.
- * - All secondary paths of a beam are skipped if their bounds, with what is already dropped, sum to
- *   less than epsilon Qlow.
- * - A beam ends before secondary paths are traced if, by upper bounds, it would not be perceived
- * even with all its energy (an integrated beam: with the most of a unit) in one range unit. This
- * needs the constraint, and noise that cannot matter.
+ * - A path is dropped if it carries less than epsilon Qlow / (number of paths of the beam). It is
+ *   not traced if an upper bound shows this.
+ * - All secondary paths of a beam are skipped if the sum of their bounds and of the energy already
+ *   dropped is less than epsilon Qlow.
+ * - A beam ends before secondary paths are traced if upper bounds show that it would not be
+ *   perceived even with all its energy (an integrated beam: with the most energy of a unit) in one
+ *   range unit. This needs the constraint, and noise and air that are too weak to be perceived.
  *
- * The samples of an integrated beam are nodes on its polygons (PolygonQuadrature.h). If these face
- * each other, connections start from rays placed on them. The samples of a beam in cells are its
- * strips (RangeStrips.h), and connections start from its rays. Mirror paths of both come from
- * MirrorRegions.h.
+ * The samples of an integrated beam are nodes on its polygons (PolygonQuadrature.h). If the
+ * polygons face each other, connections start from rays placed on them. The samples of a beam in
+ * cells are its strips (RangeStrips.h), and connections start from its rays. Mirror paths of both
+ * kinds of beams come from MirrorRegions.h.
  *
  * Source: paper, Eq. 4-9 and Sec. 3.4.
- * Differs: the constraint compares with the sum of a range unit, not with a single ray: Qlow for a
- * ray would remove every wall.
- * Valid: no range unit loses more than epsilon Qlow. A beam that ends early has no echo either way,
- * unless paths that start from random rays bring more than the bound by chance.
+ * Differs: the constraint compares with the sum of a range unit. To compare each ray with Qlow
+ * would remove every wall.
+ * Valid: no range unit loses more than epsilon Qlow. A beam that ends early would have no echo,
+ * unless paths from random rays exceed the bound by chance.
  * Test: TestEchoClosedForms.cxx, TestSecondaryConstraints.cxx, TestScanAgain.cxx.
  */
 #ifndef avianlidar_BeamLighting_h
@@ -42,11 +42,11 @@
 
 namespace avianlidar
 {
-/// Lights one beam after the other. One per thread; the constructor's arguments must outlive it.
+/// Lights one beam after the other. One per thread; the constructor's arguments must outlive this.
 class BeamLighting
 {
 public:
-  /// @param wanted called every 4096 steps within a beam; false ends the work with WorkStopped
+  /// @param wanted called every 4096 steps within a beam; if false, WorkStopped is thrown
   BeamLighting(const ScanSetup& setup, const SceneTriangles& scene, const ScanBeams& beams,
     BlockBeams& block, BeamSampler& sampler, const BeamReceiver& receiver, BeamAir& air,
     std::function<bool()> wanted);
@@ -54,25 +54,25 @@ public:
   /// Light beams even where bounds show that nothing can be perceived.
   void lightAll() { this->LightsAll = true; }
 
-  /// Light the samples of a beam of the block, if it has any, and add to `trace` what is found.
+  /// Light the samples of a beam of the block, and add new hits and paths to `trace`.
   /// @return false if nothing of the beam can be perceived; units and paths are incomplete then
   bool light(std::size_t beam, BeamTrace& trace);
 
   // Results for the beam lit last.
-  const BeamSamples* samples() const { return this->Lit; } ///< null if it has none
+  const BeamSamples* samples() const { return this->Lit; } ///< null without samples
   RangeUnitAccumulator& units() { return this->Units; }
   /// Energies of the direct echoes of the samples, J; empty if nothing can be perceived.
   const std::vector<double>& energies() const { return this->Energies; }
   const std::vector<SecondaryPath>& paths() const { return this->Paths; }
-  /// Rays from which paths start; null if none do.
+  /// Rays from which paths start; null without such rays.
   const BeamSamples* starts() const { return this->Starts; }
   bool raysAreLit() const { return this->Lit == this->Starts; }
-  const CellSamples* cells() const { return this->Cells; } ///< null if it is not in cells
-  const PolygonQuadrature& quadrature() const { return this->Quadrature; } ///< if it is integrated
-  /// True if a direct echo arrives outside the gate, and nothing inside.
+  const CellSamples* cells() const { return this->Cells; } ///< null if the beam has no cells
+  const PolygonQuadrature& quadrature() const { return this->Quadrature; } ///< of integrated beams
+  /// True if a direct echo arrives outside the gate, and none inside.
   bool isOutsideGate() const;
   BeamAir& air() { return this->Air; }
-  /// Spectral radiance that the beam looks at, W/(m2 sr nm) (Background.h).
+  /// Spectral radiance in the beam, W/(m2 sr nm) (Background.h).
   double radiance() const { return this->Radiance; }
   double lost() const { return this->Lost; }              ///< J, see BeamReport
   std::uint32_t skipped() const { return this->Skipped; } ///< see BeamReport
@@ -105,16 +105,16 @@ private:
 
   // The beam being lit.
   const BeamSamples* Lit = nullptr;    ///< samples of the direct echo
-  const BeamSamples* Starts = nullptr; ///< rays from which paths start; null if none do
+  const BeamSamples* Starts = nullptr; ///< rays from which paths start; null: none
   // Empty, for beams whose paths start from no ray.
   const BeamSamples NoStarts;
   const BeamRays NoRays;
   const SampleGeometry NoGeometry;
   const CellSamples* Cells = nullptr; ///< null if the beam is not in cells
-  /// Surfaces that the beam sees, for mirror paths by regions; with hidden parts if it is in cells.
-  /// Null: mirror paths start from the rays.
+  /// Surfaces that the beam sees, for mirror paths by regions; with hidden parts if the beam is in
+  /// cells. Null: mirror paths start from the rays.
   const VisiblePolygons* Surfaces = nullptr;
-  bool MayReflectTwice = false; ///< an integrated beam may have paths over two reflections
+  bool MayReflectTwice = false; ///< an integrated beam may have paths with two reflections
   Throughput OfLit;             ///< throughputs of the direct echoes of `Lit`
   Throughput OfStarts;          ///< throughputs at `Starts`, if these are not `Lit`
   std::vector<double> Energies; ///< energies of the direct echoes, J

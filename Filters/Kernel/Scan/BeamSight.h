@@ -1,16 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file BeamSight.h
- * @brief Finds what one beam sees: triangles, their shares of its solid angle, their energies.
+ * @brief Finds the triangles that one beam sees, their shares of its solid angle, and their
+ * energies.
  *
  * The beam goes through the stages of a scan (BeamSimulator.h), without noise and limits, and its
  * samples are summed by triangle. Movers stand where they are at the beam's time. Shares of a
  * Gaussian beam are those of a uniform beam with the same outline. Energies are those of direct
- * echoes from all ranges, without paths over two reflections and without light from the air.
+ * echoes from all ranges, without paths with two reflections and without light from the air.
  *
  * Source: none.
- * Valid: shares are of the solid angle for round beams, of the area of the beam's plane for others
- * (BeamShape.h). They are as exact as the samples: few triangles are integrated, more are sampled.
+ * Valid: shares of a round beam are shares of its solid angle, those of other beams shares of the
+ * area of the beam's plane (BeamShape.h). They are as exact as the samples: few triangles are
+ * integrated, more are sampled.
  * Test: Testing/Python/TestBeamView.py.
  */
 #ifndef avianlidar_BeamSight_h
@@ -34,10 +36,10 @@ struct SeenSurface
   int objectId = 0;
   int materialId = 0;
   double share = 0.0;    ///< share of the beam's solid angle
-  double weight = 0.0;   ///< share of the pulse's energy that arrives there
+  double weight = 0.0;   ///< share of the pulse's energy that reaches the surface
   double energy = 0.0;   ///< energy received, J
-  double range = 0.0;    ///< mean range over the energy that arrives, m
-  double cosine = 0.0;   ///< mean cosine of incidence over the same energy
+  double range = 0.0;    ///< mean range, weighted with the energy that arrives, m
+  double cosine = 0.0;   ///< mean cosine of incidence, with the same weights
   double nearest = 0.0;  ///< least range, m
   double farthest = 0.0; ///< largest range, m
 };
@@ -48,11 +50,11 @@ std::vector<SeenSurface> sightAlong(const ScanSetup& setup, const ScanBeams& bea
   std::size_t beam, const std::function<bool()>& wanted = {});
 
 /// Directions along the outline of a beam, not normalised: their component along the axis is 1. A
-/// round or elliptic outline has 64.
+/// round or elliptic outline has 64 directions.
 std::vector<Vec3> outlineOf(const BeamFrame& frame);
 
-/// The part of a surface within an outline (outlineOf()) and between its nearest and farthest
-/// range, as corners relative to the apex, m; empty if there is no such part.
+/// The part of a surface within an outline (outlineOf()) and between the surface's nearest and
+/// farthest range, as corners relative to the apex, m; empty if there is no such part.
 std::vector<Vec3> partWithin(
   const BeamFrame& frame, const std::vector<Vec3>& outline, const SeenSurface& surface);
 }

@@ -5,13 +5,13 @@
  *
  * 1. Tracing (ScanBlock.h) finds what all beams of the block see, unless an earlier run found it.
  * 2. Lighting (BeamLighting.h) sums the energies of all paths of one beam in range units. It is
- *    left out where a scan differs from the one before in noise alone (LitBeam.h).
+ *    left out where a scan differs from the scan before only in noise (LitBeam.h).
  * 3. BeamEchoes.h adds noise and makes returns. A beam without hits needs this stage only if noise
  *    may raise a false alarm.
  *
  * Source: paper, Algorithm 2.
- * Differs: a block of beams is traced together, and lit from what is kept.
- * Valid: as its three stages.
+ * Differs: a block of beams is traced together, and lit from kept hits.
+ * Valid: as the three stages.
  * Test: TestScan.cxx, TestEchoClosedForms.cxx.
  */
 #ifndef avianlidar_BeamSimulator_h
@@ -25,15 +25,15 @@
 
 namespace avianlidar
 {
-/// Simulates blocks of beams. One per thread; setup and beams must outlive it. The setup must not
-/// change; a beam may change until it is traced.
+/// One per thread; setup and beams must outlive this. The setup must not change; a beam may change
+/// until it is traced.
 class BeamSimulator
 {
 public:
   /// @param keepsLight keep lit beams where noise matters or something moves
   /// @param wanted called every 4096 steps within a beam, and every 512 units for which noise is
   /// drawn; if it returns false, WorkStopped is thrown
-  /// @param sampler draws the rays of the setup's sensor, sampling and N; must outlive this
+  /// @param sampler draws rays for the sensor, sampling and N of the setup; must outlive this
   BeamSimulator(const ScanSetup& setup, const ScanBeams& beams, bool keepsLight,
     BeamSampler& sampler, std::function<bool()> wanted = {});
   BeamSimulator(const BeamSimulator&) = delete;
@@ -54,13 +54,13 @@ public:
   /// report.
   void light(std::size_t beam, BeamTrace& trace, std::vector<Echo>& echoes, BeamReport& report);
 
-  /// Light beams even where bounds show that nothing can be perceived, for users of lighting().
+  /// See BeamLighting::lightAll().
   void lightAll() { this->Lighting.lightAll(); }
 
-  /// Mean light, J, that the air of the beam lit last returns in a unit and a threshold may follow.
+  /// Mean light that a threshold may follow from the air in a unit of the beam lit last, J.
   double followedIn(std::int64_t unit) { return this->Air.followed(unit); }
 
-  /// What the beam lit last received.
+  /// Results for the beam lit last.
   const BeamLighting& lighting() const { return this->Lighting; }
 
 private:

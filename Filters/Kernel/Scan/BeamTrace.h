@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file BeamTrace.h
- * @brief What is kept of one beam: the geometry of its rays and paths, which does not depend on
- * energies, and its lit beam.
+ * @brief Data kept for one beam: the geometry of its rays and paths, which does not depend on
+ * energies, and its energies (LitBeam.h).
  *
  * Each part is found when it is first needed. A scan with other coefficients, limits, noise or
- * attenuation traces nothing that is kept. A beam that meets nothing takes 72 bytes, a hit 37, a
- * connection of two hits 81.
+ * attenuation traces nothing that is kept. A beam that meets nothing takes 72 bytes, each hit takes
+ * 37, and each connection of two hits takes 81.
  *
  * Source: none.
  * Valid: geometry for one traceKey() (TraceCache.h), `lit` for one LightKey.
@@ -45,13 +45,13 @@ using BeamView = std::variant<std::monostate, EmptyView, std::unique_ptr<Visible
 struct BeamTrace
 {
   BeamView view;
-  /// Hits of its rays, from which paths over two reflections start. Null if no ray hits anything,
-  /// and in an integrated beam until first needed.
+  /// Hits of the beam's rays, from which paths with two reflections start. Null if no ray hits
+  /// anything, and in an integrated beam until first needed.
   std::unique_ptr<BeamSamples> hits;
   std::unique_ptr<SecondaryTrace> secondary; ///< null until first needed
   std::unique_ptr<LitBeam> lit;              ///< null unless kept, see LitBeam.h
   TraceCounters counters;                    ///< cost of all tracing so far
-  std::size_t held = 0;                      ///< heldBytes() after it was last lit
+  std::size_t held = 0;                      ///< heldBytes() when the beam was last lit
 
   DirectEcho direct() const { return static_cast<DirectEcho>(this->view.index()); }
   /// Null unless the beam is integrated.

@@ -3,7 +3,7 @@
  * @file BlockBeams.h
  * @brief The beams of a block: frames, rays, the hits of rays, and the tracer set to one beam.
  *
- * Each value is made when a stage first asks for it, so that beams which need no rays draw none.
+ * Each value is made when a stage first asks for it, so no rays are drawn for beams that need none.
  *
  * Valid: a value depends only on the beam and the arguments of the constructor, not on the order of
  * the calls.
@@ -25,7 +25,7 @@
 
 namespace avianlidar
 {
-/// One per thread; the constructor's arguments must outlive it.
+/// One per thread; the constructor's arguments must outlive this.
 class BlockBeams
 {
 public:
@@ -44,15 +44,15 @@ public:
   /// Move the hits of the beam's rays to its trace.
   void takeHits(std::size_t beam, BeamTrace& trace);
 
-  /// Hits from which connections start. Those of an integrated beam lie on its polygons, one for
-  /// each ray that meets one, and are kept in the trace.
+  /// Hits from which connections start. The hits of an integrated beam lie on its polygons, one for
+  /// each ray that meets a polygon, and are kept in the trace.
   const BeamSamples& pathStartsOf(std::size_t beam, BeamTrace& trace);
 
-  /// Directions and surfaces of the beam's hits. Valid until it is called for another beam.
+  /// Directions and surfaces of the beam's hits. Valid until a call for another beam.
   const SampleGeometry& geometryOf(std::size_t beam, const BeamSamples& hits);
 
   BeamTracer& tracer() { return this->Tracer; }
-  /// The tracer, set to the beam. Counters begin at 0. Valid until it is called for another beam.
+  /// The tracer, set to the beam. Counters begin at 0. Valid until a call for another beam.
   BeamTracer& tracerOf(std::size_t beam);
 
   /// Cost of the beam in this run.

@@ -3,13 +3,13 @@
  * @file CoincidentObjects.h
  * @brief Finds the objects that a scan sees in place of others with coincident faces.
  *
- * Triangle numbers alone decide which of two coincident faces is seen. On a plane with such faces a
- * ray goes to the centroid of each triangle (at most MostRaysOfPlane, evenly chosen). If it ends on
- * the plane, a second ray ignores the triangle that it hit. Coincident faces behind others, such as
- * the common wall of two buildings, do not count.
+ * Only triangle numbers decide which of two coincident faces is seen. On a plane with such faces a
+ * ray goes to the centroid of each triangle (at most MostRaysOfPlane, evenly chosen). If the ray
+ * ends on the plane, a second ray ignores the triangle that the first one hit. Coincident faces
+ * behind others, such as the common wall of two buildings, do not count.
  *
  * Source: none.
- * Valid: names the objects that rays to centroids find, not all.
+ * Valid: finds only the objects that rays to centroids hit.
  * Test: TestCoincidentFaces.cxx.
  */
 #ifndef avianlidar_CoincidentObjects_h
@@ -24,7 +24,7 @@
 
 namespace avianlidar
 {
-/// A plane (CollisionTree::planeOwners) and a beam that sees a triangle of it.
+/// A plane (CollisionTree::planeOwners) and a beam that sees a triangle of the plane.
 struct SeenPlane
 {
   std::uint32_t owner;
@@ -39,7 +39,7 @@ struct SeenPlane
 void addSeenPlanes(const CollisionTree& tree, const BeamTrace& trace, std::size_t beam,
   std::vector<SeenPlane>& planes);
 
-/// Sort, and keep only the first beam of each plane.
+/// Sort planes, and keep only the first beam of each.
 void sortSeenPlanes(std::vector<SeenPlane>& planes);
 
 /// Coincident triangles that differ in object or material: one that is seen, one that it hides.

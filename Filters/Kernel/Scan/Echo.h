@@ -19,7 +19,6 @@ constexpr int ObjectOfAir = -2;
 // Echoes are compared as bytes, so padding is an error.
 #pragma GCC diagnostic push
 #pragma GCC diagnostic error "-Wpadded"
-/// One return of one beam.
 struct Echo
 {
   double range = 0.0;          ///< range on the beam's axis, m
@@ -31,11 +30,11 @@ struct Echo
   int numberOfReturns = 1;
   int objectId = -1; ///< object with the most energy; -1: false alarm, -2: air
   int materialId = -1;
-  double labelShare = 0.0; ///< share of object and material in the energy
+  double labelShare = 0.0; ///< share of the energy from this object and material
   /// Energy-weighted mean angle of incidence at the last surface, rad; NaN for a false alarm.
   double incidenceAngle = 0.0;
-  double background = 0.0;     ///< spectral radiance seen by the beam, W/(m2 sr nm)
-  double secondaryShare = 0.0; ///< share of the energy that came over two reflections
+  double background = 0.0;     ///< spectral radiance in the beam, W/(m2 sr nm)
+  double secondaryShare = 0.0; ///< share of the energy from paths with two reflections
 };
 #pragma GCC diagnostic pop
 }

@@ -5,7 +5,8 @@
  *
  * The error comes from the rays (StandardError.h), or from the cells and the rays from which paths
  * start. An integrated beam has a bound of the error of its direct echo, plus the standard error of
- * its paths. Where an aperture gathers the light of mirrors, the width of their lobes adds to it.
+ * its paths. Where an aperture gathers the light of mirrors, the width of their lobes adds to the
+ * error.
  *
  * Source: none.
  * Valid: NaN where StandardError.h has no estimate; for integrated beams the bound of
@@ -22,7 +23,7 @@
 
 namespace avianlidar
 {
-/// Errors of one beam after the other. The constructor's arguments must outlive it.
+/// Errors of one beam after the other. The constructor's arguments must outlive this.
 class EnergyErrors
 {
 public:
@@ -30,8 +31,9 @@ public:
   EnergyErrors(
     const ScanSetup& setup, const BeamLighting& lighting, StandardErrorEstimator& ofRays);
 
-  /// Standard error of the energy in a range unit, J. @param shares of the beam's contributions in
-  /// the unit @param paths number of contributions with a share; 0: a false alarm, without error
+  /// Standard error of the energy in a range unit, J. @param shares shares of the beam's
+  /// contributions in the unit @param paths number of contributions with a share; 0: a false alarm,
+  /// without error
   double of(const RangeShares& shares, std::uint32_t paths) const;
 
 private:

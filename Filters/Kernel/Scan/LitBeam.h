@@ -2,14 +2,15 @@
 /**
  * @file LitBeam.h
  * @brief Energies in range units and returns of a lit beam, kept for scans of the same beams that
- * differ in noise, or in movers in other beams, alone.
+ * differ only in noise or in movers in other beams.
  *
  * Noise decides which units form a return. Range, labels and standard error of a return follow from
- * its first, last and strongest unit. They are kept for the first MostReturns returns that differ
- * in these; for others the beam is lit again.
+ * its first, last and strongest unit. The values of the first MostReturns returns with different
+ * units are kept. For further returns the beam is lit again.
  *
  * Source: none.
- * Valid: for one LightKey and the samples of one trace. Echoes have the same bits without it.
+ * Valid: for one LightKey and the samples of one trace. Echoes have the same bits without a
+ * LitBeam.
  * Test: TestScanAgain.cxx.
  */
 #ifndef avianlidar_LitBeam_h
@@ -61,7 +62,7 @@ struct LightKey
   std::uint64_t numbers = 0; ///< hash of all other values
 };
 
-/// Set the key to that of a setup. @return false if it has changed
+/// Set the key of a setup. @return false if the key has changed
 bool updateKey(LightKey& key, const ScanSetup& setup);
 }
 

@@ -2,19 +2,19 @@
 /**
  * @file MovedBeams.h
  * @brief Finds the beams that movers may touch, and simulates each with the movers placed where
- * they are at its time.
+ * they are at the beam's time.
  *
  * Such a beam goes through the same stages as any other, but none of its results are kept. Results
- * kept from scans without movers stay for scans in which the movers are gone.
+ * of scans without movers stay for scans in which the movers are gone.
  *
- * Movers are found by spheres: about their paths for many beams, then for a block, and last about
- * their places when each beam is fired.
+ * Spheres around the paths of movers are tested, first for many beams, then for a block. For each
+ * beam, spheres around the places of movers are tested.
  *
  * Source: none. arXiv 2605.10457 also asks which beams a moving triangle can hit, instead of
  * building a tree again.
  * Valid: a mover at rest gives the same bits as its triangles at the end of the static mesh, except
- * for costs and where its faces coincide with others. Movers of equal content count in the order in
- * which they come.
+ * for costs and where its faces coincide with others. Movers of equal content keep the order of the
+ * input.
  * Test: TestMovedBeams.cxx.
  */
 #ifndef avianlidar_MovedBeams_h
@@ -32,11 +32,12 @@
 namespace avianlidar
 {
 /// Simulates the beams that movers may touch, block by block. One per thread; the constructor's
-/// arguments must outlive it.
+/// arguments must outlive this.
 class MovedBeams
 {
 public:
-  /// @param setup has movers @param beams have times @param sights find what each mover returns
+  /// @param setup with movers @param beams with times @param sights find the light that each mover
+  /// returns
   MovedBeams(const ScanSetup& setup, const ScanBeams& beams, BeamSampler& sampler,
     std::function<bool()> wanted, bool sights);
 
@@ -46,7 +47,8 @@ public:
   /// True if a beam of the block may touch a mover.
   bool isTouched(std::size_t beam) const { return !this->Touching[beam - this->First].empty(); }
 
-  /// Append the echoes of a beam with movers and what it receives of each, and fill its report.
+  /// Append the echoes of a beam with movers and the light that it receives from each mover, and
+  /// fill its report.
   void simulate(std::size_t beam, std::vector<Echo>& echoes, BeamReport& report,
     std::vector<MoverSight>& sights);
 

@@ -3,23 +3,23 @@
  * @file Receiver.h
  * @brief Makes returns from the energies in range units.
  *
- * Sums over paths (RangeUnits.h) plus noise (Noise.h) pass the dynamic range. A **return** is a
- * maximal run of consecutive perceived range units. Its range is the mean range (half the path
- * length) of its paths, weighted with the energies that they put into the run. A run of false
- * alarms has no paths. Its noise lies anywhere in each unit (BeamNoise::place()), and its range is
- * the mean of these places, weighted with the energies of the units.
+ * Energies are sums over paths (RangeUnits.h) plus noise (Noise.h), limited to the dynamic range. A
+ * **return** is a maximal run of consecutive perceived range units. Its range is the mean range
+ * (half the path length) of its paths, weighted with the energies that they put into the run. A run
+ * of false alarms has no paths. In each unit its noise has a random place (BeamNoise::place()), and
+ * its range is the mean of these places, weighted with the energies of the units.
  *
- * Where the air scatters (BeamAir.h), each unit receives light from it. A threshold that follows
- * the air subtracts the mean of this light, n_air, and lies as many deviations of the noise above
- * it as without air: n_T (1 + F n_air/sigma0^2)^(1/2). So every unit has the same probability of a
- * false alarm; only echoes of surfaces remain, and what drops return beyond their mean. A fixed
- * threshold subtracts nothing. All light counts for saturation in either case. No threshold follows
- * the leaves of trees: their light is treated like light from surfaces. Behind a surface the air
- * returns less light, by the share of the pulse that the surface has met.
+ * Where the air scatters (BeamAir.h), each unit receives light from the air. A threshold that
+ * follows the air subtracts the mean of this light, n_air, and lies as many standard deviations of
+ * the noise above this mean as without air: n_T (1 + F n_air/sigma0^2)^(1/2). So every unit has the
+ * same probability of a false alarm. Only echoes of surfaces remain, and light of drops beyond its
+ * mean. A fixed threshold subtracts nothing. All light counts for saturation in either case. No
+ * threshold follows the leaves of trees: their light is treated like light from surfaces. Behind a
+ * surface the light of the air is less by the share of the pulse that the surface has met.
  *
  * Source: paper, Sec. 2.4, Eq. 10-12.
- * Differs: the paper's literal reading, one point per perceived range unit at its centre, is
- * ReturnMode::RangeUnits.
+ * Differs: ReturnMode::RangeUnits takes the paper literally, with a point at the centre of each
+ * perceived range unit.
  * Valid: on a plane at any tilt the range of a return differs from the range on the axis by at most
  * theta0.5^2/4, relative. A range unit is c tau_s/2 long.
  * Test: TestReceiver.cxx.
@@ -54,7 +54,7 @@ struct ReceivedUnit
   std::int64_t index = 0;  ///< number m of the unit
   double energy = 0.0;     ///< Qrec, noise included, J
   double noise = 0.0;      ///< Qn, J
-  std::uint32_t paths = 0; ///< paths with a share in it; 0: a false alarm, or the air alone
+  std::uint32_t paths = 0; ///< number of paths with a share; 0: a false alarm, or only air
   double air = 0.0;        ///< part of `energy` from air that a threshold may follow, J
   double leaves = 0.0;     ///< part of `energy` from media that no threshold follows, J
   int medium = -1;         ///< object id of the medium with the largest part of `leaves`
@@ -70,10 +70,10 @@ struct Return
   double energyReceived = 0.0;   ///< Qrec of the strongest unit (Eq. 10), J
   double energy = 0.0;           ///< Qen of the strongest unit (Eq. 12), J
   double returnEnergy = 0.0;     ///< sum of Qrec over the run, J
-  bool hasLight = false;         ///< false: noise or air alone
+  bool hasLight = false;         ///< false: only noise or air
   double air = 0.0;              ///< sum of ReceivedUnit::air, J
   double leaves = 0.0;           ///< sum of ReceivedUnit::leaves, J
-  int medium = -1;               ///< object id in the unit with most of `leaves`
+  int medium = -1;               ///< ReceivedUnit::medium of the unit with most `leaves`
   double rangeOfLeaves = 0.0;    ///< mean range of the light in `leaves`, m
   double range = 0.0;            ///< m; see rangeOf()
   // Counted in the beam before ReturnMode selects returns.
@@ -85,21 +85,21 @@ struct Return
 class BeamReceiver
 {
 public:
-  /// @param wanted called every 512 units for which noise is drawn, over all beams; if it returns
-  /// false, WorkStopped is thrown
+  /// @param wanted called every 512 units for which noise is drawn, counted over all beams; if it
+  /// returns false, WorkStopped is thrown
   /// @param air media along each beam; must outlive this; null: no light from the air
   BeamReceiver(const Sensor& sensor, const NoisePlan& noise, std::int32_t seed, ReturnMode mode,
     std::int32_t revolution = 0, std::function<bool()> wanted = {}, BeamAir* air = nullptr);
 
   /// Receive a beam. @param units range units with light, ascending @param radiance spectral
-  /// radiance that the beam looks at, W/(m2 sr nm)
+  /// radiance in the beam, W/(m2 sr nm)
   void receive(std::uint64_t beam, const std::vector<RangeUnit>& units, double radiance);
 
-  /// Spectral radiance that the last beam looked at, W/(m2 sr nm).
+  /// Spectral radiance in the last beam, W/(m2 sr nm).
   double radiance() const { return this->Radiance; }
 
-  /// Range of a return, m. Return::range holds it for returns without light and in the mode
-  /// RangeUnits. @param accumulator range units of the beam's paths
+  /// Range of a return, m. Return::range holds it for returns without light, and for all in the
+  /// mode RangeUnits. @param accumulator range units of the beam's paths
   double rangeOf(const Return& run, RangeUnitAccumulator& accumulator) const;
 
   /// The range that the receiver reports for a return at `range`, m: with noise, walk and quantum

@@ -5,8 +5,8 @@
  *
  * Source: paper, Algorithm 2.
  * Differs: blocks of beams run in parallel; geometry and lit beams are kept between runs.
- * Valid: echoes have the same bits for any number of threads, any order and division of the beams,
- * any tree, and any state of the cache.
+ * Valid: echoes and reports have the same bits for any number of threads; echoes also for any order
+ * and division of the beams, any tree, and any state of the cache.
  * Test: TestScan.cxx, TestScanAgain.cxx, TestScanSweep.cxx, TestScanReport.cxx.
  */
 #ifndef avianlidar_Scan_h
@@ -36,13 +36,12 @@ struct ScanResult
 };
 
 /**
- * Simulate every beam. Echoes and reports have the same bits for any number of threads. The state
- * of the cache changes no echo; in reports it may change costs and the bound of what the
- * light-energy constraint drops.
+ * Simulate every beam. The state of the cache may change costs in reports, and the bound of what
+ * the light-energy constraint drops.
  * @param threads number of threads; 0: OpenMP's choice
  * @param cache beams kept from earlier runs; updated
  * @param maximumBytes most memory for kept beams, bytes; other beams are traced again in later runs
- * @param sights true: find what beams receive of each mover, for reportMovers()
+ * @param sights true: find the light that beams receive from each mover, for reportMovers()
  * @return false if keepGoing returned false; result and cache are then empty
  */
 bool simulateScan(const ScanSetup& setup, const ScanBeams& beams, int threads, TraceCache& cache,

@@ -83,21 +83,21 @@ struct BeamReport
   double range = 0.0;              ///< range of the strongest return, m; NaN without one
   TraceCounters counters;          ///< cost of all tracing for what is kept of the beam
   std::uint64_t raysTracedNow = 0; ///< rays traced in this run; 0 if all was kept
-  std::uint32_t skipped = 0;       ///< bits of SkippedPart, but for noise
-  /// Bound of the energy that was left out, J; paths known to lead nowhere do not count. For a beam
-  /// left out as a whole: bound of its strongest range unit, less than Qlow.
+  std::uint32_t skipped = 0;       ///< bits of SkippedPart, except noise
+  /// Bound of the energy that was left out, J; paths known to carry nothing do not count. For a
+  /// beam left out as a whole: bound of the energy of its strongest range unit, less than Qlow.
   double lost = 0.0;
 };
 
-/// Light, without noise, that one beam receives of one mover on paths with one reflection.
+/// Light, without noise, that one beam receives from one mover on paths with one reflection.
 struct MoverSight
 {
   std::uint32_t mover;
   std::size_t beam;
   double energy;      ///< energy of the strongest range unit, J
-  double probability; ///< probability that this light alone makes a range unit perceived
+  double probability; ///< probability that a range unit with only this light is perceived
   double offAxis;     ///< angle from the beam's axis to the mover's position, rad
-  bool held;          ///< true if that position lies in the beam
+  bool held;          ///< true if the mover's position lies in the beam
 };
 }
 

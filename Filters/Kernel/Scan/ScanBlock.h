@@ -3,14 +3,14 @@
  * @file ScanBlock.h
  * @brief Finds what each beam of a block sees, unless it is kept from an earlier run.
  *
- * The triangles that may enter each beam (Candidates.h) give its view (ViewFinder.h). Rays are
- * traced through the tree (BeamTracer.h) where settings ask for them, where a view needs them, and
- * where paths over two reflections start.
+ * The view of a beam (ViewFinder.h) is found from the triangles that may enter the beam
+ * (Candidates.h). Rays are traced through the tree (BeamTracer.h) where settings ask for them,
+ * where a view needs them, and where paths with two reflections start.
  *
  * Source: paper, Algorithm 2 and Sec. 3.2.
  * Differs: see the headers named above.
- * Valid: hits depend only on the beam and the inputs of traceKey(), views as in ViewFinder.h. Both
- * are the same for any division of the beams and any state of the cache.
+ * Valid: hits depend only on the beam and the inputs of traceKey(); for views see ViewFinder.h.
+ * Hits and views are the same for any division of the beams and any state of the cache.
  * Test: TestScan.cxx, TestScanAgain.cxx, TestBeamCells.cxx.
  */
 #ifndef avianlidar_ScanBlock_h
@@ -28,7 +28,7 @@
 
 namespace avianlidar
 {
-/// Traces blocks of beams. One per thread; the constructor's arguments must outlive it.
+/// Traces blocks of beams. One per thread; the constructor's arguments must outlive this.
 class ScanBlock
 {
 public:
@@ -52,7 +52,7 @@ private:
   BeamCandidates Candidates;
   ViewFinder Views;
 
-  // Frames and numbers of the beams being traced, then of those that need rays.
+  // Frames and numbers of the beams being traced, then of the beams that need rays.
   std::vector<BeamFrame> Frames;
   std::vector<std::size_t> Traced;
   std::vector<BeamFrame> FramesOfRays;

@@ -3,8 +3,7 @@
  * @file SceneSummary.h
  * @brief Largest reflectance, largest gain and checksum of all materials and ids of a scene.
  *
- * They cost a pass over materials (32 bytes per triangle) or ids (8 bytes per triangle) when these
- * are not the vectors of the last setup.
+ * A new vector of materials (32 bytes per triangle) or of ids (8 bytes per triangle) costs a pass.
  *
  * Source: none.
  * Valid: any scene; equal content gives equal results.
@@ -19,7 +18,7 @@
 
 namespace avianlidar
 {
-/// Summarises one scene after another. Results depend on the last setup alone. Vectors of materials
+/// Summarises one scene after another. Results depend only on the last setup. Vectors of materials
 /// and ids are shared and constant, so the same vector needs no second pass.
 class SceneSummary
 {
@@ -33,8 +32,8 @@ public:
   /// Largest apertureGain() of the last setup, 1/sr.
   double largestGain() const { return this->Gain; }
 
-  /// Hash (XXH3, 64 bits) of the last scene: equal for equal geometry, materials and ids of all
-  /// triangles in their order, compared as bytes. @param geometry TriangleMesh::checksum()
+  /// Hash (XXH3, 64 bits) of the last scene. Equal bytes of geometry, materials and ids of all
+  /// triangles, in their order, have equal hashes. @param geometry TriangleMesh::checksum()
   std::uint64_t checksum(std::uint64_t geometry) const;
 
 private:
@@ -42,7 +41,7 @@ private:
   SharedVector<int> ObjectIds;
   SharedVector<int> MaterialIds;
   std::uint64_t Hash = 0; ///< hash of the materials
-  std::uint64_t Ids = 0;  ///< hash of both ids
+  std::uint64_t Ids = 0;  ///< hash of both vectors of ids
   double Reflectance = 0.0;
   double Gain = 0.0;
 };

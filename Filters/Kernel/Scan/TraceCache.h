@@ -5,7 +5,7 @@
  *
  * Source: none.
  * Valid: hits belong to one traceKey(), lit beams to one LightKey. Echoes do not depend on the
- * cache. An aborted run leaves it empty.
+ * cache. An aborted run leaves the cache empty.
  * Test: TestScanAgain.cxx, TestScanSweep.cxx.
  */
 #ifndef avianlidar_TraceCache_h
@@ -31,12 +31,11 @@ struct BeamKey
   }
 };
 
-/// Beams kept from earlier runs.
 struct TraceCache
 {
   std::uint64_t key = 0;  ///< traceKey()
   std::uint64_t scan = 0; ///< checksumOf() of the beams
-  bool stays = false;     ///< true if the beams are those of the run before
+  bool stays = false;     ///< true if the beams are the same as in the run before
   std::vector<BeamTrace> beams;
   std::vector<BeamKey> keys; ///< keys of `beams`
   /// Kept beams that are not in the present scan, such as those of another part of a sweep. They
@@ -61,8 +60,8 @@ private:
 /// Hash of ids, origins and directions, for ScanBeams::checksum.
 std::uint64_t checksumOf(const ScanBeams& beams);
 
-/// Hash of everything but the beam on which its geometry depends: mesh, beam shape, borders of
-/// media, source and sampling of samples, N, seed; where beams may be integrated or divided into
+/// Hash of all that the geometry of a beam depends on, besides the beam: mesh, beam shape, borders
+/// of media, source and sampling of samples, N, seed; where beams may be integrated or divided into
 /// cells also range units, gate and object ids.
 std::uint64_t traceKey(const ScanSetup& setup);
 }

@@ -5,12 +5,12 @@
  *
  * A beam that few triangles enter is integrated over the polygons that it sees (VisiblePolygons.h,
  * PolygonQuadrature.h). A beam that more triangles enter is divided into cells (BeamCells.h). Where
- * this takes too many strips, the rays of the beam are its samples.
+ * the cells have too many strips, the rays of the beam are its samples.
  *
  * Source: see the headers named above.
  * Differs: the paper draws N rays for every beam.
  * Valid: a view depends only on the beam, the triangles that enter it, the inputs of traceKey() and
- * the number of reflections: not on materials, limits or attenuation.
+ * the number of reflections, but not on materials, limits or attenuation.
  * Test: TestScan.cxx, TestScanAgain.cxx, TestBeamCells.cxx.
  */
 #ifndef avianlidar_ViewFinder_h
@@ -27,14 +27,14 @@
 namespace avianlidar
 {
 /// Finds the views of one beam after the other. One per thread; the constructor's arguments must
-/// outlive it.
+/// outlive this.
 class ViewFinder
 {
 public:
   ViewFinder(const ScanSetup& setup, const SceneTriangles& scene, BeamTracer& tracer);
 
   /// @param candidates all triangles that may enter the beam, each once, in any order
-  /// @param cost the cost of traced rays is added to it
+  /// @param cost increased by the cost of traced rays
   BeamView find(std::uint64_t beam, const BeamFrame& frame,
     const std::vector<std::uint32_t>& candidates, TraceCounters& cost);
 

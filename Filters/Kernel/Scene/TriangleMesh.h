@@ -35,14 +35,14 @@ struct TriangleMesh
     return this->points[this->triangles[triangle][c]];
   }
 
-  /// Hash (XXH3, 64 bits) of points and triangles: equal for equal content, on every machine of one
-  /// byte order.
+  /// Hash (XXH3, 64 bits) of points and triangles. Equal content has equal hashes on all machines
+  /// of the same byte order.
   std::uint64_t checksum() const
   {
     static_assert(sizeof(Vec3) == 3 * sizeof(double), "points must be packed to be hashed");
     static_assert(sizeof(this->triangles[0]) == 3 * sizeof(std::uint32_t),
       "triangles must be packed to be hashed");
-    // Seeded by the first hash, the second one changes if bytes move between arrays.
+    // The first hash seeds the second, so the result changes if bytes move between arrays.
     const std::uint64_t ofPoints =
       hashOf(this->points.data(), this->points.size() * sizeof(Vec3), this->points.size());
     return hashOf(

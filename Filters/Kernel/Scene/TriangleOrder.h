@@ -3,16 +3,16 @@
  * @file TriangleOrder.h
  * @brief An order of triangles that does not depend on the order in which they are given.
  *
- * Ties between coincident faces and the rounding of sums depend on the order of triangles. In this
- * order a surface gives the same echoes however it is divided among files, blocks or processes.
- * Triangles are sorted by object and, within an object, by the place of the middle of their longest
- * side on a Morton curve: neighbours in space are neighbours in memory, and the halves of a
- * rectangle, which share that side, follow each other (BeamTriangles.h joins them).
+ * Ties between coincident faces and the rounding of sums depend on the order of triangles. Sorted
+ * in this order, a surface gives the same echoes however it is divided among files, blocks or
+ * processes. Triangles are sorted by object and, within an object, by the middle of their longest
+ * side along a Morton curve, so neighbours in space are neighbours in memory. The two halves of a
+ * rectangle share their longest side and so follow each other (BeamTriangles.h joins them).
  *
  * Source: G. M. Morton, A Computer Oriented Geodetic Data Base, IBM, 1966.
- * Differs: 21 bits an axis; triangles in one place of the curve are ordered by that middle, by
- * their corners, and equal ones by material.
- * Valid: finite coordinates. Triangles that are equal in all of this keep their order.
+ * Differs: 21 bits an axis. Triangles at one place of the curve are ordered by the coordinates of
+ * the middle, then by their corners, then by material.
+ * Valid: finite coordinates. Triangles with equal keys keep their order.
  * Test: TestTriangleOrder.cxx.
  */
 #ifndef avianlidar_TriangleOrder_h
@@ -26,7 +26,7 @@
 
 namespace avianlidar
 {
-/// Numbers of the triangles in this order; empty if they are in it already.
+/// Numbers of the triangles in this order; empty if the triangles are sorted already.
 /// @param objectIds one per triangle @param materialIds likewise
 std::vector<std::uint32_t> triangleOrder(
   const TriangleMesh& mesh, const std::vector<int>& objectIds, const std::vector<int>& materialIds);

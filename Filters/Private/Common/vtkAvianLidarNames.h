@@ -1,40 +1,39 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file vtkAvianLidarNames.h
- * @brief Names and units of arrays of points and cells, which stand here only, and of field data
- * that several files use.
+ * @brief Declares the names and units of all point and cell arrays, and of the field data that
+ * several files use.
  *
- * Above each group stands where its arrays are, above each name its meaning: CMake/arrays_page.py
- * makes the table of Documentation/reference/arrays.md of both.
+ * A comment above each group says where its arrays are, and a comment above each name gives the
+ * meaning. CMake/arrays_page.py makes the table of Documentation/reference/arrays.md from these
+ * comments.
  *
- * Used by every filter, reader and test of the module; not installed. Names of coefficients of
- * materials follow from their table in Reflectance.h.
+ * Coefficients of materials take their names from MaterialCoefficients in Reflectance.h.
  */
 #ifndef vtkAvianLidarNames_h
 #define vtkAvianLidarNames_h
 
 namespace vtkAvianLidarArrays
 {
-/// A name with its unit. The unit is "1" for pure numbers: ratios, counts (return_number,
-/// number_of_returns, candidates, nodes_visited, rays_traced), choices and switches. It is "", and
-/// the array carries none, for identifiers (beam_id, laser_id, object_id, material_id, status,
-/// skipped, seeds, revolution, checksums) and text.
+/// A name with its unit. The unit is "1" for pure numbers: ratios, counts, choices and switches. It
+/// is "" for text and for identifiers, among them status, skipped, view, part and seeds; such an
+/// array has no unit label.
 struct Name
 {
   const char* name;
   const char* unit;
 };
 
-// Beams, and most of echoes and beam report (point data).
-/// column * channels + channel, unique over all pieces (vtkIdType)
+// Beams; echoes and beam report have most of these, too (point data).
+/// column * channels + channel, unique among all pieces (vtkIdType)
 constexpr Name BeamId{ "beam_id", "" };
-/// unit vector of the beam: east, north, up (3 components)
+/// unit vector of the beam: east, north, up
 constexpr Name Direction{ "direction", "1" };
-/// direction that the sensor reports; with sway or jitter (3 components)
+/// direction that the sensor reports; only with sway or jitter (3 components)
 constexpr Name ReportedDirection{ "reported_direction", "1" };
 /// channel (int)
 constexpr Name LaserId{ "laser_id", "" };
-/// from north (y), clockwise from above, 0 to below 36000
+/// angle from north (y), clockwise seen from above, 0 to below 36000
 constexpr Name Azimuth{ "azimuth", "0.01 deg" };
 /// elevation above the horizontal plane
 constexpr Name VerticalAngle{ "vertical_angle", "deg" };
@@ -60,17 +59,17 @@ constexpr Name UpperEnergyLimit{ "upper_energy_limit", "J" };
 constexpr Name ReceiverModel{ "receiver_model", "1" };
 /// wavelength of the light
 constexpr Name Wavelength{ "wavelength", "nm" };
-/// expected in a scan of empty sky
+/// false alarms expected in a scan of empty sky
 constexpr Name FalseAlarmsPerScan{ "false_alarms_per_scan", "1" };
-/// upper over lower limit, 10 log10 of electrons
+/// ratio of the upper to the lower limit, 10 log10 of electrons
 constexpr Name DynamicRange{ "dynamic_range", "dB" };
 /// names of assumed values (text)
 constexpr Name Assumed{ "assumed", "" };
 
 // Scan pattern (field data of beams and echoes).
-/// of the sensor: east, north, up (3 components)
+/// position of the sensor: east, north, up
 constexpr Name Position{ "position", "m" };
-/// yaw, pitch, roll (3 components)
+/// yaw, pitch, roll
 constexpr Name Orientation{ "orientation", "deg" };
 /// channels (int)
 constexpr Name NumberOfChannels{ "number_of_channels", "1" };
@@ -88,17 +87,17 @@ constexpr Name ChannelFiringTimes{ "channel_firing_times", "s" };
 constexpr Name BlankedSectors{ "blanked_sectors", "deg" };
 /// wedge angle of each prism
 constexpr Name PrismWedgeAngles{ "prism_wedge_angles", "deg" };
-/// index of each prism
+/// refractive index of each prism
 constexpr Name PrismRefractiveIndices{ "prism_refractive_indices", "1" };
-/// of each prism, clockwise as the sensor sees it
+/// rotation rate of each prism, clockwise as the sensor sees it
 constexpr Name PrismRotationRates{ "prism_rotation_rates", "Hz" };
-/// deflection of each prism at time 0: 0 up, 90 right
+/// direction of each prism's deflection at time 0: 0 up, 90 right
 constexpr Name PrismPhases{ "prism_phases", "deg" };
 /// elevation of the prisms' axis
 constexpr Name PrismAxisElevation{ "prism_axis_elevation", "deg" };
-/// of that axis about the vertical, clockwise from above
+/// rotation rate of the prisms' axis about the vertical, clockwise seen from above
 constexpr Name PrismAxisRotationRate{ "prism_axis_rotation_rate", "Hz" };
-/// first azimuth, and end (2 components)
+/// first azimuth, excluded end
 constexpr Name AzimuthRange{ "azimuth_range", "deg" };
 /// azimuth between columns
 constexpr Name AzimuthStep{ "azimuth_step", "deg" };
@@ -124,7 +123,7 @@ constexpr Name MotionSeed{ "motion_seed", "" };
 constexpr Name DisplayLength{ "display_length", "m" };
 
 // Surfaces (cell data and field data).
-/// 0 rigid, p: row p - 1 of `flap_` data (int)
+/// part of a mover: 0 rigid, p moves by row p - 1 of `flap_` data (int)
 constexpr Name Part{ "part", "" };
 /// object; in echoes -1 false alarm, -2 air (int)
 constexpr Name ObjectId{ "object_id", "" };
@@ -141,11 +140,11 @@ constexpr Name Medium{ "medium", "" };
 /// JSON of all media of the scene (text)
 constexpr Name Media{ "media", "" };
 constexpr Name SurfaceTexts[] = { ObjectNames, ObjectClasses, MaterialNames, Medium, Media };
-/// latitude, longitude, height above the WGS84 ellipsoid (3 components)
+/// latitude, longitude, height above the WGS84 ellipsoid
 constexpr Name GeodeticOrigin{ "geodetic_origin", "deg deg m" };
-/// of the lidar in the scene file (3 components)
+/// position of the lidar in the scene file (3 components)
 constexpr Name LidarPosition{ "lidar_position", "m" };
-/// whom to credit (text)
+/// credit that the source of the data demands (text)
 constexpr Name Attribution{ "attribution", "" };
 /// size and repairs of each object (text)
 constexpr Name SceneReport{ "scene_report", "" };
@@ -153,11 +152,11 @@ constexpr Name SceneReport{ "scene_report", "" };
 constexpr Name TreeChecksum{ "tree_checksum", "" };
 
 // Movers (field data) and trails (point, cell and field data).
-/// of each pose, rising, on the beams' clock
+/// time of each pose, rising, on the beams' clock
 constexpr Name PoseTime{ "pose_time", "s" };
 /// mover's origin in each pose (3 components)
 constexpr Name PosePosition{ "pose_position", "m" };
-/// unit quaternion w, x, y, z, mover to scene (4 components)
+/// unit quaternion w, x, y, z, mover to scene
 constexpr Name PoseOrientation{ "pose_orientation", "1" };
 /// point on each hinge (3 components)
 constexpr Name FlapHinge{ "flap_hinge", "m" };
@@ -175,7 +174,7 @@ constexpr Name Species{ "species", "" };
 constexpr Name SpeciesId{ "species_id", "" };
 /// name of each `species_id` (text)
 constexpr Name SpeciesNames{ "species_names", "" };
-/// of a position; in the tracker's field data of the cloud
+/// time of a position; in the tracker's field data: time of the cloud
 constexpr Name Time{ "time", "s" };
 
 // All outputs after an error (field data).
@@ -187,23 +186,23 @@ constexpr Name Error{ "error", "" };
 constexpr Name NodeId{ "node_id", "" };
 /// triangles below the node (int)
 constexpr Name Triangles{ "triangles", "1" };
-/// of the node, 0 at the root (int)
+/// depth of the node, 0 at the root (int)
 constexpr Name Depth{ "depth", "1" };
 
 // Echoes and beam report (point data).
-/// of the strongest range unit, cut at Qhigh (Eq. 12)
+/// energy of the strongest range unit, cut at Qhigh (Eq. 12)
 constexpr Name Energy{ "energy", "J" };
 /// energy received in the strongest range unit (Eq. 10)
 constexpr Name EnergyReceived{ "energy_received", "J" };
-/// received in all range units of the return
+/// energy received in all range units of the return
 constexpr Name ReturnEnergy{ "return_energy", "J" };
-/// of `energy_received`, or a bound of its error; NaN below 8 rays
+/// standard error of `energy_received` or, with view 2, a bound; NaN below 8 rays
 constexpr Name EnergyStdError{ "energy_std_error", "J" };
-/// in the range unit of `energy_received`, with noise; photon receivers
+/// photoelectrons in the range unit of `energy_received`, with noise; photon receivers only
 constexpr Name Photoelectrons{ "photoelectrons", "1" };
-/// photoelectrons over their standard deviation; photon receivers
+/// photoelectrons divided by their standard deviation; photon receivers only
 constexpr Name SignalToNoise{ "signal_to_noise", "1" };
-/// daylight that the beam sees; photon receivers with sunlight
+/// spectral radiance of daylight in the beam; photon receivers with sunlight only
 constexpr Name SeenRadiance{ "seen_radiance", "W/(m2 sr nm)" };
 /// standard deviation of the range, from noise
 constexpr Name DistanceStdError{ "distance_std_error", "m" };
@@ -211,35 +210,35 @@ constexpr Name DistanceStdError{ "distance_std_error", "m" };
 constexpr Name Intensity{ "intensity", "1" };
 /// range
 constexpr Name Distance{ "distance_m", "m" };
-/// in its beam, from 1, nearest first (int)
+/// number of the return in its beam, from 1, nearest first (int)
 constexpr Name ReturnNumber{ "return_number", "1" };
 /// returns of the beam (int)
 constexpr Name NumberOfReturns{ "number_of_returns", "1" };
-/// energy share of `object_id` and `material_id`
+/// share of the energy from this object and material
 constexpr Name LabelShare{ "label_share", "1" };
-/// at the last surface, energy-weighted; NaN for false alarms
+/// energy-weighted mean angle at the last surface; NaN for false alarms
 constexpr Name IncidenceAngle{ "incidence_angle", "deg" };
-/// energy share over two reflections; above 0.5 a ghost
+/// share of the energy from paths with two reflections; above 0.5 a ghost
 constexpr Name SecondaryShare{ "secondary_share", "1" };
 /// 0 echo, 1 no-surface, 2 below-Qlow, 3 saturated, 4 outside-gate; coverage: `status_names`
 constexpr Name Status{ "status", "" };
-/// 1 empty, 2 polygons, 3 cells, 4 rays, 5 crowded cells (int)
+/// 1 nothing, 2 polygons, 3 cells, 4 rays, 5 cells through the tree (int)
 constexpr Name View{ "view", "" };
-/// triangles tested, once a packet of up to 64 rays
+/// triangles tested, each counted once per packet of up to 64 rays
 constexpr Name Candidates{ "candidates", "1" };
 /// nodes of the tree visited
 constexpr Name NodesVisited{ "nodes_visited", "1" };
 /// rays traced
 constexpr Name RaysTraced{ "rays_traced", "1" };
-/// sum: 1 reflections, 2 beam, 4 noise, 8 range, 16 direct (int)
+/// parts left out, as a sum: 1 reflections, 2 beam, 4 noise, 8 range, 16 direct (int)
 constexpr Name Skipped{ "skipped", "" };
-/// most by which a range unit differs from the full model
+/// largest difference of a range unit from the full model
 constexpr Name SkippedBound{ "skipped_bound", "J" };
 
 // Beam view (cell data; columns of the table).
-/// of the beam, filled by the surface
+/// share of the beam that the surface fills
 constexpr Name SolidAngleShare{ "solid_angle_share", "1" };
-/// of the received energy, returned by the surface
+/// share of the received energy that the surface returns
 constexpr Name EnergyShare{ "energy_share", "1" };
 /// name of the object (text); sequence reader: class of a box
 constexpr Name Object{ "object", "" };
@@ -251,31 +250,32 @@ constexpr Name NearestRange{ "nearest_m", "m" };
 constexpr Name FarthestRange{ "farthest_m", "m" };
 
 // Mover report (point data).
-/// silhouette weighted by the cosine of incidence; NaN around the sensor
+/// silhouette weighted by the cosine of incidence; NaN if the mover's bounding sphere holds the
+/// sensor
 constexpr Name EffectiveArea{ "effective_area", "m2" };
 /// beams whose cones hold the mover's origin (int)
 constexpr Name NumberOfBeams{ "number_of_beams", "1" };
-/// when the first beam meets the mover
+/// time when the first beam meets the mover
 constexpr Name FirstTimestamp{ "first_timestamp", "us" };
-/// mover's origin then (3 components)
+/// mover's origin at `first_timestamp` (3 components)
 constexpr Name FirstPosition{ "first_position", "m" };
-/// when the last beam meets the mover
+/// time when the last beam meets the mover
 constexpr Name LastTimestamp{ "last_timestamp", "us" };
-/// mover's origin then (3 components)
+/// mover's origin at `last_timestamp` (3 components)
 constexpr Name LastPosition{ "last_position", "m" };
 /// echoes of the mover; tracker: points of the cluster (int)
 constexpr Name NumberOfEchoes{ "number_of_echoes", "1" };
-/// that one scan detects the target; clutter: that it is perceived
+/// probability that one scan detects the target or, in the clutter output, perceives the echo
 constexpr Name DetectionProbability{ "detection_probability", "1" };
 
 // Tracker (point and cell data).
-/// track; -1 for points of none (int)
+/// number of the track; -1 for points without a track (int)
 constexpr Name TrackId{ "track_id", "" };
 /// 1 if the track is confirmed (unsigned char)
 constexpr Name TrackConfirmed{ "track_confirmed", "1" };
-/// over ground, estimated (3 components)
+/// estimated velocity over ground (3 components)
 constexpr Name Velocity{ "velocity", "m/s" };
-/// xx, yy, zz, xy, yz, xz (6 components)
+/// xx, yy, zz, xy, yz, xz
 constexpr Name PositionCovariance{ "position_covariance", "m2" };
 /// 1 if the track is confirmed (unsigned char)
 constexpr Name Confirmed{ "confirmed", "1" };
@@ -285,13 +285,13 @@ constexpr Name Ended{ "ended", "1" };
 constexpr Name Hits{ "hits", "1" };
 
 // Coverage (point data, field data, columns of the table).
-/// that enough of several scans detect the bird
+/// probability that enough of several scans detect the bird
 constexpr Name TrackProbability{ "track_probability", "1" };
 /// detection probability in each pose
 constexpr Name PoseProbabilities{ "pose_probabilities", "1" };
 /// beams that hold the place, at most 255 (int)
 constexpr Name BeamsPerScan{ "beams_per_scan", "1" };
-/// of which half would be detected
+/// effective area at which half of the targets inside the beams would be detected
 constexpr Name MinimumEffectiveArea{ "minimum_effective_area", "m2" };
 /// name of each `status` (text)
 constexpr Name StatusNames{ "status_names", "" };
@@ -307,9 +307,9 @@ constexpr Name HeightFrom{ "height_from", "m" };
 constexpr Name HeightTo{ "height_to", "m" };
 /// places in the row
 constexpr Name Places{ "places", "1" };
-/// of the mean `detection_probability`
+/// standard error of the mean `detection_probability`
 constexpr Name DetectionStdError{ "detection_std_error", "1" };
-/// of the mean `track_probability`
+/// standard error of the mean `track_probability`
 constexpr Name TrackStdError{ "track_std_error", "1" };
 
 // Colours and coordinates (point data, field data).
@@ -317,13 +317,13 @@ constexpr Name TrackStdError{ "track_std_error", "1" };
 constexpr Name Hue{ "hue", "deg" };
 /// colour, 0 to 255 (3 unsigned chars)
 constexpr Name Rgb{ "rgb", "1" };
-/// geodetic, WGS84
+/// geodetic longitude, WGS84
 constexpr Name Longitude{ "longitude", "deg" };
-/// geodetic, WGS84
+/// geodetic latitude, WGS84
 constexpr Name Latitude{ "latitude", "deg" };
-/// above the WGS84 ellipsoid
+/// height above the WGS84 ellipsoid
 constexpr Name Height{ "height", "m" };
-/// negative in the south (int)
+/// UTM zone, negative in the south (int)
 constexpr Name UTMZone{ "utm_zone", "" };
 /// coordinate reference system of the points, WKT (text)
 constexpr Name CrsWkt{ "crs_wkt", "" };
@@ -335,7 +335,8 @@ constexpr Name ColumnAzimuths{ "column_azimuths", "deg" };
 constexpr Name RowElevations{ "row_elevations", "deg" };
 
 // Clutter filter (point data, field data).
-/// share of earlier scans with an echo here; table: persistence
+/// weighted share of earlier scans with an echo in the cell; of a point: the largest of the cells
+/// around it
 constexpr Name ClutterProbability{ "clutter_probability", "1" };
 /// 1 clutter, 0 may move (unsigned char)
 constexpr Name IsClutter{ "is_clutter", "1" };
@@ -343,29 +344,29 @@ constexpr Name IsClutter{ "is_clutter", "1" };
 constexpr Name ClutterCell{ "clutter_cell", "" };
 /// scans in memory (int)
 constexpr Name LearnedScans{ "learned_scans", "1" };
-/// property Window
+/// memory in scans
 constexpr Name ClutterWindow{ "clutter_window", "1" };
-/// property ClutterThreshold
+/// clutter probability from which a point is clutter
 constexpr Name ClutterThreshold{ "clutter_threshold", "1" };
-/// property RangeStep
+/// size of the cells in range
 constexpr Name ClutterRangeStep{ "clutter_range_step", "m" };
-/// property AzimuthStep
+/// size of the cells in azimuth
 constexpr Name ClutterAzimuthStep{ "clutter_azimuth_step", "deg" };
-/// property ElevationStep
+/// size of the cells in elevation
 constexpr Name ClutterElevationStep{ "clutter_elevation_step", "deg" };
-/// property RangeTolerance (int)
+/// cells nearer and farther than a point's own that count (int)
 constexpr Name ClutterRangeTolerance{ "clutter_range_tolerance", "1" };
-/// property AngularTolerance (int)
+/// cells beside, above and below a point's own that count (int)
 constexpr Name ClutterAngularTolerance{ "clutter_angular_tolerance", "1" };
-/// property WarmUp (int)
+/// first scans in which all points are clutter (int)
 constexpr Name ClutterWarmUp{ "clutter_warm_up", "1" };
-/// property Learning (int)
+/// 1 if scans are learned (int)
 constexpr Name ClutterLearning{ "clutter_learning", "1" };
-/// time of a cloud in s as ParaView writes it
+/// time of a cloud, s; without a unit label, as ParaView writes it
 constexpr Name TimeValue{ "TimeValue", "" };
 
 // Cloud comparison (point data, field data).
-/// to the nearest point of the other cloud
+/// distance to the nearest point of the other cloud
 constexpr Name NearestDistance{ "nearest_distance", "m" };
 /// Hausdorff distance (Eq. 19)
 constexpr Name HausdorffDistance{ "hausdorff_distance", "m" };
@@ -377,11 +378,11 @@ constexpr Name HausdorffReferenceToSimulated{ "hausdorff_reference_to_simulated"
 constexpr Name RMSESimulatedToReference{ "rmse_simulated_to_reference", "m" };
 /// rms distance from reference to simulated (Eq. 20)
 constexpr Name RMSEReferenceToSimulated{ "rmse_reference_to_simulated", "m" };
-/// mean of both directions
+/// mean of the two distances below
 constexpr Name ChamferDistance{ "density_aware_chamfer_distance", "1" };
-/// from simulated to reference
+/// Chamfer distance from simulated to reference
 constexpr Name ChamferSimulatedToReference{ "density_aware_chamfer_simulated_to_reference", "1" };
-/// from reference to simulated
+/// Chamfer distance from reference to simulated
 constexpr Name ChamferReferenceToSimulated{ "density_aware_chamfer_reference_to_simulated", "1" };
 }
 

@@ -87,7 +87,10 @@ std::string FaintPaths(const ScanSetup& setup)
   {
     const std::string most = OfLimit(setup, setup.needs.lightEnergyBound);
     return setup.settings.lightEnergyThreshold == avianlidar::LightEnergyThreshold::Limit
-      ? "left out below the lower energy limit: together at most " + most + " of a beam"
+      ? "left out below the lower energy limit" +
+        (setup.needs.lightEnergyBound > setup.sensor.lowerEnergyLimit
+            ? std::string()
+            : ": together at most " + most + " of a beam")
       : "left out: at most " + most + " in a range unit";
   }
   return std::string("followed to the end because ") +
@@ -141,6 +144,10 @@ std::string All(const ScanSetup& setup)
   if (!(setup.needs.skippedEnergyBound > 0.0))
   {
     return "nothing that the properties ask for";
+  }
+  if (setup.needs.skippedEnergyBound > setup.sensor.lowerEnergyLimit)
+  {
+    return "paths over two reflections below the lower energy limit"; // the bound says nothing
   }
   return "at most " + OfLimit(setup, setup.needs.skippedEnergyBound) +
     " in a range unit of a beam with an echo";
