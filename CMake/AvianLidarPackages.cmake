@@ -94,7 +94,7 @@ ${avianlidar_description}
 This package has the pages, and the scenes, plans and scripts to copy from.")
 install(FILES README.md CONTRIBUTING.md DESTINATION share/doc/avian-lidar-doc COMPONENT doc EXCLUDE_FROM_ALL)
 install(DIRECTORY Documentation Examples DESTINATION share/doc/avian-lidar-doc COMPONENT doc EXCLUDE_FROM_ALL
-  PATTERN site EXCLUDE PATTERN make_site.sh EXCLUDE PATTERN __pycache__ EXCLUDE)
+  PATTERN site EXCLUDE PATTERN make_site.sh EXCLUDE PATTERN page_tables.py EXCLUDE PATTERN __pycache__ EXCLUDE)
 
 # What makes paraview, pvpython, pvbatch and pvserver list the plugin and load it. They read one paraview.conf when they
 # start, a list of lists of plugins. Debian 13's names a list for other packages, /usr/share/paraview/plugins, which is ours.

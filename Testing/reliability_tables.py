@@ -10,9 +10,10 @@ import json
 import pathlib
 import sys
 
-import pages
-
 SOURCE = pathlib.Path(__file__).resolve().parents[1]
+sys.path.append(str(SOURCE / "Documentation"))
+import page_tables  # noqa: E402
+
 ALL, ALL_OF_KERNEL = "IO, Filters and Python", "kernel"
 
 
@@ -61,7 +62,7 @@ def fuzzing():
 
 def main(which, *arguments):
     for name, table in {"branches": branches, "fuzzing": fuzzing}[which](*arguments):
-        pages.put(name, table)
+        page_tables.put(name, table)
         print(table)
 
 

@@ -3,7 +3,7 @@
 """Tables (Markdown) and plots (PNG) of a run of the benchmarks, from its CSV files.
 
     report.py FOLDER            tables.md and *.png into the same folder
-    report.py FOLDER --pages    also into Documentation/ (Testing/pages.py), pictures as images/speed-*.png or images/paper-*.png
+    report.py FOLDER --pages    also into Documentation/ (page_tables.py), pictures as images/speed-*.png or images/paper-*.png
 """
 import argparse
 import pathlib
@@ -11,7 +11,7 @@ import shutil
 
 import paper_figures
 import plots
-from results import columns_of, count, pages, pivot, put_into_pages, ratio_text, read, seconds, table
+from results import columns_of, count, page_tables, pivot, put_into_pages, ratio_text, read, seconds, table
 
 AIRPORTS = ("Hongqiao", "Hongqiao, structures", "Hongqiao, everything", "Honolulu")
 
@@ -168,7 +168,7 @@ def main():
     if arguments.pages:
         put_into_pages({name: body(arguments.folder) for name, body in TABLES.items()})
         for picture in arguments.folder.glob("*.png"):
-            for target in pages.DOCUMENTATION.glob(f"images/*-{picture.name}"):
+            for target in page_tables.DOCUMENTATION.glob(f"images/*-{picture.name}"):
                 if target.name in (f"speed-{picture.name}", f"paper-{picture.name}"):
                     shutil.copyfile(picture, target)
 

@@ -11,8 +11,8 @@ import time
 
 import numpy as np
 
-sys.path.append(str(pathlib.Path(__file__).resolve().parents[1]))
-import pages  # noqa: E402
+sys.path.append(str(pathlib.Path(__file__).resolve().parents[2] / "Documentation"))
+import page_tables  # noqa: E402
 
 
 def read(folder, name):
@@ -83,4 +83,4 @@ def machine():
 
 def put_into_pages(tables):
     """Tables that have a row into the pages and CSV files that have them, which are returned."""
-    return {place for name, body in tables.items() if body.count("\n") > 2 for place in pages.put(name, body)}
+    return {place for name, body in tables.items() if body.count("\n") > 2 for place in page_tables.put(name, body)}

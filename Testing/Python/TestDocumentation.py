@@ -9,8 +9,8 @@ import unittest
 
 SOURCE = pathlib.Path(os.environ["AVIANLIDAR_SOURCE_DIR"])
 sys.path.insert(0, str(SOURCE / "Testing" / "Studies" / "paper"))
-sys.path.insert(0, str(SOURCE / "Testing"))
-import pages  # noqa: E402
+sys.path[:0] = [str(SOURCE / "Testing"), str(SOURCE / "Documentation")]
+import page_tables  # noqa: E402
 import reliability_tables  # noqa: E402
 import verdicts  # noqa: E402
 
@@ -60,7 +60,7 @@ class Documentation(unittest.TestCase):
 
     def test_hours_of_fuzzing_are_the_sums_of_the_runs(self):
         for name, table in reliability_tables.fuzzing():
-            self.assertEqual(pages.cells_of(table), pages.rows(name))
+            self.assertEqual(page_tables.cells_of(table), page_tables.rows(name))
 
 
 class Paper(unittest.TestCase):

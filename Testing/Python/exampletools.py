@@ -14,8 +14,8 @@ from cloudtools import field as strings  # noqa: F401
 from echotools import arrays  # noqa: F401
 
 SOURCE = os.environ["AVIANLIDAR_SOURCE_DIR"]
-sys.path.append(os.path.join(SOURCE, "Testing"))
-import pages  # noqa: E402
+sys.path.append(os.path.join(SOURCE, "Documentation"))
+import page_tables  # noqa: E402
 
 EXAMPLES = os.path.join(SOURCE, "Examples")
 OUTPUT = os.environ["AVIANLIDAR_TEST_OUTPUT_DIR"]
@@ -52,7 +52,7 @@ def parse_table(lines):
 
 def documented_table(name):
     """{column: {row: text}} of a table of Documentation/."""
-    head, *rows = pages.rows(name)
+    head, *rows = page_tables.rows(name)
     return {column: {row[0]: row[i + 1] for row in rows} for i, column in enumerate(head[1:])}
 
 

@@ -18,10 +18,10 @@ import sys
 
 HERE = pathlib.Path(__file__).resolve().parent
 FOLDERS = [folder for home in (HERE, HERE.parents[1] / "Examples") for folder in home.iterdir() if folder.is_dir()]
-sys.path[:0] = map(str, [*FOLDERS, HERE.parent / "Python", HERE.parent])
+sys.path[:0] = map(str, [*FOLDERS, HERE.parent / "Python", HERE.parents[1] / "Documentation"])
 BUILT = HERE.parents[1] / "build" / "paraview" / "python-path"
 sys.path += BUILT.read_text(encoding="utf-8").strip().split(":") if BUILT.exists() else []
-import pages as tables  # noqa: E402
+import page_tables  # noqa: E402
 import tools  # noqa: E402
 
 # Runs for pages, by name: {picture: name in Documentation/images}.
@@ -43,6 +43,7 @@ RUNS = {
     "labels": {"labels": "sequences-labels"},
     "media_time": {},
     "more_reflections": {},
+    "moved_scenes": {},
     "multiple_scattering": {},
     "others": {},
     "paper": {"facade": "paper-facade", "terminal-1": "paper-terminal-1"},
@@ -77,9 +78,9 @@ def pages(words):
         if run:
             importlib.import_module(name).main(["--out", str(out)])
         for picture, target in RUNS.get(name, {}).items():
-            shutil.copyfile(out / f"{picture}.png", tables.DOCUMENTATION / "images" / f"{target}.png")
+            shutil.copyfile(out / f"{picture}.png", page_tables.DOCUMENTATION / "images" / f"{target}.png")
         for table in out.glob("*.md"):
-            tables.put(name if table.stem == "table" else table.stem, table.read_text(encoding="utf-8"))
+            page_tables.put(name if table.stem == "table" else table.stem, table.read_text(encoding="utf-8"))
 
 
 def main(words):

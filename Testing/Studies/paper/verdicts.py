@@ -12,10 +12,10 @@ import pathlib
 import re
 import sys
 
-sys.path.append(str(pathlib.Path(__file__).resolve().parents[2]))
-import pages  # noqa: E402
+sys.path.append(str(pathlib.Path(__file__).resolve().parents[3] / "Documentation"))
+import page_tables  # noqa: E402
 
-PAGE = pages.DOCUMENTATION / "evidence" / "paper.md"
+PAGE = page_tables.DOCUMENTATION / "evidence" / "paper.md"
 VERDICTS = ("same", "in part", "corrected", "contradicted", "not reproducible")
 
 # How the claim of a row begins: the table and how the claims begin there whose verdicts decide.
@@ -55,7 +55,7 @@ def word_of(verdict):
 @functools.cache
 def table(name):
     """The rows of a generated table as lists of cells; empty if there is none."""
-    return pages.rows(name) if pages.places(name) else []
+    return page_tables.rows(name) if page_tables.places(name) else []
 
 
 def measured(name, *beginnings):

@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Tables that runs make for Documentation/. A table stands between <!-- table: NAME --> and <!-- end --> of a page or, where it
+"""Tables that runs make for these pages. A table stands between <!-- table: NAME --> and <!-- end --> of a page or, where it
 is long, in evidence/tables/NAME.csv."""
 import csv
 import io
 import pathlib
 import re
 
-DOCUMENTATION = pathlib.Path(__file__).resolve().parents[1] / "Documentation"
+DOCUMENTATION = pathlib.Path(__file__).resolve().parent
 
 
 def cells_of(markdown):

@@ -1,34 +1,24 @@
-#!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Scans an airport, moves it by its place in UTM, turns it about the vertical, the lidar with it, scans it again, and
-writes what differs into Documentation/evidence/tables/moved.csv:
+"""Scans an airport, moves it by its place in UTM, turns it about the vertical, the lidar with it, scans it again, and tells what
+differs: the shipped airport, and that with structures where AVIANLIDAR_SCENES_DIR names the folder of its scene. Half a minute.
 
-    PYTHONPATH=$(cat build/paraview/python-path) /usr/bin/python3 Testing/Stability/moved_scenes.py
-
-The shipped airport, and that with all structures if --scenes names the folder with zsss_structures.lidarscene.json
-(build/paraview/Testing/Scenes of a build with AVIANLIDAR_DATA_DIR; otherwise its rows stay). Half a minute."""
-import argparse
+    Testing/Studies/run.py moved_scenes
+"""
 import itertools
+import os
 import pathlib
-import sys
 
 import numpy as np
 from vtkmodules.vtkCommonTransforms import vtkTransform
 from vtkmodules.vtkFiltersGeneral import vtkTransformPolyDataFilter
 
 import avianlidar as al
+import tools
 from avianlidar._pipeline import update
+from running import AIRPORT, study
 
-ROOT = pathlib.Path(__file__).resolve().parents[2]
-sys.path.append(str(ROOT / "Testing"))
-import pages  # noqa: E402
-
-SHIPPED = ROOT / "Examples" / "airport" / "scene" / "hongqiao.lidarscene.json"
-HEADER = """\
-| scene | moved by | turned by (deg) | echoes, before | after | the same | energy differs by 1e-6 | by 1 % | by 10 % \
-| most | rms | most, in stated standard errors | range: most (m) | rms (m) | all energy |
-|---|---|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|
-"""
+HEAD = ("scene", "moved by", "turned by (deg)", "echoes, before", "after", "the same", "energy differs by 1e-6", "by 1 %", "by 10 %", "most",
+        "rms", "most, in stated standard errors", "range: most (m)", "rms (m)", "all energy")
 UTM = (351234.567, 3452345.678, 0.0)  # m
 UNIT = 0.75  # m, a range unit
 # The second is between grid north of zone 51 and true north at Hongqiao.
@@ -101,28 +91,19 @@ def rows(name, file):
     others += [("UTM", f"{turn:g}", airport.compare(UTM, turn)) for turn in TURNS]
     others.append(("-", "0, other rays", airport.compare(seed=1)))
     for place, turn, d in others:
-        yield (f"| {name} | {place} | {turn} | {d['before']:,} | {d['after']:,} | {d['same']:,} | {d['1e-6']:,} | {d['1 %']} | "
-               f"{d['10 %']} | {percent(d['most'])} | {percent(d['rms'])} | {d['errors']:.1f} | {d['range']:.2g} | "
-               f"{d['range rms']:.2g} | {percent(d['all'])} |\n")
+        yield (name, place, turn, f"{d['before']:,}", f"{d['after']:,}", f"{d['same']:,}", f"{d['1e-6']:,}", d["1 %"], d["10 %"], percent(d["most"]),
+               percent(d["rms"]), f"{d['errors']:.1f}", f"{d['range']:.2g}", f"{d['range rms']:.2g}", percent(d["all"]))
 
 
 def percent(share):
     return f"{100 * share:.{3 if abs(share) >= 0.995 else 2}g} %"
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--scenes", type=pathlib.Path, help="folder with zsss_structures.lidarscene.json")
-    arguments = parser.parse_args()
-    text = HEADER + "".join(rows("Hongqiao", SHIPPED))
-    structures = "Hongqiao, structures"
-    if arguments.scenes:
-        text += "".join(rows(structures, arguments.scenes / "zsss_structures.lidarscene.json"))
-    else:
-        text += "".join(f"| {' | '.join(row)} |\n" for row in pages.rows("moved") if row[0] == structures)
-    pages.put("moved", text)
-    return 0
-
-
-if __name__ == "__main__":
-    sys.exit(main())
+@study()
+def main(options):
+    found = list(rows("Hongqiao", AIRPORT))
+    structures = pathlib.Path(os.environ.get("AVIANLIDAR_SCENES_DIR", ""), "zsss_structures.lidarscene.json")
+    if structures.is_file():
+        found += rows("Hongqiao, structures", structures)
+    tools.leave(options.out, "moved", HEAD, found, 3)
+    return found
