@@ -90,7 +90,7 @@ def test_bad_input():
                 check_bad(number, f"{('beams', 'surfaces')[port]} {name} {how} {with_tree}", lambda with_tree=with_tree: scan(with_tree),
                           lambda filters, bad=bad: filters[0 if with_tree else 1].SetInputData(0 if with_tree else port, bad),
                           lambda filters, good=good: filters[0 if with_tree else 1].SetInputData(0 if with_tree else port, good), expected, name)
-    for which, name, value in ((1, "Preset", 4), (1, "RaysPerBeam", 0), (1, "AttenuationCoefficient", -1e-9), (1, "ReturnMode", 5),
+    for which, name, value in ((1, "Preset", 6), (1, "RaysPerBeam", 0), (1, "AttenuationCoefficient", -1e-9), (1, "ReturnMode", 5),
                                (1, "NumberOfThreads", -1), (0, "SplitRule", 4), (0, "BoundingVolume", -1), (0, "MaximumLeafSize", 0)):
         number += 1
         before = getattr(scan()[which], "Get" + name)()
