@@ -1,31 +1,32 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class vtkAvianLidarRangeImage
- * @brief The scan as an image, azimuth by elevation: the strongest return of every beam; with a
- * beam report its status and cost.
+ * @brief Makes an image of a scan, azimuth by elevation, from the strongest return of each beam.
  *
- * - Input port 0: vtkPolyData, echoes with `beam_id`, `distance_m`, `energy`, `energy_received` and
- *   `object_id`; there may be none.
- * - Input port 1: vtkPolyData, the beams with `azimuth` and `vertical_angle`, or `direction`, and,
- *   optionally, `beam_id` and, for a tilted sensor, `laser_id`: output 0 of the beam source, or
- *   output 1 of the echo filter (the beam report).
- * - Output port 0: vtkImageData, a point per column and row (upwards), with `distance_m`, `energy`
- *   (NaN without echo), `object_id` (int, -1), and of a beam report `status`, `skipped`,
- *   `candidates`, `nodes_visited`, `rays_traced` (-1 without a beam), `skipped_bound` (NaN). Field
- *   data: `column_azimuths`, `row_elevations`, and the limits of the receiver.
+ * - Input port 0, echoes: vtkPolyData with `beam_id`, `distance_m`, `energy`, `energy_received` and
+ *   `object_id`. It may be empty.
+ * - Input port 1, beams: vtkPolyData, output 0 of the beam source or output 1 of the echo filter
+ *   (the beam report). It has `azimuth` and `vertical_angle`, or `direction`. `beam_id` and, for a
+ *   tilted sensor, `laser_id` are optional.
+ * - Output port 0: vtkImageData, a point per column and row (upwards), with `distance_m` and
+ *   `energy` (NaN without an echo) and `object_id` (int, -1 without an echo). A beam report adds
+ *   `status`, `skipped`, `candidates`, `nodes_visited`, `rays_traced` (-1 without a beam) and
+ *   `skipped_bound` (NaN without a beam). Field data: `column_azimuths`, `row_elevations`, and the
+ *   limits of the receiver.
  *
- * Columns and rows are the distinct azimuths and elevations, to 1e-4 degrees, of the sensor's whole
- * scan if the beams come from a vtkAvianLidarBeamSource through the pipeline, else of the beams
- * given. Rows of a tilted sensor are channels. Grids, spacing and maps:
- * Documentation/guide/clouds.md.
+ * Columns and rows are the distinct azimuths and elevations, to 1e-4 degrees. They are those of the
+ * sensor's whole scan if the beams come from a vtkAvianLidarBeamSource through the pipeline, and
+ * otherwise those of the given beams. Rows of a tilted sensor are channels. For grids, spacing and
+ * maps see Documentation/guide/clouds.md.
  *
  * The size is known before execution, from the beam source or from Columns and Rows (then with
  * origin 0 and spacing 1 until the data come). MPI ranks share echoes and beams; each makes one
  * sub-extent.
  *
- * Missing or bad arrays, an echo of no beam, a `beam_id` twice, and beams that form no grid or
- * another than announced are an error that names array and port, with an empty image. No beams: an
- * image of the announced size without echoes.
+ * An error names array and port and leaves an empty image. Errors are missing or bad arrays, an
+ * echo without its beam, a `beam_id` that two beams have, beams that do not form a grid, and a grid
+ * whose size is not the announced one. Without beams the image has the announced size and no
+ * echoes.
  *
  * @code
  * image->SetInputConnection(0, echoes->GetOutputPort(0));
@@ -54,13 +55,13 @@ public:
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
   ///@{
-  /** Columns of the image for beams that come from no beam source; 0, the default: automatic. */
+  /** Number of columns, for beams that are not from a beam source. Default 0: automatic. */
   vtkSetClampMacro(Columns, int, 0, VTK_INT_MAX);
   vtkGetMacro(Columns, int);
   ///@}
 
   ///@{
-  /** Rows of the image for beams that come from no beam source; 0, the default: automatic. */
+  /** Number of rows, for beams that are not from a beam source. Default 0: automatic. */
   vtkSetClampMacro(Rows, int, 0, VTK_INT_MAX);
   vtkGetMacro(Rows, int);
   ///@}

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file SceneBuilder.h
- * @brief From a scene file to placed triangles with materials.
+ * @brief Builds placed triangles with materials from a scene file.
  */
 #ifndef AvianLidarSceneBuilder_h
 #define AvianLidarSceneBuilder_h
@@ -15,26 +15,26 @@ namespace avianlidar::scene
 struct BuiltScene
 {
   Scene description;
-  /// In the order of the file, in metres east, north and up; triangles carry material ids.
+  /// Parts in the order of the file, in metres east, north and up. Triangles carry material ids.
   std::vector<Part> parts;
-  /// What was read, a line each.
+  /// Lines on what was read.
   std::vector<std::string> report;
-  /// What is legal but looks like a mistake.
+  /// Sentences on legal input that looks like a mistake.
   std::vector<std::string> warnings;
 };
 
 /**
- * The parts of a scene by name, without triangles: for pieces of it that are empty. Of the files
- * that it names only footprints that become several parts are read, and what they stand on. No
- * report, no warnings; else as BuildScene().
+ * Find the parts of a scene without their triangles, for pieces of the scene that are empty. Only
+ * footprints that become several parts are read, and the objects on which these footprints stand.
+ * The report and the warnings are empty. Arguments and errors are those of BuildScene().
  */
 BuiltScene OutlineScene(const std::string& file, const std::function<bool(double)>& progress,
   const std::string& text = {});
 
 /**
- * Read all of a scene, each mesh file once; `text`, if not empty, stands for the contents of the
- * file. `progress` gets the share that is done, and returns
- * whether to go on. Throws Error (file, key and reason) or WorkStopped.
+ * Read a whole scene, and each mesh file once. `text`, unless empty, replaces the contents of the
+ * scene file. `progress` gets the share of the work that is done, and returns false to stop the
+ * work. Throws Error (file, key and reason) or WorkStopped.
  */
 BuiltScene BuildScene(const std::string& file, const std::function<bool(double)>& progress,
   const std::string& text = {});

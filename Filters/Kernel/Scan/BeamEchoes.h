@@ -100,8 +100,8 @@ public:
   {
   }
 
-  /// Set the labels of an echo. @param samples null without samples @param paths paths with two
-  /// reflections; their contributions follow those of the samples
+  /// Set the labels of an echo. @param samples null if the beam has none @param paths paths with
+  /// two reflections; the numbers of their contributions begin after those of the samples
   void label(const RangeShares& shares, const BeamSamples* samples,
     const std::vector<SecondaryPath>& paths, Echo& echo);
 
@@ -125,12 +125,12 @@ public:
   BeamEchoes(const ScanSetup& setup, BeamLighting& lighting, BeamReceiver& receiver,
     StandardErrorEstimator& ofRays);
 
-  /// Append the echoes of the beam lit last. @param keep gets the values of returns that do not
-  /// depend on noise; may be null @param report out: status and range
+  /// Append the echoes of the beam lit last. @param keep gets those values of the returns that do
+  /// not depend on noise; may be null @param report out: status and range
   void receive(std::uint64_t beam, LitBeam* keep, std::vector<Echo>& echoes, BeamReport& report);
 
-  /// Append the echoes of a beam lit in an earlier scan. @param report out: status, range and what
-  /// was left out @return false, with echoes and report unchanged, if `known` lacks a return
+  /// Append the echoes of a beam lit in an earlier scan. @param report out: status, range, lost and
+  /// skipped @return false, with echoes and report unchanged, if `known` lacks a return
   bool receiveAgain(
     std::uint64_t beam, const LitBeam& known, std::vector<Echo>& echoes, BeamReport& report);
 

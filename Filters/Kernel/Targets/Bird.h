@@ -3,11 +3,12 @@
  * @file Bird.h
  * @brief A bird as closed surfaces: a body and two wings.
  *
- * The body is an ellipsoid of revolution, 0.65 of the bird's length, with the frontal area S_b =
- * 0.0129 m^0.614 m^2 of passerines or 0.00813 m^0.666 m^2 of others, m the mass in kg. The wings
- * are flat plates, together 0.85 of the wing area, hinged at the sides of the body at its middle,
- * with an angle of attack of 6 degrees; they flap by 35 degrees as a sine, or are held 5 degrees up
- * in a glide. Their thickness is 0.001 of their chord.
+ * The body stands for an ellipsoid of revolution, whose length is 0.65 of the bird's length. Its
+ * frontal area is S_b = 0.0129 M^0.614 m^2 for passerines and 0.00813 M^0.666 m^2 for others, with
+ * the mass M in kg. The wings are flat plates with an angle of attack of 6 degrees. Together they
+ * have 0.85 of the wing area, and their thickness is 0.001 of their chord. They are hinged at the
+ * sides of the body, at its middle. They flap by 35 degrees as a sine, or are held 5 degrees up in
+ * a glide.
  *
  * The body is a polyhedron of 48 triangles that has the effective area of the ellipsoid (silhouette
  * weighted by the cosine of incidence) from every direction. For any convex body with a centre this
@@ -79,13 +80,13 @@ TriangleMesh birdPart(const BirdShape& shape, BirdPart part, double angle);
 /// All parts together.
 TriangleMesh wholeBird(const BirdShape& shape, double angle);
 
-/// Reads a table of species: a header as in Filters/Birds/species.csv, lines that begin with # are
-/// comments. Throws std::runtime_error naming file, line and column.
+/// Reads a table of species with the header of Filters/Birds/species.csv. Lines that begin with #
+/// are comments. Throws std::runtime_error naming file, line and column.
 /// @param file for messages
 std::vector<BirdSpecies> readSpecies(const std::string& text, const std::string& file);
 
-/// Index of the first species with a name. Throws std::runtime_error if there is none: "is 'dodo',
-/// expected one of ...".
+/// Index of the first species with this name. Throws std::runtime_error if no species has it: "is
+/// 'dodo', expected one of ...".
 std::size_t findSpecies(const std::vector<BirdSpecies>& all, const std::string& name);
 }
 
