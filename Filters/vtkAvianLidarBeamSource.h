@@ -1,27 +1,27 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class vtkAvianLidarBeamSource
- * @brief The sensor: makes the beams of a scanning lidar, with its pulse and receiver as field
- * data.
+ * @brief Makes the beams of a scanning lidar, with its pulse and receiver as field data.
  *
- * A new source is the preset Airport16, the lidar of the paper's Table 2 ("Research on Ground
+ * A new source has the preset Airport16, the lidar of the paper's Table 2 ("Research on Ground
  * Object Echo Simulation of Avian Lidar", Photonics 2024, 11(2), 153). It has no input.
  *
  * - Output port 0, vtkPolyData: one vertex per beam at Position, column by column and channel by
  *   channel within a column, with the point arrays `beam_id`, `direction`, `laser_id`, `azimuth`,
- *   `vertical_angle` and `timestamp`. With sway or jitter, `direction` is where a beam really
- *   points, and `reported_direction`, `azimuth` and `vertical_angle` are what the sensor reports.
- * - Output port 1, vtkPolyData: the same beams as lines of DisplayLength, to look at.
- * - Field data of both: every property in snake case in its own unit, and `wavelength`. Settings
- *   that the sensor does not use are left out. The photon receiver writes the limits that follow
- *   from it.
+ *   `vertical_angle` and `timestamp`. With sway or jitter, `direction` is the true direction of a
+ *   beam, and `reported_direction`, `azimuth` and `vertical_angle` are the values that the sensor
+ *   reports.
+ * - Output port 1, vtkPolyData: the same beams as lines of DisplayLength, for display.
+ * - Field data of both ports: every property in snake case in its own unit, and `wavelength`.
+ *   Settings that the sensor does not use are left out. A photon receiver writes the limits that
+ *   follow from its properties.
  *
  * The source is time-aware: revolution k lasts from k / RotationRate to (k + 1) / RotationRate
- * seconds. Any number of pieces is served; columns are dealt to them in turn. The beams have the
- * same bits for any number of threads and pieces.
+ * seconds. The source serves any number of pieces and deals the columns to them in turn. The beams
+ * have the same bits for any number of threads and pieces.
  *
- * Setters keep any value; it is checked when the source executes. A bad value, or more beams than
- * memory holds, is an error that names the property, and both outputs are empty.
+ * Setters accept any value; values are checked when the source executes. A bad value, or more beams
+ * than fit into memory, gives an error that names the property, and empty outputs.
  *
  * @code
  * sensor->SetPresetToSearch905();
@@ -83,21 +83,21 @@ public:
 
   ///@{
   /**
-   * Set all properties but ErrorsAsData to those of a built-in sensor, by its file in
-   * Filters/Sensors, and to the defaults of this class where the file has none
+   * Set all properties but ErrorsAsData to the values of a built-in sensor's file in
+   * Filters/Sensors. A property that is not in the file gets its default
    * (Documentation/reference/sensor-files.md).
    */
   vtkAvianLidarSensorPresetsMacro();
   ///@}
 
-  /// Take from a built-in sensor, by the name of its file (`OS1_64`), only what no other setter
-  /// sets: tables and prisms, the names of assumed values, the description. For user interfaces
-  /// that set all properties one by one. Null or empty: none. An unknown name is an error and
-  /// changes nothing.
+  /// Take from a built-in sensor, by the name of its file (`OS1_64`), only the values without a
+  /// setter: tables and prisms, the names of assumed values, the description. Meant for user
+  /// interfaces that set all properties one by one. Null or empty: no tables. An unknown name gives
+  /// an error and changes nothing.
   void SetTablesOfPreset(const char* name);
 
-  /// Set all properties from a file (`.lidarsensor.json`), and what files alone can set: azimuth
-  /// offsets and firing times of channels, blanked sectors, prisms
+  /// Set all properties from a file (`.lidarsensor.json`), and the values that only files set:
+  /// azimuth offsets and firing times of channels, blanked sectors, prisms
   /// (Documentation/reference/sensor-files.md, Files).
   /// @return false, with an error that names the file and the key, for a bad file: nothing changes.
   bool LoadSensor(VTK_FILEPATH const char* fileName);
@@ -106,19 +106,20 @@ public:
   /// prisms AzimuthRange and AzimuthStep are not used (Documentation/reference/sensor-files.md).
   int GetNumberOfPrisms() const;
 
-  /// As LoadSensor(), from the text of a file, as GetDescription() returns it. Errors name "the
-  /// text".
+  /// Does the same as LoadSensor(), from the text of a file, as GetDescription() returns it. Errors
+  /// name "the text".
   bool LoadSensorText(const char* text);
 
   /// The file of the preset or file that was set last, as JSON; empty for a new source. It holds
-  /// name, comment, documents, every number with unit and source, and the data sheet. Later changes
-  /// do not count.
+  /// name, comment, documents, every number with unit and source, and the data sheet. It does not
+  /// follow later changes of properties.
   std::string GetDescription() const { return this->Description; }
 
   /// Use these beams instead of columns and channels. The points (m) and the point arrays
   /// `direction` (any length above 0) and, optionally, `timestamp` (us, 0 to 1 / RotationRate;
   /// default 0) are copied, in the frame of the sensor: Orientation turns them, Position is added.
-  /// `beam_id` is the number of the point, `laser_id` 0. Null, a preset or a file ends this.
+  /// `beam_id` is the number of the point, `laser_id` 0. Null, a preset or a file restores columns
+  /// and channels.
   /// @return false, with an error that names the array, for other beams: nothing changes.
   bool SetBeams(vtkPolyData* beams);
 
@@ -147,7 +148,7 @@ public:
   ///@}
 
   ///@{
-  /** Elevation between channels, deg, above 0. Not used with a table. Default 0.375. */
+  /** Elevation from one channel to the next, deg, above 0. Not used with a table. Default 0.375. */
   vtkSetMacro(ElevationStep, double);
   vtkGetMacro(ElevationStep, double);
   ///@}
@@ -165,25 +166,25 @@ public:
   ///@}
 
   ///@{
-  /** First azimuth, deg, clockwise, -360 to 360; and end, to 360 degrees on. Default (0, 360). */
+  /** First azimuth, deg, clockwise, -360 to 360, and end, at most 360 later. Default (0, 360). */
   vtkSetVector2Macro(AzimuthRange, double);
   vtkGetVector2Macro(AzimuthRange, double);
   ///@}
 
   ///@{
-  /** Azimuth from one column to the next, deg, above 0. Default 0.375. */
+  /** Difference of azimuth between columns, deg, above 0. Default 0.375. */
   vtkSetMacro(AzimuthStep, double);
   vtkGetMacro(AzimuthStep, double);
   ///@}
 
   ///@{
-  /** Half of the beam's opening angle, rad, 1e-9 to pi/3; not round: to 0.1. Default 5.6e-3. */
+  /** Half of the opening angle, rad, 1e-9 to pi/3 (not round: 1e-9 to 0.1). Default 5.6e-3. */
   vtkSetMacro(HalfBeamwidth, double);
   vtkGetMacro(HalfBeamwidth, double);
   ///@}
 
   ///@{
-  /** Opening angle to compare with HalfBeamwidth, mrad; an error if it differs. Default 0: none. */
+  /** Opening angle, mrad; if it differs from HalfBeamwidth, an error. Default 0: not checked. */
   vtkSetMacro(BeamwidthMilliradians, double);
   vtkGetMacro(BeamwidthMilliradians, double);
   ///@}
@@ -198,8 +199,9 @@ public:
 
   ///@{
   /**
-   * Half of the opening angle across HalfBeamwidth, rad, 1e-9 to 0.1, 1/1000 to 1000 times it.
-   * Default 0: the same. The energy is then uniform, or Gaussian, over the plane across the axis.
+   * Half of the opening angle perpendicular to HalfBeamwidth, rad, 1e-9 to 0.1 and 1/1000 to 1000
+   * times HalfBeamwidth. Default 0: HalfBeamwidth. The energy of a beam that is not round is
+   * uniform, or Gaussian, over the plane perpendicular to the axis.
    */
   vtkSetMacro(HalfBeamwidthAcross, double);
   vtkGetMacro(HalfBeamwidthAcross, double);
@@ -207,8 +209,9 @@ public:
 
   ///@{
   /**
-   * Turn of the direction of HalfBeamwidth from the sensor's horizontal (of a vertical beam: from a
-   * fixed direction), upwards to the right as seen along the beam, deg, -360 to 360. Default 0.
+   * Angle of the direction of HalfBeamwidth from the sensor's horizontal (from a fixed direction if
+   * the beam is vertical), upwards to the right as seen along the beam, deg, -360 to 360. Default
+   * 0.
    */
   vtkSetMacro(BeamRotation, double);
   vtkGetMacro(BeamRotation, double);
@@ -223,15 +226,16 @@ public:
   ///@}
 
   ///@{
-  /** Half-beamwidths over the 1/e^2 radii of the Gaussian profile, 1, 0.1 to 3. Default 1. */
+  /** Half-beamwidth divided by the 1/e^2 radius of the Gaussian profile, 1, 0.1 to 3. Default 1. */
   vtkSetMacro(GaussianTruncation, double);
   vtkGetMacro(GaussianTruncation, double);
   ///@}
 
   ///@{
   /**
-   * Threshold of a photon receiver where the air sends light back: fixed, or above the mean of that
-   * light and as many standard deviations of its noise. Default THRESHOLD_LAW_FOLLOWS_AIR.
+   * Threshold of a photon receiver where the air sends light back: fixed, or raised by the mean of
+   * the air's light, with the same number of standard deviations of the noise. Default
+   * THRESHOLD_LAW_FOLLOWS_AIR.
    */
   vtkSetMacro(ThresholdLaw, int);
   vtkGetMacro(ThresholdLaw, int);
@@ -240,13 +244,13 @@ public:
   ///@}
 
   ///@{
-  /** Sweeps, or scans of prisms, per second, Hz, 1e-20 to 1e20. Default 0.5. */
+  /** Rate of sweeps, or of scans of prisms, Hz, 1e-20 to 1e20. Default 0.5. */
   vtkSetMacro(RotationRate, double);
   vtkGetMacro(RotationRate, double);
   ///@}
 
   ///@{
-  /** Time between firings of a column, s, at least 0, with prisms above 0. Default 30e-6. */
+  /** Time between firings of a column, s, at least 0 (with prisms: above 0). Default 30e-6. */
   vtkSetMacro(FiringInterval, double);
   vtkGetMacro(FiringInterval, double);
   ///@}
@@ -258,7 +262,7 @@ public:
   ///@}
 
   ///@{
-  /** Steps that play a revolution, 1 to its columns; above 1 the scan sweeps. Default 1. */
+  /** Number of steps of a revolution, 1 to its columns; above 1 the scan sweeps. Default 1. */
   vtkSetMacro(StepsPerRevolution, int);
   vtkGetMacro(StepsPerRevolution, int);
   ///@}
@@ -323,8 +327,8 @@ public:
   vtkGetMacro(RangeGate, double);
   ///@}
 
-  /// Range, m, from which echoes arrive after the next pulse has left; infinite for SetBeams(). A
-  /// RangeGate beyond it is warned of once; echoes stay where they are
+  /// Range, m, beyond which echoes arrive after the next pulse has left; infinite for SetBeams(). A
+  /// larger RangeGate gives one warning; echoes keep their true ranges
   /// (Documentation/reference/sensor-files.md).
   double GetUnambiguousRange();
 
@@ -347,15 +351,15 @@ public:
   ///@}
 
   ///@{
-  /** Aperture of the receiver, m2, 0 to 1e20. Default 0: no fall with the square of the range. */
+  /** Aperture of the receiver, m2, 0 to 1e20. Default 0: energies do not fall with 1/r^2. */
   vtkSetMacro(ReceiverAperture, double);
   vtkGetMacro(ReceiverAperture, double);
   ///@}
 
   ///@{
   /**
-   * What turns energies into echoes: the limits in joules of the paper, or a photon receiver, which
-   * needs an aperture (Documentation/reference/sensor-files.md). Default
+   * Receiver that turns energies into echoes: the limits of the paper in J, or a photon receiver,
+   * which needs an aperture (Documentation/reference/sensor-files.md). Default
    * RECEIVER_MODEL_ENERGY_LIMITS.
    */
   vtkSetMacro(ReceiverModel, int);
@@ -418,7 +422,7 @@ public:
   ///@}
 
   ///@{
-  /** Least range recorded, m, 0 to below RangeGate. Nearer surfaces still hide. Default 0. */
+  /** Least range recorded, m, 0 to below RangeGate. Nearer surfaces still occlude. Default 0. */
   vtkSetMacro(MinimumRange, double);
   vtkGetMacro(MinimumRange, double);
   ///@}
@@ -437,9 +441,9 @@ public:
 
   ///@{
   /**
-   * Standard deviation b of ranges at S = 1, m, 0 to 1e9; else sqrt(a^2 + b^2/S^p), a
-   * RangeNoiseFloor, p RangeNoiseExponent (Documentation/reference/sensor-files.md). Photon
-   * receiver. Default 0: exact.
+   * Standard deviation b of ranges at S = 1, m, 0 to 1e9. At other S it is sqrt(a^2 + b^2/S^p),
+   * with a = RangeNoiseFloor and p = RangeNoiseExponent (Documentation/reference/sensor-files.md).
+   * Photon receiver. Default 0: exact.
    */
   vtkSetMacro(RangeNoise, double);
   vtkGetMacro(RangeNoise, double);
@@ -478,18 +482,18 @@ public:
   ///@}
 
   ///@{
-  /** Upper over lower limit, dB of electrons (10 log10), 0 to 1000. Default 40 (assumed). */
+  /** Ratio of upper to lower limit, dB of electrons (10 log10), 0 to 1000. Default 40 (assumed). */
   vtkSetMacro(DynamicRange, double);
   vtkGetMacro(DynamicRange, double);
   ///@}
 
   ///@{
   /**
-   * Set LowerEnergyLimit, and UpperEnergyLimit DynamicRange above it, by a line of a data sheet:
-   * the sensor sees a Lambertian surface of `reflectance` (above 0 to 1) that fills the beam until
-   * `range`, m, in air of `attenuation`, 1/m (default: GetClearAirAttenuation()). Needs
-   * ReceiverAperture and RECEIVER_MODEL_ENERGY_LIMITS. A bad value changes nothing. One point is a
-   * guess (Documentation/reference/sensor-files.md).
+   * Set LowerEnergyLimit by a line of a data sheet, and UpperEnergyLimit by DynamicRange above it.
+   * The sensor detects a Lambertian surface of `reflectance` (above 0 to 1) that fills the beam
+   * until `range`, m, in air of `attenuation`, 1/m (default: GetClearAirAttenuation()). Needs
+   * ReceiverAperture and RECEIVER_MODEL_ENERGY_LIMITS. A bad value changes nothing. Limits from one
+   * point are only an estimate (Documentation/reference/sensor-files.md).
    */
   void SetLimitsFromDataSheet(double range, double reflectance);
   void SetLimitsFromDataSheet(double range, double reflectance, double attenuation);
@@ -513,8 +517,8 @@ protected:
   int RequestInformation(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
   int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
 
-  /// Take a file. With `keepPlace` position, orientation, revolutions, steps and seed stay.
-  /// @return what is wrong, then nothing changes
+  /// Read a file. With `keepPlace` position, orientation, revolutions, steps and seed stay.
+  /// @return what is wrong, in which case nothing changes; else an empty string
   std::string ReadSensor(const char* fileName, bool keepPlace);
 
   double Position[3] = { 0.0, 0.0, 0.0 };
@@ -592,7 +596,7 @@ private:
   std::string TakeFile(const std::function<vtkAvianLidarSensorFile()>& read, bool keepPlace);
   struct vtkInternals;
   struct vtkBeamTable;
-  std::string Warned;                        ///< the warning given last: each is given once
+  std::string Warned;                        ///< last warning, which is not repeated
   std::shared_ptr<const vtkBeamTable> Table; ///< beams instead of the pattern
 };
 

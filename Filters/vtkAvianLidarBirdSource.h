@@ -1,19 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class vtkAvianLidarBirdSource
- * @brief A bird by its species: a body and two wings as closed surfaces.
+ * @brief Makes a bird of a species: a body and two wings as closed surfaces.
  *
- * It has no input. Output port 0 is vtkPolyData: 72 triangles, m, with the cell arrays of
+ * The source has no input. Output port 0 is vtkPolyData: 72 triangles, m, with the cell arrays of
  * vtkAvianLidarMaterial and `part` (0 body, 1 left wing, 2 right wing), and the field data
- * `material_names` (4, Plumage), `object_names` (the species) and `object_classes` ("bird"). `kd`
- * is Reflectance.
+ * `material_names` (4, Plumage), `object_names` (the species) and `object_classes` ("bird"). The
+ * array `kd` is Reflectance.
  *
  * The body is an ellipsoid of revolution whose frontal area follows from the mass (Hedenstrom and
  * Rosen 2003; Pennycuick 1988); its effective area is exact from every direction. The wings are
- * thin plates that flap. Shape, what is assumed, and species: Documentation/guide/birds.md.
+ * thin plates that flap. Shape, assumptions and species: Documentation/guide/birds.md.
  *
- * An unknown species, a bad table or number is an error that names the property, with empty output;
- * setters keep any value.
+ * An unknown species, a bad table or a bad number gives an error that names the property, and an
+ * empty output. Setters accept any value.
  *
  * Example: `bird->SetSpecies("crow"); bird->SetPosition(0, 300, 15); bird->SetHeading(60);`
  *
@@ -37,21 +37,21 @@ public:
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
   ///@{
-  /** Name of a species, built in or of SpeciesFileName. Default "herring gull". */
+  /** Name of a species, built in or in SpeciesFileName. Default "herring gull". */
   vtkSetMacro(Species, std::string);
   vtkGetMacro(Species, std::string);
   ///@}
 
   ///@{
   /**
-   * Species of your own (CSV, as Filters/Birds/species.csv), before the built-in ones. Default:
-   * none.
+   * Table of the user's species (CSV, as Filters/Birds/species.csv), which precede the built-in
+   * ones. Default: none.
    */
   vtkAvianLidarFilePathMacro(SpeciesFileName);
   ///@}
 
   ///@{
-  /** Wingbeats from level and rising wings: 0.25 up, 0.75 down; not used in a glide. Default 0. */
+  /** Wingbeats since level, rising wings: 0.25 up, 0.75 down; not used in a glide. Default 0. */
   vtkSetMacro(WingPhase, double);
   vtkGetMacro(WingPhase, double);
   ///@}
@@ -64,7 +64,7 @@ public:
   ///@}
 
   ///@{
-  /** Middle of the body, m, x east, y north, z up, at most 1e30. Default (0, 0, 0). */
+  /** Centre of the body, m, x east, y north, z up, at most 1e30. Default (0, 0, 0). */
   vtkSetVector3Macro(Position, double);
   vtkGetVector3Macro(Position, double);
   ///@}

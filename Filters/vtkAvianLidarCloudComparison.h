@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class vtkAvianLidarCloudComparison
- * @brief How alike two point clouds are: Hausdorff distance, root mean square error and
- * density-aware Chamfer distance, both ways.
+ * @brief Compares two point clouds by Hausdorff distance, root mean square error and density-aware
+ * Chamfer distance, in both directions.
  *
  * - Input ports 0, the simulated cloud, and 1, the reference: any vtkPointSet, in the same
  *   coordinates.
@@ -11,15 +11,15 @@
  *
  * Hausdorff distance and RMSE are Eq. 19 and 20 of "Research on Ground Object Echo Simulation of
  * Avian Lidar", Photonics 2024, 11(2), 153; here each direction of Eq. 20 is divided by its own
- * number of points. The Chamfer distance is that of Wu et al., NeurIPS 2021, arXiv:2111.12702.
- * Distances are Euclidean, in double precision; the order of points does not matter. It takes one
- * thread and n log n steps; points equally far from a whole cloud look at all of it. Formulas and
- * limits: Documentation/guide/clouds.md.
+ * number of points. The Chamfer distance follows Wu et al., NeurIPS 2021, arXiv:2111.12702.
+ * Distances are Euclidean, in double precision; the order of points does not matter. The search
+ * takes one thread and n log n steps; a point equally far from all points of a cloud is compared
+ * with each. Formulas and limits: Documentation/guide/clouds.md.
  *
- * A bad alpha is an error; so is a cloud without points or with coordinates that are not finite or
- * beyond 1e30 m, with port and point. Outputs are then empty and the getters NaN, as after an
- * abort. MPI ranks with a piece of each cloud measure their own points against the whole other
- * cloud.
+ * A bad alpha gives an error. So does a cloud without points, or with coordinates that are not
+ * finite or beyond 1e30 m; this error names port and point. After an error or an abort, outputs are
+ * empty and getters return NaN. MPI ranks with a piece of each cloud compare their own points with
+ * the whole other cloud.
  *
  * @code
  * comparison->SetInputConnection(0, echoes->GetOutputPort());
@@ -48,20 +48,20 @@ public:
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
   ///@{
-  /** Hausdorff distance of the last execution (paper, Eq. 19) and its directions, m; NaN before. */
+  /** Hausdorff distance (paper, Eq. 19) and its directions, m; NaN before the first execution. */
   vtkGetMacro(HausdorffDistance, double);
   vtkGetMacro(HausdorffSimulatedToReference, double);
   vtkGetMacro(HausdorffReferenceToSimulated, double);
   ///@}
 
   ///@{
-  /** Root mean square distances of the last execution (paper, Eq. 20), m; NaN before. */
+  /** Root mean square distances (paper, Eq. 20), m; NaN before the first execution. */
   vtkGetMacro(RMSESimulatedToReference, double);
   vtkGetMacro(RMSEReferenceToSimulated, double);
   ///@}
 
   ///@{
-  /** Density-aware Chamfer distance, 0 (alike) to 1, the mean of its directions; NaN before. */
+  /** Density-aware Chamfer distance, 0 (equal) to 1: mean, directions; NaN before an execution. */
   vtkGetMacro(DensityAwareChamferDistance, double);
   vtkGetMacro(DensityAwareChamferSimulatedToReference, double);
   vtkGetMacro(DensityAwareChamferReferenceToSimulated, double);
@@ -74,7 +74,7 @@ public:
   ///@}
 
   ///@{
-  /** Processes that may work together; null: this one alone. Default: the global controller. */
+  /** Processes that may work together; null: only this one. Default: the global controller. */
   void SetController(vtkMultiProcessController* controller);
   vtkGetObjectMacro(Controller, vtkMultiProcessController);
   ///@}

@@ -5,27 +5,28 @@
  *
  * Space about the sensor is divided into cells of range, azimuth and elevation. The persistence of
  * a cell is the weighted share of scans with an echo in it; each scan weighs 1 - 1/Window as much
- * as the next one. The clutter probability of a point is the largest persistence of the cells
- * around its own before this scan. Method, times and limits: Documentation/guide/filters.md. The
- * sensor must stand still.
+ * as the next one. The clutter probability of a point is the largest persistence, before this scan,
+ * of the point's cell and the cells around it. Method, times and limits:
+ * Documentation/guide/filters.md. The sensor must stand still.
  *
  * - Input port 0, a scan: any vtkPointSet, m: echoes, or the cloud of a reader.
- * - Input port 1, a table (optional): vtkPolyData, output port 1 of an earlier run, also from a
- *   file.
+ * - Input port 1, a table (optional): vtkPolyData, output port 1 of an earlier run or a file.
  * - Output port 0: a shallow copy of the scan with the point arrays `clutter_probability` and
  *   `is_clutter`.
  * - Output port 1, the table: vtkPolyData, a vertex in the middle of each cell that is kept, in the
- *   order of cells, with `clutter_probability` and `clutter_cell`. Rank 0 has that of all ranks.
- * - Field data of both: `learned_scans`, `position` and the settings as `clutter_window` and so on.
+ *   order of cells, with `clutter_probability` and `clutter_cell`. Rank 0 has the table of all
+ *   ranks.
+ * - Field data of both ports: `learned_scans`, `position` and the settings as `clutter_window` and
+ *   so on.
  *
  * The time of a scan is DATA_TIME_STEP of the input, else the field data `TimeValue`, else the
  * start of its `revolution`, else 1 s after the scan before. A scan of the same time replaces the
  * last one. An earlier time empties the memory, with a warning; another position, step, Window,
  * table or Learning does so silently.
  *
- * Bad settings, coordinates beyond 1e30 m, bad field data or a table of other steps are an error
- * with empty outputs; the memory stays. A scan without points is a scan. The result has the same
- * bits for any order of the points and any number of ranks.
+ * Bad settings, coordinates beyond 1e30 m, bad field data or a table of other steps give an error
+ * and empty outputs; the memory stays. A scan without points counts as a scan. The result has the
+ * same bits for any order of the points and any number of ranks.
  *
  * @code
  * clutter->SetInputConnection(echoes->GetOutputPort(0));
@@ -60,7 +61,7 @@ public:
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
   ///@{
-  /** Memory in scans, 1 to 100,000; a scan so long ago weighs 1 / e. Default 200. */
+  /** Memory, scans, 1 to 100,000; a scan that many scans ago weighs 1/e. Default 200. */
   vtkSetMacro(Window, double);
   vtkGetMacro(Window, double);
   ///@}
@@ -72,13 +73,13 @@ public:
   ///@}
 
   ///@{
-  /** Size of the cells in range, m, 0.001 to 1000. Default 1.5, as of the sensor Search905. */
+  /** Size of the cells in range, m, 0.001 to 1000. Default 1.5, as for the sensor Search905. */
   vtkSetMacro(RangeStep, double);
   vtkGetMacro(RangeStep, double);
   ///@}
 
   ///@{
-  /** Size of the cells in azimuth, deg, 0.001 to 90, made to divide 360. Default 0.375. */
+  /** Size of the cells in azimuth, deg, 0.001 to 90, adjusted to divide 360. Default 0.375. */
   vtkSetMacro(AzimuthStep, double);
   vtkGetMacro(AzimuthStep, double);
   ///@}
@@ -90,20 +91,21 @@ public:
   ///@}
 
   ///@{
-  /** Cells nearer and farther than a point's own that count, 0 to 10. Default 1. */
+  /** Number of cells that count on either side of a point's own in range, 0 to 10. Default 1. */
   vtkSetMacro(RangeTolerance, int);
   vtkGetMacro(RangeTolerance, int);
   ///@}
 
   ///@{
-  /** Cells beside, above and below a point's own that count, 0 to 10. Default 1. */
+  /** Number of cells that count on each side of a point's own in angle, 0 to 10. Default 1. */
   vtkSetMacro(AngularTolerance, int);
   vtkGetMacro(AngularTolerance, int);
   ///@}
 
   ///@{
   /**
-   * First scans in which all points are clutter, 0 to 100,000. Scans of a table count. Default 5.
+   * Number of first scans in which all points are clutter, 0 to 100,000. Scans of a table count.
+   * Default 5.
    */
   vtkSetMacro(WarmUp, int);
   vtkGetMacro(WarmUp, int);
@@ -116,17 +118,17 @@ public:
   ///@}
 
   ///@{
-  /** Whether scans are learned; if not, the table on port 1 decides alone. Default: on. */
+  /** Whether scans are learned; if not, only the table on port 1 counts. Default: on. */
   vtkSetMacro(Learning, bool);
   vtkGetMacro(Learning, bool);
   vtkBooleanMacro(Learning, bool);
   ///@}
 
-  /// Empty the memory, as for another stream whose times may be any.
+  /// Empty the memory, as for another stream, which may begin at any time.
   void Forget();
 
   ///@{
-  /** Processes that may work together; null: this one alone. Default: the global controller. */
+  /** Processes that may work together; null: only this one. Default: the global controller. */
   void SetController(vtkMultiProcessController* controller);
   vtkGetObjectMacro(Controller, vtkMultiProcessController);
   ///@}

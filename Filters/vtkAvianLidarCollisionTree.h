@@ -3,25 +3,26 @@
  * @class vtkAvianLidarCollisionTree
  * @brief Builds the collision detection tree of a scene once, so that many scans can share it.
  *
- * Implements the tree of "Research on Ground Object Echo Simulation of Avian Lidar", Photonics
- * 2024, 11(2), 153: Sec. 3.1, Eq. 14, Algorithm 1, with its three structures and three bounding
- * volumes, and a surface area heuristic besides. All give the same echoes, bit for bit, at
- * different cost.
+ * The filter implements the tree of "Research on Ground Object Echo Simulation of Avian Lidar",
+ * Photonics 2024, 11(2), 153: Sec. 3.1, Eq. 14, Algorithm 1, with its three structures and three
+ * bounding volumes, and adds a surface area heuristic. All trees give the same echoes, bit for bit,
+ * at different cost.
  *
- * - Input port 0: vtkPolyData, or a composite of it, each leaf an object. Polygons and strips are
- *   triangulated; vertices, lines and ghost cells are dropped. Optional: cell arrays `object_id`,
- *   `material_id` and the coefficients of vtkAvianLidarMaterial; field data `object_names`,
- *   `object_classes`, `material_names`. Without coefficients the material is Wall, with a warning.
+ * - Input port 0: vtkPolyData, or a composite of vtkPolyData, in which each leaf is an object.
+ *   Polygons and strips are triangulated; vertices, lines and ghost cells are dropped. Optional
+ *   arrays are the cell arrays `object_id`, `material_id` and the coefficients of
+ *   vtkAvianLidarMaterial; field data `object_names`, `object_classes`, `material_names`. Without
+ *   coefficients the material is Wall, with a warning.
  * - Output port 0: one vtkPolyData of all triangles with these arrays. The field array
- *   `tree_checksum` holds the tree by reference: copies within the process keep it, files do not.
+ *   `tree_checksum` holds the tree by reference: files lose it, copies within the process do not.
  * - Output port 1: the bounding volumes of DisplayLevel as surfaces, with the cell arrays
  *   `node_id`, `triangles` and `depth`.
  *
- * Object ids are kept if every leaf brings its own and no two leaves share one; else they are given
- * in leaf order. MPI ranks that ask for their own pieces exchange surfaces; rank 0 has the output.
+ * Object ids are kept if every leaf has ids and no two leaves share one; otherwise ids are assigned
+ * in leaf order. MPI ranks that request their own pieces exchange surfaces; rank 0 has the output.
  *
- * A bad input or option is an error with empty outputs. No triangles: empty outputs. The same input
- * gives the same tree. It uses no VTK locator and no vtkSMPTools.
+ * A bad input or option gives an error and empty outputs. Without triangles the outputs are empty.
+ * The same input gives the same tree. The filter uses neither a VTK locator nor vtkSMPTools.
  *
  * @code
  * tree->SetInputConnection(reader->GetOutputPort());
@@ -79,7 +80,7 @@ public:
   ///@{
   /**
    * PRESET_PAPER builds the paper's k-D tree (Sec. 3.1, 5.1 and Algorithm 1): at execution it
-   * overrides SplitRule (median), BoundingVolume (boxes, two a node) and MaximumLeafSize (1).
+   * overrides SplitRule (median), BoundingVolume (boxes, two per node) and MaximumLeafSize (1).
    * Default: PRESET_CUSTOM, which overrides nothing.
    */
   vtkSetMacro(Preset, int);
@@ -90,7 +91,7 @@ public:
 
   ///@{
   /**
-   * How a node's triangles are parted: halves of the list (paper: BVH), median (k-D), principal
+   * Rule that splits a node's triangles: halves of the list (paper: BVH), median (k-D), principal
    * plane (BSP), or the binned surface area heuristic. Default: SPLIT_RULE_SURFACE_AREA_HEURISTIC.
    */
   vtkSetMacro(SplitRule, int);
@@ -106,9 +107,9 @@ public:
 
   ///@{
   /**
-   * Volume around a node. BOUNDING_VOLUME_AABB has boxes in single precision, eight a node; the
-   * others have two volumes a node in double precision, as in the paper: oriented boxes, spheres or
-   * boxes (BOUNDING_VOLUME_BINARY_AABB). Default: BOUNDING_VOLUME_AABB.
+   * Volume around a node. BOUNDING_VOLUME_AABB has eight boxes per node in single precision; the
+   * others have two volumes per node in double precision, as in the paper: oriented boxes, spheres
+   * or boxes (BOUNDING_VOLUME_BINARY_AABB). Default: BOUNDING_VOLUME_AABB.
    */
   vtkSetMacro(BoundingVolume, int);
   vtkGetMacro(BoundingVolume, int);
@@ -119,35 +120,37 @@ public:
   ///@}
 
   ///@{
-  /** Most triangles of a leaf, at least 1 (1 is Algorithm 1 as printed). Default: 4. */
+  /** Largest number of triangles in a leaf, at least 1 (Algorithm 1 as printed). Default: 4. */
   vtkSetMacro(MaximumLeafSize, int);
   vtkGetMacro(MaximumLeafSize, int);
   ///@}
 
   ///@{
   /**
-   * Level whose volumes, with leaves above it, are on port 1; negative: none. Default: 0, the root.
+   * Level whose volumes, with the leaves above it, port 1 shows; negative: none. Default: 0, the
+   * root.
    */
   vtkSetMacro(DisplayLevel, int);
   vtkGetMacro(DisplayLevel, int);
   ///@}
 
-  /// Nodes, leaves and depth of the tree of the last execution; 0 before, and for an empty scene.
+  /// Numbers of nodes and leaves, and depth, of the last tree; 0 before it and for an empty scene.
   int GetNumberOfNodes() const;
   int GetNumberOfLeaves() const;
   int GetDepth() const;
 
-  /// Trees that this filter has built; one that came with the input and fits is not built again.
+  /// Number of trees that this filter has built; a tree that comes with the input and fits is
+  /// reused.
   int GetNumberOfBuilds() const;
 
-  /// Bytes of surfaces that this rank has given to the others so far, for tests and measurements.
+  /// Bytes of surfaces that this rank has sent to other ranks so far, for tests and measurements.
   double GetNumberOfBytesSent() const;
 
   /// Key under which the information of the field array `tree_checksum` holds the tree.
   static vtkInformationObjectBaseKey* COLLISION_TREE();
 
   ///@{
-  /** Processes that may work together; null: this one alone. Default: the global controller. */
+  /** Processes that may work together; null: only this one. Default: the global controller. */
   void SetController(vtkMultiProcessController* controller);
   vtkGetObjectMacro(Controller, vtkMultiProcessController);
   ///@}
@@ -174,7 +177,7 @@ private:
   vtkAvianLidarCollisionTree(const vtkAvianLidarCollisionTree&) = delete;
   void operator=(const vtkAvianLidarCollisionTree&) = delete;
 
-  // Passes of an execution, by all ranks together; false ends it.
+  // Passes of an execution, which all ranks make together; false ends the execution.
   bool MergeSurfaces(const vtkAvianLidarRanks& ranks, vtkDataObject* input);
   bool MakeTree(const vtkAvianLidarRanks& ranks, vtkDataObject* input);
   bool MakeOutputs(const vtkAvianLidarRanks& ranks, vtkPolyData* output, vtkPolyData* display);

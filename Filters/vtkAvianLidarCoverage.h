@@ -1,35 +1,36 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class vtkAvianLidarCoverage
- * @brief Where a lidar would detect a bird, where not, and why: beams and surfaces in, a map of
- * probabilities out.
+ * @brief Maps where a lidar would detect a bird and where it would not, with the reasons, from
+ * beams and surfaces.
  *
- * For each place the filter finds the beams that hold it, surfaces in the way, clutter in the same
- * range units, and the probability of detection in closed form, averaged over the bird's poses. No
- * bird is traced. Lines of sight are kept: another bird, air or receiver evaluates them again, with
- * the bits of a fresh run. Method and limits: Documentation/guide/coverage.md. No measured ranges
- * of birds are known for this kind of lidar.
+ * For each place the filter finds the beams that contain it, surfaces in front of it, clutter in
+ * the same range units, and the probability of detection in closed form, averaged over the bird's
+ * poses. No bird is traced. Lines of sight are kept: for another bird, air or receiver the filter
+ * only evaluates them again, and the result has the same bits as a fresh run. Method and limits:
+ * Documentation/guide/coverage.md. We found no measured detection ranges of birds for this kind of
+ * lidar.
  *
- * - Input ports 0, beams of one sensor, and 1, surfaces: as for vtkAvianLidarEchoFilter. All beams
- *   are asked for, whatever the piece.
- * - Input port 2, places (optional): any vtkDataSet; its points are looked at, instead of those of
- *   an image by Bounds and Spacing. The point array `region_id` (int) and the field data
+ * - Input ports 0, beams of one sensor, and 1, surfaces: as for vtkAvianLidarEchoFilter. The filter
+ *   requests all beams, whatever the piece.
+ * - Input port 2, places (optional): any vtkDataSet, whose points are evaluated instead of the
+ *   image given by Bounds and Spacing. The point array `region_id` (int) and the field data
  *   `region_names` divide the table.
  * - Output port 0: vtkImageData, or the places with their data. Point arrays (float):
  *   `detection_probability`, `track_probability`, `photoelectrons`, `minimum_effective_area`
  *   (infinite where nothing is detected), `beams_per_scan` (int), `status` (unsigned char, a
  *   StatusType), with PoseProbabilities `pose_probabilities` (16 headings for each of 5 wing
- *   phases; 80 headings of gliding birds; without a species 1). Field data: those of the echo
- *   filter, this filter's settings, `status_names`.
+ *   phases; 80 headings for gliding birds; 1 value without a species). Field data: the echo
+ *   filter's, this filter's settings, `status_names`.
  * - Output port 1: vtkTable, a row per region, species and height band, then for all bands and all
- *   regions: means, their standard errors, and `share_outside_the_gate` and so on for each status.
- *   On several ranks rank 0 has it.
+ *   regions: means, their standard errors, and a share for each status, such as
+ *   `share_outside_the_gate`. With several ranks rank 0 has the table.
  * - Output port 2, clutter: vtkPolyData with the arrays of echoes, a vertex per range unit with an
- *   echo of a surface, and `detection_probability`. Piece 0 has it.
+ *   echo of a surface, and `detection_probability`. Piece 0 has the clutter.
  *
- * A bad input or setting is an error that names port and array or the property, with empty outputs;
- * an aborted run leaves empty outputs. Points have the same bits for any number of threads and
- * pieces; sums over ranks may differ in the last digits.
+ * A bad input or setting gives an error that names port and array or the property, and empty
+ * outputs; an aborted run leaves empty outputs. Points have the same bits for any number of threads
+ * and pieces; sums over ranks may differ in the last digits.
  *
  * @code
  * coverage->SetInputConnection(sensor->GetOutputPort());
@@ -88,7 +89,7 @@ public:
 
   ///@{
   /**
-   * Name of a species, or empty for a target that always shows EffectiveArea. Default: herring
+   * Name of a species, or empty for a target with EffectiveArea from all sides. Default: herring
    * gull.
    */
   vtkSetMacro(Species, std::string);
@@ -96,7 +97,7 @@ public:
   ///@}
 
   ///@{
-  /** Species of your own, as for vtkAvianLidarBirdSource. Default: none. */
+  /** Table of the user's species, as for vtkAvianLidarBirdSource. Default: none. */
   vtkAvianLidarFilePathMacro(SpeciesFileName);
   ///@}
 
@@ -110,7 +111,7 @@ public:
   ///@{
   /**
    * Mean effective area from the side at 3 degrees of elevation, m2, 0 to 1e6, to which the bird is
-   * scaled. 0: that of the species. 0.018 is the standard avian optical target. Default: 0.
+   * scaled. 0: the species' own. 0.018 is the standard avian optical target. Default: 0.
    */
   vtkSetMacro(EffectiveArea, double);
   vtkGetMacro(EffectiveArea, double);
@@ -123,27 +124,28 @@ public:
   ///@}
 
   ///@{
-  /** Whether clutter is looked for. Off, no scan is made, which is much faster. Default: on. */
+  /** Whether clutter is found, by a scan; without it the filter is much faster. Default: on. */
   vtkSetMacro(Clutter, bool);
   vtkGetMacro(Clutter, bool);
   vtkBooleanMacro(Clutter, bool);
   ///@}
 
   ///@{
-  /** Scans of NumberOfScans that must detect a bird for a track, 1 to NumberOfScans. Default: 2. */
+  /** Number of detections for a track in NumberOfScans scans, 1 to NumberOfScans. Default: 2. */
   vtkSetMacro(RequiredDetections, int);
   vtkGetMacro(RequiredDetections, int);
   ///@}
 
   ///@{
-  /** Scans of which RequiredDetections must detect a bird, 1 to 100. Default: 3. */
+  /** Number of scans of which RequiredDetections must detect a bird, 1 to 100. Default: 3. */
   vtkSetMacro(NumberOfScans, int);
   vtkGetMacro(NumberOfScans, int);
   ///@}
 
   ///@{
   /**
-   * Limits of the height bands, m (z), rising, each in the band above. Default: 0, 15, 30, 60, 150.
+   * Limits of the height bands, m (z), rising; each limit belongs to the band above. Default: 0,
+   * 15, 30, 60, 150.
    */
   void AddHeightLimit(double height);
   void RemoveAllHeightLimits();
@@ -152,18 +154,18 @@ public:
   ///@}
 
   ///@{
-  /** Weight the places of the table by StrikeHeightDensity() at their z. Default: off. */
+  /** Whether the table weights places by StrikeHeightDensity() at their z. Default: off. */
   vtkSetMacro(StrikeHeightWeights, bool);
   vtkGetMacro(StrikeHeightWeights, bool);
   vtkBooleanMacro(StrikeHeightWeights, bool);
   ///@}
 
-  /// Density of bird strikes over height above ground, 1/m: 74 % below 152.4 m, evenly (assumed),
-  /// above falling by 32 % per 304.8 m (Dolbeer 2006). 0 below ground. @param height m
+  /// Density of bird strikes by height above ground, 1/m: 74 % below 152.4 m, uniform there
+  /// (assumed); above, it falls by 32 % per 304.8 m (Dolbeer 2006). 0 below ground. @param height m
   static double StrikeHeightDensity(double height);
 
   ///@{
-  /** Whether the table also has rows for all other known species. Default: off. */
+  /** Whether the table also has rows for all other species. Default: off. */
   vtkSetMacro(AllSpecies, bool);
   vtkGetMacro(AllSpecies, bool);
   vtkBooleanMacro(AllSpecies, bool);
@@ -171,7 +173,8 @@ public:
 
   ///@{
   /**
-   * Whether `pose_probabilities` is made, to compare several sensors pose by pose. Default: off.
+   * Whether the output has `pose_probabilities`, to compare several sensors pose by pose. Default:
+   * off.
    */
   vtkSetMacro(PoseProbabilities, bool);
   vtkGetMacro(PoseProbabilities, bool);
@@ -184,8 +187,8 @@ public:
   void SetPlacesData(vtkDataObject* places) { this->SetInputData(2, places); }
   ///@}
 
-  /// Places to which the last execution looked for a line of sight on this rank; 0 if all were
-  /// known.
+  /// Number of places whose line of sight the last execution traced on this rank; 0 if all were
+  /// kept.
   double GetNumberOfTracedPlaces() const;
 
   vtkTypeBool ProcessRequest(vtkInformation* request, vtkInformationVector** inputVector,
@@ -222,7 +225,7 @@ private:
 
   int RequestDataObject(vtkInformationVector** inputVector, vtkInformationVector* outputVector);
 
-  // Passes of an execution, as those of the superclass.
+  // Passes of an execution, as in the superclass.
   bool PrepareTargets(const vtkAvianLidarRanks& ranks);
   bool PreparePlaces(const vtkAvianLidarRanks& ranks, vtkDataSet* places, vtkInformation* info);
   bool View(const vtkAvianLidarRanks& ranks, bool isFirst, vtkPolyData* clutter);

@@ -1,23 +1,24 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class vtkAvianLidarEchoFilter
- * @brief Simulates the echoes that a lidar receives from surfaces: beams and surfaces in, points
- * with energies out.
+ * @brief Simulates the echoes that a lidar receives from surfaces, as points with energies.
  *
- * Implements "Research on Ground Object Echo Simulation of Avian Lidar", Photonics 2024, 11(2), 153
- * (Algorithm 2, Eq. 1-18); Documentation/evidence/paper.md lists where the code differs and why.
+ * The filter implements "Research on Ground Object Echo Simulation of Avian Lidar", Photonics 2024,
+ * 11(2), 153 (Algorithm 2, Eq. 1-18); Documentation/evidence/paper.md lists where the code differs
+ * and why.
  *
  * Passes: read beams and sensor, merge the surfaces, take the tree that came with them or build
- * one, find what each beam sees, light it, sum energies in range units, form returns. What beams
- * see is kept: other materials, air, limits, noise or return modes light it again, with the bits of
- * a fresh run. It uses no VTK locator, and OpenMP instead of vtkSMPTools.
+ * one, find the view of each beam, light it, sum energies in range units, form returns. After a
+ * change of materials, air, limits, noise or return mode, kept views are lit again, with the bits
+ * of a fresh run. The filter uses OpenMP, neither a VTK locator nor vtkSMPTools.
  *
  * - Input port 0, beams: vtkPolyData, one point per beam at the sensor, with the point array
  *   `direction` and the field data of a vtkAvianLidarBeamSource.
- * - Input port 1, surfaces: vtkPolyData or a composite of it, best a vtkAvianLidarCollisionTree's
- *   output. Media (vtkAvianLidarMedium) among them weaken light and send it back.
+ * - Input port 1, surfaces: vtkPolyData or a composite of it, best the output of a
+ *   vtkAvianLidarCollisionTree. Media (vtkAvianLidarMedium) among the surfaces weaken light and
+ *   send it back.
  * - Input port 2, movers (optional): vtkPolyData or a composite of it, with poses as field data, as
- *   from vtkAvianLidarTracks. Each beam meets a mover where it is at the beam's own `timestamp`.
+ *   from vtkAvianLidarTracks. Each beam meets movers where they are at its `timestamp`.
  * - Output port 0, echoes: one vertex per return, with `energy`, `distance_m`, `object_id` and
  *   more.
  * - Output port 1, beam report: one vertex per beam, with `status`, `view`, `skipped` and the
@@ -25,19 +26,19 @@
  * - Output port 2, mover report: one vertex per mover that is present, with `effective_area`,
  *   `detection_probability` and more; empty with ReportMovers off.
  *
- * Field data of all outputs: those of the beams; names and `geodetic_origin` of the surfaces; every
- * property of this filter in snake case as it was used, but for Visibility
+ * Field data of all outputs: the field data of the beams; names and `geodetic_origin` of the
+ * surfaces; every property of this filter in snake case with the value used, but for Visibility
  * (`attenuation_coefficient` gives the result), NumberOfThreads, MaximumCacheSize, ReportMovers,
- * Controller and ErrorsAsData; `avian_lidar_version`, `scene_checksum`, and bounds of all that the
- * model left out.
+ * Controller and ErrorsAsData; `avian_lidar_version`, `scene_checksum`, and bounds of everything
+ * that the model left out.
  *
- * A bad input is an error that names port and array, with empty outputs. Without beams or surfaces
- * the echoes are empty. An aborted run leaves empty outputs and keeps nothing.
+ * A bad input gives an error that names port and array, and empty outputs. Without beams or
+ * surfaces the echoes are empty. An aborted run leaves empty outputs and keeps no results.
  *
  * The echoes have the same bits for any number of threads, order and pieces of the beams, order and
- * division of the surfaces, tree, and state of what is kept, on one kind of CPU. Costs
+ * division of the surfaces, tree, and state of the kept results, on one kind of CPU. Costs
  * (`candidates`, `nodes_visited`, `rays_traced`) and `skipped` depend on order, pieces, tree and
- * earlier runs. MPI ranks that ask for their own pieces work together.
+ * earlier runs. MPI ranks that request their own pieces work together.
  *
  * @code
  * echoes->SetInputConnection(sensor->GetOutputPort());
@@ -88,8 +89,8 @@ public:
 
   ///@{
   /**
-   * Which returns become points; range units: a point of each, as the paper. Default:
-   * RETURN_MODE_ALL.
+   * Returns that become points. RETURN_MODE_RANGE_UNITS makes a point of each range unit, as the
+   * paper does. Default: RETURN_MODE_ALL.
    */
   vtkSetMacro(ReturnMode, int);
   vtkGetMacro(ReturnMode, int);
@@ -101,7 +102,7 @@ public:
   ///@}
 
   ///@{
-  /** Make the mover report, 1 ms of one core a mover. Echoes do not depend on it. Default: on. */
+  /** Whether to report movers (1 ms of one core each); does not affect echoes. Default: on. */
   vtkSetMacro(ReportMovers, bool);
   vtkGetMacro(ReportMovers, bool);
   vtkBooleanMacro(ReportMovers, bool);
@@ -113,7 +114,8 @@ public:
   void SetMoversData(vtkDataObject* movers) { this->SetInputData(2, movers); }
   ///@}
 
-  /// Beams that movers may have touched in the last execution, of all ranks. Each was traced anew.
+  /// Number of beams, on all ranks, that movers may have touched in the last execution. Each of
+  /// these beams was traced anew.
   double GetNumberOfTouchedBeams() const;
 
 protected:
@@ -123,7 +125,7 @@ protected:
   int RequestInformation(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
   int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
 
-  // A pass of an execution, as those of the superclass, and the field data of its outputs.
+  // A pass of an execution, as in the superclass, and the field data of the outputs.
   bool PrepareMovers(const vtkAvianLidarRanks& ranks, vtkDataObject* input);
   void FillFields(vtkFieldData* beamFields, vtkFieldData* fields) const;
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file vtkAvianLidarFilePath.h
- * @brief Setter and getter of a property that is the name of a file and a std::string:
- * vtkSetFilePathMacro() has those of a char* alone.
+ * @brief Declares setter and getter of a file name that is a std::string; vtkSetFilePathMacro()
+ * only takes a char*.
  */
 #ifndef vtkAvianLidarFilePath_h
 #define vtkAvianLidarFilePath_h
@@ -11,7 +11,7 @@
 
 #include <string> // For the name
 
-/// In the public part of a class.
+/// Declares setter and getter in the public part of a class.
 #define vtkAvianLidarFilePathMacro(name)                           \
   virtual void Set##name(VTK_FILEPATH const std::string& fileName) \
   {                                                                \

@@ -1,26 +1,25 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class vtkAvianLidarGeodeticTransform
- * @brief Where points lie on the Earth: local east-north-up, geodetic, geocentric and UTM
- * coordinates.
+ * @brief Transforms points between local east-north-up, geodetic, geocentric and UTM coordinates.
  *
- * - Input port 0: any vtkPointSet, or a composite of them, with coordinates of SourceFrame.
- * - Output port 0: the same, shallow copies with the point arrays `longitude` (in [-180, 180]; 0 at
- *   a pole), `latitude` and `height` (above the WGS84 ellipsoid), and with MovePoints the points in
- *   TargetFrame. Vectors are not turned. Field data: `geodetic_origin` and `utm_zone` if they were
- *   used; `crs_wkt` is removed if points move.
+ * - Input port 0: any vtkPointSet, or a composite of vtkPointSet, with coordinates in SourceFrame.
+ * - Output port 0: shallow copies of the input with the point arrays `longitude` (in [-180, 180]; 0
+ *   at a pole), `latitude` and `height` (above the WGS84 ellipsoid), and, if MovePoints is on, with
+ *   the points in TargetFrame. Vectors are not turned. Field data: `geodetic_origin` and `utm_zone`
+ *   if they were used; `crs_wkt` is removed if points move.
  *
  * All frames are on WGS84: ENU (metres on the tangent plane of the origin), geodetic (longitude and
  * latitude in degrees, height in metres), ECEF (geocentric metres), UTM (easting, northing, height
  * in metres).
  *
- * The conversions are GeographicLib's (Karney, J. Geodesy 85(8), 2011), with errors below 10 nm
- * within 5000 km of the surface, and the rounding of the numbers. UTM holds up to 3900 km from the
- * central meridian. Measured: Documentation/reference/scene-files.md.
+ * GeographicLib makes the conversions (Karney, J. Geodesy 85(8), 2011). Their errors are below 10
+ * nm within 5000 km of the surface, plus the rounding of the numbers. UTM is valid up to 3900 km
+ * from the central meridian. Measured errors: Documentation/reference/scene-files.md.
  *
  * A missing origin, bad angles, coordinates that are not finite or beyond UTM, a bad zone or a
- * block that is not a vtkPointSet is an error that names it, with an empty output; so is the output
- * after an abort. No points: empty output. The result does not depend on pieces.
+ * block that is not a vtkPointSet gives an error that names the fault, and an empty output. The
+ * output is also empty after an abort and without points. The result does not depend on pieces.
  *
  * Example: `toUtm->SetTargetFrameToUTM(); toUtm->MovePointsOn();`
  *
@@ -69,14 +68,14 @@ public:
   ///@}
 
   ///@{
-  /** Whether points are moved to TargetFrame; else only arrays are added. Default: off. */
+  /** Whether points are moved to TargetFrame; otherwise only arrays are added. Default: off. */
   vtkSetMacro(MovePoints, bool);
   vtkGetMacro(MovePoints, bool);
   vtkBooleanMacro(MovePoints, bool);
   ///@}
 
   ///@{
-  /** Take the origin from field data `geodetic_origin` of the block or the input. Default: on. */
+  /** Whether field data `geodetic_origin` of block or input give the origin. Default: on. */
   vtkSetMacro(UseFieldDataOrigin, bool);
   vtkGetMacro(UseFieldDataOrigin, bool);
   vtkBooleanMacro(UseFieldDataOrigin, bool);
@@ -92,7 +91,7 @@ public:
   ///@}
 
   ///@{
-  /** Zone of UTM: 1 to 60 north, -1 to -60 south, 0 that of the origin. Default 0. */
+  /** Zone of UTM: 1 to 60 north, -1 to -60 south, 0 the zone of the origin. Default 0. */
   vtkSetMacro(UTMZone, int);
   vtkGetMacro(UTMZone, int);
   ///@}

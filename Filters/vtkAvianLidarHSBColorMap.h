@@ -1,23 +1,23 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class vtkAvianLidarHSBColorMap
- * @brief The colour of an echo in the HSB mode: Qlow is blue, Qhigh is red.
+ * @brief Colours echoes in the HSB mode: Qlow is blue, Qhigh is red.
  *
  * The hue of an energy Q is 240 degrees (Qhigh - Q) / (Qhigh - Qlow), with saturation and
  * brightness 1 (Eq. 13 of "Research on Ground Object Echo Simulation of Avian Lidar", Photonics
- * 2024, 11(2), 153). Energies outside the limits take the colour of the nearer end; with equal
+ * 2024, 11(2), 153). Energies outside the limits have the colour of the nearer limit; with equal
  * limits the hue is 0.
  *
  * - Input port 0: any vtkPointSet with a numeric point array of one component, J; by default
- *   `energy`, another by SetInputArrayToProcess().
+ *   `energy`; SetInputArrayToProcess() chooses another array.
  * - Output port 0: a shallow copy with the point arrays `hue` and `rgb`. NaN is black, with one
  *   warning.
  *
- * A missing array or limit, several components, and limits that are not finite or the wrong way
- * round are an error that names them, with an empty output. No points: both arrays without values.
+ * A missing array or limit, several components, and limits that are not finite or in the wrong
+ * order give an error that names them, and an empty output. Without points both arrays are empty.
  *
  * Example: `colors->SetInputConnection(echoes->GetOutputPort());` Documentation:
- * colour-and-range-image.md.
+ * guide/clouds.md.
  *
  * @sa vtkAvianLidarEchoFilter
  */
@@ -39,7 +39,7 @@ public:
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
   ///@{
-  /** Take the limits from field data `lower_energy_limit` and `upper_energy_limit`. Default: on. */
+  /** Whether field data `lower_energy_limit`, `upper_energy_limit` are the limits. Default: on. */
   vtkSetMacro(UseFieldDataRange, bool);
   vtkGetMacro(UseFieldDataRange, bool);
   vtkBooleanMacro(UseFieldDataRange, bool);
@@ -51,12 +51,13 @@ public:
   vtkGetVector2Macro(EnergyRange, double);
   ///@}
 
-  /// Lookup table of these colours over the limits of the last execution (before: EnergyRange), for
-  /// a mapper or a scalar bar. This object owns it, and the next call changes it.
+  /// Lookup table of these colours for a mapper or a scalar bar, between the limits of the last
+  /// execution or, before any, EnergyRange. This object owns the table, and the next call changes
+  /// it.
   vtkLookupTable* GetLookupTable();
 
-  /// Give `table` these colours and limits; it keeps its number of colours (at least 2). Its ends
-  /// are exactly blue and red; values below, above and NaN are blue, red and black.
+  /// Give `table` these colours and limits; it keeps its number of colours (at least 2). The ends
+  /// are exactly blue and red. Values below, values above and NaN are blue, red and black.
   void FillLookupTable(vtkLookupTable* table);
 
   vtkAvianLidarErrorsAsDataMacro();
@@ -74,7 +75,7 @@ private:
   vtkAvianLidarHSBColorMap(const vtkAvianLidarHSBColorMap&) = delete;
   void operator=(const vtkAvianLidarHSBColorMap&) = delete;
 
-  // Finds the limits in use, and what is wrong with them.
+  // Finds the limits in use. Returns what is wrong with them, or an empty string.
   std::string FindLimits(vtkPointSet* input, double limits[2]);
 
   bool Executed;

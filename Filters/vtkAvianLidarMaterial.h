@@ -1,23 +1,23 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class vtkAvianLidarMaterial
- * @brief Gives surfaces a material: how they reflect the light of the lidar.
+ * @brief Gives surfaces a material, which says how they reflect the light of the lidar.
  *
  * - Input port 0: vtkPolyData, or a composite whose leaves are vtkPolyData.
- * - Output port 0: the same, shallow copies with the cell arrays `object_id`, `material_id` (index
- *   into `material_names`), `kd`, `ks`, `kp` and `roughness` (rad), always all six. Field data of
- *   each leaf: `material_names` (those of the input or the four of the paper, and this one behind
- *   them), `object_names` (one value) and `object_classes`, where the input has them; several
- *   classes of a leaf that becomes one object become one, or an empty one if they differ. A
- *   composite carries `material_names`, too.
+ * - Output port 0: shallow copies of the input with the cell arrays `object_id`, `material_id`
+ *   (index into `material_names`), `kd`, `ks`, `kp` and `roughness` (rad); all six are always
+ *   present. Field data of each leaf: `material_names` (the input's names, or else the four of the
+ *   paper; this material's name follows them), `object_names` (one value) and `object_classes`,
+ *   where the input has them; if a leaf that becomes one object has several classes, they become
+ *   one class, which is empty if they differ. A composite also has `material_names`.
  *
- * Only blocks that fit BlockNamePattern get the material, so that one filter after the other can
- * name the materials of a scene. Coefficients are those of "Research on Ground Object Echo
+ * Only blocks that match BlockNamePattern get the material, so a chain of these filters can give
+ * each part of a scene its material. Coefficients are defined as in "Research on Ground Object Echo
  * Simulation of Avian Lidar", Photonics 2024, 11(2), 153 (Eq. 6, 7, Table 1);
  * Documentation/method/reflectance.md.
  *
  * Coefficients out of range, kd + ks above 1, an unknown material or a chosen leaf that is not
- * vtkPolyData is an error, with empty output. A pattern that fits no block gives a warning.
+ * vtkPolyData gives an error and an empty output. A pattern that matches no block gives a warning.
  *
  * Example: `glass->SetMaterialToGlass(); glass->SetBlockNamePattern("window*");`
  *
@@ -55,9 +55,9 @@ public:
 
   ///@{
   /**
-   * The material: one of the paper's Table 1 (wall, glass, metal, wood); one that only scatters, at
-   * 905 nm (concrete, asphalt, grass of the USGS Spectral Library 7; plumage, assumed); custom, by
-   * Kd, Ks, Kp and Roughness; or unchanged, to name surfaces only. Default MATERIAL_WALL.
+   * The material: one from the paper's Table 1 (wall, glass, metal, wood); one that only scatters,
+   * at 905 nm (concrete, asphalt, grass of the USGS Spectral Library 7; plumage, assumed); custom,
+   * by Kd, Ks, Kp and Roughness; or unchanged, to name surfaces only. Default MATERIAL_WALL.
    */
   vtkSetMacro(Material, int);
   vtkGetMacro(Material, int);
@@ -74,9 +74,9 @@ public:
 
   ///@{
   /**
-   * Name of a value of Material, source of its numbers ("assumed" if not measured), a coefficient
-   * (0 kd, 1 ks, 2 kp, 3 roughness) and a colour (red, green, blue, 0 to 1). MATERIAL_CUSTOM and
-   * unknown values give null, NaN, or false with the colour unchanged.
+   * Name of a value of Material, source of its coefficients ("assumed" if not measured), one of its
+   * coefficients (0 kd, 1 ks, 2 kp, 3 roughness) and its colour (red, green, blue, 0 to 1).
+   * MATERIAL_CUSTOM and unknown values give null, NaN, or false with the colour unchanged.
    */
   static const char* GetMaterialName(int material);
   static const char* GetMaterialSource(int material);
@@ -84,7 +84,7 @@ public:
   static bool GetMaterialColor(int material, double color[3]);
   ///@}
 
-  /// Name of a coefficient's cell array, from 0 on; null beyond the last.
+  /// Name of the cell array of a coefficient, counted from 0; null beyond the last one.
   static const char* GetCoefficientName(int coefficient);
 
   ///@{
@@ -113,24 +113,24 @@ public:
 
   ///@{
   /**
-   * Object id of the surfaces, at least 0; or -1, the default: ids are kept, other leaves get their
-   * number in leaf order. Ids that are not unique in a scene are given anew when surfaces are
-   * merged.
+   * Object id of the surfaces, at least 0; or -1, the default: leaves keep their ids, and a leaf
+   * without ids gets its number in leaf order. Ids that are not unique in a scene are replaced when
+   * surfaces are merged.
    */
   vtkSetMacro(ObjectId, int);
   vtkGetMacro(ObjectId, int);
   ///@}
 
   ///@{
-  /** Name of each leaf, which becomes one object; empty: its own or its block's. Default: empty. */
+  /** Name of each leaf, which becomes an object; empty: name of leaf or block. Default: empty. */
   vtkSetMacro(NameOfObject, std::string);
   vtkGetMacro(NameOfObject, std::string);
   ///@}
 
   ///@{
   /**
-   * Blocks that get the material, by their name or that of a block around them, with `*` (any text)
-   * and `?` (any character). Default `*`, all; empty means the same.
+   * Pattern for the names of blocks that get the material with all blocks inside, with `*` (any
+   * text) and `?` (any character). Default `*`: all blocks, as with an empty pattern.
    */
   vtkSetMacro(BlockNamePattern, std::string);
   vtkGetMacro(BlockNamePattern, std::string);

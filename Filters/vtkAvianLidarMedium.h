@@ -1,24 +1,24 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class vtkAvianLidarMedium
- * @brief Air that weakens light and sends it back in a part of the scene: ground fog, a bank, a
- * shower, the crown of a tree.
+ * @brief Makes a medium that weakens light and sends it back in a part of the scene: ground fog, a
+ * fog bank, a shower, the crown of a tree.
  *
  * - Input port 0 (optional, for SHAPE_SURFACE): vtkPolyData, the closed surface that bounds the
  *   medium, m; its triangles may be wound either way.
- * - Output port 0: vtkPolyData, the surface that bounds the medium, to be drawn translucent. Its
- *   field data make it a medium for all filters that look at surfaces: `medium` (description as
- *   JSON), `object_names` and `object_classes` ("air", or "vegetation" of foliage).
+ * - Output port 0: vtkPolyData, the surface that bounds the medium, for translucent display. Its
+ *   field data make it a medium for all filters that take surfaces: `medium` (description as JSON),
+ *   `object_names` and `object_classes` ("air", or "vegetation" for foliage).
  *
- * Kind says what the medium is, one quantity how dense: Visibility of haze, fog and snow, RainRate
- * of drizzle and rain, LeafAreaDensity of foliage, Extinction and BackscatterRatio of KIND_CUSTOM.
- * All numbers, their sources and what is assumed: Documentation/guide/weather.md,
- * Filters/Media/media.json.
+ * Kind says what the medium is. One quantity says how dense it is: Visibility for haze, fog and
+ * snow, RainRate for drizzle and rain, LeafAreaDensity for foliage, Extinction (with
+ * BackscatterRatio) for KIND_CUSTOM. Numbers, sources and assumptions:
+ * Documentation/guide/weather.md, Filters/Media/media.json.
  *
- * A bad value or an open surface is an error that names the key of the description, with empty
- * output; setters keep any value. Each rank asks for all of the surface.
+ * A bad value or an open surface gives an error that names the key of the description, and an empty
+ * output. Setters accept any value. Each rank requests the whole surface.
  *
- * Combine the output with the scene, in ParaView by Group Datasets:
+ * The output is combined with the scene, in ParaView by Group Datasets:
  *
  * @code
  * fog->SetVisibility(300);
@@ -65,7 +65,7 @@ public:
   };
 
   ///@{
-  /** What fills the air. Default KIND_FOG. */
+  /** Kind of the medium. Default KIND_FOG. */
   vtkSetMacro(Kind, int);
   vtkGetMacro(Kind, int);
   void SetKindToHaze() { this->SetKind(KIND_HAZE); }
@@ -102,7 +102,7 @@ public:
   ///@}
 
   ///@{
-  /** Extinction over backscatter S of KIND_CUSTOM, sr, 0.001 to 1e9. Default 18.8. */
+  /** Ratio S of extinction to backscatter of KIND_CUSTOM, sr, 0.001 to 1e9. Default 18.8. */
   vtkSetMacro(BackscatterRatio, double);
   vtkGetMacro(BackscatterRatio, double);
   ///@}
@@ -110,7 +110,7 @@ public:
   ///@{
   /**
    * Share of drops or leaves that change from scan to scan, 1, 0 to 1; -1, the default: by the kind
-   * (1 of drops and flakes, 0.3 of leaves, assumed). Haze and fog have none.
+   * (1 for drops and flakes, 0.3 for leaves, assumed). Not used for haze and fog.
    */
   vtkSetMacro(RenewedShare, double);
   vtkGetMacro(RenewedShare, double);
@@ -118,7 +118,7 @@ public:
 
   ///@{
   /**
-   * Where the medium is: everywhere; in a layer between Bottom and Top; in a box or ellipsoid of
+   * Region of the medium: everywhere; in a layer between Bottom and Top; in a box or ellipsoid of
    * Lengths about Center, turned by Heading; inside the surface of the input. Default SHAPE_LAYER.
    */
   vtkSetMacro(Shape, int);
@@ -143,13 +143,13 @@ public:
   ///@}
 
   ///@{
-  /** Height over which a layer fades to 1/e above its top, m, 0 to 1e6. Default 5. */
+  /** Height above the top in which a layer fades to 1/e, m, 0 to 1e6. Default 5. */
   vtkSetMacro(Softness, double);
   vtkGetMacro(Softness, double);
   ///@}
 
   ///@{
-  /** Middle of a box or an ellipsoid, m. Default (0, 0, 0). */
+  /** Centre of a box or an ellipsoid, m. Default (0, 0, 0). */
   vtkSetVector3Macro(Center, double);
   vtkGetVector3Macro(Center, double);
   ///@}
@@ -167,19 +167,19 @@ public:
   ///@}
 
   ///@{
-  /** Velocity, m/s, from the place at time 0 of the beams. Default (0, 0, 0). */
+  /** Velocity, m/s; the medium is in its given place at time 0 of the beams. Default (0, 0, 0). */
   vtkSetVector3Macro(Velocity, double);
   vtkGetVector3Macro(Velocity, double);
   ///@}
 
   ///@{
-  /** Name in messages, and of foliage as an object; empty: of its block. Default "medium". */
+  /** Name in messages and of foliage's object; empty: the block's name. Default "medium". */
   vtkSetMacro(Name, std::string);
   vtkGetMacro(Name, std::string);
   ///@}
 
   ///@{
-  /** Side of what is drawn of a layer or of air everywhere, m, above 0. Default 2000. */
+  /** Side of the displayed part of a layer or of air everywhere, m, above 0. Default 2000. */
   vtkSetMacro(DisplaySize, double);
   vtkGetMacro(DisplaySize, double);
   ///@}

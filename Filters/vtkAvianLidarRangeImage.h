@@ -14,18 +14,18 @@
  *   `skipped_bound` (NaN without a beam). Field data: `column_azimuths`, `row_elevations`, and the
  *   limits of the receiver.
  *
- * Columns and rows are the distinct azimuths and elevations, to 1e-4 degrees. They are those of the
- * sensor's whole scan if the beams come from a vtkAvianLidarBeamSource through the pipeline, and
- * otherwise those of the given beams. Rows of a tilted sensor are channels. For grids, spacing and
- * maps see Documentation/guide/clouds.md.
+ * Columns and rows are the distinct azimuths and elevations, to 1e-4 degrees: of the sensor's whole
+ * scan if the beams come from a vtkAvianLidarBeamSource through the pipeline, and otherwise of the
+ * given beams. Rows of a tilted sensor are channels. For grids, spacing and maps see
+ * Documentation/guide/clouds.md.
  *
  * The size is known before execution, from the beam source or from Columns and Rows (then with
- * origin 0 and spacing 1 until the data come). MPI ranks share echoes and beams; each makes one
+ * origin 0 and spacing 1 until execution). MPI ranks share echoes and beams; each makes one
  * sub-extent.
  *
  * An error names array and port and leaves an empty image. Errors are missing or bad arrays, an
  * echo without its beam, a `beam_id` that two beams have, beams that do not form a grid, and a grid
- * whose size is not the announced one. Without beams the image has the announced size and no
+ * of another size than the announced one. Without beams the image has the announced size and no
  * echoes.
  *
  * @code
@@ -67,7 +67,7 @@ public:
   ///@}
 
   ///@{
-  /** Processes that may work together; null: this one alone. Default: the global controller. */
+  /** Processes that may work together; null: only this one. Default: the global controller. */
   void SetController(vtkMultiProcessController* controller);
   vtkGetObjectMacro(Controller, vtkMultiProcessController);
   ///@}

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class vtkAvianLidarScanFilter
- * @brief Base of filters that look at surfaces along the beams of a scan: the two inputs, settings
- * of tracing and lighting, and what is kept from one execution to the next.
+ * @brief Base of filters that trace the beams of a scan to surfaces. It has the two inputs, the
+ * settings of tracing and lighting, and the results that are kept from one execution to the next.
  *
- * Input port 0 is the beams, input port 1 the surfaces or their collision tree, as
+ * Input port 0 takes the beams, input port 1 the surfaces or their collision tree, as
  * vtkAvianLidarEchoFilter describes them. Paper: "Research on Ground Object Echo Simulation of
  * Avian Lidar", Photonics 2024, 11(2), 153.
  *
@@ -75,20 +75,21 @@ public:
 
   ///@{
   /**
-   * Fidelity by name. At execution all but PRESET_CUSTOM override RaysPerBeam, NumberOfConnections,
-   * Sampling and NumberOfReflections; the field data hold what was used. PRESET_PAPER and
-   * PRESET_PREVIEW also override BeamSamples. In brackets: rms error of energy and processor time
-   * of 15,360 beams at the shipped airport, then at Hongqiao with structures:
+   * Preset of the fidelity. At execution all presets but PRESET_CUSTOM override RaysPerBeam,
+   * NumberOfConnections, Sampling and NumberOfReflections; the field data hold the values used.
+   * PRESET_PAPER and PRESET_PREVIEW also override BeamSamples. In brackets are the rms error of
+   * energy and the processor time of 15,360 beams, first at the shipped airport, then at Hongqiao
+   * with structures:
    *
-   * - PRESET_PREVIEW: 100 stratified rays alone, 1 reflection (7.7 %, 0.07 s; 9.2 %, 0.08 s)
+   * - PRESET_PREVIEW: only 100 stratified rays, 1 reflection (7.7 %, 0.07 s; 9.2 %, 0.08 s)
    * - PRESET_DRAFT: 25 rays, 0 connections, 2 reflections (0.41 %, 0.13 s; 0.97 %, 0.52 s)
    * - PRESET_STANDARD: 200 rays, 2 connections, 2 reflections (0.21 %, 0.24 s; 0.40 %, 0.94 s)
    * - PRESET_REFERENCE: 3200 rays, 8 connections, 2 reflections (0.12 %, 0.85 s; 0.14 %, 4.4 s)
-   * - PRESET_PAPER: the method of the paper. 100 independent rays alone, 2 connections,
-   *   2 reflections (16 %, 0.11 s; 16 %, 0.16 s); it also overrides BatchCollisionDetection
-   * (beams), BeamConstraint (on), LightEnergyConstraint (on), LightEnergyThreshold (limit),
-   * ReflectanceModel (the paper's) and ReturnMode (a point for each range unit). Its tree:
-   * vtkAvianLidarCollisionTree::PRESET_PAPER.
+   * - PRESET_PAPER: the method of the paper. Only 100 independent rays, 2 connections, 2
+   *   reflections (16 %, 0.11 s; 16 %, 0.16 s); it also overrides BatchCollisionDetection (beams),
+   *   BeamConstraint (on), LightEnergyConstraint (on), LightEnergyThreshold (limit),
+   *   ReflectanceModel (the paper's) and ReturnMode (a point for each range unit). The paper's
+   *   tree: vtkAvianLidarCollisionTree::PRESET_PAPER.
    *
    * Errors and times: Documentation/evidence/accuracy.md. Default: PRESET_CUSTOM.
    */
@@ -104,8 +105,8 @@ public:
 
   ///@{
   /**
-   * N, rays per beam (Eq. 1-3), 1 to 1000000. With BEAM_SAMPLES_CELLS it sets the density of a
-   * beam's grid, about 32 N rays, and of paths over two reflections. Default: 100.
+   * Number N of rays per beam (Eq. 1-3), 1 to 1000000. With BEAM_SAMPLES_CELLS it sets the density
+   * of a beam's grid, about 32 N rays, and of paths with two reflections. Default: 100.
    */
   vtkSetMacro(RaysPerBeam, int);
   vtkGetMacro(RaysPerBeam, int);
@@ -113,11 +114,11 @@ public:
 
   ///@{
   /**
-   * How the direct echo of a beam is found (Documentation/method/beam.md):
+   * Method that finds the direct echo of a beam (Documentation/method/beam.md):
    *
-   * - BEAM_SAMPLES_CELLS: by integration over the polygons that the beam sees where few triangles
-   *   enter it, else by cells with a dense grid of rays
-   * - BEAM_SAMPLES_RAYS: by RaysPerBeam rays, as in the paper
+   * - BEAM_SAMPLES_CELLS: integrates over the polygons that the beam sees where few triangles enter
+   *   the beam, and otherwise over cells with a dense grid of rays
+   * - BEAM_SAMPLES_RAYS: sums over RaysPerBeam rays, as in the paper
    *
    * Default: BEAM_SAMPLES_CELLS.
    */
@@ -129,7 +130,7 @@ public:
 
   ///@{
   /**
-   * How rays are drawn: independently (the paper), or two in each of N/2 cells of equal solid
+   * Distribution of the rays: independent (the paper), or two in each of N/2 cells of equal solid
    * angle. Default: SAMPLING_STRATIFIED.
    */
   vtkSetMacro(Sampling, int);
@@ -152,8 +153,9 @@ public:
 
   ///@{
   /**
-   * Visibility, m, to 1e9, by the law of Kruse and Kim (Documentation/method/reflectance.md). 0: by
-   * AttenuationCoefficient. Default: 0 of the echo filter, 23000 (clear) of vtkAvianLidarCoverage.
+   * Visibility, m, at most 1e9, by the law of Kruse and Kim (Documentation/method/reflectance.md).
+   * 0: AttenuationCoefficient counts. Default: 0 in the echo filter, 23000 (clear) in
+   * vtkAvianLidarCoverage.
    */
   vtkSetMacro(Visibility, double);
   vtkGetMacro(Visibility, double);
@@ -174,8 +176,8 @@ public:
 
   ///@{
   /**
-   * How surfaces reflect (Documentation/method/reflectance.md): the paper's model, Eq. 5-8; its
-   * peers of Fig. 10; Oren and Nayar's for rough surfaces. Default:
+   * Reflectance model (Documentation/method/reflectance.md): the paper's, Eq. 5-8; the models that
+   * Fig. 10 compares with it; Oren and Nayar's for rough surfaces. Default:
    * REFLECTANCE_MODEL_LAMBERT_BLINN_PHONG.
    */
   vtkSetMacro(ReflectanceModel, int);
@@ -193,35 +195,35 @@ public:
   ///@}
 
   ///@{
-  /** Reflections followed, 1 (direct echoes only) or 2 (Sec. 3.4). Default: 2. */
+  /** Number of reflections, 1 (direct echoes only) or 2 (Sec. 3.4). Default: 2. */
   vtkSetMacro(NumberOfReflections, int);
   vtkGetMacro(NumberOfReflections, int);
   ///@}
 
   ///@{
-  /** Look for second reflection points in the beam's cone only; same echoes. Default: on. */
+  /** Whether only the beam's cone is searched for second points; same echoes. Default: on. */
   vtkSetMacro(BeamConstraint, bool);
   vtkGetMacro(BeamConstraint, bool);
   vtkBooleanMacro(BeamConstraint, bool);
   ///@}
 
   ///@{
-  /** Drop paths that carry less than the LightEnergyThreshold (paper, Sec. 3.4). Default: on. */
+  /** Whether paths below LightEnergyThreshold are dropped (paper, Sec. 3.4). Default: on. */
   vtkSetMacro(LightEnergyConstraint, bool);
   vtkGetMacro(LightEnergyConstraint, bool);
   vtkBooleanMacro(LightEnergyConstraint, bool);
   ///@}
 
   ///@{
-  /** Share of the lower limit that LightEnergyConstraint may take, 1, 0 to 1e8. Default: 1e-3. */
+  /** Share of the lower limit that the constraint may drop, 1, 0 to 1e8. Default: 1e-3. */
   vtkSetMacro(LightEnergyFraction, double);
   vtkGetMacro(LightEnergyFraction, double);
   ///@}
 
   ///@{
   /**
-   * What LightEnergyConstraint compares a path with: a share of the lower limit, by
-   * LightEnergyFraction, or all of it, as the paper (Sec. 3.4). Default:
+   * Energy below which LightEnergyConstraint drops a path: the share LightEnergyFraction of the
+   * lower limit, or the whole lower limit, as in the paper (Sec. 3.4). Default:
    * LIGHT_ENERGY_THRESHOLD_SHARE_OF_LIMIT.
    */
   vtkSetMacro(LightEnergyThreshold, int);
@@ -238,7 +240,7 @@ public:
 
   ///@{
   /**
-   * What goes down the tree together; the echoes are the same:
+   * Rays that descend the tree together; the echoes are the same:
    *
    * - BATCH_COLLISION_DETECTION_RAYS (Off): every ray by itself
    * - BATCH_COLLISION_DETECTION_GROUPS (On): neighbouring beams, then packets of rays; the fastest
@@ -265,26 +267,26 @@ public:
   ///@}
 
   ///@{
-  /** Leave out nothing of what the beam report calls `skipped`; slower, to check. Default: off. */
+  /** Whether all parts of the model called `skipped` are computed; slower. Default: off. */
   vtkSetMacro(FullModel, bool);
   vtkGetMacro(FullModel, bool);
   vtkBooleanMacro(FullModel, bool);
   ///@}
 
   ///@{
-  /** M, diffuse connections of a ray that starts some, at least 0. Default: 2, as accurate as 8. */
+  /** Number M of connections of a ray that starts any, at least 0. Default: 2, as accurate as 8. */
   vtkSetMacro(NumberOfConnections, int);
   vtkGetMacro(NumberOfConnections, int);
   ///@}
 
   ///@{
-  /** Threads, which never change the echoes; 0, the default: this process's share of the cores. */
+  /** Number of threads; echoes do not depend on it. 0, the default: share of the cores. */
   vtkSetMacro(NumberOfThreads, int);
   vtkGetMacro(NumberOfThreads, int);
   ///@}
 
   ///@{
-  /** Most memory for what is kept between executions, MiB, at least 0. Default: 1024. */
+  /** Largest memory for results kept between executions, MiB, at least 0. Default: 1024. */
   vtkSetMacro(MaximumCacheSize, int);
   vtkGetMacro(MaximumCacheSize, int);
   ///@}
@@ -295,22 +297,23 @@ public:
   void SetSurfacesData(vtkDataObject* surfaces) { this->SetInputData(1, surfaces); }
   ///@}
 
-  /// Rays (primary, mirror, visibility) that the last execution traced, of all ranks; 0 if it only
-  /// lit.
+  /// Number of rays (primary, mirror, visibility) that the last execution traced, on all ranks; 0
+  /// if views were only lit again.
   double GetNumberOfTracedRays() const;
 
-  /// Beams whose surfaces the last execution looked for, of all ranks, movers not counted; 0 if all
-  /// were known.
+  /// Number of beams for which the last execution searched the surfaces, on all ranks, without
+  /// movers; 0 if all views were kept.
   double GetNumberOfTracedBeams() const;
 
-  /// Collision trees that this filter has built, because none that fits came with the surfaces.
+  /// Number of collision trees that this filter has built because no tree came with the surfaces,
+  /// or none that fits.
   int GetNumberOfTreeBuilds() const;
 
-  /// Bytes of surfaces that this rank has given to the others so far, for tests and measurements.
+  /// Bytes of surfaces that this rank has sent to other ranks so far, for tests and measurements.
   double GetNumberOfBytesSent() const;
 
   ///@{
-  /** Processes that may work together; null: this one alone. Default: the global controller. */
+  /** Processes that may work together; null: only this one. Default: the global controller. */
   void SetController(vtkMultiProcessController* controller);
   vtkGetObjectMacro(Controller, vtkMultiProcessController);
   ///@}
@@ -328,11 +331,11 @@ protected:
   int RequestInformation(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
   int RequestUpdateExtent(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
 
-  // Whether air and rain send light back, as field data.
+  // Adds to the field data whether air and rain send light back.
   std::string PlaceMedia();
   void AddAirTo(vtkFieldData* fields) const;
 
-  // Passes of an execution, by all ranks together; false ends it.
+  // Passes of an execution, which all ranks make together; false ends the execution.
   bool PrepareBeams(const vtkAvianLidarRanks& ranks, vtkPolyData* input);
   bool PrepareSurfaces(const vtkAvianLidarRanks& ranks, vtkDataObject* input);
   bool PrepareTree(const vtkAvianLidarRanks& ranks, vtkDataObject* input);

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file vtkAvianLidarSensorPresets.h
- * @brief Setters of vtkAvianLidarBeamSource for the sensors that are built in, one for each file in
+ * @brief Declares a setter of vtkAvianLidarBeamSource for each built-in sensor, which is a file in
  * Filters/Sensors.
  */
 #ifndef vtkAvianLidarSensorPresets_h
 #define vtkAvianLidarSensorPresets_h
 
-/// Called in the public part of the class, which has TakePreset().
+/// Declares the setters in the public part of a class with TakePreset().
 #define vtkAvianLidarSensorPresetsMacro() \
   void SetPresetToAirport16()             \
   {                                       \

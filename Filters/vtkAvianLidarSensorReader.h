@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class vtkAvianLidarSensorReader
- * @brief The sensor of a file (`.lidarsensor.json`): the beam source with the file's values.
+ * @brief Reads a sensor from a file (`.lidarsensor.json`): a beam source with the values of the
+ * file.
  *
- * Outputs are those of vtkAvianLidarBeamSource. The file is read when FileName is set; what it does
- * not name gets its default, but Position, Orientation, NumberOfRevolutions, StepsPerRevolution and
- * MotionSeed stay. Properties that are set later count until the file is read again.
+ * Outputs are those of vtkAvianLidarBeamSource. The file is read when FileName is set. Properties
+ * that are not in it get their defaults; only Position, Orientation, NumberOfRevolutions,
+ * StepsPerRevolution and MotionSeed stay. Values set later count until the file is read again.
  *
- * Errors name the file, the key and what was expected, with empty outputs.
+ * Errors name the file, the key and what was expected, and leave empty outputs.
  *
  * Example: `reader->SetFileName("my.lidarsensor.json");` Documentation: reference/sensor-files.md.
  *
@@ -26,7 +27,7 @@ public:
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
   ///@{
-  /** The file to read. Changes on disk are noticed by Reload() only. Default: none. */
+  /** The file to read. Only Reload() notices changes on disk. Default: none. */
   void SetFileName(VTK_FILEPATH const char* fileName);
   vtkGetFilePathMacro(FileName);
   ///@}

@@ -1,31 +1,31 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class vtkAvianLidarTracker
- * @brief Tracks of birds from point clouds that come one after the other.
+ * @brief Tracks birds in point clouds that come one after the other.
  *
  * Each execution takes one cloud, a whole scan. Its points are grouped into clusters, clusters are
- * assigned to tracks one to one by least cost, and the others begin new tracks. Kalman filters
- * follow the motion (Bar-Shalom, Li and Kirubarajan, Estimation with Applications to Tracking and
- * Navigation, 2001). Method, times and limits: Documentation/guide/tracks.md.
+ * assigned to tracks one to one by least cost, and clusters without a track begin new ones. Kalman
+ * filters follow the motion (Bar-Shalom, Li and Kirubarajan, Estimation with Applications to
+ * Tracking and Navigation, 2001). Method, times and limits: Documentation/guide/tracks.md.
  *
- * - Input port 0: vtkPolyData, points in metres. Optional: point arrays `is_clutter` (points where
- *   it is not 0 are left out), `timestamp`, `distance_std_error`; field data `position`,
+ * - Input port 0: vtkPolyData, points in metres. Optional: point arrays `is_clutter` (points with a
+ *   value other than 0 are left out), `timestamp`, `distance_std_error`; field data `position`,
  *   `half_beamwidth`.
- * - Output port 0, tracks: vtkPolyData, a polyline for each (first a vertex for each of a single
- *   position), by `track_id`, with the point arrays `time`, `velocity` (0 at the first position),
- *   `position_covariance`, `number_of_echoes` and the cell arrays `track_id`, `confirmed`, `ended`,
- *   `hits`.
+ * - Output port 0, tracks: vtkPolyData, a vertex for each track of one position, then a polyline
+ *   for each of the others, both in the order of `track_id`, with the point arrays `time`,
+ *   `velocity` (0 at the first position), `position_covariance`, `number_of_echoes` and the cell
+ *   arrays `track_id`, `confirmed`, `ended`, `hits`.
  * - Output port 1, points: the input with `track_id` and `track_confirmed`.
- * - Field data of both: `time` and the settings in snake case.
+ * - Field data of both ports: `time` and the settings in snake case.
  *
  * The time of a cloud is DATA_TIME_STEP, else the field data `TimeValue`, else the start of its
- * `revolution`, else 1 s after the cloud before. The same time replaces the last cloud; an earlier
- * one empties the memory, with a warning. Timestamps that do not all lie after the cloud before are
- * not used, with a warning.
+ * `revolution`, else 1 s after the cloud before. A cloud of the same time replaces the last cloud;
+ * an earlier time empties the memory, with a warning. Timestamps are not used, with a warning,
+ * unless all are later than the cloud before.
  *
- * Bad settings, points and arrays are an error with empty outputs; the memory stays. The tracks
- * have the same bits for any order of the points. Rank 0 has the tracks of all ranks, each rank its
- * own points.
+ * Bad settings, points or arrays give an error and empty outputs; the memory stays. The tracks have
+ * the same bits for any order of the points. Rank 0 has the tracks of all ranks, and each rank has
+ * its own points.
  *
  * @code
  * tracker->SetInputConnection(echoes->GetOutputPort(0));
@@ -62,43 +62,43 @@ public:
   };
 
   ///@{
-  /** Largest gap in a cluster, m, 0 to 1000, besides ClusterAngle times the range. Default 1.5. */
+  /** Largest gap in a cluster, m, 0 to 1000; see also ClusterAngle. Default 1.5. */
   vtkSetMacro(ClusterDistance, double);
   vtkGetMacro(ClusterDistance, double);
   ///@}
 
   ///@{
-  /** Largest gap in a cluster as an angle, deg, 0 to 20. Default 0.6. */
+  /** Largest gap in a cluster as an angle at the sensor, deg, 0 to 20. Default 0.6. */
   vtkSetMacro(ClusterAngle, double);
   vtkGetMacro(ClusterAngle, double);
   ///@}
 
   ///@{
-  /** Standard error of ranges, m, 0.001 to 1000, for points without their own. Default 0.5. */
+  /** Standard error of ranges if the points do not give it, m, 0.001 to 1000. Default 0.5. */
   vtkSetMacro(RangeError, double);
   vtkGetMacro(RangeError, double);
   ///@}
 
   ///@{
-  /** Half of the beam's divergence, rad, 0 to 1, for clouds without it. Default 0.0056. */
+  /** Half of the beam's divergence if the cloud does not give it, rad, 0 to 1. Default 0.0056. */
   vtkSetMacro(HalfBeamwidth, double);
   vtkGetMacro(HalfBeamwidth, double);
   ///@}
 
   ///@{
-  /** Position of the sensor, m, for clouds without it. Default (0, 0, 0). */
+  /** Position of the sensor, m, for clouds without the field data `position`. Default (0, 0, 0). */
   vtkSetVector3Macro(SensorPosition, double);
   vtkGetVector3Macro(SensorPosition, double);
   ///@}
 
   ///@{
-  /** Rms distance of echoes from the target's middle, m, 0.001 to 1000. Default 0.2 (assumed). */
+  /** Rms distance of echoes from the target's centre, m, 0.001 to 1000. Default 0.2 (assumed). */
   vtkSetMacro(TargetExtent, double);
   vtkGetMacro(TargetExtent, double);
   ///@}
 
   ///@{
-  /** How birds move between scans. Default MOTION_COORDINATED_TURN. */
+  /** Model of the birds' motion between scans. Default MOTION_COORDINATED_TURN. */
   vtkSetMacro(MotionModel, int);
   vtkGetMacro(MotionModel, int);
   void SetMotionModelToConstantVelocity() { this->SetMotionModel(MOTION_CONSTANT_VELOCITY); }
@@ -136,31 +136,31 @@ public:
   ///@}
 
   ///@{
-  /** Share of a track's own clusters that its gate lets in, 1, 0.5 to 0.999999. Default 0.99. */
+  /** Probability that a track's own cluster lies in its gate, 1, 0.5 to 0.999999. Default 0.99. */
   vtkSetMacro(GateProbability, double);
   vtkGetMacro(GateProbability, double);
   ///@}
 
   ///@{
-  /** Scans of the last ConfirmScans with a cluster that confirm a track, at least 1. Default 3. */
+  /** Number of hits in the last ConfirmScans scans that confirm a track, at least 1. Default 3. */
   vtkSetMacro(ConfirmHits, int);
   vtkGetMacro(ConfirmHits, int);
   ///@}
 
   ///@{
-  /** Scans of which ConfirmHits confirm a track, 1 to 32. Default 4. */
+  /** Number of last scans in which ConfirmHits hits confirm a track, 1 to 32. Default 4. */
   vtkSetMacro(ConfirmScans, int);
   vtkGetMacro(ConfirmScans, int);
   ///@}
 
   ///@{
-  /** Least speed of a track that is confirmed, m/s, 0 to 1000. Default 0. */
+  /** Least speed at which a track is confirmed, m/s, 0 to 1000. Default 0. */
   vtkSetMacro(MinimumSpeed, double);
   vtkGetMacro(MinimumSpeed, double);
   ///@}
 
   ///@{
-  /** Misses in a row after which a confirmed track ends, 1 to 1000. Default 3. */
+  /** Number of successive misses after which a confirmed track ends, 1 to 1000. Default 3. */
   vtkSetMacro(MaximumMisses, int);
   vtkGetMacro(MaximumMisses, int);
   ///@}
@@ -178,16 +178,16 @@ public:
   ///@}
 
   ///@{
-  /** Positions that a track keeps, 1 to 1,000,000. Default 200. */
+  /** Number of positions that a track keeps, 1 to 1,000,000. Default 200. */
   vtkSetMacro(HistoryLength, int);
   vtkGetMacro(HistoryLength, int);
   ///@}
 
-  /// Empty the memory: the next cloud is the first one, ids begin at 0.
+  /// Empty the memory: the next cloud counts as the first, and ids begin at 0.
   void Reset();
 
   ///@{
-  /** Processes that may work together; null: this one alone. Default: the global controller. */
+  /** Processes that may work together; null: only this one. Default: the global controller. */
   void SetController(vtkMultiProcessController* controller);
   vtkGetObjectMacro(Controller, vtkMultiProcessController);
   ///@}

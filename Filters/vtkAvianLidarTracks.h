@@ -1,26 +1,26 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class vtkAvianLidarTracks
- * @brief Flights of birds, by patterns or from tracks, as movers for the echo filter.
+ * @brief Makes flights of birds, by patterns or from tracks, as movers for the echo filter.
  *
  * - Input port 0 (optional, for PATTERN_LINES): vtkPolyData whose lines are tracks in scene
  *   coordinates, m, with the point array `time` (s) and the cell array or field data `species`
  *   (optional).
- * - Output port 0, movers: vtkMultiBlockDataSet, a block for each bird, named as the object. It has
- *   the triangles of vtkAvianLidarBirdSource in the bird's own frame (x right, y forward, z up),
- *   and as field data `pose_time`, `pose_position`, `pose_orientation`, where wings flap
- *   `flap_hinge` and so on, `object_names`, `material_names` and `species`
- * (Documentation/guide/moving.md, Movers).
+ * - Output port 0, movers: vtkMultiBlockDataSet, a block for each bird, with the name of the
+ *   object. It has the triangles of vtkAvianLidarBirdSource in the bird's own frame (x right, y
+ *   forward, z up). Field data: `pose_time`, `pose_position`, `pose_orientation`; for flapping
+ *   wings `flap_hinge` and the other `flap_` arrays; `object_names`, `material_names` and `species`
+ *   (Documentation/guide/moving.md, Movers).
  * - Output port 1, trails: vtkPolyData, a polyline for each bird, with the point array `time`, the
  *   cell arrays `object_id` and `species_id`, and the field data `species_names`.
  *
- * Outputs hold all poses, whatever time or piece is asked for; time 0 is the start of the scan. The
- * same seed gives the same bits, and a bird depends on those after it only in a flock. Patterns,
- * file format and what is assumed: Documentation/guide/birds.md.
+ * Outputs hold all poses, whatever time or piece is requested; time 0 is the start of the scan. The
+ * same seed gives the same bits, and only in a flock does a bird depend on the birds after it.
+ * Patterns, file format and assumptions: Documentation/guide/birds.md.
  *
- * A bad file, times that do not rise, an unknown species or a number out of its range is an error
- * that names the property, or file and line, or line of the input, with empty outputs. No birds:
- * empty outputs.
+ * A bad file, times that do not rise, an unknown species or a number out of its range gives an
+ * error and empty outputs. The error names the property, or file and line, or line of the input.
+ * Without birds the outputs are empty.
  *
  * @code
  * birds->SetPatternToCircles();
@@ -58,7 +58,7 @@ public:
   };
 
   ///@{
-  /** How the birds fly, or where their tracks come from. Default PATTERN_CROSSINGS. */
+  /** Pattern of the flights, or source of the tracks. Default PATTERN_CROSSINGS. */
   vtkSetMacro(Pattern, int);
   vtkGetMacro(Pattern, int);
   void SetPatternToCrossings() { this->SetPattern(PATTERN_CROSSINGS); }
@@ -87,13 +87,13 @@ public:
   ///@}
 
   ///@{
-  /** Name of a species. Default: empty, a starling for flocks and a herring gull else. */
+  /** Name of a species. Default: empty (starling for flocks, herring gull otherwise). */
   vtkSetMacro(Species, std::string);
   vtkGetMacro(Species, std::string);
   ///@}
 
   ///@{
-  /** Species of your own, as for vtkAvianLidarBirdSource. Default: none. */
+  /** Table of the user's species, as for vtkAvianLidarBirdSource. Default: none. */
   vtkAvianLidarFilePathMacro(SpeciesFileName);
   ///@}
 
@@ -110,13 +110,13 @@ public:
   ///@}
 
   ///@{
-  /** Begin and end of the flights, s, rising, at most 1e9 in magnitude. Default (0, 60). */
+  /** Start and end of the flights, s, rising, at most 1e9 in magnitude. Default (0, 60). */
   vtkSetVector2Macro(TimeRange, double);
   vtkGetVector2Macro(TimeRange, double);
   ///@}
 
   ///@{
-  /** Middle of the region, m, at most 1e9 in magnitude. Default (0, 0, 0). */
+  /** Centre of the region, m, at most 1e9 in magnitude. Default (0, 0, 0). */
   vtkSetVector3Macro(Center, double);
   vtkGetVector3Macro(Center, double);
   ///@}
@@ -152,7 +152,7 @@ public:
   ///@}
 
   ///@{
-  /** First `object_id` of the birds, at least 0; no other object may have these. Default 10000. */
+  /** First `object_id` of the birds, at least 0; their ids must be unique. Default 10000. */
   vtkSetMacro(FirstObjectId, int);
   vtkGetMacro(FirstObjectId, int);
   ///@}

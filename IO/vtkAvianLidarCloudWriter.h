@@ -6,14 +6,14 @@
  * Input port 0 is a vtkPointSet. Write() returns 1 if the file was written, else 0.
  *
  * Bytes go to a temporary file in the same folder (FileName with .avianpart and a digit), which is
- * renamed at the end. After an error, an abort or a full disk the old file stays as it was. A file
- * that is replaced keeps its permissions, a link stays a link
- * (Documentation/evidence/reliability.md). Points are taken one after the other, without a copy of
- * the cloud.
+ * renamed at the end. After an error, an abort or a full disk the old file stays as it was. A
+ * replaced file keeps its permissions, and a link stays a link
+ * (Documentation/evidence/reliability.md). Points are written one after the other, without a copy
+ * of the cloud.
  *
  * Errors name file and reason: no file name, an input whose producer failed, a file that cannot be
- * written, an array or field that is missing or of another kind, shape or range than the format
- * takes.
+ * written, an array or field that is missing or has a kind, shape or range that the format does not
+ * hold.
  *
  * @sa vtkAvianLidarPointCloudReader
  */
@@ -39,9 +39,9 @@ public:
 
   ///@{
   /**
-   * Name as it was given, for writers that derive FileName from it, as ParaView's do for each time
-   * step. SetMadeFileName() removes the slash that these put before names without a folder.
-   * Default: none.
+   * Name as the user gave it, for writers that derive FileName from it, such as ParaView's, which
+   * do so for each time step. SetMadeFileName() removes the slash that ParaView puts before names
+   * without a folder. Default: none.
    */
   vtkSetFilePathMacro(GivenFileName);
   vtkGetFilePathMacro(GivenFileName);
@@ -55,7 +55,7 @@ protected:
   int FillInputPortInformation(int port, vtkInformation* info) override;
   void WriteData() override;
 
-  /// Writes the input to FileName; errors are exceptions.
+  /// Write the input to FileName. Throws an exception on an error.
   virtual void WriteCloud(vtkPointSet* input) = 0;
 
   char* FileName;

@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class vtkAvianLidarGeoJSONWriter
- * @brief Writes echoes from a certain energy on as GeoJSON (RFC 7946), for maps.
+ * @brief Writes echoes of at least a given energy as GeoJSON (RFC 7946), for maps.
  *
- * Input port 0 is a vtkPointSet with the point array `energy` and a place: the point arrays
- * `longitude`, `latitude` and `height`, else the field data `geodetic_origin` for points in metres
- * east, north and up. Without a place: an error.
+ * Input port 0 is a vtkPointSet with the point array `energy` and a geodetic position: the point
+ * arrays `longitude`, `latitude` and `height`, or else the field data `geodetic_origin` for points
+ * in metres east, north and up. Without a geodetic position the writer gives an error.
  *
- * Each echo is a point feature, to 9 decimals of a degree and 4 of a metre. Its properties are all
- * numeric point arrays of one component, and `object`, `object_class` and `material` by their names
- * in field data; units stand in the collection's member `units`. No echo: a collection of none.
+ * Each echo becomes a point feature, with 9 decimals of a degree and 4 of a metre. Properties are
+ * all numeric point arrays of one component, and `object`, `object_class` and `material`, whose
+ * names come from the field data. The collection's member `units` gives the units. Without echoes
+ * the collection has no features.
  *
  * Example: `writer->SetFileName("echoes.geojson"); writer->Write();` Documentation:
  * reference/formats.md.
@@ -29,7 +30,7 @@ public:
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
   ///@{
-  /** Take the limit from field data `lower_energy_limit` (0 if missing). Default: on. */
+  /** Whether field data `lower_energy_limit` give the limit (0 if missing). Default: on. */
   vtkSetMacro(UseFieldDataLimit, bool);
   vtkGetMacro(UseFieldDataLimit, bool);
   vtkBooleanMacro(UseFieldDataLimit, bool);

@@ -3,18 +3,18 @@
  * @class vtkAvianLidarKITTIWriter
  * @brief Writes echoes as a KITTI scan (.bin) and, beside it, SemanticKITTI's labels (.label).
  *
- * Input port 0 is a vtkPointSet. FileName gets x forward, y left, z up (m, in the frame of the
- * sensor by the field data `position` and `orientation`; without them a warning, and x right, y
- * forward) and `intensity` / 255 as float32 for each point.
+ * Input port 0 is a vtkPointSet. FileName gets x forward, y left, z up (m, in the sensor's frame)
+ * and `intensity` / 255 as float32 for each point. The field data `position` and `orientation` give
+ * the frame; without them a warning is given, and x is right, y forward.
  *
- * With WriteLabels the same name with the ending .label gets a uint32 for each point: the class in
- * the lower 16 bits (of the object, or 300 + `material_id`), `object_id` + 1 in the upper ones. The
- * arrays `object_id` and, for materials, `material_id` are needed then. A FileName that ends with
- * .label is an error.
+ * With WriteLabels a file of the same name with the ending .label gets a uint32 for each point. The
+ * lower 16 bits are the class of the object, or 300 + `material_id`; the upper 16 bits are
+ * `object_id` + 1. This needs the arrays `object_id` and, for materials, `material_id`. A FileName
+ * that ends with .label gives an error.
  *
- * Both files are written as a whole, or neither is. Sources: Geiger et al., "Vision meets Robotics:
- * The KITTI Dataset", IJRR 2013; Behley et al., "SemanticKITTI", ICCV 2019. Classes and rounding:
- * Documentation/reference/formats.md.
+ * Either both files are written as a whole, or neither. Sources: Geiger et al., "Vision meets
+ * Robotics: The KITTI Dataset", IJRR 2013; Behley et al., "SemanticKITTI", ICCV 2019. Classes and
+ * rounding: Documentation/reference/formats.md.
  *
  * Example: `writer->SetFileName("000000.bin"); writer->Write();`
  *
@@ -39,14 +39,14 @@ public:
   };
 
   ///@{
-  /** Whether labels are written, too. Default: on. */
+  /** Whether labels are also written. Default: on. */
   vtkSetMacro(WriteLabels, bool);
   vtkGetMacro(WriteLabels, bool);
   vtkBooleanMacro(WriteLabels, bool);
   ///@}
 
   ///@{
-  /** What the class of a label is made of. Default LABEL_SOURCE_OBJECT_CLASS. */
+  /** Source of the class of a label. Default LABEL_SOURCE_OBJECT_CLASS. */
   vtkSetClampMacro(LabelSource, int, LABEL_SOURCE_OBJECT_CLASS, LABEL_SOURCE_MATERIAL);
   vtkGetMacro(LabelSource, int);
   void SetLabelSourceToObjectClass() { this->SetLabelSource(LABEL_SOURCE_OBJECT_CLASS); }

@@ -1,23 +1,23 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class vtkAvianLidarLASWriter
- * @brief Writes echoes as LAS 1.4, or LAZ by the name, with a coordinate reference system and all
- * arrays.
+ * @brief Writes echoes as LAS 1.4, or as LAZ if FileName ends with .laz, with a coordinate
+ * reference system and all arrays.
  *
  * Input port 0 is a vtkPointSet. Points have the record format 6, or 7 with the point array `rgb`.
- * LAS's own fields take `intensity`, `return_number`, `number_of_returns`, `timestamp`,
+ * The fields of LAS hold `intensity`, `return_number`, `number_of_returns`, `timestamp`,
  * `vertical_angle` and the class of `object_id`, or the arrays that vtkAvianLidarPointCloudReader
- * makes of a LAS file. All other numeric arrays become extra bytes of their own type. What is cut
- * or left out is named in a warning.
+ * makes of a LAS file. All other numeric arrays become extra bytes of their own type. A warning
+ * names values that are cut and arrays that are left out.
  *
- * With the field data `geodetic_origin` the points are carried to UTM or geocentric coordinates,
- * and the file says so in WKT. With the field data `crs_wkt` they stay in that system. Without
- * either they stay without a system, and a warning says so unless CoordinateSystem is local.
- * Coordinates are 32-bit integers on the finest scale from 1e-6 m on that the extent allows. Field
- * data are one line of JSON.
+ * With the field data `geodetic_origin` the points are transformed to UTM or geocentric
+ * coordinates, and the file names this system in WKT. With the field data `crs_wkt` the points stay
+ * in that system. Without either the file names no system, and a warning says so unless
+ * CoordinateSystem is local. Coordinates are 32-bit integers with the finest scale, at least 1e-6
+ * m, that the extent allows. Field data become one line of JSON.
  *
- * Errors: vtkAvianLidarCloudWriter; also LAZ in a build without LASzip, and `crs_wkt` that is not
- * WKT.
+ * Errors: those of vtkAvianLidarCloudWriter, LAZ in a build without LASzip, and `crs_wkt` that is
+ * not WKT.
  *
  * @code
  * writer->SetInputConnection(echoes->GetOutputPort());
@@ -50,7 +50,7 @@ public:
   };
 
   ///@{
-  /** Coordinates of the file, local: as they are. Default COORDINATE_SYSTEM_UTM. */
+  /** Coordinates of the file; local leaves them unchanged. Default COORDINATE_SYSTEM_UTM. */
   vtkSetClampMacro(CoordinateSystem, int, COORDINATE_SYSTEM_UTM, COORDINATE_SYSTEM_LOCAL);
   vtkGetMacro(CoordinateSystem, int);
   void SetCoordinateSystemToUTM() { this->SetCoordinateSystem(COORDINATE_SYSTEM_UTM); }
@@ -62,7 +62,7 @@ public:
   ///@}
 
   ///@{
-  /** Zone of UTM: 1 to 60 north, -1 to -60 south, 0 by the origin. Default 0. */
+  /** Zone of UTM: 1 to 60 north, -1 to -60 south, 0 the zone of the origin. Default 0. */
   vtkSetClampMacro(UTMZone, int, -60, 60);
   vtkGetMacro(UTMZone, int);
   ///@}
@@ -84,7 +84,7 @@ public:
   vtkBooleanMacro(WriteAllArrays, bool);
   ///@}
 
-  /// Largest rounding of a coordinate of the last file, m; 0 before the first.
+  /// Largest rounding error of a coordinate of the last file, m; 0 before the first file.
   vtkGetMacro(RoundingBound, double);
 
 protected:

@@ -1,21 +1,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class vtkAvianLidarPCDWriter
- * @brief Writes echoes as PCD 0.7, the format of the Point Cloud Library, in rows and columns where
- * the scan has them.
+ * @brief Writes echoes as PCD 0.7, the format of the Point Cloud Library, in rows and columns if
+ * the scan has a grid.
  *
  * Input port 0 is a vtkPointSet. Fields are `x`, `y`, `z` (m), `intensity` (float), every other
  * numeric point array of one component in its own type (64-bit integers as doubles, exact up to
  * 2^53), and `rgb` packed as PCL does. The field data `position` and `orientation` become the
- * VIEWPOINT; units and field data are one line of JSON in a comment. An array whose name another
- * field has is left out with a warning.
+ * VIEWPOINT; units and field data are one line of JSON in a comment. An array whose name is already
+ * taken is left out with a warning.
  *
- * A file is organised (columns and channels, highest channel first; NaN, -1 or 0 where no echo is)
- * if the field data of the beam source give the grid, and `beam_id` and `laser_id` fit it. A cell
- * holds one echo: see Organisation.
+ * A file is organised (columns and channels, highest channel first; NaN, -1 or 0 in cells without
+ * an echo) if the field data of the beam source give the grid, and `beam_id` and `laser_id` agree
+ * with it. A cell holds one echo: see Organisation.
  *
- * In single precision a coordinate is off by 4 micrometres at 100 m, 0.12 mm at 4 km; from 1 mm on
- * a warning says so, and beyond 3.4e38 m it is an error. Source: The PCD file format,
+ * Single precision changes a coordinate by at most 4 micrometres at 100 m and 0.12 mm at 4 km. From
+ * 1 mm on there is a warning, and beyond 3.4e38 m an error. Source: The PCD file format,
  * pointclouds.org.
  *
  * Example: `writer->SetFileName("echoes.pcd"); writer->Write();` Documentation:
@@ -64,8 +64,9 @@ public:
 
   ///@{
   /**
-   * Rows and columns: automatic (if no beam has several echoes), organised (the strongest by
-   * `energy_received` is kept; an error without a grid), or a list. Default ORGANISATION_AUTOMATIC.
+   * Whether the file has rows and columns: automatic (if no beam has several echoes), organised
+   * (the echo with the most `energy_received` is kept; an error without a grid), or a list. Default
+   * ORGANISATION_AUTOMATIC.
    */
   vtkSetClampMacro(Organisation, int, ORGANISATION_AUTOMATIC, ORGANISATION_LIST);
   vtkGetMacro(Organisation, int);
@@ -75,7 +76,7 @@ public:
   ///@}
 
   ///@{
-  /** Type of x, y, z; PCL's point types take no doubles. Default PRECISION_SINGLE. */
+  /** Type of x, y, z; PCL's point types hold only floats. Default PRECISION_SINGLE. */
   vtkSetClampMacro(Precision, int, PRECISION_SINGLE, PRECISION_DOUBLE);
   vtkGetMacro(Precision, int);
   void SetPrecisionToSingle() { this->SetPrecision(PRECISION_SINGLE); }

@@ -5,12 +5,12 @@
  *
  * Input port 0 is a vtkPointSet. The element `vertex` has `x`, `y`, `z` (m), `intensity` (float),
  * then every other numeric point array in its own type (64-bit integers as doubles, exact up to
- * 2^53): `name_0`, `name_1`, ... of several components, and `red`, `green`, `blue` for `rgb`. Units
- * and field data are JSON in comments, which vtkAvianLidarPointCloudReader reads back. Polygons
- * become the element `face`.
+ * 2^53). An array of several components becomes `name_0`, `name_1`, ..., and `rgb` becomes `red`,
+ * `green`, `blue`. Units and field data are JSON in comments, which vtkAvianLidarPointCloudReader
+ * reads back. Polygons become the element `face`.
  *
- * An array of one component whose name another property has is left out with a warning. With
- * several components it is an error, and so are triangle strips. Rounding: as
+ * An array of one component whose name is already taken is left out with a warning. An array of
+ * several components whose name is taken gives an error, and so do triangle strips. Rounding: see
  * vtkAvianLidarPCDWriter.
  *
  * Example: `writer->SetFileName("echoes.ply"); writer->Write();` Documentation:

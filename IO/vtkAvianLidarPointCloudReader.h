@@ -1,29 +1,29 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class vtkAvianLidarPointCloudReader
- * @brief Reads a point cloud, of a real lidar or simulated, with the array names of this project.
+ * @brief Reads a point cloud, real or simulated, with the array names of this project.
  *
  * The ending of FileName gives the format: `.las` (1.0 to 1.4), `.laz` (with LASzip), `.pcd`,
  * `.ply` (vertices), `.bin` (KITTI, with SemanticKITTI's labels beside it or in the folder
- * `labels`), `.pcap` and `.pcapng` (a Velodyne VLP-16). What of each is read, refused or left out
- * with a warning: Documentation/reference/formats.md.
+ * `labels`), `.pcap` and `.pcapng` (a Velodyne VLP-16). Documentation/reference/formats.md says
+ * what is read, refused or left out with a warning.
  *
- * It has no input. Output port 0 is vtkPolyData, a vertex for each point, in double precision.
- * Arrays keep name and type of the file, but `intensity` (0 to 255), `laser_id`, `distance_m`,
- * `azimuth`, `vertical_angle`, `timestamp`, `return_number`, `number_of_returns`, `rgb`,
- * `semantic_label` and `instance_id` are the same for all formats. A file of this project's writers
- * comes back with its names, units and types. A field with such a name but without a unit gets
- * `file_` before it. Active scalars are `energy`, else `intensity`.
+ * The reader has no input. Output port 0 is vtkPolyData, a vertex for each point, in double
+ * precision. Arrays keep their names and types in the file, except that `intensity` (0 to 255),
+ * `laser_id`, `distance_m`, `azimuth`, `vertical_angle`, `timestamp`, `return_number`,
+ * `number_of_returns`, `rgb`, `semantic_label` and `instance_id` are the same for all formats. A
+ * file of this project's writers comes back with its names, units and types. A field with such a
+ * name but without a unit gets the prefix `file_`. Active scalars are `energy`, else `intensity`.
  *
- * KITTI's axes become x right, y forward, z up. LAS that names its `geodetic_origin` comes back in
- * metres east, north and up with LocalCoordinates; else the field data `crs_wkt` and `utm_zone`
- * give the system. Other field data, if the file has them: `position`, `revolution`,
+ * KITTI's axes become x right, y forward, z up. If LocalCoordinates is on, a LAS file with a
+ * `geodetic_origin` comes back in metres east, north and up. Otherwise the field data `crs_wkt` and
+ * `utm_zone` give the system. Other field data, if the file has them: `position`, `revolution`,
  * `number_of_revolutions`, `description`, `comment`.
  *
  * Each revolution of packets is a time step, in seconds since the full hour before the first
  * packet; other files have no time. The whole cloud is piece 0.
  *
- * Errors name the file and what is wrong; the output is then empty, as after an abort.
+ * Errors name the file and the fault. The output is empty after an error or an abort.
  *
  * @code
  * reader->SetFileName("scan.las");
@@ -56,7 +56,7 @@ public:
   ///@}
 
   ///@{
-  /** Convert to metres east, north and up of the file's `geodetic_origin`. Default: on. */
+  /** Whether points are metres east, north, up of the file's `geodetic_origin`. Default: on. */
   vtkSetMacro(LocalCoordinates, bool);
   vtkGetMacro(LocalCoordinates, bool);
   vtkBooleanMacro(LocalCoordinates, bool);
@@ -64,15 +64,16 @@ public:
 
   ///@{
   /**
-   * Sensor to read from packets of several: its IPv4 address, with the port if only that differs
-   * ("192.168.1.201:2368"). Default: none; packets of several sensors are then an error.
+   * Sensor to read if packets come from several sensors: its IPv4 address, with the port if only
+   * that differs ("192.168.1.201:2368"). Default: none; packets of several sensors are then an
+   * error.
    */
   vtkSetStringMacro(SensorAddress);
   vtkGetStringMacro(SensorAddress);
   ///@}
 
-  /// 1 if a file is a cloud by its name and its beginning (.bin: by its length, .ply: without
-  /// faces), else 0.
+  /// 1 if the name and the first bytes of a file are right for a cloud (.bin: name and length;
+  /// .ply: also no faces), else 0.
   static int CanReadFile(VTK_FILEPATH const char* fileName);
 
   vtkAvianLidarErrorsAsDataMacro();

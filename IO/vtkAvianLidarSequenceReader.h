@@ -6,17 +6,17 @@
  *
  * FileName is the `times.txt` (s, rising) of a sequence in SemanticKITTI's layout, with `velodyne`,
  * `labels`, `boxes`, `poses.txt` and `calib.txt` beside it. Each scan is a time step; any other
- * time has the last scan before it, or the first.
+ * time gives the last scan before that time, or else the first.
  *
  * - Output port 0, points: vtkPolyData as vtkAvianLidarPointCloudReader reads a scan; active
  *   scalars are `semantic_label`, if there are labels.
  * - Output port 1, boxes: vtkPolyData, six quadrilaterals each, with the cell arrays `object`
  *   (class, text) and `object_id`; empty without a file of boxes.
  *
- * Poses and the line `Tr:` carry points to the frame of the poses: east, north and up of the
+ * Poses and the line `Tr:` transform points to the frame of the poses: east, north and up of the
  * scene's origin for this project's sequences. Without `poses.txt` x is right and y forward.
  *
- * Errors name the file and what is wrong, with empty outputs. All is piece 0.
+ * Errors name the file and the fault, and leave empty outputs. Piece 0 has the whole output.
  *
  * Example: `reader->SetFileName("sequences/00/times.txt");` Documentation: guide/sequences.md.
  *

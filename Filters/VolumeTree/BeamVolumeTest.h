@@ -3,10 +3,10 @@
  * @file BeamVolumeTest.h
  * @brief Test of a beam's cone, or of a single ray as a thin cone, against boxes and spheres.
  *
- * A box is tested by separating axes. Two planes in space come first, which separate most boxes:
- * the plane that touches the cone on the side of the box's centre, and the plane through the apex
- * across the axis. Then the projections of cone and box on the three planes of the box's axes are
- * compared. A sphere is tested exactly.
+ * A box is tested by separating axes. Two planes in space are tested first, because they separate
+ * most boxes: the plane that touches the cone on the side of the box's centre, and the plane
+ * through the apex across the axis. Then the projections of cone and box on the three planes of the
+ * box's axes are compared. A sphere is tested exactly.
  *
  * Source: paper, Sec. 3.2, Fig. 6 and 7.
  * Differs: the projected wedge is wider (BeamCone.h), and the two planes in space are added.
@@ -40,7 +40,7 @@ public:
   bool meets(const OBB& volume, double& nearest) const;
   bool meets(const BoundingSphere& volume, double& nearest) const;
 
-  /// The paper's test alone, by three projections. @param axis axis of the cone in the box's frame
+  /// Only the paper's test, by three projections. @param axis axis of the cone in the box's frame
   /// @param center,half centre and half extents of the widened box, relative to the cone's apex, m
   bool projectionsMeet(const Vec3& axis, const Vec3& center, const Vec3& half) const;
 

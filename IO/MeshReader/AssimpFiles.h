@@ -15,7 +15,7 @@
 namespace avianlidar::scene
 {
 /**
- * All files as they are, except that the mesh itself goes by its name without ".gz" (Assimp tells
+ * All files as they are, except that the mesh itself goes by its name without ".gz" (Assimp finds
  * formats by the ending) and is unpacked as it is read.
  */
 class AssimpFiles : public Assimp::IOSystem
@@ -26,7 +26,7 @@ public:
   /// The name under which to ask Assimp for the mesh.
   const std::string& GetMeshName() const { return this->MeshName; }
 
-  /// Why the mesh could not be opened, as ": <reason>"; empty if nobody said.
+  /// Why the mesh could not be opened, as ": <reason>"; empty if no reason is given.
   const std::string& GetReason() const { return this->Reason; }
 
   /// What must be added to the vertices (MoveObjToOrigin()).

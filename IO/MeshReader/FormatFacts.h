@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file FormatFacts.h
- * @brief What mesh files say that Assimp 5.2 passes over, and without which their geometry is
- * wrong.
+ * @brief Reads facts from mesh files that Assimp 5.2 ignores and without which the geometry would
+ * be wrong.
  */
 #ifndef AvianLidarFormatFacts_h
 #define AvianLidarFormatFacts_h
@@ -15,18 +15,18 @@
 namespace avianlidar::scene
 {
 /**
- * Refuses glTF 2.0 files whose geometry depends on extensions that Assimp does not know: required
- * ones (specification, section 3.12), except those of materials, textures and lights, and
- * instances, quantization and the centre of a tile even where they are only used.
- * Refuses positions that are not of single precision, too.
+ * Refuses glTF 2.0 files whose geometry depends on extensions that Assimp does not support:
+ * required ones (specification, section 3.12), except those of materials, textures and lights, and
+ * instances, quantization and the centre of a tile even where they are only used. Refuses positions
+ * that are not of single precision, too.
  * @param text of the file, JSON or binary. Throws Error, which names the extension.
  * @return warnings: skins and weights of morph targets are left out
  */
 std::vector<std::string> CheckGltf(const std::string& text);
 
 /**
- * The length of an IFC file's unit, m, where it is a conversion-based unit such as the foot;
- * Assimp knows the metre with its prefixes alone, which give 1 here.
+ * The length of an IFC file's unit, m, where it is a conversion-based unit such as the foot; Assimp
+ * supports only the metre with its prefixes, which give 1 here.
  * @param text of the file. Throws Error where the unit cannot be read.
  */
 double IfcUnit(const std::string& text);

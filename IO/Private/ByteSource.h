@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file ByteSource.h
- * @brief Bytes to read from, of a known length: a file. Nothing beyond the end is given out.
+ * @brief Reads bytes from a source of known length, such as a file, and never beyond its end.
  */
 #ifndef AvianLidarByteSource_h
 #define AvianLidarByteSource_h
@@ -20,10 +20,10 @@ public:
 
   virtual std::uint64_t size() const = 0;
 
-  /// Copies bytes; they must lie inside, else a FormatError.
+  /// Copies bytes. Throws FormatError unless all lie inside.
   virtual void read(std::uint64_t offset, std::uint64_t count, unsigned char* into) = 0;
 
-  /// True if so many bytes lie inside from there on, without overflow.
+  /// True if `count` bytes from `offset` on lie inside, without overflow.
   bool holds(std::uint64_t offset, std::uint64_t count) const
   {
     return offset <= this->size() && count <= this->size() - offset;
@@ -35,7 +35,7 @@ public:
 class FileSource : public ByteSource
 {
 public:
-  /// Opens the file; a FormatError says why not.
+  /// Opens the file. Throws FormatError with the reason if it cannot.
   explicit FileSource(const std::string& name);
   std::uint64_t size() const override { return this->Size; }
   void read(std::uint64_t offset, std::uint64_t count, unsigned char* into) override;

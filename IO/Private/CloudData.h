@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file CloudData.h
- * @brief A point cloud between its file and VTK: what reading a format gives and writing one takes.
+ * @brief Holds a point cloud between its file and VTK: the result of reading and the input of
+ * writing.
  */
 #ifndef AvianLidarCloudData_h
 #define AvianLidarCloudData_h
@@ -20,7 +21,7 @@
 
 namespace avianlidar::formats
 {
-/// A file that is not what it should be, or that cannot be read or written.
+/// Error about a file that is invalid, or that cannot be read or written.
 class FormatError : public std::runtime_error
 {
 public:
@@ -30,7 +31,7 @@ public:
 /// Points between two calls of KeepGoing.
 constexpr std::int64_t PointsPerBlock = 16384;
 
-/// Says how far point `done` of `all` is, between two shares of the whole; throws WorkStopped.
+/// Reports the progress at point `done` of `all`, between `from` and `to`; throws WorkStopped.
 inline void goOn(
   const KeepGoing& keepGoing, std::int64_t done, std::int64_t all, double from, double to)
 {
@@ -46,7 +47,7 @@ using Values =
     std::vector<std::uint16_t>, std::vector<std::int32_t>, std::vector<std::uint32_t>,
     std::vector<std::int64_t>, std::vector<std::uint64_t>, std::vector<float>, std::vector<double>>;
 
-/// Zeros of that type.
+/// `size` zeros of a type.
 Values makeValues(Scalar type, std::size_t size);
 std::size_t sizeOf(const Values& values);
 /// Value i from its little-endian bytes.
@@ -78,7 +79,7 @@ struct Cloud
   std::vector<double> points; ///< x, y, z of each, metres
   std::vector<Column> columns;
   std::vector<Note> notes;
-  /// Where the sensor stood, in the frame of the points; nothing if the format does not say.
+  /// Position of the sensor, m, in the frame of the points; none if the format does not give it.
   std::optional<std::array<double, 3>> sensor;
   std::string crs;                   ///< WKT, or empty
   std::vector<std::string> warnings; ///< what was left out or assumed
@@ -86,7 +87,7 @@ struct Cloud
   std::size_t size() const { return this->points.size() / 3; }
 };
 
-/// Throws MemoryError unless there is room for a cloud whose points have so many bytes in the file.
+/// Throws MemoryError unless a cloud fits into memory whose points have `length` bytes in the file.
 void requireMemoryFor(std::uint64_t points, std::uint64_t length);
 
 /// One array of a cloud to be written: one value for each point. Integers are exact up to 2^53.

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file CloudNotes.h
- * @brief What belongs to a cloud as a whole, as one line of JSON in a text of its file: units of
- * the arrays, and numbers and texts by name (the sensor, the settings, the origin).
+ * @brief Writes and reads the notes of a cloud as one line of JSON in its file: units of the
+ * arrays, and numbers and texts by name (the sensor, the settings, the origin).
  */
 #ifndef AvianLidarCloudNotes_h
 #define AvianLidarCloudNotes_h
@@ -19,12 +19,12 @@ struct CloudNotes
   std::vector<Note> notes;
 };
 
-/// One line, plain ASCII. Notes of more than `longest` characters all together lose those with the
-/// longest texts, whose names come back in `left`.
+/// One line, plain ASCII. If the line has more than `longest` characters, the notes with the
+/// longest texts are left out, and their names are added to `left`.
 std::string toText(const CloudNotes& notes, std::size_t longest, std::vector<std::string>& left);
 
-/// The text with what is no UTF-8 replaced, and without control characters but the ends of lines:
-/// files hold any bytes, names and field data must not.
+/// The text with invalid UTF-8 replaced, and without control characters except ends of lines: files
+/// may hold any bytes, but names and field data must be valid.
 std::string cleaned(const std::string& text);
 
 /// The notes in a text; false if it holds none (any other text).

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file FieldTable.h
- * @brief Points as rows of typed fields, as text or binary: what PCD and PLY have behind their
- * headers.
+ * @brief Reads and writes points as rows of typed fields, text or binary, as in PCD and PLY after
+ * the header.
  */
 #ifndef AvianLidarFieldTable_h
 #define AvianLidarFieldTable_h
@@ -22,7 +22,7 @@ struct TableField
   std::uint64_t count = 1; ///< values
 };
 
-/// What a header says.
+/// Contents of a header.
 struct FieldTable
 {
   std::vector<TableField> fields;
@@ -33,12 +33,12 @@ struct FieldTable
   /// Bytes of a point.
   std::uint64_t length() const;
 
-  /// FormatError unless the file has room for the points. Nothing is allocated before that is
-  /// known.
+  /// Throws FormatError unless the file is long enough for the points; called before any
+  /// allocation.
   void checkLength(ByteSource& source, bool ascii) const;
 };
 
-/// Where the fields go: x, y, z to the points, others to columns; "_" is padding.
+/// Stores the fields: x, y, z in the points, others in columns; "_" is padding.
 class TableColumns
 {
 public:
@@ -76,7 +76,7 @@ struct TableOutput
   std::vector<Field> fields;
   /// Index of the point in each row, or -1; empty: rows are points.
   std::vector<std::int64_t> cells;
-  /// The value of a field where no point is.
+  /// Value of a field in a cell without a point.
   std::function<double(std::size_t field, std::int64_t cell)> empty;
   std::string comment; ///< one line
   bool ascii = false;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file KittiFormat.h
- * @brief Point clouds of the KITTI data set, and the labels that SemanticKITTI puts beside them.
+ * @brief Reads and writes point clouds of KITTI, and the labels of SemanticKITTI.
  *
  * `.bin`: four float32 a point: x forward, y left, z up in metres in the sensor's frame (ours has x
  * right, y forward), and a reflectance in [0, 1]. `.label`: a uint32 a point: the class in the

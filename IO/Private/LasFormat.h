@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file LasFormat.h
- * @brief LAS, the ASPRS exchange format of point clouds: what is read and written of it.
+ * @brief Reads and writes LAS, the ASPRS exchange format of point clouds.
  *
  * Source: "LAS Specification 1.4 - R15", American Society for Photogrammetry and Remote Sensing
  * (2019). Written: version 1.4, point data record format 6, or 7 with colours. Read: versions 1.0
@@ -40,7 +40,7 @@ constexpr const char* LasUserData = "user_data";
 constexpr const char* LasScanAngle = "scan_angle";
 constexpr const char* LasPointSource = "point_source_id";
 
-/// Where a point record holds what.
+/// Offsets of the fields in a point record.
 struct LasLayout
 {
   int format = 0;
@@ -66,7 +66,7 @@ struct LasAxis
 
   std::int32_t encode(double coordinate) const;
   double decode(std::int32_t integer) const { return integer * this->scale + this->offset; }
-  /// How far a coordinate may come out from where it was.
+  /// Largest rounding error of a coordinate, m.
   double bound() const;
 };
 
@@ -104,21 +104,22 @@ struct LasOutput
   std::vector<Field> extra;
 };
 
-/// What a pass over the points tells.
+/// Result of a pass over the points.
 struct LasMeasure
 {
   std::array<LasAxis, 3> axes;
   std::array<std::uint64_t, LasMostReturns> returns{}; ///< points with that return number
 };
 
-/// The first pass: scale, offset and bounds of the axes; throws if a coordinate is none.
+/// The first pass: scale, offset and bounds of the axes; throws if a coordinate is not finite or
+/// too large.
 LasMeasure measureLas(const LasOutput& output, const KeepGoing& keepGoing);
 
-/// The second pass writes. Points are asked for one after the other, none is kept.
+/// The second pass writes. Points are requested one after the other and not kept.
 void writeLas(
   OutputFile& file, const LasOutput& output, const LasMeasure& measure, const KeepGoing& keepGoing);
 
-/// As much of a name as there is room for, with an ending: whole characters of UTF-8.
+/// A name shortened to fit, with an ending, in whole characters of UTF-8.
 std::string cutName(const std::string& name, const std::string& ending = {});
 
 /// What the description of an array is in the extra bytes of a file: words and [unit], at most 31

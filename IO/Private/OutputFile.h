@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file OutputFile.h
- * @brief A file that is there as a whole or not at all.
+ * @brief Writes a file as a whole or not at all.
  *
  * Bytes go to a part beside the file (its name with .avianpart and a digit), which takes the wanted
- * name when commit() is called. Without that, whatever the reason, it is removed, and a file that
- * had the wanted name stays as it was. A part is locked (flock) while it is written: the part of a
- * process that was killed is not, and the next writing of the file removes it.
+ * name when commit() is called. Without commit() the part is removed, and a file that had the
+ * wanted name stays as it was. A part is locked (flock) while it is written. The part of a killed
+ * process is not locked, and the next writing of the file removes it.
  */
 #ifndef AvianLidarOutputFile_h
 #define AvianLidarOutputFile_h
@@ -34,13 +34,13 @@ public:
   void write(std::string_view text) { this->write(text.data(), text.size()); }
   void write(const std::vector<unsigned char>& bytes) { this->write(bytes.data(), bytes.size()); }
 
-  /// What is written next goes there, counted from the beginning; a FormatError if it cannot.
+  /// Moves to the offset `at` from the beginning for the next write(); a FormatError if it cannot.
   void seek(std::uint64_t at);
 
   /// True if the other would take the same name.
   bool isSameAs(const OutputFile& other) const;
 
-  /// Ends the file and gives it its name. A file that had the name leaves it its permissions.
+  /// Ends the file and gives it its name. It takes the permissions of a file that had the name.
   void commit();
 
   /// Commits two files: both, or a FormatError and neither. Where the file system cannot exchange

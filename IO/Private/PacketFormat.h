@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file PacketFormat.h
- * @brief Packets of a Velodyne VLP-16 as a network card records them.
+ * @brief Reads packets of a Velodyne VLP-16 from a recording of the network.
  *
  * Read: pcap (microseconds or nanoseconds, either byte order) and pcapng (its packet blocks) with
  * Ethernet, Linux's cooked capture, BSD's loopback or bare IP; of these IPv4, UDP with 1206 bytes
@@ -9,8 +9,8 @@
  * over. Sources: draft-ietf-opsawg-pcap and draft-ietf-opsawg-pcapng; Velodyne, "VLP-16 User
  * Manual", 63-9243 (second-hand; a real revolution agrees).
  *
- * A sensor is known by the address that it sends from and the port that it sends to. Packets are
- * taken in the order of the sensor's clock.
+ * A sensor is identified by the address from which it sends and the port to which it sends. Packets
+ * are taken in the order of the sensor's clock.
  *
  * A packet has 12 blocks of an azimuth and two firing sequences of 16 lasers. The azimuth of each
  * laser is interpolated to the next block by the times of the firings. Not applied: the vertical
@@ -38,7 +38,7 @@ struct PacketIndex
   std::string warning;                ///< what was left out; or empty
 };
 
-/// Whether it begins as pcap or pcapng does.
+/// Whether a source begins like pcap or pcapng.
 bool hasPackets(ByteSource& source);
 
 /// Packets of one sensor: "192.168.1.201", "192.168.1.201:2368", or empty if there is but one.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file PcdFormat.h
- * @brief PCD, the format of the Point Cloud Library: what is read and written of it.
+ * @brief Reads and writes PCD, the format of the Point Cloud Library.
  *
  * Source: "The PCD (Point Cloud Data) file format", version 0.7, pointclouds.org. Written: 0.7,
  * binary or ASCII, in rows and columns or as a list. Read: ASCII, binary and binary_compressed

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file PlyFormat.h
- * @brief PLY, the polygon file format: its points, read and written.
+ * @brief Reads and writes the points of PLY, the polygon file format.
  *
  * Source: G. Turk, "The PLY Polygon File Format", 1994. Written: 1.0, binary little endian or
- * ASCII. Read: ASCII, binary little and big endian; of the elements `vertex` alone, which has no
- * lists. A comment that begins with a plus sign continues the one before it.
+ * ASCII. Read: ASCII, binary little and big endian; only the element `vertex`, which has no lists.
+ * A comment that begins with a plus sign continues the one before it.
  */
 #ifndef AvianLidarPlyFormat_h
 #define AvianLidarPlyFormat_h
@@ -14,7 +14,7 @@
 
 namespace avianlidar::formats
 {
-/// Of the element `vertex`; `begin` is behind the elements before it.
+/// Header of the element `vertex`; `begin` is the end of the elements before `vertex`.
 struct PlyHeader : FieldTable
 {
   std::vector<std::string> comments;

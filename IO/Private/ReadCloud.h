@@ -16,7 +16,8 @@
 
 namespace avianlidar::formats
 {
-/// A format of files. Whoever asks for formats asks cloudFormats(), so a new one is a row there.
+/// A format of files. All code gets the formats from cloudFormats(), so a new format is a row
+/// there.
 struct CloudFormat
 {
   std::vector<std::string> endings; ///< endings of names, in lower case
@@ -34,22 +35,22 @@ std::string knownEndings();
 /// The ending of a name, in lower case: ".las".
 std::string endingOf(const std::string& fileName);
 
-/// By the ending of the name, case aside; null if it is none of them.
+/// The format by the ending of the name, case aside; null for an unknown ending.
 const CloudFormat* formatOf(const std::string& fileName);
 
 /// SemanticKITTI's labels of a .bin file: the same name with .label beside it or in a folder
 /// `labels` beside the one it is in; empty if there are none.
 std::string labelFileOf(const std::string& fileName);
 
-/// Reads the file and its labels; of one that has packets that revolution.
+/// Reads the file and its labels or, if the file has packets, the revolution `turn`.
 Cloud readCloud(const std::string& fileName, const KeepGoing& keepGoing,
   const PacketIndex* packets = nullptr, std::size_t turn = 0);
 
 /// Gives arrays the names and units of this project where a format says what they are:
 /// - notes of this project's writers become units of columns and notes of the cloud;
 /// - `ring` and `channel` are `laser_id`;
-/// - a name of this project whose unit the file does not say (an `azimuth` in whatever) is put
-///   behind `file_`;
+/// - a name of this project without a unit in the file (an `azimuth` in any unit) gets the prefix
+///   `file_`;
 /// - `distance_m`, `azimuth` and `vertical_angle` are computed where the sensor's place is known
 /// and
 ///   the file does not have them;

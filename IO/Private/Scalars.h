@@ -33,7 +33,7 @@ std::size_t sizeOf(Scalar type);
 bool isFloat(Scalar type);
 bool isSigned(Scalar type);
 
-/// The type of that kind ('I', 'U' or 'F') and size; false if there is none.
+/// The type of a kind ('I', 'U' or 'F') and a size; false if no type has them.
 bool scalarOf(char kind, std::size_t size, Scalar& type);
 
 /// Calls f with a value of the C++ type that belongs to the scalar.
@@ -91,7 +91,7 @@ struct Bits<8>
 };
 }
 
-/// The value whose little-endian bytes begin there. No alignment is needed.
+/// The value whose little-endian bytes begin at `bytes`. No alignment is needed.
 template <class T>
 T load(const unsigned char* bytes)
 {
@@ -106,7 +106,7 @@ T load(const unsigned char* bytes)
   return value;
 }
 
-/// Puts the value's little-endian bytes there.
+/// Writes the value's little-endian bytes to `bytes`.
 template <class T>
 void store(T value, unsigned char* bytes)
 {
@@ -118,8 +118,8 @@ void store(T value, unsigned char* bytes)
   }
 }
 
-/// The nearest value of that type: rounded and, if need be, moved to the end of the type's range. A
-/// number that is none becomes 0 where the type knows no such thing.
+/// The nearest value of that type: rounded and, if need be, moved to the end of the type's range.
+/// NaN becomes 0 if the type is an integer.
 double nearest(Scalar type, double value);
 
 /// store() of nearest(). Exact for integers up to 2^53.

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file SceneFrame.h
- * @brief From coordinates of any kind to metres east, north and up of the scene's origin, in double
- * precision.
+ * @brief Converts coordinates of any kind to metres east, north and up of the scene's origin, in
+ * double precision.
  */
 #ifndef AvianLidarSceneFrame_h
 #define AvianLidarSceneFrame_h
@@ -22,11 +22,11 @@ namespace avianlidar::scene
 void MoveToPlace(const Geodetic& origin, const Geodetic& place, std::vector<Vec3>& points);
 
 /**
- * Coordinates of a reference system to metres about an origin. The system is a code
- * ("EPSG:32632"), WKT, PROJJSON or a PROJ string, no URL and no file; axes in the order x or
- * longitude, y or latitude; heights are taken as heights above the ellipsoid, which is right
- * wherever the origin's height is of the same kind. Throws Error for an unknown system and for
- * coordinates that it does not hold.
+ * Coordinates of a reference system to metres about an origin. The system is a code ("EPSG:32632"),
+ * WKT, PROJJSON or a PROJ string, but not a URL or a file; axes in the order x or longitude, y or
+ * latitude; heights are taken as heights above the ellipsoid, which is right wherever the origin's
+ * height is of the same kind. Throws Error for an unknown system and for coordinates that it does
+ * not hold.
  */
 class GeoreferencedPoints
 {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file SceneReport.h
- * @brief What a user wants to know about a scene before scanning it.
+ * @brief Reports extents, faults and the place of the lidar before a scene is scanned.
  */
 #ifndef AvianLidarSceneReport_h
 #define AvianLidarSceneReport_h

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file SceneTypes.h
- * @brief What a scene file says, checked and with defaults filled in, and the error that reading it
- * may end in.
+ * @brief Values of a scene file, checked and with defaults filled in, and the error that reading
+ * may throw.
  *
  * Plain values; no VTK, no JSON. Lengths in metres, angles in degrees.
  */

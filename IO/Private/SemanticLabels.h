@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file SemanticLabels.h
- * @brief What the classes of a scene's objects are called by others: point classes of LAS and
- * labels of SemanticKITTI. The table is in Documentation/reference/formats.md, too.
+ * @brief Gives the LAS point class and the SemanticKITTI label of each class of objects. The table
+ * is in Documentation/reference/formats.md, too.
  */
 #ifndef AvianLidarSemanticLabels_h
 #define AvianLidarSemanticLabels_h

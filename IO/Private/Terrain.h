@@ -28,8 +28,8 @@ struct TerrainPiece
 };
 
 /**
- * Triangles that cover each place in plan once at most; vertical ones are not looked at. A grid of
- * about as many cells as triangles says which are near.
+ * Triangles that cover each place in plan once at most; vertical triangles are ignored. A grid with
+ * about one cell per triangle finds triangles near a place.
  */
 class Terrain
 {
@@ -37,7 +37,7 @@ public:
   /// Throws Error where some triangles face up and others down, as those of a closed body.
   Terrain(const std::string& name, const Mesh& mesh);
 
-  /// A valid polygon, cut along the edges of the terrain; nothing of it where it lies beyond.
+  /// A valid polygon, cut along the edges of the terrain, without its part beyond the terrain.
   std::vector<TerrainPiece> Cut(const Polygon& polygon) const;
   /// The height at a place; none beyond the terrain.
   std::optional<double> HeightAt(const Vec2& place) const;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file TextLines.h
- * @brief Text in a file of unknown honesty: lines, numbers, and what may be shown of it.
+ * @brief Reads lines and numbers from the text of untrusted files, and shortens text for messages.
  */
 #ifndef AvianLidarTextLines_h
 #define AvianLidarTextLines_h

@@ -40,8 +40,8 @@ private:
   const GdalOption NoSizes{ "CPL_VSIL_GZIP_WRITE_PROPERTIES", "NO" };
 };
 
-/// While one lives, GDAL asks nobody over the network in this thread, and PROJ in none: its switch
-/// is one for the whole process, and has its old value again when the last one ends.
+/// While an object exists, GDAL does not use the network in this thread, and PROJ in none. PROJ has
+/// one switch for the process, which gets its old value back when the last object ends.
 class OfflineGdal
 {
 public:
@@ -55,7 +55,7 @@ private:
   const GdalOption AllowedUrls{ "CPL_VSIL_CURL_ALLOWED_FILENAME", "none" };
 };
 
-/// While one lives, GDAL's messages of this thread are kept instead of printed.
+/// While an object exists, GDAL's messages of this thread are kept instead of printed.
 class QuietGdal
 {
 public:

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file vtkAvianLidarCloudFields.h
- * @brief Between VTK's arrays and the clouds of the file formats. Not installed.
+ * @brief Converts between VTK's arrays and the clouds of the file formats. Not installed.
  *
- * What is wrong with an input is a FormatError in words that name the array.
+ * A bad input gives a FormatError that names the array.
  */
 #ifndef vtkAvianLidarCloudFields_h
 #define vtkAvianLidarCloudFields_h
@@ -36,13 +36,13 @@ using avianlidar::formats::SensorPose;
 /// The numeric point array of that name, or null; one of more than one component is an error.
 vtkDataArray* Find(vtkPointSet* input, const char* name);
 
-/// The same, and its absence is an error, too.
+/// The numeric point array of a name; a missing array is also an error.
 vtkDataArray* Need(vtkPointSet* input, const char* name);
 
 /// A component of an array as a field, of its own type, with its unit.
 Field ToField(vtkDataArray* array, int component = 0);
 
-/// Whole numbers of 64 bits, of which one is none that a double holds: checksums, say.
+/// True for 64-bit integers with a value that a double cannot hold, such as checksums.
 bool IsTooLongForDouble(vtkDataArray* array);
 
 /// An array has so many components, and a tuple for each point; else it is an error.

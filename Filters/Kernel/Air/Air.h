@@ -59,26 +59,26 @@ double attenuationOfVisibility(double visibility, double wavelength);
 /// Optical properties of a medium.
 struct Medium
 {
-  double extinction = 0.0;       ///< mu, light that the lidar loses, 1/m, 0 to 1e30
-  double backscatterRatio = 1.0; ///< S, this extinction over backscatter, sr, 1e-3 to 1e9
+  double extinction = 0.0;       ///< mu, extinction of light that the lidar loses, 1/m, 0 to 1e30
+  double backscatterRatio = 1.0; ///< S, ratio of extinction to backscatter, sr, 1e-3 to 1e9
   double drops = 0.0;            ///< drops or leaves, 1/m^3, 0 to 1e12; 0: too many to count
-  /// Mean square of a drop's energy over its squared mean: SquareOfDrops or SquareOfLeaves.
+  /// Mean square of a drop's energy divided by its squared mean: SquareOfDrops or SquareOfLeaves.
   double squareOfDrops = 6.0;
   double renewed = 1.0;   ///< share of the drops that are drawn anew in each scan, 0 to 1
   bool isFollowed = true; ///< true if a threshold may follow its mean light; false for trees
   int objectId = -2;      ///< label of its echoes; ObjectOfAir for air
   /// True if drops are leaves. Light comes back through the gaps that let it in if its two ways are
-  /// closer than a leaf is wide (BeamAir.h). Without a number of drops it always does.
+  /// closer than a leaf is wide (BeamAir.h), or always if `drops` is 0.
   bool sharesGaps = false;
 
   /// Backscatter coefficient mu/S, 1/(m sr).
   double backscatter() const { return this->extinction / this->backscatterRatio; }
 };
 
-/// E[D^4]/E[D^2]^2 of exponential diameters.
+/// Ratio E[D^4]/E[D^2]^2 of exponential diameters.
 constexpr double SquareOfDrops = 6.0;
 
-/// E[cos^4]/E[cos^2]^2 of Lambertian leaves that face all ways.
+/// Ratio E[cos^4]/E[cos^2]^2 of Lambertian leaves that face all ways.
 constexpr double SquareOfLeaves = 1.8;
 
 /// A medium and its volume. By default it fills the scene.
@@ -120,11 +120,11 @@ LidarView viewOf(const Sensor& sensor);
 
 /// Share of the diffracted light that stays in view on the way to a target and back. A drop at a
 /// share 1 - u of the way shifts light at the target by u times the angle of diffraction. So the
-/// result is the mean over u of the energy of Airy's pattern within halfAngle/u, weighted with the
+/// share is the mean over u of the energy of Airy's pattern within halfAngle/u, weighted with the
 /// areas of the drops. The error is below 6e-4. @param slope Lambda of exponential diameters, 1/m
 double keptInView(const LidarView& view, double slope);
 
-/// Rain. @param rate mm/h, above 0 @param backscatterRatio twice the drops' areas over their
+/// Rain. @param rate mm/h, above 0 @param backscatterRatio twice the drops' areas divided by their
 /// backscatter, sr @param perVolume N0, 1/(m^3 mm) @param fall Lambda at 1 mm/h, 1/mm
 Medium rainOf(double rate, double backscatterRatio, const LidarView& view,
   double perVolume = 8000.0, double fall = 4.1);

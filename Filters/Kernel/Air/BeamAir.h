@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file BeamAir.h
- * @brief The air along one beam: its transmission, and the light that it returns in each range
+ * @brief The air along one beam: its transmission, and the light that the air returns in each range
  * unit behind surfaces that take shares of the pulse.
  *
  * From the range R1 to R2 a medium returns E mu/S times the integral over R of O(R) min(A/R^2, 2
@@ -9,33 +9,34 @@
  * the optical depth of all air there and back. Media that fill the scene have a table of these
  * energies. Only the share of the pulse counts that no nearer surface has met.
  *
- * The axis stands for a beam if all volumes are wider than the beam, and if the rim crosses them at
+ * The axis represents a beam if all volumes are wider than the beam, and if the rim crosses them at
  * the same ranges and with the same optical depth. Otherwise the beam is divided into columns. A
  * column has a direction, a share of the pulse, and parts that lie in volumes (MediumVolume.h).
  * Columns are the cells of a grid of eight by eight over the beam's plane, or eight rows if all
- * volumes are layers. Samples know the columns of their rays (BeamSamples::columns). So a tree in
- * half a beam weakens that half alone, and a tree behind half a wall returns half of its light.
+ * volumes are layers. Samples hold the columns of their rays (BeamSamples::columns). So a tree in
+ * half a beam weakens only that half, and a tree behind half a wall returns half of its light.
  *
- * Leaves stop light on both ways, but a leaf that would stop it twice counts once. Light from a
- * range R returns to any point of the aperture, a disc about the apex. If this point lies q from
- * the apex, the way back at a range z lies q (1 - z/R) beside the way there. Discs of diameter d
- * that face all ways stop both of two ways, x d apart, (1 - x)^2 times as often as one of them, and
- * never beyond x = 1. So leaves transmit exp(-mu int (2 - (1 - x)^2) dz) there and back, averaged
- * over the aperture: from exp(-mu L) over a length L, if the aperture is much smaller than a leaf,
- * to exp(-2 mu L).
+ * Leaves stop light on both ways, but a leaf that would stop the light twice counts once. Light
+ * from a range R returns to any point of the aperture, a disc about the apex. If this point lies q
+ * from the apex, the way back at a range z lies q (1 - z/R) beside the way there. Discs of diameter
+ * d that face all ways stop both of two ways, x d apart, (1 - x)^2 times as often as one way, and
+ * never if x exceeds 1. So leaves transmit exp(-mu int (2 - (1 - x)^2) dz) there and back, averaged
+ * over the aperture. For a length L this lies between exp(-mu L), if the aperture is much smaller
+ * than a leaf, and exp(-2 mu L).
  *
- * Media may be perceived by themselves in the units that their parts meet, as long as they return
- * more than a millionth of the lower limit.
+ * Media may be perceived without other light in the units that their parts meet, if they return
+ * more than a millionth of the lower limit there.
  *
  * Source: the lidar equation, single scattering, e.g. U. Wandinger, in: Lidar, Springer, 2005; the
  * hot spot of leaves: A. Kuusk, Soviet Journal of Remote Sensing 3, 1985 (second-hand).
  * Differs: the paper's air sends nothing back. Kuusk has exp(-x) in place of (1 - x)^2.
- * Valid: units to 1e-6 along each column; with leaves to 1e-2, up to an optical depth of 4 one way.
- * The table ends at a million units. Means hold for a short pulse. A straight border anywhere in a
- * round uniform beam divides it to 0.095 at worst, 0.017 rms; a layer's top to 0.093 at worst,
- * 0.037 rms. A border that cuts off less than 0.013 of the beam is not seen. The sum of all shares
- * that surfaces take is exact, unit by unit. The transmitter is a point. Paths over two reflections
- * meet different leaves on each of their three ways.
+ * Valid: energies of units to 1e-6 along each column; with leaves to 1e-2, up to an optical depth
+ * of 4 one way. The table ends at a million units. Means hold for a short pulse. A straight border
+ * anywhere in a round uniform beam divides the beam with an error of 0.095 at worst, 0.017 rms; the
+ * top of a layer does so with 0.093 at worst, 0.037 rms. A border that cuts off less than 0.013 of
+ * the beam is ignored. The sum of all shares that surfaces take is exact, unit by unit. The
+ * transmitter is a point. Paths with two reflections meet different leaves on each of their three
+ * ways.
  * Test: TestAir.cxx, TestBeamAir.cxx, TestWeather.py.
  */
 #ifndef avianlidar_BeamAir_h
@@ -82,7 +83,8 @@ public:
     double x, y;        ///< direction, in the beam's plane
     double weight;      ///< share of the pulse
     std::uint64_t bits; ///< cells of the grid, one bit each
-    // The point of the aperture to which light returns. Neighbours have points far apart.
+    // The point of the aperture to which light returns. Points of neighbouring columns lie far
+    // apart.
     std::array<double, 2> towards{}; ///< unit vector to it from the aperture's middle
     double nearer = 0.0;             ///< share of the aperture's area nearer to its middle
     double open = 1.0;               ///< share of its light that no surface has met so far
@@ -151,14 +153,14 @@ public:
     std::uint32_t medium; ///< see mediumAt()
     double begin, end;    ///< m
   };
-  /// Find all media of leaves whose size is known, in the order of their beginnings.
+  /// Find all media of leaves with a given size, in the order of their beginnings.
   void findLeaves(std::vector<Leaves>& all) const;
 
   /// Half widths of the beam at a range of 1 m, and radius of the aperture, m.
   std::array<double, 2> halfWidths() const { return this->HalfWidths; }
   double apertureRadius() const { return this->ApertureRadius; }
 
-  /// Mean transmission of leaves whose size is known, to a range, m, and back.
+  /// Mean transmission of leaves with a given size, to a range, m, and back.
   double leftByLeaves(double range) const;
 
   /// Cells of the grid that lie in the beam, whether or not the beam is divided.
@@ -170,8 +172,8 @@ public:
   /// Relative density of a medium in a column at a range, m; 1 where the medium is dense.
   double densityAt(const Column& column, std::uint32_t medium, double range) const;
 
-  /// Energy, J, that a leaf returns of a share of the pulse, if no leaf stops it on its way back.
-  /// Surfaces before the middle of the unit of the last sharesOf() have taken their shares.
+  /// Energy, J, that a leaf returns of a share of the pulse, if no leaf stops this light on the way
+  /// back. Surfaces before the middle of the unit of the last sharesOf() have taken their shares.
   double returnedBy(const MetLeaf& leaf, const Column& column, double share) const;
 
   /// Number of cells across the beam, each way.
@@ -207,7 +209,7 @@ private:
   {
     std::size_t seen; ///< index of its medium in `Seen`
     MediumCrossing crossing;
-    double extinction; ///< on both ways, 1/m; of leaves on the way there only
+    double extinction; ///< extinction on both ways, 1/m; for leaves only on the way there
     double perLeaf;    ///< inverse diameter of a leaf, 1/m; 0: not leaves, or of unknown size
   };
   struct PartRange
@@ -275,7 +277,7 @@ private:
   std::vector<Part> Here;        ///< parts of a column between two `Breaks`
   std::vector<Share> Sums;       ///< shares in the order of `Seen`
   std::array<double, 3> Known{}; ///< ends, m, and decay, 1/m, of the last piece of constant density
-  double OfKnown = 0.0;          ///< its integral without the extinction before it, m sr
+  double OfKnown = 0.0;          ///< integral of this piece without the extinction before it, m sr
   std::vector<MediumCrossing> Found;
   MediumCrosser Crosser;
 };

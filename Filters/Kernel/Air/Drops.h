@@ -15,8 +15,8 @@
  *
  * Source: G. Marsaglia and W. W. Tsang, ACM Trans. Math. Softw. 26, 2000 (gamma variates).
  * Differs: the paper's air sends nothing back.
- * Valid: the mean changes little within a pulse, as beyond the first few units. Drops count as
- * evenly lit across the beam.
+ * Valid: the mean changes little within a pulse, as it does beyond the first few units. Drops are
+ * taken as evenly lit across the beam.
  * Test: TestAir.cxx.
  */
 #ifndef avianlidar_Drops_h
@@ -34,14 +34,14 @@ namespace avianlidar
 class PulseShares
 {
 public:
-  /// @param width of the pulse, tau_e/tau_s, 0 to 1000
+  /// @param width width of the pulse, tau_e/tau_s, 0 to 1000
   explicit PulseShares(double width = 0.0);
 
   /// Number of units that a pulse reaches before, and behind, its own.
   std::int64_t reach() const { return this->Reach; }
 
-  /// Add the energy of a pulse to 2 reach() + 1 units, with its own in the middle. @param place of
-  /// the drop in its own unit, 0 to 1
+  /// Add the energy of a pulse to 2 reach() + 1 units, with its own in the middle. @param place
+  /// place of the drop in its own unit, 0 to 1
   void add(double energy, double place, double* units) const;
 
   /// One of the two places of many drops, in [0, 1]. The other one is 1 - placeOfMany().
@@ -57,8 +57,8 @@ private:
 constexpr double FewDrops = 40.0;
 
 /// Add the light of a unit's drops beyond its mean to 2 reach() + 1 units: a compound Poisson law.
-/// @param number of the unit, or another unique number @param mean J @param drops mean number of
-/// drops @param medium gives `squareOfDrops` and `renewed` @param units sums, J
+/// @param number number of the unit, or another unique number @param mean J @param drops mean
+/// number of drops @param medium gives `squareOfDrops` and `renewed` @param units sums, J
 void addDropsBeyondMean(std::int32_t seed, std::uint64_t beam, std::uint64_t number,
   std::int32_t revolution, double mean, double drops, const Medium& medium,
   const PulseShares& pulse, double* units);

@@ -6,11 +6,11 @@
  * A beam is divided into rays, one through each cell of its grid (BeamAir.h). The light of a ray
  * returns to one point of the aperture. Leaves are discs of one size that face all ways alike, at
  * random places (Poisson). A ray ends at the first leaf that it meets. Its light comes back unless
- * another leaf stops it on the way back, which lies beside the way there. So a part of a beam may
- * meet a leaf while the rest passes. A range unit receives the light of the rays that end in it.
- * Light from behind leaves is scaled by the share of rays that get there and back, over its mean.
- * Beams much wider than a leaf are not divided; their leaves follow the compound Poisson law of
- * Drops.h.
+ * another leaf stops the light on the way back, which lies beside the way there. So a part of a
+ * beam may meet a leaf while the rest passes. A range unit receives the light of the rays that end
+ * in it. Light from behind leaves is scaled by the share of rays that get there and back, divided
+ * by the mean of this share. Beams much wider than a leaf are not divided; their leaves follow the
+ * compound Poisson law of Drops.h.
  *
  * Source: the Boolean model of leaves at random places (Nilson, Agricultural Meteorology 8, 1971).
  * Differs: the paper has no leaves.
@@ -42,7 +42,7 @@ public:
 
   bool any() const { return !this->Rays.empty(); }
 
-  /// Transmission of the leaves to a range, m, and back, over its mean.
+  /// Transmission of the leaves to a range, m, and back, divided by its mean.
   double openAt(double range) const;
 
   /// Energy, J, that the leaves of a medium return from ranges [from, to), m. Surfaces take their
@@ -63,7 +63,7 @@ private:
     std::array<double, 2> aperture; ///< point to which its light returns, m
     double share;                   ///< share of the pulse
     const BeamAir::Column* column;
-    MetLeaf leaf; ///< leaf at which it ends; at an infinite range: none
+    MetLeaf leaf; ///< leaf at which the ray ends; at an infinite range if there is none
     bool isSeen;  ///< true if no leaf stops the light of `leaf` on its way back
   };
   /// Ranges, m, from which a leaf stops the light of a ray on its way back.

@@ -3,9 +3,9 @@
  * @file MediumVolume.h
  * @brief Volumes of media (layers, boxes, ellipsoids, closed surfaces), and how rays cross them.
  *
- * A ray crosses a medium in parts. In a part the density is constant or changes exponentially along
- * the ray. It changes only above the top of a layer. So the optical depth of a part, and of any
- * piece of it, has a closed form.
+ * A ray crosses a medium in parts. In a part the density is constant, or, only above the top of a
+ * layer, changes exponentially along the ray. So the optical depth of a part, and of any piece of a
+ * part, has a closed form.
  *
  * Source: none.
  * Valid: exact up to rounding. The tree's triangle test decides where a ray crosses a closed
@@ -94,8 +94,8 @@ private:
   std::vector<Hit> Hits;
 };
 
-/// True if each half axis of a volume exceeds the beam's width at the volume's far end. It
-/// then fits nowhere between axis and rim. Always true for layers, never for closed surfaces.
+/// True if each half axis of a volume exceeds the beam's width at the volume's far end. Such a
+/// volume does not fit between axis and rim. Always true for layers, never for closed surfaces.
 bool isWiderThan(const MediumVolume& volume, const BeamFrame& frame, double far, double seconds);
 
 /// True if a border or the fading part of a volume at rest may lie in a beam. Conservative.

@@ -44,7 +44,7 @@ struct BeamRays
 /// Compact cells of the unit disc: rings cut into sectors. The energy of a cell is proportional to
 /// the number of its rays (for odd N the last cell, at the rim, is 3/2 as large as the others), so
 /// every ray carries Qs/N and the estimate is unbiased for any N. The cells depend on N only: the
-/// profile enters when a share of the energy becomes a radius.
+/// profile enters when shares of the energy are converted to radii.
 class StrataPartition
 {
 public:
@@ -57,7 +57,7 @@ public:
   explicit StrataPartition(std::size_t numberOfRays);
   const std::vector<Cell>& cells() const { return this->Cells; }
   std::size_t numberOfRays() const { return this->NumberOfRays; }
-  /// Cell of ray n, and number of rays of a cell.
+  /// Cell of ray n, and number of rays in a cell.
   std::size_t cellOfRay(std::size_t n) const;
   std::size_t raysInCell(std::size_t cell) const;
 
@@ -83,24 +83,24 @@ struct RadialProfile
   double truncation = 1.0; ///< k of a Gaussian profile
 };
 
-/// Density of the rays per solid angle at a point of the beam's plane, over its mean: 1 in a
-/// uniform beam; 2 k^2 e^(-2 k^2 u)/(1 - e^(-2 k^2)) in a Gaussian one, u the share of the solid
-/// angle nearer the axis.
+/// Density of the rays per solid angle at a point of the beam's plane, divided by its mean: 1 in a
+/// uniform beam, and 2 k^2 e^(-2 k^2 u)/(1 - e^(-2 k^2)) in a Gaussian beam, with u the share of
+/// the solid angle nearer to the axis.
 /// @param radius2 x^2 + y^2, in [0, 1]
 double rayDensity(const RadialProfile& profile, double radius2);
 
 /// Draws the rays of a beam, about 3 ns a ray. A ray depends on (seed, beam, ray) only.
-/// @param strata of numberOfRays rays; unused for Sampling::MonteCarlo, where it may be null
+/// @param strata strata of numberOfRays rays; unused for Sampling::MonteCarlo, where it may be null
 void sampleBeam(std::int32_t seed, std::uint64_t beam, std::size_t numberOfRays,
   const RadialProfile& profile, Sampling sampling, const StrataPartition* strata, BeamRays& rays);
 
 /// Draws the rays of one of `patterns` (a power of 2) patterns. In a single pattern, a ray may lie
-/// anywhere in its cell. Over all patterns it lies once in each of `patterns` parts of its cell's
-/// range of radii, so that means over many beams have next to no error of the patterns.
+/// anywhere in its cell. Over all patterns the ray lies once in each of `patterns` parts of its
+/// cell's range of radii, so the patterns add almost no error to means over many beams.
 void samplePattern(std::int32_t seed, std::size_t pattern, std::size_t patterns,
   const RadialProfile& profile, const StrataPartition& strata, BeamRays& rays);
 
-/// Turns the rays of a pattern about the axis by a share of a full turn: about 0.3 ns a ray.
+/// Turns the rays of a pattern about the axis by a share of a full turn, in about 0.3 ns a ray.
 void turnRays(const BeamRays& pattern, double turns, BeamRays& rays);
 }
 

@@ -6,10 +6,10 @@
  * Drawing stratified rays takes longer than tracing them. Beams of up to MostRaysOfAPattern rays
  * therefore share PatternsOfRays patterns: each beam has a random one, turned about its axis by a
  * random angle. Over patterns and angles, the rays of a beam are distributed as if they were drawn
- * for it alone. Monte Carlo rays (the paper) are drawn for each beam.
+ * only for this beam. Monte Carlo rays (the paper) are drawn for each beam.
  *
  * Source: none.
- * Valid: as BeamRays.h. Beams that share a pattern differ by the turn only, so they are not
+ * Valid: as BeamRays.h. Beams that share a pattern differ only by the turn, so they are not
  * independent; for means over many beams see samplePattern().
  * Test: TestBeamRays.cxx.
  */

@@ -3,11 +3,11 @@
  * @file BeamShape.h
  * @brief Outline and profile of the sensor's beams in the coordinates of their plane (BeamFrame.h).
  *
- * An ellipse is the unit disc of the plane, a rectangle the square with its corners on the rim of
- * the disc; a beam is wider along x. The energy of a round beam is uniform in solid angle, or falls
- * with it. A beam that is not round is narrow: its energy is uniform over the plane, or falls with
- * the squared distance from the axis, in half-beamwidths, as exp(-2 k^2 (x^2 + y^2)); for a
- * rectangle, x and y here go from -1 to 1.
+ * An elliptical beam fills the unit disc of the plane. A rectangular beam fills the square with its
+ * corners on the rim of the disc. A beam is wider along x. The energy of a round beam is uniform in
+ * solid angle, or falls with it. A beam that is not round is narrow: its energy is uniform over the
+ * plane, or falls with the squared distance from the axis, in half-beamwidths, as exp(-2 k^2 (x^2 +
+ * y^2)); for a rectangle, x and y here go from -1 to 1.
  *
  * Source: none.
  * Valid: any sensor that checkSensor() accepts. At 0.1 rad a beam uniform over its plane is 1.5 %
@@ -50,7 +50,7 @@ public:
   /// Share of the pulse per area of the plane at the axis, for a uniform profile.
   double shareOfArea() const { return this->ShareOfArea; }
 
-  /// Density of the energy over the density of a uniform profile.
+  /// Density of the energy, divided by the density of a uniform profile.
   double density(double x, double y) const
   {
     return this->isRound() ? rayDensity(this->Profile, x * x + y * y)
@@ -73,8 +73,8 @@ private:
   double ShareOfArea;
   double MostDensity;
   double Truncation = 0.0; ///< k of a Gaussian in a rectangle; 0: uniform
-  double Fall = 0.0;       ///< rate of a Gaussian over x^2 + y^2; 0: uniform
-  double PerMean = 1.0;    ///< 1 over the mean of the Gaussian
+  double Fall = 0.0;       ///< rate of a Gaussian in x^2 + y^2; 0: uniform
+  double PerMean = 1.0;    ///< inverse of the mean of the Gaussian
 };
 }
 

@@ -4,9 +4,9 @@
  * @brief Groups the rays of a beam into packets: orders their numbers in compact groups of sixteen.
  *
  * Stratified rays of equal number lie in the same cells in all beams, so the order found for one
- * beam serves all. It depends on the number of rays only, so the cost of a beam does not depend on
- * what its thread did before. For independent rays this order is as good as any other. Rays that
- * come with their neighbours keep their order.
+ * beam serves all. The order depends only on the number of rays, so the cost of a beam does not
+ * depend on what its thread did before. For independent rays this order is as good as any other.
+ * Rays that come with their neighbours keep their order.
  *
  * Source: none.
  * Valid: any number of rays, at least 1. The order affects cost only, never hits.
@@ -24,12 +24,12 @@ namespace avianlidar
 /// Rays are tested in groups of sixteen; the last group is padded.
 constexpr int PacketGroup = 16;
 
-/// One per thread.
+/// Finds the order of the rays of a beam. One per thread.
 class PacketOrder
 {
 public:
   /// Numbers of `rays` (at least 1) rays in compact groups of PacketGroup; the last group may have
-  /// fewer. Valid until the next call; found anew if `rays` differs from the last call.
+  /// fewer. Valid until the next call; computed again if `rays` differs from the last call.
   const std::vector<std::uint32_t>& of(std::size_t rays);
 
   /// Numbers 0, 1, 2, ... of at least `rays` rays. Valid until the next call.

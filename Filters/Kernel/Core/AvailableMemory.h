@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file AvailableMemory.h
- * @brief How much memory the process may still take, and an error before a request that needs more.
+ * @brief Memory that the process may still take, and an error for requests that need more.
  *
  * A system that overcommits grants any request and ends the process when the memory is written to.
  * Requests whose size a property or a file decides are therefore estimated first.
  *
  * Source: none.
- * Valid: on Linux the smallest of three numbers: what the address limit (RLIMIT_AS) leaves, what
- * the control group and the groups above it leave (version 1 or 2; file caches count as free), and
- * MemAvailable. On other systems nothing is known and nothing is refused. Other processes may take
- * the memory after the estimate.
+ * Valid: on Linux the smallest of three numbers: the rest of the address limit (RLIMIT_AS), the
+ * rest of the limits of the control group and the groups above it (version 1 or 2; file caches
+ * count as free), and MemAvailable. On other systems no request is refused. Other processes may
+ * take the memory after the estimate.
  * Test: TestAvailableMemory.cxx.
  */
 #ifndef avianlidar_AvailableMemory_h
@@ -31,7 +31,8 @@ public:
 /// Available memory, bytes; infinite if nothing limits it.
 double availableMemory();
 
-/// Bytes that the address limit alone leaves. Without a limit the call costs nothing.
+/// Bytes that the address limit leaves, whatever the other limits. Without an address limit the
+/// call costs nothing.
 double availableAddresses();
 
 /// Available memory from the system files below `root` and an address limit, bytes.

@@ -6,8 +6,8 @@
  * A ray of the beam is a point (x, y), x^2 + y^2 <= 1, of the beam's own plane at unit distance, in
  * units of tan(theta0.5). Its direction is axis + tan(theta0.5) (x e1 + y e2), not normalised. In a
  * round beam e2 is a unit vector. In other beams the length of e2 is the ratio of the two
- * beamwidths' tangents: an elliptic beam is then the unit disc, too, and a rectangular beam the
- * square in the disc. The cone of the half-beamwidth holds all of them.
+ * beamwidths' tangents: an elliptic beam is then the unit disc, too, and a rectangular beam is the
+ * square in this disc. The cone of the half-beamwidth holds all three.
  *
  * Source: frame of Duff et al., "Building an Orthonormal Basis, Revisited", JCGT 6(1), 2017.
  * Differs: the axis is normalised twice, so that it is a unit vector to the last bits.
@@ -38,14 +38,14 @@ struct BeamFrame
   double flatness2 = 1.0;     ///< squared length of e2
   bool isRectangle = false;
 
-  /// (x z, y z, z) of a vector, with z its component along the axis and (x, y) its ray.
+  /// Returns (x z, y z, z) of a vector, z its component along the axis and (x, y) its ray.
   Vec3 toPlane(const Vec3& v) const
   {
     return { glm::dot(v, this->e1) / this->tanHalf,
       glm::dot(v, this->e2) / (this->tanHalf * this->flatness2), glm::dot(v, this->axis) };
   }
 
-  /// Squared tangent of the angle between ray and axis, over tanHalf^2.
+  /// Squared tangent of the angle between ray and axis, divided by tanHalf^2.
   double radius2(double x, double y) const { return x * x + this->flatness2 * (y * y); }
 
   /// Direction of the ray (x, y), not normalised: its component along the axis is 1.
@@ -71,7 +71,7 @@ struct BeamWidth
   bool isRound = true;
   // For beams that are not round:
   bool isRectangle = false;
-  double flatness = 1.0;    ///< tangents along e2 over tangents along e1, at most 1
+  double flatness = 1.0;    ///< ratio of tangents along e2 to tangents along e1, at most 1
   double turn = 0.0;        ///< angle of e1 from the horizontal towards `up`, rad
   Vec3 up{ 0.0, 0.0, 1.0 }; ///< unit vector at right angles to the horizontal
   explicit BeamWidth(double halfBeamwidth)

@@ -13,7 +13,7 @@
  * The order is x, y, z, as in points: longitude before latitude, unlike setOrigin().
  *
  * Source: GeographicLib.
- * Differs: UTM coordinates beyond the reach of GeographicLib are refused.
+ * Differs: UTM coordinates beyond the reach of GeographicLib are errors.
  * Valid: GeographicLib's own error is 7 nm between geodetic and ECEF within 5000 km of the surface
  * and 5 nm in UTM within 3900 km of the zone's central meridian. The rounding of the numbers adds
  * 3 nm for a longitude in degrees and 1 nm for ECEF. At the poles, where any longitude fits, the
@@ -54,7 +54,7 @@ public:
   void setOrigin(double latitude, double longitude, double height);
 
   /// UTM zone of a place, 1 to 60, negative in the south, with the exceptions of Norway and
-  /// Svalbard. Near the poles, where UTM ends, the longitude alone decides.
+  /// Svalbard. Near the poles, where UTM ends, only the longitude decides.
   static int zoneOf(double latitude, double longitude);
 
   /// Set the zone of UTM, 1 to 60, negative in the south.
@@ -64,7 +64,7 @@ public:
   /// a latitude outside [-90, 90] degrees, an easting or northing outside the reach of UTM
   static std::string checkPoint(Frame frame, const std::array<double, 3>& point);
 
-  /// Convert a point. The result in UTM may lie outside its reach, see checkPoint().
+  /// Convert a point. The result may lie outside the reach of UTM, see checkPoint().
   std::array<double, 3> convert(Frame from, Frame to, const std::array<double, 3>& point) const;
 
 private:

@@ -3,8 +3,8 @@
  * @file LaneMath.h
  * @brief Elementary functions for loops over independent lanes: no branches, no tables, no calls.
  *
- * A compiler turns a `#pragma omp simd` loop that calls them into vector code, which libm's
- * functions do not allow. Every instruction set gives the same bits: only sums, products,
+ * A compiler turns a `#pragma omp simd` loop that calls these functions into vector code, which
+ * libm's functions do not allow. Every instruction set gives the same bits: only sums, products,
  * quotients, roots and bit patterns are used, in a fixed order (compile with -ffp-contract=off).
  *
  * Source: reductions and polynomials of fdlibm (K. C. Ng, Sun Microsystems, 1993: e_exp.c,
@@ -62,7 +62,8 @@ AVIANLIDAR_ALWAYS_INLINE double fromBits(std::uint64_t bits)
   return value;
 }
 
-/// Added to a number below 2^51 in magnitude, it leaves the nearest whole number in the low bits.
+/// Added to a number below 2^51 in magnitude, Rounder puts the nearest whole number into the low
+/// bits.
 constexpr double Rounder = 6755399441055744.0; // 1.5 * 2^52
 
 /// 2^n for the whole number in the low bits of `rounded` = n + Rounder, |n| <= 1022.
@@ -92,7 +93,7 @@ AVIANLIDAR_ALWAYS_INLINE double exp(double x)
               (6.61375632143793436117e-05 +
                 t * (-1.65339022054652515390e-06 + t * 4.13813679705723846039e-08))));
   const double value = 1.0 - ((low - (r * c) / (2.0 - c)) - high);
-  // In two steps, as 2^n alone may be too small for a normal number.
+  // In two steps, because 2^n may be too small for a normal number.
   const double half = 0.5 * n + Rounder;
   const double rest = n - (half - Rounder);
   return value * powerOfTwo(half) * powerOfTwo(rest + Rounder);

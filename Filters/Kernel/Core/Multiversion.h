@@ -3,9 +3,9 @@
  * @file Multiversion.h
  * @brief Functions compiled for several instruction sets; the best is chosen at the start.
  *
- * Only for loops over independent lanes whose results must have the same bits everywhere. As
- * nothing is contracted or reassociated, every version gives the same bits. Code that only decides
- * where to look uses Highway's vectors (RayLanes.h).
+ * The macros serve only loops over independent lanes whose results must have the same bits
+ * everywhere. As nothing is contracted or reassociated, every version gives the same bits. Code
+ * that only decides which nodes and triangles are tested uses Highway's vectors (RayLanes.h).
  *
  * The loops are plain C++ because they call the functions that single rays call, such as
  * rangeOnPlane(). The bits therefore agree by construction, and nothing is written twice. Ranges
@@ -26,7 +26,7 @@
 #define AVIANLIDAR_MULTIVERSION
 #endif
 
-/// For functions that such a loop calls: only inlined do they take the loop's instruction set.
+/// For functions that such a loop calls. They take the loop's instruction set only if inlined.
 #if defined(__GNUC__)
 #define AVIANLIDAR_ALWAYS_INLINE inline __attribute__((always_inline))
 #define AVIANLIDAR_INLINE_LAMBDA __attribute__((always_inline))

@@ -4,7 +4,7 @@
  * @brief The only parallel loop of the project: free threads take blocks of a range.
  *
  * All other code is serial code on a range of items. Which thread gets which block is not
- * determined, so the body must write each item's result to a slot of that item alone.
+ * determined, so the body must write the result of each item only to the slot of this item.
  *
  * Source: none.
  * Valid: any counts, blocks and numbers of threads. Loops also work in the child of a fork.
@@ -38,10 +38,10 @@ struct WorkStopped : std::exception
 /**
  * Call `body` for all of [0, count) in blocks of `block` items (0 is taken as 1).
  *
- * Thread 0 is the calling thread. It alone calls `keepGoing` (which may be empty), before each of
- * its blocks and once with 1 at the end, so `keepGoing` may use data of that thread. If it returns
- * false, blocks under way are finished and no further block begins. An exception of `body` or
- * `keepGoing` stops the work in the same way, and the first one is thrown again here.
+ * Thread 0 is the calling thread. Only this thread calls `keepGoing` (which may be empty), before
+ * each of its blocks and once with 1 at the end, so `keepGoing` may use data of that thread. If it
+ * returns false, blocks under way are finished and no further block begins. An exception of `body`
+ * or `keepGoing` stops the work in the same way, and the first one is thrown again here.
  * @param threads > 0, or 0 for loopThreads(0)
  * @return true if all items were done and keepGoing never returned false
  */

@@ -20,7 +20,7 @@
 
 namespace avianlidar
 {
-/// Purpose of a number; each purpose has its own stream. Numbers of former purposes stay free.
+/// Purpose of a number; each purpose has its own stream. Numbers of former purposes stay unused.
 enum class RandomPurpose : std::uint32_t
 {
   Rays = 0,
@@ -29,13 +29,13 @@ enum class RandomPurpose : std::uint32_t
   FalseAlarms = 3,
   Patterns = 6, ///< rays of a pattern that beams share; the pattern's number replaces the beam's
   Turns = 7,    ///< pattern of a beam, and its turn
-  MastSway = 9, ///< the axis replaces the beam
-  EncoderJitter = 10, ///< the column replaces the beam
+  MastSway = 9, ///< mast sway; the axis replaces the beam
+  EncoderJitter = 10, ///< encoder jitter; the column replaces the beam
   Flights = 11,       ///< flights of birds; the bird's number replaces the beam's
   FlockPlaces = 12,   ///< place of a bird in its flock; the bird's number replaces the beam's
   RareNoise = 13,     ///< range units with a rare deviate
   Cells = 14,         ///< cells of jittered rays; the pattern's number replaces the beam's
-  Mirrors = 15,       ///< rays over mirrors
+  Mirrors = 15,       ///< rays by way of mirrors
   RangeNoise = 16,    ///< noise of a return's range, by its strongest range unit
   Drops = 17,         ///< rain drops, by range unit
   Leaves = 18,        ///< leaves at which parts of a beam end

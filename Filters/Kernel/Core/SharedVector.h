@@ -4,7 +4,7 @@
  * @brief A constant vector whose copies share their elements.
  *
  * Surfaces, the output of the tree and the scan share the data of every triangle of a large scene,
- * which are thus in memory once and not three times.
+ * so that these data are in memory once and not three times.
  *
  * Source: none.
  * Valid: any elements; shareWith() needs elements that can be copied as bytes, without gaps

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file ValueError.h
- * @brief The one form of message for a value that cannot be used.
+ * @brief Messages for values that cannot be used, all in one form.
  *
  * Source: none.
  * Valid: numbers, written with 17 significant digits.
@@ -23,7 +23,7 @@ constexpr double AboveZero = std::numeric_limits<double>::denorm_min();
 /// Largest finite number.
 constexpr double LargestFinite = std::numeric_limits<double>::max();
 
-/// "name is value, expected what"
+/// Message "name is value, expected what".
 template <class T>
 std::string valueError(const std::string& name, T value, const std::string& expected)
 {

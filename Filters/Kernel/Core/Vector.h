@@ -4,7 +4,7 @@
  * @brief The vector type of the kernel: doubles, right-handed, metres unless said otherwise.
  *
  * Source: GLM.
- * Differs: safeLength() and unitVector() neither overflow nor underflow, as GLM's do.
+ * Differs: safeLength() and unitVector() neither overflow nor underflow, unlike GLM's functions.
  * Valid: stated at each function.
  * Test: TestTriangleTest.cxx (unit vectors of any length).
  */

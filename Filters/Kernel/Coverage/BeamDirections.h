@@ -26,7 +26,7 @@ namespace avianlidar
 class BeamDirections
 {
 public:
-  /// @param directions of the beams, finite and not zero @param halfBeamwidth rad
+  /// @param directions directions of the beams, finite and not zero @param halfBeamwidth rad
   /// @param margins angles outside a cone up to which forEachNear() finds its beam, rising, rad
   BeamDirections(const std::vector<Vec3>& directions, double halfBeamwidth,
     const std::vector<double>& margins = { 0.0 });
@@ -51,11 +51,11 @@ public:
     }
   }
 
-  /// Number of cells of the least margin, and the cell whose beams a direction is near.
+  /// Number of cells at the least margin, and the cell that contains a direction.
   std::size_t cells() const { return this->Grids[0].begins.size() - 1; }
   std::size_t cellOf(const Vec3& direction) const { return cellOf(direction, this->Grids[0].side); }
 
-  /// Calls f(number of the beam) for the beams that directions of a cell are near.
+  /// Calls f(number of the beam) for the beams near the directions of a cell.
   template <class F>
   void forEachOfCell(std::size_t cell, F f) const
   {

@@ -7,16 +7,17 @@
  * A beam sees a place if its cone contains the direction to the place and no surface hides the
  * place (one descent of the tree). The beam is in clutter there if one of the range units that the
  * echo of a point target may overlap has a perceived echo of a surface. The other beams detect the
- * target with the probability of DetectionLaw.h, each by the part of the target that it lights.
- * Lines of sight are found once; they stay valid for another target, air, receiver or clutter.
+ * target with the probability of DetectionLaw.h, each by the part of the target that the beam
+ * lights. Lines of sight are found once. They stay valid for another target, air, receiver or
+ * clutter.
  *
  * Source: none.
  * Differs: a surface hides all of the target if it hides its middle, otherwise nothing.
  * Valid: beams of one origin. Media attenuate along the line to the target's middle; moving media
  * stand as at time 0. A beam does not light a target whose middle is more than WidestTarget or 0.4
- * rad outside its cone. If more than DetectionLaw::MostBeams beams are near, those with the nearest
- * axes count, or with the nearest borders if beams are not round. A threshold that follows the air
- * divides energies by its growth: probabilities err by up to 0.03.
+ * rad outside its cone. If more than DetectionLaw::MostBeams beams are near, the beams with the
+ * nearest axes count, or with the nearest borders if beams are not round. A threshold that follows
+ * the air divides energies by its growth: probabilities err by up to 0.03.
  * Test: TestCoverage.cxx, TestBeamShapes.py, TestWeather.py.
  */
 #ifndef avianlidar_Coverage_h
@@ -43,9 +44,9 @@ enum class CoverageStatus : std::uint8_t
   OutsideGate = 0,
   AboveBand = 1,    ///< above all beams
   BelowBand = 2,    ///< below all beams
-  BetweenBeams = 3, ///< no beam contains it
-  Shadowed = 4,     ///< a surface hides it
-  InClutter = 5,    ///< all beams that contain it are in clutter there
+  BetweenBeams = 3, ///< no beam contains the place
+  Shadowed = 4,     ///< a surface hides the place
+  InClutter = 5,    ///< all beams that contain the place are in clutter there
   TooWeak = 6,      ///< the probability of detection is below WeakProbability
   Seen = 7
 };
@@ -56,7 +57,7 @@ constexpr double WeakProbability = 0.1;
 /// The widest bird that flies spans 3.5 m.
 constexpr double WidestTarget = 2.0;
 
-/// Visibility of a place, from geometry alone.
+/// Visibility of a place, from geometry only.
 struct CoverageSight
 {
   CoverageStatus status = CoverageStatus::OutsideGate; ///< Seen if geometry allows detection
@@ -72,8 +73,8 @@ struct CoverageValue
   int beams = 0;               ///< beams that contain the place
   double probability = 0.0;    ///< probability of detection in one scan
   double photoelectrons = 0.0; ///< photoelectrons of the whole target; 0 without a photon receiver
-  /// Mean effective area of which half of the targets inside the beams are detected, m^2; infinity
-  /// if there is none.
+  /// Mean effective area at which half of the targets inside the beams are detected, m^2; infinity
+  /// if half are never detected.
   double leastArea = std::numeric_limits<double>::infinity();
 };
 
@@ -101,14 +102,16 @@ struct CoverageTarget
 /// Returns the position of a place by its number, m.
 using PlaceAt = std::function<Vec3(std::size_t)>;
 
-/// Detects targets at places. Setup and beams must outlive it; any number of threads may share it.
+/// Detects targets at places. Setup and beams must outlive this; any number of threads may share
+/// it.
 class Coverage
 {
 public:
-  /// @param beams of one origin, at least one beam: see checkOrigins()
+  /// @param beams at least one beam, all from one origin: see checkOrigins()
   /// @param up unit vector of the vertical, for elevations
   /// @param still scan of the beams without noise, return mode RangeUnits
-  /// @param directions of another coverage with equal beam directions and width; null: computed
+  /// @param directions directions of another coverage with equal beam directions and width; null:
+  /// computed
   Coverage(const ScanSetup& setup, const ScanBeams& beams, const Vec3& up, const ScanResult& still,
     std::shared_ptr<const BeamDirections> directions = {});
 
@@ -126,8 +129,8 @@ public:
   const ScanSetup& setup() const { return this->Setup; }
   const std::shared_ptr<const BeamDirections>& directions() const { return this->Directions; }
 
-  /// Largest number of beams near any place that is farther away than WidestTarget over the least
-  /// margin; 1 to 255.
+  /// Largest number of beams near any place that is farther away than WidestTarget divided by the
+  /// least margin; 1 to 255.
   int mostBeams() const { return this->Most; }
 
   double lowest() const { return this->Lowest; }   ///< lowest elevation in any beam, rad

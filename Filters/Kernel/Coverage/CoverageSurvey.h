@@ -50,7 +50,7 @@ struct SurveyRules
   int requiredDetections = 1; ///< M: detections that make a track, 1 to scans
   int scans = 1;              ///< N: number of scans, 1 to MostScans
   bool strikeHeightWeights = false;
-  std::vector<double> heightLimits; ///< rising borders of bands, m; a band includes its lower one
+  std::vector<double> heightLimits; ///< rising borders of bands, m; the lower border is included
 
   std::size_t bands() const { return this->heightLimits.size() + 1; }
 };
@@ -61,7 +61,7 @@ std::string checkRules(const SurveyRules& rules);
 class CoverageSurvey
 {
 public:
-  /// Receives the result of a place and the probability of a track; any thread calls it.
+  /// Receives the result of a place and the probability of a track; called by any thread.
   using EachPlace =
     std::function<void(std::size_t place, const CoverageValue& value, double track)>;
 
@@ -69,7 +69,7 @@ public:
   using PosesOf = std::function<float*(std::size_t place)>;
 
   /// Finds the lines of sight to places. The arguments must outlive the next evaluate().
-  /// @param beams of one origin, or empty @param still see Coverage
+  /// @param beams beams of one origin, or empty @param still see Coverage
   /// @param geometry hash of the surfaces
   /// @return false if keepGoing returned false
   bool look(const ScanSetup& setup, const ScanBeams& beams, const ScanResult& still,
@@ -96,7 +96,7 @@ private:
   std::unique_ptr<Coverage> Covered; ///< null without beams
   std::uint64_t DirectionsOf = 0;    ///< hash of the inputs of its BeamDirections
   std::size_t Traced = 0;
-  /// A target and the inputs that it was made from.
+  /// A target and its inputs.
   struct KeptTarget
   {
     std::vector<double> numbers;

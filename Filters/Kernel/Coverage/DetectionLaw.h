@@ -2,7 +2,7 @@
 /**
  * @file DetectionLaw.h
  * @brief Probability that one scan detects a target, as a function of the energy that a beam
- * receives of it and of the number of beams on it.
+ * receives from the target and of the number of beams on it.
  *
  * A beam receives energy from the part of the target that it lights (Silhouette.h), whether the
  * beam or the target is larger. The echo is a pulse lengthened by the depth of that part, which is
@@ -15,9 +15,9 @@
  * of (1 - p) over beams. Where K beams contain the whole target, it is tabulated over the logarithm
  * of their energy.
  *
- * What a target shows depends on the elevation of the line of sight. Silhouettes are drawn at
- * regular steps of elevation. Between two steps each pose is taken from one or the other, in linear
- * proportion.
+ * The silhouette of a target depends on the elevation of the line of sight. Silhouettes are drawn
+ * at regular steps of elevation. Between two steps each pose is taken from one or the other, in
+ * linear proportion.
  *
  * Each pose represents similar poses: its energies are spread by 15 %.
  *
@@ -50,9 +50,9 @@ struct TargetViews
   /// of all poses.
   std::function<TargetPoses(double elevation)> from;
   double reach = 0.0;    ///< largest distance of any part from the middle, m
-  double step = Pi;      ///< between the elevations that are drawn, rad
+  double step = Pi;      ///< step between the elevations that are drawn, rad
   std::size_t poses = 1; ///< number of poses
-  /// Successive poses differ by 1/headings of a turn, clockwise; 1 if all azimuths look alike.
+  /// Successive poses differ by 1/headings of a turn, clockwise; 1 if all azimuths give the same.
   std::size_t headings = 1;
 };
 
@@ -79,7 +79,7 @@ public:
   Between betweenAt(double elevation) const;
 
   /// Probability of detection in one scan.
-  /// @param energy that one beam receives of the target at its mean area, J
+  /// @param energy energy that one beam receives from the target at its mean area, J
   /// @param beams number of beams that receive it
   double probability(double energy, int beams, const Between& at = { 0, 0.0 }) const
   {
@@ -93,7 +93,7 @@ public:
   double probabilityAt(double step, int beams, const Between& at = { 0, 0.0 }) const;
 
   /// Probability of detection where beams light parts of the target.
-  /// @param energy of a beam that contains the whole target at its mean area, J
+  /// @param energy energy of a beam that contains the whole target at its mean area, J
   /// @param most energy of a beam that the target fills, J
   /// @param ofPoses receives the probability of each pose; may be null
   double probability(double energy, double most, const BeamAtTarget* beams, std::size_t count,
@@ -102,7 +102,7 @@ public:
   /// Probability of each pose where `beams` beams contain the whole target.
   void ofPoses(double energy, int beams, const Between& at, double* probabilities) const;
 
-  /// Distance of the target's middle from a beam's border beyond which the beam lights nothing, m.
+  /// Distance of the target's middle from a beam's border beyond which no part of it is lit, m.
   double reach() const { return this->Reach; }
 
   std::size_t poses() const { return this->Views[0].size(); }
@@ -110,7 +110,7 @@ public:
   /// Largest number of beams in the tables; more beams count as this many.
   int mostBeams() const { return this->Most; }
 
-  /// Least energy at which the probability is `wanted`, J; infinity if it never is.
+  /// Least energy at which the probability is `wanted`, J; infinity if no energy reaches it.
   /// @param wanted above 0 @param view index of an elevation
   double energyFor(double wanted, int beams, std::size_t view = 0) const;
 
@@ -118,11 +118,11 @@ public:
 
 private:
   static constexpr std::size_t PointsPerDecade = 300;
-  static constexpr double FirstDecade = -3.0; ///< decimal logarithm of the first energy over Qlow
+  static constexpr double FirstDecade = -3.0; ///< decimal logarithm of the first energy, in Qlow
   static constexpr std::size_t Decades = 7;
   static constexpr std::size_t Points = Decades * PointsPerDecade + 1;
 
-  /// What a beam receives of a pose.
+  /// Light that a beam receives from a pose.
   struct Received
   {
     double step;        ///< position of its energy in the tables
@@ -143,9 +143,9 @@ private:
   double Reach;                   ///< m
   double Deepest;                 ///< standard deviation of the last depth class, m
   double Lowest;                  ///< elevation of the first view, rad
-  double Step;                    ///< from one view to the next, rad
+  double Step;                    ///< step from one view to the next, rad
   std::vector<TargetPoses> Views; ///< by elevation
-  /// What a beam that contains a whole pose receives at an energy of 1 J; by elevation, pose.
+  /// Light that a beam receives from each whole pose at an energy of 1 J; by elevation, pose.
   std::vector<std::vector<Received>> Whole;
   std::vector<double> Thresholds; ///< by pose: weight above which the next view is taken
   /// Probability that a beam perceives nothing, by depth class, position in the unit, energy.

@@ -47,7 +47,7 @@ struct BeamAtTarget
   double sine = 0.0;
   bool isRectangle = false;
   double fall = 2.0; ///< rate of the Gaussian exp(-fall s), s = squaresOf().sum()
-  double most = 2.0 / -std::expm1(-2.0); ///< irradiance on the axis over the beam's mean
+  double most = 2.0 / -std::expm1(-2.0); ///< irradiance on the axis relative to the beam's mean
 
   bool isRound() const { return !this->isRectangle && this->across == this->radius; }
 
@@ -75,10 +75,11 @@ struct BeamAtTarget
     return this->across * (std::sqrt(this->isRectangle ? at.most() : at.sum()) - 1.0);
   }
 
-  /// Irradiance at the target's middle over the beam's mean; also defined beyond the border.
+  /// Irradiance at the target's middle relative to the beam's mean; also defined beyond the border.
   double irradiance() const { return this->irradiance(this->squaresOf(this->x, this->y).sum()); }
 
-  /// Irradiance at a point over the beam's mean. @param square squaresOf() of the point, summed
+  /// Irradiance at a point relative to the beam's mean. @param square squaresOf() of the point,
+  /// summed
   double irradiance(double square) const
   {
     return this->profile == BeamProfile::Gaussian ? this->most * std::exp(-this->fall * square)
@@ -105,7 +106,7 @@ public:
 
   /// @param mesh target with its middle at the origin
   /// @param view unit vector from the distant observer to the target, not vertical
-  /// @param unit of areas, m^2
+  /// @param unit unit of areas, m^2
   Silhouette(const TriangleMesh& mesh, const Vec3& view, double unit);
 
   const LitPart& all() const { return this->All; } ///< part that a wide uniform beam lights
@@ -141,9 +142,10 @@ private:
 };
 
 /// Effective area of an object seen from far away, m^2: the silhouette weighted by the cosine of
-/// incidence. The energy that a lidar receives of a matt object inside one beam is proportional to
-/// it. The samples are 1/512 of the longer side apart: areas of birds are wrong by at most 0.2 %.
-/// Perspective is ignored: an object of the half angle `a` shows about `a/2` less.
+/// incidence. The energy that a lidar receives from a matt object inside one beam is proportional
+/// to this area. The samples are 1/512 of the longer side apart: areas of birds are wrong by at
+/// most 0.2 %. Perspective, which reduces the area of an object of the half angle `a` by about
+/// `a/2`, is ignored.
 /// @param view unit vector from the observer to the object
 double effectiveArea(const TriangleMesh& mesh, const Vec3& view);
 }

@@ -1,23 +1,24 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file PointingErrors.h
- * @brief Mast sway and encoder jitter: by how much beams leave in other directions than the sensor
+ * @brief Mast sway and encoder jitter: deviations of beams from the directions that the sensor
  * reports.
  *
  * Sway. The mast tilts about the east and the north axis. Each tilt is a narrow-band random motion,
  * the sum of SwayTones sinusoids of equal amplitude,
  *
- *     tilt(t) = a sqrt(2/SwayTones) sum cos(2 pi (f_k t + p_k)),
+ *     tilt(t) = a sqrt(2/SwayTones) sum cos(2 pi (f_k t + p_k)).
  *
- * one frequency f_k drawn in each of as many equal parts of (1 +- SwayBandwidth) SwayFrequency, the
- * phases p_k uniform. Its rms is a, about each axis; it never exceeds sqrt(2 SwayTones) a. It is a
- * function of (seed, axis, t), so it can be asked at any time and in any order.
+ * One frequency f_k is drawn in each of SwayTones equal parts of (1 +- SwayBandwidth)
+ * SwayFrequency, and the phases p_k are uniformly distributed. The tilt about each axis has the rms
+ * a and never exceeds sqrt(2 SwayTones) a. The tilt is a function of (seed, axis, t), so it can be
+ * computed at any time and in any order.
  *
  * Jitter. All channels of a column share one error of the azimuth, a normal deviate keyed by (seed,
  * column, revolution).
  *
- * The sensor turns about its own position: that a mast of height h also moves it by h times the
- * tilt is not modelled.
+ * The sensor turns about its own position. The motion of a sensor on a mast of height h by h times
+ * the tilt is not modelled.
  *
  * Source: Rice's sum of sinusoids with random phases (Bell Syst. Tech. J. 23, 1944); Box and
  * Muller's normal deviates.
@@ -38,7 +39,7 @@
 namespace avianlidar
 {
 constexpr int SwayTones = 16;
-constexpr double SwayBandwidth = 0.2; // of SwayFrequency, to each side
+constexpr double SwayBandwidth = 0.2; // share of SwayFrequency, to each side
 
 struct PointingErrors
 {
@@ -53,12 +54,12 @@ struct PointingErrors
 /// The first bad value in words ("SwayAmplitude is -1, expected ..."), or an empty string.
 std::string checkPointing(const PointingErrors& errors);
 
-/// The directions in which beams leave. Each call stands alone.
+/// The directions in which beams leave. Calls do not depend on each other.
 class Pointing
 {
 public:
-  /// @param errors good ones (checkPointing()) @param rotor unit vector of the axis about which the
-  /// sensor turns, up
+  /// @param errors valid ones (checkPointing()) @param rotor unit vector of the axis about which
+  /// the sensor turns, up
   Pointing(const PointingErrors& errors, const Vec3& rotor);
 
   /// Tilt about the east and the north axis (right-handed), rad. @param time s
@@ -67,8 +68,8 @@ public:
   /// Error of the azimuth of a column, rad, clockwise seen from above.
   double azimuthError(std::int64_t column, std::int32_t revolution) const;
 
-  /// The direction in which a beam leaves. @param reported unit vector: where it would without
-  /// errors @param time of its firing, s
+  /// The direction in which a beam leaves. @param reported direction without errors, unit vector
+  /// @param time time of the firing, s
   Vec3 direction(
     const Vec3& reported, std::int64_t column, std::int32_t revolution, double time) const;
 

@@ -1,23 +1,24 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file ScanPattern.h
- * @brief Where a rotating multichannel lidar points, and when: the geometry of its beams.
+ * @brief Directions and times of the beams of a rotating multichannel lidar.
  *
- * The sensor is a rotor that carries C channels at fixed elevations. A scan is made of columns,
+ * The sensor is a rotor that carries C channels at fixed elevations. A scan consists of columns,
  * one per azimuth, and every column of C firings. Beams are numbered column by column, channel by
  * channel within a column.
  *
- * Frames. The sensor's frame is x right, y forward, z up; unturned, it is the scene's east, north,
- * up. Azimuth is measured from north (y), clockwise seen from above; elevation from the horizontal
- * plane, up. The orientation is R = yaw * pitch * roll: yaw clockwise from north, pitch nose up,
- * roll to the right. Angles are in degrees here, as a scan is specified in them.
+ * Frames. The sensor's frame is x right, y forward, z up. If the sensor is not turned, these are
+ * the scene's east, north and up. Azimuth is measured from north (y), clockwise seen from above,
+ * and elevation upwards from the horizontal plane. The orientation is R = yaw * pitch * roll: yaw
+ * clockwise from north, pitch nose up, roll to the right. Angles are in degrees here, as in
+ * specifications.
  *
  * Source: paper, Fig. 1 and Sec. 5.3.
  * Differs: with an odd number of channels the staggered order has steps of C/2 rounded up. Tables
- * of azimuth offsets and firing times, and sectors without beams, as data sheets have them.
- * Rotating prisms (Prisms.h) instead of the rotor: a scan is a window of 1 / RotationRate seconds,
- * in which the lasers fire on and on; a column is one firing of each, and the next scan goes on
- * where the last one ended. A table of any beams instead of all of these.
+ * of azimuth offsets and firing times, and sectors without beams, are added. Rotating prisms
+ * (Prisms.h) may replace the rotor. A scan is then a window of 1 / RotationRate seconds in which
+ * the lasers fire continuously, a column is one firing of each laser, and the next scan continues
+ * where the last one ended. A table of any beams may replace all of these.
  * Valid: multiples of 90 degrees are exact. All channels of a column share its azimuth: the
  * rotor's motion between the firings of one column is not modelled (at most FiringInterval * C *
  * RotationRate of the azimuth range).
@@ -39,20 +40,20 @@
 
 namespace avianlidar
 {
-// Hz, far beyond any rotor: times stay numbers.
+// Limits of the rotation rate, Hz, far beyond any rotor. They keep times finite.
 constexpr double MinimumRotationRate = 1e-20;
 constexpr double MaximumRotationRate = 1e20;
 
-/// Any beams, in the frame of the sensor.
+/// Arbitrary beams, in the frame of the sensor.
 struct BeamTable
 {
   std::vector<Vec3> directions; ///< unit
-  std::vector<Vec3> origins;    ///< m, from the sensor's position; or none
+  std::vector<Vec3> origins;    ///< relative to the sensor's position, m; may be empty
   std::vector<double> times;    ///< s since the scan began
 };
 
-/// The geometry and the clock of a scan. The defaults are those of the 16-channel airport lidar
-/// (paper, Sec. 5.3).
+/// Geometry and clock of a scan. The defaults describe the 16-channel airport lidar (paper, Sec.
+/// 5.3).
 struct ScanPattern
 {
   double yaw = 0.0;               ///< deg, clockwise from north
@@ -65,20 +66,21 @@ struct ScanPattern
   double azimuthStart = 0.0;      ///< deg, first column
   double azimuthEnd = 360.0;      ///< deg, excluded
   double azimuthStep = 0.375;     ///< deg
-  double rotationRate = 0.5;      ///< Hz, 1e-20 to 1e20, sweeps over the azimuth range per second
-  double firingInterval = 30e-6;  ///< s, between two firings of a column
-  /// Optional tables, one value per channel: azimuth of its beam less that of the column, deg; time
-  /// of its firing since the column began, s, instead of the staggered order.
+  double rotationRate = 0.5;      ///< sweeps across the azimuth range per second, Hz, 1e-20 to 1e20
+  double firingInterval = 30e-6;  ///< time between two firings of a column, s
+  /// Optional tables, one value per channel: azimuth of its beam minus the azimuth of the column,
+  /// deg, and time of its firing since the column began, s, instead of the staggered order.
   std::vector<double> azimuthOffsets;
   std::vector<double> firingTimes;
-  /// Optional pairs, deg: columns from the one azimuth until before the other do not fire.
+  /// Optional pairs of azimuths, deg: columns from the first azimuth to below the second do not
+  /// fire.
   std::vector<double> blankedSectors;
-  /// Optional: instead of the columns by azimuth. Elevations and azimuth offsets are those of the
-  /// lasers' light before the prisms, in the frame of their axis; a column takes channels times
-  /// firingInterval.
+  /// Optional prisms, which replace the columns by azimuth. Elevations and azimuth offsets then
+  /// describe the light of the lasers before the prisms, in the frame of the prisms' axis. A column
+  /// takes channels times firingInterval.
   PrismTrain prisms;
-  /// Optional: these beams, each a column of one channel, instead of all of the above but angles
-  /// and rate.
+  /// Optional beams, each a column of one channel. They replace all values above except yaw, pitch,
+  /// roll and rotationRate.
   std::shared_ptr<const BeamTable> table;
 };
 
@@ -90,14 +92,15 @@ struct ScanBeam
   double azimuth;     ///< deg, in [0, 360), in the scene's frame
   double elevation;   ///< deg, in the scene's frame
   double time;        ///< s since the start of its scan
-  Vec3 origin{ 0.0 }; ///< m from the sensor's position, in the scene's frame
+  Vec3 origin{ 0.0 }; ///< relative to the sensor's position, in the scene's frame, m
 };
 
-/// Number of channels: the length of the table of elevations, or `channels` without one.
+/// Number of channels: the length of the table of elevations, or `channels` without a table.
 int numberOfChannels(const ScanPattern& pattern);
 
-/// Number of columns: azimuths start, start + step, ... below the end (a last one within 1e-9 steps
-/// of it is out, but not the first); with prisms as many as a scan has time for.
+/// Number of columns, at the azimuths start, start + step, ... below the end. A column less than
+/// 1e-9 steps below the end is left out, unless it is the first. With prisms, the number of columns
+/// for which a scan has time.
 std::int64_t numberOfColumns(const ScanPattern& pattern);
 
 /// Number of beams: columns times channels, whether or not a column fires.
@@ -110,28 +113,28 @@ double channelElevation(const ScanPattern& pattern, int channel);
 /// C/2 rounded up).
 int firingSlot(int channel, int channels);
 
-/// Firing of a channel since its column began, s.
+/// Time from the beginning of a column to the firing of a channel, s.
 double firingTime(const ScanPattern& pattern, int channel);
 
-/// Firing of a beam since the scan began, s.
+/// Time from the beginning of the scan to the firing of a beam, s.
 double beamTime(const ScanPattern& pattern, std::int64_t column, int channel);
 
-/// Time from a pulse to the next one into the same receiver, s: the channels of a column that fire
-/// one after the other have one receiver, those with firing times, or that fire together, have one
-/// each. Infinite for a table of beams, whose receivers are not known.
+/// Time between two pulses into the same receiver, s. Channels that fire one after the other share
+/// one receiver. Channels with firing times, or that fire together, have one receiver each.
+/// Infinite for a table of beams, which does not name receivers.
 double pulseInterval(const ScanPattern& pattern);
 
 /// True if a column does not fire.
 bool isBlanked(const ScanPattern& pattern, std::int64_t column);
 
-/// Beams of a whole scan: all but those of columns that do not fire.
+/// Number of beams of a whole scan, without the columns that do not fire.
 std::int64_t numberOfFirings(const ScanPattern& pattern);
 
 /// The first bad value in words ("AzimuthStep is 0, expected ..."), or an empty string when the
 /// pattern is good.
 std::string checkPattern(const ScanPattern& pattern);
 
-/// What is up for a sensor, in scene coordinates. @param yaw, pitch, roll deg, as in ScanPattern
+/// Upward axis of a sensor, in scene coordinates. @param yaw, pitch, roll deg, as in ScanPattern
 Vec3 upOf(double yaw, double pitch, double roll);
 
 /// Sine and cosine of an angle in degrees; exact at multiples of 90.
@@ -141,12 +144,13 @@ std::array<double, 2> sinCosDegrees(double degrees);
 class ScanGenerator
 {
 public:
-  /// @param revolution number of the scan: with prisms each has directions of its own
+  /// @param revolution number of the scan; with prisms each scan has its own directions
   explicit ScanGenerator(const ScanPattern& pattern, int revolution = 0);
 
   std::int64_t size() const { return this->Beams; }
 
-  /// Beam `index` of [0, size()): column index / C, channel index % C. Each call stands alone.
+  /// Beam `index` of [0, size()): column index / C, channel index % C. Calls do not depend on each
+  /// other.
   ScanBeam beam(std::int64_t index) const;
 
   /// Column of a beam.

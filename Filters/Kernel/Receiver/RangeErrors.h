@@ -1,29 +1,29 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file RangeErrors.h
- * @brief What a receiver makes of the range of a return: noise, walk and quantisation.
+ * @brief Errors of the range of a return: noise, walk and quantisation.
  *
- * The range has a standard deviation of sqrt(a^2 + b^2/S^p), a the floor (clock, electronics), b
- * that of a ratio of 1 and p the exponent. S is a signal-to-noise ratio of what the strongest range
- * unit received, m electrons: S = (m - sigma(m))/sqrt(sigma0^2 + F m/4), at least 1. Its noise is
- * that of the pulse's flanks, which get a quarter of the light that the strongest unit gets, on
- * average; one deviation less, as the strongest of some units is strong by its noise, too. S tends
- * to twice the ratio m/sqrt(sigma0^2 + F m) of strong light and grows no more beyond Qhigh. Only a
- * photon receiver has S. Echoes that exceed the limit by little come late by w Qlow/Q (walk), w the
- * walk at the limit. Ranges before or beyond the gate are folded back. Last, ranges are rounded to
- * multiples of a quantum. False alarms have the same errors as echoes. Returns stay in the order of
- * their true ranges.
+ * The range has the standard deviation sqrt(a^2 + b^2/S^p), a the floor (clock, electronics), b the
+ * noise at S = 1 and p the exponent. S is a signal-to-noise ratio of the strongest range unit,
+ * which received m electrons: S = (m - sigma(m))/sqrt(sigma0^2 + F m/4), at least 1. The
+ * denominator is the noise of the pulse's flanks, which on average get a quarter of the light of
+ * the strongest unit. One deviation is subtracted because the strongest of some units is strong
+ * partly by its noise. For strong light S tends to twice the ratio m/sqrt(sigma0^2 + F m). It does
+ * not grow beyond Qhigh. S exists only for a photon receiver. Echoes of the energy Q come late by w
+ * Qlow/Q (walk), w the walk at the limit. Ranges before or beyond the gate are folded back.
+ * Finally, ranges are rounded to multiples of a quantum. False alarms have the same errors as
+ * echoes. Returns stay in the order of their true ranges.
  *
- * Source: p = 2 is the Cramer-Rao bound of a delay; makers' sheets fit others. b = 0.649
- * c tau/2 is calculated: rms over all places in a unit of the centroid of two units, of a pulse of
- * one unit tau (TestRangeErrors.cxx has the integral). Walk of a leading edge: its rise is
- * straight.
+ * Source: p = 2 is the Cramer-Rao bound of a delay; makers' sheets fit other exponents. b = 0.649 c
+ * tau/2 is calculated for a pulse as long as a unit, tau: the rms error of the centroid of two
+ * units over all places in a unit (TestRangeErrors.cxx has the integral). The walk is that of a
+ * leading edge with a straight rise.
  * Differs: the paper's ranges are exact.
- * Valid: b belongs to a pulse and a unit: another pulse needs another. With that b, the rms of
- * echoes of a pulse of n/sqrt(sigma0^2 + F n) = 12 and more lies within 11 % of a Monte Carlo of
- * the waveform; at 8 and a threshold that two in five do not reach, 19 % below it. A pulse shorter
- * than a unit has, beside this, the unit's length over sqrt(12) at most. Not where two surfaces
- * share a return.
+ * Valid: b holds for one pulse and one unit. With the b above, the rms error at n/sqrt(sigma0^2 + F
+ * n) = 12 and more lies within 11 % of a Monte Carlo of the waveform. At 8, with a threshold that
+ * two in five echoes do not reach, it lies 19 % below the Monte Carlo. A pulse shorter than a unit
+ * adds an error of at most the unit's length divided by sqrt(12). Not valid if two surfaces share a
+ * return.
  * Test: TestRangeErrors.cxx, Testing/Python/TestRangeNoise.py (Monte Carlo of the waveform).
  */
 #ifndef avianlidar_RangeErrors_h
@@ -37,18 +37,18 @@ namespace avianlidar
 class RangeErrors
 {
 public:
-  /// @param noise false: walk and quantum alone
+  /// @param noise false: only walk and quantum
   RangeErrors(const Sensor& sensor, bool noise);
 
   /// True if ranges have noise.
   bool hasNoise() const { return this->Noise; }
 
-  /// Standard deviation of a range, m. @param energy Qrec of the strongest unit, J; what exceeds
-  /// the upper limit counts as the limit
+  /// Standard deviation of a range, m. @param energy Qrec of the strongest unit, J; energies above
+  /// the upper limit count as the limit
   double deviation(double energy) const;
 
-  /// The range that the receiver says, m, within the gate. @param range true one @param energy as
-  /// above
+  /// Range that the receiver reports, m, within the gate. @param range true range, m @param energy
+  /// as above
   /// @param normal a standard normal deviate
   double measured(double range, double energy, double normal) const;
 

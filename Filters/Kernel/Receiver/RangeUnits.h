@@ -5,12 +5,13 @@
  *
  * A path of length l arrives after tau = l/c. Its energy arrives as a rectangular pulse of width
  * tau_e centred on tau and is divided, exactly and in proportion, among the units m, [m tau_s,
- * (m+1) tau_s), that it overlaps; tau_e = 0 is a delta at tau. What would arrive before the pulse
- * is sent, closer than c tau_e/4, is counted in unit 0. A path shorter than twice the minimum range
- * is not recorded.
+ * (m+1) tau_s), that the pulse overlaps. A width of 0 gives a delta pulse at tau. Energy that would
+ * arrive before the pulse is sent, from closer than c tau_e/4, is counted in unit 0. A path shorter
+ * than twice the minimum range is not recorded.
  *
- * Units are sparse: memory follows contributions and the units that they meet, at most (1 +
- * tau_e/tau_s) each, not the range. Sums run in the order in which contributions were given.
+ * Units are sparse. Memory grows with the number of contributions and of the units that they meet,
+ * on average 1 + tau_e/tau_s each, and not with the range. Sums run in the order of the
+ * contributions.
  *
  * Source: paper, Eq. 10.
  * Differs: the paper does not place the pulse. A pulse that starts at tau would move every echo c
@@ -35,11 +36,11 @@ struct Contribution
 };
 
 /// Energies that contributions put into some consecutive range units, in the order of the
-/// contributions. Those that put nothing there are left out.
+/// contributions. Contributions that put nothing there are left out.
 struct RangeShares
 {
   const double* energies = nullptr;            ///< J, above 0
-  const std::uint32_t* contribution = nullptr; ///< number of each
+  const std::uint32_t* contribution = nullptr; ///< number of each share's contribution
   std::size_t count = 0;
 };
 
@@ -68,14 +69,14 @@ struct RangeUnit
 {
   std::int64_t index = 0;  ///< m
   double energy = 0.0;     ///< J, sum of its shares
-  std::uint32_t paths = 0; ///< contributions that have a share in it
+  std::uint32_t paths = 0; ///< number of contributions with a share
 };
 
 /// Reusable: allocates nothing once its workspace has grown to the largest beam. One per thread.
 ///
-/// Pulses are placed in a loop over lanes and added, one after the other, to the units that each
-/// meets, in a table of a window of units. Where a beam's units lie farther apart than the table is
-/// long, the window is moved on to the next unit that a pulse meets.
+/// Pulses are placed in a loop over lanes. They are added one by one to a table of a window of
+/// units. If a beam's units lie farther apart than the table is long, the window moves to the next
+/// unit that a pulse meets.
 class RangeUnitAccumulator
 {
 public:
@@ -85,7 +86,7 @@ public:
   RangeUnitAccumulator(
     double samplingInterval, double pulseWidth, double rangeGate, double minimumRange = 0.0);
 
-  /// Forget the previous beam.
+  /// Remove the contributions of the previous beam.
   void clear();
 
   /// Add a path of the beam. Length and energy must be finite, energy >= 0.
@@ -94,14 +95,14 @@ public:
   /// Add `count` paths: half their lengths (m) and energies (J).
   void add(const double* ranges, const double* energies, std::size_t count);
 
-  /// Distribute everything added since clear() over the units.
+  /// Distribute all contributions added since clear() among the units.
   void accumulate();
 
   /// Units with energy in ascending order of index, each once.
   const std::vector<RangeUnit>& units() const { return this->Units; }
 
-  /// Shares of the paths in units [first, last), which must lie inside the gate. After
-  /// accumulate(); after clear() there are none. Valid until the next call.
+  /// Shares of the paths in units [first, last), which must lie inside the gate. Requires
+  /// accumulate(). Valid until the next call; empty after clear().
   RangeShares sharesOf(std::int64_t first, std::int64_t last);
 
   /// Lengths (m) of the contributions, after accumulate().
@@ -159,7 +160,8 @@ private:
 /// Number of range units whose beginning lies inside the gate: ceil(2 gate/(c tau_s)), at least 1.
 std::int64_t unitsInsideGate(double samplingInterval, double rangeGate);
 
-/// The unit in which the gate begins, floor(2 minimum/(c tau_s)): those before it receive nothing.
+/// The unit in which the gate begins, floor(2 minimum/(c tau_s)). Units before this one receive
+/// nothing.
 std::int64_t firstUnitInsideGate(double samplingInterval, double minimumRange);
 }
 

@@ -8,10 +8,10 @@
  * reflections.
  *
  * Source: paper, Eq. 10-12.
- * Differs: the paper gives one point per perceived range unit, without labels; returns are those of
- * Receiver.h.
+ * Differs: the paper gives one point per perceived range unit, without labels. Returns are defined
+ * in Receiver.h.
  * Valid: a false alarm has no object, no material and no angle. The standard error is NaN where
- * StandardError.h has none; for an integrated beam it is the bound of PolygonQuadrature.h.
+ * StandardError.h gives no error. For an integrated beam it is the bound of PolygonQuadrature.h.
  * Test: TestScanReport.cxx, TestScan.cxx, TestEchoClosedForms.cxx.
  */
 #ifndef avianlidar_BeamEchoes_h
@@ -29,7 +29,7 @@
 namespace avianlidar
 {
 /// Energies of a return by object and material. A beam meets few pairs of object and material, and
-/// each ray mostly the pair of the ray before, so a list is faster than a map. Reusable without
+/// most rays meet the pair of the ray before, so a list is faster than a map. Reusable without
 /// allocation; one per thread.
 class LabelSums
 {

@@ -68,8 +68,8 @@ public:
   const BeamSamples* starts() const { return this->Starts; }
   bool raysAreLit() const { return this->Lit == this->Starts; }
   const CellSamples* cells() const { return this->Cells; } ///< null if the beam has no cells
-  const PolygonQuadrature& quadrature() const { return this->Quadrature; } ///< of integrated beams
-  /// True if a direct echo arrives outside the gate, and none inside.
+  const PolygonQuadrature& quadrature() const { return this->Quadrature; } ///< for integrated beams
+  /// True if a direct echo arrives outside the gate and no direct echo arrives inside.
   bool isOutsideGate() const;
   BeamAir& air() { return this->Air; }
   /// Spectral radiance in the beam, W/(m2 sr nm) (Background.h).

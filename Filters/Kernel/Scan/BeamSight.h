@@ -5,14 +5,14 @@
  * energies.
  *
  * The beam goes through the stages of a scan (BeamSimulator.h), without noise and limits, and its
- * samples are summed by triangle. Movers stand where they are at the beam's time. Shares of a
+ * samples are summed by triangle. Movers are placed at their poses at the beam's time. Shares of a
  * Gaussian beam are those of a uniform beam with the same outline. Energies are those of direct
  * echoes from all ranges, without paths with two reflections and without light from the air.
  *
  * Source: none.
- * Valid: shares of a round beam are shares of its solid angle, those of other beams shares of the
- * area of the beam's plane (BeamShape.h). They are as exact as the samples: few triangles are
- * integrated, more are sampled.
+ * Valid: shares of a round beam are shares of its solid angle, and shares of other beams are shares
+ * of the area of the beam's plane (BeamShape.h). Shares are as exact as the samples: few triangles
+ * are integrated, more are sampled.
  * Test: Testing/Python/TestBeamView.py.
  */
 #ifndef avianlidar_BeamSight_h

@@ -3,7 +3,8 @@
  * @file BlockBeams.h
  * @brief The beams of a block: frames, rays, the hits of rays, and the tracer set to one beam.
  *
- * Each value is made when a stage first asks for it, so no rays are drawn for beams that need none.
+ * Each value is computed when a stage first needs it, so no rays are drawn for beams that need
+ * none.
  *
  * Valid: a value depends only on the beam and the arguments of the constructor, not on the order of
  * the calls.
@@ -32,7 +33,7 @@ public:
   BlockBeams(const ScanSetup& setup, const SceneTriangles& scene, const ScanBeams& beams,
     BeamSampler& sampler);
 
-  /// Go on to the beams [begin, end).
+  /// Begin the block of the beams [begin, end).
   void begin(std::size_t begin, std::size_t end);
 
   const BeamFrame& frameOf(std::size_t beam);
@@ -63,7 +64,7 @@ private:
   {
     std::optional<BeamFrame> frame;       ///< none until first needed
     BeamRays rays;                        ///< empty until first needed
-    std::vector<std::uint32_t> triangles; ///< hit by each ray in this run; empty: none
+    std::vector<std::uint32_t> triangles; ///< triangles hit by the rays in this run; may be empty
     TraceCounters counters;               ///< cost in this run
   };
   static constexpr std::size_t NoBeam = static_cast<std::size_t>(-1);

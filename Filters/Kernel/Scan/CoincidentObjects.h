@@ -42,7 +42,8 @@ void addSeenPlanes(const CollisionTree& tree, const BeamTrace& trace, std::size_
 /// Sort planes, and keep only the first beam of each.
 void sortSeenPlanes(std::vector<SeenPlane>& planes);
 
-/// Coincident triangles that differ in object or material: one that is seen, one that it hides.
+/// Coincident triangles that differ in object or material: a visible triangle and one that it
+/// hides.
 using CoincidentPair = std::pair<std::uint32_t, std::uint32_t>;
 
 /// One pair of triangles for each pair of objects, in the order of their ids. @param planes sorted

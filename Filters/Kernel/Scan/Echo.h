@@ -25,7 +25,7 @@ struct Echo
   double energyReceived = 0.0; ///< Qrec of the strongest range unit (Eq. 10), J
   double energy = 0.0;         ///< Qen of the strongest range unit (Eq. 12), J
   double returnEnergy = 0.0;   ///< sum of Qrec over the return, J
-  double energyStdError = 0.0; ///< standard error of energyReceived, J; NaN below 8 rays
+  double energyStdError = 0.0; ///< standard error of energyReceived, J; NaN with fewer than 8 rays
   int returnNumber = 1;
   int numberOfReturns = 1;
   int objectId = -1; ///< object with the most energy; -1: false alarm, -2: air

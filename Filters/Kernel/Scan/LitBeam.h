@@ -6,7 +6,7 @@
  *
  * Noise decides which units form a return. Range, labels and standard error of a return follow from
  * its first, last and strongest unit. The values of the first MostReturns returns with different
- * units are kept. For further returns the beam is lit again.
+ * units are kept. Further returns require that the beam is lit again.
  *
  * Source: none.
  * Valid: for one LightKey and the samples of one trace. Echoes have the same bits without a

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file MovedBeams.h
- * @brief Finds the beams that movers may touch, and simulates each with the movers placed where
- * they are at the beam's time.
+ * @brief Finds the beams that movers may touch, and simulates each with the movers at their poses
+ * at the beam's time.
  *
- * Such a beam goes through the same stages as any other, but none of its results are kept. Results
- * of scans without movers stay for scans in which the movers are gone.
+ * A beam with movers goes through the same stages as any other, but none of its results are kept.
+ * Results of scans without movers are kept for later scans without movers.
  *
  * Spheres around the paths of movers are tested, first for many beams, then for a block. For each
  * beam, spheres around the places of movers are tested.
@@ -36,8 +36,8 @@ namespace avianlidar
 class MovedBeams
 {
 public:
-  /// @param setup with movers @param beams with times @param sights find the light that each mover
-  /// returns
+  /// @param setup with movers @param beams with times @param sights true: find the light that each
+  /// mover returns
   MovedBeams(const ScanSetup& setup, const ScanBeams& beams, BeamSampler& sampler,
     std::function<bool()> wanted, bool sights);
 

@@ -12,10 +12,10 @@
  * Where the air scatters (BeamAir.h), each unit receives light from the air. A threshold that
  * follows the air subtracts the mean of this light, n_air, and lies as many standard deviations of
  * the noise above this mean as without air: n_T (1 + F n_air/sigma0^2)^(1/2). So every unit has the
- * same probability of a false alarm. Only echoes of surfaces remain, and light of drops beyond its
- * mean. A fixed threshold subtracts nothing. All light counts for saturation in either case. No
+ * same probability of a false alarm. Echoes of surfaces and the light of drops beyond its mean
+ * remain. A fixed threshold subtracts nothing. All light counts for saturation in either case. No
  * threshold follows the leaves of trees: their light is treated like light from surfaces. Behind a
- * surface the light of the air is less by the share of the pulse that the surface has met.
+ * surface the light of the air is reduced by the share of the pulse that the surface has met.
  *
  * Source: paper, Sec. 2.4, Eq. 10-12.
  * Differs: ReturnMode::RangeUnits takes the paper literally, with a point at the centre of each

@@ -40,7 +40,8 @@ struct ScanResult
  * the light-energy constraint drops.
  * @param threads number of threads; 0: OpenMP's choice
  * @param cache beams kept from earlier runs; updated
- * @param maximumBytes most memory for kept beams, bytes; other beams are traced again in later runs
+ * @param maximumBytes largest memory for kept beams, bytes; other beams are traced again in later
+ * runs
  * @param sights true: find the light that beams receive from each mover, for reportMovers()
  * @return false if keepGoing returned false; result and cache are then empty
  */

@@ -35,7 +35,7 @@ struct ScanBeams
   double timeOf(std::size_t beam) const { return this->times.empty() ? 0.0 : this->times[beam]; }
 };
 
-/// Check where a beam starts. @return empty, or what is wrong and what was expected
+/// Check the origin of a beam. @return empty, or what is wrong and what was expected
 inline std::string checkPosition(const Vec3& position)
 {
   for (int axis = 0; axis < 3; ++axis)
@@ -65,7 +65,7 @@ enum class BeamStatus
   OutsideGate = 4 ///< direct echoes arrive, all of them outside the gate
 };
 
-/// How the direct echo of a beam is found.
+/// Method that gives the direct echo of a beam.
 enum class DirectEcho : std::uint8_t
 {
   Unknown = 0,  ///< the beam was not traced yet
@@ -78,14 +78,14 @@ enum class DirectEcho : std::uint8_t
 struct BeamReport
 {
   DirectEcho direct = DirectEcho::Unknown;
-  bool isCrowded = false; ///< too many triangles for lists: its rays went through the tree
+  bool isCrowded = false; ///< true if its rays went through the tree: too many triangles for lists
   BeamStatus status = BeamStatus::NoSurface;
   double range = 0.0;              ///< range of the strongest return, m; NaN without one
-  TraceCounters counters;          ///< cost of all tracing for what is kept of the beam
+  TraceCounters counters;          ///< cost of tracing all that is kept of the beam
   std::uint64_t raysTracedNow = 0; ///< rays traced in this run; 0 if all was kept
   std::uint32_t skipped = 0;       ///< bits of SkippedPart, except noise
-  /// Bound of the energy that was left out, J; paths known to carry nothing do not count. For a
-  /// beam left out as a whole: bound of the energy of its strongest range unit, less than Qlow.
+  /// Bound of the energy that was left out, J; paths that carry nothing do not count. For a beam
+  /// left out as a whole: bound of the energy of its strongest range unit, less than Qlow.
   double lost = 0.0;
 };
 

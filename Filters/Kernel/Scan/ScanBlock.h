@@ -4,7 +4,7 @@
  * @brief Finds what each beam of a block sees, unless it is kept from an earlier run.
  *
  * The view of a beam (ViewFinder.h) is found from the triangles that may enter the beam
- * (Candidates.h). Rays are traced through the tree (BeamTracer.h) where settings ask for them,
+ * (Candidates.h). Rays are traced through the tree (BeamTracer.h) where settings require them,
  * where a view needs them, and where paths with two reflections start.
  *
  * Source: paper, Algorithm 2 and Sec. 3.2.

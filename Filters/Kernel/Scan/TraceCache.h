@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file TraceCache.h
- * @brief Beams kept from earlier runs of a scan, and the key that says when they are valid.
+ * @brief Beams kept from earlier runs of a scan, and the keys for which they are valid.
  *
  * Source: none.
  * Valid: hits belong to one traceKey(), lit beams to one LightKey. Echoes do not depend on the
@@ -60,9 +60,9 @@ private:
 /// Hash of ids, origins and directions, for ScanBeams::checksum.
 std::uint64_t checksumOf(const ScanBeams& beams);
 
-/// Hash of all that the geometry of a beam depends on, besides the beam: mesh, beam shape, borders
-/// of media, source and sampling of samples, N, seed; where beams may be integrated or divided into
-/// cells also range units, gate and object ids.
+/// Hash of all inputs of a beam's geometry except the beam: mesh, beam shape, borders of media,
+/// source and sampling of samples, N and seed. If beams may be integrated or divided into cells,
+/// also range units, gate and object ids.
 std::uint64_t traceKey(const ScanSetup& setup);
 }
 

@@ -30,7 +30,7 @@ namespace avianlidar
 {
 struct Pose
 {
-  double time = 0.0; ///< s, on the clock of the beams
+  double time = 0.0; ///< time on the clock of the beams, s
   Vec3 position{ 0.0 };
   glm::dquat orientation{ 1.0, 0.0, 0.0, 0.0 }; ///< unit, from the object's frame to the scene's
 };
@@ -42,7 +42,7 @@ struct Flap
   Vec3 axis{ 1.0, 0.0, 0.0 }; ///< unit vector
   double amplitude = 0.0;     ///< rad
   double frequency = 0.0;     ///< Hz
-  double phase = 0.0;         ///< phase, whole turns
+  double phase = 0.0;         ///< phase, turns
 };
 
 /// Sphere that holds an object, however its parts flap.

@@ -15,13 +15,13 @@
  *   either direction, and s = (1 - cos theta_d)^5: f_d = kd (1 - s) cos theta_i, f_s = (ks + kd s)
  *   [a^2/(a^2 cos^2 theta_h + sin^2 theta_h)]^2 G, a^2 = 1/(2 kp + 1) (a Blinn exponent of 4 kp in
  *   a^2 = 2/(exponent + 2)), G = 2 ci co/(co A(ci) + ci A(co)), A(c) = sqrt(a^2 + (1 - a^2) c^2).
- *   The Fresnel term tends to kd + ks, the whole reflectance of the material, and takes from the
- *   diffuse component what it gives to the lobe.
+ *   The Fresnel term tends to kd + ks, the whole reflectance of the material, and reduces the
+ *   diffuse component by as much as it adds to the lobe.
  * - OrenNayar: f_d = kd cos theta_i (A + B max(0, cos dphi) sin alpha tan beta), alpha the larger
  *   and beta the smaller of theta_i and theta_o, dphi between the two around the normal, A = 1 -
  *   s^2/(2 s^2 + 0.66), B = 0.45 s^2/(s^2 + 0.09), s the roughness; f_s as LambertBlinnPhong.
  *   Straight back, f_d = kd (A cos theta_i + B sin^2 theta_i): at grazing incidence a rough surface
- *   returns kd B and a smooth one nothing.
+ *   returns kd B and a smooth surface nothing.
  *
  * Each model is a type with inline functions of plain doubles without branches, which both single
  * values and loops over lanes use.
@@ -32,12 +32,12 @@
  * height-correlated masking of Trowbridge-Reitz/GGX (Walter et al., EGSR 2007; Heitz, JCGT 3(2),
  * 2014) and Schlick's Fresnel term (1994). OrenNayar: Oren and Nayar, Generalization of Lambert's
  * reflectance model, SIGGRAPH '94, the qualitative model (their Eq. 30).
- * Differs: LambertBlinnPhong is in three dimensions. The paper's max{0, cos^kp} taken literally
+ * Differs: LambertBlinnPhong is in three dimensions. Taken literally, the paper's max{0, cos^kp}
  * has a false glint at grazing incidence for even kp. Phong is scaled to the paper's peak.
  * Microfacet leaves out the factor 1/(4 cos theta_o) of the distribution, as Eq. 7 does. OrenNayar
- * leaves out light that facets send to each other, as its authors' Eq. 30 does.
- * Valid: kp from 0 to 1e6; roughness up to pi/2 (its authors measured up to 40 degrees). In every
- * model 0 <= f_d <= kd, f_s >= 0 and f_d + f_s <= kd + ks.
+ * leaves out light that facets send to each other, as Eq. 30 of the source does.
+ * Valid: kp from 0 to 1e6; roughness up to pi/2 (Oren and Nayar measured up to 40 degrees). In
+ * every model 0 <= f_d <= kd, f_s >= 0 and f_d + f_s <= kd + ks.
  * Test: TestReflectance.cxx.
  */
 #ifndef avianlidar_Reflectance_h
@@ -60,7 +60,7 @@ struct Material
   double kd = 0.146; ///< diffuse coefficient, >= 0
   double ks = 0.054; ///< specular coefficient, >= 0; kd + ks <= 1
   double kp = 112.0; ///< glossiness coefficient, in [0, 1e6]
-  /// Standard deviation of facet slopes, rad, in [0, pi/2]; used by OrenNayar alone.
+  /// Standard deviation of facet slopes, rad, in [0, pi/2]; used only by OrenNayar.
   double roughness = 0.0;
 
   /// Largest share of a ray's energy that the surface returns.
@@ -84,12 +84,13 @@ struct MaterialCoefficient
   double most;          ///< upper limit of the coefficient
   bool isShare;         ///< true for a share of the energy; all shares add up to at most 1
   const char* expected; ///< expected range, in words
-  /// True if a scene file must give it, for a material with the coefficients before it.
+  /// True if a scene file must give the coefficient, for a material with the preceding
+  /// coefficients.
   bool (*isNeeded)(const Material&);
   bool isOptional; ///< true if surfaces without its cell array have the default of Material
 };
 
-/// In the order in which messages name them.
+/// All coefficients, in the order in which messages name them.
 inline constexpr MaterialCoefficient MaterialCoefficients[] = {
   { "kd", "1", &Material::kd, 1.0, true, "at least 0", [](const Material&) { return true; },
     false },
@@ -144,10 +145,10 @@ private:
 /// expected. A sum kd + ks that exceeds 1 by less than 1e-12 passes as a rounded 1.
 std::string checkMaterial(const Material& material);
 
-/// "kd, ks, kp": coefficients whose cell arrays a surface has, all or none.
+/// Names of the coefficients whose cell arrays a surface has, all or none: "kd, ks, kp".
 std::string namesOfCoefficients();
 
-/// "kd 0.146, ks 0.054, kp 112, roughness 0"
+/// Names and values of the coefficients: "kd 0.146, ks 0.054, kp 112, roughness 0".
 std::string textOf(const Material& material);
 
 enum class ReflectanceModel
@@ -228,8 +229,8 @@ AVIANLIDAR_ALWAYS_INLINE double lobe(double cosine, double sineSquared, double e
 }
 
 /// @name The models.
-/// of() gives f_d and f_s, bound() upper bounds of each over all outgoing directions at an
-/// incidence, and unlikeLambert() the ratio f_d/(kd cos theta_i) to a Lambertian surface.
+/// of() gives f_d and f_s. bound() gives their upper bounds for all outgoing directions at an angle
+/// of incidence. unlikeLambert() gives the ratio f_d/(kd cos theta_i) to a Lambertian surface.
 /// @{
 struct LambertBlinnPhong
 {
@@ -261,7 +262,7 @@ struct Phong
 
 struct Microfacet
 {
-  /// Schlick's rise from normal (0) to grazing (1) difference angle.
+  /// Schlick's factor s: 0 at a normal, 1 at a grazing difference angle.
   AVIANLIDAR_ALWAYS_INLINE static double riseOf(ReflectionGeometry g)
   {
     const double fall = 1.0 - lanes::unit(g.cosDifference);
@@ -347,14 +348,14 @@ AVIANLIDAR_ALWAYS_INLINE auto withModel(ReflectanceModel model, F f)
 Reflectance reflectance(
   ReflectanceModel model, const Material& material, const ReflectionGeometry& geometry);
 
-/// f_s alone.
+/// Only f_s.
 inline double specularReflectance(
   ReflectanceModel model, const Material& material, const ReflectionGeometry& geometry)
 {
   return reflectance(model, material, geometry).specular;
 }
 
-/// Upper bounds of f_d and of f_s over all outgoing directions at an incidence.
+/// Upper bounds of f_d and of f_s for all outgoing directions at an angle of incidence.
 Reflectance reflectanceBound(ReflectanceModel model, const Material& material, double cosIncidence);
 
 /// Largest f_d and largest f_s straight back at cosines of incidence of at most `mostCosine`.
@@ -383,7 +384,8 @@ AVIANLIDAR_ALWAYS_INLINE Reflectance throughAperture(
 }
 
 /// Upper bound, 1/sr, of the share of energy that reaches an aperture of A m2 at r m from a
-/// surface, over A/r2: the value on the lobe's axis or of a diffuse surface, whichever is larger.
+/// surface, divided by A/r2. It is the gain of the whole albedo on the lobe's axis or of a diffuse
+/// surface, whichever is larger.
 double apertureGain(const Material& material);
 
 /// Squared incidence angle, rad2, at which the lobe straight back is 1/e; 0 without a lobe.

@@ -10,7 +10,7 @@
  * rectangle share their longest side and so follow each other (BeamTriangles.h joins them).
  *
  * Source: G. M. Morton, A Computer Oriented Geodetic Data Base, IBM, 1966.
- * Differs: 21 bits an axis. Triangles at one place of the curve are ordered by the coordinates of
+ * Differs: 21 bits per axis. Triangles at one place of the curve are ordered by the coordinates of
  * the middle, then by their corners, then by material.
  * Valid: finite coordinates. Triangles with equal keys keep their order.
  * Test: TestTriangleOrder.cxx.

@@ -12,8 +12,8 @@
  *
  * The body is a polyhedron of 48 triangles that has the effective area of the ellipsoid (silhouette
  * weighted by the cosine of incidence) from every direction. For any convex body with a centre this
- * area is half a quadratic form of the direction, so that two values are fitted. The wings have 24
- * triangles. With so few, a beam with a bird in it is still integrated.
+ * area is half a quadratic form of the direction, so two values are fitted. The wings have 24
+ * triangles. With so few triangles, a beam with a bird in it is still integrated.
  *
  * Frame of a bird: x right, y forward, z up. The bank (to the right) turns the bird first, then the
  * heading (clockwise from north).
@@ -21,8 +21,8 @@
  * Source: S_b: A. Hedenstrom and M. Rosen, J. Avian Biol. 34 (2003); C. J. Pennycuick et al., J.
  * Exp. Biol. 135 (1988). Wingbeats: C. J. Pennycuick, J. Exp. Biol. 199 (1996).
  * Differs: no head, neck, tail or legs. Shares, angles and thickness are assumed.
- * Valid: the effective area of the body alone is exact, that of the wings within 1 % of plates; the
- * body is some per cent longer than the ellipsoid.
+ * Valid: the effective area of the body is exact. The effective area of the wings is within 1 % of
+ * plates. The body is some per cent longer than the ellipsoid.
  * Test: TestBird.cxx.
  */
 #ifndef avianlidar_Bird_h
@@ -74,7 +74,7 @@ double wingAngle(double phase, bool gliding);
 double wingbeatFrequency(const BirdSpecies& species);
 
 /// A part in the bird's frame: closed, with triangles counterclockwise as seen from outside.
-/// @param angle of the wings, rad
+/// @param angle angle of the wings, rad
 TriangleMesh birdPart(const BirdShape& shape, BirdPart part, double angle);
 
 /// All parts together.

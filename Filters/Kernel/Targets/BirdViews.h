@@ -8,7 +8,7 @@
  * heading. A heading counts from the line of sight, clockwise as seen from above.
  *
  * Source: none.
- * Differs: no bank, no pitch.
+ * Differs: the bird has no bank and no pitch.
  * Valid: see Silhouette.h; seen from afar. The mean of probabilities over these poses lies within
  * 0.02 of the mean over all poses.
  * Test: TestBirdViews.cxx.

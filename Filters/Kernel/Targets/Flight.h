@@ -9,20 +9,21 @@
  *   or to the right, with a bank of 20 to 40 degrees. Centres are uniformly distributed in a disc.
  * - Flock: birds with one velocity on one straight, level crossing (flockPlaces()).
  * - Approach: birds that descend at 3 degrees in straight lines towards the threshold of a runway,
- *   uniformly distributed within 75 m + 0.15 d to either side, d the distance. This pattern stands
- *   for birds that come in to feed or roost there and meet arriving aircraft.
- * - Tracks (readFlights()): measured or made elsewhere; attitudes follow from the path.
+ *   uniformly distributed within 75 m + 0.15 d to either side, d the distance. This pattern
+ *   represents birds that come to feed or roost there and meet arriving aircraft.
+ * - Tracks (readFlights()): paths that were measured or computed elsewhere; attitudes follow from
+ *   them.
  *
  * Speeds are normally distributed about the species' airspeed with a standard deviation of 10 %,
  * cut at 30 %. Flight is straight between two poses; in a circle this errs by less than 1 cm.
  *
  * Source: flocks of starlings: M. Ballerini et al., "Empirical investigation of starling flocks",
- * Animal Behaviour 76 (2008): thin and flat, with sides of 1 : 2.8 : 5.6 for any size; no neighbour
- * nearer than about a wingspan; denser at the border; distances of nearest neighbours do not depend
- * on the size.
+ * Animal Behaviour 76 (2008): flocks are thin and flat, with sides of 1 : 2.8 : 5.6 for any size,
+ * and denser at the border. No neighbour is nearer than about a wingspan, and distances of nearest
+ * neighbours do not depend on the size.
  * Differs: a flock is a rigid ellipsoid with its short axis upright. Assumed: one bird in (4
  * wingspans)^3 on average, twice the density at the border as in the middle; speeds, banks and
- * spreads above. No wind.
+ * spreads above. There is no wind.
  * Valid: coordinates and times up to 1e9 m and s.
  * Test: TestFlight.cxx.
  */
@@ -75,13 +76,13 @@ struct FlightSettings
   double thresholdHeading = 0.0; ///< heading of landings, degrees clockwise from north
 };
 
-/// Returns an empty string, or which setting is wrong and what is expected, with the names of
-/// vtkAvianLidarTracks.
+/// Returns an empty string, or a sentence that names the wrong setting as in vtkAvianLidarTracks
+/// and what is expected.
 std::string checkFlights(const FlightSettings& settings);
 
 /// Makes flights for the whole time range. Bird k, counted from 1, does not depend on the number of
 /// birds, except in a flock. Throws MemoryError if there is not enough memory.
-/// @param index of the species, copied into the flights
+/// @param index index of the species, copied into the flights
 std::vector<Flight> makeFlights(
   const FlightSettings& settings, const BirdSpecies& species, std::size_t index);
 
@@ -102,8 +103,8 @@ double trackWingPhase(std::int32_t seed, std::size_t track);
 /// "id,species,time,longitude,latitude,height", lines that begin with # are comments. Rows of
 /// several tracks may alternate. Throws std::runtime_error naming file, line and column.
 /// @param file for messages @param known all species
-/// @param origin of the scene: latitude, longitude in degrees, height above the ellipsoid in m
-/// (checked by the caller, GeodeticFrame::checkOrigin())
+/// @param origin origin of the scene: latitude, longitude in degrees, height above the ellipsoid in
+/// m (the caller checks it with GeodeticFrame::checkOrigin())
 std::vector<Flight> readFlights(const std::string& text, const std::string& file,
   const std::vector<BirdSpecies>& known, const std::array<double, 3>& origin, std::int32_t seed);
 }

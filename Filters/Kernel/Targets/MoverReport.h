@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file MoverReport.h
- * @brief What the beams of a scan receive of each mover, and where the mover is at that time.
+ * @brief Light that the beams of a scan receive from each mover, and the mover's pose at that time.
  *
  * Source: none.
  * Valid: movers and beams of one scan; the same result for any number of threads.
@@ -20,26 +20,27 @@
 
 namespace avianlidar
 {
-/// What the beams of a scan receive of one mover.
+/// Light that the beams of a scan receive from one mover.
 struct MoverReport
 {
-  bool present = false; ///< true if it exists at the time of `pose`; the rest is valid only then
-  Pose pose; ///< when the beam that receives most of it fires, or mid-scan if none touches it
-  /// Poses when the first and the last beam fire that contain its origin or receive energy of it,
-  /// otherwise `pose`. They are a revolution apart if it crosses from the last column to the first.
+  bool present = false; ///< true if it exists at the time of `pose`; if false, the rest is invalid
+  Pose pose; ///< pose when the beam with most of its light fires, or mid-scan if no beam touches it
+  /// Poses when the first and the last beam fire that contain the mover's origin or receive energy
+  /// from the mover, otherwise `pose`. They are a revolution apart if the mover crosses from the
+  /// last column to the first.
   Pose first, last;
-  std::size_t beam = 0;       ///< beam that receives most of it, 0 if none may touch it
+  std::size_t beam = 0;       ///< beam with most of its light, 0 if no beam may touch the mover
   Vec3 origin{ 0.0 };         ///< origin of this beam, m
-  double range = 0.0;         ///< from this origin to `pose`, m
-  double effectiveArea = 0.0; ///< m^2, see Silhouette.h; NaN from inside its bounding sphere
-  bool touched = false;       ///< true if a beam may touch it
-  std::uint32_t beams = 0;    ///< beams that contain its origin
+  double range = 0.0;         ///< range from this origin to `pose`, m
+  double effectiveArea = 0.0; ///< m^2, see Silhouette.h; NaN if its bounding sphere holds `origin`
+  bool touched = false;       ///< true if a beam may touch the mover
+  std::uint32_t beams = 0;    ///< number of beams that contain the mover's origin
   double energy = 0.0;        ///< largest of MoverSight::energy, J
-  double probability = 0.0;   ///< probability that any beam perceives it
+  double probability = 0.0;   ///< probability that any beam perceives the mover
 };
 
 /// One report for each mover. Effective areas take most of the time. Throws WorkStopped.
-/// @param sights of a scan of these beams @param threads > 0, or 0 for loopThreads(0)
+/// @param sights sights of a scan of these beams @param threads > 0, or 0 for loopThreads(0)
 /// @param wanted called now and then, on the calling thread; the work stops if it returns false
 std::vector<MoverReport> reportMovers(const ScanSetup& setup, const ScanBeams& beams,
   const std::vector<MoverSight>& sights, int threads, const std::function<bool()>& wanted = {});

@@ -2,7 +2,7 @@
 /**
  * @file Assignment.h
  * @brief One-to-one assignment of least cost, where only some pairs are allowed and a row may stay
- * unassigned at a price.
+ * unassigned at a cost.
  *
  * Rows are added one by one. Each row takes the shortest augmenting path to a free column or to
  * staying unassigned (R. Jonker and A. Volgenant, "A shortest augmenting path algorithm for dense
@@ -31,7 +31,7 @@ struct AllowedPair
 constexpr std::size_t Unassigned = static_cast<std::size_t>(-1);
 
 /// Returns the column of each row, or Unassigned. @param rows allowed pairs of each row
-/// @param costWithout price of a row without a column
+/// @param costWithout cost of a row without a column
 std::vector<std::size_t> assign(
   const std::vector<std::vector<AllowedPair>>& rows, std::size_t columns, double costWithout);
 }

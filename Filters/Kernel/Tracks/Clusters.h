@@ -4,7 +4,7 @@
  * @brief Clusters of a scan's points: connected components by a distance that grows with range.
  *
  * Two points are neighbours if they are at most distance + angle (r1 + r2) / 2 apart, r1 and r2
- * their ranges: echoes of one target in neighbouring beams are apart by the angle between the beams
+ * their ranges. Echoes of one target in neighbouring beams are apart by the angle between the beams
  * times the range. Points lie in grids whose cells are about as large as that distance. The
  * neighbours of a point are taken out of their cells, then the neighbours of each of these, until
  * the cluster is complete. The time is about linear in the number of points, in dense clouds, too.
@@ -46,7 +46,7 @@ struct Clusters
   std::vector<std::size_t> ofPoint; ///< index of each point's cluster
 };
 
-/// @param sensor where ranges begin, m @param distance m, at least 0 @param angle rad, 0 to 0.5
+/// @param sensor origin of the ranges, m @param distance m, at least 0 @param angle rad, 0 to 0.5
 Clusters findClusters(
   const std::vector<CloudPoint>& points, const Vec3& sensor, double distance, double angle);
 }

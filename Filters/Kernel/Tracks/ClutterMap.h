@@ -1,19 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file ClutterMap.h
- * @brief Where a fixed sensor has echoes again and again: persistence by azimuth, elevation and
- * range.
+ * @brief Map of the cells in which a fixed sensor has repeated echoes: persistence by azimuth,
+ * elevation and range.
  *
  * With W the window and n the number of scans learned, each scan has q = 1 - 1/W times the weight
- * of the next one. The persistence of a cell is the sum of the weights of scans with an echo in it,
- * over the sum of all n weights, W (1 - q^n). Cells below persistenceKept() are forgotten.
+ * of the next one. The persistence of a cell is the sum of the weights of scans with an echo in the
+ * cell, divided by the sum of all n weights, W (1 - q^n). Cells below persistenceKept() are
+ * removed.
  *
  * The map is a sorted list of cells. A new scan is sorted and merged with the list. To find
- * probabilities, a scan walks along the list once for each row of neighbours. Both take about n log
- * n + m steps for n points and m cells.
+ * probabilities, a scan walks along the list once for each row of neighbours. Learning and
+ * probabilities both take about n log n + m steps for n points and m cells.
  *
- * Source: background subtraction by the share of scans, as in Examples/sequence; the exponential
- * window is ours.
+ * Source: background subtraction by the share of scans, as in Examples/sequence. The exponential
+ * window is added.
  * Valid: finite points. The order of the points changes no bit. Neighbours wrap around at azimuths
  * of +-180 degrees, but not across the zenith.
  * Test: TestClutterMap.cxx; TestClutterFilter.py (NumPy, point by point).
@@ -54,7 +55,7 @@ public:
 
   static constexpr double LongestWindow = 100000.0;
   static constexpr int MostTolerance = 10;
-  /// Number of ranges; the last one includes all beyond.
+  /// Number of ranges; the last one includes all larger ranges.
   static constexpr int MostRanges = (1 << 26) - 2 * MostTolerance - 1;
 
   /// @param window W, in scans, 1 to LongestWindow
@@ -89,7 +90,8 @@ public:
   int scans() const { return this->Scans; }
   const ClutterGrid& grid() const { return this->Grid; }
 
-  /// Persistence below which cells are forgotten: 0.001, or half of one echo in a long window.
+  /// Persistence below which cells are removed: 0.001, or half the persistence of one echo in a
+  /// long window.
   double persistenceKept() const;
 
 private:

@@ -1,19 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file MotionFilter.h
- * @brief Estimates where a target is and how it moves from positions with errors: a Kalman filter
- * of constant velocity, or an extended one of a coordinated turn.
+ * @brief Estimates position and velocity of a target from positions with errors: a Kalman filter
+ * for constant velocity, or an extended Kalman filter for a coordinated turn.
  *
  * The state is position, velocity and the turn rate w of the horizontal velocity. Between two
  * positions the velocity turns by w dt, and white noise is added to the acceleration and to the
- * derivative of w. Constant velocity is a turn whose rate is known to be 0.
+ * derivative of w. Constant velocity is a turn with the rate 0.
  *
  * Source: Y. Bar-Shalom, X. R. Li, T. Kirubarajan, "Estimation with Applications to Tracking and
  * Navigation", 2001 (discretised continuous white noise acceleration; coordinated turn with unknown
  * rate).
  * Differs: acceleration in a turn has the noise of straight flight, in all directions.
- * Valid: the extended filter is of first order: turns of less than about a right angle between two
- * positions.
+ * Valid: turns of less than about a right angle between two positions, because the extended filter
+ * is of first order.
  * Test: TestMotionFilter.cxx; TestTracker.py against a filter in NumPy.
  */
 #ifndef avianlidar_MotionFilter_h

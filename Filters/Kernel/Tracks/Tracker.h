@@ -10,8 +10,8 @@
  *
  * Source: global nearest neighbour tracking with M of N confirmation: S. Blackman and R. Popoli,
  * "Design and Analysis of Modern Tracking Systems", 1999 (second-hand).
- * Differs: the price of a track without a cluster, which would require probabilities of detection
- * and densities of clutter.
+ * Differs: the cost of a track without a cluster. The usual cost requires probabilities of
+ * detection and densities of clutter.
  * Valid: each update is a whole scan, later than the one before.
  * Test: TestTracker.cxx, TestTracker.py.
  */
@@ -63,7 +63,7 @@ struct Track
   std::uint32_t recent = 0; ///< a bit for each of the last scans, 1: hit; the lowest is the latest
   double endTime = 0.0;     ///< s
   MotionState state;        ///< at the time of the last position
-  std::vector<TrackPosition> positions; ///< the last historyLength
+  std::vector<TrackPosition> positions; ///< last historyLength positions
 };
 
 /// Covariance of a cluster's centre as the position of a target, m2.
@@ -73,7 +73,7 @@ glm::dmat3 positionError(
 class Tracker
 {
 public:
-  /// Updates the tracks with one more scan. @param time of the scan, s
+  /// Updates the tracks with one more scan. @param time time of the scan, s
   /// @param goOn called now and then; WorkStopped is thrown if it returns false; may be empty
   /// @return id of each cluster's track
   std::vector<int> update(const std::vector<Cluster>& clusters, const Vec3& sensor, double time,

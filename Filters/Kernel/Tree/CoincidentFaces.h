@@ -4,19 +4,19 @@
  * @brief Finds triangles that coincide and gives them one plane, so that rounding does not decide
  * which of them is seen.
  *
- * Two triangles coincide if they overlap and are nowhere in their overlap farther apart than the
- * sum of their tolerances. A triangle's tolerance is the rounding of its corners: 32 u_d (sixteen
+ * Two triangles coincide if they overlap and their distance nowhere in the overlap exceeds the sum
+ * of their tolerances. A triangle's tolerance is the rounding of its corners: 32 u_d (sixteen
  * roundings to double precision) of its largest coordinate. If all its coordinates are numbers of
  * single precision, 4 u_s of its largest coordinates, projected on its normal, are added, at most
  * half a millimetre.
  *
  * Pairs are found by descending the tree against itself. Triangles that coincide, directly or
- * through others, then take the plane of the one whose least altitude is largest, because rounding
- * tilts that plane least. The ranges of a ray on them are equal bit for bit, and the lower triangle
- * number is seen.
+ * through others, then take the plane of the triangle whose least altitude is largest, because
+ * rounding tilts this plane least. The ranges of a ray on them are equal bit for bit, and the lower
+ * triangle number is seen.
  *
  * Source: none.
- * Valid: any triangles. The result depends on the mesh alone, not on the tree or the threads. A
+ * Valid: any triangles. The result depends only on the mesh, not on the tree or the threads. A
  * triangle that lies farther from the common plane than rounding explains keeps its own plane.
  * Test: TestCoincidentFaces.cxx.
  */

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file CollisionTree.h
- * @brief The collision detection tree: structure only.
+ * @brief Structure of the collision detection tree.
  *
  * A node has eight boxes (WideTree.h). CollisionTreeBuilder.h builds the tree, Traversal.h descends
  * it. The paper's binary trees of boxes and other volumes are outside the kernel (VolumeTree.h) and
@@ -39,7 +39,7 @@ enum class BoundingVolumeType
   AABB = 0,
   OBB = 1,
   Sphere = 2,
-  BinaryAABB = 3 ///< AABBs in double precision, two a node, as the paper has them
+  BinaryAABB = 3 ///< AABBs in double precision, two a node, as in the paper
 };
 
 struct TreeOptions
@@ -54,13 +54,13 @@ struct DescentEntry
 {
   std::uint32_t node;  ///< number; for a leaf of the wide tree, first of its triangles in the order
   std::uint32_t count; ///< number of triangles of a leaf of the wide tree; 0 for other nodes
-  std::uint64_t members; ///< a bit for each ray or beam that meets the volume (wide tree only)
+  std::uint64_t members; ///< bits of the rays or beams that meet the volume (wide tree only)
   double nearest;        ///< lower bound of ranges in the volume, m
   std::uint32_t parent;  ///< node whose child this is (wide tree only)
   std::uint32_t lane;    ///< lane of the parent that holds this child
 };
 
-/// Kept between descents, so that a descent does not allocate.
+/// Stack kept between descents, so that a descent does not allocate.
 using TraversalStack = std::vector<DescentEntry>;
 
 /// Visitor of the leaves that a descent meets.
@@ -90,7 +90,8 @@ public:
     TraversalStack& stack) const = 0;
 };
 
-/// Immutable once built; shared by any number of threads and scans.
+/// The tree of a mesh. It is immutable once built, and any number of threads and scans may share
+/// it.
 struct CollisionTree
 {
   std::shared_ptr<const TriangleMesh> mesh;
@@ -102,10 +103,10 @@ struct CollisionTree
   std::uint32_t depth = 0;
   WideTree wide; ///< boxes eight at a time in single precision; empty with other volumes
   std::shared_ptr<const OtherVolumes> other; ///< null if the tree has boxes
-  /// For each triangle the owner of the plane that it takes (CoincidentFaces.h), or NoTriangle if
-  /// it takes none; empty if no faces coincide.
+  /// For each triangle, the owner of the plane that the triangle takes (CoincidentFaces.h), or
+  /// NoTriangle if it keeps its own plane; empty if no faces coincide.
   std::vector<std::uint32_t> planeOwners;
-  double planeDepth = 0.0; ///< most by which rounding moves two coincident triangles apart, m
+  double planeDepth = 0.0; ///< largest distance that rounding puts between coincident triangles, m
 
   bool empty() const { return this->order.empty(); }
 

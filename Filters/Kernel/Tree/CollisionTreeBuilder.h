@@ -8,7 +8,8 @@
  *
  * Source: T. Ylitie, T. Karras, S. Laine, "Efficient Incoherent Ray Traversal on GPUs Through
  * Compressed Wide BVHs", HPG 2017, Sec. 3.1.
- * Valid: the tree has the same bits for any number of threads. Peak: about 150 bytes a triangle.
+ * Valid: the tree has the same bits for any number of threads. Peak memory is about 150 bytes a
+ * triangle.
  * Test: TestCollisionTreeBuilder.cxx, TestWideTree.cxx.
  */
 #ifndef avianlidar_CollisionTreeBuilder_h
@@ -20,8 +21,8 @@
 namespace avianlidar
 {
 /// Build a tree over all triangles of `mesh`. Degenerate triangles keep their number and are never
-/// hit. Throws std::invalid_argument that names the option out of range, or the triangle whose
-/// corner is missing or not finite.
+/// hit. Throws std::invalid_argument that names the option out of range, or the triangle with a
+/// corner that is missing or not finite.
 /// @param keepGoing called on the calling thread with the fraction done; false stops the work
 /// @param threads > 0, or 0 for loopThreads(0)
 /// @return null if `keepGoing` returned false

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file PrincipalAxes.h
- * @brief Principal axes of a set of vectors, of their second moments (the sum of their outer
+ * @brief Principal axes of a set of vectors, from their second moments (the sum of their outer
  * products).
  *
  * Source: power iteration by squaring: G. H. Golub, C. F. Van Loan, "Matrix Computations", 4th ed.,
@@ -37,12 +37,12 @@ inline glm::dmat3 principalAxes(const glm::dmat3& moments)
   {
     return glm::dmat3(1.0);
   }
-  // In the plane across it the other two are at an angle that is known in closed form.
+  // In the plane across the first axis, the angle of the other two has a closed form.
   const BeamFrame frame = makeBeamFrame(Vec3(0.0), power[longest], 1.0);
   const Vec3 one = scaled * frame.e1;
   const Vec3 two = scaled * frame.e2;
-  // Half of the angle whose sine and cosine are these two, by square roots alone: they have the
-  // same bits whatever the mathematical library.
+  // Half of the angle with this sine and cosine, by square roots only, which have the same bits in
+  // every mathematical library.
   const double sine = 2.0 * glm::dot(frame.e2, one);
   const double cosine = glm::dot(frame.e1, one) - glm::dot(frame.e2, two);
   const double length = std::sqrt(sine * sine + cosine * cosine);

@@ -3,9 +3,9 @@
  * @file SplitRule.h
  * @brief Four rules that divide the triangles of a node between its two children.
  *
- * The rules use only the triangles' boxes and their centres and are deterministic. The surface area
- * heuristic makes three passes: the first merges each box with one bin on each axis, the second
- * finds the best boundary between bins, and the third separates the boxes.
+ * The rules are deterministic and use only the triangles' boxes and the centres of these boxes. The
+ * surface area heuristic makes three passes: the first merges each box with one bin on each axis,
+ * the second finds the best boundary between bins, and the third separates the boxes.
  *
  * Source: paper, Sec. 3.1, Algorithm 1, line 9; for the surface area heuristic I. Wald, "On fast
  * Construction of SAH-based Bounding Volume Hierarchies", IEEE Symposium on Interactive Ray
@@ -30,7 +30,8 @@ namespace avianlidar
 /// @param from may be reordered
 /// @param centers box of twice the centres of the boxes
 /// @param depth depth of the node, root 0, which chooses the axis of SplitRule::Median. From depth
-/// 96 on every rule halves the list: a rule that splits off single triangles would make a list
+/// 96 on every rule halves the list, because a rule that splits off single triangles would
+/// otherwise turn the tree into a list
 /// @return number of boxes of the first child, in [1, count - 1]. Where a rule cannot divide (equal
 /// centres), the list is halved as it stands.
 std::size_t splitTriangles(SplitRule rule, LaneBox* from, LaneBox* to, std::size_t count,

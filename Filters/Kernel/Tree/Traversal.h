@@ -88,7 +88,7 @@ std::uint64_t descendWide(
     DescentEntry* const first = top;
     const auto push = [&](std::uint32_t lane, std::uint64_t members, float nearest)
     {
-      // Kept sorted, the nearest on top.
+      // Entries stay sorted, the nearest on top.
       DescentEntry* place = top++;
       while (place != first && place[-1].nearest < nearest)
       {

@@ -39,7 +39,7 @@ AVIANLIDAR_ALWAYS_INLINE Lanes larger(Lanes a, Lanes b)
   return a > b ? a : b;
 }
 
-/// Upper bound of all numbers whose nearest float is this one.
+/// Upper bound of all numbers whose nearest float is `nearest`.
 AVIANLIDAR_ALWAYS_INLINE Lanes roundedUp(Lanes nearest)
 {
   // The product is one or two units in the last place; the constant covers underflow.
@@ -47,8 +47,8 @@ AVIANLIDAR_ALWAYS_INLINE Lanes roundedUp(Lanes nearest)
   return (nearest + size * std::numeric_limits<float>::epsilon()) + 2e-38f;
 }
 
-/// Lanes 0 to 2 hold coordinates, m. Lane 3 holds the triangle's number, its low half in `below`
-/// and its high half in `above`; it has no meaning in a box of several triangles.
+/// Lanes 0 to 2 hold coordinates, m. Lane 3 holds the triangle's number, with the low half in
+/// `below` and the high half in `above`. Lane 3 has no meaning in a box of several triangles.
 struct LaneBox
 {
   Lanes below; ///< the lower corner, negated
@@ -122,7 +122,7 @@ struct TriangleBoxes
   Vec3 reference{ 0.0 };    ///< middle of the triangles, m
   double extent = 0.0;      ///< largest coordinate relative to the reference, m
   std::size_t count = 0;    ///< number of triangles
-  LaneBox* boxes = nullptr; ///< by triangle number; null if there are none, or if stopped
+  LaneBox* boxes = nullptr; ///< boxes by triangle number; null if there are none, or if stopped
   LaneBox* room = nullptr;  ///< space for as many boxes again
   std::unique_ptr<LaneBox, void (*)(void*)> memory{ nullptr, std::free }; ///< owner of both arrays
 

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file TriangleTest.h
- * @brief Tests whether a ray hits a triangle and finds the range: one test for every traversal.
+ * @brief Tests whether a ray hits a triangle, and finds the range of the hit, for every traversal.
  *
  * - Corners are moved to the apex in double precision. The edge vector of a side is E = (a - b) x
- *   (a + b) = 2 a x b. Exchanging a and b changes its sign and no other bit, as long as no product
- *   is fused with a sum (compile with -ffp-contract=off), so triangles that share an edge agree on
- *   it. Unlike a x b, it is accurate for small triangles far away.
+ *   (a + b) = 2 a x b. Exchanging a and b changes the sign of E and no other bit, as long as no
+ *   product is fused with a sum (compile with -ffp-contract=off). Triangles that share an edge
+ *   therefore agree on E. Unlike a x b, this product is accurate for small triangles far away.
  * - In the beam's own plane the edge function of the ray (x, y) is ex x + ey y + ez with ex =
- *   tan(theta0.5) e1 . E, ey = tan(theta0.5) e2 . E, ez = axis . E. It is linear in E, so
- *   exchanging the corners still changes the sign alone.
+ *   tan(theta0.5) e1 . E, ey = tan(theta0.5) e2 . E, ez = axis . E. The edge function is linear in
+ *   E, so exchanging a and b still changes only its sign.
  * - An edge function is accepted down to -(4 u_d |e|_1 + (8 + 14 tan(theta0.5)) u_d spread), with
  *   u_d the unit round-off of double and spread >= |E|_1 the sum of the magnitudes of the products
  *   in E. The two terms bound the rounding of the evaluation and of E. A ray aimed at an edge or
@@ -21,25 +21,25 @@
  *   cos(incidence angle). The range is clamped to the ranges of the triangle's corners along the
  *   ray. Where the triangle is seen nearly edge-on, it is clamped to the ranges of the part beside
  *   the ray.
- * - A ray that passes inside by more than rounding takes the plane's range without clamping. Every
- *   edge function must be at least 64 u_d L R, with L the longest side and R the distance of the
- *   farthest corner, and |n . d| / |n| at least 2^-30, far above rounding. The hit then lies on the
- *   triangle, for three reasons. First, |n| is within 3 u_d of the cross product of the rounded
- *   sides: to first order, the computed plane is that of a triangle whose corners lie within
- *   sqrt(3) u_d L of the given ones. Second, the rounding of n, n . a, n . d and the quotient moves
- *   the hit off this plane by at most 13 u_d R, which is 13 u_d R / cos(incidence angle) along the
- *   ray. Third, the ray passes every side at 16.5 u_d R or more, because an edge function is twice
- *   this distance times the side's projected length, with an error of at most 28 u_d L R. So a hit
- *   that moves along the ray stays above the triangle.
+ * - If a ray passes inside by more than rounding, the range of the plane is taken without clamping.
+ *   Every edge function must then be at least 64 u_d L R, with L the longest side and R the
+ *   distance of the farthest corner, and |n . d| / |n| at least 2^-30, far above rounding. The hit
+ *   then lies on the triangle, for three reasons. First, |n| is within 3 u_d of the cross product
+ *   of the rounded sides: to first order, the computed plane is that of a triangle whose corners
+ *   lie within sqrt(3) u_d L of the given ones. Second, the rounding of n, n . a, n . d and the
+ *   quotient moves the hit off this plane by at most 13 u_d R, which is 13 u_d R / cos(incidence
+ *   angle) along the ray. Third, the ray passes every side at a distance of 16.5 u_d R or more,
+ *   because an edge function is twice this distance times the side's projected length, with an
+ *   error of at most 28 u_d L R. A hit that moves along the ray therefore stays above the triangle.
  *
  * Source: paper, Sec. 3.3, Eq. 15-18.
  * Differs: Eq. 16 says that d lies in the tetrahedron OABC if alpha, beta, gamma >= 0. Up to a
- * common factor these are the edge functions d . (p_B x p_C), d . (p_C x p_A), d . (p_A x p_B),
- * which are computed here. Eq. 16 itself divides by the determinant of each triangle and leaks
- * where triangles meet.
- * Valid: coordinates that are 0 or from 1e-30 to 1e30 m. An accepted ray passes the triangle, and
- * its hit lies off the triangle, by no more than HitMargin times the triangle's farthest coordinate
- * from the apex (plus HitMarginBeam tan(theta0.5) times the distance for rays of a beam).
+ * common factor alpha, beta and gamma are the edge functions d . (p_B x p_C), d . (p_C x p_A), d .
+ * (p_A x p_B), which are computed here. Eq. 16 itself divides by the determinant of each triangle
+ * and leaks where triangles meet.
+ * Valid: coordinates that are 0 or from 1e-30 to 1e30 m. The distances of an accepted ray and of
+ * its hit from the triangle are at most HitMargin times the triangle's farthest coordinate from the
+ * apex (plus HitMarginBeam tan(theta0.5) times the distance for rays of a beam).
  * Test: TestTriangleTest.cxx, TestWatertight.cxx, TestGeometryProperties.cxx.
  */
 #ifndef avianlidar_TriangleTest_h
@@ -57,7 +57,8 @@ namespace avianlidar
 constexpr double RoundOffDouble = 1.0 / 9007199254740992.0; // 2^-53
 constexpr double RoundOffSingle = 1.0 / 16777216.0;         // 2^-24
 
-/// Margins of a hit, see Valid above. Every test of a volume widens volume, ray or cone by them.
+/// Margins of a hit, see Valid above. Every test of a volume widens volume, ray or cone by these
+/// margins.
 constexpr double HitMargin = 1.0 / 549755813888.0; // 2^-39
 constexpr double HitMarginBeam = 1.0 / 512.0;
 
@@ -93,10 +94,10 @@ inline EdgeVector edgeVector(const Vec3& a, const Vec3& b)
 /// Plane of a triangle, for ranges; it is computed only for triangles that a ray hits.
 struct TrianglePlane
 {
-  Vec3 normal;           ///< not normalised; its length is twice the area
+  Vec3 normal;           ///< normal whose length is twice the area, m2
   double height;         ///< normal . a; 0 if edge-on or degenerate
   double longestSquared; ///< square of the longest side
-  double leastSlope;     ///< least |normal . d| at which the plane's range alone is accurate
+  double leastSlope;     ///< least |normal . d| at which the plane's range is accurate
   double leastEdge;      ///< least edge function of a ray that passes inside by more than rounding
   EdgeVector sides[3];   ///< edge vectors of ab, bc, ca
 };
@@ -105,8 +106,9 @@ TrianglePlane planeOf(const Corners& corners);
 /// Plane of a triangle that takes its owner's plane but keeps its own sides.
 TrianglePlane planeOf(const Corners& corners, const TrianglePlane& owner);
 
-/// a b - c d to one and a half units in the last place (Kahan; Jeannerod, Louvet and Muller, Math.
-/// Comp. 82, 2013). std::fma gives the same bits on every machine, which contraction does not.
+/// a b - c d with an error of at most 1.5 units in the last place (Kahan; Jeannerod, Louvet and
+/// Muller, Math. Comp. 82, 2013). std::fma gives the same bits on every machine, which contraction
+/// does not.
 AVIANLIDAR_ALWAYS_INLINE double differenceOfProducts(double a, double b, double c, double d)
 {
   const double cd = c * d;
@@ -129,16 +131,16 @@ AVIANLIDAR_ALWAYS_INLINE Vec3 normalOf(const Corners& t)
 
 constexpr double NoRange = -1.0;
 
-/// Range of the plane along the unit direction d, m, and its kind: 0 no hit, 1 it is the range of
-/// the triangle, 2 the triangle is a sliver along d, and rangeOnSliver() must decide.
-/// rangeOnPlane() has no branches, for loops over lanes.
+/// Range of the plane along the unit direction d, m, and its kind. Kind 0 is no hit, and kind 1 the
+/// range of the triangle. With kind 2 the triangle is a sliver along d, and rangeOnSliver() must
+/// decide. rangeOnPlane() has no branches, for loops over lanes.
 struct PlaneRange
 {
   double range;
   int kind;
 };
 
-/// What is known of all rays of a group and need not be computed for each.
+/// Property of a triangle that all rays of a group share, so that it is not tested for each ray.
 enum class PlaneView
 {
   Any,
@@ -146,9 +148,9 @@ enum class PlaneView
   Inside      ///< every ray passes inside, and the triangle is a sliver along every ray
 };
 
-constexpr double WellShaped = 1.0 / 32.0; ///< least |slope| over the longest side squared
+constexpr double WellShaped = 1.0 / 32.0; ///< least |slope| / (longest side)^2
 constexpr double EdgeNoise =
-  64.0 * RoundOffDouble; ///< least edge function inside, over longest side times farthest corner
+  64.0 * RoundOffDouble; ///< least edge function inside / (longest side x farthest corner)
 
 template <PlaneView View = PlaneView::Any>
 AVIANLIDAR_ALWAYS_INLINE PlaneRange rangeOnPlane(
@@ -187,14 +189,15 @@ AVIANLIDAR_ALWAYS_INLINE PlaneRange rangeOnPlane(
   return { result, static_cast<int>(faces) * kind };
 }
 
-/// PlaneView of all rays of a cone, with a margin for rounding. @param sine,cosine half-angle
+/// PlaneView of all rays of a cone, with a margin for rounding. @param sine,cosine sine and cosine
+/// of the half-angle
 PlaneView viewOfCone(const TrianglePlane& plane, const Vec3& axis, double sine, double cosine);
 
 /// Range of a ray on a sliver, m: the plane's range, clamped to the part of the triangle beside the
 /// ray. NoRange if there is no such part. @param angularMargin as for rangeOf()
 double rangeOnSliver(const Corners& t, const Vec3& d, double planeRange, double angularMargin);
 
-/// Range, m, along the unit direction `d`, of a ray whose edge functions were accepted. NoRange if
+/// Range, m, of a ray along the unit direction `d` whose edge functions were accepted. NoRange if
 /// the triangle is edge-on or behind, or if the ray passes beside the end of a needle.
 /// @param angularMargin half-width of the ray, rad: beamRayMargin() for rays of a beam, 0 for
 /// others
@@ -222,7 +225,8 @@ AVIANLIDAR_ALWAYS_INLINE double inversePowerOfTwo(double magnitude)
   return power;
 }
 
-/// Unit vector, without overflow or underflow. Powers of two change no bit of the result.
+/// Unit vector, without overflow or underflow. Scaling by a power of two changes no bit of the
+/// result.
 Vec3 unitDirection(const Vec3& direction);
 
 /// unitDirection() for loops over lanes.
@@ -243,7 +247,7 @@ AVIANLIDAR_ALWAYS_INLINE void unitDirectionOf(
   dz = sz * inverse;
 }
 
-/// Edge function of a side in the beam's plane, with the sign that is positive inside.
+/// Edge function of a side in the beam's plane, positive inside the triangle.
 struct BeamEdge
 {
   double x, y, z, tolerance;
@@ -282,7 +286,7 @@ struct BeamTriangle
 {
   BeamEdge edges[3] = {};
 
-  /// @return false if the triangle is seen edge-on: no ray hits it
+  /// @return false if the triangle is seen edge-on, so that no ray hits it
   bool set(const BeamPlaneMap& map, const Corners& t)
   {
     const EdgeVector sides[3] = { edgeVector(t.a, t.b), edgeVector(t.b, t.c),
@@ -290,7 +294,7 @@ struct BeamTriangle
     return this->set(map, t, sides);
   }
 
-  /// As above, with the known edge vectors of the sides (TrianglePlane).
+  /// As above, with the given edge vectors of the sides (TrianglePlane).
   bool set(const BeamPlaneMap& map, const Corners& t, const EdgeVector* sides)
   {
     const double determinant = glm::dot(t.c, sides[0].e);
@@ -328,7 +332,8 @@ inline bool beamRayAccepted(const BeamPlaneMap& map, const Corners& t, double x,
     map.edge(edgeVector(t.c, t.a), sign).slack(x, y) >= 0.0;
 }
 
-/// True if any ray, with unit direction `d`, is accepted. @param t relative to its origin
+/// True if a ray, from any point along the unit direction `d`, is accepted. @param t corners
+/// relative to the ray's origin
 inline bool rayAccepted(const Corners& t, const Vec3& d)
 {
   const EdgeVector ab = edgeVector(t.a, t.b);

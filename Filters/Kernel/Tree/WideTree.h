@@ -8,7 +8,7 @@
  * tests widen them by the rounding of single precision.
  *
  * Source: Wald, Benthin and Boulos, "Getting Rid of Packets", IEEE RT 2008; tests as in
- * BeamVolumeTest.h of the other volumes.
+ * BeamVolumeTest.h for the other volumes.
  * Differs: packets of rays and groups of beams descend the tree, too.
  * Valid: conservative. Below LeastWideExtent and beyond LargestWideExtent all boxes are met.
  * Test: TestWideTree.cxx, TestBeamGroup.cxx and TestBeamTracer.cxx (entry points).
@@ -47,16 +47,17 @@ constexpr double LeastWideExtent = 1e-12;
 
 struct WideTree
 {
-  std::vector<WideNode> nodes; ///< root first; empty if there is none
+  std::vector<WideNode> nodes; ///< nodes, root first; empty if there is no root
   Vec3 reference{ 0.0 };       ///< origin of the boxes, m
   double extent = 0.0;         ///< largest coordinate relative to the reference, m
   std::uint32_t depth = 0;     ///< levels below the root
 };
 
-/// Bound, several times over, of the relative rounding of the single-precision tests.
+/// Several times the bound of the relative rounding of the single-precision tests.
 constexpr float WideRounding = 2e-6f;
 
-/// Find how much single precision must widen boxes, m, for an apex at `offset` from the reference.
+/// Find by how much boxes must be widened for single precision, m, for an apex at `offset` from the
+/// reference.
 /// @return false if the scene or the offset is too large, or both are too small
 bool wideningFor(const WideTree& tree, const Vec3& offset, float& widening);
 

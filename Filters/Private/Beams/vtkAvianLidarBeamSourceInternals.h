@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file vtkAvianLidarBeamSourceInternals.h
- * @brief The properties of vtkAvianLidarBeamSource as sensor files, the kernel and the field data
- * have them.
+ * @brief Converts the properties of vtkAvianLidarBeamSource from sensor files, and to the kernel
+ * and the field data.
  */
 #ifndef vtkAvianLidarBeamSourceInternals_h
 #define vtkAvianLidarBeamSourceInternals_h
@@ -28,13 +28,13 @@ struct vtkAvianLidarBeamSource::vtkBeamTable : avianlidar::BeamTable
 {
 };
 
-// The source's properties as the kernel and the field data have them.
+// The source's properties for the kernel and the field data.
 struct vtkAvianLidarBeamSource::vtkInternals
 {
   using Source = vtkAvianLidarBeamSource;
 
-  // A number of the source, and where the kernel's sensor has it. Field data have it unless
-  // `onlyWith` is 0.
+  // A number of the source, and the member of the kernel's sensor for it. Field data hold the
+  // number unless the property `onlyWith` is 0.
   struct Scalar
   {
     vtkAvianLidarArrays::Name name;
@@ -43,7 +43,7 @@ struct vtkAvianLidarBeamSource::vtkInternals
     double Source::*onlyWith = nullptr;
   };
   static const std::vector<Scalar>& Scalars();
-  // Those that mean nothing for a table of beams, or for prisms.
+  // True for properties without meaning for a table of beams or for prisms.
   static bool IsUnused(const Source& self, const vtkAvianLidarArrays::Name& name)
   {
     const std::string word = name.name;
@@ -56,7 +56,7 @@ struct vtkAvianLidarBeamSource::vtkInternals
     return self.Table ? ofPattern : ofColumns && self.GetNumberOfPrisms() > 0;
   }
 
-  // The same of its tables.
+  // The source's tables.
   static const std::vector<std::pair<vtkAvianLidarArrays::Name, std::vector<double> Source::*>>&
   Tables()
   {
@@ -72,25 +72,25 @@ struct vtkAvianLidarBeamSource::vtkInternals
     return all;
   }
 
-  // Set what a file names. Throws std::exception for what is no property or has another unit.
+  // Set the properties that a file names. Throws std::exception for an unknown name or unit.
   static void Apply(const vtkAvianLidarSensorFile& file, Source& self);
-  // The same of a sensor that is built in. Throws std::out_of_range for a name that none has.
+  // Does the same for a built-in sensor. Throws std::out_of_range for an unknown name.
   static void ApplyPreset(const std::string& name, Source& self);
   using AssumedValues = std::vector<std::pair<std::string, std::vector<double>>>;
-  // What a property has, by its name in snake case.
+  // Values of a property, by its name in snake case.
   static std::vector<double> ValuesOf(const Source& self, const std::string& name);
   // The built-in sensors with a photon receiver.
   static const std::vector<vtkAvianLidarSensorFile>& PhotonSensors();
   // Names of the values in use that are assumed.
   static std::vector<std::string> AssumedOf(const Source& self);
 
-  // Beams of one's own; what is wrong with them.
+  // Read the user's beams. Returns an error text, or an empty string.
   static std::string ReadTable(vtkPolyData* beams, avianlidar::BeamTable& table);
 
-  // The sensor with the limits that it uses. An error if a value is bad.
+  // The sensor with the limits in use. Returns an error text if a value is bad.
   static std::string SensorOf(const Source& self, avianlidar::Sensor& sensor);
   static avianlidar::ScanPattern PatternOf(const Source& self);
-  // In nanometres, without the last digits: as it was typed.
+  // Wavelength, nm, rounded to 1e-9 nm, so it is the value that the user gave.
   static double WavelengthOf(const Source& self)
   {
     return std::round(1e18 * avianlidar::SpeedOfLight / self.Frequency) / 1e9;
@@ -100,7 +100,7 @@ struct vtkAvianLidarBeamSource::vtkInternals
   {
     return { self.SwayAmplitude, self.SwayFrequency, self.EncoderJitter, self.MotionSeed };
   }
-  // What is asked for, or an error.
+  // The requested part and revolution. Returns an error text, or an empty string.
   static std::string FindMoment(
     const Source& self, vtkInformation* asked, avianlidar::ScanPart& part, int& revolution);
   // The first bad value in words, or an empty string.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file vtkAvianLidarBeams.h
- * @brief Reads beams and the sensor from a vtkPolyData, whoever made it. Not installed.
+ * @brief Reads beams and the sensor from any vtkPolyData. Not installed.
  */
 #ifndef vtkAvianLidarBeams_h
 #define vtkAvianLidarBeams_h
@@ -23,7 +23,7 @@ struct vtkAvianLidarBeams
 {
   avianlidar::ScanBeams beams;
   avianlidar::Sensor sensor;
-  /// Unit vectors along which echoes are placed, as given; empty: those of the beams.
+  /// Unit vectors along which echoes are placed, as given; empty: the directions of the beams.
   std::vector<avianlidar::Vec3> reportedDirections;
   std::vector<int> laserIds; ///< as given, else 0
   std::vector<double>
@@ -41,21 +41,22 @@ struct vtkAvianLidarBeams
   /// Elevation of a direction, deg.
   static double ElevationOf(const avianlidar::Vec3& d);
 
-  /// Read `input`; what is here already is kept where points and arrays hold the same.
+  /// Read `input`; earlier results are kept if points and arrays have the same values.
   void Read(vtkPolyData* input);
 
-  /// Make sure that the beams of all ranks are those of one sensor: no id twice, no other sensor.
-  /// All ranks must call it. @param inputError what `self` says of something wrong with the beams
+  /// Check that the beams of all ranks belong to one sensor, and that no id is there twice. All
+  /// ranks must call it. @param inputError makes the message of `self` from an error of the beams
   vtkAvianLidarRanks::Outcome CheckRanks(const vtkAvianLidarRanks& ranks, vtkAlgorithm* self,
     const std::function<std::string(const std::string&)>& inputError);
 
-  /// Check ids again at the next CheckRanks(): the ranks may be others.
+  /// Check ids again at the next CheckRanks(), as the ranks may have changed.
   void ForgetRanks() { this->checkedWith = nullptr; }
 
   /// Hash of sensor, revolution and beams.
   std::uint64_t Hash() const;
 
-  /// Unit vector along which the echoes of a beam are placed: what the sensor knows.
+  /// Unit vector along which the echoes of a beam are placed: the direction that the sensor
+  /// reports.
   const avianlidar::Vec3& ReportedDirection(std::size_t beam) const
   {
     return this->reportedDirections.empty() ? this->beams.directions[beam]

@@ -3,9 +3,9 @@
  * @file vtkAvianLidarRevolutions.h
  * @brief Information keys of a sensor's revolutions. Not installed.
  *
- * The beam source publishes its steps as VTK's TIME_STEPS, if they are several, and how long its
- * revolutions last under a key of its own. Filters between pass both on, so filters of beams and
- * surfaces know before anything executes when the revolution begins that a time falls into.
+ * The beam source publishes several steps as VTK's TIME_STEPS, and the length of its revolutions
+ * under another key. Filters on the way pass both on. So filters of beams and surfaces can find the
+ * start of the revolution at a given time before anything executes.
  */
 #ifndef vtkAvianLidarRevolutions_h
 #define vtkAvianLidarRevolutions_h
@@ -17,23 +17,23 @@ class vtkInformationVector;
 
 namespace vtkAvianLidarRevolutions
 {
-/// In RequestInformation: say what there is to play.
+/// Publish the steps of a sensor, in RequestInformation.
 void Publish(const avianlidar::ScanClock& clock, vtkInformation* output);
 
-/// In RequestInformation of a filter of beams, surfaces and movers: its steps are those of the
-/// beams; where beams (a file's, or of a sensor with one step alone) have none, those of the
-/// surfaces, else of the movers.
+/// Choose the steps of a filter, in RequestInformation: the steps of the beams if they have any
+/// (beams of a file or of a sensor with only one step have none), else of the surfaces, else of the
+/// movers.
 void ChooseSteps(vtkInformationVector** inputs, vtkInformationVector* outputs);
 
 /**
- * In its RequestUpdateExtent: ask for surfaces and movers at the start of the revolution that the
- * time asked for falls into, so that a sweep sees one scene. At that time itself, where the beams
- * do not say how long revolutions last (those of a file), or a filter between gave them other
- * steps.
+ * Request surfaces and movers, in RequestUpdateExtent, at the start of the revolution at the
+ * requested time, so that a sweep sees one scene. If the beams do not give the length of
+ * revolutions (beams of a file), or if a filter on the way changed their steps, the requested time
+ * itself is used.
  */
 void AskForStart(vtkInformationVector** inputs);
 
-/// In RequestData: all outputs are of the time for which one of them is asked, and say so.
+/// Give all outputs the time that is requested for one of them, in RequestData.
 /// @return the information of that output
 vtkInformation* NoteTime(vtkInformation* request, vtkInformationVector* outputs);
 }

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file vtkAvianLidarScanShape.h
- * @brief Columns and channels of a whole scan in the pipeline, before anything executes. Not
- * installed.
+ * @brief Passes columns and channels of a whole scan through the pipeline, before anything
+ * executes. Not installed.
  *
- * The beam source publishes its pattern under a key of its own; filters between pass it on. So a
- * range image knows how large it is without any beam, and stays as large while a scan sweeps.
+ * The beam source publishes its pattern under a key, and filters on the way pass it on. So a range
+ * image has its size without any beam, and keeps this size while a scan sweeps.
  */
 #ifndef vtkAvianLidarScanShape_h
 #define vtkAvianLidarScanShape_h
@@ -19,22 +19,23 @@ class vtkInformation;
 
 namespace vtkAvianLidarScanShape
 {
-/// In RequestInformation of the sensor: publish the pattern, unless it is bad,
-/// a table of beams or one of prisms, whose beams form no grid.
+/// Publish the pattern, in RequestInformation of the sensor, unless it is bad, or its beams do not
+/// form a grid (tables of beams, prisms).
 void Publish(const avianlidar::ScanPattern& pattern, vtkInformation* output);
 
-/// In RequestInformation of a filter: what its input does not know, its output does not either.
+/// Remove the pattern from an output, in RequestInformation, if the input has none.
 void Follow(vtkInformation* input, vtkInformation* output);
 
 /// All beams of the sensor, by beam_id; angles in degrees.
 struct WholeScan
 {
-  avianlidar::ScanGrid Grid; ///< empty where the pipeline does not know the sensor
+  avianlidar::ScanGrid Grid; ///< empty if the pipeline has no pattern
   std::vector<double> Azimuths;
   std::vector<double> Elevations;
 };
 
-/// What the pipeline knows. Throws avianlidar::MemoryError for more beams than there is memory for.
+/// The scan of the published pattern. Throws avianlidar::MemoryError for more beams than fit into
+/// memory.
 /// @param beams information of an input
 WholeScan Read(vtkInformation* beams);
 }

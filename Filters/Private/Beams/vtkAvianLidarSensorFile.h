@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file vtkAvianLidarSensorFile.h
- * @brief Sensors as files (`.lidarsensor.json`): numbers, each with its unit and where it comes
- * from. Not installed.
+ * @brief Reads files of sensors (`.lidarsensor.json`), which hold numbers with units and sources.
+ * Not installed.
  *
- * The keys of `values` are the beam source's properties in snake case, as its field data have them.
- * `source` says where a number comes from; where it begins with "assumed" nobody has measured it.
- * Filters/Sensors/lidarsensor.schema.json is the schema; the presets are such files, built in.
+ * The keys of `values` are the beam source's properties in snake case, as in its field data.
+ * `source` says where a number comes from; it begins with "assumed" if nobody has measured the
+ * number. Filters/Sensors/lidarsensor.schema.json is the schema. The presets are built-in files of
+ * this kind.
  */
 #ifndef vtkAvianLidarSensorFile_h
 #define vtkAvianLidarSensorFile_h
@@ -19,14 +20,14 @@ struct vtkAvianLidarSensorFile
   struct Entry
   {
     std::string name;
-    std::vector<double> values; ///< one, or those of a table
+    std::vector<double> values; ///< one value, or the values of a table
     std::string unit;
     std::string source;
     bool IsAssumed() const { return this->source.rfind("assumed", 0) == 0; }
   };
   std::string file; ///< for messages
   std::string name;
-  std::string text; ///< all of it, as JSON
+  std::string text; ///< whole file, as JSON
   std::vector<Entry> entries;
 
   /// Read a file. Throws std::exception with a message that names file and key.
@@ -35,7 +36,7 @@ struct vtkAvianLidarSensorFile
   /// The same of its text.
   static vtkAvianLidarSensorFile OfText(const std::string& text, const std::string& name);
 
-  /// A sensor that is built in, as "Airport16".
+  /// A built-in sensor, such as "Airport16".
   static vtkAvianLidarSensorFile Preset(const std::string& name);
 
   /// An error about an entry.

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file JsonNode.h
- * @brief A JSON value that knows where it stands, so that every error names the file and the
- * key.
+ * @brief A JSON value with its file and its path, so that every error names the file and the key.
  */
 #ifndef AvianLidarJsonNode_h
 #define AvianLidarJsonNode_h
@@ -19,16 +18,16 @@ namespace avianlidar
 {
 /**
  * Read a file as JSON. A file that cannot be opened or parsed, an object with one key twice, or
- * more than 100 values one in the other are a FileError.
+ * values nested more than 100 deep give a FileError.
  */
 Json ReadJson(const std::string& file);
 
-/// The same of a stream. @param file for messages
+/// Read a stream as JSON. @param file name for messages
 Json ReadJson(std::istream& stream, const std::string& file);
 
 /**
- * A view of one value with its path, as "objects[3].scale". All getters throw FileError where the
- * value is not what they return; numbers are finite.
+ * A view of one value with its path, as "objects[3].scale". All getters throw FileError if the
+ * value has another type than the getter returns; numbers are finite.
  */
 class JsonNode
 {
@@ -62,7 +61,7 @@ public:
   double PositiveNumber() const;
   bool Bool() const;
   std::string String() const;
-  /// A string with something in it.
+  /// A string that is not empty.
   std::string Name() const;
   std::array<double, 3> Vector() const;
   /// One string or an array of them.

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file RegularFile.h
- * @brief Only regular files are read, and links to them: a pipe may wait for ever, a device never
- * end.
+ * @brief Checks that a file is regular, or a link to a regular file: a pipe may wait for ever, and
+ * a device may never end.
  */
 #ifndef AvianLidarRegularFile_h
 #define AvianLidarRegularFile_h
@@ -12,7 +12,7 @@
 
 namespace avianlidar
 {
-/// What a file is that is there and must not be read; empty for a regular one and for none.
+/// Reason why an existing file must not be read; empty for a regular or a missing file.
 inline std::string whyNotRegular(const std::string& file)
 {
   std::error_code ignored;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file vtkAvianLidarCells.h
- * @brief Makes cells, and checks those of others: filters take it for granted that the points of
- * cells are there, files and scripts may say anything. Not installed.
+ * @brief Makes cells, and checks cells of inputs: filters rely on valid point ids, but files and
+ * scripts may have any ids. Not installed.
  */
 #ifndef vtkAvianLidarCells_h
 #define vtkAvianLidarCells_h
@@ -18,7 +18,7 @@
 #include <numeric>
 #include <string>
 
-/// Cells of as many points each; their points are 0, 1, 2 and so on.
+/// Cells of `corners` points each; the points are 0, 1, 2 and so on.
 template <class Ids = vtkTypeInt64Array>
 vtkSmartPointer<vtkCellArray> vtkAvianLidarMakeCells(vtkIdType cells, vtkIdType corners)
 {
@@ -72,7 +72,7 @@ vtkSmartPointer<vtkCellArray> vtkAvianLidarMakeTriangles(const Triangles& triang
   return cells;
 }
 
-/// What is wrong with the places where cells begin; empty if nothing is. O(cells).
+/// An error text if the offsets of cells are bad, else an empty string. O(cells).
 inline std::string vtkAvianLidarOffsetsError(vtkCellArray* cells)
 {
   return !cells || cells->GetNumberOfCells() == 0 || cells->IsValid()
@@ -80,7 +80,7 @@ inline std::string vtkAvianLidarOffsetsError(vtkCellArray* cells)
     : "the offsets of its cells do not fit their points";
 }
 
-/// What is wrong with cells over so many points; empty if nothing is. O(points of cells).
+/// An error text if cells are bad for `points` points, else an empty string. O(points of cells).
 inline std::string vtkAvianLidarCellsError(vtkCellArray* cells, vtkIdType points)
 {
   if (!cells || cells->GetNumberOfCells() == 0)

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file vtkAvianLidarContent.h
- * @brief What data objects hold, and when it was modified. Not installed.
+ * @brief Finds whether data objects have changed, by modification times and hashes. Not installed.
  *
- * Whoever edits values in place may call Modified() on the array, on what holds it, or on the data
- * object: none of them tells the others. So caches look at times first, of everything at any level:
- * where all are those of the time before, nothing has changed. Where one is later, they look at the
- * content, and keep what is the same.
+ * A program that edits values in place may call Modified() on the array, on its container, or on
+ * the data object, and none of these notifies the others. So caches first compare the times of all
+ * objects at all levels: if all times are unchanged, the data are, too. If one time is later,
+ * caches compare the content, and keep the parts that are equal.
  */
 #ifndef vtkAvianLidarContent_h
 #define vtkAvianLidarContent_h
@@ -29,12 +29,11 @@ using State = std::vector<std::pair<const void*, vtkMTimeType>>;
 /// When a vtkPolyData or anything in it was last modified: fields, points, cells, their arrays.
 vtkMTimeType TimeOf(vtkPolyData* poly);
 
-/// A vtkPolyData, or a composite with all nodes, leaves and their names. Empty for want of memory:
-/// ranks ask it on their own before they agree.
+/// A vtkPolyData, or a composite with all nodes, leaves and their names. Empty if memory does not
+/// suffice, because ranks call the function before they agree.
 State StateOf(vtkDataObject* data);
 
-/// Hash of an array, may be null: its type, size and values. @param seed the hash of what comes
-/// before
+/// Hash of an array, may be null: its type, size and values. @param seed hash of the data before
 std::uint64_t HashOf(vtkDataArray* array, std::uint64_t seed);
 
 /// Hash of points and cells.

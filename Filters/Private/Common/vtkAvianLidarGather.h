@@ -21,7 +21,7 @@ namespace vtkAvianLidarGather
 vtkAvianLidarRanks::Outcome Points(const vtkAvianLidarRanks& ranks, vtkAlgorithm* self,
   vtkPointSet* mine, vtkSmartPointer<vtkPolyData>& all);
 
-/// The coordinates alone of the points of all ranks.
+/// Only the coordinates of the points of all ranks.
 vtkAvianLidarRanks::Outcome Coordinates(const vtkAvianLidarRanks& ranks, vtkAlgorithm* self,
   vtkPointSet* mine, vtkSmartPointer<vtkPolyData>& all);
 }

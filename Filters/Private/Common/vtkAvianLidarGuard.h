@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file vtkAvianLidarGuard.h
- * @brief What becomes of an execution that fails: an error message, empty outputs whose field data
- * `error` repeat it, and 0; with errors as data 1. Not installed.
+ * @brief Ends executions that fail with an error message, empty outputs whose field data `error`
+ * repeat the message, and 0, or 1 with errors as data. Not installed.
  *
- * Every RequestData passes here, alone by vtkAvianLidarGuarded() or together with other ranks by
- * vtkAvianLidarRanks::Execute(). VTK considers what has failed up to date, and at the next
- * update runs the next filter on its empty outputs. So each looks into its inputs for such an
- * `error` before it executes.
+ * Every RequestData runs in vtkAvianLidarGuarded() or, together with other ranks, in
+ * vtkAvianLidarRanks::Execute(). VTK considers a failed filter up to date, and at the next update
+ * runs the next filter on the empty outputs. So each filter checks its inputs for such an `error`
+ * before it executes.
  */
 #ifndef vtkAvianLidarGuard_h
 #define vtkAvianLidarGuard_h
@@ -26,7 +26,8 @@ namespace vtkAvianLidarGuard
 {
 constexpr char NoMemory[] = "There is not enough memory for this";
 
-/// The first input that is empty because its producer failed, and why; else nothing.
+/// An error text with the first input that is empty because its producer failed; else an empty
+/// string.
 std::string FailedInput(vtkAlgorithm* self);
 
 /// The problem as UTF-8, with a full stop.
@@ -35,15 +36,14 @@ std::string Sentence(const std::string& problem);
 /// Empty all outputs. @param error for their field data, if any
 void Empty(vtkInformationVector* outputs, const std::string& error = {});
 
-/// The end of an execution: if something is wrong, outputs are empty and say what.
+/// End an execution. If there is a problem, outputs are emptied and hold its text.
 /// @return what RequestData is to return
 int End(vtkInformationVector* outputs, const std::string& problem, bool errorsAsData);
 
-/// The end of an execution whose error cannot be kept for want of memory: empty outputs. @return 0
+/// End an execution whose error does not fit into memory: outputs are emptied. @return 0
 int GiveUp(vtkAlgorithm* self, vtkInformationVector* outputs);
 
-/// What is wrong: what the step returns, or what it throws. Nothing if it throws
-/// avianlidar::WorkStopped.
+/// The problem that a step returns or throws; an empty string if it throws avianlidar::WorkStopped.
 template <class Step>
 std::string ProblemOf(Step step)
 {
@@ -66,7 +66,7 @@ std::string ProblemOf(Step step)
 }
 }
 
-/// Run the body of a RequestData, which returns what is wrong, or nothing.
+/// Run the body of a RequestData, which returns an error text, or an empty string.
 template <class Filter, class Body>
 int vtkAvianLidarGuarded(Filter* self, vtkInformationVector* outputs, Body body)
 try

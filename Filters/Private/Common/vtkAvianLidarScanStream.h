@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file vtkAvianLidarScanStream.h
- * @brief When and where the clouds of a stream were scanned, for filters that remember. Not
+ * @brief Finds when and where the clouds of a stream were scanned, for filters with a memory. Not
  * installed.
  *
  * The time of a cloud, s: `DATA_TIME_STEP` of its information, else field data `TimeValue`, else
- * the start of its `revolution`, else the time before + 1 if it is another cloud or was made anew.
- * Steps of a revolution that sweeps (`steps_per_revolution` above 1) are one scan: their time is
- * the start of their revolution.
+ * the start of its `revolution`, else the time of the last cloud + 1 if the cloud is another one or
+ * was made anew. Steps of a sweeping revolution (`steps_per_revolution` above 1) are one scan,
+ * whose time is the start of the revolution.
  */
 #ifndef vtkAvianLidarScanStream_h
 #define vtkAvianLidarScanStream_h
@@ -21,16 +21,16 @@ class vtkDataObject;
 class vtkAvianLidarScanStream
 {
 public:
-  /// Read the time of a cloud; nothing is remembered yet. @return what is wrong, or nothing
+  /// Read the time of a cloud, without storing it. @return an error text, or an empty string
   std::string ReadTime(vtkDataObject* cloud, double& time) const;
 
-  /// The cloud, whose time was read, is the last one now.
+  /// Store the cloud and its time as the last ones.
   void Accept(vtkDataObject* cloud, double time);
 
   bool Begun() const { return this->Has; }
   double Time() const { return this->Last; } ///< time of the last cloud
 
-  /// Where the sensor was: field data `position` if there is, else `position` stays.
+  /// Read the position of the sensor from field data `position`; without these, `position` stays.
   /// @return what is wrong, or nothing
   static std::string ReadPosition(vtkDataObject* cloud, double position[3]);
 

@@ -12,7 +12,7 @@
 #include <cstdio>
 #include <string>
 
-/// The text as UTF-8: each byte that is none, and NUL, stands as \xE4. VTK's Python modules decode
+/// The text as UTF-8: each invalid byte, and NUL, is written like \xE4. VTK's Python modules decode
 /// messages, and lose one that they cannot decode.
 inline std::string vtkAvianLidarText(const std::string& text)
 {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file vtkAvianLidarCoverageOutput.h
- * @brief Coverage as VTK has it: arrays of places, echoes of what stands still, and sums over
- * places as a table, shares by region, species and height band. Not installed.
+ * @brief Converts coverage to VTK: arrays of places, echoes of the surfaces, and a table of shares
+ * by region, species and height band. Not installed.
  */
 #ifndef vtkAvianLidarCoverageOutput_h
 #define vtkAvianLidarCoverageOutput_h
@@ -28,7 +28,7 @@ class vtkTable;
 class vtkAvianLidarPlaceArrays
 {
 public:
-  /// @param poses whose probabilities are wanted; 0: none
+  /// @param poses number of poses with probabilities; 0: no array
   vtkAvianLidarPlaceArrays(vtkIdType places, int poses)
     : Probability(
         vtkAvianLidarArrays::Make<vtkFloatArray>(vtkAvianLidarArrays::DetectionProbability, places))
@@ -49,7 +49,7 @@ public:
     }
   }
 
-  /// Where the probabilities of a place's poses go.
+  /// Values for the probabilities of a place's poses.
   float* PosesOf(std::size_t place)
   {
     return this->Poses->GetPointer(
@@ -86,7 +86,8 @@ private:
   vtkSmartPointer<vtkUnsignedCharArray> Status;
 };
 
-/// The echoes of a scan without noise, and in which share of scans with noise each is perceived.
+/// Fill `clutter` with the echoes of a scan without noise and, for each, the share of scans with
+/// noise in which it is detected.
 void vtkAvianLidarFillClutter(
   const avianlidar::ScanResult& still, const vtkAvianLidarBeams& beams, vtkPolyData* clutter);
 
@@ -96,20 +97,20 @@ struct vtkAvianLidarCoverageTable
   std::vector<std::string> regions;
   std::vector<double> heightLimits; ///< m, rising
 
-  /// By species, region, height band; the first band lies below all limits.
+  /// Sums by species, region, height band; the first band lies below all limits.
   std::vector<avianlidar::CoverageShares> sums;
 
   std::size_t Bands() const { return this->heightLimits.size() + 1; }
   std::size_t Cells() const { return this->regions.size() * this->Bands(); } ///< cells of a species
 
-  /// Add the sums of all ranks up, on each of them.
+  /// Replace the sums by the sums over all ranks, on every rank.
   void SumOverRanks(const vtkAvianLidarRanks& ranks);
 
-  /// Its rows, see vtkAvianLidarCoverage. @param table empty
+  /// Fill in the rows, see vtkAvianLidarCoverage. @param table an empty table
   void Fill(vtkTable* table) const;
 };
 
-/// Words for each CoverageStatus.
+/// Name of each CoverageStatus.
 extern const char* const vtkAvianLidarCoverageStatusNames[avianlidar::CoverageShares::Statuses];
 
 #endif

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file vtkAvianLidarPlaces.h
- * @brief The places that coverage looks at, the points of a data set or of an image, and the
- * regions that they lie in. Not installed.
+ * @brief The places for which coverage is evaluated, which are the points of a data set or of an
+ * image, and the regions in which they lie. Not installed.
  */
 #ifndef vtkAvianLidarPlaces_h
 #define vtkAvianLidarPlaces_h
@@ -27,24 +27,24 @@ class vtkAvianLidarPlaces
 public:
   vtkAvianLidarPlaces() = default; ///< no place
 
-  /// How many points a data set has. VTK's own number of structured ones overflows.
+  /// Number of points of a data set. VTK's own number of structured points overflows.
   static double CountOf(vtkDataSet* points);
 
-  /// Points of a data set. Throws std::runtime_error that says what is wrong with it.
+  /// Take the points of a data set. Throws std::runtime_error if the data set is bad.
   explicit vtkAvianLidarPlaces(vtkDataSet* points);
 
-  /// What is wrong with a region and the distances of its points, which fill it from its lower
-  /// corner. @param bounds m @param spacing m
+  /// An error text if the region or the spacing of its points is bad, else an empty string. The
+  /// points fill the region from its lower corner. @param bounds m @param spacing m
   static std::string CheckRegion(const double bounds[6], const double spacing[3]);
 
   /// The extent of the image of these points.
   static void ExtentOf(const double bounds[6], const double spacing[3], int extent[6]);
 
-  /// Points of an image.
+  /// Take the points of an image.
   vtkAvianLidarPlaces(const int extent[6], const double origin[3], const double spacing[3]);
 
-  /// Say which part of structured points is that of the piece asked for, without ghosts: all of
-  /// what is asked for if there is one piece. @param info of the output
+  /// Set the part of structured points that belongs to the requested piece, without ghosts; with
+  /// one piece, the whole request. @param info information of the output
   void SetMine(vtkInformation* info);
 
   std::size_t Size() const;
@@ -53,7 +53,7 @@ public:
   /// False for ghosts; points where two structured pieces meet belong to the second.
   bool IsMine(std::size_t k) const;
 
-  /// Of all coordinates.
+  /// Hash of all coordinates.
   std::uint64_t Hash() const;
 
   const std::vector<std::string>& RegionNames() const { return this->Names; }

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file vtkAvianLidarEchoOutput.h
- * @brief Turns the kernel's echoes and beam report into vtkPolyData, and writes down what they were
- * made with. Not installed.
+ * @brief Turns the kernel's echoes and beam report into vtkPolyData, and writes the settings of the
+ * scan as field data. Not installed.
  */
 #ifndef vtkAvianLidarEchoOutput_h
 #define vtkAvianLidarEchoOutput_h
@@ -17,18 +17,18 @@ class vtkPolyData;
 
 namespace vtkAvianLidarEchoOutput
 {
-/// One vertex per return, with all its arrays. @param noise of the scan
+/// Fill in one vertex per return, with all arrays. @param noise noise of the scan
 void FillEchoes(const avianlidar::ScanResult& result, const vtkAvianLidarBeams& beams,
   const avianlidar::NoisePlan& noise, vtkPolyData* echoes);
 
 /**
- * A vertex for each beam, in their order: at its strongest return, or at the display length, m.
- * Point arrays: `beam_id`, `laser_id`, `azimuth`, 0.01 deg, and `vertical_angle`, deg, as the
- * echoes have them; `status` (BeamStatus; the active scalars), `view` (how its direct echo
- * was found), the counts `candidates`, `nodes_visited` and `rays_traced`, and `skipped`
- * (SkippedPart) with `skipped_bound`, J.
+ * Fill in a vertex for each beam, in the order of beams: at the strongest return, or else at the
+ * display length, m. Point arrays: `beam_id`, `laser_id`, `azimuth`, 0.01 deg, and
+ * `vertical_angle`, deg, as the echoes have them; `status` (BeamStatus; the active scalars), `view`
+ * (how the direct echo was found), the counts `candidates`, `nodes_visited` and `rays_traced`, and
+ * `skipped` (SkippedPart) with `skipped_bound`, J.
  *
- * @param result of a scan of `beams`: one report for each @param beams read without a problem
+ * @param result result of a scan, with one report for each beam @param beams read without a problem
  * @param noise of the scan
  * @param report empty
  */
@@ -36,8 +36,8 @@ void FillReport(const avianlidar::ScanResult& result, const vtkAvianLidarBeams& 
   const avianlidar::NoisePlan& noise, vtkPolyData* report);
 
 /**
- * A vertex for each mover that is present, where it is when the beam is fired that receives most of
- * it. Arrays: see vtkAvianLidarEchoFilter.
+ * Fill in a vertex for each mover that is present, at its position when the beam is fired that
+ * receives the most energy from it. Arrays: see vtkAvianLidarEchoFilter.
  *
  * @param reports of the setup's movers, from these beams @param result of the scan @param report
  * empty
@@ -46,8 +46,8 @@ void FillMovers(const avianlidar::ScanSetup& setup, const avianlidar::ScanBeams&
   const std::vector<avianlidar::MoverReport>& reports, const avianlidar::ScanResult& result,
   vtkPolyData* report);
 
-/// Everything needed to make the file again (`sceneChecksum`: SceneSummary::checksum of the
-/// surfaces), and the bounds on what was not modelled.
+/// Fill in everything that is needed to repeat the scan (`sceneChecksum`: SceneSummary::checksum of
+/// the surfaces), and the bounds on what was not modelled.
 void FillFields(const avianlidar::ScanSetup& setup, int preset, vtkFieldData* beamFields,
   const vtkAvianLidarMovers& movers, vtkFieldData* surfaceFields, std::uint64_t sceneChecksum,
   vtkFieldData* fields);

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file vtkAvianLidarImageArrays.h
- * @brief The arrays of a range image: of each cell what its echo and its beam say. Not installed.
+ * @brief Makes the arrays of a range image, with the values of each cell's echo and beam. Not
+ * installed.
  */
 #ifndef vtkAvianLidarImageArrays_h
 #define vtkAvianLidarImageArrays_h
@@ -23,12 +24,12 @@ class vtkPolyData;
 
 namespace vtkAvianLidarImageArrays
 {
-/// A point array of that many components, or a null pointer and what is wrong in `problem`.
+/// A point array with the given number of components, or null with an error text in `problem`.
 /// @param port what is said of the input
 vtkDataArray* Find(vtkPolyData* input, const vtkAvianLidarArrays::Name& name, const char* port,
   std::string& problem, int components = 1);
 
-/// What is wrong with the lengths of point arrays: each must have one value per point.
+/// An error text unless each point array has one value per point; else an empty string.
 std::string CheckLengths(vtkPolyData* input, const char* port);
 
 /// True for the whole numbers that an integer type holds.
@@ -39,21 +40,22 @@ bool Fits(double value)
   return value >= least && value < -least && value == std::floor(value);
 }
 
-/// What to say if it cannot.
+/// The error text if Fits() is false.
 std::string NoInteger(const vtkAvianLidarArrays::Name& name, const char* port, vtkIdType point);
 
-/// What the strongest echoes say. @param beamOfCell the beam that each cell shows, -1 where there
-/// is none @param strongest the echo of each beam, or -1 @param problem what is wrong, or untouched
+/// Add the arrays of the strongest echoes. @param beamOfCell beam of each cell, or -1 @param
+/// strongest strongest echo of each beam, or -1 @param problem error text; unchanged without an
+/// error
 void AddEchoes(vtkPolyData* echoes, const std::vector<vtkIdType>& beamOfCell,
   const std::vector<vtkIdType>& strongest, vtkImageData* image, std::string& problem);
 
-/// What beams say that are a beam report.
+/// Add the arrays of beams that are a beam report.
 void AddReport(vtkPolyData* beams, const std::vector<vtkIdType>& beamOfCell, vtkImageData* image,
   std::string& problem);
 
-/// Where output port 0 is an image whose field data hold an error: fill what is asked for of it
-/// with numbers that are none. VTK's imaging filters look for the extent that they were promised,
-/// and crash without it. @return false, after an error of `self`, for want of memory
+/// If output port 0 is an image whose field data hold an error, fill the requested extent with NaN.
+/// VTK's imaging filters read the announced extent, and crash without it. @return false, after an
+/// error of `self`, if memory does not suffice
 bool FillIfFailed(vtkAlgorithm* self, vtkInformationVector* outputs);
 }
 

@@ -18,7 +18,7 @@ class vtkPolyData;
 
 namespace vtkAvianLidarImageBeams
 {
-/// The beams as an image wants them. `Problem` is set when the input was bad.
+/// The beams of an image. `Problem` is set if the input was bad.
 struct Beams
 {
   avianlidar::ScanGrid Grid; ///< columns and rows of the image, and the cell of each beam
@@ -26,11 +26,11 @@ struct Beams
   std::string Problem;
 };
 
-/// Read beams. Their grid is that of the whole scan if all of them (or none: there are no beams)
-/// are beams of it, else their own.
+/// Read beams. The grid is the grid of the whole scan if all beams belong to that scan or if there
+/// are no beams. Otherwise the beams form their own grid.
 Beams Read(vtkPolyData* input, const vtkAvianLidarScanShape::WholeScan& whole);
 
-/// The same beams in the order of their ids, if they have ids.
+/// The beams in the order of their ids, if they have ids.
 vtkSmartPointer<vtkPolyData> InOrder(vtkPolyData* input);
 }
 

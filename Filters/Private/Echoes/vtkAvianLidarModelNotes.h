@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file vtkAvianLidarModelNotes.h
- * @brief What a scan left out and why, in sentences for who looks at its field data. Not installed.
+ * @brief Describes in sentences, for field data, what a scan left out and why. Not installed.
  *
- * They follow from the setup alone: a scan lit again says what a
- * fresh one does. What was left out of single beams stands in the beam report, as it depends on
- * what was known before.
+ * The notes follow only from the setup, so they are the same for a fresh scan and for one that is
+ * only lit again. The beam report says what was left out in each beam, because that depends on
+ * results kept from earlier scans.
  */
 #ifndef vtkAvianLidarModelNotes_h
 #define vtkAvianLidarModelNotes_h
@@ -17,13 +17,13 @@
 
 struct vtkAvianLidarModelNote
 {
-  const char* name; ///< name of the field array that holds it
+  const char* name; ///< name of the field array that holds the note
   std::string text; ///< one line; energies in J, ranges in m
 };
 
-/// One for each part of the model that may be left out, always in the same order.
-/// ParaView's Information panel shows the first strings of an array in one line, without anything
-/// between them: so each note is an array of its own.
+/// A note for each part of the model that may be left out, always in the same order. Each note is
+/// an array, because ParaView's Information panel shows the strings of an array in one line without
+/// anything between them.
 std::vector<vtkAvianLidarModelNote> vtkAvianLidarModelNotes(const avianlidar::ScanSetup& setup);
 
 #endif

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file vtkAvianLidarScanFilterInternals.h
- * @brief What filters of scans keep from one execution to the next. Not installed.
+ * @brief Holds the results that filters of scans keep from one execution to the next. Not
+ * installed.
  */
 #ifndef vtkAvianLidarScanFilterInternals_h
 #define vtkAvianLidarScanFilterInternals_h
@@ -25,7 +26,7 @@
 
 struct vtkAvianLidarScanFilter::vtkInternals
 {
-  /// Of the progress, for merging surfaces and building a tree.
+  /// Share of the progress for merging surfaces and building a tree.
   static constexpr double BuildShare = 0.1;
 
   avianlidar::ScanSetup Setup;
@@ -34,12 +35,12 @@ struct vtkAvianLidarScanFilter::vtkInternals
   vtkAvianLidarSurfaces Surfaces;
   vtkAvianLidarSurfaceExchange Exchange;       ///< exchange of surfaces between ranks
   std::vector<avianlidar::PlacedMedium> Media; ///< media of the surfaces
-  std::vector<std::string> MediaOf;            ///< their texts
+  std::vector<std::string> MediaOf;            ///< texts of these media
   avianlidar::LidarView MediaFor;              ///< view of the lidar
   avianlidar::SceneSummary Summary;            ///< summary of the surfaces
   std::shared_ptr<const avianlidar::CollisionTree> OwnTree;
   vtkAvianLidarContent::State State; ///< state of the surfaces merged last
-  const void* MergedBy = nullptr;    ///< ranks that merged them; null: one process
+  const void* MergedBy = nullptr;    ///< ranks that merged the surfaces; null: one process
   std::uint64_t Geometry = 0;        ///< checksum of the mesh
   std::uint64_t Scene = 0;           ///< checksum of mesh and materials
   vtkAvianLidarWarnings Warnings;
@@ -64,7 +65,7 @@ struct vtkAvianLidarScanFilter::vtkInternals
       return std::visit([&](auto of) { return static_cast<double>(self.*of); }, this->member);
     }
   };
-  /// Those of all filters of scans.
+  /// Properties that all filters of scans have.
   static const std::vector<Property>& Properties();
 
   static std::string WrongWithBeams(const std::string& what)
@@ -72,7 +73,7 @@ struct vtkAvianLidarScanFilter::vtkInternals
     return what.empty() ? what : "Input port 0 (beams), " + what;
   }
 
-  /// Note how far the execution came. @return true to go on
+  /// Note the outcome of the execution so far. @return true to go on
   bool GoOn(vtkAvianLidarRanks::Outcome outcome)
   {
     this->Last = outcome;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file vtkAvianLidarBirdTargets.h
- * @brief Birds as targets of a lidar: what they show of themselves from all sides. Not installed.
+ * @brief Birds as targets of a lidar: their silhouettes from all sides. Not installed.
  */
 #ifndef vtkAvianLidarBirdTargets_h
 #define vtkAvianLidarBirdTargets_h
@@ -23,14 +23,14 @@ public:
     std::shared_ptr<const avianlidar::TargetViews> Views;
   };
 
-  /// The targets that are wanted, the one shown first. Throws std::runtime_error that names the
-  /// property. @param species empty: one that always shows `area` @param area m^2; 0: that of the
-  /// species @param all whether all others that are known follow
+  /// The chosen targets; the one shown is the first. Throws std::runtime_error that names the
+  /// property. @param species empty: a target of `area` from all sides @param area m^2; 0: that of
+  /// the species @param all whether all other species follow
   std::vector<Target> Choose(const std::string& species, const std::string& speciesFileName,
     bool gliding, double area, bool all);
 
 private:
-  /// Kept from execution to execution.
+  /// A species with its targets, which are kept from one execution to the next.
   struct Bird
   {
     avianlidar::BirdSpecies Species;
@@ -41,7 +41,7 @@ private:
   const Target& TargetOf(const avianlidar::BirdSpecies& species, bool gliding, double area);
 
   std::vector<Bird> Known;
-  /// Without a species.
+  /// The target without a species.
   Target Point{ "", 0.0,
     std::make_shared<const avianlidar::TargetViews>(
       avianlidar::viewsOf({ avianlidar::Silhouette() })) };

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file vtkAvianLidarBirds.h
- * @brief Birds as surfaces with materials and names, and the species that are known. Not installed.
+ * @brief Makes birds as surfaces with materials and names, and reads tables of species. Not
+ * installed.
  */
 #ifndef vtkAvianLidarBirds_h
 #define vtkAvianLidarBirds_h
@@ -14,13 +15,13 @@
 #include <string>
 #include <vector>
 
-/// All throw std::runtime_error, which names the property.
+/// All functions throw std::runtime_error, which names the property.
 namespace vtkAvianLidarBirds
 {
-/// The text of a file. @param property the name of the property that holds the file's
+/// The text of a file. @param property property that holds the file name
 std::string TextOf(const char* property, const std::string& file);
 
-/// The species of a table of the user's, if there is a file, then those that are built in.
+/// The species of the user's table, if there is a file, then the built-in species.
 std::vector<avianlidar::BirdSpecies> KnownSpecies(const std::string& file);
 
 /// Index of the species that the property Species names.
@@ -30,7 +31,7 @@ void CheckReflectance(double reflectance);
 
 /// Body, left and right wing in the bird's frame (Bird.h), with the cell arrays `part`,
 /// `material_id` and the coefficients, and field data `material_names`.
-/// @param angle of the wings, rad
+/// @param angle angle of the wings, rad
 vtkSmartPointer<vtkPolyData> Surface(
   const avianlidar::BirdShape& shape, double angle, double reflectance);
 

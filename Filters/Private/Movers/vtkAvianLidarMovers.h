@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file vtkAvianLidarMovers.h
- * @brief Movers as the kernel wants them, from a vtkPolyData or a composite of it. Not installed.
+ * @brief Converts a vtkPolyData, or a composite of vtkPolyData, to movers for the kernel. Not
+ * installed.
  *
- * Each vtkPolyData is an object in a frame of its own. Its field data say where that frame is:
- * `pose_time` (n, s; may be missing if there is one pose, which then holds always), `pose_position`
+ * Each vtkPolyData is an object in a frame of its own. Its field data give the poses of this frame:
+ * `pose_time` (n, s; may be missing if there is one pose, which is then constant), `pose_position`
  * (n x 3, m), `pose_orientation` (n x 4, unit quaternion w, x, y, z; may be missing: not turned).
  * Parts that flap: cell array `part`, and field data `flap_hinge` (k x 3, m), `flap_axis` (k x 3),
- * `flap_amplitude` (k, rad), `flap_frequency` (k, Hz), `flap_phase` (k). Materials and ids as those
- * of surfaces.
+ * `flap_amplitude` (k, rad), `flap_frequency` (k, Hz), `flap_phase` (k). Materials and ids are
+ * given as for surfaces.
  */
 #ifndef vtkAvianLidarMovers_h
 #define vtkAvianLidarMovers_h
@@ -30,23 +31,23 @@ struct vtkAvianLidarMovers
 {
   std::shared_ptr<const std::vector<avianlidar::Mover>> movers; ///< null: none
   std::uint64_t checksum = 0; ///< checksum of all movers; 0 without any
-  /// Names by id, of the surfaces and the movers.
+  /// Names of objects by id, for surfaces and movers.
   std::vector<std::string> objectNames;
-  std::vector<std::string> objectClasses; ///< likewise; empty: none brings any
+  std::vector<std::string> objectClasses; ///< classes by object id; empty: no input has classes
   std::vector<std::string> materialNames;
 
   /// Read the movers of all ranks, which must all call it, unless nothing has changed. Ids of
-  /// movers are kept if all are beyond those of the surfaces, else they follow them. @param input
-  /// may be null @param surfaces whose ids and names come first
+  /// movers are kept if all are beyond the ids of the surfaces; otherwise new ids follow these.
+  /// @param input may be null @param surfaces surfaces, whose ids and names come first
   vtkAvianLidarRanks::Outcome Read(const vtkAvianLidarRanks& ranks, vtkAlgorithm* self,
     vtkDataObject* input, const vtkAvianLidarSurfaces& surfaces);
 
 private:
-  /// @param named the blocks come from other ranks, too, with their names as field data
+  /// @param named true if blocks also come from other ranks, with their names as field data
   std::string ReadAll(vtkDataObject* input, bool named, const vtkAvianLidarSurfaces& surfaces);
   vtkAvianLidarContent::State State;     ///< state of the input read last
   std::vector<std::string> SurfaceNames; ///< names of objects, then of classes and materials
-  const void* ReadBy = nullptr;          ///< ranks that read it
+  const void* ReadBy = nullptr;          ///< ranks that read the movers
   bool Known = false;
 };
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file vtkAvianLidarMedia.h
- * @brief Media of the air by visibility, rain rate or leaf area density, with the numbers of
- * media.json, and media of a scene, which travel as text. Not installed.
+ * @brief Makes media from visibility, rain rate or leaf area density by the numbers of media.json,
+ * and reads and writes the media of a scene as text. Not installed.
  *
  * The text of a medium, field data `medium` of its block, is JSON: see vtkAvianLidarMedium.
  */
@@ -21,42 +21,42 @@ class vtkPolyData;
 
 namespace vtkAvianLidarMedia
 {
-/// Haze, or fog where one sees no farther than it lets one. @param visibility m, above 0 @param
+/// Haze, or fog if the visibility is in the range of fog. @param visibility m, above 0 @param
 /// extinction at the lidar's wavelength, 1/m
 avianlidar::Medium HazeOf(double visibility, double extinction);
 
-/// @param rate mm/h, above 0 @param view of the lidar
+/// Rain. @param rate mm/h, above 0 @param view of the lidar
 avianlidar::Medium RainOf(double rate, const avianlidar::LidarView& view);
 
-/// A medium by its text: one, or one for each of its ellipsoids. Throws std::runtime_error, which
-/// names the medium and the key. @param view of the lidar
+/// The medium of a text: one, or one for each ellipsoid. Throws std::runtime_error, which names the
+/// medium and the key. @param view of the lidar
 std::vector<avianlidar::PlacedMedium> Read(
   const std::string& text, const avianlidar::LidarView& view);
 
-/// The surface that bounds a medium, with its text in field data. Throws as Read(). @param closed
-/// the surface of a medium of that shape, may be null @param size m, of what has no bounds
+/// The surface that bounds a medium, with the text in field data. Throws as Read(). @param closed
+/// surface of a medium bounded by a surface, may be null @param size side of an unbounded medium, m
 vtkSmartPointer<vtkPolyData> Surface(const std::string& text, vtkPolyData* closed, double size);
 
-/// Whether a leaf is a medium, and no surface.
+/// Whether a leaf is a medium and not a surface.
 bool IsMedium(vtkPolyData* leaf);
 
-/// The text of a leaf that is a medium, with the closed surface that bounds it if that is its
-/// shape; empty: it is none. Throws as Read().
+/// The text of a leaf that is a medium, with the closed surface if the medium is bounded by one;
+/// empty if the leaf is not a medium. Throws as Read().
 std::string TextOf(vtkPolyData* leaf, const std::string& name);
 
-/// Whether what a medium returns belongs to an object of its own: foliage. @param id that it has,
-/// or -1 @param name of it
+/// Whether echoes of a medium belong to an object of their own, as in foliage. @param id of the
+/// object, or -1 @param name of the object
 bool IsObject(const std::string& text, int& id, std::string& name);
 
 /// The text with a name and an object.
 std::string WithObject(const std::string& text, const std::string& name, int id);
 
-/// The text with ellipsoids about some points in place of its shape; as it is if there are none.
+/// The text with ellipsoids about `middles` as its shape; unchanged without points.
 /// @param sizes width and height of each, m
 std::string WithCrowns(
   const std::string& text, vtkPolyData* middles, const std::vector<std::array<double, 2>>& sizes);
 
-/// The text without its surface, for people.
+/// The text without its surface, for display.
 std::string InWords(const std::string& text);
 }
 

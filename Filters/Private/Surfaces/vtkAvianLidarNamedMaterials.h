@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file vtkAvianLidarNamedMaterials.h
- * @brief The named materials. Not installed.
+ * @brief Lists the named materials. Not installed.
  *
- * The index of those of the paper's Table 1 is their `material_id`. The others have an id where
- * they are used: behind those that are there already. Knows no VTK: newer VTK's headers rename the
- * namespace of the JSON library that the scene reader includes beside this file.
+ * The materials of the paper's Table 1 have their index as `material_id`. Other materials get the
+ * next free id when they are used. This file includes no VTK header: headers of newer VTK rename
+ * the namespace of the JSON library that the scene reader includes beside this file.
  */
 #ifndef vtkAvianLidarNamedMaterials_h
 #define vtkAvianLidarNamedMaterials_h
@@ -18,7 +18,7 @@ struct NamedMaterial
 {
   const char* name;
   avianlidar::Material material;
-  double colour[3]; ///< to look at: red, green, blue, 0 to 1
+  double colour[3]; ///< display colour: red, green, blue, 0 to 1
   const char* source;
 };
 
@@ -31,7 +31,7 @@ inline constexpr NamedMaterial NamedMaterials[] = {
   { "Glass", { 0.020, 0.852, 8046.0 }, { 0.55, 0.75, 0.85 }, Paper },
   { "Metal", { 0.075, 0.634, 6803.0 }, { 0.60, 0.63, 0.68 }, Paper },
   { "Wood", { 0.107, 0.100, 82.0 }, { 0.62, 0.44, 0.27 }, Paper },
-  // Kokaly et al. 2017, doi:10.3133/ds1035. Spectra tell no lobe: the reflectance is taken as
+  // Kokaly et al. 2017, doi:10.3133/ds1035. Spectra give no lobe: the reflectance is taken as
   // diffuse. No roughness of such ground was found.
   { "Concrete", { 0.3104, 0.0, 1.0, 0.35 }, { 0.66, 0.66, 0.64 },
     "USGS Spectral Library 7, 905 nm: Concrete GDS375 light grey road; roughness assumed" },

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file vtkAvianLidarSurfaceIds.h
- * @brief Ids, names and classes of the objects and materials of a scene, from those of its leaves.
+ * @brief Makes the ids, names and classes of a scene's objects and materials from the leaves' own.
  * Not installed.
  *
- * Object ids are kept when every leaf brings its own, no two leaves share one, and they are small
- * and not negative; otherwise they are given in leaf order. Materials are distinguished by name:
- * ids of different leaves need not agree. The classes of a scene as a whole count only where no
- * leaf brings any: a composite may have them from the first of its producers.
+ * Object ids are kept if every leaf has ids, no two leaves share one, and all ids are small and not
+ * negative; otherwise ids are assigned in leaf order. Materials are distinguished by name: ids of
+ * different leaves need not agree. The classes in the scene's own field data count only if no leaf
+ * has classes: a composite may have copied them from the first of its producers.
  */
 #ifndef vtkAvianLidarSurfaceIds_h
 #define vtkAvianLidarSurfaceIds_h
@@ -24,25 +24,26 @@ class vtkAvianLidarSurfaceIds
 {
 public:
   std::vector<std::string> ObjectNames;   ///< by object id
-  std::vector<std::string> ObjectClasses; ///< likewise; empty: none brings any
+  std::vector<std::string> ObjectClasses; ///< classes by object id; empty: no leaf has any
   std::vector<std::string> MaterialNames; ///< by material id
 
-  /// @param sceneFields of the whole input, may be null; must outlive this
+  /// @param sceneFields field data of the whole input, may be null; must outlive this object
   void Begin(vtkFieldData* sceneFields, const std::vector<vtkAvianLidarSurfaceLeaf>& leaves);
 
-  /// A leaf without triangles may be an object all the same.
+  /// Add the object of a leaf without triangles, if the leaf is an object.
   void AddEmptyLeaf(const vtkAvianLidarSurfaceLeaf& leaf);
 
-  /// Id in the scene of an object of a leaf, asked for once. @param poly the leaf, triangulated
-  /// @param local its id there @param rank number of objects of the leaf that were asked for before
+  /// Id in the scene of an object of a leaf; to be called once per object. @param poly the leaf,
+  /// triangulated
+  /// @param local id in the leaf @param rank number of earlier calls for the leaf
   int AddObject(
     const vtkAvianLidarSurfaceLeaf& leaf, vtkPolyData* poly, int local, std::size_t rank);
 
-  /// Id in the scene of a medium that is an object. @param wanted taken where ids are kept; -1: a
-  /// new one
+  /// Id in the scene of a medium that is an object. @param wanted id, used if ids are kept; -1: a
+  /// new id
   int AddMedium(const std::string& name, int wanted);
 
-  /// Id in the scene of a material of a leaf. @param local its id there, negative if it has none
+  /// Id in the scene of a material of a leaf. @param local id in the leaf, negative if it has none
   int MaterialOf(vtkPolyData* poly, int local);
 
 private:

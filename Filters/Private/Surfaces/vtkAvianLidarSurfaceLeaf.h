@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file vtkAvianLidarSurfaceLeaf.h
- * @brief One vtkPolyData of a scene: found, triangulated, its arrays checked. Not installed.
+ * @brief Collects the vtkPolyData of a scene, triangulates them and checks their arrays. Not
+ * installed.
  */
 #ifndef vtkAvianLidarSurfaceLeaf_h
 #define vtkAvianLidarSurfaceLeaf_h
@@ -20,14 +21,14 @@
 class vtkDataObject;
 class vtkPolyData;
 
-/// The cell arrays of a leaf; null where it has none.
+/// The cell arrays of a leaf; null for missing arrays.
 struct vtkAvianLidarSurfaceArrays
 {
   vtkDataArray* object = nullptr;
   vtkDataArray* material = nullptr;
   vtkDataArray* coefficients[std::size(avianlidar::MaterialCoefficients)] = {};
   vtkUnsignedCharArray* ghosts = nullptr;
-  const char* notNumeric = nullptr; ///< name of one that holds no numbers
+  const char* notNumeric = nullptr; ///< name of an array without numbers; null: none
 
   vtkAvianLidarSurfaceArrays() = default;
   explicit vtkAvianLidarSurfaceArrays(vtkPolyData* poly);
@@ -37,7 +38,7 @@ struct vtkAvianLidarSurfaceArrays
 
   bool IsGhost(vtkIdType cell) const { return this->ghosts && this->ghosts->GetValue(cell); }
 
-  /// All but ghosts.
+  /// All arrays but ghosts.
   std::vector<vtkDataArray*> Numbers() const;
 };
 
@@ -46,36 +47,36 @@ struct vtkAvianLidarSurfaceLeaf
   vtkPolyData* data = nullptr;
   std::string name;       ///< name of the block; empty for a vtkPolyData that is the whole scene
   unsigned int index = 0; ///< flat index of the block; 0 for a vtkPolyData that is the whole scene
-  bool named = false;     ///< by the composite; else by its number
+  bool named = false;     ///< true if the composite has the name; else it is a number
 
-  /// The name of a block without one. @param number among the leaves
+  /// The name of a block that has no name in the composite. @param number of the leaf
   static std::string NameOfBlock(std::size_t number) { return "block " + std::to_string(number); }
 
-  /// The vtkPolyData of a scene in leaf order; `problem` says what else was found.
+  /// The vtkPolyData of a scene in leaf order; `problem` says if data of other types were found.
   static std::vector<vtkAvianLidarSurfaceLeaf> Collect(vtkDataObject* input, std::string& problem);
 
   /// "surfaces, block 'name': what"
   std::string Message(const std::string& what) const;
 
-  /// What is wrong with its cells or their arrays; empty if nothing is.
+  /// An error text if the cells or their arrays are bad, else an empty string.
   std::string Check(const vtkAvianLidarSurfaceArrays& arrays) const;
 
-  /// Empty, or what is suspicious: points in single precision so far from the origin that
-  /// neighbours are 4 mm apart or more.
+  /// A warning if points in single precision lie so far from the origin that neighbouring numbers
+  /// are 4 mm apart or more; else an empty string.
   std::string WarningOnPoints() const;
 
-  /// True if it has no cells but triangles.
+  /// True if all cells are triangles.
   bool IsTriangulated() const;
 
-  /// About how many triangles its polygons and strips are.
+  /// Approximate number of triangles in the polygons and strips.
   std::size_t NumberOfTriangles() const;
 
-  /// Its polygons and strips as triangles; vertices and lines are dropped, and so are polygons and
-  /// strips of fewer than three points. Its own data if it is triangulated.
+  /// The polygons and strips as triangles; vertices, lines, and polygons and strips of fewer than
+  /// three points are dropped. Returns `data` itself if it is triangulated.
   vtkSmartPointer<vtkPolyData> Triangulated() const;
 };
 
-/// An array of numbers of any type; those of doubles and ints are read without a call for each.
+/// An array of numbers of any type. Doubles and ints are read without a virtual call per value.
 class vtkAvianLidarColumn
 {
 public:
@@ -94,13 +95,13 @@ private:
   const int* Ints;
 };
 
-/// The materials of the cells of a leaf that has some.
+/// The materials of the cells of a leaf with material arrays.
 class vtkAvianLidarMaterialColumns
 {
 public:
   explicit vtkAvianLidarMaterialColumns(const vtkAvianLidarSurfaceArrays& arrays);
-  /// In place: with materials returned by value, loops over cells take twice as long. A coefficient
-  /// without an array stays as it is.
+  /// Write the material of a cell into `material`; returning it by value would double the time of
+  /// loops over cells. A coefficient without an array does not change.
   void Read(vtkIdType cell, avianlidar::Material& material) const
   {
     for (std::size_t k = 0; k < std::size(this->Columns); ++k)

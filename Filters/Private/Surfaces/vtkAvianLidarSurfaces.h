@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file vtkAvianLidarSurfaces.h
- * @brief Surfaces as the kernel wants them: any vtkPolyData or composite of them becomes one
- * triangle mesh with a material on every triangle. Used by the collision tree and the echo filter;
- * not installed.
+ * @brief Converts surfaces for the kernel: any vtkPolyData or composite of vtkPolyData becomes one
+ * triangle mesh with a material on every triangle. The collision tree and the echo filter use it.
+ * Not installed.
  */
 #ifndef vtkAvianLidarSurfaces_h
 #define vtkAvianLidarSurfaces_h
@@ -26,7 +26,7 @@ class vtkFieldData;
 class vtkPolyData;
 struct vtkAvianLidarSurfaceLeaf;
 
-/// The merged scene. `problem` is set, and nothing else is to be used, when the input was bad.
+/// The merged scene. If the input was bad, `problem` is set, and no other member is valid.
 struct vtkAvianLidarSurfaces
 {
   std::shared_ptr<const avianlidar::TriangleMesh> mesh;
@@ -38,40 +38,40 @@ struct vtkAvianLidarSurfaces
   avianlidar::SharedVector<int> objectIds;                  ///< one per triangle
   avianlidar::SharedVector<int> materialIds;                ///< one per triangle
   std::vector<std::string> objectNames;                     ///< by object id
-  std::vector<std::string> objectClasses;                   ///< likewise; empty: none brings any
+  std::vector<std::string> objectClasses;                   ///< by object id; empty: none given
   std::vector<std::string> materialNames;                   ///< by material id
-  std::vector<std::string> media; ///< texts (vtkAvianLidarMedia.h), which are no surfaces
+  std::vector<std::string> media; ///< texts of media (vtkAvianLidarMedia.h), which are not surfaces
   struct Range
   {
     std::size_t begin, end; ///< [begin, end)
   };
-  std::vector<Range> leaves; ///< triangles of each leaf, as long as these keep their order
+  std::vector<Range> leaves; ///< triangles of each leaf if triangles keep their order
   std::string problem;       ///< what is wrong with the input, and where
-  std::string warning;       ///< suspicious but usable: to be said once per scene
+  std::string warning;       ///< warning about suspicious input, to be given once per scene
 
-  /// Merge every vtkPolyData of `input` (itself or the leaves of a composite). Triangles are sorted
-  /// (TriangleOrder.h), so that surfaces give the same echoes however they are divided. Ghost
-  /// cells, vertices and lines are skipped; polygons and strips are triangulated.
-  /// @param known an earlier result, may be null: its mesh, materials and ids are shared where the
-  /// values are the same @param threads that check the leaves, > 0, or 0 for all
+  /// Merge every vtkPolyData of `input` (`input` itself or the leaves of a composite). Triangles
+  /// are sorted (TriangleOrder.h), so that surfaces give the same echoes however they are divided.
+  /// Ghost cells, vertices and lines are skipped; polygons and strips are triangulated.
+  /// @param known earlier result, may be null, whose mesh, materials and ids are shared if the
+  /// values are equal @param threads number of threads that check the leaves, > 0, or 0 for all
   static vtkAvianLidarSurfaces Merge(
     vtkDataObject* input, const vtkAvianLidarSurfaces* known = nullptr, int threads = 0);
 
-  /// Merge leaves that were collected already. @param fields that come with all of them, may be
+  /// Merge leaves that were collected already. @param fields field data of the whole scene, may be
   /// null @param keepsOrder if true, triangles are in the order of leaves and cells
   static vtkAvianLidarSurfaces Merge(const std::vector<vtkAvianLidarSurfaceLeaf>& leaves,
     vtkFieldData* fields, const vtkAvianLidarSurfaces* known, int threads, bool keepsOrder);
 
-  /// The same as one vtkPolyData: double points, triangles, ids and coefficients, names and
-  /// `fields` besides, if not null.
+  /// The merged scene as one vtkPolyData: double points, triangles, ids and coefficients, names,
+  /// and `fields` if not null.
   vtkSmartPointer<vtkPolyData> ToPolyData(vtkFieldData* fields) const;
 
-  /// A warning that names objects whose faces coincide; empty without any. @param pairs of
-  /// triangles, the first of each is seen
+  /// A warning that names objects whose faces coincide; empty if no faces do. @param pairs of
+  /// triangles, of which the first is visible
   std::string WarningOnCoincidence(
     const std::vector<std::pair<std::uint32_t, std::uint32_t>>& pairs) const;
 
-  /// What Merge() would make of ToPolyData().
+  /// The result that Merge() would return for ToPolyData().
   vtkAvianLidarSurfaces MergedAgain() const;
 };
 

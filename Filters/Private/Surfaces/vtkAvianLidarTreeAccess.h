@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file vtkAvianLidarTreeAccess.h
- * @brief How a collision tree travels with a vtkPolyData, within one process: by reference. Not
+ * @brief Attaches a collision tree to a vtkPolyData by reference, within one process. Not
  * installed.
  */
 #ifndef vtkAvianLidarTreeAccess_h
@@ -25,7 +25,7 @@ public:
   vtkTypeMacro(vtkAvianLidarTreeHolder, vtkObject);
   std::shared_ptr<const avianlidar::CollisionTree> Tree;
   std::shared_ptr<const vtkAvianLidarSurfaces> Surfaces;
-  const void* Original = nullptr; ///< the vtkPolyData that they are
+  const void* Original = nullptr; ///< vtkPolyData to which they were attached
   vtkMTimeType Time = 0;          ///< when anything in it was modified last
 
 protected:
@@ -39,7 +39,7 @@ private:
 
 namespace vtkAvianLidarTreeAccess
 {
-/// Remove every trace of a tree, as that of another geometry would be stale.
+/// Remove a tree and its field array, as a tree of another geometry would be stale.
 void Detach(vtkDataObject* surfaces);
 
 /// Attach by reference: field array `tree_checksum` whose information holds the tree, and with it
@@ -48,14 +48,14 @@ void Detach(vtkDataObject* surfaces);
 void Attach(vtkPolyData* surfaces, std::shared_ptr<const avianlidar::CollisionTree> tree,
   std::shared_ptr<const vtkAvianLidarSurfaces> merged);
 
-/// The merged surfaces that came with `surfaces`, if those are the very output of the tree filter
-/// and nothing in it was modified since; else null, as only a look at the content can tell.
+/// The merged surfaces that came with `surfaces`, if `surfaces` is the output object of the tree
+/// filter and was not modified since; else null, as only the content can then be compared.
 std::shared_ptr<const vtkAvianLidarSurfaces> FindMerged(vtkDataObject* surfaces);
 
 struct Found
 {
-  std::shared_ptr<const avianlidar::CollisionTree> tree; ///< null: none that fits
-  bool stale = false;                                    ///< one was there, but of another geometry
+  std::shared_ptr<const avianlidar::CollisionTree> tree; ///< null: no tree fits
+  bool stale = false;                                    ///< the tree was of another geometry
 };
 
 /// The tree that came with `surfaces`, if it is of the mesh with this checksum.

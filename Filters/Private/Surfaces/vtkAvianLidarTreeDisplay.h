@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file vtkAvianLidarTreeDisplay.h
- * @brief The bounding volumes of one level of a collision tree as a surface to look at. Not
+ * @brief Makes a surface of the bounding volumes of one level of a collision tree, for display. Not
  * installed.
  */
 #ifndef vtkAvianLidarTreeDisplay_h

@@ -3,24 +3,25 @@
  * @file BeamCells.h
  * @brief Samples of a beam that many triangles enter, from a grid of cells and rays.
  *
- * 1. The disc is divided into 4 x 4 cells, and these again. The surfaces in the list of a cell are
- * tested against its sixteen children at once (CellLanes.h). A child keeps a surface unless a side
- * of the surface separates the two or another surface covers the child in front of it.
+ * 1. The disc is divided into 4 x 4 cells, and each cell again. The surfaces in the list of a cell
+ * are tested against its sixteen children at once (CellLanes.h). A child keeps a surface unless a
+ * side of the surface separates it from the child, or another surface covers the child in front of
+ * it.
  * 2. A cell that one surface covers within one strip (RangeStrips.h) is one exact sample.
- * 3. Every other cell of the last level holds 16 m^2 jittered rays, one in each square of a grid,
- * which are tested against its list alone.
+ * 3. Every other cell of the last level holds 16 m^2 jittered rays, one in each square of a grid.
+ * These rays are tested only against the list of the cell.
  *
- * N alone fixes the density of rays (densityOfCells()), so that nothing is biased by what the first
- * rays missed. A cell gets more rays, or is divided further, if it holds an object on which fewer
- * than CellDensity::raysOnObject() would fall. A cell that may hold the middle of a specular lobe
- * is divided, too.
+ * N alone fixes the density of rays (densityOfCells()), so that surfaces that the first rays miss
+ * cause no bias. A cell gets more rays, or is divided further, if it holds an object on which fewer
+ * than CellDensity::raysOnObject() rays would fall. A cell that may hold the middle of a specular
+ * lobe is divided, too.
  *
  * Source: Warnock, "A Hidden Surface Algorithm for Computer Generated Halftone Pictures", 1969, for
- * the division; Catmull, 1978, for lists that are shorter the smaller the cell.
- * Differs: the smallest cells hold stratified rays, which have a standard error, and not pixels.
- * Valid: any triangles. Samples depend on the beam, the triangles that enter its disc and their
- * object ids, not on the order of the triangles, their materials or the tree. Specular lobes are
- * resolved up to exponents of about 1e8 in a beam of 5.6 mrad.
+ * the division; Catmull, 1978, for lists that are shorter in smaller cells.
+ * Differs: the smallest cells hold stratified rays, which have a standard error, instead of pixels.
+ * Valid: any triangles. Samples depend only on the beam, the triangles that enter its disc and
+ * their object ids, not on the order of the triangles, their materials or the tree. Specular lobes
+ * are resolved up to exponents of about 1e8 in a beam of 5.6 mrad.
  * Test: TestBeamCells.cxx, TestCellErrors.cxx, TestBird.cxx.
  */
 #ifndef avianlidar_BeamCells_h
@@ -41,7 +42,8 @@
 
 namespace avianlidar
 {
-/// Cells of a beam with more triangles have no lists: its rays go through the tree.
+/// Largest number of triangles of a beam whose cells have lists. The rays of other beams are traced
+/// through the tree.
 constexpr std::size_t MostTrianglesOfCells = 2000;
 
 /// Smallest share of the disc, by the area of its triangles, for which an object gets more rays.
@@ -59,18 +61,19 @@ public:
     std::uint64_t beam, const BeamFrame& frame, const std::vector<const BeamSurface*>& entering);
 
   /// Keep only the triangles of small objects, which alone decide where the rays of place() lie.
-  /// The input, maybe of millions, must contain every triangle that enters the beam.
+  /// The input, often millions of triangles, must contain every triangle that enters the beam.
   void keepSmallObjects(
     std::uint64_t beam, const BeamFrame& frame, std::vector<std::uint32_t>& numbers);
 
-  /// Place the rays of a beam that too many triangles enter for lists. Its cells are divided as
-  /// small objects need it, and the rays must be traced through the tree.
-  /// @param numbers triangles in any order, with all of small objects; changed
+  /// Place the rays of a beam with too many triangles for lists. Its cells are divided as small
+  /// objects require, and its rays must be traced through the tree.
+  /// @param numbers triangles in any order, with all triangles of small objects; changed
   /// @return valid until the next beam
   const BeamRays& place(
     std::uint64_t beam, const BeamFrame& frame, std::vector<std::uint32_t>& numbers);
 
-  /// The samples of these rays, or null. @param triangles hit by the rays; NoTriangle: none
+  /// The samples of the rays of place(), or null. @param triangles nearest triangle of each ray, or
+  /// NoTriangle
   std::unique_ptr<CellSamples> find(const std::uint32_t* triangles);
 
 private:
@@ -78,7 +81,7 @@ private:
   {
     int level;
     std::uint32_t column, row; ///< place among 4^level
-    float occluder;            ///< CellSurface::inverse of what covers it; 0: nothing does
+    float occluder;            ///< CellSurface::inverse of the surface that covers it; 0: none
     double x, y, width;        ///< corner and side, half-beamwidths
     double area;               ///< area of its part in the beam, half-beamwidths squared
   };
@@ -128,12 +131,12 @@ private:
   double ShareOfArea = 0.0;
   double LeastShare = LeastShareOfObject; ///< least share of a small object
   bool HasObjects = false;                ///< whether small objects enter the disc
-  bool HasFeet = false;                   ///< whether middles of specular lobes may lie in it
+  bool HasFeet = false;                   ///< whether middles of specular lobes may be in the disc
   std::vector<CellSurface> Surfaces;      ///< `All` in single precision
   std::vector<std::pair<int, std::uint64_t>> Objects; ///< id and area of each, after sumObjects()
   std::vector<int> Large;                             ///< ids of objects known to be large
   std::vector<Level> Levels;
-  std::vector<std::uint64_t> MetIn; ///< last traced cell in which a ray met it, by surface
+  std::vector<std::uint64_t> MetIn; ///< last traced cell in which a ray met a surface
   std::uint64_t Traced = 0;         ///< number of cells traced so far, in all beams
   bool TooMany = false;             ///< whether there are too many strips or blocks of rays
   RangeStrips Strips;

@@ -6,7 +6,8 @@
  *
  * Source: Pineda, "A Parallel Algorithm for Polygon Rasterization", SIGGRAPH 1988.
  * Differs: single precision in the beam's plane, whose coordinates are at most 1 in the disc. A
- * side of two triangles has opposite signs in them, bit for bit, so no ray passes between them.
+ * side that two triangles share has opposite signs in them, bit for bit, so no ray passes between
+ * them.
  * Valid: sides are accurate to 1e-6 half-beamwidths. Surfaces whose 1/z differ by less than
  * CellSurface::slack may be seen in the wrong order. Products are not fused: all instruction sets
  * give the same bits.
@@ -26,19 +27,20 @@ struct CellSurface
 {
   float lines[4][3];
   float slopes[4];    ///< |x| + |y| of each side
-  float inverse[3];   ///< 1/z over its largest value in the beam
+  float inverse[3];   ///< 1/z, divided by its largest value in the beam
   float inverseSlope; ///< |x| + |y| of `inverse`
   float most;         ///< upper bound of `inverse`
   float slack;        ///< bound of the rounding of `inverse`
-  float share;        ///< share of the beam that its small object fills; 0: of no small object
-  float foot[2];      ///< where a ray meets the plane at right angles: middle of the specular lobe
+  float share;        ///< share of the beam that its small object fills; 0: no small object
+  float foot[2];      ///< foot of the perpendicular from the apex: middle of the specular lobe
 };
 
 /// Sixteen children of a cell, four by four.
 struct CellChildren
 {
   float x, y, width; ///< corner of the first child, and side of each, half-beamwidths
-  /// CellSurface::inverse of what covers each child and hides all behind it; infinity: skip it.
+  /// CellSurface::inverse of the surface that covers each child and hides all behind it; infinity:
+  /// the child is skipped.
   float occluders[CellLanes];
   std::uint32_t counts[CellLanes]; ///< lengths of `lists`
   std::uint32_t* lists[CellLanes]; ///< numbers of surfaces; each list has room for all

@@ -3,16 +3,17 @@
  * @file RangeStrips.h
  * @brief Samples of a beam in cells: sums over its rays by strips of range and incidence.
  *
- * On a plane the range gives the angle of incidence. So the rays of a triangle within a strip of
- * ranges are one sample, at their mean range. A strip lies between two ranges at which a pulse
- * begins to enter a range unit or to leave it: in between the unit's share of the pulse is linear
- * in the range. Strips are divided further by the angle of incidence, for specular lobes.
+ * On a plane the range gives the angle of incidence. The rays of a triangle within a strip of
+ * ranges are therefore one sample, at their mean range. A strip lies between two ranges at which a
+ * pulse begins to enter a range unit or to leave it. Between these ranges the unit's share of the
+ * pulse is linear in the range. Strips are divided further by the angle of incidence, for specular
+ * lobes.
  *
  * Source: none.
  * Differs: the strata of the standard error are a ray and one of two neighbours in a square of
- * four. Neighbours differ more than rays of one stratum, so that the estimate is rather too large.
- * addVariance() adds surfaces that no ray of a cell met.
- * Valid: at most four million strips of a beam. All widths of lanes give the same bits.
+ * four. Neighbours differ more than rays of one stratum, so the estimate tends to be too large.
+ * addVariance() accounts for surfaces that no ray of a cell met.
+ * Valid: at most four million strips of a beam. Lanes of any width give the same bits.
  * Test: TestBeamCells.cxx, TestCellErrors.cxx.
  */
 #ifndef avianlidar_RangeStrips_h
@@ -33,7 +34,7 @@
 
 namespace avianlidar
 {
-/// Largest length of a strip, over its range.
+/// Largest length of a strip, divided by its range.
 constexpr double MostOfRange = 0.02;
 
 /// Samples of a beam by cells.
@@ -44,10 +45,10 @@ struct CellSamples
   std::vector<double> variance;      ///< variance of the weight of each sample
   /// Variance of the weight that may move to a neighbouring sample of the same range unit.
   std::vector<double> moves;
-  std::vector<double> halves; ///< part of `moves` over diagonals of quadrilaterals; empty if none
+  std::vector<double> halves; ///< part of `moves` across diagonals of quadrilaterals; or empty
   /// The visible surfaces with hidden parts; null if two reflections are not asked for.
   std::unique_ptr<VisiblePolygons> surfaces;
-  bool isCrowded = false; ///< whether its rays went through the tree (MostTrianglesOfCells)
+  bool isCrowded = false; ///< whether rays were traced through the tree (MostTrianglesOfCells)
 
   std::size_t bytes() const
   {
@@ -58,7 +59,7 @@ struct CellSamples
       sizeof(double);
   }
 
-  /// Standard error, J, of the energy in some range units. @param shares the samples' come first
+  /// Standard error, J, of the energy in some range units. @param shares shares, the samples' first
   double errorOf(const RangeShares& shares, const ScanSetup& setup) const;
 };
 
@@ -81,7 +82,7 @@ class RangeStrips
 public:
   explicit RangeStrips(const ScanSetup& setup);
 
-  /// @param surfaces that rays may meet; they must live until collect()
+  /// @param surfaces surfaces that rays may meet; they must live until collect()
   void begin(const BeamFrame& frame, const std::vector<const BeamSurface*>& surfaces);
 
   /// Add a square inside the disc that one surface covers. @param share share of the pulse
@@ -92,7 +93,8 @@ public:
   /// @return false if there are too many strips
   bool add(const CellRays& rays, double share);
 
-  /// Add to the variance of the strip of a ray that add() took. @param at where it met the surface
+  /// Add to the variance of the strip of a ray that add() took. @param at point where the ray met
+  /// the surface
   void addVariance(std::uint32_t surface, const PlanePoint& at, double variance);
 
   std::unique_ptr<CellSamples> collect();

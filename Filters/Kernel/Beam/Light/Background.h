@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file Background.h
- * @brief Daylight in a beam: from the sky, and from surfaces lit by sky and sun.
+ * @brief Daylight in a beam, from the sky and from surfaces that sky and sun light.
  *
  * The part of the beam that no surface fills has the radiance L of the sky. A surface has the
  * radiance rho (L + E max(0, cos)/pi): rho = kd + ks is its reflectance, E the spectral irradiance

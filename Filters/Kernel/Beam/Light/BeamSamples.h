@@ -2,7 +2,7 @@
 /**
  * @file BeamSamples.h
  * @brief Weighted samples of the surfaces that a beam sees, surface by surface. Energies, range
- * units, labels and paths over two reflections follow from the samples alone.
+ * units, labels and paths with two reflections follow only from the samples.
  *
  * Samples are rays of the beam, nodes of an integral over visible polygons, or strips of cells.
  *
@@ -32,7 +32,7 @@ constexpr double surfaceMargin(double range)
 /// Marks a path that does not end at a sample.
 constexpr std::uint32_t NoSample = 0xffffffffu;
 
-/// 28 bytes a sample, 8 a surface.
+/// Samples of a beam, with 28 bytes a sample and 8 bytes a surface.
 struct BeamSamples
 {
   /// Samples on a triangle: from the end of the previous surface to `end`.
@@ -81,14 +81,14 @@ struct BeamSamples
   }
 };
 
-/// Directions and normals of samples, in their order. Only paths over two reflections need them.
+/// Directions and normals of samples, in their order. Only paths with two reflections need them.
 struct SampleGeometry
 {
   struct Surface
   {
     std::uint32_t triangle;
     Vec3 normal;   ///< unit, towards the apex
-    double height; ///< distance of its plane from the apex, m
+    double height; ///< distance of the plane from the apex, m
   };
   std::vector<double> dx, dy, dz;     ///< unit directions
   std::vector<double> nx, ny, nz;     ///< normals of the surfaces at the samples

@@ -3,16 +3,16 @@
  * @file BeamTriangles.h
  * @brief The triangles that enter a beam's disc, set up in the beam's plane, nearest first.
  *
- * The beam fills the unit disc of its plane (BeamFrame.h). There a triangle is the intersection of
- * the half-planes of its edge functions (TriangleTest.h), and 1/z of its points is an affine
- * function, z being the distance along the axis. Triangles are set up eight at a time, in SIMD
- * lanes. Two triangles with consecutive numbers become one surface if they form a convex
+ * The beam fills the unit disc of its plane (BeamFrame.h). In this plane a triangle is the
+ * intersection of the half-planes of its edge functions (TriangleTest.h), and 1/z of its points is
+ * an affine function, with z the distance along the axis. Triangles are set up eight at a time, in
+ * SIMD lanes. Two triangles with consecutive numbers become one surface if they form a convex
  * quadrilateral in one plane, but for the rounding of scene coordinates. Triangles that share a
- * plane (CoincidentFaces.h) have the same 1/z, and are in the order of their numbers.
+ * plane (CoincidentFaces.h) have the same 1/z, and are sorted by number.
  *
  * Source: Pineda, "A Parallel Algorithm for Polygon Rasterization", SIGGRAPH 1988, for half-planes.
- * Differs: the plane is across a beam's axis, and has the unit disc instead of pixels.
- * Valid: any triangles. The result depends on the beam and the triangles that enter the disc alone,
+ * Differs: the plane lies across a beam's axis, and the unit disc takes the place of pixels.
+ * Valid: any triangles. The result depends only on the beam and the triangles that enter the disc,
  * not on their order. A triangle that overlaps the disc by less than rounding may be left out.
  * Test: TestVisiblePolygons.cxx, TestBeamCells.cxx.
  */
@@ -84,7 +84,7 @@ struct BeamSurface : PlaneSurface
 class BeamTriangles
 {
 public:
-  /// @param most largest number of triangles that are set up; beyond it numbers alone are kept
+  /// @param most largest number of triangles that are set up; of more only the numbers are kept
   explicit BeamTriangles(
     const SceneTriangles& scene, std::size_t most = std::numeric_limits<std::size_t>::max())
     : Scene(scene)
@@ -94,13 +94,13 @@ public:
 
   void begin(const BeamFrame& frame);
 
-  /// Add triangles, in any order, each once. All that may enter the cone must be added.
+  /// Add triangles, in any order, each once. Every triangle that may enter the cone must be added.
   void add(const std::uint32_t* triangles, std::size_t count);
 
   /// Call it after the last triangle. @return number of triangles that enter, if at most `most`
   std::size_t finish();
 
-  /// Append the numbers of all triangles that enter, if more than `most` do, and of some others.
+  /// If more than `most` triangles enter, append the numbers of all of these and some others.
   void appendNumbers(std::vector<std::uint32_t>& numbers) const;
 
   /// Join the halves of quadrilaterals, and sort the surfaces, nearest first. Call it after the

@@ -24,7 +24,7 @@
 
 namespace avianlidar
 {
-/// Which returns of a beam become points.
+/// Selection of the returns of a beam that become points.
 enum class ReturnMode
 {
   All = 0,
@@ -38,12 +38,13 @@ enum class ReturnMode
 constexpr double MaximumLightEnergyFraction = 1e8;
 
 /// A beam is integrated if the number of its triangles is at most TrianglesPerRay N, clamped to the
-/// range from FewTriangles to ManyTriangles. With more, cells take less time for the same error.
+/// range from FewTriangles to ManyTriangles. With more triangles, cells take less time for the same
+/// error.
 constexpr double FewTriangles = 100.0;
 constexpr double ManyTriangles = 200.0;
 constexpr double TrianglesPerRay = 1.0 / 50.0;
 
-/// Rays in the grid of a beam in cells (BeamCells.h) for each of N; densities come in steps.
+/// Rays in the grid of a beam in cells (BeamCells.h), divided by N. Densities come in steps.
 constexpr double CellRaysPerRay = 32.0;
 
 /// Grid of a beam in cells: each cell of the last level holds m x m blocks of 16 rays.
@@ -54,9 +55,9 @@ struct CellDensity
   int levels;          ///< number of times that cells are divided
   int blocks;          ///< m, blocks of rays across a cell
   double rays() const; ///< number of rays in the disc
-  /// Least number of rays on a small object. It is OnObject, where the area of a bird errs by 1.5 %
-  /// rms and by more than 5 % in one of 300 (TestBird.cxx). With one level it is a 25th of the
-  /// grid, but at least 16.
+  /// Least number of rays on a small object. With OnObject rays, the area of a bird has an error of
+  /// 1.5 % rms, and of more than 5 % in one case of 300 (TestBird.cxx). With one level the number
+  /// is a 25th of the grid, but at least 16.
   double raysOnObject() const;
   static constexpr double OnObject = 256.0;
 };
@@ -78,15 +79,15 @@ constexpr double MaximumAttenuation = 1e30;
 /// How the direct echo of a beam is found.
 enum class BeamSampleSource
 {
-  Cells = 0, ///< integral over visible polygons, or a dense grid of rays where they are many
+  Cells = 0, ///< integral over visible polygons, or a dense grid of rays for many polygons
   Rays = 1   ///< N rays (paper, Algorithm 2)
 };
 
 /// Energy below which the light-energy constraint drops a path.
 enum class LightEnergyThreshold
 {
-  ShareOfLimit = 0, ///< lightEnergyFraction times Qlow over the number of paths of the beam
-  Limit = 1         ///< Qlow, for paths over two reflections alone (paper, Sec. 3.4)
+  ShareOfLimit = 0, ///< lightEnergyFraction Qlow / (number of paths of the beam)
+  Limit = 1         ///< Qlow, only for paths with two reflections (paper, Sec. 3.4)
 };
 
 struct EchoSettings
@@ -100,11 +101,11 @@ struct EchoSettings
   int numberOfReflections = 2; ///< 1 or 2
   bool beamConstraint = true;
   bool lightEnergyConstraint = true;
-  /// epsilon of the light-energy constraint: share of Qlow that a range unit may lose, 0 to 1e8. If
-  /// it is the number of paths of a beam, each path is compared with Qlow.
+  /// epsilon of the light-energy constraint: share of Qlow that a range unit may lose, 0 to 1e8.
+  /// With epsilon equal to the number of paths of a beam, each path is compared with Qlow.
   double lightEnergyFraction = 1e-3;
   LightEnergyThreshold lightEnergyThreshold = LightEnergyThreshold::ShareOfLimit;
-  TraceMode traceMode = TraceMode::Automatic; ///< affects time only, not echoes
+  TraceMode traceMode = TraceMode::Automatic; ///< descent of the tree; affects only time
   bool noise = true;
   bool fullModel = false; ///< whether parts of the model that cannot matter are computed, too
   ReturnMode returnMode = ReturnMode::All;
@@ -137,10 +138,11 @@ std::string checkSettings(const EchoSettings& settings);
 /// that start connections (SecondaryReflection.h).
 std::uint32_t tracedRaysOf(const EchoSettings& settings);
 
-/// Number of connections of each of these rays: M, but fewer than rays; 0 with one reflection.
+/// Number of connections of each ray of tracedRaysOf(): M, but less than the number of these rays;
+/// 0 with one reflection.
 std::uint32_t connectionsOf(const EchoSettings& settings);
 
-/// Number of paths of a beam over one and two reflections: N (2 + M).
+/// Number of paths of a beam with one and two reflections: N (2 + M).
 double pathsOfABeam(const EchoSettings& settings);
 
 /// Empty if no beam can meet more than MaximumUnitsPerBeam range units; otherwise a sentence that
@@ -151,16 +153,16 @@ std::string checkUnits(const Sensor& sensor, const EchoSettings& settings);
 enum class EchoPreset
 {
   Custom = 0,    ///< the settings as they are
-  Draft = 1,     ///< a fast look
+  Draft = 1,     ///< for a first overview
   Standard = 2,  ///< for most uses
-  Reference = 3, ///< converged: others are compared with it
+  Reference = 3, ///< converged; the other presets are compared with it
   Paper = 4,     ///< the method of the paper: N = 100 rays, its constraints, a point per range unit
   Preview = 5    ///< 100 rays and one reflection: the fastest
 };
 
-/// Apply a preset to the settings of fidelity; Paper also sets the settings that say which method
-/// is used. Empty if the preset is known; otherwise a sentence that names the value and what was
-/// expected, and the settings do not change.
+/// Apply a preset to the settings of fidelity; Paper also sets the settings that select the method.
+/// @return empty if the preset exists; otherwise a sentence that names the value and what was
+/// expected, and the settings do not change
 std::string applyPreset(EchoPreset preset, EchoSettings& settings);
 }
 

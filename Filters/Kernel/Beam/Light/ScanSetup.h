@@ -1,16 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file ScanSetup.h
- * @brief What all beams of a scan share: surfaces, sensor, settings, noise plan, and the parts of
- * the model that the scan needs. It does not change while beams are simulated.
+ * @brief Inputs that all beams of a scan share: surfaces, sensor, settings, noise plan, and the
+ * parts of the model that the scan needs. They do not change while beams are simulated.
  *
  * ModelNeeds follow from bounds that hold for all beams: pulse energy, limits, air, aperture and
- * the largest reflectance in the scene. They say whether paths over two reflections can matter, and
- * beyond which range nothing is perceived. The report of a beam says what it left out
- * (SkippedPart). EchoSettings::fullModel leaves nothing out. Attenuation is always modelled, as its
- * exponential costs the same at any coefficient. Surfaces beyond the perceivable range are always
- * traced: hits must not depend on limits and air, so that a scan can be lit again, and the report
- * distinguishes a beam that meets such a surface from a beam that meets none.
+ * the largest reflectance in the scene. ModelNeeds say whether paths with two reflections can
+ * matter, and beyond which range nothing is perceived. The report of a beam lists the parts left
+ * out (SkippedPart). With EchoSettings::fullModel no part is left out. Attenuation is always
+ * modelled, because its exponential costs the same at any coefficient. Surfaces beyond the
+ * perceivable range are always traced, for two reasons. Hits must not depend on limits and air, so
+ * that a scan can be lit again. The report distinguishes a beam that meets only such surfaces from
+ * a beam that meets no surface.
  *
  * Source: none; derived in Documentation/guide/accuracy.md.
  * Valid: no range unit of a beam with an echo differs from the full model by more than
@@ -44,29 +45,28 @@ constexpr double SurelyBelow = 1.0 - 1e-9;
 /// Parts of the model left out of a beam; bits of BeamReport::skipped.
 enum SkippedPart : std::uint32_t
 {
-  SkippedSecondaryPaths = 1, ///< some or all paths over two reflections
-  SkippedBeam = 2,           ///< the whole beam, as all its energy together is not perceived
+  SkippedSecondaryPaths = 1, ///< some or all paths with two reflections
+  SkippedBeam = 2,           ///< the whole beam, as its total energy is not perceived
   SkippedNoise = 4,          ///< photon noise that cannot matter; set where the report is output
-  SkippedBeyondRange = 8,    ///< with SkippedBeam: all surfaces lie beyond the perceivable range
+  SkippedBeyondRange = 8,    ///< a SkippedBeam whose surfaces all lie beyond the perceivable range
   SkippedDirectPaths = 16    ///< some direct echoes
 };
 
 /// Parts of the model that a scan needs.
 struct ModelNeeds
 {
-  /// Range, m, beyond which not even a surface is perceived that fills the beam and returns the
-  /// most that any surface of the scene can. Infinity if there is no such range.
+  /// Range, m, beyond which nothing is perceived, not even a surface that fills the beam and
+  /// returns the most that any surface of the scene can. Infinity if there is no such range.
   double perceivableRange = 0.0;
-  bool secondaryReflections = false; ///< false if not asked for, or if none can matter
-  double secondaryBound = 0.0;       ///< J, bound of all paths over two reflections of a beam
-  double furtherBound = 0.0;         ///< J, bound of all paths over more reflections than asked for
-  double lightEnergyBound = 0.0; ///< J, bound of a range unit's loss by the light-energy constraint
+  bool secondaryReflections = false; ///< whether they are asked for and can matter
+  double secondaryBound = 0.0;       ///< bound of all paths of a beam with two reflections, J
+  double furtherBound = 0.0;         ///< bound of all paths with more reflections than asked for, J
+  double lightEnergyBound = 0.0; ///< bound of a range unit's loss by the light-energy constraint, J
   /// Bound of the energy, J, that a range unit of a beam with an echo loses in all, plus the energy
   /// that skipped noise might have added.
   double skippedEnergyBound = 0.0;
-  /// Energy, J. An object that returns more is missed by all rays of a beam with a probability
-  /// below 5 %. The rays are N, or in cells the grid's, where small objects with their own id get
-  /// more.
+  /// Energy, J, above which all rays of a beam miss an object with a probability below 5 %. A beam
+  /// has N rays, or in cells the rays of the grid, where small objects with their own id get more.
   double missedDetailEnergy = 0.0;
 };
 
@@ -84,8 +84,8 @@ struct ScanSetup
   /// Number of the first triangle of each mover (SceneTriangles.h).
   std::vector<std::uint32_t> firstTriangles;
   Sensor sensor;
-  EchoSettings settings;           ///< its attenuation coefficient is the clear air's alone
-  std::vector<PlacedMedium> media; ///< media that fill the scene come first
+  EchoSettings settings;           ///< settings, with the attenuation coefficient of clear air
+  std::vector<PlacedMedium> media; ///< media; first the ones that fill the scene
   NoisePlan noise;
   std::int32_t revolution = 0; ///< number of the sensor's revolution; each has its own noise
   ModelNeeds needs;
@@ -125,16 +125,16 @@ private:
   }
 };
 
-/// Number the triangles of movers, and raise the surfaces' largest reflectance and gain to theirs.
+/// Number the triangles of movers, and include these triangles in the largest reflectance and gain.
 void includeMovers(ScanSetup& setup);
 
 /// Set `noise` and `needs`, which follow from the other members.
 void planModel(ScanSetup& setup);
 
-/// Needs of a setup that is complete but for its needs.
+/// Needs of a setup that is complete except for its needs.
 ModelNeeds needsOf(const ScanSetup& setup);
 
-/// Upper bound, for all surfaces of the scene, of the share of the arriving light that returns.
+/// Upper bound of the share of the arriving light that any surface of the scene returns.
 /// @param range lower bound of the surface's range, m
 double returnBound(const ScanSetup& setup, double range);
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file Throughput.h
- * @brief Throughputs of direct echoes: energy received over energy of the pulse, without the air.
+ * @brief Throughputs of direct echoes: energy received / energy of the pulse, without the air.
  *
- * Their sum and the nearest range bound the energy of all direct echoes together. This bound
- * suffices for most beams below the limit.
+ * The sum of the throughputs and the nearest range bound the energy of all direct echoes together.
+ * This bound suffices for most beams below the limit.
  *
  * Source: paper, Eq. 4-9.
  * Differs: see Reflectance.h; the air is applied to the length of the whole path at the end.
@@ -36,10 +36,10 @@ double directEnergies(const ScanSetup& setup, const BeamSamples& samples,
   const Throughput& throughput, std::vector<double>& energies);
 
 /// Largest transmission of the air along any path of a beam: no path is shorter than the way to the
-/// nearest surface and back. @param nearest range of that surface, m
+/// nearest surface and back. @param nearest range of the nearest surface, m
 double transmissionBound(double nearest, double attenuation);
 
-/// Largest share of the light leaving a mirror that returns, over both directions of the path
+/// Largest share of the light leaving a mirror that returns, by both directions of the path
 /// together. @param nearest lower bound of the ranges of the beam's surfaces, m
 double mirrorReturnBound(const ScanSetup& setup, const BeamShape& shape, double nearest);
 

@@ -4,11 +4,11 @@
  * @brief Diffuse connections of a beam (SecondaryReflection.h): which hits are connected, with
  * which weight, and the throughput of each connection without air.
  *
- * 1. A beam has no connections if no two surfaces each have a hit before the plane of the other, as
- * at the outer corner of two walls.
+ * 1. A beam has no connections if no two surfaces each have a hit in front of the plane of the
+ * other, as at the outer corner of two walls.
  * 2. The partners of a ray follow from M cyclic shifts of the ray numbers. Rays are stored twice in
- * a row, so that one SIMD loop tests all pairs of a shift: some thirty operations for a vector of
- * pairs.
+ * a row, so that one SIMD loop tests all pairs of a shift, in some thirty operations for a vector
+ * of pairs.
  * 3. Throughputs are computed in SIMD loops, about 5 ns each.
  *
  * Source: paper, Sec. 3.4; for the shifts, Floyd's algorithm for samples without repetition.
@@ -40,11 +40,11 @@ public:
   /// Set the connections of the beam's trace. @param partners M, at least 1
   void find(const SecondaryBeam& beam, std::uint32_t partners);
 
-  /// Find the pairs of surfaces that may face each other: each has a hit before the plane of the
-  /// other. @return false if there are none
+  /// Find the pairs of surfaces that may face each other: each has a hit in front of the plane of
+  /// the other. @return false if there are no such pairs
   bool findFacing(const BeamSamples& hits, const SampleGeometry& geometry);
 
-  /// False if a surface is known to face no other. @param surfaces number of all surfaces
+  /// False if a surface certainly faces no other surface. @param surfaces number of all surfaces
   bool faces(std::uint32_t surface, std::size_t surfaces) const;
 
 private:
@@ -67,15 +67,15 @@ private:
   };
   RayLanes Rays;
   std::vector<std::uint64_t> Partners; ///< bits of 64 partners that face a ray, by row and ray
-  std::vector<char> Facing;            ///< whether a pair of surfaces may face; empty: unknown
+  std::vector<char> Facing;            ///< whether two surfaces may face each other; empty: unknown
   std::vector<double> Heights;         ///< largest heights of surfaces above planes, m
 };
 
-/// Form factor, seen from P1, of the part of a surface in the cone, as if it all lay at P2: its
-/// solid angle, weighted with cosOut, over pi.
-/// @param cosOut, cosIn cosines of the segment at P1 and P2 @param length from P1 to P2, m
-/// @param range of P2, m @param cosBack cosine of incidence of the lidar's own light at P2
-/// @param solidAngle of the cone, sr
+/// Form factor, seen from P1, of the part of a surface in the cone, as if all of the part lay at
+/// P2. It is the solid angle of the part, weighted with cosOut, divided by pi.
+/// @param cosOut, cosIn cosines of the segment at P1 and P2 @param length distance from P1 to P2, m
+/// @param range range of P2, m @param cosBack cosine of incidence of the lidar's own light at P2
+/// @param solidAngle solid angle of the cone, sr
 AVIANLIDAR_ALWAYS_INLINE double formFactor(
   double cosOut, double cosIn, double length, double range, double cosBack, double solidAngle)
 {
@@ -90,7 +90,7 @@ constexpr double MostFormFactor = 1.0;
 void connectionThroughputs(const ScanSetup& setup, const SecondaryBeam& beam,
   const MaterialLanes& materials, std::vector<double>& throughputs);
 
-/// Scale min(1, B/(g R2)) of a path over two surfaces, which keeps the ray within its budget
+/// Scale min(1, B/(g R2)) of a path by way of two surfaces, which keeps the ray within its budget
 /// (SecondaryReflection.h). @param direct share that the direct echo of the first surface returns
 double secondaryScale(const ScanSetup& setup, const Material& first, const Material& second,
   double cosIncidence, double direct);

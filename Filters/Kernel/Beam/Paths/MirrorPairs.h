@@ -2,14 +2,14 @@
 /**
  * @file MirrorPairs.h
  * @brief Finds the surfaces of a beam from which mirror paths may arrive. No path is traced from
- * the others.
+ * the other surfaces.
  *
  * A triangle makes a pair with a surface if bounds do not exclude that
  *
- * 1. the beam's cone meets its plane before the plane of the surface, and the pyramid around the
- *    cone meets the triangle;
- * 2. a part of the triangle lies before the plane of the surface;
- * 3. hits of the surface lie before the side of the triangle that faces the apex.
+ * 1. the beam's cone meets the triangle's plane in front of the plane of the surface, and the
+ *    pyramid around the cone meets the triangle;
+ * 2. a part of the triangle lies in front of the plane of the surface;
+ * 3. hits of the surface lie in front of the side of the triangle that faces the apex.
  *
  * One descent of the cone finds the triangles, up to the farthest surface. Paths from a surface
  * without a pair return nothing, whatever the materials.
@@ -45,7 +45,7 @@ public:
   bool any(std::uint32_t surface) const { return this->Starts[surface].paired; }
 
 private:
-  /// Where the mirror paths of a surface start.
+  /// Start of the mirror paths of a surface.
   struct Start
   {
     Vec3 normal;     ///< unit normal of the plane, towards the apex

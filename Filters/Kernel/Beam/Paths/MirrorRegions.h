@@ -4,21 +4,22 @@
  * @brief Mirror paths of a beam whose visible surfaces are known, sampled in the parts of the beam
  * whose light goes from one surface to another.
  *
- * In the mirrored world behind a plane mirror a path over the mirror is straight. So the point of
- * the second surface is a projective function of the ray, and each side of that surface is a
- * straight line of rays. The rays from one surface to another fill a convex polygon of the beam's
- * plane, a region, which is cut from the polygon of the first surface. Samples fill regions alone,
- * in strata of equal area, twice as densely as rays fill the disc, and at least two in a region.
+ * In the mirror image of the scene behind a plane mirror, a mirror path continues as a straight
+ * line. The point on the second surface is therefore a projective function of the ray, and each
+ * side of the second surface is a straight line of rays. The rays from one surface to another fill
+ * a convex polygon of the beam's plane, a region, which is cut from the polygon of the first
+ * surface. Samples lie only in regions, in strata of equal area. They are twice as dense as rays in
+ * the disc, and each region has at least two.
  *
- * Polygons of an integrated beam are visible (VisiblePolygons.h), and so are both ends of a path.
- * The surfaces of a beam in cells are whole triangles, and rays from the apex test both ends. A ray
- * through the tree tests the segment between the ends (SecondaryTracer.h).
+ * In an integrated beam all polygons are visible (VisiblePolygons.h), and so are both ends of a
+ * path. In a beam in cells the surfaces are whole triangles, and rays from the apex test both ends.
+ * A ray through the tree tests the segment between the ends (SecondaryTracer.h).
  *
  * Source: paper, Sec. 3.4, the beam constraint; Heckbert and Hanrahan, "Beam Tracing Polygonal
- * Objects", SIGGRAPH 1984, for the mirrored world.
+ * Objects", SIGGRAPH 1984, for the mirror image.
  * Differs: the paper follows rays.
- * Valid: plane surfaces. Regions depend on the beam and what it sees alone, not on materials or
- * limits. In a beam in cells paths start and end on surfaces that its grid of rays meets.
+ * Valid: plane surfaces. Regions depend only on the beam and the visible surfaces, not on materials
+ * or limits. In a beam in cells paths start and end on surfaces that its grid of rays meets.
  * Test: TestMirrorRegions.cxx, TestPolygonPaths.cxx.
  */
 #ifndef avianlidar_MirrorRegions_h
@@ -87,7 +88,7 @@ private:
     std::uint32_t surface;
     std::uint32_t firstPoint; ///< place of its first corner in `Points`
   };
-  /// Where a ray over one surface ends on another, (x, y)/z, as functions of the ray.
+  /// Point (x, y)/z at which a ray reflected by one surface meets another, as functions of the ray.
   struct Image
   {
     PlaneLine w; ///< 1/z of the second plane, mirrored on the first

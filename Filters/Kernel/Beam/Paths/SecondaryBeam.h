@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file SecondaryBeam.h
- * @brief A beam as the search for paths over two reflections takes it, with a place for results.
+ * @brief Inputs and results of the search for paths of a beam with two reflections.
  *
  * Source: none.
- * Valid: all that it refers to must outlive the search.
+ * Valid: all objects that a SecondaryBeam refers to must outlive the search.
  * Test: TestSecondaryReflection.cxx, TestSecondaryPaths.cxx.
  */
 #ifndef avianlidar_SecondaryBeam_h
@@ -39,8 +39,8 @@ struct SecondaryBeam
   double nearest; ///< lower bound of the ranges of the beam's surfaces, m
   /// Called every 4096 steps; if it returns false, WorkStopped is thrown.
   const std::function<bool()>* wanted = nullptr;
-  /// Visible surfaces between which mirror paths go (MirrorRegions.h); null: they start from
-  /// `samples`.
+  /// Visible surfaces between which mirror paths go (MirrorRegions.h); null: mirror paths start
+  /// from `samples`.
   const VisiblePolygons* surfaces = nullptr;
   const BeamSamples* cells = nullptr; ///< samples of a beam in cells, for `surfaces`; or null
   BeamAir* air = nullptr;             ///< air along the beam; null: all media fill the scene

@@ -1,46 +1,47 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file SecondaryReflection.h
- * @brief Paths over two reflections inside the beam, and the light-energy constraint on them.
+ * @brief Paths with two reflections inside the beam, and the light-energy constraint on them.
  *
  * By the beam constraint the second reflection point P2 lies inside the receiving beam. Two kinds
  * of paths start at a primary hit P1:
  *
- * 1. A mirror path follows the mirror direction of the incident ray, with weight 1 and f_s alone at
+ * 1. A mirror path follows the mirror direction of the incident ray, with weight 1 and only f_s at
  * P1. If the visible surfaces are known, mirror paths start from samples of their own
  * (MirrorRegions.h).
  * 2. Diffuse connections lead to the hit points of M other rays of the beam, which the lidar both
- * lights and sees, with f_d alone at P1 (f_s would count the mirror lobe twice). The partners
- * follow from M random cyclic shifts of the ray numbers. With their weights the sum estimates the
- * mean over the cone's solid angle.
+ * lights and sees. Only f_d counts at P1 (f_s would count the mirror lobe twice). The partners
+ * follow from M random cyclic shifts of the ray numbers. The weighted sum of the connections
+ * estimates the mean over the cone's solid angle.
  *
- * At P2 the whole of f_sur acts. A path counts only if P2 lies in the cone and is visible from the
- * apex, and if the segment leaves P1 and reaches P2 on the sides that face the apex. It carries Q
- * f(P1) f_sur(P2) exp(-mu length).
+ * At P2 both f_d and f_s count. A path counts only if P2 lies in the cone and is visible from the
+ * apex, and if the segment leaves P1 and reaches P2 on the sides that face the apex. A path carries
+ * Q f(P1) f_sur(P2) exp(-mu length).
  *
- * A ray never returns more than its albedo times Q. B = albedo - f_direct is the budget that its
- * direct echo leaves at P1, g the largest share that P1 can pass on, R2 = kd2 + ks2 the reflectance
- * of the second surface. A path is scaled by min(1, B/(g R2)), which is 1 for the materials of the
- * paper. If the random weights of connections exceed their mean, the excess over the budget is cut.
+ * A ray never returns more than the albedo at P1 times Q. The direct echo leaves the budget B =
+ * albedo - f_direct at P1. P1 can pass on at most the share g, and R2 = kd2 + ks2 is the
+ * reflectance of the second surface. A path is scaled by min(1, B/(g R2)), which is 1 for the
+ * materials of the paper. If the random weights of connections exceed their mean, the excess over
+ * the budget is cut.
  *
  * With a receiver aperture A > 0, and Omega the solid angle of the cone:
  *
  * 1. The matt light that a mirror path returns at P2 also comes back by the reverse path, which
- * ends on the mirror. The reverse path is weighted by the beam's density at P2 over the density at
- * P1. The widths of two mirrors' lobes add up where the light arrives.
- * 2. A connection is matt at both ends. It carries the form factor F = cos(out at P1) cos(in at P2)
- * r2^2 Omega/(pi L^2 cos(lidar's incidence at P2)), at most MostFormFactor = 1.
- * 3. Short paths carry the excess: M directions of each ray, drawn as its matt light is spread. A
- * path that ends in the cone with F > 1 carries 1 - 1/F. Like connections and mirror paths, it
- * takes the cosine of the outgoing direction in f at P2.
+ * ends on the mirror. The reverse path is weighted by the beam's density at P2 divided by the
+ * density at P1. The widths of two mirrors' lobes add up where the light arrives.
+ * 2. Both reflections of a connection are matt. A connection carries the form factor F = cos(out at
+ * P1) cos(in at P2) r2^2 Omega/(pi L^2 cos(lidar's incidence at P2)), at most MostFormFactor = 1.
+ * 3. Short paths carry the excess. M of them start at each hit, distributed as its matt light. A
+ * path that ends in the cone with F > 1 carries 1 - 1/F. Like connections and mirror paths, such a
+ * path takes the cosine of the outgoing direction in f at P2.
  *
- * Geometry is found only as far as energies need it, and kept (BeamTrace.h). Throughputs are
- * computed each time a beam is lit.
+ * Geometry is found only where energies need it, and stored (BeamTrace.h). Throughputs are computed
+ * each time a beam is lit.
  *
  * Source: paper, Sec. 3.4 and Eq. 6. The sum of bounded connections and short paths: Kollig and
  * Keller, "Illumination in the Presence of Weak Singularities", MCQMC 2004.
- * Differs: the paper leaves open how many secondary directions are followed, and their weight. It
- * has neither the scale by the budget nor an aperture.
+ * Differs: the paper leaves open how many secondary directions are followed, and their weight. The
+ * paper has neither the scale by the budget nor an aperture.
  * Valid: the paths of a ray return at most B together. No range unit loses more than epsilon Qlow
  * by the light-energy constraint (BeamLighting.h).
  * Test: TestSecondaryReflection.cxx, TestSecondaryPaths.cxx, TestSecondaryConstraints.cxx,
@@ -60,7 +61,7 @@
 
 namespace avianlidar
 {
-/// One path over two reflections that arrived.
+/// One path with two reflections that arrives at the lidar.
 struct SecondaryPath
 {
   double length;          ///< length of the whole path, m
@@ -68,7 +69,7 @@ struct SecondaryPath
   std::uint32_t triangle; ///< triangle of the last reflection
   double cosIncidence;    ///< cosine of incidence at the last reflection
   std::uint32_t one;      ///< sample at P1; NoSample for mirror paths by regions
-  std::uint32_t two;      ///< sample at P2, or of a mirror path by regions; otherwise NoSample
+  std::uint32_t two;      ///< sample at P2 or, by regions, of the mirror path; or NoSample
   double unsure = 0.0;    ///< share of the energy that the width of a mirror's lobe may change
 };
 
@@ -84,13 +85,13 @@ public:
   double bound(const BeamSamples& samples, const Throughput& direct, bool tight) const;
 
   /// The same bound for an integrated beam, which has no samples where no light returns directly.
-  /// @param albedo largest of its surfaces @param nearest lower bound of their ranges, m
+  /// @param albedo largest albedo of the beam's surfaces @param nearest lower bound of ranges, m
   double bound(double albedo, double nearest) const;
 
   /// Set the paths of the beam: mirror paths in the order of the samples, connections, short paths.
-  /// @param lost J; the bounds of the paths dropped here are added
-  /// @return false if all paths together, blocked or not, bring less than
-  /// SecondaryBeam::silentBelow: none is traced then, and `lost` is the bound of all
+  /// @param lost energy, J, to which the bounds of the paths dropped here are added
+  /// @return false if all paths together, blocked or not, carry less than
+  /// SecondaryBeam::silentBelow; then no path is traced, and `lost` is the bound of all paths
   bool collect(const SecondaryBeam& beam, std::vector<SecondaryPath>& paths, double& lost);
 
 private:
@@ -122,11 +123,11 @@ private:
   std::vector<double> SpecularBounds;        ///< bound of a mirror path's throughput, by sample
   double OverMirror = 1.0;                   ///< mirrorReturnBound()
   double NumberWanted = 0.0;                 ///< number of mirror paths that may matter, both ways
-  std::vector<char> Wanted;                  ///< whether its mirror paths may matter, by surface
+  std::vector<char> Wanted;                  ///< whether mirror paths may matter, by surface
   std::vector<double> MirrorThroughputs;     ///< unblocked throughput of mirror paths, both ways
   std::vector<double> BackThroughputs;       ///< part of MirrorThroughputs by the reverse paths
   std::vector<double> ConnectionThroughputs; ///< unblocked throughput of connections
-  std::vector<double> Returned;              ///< energy over two reflections, by sample, J
+  std::vector<double> Returned;              ///< energy of paths with two reflections, by sample, J
 };
 
 }

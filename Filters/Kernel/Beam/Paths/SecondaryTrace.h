@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file SecondaryTrace.h
- * @brief Geometry of a beam's paths over two reflections: ends of mirror paths and short paths, and
+ * @brief Geometry of a beam's paths with two reflections: ends of mirror paths and short paths, and
  * connections of hits. It is found when first needed, and kept with the beam.
  *
  * A connection is a pair of hits that face each other, with all values but materials on which the
- * energy of its path depends, in SIMD lanes. A beam that looks into a corner has M connections for
- * each ray, which take 81 bytes and some ns each.
+ * energy of its path depends, in SIMD lanes. A beam into a corner has M connections for each ray,
+ * which take 81 bytes and some ns each.
  *
  * Source: paper, Sec. 3.4; angles as ReflectionGeometry (Reflectance.h).
  * Differs: see SecondaryReflection.h.
@@ -41,7 +41,7 @@ struct SecondaryConnections
   std::vector<std::uint32_t> two; ///< hit P2
   std::vector<Visibility> visibility;
   std::vector<double> weight;        ///< weight in the mean over the cone
-  std::vector<double> length;        ///< from P1 to P2, m
+  std::vector<double> length;        ///< distance from P1 to P2, m
   std::vector<double> cosOut;        ///< cosine of the segment at P1
   std::vector<double> differenceOne; ///< cos theta_d at P1
   std::vector<double> cosIn;         ///< cosine of the segment at P2
@@ -62,7 +62,7 @@ struct SecondaryConnections
   void measure(const BeamSamples& hits, const SampleGeometry& geometry);
 };
 
-/// Where a mirror path ends.
+/// End of a mirror path.
 enum class MirrorEnd : std::uint8_t
 {
   NotTraced = 0,
@@ -78,7 +78,7 @@ struct MirrorPath
   std::uint32_t first;       ///< triangle of the first reflection
   std::uint32_t triangle;    ///< triangle of the second reflection
   double weight;             ///< share of the pulse's energy
-  double back;               ///< weight of the reverse path, over `weight`
+  double back;               ///< weight of the reverse path / `weight`
   double cosine;             ///< cosine of incidence at the first point
   double rangeOne;           ///< range of the first point, m
   double length;             ///< length of the whole path, m
@@ -101,17 +101,17 @@ struct ShortPath
   Vec3 from, end;            ///< the two points relative to the apex, m
 };
 
-/// Known paths of a beam.
+/// Paths of a beam that have been found.
 struct SecondaryTrace
 {
   std::vector<MirrorEnd> mirror; ///< one per hit; empty until first needed
-  /// Whether each surface was searched for mirror paths by regions; empty: they start from hits.
+  /// Whether each surface was searched for mirror paths by regions; empty: paths start from hits.
   std::vector<char> searched;
   std::vector<MirrorPath> mirrorPaths; ///< in the order of hits, or of surfaces
   SecondaryConnections connections;
   std::uint32_t partners = 0;        ///< M of `connections`
   std::vector<ShortPath> shortPaths; ///< in the order of hits
-  bool shortTraced = false;          ///< true once all short paths are known
+  bool shortTraced = false;          ///< true once all short paths have been found
 
   std::size_t bytes() const
   {

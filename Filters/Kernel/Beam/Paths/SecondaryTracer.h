@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file SecondaryTracer.h
- * @brief Traces paths over two reflections from the hits of a beam (SecondaryReflection.h): where
+ * @brief Traces paths with two reflections from the hits of a beam (SecondaryReflection.h): where
  * mirror paths and short paths end, and whether connections are blocked.
  *
- * Results are geometry and go to the beam's trace. Paths below the caller's threshold are not
- * traced, and neither are mirror paths from samples on surfaces that face nothing (MirrorPairs.h).
+ * The results are geometry and are stored in the beam's trace. Paths below the caller's threshold
+ * are not traced, and neither are mirror paths from samples on surfaces without pairs
+ * (MirrorPairs.h).
  *
  * Source: paper, Sec. 3.4.
  * Differs: see SecondaryReflection.h.
@@ -24,22 +25,23 @@
 
 namespace avianlidar
 {
-/// Trace the mirror paths that are not known and may have a throughput of at least `least`.
-/// @param throughputs upper bounds, by sample @param pairs found here: with the beam constraint
-/// nothing is traced from surfaces without pairs
+/// Trace the mirror paths that are not yet traced and may have a throughput of at least `least`.
+/// @param throughputs upper bounds, by sample @param pairs set here; with the beam constraint no
+/// path is traced from surfaces without pairs
 void traceMirrors(const ScanSetup& setup, const SecondaryBeam& beam,
   const std::vector<double>& throughputs, double least, MirrorPairs& pairs);
 
 /// Find whether mirror paths by regions (MirrorRegions.h) with a throughput of at least `least` are
-/// blocked, unless it is known. @param throughputs by path, if it is not blocked
+/// blocked, unless this is already found. @param throughputs by path, as if not blocked
 void traceMirrorPaths(
   const SecondaryBeam& beam, const std::vector<double>& throughputs, double least);
 
-/// Find the short paths of the samples, unless they are known.
+/// Find the short paths of the samples, unless they are already found.
 void traceShortPaths(const ScanSetup& setup, const SecondaryBeam& beam, ConnectionFinder& finder);
 
-/// Find whether connections with a throughput of at least `least` are blocked, unless it is known.
-/// @param throughputs by connection, if it is not blocked
+/// Find whether connections with a throughput of at least `least` are blocked, unless this is
+/// already found.
+/// @param throughputs by connection, as if not blocked
 void traceConnections(
   const SecondaryBeam& beam, const std::vector<double>& throughputs, double least);
 }

@@ -81,7 +81,8 @@ private:
   std::vector<double> Arcs;   ///< primitivesOf() `Places`
 };
 
-/// Area of a ring's part in the disc, for any corners. The error is some 1e-16 of their distance.
+/// Area of a ring's part in the disc, for any corners. The error is about 1e-16 of the corners'
+/// distance.
 double areaInDisc(const PlaneRing& ring);
 }
 

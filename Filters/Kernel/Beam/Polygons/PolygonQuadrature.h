@@ -13,7 +13,8 @@
  * Valid: boundOf() bounds the error by ErrorOfUnit of the unit's energy, plus the energy that rules
  * may put beyond borders of units and the energy that VisiblePolygons::lost may hide. Units beyond
  * the range gate are not distinguished. A beam does not fit if one of its polygons has no rule, or
- * if it needs more than MostNodes samples. Geometry alone decides that, not materials or limits.
+ * if it needs more than MostNodes samples. Only geometry decides whether a beam fits, not materials
+ * or limits.
  * Test: TestEchoClosedForms.cxx, TestPolygonUnits.cxx, TestPolygonEdges.cxx,
  * TestPolygonLimits.cxx, TestPolygonPaths.cxx.
  */
@@ -48,10 +49,10 @@ public:
   /// False if a beam that sees these polygons cannot be integrated. @param most number of samples
   bool fits(const VisiblePolygons& seen, double most = MostNodes) const;
 
-  /// Begin a beam. The polygons must outlive its use.
+  /// Begin a beam. The polygons must live until the next call of begin().
   void begin(const BeamFrame& frame, const VisiblePolygons& seen);
 
-  /// Extent and bounds of a beam, known without its nodes.
+  /// Extent and bounds of a beam, found without its nodes.
   struct Extent
   {
     double nearest;     ///< lower bound of ranges, m
@@ -73,7 +74,7 @@ public:
   double boundOf(const RangeShares& shares, const std::vector<double>& energies) const;
 
 private:
-  /// Bounds of a polygon, known before it is integrated.
+  /// Bounds of a polygon, found before it is integrated.
   struct Bounds
   {
     PolygonRule::Extent extent;

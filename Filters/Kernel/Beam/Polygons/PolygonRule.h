@@ -8,20 +8,20 @@
  * and t = tan(theta0.5).
  *
  * 1. A polygon is cut across the gradient of w where a pulse begins to enter a range unit or to
- * leave it; in between the unit's share of the pulse is linear in r. It is cut further where the
- * range changes by MostStretch or the exponent of the specular lobe by MostFall.
- * 2. A part becomes one sample at its mean w and mean rho^2, or two at its mean w plus and minus
- * the standard deviation, or four with two values of rho^2. All have the exact solid angle
+ * leave it. Between two cuts the unit's share of the pulse is linear in r. Further cuts lie where
+ * the range changes by MostStretch or the exponent of the specular lobe by MostFall.
+ * 2. A part becomes one sample at its mean w and mean rho^2, two samples at its mean w plus and
+ * minus the standard deviation, or four with two values of rho^2. All have the exact solid angle
  * (DiscPolygon.h).
  * 3. In wide or Gaussian beams, and where a lobe is not much wider than the beam, a part takes a
- * product of Gauss-Legendre rules instead, which are dense only where a narrow lobe is.
+ * product of Gauss-Legendre rules instead. These rules are dense only where a narrow lobe is.
  *
  * Source: paper, Eq. 4-9; Gauss-Legendre quadrature.
  * Differs: the paper samples all beams with rays.
- * Valid: the relative error of a unit's energy is below ErrorOfUnit, except that curved lines of
- * equal range and rounded corners may move energy across borders of units, which each node's
- * `uncertain` bounds, and that faint polygons err by 1e-3 of their energy. A polygon has no rule if
- * lines of equal range are curved by more than MostCurved range units in it.
+ * Valid: the relative error of a unit's energy is below ErrorOfUnit, with two exceptions. Curved
+ * lines of equal range and rounded corners may move energy across borders of units, which each
+ * node's `uncertain` bounds. Faint polygons have an error of 1e-3 of their energy. A polygon has no
+ * rule if lines of equal range are curved by more than MostCurved range units in it.
  * Test: TestEchoClosedForms.cxx, TestPolygonUnits.cxx.
  */
 #ifndef avianlidar_PolygonRule_h
@@ -37,7 +37,7 @@
 
 namespace avianlidar
 {
-/// Largest relative error of a unit's energy, but for energy that crosses its borders.
+/// Largest relative error of a unit's energy, except for energy that crosses the unit's borders.
 constexpr double ErrorOfUnit = 2e-6;
 
 /// Largest difference, in range units, between ranges on a straight line of equal z.
@@ -67,7 +67,7 @@ public:
   /// Share of the pulse per area at the centre of the disc, with a uniform profile.
   double shareOfArea() const { return this->ShareOfArea; }
 
-  /// Largest density of the profile, over the density of a uniform one.
+  /// Largest density of the profile, divided by the density of a uniform profile.
   double mostDensity() const { return this->Shape.mostDensity(); }
 
   /// Bounds of 1/z over a polygon.
@@ -77,11 +77,11 @@ public:
   };
 
   /// Begin a polygon of a surface. @param triangle the half of the surface whose material counts
-  /// @param faint whether one sample per part suffices, as no range unit gets much energy
+  /// @param faint whether one sample per part suffices, because no range unit gets much energy
   void set(const PlaneSurface& surface, std::uint32_t triangle, const Extent& extent, bool faint);
 
   /// Estimated number of samples of a polygon without a lobe; infinity if it has no rule.
-  /// @param height distance of its plane from the apex, m
+  /// @param height distance of the polygon's plane from the apex, m
   double count(double height, const Extent& extent) const;
 
   /// Append the samples of the surface's part within a ring.

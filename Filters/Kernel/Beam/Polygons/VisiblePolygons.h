@@ -13,9 +13,9 @@
  * left out, and their area is summed (VisiblePolygons::lost).
  *
  * Source: Weiler and Atherton, "Hidden Surface Removal Using Polygon Area Sorting", SIGGRAPH 1977.
- * Differs: all pieces are convex and partition the view, so that nothing needs a general clipper.
+ * Differs: all pieces are convex and partition the view, so no general clipper is needed.
  * Valid: any triangles. Pieces and `lost` sum up to the octagon within 1e-12 of its area. The
- * result depends on the beam and the triangles that enter the disc alone, not on their order.
+ * result depends only on the beam and the triangles that enter the disc, not on their order.
  * Test: TestVisiblePolygons.cxx, TestPolygonEdges.cxx.
  */
 #ifndef avianlidar_VisiblePolygons_h
@@ -57,7 +57,7 @@ struct PlaneRing
 /// Distance from a corner, half-beamwidths, within which a line passes through it.
 constexpr double Snap = 1e-11;
 
-/// Side of a line on which a ring lies: on the line, the negative side.
+/// Side of a line on which a ring lies. A ring on the line lies on the negative side.
 enum class SideOfLine
 {
   Positive,
@@ -65,12 +65,12 @@ enum class SideOfLine
   Both
 };
 
-/// Find on which side of a line a ring lies, and cut it if it lies on both. @param line has the
-/// slope 1, so that its values are distances
+/// Find on which side of a line a ring lies, and cut the ring if it lies on both sides. @param line
+/// line of slope 1, so that its values are distances
 SideOfLine cutRing(
   const PlaneRing& ring, const PlaneLine& line, PlaneRing& positive, PlaneRing& negative);
 
-/// An octagon that holds the disc.
+/// An octagon that contains the disc.
 PlaneRing octagonAround();
 
 /// Keep the part of a ring where a function is positive, or all if it has too many corners to be
@@ -83,12 +83,12 @@ struct VisiblePolygons
   struct Polygon
   {
     std::uint32_t surface;
-    std::uint32_t end; ///< end of its corners, which begin at the end of the previous polygon's
+    std::uint32_t end; ///< end of its corners, which begin where the previous polygon's corners end
   };
   std::vector<PlaneSurface> surfaces;
   std::vector<Polygon> polygons;
   std::vector<PlanePoint> corners;
-  double lost = 0.0;   ///< area of the pieces left out, over the disc's area
+  double lost = 0.0;   ///< area of the pieces left out / area of the disc
   bool facing = false; ///< whether light may go from one surface to another
 
   /// Add a surface with one polygon.
@@ -132,8 +132,8 @@ enum class SeenByBeam : std::uint8_t
 class PolygonFinder
 {
 public:
-  /// @param mostTriangles largest number in the disc; polygons may be three times as many
-  /// @param mostCandidates largest number of triangles that are set up, if more
+  /// @param mostTriangles largest number of triangles in the disc; polygons: three times as many
+  /// @param mostCandidates largest number of triangles that are set up, if larger
   PolygonFinder(
     const SceneTriangles& scene, std::size_t mostTriangles, std::size_t mostCandidates = 0)
     : Entering(scene, std::max(mostTriangles, mostCandidates))
@@ -144,7 +144,7 @@ public:
 
   void begin(const BeamFrame& frame) { this->Entering.begin(frame); }
 
-  /// Add triangles, in any order, each once. All that may enter the cone must be added.
+  /// Add triangles, in any order, each once. Every triangle that may enter the cone must be added.
   void add(const std::uint32_t* triangles, std::size_t count)
   {
     this->Entering.add(triangles, count);
@@ -163,7 +163,7 @@ private:
   /// A piece of the octagon. Each candidate is compared with all pieces, but with few rings.
   struct Piece
   {
-    PlanePoint centre; ///< centre of a circle around it
+    PlanePoint centre; ///< centre of a circle around the piece
     double radius;
     double leastInverse;     ///< lower bound of 1/z, 1/m
     std::uint32_t candidate; ///< number of the surface seen there, or Open

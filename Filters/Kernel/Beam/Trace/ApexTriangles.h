@@ -6,8 +6,8 @@
  *
  * All beams of a scan begin at one point, and neighbouring beams meet the same triangles. The table
  * has 8192 places. A triangle's place follows from its position in the tree's order; a later
- * triangle replaces an earlier one. A record fills one cache line, the table a good part of a
- * core's second-level cache. Preparing eight triangles takes about as long as testing 64 rays
+ * triangle replaces an earlier one. A record fills one cache line, and the table fills a good part
+ * of a core's second-level cache. Preparing eight triangles takes about as long as testing 64 rays
  * against a few of them.
  *
  * Source: none; the bounds are derived in RayPacketTriangles.h.
@@ -51,7 +51,7 @@ public:
   static constexpr int Batch = ApexCorners::Width;
 
   /// Clear the table if it belongs to another tree or apex, or to narrower beams only.
-  /// @param widest the beam of the largest half-beamwidth among those of the packet
+  /// @param widest beam of the packet with the largest half-beamwidth
   void begin(const CollisionTree& tree, const BeamFrame& widest);
 
   /// The record at a position of the tree's order; null if it is not in the table.

@@ -1,19 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file BeamGroup.h
- * @brief Up to sixteen neighbouring beams of one apex descend the wide tree together. They end at
- * boxes, called entry points, from which the packets of their rays go on (RayPacket.h).
+ * @brief Up to sixteen neighbouring beams of one apex descend the wide tree together. The descent
+ * ends at boxes, called entry points, from which packets of rays go on (RayPacket.h).
  *
  * Eight boxes are tested against the planes about the group, then sixteen cones against each box
  * that is left (BoxTests.h). The descent ends where a box is a leaf, where its half diagonal is at
  * most sixteen half-beamwidths, and where at most three beams meet it. A beam without entry points
- * hits nothing, and its rays are never drawn. Smaller entry points make long lists where all beams
- * hit; larger ones leave the upper levels of the tree to every packet.
+ * hits nothing, and its rays are never drawn. With smaller entry points, lists are long where all
+ * beams hit. With larger ones, every packet descends the upper levels of the tree.
  *
  * Source: batch collision detection (paper, Sec. 3.2); Z-order curve: Morton, "A Computer Oriented
  * Geodetic Data Base and a New Technique in File Sequencing", 1966.
  * Differs: the paper descends once for the rays of a beam, down to the triangles, as
- * findPotential() does; a group descends once for the rays of sixteen beams, and not as far.
+ * findPotential() does; a group descends once for the rays of sixteen beams, and not as deep.
  * Valid: conservative: no triangle that a ray hits lies outside its beam's entry points. A group
  * whose beams lie too far apart (ConeLanes::setFrustum()) is halved.
  * Test: TestBeamGroup.cxx, TestBeamTracer.cxx.
@@ -43,7 +43,7 @@ inline bool areTogether(const BeamFrame& one, const BeamFrame& two)
 void orderBeams(
   const BeamFrame* frames, std::vector<std::uint32_t>& beams, std::vector<std::uint64_t>& keys);
 
-/// Workspace kept between groups, so that none allocates.
+/// Workspace kept between groups, so that no group allocates.
 struct GroupWorkspace
 {
   ConeLanes cones;
@@ -59,11 +59,11 @@ std::int64_t findEntryPoints(const WideTree& tree, const Vec3& apex, GroupWorksp
 struct PotentialTriangles
 {
   std::uint64_t nodesVisited = 0;
-  std::size_t count = 0; ///< number of triangles; beyond `most` the search was given up
+  std::size_t count = 0; ///< number of triangles; beyond `most` the search has stopped
 };
 
 /// The triangles that the cone of one beam may meet (S_potential of the paper, Sec. 3.2), as entry
-/// points. @param most number of triangles beyond which the search is given up
+/// points. @param most number of triangles beyond which the search stops
 PotentialTriangles findPotential(const CollisionTree& tree, const BeamFrame& frame,
   std::size_t most, EntryPoints& entryPoints, TraversalStack& stack);
 }

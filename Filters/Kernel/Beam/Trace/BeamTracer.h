@@ -3,10 +3,10 @@
  * @file BeamTracer.h
  * @brief Finds the nearest hits of the rays of beams.
  *
- * Acceptance and range of a (ray, triangle) pair come from one function (TriangleTest.h), the
- * nearest range wins, and equal ranges go to the lower triangle number. So a hit has the same bits
- * for any tree and any TraceMode. All geometry is moved to the beam's origin in double precision
- * before anything is rounded.
+ * Acceptance and range of a (ray, triangle) pair come from one function (TriangleTest.h). The hit
+ * is the accepted triangle of least range, and of lowest number among equal ranges. A hit therefore
+ * has the same bits for any tree and any TraceMode. All geometry is moved to the beam's origin in
+ * double precision before anything is rounded.
  *
  * Source: paper, Sec. 3.2-3.4.
  * Differs: beams and rays descend in groups and packets (BeamGroup.h, RayPacket.h);
@@ -43,12 +43,12 @@ struct Hit
 struct TraceCounters
 {
   std::uint64_t nodesVisited = 0;
-  /// Triangles tested, counted once for each packet of rays; 0 where every ray descends alone.
+  /// Triangles tested, counted once for each packet of rays; 0 where every ray descends by itself.
   std::uint64_t candidates = 0;
   std::uint64_t raysTraced = 0; ///< primary rays, mirror rays and visibility segments
 };
 
-/// Add costs of the same beam; candidates become the larger number of both.
+/// Add costs of the same beam; `candidates` becomes the larger of the two numbers.
 void addCounters(const TraceCounters& more, TraceCounters& sum);
 
 /// How beams descend the tree. All modes give the same hits, bit for bit.
@@ -67,9 +67,9 @@ struct BeamBlock
   const BeamFrame* frames = nullptr;
   std::size_t size = 0;   ///< number of beams
   std::uint32_t rays = 0; ///< rays per beam, at least 1
-  /// Draws the rays of a beam. Called only if a triangle may meet the beam: most beams of an
-  /// airport meet none, and drawing rays costs more than a descent. May be called twice; the rays
-  /// must live until the block is done.
+  /// Draws the rays of a beam. It is called only if a triangle may meet the beam, because most
+  /// beams of an airport meet no triangle, and drawing rays costs more than a descent. It may be
+  /// called twice. The rays must live until the block is done.
   std::function<const BeamRays&(std::size_t beam)> source;
   bool inOrder = false; ///< packets take the rays in the order in which they come
 };
@@ -81,7 +81,8 @@ std::size_t beamsPerBlock(int raysPerBeam);
 /// Triangles that the rays of a block hit. Ranges are found where they are used (RaySamples.h).
 struct BlockHits
 {
-  /// For each beam the nearest triangle of each ray, or NoTriangle; null if no ray hits anything.
+  /// For each beam the nearest triangle of each ray, or NoTriangle; null if no ray of the beam hits
+  /// a triangle.
   std::vector<const std::uint32_t*> triangles;
   std::vector<TraceCounters> counters; ///< one per beam
 };
@@ -99,9 +100,9 @@ public:
   /// Begin a beam: set the frame, and the counters to 0.
   void setBeam(const BeamFrame& frame);
 
-  /// Nearest triangle of every ray of all beams of a block. Neighbours of one apex are traced
-  /// together. Where movers are placed, the block has one beam. The current beam and its counters
-  /// do not change. The result is valid until the next call.
+  /// Nearest triangle of every ray of all beams of a block. Neighbouring beams of one apex are
+  /// traced together. Where movers are placed, the block has one beam. The current beam and its
+  /// counters do not change. The result is valid until the next call.
   const BlockHits& traceBlock(const BeamBlock& block, TraceMode mode);
 
   /// Nearest hit along `direction` (need not be normalised) from the beam's own apex.
@@ -137,8 +138,8 @@ private:
 struct SeenTriangle
 {
   Corners corners;     ///< relative to the apex
-  TrianglePlane plane; ///< shared by faces that coincide (CoincidentFaces.h)
-  Vec3 normal{ 0.0 };  ///< unit, towards the apex (zero if degenerate)
+  TrianglePlane plane; ///< plane, shared by faces that coincide (CoincidentFaces.h)
+  Vec3 normal{ 0.0 };  ///< unit normal towards the apex; 0 if degenerate
   double height = 0.0; ///< height of the apex above the plane, m
 };
 SeenTriangle seeTriangle(const SceneTriangles& scene, std::uint32_t triangle, const Vec3& origin);

@@ -46,7 +46,7 @@ class BlockRays
 public:
   BlockRays(const SceneTriangles& scene, const BeamBlock& block, BlockRaysWorkspace& work);
 
-  /// Trace all rays of a beam, each by a descent of its own.
+  /// Trace all rays of a beam, with one descent for each ray.
   void rayByRay(std::uint32_t beam);
 
   /// Trace all rays of a cluster in packets. The rays of several beams must fit into one packet.

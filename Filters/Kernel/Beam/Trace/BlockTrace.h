@@ -6,9 +6,9 @@
  * Beams of one apex and width are ordered along a Z-order curve and cut into groups of sixteen
  * clusters. A cluster has as many beams as fill a packet of rays, mostly one. Beams of fewer than
  * eight rays form no groups and fill packets in the order in which they come. A group descends the
- * wide tree (BeamGroup.h); from the entry points of a cluster its rays go on in packets
- * (BlockRays.h). Without a wide tree each beam's cone descends alone, and its leaves are the entry
- * points; TraceMode::Beams does so with any tree.
+ * wide tree (BeamGroup.h); from the entry points of a cluster the cluster's rays go on in packets
+ * (BlockRays.h). Without a wide tree each beam's cone descends by itself, and the leaves that it
+ * meets are the entry points; TraceMode::Beams does so with any tree.
  *
  * Source: paper, Sec. 3.2.
  * Differs: see BeamGroup.h. A cone that meets more than 2048 triangles is traced ray by ray.

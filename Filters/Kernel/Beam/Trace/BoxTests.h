@@ -4,20 +4,20 @@
  * @brief Tests the rays of a packet, or the cones of a group of beams, against the eight boxes of a
  * wide node: from one apex, in single precision, in vectors (RayLanes.h).
  *
- * All directions lie between four planes through the apex, each along one of the two coordinate
- * axes that are not the dominant one. Eight boxes are tested against these planes in one loop. Each
- * box that is left is tested against groups of sixteen rays (slabs) or, where few rays are left,
- * eight boxes against each ray. Cones are tested sixteen at a time: by their own four planes, by
- * the plane that touches the cone on the side of the box's centre, and by the plane through the
- * apex across its axis.
+ * All directions lie between four planes through the apex, each parallel to one of the two
+ * coordinate axes that are not dominant. Eight boxes are tested against these planes in one loop.
+ * Each box that is left is tested against groups of sixteen rays by slabs. Where few rays are left,
+ * each ray is tested against eight boxes. Cones are tested sixteen at a time: by their own four
+ * planes, by the plane that touches the cone on the side of the box's centre, and by the plane
+ * through the apex across the cone's axis.
  *
  * Source: frustum of Reshetov, Soupikov and Hurley, 2005 (see RayPacket.h); the tangent plane and
- * the plane across the axis are those of BeamVolumeTest.h.
- * Differs: the planes of the frustum go along coordinate axes, and are tested against eight boxes
- * at a time.
+ * the plane across the axis as in BeamVolumeTest.h.
+ * Differs: the planes of the frustum are parallel to coordinate axes, and are tested against eight
+ * boxes at a time.
  * Valid: conservative, rounding included, with the margins of WideTree.h; cones are widened as in
  * BeamCone.h. setFrustum() fails where the directions do not all lie along one coordinate axis, and
- * where single precision ends (wideningFor()).
+ * outside the range of single precision (wideningFor()).
  * Test: TestRayPacket.cxx, TestBeamGroup.cxx.
  */
 #ifndef avianlidar_BoxTests_h
@@ -61,16 +61,17 @@ struct Frustum
 };
 
 /// A packet as the tests of boxes and triangles need it. All ranges along a ray, including those of
-/// Frustum::shortening, are divided by |D|, with D its `direction`.
+/// Frustum::shortening, are divided by |D|, with D the ray's `direction`.
 struct alignas(64) PacketView
 {
   float direction[3][PacketWidth]; ///< D = axis + tan(theta0.5) (x e1 + y e2) of the ray's beam
   float inverse[3][PacketWidth];   ///< inverse of the direction's components
-  float far[PacketWidth];          ///< no hit beyond this range over |D| counts for the ray, m
+  float far[PacketWidth];          ///< range / |D| beyond which no hit counts for the ray, m
   float farthest[PacketWidth / PacketGroup]; ///< largest `far` of each group; 0 without rays
   Frustum frustum;
 
-  /// Set what follows from `count` directions; lanes that pad the last group repeat one of them.
+  /// Set the members that follow from `count` directions; lanes that pad the last group repeat one
+  /// of them.
   /// @param longest largest length of a direction @return false if the rays lie too far apart
   bool set(int count, double longest);
 };
@@ -80,7 +81,7 @@ struct PacketChild
 {
   std::uint32_t lane;
   RayBits rays;
-  float nearest; ///< lower bound of the range over |D|, m
+  float nearest; ///< lower bound of range / |D|, m
 };
 
 /// Children of a node that some of `rays` meet. @return number of children
@@ -97,12 +98,12 @@ struct alignas(64) ConeLanes
   Frustum frustum;     ///< planes about all cones
   double widest = 0.0; ///< tangent of the widest half-angle
 
-  /// Add the cone of a beam, or one about several beams, widened as BeamCone.
+  /// Add the cone of a beam, or one cone about several beams, widened as in BeamCone.h.
   void add(const BeamFrame* frames, const std::uint32_t* beams, std::size_t number);
   /// Fill the lanes beyond the last cone with copies of it.
   void close();
   /// Set the planes. @return false if the cones are too wide, too far apart or not all along one
-  /// coordinate axis, or where single precision ends (wideningFor())
+  /// coordinate axis, or outside the range of single precision (wideningFor())
   bool setFrustum(const WideTree& tree, const Vec3& apex);
 };
 
@@ -112,7 +113,7 @@ struct ConeChild
   std::uint32_t lane;
   std::uint32_t cones; ///< cones that meet it, one bit each
   float nearest;       ///< lower bound of the distance, m
-  float size;          ///< half diagonal over the distance
+  float size;          ///< half diagonal / distance
 };
 
 /// Children of a node that some of `cones` may meet. @return number of children

@@ -3,10 +3,10 @@
  * @file Candidates.h
  * @brief First step of tracing a block of beams: the triangles that the cone of each beam may meet.
  *
- * All that a beam can meet, that reflects its light again or that hides other surfaces lies in its
- * cone, which is convex. Neighbouring beams of one apex descend the tree together (BeamGroup.h).
- * From the entry points of its group each beam descends alone, down to the leaves. The triangles of
- * movers that the beam may meet follow.
+ * All surfaces that a beam can meet, that reflect its light a second time or that hide other
+ * surfaces lie in the beam's cone, because the cone is convex. Neighbouring beams of one apex
+ * descend the tree together (BeamGroup.h). From the entry points of its group each beam descends by
+ * itself, down to the leaves. The triangles of movers that the beam may meet follow.
  *
  * Source: paper, Sec. 3.2, where the list is called S_potential.
  * Differs: the paper descends for each beam from the root.
@@ -25,13 +25,14 @@
 
 namespace avianlidar
 {
-/// Goes through the beams of a block. Reusable without allocation; one per thread.
+/// Finds the candidates of the beams of a block, one beam after the other. Reusable without
+/// allocation; one per thread.
 class BeamCandidates
 {
 public:
   /// Begin a block. Scene and frames must live until its last beam.
   /// @param count number of beams; 1 if movers are placed
-  /// @param together false: each beam descends alone from the root
+  /// @param together false: each beam descends by itself from the root
   void begin(
     const SceneTriangles& scene, const BeamFrame* frames, std::size_t count, bool together);
 
@@ -41,7 +42,7 @@ public:
   // The current beam.
   std::size_t beam() const { return this->Beam; } ///< number in the block
   const std::vector<std::uint32_t>& triangles() const { return this->Triangles; }
-  /// Nodes visited, with the beam's share of those that its group visited.
+  /// Number of nodes visited, with the beam's share of the nodes that its group visited.
   std::uint64_t nodesVisited() const { return this->NodesVisited; }
 
 private:
@@ -60,8 +61,8 @@ private:
   std::vector<Group> Groups;        ///< groups still to descend, the next one last
   Group Now{ 0, 0 };                ///< the rest of the group that was descended last
   int Member = 0;                   ///< next member of that group
-  bool FromRoot = false;            ///< the group has no entry points
-  std::uint64_t Share = 0;          ///< nodes visited for each member
+  bool FromRoot = false;            ///< whether the group has no entry points
+  std::uint64_t Share = 0;          ///< number of nodes visited for each member
   std::size_t Beam = 0;
   std::vector<std::uint32_t> Triangles;
   std::uint64_t NodesVisited = 0;

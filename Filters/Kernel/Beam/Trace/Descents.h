@@ -5,7 +5,7 @@
  * in its leaves.
  *
  * Source: paper, Sec. 3.2 and 3.3.
- * Differs: acceptance and range come from TriangleTest.h, which says how they differ.
+ * Differs: acceptance and range come from TriangleTest.h, which names the differences.
  * Valid: as TriangleTest.h.
  * Test: TestBeamTracer.cxx, TestGeometryProperties.cxx.
  */
@@ -41,8 +41,8 @@ private:
   Visitor& Seen;
 };
 
-/// Descend a tree that is not empty with a beam's cone. @param entryPoints null: from the root;
-/// trees of other volumes always begin there @return nodes visited
+/// Descend a tree that is not empty with a beam's cone. @param entryPoints null: from the root,
+/// where trees of other volumes always begin @return nodes visited
 template <class Visitor>
 std::uint64_t descendCone(const CollisionTree& tree, const BeamFrame& frame, Visitor& visitor,
   TraversalStack& stack, const EntryPoints* entryPoints = nullptr)
@@ -116,9 +116,10 @@ inline void keepNearest(Hit& hit, double range, std::uint32_t triangle)
   }
 }
 
-/// Range up to which volumes are visited once a hit is known. A triangle that takes the plane of
-/// another may be hit nearer than its own volumes by as much as rounding moves them apart, along
-/// the ray by more. Rays within 4 degrees of a plane are not covered.
+/// Range up to which volumes are visited once a hit is found. The hit of a triangle that takes the
+/// plane of another may lie nearer than the triangle's own volumes, by as much as rounding moves
+/// the two triangles apart, and by more along the ray. Rays within 4 degrees of a plane are not
+/// covered.
 inline double limitOf(const CollisionTree& tree, double range)
 {
   constexpr double alongRay = 16.0;

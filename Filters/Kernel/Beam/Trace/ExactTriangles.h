@@ -35,7 +35,7 @@ class ExactTriangles
   static_assert((Remembered & (Remembered - 1)) == 0, "a power of two");
 
 public:
-  /// Clear it if it belongs to another tree or apex.
+  /// Clear the cache if it belongs to another tree or apex.
   void begin(const CollisionTree& tree, const Vec3& apex)
   {
     if (this->Tree != &tree || this->Apex != apex)
@@ -75,7 +75,7 @@ public:
 private:
   const CollisionTree* Tree = nullptr;
   Vec3 Apex{ 0.0 };
-  std::vector<ExactTriangle> Last; ///< number: a power of two
+  std::vector<ExactTriangle> Last; ///< triangles kept; their number is a power of two
   std::vector<std::uint32_t> Used; ///< occupied places
 };
 }

@@ -5,7 +5,7 @@
  * open whether a ray of a packet hits a triangle, or which of two triangles it hits first.
  *
  * Source: none.
- * Valid: hits are those of single rays, bit for bit.
+ * Valid: hits equal the hits of single rays, bit for bit.
  * Test: TestRayPacket.cxx.
  */
 #ifndef avianlidar_PacketRanges_h
@@ -27,7 +27,7 @@ public:
   {
   }
 
-  /// Keep the nearer hit of rays that surely hit the triangle, about as far away as their nearest
+  /// Keep the nearer hit of rays that surely hit the triangle, at about the range of their nearest
   /// hit so far. @return rays that hit it
   RayBits compare(RayBits rays, std::uint32_t triangle);
 

@@ -5,18 +5,19 @@
  * bounds of the error.
  *
  * Hits that RayPacketTriangles.h leaves undecided go at once to the exact functions
- * (PacketRanges.h). The steps of a node depend on each other, so its time hardly grows with the
- * number of rays, and only groups of sixteen rays that meet a leaf are tested against its
- * triangles. So packets are wider than a vector; 128 rays are better for narrow beams and worse for
- * fine meshes. Rays that lie closer together share more nodes; they need not belong to one beam.
+ * (PacketRanges.h). The steps of a node depend on each other, so the time of a node hardly grows
+ * with the number of rays. Only groups of sixteen rays that meet a leaf are tested against its
+ * triangles. For both reasons packets are wider than a vector. Packets of 128 rays are better for
+ * narrow beams and worse for fine meshes. Rays that lie closer together share more nodes; they need
+ * not belong to one beam.
  *
  * Source: Wald, Slusallek, Benthin, Wagner, "Interactive Rendering with Coherent Ray Tracing",
  * Computer Graphics Forum 20(3), 2001; frustum: Reshetov, Soupikov, Hurley, "Multi-level Ray
  * Tracing Algorithm", ACM TOG 24(3), 2005.
  * Differs: rays are tested in groups of sixteen within a packet, eight boxes or triangles at a
  * time.
- * Valid: hits are those of single rays, bit for bit. Rays are traced one by one where they lie too
- * far apart, where the apex is too far away, and where the tree has no wide form.
+ * Valid: hits equal the hits of single rays, bit for bit. Rays are traced one by one where they lie
+ * too far apart, where the apex is too far away, and where the tree has no wide form.
  * Test: TestRayPacket.cxx.
  */
 #ifndef avianlidar_RayPacket_h
@@ -43,7 +44,7 @@ struct alignas(64) RayPacket
   const BeamFrame* beam = nullptr; ///< frame of all rays; null if they belong to several beams
   const BeamFrame* frame[Width];   ///< frame of each ray, if `beam` is null; all of one origin
   std::uint32_t triangle[Width];   ///< out: nearest triangle of each ray, or NoTriangle
-  int count = 0;                   ///< rays, 1 to Width; lanes beyond may be overwritten
+  int count = 0;                   ///< number of rays, 1 to Width; lanes beyond may be overwritten
 
   const BeamFrame& frameOf(int ray) const { return this->beam ? *this->beam : *this->frame[ray]; }
   /// Unit direction of a ray.
@@ -57,7 +58,7 @@ struct alignas(64) RayPacket
 struct PacketState
 {
   RayPacket* packet = nullptr;
-  int filled = 0;        ///< triangles collected for the next test
+  int filled = 0;        ///< number of triangles collected for the next test
   float farthest = 0.0f; ///< largest of the view's `far`
   PacketView view = {};
   PacketBest best = {};
@@ -69,7 +70,7 @@ struct PacketState
   ExactTriangles<64> exact;
 };
 
-/// Workspace kept between calls, so that none allocates.
+/// Workspace kept between calls, so that no call allocates.
 struct PacketWorkspace
 {
   PacketState state;

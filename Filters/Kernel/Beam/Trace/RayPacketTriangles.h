@@ -4,9 +4,9 @@
  * @brief Tests the rays of a packet against up to eight triangles, in single precision with bounds
  * of the error, sixteen rays at a time (RayLanes.h).
  *
- * All rays have one apex, so what does not depend on the ray is found once for a triangle
- * (ApexTriangles.h). For a ray along D = axis + tan(theta0.5) (x e1 + y e2), |D| <= sec = 1 /
- * cos(theta0.5), an edge function (TriangleTest.h) is
+ * All rays of a packet have one apex. Terms that do not depend on the ray are therefore computed
+ * once for each triangle (ApexTriangles.h). For a ray along D = axis + tan(theta0.5) (x e1 + y e2),
+ * |D| <= sec = 1 / cos(theta0.5), an edge function (TriangleTest.h) is
  *
  *     e = (E . D) / (16 u G |E|_1 + K u_d R^2),   E = a x b,
  *
@@ -17,34 +17,35 @@
  * with u = 2^-24, u_d = 2^-53, R the sum of the coordinates' magnitudes of the farthest corner, L
  * the longest side, G = max(1 + sqrt(2) tan(theta0.5), sec) and K = 128 sec + 12 (8 + 14
  * tan(theta0.5)). E, W and D are computed in double precision and rounded once, after everything
- * has cancelled. TriangleTest.h is called exact below, this test rounded.
+ * has cancelled. Below, the test of TriangleTest.h is called exact, and this test rounded.
  *
  * - Edges: e >= 1 implies acceptance by the exact test, and e < -1 rejection, with a factor of
  *   three to spare in the first term. The rounded E . D has an error below 5 u |E|_1 sec (one u
- *   each of E and D, three of the evaluation) plus 3 u_d R^2 sec (of E). The exact test works in
- *   the plane of the ray's own beam, where |e|_1 is at most (1 + sqrt(2) tan(theta0.5)) |E|_1. Its
- *   error is below 5 u_d |e|_1, and its tolerance is 4 u_d |e|_1 + 6 (8 + 14 tan(theta0.5)) u_d R^2
- *   (its spread is at most 6 R^2 for a x b). The second part of the tolerance also bounds the exact
- *   test's error of E.
- * - Sign: the above supposes that n . a, with an error of 64 u_d L R^2 in the rounded test and
- *   below 32 u_d L R^2 in the exact one, has one sign in both. Where 128 u_d L R^2 sec is half of
- *   |n . a| or more, e is set to 0 and decides nothing: the apex lies on the triangle, or in its
- *   plane but for rounding. Triangles of |n|_1 <= u_d L^2 keep their e: |n| is at most 3 u_d L^2 in
- *   every coordinate in the exact test, and planeOf() accepts no hit below 4 u_d L^2.
- * - Plane: where e >= 1 the plane's range stands (TriangleTest.h). That needs E . d of at least 64
- *   u_d R^2 (a x b, L <= 2 R) and 42 u_d R^2 for its evaluation in the exact test. Bounds that
- *   decide anything (128 u_d L R^2 / |n . a| < 1e-6) exclude |cos| of incidence below 2^-27.
+ *   each of E and D, three of the evaluation) plus 3 u_d R^2 sec (the error of E). The exact test
+ *   works in the plane of the ray's own beam, where |e|_1 is at most (1 + sqrt(2) tan(theta0.5))
+ *   |E|_1. The exact test has an error below 5 u_d |e|_1 and a tolerance of 4 u_d |e|_1 + 6 (8 + 14
+ *   tan(theta0.5)) u_d R^2 (its spread is at most 6 R^2 for a x b). The second part of the
+ *   tolerance also bounds the exact test's error of E.
+ * - Sign: the bounds above suppose that n . a has one sign in both tests. The error of n . a is 64
+ *   u_d L R^2 in the rounded test and below 32 u_d L R^2 in the exact one. Where 128 u_d L R^2 sec
+ *   is half of |n . a| or more, e is set to 0 and decides nothing: the apex lies on the triangle,
+ *   or in its plane but for rounding. Triangles of |n|_1 <= u_d L^2 keep their e: |n| is at most 3
+ *   u_d L^2 in every coordinate in the exact test, and planeOf() accepts no hit below 4 u_d L^2.
+ * - Plane: where e >= 1 the plane's range is not clamped (TriangleTest.h). This needs E . d of at
+ *   least 64 u_d R^2 (a x b, L <= 2 R) and 42 u_d R^2 for its evaluation in the exact test. Bounds
+ *   that decide anything (128 u_d L R^2 / |n . a| < 1e-6) exclude |cos| of incidence below 2^-27.
  * - Range: `error` bounds the difference of w from the inverse of the exact range along the same
- *   ray. Its parts are, over |W|_1 sec, 7 u for the rounding of w and of w -+ error; over |n . a|,
- *   100 u_d L R for n . d; and, over |n . a| and relative to w, 64 u_d L R^2 for n . a, 40 u_d L
- *   R^2 for the exact range (TriangleTest.h), and less than 64 u_d R w |n . a| for its clamping.
- *   128 u_d L R / |n . a| bounds the second part and, times R, the next two. Parts relative to w
- *   are doubled.
+ *   ray. Its parts are 7 u |W|_1 sec for the rounding of w and of w -+ error; 100 u_d L R / |n . a|
+ *   for n . d; and, relative to w, 64 u_d L R^2 / |n . a| for n . a, 40 u_d L R^2 / |n . a| for the
+ *   exact range (TriangleTest.h), and less than 64 u_d R w for the clamping of this range. 128 u_d
+ *   L R / |n . a| bounds the second part; times R, it bounds the next two. Parts relative to w are
+ *   doubled.
  *
  * Source: none; derived above.
- * Valid: the exact functions decide what is neither surely rejected, nor behind the nearest hit so
- * far, nor surely nearer: rays within about 2e-6 G rad of an edge (16 sqrt(3) u G and the
- * evaluation here), and rays of a triangle whose range these bounds do not decide.
+ * Valid: the exact functions decide hits that are neither surely rejected, nor behind the nearest
+ * hit so far, nor surely nearer. These are hits of rays within about 2e-6 G rad of an edge (16
+ * sqrt(3) u G and the evaluation here), and hits on a triangle whose range these bounds do not
+ * decide.
  * Test: TestApexTriangles.cxx, TestRayPacket.cxx.
  */
 #ifndef avianlidar_RayPacketTriangles_h
@@ -64,18 +65,18 @@ struct alignas(64) PacketBest
   std::uint32_t triangle[PacketWidth];
 };
 
-/// Up to eight triangles.
+/// Up to eight triangles, and the rays that are tested against each of them.
 struct PacketTriangles
 {
   static constexpr int Width = ApexTriangles::Batch;
   const ApexTriangle* seen[Width];
   RayBits rays[Width];   ///< rays that meet the leaf; their groups are tested
-  RayBits level[Width];  ///< rays that surely hit, about as far away as their nearest hit so far
+  RayBits level[Width];  ///< rays that surely hit, at about the range of their nearest hit so far
   RayBits unsure[Width]; ///< other rays, which the exact functions decide
 };
 
 /// Test `count` triangles; nearest hits that are certain go to `best`.
-/// @return rays whose nearest hit has changed; `undecided` if any is level or unsure
+/// @return rays whose nearest hit has changed; `undecided` is true if any ray is level or unsure
 RayBits testTriangles(
   const PacketView& view, int count, PacketTriangles& triangles, PacketBest& best, bool& undecided);
 

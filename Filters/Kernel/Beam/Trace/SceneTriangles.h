@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file SceneTriangles.h
- * @brief The triangles that a beam may meet: those of the collision tree, and those of movers as
- * they stand when the beam is fired.
+ * @brief The triangles that a beam may meet: the triangles of the collision tree, and the triangles
+ * of movers in their places when the beam is fired.
  *
- * Triangles of the tree keep their numbers. The triangles of all movers have the numbers after
- * them, whether they are placed or not, so that a number means one triangle throughout a scan.
+ * Triangles of the tree keep their numbers. The numbers of all movers' triangles follow, whether
+ * the movers are placed or not, so that a number means one triangle throughout a scan.
  *
  * Source: none.
  * Valid: a mover's triangle never takes the plane of another one (CoincidentFaces.h).
@@ -42,7 +42,7 @@ public:
   /// Numbers of the movers' triangles in the beam, in rising order.
   const std::vector<std::uint32_t>& moved() const { return this->Numbers; }
 
-  /// Tree of the triangles in moved(), by their places there; null if they are few.
+  /// Tree of the triangles in moved(), by their places in moved(); null if there are few.
   const CollisionTree* movedTree() const { return this->MovedTree.get(); }
 
   void clear();
@@ -54,7 +54,7 @@ public:
   /// Build the tree of the movers' triangles. Call it after the last mover is placed.
   void finish();
 
-  /// True if the triangle is one of the tree, or of a mover that is placed.
+  /// True if the triangle belongs to the tree, or to a mover that is placed.
   bool holds(std::uint32_t triangle) const
   {
     return triangle < this->Fixed ||
@@ -87,7 +87,7 @@ public:
     return this->isMoved(triangle) ? triangle : this->Tree.planeOwner(triangle);
   }
 
-  /// The plane on which the ranges of a triangle lie: its own, or that of its planeOwner().
+  /// The plane on which the ranges of a triangle lie: its own plane, or its planeOwner()'s plane.
   /// @param corners relative to `point`
   TrianglePlane planeOf(std::uint32_t triangle, const Corners& corners, const Vec3& point) const
   {
