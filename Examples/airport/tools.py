@@ -58,7 +58,7 @@ def add_arguments(parser, out):
     parser.add_argument("--seed", type=number(int, -2**31, 2**31 - 1), default=0, help="of the random numbers, default 0")
     parser.add_argument("--threads", type=number(int, 0, 4096), default=0, help="default 0: as many as there are cores")
     parser.add_argument("--out", type=pathlib.Path, default=pathlib.Path(out), help=f"folder for results, default {out}")
-    parser.add_argument("--paper", action="store_true", help="the method and the tree of the paper: the presets named Paper")
+    parser.add_argument("--paper", action="store_true", help="the method and the tree of the paper: the presets named Paper, whose 100 rays replace --rays")
     parser.add_argument("--no-pictures", action="store_true", help="leave files and tables alone")
 
 
@@ -102,7 +102,7 @@ def counts(tree, echoes, lidar):
     energy, secondary = (vtk_to_numpy(echoes.GetPointData().GetArray(name)) for name in ("return_energy", "secondary_share"))
     return [("triangles", tree.GetOutput().GetNumberOfPolys()), ("beams", len(status)),
             *((f"- {name}", int((status == i).sum())) for i, name in enumerate(STATUS)),
-            ("rays emitted", len(status) * lidar.GetRaysPerBeam()), ("rays traced", int(lidar.GetNumberOfTracedRays())),
+            ("rays emitted", len(status) * int(lidar.GetOutput(1).GetFieldData().GetArray("rays_per_beam").GetValue(0))), ("rays traced", int(lidar.GetNumberOfTracedRays())),
             ("echoes", echoes.GetNumberOfPoints()),
             ("secondary share of the energy", f"{100 * (secondary @ energy) / max(energy.sum(), 1e-300):.2f} %"),
             ("ghosts (mostly secondary)", int((secondary > 0.5).sum()))]

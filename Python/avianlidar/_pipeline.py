@@ -142,7 +142,7 @@ class Updates:
             self._errors.append(text)
             self._unfinished.append(caller)
 
-    setattr(_heard, "CallDataType", "string0")  # how VTK is told what the event brings
+    setattr(_heard, "CallDataType", "string0")  # VTK's way to declare the event's data
 
     def _fail(self, algorithm, text: str = ""):
         why = "without a message" if vtkObject.GetGlobalWarningDisplay() else \

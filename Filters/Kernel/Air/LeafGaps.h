@@ -63,7 +63,7 @@ private:
     std::array<double, 2> aperture; ///< point to which its light returns, m
     double share;                   ///< share of the pulse
     const BeamAir::Column* column;
-    MetLeaf leaf; ///< leaf at which the ray ends; at an infinite range if there is none
+    MetLeaf leaf; ///< leaf at which the ray ends; its range is infinite without a leaf
     bool isSeen;  ///< true if no leaf stops the light of `leaf` on its way back
   };
   /// Ranges, m, from which a leaf stops the light of a ray on its way back.

@@ -316,8 +316,8 @@ class Study:
         return is_told(*self.of(one)[:2], self.asked)
 
     def undecided(self) -> List[Candidate]:
-        """Designs that are cheaper than the chosen one, all if there is none, and of which the error does not tell whether they have the
-        asked share."""
+        """Designs whose share is within the error of the asked one and that are cheaper than the chosen design; without a chosen
+        design, at any cost."""
         limit = self.chosen.cost if self.chosen else math.inf
         return [one for one in self.judged if one.cost < limit and self.has_it(one) is None]
 

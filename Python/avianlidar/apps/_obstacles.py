@@ -101,7 +101,7 @@ def _csv(file: pathlib.Path, content: bytes) -> Iterator[Tuple[Dict[str, str], A
 
 
 def _angle(text: str) -> float:
-    """Degrees of "13.302", "13,302", "0131807.2E", "53°36'10\"N"; NaN where there is none."""
+    """Degrees of "13.302", "13,302", "0131807.2E", "53°36'10\"N"; NaN for any other text."""
     found = ANGLE.fullmatch(text)
     if found and (found[1] or found[5]):
         value = int(found[2]) + int(found[3]) / 60.0 + float(found[4].replace(",", ".")) / 3600.0

@@ -54,7 +54,7 @@ def word_of(verdict):
 
 @functools.cache
 def table(name):
-    """The rows of a generated table as lists of cells; empty if there is none."""
+    """The rows of a generated table as lists of cells; empty if no page has the table."""
     return page_tables.rows(name) if page_tables.places(name) else []
 
 
