@@ -38,7 +38,6 @@ namespace
 namespace Arrays = vtkAvianLidarArrays;
 using avianlidar::SeenSurface;
 using avianlidar::Vec3;
-using Outcome = vtkAvianLidarRanks::Outcome;
 
 constexpr char NoSurface[] = "no surface";
 
@@ -223,7 +222,7 @@ int vtkAvianLidarBeamView::RequestData(
   in.TracedRays = in.TracedBeams = 0.0;
   in.Setup.settings.noise = false;
   return vtkAvianLidarRanks::Execute(this, request, outputVector,
-    [&](const vtkAvianLidarRanks& ranks) -> int
+    [&](const vtkAvianLidarRanks& ranks)
     {
       vtkPolyData* beams = vtkPolyData::GetData(inputVector[0]);
       vtkDataObject* surfaces = vtkDataObject::GetData(inputVector[1]);
@@ -234,23 +233,18 @@ int vtkAvianLidarBeamView::RequestData(
       vtkAvianLidarRevolutions::NoteTime(request, outputVector);
       vtkAvianLidarRanks::Settings own;
       own.Add("BeamId", this->BeamId);
-      const bool done = this->PrepareBeams(ranks, beams) && in.GoOn(ranks.AgreeOn(this, own)) &&
-        in.GoOn(in.Beams.CheckRanks(ranks, this, vtkInternals::WrongWithBeams)) &&
-        this->PrepareSurfaces(ranks, surfaces) && this->PrepareMovers(ranks, movers) &&
-        this->PrepareTree(ranks, surfaces) &&
-        this->Look(ranks, beams->GetFieldData(), seen, cone, shares);
-      if (!done)
-      {
-        seen->Initialize();
-        cone->Initialize();
-        shares->Initialize();
-      }
-      return in.Last == Outcome::Failed ? 0 : 1; // stopped: empty and valid
+      this->PrepareBeams(ranks, beams);
+      ranks.AgreeOn(this, own);
+      in.Beams.CheckRanks(ranks, this, vtkInternals::WrongWithBeams);
+      this->PrepareSurfaces(ranks, surfaces);
+      this->PrepareMovers(ranks, movers);
+      this->PrepareTree(ranks, surfaces);
+      this->Look(ranks, beams->GetFieldData(), seen, cone, shares);
     });
 }
 
 //------------------------------------------------------------------------------
-bool vtkAvianLidarBeamView::Look(const vtkAvianLidarRanks& ranks, vtkFieldData* beamFields,
+void vtkAvianLidarBeamView::Look(const vtkAvianLidarRanks& ranks, vtkFieldData* beamFields,
   vtkPolyData* surfaces, vtkPolyData* cone, vtkTable* shares)
 {
   vtkInternals& in = *this->Internals;
@@ -258,7 +252,7 @@ bool vtkAvianLidarBeamView::Look(const vtkAvianLidarRanks& ranks, vtkFieldData* 
   const auto place = std::find(ids.begin(), ids.end(), static_cast<std::uint64_t>(this->BeamId));
   const bool isHere = place != ids.end() && this->BeamId >= 0;
   const bool isAnywhere = ranks.Sum(isHere ? 1.0 : 0.0) > 0.0;
-  return in.GoOn(ranks.Together(this,
+  ranks.Together(this,
     [&]() -> std::string
     {
       if (!isAnywhere && in.Beams.total > 0)
@@ -295,7 +289,7 @@ bool vtkAvianLidarBeamView::Look(const vtkAvianLidarRanks& ranks, vtkFieldData* 
       FillCone(frame, length > 0.0 ? length : in.Beams.displayLength, cone);
       FillTable(RowsOf(seen), shares->GetFieldData(), shares);
       return {};
-    }));
+    });
 }
 
 //------------------------------------------------------------------------------

@@ -61,7 +61,7 @@ private:
   vtkAvianLidarBeamView(const vtkAvianLidarBeamView&) = delete;
   void operator=(const vtkAvianLidarBeamView&) = delete;
 
-  bool Look(const vtkAvianLidarRanks& ranks, vtkFieldData* beamFields, vtkPolyData* surfaces,
+  void Look(const vtkAvianLidarRanks& ranks, vtkFieldData* beamFields, vtkPolyData* surfaces,
     vtkPolyData* cone, vtkTable* shares);
 };
 

@@ -36,7 +36,6 @@
 namespace
 {
 namespace Arrays = vtkAvianLidarArrays;
-using Outcome = vtkAvianLidarRanks::Outcome;
 
 constexpr int Ports = 2;
 const char* const CloudNames[Ports] = { "simulated", "reference" };
@@ -273,10 +272,7 @@ int vtkAvianLidarCloudComparison::RequestUpdateExtent(
   const vtkAvianLidarRanks ranks(this->Controller, request, outputVector);
   for (int port = 0; port < Ports; ++port)
   {
-    vtkInformation* info = inputVector[port]->GetInformationObject(0);
-    info->Set(vtkStreamingDemandDrivenPipeline::UPDATE_PIECE_NUMBER(), ranks.Rank());
-    info->Set(vtkStreamingDemandDrivenPipeline::UPDATE_NUMBER_OF_PIECES(), ranks.Size());
-    info->Set(vtkStreamingDemandDrivenPipeline::UPDATE_NUMBER_OF_GHOST_LEVELS(), 0);
+    ranks.RequestPiece(inputVector[port]);
   }
   return 1;
 }
@@ -294,12 +290,12 @@ int vtkAvianLidarCloudComparison::RequestData(
 {
   this->ForgetResult();
   return vtkAvianLidarRanks::Execute(this, request, outputVector,
-    [&](const vtkAvianLidarRanks& ranks) -> int
+    [&](const vtkAvianLidarRanks& ranks)
     {
       vtkPointSet* clouds[Ports];
       vtkSmartPointer<vtkPointSet> whole[Ports];
       Direction directions[Ports];
-      const Outcome read = ranks.Together(this,
+      ranks.Together(this,
         [&]() -> std::string
         {
           vtkAvianLidarAbort::StopIfWanted(this);
@@ -317,27 +313,12 @@ int vtkAvianLidarCloudComparison::RequestData(
         });
       vtkAvianLidarRanks::Settings settings;
       settings.Add("ChamferAlpha", this->ChamferAlpha);
-      const Outcome agreed = read == Outcome::Done ? ranks.AgreeOn(this, settings) : read;
-      if (agreed != Outcome::Done)
-      {
-        return agreed == Outcome::Failed ? 0 : 1;
-      }
+      ranks.AgreeOn(this, settings);
       for (int port = 0; port < Ports; ++port)
       {
-        whole[port] = clouds[port];
-        if (ranks.Alone())
-        {
-          continue;
-        }
-        vtkSmartPointer<vtkPolyData> all;
-        const Outcome gathered = vtkAvianLidarGather::Coordinates(ranks, this, clouds[port], all);
-        if (gathered != Outcome::Done)
-        {
-          return gathered == Outcome::Failed ? 0 : 1;
-        }
-        whole[port] = all;
+        whole[port] = vtkAvianLidarGather::Coordinates(ranks, this, clouds[port]);
       }
-      const Outcome measured = ranks.Together(this,
+      ranks.Together(this,
         [&]() -> std::string
         {
           for (int port = 0; port < Ports; ++port)
@@ -351,10 +332,6 @@ int vtkAvianLidarCloudComparison::RequestData(
           Measure(clouds[1], whole[0], this, 0.5, directions[1]);
           return {};
         });
-      if (measured != Outcome::Done)
-      {
-        return measured == Outcome::Failed ? 0 : 1; // stopped: empty and valid
-      }
       for (int port = 0; port < Ports; ++port)
       {
         const vtkIdType others = whole[1 - port]->GetNumberOfPoints();
@@ -385,7 +362,6 @@ int vtkAvianLidarCloudComparison::RequestData(
           LeavePointsOut(output);
         }
       }
-      return 1;
     });
 }
 

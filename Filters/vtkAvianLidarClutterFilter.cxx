@@ -39,7 +39,6 @@ namespace Arrays = vtkAvianLidarArrays;
 using avianlidar::ClutterCell;
 using avianlidar::ClutterGrid;
 using avianlidar::ClutterMap;
-using Outcome = vtkAvianLidarRanks::Outcome;
 using Pipeline = vtkStreamingDemandDrivenPipeline;
 
 constexpr int MostWarmUp = 100000;
@@ -295,17 +294,8 @@ int vtkAvianLidarClutterFilter::RequestDataObject(
 int vtkAvianLidarClutterFilter::RequestUpdateExtent(
   vtkInformation* request, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
-  const vtkAvianLidarRanks ranks(this->Controller, request, outputVector);
-  for (int port = 0; port < 2; ++port)
-  {
-    // Each rank needs the whole table.
-    if (vtkInformation* info = inputVector[port]->GetInformationObject(0))
-    {
-      info->Set(Pipeline::UPDATE_PIECE_NUMBER(), port == 0 ? ranks.Rank() : 0);
-      info->Set(Pipeline::UPDATE_NUMBER_OF_PIECES(), port == 0 ? ranks.Size() : 1);
-      info->Set(Pipeline::UPDATE_NUMBER_OF_GHOST_LEVELS(), 0);
-    }
-  }
+  vtkAvianLidarRanks(this->Controller, request, outputVector).RequestPiece(inputVector[0]);
+  vtkAvianLidarRanks::RequestAll(inputVector[1]); // each rank needs the whole table
   return 1;
 }
 
@@ -441,12 +431,12 @@ int vtkAvianLidarClutterFilter::RequestData(
   vtkInformation* request, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
   return vtkAvianLidarRanks::Execute(this, request, outputVector,
-    [&](const vtkAvianLidarRanks& ranks) -> int
+    [&](const vtkAvianLidarRanks& ranks)
     {
       vtkPointSet* cloud = vtkPointSet::GetData(inputVector[0]);
       Memory memory = *this->Kept; // which stays if something is wrong
       std::vector<ClutterMap::Key> keys;
-      const Outcome read = ranks.Together(this,
+      ranks.Together(this,
         [&]() -> std::string
         {
           vtkAvianLidarAbort::StopIfWanted(this);
@@ -465,48 +455,37 @@ int vtkAvianLidarClutterFilter::RequestData(
       settings.Add("ElevationStep", this->ElevationStep);
       settings.Add("Learning", this->Learning);
       settings.Add("learned_scans", memory.Before ? memory.Before->scans() : 0);
-      Outcome outcome = read == Outcome::Done ? ranks.AgreeOn(this, settings) : read;
-      vtkSmartPointer<vtkPolyData> all;
-      if (outcome == Outcome::Done && !ranks.Alone())
-      {
-        outcome = vtkAvianLidarGather::Coordinates(ranks, this, cloud, all);
-      }
-      if (outcome == Outcome::Done)
-      {
-        outcome = ranks.Together(this,
-          [&]() -> std::string
+      ranks.AgreeOn(this, settings);
+      const vtkSmartPointer<vtkPointSet> all = vtkAvianLidarGather::Coordinates(ranks, this, cloud);
+      ranks.Together(this,
+        [&]() -> std::string
+        {
+          std::string problem;
+          memory.With = !this->Learning
+            ? memory.Before
+            : std::make_shared<const ClutterMap>(
+                memory.Before->learned(ranks.Alone() ? keys : KeysOf(all, memory.Of, problem)));
+          vtkPointSet* scan = vtkPointSet::GetData(outputVector, 0);
+          vtkPolyData* table = vtkPolyData::GetData(outputVector, 1);
+          scan->ShallowCopy(cloud);
+          this->Classify(memory, keys, scan);
+          const int asked = std::max(0, request->Get(vtkExecutive::FROM_OUTPUT_PORT()));
+          const bool first = ranks.Alone()
+            ? outputVector->GetInformationObject(asked)->Get(Pipeline::UPDATE_PIECE_NUMBER()) <= 0
+            : ranks.Rank() == 0;
+          if (first)
           {
-            std::string problem;
-            memory.With = !this->Learning
-              ? memory.Before
-              : std::make_shared<const ClutterMap>(
-                  memory.Before->learned(all ? KeysOf(all, memory.Of, problem) : keys));
-            vtkPointSet* scan = vtkPointSet::GetData(outputVector, 0);
-            vtkPolyData* table = vtkPolyData::GetData(outputVector, 1);
-            scan->ShallowCopy(cloud);
-            this->Classify(memory, keys, scan);
-            const int asked = std::max(0, request->Get(vtkExecutive::FROM_OUTPUT_PORT()));
-            const bool first = ranks.Alone()
-              ? outputVector->GetInformationObject(asked)->Get(Pipeline::UPDATE_PIECE_NUMBER()) <= 0
-              : ranks.Rank() == 0;
-            if (first)
-            {
-              WriteTable(*memory.With, memory.Of.Position, table);
-            }
-            else if (ranks.Alone())
-            {
-              scan->Initialize();
-            }
-            this->AddSettings(memory, scan->GetFieldData());
-            this->AddSettings(memory, table->GetFieldData());
-            return problem;
-          });
-      }
-      if (outcome == Outcome::Done)
-      {
-        *this->Kept = std::move(memory);
-      }
-      return outcome == Outcome::Failed ? 0 : 1;
+            WriteTable(*memory.With, memory.Of.Position, table);
+          }
+          else if (ranks.Alone())
+          {
+            scan->Initialize();
+          }
+          this->AddSettings(memory, scan->GetFieldData());
+          this->AddSettings(memory, table->GetFieldData());
+          return problem;
+        });
+      *this->Kept = std::move(memory);
     });
 }
 

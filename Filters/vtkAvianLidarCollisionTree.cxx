@@ -28,11 +28,6 @@ vtkStandardNewMacro(vtkAvianLidarCollisionTree);
 vtkCxxSetObjectMacro(vtkAvianLidarCollisionTree, Controller, vtkMultiProcessController);
 vtkInformationKeyMacro(vtkAvianLidarCollisionTree, COLLISION_TREE, ObjectBase);
 
-namespace
-{
-using Outcome = vtkAvianLidarRanks::Outcome;
-}
-
 struct vtkAvianLidarCollisionTree::vtkInternals
 {
   std::shared_ptr<const avianlidar::CollisionTree> Tree;
@@ -41,14 +36,6 @@ struct vtkAvianLidarCollisionTree::vtkInternals
   vtkAvianLidarSurfaces Surfaces;        ///< merged last
   vtkAvianLidarWarnings Warnings;
   int Builds = 0;
-  Outcome Last = Outcome::Done; ///< of the execution so far
-
-  /// Note how far the execution came. @return true to go on
-  bool GoOn(Outcome outcome)
-  {
-    this->Last = outcome;
-    return outcome == Outcome::Done;
-  }
 
   bool Fits(std::uint64_t checksum, const avianlidar::TreeOptions& options) const
   {
@@ -119,64 +106,46 @@ int vtkAvianLidarCollisionTree::RequestData(
   vtkInformation* request, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
   return vtkAvianLidarRanks::Execute(this, request, outputVector,
-    [&](const vtkAvianLidarRanks& ranks) -> int
+    [&](const vtkAvianLidarRanks& ranks)
     {
       vtkDataObject* input = vtkDataObject::GetData(inputVector[0]);
       vtkPolyData* output = vtkPolyData::GetData(outputVector, 0);
       vtkPolyData* display = vtkPolyData::GetData(outputVector, 1);
-      // Unless all is done, also after an exception: the exchange knows other surfaces than the
-      // last output's.
-      struct Forgetting
+      try
       {
-        vtkAvianLidarSurfaceExchange* Exchange;
-        ~Forgetting()
-        {
-          if (this->Exchange)
-          {
-            this->Exchange->Forget();
-          }
-        }
-      } forgetting{ &this->Internals->Exchange };
-      const bool done = this->MergeSurfaces(ranks, input) && this->MakeTree(ranks, input) &&
+        this->MergeSurfaces(ranks, input);
+        this->MakeTree(ranks, input);
         this->MakeOutputs(ranks, output, display);
-      if (done)
-      {
-        forgetting.Exchange = nullptr;
       }
-      else
+      catch (...)
       {
-        output->Initialize();
-        display->Initialize();
+        // The exchange knows other surfaces than those of the last output.
+        this->Internals->Exchange.Forget();
+        throw;
       }
-      return this->Internals->Last == Outcome::Failed ? 0 : 1; // stopped: empty and valid
     });
 }
 
 //------------------------------------------------------------------------------
-bool vtkAvianLidarCollisionTree::MergeSurfaces(
+void vtkAvianLidarCollisionTree::MergeSurfaces(
   const vtkAvianLidarRanks& ranks, vtkDataObject* input)
 {
   vtkInternals& in = *this->Internals;
-  const Outcome checked = ranks.Together(this,
+  ranks.Together(this,
     [this]()
     {
       vtkAvianLidarAbort::StopIfWanted(this);
       return this->CheckOptions();
     });
-  if (!in.GoOn(checked) ||
-    !in.GoOn(in.Exchange.Merge(ranks, this, input, "Input port 0, ", 0, in.Surfaces, in.Next)))
-  {
-    return false;
-  }
+  in.Exchange.Merge(ranks, this, input, "Input port 0, ", 0, in.Surfaces, in.Next);
   if (in.Warnings.IsNew(input, in.Next.checksum, in.Next.warning) && ranks.Rank() == 0)
   {
     vtkWarningMacro("Input port 0, " << vtkAvianLidarText(in.Next.warning));
   }
-  return true;
 }
 
 //------------------------------------------------------------------------------
-bool vtkAvianLidarCollisionTree::MakeTree(const vtkAvianLidarRanks& ranks, vtkDataObject* input)
+void vtkAvianLidarCollisionTree::MakeTree(const vtkAvianLidarRanks& ranks, vtkDataObject* input)
 {
   vtkInternals& in = *this->Internals;
   using avianlidar::BoundingVolumeType;
@@ -186,8 +155,8 @@ bool vtkAvianLidarCollisionTree::MakeTree(const vtkAvianLidarRanks& ranks, vtkDa
     : TreeOptions{ static_cast<avianlidar::SplitRule>(this->SplitRule),
         static_cast<BoundingVolumeType>(this->BoundingVolume), this->MaximumLeafSize };
   const int threads = ranks.Threads(0);
-  const Outcome outcome = ranks.Together(this,
-    [&]() -> std::string
+  ranks.Together(this,
+    [&]()
     {
       if (!in.Fits(in.Next.checksum, options))
       {
@@ -200,18 +169,16 @@ bool vtkAvianLidarCollisionTree::MakeTree(const vtkAvianLidarRanks& ranks, vtkDa
         in.Builds += in.Tree != nullptr;
       }
       vtkAvianLidarAbort::Require(in.Tree != nullptr);
-      return {};
     });
-  return in.GoOn(outcome);
 }
 
 //------------------------------------------------------------------------------
-bool vtkAvianLidarCollisionTree::MakeOutputs(
+void vtkAvianLidarCollisionTree::MakeOutputs(
   const vtkAvianLidarRanks& ranks, vtkPolyData* output, vtkPolyData* display)
 {
   vtkInternals& in = *this->Internals;
-  const Outcome outcome = ranks.Together(this,
-    [&]() -> std::string
+  ranks.Together(this,
+    [&]()
     {
       if (ranks.Rank() == 0)
       {
@@ -230,9 +197,7 @@ bool vtkAvianLidarCollisionTree::MakeOutputs(
       {
         vtkAvianLidarMakeTreeDisplay(*in.Tree, this->DisplayLevel, display);
       }
-      return {};
     });
-  return in.GoOn(outcome);
 }
 
 //------------------------------------------------------------------------------

@@ -178,9 +178,9 @@ private:
   void operator=(const vtkAvianLidarCollisionTree&) = delete;
 
   // Passes of an execution, which all ranks make together; false ends the execution.
-  bool MergeSurfaces(const vtkAvianLidarRanks& ranks, vtkDataObject* input);
-  bool MakeTree(const vtkAvianLidarRanks& ranks, vtkDataObject* input);
-  bool MakeOutputs(const vtkAvianLidarRanks& ranks, vtkPolyData* output, vtkPolyData* display);
+  void MergeSurfaces(const vtkAvianLidarRanks& ranks, vtkDataObject* input);
+  void MakeTree(const vtkAvianLidarRanks& ranks, vtkDataObject* input);
+  void MakeOutputs(const vtkAvianLidarRanks& ranks, vtkPolyData* output, vtkPolyData* display);
 
   std::string CheckOptions() const;
 

@@ -40,7 +40,6 @@ vtkStandardNewMacro(vtkAvianLidarCoverage);
 namespace
 {
 namespace Arrays = vtkAvianLidarArrays;
-using Outcome = vtkAvianLidarRanks::Outcome;
 using Pipeline = vtkStreamingDemandDrivenPipeline;
 
 /// Of the progress: static scan, lines of sight, and the rest.
@@ -300,7 +299,7 @@ int vtkAvianLidarCoverage::RequestData(
   in.Setup.settings.noise = false;
   in.Setup.settings.returnMode = avianlidar::ReturnMode::RangeUnits;
   const int done = vtkAvianLidarRanks::Execute(this, request, outputVector,
-    [&](const vtkAvianLidarRanks& ranks) -> int
+    [&](const vtkAvianLidarRanks& ranks)
     {
       vtkPolyData* beams = vtkPolyData::GetData(inputVector[0]);
       vtkDataObject* surfaces = vtkDataObject::GetData(inputVector[1]);
@@ -310,45 +309,39 @@ int vtkAvianLidarCoverage::RequestData(
       vtkAvianLidarRevolutions::NoteTime(request, outputVector);
       vtkInformation* info = outputVector->GetInformationObject(0);
       const int piece = info->Get(Pipeline::UPDATE_PIECE_NUMBER());
-      const bool evaluated = this->PrepareBeams(ranks, beams) && this->PrepareTargets(ranks) &&
-        this->PreparePlaces(ranks, vtkDataSet::GetData(inputVector[2]), info) &&
-        this->PrepareSurfaces(ranks, surfaces) && this->PrepareTree(ranks, surfaces) &&
-        this->View(ranks, piece == 0, clutter) && this->Evaluate(ranks, output, table);
-      const std::array<vtkDataObject*, 3> outputs = { output, table, clutter };
-      const auto makeFields = [&]() -> std::string
-      {
-        for (vtkDataObject* made : outputs)
+      this->PrepareBeams(ranks, beams);
+      this->PrepareTargets(ranks);
+      this->PreparePlaces(ranks, vtkDataSet::GetData(inputVector[2]), info);
+      this->PrepareSurfaces(ranks, surfaces);
+      this->PrepareTree(ranks, surfaces);
+      this->View(ranks, piece == 0, clutter);
+      this->Evaluate(ranks, output, table);
+      ranks.Together(this,
+        [&]()
         {
-          this->MakeFields(beams->GetFieldData(), made->GetFieldData());
-        }
-        return {};
-      };
-      if (evaluated && in.GoOn(ranks.Together(this, makeFields)))
+          for (vtkDataObject* made :
+            std::initializer_list<vtkDataObject*>{ output, table, clutter })
+          {
+            this->MakeFields(beams->GetFieldData(), made->GetFieldData());
+          }
+        });
+      const bool differ = vtkTargets::ScansDiffer(beams) && this->NumberOfScans > 1;
+      if (differ && !this->Targets->Warned && piece == 0)
       {
-        const bool differ = vtkTargets::ScansDiffer(beams) && this->NumberOfScans > 1;
-        if (differ && !this->Targets->Warned && piece == 0)
-        {
-          vtkWarningMacro("Input port 0 (beams): rotating prisms give each scan other beams, and "
-                          "track_probability takes all NumberOfScans for the one that is here. "
-                          "detection_probability is right.");
-        }
-        this->Targets->Warned = differ;
-        return 1;
+        vtkWarningMacro("Input port 0 (beams): rotating prisms give each scan other beams, and "
+                        "track_probability takes all NumberOfScans for the one that is here. "
+                        "detection_probability is right.");
       }
-      for (vtkDataObject* made : outputs)
-      {
-        made->Initialize();
-      }
-      return in.Last == Outcome::Failed ? 0 : 1; // stopped: empty and valid
+      this->Targets->Warned = differ;
     });
   return done && vtkAvianLidarImageArrays::FillIfFailed(this, outputVector);
 }
 
 //------------------------------------------------------------------------------
-bool vtkAvianLidarCoverage::PrepareTargets(const vtkAvianLidarRanks& ranks)
+void vtkAvianLidarCoverage::PrepareTargets(const vtkAvianLidarRanks& ranks)
 {
   vtkInternals& in = *this->Internals;
-  return in.GoOn(ranks.Together(this,
+  ranks.Together(this,
     [&]() -> std::string
     {
       const std::string problem = vtkInternals::WrongWithBeams(
@@ -368,7 +361,7 @@ bool vtkAvianLidarCoverage::PrepareTargets(const vtkAvianLidarRanks& ranks)
       this->Targets->Wanted = this->Targets->Birds.Choose(
         this->Species, this->SpeciesFileName, this->Gliding, this->EffectiveArea, this->AllSpecies);
       return {};
-    }));
+    });
 }
 
 //------------------------------------------------------------------------------
@@ -409,14 +402,11 @@ vtkAvianLidarRanks::Settings vtkAvianLidarCoverage::vtkTargets::SettingsOf(
 }
 
 //------------------------------------------------------------------------------
-bool vtkAvianLidarCoverage::PreparePlaces(
+void vtkAvianLidarCoverage::PreparePlaces(
   const vtkAvianLidarRanks& ranks, vtkDataSet* places, vtkInformation* info)
 {
-  if (!this->Internals->GoOn(ranks.AgreeOn(this, vtkTargets::SettingsOf(*this, places != nullptr))))
-  {
-    return false;
-  }
-  const Outcome read = ranks.Together(this,
+  ranks.AgreeOn(this, vtkTargets::SettingsOf(*this, places != nullptr));
+  ranks.Together(this,
     [&]() -> std::string
     {
       vtkAvianLidarPlaces& where = this->Targets->Places;
@@ -455,25 +445,20 @@ bool vtkAvianLidarCoverage::PreparePlaces(
       }
       return problem;
     });
-  if (!this->Internals->GoOn(read))
-  {
-    return false;
-  }
   if (!ranks.Alone())
   {
     this->Targets->Places.ShareRegions(ranks);
   }
-  return true;
 }
 
 //------------------------------------------------------------------------------
-bool vtkAvianLidarCoverage::View(
+void vtkAvianLidarCoverage::View(
   const vtkAvianLidarRanks& ranks, bool isFirst, vtkPolyData* clutter)
 {
   vtkInternals& in = *this->Internals;
   vtkTargets& targets = *this->Targets;
-  return in.GoOn(ranks.Together(this,
-    [&]() -> std::string
+  ranks.Together(this,
+    [&]()
     {
       in.Setup.largestReflectance = in.Summary.largestReflectance();
       in.Setup.largestGain = in.Summary.largestGain();
@@ -493,12 +478,11 @@ bool vtkAvianLidarCoverage::View(
       {
         vtkAvianLidarFillClutter(still, in.Beams, clutter);
       }
-      return {};
-    }));
+    });
 }
 
 //------------------------------------------------------------------------------
-bool vtkAvianLidarCoverage::Evaluate(
+void vtkAvianLidarCoverage::Evaluate(
   const vtkAvianLidarRanks& ranks, vtkDataSet* output, vtkTable* table)
 {
   vtkInternals& in = *this->Internals;
@@ -510,8 +494,8 @@ bool vtkAvianLidarCoverage::Evaluate(
   {
     sums.species.push_back(bird.Name);
   }
-  const Outcome done = ranks.Together(this,
-    [&]() -> std::string
+  ranks.Together(this,
+    [&]()
     {
       sums.sums.resize(sums.species.size() * sums.Cells());
       vtkAvianLidarPlaceArrays arrays(static_cast<vtkIdType>(targets.Places.Size()),
@@ -549,25 +533,19 @@ bool vtkAvianLidarCoverage::Evaluate(
         image->SetSpacing(targets.Places.GetSpacing());
       }
       arrays.AddTo(output->GetPointData());
-      return {};
     });
-  if (!in.GoOn(done))
-  {
-    return false;
-  }
   if (!ranks.Alone())
   {
     sums.SumOverRanks(ranks);
   }
-  return in.GoOn(ranks.Together(this,
-    [&]() -> std::string
+  ranks.Together(this,
+    [&]()
     {
       if (ranks.Rank() == 0)
       {
         sums.Fill(table);
       }
-      return {};
-    }));
+    });
 }
 
 //------------------------------------------------------------------------------

@@ -226,10 +226,10 @@ private:
   int RequestDataObject(vtkInformationVector** inputVector, vtkInformationVector* outputVector);
 
   // Passes of an execution, as in the superclass.
-  bool PrepareTargets(const vtkAvianLidarRanks& ranks);
-  bool PreparePlaces(const vtkAvianLidarRanks& ranks, vtkDataSet* places, vtkInformation* info);
-  bool View(const vtkAvianLidarRanks& ranks, bool isFirst, vtkPolyData* clutter);
-  bool Evaluate(const vtkAvianLidarRanks& ranks, vtkDataSet* output, vtkTable* table);
+  void PrepareTargets(const vtkAvianLidarRanks& ranks);
+  void PreparePlaces(const vtkAvianLidarRanks& ranks, vtkDataSet* places, vtkInformation* info);
+  void View(const vtkAvianLidarRanks& ranks, bool isFirst, vtkPolyData* clutter);
+  void Evaluate(const vtkAvianLidarRanks& ranks, vtkDataSet* output, vtkTable* table);
 
   std::string CheckTarget() const;
   void MakeFields(vtkFieldData* beamFields, vtkFieldData* fields) const;

@@ -19,11 +19,6 @@
 
 vtkStandardNewMacro(vtkAvianLidarEchoFilter);
 
-namespace
-{
-using Outcome = vtkAvianLidarRanks::Outcome;
-}
-
 //------------------------------------------------------------------------------
 struct vtkAvianLidarEchoFilter::vtkMoved
 {
@@ -69,7 +64,7 @@ int vtkAvianLidarEchoFilter::RequestData(
   in.Setup.settings.noise = this->Noise;
   in.Setup.settings.returnMode = static_cast<avianlidar::ReturnMode>(this->ReturnMode);
   return vtkAvianLidarRanks::Execute(this, request, outputVector,
-    [&](const vtkAvianLidarRanks& ranks) -> int
+    [&](const vtkAvianLidarRanks& ranks)
     {
       vtkPolyData* beams = vtkPolyData::GetData(inputVector[0]);
       vtkDataObject* surfaces = vtkDataObject::GetData(inputVector[1]);
@@ -78,56 +73,46 @@ int vtkAvianLidarEchoFilter::RequestData(
       vtkPolyData* report = vtkPolyData::GetData(outputVector, 1);
       vtkPolyData* moved = vtkPolyData::GetData(outputVector, 2);
       vtkAvianLidarRevolutions::NoteTime(request, outputVector);
-      const bool done = this->PrepareBeams(ranks, beams) &&
-        in.GoOn(in.Beams.CheckRanks(ranks, this, vtkInternals::WrongWithBeams)) &&
-        this->PrepareSurfaces(ranks, surfaces) && this->PrepareMovers(ranks, movers) &&
-        this->PrepareTree(ranks, surfaces) &&
-        this->Scan(ranks, beams->GetFieldData(), { echoes, report, moved });
+      this->PrepareBeams(ranks, beams);
+      in.Beams.CheckRanks(ranks, this, vtkInternals::WrongWithBeams);
+      this->PrepareSurfaces(ranks, surfaces);
+      this->PrepareMovers(ranks, movers);
+      this->PrepareTree(ranks, surfaces);
+      this->Scan(ranks, beams->GetFieldData(), { echoes, report, moved });
       const std::string& warning = this->Moved->Coincident;
-      if (done && this->Moved->Warnings.IsNew(surfaces, in.Scene, warning))
+      if (this->Moved->Warnings.IsNew(surfaces, in.Scene, warning))
       {
         vtkWarningMacro("Input port 1, " << vtkAvianLidarText(warning));
       }
-      for (vtkPolyData* output : { echoes, report, moved })
-      {
-        if (!done)
-        {
-          output->Initialize();
-        }
-      }
-      return this->Internals->Last == Outcome::Failed ? 0 : 1; // stopped: empty and valid
     });
 }
 
 //------------------------------------------------------------------------------
-bool vtkAvianLidarEchoFilter::PrepareMovers(const vtkAvianLidarRanks& ranks, vtkDataObject* input)
+void vtkAvianLidarEchoFilter::PrepareMovers(const vtkAvianLidarRanks& ranks, vtkDataObject* input)
 {
   vtkInternals& in = *this->Internals;
-  if (!in.GoOn(this->Moved->Movers.Read(ranks, this, input, in.Surfaces)))
-  {
-    return false;
-  }
+  this->Moved->Movers.Read(ranks, this, input, in.Surfaces);
   in.Setup.movers = this->Moved->Movers.movers;
   in.Setup.largestReflectance = in.Summary.largestReflectance();
   in.Setup.largestGain = in.Summary.largestGain();
   avianlidar::includeMovers(in.Setup);
   const bool untimed = in.Setup.movers && in.Beams.beams.size() > 0 && !in.Beams.isTimed;
-  return in.GoOn(ranks.Together(this,
+  ranks.Together(this,
     [untimed]() -> std::string
     {
       return untimed
         ? "Input port 0 (beams), point array 'timestamp' is missing, expected the time "
           "in microseconds at which each beam meets the movers (input port 2)"
         : "";
-    }));
+    });
 }
 
 //------------------------------------------------------------------------------
-bool vtkAvianLidarEchoFilter::Scan(const vtkAvianLidarRanks& ranks, vtkFieldData* beamFields,
+void vtkAvianLidarEchoFilter::Scan(const vtkAvianLidarRanks& ranks, vtkFieldData* beamFields,
   const std::array<vtkPolyData*, 3>& outputs)
 {
   vtkInternals& in = *this->Internals;
-  const Outcome traced = ranks.Together(this,
+  ranks.Together(this,
     [&]() -> std::string
     {
       avianlidar::planModel(in.Setup);
@@ -139,24 +124,18 @@ bool vtkAvianLidarEchoFilter::Scan(const vtkAvianLidarRanks& ranks, vtkFieldData
       this->Trace(outputs);
       return {};
     });
-  if (!in.GoOn(traced))
-  {
-    return false;
-  }
   for (double* count : { &in.TracedRays, &in.TracedBeams, &this->Moved->TouchedBeams })
   {
     *count = ranks.Sum(*count);
   }
-  const Outcome outcome = ranks.Together(this,
-    [&]() -> std::string
+  ranks.Together(this,
+    [&]()
     {
       for (vtkPolyData* output : outputs)
       {
         this->FillFields(beamFields, output->GetFieldData());
       }
-      return {};
     });
-  return in.GoOn(outcome);
 }
 
 //------------------------------------------------------------------------------

@@ -126,7 +126,7 @@ protected:
   int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
 
   // A pass of an execution, as in the superclass, and the field data of the outputs.
-  bool PrepareMovers(const vtkAvianLidarRanks& ranks, vtkDataObject* input);
+  void PrepareMovers(const vtkAvianLidarRanks& ranks, vtkDataObject* input);
   void FillFields(vtkFieldData* beamFields, vtkFieldData* fields) const;
 
   bool Noise = true;
@@ -137,7 +137,7 @@ private:
   vtkAvianLidarEchoFilter(const vtkAvianLidarEchoFilter&) = delete;
   void operator=(const vtkAvianLidarEchoFilter&) = delete;
 
-  bool Scan(const vtkAvianLidarRanks& ranks, vtkFieldData* beamFields,
+  void Scan(const vtkAvianLidarRanks& ranks, vtkFieldData* beamFields,
     const std::array<vtkPolyData*, 3>& outputs);
 
   void Trace(const std::array<vtkPolyData*, 3>& outputs);

@@ -34,7 +34,6 @@ namespace Arrays = vtkAvianLidarArrays;
 namespace ImageArrays = vtkAvianLidarImageArrays;
 namespace ImageBeams = vtkAvianLidarImageBeams;
 
-using Outcome = vtkAvianLidarRanks::Outcome;
 using Pipeline = vtkStreamingDemandDrivenPipeline;
 
 /// Its beam and its echo, and the arrays.
@@ -234,10 +233,7 @@ int vtkAvianLidarRangeImage::RequestUpdateExtent(
   const vtkAvianLidarRanks ranks(this->Controller, request, outputVector);
   for (int port = 0; port < this->GetNumberOfInputPorts(); ++port)
   {
-    vtkInformation* info = inputVector[port]->GetInformationObject(0);
-    info->Set(Pipeline::UPDATE_PIECE_NUMBER(), ranks.Rank());
-    info->Set(Pipeline::UPDATE_NUMBER_OF_PIECES(), ranks.Size());
-    info->Set(Pipeline::UPDATE_NUMBER_OF_GHOST_LEVELS(), 0);
+    ranks.RequestPiece(inputVector[port]);
   }
   return 1;
 }
@@ -254,11 +250,11 @@ int vtkAvianLidarRangeImage::RequestData(
   vtkInformation* request, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
   const int done = vtkAvianLidarRanks::Execute(this, request, outputVector,
-    [&](const vtkAvianLidarRanks& ranks) -> int
+    [&](const vtkAvianLidarRanks& ranks)
     {
       vtkSmartPointer<vtkPolyData> echoes = vtkPolyData::GetData(inputVector[0]);
       vtkSmartPointer<vtkPolyData> beams = vtkPolyData::GetData(inputVector[1]);
-      const Outcome read = ranks.Together(this,
+      ranks.Together(this,
         [&]() -> std::string
         {
           vtkAvianLidarAbort::StopIfWanted(this);
@@ -266,27 +262,14 @@ int vtkAvianLidarRangeImage::RequestData(
           return ErrorOf(
             problem.empty() ? ImageArrays::CheckLengths(beams, "input port 1 (beams)") : problem);
         });
-      if (read != Outcome::Done)
-      {
-        return read == Outcome::Failed ? 0 : 1;
-      }
-      for (auto* points : { &echoes, &beams })
-      {
-        const Outcome gathered = ranks.Alone()
-          ? Outcome::Done
-          : vtkAvianLidarGather::Points(ranks, this, *points, *points);
-        if (gathered != Outcome::Done)
-        {
-          return gathered == Outcome::Failed ? 0 : 1;
-        }
-      }
-      const Outcome made = ranks.Together(this,
+      echoes = vtkAvianLidarGather::Points(ranks, this, echoes);
+      beams = vtkAvianLidarGather::Points(ranks, this, beams);
+      ranks.Together(this,
         [&]()
         {
           return ErrorOf(this->MakeImage(echoes, ranks.Alone() ? beams : ImageBeams::InOrder(beams),
             inputVector[1]->GetInformationObject(0), outputVector->GetInformationObject(0)));
         });
-      return made == Outcome::Failed ? 0 : 1;
     });
   return done && ImageArrays::FillIfFailed(this, outputVector);
 }

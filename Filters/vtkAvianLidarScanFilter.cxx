@@ -18,15 +18,12 @@
 #include "vtkInformationVector.h"
 #include "vtkMultiProcessController.h"
 #include "vtkPolyData.h"
-#include "vtkStreamingDemandDrivenPipeline.h"
 
 #include <algorithm>
 #include <utility>
 
 namespace
 {
-using Outcome = vtkAvianLidarRanks::Outcome;
-using Pipeline = vtkStreamingDemandDrivenPipeline;
 
 constexpr char NoAperture[] = "air that scatters (AirBackscatter, RainRate) needs beams of a "
                               "sensor with a receiver_aperture above 0, expected such a one";
@@ -174,12 +171,7 @@ int vtkAvianLidarScanFilter::RequestUpdateExtent(
   // A piece of the beams, but all of the others: anything may hide anything.
   for (int port = 1; port < this->GetNumberOfInputPorts(); ++port)
   {
-    if (vtkInformation* input = inputVector[port]->GetInformationObject(0))
-    {
-      input->Set(Pipeline::UPDATE_PIECE_NUMBER(), 0);
-      input->Set(Pipeline::UPDATE_NUMBER_OF_PIECES(), 1);
-      input->Set(Pipeline::UPDATE_NUMBER_OF_GHOST_LEVELS(), 0);
-    }
+    vtkAvianLidarRanks::RequestAll(inputVector[port]);
   }
   return 1;
 }
@@ -325,10 +317,10 @@ std::string vtkAvianLidarScanFilter::CheckUnits() const
 }
 
 //------------------------------------------------------------------------------
-bool vtkAvianLidarScanFilter::PrepareBeams(const vtkAvianLidarRanks& ranks, vtkPolyData* input)
+void vtkAvianLidarScanFilter::PrepareBeams(const vtkAvianLidarRanks& ranks, vtkPolyData* input)
 {
   vtkInternals& in = *this->Internals;
-  const Outcome read = ranks.Together(this,
+  ranks.Together(this,
     [&]() -> std::string
     {
       vtkAvianLidarAbort::StopIfWanted(this);
@@ -344,32 +336,30 @@ bool vtkAvianLidarScanFilter::PrepareBeams(const vtkAvianLidarRanks& ranks, vtkP
       problem = problem.empty() ? this->PrepareSettings() : problem;
       return problem.empty() ? this->CheckUnits() : problem;
     });
-  return in.GoOn(read) &&
-    in.GoOn(ranks.AgreeOn(this,
-      SettingsOf(in.Setup.settings, this->Preset, this->Visibility, this->AttenuationCoefficient,
-        this->AirBackscatter, this->RainRate)));
+  ranks.AgreeOn(this,
+    SettingsOf(in.Setup.settings, this->Preset, this->Visibility, this->AttenuationCoefficient,
+      this->AirBackscatter, this->RainRate));
 }
 
 //------------------------------------------------------------------------------
-bool vtkAvianLidarScanFilter::PrepareSurfaces(const vtkAvianLidarRanks& ranks, vtkDataObject* input)
+void vtkAvianLidarScanFilter::PrepareSurfaces(const vtkAvianLidarRanks& ranks, vtkDataObject* input)
 {
   vtkInternals& in = *this->Internals;
   auto state = vtkAvianLidarContent::StateOf(input);
   if (ranks.All(!state.empty() && state == in.State && in.MergedBy == ranks.Group()))
   {
-    return true; // nothing was modified since the last execution
+    return; // nothing was modified since the last execution
   }
   in.State.clear();
   const auto merged = vtkAvianLidarTreeAccess::FindMerged(input);
   const bool given = ranks.All(merged != nullptr) && ranks.Same(merged->checksum);
-  if (!given &&
-    !in.GoOn(in.Exchange.Merge(
-      ranks, this, input, "Input port 1, ", this->NumberOfThreads, in.Surfaces, in.Surfaces)))
+  if (!given)
   {
-    return false;
+    in.Exchange.Merge(
+      ranks, this, input, "Input port 1, ", this->NumberOfThreads, in.Surfaces, in.Surfaces);
   }
-  const Outcome summarized = ranks.Together(this,
-    [&]() -> std::string
+  ranks.Together(this,
+    [&]()
     {
       if (given)
       {
@@ -378,15 +368,9 @@ bool vtkAvianLidarScanFilter::PrepareSurfaces(const vtkAvianLidarRanks& ranks, v
         in.Surfaces = *merged;
       }
       this->SummarizeSurfaces(input, ranks.Rank() == 0);
-      return {};
     });
-  if (!in.GoOn(summarized))
-  {
-    return false;
-  }
   in.State = std::move(state);
   in.MergedBy = ranks.Group();
-  return true;
 }
 
 //------------------------------------------------------------------------------
@@ -410,11 +394,11 @@ void vtkAvianLidarScanFilter::SummarizeSurfaces(vtkDataObject* input, bool warn)
 }
 
 //------------------------------------------------------------------------------
-bool vtkAvianLidarScanFilter::PrepareTree(const vtkAvianLidarRanks& ranks, vtkDataObject* input)
+void vtkAvianLidarScanFilter::PrepareTree(const vtkAvianLidarRanks& ranks, vtkDataObject* input)
 {
   vtkInternals& in = *this->Internals;
   in.Threads = ranks.Threads(this->NumberOfThreads);
-  return in.GoOn(ranks.Together(this,
+  ranks.Together(this,
     [&]() -> std::string
     {
       const std::string problem = this->PlaceMedia();
@@ -432,7 +416,7 @@ bool vtkAvianLidarScanFilter::PrepareTree(const vtkAvianLidarRanks& ranks, vtkDa
       }
       vtkAvianLidarAbort::Require(in.Setup.tree != nullptr);
       return {};
-    }));
+    });
 }
 
 //------------------------------------------------------------------------------

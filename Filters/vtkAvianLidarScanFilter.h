@@ -336,9 +336,9 @@ protected:
   void AddAirTo(vtkFieldData* fields) const;
 
   // Passes of an execution, which all ranks make together; false ends the execution.
-  bool PrepareBeams(const vtkAvianLidarRanks& ranks, vtkPolyData* input);
-  bool PrepareSurfaces(const vtkAvianLidarRanks& ranks, vtkDataObject* input);
-  bool PrepareTree(const vtkAvianLidarRanks& ranks, vtkDataObject* input);
+  void PrepareBeams(const vtkAvianLidarRanks& ranks, vtkPolyData* input);
+  void PrepareSurfaces(const vtkAvianLidarRanks& ranks, vtkDataObject* input);
+  void PrepareTree(const vtkAvianLidarRanks& ranks, vtkDataObject* input);
 
   int Preset = PRESET_CUSTOM;
   int RaysPerBeam = 100;

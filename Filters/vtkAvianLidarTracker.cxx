@@ -41,7 +41,6 @@ namespace
 {
 namespace Arrays = vtkAvianLidarArrays;
 using avianlidar::Vec3;
-using Outcome = vtkAvianLidarRanks::Outcome;
 using Pipeline = vtkStreamingDemandDrivenPipeline;
 
 constexpr Arrays::Name HalfBeamwidthName{ "half_beamwidth", "rad" };
@@ -428,11 +427,7 @@ int vtkAvianLidarTracker::FillInputPortInformation(int, vtkInformation* info)
 int vtkAvianLidarTracker::RequestUpdateExtent(
   vtkInformation* request, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
-  const vtkAvianLidarRanks ranks(this->Controller, request, outputVector);
-  vtkInformation* info = inputVector[0]->GetInformationObject(0);
-  info->Set(Pipeline::UPDATE_PIECE_NUMBER(), ranks.Rank());
-  info->Set(Pipeline::UPDATE_NUMBER_OF_PIECES(), ranks.Size());
-  info->Set(Pipeline::UPDATE_NUMBER_OF_GHOST_LEVELS(), 0);
+  vtkAvianLidarRanks(this->Controller, request, outputVector).RequestPiece(inputVector[0]);
   return 1;
 }
 
@@ -470,14 +465,14 @@ int vtkAvianLidarTracker::RequestData(
   vtkInformation* request, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
   return vtkAvianLidarRanks::Execute(this, request, outputVector,
-    [&](const vtkAvianLidarRanks& ranks) -> int
+    [&](const vtkAvianLidarRanks& ranks)
     {
       vtkPolyData* input = vtkPolyData::GetData(inputVector[0]);
       CloudFacts& facts = this->Internals->Facts;
       facts = {};
       std::copy(this->SensorPosition, this->SensorPosition + 3, facts.Sensor);
       facts.HalfBeamwidth = this->HalfBeamwidth;
-      Outcome outcome = ranks.Together(this,
+      ranks.Together(this,
         [&]() -> std::string
         {
           vtkAvianLidarAbort::StopIfWanted(this);
@@ -491,33 +486,21 @@ int vtkAvianLidarTracker::RequestData(
       {
         settings.Add(setting.Property, setting.ValueOf(*this));
       }
-      outcome = outcome == Outcome::Done ? ranks.AgreeOn(this, settings) : outcome;
-      vtkSmartPointer<vtkPolyData> cloud = input;
-      vtkIdType first = 0; // of this rank's points
-      if (outcome == Outcome::Done && !ranks.Alone())
-      {
-        first = Share(ranks, facts);
-        outcome = vtkAvianLidarGather::Points(ranks, this, input, cloud);
-      }
+      ranks.AgreeOn(this, settings);
+      const vtkIdType first = Share(ranks, facts); // of this rank's points
+      const vtkSmartPointer<vtkPolyData> cloud = vtkAvianLidarGather::Points(ranks, this, input);
       std::vector<int> trackOfPoint;
-      if (outcome == Outcome::Done)
-      {
-        outcome = ranks.Together(this,
-          [&]()
-          {
-            return TrackerError(
-              this->Internals->Track(this, input, cloud, ranks.Rank() == 0, trackOfPoint));
-          });
-      }
+      ranks.Together(this,
+        [&]()
+        {
+          return TrackerError(
+            this->Internals->Track(this, input, cloud, ranks.Rank() == 0, trackOfPoint));
+        });
       const int asked = std::max(0, request->Get(vtkExecutive::FROM_OUTPUT_PORT()));
       const int piece =
         outputVector->GetInformationObject(asked)->Get(Pipeline::UPDATE_PIECE_NUMBER());
-      if (outcome == Outcome::Done)
-      {
-        this->FillOutputs(piece == 0, input,
-          ranks.Alone() && piece > 0 ? nullptr : trackOfPoint.data() + first, outputVector);
-      }
-      return outcome == Outcome::Failed ? 0 : 1; // stopped: empty and valid
+      this->FillOutputs(piece == 0, input,
+        ranks.Alone() && piece > 0 ? nullptr : trackOfPoint.data() + first, outputVector);
     });
 }
 

@@ -21,7 +21,6 @@
 namespace
 {
 using avianlidar::Vec3;
-using Outcome = vtkAvianLidarRanks::Outcome;
 
 /// What is up for the sensor, if its beams are not round and say its orientation.
 std::string ReadUp(vtkFieldData* fields, avianlidar::Sensor& sensor)
@@ -354,14 +353,14 @@ std::uint64_t vtkAvianLidarBeams::Hash() const
 }
 
 //------------------------------------------------------------------------------
-Outcome vtkAvianLidarBeams::CheckRanks(const vtkAvianLidarRanks& ranks, vtkAlgorithm* self,
+void vtkAvianLidarBeams::CheckRanks(const vtkAvianLidarRanks& ranks, vtkAlgorithm* self,
   const std::function<std::string(const std::string&)>& inputError)
 {
   const std::vector<std::uint64_t>& ids = this->beams.ids;
   this->total = static_cast<std::uint64_t>(ranks.Sum(static_cast<double>(ids.size())));
   if (ranks.Alone())
   {
-    return Outcome::Done;
+    return;
   }
   std::optional<std::uint64_t> mine;
   if (!ids.empty())
@@ -370,10 +369,9 @@ Outcome vtkAvianLidarBeams::CheckRanks(const vtkAvianLidarRanks& ranks, vtkAlgor
   }
   const bool oneSensor = ranks.Same(mine);
   const bool checked = ranks.All(this->checkedWith == ranks.Group());
-  Outcome outcome = Outcome::Done;
   if (!oneSensor)
   {
-    outcome = ranks.Together(self,
+    ranks.Together(self,
       [&]()
       {
         return inputError("the ranks have beams of different sensors or revolutions in field data, "
@@ -382,34 +380,28 @@ Outcome vtkAvianLidarBeams::CheckRanks(const vtkAvianLidarRanks& ranks, vtkAlgor
   }
   else if (!checked)
   {
-    outcome = this->CompareIds(ranks, self, inputError);
+    this->CompareIds(ranks, self, inputError);
   }
-  this->checkedWith = outcome == Outcome::Done ? ranks.Group() : this->checkedWith;
-  return outcome;
+  this->checkedWith = ranks.Group();
 }
 
 //------------------------------------------------------------------------------
-Outcome vtkAvianLidarBeams::CompareIds(const vtkAvianLidarRanks& ranks, vtkAlgorithm* self,
+void vtkAvianLidarBeams::CompareIds(const vtkAvianLidarRanks& ranks, vtkAlgorithm* self,
   const std::function<std::string(const std::string&)>& inputError) const
 {
   vtkNew<vtkTypeUInt64Array> mine;
-  const Outcome written = ranks.Together(self,
-    [&]() -> std::string
+  ranks.Together(self,
+    [&]()
     {
       for (const vtkAvianLidarIdRun& run : vtkAvianLidarRunsOf(this->beams.ids))
       {
         mine->InsertNextValue(run.first);
         mine->InsertNextValue(run.count);
       }
-      return {};
     });
-  if (written != Outcome::Done)
-  {
-    return written;
-  }
   vtkNew<vtkTypeUInt64Array> all;
   ranks.Gather(mine, all);
-  return ranks.Together(self,
+  ranks.Together(self,
     [&]()
     {
       std::vector<vtkAvianLidarIdRun> runs;

@@ -46,7 +46,7 @@ struct vtkAvianLidarBeams
 
   /// Check that the beams of all ranks belong to one sensor, and that no id is there twice. All
   /// ranks must call it. @param inputError makes the message of `self` from an error of the beams
-  vtkAvianLidarRanks::Outcome CheckRanks(const vtkAvianLidarRanks& ranks, vtkAlgorithm* self,
+  void CheckRanks(const vtkAvianLidarRanks& ranks, vtkAlgorithm* self,
     const std::function<std::string(const std::string&)>& inputError);
 
   /// Check ids again at the next CheckRanks(), as the ranks may have changed.
@@ -67,7 +67,7 @@ struct vtkAvianLidarBeams
 
 private:
   std::string ReadBeams(vtkPolyData* input);
-  vtkAvianLidarRanks::Outcome CompareIds(const vtkAvianLidarRanks& ranks, vtkAlgorithm* self,
+  void CompareIds(const vtkAvianLidarRanks& ranks, vtkAlgorithm* self,
     const std::function<std::string(const std::string&)>& inputError) const;
   const void* checkedWith = nullptr;    ///< ranks among which no id was found twice; null: not yet
   vtkAvianLidarContent::State ReadFrom; ///< empty if something was wrong

@@ -9,36 +9,43 @@
 #include <vector>
 
 //------------------------------------------------------------------------------
-vtkAvianLidarRanks::Outcome vtkAvianLidarGather::Points(const vtkAvianLidarRanks& ranks,
-  vtkAlgorithm* self, vtkPointSet* mine, vtkSmartPointer<vtkPolyData>& all)
+vtkSmartPointer<vtkPolyData> vtkAvianLidarGather::Points(
+  const vtkAvianLidarRanks& ranks, vtkAlgorithm* self, vtkPolyData* mine)
 {
+  if (ranks.Alone())
+  {
+    return mine;
+  }
   vtkNew<vtkPolyData> bare;
-  if (mine && mine->GetNumberOfPoints() > 0)
+  if (mine->GetNumberOfPoints() > 0)
   {
     bare->SetPoints(mine->GetPoints());
     bare->GetPointData()->ShallowCopy(mine->GetPointData());
   }
   const std::vector<vtkSmartPointer<vtkDataObject>> parts = ranks.Gather(bare);
-  return ranks.Together(self,
-    [&]() -> std::string
+  vtkNew<vtkAppendPolyData> append;
+  ranks.Together(self,
+    [&]()
     {
-      vtkNew<vtkAppendPolyData> append;
       append->SetOutputPointsPrecision(vtkAlgorithm::DOUBLE_PRECISION);
       for (const auto& part : parts)
       {
         append->AddInputData(vtkPolyData::SafeDownCast(part));
       }
       append->Update();
-      all = append->GetOutput();
-      return {};
     });
+  return append->GetOutput();
 }
 
 //------------------------------------------------------------------------------
-vtkAvianLidarRanks::Outcome vtkAvianLidarGather::Coordinates(const vtkAvianLidarRanks& ranks,
-  vtkAlgorithm* self, vtkPointSet* mine, vtkSmartPointer<vtkPolyData>& all)
+vtkSmartPointer<vtkPointSet> vtkAvianLidarGather::Coordinates(
+  const vtkAvianLidarRanks& ranks, vtkAlgorithm* self, vtkPointSet* mine)
 {
+  if (ranks.Alone())
+  {
+    return mine;
+  }
   vtkNew<vtkPolyData> bare;
   bare->SetPoints(mine ? mine->GetPoints() : nullptr);
-  return Points(ranks, self, bare, all);
+  return Points(ranks, self, bare);
 }

@@ -28,7 +28,6 @@
 
 namespace
 {
-using Outcome = vtkAvianLidarRanks::Outcome;
 using Pipeline = vtkStreamingDemandDrivenPipeline;
 
 /// What a rank says when all meet: the least counts.
@@ -130,33 +129,56 @@ bool WasAborted(vtkAlgorithm* algorithm)
 }
 }
 
-//------------------------------------------------------------------------------
-bool vtkAvianLidarRanks::Run(vtkAlgorithm* self, const Body& body) const
+struct vtkAvianLidarRanks::Ended
 {
-  int done = 0;
+  Outcome outcome;
+};
+
+//------------------------------------------------------------------------------
+vtkAvianLidarRanks::Outcome vtkAvianLidarRanks::Run(vtkAlgorithm* self, const Body& body) const
+{
+  Outcome outcome = Outcome::Stopped;
   const std::string thrown = vtkAvianLidarGuard::ProblemOf(
     [&]() -> std::string
     {
-      done = this->Alone() ? body(*this) : this->RunTogether(self, body);
+      try
+      {
+        outcome = this->RunTogether(self, body);
+      }
+      catch (const Ended& ended)
+      {
+        outcome = ended.outcome;
+      }
       return {};
     });
   if (!thrown.empty())
   {
+    outcome = Outcome::Failed;
     this->Problem = thrown;
     vtkErrorWithObjectMacro(self, << vtkAvianLidarGuard::Sentence(thrown));
   }
-  return thrown.empty() && done;
+  return outcome;
 }
 
 //------------------------------------------------------------------------------
-int vtkAvianLidarRanks::RunTogether(vtkAlgorithm* self, const Body& body) const
+vtkAvianLidarRanks::Outcome vtkAvianLidarRanks::RunTogether(
+  vtkAlgorithm* self, const Body& body) const
 {
+  if (this->Alone())
+  {
+    body(*this);
+    return Outcome::Done;
+  }
   this->Exchanging = false;
   try
   {
-    const int done = body(*this);
+    body(*this);
     this->Meet(Yes); // others may have thrown
-    return done;
+    return Outcome::Done;
+  }
+  catch (const Ended&)
+  {
+    throw;
   }
   catch (const SendError&)
   {
@@ -181,7 +203,8 @@ int vtkAvianLidarRanks::RunTogether(vtkAlgorithm* self, const Body& body) const
 }
 
 //------------------------------------------------------------------------------
-int vtkAvianLidarRanks::Fail(vtkAlgorithm* self, const char* mine) const noexcept
+vtkAvianLidarRanks::Outcome vtkAvianLidarRanks::Fail(
+  vtkAlgorithm* self, const char* mine) const noexcept
 {
   if (!this->Exchanging)
   {
@@ -193,8 +216,7 @@ int vtkAvianLidarRanks::Fail(vtkAlgorithm* self, const char* mine) const noexcep
         int least = 0;
         this->Controller->AllReduce(&absent, &least, 1, vtkCommunicator::MIN_OP);
       }
-      this->Share(self, mine ? Failure + std::string(mine) : std::string(), false);
-      return 0;
+      return this->Share(self, mine ? Failure + std::string(mine) : std::string(), false);
     }
     catch (...)
     {
@@ -232,14 +254,18 @@ int vtkAvianLidarRanks::Execute(vtkAlgorithm* self, vtkMultiProcessController* c
 try
 {
   const vtkAvianLidarRanks together(controller, request, outputs);
-  const auto work = [&](const vtkAvianLidarRanks& ranks) -> int
+  const auto work = [&](const vtkAvianLidarRanks& ranks)
   {
-    const Outcome inputs =
-      ranks.Together(self, [self]() { return vtkAvianLidarGuard::FailedInput(self); });
-    return inputs == Outcome::Done && body(ranks);
+    ranks.Together(self, [self]() { return vtkAvianLidarGuard::FailedInput(self); });
+    body(ranks);
   };
-  const bool done = together.Run(self, std::cref(work));
-  return vtkAvianLidarGuard::End(outputs, done ? std::string() : together.Problem, errorsAsData);
+  const Outcome outcome = together.Run(self, std::cref(work));
+  if (outcome == Outcome::Stopped)
+  {
+    vtkAvianLidarGuard::Empty(outputs);
+  }
+  return vtkAvianLidarGuard::End(
+    outputs, outcome == Outcome::Failed ? together.Problem : std::string(), errorsAsData);
 }
 catch (const std::bad_alloc&)
 {
@@ -268,15 +294,18 @@ vtkAvianLidarRanks::vtkAvianLidarRanks(
 }
 
 //------------------------------------------------------------------------------
-Outcome vtkAvianLidarRanks::Together(
-  vtkAlgorithm* self, const std::function<std::string()>& step) const
+void vtkAvianLidarRanks::RunStep(vtkAlgorithm* self, const std::function<std::string()>& step) const
 {
   const std::string mine = ResultOf(step);
-  return this->All(mine.empty()) ? Outcome::Done : this->Share(self, mine, true);
+  if (!this->All(mine.empty()))
+  {
+    throw Ended{ this->Share(self, mine, true) };
+  }
 }
 
 //------------------------------------------------------------------------------
-Outcome vtkAvianLidarRanks::Share(vtkAlgorithm* self, const std::string& mine, bool meet) const
+vtkAvianLidarRanks::Outcome vtkAvianLidarRanks::Share(
+  vtkAlgorithm* self, const std::string& mine, bool meet) const
 {
   const bool failed = !mine.empty() && mine[0] == Failure;
   std::string problem = failed ? mine.substr(1) : "";
@@ -311,11 +340,11 @@ Outcome vtkAvianLidarRanks::Share(vtkAlgorithm* self, const std::string& mine, b
 }
 
 //------------------------------------------------------------------------------
-Outcome vtkAvianLidarRanks::AgreeOn(vtkAlgorithm* self, const Settings& mine) const
+void vtkAvianLidarRanks::AgreeOn(vtkAlgorithm* self, const Settings& mine) const
 {
   if (this->Alone())
   {
-    return Outcome::Done;
+    return;
   }
   std::uint64_t hash = 0;
   vtkMultiProcessStream stream;
@@ -326,10 +355,10 @@ Outcome vtkAvianLidarRanks::AgreeOn(vtkAlgorithm* self, const Settings& mine) co
   }
   if (this->Same(hash))
   {
-    return Outcome::Done;
+    return;
   }
   std::vector<vtkMultiProcessStream> all = this->Gather(stream);
-  return this->Together(self,
+  this->Together(self,
     [&]() -> std::string
     {
       for (const auto& [name, value] : mine.Each)
@@ -531,20 +560,37 @@ int vtkAvianLidarRanks::UpdateInputs(
     }
     return good ? "" : "What is needed could not be made, see the errors of filters upstream";
   };
-  const auto work = [&](const vtkAvianLidarRanks& ranks) -> int
-  {
-    const Outcome outcome = ranks.Together(self, update);
-    if (outcome == Outcome::Stopped)
-    {
-      SetAborted(self, false); // it does not execute
-      vtkAvianLidarGuard::Empty(outputs);
-    }
-    return outcome == Outcome::Done;
-  };
+  const auto work = [&](const vtkAvianLidarRanks& ranks) { ranks.Together(self, update); };
   if (when != vtkExecutive::BeforeForward || !request->Has(Pipeline::REQUEST_DATA()))
   {
     return 1;
   }
   const vtkAvianLidarRanks ranks(controller, request, outputs);
-  return ranks.Alone() || ranks.Run(self, std::cref(work));
+  const Outcome outcome = ranks.Alone() ? Outcome::Done : ranks.Run(self, std::cref(work));
+  if (outcome == Outcome::Stopped)
+  {
+    SetAborted(self, false); // it does not execute
+    vtkAvianLidarGuard::Empty(outputs);
+  }
+  return outcome == Outcome::Done;
+}
+
+//------------------------------------------------------------------------------
+void vtkAvianLidarRanks::RequestPiece(vtkInformationVector* input) const
+{
+  vtkInformation* info = input->GetInformationObject(0);
+  info->Set(Pipeline::UPDATE_PIECE_NUMBER(), this->Mine);
+  info->Set(Pipeline::UPDATE_NUMBER_OF_PIECES(), this->Count);
+  info->Set(Pipeline::UPDATE_NUMBER_OF_GHOST_LEVELS(), 0);
+}
+
+//------------------------------------------------------------------------------
+void vtkAvianLidarRanks::RequestAll(vtkInformationVector* input)
+{
+  if (vtkInformation* info = input->GetInformationObject(0))
+  {
+    info->Set(Pipeline::UPDATE_PIECE_NUMBER(), 0);
+    info->Set(Pipeline::UPDATE_NUMBER_OF_PIECES(), 1);
+    info->Set(Pipeline::UPDATE_NUMBER_OF_GHOST_LEVELS(), 0);
+  }
 }

@@ -9,10 +9,11 @@
  * piece, or pieces of the user's choice) by itself: it sends nothing and does not wait.
  *
  * All ranks must make the same calls in the same order. So work that may fail on one rank is a
- * step, after which all ranks have the same outcome. Before each exchange every rank reports
- * whether it is ready. If a rank throws between exchanges, it reports that it is not, and its error
- * becomes the error of all ranks. If a rank throws within an exchange, for example without memory,
- * the others would wait for it, so it ends the job.
+ * step: if it fails or stops on one rank, the execution ends on all ranks, by an exception that
+ * Execute() catches. Before each exchange every rank reports whether it is ready. If a rank throws
+ * between exchanges, it reports that it is not, and its error becomes the error of all ranks. If a
+ * rank throws within an exchange, for example without memory, the others would wait for it, so it
+ * ends the job.
  */
 #ifndef vtkAvianLidarRanks_h
 #define vtkAvianLidarRanks_h
@@ -25,6 +26,7 @@
 #include <optional>
 #include <sstream>
 #include <string>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -38,14 +40,7 @@ class vtkMultiProcessController;
 class vtkAvianLidarRanks
 {
 public:
-  enum class Outcome
-  {
-    Done,
-    Stopped, ///< a user or an observer stopped the work: empty outputs, no error
-    Failed   ///< the error was reported
-  };
-
-  using Body = std::function<int(const vtkAvianLidarRanks&)>;
+  using Body = std::function<void(const vtkAvianLidarRanks&)>;
 
   /// Names of settings, and their values as text.
   class Settings
@@ -67,7 +62,7 @@ public:
 
   /// Run the body of a RequestData on the ranks that execute the request, unless the producer of an
   /// input of one of these ranks failed. Returns 0 or 1; no exception leaves the function. Failures
-  /// are handled as in vtkAvianLidarGuarded().
+  /// are handled as in vtkAvianLidarGuarded(); if the work was stopped, outputs are empty.
   template <class Filter, class Work>
   static int Execute(
     Filter* self, vtkInformation* request, vtkInformationVector* outputs, const Work& body)
@@ -87,15 +82,33 @@ public:
   int Rank() const { return this->Mine; }
   int Size() const { return this->Count; }
 
-  /// Run this rank's part of a step. The outcome is the same on all ranks.
-  /// @param step returns what is wrong, or nothing; throws avianlidar::WorkStopped to stop. `self`
-  /// reports an error on the rank itself, and on rank 0 with the number of the rank.
-  Outcome Together(vtkAlgorithm* self, const std::function<std::string()>& step) const;
+  /// Run this rank's part of a step. If the step fails or stops on one rank, the function throws on
+  /// all ranks, and Execute() ends.
+  /// @param step returns an error text, an empty string or nothing; throws avianlidar::WorkStopped
+  /// to stop. `self` reports an error on the rank itself, and on rank 0 with the number of the
+  /// rank.
+  template <class Step>
+  void Together(vtkAlgorithm* self, const Step& step) const
+  {
+    this->RunStep(self,
+      [&step]() -> std::string
+      {
+        if constexpr (std::is_void_v<decltype(step())>)
+        {
+          step();
+          return {};
+        }
+        else
+        {
+          return step();
+        }
+      });
+  }
 
   /// Gives an error on all ranks if a setting of one rank differs from rank 0: results would be
   /// mixed.
   /// @param mine the same names on all ranks
-  Outcome AgreeOn(vtkAlgorithm* self, const Settings& mine) const;
+  void AgreeOn(vtkAlgorithm* self, const Settings& mine) const;
 
   /// True if `mine` is true on every rank.
   bool All(bool mine) const;
@@ -136,6 +149,12 @@ public:
   /// (OMP_NUM_THREADS, if set, is already the share of a rank). All ranks must call it.
   int Threads(int wanted) const;
 
+  /// Request this rank's piece of an input. For vtkAlgorithm::RequestUpdateExtent().
+  void RequestPiece(vtkInformationVector* input) const;
+
+  /// Request the whole of an input, which may be absent.
+  static void RequestAll(vtkInformationVector* input);
+
   /// Update the inputs of an algorithm before its executive does, so that an error upstream of one
   /// rank ends the execution of all. Otherwise VTK would not call RequestData on a rank whose
   /// producer returned 0, such as a reader without its file, and the other ranks would wait for
@@ -147,15 +166,24 @@ public:
   }
 
 private:
+  enum class Outcome
+  {
+    Done,
+    Stopped, ///< a user or an observer stopped the work: empty outputs, no error
+    Failed   ///< the error was reported
+  };
+  struct Ended; ///< thrown on all ranks at once to end an execution
+
   static int Execute(vtkAlgorithm* self, vtkMultiProcessController* controller,
     vtkInformation* request, vtkInformationVector* outputs, bool errorsAsData, const Body& body);
   static int UpdateInputs(
     vtkAlgorithm* self, vtkMultiProcessController* controller, vtkInformation* request, int when);
-  bool Run(vtkAlgorithm* self, const Body& body) const;
-  int RunTogether(vtkAlgorithm* self, const Body& body) const;
+  Outcome Run(vtkAlgorithm* self, const Body& body) const;
+  Outcome RunTogether(vtkAlgorithm* self, const Body& body) const;
+  void RunStep(vtkAlgorithm* self, const std::function<std::string()>& step) const;
   /// Make the error of an exception the error of all ranks. @param mine null if another rank threw
-  /// @return 0
-  int Fail(vtkAlgorithm* self, const char* mine) const noexcept;
+  /// @return Outcome::Failed
+  Outcome Fail(vtkAlgorithm* self, const char* mine) const noexcept;
   /// Throws on all ranks that meet here if one threw. @return the least `mine` of all ranks
   int Meet(int mine) const;
   /// Meet, then let all ranks send and receive.

@@ -49,8 +49,6 @@ struct vtkAvianLidarScanFilter::vtkInternals
   double TracedBeams = 0.0; ///< beams whose surfaces were searched
   int TreeBuilds = 0;
   int Threads = 0;
-  vtkAvianLidarRanks::Outcome Last =
-    vtkAvianLidarRanks::Outcome::Done; ///< outcome of the execution so far
 
   /// A property that is a number, a choice or a switch.
   struct Property
@@ -71,13 +69,6 @@ struct vtkAvianLidarScanFilter::vtkInternals
   static std::string WrongWithBeams(const std::string& what)
   {
     return what.empty() ? what : "Input port 0 (beams), " + what;
-  }
-
-  /// Note the outcome of the execution so far. @return true to go on
-  bool GoOn(vtkAvianLidarRanks::Outcome outcome)
-  {
-    this->Last = outcome;
-    return outcome == vtkAvianLidarRanks::Outcome::Done;
   }
 };
 

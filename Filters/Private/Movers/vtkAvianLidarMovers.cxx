@@ -24,7 +24,6 @@
 namespace
 {
 namespace names = vtkAvianLidarArrays;
-using Outcome = vtkAvianLidarRanks::Outcome;
 using Leaf = vtkAvianLidarSurfaceLeaf;
 using avianlidar::Mover;
 using avianlidar::Vec3;
@@ -329,14 +328,14 @@ std::string ReadMover(vtkPolyData* poly, const vtkAvianLidarSurfaces& merged, st
 }
 
 //------------------------------------------------------------------------------
-Outcome vtkAvianLidarMovers::Read(const vtkAvianLidarRanks& ranks, vtkAlgorithm* self,
+void vtkAvianLidarMovers::Read(const vtkAvianLidarRanks& ranks, vtkAlgorithm* self,
   vtkDataObject* input, const vtkAvianLidarSurfaces& surfaces)
 {
   std::vector<std::string> surfaceNames;
   vtkAvianLidarContent::State state;
   bool same = false;
-  const Outcome looked = ranks.Together(self,
-    [&]() -> std::string
+  ranks.Together(self,
+    [&]()
     {
       surfaceNames = surfaces.objectNames;
       for (const auto* more : { &surfaces.objectClasses, &surfaces.materialNames })
@@ -350,15 +349,10 @@ Outcome vtkAvianLidarMovers::Read(const vtkAvianLidarRanks& ranks, vtkAlgorithm*
       }
       same = this->Known && this->SurfaceNames == surfaceNames && this->ReadBy == ranks.Group() &&
         state == this->State && (!input || !state.empty());
-      return {};
     });
-  if (looked != Outcome::Done)
-  {
-    return looked;
-  }
   if (ranks.All(same))
   {
-    return Outcome::Done;
+    return;
   }
   this->Known = false;
   vtkSmartPointer<vtkDataObject> all = input;
@@ -367,7 +361,7 @@ Outcome vtkAvianLidarMovers::Read(const vtkAvianLidarRanks& ranks, vtkAlgorithm*
   {
     vtkSmartPointer<vtkMultiBlockDataSet> mine;
     std::uint64_t hash = 0;
-    const Outcome named = ranks.Together(self,
+    ranks.Together(self,
       [&]()
       {
         std::string problem;
@@ -375,17 +369,13 @@ Outcome vtkAvianLidarMovers::Read(const vtkAvianLidarRanks& ranks, vtkAlgorithm*
         hash = HashOfMovers(mine);
         return problem.empty() ? problem : "Input port 2 (movers), " + problem;
       });
-    if (named != Outcome::Done)
-    {
-      return named;
-    }
     all = mine;
     if (!ranks.Same(hash))
     {
       parts = ranks.Gather(mine);
     }
   }
-  const Outcome read = ranks.Together(self,
+  ranks.Together(self,
     [&]()
     {
       if (!parts.empty())
@@ -395,14 +385,10 @@ Outcome vtkAvianLidarMovers::Read(const vtkAvianLidarRanks& ranks, vtkAlgorithm*
       const std::string problem = this->ReadAll(all, !ranks.Alone(), surfaces);
       return problem.empty() ? problem : "Input port 2 (movers), " + problem;
     });
-  if (read == Outcome::Done)
-  {
-    this->State = std::move(state);
-    this->SurfaceNames = std::move(surfaceNames);
-    this->ReadBy = ranks.Group();
-    this->Known = true;
-  }
-  return read;
+  this->State = std::move(state);
+  this->SurfaceNames = std::move(surfaceNames);
+  this->ReadBy = ranks.Group();
+  this->Known = true;
 }
 
 //------------------------------------------------------------------------------

@@ -39,8 +39,8 @@ struct vtkAvianLidarMovers
   /// Read the movers of all ranks, which must all call it, unless nothing has changed. Ids of
   /// movers are kept if all are beyond the ids of the surfaces; otherwise new ids follow these.
   /// @param input may be null @param surfaces surfaces, whose ids and names come first
-  vtkAvianLidarRanks::Outcome Read(const vtkAvianLidarRanks& ranks, vtkAlgorithm* self,
-    vtkDataObject* input, const vtkAvianLidarSurfaces& surfaces);
+  void Read(const vtkAvianLidarRanks& ranks, vtkAlgorithm* self, vtkDataObject* input,
+    const vtkAvianLidarSurfaces& surfaces);
 
 private:
   /// @param named true if blocks also come from other ranks, with their names as field data

@@ -26,7 +26,6 @@
 
 namespace
 {
-using Outcome = vtkAvianLidarRanks::Outcome;
 using Leaf = vtkAvianLidarSurfaceLeaf;
 using SurfaceArrays = vtkAvianLidarSurfaceArrays;
 namespace names = vtkAvianLidarArrays;
@@ -239,14 +238,13 @@ struct vtkAvianLidarSurfaceExchange::Scene
 };
 
 //------------------------------------------------------------------------------
-Outcome vtkAvianLidarSurfaceExchange::Merge(const vtkAvianLidarRanks& ranks, vtkAlgorithm* self,
+void vtkAvianLidarSurfaceExchange::Merge(const vtkAvianLidarRanks& ranks, vtkAlgorithm* self,
   vtkDataObject* input, const std::string& what, int threads, const vtkAvianLidarSurfaces& known,
   vtkAvianLidarSurfaces& result)
 try
 {
   const int share = ranks.Threads(threads);
   Scene scene;
-  Outcome outcome = Outcome::Done;
   if (ranks.Alone())
   {
     this->Forget();
@@ -254,33 +252,25 @@ try
   }
   else
   {
-    outcome = this->Collect(ranks, self, input, what, scene);
+    this->Collect(ranks, self, input, what, scene);
   }
-  if (outcome == Outcome::Done)
-  {
-    outcome = ranks.Together(self,
-      [&]() -> std::string
+  ranks.Together(self,
+    [&]() -> std::string
+    {
+      if (ranks.Alone())
       {
-        if (ranks.Alone())
-        {
-          result = vtkAvianLidarSurfaces::Merge(input, &known, share);
-        }
-        else if (scene.changed)
-        {
-          result = vtkAvianLidarSurfaces::Merge(scene.leaves, this->Fields, &known, share, false);
-        }
-        else if (&result != &known)
-        {
-          result = known;
-        }
-        return result.problem.empty() ? "" : what + result.problem;
-      });
-  }
-  if (outcome != Outcome::Done)
-  {
-    this->Forget();
-  }
-  return outcome;
+        result = vtkAvianLidarSurfaces::Merge(input, &known, share);
+      }
+      else if (scene.changed)
+      {
+        result = vtkAvianLidarSurfaces::Merge(scene.leaves, this->Fields, &known, share, false);
+      }
+      else if (&result != &known)
+      {
+        result = known;
+      }
+      return result.problem.empty() ? "" : what + result.problem;
+    });
 }
 catch (...)
 {
@@ -289,12 +279,12 @@ catch (...)
 }
 
 //------------------------------------------------------------------------------
-Outcome vtkAvianLidarSurfaceExchange::Collect(const vtkAvianLidarRanks& ranks, vtkAlgorithm* self,
+void vtkAvianLidarSurfaceExchange::Collect(const vtkAvianLidarRanks& ranks, vtkAlgorithm* self,
   vtkDataObject* input, const std::string& what, Scene& scene)
 {
   std::vector<vtkMultiProcessStream> lists;
   std::uint64_t hash = 0;
-  const Outcome looked = ranks.Together(self,
+  ranks.Together(self,
     [&]()
     {
       std::string problem;
@@ -313,10 +303,6 @@ Outcome vtkAvianLidarSurfaceExchange::Collect(const vtkAvianLidarRanks& ranks, v
       }
       return problem.empty() ? problem : what + problem;
     });
-  if (looked != Outcome::Done)
-  {
-    return looked;
-  }
   const bool same = ranks.Same(hash);
   if (same)
   {
@@ -329,17 +315,20 @@ Outcome vtkAvianLidarSurfaceExchange::Collect(const vtkAvianLidarRanks& ranks, v
   }
   scene.changed = !ranks.All(this->Known == hash);
   this->Known = hash;
-  return same || !scene.changed ? Outcome::Done : this->Send(ranks, self, what, lists, scene);
+  if (!same && scene.changed)
+  {
+    this->Send(ranks, self, what, lists, scene);
+  }
 }
 
 //------------------------------------------------------------------------------
-Outcome vtkAvianLidarSurfaceExchange::Send(const vtkAvianLidarRanks& ranks, vtkAlgorithm* self,
+void vtkAvianLidarSurfaceExchange::Send(const vtkAvianLidarRanks& ranks, vtkAlgorithm* self,
   const std::string& what, std::vector<vtkMultiProcessStream>& lists, Scene& scene)
 {
   Blocks blocks;
   std::vector<Part*> parts; // of all blocks
   int fieldOwner = 0;
-  const Outcome outcome = ranks.Together(self,
+  ranks.Together(self,
     [&]()
     {
       std::string wrong = vtkAvianLidarRanks::CheckSize(scene.fields);
@@ -360,10 +349,6 @@ Outcome vtkAvianLidarSurfaceExchange::Send(const vtkAvianLidarRanks& ranks, vtkA
       }
       return wrong.empty() ? wrong : what + wrong;
     });
-  if (outcome != Outcome::Done)
-  {
-    return outcome;
-  }
   ranks.Broadcast(scene.fields, fieldOwner, this->BytesSent);
   for (auto next = parts.begin(); next != parts.end();)
   {
@@ -372,8 +357,8 @@ Outcome vtkAvianLidarSurfaceExchange::Send(const vtkAvianLidarRanks& ranks, vtkA
   this->Fields = scene.fields->GetFieldData();
   const std::uint64_t some = this->Fields->GetNumberOfArrays() > 0;
   const bool received = ranks.Same(vtkAvianLidarSurfaceState::HashOfNames(this->Fields, some));
-  return ranks.Together(self,
-    [&]() -> std::string
+  ranks.Together(self,
+    [&]()
     {
       if (!received)
       {
@@ -397,6 +382,5 @@ Outcome vtkAvianLidarSurfaceExchange::Send(const vtkAvianLidarRanks& ranks, vtkA
           scene.leaves.push_back(leaf);
         }
       }
-      return {};
     });
 }

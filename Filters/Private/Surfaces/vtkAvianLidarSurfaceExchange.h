@@ -36,8 +36,8 @@ public:
   /// @param input surfaces of this rank @param what beginning of an error: "Input port 1, " @param
   /// known result of the last call, whose unchanged parts the new one shares @param result may be
   /// `known` @param threads as for vtkAvianLidarRanks::Threads()
-  vtkAvianLidarRanks::Outcome Merge(const vtkAvianLidarRanks& ranks, vtkAlgorithm* self,
-    vtkDataObject* input, const std::string& what, int threads, const vtkAvianLidarSurfaces& known,
+  void Merge(const vtkAvianLidarRanks& ranks, vtkAlgorithm* self, vtkDataObject* input,
+    const std::string& what, int threads, const vtkAvianLidarSurfaces& known,
     vtkAvianLidarSurfaces& result);
 
   /// Treat the next scene as a new one, because the result of the last call was not used.
@@ -48,10 +48,10 @@ public:
 
 private:
   struct Scene;
-  vtkAvianLidarRanks::Outcome Collect(const vtkAvianLidarRanks& ranks, vtkAlgorithm* self,
-    vtkDataObject* input, const std::string& what, Scene& scene);
-  vtkAvianLidarRanks::Outcome Send(const vtkAvianLidarRanks& ranks, vtkAlgorithm* self,
-    const std::string& what, std::vector<vtkMultiProcessStream>& lists, Scene& scene);
+  void Collect(const vtkAvianLidarRanks& ranks, vtkAlgorithm* self, vtkDataObject* input,
+    const std::string& what, Scene& scene);
+  void Send(const vtkAvianLidarRanks& ranks, vtkAlgorithm* self, const std::string& what,
+    std::vector<vtkMultiProcessStream>& lists, Scene& scene);
 
   std::optional<std::uint64_t> Known; ///< hash of the ranks' surfaces at the last exchange
 };
