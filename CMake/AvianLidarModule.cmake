@@ -48,7 +48,7 @@ set(private_sources
   Filters/Private/Surfaces/vtkAvianLidarSurfaces.cxx
   Filters/Private/Surfaces/vtkAvianLidarSurfacesMerge.cxx
   Filters/Private/Surfaces/vtkAvianLidarSurfacesToPolyData.cxx
-  Filters/Private/Surfaces/vtkAvianLidarTreeAccess.cxx
+  Filters/Private/Surfaces/vtkAvianLidarScene.cxx
   Filters/Private/Surfaces/vtkAvianLidarTreeDisplay.cxx
   Filters/Private/Surfaces/vtkAvianLidarTriangles.cxx
   Filters/Private/Beams/vtkAvianLidarBeamSourceFile.cxx

@@ -6,10 +6,10 @@
 #include "vtkAvianLidarAbort.h"
 #include "vtkAvianLidarArrays.h"
 #include "vtkAvianLidarRanks.h"
+#include "vtkAvianLidarScene.h"
 #include "vtkAvianLidarSurfaceExchange.h"
 #include "vtkAvianLidarSurfaces.h"
 #include "vtkAvianLidarText.h"
-#include "vtkAvianLidarTreeAccess.h"
 #include "vtkAvianLidarTreeDisplay.h"
 #include "vtkAvianLidarWarnings.h"
 
@@ -18,6 +18,7 @@
 #include "vtkInformationObjectBaseKey.h"
 #include "vtkInformationVector.h"
 #include "vtkMultiProcessController.h"
+#include "vtkNew.h"
 #include "vtkObjectFactory.h"
 #include "vtkPolyData.h"
 
@@ -31,9 +32,8 @@ vtkInformationKeyMacro(vtkAvianLidarCollisionTree, COLLISION_TREE, ObjectBase);
 struct vtkAvianLidarCollisionTree::vtkInternals
 {
   std::shared_ptr<const avianlidar::CollisionTree> Tree;
-  vtkAvianLidarSurfaceExchange Exchange; ///< of surfaces between ranks
-  vtkAvianLidarSurfaces Next;            ///< being made
-  vtkAvianLidarSurfaces Surfaces;        ///< merged last
+  vtkAvianLidarSurfaceExchange Exchange;                 ///< of surfaces between ranks
+  std::shared_ptr<const vtkAvianLidarSurfaces> Surfaces; ///< surfaces merged last
   vtkAvianLidarWarnings Warnings;
   int Builds = 0;
 
@@ -111,18 +111,9 @@ int vtkAvianLidarCollisionTree::RequestData(
       vtkDataObject* input = vtkDataObject::GetData(inputVector[0]);
       vtkPolyData* output = vtkPolyData::GetData(outputVector, 0);
       vtkPolyData* display = vtkPolyData::GetData(outputVector, 1);
-      try
-      {
-        this->MergeSurfaces(ranks, input);
-        this->MakeTree(ranks, input);
-        this->MakeOutputs(ranks, output, display);
-      }
-      catch (...)
-      {
-        // The exchange knows other surfaces than those of the last output.
-        this->Internals->Exchange.Forget();
-        throw;
-      }
+      this->MergeSurfaces(ranks, input);
+      this->MakeTree(ranks, input);
+      this->MakeOutputs(ranks, output, display);
     });
 }
 
@@ -137,10 +128,11 @@ void vtkAvianLidarCollisionTree::MergeSurfaces(
       vtkAvianLidarAbort::StopIfWanted(this);
       return this->CheckOptions();
     });
-  in.Exchange.Merge(ranks, this, input, "Input port 0, ", 0, in.Surfaces, in.Next);
-  if (in.Warnings.IsNew(input, in.Next.checksum, in.Next.warning) && ranks.Rank() == 0)
+  in.Surfaces = in.Exchange.Merge(ranks, this, input, "Input port 0, ", 0, in.Surfaces);
+  const vtkAvianLidarSurfaces& merged = *in.Surfaces;
+  if (in.Warnings.IsNew(input, merged.checksum, merged.warning) && ranks.Rank() == 0)
   {
-    vtkWarningMacro("Input port 0, " << vtkAvianLidarText(in.Next.warning));
+    vtkWarningMacro("Input port 0, " << vtkAvianLidarText(merged.warning));
   }
 }
 
@@ -158,14 +150,15 @@ void vtkAvianLidarCollisionTree::MakeTree(const vtkAvianLidarRanks& ranks, vtkDa
   ranks.Together(this,
     [&]()
     {
-      if (!in.Fits(in.Next.checksum, options))
+      const std::uint64_t checksum = in.Surfaces->checksum;
+      if (!in.Fits(checksum, options))
       {
-        in.Tree = vtkAvianLidarTreeAccess::Find(input, in.Next.checksum).tree;
+        in.Tree = vtkAvianLidarScene::FindTree(input, checksum).tree;
       }
-      if (!in.Fits(in.Next.checksum, options))
+      if (!in.Fits(checksum, options))
       {
         in.Tree = avianlidar::buildVolumeTree(
-          in.Next.mesh, options, vtkAvianLidarAbort::KeepGoing(this), threads);
+          in.Surfaces->mesh, options, vtkAvianLidarAbort::KeepGoing(this), threads);
         in.Builds += in.Tree != nullptr;
       }
       vtkAvianLidarAbort::Require(in.Tree != nullptr);
@@ -182,17 +175,17 @@ void vtkAvianLidarCollisionTree::MakeOutputs(
     {
       if (ranks.Rank() == 0)
       {
-        output->ShallowCopy(in.Next.ToPolyData(in.Exchange.Fields));
+        output->ShallowCopy(in.Surfaces->ToPolyData(in.Exchange.Fields));
       }
       else
       {
         // One copy of the surfaces for all; with the others goes what they know of them.
         output->GetFieldData()->PassData(in.Exchange.Fields);
       }
-      in.Surfaces = std::move(in.Next);
-      in.Next = vtkAvianLidarSurfaces();
-      vtkAvianLidarTreeAccess::Attach(
-        output, in.Tree, std::make_shared<const vtkAvianLidarSurfaces>(in.Surfaces.MergedAgain()));
+      vtkNew<vtkAvianLidarScene> scene;
+      scene->Surfaces = in.Surfaces;
+      scene->Tree = in.Tree;
+      scene->AttachTo(output);
       if (ranks.Rank() == 0)
       {
         vtkAvianLidarMakeTreeDisplay(*in.Tree, this->DisplayLevel, display);

@@ -553,9 +553,9 @@ void vtkAvianLidarCoverage::MakeFields(vtkFieldData* beamFields, vtkFieldData* f
 {
   const vtkInternals& in = *this->Internals;
   vtkAvianLidarMovers still;
-  still.objectNames = in.Surfaces.objectNames;
-  still.materialNames = in.Surfaces.materialNames;
-  still.objectClasses = in.Surfaces.objectClasses;
+  still.objectNames = in.Surfaces->objectNames;
+  still.materialNames = in.Surfaces->materialNames;
+  still.objectClasses = in.Surfaces->objectClasses;
   vtkAvianLidarEchoOutput::FillFields(
     in.Setup, this->Preset, beamFields, still, in.Exchange.Fields, in.Scene, fields);
   const vtkAvianLidarBirdTargets::Target& shown = this->Targets->Wanted.front();

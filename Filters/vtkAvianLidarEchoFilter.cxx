@@ -91,7 +91,7 @@ int vtkAvianLidarEchoFilter::RequestData(
 void vtkAvianLidarEchoFilter::PrepareMovers(const vtkAvianLidarRanks& ranks, vtkDataObject* input)
 {
   vtkInternals& in = *this->Internals;
-  this->Moved->Movers.Read(ranks, this, input, in.Surfaces);
+  this->Moved->Movers.Read(ranks, this, input, *in.Surfaces);
   in.Setup.movers = this->Moved->Movers.movers;
   in.Setup.largestReflectance = in.Summary.largestReflectance();
   in.Setup.largestGain = in.Summary.largestGain();
@@ -162,7 +162,7 @@ void vtkAvianLidarEchoFilter::Trace(const std::array<vtkPolyData*, 3>& outputs)
   this->Moved->TouchedBeams = static_cast<double>(result.beamsTouched);
   this->Moved->Coincident = result.echoes.empty()
     ? std::string() // it changes nothing
-    : in.Surfaces.WarningOnCoincidence(result.coincident);
+    : in.Surfaces->WarningOnCoincidence(result.coincident);
   vtkAvianLidarEchoOutput::FillEchoes(result, in.Beams, in.Setup.noise, outputs[0]);
   vtkAvianLidarEchoOutput::FillReport(result, in.Beams, in.Setup.noise, outputs[1]);
   if (this->ReportMovers)

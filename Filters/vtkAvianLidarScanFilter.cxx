@@ -10,8 +10,8 @@
 #include "vtkAvianLidarMedia.h"
 #include "vtkAvianLidarRevolutions.h"
 #include "vtkAvianLidarScanFilterInternals.h"
+#include "vtkAvianLidarScene.h"
 #include "vtkAvianLidarText.h"
-#include "vtkAvianLidarTreeAccess.h"
 
 #include "vtkDataObject.h"
 #include "vtkInformation.h"
@@ -258,10 +258,10 @@ std::string vtkAvianLidarScanFilter::PlaceMedia()
 {
   vtkInternals& in = *this->Internals;
   const avianlidar::LidarView view = avianlidar::viewOf(in.Setup.sensor);
-  if (in.MediaOf != in.Surfaces.media || !(in.MediaFor == view))
+  if (in.MediaOf != in.Surfaces->media || !(in.MediaFor == view))
   {
     std::vector<avianlidar::PlacedMedium> read;
-    for (const std::string& text : in.Surfaces.media)
+    for (const std::string& text : in.Surfaces->media)
     {
       for (const avianlidar::PlacedMedium& one : vtkAvianLidarMedia::Read(text, view))
       {
@@ -269,7 +269,7 @@ std::string vtkAvianLidarScanFilter::PlaceMedia()
       }
     }
     in.Media.swap(read);
-    in.MediaOf = in.Surfaces.media;
+    in.MediaOf = in.Surfaces->media;
     in.MediaFor = view;
   }
   std::vector<avianlidar::PlacedMedium>& media = in.Setup.media;
@@ -295,7 +295,7 @@ void vtkAvianLidarScanFilter::AddAirTo(vtkFieldData* fields) const
     fields, vtkAvianLidarArrays::AirBackscatter, this->AirBackscatter);
   vtkAvianLidarArrays::SetFieldValue(fields, vtkAvianLidarArrays::RainRate, this->RainRate);
   std::vector<std::string> media;
-  for (const std::string& text : this->Internals->Surfaces.media)
+  for (const std::string& text : this->Internals->Surfaces->media)
   {
     media.push_back(vtkAvianLidarMedia::InWords(text));
   }
@@ -351,12 +351,12 @@ void vtkAvianLidarScanFilter::PrepareSurfaces(const vtkAvianLidarRanks& ranks, v
     return; // nothing was modified since the last execution
   }
   in.State.clear();
-  const auto merged = vtkAvianLidarTreeAccess::FindMerged(input);
+  const auto merged = vtkAvianLidarScene::FindSurfaces(input);
   const bool given = ranks.All(merged != nullptr) && ranks.Same(merged->checksum);
   if (!given)
   {
-    in.Exchange.Merge(
-      ranks, this, input, "Input port 1, ", this->NumberOfThreads, in.Surfaces, in.Surfaces);
+    in.Surfaces =
+      in.Exchange.Merge(ranks, this, input, "Input port 1, ", this->NumberOfThreads, in.Surfaces);
   }
   ranks.Together(this,
     [&]()
@@ -365,7 +365,7 @@ void vtkAvianLidarScanFilter::PrepareSurfaces(const vtkAvianLidarRanks& ranks, v
       {
         in.Exchange.Forget();
         in.Exchange.Fields = input->GetFieldData();
-        in.Surfaces = *merged;
+        in.Surfaces = merged;
       }
       this->SummarizeSurfaces(input, ranks.Rank() == 0);
     });
@@ -377,19 +377,19 @@ void vtkAvianLidarScanFilter::PrepareSurfaces(const vtkAvianLidarRanks& ranks, v
 void vtkAvianLidarScanFilter::SummarizeSurfaces(vtkDataObject* input, bool warn)
 {
   vtkInternals& in = *this->Internals;
-  in.Geometry = in.Surfaces.checksum;
-  in.Setup.materials = in.Surfaces.materials;
-  in.Setup.objectIds = in.Surfaces.objectIds;
-  in.Setup.materialIds = in.Surfaces.materialIds;
+  in.Geometry = in.Surfaces->checksum;
+  in.Setup.materials = in.Surfaces->materials;
+  in.Setup.objectIds = in.Surfaces->objectIds;
+  in.Setup.materialIds = in.Surfaces->materialIds;
   in.Summary.follow(in.Setup);
   in.Scene = in.Summary.checksum(in.Geometry);
-  for (const std::string& medium : in.Surfaces.media)
+  for (const std::string& medium : in.Surfaces->media)
   {
     in.Scene = avianlidar::hashOf(medium.data(), medium.size(), in.Scene);
   }
-  if (in.Warnings.IsNew(input, in.Geometry, in.Surfaces.warning) && warn)
+  if (in.Warnings.IsNew(input, in.Geometry, in.Surfaces->warning) && warn)
   {
-    vtkWarningMacro("Input port 1, " << vtkAvianLidarText(in.Surfaces.warning));
+    vtkWarningMacro("Input port 1, " << vtkAvianLidarText(in.Surfaces->warning));
   }
 }
 
@@ -410,7 +410,7 @@ void vtkAvianLidarScanFilter::PrepareTree(const vtkAvianLidarRanks& ranks, vtkDa
       if (!in.Setup.tree)
       {
         in.Setup.tree = in.OwnTree =
-          avianlidar::buildCollisionTree(in.Surfaces.mesh, avianlidar::TreeOptions{},
+          avianlidar::buildCollisionTree(in.Surfaces->mesh, avianlidar::TreeOptions{},
             vtkAvianLidarAbort::KeepGoing(this, 0.0, vtkInternals::BuildShare), in.Threads);
         in.TreeBuilds += in.OwnTree != nullptr;
       }
@@ -424,7 +424,7 @@ void vtkAvianLidarScanFilter::FindTree(vtkDataObject* input)
 {
   vtkInternals& in = *this->Internals;
   const std::uint64_t checksum = in.Geometry;
-  const vtkAvianLidarTreeAccess::Found found = vtkAvianLidarTreeAccess::Find(input, checksum);
+  const vtkAvianLidarScene::FoundTree found = vtkAvianLidarScene::FindTree(input, checksum);
   in.Setup.tree = found.tree;
   if (found.stale && in.StaleFor != checksum)
   {

@@ -80,6 +80,19 @@ class EchoPipeline(unittest.TestCase):
             self.assertEqual(count, 360)
             assert_same_bits(echoes, append.GetOutput())
 
+    def test_objects_without_triangles_keep_their_names(self):
+        """The echoes list them with or without a tree, also where the tree's output was copied, so that its content is merged."""
+        blocks = town(count=4)
+        blocks.SetBlock(4, vtk.vtkPolyData())
+        blocks.GetMetaData(4).Set(vtk.vtkCompositeDataSet.NAME(), "meadow")
+        tree = al.vtkAvianLidarCollisionTree()
+        tree.SetInputData(blocks)
+        tree.Update()
+        for surfaces in (blocks, tree, copy_of(tree.GetOutput())):
+            names = ran(surfaces).GetOutput().GetFieldData().GetAbstractArray("object_names")
+            self.assertEqual([names.GetValue(i) for i in range(names.GetNumberOfValues())],
+                             [*(f"house {i}" for i in range(4)), "meadow"])
+
     def test_progress_and_abort(self):
         """Progress rises from the calling thread; abort within blocks, with empty and valid outputs. Rays take long enough for that."""
         busy, seen, calls = scan(TOWN, sensor(720, 8), NumberOfThreads=1, **SAMPLED), [], []

@@ -32,12 +32,12 @@ struct vtkAvianLidarScanFilter::vtkInternals
   avianlidar::ScanSetup Setup;
   avianlidar::TraceCache Cache;
   vtkAvianLidarBeams Beams;
-  vtkAvianLidarSurfaces Surfaces;
-  vtkAvianLidarSurfaceExchange Exchange;       ///< exchange of surfaces between ranks
-  std::vector<avianlidar::PlacedMedium> Media; ///< media of the surfaces
-  std::vector<std::string> MediaOf;            ///< texts of these media
-  avianlidar::LidarView MediaFor;              ///< view of the lidar
-  avianlidar::SceneSummary Summary;            ///< summary of the surfaces
+  std::shared_ptr<const vtkAvianLidarSurfaces> Surfaces; ///< surfaces merged last
+  vtkAvianLidarSurfaceExchange Exchange;                 ///< exchange of surfaces between ranks
+  std::vector<avianlidar::PlacedMedium> Media;           ///< media of the surfaces
+  std::vector<std::string> MediaOf;                      ///< texts of these media
+  avianlidar::LidarView MediaFor;                        ///< view of the lidar
+  avianlidar::SceneSummary Summary;                      ///< summary of the surfaces
   std::shared_ptr<const avianlidar::CollisionTree> OwnTree;
   vtkAvianLidarContent::State State; ///< state of the surfaces merged last
   const void* MergedBy = nullptr;    ///< ranks that merged the surfaces; null: one process

@@ -3,10 +3,10 @@
 
 #include "Hash.h"
 #include "vtkAvianLidarArrays.h"
+#include "vtkAvianLidarScene.h"
 #include "vtkAvianLidarSurfaceLeaf.h"
 #include "vtkAvianLidarSurfaceState.h"
 #include "vtkAvianLidarSurfaces.h"
-#include "vtkAvianLidarTreeAccess.h"
 
 #include "vtkAppendPolyData.h"
 #include "vtkCellData.h"
@@ -238,9 +238,9 @@ struct vtkAvianLidarSurfaceExchange::Scene
 };
 
 //------------------------------------------------------------------------------
-void vtkAvianLidarSurfaceExchange::Merge(const vtkAvianLidarRanks& ranks, vtkAlgorithm* self,
-  vtkDataObject* input, const std::string& what, int threads, const vtkAvianLidarSurfaces& known,
-  vtkAvianLidarSurfaces& result)
+std::shared_ptr<const vtkAvianLidarSurfaces> vtkAvianLidarSurfaceExchange::Merge(
+  const vtkAvianLidarRanks& ranks, vtkAlgorithm* self, vtkDataObject* input,
+  const std::string& what, int threads, const std::shared_ptr<const vtkAvianLidarSurfaces>& known)
 try
 {
   const int share = ranks.Threads(threads);
@@ -254,23 +254,19 @@ try
   {
     this->Collect(ranks, self, input, what, scene);
   }
+  std::shared_ptr<const vtkAvianLidarSurfaces> result = known;
   ranks.Together(self,
     [&]() -> std::string
     {
-      if (ranks.Alone())
+      if (scene.changed)
       {
-        result = vtkAvianLidarSurfaces::Merge(input, &known, share);
+        result = std::make_shared<const vtkAvianLidarSurfaces>(ranks.Alone()
+            ? vtkAvianLidarSurfaces::Merge(input, known.get(), share)
+            : vtkAvianLidarSurfaces::Merge(scene.leaves, this->Fields, known.get(), share, false));
       }
-      else if (scene.changed)
-      {
-        result = vtkAvianLidarSurfaces::Merge(scene.leaves, this->Fields, &known, share, false);
-      }
-      else if (&result != &known)
-      {
-        result = known;
-      }
-      return result.problem.empty() ? "" : what + result.problem;
+      return result->problem.empty() ? "" : what + result->problem;
     });
+  return result;
 }
 catch (...)
 {
@@ -295,7 +291,7 @@ void vtkAvianLidarSurfaceExchange::Collect(const vtkAvianLidarRanks& ranks, vtkA
         problem = wrong.empty() ? problem : leaf.Message(wrong);
       }
       scene.fields->GetFieldData()->PassData(input->GetFieldData());
-      vtkAvianLidarTreeAccess::Detach(scene.fields); // it goes its own way
+      vtkAvianLidarScene::Detach(scene.fields); // it cannot be sent
       if (problem.empty())
       {
         lists.push_back(ListOf(scene.leaves, scene.fields));

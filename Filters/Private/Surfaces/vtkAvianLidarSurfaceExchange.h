@@ -22,6 +22,7 @@
 #include "vtkSmartPointer.h"
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 
@@ -34,11 +35,11 @@ class vtkAvianLidarSurfaceExchange
 public:
   /// Merge the scene of this process or, with several ranks, of all ranks, which must all call it.
   /// @param input surfaces of this rank @param what beginning of an error: "Input port 1, " @param
-  /// known result of the last call, whose unchanged parts the new one shares @param result may be
-  /// `known` @param threads as for vtkAvianLidarRanks::Threads()
-  void Merge(const vtkAvianLidarRanks& ranks, vtkAlgorithm* self, vtkDataObject* input,
-    const std::string& what, int threads, const vtkAvianLidarSurfaces& known,
-    vtkAvianLidarSurfaces& result);
+  /// threads as for vtkAvianLidarRanks::Threads() @param known result of the last call, null at
+  /// first; it is returned if no surface changed, else the new result shares its unchanged parts
+  std::shared_ptr<const vtkAvianLidarSurfaces> Merge(const vtkAvianLidarRanks& ranks,
+    vtkAlgorithm* self, vtkDataObject* input, const std::string& what, int threads,
+    const std::shared_ptr<const vtkAvianLidarSurfaces>& known);
 
   /// Treat the next scene as a new one, because the result of the last call was not used.
   void Forget() { this->Known.reset(); }

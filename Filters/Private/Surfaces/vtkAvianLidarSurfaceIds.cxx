@@ -132,6 +132,29 @@ int vtkAvianLidarSurfaceIds::AddMedium(const std::string& name, int wanted)
   return id;
 }
 
+void vtkAvianLidarSurfaceIds::AddUnusedNames(const std::vector<Leaf>& leaves)
+{
+  for (const Leaf& leaf : leaves)
+  {
+    vtkFieldData* fields = leaf.data->GetFieldData();
+    auto* names =
+      vtkStringArray::SafeDownCast(fields->GetAbstractArray(vtkAvianLidarArrays::ObjectNames.name));
+    const vtkIdType count = names && this->KeepObjectIds ? names->GetNumberOfValues() : 0;
+    // A single name belongs to the object of the leaf, whatever its id is.
+    for (vtkIdType id = 0; count > 1 && id < count; ++id)
+    {
+      this->ObjectNames.resize(
+        std::max(this->ObjectNames.size(), static_cast<std::size_t>(id) + 1));
+      if (this->ObjectNames[id].empty() && !names->GetValue(id).empty())
+      {
+        this->ObjectNames[id] = names->GetValue(id);
+        this->SetClass(
+          static_cast<int>(id), StringOfField(fields, vtkAvianLidarArrays::ObjectClasses.name, id));
+      }
+    }
+  }
+}
+
 void vtkAvianLidarSurfaceIds::SetClass(int global, const std::string& objectClass)
 {
   if (this->LeavesHaveClasses || this->SceneHasClasses)

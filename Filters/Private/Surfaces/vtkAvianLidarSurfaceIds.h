@@ -43,6 +43,9 @@ public:
   /// new id
   int AddMedium(const std::string& name, int wanted);
 
+  /// Keep the names and classes of objects without cells, if ids are kept. To be called last.
+  void AddUnusedNames(const std::vector<vtkAvianLidarSurfaceLeaf>& leaves);
+
   /// Id in the scene of a material of a leaf. @param local id in the leaf, negative if it has none
   int MaterialOf(vtkPolyData* poly, int local);
 

@@ -52,6 +52,7 @@ struct vtkAvianLidarSurfaces
   /// Merge every vtkPolyData of `input` (`input` itself or the leaves of a composite). Triangles
   /// are sorted (TriangleOrder.h), so that surfaces give the same echoes however they are divided.
   /// Ghost cells, vertices and lines are skipped; polygons and strips are triangulated.
+  /// Merging the result of ToPolyData() gives the same scene.
   /// @param known earlier result, may be null, whose mesh, materials and ids are shared if the
   /// values are equal @param threads number of threads that check the leaves, > 0, or 0 for all
   static vtkAvianLidarSurfaces Merge(
@@ -70,9 +71,6 @@ struct vtkAvianLidarSurfaces
   /// triangles, of which the first is visible
   std::string WarningOnCoincidence(
     const std::vector<std::pair<std::uint32_t, std::uint32_t>>& pairs) const;
-
-  /// The result that Merge() would return for ToPolyData().
-  vtkAvianLidarSurfaces MergedAgain() const;
 };
 
 #endif

@@ -89,6 +89,7 @@ public:
       range.end = this->Materials.size();
     }
     this->AddMedia(leaves);
+    this->Ids.AddUnusedNames(leaves);
     this->FindWarnings(leaves);
     this->Finish(known);
     this->WarnOfSize();
