@@ -6,14 +6,14 @@
  * A box is tested by separating axes. Two planes in space are tested first, because they separate
  * most boxes: the plane that touches the cone on the side of the box's centre, and the plane
  * through the apex across the axis. Then the projections of cone and box on the three planes of the
- * box's axes are compared. A sphere is tested exactly.
+ * box's axes are compared. The test of a sphere is exact.
  *
  * Source: paper, Sec. 3.2, Fig. 6 and 7.
  * Differs: the projected wedge is wider (BeamCone.h), and the two planes in space are added.
  * Valid: conservative, rounding included: if TriangleTest.h finds a hit of the ray, or of any ray
- * of the beam, on a triangle, no volume that holds the triangle is rejected. For this, cone and ray
- * are widened by HitMarginBeam tan(theta0.5) + HitMargin, volumes by HitMargin times their farthest
- * coordinate from the apex. False positives are possible.
+ * of the beam, on a triangle, no volume that holds the triangle is rejected. For this purpose, cone
+ * and ray are widened by HitMarginBeam tan(theta0.5) + HitMargin, volumes by HitMargin times their
+ * farthest coordinate from the apex. False positives are possible.
  * Test: TestBeamVolumeTest.cxx, TestGeometryProperties.cxx.
  */
 #ifndef avianlidar_BeamVolumeTest_h
@@ -36,11 +36,11 @@ public:
   BeamVolumeTest(const Vec3& apex, const Vec3& origin, const Vec3& direction, double angularMargin);
 
   /// @return false if no ray of the beam hits a triangle in `volume`, which must not be empty
-  /// @param nearest receives a lower bound of the range of such hits, m
+  /// @param nearest receives a lower bound of the range of hits in `volume`, m
   bool meets(const OBB& volume, double& nearest) const;
   bool meets(const BoundingSphere& volume, double& nearest) const;
 
-  /// Only the paper's test, by three projections. @param axis axis of the cone in the box's frame
+  /// The paper's test alone, by three projections. @param axis axis of the cone in the box's frame
   /// @param center,half centre and half extents of the widened box, relative to the cone's apex, m
   bool projectionsMeet(const Vec3& axis, const Vec3& center, const Vec3& half) const;
 

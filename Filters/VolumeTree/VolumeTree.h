@@ -3,14 +3,14 @@
  * @file VolumeTree.h
  * @brief The paper's binary tree of AABBs, OBBs or spheres in double precision, and its descent.
  *
- * It serves to compare the paper's volumes. The kernel's own tree has eight boxes a node.
+ * This tree serves to compare the paper's volumes. The kernel's own tree has eight boxes per node.
  *
  * Source: paper, Sec. 3.1 and 3.2, Eq. 14, Algorithm 1.
  * Differs: a leaf holds up to maximumLeafSize triangles (Algorithm 1: one); the descent is front to
  * back.
- * Valid: visits every leaf whose volumes the cone or ray meets within the limit. A volume
- * whose lower bound equals the limit is visited because it may hold a hit of equal range and lower
- * number. Not optimised for speed.
+ * Valid: the descent visits every leaf whose volumes the cone or ray meets within the limit. A
+ * volume whose lower bound equals the limit is visited because it may hold a hit of equal range and
+ * lower triangle number. The code is not optimised for speed.
  * Test: TestCollisionTreeBuilder.cxx, TestBeamTracer.cxx, TestGeometryProperties.cxx.
  */
 #ifndef avianlidar_VolumeTree_h
@@ -43,12 +43,13 @@ struct VolumeTree final : public OtherVolumes
     TraversalStack& stack) const override;
 };
 
-/// As buildCollisionTree(), for every bounding volume. BoundingVolumeType::AABB makes the kernel's
-/// tree with eight boxes a node, every other volume a binary tree.
+/// Build a tree as buildCollisionTree() does, with any bounding volume. BoundingVolumeType::AABB
+/// gives the kernel's tree with eight boxes per node; every other volume gives a binary tree.
 std::shared_ptr<const CollisionTree> buildVolumeTree(std::shared_ptr<const TriangleMesh> mesh,
   const TreeOptions& options, const KeepGoing& keepGoing = {}, int threads = 0);
 
-/// Nodes and volumes of a tree. For a wide tree, AABBs are fitted, down to the depth `deepest`.
+/// Nodes and volumes of a tree. For a wide tree, AABBs are fitted to nodes down to the depth
+/// `deepest`.
 std::shared_ptr<const VolumeTree> volumesOf(
   const CollisionTree& tree, std::uint32_t deepest = std::numeric_limits<std::uint32_t>::max());
 }

@@ -5,19 +5,20 @@
  * backscatter.
  *
  * Air is a list of media, and the attenuation coefficient of the clear air between them. A medium
- * has an extinction mu. Its backscatter is mu/S per metre and steradian, S its
- * extinction-to-backscatter ratio. It fills the scene or a volume (MediumVolume.h). BeamAir.h
- * follows the air along a beam.
+ * with the extinction mu and the extinction-to-backscatter ratio S has the backscatter mu/S per
+ * metre and steradian. A medium fills the scene or a volume (MediumVolume.h). BeamAir.h follows the
+ * air along a beam.
  *
- * Fog has so many droplets that their number does not matter. Rain has few drops. Their diameters
- * are exponential, N(D) = N0 exp(-Lambda D), N0 = 8000/(m3 mm), Lambda = 4.1 R^-0.21/mm, R the rain
- * rate in mm/h. Each drop takes twice its area from the beam. Half of this light is diffracted into
- * an angle of about lambda/D. Most of it stays in the view of a lidar and is not lost
- * (keptInView()). Trees have few leaves, too. All leaves have one size, are Lambertian and face all
- * ways. Drops are drawn anew in each scan, and so is the share of the leaves that the wind moves.
+ * Fog has so many droplets that their number does not matter. Rain has few drops. The diameters of
+ * raindrops are exponential, N(D) = N0 exp(-Lambda D), N0 = 8000/(m3 mm), Lambda = 4.1 R^-0.21/mm,
+ * with R the rain rate in mm/h. Each drop takes twice its area from the beam. Half of this light is
+ * diffracted into an angle of about lambda/D. Most of the diffracted light stays in the view of a
+ * lidar and is not lost (keptInView()). Trees have few leaves, too. All leaves have one size, are
+ * Lambertian and face all ways. Drops are drawn anew in each scan, and so is the share of the
+ * leaves that the wind moves.
  *
- * Coefficients are in 1/m everywhere. The paper's 0.088 and 0.035 have no unit and are read as
- * 1/km.
+ * Coefficients are in 1/m everywhere. The paper's coefficients 0.088 and 0.035 have no unit and are
+ * read as 1/km.
  *
  * Source: paper, Sec. 2.3, Eq. 9; for haze P. W. Kruse et al., Elements of Infrared Technology
  * (1962), with the exponents of I. I. Kim et al., Proc. SPIE 4214 (2001); for rain J. S. Marshall
@@ -41,8 +42,9 @@
 
 namespace avianlidar
 {
-/// Transmission of `length` metres of air: exp(-mu l) (paper, Eq. 9), 0 where it underflows.
-/// @param attenuation 1/m, >= 0 @param length m, >= 0, the whole way (a direct echo travels 2 r)
+/// Transmission of `length` metres of air: exp(-mu l) (paper, Eq. 9), 0 where this number
+/// underflows. @param attenuation coefficient mu, 1/m, >= 0 @param length l of the whole way, m,
+/// >= 0 (2 r for a direct echo)
 inline double transmission(double attenuation, double length)
 {
   // Without attenuation even an infinite length transmits all light; 0 * infinity is NaN.
@@ -52,8 +54,8 @@ inline double transmission(double attenuation, double length)
 /// Visibility of clear air, m, at which data sheets are assumed to give their ranges.
 constexpr double ClearVisibility = 23e3;
 
-/// Attenuation coefficient of haze, 1/m. @param visibility at 550 nm, m, above 0
-/// @param wavelength m
+/// Attenuation coefficient of haze, 1/m. @param visibility visibility at 550 nm, m, above 0
+/// @param wavelength wavelength of the light, m
 double attenuationOfVisibility(double visibility, double wavelength);
 
 /// Optical properties of a medium.
@@ -61,14 +63,14 @@ struct Medium
 {
   double extinction = 0.0;       ///< mu, extinction of light that the lidar loses, 1/m, 0 to 1e30
   double backscatterRatio = 1.0; ///< S, ratio of extinction to backscatter, sr, 1e-3 to 1e9
-  double drops = 0.0;            ///< drops or leaves, 1/m^3, 0 to 1e12; 0: too many to count
+  double drops = 0.0; ///< number of drops or leaves, 1/m^3, 0 to 1e12; 0: too many to count
   /// Mean square of a drop's energy divided by its squared mean: SquareOfDrops or SquareOfLeaves.
   double squareOfDrops = 6.0;
   double renewed = 1.0;   ///< share of the drops that are drawn anew in each scan, 0 to 1
-  bool isFollowed = true; ///< true if a threshold may follow its mean light; false for trees
-  int objectId = -2;      ///< label of its echoes; ObjectOfAir for air
-  /// True if drops are leaves. Light comes back through the gaps that let it in if its two ways are
-  /// closer than a leaf is wide (BeamAir.h), or always if `drops` is 0.
+  bool isFollowed = true; ///< true if a threshold may follow the medium's light; false for trees
+  int objectId = -2;      ///< object id of the medium's echoes; ObjectOfAir for air
+  /// True if drops are leaves. Light comes back through the gaps that let it in, if its ways out
+  /// and back are closer than a leaf is wide (BeamAir.h). If `drops` is 0, light always does so.
   bool sharesGaps = false;
 
   /// Backscatter coefficient mu/S, 1/(m sr).
@@ -81,7 +83,7 @@ constexpr double SquareOfDrops = 6.0;
 /// Ratio E[cos^4]/E[cos^2]^2 of Lambertian leaves that face all ways.
 constexpr double SquareOfLeaves = 1.8;
 
-/// A medium and its volume. By default it fills the scene.
+/// A medium and its volume. By default the medium fills the scene.
 struct PlacedMedium
 {
   Medium medium;
@@ -97,7 +99,7 @@ double attenuationOf(double clear, const std::vector<PlacedMedium>& media);
 struct Air
 {
   double clear = 0.0;              ///< attenuation coefficient of the clear air, 1/m
-  std::vector<PlacedMedium> media; ///< their extinctions exclude the clear air's
+  std::vector<PlacedMedium> media; ///< media, with extinctions that exclude the clear air
 };
 
 /// True if a medium does not fill the scene.
@@ -106,8 +108,8 @@ bool haveVolumes(const std::vector<PlacedMedium>& media);
 /// View of a lidar, for light that drops diffract by a small angle.
 struct LidarView
 {
-  double wavelength = 905e-9; ///< m, above 0
-  double halfAngle = 0.0;     ///< rad; 0: no diffracted light stays in view
+  double wavelength = 905e-9; ///< wavelength of the light, m, above 0
+  double halfAngle = 0.0;     ///< half angle of the view, rad; 0: no diffracted light stays in view
 };
 
 inline bool operator==(const LidarView& a, const LidarView& b)
@@ -115,24 +117,26 @@ inline bool operator==(const LidarView& a, const LidarView& b)
   return a.wavelength == b.wavelength && a.halfAngle == b.halfAngle;
 }
 
-/// View of a sensor. Its half angle is the half angle of a round beam of the same solid angle.
+/// View of a sensor, with the half angle of a round beam of the sensor's solid angle.
 LidarView viewOf(const Sensor& sensor);
 
 /// Share of the diffracted light that stays in view on the way to a target and back. A drop at a
 /// share 1 - u of the way shifts light at the target by u times the angle of diffraction. So the
 /// share is the mean over u of the energy of Airy's pattern within halfAngle/u, weighted with the
-/// areas of the drops. The error is below 6e-4. @param slope Lambda of exponential diameters, 1/m
+/// areas of the drops. The error of the share is below 6e-4. @param slope Lambda of exponential
+/// diameters, 1/m
 double keptInView(const LidarView& view, double slope);
 
-/// Rain. @param rate mm/h, above 0 @param backscatterRatio twice the drops' areas divided by their
-/// backscatter, sr @param perVolume N0, 1/(m^3 mm) @param fall Lambda at 1 mm/h, 1/mm
+/// Rain. @param rate rain rate, mm/h, above 0 @param backscatterRatio twice the drops' areas
+/// divided by their backscatter, sr @param perVolume N0, 1/(m^3 mm) @param fall Lambda at 1 mm/h,
+/// 1/mm
 Medium rainOf(double rate, double backscatterRatio, const LidarView& view,
   double perVolume = 8000.0, double fall = 4.1);
 
 /// Largest rain rate, mm/h. The law of Marshall and Palmer comes from rates up to 23 mm/h.
 constexpr double MaximumRainRate = 500.0;
 
-/// Error that names the value and what was expected, or an empty text.
+/// Error that names the bad value and the expected range, or an empty text.
 std::string checkMedium(const Medium& medium);
 }
 

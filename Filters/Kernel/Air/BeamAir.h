@@ -5,9 +5,10 @@
  * unit behind surfaces that take shares of the pulse.
  *
  * From the range R1 to R2 a medium returns E mu/S times the integral over R of O(R) min(A/R^2, 2
- * pi) exp(-depth(R)). E is the pulse energy, A the aperture, O Sensor::nearRangeShare(), and depth
- * the optical depth of all air there and back. Media that fill the scene have a table of these
- * energies. Only the share of the pulse counts that no nearer surface has met.
+ * pi) exp(-depth(R)). E is the pulse energy, mu/S the backscatter (Air.h), A the aperture, O
+ * Sensor::nearRangeShare(), and depth the optical depth of all air there and back. Media that fill
+ * the scene have a table of these energies. Only the share of the pulse counts that no nearer
+ * surface has met.
  *
  * The axis represents a beam if all volumes are wider than the beam, and if the rim crosses them at
  * the same ranges and with the same optical depth. Otherwise the beam is divided into columns. A
@@ -18,25 +19,25 @@
  *
  * Leaves stop light on both ways, but a leaf that would stop the light twice counts once. Light
  * from a range R returns to any point of the aperture, a disc about the apex. If this point lies q
- * from the apex, the way back at a range z lies q (1 - z/R) beside the way there. Discs of diameter
- * d that face all ways stop both of two ways, x d apart, (1 - x)^2 times as often as one way, and
- * never if x exceeds 1. So leaves transmit exp(-mu int (2 - (1 - x)^2) dz) there and back, averaged
- * over the aperture. For a length L this lies between exp(-mu L), if the aperture is much smaller
- * than a leaf, and exp(-2 mu L).
+ * from the apex, the way back at a range z lies q (1 - z/R) beside the way there. A disc of
+ * diameter d and random orientation stops both of two ways that are x d apart (1 - x)^2 times as
+ * often as it stops one way, and never if x exceeds 1. So leaves transmit exp(-mu int (2 -
+ * (1 - x)^2) dz) there and back, averaged over the aperture. For a length L this transmission lies
+ * between exp(-mu L), if the aperture is much smaller than a leaf, and exp(-2 mu L).
  *
- * Media may be perceived without other light in the units that their parts meet, if they return
- * more than a millionth of the lower limit there.
+ * In the units that their parts meet, media may be perceived without other light if the media
+ * return more than a millionth of the lower limit.
  *
  * Source: the lidar equation, single scattering, e.g. U. Wandinger, in: Lidar, Springer, 2005; the
  * hot spot of leaves: A. Kuusk, Soviet Journal of Remote Sensing 3, 1985 (second-hand).
  * Differs: the paper's air sends nothing back. Kuusk has exp(-x) in place of (1 - x)^2.
- * Valid: energies of units to 1e-6 along each column; with leaves to 1e-2, up to an optical depth
- * of 4 one way. The table ends at a million units. Means hold for a short pulse. A straight border
- * anywhere in a round uniform beam divides the beam with an error of 0.095 at worst, 0.017 rms; the
- * top of a layer does so with 0.093 at worst, 0.037 rms. A border that cuts off less than 0.013 of
- * the beam is ignored. The sum of all shares that surfaces take is exact, unit by unit. The
- * transmitter is a point. Paths with two reflections meet different leaves on each of their three
- * ways.
+ * Valid: the energies of units are right to 1e-6 along each column. With leaves, energies are right
+ * to 1e-2, up to an optical depth of 4 one way. The table ends at a million units. Mean energies
+ * hold for a short pulse. If a straight border divides a round uniform beam, the share on one side
+ * errs by 0.095 at worst and 0.017 rms; at the top of a layer, by 0.093 at worst and 0.037 rms. A
+ * border that cuts off less than 0.013 of the beam is ignored. The sum of all shares that surfaces
+ * take is exact, unit by unit. The transmitter is a point. Paths with two reflections meet
+ * different leaves on each of their three ways.
  * Test: TestAir.cxx, TestBeamAir.cxx, TestWeather.py.
  */
 #ifndef avianlidar_BeamAir_h
@@ -58,20 +59,21 @@ namespace avianlidar
 /// A sample of a surface that takes a share of the pulse.
 struct MetSurface
 {
-  double range;          ///< m
+  double range;          ///< range of the sample, m
   double weight;         ///< share of the pulse
-  std::uint64_t columns; ///< bits of the grid's cells that it meets; 0: all
+  std::uint64_t columns; ///< bits of the grid's cells that the sample meets; 0: all
 };
 
 /// The leaf at which a ray of the beam ends.
 struct MetLeaf
 {
   std::uint32_t medium; ///< see BeamAir::mediumAt()
-  double range;         ///< m
+  double range;         ///< range of the leaf, m
   double cosine;        ///< cosine of incidence, in [0, 1]
 };
 
-/// Follows the air along one beam at a time. One per thread; copies share the table of units.
+/// Follows the air along one beam at a time. Each thread needs its own object; copies share the
+/// table of energies.
 class BeamAir
 {
 public:
@@ -80,14 +82,14 @@ public:
   /// A part of the beam that has one direction.
   struct Column
   {
-    double x, y;        ///< direction, in the beam's plane
+    double x, y;        ///< direction, as a point of the beam's plane
     double weight;      ///< share of the pulse
     std::uint64_t bits; ///< cells of the grid, one bit each
     // The point of the aperture to which light returns. Points of neighbouring columns lie far
     // apart.
-    std::array<double, 2> towards{}; ///< unit vector to it from the aperture's middle
-    double nearer = 0.0;             ///< share of the aperture's area nearer to its middle
-    double open = 1.0;               ///< share of its light that no surface has met so far
+    std::array<double, 2> towards{}; ///< unit vector from the aperture's middle to this point
+    double nearer = 0.0;             ///< share of the aperture's area that is nearer to the middle
+    double open = 1.0;               ///< share of the column's light that no surface has met so far
     std::size_t firstPart = 0;
     std::size_t lastPart = 0; ///< one past the last part
   };
@@ -107,7 +109,8 @@ public:
   /// Number of units, from unit 0 on, in which media that fill the scene return light.
   std::int64_t units() const { return static_cast<std::int64_t>(this->Means->size()); }
 
-  /// Set the number of units, from unit 0 on, in which these media may be perceived by themselves.
+  /// Set the number of units, from unit 0 on, in which media that fill the scene may be perceived
+  /// by themselves.
   void lookAt(std::int64_t units) { this->LookedEverywhere = units; }
   std::int64_t looked() const { return this->LookedEverywhere; }
 
@@ -120,13 +123,15 @@ public:
   /// Transmission of volumes to a range, m, and back. @param columns bits of cells; 0: all
   double transmission(double range, std::uint64_t columns = 0) const;
 
-  /// Transmission of volumes one way between two points. @param from, to relative to the apex, m
+  /// Transmission of volumes one way between two points. @param from, to points relative to the
+  /// apex, m
   double transmissionBetween(const Vec3& from, const Vec3& to);
 
-  /// Set the surfaces of this beam. Each takes its share of the pulse from the air behind it.
+  /// Set the surfaces of this beam. Each takes its share of the pulse from the air behind.
   void take(std::vector<MetSurface> surfaces);
 
-  /// Surfaces of this beam, by range. If it meets no volume, they are merged unit by unit.
+  /// Surfaces of this beam, by range. In a beam that meets no volume, surfaces are merged unit by
+  /// unit.
   const std::vector<MetSurface>& surfaces() const { return this->Surfaces; }
 
   /// Light that one medium returns in a unit.
@@ -140,7 +145,7 @@ public:
   const std::vector<Share>& sharesOf(std::int64_t unit);
   const Medium& mediumAt(std::uint32_t number) const { return this->All->media[number].medium; }
 
-  /// Mean energy, J, that media which a threshold may follow return in a unit.
+  /// Mean energy, J, that a unit receives from all media that a threshold may follow.
   double followed(std::int64_t unit);
 
   /// First unit, from `unit` on, in which media may be perceived by themselves. The largest integer
@@ -151,7 +156,7 @@ public:
   struct Leaves
   {
     std::uint32_t medium; ///< see mediumAt()
-    double begin, end;    ///< m
+    double begin, end;    ///< ranges, m
   };
   /// Find all media of leaves with a given size, in the order of their beginnings.
   void findLeaves(std::vector<Leaves>& all) const;
@@ -172,11 +177,12 @@ public:
   /// Relative density of a medium in a column at a range, m; 1 where the medium is dense.
   double densityAt(const Column& column, std::uint32_t medium, double range) const;
 
-  /// Energy, J, that a leaf returns of a share of the pulse, if no leaf stops this light on the way
-  /// back. Surfaces before the middle of the unit of the last sharesOf() have taken their shares.
+  /// Energy, J, that a leaf returns from a share of the pulse, if no leaf stops this light on the
+  /// way back. Surfaces before the middle of the unit of the last sharesOf() have taken their
+  /// shares.
   double returnedBy(const MetLeaf& leaf, const Column& column, double share) const;
 
-  /// Number of cells across the beam, each way.
+  /// Number of cells across the beam, along each axis.
   static constexpr int Across = 8;
   /// Bit of the cell that holds a point of the beam's plane.
   static std::uint64_t columnAt(double x, double y)
@@ -209,8 +215,8 @@ private:
   {
     std::size_t seen; ///< index of its medium in `Seen`
     MediumCrossing crossing;
-    double extinction; ///< extinction on both ways, 1/m; for leaves only on the way there
-    double perLeaf;    ///< inverse diameter of a leaf, 1/m; 0: not leaves, or of unknown size
+    double extinction; ///< extinction on both ways, 1/m; for leaves only on the way out
+    double perLeaf;    ///< inverse diameter of a leaf, 1/m; 0: no leaves, or leaves of unknown size
   };
   struct PartRange
   {
@@ -260,12 +266,12 @@ private:
   // State of the current beam.
   Vec3 Origin{ 0.0 };
   double Seconds = 0.0;
-  std::vector<std::uint32_t> Seen; ///< `Filling`, then media of volumes that it may meet
+  std::vector<std::uint32_t> Seen; ///< `Filling`, then media of volumes that the beam may meet
   std::vector<Column> Columns;
   std::vector<Part> Parts; ///< column by column
-  /// Units [first, end) in which media may be perceived by themselves if enough light gets there.
+  /// Units [first, end) in which media may be perceived by themselves if there is enough light.
   std::vector<std::pair<std::int64_t, std::int64_t>> Looked;
-  std::int64_t Dark = 0;   ///< from this unit on, media return no light that matters
+  std::int64_t Dark = 0;   ///< first unit from which on media return no light that matters
   double MostOfUnit = 0.0; ///< bound of the energy that media return in a unit, J per gathered sr
   std::vector<MetSurface> Surfaces;
   std::size_t Taken = 0;  ///< number of `Surfaces` that have taken their shares
@@ -275,7 +281,7 @@ private:
   std::vector<Share> Shares;
   std::vector<double> Breaks;    ///< borders of parts in a unit, m; in take(): weights
   std::vector<Part> Here;        ///< parts of a column between two `Breaks`
-  std::vector<Share> Sums;       ///< shares in the order of `Seen`
+  std::vector<Share> Sums;       ///< shares of a unit, in the order of `Seen`
   std::array<double, 3> Known{}; ///< ends, m, and decay, 1/m, of the last piece of constant density
   double OfKnown = 0.0;          ///< integral of this piece without the extinction before it, m sr
   std::vector<MediumCrossing> Found;

@@ -4,19 +4,19 @@
  * @brief Draws the light that the drops of a medium return in a range unit beyond its mean.
  *
  * The number of drops in the unit's part of the beam is Poisson distributed. The energy of a drop
- * is the square of an exponential diameter or of a leaf's cosine (Air.h). Up to FewDrops are drawn
- * one by one. More follow a gamma distribution of the same mean and variance.
+ * is the square of an exponential diameter or of a leaf's cosine (Air.h). Up to FewDrops drops are
+ * drawn one by one. The energy of more drops is a gamma variate of equal mean and variance.
  *
  * The pulse of a drop is divided among the units that it overlaps, as for surfaces (RangeUnits.h).
- * So the energy of a unit varies less, and neighbouring units vary together. If drops are few, each
- * has its own place in its unit. If they are many, all lie at one of two equally likely places.
- * These places give units the variances, covariances and third moments of drops anywhere, for
- * pulses no wider than a unit or as wide as whole units.
+ * So the energy of a unit varies less than with undivided pulses, and neighbouring units vary
+ * together. Each of a few drops has its own place in its unit. Many drops all lie at one of two
+ * equally likely places. With these two places, units have the variances, covariances and third
+ * moments of drops anywhere, if the pulse is no wider than a unit or as wide as whole units.
  *
  * Source: G. Marsaglia and W. W. Tsang, ACM Trans. Math. Softw. 26, 2000 (gamma variates).
  * Differs: the paper's air sends nothing back.
- * Valid: the mean changes little within a pulse, as it does beyond the first few units. Drops are
- * taken as evenly lit across the beam.
+ * Valid: the mean energy must change little within a pulse, which is so beyond the first few units.
+ * The model illuminates all drops of the beam evenly.
  * Test: TestAir.cxx.
  */
 #ifndef avianlidar_Drops_h
@@ -37,14 +37,14 @@ public:
   /// @param width width of the pulse, tau_e/tau_s, 0 to 1000
   explicit PulseShares(double width = 0.0);
 
-  /// Number of units that a pulse reaches before, and behind, its own.
+  /// Number of units that a pulse reaches on each side of its own unit.
   std::int64_t reach() const { return this->Reach; }
 
-  /// Add the energy of a pulse to 2 reach() + 1 units, with its own in the middle. @param place
-  /// place of the drop in its own unit, 0 to 1
+  /// Add the energy of a pulse to 2 reach() + 1 units, with the pulse's own unit in the middle.
+  /// @param place place of the drop in its own unit, 0 to 1
   void add(double energy, double place, double* units) const;
 
-  /// One of the two places of many drops, in [0, 1]. The other one is 1 - placeOfMany().
+  /// One of the two places of many drops, in [0, 1]. The other place is 1 - placeOfMany().
   double placeOfMany() const { return this->Place; }
 
 private:
@@ -56,15 +56,16 @@ private:
 /// Largest mean number of drops in a unit that are drawn one by one.
 constexpr double FewDrops = 40.0;
 
-/// Add the light of a unit's drops beyond its mean to 2 reach() + 1 units: a compound Poisson law.
-/// @param number number of the unit, or another unique number @param mean J @param drops mean
-/// number of drops @param medium gives `squareOfDrops` and `renewed` @param units sums, J
+/// Add the light of a unit's drops minus its mean to 2 reach() + 1 units (compound Poisson law).
+/// @param number number of the unit, or another unique number @param mean mean energy, J
+/// @param drops mean number of drops @param medium gives `squareOfDrops` and `renewed` @param units
+/// sums, J
 void addDropsBeyondMean(std::int32_t seed, std::uint64_t beam, std::uint64_t number,
   std::int32_t revolution, double mean, double drops, const Medium& medium,
   const PulseShares& pulse, double* units);
 
-/// Sums the light of a beam's drops beyond its mean, unit by unit. Requests in ascending order draw
-/// each unit once. One per thread.
+/// Sums the light of a beam's drops beyond the mean of this light, unit by unit. Requests in
+/// ascending order draw each unit once. Each thread needs its own object.
 class SharedDrops
 {
 public:
@@ -78,7 +79,8 @@ public:
   /// Begin a beam.
   void clear() { this->Numbers.assign(this->Numbers.size(), -1); }
 
-  /// Light in a unit, J. @param draw adds the drops of a unit to its 2 reach() + 1 sums, all 0
+  /// Light in a unit, J. @param draw function that adds the drops of a unit to 2 reach() + 1 sums,
+  /// which are 0 before
   template <class F>
   double in(std::int64_t unit, F draw)
   {
@@ -103,7 +105,7 @@ public:
 private:
   std::int64_t Reach;
   std::vector<std::int64_t> Numbers; ///< units whose drops are drawn
-  std::vector<double> Shares;        ///< light of each of `Numbers` in 2 Reach + 1 units, J
+  std::vector<double> Shares;        ///< light that drops of `Numbers` give 2 Reach + 1 units, J
 };
 }
 

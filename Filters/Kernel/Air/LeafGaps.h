@@ -4,18 +4,19 @@
  * @brief Leaves that stop a narrow beam one by one: the light that they return and transmit.
  *
  * A beam is divided into rays, one through each cell of its grid (BeamAir.h). The light of a ray
- * returns to one point of the aperture. Leaves are discs of one size that face all ways alike, at
- * random places (Poisson). A ray ends at the first leaf that it meets. Its light comes back unless
- * another leaf stops the light on the way back, which lies beside the way there. So a part of a
- * beam may meet a leaf while the rest passes. A range unit receives the light of the rays that end
- * in it. Light from behind leaves is scaled by the share of rays that get there and back, divided
- * by the mean of this share. Beams much wider than a leaf are not divided; their leaves follow the
- * compound Poisson law of Drops.h.
+ * returns to one point of the aperture. Leaves are discs of one size at random places (Poisson),
+ * with all orientations equally likely. A ray ends at the first leaf that it meets. The light of
+ * the ray comes back unless another leaf stops this light on the way back, which lies beside the
+ * way out. So a part of a beam may meet a leaf while the rest passes. A range unit receives the
+ * light of the rays that end in this unit. Light from a range behind leaves is scaled by the share
+ * of rays that no leaf stops on the way to this range and back, divided by the mean of this share.
+ * Beams much wider than a leaf are not divided; the leaves in such beams follow the compound
+ * Poisson law of Drops.h.
  *
  * Source: the Boolean model of leaves at random places (Nilson, Agricultural Meteorology 8, 1971).
  * Differs: the paper has no leaves.
  * Valid: leaves are projected along the beam's axis. A leaf exists for a ray if the medium in the
- * ray's column is dense enough. Means are the same as in BeamAir.h.
+ * ray's column is dense enough. Mean energies are the same as in BeamAir.h.
  * Test: TestBeamCrowns.cxx.
  */
 #ifndef avianlidar_LeafGaps_h
@@ -36,7 +37,8 @@ public:
   /// Begin a beam that has no leaves or is not divided.
   void clear() { this->Rays.clear(); }
 
-  /// Begin a beam. @param along its air, which must outlive the beam @param solidAngle sr
+  /// Begin a beam. @param along air of the beam, which must outlive the beam @param solidAngle
+  /// solid angle of the beam, sr
   void begin(BeamAir& along, double solidAngle, std::int32_t seed, std::uint64_t beam,
     std::int32_t revolution);
 
@@ -46,22 +48,24 @@ public:
   double openAt(double range) const;
 
   /// Energy, J, that the leaves of a medium return from ranges [from, to), m. Surfaces take their
-  /// shares as in BeamAir::returnedBy().
+  /// shares of the pulse as in BeamAir::returnedBy().
   double returnedBetween(double from, double to, std::uint32_t medium) const;
 
-  /// Largest section of a divided beam where its first crown begins, in projected areas of leaves.
+  /// Largest cross-section of a divided beam where its first leaves begin, in projected leaf areas.
   static constexpr double MostLeaves = 64.0;
-  /// Largest section where further crowns begin, in the same areas. It limits the leaves drawn.
+  /// Largest cross-section where leaves of further media begin, in projected leaf areas. This
+  /// number limits the number of leaves that are drawn.
   static constexpr double MostLeavesBehind = 4096.0;
-  /// Largest square about all ways there and back, in the same areas. It limits wide apertures.
+  /// Largest square about all ways out and back, in projected leaf areas. This number limits the
+  /// aperture.
   static constexpr double MostLeavesAcross = 1000.0;
 
 private:
   struct Ray
   {
     std::array<double, 2> slope;    ///< tangents across the beam
-    std::array<double, 2> aperture; ///< point to which its light returns, m
-    double share;                   ///< share of the pulse
+    std::array<double, 2> aperture; ///< point of the aperture to which the ray's light returns, m
+    double share;                   ///< share of the pulse in the ray
     const BeamAir::Column* column;
     MetLeaf leaf; ///< leaf at which the ray ends; its range is infinite without a leaf
     bool isSeen;  ///< true if no leaf stops the light of `leaf` on its way back
@@ -72,14 +76,15 @@ private:
     std::size_t ray;
     double from, to;
   };
-  /// Leaves of a medium, by range: either all that stay, or all that are drawn anew in each scan.
+  /// Leaves of a medium, by range: either all that are the same in every scan, or all that are
+  /// drawn anew in each scan.
   struct Stream
   {
     BeamAir::Leaves leaves;
-    std::int32_t scan;    ///< revolution, or the same number in every scan for leaves that stay
-    double perVolume;     ///< 1/m^3
-    double radius;        ///< radius of a leaf, m
-    double rim;           ///< greatest distance from a ray at which a leaf matters, m
+    std::int32_t scan; ///< revolution, or a fixed number for leaves that are the same in every scan
+    double perVolume;  ///< number of leaves in a volume, 1/m^3
+    double radius;     ///< radius of a leaf, m
+    double rim;        ///< greatest distance from a ray at which a leaf matters, m
     std::uint64_t number; ///< number of the first draw of the next leaf
     double range;         ///< range of the next leaf, m
   };

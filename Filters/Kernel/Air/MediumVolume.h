@@ -3,14 +3,14 @@
  * @file MediumVolume.h
  * @brief Volumes of media (layers, boxes, ellipsoids, closed surfaces), and how rays cross them.
  *
- * A ray crosses a medium in parts. In a part the density is constant, or, only above the top of a
- * layer, changes exponentially along the ray. So the optical depth of a part, and of any piece of a
+ * A ray crosses a medium in parts. The density in a part is constant or, above the top of a layer
+ * only, changes exponentially along the ray. So the optical depth of a part, and of any piece of a
  * part, has a closed form.
  *
  * Source: none.
  * Valid: exact up to rounding. The tree's triangle test decides where a ray crosses a closed
- * surface. Shells face outward, except for holes (closedShells()). The space that they enclose is
- * inside.
+ * surface. Shells face outward, except for holes (closedShells()). The space that a shell encloses
+ * is inside.
  * Test: TestMediumVolume.cxx.
  */
 #ifndef avianlidar_MediumVolume_h
@@ -30,16 +30,17 @@ namespace avianlidar
 enum class MediumShape
 {
   Everywhere = 0,
-  Layer = 1, ///< between two heights, and fading above them
+  Layer = 1, ///< space between two heights, and a fading part above the upper height
   Box = 2,   ///< box with right angles, in any orientation
   Ellipsoid = 3,
-  Surface = 4 ///< inside a closed surface
+  Surface = 4 ///< space inside a closed surface
 };
 
 struct MediumVolume
 {
   MediumShape shape = MediumShape::Everywhere;
-  /// Centre of a box, an ellipsoid or the box about a closed surface, m; zero of a layer's heights.
+  /// Centre of a box, an ellipsoid or the box about a closed surface, m; point from which the
+  /// heights of a layer count.
   Vec3 centre{ 0.0 };
   std::array<Vec3, 3> halfAxes{ Vec3(1.0, 0.0, 0.0), Vec3(0.0, 1.0, 0.0), Vec3(0.0, 0.0, 1.0) };
   Vec3 up{ 0.0, 0.0, 1.0 }; ///< upward direction of a layer, unit vector
@@ -47,7 +48,7 @@ struct MediumVolume
   double top = 0.0;      ///< height up to which a layer is dense, m
   double softness = 0.0; ///< height above `top` at which the density is 1/e, m; 0: no density there
   std::shared_ptr<const CollisionTree> surface;
-  Vec3 velocity{ 0.0 }; ///< m/s; the volume has its given place at the time 0
+  Vec3 velocity{ 0.0 }; ///< velocity of the volume, m/s; the volume has its given place at time 0
 
   bool isBounded() const { return this->shape >= MediumShape::Box; }
   Vec3 centreAt(double seconds) const { return this->centre + seconds * this->velocity; }
@@ -60,7 +61,7 @@ struct MediumCrossing
 {
   double begin, end; ///< ranges, m
   double density;    ///< relative density at `begin`; 1 where the medium is dense
-  double fall;       ///< 1/m: the density is density exp(-fall (range - begin))
+  double fall;       ///< rate of decay, 1/m: `density` is multiplied by exp(-fall (range - begin))
 
   /// Integral of the relative density from `begin` to a range, m.
   double upTo(double range) const;
@@ -70,7 +71,7 @@ struct MediumCrossing
 /// Error that names what is wrong with a volume and what was expected, or an empty text.
 std::string checkVolume(const MediumVolume& volume);
 
-/// Finds the parts of rays that lie in a volume. One per thread.
+/// Finds the parts of rays that lie in a volume. Each thread needs its own object.
 class MediumCrosser
 {
 public:
@@ -82,7 +83,7 @@ public:
   /// Hit of a ray on a closed surface.
   struct Hit
   {
-    double range; ///< m
+    double range; ///< range of the hit, m
     int entered;  ///< 1 if the ray enters the shell, -1 if it leaves it
     bool isAmid;  ///< true if the hit does not lie on a side of the triangle
   };
@@ -95,13 +96,16 @@ private:
 };
 
 /// True if each half axis of a volume exceeds the beam's width at the volume's far end. Such a
-/// volume does not fit between axis and rim. Always true for layers, never for closed surfaces.
+/// volume does not fit between the axis and the rim of the beam. Always true for layers, never for
+/// closed surfaces.
 bool isWiderThan(const MediumVolume& volume, const BeamFrame& frame, double far, double seconds);
 
-/// True if a border or the fading part of a volume at rest may lie in a beam. Conservative.
+/// True if a border or the fading part of a volume at rest may lie in a beam. The test is
+/// conservative.
 bool mayMeetBorder(const MediumVolume& volume, const BeamFrame& frame, double far);
 
-/// True if a beam may meet a volume within `far`, m. Conservative. @param seconds time, s
+/// True if a beam may meet a volume within `far`, m. The test is conservative. @param seconds time
+/// of the beam, s
 bool mayMeet(const MediumVolume& volume, const BeamFrame& frame, double far, double seconds);
 }
 

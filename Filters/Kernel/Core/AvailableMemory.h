@@ -7,10 +7,10 @@
  * Requests whose size a property or a file decides are therefore estimated first.
  *
  * Source: none.
- * Valid: on Linux the smallest of three numbers: the rest of the address limit (RLIMIT_AS), the
- * rest of the limits of the control group and the groups above it (version 1 or 2; file caches
- * count as free), and MemAvailable. On other systems no request is refused. Other processes may
- * take the memory after the estimate.
+ * Valid: on Linux the available memory is the smallest of three numbers: the rest of the address
+ * limit (RLIMIT_AS), the rest of the limits of the control group and the groups above it (version 1
+ * or 2; file caches count as free), and MemAvailable. On other systems no request is refused. Other
+ * processes may take the memory after the estimate.
  * Test: TestAvailableMemory.cxx.
  */
 #ifndef avianlidar_AvailableMemory_h
@@ -31,8 +31,8 @@ public:
 /// Available memory, bytes; infinite if nothing limits it.
 double availableMemory();
 
-/// Bytes that the address limit leaves, whatever the other limits. Without an address limit the
-/// call costs nothing.
+/// Bytes that the address limit leaves, without regard to other limits. Without an address limit
+/// the call costs no time.
 double availableAddresses();
 
 /// Available memory from the system files below `root` and an address limit, bytes.
@@ -40,7 +40,8 @@ double availableMemory(const std::string& root, double addressLimit);
 
 /// Throw MemoryError, "100,000,000 beams need about 12 GB, 3 GB are available", unless `bytes` are
 /// available. Requests below 64 MB are not checked.
-/// @param count number of items @param what items in words, such as "beams"
+/// @param count number of items @param what items in words, such as "beams" @param bytes memory of
+/// all items, bytes
 void requireMemory(double count, const std::string& what, double bytes);
 }
 

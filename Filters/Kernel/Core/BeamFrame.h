@@ -4,15 +4,16 @@
  * @brief A beam: apex, axis, half-beamwidth, and the orthogonal frame about its axis.
  *
  * A ray of the beam is a point (x, y), x^2 + y^2 <= 1, of the beam's own plane at unit distance, in
- * units of tan(theta0.5). Its direction is axis + tan(theta0.5) (x e1 + y e2), not normalised. In a
- * round beam e2 is a unit vector. In other beams the length of e2 is the ratio of the two
- * beamwidths' tangents: an elliptic beam is then the unit disc, too, and a rectangular beam is the
- * square in this disc. The cone of the half-beamwidth holds all three.
+ * units of tan(theta0.5). The direction of this ray is axis + tan(theta0.5) (x e1 + y e2), not
+ * normalised. In a round beam e2 is a unit vector. In other beams the length of e2 is the ratio of
+ * the two beamwidths' tangents: an elliptic beam is then the unit disc, too, and a rectangular beam
+ * is the square in this disc. The cone of the half-beamwidth holds round, elliptic and rectangular
+ * beams.
  *
  * Source: frame of Duff et al., "Building an Orthonormal Basis, Revisited", JCGT 6(1), 2017.
  * Differs: the axis is normalised twice, so that it is a unit vector to the last bits.
- * Valid: finite directions other than zero, half-beamwidth in (0, pi/3]. The frame is continuous
- * on either side of z = 0 and jumps where the axis crosses it.
+ * Valid: finite directions other than zero, half-beamwidth in (0, pi/3]. The frame is continuous on
+ * either side of z = 0 and jumps where the axis crosses this plane.
  * Test: TestBeamVolumeTest.cxx, TestTriangleTest.cxx, InstructionSets.cxx (bits).
  */
 #ifndef avianlidar_BeamFrame_h
@@ -31,14 +32,14 @@ struct BeamFrame
   Vec3 axis{ 0.0, 0.0, 1.0 };
   Vec3 e1{ 1.0, 0.0, 0.0 };
   Vec3 e2{ 0.0, 1.0, 0.0 };
-  double halfBeamwidth = 0.0; ///< rad
+  double halfBeamwidth = 0.0; ///< half-beamwidth, rad
   double tanHalf = 0.0;       ///< tangent of the half-beamwidth
   double sinHalf = 0.0;       ///< sine of the half-beamwidth
   double cosHalf = 1.0;       ///< cosine of the half-beamwidth
   double flatness2 = 1.0;     ///< squared length of e2
   bool isRectangle = false;
 
-  /// Returns (x z, y z, z) of a vector, z its component along the axis and (x, y) its ray.
+  /// Returns (x z, y z, z) of a vector, with z its component along the axis and (x, y) its ray.
   Vec3 toPlane(const Vec3& v) const
   {
     return { glm::dot(v, this->e1) / this->tanHalf,
@@ -84,7 +85,7 @@ struct BeamWidth
 };
 
 /// Turn e1 and e2 of a frame to the axes of a beam that is not round. If the beam points along `up`
-/// or against it, e1 itself is turned, instead of the horizontal.
+/// or against it, e1 itself is turned instead of the horizontal direction.
 inline void setAxes(const BeamWidth& width, BeamFrame& frame)
 {
   const Vec3 across = glm::cross(frame.axis, width.up);

@@ -10,7 +10,8 @@
  * | ECEF     | geocentric x (to 0 N 0 E), y (to 0 N 90 E), z (to the north pole) in metres   |
  * | UTM      | easting, northing of a zone in metres, height above the ellipsoid in metres   |
  *
- * The order is x, y, z, as in points: longitude before latitude, unlike setOrigin().
+ * Coordinates are in the order x, y, z, as in points: longitude precedes latitude, unlike in
+ * setOrigin().
  *
  * Source: GeographicLib.
  * Differs: UTM coordinates beyond the reach of GeographicLib are errors.

@@ -4,8 +4,8 @@
  * @brief Checksums of bytes, 64 bits, fast enough to be computed at every run.
  *
  * Source: XXH3 (Y. Collet, library xxHash).
- * Valid: equal on all machines of the same byte order. The hash does not protect against bytes made
- * to collide.
+ * Valid: equal on all machines of the same byte order. The hash does not protect against bytes that
+ * are made to collide.
  * Test: TestTriangleMesh.cxx.
  */
 #ifndef avianlidar_Hash_h
@@ -16,7 +16,7 @@
 
 namespace avianlidar
 {
-/// Hash of some bytes. @param seed hash of the bytes before them, if both belong together
+/// Hash of some bytes. @param seed hash of the preceding bytes, if a hash of all bytes is wanted
 std::uint64_t hashOf(const void* data, std::size_t bytes, std::uint64_t seed);
 }
 

@@ -10,8 +10,8 @@
  * Source: reductions and polynomials of fdlibm (K. C. Ng, Sun Microsystems, 1993: e_exp.c,
  * e_log.c, s_log1p.c, e_acos.c, k_sin.c, k_cos.c).
  * Differs: branches are selections, and cosine and sine take their angle in turns.
- * Valid: errors below 1.5 units in the last place within the range stated at each function, below
- * 2.5 for the arcsine above 1/2; cosine and sine within 2.5e-16.
+ * Valid: errors are below 1.5 units in the last place within the range stated at each function, and
+ * below 2.5 for arcsines of numbers above 1/2. Errors of cosine and sine are below 2.5e-16.
  * Test: TestLaneMath.cxx.
  */
 #ifndef avianlidar_LaneMath_h
@@ -62,8 +62,8 @@ AVIANLIDAR_ALWAYS_INLINE double fromBits(std::uint64_t bits)
   return value;
 }
 
-/// Added to a number below 2^51 in magnitude, Rounder puts the nearest whole number into the low
-/// bits.
+/// The low bits of the sum of Rounder and a number below 2^51 in magnitude hold the nearest whole
+/// number.
 constexpr double Rounder = 6755399441055744.0; // 1.5 * 2^52
 
 /// 2^n for the whole number in the low bits of `rounded` = n + Rounder, |n| <= 1022.
@@ -72,7 +72,7 @@ AVIANLIDAR_ALWAYS_INLINE double powerOfTwo(double rounded)
   return fromBits((bitsOf(rounded) + 1023u) << 52);
 }
 
-/// e^x for x <= 709; 0 where it underflows.
+/// e^x for x <= 709; 0 where e^x underflows.
 AVIANLIDAR_ALWAYS_INLINE double exp(double x)
 {
   constexpr double Ln2High = 6.93147180369123816490e-01;

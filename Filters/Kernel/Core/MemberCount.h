@@ -17,7 +17,7 @@
 
 namespace avianlidar
 {
-/// Converts to a member of any type; declared only.
+/// Type that converts to a member of any type. The conversion is declared and not defined.
 struct AnyMember
 {
   template <class T>

@@ -1,16 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file Multiversion.h
- * @brief Functions compiled for several instruction sets; the best is chosen at the start.
+ * @brief Functions compiled for several instruction sets; the best one is chosen at program start.
  *
  * The macros serve only loops over independent lanes whose results must have the same bits
- * everywhere. As nothing is contracted or reassociated, every version gives the same bits. Code
- * that only decides which nodes and triangles are tested uses Highway's vectors (RayLanes.h).
+ * everywhere. The compiler contracts and reassociates nothing, so every version gives the same
+ * bits. Code that only decides which nodes and triangles are tested uses Highway's vectors
+ * (RayLanes.h).
  *
  * The loops are plain C++ because they call the functions that single rays call, such as
- * rangeOnPlane(). The bits therefore agree by construction, and nothing is written twice. Ranges
- * and cosines of a beam's hits took 8.0 ns a ray in the corridor on a processor with AVX-512, and
- * 13.4 ns without the versions.
+ * rangeOnPlane(). The bits therefore agree by construction, and nothing is written twice. In the
+ * corridor, on a processor with AVX-512, the ranges and cosines of a beam's hits took 8.0 ns per
+ * ray, and 13.4 ns without the versions.
  * Source: none.
  * Valid: versions with GCC on x86-64; elsewhere the functions are compiled once.
  * Test: InstructionSets.cxx with compare_instruction_sets.py (the same bits on several
@@ -26,7 +27,7 @@
 #define AVIANLIDAR_MULTIVERSION
 #endif
 
-/// For functions that such a loop calls. They take the loop's instruction set only if inlined.
+/// For functions that such a loop calls, which take its instruction set only if they are inlined.
 #if defined(__GNUC__)
 #define AVIANLIDAR_ALWAYS_INLINE inline __attribute__((always_inline))
 #define AVIANLIDAR_INLINE_LAMBDA __attribute__((always_inline))

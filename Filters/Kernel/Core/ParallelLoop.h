@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file ParallelLoop.h
- * @brief The only parallel loop of the project: free threads take blocks of a range.
+ * @brief The only parallel loop of the project: each thread that is free takes a block of a range.
  *
  * All other code is serial code on a range of items. Which thread gets which block is not
  * determined, so the body must write the result of each item only to the slot of this item.
@@ -22,14 +22,15 @@ namespace avianlidar
 /// Work on items [begin, end) as thread number `thread`, 0 <= thread < loopThreads(threads).
 using LoopBody = std::function<void(std::size_t begin, std::size_t end, int thread)>;
 
-/// Receives the fraction done, in [0, 1], which never falls; returning false stops the work.
+/// Function that receives the fraction done, in [0, 1], which never falls. If the function returns
+/// false, the work stops.
 using KeepGoing = std::function<bool(double fraction)>;
 
 /// Progress of a part of the work, from one fraction of the whole to another; empty if `keepGoing`
-/// is empty. It refers to `keepGoing`, which must outlive it.
+/// is empty. The result refers to `keepGoing`, which must outlive the result.
 KeepGoing partOf(const KeepGoing& keepGoing, double from, double to);
 
-/// Thrown by a body whose result is no longer wanted.
+/// Exception of a body whose result is no longer wanted.
 struct WorkStopped : std::exception
 {
   const char* what() const noexcept override { return "stopped"; }
@@ -39,9 +40,10 @@ struct WorkStopped : std::exception
  * Call `body` for all of [0, count) in blocks of `block` items (0 is taken as 1).
  *
  * Thread 0 is the calling thread. Only this thread calls `keepGoing` (which may be empty), before
- * each of its blocks and once with 1 at the end, so `keepGoing` may use data of that thread. If it
- * returns false, blocks under way are finished and no further block begins. An exception of `body`
- * or `keepGoing` stops the work in the same way, and the first one is thrown again here.
+ * each block of thread 0 and once with 1 at the end, so `keepGoing` may use data of this thread. If
+ * `keepGoing` returns false, blocks under way are finished and no further block begins. An
+ * exception of `body` or `keepGoing` stops the work in the same way, and the first one is thrown
+ * again here.
  * @param threads > 0, or 0 for loopThreads(0)
  * @return true if all items were done and keepGoing never returned false
  */
@@ -49,8 +51,8 @@ bool parallelFor(std::size_t count, std::size_t block, int threads, const LoopBo
   const KeepGoing& keepGoing = {});
 
 /// Largest number of threads of a loop that is asked for `threads`; 0 or less asks for OpenMP's
-/// choice (OMP_NUM_THREADS). It is at most 64 or four per processor, whichever is larger, and less
-/// if address space is scarce.
+/// choice (OMP_NUM_THREADS). The number is at most 64 or four per processor, whichever is larger,
+/// and less if address space is scarce.
 int loopThreads(int threads);
 }
 

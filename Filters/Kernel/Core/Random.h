@@ -3,7 +3,7 @@
  * @file Random.h
  * @brief Counter-based random numbers: each is a pure function of (seed, beam, index, purpose).
  *
- * Results thus do not depend on threads, order, pieces, or numbers drawn elsewhere.
+ * Results thus do not depend on threads, the order of draws, the pieces of a scan, or other draws.
  *
  * Source: Philox4x32-10 (Salmon et al., SC'11), written out for SIMD loops.
  * Differs: doubles are odd multiples of 2^-53, so they are never 0 or 1.
@@ -20,7 +20,8 @@
 
 namespace avianlidar
 {
-/// Purpose of a number; each purpose has its own stream. Numbers of former purposes stay unused.
+/// Purpose of a random number; each purpose has its own stream. Values of former purposes stay
+/// unused.
 enum class RandomPurpose : std::uint32_t
 {
   Rays = 0,
@@ -28,7 +29,7 @@ enum class RandomPurpose : std::uint32_t
   Noise = 2,
   FalseAlarms = 3,
   Patterns = 6, ///< rays of a pattern that beams share; the pattern's number replaces the beam's
-  Turns = 7,    ///< pattern of a beam, and its turn
+  Turns = 7,    ///< pattern of a beam, and the turn of this pattern
   MastSway = 9, ///< mast sway; the axis replaces the beam
   EncoderJitter = 10, ///< encoder jitter; the column replaces the beam
   Flights = 11,       ///< flights of birds; the bird's number replaces the beam's
@@ -42,8 +43,8 @@ enum class RandomPurpose : std::uint32_t
   ShortPaths = 19     ///< directions of paths from a hit to a near one
 };
 
-/// Two independent uniform doubles in the open interval (0, 1), 53 bits each.
-/// @param seed any int; @param beam beam id; @param index number of the ray, range unit or draw
+/// Two independent uniform doubles in the open interval (0, 1), 53 bits each. @param seed any int
+/// @param beam id of the beam @param index number of the ray, range unit or draw
 std::array<double, 2> uniformPair(
   std::int32_t seed, std::uint64_t beam, std::uint64_t index, RandomPurpose purpose);
 
@@ -55,8 +56,8 @@ std::array<double, 2> uniformPair(std::int32_t seed, std::uint64_t beam, std::ui
 
 namespace lanes
 {
-/// Uniform double in (0, 1) from 52 of the 64 bits and a last bit of 1. It is an odd multiple of
-/// 2^-53, so 1 - u is as exact as u.
+/// Uniform double in (0, 1) from 52 of the 64 bits and a last bit of 1. The result u is an odd
+/// multiple of 2^-53, so 1 - u is as exact as u.
 AVIANLIDAR_ALWAYS_INLINE double openInterval(std::uint32_t low, std::uint32_t high)
 {
   const std::uint64_t bits = (static_cast<std::uint64_t>(high) << 32) | low;

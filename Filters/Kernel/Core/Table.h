@@ -3,7 +3,7 @@
  * @file Table.h
  * @brief Tables as text: comma-separated values below a header, without quotes.
  *
- * Empty lines and comments, which begin with #, are skipped. Blanks around values do not count.
+ * Empty lines and comments, which begin with #, are skipped. Blanks around values are removed.
  *
  * Source: none.
  * Valid: text of any kind; a UTF-8 byte order mark, as spreadsheets write it, is skipped.
@@ -29,7 +29,8 @@ public:
   std::size_t size() const { return this->Cells.size(); }
   const std::string& text(std::size_t column) const { return this->Cells[column]; }
 
-  /// Number in a column; throws as fail() unless in [least, most]. @param name for the message
+  /// Number in a column. Throws as fail() unless the number is in [least, most]. @param name name
+  /// of the number, for the message
   double number(std::size_t column, const char* name, double least, double most) const;
 
   /// Throw std::runtime_error with file and line before the message.
@@ -40,12 +41,12 @@ private:
   std::vector<std::string> Cells;
 };
 
-/// Receives a line and the index of the table's header among the allowed headers.
+/// Function that receives a line and the index of the table's header among the allowed headers.
 using UseLine = std::function<void(const TableLine& line, std::size_t header)>;
 
-/// Call `use` for each line below the header; each has as many columns as the header. Throws
-/// std::runtime_error naming file and line.
-/// @param file name for messages @param headers allowed headers
+/// Call `use` for each line below the header. Each line must have as many columns as the header.
+/// Throws std::runtime_error naming file and line.
+/// @param file name of the file, for messages @param headers allowed headers
 void readTable(const std::string& text, const std::string& file,
   const std::vector<std::string>& headers, const UseLine& use);
 }

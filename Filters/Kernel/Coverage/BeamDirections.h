@@ -7,8 +7,8 @@
  * margin, may contain one of its directions. Larger margins have coarser cells.
  *
  * Source: none.
- * Valid: any directions; half-beamwidth plus margin up to pi/3. Rounding decides on a cone's
- * border.
+ * Valid: any directions; half-beamwidth plus margin up to pi/3. On a cone's border, rounding
+ * decides whether the cone contains a direction.
  * Test: TestBeamDirections.cxx (against all beams one by one).
  */
 #ifndef avianlidar_BeamDirections_h
@@ -26,14 +26,15 @@ namespace avianlidar
 class BeamDirections
 {
 public:
-  /// @param directions directions of the beams, finite and not zero @param halfBeamwidth rad
+  /// @param directions directions of the beams, finite and not zero @param halfBeamwidth
+  /// half-beamwidth of all beams, rad
   /// @param margins angles outside a cone up to which forEachNear() finds its beam, rising, rad
   BeamDirections(const std::vector<Vec3>& directions, double halfBeamwidth,
     const std::vector<double>& margins = { 0.0 });
 
   /// Calls f(number of the beam, cosine of the angle to its axis), in the order of the beams, for
   /// each beam whose cone, widened by `reach`, contains a direction, and possibly for other beams.
-  /// @param direction unit vector @param reach rad, at most the largest margin
+  /// @param direction unit vector @param reach angle, rad, at most the largest margin
   template <class F>
   void forEachNear(const Vec3& direction, double reach, F f) const
   {
@@ -67,17 +68,18 @@ public:
   /// Upper bound of the number of beams within the least margin of a direction.
   std::size_t mostNear() const { return this->Most; }
 
-  double leastMargin() const { return this->Grids[0].margin; }       ///< rad
-  double largestMargin() const { return this->Grids.back().margin; } ///< rad
+  double leastMargin() const { return this->Grids[0].margin; }       ///< least margin, rad
+  double largestMargin() const { return this->Grids.back().margin; } ///< largest margin, rad
 
-  const Vec3& axis(std::uint32_t beam) const { return this->Axes[beam]; } ///< unit vector
+  /// Axis of a beam, unit vector.
+  const Vec3& axis(std::uint32_t beam) const { return this->Axes[beam]; }
 
 private:
   struct Grid
   {
-    double margin;                     ///< rad
-    std::size_t side;                  ///< cells along an edge of the cube
-    std::vector<std::uint32_t> begins; ///< by cell: its first index in beams
+    double margin;                     ///< margin of the cones, rad
+    std::size_t side;                  ///< number of cells along an edge of the cube
+    std::vector<std::uint32_t> begins; ///< first index of each cell in `beams`
     std::vector<std::uint32_t> beams;
   };
   static std::size_t cellOf(const Vec3& direction, std::size_t side);
@@ -85,7 +87,7 @@ private:
 
   std::size_t Most = 0;
   std::vector<Vec3> Axes;
-  std::vector<Grid> Grids; ///< by rising margin
+  std::vector<Grid> Grids; ///< grids by rising margin
 };
 }
 

@@ -7,17 +7,17 @@
  * A beam sees a place if its cone contains the direction to the place and no surface hides the
  * place (one descent of the tree). The beam is in clutter there if one of the range units that the
  * echo of a point target may overlap has a perceived echo of a surface. The other beams detect the
- * target with the probability of DetectionLaw.h, each by the part of the target that the beam
- * lights. Lines of sight are found once. They stay valid for another target, air, receiver or
+ * target with the probability of DetectionLaw.h, each beam by the part of the target that the beam
+ * lights. Lines of sight are found once and stay valid for another target, air, receiver or
  * clutter.
  *
  * Source: none.
- * Differs: a surface hides all of the target if it hides its middle, otherwise nothing.
+ * Differs: a surface that hides the target's middle hides all of the target; others hide nothing.
  * Valid: beams of one origin. Media attenuate along the line to the target's middle; moving media
  * stand as at time 0. A beam does not light a target whose middle is more than WidestTarget or 0.4
  * rad outside its cone. If more than DetectionLaw::MostBeams beams are near, the beams with the
- * nearest axes count, or with the nearest borders if beams are not round. A threshold that follows
- * the air divides energies by its growth: probabilities err by up to 0.03.
+ * nearest axes count, or with the nearest borders if beams are not round. If the threshold follows
+ * the air, energies are divided by its growth, and probabilities err by up to 0.03.
  * Test: TestCoverage.cxx, TestBeamShapes.py, TestWeather.py.
  */
 #ifndef avianlidar_Coverage_h
@@ -61,16 +61,16 @@ constexpr double WidestTarget = 2.0;
 struct CoverageSight
 {
   CoverageStatus status = CoverageStatus::OutsideGate; ///< Seen if geometry allows detection
-  bool isNear = false;                                 ///< true if a beam may light a target there
+  bool isNear = false;    ///< true if a beam may light a target at the place
   bool isHidden = false;  ///< true if isNear and a surface hides the place
-  std::uint8_t beams = 0; ///< beams that contain the place, at most 255
+  std::uint8_t beams = 0; ///< number of beams that contain the place, at most 255
 };
 
 /// Detection of a target at a place.
 struct CoverageValue
 {
   CoverageStatus status = CoverageStatus::OutsideGate;
-  int beams = 0;               ///< beams that contain the place
+  int beams = 0;               ///< number of beams that contain the place
   double probability = 0.0;    ///< probability of detection in one scan
   double photoelectrons = 0.0; ///< photoelectrons of the whole target; 0 without a photon receiver
   /// Mean effective area at which half of the targets inside the beams are detected, m^2; infinity
@@ -84,7 +84,8 @@ class Coverage;
 struct CoverageTarget
 {
   /// @param attenuation extinction coefficient, 1/m
-  /// @param area mean effective area (silhouette weighted by cosine), m^2 @param reflectance 0 to 1
+  /// @param area mean effective area (silhouette weighted by cosine), m^2 @param reflectance
+  /// reflectance of the target, 0 to 1
   /// @param views areas relative to the mean @param coverage gives number and elevations of beams
   CoverageTarget(const Sensor& sensor, double attenuation, double area, double reflectance,
     const TargetViews& views, const Coverage& coverage);
@@ -92,7 +93,7 @@ struct CoverageTarget
   double attenuation;
   double area;
   double reflectance;
-  double electronsPerJoule; ///< 0 without a photon receiver
+  double electronsPerJoule; ///< electrons per joule of light; 0 without a photon receiver
   DetectionLaw law;
   /// Energy at which half of the targets are detected, J; by view of the law, then number of beams.
   std::vector<std::vector<double>> halfEnergies;
@@ -102,14 +103,14 @@ struct CoverageTarget
 /// Returns the position of a place by its number, m.
 using PlaceAt = std::function<Vec3(std::size_t)>;
 
-/// Detects targets at places. Setup and beams must outlive this; any number of threads may share
-/// it.
+/// Detects targets at places. Setup and beams must outlive the object. Any number of threads may
+/// share the object.
 class Coverage
 {
 public:
   /// @param beams at least one beam, all from one origin: see checkOrigins()
   /// @param up unit vector of the vertical, for elevations
-  /// @param still scan of the beams without noise, return mode RangeUnits
+  /// @param still scan of the beams without noise, with the return mode RangeUnits
   /// @param directions directions of another coverage with equal beam directions and width; null:
   /// computed
   Coverage(const ScanSetup& setup, const ScanBeams& beams, const Vec3& up, const ScanResult& still,
@@ -163,12 +164,13 @@ private:
   double CosineHeld;                      ///< cosine of the half-beamwidth
   double Lowest;                          ///< lowest elevation in any beam, rad
   double Highest;                         ///< highest elevation in any beam, rad
-  std::vector<std::size_t> ClutterBegins; ///< by beam: its first index in Clutter
+  std::vector<std::size_t> ClutterBegins; ///< first index of each beam in Clutter
   std::vector<bool> HasClutter;           ///< true if beams of a cell of Directions have clutter
   std::vector<std::int64_t> Clutter;      ///< range units with echoes of surfaces, by beam
 };
 
-/// Returns an empty string if all beams have one origin, otherwise what is expected.
+/// Returns an empty string if all beams have one origin, otherwise a sentence that says what is
+/// expected.
 std::string checkOrigins(const ScanBeams& beams);
 }
 

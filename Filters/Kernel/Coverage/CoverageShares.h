@@ -4,9 +4,9 @@
  * @brief Share of places that is covered: weighted means over places and their standard errors.
  *
  * Source: heights of bird strikes: R. A. Dolbeer, J. Wildl. Manage. 70 (2006).
- * Differs: strikes at or below 500 feet are uniformly distributed over these heights.
- * Valid: standard errors hold for places drawn at random. They are about right for places far apart
- * on a lattice, and too small where neighbours are alike.
+ * Differs: heights of strikes at or below 500 feet are uniformly distributed.
+ * Valid: standard errors hold for places drawn at random. On a lattice, standard errors are about
+ * right if places are far apart, and too small where neighbours are alike.
  * Test: TestCoverageShares.cxx.
  */
 #ifndef avianlidar_CoverageShares_h
@@ -26,8 +26,8 @@ struct WeightedMean
   double square = 0.0;            ///< sum of w^2 v^2
   void add(double w, double v);
   void add(const WeightedMean& other);
-  double mean() const;     ///< NaN if the sum of weights is 0
-  double stdError() const; ///< NaN for fewer than two values
+  double mean() const;     ///< weighted mean; NaN if the sum of weights is 0
+  double stdError() const; ///< standard error; NaN for fewer than two values
 };
 
 /// Sums over the places of a region and height band.
@@ -36,7 +36,7 @@ struct CoverageShares
   static constexpr std::size_t Statuses = 8;
   WeightedMean detected;
   WeightedMean tracked;
-  std::array<double, Statuses> byStatus{}; ///< sums of weights
+  std::array<double, Statuses> byStatus{}; ///< sums of weights of the places with each status
 
   void add(double weight, const CoverageValue& value, double trackProbability);
   void add(const CoverageShares& other);

@@ -3,9 +3,9 @@
  * @file CoverageSurvey.h
  * @brief Coverage of many places: the value of each place, and sums over regions and height bands.
  *
- * Lines of sight, beam directions and detection laws are kept from one target or scan to the next
- * and recomputed only if their inputs change. Blocks of places are summed in a fixed order, so the
- * sums are the same for any number of threads.
+ * Lines of sight, beam directions and detection laws are kept from one target or scan to the next,
+ * and are recomputed only if their inputs change. Blocks of places are summed in a fixed order, so
+ * the sums are the same for any number of threads.
  *
  * Source: none.
  * Valid: see Coverage.h.
@@ -32,7 +32,7 @@ struct SurveyPlaces
   PlaceAt at;
   std::size_t count = 0;
   std::uint64_t hash = 0; ///< hash of all coordinates
-  /// Returns the region to whose sums a place is added, or NoRegion.
+  /// Function that returns the region to whose sums a place is added, or NoRegion.
   std::function<std::size_t(std::size_t place)> regionOf;
 };
 
@@ -41,7 +41,7 @@ struct SurveyTarget
 {
   double area; ///< mean effective area, m^2
   double reflectance;
-  std::shared_ptr<const TargetViews> views; ///< silhouettes, their areas relative to the mean
+  std::shared_ptr<const TargetViews> views; ///< silhouettes, with areas relative to the mean
 };
 
 /// Rules of track detection (M of N scans) and of the sums over places.
@@ -50,7 +50,7 @@ struct SurveyRules
   int requiredDetections = 1; ///< M: detections that make a track, 1 to scans
   int scans = 1;              ///< N: number of scans, 1 to MostScans
   bool strikeHeightWeights = false;
-  std::vector<double> heightLimits; ///< rising borders of bands, m; the lower border is included
+  std::vector<double> heightLimits; ///< rising borders, m; a band includes its lower border
 
   std::size_t bands() const { return this->heightLimits.size() + 1; }
 };
@@ -61,11 +61,13 @@ std::string checkRules(const SurveyRules& rules);
 class CoverageSurvey
 {
 public:
-  /// Receives the result of a place and the probability of a track; called by any thread.
+  /// Function that receives the result of a place and the probability of a track. Any thread may
+  /// call it.
   using EachPlace =
     std::function<void(std::size_t place, const CoverageValue& value, double track)>;
 
-  /// Returns where to store the probabilities of a place's poses, see Coverage::valueAt().
+  /// Function that returns where to store the probabilities of a place's poses
+  /// (Coverage::valueAt()).
   using PosesOf = std::function<float*(std::size_t place)>;
 
   /// Finds the lines of sight to places. The arguments must outlive the next evaluate().
@@ -94,7 +96,7 @@ private:
   std::vector<CoverageSight> Sights;
   std::uint64_t SightsOf = 0;        ///< hash of the inputs of Sights
   std::unique_ptr<Coverage> Covered; ///< null without beams
-  std::uint64_t DirectionsOf = 0;    ///< hash of the inputs of its BeamDirections
+  std::uint64_t DirectionsOf = 0;    ///< hash of the inputs of the BeamDirections in Covered
   std::size_t Traced = 0;
   /// A target and its inputs.
   struct KeptTarget
@@ -103,10 +105,10 @@ private:
     std::shared_ptr<const TargetViews> views;
     std::unique_ptr<const CoverageTarget> target;
   };
-  std::vector<KeptTarget> Targets; ///< the most recent ones
+  std::vector<KeptTarget> Targets; ///< targets of the last calls
 };
 
-/// Returns, for each echo of a scan without noise, the share of scans with noise that perceive it.
+/// Returns the share of scans with noise that perceive each echo of a scan without noise.
 std::vector<double> shareOfScans(const Sensor& sensor, const std::vector<Echo>& echoes);
 }
 

@@ -5,27 +5,27 @@
  * receives from the target and of the number of beams on it.
  *
  * A beam receives energy from the part of the target that it lights (Silhouette.h), whether the
- * beam or the target is larger. The echo is a pulse lengthened by the depth of that part, which is
- * taken as a normal distribution about its mean. The range units that the echo overlaps share its
+ * beam or the target is larger. The echo is a pulse that is lengthened by the depth of this part.
+ * Depths are taken as normally distributed. The range units that the echo overlaps share its
  * energy. The position of the target within a range unit is uniformly distributed and the same for
- * all beams, as they have one origin. A beam detects the target if it perceives one of these units:
- * with a photon receiver with the probability of PhotonReceiver.h, otherwise if the energy exceeds
- * Qlow. Noise is independent from pulse to pulse, while the pose is the same for all beams of a
- * scan. The probability is therefore the mean, over poses and positions in the unit, of 1 - product
- * of (1 - p) over beams. Where K beams contain the whole target, it is tabulated over the logarithm
- * of their energy.
+ * all beams, as they have one origin. A beam detects the target if it perceives one of these units.
+ * A photon receiver perceives a unit with the probability of PhotonReceiver.h, any other receiver
+ * if the energy exceeds Qlow. Noise is independent from pulse to pulse, while the pose is the same
+ * for all beams of a scan. The probability is therefore the mean, over poses and positions in the
+ * unit, of 1 - product of (1 - p) over beams. Where K beams contain the whole target, the
+ * probability is tabulated over the logarithm of the energy.
  *
  * The silhouette of a target depends on the elevation of the line of sight. Silhouettes are drawn
- * at regular steps of elevation. Between two steps each pose is taken from one or the other, in
- * linear proportion.
+ * at regular steps of elevation. Between two steps each pose is taken from one step or the other,
+ * in linear proportion.
  *
- * Each pose represents similar poses: its energies are spread by 15 %.
+ * Each pose represents similar poses, so the energies of a pose are spread by 15 %.
  *
  * Source: none.
  * Differs: the paper perceives a unit at the target's own range if its energy exceeds Qlow.
  * Valid: 1 to MostBeams beams (more count as MostBeams, or as the largest number in the tables).
  * The error is below 3e-4 with a photon receiver where beams contain the whole target; without
- * noise, the step of the probability for one area lies within 0.8 % of its energy.
+ * noise, the energy at which the probability for one area steps is right to 0.8 %.
  * Test: TestDetectionLaw.cxx.
  */
 #ifndef avianlidar_DetectionLaw_h
@@ -45,14 +45,15 @@ using TargetPoses = std::vector<Silhouette>;
 /// Silhouettes of a target from all directions.
 struct TargetViews
 {
-  /// Returns the poses at an elevation of the line of sight, rad, positive if the target is above
-  /// the sensor. Each elevation has the same poses in the same order; areas are relative to a mean
-  /// of all poses.
+  /// Function that returns the poses at an elevation of the line of sight, rad, positive if the
+  /// target is above the sensor. Each elevation has the same poses in the same order; areas are
+  /// relative to one mean over all poses.
   std::function<TargetPoses(double elevation)> from;
   double reach = 0.0;    ///< largest distance of any part from the middle, m
   double step = Pi;      ///< step between the elevations that are drawn, rad
   std::size_t poses = 1; ///< number of poses
-  /// Successive poses differ by 1/headings of a turn, clockwise; 1 if all azimuths give the same.
+  /// Number of headings: successive poses differ by 1/headings of a turn, clockwise; 1 if all
+  /// azimuths give the same silhouettes.
   std::size_t headings = 1;
 };
 
@@ -64,8 +65,9 @@ class DetectionLaw
 public:
   static constexpr int MostBeams = 64;
 
-  /// @param sensor with its limits set
-  /// @param lowest, highest elevations of the line of sight, rad; beyond them the nearest is used
+  /// @param sensor sensor whose limits are set
+  /// @param lowest, highest elevations of the line of sight, rad; elevations beyond these count as
+  /// the nearest one
   /// @param mostBeams largest number of beams in the tables, 1 to MostBeams
   DetectionLaw(const Sensor& sensor, const TargetViews& views, double lowest = 0.0,
     double highest = 0.0, int mostBeams = MostBeams);
@@ -80,7 +82,7 @@ public:
 
   /// Probability of detection in one scan.
   /// @param energy energy that one beam receives from the target at its mean area, J
-  /// @param beams number of beams that receive it
+  /// @param beams number of beams that receive this energy
   double probability(double energy, int beams, const Between& at = { 0, 0.0 }) const
   {
     return energy > 0.0 ? this->probabilityAt(this->stepOf(energy), beams, at) : 0.0;
@@ -89,7 +91,7 @@ public:
   /// Position of an energy in the tables, in steps. @param energy J, above 0
   double stepOf(double energy) const;
 
-  /// Probability of detection by position of the energy in the tables, in steps.
+  /// Probability of detection at a position in the tables. @param step from stepOf()
   double probabilityAt(double step, int beams, const Between& at = { 0, 0.0 }) const;
 
   /// Probability of detection where beams light parts of the target.
@@ -99,7 +101,7 @@ public:
   double probability(double energy, double most, const BeamAtTarget* beams, std::size_t count,
     const Between& at = { 0, 0.0 }, double* ofPoses = nullptr) const;
 
-  /// Probability of each pose where `beams` beams contain the whole target.
+  /// Probability of detection of each pose where `beams` beams contain the whole target.
   void ofPoses(double energy, int beams, const Between& at, double* probabilities) const;
 
   /// Distance of the target's middle from a beam's border beyond which no part of it is lit, m.
@@ -107,10 +109,11 @@ public:
 
   std::size_t poses() const { return this->Views[0].size(); }
 
-  /// Largest number of beams in the tables; more beams count as this many.
+  /// Largest number of beams in the tables; more beams count as this number.
   int mostBeams() const { return this->Most; }
 
-  /// Least energy at which the probability is `wanted`, J; infinity if no energy reaches it.
+  /// Least energy at which the probability is `wanted`, J; infinity if no energy reaches this
+  /// probability.
   /// @param wanted above 0 @param view index of an elevation
   double energyFor(double wanted, int beams, std::size_t view = 0) const;
 
@@ -125,7 +128,7 @@ private:
   /// Light that a beam receives from a pose.
   struct Received
   {
-    double step;        ///< position of its energy in the tables
+    double step;        ///< position of the light's energy in the tables
     std::size_t spread; ///< depth class
     double depth;       ///< mean depth behind the target's middle, range units
   };
@@ -137,20 +140,20 @@ private:
   std::size_t viewOf(std::size_t pose, const Between& at) const;
   void tabulate(const TargetPoses& poses);
 
-  int Most;                       ///< beams in the tables
+  int Most;                       ///< largest number of beams in the tables
   double Limit;                   ///< Qlow, J
-  double UnitLength;              ///< m
-  double Reach;                   ///< m
+  double UnitLength;              ///< length of a range unit, m
+  double Reach;                   ///< see reach(), m
   double Deepest;                 ///< standard deviation of the last depth class, m
   double Lowest;                  ///< elevation of the first view, rad
   double Step;                    ///< step from one view to the next, rad
-  std::vector<TargetPoses> Views; ///< by elevation
+  std::vector<TargetPoses> Views; ///< poses by elevation
   /// Light that a beam receives from each whole pose at an energy of 1 J; by elevation, pose.
   std::vector<std::vector<Received>> Whole;
-  std::vector<double> Thresholds; ///< by pose: weight above which the next view is taken
+  std::vector<double> Thresholds; ///< weight above which the next view is taken, by pose
   /// Probability that a beam perceives nothing, by depth class, position in the unit, energy.
   std::vector<std::vector<std::vector<double>>> Missed;
-  std::vector<std::vector<double>> Tables; ///< by elevation; then number of beams and energy
+  std::vector<std::vector<double>> Tables; ///< probability by elevation; then beams and energy
 };
 
 constexpr int MostScans = 100;

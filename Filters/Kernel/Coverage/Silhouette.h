@@ -5,14 +5,15 @@
  * one pose, as a small image, and the part of the target that a beam lights.
  *
  * The image is drawn as seen from afar, with a depth buffer and 3 x 3 samples for each pixel, so it
- * includes mutual shadowing. Coarser images sum its pixels. A beam uses the coarsest image in which
- * its radius spans RadiusInPixels: a round beam costs about fifty pixels, other beams more by the
- * ratio of their length to their width. effectiveArea() draws a finer image that is not kept.
+ * includes the shadows of parts on other parts. Coarser images sum the pixels of this image. A beam
+ * uses the coarsest image in which its radius spans RadiusInPixels: a round beam costs about fifty
+ * pixels, other beams more by the ratio of their length to their width. effectiveArea() draws a
+ * finer image and does not keep it.
  *
  * Source: none.
- * Valid: beams wider than 0.02 of the target's longer side; narrower beams count as this wide, with
- * the same energy. Areas are wrong by at most 1 % of the target's area. The area that a beam lights
- * is wrong by at most 10 % of the area that fills the beam, or of the target's area.
+ * Valid: beams wider than 0.02 of the target's longer side; narrower beams are taken as this wide,
+ * with the same energy. Areas are wrong by at most 1 % of the target's area. The area that a beam
+ * lights is wrong by at most 10 % of the area that fills the beam, or of the target's area.
  * Test: TestSilhouette.cxx, TestEffectiveArea.cxx.
  */
 #ifndef avianlidar_Silhouette_h
@@ -39,7 +40,7 @@ struct Squares
 struct BeamAtTarget
 {
   double radius = 0.0; ///< half the longer side of an ellipse or rectangle, m
-  double x, y;         ///< beam axis relative to the target's middle, m right and up
+  double x, y;         ///< beam axis to the right of and above the target's middle, m
   BeamProfile profile = BeamProfile::Uniform;
   // For beams that are not round or whose Gaussian does not fall to 1/e^2 at the border:
   double across = radius; ///< half the shorter side, m
@@ -55,7 +56,7 @@ struct BeamAtTarget
   bool isUsual() const { return this->isRound() && this->fall == 2.0; }
 
   /// Squared coordinates of a point along the beam's sides, in units of half the side.
-  /// @param right, above m from the axis
+  /// @param right, above distances of the point from the axis, m
   Squares squaresOf(double right, double above) const
   {
     const double along = (this->cosine * right + this->sine * above) / this->radius;
@@ -63,8 +64,8 @@ struct BeamAtTarget
     return { along * along, beside * beside };
   }
 
-  /// Distance of the target's middle outside the border, m; negative inside. Its magnitude is a
-  /// lower bound if the beam is not round.
+  /// Distance of the target's middle outside the border, m; negative inside. For a beam that is not
+  /// round, the magnitude is a lower bound.
   double beyond() const
   {
     if (this->isRound())
@@ -78,8 +79,8 @@ struct BeamAtTarget
   /// Irradiance at the target's middle relative to the beam's mean; also defined beyond the border.
   double irradiance() const { return this->irradiance(this->squaresOf(this->x, this->y).sum()); }
 
-  /// Irradiance at a point relative to the beam's mean. @param square squaresOf() of the point,
-  /// summed
+  /// Irradiance at a point relative to the beam's mean. @param square sum of squaresOf() at the
+  /// point
   double irradiance(double square) const
   {
     return this->profile == BeamProfile::Gaussian ? this->most * std::exp(-this->fall * square)
@@ -125,10 +126,10 @@ private:
   };
   struct Image
   {
-    double pixel = 0.0;             ///< m
+    double pixel = 0.0;             ///< side of a pixel, m
     double left = 0.0, below = 0.0; ///< centre of the first pixel, m
     int columns = 0, rows = 0;
-    std::vector<Sums> pixels; ///< row by row
+    std::vector<Sums> pixels; ///< pixels row by row
   };
   static Image halved(const Image& fine);
   const Image& imageFor(const BeamAtTarget& beam) const;
@@ -137,8 +138,8 @@ private:
   LitPart litByOther(const BeamAtTarget& beam) const;
 
   LitPart All;
-  double Reach = 0.0;        ///< m
-  std::vector<Image> Images; ///< finest first; empty for a point
+  double Reach = 0.0;        ///< see reach(), m
+  std::vector<Image> Images; ///< images, finest first; empty for a point
 };
 
 /// Effective area of an object seen from far away, m^2: the silhouette weighted by the cosine of

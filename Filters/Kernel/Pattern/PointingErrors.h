@@ -14,10 +14,10 @@
  * a and never exceeds sqrt(2 SwayTones) a. The tilt is a function of (seed, axis, t), so it can be
  * computed at any time and in any order.
  *
- * Jitter. All channels of a column share one error of the azimuth, a normal deviate keyed by (seed,
- * column, revolution).
+ * Jitter. All channels of a column share one error of the azimuth, a normal deviate that is a
+ * function of (seed, column, revolution).
  *
- * The sensor turns about its own position. The motion of a sensor on a mast of height h by h times
+ * The sensor tilts about its own position. The motion of a sensor on a mast of height h by h times
  * the tilt is not modelled.
  *
  * Source: Rice's sum of sinusoids with random phases (Bell Syst. Tech. J. 23, 1944); Box and
@@ -43,9 +43,9 @@ constexpr double SwayBandwidth = 0.2; // share of SwayFrequency, to each side
 
 struct PointingErrors
 {
-  double swayAmplitude = 0.0; ///< a, deg rms about each horizontal axis; 0: none
-  double swayFrequency = 0.5; ///< Hz
-  double encoderJitter = 0.0; ///< deg rms of a column's azimuth; 0: none
+  double swayAmplitude = 0.0; ///< a, rms tilt about each horizontal axis, deg; 0: no sway
+  double swayFrequency = 0.5; ///< middle frequency of the sway, Hz
+  double encoderJitter = 0.0; ///< rms error of a column's azimuth, deg; 0: no jitter
   std::int32_t seed = 0;
 
   bool none() const { return this->swayAmplitude == 0.0 && this->encoderJitter == 0.0; }
@@ -54,12 +54,12 @@ struct PointingErrors
 /// The first bad value in words ("SwayAmplitude is -1, expected ..."), or an empty string.
 std::string checkPointing(const PointingErrors& errors);
 
-/// The directions in which beams leave. Calls do not depend on each other.
+/// Gives the directions in which beams leave the sensor. Calls do not depend on each other.
 class Pointing
 {
 public:
-  /// @param errors valid ones (checkPointing()) @param rotor unit vector of the axis about which
-  /// the sensor turns, up
+  /// @param errors valid errors (checkPointing()) @param rotor upward unit vector of the axis about
+  /// which the sensor turns
   Pointing(const PointingErrors& errors, const Vec3& rotor);
 
   /// Tilt about the east and the north axis (right-handed), rad. @param time s
@@ -68,7 +68,8 @@ public:
   /// Error of the azimuth of a column, rad, clockwise seen from above.
   double azimuthError(std::int64_t column, std::int32_t revolution) const;
 
-  /// The direction in which a beam leaves. @param reported direction without errors, unit vector
+  /// Direction in which a beam leaves the sensor. @param reported direction without errors, unit
+  /// vector
   /// @param time time of the firing, s
   Vec3 direction(
     const Vec3& reported, std::int64_t column, std::int32_t revolution, double time) const;
@@ -76,8 +77,8 @@ public:
 private:
   struct Tone
   {
-    double frequency; ///< Hz
-    double phase;     ///< turns
+    double frequency; ///< frequency of the sinusoid, Hz
+    double phase;     ///< phase of the sinusoid, turns
   };
   PointingErrors Errors;
   Vec3 Rotor;

@@ -3,8 +3,9 @@
  * @file Prisms.h
  * @brief Rotating wedge prisms (Risley prisms), which steer the beams of a lidar.
  *
- * Prisms stand one behind the other on an axis and turn about it, each at its own rate. If the
- * rates have no small common multiple, directions repeat late or never.
+ * Prisms stand one behind the other on an axis and turn about it, each at its own rate. Directions
+ * repeat after the least common multiple of the periods of rotation, and never if these periods
+ * have no common multiple.
  *
  * A prism has a face perpendicular to the axis and a face inclined by the wedge angle. Light leaves
  * through the inclined face if the wedge angle is above 0, and enters through this face if it is
@@ -16,8 +17,8 @@
  *
  * If the root is imaginary, no light passes.
  *
- * The frame is x right, y along the axis, z up. At the phase 0 a prism deflects light upwards. The
- * phase grows clockwise as seen from the sensor, from up to right.
+ * The frame of the axis has x to the right, y along the axis and z up. At the phase 0 a prism
+ * deflects light upwards. The phase grows clockwise as seen from the sensor, from up to right.
  *
  * Source: Snell's law; thin prisms deflect by (n - 1) times the wedge angle, so that two of them
  * draw a rose curve (Marshall, Proc. SPIE 3787, 1999).
@@ -42,25 +43,26 @@ namespace avianlidar
 /// per prism; the phases may be empty.
 struct PrismTrain
 {
-  std::vector<double> wedgeAngles;       ///< deg, -60 to 60
-  std::vector<double> refractiveIndices; ///< 1 to 4 (germanium)
-  std::vector<double> rotationRates;     ///< Hz, -1e6 to 1e6; above 0 clockwise
+  std::vector<double> wedgeAngles;       ///< angles between the two faces, deg, -60 to 60
+  std::vector<double> refractiveIndices; ///< refractive indices, 1 to 4 (germanium)
+  std::vector<double> rotationRates;     ///< rotation rates, Hz, -1e6 to 1e6; above 0 clockwise
   std::vector<double> phases;            ///< phases at time 0, deg; empty: all 0
   double axisElevation = 0.0;            ///< elevation of the axis, deg, -90 to 90
-  double axisRotationRate = 0.0; ///< Hz, about the vertical, clockwise from above, with all prisms
+  /// Rotation rate of the axis and all prisms about the vertical, Hz; above 0 clockwise from above.
+  double axisRotationRate = 0.0;
 
   bool none() const { return this->wedgeAngles.empty(); }
 };
 
 /// The first bad value in words ("PrismWedgeAngles is 70, expected ..."), or an empty string.
-/// @param enters unit vectors of the lasers, in the frame of the axis; their light must pass at
-/// phases 30 degrees apart
+/// @param enters directions of the lasers before the prisms, unit vectors in the frame of the axis;
+/// light must pass for all combinations of the prisms' phases in steps of 30 degrees
 std::string checkPrisms(const PrismTrain& train, const std::vector<Vec3>& enters);
 
-/// Direction of light behind the prisms, in the sensor's frame. @param start start of the scan, s
-/// since time 0 @param time s since the start @param enters direction before the prisms, in the
-/// frame of the axis. Throws std::runtime_error if no light passes. Start and time are separate so
-/// that times of a scan keep their digits.
+/// Direction of light behind the prisms, in the sensor's frame. Throws std::runtime_error if no
+/// light passes. Start and time are separate so that times of a scan keep their digits.
+/// @param start start of the scan, s since time 0 @param time s since the start @param enters
+/// direction before the prisms, unit vector in the frame of the axis
 Vec3 steer(const PrismTrain& train, double start, double time, const Vec3& enters);
 }
 

@@ -27,16 +27,16 @@ constexpr std::int64_t MaximumSteps = 1000000;
 
 struct ScanClock
 {
-  double rotationRate = 0.5; ///< Hz
+  double rotationRate = 0.5; ///< revolutions per second, Hz
   int revolutions = 1;       ///< number of revolutions to be played
-  int steps = 1;             ///< n, steps of a revolution
+  int steps = 1;             ///< n, number of steps of a revolution
 };
 
 /// A step of a revolution.
 struct ScanMoment
 {
-  int revolution = 0; ///< k
-  int step = 0;       ///< j
+  int revolution = 0; ///< number k of the revolution
+  int step = 0;       ///< number j of the step
 };
 
 /// The beams of a piece of the scan, up to a step. Columns are distributed among the pieces in
@@ -49,24 +49,26 @@ struct ScanPart
   int steps = 1;
 };
 
-/// The first bad value in words, or an empty string. @param pattern valid, with the clock's rate
+/// The first bad value in words, or an empty string. @param pattern valid pattern with the clock's
+/// rotation rate
 std::string checkClock(const ScanClock& clock, const ScanPattern& pattern);
 
 /// Time of a moment, (k + j/n) / RotationRate, s.
 double timeOf(const ScanClock& clock, const ScanMoment& moment);
 
-/// Times of all steps of all revolutions to be played, s, strictly ascending. Only 0 if the clock
-/// is not valid.
+/// Times of all steps of all revolutions to be played, s, strictly ascending. The only time is 0 if
+/// the clock is not valid.
 std::vector<double> timesOf(const ScanClock& clock);
 
 /**
  * Find the step of a time. A time slightly before a step belongs to this step if the difference is
  * less than 1e-9 of a step or within the rounding of (k + j/n) / RotationRate to double. @return
- * empty, or what is wrong with the time: it is not finite, or its revolution is not an int
+ * empty, or what is wrong with the time: the time is not finite, or its revolution does not fit
+ * into an int
  */
 std::string momentAt(const ScanClock& clock, double time, ScanMoment& moment);
 
-/// The beams of a part, ascending. @param pattern valid (checkPattern())
+/// Numbers of the beams of a part, ascending. @param pattern valid pattern (checkPattern())
 std::vector<std::int64_t> beamsOf(const ScanPattern& pattern, const ScanPart& part);
 }
 

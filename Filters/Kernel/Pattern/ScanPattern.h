@@ -7,10 +7,10 @@
  * one per azimuth, and every column of C firings. Beams are numbered column by column, channel by
  * channel within a column.
  *
- * Frames. The sensor's frame is x right, y forward, z up. If the sensor is not turned, these are
- * the scene's east, north and up. Azimuth is measured from north (y), clockwise seen from above,
- * and elevation upwards from the horizontal plane. The orientation is R = yaw * pitch * roll: yaw
- * clockwise from north, pitch nose up, roll to the right. Angles are in degrees here, as in
+ * Frames. The sensor's frame is x right, y forward, z up. If the sensor is not turned, these axes
+ * are the scene's east, north and up. Azimuth is measured from north (y), clockwise seen from
+ * above, and elevation upwards from the horizontal plane. The orientation is R = yaw * pitch *
+ * roll: yaw clockwise from north, pitch nose up, roll to the right. Angles are in degrees, as in
  * specifications.
  *
  * Source: paper, Fig. 1 and Sec. 5.3.
@@ -18,10 +18,10 @@
  * of azimuth offsets and firing times, and sectors without beams, are added. Rotating prisms
  * (Prisms.h) may replace the rotor. A scan is then a window of 1 / RotationRate seconds in which
  * the lasers fire continuously, a column is one firing of each laser, and the next scan continues
- * where the last one ended. A table of any beams may replace all of these.
- * Valid: multiples of 90 degrees are exact. All channels of a column share its azimuth: the
- * rotor's motion between the firings of one column is not modelled (at most FiringInterval * C *
- * RotationRate of the azimuth range).
+ * where the last one ended. A table of any beams may replace rotor and prisms.
+ * Valid: rotations by multiples of 90 degrees are exact. All channels of a column share its
+ * azimuth: the rotor's motion between the firings of one column is not modelled (at most
+ * FiringInterval * C * RotationRate of the azimuth range).
  * Test: TestScanPattern.cxx, TestPrisms.cxx.
  */
 #ifndef avianlidar_ScanPattern_h
@@ -40,32 +40,32 @@
 
 namespace avianlidar
 {
-// Limits of the rotation rate, Hz, far beyond any rotor. They keep times finite.
+// Limits of the rotation rate, Hz. The limits are far beyond any rotor and keep times finite.
 constexpr double MinimumRotationRate = 1e-20;
 constexpr double MaximumRotationRate = 1e20;
 
 /// Arbitrary beams, in the frame of the sensor.
 struct BeamTable
 {
-  std::vector<Vec3> directions; ///< unit
-  std::vector<Vec3> origins;    ///< relative to the sensor's position, m; may be empty
-  std::vector<double> times;    ///< s since the scan began
+  std::vector<Vec3> directions; ///< unit vectors
+  std::vector<Vec3> origins;    ///< origins relative to the sensor's position, m; may be empty
+  std::vector<double> times;    ///< times since the scan began, s
 };
 
 /// Geometry and clock of a scan. The defaults describe the 16-channel airport lidar (paper, Sec.
 /// 5.3).
 struct ScanPattern
 {
-  double yaw = 0.0;               ///< deg, clockwise from north
-  double pitch = 0.0;             ///< deg, nose up
-  double roll = 0.0;              ///< deg, to the right
-  int channels = 16;              ///< ignored when there is a table of elevations
-  double minimumElevation = 0.0;  ///< deg, elevation of channel 0; ignored when there is a table
-  double elevationStep = 0.375;   ///< deg; ignored when there is a table
-  std::vector<double> elevations; ///< deg, optional table, one per channel
-  double azimuthStart = 0.0;      ///< deg, first column
-  double azimuthEnd = 360.0;      ///< deg, excluded
-  double azimuthStep = 0.375;     ///< deg
+  double yaw = 0.0;               ///< heading of the sensor, deg, clockwise from north
+  double pitch = 0.0;             ///< upward tilt of the nose, deg
+  double roll = 0.0;              ///< tilt to the right, deg
+  int channels = 16;              ///< number of channels; unused with a table of elevations
+  double minimumElevation = 0.0;  ///< elevation of channel 0, deg; unused with a table
+  double elevationStep = 0.375;   ///< step between channels, deg; unused with a table
+  std::vector<double> elevations; ///< optional table: elevation of each channel, deg
+  double azimuthStart = 0.0;      ///< azimuth of the first column, deg
+  double azimuthEnd = 360.0;      ///< end of the azimuth range, excluded, deg
+  double azimuthStep = 0.375;     ///< step between columns, deg
   double rotationRate = 0.5;      ///< sweeps across the azimuth range per second, Hz, 1e-20 to 1e20
   double firingInterval = 30e-6;  ///< time between two firings of a column, s
   /// Optional tables, one value per channel: azimuth of its beam minus the azimuth of the column,
@@ -79,28 +79,28 @@ struct ScanPattern
   /// describe the light of the lasers before the prisms, in the frame of the prisms' axis. A column
   /// takes channels times firingInterval.
   PrismTrain prisms;
-  /// Optional beams, each a column of one channel. They replace all values above except yaw, pitch,
-  /// roll and rotationRate.
+  /// Optional beams, each a column of one channel. The table replaces all values above except yaw,
+  /// pitch, roll and rotationRate.
   std::shared_ptr<const BeamTable> table;
 };
 
 /// One beam of a scan.
 struct ScanBeam
 {
-  Vec3 direction;     ///< unit, in the scene's frame
+  Vec3 direction;     ///< unit vector in the scene's frame
   int channel;        ///< index of the channel
-  double azimuth;     ///< deg, in [0, 360), in the scene's frame
-  double elevation;   ///< deg, in the scene's frame
-  double time;        ///< s since the start of its scan
-  Vec3 origin{ 0.0 }; ///< relative to the sensor's position, in the scene's frame, m
+  double azimuth;     ///< azimuth in the scene's frame, deg, in [0, 360)
+  double elevation;   ///< elevation in the scene's frame, deg
+  double time;        ///< time since the start of the beam's scan, s
+  Vec3 origin{ 0.0 }; ///< origin relative to the sensor's position, in the scene's frame, m
 };
 
 /// Number of channels: the length of the table of elevations, or `channels` without a table.
 int numberOfChannels(const ScanPattern& pattern);
 
 /// Number of columns, at the azimuths start, start + step, ... below the end. A column less than
-/// 1e-9 steps below the end is left out, unless it is the first. With prisms, the number of columns
-/// for which a scan has time.
+/// 1e-9 steps below the end is left out, unless it is the first. With prisms, the number is the
+/// number of columns for which a scan has time.
 std::int64_t numberOfColumns(const ScanPattern& pattern);
 
 /// Number of beams: columns times channels, whether or not a column fires.
@@ -120,8 +120,8 @@ double firingTime(const ScanPattern& pattern, int channel);
 double beamTime(const ScanPattern& pattern, std::int64_t column, int channel);
 
 /// Time between two pulses into the same receiver, s. Channels that fire one after the other share
-/// one receiver. Channels with firing times, or that fire together, have one receiver each.
-/// Infinite for a table of beams, which does not name receivers.
+/// one receiver. Channels that have firing times or fire together have one receiver each. The time
+/// is infinite for a table of beams, which does not name receivers.
 double pulseInterval(const ScanPattern& pattern);
 
 /// True if a column does not fire.
@@ -130,17 +130,18 @@ bool isBlanked(const ScanPattern& pattern, std::int64_t column);
 /// Number of beams of a whole scan, without the columns that do not fire.
 std::int64_t numberOfFirings(const ScanPattern& pattern);
 
-/// The first bad value in words ("AzimuthStep is 0, expected ..."), or an empty string when the
-/// pattern is good.
+/// The first bad value in words ("AzimuthStep is 0, expected ..."), or an empty string if the
+/// pattern is valid.
 std::string checkPattern(const ScanPattern& pattern);
 
-/// Upward axis of a sensor, in scene coordinates. @param yaw, pitch, roll deg, as in ScanPattern
+/// Upward axis of a sensor, in scene coordinates. @param yaw, pitch, roll angles as in ScanPattern,
+/// deg
 Vec3 upOf(double yaw, double pitch, double roll);
 
-/// Sine and cosine of an angle in degrees; exact at multiples of 90.
+/// Sine and cosine of an angle in degrees, exact at multiples of 90 degrees.
 std::array<double, 2> sinCosDegrees(double degrees);
 
-/// Makes the beams of a pattern that checkPattern() found good.
+/// Makes the beams of a pattern that checkPattern() accepted.
 class ScanGenerator
 {
 public:
@@ -156,16 +157,16 @@ public:
   /// Column of a beam.
   std::int64_t column(std::int64_t index) const { return index / this->Channels; }
 
-  /// Unit vector of the axis about which the sensor turns, up, in the scene's frame.
+  /// Upward unit vector of the axis about which the sensor turns, in the scene's frame.
   Vec3 rotor() const { return this->Rotation[2]; }
 
 private:
   ScanPattern Pattern;
-  double Start; ///< s since time 0
+  double Start; ///< start of the scan, s since time 0
   int Channels;
   std::int64_t Beams;
   bool Tilted;
-  glm::dmat3 Rotation; ///< from the sensor's frame to the scene's
+  glm::dmat3 Rotation; ///< rotation from the sensor's frame to the scene's frame
 };
 }
 

@@ -5,23 +5,24 @@
  * noise of a photon receiver.
  *
  * The noise of range unit m is Q_n[m] = b[m] h nu with b[m] ~ Poisson(b tau_s), independent for all
- * units inside the gate. With a photon receiver it is Q_n[m] = z[m] sqrt(sigma0^2 + F n) h nu/eta
- * with z[m] ~ N(0, 1), n the electrons of the unit (PhotonReceiver.h). b[m] and z[m] are pure
- * functions of (seed, beam, m, revolution), whether or not the unit holds an echo. So is the place
- * of a false alarm in its unit, which is uniformly distributed. b[m] and z[m] are drawn in steps:
+ * units inside the gate. With a photon receiver the noise is Q_n[m] = z[m] sqrt(sigma0^2 + F n) h
+ * nu/eta with z[m] ~ N(0, 1), n the electrons of the unit (PhotonReceiver.h). b[m] and z[m] are
+ * pure functions of (seed, beam, m, revolution), whether or not the unit holds an echo. The place
+ * of a false alarm in its unit is such a function, too, and uniformly distributed. b[m] and z[m]
+ * are drawn in steps:
  *
  * 1. Units whose noise exceeds Qlow without light (false alarms) are drawn by geometric gaps. This
  *    costs one draw per alarm, not one for each of the thousands of empty units.
- * 2. With Gaussian noise, the other units with a rare deviate, the largest 0.14 %, are drawn
- *    likewise. Most units of grazing beams get so little light that only such deviates make them
+ * 2. With Gaussian noise, the other units with a rare deviate, the largest 0.14 %, are drawn in the
+ *    same way. Most units of grazing beams get so little light that only such deviates make them
  *    perceived.
  * 3. b[m] or z[m] comes from the inverse of its distribution, conditioned on whether the unit is an
  *    alarm and whether its deviate is rare. Tails are those of the incomplete gamma and error
- *    functions. Conditioning keeps tails exact that a plain 53-bit uniform number does not reach.
+ *    functions. Conditioning keeps exact the tails that a uniform number of 53 bits does not reach.
  *
  * Source: paper, Sec. 2.4, Eq. 11.
  * Differs: the paper's further factor tau_s, which would give Q_n the unit J s, is left out. Noise
- * that cannot change any result is left out, too, and its bound is reported.
+ * that cannot change any result is left out, too, and the bound of this noise is reported.
  * Valid: b tau_s <= MaximumMeanPhotons. Tails agree with reference values to 1e-11, relative.
  * Test: TestNoise.cxx, TestReceiver.cxx, TestPhotonReceiver.cxx.
  */
@@ -40,14 +41,14 @@
 
 namespace avianlidar
 {
-/// Mean, alarms and bound of a sensor's noise. They depend only on the sensor, so they are the same
-/// for all pieces of a scan.
+/// Mean, alarms and bound of a sensor's noise, which depend only on the sensor and are the same for
+/// all pieces of a scan.
 struct NoisePlan
 {
   bool active = false;       ///< true if noise is drawn; false if it is off or cannot matter
   bool ofRanges = false;     ///< true if ranges have noise (RangeErrors.h)
   double meanPhotons = 0.0;  ///< b tau_s, mean number of photons in a unit
-  double photonEnergy = 0.0; ///< J
+  double photonEnergy = 0.0; ///< energy of a photon, J
   std::int64_t gateUnits = 0;
   std::int64_t firstUnit = 0; ///< unit in which the gate begins
   /// K, the largest number of photons that is not perceived without an echo: K h nu <= Qlow < (K+1)
@@ -61,9 +62,9 @@ struct NoisePlan
   double faintLight = 0.0;
   double alarmProbability = 0.0;   ///< probability that the noise of an empty unit exceeds Qlow
   double quietProbability = 1.0;   ///< probability that this noise does not exceed Qlow
-  double falseAlarmsPerBeam = 0.0; ///< expected
-  /// Bound of the noise, J: the probability that any of 1e15 units (more than a scan has) receives
-  /// more is below 1e-30.
+  double falseAlarmsPerBeam = 0.0; ///< expected number of false alarms
+  /// Bound of the noise, J. The probability that any of 1e15 units (more than a scan has) receives
+  /// more noise is below 1e-30.
   double bound = 0.0;
 };
 
@@ -75,12 +76,12 @@ constexpr double MaximumMeanPhotons = 1e12;
 constexpr double MaximumFalseAlarmsPerBeam = 1e6;
 constexpr double MaximumFalseAlarmsPerScan = 1e8;
 
-/// @param enabled the switch `Noise`; false gives an inactive plan with bound 0 @param inFull true:
-/// noise that cannot matter is modelled, too
+/// @param enabled the switch `Noise`; false gives an inactive plan with the bound 0 @param inFull
+/// true if noise that cannot matter is modelled, too
 NoisePlan planNoise(const Sensor& sensor, bool enabled, bool inFull = false);
 
-/// Empty if a scan of `beams` beams can be made; otherwise a sentence naming the value and what was
-/// expected.
+/// Returns an empty string if a scan of `beams` beams can be made, otherwise a sentence that names
+/// the value and what was expected.
 std::string checkNoise(const NoisePlan& plan, std::uint64_t beams);
 
 /// Energy, J, that just reaches a limit with a deviate of CommonDeviate: x with x + CommonDeviate
@@ -89,11 +90,11 @@ std::string checkNoise(const NoisePlan& plan, std::uint64_t beams);
 /// @param perEnergy increase of the variance per joule of light, J
 double leastLight(double limit, double dark, double perEnergy);
 
-/// Noise of one beam. Reusable without allocation; one per thread.
+/// Noise of one beam. An object serves many beams without allocation; each thread needs its own.
 class BeamNoise
 {
 public:
-  /// Draw the false alarms of a beam. Nothing to do for an inactive plan.
+  /// Draw the false alarms of a beam. An inactive plan has no alarms.
   /// @param revolution number of the revolution, any int; each revolution has its own noise
   void begin(
     const NoisePlan& plan, std::int32_t seed, std::uint64_t beam, std::int32_t revolution = 0);
@@ -101,7 +102,8 @@ public:
   /// Range units of the beam whose noise exceeds Qlow without light, ascending.
   const std::vector<std::int64_t>& alarms() const { return this->Alarms; }
 
-  /// Gaussian: true if a unit that is not an alarm has a rare deviate. Fast for neighbouring units.
+  /// True if Gaussian noise has a rare deviate in a unit that is not an alarm. Calls for
+  /// neighbouring units are fast.
   bool isRare(std::int64_t unit);
 
   /// Noise energy of a unit, J; 0 outside the gate. @param light energy that the unit receives, J
@@ -133,8 +135,8 @@ private:
   std::uint64_t Beam = 0;
   std::int32_t Revolution = 0;
   std::vector<std::int64_t> Alarms;
-  std::bitset<UnitsOfBlock> Rare; ///< rare units from RareBegin on
-  std::int64_t RareBegin = -1;    ///< none drawn
+  std::bitset<UnitsOfBlock> Rare; ///< bits of the rare units from RareBegin on
+  std::int64_t RareBegin = -1;    ///< first unit of `Rare`; -1: none drawn
 };
 
 /// P(X > x) for X of a gamma distribution with the scale 1. @param shape above 0
@@ -145,8 +147,8 @@ double poissonCdf(double mean, double count);
 double poissonTail(double mean, double count);
 
 /// Smallest count with P(X <= count) >= p, infinity for p = 1. The caller also gives q = 1 - p. The
-/// smaller of p and q is used, so both tails are exact. Monotone in p. @param mean in [0, 1e12]
-/// @param p, q in [0, 1]
+/// smaller of p and q is used, so both tails are exact. The count is monotone in p. @param mean
+/// mean of the distribution, in [0, 1e12] @param p, q probabilities in [0, 1]
 double poissonQuantile(double mean, double p, double q);
 }
 

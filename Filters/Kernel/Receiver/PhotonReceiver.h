@@ -5,11 +5,11 @@
  *
  * An energy Q at the aperture makes n = eta Q/(h nu) electrons in a range unit. Daylight adds n_b =
  * eta L dlambda Omega A tau_s/(h nu) electrons, Omega the solid angle of the beam. The receiver
- * removes the mean n_b (AC coupling), but not its noise. The electrons of a unit are normally
- * distributed with the variance F (n + n_b) + n_a^2, which is sigma0^2 if n is 0. A unit is
- * perceived above n_T = k sigma0. The factor k gives a scan of empty sky the allowed number of
- * false alarms. So a scan has one lower limit in joules, n_T h nu/eta, and one upper limit, which
- * exceeds the lower limit by the dynamic range.
+ * removes the mean n_b (AC coupling), but not the noise of the background. The electrons of a unit
+ * are normally distributed with the variance F (n + n_b) + n_a^2, which is sigma0^2 if n is 0. A
+ * unit is perceived above n_T = k sigma0. The factor k gives a scan of empty sky the allowed number
+ * of false alarms. So a scan has one lower limit in joules, n_T h nu/eta, and one upper limit,
+ * which exceeds the lower limit by the dynamic range.
  *
  * Source: Gaussian noise of a direct-detection receiver with an avalanche photodiode, e.g.
  * R. D. Richmond and S. C. Cain, Direct-Detection LADAR Systems, SPIE, 2010.
@@ -19,10 +19,10 @@
  * n_b/sigma0^3, the least of any avalanche with the excess F. A gamma distribution with the same
  * three moments exceeds n_T with probability Q(a, a + k sqrt(a)), a = 4/g^2. So false alarms are
  * 1.04 to 1.7 times as many as allowed with the presets, and about 1,500 times as many with 3.5
- * background electrons and no amplifier noise. From 10 times on warningOnElectrons() returns a
- * warning. The factor lies within 2 % of the exact sum for the presets, and within 2 times of it
- * for a few electrons, or 5 times if F is above 1 and no amplifier noise smooths the steps of F
- * electrons.
+ * background electrons and no amplifier noise. From 10 times on, warningOnElectrons() returns a
+ * warning. The computed ratio of false alarms lies within 2 % of the exact sum for the presets. The
+ * ratio is wrong by a factor of up to 2 for a few electrons, and of up to 5 if F is above 1 and no
+ * amplifier noise smooths the steps of F electrons.
  * Test: TestPhotonReceiver.cxx.
  */
 #ifndef avianlidar_PhotonReceiver_h
@@ -40,12 +40,13 @@ struct PhotonReceiver
 {
   explicit PhotonReceiver(const Sensor& sensor);
 
-  double electronsPerJoule; ///< eta/(h nu)
-  double background;        ///< n_b, electrons in a range unit, on average
-  double darkVariance;      ///< sigma0^2
-  double excess;            ///< F
+  double electronsPerJoule; ///< eta/(h nu), electrons per joule at the aperture
+  double background;        ///< n_b, mean number of background electrons in a range unit
+  double darkVariance;      ///< sigma0^2, variance of a unit's electrons without signal
+  double excess;            ///< F, excess noise factor
 
-  /// Standard deviation of the number of electrons in a unit. @param electrons mean number n
+  /// Standard deviation of the number of electrons in a unit. @param electrons mean number n of
+  /// signal electrons
   double deviation(double electrons) const;
 
   /// Ratio of n to its standard deviation.
@@ -64,12 +65,14 @@ struct PhotonReceiver
 
 /// The sensor in a beam whose background has another radiance than the sky. A brighter background
 /// raises the lower limit to the same number of standard deviations of the noise, so that bright
-/// walls raise no more false alarms than the sky. @param radiance W/(m2 sr nm)
+/// walls raise no more false alarms than the sky. @param radiance radiance of the background, W/(m2
+/// sr nm)
 Sensor lookingAt(const Sensor& sensor, double radiance);
 
-/// Probability that a range unit is perceived. It follows from the noise of a photon receiver; with
-/// given limits it is 0 or 1. @param receiver receiver of the sensor @param energy received energy,
-/// J @param air mean energy from air in the unit, J; used if the threshold follows the air
+/// Probability that a range unit is perceived. With a photon receiver the probability follows from
+/// the noise; with given limits it is 0 or 1. @param receiver receiver of the sensor @param energy
+/// received energy, J @param air mean energy from air in the unit, J; used if the threshold follows
+/// the air
 double perceptionProbability(
   const Sensor& sensor, const PhotonReceiver& receiver, double energy, double air = 0.0);
 
@@ -77,41 +80,42 @@ double perceptionProbability(
 /// sensor's limit.
 double falseAlarmsOfElectrons(const Sensor& sensor);
 
-/// Empty, or a warning about a photon receiver with so few electrons that it would raise at least
-/// ten times the requested number of false alarms.
+/// Returns an empty string, or a warning about a photon receiver with so few electrons that it
+/// would raise at least ten times the requested number of false alarms.
 std::string warningOnElectrons(const Sensor& sensor);
 
-/// Factor k = n_T/sigma0. @param falseAlarms number expected in a scan @param units number of range
+/// Factor k = n_T/sigma0. @param falseAlarms expected number in a scan @param units number of range
 /// units of the scan, more than twice falseAlarms
 double thresholdFactor(double falseAlarms, double units);
 
 /// Number of range units inside the gate, summed over all beams. @param beams number of beams
 double rangeUnitsOf(const Sensor& sensor, double beams);
 
-/// Empty, or a sentence that names the value and what was expected. @param falseAlarms number
-/// expected in a scan @param dynamicRange dB
+/// Returns an empty string, or a sentence that names the value and what was expected.
+/// @param falseAlarms expected number in a scan @param dynamicRange as for setPhotonLimits(), dB
 std::string checkPhotonLimits(double falseAlarms, double dynamicRange);
 
-/// Set the limits of a sensor's photon receiver. @param falseAlarms number expected in a scan,
+/// Set the limits of a sensor's photon receiver. @param falseAlarms expected number in a scan,
 /// above 0
 /// @param dynamicRange ratio of the upper to the lower limit, dB (10 log10 of electrons), 0 to 1000
 /// @param beams number of beams @return as checkPhotonLimits()
 std::string setPhotonLimits(Sensor& sensor, double falseAlarms, double dynamicRange, double beams);
 
 /// Energy, J, that reaches the aperture from a Lambertian surface on the axis of the beam. Without
-/// an aperture it is the energy of the paper's radiometry.
-/// @param range m @param area silhouette weighted by the cosine of incidence, m^2; infinite for a
-/// wall that fills the beam @param reflectance 0 to 1 @param attenuation 1/m
+/// an aperture, the energy follows the paper's radiometry.
+/// @param range range of the surface, m @param area silhouette weighted by the cosine of incidence,
+/// m^2; infinite for a wall that fills the beam @param reflectance reflectance, 0 to 1
+/// @param attenuation attenuation coefficient of the air, 1/m
 double energyFromTarget(
   const Sensor& sensor, double range, double area, double reflectance, double attenuation);
 
 /// Set the limits of a sensor that perceives a surface which fills the beam up to `range`, m.
-/// @return empty, or a sentence as above
+/// @return an empty string, or a sentence that names the value and what was expected
 std::string setDataSheetLimits(
   Sensor& sensor, double range, double reflectance, double attenuation, double dynamicRange);
 
-/// Empty, or a sentence on what a photon receiver lacks. The other values of the sensor must be
-/// valid.
+/// Returns an empty string, or a sentence that names what a photon receiver lacks. The other values
+/// of the sensor must be valid.
 std::string checkPhotonReceiver(const Sensor& sensor);
 }
 

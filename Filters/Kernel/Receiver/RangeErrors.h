@@ -3,27 +3,27 @@
  * @file RangeErrors.h
  * @brief Errors of the range of a return: noise, walk and quantisation.
  *
- * The range has the standard deviation sqrt(a^2 + b^2/S^p), a the floor (clock, electronics), b the
- * noise at S = 1 and p the exponent. S is a signal-to-noise ratio of the strongest range unit,
- * which received m electrons: S = (m - sigma(m))/sqrt(sigma0^2 + F m/4), at least 1. The
+ * The range has the standard deviation sqrt(a^2 + b^2/S^p), with a the floor (clock, electronics),
+ * b the noise at S = 1 and p the exponent. S is a signal-to-noise ratio of the strongest range
+ * unit, which received m electrons: S = (m - sigma(m))/sqrt(sigma0^2 + F m/4), at least 1. The
  * denominator is the noise of the pulse's flanks, which on average get a quarter of the light of
- * the strongest unit. One deviation is subtracted because the strongest of some units is strong
- * partly by its noise. For strong light S tends to twice the ratio m/sqrt(sigma0^2 + F m). It does
- * not grow beyond Qhigh. S exists only for a photon receiver. Echoes of the energy Q come late by w
- * Qlow/Q (walk), w the walk at the limit. Ranges before or beyond the gate are folded back.
- * Finally, ranges are rounded to multiples of a quantum. False alarms have the same errors as
+ * the strongest unit. One deviation is subtracted because the strongest of several units is strong
+ * partly because of noise. For strong light S tends to twice the ratio m/sqrt(sigma0^2 + F m). S
+ * does not grow beyond Qhigh, and exists only for a photon receiver. Echoes of the energy Q come
+ * late by w Qlow/Q (walk), with w the walk at Qlow. Ranges before or beyond the gate are folded
+ * back. Finally, ranges are rounded to multiples of a quantum. False alarms have the same errors as
  * echoes. Returns stay in the order of their true ranges.
  *
- * Source: p = 2 is the Cramer-Rao bound of a delay; makers' sheets fit other exponents. b = 0.649 c
- * tau/2 is calculated for a pulse as long as a unit, tau: the rms error of the centroid of two
- * units over all places in a unit (TestRangeErrors.cxx has the integral). The walk is that of a
+ * Source: p = 2 is the Cramer-Rao bound of a delay; data sheets of makers have other exponents. b =
+ * 0.649 c tau/2 is calculated for a pulse as long as a unit, tau: the rms error of the centroid of
+ * two units over all places in a unit (TestRangeErrors.cxx has the integral). The walk is that of a
  * leading edge with a straight rise.
  * Differs: the paper's ranges are exact.
- * Valid: b holds for one pulse and one unit. With the b above, the rms error at n/sqrt(sigma0^2 + F
- * n) = 12 and more lies within 11 % of a Monte Carlo of the waveform. At 8, with a threshold that
- * two in five echoes do not reach, it lies 19 % below the Monte Carlo. A pulse shorter than a unit
- * adds an error of at most the unit's length divided by sqrt(12). Not valid if two surfaces share a
- * return.
+ * Valid: b holds for one pulse and one unit. With b = 0.649 c tau/2, the rms error at
+ * n/sqrt(sigma0^2 + F n) = 12 and more lies within 11 % of a Monte Carlo of the waveform. At 8,
+ * with a threshold that two in five echoes do not reach, the rms error lies 19 % below the Monte
+ * Carlo. A pulse shorter than a unit adds an error of at most the unit's length divided by
+ * sqrt(12). The model is not valid if two surfaces share a return.
  * Test: TestRangeErrors.cxx, Testing/Python/TestRangeNoise.py (Monte Carlo of the waveform).
  */
 #ifndef avianlidar_RangeErrors_h
@@ -37,7 +37,7 @@ namespace avianlidar
 class RangeErrors
 {
 public:
-  /// @param noise false: only walk and quantum
+  /// @param noise false if only walk and quantum apply
   RangeErrors(const Sensor& sensor, bool noise);
 
   /// True if ranges have noise.
@@ -48,7 +48,7 @@ public:
   double deviation(double energy) const;
 
   /// Range that the receiver reports, m, within the gate. @param range true range, m @param energy
-  /// as above
+  /// as for deviation()
   /// @param normal a standard normal deviate
   double measured(double range, double energy, double normal) const;
 

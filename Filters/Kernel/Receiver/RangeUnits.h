@@ -3,20 +3,20 @@
  * @file RangeUnits.h
  * @brief Sums the energies of all paths of a beam in range units (range bins), without the noise.
  *
- * A path of length l arrives after tau = l/c. Its energy arrives as a rectangular pulse of width
- * tau_e centred on tau and is divided, exactly and in proportion, among the units m, [m tau_s,
- * (m+1) tau_s), that the pulse overlaps. A width of 0 gives a delta pulse at tau. Energy that would
- * arrive before the pulse is sent, from closer than c tau_e/4, is counted in unit 0. A path shorter
- * than twice the minimum range is not recorded.
+ * A path of length l arrives after tau = l/c. The energy of the path arrives as a rectangular pulse
+ * of width tau_e centred on tau. This energy is divided, exactly and in proportion, among the units
+ * m, [m tau_s, (m+1) tau_s), that the pulse overlaps. A width of 0 gives a delta pulse at tau.
+ * Energy that would arrive before the pulse is sent, from closer than c tau_e/4, is counted in unit
+ * 0. A path shorter than twice the minimum range is not recorded.
  *
- * Units are sparse. Memory grows with the number of contributions and of the units that they meet,
- * on average 1 + tau_e/tau_s each, and not with the range. Sums run in the order of the
- * contributions.
+ * Units are sparse. Memory grows with the number of contributions and of the units that they meet
+ * (on average 1 + tau_e/tau_s per contribution), and not with the range. Sums run in the order of
+ * the contributions.
  *
  * Source: paper, Eq. 10.
  * Differs: the paper does not place the pulse. A pulse that starts at tau would move every echo c
- * tau_e/4 away, so it is centred.
- * Valid: tau_e from 0 to 1000 tau_s. The sum over units is the sum over paths to round-off.
+ * tau_e/4 away, so the pulse is centred.
+ * Valid: tau_e from 0 to 1000 tau_s. The sum over units equals the sum over paths up to rounding.
  * Test: TestRangeUnits.cxx.
  */
 #ifndef avianlidar_RangeUnits_h
@@ -31,27 +31,27 @@ namespace avianlidar
 /// Energy that came back along one path.
 struct Contribution
 {
-  double pathLength = 0.0; ///< m, the whole way out and back
-  double energy = 0.0;     ///< J; contributions of 0 are left out
+  double pathLength = 0.0; ///< length of the whole way out and back, m
+  double energy = 0.0;     ///< received energy, J; contributions of 0 J are left out
 };
 
 /// Energies that contributions put into some consecutive range units, in the order of the
 /// contributions. Contributions that put nothing there are left out.
 struct RangeShares
 {
-  const double* energies = nullptr;            ///< J, above 0
-  const std::uint32_t* contribution = nullptr; ///< number of each share's contribution
+  const double* energies = nullptr;            ///< energies of the shares, J, above 0
+  const std::uint32_t* contribution = nullptr; ///< contribution of each share, by number
   std::size_t count = 0;
 };
 
-/// Energy (J) and energy times a value.
+/// Sums of energies, J, and of energies times a value.
 struct WeightedSum
 {
   double energy = 0.0;
   double moment = 0.0;
 };
 
-/// Sums over shares, in their order. @param value called with the number of a share
+/// Sums over shares, in their order. @param value function of the number of a share
 template <class F>
 WeightedSum sumShares(const RangeShares& shares, F value)
 {
@@ -67,22 +67,23 @@ WeightedSum sumShares(const RangeShares& shares, F value)
 /// A range unit that received energy.
 struct RangeUnit
 {
-  std::int64_t index = 0;  ///< m
-  double energy = 0.0;     ///< J, sum of its shares
+  std::int64_t index = 0;  ///< number m of the unit
+  double energy = 0.0;     ///< sum of the unit's shares, J
   std::uint32_t paths = 0; ///< number of contributions with a share
 };
 
-/// Reusable: allocates nothing once its workspace has grown to the largest beam. One per thread.
+/// An object allocates nothing once its workspace has grown to the largest beam. Each thread needs
+/// its own object.
 ///
-/// Pulses are placed in a loop over lanes. They are added one by one to a table of a window of
+/// Pulses are placed in a loop over lanes, and are added one by one to a table of a window of
 /// units. If a beam's units lie farther apart than the table is long, the window moves to the next
 /// unit that a pulse meets.
 class RangeUnitAccumulator
 {
 public:
   /// @param samplingInterval tau_s, s, > 0 @param pulseWidth tau_e, s, in [0, 1000 tau_s]
-  /// @param rangeGate m, > 0: units that begin at or beyond it are dropped (see gateUnits())
-  /// @param minimumRange m: nearer contributions are dropped
+  /// @param rangeGate end of the gate, m, > 0; units that begin at or beyond the end are dropped
+  /// @param minimumRange begin of the gate, m; nearer contributions are dropped
   RangeUnitAccumulator(
     double samplingInterval, double pulseWidth, double rangeGate, double minimumRange = 0.0);
 
@@ -102,7 +103,7 @@ public:
   const std::vector<RangeUnit>& units() const { return this->Units; }
 
   /// Shares of the paths in units [first, last), which must lie inside the gate. Requires
-  /// accumulate(). Valid until the next call; empty after clear().
+  /// accumulate(). The shares are valid until the next call, and empty after clear().
   RangeShares sharesOf(std::int64_t first, std::int64_t last);
 
   /// Lengths (m) of the contributions, after accumulate().
@@ -129,14 +130,14 @@ private:
   double UnitPathLength; // c tau_s: twice a unit's length in range
   double RelativeWidth;  // tau_e/tau_s
   std::int64_t GateUnits;
-  double LeastLength; // m
+  double LeastLength; // least length of a recorded path, m
   double EnergyBeforeGate = 0.0;
   double EnergyBeyondGate = 0.0;
 
   // Contributions, in lanes.
   std::vector<double> Lengths;
   std::vector<double> Energies;
-  // Where their pulses lie: beginning and width, in units, first and last unit.
+  // Places of the contributions' pulses: beginning and width, in units, first and last unit.
   std::vector<double> Begins;
   std::vector<double> Widths;
   std::vector<double> Firsts;
@@ -160,7 +161,7 @@ private:
 /// Number of range units whose beginning lies inside the gate: ceil(2 gate/(c tau_s)), at least 1.
 std::int64_t unitsInsideGate(double samplingInterval, double rangeGate);
 
-/// The unit in which the gate begins, floor(2 minimum/(c tau_s)). Units before this one receive
+/// The unit in which the gate begins, floor(2 minimum/(c tau_s)). Units before this unit receive
 /// nothing.
 std::int64_t firstUnitInsideGate(double samplingInterval, double minimumRange);
 }

@@ -23,7 +23,7 @@ namespace avianlidar
 /// Distribution of the emitted energy inside the beam.
 enum class BeamProfile
 {
-  Uniform = 0, ///< uniform in solid angle (paper, Eq. 3); see BeamShape.h for beams not round
+  Uniform = 0, ///< uniform in solid angle (paper, Eq. 3); see BeamShape.h for other outlines
   /// exp(-2 k^2 u), u = (1-cos theta)/(1-cos theta0.5), k the truncation: by default 1/e^2 at the
   /// half-beamwidth, cut there.
   Gaussian = 1
@@ -39,15 +39,15 @@ enum class BeamOutline
 /// Model of the receiver, which turns energies into echoes.
 enum class ReceiverModel
 {
-  EnergyLimits = 0, ///< given limits, and noise photons (paper, Eq. 11 and 12)
-  Photons = 1       ///< limits that follow from light and electronics, see PhotonReceiver.h
+  EnergyLimits = 0, ///< receiver of given limits and noise photons (paper, Eq. 11 and 12)
+  Photons = 1       ///< receiver whose limits follow from light and electronics (PhotonReceiver.h)
 };
 
 /// Effect of scattering air on the threshold of a photon receiver.
 enum class ThresholdLaw
 {
-  Fixed = 0,     ///< nothing
-  FollowsAir = 1 ///< mean of the air's echo, plus as many deviations of the noise as without air
+  Fixed = 0,     ///< no effect
+  FollowsAir = 1 ///< mean of the air's echo, plus as many deviations of noise as without air
 };
 
 constexpr double SpeedOfLight = 299792458.0; // m/s, exact
@@ -67,31 +67,31 @@ constexpr double MaximumGateUnits = 4503599627370496.0; // 2^52
 /// The instrument. The defaults describe the paper's airport lidar (Sec. 5.3).
 struct Sensor
 {
-  double halfBeamwidth = 5.6e-3; ///< rad, 1e-9 to pi/3
+  double halfBeamwidth = 5.6e-3; ///< half-beamwidth, rad, 1e-9 to pi/3
   BeamProfile beamProfile = BeamProfile::Uniform;
   double gaussianTruncation = 1.0; ///< half-beamwidth in 1/e^2 radii of the Gaussian, 0.1 to 3
   BeamOutline beamOutline = BeamOutline::Ellipse;
-  double halfBeamwidthAcross = 0.0;  ///< second half-beamwidth, rad, 1e-9 to 0.1; 0: as the first
-  double beamRotation = 0.0;         ///< angle of the first from the horizontal, towards `up`, deg
+  double halfBeamwidthAcross = 0.0;  ///< second half-beamwidth, rad, 1e-9 to 0.1; 0: the first
+  double beamRotation = 0.0;         ///< angle of the first from the horizontal to `up`, deg
   Vec3 up{ 0.0, 0.0, 1.0 };          ///< up axis of the sensor, unit vector in scene coordinates
-  double pulseEnergy = 3.6e-4;       ///< Qs, J, 1e-50 to 1e50
-  double pulseWidth = 5e-9;          ///< tau_e, s, >= 0 and <= 1000 tau_s
-  double frequency = 3.313e14;       ///< nu, Hz, 1 to 1e30
-  double samplingInterval = 5e-9;    ///< tau_s, s, 1e-30 to 1e20
+  double pulseEnergy = 3.6e-4;       ///< pulse energy Qs, J, 1e-50 to 1e50
+  double pulseWidth = 5e-9;          ///< pulse width tau_e, s, >= 0 and <= 1000 tau_s
+  double frequency = 3.313e14;       ///< frequency nu of the light, Hz, 1 to 1e30
+  double samplingInterval = 5e-9;    ///< sampling interval tau_s, s, 1e-30 to 1e20
   double rangeGate = 4000.0;         ///< largest recorded range, m, > 0, <= 1e30
-  double noisePhotonRate = 20e3;     ///< mean photons per second, 0 to 1e50
-  double lowerEnergyLimit = 2e-6;    ///< Qlow, J, 0 to Qhigh
-  double upperEnergyLimit = 6.25e-5; ///< Qhigh, J, Qlow to 1e50
-  double receiverAperture = 0.0;     ///< m^2, 0 to 1e20; 0: the paper's radiometry (no 1/r^2)
+  double noisePhotonRate = 20e3;     ///< mean number of noise photons per second, 0 to 1e50
+  double lowerEnergyLimit = 2e-6;    ///< lower limit Qlow, J, 0 to Qhigh
+  double upperEnergyLimit = 6.25e-5; ///< upper limit Qhigh, J, Qlow to 1e50
+  double receiverAperture = 0.0; ///< aperture, m^2, 0 to 1e20; 0: the paper's radiometry (no 1/r^2)
 
   // The photon receiver; the defaults are assumed.
   ReceiverModel receiverModel = ReceiverModel::EnergyLimits;
   ThresholdLaw thresholdLaw = ThresholdLaw::FollowsAir; ///< law of the photon threshold
-  double receiverEfficiency = 0.4;  ///< eta, electrons per photon at the aperture, > 0, <= 1
-  double filterBandwidth = 10.0;    ///< nm, 0 to 1e6
-  double backgroundRadiance = 0.05; ///< L, W/(m^2 sr nm), 0 to 1e10
-  double amplifierNoise = 60.0;     ///< n_a, electrons rms in a range unit, 0 to 1e20
-  double excessNoiseFactor = 3.0;   ///< F, 1 to 1e6
+  double receiverEfficiency = 0.4;  ///< electrons per photon at the aperture, eta, > 0, <= 1
+  double filterBandwidth = 10.0;    ///< bandwidth of the filter, nm, 0 to 1e6
+  double backgroundRadiance = 0.05; ///< radiance L, W/(m^2 sr nm), 0 to 1e10
+  double amplifierNoise = 60.0;     ///< noise n_a, electrons rms in a range unit, 0 to 1e20
+  double excessNoiseFactor = 3.0;   ///< excess noise factor F, 1 to 1e6
 
   // Daylight on the surfaces in a beam (Background.h); 0: all beams have the background radiance.
   double sunlight = 0.0;      ///< E, irradiance of surfaces facing the sun, W/(m^2 nm), 0 to 1e10
@@ -147,7 +147,7 @@ struct Sensor
   double rangeUnitLength() const { return 0.5 * SpeedOfLight * this->samplingInterval; }
 };
 
-/// Beams that must give a number of the sensor; other beams have the default.
+/// Beams whose input must give a number of the sensor; other inputs have the default.
 enum class NeededOf
 {
   All,
@@ -159,26 +159,29 @@ enum class NeededOf
 struct SensorField
 {
   const char* name; ///< name in field data and sensor files
-  const char* unit; ///< "1": a pure number
+  const char* unit; ///< unit; "1": a pure number
   double Sensor::*member;
   double least, most;
-  const char* expected; ///< the range in words, also where it depends on other fields
+  const char* expected; ///< expected range in words, also where other fields decide on the range
   NeededOf neededOf;
 };
 
-/// All numbers of the sensor; profile and receiver model are choices.
+/// All numbers of the sensor. Choices such as profile and receiver model have no entry.
 const std::vector<SensorField>& sensorFields();
 
 /// Entry of a member in sensorFields().
 const SensorField& sensorField(double Sensor::*member);
 
-/// Range, m, from which echoes arrive after the next pulse has left. @param pulseInterval s
+/// Range, m, from which echoes arrive after the next pulse has left. @param pulseInterval time
+/// between two pulses, s
 double unambiguousRange(double pulseInterval);
 
-/// Empty, or a warning about a gate that ends after the next pulse has left. @param pulseInterval s
+/// Returns an empty string, or a warning about a gate that ends after the next pulse has left.
+/// @param pulseInterval time between two pulses, s
 std::string warningOnAmbiguity(const Sensor& sensor, double pulseInterval);
 
-/// Empty if the sensor is usable; otherwise a sentence that names the value and what was expected.
+/// Returns an empty string for a usable sensor, else a sentence that names the value and what was
+/// expected.
 std::string checkSensor(const Sensor& sensor);
 }
 

@@ -4,13 +4,13 @@
  * @brief Finds the closed shells of a set of triangles and makes each face outward.
  *
  * At each edge triangles are paired, and paired triangles belong to one shell. If more than two
- * share an edge, two that name the same given points are paired first, and the others are paired by
- * their angle about the edge. Bodies that touch thus become shells of their own, or one shell that
- * is closed all the same. A shell faces outward, except a hole: a shell inside another one and
- * wound the other way.
+ * triangles share an edge, triangles that name the same given points are paired first, and the
+ * other triangles are paired by their angle about the edge. Bodies that touch thus become separate
+ * shells or one closed shell. All shells face outward, except holes. A hole is a shell inside
+ * another shell and is wound the other way.
  * Source: none.
- * Valid: finite points; corners with equal coordinates are one point. Some 32 triangles of a shell
- * decide whether it lies inside another one.
+ * Valid: finite points; corners with equal coordinates are one point. About 32 triangles of a shell
+ * decide whether the shell lies inside another one.
  * Test: TestClosedShells.cxx.
  */
 #ifndef avianlidar_ClosedShells_h

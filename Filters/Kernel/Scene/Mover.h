@@ -6,7 +6,7 @@
  *
  * Between two poses the position is linear in time, and the orientation is a spherical linear
  * interpolation (slerp). The object is absent before the first pose and after the last one. An
- * object without times has one pose and is always present. A part turns about its hinge by
+ * object without times has one pose and is present at all times. A part turns about its hinge by
  * amplitude sin(2 pi (frequency t + phase)) before the pose is applied.
  *
  * Source: slerp: K. Shoemake, "Animating Rotation with Quaternion Curves", SIGGRAPH 1985.
@@ -35,36 +35,36 @@ struct Pose
   glm::dquat orientation{ 1.0, 0.0, 0.0, 0.0 }; ///< unit, from the object's frame to the scene's
 };
 
-/// How a part flaps, in the object's frame.
+/// Flapping of a part, in the object's frame.
 struct Flap
 {
-  Vec3 hinge{ 0.0 };          ///< a point of the axis, m
+  Vec3 hinge{ 0.0 };          ///< point on the axis, m
   Vec3 axis{ 1.0, 0.0, 0.0 }; ///< unit vector
-  double amplitude = 0.0;     ///< rad
-  double frequency = 0.0;     ///< Hz
-  double phase = 0.0;         ///< phase, turns
+  double amplitude = 0.0;     ///< largest angle about the axis, rad
+  double frequency = 0.0;     ///< flaps per second, Hz
+  double phase = 0.0;         ///< phase at time 0, turns
 };
 
 /// Sphere that holds an object, however its parts flap.
 struct MoverSphere
 {
-  Vec3 center{ 0.0 };  ///< m
-  double radius = 0.0; ///< m
+  Vec3 center{ 0.0 };  ///< centre, m
+  double radius = 0.0; ///< radius, m
 };
 
 struct Mover
 {
-  TriangleMesh mesh;                ///< in the object's frame, m; all its points are corners
-  std::vector<std::uint32_t> parts; ///< per point: 0 is rigid, p moves with flaps[p - 1]
-  std::vector<Material> materials;  ///< per triangle
-  std::vector<int> objectIds;       ///< per triangle; used by no other object of the scene
-  std::vector<int> materialIds;     ///< per triangle
-  std::vector<Pose> poses;          ///< in order of time
+  TriangleMesh mesh;                ///< triangles in the object's frame, m; all points are corners
+  std::vector<std::uint32_t> parts; ///< part of each point: 0 is rigid, p moves with flaps[p - 1]
+  std::vector<Material> materials;  ///< material of each triangle
+  std::vector<int> objectIds;       ///< object id of each triangle; used by no other object
+  std::vector<int> materialIds;     ///< material id of each triangle
+  std::vector<Pose> poses;          ///< poses in order of time
   bool always = false;              ///< true if the one pose holds at any time
   std::vector<Flap> flaps;
   // Set by prepareMover().
-  MoverSphere bound;      ///< in the object's frame
-  std::uint64_t hash = 0; ///< hash of all members but the ids
+  MoverSphere bound;      ///< sphere about the object, in the object's frame
+  std::uint64_t hash = 0; ///< hash of all members except the ids
 };
 
 /// Check an object, normalise its orientations and axes, and find its bound and hash.
@@ -78,7 +78,8 @@ std::uint64_t orderMovers(std::vector<Mover>& movers);
 /// Find the pose at a time, s. @return false if the object is absent
 bool poseAt(const Mover& mover, double time, Pose& pose);
 
-/// Find a sphere about the object at all times in [begin, end], s. @return false if absent
+/// Find a sphere about the object at all times in [begin, end], s. @return false if the object is
+/// absent at all these times
 bool sphereBetween(const Mover& mover, double begin, double end, MoverSphere& sphere);
 
 /// Bound of an object in a pose, in scene coordinates.

@@ -8,8 +8,8 @@
  * the incident one (monostatic: delta = 2 theta_i). Cosines are cut off at 0 before they are
  * raised to a power.
  *
- * - LambertBlinnPhong: f_d = kd cos theta_i, f_s = ks cos^kp delta, and f_s = 0 for cos delta <=
- *   0, also at kp = 0.
+ * - LambertBlinnPhong: f_d = kd cos theta_i, f_s = ks cos^kp delta, and f_s = 0 for cos delta <= 0,
+ *   also at kp = 0.
  * - Phong: f_d = kd cos theta_i, f_s = ks cos^kp delta cos theta_i.
  * - Microfacet: with h the half vector, theta_h its angle to the normal, theta_d its angle to
  *   either direction, and s = (1 - cos theta_d)^5: f_d = kd (1 - s) cos theta_i, f_s = (ks + kd s)
@@ -79,10 +79,10 @@ struct Material
 struct MaterialCoefficient
 {
   const char* name; ///< name of its cell array and key in scene files
-  const char* unit; ///< "1": a pure number
+  const char* unit; ///< unit; "1": a pure number
   double Material::*member;
   double most;          ///< upper limit of the coefficient
-  bool isShare;         ///< true for a share of the energy; all shares add up to at most 1
+  bool isShare;         ///< true for a share of the energy; the sum of all shares is at most 1
   const char* expected; ///< expected range, in words
   /// True if a scene file must give the coefficient, for a material with the preceding
   /// coefficients.
@@ -162,8 +162,8 @@ enum class ReflectanceModel
 /// Angles at one reflection; negative cosines are kept.
 struct ReflectionGeometry
 {
-  double cosIncidence = 1.0;  ///< between the reversed incident direction and the normal
-  double cosOutgoing = 1.0;   ///< between the outgoing direction and the normal
+  double cosIncidence = 1.0;  ///< cosine between the reversed incident direction and the normal
+  double cosOutgoing = 1.0;   ///< cosine between the outgoing direction and the normal
   double cosLobe = 1.0;       ///< cos delta
   double sin2Lobe = 0.0;      ///< sin^2 delta, accurate for small delta
   double sin2Half = 0.0;      ///< sin^2 theta_h
@@ -180,13 +180,13 @@ AVIANLIDAR_ALWAYS_INLINE double roughTermOf(
   return sines / lanes::larger(lanes::larger(cosIncidence, cosOutgoing), 1e-300);
 }
 
-/// @param incident unit, travelling towards the surface @param outgoing unit, away from it
-/// @param normal unit, on the side of the incident ray's origin
+/// @param incident unit vector towards the surface @param outgoing unit vector away from the
+/// surface @param normal unit vector on the side of the incident ray's origin
 ReflectionGeometry reflectionGeometry(
   const Vec3& incident, const Vec3& outgoing, const Vec3& normal);
 
-/// Geometry of a reflection back to the ray's origin: outgoing = -incident, delta = 2 theta_i.
-/// Relative error of f below 1e-9 at kp = 1e6.
+/// Geometry of a reflection back to the ray's origin: outgoing = -incident, delta = 2 theta_i. The
+/// relative error of f is below 1e-9 at kp = 1e6.
 AVIANLIDAR_ALWAYS_INLINE ReflectionGeometry monostaticGeometry(double cosIncidence)
 {
   const double sineSquared = lanes::larger((1.0 - cosIncidence) * (1.0 + cosIncidence), 0.0);
@@ -202,7 +202,7 @@ AVIANLIDAR_ALWAYS_INLINE ReflectionGeometry mirrorGeometry(double cosIncidence)
   return { cosIncidence, cosIncidence, 1.0, 0.0, 0.0, cosIncidence, 0.0 };
 }
 
-/// Mirror direction of the incident ray, unit for unit arguments.
+/// Mirror direction of the incident ray; a unit vector if both arguments are unit vectors.
 Vec3 mirrorDirection(const Vec3& incident, const Vec3& normal);
 
 /// The two components of f_sur (paper, Eq. 5).
@@ -229,8 +229,9 @@ AVIANLIDAR_ALWAYS_INLINE double lobe(double cosine, double sineSquared, double e
 }
 
 /// @name The models.
-/// of() gives f_d and f_s. bound() gives their upper bounds for all outgoing directions at an angle
-/// of incidence. unlikeLambert() gives the ratio f_d/(kd cos theta_i) to a Lambertian surface.
+/// of() gives f_d and f_s. bound() gives upper bounds of f_d and f_s for all outgoing directions at
+/// an angle of incidence. unlikeLambert() gives the ratio f_d/(kd cos theta_i) to a Lambertian
+/// surface.
 /// @{
 struct LambertBlinnPhong
 {
@@ -294,7 +295,7 @@ struct Microfacet
 
 struct OrenNayar
 {
-  /// A and B.
+  /// Coefficients A and B of the model.
   struct Shares
   {
     double even;
@@ -348,7 +349,7 @@ AVIANLIDAR_ALWAYS_INLINE auto withModel(ReflectanceModel model, F f)
 Reflectance reflectance(
   ReflectanceModel model, const Material& material, const ReflectionGeometry& geometry);
 
-/// Only f_s.
+/// f_s of `material` (which must have passed checkMaterial).
 inline double specularReflectance(
   ReflectanceModel model, const Material& material, const ReflectionGeometry& geometry)
 {
@@ -384,11 +385,12 @@ AVIANLIDAR_ALWAYS_INLINE Reflectance throughAperture(
 }
 
 /// Upper bound, 1/sr, of the share of energy that reaches an aperture of A m2 at r m from a
-/// surface, divided by A/r2. It is the gain of the whole albedo on the lobe's axis or of a diffuse
-/// surface, whichever is larger.
+/// surface, divided by A/r2. The bound is the gain of the whole albedo on the lobe's axis or of a
+/// diffuse surface, whichever is larger.
 double apertureGain(const Material& material);
 
-/// Squared incidence angle, rad2, at which the lobe straight back is 1/e; 0 without a lobe.
+/// Squared incidence angle, rad2, at which the lobe straight back has fallen to 1/e; 0 without a
+/// lobe.
 double lobeWidth2(const Material& material);
 }
 

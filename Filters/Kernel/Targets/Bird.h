@@ -3,17 +3,17 @@
  * @file Bird.h
  * @brief A bird as closed surfaces: a body and two wings.
  *
- * The body stands for an ellipsoid of revolution, whose length is 0.65 of the bird's length. Its
- * frontal area is S_b = 0.0129 M^0.614 m^2 for passerines and 0.00813 M^0.666 m^2 for others, with
- * the mass M in kg. The wings are flat plates with an angle of attack of 6 degrees. Together they
- * have 0.85 of the wing area, and their thickness is 0.001 of their chord. They are hinged at the
- * sides of the body, at its middle. They flap by 35 degrees as a sine, or are held 5 degrees up in
- * a glide.
+ * The body stands for an ellipsoid of revolution, whose length is 0.65 of the bird's length. The
+ * frontal area of the body is S_b = 0.0129 M^0.614 m^2 for passerines and 0.00813 M^0.666 m^2 for
+ * others, with the mass M in kg. The wings are flat plates with an angle of attack of 6 degrees.
+ * Both wings together have 0.85 of the wing area, and the thickness of a wing is 0.001 of its
+ * chord. Wings are hinged at the sides of the body, at its middle. Wings flap by 35 degrees as a
+ * sine, or are held 5 degrees up in a glide.
  *
  * The body is a polyhedron of 48 triangles that has the effective area of the ellipsoid (silhouette
  * weighted by the cosine of incidence) from every direction. For any convex body with a centre this
  * area is half a quadratic form of the direction, so two values are fitted. The wings have 24
- * triangles. With so few triangles, a beam with a bird in it is still integrated.
+ * triangles. With so few triangles, a beam that meets a bird is still integrated over polygons.
  *
  * Frame of a bird: x right, y forward, z up. The bank (to the right) turns the bird first, then the
  * heading (clockwise from north).
@@ -22,7 +22,7 @@
  * Exp. Biol. 135 (1988). Wingbeats: C. J. Pennycuick, J. Exp. Biol. 199 (1996).
  * Differs: no head, neck, tail or legs. Shares, angles and thickness are assumed.
  * Valid: the effective area of the body is exact. The effective area of the wings is within 1 % of
- * plates. The body is some per cent longer than the ellipsoid.
+ * the area of plates. The body is some per cent longer than the ellipsoid.
  * Test: TestBird.cxx.
  */
 #ifndef avianlidar_Bird_h
@@ -38,12 +38,12 @@ namespace avianlidar
 struct BirdSpecies
 {
   std::string name;
-  double mass = 0.0;     ///< kg, 1e-3 to 100
-  double length = 0.0;   ///< from bill to tail, m, 0.01 to 10
-  double span = 0.0;     ///< m, 0.01 to 10, more than the width of the body
+  double mass = 0.0;     ///< mass, kg, 1e-3 to 100
+  double length = 0.0;   ///< length from bill to tail, m, 0.01 to 10
+  double span = 0.0;     ///< wingspan, m, 0.01 to 10, more than the width of the body
   double wingArea = 0.0; ///< area of both wings and the body between them, m^2, 1e-5 to 10
   bool passerine = false;
-  double airspeed = 0.0; ///< m/s, 0.1 to 100
+  double airspeed = 0.0; ///< airspeed, m/s, 0.1 to 100
 };
 
 enum class BirdPart
@@ -57,17 +57,18 @@ enum class BirdPart
 struct BirdShape
 {
   explicit BirdShape(const BirdSpecies& species);
-  double bodyDiameter;  ///< m
-  double bodyLength;    ///< m
+  double bodyDiameter;  ///< diameter of the body, m
+  double bodyLength;    ///< length of the body, m
   double wingLength;    ///< length of one wing, m
-  double wingChord;     ///< m
-  double wingThickness; ///< m
+  double wingChord;     ///< chord of a wing, m
+  double wingThickness; ///< thickness of a wing, m
 
   /// Returns a shape with all lengths multiplied by a factor.
   BirdShape scaled(double factor) const;
 };
 
-/// Angle of the wings above the body's plane, rad. @param phase in wingbeats; no effect in a glide
+/// Angle of the wings above the body's plane, rad. @param phase phase in wingbeats; no effect in a
+/// glide
 double wingAngle(double phase, bool gliding);
 
 /// Frequency of wingbeats in level flight, Hz.
@@ -77,16 +78,16 @@ double wingbeatFrequency(const BirdSpecies& species);
 /// @param angle angle of the wings, rad
 TriangleMesh birdPart(const BirdShape& shape, BirdPart part, double angle);
 
-/// All parts together.
+/// All parts of a bird in one mesh.
 TriangleMesh wholeBird(const BirdShape& shape, double angle);
 
 /// Reads a table of species with the header of Filters/Birds/species.csv. Lines that begin with #
 /// are comments. Throws std::runtime_error naming file, line and column.
-/// @param file for messages
+/// @param file name of the file, for messages
 std::vector<BirdSpecies> readSpecies(const std::string& text, const std::string& file);
 
-/// Index of the first species with this name. Throws std::runtime_error if no species has it: "is
-/// 'dodo', expected one of ...".
+/// Index of the first species with this name. Throws std::runtime_error ("is 'dodo', expected one
+/// of ...") if no species has the name.
 std::size_t findSpecies(const std::vector<BirdSpecies>& all, const std::string& name);
 }
 

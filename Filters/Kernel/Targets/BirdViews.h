@@ -3,14 +3,14 @@
  * @file BirdViews.h
  * @brief Silhouettes of a flying bird, by heading, wing phase and elevation of the line of sight.
  *
- * Each wing phase has BirdHeadings headings, evenly spaced over a turn; the phases are evenly
- * spaced over the beat. Headings are shifted from phase to phase, so that all poses differ in
+ * Each wing phase has BirdHeadings headings, evenly spaced over a turn. The phases are evenly
+ * spaced over a wingbeat. Headings are shifted from phase to phase, so that all poses differ in
  * heading. A heading counts from the line of sight, clockwise as seen from above.
  *
  * Source: none.
  * Differs: the bird has no bank and no pitch.
- * Valid: see Silhouette.h; seen from afar. The mean of probabilities over these poses lies within
- * 0.02 of the mean over all poses.
+ * Valid: as in Silhouette.h, for a bird that is seen from afar. The mean of probabilities over
+ * these poses lies within 0.02 of the mean over all poses.
  * Test: TestBirdViews.cxx.
  */
 #ifndef avianlidar_BirdViews_h

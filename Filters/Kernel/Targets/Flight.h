@@ -10,20 +10,20 @@
  * - Flock: birds with one velocity on one straight, level crossing (flockPlaces()).
  * - Approach: birds that descend at 3 degrees in straight lines towards the threshold of a runway,
  *   uniformly distributed within 75 m + 0.15 d to either side, d the distance. This pattern
- *   represents birds that come to feed or roost there and meet arriving aircraft.
+ *   represents birds that come to feed or roost near the runway and meet arriving aircraft.
  * - Tracks (readFlights()): paths that were measured or computed elsewhere; attitudes follow from
- *   them.
+ *   the paths.
  *
  * Speeds are normally distributed about the species' airspeed with a standard deviation of 10 %,
  * cut at 30 %. Flight is straight between two poses; in a circle this errs by less than 1 cm.
  *
  * Source: flocks of starlings: M. Ballerini et al., "Empirical investigation of starling flocks",
  * Animal Behaviour 76 (2008): flocks are thin and flat, with sides of 1 : 2.8 : 5.6 for any size,
- * and denser at the border. No neighbour is nearer than about a wingspan, and distances of nearest
- * neighbours do not depend on the size.
- * Differs: a flock is a rigid ellipsoid with its short axis upright. Assumed: one bird in (4
- * wingspans)^3 on average, twice the density at the border as in the middle; speeds, banks and
- * spreads above. There is no wind.
+ * and are denser at the border. No neighbour is nearer than about a wingspan, and distances of
+ * nearest neighbours do not depend on the size.
+ * Differs: a flock is a rigid ellipsoid with its short axis upright. The following is assumed: one
+ * bird in (4 wingspans)^3 on average, twice the density at the border as in the middle, and the
+ * speeds, banks and spreads above. There is no wind.
  * Valid: coordinates and times up to 1e9 m and s.
  * Test: TestFlight.cxx.
  */
@@ -47,7 +47,7 @@ constexpr double LargestOfFlight = 1e9;
 
 struct Flight
 {
-  std::string number;      ///< unique
+  std::string number;      ///< unique number, as text
   std::size_t species = 0; ///< index in a table of species
   bool gliding = false;
   double wingPhase = 0.0; ///< phase at time 0, in wingbeats
@@ -68,16 +68,16 @@ struct FlightSettings
   FlightPattern pattern = FlightPattern::Crossings;
   int numberOfBirds = 10; ///< 0 to 100,000
   std::int32_t seed = 0;
-  std::array<double, 2> timeRange{ 0.0, 60.0 }; ///< s
-  Vec3 center{ 0.0 };                           ///< m
+  std::array<double, 2> timeRange{ 0.0, 60.0 }; ///< begin and end, s
+  Vec3 center{ 0.0 };                           ///< centre of the disc, m
   double radius = 500.0; ///< radius of the disc, m; half the approach's length
-  std::array<double, 2> heights{ 10.0, 150.0 }; ///< above the center, m; unused for approaches
+  std::array<double, 2> heights{ 10.0, 150.0 }; ///< heights above center, m; unused for approaches
   Vec3 thresholdPosition{ 0.0 };                ///< threshold of the runway, m
   double thresholdHeading = 0.0; ///< heading of landings, degrees clockwise from north
 };
 
-/// Returns an empty string, or a sentence that names the wrong setting as in vtkAvianLidarTracks
-/// and what is expected.
+/// Returns an empty string, or a sentence that names the wrong setting (as vtkAvianLidarTracks
+/// does) and what is expected.
 std::string checkFlights(const FlightSettings& settings);
 
 /// Makes flights for the whole time range. Bird k, counted from 1, does not depend on the number of
@@ -88,7 +88,7 @@ std::vector<Flight> makeFlights(
 
 /// Positions of birds in a flock relative to its middle, m: x along its longest axis, z upright
 /// along its shortest one. No two birds are nearer than the span.
-/// @param span m
+/// @param span wingspan, m
 std::vector<Vec3> flockPlaces(std::int32_t seed, std::size_t birds, double span);
 
 /// Sets orientations from the path: forward along the velocity, with the bank atan(v w / g) of a
@@ -96,13 +96,13 @@ std::vector<Vec3> flockPlaces(std::int32_t seed, std::size_t birds, double span)
 /// level and keeps its heading. Requires at least two poses and increasing times.
 void orientAlongPath(Flight& flight);
 
-/// Phase of the wingbeat of a track at time 0, by its index among the tracks.
+/// Phase of the wingbeat of a track at time 0. @param track index of the track
 double trackWingPhase(std::int32_t seed, std::size_t track);
 
 /// Reads a table of tracks: a header "id,species,time,x,y,z" or
-/// "id,species,time,longitude,latitude,height", lines that begin with # are comments. Rows of
+/// "id,species,time,longitude,latitude,height". Lines that begin with # are comments. Rows of
 /// several tracks may alternate. Throws std::runtime_error naming file, line and column.
-/// @param file for messages @param known all species
+/// @param file name of the file, for messages @param known all species
 /// @param origin origin of the scene: latitude, longitude in degrees, height above the ellipsoid in
 /// m (the caller checks it with GeodeticFrame::checkOrigin())
 std::vector<Flight> readFlights(const std::string& text, const std::string& file,

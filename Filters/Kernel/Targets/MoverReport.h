@@ -23,16 +23,17 @@ namespace avianlidar
 /// Light that the beams of a scan receive from one mover.
 struct MoverReport
 {
-  bool present = false; ///< true if it exists at the time of `pose`; if false, the rest is invalid
-  Pose pose; ///< pose when the beam with most of its light fires, or mid-scan if no beam touches it
-  /// Poses when the first and the last beam fire that contain the mover's origin or receive energy
-  /// from the mover, otherwise `pose`. They are a revolution apart if the mover crosses from the
-  /// last column to the first.
+  /// True if the mover exists at the time of `pose`. If false, the other members are invalid.
+  bool present = false;
+  Pose pose; ///< pose when the beam with most of the mover's light fires; mid-scan if untouched
+  /// Poses when the first and the last of those beams fire that contain the mover's origin or
+  /// receive energy from the mover; `pose` without such beams. Both are a revolution apart if the
+  /// mover crosses from the last column to the first.
   Pose first, last;
-  std::size_t beam = 0;       ///< beam with most of its light, 0 if no beam may touch the mover
-  Vec3 origin{ 0.0 };         ///< origin of this beam, m
-  double range = 0.0;         ///< range from this origin to `pose`, m
-  double effectiveArea = 0.0; ///< m^2, see Silhouette.h; NaN if its bounding sphere holds `origin`
+  std::size_t beam = 0; ///< beam with most of the mover's light, 0 if no beam may touch the mover
+  Vec3 origin{ 0.0 };   ///< origin of this beam, m
+  double range = 0.0;   ///< range from this origin to `pose`, m
+  double effectiveArea = 0.0; ///< m^2, see Silhouette.h; NaN if the mover's sphere holds `origin`
   bool touched = false;       ///< true if a beam may touch the mover
   std::uint32_t beams = 0;    ///< number of beams that contain the mover's origin
   double energy = 0.0;        ///< largest of MoverSight::energy, J

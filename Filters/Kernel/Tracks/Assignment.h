@@ -4,14 +4,14 @@
  * @brief One-to-one assignment of least cost, where only some pairs are allowed and a row may stay
  * unassigned at a cost.
  *
- * Rows are added one by one. Each row takes the shortest augmenting path to a free column or to
- * staying unassigned (R. Jonker and A. Volgenant, "A shortest augmenting path algorithm for dense
- * and sparse linear assignment problems", Computing 38, 1987). The path stays within the rows and
- * columns that allowed pairs connect to this row.
+ * Rows are added one by one. Each row takes the shortest augmenting path that ends at a free column
+ * or with a row unassigned (R. Jonker and A. Volgenant, "A shortest augmenting path algorithm for
+ * dense and sparse linear assignment problems", Computing 38, 1987). The path stays within the rows
+ * and columns that allowed pairs connect to this row.
  *
- * Source: see above.
+ * Source: Jonker and Volgenant, as above.
  * Differs: Dijkstra's algorithm with a heap from the first row on; no initial reduction of columns.
- * Valid: finite costs of any sign. Among several best assignments, the order of the input decides.
+ * Valid: finite costs of any sign. The order of the input decides among several best assignments.
  * Test: TestAssignment.cxx against brute force, TestTracker.py against SciPy.
  */
 #ifndef avianlidar_Assignment_h

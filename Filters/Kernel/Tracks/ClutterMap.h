@@ -10,8 +10,8 @@
  * removed.
  *
  * The map is a sorted list of cells. A new scan is sorted and merged with the list. To find
- * probabilities, a scan walks along the list once for each row of neighbours. Learning and
- * probabilities both take about n log n + m steps for n points and m cells.
+ * probabilities, a sorted scan passes along the list once for each row of neighbours. Learning
+ * takes about p log p + m steps for p points and m cells, as probabilities do.
  *
  * Source: background subtraction by the share of scans, as in Examples/sequence. The exponential
  * window is added.
@@ -33,29 +33,29 @@ namespace avianlidar
 /// Cells about the sensor. Angles are rounded to the nearest multiple of their step, ranges down.
 struct ClutterGrid
 {
-  double rangeStep = 1.5;       ///< m, 0.001 to 1000
-  double azimuthStep = 0.375;   ///< degrees, 0.001 to 90; rounded to fit the whole circle
-  double elevationStep = 0.375; ///< degrees, 0.001 to 90
+  double rangeStep = 1.5;     ///< length of a cell along the range, m, 0.001 to 1000
+  double azimuthStep = 0.375; ///< width of a cell, degrees, 0.001 to 90; rounded to fit the circle
+  double elevationStep = 0.375; ///< height of a cell, degrees, 0.001 to 90
 
-  int columns() const; ///< cells of the whole circle
+  int columns() const; ///< number of cells of the whole circle
 };
 
 struct ClutterCell
 {
-  int azimuth = 0;   ///< 0 to columns() - 1, clockwise from y
-  int elevation = 0; ///< 0 is the horizon
+  int azimuth = 0;   ///< number of the azimuth, 0 to columns() - 1, clockwise from y
+  int elevation = 0; ///< number of the elevation; 0 is the horizon
   int range = 0;
 };
 
 class ClutterMap
 {
 public:
-  /// Number of a cell; the list is sorted by it.
+  /// Number of a cell; the list of cells is sorted by this number.
   using Key = std::uint64_t;
 
   static constexpr double LongestWindow = 100000.0;
   static constexpr int MostTolerance = 10;
-  /// Number of ranges; the last one includes all larger ranges.
+  /// Number of cells along the range; the last cell holds all larger ranges.
   static constexpr int MostRanges = (1 << 26) - 2 * MostTolerance - 1;
 
   /// @param window W, in scans, 1 to LongestWindow
@@ -64,7 +64,7 @@ public:
   /// Returns what is wrong with a grid or a window, or an empty string.
   static std::string check(const ClutterGrid& grid, double window);
 
-  /// The cell of a point. @param offset from the sensor, m
+  /// Number of the cell of a point. @param offset position relative to the sensor, m
   static Key keyOf(const ClutterGrid& grid, const Vec3& offset);
   static Key keyOf(const ClutterCell& cell);
   static ClutterCell cellOf(Key key);
@@ -73,7 +73,7 @@ public:
   /// The middle of a cell relative to the sensor, m.
   static Vec3 middleOf(const ClutterGrid& grid, const ClutterCell& cell);
 
-  /// The map after one more scan. @param points keys of its points, in any order
+  /// The map after one more scan. @param points keys of the scan's points, in any order
   ClutterMap learned(std::vector<Key> points) const;
 
   /// A map with the given cells. @param scans number of scans learned
@@ -81,11 +81,11 @@ public:
     const std::vector<Key>& cells, const std::vector<double>& persistences, int scans) const;
 
   /// The largest persistence of the cells around each point.
-  /// @param rangeTolerance, angularTolerance cells to each side, 0 to MostTolerance
+  /// @param rangeTolerance, angularTolerance number of cells to each side, 0 to MostTolerance
   std::vector<double> probabilities(
     const std::vector<Key>& points, int rangeTolerance, int angularTolerance) const;
 
-  const std::vector<Key>& keys() const { return this->Keys; } ///< increasing
+  const std::vector<Key>& keys() const { return this->Keys; } ///< keys of all cells, increasing
   double persistence(std::size_t index) const { return this->shareOf(this->Sums[index]); }
   int scans() const { return this->Scans; }
   const ClutterGrid& grid() const { return this->Grid; }
@@ -102,7 +102,7 @@ private:
   double Window;
   int Scans = 0;
   std::vector<Key> Keys;
-  std::vector<double> Sums; ///< by cell: sum of the weights of scans with an echo
+  std::vector<double> Sums; ///< sum of the weights of scans with an echo, by cell
 };
 }
 

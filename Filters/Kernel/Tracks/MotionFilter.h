@@ -32,8 +32,8 @@ struct MotionModel
   double accelerationDensity = 0.0; ///< spectral density of the acceleration noise, m2/s3
   double turnRateDensity = 0.0;     ///< spectral density of the noise of turn acceleration, rad2/s3
   double speedError = 0.0;    ///< standard deviation of a new target's velocity along x and y, m/s
-  double climbError = 0.0;    ///< standard deviation of its velocity along z, m/s
-  double turnRateError = 0.0; ///< standard deviation of its turn rate, rad/s; 0: straight flight
+  double climbError = 0.0;    ///< standard deviation of a new target's velocity along z, m/s
+  double turnRateError = 0.0; ///< standard deviation of a new turn rate, rad/s; 0: straight flight
 };
 
 struct MotionState
@@ -59,7 +59,7 @@ struct Innovation
 /// State of a new target. @param error covariance of the position, m2
 MotionState startMotion(const Vec3& position, const glm::dmat3& error, const MotionModel& model);
 
-/// State `seconds` later, at least 0.
+/// State after `seconds` s, at least 0.
 MotionState predicted(const MotionState& state, double seconds, const MotionModel& model);
 
 Innovation innovationOf(const MotionState& state, const Vec3& position, const glm::dmat3& error);

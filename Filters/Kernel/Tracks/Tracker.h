@@ -3,15 +3,16 @@
  * @file Tracker.h
  * @brief Tracks of targets from clusters, scan by scan.
  *
- * A Kalman filter gives the distance of each track and cluster (MotionFilter.h). Pairs within the
- * gate are assigned one to one (Assignment.h) so that the sum of d2 + ln det S is least: up to a
- * constant, this is minus twice the log likelihood. A track without a cluster costs the gate plus
- * the largest ln det S of the scan, so that no pair costs more. Unassigned clusters begin tracks.
+ * A Kalman filter (MotionFilter.h) gives the squared distance d2 between each track and each
+ * cluster, and the covariance S of their difference. Pairs within the gate are assigned one to one
+ * (Assignment.h) so that the sum of d2 + ln det S is least. Up to a constant, this sum is minus
+ * twice the log likelihood. A track without a cluster costs the gate plus the largest ln det S of
+ * the scan, so that no pair costs more. Unassigned clusters begin tracks.
  *
  * Source: global nearest neighbour tracking with M of N confirmation: S. Blackman and R. Popoli,
  * "Design and Analysis of Modern Tracking Systems", 1999 (second-hand).
- * Differs: the cost of a track without a cluster. The usual cost requires probabilities of
- * detection and densities of clutter.
+ * Differs: the cost of a track without a cluster is as above. The usual cost requires probabilities
+ * of detection and densities of clutter.
  * Valid: each update is a whole scan, later than the one before.
  * Test: TestTracker.cxx, TestTracker.py.
  */
@@ -31,22 +32,22 @@ namespace avianlidar
 {
 struct TrackerSettings
 {
-  double halfBeamwidth = 0.0; ///< rad
+  double halfBeamwidth = 0.0; ///< half-beamwidth, rad
   double targetExtent = 0.0;  ///< rms offset of echoes from the target's middle along each axis, m
   MotionModel motion;
-  double gate = 0.0;              ///< largest squared distance in standard deviations
-  int confirmHits = 1;            ///< M: hits of the last N scans that confirm a track
+  double gate = 0.0;              ///< largest squared distance of a pair, in standard deviations
+  int confirmHits = 1;            ///< M: number of hits in the last N scans that confirm a track
   int confirmScans = 1;           ///< N: number of scans for a confirmation, at most 32
   double minimumSpeed = 0.0;      ///< least speed that confirms a track, m/s
-  int maximumMisses = 1;          ///< misses in a row that end a confirmed track
+  int maximumMisses = 1;          ///< number of misses in a row that end a confirmed track
   double maximumPause = Infinity; ///< longest time without a cluster, s
-  std::size_t historyLength = 1;  ///< positions kept for a track
+  std::size_t historyLength = 1;  ///< number of positions that are kept for a track
   double keepTime = 0.0;          ///< time for which ended tracks are kept, s
 };
 
 struct TrackPosition
 {
-  double time; ///< s
+  double time; ///< time, s
   Vec3 position;
   Vec3 velocity;
   std::array<double, 6> covariance; ///< covariance of the position, m2: xx, yy, zz, xy, yz, xz
@@ -59,11 +60,11 @@ struct Track
   bool confirmed = false;
   bool ended = false;
   int hits = 0;
-  int misses = 0;           ///< in a row
+  int misses = 0;           ///< number of misses in a row
   std::uint32_t recent = 0; ///< a bit for each of the last scans, 1: hit; the lowest is the latest
-  double endTime = 0.0;     ///< s
-  MotionState state;        ///< at the time of the last position
-  std::vector<TrackPosition> positions; ///< last historyLength positions
+  double endTime = 0.0;     ///< time at which the track ended, s
+  MotionState state;        ///< state at the time of the last position
+  std::vector<TrackPosition> positions; ///< the last historyLength positions
 };
 
 /// Covariance of a cluster's centre as the position of a target, m2.
@@ -79,7 +80,7 @@ public:
   std::vector<int> update(const std::vector<Cluster>& clusters, const Vec3& sensor, double time,
     const TrackerSettings& settings, const KeepGoing& goOn = {});
 
-  /// Sorted by id. Tracks that ended are included as long as they are kept.
+  /// All tracks, sorted by id. Tracks that ended are included as long as they are kept.
   const std::vector<Track>& tracks() const { return this->Tracks; }
 
 private:

@@ -17,7 +17,8 @@
 
 namespace avianlidar
 {
-/// Larger coordinates (m) are refused: products of three of them must stay finite.
+/// Largest coordinate, m. Larger coordinates are refused, because products of three coordinates
+/// must stay finite.
 constexpr double MaximumCoordinate = 1e30;
 
 struct AABB
@@ -37,7 +38,7 @@ struct AABB
   Vec3 center() const { return 0.5 * this->lower + 0.5 * this->upper; }
 };
 
-/// The smallest box that holds both.
+/// The smallest box that holds `a` and `b`.
 inline AABB merge(const AABB& a, const AABB& b)
 {
   AABB box = a;

@@ -26,7 +26,8 @@ struct ConeWedge
   double rightX = 0.0, rightY = 0.0; ///< direction of the right edge
 
   ConeWedge() = default;
-  /// @param sine of the cone's half-angle @param axisX,axisY its unit axis in the plane
+  /// @param sine sine of the cone's half-angle @param axisX,axisY components of the cone's unit
+  /// axis in the plane
   ConeWedge(double sine, double axisX, double axisY);
 };
 

@@ -9,7 +9,8 @@
  * Source: paper, Algorithm 1.
  * Differs: a leaf holds up to maximumLeafSize triangles (Algorithm 1: one), the surface area
  * heuristic is added (SplitRule.h), and the work is shared among threads.
- * Valid: as for TriangleBoxes.h. The tree is the same for any number of threads. Cost O(n log n).
+ * Valid: as for TriangleBoxes.h. The tree is the same for any number of threads. Time grows as n
+ * log n.
  * Test: TestCollisionTreeBuilder.cxx.
  */
 #ifndef avianlidar_BinaryTree_h
@@ -28,10 +29,10 @@ namespace avianlidar
 /// Eq. 14, node_i = {B_i, F_i, p_i1, p_i2}, without the volume B_i.
 struct BinaryNode
 {
-  std::uint32_t begin;    ///< first of its triangles in BinaryTree::order
-  std::uint32_t count;    ///< number of its triangles
-  std::uint32_t depth;    ///< 0 for the root
-  std::uint32_t children; ///< number of the first child, the second follows; 0: not divided
+  std::uint32_t begin;    ///< first of the node's triangles in BinaryTree::order
+  std::uint32_t count;    ///< number of the node's triangles
+  std::uint32_t depth;    ///< depth of the node; 0 for the root
+  std::uint32_t children; ///< number of the first child, which the second follows; 0: a leaf
 };
 
 /// Nodes are numbered breadth first, as in Algorithm 1 but from 0. The children of a node are

@@ -6,14 +6,14 @@
  *
  * Two triangles coincide if they overlap and their distance nowhere in the overlap exceeds the sum
  * of their tolerances. A triangle's tolerance is the rounding of its corners: 32 u_d (sixteen
- * roundings to double precision) of its largest coordinate. If all its coordinates are numbers of
- * single precision, 4 u_s of its largest coordinates, projected on its normal, are added, at most
- * half a millimetre.
+ * roundings to double precision) of its largest coordinate. If all coordinates of the triangle are
+ * numbers of single precision, the tolerance grows by 4 u_s of the largest coordinates, projected
+ * on the triangle's normal, but by at most half a millimetre.
  *
  * Pairs are found by descending the tree against itself. Triangles that coincide, directly or
  * through others, then take the plane of the triangle whose least altitude is largest, because
- * rounding tilts this plane least. The ranges of a ray on them are equal bit for bit, and the lower
- * triangle number is seen.
+ * rounding tilts this plane least. The ranges of a ray on coincident triangles are equal bit for
+ * bit, and the triangle with the lowest number is seen.
  *
  * Source: none.
  * Valid: any triangles. The result depends only on the mesh, not on the tree or the threads. A
@@ -31,7 +31,8 @@
 
 namespace avianlidar
 {
-/// Set planeOwners and planeDepth of an otherwise complete wide tree. @return false if stopped
+/// Set planeOwners and planeDepth of an otherwise complete wide tree. @return false if `keepGoing`
+/// returned false
 bool findPlaneOwners(CollisionTree& tree, int threads, const KeepGoing& keepGoing);
 }
 

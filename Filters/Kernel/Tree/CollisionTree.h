@@ -4,11 +4,12 @@
  * @brief Structure of the collision detection tree.
  *
  * A node has eight boxes (WideTree.h). CollisionTreeBuilder.h builds the tree, Traversal.h descends
- * it. The paper's binary trees of boxes and other volumes are outside the kernel (VolumeTree.h) and
- * enter as OtherVolumes.
+ * it. The paper's binary trees of boxes and other volumes are outside the kernel (VolumeTree.h);
+ * the structure holds such trees as OtherVolumes.
  *
  * Source: paper, Sec. 3.1.
- * Differs: eight children a node; a leaf holds up to maximumLeafSize triangles (Algorithm 1: one).
+ * Differs: a node has eight children; a leaf holds up to maximumLeafSize triangles (Algorithm 1:
+ * one).
  * Valid: at most 2^31 - 1 triangles.
  * Test: TestCollisionTreeBuilder.cxx.
  */
@@ -39,21 +40,21 @@ enum class BoundingVolumeType
   AABB = 0,
   OBB = 1,
   Sphere = 2,
-  BinaryAABB = 3 ///< AABBs in double precision, two a node, as in the paper
+  BinaryAABB = 3 ///< AABBs in double precision, two per node, as in the paper
 };
 
 struct TreeOptions
 {
   SplitRule splitRule = SplitRule::SurfaceAreaHeuristic;
-  BoundingVolumeType boundingVolume = BoundingVolumeType::AABB; ///< others: VolumeTree.h
+  BoundingVolumeType boundingVolume = BoundingVolumeType::AABB; ///< volume of a node
   int maximumLeafSize = 4; ///< largest number of triangles in a leaf, >= 1; Algorithm 1 has 1
 };
 
 /// Entry of the traversal stack: a node or leaf still to be visited.
 struct DescentEntry
 {
-  std::uint32_t node;  ///< number; for a leaf of the wide tree, first of its triangles in the order
-  std::uint32_t count; ///< number of triangles of a leaf of the wide tree; 0 for other nodes
+  std::uint32_t node;    ///< number of the node, or first triangle of a leaf of the wide tree
+  std::uint32_t count;   ///< number of triangles of a leaf of the wide tree; 0 for other nodes
   std::uint64_t members; ///< bits of the rays or beams that meet the volume (wide tree only)
   double nearest;        ///< lower bound of ranges in the volume, m
   std::uint32_t parent;  ///< node whose child this is (wide tree only)
@@ -68,7 +69,7 @@ class TreeLeaves
 {
 public:
   virtual ~TreeLeaves() = default;
-  /// Range, m: volumes whose lower bound is greater are left out.
+  /// Largest range, m. Volumes whose lower bound is greater are left out.
   virtual double limit() const = 0;
   /// Visit a leaf. @return false to end the descent
   virtual bool leaf(const std::uint32_t* triangles, std::uint32_t count) = 0;
@@ -84,13 +85,13 @@ public:
   virtual ~OtherVolumes() = default;
   virtual std::uint64_t descendCone(const CollisionTree& tree, const BeamFrame& frame,
     TreeLeaves& leaves, TraversalStack& stack) const = 0;
-  /// As descendRay() of Descents.h.
+  /// Same arguments as descendRay() of Descents.h.
   virtual std::uint64_t descendRay(const CollisionTree& tree, const Vec3& apex, const Vec3& origin,
     const Vec3& direction, double angularMargin, TreeLeaves& leaves,
     TraversalStack& stack) const = 0;
 };
 
-/// The tree of a mesh. It is immutable once built, and any number of threads and scans may share
+/// The tree of a mesh. A finished tree is immutable, and any number of threads and scans may share
 /// it.
 struct CollisionTree
 {
@@ -122,7 +123,8 @@ struct CollisionTree
   }
 };
 
-/// Plane that a triangle takes, its own or its owner's. @param corners relative to the apex
+/// Plane that a triangle takes, either its own plane or its owner's. @param corners relative to the
+/// apex
 TrianglePlane planeOf(
   const CollisionTree& tree, std::uint32_t triangle, const Corners& corners, const Vec3& apex);
 }

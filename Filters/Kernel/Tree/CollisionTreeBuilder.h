@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file CollisionTreeBuilder.h
- * @brief Builds the collision tree of boxes, eight children a node, with several threads.
+ * @brief Builds the collision tree of boxes, with eight children per node, by several threads.
  *
  * Up to eight nodes of a binary tree (BinaryTree.h) become the children of a wide node, so that the
  * sum of the areas of all wide nodes is least. Coincident faces are found last (CoincidentFaces.h).
  *
  * Source: T. Ylitie, T. Karras, S. Laine, "Efficient Incoherent Ray Traversal on GPUs Through
  * Compressed Wide BVHs", HPG 2017, Sec. 3.1.
- * Valid: the tree has the same bits for any number of threads. Peak memory is about 150 bytes a
+ * Valid: the tree has the same bits for any number of threads. Peak memory is about 150 bytes per
  * triangle.
  * Test: TestCollisionTreeBuilder.cxx, TestWideTree.cxx.
  */

@@ -6,7 +6,7 @@
  *
  * Source: power iteration by squaring: G. H. Golub, C. F. Van Loan, "Matrix Computations", 4th ed.,
  * Sec. 8.2.
- * Valid: symmetric matrices without negative eigenvalues; see principalAxes() for others.
+ * Valid: symmetric matrices without negative eigenvalues; see principalAxes() for other matrices.
  * Test: TestBoundingVolume.cxx.
  */
 #ifndef avianlidar_PrincipalAxes_h

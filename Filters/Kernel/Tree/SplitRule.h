@@ -10,7 +10,8 @@
  * Source: paper, Sec. 3.1, Algorithm 1, line 9; for the surface area heuristic I. Wald, "On fast
  * Construction of SAH-based Bounding Volume Hierarchies", IEEE Symposium on Interactive Ray
  * Tracing, 2007.
- * Differs: the surface area heuristic is not in the paper. More triangles take more bins, 4 to 16.
+ * Differs: the surface area heuristic is not in the paper. The number of bins grows with the number
+ * of triangles from 4 to 16.
  * Valid: boxes are in single precision relative to the middle of the scene. Small
  * triangles may be divided differently than by exact centres. This costs a little time and changes
  * no hit.
@@ -29,9 +30,9 @@ namespace avianlidar
 /// Copy `from[0 .. count)` (count >= 2) to `to`, the boxes of the first child first.
 /// @param from may be reordered
 /// @param centers box of twice the centres of the boxes
-/// @param depth depth of the node, root 0, which chooses the axis of SplitRule::Median. From depth
-/// 96 on every rule halves the list, because a rule that splits off single triangles would
-/// otherwise turn the tree into a list
+/// @param depth depth of the node (0 for the root), which chooses the axis of SplitRule::Median.
+/// From depth 96 on every rule halves the list, because a rule that splits off single triangles
+/// would otherwise turn the tree into a list
 /// @return number of boxes of the first child, in [1, count - 1]. Where a rule cannot divide (equal
 /// centres), the list is halved as it stands.
 std::size_t splitTriangles(SplitRule rule, LaneBox* from, LaneBox* to, std::size_t count,

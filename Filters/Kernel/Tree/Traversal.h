@@ -7,8 +7,9 @@
  * A template argument says what descends: a policy, or a query and a visitor.
  *
  * Source: none.
- * Valid: visits every leaf whose volumes the policy meets within the limit. A volume whose lower
- * bound equals the limit is visited, as it may hold a hit of equal range and lower number.
+ * Valid: the descent visits every leaf whose volumes the policy meets within the limit. A volume
+ * whose lower bound equals the limit is visited, as it may hold a hit of equal range and lower
+ * triangle number.
  * Test: TestBeamTracer.cxx, TestBeamGroup.cxx, TestGeometryProperties.cxx.
  */
 #ifndef avianlidar_Traversal_h

@@ -9,7 +9,7 @@
  * Source: the primitive references of I. Wald, "On fast Construction of SAH-based Bounding Volume
  * Hierarchies", 2007.
  * Differs: lower coordinates are negated, and a box holds its triangle's number.
- * Valid: finite coordinates up to MaximumCoordinate, at most 2^31 - 1 triangles; others are
+ * Valid: finite coordinates up to MaximumCoordinate, at most 2^31 - 1 triangles; other meshes are
  * refused. Every box holds its triangle, rounding included.
  * Test: TestSplitRule.cxx, TestWideTree.cxx.
  */
@@ -31,7 +31,8 @@ namespace avianlidar
 /// Four numbers in one register, on every target of GCC and Clang. Plain loops over four numbers
 /// build the same trees in 1.7 to 1.85 times the time (Hongqiao with everything, rolling ground and
 /// a sphere of a million triangles, one thread and two, GCC 12). Without its dispatch, Highway is
-/// scalar code on plain x86-64; with it, every loop of the builder would need a form of its own.
+/// scalar code on plain x86-64. With dispatch, every loop of the builder would need a separate
+/// form.
 using Lanes = float __attribute__((vector_size(16)));
 
 AVIANLIDAR_ALWAYS_INLINE Lanes larger(Lanes a, Lanes b)

@@ -19,8 +19,8 @@
  * - The range is n . a / n . d. The normal n, the cross product of two sides, has no cancellation
  *   error (Kahan's difference of products), so the relative error of the range is a few u_d /
  *   cos(incidence angle). The range is clamped to the ranges of the triangle's corners along the
- *   ray. Where the triangle is seen nearly edge-on, it is clamped to the ranges of the part beside
- *   the ray.
+ *   ray. Where the triangle is seen nearly edge-on, the range is clamped to the ranges of the part
+ *   beside the ray.
  * - If a ray passes inside by more than rounding, the range of the plane is taken without clamping.
  *   Every edge function must then be at least 64 u_d L R, with L the longest side and R the
  *   distance of the farthest corner, and |n . d| / |n| at least 2^-30, far above rounding. The hit
@@ -91,7 +91,7 @@ inline EdgeVector edgeVector(const Vec3& a, const Vec3& b)
   return { plus - minus, size.x + size.y + size.z };
 }
 
-/// Plane of a triangle, for ranges; it is computed only for triangles that a ray hits.
+/// Plane of a triangle, for ranges, which is computed only for triangles that a ray hits.
 struct TrianglePlane
 {
   Vec3 normal;           ///< normal whose length is twice the area, m2
@@ -131,9 +131,9 @@ AVIANLIDAR_ALWAYS_INLINE Vec3 normalOf(const Corners& t)
 
 constexpr double NoRange = -1.0;
 
-/// Range of the plane along the unit direction d, m, and its kind. Kind 0 is no hit, and kind 1 the
-/// range of the triangle. With kind 2 the triangle is a sliver along d, and rangeOnSliver() must
-/// decide. rangeOnPlane() has no branches, for loops over lanes.
+/// Range of the plane along the unit direction d, m, and its kind. Kind 0 means no hit. Kind 1
+/// means that the range is the triangle's. Kind 2 means that the triangle is a sliver along d, and
+/// rangeOnSliver() must decide. rangeOnPlane() has no branches, for loops over lanes.
 struct PlaneRange
 {
   double range;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file WideTree.h
- * @brief A collision tree of axis-aligned boxes with eight children a node, in single precision,
+ * @brief A collision tree of axis-aligned boxes with eight children per node, in single precision,
  * for speed; its cone and ray tests; and the entry points at which rays begin their descent.
  *
  * Eight boxes are tested in one loop over lanes. Boxes are relative to the middle of the scene, and
@@ -10,7 +10,8 @@
  * Source: Wald, Benthin and Boulos, "Getting Rid of Packets", IEEE RT 2008; tests as in
  * BeamVolumeTest.h for the other volumes.
  * Differs: packets of rays and groups of beams descend the tree, too.
- * Valid: conservative. Below LeastWideExtent and beyond LargestWideExtent all boxes are met.
+ * Valid: the tests are conservative. All boxes are met if scene and apex are within
+ * LeastWideExtent, or one is beyond LargestWideExtent.
  * Test: TestWideTree.cxx, TestBeamGroup.cxx and TestBeamTracer.cxx (entry points).
  */
 #ifndef avianlidar_WideTree_h
@@ -47,10 +48,10 @@ constexpr double LeastWideExtent = 1e-12;
 
 struct WideTree
 {
-  std::vector<WideNode> nodes; ///< nodes, root first; empty if there is no root
+  std::vector<WideNode> nodes; ///< nodes, root first; empty without a root
   Vec3 reference{ 0.0 };       ///< origin of the boxes, m
   double extent = 0.0;         ///< largest coordinate relative to the reference, m
-  std::uint32_t depth = 0;     ///< levels below the root
+  std::uint32_t depth = 0;     ///< number of levels below the root
 };
 
 /// Several times the bound of the relative rounding of the single-precision tests.
