@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class vtkAvianLidarBeamSource
- * @brief Makes the beams of a scanning lidar, with its pulse and receiver as field data.
+ * @brief Makes the beams of a scanning lidar, with the lidar's pulse and receiver as field data.
  *
  * A new source has the preset Airport16, the lidar of the paper's Table 2 ("Research on Ground
- * Object Echo Simulation of Avian Lidar", Photonics 2024, 11(2), 153). It has no input.
+ * Object Echo Simulation of Avian Lidar", Photonics 2024, 11(2), 153). The source has no input.
  *
  * - Output port 0, vtkPolyData: one vertex per beam at Position, column by column and channel by
  *   channel within a column, with the point arrays `beam_id`, `direction`, `laser_id`, `azimuth`,
@@ -13,8 +13,8 @@
  *   reports.
  * - Output port 1, vtkPolyData: the same beams as lines of DisplayLength, for display.
  * - Field data of both ports: every property in snake case in its own unit, and `wavelength`.
- *   Settings that the sensor does not use are left out. A photon receiver writes the limits that
- *   follow from its properties.
+ *   Settings that the sensor does not use are left out. With a photon receiver, the limits are
+ *   computed from the receiver's properties.
  *
  * The source is time-aware: revolution k lasts from k / RotationRate to (k + 1) / RotationRate
  * seconds. The source serves any number of pieces and deals the columns to them in turn. The beams
@@ -90,37 +90,37 @@ public:
   vtkAvianLidarSensorPresetsMacro();
   ///@}
 
-  /// Take from a built-in sensor, by the name of its file (`OS1_64`), only the values without a
-  /// setter: tables and prisms, the names of assumed values, the description. Meant for user
-  /// interfaces that set all properties one by one. Null or empty: no tables. An unknown name gives
-  /// an error and changes nothing.
+  /// Take only the values without a setter from a built-in sensor: tables, prisms, the names of
+  /// assumed values and the description. Meant for user interfaces that set all properties one by
+  /// one. An unknown name gives an error and changes nothing. @param name name of the sensor's file
+  /// (`OS1_64`); null or empty: no tables
   void SetTablesOfPreset(const char* name);
 
   /// Set all properties from a file (`.lidarsensor.json`), and the values that only files set:
   /// azimuth offsets and firing times of channels, blanked sectors, prisms
   /// (Documentation/reference/sensor-files.md, Files).
-  /// @return false, with an error that names the file and the key, for a bad file: nothing changes.
+  /// @return false for a bad file, with an error that names file and key; then nothing changes
   bool LoadSensor(VTK_FILEPATH const char* fileName);
 
   /// Number of rotating prisms that steer the beams, 0 to 3; only a file sets them. Default 0. With
   /// prisms AzimuthRange and AzimuthStep are not used (Documentation/reference/sensor-files.md).
   int GetNumberOfPrisms() const;
 
-  /// Does the same as LoadSensor(), from the text of a file, as GetDescription() returns it. Errors
-  /// name "the text".
+  /// Does the same as LoadSensor() with the text of a file, such as GetDescription() returns.
+  /// Errors name "the text".
   bool LoadSensorText(const char* text);
 
-  /// The file of the preset or file that was set last, as JSON; empty for a new source. It holds
-  /// name, comment, documents, every number with unit and source, and the data sheet. It does not
-  /// follow later changes of properties.
+  /// Text of the file that LoadSensor() or a preset read last, as JSON; empty for a new source. The
+  /// text holds name, comment, documents, every number with unit and source, and the data sheet.
+  /// Later changes of properties do not change the text.
   std::string GetDescription() const { return this->Description; }
 
   /// Use these beams instead of columns and channels. The points (m) and the point arrays
   /// `direction` (any length above 0) and, optionally, `timestamp` (us, 0 to 1 / RotationRate;
   /// default 0) are copied, in the frame of the sensor: Orientation turns them, Position is added.
-  /// `beam_id` is the number of the point, `laser_id` 0. Null, a preset or a file restores columns
-  /// and channels.
-  /// @return false, with an error that names the array, for other beams: nothing changes.
+  /// `beam_id` is the number of the point, and `laser_id` is 0. Null, a preset or a file restores
+  /// columns and channels.
+  /// @return false for bad beams, with an error that names the array; then nothing changes
   bool SetBeams(vtkPolyData* beams);
 
   ///@{
@@ -136,19 +136,19 @@ public:
   ///@}
 
   ///@{
-  /** Number of channels, at least 1. Not used with a table. Default 16. */
+  /** Number of channels, at least 1. Not used with a table of elevations. Default 16. */
   vtkSetMacro(NumberOfChannels, int);
   vtkGetMacro(NumberOfChannels, int);
   ///@}
 
   ///@{
-  /** Elevation of channel 0, deg, -90 to 90. Not used with a table. Default 0. */
+  /** Elevation of channel 0, deg, -90 to 90. Not used with a table of elevations. Default 0. */
   vtkSetMacro(MinimumElevation, double);
   vtkGetMacro(MinimumElevation, double);
   ///@}
 
   ///@{
-  /** Elevation from one channel to the next, deg, above 0. Not used with a table. Default 0.375. */
+  /** Elevation step of channels, deg, above 0. Not used with an elevation table. Default 0.375. */
   vtkSetMacro(ElevationStep, double);
   vtkGetMacro(ElevationStep, double);
   ///@}
@@ -166,7 +166,7 @@ public:
   ///@}
 
   ///@{
-  /** First azimuth, deg, clockwise, -360 to 360, and end, at most 360 later. Default (0, 360). */
+  /** First azimuth (-360 to 360) and end (at most 360 later), deg, clockwise. Default (0, 360). */
   vtkSetVector2Macro(AzimuthRange, double);
   vtkGetVector2Macro(AzimuthRange, double);
   ///@}
@@ -178,13 +178,13 @@ public:
   ///@}
 
   ///@{
-  /** Half of the opening angle, rad, 1e-9 to pi/3 (not round: 1e-9 to 0.1). Default 5.6e-3. */
+  /** Half of the opening angle, rad, 1e-9 to pi/3 (beams not round: to 0.1). Default 5.6e-3. */
   vtkSetMacro(HalfBeamwidth, double);
   vtkGetMacro(HalfBeamwidth, double);
   ///@}
 
   ///@{
-  /** Opening angle, mrad; if it differs from HalfBeamwidth, an error. Default 0: not checked. */
+  /** Opening angle, mrad, 2000 times HalfBeamwidth, else an error. Default 0: not checked. */
   vtkSetMacro(BeamwidthMilliradians, double);
   vtkGetMacro(BeamwidthMilliradians, double);
   ///@}
@@ -209,9 +209,9 @@ public:
 
   ///@{
   /**
-   * Angle of the direction of HalfBeamwidth from the sensor's horizontal (from a fixed direction if
-   * the beam is vertical), upwards to the right as seen along the beam, deg, -360 to 360. Default
-   * 0.
+   * Angle from the sensor's horizontal to the direction of HalfBeamwidth, deg, -360 to 360. Seen
+   * along the beam, a positive angle raises the right-hand end of this direction. For a vertical
+   * beam a fixed direction replaces the horizontal. Default 0.
    */
   vtkSetMacro(BeamRotation, double);
   vtkGetMacro(BeamRotation, double);
@@ -233,8 +233,8 @@ public:
 
   ///@{
   /**
-   * Threshold of a photon receiver where the air sends light back: fixed, or raised by the mean of
-   * the air's light, with the same number of standard deviations of the noise. Default
+   * Threshold of a photon receiver where the air sends light back: fixed, or the mean of the air's
+   * light plus as many standard deviations of the noise as without air. Default
    * THRESHOLD_LAW_FOLLOWS_AIR.
    */
   vtkSetMacro(ThresholdLaw, int);
@@ -244,13 +244,13 @@ public:
   ///@}
 
   ///@{
-  /** Rate of sweeps, or of scans of prisms, Hz, 1e-20 to 1e20. Default 0.5. */
+  /** Rate of revolutions, or of scans with prisms, Hz, 1e-20 to 1e20. Default 0.5. */
   vtkSetMacro(RotationRate, double);
   vtkGetMacro(RotationRate, double);
   ///@}
 
   ///@{
-  /** Time between firings of a column, s, at least 0 (with prisms: above 0). Default 30e-6. */
+  /** Time between two firings of a column, s, at least 0 (with prisms: above 0). Default 30e-6. */
   vtkSetMacro(FiringInterval, double);
   vtkGetMacro(FiringInterval, double);
   ///@}
@@ -262,7 +262,7 @@ public:
   ///@}
 
   ///@{
-  /** Number of steps of a revolution, 1 to its columns; above 1 the scan sweeps. Default 1. */
+  /** Number of steps that share a revolution's columns, 1 to the number of columns. Default 1. */
   vtkSetMacro(StepsPerRevolution, int);
   vtkGetMacro(StepsPerRevolution, int);
   ///@}
@@ -351,7 +351,7 @@ public:
   ///@}
 
   ///@{
-  /** Aperture of the receiver, m2, 0 to 1e20. Default 0: energies do not fall with 1/r^2. */
+  /** Area of the receiver's aperture, m2, 0 to 1e20. Default 0: energies do not fall with 1/r^2. */
   vtkSetMacro(ReceiverAperture, double);
   vtkGetMacro(ReceiverAperture, double);
   ///@}
@@ -428,22 +428,22 @@ public:
   ///@}
 
   ///@{
-  /** Range r_o in the share of light in view, 1 - exp(-(r/r_o)^2), m, 0 to 1e9. Default 0: all. */
+  /** Range r_o of the share in view 1 - exp(-(r/r_o)^2), m, 0 to 1e9. Default 0: share 1. */
   vtkSetMacro(OverlapRange, double);
   vtkGetMacro(OverlapRange, double);
   ///@}
 
   ///@{
-  /** Range r_d in the share of light in focus, 1 / (1 + (r_d/r)^2), m, 0 to 1e9. Default 0: all. */
+  /** Range r_d of the share in focus 1 / (1 + (r_d/r)^2), m, 0 to 1e9. Default 0: share 1. */
   vtkSetMacro(DefocusRange, double);
   vtkGetMacro(DefocusRange, double);
   ///@}
 
   ///@{
   /**
-   * Standard deviation b of ranges at S = 1, m, 0 to 1e9. At other S it is sqrt(a^2 + b^2/S^p),
-   * with a = RangeNoiseFloor and p = RangeNoiseExponent (Documentation/reference/sensor-files.md).
-   * Photon receiver. Default 0: exact.
+   * Coefficient b of the standard deviation of ranges, sqrt(a^2 + b^2/S^p), m, 0 to 1e9. S is the
+   * signal-to-noise ratio (at least 1), a is RangeNoiseFloor, and p is RangeNoiseExponent
+   * (Documentation/reference/sensor-files.md). Photon receiver. Default 0: exact.
    */
   vtkSetMacro(RangeNoise, double);
   vtkGetMacro(RangeNoise, double);
@@ -468,14 +468,15 @@ public:
   ///@}
 
   ///@{
-  /** Step of which ranges are multiples, m, 0 (exact) or 1e-9 to 1e9. Default 0. */
+  /** Step to which ranges are rounded, m, 0 (exact) or 1e-9 to 1e9. Default 0. */
   vtkSetMacro(RangeQuantum, double);
   vtkGetMacro(RangeQuantum, double);
   ///@}
 
   ///@{
   /**
-   * False alarms expected in a scan of empty sky, 1, above 0 to 1e8. Photon receiver. Default 1.
+   * Expected number of false alarms in a scan of empty sky, 1, above 0 to 1e8. Photon receiver.
+   * Default 1.
    */
   vtkSetMacro(FalseAlarmsPerScan, double);
   vtkGetMacro(FalseAlarmsPerScan, double);
@@ -489,11 +490,12 @@ public:
 
   ///@{
   /**
-   * Set LowerEnergyLimit by a line of a data sheet, and UpperEnergyLimit by DynamicRange above it.
-   * The sensor detects a Lambertian surface of `reflectance` (above 0 to 1) that fills the beam
-   * until `range`, m, in air of `attenuation`, 1/m (default: GetClearAirAttenuation()). Needs
-   * ReceiverAperture and RECEIVER_MODEL_ENERGY_LIMITS. A bad value changes nothing. Limits from one
-   * point are only an estimate (Documentation/reference/sensor-files.md).
+   * Set LowerEnergyLimit from a line of a data sheet, and UpperEnergyLimit to the limit
+   * DynamicRange above. The sensor detects a Lambertian surface of `reflectance` (above 0 to 1)
+   * that fills the beam up to `range`, m, in air of `attenuation`, 1/m (default:
+   * GetClearAirAttenuation()). Needs ReceiverAperture and RECEIVER_MODEL_ENERGY_LIMITS. A bad value
+   * changes nothing. Limits from one line are only an estimate
+   * (Documentation/reference/sensor-files.md).
    */
   void SetLimitsFromDataSheet(double range, double reflectance);
   void SetLimitsFromDataSheet(double range, double reflectance, double attenuation);
@@ -503,7 +505,7 @@ public:
   double GetClearAirAttenuation();
 
   ///@{
-  /** Length of the lines of port 1 and of report beams without echo, m, to 1e30. Default 1000. */
+  /** Length of port 1's lines, range of report points without echo, m, to 1e30. Default 1000. */
   vtkSetMacro(DisplayLength, double);
   vtkGetMacro(DisplayLength, double);
   ///@}
@@ -517,8 +519,8 @@ protected:
   int RequestInformation(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
   int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
 
-  /// Read a file. With `keepPlace` position, orientation, revolutions, steps and seed stay.
-  /// @return what is wrong, in which case nothing changes; else an empty string
+  /// Read a sensor file. With `keepPlace` position, orientation, revolutions, steps and seed stay.
+  /// @return an error text, in which case nothing changes; else an empty string
   std::string ReadSensor(const char* fileName, bool keepPlace);
 
   double Position[3] = { 0.0, 0.0, 0.0 };
@@ -529,7 +531,7 @@ protected:
   std::vector<double> ChannelElevations;
   std::vector<double> ChannelAzimuthOffsets;
   std::vector<double> ChannelFiringTimes;
-  std::vector<double> BlankedSectors; ///< from, to, from, to, ...
+  std::vector<double> BlankedSectors; ///< azimuths, deg: from, to, from, to, ...
   std::vector<double> PrismWedgeAngles;
   std::vector<double> PrismRefractiveIndices;
   std::vector<double> PrismRotationRates;
@@ -584,7 +586,7 @@ protected:
   double RangeQuantum = 0.0;
   double DisplayLength = 1000.0;
   std::string Description;
-  /// Properties that a file calls assumed, in snake case, and their values.
+  /// Properties that a file marks as assumed, by names in snake case, and their values.
   std::vector<std::pair<std::string, std::vector<double>>> Assumed;
 
 private:
@@ -596,8 +598,8 @@ private:
   std::string TakeFile(const std::function<vtkAvianLidarSensorFile()>& read, bool keepPlace);
   struct vtkInternals;
   struct vtkBeamTable;
-  std::string Warned;                        ///< last warning, which is not repeated
-  std::shared_ptr<const vtkBeamTable> Table; ///< beams instead of the pattern
+  std::string Warned;                        ///< warning given last, which is not repeated
+  std::shared_ptr<const vtkBeamTable> Table; ///< beams of SetBeams(); null: none
 };
 
 #endif

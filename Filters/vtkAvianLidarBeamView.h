@@ -2,26 +2,27 @@
 /**
  * @class vtkAvianLidarBeamView
  * @brief Shows what one beam of a scan sees: its cone, the surfaces in the cone, and the share of
- * each.
+ * each surface.
  *
  * The filter traces the beam BeamId again as vtkAvianLidarEchoFilter does, without noise, limits
- * and second reflections, and sums its samples by triangle. Inputs and properties are those of the
- * echo filter; noise, returns and constraints have no effect.
+ * and second reflections, and sums the samples of the beam by triangle. Inputs and properties are
+ * those of the echo filter; noise, returns and constraints have no effect.
  *
  * - Output port 0, surfaces (vtkPolyData): the part of each triangle, or of two triangles that form
- *   a quadrilateral, within the beam's outline and between the nearest and farthest range that the
- *   beam sees in it; other surfaces may hide some of this part. Cell arrays: `solid_angle_share`
- *   (if the beam is not round: share of the area in the plane across its axis), `energy_share`,
- *   `energy_received`, `distance_m`, `incidence_angle`, `object_id`, `material_id`.
+ *   a quadrilateral, within the beam's outline and between the nearest and farthest range at which
+ *   the beam sees a point of the triangles. Other surfaces may hide some of this part. Cell arrays:
+ *   `solid_angle_share` (if the beam is not round: share of the area in the plane across its axis),
+ *   `energy_share`, `energy_received`, `distance_m`, `incidence_angle`, `object_id`, `material_id`.
  * - Output port 1, beam (vtkPolyData): the cone, to the farthest surface that the beam sees, or to
  *   the beams' `display_length` (1000 m by default) if it sees no surface.
  * - Output port 2, shares (vtkTable): a row for each pair of object and material, brightest first,
- *   with `object`, `material`, `nearest_m`, `farthest_m` and the arrays above. The last row, `no
- *   surface`, is the sky. Each share sums to one; `energy_share` is 0 if no energy is received.
+ *   with `object`, `material`, `nearest_m`, `farthest_m` and the arrays of port 0 except
+ *   `incidence_angle`. The last row, `no surface`, is the sky. Each share sums to one;
+ *   `energy_share` is 0 if no energy is received.
  *
  * Shares are exact up to rounding where few triangles enter the beam, and otherwise sampled by
- * about 32 RaysPerBeam rays. A BeamId that no beam has gives an error. Without beams the outputs
- * are empty.
+ * about 32 times RaysPerBeam rays. A BeamId that no beam has gives an error. Without beams the
+ * outputs are empty.
  *
  * Example, with the inputs of an echo filter: `view->SetBeamId(123)`. Documentation:
  * reference/paraview.md.

@@ -6,11 +6,12 @@
  * The source has no input. Output port 0 is vtkPolyData: 72 triangles, m, with the cell arrays of
  * vtkAvianLidarMaterial and `part` (0 body, 1 left wing, 2 right wing), and the field data
  * `material_names` (4, Plumage), `object_names` (the species) and `object_classes` ("bird"). The
- * array `kd` is Reflectance.
+ * array `kd` has the value of Reflectance.
  *
- * The body is an ellipsoid of revolution whose frontal area follows from the mass (Hedenstrom and
- * Rosen 2003; Pennycuick 1988); its effective area is exact from every direction. The wings are
- * thin plates that flap. Shape, assumptions and species: Documentation/guide/birds.md.
+ * The body has the effective area of an ellipsoid of revolution, exactly and from every direction.
+ * The frontal area of this ellipsoid follows from the mass (Hedenstrom and Rosen 2003; Pennycuick
+ * 1988). The wings are thin plates that flap. Shape, assumptions and species:
+ * Documentation/guide/birds.md.
  *
  * An unknown species, a bad table or a bad number gives an error that names the property, and an
  * empty output. Setters accept any value.
@@ -44,14 +45,14 @@ public:
 
   ///@{
   /**
-   * Table of the user's species (CSV, as Filters/Birds/species.csv), which precede the built-in
-   * ones. Default: none.
+   * Table of the user's species (CSV, with the columns of Filters/Birds/species.csv). These species
+   * precede the built-in species. Default: none.
    */
   vtkAvianLidarFilePathMacro(SpeciesFileName);
   ///@}
 
   ///@{
-  /** Wingbeats since level, rising wings: 0.25 up, 0.75 down; not used in a glide. Default 0. */
+  /** Phase, wingbeats: 0 level and rising, 0.25 up, 0.75 down; not used in a glide. Default 0. */
   vtkSetMacro(WingPhase, double);
   vtkGetMacro(WingPhase, double);
   ///@}

@@ -10,16 +10,16 @@
  *   as field data.
  *
  * Hausdorff distance and RMSE are Eq. 19 and 20 of "Research on Ground Object Echo Simulation of
- * Avian Lidar", Photonics 2024, 11(2), 153; here each direction of Eq. 20 is divided by its own
- * number of points. The Chamfer distance follows Wu et al., NeurIPS 2021, arXiv:2111.12702.
- * Distances are Euclidean, in double precision; the order of points does not matter. The search
- * takes one thread and n log n steps; a point equally far from all points of a cloud is compared
- * with each. Formulas and limits: Documentation/guide/clouds.md.
+ * Avian Lidar", Photonics 2024, 11(2), 153; here the sum of each direction of Eq. 20 is divided by
+ * the number of points in this sum. The Chamfer distance follows Wu et al., NeurIPS 2021,
+ * arXiv:2111.12702. Distances are Euclidean, in double precision; the order of points does not
+ * matter. The search takes one thread and n log n steps; a point equally far from all points of a
+ * cloud is compared with each. Formulas and limits: Documentation/guide/clouds.md.
  *
- * A bad alpha gives an error. So does a cloud without points, or with coordinates that are not
- * finite or beyond 1e30 m; this error names port and point. After an error or an abort, outputs are
- * empty and getters return NaN. MPI ranks with a piece of each cloud compare their own points with
- * the whole other cloud.
+ * A bad ChamferAlpha gives an error. A cloud without points, or with coordinates that are not
+ * finite or beyond 1e30 m, gives an error that names port and point. After an error or an abort,
+ * outputs are empty and getters return NaN. MPI ranks with a piece of each cloud compare their own
+ * points with the whole other cloud.
  *
  * @code
  * comparison->SetInputConnection(0, echoes->GetOutputPort());
@@ -48,7 +48,7 @@ public:
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
   ///@{
-  /** Hausdorff distance (paper, Eq. 19) and its directions, m; NaN before the first execution. */
+  /** Hausdorff distance (paper, Eq. 19), and by direction, m; NaN before the first execution. */
   vtkGetMacro(HausdorffDistance, double);
   vtkGetMacro(HausdorffSimulatedToReference, double);
   vtkGetMacro(HausdorffReferenceToSimulated, double);
@@ -61,7 +61,7 @@ public:
   ///@}
 
   ///@{
-  /** Density-aware Chamfer distance, 0 (equal) to 1: mean, directions; NaN before an execution. */
+  /** Density-aware Chamfer distance, 0 (equal) to 1: mean, by direction; NaN before execution. */
   vtkGetMacro(DensityAwareChamferDistance, double);
   vtkGetMacro(DensityAwareChamferSimulatedToReference, double);
   vtkGetMacro(DensityAwareChamferReferenceToSimulated, double);

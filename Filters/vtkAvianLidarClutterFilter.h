@@ -3,14 +3,15 @@
  * @class vtkAvianLidarClutterFilter
  * @brief Finds clutter in a stream of point clouds: points where earlier scans had echoes, too.
  *
- * Space about the sensor is divided into cells of range, azimuth and elevation. The persistence of
- * a cell is the weighted share of scans with an echo in it; each scan weighs 1 - 1/Window as much
- * as the next one. The clutter probability of a point is the largest persistence, before this scan,
- * of the point's cell and the cells around it. Method, times and limits:
+ * Space around the sensor is divided into cells of range, azimuth and elevation. The persistence of
+ * a cell is the weighted share of scans with an echo in it; the weight of each scan is 1 - 1/Window
+ * times the weight of the next scan. The clutter probability of a point is the largest persistence,
+ * before this scan, of the point's cell and the cells around it. Method, times and limits:
  * Documentation/guide/filters.md. The sensor must stand still.
  *
  * - Input port 0, a scan: any vtkPointSet, m: echoes, or the cloud of a reader.
- * - Input port 1, a table (optional): vtkPolyData, output port 1 of an earlier run or a file.
+ * - Input port 1, a table (optional): vtkPolyData, output port 1 of an earlier run, also from a
+ *   file.
  * - Output port 0: a shallow copy of the scan with the point arrays `clutter_probability` and
  *   `is_clutter`.
  * - Output port 1, the table: vtkPolyData, a vertex in the middle of each cell that is kept, in the
@@ -21,8 +22,8 @@
  *
  * The time of a scan is DATA_TIME_STEP of the input, else the field data `TimeValue`, else the
  * start of its `revolution`, else 1 s after the scan before. A scan of the same time replaces the
- * last one. An earlier time empties the memory, with a warning; another position, step, Window,
- * table or Learning does so silently.
+ * last scan. An earlier time empties the memory, with a warning; another position, step, Window,
+ * table or Learning empties the memory without a warning.
  *
  * Bad settings, coordinates beyond 1e30 m, bad field data or a table of other steps give an error
  * and empty outputs; the memory stays. A scan without points counts as a scan. The result has the
@@ -61,13 +62,13 @@ public:
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
   ///@{
-  /** Memory, scans, 1 to 100,000; a scan that many scans ago weighs 1/e. Default 200. */
+  /** Number of scans after which the weight of a scan is 1/e, 1 to 100,000. Default 200. */
   vtkSetMacro(Window, double);
   vtkGetMacro(Window, double);
   ///@}
 
   ///@{
-  /** Clutter probability from which a point is clutter, 1, above 0 to 1. Default 0.05. */
+  /** Clutter probability from which on a point is clutter, 1, above 0 to 1. Default 0.05. */
   vtkSetMacro(ClutterThreshold, double);
   vtkGetMacro(ClutterThreshold, double);
   ///@}
@@ -91,13 +92,13 @@ public:
   ///@}
 
   ///@{
-  /** Number of cells that count on either side of a point's own in range, 0 to 10. Default 1. */
+  /** Number of cells in range that count on either side of a point's cell, 0 to 10. Default 1. */
   vtkSetMacro(RangeTolerance, int);
   vtkGetMacro(RangeTolerance, int);
   ///@}
 
   ///@{
-  /** Number of cells that count on each side of a point's own in angle, 0 to 10. Default 1. */
+  /** Number of cells in angle that count on each side of a point's cell, 0 to 10. Default 1. */
   vtkSetMacro(AngularTolerance, int);
   vtkGetMacro(AngularTolerance, int);
   ///@}
@@ -124,7 +125,7 @@ public:
   vtkBooleanMacro(Learning, bool);
   ///@}
 
-  /// Empty the memory, as for another stream, which may begin at any time.
+  /// Empty the memory, for a new stream whose first scan may have any time.
   void Forget();
 
   ///@{

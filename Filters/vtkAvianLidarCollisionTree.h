@@ -9,17 +9,18 @@
  * at different cost.
  *
  * - Input port 0: vtkPolyData, or a composite of vtkPolyData, in which each leaf is an object.
- *   Polygons and strips are triangulated; vertices, lines and ghost cells are dropped. Optional
- *   arrays are the cell arrays `object_id`, `material_id` and the coefficients of
- *   vtkAvianLidarMaterial; field data `object_names`, `object_classes`, `material_names`. Without
- *   coefficients the material is Wall, with a warning.
+ *   Polygons and strips are triangulated; vertices, lines and ghost cells are dropped. Optional are
+ *   the cell arrays `object_id`, `material_id` and the coefficients of vtkAvianLidarMaterial, and
+ *   the field data `object_names`, `object_classes`, `material_names`. Without coefficients the
+ *   material is Wall, with a warning.
  * - Output port 0: one vtkPolyData of all triangles with these arrays. The field array
- *   `tree_checksum` holds the tree by reference: files lose it, copies within the process do not.
+ *   `tree_checksum` holds the tree by reference, for copies within the process but not for files.
  * - Output port 1: the bounding volumes of DisplayLevel as surfaces, with the cell arrays
  *   `node_id`, `triangles` and `depth`.
  *
- * Object ids are kept if every leaf has ids and no two leaves share one; otherwise ids are assigned
- * in leaf order. MPI ranks that request their own pieces exchange surfaces; rank 0 has the output.
+ * Object ids are kept if every leaf has ids and no two leaves share an id; otherwise ids are
+ * assigned in leaf order. MPI ranks that request their own pieces exchange surfaces; rank 0 has the
+ * output.
  *
  * A bad input or option gives an error and empty outputs. Without triangles the outputs are empty.
  * The same input gives the same tree. The filter uses neither a VTK locator nor vtkSMPTools.
@@ -41,7 +42,7 @@
 #include "vtkPolyDataAlgorithm.h"
 
 #include <memory> // For std::unique_ptr
-#include <string> // For what is wrong with options
+#include <string> // For error texts
 
 class vtkAvianLidarRanks;
 class vtkDataObject;
@@ -120,21 +121,21 @@ public:
   ///@}
 
   ///@{
-  /** Largest number of triangles in a leaf, at least 1 (Algorithm 1 as printed). Default: 4. */
+  /** Largest number of triangles in a leaf, at least 1 (1: Algorithm 1 as printed). Default: 4. */
   vtkSetMacro(MaximumLeafSize, int);
   vtkGetMacro(MaximumLeafSize, int);
   ///@}
 
   ///@{
   /**
-   * Level whose volumes, with the leaves above it, port 1 shows; negative: none. Default: 0, the
-   * root.
+   * Level of the volumes that port 1 shows, with the leaves above this level; negative: no volumes.
+   * Default: 0, the root.
    */
   vtkSetMacro(DisplayLevel, int);
   vtkGetMacro(DisplayLevel, int);
   ///@}
 
-  /// Numbers of nodes and leaves, and depth, of the last tree; 0 before it and for an empty scene.
+  /// Number of nodes, number of leaves, and depth of the last tree; 0 without a tree.
   int GetNumberOfNodes() const;
   int GetNumberOfLeaves() const;
   int GetDepth() const;
@@ -177,7 +178,7 @@ private:
   vtkAvianLidarCollisionTree(const vtkAvianLidarCollisionTree&) = delete;
   void operator=(const vtkAvianLidarCollisionTree&) = delete;
 
-  // Passes of an execution, which all ranks make together; false ends the execution.
+  // Passes of an execution, which all ranks make together; a failure on one rank throws on all.
   void MergeSurfaces(const vtkAvianLidarRanks& ranks, vtkDataObject* input);
   void MakeTree(const vtkAvianLidarRanks& ranks, vtkDataObject* input);
   void MakeOutputs(const vtkAvianLidarRanks& ranks, vtkPolyData* output, vtkPolyData* display);

@@ -7,7 +7,7 @@
  * For each place the filter finds the beams that contain it, surfaces in front of it, clutter in
  * the same range units, and the probability of detection in closed form, averaged over the bird's
  * poses. No bird is traced. Lines of sight are kept: for another bird, air or receiver the filter
- * only evaluates them again, and the result has the same bits as a fresh run. Method and limits:
+ * only evaluates these lines again, and the result has the bits of a new run. Method and limits:
  * Documentation/guide/coverage.md. We found no measured detection ranges of birds for this kind of
  * lidar.
  *
@@ -19,14 +19,14 @@
  * - Output port 0: vtkImageData, or the places with their data. Point arrays (float):
  *   `detection_probability`, `track_probability`, `photoelectrons`, `minimum_effective_area`
  *   (infinite where nothing is detected), `beams_per_scan` (int), `status` (unsigned char, a
- *   StatusType), with PoseProbabilities `pose_probabilities` (16 headings for each of 5 wing
- *   phases; 80 headings for gliding birds; 1 value without a species). Field data: the echo
- *   filter's, this filter's settings, `status_names`.
- * - Output port 1: vtkTable, a row per region, species and height band, then for all bands and all
- *   regions: means, their standard errors, and a share for each status, such as
+ *   StatusType) and, with PoseProbabilities on, `pose_probabilities` (16 headings for each of 5
+ *   wing phases; 80 headings for gliding birds; 1 value without a species). Field data: as of the
+ *   echo filter, and the settings of this filter and `status_names`.
+ * - Output port 1: vtkTable, a row per region, species and height band, then rows for all bands and
+ *   all regions. Columns: means, their standard errors, and a share for each status, such as
  *   `share_outside_the_gate`. With several ranks rank 0 has the table.
- * - Output port 2, clutter: vtkPolyData with the arrays of echoes, a vertex per range unit with an
- *   echo of a surface, and `detection_probability`. Piece 0 has the clutter.
+ * - Output port 2, clutter: vtkPolyData, a vertex per range unit with an echo of a surface, with
+ *   the arrays of echoes and `detection_probability`. Piece 0 has the clutter.
  *
  * A bad input or setting gives an error that names port and array or the property, and empty
  * outputs; an aborted run leaves empty outputs. Points have the same bits for any number of threads
@@ -111,7 +111,7 @@ public:
   ///@{
   /**
    * Mean effective area from the side at 3 degrees of elevation, m2, 0 to 1e6, to which the bird is
-   * scaled. 0: the species' own. 0.018 is the standard avian optical target. Default: 0.
+   * scaled. 0: the area of the species. 0.018 is the standard avian optical target. Default: 0.
    */
   vtkSetMacro(EffectiveArea, double);
   vtkGetMacro(EffectiveArea, double);
@@ -124,7 +124,7 @@ public:
   ///@}
 
   ///@{
-  /** Whether clutter is found, by a scan; without it the filter is much faster. Default: on. */
+  /** Whether a scan finds clutter; without this scan, the filter is much faster. Default: on. */
   vtkSetMacro(Clutter, bool);
   vtkGetMacro(Clutter, bool);
   vtkBooleanMacro(Clutter, bool);
@@ -161,7 +161,8 @@ public:
   ///@}
 
   /// Density of bird strikes by height above ground, 1/m: 74 % below 152.4 m, uniform there
-  /// (assumed); above, it falls by 32 % per 304.8 m (Dolbeer 2006). 0 below ground. @param height m
+  /// (assumed); above, the density falls by 32 % per 304.8 m (Dolbeer 2006). 0 below ground. @param
+  /// height height, m
   static double StrikeHeightDensity(double height);
 
   ///@{
@@ -187,8 +188,8 @@ public:
   void SetPlacesData(vtkDataObject* places) { this->SetInputData(2, places); }
   ///@}
 
-  /// Number of places whose line of sight the last execution traced on this rank; 0 if all were
-  /// kept.
+  /// Number of places whose line of sight the last execution traced on this rank; 0 if all lines of
+  /// sight were kept.
   double GetNumberOfTracedPlaces() const;
 
   vtkTypeBool ProcessRequest(vtkInformation* request, vtkInformationVector** inputVector,

@@ -7,18 +7,19 @@
  * 11(2), 153 (Algorithm 2, Eq. 1-18); Documentation/evidence/paper.md lists where the code differs
  * and why.
  *
- * Passes: read beams and sensor, merge the surfaces, take the tree that came with them or build
- * one, find the view of each beam, light it, sum energies in range units, form returns. After a
- * change of materials, air, limits, noise or return mode, kept views are lit again, with the bits
- * of a fresh run. The filter uses OpenMP, neither a VTK locator nor vtkSMPTools.
+ * Passes: read beams and sensor; merge the surfaces; take the tree that came with the surfaces, or
+ * build a tree; find what each beam sees; compute energies; sum energies in range units; form
+ * returns. After a change of materials, air, limits, noise or return mode, only the energies are
+ * computed again, with the bits of a new run. The filter uses OpenMP, but neither a VTK locator nor
+ * vtkSMPTools.
  *
  * - Input port 0, beams: vtkPolyData, one point per beam at the sensor, with the point array
  *   `direction` and the field data of a vtkAvianLidarBeamSource.
- * - Input port 1, surfaces: vtkPolyData or a composite of it, best the output of a
+ * - Input port 1, surfaces: vtkPolyData or a composite of vtkPolyData, best the output of a
  *   vtkAvianLidarCollisionTree. Media (vtkAvianLidarMedium) among the surfaces weaken light and
  *   send it back.
- * - Input port 2, movers (optional): vtkPolyData or a composite of it, with poses as field data, as
- *   from vtkAvianLidarTracks. Each beam meets movers where they are at its `timestamp`.
+ * - Input port 2, movers (optional): vtkPolyData or a composite, with poses as field data, as from
+ *   vtkAvianLidarTracks. Each beam meets movers at their places at the beam's `timestamp`.
  * - Output port 0, echoes: one vertex per return, with `energy`, `distance_m`, `object_id` and
  *   more.
  * - Output port 1, beam report: one vertex per beam, with `status`, `view`, `skipped` and the
@@ -35,8 +36,8 @@
  * A bad input gives an error that names port and array, and empty outputs. Without beams or
  * surfaces the echoes are empty. An aborted run leaves empty outputs and keeps no results.
  *
- * The echoes have the same bits for any number of threads, order and pieces of the beams, order and
- * division of the surfaces, tree, and state of the kept results, on one kind of CPU. Costs
+ * On one kind of CPU, the echoes have the same bits for any number of threads, any order and pieces
+ * of the beams, any order and division of the surfaces, any tree, and any earlier runs. Costs
  * (`candidates`, `nodes_visited`, `rays_traced`) and `skipped` depend on order, pieces, tree and
  * earlier runs. MPI ranks that request their own pieces work together.
  *
@@ -81,7 +82,7 @@ public:
   };
 
   ///@{
-  /** Photon noise of the receiver (Eq. 11). It is skipped where it cannot matter. Default: on. */
+  /** Whether to compute photon noise (Eq. 11), where noise can matter. Default: on. */
   vtkSetMacro(Noise, bool);
   vtkGetMacro(Noise, bool);
   vtkBooleanMacro(Noise, bool);
@@ -102,7 +103,7 @@ public:
   ///@}
 
   ///@{
-  /** Whether to report movers (1 ms of one core each); does not affect echoes. Default: on. */
+  /** Whether to report movers (1 ms of one core per mover); does not affect echoes. Default: on. */
   vtkSetMacro(ReportMovers, bool);
   vtkGetMacro(ReportMovers, bool);
   vtkBooleanMacro(ReportMovers, bool);

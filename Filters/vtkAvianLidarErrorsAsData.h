@@ -3,9 +3,9 @@
  * @file vtkAvianLidarErrorsAsData.h
  * @brief Declares the property ErrorsAsData, which every algorithm of the module has.
  *
- * If it is on, an execution that fails counts as done: the pipeline goes on with empty outputs
- * whose field data `error` hold the message. ParaView's proxies turn it on, because ParaView never
- * updates a failed filter again. Default: off.
+ * If ErrorsAsData is on, an execution that fails counts as done: the pipeline goes on with empty
+ * outputs whose field data `error` hold the message. ParaView's proxies turn the property on,
+ * because ParaView never updates a failed filter again. Default: off.
  */
 #ifndef vtkAvianLidarErrorsAsData_h
 #define vtkAvianLidarErrorsAsData_h
@@ -13,7 +13,7 @@
 #include "vtkSetGet.h" // For set and get macros
 
 /// Declares the property in the public part of a class. The classes have no common superclass that
-/// could hold it.
+/// could hold the property.
 #define vtkAvianLidarErrorsAsDataMacro() \
   vtkSetMacro(ErrorsAsData, bool);       \
   vtkGetMacro(ErrorsAsData, bool);       \

@@ -13,13 +13,14 @@
  * latitude in degrees, height in metres), ECEF (geocentric metres), UTM (easting, northing, height
  * in metres).
  *
- * GeographicLib makes the conversions (Karney, J. Geodesy 85(8), 2011). Their errors are below 10
- * nm within 5000 km of the surface, plus the rounding of the numbers. UTM is valid up to 3900 km
- * from the central meridian. Measured errors: Documentation/reference/scene-files.md.
+ * GeographicLib makes the conversions (Karney, J. Geodesy 85(8), 2011), with errors below 10 nm
+ * within 5000 km of the surface, plus the rounding of the numbers. UTM is valid up to 3900 km from
+ * the central meridian. Measured errors: Documentation/reference/scene-files.md.
  *
- * A missing origin, bad angles, coordinates that are not finite or beyond UTM, a bad zone or a
- * block that is not a vtkPointSet gives an error that names the fault, and an empty output. The
- * output is also empty after an abort and without points. The result does not depend on pieces.
+ * The filter reports an error that names the fault, and gives an empty output, if the origin is
+ * missing, an angle or the zone is bad, a coordinate is not finite or lies outside the range of
+ * UTM, or a block is not a vtkPointSet. The output is also empty after an abort and without points.
+ * The result does not depend on the pieces into which the input is divided.
  *
  * Example: `toUtm->SetTargetFrameToUTM(); toUtm->MovePointsOn();`
  *
@@ -75,7 +76,7 @@ public:
   ///@}
 
   ///@{
-  /** Whether field data `geodetic_origin` of block or input give the origin. Default: on. */
+  /** Whether the origin is the field data `geodetic_origin` of block or input. Default: on. */
   vtkSetMacro(UseFieldDataOrigin, bool);
   vtkGetMacro(UseFieldDataOrigin, bool);
   vtkBooleanMacro(UseFieldDataOrigin, bool);

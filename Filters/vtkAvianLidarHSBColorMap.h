@@ -14,7 +14,8 @@
  *   warning.
  *
  * A missing array or limit, several components, and limits that are not finite or in the wrong
- * order give an error that names them, and an empty output. Without points both arrays are empty.
+ * order give an error that names them, and an empty output. Without points, `hue` and `rgb` are
+ * empty.
  *
  * Example: `colors->SetInputConnection(echoes->GetOutputPort());` Documentation:
  * guide/clouds.md.
@@ -52,12 +53,13 @@ public:
   ///@}
 
   /// Lookup table of these colours for a mapper or a scalar bar, between the limits of the last
-  /// execution or, before any, EnergyRange. This object owns the table, and the next call changes
-  /// it.
+  /// execution or, before the first execution, of EnergyRange. This object owns the table, and the
+  /// next call changes it.
   vtkLookupTable* GetLookupTable();
 
-  /// Give `table` these colours and limits; it keeps its number of colours (at least 2). The ends
-  /// are exactly blue and red. Values below, values above and NaN are blue, red and black.
+  /// Give `table` the colours and limits of GetLookupTable(). The number of colours (at least 2)
+  /// stays. The ends are exactly blue and red. Values below, values above and NaN are blue, red and
+  /// black.
   void FillLookupTable(vtkLookupTable* table);
 
   vtkAvianLidarErrorsAsDataMacro();
@@ -75,7 +77,7 @@ private:
   vtkAvianLidarHSBColorMap(const vtkAvianLidarHSBColorMap&) = delete;
   void operator=(const vtkAvianLidarHSBColorMap&) = delete;
 
-  // Finds the limits in use. Returns what is wrong with them, or an empty string.
+  // Finds the limits in use. Returns an error text if the limits are bad, else an empty string.
   std::string FindLimits(vtkPointSet* input, double limits[2]);
 
   bool Executed;

@@ -5,13 +5,13 @@
  * fog bank, a shower, the crown of a tree.
  *
  * - Input port 0 (optional, for SHAPE_SURFACE): vtkPolyData, the closed surface that bounds the
- *   medium, m; its triangles may be wound either way.
- * - Output port 0: vtkPolyData, the surface that bounds the medium, for translucent display. Its
- *   field data make it a medium for all filters that take surfaces: `medium` (description as JSON),
- *   `object_names` and `object_classes` ("air", or "vegetation" for foliage).
+ *   medium, m, with triangles wound either way.
+ * - Output port 0: vtkPolyData, the surface that bounds the medium, for translucent display. The
+ *   field data make this surface a medium for all filters that take surfaces: `medium` (description
+ *   as JSON), `object_names` and `object_classes` ("air", or "vegetation" for foliage).
  *
- * Kind says what the medium is. One quantity says how dense it is: Visibility for haze, fog and
- * snow, RainRate for drizzle and rain, LeafAreaDensity for foliage, Extinction (with
+ * Kind says what the medium is. One quantity says how dense the medium is: Visibility for haze, fog
+ * and snow, RainRate for drizzle and rain, LeafAreaDensity for foliage, Extinction (with
  * BackscatterRatio) for KIND_CUSTOM. Numbers, sources and assumptions:
  * Documentation/guide/weather.md, Filters/Media/media.json.
  *
@@ -143,7 +143,7 @@ public:
   ///@}
 
   ///@{
-  /** Height above the top in which a layer fades to 1/e, m, 0 to 1e6. Default 5. */
+  /** Height above Top over which the density of a layer falls to 1/e, m, 0 to 1e6. Default 5. */
   vtkSetMacro(Softness, double);
   vtkGetMacro(Softness, double);
   ///@}
@@ -155,7 +155,7 @@ public:
   ///@}
 
   ///@{
-  /** Whole lengths of a box or an ellipsoid, m, 2e-6 to 2e7. Default (100, 100, 20). */
+  /** Full side lengths of a box or axes of an ellipsoid, m, 2e-6 to 2e7. Default (100, 100, 20). */
   vtkSetVector3Macro(Lengths, double);
   vtkGetVector3Macro(Lengths, double);
   ///@}
@@ -173,13 +173,13 @@ public:
   ///@}
 
   ///@{
-  /** Name in messages and of foliage's object; empty: the block's name. Default "medium". */
+  /** Name of the medium and of an object of foliage; empty: block's name. Default "medium". */
   vtkSetMacro(Name, std::string);
   vtkGetMacro(Name, std::string);
   ///@}
 
   ///@{
-  /** Side of the displayed part of a layer or of air everywhere, m, above 0. Default 2000. */
+  /** Side of the displayed part of a layer or of SHAPE_EVERYWHERE, m, above 0. Default 2000. */
   vtkSetMacro(DisplaySize, double);
   vtkGetMacro(DisplaySize, double);
   ///@}

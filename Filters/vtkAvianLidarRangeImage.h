@@ -4,10 +4,10 @@
  * @brief Makes an image of a scan, azimuth by elevation, from the strongest return of each beam.
  *
  * - Input port 0, echoes: vtkPolyData with `beam_id`, `distance_m`, `energy`, `energy_received` and
- *   `object_id`. It may be empty.
+ *   `object_id`; may be empty.
  * - Input port 1, beams: vtkPolyData, output 0 of the beam source or output 1 of the echo filter
- *   (the beam report). It has `azimuth` and `vertical_angle`, or `direction`. `beam_id` and, for a
- *   tilted sensor, `laser_id` are optional.
+ *   (the beam report). Required arrays are `azimuth` and `vertical_angle`, or `direction`.
+ *   `beam_id` and, for a tilted sensor, `laser_id` are optional.
  * - Output port 0: vtkImageData, a point per column and row (upwards), with `distance_m` and
  *   `energy` (NaN without an echo) and `object_id` (int, -1 without an echo). A beam report adds
  *   `status`, `skipped`, `candidates`, `nodes_visited`, `rays_traced` (-1 without a beam) and
@@ -19,8 +19,8 @@
  * given beams. Rows of a tilted sensor are channels. For grids, spacing and maps see
  * Documentation/guide/clouds.md.
  *
- * The size is known before execution, from the beam source or from Columns and Rows (then with
- * origin 0 and spacing 1 until execution). MPI ranks share echoes and beams; each makes one
+ * Before execution, the beam source or Columns and Rows give the size of the image (Columns and
+ * Rows with origin 0 and spacing 1). MPI ranks share echoes and beams; each rank makes one
  * sub-extent.
  *
  * An error names array and port and leaves an empty image. Errors are missing or bad arrays, an

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class vtkAvianLidarScanFilter
- * @brief Base of filters that trace the beams of a scan to surfaces. It has the two inputs, the
- * settings of tracing and lighting, and the results that are kept from one execution to the next.
+ * @brief Base of filters that trace the beams of a scan to surfaces. The class has the two inputs,
+ * the settings of rays and energies, and the results that are kept from one execution to the next.
  *
  * Input port 0 takes the beams, input port 1 the surfaces or their collision tree, as
  * vtkAvianLidarEchoFilter describes them. Paper: "Research on Ground Object Echo Simulation of
@@ -18,7 +18,7 @@
 #include "vtkPolyDataAlgorithm.h"
 
 #include <memory> // For std::unique_ptr
-#include <string> // For what is wrong with settings
+#include <string> // For error texts
 
 class vtkAvianLidarRanks;
 class vtkDataObject;
@@ -86,8 +86,8 @@ public:
    * - PRESET_STANDARD: 200 rays, 2 connections, 2 reflections (0.21 %, 0.24 s; 0.40 %, 0.94 s)
    * - PRESET_REFERENCE: 3200 rays, 8 connections, 2 reflections (0.12 %, 0.85 s; 0.14 %, 4.4 s)
    * - PRESET_PAPER: the method of the paper. Only 100 independent rays, 2 connections, 2
-   *   reflections (16 %, 0.11 s; 16 %, 0.16 s); it also overrides BatchCollisionDetection (beams),
-   *   BeamConstraint (on), LightEnergyConstraint (on), LightEnergyThreshold (limit),
+   *   reflections (16 %, 0.11 s; 16 %, 0.16 s). The preset also overrides BatchCollisionDetection
+   *   (beams), BeamConstraint (on), LightEnergyConstraint (on), LightEnergyThreshold (limit),
    *   ReflectanceModel (the paper's) and ReturnMode (a point for each range unit). The paper's
    *   tree: vtkAvianLidarCollisionTree::PRESET_PAPER.
    *
@@ -105,8 +105,8 @@ public:
 
   ///@{
   /**
-   * Number N of rays per beam (Eq. 1-3), 1 to 1000000. With BEAM_SAMPLES_CELLS it sets the density
-   * of a beam's grid, about 32 N rays, and of paths with two reflections. Default: 100.
+   * Number N of rays per beam (Eq. 1-3), 1 to 1000000. With BEAM_SAMPLES_CELLS, N sets the density
+   * of rays in cells (about 32 N rays in a beam), and of paths with two reflections. Default: 100.
    */
   vtkSetMacro(RaysPerBeam, int);
   vtkGetMacro(RaysPerBeam, int);
@@ -117,7 +117,7 @@ public:
    * Method that finds the direct echo of a beam (Documentation/method/beam.md):
    *
    * - BEAM_SAMPLES_CELLS: integrates over the polygons that the beam sees where few triangles enter
-   *   the beam, and otherwise over cells with a dense grid of rays
+   *   the beam, and otherwise over a grid of cells with dense rays
    * - BEAM_SAMPLES_RAYS: sums over RaysPerBeam rays, as in the paper
    *
    * Default: BEAM_SAMPLES_CELLS.
@@ -153,9 +153,9 @@ public:
 
   ///@{
   /**
-   * Visibility, m, at most 1e9, by the law of Kruse and Kim (Documentation/method/reflectance.md).
-   * 0: AttenuationCoefficient counts. Default: 0 in the echo filter, 23000 (clear) in
-   * vtkAvianLidarCoverage.
+   * Visibility, m, 0 to 1e9, which sets the attenuation by the law of Kruse and Kim
+   * (Documentation/method/reflectance.md). 0: AttenuationCoefficient is used. Default: 0 in the
+   * echo filter, 23000 (clear) in vtkAvianLidarCoverage.
    */
   vtkSetMacro(Visibility, double);
   vtkGetMacro(Visibility, double);
@@ -176,9 +176,9 @@ public:
 
   ///@{
   /**
-   * Reflectance model (Documentation/method/reflectance.md): the paper's, Eq. 5-8; the models that
-   * Fig. 10 compares with it; Oren and Nayar's for rough surfaces. Default:
-   * REFLECTANCE_MODEL_LAMBERT_BLINN_PHONG.
+   * Reflectance model (Documentation/method/reflectance.md): the model of the paper (Eq. 5-8), the
+   * models that Fig. 10 compares with the paper's, or the model of Oren and Nayar for rough
+   * surfaces. Default: REFLECTANCE_MODEL_LAMBERT_BLINN_PHONG.
    */
   vtkSetMacro(ReflectanceModel, int);
   vtkGetMacro(ReflectanceModel, int);
@@ -201,7 +201,7 @@ public:
   ///@}
 
   ///@{
-  /** Whether only the beam's cone is searched for second points; same echoes. Default: on. */
+  /** Whether only the beam's cone is searched for second reflections; same echoes. Default: on. */
   vtkSetMacro(BeamConstraint, bool);
   vtkGetMacro(BeamConstraint, bool);
   vtkBooleanMacro(BeamConstraint, bool);
@@ -215,16 +215,16 @@ public:
   ///@}
 
   ///@{
-  /** Share of the lower limit that the constraint may drop, 1, 0 to 1e8. Default: 1e-3. */
+  /** Share of the lower limit that LightEnergyConstraint may drop, 1, 0 to 1e8. Default: 1e-3. */
   vtkSetMacro(LightEnergyFraction, double);
   vtkGetMacro(LightEnergyFraction, double);
   ///@}
 
   ///@{
   /**
-   * Energy below which LightEnergyConstraint drops a path: the share LightEnergyFraction of the
-   * lower limit, or the whole lower limit, as in the paper (Sec. 3.4). Default:
-   * LIGHT_ENERGY_THRESHOLD_SHARE_OF_LIMIT.
+   * Energy below which LightEnergyConstraint drops a path: LightEnergyFraction times the lower
+   * limit, divided by the number of paths of the beam; or the lower limit, as in the paper (Sec.
+   * 3.4). Default: LIGHT_ENERGY_THRESHOLD_SHARE_OF_LIMIT.
    */
   vtkSetMacro(LightEnergyThreshold, int);
   vtkGetMacro(LightEnergyThreshold, int);
@@ -267,20 +267,20 @@ public:
   ///@}
 
   ///@{
-  /** Whether all parts of the model called `skipped` are computed; slower. Default: off. */
+  /** Whether parts of the model that `skipped` would name are computed; slower. Default: off. */
   vtkSetMacro(FullModel, bool);
   vtkGetMacro(FullModel, bool);
   vtkBooleanMacro(FullModel, bool);
   ///@}
 
   ///@{
-  /** Number M of connections of a ray that starts any, at least 0. Default: 2, as accurate as 8. */
+  /** Number M of connections of each connecting ray, at least 0. Default: 2, as accurate as 8. */
   vtkSetMacro(NumberOfConnections, int);
   vtkGetMacro(NumberOfConnections, int);
   ///@}
 
   ///@{
-  /** Number of threads; echoes do not depend on it. 0, the default: share of the cores. */
+  /** Number of threads (no effect on echoes). 0, the default: this rank's share of the cores. */
   vtkSetMacro(NumberOfThreads, int);
   vtkGetMacro(NumberOfThreads, int);
   ///@}
@@ -298,15 +298,15 @@ public:
   ///@}
 
   /// Number of rays (primary, mirror, visibility) that the last execution traced, on all ranks; 0
-  /// if views were only lit again.
+  /// if only the energies were computed again.
   double GetNumberOfTracedRays() const;
 
-  /// Number of beams for which the last execution searched the surfaces, on all ranks, without
-  /// movers; 0 if all views were kept.
+  /// Number of beams, on all ranks, for which the last execution searched the surfaces (not only
+  /// the movers); 0 if only the energies were computed again.
   double GetNumberOfTracedBeams() const;
 
-  /// Number of collision trees that this filter has built because no tree came with the surfaces,
-  /// or none that fits.
+  /// Number of collision trees that this filter has built because the surfaces came without a tree
+  /// that fits.
   int GetNumberOfTreeBuilds() const;
 
   /// Bytes of surfaces that this rank has sent to other ranks so far, for tests and measurements.
@@ -331,11 +331,11 @@ protected:
   int RequestInformation(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
   int RequestUpdateExtent(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
 
-  // Adds to the field data whether air and rain send light back.
+  // Adds the media of the surfaces to the scan, and all air to the field data.
   std::string PlaceMedia();
   void AddAirTo(vtkFieldData* fields) const;
 
-  // Passes of an execution, which all ranks make together; false ends the execution.
+  // Passes of an execution, which all ranks make together; a failure on one rank throws on all.
   void PrepareBeams(const vtkAvianLidarRanks& ranks, vtkPolyData* input);
   void PrepareSurfaces(const vtkAvianLidarRanks& ranks, vtkDataObject* input);
   void PrepareTree(const vtkAvianLidarRanks& ranks, vtkDataObject* input);

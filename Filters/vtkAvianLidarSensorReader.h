@@ -5,7 +5,7 @@
  * file.
  *
  * Outputs are those of vtkAvianLidarBeamSource. The file is read when FileName is set. Properties
- * that are not in it get their defaults; only Position, Orientation, NumberOfRevolutions,
+ * that are not in the file get their defaults; only Position, Orientation, NumberOfRevolutions,
  * StepsPerRevolution and MotionSeed stay. Values set later count until the file is read again.
  *
  * Errors name the file, the key and what was expected, and leave empty outputs.
@@ -47,7 +47,7 @@ private:
   vtkAvianLidarSensorReader(const vtkAvianLidarSensorReader&) = delete;
   void operator=(const vtkAvianLidarSensorReader&) = delete;
 
-  std::string Problem; ///< what is wrong with the file
+  std::string Problem; ///< error text of the file; empty: no error
 };
 
 #endif

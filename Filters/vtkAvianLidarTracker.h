@@ -3,7 +3,7 @@
  * @class vtkAvianLidarTracker
  * @brief Tracks birds in point clouds that come one after the other.
  *
- * Each execution takes one cloud, a whole scan. Its points are grouped into clusters, clusters are
+ * Each execution takes one cloud, a whole scan. The points are grouped into clusters, clusters are
  * assigned to tracks one to one by least cost, and clusters without a track begin new ones. Kalman
  * filters follow the motion (Bar-Shalom, Li and Kirubarajan, Estimation with Applications to
  * Tracking and Navigation, 2001). Method, times and limits: Documentation/guide/tracks.md.
@@ -12,16 +12,16 @@
  *   value other than 0 are left out), `timestamp`, `distance_std_error`; field data `position`,
  *   `half_beamwidth`.
  * - Output port 0, tracks: vtkPolyData, a vertex for each track of one position, then a polyline
- *   for each of the others, both in the order of `track_id`, with the point arrays `time`,
- *   `velocity` (0 at the first position), `position_covariance`, `number_of_echoes` and the cell
- *   arrays `track_id`, `confirmed`, `ended`, `hits`.
+ *   for each other track, both in the order of `track_id`, with the point arrays `time`, `velocity`
+ *   (0 at the first position), `position_covariance`, `number_of_echoes` and the cell arrays
+ *   `track_id`, `confirmed`, `ended`, `hits`.
  * - Output port 1, points: the input with `track_id` and `track_confirmed`.
  * - Field data of both ports: `time` and the settings in snake case.
  *
  * The time of a cloud is DATA_TIME_STEP, else the field data `TimeValue`, else the start of its
  * `revolution`, else 1 s after the cloud before. A cloud of the same time replaces the last cloud;
  * an earlier time empties the memory, with a warning. Timestamps are not used, with a warning,
- * unless all are later than the cloud before.
+ * unless all timestamps are later than the cloud before.
  *
  * Bad settings, points or arrays give an error and empty outputs; the memory stays. The tracks have
  * the same bits for any order of the points. Rank 0 has the tracks of all ranks, and each rank has

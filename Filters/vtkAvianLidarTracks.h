@@ -7,15 +7,15 @@
  *   coordinates, m, with the point array `time` (s) and the cell array or field data `species`
  *   (optional).
  * - Output port 0, movers: vtkMultiBlockDataSet, a block for each bird, with the name of the
- *   object. It has the triangles of vtkAvianLidarBirdSource in the bird's own frame (x right, y
- *   forward, z up). Field data: `pose_time`, `pose_position`, `pose_orientation`; for flapping
- *   wings `flap_hinge` and the other `flap_` arrays; `object_names`, `material_names` and `species`
- *   (Documentation/guide/moving.md, Movers).
+ *   object. Each block has the triangles of vtkAvianLidarBirdSource in the bird's own frame (x
+ *   right, y forward, z up). Field data: `pose_time`, `pose_position`, `pose_orientation`; for
+ *   flapping wings `flap_hinge` and the other `flap_` arrays; `object_names`, `material_names` and
+ *   `species` (Documentation/guide/moving.md, Movers).
  * - Output port 1, trails: vtkPolyData, a polyline for each bird, with the point array `time`, the
  *   cell arrays `object_id` and `species_id`, and the field data `species_names`.
  *
  * Outputs hold all poses, whatever time or piece is requested; time 0 is the start of the scan. The
- * same seed gives the same bits, and only in a flock does a bird depend on the birds after it.
+ * same seed gives the same bits. Except in a flock, a bird does not depend on the number of birds.
  * Patterns, file format and assumptions: Documentation/guide/birds.md.
  *
  * A bad file, times that do not rise, an unknown species or a number out of its range gives an
@@ -79,8 +79,8 @@ public:
 
   ///@{
   /**
-   * Origin of the scene for degrees in a file: latitude in [-90, 90] and longitude in [-360, 360],
-   * deg, height above the ellipsoid, m. Default (0, 0, 0).
+   * Origin of the scene for a file with longitude and latitude: latitude in [-90, 90] and longitude
+   * in [-360, 360], deg, height above the ellipsoid, m. Default (0, 0, 0).
    */
   vtkSetVector3Macro(Origin, double);
   vtkGetVector3Macro(Origin, double);
@@ -122,7 +122,7 @@ public:
   ///@}
 
   ///@{
-  /** Half the horizontal width of the region, m, 0 to 1e9. Default 500. */
+  /** Half of the horizontal width of the region, m, 0 to 1e9. Default 500. */
   vtkSetMacro(Radius, double);
   vtkGetMacro(Radius, double);
   ///@}
@@ -152,7 +152,7 @@ public:
   ///@}
 
   ///@{
-  /** First `object_id` of the birds, at least 0; their ids must be unique. Default 10000. */
+  /** First of the birds' successive `object_id`, at least 0, unique in the scene. Default 10000. */
   vtkSetMacro(FirstObjectId, int);
   vtkGetMacro(FirstObjectId, int);
   ///@}

@@ -2,8 +2,9 @@
 #ifndef AvianLidarAdvise_h
 #define AvianLidarAdvise_h
 
-/// ParaView's panel of the echo filter has the button Advise, which measures on the server which
-/// settings meet the errors beside it, and sets them in the panel, to be applied.
+/// Adds the button Advise to ParaView's panel of the echo filter. The button measures on the server
+/// which settings keep the error limits given beside it, and enters these settings in the panel.
+/// The user then presses Apply.
 void AvianLidarAddAdvise();
 
 #endif

@@ -2,39 +2,40 @@
 #ifndef AvianLidarInitializers_h
 #define AvianLidarInitializers_h
 
-// What ParaView calls when it loads the plugin.
+// Functions that ParaView calls when it loads the plugin.
 
 /**
- * Makes the colour presets (Presets/) known to this process, unless a preset of that name is there
- * already (a user may have changed it). ParaView keeps them among the user's own presets.
+ * Adds the colour presets (Presets/) to the presets of ParaView, unless a preset of the same name
+ * exists (a user may have changed it). ParaView keeps added presets among the user's own presets.
  */
 void AvianLidarAddColourPresets();
 
 /**
- * The plugin's XML may then use three domains. A proxy that a client makes before it loads the
- * plugin, of a server's XML, is without them; its beams are an error where its two beamwidths
- * differ.
+ * Registers three domains for the plugin's XML. A client that has not loaded the plugin may make a
+ * proxy from a server's XML; this proxy lacks the domains. If the two beamwidths of such a sensor
+ * differ, the sensor reports an error.
  *
  * AvianLidarBeamsDomain accepts the beams of a sensor.
  *
  * AvianLidarMaterialDomain is a DoubleRangeDomain of a coefficient of a material (attribute
  * coefficient: 0 kd, 1 ks, 2 kp, 3 roughness). When the required property Material becomes a named
- * one, the panel shows its coefficient.
+ * material, the panel shows the coefficient of this material.
  *
- * AvianLidarScaledDomain is a DoubleRangeDomain of a value in another unit: it is that of the
- * required property Other times the attribute factor, whichever of the two is changed.
+ * AvianLidarScaledDomain is a DoubleRangeDomain of a property that has the value of the required
+ * property Other in another unit: the value of Other times the attribute factor. A change of one
+ * property changes the other.
  */
 void AvianLidarAddDomains();
 
 /**
- * ParaView's window gets the toolbar Avian Lidar, at once or as soon as there is a window. It has
- * the macros that are installed beside the plugin, which the menu Macros and, in ParaView 5.11, the
- * quick launch (Ctrl+Space) have, too, and the echo filter. A click on a macro is one step of Edit
- * > Undo. Filters whose XML has the hint AvianLidarMenu are in menus and quick launch by its text:
- * ParaView searches these texts alone, and the label is the name in Python. The first Apply gives
- * echoes the colours of the macro and a range image its view. ParaView's help gets the plugin's
- * pages, panels the button Advise, and Save Data its guard. Without a window (pvpython, pvserver)
- * nothing happens.
+ * Adds the toolbar Avian Lidar to ParaView's window, as soon as there is a window. The toolbar has
+ * the echo filter and the macros that are installed beside the plugin. The menu Macros and, in
+ * ParaView 5.11, the quick launch (Ctrl+Space) have these macros, too. A click on a macro is one
+ * step of Edit > Undo. Menus and quick launch show a filter whose XML has the hint AvianLidarMenu
+ * by the text of this hint, because ParaView searches only these texts, and the label is the name
+ * in Python. The first Apply colours echoes and points with classes, and shows a range image in a
+ * view. The function also adds the plugin's help pages, the button Advise and the guard of Save
+ * Data. Without a window (pvpython, pvserver) nothing happens.
  */
 void AvianLidarAddToWindow();
 

@@ -7,8 +7,8 @@
 #include <functional>
 
 /**
- * Does what is given, in ParaView's window, as one step of Edit > Undo: sources, displays, views,
- * colours, and the cameras, which ParaView itself leaves out of its steps.
+ * Runs `work` as one step of Edit > Undo in ParaView's window. The step restores sources, displays,
+ * views, colours, and also cameras, which ParaView's own steps leave out.
  */
 void AvianLidarDoToUndo(const QString& label, const std::function<void()>& work);
 

@@ -7,9 +7,10 @@
 class QWidget;
 
 /**
- * Asks for scene, sensor, birds and weather of a scan, page by page; each page has a Finish, which
- * takes what the others have: an airport, birds, clear air at first. @return the answers as a
- * dictionary of Python, for the macro avian_lidar_wizard; empty if the dialog was cancelled
+ * Asks for scene, sensor, birds and weather of a scan, page by page; each page has the button
+ * Finish, which takes the other pages as they are (at first an airport, birds and clear air).
+ * @return the answers as a dictionary of Python, for the macro avian_lidar_wizard; empty if the
+ * dialog was cancelled
  */
 QString AvianLidarAskForScan(QWidget* parent);
 

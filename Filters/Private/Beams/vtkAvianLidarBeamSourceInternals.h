@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file vtkAvianLidarBeamSourceInternals.h
- * @brief Converts the properties of vtkAvianLidarBeamSource from sensor files, and to the kernel
- * and the field data.
+ * @brief Sets the properties of vtkAvianLidarBeamSource from sensor files, and converts them for
+ * the kernel and the field data.
  */
 #ifndef vtkAvianLidarBeamSourceInternals_h
 #define vtkAvianLidarBeamSourceInternals_h
@@ -28,13 +28,13 @@ struct vtkAvianLidarBeamSource::vtkBeamTable : avianlidar::BeamTable
 {
 };
 
-// The source's properties for the kernel and the field data.
+// Properties of the source, for the kernel and the field data.
 struct vtkAvianLidarBeamSource::vtkInternals
 {
   using Source = vtkAvianLidarBeamSource;
 
-  // A number of the source, and the member of the kernel's sensor for it. Field data hold the
-  // number unless the property `onlyWith` is 0.
+  // A property that is a number, and the member of the kernel's sensor with the same number. Field
+  // data hold the number unless the property `onlyWith` is 0.
   struct Scalar
   {
     vtkAvianLidarArrays::Name name;
@@ -56,7 +56,7 @@ struct vtkAvianLidarBeamSource::vtkInternals
     return self.Table ? ofPattern : ofColumns && self.GetNumberOfPrisms() > 0;
   }
 
-  // The source's tables.
+  // Properties that are tables.
   static const std::vector<std::pair<vtkAvianLidarArrays::Name, std::vector<double> Source::*>>&
   Tables()
   {
@@ -74,14 +74,15 @@ struct vtkAvianLidarBeamSource::vtkInternals
 
   // Set the properties that a file names. Throws std::exception for an unknown name or unit.
   static void Apply(const vtkAvianLidarSensorFile& file, Source& self);
-  // Does the same for a built-in sensor. Throws std::out_of_range for an unknown name.
+  // Set the properties that the file of a built-in sensor names. Throws std::out_of_range for an
+  // unknown name.
   static void ApplyPreset(const std::string& name, Source& self);
   using AssumedValues = std::vector<std::pair<std::string, std::vector<double>>>;
   // Values of a property, by its name in snake case.
   static std::vector<double> ValuesOf(const Source& self, const std::string& name);
   // The built-in sensors with a photon receiver.
   static const std::vector<vtkAvianLidarSensorFile>& PhotonSensors();
-  // Names of the values in use that are assumed.
+  // Names of the properties in use whose values are assumed.
   static std::vector<std::string> AssumedOf(const Source& self);
 
   // Read the user's beams. Returns an error text, or an empty string.
@@ -90,7 +91,7 @@ struct vtkAvianLidarBeamSource::vtkInternals
   // The sensor with the limits in use. Returns an error text if a value is bad.
   static std::string SensorOf(const Source& self, avianlidar::Sensor& sensor);
   static avianlidar::ScanPattern PatternOf(const Source& self);
-  // Wavelength, nm, rounded to 1e-9 nm, so it is the value that the user gave.
+  // Wavelength, nm, rounded to 1e-9 nm, so that it equals the value that the user gave.
   static double WavelengthOf(const Source& self)
   {
     return std::round(1e18 * avianlidar::SpeedOfLight / self.Frequency) / 1e9;
@@ -100,10 +101,10 @@ struct vtkAvianLidarBeamSource::vtkInternals
   {
     return { self.SwayAmplitude, self.SwayFrequency, self.EncoderJitter, self.MotionSeed };
   }
-  // The requested part and revolution. Returns an error text, or an empty string.
+  // Finds the requested part and revolution. Returns an error text, or an empty string.
   static std::string FindMoment(
     const Source& self, vtkInformation* asked, avianlidar::ScanPart& part, int& revolution);
-  // The first bad value in words, or an empty string.
+  // An error text for the first bad value, or an empty string.
   static std::string CheckProperties(const Source& self);
   // The sensor as field data of its beams.
   static void AddSensor(const Source& self, int revolution, vtkFieldData* fields);

@@ -27,13 +27,13 @@ struct vtkAvianLidarBeams
   std::vector<avianlidar::Vec3> reportedDirections;
   std::vector<int> laserIds; ///< as given, else 0
   std::vector<double>
-    azimuths; ///< 0.01 deg clockwise from north, as given, else from the direction reported
-  std::vector<double> verticalAngles; ///< deg, as given, else from the direction reported
-  std::vector<double> timestamps;     ///< us, as given, else 0
-  bool isTimed = false;               ///< timestamps were given
+    azimuths; ///< azimuths, 0.01 deg clockwise from north, as given, else of the reported direction
+  std::vector<double> verticalAngles; ///< elevations, deg, as given, else of the reported direction
+  std::vector<double> timestamps;     ///< firing times, us, as given, else 0
+  bool isTimed = false;               ///< true if timestamps were given
   double displayLength = 1000.0;      ///< m
   std::int32_t revolution = 0;        ///< revolution of the sensor, as given, else 0
-  std::string problem;                ///< what is wrong with the input
+  std::string problem;                ///< error text of the input; empty: no error
 
   /// Azimuth of a direction, 0.01 deg clockwise from north, in [0, 36000).
   static double AzimuthOf(const avianlidar::Vec3& d);
@@ -44,8 +44,9 @@ struct vtkAvianLidarBeams
   /// Read `input`; earlier results are kept if points and arrays have the same values.
   void Read(vtkPolyData* input);
 
-  /// Check that the beams of all ranks belong to one sensor, and that no id is there twice. All
-  /// ranks must call it. @param inputError makes the message of `self` from an error of the beams
+  /// Check that the beams of all ranks belong to one sensor, and that no id occurs twice. All ranks
+  /// must call this function. @param inputError function that makes the message of `self` from an
+  /// error of the beams
   void CheckRanks(const vtkAvianLidarRanks& ranks, vtkAlgorithm* self,
     const std::function<std::string(const std::string&)>& inputError);
 
@@ -69,9 +70,9 @@ private:
   std::string ReadBeams(vtkPolyData* input);
   void CompareIds(const vtkAvianLidarRanks& ranks, vtkAlgorithm* self,
     const std::function<std::string(const std::string&)>& inputError) const;
-  const void* checkedWith = nullptr;    ///< ranks among which no id was found twice; null: not yet
-  vtkAvianLidarContent::State ReadFrom; ///< empty if something was wrong
-  std::uint64_t Content = 0;            ///< hash of what was read
+  const void* checkedWith = nullptr;    ///< ranks among which no id occurs twice; null: not checked
+  vtkAvianLidarContent::State ReadFrom; ///< state of the input read last; empty after an error
+  std::uint64_t Content = 0;            ///< hash of sensor, revolution and beams
 };
 
 #endif

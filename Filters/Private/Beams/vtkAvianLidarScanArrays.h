@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file vtkAvianLidarScanArrays.h
- * @brief The beams of a scan as vtkPolyData. Not installed.
+ * @brief Makes vtkPolyData of the beams of a scan. Not installed.
  */
 #ifndef vtkAvianLidarScanArrays_h
 #define vtkAvianLidarScanArrays_h
@@ -14,7 +14,7 @@ class vtkPolyData;
 namespace vtkAvianLidarScanArrays
 {
 /// Give `output` one vertex per beam of the part, all at `position`, with the point arrays of
-/// vtkAvianLidarBeamSource. Throws if there is no memory for them, which is estimated first.
+/// vtkAvianLidarBeamSource. Throws if the memory, which is estimated first, does not suffice.
 void FillBeams(const avianlidar::ScanPattern& pattern, const avianlidar::PointingErrors& errors,
   const avianlidar::ScanPart& part, int revolution, const double position[3], vtkPolyData* output);
 

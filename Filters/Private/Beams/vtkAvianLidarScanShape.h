@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file vtkAvianLidarScanShape.h
- * @brief Passes columns and channels of a whole scan through the pipeline, before anything
- * executes. Not installed.
+ * @brief Passes columns and channels of a whole scan through the pipeline, before any execution.
+ * Not installed.
  *
- * The beam source publishes its pattern under a key, and filters on the way pass it on. So a range
- * image has its size without any beam, and keeps this size while a scan sweeps.
+ * The beam source publishes its pattern under a key, and filters in between pass the pattern on. So
+ * a range image has its size before it has beams, and keeps this size during the steps of a
+ * revolution.
  */
 #ifndef vtkAvianLidarScanShape_h
 #define vtkAvianLidarScanShape_h
@@ -23,7 +24,7 @@ namespace vtkAvianLidarScanShape
 /// form a grid (tables of beams, prisms).
 void Publish(const avianlidar::ScanPattern& pattern, vtkInformation* output);
 
-/// Remove the pattern from an output, in RequestInformation, if the input has none.
+/// Remove the pattern from an output, in RequestInformation, if the input has no pattern.
 void Follow(vtkInformation* input, vtkInformation* output);
 
 /// All beams of the sensor, by beam_id; angles in degrees.

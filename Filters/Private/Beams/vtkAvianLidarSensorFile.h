@@ -25,7 +25,7 @@ struct vtkAvianLidarSensorFile
     std::string source;
     bool IsAssumed() const { return this->source.rfind("assumed", 0) == 0; }
   };
-  std::string file; ///< for messages
+  std::string file; ///< name of the file, for messages
   std::string name;
   std::string text; ///< whole file, as JSON
   std::vector<Entry> entries;
@@ -33,13 +33,13 @@ struct vtkAvianLidarSensorFile
   /// Read a file. Throws std::exception with a message that names file and key.
   static vtkAvianLidarSensorFile Read(const std::string& file);
 
-  /// The same of its text.
+  /// Read the text of a file. @param name name of the file, for messages
   static vtkAvianLidarSensorFile OfText(const std::string& text, const std::string& name);
 
   /// A built-in sensor, such as "Airport16".
   static vtkAvianLidarSensorFile Preset(const std::string& name);
 
-  /// An error about an entry.
+  /// Throw an error that names the file and the entry.
   [[noreturn]] void Fail(const Entry& entry, const std::string& message) const;
 };
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file FileError.h
- * @brief Anything wrong with a file of a scene or a sensor.
+ * @brief Declares the error of a bad file of a scene or a sensor.
  */
 #ifndef AvianLidarFileError_h
 #define AvianLidarFileError_h
@@ -10,7 +10,7 @@
 
 namespace avianlidar
 {
-/// The message names the file, and the key or the input.
+/// Error whose message names the file, and the key or the input.
 class FileError : public std::runtime_error
 {
 public:

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file Json.h
- * @brief The one place that includes the JSON library, nlohmann's.
+ * @brief Includes the JSON library nlohmann::json, for all other files.
  *
- * Headers of VTK 9.3 include VTK's own copy, which has Debian's include guards and renames the
- * namespace by a macro. So that one source never sees both, VTK's copy is taken wherever there is
- * one: VTK 9.1 of Debian 12 has none, nor has a program without VTK.
+ * Headers of VTK 9.3 include VTK's own copy of the library, which has the include guards of
+ * Debian's copy and renames the namespace by a macro. VTK's copy is used where it exists, so that
+ * no source includes both copies. VTK 9.1 of Debian 12 has no copy, and neither has a program
+ * without VTK.
  */
 #ifndef AvianLidarJson_h
 #define AvianLidarJson_h
@@ -19,7 +20,7 @@
 
 namespace avianlidar
 {
-/// Ordered: of two patterns that fit a name, the one written first counts.
+/// Objects keep the order of the file: if two patterns fit a name, the first pattern counts.
 using Json = nlohmann::ordered_json;
 }
 

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file JsonNode.h
- * @brief A JSON value with its file and its path, so that every error names the file and the key.
+ * @brief Declares a JSON value with its file and its path, so that every error names the file and
+ * the key.
  */
 #ifndef AvianLidarJsonNode_h
 #define AvianLidarJsonNode_h
@@ -26,7 +27,7 @@ Json ReadJson(const std::string& file);
 Json ReadJson(std::istream& stream, const std::string& file);
 
 /**
- * A view of one value with its path, as "objects[3].scale". All getters throw FileError if the
+ * A view of one value with its path, such as "objects[3].scale". All getters throw FileError if the
  * value has another type than the getter returns; numbers are finite.
  */
 class JsonNode
@@ -47,13 +48,13 @@ public:
   bool IsArray() const { return this->Value.is_array(); }
 
   bool Has(const char* key) const;
-  /// The value of a key, which must be there.
+  /// The value of a key, which must exist.
   JsonNode Get(const std::string& key) const;
   /// The value must be an object whose keys are all among those given.
   void RequireKeys(const std::vector<const char*>& known) const;
   /// Keys and values of an object, as written.
   std::vector<std::pair<std::string, JsonNode>> Members() const;
-  /// Values of an array; size 0: any number of them.
+  /// Values of an array. @param size required number of values; 0: any number
   std::vector<JsonNode> Items(std::size_t size = 0) const;
 
   double Number() const;
@@ -64,7 +65,7 @@ public:
   /// A string that is not empty.
   std::string Name() const;
   std::array<double, 3> Vector() const;
-  /// One string or an array of them.
+  /// The strings of an array, or one string.
   std::vector<std::string> Strings() const;
 
 private:

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file vtkAvianLidarAbort.h
- * @brief Whether the user wants a running filter to stop, with every VTK from 9.1 on. Not
- * installed.
+ * @brief Finds whether a running filter is to stop, with every VTK from 9.1 on. Not installed.
  */
 #ifndef vtkAvianLidarAbort_h
 #define vtkAvianLidarAbort_h
@@ -14,8 +13,8 @@
 
 namespace vtkAvianLidarAbort
 {
-/// To be asked on the calling thread only. Call vtkAlgorithm::UpdateProgress() before: its
-/// observers set the flag.
+/// True if the algorithm is to stop. Call the function only on the calling thread, after
+/// vtkAlgorithm::UpdateProgress(), whose observers set the flag.
 inline bool Wanted(vtkAlgorithm* algorithm)
 {
 #if VTK_VERSION_NUMBER >= VTK_VERSION_CHECK(9, 2, 20230111)
@@ -26,8 +25,8 @@ inline bool Wanted(vtkAlgorithm* algorithm)
 #endif
 }
 
-/// Reports a part of the algorithm's progress, and asks. @param from progress when the work begins
-/// @param to when it is done
+/// Function that reports progress and returns false if the algorithm is to stop. @param from
+/// progress when the work begins @param to progress when the work is done
 inline avianlidar::KeepGoing KeepGoing(vtkAlgorithm* algorithm, double from = 0.0, double to = 1.0)
 {
   return [algorithm, from, to](double fraction)
@@ -46,8 +45,9 @@ inline void Require(bool done)
   }
 }
 
-/// In the body of a RequestData: throws if an observer of the progress 0, which the executive
-/// reports before, wants to stop. Work shared by ranks does so in a step.
+/// Throws if an observer of the progress 0, which the executive reports before RequestData, wants
+/// to stop. Call the function in the body of RequestData; ranks that work together call it in a
+/// step.
 inline void StopIfWanted(vtkAlgorithm* algorithm)
 {
   Require(!Wanted(algorithm));

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file vtkAvianLidarArrays.h
- * @brief Making and reading of arrays. Not installed.
+ * @brief Makes, checks and reads arrays. Not installed.
  */
 #ifndef vtkAvianLidarArrays_h
 #define vtkAvianLidarArrays_h
@@ -26,8 +26,8 @@ namespace vtkAvianLidarArrays
 void SetUnit(vtkAbstractArray* array, const char* unit);
 
 /// Set the number of tuples of a new array, whose components are set; values are not initialised.
-/// VTK's own way ends the process where there is no memory (as Debian builds it): this throws
-/// std::bad_alloc.
+/// Without memory the function throws std::bad_alloc; VTK's own function, as Debian builds VTK,
+/// ends the process.
 template <class ValueT>
 void SetTuples(vtkAOSDataArrayTemplate<ValueT>* array, vtkIdType tuples)
 {
@@ -56,7 +56,7 @@ vtkSmartPointer<ArrayT> Make(const Name& name, vtkIdType tuples = 0, int compone
   return array;
 }
 
-/// The same of one component, with values.
+/// A new array of one component with these values, and with name and unit.
 template <class ArrayT, class Values>
 vtkSmartPointer<ArrayT> MakeOf(const Name& name, const Values& values)
 {
@@ -71,38 +71,38 @@ vtkSmartPointer<vtkPoints> MakePoints(vtkIdType count);
 /// Put one double value (with unit) into field data, replacing an array of that name.
 void SetFieldValue(vtkFieldData* fields, const Name& name, double value);
 
-/// The same of an integer.
+/// Put one int value (with unit) into field data, replacing an array of that name.
 void SetFieldInteger(vtkFieldData* fields, const Name& name, int value);
 
 /// Put strings into field data, as UTF-8, replacing an array of that name.
 void SetFieldStrings(
   vtkFieldData* fields, const Name& name, const std::vector<std::string>& values);
 
-/// Empty if the array (null: fine) has as many components and tuples as expected; otherwise what is
-/// wrong with it.
+/// An error text if the array has another number of components or tuples than expected; empty if
+/// the array is right or null.
 /// @param kind "point array" or "cell array"
 std::string CheckShape(vtkDataArray* array, const char* kind, int components, vtkIdType tuples);
 
-/// The error of an array that holds no numbers. @param kind "point array", "cell array" or
-/// "field data"
+/// An error text for an array that does not hold numbers. @param kind "point array", "cell array"
+/// or "field data"
 std::string NotNumeric(const char* kind, const char* name);
 
-/// Empty if there is no array of the name, or if it holds numbers; otherwise what is wrong.
+/// An error text if an array of the name exists and does not hold numbers, else an empty string.
 /// @param kind as above
 std::string CheckNumeric(vtkFieldData* arrays, const Name& name, const char* kind);
 
-/// The same for text.
+/// An error text if an array of the name exists and does not hold text, else an empty string.
 std::string CheckText(vtkFieldData* fields, const Name& name);
 
 /// True for the whole numbers that an int holds.
 bool IsInt(double value);
 
-/// Read one finite number of any numeric type from field data; false if there is none, or anything
-/// else than one.
+/// Read one finite number of any numeric type from field data; false if the array is missing, has
+/// not exactly one value, or the value is not finite.
 bool GetFieldValue(vtkFieldData* fields, const Name& name, double& value);
 
-/// The same where it may be absent: empty if it is (the value stays) or if it was read, otherwise
-/// what is wrong.
+/// Read one finite number like GetFieldValue(). A missing array is not an error; `value` then
+/// stays. @return an error text, or an empty string
 std::string ReadFieldValue(vtkFieldData* fields, const Name& name, double& value);
 }
 

@@ -36,8 +36,8 @@ vtkSmartPointer<vtkCellArray> vtkAvianLidarMakeCells(vtkIdType cells, vtkIdType 
   return array;
 }
 
-/// f(ids, their number): the points of all cells, one cell after the other, whatever integers hold
-/// them. Without an iterator, which costs a small block more than its cells.
+/// Call f(ids, count) with the point ids of all cells, one cell after the other, in 32 or 64 bits.
+/// An iterator would take more time than the cells of a small block.
 template <class F>
 auto vtkAvianLidarPointIds(vtkCellArray* cells, F&& f)
 {
@@ -46,8 +46,8 @@ auto vtkAvianLidarPointIds(vtkCellArray* cells, F&& f)
                                  : f(cells->GetConnectivityArray32()->GetPointer(0), count);
 }
 
-/// Triangles from three point ids each, in integers of 32 bits wherever they fit: half the memory.
-/// @param cellOf the cell that a triangle, by its number, becomes
+/// Cells of triangles with three point ids each. Ids that fit into 32 bits are stored so, in half
+/// the memory. @param cellOf function from the number of a triangle to the number of its cell
 template <class Triangles, class F>
 vtkSmartPointer<vtkCellArray> vtkAvianLidarMakeTriangles(const Triangles& triangles, F cellOf)
 {

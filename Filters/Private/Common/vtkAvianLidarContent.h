@@ -23,17 +23,19 @@ class vtkPolyData;
 
 namespace vtkAvianLidarContent
 {
-/// Data objects and when each, or anything in it, was last modified.
+/// Data objects, each with the time at which the object or anything in it was last modified.
 using State = std::vector<std::pair<const void*, vtkMTimeType>>;
 
-/// When a vtkPolyData or anything in it was last modified: fields, points, cells, their arrays.
+/// Time at which a vtkPolyData or anything in it was last modified: fields, points, cells, their
+/// arrays.
 vtkMTimeType TimeOf(vtkPolyData* poly);
 
-/// A vtkPolyData, or a composite with all nodes, leaves and their names. Empty if memory does not
-/// suffice, because ranks call the function before they agree.
+/// State of a vtkPolyData, or of a composite with all nodes, leaves and their names. If memory does
+/// not suffice, the state is empty instead of an exception, because ranks call the function outside
+/// a step.
 State StateOf(vtkDataObject* data);
 
-/// Hash of an array, may be null: its type, size and values. @param seed hash of the data before
+/// Hash of an array, may be null: its type, size and values. @param seed hash to continue
 std::uint64_t HashOf(vtkDataArray* array, std::uint64_t seed);
 
 /// Hash of points and cells.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file vtkAvianLidarGather.h
- * @brief Points of all ranks on each of them. Not installed.
+ * @brief Gathers the points of all ranks on each rank. Not installed.
  */
 #ifndef vtkAvianLidarGather_h
 #define vtkAvianLidarGather_h
@@ -16,9 +16,9 @@ class vtkPolyData;
 
 namespace vtkAvianLidarGather
 {
-/// The points of all ranks with the point arrays that all have, one rank's after the other's;
-/// `mine` itself for one process. All ranks must call it. Throws on all if the points are 2 GiB or
-/// more together.
+/// The points of all ranks, rank by rank, with the point arrays that all ranks have; `mine` itself
+/// for one process. All ranks must call this function. It throws on all ranks if the points
+/// together take 2 GiB or more.
 vtkSmartPointer<vtkPolyData> Points(
   const vtkAvianLidarRanks& ranks, vtkAlgorithm* self, vtkPolyData* mine);
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file vtkAvianLidarGuard.h
- * @brief Ends executions that fail with an error message, empty outputs whose field data `error`
- * repeat the message, and 0, or 1 with errors as data. Not installed.
+ * @brief Ends an execution that fails: reports the error, empties the outputs, writes the message
+ * into their field data `error`, and returns 0, or 1 with ErrorsAsData. Not installed.
  *
  * Every RequestData runs in vtkAvianLidarGuarded() or, together with other ranks, in
  * vtkAvianLidarRanks::Execute(). VTK considers a failed filter up to date, and at the next update
@@ -26,24 +26,24 @@ namespace vtkAvianLidarGuard
 {
 constexpr char NoMemory[] = "There is not enough memory for this";
 
-/// An error text with the first input that is empty because its producer failed; else an empty
-/// string.
+/// An error text that names the first input that is empty because its producer failed; else an
+/// empty string.
 std::string FailedInput(vtkAlgorithm* self);
 
 /// The problem as UTF-8, with a full stop.
 std::string Sentence(const std::string& problem);
 
-/// Empty all outputs. @param error for their field data, if any
+/// Empty all outputs. @param error error text for the field data; empty: none
 void Empty(vtkInformationVector* outputs, const std::string& error = {});
 
-/// End an execution. If there is a problem, outputs are emptied and hold its text.
+/// End an execution. If `problem` is not empty, outputs are emptied and hold this text.
 /// @return what RequestData is to return
 int End(vtkInformationVector* outputs, const std::string& problem, bool errorsAsData);
 
 /// End an execution whose error does not fit into memory: outputs are emptied. @return 0
 int GiveUp(vtkAlgorithm* self, vtkInformationVector* outputs);
 
-/// The problem that a step returns or throws; an empty string if it throws avianlidar::WorkStopped.
+/// The problem that a step returns or throws; an empty string for avianlidar::WorkStopped.
 template <class Step>
 std::string ProblemOf(Step step)
 {

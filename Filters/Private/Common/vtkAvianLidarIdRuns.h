@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file vtkAvianLidarIdRuns.h
- * @brief Ids of beams as runs of consecutive numbers, to find one that is there twice. Not
+ * @brief Stores ids of beams as runs of consecutive numbers, to find an id that occurs twice. Not
  * installed.
  */
 #ifndef vtkAvianLidarIdRuns_h
@@ -11,18 +11,18 @@
 #include <string>
 #include <vector>
 
-/// Ids from `first` on, `count` of them: a sensor numbers its beams so, and columns dealt to ranks
-/// are a few such runs.
+/// Consecutive ids, `count` of them, from `first` on. The beams of a sensor are one run, and the
+/// columns of one rank are a few runs.
 struct vtkAvianLidarIdRun
 {
   std::uint64_t first;
   std::uint64_t count;
 };
 
-/// The ids in any order as runs, ascending. One that is there twice begins a run of its own.
+/// Ascending runs of ids that come in any order. An id that occurs twice begins a new run.
 std::vector<vtkAvianLidarIdRun> vtkAvianLidarRunsOf(std::vector<std::uint64_t> ids);
 
-/// What is wrong if any id is in two of the runs, or nothing.
+/// An error text if an id is in two of the runs, else an empty string.
 std::string vtkAvianLidarRepeatedIdError(std::vector<vtkAvianLidarIdRun> runs);
 
 #endif

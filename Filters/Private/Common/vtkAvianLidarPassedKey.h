@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file vtkAvianLidarPassedKey.h
- * @brief A vector in the pipeline's information that filters on the way pass on, as VTK has them
- * do with the time steps. Not installed.
+ * @brief Declares a pipeline information key with a vector of numbers, which every filter passes
+ * from its input to its outputs, like VTK's time steps. Not installed.
  */
 #ifndef vtkAvianLidarPassedKey_h
 #define vtkAvianLidarPassedKey_h
@@ -16,8 +16,8 @@ class vtkAvianLidarPassedKey : public vtkInformationDoubleVectorKey
 public:
   vtkTypeMacro(vtkAvianLidarPassedKey, vtkInformationDoubleVectorKey);
 
-  /// A key lives to the end of the process: VTK's manager of keys deletes it. A length of -1 is
-  /// any.
+  /// A key lives to the end of the process: VTK's manager of keys deletes the key. @param length
+  /// number of values; -1: any number
   vtkAvianLidarPassedKey(const char* name, const char* location, int length = -1)
     : vtkInformationDoubleVectorKey(name, location, length)
   {

@@ -4,16 +4,17 @@
  * @brief Lets MPI ranks that execute a request together agree on outcomes and exchange data. Not
  * installed.
  *
- * Ranks execute together when the controller of a filter has several processes and each asks for
- * its own piece of as many, as in pvserver and pvbatch. A rank executes any other request (one
- * piece, or pieces of the user's choice) by itself: it sends nothing and does not wait.
+ * Ranks execute together when the controller of a filter has several processes, and each process
+ * requests its own one of as many pieces, as in pvserver and pvbatch. A rank executes any other
+ * request (one piece, or pieces of the user's choice) by itself: the rank sends nothing and does
+ * not wait.
  *
  * All ranks must make the same calls in the same order. So work that may fail on one rank is a
- * step: if it fails or stops on one rank, the execution ends on all ranks, by an exception that
+ * step: if a step fails or stops on one rank, the execution ends on all ranks, by an exception that
  * Execute() catches. Before each exchange every rank reports whether it is ready. If a rank throws
- * between exchanges, it reports that it is not, and its error becomes the error of all ranks. If a
- * rank throws within an exchange, for example without memory, the others would wait for it, so it
- * ends the job.
+ * between exchanges, it reports that it is not ready, and its error becomes the error of all ranks.
+ * If a rank throws within an exchange, for example without memory, the other ranks would wait for
+ * ever, so the rank ends the job.
  */
 #ifndef vtkAvianLidarRanks_h
 #define vtkAvianLidarRanks_h
@@ -67,18 +68,19 @@ public:
   static int Execute(
     Filter* self, vtkInformation* request, vtkInformationVector* outputs, const Work& body)
   {
-    // By reference: a copy as a Body takes memory, and the others would wait for a rank without it.
+    // By reference: a copy takes memory, and the other ranks would wait for a rank without memory.
     return Execute(
       self, self->GetController(), request, outputs, self->GetErrorsAsData(), std::cref(body));
   }
 
-  /// The ranks that execute a request. @param controller processes that may; null: only this one
+  /// The ranks that execute a request. @param controller processes that may work together; null:
+  /// only this one
   /// @param outputs informations of the output ports
   vtkAvianLidarRanks(
     vtkMultiProcessController* controller, vtkInformation* request, vtkInformationVector* outputs);
 
   bool Alone() const { return this->Controller == nullptr; }
-  const void* Group() const { return this->Controller; } ///< their controller; null: one process
+  const void* Group() const { return this->Controller; } ///< ranks' controller; null: one process
   int Rank() const { return this->Mine; }
   int Size() const { return this->Count; }
 
@@ -105,9 +107,9 @@ public:
       });
   }
 
-  /// Gives an error on all ranks if a setting of one rank differs from rank 0: results would be
-  /// mixed.
-  /// @param mine the same names on all ranks
+  /// Gives an error on all ranks if a rank's setting differs from the setting of rank 0, because
+  /// results would be mixed.
+  /// @param mine settings of this rank, with the same names on all ranks
   void AgreeOn(vtkAlgorithm* self, const Settings& mine) const;
 
   /// True if `mine` is true on every rank.
@@ -122,8 +124,8 @@ public:
   /// True if all ranks that have a value have the same value.
   bool Same(std::optional<std::uint64_t> mine) const;
 
-  /// A few numbers and texts of every rank, by rank. This function and the next two throw on all
-  /// ranks if the values of all ranks together are 2^31 or more, which VTK cannot send.
+  /// A few numbers and texts of every rank, by rank. All functions Gather() throw on all ranks if
+  /// the values of all ranks together are 2^31 or more, which VTK cannot send.
   std::vector<vtkMultiProcessStream> Gather(const vtkMultiProcessStream& mine) const;
 
   /// The values of all ranks, rank by rank. Not for one process.
@@ -141,12 +143,13 @@ public:
   /// An error text for a data object of 2 GiB or more, which VTK cannot send; else an empty string.
   static std::string CheckSize(vtkDataObject* data);
 
-  /// Send the data object of rank `from`, which CheckSize() accepted, to all. Not for one process.
-  /// @param data is overwritten on other ranks @param sent grows by the bytes that this rank sent
+  /// Send rank `from`'s data object, accepted by CheckSize(), to all ranks. Not for one process.
+  /// @param data data object, overwritten on other ranks @param sent sum of bytes sent, to which
+  /// this rank adds its bytes
   void Broadcast(vtkDataObject* data, int from, double& sent) const;
 
   /// Number of threads of a loop: `wanted`, or for 0 this rank's share of the cores of its node
-  /// (OMP_NUM_THREADS, if set, is already the share of a rank). All ranks must call it.
+  /// (OMP_NUM_THREADS, if set, is already the share of a rank). All ranks must call this function.
   int Threads(int wanted) const;
 
   /// Request this rank's piece of an input. For vtkAlgorithm::RequestUpdateExtent().
@@ -156,7 +159,7 @@ public:
   static void RequestAll(vtkInformationVector* input);
 
   /// Update the inputs of an algorithm before its executive does, so that an error upstream of one
-  /// rank ends the execution of all. Otherwise VTK would not call RequestData on a rank whose
+  /// rank ends the execution of all ranks. Otherwise VTK would not call RequestData on a rank whose
   /// producer returned 0, such as a reader without its file, and the other ranks would wait for
   /// ever. For vtkAlgorithm::ModifyRequest(). @return 0 after such an error
   template <class Filter>
@@ -184,7 +187,8 @@ private:
   /// Make the error of an exception the error of all ranks. @param mine null if another rank threw
   /// @return Outcome::Failed
   Outcome Fail(vtkAlgorithm* self, const char* mine) const noexcept;
-  /// Throws on all ranks that meet here if one threw. @return the least `mine` of all ranks
+  /// Wait for all ranks. Throws on all of them if one rank threw. @return the least `mine` of all
+  /// ranks
   int Meet(int mine) const;
   /// Meet, then let all ranks send and receive.
   template <class Work>

@@ -5,9 +5,9 @@
  * installed.
  *
  * The time of a cloud, s: `DATA_TIME_STEP` of its information, else field data `TimeValue`, else
- * the start of its `revolution`, else the time of the last cloud + 1 if the cloud is another one or
- * was made anew. Steps of a sweeping revolution (`steps_per_revolution` above 1) are one scan,
- * whose time is the start of the revolution.
+ * the start of its `revolution`, else the time of the last cloud + 1 if the cloud is another object
+ * or was made anew. The steps of a revolution (`steps_per_revolution` above 1) are one scan, whose
+ * time is the start of the revolution.
  */
 #ifndef vtkAvianLidarScanStream_h
 #define vtkAvianLidarScanStream_h
@@ -24,14 +24,14 @@ public:
   /// Read the time of a cloud, without storing it. @return an error text, or an empty string
   std::string ReadTime(vtkDataObject* cloud, double& time) const;
 
-  /// Store the cloud and its time as the last ones.
+  /// Store the cloud and its time as the last cloud and time.
   void Accept(vtkDataObject* cloud, double time);
 
   bool Begun() const { return this->Has; }
   double Time() const { return this->Last; } ///< time of the last cloud
 
-  /// Read the position of the sensor from field data `position`; without these, `position` stays.
-  /// @return what is wrong, or nothing
+  /// Read the position of the sensor from field data `position`; without this array, `position`
+  /// stays. @return an error text, or an empty string
   static std::string ReadPosition(vtkDataObject* cloud, double position[3]);
 
 private:
@@ -39,7 +39,7 @@ private:
 
   bool Has = false;
   double Last = 0.0;
-  const void* Cloud = nullptr; ///< compared only
+  const void* Cloud = nullptr; ///< last cloud, only compared
   vtkMTimeType MadeAt = 0;
 };
 

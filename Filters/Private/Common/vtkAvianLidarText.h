@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file vtkAvianLidarText.h
- * @brief Text of files and of other programs as messages and names may carry it. Not installed.
+ * @brief Makes text of files and of other programs valid UTF-8, for messages and names. Not
+ * installed.
  */
 #ifndef vtkAvianLidarText_h
 #define vtkAvianLidarText_h
@@ -13,7 +14,7 @@
 #include <string>
 
 /// The text as UTF-8: each invalid byte, and NUL, is written like \xE4. VTK's Python modules decode
-/// messages, and lose one that they cannot decode.
+/// messages, and lose a message that is not valid UTF-8.
 inline std::string vtkAvianLidarText(const std::string& text)
 {
   std::string valid;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file vtkAvianLidarWarnings.h
- * @brief A warning about surfaces is given once for each scene, and once for all times of a scene
- * that moves. Not installed.
+ * @brief Decides whether a warning about surfaces is new: each warning is given once per scene, and
+ * once for all times of a scene that moves. Not installed.
  */
 #ifndef vtkAvianLidarWarnings_h
 #define vtkAvianLidarWarnings_h
@@ -16,7 +16,8 @@
 class vtkAvianLidarWarnings
 {
 public:
-  /// Is `warning` about `surfaces` to be given? It counts as given then. `checksum`: of the scene.
+  /// True if `warning` about `surfaces` is to be given; the warning then counts as given. @param
+  /// checksum checksum of the scene
   bool IsNew(vtkDataObject* surfaces, std::uint64_t checksum, const std::string& warning)
   {
     const bool moves = surfaces && surfaces->GetInformation()->Has(vtkDataObject::DATA_TIME_STEP());

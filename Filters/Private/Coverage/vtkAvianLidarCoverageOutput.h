@@ -49,7 +49,7 @@ public:
     }
   }
 
-  /// Values for the probabilities of a place's poses.
+  /// Probabilities of the poses at a place.
   float* PosesOf(std::size_t place)
   {
     return this->Poses->GetPointer(
@@ -86,8 +86,8 @@ private:
   vtkSmartPointer<vtkUnsignedCharArray> Status;
 };
 
-/// Fill `clutter` with the echoes of a scan without noise and, for each, the share of scans with
-/// noise in which it is detected.
+/// Fill `clutter` with the echoes of a scan without noise and, for each echo, the share of scans
+/// with noise in which the echo is detected.
 void vtkAvianLidarFillClutter(
   const avianlidar::ScanResult& still, const vtkAvianLidarBeams& beams, vtkPolyData* clutter);
 
@@ -101,12 +101,12 @@ struct vtkAvianLidarCoverageTable
   std::vector<avianlidar::CoverageShares> sums;
 
   std::size_t Bands() const { return this->heightLimits.size() + 1; }
-  std::size_t Cells() const { return this->regions.size() * this->Bands(); } ///< cells of a species
+  std::size_t Cells() const { return this->regions.size() * this->Bands(); } ///< sums of a species
 
   /// Replace the sums by the sums over all ranks, on every rank.
   void SumOverRanks(const vtkAvianLidarRanks& ranks);
 
-  /// Fill in the rows, see vtkAvianLidarCoverage. @param table an empty table
+  /// Fill in the rows that vtkAvianLidarCoverage describes. @param table an empty table
   void Fill(vtkTable* table) const;
 };
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file vtkAvianLidarPlaces.h
- * @brief The places for which coverage is evaluated, which are the points of a data set or of an
- * image, and the regions in which they lie. Not installed.
+ * @brief Holds the places for which coverage is evaluated (points of a data set or of an image),
+ * and the regions in which the places lie. Not installed.
  */
 #ifndef vtkAvianLidarPlaces_h
 #define vtkAvianLidarPlaces_h
@@ -25,7 +25,7 @@ class vtkUnsignedCharArray;
 class vtkAvianLidarPlaces
 {
 public:
-  vtkAvianLidarPlaces() = default; ///< no place
+  vtkAvianLidarPlaces() = default; ///< set without places
 
   /// Number of points of a data set. VTK's own number of structured points overflows.
   static double CountOf(vtkDataSet* points);
@@ -33,11 +33,12 @@ public:
   /// Take the points of a data set. Throws std::runtime_error if the data set is bad.
   explicit vtkAvianLidarPlaces(vtkDataSet* points);
 
-  /// An error text if the region or the spacing of its points is bad, else an empty string. The
-  /// points fill the region from its lower corner. @param bounds m @param spacing m
+  /// An error text if a region or the spacing of its points is bad, else an empty string. The
+  /// points fill the region from its lower corner. @param bounds bounds of the region, m @param
+  /// spacing distances of the points, m
   static std::string CheckRegion(const double bounds[6], const double spacing[3]);
 
-  /// The extent of the image of these points.
+  /// Extent of the image whose points fill a region, as for CheckRegion().
   static void ExtentOf(const double bounds[6], const double spacing[3], int extent[6]);
 
   /// Take the points of an image.
@@ -50,7 +51,7 @@ public:
   std::size_t Size() const;
   avianlidar::Vec3 At(std::size_t k) const;
 
-  /// False for ghosts; points where two structured pieces meet belong to the second.
+  /// False for ghosts; points where two structured pieces meet belong to the second piece.
   bool IsMine(std::size_t k) const;
 
   /// Hash of all coordinates.
@@ -62,7 +63,7 @@ public:
   /// Give the regions of all ranks the same numbers.
   void ShareRegions(const vtkAvianLidarRanks& ranks);
 
-  vtkDataSet* GetPoints() const { return this->Points; } ///< null: an image
+  vtkDataSet* GetPoints() const { return this->Points; } ///< null for an image
   const int* GetExtent() const { return this->Extent; }
   const double* GetOrigin() const { return this->Origin; }
   const double* GetSpacing() const { return this->Spacing; }
@@ -73,10 +74,10 @@ private:
   void ReadRegions();
 
   vtkSmartPointer<vtkDataSet> Points;
-  vtkSmartPointer<vtkUnsignedCharArray> Ghosts; ///< null: none
+  vtkSmartPointer<vtkUnsignedCharArray> Ghosts; ///< ghost flags; null: no ghosts
   int Extent[6] = { 0, -1, 0, -1, 0, -1 };
   int Mine[6] = { 0, -1, 0, -1, 0,
-    -1 }; ///< extent without the last points where another rank goes on
+    -1 }; ///< extent of this rank's points, without points that the next piece has, too
   bool HasMine = false;
   double Origin[3] = { 0.0, 0.0, 0.0 };
   double Spacing[3] = { 1.0, 1.0, 1.0 };

@@ -17,7 +17,7 @@ class vtkPolyData;
 
 namespace vtkAvianLidarEchoOutput
 {
-/// Fill in one vertex per return, with all arrays. @param noise noise of the scan
+/// Fill in one vertex per return, with all arrays. @param noise noise plan of the scan
 void FillEchoes(const avianlidar::ScanResult& result, const vtkAvianLidarBeams& beams,
   const avianlidar::NoisePlan& noise, vtkPolyData* echoes);
 
@@ -28,26 +28,27 @@ void FillEchoes(const avianlidar::ScanResult& result, const vtkAvianLidarBeams& 
  * (how the direct echo was found), the counts `candidates`, `nodes_visited` and `rays_traced`, and
  * `skipped` (SkippedPart) with `skipped_bound`, J.
  *
- * @param result result of a scan, with one report for each beam @param beams read without a problem
- * @param noise of the scan
- * @param report empty
+ * @param result result of a scan, with one report for each beam @param beams beams that were read
+ * without an error
+ * @param noise noise plan of the scan
+ * @param report empty output
  */
 void FillReport(const avianlidar::ScanResult& result, const vtkAvianLidarBeams& beams,
   const avianlidar::NoisePlan& noise, vtkPolyData* report);
 
 /**
- * Fill in a vertex for each mover that is present, at its position when the beam is fired that
- * receives the most energy from it. Arrays: see vtkAvianLidarEchoFilter.
+ * Fill in a vertex for each mover that is present, at its position when the beam that receives most
+ * energy from the mover is fired. Arrays: see vtkAvianLidarEchoFilter.
  *
- * @param reports of the setup's movers, from these beams @param result of the scan @param report
- * empty
+ * @param reports reports of the setup's movers from these beams @param result result of the scan
+ * @param report empty output
  */
 void FillMovers(const avianlidar::ScanSetup& setup, const avianlidar::ScanBeams& beams,
   const std::vector<avianlidar::MoverReport>& reports, const avianlidar::ScanResult& result,
   vtkPolyData* report);
 
 /// Fill in everything that is needed to repeat the scan (`sceneChecksum`: SceneSummary::checksum of
-/// the surfaces), and the bounds on what was not modelled.
+/// the surfaces), and the bounds of everything that was not modelled.
 void FillFields(const avianlidar::ScanSetup& setup, int preset, vtkFieldData* beamFields,
   const vtkAvianLidarMovers& movers, vtkFieldData* surfaceFields, std::uint64_t sceneChecksum,
   vtkFieldData* fields);

@@ -25,7 +25,7 @@ class vtkPolyData;
 namespace vtkAvianLidarImageArrays
 {
 /// A point array with the given number of components, or null with an error text in `problem`.
-/// @param port what is said of the input
+/// @param port words for the input in errors
 vtkDataArray* Find(vtkPolyData* input, const vtkAvianLidarArrays::Name& name, const char* port,
   std::string& problem, int components = 1);
 
@@ -49,7 +49,7 @@ std::string NoInteger(const vtkAvianLidarArrays::Name& name, const char* port, v
 void AddEchoes(vtkPolyData* echoes, const std::vector<vtkIdType>& beamOfCell,
   const std::vector<vtkIdType>& strongest, vtkImageData* image, std::string& problem);
 
-/// Add the arrays of beams that are a beam report.
+/// Add the arrays of a beam report, if `beams` is a beam report.
 void AddReport(vtkPolyData* beams, const std::vector<vtkIdType>& beamOfCell, vtkImageData* image,
   std::string& problem);
 

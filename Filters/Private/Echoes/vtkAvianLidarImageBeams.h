@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file vtkAvianLidarImageBeams.h
- * @brief The beams of a range image and the grid that they form. Not installed.
+ * @brief Reads the beams of a range image and the grid that the beams form. Not installed.
  */
 #ifndef vtkAvianLidarImageBeams_h
 #define vtkAvianLidarImageBeams_h

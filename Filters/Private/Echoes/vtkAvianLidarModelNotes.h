@@ -3,9 +3,9 @@
  * @file vtkAvianLidarModelNotes.h
  * @brief Describes in sentences, for field data, what a scan left out and why. Not installed.
  *
- * The notes follow only from the setup, so they are the same for a fresh scan and for one that is
- * only lit again. The beam report says what was left out in each beam, because that depends on
- * results kept from earlier scans.
+ * The notes follow only from the setup, so the notes are the same for a new scan and for a scan of
+ * which only the energies are computed again. The beam report says what was left out in each beam,
+ * because the parts left out depend on results kept from earlier scans.
  */
 #ifndef vtkAvianLidarModelNotes_h
 #define vtkAvianLidarModelNotes_h

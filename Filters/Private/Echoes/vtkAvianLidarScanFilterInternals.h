@@ -35,8 +35,8 @@ struct vtkAvianLidarScanFilter::vtkInternals
   std::shared_ptr<const vtkAvianLidarSurfaces> Surfaces; ///< surfaces merged last
   vtkAvianLidarSurfaceExchange Exchange;                 ///< exchange of surfaces between ranks
   std::vector<avianlidar::PlacedMedium> Media;           ///< media of the surfaces
-  std::vector<std::string> MediaOf;                      ///< texts of these media
-  avianlidar::LidarView MediaFor;                        ///< view of the lidar
+  std::vector<std::string> MediaOf;                      ///< texts from which `Media` were read
+  avianlidar::LidarView MediaFor;                        ///< lidar for which `Media` were read
   avianlidar::SceneSummary Summary;                      ///< summary of the surfaces
   std::shared_ptr<const avianlidar::CollisionTree> OwnTree;
   vtkAvianLidarContent::State State; ///< state of the surfaces merged last
@@ -46,7 +46,7 @@ struct vtkAvianLidarScanFilter::vtkInternals
   vtkAvianLidarWarnings Warnings;
   std::uint64_t StaleFor = 0;
   double TracedRays = 0.0;  ///< rays traced by all ranks
-  double TracedBeams = 0.0; ///< beams whose surfaces were searched
+  double TracedBeams = 0.0; ///< beams of all ranks whose surfaces were searched
   int TreeBuilds = 0;
   int Threads = 0;
 
@@ -57,7 +57,7 @@ struct vtkAvianLidarScanFilter::vtkInternals
     std::variant<int vtkAvianLidarScanFilter::*, double vtkAvianLidarScanFilter::*,
       bool vtkAvianLidarScanFilter::*>
       member;
-    const char* unit = ""; ///< after a blank
+    const char* unit = ""; ///< unit, after a blank
     double ValueOf(const vtkAvianLidarScanFilter& self) const
     {
       return std::visit([&](auto of) { return static_cast<double>(self.*of); }, this->member);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file vtkAvianLidarBirdTargets.h
- * @brief Birds as targets of a lidar: their silhouettes from all sides. Not installed.
+ * @brief Makes targets of birds: the silhouettes of a species from all sides. Not installed.
  */
 #ifndef vtkAvianLidarBirdTargets_h
 #define vtkAvianLidarBirdTargets_h
@@ -23,9 +23,9 @@ public:
     std::shared_ptr<const avianlidar::TargetViews> Views;
   };
 
-  /// The chosen targets; the one shown is the first. Throws std::runtime_error that names the
-  /// property. @param species empty: a target of `area` from all sides @param area m^2; 0: that of
-  /// the species @param all whether all other species follow
+  /// The chosen targets, beginning with the target to show. Throws std::runtime_error that names
+  /// the property. @param species empty: a target of `area` from all sides @param area m^2; 0: the
+  /// area of the species @param all true if all other species follow
   std::vector<Target> Choose(const std::string& species, const std::string& speciesFileName,
     bool gliding, double area, bool all);
 

@@ -29,16 +29,17 @@ struct vtkAvianLidarSurfaces;
 
 struct vtkAvianLidarMovers
 {
-  std::shared_ptr<const std::vector<avianlidar::Mover>> movers; ///< null: none
-  std::uint64_t checksum = 0; ///< checksum of all movers; 0 without any
+  std::shared_ptr<const std::vector<avianlidar::Mover>> movers; ///< movers; null: no movers
+  std::uint64_t checksum = 0; ///< checksum of all movers; 0 without movers
   /// Names of objects by id, for surfaces and movers.
   std::vector<std::string> objectNames;
   std::vector<std::string> objectClasses; ///< classes by object id; empty: no input has classes
   std::vector<std::string> materialNames;
 
-  /// Read the movers of all ranks, which must all call it, unless nothing has changed. Ids of
-  /// movers are kept if all are beyond the ids of the surfaces; otherwise new ids follow these.
-  /// @param input may be null @param surfaces surfaces, whose ids and names come first
+  /// Read the movers of all ranks, unless nothing has changed. All ranks must call this function.
+  /// Ids of movers are kept if all are beyond the ids of the surfaces; otherwise new ids follow the
+  /// ids of the surfaces.
+  /// @param input movers, may be null @param surfaces surfaces, whose ids and names come first
   void Read(const vtkAvianLidarRanks& ranks, vtkAlgorithm* self, vtkDataObject* input,
     const vtkAvianLidarSurfaces& surfaces);
 

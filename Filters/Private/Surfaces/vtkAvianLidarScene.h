@@ -30,15 +30,16 @@ public:
   std::shared_ptr<const vtkAvianLidarSurfaces> Surfaces;
   std::shared_ptr<const avianlidar::CollisionTree> Tree;
 
-  /// Attach the scene to the vtkPolyData that Surfaces->ToPolyData() has filled. Nothing else is to
-  /// be changed after it.
+  /// Attach the scene to the vtkPolyData that Surfaces->ToPolyData() has filled. The vtkPolyData
+  /// must not be changed afterwards.
   void AttachTo(vtkPolyData* output);
 
   /// Remove the scene, which would be stale with another geometry.
   static void Detach(vtkDataObject* data);
 
-  /// The surfaces of the scene that is attached, if `data` is the object to which it was attached
-  /// and was not modified since; else null, as only the content can then be compared.
+  /// The surfaces of the scene that is attached, if `data` is the object to which the scene was
+  /// attached and was not modified since; else null, because then only the contents can be
+  /// compared.
   static std::shared_ptr<const vtkAvianLidarSurfaces> FindSurfaces(vtkDataObject* data);
 
   struct FoundTree
@@ -47,7 +48,7 @@ public:
     bool stale = false; ///< true if the attached tree is of another geometry
   };
 
-  /// The tree of the scene that is attached, if it is of the mesh with this checksum.
+  /// The tree of the attached scene, if `checksum` is the checksum of the tree's mesh.
   static FoundTree FindTree(vtkDataObject* data, std::uint64_t checksum);
 
 protected:
@@ -59,7 +60,7 @@ private:
   void operator=(const vtkAvianLidarScene&) = delete;
 
   const void* Owner = nullptr; ///< vtkPolyData to which the scene was attached
-  vtkMTimeType Time = 0;       ///< time of its last modification
+  vtkMTimeType Time = 0;       ///< time of the last modification of `Owner`
 };
 
 #endif

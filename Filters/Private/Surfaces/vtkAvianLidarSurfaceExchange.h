@@ -33,10 +33,11 @@ struct vtkAvianLidarSurfaces;
 class vtkAvianLidarSurfaceExchange
 {
 public:
-  /// Merge the scene of this process or, with several ranks, of all ranks, which must all call it.
+  /// Merge the scene of this process or of all ranks, which must all call this function.
   /// @param input surfaces of this rank @param what beginning of an error: "Input port 1, " @param
   /// threads as for vtkAvianLidarRanks::Threads() @param known result of the last call, null at
-  /// first; it is returned if no surface changed, else the new result shares its unchanged parts
+  /// first. If no surface changed, `known` is returned; else the new result shares the unchanged
+  /// parts of `known`
   std::shared_ptr<const vtkAvianLidarSurfaces> Merge(const vtkAvianLidarRanks& ranks,
     vtkAlgorithm* self, vtkDataObject* input, const std::string& what, int threads,
     const std::shared_ptr<const vtkAvianLidarSurfaces>& known);

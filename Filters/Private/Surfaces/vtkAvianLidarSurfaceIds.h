@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file vtkAvianLidarSurfaceIds.h
- * @brief Makes the ids, names and classes of a scene's objects and materials from the leaves' own.
- * Not installed.
+ * @brief Makes the ids, names and classes of the objects and materials of a scene from the ids,
+ * names and classes that its leaves have. Not installed.
  *
- * Object ids are kept if every leaf has ids, no two leaves share one, and all ids are small and not
- * negative; otherwise ids are assigned in leaf order. Materials are distinguished by name: ids of
- * different leaves need not agree. The classes in the scene's own field data count only if no leaf
- * has classes: a composite may have copied them from the first of its producers.
+ * Object ids are kept if every leaf has ids, no two leaves share an id, and all ids are small and
+ * not negative; otherwise ids are assigned in leaf order. Materials are distinguished by name:
+ * different leaves may give a material different ids. The classes in the scene's own field data
+ * count only if no leaf has classes: a composite may have copied these classes from the first of
+ * its producers.
  */
 #ifndef vtkAvianLidarSurfaceIds_h
 #define vtkAvianLidarSurfaceIds_h
@@ -23,11 +24,12 @@ class vtkFieldData;
 class vtkAvianLidarSurfaceIds
 {
 public:
-  std::vector<std::string> ObjectNames;   ///< by object id
-  std::vector<std::string> ObjectClasses; ///< classes by object id; empty: no leaf has any
-  std::vector<std::string> MaterialNames; ///< by material id
+  std::vector<std::string> ObjectNames;   ///< names by object id
+  std::vector<std::string> ObjectClasses; ///< classes by object id; empty: no leaf has classes
+  std::vector<std::string> MaterialNames; ///< names by material id
 
-  /// @param sceneFields field data of the whole input, may be null; must outlive this object
+  /// Start with the leaves of a scene. @param sceneFields field data of the whole input, may be
+  /// null; must outlive this object
   void Begin(vtkFieldData* sceneFields, const std::vector<vtkAvianLidarSurfaceLeaf>& leaves);
 
   /// Add the object of a leaf without triangles, if the leaf is an object.
@@ -39,14 +41,14 @@ public:
   int AddObject(
     const vtkAvianLidarSurfaceLeaf& leaf, vtkPolyData* poly, int local, std::size_t rank);
 
-  /// Id in the scene of a medium that is an object. @param wanted id, used if ids are kept; -1: a
-  /// new id
+  /// Id in the scene of a medium that is an object. @param wanted id, used if ids are kept; -1:
+  /// choose a new id
   int AddMedium(const std::string& name, int wanted);
 
   /// Keep the names and classes of objects without cells, if ids are kept. To be called last.
   void AddUnusedNames(const std::vector<vtkAvianLidarSurfaceLeaf>& leaves);
 
-  /// Id in the scene of a material of a leaf. @param local id in the leaf, negative if it has none
+  /// Id in the scene of a material of a leaf. @param local id in the leaf; negative: no id
   int MaterialOf(vtkPolyData* poly, int local);
 
 private:

@@ -28,17 +28,17 @@ struct vtkAvianLidarSurfaceArrays
   vtkDataArray* material = nullptr;
   vtkDataArray* coefficients[std::size(avianlidar::MaterialCoefficients)] = {};
   vtkUnsignedCharArray* ghosts = nullptr;
-  const char* notNumeric = nullptr; ///< name of an array without numbers; null: none
+  const char* notNumeric = nullptr; ///< name of an array without numbers; null: no such array
 
   vtkAvianLidarSurfaceArrays() = default;
   explicit vtkAvianLidarSurfaceArrays(vtkPolyData* poly);
 
-  /// True if there are coefficients, given that Check() finds nothing wrong.
+  /// True if there are coefficients. To be called if Check() found no error.
   bool HasMaterials() const { return this->coefficients[0] != nullptr; }
 
   bool IsGhost(vtkIdType cell) const { return this->ghosts && this->ghosts->GetValue(cell); }
 
-  /// All arrays but ghosts.
+  /// All arrays except `ghosts`.
   std::vector<vtkDataArray*> Numbers() const;
 };
 
@@ -47,12 +47,13 @@ struct vtkAvianLidarSurfaceLeaf
   vtkPolyData* data = nullptr;
   std::string name;       ///< name of the block; empty for a vtkPolyData that is the whole scene
   unsigned int index = 0; ///< flat index of the block; 0 for a vtkPolyData that is the whole scene
-  bool named = false;     ///< true if the composite has the name; else it is a number
+  bool named = false;     ///< true if the composite has the name; else `name` contains a number
 
-  /// The name of a block that has no name in the composite. @param number of the leaf
+  /// The name of a block that has no name in the composite. @param number number of the leaf
   static std::string NameOfBlock(std::size_t number) { return "block " + std::to_string(number); }
 
-  /// The vtkPolyData of a scene in leaf order; `problem` says if data of other types were found.
+  /// The vtkPolyData of a scene in leaf order; `problem` becomes an error text if data of other
+  /// types were found.
   static std::vector<vtkAvianLidarSurfaceLeaf> Collect(vtkDataObject* input, std::string& problem);
 
   /// "surfaces, block 'name': what"
@@ -72,7 +73,7 @@ struct vtkAvianLidarSurfaceLeaf
   std::size_t NumberOfTriangles() const;
 
   /// The polygons and strips as triangles; vertices, lines, and polygons and strips of fewer than
-  /// three points are dropped. Returns `data` itself if it is triangulated.
+  /// three points are dropped. Returns `data` itself if all cells are triangles.
   vtkSmartPointer<vtkPolyData> Triangulated() const;
 };
 

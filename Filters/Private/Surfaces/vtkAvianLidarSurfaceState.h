@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file vtkAvianLidarSurfaceState.h
- * @brief Hashes of surfaces: ranks and movers compare them. Not installed.
+ * @brief Computes hashes of surfaces, which ranks and movers compare. Not installed.
  */
 #ifndef vtkAvianLidarSurfaceState_h
 #define vtkAvianLidarSurfaceState_h

@@ -2,8 +2,8 @@
 /**
  * @file vtkAvianLidarSurfaces.h
  * @brief Converts surfaces for the kernel: any vtkPolyData or composite of vtkPolyData becomes one
- * triangle mesh with a material on every triangle. The collision tree and the echo filter use it.
- * Not installed.
+ * triangle mesh with a material on every triangle. The collision tree and the echo filter use this
+ * mesh. Not installed.
  */
 #ifndef vtkAvianLidarSurfaces_h
 #define vtkAvianLidarSurfaces_h
@@ -34,19 +34,19 @@ struct vtkAvianLidarSurfaces
   std::uint64_t geometry = 0; ///< hash of the input apart from its materials
   avianlidar::SharedVector<std::uint32_t>
     order; ///< order of triangles (TriangleOrder.h); empty: as given
-  avianlidar::SharedVector<avianlidar::Material> materials; ///< one per triangle
-  avianlidar::SharedVector<int> objectIds;                  ///< one per triangle
-  avianlidar::SharedVector<int> materialIds;                ///< one per triangle
-  std::vector<std::string> objectNames;                     ///< by object id
-  std::vector<std::string> objectClasses;                   ///< by object id; empty: none given
-  std::vector<std::string> materialNames;                   ///< by material id
+  avianlidar::SharedVector<avianlidar::Material> materials; ///< material of each triangle
+  avianlidar::SharedVector<int> objectIds;                  ///< object id of each triangle
+  avianlidar::SharedVector<int> materialIds;                ///< material id of each triangle
+  std::vector<std::string> objectNames;                     ///< names by object id
+  std::vector<std::string> objectClasses;                   ///< classes by object id; or empty
+  std::vector<std::string> materialNames;                   ///< names by material id
   std::vector<std::string> media; ///< texts of media (vtkAvianLidarMedia.h), which are not surfaces
   struct Range
   {
-    std::size_t begin, end; ///< [begin, end)
+    std::size_t begin, end; ///< first triangle, and triangle after the last
   };
   std::vector<Range> leaves; ///< triangles of each leaf if triangles keep their order
-  std::string problem;       ///< what is wrong with the input, and where
+  std::string problem;       ///< error text of bad input, with the place; empty: no error
   std::string warning;       ///< warning about suspicious input, to be given once per scene
 
   /// Merge every vtkPolyData of `input` (`input` itself or the leaves of a composite). Triangles
@@ -67,8 +67,8 @@ struct vtkAvianLidarSurfaces
   /// and `fields` if not null.
   vtkSmartPointer<vtkPolyData> ToPolyData(vtkFieldData* fields) const;
 
-  /// A warning that names objects whose faces coincide; empty if no faces do. @param pairs of
-  /// triangles, of which the first is visible
+  /// A warning that names objects whose faces coincide; empty if no faces coincide. @param pairs
+  /// pairs of triangles, of which the first is visible
   std::string WarningOnCoincidence(
     const std::vector<std::pair<std::uint32_t, std::uint32_t>>& pairs) const;
 };

@@ -11,9 +11,9 @@
 
 class vtkPolyData;
 
-/// Fill `display` with the volumes of the nodes at depth `level`, and of the leaves above it;
-/// nothing for level < 0. Cell arrays `node_id`, `triangles`, `depth` (the active scalars), all
-/// int.
+/// Fill `display` with the volumes of the nodes at depth `level`, and of the leaves above this
+/// depth; `display` stays empty for level < 0. Cell arrays `node_id`, `triangles`, `depth` (the
+/// active scalars), all int.
 void vtkAvianLidarMakeTreeDisplay(
   const avianlidar::CollisionTree& tree, int level, vtkPolyData* display);
 

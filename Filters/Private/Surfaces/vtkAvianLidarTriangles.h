@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file vtkAvianLidarTriangles.h
- * @brief Triangles of polygons and strips. Not installed.
+ * @brief Divides polygons and strips into triangles. Not installed.
  */
 #ifndef vtkAvianLidarTriangles_h
 #define vtkAvianLidarTriangles_h
@@ -10,8 +10,8 @@
 
 class vtkPolyData;
 
-/// The points, the triangles of polygons, then of strips, with the arrays of their cells, and the
-/// field data. Cells of less than three points have none.
+/// The points and field data of `data`, and triangles with cell arrays: first the triangles of
+/// polygons, then of strips. Cells of fewer than three points give no triangles.
 vtkSmartPointer<vtkPolyData> vtkAvianLidarTriangles(vtkPolyData* data);
 
 #endif
