@@ -81,7 +81,6 @@ set(private_sources
   IO/Private/MeshImport.cxx
   IO/Private/MeshReaderProcess.cxx
   IO/Private/MeshStream.cxx
-  IO/Private/ObjectDescription.cxx
   IO/Private/OrganisedCells.cxx
   IO/Private/OutputFile.cxx
   IO/Private/PacketReading.cxx
