@@ -79,7 +79,6 @@ set(private_sources
   IO/Private/LasWriting.cxx
   IO/Private/LazFormat.cxx
   IO/Private/MeshImport.cxx
-  IO/Private/MeshReaderProcess.cxx
   IO/Private/MeshStream.cxx
   IO/Private/OrganisedCells.cxx
   IO/Private/OutputFile.cxx
