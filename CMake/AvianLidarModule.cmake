@@ -67,7 +67,6 @@ set(private_sources
   Filters/Private/Coverage/vtkAvianLidarCoverageOutput.cxx
   Filters/Private/Coverage/vtkAvianLidarPlaces.cxx
   IO/Private/ByteSource.cxx
-  IO/Private/CloudData.cxx
   IO/Private/CloudNotes.cxx
   IO/Private/CoordinateSystem.cxx
   IO/Private/Extrusion.cxx
@@ -83,11 +82,8 @@ set(private_sources
   IO/Private/OrganisedCells.cxx
   IO/Private/OutputFile.cxx
   IO/Private/PacketReading.cxx
-  IO/Private/PcdHeader.cxx
-  IO/Private/PcdReading.cxx
-  IO/Private/PcdWriting.cxx
-  IO/Private/PlyReading.cxx
-  IO/Private/PlyWriting.cxx
+  IO/Private/PcdFormat.cxx
+  IO/Private/PlyFormat.cxx
   IO/Private/Polygons.cxx
   IO/Private/ReadCloud.cxx
   IO/Private/Scalars.cxx
