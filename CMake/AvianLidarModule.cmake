@@ -72,14 +72,12 @@ set(private_sources
   IO/Private/Extrusion.cxx
   IO/Private/FieldTable.cxx
   IO/Private/Footprints.cxx
-  IO/Private/GeoJsonFormat.cxx
   IO/Private/KittiFormat.cxx
   IO/Private/LasReading.cxx
   IO/Private/LasWriting.cxx
   IO/Private/LazFormat.cxx
   IO/Private/MeshImport.cxx
   IO/Private/MeshStream.cxx
-  IO/Private/OrganisedCells.cxx
   IO/Private/OutputFile.cxx
   IO/Private/PacketReading.cxx
   IO/Private/PcdFormat.cxx
