@@ -67,29 +67,21 @@ set(private_sources
   Filters/Private/Coverage/vtkAvianLidarCoverageOutput.cxx
   Filters/Private/Coverage/vtkAvianLidarPlaces.cxx
   IO/Private/ByteSource.cxx
-  IO/Private/CloudData.cxx
   IO/Private/CloudNotes.cxx
   IO/Private/CoordinateSystem.cxx
   IO/Private/Extrusion.cxx
   IO/Private/FieldTable.cxx
   IO/Private/Footprints.cxx
-  IO/Private/GeoJsonFormat.cxx
   IO/Private/KittiFormat.cxx
   IO/Private/LasReading.cxx
   IO/Private/LasWriting.cxx
   IO/Private/LazFormat.cxx
   IO/Private/MeshImport.cxx
-  IO/Private/MeshReaderProcess.cxx
   IO/Private/MeshStream.cxx
-  IO/Private/ObjectDescription.cxx
-  IO/Private/OrganisedCells.cxx
   IO/Private/OutputFile.cxx
   IO/Private/PacketReading.cxx
-  IO/Private/PcdHeader.cxx
-  IO/Private/PcdReading.cxx
-  IO/Private/PcdWriting.cxx
-  IO/Private/PlyReading.cxx
-  IO/Private/PlyWriting.cxx
+  IO/Private/PcdFormat.cxx
+  IO/Private/PlyFormat.cxx
   IO/Private/Polygons.cxx
   IO/Private/ReadCloud.cxx
   IO/Private/Scalars.cxx

@@ -218,7 +218,7 @@ std::string CheckCells(vtkPolyData* surface)
 }
 
 // The kernel says "kd + ks is 1.2" or "roughness is 2"; the properties are Kd, Ks, Roughness.
-std::string NameProperties(std::string problem)
+std::string NameCoefficients(std::string problem)
 {
   for (std::size_t i = 0; i < problem.size(); ++i)
   {
@@ -400,7 +400,7 @@ int vtkAvianLidarMaterial::RequestData(
         what.Coefficients ? avianlidar::checkMaterial(*what.Coefficients) : std::string();
       if (!badMaterial.empty())
       {
-        return "Material: " + NameProperties(badMaterial);
+        return "Material: " + NameCoefficients(badMaterial);
       }
       const std::string badNames = CheckNames(input);
       if (!badNames.empty())

@@ -16,13 +16,6 @@
 #include <string>
 
 //------------------------------------------------------------------------------
-vtkAvianLidarCloudWriter::vtkAvianLidarCloudWriter()
-  : FileName(nullptr)
-  , GivenFileName(nullptr)
-{
-}
-
-//------------------------------------------------------------------------------
 vtkAvianLidarCloudWriter::~vtkAvianLidarCloudWriter()
 {
   this->SetFileName(nullptr);
@@ -79,6 +72,12 @@ void vtkAvianLidarCloudWriter::WriteData()
     vtkErrorMacro(
       "" << vtkAvianLidarText(this->FileName + (": " + std::string(error.what()))) << ".");
   }
+}
+
+//------------------------------------------------------------------------------
+void vtkAvianLidarCloudWriter::Warn(const std::string& text)
+{
+  vtkWarningMacro("" << vtkAvianLidarText(this->FileName + text));
 }
 
 //------------------------------------------------------------------------------

@@ -23,6 +23,8 @@
 #include "vtkAvianLidarModule.h" // For export macro
 #include "vtkWriter.h"
 
+#include <string> // For std::string
+
 class vtkPointSet;
 
 class VTKAVIANLIDAR_EXPORT vtkAvianLidarCloudWriter : public vtkWriter
@@ -49,7 +51,7 @@ public:
   ///@}
 
 protected:
-  vtkAvianLidarCloudWriter();
+  vtkAvianLidarCloudWriter() = default;
   ~vtkAvianLidarCloudWriter() override;
 
   int FillInputPortInformation(int port, vtkInformation* info) override;
@@ -58,8 +60,11 @@ protected:
   /// Write the input to FileName. Throws an exception on an error.
   virtual void WriteCloud(vtkPointSet* input) = 0;
 
-  char* FileName;
-  char* GivenFileName;
+  /// Give a warning: FileName and a text.
+  void Warn(const std::string& text);
+
+  char* FileName = nullptr;
+  char* GivenFileName = nullptr;
 
 private:
   vtkAvianLidarCloudWriter(const vtkAvianLidarCloudWriter&) = delete;

@@ -2,7 +2,8 @@
 #include "vtkAvianLidarGeoJSONWriter.h"
 
 #include "GeodeticFrame.h"
-#include "Private/GeoJsonFormat.h"
+#include "Json.h"
+#include "Private/OutputFile.h"
 #include "Private/vtkAvianLidarCloudFields.h"
 #include "vtkAvianLidarAbort.h"
 #include "vtkAvianLidarArrays.h"
@@ -11,7 +12,9 @@
 #include "vtkFieldData.h"
 #include "vtkObjectFactory.h"
 #include "vtkPointSet.h"
+#include "vtkStringArray.h"
 
+#include <charconv>
 #include <cmath>
 
 namespace fields = vtkAvianLidarCloudFields;
@@ -53,25 +56,17 @@ public:
 
   Point operator()(std::int64_t i) const
   {
-    Point place;
-    std::string wrong;
     if (this->FromArrays())
     {
-      place = { this->Longitude->GetComponent(i, 0), this->Latitude->GetComponent(i, 0),
-        this->Height->GetComponent(i, 0) };
+      // It is checked, and stays as it is.
+      return fields::Carry(this->Geodesy, Frame::Geodetic, Frame::Geodetic,
+        { this->Longitude->GetComponent(i, 0), this->Latitude->GetComponent(i, 0),
+          this->Height->GetComponent(i, 0) },
+        i);
     }
-    else
-    {
-      this->Input->GetPoint(i, place.data());
-      wrong = GeodeticFrame::checkPoint(Frame::ENU, place);
-      place = wrong.empty() ? this->Geodesy.convert(Frame::ENU, Frame::Geodetic, place) : place;
-    }
-    wrong = wrong.empty() ? GeodeticFrame::checkPoint(Frame::Geodetic, place) : wrong;
-    if (!wrong.empty())
-    {
-      throw FormatError("point " + std::to_string(i) + ": " + wrong);
-    }
-    return place;
+    Point place;
+    this->Input->GetPoint(i, place.data());
+    return fields::Carry(this->Geodesy, Frame::ENU, Frame::Geodetic, place, i);
   }
 
 private:
@@ -80,32 +75,91 @@ private:
   GeodeticFrame Geodesy;
 };
 
-/// The text that an identifier leads to in the field data, if there are both.
-void AddText(vtkPointSet* input, const char* property, const names::Name& id,
-  const names::Name& texts, std::vector<formats::TextField>& to)
+using nlohmann::json;
+
+void appendFixed(std::string& text, double value, int decimals)
 {
-  vtkDataArray* ids = fields::Find(input, id.name);
-  if (ids && fields::FindTexts(input, texts.name))
+  char digits[400];
+  text.append(digits,
+    std::to_chars(digits, digits + sizeof digits, value, std::chars_format::fixed, decimals).ptr);
+}
+
+void appendNumber(std::string& text, const formats::Field& field, double value)
+{
+  char digits[40];
+  if (!std::isfinite(value))
   {
-    const char* name = texts.name;
-    to.push_back({ property, [input, ids, name](std::int64_t i) {
-                    return fields::TextAt(input, name, fields::IntegerOf(ids, i, -1));
-                  } });
+    text += "null";
+    return;
   }
+  // Integers without an exponent, which would make them floating-point numbers for readers.
+  const auto end = formats::isFloat(field.type)
+    ? std::to_chars(digits, digits + sizeof digits, value)
+    : std::to_chars(digits, digits + sizeof digits, static_cast<std::int64_t>(value));
+  text.append(digits, end.ptr);
+}
+
+std::string dumped(const json& value)
+{
+  return value.dump(-1, ' ', true, json::error_handler_t::replace);
+}
+
+/// A text property: what an identifier leads to in the field data.
+struct TextField
+{
+  const char* property;
+  vtkDataArray* ids;
+  vtkStringArray* texts;
+};
+
+/// Those for which the input has both.
+std::vector<TextField> TextsOf(vtkPointSet* input)
+{
+  std::vector<TextField> all;
+  const auto add = [&](const char* property, const names::Name& id, const names::Name& text)
+  {
+    vtkDataArray* ids = fields::Find(input, id.name);
+    vtkStringArray* texts = ids ? fields::FindTexts(input, text.name) : nullptr;
+    if (texts)
+    {
+      all.push_back({ property, ids, texts });
+    }
+  };
+  add("object", names::ObjectId, names::ObjectNames);
+  add("object_class", names::ObjectId, names::ObjectClasses);
+  add("material", names::MaterialId, names::MaterialNames);
+  return all;
+}
+
+std::string FeatureOf(const Point& place, const std::vector<formats::Field>& numbers,
+  const std::vector<TextField>& texts, vtkIdType i)
+{
+  std::string text = R"({"type":"Feature","geometry":{"type":"Point","coordinates":[)";
+  appendFixed(text, place[0], 9);
+  text += ",";
+  appendFixed(text, place[1], 9);
+  text += ",";
+  appendFixed(text, place[2], 4);
+  text += R"(]},"properties":{)";
+  const char* separator = "";
+  for (const formats::Field& field : numbers)
+  {
+    text += separator + dumped(field.name) + ":";
+    appendNumber(text, field, field.value(i));
+    separator = ",";
+  }
+  for (const auto& [property, ids, values] : texts)
+  {
+    const int id = fields::IntegerOf(ids, i, -1);
+    const bool isKnown = id >= 0 && id < values->GetNumberOfValues();
+    text += separator + dumped(property) + ":" + dumped(isKnown ? values->GetValue(id) : "");
+    separator = ",";
+  }
+  return text + "}}";
 }
 }
 
 vtkStandardNewMacro(vtkAvianLidarGeoJSONWriter);
-
-//------------------------------------------------------------------------------
-vtkAvianLidarGeoJSONWriter::vtkAvianLidarGeoJSONWriter()
-  : UseFieldDataLimit(true)
-  , MinimumEnergy(0.0)
-{
-}
-
-//------------------------------------------------------------------------------
-vtkAvianLidarGeoJSONWriter::~vtkAvianLidarGeoJSONWriter() = default;
 
 //------------------------------------------------------------------------------
 void vtkAvianLidarGeoJSONWriter::WriteCloud(vtkPointSet* input)
@@ -115,12 +169,7 @@ void vtkAvianLidarGeoJSONWriter::WriteCloud(vtkPointSet* input)
   if (this->UseFieldDataLimit)
   {
     limit = 0.0;
-    const std::string wrong =
-      names::ReadFieldValue(input->GetFieldData(), names::LowerEnergyLimit, limit);
-    if (!wrong.empty())
-    {
-      throw FormatError("the " + wrong);
-    }
+    fields::Require(names::ReadFieldValue(input->GetFieldData(), names::LowerEnergyLimit, limit));
   }
   else if (std::isnan(limit))
   {
@@ -128,28 +177,45 @@ void vtkAvianLidarGeoJSONWriter::WriteCloud(vtkPointSet* input)
   }
   const Places places(input);
 
-  formats::GeoJsonOutput output;
-  output.size = input->GetNumberOfPoints();
-  output.wanted = [energy, limit](std::int64_t i)
-  { return fields::ValueOf(energy, i, 0.0) >= limit; };
-  output.place = [&places](std::int64_t i) { return places(i); };
-  for (const formats::Field& field : fields::AllFields(input))
+  std::vector<formats::Field> numbers;
+  json units = json::object();
+  for (vtkDataArray* array : fields::ArraysOfOne(input))
   {
+    const formats::Field field = fields::ToField(array);
     const bool isPlace = places.FromArrays() &&
       (field.name == names::Longitude.name || field.name == names::Latitude.name ||
         field.name == names::Height.name);
     if (!isPlace)
     {
-      output.fields.push_back(field);
+      numbers.push_back(field);
+    }
+    if (!isPlace && !field.unit.empty())
+    {
+      units[field.name] = field.unit;
     }
   }
-  AddText(input, "object", names::ObjectId, names::ObjectNames, output.texts);
-  AddText(input, "object_class", names::ObjectId, names::ObjectClasses, output.texts);
-  AddText(input, "material", names::MaterialId, names::MaterialNames, output.texts);
-  output.description = "Echoes of a lidar; heights are metres above the WGS84 ellipsoid";
+  const std::vector<TextField> texts = TextsOf(input);
 
+  const auto keepGoing = vtkAvianLidarAbort::KeepGoing(this);
   formats::OutputFile file(this->FileName);
-  formats::writeGeoJson(file, output, vtkAvianLidarAbort::KeepGoing(this));
+  file.write(R"({"type":"FeatureCollection",)"
+             "\n"
+             R"("description":"Echoes of a lidar; heights are metres above the WGS84 ellipsoid",)"
+             "\n"
+             R"("units":)" +
+    dumped(units) + ",\n" + R"("features":[)");
+  const char* separator = "\n";
+  const vtkIdType size = input->GetNumberOfPoints();
+  for (vtkIdType i = 0; i < size; ++i)
+  {
+    if (fields::ValueOf(energy, i, 0.0) >= limit)
+    {
+      file.write(separator + FeatureOf(places(i), numbers, texts, i));
+      separator = ",\n";
+    }
+    formats::goOn(keepGoing, i, size, 0.0, 1.0);
+  }
+  file.write("\n]}\n");
   file.commit();
 }
 

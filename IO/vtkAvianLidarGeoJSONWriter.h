@@ -43,13 +43,13 @@ public:
   ///@}
 
 protected:
-  vtkAvianLidarGeoJSONWriter();
-  ~vtkAvianLidarGeoJSONWriter() override;
+  vtkAvianLidarGeoJSONWriter() = default;
+  ~vtkAvianLidarGeoJSONWriter() override = default;
 
   void WriteCloud(vtkPointSet* input) override;
 
-  bool UseFieldDataLimit;
-  double MinimumEnergy;
+  bool UseFieldDataLimit = true;
+  double MinimumEnergy = 0.0;
 
 private:
   vtkAvianLidarGeoJSONWriter(const vtkAvianLidarGeoJSONWriter&) = delete;

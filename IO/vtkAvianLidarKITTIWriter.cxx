@@ -2,11 +2,11 @@
 #include "vtkAvianLidarKITTIWriter.h"
 
 #include "Private/KittiFormat.h"
+#include "Private/OutputFile.h"
 #include "Private/SemanticLabels.h"
 #include "Private/vtkAvianLidarCloudFields.h"
 #include "vtkAvianLidarAbort.h"
 #include "vtkAvianLidarNames.h"
-#include "vtkAvianLidarText.h"
 
 #include "vtkObjectFactory.h"
 #include "vtkPointSet.h"
@@ -26,30 +26,62 @@ using formats::Point;
 
 namespace
 {
-/// SemanticKITTI's classes by object_id.
-std::vector<int> LabelsOfObjects(vtkPointSet* input)
+/// A point in the sensor's frame, which single precision holds.
+Point PlaceOf(vtkPointSet* input, const formats::SensorPose& pose, vtkIdType i)
 {
-  std::vector<int> labels;
-  auto* classes = fields::FindTexts(input, names::ObjectClasses.name);
-  for (vtkIdType i = 0; classes && i < classes->GetNumberOfValues(); ++i)
+  Point p;
+  input->GetPoint(i, p.data());
+  if (!std::isfinite(p[0]) || !std::isfinite(p[1]) || !std::isfinite(p[2]))
   {
-    labels.push_back(formats::labelOfClass(classes->GetValue(i)).kitti);
+    throw FormatError("point " + std::to_string(i) + " has a coordinate that is not finite");
   }
-  return labels;
+  p = pose.toSensor(p);
+  if (std::max({ std::abs(p[0]), std::abs(p[1]), std::abs(p[2]) }) >
+    std::numeric_limits<float>::max())
+  {
+    throw FormatError("point " + std::to_string(i) +
+      " has a coordinate that single precision, KITTI's, has no number for");
+  }
+  return p;
 }
+
+/// SemanticKITTI's labels: the class in the lower 16 bits, the instance in the upper ones.
+class Labels
+{
+public:
+  Labels(vtkPointSet* input, bool byMaterial)
+    : Objects(fields::Need(input, names::ObjectId.name))
+    , Materials(byMaterial ? fields::Need(input, names::MaterialId.name) : nullptr)
+    , ByMaterial(byMaterial)
+  {
+    auto* classes = fields::FindTexts(input, names::ObjectClasses.name);
+    for (vtkIdType i = 0; classes && i < classes->GetNumberOfValues(); ++i)
+    {
+      this->Classes.push_back(formats::labelOfClass(classes->GetValue(i)).kitti);
+    }
+  }
+
+  std::uint32_t At(vtkIdType i) const
+  {
+    const int id = fields::IntegerOf(this->Objects, i, -1);
+    const int label = this->ByMaterial
+      ? formats::labelOfMaterial(fields::IntegerOf(this->Materials, i, -1))
+      : id >= 0 && id < static_cast<int>(this->Classes.size())
+      ? this->Classes[id]
+      : formats::labelWithoutObject(id).kitti;
+    const auto instance =
+      static_cast<std::uint32_t>(id >= 0 ? (std::int64_t{ id } + 1) % 65536 : 0);
+    return static_cast<std::uint32_t>(label & 0xFFFF) | instance << 16;
+  }
+
+private:
+  vtkDataArray *Objects, *Materials;
+  bool ByMaterial;
+  std::vector<int> Classes; ///< by object_id
+};
 }
 
 vtkStandardNewMacro(vtkAvianLidarKITTIWriter);
-
-//------------------------------------------------------------------------------
-vtkAvianLidarKITTIWriter::vtkAvianLidarKITTIWriter()
-  : WriteLabels(true)
-  , LabelSource(LABEL_SOURCE_OBJECT_CLASS)
-{
-}
-
-//------------------------------------------------------------------------------
-vtkAvianLidarKITTIWriter::~vtkAvianLidarKITTIWriter() = default;
 
 //------------------------------------------------------------------------------
 void vtkAvianLidarKITTIWriter::WriteCloud(vtkPointSet* input)
@@ -57,75 +89,53 @@ void vtkAvianLidarKITTIWriter::WriteCloud(vtkPointSet* input)
   std::optional<formats::SensorPose> pose = fields::FindPose(input);
   if (!pose)
   {
-    vtkWarningMacro("" << vtkAvianLidarText(this->FileName) << ": the input has no field data '"
-                       << names::Position.name
-                       << "' of a sensor: its points are taken for coordinates in the sensor's "
-                          "frame, x right, y forward, z up.");
+    this->Warn(std::string(": the input has no field data '") + names::Position.name +
+      "' of a sensor: its points are taken for coordinates in the sensor's frame, x right, y "
+      "forward, z up.");
     pose.emplace();
   }
 
-  formats::KittiOutput output;
-  output.size = input->GetNumberOfPoints();
-  output.point = [input, &pose](std::int64_t i)
-  {
-    Point p;
-    input->GetPoint(i, p.data());
-    if (!std::isfinite(p[0]) || !std::isfinite(p[1]) || !std::isfinite(p[2]))
-    {
-      throw FormatError("point " + std::to_string(i) + " has a coordinate that is not finite");
-    }
-    p = pose->toSensor(p);
-    if (std::max({ std::abs(p[0]), std::abs(p[1]), std::abs(p[2]) }) >
-      std::numeric_limits<float>::max())
-    {
-      throw FormatError("point " + std::to_string(i) +
-        " has a coordinate that single precision, KITTI's, has no number for");
-    }
-    return p;
-  };
   vtkDataArray* intensity = fields::Find(input, names::Intensity.name);
-  constexpr double greatest = 255.0;
-  vtkIdType beyond = 0;
-  output.intensity = [intensity, &beyond, greatest](std::int64_t i)
-  {
-    const double value = fields::ValueOf(intensity, i, 0.0);
-    beyond += value < 0.0 || value > greatest ? 1 : 0;
-    return std::clamp(value, 0.0, greatest);
-  };
-
-  std::optional<formats::OutputFile> labels;
+  std::optional<Labels> labels;
+  std::optional<formats::OutputFile> labelFile;
   if (this->WriteLabels)
   {
-    vtkDataArray* object = fields::Need(input, names::ObjectId.name);
-    const bool byMaterial = this->LabelSource == LABEL_SOURCE_MATERIAL;
-    vtkDataArray* material = byMaterial ? fields::Need(input, names::MaterialId.name) : nullptr;
-    const std::vector<int> classes = LabelsOfObjects(input);
-    output.label = [=](std::int64_t i)
-    {
-      const int id = fields::IntegerOf(object, i, -1);
-      return byMaterial ? formats::labelOfMaterial(fields::IntegerOf(material, i, -1))
-        : id >= 0 && id < static_cast<int>(classes.size()) ? classes[id]
-                                                           : formats::labelWithoutObject(id).kitti;
-    };
-    output.instance = [=](std::int64_t i)
-    {
-      const int id = fields::IntegerOf(object, i, -1);
-      return id >= 0 ? static_cast<int>((std::int64_t{ id } + 1) % 65536) : 0;
-    };
-    labels.emplace(std::filesystem::path(this->FileName).replace_extension(".label").string());
+    labels.emplace(input, this->LabelSource == LABEL_SOURCE_MATERIAL);
+    labelFile.emplace(std::filesystem::path(this->FileName).replace_extension(".label").string());
   }
-
   formats::OutputFile file(this->FileName);
-  if (labels && labels->isSameAs(file))
+  if (labelFile && labelFile->isSameAs(file))
   {
     throw FormatError("FileName is the name of the labels beside it, expected another ending than "
                       ".label, such as .bin");
   }
-  formats::writeKitti(
-    file, labels ? &*labels : nullptr, output, vtkAvianLidarAbort::KeepGoing(this));
+
+  const auto keepGoing = vtkAvianLidarAbort::KeepGoing(this);
+  const vtkIdType size = input->GetNumberOfPoints();
+  vtkIdType beyond = 0;
+  constexpr double greatest = formats::KittiGreatestIntensity;
+  for (vtkIdType i = 0; i < size; ++i)
+  {
+    const Point p = PlaceOf(input, *pose, i);
+    const double value = fields::ValueOf(intensity, i, 0.0);
+    beyond += value < 0.0 || value > greatest ? 1 : 0;
+    unsigned char bytes[16];
+    formats::storeAs(formats::Scalar::Float32, p[1], bytes);
+    formats::storeAs(formats::Scalar::Float32, -p[0], bytes + 4);
+    formats::storeAs(formats::Scalar::Float32, p[2], bytes + 8);
+    formats::storeAs(
+      formats::Scalar::Float32, std::clamp(value, 0.0, greatest) / greatest, bytes + 12);
+    file.write(bytes, sizeof bytes);
+    if (labels)
+    {
+      formats::store(labels->At(i), bytes);
+      labelFile->write(bytes, sizeof(std::uint32_t));
+    }
+    formats::goOn(keepGoing, i, size, 0.0, 1.0);
+  }
   if (labels)
   {
-    formats::OutputFile::commitBoth(*labels, file);
+    formats::OutputFile::commitBoth(*labelFile, file);
   }
   else
   {
@@ -133,9 +143,9 @@ void vtkAvianLidarKITTIWriter::WriteCloud(vtkPointSet* input)
   }
   if (beyond > 0)
   {
-    vtkWarningMacro("" << vtkAvianLidarText(this->FileName) << ": " << beyond
-                       << " points have an intensity that is not within 0 and 255: the nearest of "
-                          "the two is written for it.");
+    this->Warn(": " + std::to_string(beyond) +
+      " points have an intensity that is not within 0 and 255: the nearest of the two is written "
+      "for it.");
   }
 }
 

@@ -54,13 +54,13 @@ public:
   ///@}
 
 protected:
-  vtkAvianLidarKITTIWriter();
-  ~vtkAvianLidarKITTIWriter() override;
+  vtkAvianLidarKITTIWriter() = default;
+  ~vtkAvianLidarKITTIWriter() override = default;
 
   void WriteCloud(vtkPointSet* input) override;
 
-  bool WriteLabels;
-  int LabelSource;
+  bool WriteLabels = true;
+  int LabelSource = LABEL_SOURCE_OBJECT_CLASS;
 
 private:
   vtkAvianLidarKITTIWriter(const vtkAvianLidarKITTIWriter&) = delete;

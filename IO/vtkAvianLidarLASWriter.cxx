@@ -9,7 +9,6 @@
 #include "Private/vtkAvianLidarCloudFields.h"
 #include "vtkAvianLidarAbort.h"
 #include "vtkAvianLidarNames.h"
-#include "vtkAvianLidarText.h"
 
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
@@ -17,10 +16,10 @@
 #include "vtkStringArray.h"
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <cmath>
 #include <iterator>
-#include <limits>
 #include <set>
 
 namespace fields = vtkAvianLidarCloudFields;
@@ -36,36 +35,14 @@ namespace
 constexpr const char* CrsName = names::CrsWkt.name;
 constexpr int SyntheticFlag = 1;
 
-/// An array that LAS has a field of its own for, and the numbers that this holds.
-struct CoreField
+const formats::LasCoreField* FindCoreField(const std::string& name)
 {
-  const char* name;
-  double low;
-  double high;
-  bool whole;
-};
-
-constexpr double AnyNumber = std::numeric_limits<double>::max();
-constexpr CoreField CoreFields[] = {
-  { names::Intensity.name, 0.0, 255.0, false },
-  { names::ReturnNumber.name, 0.0, formats::LasMostReturns, true },
-  { names::NumberOfReturns.name, 0.0, formats::LasMostReturns, true },
-  { names::Timestamp.name, -AnyNumber, AnyNumber, false },
-  { formats::LasClassification, 0.0, 255.0, true },
-  { formats::LasFlags, 0.0, 15.0, true },
-  { formats::LasUserData, 0.0, 255.0, true },
-  { formats::LasScanAngle, -180.0, 180.0, false },
-  { formats::LasPointSource, 0.0, 65535.0, true },
-};
-
-const CoreField* FindCoreField(const std::string& name)
-{
-  const auto* found = std::find_if(std::begin(CoreFields), std::end(CoreFields),
-    [&](const CoreField& core) { return core.name == name; });
-  return found == std::end(CoreFields) ? nullptr : found;
+  const auto* found = std::find_if(std::begin(formats::LasCore), std::end(formats::LasCore),
+    [&](const formats::LasCoreField& core) { return core.name == name; });
+  return found == std::end(formats::LasCore) ? nullptr : found;
 }
 
-bool Holds(const CoreField& core, vtkDataArray* array)
+bool Holds(const formats::LasCoreField& core, vtkDataArray* array)
 {
   for (vtkIdType i = 0; i < array->GetNumberOfTuples(); ++i)
   {
@@ -78,79 +55,68 @@ bool Holds(const CoreField& core, vtkDataArray* array)
   return true;
 }
 
-/// The core of a point, from the arrays that there are.
-class PointMaker
+/// The array of a field of LAS's own; of other sensors' arrays only one that the field holds as it
+/// is.
+vtkDataArray* FindCore(vtkPointSet* input, const formats::LasCoreField& core)
 {
-public:
-  PointMaker(vtkPointSet* input, int flags, int sourceId)
-    : Input(input)
-    , Intensity(fields::Find(input, names::Intensity.name))
-    , ReturnNumber(fields::Find(input, names::ReturnNumber.name))
-    , Returns(fields::Find(input, names::NumberOfReturns.name))
-    , Timestamp(fields::Find(input, names::Timestamp.name))
-    , Elevation(fields::Find(input, names::VerticalAngle.name))
-    , Object(fields::Find(input, names::ObjectId.name))
-    , Colours(fields::FindColours(input))
-    , Classification(FindHeld(input, formats::LasClassification))
-    , Flags(FindHeld(input, formats::LasFlags))
-    , UserData(FindHeld(input, formats::LasUserData))
-    , ScanAngle(FindHeld(input, formats::LasScanAngle))
-    , PointSource(FindHeld(input, formats::LasPointSource))
-    , CommonFlags(flags)
-    , SourceId(sourceId)
+  if (core.ours)
   {
-    auto* classes = fields::FindTexts(input, names::ObjectClasses.name);
-    for (vtkIdType i = 0; classes && i < classes->GetNumberOfValues(); ++i)
-    {
-      this->Classes.push_back(formats::labelOfClass(classes->GetValue(i)).las);
-    }
+    return fields::Find(input, core.name);
   }
-
-  bool HasColours() const { return this->Colours != nullptr; }
-
-  formats::LasPoint Make(std::int64_t i) const
+  vtkDataArray* array = input->GetPointData()->GetArray(core.name);
+  if (!array || array->GetNumberOfComponents() != 1)
   {
-    formats::LasPoint point;
-    this->Input->GetPoint(i, point.position.data());
-    point.intensity = fields::ValueOf(this->Intensity, i, 0.0);
-    point.returnNumber = fields::IntegerOf(this->ReturnNumber, i, 1);
-    point.numberOfReturns = fields::IntegerOf(this->Returns, i, 1);
-    point.gpsTime = 1e-6 * fields::ValueOf(this->Timestamp, i, 0.0);
-    const double angle = this->Elevation ? 90.0 + fields::ValueOf(this->Elevation, i, 0.0) : 0.0;
-    point.scanAngle = fields::ValueOf(this->ScanAngle, i, angle);
-    const int object = fields::IntegerOf(this->Object, i, -1);
-    const bool known = object >= 0 && object < static_cast<int>(this->Classes.size());
-    point.classification = fields::IntegerOf(this->Classification, i,
-      known ? this->Classes[object] : formats::labelWithoutObject(object).las);
-    point.flags = fields::IntegerOf(this->Flags, i, this->CommonFlags);
-    point.userData = fields::IntegerOf(this->UserData, i, 0);
-    point.sourceId = fields::IntegerOf(this->PointSource, i, this->SourceId);
-    for (int c = 0; this->Colours && c < 3; ++c)
-    {
-      point.rgb[c] = this->Colours->GetComponent(i, c);
-    }
-    return point;
+    return nullptr;
   }
+  fields::RequireShape(array, 1, input);
+  return Holds(core, array) ? array : nullptr;
+}
 
-private:
-  /// The array if LAS's own field holds it as it is.
-  static vtkDataArray* FindHeld(vtkPointSet* input, const char* name)
+/// The core of the points, from the arrays that there are.
+void TakeCore(vtkPointSet* input, formats::LasOutput& output)
+{
+  using Value = std::function<double(std::int64_t)>;
+  const auto valueOf = [](vtkDataArray* array, double otherwise) -> Value
+  { return [=](std::int64_t i) { return fields::ValueOf(array, i, otherwise); }; };
+  const auto integerOf = [](vtkDataArray* array, int otherwise) -> Value
+  { return [=](std::int64_t i) { return fields::IntegerOf(array, i, otherwise); }; };
+  std::array<Value, formats::LasCoreSize> otherwise;
+  otherwise.fill(valueOf(nullptr, 0.0));
+  otherwise[formats::LasReturnNumberIndex] = otherwise[formats::LasReturnsIndex] =
+    valueOf(nullptr, 1.0);
+  otherwise[formats::LasFlagsIndex] = valueOf(nullptr, output.simulated ? SyntheticFlag : 0);
+  otherwise[formats::LasPointSourceIndex] = valueOf(nullptr, output.sourceId);
+  if (vtkDataArray* elevation = fields::Find(input, names::VerticalAngle.name))
   {
-    vtkDataArray* array = input->GetPointData()->GetArray(name);
-    if (!array || array->GetNumberOfComponents() != 1)
-    {
-      return nullptr;
-    }
-    fields::RequireShape(array, 1, input);
-    return Holds(*FindCoreField(name), array) ? array : nullptr;
+    otherwise[formats::LasScanAngleIndex] = [elevation](std::int64_t i)
+    { return 90.0 + fields::ValueOf(elevation, i, 0.0); };
   }
-
-  vtkPointSet* Input;
-  vtkDataArray *Intensity, *ReturnNumber, *Returns, *Timestamp, *Elevation, *Object, *Colours;
-  vtkDataArray *Classification, *Flags, *UserData, *ScanAngle, *PointSource;
-  int CommonFlags, SourceId;
-  std::vector<int> Classes;
-};
+  std::vector<int> classes;
+  auto* texts = fields::FindTexts(input, names::ObjectClasses.name);
+  for (vtkIdType i = 0; texts && i < texts->GetNumberOfValues(); ++i)
+  {
+    classes.push_back(formats::labelOfClass(texts->GetValue(i)).las);
+  }
+  vtkDataArray* objects = fields::Find(input, names::ObjectId.name);
+  otherwise[formats::LasClassIndex] = [objects, classes](std::int64_t i)
+  {
+    const int object = fields::IntegerOf(objects, i, -1);
+    const bool known = object >= 0 && object < static_cast<int>(classes.size());
+    return known ? classes[object] : formats::labelWithoutObject(object).las;
+  };
+  for (int k = 0; k < formats::LasCoreSize; ++k)
+  {
+    const formats::LasCoreField& core = formats::LasCore[k];
+    vtkDataArray* array = FindCore(input, core);
+    output.core[k] = !array ? otherwise[k] : core.whole ? integerOf(array, 0) : valueOf(array, 0.0);
+  }
+  output.core[formats::LasTimeIndex] = [time = output.core[formats::LasTimeIndex]](std::int64_t i)
+  { return 1e-6 * time(i); };
+  if (vtkDataArray* colours = fields::FindColours(input))
+  {
+    output.colour = [colours](std::int64_t i, int c) { return colours->GetComponent(i, c); };
+  }
+}
 
 /// It begins as WKT does: a keyword and a bracket. What stands in it is the business of others.
 bool IsWkt(const std::string& text)
@@ -219,7 +185,7 @@ private:
       return; // colours
     }
     fields::RequireShape(numbers, numbers->GetNumberOfComponents(), this->Input);
-    const CoreField* core = FindCoreField(name);
+    const formats::LasCoreField* core = FindCoreField(name);
     if (core && single && Holds(*core, numbers))
     {
       return;
@@ -270,177 +236,98 @@ private:
   std::set<std::string> Listed; ///< those that are always written, if they are there
   std::set<std::string> Names;
 };
-}
 
-//------------------------------------------------------------------------------
-// One writing: where the points go, and what is said about them.
-class vtkAvianLidarLASWriter::vtkWork
+/// Where the points are to go: the frame, with its origin and zone, and the output's system.
+Frame Place(vtkPointSet* input, int system, int zone, const std::function<void(std::string)>& warn,
+  GeodeticFrame& geodesy, formats::LasOutput& output)
 {
-public:
-  vtkWork(vtkAvianLidarLASWriter* self, vtkPointSet* input)
-    : Self(self)
-    , Input(input)
-    , Points(input, IsSimulated(input) ? SyntheticFlag : 0, self->SourceId)
+  const std::optional<Point> origin = fields::FindOrigin(input);
+  output.crs = fields::FindText(input, CrsName);
+  if (!output.crs.empty() && !IsWkt(output.crs))
   {
-    this->Output.size = input->GetNumberOfPoints();
-    this->Output.compressed = formats::endingOf(self->FileName) == ".laz";
-    this->Output.colours = this->Points.HasColours();
-    this->Output.simulated = IsSimulated(input);
-    this->Output.sourceId = self->SourceId;
-    this->Output.software = "avian-lidar " AVIANLIDAR_VERSION;
-    this->TakeExtraBytes();
-    this->Place();
-    this->Output.point = [this](std::int64_t i)
-    {
-      formats::LasPoint point = this->Points.Make(i);
-      point.position = this->Carry(point.position, i);
-      return point;
-    };
+    throw FormatError(std::string("the field data '") + CrsName +
+      "' is no WKT, expected a word and a bracket at its beginning, as 'PROJCS['");
   }
-
-  double Write()
+  if (system == vtkAvianLidarLASWriter::COORDINATE_SYSTEM_LOCAL || !output.crs.empty())
   {
-    const auto keepGoing = vtkAvianLidarAbort::KeepGoing(this->Self);
-    formats::OutputFile file(this->Self->FileName);
-    const formats::LasMeasure measure = formats::measureLas(this->Output, keepGoing);
-    const double bound =
-      std::max({ measure.axes[0].bound(), measure.axes[1].bound(), measure.axes[2].bound() });
-    this->Describe(bound);
-    formats::writeLas(file, this->Output, measure, keepGoing);
-    file.commit();
-    return bound;
+    return Frame::ENU;
   }
-
-private:
-  static bool IsSimulated(vtkPointSet* input)
+  if (!origin)
   {
-    return input->GetFieldData()->HasArray("avian_lidar_version") != 0;
+    warn(std::string(" gets no coordinate reference system: the input has no field data '") +
+      names::GeodeticOrigin.name + "' (nor '" + CrsName +
+      "'). Its coordinates are those of the points; CoordinateSystem Local says that this is "
+      "meant.");
+    return Frame::ENU;
   }
-
-  void TakeExtraBytes()
+  geodesy.setOrigin((*origin)[0], (*origin)[1], (*origin)[2]);
+  if (system == vtkAvianLidarLASWriter::COORDINATE_SYSTEM_GEOCENTRIC)
   {
-    const ExtraBytes extra(this->Input, this->Self->WriteAllArrays);
-    this->Output.extra = extra.Fields;
-    const std::string file = this->Self->FileName;
-    if (!extra.Left.empty())
-    {
-      vtkWarningWithObjectMacro(this->Self,
-        "" << vtkAvianLidarText(file + " is without the point arrays " + extra.Left)
-           << ": LAS has no place for these.");
-    }
-    if (!extra.Changed.empty())
-    {
-      vtkWarningWithObjectMacro(this->Self,
-        "" << vtkAvianLidarText(
-                file + " has other values or names of the point arrays " + extra.Changed)
-           << ".");
-    }
+    output.crs = formats::geocentricWkt();
+    return Frame::ECEF;
   }
-
-  // Where the points are to go: sets Target, and the output's system.
-  void Place()
-  {
-    const std::optional<Point> origin = fields::FindOrigin(this->Input);
-    const bool local = this->Self->CoordinateSystem == COORDINATE_SYSTEM_LOCAL;
-    this->Output.crs = fields::FindText(this->Input, CrsName);
-    if (!this->Output.crs.empty() && !IsWkt(this->Output.crs))
-    {
-      throw FormatError(std::string("the field data '") + CrsName +
-        "' is no WKT, expected a word and a bracket at its beginning, as 'PROJCS['");
-    }
-    if (local || !this->Output.crs.empty())
-    {
-      return;
-    }
-    if (!origin)
-    {
-      vtkWarningWithObjectMacro(this->Self,
-        "" << vtkAvianLidarText(this->Self->FileName)
-           << " gets no coordinate reference system: the input has no field "
-           << "data '" << names::GeodeticOrigin.name << "' (nor '" << CrsName
-           << "'). Its coordinates are those of the points; CoordinateSystem Local says that this "
-              "is meant.");
-      return;
-    }
-    this->Geodesy.setOrigin((*origin)[0], (*origin)[1], (*origin)[2]);
-    if (this->Self->CoordinateSystem == COORDINATE_SYSTEM_GEOCENTRIC)
-    {
-      this->Target = Frame::ECEF;
-      this->Output.crs = formats::geocentricWkt();
-      return;
-    }
-    const int zone = this->Self->UTMZone != 0 ? this->Self->UTMZone
-                                              : GeodeticFrame::zoneOf((*origin)[0], (*origin)[1]);
-    this->Geodesy.setZone(zone);
-    this->Target = Frame::UTM;
-    this->Output.crs = formats::utmWkt(zone);
-  }
-
-  Point Carry(const Point& point, std::int64_t i) const
-  {
-    if (this->Target == Frame::ENU)
-    {
-      return point;
-    }
-    std::string wrong = GeodeticFrame::checkPoint(Frame::ENU, point);
-    const Point carried =
-      wrong.empty() ? this->Geodesy.convert(Frame::ENU, this->Target, point) : point;
-    wrong = wrong.empty() ? GeodeticFrame::checkPoint(this->Target, carried) : wrong;
-    if (!wrong.empty())
-    {
-      throw FormatError("point " + std::to_string(i) + ": " + wrong);
-    }
-    return carried;
-  }
-
-  void Describe(double bound)
-  {
-    formats::CloudNotes notes = fields::ToNotes(this->Input);
-    notes.notes.push_back({ "las_rounding_bound", "m", { bound }, {} });
-    std::vector<std::string> left;
-    this->Output.description = formats::toText(notes, formats::LasLongestVlr, left);
-    if (!left.empty())
-    {
-      std::string list;
-      for (const std::string& name : left)
-      {
-        list += (list.empty() ? "'" : ", '") + name + "'";
-      }
-      vtkWarningWithObjectMacro(this->Self,
-        "" << vtkAvianLidarText(this->Self->FileName + (" is without the field data " + list))
-           << ": they do not fit into the 65535 bytes of a text area.");
-    }
-  }
-
-  vtkAvianLidarLASWriter* Self;
-  vtkPointSet* Input;
-  PointMaker Points;
-  GeodeticFrame Geodesy;
-  Frame Target = Frame::ENU;
-  formats::LasOutput Output;
-};
+  zone = zone != 0 ? zone : GeodeticFrame::zoneOf((*origin)[0], (*origin)[1]);
+  geodesy.setZone(zone);
+  output.crs = formats::utmWkt(zone);
+  return Frame::UTM;
+}
+}
 
 vtkStandardNewMacro(vtkAvianLidarLASWriter);
-
-//------------------------------------------------------------------------------
-vtkAvianLidarLASWriter::vtkAvianLidarLASWriter()
-  : CoordinateSystem(COORDINATE_SYSTEM_UTM)
-  , UTMZone(0)
-  , SourceId(0)
-  , WriteAllArrays(true)
-  , RoundingBound(0.0)
-{
-}
-
-//------------------------------------------------------------------------------
-vtkAvianLidarLASWriter::~vtkAvianLidarLASWriter() = default;
 
 //------------------------------------------------------------------------------
 void vtkAvianLidarLASWriter::WriteCloud(vtkPointSet* input)
 {
   this->RoundingBound = 0.0;
-  vtkWork work(this, input);
-  this->RoundingBound = work.Write();
+  const auto warn = [this](const std::string& text) { this->Warn(text); };
+  formats::LasOutput output;
+  output.size = input->GetNumberOfPoints();
+  output.compressed = formats::endingOf(this->FileName) == ".laz";
+  output.simulated = input->GetFieldData()->HasArray("avian_lidar_version") != 0;
+  output.sourceId = this->SourceId;
+  output.software = "avian-lidar " AVIANLIDAR_VERSION;
+  TakeCore(input, output);
+  const ExtraBytes extra(input, this->WriteAllArrays);
+  output.extra = extra.Fields;
+  if (!extra.Left.empty())
+  {
+    warn(" is without the point arrays " + extra.Left + ": LAS has no place for these.");
+  }
+  if (!extra.Changed.empty())
+  {
+    warn(" has other values or names of the point arrays " + extra.Changed + ".");
+  }
+  GeodeticFrame geodesy;
+  const Frame target = Place(input, this->CoordinateSystem, this->UTMZone, warn, geodesy, output);
+  output.position = [&](std::int64_t i)
+  {
+    Point point;
+    input->GetPoint(i, point.data());
+    return target == Frame::ENU ? point : fields::Carry(geodesy, Frame::ENU, target, point, i);
+  };
+
+  const auto keepGoing = vtkAvianLidarAbort::KeepGoing(this);
+  formats::OutputFile file(this->FileName);
+  const formats::LasMeasure measure = formats::measureLas(output, keepGoing);
+  const double bound =
+    std::max({ measure.axes[0].bound(), measure.axes[1].bound(), measure.axes[2].bound() });
+  formats::CloudNotes notes = fields::ToNotes(input);
+  notes.notes.push_back({ "las_rounding_bound", "m", { bound }, {} });
+  std::vector<std::string> left;
+  output.description = formats::toText(notes, formats::LasLongestVlr, left);
+  std::string list;
+  for (const std::string& name : left)
+  {
+    list += (list.empty() ? "'" : ", '") + name + "'";
+  }
+  if (!left.empty())
+  {
+    warn(" is without the field data " + list +
+      ": they do not fit into the 65535 bytes of a text area.");
+  }
+  formats::writeLas(file, output, measure, keepGoing);
+  file.commit();
+  this->RoundingBound = bound;
 }
 
 //------------------------------------------------------------------------------

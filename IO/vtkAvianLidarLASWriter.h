@@ -88,22 +88,20 @@ public:
   vtkGetMacro(RoundingBound, double);
 
 protected:
-  vtkAvianLidarLASWriter();
-  ~vtkAvianLidarLASWriter() override;
+  vtkAvianLidarLASWriter() = default;
+  ~vtkAvianLidarLASWriter() override = default;
 
   void WriteCloud(vtkPointSet* input) override;
 
-  int CoordinateSystem;
-  int UTMZone;
-  int SourceId;
-  bool WriteAllArrays;
-  double RoundingBound;
+  int CoordinateSystem = COORDINATE_SYSTEM_UTM;
+  int UTMZone = 0;
+  int SourceId = 0;
+  bool WriteAllArrays = true;
+  double RoundingBound = 0.0;
 
 private:
   vtkAvianLidarLASWriter(const vtkAvianLidarLASWriter&) = delete;
   void operator=(const vtkAvianLidarLASWriter&) = delete;
-
-  class vtkWork;
 };
 
 #endif

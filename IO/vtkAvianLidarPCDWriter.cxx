@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkAvianLidarPCDWriter.h"
 
-#include "Private/OrganisedCells.h"
 #include "Private/PcdFormat.h"
 #include "Private/vtkAvianLidarCloudFields.h"
+#include "ScanPattern.h"
 #include "vtkAvianLidarAbort.h"
 #include "vtkAvianLidarArrays.h"
 
@@ -12,8 +12,10 @@
 #include "vtkPointData.h"
 #include "vtkPointSet.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 namespace fields = vtkAvianLidarCloudFields;
 namespace formats = avianlidar::formats;
@@ -90,7 +92,26 @@ std::int64_t BeamOf(vtkDataArray* beams, std::int64_t i)
   return static_cast<std::int64_t>(beam);
 }
 
-std::string Organise(vtkPointSet* input, formats::OrganisedCells& cells)
+/// Echoes in the rows and columns of their scan: rows are channels, the highest elevation first;
+/// columns are the scan's, in the order of firing.
+struct OrganisedCells
+{
+  std::int64_t width = 0;
+  std::int64_t height = 0;
+  std::vector<std::int64_t> points; ///< index of the point of a cell (row * width + column), or -1
+  std::vector<int> channelOfRow;
+  bool several = false; ///< a beam had more than one echo: the strongest is in its cell
+
+  /// Beam of a cell, as the beam source numbers them.
+  std::int64_t beamOf(std::int64_t cell) const
+  {
+    return cell % this->width * this->height + this->channelOfRow[cell / this->width];
+  }
+};
+
+/// Sorts echoes into cells. Returns what is in the way, or an empty string: no pattern, too many
+/// cells, a beam outside the pattern, a channel that is not its beam's.
+std::string Organise(vtkPointSet* input, OrganisedCells& cells)
 {
   avianlidar::ScanPattern pattern;
   const std::string problem = ReadPattern(input, pattern);
@@ -106,18 +127,52 @@ std::string Organise(vtkPointSet* input, formats::OrganisedCells& cells)
     return std::string("the input has no point arrays '") + names::BeamId.name + "' and '" +
       names::LaserId.name + "'";
   }
-  for (std::int64_t i = 0; i < input->GetNumberOfPoints(); ++i)
+  const vtkIdType size = input->GetNumberOfPoints();
+  for (vtkIdType i = 0; i < size; ++i)
   {
     fields::ValueOf(received, i, 0.0); // finite, whether or not echoes share a cell
   }
-  return formats::organise(
-    pattern, input->GetNumberOfPoints(), [=](std::int64_t i) { return BeamOf(beams, i); },
-    [=](std::int64_t i) { return fields::IntegerOf(lasers, i, 0); },
-    [=](std::int64_t i) { return fields::ValueOf(received, i, 0.0); }, cells);
+  constexpr std::int64_t mostCells = 100000000;
+  const int channels = numberOfChannels(pattern);
+  cells.width = numberOfColumns(pattern);
+  if (cells.width > mostCells / channels)
+  {
+    return "its scan has " + std::to_string(cells.width) + " columns of " +
+      std::to_string(channels) + " channels, more than 100 million cells";
+  }
+  cells.height = channels;
+  cells.channelOfRow.resize(channels);
+  std::iota(cells.channelOfRow.begin(), cells.channelOfRow.end(), 0);
+  std::stable_sort(cells.channelOfRow.begin(), cells.channelOfRow.end(),
+    [&](int a, int b) { return channelElevation(pattern, a) > channelElevation(pattern, b); });
+  std::vector<int> rowOfChannel(channels);
+  for (int row = 0; row < channels; ++row)
+  {
+    rowOfChannel[cells.channelOfRow[row]] = row;
+  }
+  cells.points.assign(static_cast<std::size_t>(cells.width * cells.height), -1);
+  for (vtkIdType i = 0; i < size; ++i)
+  {
+    const std::int64_t id = BeamOf(beams, i);
+    const int channel = fields::IntegerOf(lasers, i, 0);
+    if (id < 0 || id >= cells.width * cells.height || channel != id % channels)
+    {
+      return "point " + std::to_string(i) + " has the beam_id " + std::to_string(id) +
+        " and the laser_id " + std::to_string(channel) + ", which is no beam of a scan of " +
+        std::to_string(cells.width) + " columns and " + std::to_string(channels) + " channels";
+    }
+    std::int64_t& at = cells.points[rowOfChannel[id % channels] * cells.width + id / channels];
+    cells.several = cells.several || at >= 0;
+    if (at < 0 || fields::ValueOf(received, i, 0.0) > fields::ValueOf(received, at, 0.0))
+    {
+      at = i;
+    }
+  }
+  return std::string();
 }
 
 /// What stands in a cell without an echo.
-double EmptyValue(const Field& field, const formats::OrganisedCells& cells, std::int64_t cell)
+double EmptyValue(const Field& field, const OrganisedCells& cells, std::int64_t cell)
 {
   if (field.name == names::LaserId.name)
   {
@@ -139,29 +194,17 @@ double EmptyValue(const Field& field, const formats::OrganisedCells& cells, std:
 vtkStandardNewMacro(vtkAvianLidarPCDWriter);
 
 //------------------------------------------------------------------------------
-vtkAvianLidarPCDWriter::vtkAvianLidarPCDWriter()
-  : FileType(FILE_TYPE_BINARY)
-  , Organisation(ORGANISATION_AUTOMATIC)
-  , Precision(PRECISION_SINGLE)
-{
-}
-
-//------------------------------------------------------------------------------
-vtkAvianLidarPCDWriter::~vtkAvianLidarPCDWriter() = default;
-
-//------------------------------------------------------------------------------
 void vtkAvianLidarPCDWriter::WriteCloud(vtkPointSet* input)
 {
-  formats::PcdOutput output;
+  formats::PcdOutput output{ fields::ToTable(input, this->Precision == PRECISION_SINGLE,
+    [this](const std::string& text) { this->Warn(text); }) };
   output.ascii = this->FileType == FILE_TYPE_ASCII;
-  output.fields =
-    fields::TableFields(this, this->FileName, input, this->Precision == PRECISION_SINGLE);
   if (vtkDataArray* colours = fields::FindColours(input))
   {
     output.fields.push_back(ColourField(colours));
   }
   output.width = static_cast<std::uint64_t>(input->GetNumberOfPoints());
-  formats::OrganisedCells cells;
+  OrganisedCells cells;
   if (this->Organisation != ORGANISATION_LIST && input->GetNumberOfPoints() > 0)
   {
     const bool asked = this->Organisation == ORGANISATION_ORGANISED;
@@ -183,9 +226,6 @@ void vtkAvianLidarPCDWriter::WriteCloud(vtkPointSet* input)
   {
     output.viewpoint = pose->viewpoint();
   }
-  std::vector<std::string> cut; // nothing: a comment may be as long as it is
-  output.comment =
-    formats::toText(fields::ToNotes(input), std::numeric_limits<std::size_t>::max(), cut);
 
   formats::OutputFile file(this->FileName);
   formats::writePcd(file, output, vtkAvianLidarAbort::KeepGoing(this));

@@ -84,14 +84,14 @@ public:
   ///@}
 
 protected:
-  vtkAvianLidarPCDWriter();
-  ~vtkAvianLidarPCDWriter() override;
+  vtkAvianLidarPCDWriter() = default;
+  ~vtkAvianLidarPCDWriter() override = default;
 
   void WriteCloud(vtkPointSet* input) override;
 
-  int FileType;
-  int Organisation;
-  int Precision;
+  int FileType = FILE_TYPE_BINARY;
+  int Organisation = ORGANISATION_AUTOMATIC;
+  int Precision = PRECISION_SINGLE;
 
 private:
   vtkAvianLidarPCDWriter(const vtkAvianLidarPCDWriter&) = delete;

@@ -12,9 +12,6 @@
 #include "vtkPointData.h"
 #include "vtkPolyData.h"
 
-#include <algorithm>
-#include <limits>
-
 namespace fields = vtkAvianLidarCloudFields;
 namespace formats = avianlidar::formats;
 
@@ -26,17 +23,9 @@ void AddComponents(vtkDataArray* array, bool colours, std::vector<formats::Field
   const char* const names[] = { "red", "green", "blue" };
   for (int c = 0; c < array->GetNumberOfComponents(); ++c)
   {
-    formats::Field field = fields::ToField(array);
-    std::replace_if(
-      field.name.begin(), field.name.end(), [](unsigned char x) { return x <= ' '; }, '_');
+    formats::Field field = fields::TableField(array, c);
     field.name = colours ? names[c] : field.name + "_" + std::to_string(c);
-    field.value = [array, c](std::int64_t i) { return array->GetComponent(i, c); };
-    if (field.type == formats::Scalar::Int64 || field.type == formats::Scalar::UInt64)
-    {
-      field.type = formats::Scalar::Float64;
-    }
-    if (std::any_of(all.begin(), all.end(),
-          [&](const formats::Field& other) { return other.name == field.name; }))
+    if (fields::HasName(all, field.name))
     {
       throw formats::FormatError("the point arrays '" + field.name + "' and '" + array->GetName() +
         "' have one name in the file: take away one of them");
@@ -49,22 +38,11 @@ void AddComponents(vtkDataArray* array, bool colours, std::vector<formats::Field
 vtkStandardNewMacro(vtkAvianLidarPLYWriter);
 
 //------------------------------------------------------------------------------
-vtkAvianLidarPLYWriter::vtkAvianLidarPLYWriter()
-  : FileType(FILE_TYPE_BINARY)
-  , Precision(PRECISION_SINGLE)
-{
-}
-
-//------------------------------------------------------------------------------
-vtkAvianLidarPLYWriter::~vtkAvianLidarPLYWriter() = default;
-
-//------------------------------------------------------------------------------
 void vtkAvianLidarPLYWriter::WriteCloud(vtkPointSet* input)
 {
-  formats::TableOutput output;
+  formats::TableOutput output = fields::ToTable(input, this->Precision == PRECISION_SINGLE,
+    [this](const std::string& text) { this->Warn(text); });
   output.ascii = this->FileType == FILE_TYPE_ASCII;
-  output.fields =
-    fields::TableFields(this, this->FileName, input, this->Precision == PRECISION_SINGLE);
   vtkDataArray* colours = fields::FindColours(input);
   vtkPointData* data = input->GetPointData();
   for (int i = 0; i < data->GetNumberOfArrays(); ++i)
@@ -75,10 +53,6 @@ void vtkAvianLidarPLYWriter::WriteCloud(vtkPointSet* input)
       AddComponents(array, array == colours, output.fields);
     }
   }
-  std::vector<std::string> cut; // nothing: a comment may be as long as it is
-  output.comment =
-    formats::toText(fields::ToNotes(input), std::numeric_limits<std::size_t>::max(), cut);
-
   formats::PlyFaces faces;
   vtkNew<vtkIdList> ids;
   if (auto* mesh = vtkPolyData::SafeDownCast(input))

@@ -59,13 +59,13 @@ public:
   ///@}
 
 protected:
-  vtkAvianLidarPLYWriter();
-  ~vtkAvianLidarPLYWriter() override;
+  vtkAvianLidarPLYWriter() = default;
+  ~vtkAvianLidarPLYWriter() override = default;
 
   void WriteCloud(vtkPointSet* input) override;
 
-  int FileType;
-  int Precision;
+  int FileType = FILE_TYPE_BINARY;
+  int Precision = PRECISION_SINGLE;
 
 private:
   vtkAvianLidarPLYWriter(const vtkAvianLidarPLYWriter&) = delete;

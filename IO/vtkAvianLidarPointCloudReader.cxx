@@ -16,13 +16,12 @@
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
 #include "vtkPolyData.h"
-#include "vtkStreamingDemandDrivenPipeline.h"
 
 #include <algorithm>
 #include <exception>
-#include <new>
 #include <vector>
 
+namespace fields = vtkAvianLidarCloudFields;
 namespace formats = avianlidar::formats;
 namespace names = vtkAvianLidarArrays;
 using avianlidar::Frame;
@@ -32,6 +31,8 @@ using formats::Note;
 
 namespace
 {
+constexpr char NoMemory[] = "there is not enough memory for it";
+
 std::vector<Note>::iterator FindOrigin(Cloud& cloud)
 {
   return std::find_if(cloud.notes.begin(), cloud.notes.end(),
@@ -73,7 +74,7 @@ bool MoveToOrigin(Cloud& cloud, int zone)
 }
 
 /// The frame of the points: either local, with the origin, or of a system on the Earth.
-void Place(Cloud& cloud, bool wantLocal, vtkFieldData* fields)
+void Place(Cloud& cloud, bool wantLocal, vtkFieldData* data)
 {
   const int zone = formats::utmZoneOf(cloud.crs);
   if (cloud.crs.empty() || (wantLocal && MoveToOrigin(cloud, zone)))
@@ -85,12 +86,12 @@ void Place(Cloud& cloud, bool wantLocal, vtkFieldData* fields)
   {
     cloud.notes.erase(origin);
   }
-  names::SetFieldStrings(fields, names::CrsWkt, { cloud.crs });
+  names::SetFieldStrings(data, names::CrsWkt, { cloud.crs });
   if (zone != 0)
   {
     auto array = names::Make<vtkIntArray>(names::UTMZone, 1);
     array->SetValue(0, zone);
-    fields->AddArray(array);
+    data->AddArray(array);
   }
 }
 }
@@ -98,7 +99,8 @@ void Place(Cloud& cloud, bool wantLocal, vtkFieldData* fields)
 struct vtkAvianLidarPointCloudReader::vtkInternals
 {
   formats::PacketIndex Packets;
-  std::string Problem; ///< why packets cannot be read; empty if they can
+  std::vector<double> Times; ///< of the revolutions, s
+  std::string Problem;       ///< why packets cannot be read; empty if they can
 };
 
 vtkStandardNewMacro(vtkAvianLidarPointCloudReader);
@@ -143,46 +145,30 @@ int vtkAvianLidarPointCloudReader::CanReadFile(const char* fileName)
 int vtkAvianLidarPointCloudReader::RequestInformation(
   vtkInformation*, vtkInformationVector**, vtkInformationVector* outputVector)
 {
-  using Pipeline = vtkStreamingDemandDrivenPipeline;
-  vtkInformation* info = outputVector->GetInformationObject(0);
-  info->Set(vtkAlgorithm::CAN_HANDLE_PIECE_REQUEST(), 1);
-  info->Remove(Pipeline::TIME_STEPS());
-  info->Remove(Pipeline::TIME_RANGE());
-  formats::PacketIndex& packets = this->Internals->Packets;
-  packets = formats::PacketIndex();
-  this->Internals->Problem.clear();
+  vtkInternals& internals = *this->Internals;
+  internals = vtkInternals();
   const formats::CloudFormat* const format =
     this->FileName ? formats::formatOf(this->FileName) : nullptr;
   if (format && format->hasTurns)
   {
-    try
+    // RequestData says it.
+    internals.Problem = fields::ErrorIn(this->FileName, NoMemory,
+      [&]
+      {
+        formats::FileSource source(this->FileName);
+        internals.Packets =
+          formats::indexPackets(source, this->SensorAddress ? this->SensorAddress : "", {});
+      });
+    if (!internals.Packets.warning.empty())
     {
-      formats::FileSource source(this->FileName);
-      packets = formats::indexPackets(source, this->SensorAddress ? this->SensorAddress : "", {});
+      this->Warn(internals.Packets.warning);
     }
-    catch (const std::bad_alloc&)
-    {
-      this->Internals->Problem = "there is not enough memory for it";
-      return 1; // RequestData says it
-    }
-    catch (const std::exception& error)
-    {
-      this->Internals->Problem = error.what();
-      return 1;
-    }
-    if (!packets.warning.empty())
-    {
-      this->Warn(packets.warning);
-    }
-    std::vector<double> times;
-    for (const formats::PacketIndex::Turn& turn : packets.turns)
-    {
-      times.push_back(turn.time);
-    }
-    double range[] = { times.front(), times.back() };
-    info->Set(Pipeline::TIME_STEPS(), times.data(), static_cast<int>(times.size()));
-    info->Set(Pipeline::TIME_RANGE(), range, 2);
   }
+  for (const formats::PacketIndex::Turn& turn : internals.Packets.turns)
+  {
+    internals.Times.push_back(turn.time);
+  }
+  fields::SetTimes(internals.Times, outputVector->GetInformationObject(0));
   return 1;
 }
 
@@ -200,62 +186,37 @@ int vtkAvianLidarPointCloudReader::RequestData(
       {
         return "FileName is not set, expected the name of a " + formats::knownEndings() + " file";
       }
-      if (info->Has(vtkStreamingDemandDrivenPipeline::UPDATE_PIECE_NUMBER()) &&
-        info->Get(vtkStreamingDemandDrivenPipeline::UPDATE_PIECE_NUMBER()) > 0)
+      if (fields::IsOtherPiece(info) || !this->Internals->Problem.empty())
       {
-        return {};
-      }
-      if (!this->Internals->Problem.empty())
-      {
-        return this->FileName + (": " + this->Internals->Problem);
+        return fields::IsOtherPiece(info) ? std::string() : this->Internals->Problem;
       }
       vtkAvianLidarAbort::StopIfWanted(this);
-      try
-      {
-        const formats::PacketIndex& packets = this->Internals->Packets;
-        const std::vector<formats::PacketIndex::Turn>& turns = packets.turns;
-        std::size_t turn = 0;
-        if (!turns.empty() && info->Has(vtkStreamingDemandDrivenPipeline::UPDATE_TIME_STEP()))
+      return fields::ErrorIn(this->FileName, NoMemory,
+        [&]
         {
-          const double time = info->Get(vtkStreamingDemandDrivenPipeline::UPDATE_TIME_STEP());
-          const auto after = std::upper_bound(turns.begin(), turns.end(), time,
-            [](double t, const formats::PacketIndex::Turn& one) { return t < one.time; });
-          turn = static_cast<std::size_t>(std::max<std::ptrdiff_t>(after - turns.begin() - 1, 0));
-        }
-        Cloud cloud = formats::readCloud(this->FileName, vtkAvianLidarAbort::KeepGoing(this),
-          turns.empty() ? nullptr : &packets, turn);
-        if (!turns.empty())
-        {
-          output->GetInformation()->Set(vtkDataObject::DATA_TIME_STEP(), turns[turn].time);
-        }
-        if (!cloud.warnings.empty())
-        {
+          const std::vector<double>& times = this->Internals->Times;
+          const std::size_t turn = fields::StepOf(times, info);
+          Cloud cloud = formats::readCloud(this->FileName, vtkAvianLidarAbort::KeepGoing(this),
+            times.empty() ? nullptr : &this->Internals->Packets, turn);
+          if (!times.empty())
+          {
+            output->GetInformation()->Set(vtkDataObject::DATA_TIME_STEP(), times[turn]);
+          }
           std::string all;
           for (const std::string& warning : cloud.warnings)
           {
             all += (all.empty() ? "" : "; ") + warning;
           }
-          this->Warn(all);
-        }
-        Place(cloud, this->LocalCoordinates, output->GetFieldData());
-        vtkAvianLidarCloudFields::ToPolyData(cloud, output);
-        const bool simulated = output->GetPointData()->HasArray(names::Energy.name) != 0;
-        output->GetPointData()->SetActiveScalars(
-          simulated ? names::Energy.name : names::Intensity.name);
-        return {};
-      }
-      catch (const avianlidar::WorkStopped&)
-      {
-        throw;
-      }
-      catch (const std::bad_alloc&)
-      {
-        return std::string(this->FileName) + ": there is not enough memory for it";
-      }
-      catch (const std::exception& error)
-      {
-        return std::string(this->FileName) + ": " + error.what();
-      }
+          if (!all.empty())
+          {
+            this->Warn(all);
+          }
+          Place(cloud, this->LocalCoordinates, output->GetFieldData());
+          fields::ToPolyData(cloud, output);
+          const bool simulated = output->GetPointData()->HasArray(names::Energy.name) != 0;
+          output->GetPointData()->SetActiveScalars(
+            simulated ? names::Energy.name : names::Intensity.name);
+        });
     });
 }
 

@@ -20,7 +20,6 @@
 #include "vtkPointData.h"
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
-#include "vtkStreamingDemandDrivenPipeline.h"
 #include "vtkStringArray.h"
 
 #include <algorithm>
@@ -30,7 +29,6 @@
 #include <exception>
 #include <filesystem>
 #include <limits>
-#include <new>
 #include <optional>
 #include <sstream>
 
@@ -39,7 +37,6 @@ namespace fs = std::filesystem;
 namespace names = vtkAvianLidarArrays;
 using formats::FormatError;
 using formats::Point;
-using Pipeline = vtkStreamingDemandDrivenPipeline;
 
 namespace
 {
@@ -330,16 +327,7 @@ int vtkAvianLidarSequenceReader::RequestInformation(
   }
   for (int port = 0; port < 2; ++port)
   {
-    vtkInformation* info = outputVector->GetInformationObject(port);
-    info->Set(vtkAlgorithm::CAN_HANDLE_PIECE_REQUEST(), 1);
-    info->Remove(Pipeline::TIME_STEPS());
-    info->Remove(Pipeline::TIME_RANGE());
-    if (!times.empty())
-    {
-      double range[] = { times.front(), times.back() };
-      info->Set(Pipeline::TIME_STEPS(), times.data(), static_cast<int>(times.size()));
-      info->Set(Pipeline::TIME_RANGE(), range, 2);
-    }
+    vtkAvianLidarCloudFields::SetTimes(times, outputVector->GetInformationObject(port));
   }
   return 1;
 }
@@ -357,42 +345,25 @@ int vtkAvianLidarSequenceReader::RequestData(
       {
         return "FileName is not set, expected the times.txt of a sequence";
       }
-      if (info->Has(Pipeline::UPDATE_PIECE_NUMBER()) &&
-        info->Get(Pipeline::UPDATE_PIECE_NUMBER()) > 0)
+      if (vtkAvianLidarCloudFields::IsOtherPiece(info))
       {
         return {};
       }
       vtkAvianLidarAbort::StopIfWanted(this);
-      try
-      {
-        const std::vector<double> times = TimesOf(this->FileName);
-        const double time = info->Has(Pipeline::UPDATE_TIME_STEP())
-          ? info->Get(Pipeline::UPDATE_TIME_STEP())
-          : times.front();
-        const auto after = std::upper_bound(times.begin(), times.end(), time);
-        const auto scan =
-          static_cast<std::size_t>(std::max<std::ptrdiff_t>(after - times.begin() - 1, 0));
-        vtkPolyData* points = vtkPolyData::GetData(outputVector, 0);
-        vtkPolyData* boxes = vtkPolyData::GetData(outputVector, 1);
-        ReadScan(this, fs::absolute(this->FileName).parent_path(), scan, points, boxes);
-        for (vtkPolyData* output : { points, boxes })
+      return vtkAvianLidarCloudFields::ErrorIn(this->FileName,
+        "there is not enough memory for a scan",
+        [&]
         {
-          output->GetInformation()->Set(vtkDataObject::DATA_TIME_STEP(), times[scan]);
-        }
-        return {};
-      }
-      catch (const avianlidar::WorkStopped&)
-      {
-        throw;
-      }
-      catch (const std::bad_alloc&)
-      {
-        return std::string(this->FileName) + ": there is not enough memory for a scan";
-      }
-      catch (const std::exception& error)
-      {
-        return std::string(this->FileName) + ": " + error.what();
-      }
+          const std::vector<double> times = TimesOf(this->FileName);
+          const std::size_t scan = vtkAvianLidarCloudFields::StepOf(times, info);
+          vtkPolyData* points = vtkPolyData::GetData(outputVector, 0);
+          vtkPolyData* boxes = vtkPolyData::GetData(outputVector, 1);
+          ReadScan(this, fs::absolute(this->FileName).parent_path(), scan, points, boxes);
+          for (vtkPolyData* output : { points, boxes })
+          {
+            output->GetInformation()->Set(vtkDataObject::DATA_TIME_STEP(), times[scan]);
+          }
+        });
     });
 }
 

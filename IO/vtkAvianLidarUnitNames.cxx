@@ -51,12 +51,6 @@ void Rename(vtkDataSetAttributes* from, vtkDataSetAttributes* to)
 vtkStandardNewMacro(vtkAvianLidarUnitNames);
 
 //------------------------------------------------------------------------------
-vtkAvianLidarUnitNames::vtkAvianLidarUnitNames() = default;
-
-//------------------------------------------------------------------------------
-vtkAvianLidarUnitNames::~vtkAvianLidarUnitNames() = default;
-
-//------------------------------------------------------------------------------
 std::string vtkAvianLidarUnitNames::NameWithUnit(const std::string& name, const std::string& unit)
 {
   return unit.empty() || unit == "1" ? name : name + " [" + unit + "]";

@@ -33,8 +33,8 @@ public:
   vtkAvianLidarErrorsAsDataMacro();
 
 protected:
-  vtkAvianLidarUnitNames();
-  ~vtkAvianLidarUnitNames() override;
+  vtkAvianLidarUnitNames() = default;
+  ~vtkAvianLidarUnitNames() override = default;
 
   int FillInputPortInformation(int port, vtkInformation* info) override;
   int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;

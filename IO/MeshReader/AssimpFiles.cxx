@@ -4,7 +4,7 @@
 #include "FormatFacts.h"
 #include "MeshFormats.h"
 
-#include <assimp/IOStream.hpp>
+#include <assimp/MemoryIOWrapper.h>
 
 #include "vtk_zlib.h"
 
@@ -19,51 +19,27 @@ namespace avianlidar::scene
 {
 namespace
 {
+struct Held
+{
+  std::vector<char> bytes;
+};
+
 // The whole file in memory: a compressed one cannot be sought in, and Assimp seeks.
-class MemoryStream : public Assimp::IOStream
+class MemoryStream
+  : private Held
+  , public Assimp::MemoryIOStream
 {
 public:
-  explicit MemoryStream(std::vector<char> bytes)
-    : Bytes(std::move(bytes))
+  explicit MemoryStream(std::vector<char> all)
+    : Held{ std::move(all) }
+    , MemoryIOStream(reinterpret_cast<const std::uint8_t*>(this->bytes.data()), this->bytes.size())
   {
   }
 
   std::size_t Read(void* buffer, std::size_t size, std::size_t count) override
   {
-    if (size == 0)
-    {
-      return 0;
-    }
-    const std::size_t items = std::min(count, (this->Bytes.size() - this->Position) / size);
-    if (items > 0)
-    {
-      std::memcpy(buffer, this->Bytes.data() + this->Position, items * size);
-      this->Position += items * size;
-    }
-    return items;
+    return size == 0 ? 0 : MemoryIOStream::Read(buffer, size, count);
   }
-
-  std::size_t Write(const void*, std::size_t, std::size_t) override { return 0; }
-
-  aiReturn Seek(std::size_t offset, aiOrigin origin) override
-  {
-    const std::size_t start =
-      origin == aiOrigin_SET ? 0 : (origin == aiOrigin_CUR ? this->Position : this->Bytes.size());
-    if (start + offset > this->Bytes.size())
-    {
-      return aiReturn_FAILURE;
-    }
-    this->Position = start + offset;
-    return aiReturn_SUCCESS;
-  }
-
-  std::size_t Tell() const override { return this->Position; }
-  std::size_t FileSize() const override { return this->Bytes.size(); }
-  void Flush() override {}
-
-private:
-  std::vector<char> Bytes;
-  std::size_t Position = 0;
 };
 
 /// The bytes of a file, unpacked if they are packed by gzip. Returns why there are none, or

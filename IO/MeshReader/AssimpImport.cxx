@@ -171,7 +171,7 @@ std::string ModelOf(const std::string& file)
 
 /// Refuses files that Assimp reads wrong, and adds what the file says to the mesh. Returns the
 /// length of the file's unit, m.
-/// @param elements becomes what IfcElements() says
+/// @param elements becomes what ReadIfc() says
 double CheckFormat(AssimpFiles& files, Mesh& mesh, std::map<std::string, std::size_t>& elements)
 {
   const std::string& name = files.GetMeshName();
@@ -208,8 +208,7 @@ double CheckFormat(AssimpFiles& files, Mesh& mesh, std::map<std::string, std::si
   }
   else if (!text.empty())
   {
-    elements = IfcElements(text);
-    return IfcUnit(text);
+    return ReadIfc(text, elements);
   }
   return 1.0;
 }

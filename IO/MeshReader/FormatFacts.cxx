@@ -10,6 +10,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <iterator>
+#include <optional>
 #include <regex>
 #include <set>
 #include <sstream>
@@ -37,38 +38,26 @@ std::string_view JsonOf(const std::string& text)
   return std::string_view(text).substr(header + chunk, length);
 }
 
+/// The value of a key or an index, or null.
+const Json& ValueIn(const Json& holder, const Json& key)
+{
+  static const Json none;
+  if (holder.is_array() && key.is_number_unsigned() && key.get<std::size_t>() < holder.size())
+  {
+    return holder[key.get<std::size_t>()];
+  }
+  const auto value = holder.is_object() && key.is_string()
+    ? holder.find(key.get_ref<const std::string&>())
+    : holder.end();
+  return value != holder.end() ? *value : none;
+}
+
 /// Returns a list of an object, or an empty list if the object has no such list.
 const Json& ListIn(const Json& object, const char* key)
 {
   static const Json none = Json::array();
-  const auto list = object.is_object() ? object.find(key) : object.end();
-  return list != object.end() && list->is_array() ? *list : none;
-}
-
-std::vector<std::string> NamesIn(const Json& document, const char* key)
-{
-  std::vector<std::string> names;
-  for (const Json& name : ListIn(document, key))
-  {
-    if (name.is_string())
-    {
-      names.push_back(name.get<std::string>());
-    }
-  }
-  return names;
-}
-
-std::vector<const Json*> PrimitivesOf(const Json& document)
-{
-  std::vector<const Json*> primitives;
-  for (const Json& mesh : ListIn(document, "meshes"))
-  {
-    for (const Json& primitive : ListIn(mesh, "primitives"))
-    {
-      primitives.push_back(&primitive);
-    }
-  }
-  return primitives;
+  const Json& list = ValueIn(object, key);
+  return list.is_array() ? list : none;
 }
 
 /// Positions are numbers of single precision (specification, section 3.7.2.1); Assimp reads others
@@ -76,23 +65,11 @@ std::vector<const Json*> PrimitivesOf(const Json& document)
 void CheckPositions(const Json& document, const Json& primitive)
 {
   constexpr int single = 5126;
-  const Json& accessors = ListIn(document, "accessors");
-  const auto attributes = primitive.is_object() ? primitive.find("attributes") : primitive.end();
-  if (attributes == primitive.end() || !attributes->is_object())
+  const Json& position = ValueIn(ValueIn(primitive, "attributes"), "POSITION");
+  const Json& type = ValueIn(ValueIn(ListIn(document, "accessors"), position), "componentType");
+  if (type.is_number() && type.get<int>() != single)
   {
-    return;
-  }
-  const auto position = attributes->find("POSITION");
-  if (position == attributes->end() || !position->is_number_unsigned() ||
-    position->get<std::size_t>() >= accessors.size())
-  {
-    return;
-  }
-  const Json& accessor = accessors[position->get<std::size_t>()];
-  const auto type = accessor.is_object() ? accessor.find("componentType") : accessor.end();
-  if (type != accessor.end() && type->is_number() && type->get<int>() != single)
-  {
-    throw Error("has positions of the component type " + std::to_string(type->get<int>()) +
+    throw Error("has positions of the component type " + std::to_string(type.get<int>()) +
       ", expected 5126, numbers of single precision");
   }
 }
@@ -139,29 +116,40 @@ std::string WithoutComments(const std::string& file)
   return text;
 }
 
-/// The rest of a STEP statement from a place on, without its end.
-std::string_view StatementAt(std::string_view text, std::size_t at)
+/// A statement of a STEP file, "#12=IFCSIUNIT(...)".
+struct Entity
 {
-  return text.substr(at, text.find(';', at) - at);
+  std::string_view id;
+  std::string_view type;
+  std::string_view arguments; ///< with the closing bracket
+};
+
+/// The statements of a file without comments, in order.
+std::vector<Entity> EntitiesOf(std::string_view text)
+{
+  static const std::regex start("\\s*(#[0-9]+)\\s*=\\s*([A-Z0-9_]+)\\s*\\(");
+  std::vector<Entity> entities;
+  for (std::size_t at = 0; at < text.size();)
+  {
+    const std::string_view statement = text.substr(at, text.find(';', at) - at);
+    std::cmatch found;
+    if (std::regex_search(statement.data(), statement.data() + statement.size(), found, start,
+          std::regex_constants::match_continuous))
+    {
+      entities.push_back({ statement.substr(found.position(1), found.length(1)),
+        statement.substr(found.position(2), found.length(2)), statement.substr(found.length()) });
+    }
+    at += statement.size() + 1;
+  }
+  return entities;
 }
 
-/// The definition of a STEP entity, in capital letters as it stands: "IFCSIUNIT(...)".
-std::string_view EntityOf(std::string_view text, const std::string& id)
+/// The first entity of an id; an empty one if there is none.
+Entity EntityOf(const std::vector<Entity>& entities, const std::string& id)
 {
-  for (std::size_t at = text.find(id); at != std::string_view::npos; at = text.find(id, at + 1))
-  {
-    const std::size_t equals = text.find_first_not_of(" \t\r\n", at + id.size());
-    const std::size_t before = at == 0 ? at : text.find_last_not_of(" \t\r\n", at - 1);
-    const bool begins = at == 0 || before == std::string_view::npos || text[before] == ';' ||
-      text[before] == '/'; // behind a comment
-    if (begins && equals != std::string_view::npos && text[equals] == '=')
-    {
-      const std::size_t begin =
-        std::min(text.find_first_not_of(" \t\r\n", equals + 1), text.size());
-      return text.substr(begin, text.find(';', begin) - begin);
-    }
-  }
-  return {};
+  const auto found = std::find_if(
+    entities.begin(), entities.end(), [&id](const Entity& entity) { return entity.id == id; });
+  return found == entities.end() ? Entity() : *found;
 }
 
 /// The ids, "#12", that a definition names.
@@ -177,9 +165,9 @@ std::vector<std::string> IdsIn(std::string_view definition)
 }
 
 /// The factor of an IFCSIUNIT of length, m; 0 if it is not one.
-double SiLength(std::string_view definition)
+double SiLength(const Entity& unit)
 {
-  if (!StartsWith(definition, "IFCSIUNIT") || definition.find(".METRE.") == std::string_view::npos)
+  if (unit.type != "IFCSIUNIT" || unit.arguments.find(".METRE.") == std::string_view::npos)
   {
     return 0.0;
   }
@@ -193,7 +181,7 @@ double SiLength(std::string_view definition)
     { ".PICO.", 1e-12 }, { ".FEMTO.", 1e-15 }, { ".ATTO.", 1e-18 } };
   for (const auto& prefix : prefixes)
   {
-    if (definition.find(prefix.name) != std::string_view::npos)
+    if (unit.arguments.find(prefix.name) != std::string_view::npos)
     {
       return prefix.factor;
     }
@@ -201,8 +189,49 @@ double SiLength(std::string_view definition)
   return 1.0;
 }
 
+/// The length of the unit of a file, m; 1 if it does not say one.
+double IfcUnit(const std::vector<Entity>& entities)
+{
+  const auto project = std::find_if(entities.begin(), entities.end(),
+    [](const Entity& entity) { return entity.type == "IFCPROJECT"; });
+  const std::vector<std::string> of =
+    project == entities.end() ? std::vector<std::string>() : IdsIn(project->arguments);
+  const Entity units = of.empty() ? Entity() : EntityOf(entities, of.back());
+  if (units.type != "IFCUNITASSIGNMENT")
+  {
+    return 1.0;
+  }
+  for (const std::string& id : IdsIn(units.arguments))
+  {
+    const Entity unit = EntityOf(entities, id);
+    if (unit.arguments.find(".LENGTHUNIT.") == std::string_view::npos || unit.type == "IFCSIUNIT")
+    {
+      continue;
+    }
+    const std::vector<std::string> parts = IdsIn(unit.arguments);
+    const std::string_view measure =
+      parts.empty() ? "" : EntityOf(entities, parts.back()).arguments;
+    const std::vector<std::string> base = IdsIn(measure);
+    const double metres = base.empty() ? 0.0 : SiLength(EntityOf(entities, base.back()));
+    static const std::regex number("MEASURE\\( *\\+?([0-9.]+(?:[eE][-+]?[0-9]+)?) *\\)");
+    std::cmatch found;
+    if (metres > 0.0 && std::regex_search(measure.begin(), measure.end(), found, number))
+    {
+      double factor = 0.0;
+      std::from_chars(found[1].first, found[1].second, factor);
+      if (factor > 0.0)
+      {
+        return factor * metres;
+      }
+    }
+    throw Error("has a unit of length, " + id +
+      ", that cannot be read, expected an IFCCONVERSIONBASEDUNIT of metres");
+  }
+  return 1.0;
+}
+
 /// The value of an attribute in an XML tag, or nothing.
-std::string_view ValueOf(std::string_view tag, std::string_view name)
+std::optional<std::string_view> ValueOf(std::string_view tag, std::string_view name)
 {
   const char* const blanks = " \t\r\n";
   for (std::size_t at = tag.find(name, 1); at != std::string_view::npos;
@@ -218,6 +247,45 @@ std::string_view ValueOf(std::string_view tag, std::string_view name)
     }
   }
   return {};
+}
+
+/// Calls use(name without a prefix, attributes) for each XML tag, comments aside, as long as it
+/// returns true.
+template <class Use>
+void ForEachTag(std::string_view text, const Use& use)
+{
+  for (std::size_t at = text.find('<'); at != std::string_view::npos; at = text.find('<', at + 1))
+  {
+    if (StartsWith(text.substr(at), "<!--"))
+    {
+      at = std::min(text.find("-->", at), text.size());
+      continue;
+    }
+    const std::string_view tag = text.substr(at + 1, text.find('>', at) - at - 1);
+    const std::size_t end = std::min(tag.find_first_of(" \t\r\n/", 1), tag.size());
+    const std::size_t colon = tag.substr(0, end).find(':');
+    if (!use(tag.substr(0, end).substr(colon == std::string_view::npos ? 0 : colon + 1),
+          tag.substr(end)))
+    {
+      return;
+    }
+  }
+}
+
+/// Refuses 3MF files that require other extensions than that of materials.
+void CheckPrintExtensions(std::string_view attributes)
+{
+  std::istringstream prefixes{ std::string(
+    ValueOf(attributes, "requiredextensions").value_or("")) };
+  for (std::string prefix; prefixes >> prefix;)
+  {
+    const auto space = ValueOf(attributes, "xmlns:" + prefix);
+    if (!space || space->find("/material/") == std::string_view::npos)
+    {
+      throw Error("requires the 3MF extension " + std::string(space.value_or(prefix)) +
+        ", which is not supported: export it without this extension");
+    }
+  }
 }
 
 void SkipBlanks(const char*& at, const char* end)
@@ -290,25 +358,25 @@ std::vector<std::string> CheckGltf(const std::string& text)
     json.begin(), json.end(), [](char byte) { return (byte & 0x80) != 0; }, '?');
   json.erase(0, std::min(json.find('{'), json.size())); // a mark of the byte order
   const Json document = Json::parse(json, nullptr, /*allow_exceptions=*/false);
-  for (const std::string& name : NamesIn(document, "extensionsRequired"))
+  for (const char* list : { "extensionsRequired", "extensionsUsed" })
   {
-    if (!IsKnown(name))
+    const bool isRequired = list == std::string("extensionsRequired");
+    for (const Json& one : ListIn(document, list))
     {
-      throw Error("requires the glTF extension " + name +
-        ", which is not supported: export it without this extension");
+      const std::string name = one.is_string() ? one.get<std::string>() : std::string();
+      if (one.is_string() && (isRequired ? !IsKnown(name) : ChangesGeometry(name)))
+      {
+        throw Error((isRequired ? "requires" : "uses") + (" the glTF extension " + name) +
+          ", which is not supported: export it without this extension");
+      }
     }
   }
-  for (const std::string& name : NamesIn(document, "extensionsUsed"))
+  for (const Json& mesh : ListIn(document, "meshes"))
   {
-    if (ChangesGeometry(name))
+    for (const Json& primitive : ListIn(mesh, "primitives"))
     {
-      throw Error("uses the glTF extension " + name +
-        ", which is not supported: export it without this extension");
+      CheckPositions(document, primitive);
     }
-  }
-  for (const Json* primitive : PrimitivesOf(document))
-  {
-    CheckPositions(document, *primitive);
   }
   std::vector<std::string> warnings;
   if (ListIn(document, "skins").size() > 0)
@@ -331,121 +399,47 @@ std::vector<std::string> CheckGltf(const std::string& text)
   return warnings;
 }
 
-double IfcUnit(const std::string& file)
+double ReadIfc(const std::string& file, std::map<std::string, std::size_t>& elements)
 {
   const std::string text = WithoutComments(file);
-  const std::size_t project = text.find("IFCPROJECT(");
-  const std::vector<std::string> of =
-    project == std::string::npos ? std::vector<std::string>() : IdsIn(StatementAt(text, project));
-  const std::string_view units = of.empty() ? "" : EntityOf(text, of.back());
-  if (!StartsWith(units, "IFCUNITASSIGNMENT"))
+  const std::vector<Entity> entities = EntitiesOf(text);
+  std::set<std::string_view> shapes;
+  for (const Entity& entity : entities)
   {
-    return 1.0;
-  }
-  for (const std::string& id : IdsIn(units))
-  {
-    const std::string_view unit = EntityOf(text, id);
-    if (unit.find(".LENGTHUNIT.") == std::string_view::npos || StartsWith(unit, "IFCSIUNIT"))
+    if (entity.type == "IFCPRODUCTDEFINITIONSHAPE")
     {
-      continue;
-    }
-    const std::vector<std::string> parts = IdsIn(unit);
-    const std::string_view measure = parts.empty() ? "" : EntityOf(text, parts.back());
-    const std::vector<std::string> base = IdsIn(measure);
-    const double metres = base.empty() ? 0.0 : SiLength(EntityOf(text, base.back()));
-    static const std::regex number("MEASURE\\( *\\+?([0-9.]+(?:[eE][-+]?[0-9]+)?) *\\)");
-    std::cmatch found;
-    if (metres > 0.0 && std::regex_search(measure.begin(), measure.end(), found, number))
-    {
-      double factor = 0.0;
-      std::from_chars(found[1].first, found[1].second, factor);
-      if (factor > 0.0)
-      {
-        return factor * metres;
-      }
-    }
-    throw Error("has a unit of length, " + id +
-      ", that cannot be read, expected an IFCCONVERSIONBASEDUNIT of metres");
-  }
-  return 1.0;
-}
-
-/// Refuses 3MF files that require other extensions than that of materials.
-void CheckPrintExtensions(const std::string& attributes)
-{
-  static const std::regex required("\\brequiredextensions *= *[\"']([^\"']*)");
-  std::smatch found;
-  if (!std::regex_search(attributes, found, required))
-  {
-    return;
-  }
-  std::istringstream prefixes(found[1].str());
-  for (std::string prefix; prefixes >> prefix;)
-  {
-    std::smatch space;
-    const bool isNamed =
-      std::regex_search(attributes, space, std::regex("xmlns:" + prefix + " *= *[\"']([^\"']*)"));
-    if (!isNamed || space[1].str().find("/material/") == std::string::npos)
-    {
-      throw Error("requires the 3MF extension " + (isNamed ? space[1].str() : prefix) +
-        ", which is not supported: export it without this extension");
+      shapes.insert(entity.id);
     }
   }
-}
-
-std::map<std::string, std::size_t> IfcElements(const std::string& file)
-{
-  const std::string text = WithoutComments(file);
-  std::vector<std::pair<std::string, std::string_view>> statements;
-  std::set<std::string> shapes;
-  static const std::regex entity("\\s*(#[0-9]+)\\s*=\\s*([A-Z0-9_]+)\\s*\\(");
-  for (std::size_t at = 0; at < text.size();)
-  {
-    const std::string_view statement = StatementAt(text, at);
-    std::cmatch found;
-    if (std::regex_search(statement.data(), statement.data() + statement.size(), found, entity,
-          std::regex_constants::match_continuous))
-    {
-      if (found[2] == "IFCPRODUCTDEFINITIONSHAPE")
-      {
-        shapes.insert(found[1]);
-      }
-      else
-      {
-        statements.emplace_back(found[2], statement.substr(found.length()));
-      }
-    }
-    at += statement.size() + 1;
-  }
-  std::map<std::string, std::size_t> elements;
-  static const std::set<std::string> empty{ "IFCSPACE", "IFCOPENINGELEMENT", "IFCANNOTATION",
+  static const std::set<std::string_view> empty{ "IFCSPACE", "IFCOPENINGELEMENT", "IFCANNOTATION",
     "IFCGRID", "IFCVIRTUALELEMENT", "IFCSHAPEASPECT", "IFCPORT", "IFCDISTRIBUTIONPORT" };
-  for (const auto& [type, arguments] : statements)
+  for (const auto& [id, type, arguments] : entities)
   {
     // Of the ids that a product names the shape is one of the last.
     if (StartsWith(type, "IFC") && StartsWith(arguments, "''") && empty.count(type) == 0)
     {
       const std::vector<std::string> ids = IdsIn(arguments);
-      elements[type] += std::any_of(
-        ids.begin(), ids.end(), [&shapes](const std::string& id) { return shapes.count(id) > 0; });
+      elements[std::string(type)] += std::any_of(ids.begin(), ids.end(),
+        [&shapes](const std::string& one) { return shapes.count(one) > 0; });
     }
   }
-  return elements;
+  return IfcUnit(entities);
 }
 
 double X3dUnit(const std::string& text)
 {
-  static const std::regex unit("<unit\\b[^>]*category *= *[\"']length[\"'][^>]*>");
-  static const std::regex factor("conversionFactor *= *[\"']([^\"']+)");
-  const std::string begin = text.substr(0, text.find("<Scene"));
-  std::smatch element, found;
-  if (!std::regex_search(begin, element, unit))
-  {
-    return 1.0;
-  }
-  const std::string attributes = element.str();
-  const double metres =
-    std::regex_search(attributes, found, factor) ? std::atof(found[1].str().c_str()) : 0.0;
+  double metres = 1.0;
+  ForEachTag(text,
+    [&metres](std::string_view name, std::string_view attributes)
+    {
+      const bool isUnit = name == "unit" && ValueOf(attributes, "category") == "length";
+      if (isUnit)
+      {
+        metres =
+          std::atof(std::string(ValueOf(attributes, "conversionFactor").value_or("")).c_str());
+      }
+      return !isUnit && name != "Scene";
+    });
   if (!(metres > 0.0))
   {
     throw Error("has a unit of length without a positive conversionFactor");
@@ -498,35 +492,33 @@ void CheckPly(const std::string& text)
 
 std::vector<std::string> Check3mf(const std::string& text)
 {
-  std::set<std::string> held;
-  std::vector<std::string> named;
+  std::set<std::string_view> held;
+  std::vector<std::string_view> named;
   std::size_t painted = 0;
-  for (std::size_t at = text.find('<'); at != std::string::npos; at = text.find('<', at + 1))
-  {
-    std::string_view tag = std::string_view(text).substr(at + 1, text.find('>', at) - at - 1);
-    const std::size_t nameEnd = std::min(tag.find_first_of(" \t\r\n/"), tag.size());
-    const std::size_t space = tag.substr(0, nameEnd).find(':');
-    const std::string_view name =
-      tag.substr(0, nameEnd).substr(space == std::string_view::npos ? 0 : space + 1);
-    tag.remove_prefix(nameEnd);
-    if (name == "triangle")
+  ForEachTag(text,
+    [&](std::string_view name, std::string_view attributes)
     {
-      painted += !ValueOf(tag, "pid").empty() || !ValueOf(tag, "p1").empty();
-    }
-    else if (name == "object")
-    {
-      held.emplace(ValueOf(tag, "id"));
-    }
-    else if (name == "item" || name == "component")
-    {
-      named.emplace_back(ValueOf(tag, "objectid"));
-    }
-  }
-  for (const std::string& name : named)
+      if (name == "triangle")
+      {
+        painted += !ValueOf(attributes, "pid").value_or("").empty() ||
+          !ValueOf(attributes, "p1").value_or("").empty();
+      }
+      else if (name == "object")
+      {
+        held.insert(ValueOf(attributes, "id").value_or(""));
+      }
+      else if (name == "item" || name == "component")
+      {
+        named.push_back(ValueOf(attributes, "objectid").value_or(""));
+      }
+      return true;
+    });
+  for (const std::string_view name : named)
   {
     if (held.count(name) == 0)
     {
-      throw Error("is broken: it builds the object " + name + ", which it does not hold");
+      throw Error(
+        "is broken: it builds the object " + std::string(name) + ", which it does not hold");
     }
   }
   return painted == 0 ? std::vector<std::string>()
@@ -543,29 +535,26 @@ double PrintUnit(const std::string& text)
   } units[] = { { "micron", 1e-6 }, { "micrometer", 1e-6 }, { "millimeter", 1e-3 },
     { "centimeter", 1e-2 }, { "inch", 0.0254 }, { "foot", 0.3048 }, { "feet", 0.3048 },
     { "meter", 1.0 } };
-  static const std::regex root("<(?:[A-Za-z]+:)?(?:model|amf)\\b[^>]*>");
-  static const std::regex unit("\\bunit *= *[\"']([^\"']*)");
-  std::smatch element, found;
-  static const std::regex comment("<!--[^]*?-->");
-  const std::string start = std::regex_replace(text.substr(0, 1u << 16), comment, "");
-  if (!std::regex_search(start, element, root))
-  {
-    return 1e-3;
-  }
-  const std::string attributes = element.str();
-  CheckPrintExtensions(attributes);
-  if (!std::regex_search(attributes, found, unit))
-  {
-    return 1e-3;
-  }
+  std::optional<std::string_view> unit;
+  ForEachTag(text,
+    [&unit](std::string_view name, std::string_view attributes)
+    {
+      const bool isRoot = name == "model" || name == "amf";
+      if (isRoot)
+      {
+        CheckPrintExtensions(attributes);
+        unit = ValueOf(attributes, "unit");
+      }
+      return !isRoot;
+    });
   for (const auto& known : units)
   {
-    if (found[1] == known.name)
+    if (unit.value_or("millimeter") == known.name)
     {
       return known.length;
     }
   }
-  throw Error("has the unit '" + found[1].str() +
+  throw Error("has the unit '" + std::string(*unit) +
     "', expected micron, millimeter, centimeter, inch, foot or meter");
 }
 

@@ -28,12 +28,10 @@ std::vector<std::string> CheckGltf(const std::string& text);
  * The length of an IFC file's unit, m, where it is a conversion-based unit such as the foot; Assimp
  * supports only the metre with its prefixes, which give 1 here.
  * @param text of the file. Throws Error where the unit cannot be read.
+ * @param elements becomes how many elements of each type, such as "IFCWALL", have a shape. What is
+ * not solid is left out: spaces, openings, annotations.
  */
-double IfcUnit(const std::string& text);
-
-/// How many elements of each type, such as "IFCWALL", have a shape. What is not solid is left out:
-/// spaces, openings, annotations. @param text of the file
-std::map<std::string, std::size_t> IfcElements(const std::string& text);
+double ReadIfc(const std::string& text, std::map<std::string, std::size_t>& elements);
 
 /// The length of an X3D file's unit, m (version 3.3 and later). @param text XML
 double X3dUnit(const std::string& text);

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "VtkCellCheck.h"
+#include "Imports.h"
 
-#include "SceneTypes.h"
 #include "vtkAvianLidarCells.h"
 
 #include "vtkCellArray.h"

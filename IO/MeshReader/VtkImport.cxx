@@ -3,7 +3,6 @@
 
 #include "MeshFormats.h"
 #include "RegularFile.h"
-#include "VtkCellCheck.h"
 #include "vtkAvianLidarNames.h"
 #include "vtkAvianLidarTriangles.h"
 

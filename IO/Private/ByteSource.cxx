@@ -4,6 +4,7 @@
 #include "CloudData.h"
 #include "RegularFile.h"
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 
@@ -26,6 +27,18 @@ std::vector<unsigned char> ByteSource::bytes(std::uint64_t offset, std::uint64_t
   std::vector<unsigned char> copy(count);
   this->read(offset, count, copy.data());
   return copy;
+}
+
+const unsigned char* ByteSource::at(std::uint64_t offset, std::uint64_t count)
+{
+  constexpr std::uint64_t atOnce = 1 << 20;
+  if (offset < this->PieceBegin || offset + count > this->PieceBegin + this->Piece.size())
+  {
+    const std::uint64_t left = this->size() - std::min(this->size(), offset);
+    this->Piece = this->bytes(offset, std::max(count, std::min(atOnce, left)));
+    this->PieceBegin = offset;
+  }
+  return this->Piece.data() + (offset - this->PieceBegin);
 }
 
 FileSource::FileSource(const std::string& name)

@@ -30,6 +30,13 @@ public:
   }
 
   std::vector<unsigned char> bytes(std::uint64_t offset, std::uint64_t count);
+
+  /// Bytes that stay until the next call. Large pieces are read at once.
+  const unsigned char* at(std::uint64_t offset, std::uint64_t count);
+
+private:
+  std::vector<unsigned char> Piece;
+  std::uint64_t PieceBegin = 0;
 };
 
 class FileSource : public ByteSource
@@ -50,17 +57,9 @@ template <class F>
 void forEachRecord(
   ByteSource& source, std::uint64_t offset, std::uint64_t length, std::uint64_t count, F record)
 {
-  constexpr std::uint64_t recordsAtOnce = 4096;
-  std::vector<unsigned char> block;
-  for (std::uint64_t first = 0; first < count; first += recordsAtOnce)
+  for (std::uint64_t i = 0; i < count; ++i)
   {
-    const std::uint64_t records = count - first < recordsAtOnce ? count - first : recordsAtOnce;
-    block.resize(records * length);
-    source.read(offset + first * length, block.size(), block.data());
-    for (std::uint64_t i = 0; i < records; ++i)
-    {
-      record(first + i, block.data() + i * length);
-    }
+    record(i, source.at(offset + i * length, length));
   }
 }
 }

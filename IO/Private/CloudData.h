@@ -7,6 +7,7 @@
 #ifndef AvianLidarCloudData_h
 #define AvianLidarCloudData_h
 
+#include "AvailableMemory.h"
 #include "ParallelLoop.h"
 #include "Scalars.h"
 
@@ -47,13 +48,10 @@ using Values =
     std::vector<std::uint16_t>, std::vector<std::int32_t>, std::vector<std::uint32_t>,
     std::vector<std::int64_t>, std::vector<std::uint64_t>, std::vector<float>, std::vector<double>>;
 
-/// `size` zeros of a type.
-Values makeValues(Scalar type, std::size_t size);
-std::size_t sizeOf(const Values& values);
-/// Value i from its little-endian bytes.
-void setFromBytes(Values& values, std::size_t i, const unsigned char* bytes);
-/// Keeps the values of those tuples whose mark is set.
-void keepMarked(Values& values, int components, const std::vector<bool>& marks);
+inline std::size_t sizeOf(const Values& values)
+{
+  return std::visit([](const auto& typed) { return typed.size(); }, values);
+}
 
 /// One array of a cloud that was read: `components` values for each point.
 struct Column
@@ -88,7 +86,14 @@ struct Cloud
 };
 
 /// Throws MemoryError unless a cloud fits into memory whose points have `length` bytes in the file.
-void requireMemoryFor(std::uint64_t points, std::uint64_t length);
+inline void requireMemoryFor(std::uint64_t points, std::uint64_t length)
+{
+  // A point with its vertex, range and angles, both as read and as handed on, and what the file
+  // says of it unpacked, as arrays and handed on.
+  const double bytes = 100.0 + 3.0 * static_cast<double>(length);
+  const auto count = static_cast<double>(points);
+  requireMemory(count, "points", count * bytes);
+}
 
 /// One array of a cloud to be written: one value for each point. Integers are exact up to 2^53.
 struct Field

@@ -40,67 +40,55 @@ std::string wktOf(int code, bool ellipsoidalHeights)
 
 using Bytes = std::vector<unsigned char>;
 
-/// A TIFF of one pixel with these keys.
-class KeyImage
+/// A TIFF of one pixel with these keys and their parameters.
+Bytes imageWith(const Bytes& keys, const Bytes& doubles, const Bytes& texts)
 {
-public:
-  KeyImage()
-    : Image{ 'I', 'I', 42, 0, 8, 0, 0, 0 }
+  constexpr std::size_t dataAt = 160; // behind 12 tags
+  Bytes tags, data;
+  std::uint16_t count = 0;
+  const auto append = [](Bytes& to, auto value)
   {
-    // Width, height, bits, no compression, black is 0; one strip of one row with one byte.
-    constexpr std::pair<int, unsigned> tags[] = { { 256, 1 }, { 257, 1 }, { 258, 8 }, { 259, 1 },
-      { 262, 1 }, { 273, 0 }, { 277, 1 }, { 278, 1 }, { 279, 1 } };
-    for (const auto& [tag, value] : tags)
+    to.resize(to.size() + sizeof value);
+    store(value, &to[to.size() - sizeof value]);
+  };
+  const auto addTag =
+    [&](std::uint16_t tag, std::uint16_t type, std::size_t values, std::size_t value)
+  {
+    append(tags, tag);
+    append(tags, type);
+    append(tags, static_cast<std::uint32_t>(values));
+    append(tags, static_cast<std::uint32_t>(value));
+    ++count;
+  };
+  // Width, height, bits, no compression, black is 0; one strip of one row with one byte.
+  constexpr std::pair<int, unsigned> pixel[] = { { 256, 1 }, { 257, 1 }, { 258, 8 }, { 259, 1 },
+    { 262, 1 }, { 273, 0 }, { 277, 1 }, { 278, 1 }, { 279, 1 } };
+  for (const auto& [tag, value] : pixel)
+  {
+    addTag(static_cast<std::uint16_t>(tag), 4, 1, value);
+  }
+  // Values of a type of TIFF, cut to whole ones.
+  const auto add = [&](std::uint16_t tag, std::uint16_t type, std::size_t size, const Bytes& values)
+  {
+    const std::size_t whole = values.size() / size;
+    if (whole * size > 4)
     {
-      this->addTag(tag, 4, 1, value);
+      addTag(tag, type, whole, dataAt + data.size());
+      data.insert(data.end(), values.begin(), values.begin() + whole * size);
+      data.resize((data.size() + 7) / 8 * 8);
     }
-  }
-
-  /// Values of a type of TIFF, each of `size` bytes; they are cut to whole ones.
-  void add(int tag, int type, std::size_t size, const Bytes& values)
-  {
-    const std::size_t count = values.size() / size;
-    if (count * size > 4)
-    {
-      this->addTag(tag, type, count, DataAt + this->Data.size());
-      this->Data.insert(this->Data.end(), values.begin(), values.begin() + count * size);
-      this->Data.resize((this->Data.size() + 7) / 8 * 8);
-    }
-  }
-
-  Bytes whole() const
-  {
-    Bytes all = this->Image;
-    append(all, this->Count, 2);
-    all.insert(all.end(), this->Tags.begin(), this->Tags.end());
-    all.resize(DataAt);
-    all.insert(all.end(), this->Data.begin(), this->Data.end());
-    return all;
-  }
-
-private:
-  static constexpr std::size_t DataAt = 160; // behind 12 tags
-
-  static void append(Bytes& to, std::uint64_t value, int bytes)
-  {
-    for (int i = 0; i < bytes; ++i)
-    {
-      to.push_back(static_cast<unsigned char>(value >> 8 * i));
-    }
-  }
-
-  void addTag(int tag, int type, std::uint64_t count, std::uint64_t value)
-  {
-    append(this->Tags, static_cast<std::uint64_t>(tag), 2);
-    append(this->Tags, static_cast<std::uint64_t>(type), 2);
-    append(this->Tags, count, 4);
-    append(this->Tags, value, 4);
-    ++this->Count;
-  }
-
-  Bytes Image, Tags, Data;
-  std::uint64_t Count = 0;
-};
+  };
+  constexpr std::uint16_t shorts = 3, reals = 12, ascii = 2; // types of TIFF
+  add(34735, shorts, 2, keys);
+  add(34736, reals, 8, doubles);
+  add(34737, ascii, 1, texts);
+  Bytes image{ 'I', 'I', 42, 0, 8, 0, 0, 0 };
+  append(image, count);
+  image.insert(image.end(), tags.begin(), tags.end());
+  image.resize(dataAt);
+  image.insert(image.end(), data.begin(), data.end());
+  return image;
+}
 }
 
 std::string utmWkt(int zone)
@@ -115,15 +103,10 @@ std::string geocentricWkt()
 
 std::string wktOfGeoKeys(const Bytes& keys, const Bytes& doubles, const Bytes& texts)
 {
-  constexpr int shorts = 3, reals = 12, ascii = 2; // types of TIFF
-  KeyImage image;
-  image.add(34735, shorts, 2, keys);
-  image.add(34736, reals, 8, doubles);
-  image.add(34737, ascii, 1, texts);
-  Bytes bytes = image.whole();
+  Bytes bytes = imageWith(keys, doubles, texts);
   const scene::QuietGdal quiet;
   const scene::OfflineGdal offline;
-  const scene::GdalOption heights("GTIFF_REPORT_COMPD_CS", "YES");
+  const CPLConfigOptionSetter heights("GTIFF_REPORT_COMPD_CS", "YES", false);
   GDALAllRegister();
   const std::string name = "/vsimem/avian_lidar_keys_" +
     std::to_string(reinterpret_cast<std::uintptr_t>(bytes.data())) + ".tif";

@@ -25,13 +25,13 @@ Index AddPoint(Mesh& mesh, const Vec3& p)
   return static_cast<Index>(mesh.points.size()) - 1;
 }
 
-// The vertices of a polygon at one height; the index of the first.
-Index AddLevel(const TriangulatedPolygon& polygon, double height, Mesh& mesh)
+// The vertices of a sheet, raised; the index of the first.
+Index AddRaised(const Sheet& sheet, double height, Mesh& mesh)
 {
   const auto first = static_cast<Index>(mesh.points.size());
-  for (const Vec2& p : polygon.points)
+  for (const Vec3& p : sheet.points)
   {
-    mesh.points.push_back({ p[0], p[1], height });
+    mesh.points.push_back({ p[0], p[1], p[2] + height });
   }
   return first;
 }
@@ -125,32 +125,24 @@ void AddFacade(const Facade& f, const ExtrusionMaterials& materials, Mesh& mesh)
 }
 }
 
-namespace
-{
-// Pieces with a common edge share its vertices.
-struct Sheet
-{
-  std::vector<Vec3> points;
-  std::vector<std::array<Index, 3>> triangles;
-};
-
 Sheet Join(const std::vector<TerrainPiece>& pieces)
 {
   constexpr double same = 1e-4; // m
   Sheet sheet;
   std::map<std::array<std::int64_t, 2>, Index> known;
+  std::set<std::array<Index, 2>> edges;
   for (const TerrainPiece& piece : pieces)
   {
-    const TriangulatedPolygon plan = Triangulate(piece.polygon);
+    const Sheet plan = Triangulate(piece.polygon);
     std::vector<Index> ids;
-    for (const Vec2& p : plan.points)
+    for (const Vec3& p : plan.points)
     {
       const auto found = known.emplace(
         std::array<std::int64_t, 2>{ std::llround(p[0] / same), std::llround(p[1] / same) },
         static_cast<Index>(sheet.points.size()));
       if (found.second)
       {
-        sheet.points.push_back({ p[0], p[1], piece.HeightAt(p) });
+        sheet.points.push_back({ p[0], p[1], piece.HeightAt({ p[0], p[1] }) });
       }
       ids.push_back(found.first->second);
     }
@@ -160,88 +152,42 @@ Sheet Join(const std::vector<TerrainPiece>& pieces)
       if (a != b && b != c && c != a)
       {
         sheet.triangles.push_back({ a, b, c });
+        edges.insert({ { a, b }, { b, c }, { c, a } });
       }
+    }
+  }
+  for (const auto& [left, right] : edges)
+  {
+    if (edges.count({ right, left }) == 0) // of one triangle
+    {
+      sheet.outline.push_back({ left, right });
     }
   }
   return sheet;
 }
 
-// The index of the first vertex.
-Index AddRaised(const Sheet& sheet, double height, Mesh& mesh)
+void AddSolid(
+  const Sheet& sheet, double base, double height, const ExtrusionMaterials& materials, Mesh& mesh)
 {
-  const auto first = static_cast<Index>(mesh.points.size());
-  for (const Vec3& p : sheet.points)
-  {
-    mesh.points.push_back({ p[0], p[1], p[2] + height });
-  }
-  return first;
-}
-}
-
-void AddSolidOn(const std::vector<TerrainPiece>& pieces, double base, double height,
-  const ExtrusionMaterials& materials, Mesh& mesh)
-{
-  const Sheet sheet = Join(pieces);
   const Index bottom = AddRaised(sheet, base, mesh);
   const Index top = AddRaised(sheet, base + height, mesh);
-  std::set<std::array<Index, 2>> edges;
   for (const auto& [a, b, c] : sheet.triangles)
   {
     AddTriangle(mesh, top + a, top + b, top + c, materials.roof);
     AddTriangle(mesh, bottom + a, bottom + c, bottom + b, materials.roof);
-    edges.insert({ { a, b }, { b, c }, { c, a } });
   }
-  for (const auto& [left, right] : edges)
+  for (const auto& [left, right] : sheet.outline)
   {
-    if (edges.count({ right, left }) == 0) // of one triangle: the outline
-    {
-      AddFacade({ bottom + left, bottom + right, top + left, top + right }, materials, mesh);
-    }
+    AddFacade({ bottom + left, bottom + right, top + left, top + right }, materials, mesh);
   }
 }
 
-void AddFlatOn(const std::vector<TerrainPiece>& pieces, double height, int material, Mesh& mesh)
+void AddFlat(const Sheet& sheet, double height, int material, Mesh& mesh)
 {
-  const Sheet sheet = Join(pieces);
   const Index first = AddRaised(sheet, height, mesh);
   for (const auto& [a, b, c] : sheet.triangles)
   {
     AddTriangle(mesh, first + a, first + b, first + c, material);
-  }
-}
-
-void AddSolid(const Polygon& polygon, double base, double height,
-  const ExtrusionMaterials& materials, Mesh& mesh)
-{
-  const TriangulatedPolygon plan = Triangulate(polygon);
-  const Index bottom = AddLevel(plan, base, mesh);
-  const Index top = AddLevel(plan, base + height, mesh);
-  for (const auto& t : plan.triangles)
-  {
-    const auto a = static_cast<Index>(t[0]), b = static_cast<Index>(t[1]),
-               c = static_cast<Index>(t[2]);
-    AddTriangle(mesh, top + a, top + b, top + c, materials.roof);
-    AddTriangle(mesh, bottom + a, bottom + c, bottom + b, materials.roof);
-  }
-  for (const auto& ring : plan.rings)
-  {
-    for (std::size_t i = 0; i < ring.size(); ++i)
-    {
-      const auto left = static_cast<Index>(ring[i]),
-                 right = static_cast<Index>(ring[(i + 1) % ring.size()]);
-      AddFacade({ bottom + left, bottom + right, top + left, top + right }, materials, mesh);
-    }
-  }
-}
-
-void AddFlat(const Polygon& polygon, double height, int material, Mesh& mesh)
-{
-  const TriangulatedPolygon plan = Triangulate(polygon);
-  const Index first = AddLevel(plan, height, mesh);
-  for (const auto& t : plan.triangles)
-  {
-    AddTriangle(mesh, first + static_cast<Index>(t[0]), first + static_cast<Index>(t[1]),
-      first + static_cast<Index>(t[2]), material);
   }
 }
 }

@@ -87,53 +87,48 @@ void FieldTable::checkLength(ByteSource& source, bool ascii) const
   }
 }
 
-TableColumns::TableColumns(const FieldTable& table, Cloud& to)
-  : Table(table)
-  , To(to)
+TableTargets targetsOf(const FieldTable& table, Cloud& to)
 {
+  TableTargets targets;
   int found = 0;
+  to.points.resize(3 * table.points);
   for (const TableField& field : table.fields)
   {
-    Target target;
-    for (int axis = 0; axis < 3; ++axis)
+    const std::size_t axis =
+      field.name.size() == 1 && field.count == 1 ? std::string("xyz").find(field.name) : 3;
+    if (axis < 3)
     {
-      if (field.name == std::string(1, "xyz"[axis]) && field.count == 1)
-      {
-        target.axis = axis;
-        found |= 1 << axis;
-      }
+      found |= 1 << axis;
+      targets.emplace_back([type = field.type, points = to.points.data() + axis](std::uint64_t i,
+                             const unsigned char* bytes) { points[3 * i] = loadAs(type, bytes); });
     }
-    if (target.axis < 0 && field.name != "_")
+    else if (field.name == "_")
     {
-      target.column = static_cast<int>(to.columns.size());
-      to.columns.push_back({ field.name, "", static_cast<int>(field.count),
-        makeValues(field.type, table.points * field.count) });
+      targets.emplace_back([](std::uint64_t, const unsigned char*) {});
     }
-    this->Targets.push_back(target);
+    else
+    {
+      withType(field.type,
+        [&](auto kind)
+        {
+          using T = decltype(kind);
+          to.columns.push_back({ field.name, "", static_cast<int>(field.count),
+            std::vector<T>(table.points * field.count) });
+          T* values = std::get<std::vector<T>>(to.columns.back().values).data();
+          targets.emplace_back(
+            [values](std::uint64_t i, const unsigned char* bytes) { values[i] = load<T>(bytes); });
+        });
+    }
   }
   if (found != 7)
   {
     throw FormatError("it has no fields x, y and z");
   }
-  to.points.resize(3 * table.points);
+  return targets;
 }
 
-void TableColumns::take(std::size_t f, std::uint64_t i, std::uint64_t c, const unsigned char* bytes)
-{
-  const Target& target = this->Targets[f];
-  if (target.axis >= 0)
-  {
-    this->To.points[3 * i + target.axis] = loadAs(this->Table.fields[f].type, bytes);
-  }
-  else if (target.column >= 0)
-  {
-    setFromBytes(
-      this->To.columns[target.column].values, i * this->Table.fields[f].count + c, bytes);
-  }
-}
-
-std::uint64_t readAsciiRows(
-  ByteSource& source, const FieldTable& table, TableColumns& columns, const KeepGoing& keepGoing)
+std::uint64_t readAsciiRows(ByteSource& source, const FieldTable& table,
+  const TableTargets& targets, const KeepGoing& keepGoing)
 {
   TextLines lines(source, table.begin);
   std::string line;
@@ -159,7 +154,7 @@ std::uint64_t readAsciiRows(
           throw FormatError("point " + std::to_string(i) + " has too few values");
         }
         wordToBytes(word, table.fields[f].type, bytes);
-        columns.take(f, i, c, bytes);
+        targets[f](i * table.fields[f].count + c, bytes);
       }
     }
     if (words >> word)
@@ -171,8 +166,8 @@ std::uint64_t readAsciiRows(
   return lines.position();
 }
 
-void readBinaryRows(
-  ByteSource& source, const FieldTable& table, TableColumns& columns, const KeepGoing& keepGoing)
+void readBinaryRows(ByteSource& source, const FieldTable& table, const TableTargets& targets,
+  const KeepGoing& keepGoing)
 {
   unsigned char turned[8];
   forEachRecord(source, table.begin, table.length(), table.points,
@@ -187,7 +182,7 @@ void readBinaryRows(
           {
             std::reverse_copy(bytes, bytes + size, turned);
           }
-          columns.take(f, i, c, table.bigEndian ? turned : bytes);
+          targets[f](i * table.fields[f].count + c, table.bigEndian ? turned : bytes);
           bytes += size;
         }
       }
@@ -197,24 +192,35 @@ void readBinaryRows(
 
 void dropEmptyCells(Cloud& cloud)
 {
-  std::vector<bool> marks(cloud.size());
-  bool all = true;
-  for (std::size_t i = 0; i < marks.size(); ++i)
+  std::vector<std::size_t> kept;
+  for (std::size_t i = 0; i < cloud.size(); ++i)
   {
     const double* p = cloud.points.data() + 3 * i;
-    marks[i] = std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]);
-    all = all && marks[i];
+    if (std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]))
+    {
+      kept.push_back(i);
+    }
   }
-  if (all)
+  if (kept.size() == cloud.size())
   {
     return;
   }
-  Values points = std::move(cloud.points);
-  keepMarked(points, 3, marks);
-  cloud.points = std::move(std::get<std::vector<double>>(points));
+  const auto keep = [&kept](auto& values, std::size_t components)
+  {
+    std::size_t end = 0;
+    for (const std::size_t i : kept)
+    {
+      for (std::size_t c = 0; c < components; ++c)
+      {
+        values[end++] = values[i * components + c];
+      }
+    }
+    values.resize(end);
+  };
+  keep(cloud.points, 3);
   for (Column& column : cloud.columns)
   {
-    keepMarked(column.values, column.components, marks);
+    std::visit([&](auto& values) { keep(values, column.components); }, column.values);
   }
 }
 

@@ -38,33 +38,20 @@ struct FieldTable
   void checkLength(ByteSource& source, bool ascii) const;
 };
 
-/// Stores the fields: x, y, z in the points, others in columns; "_" is padding.
-class TableColumns
-{
-public:
-  /// FormatError without x, y and z.
-  TableColumns(const FieldTable& table, Cloud& to);
+/// For each field, how its value `index`, of all points in turn, is stored from its little-endian
+/// bytes.
+using TableTargets = std::vector<std::function<void(std::uint64_t index, const unsigned char*)>>;
 
-  /// Value c of field f of point i, from its little-endian bytes.
-  void take(std::size_t f, std::uint64_t i, std::uint64_t c, const unsigned char* bytes);
-
-private:
-  struct Target
-  {
-    int axis = -1;
-    int column = -1;
-  };
-  const FieldTable& Table;
-  Cloud& To;
-  std::vector<Target> Targets;
-};
+/// x, y, z go to the points, others to columns, which are made; "_" is padding. FormatError without
+/// x, y and z.
+TableTargets targetsOf(const FieldTable& table, Cloud& to);
 
 /// Reads the rows. FormatError: too few, too short or too long, no numbers.
 /// @return where they end in the file
-std::uint64_t readAsciiRows(
-  ByteSource& source, const FieldTable& table, TableColumns& columns, const KeepGoing& keepGoing);
-void readBinaryRows(
-  ByteSource& source, const FieldTable& table, TableColumns& columns, const KeepGoing& keepGoing);
+std::uint64_t readAsciiRows(ByteSource& source, const FieldTable& table,
+  const TableTargets& targets, const KeepGoing& keepGoing);
+void readBinaryRows(ByteSource& source, const FieldTable& table, const TableTargets& targets,
+  const KeepGoing& keepGoing);
 
 /// Leaves out the points whose coordinates are not finite.
 void dropEmptyCells(Cloud& cloud);

@@ -134,6 +134,7 @@ void CollectGeometry(const OGRGeometry& geometry, Feature& feature, Counts& coun
       break;
     case wkbMultiPolygon:
     case wkbMultiLineString:
+    case wkbMultiPoint:
     case wkbGeometryCollection:
       for (const OGRGeometry* part : *geometry.toGeometryCollection())
       {
@@ -142,12 +143,6 @@ void CollectGeometry(const OGRGeometry& geometry, Feature& feature, Counts& coun
       break;
     case wkbPoint:
       feature.points.push_back({ geometry.toPoint()->getX(), geometry.toPoint()->getY() });
-      break;
-    case wkbMultiPoint:
-      for (const OGRPoint* point : *geometry.toMultiPoint())
-      {
-        feature.points.push_back({ point->getX(), point->getY() });
-      }
       break;
     default:
       ++counts.surfaces;
@@ -469,21 +464,30 @@ void AddCrowns(const Feature& feature, const Object& object, std::size_t number,
   }
 }
 
-void RaiseOn(const std::vector<TerrainPiece>& pieces, bool follows, bool flat, double base,
-  double height, const ExtrusionMaterials& materials, const Polygon& polygon, Mesh& mesh)
+// Adds an area or a solid, unless it lies beyond the terrain. A solid with a level roof stands on
+// the lowest point below it.
+void AddRegion(const Region& region, const Terrain* terrain, const FootprintOptions& options,
+  double base, double height, const ExtrusionMaterials& materials, Counts& counts, Mesh& mesh)
 {
-  if (flat)
+  Sheet sheet;
+  if (terrain)
   {
-    AddFlatOn(pieces, base, materials.facade, mesh);
-  }
-  else if (follows)
-  {
-    AddSolidOn(pieces, base, height, materials, mesh);
+    const std::vector<TerrainPiece> pieces = terrain->Cut(region.polygon);
+    if (pieces.empty())
+    {
+      ++counts.beyond;
+      return;
+    }
+    const bool follows = options.flat || region.follows;
+    base += follows ? 0.0 : LowestOf(pieces);
+    sheet = follows ? Join(pieces) : Triangulate(region.polygon);
   }
   else
   {
-    AddSolid(polygon, LowestOf(pieces) + base, height, materials, mesh);
+    sheet = Triangulate(region.polygon);
   }
+  options.flat ? AddFlat(sheet, base, materials.facade, mesh)
+               : AddSolid(sheet, base, height, materials, mesh);
 }
 
 std::vector<Part> Raise(const std::vector<Feature>& features, const Object& object,
@@ -523,18 +527,9 @@ std::vector<Part> Raise(const std::vector<Feature>& features, const Object& obje
     const double under = options.flat ? 0 : GetMinHeight(features[i], top, counts);
     const double base = options.base + under;
     const double height = top - under;
-    for (const auto& [region, follows] : regions)
+    for (const Region& region : regions)
     {
-      if (!terrain)
-      {
-        options.flat ? AddFlat(region, base, materials.facade, mesh)
-                     : AddSolid(region, base, height, materials, mesh);
-        continue;
-      }
-      const std::vector<TerrainPiece> pieces = terrain->Cut(region);
-      pieces.empty()
-        ? void(++counts.beyond)
-        : RaiseOn(pieces, follows, options.flat, base, height, materials, region, mesh);
+      AddRegion(region, terrain, options, base, height, materials, counts, mesh);
     }
     if (mesh.triangles.empty())
     {
@@ -562,7 +557,7 @@ std::vector<Part> ReadFootprints(const Object& object, const Scene& scene, const
 {
   const QuietGdal quiet;
   // OSM of editors has negative ids, in any order.
-  const GdalOption indexing{ "OSM_USE_CUSTOM_INDEXING", "NO" };
+  const CPLConfigOptionSetter indexing("OSM_USE_CUSTOM_INDEXING", "NO", false);
   GDALAllRegister();
   RequireRegularNeighbours(object.file);
   const char* const columns[] = { "X_POSSIBLE_NAMES=x,lon*", "Y_POSSIBLE_NAMES=y,lat*", nullptr };

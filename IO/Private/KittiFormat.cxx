@@ -14,7 +14,6 @@ namespace
 constexpr std::uint64_t PointSize = 16;
 constexpr std::uint64_t LabelSize = 4;
 constexpr std::uint64_t LongPointSize = 20; // of other data sets
-constexpr double GreatestIntensity = 255.0;
 constexpr const char* LongPoints = "five float32 a point, as nuScenes has them: this is not a scan "
                                    "of KITTI, whose points have four";
 
@@ -69,7 +68,7 @@ void checkStride(ByteSource& points)
 /// (0 to 255): in files of other layouts coordinates are among them.
 void checkReflectance(double least, double greatest, ByteSource& points)
 {
-  const bool fits = least >= 0.0 && greatest <= GreatestIntensity;
+  const bool fits = least >= 0.0 && greatest <= KittiGreatestIntensity;
   if ((!fits || greatest > 1.0) && mayHaveFive(points))
   {
     throw FormatError(std::string("it has ") + LongPoints);
@@ -83,39 +82,6 @@ void checkReflectance(double least, double greatest, ByteSource& points)
     throw FormatError(text.str());
   }
 }
-}
-
-void writeKitti(
-  OutputFile& points, OutputFile* labels, const KittiOutput& output, const KeepGoing& keepGoing)
-{
-  std::vector<unsigned char> block, marks;
-  for (std::int64_t first = 0; first < output.size; first += PointsPerBlock)
-  {
-    const std::int64_t end = std::min(output.size, first + PointsPerBlock);
-    block.assign(static_cast<std::size_t>(end - first) * PointSize, 0);
-    marks.assign(labels ? static_cast<std::size_t>(end - first) * LabelSize : 0, 0);
-    for (std::int64_t i = first; i < end; ++i)
-    {
-      const Point p = output.point(i);
-      unsigned char* at = block.data() + (i - first) * PointSize;
-      storeAs(Scalar::Float32, p[1], at);
-      storeAs(Scalar::Float32, -p[0], at + 4);
-      storeAs(Scalar::Float32, p[2], at + 8);
-      storeAs(Scalar::Float32, output.intensity(i) / GreatestIntensity, at + 12);
-      if (labels)
-      {
-        const auto value = static_cast<std::uint32_t>(output.label(i) & 0xFFFF) |
-          static_cast<std::uint32_t>(output.instance(i) & 0xFFFF) << 16;
-        store(value, marks.data() + (i - first) * LabelSize);
-      }
-    }
-    points.write(block);
-    if (labels)
-    {
-      labels->write(marks);
-    }
-    goOn(keepGoing, first, output.size, 0.0, 1.0);
-  }
 }
 
 Cloud readKitti(ByteSource& points, ByteSource* labels, const KeepGoing& keepGoing)
@@ -167,7 +133,7 @@ Cloud readKitti(ByteSource& points, ByteSource* labels, const KeepGoing& keepGoi
   else
   {
     std::for_each(
-      intensity.begin(), intensity.end(), [](double& value) { value *= GreatestIntensity; });
+      intensity.begin(), intensity.end(), [](double& value) { value *= KittiGreatestIntensity; });
   }
   cloud.columns.push_back({ "intensity", "1", 1, std::move(intensity) });
   cloud.sensor = Point{ 0.0, 0.0, 0.0 };

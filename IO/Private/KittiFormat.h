@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file KittiFormat.h
- * @brief Reads and writes point clouds of KITTI, and the labels of SemanticKITTI.
+ * @brief Reads point clouds of KITTI, and the labels of SemanticKITTI.
  *
  * `.bin`: four float32 a point: x forward, y left, z up in metres in the sensor's frame (ours has x
  * right, y forward), and a reflectance in [0, 1]. `.label`: a uint32 a point: the class in the
@@ -16,23 +16,10 @@
 
 #include "ByteSource.h"
 #include "CloudData.h"
-#include "OutputFile.h"
 
 namespace avianlidar::formats
 {
-/// What is written.
-struct KittiOutput
-{
-  std::int64_t size = 0;
-  std::function<Point(std::int64_t)> point;      ///< m, x right, y forward, z up of the sensor
-  std::function<double(std::int64_t)> intensity; ///< 0 to 255
-  std::function<int(std::int64_t)> label;        ///< class, 0 to 65535
-  std::function<int(std::int64_t)> instance;     ///< 0 to 65535
-};
-
-/// Labels are written if there is a file for them.
-void writeKitti(
-  OutputFile& points, OutputFile* labels, const KittiOutput& output, const KeepGoing& keepGoing);
+constexpr double KittiGreatestIntensity = 255.0; ///< of a reflectance of 1
 
 /// Reads a cloud, and `semantic_label` and `instance_id` if there are labels. Reflectances above 1
 /// are taken for intensities of 0 to 255; points that are not finite are left out; a warning says

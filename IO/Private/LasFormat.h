@@ -20,6 +20,8 @@
 #include "CloudData.h"
 #include "OutputFile.h"
 
+#include <limits>
+
 namespace avianlidar::formats
 {
 constexpr std::size_t LasHeaderSize = 375;
@@ -73,31 +75,57 @@ struct LasAxis
 /// Finest scale (a power of ten, at least 1e-6 m) and whole offset for coordinates in that range.
 LasAxis chooseAxis(double low, double high);
 
-/// The core of a point of format 6 or 7, in plain units.
-struct LasPoint
+/// A field of the core of a point of format 6 or 7.
+struct LasCoreField
 {
-  Point position{};
-  double intensity = 0.0; ///< 0 to 255
-  int returnNumber = 1;
-  int numberOfReturns = 1;
-  int classification = 1;
-  int flags = 0; ///< synthetic, key point, withheld, overlap
-  int userData = 0;
-  int sourceId = 0;
-  double scanAngle = 0.0;      ///< deg from straight down, in [-180, 180]
-  double gpsTime = 0.0;        ///< s
-  std::array<double, 3> rgb{}; ///< 0 to 255
+  const char* name; ///< of the array
+  bool ours;        ///< scans of this project have it
+  bool whole;       ///< has whole numbers only
+  double low;       ///< least and greatest values, in the array's unit
+  double high;
+  double step; ///< of the integers that stand for the values
+  Scalar type;
+  std::size_t offset; ///< in the record
+};
+
+constexpr double LasAnyNumber = std::numeric_limits<double>::max();
+/// Two returns share a byte.
+constexpr LasCoreField LasCore[] = {
+  { "intensity", true, false, 0.0, 255.0, LasIntensityStep, Scalar::UInt16, 12 },
+  { "return_number", true, true, 0.0, LasMostReturns, 1.0, Scalar::UInt8, 14 },
+  { "number_of_returns", true, true, 0.0, LasMostReturns, 1.0 / 16, Scalar::UInt8, 14 },
+  { "timestamp", true, false, -LasAnyNumber, LasAnyNumber, 1.0, Scalar::Float64, 22 },
+  { LasClassification, false, true, 0.0, 255.0, 1.0, Scalar::UInt8, 16 },
+  { LasFlags, false, true, 0.0, 15.0, 1.0, Scalar::UInt8, 15 },
+  { LasUserData, false, true, 0.0, 255.0, 1.0, Scalar::UInt8, 17 },
+  { LasScanAngle, false, false, -180.0, 180.0, LasScanAngleStep, Scalar::Int16, 18 },
+  { LasPointSource, false, true, 0.0, 65535.0, 1.0, Scalar::UInt16, 20 },
+};
+enum LasCoreIndex
+{
+  LasIntensityIndex,
+  LasReturnNumberIndex,
+  LasReturnsIndex,
+  LasTimeIndex,
+  LasClassIndex,
+  LasFlagsIndex,
+  LasUserDataIndex,
+  LasScanAngleIndex,
+  LasPointSourceIndex,
+  LasCoreSize
 };
 
 /// What is written.
 struct LasOutput
 {
   std::int64_t size = 0;
-  std::function<LasPoint(std::int64_t)> point;
-  bool colours = false;
-  bool compressed = false; ///< LAZ
-  bool simulated = false;  ///< the system that made the points is a simulation
-  int sourceId = 0;        ///< source id of the file
+  std::function<Point(std::int64_t)> position;
+  /// Values of the core; timestamps in seconds.
+  std::array<std::function<double(std::int64_t)>, LasCoreSize> core;
+  std::function<double(std::int64_t, int)> colour; ///< 0 to 255; empty: no colours
+  bool compressed = false;                         ///< LAZ
+  bool simulated = false; ///< the system that made the points is a simulation
+  int sourceId = 0;       ///< source id of the file
   std::string software;
   std::string crs;         ///< WKT 1, or empty
   std::string description; ///< goes to a text area; at most LasLongestVlr bytes

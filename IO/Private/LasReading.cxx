@@ -228,28 +228,22 @@ Records readRecords(ByteSource& source, const Header& header, Cloud& cloud)
 {
   Records records;
   std::uint64_t at = header.size;
-  for (std::uint32_t i = 0; i < header.vlrs; ++i)
+  for (std::uint64_t i = 0; i < std::uint64_t{ header.vlrs } + header.evlrs; ++i)
   {
-    const Bytes h = source.bytes(at, LasVlrHeaderSize);
-    const std::uint64_t length = load<std::uint16_t>(h.data() + 20);
-    takeRecord(textOf(h.data() + 2, 16), load<std::uint16_t>(h.data() + 18),
-      source.bytes(at + LasVlrHeaderSize, length), header.layout, cloud, records);
-    at += LasVlrHeaderSize + length;
-  }
-  at = header.evlrsAt;
-  for (std::uint32_t i = 0; i < header.evlrs; ++i)
-  {
-    const Bytes h = source.bytes(at, EvlrHeaderSize);
-    const std::uint64_t length = load<std::uint64_t>(h.data() + 20);
-    if (length > source.size())
+    const bool isLong = i >= header.vlrs;
+    at = i == header.vlrs ? header.evlrsAt : at;
+    const std::size_t size = isLong ? EvlrHeaderSize : LasVlrHeaderSize;
+    const Bytes h = source.bytes(at, size);
+    const std::uint64_t length =
+      isLong ? load<std::uint64_t>(h.data() + 20) : load<std::uint16_t>(h.data() + 20);
+    if (length > source.size() && isLong)
     {
       throw FormatError("an extended variable-length record is longer than the file");
     }
     // Waveforms, say, are long and none of ours.
-    const std::uint64_t wanted = length <= LongestText ? length : 0;
     takeRecord(textOf(h.data() + 2, 16), load<std::uint16_t>(h.data() + 18),
-      source.bytes(at + EvlrHeaderSize, wanted), header.layout, cloud, records);
-    at += EvlrHeaderSize + length;
+      source.bytes(at + size, length <= LongestText ? length : 0), header.layout, cloud, records);
+    at += size + length;
   }
   return records;
 }
@@ -275,148 +269,140 @@ void findSystem(const Header& header, const Records& records, Cloud& cloud)
   }
 }
 
-/// The columns of a cloud of that layout, all zeros, and how a record fills them.
+/// The columns of a cloud, all zeros, and how a record fills them.
 class Columns
 {
 public:
   Columns(const Header& header, const std::vector<ExtraField>& extra, Cloud& to)
-    : Axes(header.axes)
-    , Record(header.layout)
-    , Extra(extra)
-    , To(to)
+    : To(to)
+    , Size(header.points)
   {
-    const std::size_t n = header.points;
-    to.points.resize(3 * n);
-    this->Intensity = this->add("intensity", "1", Scalar::Float64, n);
-    this->ReturnNumber = this->add("return_number", "1", Scalar::UInt8, n);
-    this->Returns = this->add("number_of_returns", "1", Scalar::UInt8, n);
-    this->Class = this->add(LasClassification, "", Scalar::UInt8, n);
-    this->Flags = this->add(LasFlags, "", Scalar::UInt8, n);
-    this->User = this->add(LasUserData, "", Scalar::UInt8, n);
-    this->Angle = this->add(LasScanAngle, "deg", Scalar::Float64, n);
-    this->SourceId = this->add(LasPointSource, "", Scalar::UInt16, n);
-    if (this->Record.time >= 0)
+    using Bits = const unsigned char*;
+    const LasLayout& record = header.layout;
+    const bool isNew = record.extended;
+    to.points.resize(3 * this->Size);
+    this->Fill.push_back(
+      [axes = header.axes, points = to.points.data()](std::size_t i, Bits at)
+      {
+        for (int axis = 0; axis < 3; ++axis)
+        {
+          points[3 * i + axis] = axes[axis].decode(load<std::int32_t>(at + 4 * axis));
+        }
+      });
+    this->add("intensity", "1",
+      [](Bits at, int) { return load<std::uint16_t>(at + 12) * LasIntensityStep; });
+    this->addByte("return_number", "1", [isNew](Bits at) { return at[14] & (isNew ? 15 : 7); });
+    this->addByte("number_of_returns", "1",
+      [isNew](Bits at) { return isNew ? at[14] >> 4 : (at[14] >> 3) & 7; });
+    this->addByte(LasClassification, "", [isNew](Bits at) { return isNew ? at[16] : at[15] & 31; });
+    this->addByte(LasFlags, "", [isNew](Bits at) { return isNew ? at[15] & 15 : at[15] >> 5; });
+    this->addByte(LasUserData, "", [](Bits at) { return at[17]; });
+    this->add(LasScanAngle, "deg",
+      [isNew](Bits at, int) -> double {
+        return isNew ? LasScanAngleStep * load<std::int16_t>(at + 18) : load<std::int8_t>(at + 16);
+      });
+    this->add(LasPointSource, "",
+      [isNew](Bits at, int) { return load<std::uint16_t>(at + (isNew ? 20 : 18)); });
+    if (record.time >= 0)
     {
-      this->Time = this->add("timestamp", "us", Scalar::Float64, n);
+      this->add("timestamp", "us",
+        [place = record.time](Bits at, int) { return 1e6 * load<double>(at + place); });
     }
-    if (this->Record.rgb >= 0)
+    if (record.rgb >= 0)
     {
-      this->Rgb = this->add("rgb", "1", Scalar::UInt8, n, 3);
-      this->Colours.resize(3 * n);
+      this->Rgb = to.columns.size();
+      this->add(
+        "rgb", "1",
+        [place = record.rgb](Bits at, int c) { return load<std::uint16_t>(at + place + 2 * c); },
+        3);
     }
-    if (this->Record.nir >= 0)
+    if (record.nir >= 0)
     {
-      this->Nir = this->add("near_infrared", "", Scalar::UInt16, n);
+      this->add("near_infrared", "",
+        [place = record.nir](Bits at, int) { return load<std::uint16_t>(at + place); });
     }
     for (const ExtraField& field : extra)
     {
-      this->FirstExtra.push_back(this->add(
-        field.name, field.unit, field.scaled ? Scalar::Float64 : field.type, n, field.components));
+      this->addExtra(field);
     }
   }
 
   void take(std::size_t i, const unsigned char* bytes)
   {
-    for (int axis = 0; axis < 3; ++axis)
+    for (const auto& fill : this->Fill)
     {
-      this->To.points[3 * i + axis] = this->Axes[axis].decode(load<std::int32_t>(bytes + 4 * axis));
+      fill(i, bytes);
     }
-    this->at<double>(this->Intensity)[i] = load<std::uint16_t>(bytes + 12) * LasIntensityStep;
-    this->Record.extended ? this->takeNew(i, bytes) : this->takeOld(i, bytes);
-    if (this->Record.time >= 0)
-    {
-      this->at<double>(this->Time)[i] = 1e6 * load<double>(bytes + this->Record.time);
-    }
-    for (int c = 0; this->Record.rgb >= 0 && c < 3; ++c)
-    {
-      this->Colours[3 * i + c] = load<std::uint16_t>(bytes + this->Record.rgb + 2 * c);
-    }
-    if (this->Record.nir >= 0)
-    {
-      this->at<std::uint16_t>(this->Nir)[i] = load<std::uint16_t>(bytes + this->Record.nir);
-    }
-    this->takeExtra(i, bytes);
   }
 
   /// Colours of 16 bits become 8. The specification wants 8-bit colours as c * 256; some writers
   /// leave them as they are, so no channel of the file is above 255.
   void finish()
   {
-    const bool small = std::all_of(
-      this->Colours.begin(), this->Colours.end(), [](std::uint16_t c) { return c < 256; });
-    for (std::size_t k = 0; k < this->Colours.size(); ++k)
+    if (!this->Rgb)
     {
-      this->at<std::uint8_t>(this->Rgb)[k] =
-        static_cast<std::uint8_t>(small ? this->Colours[k] : this->Colours[k] >> 8);
+      return;
     }
+    Values& values = this->To.columns[*this->Rgb].values;
+    const auto colours = std::move(std::get<std::vector<std::uint16_t>>(values));
+    const bool small =
+      std::all_of(colours.begin(), colours.end(), [](std::uint16_t c) { return c < 256; });
+    std::vector<std::uint8_t> bytes(colours.size());
+    std::transform(colours.begin(), colours.end(), bytes.begin(),
+      [small](std::uint16_t c) { return static_cast<std::uint8_t>(small ? c : c >> 8); });
+    values = std::move(bytes);
   }
 
 private:
-  std::size_t add(const std::string& name, const std::string& unit, Scalar type, std::size_t n,
-    int components = 1)
+  /// @param value of a record and a component
+  template <class F>
+  void add(const std::string& name, const std::string& unit, F value, int components = 1)
   {
-    this->To.columns.push_back({ name, unit, components, makeValues(type, n * components) });
-    return this->To.columns.size() - 1;
-  }
-
-  template <class T>
-  std::vector<T>& at(std::size_t column)
-  {
-    return std::get<std::vector<T>>(this->To.columns[column].values);
-  }
-
-  void takeOld(std::size_t i, const unsigned char* bytes)
-  {
-    this->at<std::uint8_t>(this->ReturnNumber)[i] = bytes[14] & 7;
-    this->at<std::uint8_t>(this->Returns)[i] = (bytes[14] >> 3) & 7;
-    this->at<std::uint8_t>(this->Class)[i] = bytes[15] & 31;
-    this->at<std::uint8_t>(this->Flags)[i] = bytes[15] >> 5;
-    this->at<double>(this->Angle)[i] = load<std::int8_t>(bytes + 16);
-    this->at<std::uint8_t>(this->User)[i] = bytes[17];
-    this->at<std::uint16_t>(this->SourceId)[i] = load<std::uint16_t>(bytes + 18);
-  }
-
-  void takeNew(std::size_t i, const unsigned char* bytes)
-  {
-    this->at<std::uint8_t>(this->ReturnNumber)[i] = bytes[14] & 15;
-    this->at<std::uint8_t>(this->Returns)[i] = bytes[14] >> 4;
-    this->at<std::uint8_t>(this->Flags)[i] = bytes[15] & 15;
-    this->at<std::uint8_t>(this->Class)[i] = bytes[16];
-    this->at<std::uint8_t>(this->User)[i] = bytes[17];
-    this->at<double>(this->Angle)[i] = LasScanAngleStep * load<std::int16_t>(bytes + 18);
-    this->at<std::uint16_t>(this->SourceId)[i] = load<std::uint16_t>(bytes + 20);
-  }
-
-  void takeExtra(std::size_t i, const unsigned char* bytes)
-  {
-    for (std::size_t f = 0; f < this->Extra.size(); ++f)
-    {
-      const ExtraField& field = this->Extra[f];
-      Values& values = this->To.columns[this->FirstExtra[f]].values;
-      for (int c = 0; c < field.components; ++c)
+    using T = decltype(value(nullptr, 0));
+    this->To.columns.push_back({ name, unit, components, std::vector<T>(this->Size * components) });
+    T* into = std::get<std::vector<T>>(this->To.columns.back().values).data();
+    this->Fill.push_back(
+      [=](std::size_t i, const unsigned char* bytes)
       {
-        const unsigned char* from = bytes + field.offset + sizeOf(field.type) * c;
-        if (field.scaled)
+        for (int c = 0; c < components; ++c)
         {
-          std::get<std::vector<double>>(values)[i * field.components + c] =
-            loadAs(field.type, from) * field.scale[c] + field.shift[c];
+          into[i * components + c] = value(bytes, c);
         }
-        else
-        {
-          setFromBytes(values, i * field.components + c, from);
-        }
-      }
-    }
+      });
   }
 
-  std::array<LasAxis, 3> Axes;
-  LasLayout Record;
-  const std::vector<ExtraField>& Extra;
+  template <class F>
+  void addByte(const char* name, const char* unit, F value)
+  {
+    this->add(name, unit,
+      [value](const unsigned char* bytes, int) { return static_cast<std::uint8_t>(value(bytes)); });
+  }
+
+  void addExtra(const ExtraField& field)
+  {
+    withType(field.type,
+      [&](auto kind)
+      {
+        using T = decltype(kind);
+        const auto value = [offset = field.offset](const unsigned char* bytes, int c)
+        { return load<T>(bytes + offset + sizeof(T) * c); };
+        if (!field.scaled)
+        {
+          this->add(field.name, field.unit, value, field.components);
+          return;
+        }
+        this->add(
+          field.name, field.unit,
+          [value, scale = field.scale, shift = field.shift](const unsigned char* bytes, int c)
+          { return static_cast<double>(value(bytes, c)) * scale[c] + shift[c]; },
+          field.components);
+      });
+  }
+
   Cloud& To;
-  std::size_t Intensity, ReturnNumber, Returns, Class, Flags, User, Angle, SourceId;
-  std::size_t Time = 0, Rgb = 0, Nir = 0;
-  std::vector<std::size_t> FirstExtra;
-  std::vector<std::uint16_t> Colours;
+  std::size_t Size;
+  std::optional<std::size_t> Rgb; ///< column
+  std::vector<std::function<void(std::size_t, const unsigned char*)>> Fill;
 };
 }
 

@@ -82,36 +82,34 @@ Bytes describeAll(const std::vector<Field>& fields)
   return all;
 }
 
-Bytes ofText(const std::string& text)
+double coreValue(const LasOutput& output, int field, std::int64_t index)
 {
-  return Bytes(text.begin(), text.end());
+  return std::clamp(output.core[field](index), LasCore[field].low, LasCore[field].high);
 }
 
-int returnsOf(int count)
+void encodePoint(const LasOutput& output, const std::array<LasAxis, 3>& axes, std::int64_t index,
+  unsigned char* at)
 {
-  return std::clamp(count, 0, LasMostReturns);
-}
-
-void encodePoint(const LasOutput& output, const LasPoint& p, const std::array<LasAxis, 3>& axes,
-  std::int64_t index, unsigned char* at)
-{
+  const Point position = output.position(index);
+  std::fill_n(at, 30, static_cast<unsigned char>(0));
   for (int axis = 0; axis < 3; ++axis)
   {
-    store(axes[axis].encode(p.position[axis]), at + 4 * axis);
+    store(axes[axis].encode(position[axis]), at + 4 * axis);
   }
-  storeAs(Scalar::UInt16, p.intensity / LasIntensityStep, at + 12);
-  at[14] =
-    static_cast<unsigned char>(returnsOf(p.returnNumber) | returnsOf(p.numberOfReturns) << 4);
-  at[15] = static_cast<unsigned char>(p.flags & 15);
-  at[16] = static_cast<unsigned char>(std::clamp(p.classification, 0, 255));
-  at[17] = static_cast<unsigned char>(std::clamp(p.userData, 0, 255));
-  storeAs(Scalar::Int16, std::clamp(p.scanAngle, -180.0, 180.0) / LasScanAngleStep, at + 18);
-  store(static_cast<std::uint16_t>(p.sourceId), at + 20);
-  store(p.gpsTime, at + 22);
-  at += 30;
-  for (int c = 0; output.colours && c < 3; ++c, at += 2)
+  for (int i = 0; i < LasCoreSize; ++i)
   {
-    storeAs(Scalar::UInt16, p.rgb[c] * 257.0, at);
+    const LasCoreField& field = LasCore[i];
+    unsigned char bytes[8];
+    storeAs(field.type, coreValue(output, i, index) / field.step, bytes);
+    for (std::size_t b = 0; b < sizeOf(field.type); ++b)
+    {
+      at[field.offset + b] |= bytes[b];
+    }
+  }
+  at += 30;
+  for (int c = 0; output.colour && c < 3; ++c, at += 2)
+  {
+    storeAs(Scalar::UInt16, output.colour(index, c) * 257.0, at);
   }
   for (const Field& field : output.extra)
   {
@@ -122,12 +120,12 @@ void encodePoint(const LasOutput& output, const LasPoint& p, const std::array<La
 
 int formatOf(const LasOutput& output)
 {
-  return output.colours ? 7 : 6;
+  return output.colour ? 7 : 6;
 }
 
 std::size_t recordLength(const LasOutput& output)
 {
-  std::size_t length = output.colours ? 36 : 30;
+  std::size_t length = output.colour ? 36 : 30;
   for (const Field& field : output.extra)
   {
     length += sizeOf(field.type);
@@ -256,9 +254,9 @@ LasMeasure measureLas(const LasOutput& output, const KeepGoing& keepGoing)
   high.fill(output.size > 0 ? -std::numeric_limits<double>::infinity() : 0.0);
   for (std::int64_t i = 0; i < output.size; ++i)
   {
-    const LasPoint point = output.point(i);
-    const Point& p = point.position;
-    measure.returns[std::max(returnsOf(point.returnNumber), 1) - 1] += 1;
+    const Point p = output.position(i);
+    const double number = coreValue(output, LasReturnNumberIndex, i);
+    measure.returns[std::max(static_cast<int>(number), 1) - 1] += 1;
     for (int axis = 0; axis < 3; ++axis)
     {
       if (!(std::abs(p[axis]) <= LasGreatestCoordinate))
@@ -283,29 +281,30 @@ void writeLas(
 {
   Bytes vlrs;
   std::size_t count = 0;
+  const auto add = [&](int record, const char* user, const char* description, const Bytes& content)
+  {
+    append(vlrs, makeVlr(record, user, description, content));
+    ++count;
+  };
   if (!output.crs.empty())
   {
     // The text ends with a zero.
-    Bytes wkt = ofText(output.crs);
-    wkt.push_back(0);
-    append(vlrs, makeVlr(2112, "LASF_Projection", "OGC coordinate system WKT", wkt));
-    ++count;
+    add(2112, "LASF_Projection", "OGC coordinate system WKT",
+      Bytes(output.crs.c_str(), output.crs.c_str() + output.crs.size() + 1));
   }
   if (!output.extra.empty())
   {
-    append(vlrs, makeVlr(4, "LASF_Spec", "Extra bytes", describeAll(output.extra)));
-    ++count;
+    add(4, "LASF_Spec", "Extra bytes", describeAll(output.extra));
   }
   if (!output.description.empty())
   {
-    append(vlrs, makeVlr(3, "LASF_Spec", "Text area description", ofText(output.description)));
-    ++count;
+    add(3, "LASF_Spec", "Text area description",
+      Bytes(output.description.begin(), output.description.end()));
   }
   const LasLayout layout = layoutOf(formatOf(output), recordLength(output));
   if (output.compressed)
   {
-    append(vlrs, makeVlr(LazRecord, LazUser, "LASzip", lazRecordOf(layout)));
-    ++count;
+    add(LazRecord, LazUser, "LASzip", lazRecordOf(layout));
   }
   file.write(makeHeader(output, measure, count, vlrs.size()));
   file.write(vlrs);
@@ -314,7 +313,7 @@ void writeLas(
     writeLazRecords(file, LasHeaderSize + vlrs.size(), layout, output.size,
       [&](std::int64_t i, unsigned char* to)
       {
-        encodePoint(output, output.point(i), measure.axes, i, to);
+        encodePoint(output, measure.axes, i, to);
         goOn(keepGoing, i, output.size, 0.3, 1.0);
       });
     return;
@@ -328,7 +327,7 @@ void writeLas(
     block.assign(static_cast<std::size_t>(end - first) * length, 0);
     for (std::int64_t i = first; i < end; ++i)
     {
-      encodePoint(output, output.point(i), measure.axes, i, block.data() + (i - first) * length);
+      encodePoint(output, measure.axes, i, block.data() + (i - first) * length);
     }
     file.write(block);
     goOn(keepGoing, first, output.size, 0.3, 1.0);

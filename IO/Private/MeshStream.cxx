@@ -13,111 +13,119 @@ constexpr char IsMesh = 'm';
 constexpr char IsError = 'e';
 constexpr char IsNoMemory = 'n';
 
-template <class T>
-void Send(const T& value, const WriteBytes& write)
+/// Writes a value, or how many values a vector or a string has, and these.
+struct Sender
 {
-  static_assert(std::is_trivially_copyable_v<T>);
-  write(&value, sizeof value);
-}
+  const WriteBytes& write;
 
-/// A vector or a string: how many values, then these.
-template <class Values>
-void SendAll(const Values& values, const WriteBytes& write)
-{
-  static_assert(std::is_trivially_copyable_v<typename Values::value_type>);
-  Send<std::uint64_t>(values.size(), write);
-  write(values.data(), values.size() * sizeof(typename Values::value_type));
-}
-
-void SendTexts(const std::vector<std::string>& texts, const WriteBytes& write)
-{
-  Send<std::uint64_t>(texts.size(), write);
-  for (const std::string& text : texts)
+  template <class T>
+  void operator()(const T& value) const
   {
-    SendAll(text, write);
+    if constexpr (std::is_trivially_copyable_v<T>)
+    {
+      this->write(&value, sizeof value);
+    }
+    else
+    {
+      (*this)(std::uint64_t{ value.size() });
+      if constexpr (std::is_trivially_copyable_v<typename T::value_type>)
+      {
+        this->write(value.data(), value.size() * sizeof(typename T::value_type));
+      }
+      else
+      {
+        std::for_each(value.begin(), value.end(), *this);
+      }
+    }
   }
-}
+};
 
-template <class T>
-T Receive(const ReadBytes& read)
+/// Reads the same. Memory grows with what arrives: a count from a damaged process asks for none.
+struct Receiver
 {
-  T value;
-  read(&value, sizeof value);
-  return value;
-}
+  const ReadBytes& read;
 
-/// Memory grows with what arrives: a count from a damaged process asks for none.
-template <class Values>
-Values ReceiveAll(const ReadBytes& read)
-{
-  constexpr std::uint64_t piece = 1u << 20;
-  Values values;
-  for (auto left = Receive<std::uint64_t>(read); left > 0;)
+  template <class T>
+  void operator()(T& value) const
   {
-    const std::uint64_t count = std::min(left, piece);
-    const std::size_t before = values.size();
-    values.resize(before + count);
-    read(&values[before], count * sizeof(typename Values::value_type));
-    left -= count;
+    if constexpr (std::is_trivially_copyable_v<T>)
+    {
+      this->read(&value, sizeof value);
+    }
+    else
+    {
+      using Element = typename T::value_type;
+      constexpr bool isPlain = std::is_trivially_copyable_v<Element>;
+      constexpr std::uint64_t piece = isPlain ? 1u << 20 : 1;
+      std::uint64_t left = 0;
+      for ((*this)(left); left > 0;)
+      {
+        const std::uint64_t count = std::min(left, piece);
+        const std::size_t before = value.size();
+        value.resize(before + count);
+        if constexpr (isPlain)
+        {
+          this->read(&value[before], count * sizeof(Element));
+        }
+        else
+        {
+          (*this)(value.back());
+        }
+        left -= count;
+      }
+    }
   }
-  return values;
-}
+};
 
-std::vector<std::string> ReceiveTexts(const ReadBytes& read)
+/// All of a mesh, to or from a stream.
+template <class Stream, class AnyMesh>
+void Pass(const Stream& stream, AnyMesh& mesh)
 {
-  std::vector<std::string> texts;
-  for (auto left = Receive<std::uint64_t>(read); left > 0; --left)
-  {
-    texts.push_back(ReceiveAll<std::string>(read));
-  }
-  return texts;
+  stream(mesh.points);
+  stream(mesh.triangles);
+  stream(mesh.materials);
+  stream(mesh.materialNames);
+  stream(mesh.skippedFaces);
+  stream(mesh.rounding);
+  stream(mesh.upAxis);
+  stream(mesh.warnings);
 }
 }
 
 void SendMesh(const Mesh& mesh, const WriteBytes& write)
 {
-  Send(IsMesh, write);
-  SendAll(mesh.points, write);
-  SendAll(mesh.triangles, write);
-  SendAll(mesh.materials, write);
-  SendTexts(mesh.materialNames, write);
-  Send(mesh.skippedFaces, write);
-  Send(mesh.rounding, write);
-  Send(mesh.upAxis, write);
-  SendTexts(mesh.warnings, write);
+  Sender{ write }(IsMesh);
+  Pass(Sender{ write }, mesh);
 }
 
 void SendError(const std::string& reason, const WriteBytes& write)
 {
-  Send(IsError, write);
-  SendAll(reason, write);
+  Sender{ write }(IsError);
+  Sender{ write }(reason);
 }
 
 void SendNoMemory(const WriteBytes& write)
 {
-  Send(IsNoMemory, write);
+  Sender{ write }(IsNoMemory);
 }
 
 Mesh ReceiveMesh(const ReadBytes& read)
 {
-  const char kind = Receive<char>(read);
+  const Receiver receive{ read };
+  char kind = 0;
+  receive(kind);
   if (kind == IsError)
   {
-    throw Error(ReceiveAll<std::string>(read));
+    std::string reason;
+    receive(reason);
+    throw Error(reason);
   }
   if (kind == IsNoMemory)
   {
     throw std::bad_alloc();
   }
   Mesh mesh;
-  mesh.points = ReceiveAll<std::vector<Vec3>>(read);
-  mesh.triangles = ReceiveAll<std::vector<std::array<std::int64_t, 3>>>(read);
-  mesh.materials = ReceiveAll<std::vector<int>>(read);
-  mesh.materialNames = ReceiveTexts(read);
-  mesh.skippedFaces = Receive<std::int64_t>(read);
-  mesh.rounding = Receive<double>(read);
-  mesh.upAxis = Receive<char>(read);
-  mesh.warnings = ReceiveTexts(read);
+  Pass(receive, mesh);
   return mesh;
 }
 }

@@ -31,34 +31,6 @@ constexpr double HourTime = 3.6e9;    // us, after which the sensor's clock begi
 constexpr double LeastStep = 1e-6;    // s, so that the times of steps rise
 constexpr double GreatestDelay = 1e6; // us, of a packet that comes late
 
-/// Bytes of the file, read in large pieces.
-class FileWindow
-{
-public:
-  explicit FileWindow(ByteSource& source)
-    : Source(source)
-  {
-  }
-
-  const unsigned char* at(std::uint64_t offset, std::uint64_t count)
-  {
-    constexpr std::uint64_t atOnce = 1 << 20;
-    if (offset < this->Begin || offset + count > this->Begin + this->Bytes.size())
-    {
-      const std::uint64_t size = this->Source.size();
-      this->Bytes = this->Source.bytes(
-        offset, std::max(count, std::min(atOnce, size - std::min(size, offset))));
-      this->Begin = offset;
-    }
-    return this->Bytes.data() + (offset - this->Begin);
-  }
-
-private:
-  ByteSource& Source;
-  std::uint64_t Begin = 0;
-  std::vector<unsigned char> Bytes;
-};
-
 unsigned bigEndian16(const unsigned char* bytes)
 {
   return unsigned{ bytes[0] } << 8 | bytes[1];
@@ -78,7 +50,7 @@ std::uint32_t load16(const unsigned char* bytes, bool turned)
 
 std::uint32_t magicOf(ByteSource& source)
 {
-  return source.holds(0, 24) ? load<std::uint32_t>(source.bytes(0, 4).data()) : 0;
+  return source.holds(0, 24) ? load<std::uint32_t>(source.at(0, 4)) : 0;
 }
 
 bool isPcap(std::uint32_t magic)
@@ -172,7 +144,7 @@ Datagram datagramOf(std::uint32_t link, const unsigned char* bytes, std::uint64_
 
 /// Calls packet(link type, place, bytes that are there) for each packet.
 template <class F>
-void forEachPacket(ByteSource& source, FileWindow& window, F packet)
+void forEachPacket(ByteSource& source, F packet)
 {
   const auto need = [&](std::uint64_t at, std::uint64_t count)
   {
@@ -182,13 +154,13 @@ void forEachPacket(ByteSource& source, FileWindow& window, F packet)
         " goes beyond its end, and the last " + std::to_string(source.size() - at) +
         " bytes are left out");
     }
-    return window.at(at, std::min(count, MostBeforePayload));
+    return source.at(at, std::min(count, MostBeforePayload));
   };
   const std::uint32_t first = magicOf(source);
   if (isPcap(first))
   {
     const bool turned = (first & 0xFF) == 0xA1;
-    const std::uint32_t link = load32(window.at(0, 24) + 20, turned) & 0xFFFF;
+    const std::uint32_t link = load32(source.at(0, 24) + 20, turned) & 0xFFFF;
     for (std::uint64_t at = 24; at < source.size();)
     {
       const std::uint64_t size = load32(need(at, 16) + 8, turned);
@@ -403,7 +375,6 @@ struct Recording
 Recording scanPackets(ByteSource& source, const KeepGoing& keepGoing)
 {
   Recording recording;
-  FileWindow window(source);
   std::size_t number = 0;
   const auto take = [&](std::uint32_t link, std::uint64_t at, std::uint64_t size)
   {
@@ -413,10 +384,10 @@ Recording scanPackets(ByteSource& source, const KeepGoing& keepGoing)
         keepGoing, 0, 1, 0.5 * static_cast<double>(at) / static_cast<double>(source.size()), 1.0);
     }
     const std::uint64_t looked = std::min(size, MostBeforePayload);
-    const Datagram datagram = datagramOf(link, window.at(at, looked), looked);
+    const Datagram datagram = datagramOf(link, source.at(at, looked), looked);
     const bool isWhole = datagram.begin + PayloadSize <= size;
     const unsigned char* payload =
-      datagram.begin > 0 && isWhole ? window.at(at + datagram.begin, PayloadSize) : nullptr;
+      datagram.begin > 0 && isWhole ? source.at(at + datagram.begin, PayloadSize) : nullptr;
     if (datagram.begin == 0 || (!datagram.isForLidars && !(payload && hasBlocks(payload))))
     {
       return;
@@ -431,7 +402,7 @@ Recording scanPackets(ByteSource& source, const KeepGoing& keepGoing)
   };
   try
   {
-    forEachPacket(source, window, take);
+    forEachPacket(source, take);
   }
   catch (const FormatError& error)
   {
@@ -480,7 +451,6 @@ Sender& choose(std::map<std::string, Sender>& senders, const std::string& wanted
 /// Leaves out packets that were recorded twice, as by two interfaces. Returns how many.
 std::size_t dropCopies(ByteSource& source, std::vector<SentPacket>& packets)
 {
-  FileWindow window(source);
   unsigned char before[PayloadSize] = {};
   const auto isCopy = [&](const SentPacket& a, const SentPacket& b)
   {
@@ -488,8 +458,8 @@ std::size_t dropCopies(ByteSource& source, std::vector<SentPacket>& packets)
     {
       return false;
     }
-    std::copy_n(window.at(a.begin, PayloadSize), PayloadSize, before);
-    return std::equal(before, before + PayloadSize, window.at(b.begin, PayloadSize));
+    std::copy_n(source.at(a.begin, PayloadSize), PayloadSize, before);
+    return std::equal(before, before + PayloadSize, source.at(b.begin, PayloadSize));
   };
   const auto end = std::unique(packets.begin(), packets.end(), isCopy);
   const auto copies = static_cast<std::size_t>(packets.end() - end);
@@ -501,12 +471,11 @@ std::size_t dropCopies(ByteSource& source, std::vector<SentPacket>& packets)
 /// more than a motor that stands still lets them jitter.
 void checkOneSensor(ByteSource& source, const std::vector<std::uint64_t>& packets)
 {
-  FileWindow window(source);
   std::size_t backwards = 0;
   int before = -1;
   for (const std::uint64_t at : packets)
   {
-    const int azimuth = azimuthOf(window.at(at, PayloadSize), 0);
+    const int azimuth = azimuthOf(source.at(at, PayloadSize), 0);
     const int back = before < 0 ? 0 : (before - azimuth + FullTurn) % FullTurn;
     backwards += back > LargestGap && back < FullTurn / 2 ? 1 : 0;
     before = azimuth;
@@ -525,12 +494,11 @@ std::vector<PacketIndex::Turn> turnsOf(
   ByteSource& source, const std::vector<std::uint64_t>& packets, const KeepGoing& keepGoing)
 {
   std::vector<PacketIndex::Turn> turns;
-  FileWindow window(source);
   int before = -1;
   HourClock clock;
   for (std::size_t number = 0; number < packets.size(); ++number)
   {
-    const unsigned char* payload = window.at(packets[number], PayloadSize);
+    const unsigned char* payload = source.at(packets[number], PayloadSize);
     const double time = clock.timeOf(payload);
     for (int block = 0; block < BlocksPerPacket; block += blocksAtOnce(payload))
     {
@@ -606,20 +574,19 @@ Cloud readTurn(
   const std::size_t packets = to.packet - from.packet + 1;
   requireMemoryFor(packets * PointsPerPacket, sizeof(double));
   TurnPoints points;
-  FileWindow window(source);
   double gap = 0.0; // azimuth from one firing to the next
   HourClock clock;
   unsigned char payload[PayloadSize];
   for (std::size_t p = from.packet; p < index.packets.size() && p <= to.packet; ++p)
   {
-    std::copy_n(window.at(index.packets[p], PayloadSize), PayloadSize, payload);
+    std::copy_n(source.at(index.packets[p], PayloadSize), PayloadSize, payload);
     const std::string problem = problemOf(payload);
     if (!problem.empty()) // the file has changed
     {
       throw FormatError("packet " + std::to_string(p) + " of the lidar " + problem);
     }
     const int behind = p + 1 < index.packets.size()
-      ? azimuthOf(window.at(index.packets[p + 1], PayloadSize), 0)
+      ? azimuthOf(source.at(index.packets[p + 1], PayloadSize), 0)
       : -1;
     const int step = blocksAtOnce(payload);
     const double time = clock.timeOf(payload);

@@ -9,9 +9,12 @@
 #ifndef AvianLidarPolygons_h
 #define AvianLidarPolygons_h
 
-#include <array>
-#include <cstddef>
-#include <vector>
+#include "SceneTypes.h"
+
+#include <geos_c.h>
+
+#include <functional>
+#include <memory>
 
 namespace avianlidar::scene
 {
@@ -25,20 +28,111 @@ struct Polygon
   std::vector<Ring> rings;
 };
 
-/// A polygon whose outer ring runs anticlockwise and whose holes run clockwise, with triangles that
-/// run anticlockwise.
-struct TriangulatedPolygon
+/// Triangles that run anticlockwise in plan, and the edges around them, which have them on their
+/// left.
+struct Sheet
 {
-  std::vector<Vec2> points;
-  std::vector<std::vector<std::size_t>> rings;
-  std::vector<std::array<std::size_t, 3>> triangles;
+  std::vector<Vec3> points;
+  std::vector<std::array<std::int64_t, 3>> triangles;
+  std::vector<std::array<std::int64_t, 2>> outline;
+};
+
+/// A context of GEOS. Without handlers GEOS keeps silent and returns null.
+class Geos
+{
+public:
+  using Geometry = std::unique_ptr<GEOSGeometry, std::function<void(GEOSGeometry*)>>;
+
+  Geos()
+    : Handle(GEOS_init_r(), &GEOS_finish_r)
+  {
+  }
+  GEOSContextHandle_t Get() const { return this->Handle.get(); }
+
+  Geometry Own(GEOSGeometry* geometry) const
+  {
+    if (!geometry)
+    {
+      throw Error("the polygon library GEOS cannot handle this geometry");
+    }
+    return Geometry(geometry, [this](GEOSGeometry* g) { GEOSGeom_destroy_r(this->Get(), g); });
+  }
+
+  GEOSCoordSequence* Sequence(const Ring& ring, bool close) const
+  {
+    const auto n = static_cast<unsigned int>(ring.size());
+    GEOSCoordSequence* sequence = GEOSCoordSeq_create_r(this->Get(), n + close, 2);
+    for (unsigned int i = 0; i < n + close; ++i)
+    {
+      const Vec2& p = ring[i % n];
+      GEOSCoordSeq_setXY_r(this->Get(), sequence, i, p[0], p[1]);
+    }
+    return sequence;
+  }
+
+  Geometry MakePolygon(const Polygon& polygon) const
+  {
+    std::vector<GEOSGeometry*> rings;
+    for (const Ring& ring : polygon.rings)
+    {
+      rings.push_back(GEOSGeom_createLinearRing_r(this->Get(), this->Sequence(ring, true)));
+    }
+    return this->Own(GEOSGeom_createPolygon_r(
+      this->Get(), rings[0], rings.data() + 1, static_cast<unsigned int>(rings.size() - 1)));
+  }
+
+  Ring GetRing(const GEOSGeometry* ring) const
+  {
+    const GEOSCoordSequence* sequence = GEOSGeom_getCoordSeq_r(this->Get(), ring);
+    unsigned int n = 0;
+    GEOSCoordSeq_getSize_r(this->Get(), sequence, &n);
+    Ring points(n > 0 ? n - 1 : 0);
+    for (std::size_t i = 0; i < points.size(); ++i)
+    {
+      GEOSCoordSeq_getXY_r(
+        this->Get(), sequence, static_cast<unsigned int>(i), &points[i][0], &points[i][1]);
+    }
+    return points;
+  }
+
+  /// Every polygon of a geometry, whatever it is nested in.
+  void Collect(const GEOSGeometry* geometry, std::vector<Polygon>& polygons) const
+  {
+    if (GEOSGeomTypeId_r(this->Get(), geometry) == GEOS_POLYGON)
+    {
+      if (GEOSisEmpty_r(this->Get(), geometry))
+      {
+        return;
+      }
+      Polygon polygon;
+      polygon.rings.push_back(this->GetRing(GEOSGetExteriorRing_r(this->Get(), geometry)));
+      const int holes = GEOSGetNumInteriorRings_r(this->Get(), geometry);
+      for (int i = 0; i < holes; ++i)
+      {
+        polygon.rings.push_back(this->GetRing(GEOSGetInteriorRingN_r(this->Get(), geometry, i)));
+      }
+      polygons.push_back(std::move(polygon));
+      return;
+    }
+    const int parts = GEOSGetNumGeometries_r(this->Get(), geometry);
+    for (int i = 0; i < parts; ++i)
+    {
+      const GEOSGeometry* part = GEOSGetGeometryN_r(this->Get(), geometry, i);
+      if (part != geometry)
+      {
+        this->Collect(part, polygons);
+      }
+    }
+  }
+
+private:
+  std::unique_ptr<GEOSContextHandle_HS, decltype(&GEOS_finish_r)> Handle;
 };
 
 /// Twice the signed area is the usual sum; positive where the ring runs anticlockwise.
 double SignedArea(const Ring& ring);
 /// Area of the outer ring less that of the holes.
 double Area(const Polygon& polygon);
-double Area(const TriangulatedPolygon& polygon);
 
 /**
  * The same region as valid polygons: repeated vertices are dropped, crossing or overlapping rings
@@ -50,14 +144,11 @@ std::vector<Polygon> MakeValid(const Polygon& polygon, bool& repaired);
 /// The region within half a width of a line, with flat ends and mitred corners.
 std::vector<Polygon> WidenLine(const Ring& line, double width);
 
-/// What each of the triangles, which run anticlockwise, shares with a valid polygon, less what is
-/// smaller than 1e-6 m2 or narrower than 1e-4 m (area over half the perimeter).
-std::vector<std::vector<Polygon>> CutToTriangles(
-  const Polygon& polygon, const std::vector<Ring>& triangles);
+/// A valid polygon at the height 0. Throws Error if GEOS fails or the areas differ by more than
+/// 1e-9 of the whole and their rounding.
+Sheet Triangulate(const Polygon& polygon);
 
-/// Triangles of a valid polygon. Throws Error if GEOS fails or the areas differ by more than 1e-9
-/// of the whole and their rounding.
-TriangulatedPolygon Triangulate(const Polygon& polygon);
+double Perimeter(const Polygon& polygon);
 }
 
 #endif

@@ -64,21 +64,19 @@ void unpackColours(Cloud& cloud)
     {
       continue;
     }
-    std::vector<std::uint8_t> colours(3 * cloud.size());
+    std::vector<std::uint8_t> colours;
     const bool known = std::visit(
-      [&](const auto& values)
+      [&colours](const auto& values)
       {
-        using T = typename std::decay_t<decltype(values)>::value_type;
-        for (std::size_t i = 0; sizeof(T) == 4 && i < values.size(); ++i)
+        constexpr bool isPacked = sizeof(values[0]) == 4;
+        colours.reserve(isPacked ? 3 * values.size() : 0);
+        for (std::size_t i = 0; isPacked && i < values.size(); ++i)
         {
-          unsigned char bytes[sizeof(T)];
+          unsigned char bytes[8];
           store(values[i], bytes);
-          for (std::size_t c = 0; c < 3; ++c)
-          {
-            colours[3 * i + c] = bytes[(2 - c) % sizeof(T)];
-          }
+          colours.insert(colours.end(), { bytes[2], bytes[1], bytes[0] });
         }
-        return sizeof(T) == 4;
+        return isPacked;
       },
       packed->values);
     if (known)

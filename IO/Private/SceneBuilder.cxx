@@ -22,54 +22,56 @@ namespace
 // Names in a warning; a mesh may have hundreds.
 constexpr std::size_t ListedNames = 10;
 
-// Materials that no rule maps, in the order of their first use.
-class UnmappedMaterials
+// Warns of materials that no rule maps, in the order of their first use.
+void WarnOfUnmapped(const std::vector<std::string>& names, std::vector<std::string>& warnings)
 {
-public:
-  void Add(const std::string& name)
+  if (names.empty())
   {
-    if (std::find(this->Names.begin(), this->Names.end(), name) == this->Names.end())
-    {
-      this->Names.push_back(name);
-    }
+    return;
   }
-
-  void Warn(std::vector<std::string>& warnings) const
+  std::string list;
+  for (std::size_t i = 0; i < std::min(ListedNames, names.size()); ++i)
   {
-    if (this->Names.empty())
-    {
-      return;
-    }
-    std::string list;
-    for (std::size_t i = 0; i < std::min(ListedNames, this->Names.size()); ++i)
-    {
-      list += (i ? ", " : "") + this->Names[i];
-    }
-    if (this->Names.size() > ListedNames)
-    {
-      list += " and " + std::to_string(this->Names.size() - ListedNames) + " more";
-    }
-    warnings.push_back("no material or material_map for " + list + ": taken as Wall");
+    list += (i ? ", " : "") + names[i];
   }
+  if (names.size() > ListedNames)
+  {
+    list += " and " + std::to_string(names.size() - ListedNames) + " more";
+  }
+  warnings.push_back("no material or material_map for " + list + ": taken as Wall");
+}
 
-private:
-  std::vector<std::string> Names;
-};
-
-int FindRule(const std::vector<MaterialRule>& rules, const std::string& name)
+void AddOnce(const std::string& name, std::vector<std::string>& names)
 {
-  for (const MaterialRule& rule : rules)
+  if (std::find(names.begin(), names.end(), name) == names.end())
   {
-    if (MatchesPattern(rule.pattern, name))
+    names.push_back(name);
+  }
+}
+
+// The material of a name: the object's, or by the rules of the object or the scene; -1: none.
+int FindMaterial(const Scene& scene, const Object& object, const std::string& name)
+{
+  if (object.material >= 0)
+  {
+    return object.material;
+  }
+  for (const std::vector<MaterialRule>* rules : { &object.rules, &scene.rules })
+  {
+    for (const MaterialRule& rule : *rules)
     {
-      return rule.material;
+      if (MatchesPattern(rule.pattern, name))
+      {
+        return rule.material;
+      }
     }
   }
   return -1;
 }
 
 // From indices of the file's own materials to the scene's ids.
-void MapMaterials(const Scene& scene, const Object& object, Mesh& mesh, UnmappedMaterials& unmapped)
+void MapMaterials(
+  const Scene& scene, const Object& object, Mesh& mesh, std::vector<std::string>& unmapped)
 {
   std::vector<int> ids(mesh.materialNames.size(), -1);
   for (int& material : mesh.materials)
@@ -78,11 +80,10 @@ void MapMaterials(const Scene& scene, const Object& object, Mesh& mesh, Unmapped
     if (id < 0)
     {
       const std::string& name = mesh.materialNames[material];
-      id = object.material >= 0 ? object.material : FindRule(object.rules, name);
-      id = id >= 0 ? id : FindRule(scene.rules, name);
+      id = FindMaterial(scene, object, name);
       if (id < 0)
       {
-        unmapped.Add(name.empty() ? object.name : "\"" + name + "\"");
+        AddOnce(name.empty() ? object.name : "\"" + name + "\"", unmapped);
         id = 0;
       }
     }
@@ -157,7 +158,7 @@ private:
 };
 
 Part MakeMesh(BuiltScene& built, const Object& object, MeshFiles& files,
-  UnmappedMaterials& unmapped, const std::function<bool()>& keepGoing)
+  std::vector<std::string>& unmapped, const std::function<bool()>& keepGoing)
 {
   Part part{ object.name, object.objectClass, files.Take(object.file, keepGoing) };
   TurnUp(object.file, object.upAxis, part.mesh);
@@ -215,7 +216,7 @@ private:
 
 // Adds to the report and the warnings, not to the parts.
 std::vector<Part> BuildObject(BuiltScene& built, const Object& object, const Terrain* terrain,
-  MeshFiles& files, UnmappedMaterials& unmapped, const std::function<bool()>& keepGoing)
+  MeshFiles& files, std::vector<std::string>& unmapped, const std::function<bool()>& keepGoing)
 {
   const Scene& scene = built.description;
   std::vector<Part> parts;
@@ -231,11 +232,10 @@ std::vector<Part> BuildObject(BuiltScene& built, const Object& object, const Ter
   else
   {
     Object named = object;
-    named.material = object.material >= 0 ? object.material : FindRule(object.rules, object.name);
-    named.material = named.material >= 0 ? named.material : FindRule(scene.rules, object.name);
+    named.material = FindMaterial(scene, object, object.name);
     if (named.material < 0 && named.medium.empty())
     {
-      unmapped.Add(object.name);
+      AddOnce(object.name, unmapped);
     }
     if (object.kind == ObjectKind::Footprints)
     {
@@ -265,21 +265,35 @@ const char* FileKey(const Object& object)
     ? ".file: "
     : (object.kind == ObjectKind::Footprints ? ".footprints: " : ": ");
 }
+
+// Whether an object has more parts than one, or none.
+bool HasParts(const Object& object)
+{
+  return object.kind == ObjectKind::Footprints &&
+    (object.footprints.separate || !object.medium.empty());
 }
 
-namespace
+// Reads all objects, or, of an outline, those alone whose features and terrain below them say how
+// many parts there are. An error names the key; between objects somebody may say stop.
+BuiltScene Build(const std::string& file, const std::function<bool(double)>& progress,
+  const std::string& text, bool outline)
 {
-using PartsOf = std::function<std::vector<Part>(const Object&, const std::function<bool()>&)>;
-
-// The parts of all objects, with an error that names the key; between objects somebody may say
-// stop.
-void AddParts(
-  BuiltScene& built, const PartsOf& partsOf, const std::function<bool(double)>& progress)
-{
+  BuiltScene built;
+  built.description = ReadDescription(file, text);
   const Scene& scene = built.description;
+  std::set<std::string> terrainsOfParts;
+  for (const Object& object : scene.objects)
+  {
+    if (HasParts(object))
+    {
+      terrainsOfParts.insert(object.footprints.on);
+    }
+  }
+  std::vector<std::string> unmapped;
+  MeshFiles files(scene.objects);
+  Terrains terrains;
   const QuietGdal quiet;
   const OfflineGdal offline;
-  const UncachedGdal uncached;
   const double steps = static_cast<double>(scene.objects.size()) + 1;
   for (std::size_t i = 0; i < scene.objects.size(); ++i)
   {
@@ -295,7 +309,14 @@ void AddParts(
     };
     try
     {
-      for (Part& part : partsOf(object, keepGoing))
+      if (outline && !HasParts(object) && terrainsOfParts.count(object.name) == 0)
+      {
+        built.parts.push_back({ object.name, object.objectClass, {} });
+        continue;
+      }
+      const Terrain* terrain =
+        outline && !HasParts(object) ? nullptr : terrains.Get(object.footprints.on, built.parts);
+      for (Part& part : BuildObject(built, object, terrain, files, unmapped, keepGoing))
       {
         built.parts.push_back(std::move(part));
       }
@@ -309,42 +330,15 @@ void AddParts(
       fail("there is not enough memory for it");
     }
   }
+  WarnOfUnmapped(unmapped, built.warnings);
+  return built;
 }
 }
 
 BuiltScene OutlineScene(
   const std::string& file, const std::function<bool(double)>& progress, const std::string& text)
 {
-  BuiltScene built;
-  built.description = ReadDescription(file, text);
-  // How many parts footprints make, their features say, and the terrain below them.
-  const auto hasParts = [](const Object& object)
-  {
-    return object.kind == ObjectKind::Footprints &&
-      (object.footprints.separate || !object.medium.empty());
-  };
-  std::set<std::string> needed;
-  for (const Object& object : built.description.objects)
-  {
-    if (hasParts(object))
-    {
-      needed.insert(object.footprints.on);
-    }
-  }
-  UnmappedMaterials unmapped;
-  MeshFiles files(built.description.objects);
-  Terrains terrains;
-  const auto outline = [&](const Object& object, const std::function<bool()>& keepGoing)
-  {
-    if (hasParts(object) || needed.count(object.name) > 0)
-    {
-      const Terrain* terrain =
-        hasParts(object) ? terrains.Get(object.footprints.on, built.parts) : nullptr;
-      return BuildObject(built, object, terrain, files, unmapped, keepGoing);
-    }
-    return std::vector<Part>{ { object.name, object.objectClass, {} } };
-  };
-  AddParts(built, outline, progress);
+  BuiltScene built = Build(file, progress, text, true);
   for (Part& part : built.parts)
   {
     part = { part.name, part.objectClass, {} };
@@ -357,20 +351,7 @@ BuiltScene OutlineScene(
 BuiltScene BuildScene(
   const std::string& file, const std::function<bool(double)>& progress, const std::string& text)
 {
-  BuiltScene built;
-  built.description = ReadDescription(file, text);
-  UnmappedMaterials unmapped;
-  MeshFiles files(built.description.objects);
-  Terrains terrains;
-  AddParts(
-    built,
-    [&](const Object& object, const std::function<bool()>& keepGoing)
-    {
-      const Terrain* terrain = terrains.Get(object.footprints.on, built.parts);
-      return BuildObject(built, object, terrain, files, unmapped, keepGoing);
-    },
-    progress);
-  unmapped.Warn(built.warnings);
+  BuiltScene built = Build(file, progress, text, false);
   ReportExtents(built);
   ReportLidar(built);
   return built;

@@ -2,17 +2,105 @@
 #include "SceneDescription.h"
 
 #include "JsonNode.h"
-#include "ObjectDescription.h"
+#include "RegularFile.h"
 #include "vtkAvianLidarNamedMaterials.h"
 
 #include <vtksys/SystemTools.hxx>
 
+#include <cmath>
 #include <sstream>
 
 namespace avianlidar::scene
 {
 namespace
 {
+constexpr double DegreesToRadians = 3.14159265358979323846 / 180.0;
+// Printed matrices have rounded digits.
+constexpr double OrthonormalTolerance = 1e-6;
+
+/// The id of a material, case aside; -1 if there is none of that name.
+int FindMaterial(const Scene& scene, const std::string& name)
+{
+  const std::string wanted = vtksys::SystemTools::LowerCase(name);
+  for (std::size_t i = 0; i < scene.materials.size(); ++i)
+  {
+    if (vtksys::SystemTools::LowerCase(scene.materials[i].name) == wanted)
+    {
+      return static_cast<int>(i);
+    }
+  }
+  return -1;
+}
+
+/// The id of the material that a string names; a shipped one joins the scene when it is first
+/// named, an unknown one is an Error.
+int ParseMaterialName(const JsonNode& node, Scene& scene)
+{
+  const int material = FindMaterial(scene, node.Name());
+  if (material >= 0)
+  {
+    return material;
+  }
+  Scene all = scene;
+  for (const auto& shipped : vtkAvianLidarMaterials::NamedMaterials)
+  {
+    if (FindMaterial(all, shipped.name) < 0)
+    {
+      all.materials.push_back({ shipped.name, shipped.material });
+    }
+  }
+  const int found = FindMaterial(all, node.Name());
+  if (found < 0)
+  {
+    std::string known;
+    for (const Material& m : all.materials)
+    {
+      known += (known.empty() ? "" : ", ") + m.name;
+    }
+    node.Fail("unknown material \"" + node.String() + "\"; known: " + known);
+  }
+  scene.materials.push_back(all.materials[found]);
+  return static_cast<int>(scene.materials.size()) - 1;
+}
+
+std::optional<int> FindMaterialName(const JsonNode& owner, const char* key, Scene& scene)
+{
+  return owner.Find(key, [&](const JsonNode& node) { return ParseMaterialName(node, scene); });
+}
+
+/// One of two words; an empty one without the key.
+std::string FindChoice(
+  const JsonNode& owner, const char* key, const std::string& one, const std::string& other)
+{
+  const std::string word = owner.Find(key, &JsonNode::String).value_or("");
+  if (owner.Has(key) && word != one && word != other)
+  {
+    owner.Get(key).Fail("must be \"" + one + "\" or \"" + other + "\"");
+  }
+  return word;
+}
+
+/// The "material_map" of the scene or of an object; none if it has none.
+std::vector<MaterialRule> ParseRules(const JsonNode& owner, Scene& scene)
+{
+  std::vector<MaterialRule> rules;
+  if (owner.Has("material_map"))
+  {
+    for (const auto& [pattern, node] : owner.Get("material_map").Members())
+    {
+      rules.push_back({ pattern, ParseMaterialName(node, scene) });
+    }
+  }
+  return rules;
+}
+
+Geodetic ParseGeodetic(const JsonNode& node)
+{
+  node.RequireKeys({ "latitude", "longitude", "height", "comment" });
+  return { node.Get("latitude").NumberIn(-90, 90), node.Get("longitude").NumberIn(-180, 360),
+    node.Get("height").Number() };
+}
+
 avianlidar::Material ParseCoefficients(const JsonNode& node)
 {
   std::vector<const char*> keys;
@@ -77,70 +165,313 @@ void ParseLidar(const JsonNode& node, Scene& scene)
 {
   node.RequireKeys({ "position", "inside", "comment" });
   scene.lidar = node.Get("position").Vector();
-  scene.lidarInside = node.Has("inside") && node.Get("inside").Bool();
-}
-}
-
-int FindMaterial(const Scene& scene, const std::string& name)
-{
-  const std::string wanted = vtksys::SystemTools::LowerCase(name);
-  for (std::size_t i = 0; i < scene.materials.size(); ++i)
-  {
-    if (vtksys::SystemTools::LowerCase(scene.materials[i].name) == wanted)
-    {
-      return static_cast<int>(i);
-    }
-  }
-  return -1;
+  scene.lidarInside = node.Find("inside", &JsonNode::Bool).value_or(false);
 }
 
-int ParseMaterialName(const JsonNode& node, Scene& scene)
+Mat3 ParseMatrix(const JsonNode& node)
 {
-  const int material = FindMaterial(scene, node.Name());
-  if (material >= 0)
+  Mat3 m;
+  const auto rows = node.Items(3);
+  for (int i = 0; i < 3; ++i)
   {
-    return material;
+    const Vec3 row = rows[i].Vector();
+    std::copy(row.begin(), row.end(), m.begin() + 3 * i);
   }
-  Scene all = scene;
-  for (const auto& shipped : vtkAvianLidarMaterials::NamedMaterials)
+  for (int i = 0; i < 3; ++i)
   {
-    if (FindMaterial(all, shipped.name) < 0)
+    for (int j = 0; j < 3; ++j)
     {
-      all.materials.push_back({ shipped.name, shipped.material });
+      const double dot =
+        m[3 * i] * m[3 * j] + m[3 * i + 1] * m[3 * j + 1] + m[3 * i + 2] * m[3 * j + 2];
+      if (std::abs(dot - (i == j)) > OrthonormalTolerance)
+      {
+        node.Fail("must be a rotation: rows of length 1 at right angles (sizes belong in scale)");
+      }
     }
   }
-  const int found = FindMaterial(all, node.Name());
-  if (found < 0)
+  const double determinant = m[0] * (m[4] * m[8] - m[5] * m[7]) -
+    m[1] * (m[3] * m[8] - m[5] * m[6]) + m[2] * (m[3] * m[7] - m[4] * m[6]);
+  if (determinant < 0)
   {
-    std::string known;
-    for (const Material& m : all.materials)
-    {
-      known += (known.empty() ? "" : ", ") + m.name;
-    }
-    node.Fail("unknown material \"" + node.String() + "\"; known: " + known);
+    node.Fail("must be a rotation, not a reflection: its determinant is -1");
   }
-  scene.materials.push_back(all.materials[found]);
-  return static_cast<int>(scene.materials.size()) - 1;
+  return m;
 }
 
-std::vector<MaterialRule> ParseRules(const JsonNode& owner, Scene& scene)
+/// The rotation whose second axis (the model's north, +y) points along a direction, with the
+/// model's up as near to up as that allows; the direction must not be vertical.
+Mat3 RotationToDirection(const Vec3& direction)
 {
-  std::vector<MaterialRule> rules;
-  if (owner.Has("material_map"))
-  {
-    for (const auto& [pattern, node] : owner.Get("material_map").Members())
-    {
-      rules.push_back({ pattern, ParseMaterialName(node, scene) });
-    }
-  }
-  return rules;
+  const double horizontal = std::hypot(direction[0], direction[1]);
+  const double length = std::hypot(horizontal, direction[2]);
+  const Vec3 y{ direction[0] / length, direction[1] / length, direction[2] / length };
+  const Vec3 x{ direction[1] / horizontal, -direction[0] / horizontal, 0 };
+  const Vec3 z{ x[1] * y[2], -x[0] * y[2], x[0] * y[1] - x[1] * y[0] };
+  return { x[0], y[0], z[0], x[1], y[1], z[1], x[2], y[2], z[2] };
 }
 
-Geodetic ParseGeodetic(const JsonNode& node)
+Mat3 ParseRotation(const JsonNode& node)
 {
-  node.RequireKeys({ "latitude", "longitude", "height", "comment" });
-  return { node.Get("latitude").NumberIn(-90, 90), node.Get("longitude").NumberIn(-180, 360),
-    node.Get("height").Number() };
+  if (node.IsNumber())
+  {
+    // Clockwise from north: at 90 degrees the model's north points east.
+    const double yaw = node.Number() * DegreesToRadians;
+    return { std::cos(yaw), std::sin(yaw), 0, -std::sin(yaw), std::cos(yaw), 0, 0, 0, 1 };
+  }
+  if (!node.IsArray())
+  {
+    node.Fail("must be a yaw in degrees, a direction [x, y, z] or a matrix [[...], [...], [...]]");
+  }
+  const auto items = node.Items(3);
+  if (items[0].IsArray())
+  {
+    return ParseMatrix(node);
+  }
+  const Vec3 direction = node.Vector();
+  if (!(std::hypot(direction[0], direction[1]) > 1e-9 * std::abs(direction[2])))
+  {
+    node.Fail("must be a direction that is neither zero nor vertical");
+  }
+  return RotationToDirection(direction);
+}
+
+Vec3 ParseScale(const JsonNode& node)
+{
+  const auto items = node.IsNumber() ? std::vector<JsonNode>(3, node) : node.Items(3);
+  return { items[0].PositiveNumber(), items[1].PositiveNumber(), items[2].PositiveNumber() };
+}
+
+void ParsePlacement(const JsonNode& node, const Scene& scene, Object& object)
+{
+  object.placement.position = node.Find("position", &JsonNode::Vector);
+  if (node.Has("geodetic"))
+  {
+    const JsonNode geodetic = node.Get("geodetic");
+    if (object.placement.position || node.Has("crs"))
+    {
+      geodetic.Fail("stands beside position or crs; an object is placed in one way");
+    }
+    if (!scene.origin)
+    {
+      geodetic.Fail("needs the scene's origin");
+    }
+    object.placement.geodetic = ParseGeodetic(geodetic);
+  }
+  object.placement.rotation = node.Find("rotation", ParseRotation).value_or(Placement().rotation);
+  object.placement.scale = node.Find("scale", ParseScale).value_or(Placement().scale);
+  if (node.Has("crs"))
+  {
+    object.crs = node.Get("crs").Name();
+    if (object.crs != "local" && !scene.origin)
+    {
+      node.Get("crs").Fail("needs the scene's origin");
+    }
+  }
+}
+
+Glazing ParseGlazing(const JsonNode& node, Scene& scene)
+{
+  node.RequireKeys({ "material", "share", "bay", "comment" });
+  Glazing glazing;
+  glazing.material = FindMaterialName(node, "material", scene).value_or(glazing.material);
+  glazing.share = node.Get("share").NumberIn(0, 1);
+  glazing.bay = node.Get("bay").PositiveNumber();
+  return glazing;
+}
+
+std::string AbsoluteFile(const JsonNode& node, const Scene& scene)
+{
+  const std::string folder =
+    vtksys::SystemTools::GetFilenamePath(vtksys::SystemTools::CollapseFullPath(scene.file));
+  const std::string file = vtksys::SystemTools::CollapseFullPath(node.Name(), folder);
+  if (!vtksys::SystemTools::FileExists(file, true))
+  {
+    node.Fail("there is no file " + file);
+  }
+  const std::string irregular = whyNotRegular(file);
+  if (!irregular.empty())
+  {
+    node.Fail(file + " cannot be read: " + irregular);
+  }
+  return file;
+}
+
+void ParseFilters(const JsonNode& node, FootprintOptions& options)
+{
+  for (const auto& [attribute, value] : node.Members())
+  {
+    if (value.IsNumber())
+    {
+      std::string number = std::to_string(value.Number());
+      number.erase(number.find_last_not_of('0') + 1);
+      number.erase(number.find_last_not_of('.') + 1);
+      options.filters.push_back({ attribute, number });
+    }
+    else
+    {
+      options.filters.push_back({ attribute, value.Name() });
+    }
+  }
+}
+
+void ParseShape(const JsonNode& node, FootprintOptions& options)
+{
+  options.base = node.Find("base", &JsonNode::Number).value_or(0.0);
+  options.flat = node.Find("flat", &JsonNode::Bool).value_or(false);
+  for (const char* key :
+    { "height", "height_attribute", "min_height_attribute", "glazing", "roof_material" })
+  {
+    if (options.flat && node.Has(key))
+    {
+      node.Get(key).Fail("means nothing for flat footprints");
+    }
+  }
+  options.height = node.Find("height", &JsonNode::PositiveNumber);
+  options.heightAttribute = node.Find("height_attribute", &JsonNode::Name).value_or("");
+  options.minHeightAttribute = node.Find("min_height_attribute", &JsonNode::Name).value_or("");
+  if (!options.flat && !options.height && options.heightAttribute.empty())
+  {
+    node.Fail("footprints need height or height_attribute, or flat");
+  }
+  options.width = node.Find("width", &JsonNode::PositiveNumber);
+  options.widthAttribute = node.Find("width_attribute", &JsonNode::Name).value_or("");
+}
+
+void ParseOn(const JsonNode& node, const Scene& scene, FootprintOptions& options)
+{
+  options.on = node.Get("on").Name();
+  for (const char* key : { "position", "geodetic", "rotation", "scale" })
+  {
+    if (node.Has(key))
+    {
+      node.Get(key).Fail("stands beside on, which needs footprints that are in place");
+    }
+  }
+  for (const Object& object : scene.objects)
+  {
+    if (object.name == options.on && object.medium.empty() && object.kind == ObjectKind::Mesh)
+    {
+      return;
+    }
+  }
+  node.Get("on").Fail("is " + options.on + ", expected the name of a mesh further up");
+}
+
+void ParseFootprints(const JsonNode& node, Scene& scene, Object& object)
+{
+  node.RequireKeys({ "footprints", "name", "class", "material", "material_map", "medium", "comment",
+    "position", "geodetic", "rotation", "scale", "crs", "layer", "filter", "base", "height",
+    "height_attribute", "min_height_attribute", "flat", "width", "width_attribute", "roof_material",
+    "glazing", "features", "name_attribute", "on" });
+  object.kind = ObjectKind::Footprints;
+  object.file = AbsoluteFile(node.Get("footprints"), scene);
+  FootprintOptions& options = object.footprints;
+  options.layer = node.Find("layer", &JsonNode::Name).value_or("");
+  if (node.Has("filter"))
+  {
+    ParseFilters(node.Get("filter"), options);
+  }
+  ParseShape(node, options);
+  options.roofMaterial = FindMaterialName(node, "roof_material", scene).value_or(-1);
+  if (node.Has("glazing"))
+  {
+    options.glazing = ParseGlazing(node.Get("glazing"), scene);
+  }
+  options.separate = FindChoice(node, "features", "separate", "together") == "separate";
+  options.nameAttribute = node.Find("name_attribute", &JsonNode::Name).value_or("name");
+  if (node.Has("on"))
+  {
+    ParseOn(node, scene, options);
+  }
+}
+
+void ParseGround(const JsonNode& node, Object& object)
+{
+  node.RequireKeys({ "ground", "name", "class", "material", "material_map", "comment", "position",
+    "geodetic", "rotation", "scale" });
+  object.kind = ObjectKind::Ground;
+  const JsonNode ground = node.Get("ground");
+  ground.RequireKeys({ "size", "height", "comment" });
+  const JsonNode size = ground.Get("size");
+  const auto sides = size.IsArray() ? size.Items(2) : std::vector<JsonNode>{ size, size };
+  object.ground.sizeEast = sides[0].PositiveNumber();
+  object.ground.sizeNorth = sides[1].PositiveNumber();
+  object.ground.height = ground.Find("height", &JsonNode::Number).value_or(0.0);
+}
+
+// What a medium is made of is checked where it is read as one.
+std::string ParseMedium(const JsonNode& node, bool hasSurface)
+{
+  Json text = node.Content();
+  if (!text.is_object())
+  {
+    node.Fail("must be an object with kind, what says how much of it there is, and a shape");
+  }
+  if (text.contains("name"))
+  {
+    node.Get("name").Fail("stands in the medium, expected beside it");
+  }
+  if (hasSurface && text.contains("shape"))
+  {
+    node.Get("shape").Fail("stands beside a file or footprints, whose surface is the shape");
+  }
+  if (hasSurface)
+  {
+    text["shape"] = "surface";
+  }
+  return text.dump();
+}
+
+void ParseMesh(const JsonNode& node, Scene& scene, Object& object)
+{
+  node.RequireKeys({ "file", "name", "class", "material", "material_map", "medium", "comment",
+    "position", "geodetic", "rotation", "scale", "up_axis", "crs" });
+  object.kind = ObjectKind::Mesh;
+  object.file = AbsoluteFile(node.Get("file"), scene);
+  object.upAxis = FindChoice(node, "up_axis", "y", "z")[0]; // 0 without the key
+}
+
+/// One value of "objects"; the scene's origin, materials and file name are known by then.
+Object ParseObject(const JsonNode& node, Scene& scene)
+{
+  Object object;
+  object.key = node.GetPath();
+  const int kinds = node.Has("file") + node.Has("footprints") + node.Has("ground");
+  if (kinds > 1 || (kinds == 0 && !node.Has("medium")))
+  {
+    node.Fail("must have one of file, footprints, ground, and only one, or a medium");
+  }
+  if (node.Has("medium"))
+  {
+    object.medium = ParseMedium(node.Get("medium"), kinds == 1);
+  }
+  if (node.Has("file"))
+  {
+    ParseMesh(node, scene, object);
+  }
+  else if (node.Has("footprints"))
+  {
+    ParseFootprints(node, scene, object);
+  }
+  else if (node.Has("ground"))
+  {
+    ParseGround(node, object);
+  }
+  else
+  {
+    node.RequireKeys({ "medium", "name", "comment" });
+    object.kind = ObjectKind::Medium;
+  }
+  ParsePlacement(node, scene, object);
+  object.name = node.Has("name")
+    ? node.Get("name").Name()
+    : (object.file.empty() ? std::string(node.Has("ground") ? "Ground" : "Medium")
+                           : vtksys::SystemTools::GetFilenameWithoutExtension(object.file));
+  object.objectClass = node.Find("class", &JsonNode::String).value_or("");
+  object.material = FindMaterialName(node, "material", scene).value_or(-1);
+  object.rules = ParseRules(node, scene);
+  return object;
+}
 }
 
 bool MatchesPattern(const std::string& pattern, const std::string& name)
@@ -190,14 +521,8 @@ Scene ReadDescription(const std::string& file, const std::string& text)
   {
     version.Fail("must be 1, the only version there is");
   }
-  if (root.Has("attribution"))
-  {
-    scene.attribution = root.Get("attribution").Strings();
-  }
-  if (root.Has("origin"))
-  {
-    scene.origin = ParseGeodetic(root.Get("origin"));
-  }
+  scene.attribution = root.Find("attribution", &JsonNode::Strings).value_or(scene.attribution);
+  scene.origin = root.Find("origin", ParseGeodetic);
   if (root.Has("lidar"))
   {
     ParseLidar(root.Get("lidar"), scene);

@@ -1,10 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "SceneFrame.h"
 
-#include "GeodeticFrame.h"
-
 #include <cpl_conv.h>
-#include <ogr_spatialref.h>
 
 #include <regex>
 
@@ -17,16 +14,10 @@ void MoveToPlace(const Geodetic& origin, const Geodetic& place, std::vector<Vec3
   to.setOrigin(origin.latitude, origin.longitude, origin.height);
   for (Vec3& p : points)
   {
-    p = to.convert(Frame::ECEF, Frame::ENU, from.convert(Frame::ENU, Frame::ECEF, p));
+    p = to.convert(avianlidar::Frame::ECEF, avianlidar::Frame::ENU,
+      from.convert(avianlidar::Frame::ENU, avianlidar::Frame::ECEF, p));
   }
 }
-
-struct GeoreferencedPoints::Internals
-{
-  GeodeticFrame frame;
-  // Null where the coordinates are longitude and latitude on WGS84 already.
-  std::unique_ptr<OGRCoordinateTransformation> toWgs84;
-};
 
 namespace
 {
@@ -52,32 +43,7 @@ std::string TextOf(const OGRSpatialReference& crs)
   CPLFree(text);
   return wkt;
 }
-}
 
-GeoreferencedPoints::GeoreferencedPoints(const Geodetic& origin, const OGRSpatialReference& crs)
-  : Data(std::make_unique<Internals>())
-{
-  RequireGridsOfProj(TextOf(crs));
-  this->Data->frame.setOrigin(origin.latitude, origin.longitude, origin.height);
-  OGRSpatialReference source(crs);
-  source.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
-  OGRSpatialReference plane, space;
-  plane.importFromEPSG(4326);
-  plane.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
-  space.importFromEPSG(4979);
-  space.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
-  if (!source.IsSame(&plane) && !source.IsSame(&space))
-  {
-    this->Data->toWgs84.reset(OGRCreateCoordinateTransformation(&source, &space));
-    if (!this->Data->toWgs84)
-    {
-      throw Error("there is no way from its coordinate reference system to WGS84");
-    }
-  }
-}
-
-namespace
-{
 OGRSpatialReference FromText(const std::string& crs)
 {
   RequireGridsOfProj(crs); // asked for its place as it is read
@@ -91,16 +57,35 @@ OGRSpatialReference FromText(const std::string& crs)
 }
 }
 
+GeoreferencedPoints::GeoreferencedPoints(const Geodetic& origin, const OGRSpatialReference& crs)
+{
+  RequireGridsOfProj(TextOf(crs));
+  this->Frame.setOrigin(origin.latitude, origin.longitude, origin.height);
+  OGRSpatialReference source(crs);
+  source.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
+  OGRSpatialReference plane, space;
+  plane.importFromEPSG(4326);
+  plane.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
+  space.importFromEPSG(4979);
+  space.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
+  if (!source.IsSame(&plane) && !source.IsSame(&space))
+  {
+    this->ToWgs84.reset(OGRCreateCoordinateTransformation(&source, &space));
+    if (!this->ToWgs84)
+    {
+      throw Error("there is no way from its coordinate reference system to WGS84");
+    }
+  }
+}
+
 GeoreferencedPoints::GeoreferencedPoints(const Geodetic& origin, const std::string& crs)
   : GeoreferencedPoints(origin, FromText(crs))
 {
 }
 
-GeoreferencedPoints::~GeoreferencedPoints() = default;
-
 void GeoreferencedPoints::ToLocal(std::vector<Vec3>& points) const
 {
-  if (this->Data->toWgs84)
+  if (this->ToWgs84)
   {
     const std::size_t n = points.size();
     std::vector<double> x(n), y(n), z(n);
@@ -110,7 +95,7 @@ void GeoreferencedPoints::ToLocal(std::vector<Vec3>& points) const
       y[i] = points[i][1];
       z[i] = points[i][2];
     }
-    if (n > 0 && !this->Data->toWgs84->Transform(static_cast<int>(n), x.data(), y.data(), z.data()))
+    if (n > 0 && !this->ToWgs84->Transform(static_cast<int>(n), x.data(), y.data(), z.data()))
     {
       throw Error("coordinates lie outside their coordinate reference system");
     }
@@ -121,11 +106,11 @@ void GeoreferencedPoints::ToLocal(std::vector<Vec3>& points) const
   }
   for (Vec3& p : points)
   {
-    if (!GeodeticFrame::checkPoint(Frame::Geodetic, p).empty())
+    if (!GeodeticFrame::checkPoint(avianlidar::Frame::Geodetic, p).empty())
     {
       throw Error("coordinates lie outside their coordinate reference system");
     }
-    p = this->Data->frame.convert(Frame::Geodetic, Frame::ENU, p);
+    p = this->Frame.convert(avianlidar::Frame::Geodetic, avianlidar::Frame::ENU, p);
   }
 }
 }

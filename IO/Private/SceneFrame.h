@@ -7,11 +7,12 @@
 #ifndef AvianLidarSceneFrame_h
 #define AvianLidarSceneFrame_h
 
+#include "GeodeticFrame.h"
 #include "SceneTypes.h"
 
-#include <memory>
+#include <ogr_spatialref.h>
 
-class OGRSpatialReference;
+#include <memory>
 
 namespace avianlidar::scene
 {
@@ -33,13 +34,13 @@ class GeoreferencedPoints
 public:
   GeoreferencedPoints(const Geodetic& origin, const std::string& crs);
   GeoreferencedPoints(const Geodetic& origin, const OGRSpatialReference& crs);
-  ~GeoreferencedPoints();
 
   void ToLocal(std::vector<Vec3>& points) const;
 
 private:
-  struct Internals;
-  std::unique_ptr<Internals> Data;
+  GeodeticFrame Frame;
+  /// Null where the coordinates are longitude and latitude on WGS84 already.
+  std::unique_ptr<OGRCoordinateTransformation> ToWgs84;
 };
 }
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "SceneReport.h"
 
+#include "Vector.h"
+
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -14,73 +16,52 @@ constexpr double FarAway = 1e5;
 // Of the square of the longest edge.
 constexpr double DegenerateArea = 1e-12;
 
-Vec3 operator-(const Vec3& a, const Vec3& b)
+using glm::cross;
+using glm::dot;
+using Vector = glm::dvec3;
+
+Vector CornerOf(const Mesh& mesh, std::int64_t point)
 {
-  return { a[0] - b[0], a[1] - b[1], a[2] - b[2] };
+  const Vec3& p = mesh.points[point];
+  return { p[0], p[1], p[2] };
 }
 
-Vec3 Cross(const Vec3& a, const Vec3& b)
+bool IsDegenerate(const Vector& a, const Vector& b, const Vector& c)
 {
-  return { a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0] };
+  const Vector e0 = b - a, e1 = c - b, e2 = a - c;
+  const Vector n = cross(e0, e2);
+  const double longest = std::max({ dot(e0, e0), dot(e1, e1), dot(e2, e2) });
+  return std::sqrt(dot(n, n)) <= DegenerateArea * longest;
 }
-
-double Dot(const Vec3& a, const Vec3& b)
-{
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
-bool IsDegenerate(const Vec3& a, const Vec3& b, const Vec3& c)
-{
-  const Vec3 e0 = b - a, e1 = c - b, e2 = a - c;
-  const Vec3 n = Cross(e0, e2);
-  const double longest = std::max({ Dot(e0, e0), Dot(e1, e1), Dot(e2, e2) });
-  return std::sqrt(Dot(n, n)) <= DegenerateArea * longest;
-}
-
-struct Box
-{
-  Vec3 low{ std::numeric_limits<double>::max(), std::numeric_limits<double>::max(),
-    std::numeric_limits<double>::max() };
-  Vec3 high{ std::numeric_limits<double>::lowest(), std::numeric_limits<double>::lowest(),
-    std::numeric_limits<double>::lowest() };
-
-  void Add(const Vec3& p)
-  {
-    for (int i = 0; i < 3; ++i)
-    {
-      this->low[i] = std::min(this->low[i], p[i]);
-      this->high[i] = std::max(this->high[i], p[i]);
-    }
-  }
-};
 
 // Whether a half-line meets a triangle in front of its start.
-bool Meets(const Vec3& start, const Vec3& direction, const Vec3& a, const Vec3& b, const Vec3& c)
+bool Meets(
+  const Vector& start, const Vector& direction, const Vector& a, const Vector& b, const Vector& c)
 {
-  const Vec3 e1 = b - a, e2 = c - a, h = Cross(direction, e2);
-  const double determinant = Dot(e1, h);
+  const Vector e1 = b - a, e2 = c - a, h = cross(direction, e2);
+  const double determinant = dot(e1, h);
   if (determinant == 0)
   {
     return false;
   }
-  const Vec3 s = start - a, q = Cross(s, e1);
-  const double u = Dot(s, h) / determinant, v = Dot(direction, q) / determinant;
-  return u >= 0 && v >= 0 && u + v <= 1 && Dot(e2, q) / determinant > 0;
+  const Vector s = start - a, q = cross(s, e1);
+  const double u = dot(s, h) / determinant, v = dot(direction, q) / determinant;
+  return u >= 0 && v >= 0 && u + v <= 1 && dot(e2, q) / determinant > 0;
 }
 
 // Up, down and sideways, a little askew so that none runs along an edge of something built square.
-constexpr Vec3 Directions[6] = { { 0.00137, 0.00211, 1 }, { 0.00137, 0.00211, -1 },
+const Vector Directions[6] = { { 0.00137, 0.00211, 1 }, { 0.00137, 0.00211, -1 },
   { 1, 0.0131, 0.0071 }, { -1, 0.0131, 0.0071 }, { 0.0113, 1, 0.0073 }, { 0.0113, -1, 0.0073 } };
 
-std::array<int, 6> CountSurfaces(const Mesh& mesh, const Vec3& start)
+std::array<int, 6> CountSurfaces(const Mesh& mesh, const Vector& start)
 {
   std::array<int, 6> counts{};
   for (const auto& t : mesh.triangles)
   {
     for (int i = 0; i < 6; ++i)
     {
-      counts[i] +=
-        Meets(start, Directions[i], mesh.points[t[0]], mesh.points[t[1]], mesh.points[t[2]]);
+      counts[i] += Meets(
+        start, Directions[i], CornerOf(mesh, t[0]), CornerOf(mesh, t[1]), CornerOf(mesh, t[2]));
     }
   }
   return counts;
@@ -92,22 +73,23 @@ void ReportExtents(BuiltScene& built)
   std::vector<std::string> distant;
   for (const Part& part : built.parts)
   {
-    Box box;
+    Vector low(std::numeric_limits<double>::max()), high(std::numeric_limits<double>::lowest());
     std::size_t degenerate = 0;
     for (const auto& t : part.mesh.triangles)
     {
-      const Vec3 &a = part.mesh.points[t[0]], &b = part.mesh.points[t[1]],
-                 &c = part.mesh.points[t[2]];
-      box.Add(a);
-      box.Add(b);
-      box.Add(c);
-      degenerate += IsDegenerate(a, b, c);
+      const Vector corners[] = { CornerOf(part.mesh, t[0]), CornerOf(part.mesh, t[1]),
+        CornerOf(part.mesh, t[2]) };
+      for (const Vector& corner : corners)
+      {
+        low = min(low, corner);
+        high = max(high, corner);
+      }
+      degenerate += IsDegenerate(corners[0], corners[1], corners[2]);
     }
     char text[256];
     std::snprintf(text, sizeof text,
       ": %zu triangles, %zu degenerate, east %.2f to %.2f, north %.2f to %.2f, up %.2f to %.2f m",
-      part.mesh.triangles.size(), degenerate, box.low[0], box.high[0], box.low[1], box.high[1],
-      box.low[2], box.high[2]);
+      part.mesh.triangles.size(), degenerate, low[0], high[0], low[1], high[1], low[2], high[2]);
     built.report.push_back(part.name + text);
     if (degenerate > 0 && degenerate == part.mesh.triangles.size())
     {
@@ -116,8 +98,7 @@ void ReportExtents(BuiltScene& built)
     }
     for (int i = 0; i < 3; ++i)
     {
-      if (std::max(-box.low[i], box.high[i]) > FarAway &&
-        (distant.empty() || distant.back() != part.name))
+      if (std::max(-low[i], high[i]) > FarAway && (distant.empty() || distant.back() != part.name))
       {
         distant.push_back(part.name);
       }
@@ -139,11 +120,12 @@ void ReportLidar(BuiltScene& built)
   {
     return;
   }
+  const Vector lidar((*scene.lidar)[0], (*scene.lidar)[1], (*scene.lidar)[2]);
   int above = 0, below = 0;
   std::string container;
   for (const Part& part : built.parts)
   {
-    const std::array<int, 6> counts = CountSurfaces(part.mesh, *scene.lidar);
+    const std::array<int, 6> counts = CountSurfaces(part.mesh, lidar);
     above += counts[0];
     below += counts[1];
     if (std::all_of(counts.begin(), counts.end(), [](int count) { return count % 2 == 1; }))

@@ -7,20 +7,6 @@
 
 namespace avianlidar::scene
 {
-std::array<Vec2, 2> BoxOf(const Ring& ring)
-{
-  std::array<Vec2, 2> box{ ring.at(0), ring.at(0) };
-  for (const Vec2& p : ring)
-  {
-    for (int i = 0; i < 2; ++i)
-    {
-      box[0][i] = std::min(box[0][i], p[i]);
-      box[1][i] = std::max(box[1][i], p[i]);
-    }
-  }
-  return box;
-}
-
 double LowestOf(const std::vector<TerrainPiece>& pieces)
 {
   double lowest = std::numeric_limits<double>::infinity();
@@ -37,7 +23,6 @@ double LowestOf(const std::vector<TerrainPiece>& pieces)
 Terrain::Terrain(const std::string& name, const Mesh& mesh)
 {
   constexpr double vertical = 1e-6; // of a triangle's area in plan
-  Ring corners;
   bool up = false;
   bool down = false;
   for (const auto& [a, b, c] : mesh.triangles)
@@ -53,14 +38,12 @@ Terrain::Terrain(const std::string& name, const Mesh& mesh)
     }
     (twice > 0 ? up : down) = true;
     Ring ring{ { p[0], p[1] }, { q[0], q[1] }, { r[0], r[1] } };
-    corners.insert(corners.end(), ring.begin(), ring.end());
     const Vec3 plane{ (uz * vy - uy * vz) / twice, (ux * vz - uz * vx) / twice, p[2] };
-    this->Planes.push_back({ {}, ring[0], plane });
     if (twice < 0)
     {
       std::swap(ring[1], ring[2]);
     }
-    this->Triangles.push_back(std::move(ring));
+    this->Faces.push_back({ { { ring } }, ring[0], plane });
   }
   if (up && down)
   {
@@ -68,110 +51,69 @@ Terrain::Terrain(const std::string& name, const Mesh& mesh)
       " has triangles that face up and others that face down, expected a surface "
       "that covers each place in plan once at most");
   }
-  if (corners.empty())
+  constexpr std::size_t boxesPerNode = 10;
+  GEOSContextHandle_t context = this->Context.Get();
+  this->Tree = { GEOSSTRtree_create_r(context, boxesPerNode),
+    [context](GEOSSTRtree* tree) { GEOSSTRtree_destroy_r(context, tree); } };
+  for (TerrainPiece& face : this->Faces)
   {
-    return;
-  }
-  this->Low = BoxOf(corners)[0];
-  this->High = BoxOf(corners)[1];
-  this->Size = static_cast<std::size_t>(std::ceil(std::sqrt(this->Triangles.size())));
-  this->Cells.resize(this->Size * this->Size);
-  for (std::size_t i = 0; i < this->Triangles.size(); ++i)
-  {
-    this->Insert(i);
+    GEOSSTRtree_insert_r(
+      context, this->Tree.get(), this->Context.MakePolygon(face.polygon).get(), &face);
   }
 }
 
-// Into the cells that it meets: all of its box would be too many of long triangles.
-void Terrain::Insert(std::size_t number)
+// In the order of the mesh.
+std::vector<const TerrainPiece*> Terrain::Near(const GEOSGeometry* place) const
 {
-  constexpr double rounding = 1e-6; // of a cell
-  const Ring& triangle = this->Triangles[number];
-  const auto [low, high] = BoxOf(triangle);
-  const double width = (this->High[0] - this->Low[0]) / static_cast<double>(this->Size);
-  const double height = (this->High[1] - this->Low[1]) / static_cast<double>(this->Size);
-  const std::size_t lastY = this->CellOf(high)[1];
-  for (std::size_t y = this->CellOf(low)[1]; y <= lastY; ++y)
-  {
-    const double bottom = this->Low[1] + (static_cast<double>(y) - rounding) * height;
-    const double top = this->Low[1] + (static_cast<double>(y + 1) + rounding) * height;
-    double left = this->High[0];
-    double right = this->Low[0];
-    for (std::size_t i = 0; i < 3; ++i)
+  std::vector<const TerrainPiece*> found;
+  GEOSSTRtree_query_r(
+    this->Context.Get(), this->Tree.get(), place,
+    [](void* face, void* all)
     {
-      const Vec2 &a = triangle[i], &b = triangle[(i + 1) % 3];
-      if (a[1] == b[1] || std::max(a[1], b[1]) < bottom || std::min(a[1], b[1]) > top)
-      {
-        continue;
-      }
-      for (const double end : { a[1], b[1] })
-      {
-        const double share = (std::clamp(end, bottom, top) - a[1]) / (b[1] - a[1]);
-        left = std::min(left, a[0] + share * (b[0] - a[0]));
-        right = std::max(right, a[0] + share * (b[0] - a[0]));
-      }
-    }
-    const std::size_t lastX = this->CellOf({ right + rounding * width, top })[0];
-    for (std::size_t x = this->CellOf({ left - rounding * width, top })[0]; x <= lastX; ++x)
-    {
-      this->Cells[y * this->Size + x].push_back(number);
-    }
-  }
-}
-
-std::array<std::size_t, 2> Terrain::CellOf(const Vec2& p) const
-{
-  std::array<std::size_t, 2> cell{};
-  const auto most = static_cast<double>(this->Size - 1);
-  for (int i = 0; i < 2; ++i)
-  {
-    const double share = (p[i] - this->Low[i]) / (this->High[i] - this->Low[i]);
-    cell[i] = static_cast<std::size_t>(
-      std::clamp(std::floor(share * static_cast<double>(this->Size)), 0.0, most));
-  }
-  return cell;
-}
-
-std::vector<std::size_t> Terrain::Near(const Vec2& low, const Vec2& high) const
-{
-  std::vector<std::size_t> found;
-  if (this->Cells.empty() || high[0] < this->Low[0] || high[1] < this->Low[1] ||
-    low[0] > this->High[0] || low[1] > this->High[1])
-  {
-    return found;
-  }
-  const auto [firstX, firstY] = this->CellOf(low);
-  const auto [lastX, lastY] = this->CellOf(high);
-  for (std::size_t y = firstY; y <= lastY; ++y)
-  {
-    for (std::size_t x = firstX; x <= lastX; ++x)
-    {
-      const auto& cell = this->Cells[y * this->Size + x];
-      found.insert(found.end(), cell.begin(), cell.end());
-    }
-  }
+      static_cast<std::vector<const TerrainPiece*>*>(all)->push_back(
+        static_cast<const TerrainPiece*>(face));
+    },
+    &found);
   std::sort(found.begin(), found.end());
-  found.erase(std::unique(found.begin(), found.end()), found.end());
   return found;
 }
 
 std::vector<TerrainPiece> Terrain::Cut(const Polygon& polygon) const
 {
-  const auto [low, high] = BoxOf(polygon.rings.at(0));
-  const std::vector<std::size_t> near = this->Near(low, high);
-  std::vector<Ring> triangles;
-  for (const std::size_t i : near)
-  {
-    triangles.push_back(this->Triangles[i]);
-  }
+  constexpr double smallestPiece = 1e-6; // m2
+  constexpr double smallestWidth = 1e-4; // m, below which vertices of pieces are one
+  GEOSContextHandle_t context = this->Context.Get();
+  const Geos::Geometry whole = this->Context.MakePolygon(polygon);
+  const std::unique_ptr<const GEOSPreparedGeometry,
+    std::function<void(const GEOSPreparedGeometry*)>>
+    prepared(GEOSPrepare_r(context, whole.get()),
+      [context](const GEOSPreparedGeometry* p) { GEOSPreparedGeom_destroy_r(context, p); });
   std::vector<TerrainPiece> pieces;
-  std::vector<std::vector<Polygon>> shared = CutToTriangles(polygon, triangles);
-  for (std::size_t i = 0; i < near.size(); ++i)
+  for (const TerrainPiece* face : this->Near(whole.get()))
   {
-    for (Polygon& part : shared[i])
+    const Geos::Geometry triangle = this->Context.MakePolygon(face->polygon);
+    if (GEOSPreparedContainsProperly_r(context, prepared.get(), triangle.get()) == 1)
     {
-      pieces.push_back(this->Planes[near[i]]);
-      pieces.back().polygon = std::move(part);
+      pieces.push_back(*face);
+      continue;
+    }
+    if (GEOSPreparedIntersects_r(context, prepared.get(), triangle.get()) == 0)
+    {
+      continue;
+    }
+    std::vector<Polygon> shared;
+    this->Context.Collect(
+      this->Context.Own(GEOSIntersection_r(context, whole.get(), triangle.get())).get(), shared);
+    for (const Polygon& part : shared)
+    {
+      bool repaired = false;
+      for (Polygon& piece : MakeValid(part, repaired))
+      {
+        if (Area(piece) > std::max(smallestPiece, smallestWidth * Perimeter(piece) / 2))
+        {
+          pieces.push_back({ std::move(piece), face->center, face->plane });
+        }
+      }
     }
   }
   return pieces;
@@ -179,13 +121,15 @@ std::vector<TerrainPiece> Terrain::Cut(const Polygon& polygon) const
 
 std::optional<double> Terrain::HeightAt(const Vec2& place) const
 {
-  for (const std::size_t i : this->Near(place, place))
+  const Geos::Geometry point =
+    this->Context.Own(GEOSGeom_createPointFromXY_r(this->Context.Get(), place[0], place[1]));
+  for (const TerrainPiece* face : this->Near(point.get()))
   {
-    const Ring& t = this->Triangles[i];
+    const Ring& t = face->polygon.rings[0];
     if (SignedArea({ t[0], t[1], place }) >= 0 && SignedArea({ t[1], t[2], place }) >= 0 &&
       SignedArea({ t[2], t[0], place }) >= 0)
     {
-      return this->Planes[i].HeightAt(place);
+      return face->HeightAt(place);
     }
   }
   return {};

@@ -5,7 +5,6 @@
 
 namespace avianlidar::formats
 {
-/// The first characters of a word or a line of the file, for a message.
 std::string shown(const std::string& text)
 {
   constexpr std::size_t longest = 40;

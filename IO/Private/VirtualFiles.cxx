@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "VirtualFiles.h"
 
-#include <vtksys/SystemTools.hxx>
+#include "MeshFormats.h"
 
-#include <cpl_conv.h>
-#include <cpl_error.h>
 #include <cpl_http.h>
 #include <ogr_srs_api.h>
 
@@ -14,11 +12,6 @@ namespace avianlidar::scene
 {
 namespace
 {
-bool IsCompressed(const std::string& file)
-{
-  return vtksys::SystemTools::StringEndsWith(vtksys::SystemTools::LowerCase(file), ".gz");
-}
-
 // Without the place in GDAL's own sources.
 std::string WithoutPlace(const std::string& message)
 {
@@ -35,25 +28,6 @@ std::string WithoutPlace(const std::string& message)
 std::mutex ProjMutex;
 int ProjUsers = 0;
 int ProjNetworkBefore = FALSE;
-
-void HoldProjOffline()
-{
-  const std::lock_guard<std::mutex> lock(ProjMutex);
-  if (ProjUsers++ == 0)
-  {
-    ProjNetworkBefore = OSRGetPROJEnableNetwork();
-    OSRSetPROJEnableNetwork(FALSE);
-  }
-}
-
-void ReleaseProj()
-{
-  const std::lock_guard<std::mutex> lock(ProjMutex);
-  if (--ProjUsers == 0)
-  {
-    OSRSetPROJEnableNetwork(ProjNetworkBefore);
-  }
-}
 
 CPLHTTPResult* Refuse(
   const char* url, CSLConstList, GDALProgressFunc, void*, CPLHTTPFetchWriteFunc, void*, void*)
@@ -78,53 +52,32 @@ void CPL_STDCALL Keep(CPLErr severity, CPLErrorNum, const char* message)
 
 std::string VirtualName(const std::string& file)
 {
-  return IsCompressed(file) ? "/vsigzip/" + file : file;
-}
-
-GdalOption::GdalOption(const char* name, const char* value)
-  : Name(name)
-{
-  if (const char* before = CPLGetThreadLocalConfigOption(name, nullptr))
-  {
-    this->Before = before;
-  }
-  CPLSetThreadLocalConfigOption(name, value);
-}
-
-GdalOption::~GdalOption()
-{
-  CPLSetThreadLocalConfigOption(this->Name, this->Before ? this->Before->c_str() : nullptr);
+  return EndingOf(file) == ".gz" ? "/vsigzip/" + file : file;
 }
 
 OfflineGdal::OfflineGdal()
 {
-  HoldProjOffline();
+  const std::lock_guard<std::mutex> lock(ProjMutex);
+  if (ProjUsers++ == 0)
+  {
+    ProjNetworkBefore = OSRGetPROJEnableNetwork();
+    OSRSetPROJEnableNetwork(FALSE);
+  }
   CPLHTTPPushFetchCallback(&Refuse, nullptr);
 }
 
 OfflineGdal::~OfflineGdal()
 {
   CPLHTTPPopFetchCallback();
-  ReleaseProj();
+  const std::lock_guard<std::mutex> lock(ProjMutex);
+  if (--ProjUsers == 0)
+  {
+    OSRSetPROJEnableNetwork(ProjNetworkBefore);
+  }
 }
 
 QuietGdal::QuietGdal()
+  : Pusher(&Keep, &this->LastError)
 {
-  CPLPushErrorHandlerEx(&Keep, &this->LastError);
-}
-
-QuietGdal::~QuietGdal()
-{
-  CPLPopErrorHandler();
-}
-
-bool QuietGdal::Failed() const
-{
-  return !this->LastError.empty();
-}
-
-std::string QuietGdal::Reason() const
-{
-  return this->LastError.empty() ? std::string() : ": " + this->LastError;
 }
 }

@@ -7,7 +7,9 @@
 #ifndef AvianLidarVirtualFiles_h
 #define AvianLidarVirtualFiles_h
 
-#include <optional>
+#include <cpl_conv.h>
+#include <cpl_error.h>
+
 #include <string>
 
 namespace avianlidar::scene
@@ -16,32 +18,10 @@ namespace avianlidar::scene
 /// name itself.
 std::string VirtualName(const std::string& file);
 
-/// An option of GDAL for this thread, which has its old value again afterwards.
-class GdalOption
-{
-public:
-  GdalOption(const char* name, const char* value);
-  ~GdalOption();
-  GdalOption(const GdalOption&) = delete;
-  GdalOption& operator=(const GdalOption&) = delete;
-
-private:
-  const char* Name;
-  std::optional<std::string> Before;
-};
-
-/// While one lives, GDAL reads compressed files of this thread as they are now: it keeps no state
-/// of them for the next opening, which it would find by the name alone, and writes no file beside
-/// them.
-class UncachedGdal
-{
-private:
-  const GdalOption NoState{ "CPL_VSIL_GZIP_SAVE_INFO", "NO" };
-  const GdalOption NoSizes{ "CPL_VSIL_GZIP_WRITE_PROPERTIES", "NO" };
-};
-
-/// While an object exists, GDAL does not use the network in this thread, and PROJ in none. PROJ has
-/// one switch for the process, which gets its old value back when the last object ends.
+/// While an object exists, GDAL does not use the network in this thread, and PROJ in none; PROJ has
+/// one switch for the process, which gets its old value back when the last object ends. GDAL reads
+/// compressed files as they are now: it keeps no state of them for the next opening, which it would
+/// find by the name alone, and writes no file beside them.
 class OfflineGdal
 {
 public:
@@ -52,7 +32,9 @@ public:
 
 private:
   // No URL is the only one allowed.
-  const GdalOption AllowedUrls{ "CPL_VSIL_CURL_ALLOWED_FILENAME", "none" };
+  CPLConfigOptionSetter AllowedUrls{ "CPL_VSIL_CURL_ALLOWED_FILENAME", "none", false };
+  CPLConfigOptionSetter NoState{ "CPL_VSIL_GZIP_SAVE_INFO", "NO", false };
+  CPLConfigOptionSetter NoSizes{ "CPL_VSIL_GZIP_WRITE_PROPERTIES", "NO", false };
 };
 
 /// While an object exists, GDAL's messages of this thread are kept instead of printed.
@@ -60,17 +42,15 @@ class QuietGdal
 {
 public:
   QuietGdal();
-  ~QuietGdal();
-  QuietGdal(const QuietGdal&) = delete;
-  QuietGdal& operator=(const QuietGdal&) = delete;
 
   /// Whether GDAL reported an error, warnings aside.
-  bool Failed() const;
+  bool Failed() const { return !this->LastError.empty(); }
   /// ": <the last error>", or nothing.
-  std::string Reason() const;
+  std::string Reason() const { return this->Failed() ? ": " + this->LastError : std::string(); }
 
 private:
   std::string LastError;
+  CPLErrorHandlerPusher Pusher;
 };
 }
 

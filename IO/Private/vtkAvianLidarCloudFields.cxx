@@ -1,32 +1,23 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkAvianLidarCloudFields.h"
 
-#include "GeodeticFrame.h"
 #include "vtkAvianLidarArrays.h"
 #include "vtkAvianLidarCells.h"
-#include "vtkAvianLidarText.h"
 
+#include "vtkAlgorithm.h"
 #include "vtkDoubleArray.h"
 #include "vtkInformation.h"
 #include "vtkPointData.h"
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
+#include "vtkStreamingDemandDrivenPipeline.h"
 #include "vtkStringArray.h"
-#include "vtkTypeFloat32Array.h"
-#include "vtkTypeFloat64Array.h"
-#include "vtkTypeInt16Array.h"
-#include "vtkTypeInt32Array.h"
-#include "vtkTypeInt64Array.h"
-#include "vtkTypeInt8Array.h"
-#include "vtkTypeUInt16Array.h"
-#include "vtkTypeUInt32Array.h"
-#include "vtkTypeUInt64Array.h"
-#include "vtkTypeUInt8Array.h"
 #include "vtkVariant.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <sstream>
 #include <type_traits>
 
 namespace vtkAvianLidarCloudFields
@@ -35,6 +26,7 @@ namespace formats = avianlidar::formats;
 namespace names = vtkAvianLidarArrays;
 using formats::FormatError;
 using formats::Scalar;
+using Pipeline = vtkStreamingDemandDrivenPipeline;
 
 namespace
 {
@@ -59,11 +51,7 @@ std::string UnitOf(vtkAbstractArray* array)
 /// Three numbers of the field data, or nothing if the array is not there.
 std::optional<Point> FindTriple(vtkPointSet* input, const names::Name& name)
 {
-  const std::string text = names::CheckNumeric(input->GetFieldData(), name, "field data");
-  if (!text.empty())
-  {
-    throw FormatError("the " + text);
-  }
+  Require(names::CheckNumeric(input->GetFieldData(), name, "field data"));
   vtkDataArray* array = input->GetFieldData()->GetArray(name.name);
   if (!array)
   {
@@ -87,26 +75,6 @@ std::optional<Point> FindTriple(vtkPointSet* input, const names::Name& name)
   }
   return values;
 }
-
-template <class T>
-struct ArrayOf;
-#define avianLidarArrayOf(type, array) \
-  template <>                          \
-  struct ArrayOf<type>                 \
-  {                                    \
-    using Type = array;                \
-  }
-avianLidarArrayOf(std::int8_t, vtkTypeInt8Array);
-avianLidarArrayOf(std::uint8_t, vtkTypeUInt8Array);
-avianLidarArrayOf(std::int16_t, vtkTypeInt16Array);
-avianLidarArrayOf(std::uint16_t, vtkTypeUInt16Array);
-avianLidarArrayOf(std::int32_t, vtkTypeInt32Array);
-avianLidarArrayOf(std::uint32_t, vtkTypeUInt32Array);
-avianLidarArrayOf(std::int64_t, vtkTypeInt64Array);
-avianLidarArrayOf(std::uint64_t, vtkTypeUInt64Array);
-avianLidarArrayOf(float, vtkTypeFloat32Array);
-avianLidarArrayOf(double, vtkTypeFloat64Array);
-#undef avianLidarArrayOf
 
 Field CoordinateField(vtkPointSet* input, int axis, bool single)
 {
@@ -143,13 +111,20 @@ double RoundingOf(vtkPointSet* input)
 vtkSmartPointer<vtkDataArray> ToArray(const formats::Column& column)
 {
   return std::visit(
-    [&](const auto& values) -> vtkSmartPointer<vtkDataArray>
+    [&](const auto& values)
     {
-      using T = typename std::decay_t<decltype(values)>::value_type;
-      const names::Name name{ column.name.c_str(), column.unit.c_str() };
-      auto array = names::Make<typename ArrayOf<T>::Type>(
-        name, static_cast<vtkIdType>(values.size() / column.components), column.components);
-      std::copy(values.begin(), values.end(), array->GetPointer(0));
+      using Own = typename std::decay_t<decltype(values)>::value_type;
+      // VTK has two types of 64 bits.
+      using T = std::conditional_t<std::is_same_v<Own, std::int64_t>, vtkTypeInt64,
+        std::conditional_t<std::is_same_v<Own, std::uint64_t>, vtkTypeUInt64, Own>>;
+      auto array = vtkSmartPointer<vtkDataArray>::Take(
+        vtkDataArray::CreateDataArray(vtkTypeTraits<T>::VTK_TYPE_ID));
+      array->SetName(column.name.c_str());
+      array->SetNumberOfComponents(column.components);
+      auto* typed = vtkAOSDataArrayTemplate<T>::FastDownCast(array);
+      names::SetTuples(typed, static_cast<vtkIdType>(values.size() / column.components));
+      names::SetUnit(array, column.unit.c_str());
+      std::copy(values.begin(), values.end(), typed->GetPointer(0));
       return array;
     },
     column.values);
@@ -180,6 +155,15 @@ void AddNote(const formats::Note& note, vtkFieldData* fields)
 }
 
 //------------------------------------------------------------------------------
+void Require(const std::string& wrong)
+{
+  if (!wrong.empty())
+  {
+    throw FormatError("the " + wrong);
+  }
+}
+
+//------------------------------------------------------------------------------
 bool IsTooLongForDouble(vtkDataArray* array)
 {
   constexpr double limit = 9007199254740992.0; // 2^53: the next number is rounded to it
@@ -199,22 +183,13 @@ bool IsTooLongForDouble(vtkDataArray* array)
 //------------------------------------------------------------------------------
 void RequireShape(vtkDataArray* array, int components, vtkPointSet* input)
 {
-  const std::string wrong =
-    names::CheckShape(array, "point array", components, input->GetNumberOfPoints());
-  if (!wrong.empty())
-  {
-    throw FormatError("the " + wrong);
-  }
+  Require(names::CheckShape(array, "point array", components, input->GetNumberOfPoints()));
 }
 
 //------------------------------------------------------------------------------
 vtkDataArray* Find(vtkPointSet* input, const char* name)
 {
-  const std::string text = names::CheckNumeric(input->GetPointData(), { name, "" }, "point array");
-  if (!text.empty())
-  {
-    throw FormatError("the " + text);
-  }
+  Require(names::CheckNumeric(input->GetPointData(), { name, "" }, "point array"));
   vtkDataArray* array = input->GetPointData()->GetArray(name);
   RequireShape(array, 1, input);
   return array;
@@ -239,9 +214,9 @@ Field ToField(vtkDataArray* array, int component)
 }
 
 //------------------------------------------------------------------------------
-std::vector<Field> AllFields(vtkPointSet* input)
+std::vector<vtkDataArray*> ArraysOfOne(vtkPointSet* input)
 {
-  std::vector<Field> fields;
+  std::vector<vtkDataArray*> arrays;
   vtkPointData* data = input->GetPointData();
   for (int i = 0; i < data->GetNumberOfArrays(); ++i)
   {
@@ -249,26 +224,47 @@ std::vector<Field> AllFields(vtkPointSet* input)
     if (array && array->GetName() && *array->GetName() && array->GetNumberOfComponents() == 1)
     {
       RequireShape(array, 1, input);
-      fields.push_back(ToField(array));
+      arrays.push_back(array);
     }
   }
-  return fields;
+  return arrays;
 }
 
 //------------------------------------------------------------------------------
-std::vector<Field> TableFields(
-  vtkObject* writer, const char* fileName, vtkPointSet* input, bool single)
+bool HasName(const std::vector<Field>& fields, const std::string& name)
+{
+  return std::any_of(
+    fields.begin(), fields.end(), [&](const Field& field) { return field.name == name; });
+}
+
+//------------------------------------------------------------------------------
+Field TableField(vtkDataArray* array, int component)
+{
+  Field field = ToField(array, component);
+  std::replace_if(
+    field.name.begin(), field.name.end(), [](unsigned char c) { return c <= ' '; }, '_');
+  if (field.type == Scalar::Int64 || field.type == Scalar::UInt64)
+  {
+    field.type = Scalar::Float64;
+  }
+  return field;
+}
+
+//------------------------------------------------------------------------------
+formats::TableOutput ToTable(
+  vtkPointSet* input, bool single, const std::function<void(const std::string&)>& warn)
 {
   constexpr double noticeable = 1e-3; // m
   const double rounding = single ? RoundingOf(input) : 0.0;
   if (rounding > noticeable)
   {
-    vtkWarningWithObjectMacro(writer,
-      "" << vtkAvianLidarText(fileName) << ": single precision moves coordinates by up to "
-         << rounding << " m so far from the origin: set Precision to Double.");
+    std::ostringstream text;
+    text << ": single precision moves coordinates by up to " << rounding
+         << " m so far from the origin: set Precision to Double.";
+    warn(text.str());
   }
-  std::string left;
-  std::vector<Field> all;
+  formats::TableOutput output;
+  std::vector<Field>& all = output.fields;
   for (int axis = 0; axis < 3; ++axis)
   {
     all.push_back(CoordinateField(input, axis, single));
@@ -278,35 +274,27 @@ std::vector<Field> TableFields(
     all.push_back(ToField(intensity));
     all.back().type = Scalar::Float32;
   }
-  for (Field& field : AllFields(input))
+  std::string left;
+  for (vtkDataArray* array : ArraysOfOne(input))
   {
-    if (field.name == names::Intensity.name)
-    {
-      continue;
-    }
-    // A name is a word.
-    const std::string name = field.name;
-    std::replace_if(
-      field.name.begin(), field.name.end(), [](unsigned char c) { return c <= ' '; }, '_');
-    if (std::any_of(
-          all.begin(), all.end(), [&](const Field& other) { return other.name == field.name; }))
+    const std::string name = array->GetName();
+    const Field field = TableField(array);
+    if (name != names::Intensity.name && HasName(all, field.name))
     {
       left += (left.empty() ? "'" : ", '") + name + "'";
-      continue;
     }
-    if (field.type == Scalar::Int64 || field.type == Scalar::UInt64)
+    else if (name != names::Intensity.name)
     {
-      field.type = Scalar::Float64;
+      all.push_back(field);
     }
-    all.push_back(field);
   }
   if (!left.empty())
   {
-    vtkWarningWithObjectMacro(writer,
-      "" << vtkAvianLidarText(std::string(fileName) + " is without the point arrays " + left)
-         << ": another field of the file has the name.");
+    warn(" is without the point arrays " + left + ": another field of the file has the name.");
   }
-  return all;
+  std::vector<std::string> cut; // nothing: a comment may be as long as it is
+  output.comment = formats::toText(ToNotes(input), std::numeric_limits<std::size_t>::max(), cut);
+  return output;
 }
 
 //------------------------------------------------------------------------------
@@ -337,11 +325,7 @@ int IntegerOf(vtkDataArray* array, std::int64_t i, int otherwise)
 vtkDataArray* FindColours(vtkPointSet* input)
 {
   vtkDataArray* array = input->GetPointData()->GetArray(names::Rgb.name);
-  const std::string text = names::CheckNumeric(input->GetPointData(), names::Rgb, "point array");
-  if (!text.empty())
-  {
-    throw FormatError("the " + text);
-  }
+  Require(names::CheckNumeric(input->GetPointData(), names::Rgb, "point array"));
   if (!array || array->GetNumberOfComponents() == 1)
   {
     return nullptr;
@@ -414,26 +398,15 @@ std::optional<Point> FindOrigin(vtkPointSet* input)
 //------------------------------------------------------------------------------
 vtkStringArray* FindTexts(vtkPointSet* input, const char* name)
 {
-  const std::string wrong = names::CheckText(input->GetFieldData(), { name, "" });
-  if (!wrong.empty())
-  {
-    throw FormatError("the " + wrong);
-  }
+  Require(names::CheckText(input->GetFieldData(), { name, "" }));
   return vtkStringArray::SafeDownCast(input->GetFieldData()->GetAbstractArray(name));
 }
 
 //------------------------------------------------------------------------------
 std::string FindText(vtkPointSet* input, const char* name)
 {
-  return TextAt(input, name, 0);
-}
-
-//------------------------------------------------------------------------------
-std::string TextAt(vtkPointSet* input, const char* name, std::int64_t index)
-{
   auto* array = FindTexts(input, name);
-  return array && index >= 0 && index < array->GetNumberOfValues() ? array->GetValue(index)
-                                                                   : std::string();
+  return array && array->GetNumberOfValues() > 0 ? array->GetValue(0) : std::string();
 }
 
 //------------------------------------------------------------------------------
@@ -444,6 +417,54 @@ std::optional<SensorPose> FindPose(vtkPointSet* input)
   return position
     ? std::optional<SensorPose>(SensorPose(*position, orientation.value_or(Point{ 0.0, 0.0, 0.0 })))
     : std::nullopt;
+}
+
+//------------------------------------------------------------------------------
+Point Carry(const avianlidar::GeodeticFrame& geodesy, avianlidar::Frame from, avianlidar::Frame to,
+  const Point& point, std::int64_t i)
+{
+  using avianlidar::GeodeticFrame;
+  std::string wrong = GeodeticFrame::checkPoint(from, point);
+  const Point carried = wrong.empty() && from != to ? geodesy.convert(from, to, point) : point;
+  wrong = wrong.empty() ? GeodeticFrame::checkPoint(to, carried) : wrong;
+  if (!wrong.empty())
+  {
+    throw FormatError("point " + std::to_string(i) + ": " + wrong);
+  }
+  return carried;
+}
+
+//------------------------------------------------------------------------------
+void SetTimes(const std::vector<double>& times, vtkInformation* output)
+{
+  output->Set(vtkAlgorithm::CAN_HANDLE_PIECE_REQUEST(), 1);
+  output->Remove(Pipeline::TIME_STEPS());
+  output->Remove(Pipeline::TIME_RANGE());
+  if (!times.empty())
+  {
+    const double range[] = { times.front(), times.back() };
+    output->Set(Pipeline::TIME_STEPS(), times.data(), static_cast<int>(times.size()));
+    output->Set(Pipeline::TIME_RANGE(), range, 2);
+  }
+}
+
+//------------------------------------------------------------------------------
+std::size_t StepOf(const std::vector<double>& times, vtkInformation* output)
+{
+  if (times.empty() || !output->Has(Pipeline::UPDATE_TIME_STEP()))
+  {
+    return 0;
+  }
+  const auto after =
+    std::upper_bound(times.begin(), times.end(), output->Get(Pipeline::UPDATE_TIME_STEP()));
+  return static_cast<std::size_t>(std::max<std::ptrdiff_t>(after - times.begin() - 1, 0));
+}
+
+//------------------------------------------------------------------------------
+bool IsOtherPiece(vtkInformation* output)
+{
+  return output->Has(Pipeline::UPDATE_PIECE_NUMBER()) &&
+    output->Get(Pipeline::UPDATE_PIECE_NUMBER()) > 0;
 }
 
 //------------------------------------------------------------------------------

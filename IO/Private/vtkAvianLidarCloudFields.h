@@ -10,17 +10,20 @@
 
 #include "CloudData.h"
 #include "CloudNotes.h"
+#include "FieldTable.h"
+#include "GeodeticFrame.h"
 #include "SensorPose.h"
 
 #include "vtkSmartPointer.h"
 
+#include <new>
 #include <optional>
 #include <vector>
 
 class vtkAbstractArray;
 class vtkDataArray;
 class vtkFieldData;
-class vtkObject;
+class vtkInformation;
 class vtkPointSet;
 class vtkPolyData;
 class vtkStringArray;
@@ -32,6 +35,9 @@ using avianlidar::formats::CloudNotes;
 using avianlidar::formats::Field;
 using avianlidar::formats::Point;
 using avianlidar::formats::SensorPose;
+
+/// Throws what vtkAvianLidarArrays finds wrong, unless it is empty.
+void Require(const std::string& wrong);
 
 /// The numeric point array of that name, or null; one of more than one component is an error.
 vtkDataArray* Find(vtkPointSet* input, const char* name);
@@ -49,13 +55,19 @@ bool IsTooLongForDouble(vtkDataArray* array);
 void RequireShape(vtkDataArray* array, int components, vtkPointSet* input);
 
 /// All numeric point arrays of one component; one without a value for each point is an error.
-std::vector<Field> AllFields(vtkPointSet* input);
+std::vector<vtkDataArray*> ArraysOfOne(vtkPointSet* input);
 
-/// x, y, z (as floats with `single`), intensity as float, and all other fields, their names as
-/// words and integers of 64 bits as doubles. The writer warns of what is left out, as another has
-/// its name, and of coordinates that are rounded by 1 mm or more.
-std::vector<Field> TableFields(
-  vtkObject* writer, const char* fileName, vtkPointSet* input, bool single);
+/// Whether one of the fields has that name.
+bool HasName(const std::vector<Field>& fields, const std::string& name);
+
+/// A field of a table: its name is a word, and integers of 64 bits become doubles.
+Field TableField(vtkDataArray* array, int component = 0);
+
+/// x, y, z (as floats with `single`), intensity as float, all other fields of one component, and
+/// the notes as comment. Warnings name what is left out, as another has its name, and coordinates
+/// that are rounded by 1 mm or more.
+avianlidar::formats::TableOutput ToTable(
+  vtkPointSet* input, bool single, const std::function<void(const std::string&)>& warn);
 
 /// Value i of an array, or `otherwise` where there is no array. It must be finite.
 double ValueOf(vtkDataArray* array, std::int64_t i, double otherwise);
@@ -80,12 +92,45 @@ vtkStringArray* FindTexts(vtkPointSet* input, const char* name);
 /// The field data's text of that name, or an empty one.
 std::string FindText(vtkPointSet* input, const char* name);
 
-/// The texts of an array of the field data by index; empty ones where there is none.
-std::string TextAt(vtkPointSet* input, const char* name, std::int64_t index);
-
 /// Where the field data's `position` and `orientation` say that the sensor is; nothing without
 /// `position`.
 std::optional<SensorPose> FindPose(vtkPointSet* input);
+
+/// Point `i` in another frame; one that either frame does not hold is an error.
+Point Carry(const avianlidar::GeodeticFrame& geodesy, avianlidar::Frame from, avianlidar::Frame to,
+  const Point& point, std::int64_t i);
+
+/// Publish the times of steps, s, of which there may be none; the whole output is piece 0.
+void SetTimes(const std::vector<double>& times, vtkInformation* output);
+
+/// The last step up to the time that is wanted, or the first.
+std::size_t StepOf(const std::vector<double>& times, vtkInformation* output);
+
+/// Whether another piece than the first is wanted.
+bool IsOtherPiece(vtkInformation* output);
+
+/// The error text of a step that reads, with the name of the file.
+template <class Step>
+std::string ErrorIn(const std::string& fileName, const char* noMemory, Step step)
+{
+  try
+  {
+    step();
+    return {};
+  }
+  catch (const avianlidar::WorkStopped&)
+  {
+    throw;
+  }
+  catch (const std::bad_alloc&)
+  {
+    return fileName + ": " + noMemory;
+  }
+  catch (const std::exception& error)
+  {
+    return fileName + ": " + error.what();
+  }
+}
 
 /// A cloud that was read, with a vertex for each point; its values are freed as they are taken
 /// over.

@@ -10,8 +10,11 @@
 #include "Json.h"
 
 #include <array>
+#include <functional>
 #include <iosfwd>
+#include <optional>
 #include <string>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -50,6 +53,14 @@ public:
   bool Has(const char* key) const;
   /// The value of a key, which must exist.
   JsonNode Get(const std::string& key) const;
+  /// What `get`, such as &JsonNode::Number, returns for the value of a key; nothing without the
+  /// key.
+  template <class Getter>
+  auto Find(const char* key, Getter get) const
+  {
+    using Result = std::decay_t<std::invoke_result_t<Getter, JsonNode>>;
+    return this->Has(key) ? std::optional<Result>(std::invoke(get, this->Get(key))) : std::nullopt;
+  }
   /// The value must be an object whose keys are all among those given.
   void RequireKeys(const std::vector<const char*>& known) const;
   /// Keys and values of an object, as written.

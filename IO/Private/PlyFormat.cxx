@@ -3,6 +3,7 @@
 #include "TextLines.h"
 
 #include <algorithm>
+#include <limits>
 #include <sstream>
 
 namespace avianlidar::formats
@@ -23,22 +24,30 @@ struct Element
   std::vector<Property> properties;
 };
 
+/// The names of 1994, which every reader knows, and later ones.
+struct TypeName
+{
+  const char* name;
+  const char* later;
+  Scalar type;
+};
+constexpr TypeName TypeNames[] = { { "char", "int8", Scalar::Int8 },
+  { "uchar", "uint8", Scalar::UInt8 }, { "short", "int16", Scalar::Int16 },
+  { "ushort", "uint16", Scalar::UInt16 }, { "int", "int32", Scalar::Int32 },
+  { "uint", "uint32", Scalar::UInt32 }, { "float", "float32", Scalar::Float32 },
+  { "double", "float64", Scalar::Float64 } };
+
 Scalar typeOf(const std::string& word)
 {
-  static const std::pair<const char*, Scalar> types[] = { { "char", Scalar::Int8 },
-    { "int8", Scalar::Int8 }, { "uchar", Scalar::UInt8 }, { "uint8", Scalar::UInt8 },
-    { "short", Scalar::Int16 }, { "int16", Scalar::Int16 }, { "ushort", Scalar::UInt16 },
-    { "uint16", Scalar::UInt16 }, { "int", Scalar::Int32 }, { "int32", Scalar::Int32 },
-    { "uint", Scalar::UInt32 }, { "uint32", Scalar::UInt32 }, { "float", Scalar::Float32 },
-    { "float32", Scalar::Float32 }, { "double", Scalar::Float64 }, { "float64", Scalar::Float64 } };
-  const auto found = std::find_if(
-    std::begin(types), std::end(types), [&](const auto& type) { return word == type.first; });
-  if (found == std::end(types))
+  for (const TypeName& known : TypeNames)
   {
-    throw FormatError("a property has the type \"" + shown(word) +
-      "\", expected char, uchar, short, ushort, int, uint, float or double");
+    if (word == known.name || word == known.later)
+    {
+      return known.type;
+    }
   }
-  return found->second;
+  throw FormatError("a property has the type \"" + shown(word) +
+    "\", expected char, uchar, short, ushort, int, uint, float or double");
 }
 
 Property propertyOf(std::istringstream& text)
@@ -199,6 +208,39 @@ std::uint64_t endOfLines(ByteSource& source, const Element& element, std::uint64
   }
   return lines.position();
 }
+
+/// VTK takes lines of up to 4095 characters, RPly of up to 1023. A comment that begins with a plus
+/// continues the one before.
+constexpr std::size_t LongestComment = 900;
+
+const char* nameOf(Scalar type)
+{
+  return std::find_if(std::begin(TypeNames), std::end(TypeNames) - 1,
+    [type](const TypeName& known) { return known.type == type; })
+    ->name;
+}
+
+void writeFace(
+  OutputFile& file, std::int64_t face, const std::vector<std::int64_t>& points, bool ascii)
+{
+  const auto most = std::numeric_limits<std::int32_t>::max();
+  const bool beyond = std::any_of(points.begin(), points.end(), [=](auto p) { return p > most; });
+  if (points.size() > 255 || beyond)
+  {
+    throw FormatError("polygon " + std::to_string(face) + " has " +
+      (beyond ? "a point beyond the 2^31 - 1 that PLY numbers"
+              : std::to_string(points.size()) + " points, expected at most 255"));
+  }
+  std::string line =
+    ascii ? std::to_string(points.size()) : std::string(1, static_cast<char>(points.size()));
+  for (const std::int64_t point : points)
+  {
+    unsigned char bytes[4];
+    store(static_cast<std::int32_t>(point), bytes);
+    line += ascii ? " " + std::to_string(point) : std::string(bytes, bytes + sizeof bytes);
+  }
+  file.write(ascii ? line + "\n" : line);
+}
 }
 
 PlyHeader readPlyHeader(ByteSource& source)
@@ -239,14 +281,14 @@ Cloud readPly(ByteSource& source, const KeepGoing& keepGoing)
   const PlyHeader header = readPlyHeader(source);
   requireMemoryFor(header.points, header.length());
   Cloud cloud;
-  TableColumns columns(header, cloud);
+  const TableTargets targets = targetsOf(header, cloud);
   if (header.ascii)
   {
-    readAsciiRows(source, header, columns, keepGoing);
+    readAsciiRows(source, header, targets, keepGoing);
   }
   else
   {
-    readBinaryRows(source, header, columns, keepGoing);
+    readBinaryRows(source, header, targets, keepGoing);
   }
   dropEmptyCells(cloud);
   for (const std::string& comment : header.comments)
@@ -254,5 +296,36 @@ Cloud readPly(ByteSource& source, const KeepGoing& keepGoing)
     cloud.notes.push_back({ "comment", "", {}, { comment } });
   }
   return cloud;
+}
+
+void writePly(OutputFile& file, const TableOutput& output, std::uint64_t points,
+  const PlyFaces& faces, const KeepGoing& keepGoing)
+{
+  std::string header =
+    std::string("ply\nformat ") + (output.ascii ? "ascii" : "binary_little_endian") + " 1.0\n";
+  for (std::size_t at = 0; at < output.comment.size(); at += LongestComment)
+  {
+    header +=
+      (at > 0 ? "comment +" : "comment ") + output.comment.substr(at, LongestComment) + "\n";
+  }
+  header += "element vertex " + std::to_string(points) + "\n";
+  for (const Field& field : output.fields)
+  {
+    header += std::string("property ") + nameOf(field.type) + " " + field.name + "\n";
+  }
+  if (faces.count > 0)
+  {
+    header += "element face " + std::to_string(faces.count) + "\n";
+    header += "property list uchar int vertex_indices\n";
+  }
+  file.write(header + "end_header\n");
+  writeRows(file, output, points, keepGoing);
+  std::vector<std::int64_t> ids;
+  for (std::int64_t i = 0; i < faces.count; ++i)
+  {
+    faces.pointsOf(i, ids);
+    writeFace(file, i, ids, output.ascii);
+    goOn(keepGoing, i, faces.count, 1.0, 1.0);
+  }
 }
 }
