@@ -1,57 +1,18 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Files and folders of the package: names, what is read, files that are written as a whole or not at all, one run in a
-folder."""
+"""Files that are written as a whole or not at all, and one run in a folder."""
 from __future__ import annotations
 
 import contextlib
-import csv
 import fcntl
-import gzip
-import io
 import os
 import pathlib
 import stat
-import unicodedata
-import zlib
-from typing import Any, Callable, Iterable, Iterator, Sequence
+from typing import Any, Callable, Iterator
 
 from ._pipeline import Error, signals_kept
 
-LARGEST = 256 << 20  # bytes that a compressed file may hold
-LONGEST = 200  # bytes of a name: a file's name is longer by what stands behind it
 LOCK = ".avianlidar.lock"  # in a folder while a run writes there
 PARTS = 16  # so many may write one file at the same time
-
-
-def checked_name(name: str, what: str) -> str:
-    """The name, if files and folders may be called so. @param what the input that says it"""
-    control = any(unicodedata.category(letter) in ("Cc", "Cs", "Zl", "Zp") for letter in name)
-    if not name or name.startswith(".") or "/" in name or control or len(name.encode()) > LONGEST:
-        raise Error(f"{what} is {name!r}, expected 1 to {LONGEST} bytes of text for names of files: no / and no control character, no dot "
-                    "at the beginning")
-    return name
-
-
-def read_regular(file) -> bytes:
-    """What a regular file holds, or a link to one; of a file compressed by gzip what it holds then. A pipe may wait for ever,
-    a device never end: they are an error, as in the library's RegularFile.h."""
-    try:
-        kind = os.stat(file).st_mode
-        if not stat.S_ISREG(kind):
-            what = "it is a folder" if stat.S_ISDIR(kind) else "it is not a regular file but a pipe or a device"
-            raise Error(f"{file}: {what}")
-        content = pathlib.Path(file).read_bytes()
-    except (OSError, ValueError) as error:  # ValueError of names that no file has
-        raise Error(f"{file}: cannot be read ({getattr(error, 'strerror', error)})") from None
-    if not content.startswith(b"\x1f\x8b"):
-        return content
-    try:
-        content = gzip.GzipFile(fileobj=io.BytesIO(content)).read(LARGEST + 1)
-    except (OSError, EOFError, zlib.error) as error:
-        raise Error(f"{file}: its compression by gzip is damaged ({error})") from None
-    if len(content) > LARGEST:
-        raise Error(f"{file}: holds more than {LARGEST >> 20} MiB, once decompressed")
-    return content
 
 
 def _hold(name: str, flags: int = 0, mode: int = 0o666) -> int:
@@ -129,13 +90,6 @@ def write_whole(path, content: bytes) -> None:
         with open(name, "wb") as stream:
             stream.write(content)
     synchronize(path.resolve().parent)
-
-
-def as_csv(rows: Iterable[Sequence[Any]], end: str = "\n") -> bytes:
-    """Rows as a file of CSV holds them."""
-    text = io.StringIO(newline="")
-    csv.writer(text, lineterminator=end).writerows(rows)
-    return text.getvalue().encode()
 
 
 @contextlib.contextmanager
