@@ -21,50 +21,38 @@ namespace
 /// So many may write one file at the same time: the last that ends gives it its content.
 constexpr int MostParts = 16;
 
-std::string partOf(const std::string& name, int number)
+/// Opens a part and locks it: its descriptor, or -1, also if another writer has it.
+int hold(const std::string& part, int flags, unsigned int mode)
 {
-  return name + ".avianpart" + std::to_string(number);
-}
-
-bool isStillCalled(std::FILE* file, const std::string& name)
-{
-  struct stat open = {}, named = {};
-  return fstat(fileno(file), &open) == 0 && lstat(name.c_str(), &named) == 0 &&
-    open.st_dev == named.st_dev && open.st_ino == named.st_ino;
-}
-
-bool lock(std::FILE* file)
-{
-  return flock(fileno(file), LOCK_EX | LOCK_NB) == 0;
-}
-
-/// Removes a part whose writer was killed: nobody holds its lock.
-void removeAbandoned(const std::string& part)
-{
-  std::error_code ignored;
-  if (!fs::is_regular_file(fs::symlink_status(part, ignored)))
+  const int file =
+    open(part.c_str(), flags | O_RDWR | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK, mode & ALLPERMS);
+  if (file < 0)
   {
-    return;
+    return -1;
   }
-  std::FILE* file = std::fopen(part.c_str(), "r+be");
-  if (!file) // it may have the permissions of a file that is only read
+  // Some file systems have no locks. There a part that is made here counts as locked.
+  const bool isLocked =
+    flock(file, LOCK_EX | LOCK_NB) == 0 || ((flags & O_EXCL) && errno != EWOULDBLOCK);
+  // Its writer may have ended, or another one may have removed it, before it was locked.
+  struct stat locked = {}, named = {};
+  if (isLocked && fstat(file, &locked) == 0 && lstat(part.c_str(), &named) == 0 &&
+    locked.st_dev == named.st_dev && locked.st_ino == named.st_ino)
   {
-    file = std::fopen(part.c_str(), "rbe");
+    return file;
   }
-  if (file)
-  {
-    if (lock(file) && isStillCalled(file, part))
-    {
-      std::remove(part.c_str());
-    }
-    std::fclose(file);
-  }
+  close(file);
+  return -1;
 }
 
 /// Exchanges the names of two files; false where the file system cannot do so.
 bool exchangeNames(const std::string& one, const std::string& two)
 {
   return renameat2(AT_FDCWD, one.c_str(), AT_FDCWD, two.c_str(), RENAME_EXCHANGE) == 0;
+}
+
+[[noreturn]] void fail(const std::string& what)
+{
+  throw FormatError(what + ": " + std::strerror(errno));
 }
 }
 
@@ -79,15 +67,32 @@ OutputFile::OutputFile(const std::string& name)
     const fs::path target = fs::read_symlink(this->Name, ignored);
     this->Name = (fs::path(this->Name).parent_path() / target).string();
   }
-  const fs::file_status status = fs::status(this->Name, ignored);
-  if (fs::exists(status) && !fs::is_regular_file(status))
+  struct stat old = {};
+  if (stat(this->Name.c_str(), &old) == 0 && !S_ISREG(old.st_mode))
   {
     throw FormatError("it exists and is not a regular file");
   }
-  this->openPart();
-  if (fs::exists(status))
+  this->Mode = old.st_mode;
+  for (int i = 0; i < MostParts; ++i)
   {
-    fs::permissions(this->Part, status.permissions() & fs::perms::mask, ignored);
+    const std::string part = this->Name + ".avianpart" + std::to_string(i);
+    const int abandoned = hold(part, 0, 0);
+    if (abandoned >= 0) // its writer was killed
+    {
+      std::remove(part.c_str());
+      close(abandoned);
+    }
+    if (!this->File)
+    {
+      const int made =
+        hold(part, O_CREAT | O_EXCL, this->Mode ? this->Mode | S_IWUSR : DEFFILEMODE);
+      this->File = made < 0 ? nullptr : fdopen(made, "wb");
+      this->Part = part;
+    }
+  }
+  if (!this->File)
+  {
+    fail("cannot be opened for writing");
   }
 }
 
@@ -100,56 +105,19 @@ OutputFile::~OutputFile()
   }
 }
 
-void OutputFile::openPart()
-{
-  for (int i = 0; i < MostParts; ++i)
-  {
-    removeAbandoned(partOf(this->Name, i));
-  }
-  for (int i = 0; i < MostParts && !this->File; ++i)
-  {
-    this->Part = partOf(this->Name, i);
-    errno = 0;
-    // 'x': never somebody else's file.
-    this->File = std::fopen(this->Part.c_str(), "wbxe");
-    if (!this->File && errno != EEXIST)
-    {
-      break;
-    }
-    // Another writer may have taken it for abandoned. Some file systems have no locks.
-    if (this->File &&
-      ((!lock(this->File) && errno == EWOULDBLOCK) || !isStillCalled(this->File, this->Part)))
-    {
-      std::fclose(this->File);
-      this->File = nullptr;
-    }
-  }
-  if (!this->File)
-  {
-    this->fail("cannot be opened for writing");
-  }
-}
-
-void OutputFile::fail(const std::string& what) const
-{
-  throw FormatError(what + (errno ? std::string(": ") + std::strerror(errno) : std::string()));
-}
-
 void OutputFile::write(const void* bytes, std::size_t count)
 {
-  errno = 0;
   if (count > 0 && std::fwrite(bytes, 1, count, this->File) != count)
   {
-    this->fail("cannot be written to its end");
+    fail("cannot be written to its end");
   }
 }
 
 void OutputFile::seek(std::uint64_t at)
 {
-  errno = 0;
   if (fseeko(this->File, static_cast<off_t>(at), SEEK_SET) != 0)
   {
-    this->fail("cannot be written to its end");
+    fail("cannot be written to its end");
   }
 }
 
@@ -168,10 +136,10 @@ void OutputFile::commitBoth(OutputFile& first, OutputFile& second)
 {
   first.finish();
   second.finish();
-  std::error_code ignored;
-  const bool replaces = fs::exists(first.Name, ignored);
   // The old file is kept under the name of the part.
-  const bool isKept = replaces && exchangeNames(first.Part, first.Name);
+  const bool isKept = exchangeNames(first.Part, first.Name);
+  std::error_code ignored;
+  const bool isNew = !isKept && !fs::exists(first.Name, ignored);
   if (!isKept)
   {
     first.takeName();
@@ -182,34 +150,33 @@ void OutputFile::commitBoth(OutputFile& first, OutputFile& second)
   }
   catch (const FormatError& error)
   {
-    if (!replaces)
+    if (isKept ? exchangeNames(first.Part, first.Name)
+               : isNew && std::remove(first.Name.c_str()) == 0)
     {
-      fs::remove(first.Name, ignored);
+      throw;
     }
-    else if (!isKept || !exchangeNames(first.Part, first.Name))
-    {
-      throw FormatError(error.what() + ("; the old " + first.Name + " is replaced already"));
-    }
-    throw;
+    throw FormatError(error.what() + ("; the old " + first.Name + " is replaced already"));
   }
 }
 
 void OutputFile::finish()
 {
-  errno = 0;
   // What was buffered may fail only now, and on some file systems when a descriptor is closed.
   if (std::fflush(this->File) != 0 || close(dup(fileno(this->File))) != 0)
   {
-    this->fail("cannot be written to its end");
+    fail("cannot be written to its end");
+  }
+  if (this->Mode)
+  {
+    fchmod(fileno(this->File), this->Mode & ALLPERMS);
   }
 }
 
 void OutputFile::takeName()
 {
-  errno = 0;
   if (std::rename(this->Part.c_str(), this->Name.c_str()) != 0)
   {
-    this->fail("cannot be given its name");
+    fail("cannot be given its name");
   }
   std::fclose(this->File);
   this->File = nullptr;

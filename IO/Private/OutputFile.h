@@ -3,10 +3,10 @@
  * @file OutputFile.h
  * @brief Writes a file as a whole or not at all.
  *
- * Bytes go to a part beside the file (its name with .avianpart and a digit), which takes the wanted
- * name when commit() is called. Without commit() the part is removed, and a file that had the
- * wanted name stays as it was. A part is locked (flock) while it is written. The part of a killed
- * process is not locked, and the next writing of the file removes it.
+ * Bytes go to a part beside the file (its name with .avianpart and a number), which takes the
+ * wanted name when commit() is called. Without commit() the part is removed, and a file that had
+ * the wanted name stays as it was. A part is locked (flock) while it is written. The part of a
+ * killed process is not locked, and the next writing of the file removes it.
  */
 #ifndef AvianLidarOutputFile_h
 #define AvianLidarOutputFile_h
@@ -48,8 +48,6 @@ public:
   static void commitBoth(OutputFile& first, OutputFile& second);
 
 private:
-  [[noreturn]] void fail(const std::string& what) const;
-  void openPart();
   /// Writes what is still buffered.
   void finish();
   void takeName();
@@ -57,6 +55,7 @@ private:
   std::string Name;
   std::string Part;
   std::FILE* File = nullptr; ///< the part, locked until it has its name or is removed
+  unsigned int Mode = 0;     ///< st_mode of the file that is replaced, 0 if there is none
 };
 }
 

@@ -1,83 +1,39 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Files and folders of the package: names, what is read, files that are written as a whole or not at all, one run in a
-folder."""
+"""Files that are written as a whole or not at all, and one run in a folder."""
 from __future__ import annotations
 
 import contextlib
-import csv
 import fcntl
-import gzip
-import io
 import os
 import pathlib
 import stat
-import unicodedata
-import zlib
-from typing import Any, Callable, Iterable, Iterator, Sequence
+from typing import Any, Callable, Iterator
 
 from ._pipeline import Error, signals_kept
 
-LARGEST = 256 << 20  # bytes that a compressed file may hold
-LONGEST = 200  # bytes of a name: a file's name is longer by what stands behind it
 LOCK = ".avianlidar.lock"  # in a folder while a run writes there
 PARTS = 16  # so many may write one file at the same time
-NOT_HELD, NO_LOCKS = -1, -2  # in place of a descriptor
 
 
-def checked_name(name: str, what: str) -> str:
-    """The name, if files and folders may be called so. @param what the input that says it"""
-    control = any(unicodedata.category(letter) in ("Cc", "Cs", "Zl", "Zp") for letter in name)
-    if not name or name.startswith(".") or "/" in name or control or len(name.encode()) > LONGEST:
-        raise Error(f"{what} is {name!r}, expected 1 to {LONGEST} bytes of text for names of files: no / and no control character, no dot "
-                    "at the beginning")
-    return name
-
-
-def read_regular(file) -> bytes:
-    """What a regular file holds, or a link to one; of a file compressed by gzip what it holds then. A pipe may wait for ever,
-    a device never end: they are an error, as in the library's RegularFile.h."""
+def _hold(name: str, flags: int = 0, mode: int = 0o666) -> int:
+    """Open a file and lock it: its descriptor. `BlockingIOError` if another process has it or it is gone, `Error` where the file system
+    has no locks. There a file that is made here (O_EXCL) counts as locked."""
+    handle = os.open(name, flags | os.O_RDWR | os.O_NOFOLLOW | os.O_NONBLOCK, mode)
     try:
-        kind = os.stat(file).st_mode
-        if not stat.S_ISREG(kind):
-            what = "it is a folder" if stat.S_ISDIR(kind) else "it is not a regular file but a pipe or a device"
-            raise Error(f"{file}: {what}")
-        content = pathlib.Path(file).read_bytes()
-    except (OSError, ValueError) as error:  # ValueError of names that no file has
-        raise Error(f"{file}: cannot be read ({getattr(error, 'strerror', error)})") from None
-    if not content.startswith(b"\x1f\x8b"):
-        return content
-    try:
-        content = gzip.GzipFile(fileobj=io.BytesIO(content)).read(LARGEST + 1)
-    except (OSError, EOFError, zlib.error) as error:
-        raise Error(f"{file}: its compression by gzip is damaged ({error})") from None
-    if len(content) > LARGEST:
-        raise Error(f"{file}: holds more than {LARGEST >> 20} MiB, once decompressed")
-    return content
-
-
-def _hold(name: str, flags: int = 0) -> int:
-    """A file, locked, as a descriptor; NOT_HELD where others have it or it is gone; NO_LOCKS where the file system has none.
-    A file that is made here (O_EXCL) counts as held also there."""
-    try:
-        handle = os.open(name, flags | os.O_RDWR | os.O_CLOEXEC | os.O_NOFOLLOW | os.O_NONBLOCK, 0o666)
-    except FileExistsError:
-        return NOT_HELD
-    except FileNotFoundError:
-        if flags & os.O_CREAT:  # its folder
+        try:
+            fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
             raise
-        return NOT_HELD
-    found = handle
-    try:
-        fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
-    except BlockingIOError:
-        found = NOT_HELD
-    except OSError:
-        found = handle if flags & os.O_EXCL else NO_LOCKS
-    with contextlib.suppress(OSError):
-        if found == handle and os.path.samestat(os.fstat(handle), os.lstat(name)):
-            return handle
-    os.close(handle)
-    return min(found, NOT_HELD)
+        except OSError:
+            if not flags & os.O_EXCL:
+                raise Error(f"files here have no locks: if no other run is there, remove {name}") from None
+        locked = os.fstat(handle)
+        if not locked.st_nlink or not os.path.samestat(locked, os.lstat(name)):
+            raise BlockingIOError(f"{name} is another file now")
+        return handle
+    except BaseException:
+        os.close(handle)
+        raise
 
 
 @contextlib.contextmanager
@@ -91,22 +47,21 @@ def replacing(path: pathlib.Path) -> Iterator[str]:
     if mode and not stat.S_ISREG(mode):
         raise FileExistsError(f"{path}: it exists and is not a regular file")
     path = path.resolve()  # a link stays a link
-    parts = [f"{path}.avianpart{i}" for i in range(PARTS)]
-    for part in parts:
-        with contextlib.suppress(OSError):  # somebody else's
+    handle, name = None, ""
+    for part in (f"{path}.avianpart{i}" for i in range(PARTS)):
+        with contextlib.suppress(OSError, Error):  # another writer's
             abandoned = _hold(part)
-            if abandoned >= 0:
-                os.unlink(part)
-                os.close(abandoned)
-    held = ((part, _hold(part, os.O_CREAT | os.O_EXCL)) for part in parts)
-    name, handle = next(((part, handle) for part, handle in held if handle >= 0), ("", NOT_HELD))
-    if not name:
+            os.unlink(part)
+            os.close(abandoned)
+        if handle is None:
+            with contextlib.suppress(FileExistsError, BlockingIOError):
+                handle, name = _hold(part, os.O_CREAT | os.O_EXCL, stat.S_IMODE(mode or 0o666) | stat.S_IWUSR), part
+    if handle is None:
         raise FileExistsError(f"{path} is being written by {PARTS} others")
     try:
-        mode = stat.S_IMODE(mode or os.fstat(handle).st_mode)
-        os.chmod(name, mode | stat.S_IWUSR)
         yield name
-        os.chmod(name, mode)
+        if mode:
+            os.chmod(name, stat.S_IMODE(mode))
         os.fsync(handle)
         os.replace(name, path)
     except BaseException as error:
@@ -137,23 +92,6 @@ def write_whole(path, content: bytes) -> None:
     synchronize(path.resolve().parent)
 
 
-def as_csv(rows: Iterable[Sequence[Any]], end: str = "\n") -> bytes:
-    """Rows as a file of CSV holds them."""
-    text = io.StringIO(newline="")
-    csv.writer(text, lineterminator=end).writerows(rows)
-    return text.getvalue().encode()
-
-
-def _remove(paths: Iterable[pathlib.Path], files: bool) -> None:
-    """Remove folders that are empty. @param files whether files go, too"""
-    for path in paths:
-        with contextlib.suppress(OSError):
-            if path.is_dir() and not path.is_symlink():
-                path.rmdir()
-            elif files:
-                path.unlink()
-
-
 @contextlib.contextmanager
 def only_run(folder, ranks=None, goes_on: bool = True, known: Callable[[], Any] = lambda: None) -> Iterator[None]:
     """The folder, which is made, is of this run alone: `Error` where another one has it. A run that was killed has none. A folder
@@ -165,32 +103,37 @@ def only_run(folder, ranks=None, goes_on: bool = True, known: Callable[[], Any] 
     if ranks is not None:
         ranks.agree(folder, known)
     name, new = folder / LOCK, [path for path in (folder, *folder.parents) if not os.path.lexists(path)]
-    handle, failed, problem = NOT_HELD, True, None
+    handle, failed = None, True
+    problem: Exception = Error(f"{folder}: another run writes there; wait for its end, or choose another folder")
     try:
         if ranks is None or ranks.rank == 0:
             try:
                 with signals_kept():  # so that what was made is known when Ctrl+C comes
                     folder.mkdir(parents=True, exist_ok=True)
                     for flags in 3 * (os.O_CREAT | os.O_EXCL, 0):  # the run before may end just now
-                        handle = _hold(str(name), flags)
-                        if handle >= 0:
+                        with contextlib.suppress(FileExistsError, FileNotFoundError, BlockingIOError):
+                            handle = _hold(str(name), flags)
                             break
+            except Error as error:
+                problem = Error(f"{problem}; {error}")
             except OSError as error:  # the others are to know before it is said
                 problem = error
-        has_it = handle >= 0 if ranks is None else ranks.first_says(handle >= 0)
-        if problem:
+        has_it = handle is not None
+        if not (ranks.first_says(has_it) if ranks else has_it):
             raise problem
-        if not has_it:
-            words = f"; files here have no locks: if no other run is there, remove {name}" if handle == NO_LOCKS else ""
-            raise Error(f"{folder}: another run writes there; wait for its end, or choose another folder{words}")
         yield
         failed = False
     finally:
-        if handle >= 0:
-            if failed and folder in new:  # while it is locked
-                _remove((path for path in sorted(folder.rglob("*"), reverse=True) if path != name), not goes_on)
+        if handle is not None:
+            for path in sorted(folder.rglob("*"), reverse=True) if failed and folder in new else ():  # while it is locked
+                with contextlib.suppress(OSError):
+                    if path.is_dir() and not path.is_symlink():
+                        path.rmdir()
+                    elif path != name and not goes_on:
+                        path.unlink()
             with contextlib.suppress(FileNotFoundError):  # with its folder
-                os.unlink(name)
+                name.unlink()
             os.close(handle)
-        if failed:
-            _remove(new, False)
+        for path in new if failed else ():
+            with contextlib.suppress(OSError):
+                path.rmdir()

@@ -1,31 +1,68 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Clouds to and from files."""
+"""Clouds to and from files; names of files, and what is read."""
 from __future__ import annotations
 
 import contextlib
 import csv
+import gzip
 import io
 import math
+import os
 import pathlib
 import re
+import stat
+import unicodedata
 import warnings
+import zlib
 from typing import Any, Dict, List, Optional, Tuple
 
 import numpy as np
 
 from . import vtkAvianLidar as _wrapped
 from ._cloud import Cloud, add_array, vertices
-from ._disk import read_regular
-from ._pipeline import callers_level, file_name, update
+from ._pipeline import Error, callers_level, file_name, update
 from ._properties import set_properties
 from ._suffixes import PACKETS, READERS, TABLES
 from ._writers import refuse, suffixes, write
 
+LARGEST = 256 << 20  # bytes that a compressed file may hold
+LONGEST = 200  # bytes of a name: a file's name is longer by what stands behind it
 _NAME_AND_UNIT = re.compile(r"(.*?)(?: \[([^\[\]]*)\])?", re.S)
 _AXIS = re.compile(r"(?://)?\s*([xyz])(?:\s*[(\[]m[)\]])?", re.I)  # of CloudCompare, LAStools, spreadsheets
 _POINTS = [stem + mark for stem in ("Points", "Points_m_XYZ") for mark in ":_"]  # of ParaView and VeloView, before a number
 # What HELIOS++ writes, without a first line of names; and what any table of places has.
 _HELIOS = ("x y z intensity echo_width return_number number_of_returns fullwave_index hit_object_id classification gps_time").split()
+
+
+def checked_name(name: str, what: str) -> str:
+    """The name, if files and folders may be called so. @param what the input that says it"""
+    control = any(unicodedata.category(letter) in ("Cc", "Cs", "Zl", "Zp") for letter in name)
+    if not name or name.startswith(".") or "/" in name or control or len(name.encode()) > LONGEST:
+        raise Error(f"{what} is {name!r}, expected 1 to {LONGEST} bytes of text for names of files: no / and no control character, no dot "
+                    "at the beginning")
+    return name
+
+
+def read_regular(file) -> bytes:
+    """What a regular file holds, or a link to one; of a file compressed by gzip what it holds then. A pipe may wait for ever,
+    a device never end: they are an error, as in the library's RegularFile.h."""
+    try:
+        kind = os.stat(file).st_mode
+        if not stat.S_ISREG(kind):
+            what = "it is a folder" if stat.S_ISDIR(kind) else "it is not a regular file but a pipe or a device"
+            raise Error(f"{file}: {what}")
+        content = pathlib.Path(file).read_bytes()
+    except (OSError, ValueError) as error:  # ValueError of names that no file has
+        raise Error(f"{file}: cannot be read ({getattr(error, 'strerror', error)})") from None
+    if not content.startswith(b"\x1f\x8b"):
+        return content
+    try:
+        content = gzip.GzipFile(fileobj=io.BytesIO(content)).read(LARGEST + 1)
+    except (OSError, EOFError, zlib.error) as error:
+        raise Error(f"{file}: its compression by gzip is damaged ({error})") from None
+    if len(content) > LARGEST:
+        raise Error(f"{file}: holds more than {LARGEST >> 20} MiB, once decompressed")
+    return content
 
 
 def _axes(names: List[str]) -> List[str]:

@@ -2,15 +2,17 @@
 """Clouds to files, by their suffix."""
 from __future__ import annotations
 
+import csv
+import io
 import os
 import pathlib
-from typing import Any, Dict, Iterator, List, Sequence, Tuple
+from typing import Any, Dict, Iterable, Iterator, List, Sequence, Tuple
 
 import numpy as np
 from vtkmodules.vtkCommonCore import vtkPoints
 
 from . import vtkAvianLidar as _wrapped
-from ._disk import as_csv, replacing
+from ._disk import replacing
 from ._pipeline import Error, file_name, update
 from ._properties import set_properties
 from ._suffixes import WRITERS
@@ -61,6 +63,13 @@ def columns_of(cloud) -> Iterator[Tuple[str, str, np.ndarray]]:
             yield name, units[name], values
         else:
             yield from ((f"{name}_{i}", units[name], part) for i, part in enumerate(values.T))
+
+
+def as_csv(rows: Iterable[Sequence[Any]], end: str = "\n") -> bytes:
+    """Rows as a file of CSV holds them."""
+    text = io.StringIO(newline="")
+    csv.writer(text, lineterminator=end).writerows(rows)
+    return text.getvalue().encode()
 
 
 def _write_csv(cloud, name: str) -> None:

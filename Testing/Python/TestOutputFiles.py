@@ -14,6 +14,7 @@ import unittest
 
 import avianlidar as al
 from avianlidar import _pipeline, _suffixes, _writers, vtkAvianLidar as wrapped
+from avianlidar._disk import only_run, replacing
 from cloudtools import echoes
 from echotools import InFolder, Messages
 
@@ -42,6 +43,19 @@ def disk(size):
         yield
     finally:
         resource.setrlimit(resource.RLIMIT_FSIZE, limits)
+
+
+@contextlib.contextmanager
+def read_only(folder):
+    """Nothing may be made there, not even by root."""
+    user = os.geteuid()
+    folder.chmod(0o555)
+    os.seteuid(user or 65534)  # nobody
+    try:
+        yield
+    finally:
+        os.seteuid(user)
+        folder.chmod(0o755)
 
 
 def parts():
@@ -140,6 +154,36 @@ class Single(Written):
                 self.refused(name, words, OSError)
                 self.assertEqual(os.readlink(name), place)
                 os.remove(name)
+
+    def test_links_to_what_is_still_to_be_made(self):
+        for name in NAMES:
+            os.symlink("other-" + name, name)
+            al.save(self.data, name)
+            self.assertEqual((os.readlink(name), os.path.isfile("other-" + name)), ("other-" + name, True))
+
+    def test_a_folder_that_is_only_read(self):
+        """Files that are there stay, new ones are not made, and no run has the folder."""
+        for name in NAMES:
+            al.save(self.data, name)
+        before = {path.name: path.read_bytes() for path in self.folder.iterdir()}
+        with read_only(self.folder):
+            for name in NAMES:
+                for one in (name, "new-" + name):
+                    with self.subTest(one):
+                        self.refused(one, "Permission denied")
+            for folder in (".", "new"):
+                with self.assertRaisesRegex(PermissionError, folder), only_run(folder):
+                    self.fail("it goes on")
+        self.assertEqual({path.name: path.read_bytes() for path in self.folder.iterdir()}, before)
+
+    def test_two_write_one_file(self):
+        """Python's own and any writer: each its own part, the last to end counts."""
+        for name in NAMES:
+            with self.subTest(name), replacing(self.folder / name) as part:
+                pathlib.Path(part).write_text("last")
+                al.save(self.data, name)
+                self.assertGreater(os.path.getsize(name), 100)
+            self.assertEqual(((self.folder / name).read_text(), parts()), ("last", []))
 
     def test_names_that_are_none(self):
         for name in NAMES:

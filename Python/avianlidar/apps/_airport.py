@@ -16,11 +16,12 @@ import numpy as np
 from osgeo import gdal, ogr, osr
 
 from .._cloud import field_values, leaves_of, triangles_of
-from .._disk import as_csv, read_regular, write_whole
+from .._disk import write_whole
+from .._files import read_regular
 from .._pipeline import Error, update
 from .._scene import Scene, load_scene
 from .._scene import mesh as _surface
-from .._writers import vtp
+from .._writers import as_csv, vtp
 from . import _heights, _pictures, siting
 from ._extract import COAST, CUT, UNKNOWN, Feature, geometry, height_name, moved, open_file, properties_of, quiet, read_extract, rules, sea, valid, without_parts
 from ._extract import degrees as _degrees

@@ -10,10 +10,12 @@ from typing import Any, Callable, Dict, List, NamedTuple, Optional, Sequence, Tu
 
 import numpy as np
 
-from .._disk import as_csv, only_run, read_regular, write_whole
+from .._disk import only_run, write_whole
+from .._files import read_regular
 from .._pipeline import Error
 from .._version import __version__
 from .._weather import in_words
+from .._writers import as_csv
 from . import _pictures as pictures
 from ._card import cell
 from ._labels import BIRD, MOVING

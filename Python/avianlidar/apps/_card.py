@@ -10,10 +10,11 @@ from typing import Any, Callable, Dict, List, Mapping, Optional, Sequence, Tuple
 
 import numpy as np
 
-from .._disk import as_csv, write_whole
+from .._disk import write_whole
 from .._pipeline import Error
 from .._ranks import as_json
 from .._version import __version__
+from .._writers import as_csv
 from . import _pictures as pictures
 from . import _scores as scores
 from ._following import FALSE, ORIGINS, STATES, VOLUMES, Input

@@ -16,7 +16,7 @@ import numpy as np
 from vtkmodules.util.numpy_support import vtk_to_numpy
 
 from .._coverage import Coverage, places_of
-from .._disk import read_regular
+from .._files import read_regular
 from .._pipeline import Error, Updates, update
 from .._ranks import Ranks
 from .._sensor import Sensor

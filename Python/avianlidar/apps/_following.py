@@ -16,7 +16,7 @@ import numpy as np
 
 from .. import vtkAvianLidar as _wrapped
 from .._cloud import add_array, as_numpy
-from .._disk import read_regular
+from .._files import read_regular
 from .._pipeline import Error, Updates, update
 from .._properties import get_property, property_names, set_properties
 from .._ranks import digest_of_arrays

@@ -8,7 +8,7 @@ import math
 import pathlib
 from typing import Any, Iterator
 
-from .._disk import read_regular
+from .._files import read_regular
 from .._pipeline import Error
 
 KINDS = {"objects": "a scene", "number_of_scans": "a scenario", "siting": "a plan", "coverage": "a plan"}  # by a key that others have not

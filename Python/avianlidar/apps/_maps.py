@@ -13,14 +13,15 @@ import numpy as np
 
 from .. import vtkAvianLidar as _wrapped
 from .._coverage import Coverage, places_of
-from .._disk import as_csv, checked_name, replacing, write_whole
-from .._files import save
+from .._disk import replacing, write_whole
+from .._files import checked_name, save
 from .._pipeline import Error, update
 from .._properties import in_snake_case
 from .._ranks import digest_of, digest_of_arrays
 from .._scene import Scene, load_scene
 from .._sensor import Sensor
 from .._weather import AIR, in_weather, weather, without_air
+from .._writers import as_csv
 from . import _metar
 from ._air import Air, weakening
 from ._json import check_json, load_json, naming

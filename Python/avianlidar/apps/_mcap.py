@@ -14,7 +14,8 @@ from typing import Dict, Iterator, List, Sequence, Tuple
 
 import numpy as np
 
-from .._disk import read_regular, replacing
+from .._disk import replacing
+from .._files import read_regular
 from .._version import __version__
 
 _MAGIC = b"\x89MCAP0\r\n"

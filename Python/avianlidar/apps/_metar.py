@@ -16,7 +16,7 @@ import pathlib
 import re
 from typing import Any, Dict, Iterator, List, NamedTuple, Optional, Tuple
 
-from .._disk import read_regular
+from .._files import read_regular
 from .._pipeline import Error
 from ._air import extinction_of_rain
 

@@ -12,7 +12,7 @@ from xml.etree import ElementTree
 
 from osgeo import ogr, osr
 
-from .._disk import read_regular
+from .._files import read_regular
 from .._pipeline import Error
 from ._extract import CONTROLS, NUMBER, TALLEST, Feature, degrees, form_of, geometry, number_of, plain
 

@@ -20,7 +20,8 @@ from vtkmodules.vtkCommonDataModel import vtkFieldData, vtkMultiBlockDataSet, vt
 
 from .. import vtkAvianLidar as _wrapped
 from .._cloud import Cloud, add_array, field_values, leaves_of
-from .._disk import as_csv, only_run, read_regular, synchronize, write_whole
+from .._disk import only_run, synchronize, write_whole
+from .._files import read_regular
 from .._pipeline import Error, Updates, callers_level, update
 from .._properties import in_snake_case, set_properties
 from .._ranks import Ranks, as_json, digest_of, digest_of_arrays
@@ -29,6 +30,7 @@ from .._scene import Scene, load_scene, mesh, mover
 from .._sensor import Sensor
 from .._weather import in_weather, in_words
 from .._version import __version__
+from .._writers import as_csv
 from ._boxes import Boxes
 from ._json import check_json, load_json, naming
 from ._labels import BIRD, FIRST_BIRD, FIRST_OBJECT, LAST_ID, classes_of, configuration, relabel

@@ -12,7 +12,7 @@ from typing import Any, Callable, Dict, Iterator, List, Optional, Sequence, Tupl
 
 import numpy as np
 
-from .._disk import read_regular
+from .._files import read_regular
 from .._pipeline import Error
 from .._ranks import Ranks
 from .._scene import load_scene

@@ -10,7 +10,8 @@ from typing import Any, Callable, Dict, Optional, Sequence as Many, Union
 import numpy as np
 
 from .. import vtkAvianLidar as _wrapped
-from .._disk import checked_name, only_run, write_whole
+from .._disk import only_run, write_whole
+from .._files import checked_name
 from .._pipeline import Error
 from .._properties import in_snake_case
 from .._ranks import Ranks, as_json

@@ -31,8 +31,8 @@ from vtkmodules.vtkCommonDataModel import vtkStaticCellLocator
 from .. import vtkAvianLidar as _wrapped
 from .._cloud import add_array, field_values, vertices
 from .._coverage import Coverage, places_of
-from .._disk import read_regular, write_whole
-from .._files import save
+from .._disk import write_whole
+from .._files import read_regular, save
 from .._pipeline import Error, Updates, callers_level, update
 from .._ranks import Ranks, as_json, digest_of, digest_of_arrays
 from .._version import __version__
