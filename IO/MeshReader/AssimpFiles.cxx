@@ -36,9 +36,9 @@ public:
   {
   }
 
-  std::size_t Read(void* buffer, std::size_t size, std::size_t count) override
+  std::size_t Read(void* target, std::size_t size, std::size_t count) override
   {
-    return size == 0 ? 0 : MemoryIOStream::Read(buffer, size, count);
+    return size == 0 ? 0 : MemoryIOStream::Read(target, size, count);
   }
 };
 
