@@ -1,0 +1,139 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What a map has of an airport, and what of that its scene holds."""
+from __future__ import annotations
+
+import collections
+import math
+import pathlib
+import warnings
+from typing import Any, Callable, Dict, List, Optional, Sequence, Tuple
+
+import numpy as np
+from osgeo import osr
+
+from .._pipeline import Error
+from ._extract import COAST, CUT, sea, without_parts
+from ._features import Feature, properties_of
+from ._gdal import box_of, degrees, form_of, geometry, moved, valid
+from ._ground import height_at, read_heights
+from ._json import packaged
+from ._maps import coordinate_system
+from ._obstacles import read_obstacles
+from ._osm import read_extract
+from ._runways import choose_runways
+
+FLAT_SPACING = 100.0  # m, of a ground without a terrain, which follows the Earth
+
+
+class AirportMap:
+    """An airport as extracts, a raster of heights and surveyed obstacles have it."""
+
+    def __init__(self, extract, heights=None, icao: Optional[str] = None, bounds: Optional[Sequence[float]] = None, obstacles: Sequence[Any] = (),
+                 progress: Callable[[str, int, int], Any] = lambda *_: None):
+        self.known, self.extract = packaged("airport.json"), pathlib.Path(extract)
+        self.dem = pathlib.Path(heights) if heights is not None else None
+        self.progress = progress
+        if bounds is not None:
+            west, south, east, north = bounds
+            if not (-180.0 <= west < east <= 180.0 and -90.0 <= south < north <= 90.0):
+                raise ValueError(f"--bounds {west:g} {south:g} {east:g} {north:g}: expected west, south, east and north in degrees")
+        progress("extract", 0, 1)
+        found = read_extract(self.extract, self.known)
+        self.features, self.left, self.unknown, self.used = found.features, found.left, found.unknown, found.used
+        progress("extract", 1, 1)
+        self.runways, aerodrome = choose_runways(self.extract, found, self.known, icao, bounds)
+        self.obstacles = [pathlib.Path(file) for file in obstacles]
+        for file in self.obstacles:
+            surveyed, left = read_obstacles(file, self.known)
+            self.features += surveyed
+            self.left += left
+        self.tags = aerodrome.tags if aerodrome else {}
+        self.name = self.tags.get("name") or self.tags.get("icao") or self.extract.name.split(".")[0]
+        self._place(bounds)
+        coasts = [one for one in self.features if one.kind == COAST]
+        self.features = [one for one in self.features if one.kind != COAST]
+        seas, near = sea(coasts, self.box), sum(one.shape.Intersects(self.box) for one in coasts)
+        self.features += [Feature("water", {"name": "sea"}, shape, 0) for shape in seas]
+        if near < len(coasts):
+            self.left.append(Feature(COAST, {}, count=len(coasts) - near, reason="outside the scene"))
+        if seas:
+            self.used[COAST] = near
+        elif near:
+            self.left.append(Feature(COAST, {}, count=near, reason="a coast that does not part the scene"))
+            warnings.warn(f"{self.extract}: its coastlines do not part the scene: the sea is land there; draw it as natural=water, or cut the extract "
+                          "wider", RuntimeWarning, stacklevel=2)
+        ground = valid(aerodrome.shape) if aerodrome and form_of(aerodrome.shape) == "area" else None
+        self.ground = ground if ground is not None and all(ground.Contains(one.shape.Centroid()) for one in self.runways) else None
+
+    def _place(self, bounds: Optional[Sequence[float]]) -> None:
+        """Origin, and the rectangle that the scene holds."""
+        ends = np.array([one.shape.GetPoints() for one in self.runways])[:, :, :2]
+        low, high = ends.min(axis=(0, 1)), ends.max(axis=(0, 1))
+        if high[0] - low[0] > 180.0:
+            raise Error(f"{self.extract}: its runways cross the meridian of 180 degrees, where scenes of this command end")
+        longitude, latitude = (low + high) / 2
+        self.origin = (round(float(latitude), 7), round(float(longitude), 7), 0.0)
+        local = coordinate_system(self.origin)
+        self.to_local, self.to_degrees = osr.CoordinateTransformation(degrees(), local), osr.CoordinateTransformation(local, degrees())
+        shape = moved(box_of(bounds) if bounds is not None else geometry("MultiLineString", ends), self.to_local)
+        margin = 0.0 if bounds is not None else self.known["margin"]
+        west, east, south, north = shape.GetEnvelope()
+        self.rectangle = (west - margin, east + margin, south - margin, north + margin)
+        around = moved(box_of([self.rectangle[i] for i in (0, 2, 1, 3)]), self.to_degrees).GetEnvelope()
+        if np.ptp(around[:2]) > 180.0:
+            raise Error(f"{self.extract}: the scene would reach over the meridian of 180 degrees; set --bounds to the runways' side of it")
+        self.box = box_of([around[i] for i in (0, 2, 1, 3)])
+
+    def chosen(self, posts: np.ndarray, corner: Sequence[float], spacing: float) -> List[Feature]:
+        """What becomes part of the scene; `self.left` gets all else, with its reason. The ground is that of `posts`."""
+        found: List[Feature] = []
+        outside: Dict[str, int] = collections.Counter()
+        lines = [one for one in self.features if one.kind == "runway" and form_of(one.shape) == "line"]
+        for one in [*self.runways, *(one for one in self.features if one not in lines)]:
+            shape = one.shape
+            if not shape.Intersects(self.box) if shape.IsValid() else not shape.ConvexHull().Intersects(self.box):
+                outside[one.kind] += one.count
+                continue
+            if "elevation" in one.tags and "height" not in one.tags:
+                place = moved(shape.Centroid(), self.to_local)
+                above = float(one.tags["elevation"]) - self.origin[2] - height_at(posts, corner, spacing, (place.GetX(), place.GetY()))
+                if self.dem is None or not above > 0.0:
+                    self.left.append(one.left("an elevation without --heights" if self.dem is None else "below ground"))
+                    continue
+                one.tags = {**one.tags, "height": f"{above:.3f}", "height_source": f"{one.tags['height_source']}, elevation less that of the ground"}
+            found.append(one)
+        self.left += [Feature(kind, {}, count=count, reason="outside the scene") for kind, count in outside.items()]
+        found, drawn = without_parts(found, self.known)
+        self.left += [one.left("drawn by its parts") for one in drawn]
+        self.cut = [one for one in found if CUT in one.tags]
+        if any(one.kind == "runway" for one in self.cut):
+            warnings.warn(f"{self.extract}: a runway is {CUT}, and ends there: cut the extract wider", RuntimeWarning, stacklevel=3)
+        return found
+
+    def mapped(self, chosen: Sequence[Feature]) -> List[Tuple[Dict[str, Any], Any]]:
+        """What the scene file reads of each feature in the scene, and its shape: flat areas, woods and lines end at the box."""
+        rows = []
+        for one in chosen:
+            shape, rule = one.shape, self.known["kinds"][one.kind]
+            if ("flat" in rule or "medium" in rule or form_of(shape) == "line") and one.kind != "runway" and not self.box.Contains(shape):
+                shape = valid(shape).Intersection(self.box)
+            if shape is not None and not shape.IsEmpty():
+                rows.append((properties_of(one, self.known), shape))
+        order = list(self.known["kinds"])
+        return sorted(rows, key=lambda row: order.index(row[0]["kind"]))
+
+    def posts(self) -> Tuple[np.ndarray, Sequence[float], float]:
+        """Heights above the origin, whose height they say, their south-west corner (m) and spacing."""
+        west, east, south, north = rectangle = tuple(x + sign * 50.0 for x, sign in zip(self.rectangle, (-1, 1, -1, 1)))
+        if self.dem is None:
+            spacing = FLAT_SPACING
+            columns, rows = (int(math.ceil((high - low) / spacing)) + 1 for low, high in ((west, east), (south, north)))
+            posts: np.ndarray = np.zeros((rows, columns))
+            self.terrain_words = ("heights: none given: the ground is level at 0 m (assumed), and curves as the Earth does")
+        else:
+            posts, spacing, here, self.terrain_words = read_heights(self.dem, self.origin, rectangle, self.known)
+            self.origin = (*self.origin[:2], round(here, 3))
+            posts = posts - self.origin[2]
+        self.error = self.known["terrain_error"] if self.dem is not None else self.known["level_error"]
+        self.terrain_words += f"; triangles within {self.error:g} m of that"
+        return posts, (west, south), spacing
