@@ -18,7 +18,7 @@ import avianlidar as al
 import exampletools
 import TestCoverage
 from avianlidar import siting
-from avianlidar.apps import _sites
+from avianlidar.apps import _pictures, _sites
 from avianlidar.apps._json import load_json
 from avianlidar.apps._plan import Plan
 from avianlidar.apps._inputs import read_plan
@@ -64,6 +64,20 @@ class Candidates(unittest.TestCase):
             np.testing.assert_array_equal(siting.is_near(points, outline[::-1], margin)[:2000], found[:2000])
             self.assertTrue(found[2000:].all() or margin == 0.0)
         self.assertEqual(siting.is_near([(15, 5), (14.9, 5), (9, 5)], [(0, 0), (10, 0), (10, 10), (0, 10)], 5.0).tolist(), [False, True, True])
+
+    def test_holes_of_outlines_are_not_drawn(self):
+        square = np.array([(-1, -1), (1, -1), (1, 1), (-1, 1)])
+        for outline, inner in ((4 * square, 0.9), ([4 * square, square], 1.0), ([4 * square[::-1], square], 1.0)):
+            shown = []
+
+            def draw(axes, outline=outline, shown=shown):
+                axes.set(xlim=(-5, 5), ylim=(-5, 5))
+                _pictures.draw_outline(axes, outline)
+                axes.figure.canvas.draw()
+                places = axes.transData.transform([(0, 0), (2.5, 0.3), (4.6, 0.3)]).astype(int)
+                shown.extend(np.asarray(axes.figure.canvas.buffer_rgba())[::-1][y, x, 0] / 255 for x, y in places)
+            _pictures.drawn((4, 4), draw)
+            np.testing.assert_allclose(shown, (inner, 0.9, 1.0), atol=0.005)
 
     def test_two_in_one_place_are_one(self):
         with self.assertWarnsRegex(RuntimeWarning, "^8 of 12 candidates stand where another one stands"):

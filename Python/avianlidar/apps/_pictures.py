@@ -254,15 +254,27 @@ def draw_clutter(axes, plan: Plan, clutter) -> None:
     _bar(axes, dots, "share of scans")
 
 
+def draw_outline(axes, outline) -> None:
+    """Where nothing may stand, in light grey. @param outline a ring (n x 2, m), or several: the outer one and holes"""
+    from matplotlib.patches import PathPatch
+    from matplotlib.path import Path
+    paths = []
+    for number, ring in enumerate([outline] if np.ndim(outline[0]) == 1 else outline):
+        turns_left = np.cross(ring, np.roll(ring, -1, axis=0)).sum() > 0.0
+        ring = ring if turns_left == (number == 0) else ring[::-1]  # holes turn the other way
+        paths.append(Path([*ring, ring[0]], closed=True))
+    axes.add_patch(PathPatch(Path.make_compound_path(*paths), color="0.9", zorder=0))
+
+
 def draw_sites(axes, sites) -> None:
     """Candidates by value, where nothing may stand, and the best network."""
     draw_land(axes, sites.plan)
     draw_airport(axes, sites.plan, "0.1")
     for outline, _ in sites.exclusions:
-        axes.fill(*outline.T, color="0.9", zorder=0)
+        draw_outline(axes, outline)
     for one in sites.surfaces:
         if "strip" in one.kept:
-            axes.fill(*one.strip.T, color="0.9", zorder=0)
+            draw_outline(axes, one.strip)
     x, y, _ = sites.positions[sites.order[::-1]].T
     dots = axes.scatter(x, y, c=sites.values[sites.order[::-1]], s=22, cmap="viridis")
     _bar(axes, dots, "share by which candidates are ranked")
