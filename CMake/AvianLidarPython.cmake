@@ -50,7 +50,6 @@ set(avianlidar_python_files
   apps/_air.py
   apps/_airport.py
   apps/_airport_map.py
-  apps/_airport_plans.py
   apps/_answer.py
   apps/_bench.py
   apps/_boxes.py
@@ -75,7 +74,6 @@ set(avianlidar_python_files
   apps/_networks.py
   apps/_obstacles.py
   apps/_osm.py
-  apps/_page.py
   apps/_pictures.py
   apps/_plan.py
   apps/_regions.py

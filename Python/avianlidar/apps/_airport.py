@@ -18,7 +18,7 @@ from .._pipeline import Error
 from .._scene import Scene, load_scene
 from .._writers import vtp
 from . import _pictures
-from ._airport_plans import AirportPlans
+from ._airport_map import AirportMap
 from ._candidates import ground_of
 from ._extract import CUT, UNKNOWN
 from ._gdal import quiet
@@ -75,7 +75,7 @@ def _geojson(features: Sequence[Tuple[Dict[str, Any], Any]]) -> bytes:
     return ('{"type": "FeatureCollection", "features": [\n' + ",\n".join(rows) + "\n]}\n").encode()
 
 
-class Airport(AirportPlans):
+class Airport(AirportMap):
     """What is made of an extract."""
 
     def write(self, folder) -> Kept:
@@ -155,14 +155,14 @@ def parts_of(scene: Scene) -> Iterator[Tuple[str, str, np.ndarray]]:
         yield fields["object_names"][0], fields["object_classes"][0], points[cells]
 
 
-def _assumed_rows(airport: AirportPlans) -> Iterator[Tuple[Any, ...]]:
+def _assumed_rows(airport: AirportMap) -> Iterator[Tuple[Any, ...]]:
     for row in airport.rows:
         for what in ("kind", "height", "top", "min_height", "width", "surface"):
             if "assumed" in str(row.get(f"{what}_from", "")):
                 yield row["kind"], row.get("id", ""), row.get("name") or row.get("ref") or "", what, row.get(what, 0.0), row[f"{what}_from"]
 
 
-def assumed(airport: AirportPlans) -> bytes:
+def assumed(airport: AirportMap) -> bytes:
     return as_csv([
         ("kind", "id", "name", "what", "value (m, or a material)", "from"), *_assumed_rows(airport),
         *((one.kind, one.id, one.name, "left out", one.count, one.reason) for one in airport.left),
@@ -170,7 +170,7 @@ def assumed(airport: AirportPlans) -> bytes:
         *((kind, "", "", "in the scene", count, "") for kind, count in airport.there.items())])
 
 
-def _reasons(airport: AirportPlans) -> Dict[str, Counter[str]]:
+def _reasons(airport: AirportMap) -> Dict[str, Counter[str]]:
     """How many features of each kind are left out for which reason."""
     found: Dict[str, Counter[str]] = collections.defaultdict(collections.Counter)
     for one in airport.left:
@@ -178,7 +178,7 @@ def _reasons(airport: AirportPlans) -> Dict[str, Counter[str]]:
     return found
 
 
-def counts(airport: AirportPlans) -> str:
+def counts(airport: AirportMap) -> str:
     """What was read, what is in the scene and what is not, by reason, in one line."""
     reasons = sum(_reasons(airport).values(), collections.Counter({UNKNOWN: sum(airport.unknown.values())}))
     there, left = sum(airport.there.values()), sum(reasons.values())
@@ -192,7 +192,7 @@ def counts(airport: AirportPlans) -> str:
         f"; {verb(len(strange), 'height was', 'heights were')} not understood: {', '.join(list(dict.fromkeys(strange))[:4])}" if strange else "")
 
 
-def _counts_by_kind(airport: AirportPlans) -> str:
+def _counts_by_kind(airport: AirportMap) -> str:
     """The same by kind."""
     lines, outside, away, found = [f"  {counts(airport)}"], "outside the scene", [], _reasons(airport)
     for kind in dict.fromkeys([*airport.there, *(one.kind for one in airport.left)]):
@@ -211,7 +211,7 @@ def _counts_by_kind(airport: AirportPlans) -> str:
     return "\n".join(lines)
 
 
-def readme(airport: AirportPlans) -> bytes:
+def readme(airport: AirportMap) -> bytes:
     kinds = collections.Counter(row["kind"] for row in airport.rows)
     assumed = collections.Counter((row[0], row[3]) for row in _assumed_rows(airport))
     lengths = "\n".join(f"  {runway.words()}" for runway in airport.sides)

@@ -16,12 +16,11 @@ from .._weather import in_words
 from . import _pictures as pictures
 from ._card import cell
 from ._labels import BIRD, MOVING
-from ._page import embedded, render
 from ._scores import Value, mean
 from ._inputs import read_manifest
 from ._sequence import FOLDERS
 from ._simulation import SUBSETS
-from ._tables import read_table
+from ._tables import embedded, read_table, render
 
 RANGES = (0.0, 200.0, 400.0, 600.0, 1000.0, math.inf)  # m
 LOST = 3  # scans with points, one after the other, of which none is called bird, end the track of a bird

@@ -13,10 +13,9 @@ from .._version import __version__
 from . import _pictures as pictures
 from ._card import cell
 from ._design import CHANGE, FIELDS, TOLD, Candidate, Study, is_told
-from ._page import embedded, render
 from ._report import place
 from ._scores import Value
-from ._tables import write_table
+from ._tables import embedded, render, write_table
 
 TOLD_WORDS = {True: "yes", False: "no", None: "not told"}
 

@@ -23,11 +23,10 @@ from ._card import read_card
 from ._geojson import to_geodetic
 from ._json import load_json, naming
 from ._maps import height_name
-from ._page import embedded, render
 from ._plan import Plan
 from ._regions import rounded
 from ._sites import BEST, DRAWS, FEWEST_DRAWS, OTHER_PLACES, Sites
-from ._tables import write_table
+from ._tables import embedded, render, write_table
 
 VISIBILITIES = (200.0, 500.0, 1000.0, 2000.0, 5000.0, 10_000.0, 20_000.0)  # m, of the section on weather
 RAINS = (0.0, 1.0, 5.0, 10.0, 25.0, 50.0)  # mm/h
