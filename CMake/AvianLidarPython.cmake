@@ -27,6 +27,7 @@ set(avianlidar_python_files
   _display.py
   _echo_errors.py
   _files.py
+  _measurement.py
   _paraview.py
   _pipeline.py
   _plot.py
@@ -38,6 +39,7 @@ set(avianlidar_python_files
   _sheet.py
   _sight.py
   _suffixes.py
+  _terminal.py
   _verbs.py
   _weather.py
   _writers.py
@@ -47,33 +49,43 @@ set(avianlidar_python_files
   apps/__init__.py
   apps/_air.py
   apps/_airport.py
+  apps/_airport_map.py
   apps/_answer.py
   apps/_bench.py
   apps/_boxes.py
+  apps/_candidates.py
   apps/_card.py
   apps/_design.py
   apps/_design_page.py
   apps/_extract.py
+  apps/_features.py
   apps/_following.py
   apps/_formula.py
-  apps/_heights.py
+  apps/_gdal.py
+  apps/_geojson.py
+  apps/_ground.py
+  apps/_inputs.py
   apps/_json.py
   apps/_labels.py
+  apps/_looks.py
   apps/_maps.py
   apps/_mcap.py
   apps/_metar.py
+  apps/_networks.py
   apps/_obstacles.py
-  apps/_page.py
+  apps/_osm.py
   apps/_pictures.py
+  apps/_plan.py
+  apps/_regions.py
   apps/_report.py
   apps/_runways.py
   apps/_scores.py
   apps/_sequence.py
+  apps/_simulation.py
   apps/_sites.py
-  apps/_surfaces.py
+  apps/_studies.py
+  apps/_tables.py
   apps/_tracks.py
-  apps/reach.py
-  apps/siting.py
   apps/airport.json
   apps/bench.html.jinja
   apps/card.html.jinja

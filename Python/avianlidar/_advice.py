@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import io
 import json
 import os
 import pathlib
@@ -18,6 +19,7 @@ KINDS = ("energy", "range", "missed")  # of errors
 VERDICTS = ("not met", "not told", "met")
 NOT_MET, UNDECIDED, MET = range(3)
 UNITS = {"seconds_per_beam": "s", "range_error": "m", "range_error_most": "m"}  # of columns; of others "1"
+MOST_ROWS = 12  # of settings beside the scan's own, for a reader
 SUFFIXES = (".json", ".csv", ".png")
 
 
@@ -82,21 +84,18 @@ class Advice:
 
     def save(self, file: Union[str, os.PathLike]) -> None:
         """Write it: .json has all, .csv the table, .png a picture of errors over time (with Matplotlib)."""
-        from ._disk import replacing
-        target = pathlib.Path(file)
+        from ._disk import write_whole
+        from ._writers import as_csv
+        target, content = pathlib.Path(file), io.BytesIO()
         check_suffix(target)
-        with replacing(target) as name:
-            if target.suffix.lower() == ".png":
-                self.plot().figure.savefig(name, format="png", dpi=150)
-                return
-            with open(name, "w", encoding="utf-8", newline="\n") as stream:
-                if target.suffix.lower() == ".json":
-                    table = {key: [value if np.isfinite(value) else None for value in values.tolist()] for key, values in self.table.items()}
-                    json.dump({**dataclasses.asdict(self), "table": table}, stream, indent=1)
-                    stream.write("\n")
-                else:
-                    stream.write(",".join(self.table) + "\n")
-                    stream.writelines(",".join(f"{value:.9g}" for value in row) + "\n" for row in zip(*self.table.values()))
+        if target.suffix.lower() == ".png":
+            self.plot().figure.savefig(content, format="png", dpi=150)
+        elif target.suffix.lower() == ".json":
+            table = {key: [value if np.isfinite(value) else None for value in values.tolist()] for key, values in self.table.items()}
+            content.write((json.dumps({**dataclasses.asdict(self), "table": table}, indent=1) + "\n").encode())
+        else:
+            content.write(as_csv([list(self.table), *([f"{value:.9g}" for value in row] for row in zip(*self.table.values()))]))
+        write_whole(target, content.getvalue())
 
     def plot(self, axes=None):
         """Draw error of energy over time with Matplotlib, a point for each setting: filled if it meets all that is asked.
@@ -126,11 +125,11 @@ def check_suffix(file: pathlib.Path) -> None:
         raise ValueError(f"{file}: advice is not written as {file.suffix or 'a file without suffix'}, expected {', '.join(SUFFIXES)}")
 
 
-def table_rows(advice: Advice, most: int = 12) -> List[Tuple[Any, ...]]:
+def table_rows(advice: Advice) -> List[Tuple[Any, ...]]:
     """Rows for a reader: the scan's own settings, and the fastest of those that are not surely too bad, then of the others."""
     table = advice.table
     order = sorted(range(1, len(table["verdict"])), key=lambda t: (table["verdict"][t] == 0, table["seconds_per_beam"][t]))
-    shown = [0, *order[:most]]
+    shown = [0, *order[:MOST_ROWS]]
 
     def error(name: str, t: int, scale: float) -> str:
         return f"{scale * table[name][t]:.3g} ({scale * table[name + '_most'][t]:.3g})"

@@ -253,12 +253,9 @@ class Cloud(Mapping):
         fields = self.fields
         if "position" not in fields or "orientation" not in fields:
             raise ValueError("the frame 'sensor' needs field data 'position' and 'orientation'")
-        angles = np.radians(fields["orientation"])
-        (sy, sp, sr), (cy, cp, cr) = np.sin(angles), np.cos(angles)
-        yaw = np.array([(cy, sy, 0), (-sy, cy, 0), (0, 0, 1)])  # clockwise from north
-        pitch = np.array([(1, 0, 0), (0, cp, -sp), (0, sp, cp)])  # nose up
-        roll = np.array([(cr, 0, sr), (0, 1, 0), (-sr, 0, cr)])  # to the right
-        return (self.points - fields["position"]) @ (yaw @ pitch @ roll)
+        from scipy.spatial.transform import Rotation
+        yaw, pitch, roll = fields["orientation"]  # clockwise from north, nose up, to the right
+        return (self.points - fields["position"]) @ Rotation.from_euler("ZXY", (-yaw, pitch, roll), degrees=True).as_matrix()
 
     def save(self, file, **properties) -> None:
         """Write the cloud; see `save`."""

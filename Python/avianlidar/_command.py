@@ -279,7 +279,8 @@ def parser() -> Parser:
 
 def main(argv: Optional[List[str]] = None) -> int:
     """Run the command. @return 0; 2 after an error, which is said in one line"""
-    from . import _verbs
+    from . import _terminal, _verbs
+    from ._pipeline import words_of
     from ._ranks import Ranks
     sys.stdout = sys.stdout or open(os.devnull, "w", encoding="utf-8")  # of daemons
     sys.stderr = sys.stderr or open(os.devnull, "w", encoding="utf-8")
@@ -287,22 +288,20 @@ def main(argv: Optional[List[str]] = None) -> int:
     code = 2
     try:
         with warnings.catch_warnings():
-            warnings.showwarning = lambda message, *_, **__: _verbs.warn(str(message))
+            warnings.showwarning = lambda message, *_, **__: _terminal.warn(str(message))
             getattr(_verbs, options.verb)(options)
             sys.stdout.flush()
         code = 0
     except KeyboardInterrupt as stop:
         code = 130
-        _verbs.say(": ".join(("stopped", *map(str, stop.args))))
+        _terminal.say(": ".join(("stopped", *map(str, stop.args))))
     except BrokenPipeError:  # as `| head` leaves it
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         code = 141
     except ImportError as error:
-        _verbs.say(f"{error}; this verb needs the Python module")
+        _terminal.say(f"{error}; this verb needs the Python module")
     except (RuntimeError, OSError, ValueError, TypeError, LookupError, ArithmeticError, Warning) as error:
-        words = f"{error.filename}: {error.strerror}" if isinstance(error, OSError) and error.filename else \
-            str(error.args[0]) if isinstance(error, KeyError) and error.args else str(error)
-        _verbs.say(words or type(error).__name__)
+        _terminal.say(words_of(error))
     finally:  # also after what is not expected, which is raised with its traceback
         if code != 141:
             sys.stdout.flush()

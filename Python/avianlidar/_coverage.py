@@ -9,7 +9,7 @@ from vtkmodules.vtkCommonDataModel import vtkDataSet, vtkImageData, vtkPolyData
 
 from . import _display
 from . import vtkAvianLidar as _wrapped
-from ._cloud import Cloud, add_array, array_names, field_values, point_array, with_points
+from ._cloud import Cloud, add_array, array_names, field_values, point_array, rows_of, with_points
 from ._pipeline import Progress
 from ._properties import wraps
 from ._scan import SceneAndSensor
@@ -19,9 +19,7 @@ from ._sensor import Sensor
 def places_of(points, regions: Optional[Mapping[str, Any]] = None) -> vtkPolyData:
     """Places to look at. @param points n x 3, m @param regions names, each with the numbers of its points; those that no
     region has are of the region "elsewhere" """
-    points = np.asarray(points, dtype=float)
-    if points.ndim != 2 or points.shape[1] != 3:
-        raise ValueError(f"places have the shape {points.shape}, expected n x 3 coordinates in metres")
+    points = rows_of("places", points, (3,))
     data = with_points(points)
     if regions is not None:
         ids = np.full(len(points), len(regions), dtype=np.int32)

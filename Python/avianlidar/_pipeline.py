@@ -20,6 +20,13 @@ class Error(RuntimeError):
     """What a VTK class reported as an error, in its own words."""
 
 
+def words_of(error: BaseException) -> str:
+    """What an exception says: of files their names, of keys no quotes."""
+    if isinstance(error, OSError) and error.strerror:
+        return f"{error.filename}: {error.strerror}" if error.filename else error.strerror
+    return str(error.args[0] if isinstance(error, KeyError) and error.args else error) or type(error).__name__
+
+
 def upstream(algorithm, found: Optional[List[Any]] = None) -> List[Any]:
     """The algorithm and all that it depends on, sources first."""
     found = [] if found is None else found

@@ -55,13 +55,14 @@ class Ranks(unittest.TestCase):
         script = command[3].with_name("work.py")
         script.write_text(f"""
 import time
-from avianlidar import _command, siting
+from avianlidar import _command
+from avianlidar.apps import _looks
 from avianlidar._ranks import Ranks
 def kept(values):
     if Ranks().rank == 0:
         time.sleep(1800)
     raise OSError("no space for rank 1")
-siting._kept = kept
+_looks.packed = kept
 _command.main(["siting", {str(command[3])!r}, "-o", {str(command[5])!r}])
 """, encoding="utf-8")
         done = on_ranks(script)

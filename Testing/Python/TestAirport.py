@@ -22,12 +22,14 @@ from avianlidar import siting
 from avianlidar._cloud import field_values
 from avianlidar._command import parser
 from avianlidar.apps import _airport as airport
+from avianlidar.apps import _ground
+from avianlidar.apps._json import packaged
 from avianlidar.apps._maps import coordinate_system
 
 DATA = os.environ.get("AVIANLIDAR_DATA_DIR", "")
 HERE = (53.6, 13.3, 0.0)  # latitude, longitude, height
 FOLDER = pathlib.Path(exampletools.OUTPUT) / "TestAirport"
-KNOWN = airport.rules()
+KNOWN = packaged("airport.json")
 gdal.UseExceptions()
 
 
@@ -279,7 +281,7 @@ class Extracts(unittest.TestCase):
 
         def above(name):
             places = found[name][1].reshape(-1, 3)
-            return places[:, 2] - 0.04 * places[:, 0] + airport.curvature(scene.geodetic_origin, places[:, 0], places[:, 1])
+            return places[:, 2] - 0.04 * places[:, 0] + _ground.curvature(scene.geodetic_origin, places[:, 0], places[:, 1])
 
         runway, wood, fence = above("09/27"), above("Wood"), above("Fence")
         np.testing.assert_allclose(runway, 0.06, atol=error)
@@ -412,9 +414,9 @@ class Terrains(unittest.TestCase):
         from vtkmodules.util.numpy_support import vtk_to_numpy
         origin = (*HERE[:2], 50.0)
         self.x, self.heights = self.x[:201], self.heights[:201, :201]
-        surface = airport.terrain(self.heights - 50.0, (-1500.0, -1500.0), 10.0, origin, 0.25)
+        surface = _ground.terrain(self.heights - 50.0, (-1500.0, -1500.0), 10.0, origin, 0.25)
         x, y = np.meshgrid(self.x, self.x)
-        places = np.column_stack([x.ravel(), y.ravel(), (self.heights - 50.0).ravel() - airport.curvature(origin, x, y).ravel()])
+        places = np.column_stack([x.ravel(), y.ravel(), (self.heights - 50.0).ravel() - _ground.curvature(origin, x, y).ravel()])
         inner = np.abs(places[:, :2] + 500).max(axis=1) < 999
         self.assertLess(np.abs(self.above(surface, places[inner][::37])).max(), 0.25 + 1e-6)
         self.assertLess(surface.GetNumberOfPolys(), len(self.x) ** 2)
@@ -422,7 +424,7 @@ class Terrains(unittest.TestCase):
         exact = siting.to_geodetic(vertices, origin)[:, 2]
         columns, rows = (np.round((vertices[:, i] + 1500) / 10).astype(int) for i in (0, 1))
         np.testing.assert_allclose(exact, self.heights[rows, columns], atol=1e-3)
-        rough = airport.terrain(np.random.default_rng(1).normal(0, 1, (20, 30)), (0.0, 0.0), 10.0, origin, 0.01)
+        rough = _ground.terrain(np.random.default_rng(1).normal(0, 1, (20, 30)), (0.0, 0.0), 10.0, origin, 0.01)
         self.assertEqual(rough.GetNumberOfPolys(), 2 * 19 * 29)  # all posts
 
     def test_heights_of_files(self):
@@ -432,7 +434,7 @@ class Terrains(unittest.TestCase):
         found = []
         for name, driver in (("part.tif", "GTiff"), ("part.asc", "AAIGrid")):
             file = write_heights(name, smooth, (-1500, -1500), 10.0, driver)
-            posts, spacing, here, words = airport.read_heights(file, HERE, rectangle, KNOWN)
+            posts, spacing, here, words = _ground.read_heights(file, HERE, rectangle, KNOWN)
             found.append(posts)
             self.assertAlmostEqual(spacing, 10.0, delta=0.01)
             self.assertAlmostEqual(here, 50.0, delta=0.01)
@@ -446,7 +448,7 @@ class Terrains(unittest.TestCase):
         np.testing.assert_allclose(found[0], found[1], atol=1e-3)
         holed = smooth.copy()
         holed[140:160, 140:160] = np.nan  # filled from around it
-        posts, spacing, here, _ = airport.read_heights(write_heights("holed.tif", holed, (-1500, -1500), 10.0), HERE,
+        posts, spacing, here, _ = _ground.read_heights(write_heights("holed.tif", holed, (-1500, -1500), 10.0), HERE,
                                                        (-1000.0, 1000.0, -1000.0, 1000.0), KNOWN)
         self.assertAlmostEqual(here, 50.0, delta=1.0)  # as the border is
 
@@ -454,7 +456,7 @@ class Terrains(unittest.TestCase):
         """Units of the band and of a compound system, a scale, a vertical datum, values that no ground has without a word of them."""
         around = (-1000.0, 1000.0, -1000.0, 1000.0)
         smooth = 50 + 0.01 * np.broadcast_to(self.x, self.heights.shape)
-        truth = airport.read_heights(write_heights("metres.tif", smooth, (-1500, -1500), 10.0), HERE, around, KNOWN)
+        truth = _ground.read_heights(write_heights("metres.tif", smooth, (-1500, -1500), 10.0), HERE, around, KNOWN)
         plain = gdal.Open(str(FOLDER / "metres.tif"))
 
         def changed(values, unit="", kind=gdal.GDT_Float64, system=None, places=None, **settings):
@@ -468,9 +470,9 @@ class Terrains(unittest.TestCase):
                 getattr(image.GetRasterBand(1), f"Set{name}")(value)
             gdal.GetDriverByName("GTiff").CreateCopy(str(FOLDER / "changed.tif"), image)
             if system is None or places:
-                return airport.read_heights(FOLDER / "changed.tif", HERE, around, KNOWN)
+                return _ground.read_heights(FOLDER / "changed.tif", HERE, around, KNOWN)
             gdal.Translate(str(FOLDER / "changed.vrt"), str(FOLDER / "changed.tif"), outputSRS=system)
-            return airport.read_heights(FOLDER / "changed.vrt", HERE, around, KNOWN)
+            return _ground.read_heights(FOLDER / "changed.vrt", HERE, around, KNOWN)
 
         def above_geoid(unit, metres):
             return (f'COMPD_CS["with heights",{plain.GetProjection()},VERT_CS["EGM96 height",VERT_DATUM["EGM96 geoid",2005],UNIT["{unit}",{metres!r}],AXIS["Up",UP]]]')
@@ -512,7 +514,7 @@ class Terrains(unittest.TestCase):
         FOLDER.mkdir(parents=True, exist_ok=True)
         tile = FOLDER / "N53E013.hgt"
         gdal.GetDriverByName("SRTMHGT").CreateCopy(str(tile), image)
-        self.assertAlmostEqual(airport.read_heights(tile, HERE, around, KNOWN)[2], 77.0, delta=1e-6)
+        self.assertAlmostEqual(_ground.read_heights(tile, HERE, around, KNOWN)[2], 77.0, delta=1e-6)
         smooth = 50 + 0.01 * np.broadcast_to(self.x, self.heights.shape)
         masked = gdal.Open(str(write_heights("masked.tif", smooth, (-1500, -1500), 10.0)), gdal.GA_Update)
         masked.GetRasterBand(1).DeleteNoDataValue()
@@ -521,7 +523,7 @@ class Terrains(unittest.TestCase):
         mask[140:160, 140:160] = 0
         masked.GetRasterBand(1).GetMaskBand().WriteArray(mask)
         del masked
-        self.assertIn("have none there", airport.read_heights(FOLDER / "masked.tif", HERE, around, KNOWN)[3])
+        self.assertIn("have none there", _ground.read_heights(FOLDER / "masked.tif", HERE, around, KNOWN)[3])
 
 
 class Wrong(unittest.TestCase):

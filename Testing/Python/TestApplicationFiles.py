@@ -18,7 +18,7 @@ import numpy as np
 
 import avianlidar as al
 from avianlidar._disk import only_run
-from avianlidar.apps import _maps, _report
+from avianlidar.apps import _maps, _inputs, _report
 from avianlidar.apps._pictures import draw
 from osgeo import gdal
 import helpertools
@@ -104,8 +104,8 @@ class Inputs(Applications):
                 self.assertIn(words, said)
                 self.assertEqual(tree(self.home), before)
         for name in ("Search905 at 5 m", "日本", "a.b", "x" * 100, "~a\\b"):
-            _maps.read_plan(self.write("good.coverage.json", {**PLAN, "sensor": {**SENSOR, "name": name}}))
-            self.assertEqual(_maps.sensor_name({**SENSOR, "name": name}), name)
+            _inputs.read_plan(self.write("good.coverage.json", {**PLAN, "sensor": {**SENSOR, "name": name}}))
+            self.assertEqual(_inputs.sensor_name({**SENSOR, "name": name}), name)
 
     def commands(self, kind):
         """Commands that read a pipe or a device: plans, scenarios and what these name."""
@@ -151,7 +151,7 @@ class Inputs(Applications):
             with self.subTest(command):
                 self.assertEqual((json.loads(line), status), (command, "status 2"))
                 self.assertRegex(message, words)
-        plans = [_maps.read_plan(file) for file in (self.home / "good.coverage.json", self.plan)]
+        plans = [_inputs.read_plan(file) for file in (self.home / "good.coverage.json", self.plan)]
         for plan in plans:
             plan.pop("file")
         self.assertEqual(*plans)

@@ -9,9 +9,10 @@ import numpy as np
 import TestSequence
 import avianlidar as al
 from avianlidar import _command
-from avianlidar.apps import _card, _following, _maps, _report
+from avianlidar.apps import _card, _following, _report
 from avianlidar.apps._following import ORIGINS, Input, Live, Scorer
-from avianlidar.apps.siting import Runway
+from avianlidar.apps._inputs import read_plan
+from avianlidar.siting import Runway
 from exampletools import emptied
 from helpertools import rows_of
 from reporttools import quick
@@ -223,13 +224,13 @@ class Files(unittest.TestCase):
                                     "extent": [-200, 200, -200, 200], "spacing": 200, "places": 10, "tracks": "out",
                                     "coverage": {"species": "", "effective_area": 0.03, "clutter": False}}), encoding="utf-8")
         with quick():  # what the report says else has its own test
-            _report.Report(_maps.read_plan(plan), 1).write(self.home / "report.html")
+            _report.Report(read_plan(plan), 1).write(self.home / "report.html")
         page = (self.home / "report.html").read_text(encoding="utf-8")
         self.assertIn('id="tracks"', page)
         self.assertIn(self.card["overall"][0]["cells"][0], page)
         plan.write_text(json.dumps({"scene": "small.lidarscene.json", "sensor": {"preset": "Search905"}, "tracks": "made"}), encoding="utf-8")
         with self.assertRaisesRegex(al.Error, "tracks: .*holds no card.json"):
-            _report.Report(_maps.read_plan(plan))
+            _report.Report(read_plan(plan))
 
     def broken(self, name):
         where = self.home / name

@@ -18,7 +18,8 @@ from avianlidar.apps import _design_page
 from avianlidar.apps._design import is_told, on_the_front, spread
 from avianlidar.apps._design_page import Designs
 from avianlidar.apps._formula import Formula
-from avianlidar.apps._maps import Plan, read_plan
+from avianlidar.apps._plan import Plan
+from avianlidar.apps._inputs import read_plan
 from exampletools import emptied
 from helpertools import rows_of
 

@@ -13,31 +13,33 @@ from osgeo import gdal, ogr, osr
 import TestAirport as ta
 from avianlidar import siting
 from avianlidar.apps import _extract as extract
+from avianlidar.apps import _features, _gdal, _osm
 from avianlidar.apps import _obstacles as obstacles
 from avianlidar.apps._airport import Airport
+from avianlidar.apps._json import packaged
 
-KNOWN = extract.rules()
+KNOWN = packaged("airport.json")
 
 
 def things(file):
     """Each feature that the rules take: kind, form, name, and its area (m2) or length (m)."""
     found = []
-    for one in extract.read_extract(file, KNOWN).features:
+    for one in _osm.read_extract(file, KNOWN).features:
         shape = one.shape.Clone()
         shape.Transform(to_local())
-        form = extract.form_of(shape)
+        form = _gdal.form_of(shape)
         found.append((one.kind, form, one.tags.get("name", ""), round({"area": shape.Area, "line": shape.Length}[form]() if form != "point" else 0)))
     return sorted(found)
 
 
 def to_local():
-    return osr.CoordinateTransformation(extract.degrees(), ta.coordinate_system(ta.HERE))
+    return osr.CoordinateTransformation(_gdal.degrees(), ta.coordinate_system(ta.HERE))
 
 
 def left(file):
     """How many features are left out, by kind and reason."""
     found = {}
-    for one in extract.read_extract(file, KNOWN).left:
+    for one in _osm.read_extract(file, KNOWN).left:
         found[one.kind, one.reason] = found.get((one.kind, one.reason), 0) + one.count
     return found
 
@@ -85,7 +87,7 @@ class Formats(unittest.TestCase):
         geopackage.unlink(missing_ok=True)
         gdal.VectorTranslate(str(geopackage), str(file), format="GPKG", dstSRS="EPSG:32633")
         lines, nest = [], []
-        for one in [*extract.read_extract(file, KNOWN).features, *extract.read_extract(file, KNOWN).aerodromes]:
+        for one in [*_osm.read_extract(file, KNOWN).features, *_osm.read_extract(file, KNOWN).aerodromes]:
             tags = {name: value for name, value in one.tags.items() if not name.startswith("osm_")}
             shape = json.loads(one.shape.ExportToJson())
             if shape["type"] == "Polygon" and len(shape["coordinates"]) == 1:
@@ -160,7 +162,7 @@ class Formats(unittest.TestCase):
             file = ta.FOLDER / name
             file.write_bytes(content)
             with self.assertRaisesRegex(RuntimeError, f"{name}: {words}.*expected"):
-                extract.read_extract(file, KNOWN)
+                _osm.read_extract(file, KNOWN)
 
     def test_what_is_drawn_twice(self):
         """Parts above one another are two; of what stands in one place the higher counts, and the other is counted as left out."""
@@ -171,7 +173,7 @@ class Formats(unittest.TestCase):
             plan.point(100, 300, man_made="mast", height=height)
         plan.relation([plan.area((200, 300), (240, 340), building="yes", height="9")], [], building="yes", name="relation")
         file = plan.write("twice.osm")
-        found = sorted((one.kind, float(one.tags["height"]), one.name) for one in extract.read_extract(file, KNOWN).features if one.kind != "runway")
+        found = sorted((one.kind, float(one.tags["height"]), one.name) for one in _osm.read_extract(file, KNOWN).features if one.kind != "runway")
         self.assertEqual(found, [("building", 9, "relation"), ("mast", 55, ""), ("part", 10, ""), ("part", 60, "")])
         self.assertEqual(left(file), {("part", extract.TWICE): 1, ("mast", extract.TWICE): 2, ("building", extract.TWICE): 1})
 
@@ -246,10 +248,10 @@ class Heights(unittest.TestCase):
                 ("2000 mm", 2), ("10 yd", 9.144), ("30 m AGL", 30), ("2 storeys", 6), ("12\u00b11 m", 12), ("12m 50cm", 12.5), ("12 \u043c", 12),
                 ("1'200", None), ("120 m AMSL", None), ("\uff11\uff12", 12), ("9 m 4 in", None), ("three", None), ("-3", None), ("0", None),
                 ("5000", None), ("nan", None), ("", None), (None, None), ("1" + " " * 100_000 + "x", None)):
-            found = extract.length_of(text)
+            found = _features.length_of(text)
             self.assertEqual(found if found is None else round(found, 9), metres, text)
         for text, levels in (("2;3", 3), ("2,3", 3), ("1,5", 1.5), ("2-3", 3), ("3+1", 4), ("2 floors", 2), ("0", None), ("ground", None), (None, None)):
-            self.assertEqual(extract.levels_of(text), levels, text)
+            self.assertEqual(_features.levels_of(text), levels, text)
 
     def test_heights_of_tags(self):
         def row(**tags):
@@ -257,7 +259,7 @@ class Heights(unittest.TestCase):
             shape = ogr.CreateGeometryFromWkt("POLYGON ((0 0, 1e-3 0, 1e-3 1e-3, 0 1e-3, 0 0))")
             found.take({key.replace("__", ":"): value for key, value in tags.items()}, shape)
             one, = found.done().features
-            row = extract.properties_of(one, KNOWN)
+            row = _features.properties_of(one, KNOWN)
             return row["kind"], row.get("height", row.get("top")), row.get("min_height"), "assumed" in row.get("height_from", row.get("top_from"))
 
         for tags, expected in (
@@ -367,7 +369,7 @@ class Surveyed(unittest.TestCase):
             {"id": "C", "name": "TOP", "type": "STACK", "extent": "", "place": point.format("urn:ogc:def:crs:OGC:1.3:CRS84", "13.305 53.603", "FT", 400)},
             {"id": "D", "name": "NOWHERE", "type": "POLE", "extent": "", "place": ""})
         found, out = obstacles.read_obstacles(file, KNOWN)
-        self.assertEqual([(one.kind, one.id, extract.form_of(one.shape)) for one in found], [("mast", "A", "point"), ("building", "B", "area"), ("chimney", "C", "point")])
+        self.assertEqual([(one.kind, one.id, _gdal.form_of(one.shape)) for one in found], [("mast", "A", "point"), ("building", "B", "area"), ("chimney", "C", "point")])
         self.assertEqual([(one.kind, one.name, one.reason) for one in out], [("pole", "NOWHERE", obstacles.NO_PLACE)])
         self.assertEqual([found[i].shape.GetPoint_2D() for i in (0, 2)], [(13.302, 53.603), (13.305, 53.603)])
         self.assertAlmostEqual(float(found[0].tags["height"]), 45.72, delta=1e-3)

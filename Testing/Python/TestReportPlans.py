@@ -15,7 +15,8 @@ import exampletools  # noqa: F401  (finds the examples)
 import flown
 from avianlidar import Coverage, reach, siting
 from avianlidar._command import main, parser
-from avianlidar.apps._maps import Plan, read_plan
+from avianlidar.apps._plan import Plan
+from avianlidar.apps._inputs import read_plan
 from avianlidar.apps._report import Report
 from avianlidar.apps._sites import Sites
 from browser import Browser

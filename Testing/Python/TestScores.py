@@ -83,7 +83,7 @@ class Assignment(unittest.TestCase):
 class Volumes(unittest.TestCase):
     def test_strip(self):
         points = [[0, 0, 1], [100, 10, 60], [100, 10, 60.1], [100, 151, 1], [-1, 0, 1], [201, 0, 1], [200, -150, 0]]
-        self.assertEqual(scores.in_strip(points, (0, 0), (200, 0), 150.0, 60.0).tolist(), [True, True, False, False, False, False, True])
+        self.assertEqual(scores.in_wedge(points, (0, 0), (1.0, 0.0), 200.0, (150.0, 0.0), (60.0, 0.0)).tolist(), [True, True, False, False, False, False, True])
 
     def test_wedge_rises_by_three_degrees(self):
         slope = math.tan(math.radians(3.0))

@@ -18,9 +18,12 @@ import avianlidar as al
 import exampletools
 import TestCoverage
 from avianlidar import siting
-from avianlidar.apps._maps import Plan, read_plan
+from avianlidar.apps import _pictures, _sites
+from avianlidar.apps._json import load_json
+from avianlidar.apps._plan import Plan
+from avianlidar.apps._inputs import read_plan
 from avianlidar.apps._sites import Sites
-from avianlidar.apps._surfaces import Surfaces, code_of, pierced
+from avianlidar.apps._candidates import Surfaces, code_of, pierced
 from helpertools import error_of
 
 AIRPORT = pathlib.Path(exampletools.EXAMPLES) / "airport" / "scene"
@@ -60,6 +63,21 @@ class Candidates(unittest.TestCase):
             np.testing.assert_array_equal(found[:2000], inside | (away[:2000] < margin))
             np.testing.assert_array_equal(siting.is_near(points, outline[::-1], margin)[:2000], found[:2000])
             self.assertTrue(found[2000:].all() or margin == 0.0)
+        self.assertEqual(siting.is_near([(15, 5), (14.9, 5), (9, 5)], [(0, 0), (10, 0), (10, 10), (0, 10)], 5.0).tolist(), [False, True, True])
+
+    def test_holes_of_outlines_are_not_drawn(self):
+        square = np.array([(-1, -1), (1, -1), (1, 1), (-1, 1)])
+        for outline, inner in ((4 * square, 0.9), ([4 * square, square], 1.0), ([4 * square[::-1], square], 1.0)):
+            shown = []
+
+            def draw(axes, outline=outline, shown=shown):
+                axes.set(xlim=(-5, 5), ylim=(-5, 5))
+                _pictures.draw_outline(axes, outline)
+                axes.figure.canvas.draw()
+                places = axes.transData.transform([(0, 0), (2.5, 0.3), (4.6, 0.3)]).astype(int)
+                shown.extend(np.asarray(axes.figure.canvas.buffer_rgba())[::-1][y, x, 0] / 255 for x, y in places)
+            _pictures.drawn((4, 4), draw)
+            np.testing.assert_allclose(shown, (inner, 0.9, 1.0), atol=0.005)
 
     def test_two_in_one_place_are_one(self):
         with self.assertWarnsRegex(RuntimeWarning, "^8 of 12 candidates stand where another one stands"):
@@ -289,14 +307,14 @@ class Airport(unittest.TestCase):
     def test_heights_may_be_texts(self):
         """As the scene reader takes them; what it takes for no height is left alone."""
         folder = fresh("texts")
-        square = next(f for f in siting.load_json(PLAN)["features"] if f["properties"].get("height"))
+        square = next(f for f in load_json(PLAN)["features"] if f["properties"].get("height"))
         heights = [15, "15", "15 m", "15m", "tall", True, -3, None, "15 ft", {}]
         (folder / "town.json").write_text(json.dumps({"type": "FeatureCollection", "features": [
             {**square, "properties": {"height": height}} for height in heights]}))
         (folder / "town.lidarscene.json").write_text(json.dumps({"version": 1, "origin": {"latitude": 31.1979, "longitude": 121.3363, "height": 3},
             "objects": [{"footprints": "town.json", "height": 5, "height_attribute": "height", "material": "Wall"}]}))
         scene = siting.with_other_heights(folder / "town.lidarscene.json", folder / "out", lambda: 2.0)
-        changed = siting.load_json(siting.load_json(scene)["objects"][0]["footprints"])
+        changed = load_json(load_json(scene)["objects"][0]["footprints"])
         self.assertEqual([f["properties"]["height"] for f in changed["features"]], [17.0] * 4 + heights[4:])
         self.assertEqual(al.load_scene(scene).bounds[5], 17.0)
 
@@ -380,7 +398,7 @@ class Plans(unittest.TestCase):
 
     def said(self, file):
         """What the command says of a plan that is refused before any site is looked at."""
-        with unittest.mock.patch.object(siting, "look", side_effect=AssertionError("looked")):
+        with unittest.mock.patch.object(_sites, "look", side_effect=AssertionError("looked")):
             words = error_of("siting", file, "-o", self.folder / "out")
         self.assertEqual(words.count("\n"), 1)
         return words
@@ -409,7 +427,7 @@ class Plans(unittest.TestCase):
                 words = self.said(file)
                 self.assertIn(str(file), words)
                 self.assertIn(member, words)
-        with unittest.mock.patch.object(siting.os, "sysconf", return_value=200):  # 40 kB of memory
+        with unittest.mock.patch.object(os, "sysconf", return_value=200):  # 40 kB of memory
             self.assertRegex(self.said(self.write(siting={"spacing": 100})), "my.coverage.json: siting: [0-9,]+ candidates, 1 species and 20 places need")
         file = self.write()
         file.write_text(file.read_text().replace('"places": 20', '"seed": NaN'))

@@ -17,7 +17,8 @@ from avianlidar import siting
 from avianlidar._command import main
 from avianlidar.apps import _metar
 from avianlidar.apps._air import extinction_of_rain
-from avianlidar.apps._maps import Plan, read_plan
+from avianlidar.apps._plan import Plan
+from avianlidar.apps._inputs import read_plan
 from avianlidar.apps._report import Report
 from avianlidar.apps._sites import OTHER_PLACES, Sites
 from helpertools import error_of, rows_of

@@ -9,7 +9,8 @@ import unittest.mock
 
 import exampletools
 from avianlidar._command import main
-from avianlidar.apps import _pictures, _report, reach
+from avianlidar import reach
+from avianlidar.apps import _pictures, _report
 import helpertools
 
 PIXEL = base64.b64decode("iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAYAAAAfFcSJAAAADUlEQVR42mNk+M9Q"

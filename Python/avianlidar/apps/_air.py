@@ -43,8 +43,15 @@ def extinction_of_rain(rate: float, half_beamwidth: float = 5.6e-3, wavelength: 
     return extinction(seen, visibility=0.0, attenuation_coefficient=0.0, rain_rate=rate)
 
 
-def weakening(sensor: Sensor, air: Dict[str, Any]) -> Dict[str, Any]:
-    """Air of the same extinction that sends no light back. @param air settings of coverage"""
+def gathers_light(sensor: Sensor) -> bool:
+    """Whether the receiver has an aperture, into which air may send light back."""
+    return float(sensor.beams.fields.get("receiver_aperture", 0.0)) > 0.0
+
+
+def as_received(sensor: Sensor, air: Dict[str, Any]) -> Dict[str, Any]:
+    """Air as a sensor knows it: without an aperture that of the same extinction which sends no light back. @param air settings of coverage"""
+    if gathers_light(sensor):
+        return air
     dry = {**air, "air_backscatter": False, "rain_rate": 0.0}
     if not air["rain_rate"]:
         return dry

@@ -9,9 +9,11 @@ from typing import Any, Dict, List, Optional, Sequence, Tuple
 
 import numpy as np
 
+from .. import reach
 from .._weather import in_words
-from . import reach, siting
-from ._maps import Plan
+from ._candidates import ground_of
+from ._plan import Plan
+from ._regions import APPROACH_LENGTH, STRIP_HALF_WIDTH, Runway, region_names, rounded, wind
 from ._sites import FEWEST_DRAWS, listed
 
 LEAST = 0.0005  # share that is given as a number; a site that detects less is no answer
@@ -20,7 +22,7 @@ LEAST_WORDS = f"{100.0 * LEAST:g}\u00a0%"
 
 def place(position: Sequence[float]) -> str:
     """Coordinates in words."""
-    x, y, z = siting.rounded(position)
+    x, y, z = rounded(position)
     words = [f"{value.lstrip('-')}\u00a0m {minus if value.startswith('-') else plus}"
              for value, plus, minus in ((x, "east", "west"), (y, "north", "south")) if value != "0"]
     return f"{' and '.join(words) or 'at the origin'}, {z}\u00a0m up"
@@ -70,7 +72,7 @@ def metres(value: float) -> str:
     return f"{float(f'{value:.2g}') if value < 100.0 else 10.0 * round(value / 10.0):g}\u00a0m" if value > 0.0 else "no range"
 
 
-def beside(position: Sequence[float], runways: Sequence[siting.Runway]) -> str:
+def beside(position: Sequence[float], runways: Sequence[Runway]) -> str:
     """Where a place lies by the two nearest runways, in words: beside a runway how far from its middle line and from an end, else
     how far from an end."""
     found = []
@@ -79,12 +81,12 @@ def beside(position: Sequence[float], runways: Sequence[siting.Runway]) -> str:
         axis, length = runway.axis()
         along = float((at - runway.start) @ axis)
         off = at - (runway.start + min(max(along, 0.0), length) * axis)
-        away, end = float(np.hypot(*off)), f"{siting.wind(-axis if along < length / 2 else axis)} end"
+        away, end = float(np.hypot(*off)), f"{wind(-axis if along < length / 2 else axis)} end"
         if 0.0 <= along <= length:
-            found.append((away, f"{metres(away)} {siting.wind(off)} of {runway.name}" if away >= 1.0 else f"on {runway.name}",
+            found.append((away, f"{metres(away)} {wind(off)} of {runway.name}" if away >= 1.0 else f"on {runway.name}",
                           f", {metres(min(along, length - along))} from its {end}"))
         else:
-            found.append((away, f"{metres(away)} {siting.wind(off)} of the {end} of {runway.name}", ""))
+            found.append((away, f"{metres(away)} {wind(off)} of the {end} of {runway.name}", ""))
     found = sorted(found)[:2]
     return ", and ".join(nearest + more * (not number) for number, (_, nearest, more) in enumerate(found))
 
@@ -99,15 +101,15 @@ def over(view: Plan) -> str:
     if not view.runways:
         return view.where
     parts = []
-    for kind, names in siting.region_names(view.runways).items():
+    for kind, names in region_names(view.runways).items():
         there = [name.partition(" ")[2] for name in names if name in view.ends]
         count = len(view.runways)
         whose = "the runway" if count == 1 else "both runways" if count == 2 else f"all {count} runways"
         every = len(there) == len(names)
         if there and kind == "strips":
-            parts.append(f"the {'strips of ' + whose if every else 'strip of ' + listed(there)} (to {siting.STRIP_HALF_WIDTH:g}\u00a0m beside the middle)")
+            parts.append(f"the {'strips of ' + whose if every else 'strip of ' + listed(there)} (to {STRIP_HALF_WIDTH:g}\u00a0m beside the middle)")
         elif there:
-            parts.append(f"the {'approaches' if every else 'approach to ' + listed(there)} (to {siting.APPROACH_LENGTH / 1000.0:g}\u00a0km from an end)")
+            parts.append(f"the {'approaches' if every else 'approach to ' + listed(there)} (to {APPROACH_LENGTH / 1000.0:g}\u00a0km from an end)")
     low, high = view.asked or (0.0, 0.0)
     heights = "" if not view.asked else f"at {low:g}\u00a0m " if low == high else f"at {low:g} to {high:g}\u00a0m "
     tops = "" if view.asked else f", to {listed([f'{view.heights_of(name)[1]:.3g}' for name in view.members])}\u00a0m high"
@@ -128,7 +130,7 @@ def two_sentences(plan: Plan, view: Plan, site: Optional[Dict[str, Any]], reache
         detects += f", {share_of(of_year)} over the year"
     by = beside(view.sensor.position, view.runways)
     at = f"{place(view.sensor.position)} from the scene's origin{'; ' + site['degrees'] if site and site['degrees'] else ''}"
-    mast = round(float(view.sensor.position[2] - siting.ground_of(view.scene, [view.sensor.position[:2]])[0]), 1)
+    mast = round(float(view.sensor.position[2] - ground_of(view.scene, [view.sensor.position[:2]])[0]), 1)
     at = f"on a mast of {mast:g}\u00a0m, {at}" if mast > 0.0 else at
     where = f"{by} ({at})" if by else at
     year = ", by the year's weather" if view.year else ""
@@ -224,22 +226,28 @@ def _raise(view: Plan, advice: Dict[str, Any]) -> Dict[str, str]:
                               f"{best['cost']}."}
 
 
+def how_sure(site: Dict[str, Any]) -> Tuple[List[str], List[str]]:
+    """Sentences on candidates that are as good as the best, and on its place in the lattice, each perhaps none."""
+    alike = site["alike"]
+    return ([f"{alike} more candidate{'s are' if alike > 1 else ' is'} as good within the error."] * (alike > 0),
+            ["It lies at the lattice's edge: wider bounds may have a better one."] * site["edge"])
+
+
 def _check(view: Plan, site: Dict[str, Any]) -> Dict[str, str]:
     """The site itself."""
     words = [f"{site['surfaces']}; what no map has may be there."]
     masts = [f"{percent(row['share'][0], row['share'][1], view.count, bar=False)} with a mast of {row['mast']:g}\u00a0m" for row in site["masts"]]
     if len(masts) > 1:
         words.append(f"The best sites have {listed(masts)}.")
-    if site["alike"]:
-        words.append(f"{site['alike']} more candidate{'s are' if site['alike'] > 1 else ' is'} as good within the error.")
+    alike, edge = how_sure(site)
+    words += alike
     alone = [row for row in site["robustness"] if row["sensors"] == 1]
     if alone:
         most = max(alone, key=lambda row: row["another winner"])
         words.append(f"With other numbers ({most['change']}) another wins in up to {most['another winner']} of {most['draws']} draws, with at most "
                      f"{1.0 + max(row['gain at most'] for row in alone):.2f} times the share.")
-    if site["edge"]:
-        words.append("It lies at the lattice's edge: wider bounds may have a better one.")
+    words += edge
     if site["draws"] < FEWEST_DRAWS:
         words.append(f"How sure it is the best was not looked at: that takes draws={FEWEST_DRAWS}.")
     return {"head": "Check the site.", "more": "#sites", "words": " ".join(words) + " Its maps for GIS:",
-            "command": command(view, "coverage", "maps", **{"sensor.position": ",".join(siting.rounded(view.sensor.position))})}
+            "command": command(view, "coverage", "maps", **{"sensor.position": ",".join(rounded(view.sensor.position))})}

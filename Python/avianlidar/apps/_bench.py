@@ -2,7 +2,6 @@
 """Predictions for labelled sequences, held against their labels: the command `avianlidar bench`."""
 from __future__ import annotations
 
-import csv
 import itertools
 import math
 import pathlib
@@ -19,9 +18,11 @@ from .._writers import as_csv
 from . import _pictures as pictures
 from ._card import cell
 from ._labels import BIRD, MOVING
-from ._page import embedded, render
 from ._scores import Value, mean
-from ._sequence import FOLDERS, SUBSETS, read_manifest
+from ._inputs import read_manifest
+from ._sequence import FOLDERS
+from ._simulation import SUBSETS
+from ._tables import embedded, read_table, render
 
 RANGES = (0.0, 200.0, 400.0, 600.0, 1000.0, math.inf)  # m
 LOST = 3  # scans with points, one after the other, of which none is called bird, end the track of a bird
@@ -132,8 +133,8 @@ class Set:
 
     def species(self, number: str) -> Dict[int, str]:
         """Of a sequence's birds by instance."""
-        with open(self.folder / "sequences" / number / "truth.csv", newline="", encoding="utf-8") as rows:
-            return {int(row["bird"]) + 1: row["species"] for row in csv.DictReader(rows)}
+        rows = read_table(self.folder / "sequences" / number / "truth.csv", ("bird", "species"), "the truth of a sequence")
+        return {int(row["bird"]) + 1: row["species"] for row in rows}
 
     def points(self, number: str, predictions: pathlib.Path) -> Tuple[Points, int]:
         """The points of a sequence with what is predicted of them, and the number of scans."""
@@ -319,7 +320,8 @@ class Bench:
                  "all": [{"name": one.name, "cells": [cell(one.value(ALL, key), SCORES[key][1]) for key in keys]} for one in scored], "picture": None}
         curves = [(one.name, np.array(one.curves)) for one in scored if one.curves]
         if curves:
-            file = pictures.draw(out / f"curves-{first.set.name}.png", (5.6, 3.6), lambda axes: _draw_curves(axes, curves))
+            file = out / f"curves-{first.set.name}.png"
+            pictures.draw(file, (5.6, 3.6), lambda axes: _draw_curves(axes, curves))
             areas = ", ".join(f"{one.name} {one.value(ALL, 'average_precision').value:.3f}" for one in scored if one.curves)
             found["picture"] = {"source": embedded(file), "alt": f"Precision over recall at {first.set.name}; average precision: {areas}.",
                                 "caption": f"{first.set.name}, {first.set.weather}: the mean of the sequences, and one standard error to either side"}

@@ -19,8 +19,8 @@ from . import _pictures as pictures
 from . import _scores as scores
 from ._following import FALSE, ORIGINS, STATES, VOLUMES, Input
 from ._json import load_json
-from ._page import embedded, render
 from ._scores import Value
+from ._tables import embedded, render
 
 HEIGHTS = (0.0, 10.0, 30.0, 60.0, math.inf)  # m, bands of a bird's mean height
 WARNED = (10.0, 30.0, 60.0)  # s

@@ -2,10 +2,8 @@
 """What must the lidar be? Designs within bounds, their shares and costs: a plan's `design`, the command `avianlidar design`."""
 from __future__ import annotations
 
-import csv
 import dataclasses
 import hashlib
-import io
 import itertools
 import math
 import os
@@ -16,17 +14,17 @@ import numpy as np
 from vtkmodules.util.numpy_support import vtk_to_numpy
 
 from .._coverage import Coverage, places_of
-from .._files import read_regular
 from .._pipeline import Error, Updates, update
 from .._ranks import Ranks
 from .._sensor import Sensor
 from . import _scores as scores
-from . import siting
-from ._air import Air
+from ._air import Air, gathers_light
 from ._formula import Formula
+from ._inputs import read_plan, read_scenario
 from ._json import naming
-from ._maps import Plan, read_plan
-from ._sequence import read_scenario
+from ._looks import files_of, fill, require_memory
+from ._plan import Plan
+from ._tables import read_table
 from ._tracks import LEARNING, BirdTracks
 
 DESIGNS = 128
@@ -196,7 +194,7 @@ class Study:
         of_band = [name for name in (*BAND, "azimuth_step") if name in self.swept]
         if of_band and not regular:
             raise Error(f"{what}.bounds.{of_band[0]}: the sensor's beams are a table of its own, expected channels at even steps, as of Search905")
-        if "receiver_aperture" in self.swept and not self.plan.gathers_light:
+        if "receiver_aperture" in self.swept and not gathers_light(sensor):
             raise Error(f"{what}.bounds.receiver_aperture: the sensor has no aperture, expected a photon receiver, as of Search905")
         low, high = max(self._ends("minimum_elevation")), min(self._ends("maximum_elevation"))
         if of_band and not low < high:
@@ -324,7 +322,7 @@ class Study:
     def _found(self, what: str, designs: Sequence[Mapping[str, float]], points: np.ndarray) -> np.ndarray:
         """The probability at each place for the birds and weathers asked for: float32, designs x places. Ranks share designs, those of one
         geometry together; what is kept in the folder is not found again."""
-        siting.require_memory(4.0 * len(designs) * len(points), f"{len(designs):,} designs and {len(points):,} places", "take fewer")
+        require_memory(4.0 * len(designs) * len(points), f"{len(designs):,} designs and {len(points):,} places", "take fewer")
         folder, places = self.folder / "coverage", np.ascontiguousarray(points, float)
         settings = {name: value for name, value in self.plan.settings.items() if name != "height_limits"}
         cover = Coverage(self.plan.scene, self.plan.sensor, places=places_of(places), **settings)
@@ -333,11 +331,11 @@ class Study:
         found, files = np.empty((len(designs), len(points)), np.float32), []
         for values in designs:
             self._set(values)
-            files += siting._files(cover, np.array([self.plan.sensor.position]), places, known, folder)
+            files += files_of(cover, np.array([self.plan.sensor.position]), places, known, folder)
         with self.ranks.together():
             hard = [tuple(value for name, value in values.items() if not FIELDS[name].light) for values in designs]
             with Updates(cover.algorithm) as again:
-                siting._fill(found, files, self.ranks, lambda i: self._at_places(cover, designs[i], again),
+                fill(found, files, self.ranks, lambda i: self._at_places(cover, designs[i], again),
                              lambda *done: self.progress(what, *done), lambda i: hard[i])
         return found
 
@@ -398,12 +396,11 @@ class Study:
             which = f"design {number + 1} of {len(finalists)}"
             tracks.write(folder, self.ranks, lambda what, *done, which=which: self.progress(f"{which}: {what}", *done))
             with naming(f"{self.plan.file}: design.scenario"):
-                one.tracked = self._tracked(read_regular(folder / "birds.csv").decode())
+                one.tracked = self._tracked(read_table(folder / "birds.csv"))
         return finalists
 
-    def _tracked(self, text: str) -> scores.Value:
-        """The share of birds tracked, of the plan's species at its heights. @param text birds.csv"""
-        birds = list(csv.DictReader(io.StringIO(text, newline="")))
+    def _tracked(self, birds: Sequence[Mapping[str, str]]) -> scores.Value:
+        """The share of birds tracked, of the plan's species at its heights. @param birds rows of birds.csv"""
         low, high = self.plan.asked or (-math.inf, math.inf)
         parts = []
         for species, share in self.plan.mix.items():

@@ -13,10 +13,9 @@ from .._version import __version__
 from . import _pictures as pictures
 from ._card import cell
 from ._design import CHANGE, FIELDS, TOLD, Candidate, Study, is_told
-from ._maps import write_table
-from ._page import embedded, render
 from ._report import place
 from ._scores import Value
+from ._tables import embedded, render, write_table
 
 TOLD_WORDS = {True: "yes", False: "no", None: "not told"}
 
@@ -25,14 +24,14 @@ def _cost(study: Study, cost: float) -> str:
     return f"{cost:.4g}{' ' + study.unit if study.unit else ''}"
 
 
-def does(study: Study, form: str = "detects") -> str:
-    """What the share is of, in words. @param form of the verb "detect" """
+def does(study: Study) -> str:
+    """What the share is of, in words."""
     birds = f"{study.plan.bird}s" if len(study.plan.mix) == 1 else "birds"
     if study.measure == "tracked":
-        return f"{form.replace('detect', 'track')} {birds} of the scenario at least once"
+        return f"tracks {birds} of the scenario at least once"
     needed = study.plan.coverage.required_detections
     time = f"{needed} or more of the scans in {study.within:g} s" if study.within else "one scan"
-    return f"{form} {birds} {study.plan.where}, by {time}"
+    return f"detects {birds} {study.plan.where}, by {time}"
 
 
 def stands(study: Study) -> str:

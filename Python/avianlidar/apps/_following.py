@@ -4,9 +4,7 @@ from __future__ import annotations
 
 import collections
 import contextlib
-import csv
 import functools
-import io
 import json
 import math
 import pathlib
@@ -16,7 +14,6 @@ import numpy as np
 
 from .. import vtkAvianLidar as _wrapped
 from .._cloud import add_array, as_numpy
-from .._files import read_regular
 from .._pipeline import Error, Updates, update
 from .._properties import get_property, property_names, set_properties
 from .._ranks import digest_of_arrays
@@ -25,8 +22,11 @@ from .._sensor import Sensor
 from . import _scores as scores
 from ._json import load_json, naming
 from ._labels import FIRST_BIRD, FIRST_OBJECT
-from ._sequence import DONE, _digest, _short, read_manifest, read_scenario
-from .siting import (APPROACH_HALF_WIDTH, APPROACH_HEIGHT, APPROACH_LENGTH, STRIP_HALF_WIDTH, STRIP_HEIGHTS, Runway, read_runways)
+from ._geojson import read_runways
+from ._regions import APPROACH_HALF_WIDTH, APPROACH_HEIGHT, APPROACH_LENGTH, STRIP_HALF_WIDTH, STRIP_HEIGHTS, Runway
+from ._inputs import read_manifest, read_scenario
+from ._sequence import DONE, _digest, _short
+from ._tables import read_table
 
 VOLUMES = ("strip", "glide path")
 NEEDED = ("bird", "species", "status", "time_s", "x_m", "y_m", "z_m", "range_m", "visibility_m", "rain_mm_h")  # of truth.csv
@@ -124,12 +124,8 @@ def origin_of(labels: np.ndarray) -> np.ndarray:
 
 def read_truth(file) -> Dict[int, List[Dict[str, Any]]]:
     """Of each scan, by its number in the whole set, the birds that are somewhere: rows with numbers as such."""
-    rows = csv.DictReader(io.StringIO(read_regular(file).decode(), newline=""))
-    missing = [name for name in ("scan", *NEEDED) if name not in (rows.fieldnames or ())]
-    if missing:
-        raise Error(f"{file}: has no column {missing[0]}, expected the truth of a sequence")
     found: Dict[int, List[Dict[str, Any]]] = collections.defaultdict(list)
-    for number, row in enumerate(rows):
+    for number, row in enumerate(read_table(file, ("scan", *NEEDED), "the truth of a sequence")):
         with naming(f"{file}: line {number + 2}"):
             of_scan = found[int(row["scan"])]
             weather = [f"visibility {float(row['visibility_m']):g} m"] if row["visibility_m"] else []
@@ -146,11 +142,10 @@ def inside(volume: str, runways: Many[Runway], places) -> np.ndarray:
     high; their glide paths, two a runway, beyond its ends to 3 km, 75 m to either side and 45 m high at the end, widening by 0.15 and rising
     by 3 degrees."""
     if volume == "strip":
-        found = [scores.in_strip(places, runway.start, runway.end, STRIP_HALF_WIDTH, STRIP_HEIGHTS[1]) for runway in runways]
+        wedges: List[Any] = [(runway.start, *runway.axis(), (STRIP_HALF_WIDTH, 0.0), (STRIP_HEIGHTS[1], 0.0)) for runway in runways]
     else:
-        found = [scores.in_wedge(places, threshold, sign * runway.axis()[0], APPROACH_LENGTH, APPROACH_HALF_WIDTH, APPROACH_HEIGHT)
-                 for runway in runways for threshold, sign in ((runway.start, -1.0), (runway.end, 1.0))]
-    return np.array(found, bool).reshape(-1, len(places))
+        wedges = [(*end, APPROACH_LENGTH, APPROACH_HALF_WIDTH, APPROACH_HEIGHT) for runway in runways for end in runway.ends()]
+    return np.array([scores.in_wedge(places, *wedge) for wedge in wedges], bool).reshape(-1, len(places))
 
 
 class Scorer:

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import contextlib
+import functools
 import json
 import math
 import pathlib
 from typing import Any, Iterator
 
 from .._files import read_regular
-from .._pipeline import Error
+from .._pipeline import Error, words_of
 
 KINDS = {"objects": "a scene", "number_of_scans": "a scenario", "siting": "a plan", "coverage": "a plan"}  # by a key that others have not
 SCHEMAS = {"coverage.schema.json": "a plan", "scenario.schema.json": "a scenario"}
@@ -38,11 +39,16 @@ def load_json(file) -> Any:
         raise Error(f"{file}: is not JSON ({error})") from None
 
 
+@functools.lru_cache(maxsize=None)
+def packaged(name: str) -> Any:
+    """What a JSON file of this package holds."""
+    return load_json(pathlib.Path(__file__).with_name(name))
+
+
 def check_json(document: Any, schema: str, what: str) -> None:
     """`Error` names the property that does not fit. @param schema a file of this package @param what the document's name"""
     import jsonschema
-    rules = load_json(pathlib.Path(__file__).with_name(schema))
-    wrong = jsonschema.exceptions.best_match(jsonschema.Draft202012Validator(rules).iter_errors(document))
+    wrong = jsonschema.exceptions.best_match(jsonschema.Draft202012Validator(packaged(schema)).iter_errors(document))
     if wrong:
         words = wrong.message if len(wrong.message) <= LONGEST else f"{wrong.message[:LONGEST // 2]} ... {wrong.message[-LONGEST // 2:]}"
         if wrong.validator == "not":
@@ -61,9 +67,4 @@ def naming(what: str) -> Iterator[None]:
     try:
         yield
     except (RuntimeError, OSError, ValueError, TypeError, LookupError, ArithmeticError, MemoryError) as error:
-        words = str(error)
-        if isinstance(error, OSError) and error.strerror:
-            words = f"{error.filename}: {error.strerror}" if error.filename else error.strerror
-        elif isinstance(error, KeyError) and error.args:
-            words = str(error.args[0])
-        raise Error(f"{what}: {words or type(error).__name__}") from None
+        raise Error(f"{what}: {words_of(error)}") from None

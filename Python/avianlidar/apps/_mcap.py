@@ -92,10 +92,9 @@ def _message(key: int, *fields) -> bytes:
 
 
 def _transform(time: int, pose: np.ndarray) -> bytes:
-    """From the sensor's frame to the map, by the eigenvector of the largest eigenvalue (Bar-Itzhack 2000)."""
-    (a, b, c), (d, e, f), (g, h, i) = pose[:, :3]
-    rotation = np.linalg.eigh([[a - e - i, d + b, g + c, h - f], [d + b, e - a - i, h + f, c - g],
-                               [g + c, h + f, i - a - e, d - b], [h - f, c - g, d - b, a + e + i]])[1][:, -1]
+    """From the sensor's frame to the map."""
+    from scipy.spatial.transform import Rotation
+    rotation = Rotation.from_matrix(pose[:, :3]).as_quat()
     return _message(_TF, [((divmod(time, 10**9), "map"), "lidar", (pose[:, 3], rotation * (-1 if rotation[3] < 0 else 1)))])
 
 

@@ -14,7 +14,9 @@ from osgeo import ogr, osr
 
 from .._files import read_regular
 from .._pipeline import Error
-from ._extract import CONTROLS, NUMBER, TALLEST, Feature, degrees, form_of, geometry, number_of, plain
+from ._features import NUMBER, TALLEST, Feature, number_of
+from ._gdal import degrees, form_of, geometry, plain
+from ._osm import CONTROLS
 
 METRES = {"'": 0.3048, "′": 0.3048, "m": 1.0, "metre": 1.0, "metres": 1.0, "meter": 1.0, "meters": 1.0, "ft": 0.3048, "foot": 0.3048, "feet": 0.3048}
 COLUMNS = {"longitude": ("longitude", "lon", "long", "lng", "londec", "x"), "latitude": ("latitude", "lat", "latdec", "y"),

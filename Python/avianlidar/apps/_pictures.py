@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import io
-import pathlib
 import warnings
 from typing import Any, Callable, List, Mapping, Sequence, Tuple
 
@@ -13,9 +12,9 @@ from vtkmodules.util.numpy_support import vtk_to_numpy
 from .._cloud import as_numpy, field_values, leaves_of, triangles_of
 from .._coverage import Coverage
 from .._disk import write_whole
-from ._maps import Plan
-from .reach import Reach
-from .siting import APPROACH_LENGTH, Runway, region_outlines
+from ..reach import Reach
+from ._plan import Plan
+from ._regions import APPROACH_LENGTH, Runway, region_outlines
 
 # Colours of vtkAvianLidarCoverage's statuses: outside the gate, above, below, between beams, shadowed, in clutter, too weak, seen.
 STATUS_COLOURS = ("#f7f7f7", "#a6cee3", "#c6a982", "#f4e04d", "#77778a", "#d95f02", "#cc99bb", "#1b9e77")
@@ -35,15 +34,20 @@ CJK = ("Noto Sans CJK JP", "WenQuanYi Micro Hei")  # fonts for letters that Matp
 STEP = (10.0, 2.0)  # m, of the section, along and up
 
 
-def gradient(count: int = 9) -> List[str]:
-    """Colours of probabilities from 0 to 1."""
+def gradient() -> List[str]:
+    """Colours of nine probabilities from 0 to 1."""
     from matplotlib import colormaps
     from matplotlib.colors import to_hex
-    return [to_hex(colormaps["viridis"](share)) for share in np.linspace(0.0, 1.0, count)]
+    return [to_hex(colormaps["viridis"](share)) for share in np.linspace(0.0, 1.0, 9)]
 
 
-def draw(file, size: Tuple[float, float], work: Callable[[Any], Any], columns: int = 1) -> pathlib.Path:
-    """Write a picture (PNG). @param size inches @param work draws into the axes that it is given @param columns axes beside one another"""
+def draw(file, size: Tuple[float, float], work: Callable[[Any], Any], columns: int = 1) -> None:
+    """Write a picture, see `drawn`."""
+    write_whole(file, drawn(size, work, columns))
+
+
+def drawn(size: Tuple[float, float], work: Callable[[Any], Any], columns: int = 1) -> bytes:
+    """A picture (PNG). @param size inches @param work draws into the axes that it is given @param columns axes beside one another"""
     from matplotlib import font_manager, rc_context
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
@@ -58,8 +62,7 @@ def draw(file, size: Tuple[float, float], work: Callable[[Any], Any], columns: i
         FigureCanvasAgg(figure)
         work(figure.subplots(1, columns))
         figure.savefig(content, format="png", dpi=PIXELS)
-    write_whole(file, content.getvalue())
-    return pathlib.Path(file)
+    return content.getvalue()
 
 
 def finish(axes, **settings: Any) -> None:
@@ -251,15 +254,27 @@ def draw_clutter(axes, plan: Plan, clutter) -> None:
     _bar(axes, dots, "share of scans")
 
 
+def draw_outline(axes, outline) -> None:
+    """Where nothing may stand, in light grey. @param outline a ring (n x 2, m), or several: the outer one and holes"""
+    from matplotlib.patches import PathPatch
+    from matplotlib.path import Path
+    paths = []
+    for number, ring in enumerate([outline] if np.ndim(outline[0]) == 1 else outline):
+        turns_left = np.cross(ring, np.roll(ring, -1, axis=0)).sum() > 0.0
+        ring = ring if turns_left == (number == 0) else ring[::-1]  # holes turn the other way
+        paths.append(Path([*ring, ring[0]], closed=True))
+    axes.add_patch(PathPatch(Path.make_compound_path(*paths), color="0.9", zorder=0))
+
+
 def draw_sites(axes, sites) -> None:
     """Candidates by value, where nothing may stand, and the best network."""
     draw_land(axes, sites.plan)
     draw_airport(axes, sites.plan, "0.1")
     for outline, _ in sites.exclusions:
-        axes.fill(*outline.T, color="0.9", zorder=0)
+        draw_outline(axes, outline)
     for one in sites.surfaces:
         if "strip" in one.kept:
-            axes.fill(*one.strip.T, color="0.9", zorder=0)
+            draw_outline(axes, one.strip)
     x, y, _ = sites.positions[sites.order[::-1]].T
     dots = axes.scatter(x, y, c=sites.values[sites.order[::-1]], s=22, cmap="viridis")
     _bar(axes, dots, "share by which candidates are ranked")

@@ -14,14 +14,19 @@ from .._cloud import field_values
 from .._disk import only_run, write_whole
 from .._pipeline import Error
 from .._version import __version__
+from .. import reach
+from . import _answer
 from . import _pictures as pictures
-from . import _answer, reach, siting
-from ._answer import LEAST, LEAST_WORDS, birds_of, cell, decimals, metres, percent, place, share_of
+from ._air import gathers_light
+from ._answer import LEAST, LEAST_WORDS, birds_of, cell, decimals, how_sure, metres, percent, place, share_of
 from ._card import read_card
+from ._geojson import to_geodetic
 from ._json import load_json, naming
-from ._maps import Plan, height_name, write_table
-from ._page import embedded, render
+from ._maps import height_name
+from ._plan import Plan
+from ._regions import rounded
 from ._sites import BEST, DRAWS, FEWEST_DRAWS, OTHER_PLACES, Sites
+from ._tables import embedded, render, write_table
 
 VISIBILITIES = (200.0, 500.0, 1000.0, 2000.0, 5000.0, 10_000.0, 20_000.0)  # m, of the section on weather
 RAINS = (0.0, 1.0, 5.0, 10.0, 25.0, 50.0)  # mm/h
@@ -149,7 +154,7 @@ class Report:
             less, error = sites.difference(i)
             value, own = sites.share([i])
             places = f"{100.0 * less:.{decimals(100.0 * error)}f} ± {100.0 * error:.{decimals(100.0 * error)}f}" if error > 0.0 else "–"
-            best.append({"rank": k + 1, "position": siting.rounded(sites.positions[i]), "value": percent(value, own, sites.plan.count), "less": places})
+            best.append({"rank": k + 1, "position": rounded(sites.positions[i]), "value": percent(value, own, sites.plan.count), "less": places})
         gain = sites.gain()
         words = "; ".join(f"{row['sensors']}: {percent(row['value'], row['std_error'], sites.plan.count)}" for row in gain)
         pictured = {"map": ("sites.png", f"Map of {len(sites.positions)} candidates for {sites.plan.name}; best alone: "
@@ -160,7 +165,7 @@ class Report:
         return {"name": sites.plan.name, "best": best, "gain": gain, "lattice": sites.lattice, "alike": sites.count_alike(), "edge": sites.at_the_edge,
                 "degrees": self._degrees(sites), "masts": sites.best_by_mast(), "first": sites.positions[sites.order[0]],
                 "detects": float(sites.values[sites.order[0]]) >= LEAST, "places": sites.plan.count,
-                "by_air": [{**row, "position": siting.rounded(sites.positions[row["site"]])} for row in sites.best_by_air()],
+                "by_air": [{**row, "position": rounded(sites.positions[row["site"]])} for row in sites.best_by_air()],
                 "robustness": sites.robustness(changes), "words": sites.words(), "near": len(sites.near), "count": len(sites.positions),
                 "taken": sites.stands_wrong(sites.plan.sensor.position), "surfaces": sites.surface_sentence,
                 "heights_varied": any("heights" in change.what for change in changes),
@@ -173,7 +178,7 @@ class Report:
         origin = sites.plan.scene.geodetic_origin
         if origin is None:
             return ""
-        longitude, latitude, _ = siting.to_geodetic(sites.positions[sites.order[:1]], origin)[0]
+        longitude, latitude, _ = to_geodetic(sites.positions[sites.order[:1]], origin)[0]
         return f"{abs(latitude):.5f}° {'N' if latitude >= 0.0 else 'S'}, {abs(longitude):.5f}° {'E' if longitude >= 0.0 else 'W'}"
 
     def _reaches(self, plan: Plan, folder: pathlib.Path) -> Dict[str, Any]:
@@ -196,7 +201,7 @@ class Report:
     def _weather(self, views: List[Plan], folder: pathlib.Path) -> Dict[str, Any]:
         """Shares of the places in fog and in rain, and over the plan's year, for each view."""
         probability = ("detection_probability", "detection_std_error")
-        found: Dict[str, Any] = {"beside": views[0].air_of()["visibility"], "weaken": [plan.name for plan in self.plans if not plan.gathers_light], "pictures": []}
+        found: Dict[str, Any] = {"beside": views[0].air_of()["visibility"], "weaken": [plan.name for plan in self.plans if not gathers_light(plan.sensor)], "pictures": []}
         table: List[Dict[str, Any]] = []
         shares, year = [], views[0].year  # by view, then by air
         names = [*(f"visibility {v:.10g} m" for v in VISIBILITIES), *(f"rain {rain:.10g} mm/h" for rain in RAINS), *(air.name for air in year)]
@@ -248,9 +253,7 @@ class Report:
         """What else there is to say of the best site: how sure it is, and what the plan's own place detects."""
         if not site or view is plan:
             return []
-        alike = site["alike"]
-        said = [f"{alike} more candidate{'s are' if alike > 1 else ' is'} as good within the error."] * (alike > 0)
-        said += ["It lies at the lattice's edge: wider bounds may have a better one."] * site["edge"]
+        said = [sentence for sentences in how_sure(site) for sentence in sentences]
         if plan is self.plans[0]:
             who = "the plan" if "position" in plan.plan["sensor"] else "the scene"
             said.append(f"Where {who} puts it, {place(plan.sensor.position)}, it is {share_of(plan.overall)}"
@@ -310,7 +313,7 @@ class Report:
         made = ("file", "hours", "options", *(["year"] if "metar" in self.plan else []))
         asked = {name: part for name, part in self.plan.items() if name not in made}
         return render(
-            "report.html.jinja", filter_metres=metres, filter_share=percent, filter_of_row=share_of, filter_cell=cell, filter_rounded=siting.rounded,
+            "report.html.jinja", filter_metres=metres, filter_share=percent, filter_of_row=share_of, filter_cell=cell, filter_rounded=rounded,
             question=self.plan.get("description") or f"Where is a {first.bird} detected?",
             asked=self.asked, chance=share_of(answering[0].overall),
             said=said[0],

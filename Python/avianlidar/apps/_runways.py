@@ -13,7 +13,9 @@ from osgeo import osr
 from scipy.sparse.csgraph import connected_components
 
 from .._pipeline import Error
-from ._extract import Extract, Feature, degrees, form_of, geometry, moved, parts_of
+from ._extract import Extract
+from ._features import Feature
+from ._gdal import box_of, degrees, form_of, geometry, moved, parts_of
 from ._maps import coordinate_system
 
 NEAR_AERODROME = 3000.0  # m: a runway belongs to the nearest aerodrome within
@@ -21,11 +23,6 @@ ONE_AIRPORT = 6000.0  # m between runways of one airport, where no aerodrome is 
 MODEL_NEAR = 100.0  # m of a model airfield
 ALONG = math.cos(math.radians(10.0))  # of two directions that are the same
 THRESHOLD_BESIDE, THRESHOLD_BEYOND = 30.0, 30.0  # m: a threshold lies on a runway; nearer to its end it is the end
-
-
-def box_of(west_south_east_north: Sequence[float]):
-    west, south, east, north = west_south_east_north
-    return geometry("Polygon", [[(west, south), (east, south), (east, north), (west, north), (west, south)]])
 
 
 def _axis_of(hull) -> Tuple[np.ndarray, float]:

@@ -68,17 +68,10 @@ def switches(tracks: Sequence[Optional[Hashable]]) -> int:
     return sum(a != b for a, b in zip(had, had[1:]))
 
 
-def in_strip(points, start, end, half_width: float, height: float) -> np.ndarray:
-    """Which points lie in the box over a runway. @param points n x 3, m @param start, end of its middle, m east and north @param half_width m
-    to either side @param height m, of its top"""
-    way = np.subtract(end, start)
-    length = math.hypot(*way)
-    return in_wedge(points, start, way / length, length, (half_width, 0.0), (height, 0.0))
-
-
 def in_wedge(points, threshold, outwards, length: float, half_width: Tuple[float, float], height: Tuple[float, float]) -> np.ndarray:
-    """Which points lie below and beside the glide path before a threshold. @param outwards unit vector away from the runway
-    @param half_width, height m at the threshold, and by how much they grow a metre outwards"""
+    """Which points lie below and beside the glide path before a threshold, or in the box over a runway. @param points n x 3, m
+    @param outwards unit vector away from the runway, or along it @param half_width, height m at the threshold, and by how much they grow a
+    metre outwards"""
     points, (x, y) = np.asarray(points, float).reshape(-1, 3), outwards
     along, aside = ((points[:, :2] - np.asarray(threshold)) @ [[x, y], [y, -x]]).T
     return (along >= 0.0) & (along <= length) & (np.abs(aside) <= half_width[0] + half_width[1] * along) & (

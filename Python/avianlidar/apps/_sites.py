@@ -16,11 +16,16 @@ from .._files import read_regular
 from .._pipeline import Error
 from .._ranks import Ranks
 from .._scene import load_scene
-from . import _pictures, siting
+from . import _pictures
 from ._air import Air
+from ._candidates import MOST_CANDIDATES, NAMES, SAME_PLACE, Surfaces, candidates, ground_of, is_near, lattice, pierced, table
+from ._geojson import read_outlines, with_other_heights
 from ._json import naming
-from ._maps import Plan, write_table
-from ._surfaces import NAMES, Surfaces, pierced, table
+from ._looks import look, require_memory, value_of_same_birds
+from ._networks import Network, search, value_of, values_of
+from ._plan import Plan
+from ._regions import by_kind, rounded, runway_outline
+from ._tables import write_sites, write_table
 
 NEAR = 40  # candidates that are best alone: all networks of one to three of these and of the best network are compared
 DRAWS = 10
@@ -40,10 +45,10 @@ class Change:
 
     what: str
     draw: int
-    winner: siting.Network  # its value in this draw
+    winner: Network  # its value in this draw
     value: float  # of the original winner in this draw
 
-    def is_another(self, networks: List[siting.Network]) -> bool:
+    def is_another(self, networks: List[Network]) -> bool:
         """Whether the winner is another network than before."""
         return sorted(self.winner.sites) != sorted(networks[len(self.winner.sites) - 1].sites)
 
@@ -58,7 +63,7 @@ def _read_points(name: str) -> np.ndarray:
     text = read_regular(name)
     try:
         table = csv.DictReader(io.StringIO(text.decode("utf-8-sig"), newline=""), skipinitialspace=True)
-        rows = itertools.islice(table, siting.MOST_CANDIDATES + 1)
+        rows = itertools.islice(table, MOST_CANDIDATES + 1)
         points = np.array([(float(row["x"]), float(row["y"])) for row in rows]).reshape(-1, 2)
     except (KeyError, TypeError, ValueError, csv.Error) as error:
         raise Error(f"{name}: expected the columns x and y in the first line and numbers (m) below ({error})") from None
@@ -109,8 +114,8 @@ class Sites:
         self.exclusions = self._exclusions()
         points = self._points()
         with naming(f"{plan.file}: siting"):
-            self.positions = siting.candidates(points, self.masts, self.exclusions, plan.scene)
-            siting.require_memory(4.0 * len(self.positions) * len(self.mix) * len(self.airs) * plan.count,
+            self.positions = candidates(points, self.masts, self.exclusions, plan.scene)
+            require_memory(4.0 * len(self.positions) * len(self.mix) * len(self.airs) * plan.count,
                                   f"{len(self.positions):,} candidates, {len(self.mix)} species and {plan.count:,} places"
                                   + (f" in {len(self.airs)} weathers" if len(self.airs) > 1 else ""),
                                   "take a larger spacing, fewer masts or places")
@@ -118,7 +123,7 @@ class Sites:
             self._keep_below()
         if self.options.get("draws", DRAWS):
             with naming(f"{plan.file}: scene"), tempfile.TemporaryDirectory() as copy:
-                siting.with_other_heights(plan.plan["scene"], copy, lambda: 0.0)  # as `changes` will
+                with_other_heights(plan.plan["scene"], copy, lambda: 0.0)  # as `changes` will
 
     def _keep_below(self) -> None:
         """Leave out candidates whose masts pierce an obstacle limitation surface."""
@@ -162,7 +167,7 @@ class Sites:
     def stands_wrong(self, position: Sequence[float]) -> bool:
         """Whether no candidate may stand at a place, m."""
         place = np.array([position], dtype=float)
-        return bool(pierced(self.surfaces, place)[0]) or any(siting.is_near(place, outline, margin)[0] for outline, margin in self.exclusions)
+        return bool(pierced(self.surfaces, place)[0]) or any(is_near(place, outline, margin)[0] for outline, margin in self.exclusions)
 
     def look(self) -> Sites:
         """Look from all candidates, and compare networks of them. @return this"""
@@ -172,9 +177,9 @@ class Sites:
         self.by_air = np.array([[np.vdot(site[:, air].astype(float), of_species) for air in range(len(self.airs))] for site in every])
         if len(self.counting) < len(self.airs):
             self.found = every[:, :, self.counting].reshape(len(self.positions), -1, every.shape[-1])
-        self.values = siting.values_of(self.found, self.weights)
+        self.values = values_of(self.found, self.weights)
         self.order = np.argsort(-self.values, kind="stable")
-        first = siting.search(self.found, self.weights, min(self.count, len(self.positions)))
+        first = search(self.found, self.weights, min(self.count, len(self.positions)))
         members = [site for network in first for site in network.sites]
         self.near = np.array(list(dict.fromkeys([*self.order[:NEAR], *members])))
         self.networks = self._search(self.found[self.near], self.weights, first)
@@ -195,7 +200,7 @@ class Sites:
         found = self._look(self.positions[of_air], self.airs, seed, **clutter)[0].reshape(len(of_air), len(self.mix), len(self.airs), -1)
         self.told_by_air = {site: [float(np.vdot(of[:, air].astype(float), of_species)) for air in range(len(self.airs))] for site, of in zip(of_air, found)}
         with self.ranks.together():
-            self.of_same_birds = [siting.value_of_same_birds(self.plan.scene, self.plan.sensor, self.positions[list(network.sites)], points,
+            self.of_same_birds = [value_of_same_birds(self.plan.scene, self.plan.sensor, self.positions[list(network.sites)], points,
                                                              list(self.mix), self.told_weights, [self.airs[i].settings for i in self.counting],
                                                              **{**self.settings, **clutter})
                                   for network in self.networks]
@@ -216,7 +221,7 @@ class Sites:
     def _points(self) -> np.ndarray:
         if "points" not in self.options:
             with naming(f"{self.plan.file}: siting.spacing"):
-                return siting.lattice(self.options.get("bounds", self.plan.extent), self.options.get("spacing", SPACING))
+                return lattice(self.options.get("bounds", self.plan.extent), self.options.get("spacing", SPACING))
         with naming(f"{self.plan.file}: siting.points"):
             return _read_points(self.options["points"])
 
@@ -224,35 +229,35 @@ class Sites:
         """Outlines (m) where nothing may stand, each with its margin (m)."""
         origin, margin = self.plan.scene.geodetic_origin, float(self.options.get("margin", 0.0))
         with naming(f"{self.plan.file}: runways"):
-            outlines = siting.read_outlines(self.plan.plan["runways"], origin, "height")
+            outlines = read_outlines(self.plan.plan["runways"], origin, "height")
         for number, file in enumerate(self.options.get("exclusions", ())):
             with naming(f"{self.plan.file}: siting.exclusions[{number}]"):
-                found = siting.read_outlines(file, origin)
+                found = read_outlines(file, origin)
                 if not found:
                     raise Error(f"{file}: holds no polygon, expected some where no lidar may stand")
                 outlines += found
-        return [(outline, margin) for outline in outlines] + [(siting.runway_outline(r, 0.0, r.width / 2.0), 0.0) for r in self.plan.runways]
+        return [(outline, margin) for outline in outlines] + [(runway_outline(r, 0.0, r.width / 2.0), 0.0) for r in self.plan.runways]
 
     def _look(self, positions, airs: Optional[List[Air]] = None, seed: Optional[int] = None, scene=None, progress=None, **settings: Any):
         """Coverage of sites, weights and regions. @param airs default those that count"""
         points, weights, regions = self._draw(seed)
         settings_of = [air.settings for air in airs or [self.airs[i] for i in self.counting]]
-        found = siting.look(scene or self.plan.scene, self.plan.sensor, positions, points, list(self.mix), self.folder, self.ranks,
+        found = look(scene or self.plan.scene, self.plan.sensor, positions, points, list(self.mix), self.folder, self.ranks,
                             progress, airs=settings_of, **{**self.settings, **settings})
         return found, weights, regions
 
     def _draw(self, seed: Optional[int] = None):
         """Places, their weights (species and weathers x places) and regions: those of the plan's table, or others of the same
         question."""
-        points, regions = (self.plan.points, self.plan.members) if seed is None else self.plan.places(seed)
+        points, ends = (self.plan.points, self.plan.ends) if seed is None else self.plan.places(seed)
         shares = np.array([self.airs[i].share for i in self.counting])
         weights = self.plan.weights(points)[:, None] * (shares / shares.sum())[:, None]
-        return points, weights.reshape(-1, len(points)), regions
+        return points, weights.reshape(-1, len(points)), by_kind(ends)
 
-    def _search(self, found, weights, known=()) -> List[siting.Network]:
+    def _search(self, found, weights, known=()) -> List[Network]:
         """The best networks of the near candidates."""
-        best = siting.search(found, weights, min(self.count, len(self.near)), 2 * NEAR)
-        own = [siting.Network(tuple(int(self.near[i]) for i in network.sites), network.value) for network in best]
+        best = search(found, weights, min(self.count, len(self.near)), 2 * NEAR)
+        own = [Network(tuple(int(self.near[i]) for i in network.sites), network.value) for network in best]
         return [max(pair, key=lambda network: network.value) for pair in zip(own, known or own)]
 
     def changes(self) -> Iterator[Change]:
@@ -268,7 +273,7 @@ class Sites:
                 offsets.append(random.uniform(-HEIGHT_ERROR, HEIGHT_ERROR))
                 return offsets[-1]
             with tempfile.TemporaryDirectory() as folder:
-                other = load_scene(siting.with_other_heights(self.plan.plan["scene"], folder, offset))
+                other = load_scene(with_other_heights(self.plan.plan["scene"], folder, offset))
                 other.refresh()
             kinds: List[Tuple[str, Dict[str, Any]]] = [
                 (f"building heights ±{HEIGHT_ERROR:g} m", {"scene": other}),
@@ -281,7 +286,7 @@ class Sites:
                 self._tell("draws", len(kinds) * draw + k + 1, len(kinds) * draws)
                 number = {int(site): i for i, site in enumerate(self.near)}
                 for before, winner in zip(self.networks, self._search(found, weights)):
-                    yield Change(what, draw, winner, siting.value_of(found, weights, [number[s] for s in before.sites]))
+                    yield Change(what, draw, winner, value_of(found, weights, [number[s] for s in before.sites]))
 
     def difference(self, site: int) -> Tuple[float, float]:
         """How much less one of the best sites detects than the first, and the standard error of that, as both see the same places. It may be
@@ -305,7 +310,7 @@ class Sites:
         shares = [self.share(n.sites) for n in self.networks]
         return [{"sensors": len(n.sites), "value": value, "std_error": error, "value of the same birds": same,
                  "ranks of the sites": " ".join(str(self.rank_of(i)) for i in n.sites),
-                 "sites": "; ".join(" ".join(siting.rounded(place)) for place in self.positions[list(n.sites)])}
+                 "sites": "; ".join(" ".join(rounded(place)) for place in self.positions[list(n.sites)])}
                 for n, (value, error), same in zip(self.networks, shares, self.of_same_birds)]
 
     def robustness(self, changes: List[Change]) -> List[Dict[str, Any]]:
@@ -349,9 +354,9 @@ class Sites:
         return bool(((place - bounds[:, 0] < spacing) | (bounds[:, 1] - place < spacing)).any())
 
     def _best_with_masts(self) -> List[Tuple[float, int]]:
-        ground = np.nan_to_num(siting.ground_of(self.plan.scene, self.positions[:, :2]))
+        ground = np.nan_to_num(ground_of(self.plan.scene, self.positions[:, :2]))
         of = self.positions[:, 2] - ground
-        found = [(mast, np.flatnonzero(np.abs(of - mast) < siting.SAME_PLACE)) for mast in self.masts]
+        found = [(mast, np.flatnonzero(np.abs(of - mast) < SAME_PLACE)) for mast in self.masts]
         return [(mast, int(numbers[np.argmax(self.values[numbers])])) for mast, numbers in found if len(numbers)]
 
     def best_by_mast(self) -> List[Dict[str, Any]]:
@@ -384,7 +389,7 @@ class Sites:
         if len(self.airs) > 1:
             for k, air in enumerate(self.airs):
                 columns["_".join(["value", *(air.words or ("plan",))]).replace(":", "_")] = self.by_air[order, k]
-        siting.write_sites(folder, self.positions[order], columns, self.plan.scene.geodetic_origin,
+        write_sites(folder, self.positions[order], columns, self.plan.scene.geodetic_origin,
                            "; ".join(f"{name}: {text}" for name, text in self.words().items()))
         write_table(folder / "gain.csv", self.gain())
         write_table(folder / "robustness.csv", self.robustness(changes))

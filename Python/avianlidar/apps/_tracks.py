@@ -22,8 +22,9 @@ from . import _scores as scores
 from ._card import write_card
 from ._following import Chain, Input, Scorer, origin_of, read_truth
 from ._json import load_json, naming
-from ._sequence import Sequence, _identity, _short, read_scenario
-from .siting import Runway
+from ._regions import Runway
+from ._inputs import read_scenario
+from ._sequence import Sequence, _identity, _short
 
 CUTOFF = 20.0  # m: a track at this distance from a bird does not count as its track
 ORDER = 2.0  # of OSPA

@@ -21,7 +21,7 @@ import numpy as np
 
 import tools
 from avianlidar import Sequence
-from avianlidar.apps._sequence import read_scenario
+from avianlidar.apps._inputs import read_scenario
 from running import AIRPORT, argument, study, whole
 
 SCENARIO = AIRPORT.parents[2] / "sequence" / "hongqiao.scenario.json"

@@ -1,0 +1,345 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What a scene requires of the echo filter: a ladder of settings is measured on some beams of a scan.
+
+1. Up to fifty beams for each beam of the sample are scanned with default settings. They show which beams meet a mover,
+   which meet nothing, which meet a surface without an echo, and which have an echo. A weighted sample is drawn of each.
+2. The reference is the mean of two scans of the sample by cells with 6400 rays; of eight scans with 25600 rays for
+   beams in which the two differ much. Its own error follows from their spread, and from what two scans by plain rays
+   differ by beyond it.
+3. Each setting scans the same beams, and `_echo_errors` counts its errors. An error is met if its bound is below what
+   is asked.
+4. Times are processor times of one thread over runs of neighbouring beams, which share work, less what a scan without
+   beams takes. Promising settings are timed five times, with other seeds.
+5. If a setting is 1.5 times as fast as all that surely meet everything, and of its errors only the share of wrong
+   echoes is undecided, the sample is doubled, up to four times its size.
+6. Of the settings whose times overlap with those of the fastest that meets everything, the most accurate is advised.
+
+Noise is off: it belongs to the receiver and is not an error. Errors have the same bits for any number of threads.
+"""
+from __future__ import annotations
+
+import time
+from typing import Any, Dict, List, Optional, Sequence, Tuple
+
+import numpy as np
+from vtkmodules.vtkCommonDataModel import vtkPolyData
+
+from . import vtkAvianLidar as _wrapped
+from ._advice import KINDS, MET, NOT_MET, SETTINGS, UNDECIDED, Setting
+from ._cloud import Cloud, add_array, as_numpy, with_points
+from ._echo_errors import (BEAM, ENERGY, OBJECT, RANGE, SECONDARY, SURELY, TOTAL, Judge, Known, bounds, in_order,
+                           per_beam, ratio_of)
+from ._pipeline import Progress, update
+from ._properties import get_property, property_names, set_properties, snake
+
+CELLS, RAYS, STRATIFIED = 0, 1, 1  # of vtkAvianLidarEchoFilter
+LADDER = [Setting(CELLS, rays, STRATIFIED, *paths) for rays in (8, 25, 100, 400, 1600)
+          for paths in ((1, 0), (2, 0), (2, 2), (2, 8)) if rays >= 100 or paths != (2, 8)]
+LADDER += [Setting(RAYS, rays, STRATIFIED, *paths) for rays in (8, 25, 100, 400, 1600, 6400)
+           for paths in ((1, 0), (2, 0), (2, 2))]
+DEFAULT, UNCONNECTED, DIRECT = (Setting(CELLS, 100, STRATIFIED, *paths) for paths in ((2, 2), (2, 0), (1, 0)))
+REFERENCE, FINER = (Setting(CELLS, rays, STRATIFIED, 2, 8) for rays in (6400, 25600))
+WITNESS = Setting(RAYS, 10000, STRATIFIED, 2, 2)
+SEEDS, WITNESS_SEEDS, FINER_SEEDS = (1000003, 1000033), (1000037, 1000039), range(1000103, 1000111)
+CANDIDATES = 50  # for each beam of the sample
+MOST_BEAMS = 4  # times those that are asked for
+RUN, RUNS = 32, 32  # neighbouring beams that are timed together, and how often
+TURNS = 5
+SLOW = 3.0  # times what the fastest that is good takes: no further turns
+FASTER = 1.5  # times as fast as the fastest that is good: worth more beams
+AS_FAST = 1.03  # times of one setting differ by that much from one start of a program to the next
+COARSE = 0.25  # of an error asked: the reference of a beam is made finer
+OF_AIR = -2  # object_id of echoes
+COLUMNS = ("distance_m", "energy_received", "secondary_share", "return_energy", "object_id")  # RANGE to OBJECT
+
+
+class Trial:
+    """A setting, and what is measured of it."""
+
+    def __init__(self, setting: Setting):
+        self.setting = setting
+        self.x = self.y = np.zeros((3, 0))  # by kind of error and beam: sums, and what they are divided by
+        self.batches = 0  # of the sample
+        self.errors = np.full((3, 3), np.nan)  # by kind: value, least, most
+        self.verdicts = np.zeros(3, int)
+        self.times: List[float] = []  # s of a beam, each turn
+
+    @property
+    def verdict(self) -> int:
+        return int(self.verdicts.min())
+
+    @property
+    def seconds(self) -> float:
+        return float(np.median(self.times)) if self.times else np.nan
+
+    def parts(self, asked: np.ndarray) -> List[float]:
+        """Bounds relative to what is asked, the largest first."""
+        return sorted(self.errors[:, 2] / asked, reverse=True)
+
+    def is_as_fast_as(self, other: "Trial") -> bool:
+        """As far as times tell: the middle halves of their turns overlap, or they differ by 3 % at most."""
+        (low, high), (least, most) = (np.percentile(one.times, (25, 75)) for one in (self, other))
+        return low <= max(most, AS_FAST * other.seconds) and least <= max(high, AS_FAST * self.seconds)
+
+
+def choose(trials: Sequence[Trial], asked: np.ndarray) -> Optional[Trial]:
+    """The most accurate of the settings that meet everything as fast as the fastest one; None if none meets it."""
+    met = [trial for trial in trials if trial.verdict == MET]
+    if not met:
+        return None
+    fastest = min(met, key=lambda trial: trial.seconds)
+    return min((trial for trial in met if trial.is_as_fast_as(fastest)), key=lambda trial: trial.parts(asked))
+
+
+def spread(items: np.ndarray, start: float) -> np.ndarray:
+    """In an order of which every beginning is spread evenly over all: by multiples of the golden section."""
+    return items[np.argsort((start + 0.5 * (np.sqrt(5) - 1) * np.arange(len(items))) % 1)]
+
+
+def some_of(beams: vtkPolyData, which: np.ndarray) -> vtkPolyData:
+    """Some of the beams, with the ids that they have."""
+    some = with_points(as_numpy(beams.GetPoints().GetData())[which])
+    some.GetFieldData().ShallowCopy(beams.GetFieldData())
+    for name, values in {"beam_id": np.arange(beams.GetNumberOfPoints()), **Cloud(beams)}.items():
+        add_array(some.GetPointData(), name, values[which])
+    return some
+
+
+def is_convex(surfaces: vtkPolyData, place: np.ndarray) -> bool:
+    """Whether triangles, 20,000 at most, are one closed convex body that is seen from outside: it cannot light itself.
+    All corners lie on one side of each triangle, and the triangles' normals, as long as twice the areas, sum to 0."""
+    if not 0 < surfaces.GetNumberOfPolys() <= 20000:
+        return False
+    corners = as_numpy(surfaces.GetPoints().GetData()) - place
+    a, b, c = (corners[as_numpy(surfaces.GetPolys().GetConnectivityArray())[i::3]] for i in range(3))
+    size, normals = np.linalg.norm(np.ptp(corners, axis=0)), np.cross(b - a, c - a)
+    areas = np.linalg.norm(normals, axis=1)
+    outside, total = False, np.zeros(3)
+    for i in np.flatnonzero(areas > 1e-12 * size**2):  # without the degenerate ones at the poles of a sphere
+        heights = (corners - a[i]) @ normals[i]
+        outwards = normals[i] if heights.max() < -heights.min() else -normals[i]
+        if min(heights.max(), -heights.min()) > 1e-6 * size * areas[i]:
+            return False
+        outside, total = outside or a[i] @ outwards < 0, total + outwards
+    return bool(outside and np.linalg.norm(total) < 1e-3 * areas.sum())
+
+
+class Scanner:
+    """An echo filter with the properties of another. It keeps nothing from scan to scan."""
+
+    def __init__(self, like: Any, beams: vtkPolyData, surfaces: Any, movers: Any, threads: int, **settings: Any):
+        self.filter = _wrapped.vtkAvianLidarEchoFilter()
+        own = {name: get_property(like, prop) for name, prop in property_names(type(like)).items()}
+        own.update(noise=False, maximum_cache_size=0, report_movers=False, number_of_threads=threads, controller=None)
+        set_properties(self.filter, **{**own, **settings})
+        self.filter.SetSurfacesData(surfaces)
+        self.filter.SetMoversData(movers)
+        self.seconds, idle = 0.0, []  # of this thread, the last scan
+        for _ in range(TURNS):  # the first one merges the surfaces
+            self.scan(some_of(beams, np.zeros(0, int)), None, 0)
+            idle.append(self.seconds)
+        self.idle = float(np.median(idle))  # s, what a scan takes without beams
+
+    def scan(self, beams: vtkPolyData, setting: Optional[Setting], seed: int,
+             progress: Optional[Progress] = None) -> np.ndarray:
+        """The echoes as rows, with beams counted from 0. @param setting None: the filter's own"""
+        if setting:
+            set_properties(self.filter, **setting.properties())
+        self.filter.SetSeed((seed + 2**31) % 2**32 - 2**31)
+        self.filter.SetInputDataObject(0, beams)
+        before = time.thread_time()
+        update(self.filter, progress)
+        self.seconds = time.thread_time() - before
+        echoes, ids = Cloud(self.filter.GetOutput(0)), as_numpy(beams.GetPointData().GetArray("beam_id"))
+        order = np.argsort(ids)
+        columns = [order[np.searchsorted(ids, echoes["beam_id"], sorter=order)], *(echoes[name] for name in COLUMNS)]
+        return in_order(np.stack(columns, axis=1).astype(float))
+
+
+class Measurement:
+    """What a scene requires, step by step."""
+
+    def __init__(self, like: Any, inputs: Sequence[Any], asked: Dict[str, float], count: int,
+                 progress: Optional[Progress]):
+        """@param like an echo filter with its properties @param inputs beams, surfaces, movers or None"""
+        self.like, (self.beams, self.surfaces, self.movers) = like, inputs
+        self.asked, self.count = np.array([asked[kind] for kind in KINDS]), count
+        self.progress, self.done = progress or (lambda *_: None), 0.0
+        self.seed, self.threads = like.GetSeed(), like.GetNumberOfThreads()
+        self.scanner = Scanner(like, self.beams, self.surfaces, self.movers, self.threads)
+        self.timer = Scanner(like, self.beams, self.surfaces, self.movers, 1)
+        self.fields = fields = Cloud(self.scanner.filter.GetOutput(0)).fields
+        own = Setting(*(int(fields[snake(name)]) for name in SETTINGS))  # a preset's, if there is one
+        self.trials = [Trial(setting) for setting in (own, *LADDER)]
+        length = 0.5 * 299792458.0 * np.array((fields["sampling_interval"], fields["pulse_width"]))  # m
+        self.judge = Judge(length.sum(), 2 * fields["lower_energy_limit"])
+        self.sample = np.zeros(0, int)  # of the candidates
+        self.batches: List[Tuple[np.ndarray, Known]] = []  # of the sample, with what is taken for true
+        self.bias = np.zeros(2)  # of the reference, squares
+
+    def scan(self, beams: vtkPolyData, setting: Setting, seed: int, by: Optional[Scanner] = None) -> np.ndarray:
+        return (by or self.scanner).scan(beams, setting, seed, lambda *_: self.progress(self.done, "advise"))
+
+    # Beams.
+
+    def look(self) -> None:
+        """Find out which beams are of which kind."""
+        random, total = np.random.default_rng(1), self.beams.GetNumberOfPoints()
+        wanted = min(total, CANDIDATES * self.count)
+        places = (np.arange(wanted) + random.random(wanted)) * (total / max(1, wanted))
+        self.candidates = np.unique(places.astype(int))
+        beams, count = some_of(self.beams, self.candidates), len(self.candidates)
+        echoes = self.scan(beams, DEFAULT, self.seed)
+        report = Cloud(self.scanner.filter.GetOutput(1))
+        self.views = np.bincount(report["view"], minlength=6) / max(1, count)
+        # A mover (0), nothing (1), a surface without an echo (2), an echo (3).
+        self.kinds = np.select((report["status"] == 1, np.isin(report["status"], (0, 3))), (1, 3), 2)
+        if self.movers is not None:
+            alone = Scanner(self.like, self.beams, self.surfaces, None, self.threads)
+            still = self.scan(beams, DEFAULT, self.seed, alone)
+            for column in (RANGE, ENERGY):
+                moved, stood = (per_beam(rows, count, rows[:, column]) for rows in (echoes, still))
+                self.kinds[moved != stood] = 0
+        self.orders = [spread(np.flatnonzero(self.kinds == kind), random.random()) for kind in range(4)]
+        runs = np.unique(((np.arange(RUNS) + random.random(RUNS)) * (-(-total // RUN) / RUNS)).astype(int))
+        timed = (RUN * runs[:, None] + np.arange(RUN)).ravel()
+        self.timed = some_of(self.beams, timed[timed < total])
+
+    def grow(self, count: int) -> np.ndarray:
+        """Draw further beams, up to so many in all: places of the candidates. The first ones stay."""
+        numbers: List[int] = []
+        for order, most in zip(self.orders, (count // 4, count // 8, count // 4, count)):
+            numbers.append(min(len(order), max(1, min(most, count - sum(numbers)))))  # each kind has a weight
+        numbers[2] = min(len(self.orders[2]), numbers[2] + max(0, count - sum(numbers)))
+        chosen = np.concatenate([order[:number] for order, number in zip(self.orders, numbers)])
+        new = np.setdiff1d(chosen, self.sample)
+        self.sample = np.append(self.sample, new)
+        return new
+
+    def weights(self) -> np.ndarray:
+        """How many beams of the scan each of the sample stands for."""
+        drawn = self.kinds[self.sample]
+        numbers, all_ = (np.bincount(kinds, minlength=4) for kinds in (drawn, self.kinds))
+        return (all_ / np.maximum(1, numbers) * (self.beams.GetNumberOfPoints() / len(self.kinds)))[drawn]
+
+    def beams_of(self, places: np.ndarray) -> vtkPolyData:
+        return some_of(self.beams, self.candidates[places])
+
+    # The reference.
+
+    def refer(self, new: np.ndarray) -> np.ndarray:
+        """Scan the reference of new beams: its first scan."""
+        scans = [self.scan(self.beams_of(new), REFERENCE, seed) for seed in SEEDS]
+        known = self.judge.average(scans, len(new))
+        # Where rare paths carry much light.
+        coarse = np.flatnonzero((known.x[:2] > (COARSE * self.asked[:2, None]) ** 2).any(axis=0))
+        if len(coarse):
+            beams = self.beams_of(new[coarse])
+            finer = self.judge.average([self.scan(beams, FINER, seed) for seed in FINER_SEEDS], len(coarse))
+            known = known.replaced(coarse, finer)
+        self.batches.append((new, known))
+        return scans[0]
+
+    def look_at_scene(self, first: np.ndarray) -> None:
+        """What the reference's light consists of, by its first scan, and how far plain rays are from it."""
+        (new, truth), weights = self.batches[0], self.weights()
+        beams = self.beams_of(new)
+        witness = [self.scan(beams, WITNESS, seed) for seed in WITNESS_SEEDS]
+        self.bias = np.array([max(0.0, ratio - SURELY * deviation) for ratio, deviation in (
+            ratio_of(x, y, weights) for x, y in zip(*self.judge.compare(witness, truth)))])
+
+        def light(rows):
+            return weights[rows[:, BEAM].astype(int)] * rows[:, TOTAL]
+
+        def number(rows):
+            return weights[rows[:, BEAM].astype(int)].sum()
+
+        one, unconnected = (self.scan(beams, Setting(CELLS, REFERENCE.rays, STRATIFIED, reflections, 0), SEEDS[0])
+                            for reflections in (1, 2))
+        energy = max(light(first).sum(), 1e-300)
+        self.secondary = (light(first) * first[:, SECONDARY]).sum() / energy
+        self.largest = first[:, SECONDARY].max(initial=0)
+        self.connected = 1 - light(unconnected).sum() / energy
+        self.without = [self.errors_of(*self.judge.count(rows, truth)) for rows in (one, unconnected)]
+        self.reflects_twice = self.secondary >= 1e-6 or self.without[0][0, 0] >= 1e-4 or self.without[0][2, 0] > 0
+
+        tree, before = _wrapped.vtkAvianLidarCollisionTree(), time.process_time()
+        tree.SetInputDataObject(self.surfaces)
+        update(tree)
+        self.tree_seconds = time.process_time() - before  # of all its threads
+        surfaces = tree.GetOutput()
+        self.convex = self.movers is None and is_convex(surfaces, as_numpy(self.beams.GetPoints().GetData())[0])
+
+        surfaces.GetFieldData().RemoveArray("media")
+        vacuum = {"attenuation_coefficient": 0.0, "visibility": 0.0, "air_backscatter": False, "rain_rate": 0.0}
+        scanner, timer = (Scanner(self.like, self.beams, surfaces, self.movers, threads, **vacuum)
+                          for threads in (self.threads, 1))
+        clear = self.scan(beams, REFERENCE, SEEDS[0], scanner)
+        self.lost = [max(0.0, 1 - part / max(all_, 1e-300)) for part, all_ in
+                     ((energy, light(clear).sum()), (number(first), number(clear)))]
+        self.of_air = number(first[first[:, OBJECT] == OF_AIR]) / max(number(first), 1e-300)
+        self.scatters = bool(self.fields.get("media") or self.fields["air_backscatter"] or self.fields["rain_rate"])
+        self.hazy, self.clear = Trial(DEFAULT), Trial(DEFAULT)
+        for turn in range(TURNS if self.scatters else 0):
+            self.time(self.hazy, turn)
+            self.time(self.clear, turn, timer)
+
+    def own(self) -> np.ndarray:
+        """Errors of the reference."""
+        x, y = (np.hstack(parts) for parts in zip(*((truth.x, truth.y) for _, truth in self.batches)))
+        errors = np.array([ratio_of(*kind, self.weights())[0] for kind in zip(x, y)])
+        return np.append(np.sqrt(errors[:2] + self.bias), errors[2])
+
+    # Settings.
+
+    def errors_of(self, x: np.ndarray, y: np.ndarray) -> np.ndarray:
+        return bounds(x, y, self.weights(), self.own())
+
+    def measure(self, trial: Trial) -> None:
+        """The errors on the beams of the sample that it has not scanned yet."""
+        for new, truth in self.batches[trial.batches:]:
+            x, y = self.judge.count(self.scan(self.beams_of(new), trial.setting, self.seed + 1), truth)
+            trial.x, trial.y = np.hstack((trial.x, x)), np.hstack((trial.y, y))
+        trial.batches = len(self.batches)
+        trial.errors = self.errors_of(trial.x, trial.y)
+        _, low, high = trial.errors.T
+        trial.verdicts = np.where(high <= self.asked, MET, np.where(low > self.asked, NOT_MET, UNDECIDED))
+
+    def time(self, trial: Trial, turn: int, scanner: Optional[Scanner] = None) -> None:
+        scanner = scanner or self.timer
+        self.scan(self.timed, trial.setting, self.seed + 1 + turn, scanner)
+        trial.times.append(max(1e-12, scanner.seconds - scanner.idle) / self.timed.GetNumberOfPoints())
+
+    def try_all(self) -> None:
+        for place, trial in enumerate(self.trials):
+            self.done = 0.55 + 0.25 * place / len(self.trials)
+            self.measure(trial)
+            self.time(trial, 0)
+        for turn in range(1, TURNS):
+            self.done = 0.8 + 0.02 * turn
+            limit = SLOW * (self.fastest(MET) if self.fastest(MET) < np.inf else self.fastest(UNDECIDED))
+            for trial in self.trials:
+                if trial is self.trials[0] or trial.setting in (DEFAULT, UNCONNECTED, DIRECT) or \
+                        trial.verdict != NOT_MET and trial.seconds < limit:
+                    self.time(trial, turn)
+        while len(self.sample) < MOST_BEAMS * self.count and self.wants_more():
+            new = self.grow(2 * len(self.sample))
+            if not len(new):
+                break
+            self.refer(new)
+            for trial in self.trials:
+                if trial.verdict != NOT_MET:
+                    self.measure(trial)
+
+    def eligible(self) -> List[Trial]:
+        """Trials without second reflections where there are none."""
+        return [trial for trial in self.trials if self.reflects_twice or trial.setting.reflections == 1]
+
+    def fastest(self, verdict: int = MET) -> float:
+        return min((trial.seconds for trial in self.eligible() if trial.verdict == verdict), default=np.inf)
+
+    def wants_more(self) -> bool:
+        """Whether a much faster setting may be good: of its errors the share of wrong echoes alone is undecided."""
+        own = self.own()[2]
+        return any(FASTER * trial.seconds < self.fastest() and tuple(trial.verdicts) == (MET, MET, UNDECIDED) and
+                   trial.errors[2, 0] + own < self.asked[2] for trial in self.eligible())

@@ -1,0 +1,185 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Features of extracts: which kind of the rules (`airport.json`) takes one, and what the scene file reads of it."""
+from __future__ import annotations
+
+import collections
+import dataclasses
+import re
+from typing import Any, Callable, Dict, Iterable, List, Optional, Tuple
+
+import numpy as np
+
+from ._gdal import form_of
+from ._json import packaged
+
+TALLEST = 1000.0  # m: what is higher is no height
+LONGEST_LENGTH = 100  # characters
+THOUSANDS = "[, \u00a0\u202f'\u2019]"  # between groups of three digits
+NUMBER = rf"\d{{1,3}}(?:{THOUSANDS}\d{{3}})+(?:\.\d+)?|\d+(?:[.,]\d+)?"
+LENGTH = re.compile(rf"(?:~|<|>|≈|\+|c\.|ca\.?|circa|approx\.?|about|max\.?|up to)?\s*({NUMBER})\s*(?:(?:±|\+/?-)\s*(?:{NUMBER})|\+)?\s*"
+                    r"(mm|cm|km|millimet\w+|centimet\w+|kilomet\w+|met(?:er|re)s?|mtrs?|mts?|m|м|метр\w*|米|ft|foot|feet|['′]|yd|yards?|stor[ei]\w*|floors?|levels?)?\.?"
+                    rf"\s*-?\s*(?:({NUMBER})\s*(?:\"|''|″|in|inch|inches)\.?)?\s*(?:\(.*\)|a\.?g\.?l\.?|above ground\w*(?: level)?|high|tall|hoch)?", re.IGNORECASE)
+UNITS = {"mm": 1e-3, "mil": 1e-3, "c": 1e-2, "k": 1e3, "f": 0.3048, "'": 0.3048, "′": 0.3048, "y": 0.9144}  # m, by how a unit begins
+HEIGHTS = ("height", "building:height", "est_height", "height_m", "render_height", "measuredHeight", "height:hub")
+LEVELS = ("building:levels", "num_floors", "levels", "floors")
+MIN_HEIGHTS = ("min_height", "building:min_height", "render_min_height")
+MIN_LEVELS = ("building:min_level", "min_level", "min_floor")
+NOTHING = re.compile(r"\s*(?:-\d+(?:\.\d+)?|0*\.?0*)\s*m?\s*")  # no height
+WIDTHS = ("width", "width_m", "diameter", "diameter_crown")
+
+
+def number_of(text: str, most: float = np.inf) -> float:
+    """Of "1,200.5", "1 200", "12,5". @param most above which a comma is taken for that of decimals"""
+    thousands = re.fullmatch(rf"\d{{1,3}}({THOUSANDS}\d{{3}})+(\.\d+)?", text)
+    value = float(re.sub(THOUSANDS, "", text) if thousands else text.replace(",", "."))
+    return value if value <= most or "," not in text or "." in text else float(text.replace(",", ".", 1).replace(",", ""))
+
+
+def length_of(text: Any) -> Optional[float]:
+    """Metres of "12", "12.5 m", "40 ft", "39'4\"", "1,200 ft", "approx 12", the greatest of "2;3" and "12-15"; None where it is no
+    length."""
+    return _greatest(text, _one_length)
+
+
+def levels_of(text: Any) -> Optional[float]:
+    """The number of "2", "2 floors", "3+1", the greatest of "2;3", "2,3" and "2-3"; None for other texts."""
+    return _greatest(re.sub(r",(?!5\b)", ";", str(text)) if text else text, _one_number_of_levels)
+
+
+def _greatest(text: Any, one: Callable[[str], Optional[float]]) -> Optional[float]:
+    said = str(text if text is not None else "").strip().strip(";").strip()
+    if not said or len(said) > LONGEST_LENGTH:  # expressions take the third power of a text's size
+        return None
+    values = [one(part.strip()) for part in re.split(r"[;/](?!-)|\.\.|(?<=[\w.])\s*[-–]\s*(?=\d)", said)]
+    known = [value for value in values if value is not None]
+    return max(known) if len(known) == len(values) and 0.0 < max(known) <= TALLEST else None
+
+
+def _one_length(text: str) -> Optional[float]:
+    found = LENGTH.fullmatch(text)
+    unit = (found[2] or "m").lower() if found else ""
+    parts = re.fullmatch(r"(\d+)\s*m\s*(\d{1,2})\s*cm", text, re.IGNORECASE)
+    if parts:
+        return int(parts[1]) + int(parts[2]) / 100.0
+    if re.fullmatch(r"\d+(?:\.\d+)?e\d", text, re.IGNORECASE):
+        return float(text)
+    if not found or (found[3] and unit[0] not in "f'′"):
+        return None
+    if unit[0] in "sl" or unit.startswith("fl"):
+        return number_of(found[1]) * packaged("airport.json")["level_height"]
+    metres = next((value for word, value in UNITS.items() if unit.startswith(word)), 1.0)
+    return (number_of(found[1], TALLEST / metres) + (number_of(found[3]) if found[3] else 0.0) / 12) * metres
+
+
+def _one_number_of_levels(text: str) -> Optional[float]:
+    found = re.fullmatch(r"(\d+(?:[.,]\d+)?)(?:\s*\+\s*(\d+(?:\.\d+)?))?\s*(?:[a-z]+\.?)?", text, re.IGNORECASE)
+    return number_of(found[1]) + float(found[2] or 0.0) if found else None
+
+
+@dataclasses.dataclass
+class Feature:
+    """What a kind of the rules takes from an extract: tags and geometry (ogr, degrees, longitude first)."""
+
+    kind: str
+    tags: Dict[str, str]
+    shape: Any = None
+    count: int = 1  # of the file's features that it is made of
+    reason: str = ""  # why it is not in the scene
+
+    @property
+    def id(self) -> str:
+        """As the extract has it, or empty."""
+        return next((self.tags[name] for name in ("osm_id", "osm_way_id", "id", "@id") if self.tags.get(name)), "")
+
+    @property
+    def name(self) -> str:
+        return self.tags.get("name") or self.tags.get("ref") or ""
+
+    def left(self, reason: str) -> Feature:
+        """The feature as one that is not in the scene."""
+        return dataclasses.replace(self, shape=None, reason=reason)
+
+
+def fits(tags: Dict[str, str], wanted: Dict[str, Any]) -> bool:
+    """Whether tags have all of these: a word, several, `*` for any, `-*` for any that begins so."""
+    return all(name in tags and any(tags[name] == word or (word[-1] == "*" and tags[name].startswith(word[:-1]))
+                                    for word in ([words] if isinstance(words, str) else words)) for name, words in wanted.items())
+
+
+class Table:
+    """Names by tags: the first row counts that fits."""
+
+    def __init__(self, rows: Iterable[Tuple[str, Dict[str, Any]]]):
+        self.rows: Dict[str, List[Tuple[int, str, Dict[str, Any]]]] = collections.defaultdict(list)
+        for number, (name, wanted) in enumerate(rows):
+            self.rows[next(iter(wanted))].append((number, name, wanted))
+
+    def find(self, tags: Dict[str, str]) -> Optional[str]:
+        found = [(number, name) for key in tags if key in self.rows for number, name, wanted in self.rows[key] if fits(tags, wanted)]
+        return min(found, default=(0, None))[1]
+
+
+def height_name(rule: Dict[str, Any]) -> str:
+    """The property with the height: `height` of buildings, which siting changes by some metres and keeps lidars away from, `top`
+    of plants, fences and masts."""
+    return "top" if rule["class"] in ("fence", "mast", "pole", "tree", "vegetation") else "height"
+
+
+def _first(tags: Dict[str, str], names: Tuple[str, ...], read: Callable[[Any], Optional[float]]) -> Tuple[Optional[float], str]:
+    """The first of some tags with a usable number, and its name."""
+    return next(((value, name) for name in names for value in [read(tags.get(name))] if value is not None), (None, "assumed"))
+
+
+def _not_understood(tags: Dict[str, str], names: Tuple[str, ...]) -> str:
+    """Which of some tags holds something else than no height."""
+    return next((f"assumed: {name} is {tags[name][:40]!r}" for name in names if name in tags and not NOTHING.fullmatch(tags[name])), "")
+
+
+def _height(tags: Dict[str, str], rule: Dict[str, Any], floor: float) -> Tuple[float, str]:
+    """m above the ground, and what it is from. @param floor height of one, m"""
+    value, source = _first(tags, HEIGHTS, length_of)
+    if value is not None:
+        return value, f"{source}: {tags['height_source']}" if "height_source" in tags else source
+    levels, source = _first(tags, LEVELS, levels_of)
+    roof = levels_of(tags.get("roof:levels")) or 0.0
+    if levels or roof:
+        each, lowest = rule.get("level_height", floor), rule.get("lowest_level")
+        levels, up = levels or 0.0, floor * roof or length_of(tags.get("roof:height")) or 0.0
+        if lowest and levels:
+            return lowest + floor * (levels - 1.0) + up, f"{source}, {lowest:g} m for the lowest and {floor:g} m for others assumed"
+        return each * levels + up, f"{source if levels else 'roof:levels'}, {each:g} m each assumed"
+    return rule["height"], _not_understood(tags, HEIGHTS) or "assumed"
+
+
+def properties_of(feature: Feature, known: Dict[str, Any]) -> Dict[str, Any]:
+    """What the scene file reads of a feature, and what each number is from."""
+    rule, tags = known["kinds"][feature.kind], feature.tags
+    properties: Dict[str, Any] = {"kind": feature.kind, "id": feature.id or None, "name": tags.get("name"), "ref": tags.get("ref")}
+    if feature.kind == "obstacle":
+        properties["kind_from"] = f"assumed: no rule knows {next((f'{name}={tags[name]}' for name in known['main'] if name in tags), 'it')}"
+    if "height" in rule:
+        name, floor = height_name(rule), known["level_height"]
+        height, source = _height(tags, rule, floor)
+        under, why = _first(tags, MIN_HEIGHTS, length_of)
+        if under is None:
+            each, (below, why) = rule.get("level_height", floor), _first(tags, MIN_LEVELS, levels_of)
+            under, why = (each * below, f"{why}, {each:g} m each assumed") if below else (None, why)
+        if under is not None and "assumed" in source and (source.startswith("assumed") or under >= height):
+            height, source = under + rule.get("thickness", height), f"{source}, above {why}"
+        strange = _not_understood(tags, MIN_HEIGHTS + MIN_LEVELS)
+        if under is None and "thickness" in rule and not tags.get("min_height", "").startswith("0"):
+            under, why = height - rule["thickness"], "assumed"
+        elif strange and not (under and under < height):
+            under, why = 0.0, strange
+        properties.update({name: round(float(height), 3), f"{name}_from": source})
+        if under is not None and 0.0 <= under < height:
+            properties.update(min_height=round(float(under), 3) or None, min_height_from=why)
+    if "width" in rule and form_of(feature.shape) != "area":
+        value, source = _first(tags, WIDTHS, length_of)
+        properties.update(width=round(float(rule["width"] if value is None else value), 3), width_from=source)
+    if feature.kind in ("runway", "taxiway", "apron", "road", "parking"):
+        said = tags.get("surface", "")
+        surface = next((name for name, words in known["surfaces"].items() if said in words), None)
+        properties.update(surface=surface or rule["material"], surface_from="surface" if surface else "assumed")
+    properties.update((name, float(tags[name])) for name in ("displaced_start", "displaced_end") if feature.kind == "runway" and name in tags)
+    return {name: value for name, value in properties.items() if value is not None}

@@ -1,0 +1,121 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Geometries (ogr) and files by GDAL."""
+from __future__ import annotations
+
+import contextlib
+import json
+import pathlib
+from typing import Any, Callable, Iterator, List, Optional, Sequence, Tuple
+
+import numpy as np
+from osgeo import gdal, ogr, osr
+
+from .._pipeline import Error
+
+for module in (gdal, ogr, osr):
+    module.UseExceptions()
+
+
+@contextlib.contextmanager
+def quiet(hear: Optional[Callable[[str], Any]] = None) -> Iterator[None]:
+    """Without GDAL's warnings, as of rings that cross, which the scene reader repairs and counts. @param hear is called with them,
+    and with what the OSM driver says of ways and relations"""
+    before = gdal.GetConfigOption("CPL_DEBUG")
+    gdal.PushErrorHandler("CPLQuietErrorHandler" if hear is None else lambda _, number, words: hear(words))
+    gdal.SetConfigOption("CPL_DEBUG", before if hear is None else "OSM")
+    try:
+        yield
+    finally:
+        gdal.SetConfigOption("CPL_DEBUG", before)
+        gdal.PopErrorHandler()
+
+
+def expect_file(file: pathlib.Path) -> None:
+    if not file.exists():
+        raise FileNotFoundError(f"no such file: {file}")
+    if not file.is_file():
+        raise Error(f"{file}: it is not a regular file")
+
+
+def open_file(file: pathlib.Path, what: str, drivers: List[str], kind: int, options: Tuple[str, ...] = ()):
+    """A regular file with one of GDAL's drivers."""
+    expect_file(file)
+    try:
+        return gdal.OpenEx(str(file.resolve()), kind | gdal.OF_READONLY, allowed_drivers=drivers, open_options=list(options))
+    except RuntimeError as error:
+        raise Error(f"{file}: GDAL cannot read it as {what} ({error})") from None
+
+
+def degrees():
+    system = osr.SpatialReference()
+    system.ImportFromEPSG(4326)
+    system.SetAxisMappingStrategy(osr.OAMS_TRADITIONAL_GIS_ORDER)
+    return system
+
+
+def geometry(kind: str, coordinates: Any):
+    """A geometry (ogr). @param kind as in GeoJSON, as are the coordinates"""
+    return ogr.CreateGeometryFromJson(json.dumps({"type": kind, "coordinates": coordinates}, default=np.ndarray.tolist))
+
+
+def box_of(west_south_east_north: Sequence[float]):
+    west, south, east, north = west_south_east_north
+    return geometry("Polygon", [[(west, south), (east, south), (east, north), (west, north), (west, south)]])
+
+
+def moved(shape, to):
+    """A copy in other coordinates. @param to a transformation (osr)"""
+    shape = shape.Clone()
+    shape.Transform(to)
+    return shape
+
+
+def valid(shape):
+    return shape if shape.IsValid() else shape.MakeValid()
+
+
+def plain(shape, to_degrees):
+    """A geometry of straight lines in degrees; what consists of one part is that part, and rings are closed."""
+    if shape is None:
+        return None
+    shape = shape.GetLinearGeometry() if shape.HasCurveGeometry() else shape.Clone()
+    if to_degrees is not None:
+        shape.Transform(to_degrees)
+    shape.FlattenTo2D()
+    shape.CloseRings()
+    return shape.GetGeometryRef(0).Clone() if shape.GetGeometryName().startswith("MULTI") and shape.GetGeometryCount() == 1 else shape
+
+
+def form_of(shape) -> str:
+    """Which of point, line and area a geometry is; "" for others."""
+    name = shape.GetGeometryName().replace("MULTI", "") if shape is not None else ""
+    return {"POINT": "point", "LINESTRING": "line", "POLYGON": "area"}.get(name, "")
+
+
+def parts_of(shape) -> List[Any]:
+    """Points, lines and polygons of a geometry (ogr)."""
+    if form_of(shape) and "MULTI" not in shape.GetGeometryName():
+        return [shape]
+    return [part for i in range(shape.GetGeometryCount()) for part in parts_of(shape.GetGeometryRef(i).Clone())]
+
+
+def corners_of(shape) -> np.ndarray:
+    """The corners (n x 2) of points, lines and outer rings."""
+    points = [point for part in parts_of(shape) for point in (part.GetGeometryRef(0) if part.GetGeometryCount() else part).GetPoints() or ()]
+    return np.array(points, dtype=float).reshape(-1, 2)
+
+
+def is_closed(shape) -> bool:
+    return shape.GetGeometryName() == "LINESTRING" and shape.GetPointCount() > 3 and shape.GetPoint_2D(0) == shape.GetPoint_2D(shape.GetPointCount() - 1)
+
+
+def as_area(shape):
+    """The polygon in a closed line; polygons are as they are."""
+    return shape.Clone() if form_of(shape) == "area" else ogr.ForceToPolygon(shape.Clone())
+
+
+def union(areas: List[Any]):
+    whole = ogr.Geometry(ogr.wkbMultiPolygon)
+    for part in (part for area in areas for part in parts_of(valid(area)) if form_of(part) == "area"):
+        whole.AddGeometry(part)
+    return whole.UnionCascaded()

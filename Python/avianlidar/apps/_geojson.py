@@ -1,0 +1,169 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Runways, outlines and heights of footprints in files of GeoJSON, and degrees as metres of a scene."""
+from __future__ import annotations
+
+import json
+import pathlib
+import re
+from typing import Any, Callable, Dict, List, Sequence, Tuple
+
+import numpy as np
+from vtkmodules.util.numpy_support import vtk_to_numpy
+
+from .. import vtkAvianLidar as _wrapped
+from .._coverage import places_of
+from .._pipeline import Error, update
+from ._json import load_json, naming
+from ._regions import Runway
+
+
+def _transformed(points, origin: Sequence[float], to_geodetic: bool) -> np.ndarray:
+    transform = _wrapped.vtkAvianLidarGeodeticTransform()
+    transform.SetInputData(places_of(points))
+    frames = (transform.FRAME_ENU, transform.FRAME_GEODETIC)
+    transform.SetSourceFrame(frames[not to_geodetic])
+    transform.SetTargetFrame(frames[to_geodetic])
+    transform.SetUseFieldDataOrigin(False)
+    transform.SetOrigin(*origin)
+    transform.SetMovePoints(True)
+    update(transform)
+    return vtk_to_numpy(transform.GetOutputDataObject(0).GetPoints().GetData()).copy()
+
+
+def to_enu(longitudes_latitudes, origin: Sequence[float]) -> np.ndarray:
+    """East and north, m. @param longitudes_latitudes n x 2, deg @param origin latitude, longitude (deg), height (m)"""
+    degrees = np.asarray(longitudes_latitudes, dtype=float)
+    return _transformed(np.column_stack([degrees, np.full(len(degrees), origin[2])]), origin, False)[:, :2]
+
+
+def to_geodetic(points, origin: Sequence[float]) -> np.ndarray:
+    """Longitude, latitude (deg) and height above the ellipsoid (m). @param points n x 3, m east, north and up
+    @param origin latitude, longitude (deg), height (m)"""
+    return _transformed(points, origin, True)
+
+
+def features_of(path: pathlib.Path) -> List[Dict[str, Any]]:
+    """The features of a GeoJSON file; their properties and geometries are objects, empty where the file has null."""
+    document = load_json(path)
+    features = document.get("features") if isinstance(document, dict) else None
+    if not isinstance(features, list):
+        raise Error(f"{path}: is no GeoJSON file with features")
+    for number, feature in enumerate(features):
+        if not isinstance(feature, dict):
+            raise Error(f"{path}: features[{number}]: is {str(feature)[:40]}, expected an object")
+        for name in ("properties", "geometry"):
+            if feature.get(name) is None:
+                feature[name] = {}
+            if not isinstance(feature[name], dict):
+                raise Error(f"{path}: features[{number}].{name}: is {str(feature[name])[:40]}, expected an object or null")
+    return features
+
+
+def _corners(coordinates: Any, origin: Sequence[float], least: int) -> np.ndarray:
+    """East and north (n x 2, m) of corners in GeoJSON. @param least number of corners"""
+    try:
+        degrees = np.array([point[:2] for point in coordinates])
+    except (TypeError, ValueError, LookupError):
+        degrees = np.empty(0)
+    if degrees.dtype.kind not in "iuf" or degrees.ndim != 2 or degrees.shape[1] != 2 or len(degrees) < least:
+        raise ValueError(f"the coordinates are not {least} or more pairs of longitude and latitude")
+    return to_enu(degrees, origin)
+
+
+def read_runways(file, origin: Sequence[float]) -> List[Runway]:
+    """The runways of a GeoJSON file: lines whose property `kind` or `aeroway` is "runway", with `name` or `ref`, and `width`
+    (m, default 45). @param origin of the scene: latitude, longitude (deg), height (m)"""
+    path = pathlib.Path(file)
+    found: List[Runway] = []
+    for number, feature in enumerate(features_of(path)):
+        properties, shape = feature["properties"], feature["geometry"]
+        if "runway" in (properties.get("kind"), properties.get("aeroway")) and shape.get("type") == "LineString":
+            name = str(properties.get("name") or properties.get("ref") or f"runway {len(found) + 1}")
+            width = properties.get("width", 45.0)
+            with naming(f"{path}: features[{number}]"):
+                corners = _corners(shape.get("coordinates"), origin, 2)
+                if not isinstance(width, (int, float)) or not width > 0 or not np.hypot(*(corners[-1] - corners[0])) > 1.0:
+                    raise ValueError(f"{name}: expected a line of some length and a width above 0 m, got the width {width!r}")
+                (x0, y0), (x1, y1) = (map(float, corner) for corner in corners[[0, -1]])
+                displaced = [properties.get(f"displaced_{end}", 0.0) for end in ("start", "end")]
+                if not all(isinstance(away, (int, float)) and 0.0 <= away < np.hypot(x1 - x0, y1 - y0) for away in displaced):
+                    raise ValueError(f"{name}: displaced thresholds are {displaced[0]!r} and {displaced[1]!r}, expected metres, less than its length")
+                found.append(Runway(name, (x0, y0), (x1, y1), float(width), (float(displaced[0]), float(displaced[1]))))
+    if not found:
+        raise Error(f"{path}: holds no runway, expected lines whose property kind or aeroway is runway")
+    return found
+
+
+def _ring(coordinates: Any, origin: Sequence[float]) -> np.ndarray:
+    """A ring of a polygon in GeoJSON, n x 2, m, open."""
+    corners = _corners(coordinates, origin, 3)
+    ring = corners[:-1] if np.array_equal(corners[0], corners[-1]) else corners
+    if len(ring) < 3:
+        raise ValueError("a ring has fewer than 3 corners")
+    return ring
+
+
+def read_outlines(file, origin: Sequence[float], attribute: str = "") -> List[Any]:
+    """The polygons in a GeoJSON file: each its ring (n x 2, m, open), or, where it has holes, a list of its outer ring and theirs.
+    @param origin of the scene: latitude, longitude (deg), height (m) @param attribute only of features that have this one"""
+    found: List[Any] = []
+    for number, feature in enumerate(features_of(pathlib.Path(file))):
+        shape = feature["geometry"]
+        if shape.get("type") in ("Polygon", "MultiPolygon") and (not attribute or feature["properties"].get(attribute)):
+            with naming(f"{file}: features[{number}]"):
+                polygons = [shape.get("coordinates")] if shape["type"] == "Polygon" else shape.get("coordinates")
+                if not isinstance(polygons, list):
+                    raise ValueError("the coordinates of a MultiPolygon are no list")
+                for rings in polygons:
+                    outline = [_ring(ring, origin) for ring in (rings if isinstance(rings, list) else [None])]
+                    found += [outline if len(outline) > 1 else outline[0]] if outline else []
+    return found
+
+
+def _height(value: Any) -> float:
+    """A height (m) as scenes take it: a number, or a text of it, with or without "m"; 0 for what is none."""
+    try:
+        found = float(re.sub(" ?m$", "", value) if isinstance(value, str) else value)
+    except (TypeError, ValueError):
+        return 0.0
+    return found if found > 0.0 and np.isfinite(found) and not isinstance(value, bool) else 0.0
+
+
+def with_other_heights(scene_file, folder, offset: Callable[[], float]) -> pathlib.Path:
+    """A copy of a scene file in `folder`, where every footprint in GeoJSON whose height is read from an attribute is higher by
+    what `offset` gives (m; no height is below 0.1 m). Files keep their names, which objects are named by. @return the new scene
+    file"""
+    path, out = pathlib.Path(scene_file), pathlib.Path(folder)
+    scene = load_json(path)
+    changed: Dict[str, Tuple[pathlib.Path, Any]] = {}
+    moved = set()
+    for item in scene["objects"]:
+        for key in ("file", "footprints"):
+            if key in item:
+                item[key] = str((path.parent / item[key]).resolve())
+        name, height = item.get("footprints"), item.get("height_attribute")
+        if not (name and height and re.search(r"json(\.gz)?$", name, re.IGNORECASE)):
+            continue
+        if name not in changed:
+            file = pathlib.Path(name)
+            new = out.resolve() / f"footprints{len(changed)}" / (file.stem if file.suffix == ".gz" else file.name)
+            changed[name] = new, load_json(name)
+        item["footprints"], shapes = str(changed[name][0]), changed[name][1]
+        features = shapes.get("features") if isinstance(shapes, dict) else None
+        for feature in features if isinstance(features, list) else ():
+            properties = feature.get("properties") if isinstance(feature, dict) else None
+            if not isinstance(properties, dict):
+                continue
+            value = _height(properties.get(height))
+            if value and (id(feature), height) not in moved:
+                properties[height] = max(value + offset(), 0.1)
+                under = _height(properties.get(item.get("min_height_attribute")))
+                if under:  # what does not reach the ground keeps its thickness
+                    properties[item["min_height_attribute"]] = max(under + properties[height] - value, 0.0)
+                moved.add((id(feature), height))
+    out.mkdir(parents=True, exist_ok=True)
+    for file, shapes in changed.values():
+        file.parent.mkdir(exist_ok=True)
+        file.write_text(json.dumps(shapes), encoding="utf-8")
+    (out / path.name).write_text(json.dumps(scene), encoding="utf-8")
+    return out / path.name

@@ -1,0 +1,158 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Plans of coverage and scenarios of labelled sequences as files, and the manifests of sequences."""
+from __future__ import annotations
+
+import pathlib
+from typing import Any, Callable, Dict, Mapping, Optional, Sequence, Union
+
+from .. import vtkAvianLidar as _wrapped
+from .._files import checked_name
+from .._pipeline import Error
+from .._properties import in_snake_case
+from .._weather import in_weather, weather, without_air
+from . import _metar
+from ._json import check_json, load_json, naming
+
+SUM = 1e-6  # to which the shares of a year are 1
+
+
+def read_plan(file, words: Optional[Sequence[str]] = None, metar=None, **changes: Dict[str, Any]) -> Dict[str, Any]:
+    """A plan of coverage (JSON, `coverage.schema.json`), with its own name as `file` and what was changed as `options`; `Error` names what
+    is wrong. Files that it names are absolute.
+
+    words    of weather, in place of the plan's, its year and what its `coverage` says of the air
+    metar    file of reports, in place of the plan's year
+    changes  parts of the plan, such as `sensor`, each with what else it shall hold
+    """
+    path = pathlib.Path(file)
+    plan = load_json(path)
+    if isinstance(plan, dict):
+        plan = {name: part for name, part in plan.items() if not (words or metar) or name not in ("year", "metar")}
+        if words:
+            plan["weather"] = list(words)
+            if isinstance(plan.get("coverage"), dict):
+                plan["coverage"] = without_air(plan["coverage"])
+        if metar:
+            plan["metar"] = str(pathlib.Path(metar).resolve())
+        for part, values in changes.items():
+            if values and isinstance(plan.get(part, {}), dict):
+                plan[part] = {**plan.get(part, {}), **{name: list(value) if isinstance(value, (tuple, list)) else
+                                                       [value] if name in ("masts", "exclusions") else value for name, value in values.items()}}
+    check_json(plan, "coverage.schema.json", str(file))
+
+    def from_here(name: Any) -> Any:
+        return str((path.parent / name).resolve()) if isinstance(name, str) else [*map(from_here, name)]
+
+    def sensor(given: Union[str, Dict[str, Any]], what: str) -> Dict[str, Any]:
+        with naming(f"{file}: {what}"):
+            given = {"preset": given} if isinstance(given, str) else given
+            known = in_snake_case(_wrapped.vtkAvianLidarBeamSource, given, "Sensor")
+            if known["preset"].endswith(".json"):
+                known["preset"] = from_here(known["preset"])
+        sensor_name(known, f"{file}: {what}")
+        return known
+
+    with naming(f"{file}: coverage"):
+        if "coverage" in plan:
+            plan["coverage"] = in_snake_case(_wrapped.vtkAvianLidarCoverage, plan["coverage"], "Coverage")
+    plan["sensor"] = sensor(plan["sensor"], "sensor")
+    plan["compare_with"] = [sensor(other, f"compare_with[{i}]") for i, other in enumerate(plan.get("compare_with", ()))]
+    if "siting" in plan:
+        if "runways" not in plan:
+            raise Error(f"{file}: siting: needs runways")
+        plan["siting"].setdefault("exclusions", [])
+    for member in ("scene", "runways", "metar", "tracks", "design.scenario", "siting.exclusions", "siting.points"):
+        of, _, name = member.rpartition(".")
+        holder = plan.get(of, {}) if of else plan
+        if name in holder:
+            with naming(f"{file}: {member}"):
+                holder[name] = from_here(holder[name])
+    _check_question(plan, str(file))
+    if "metar" in plan:
+        with naming(f"{file}: metar"):
+            hours = _metar.read_metar(plan["metar"])
+            plan.update(year=hours.year(), hours=hours.words())
+    options = [[f"--{part}-set", f"{name}={_as_option(value)}"] for part, values in changes.items() for name, value in (values or {}).items()]
+    plan.update(file=str(file), options=[["--weather", *(words or ())]] * bool(words) + [["--metar", str(metar)]] * bool(metar) + options)
+    return plan
+
+
+def _as_option(value: Any) -> str:
+    """A value as commands take it."""
+    if isinstance(value, (list, tuple)):
+        return ",".join(map(_as_option, value))
+    return ("off", "on")[value] if isinstance(value, bool) else str(value)
+
+
+def _check_question(plan: Dict[str, Any], file: str) -> None:
+    """`Error` where parts of a plan ask for different birds or places."""
+    if "regions" in plan and "runways" not in plan:
+        raise Error(f"{file}: regions: needs runways")
+    with naming(f"{file}: weather"):
+        in_weather(plan.get("coverage", {}), plan.get("weather"))
+    for number, part in enumerate(plan.get("year", ())):
+        with naming(f"{file}: year[{number}].weather"):
+            weather(part["weather"])
+    if "year" in plan and "metar" in plan:
+        raise Error(f"{file}: metar: is there beside 'year', expected one of both to say which weather there is")
+    total = sum(part["share"] for part in plan.get("year", ()))
+    if "year" in plan and not abs(total - 1.0) <= SUM:
+        raise Error(f"{file}: year: shares sum to {total:g}, expected 1")
+    if "species" in plan.get("coverage", {}) and "mix" in plan:
+        raise Error(f"{file}: coverage.species: is there beside 'mix', expected one of both to say which birds are asked for")
+
+
+def sensor_name(sensor: Mapping[str, Any], what: str = "sensor") -> str:
+    """Its name in files and reports: `name`, else that of the preset; "changed" if more than place and orientation are set.
+    @param what it is in a plan"""
+    preset = pathlib.Path(sensor["preset"]).name.split(".lidarsensor")[0]
+    changed = any(name not in ("preset", "position", "orientation") for name in sensor)
+    return checked_name(sensor.get("name", f"{preset} changed" if changed and preset else preset), f"{what}.name")
+
+
+# Whose properties the parts of a scenario name.
+PROPERTIES = {"sensor": _wrapped.vtkAvianLidarBeamSource, "scan": _wrapped.vtkAvianLidarEchoFilter, "birds": _wrapped.vtkAvianLidarTracks}
+
+
+def checked(scenario: Any, what: str) -> Dict[str, Any]:
+    """A scenario whose properties have their names in snake case, as its schema wants it. @param what its file, for errors"""
+    def here(wrapped: type, value: Any, part: str) -> Any:
+        if isinstance(value, list):
+            return [here(wrapped, one, f"{part}[{place}]") for place, one in enumerate(value)]
+        return in_snake_case(wrapped, value, part) if isinstance(value, dict) else value
+    if isinstance(scenario, dict):
+        with naming(what):
+            scenario = {part: here(PROPERTIES[part], value, part) if part in PROPERTIES else value for part, value in scenario.items()}
+    check_json(scenario, "scenario.schema.json", what)
+    return scenario
+
+
+def with_files(scenario: Dict[str, Any], change: Callable[[str], str]) -> Dict[str, Any]:
+    """The scenario with other words for the files that it names."""
+    preset = scenario["sensor"]["preset"]
+    birds = [{name: change(value) if name in ("file_name", "species_file_name") else value for name, value in group.items()}
+             for group in scenario.get("birds", ())]
+    return {**scenario, "scene": change(scenario["scene"]), "birds": birds,
+            "sensor": {**scenario["sensor"], "preset": change(preset) if preset.endswith(".json") else preset}}
+
+
+def read_scenario(file) -> Dict[str, Any]:
+    """A scenario file, or the manifest of a sequence; `Error` names what is wrong. Files that it names are absolute."""
+    path = pathlib.Path(file)
+    scenario = load_json(path)
+    if isinstance(scenario, dict) and "sequences" in scenario:
+        scenario = scenario.get("scenario")  # a manifest
+    with naming(str(file)):
+        return with_files(checked(scenario, str(file)), lambda name: str((path.parent / name).resolve()))
+
+
+def read_manifest(folder, others: str = "") -> Dict[str, Any]:
+    """The manifest of a folder of sequences. @param others what else could be given, in words"""
+    file, made = pathlib.Path(folder) / "manifest.json", "a folder that `avianlidar sequence` has made"
+    if not file.is_file():
+        raise Error(f"{folder}: holds no manifest.json, expected {made}{others}")
+    manifest = load_json(file)
+    parts = manifest.get("sequences") if isinstance(manifest, dict) else None
+    if not isinstance(parts, dict) or not parts:
+        raise Error(f"{file}: names no sequences, expected the manifest of {made}")
+    return manifest

@@ -1,0 +1,138 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The best of networks of sites, by what each site alone detects."""
+from __future__ import annotations
+
+import dataclasses
+import itertools
+from typing import Any, List, Mapping, Sequence, Tuple
+
+import numpy as np
+
+
+@dataclasses.dataclass(frozen=True)
+class Network:
+    """Sites that look together, by their numbers, and the weighted share that they detect."""
+
+    sites: Tuple[int, ...]
+    value: float
+
+
+def weights_of(count: int, regions: Mapping[str, Any], shares: Mapping[str, float],
+               mix: Mapping[str, float]) -> np.ndarray:
+    """What each place counts for each species: species x places, the sum 1.
+
+    count    number of places
+    regions  names, each with the numbers of its places
+    shares   of regions, by name: places of a region share it evenly
+    mix      shares of species, by name
+    """
+    for what, given in (("share", shares), ("mix", mix)):
+        if not given or min(given.values()) < 0.0 or not 0.0 < sum(given.values()) < np.inf:
+            raise ValueError(f"{what} is {dict(given)}, expected numbers from 0 with a sum above 0")
+    weights = np.zeros(count)
+    for name, share in shares.items():
+        if name not in regions or not len(regions[name]):
+            raise ValueError(f"no place lies in the region {name!r}; regions are {', '.join(regions)}")
+        weights[np.asarray(regions[name])] += share / len(regions[name])
+    species = np.array(list(mix.values()), dtype=float)
+    return np.outer(species / species.sum(), weights / weights.sum())
+
+
+def values_of(found: np.ndarray, weights: np.ndarray) -> np.ndarray:
+    """The weighted share that each site alone detects. @param found sites x species x places @param weights species x places"""
+    _check_weights(found, weights)
+    return np.array([np.vdot(site.astype(float), weights) for site in found])
+
+
+def value_of(found: np.ndarray, weights: np.ndarray, sites: Sequence[int]) -> float:
+    """The weighted share that at least one of the sites detects; sensors are independent."""
+    return float(weights.sum() - _missed(found, weights, sites).sum())
+
+
+def _missed(found, weights, sites) -> np.ndarray:
+    """Weights times the probability that none of the sites detects, species x places."""
+    left = weights.astype(float)
+    for i in sites:
+        left = left * (1.0 - found[i].astype(float))
+    return left
+
+
+def greedy(found: np.ndarray, weights: np.ndarray, count: int) -> List[Network]:
+    """Networks of 1 to `count` sites, each the one before and the site that adds most. Shapes as for values_of."""
+    chosen: List[Network] = []
+    sites: Tuple[int, ...] = ()
+    for _ in range(_count(found, weights, count)):
+        sites += (int(np.argmax(_gains(found, weights, sites))),)
+        chosen.append(Network(sites, value_of(found, weights, sites)))
+    return chosen
+
+
+def _check_weights(found, weights) -> None:
+    if found.shape[1:] != weights.shape:
+        raise ValueError(f"weights have the shape {weights.shape}, expected that of each site's coverage, {found.shape[1:]}")
+
+
+def _count(found, weights, count) -> int:
+    _check_weights(found, weights)
+    if not 1 <= count <= len(found):
+        raise ValueError(f"count is {count}, expected 1 to {len(found)}, the number of sites")
+    return count
+
+
+def _gains(found, weights, sites) -> np.ndarray:
+    """What each site would add to the others; below 0 for these themselves."""
+    gains = found.reshape(len(found), -1) @ _missed(found, weights, sites).astype(found.dtype).ravel()
+    gains[list(sites)] = -1.0
+    return gains
+
+
+def exchange(found: np.ndarray, weights: np.ndarray, network: Network) -> Network:
+    """A network from which no exchange of one site gains any more. Never below the given one."""
+    best = network
+    while True:
+        tried = [best.sites[:k] + best.sites[k + 1:] for k in range(len(best.sites))]
+        swapped = [(*rest, int(np.argmax(_gains(found, weights, rest)))) for rest in tried]
+        value, sites = max((value_of(found, weights, sites), sites) for sites in swapped)
+        if not value > best.value + 1e-9:
+            return best
+        best = Network(sites, value)
+
+
+def exhaustive(found: np.ndarray, weights: np.ndarray, count: int) -> Network:
+    """The best of all networks of one, two or three sites."""
+    if _count(found, weights, count) > 3:
+        raise ValueError(f"count is {count}, expected at most 3: there are too many networks of more")
+    n = len(found)
+    missed = 1.0 - found.reshape(n, -1).astype(float)
+    least = np.inf
+    sites: Tuple[int, ...] = ()
+    for others in itertools.combinations(range(n), max(count - 2, 0)):
+        first = others[0] + 1 if others else 0
+        left = missed[first:] * (_missed(found, weights, others).ravel())
+        if count == 1:
+            table = left.sum(axis=1)[:, None]
+        else:
+            table = left @ missed[first:].T
+            table[np.tril_indices(len(table))] = np.inf
+        if table.size and table.min() < least:
+            least = table.min()
+            pair = np.unravel_index(np.argmin(table), table.shape)[:min(count, 2)]
+            sites = (*others, *(first + int(i) for i in pair))
+    return Network(sites, value_of(found, weights, sites))
+
+
+def search(found: np.ndarray, weights: np.ndarray, count: int = 3, largest: int = 60) -> List[Network]:
+    """The best networks of 1 to `count` sites. One site, and up to three of at most `largest`: exhaustive. Else greedy, then
+    exchange.
+
+    found    sites x species x places, from look
+    weights  species x places, from weights_of
+    """
+    return [exhaustive(found, weights, n) if n == 1 or (n <= 3 and len(found) <= largest) else exchange(found, weights, start)
+            for n, start in enumerate(greedy(found, weights, count), 1)]
+
+
+def rank_correlation(a, b) -> float:
+    """Spearman's, of two rows of numbers; equal ones share their mean rank."""
+    from scipy.stats import spearmanr
+    return float(spearmanr(a, b)[0])

@@ -1,0 +1,156 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Extracts of maps as files: OpenStreetMap's, GeoJSON and GeoPackages, also of Overture's maps. GDAL reads."""
+from __future__ import annotations
+
+import contextlib
+import json
+import mmap
+import pathlib
+import re
+import tempfile
+from typing import Any, Dict, List, Tuple
+from xml.etree import ElementTree
+
+from osgeo import gdal, osr
+
+from .._pipeline import Error
+from ._extract import Extract
+from ._features import Feature
+from ._gdal import degrees, expect_file, open_file, plain, quiet
+from ._json import naming
+
+SUFFIXES = {".osm": "OSM", ".pbf": "OSM", ".geojson": "GeoJSON", ".gpkg": "GPKG"}  # with GDAL's drivers
+LARGEST = 256 << 20  # bytes of an extract
+CONTROLS = re.compile("[\x00-\x1f\x7f-\x9f\u200e\u200f\u202a-\u202e\u2066-\u2069]")  # and marks of direction, which disorder a line
+TAG = re.compile(r'"((?:[^"\\]|\\.)*)"=>"((?:[^"\\]|\\.)*)"')  # of GDAL's OSM driver
+
+
+def _needs_order(file: pathlib.Path) -> bool:
+    """Whether XML of OpenStreetMap has nodes after ways, things that an editor has deleted, or places in ways: GDAL reads none of
+    these."""
+    with open(file, "rb") as stream, mmap.mmap(stream.fileno(), 0, access=mmap.ACCESS_READ) as data:
+        way, relation = data.find(b"<way "), data.find(b"<relation ")
+        return (0 <= way < data.rfind(b"<node ") or 0 <= relation < data.rfind(b"<way ") or 0 <= relation < data.rfind(b"<node ")
+                or re.search(rb"""action=["']delete|visible=["']false|<nd [^>]*lat=""", data) is not None)
+
+
+def _memberless(file: pathlib.Path) -> int:
+    """How many areas of XML of OpenStreetMap have no way, of which GDAL says nothing."""
+    with open(file, "rb") as stream, mmap.mmap(stream.fileno(), 0, access=mmap.ACCESS_READ) as data:
+        return sum(re.search(rb"""type=["']way""", one[1]) is None and re.search(rb"""v=["'](multipolygon|boundary)""", one[1]) is not None
+                   for one in re.finditer(rb"<relation [^>]*[^/]>(.*?)</relation>", data, re.DOTALL))
+
+
+def _in_order(file: pathlib.Path, out: pathlib.Path) -> pathlib.Path:
+    """A copy of XML of OpenStreetMap with nodes, then ways, then relations, each once, by their ids."""
+    found: Dict[str, Dict[int, Tuple[int, bytes]]] = {"node": {}, "way": {}, "relation": {}}
+    places: Dict[Tuple[str, str], str] = {}
+
+    def keep(tag: str, number: str, size: int, text: bytes) -> None:
+        found[tag][int(number)] = max(found[tag].get(int(number), (-1, b"")), (size, text), key=lambda one: one[0])
+
+    root = None
+    for event, one in ElementTree.iterparse(file, ("start", "end")):
+        root = one if root is None else root
+        if event == "start" or one.tag not in found:
+            continue
+        for node in one.iter("nd"):  # of what Overpass writes by `out geom`: with places, without a number in members of relations
+            where = node.get("lat"), node.get("lon")
+            if where[0]:
+                node.set("ref", node.get("ref") or places.setdefault(where, str(-(1 << 40) - len(places))))
+                keep("node", node.get("ref"), 0, b'<node id="%s" lat="%s" lon="%s"/>' % tuple(word.encode() for word in (node.get("ref"), *where)))
+        for member in one.iter("member"):
+            nodes = [b'<nd ref="%s"/>' % node.get("ref").encode() for node in member.iter("nd") if node.get("ref")]
+            if nodes and member.get("type") == "way":
+                keep("way", member.get("ref"), 0, b'<way id="%s">%s</way>' % (member.get("ref").encode(), b"".join(nodes)))
+        if one.get("action") != "delete" and one.get("visible") != "false" and (one.tag != "node" or one.get("lat")):
+            keep(one.tag, one.get("id"), len(one) + 1, ElementTree.tostring(one))
+        root.clear()
+    with open(out, "wb") as stream:
+        stream.write(b'<?xml version="1.0" encoding="UTF-8"?><osm version="0.6">\n')
+        for things in found.values():
+            stream.writelines(things[number][1] for number in sorted(things))
+        stream.write(b"</osm>\n")
+    return out
+
+
+def _expect_map(file: pathlib.Path) -> None:
+    """Say what a file is that tools leave where an extract was expected."""
+    with open(file, "rb") as stream:
+        head = stream.read(2000).lstrip(b"\xef\xbb\xbf \r\n\t").lower()
+    what = ("is empty" if not head else "is in UTF-16" if head[:2] in (b"\xff\xfe", b"\xfe\xff") else "is a web page" if head.startswith((b"<!doctype html", b"<html"))
+            else "is Overpass's own JSON" if head.startswith(b"{") and b'"elements"' in head else "")
+    if what:
+        raise Error(f"{file}: {what}, expected an extract of a map: export it again as .osm, .osm.pbf, .geojson or .gpkg")
+
+
+def _tags(feature, names: List[str]) -> Dict[str, str]:
+    tags: Dict[str, str] = {}
+    for number, name in enumerate(names):
+        if not feature.IsFieldSetAndNotNull(number):
+            continue
+        value = feature.GetFieldAsString(number)
+        if name in ("other_tags", "all_tags", "tags"):
+            if value.startswith("{"):
+                tags.update((key, str(word)) for key, word in json.loads(value).items())
+            else:
+                found = TAG.findall(value)
+                tags.update(found if "\\" not in value else [(re.sub(r"\\(.)", r"\1", key), re.sub(r"\\(.)", r"\1", word)) for key, word in found])
+        elif name == "names" and value.startswith("{"):
+            tags["name"] = str(json.loads(value).get("primary") or "")
+        elif value:
+            tags[name] = value
+    return {name: value if value.isprintable() else CONTROLS.sub("", value) for name, value in tags.items()}
+
+
+def read_extract(file: pathlib.Path, known: Dict[str, Any]) -> Extract:
+    """What the rules know, aerodromes, and what is left out."""
+    driver = SUFFIXES.get(file.suffix.lower())
+    if not driver:
+        raise Error(f"{file}: is no extract by its name, expected .osm, .osm.pbf, .geojson or .gpkg")
+    expect_file(file)
+    if file.stat().st_size > LARGEST:
+        raise Error(f"{file}: holds {file.stat().st_size >> 20} MiB, expected at most {LARGEST >> 20}: cut it to the airport and some "
+                    "kilometres around it first, as `osmium extract --bbox W,S,E,N` does")
+    _expect_map(file)
+    options = (f"CONFIG_FILE={pathlib.Path(__file__).with_name('osmconf.ini')}", "USE_CUSTOM_INDEXING=NO") if driver == "OSM" else ()
+    aliases = {name.replace(":", "_"): name for name in known["colons"]}
+    found, source = Extract(known), file
+    with contextlib.ExitStack() as stack:
+        if file.suffix.lower() == ".osm":
+            if _needs_order(file):
+                folder = stack.enter_context(tempfile.TemporaryDirectory())
+                try:
+                    with naming("its nodes, ways and relations"):
+                        source = _in_order(file, pathlib.Path(folder) / "in_order.osm")
+                except ElementTree.ParseError as error:
+                    raise Error(f"{file}: GDAL cannot read it as an extract ({error})") from None
+            found.left += [Feature("relation", {}, reason="no ways")] * _memberless(source)
+        data = open_file(source, "an extract", [driver], gdal.OF_VECTOR, options)
+        stack.enter_context(naming(str(file)))
+        stack.enter_context(quiet(found.hear if driver == "OSM" else None))
+        layers: Dict[str, Tuple[List[str], Any]] = {}
+        while True:
+            try:
+                feature, layer = data.GetNextFeature()
+            except RuntimeError:
+                raise Error("cannot be read to its end: it is damaged or not whole, expected a whole extract") from None
+            if feature is None:
+                break
+            if layer.GetName() not in layers:
+                own, frame = layer.GetSpatialRef(), layer.GetLayerDefn()
+                if own is not None:
+                    own.SetAxisMappingStrategy(osr.OAMS_TRADITIONAL_GIS_ORDER)
+                names = [frame.GetFieldDefn(number).GetName() for number in range(frame.GetFieldCount())]
+                layers[layer.GetName()] = ([aliases.get(name, name) for name in names],
+                                           osr.CoordinateTransformation(own, degrees()) if own is not None and not own.IsSame(degrees()) else None)
+            names, to_degrees = layers[layer.GetName()]
+            tags = _tags(feature, names)
+            if driver != "OSM":
+                tags = tags or {"feature": str(feature.GetFID())}
+            elif layer.GetName() == "lines":
+                tags["osm_way_id"] = tags.get("osm_id", "")
+            if tags:
+                found.take(tags, plain(feature.GetGeometryRef(), to_degrees))
+        del data
+    return found.done()

@@ -1,0 +1,208 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What the verbs of the command do that make airports, sequences and studies of them."""
+from __future__ import annotations
+
+import contextlib
+import functools
+import itertools
+import pathlib
+from typing import Any, Dict, Iterator, List, Tuple
+
+from .. import reach as ranges
+from .._disk import only_run
+from .._properties import in_snake_case
+from .._ranks import Ranks
+from .._sensor import Sensor
+from .._terminal import bar, close_bar, table, tell, warn
+from .._weather import without_air
+from . import _pictures
+from ._answer import percent
+from ._design_page import Designs, answers
+from ._inputs import PROPERTIES, read_plan, read_scenario
+from ._maps import write_maps
+from ._plan import Plan
+from ._report import Report
+from ._sequence import Sequence
+from ._sites import Sites
+from ._tables import write_table
+from ._tracks import BirdTracks
+
+
+@contextlib.contextmanager
+def _goes_on(folder: pathlib.Path, pattern: str, what: str) -> Iterator[None]:
+    """Ctrl-C says what is there to go on with. @param what the files of that pattern are"""
+    try:
+        yield
+    except KeyboardInterrupt:
+        count = len(list(folder.glob(pattern)))
+        raise KeyboardInterrupt(*[f"{folder}: {what}: {count}; the same command goes on"] if count else []) from None
+
+
+def _job(options, draws: bool = True) -> Tuple[Ranks, int]:
+    """The ranks of a job, and threads for each; ImportError where a job that draws has no Matplotlib."""
+    if draws:
+        _pictures.gradient()
+    ranks = Ranks(ends_job=True)
+    return ranks, getattr(options, "threads", 0) or (1 if ranks.size > 1 else 0)
+
+
+def _changes(options) -> Dict[str, Any]:
+    """What options change of a scenario."""
+    changes = {"number_of_scans": options.scans, "weather": options.weather}
+    return {name: value for name, value in changes.items() if value is not None}
+
+
+def sequence(options) -> None:
+    ranks, threads = _job(options, draws=False)
+    scenario, changes = read_scenario(options.scenario), _changes(options)
+    if options.weather:
+        changes["scan"] = scenario["scan"] = without_air(scenario.get("scan", {}))
+    for part, values in (("sensor", options.sensor_set), ("scan", options.scan_set)):
+        if values:
+            changes[part] = {**scenario.get(part, {}), **in_snake_case(PROPERTIES[part], dict(values), f"--{part}-set")}
+    sequence = Sequence(options.scenario, threads=threads, **changes)
+    done, what = itertools.count(1), "scans" if ranks.size == 1 else "scans of the first rank"
+    with _goes_on(options.out, "sequences/[0-9]*/done.json", "whole sequences"):
+        manifest = sequence.write(options.out, ranks, None if ranks.rank else
+                                  lambda *_: bar(what, next(done), sequence.scans_to_do))
+    if ranks.rank == 0:
+        parts = manifest["sequences"].values()
+        tell(f"{options.out}: {sum(p['scans'] for p in parts)} scans in {len(parts)} sequences, birds seen in "
+             f"{sum(p['scans_with_birds_seen'] for p in parts)} of them; datasheet.md says more")
+
+
+def track(options) -> None:
+    ranks, threads = _job(options)
+    tracks = BirdTracks(options.inputs, options.runways, options.learn, options.cutoff, options.order,
+                        dict(options.clutter_set), dict(options.tracker_set), options.sensor, threads, **_changes(options))
+    with _goes_on(options.out, "followed/*/*.json", "sequences followed"):
+        card = tracks.write(options.out, ranks, None if ranks.rank else bar)
+    if ranks.rank == 0:
+        table([("score", *card["names"]), *((row["words"], *row["cells"]) for row in card["overall"])])
+        print(f"{options.out / 'card.html'}: the report card; its tables and pictures are beside it")
+
+
+def bench(options) -> None:
+    from ._bench import Bench, verdict
+    _pictures.gradient()  # needs Matplotlib: said before the work
+    found = Bench(options.folders, options.predictions, options.sequences, options.first).write(options.out, bar)
+    tell(*(f"{scored[0].set.name}, {scored[0].set.weather}: {verdict(scored)}" for scored in found),
+         f"{options.out / 'bench.html'}: the page; its tables and pictures are beside it")
+
+
+def airport(options) -> None:
+    from ._airport import Airport, counts
+    made = Airport(options.extract, options.heights, options.icao, options.bounds, options.obstacles, bar)
+    with only_run(options.out, goes_on=False):
+        kept = made.write(options.out)
+    close_bar()
+    for name in kept.edited:
+        warn(f"{options.out / name} was edited and stays as it is; remove it to have it made again")
+    buildings = [row for row in made.rows if "height" in row]
+    if buildings and all(row.get("height_from") == "assumed" for row in buildings):
+        warn(f"{options.extract} says no height of any building: all are assumed by kind, {options.out / 'assumed.csv'} lists them")
+    print(f"{options.out}: {made.name}, {len(made.sides)} {'runways' if len(made.sides) > 1 else 'runway'}, "
+          f"{len(buildings)} {'building' if len(buildings) == 1 else 'buildings'}; README.txt says what is assumed")
+    print(counts(made))
+
+
+def _plan(options) -> Dict[str, Any]:
+    """The plan with what options change."""
+    return read_plan(options.plan, options.weather, getattr(options, "metar", None),
+                     **{part: dict(getattr(options, f"{part}_set", ())) for part in ("sensor", "coverage", "siting", "design")})
+
+
+def _say_before(plan) -> None:
+    if "hours" in plan.plan:
+        print(plan.plan["hours"])
+    if plan.above != "ground":
+        below = "no surface is below the sensor" if plan.ground is None else f"the ground below the sensor is at z = {plan.ground:.4g} m"
+        warn(f"heights are above the scene's origin, and {below}")
+
+
+def coverage(options) -> None:
+    plans = Plan.all_of(_plan(options), options.threads)
+    _say_before(plans[0])
+    with only_run(options.out, goes_on=len(plans) > 1):  # maps of a sensor that are whole stay
+        for plan in plans:
+            folder = options.out / plan.name if len(plans) > 1 else options.out
+            with only_run(folder, goes_on=False) if len(plans) > 1 else contextlib.nullcontext():
+                count = write_maps(plan, folder, functools.partial(bar, f"files of {plan.name}"))
+            row = plan.overall
+            tell(f"{folder}: {count} files; {plan.coverage.species or 'the target'} detected in one scan: "
+                 f"{row['detection_probability']:.3f} +- {row['detection_std_error']:.3f} {plan.where} (assumed: bird"
+                 f"{', receiver' if plan.assumed else ''})")
+
+
+def siting(options) -> None:
+    ranks, _ = _job(options)
+    plans = Plan.all_of(_plan(options), 1)
+    if not ranks.rank:
+        _say_before(plans[0])
+    everywhere = [Sites(plan, options.out / "coverage", ranks, bar) for plan in plans]
+    with _goes_on(options.out, "coverage/*.npy", "candidates kept"), only_run(options.out, ranks, goes_on=True, known=plans[0].decides):
+        for number, sites in enumerate(everywhere):
+            changes = list(sites.look().changes())
+            if not ranks.rank:
+                sites.write(options.out / sites.plan.name if number else options.out, changes)
+                _say_sites(sites, changes)
+
+
+def _say_sites(sites, changes) -> None:
+    name = sites.plan.name
+    tell(f"{name}: {len(sites.positions)} candidates, of {sites.lattice}, for a {sites.plan.bird} {sites.plan.where}")
+    print(f"obstacle limits: {sites.kept_surfaces}")
+    for row in sites.gain():
+        where = "), (".join(row["sites"].replace(" ", ", ").split(";, "))
+        print(f"{row['sensors']} of {name}: {percent(row['value'], row['std_error'], sites.plan.count)} at ({where}) m")
+    rows = sites.robustness(changes)
+    for row in rows:
+        print(f"{row['change']}, {row['sensors']} {'sensors' if row['sensors'] > 1 else 'sensor'}: another winner in {row['another winner']} of "
+              f"{row['draws']} draws, better by at most {100 * row['gain at most']:.1f} %")
+    if not rows:
+        print("how sure the winner is was not looked at: fewer draws than that takes")
+
+
+def design(options) -> None:
+    ranks, threads = _job(options)
+    plan = Plan(_plan(options), threads)
+    if not ranks.rank:
+        _say_before(plan)
+    study = Designs(plan, options.out, ranks, bar)
+    with _goes_on(options.out, "coverage/*.npy", "designs kept"):
+        study.write()
+    if not ranks.rank:
+        close_bar()
+        refused = [one.refused for one in study.candidates if one.refused]
+        if refused:
+            warn(f"{len(refused)} of {len(study.candidates)} designs are none, as the sensor refuses them: {refused[0]}")
+        tell(*answers(study),
+             f"{options.out / 'design.html'}: the page; its tables and pictures are beside it")
+
+
+def reach(options) -> None:
+    if options.out and options.out.suffix.lower() != ".csv":
+        raise ValueError(f"{options.out}: is not the name of a table, expected one that ends in .csv")
+    rows: List[Tuple[Any, ...]] = [("sensor", "bird", "9 of 10, to", "half, to", "a tenth, to", "9 of 10 by 2 of 3 scans, to")]
+    said, curve = [], []
+    for name in options.sensor:
+        sensor = Sensor(name).set(**dict(options.sensor_set))
+        for species in options.species or ["herring gull"]:
+            found = ranges.within_beams(sensor, species, **ranges.air_of(sensor, options.weather), required_detections=2, number_of_scans=3)
+            rows.append((name, species, ranges.metres(found.to(0.9)), ranges.half(sensor, found), ranges.metres(found.to(0.1)), ranges.metres(found.to(0.9, True))))
+            said.append(ranges.sentence(name, species, sensor, found))
+            curve += [{"sensor": name, "species": species, "range": float(to), "one_scan": float(one), "one_scan_std_error": float(error), "two_of_three": float(two)}
+                      for to, one, error, two in zip(found.ranges, found.one_scan, found.error, found.several_scans)]
+    table(rows)
+    print(*said, sep="\n")
+    print("Birds lie evenly between the lowest and the highest beam; sizes of birds are assumed. In brackets: what the fit of the receiver to its sheet leaves open.")
+    if options.out:
+        write_table(options.out, curve)
+        print(f"{options.out}: the shares by range")
+
+
+def report(options) -> None:
+    report = Report(_plan(options), options.threads, bar)
+    _say_before(report.plans[0])
+    folder = report.write(options.out)
+    tell(f"{options.out}: the report; {folder}: its tables and pictures")

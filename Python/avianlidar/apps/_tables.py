@@ -1,0 +1,79 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Tables, sites, and pages of HTML that need no network, as files."""
+from __future__ import annotations
+
+import base64
+import csv
+import io
+import math
+import pathlib
+from typing import Any, Dict, List, Mapping, Optional, Sequence
+
+import numpy as np
+
+from .._cloud import add_array, vertices
+from .._disk import write_whole
+from .._files import read_regular, save
+from .._pipeline import Error
+from .._ranks import as_json
+from .._writers import as_csv
+from ._geojson import to_geodetic
+
+
+def read_table(file, columns: Sequence[str] = (), expected: str = "") -> List[Dict[str, str]]:
+    """Rows of CSV by the names of the columns. @param columns that there must be @param expected what the file should be"""
+    rows = csv.DictReader(io.StringIO(read_regular(file).decode(), newline=""))
+    missing = [name for name in columns if name not in (rows.fieldnames or ())]
+    if missing:
+        raise Error(f"{file}: has no column {missing[0]}, expected {expected}")
+    return list(rows)
+
+
+def write_table(file, rows: Sequence[Dict[str, Any]]) -> None:
+    """Write rows as CSV, units in the header."""
+    head = [[f"{name} [m]" if name in ("height_from", "height_to") else name for name in rows[0]]] if rows else []
+    table = [[f"{value:.6g}" if isinstance(value, float) else value for value in row.values()] for row in rows]
+    write_whole(file, as_csv(head + table, "\r\n"))
+
+
+def write_sites(folder, sites, columns: Mapping[str, Any], origin: Optional[Sequence[float]] = None,
+                description: str = "") -> None:
+    """sites.csv and sites.vtp, and sites.geojson where the scene has an origin: a point each, in the order given.
+
+    sites    n x 3, m
+    columns  numbers by name, n each
+    origin   latitude, longitude (deg), height (m) of the scene's origin
+    description  in words, of sites.geojson
+    """
+    out, data = pathlib.Path(folder), vertices(sites)
+    degrees = to_geodetic(sites, origin) if origin is not None else np.empty((0, 3))
+    in_degrees = {} if origin is None else {"longitude": degrees[:, 0], "latitude": degrees[:, 1]}
+    for name, values in {**columns, **in_degrees}.items():
+        if len(values) != len(sites):
+            raise ValueError(f"column {name!r} has {len(values)} values, expected {len(sites)}, one for each site")
+        add_array(data.GetPointData(), name, np.asarray(values))
+    out.mkdir(parents=True, exist_ok=True)
+    save(data, out / "sites.vtp")
+    save(data, out / "sites.csv")
+    if origin is None:
+        return
+    features = [{"type": "Feature", "properties": {name: np.asarray(values)[i].item() for name, values in columns.items()},
+                 "geometry": {"type": "Point", "coordinates": [round(float(lon), 9), round(float(lat), 9), round(float(height), 4)]}}
+                for i, (lon, lat, height) in enumerate(degrees)]
+    write_whole(out / "sites.geojson", as_json({"type": "FeatureCollection", "description": description, "features": features}))
+
+
+def embedded(file: pathlib.Path) -> str:
+    """A picture (PNG) as what a page has for its source."""
+    return "data:image/png;base64," + base64.b64encode(file.read_bytes()).decode()
+
+
+def render(template: str, **values: Any) -> bytes:
+    """A page. @param template its file in this folder @param values by their names there; filters begin with `filter_`"""
+    import jinja2
+    environment = jinja2.Environment(loader=jinja2.FileSystemLoader(pathlib.Path(__file__).parent), autoescape=True,
+                                     undefined=jinja2.StrictUndefined, trim_blocks=True, lstrip_blocks=True)
+    environment.globals["zip"] = zip
+    environment.filters["number"] = lambda value, form: "–" if math.isnan(value) else form % value
+    environment.filters.update({name[7:]: values.pop(name) for name in [*values] if name.startswith("filter_")})
+    return environment.get_template(template).render(**values).encode()
