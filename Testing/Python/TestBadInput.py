@@ -10,7 +10,7 @@ from vtk.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray, vtk_to
 
 from avianlidar import _cloud, _properties, vtkAvianLidar as al
 from avianlidar._scene import COEFFICIENTS
-from cloudtools import add_array, cloud, echoes
+from cloudtools import WRITERS, add_array, cloud, echoes
 from echotools import InFolder, Messages, assert_same_bits, box, given, sensor, town
 from faulttools import INF, NAN, PLACE_OF_VALUE, algorithms, beams, copy_of, make, spoil, surfaces
 
@@ -104,7 +104,7 @@ class Arrays(Faults):
         blocks.GetMetaData(2).Set(vtk.vtkCompositeDataSet.NAME(), "tetrahedra")
         for algorithm, inputs in ((make("CollisionTree"), [blocks]), (make("EchoFilter"), [beams(), blocks])):
             self.fails(algorithm, inputs, "nput port", "tetrahedra", "vtkPolyData")
-        for name in ("LAS", "PCD", "PLY", "KITTI", "GeoJSON"):
+        for name in WRITERS:
             writer = make(name + "Writer", FileName="x")
             heard = Messages(writer)
             self.assertEqual((writer.Write(), len(heard.errors), os.listdir()), (0, 1, []))
