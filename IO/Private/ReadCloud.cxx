@@ -6,6 +6,7 @@
 #include "LasFormat.h"
 #include "PcdFormat.h"
 #include "PlyFormat.h"
+#include "ValueError.h"
 #include "Vector.h"
 #include "vtkAvianLidarNames.h"
 
@@ -231,12 +232,7 @@ std::string knownEndings()
   {
     all.insert(all.end(), format.endings.begin(), format.endings.end());
   }
-  std::string text = all.front();
-  for (std::size_t i = 1; i < all.size(); ++i)
-  {
-    text += (i + 1 < all.size() ? ", " : " or ") + all[i];
-  }
-  return text;
+  return anyOf(all);
 }
 
 std::string labelFileOf(const std::string& fileName)

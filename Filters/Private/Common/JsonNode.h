@@ -50,7 +50,7 @@ public:
   /// The value of a key, which must be there.
   JsonNode Get(const std::string& key) const;
   /// The value must be an object whose keys are all among those given.
-  void RequireKeys(const std::vector<const char*>& known) const;
+  void RequireKeys(const std::vector<std::string>& known) const;
   /// Keys and values of an object, as written.
   std::vector<std::pair<std::string, JsonNode>> Members() const;
   /// Values of an array; size 0: any number of them.
