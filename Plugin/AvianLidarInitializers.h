@@ -18,8 +18,8 @@ void AvianLidarAddColourPresets();
  * AvianLidarBeamsDomain accepts the beams of a sensor.
  *
  * AvianLidarMaterialDomain is a DoubleRangeDomain of a coefficient of a material (attribute
- * coefficient: 0 kd, 1 ks, 2 kp, 3 roughness). When the required property Material becomes a named
- * one, the panel shows its coefficient.
+ * coefficient, as for vtkAvianLidarMaterial::GetCoefficientName()). When the required property
+ * Material becomes a named one, the panel shows its coefficient.
  *
  * AvianLidarScaledDomain is a DoubleRangeDomain of a value in another unit: it is that of the
  * required property Other times the attribute factor, whichever of the two is changed.
