@@ -98,11 +98,7 @@ void AddText(vtkPointSet* input, const char* property, const names::Name& id,
 vtkStandardNewMacro(vtkAvianLidarGeoJSONWriter);
 
 //------------------------------------------------------------------------------
-vtkAvianLidarGeoJSONWriter::vtkAvianLidarGeoJSONWriter()
-  : UseFieldDataLimit(true)
-  , MinimumEnergy(0.0)
-{
-}
+vtkAvianLidarGeoJSONWriter::vtkAvianLidarGeoJSONWriter() = default;
 
 //------------------------------------------------------------------------------
 vtkAvianLidarGeoJSONWriter::~vtkAvianLidarGeoJSONWriter() = default;

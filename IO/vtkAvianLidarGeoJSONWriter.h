@@ -48,8 +48,8 @@ protected:
 
   void WriteCloud(vtkPointSet* input) override;
 
-  bool UseFieldDataLimit;
-  double MinimumEnergy;
+  bool UseFieldDataLimit = true;
+  double MinimumEnergy = 0.0;
 
 private:
   vtkAvianLidarGeoJSONWriter(const vtkAvianLidarGeoJSONWriter&) = delete;

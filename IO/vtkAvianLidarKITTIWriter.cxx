@@ -42,11 +42,7 @@ std::vector<int> LabelsOfObjects(vtkPointSet* input)
 vtkStandardNewMacro(vtkAvianLidarKITTIWriter);
 
 //------------------------------------------------------------------------------
-vtkAvianLidarKITTIWriter::vtkAvianLidarKITTIWriter()
-  : WriteLabels(true)
-  , LabelSource(LABEL_SOURCE_OBJECT_CLASS)
-{
-}
+vtkAvianLidarKITTIWriter::vtkAvianLidarKITTIWriter() = default;
 
 //------------------------------------------------------------------------------
 vtkAvianLidarKITTIWriter::~vtkAvianLidarKITTIWriter() = default;

@@ -59,8 +59,8 @@ protected:
 
   void WriteCloud(vtkPointSet* input) override;
 
-  bool WriteLabels;
-  int LabelSource;
+  bool WriteLabels = true;
+  int LabelSource = LABEL_SOURCE_OBJECT_CLASS;
 
 private:
   vtkAvianLidarKITTIWriter(const vtkAvianLidarKITTIWriter&) = delete;

@@ -423,14 +423,7 @@ private:
 vtkStandardNewMacro(vtkAvianLidarLASWriter);
 
 //------------------------------------------------------------------------------
-vtkAvianLidarLASWriter::vtkAvianLidarLASWriter()
-  : CoordinateSystem(COORDINATE_SYSTEM_UTM)
-  , UTMZone(0)
-  , SourceId(0)
-  , WriteAllArrays(true)
-  , RoundingBound(0.0)
-{
-}
+vtkAvianLidarLASWriter::vtkAvianLidarLASWriter() = default;
 
 //------------------------------------------------------------------------------
 vtkAvianLidarLASWriter::~vtkAvianLidarLASWriter() = default;

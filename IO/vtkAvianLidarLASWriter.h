@@ -93,11 +93,11 @@ protected:
 
   void WriteCloud(vtkPointSet* input) override;
 
-  int CoordinateSystem;
-  int UTMZone;
-  int SourceId;
-  bool WriteAllArrays;
-  double RoundingBound;
+  int CoordinateSystem = COORDINATE_SYSTEM_UTM;
+  int UTMZone = 0;
+  int SourceId = 0;
+  bool WriteAllArrays = true;
+  double RoundingBound = 0.0;
 
 private:
   vtkAvianLidarLASWriter(const vtkAvianLidarLASWriter&) = delete;

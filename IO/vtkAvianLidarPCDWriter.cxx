@@ -139,12 +139,7 @@ double EmptyValue(const Field& field, const formats::OrganisedCells& cells, std:
 vtkStandardNewMacro(vtkAvianLidarPCDWriter);
 
 //------------------------------------------------------------------------------
-vtkAvianLidarPCDWriter::vtkAvianLidarPCDWriter()
-  : FileType(FILE_TYPE_BINARY)
-  , Organisation(ORGANISATION_AUTOMATIC)
-  , Precision(PRECISION_SINGLE)
-{
-}
+vtkAvianLidarPCDWriter::vtkAvianLidarPCDWriter() = default;
 
 //------------------------------------------------------------------------------
 vtkAvianLidarPCDWriter::~vtkAvianLidarPCDWriter() = default;

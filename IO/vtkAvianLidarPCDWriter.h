@@ -89,9 +89,9 @@ protected:
 
   void WriteCloud(vtkPointSet* input) override;
 
-  int FileType;
-  int Organisation;
-  int Precision;
+  int FileType = FILE_TYPE_BINARY;
+  int Organisation = ORGANISATION_AUTOMATIC;
+  int Precision = PRECISION_SINGLE;
 
 private:
   vtkAvianLidarPCDWriter(const vtkAvianLidarPCDWriter&) = delete;

@@ -49,11 +49,7 @@ void AddComponents(vtkDataArray* array, bool colours, std::vector<formats::Field
 vtkStandardNewMacro(vtkAvianLidarPLYWriter);
 
 //------------------------------------------------------------------------------
-vtkAvianLidarPLYWriter::vtkAvianLidarPLYWriter()
-  : FileType(FILE_TYPE_BINARY)
-  , Precision(PRECISION_SINGLE)
-{
-}
+vtkAvianLidarPLYWriter::vtkAvianLidarPLYWriter() = default;
 
 //------------------------------------------------------------------------------
 vtkAvianLidarPLYWriter::~vtkAvianLidarPLYWriter() = default;

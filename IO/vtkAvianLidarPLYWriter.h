@@ -64,8 +64,8 @@ protected:
 
   void WriteCloud(vtkPointSet* input) override;
 
-  int FileType;
-  int Precision;
+  int FileType = FILE_TYPE_BINARY;
+  int Precision = PRECISION_SINGLE;
 
 private:
   vtkAvianLidarPLYWriter(const vtkAvianLidarPLYWriter&) = delete;

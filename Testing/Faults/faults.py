@@ -81,7 +81,7 @@ FAULTS = [Fault(*fault) for fault in (
      "vtkSmartPointer<vtkPointSet> converted(leaf->NewInstance());"),
     # Readers and writers.
     ("not_initialised", "a member without a value", "Python-TestKITTIWriter$|Plugin-TestProxies$",
-     "IO/vtkAvianLidarKITTIWriter.cxx", "  : WriteLabels(true)\n  , LabelSource", "  : LabelSource"),
+     "IO/vtkAvianLidarKITTIWriter.h", "bool WriteLabels = true;", "bool WriteLabels;"),
     ("las_seconds", "a wrong unit", "Python-Test(LASWriter|PointCloudReader)$",
      "IO/Private/LasReading.cxx", "1e6 * load<double>(bytes + this->Record.time)", "load<double>(bytes + this->Record.time)"),
     ("las_colour_index", "a swapped index", "Python-Test(LASWriter|Laz|PointCloudReader)$",
