@@ -18,7 +18,7 @@ def rows():
     """[(name, unit, where, meaning)] in the order of the header."""
     found, where, meaning = [], "", []
     for line in HEADER.read_text(encoding="utf-8").partition("struct Name\n")[2].splitlines():
-        declared = re.fullmatch(r'constexpr Name \w+\{ "(\w+)", "([^"]*)" \};', line)
+        declared = re.fullmatch(r'constexpr Name \w+\{ "(\w+)", "([^"]*)"(?:, "[^"]*")? \};', line)
         if declared:
             if not (where and meaning):
                 raise ValueError(f"{HEADER.name}: {declared[1]} needs a group and a meaning")

@@ -297,16 +297,7 @@ void AssignToTree(const Assignment& what, const std::vector<Leaf>& leaves, vtkDa
 vtkStandardNewMacro(vtkAvianLidarMaterial);
 
 //------------------------------------------------------------------------------
-vtkAvianLidarMaterial::vtkAvianLidarMaterial()
-  : Material(MATERIAL_WALL)
-  , Kd(0.146)
-  , Ks(0.054)
-  , Kp(112.0)
-  , Roughness(0.0)
-  , ObjectId(-1)
-  , BlockNamePattern("*")
-{
-}
+vtkAvianLidarMaterial::vtkAvianLidarMaterial() = default;
 
 //------------------------------------------------------------------------------
 vtkAvianLidarMaterial::~vtkAvianLidarMaterial() = default;

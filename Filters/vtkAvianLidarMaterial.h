@@ -5,8 +5,8 @@
  *
  * - Input port 0: vtkPolyData, or a composite whose leaves are vtkPolyData.
  * - Output port 0: shallow copies of the input with the cell arrays `object_id`, `material_id`
- *   (index into `material_names`), `kd`, `ks`, `kp` and `roughness` (rad); all six are always
- *   present. Field data of each leaf: `material_names` (the input's names, or else the four of the
+ *   (index into `material_names`) and one for each coefficient; all of them are always present.
+ *   Field data of each leaf: `material_names` (the input's names, or else the four of the
  *   paper; this material's name follows them), `object_names` (one value) and `object_classes`,
  *   where the input has them; if a leaf that becomes one object has several classes, they become
  *   one class, which is empty if they differ. A composite also has `material_names`.
@@ -145,14 +145,14 @@ protected:
   int FillInputPortInformation(int port, vtkInformation* info) override;
   int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
 
-  int Material;
-  double Kd;
-  double Ks;
-  double Kp;
-  double Roughness;
-  int ObjectId;
+  int Material = MATERIAL_WALL;
+  double Kd = 0.146;
+  double Ks = 0.054;
+  double Kp = 112.0;
+  double Roughness = 0.0;
+  int ObjectId = -1;
   std::string NameOfObject;
-  std::string BlockNamePattern;
+  std::string BlockNamePattern = "*";
 
 private:
   vtkAvianLidarMaterial(const vtkAvianLidarMaterial&) = delete;

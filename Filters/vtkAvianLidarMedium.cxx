@@ -15,25 +15,30 @@
 #include "vtkPolyData.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
 
+#include <algorithm>
 #include <stdexcept>
+#include <utility>
+#include <vector>
 
 vtkStandardNewMacro(vtkAvianLidarMedium);
 
 namespace
 {
-constexpr const char* KindNames[] = { "haze", "fog", "drizzle", "rain", "snow", "foliage",
-  "custom" };
-constexpr const char* ShapeNames[] = { "everywhere", "layer", "box", "ellipsoid", "surface" };
+using vtkAvianLidarMedia::Word;
 
-template <std::size_t N>
-std::string NameOf(const char* property, int value, const char* const (&names)[N])
+const Word& Chosen(const char* property, int value, const std::vector<Word>& all)
 {
-  if (value < 0 || value >= static_cast<int>(N))
+  if (value < 0 || value >= static_cast<int>(all.size()))
   {
-    const std::string expected = "0 to " + std::to_string(N - 1);
+    const std::string expected = "0 to " + std::to_string(all.size() - 1);
     throw std::runtime_error(avianlidar::valueError(property, value, expected.c_str()));
   }
-  return names[value];
+  return all[value];
+}
+
+bool Has(const Word& word, const std::string& key)
+{
+  return std::find(word.keys.begin(), word.keys.end(), key) != word.keys.end();
 }
 
 avianlidar::Json Triple(const double (&v)[3])
@@ -59,42 +64,34 @@ int vtkAvianLidarMedium::FillInputPortInformation(int port, vtkInformation* info
 /// What the properties say, of which only those of the kind and the shape.
 std::string vtkAvianLidarMedium::Description() const
 {
+  const Word& kind = Chosen("Kind", this->Kind, vtkAvianLidarMedia::Kinds());
+  const Word& shape = Chosen("Shape", this->Shape, vtkAvianLidarMedia::Shapes());
+  const std::pair<const char*, avianlidar::Json> values[] = { { "visibility", this->Visibility },
+    { "rain_rate", this->RainRate }, { "leaf_area_density", this->LeafAreaDensity },
+    { "extinction", this->Extinction }, { "backscatter_ratio", this->BackscatterRatio },
+    { "bottom", this->Bottom }, { "top", this->Top }, { "softness", this->Softness },
+    { "center", Triple(this->Center) }, { "lengths", Triple(this->Lengths) },
+    { "heading", this->Heading } };
   avianlidar::Json json;
-  json["kind"] = NameOf("Kind", this->Kind, KindNames);
-  json["name"] = this->Name;
-  switch (this->Kind)
+  const auto add = [&](const Word& word)
   {
-    case KIND_DRIZZLE:
-    case KIND_RAIN:
-      json["rain_rate"] = this->RainRate;
-      break;
-    case KIND_FOLIAGE:
-      json["leaf_area_density"] = this->LeafAreaDensity;
-      break;
-    case KIND_CUSTOM:
-      json["extinction"] = this->Extinction;
-      json["backscatter_ratio"] = this->BackscatterRatio;
-      break;
-    default:
-      json["visibility"] = this->Visibility;
-  }
-  if (this->RenewedShare != -1.0 && this->Kind != KIND_HAZE && this->Kind != KIND_FOG)
+    for (const auto& [key, value] : values)
+    {
+      if (Has(word, key))
+      {
+        json[key] = value;
+      }
+    }
+  };
+  json["kind"] = kind.name;
+  json["name"] = this->Name;
+  add(kind);
+  if (this->RenewedShare != -1.0 && Has(kind, "renewed"))
   {
     json["renewed"] = this->RenewedShare;
   }
-  json["shape"] = NameOf("Shape", this->Shape, ShapeNames);
-  if (this->Shape == SHAPE_LAYER)
-  {
-    json["bottom"] = this->Bottom;
-    json["top"] = this->Top;
-    json["softness"] = this->Softness;
-  }
-  if (this->Shape == SHAPE_BOX || this->Shape == SHAPE_ELLIPSOID)
-  {
-    json["center"] = Triple(this->Center);
-    json["lengths"] = Triple(this->Lengths);
-    json["heading"] = this->Heading;
-  }
+  json["shape"] = shape.name;
+  add(shape);
   if (this->Velocity[0] != 0.0 || this->Velocity[1] != 0.0 || this->Velocity[2] != 0.0)
   {
     json["velocity"] = Triple(this->Velocity);
@@ -131,8 +128,9 @@ int vtkAvianLidarMedium::RequestData(
       vtkFieldData* fields = drawn->GetFieldData();
       vtkAvianLidarArrays::SetFieldStrings(
         fields, vtkAvianLidarArrays::ObjectNames, { this->Name });
-      vtkAvianLidarArrays::SetFieldStrings(fields, vtkAvianLidarArrays::ObjectClasses,
-        { this->Kind == KIND_FOLIAGE ? "vegetation" : "air" });
+      const bool isObject = Has(vtkAvianLidarMedia::Kinds()[this->Kind], "object_id");
+      vtkAvianLidarArrays::SetFieldStrings(
+        fields, vtkAvianLidarArrays::ObjectClasses, { isObject ? "vegetation" : "air" });
       vtkPolyData::GetData(outputVector)->ShallowCopy(drawn);
       return {};
     });

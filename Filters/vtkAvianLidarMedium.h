@@ -10,10 +10,9 @@
  *   field data make this surface a medium for all filters that take surfaces: `medium` (description
  *   as JSON), `object_names` and `object_classes` ("air", or "vegetation" for foliage).
  *
- * Kind says what the medium is. One quantity says how dense the medium is: Visibility for haze, fog
- * and snow, RainRate for drizzle and rain, LeafAreaDensity for foliage, Extinction (with
- * BackscatterRatio) for KIND_CUSTOM. Numbers, sources and assumptions:
- * Documentation/guide/weather.md, Filters/Media/media.json.
+ * Kind says what the medium is. One quantity says how dense the medium is: Visibility, RainRate,
+ * LeafAreaDensity or, with BackscatterRatio, Extinction. Documentation/guide/weather.md and
+ * Filters/Media/media.json say which quantity belongs to a kind, with sources and assumptions.
  *
  * A bad value or an open surface gives an error that names the key of the description, and an empty
  * output. Setters accept any value. Each rank requests the whole surface.
@@ -78,13 +77,13 @@ public:
   ///@}
 
   ///@{
-  /** Visibility in haze, fog or snow, m, 0.001 to 1e9. Default 300. */
+  /** Visibility, m, 0.001 to 1e9. Default 300. */
   vtkSetMacro(Visibility, double);
   vtkGetMacro(Visibility, double);
   ///@}
 
   ///@{
-  /** Rate of rain or drizzle, mm/h, 1e-6 to 500. Default 10. */
+  /** Rain rate, mm/h, 1e-6 to 500. Default 10. */
   vtkSetMacro(RainRate, double);
   vtkGetMacro(RainRate, double);
   ///@}

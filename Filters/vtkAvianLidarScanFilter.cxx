@@ -41,7 +41,7 @@ vtkAvianLidarRanks::Settings SettingsOf(const avianlidar::EchoSettings& s, int p
   for (const avianlidar::EchoSetting& setting : avianlidar::echoSettings())
   {
     const bool isAir = setting.name == std::string("attenuation_coefficient");
-    if (setting.decides)
+    if (setting.effect != avianlidar::SettingEffect::None)
     {
       all.Add(setting.property, isAir ? (visibility > 0.0 ? 0.0 : air) : setting.get(s));
     }

@@ -3,10 +3,8 @@
  * @class vtkAvianLidarPointCloudReader
  * @brief Reads a point cloud, real or simulated, with the array names of this project.
  *
- * The ending of FileName gives the format: `.las` (1.0 to 1.4), `.laz` (with LASzip), `.pcd`,
- * `.ply` (vertices), `.bin` (KITTI, with SemanticKITTI's labels beside it or in the folder
- * `labels`), `.pcap` and `.pcapng` (a Velodyne VLP-16). Documentation/reference/formats.md says
- * what is read, refused or left out with a warning.
+ * The ending of FileName gives the format. Documentation/reference/formats.md lists the formats,
+ * and what is read, refused or left out with a warning.
  *
  * The reader has no input. Output port 0 is vtkPolyData, a vertex for each point, in double
  * precision. Arrays keep their names and types in the file, except that `intensity` (0 to 255),

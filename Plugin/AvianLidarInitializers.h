@@ -18,8 +18,8 @@ void AvianLidarAddColourPresets();
  * AvianLidarBeamsDomain accepts the beams of a sensor.
  *
  * AvianLidarMaterialDomain is a DoubleRangeDomain of a coefficient of a material (attribute
- * coefficient: 0 kd, 1 ks, 2 kp, 3 roughness). When the required property Material becomes a named
- * material, the panel shows the coefficient of this material.
+ * coefficient, as for vtkAvianLidarMaterial::GetCoefficientName()). When the required property
+ * Material becomes a named material, the panel shows the coefficient of this material.
  *
  * AvianLidarScaledDomain is a DoubleRangeDomain of a property that has the value of the required
  * property Other in another unit: the value of Other times the attribute factor. A change of one

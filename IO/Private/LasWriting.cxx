@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "LasFormat.h"
 #include "LazFormat.h"
+#include "vtkAvianLidarNames.h"
 
 #include <algorithm>
 #include <cmath>
@@ -174,31 +175,11 @@ Bytes makeHeader(
 /// What the arrays of a scan are, in a few words.
 const char* wordsFor(const std::string& name)
 {
-  constexpr const char* words[][2] = {
-    { "energy", "within receiver limits" },
-    { "energy_received", "before the limits" },
-    { "return_energy", "of the whole return" },
-    { "energy_std_error", "of energy_received" },
-    { "distance_m", "range" },
-    { "incidence_angle", "at the surface" },
-    { "secondary_share", "energy of 2 bounces" },
-    { "object_id", "index of object_names" },
-    { "material_id", "index of material_names" },
-    { "laser_id", "channel" },
-    { "beam_id", "index of the beam" },
-    { "label_share", "energy of object_id" },
-    { "photoelectrons", "of its range unit" },
-    { "signal_to_noise", "of its range unit" },
-    { "seen_radiance", "of what its beam looks at" },
-    { "distance_std_error", "of the receiver's noise" },
-    { "azimuth", "from north, clockwise" },
-    { "vertical_angle", "from the horizon, up" },
-  };
-  for (const auto& [known, text] : words)
+  for (const vtkAvianLidarArrays::Name& known : vtkAvianLidarArrays::CloudArrays)
   {
-    if (name == known)
+    if (name == known.name)
     {
-      return text;
+      return known.words;
     }
   }
   return "";

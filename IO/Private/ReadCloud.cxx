@@ -6,7 +6,9 @@
 #include "LasFormat.h"
 #include "PcdFormat.h"
 #include "PlyFormat.h"
+#include "ValueError.h"
 #include "Vector.h"
+#include "vtkAvianLidarNames.h"
 
 #include <algorithm>
 #include <cctype>
@@ -21,10 +23,14 @@ namespace fs = std::filesystem;
 
 namespace
 {
-/// Names that mean a quantity with a unit wherever they stand in this project.
-const std::set<std::string> NamesWithUnit{ "azimuth", "vertical_angle", "distance_m", "timestamp",
-  "energy", "energy_received", "return_energy", "energy_std_error", "incidence_angle", "hue",
-  "longitude", "latitude", "height" };
+/// Whether a name of this project means a quantity that has a unit.
+bool hasUnit(const std::string& name)
+{
+  const auto& all = vtkAvianLidarArrays::CloudArrays;
+  return std::any_of(std::begin(all), std::end(all),
+    [&](const vtkAvianLidarArrays::Name& known)
+    { return name == known.name && *known.unit && known.unit != std::string("1"); });
+}
 
 Column* find(Cloud& cloud, const std::string& name)
 {
@@ -130,7 +136,7 @@ void rename(Cloud& cloud)
     {
       column.unit = "1";
     }
-    if (NamesWithUnit.count(column.name) && column.unit.empty())
+    if (column.unit.empty() && hasUnit(column.name))
     {
       column.name = "file_" + column.name;
     }
@@ -224,12 +230,7 @@ std::string knownEndings()
   {
     all.insert(all.end(), format.endings.begin(), format.endings.end());
   }
-  std::string text = all.front();
-  for (std::size_t i = 1; i < all.size(); ++i)
-  {
-    text += (i + 1 < all.size() ? ", " : " or ") + all[i];
-  }
-  return text;
+  return anyOf(all);
 }
 
 std::string labelFileOf(const std::string& fileName)

@@ -29,7 +29,7 @@ struct CloudFormat
 
 const std::vector<CloudFormat>& cloudFormats();
 
-/// All endings: ".las, .laz, .pcd, .ply, .bin, .pcap or .pcapng".
+/// All endings, as in ".las, .laz or .pcd".
 std::string knownEndings();
 
 /// The ending of a name, in lower case: ".las".

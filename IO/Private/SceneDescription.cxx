@@ -103,7 +103,7 @@ Geodetic ParseGeodetic(const JsonNode& node)
 
 avianlidar::Material ParseCoefficients(const JsonNode& node)
 {
-  std::vector<const char*> keys;
+  std::vector<std::string> keys;
   for (const MaterialCoefficient& coefficient : MaterialCoefficients)
   {
     keys.push_back(coefficient.name);

@@ -97,8 +97,7 @@ VERBS = {
   avianlidar sensors VLP-16
   avianlidar sensors --fit my.lidarsensor.json -o fitted.lidarsensor.json
 """),
-    "materials": ("materials that are known by name", "Materials that are known by name, with their coefficients: kd (diffuse), "
-                  "ks (specular), kp (glossiness).", """\
+    "materials": ("materials that are known by name", "Materials that are known by name, with their coefficients and sources.", """\
   avianlidar materials
 """),
 }

@@ -21,7 +21,7 @@ from . import vtkAvianLidar as _wrapped
 from ._cloud import add_array, field_values, rows_of, with_points
 from ._pipeline import Error, Progress, file_name, is_current, text_of, update
 from ._properties import choices, choose, get_property, property_names, set_properties, set_property
-from ._suffixes import PACKETS, TABLES
+from ._suffixes import POINTS
 
 # Names of a material's coefficients, which are those of cell arrays; those behind the first three may be left out.
 COEFFICIENTS = tuple(filter(None, map(_wrapped.vtkAvianLidarMaterial.GetCoefficientName, range(100))))
@@ -191,7 +191,7 @@ def _mesh_scene(file: str, painted: bool, options: Dict[str, Any]) -> Dict[str, 
                             "objects": [{"footprints": name, "height": 10}]}).replace('"?"', "?")
         raise ValueError(f"{file}: holds footprints, which become buildings in a scene file: scan a file my{SCENE} beside it with {words}, "
                          "the origin in degrees and metres (Documentation/reference/scene-files.md)")
-    if suffix in (".las", ".laz", ".pcd", ".bin", *TABLES, *PACKETS):
+    if suffix in POINTS:
         raise ValueError(f"{file}: has no surfaces, expected a mesh or a scene file")
     text_of(file)
     if "scale" in options:

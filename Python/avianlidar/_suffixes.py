@@ -12,6 +12,8 @@ WRITERS = {".las": "vtkAvianLidarLASWriter", ".laz": "vtkAvianLidarLASWriter", "
 # What needs none of them.
 OWN = (".vtp", ".csv")
 TABLES = (".csv", ".xyz")  # that are read; the first is written, too
+POINTS = (*(suffix for suffix in READERS if suffix != ".ply"), *TABLES)  # never surfaces
+OF_SENSOR = (".bin", *PACKETS)  # in the frame of the sensor
 
 
 def listed(classes: Iterable[str]) -> str:

@@ -16,7 +16,7 @@ from ._cloud import vertices
 from ._disk import replacing
 from ._pipeline import update
 from ._sight import extent, of_scene
-from ._suffixes import PACKETS, TABLES
+from ._suffixes import OF_SENSOR, PACKETS, POINTS
 from ._terminal import bar, table, tell, warn
 from ._weather import weather
 from ._writers import check_suffix, check_target
@@ -109,7 +109,7 @@ def _has_points_only(file: pathlib.Path) -> bool:
         with open(file, "rb") as stream:
             header = stream.read(65536).partition(b"end_header")[0]
         return not any(line.split()[1:2] == [b"face"] and line.split()[2:] != [b"0"] for line in header.splitlines())
-    return suffix in (".las", ".laz", ".pcd", ".bin", *TABLES, *PACKETS) or suffix == ".vtp" and not load_cloud(file).data.GetNumberOfPolys()
+    return suffix in POINTS or suffix == ".vtp" and not load_cloud(file).data.GetNumberOfPolys()
 
 
 def _words(value: Any) -> str:
@@ -127,7 +127,7 @@ def _say_cloud(file: pathlib.Path, cloud: Cloud, quiet: bool) -> None:
         return
     fields = cloud.fields
     known = {"extent": extent(cloud.data.GetBounds()) if "crs_wkt" not in fields else _words(cloud.data.GetBounds())}
-    if file.suffix.lower() in (".bin", *PACKETS):
+    if file.suffix.lower() in OF_SENSOR:
         known["frame"] = "of the sensor: right, forward and up for east, north and up"
     units = cloud.field_units
     for name in ("geodetic_origin", "position", "crs_wkt"):
@@ -189,7 +189,7 @@ def compare(options) -> None:
         check_target(options.out, files)
     chosen = _of_packets(options, *files)
     clouds = [_cloud(file, chosen) for file in files]
-    of_sensor = [file.suffix for file in files if file.suffix.lower() in (".bin", *PACKETS)]
+    of_sensor = [file.suffix for file in files if file.suffix.lower() in OF_SENSOR]
     if len(of_sensor) == 1:
         warn(f"a {of_sensor[0]} file is in the frame of its sensor, the other file is not")
     ways = "SimulatedToReference", "ReferenceToSimulated"

@@ -122,7 +122,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   {
     Cloud cloud = read(formats[number], data + 1, size - 1);
     harmonise(cloud);
-    check(cloud, formats[number].endings[0] == ".pcd" || formats[number].endings[0] == ".ply");
+    const std::string& ending = formats[number].endings[0];
+    check(cloud, ending != ".las" && ending != ".bin");
   }
   catch (const std::exception& error)
   {

@@ -3,6 +3,7 @@
 outputs, and the next good input gives what it gave before. What is legal but suspicious is a warning, once."""
 import os
 import unittest
+from xml.etree import ElementTree
 
 import numpy as np
 import vtk
@@ -10,7 +11,7 @@ from vtk.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray, vtk_to
 
 from avianlidar import _cloud, _properties, vtkAvianLidar as al
 from avianlidar._scene import COEFFICIENTS
-from cloudtools import add_array, cloud, echoes
+from cloudtools import WRITERS, add_array, cloud, echoes
 from echotools import InFolder, Messages, assert_same_bits, box, given, sensor, town
 from faulttools import INF, NAN, PLACE_OF_VALUE, algorithms, beams, copy_of, make, spoil, surfaces
 
@@ -104,7 +105,7 @@ class Arrays(Faults):
         blocks.GetMetaData(2).Set(vtk.vtkCompositeDataSet.NAME(), "tetrahedra")
         for algorithm, inputs in ((make("CollisionTree"), [blocks]), (make("EchoFilter"), [beams(), blocks])):
             self.fails(algorithm, inputs, "nput port", "tetrahedra", "vtkPolyData")
-        for name in ("LAS", "PCD", "PLY", "KITTI", "GeoJSON"):
+        for name in WRITERS:
             writer = make(name + "Writer", FileName="x")
             heard = Messages(writer)
             self.assertEqual((writer.Write(), len(heard.errors), os.listdir()), (0, 1, []))
@@ -134,17 +135,25 @@ class Arrays(Faults):
         self.assertIn("x.las is without the point arrays 'point array 0' (it has no name)", "".join(heard.warnings))
 
 
+def of_panel(name):
+    """{property: values beside the choices, or below the least number, of ParaView's panel}"""
+    found = {}
+    for prop in ElementTree.parse(os.path.join(os.environ["AVIANLIDAR_SOURCE_DIR"], "Plugin", "Filters", f"AvianLidar{name}.xml")).iter():
+        for domain in prop.findall("*[@entries]") + prop.findall("*[@min]"):
+            least = int(domain.get("min", 0)) - 1 if prop.tag.startswith("Int") else float(domain.get("min")) - 1e-9
+            beyond = [len(domain.get("entries").split())] if "entries" in domain.attrib else []
+            found[prop.get("command", "Set" + prop.get("name"))[3:]] = (least, *beyond)
+    return found
+
+
 class Properties(Faults):
     # Any value of these means something.
     ANY = {("EchoFilter", "Seed"), ("BeamSource", "MotionSeed"), ("EchoFilter", "NumberOfThreads"), ("EchoFilter", "MaximumCacheSize"),
            ("CollisionTree", "DisplayLevel"), ("CollisionTree", "MaximumLeafSize"), ("Material", "ObjectId"), ("BeamSource", "AzimuthStep"),
            ("BeamSource", "Orientation"), ("GeoJSONWriter", "MinimumEnergy"), ("EchoFilter", "NumberOfConnections"),
            ("HSBColorMap", "EnergyRange"), ("Tracks", "Seed")}
-    # The last value before the border of a choice or a number.
-    BORDERS = {"EchoFilter": {"Preset": (-1, 6), "RaysPerBeam": (0, 1000001), "Sampling": (2,), "BeamSamples": (2,), "NumberOfThreads": (-1,),
-                              "AttenuationCoefficient": (-1e-9,), "ReflectanceModel": (4,), "NumberOfReflections": (0, 3),
-                              "LightEnergyFraction": (-1e-9, 1.1e8), "LightEnergyThreshold": (-1, 2), "ReturnMode": (-1, 5),
-                              "NumberOfConnections": (-1,), "BatchCollisionDetection": (3,), "MaximumCacheSize": (-1,)},
+    # The first value beyond the border of a choice or a number; above sliders, those that the class has.
+    BORDERS = {"EchoFilter": {**of_panel("EchoFilter"), "RaysPerBeam": (0, 1000001), "NumberOfReflections": (0, 3), "LightEnergyFraction": (-1e-9, 1.1e8)},
                "BeamSource": {"SwayAmplitude": (-1e-9, 10.1), "SwayFrequency": (0.0, 1e7), "EncoderJitter": (-1e-9, 10.1)},
                "CollisionTree": {"Preset": (2,), "SplitRule": (4,), "BoundingVolume": (-1, 4), "MaximumLeafSize": (0,)},
                "Tracker": {"ClusterAngle": (30.0,), "RangeError": (0.0,), "MotionModel": (2,), "GateProbability": (1.0,),

@@ -16,6 +16,7 @@ import avianlidar as al
 import exampletools
 from avianlidar import _command, reach
 from boxfiles import CORNERS, TRIANGLES, poly_data, stl
+from cloudtools import CLOUDS, READ_BACK
 import helpertools
 from helpertools import from_terminal
 
@@ -24,7 +25,6 @@ SCENE = SOURCE / "Examples" / "airport" / "scene" / "hongqiao.lidarscene.json"
 OUTPUT = pathlib.Path(os.environ.get("AVIANLIDAR_TEST_OUTPUT_DIR", "/tmp")) / "command"
 SHARE = next((folder / "share" for folder in pathlib.Path(al.__file__).resolve().parents if (folder / "share" / "man").is_dir()),
              None)
-CLOUDS = ("las", "pcd", "bin", "vtp", "csv", "geojson")
 FEW = ("--sensor-set", "azimuth_step=1.875")  # beams: 3,072
 
 
@@ -38,7 +38,7 @@ class Verbs(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         exampletools.emptied("command")
-        cls.files = {kind: OUTPUT / f"echoes.{kind}" for kind in (*CLOUDS, "png")}
+        cls.files = {suffix[1:]: OUTPUT / f"echoes{suffix}" for suffix in (*CLOUDS, ".png")}
         outs = [word for file in cls.files.values() for word in ("-o", file)]
         cls.ran = run("scan", SCENE, "--sensor", "search-905", *FEW, "--sensor-set", "range_gate=3000", "--scan-set", "seed=3", *outs)
         scene = al.load_scene(SCENE)
@@ -48,13 +48,13 @@ class Verbs(unittest.TestCase):
         code, lines, errors = self.ran
         self.assertEqual((code, errors), (0, []))
         self.assertTrue(lines[0].startswith(f"{self.files['las']}: {self.echoes.number_of_points} echoes of 3072 beams"), lines)
-        self.assertTrue(lines[2].endswith(", labels in echoes.label"), lines)
+        self.assertTrue(lines[CLOUDS.index(".bin")].endswith(", labels in echoes.label"), lines)
         written = al.load_cloud(self.files["vtp"])
         for name, values in self.echoes.items():
             self.assertTrue(np.array_equal(written[name], values, equal_nan=values.dtype.kind == "f"), name)
         self.assertEqual(set(written) - set(self.echoes), {"hue", "rgb", "longitude", "latitude", "height"})
-        for kind in ("las", "pcd", "bin", "csv"):
-            self.assertEqual(al.load_cloud(self.files[kind]).number_of_points, self.echoes.number_of_points, kind)
+        for suffix in READ_BACK:
+            self.assertEqual(al.load_cloud(self.files[suffix[1:]]).number_of_points, self.echoes.number_of_points, suffix)
         self.assertEqual(self.files["png"].read_bytes()[:4], b"\x89PNG")
 
     def test_a_mesh_is_a_scene(self):
@@ -114,8 +114,8 @@ class Verbs(unittest.TestCase):
             unit = "" if wanted.units[name] == "1" else wanted.units[name]
             self.assertEqual((found[name].dtype.kind, found.units[name]), (values.dtype.kind, unit), name)
         self.assertEqual(found.fields, {})
-        for kind in (*CLOUDS, "ply"):
-            self.assertEqual(run("convert", self.files["csv"], OUTPUT / f"from-csv.{kind}")[0], 0, kind)
+        for suffix in CLOUDS:
+            self.assertEqual(run("convert", self.files["csv"], OUTPUT / f"from-csv{suffix}")[0], 0, suffix)
         self.assertEqual((OUTPUT / "from-csv.csv").read_bytes(), self.files["csv"].read_bytes())
 
     def test_csv_of_others(self):

@@ -8,9 +8,11 @@ import unittest
 
 import numpy as np
 
+import avianlidar
 from avianlidar import vtkAvianLidar as al
 from cloudtools import add_array, add_field, cloud, echoes, field, names, points, read, read_error, unit, write
 from echotools import InFolder, Messages, array
+from helpertools import WALL
 
 FILE = "TestPointCloudReader.las"
 # Writer, suffix, settings, types that change, and relative and absolute rounding: LAS has intensities of 16 bits, returns in a byte and time in
@@ -87,6 +89,15 @@ class TestPointCloudReader(InFolder):
                     self.assertEqual(unit(again, one), unit(data, one), one)
                 for one in ("position", "orientation", "lower_energy_limit", "geodetic_origin", "object_names", "object_classes"):
                     self.assertEqual(field(again, one), field(data, one), one)
+
+    def test_quantities_without_a_unit_are_the_files(self):
+        """All that echoes of a photon receiver in daylight have."""
+        echoes = avianlidar.Scan(avianlidar.Scene(WALL), avianlidar.Sensor("Search905", azimuth_step=2, sunlight=1)).echoes
+        quantities = [name for name, unit in echoes.units.items() if unit not in ("", "1")]
+        self.assertGreater(set(quantities), {"distance_std_error", "energy", "seen_radiance"})
+        properties = "".join(f"property float {name}\n" for name in ("x", "y", "z", *quantities))
+        pathlib.Path("a.ply").write_text(f"ply\nformat ascii 1.0\nelement vertex 1\n{properties}end_header\n{'1 ' * (3 + len(quantities))}\n")
+        self.assertEqual(names(read("a.ply")), ["file_" + name for name in quantities])
 
     def test_las_formats(self):
         for form, minor in [(0, 0), (1, 1), (2, 2), (3, 4), (6, 4), (7, 4), (8, 4), (4, 3), (5, 4), (9, 4), (10, 4)]:

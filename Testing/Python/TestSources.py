@@ -8,6 +8,8 @@ import importlib.util
 import os
 import re
 
+from avianlidar import _suffixes
+
 source = os.environ["AVIANLIDAR_SOURCE_DIR"]
 
 
@@ -37,7 +39,6 @@ lists = {
     "Testing/Kernel": ("Testing/Kernel/CMakeLists.txt", ".cxx"),
     "Testing/Cxx": ("Testing/Cxx/CMakeLists.txt", ".cxx"),
     "Testing/Plugin": ("Testing/Plugin/CMakeLists.txt", ".py"),
-    "Plugin": ("Plugin/CMakeLists.txt", ".xml"),
 }
 for folder, (cmake, ending) in lists.items():
     words = set(re.findall(r"[\w./-]+", read(cmake)))
@@ -47,11 +48,14 @@ for folder, (cmake, ending) in lists.items():
             continue  # what tests import
         assert name in words, f"{path} is not listed in {cmake}"
 
-words = set(re.findall(r"[\w./-]+", read("CMake/AvianLidarModule.cmake")))
+words = set(re.findall(r"[\w./-]+", read("CMake/AvianLidarSources.cmake") + read("Plugin/CMakeLists.txt")))
 for folder in ("Filters", "IO"):
     for path in files(folder, ".cxx"):
         if not path.startswith(("Filters/Kernel/", "Filters/VolumeTree/", "IO/MeshReader/")):
             assert path in words or path[: -len(".cxx")] in words, f"{path} is not listed"
+for path in files("Plugin", ".xml"):
+    name = os.path.relpath(path, "Plugin")
+    assert name in words or name[: -len(".xml")].replace("/", "/vtk") in words, f"{path} is of no class"
 
 # VTK's copy of the JSON library and Debian's have the same include guards: one header decides which is included.
 for folder in ("Filters", "IO", "Plugin"):
@@ -127,6 +131,7 @@ for path in (*files("Filters/Kernel", ".h"), *files("Filters/VolumeTree", ".h"))
 # Ascii, within a few lines of the writer, or in the call of ParaView's Save Data.
 XML_WRITER = re.compile(r"\bvtkXML\w*Writer\b")
 PARAVIEW = re.compile(r"\b(?:SaveData|CreateWriter|XML\w*Writer)\((?:[^()]|\([^()]*\))*\)")
+OURS = re.compile(rf"(?:{'|'.join(map(re.escape, (*_suffixes.WRITERS, '.csv')))})\"")
 MODE = re.compile(r"(?:SetDataModeTo|DataMode\b\W{1,4})(?:Ascii|Binary|\{mode\})")
 
 
@@ -135,7 +140,7 @@ def without_a_mode(text):
     lines = [line for line in text.splitlines() if not re.match(r"\s*(?:#include|from|import)\b", line)]
     found = [line.strip() for number, line in enumerate(lines) if XML_WRITER.search(line) and not MODE.search(" ".join(lines[number:number + 10]))]
     if re.search(r"[.\"'`]p?vt[a-z]\b", text):
-        found += [call[0] for call in PARAVIEW.finditer(text) if not re.search(r"\.(?:las|laz|pcd|ply|csv|geojson)\"", call[0]) and not MODE.search(call[0] if "**" not in call[0] else text)]
+        found += [call[0] for call in PARAVIEW.finditer(text) if not OURS.search(call[0]) and not MODE.search(call[0] if "**" not in call[0] else text)]
     return found
 
 

@@ -8,6 +8,7 @@ import vtk
 
 import avianlidar as al
 from avianlidar import _pipeline, _suffixes, vtkAvianLidar as wrapped
+from cloudtools import READ_BACK
 from echotools import InFolder, Messages, box
 from helpertools import WALL, same
 
@@ -62,7 +63,7 @@ class Texts(InFolder):
 
     def test_names_of_files(self):
         echoes = al.Scan(al.Scene(WALL), al.Sensor(azimuth_step=2)).echoes
-        for suffix in (".las", ".pcd", ".ply", ".bin", ".vtp", ".csv"):
+        for suffix in READ_BACK:
             file = self.latin_name(LATIN + suffix)
             with warnings.catch_warnings():
                 warnings.simplefilter("ignore")  # LAS without a reference system

@@ -14,6 +14,8 @@ from echotools import Messages, array, copy_of, given, scan, sensor, town
 WRITERS = {}
 for _suffix, _name in _suffixes.WRITERS.items():
     WRITERS.setdefault(_name[len("vtkAvianLidar"):-len("Writer")], _suffix)
+CLOUDS = (*WRITERS.values(), *_suffixes.OWN)
+READ_BACK = [_suffix for _suffix in CLOUDS if _suffix in (*_suffixes.READERS, *_suffixes.OWN)]
 ORIGIN = (31.1979, 121.3363, 3.0)  # the paper's airport
 
 

@@ -15,6 +15,7 @@
 #include <limits>
 #include <sstream>
 #include <string>
+#include <vector>
 
 namespace avianlidar
 {
@@ -60,6 +61,17 @@ inline std::string sizeError(
   return size == count ? std::string()
                        : name + " has " + std::to_string(size) +
       " values, expected one for each of the " + std::to_string(count) + " " + things;
+}
+
+/// Names as what was expected: "a, b or c".
+inline std::string anyOf(const std::vector<std::string>& names)
+{
+  std::string text;
+  for (std::size_t i = 0; i < names.size(); ++i)
+  {
+    text += (i == 0 ? "" : i + 1 < names.size() ? ", " : " or ") + names[i];
+  }
+  return text;
 }
 
 /// First text that is not empty, or an empty text.

@@ -146,17 +146,22 @@ std::uint64_t checksumOf(const ScanBeams& beams)
 std::uint64_t traceKey(const ScanSetup& setup)
 {
   // Other members are energies, times and limits, or decide what is traced on from hits.
-  static_assert(memberCount<Sensor>() == 34 && memberCount<EchoSettings>() == 16,
+  static_assert(memberCount<Sensor>() == 34,
     "do a beam's rays depend on the new member? Then it belongs to the key");
   const Sensor& sensor = setup.sensor;
-  const EchoSettings& s = setup.settings;
-  const bool cells = s.beamSamples == BeamSampleSource::Cells;
-  const double numbers[] = { sensor.halfBeamwidth, static_cast<double>(sensor.beamProfile),
+  const bool cells = setup.settings.beamSamples == BeamSampleSource::Cells;
+  std::vector<double> numbers = { sensor.halfBeamwidth, static_cast<double>(sensor.beamProfile),
     sensor.gaussianTruncation, static_cast<double>(sensor.beamOutline), sensor.halfBeamwidthAcross,
-    sensor.beamRotation, sensor.up.x, sensor.up.y, sensor.up.z, static_cast<double>(s.beamSamples),
-    static_cast<double>(s.sampling), static_cast<double>(s.raysPerBeam),
-    static_cast<double>(s.seed), cells ? sensor.samplingInterval : 0.0,
-    cells ? sensor.pulseWidth : 0.0, cells ? sensor.rangeGate : 0.0 };
+    sensor.beamRotation, sensor.up.x, sensor.up.y, sensor.up.z,
+    cells ? sensor.samplingInterval : 0.0, cells ? sensor.pulseWidth : 0.0,
+    cells ? sensor.rangeGate : 0.0 };
+  for (const EchoSetting& setting : echoSettings())
+  {
+    if (setting.effect == SettingEffect::Rays)
+    {
+      numbers.push_back(setting.get(setup.settings));
+    }
+  }
   // Places of media that do not fill the scene, and their number.
   std::vector<double> places;
   for (const PlacedMedium& placed : setup.media)
@@ -177,7 +182,7 @@ std::uint64_t traceKey(const ScanSetup& setup)
   }
   const std::uint64_t objects = hashOf(places.data(), places.size() * sizeof(double),
     cells ? hashOf(setup.objectIds.data(), setup.objectIds.size() * sizeof(int), 0) : 0);
-  return hashOf(
-    numbers, sizeof(numbers), hashOf(&setup.tree->checksum, sizeof(setup.tree->checksum), objects));
+  return hashOf(numbers.data(), numbers.size() * sizeof(double),
+    hashOf(&setup.tree->checksum, sizeof(setup.tree->checksum), objects));
 }
 }

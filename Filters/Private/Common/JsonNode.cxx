@@ -111,16 +111,16 @@ JsonNode JsonNode::Get(const std::string& key) const
   return JsonNode(*found, path, this->File);
 }
 
-void JsonNode::RequireKeys(const std::vector<const char*>& known) const
+void JsonNode::RequireKeys(const std::vector<std::string>& known) const
 {
   for (const auto& member : this->Members())
   {
     bool found = false;
     std::string list;
-    for (const char* key : known)
+    for (const std::string& key : known)
     {
       found = found || member.first == key;
-      list += (list.empty() ? "" : ", ") + std::string(key);
+      list += (list.empty() ? "" : ", ") + key;
     }
     if (!found)
     {

@@ -62,7 +62,7 @@ public:
     return this->Has(key) ? std::optional<Result>(std::invoke(get, this->Get(key))) : std::nullopt;
   }
   /// The value must be an object whose keys are all among those given.
-  void RequireKeys(const std::vector<const char*>& known) const;
+  void RequireKeys(const std::vector<std::string>& known) const;
   /// Keys and values of an object, as written.
   std::vector<std::pair<std::string, JsonNode>> Members() const;
   /// Values of an array. @param size required number of values; 0: any number

@@ -22,21 +22,22 @@ struct Name
 {
   const char* name;
   const char* unit;
+  const char* words = ""; ///< description in LAS files, with the unit at most 31 bytes
 };
 
 // Beams; echoes and beam report have most of these, too (point data).
 /// column * channels + channel, unique among all pieces (vtkIdType)
-constexpr Name BeamId{ "beam_id", "" };
+constexpr Name BeamId{ "beam_id", "", "index of the beam" };
 /// unit vector of the beam: east, north, up
 constexpr Name Direction{ "direction", "1" };
 /// direction that the sensor reports; only with sway or jitter (3 components)
 constexpr Name ReportedDirection{ "reported_direction", "1" };
 /// channel (int)
-constexpr Name LaserId{ "laser_id", "" };
+constexpr Name LaserId{ "laser_id", "", "channel" };
 /// angle from north (y), clockwise seen from above, 0 to below 36000
-constexpr Name Azimuth{ "azimuth", "0.01 deg" };
+constexpr Name Azimuth{ "azimuth", "0.01 deg", "from north, clockwise" };
 /// elevation above the horizontal plane
-constexpr Name VerticalAngle{ "vertical_angle", "deg" };
+constexpr Name VerticalAngle{ "vertical_angle", "deg", "from the horizon, up" };
 /// firing time since the start of revolution 0
 constexpr Name Timestamp{ "timestamp", "us" };
 
@@ -126,9 +127,9 @@ constexpr Name DisplayLength{ "display_length", "m" };
 /// part of a mover: 0 rigid, p moves by row p - 1 of `flap_` data (int)
 constexpr Name Part{ "part", "" };
 /// object; in echoes -1 false alarm, -2 air (int)
-constexpr Name ObjectId{ "object_id", "" };
+constexpr Name ObjectId{ "object_id", "", "index of object_names" };
 /// material; in echoes -1 false alarm or air (int)
-constexpr Name MaterialId{ "material_id", "" };
+constexpr Name MaterialId{ "material_id", "", "index of material_names" };
 /// name of each `object_id` (text)
 constexpr Name ObjectNames{ "object_names", "" };
 /// name of each `material_id` (text)
@@ -191,35 +192,35 @@ constexpr Name Depth{ "depth", "1" };
 
 // Echoes and beam report (point data).
 /// energy of the strongest range unit, cut at Qhigh (Eq. 12)
-constexpr Name Energy{ "energy", "J" };
+constexpr Name Energy{ "energy", "J", "within receiver limits" };
 /// energy received in the strongest range unit (Eq. 10)
-constexpr Name EnergyReceived{ "energy_received", "J" };
+constexpr Name EnergyReceived{ "energy_received", "J", "before the limits" };
 /// energy received in all range units of the return
-constexpr Name ReturnEnergy{ "return_energy", "J" };
+constexpr Name ReturnEnergy{ "return_energy", "J", "of the whole return" };
 /// standard error of `energy_received` or, with view 2, a bound; NaN below 8 rays
-constexpr Name EnergyStdError{ "energy_std_error", "J" };
+constexpr Name EnergyStdError{ "energy_std_error", "J", "of energy_received" };
 /// photoelectrons in the range unit of `energy_received`, with noise; photon receivers only
-constexpr Name Photoelectrons{ "photoelectrons", "1" };
+constexpr Name Photoelectrons{ "photoelectrons", "1", "of its range unit" };
 /// photoelectrons divided by their standard deviation; photon receivers only
-constexpr Name SignalToNoise{ "signal_to_noise", "1" };
+constexpr Name SignalToNoise{ "signal_to_noise", "1", "of its range unit" };
 /// spectral radiance of daylight in the beam; photon receivers with sunlight only
-constexpr Name SeenRadiance{ "seen_radiance", "W/(m2 sr nm)" };
+constexpr Name SeenRadiance{ "seen_radiance", "W/(m2 sr nm)", "of what its beam looks at" };
 /// standard deviation of the range, from noise
-constexpr Name DistanceStdError{ "distance_std_error", "m" };
+constexpr Name DistanceStdError{ "distance_std_error", "m", "of the receiver's noise" };
 /// 0 to 255, linear between the energy limits
 constexpr Name Intensity{ "intensity", "1" };
 /// range
-constexpr Name Distance{ "distance_m", "m" };
+constexpr Name Distance{ "distance_m", "m", "range" };
 /// number of the return in its beam, from 1, nearest first (int)
 constexpr Name ReturnNumber{ "return_number", "1" };
 /// returns of the beam (int)
 constexpr Name NumberOfReturns{ "number_of_returns", "1" };
 /// share of the energy from this object and material
-constexpr Name LabelShare{ "label_share", "1" };
+constexpr Name LabelShare{ "label_share", "1", "energy of object_id" };
 /// energy-weighted mean angle at the last surface; NaN for false alarms
-constexpr Name IncidenceAngle{ "incidence_angle", "deg" };
+constexpr Name IncidenceAngle{ "incidence_angle", "deg", "at the surface" };
 /// share of the energy from paths with two reflections; above 0.5 a ghost
-constexpr Name SecondaryShare{ "secondary_share", "1" };
+constexpr Name SecondaryShare{ "secondary_share", "1", "energy of 2 bounces" };
 /// 0 echo, 1 no-surface, 2 below-Qlow, 3 saturated, 4 outside-gate; coverage: `status_names`
 constexpr Name Status{ "status", "" };
 /// 1 nothing, 2 polygons, 3 cells, 4 rays, 5 cells through the tree (int)
@@ -384,6 +385,12 @@ constexpr Name ChamferDistance{ "density_aware_chamfer_distance", "1" };
 constexpr Name ChamferSimulatedToReference{ "density_aware_chamfer_simulated_to_reference", "1" };
 /// Chamfer distance from reference to simulated
 constexpr Name ChamferReferenceToSimulated{ "density_aware_chamfer_reference_to_simulated", "1" };
+
+/// Arrays of the points of a cloud, which readers and writers of files recognise.
+constexpr Name CloudArrays[] = { BeamId, LaserId, Azimuth, VerticalAngle, Timestamp, ObjectId,
+  MaterialId, Energy, EnergyReceived, ReturnEnergy, EnergyStdError, Photoelectrons, SignalToNoise,
+  SeenRadiance, DistanceStdError, Distance, LabelShare, IncidenceAngle, SecondaryShare, Hue,
+  Longitude, Latitude, Height };
 }
 
 #endif

@@ -5,6 +5,7 @@
 #include "ClosedShells.h"
 #include "CollisionTreeBuilder.h"
 #include "JsonNode.h"
+#include "ValueError.h"
 #include "vtkAvianLidarArrays.h"
 #include "vtkAvianLidarBuiltInTexts.h"
 #include "vtkAvianLidarNames.h"
@@ -37,7 +38,8 @@ using avianlidar::MediumShape;
 using avianlidar::MediumVolume;
 using avianlidar::Vec3;
 
-JsonNode Known(const std::string& kind)
+/// All kinds of media.json.
+JsonNode Known()
 {
   static const std::string file = "media.json";
   static const Json all = []()
@@ -45,78 +47,59 @@ JsonNode Known(const std::string& kind)
     std::istringstream text(vtkAvianLidarBuiltInText(file));
     return avianlidar::ReadJson(text, file);
   }();
-  return JsonNode(all, "", file).Get("media").Get(kind);
+  return JsonNode(all, "", file).Get("media");
 }
 
 double NumberOf(const std::string& kind, const char* key)
 {
-  return Known(kind).Get(key).Get("value").PositiveNumber();
+  return Known().Get(kind).Get(key).Get("value").PositiveNumber();
 }
 
-Medium FoliageOf(double density)
+Medium FoliageOf(const std::string& kind, double density)
 {
-  const double projection = NumberOf("foliage", "projection");
   Medium leaves;
-  leaves.extinction = density * projection;
+  leaves.extinction = density * NumberOf(kind, "projection");
   // Lambertian leaves that face all ways: the mean of cos^2 is 1/3, that of |cos| is 1/2.
-  leaves.backscatterRatio = 1.5 * avianlidar::Pi / NumberOf("foliage", "leaf_reflectance");
-  leaves.drops = density / NumberOf("foliage", "leaf_area");
+  leaves.backscatterRatio = 1.5 * avianlidar::Pi / NumberOf(kind, "leaf_reflectance");
+  leaves.drops = density / NumberOf(kind, "leaf_area");
   leaves.squareOfDrops = avianlidar::SquareOfLeaves;
-  leaves.renewed = NumberOf("foliage", "renewed");
+  leaves.renewed = NumberOf(kind, "renewed");
   leaves.isFollowed = false;
   leaves.sharesGaps = true;
   return leaves;
 }
 
-Medium SnowOf(double visibility)
+Medium SnowOf(const std::string& kind, double visibility)
 {
   const double extinction = avianlidar::attenuationOfVisibility(visibility, 550e-9); // of no colour
-  return { extinction, NumberOf("snow", "backscatter_ratio"),
-    extinction / (2.0 * NumberOf("snow", "flake_area")) };
+  return { extinction, NumberOf(kind, "backscatter_ratio"),
+    extinction / (2.0 * NumberOf(kind, "flake_area")) };
 }
 
-/// A kind or a shape, with the keys that say more of it.
-struct Word
-{
-  std::string name;
-  std::vector<const char*> keys;
-};
+using vtkAvianLidarMedia::Word;
 
-const Word& WordOf(const JsonNode& node, const std::vector<Word>& all, const char* problem)
+const Word& WordOf(const JsonNode& node, const std::vector<Word>& all)
 {
-  const std::string name = node.String();
-  const auto found =
-    std::find_if(all.begin(), all.end(), [&](const Word& word) { return word.name == name; });
-  if (found == all.end())
+  std::vector<std::string> names;
+  for (const Word& word : all)
   {
-    node.Fail(problem);
+    if (word.name == node.String())
+    {
+      return word;
+    }
+    names.push_back(word.name);
   }
-  return *found;
+  node.Fail("must be " + avianlidar::anyOf(names));
 }
 
 const Word& KindOf(const JsonNode& node)
 {
-  static const std::vector<Word> all = { { "haze", { "visibility" } }, { "fog", { "visibility" } },
-    { "drizzle", { "rain_rate", "renewed" } }, { "rain", { "rain_rate", "renewed" } },
-    { "snow", { "visibility", "renewed" } },
-    { "foliage", { "leaf_area_density", "renewed", "object_id" } },
-    { "custom", { "extinction", "backscatter_ratio", "drops", "renewed" } } };
-  return WordOf(node.Get("kind"), all, "must be haze, fog, drizzle, rain, snow, foliage or custom");
-}
-
-/// @return in the order of avianlidar::MediumShape
-const std::vector<Word>& Shapes()
-{
-  static const std::vector<Word> all = { { "everywhere", {} },
-    { "layer", { "bottom", "top", "softness" } }, { "box", { "center", "lengths", "heading" } },
-    { "ellipsoid", { "center", "lengths", "heading" } }, { "surface", { "points", "triangles" } } };
-  return all;
+  return WordOf(node.Get("kind"), vtkAvianLidarMedia::Kinds());
 }
 
 const Word& ShapeOf(const JsonNode& node)
 {
-  return WordOf(
-    node.Get("shape"), Shapes(), "must be everywhere, layer, box, ellipsoid or surface");
+  return WordOf(node.Get("shape"), vtkAvianLidarMedia::Shapes());
 }
 
 /// Throws where a key says nothing of this kind and shape.
@@ -125,7 +108,7 @@ void CheckKeys(const Json& json, const std::string& file)
   const JsonNode node(json, "", file);
   const Word& kind = KindOf(node);
   const Word& shape = ShapeOf(node);
-  std::vector<const char*> keys = { "kind", "shape", "velocity", "name", "comment" };
+  std::vector<std::string> keys = { "kind", "shape", "velocity", "name", "comment" };
   keys.insert(keys.end(), kind.keys.begin(), kind.keys.end());
   if (node.Has("ellipsoids"))
   {
@@ -140,31 +123,31 @@ void CheckKeys(const Json& json, const std::string& file)
 
 Medium MediumOf(const JsonNode& node, const avianlidar::LidarView& view)
 {
-  const std::string kind = KindOf(node).name;
-  if (kind == "custom")
+  const Word& kind = KindOf(node);
+  const std::string& by = kind.keys.front();
+  if (by == "extinction")
   {
-    Medium medium{ node.Get("extinction").NumberIn(0.0, 1e30),
+    Medium medium{ node.Get(by).NumberIn(0.0, 1e30),
       node.Get("backscatter_ratio").NumberIn(1e-3, 1e9) };
     medium.drops = node.Has("drops") ? node.Get("drops").NumberIn(0.0, 1e12) : 0.0;
     return medium;
   }
-  if (kind == "fog" || kind == "haze")
+  if (by == "leaf_area_density")
   {
-    const double visibility = node.Get("visibility").NumberIn(1e-3, 1e9);
-    return { avianlidar::attenuationOfVisibility(visibility, view.wavelength),
-      NumberOf(kind, "backscatter_ratio") };
+    return FoliageOf(kind.name, node.Get(by).NumberIn(1e-6, 1e3));
   }
-  if (kind == "snow")
+  if (by == "rain_rate")
   {
-    return SnowOf(node.Get("visibility").NumberIn(1e-3, 1e9));
+    const double rate = node.Get(by).NumberIn(1e-6, avianlidar::MaximumRainRate);
+    return vtkAvianLidarMedia::RainOf(rate, view, kind.name);
   }
-  if (kind == "rain" || kind == "drizzle")
+  const double visibility = node.Get(by).NumberIn(1e-3, 1e9);
+  if (Known().Get(kind.name).Has("flake_area"))
   {
-    return avianlidar::rainOf(node.Get("rain_rate").NumberIn(1e-6, avianlidar::MaximumRainRate),
-      NumberOf(kind, "backscatter_ratio"), view, NumberOf(kind, "drops_per_volume"),
-      NumberOf(kind, "slope"));
+    return SnowOf(kind.name, visibility);
   }
-  return FoliageOf(node.Get("leaf_area_density").NumberIn(1e-6, 1e3));
+  return { avianlidar::attenuationOfVisibility(visibility, view.wavelength),
+    NumberOf(kind.name, "backscatter_ratio") };
 }
 
 Vec3 VectorOf(const JsonNode& node, const char* key, const Vec3& otherwise)
@@ -223,7 +206,7 @@ void ReadSurface(const JsonNode& node, MediumVolume& volume)
 MediumVolume VolumeOf(const JsonNode& node)
 {
   MediumVolume volume;
-  volume.shape = static_cast<MediumShape>(&ShapeOf(node) - Shapes().data());
+  volume.shape = static_cast<MediumShape>(&ShapeOf(node) - vtkAvianLidarMedia::Shapes().data());
   volume.centre = VectorOf(node, "center", volume.centre);
   volume.velocity = VectorOf(node, "velocity", volume.velocity);
   volume.bottom = NumberOr(node, "bottom", volume.bottom);
@@ -257,6 +240,30 @@ Json ParsedText(const std::string& text, const std::string& file)
 }
 
 //------------------------------------------------------------------------------
+const std::vector<Word>& vtkAvianLidarMedia::Kinds()
+{
+  static const std::vector<Word> all = []()
+  {
+    std::vector<Word> kinds;
+    for (const auto& [name, numbers] : Known().Members())
+    {
+      kinds.push_back({ name, numbers.Get("given_by").Strings() });
+    }
+    return kinds;
+  }();
+  return all;
+}
+
+//------------------------------------------------------------------------------
+const std::vector<Word>& vtkAvianLidarMedia::Shapes()
+{
+  static const std::vector<Word> all = { { "everywhere", {} },
+    { "layer", { "bottom", "top", "softness" } }, { "box", { "center", "lengths", "heading" } },
+    { "ellipsoid", { "center", "lengths", "heading" } }, { "surface", { "points", "triangles" } } };
+  return all;
+}
+
+//------------------------------------------------------------------------------
 Medium vtkAvianLidarMedia::HazeOf(double visibility, double extinction)
 {
   const bool isFog = visibility <= NumberOf("fog", "most_visibility");
@@ -264,10 +271,11 @@ Medium vtkAvianLidarMedia::HazeOf(double visibility, double extinction)
 }
 
 //------------------------------------------------------------------------------
-Medium vtkAvianLidarMedia::RainOf(double rate, const avianlidar::LidarView& view)
+Medium vtkAvianLidarMedia::RainOf(
+  double rate, const avianlidar::LidarView& view, const std::string& kind)
 {
-  return avianlidar::rainOf(rate, NumberOf("rain", "backscatter_ratio"), view,
-    NumberOf("rain", "drops_per_volume"), NumberOf("rain", "slope"));
+  return avianlidar::rainOf(rate, NumberOf(kind, "backscatter_ratio"), view,
+    NumberOf(kind, "drops_per_volume"), NumberOf(kind, "slope"));
 }
 
 //------------------------------------------------------------------------------
@@ -319,7 +327,7 @@ std::vector<avianlidar::PlacedMedium> vtkAvianLidarMedia::Read(
   all.push_back({ medium, VolumeOf(node) });
   if (medium.sharesGaps && all[0].volume.shape == MediumShape::Everywhere)
   {
-    node.Get("shape").Fail("must be a layer, box, ellipsoid or surface for foliage");
+    node.Get("shape").Fail("must be a layer, box, ellipsoid or surface for " + KindOf(node).name);
   }
   return all;
 }
@@ -507,7 +515,7 @@ bool vtkAvianLidarMedia::IsObject(const std::string& text, int& id, std::string&
   const Json json = ParsedText(text, "medium");
   id = json.value("object_id", -1);
   name = json.value("name", std::string());
-  return json.value("kind", std::string()) == "foliage";
+  return json.contains("leaf_area_density");
 }
 
 //------------------------------------------------------------------------------

@@ -21,12 +21,27 @@ class vtkPolyData;
 
 namespace vtkAvianLidarMedia
 {
+/// A kind or a shape, with the keys that say more of it.
+struct Word
+{
+  std::string name;
+  std::vector<std::string> keys;
+};
+
+/// The kinds of media.json, in the order of vtkAvianLidarMedium::Kinds; the first key is the
+/// quantity that gives the density.
+const std::vector<Word>& Kinds();
+
+/// In the order of avianlidar::MediumShape and vtkAvianLidarMedium::Shapes.
+const std::vector<Word>& Shapes();
+
 /// Haze, or fog if the visibility is in the range of fog. @param visibility m, above 0 @param
 /// extinction at the lidar's wavelength, 1/m
 avianlidar::Medium HazeOf(double visibility, double extinction);
 
-/// Rain. @param rate mm/h, above 0 @param view of the lidar
-avianlidar::Medium RainOf(double rate, const avianlidar::LidarView& view);
+/// Rain. @param rate mm/h, above 0 @param view of the lidar @param kind given by a rain rate
+avianlidar::Medium RainOf(
+  double rate, const avianlidar::LidarView& view, const std::string& kind = "rain");
 
 /// The medium of a text: one, or one for each ellipsoid. Throws std::runtime_error, which names the
 /// medium and the key. @param view of the lidar

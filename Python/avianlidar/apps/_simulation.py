@@ -105,7 +105,7 @@ class Simulation:
             self.scan = Scan(self.scene, self.sensor, **settings)
         self.scan.set(report_movers=True)
         media = field_values(self.scene.tree.GetOutput()).get("media", ())
-        crowns = [text for text in media if json.loads(text)["kind"] == "foliage"]
+        crowns = [text for text in media if "leaf_area_density" in json.loads(text)]
         self.clear = self.bare = self.scan  # without air that scatters; without crowns of trees, too
         others = dict(settings)
         if self.scan.rain_rate > 0.0 or (self.scan.air_backscatter and self.scan.visibility > 0.0) or len(crowns) < len(media):

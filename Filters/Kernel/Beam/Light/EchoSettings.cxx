@@ -25,17 +25,17 @@ struct Access
 };
 
 template <auto Member>
-EchoSetting row(const char* property, const char* name, double least, double most,
-  const char* expected, const char* unit = "1", bool whole = true, bool decides = true)
+EchoSetting row(const char* property, const char* name, SettingEffect effect, double least,
+  double most, const char* expected, const char* unit = "1", bool whole = true)
 {
-  return { property, name, unit, whole, decides, least, most, expected, Access<Member>::get,
+  return { property, name, unit, whole, effect, least, most, expected, Access<Member>::get,
     Access<Member>::set };
 }
 
 template <auto Member>
 EchoSetting toggle(const char* property, const char* name)
 {
-  return row<Member>(property, name, 0.0, 1.0, "0 (off) or 1 (on)");
+  return row<Member>(property, name, SettingEffect::Echoes, 0.0, 1.0, "0 (off) or 1 (on)");
 }
 
 void setFidelity(EchoSettings& s, int rays, int connections)
@@ -72,29 +72,32 @@ CellDensity densityOfCells(int raysPerBeam)
 const std::vector<EchoSetting>& echoSettings()
 {
   using S = EchoSettings;
+  using E = SettingEffect;
   constexpr double most = std::numeric_limits<std::int32_t>::max();
   static const std::vector<EchoSetting> all = { row<&S::raysPerBeam>("RaysPerBeam", "rays_per_beam",
-                                                  1.0, 1e6, "1 to 1000000"),
-    row<&S::beamSamples>("BeamSamples", "beam_samples", 0.0, 1.0, "0 (cells) or 1 (rays)"),
-    row<&S::sampling>("Sampling", "sampling", 0.0, 1.0, "0 (Monte Carlo) or 1 (stratified)"),
-    row<&S::seed>("Seed", "seed", -1.0 - most, most, "an int", ""),
-    row<&S::attenuationCoefficient>("AttenuationCoefficient", "attenuation_coefficient", 0.0,
-      MaximumAttenuation, "0 to 1e30 1/m", "1/m", false),
-    row<&S::reflectanceModel>("ReflectanceModel", "reflectance_model", 0.0, 3.0, "0 to 3"),
+                                                  E::Rays, 1.0, 1e6, "1 to 1000000"),
+    row<&S::beamSamples>("BeamSamples", "beam_samples", E::Rays, 0.0, 1.0, "0 (cells) or 1 (rays)"),
+    row<&S::sampling>(
+      "Sampling", "sampling", E::Rays, 0.0, 1.0, "0 (Monte Carlo) or 1 (stratified)"),
+    row<&S::seed>("Seed", "seed", E::Rays, -1.0 - most, most, "an int", ""),
+    row<&S::attenuationCoefficient>("AttenuationCoefficient", "attenuation_coefficient", E::Echoes,
+      0.0, MaximumAttenuation, "0 to 1e30 1/m", "1/m", false),
+    row<&S::reflectanceModel>(
+      "ReflectanceModel", "reflectance_model", E::Echoes, 0.0, 3.0, "0 to 3"),
     row<&S::numberOfReflections>(
-      "NumberOfReflections", "number_of_reflections", 1.0, 2.0, "1 or 2"),
+      "NumberOfReflections", "number_of_reflections", E::Echoes, 1.0, 2.0, "1 or 2"),
     toggle<&S::beamConstraint>("BeamConstraint", "beam_constraint"),
     toggle<&S::lightEnergyConstraint>("LightEnergyConstraint", "light_energy_constraint"),
-    row<&S::lightEnergyFraction>("LightEnergyFraction", "light_energy_fraction", 0.0,
+    row<&S::lightEnergyFraction>("LightEnergyFraction", "light_energy_fraction", E::Echoes, 0.0,
       MaximumLightEnergyFraction, "0 to 1e8", "1", false),
-    row<&S::lightEnergyThreshold>("LightEnergyThreshold", "light_energy_threshold", 0.0, 1.0,
-      "0 (share of the limit) or 1 (the limit)"),
-    row<&S::traceMode>("BatchCollisionDetection", "batch_collision_detection", 0.0, 2.0,
-      "0 (every ray), 1 (groups of beams) or 2 (every beam)", "1", true, false),
+    row<&S::lightEnergyThreshold>("LightEnergyThreshold", "light_energy_threshold", E::Echoes, 0.0,
+      1.0, "0 (share of the limit) or 1 (the limit)"),
+    row<&S::traceMode>("BatchCollisionDetection", "batch_collision_detection", E::None, 0.0, 2.0,
+      "0 (every ray), 1 (groups of beams) or 2 (every beam)"),
     toggle<&S::noise>("Noise", "noise"), toggle<&S::fullModel>("FullModel", "full_model"),
-    row<&S::returnMode>("ReturnMode", "return_mode", 0.0, 4.0, "0 to 4"),
+    row<&S::returnMode>("ReturnMode", "return_mode", E::Echoes, 0.0, 4.0, "0 to 4"),
     row<&S::numberOfConnections>(
-      "NumberOfConnections", "number_of_connections", 0.0, most, "at least 0") };
+      "NumberOfConnections", "number_of_connections", E::Echoes, 0.0, most, "at least 0") };
   static_assert(memberCount<EchoSettings>() == 16, "is the new member a row of the table?");
   return all;
 }

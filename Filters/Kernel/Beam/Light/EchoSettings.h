@@ -112,6 +112,14 @@ struct EchoSettings
   int numberOfConnections = 2; ///< M, at least 0, see connectionsOf()
 };
 
+/// What a setting changes, apart from the time of a scan.
+enum class SettingEffect
+{
+  None,
+  Echoes,
+  Rays ///< rays of a beam, so kept beams are traced again; echoes, too
+};
+
 /// Description of a setting, for checks, keys, field data and the agreement of ranks.
 struct EchoSetting
 {
@@ -119,7 +127,7 @@ struct EchoSetting
   const char* name;     ///< name in field data
   const char* unit;     ///< "1": a pure number; "": not a quantity
   bool whole;
-  bool decides; ///< whether it changes echoes
+  SettingEffect effect;
   double least, most;
   const char* expected; ///< the allowed range in words
   double (*get)(const EchoSettings&);

@@ -1,0 +1,102 @@
+# SPDX-License-Identifier: BSD-3-Clause
+# Sources of the module. A class has its proxy in Plugin; what shells share goes to a folder of Filters/Private.
+
+set(classes
+  Filters/vtkAvianLidarBeamSource
+  Filters/vtkAvianLidarBeamView
+  Filters/vtkAvianLidarBirdSource
+  Filters/vtkAvianLidarCloudComparison
+  Filters/vtkAvianLidarClutterFilter
+  Filters/vtkAvianLidarCollisionTree
+  Filters/vtkAvianLidarCoverage
+  Filters/vtkAvianLidarEchoFilter
+  Filters/vtkAvianLidarGeodeticTransform
+  Filters/vtkAvianLidarHSBColorMap
+  Filters/vtkAvianLidarMaterial
+  Filters/vtkAvianLidarMedium
+  Filters/vtkAvianLidarRangeImage
+  Filters/vtkAvianLidarScanFilter
+  Filters/vtkAvianLidarSensorReader
+  Filters/vtkAvianLidarTracker
+  Filters/vtkAvianLidarTracks
+  IO/vtkAvianLidarCloudWriter
+  IO/vtkAvianLidarGeoJSONWriter
+  IO/vtkAvianLidarKITTIWriter
+  IO/vtkAvianLidarLASWriter
+  IO/vtkAvianLidarPCDWriter
+  IO/vtkAvianLidarPLYWriter
+  IO/vtkAvianLidarPointCloudReader
+  IO/vtkAvianLidarSceneReader
+  IO/vtkAvianLidarSequenceReader
+  IO/vtkAvianLidarUnitNames)
+
+# Files of point clouds and scenes, without the VTK classes around them: the fuzzers build them, too.
+set(cloud_sources
+  IO/Private/ByteSource.cxx
+  IO/Private/CloudNotes.cxx
+  IO/Private/CoordinateSystem.cxx
+  IO/Private/FieldTable.cxx
+  IO/Private/KittiFormat.cxx
+  IO/Private/LasReading.cxx
+  IO/Private/LasWriting.cxx
+  IO/Private/LazFormat.cxx
+  IO/Private/OutputFile.cxx
+  IO/Private/PacketReading.cxx
+  IO/Private/PcdFormat.cxx
+  IO/Private/PlyFormat.cxx
+  IO/Private/ReadCloud.cxx
+  IO/Private/Scalars.cxx
+  IO/Private/SemanticLabels.cxx
+  IO/Private/SensorPose.cxx
+  IO/Private/TextLines.cxx)
+set(scene_sources
+  IO/Private/Extrusion.cxx
+  IO/Private/Footprints.cxx
+  IO/Private/MeshImport.cxx
+  IO/Private/MeshStream.cxx
+  IO/Private/Polygons.cxx
+  IO/Private/SceneBuilder.cxx
+  IO/Private/SceneDescription.cxx
+  IO/Private/SceneFrame.cxx
+  IO/Private/SceneReport.cxx
+  IO/Private/Terrain.cxx
+  IO/Private/VirtualFiles.cxx)
+
+set(private_sources
+  Filters/Private/Common/JsonNode.cxx
+  Filters/Private/Common/vtkAvianLidarArrays.cxx
+  Filters/Private/Common/vtkAvianLidarContent.cxx
+  Filters/Private/Common/vtkAvianLidarGather.cxx
+  Filters/Private/Common/vtkAvianLidarGuard.cxx
+  Filters/Private/Common/vtkAvianLidarIdRuns.cxx
+  Filters/Private/Common/vtkAvianLidarRanks.cxx
+  Filters/Private/Common/vtkAvianLidarScanStream.cxx
+  Filters/Private/Surfaces/vtkAvianLidarMedia.cxx
+  Filters/Private/Surfaces/vtkAvianLidarSurfaceExchange.cxx
+  Filters/Private/Surfaces/vtkAvianLidarSurfaceIds.cxx
+  Filters/Private/Surfaces/vtkAvianLidarSurfaceLeaf.cxx
+  Filters/Private/Surfaces/vtkAvianLidarSurfaceState.cxx
+  Filters/Private/Surfaces/vtkAvianLidarSurfaces.cxx
+  Filters/Private/Surfaces/vtkAvianLidarSurfacesMerge.cxx
+  Filters/Private/Surfaces/vtkAvianLidarSurfacesToPolyData.cxx
+  Filters/Private/Surfaces/vtkAvianLidarScene.cxx
+  Filters/Private/Surfaces/vtkAvianLidarTreeDisplay.cxx
+  Filters/Private/Surfaces/vtkAvianLidarTriangles.cxx
+  Filters/Private/Beams/vtkAvianLidarBeamSourceFile.cxx
+  Filters/Private/Beams/vtkAvianLidarBeams.cxx
+  Filters/Private/Beams/vtkAvianLidarRevolutions.cxx
+  Filters/Private/Beams/vtkAvianLidarScanArrays.cxx
+  Filters/Private/Beams/vtkAvianLidarScanShape.cxx
+  Filters/Private/Beams/vtkAvianLidarSensorFile.cxx
+  Filters/Private/Movers/vtkAvianLidarBirdTargets.cxx
+  Filters/Private/Movers/vtkAvianLidarBirds.cxx
+  Filters/Private/Movers/vtkAvianLidarMovers.cxx
+  Filters/Private/Echoes/vtkAvianLidarEchoOutput.cxx
+  Filters/Private/Echoes/vtkAvianLidarImageArrays.cxx
+  Filters/Private/Echoes/vtkAvianLidarImageBeams.cxx
+  Filters/Private/Echoes/vtkAvianLidarModelNotes.cxx
+  Filters/Private/Coverage/vtkAvianLidarCoverageOutput.cxx
+  Filters/Private/Coverage/vtkAvianLidarPlaces.cxx
+  ${cloud_sources}
+  ${scene_sources}
+  IO/Private/vtkAvianLidarCloudFields.cxx)
