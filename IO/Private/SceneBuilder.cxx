@@ -266,15 +266,15 @@ const char* FileKey(const Object& object)
     : (object.kind == ObjectKind::Footprints ? ".footprints: " : ": ");
 }
 
-// Whether an object has more parts than one, or none.
+// Whether the file of an object says how many parts it has.
 bool HasParts(const Object& object)
 {
   return object.kind == ObjectKind::Footprints &&
     (object.footprints.separate || !object.medium.empty());
 }
 
-// Reads all objects, or, of an outline, those alone whose features and terrain below them say how
-// many parts there are. An error names the key; between objects somebody may say stop.
+// Reads all objects or, for an outline, only the footprints whose features say how many parts there
+// are, and the terrain below them. An error names the key. The work may stop between objects.
 BuiltScene Build(const std::string& file, const std::function<bool(double)>& progress,
   const std::string& text, bool outline)
 {
