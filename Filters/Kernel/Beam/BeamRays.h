@@ -25,7 +25,7 @@ namespace avianlidar
 enum class Sampling
 {
   MonteCarlo = 0, ///< N independent rays (the paper)
-  Stratified = 1  ///< two independent rays in each of N/2 compact strata; odd N: three in the last
+  Stratified = 1  ///< two independent rays in each of N/2 compact strata; for odd N three in one
 };
 
 /// The rays of one beam in its own plane (see BeamFrame.h), structure of arrays.
@@ -43,29 +43,29 @@ struct BeamRays
 
 /// Compact cells of the unit disc: rings cut into sectors. The energy of a cell is proportional to
 /// the number of its rays (for odd N the last cell, at the rim, is 3/2 as large as the others), so
-/// every ray carries Qs/N and the estimate is unbiased for any N. The cells depend on N only: the
-/// profile enters when shares of the energy are converted to radii.
+/// every ray carries Qs/N and the estimate is unbiased for any N. The cells depend only on N. The
+/// profile is applied when shares of the energy are converted to radii.
 class StrataPartition
 {
 public:
   struct Cell
   {
-    double v0, v1;     ///< range of the cumulative radial share of the energy
-    double phi0, phi1; ///< rad
+    double v0, v1;     ///< range of the share of the energy that lies nearer to the axis
+    double phi0, phi1; ///< range of the angle about the axis, rad
   };
-  /// @param numberOfRays N >= 1; a cell has 2 rays, the last 3 if N is odd (N = 1: one ray)
+  /// @param numberOfRays N >= 1. A cell has 2 rays; if N is odd, the last cell has 3 (1 if N = 1).
   explicit StrataPartition(std::size_t numberOfRays);
   const std::vector<Cell>& cells() const { return this->Cells; }
   std::size_t numberOfRays() const { return this->NumberOfRays; }
-  /// Cell of ray n, and number of rays in a cell.
+  /// Cell that ray n lies in, and number of rays in a cell.
   std::size_t cellOfRay(std::size_t n) const;
   std::size_t raysInCell(std::size_t cell) const;
 
   /// The cell of every ray, structure of arrays.
   struct RayCells
   {
-    std::vector<double> v0, dv;        ///< beginning and length of the cumulative radial share
-    std::vector<double> turn0, dturns; ///< beginning and length of the angle, full turns
+    std::vector<double> v0, dv;        ///< Cell::v0, and length of the range from v0 to v1
+    std::vector<double> turn0, dturns; ///< begin and length of the range of the angle, full turns
   };
   const RayCells& rayCells() const { return this->Lanes; }
 
@@ -78,19 +78,19 @@ private:
 /// Distribution of the rays along the radius of the disc.
 struct RadialProfile
 {
-  double halfBeamwidth; ///< rad
+  double halfBeamwidth; ///< half-beamwidth, rad
   BeamProfile profile = BeamProfile::Uniform;
   double truncation = 1.0; ///< k of a Gaussian profile
 };
 
 /// Density of the rays per solid angle at a point of the beam's plane, divided by its mean: 1 in a
-/// uniform beam, and 2 k^2 e^(-2 k^2 u)/(1 - e^(-2 k^2)) in a Gaussian beam, with u the share of
-/// the solid angle nearer to the axis.
+/// uniform beam, and 2 k^2 e^(-2 k^2 u)/(1 - e^(-2 k^2)) in a Gaussian beam, where u is the share
+/// of the solid angle that lies nearer to the axis than the point.
 /// @param radius2 x^2 + y^2, in [0, 1]
 double rayDensity(const RadialProfile& profile, double radius2);
 
-/// Draws the rays of a beam, about 3 ns a ray. A ray depends on (seed, beam, ray) only.
-/// @param strata strata of numberOfRays rays; unused for Sampling::MonteCarlo, where it may be null
+/// Draws the rays of a beam, in about 3 ns per ray. A ray depends on (seed, beam, ray) only.
+/// @param strata strata of numberOfRays rays; unused, and may be null, for Sampling::MonteCarlo
 void sampleBeam(std::int32_t seed, std::uint64_t beam, std::size_t numberOfRays,
   const RadialProfile& profile, Sampling sampling, const StrataPartition* strata, BeamRays& rays);
 
@@ -100,7 +100,7 @@ void sampleBeam(std::int32_t seed, std::uint64_t beam, std::size_t numberOfRays,
 void samplePattern(std::int32_t seed, std::size_t pattern, std::size_t patterns,
   const RadialProfile& profile, const StrataPartition& strata, BeamRays& rays);
 
-/// Turns the rays of a pattern about the axis by a share of a full turn, in about 0.3 ns a ray.
+/// Turns the rays of a pattern about the axis by a share of a full turn, in about 0.3 ns per ray.
 void turnRays(const BeamRays& pattern, double turns, BeamRays& rays);
 }
 

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file BeamSampler.h
- * @brief Draws the rays of beams, from strata and patterns made once for a number of rays.
+ * @brief Draws the rays of beams, from strata and patterns that are made once.
  *
  * Drawing stratified rays takes longer than tracing them. Beams of up to MostRaysOfAPattern rays
- * therefore share PatternsOfRays patterns: each beam has a random one, turned about its axis by a
- * random angle. Over patterns and angles, the rays of a beam are distributed as if they were drawn
- * only for this beam. Monte Carlo rays (the paper) are drawn for each beam.
+ * therefore share PatternsOfRays patterns: each beam has a random pattern, turned about the axis of
+ * the beam by a random angle. Over patterns and angles, the rays of a beam are distributed as if
+ * they were drawn only for this beam. Monte Carlo rays (the paper) are drawn for each beam.
  *
  * Source: none.
- * Valid: as BeamRays.h. Beams that share a pattern differ only by the turn, so they are not
- * independent; for means over many beams see samplePattern().
+ * Valid: as BeamRays.h. Beams that share a pattern differ only by the turn, so these beams are not
+ * independent. For means over many beams see samplePattern().
  * Test: TestBeamRays.cxx.
  */
 #ifndef avianlidar_BeamSampler_h
@@ -28,7 +28,7 @@ namespace avianlidar
 constexpr std::size_t PatternsOfRays = 64;
 constexpr std::uint32_t MostRaysOfAPattern = 512;
 
-/// Draws the rays of beams. One per thread, for one sensor and seed.
+/// Draws the rays of beams. One object per thread, for one sensor and seed.
 class BeamSampler
 {
 public:
@@ -45,7 +45,7 @@ public:
 private:
   const BeamShape Shape;
   const Sampling Method;
-  std::vector<BeamRays> Patterns; ///< each is empty until it is needed
+  std::vector<BeamRays> Patterns; ///< patterns of rays, each empty until first needed
 };
 }
 

@@ -5,9 +5,9 @@
  *
  * An elliptical beam fills the unit disc of the plane. A rectangular beam fills the square with its
  * corners on the rim of the disc. A beam is wider along x. The energy of a round beam is uniform in
- * solid angle, or falls with it. A beam that is not round is narrow: its energy is uniform over the
- * plane, or falls with the squared distance from the axis, in half-beamwidths, as exp(-2 k^2 (x^2 +
- * y^2)); for a rectangle, x and y here go from -1 to 1.
+ * solid angle, or falls with the solid angle around the axis. A beam that is not round is narrow.
+ * Its energy is uniform over the plane, or falls from the axis as exp(-2 k^2 (x^2 + y^2)) with x
+ * and y in half-beamwidths; across a rectangle, x and y go from -1 to 1.
  *
  * Source: none.
  * Valid: any sensor that checkSensor() accepts. At 0.1 rad a beam uniform over its plane is 1.5 %
@@ -36,7 +36,7 @@ public:
   /// Half the side of a rectangle, in the unit of the plane: the square root of 1/2.
   static constexpr double HalfSide = 0.70710678118654752;
 
-  /// True if a point of the disc lies in the outline.
+  /// True if a point of the disc lies within the outline.
   template <class T>
   bool holds(T x, T y) const
   {
@@ -50,7 +50,7 @@ public:
   /// Share of the pulse per area of the plane at the axis, for a uniform profile.
   double shareOfArea() const { return this->ShareOfArea; }
 
-  /// Density of the energy, divided by the density of a uniform profile.
+  /// Density of the energy at a point, divided by the density of a uniform profile.
   double density(double x, double y) const
   {
     return this->isRound() ? rayDensity(this->Profile, x * x + y * y)
@@ -60,11 +60,10 @@ public:
   /// Upper bound of the density.
   double mostDensity() const { return this->MostDensity; }
 
-  /// Profile that the rays are drawn with.
+  /// Profile from which the rays are drawn.
   const RadialProfile& profile() const { return this->Profile; }
 
-  /// Moves rays drawn with profile() to the profile of a rectangle; does nothing for other
-  /// outlines.
+  /// Moves rays drawn with profile() to the profile of a rectangle; rays of other outlines stay.
   void fit(BeamRays& rays) const;
 
 private:

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file PacketOrder.h
- * @brief Groups the rays of a beam into packets: orders their numbers in compact groups of sixteen.
+ * @brief Orders the numbers of a beam's rays in compact groups of sixteen, for packets.
  *
  * Stratified rays of equal number lie in the same cells in all beams, so the order found for one
- * beam serves all. The order depends only on the number of rays, so the cost of a beam does not
- * depend on what its thread did before. For independent rays this order is as good as any other.
- * Rays that come with their neighbours keep their order.
+ * beam is used for all beams. The order depends only on the number of rays, so the cost of a beam
+ * does not depend on earlier work of the thread. For independent rays this order is as good as any
+ * other. Rays that already follow their neighbours keep their order.
  *
  * Source: none.
  * Valid: any number of rays, at least 1. The order affects cost only, never hits.
@@ -24,7 +24,7 @@ namespace avianlidar
 /// Rays are tested in groups of sixteen; the last group is padded.
 constexpr int PacketGroup = 16;
 
-/// Finds the order of the rays of a beam. One per thread.
+/// Finds the order of the rays of a beam. One object per thread.
 class PacketOrder
 {
 public:

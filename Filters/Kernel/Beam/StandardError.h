@@ -4,31 +4,32 @@
  * @brief Standard error of the energy in one range unit, due to the random choice of rays.
  *
  * The error follows from one value x_n for each of the N rays of the beam. Here x_n is the energy
- * that depends on ray n: the energy that ray n puts into the unit, and the energy that other rays
- * put there by way of the point that ray n hits. A path with two reflections therefore counts in
- * two x_n, which gives the first-order term of a sum over pairs. Rays that put no energy into the
- * unit count as 0.
+ * that depends on ray n: the energy that ray n puts into the unit, plus the energy that other rays
+ * put into the unit by way of the point that ray n hits. A path with two reflections therefore
+ * counts in two x_n, which gives the first-order term of a sum over pairs. Rays that put no energy
+ * into the unit count as 0.
  *
  * - Monte Carlo: sqrt(N) s, with s^2 the sample variance of the N values and four pseudo-rays. Two
- *   of these have the least and two the most energy that a ray can put into the unit.
+ *   pseudo-rays have the least energy that a ray can put into the unit, and two have the most.
  * - Stratified: sqrt(sum over cells (x_1 - x_2)^2 + (most - least)^2); a cell of three rays adds
  *   3/2 of their squared deviations. (most - least)^2 accounts for cells with an edge that both
  *   rays miss.
  *
  * With 8 to 15 rays both errors are multiplied by Student's t of N - 1 degrees of freedom divided
- * by 1.96. Where one plane fills the window, so few rays say little of what they did not see.
+ * by 1.96. Where one plane fills the window, so few rays say little about missed surfaces.
  *
  * Source: Hoeffding, Ann. Math. Stat. 19(3), 1948; Agresti and Coull, Am. Stat. 52(2), 1998;
  * Student, Biometrika 6(1), 1908.
- * Differs: the pseudo-rays of Agresti and Coull also move the estimate, which has to stay unbiased
- * here; the divisor is therefore N, not N + 4.
- * Valid: from 8 rays on; NaN below. Only the sampling error is estimated, without errors of
- * geometry, reflectance and selection (a perceived echo near Qlow is too strong), and without
- * specular lobes that no ray met. The caller gives bounds of the missed energy (UnseenEnergy).
- * Without pseudo-rays +-1.96 standard errors of Monte Carlo cover 89 % at an edge of random place
- * and 39 % at a covered share of 0.995. With pseudo-rays they cover 95 %. Where one plane fills the
- * window, +-1.96 standard errors cover 61 % at N = 2 to 93 % at N = 7 if they are not widened;
- * widened, they are up to fourteen times as wide as the error.
+ * Differs: the pseudo-rays of Agresti and Coull also move the estimate. Here the estimate has to
+ * stay unbiased, so the divisor is N, not N + 4.
+ * Valid: from 8 rays on; with fewer rays the error is NaN. Only the sampling error is estimated,
+ * without errors of geometry, reflectance and selection (a perceived echo near Qlow is too strong),
+ * and without specular lobes that no ray met. The caller gives bounds of the energy that all rays
+ * may miss (UnseenEnergy). Without pseudo-rays +-1.96 standard errors of Monte Carlo cover 89 % at
+ * an edge of random place and 39 % at a covered share of 0.995. With pseudo-rays the interval
+ * covers 95 %. Where one plane fills the window, +-1.96 standard errors cover 61 % at N = 2 to 93 %
+ * at N = 7 if the interval is not widened; a widened interval is up to fourteen times as wide as
+ * the error.
  * Test: TestStandardError.cxx.
  */
 #ifndef avianlidar_StandardError_h
@@ -41,27 +42,29 @@
 
 namespace avianlidar
 {
-/// Bounds of the energy that a ray can put into a range unit, J. They account for surfaces that all
-/// rays may have missed.
+/// Bounds of the energy that a ray can put into a range unit, J. The bounds account for surfaces
+/// that all rays may have missed.
 struct UnseenEnergy
 {
-  double least = 0.0; ///< 0 unless one plane fills the window
-  double most = 0.0;
+  double least = 0.0; ///< lower bound, J; 0 unless one plane fills the window
+  double most = 0.0;  ///< upper bound, J
 };
 
-/// Estimates the error of one unit after the other. Reusable without allocation; one per thread.
-/// The cost of a unit grows with the number of rays that put energy into it, not with N.
+/// Estimates the error of one unit after the other. Reusable without allocation; one object per
+/// thread. The cost of a unit grows with the number of rays that put energy into the unit, not with
+/// N.
 class StandardErrorEstimator
 {
 public:
-  /// @param strata strata of numberOfRays rays, which must outlive this; may be null for MonteCarlo
+  /// @param strata strata of numberOfRays rays, which must outlive the object; may be null for
+  /// MonteCarlo
   StandardErrorEstimator(
     Sampling sampling, std::size_t numberOfRays, const StrataPartition* strata);
 
   /// Begins a range unit.
   void begin();
 
-  /// Adds the energy (J) of a path of ray `ray` < N; several paths of a ray add up.
+  /// Adds the energy (J) of a path of ray `ray` < N. The energies of several paths of a ray add up.
   void add(std::size_t ray, double energy);
 
   /// Least and most energy that one ray put into the unit, J.
@@ -77,8 +80,8 @@ private:
 
   Sampling Method;
   const StrataPartition* Strata;
-  std::vector<double> Energies;     ///< by ray, J
-  std::vector<std::size_t> Touched; ///< rays with energy
+  std::vector<double> Energies;     ///< energy that each ray put into the unit, J
+  std::vector<std::size_t> Touched; ///< rays that put energy into the unit
 };
 
 }

@@ -30,7 +30,7 @@ namespace avianlidar
 {
 /// Energies of a return by object and material. A beam meets few pairs of object and material, and
 /// most rays meet the pair of the ray before, so a list is faster than a map. Reusable without
-/// allocation; one per thread.
+/// allocation; one object per thread.
 class LabelSums
 {
 public:
@@ -90,18 +90,18 @@ private:
   std::size_t Last = 0;
 };
 
-/// Labels of echoes. Reusable without allocation; one per thread.
+/// Labels of echoes. Reusable without allocation; one object per thread.
 class EchoLabels
 {
 public:
-  /// The setup must outlive this.
+  /// The setup must outlive the object.
   explicit EchoLabels(const ScanSetup& setup)
     : Setup(setup)
   {
   }
 
-  /// Set the labels of an echo. @param samples null if the beam has none @param paths paths with
-  /// two reflections; the numbers of their contributions begin after those of the samples
+  /// Set the labels of an echo. @param samples samples of the beam, or null @param paths paths with
+  /// two reflections, whose contributions are numbered after the contributions of the samples
   void label(const RangeShares& shares, const BeamSamples* samples,
     const std::vector<SecondaryPath>& paths, Echo& echo);
 
@@ -117,20 +117,20 @@ private:
   std::vector<double> Angles; ///< angles of incidence of the shares, rad
 };
 
-/// Receives one beam after the other. One per thread; the constructor's arguments must outlive
-/// this.
+/// Receives one beam after the other. One object per thread, which the constructor's arguments must
+/// outlive.
 class BeamEchoes
 {
 public:
   BeamEchoes(const ScanSetup& setup, BeamLighting& lighting, BeamReceiver& receiver,
     StandardErrorEstimator& ofRays);
 
-  /// Append the echoes of the beam lit last. @param keep gets those values of the returns that do
-  /// not depend on noise; may be null @param report out: status and range
+  /// Append the echoes of the beam lit last. @param keep set to the values of the returns that do
+  /// not depend on noise; may be null @param report output: status and range
   void receive(std::uint64_t beam, LitBeam* keep, std::vector<Echo>& echoes, BeamReport& report);
 
-  /// Append the echoes of a beam lit in an earlier scan. @param report out: status, range, lost and
-  /// skipped @return false, with echoes and report unchanged, if `known` lacks a return
+  /// Append the echoes of a beam lit in an earlier scan. @param report output: status, range, lost
+  /// and skipped @return false, with echoes and report unchanged, if `known` lacks a return
   bool receiveAgain(
     std::uint64_t beam, const LitBeam& known, std::vector<Echo>& echoes, BeamReport& report);
 

@@ -6,24 +6,24 @@
  * The paths are the direct echoes of all samples, and the paths with two reflections that the
  * light-energy constraint keeps. With epsilon = EchoSettings::lightEnergyFraction:
  *
- * - A path is dropped if it carries less than epsilon Qlow / (number of paths of the beam). It is
- *   not traced if an upper bound shows this.
+ * - A path is dropped if it carries less than epsilon Qlow / (number of paths of the beam). A path
+ *   is not traced if an upper bound shows that it would be dropped.
  * - All secondary paths of a beam are skipped if the sum of their bounds and of the energy already
  *   dropped is less than epsilon Qlow.
- * - A beam ends before secondary paths are traced if upper bounds show that it would not be
- *   perceived even with all its energy (an integrated beam: with the most energy of a unit) in one
- *   range unit. This needs the constraint, and noise and air that are too weak to be perceived.
+ * - No secondary paths of a beam are traced if upper bounds show that the beam would not be
+ *   perceived even with all its energy in one range unit (for an integrated beam: with the largest
+ *   bound of a unit). The rule needs the constraint, and noise and air too weak to be perceived.
  *
  * The samples of an integrated beam are nodes on its polygons (PolygonQuadrature.h). If the
- * polygons face each other, connections start from rays placed on them. The samples of a beam in
- * cells are its strips (RangeStrips.h), and connections start from its rays. Mirror paths of both
- * kinds of beams come from MirrorRegions.h.
+ * polygons face each other, connections start from rays that meet the polygons. The samples of a
+ * beam in cells are its strips (RangeStrips.h), and connections start from the rays of the beam.
+ * Mirror paths of integrated beams and of beams in cells come from MirrorRegions.h.
  *
  * Source: paper, Eq. 4-9 and Sec. 3.4.
  * Differs: the constraint compares with the sum of a range unit. To compare each ray with Qlow
  * would remove every wall.
- * Valid: no range unit loses more than epsilon Qlow. A beam that ends early would have no echo,
- * unless paths from random rays exceed the bound by chance.
+ * Valid: no range unit loses more than epsilon Qlow. A beam whose secondary paths are not traced
+ * would have no echo, unless paths from random rays exceed the bound by chance.
  * Test: TestEchoClosedForms.cxx, TestSecondaryConstraints.cxx, TestScanAgain.cxx.
  */
 #ifndef avianlidar_BeamLighting_h
@@ -42,40 +42,42 @@
 
 namespace avianlidar
 {
-/// Lights one beam after the other. One per thread; the constructor's arguments must outlive this.
+/// Lights one beam after the other. One object per thread, which the constructor's arguments must
+/// outlive.
 class BeamLighting
 {
 public:
-  /// @param wanted called every 4096 steps within a beam; if false, WorkStopped is thrown
+  /// @param wanted function called every 4096 steps within a beam; a result of false throws
+  /// WorkStopped
   BeamLighting(const ScanSetup& setup, const SceneTriangles& scene, const ScanBeams& beams,
     BlockBeams& block, BeamSampler& sampler, const BeamReceiver& receiver, BeamAir& air,
     std::function<bool()> wanted);
 
-  /// Light beams even where bounds show that nothing can be perceived.
+  /// Light beams even where bounds show that no energy can be perceived.
   void lightAll() { this->LightsAll = true; }
 
   /// Light the samples of a beam of the block, and add new hits and paths to `trace`.
-  /// @return false if nothing of the beam can be perceived; units and paths are incomplete then
+  /// @return false if nothing of the beam can be perceived; then units and paths are incomplete
   bool light(std::size_t beam, BeamTrace& trace);
 
   // Results for the beam lit last.
-  const BeamSamples* samples() const { return this->Lit; } ///< null without samples
+  const BeamSamples* samples() const { return this->Lit; } ///< samples of the direct echo, or null
   RangeUnitAccumulator& units() { return this->Units; }
   /// Energies of the direct echoes of the samples, J; empty if nothing can be perceived.
   const std::vector<double>& energies() const { return this->Energies; }
   const std::vector<SecondaryPath>& paths() const { return this->Paths; }
-  /// Rays from which paths start; null without such rays.
+  /// Rays from which paths start; null if no path starts from rays.
   const BeamSamples* starts() const { return this->Starts; }
   bool raysAreLit() const { return this->Lit == this->Starts; }
-  const CellSamples* cells() const { return this->Cells; } ///< null if the beam has no cells
+  const CellSamples* cells() const { return this->Cells; } ///< samples of a beam in cells, or null
   const PolygonQuadrature& quadrature() const { return this->Quadrature; } ///< for integrated beams
-  /// True if a direct echo arrives outside the gate and no direct echo arrives inside.
+  /// True if direct echoes arrive, all of them outside the range gate.
   bool isOutsideGate() const;
   BeamAir& air() { return this->Air; }
   /// Spectral radiance in the beam, W/(m2 sr nm) (Background.h).
   double radiance() const { return this->Radiance; }
-  double lost() const { return this->Lost; }              ///< J, see BeamReport
-  std::uint32_t skipped() const { return this->Skipped; } ///< see BeamReport
+  double lost() const { return this->Lost; }              ///< BeamReport::lost, J
+  std::uint32_t skipped() const { return this->Skipped; } ///< BeamReport::skipped
 
 private:
   bool placeSamples(std::size_t beam, BeamTrace& trace);
@@ -105,22 +107,22 @@ private:
 
   // The beam being lit.
   const BeamSamples* Lit = nullptr;    ///< samples of the direct echo
-  const BeamSamples* Starts = nullptr; ///< rays from which paths start; null: none
-  // Empty, for beams whose paths start from no ray.
+  const BeamSamples* Starts = nullptr; ///< rays from which paths start; null: no such rays
+  // Empty members, for beams whose paths start from no ray.
   const BeamSamples NoStarts;
   const BeamRays NoRays;
   const SampleGeometry NoGeometry;
-  const CellSamples* Cells = nullptr; ///< null if the beam is not in cells
-  /// Surfaces that the beam sees, for mirror paths by regions; with hidden parts if the beam is in
-  /// cells. Null: mirror paths start from the rays.
+  const CellSamples* Cells = nullptr; ///< samples of a beam in cells, or null
+  /// Surfaces that the beam sees, for MirrorRegions.h, with hidden parts if the beam is in cells;
+  /// null: mirror paths start from rays.
   const VisiblePolygons* Surfaces = nullptr;
-  bool MayReflectTwice = false; ///< an integrated beam may have paths with two reflections
+  bool MayReflectTwice = false; ///< whether an integrated beam may have paths with two reflections
   Throughput OfLit;             ///< throughputs of the direct echoes of `Lit`
-  Throughput OfStarts;          ///< throughputs at `Starts`, if these are not `Lit`
+  Throughput OfStarts;          ///< throughputs of direct echoes of `Starts`, if not `Lit`
   std::vector<double> Energies; ///< energies of the direct echoes, J
   std::vector<SecondaryPath> Paths;
-  double Direct = 0.0;              ///< sum of `Energies` before any is dropped, J
-  double DroppedByQuadrature = 0.0; ///< PolygonQuadrature::dropped(), J
+  double Direct = 0.0;              ///< sum of `Energies` before paths are dropped, J
+  double DroppedByQuadrature = 0.0; ///< result of PolygonQuadrature::dropped(), J
   double Radiance = 0.0;
   double Lost = 0.0;
   std::uint32_t Skipped = 0;

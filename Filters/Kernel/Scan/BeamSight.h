@@ -4,15 +4,15 @@
  * @brief Finds the triangles that one beam sees, their shares of its solid angle, and their
  * energies.
  *
- * The beam goes through the stages of a scan (BeamSimulator.h), without noise and limits, and its
- * samples are summed by triangle. Movers are placed at their poses at the beam's time. Shares of a
- * Gaussian beam are those of a uniform beam with the same outline. Energies are those of direct
+ * The beam passes the stages of a scan (BeamSimulator.h), without noise and limits, and the samples
+ * of the beam are summed by triangle. Movers are placed at their poses at the beam's time. A
+ * Gaussian beam has the shares of a uniform beam with the same outline. Energies are sums of direct
  * echoes from all ranges, without paths with two reflections and without light from the air.
  *
  * Source: none.
  * Valid: shares of a round beam are shares of its solid angle, and shares of other beams are shares
- * of the area of the beam's plane (BeamShape.h). Shares are as exact as the samples: few triangles
- * are integrated, more are sampled.
+ * of the area of the beam's plane (BeamShape.h). Shares are as exact as the samples: a beam of few
+ * triangles is integrated, other beams are sampled.
  * Test: Testing/Python/TestBeamView.py.
  */
 #ifndef avianlidar_BeamSight_h
@@ -39,22 +39,23 @@ struct SeenSurface
   double weight = 0.0;   ///< share of the pulse's energy that reaches the surface
   double energy = 0.0;   ///< energy received, J
   double range = 0.0;    ///< mean range, weighted with the energy that arrives, m
-  double cosine = 0.0;   ///< mean cosine of incidence, with the same weights
+  double cosine = 0.0;   ///< mean cosine of incidence, weighted with the energy that arrives
   double nearest = 0.0;  ///< least range, m
   double farthest = 0.0; ///< largest range, m
 };
 
 /// Surfaces that beam `beam` sees, in the order of the triangles. @param setup planned
-/// (planModel()) @param wanted called now and then; if it returns false, WorkStopped is thrown
+/// (planModel()) @param wanted function called during the work; a result of false throws
+/// WorkStopped
 std::vector<SeenSurface> sightAlong(const ScanSetup& setup, const ScanBeams& beams,
   std::size_t beam, const std::function<bool()>& wanted = {});
 
-/// Directions along the outline of a beam, not normalised: their component along the axis is 1. A
+/// Directions along the outline of a beam, not normalised: the component along the axis is 1. A
 /// round or elliptic outline has 64 directions.
 std::vector<Vec3> outlineOf(const BeamFrame& frame);
 
 /// The part of a surface within an outline (outlineOf()) and between the surface's nearest and
-/// farthest range, as corners relative to the apex, m; empty if there is no such part.
+/// farthest range, as corners relative to the apex, m; empty if the outline contains no such part.
 std::vector<Vec3> partWithin(
   const BeamFrame& frame, const std::vector<Vec3>& outline, const SeenSurface& surface);
 }

@@ -3,14 +3,15 @@
  * @file BeamSimulator.h
  * @brief Simulates a block of beams, from rays to returns, in three stages.
  *
- * 1. Tracing (ScanBlock.h) finds what all beams of the block see, unless an earlier run found it.
- * 2. Lighting (BeamLighting.h) sums the energies of all paths of one beam in range units. It is
- *    left out where a scan differs from the scan before only in noise (LitBeam.h).
- * 3. BeamEchoes.h adds noise and makes returns. A beam without hits needs this stage only if noise
- *    may raise a false alarm.
+ * 1. Tracing (ScanBlock.h) finds the surfaces that all beams of the block see, unless these are
+ * kept from an earlier run.
+ * 2. Lighting (BeamLighting.h) sums the energies of all paths of one beam in range units. Lighting
+ *    is skipped where a scan differs from the scan before only in noise (LitBeam.h).
+ * 3. BeamEchoes.h adds noise and makes returns. A beam without hits skips this stage unless noise
+ *    may cause a false alarm.
  *
  * Source: paper, Algorithm 2.
- * Differs: a block of beams is traced together, and lit from kept hits.
+ * Differs: the beams of a block are traced together, and lit from kept hits.
  * Valid: as the three stages.
  * Test: TestScan.cxx, TestEchoClosedForms.cxx.
  */
@@ -25,15 +26,15 @@
 
 namespace avianlidar
 {
-/// One per thread; setup and beams must outlive this. The setup must not change; a beam may change
-/// until it is traced.
+/// One object per thread, which setup and beams must outlive. The setup must not change. A beam may
+/// change until it is traced.
 class BeamSimulator
 {
 public:
-  /// @param keepsLight keep lit beams where noise matters or something moves
-  /// @param wanted called every 4096 steps within a beam, and every 512 units for which noise is
-  /// drawn; if it returns false, WorkStopped is thrown
-  /// @param sampler draws rays for the sensor, sampling and N of the setup; must outlive this
+  /// @param keepsLight true: keep lit beams where noise matters or surfaces move
+  /// @param wanted function called every 4096 steps within a beam, and every 512 units for which
+  /// noise is drawn; a result of false throws WorkStopped
+  /// @param sampler sampler for the sensor, sampling and N of the setup; must outlive the object
   BeamSimulator(const ScanSetup& setup, const ScanBeams& beams, bool keepsLight,
     BeamSampler& sampler, std::function<bool()> wanted = {});
   BeamSimulator(const BeamSimulator&) = delete;
@@ -57,7 +58,7 @@ public:
   /// See BeamLighting::lightAll().
   void lightAll() { this->Lighting.lightAll(); }
 
-  /// Mean light that a threshold may follow from the air in a unit of the beam lit last, J.
+  /// Mean light from the air, J, that a threshold may follow in a unit of the beam lit last.
   double followedIn(std::int64_t unit) { return this->Air.followed(unit); }
 
   /// Results for the beam lit last.

@@ -2,11 +2,11 @@
 /**
  * @file BeamTrace.h
  * @brief Data kept for one beam: the geometry of its rays and paths, which does not depend on
- * energies, and its energies (LitBeam.h).
+ * energies, and the energies of the beam (LitBeam.h).
  *
- * Each part is found when it is first needed. A scan with other coefficients, limits, noise or
- * attenuation traces nothing that is kept. A beam that meets nothing takes 72 bytes, each hit takes
- * 37, and each connection of two hits takes 81.
+ * Each part is computed when first needed. A scan with other coefficients, limits, noise or
+ * attenuation does not trace kept parts again. A beam without hits takes 72 bytes, each hit takes
+ * 37 bytes, and each connection of two hits takes 81 bytes.
  *
  * Source: none.
  * Valid: geometry for one traceKey() (TraceCache.h), `lit` for one LightKey.
@@ -38,25 +38,25 @@ struct EmptyView
 {
 };
 
-/// The view of a beam, in the order of DirectEcho. Pointers are not null.
+/// The view of a beam: alternatives in the order of DirectEcho, whose pointers are not null.
 using BeamView = std::variant<std::monostate, EmptyView, std::unique_ptr<VisiblePolygons>,
   std::unique_ptr<CellSamples>, RayView>;
 
 struct BeamTrace
 {
   BeamView view;
-  /// Hits of the beam's rays, from which paths with two reflections start. Null if no ray hits
-  /// anything, and in an integrated beam until first needed.
+  /// Hits of the beam's rays, from which paths with two reflections start. Null if no ray hits a
+  /// triangle, and in an integrated beam until first needed.
   std::unique_ptr<BeamSamples> hits;
-  std::unique_ptr<SecondaryTrace> secondary; ///< null until first needed
-  std::unique_ptr<LitBeam> lit;              ///< null unless kept, see LitBeam.h
+  std::unique_ptr<SecondaryTrace> secondary; ///< geometry of paths; null until first needed
+  std::unique_ptr<LitBeam> lit;              ///< energies; null unless kept (LitBeam.h)
   TraceCounters counters;                    ///< cost of all tracing so far
-  std::size_t held = 0;                      ///< heldBytes() when the beam was last lit
+  std::size_t held = 0;                      ///< heldBytes() when the beam was last lit, bytes
 
   DirectEcho direct() const { return static_cast<DirectEcho>(this->view.index()); }
-  /// Null unless the beam is integrated.
+  /// Visible polygons of an integrated beam; null for other beams.
   const VisiblePolygons* polygons() const { return this->part<VisiblePolygons>(); }
-  /// Null unless the beam is divided into cells.
+  /// Samples of a beam divided into cells; null for other beams.
   const CellSamples* cells() const { return this->part<CellSamples>(); }
 
   /// Memory of all parts, bytes.

@@ -3,8 +3,8 @@
  * @file BlockBeams.h
  * @brief The beams of a block: frames, rays, the hits of rays, and the tracer set to one beam.
  *
- * Each value is computed when a stage first needs it, so no rays are drawn for beams that need
- * none.
+ * Each value is computed when a stage first needs this value. No rays are drawn for beams that need
+ * no rays.
  *
  * Valid: a value depends only on the beam and the arguments of the constructor, not on the order of
  * the calls.
@@ -26,7 +26,7 @@
 
 namespace avianlidar
 {
-/// One per thread; the constructor's arguments must outlive this.
+/// One object per thread, which the constructor's arguments must outlive.
 class BlockBeams
 {
 public:
@@ -39,14 +39,14 @@ public:
   const BeamFrame& frameOf(std::size_t beam);
   const BeamRays& raysOf(std::size_t beam);
 
-  /// Triangle that each ray of the beam hits, if rays were traced in this run; otherwise empty.
+  /// Triangle that each ray of the beam hits; empty if no rays were traced in this run.
   std::vector<std::uint32_t>& triangles(std::size_t beam) { return this->stateOf(beam).triangles; }
 
   /// Move the hits of the beam's rays to its trace.
   void takeHits(std::size_t beam, BeamTrace& trace);
 
-  /// Hits from which connections start. The hits of an integrated beam lie on its polygons, one for
-  /// each ray that meets a polygon, and are kept in the trace.
+  /// Hits from which connections start. The hits of an integrated beam are kept in the trace: one
+  /// for each ray that meets a visible polygon.
   const BeamSamples& pathStartsOf(std::size_t beam, BeamTrace& trace);
 
   /// Directions and surfaces of the beam's hits. Valid until a call for another beam.
@@ -56,16 +56,16 @@ public:
   /// The tracer, set to the beam. Counters begin at 0. Valid until a call for another beam.
   BeamTracer& tracerOf(std::size_t beam);
 
-  /// Cost of the beam in this run.
+  /// Cost of tracing the beam in this run.
   TraceCounters& counters(std::size_t beam) { return this->stateOf(beam).counters; }
 
 private:
   struct BeamState
   {
-    std::optional<BeamFrame> frame;       ///< none until first needed
-    BeamRays rays;                        ///< empty until first needed
+    std::optional<BeamFrame> frame;       ///< frame of the beam; empty until first needed
+    BeamRays rays;                        ///< rays of the beam; empty until first needed
     std::vector<std::uint32_t> triangles; ///< triangles hit by the rays in this run; may be empty
-    TraceCounters counters;               ///< cost in this run
+    TraceCounters counters;               ///< cost of tracing in this run
   };
   static constexpr std::size_t NoBeam = static_cast<std::size_t>(-1);
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file CoincidentObjects.h
- * @brief Finds the objects that a scan sees in place of others with coincident faces.
+ * @brief Finds the objects that a scan sees in place of other objects with coincident faces.
  *
  * Only triangle numbers decide which of two coincident faces is seen. On a plane with such faces a
- * ray goes to the centroid of each triangle (at most MostRaysOfPlane, evenly chosen). If the ray
- * ends on the plane, a second ray ignores the triangle that the first one hit. Coincident faces
- * behind others, such as the common wall of two buildings, do not count.
+ * ray goes to the centroid of each triangle (at most MostRaysOfPlane triangles, evenly chosen). If
+ * the ray ends on the plane, a second ray ignores the triangle that the first ray hit. Coincident
+ * faces behind other faces, such as the common wall of two buildings, do not count.
  *
  * Source: none.
  * Valid: finds only the objects that rays to centroids hit.
@@ -39,14 +39,15 @@ struct SeenPlane
 void addSeenPlanes(const CollisionTree& tree, const BeamTrace& trace, std::size_t beam,
   std::vector<SeenPlane>& planes);
 
-/// Sort planes, and keep only the first beam of each.
+/// Sort planes, and keep only the first beam of each plane.
 void sortSeenPlanes(std::vector<SeenPlane>& planes);
 
-/// Coincident triangles that differ in object or material: a visible triangle and one that it
-/// hides.
+/// Coincident triangles that differ in object or material: a visible triangle, and a triangle
+/// hidden by the visible one.
 using CoincidentPair = std::pair<std::uint32_t, std::uint32_t>;
 
-/// One pair of triangles for each pair of objects, in the order of their ids. @param planes sorted
+/// One pair of triangles for each pair of objects, in the order of object ids. @param planes sorted
+/// by sortSeenPlanes()
 std::vector<CoincidentPair> findCoincidentObjects(
   const ScanSetup& setup, const ScanBeams& beams, const std::vector<SeenPlane>& planes);
 }

@@ -26,11 +26,11 @@ struct Echo
   double energy = 0.0;         ///< Qen of the strongest range unit (Eq. 12), J
   double returnEnergy = 0.0;   ///< sum of Qrec over the return, J
   double energyStdError = 0.0; ///< standard error of energyReceived, J; NaN with fewer than 8 rays
-  int returnNumber = 1;
-  int numberOfReturns = 1;
-  int objectId = -1; ///< object with the most energy; -1: false alarm, -2: air
-  int materialId = -1;
-  double labelShare = 0.0; ///< share of the energy from this object and material
+  int returnNumber = 1;        ///< number of the return in the beam, from 1
+  int numberOfReturns = 1;     ///< number of returns of the beam
+  int objectId = -1;           ///< object with the most energy; -1: false alarm, -2: air
+  int materialId = -1;         ///< material with the most energy; -1: false alarm or medium
+  double labelShare = 0.0;     ///< share of the energy from objectId and materialId
   /// Energy-weighted mean angle of incidence at the last surface, rad; NaN for a false alarm.
   double incidenceAngle = 0.0;
   double background = 0.0;     ///< spectral radiance in the beam, W/(m2 sr nm)

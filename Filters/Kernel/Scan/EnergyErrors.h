@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file EnergyErrors.h
- * @brief Standard errors of the energies in range units of a beam that was lit.
+ * @brief Standard errors of the energies in range units of a lit beam.
  *
- * The error comes from the rays (StandardError.h), or from the cells and the rays from which paths
- * start. An integrated beam has a bound of the error of its direct echo, plus the standard error of
- * its paths. Where an aperture gathers the light of mirrors, the width of their lobes adds to the
- * error.
+ * The error follows from the rays (StandardError.h), or from the cells and the rays on which paths
+ * start. For an integrated beam, the error is a bound for the direct echo plus the standard error
+ * of the paths. Where an aperture gathers the light of mirrors, the width of the mirrors' lobes
+ * adds to the error.
  *
  * Source: none.
  * Valid: NaN where StandardError.h has no estimate; for integrated beams the bound of
@@ -23,11 +23,11 @@
 
 namespace avianlidar
 {
-/// Errors of one beam after the other. The constructor's arguments must outlive this.
+/// Errors of one beam after the other. The constructor's arguments must outlive the object.
 class EnergyErrors
 {
 public:
-  /// @param lighting holds the results of the beam @param ofRays estimator for the beam's rays
+  /// @param lighting results for the beam @param ofRays estimator for the beam's rays
   EnergyErrors(
     const ScanSetup& setup, const BeamLighting& lighting, StandardErrorEstimator& ofRays);
 

@@ -2,14 +2,14 @@
 /**
  * @file LitBeam.h
  * @brief Energies in range units and returns of a lit beam, kept for scans of the same beams that
- * differ only in noise or in movers in other beams.
+ * differ only in noise, or in movers that touch other beams.
  *
  * Noise decides which units form a return. Range, labels and standard error of a return follow from
  * its first, last and strongest unit. The values of the first MostReturns returns with different
- * units are kept. Further returns require that the beam is lit again.
+ * units are kept. For a further return the beam is lit again.
  *
  * Source: none.
- * Valid: for one LightKey and the samples of one trace. Echoes have the same bits without a
+ * Valid: for one LightKey and the samples of one trace. Echoes are bitwise identical without a
  * LitBeam.
  * Test: TestScanAgain.cxx.
  */
@@ -34,16 +34,16 @@ struct LitBeam
   /// The values of a return that do not depend on noise.
   struct KnownReturn
   {
-    std::int64_t first, last, strongest; ///< units
+    std::int64_t first, last, strongest; ///< numbers of range units
     Echo echo;
   };
   std::vector<RangeUnit> units;
   std::vector<KnownReturn> returns;
   std::vector<MetSurface> surfaces; ///< samples of surfaces, which shadow the air
-  double radiance = 0.0;            ///< see BeamLighting::radiance()
-  bool outsideGate = false;         ///< see BeamLighting::isOutsideGate()
-  double lost = 0.0;                ///< J, see BeamReport
-  std::uint32_t skipped = 0;        ///< see BeamReport
+  double radiance = 0.0;            ///< BeamLighting::radiance(), W/(m2 sr nm)
+  bool outsideGate = false;         ///< BeamLighting::isOutsideGate()
+  double lost = 0.0;                ///< BeamReport::lost, J
+  std::uint32_t skipped = 0;        ///< BeamReport::skipped
 
   std::size_t bytes() const
   {
@@ -53,7 +53,7 @@ struct LitBeam
   }
 };
 
-/// Everything besides a trace on which energies in range units and labels depend.
+/// All inputs, besides a trace, on which energies in range units and labels depend.
 struct LightKey
 {
   SharedVector<Material> materials;
@@ -62,7 +62,7 @@ struct LightKey
   std::uint64_t numbers = 0; ///< hash of all other values
 };
 
-/// Set the key of a setup. @return false if the key has changed
+/// Set the key to the key of a setup. @return false if the key has changed
 bool updateKey(LightKey& key, const ScanSetup& setup);
 }
 

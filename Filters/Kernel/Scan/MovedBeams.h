@@ -1,20 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file MovedBeams.h
- * @brief Finds the beams that movers may touch, and simulates each with the movers at their poses
- * at the beam's time.
+ * @brief Finds the beams that movers may touch, and simulates each of these beams with the movers
+ * at their poses at the beam's time.
  *
- * A beam with movers goes through the same stages as any other, but none of its results are kept.
+ * A beam with movers passes the same stages as any other beam, but its results are not kept.
  * Results of scans without movers are kept for later scans without movers.
  *
- * Spheres around the paths of movers are tested, first for many beams, then for a block. For each
- * beam, spheres around the places of movers are tested.
+ * Spheres around the paths of movers are tested against many beams, then against a block. Spheres
+ * around the places of movers are tested against each beam.
  *
- * Source: none. arXiv 2605.10457 also asks which beams a moving triangle can hit, instead of
- * building a tree again.
- * Valid: a mover at rest gives the same bits as its triangles at the end of the static mesh, except
- * for costs and where its faces coincide with others. Movers of equal content keep the order of the
- * input.
+ * Source: none. arXiv 2605.10457 also searches for the beams that a moving triangle can hit,
+ * instead of building a tree again.
+ * Valid: results with a mover at rest are bitwise identical to results with its triangles at the
+ * end of the static mesh. Exceptions are costs, and faces of the mover that coincide with other
+ * faces. Movers of equal content keep the order of the input.
  * Test: TestMovedBeams.cxx.
  */
 #ifndef avianlidar_MovedBeams_h
@@ -31,13 +31,13 @@
 
 namespace avianlidar
 {
-/// Simulates the beams that movers may touch, block by block. One per thread; the constructor's
-/// arguments must outlive this.
+/// Simulates the beams that movers may touch, block by block. One object per thread, which the
+/// constructor's arguments must outlive.
 class MovedBeams
 {
 public:
-  /// @param setup with movers @param beams with times @param sights true: find the light that each
-  /// mover returns
+  /// @param setup setup with movers @param beams beams with times @param sights true: find the
+  /// light that each mover returns
   MovedBeams(const ScanSetup& setup, const ScanBeams& beams, BeamSampler& sampler,
     std::function<bool()> wanted, bool sights);
 
@@ -47,8 +47,8 @@ public:
   /// True if a beam of the block may touch a mover.
   bool isTouched(std::size_t beam) const { return !this->Touching[beam - this->First].empty(); }
 
-  /// Append the echoes of a beam with movers and the light that it receives from each mover, and
-  /// fill its report.
+  /// Append the echoes of a beam with movers, append the light that the beam receives from each
+  /// mover, and fill the beam's report.
   void simulate(std::size_t beam, std::vector<Echo>& echoes, BeamReport& report,
     std::vector<MoverSight>& sights);
 
@@ -70,13 +70,13 @@ private:
   const ScanBeams& Beams;
   const BeamWidth Width;
   const bool Sights;
-  std::vector<std::uint32_t> All;      ///< all movers
-  std::vector<std::uint32_t> NearMany; ///< movers that may touch beams [ManyBegin, ManyEnd)
+  std::vector<std::uint32_t> All;      ///< numbers of all movers
+  std::vector<std::uint32_t> NearMany; ///< movers that may touch the beams [ManyBegin, ManyEnd)
   std::size_t ManyBegin = 0;
   std::size_t ManyEnd = 0;
   std::size_t First = 0;                    ///< first beam of the block
   std::vector<std::uint32_t> NearBlock;     ///< movers that may touch the block
-  std::vector<std::vector<Touch>> Touching; ///< movers of each beam of the block
+  std::vector<std::vector<Touch>> Touching; ///< movers that may touch each beam of the block
 
   // The beam being simulated.
   ScanBeams CurrentBeam;

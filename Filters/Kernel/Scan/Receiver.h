@@ -4,21 +4,22 @@
  * @brief Makes returns from the energies in range units.
  *
  * Energies are sums over paths (RangeUnits.h) plus noise (Noise.h), limited to the dynamic range. A
- * **return** is a maximal run of consecutive perceived range units. Its range is the mean range
- * (half the path length) of its paths, weighted with the energies that they put into the run. A run
- * of false alarms has no paths. In each unit its noise has a random place (BeamNoise::place()), and
- * its range is the mean of these places, weighted with the energies of the units.
+ * **return** is a maximal run of consecutive perceived range units. The range of a return is the
+ * mean range (half the path length) of its paths, weighted with the energies that these paths put
+ * into the run. A run of false alarms has no paths. In each unit of such a run the noise has a
+ * random place (BeamNoise::place()), and the range of the return is the mean of these places,
+ * weighted with the energies of the units.
  *
  * Where the air scatters (BeamAir.h), each unit receives light from the air. A threshold that
  * follows the air subtracts the mean of this light, n_air, and lies as many standard deviations of
  * the noise above this mean as without air: n_T (1 + F n_air/sigma0^2)^(1/2). So every unit has the
- * same probability of a false alarm. Echoes of surfaces and the light of drops beyond its mean
- * remain. A fixed threshold subtracts nothing. All light counts for saturation in either case. No
- * threshold follows the leaves of trees: their light is treated like light from surfaces. Behind a
+ * same probability of a false alarm. Echoes of surfaces, and light of drops above the mean, remain.
+ * A fixed threshold subtracts nothing. All light counts for saturation in either case. No threshold
+ * follows the leaves of trees: light from leaves is treated like light from surfaces. Behind a
  * surface the light of the air is reduced by the share of the pulse that the surface has met.
  *
  * Source: paper, Sec. 2.4, Eq. 10-12.
- * Differs: ReturnMode::RangeUnits takes the paper literally, with a point at the centre of each
+ * Differs: ReturnMode::RangeUnits follows the paper literally, with a point at the centre of each
  * perceived range unit.
  * Valid: on a plane at any tilt the range of a return differs from the range on the axis by at most
  * theta0.5^2/4, relative. A range unit is c tau_s/2 long.
@@ -45,15 +46,15 @@
 namespace avianlidar
 {
 /// Energy that the receiver perceives (paper, Eq. 12), J: 0 for received <= lower, and at most
-/// upper. lower == upper is allowed.
+/// upper. The limits may be equal.
 double perceivedEnergy(double received, double lower, double upper);
 
 /// A range unit with its noise.
 struct ReceivedUnit
 {
-  std::int64_t index = 0;  ///< number m of the unit
-  double energy = 0.0;     ///< Qrec, noise included, J
-  double noise = 0.0;      ///< Qn, J
+  std::int64_t index = 0;  ///< number m of the range unit
+  double energy = 0.0;     ///< energy Qrec, noise included, J
+  double noise = 0.0;      ///< energy Qn of the noise, J
   std::uint32_t paths = 0; ///< number of paths with a share; 0: a false alarm, or only air
   double air = 0.0;        ///< part of `energy` from air that a threshold may follow, J
   double leaves = 0.0;     ///< part of `energy` from media that no threshold follows, J
@@ -70,24 +71,24 @@ struct Return
   double energyReceived = 0.0;   ///< Qrec of the strongest unit (Eq. 10), J
   double energy = 0.0;           ///< Qen of the strongest unit (Eq. 12), J
   double returnEnergy = 0.0;     ///< sum of Qrec over the run, J
-  bool hasLight = false;         ///< false: only noise or air
+  bool hasLight = false;         ///< whether light of paths arrived; false: only noise or air
   double air = 0.0;              ///< sum of ReceivedUnit::air, J
   double leaves = 0.0;           ///< sum of ReceivedUnit::leaves, J
   int medium = -1;               ///< ReceivedUnit::medium of the unit with most `leaves`
   double rangeOfLeaves = 0.0;    ///< mean range of the light in `leaves`, m
-  double range = 0.0;            ///< m; see rangeOf()
-  // Counted in the beam before ReturnMode selects returns.
-  int returnNumber = 1;    ///< from 1, nearest first
-  int numberOfReturns = 1; ///< returns of the beam
+  double range = 0.0;            ///< range, m, as defined by rangeOf()
+  // Both numbers count all returns of the beam, before ReturnMode selects returns.
+  int returnNumber = 1;    ///< number of the return, from 1, nearest first
+  int numberOfReturns = 1; ///< number of returns of the beam
 };
 
-/// Reusable: allocates nothing once its workspace has grown. One per thread.
+/// Receives one beam after the other. Reusable without allocation; one object per thread.
 class BeamReceiver
 {
 public:
-  /// @param wanted called every 512 units for which noise is drawn, counted over all beams; if it
-  /// returns false, WorkStopped is thrown
-  /// @param air media along each beam; must outlive this; null: no light from the air
+  /// @param wanted function called every 512 units for which noise is drawn, counted over all
+  /// beams; a result of false throws WorkStopped
+  /// @param air media along each beam, which must outlive the object; null: no light from the air
   BeamReceiver(const Sensor& sensor, const NoisePlan& noise, std::int32_t seed, ReturnMode mode,
     std::int32_t revolution = 0, std::function<bool()> wanted = {}, BeamAir* air = nullptr);
 
@@ -98,25 +99,25 @@ public:
   /// Spectral radiance in the last beam, W/(m2 sr nm).
   double radiance() const { return this->Radiance; }
 
-  /// Range of a return, m. Return::range holds it for returns without light, and for all in the
-  /// mode RangeUnits. @param accumulator range units of the beam's paths
+  /// Range of a return, m. For returns without light, and for all returns in the mode RangeUnits,
+  /// this is Return::range. @param accumulator range units of the beam's paths
   double rangeOf(const Return& run, RangeUnitAccumulator& accumulator) const;
 
   /// The range that the receiver reports for a return at `range`, m: with noise, walk and quantum
-  /// (RangeErrors.h), or `range` itself in the mode RangeUnits.
+  /// (RangeErrors.h), or `range` unchanged in the mode RangeUnits.
   double measured(const Return& run, double range) const;
 
-  /// True if units without paths may be perceived, so that no beam can be left out.
+  /// True if units without paths may be perceived; then no beam can be left out.
   bool mayAlarm() const { return this->Plan.active || (this->Air && this->Air->fillsScene()); }
 
-  /// Units with light or false alarms, ascending, perceived or not. Units are left out if they are
-  /// too faint to be perceived without rare noise.
+  /// Units with light or false alarms, ascending, perceived or not. Units that are too faint to be
+  /// perceived without rare noise are left out.
   const std::vector<ReceivedUnit>& units() const { return this->Units; }
 
   /// The returns that the mode selects, nearest first.
   const std::vector<Return>& returns() const { return this->Returns; }
 
-  /// The strongest return of the beam, in every mode; null without a return.
+  /// The strongest return of the beam, in every mode; null if the beam has no return.
   const Return* strongest() const { return this->HasReturn ? &this->Strongest : nullptr; }
 
 private:
@@ -155,7 +156,7 @@ private:
   std::int32_t Revolution;
   ReturnMode Mode;
   std::function<bool()> Wanted;
-  std::uint64_t Drawn = 0; ///< units for which noise was drawn
+  std::uint64_t Drawn = 0; ///< number of units for which noise was drawn
   BeamNoise Noise;
   std::vector<ReceivedUnit> Units;
   std::vector<Return> Returns;

@@ -5,8 +5,8 @@
  *
  * Source: paper, Algorithm 2.
  * Differs: blocks of beams run in parallel; geometry and lit beams are kept between runs.
- * Valid: echoes and reports have the same bits for any number of threads; echoes also for any order
- * and division of the beams, any tree, and any state of the cache.
+ * Valid: echoes and reports are bitwise identical for any number of threads. Echoes are also
+ * bitwise identical for any order and division of the beams, any tree, and any state of the cache.
  * Test: TestScan.cxx, TestScanAgain.cxx, TestScanSweep.cxx, TestScanReport.cxx.
  */
 #ifndef avianlidar_Scan_h
@@ -25,23 +25,22 @@ namespace avianlidar
 {
 struct ScanResult
 {
-  std::vector<Echo> echoes;            ///< in the order of the beams, nearest first within a beam
-  std::vector<std::size_t> beamOfEcho; ///< index of the beam of each echo
-  std::vector<BeamReport> reports;     ///< one per beam
-  std::uint64_t raysTraced = 0;        ///< rays traced in this run; 0 if everything was kept
-  std::uint64_t beamsTraced = 0;       ///< beams whose static surfaces were searched in this run
-  std::uint64_t beamsTouched = 0;      ///< beams that movers may touch, simulated in every run
-  std::vector<MoverSight> sights;      ///< in the order of beams; empty unless asked for
-  std::vector<CoincidentPair> coincident; ///< see findCoincidentObjects()
+  std::vector<Echo> echoes;               ///< echoes, in the order of the beams, then of ranges
+  std::vector<std::size_t> beamOfEcho;    ///< index of the beam of each echo
+  std::vector<BeamReport> reports;        ///< report on each beam
+  std::uint64_t raysTraced = 0;           ///< number of rays traced; 0 if all beams were kept
+  std::uint64_t beamsTraced = 0;          ///< number of beams whose static surfaces were searched
+  std::uint64_t beamsTouched = 0;         ///< number of beams that movers may touch
+  std::vector<MoverSight> sights;         ///< light from movers, by beam; empty unless asked for
+  std::vector<CoincidentPair> coincident; ///< result of findCoincidentObjects()
 };
 
 /**
- * Simulate every beam. The state of the cache may change costs in reports, and the bound of what
- * the light-energy constraint drops.
+ * Simulate every beam. The state of the cache may change two values of reports: costs, and the
+ * bound of the energy that the light-energy constraint drops.
  * @param threads number of threads; 0: OpenMP's choice
- * @param cache beams kept from earlier runs; updated
- * @param maximumBytes largest memory for kept beams, bytes; other beams are traced again in later
- * runs
+ * @param cache beams kept from earlier runs; updated by this run
+ * @param maximumBytes largest memory for kept beams, bytes; later runs trace all other beams again
  * @param sights true: find the light that beams receive from each mover, for reportMovers()
  * @return false if keepGoing returned false; result and cache are then empty
  */

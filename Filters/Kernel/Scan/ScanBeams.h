@@ -26,16 +26,16 @@ namespace avianlidar
 {
 struct ScanBeams
 {
-  std::vector<std::uint64_t> ids; ///< unique; key of the beam's random numbers
-  std::vector<Vec3> origins;      ///< m, coordinates of at most MaximumCoordinate
-  std::vector<Vec3> directions;   ///< finite, not zero; need not be normalised
+  std::vector<std::uint64_t> ids; ///< unique ids, keys of the beams' random numbers
+  std::vector<Vec3> origins;      ///< origins, m, coordinates of at most MaximumCoordinate
+  std::vector<Vec3> directions;   ///< directions, finite, not zero, of any length
   std::vector<double> times;      ///< firing times, s; may be empty if nothing moves
   std::uint64_t checksum = 0;     ///< checksumOf(); 0: not computed yet
   std::size_t size() const { return this->ids.size(); }
   double timeOf(std::size_t beam) const { return this->times.empty() ? 0.0 : this->times[beam]; }
 };
 
-/// Check the origin of a beam. @return empty, or what is wrong and what was expected
+/// Check the origin of a beam. @return empty, or a sentence with the error and the expected values
 inline std::string checkPosition(const Vec3& position)
 {
   for (int axis = 0; axis < 3; ++axis)
@@ -62,30 +62,30 @@ enum class BeamStatus
   NoSurface = 1,
   BelowLimit = 2,
   Saturated = 3,
-  OutsideGate = 4 ///< direct echoes arrive, all of them outside the gate
+  OutsideGate = 4 ///< direct echoes arrive, all of them outside the range gate
 };
 
 /// Method that gives the direct echo of a beam.
 enum class DirectEcho : std::uint8_t
 {
-  Unknown = 0,  ///< the beam was not traced yet
+  Unknown = 0,  ///< the beam has not been traced yet
   Nothing = 1,  ///< no surface enters the beam
-  Polygons = 2, ///< integrated over the polygons that the beam sees
-  Cells = 3,    ///< sum over the strips of its cells
-  Rays = 4      ///< sum over its N rays
+  Polygons = 2, ///< integral over the polygons that the beam sees
+  Cells = 3,    ///< sum over the strips of the beam's cells
+  Rays = 4      ///< sum over the beam's N rays
 };
 
 struct BeamReport
 {
   DirectEcho direct = DirectEcho::Unknown;
-  bool isCrowded = false; ///< true if its rays went through the tree: too many triangles for lists
+  bool isCrowded = false; ///< whether the rays descended the tree: too many triangles for lists
   BeamStatus status = BeamStatus::NoSurface;
-  double range = 0.0;              ///< range of the strongest return, m; NaN without one
-  TraceCounters counters;          ///< cost of tracing all that is kept of the beam
-  std::uint64_t raysTracedNow = 0; ///< rays traced in this run; 0 if all was kept
+  double range = 0.0;              ///< range of the strongest return, m; NaN without a return
+  TraceCounters counters;          ///< cost of tracing all kept parts of the beam
+  std::uint64_t raysTracedNow = 0; ///< number of rays traced in this run; 0 if all parts were kept
   std::uint32_t skipped = 0;       ///< bits of SkippedPart, except noise
-  /// Bound of the energy that was left out, J; paths that carry nothing do not count. For a beam
-  /// left out as a whole: bound of the energy of its strongest range unit, less than Qlow.
+  /// Bound of the energy that was left out, J; paths that carry no energy do not count. For a beam
+  /// left out as a whole, this is a bound, below Qlow, of the energy of the strongest range unit.
   double lost = 0.0;
 };
 
@@ -97,7 +97,7 @@ struct MoverSight
   double energy;      ///< energy of the strongest range unit, J
   double probability; ///< probability that a range unit with only this light is perceived
   double offAxis;     ///< angle from the beam's axis to the mover's position, rad
-  bool held;          ///< true if the mover's position lies in the beam
+  bool held;          ///< whether the mover's position lies in the beam
 };
 }
 

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file ScanBlock.h
- * @brief Finds what each beam of a block sees, unless it is kept from an earlier run.
+ * @brief Finds the surfaces that each beam of a block sees, unless these are kept from an earlier
+ * run.
  *
  * The view of a beam (ViewFinder.h) is found from the triangles that may enter the beam
- * (Candidates.h). Rays are traced through the tree (BeamTracer.h) where settings require them,
- * where a view needs them, and where paths with two reflections start.
+ * (Candidates.h). Rays are traced through the tree (BeamTracer.h) if the settings or a view require
+ * rays, or if paths with two reflections start from rays.
  *
  * Source: paper, Algorithm 2 and Sec. 3.2.
  * Differs: see the headers named above.
@@ -28,7 +29,7 @@
 
 namespace avianlidar
 {
-/// Traces blocks of beams. One per thread; the constructor's arguments must outlive this.
+/// Traces blocks of beams. One object per thread, which the constructor's arguments must outlive.
 class ScanBlock
 {
 public:
@@ -36,7 +37,8 @@ public:
     const ScanSetup& setup, const SceneTriangles& scene, const ScanBeams& beams, BlockBeams& block);
 
   /// Find what each beam in [begin, end) sees, unless `traces` (of all beams) already holds it.
-  /// @param leaveOut true for beams to skip; empty: none @return number of beams that were searched
+  /// @param leaveOut function that is true for beams to skip; empty: no beam is skipped @return
+  /// number of beams that were searched
   std::size_t trace(std::size_t begin, std::size_t end, std::vector<BeamTrace>& traces,
     const std::function<bool(std::size_t)>& leaveOut = {});
 

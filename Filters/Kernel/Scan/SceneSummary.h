@@ -3,7 +3,7 @@
  * @file SceneSummary.h
  * @brief Largest reflectance, largest gain and checksum of all materials and ids of a scene.
  *
- * A new vector of materials (32 bytes per triangle) or of ids (8 bytes per triangle) costs a pass.
+ * A new vector of materials (32 bytes per triangle) or of ids (8 bytes per triangle) is read once.
  *
  * Source: none.
  * Valid: any scene; equal content gives equal results.
@@ -19,7 +19,7 @@
 namespace avianlidar
 {
 /// Summarises one scene after another. Results depend only on the last setup. Vectors of materials
-/// and ids are shared and constant, so the same vector needs no second pass.
+/// and ids are shared and constant, so the same vector is not read a second time.
 class SceneSummary
 {
 public:
@@ -32,8 +32,8 @@ public:
   /// Largest apertureGain() of the last setup, 1/sr.
   double largestGain() const { return this->Gain; }
 
-  /// Hash (XXH3, 64 bits) of the last scene. Equal bytes of geometry, materials and ids of all
-  /// triangles, in their order, have equal hashes. @param geometry TriangleMesh::checksum()
+  /// Hash (XXH3, 64 bits) of the last scene. Scenes with equal bytes of geometry, materials and ids
+  /// of all triangles, in order, have equal hashes. @param geometry TriangleMesh::checksum()
   std::uint64_t checksum(std::uint64_t geometry) const;
 
 private:

@@ -33,20 +33,20 @@ struct BeamKey
 
 struct TraceCache
 {
-  std::uint64_t key = 0;  ///< traceKey()
+  std::uint64_t key = 0;  ///< traceKey() of the setup
   std::uint64_t scan = 0; ///< checksumOf() of the beams
-  bool stays = false;     ///< true if the beams are the same as in the run before
+  bool stays = false;     ///< whether the beams are the same as in the run before
   std::vector<BeamTrace> beams;
   std::vector<BeamKey> keys; ///< keys of `beams`
-  /// Kept beams that are not in the present scan, such as those of another part of a sweep. They
-  /// stay as long as each scan has a beam in common with the cache, and memory allows.
+  /// Kept beams that are not in the present scan, such as beams of another part of a sweep. Absent
+  /// beams are kept while each scan has a beam in common with the cache, and while memory allows.
   std::vector<BeamTrace> absent;
   std::vector<BeamKey> absentKeys;
-  std::vector<std::unique_ptr<BeamSampler>> samplers; ///< one per thread
-  LightKey light;                                     ///< key of the last run
+  std::vector<std::unique_ptr<BeamSampler>> samplers; ///< sampler of each thread
+  LightKey light;                                     ///< key of the energies in the last run
 
-  /// Set setup and beams, and keep what remains valid. @param maximumBytes most memory for all
-  /// beams, bytes; if they take more, absent ones are removed
+  /// Set setup and beams, and keep the beams that remain valid. @param maximumBytes largest memory
+  /// for all beams, bytes; if the beams take more, absent beams are removed
   void follow(const ScanSetup& setup, const ScanBeams& scanned, std::size_t maximumBytes);
 
   std::size_t bytes() const;
@@ -62,7 +62,7 @@ std::uint64_t checksumOf(const ScanBeams& beams);
 
 /// Hash of all inputs of a beam's geometry except the beam: mesh, beam shape, borders of media,
 /// source and sampling of samples, N and seed. If beams may be integrated or divided into cells,
-/// also range units, gate and object ids.
+/// range units, gate and object ids are inputs, too.
 std::uint64_t traceKey(const ScanSetup& setup);
 }
 

@@ -1,16 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file ViewFinder.h
- * @brief Finds what a beam sees of its candidates (Candidates.h).
+ * @brief Finds the view of a beam: which of its candidates (Candidates.h) the beam sees.
  *
  * A beam that few triangles enter is integrated over the polygons that it sees (VisiblePolygons.h,
- * PolygonQuadrature.h). A beam that more triangles enter is divided into cells (BeamCells.h). Where
- * the cells have too many strips, the rays of the beam are its samples.
+ * PolygonQuadrature.h). A beam that more triangles enter is divided into cells (BeamCells.h). If
+ * the cells have too many strips, the rays of the beam are the samples.
  *
  * Source: see the headers named above.
  * Differs: the paper draws N rays for every beam.
- * Valid: a view depends only on the beam, the triangles that enter it, the inputs of traceKey() and
- * the number of reflections, but not on materials, limits or attenuation.
+ * Valid: a view depends only on the beam, the triangles that enter the beam, the inputs of
+ * traceKey() and the number of reflections. A view does not depend on materials, limits or
+ * attenuation.
  * Test: TestScan.cxx, TestScanAgain.cxx, TestBeamCells.cxx.
  */
 #ifndef avianlidar_ViewFinder_h
@@ -26,15 +27,15 @@
 
 namespace avianlidar
 {
-/// Finds the views of one beam after the other. One per thread; the constructor's arguments must
-/// outlive this.
+/// Finds the views of one beam after the other. One object per thread, which the constructor's
+/// arguments must outlive.
 class ViewFinder
 {
 public:
   ViewFinder(const ScanSetup& setup, const SceneTriangles& scene, BeamTracer& tracer);
 
   /// @param candidates all triangles that may enter the beam, each once, in any order
-  /// @param cost increased by the cost of traced rays
+  /// @param cost counters, increased by the cost of traced rays
   BeamView find(std::uint64_t beam, const BeamFrame& frame,
     const std::vector<std::uint32_t>& candidates, TraceCounters& cost);
 

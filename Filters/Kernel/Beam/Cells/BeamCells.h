@@ -3,25 +3,25 @@
  * @file BeamCells.h
  * @brief Samples of a beam that many triangles enter, from a grid of cells and rays.
  *
- * 1. The disc is divided into 4 x 4 cells, and each cell again. The surfaces in the list of a cell
- * are tested against its sixteen children at once (CellLanes.h). A child keeps a surface unless a
- * side of the surface separates it from the child, or another surface covers the child in front of
- * it.
+ * 1. The disc is divided into 4 x 4 cells, and each cell is divided in the same way. The surfaces
+ * in the list of a cell are tested against its sixteen children at once (CellLanes.h). A child
+ * keeps a surface unless a side of the surface separates surface and child, or another surface
+ * covers the child in front of this surface.
  * 2. A cell that one surface covers within one strip (RangeStrips.h) is one exact sample.
  * 3. Every other cell of the last level holds 16 m^2 jittered rays, one in each square of a grid.
  * These rays are tested only against the list of the cell.
  *
- * N alone fixes the density of rays (densityOfCells()), so that surfaces that the first rays miss
- * cause no bias. A cell gets more rays, or is divided further, if it holds an object on which fewer
- * than CellDensity::raysOnObject() rays would fall. A cell that may hold the middle of a specular
- * lobe is divided, too.
+ * N alone fixes the density of rays (densityOfCells()), so surfaces that the first rays miss cause
+ * no bias. A cell gets more rays, or is divided further, if it holds an object on which fewer than
+ * CellDensity::raysOnObject() rays would fall. A cell that may hold the middle of a specular lobe
+ * is also divided further.
  *
  * Source: Warnock, "A Hidden Surface Algorithm for Computer Generated Halftone Pictures", 1969, for
- * the division; Catmull, 1978, for lists that are shorter in smaller cells.
+ * the division; Catmull, 1978, for lists that become shorter in smaller cells.
  * Differs: the smallest cells hold stratified rays, which have a standard error, instead of pixels.
- * Valid: any triangles. Samples depend only on the beam, the triangles that enter its disc and
- * their object ids, not on the order of the triangles, their materials or the tree. Specular lobes
- * are resolved up to exponents of about 1e8 in a beam of 5.6 mrad.
+ * Valid: any triangles. Samples depend only on the beam, and on the triangles that enter its disc
+ * and their object ids. Samples do not depend on the order of the triangles, their materials or the
+ * tree. Specular lobes are resolved up to exponents of about 1e8 in a beam of 5.6 mrad.
  * Test: TestBeamCells.cxx, TestCellErrors.cxx, TestBird.cxx.
  */
 #ifndef avianlidar_BeamCells_h
@@ -42,14 +42,16 @@
 
 namespace avianlidar
 {
-/// Largest number of triangles of a beam whose cells have lists. The rays of other beams are traced
-/// through the tree.
+/// Largest number of triangles in a beam whose cells have lists of surfaces. The rays of other
+/// beams are traced through the tree.
 constexpr std::size_t MostTrianglesOfCells = 2000;
 
-/// Smallest share of the disc, by the area of its triangles, for which an object gets more rays.
+/// Smallest share of the disc that the triangles of an object must cover for the object to get more
+/// rays.
 constexpr double LeastShareOfObject = 1e-6;
 
-/// Finds the samples of one beam after the other. One per thread; setup and scene must outlive it.
+/// Finds the samples of one beam after the other. One object per thread, which setup and scene must
+/// outlive.
 class BeamCells
 {
 public:
@@ -61,14 +63,14 @@ public:
     std::uint64_t beam, const BeamFrame& frame, const std::vector<const BeamSurface*>& entering);
 
   /// Keep only the triangles of small objects, which alone decide where the rays of place() lie.
-  /// The input, often millions of triangles, must contain every triangle that enters the beam.
+  /// The input must contain every triangle that enters the beam; often these are millions.
   void keepSmallObjects(
     std::uint64_t beam, const BeamFrame& frame, std::vector<std::uint32_t>& numbers);
 
   /// Place the rays of a beam with too many triangles for lists. Its cells are divided as small
   /// objects require, and its rays must be traced through the tree.
-  /// @param numbers triangles in any order, with all triangles of small objects; changed
-  /// @return valid until the next beam
+  /// @param numbers triangles in any order, among them all triangles of small objects; changed
+  /// @return the rays, valid until the next beam
   const BeamRays& place(
     std::uint64_t beam, const BeamFrame& frame, std::vector<std::uint32_t>& numbers);
 
@@ -80,10 +82,10 @@ private:
   struct Cell
   {
     int level;
-    std::uint32_t column, row; ///< place among 4^level
-    float occluder;            ///< CellSurface::inverse of the surface that covers it; 0: none
-    double x, y, width;        ///< corner and side, half-beamwidths
-    double area;               ///< area of its part in the beam, half-beamwidths squared
+    std::uint32_t column, row; ///< column and row among 4^level
+    float occluder;            ///< CellSurface::inverse of the covering surface; 0: not covered
+    double x, y, width;        ///< corner and side of the cell, half-beamwidths
+    double area;               ///< area of the cell's part in the beam, half-beamwidths squared
   };
   struct List
   {
@@ -120,7 +122,7 @@ private:
   const SceneTriangles& Scene;
   const CellDensity Density;
   const BeamShape Shape;
-  std::vector<double> Areas; ///< areas in the beam of the cells of the first two levels
+  std::vector<double> Areas; ///< areas, in the beam, of the cells of the first two levels
   std::vector<float> Jitter; ///< places of rays in a block, in units of their spacing
 
   // The current beam.
@@ -132,11 +134,12 @@ private:
   double LeastShare = LeastShareOfObject; ///< least share of a small object
   bool HasObjects = false;                ///< whether small objects enter the disc
   bool HasFeet = false;                   ///< whether middles of specular lobes may be in the disc
-  std::vector<CellSurface> Surfaces;      ///< `All` in single precision
-  std::vector<std::pair<int, std::uint64_t>> Objects; ///< id and area of each, after sumObjects()
-  std::vector<int> Large;                             ///< ids of objects known to be large
+  std::vector<CellSurface> Surfaces;      ///< surfaces of `All` in single precision
+  /// Id and area of each small object, after sumObjects().
+  std::vector<std::pair<int, std::uint64_t>> Objects;
+  std::vector<int> Large; ///< ids of objects known to be large
   std::vector<Level> Levels;
-  std::vector<std::uint64_t> MetIn; ///< last traced cell in which a ray met a surface
+  std::vector<std::uint64_t> MetIn; ///< by surface: last traced cell in which a ray met the surface
   std::uint64_t Traced = 0;         ///< number of cells traced so far, in all beams
   bool TooMany = false;             ///< whether there are too many strips or blocks of rays
   RangeStrips Strips;
@@ -145,12 +148,12 @@ private:
   // A beam whose rays are traced through the tree.
   bool Plans = false; ///< whether rays are only placed, not tested
   BeamTriangles Seen;
-  BeamRays Rays; ///< the rays in the beam
+  BeamRays Rays; ///< rays that lie in the beam
   std::vector<CellRays> Blocks;
   std::size_t MostBlocks = 0;
-  std::vector<double> Shares;         ///< share of the pulse of each ray, by block
-  std::vector<std::uint64_t> Hits;    ///< keyAbove() triangle and ray
-  std::vector<std::uint64_t> Numbers; ///< keyAbove() triangle and surface
+  std::vector<double> Shares;         ///< share of the pulse of each ray, by block of rays
+  std::vector<std::uint64_t> Hits;    ///< keyAbove() of triangle and ray
+  std::vector<std::uint64_t> Numbers; ///< keyAbove() of triangle and surface
   std::vector<std::int32_t> OfRays;   ///< surface that each ray sees; -1: none
 };
 }

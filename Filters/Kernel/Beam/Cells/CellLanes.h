@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file CellLanes.h
- * @brief The two inner loops of BeamCells.h, in SIMD lanes: a list of surfaces against sixteen
- * cells, and against sixteen rays.
+ * @brief The two inner loops of BeamCells.h, in SIMD lanes: tests of a list of surfaces against
+ * sixteen cells, and against sixteen rays.
  *
  * Source: Pineda, "A Parallel Algorithm for Polygon Rasterization", SIGGRAPH 1988.
- * Differs: single precision in the beam's plane, whose coordinates are at most 1 in the disc. A
- * side that two triangles share has opposite signs in them, bit for bit, so no ray passes between
- * them.
+ * Differs: single precision in the beam's plane, whose coordinates are at most 1 in the disc. The
+ * coefficients of a side that two triangles share have opposite signs in the two triangles, bit for
+ * bit, so no ray passes between the triangles.
  * Valid: sides are accurate to 1e-6 half-beamwidths. Surfaces whose 1/z differ by less than
- * CellSurface::slack may be seen in the wrong order. Products are not fused: all instruction sets
- * give the same bits.
+ * CellSurface::slack may be seen in the wrong order. Products are not fused, so all instruction
+ * sets give the same bits.
  * Test: TestBeamCells.cxx, InstructionSets.cxx.
  */
 #ifndef avianlidar_CellLanes_h
@@ -25,25 +25,25 @@ constexpr int CellLanes = 16;
 /// A BeamSurface in single precision. Sides that do not meet the disc are (0, 0, 1).
 struct CellSurface
 {
-  float lines[4][3];
+  float lines[4][3];  ///< PlaneLine of each side: x, y and z
   float slopes[4];    ///< |x| + |y| of each side
-  float inverse[3];   ///< 1/z, divided by its largest value in the beam
+  float inverse[3];   ///< PlaneLine of 1/z, divided by the largest 1/z in the beam
   float inverseSlope; ///< |x| + |y| of `inverse`
   float most;         ///< upper bound of `inverse`
   float slack;        ///< bound of the rounding of `inverse`
   float share;        ///< share of the beam that its small object fills; 0: no small object
-  float foot[2];      ///< foot of the perpendicular from the apex: middle of the specular lobe
+  float foot[2];      ///< foot of the perpendicular from the apex (middle of the lobe)
 };
 
 /// Sixteen children of a cell, four by four.
 struct CellChildren
 {
-  float x, y, width; ///< corner of the first child, and side of each, half-beamwidths
-  /// CellSurface::inverse of the surface that covers each child and hides all behind it; infinity:
-  /// the child is skipped.
+  float x, y, width; ///< corner of the first child, and side of a child, half-beamwidths
+  /// CellSurface::inverse of the surface that covers each child and hides all surfaces behind;
+  /// infinity: the child is skipped.
   float occluders[CellLanes];
   std::uint32_t counts[CellLanes]; ///< lengths of `lists`
-  std::uint32_t* lists[CellLanes]; ///< numbers of surfaces; each list has room for all
+  std::uint32_t* lists[CellLanes]; ///< surfaces of each child; each list has room for all
 };
 
 /// Distribute a list of surfaces, nearest first, over the children in which they may be seen.
@@ -53,8 +53,8 @@ void distribute(const CellSurface* surfaces, const std::uint32_t* list, std::uin
 /// Sixteen rays, and the surface that each ray sees.
 struct CellRays
 {
-  float x[CellLanes], y[CellLanes];
-  std::int32_t seen[CellLanes]; ///< number of the surface that the ray sees; -1: none
+  float x[CellLanes], y[CellLanes]; ///< places of the rays in the plane, half-beamwidths
+  std::int32_t seen[CellLanes];     ///< number of the surface that the ray sees; -1: none
 };
 
 /// Find which surface of a list, nearest first, each ray sees.

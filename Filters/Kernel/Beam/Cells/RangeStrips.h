@@ -1,19 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file RangeStrips.h
- * @brief Samples of a beam in cells: sums over its rays by strips of range and incidence.
+ * @brief Samples of a beam in cells: sums over rays, by strips of range and angle of incidence.
  *
  * On a plane the range gives the angle of incidence. The rays of a triangle within a strip of
- * ranges are therefore one sample, at their mean range. A strip lies between two ranges at which a
- * pulse begins to enter a range unit or to leave it. Between these ranges the unit's share of the
- * pulse is linear in the range. Strips are divided further by the angle of incidence, for specular
- * lobes.
+ * ranges are therefore one sample, at the mean range of these rays. A strip lies between two ranges
+ * at which a pulse begins to enter or to leave a range unit. Between these ranges the unit's share
+ * of the pulse is linear in the range. Strips are divided further by the angle of incidence, for
+ * specular lobes.
  *
  * Source: none.
- * Differs: the strata of the standard error are a ray and one of two neighbours in a square of
- * four. Neighbours differ more than rays of one stratum, so the estimate tends to be too large.
- * addVariance() accounts for surfaces that no ray of a cell met.
- * Valid: at most four million strips of a beam. Lanes of any width give the same bits.
+ * Differs: a stratum of the standard error is a ray and one of its two neighbours in a square of
+ * four rays. Neighbours differ more than rays of one stratum, so the estimate tends to be too
+ * large. addVariance() accounts for surfaces that no ray of a cell met.
+ * Valid: at most four million strips per beam. Lanes of any width give the same bits.
  * Test: TestBeamCells.cxx, TestCellErrors.cxx.
  */
 #ifndef avianlidar_RangeStrips_h
@@ -34,21 +34,21 @@
 
 namespace avianlidar
 {
-/// Largest length of a strip, divided by its range.
+/// Largest length of a strip, divided by the range of the strip.
 constexpr double MostOfRange = 0.02;
 
 /// Samples of a beam by cells.
 struct CellSamples
 {
   BeamSamples samples;
-  std::vector<std::uint32_t> others; ///< other half of each surface of `samples`, or NoTriangle
+  std::vector<std::uint32_t> others; ///< PlaneSurface::other of each surface of `samples`
   std::vector<double> variance;      ///< variance of the weight of each sample
-  /// Variance of the weight that may move to a neighbouring sample of the same range unit.
+  /// Variance, by sample, of the weight that may move to a neighbouring sample of the same unit.
   std::vector<double> moves;
-  std::vector<double> halves; ///< part of `moves` across diagonals of quadrilaterals; or empty
-  /// The visible surfaces with hidden parts; null if two reflections are not asked for.
+  std::vector<double> halves; ///< part of `moves` across diagonals of quadrilaterals; empty: none
+  /// The surfaces that the beam sees, with hidden parts; null with one reflection.
   std::unique_ptr<VisiblePolygons> surfaces;
-  bool isCrowded = false; ///< whether rays were traced through the tree (MostTrianglesOfCells)
+  bool isCrowded = false; ///< whether the rays were traced through the tree (MostTrianglesOfCells)
 
   std::size_t bytes() const
   {
@@ -59,7 +59,8 @@ struct CellSamples
       sizeof(double);
   }
 
-  /// Standard error, J, of the energy in some range units. @param shares shares, the samples' first
+  /// Standard error, J, of the energy in some range units. @param shares shares in the units, in
+  /// which shares of samples come first
   double errorOf(const RangeShares& shares, const ScanSetup& setup) const;
 };
 
@@ -69,20 +70,20 @@ struct SurfaceStrips
   double number; ///< number of the surface
   PlaneLine inverse, diagonal;
   double height;         ///< distance of the plane from the apex, m
-  double gate, perMetre; ///< largest range, m; parts of range units in a metre
-  double one, two;       ///< offsets of the two kinds of borders, in parts of range units
+  double gate, perMetre; ///< largest range, m; number of parts of range units per metre
+  double one, two;       ///< offsets of the two kinds of borders, parts of range units
   double least;          ///< number of the first strip
   double first;          ///< key of the first strip
   double count;          ///< number of strips of each half
 };
 
-/// Sums the rays of one beam after the other. One per thread; the setup must outlive it.
+/// Sums the rays of one beam after the other. One object per thread, which the setup must outlive.
 class RangeStrips
 {
 public:
   explicit RangeStrips(const ScanSetup& setup);
 
-  /// @param surfaces surfaces that rays may meet; they must live until collect()
+  /// @param surfaces surfaces that rays may meet, which must live until collect()
   void begin(const BeamFrame& frame, const std::vector<const BeamSurface*>& surfaces);
 
   /// Add a square inside the disc that one surface covers. @param share share of the pulse
@@ -112,21 +113,21 @@ private:
   void addHalves(std::size_t strip, double variance);
 
   const ScanSetup& Setup;
-  const double UnitLength; ///< m
+  const double UnitLength; ///< length of a range unit, m
   const double Gate;       ///< range beyond which nothing is received, m
-  const double Offset;     ///< units from a border to the range at which a pulse begins to enter
+  const double Offset;     ///< units between a border and the range at which a pulse enters
   const BeamShape Shape;
   double Tangent2 = 0.0;
-  double Flatness2 = 1.0; ///< BeamFrame::flatness2
-  const bool HasColumns;  ///< whether samples get columns of air
+  double Flatness2 = 1.0; ///< flatness2 of the current beam's BeamFrame
+  const bool HasColumns;  ///< whether samples get columns of air (BeamSamples::columns)
   bool Uneven = false;    ///< whether weights of the rays of a cell differ
   const std::vector<const BeamSurface*>* All = nullptr;
   std::vector<std::uint32_t> Of;      ///< place of each surface in `Visible`, or None
-  std::vector<SurfaceStrips> Visible; ///< in the order of their keys
+  std::vector<SurfaceStrips> Visible; ///< visible surfaces, in the order of their keys
   double Used = 0.0;                  ///< number of strips of all surfaces so far
   std::vector<Strip> Sums;            ///< strips with rays
-  std::vector<double> Halves;         ///< CellSamples::halves, by the first `Sums`; mostly empty
-  std::vector<std::uint32_t> Places;  ///< by key: place in `Sums`, if the strip there has the key
+  std::vector<double> Halves;         ///< CellSamples::halves of the first `Sums`; mostly empty
+  std::vector<std::uint32_t> Places;  ///< by key: place in `Sums`, if the strip at it has the key
   std::vector<std::uint64_t> Keys;    ///< keys of the strips with rays, sorted
 };
 }

@@ -23,7 +23,8 @@
 
 namespace avianlidar
 {
-/// Distance, m, from a surface below which a point at `range` from the apex counts as on it.
+/// Distance from a surface, m, below which a point at `range` from the apex counts as on the
+/// surface.
 constexpr double surfaceMargin(double range)
 {
   return 1e-9 * range;
@@ -32,25 +33,25 @@ constexpr double surfaceMargin(double range)
 /// Marks a path that does not end at a sample.
 constexpr std::uint32_t NoSample = 0xffffffffu;
 
-/// Samples of a beam, with 28 bytes a sample and 8 bytes a surface.
+/// Samples of a beam, with 28 bytes per sample and 8 bytes per surface.
 struct BeamSamples
 {
-  /// Samples on a triangle: from the end of the previous surface to `end`.
+  /// Samples on a triangle, from the end of the previous Surface up to `end`.
   struct Surface
   {
     std::uint32_t triangle;
     std::uint32_t end;
   };
-  std::vector<Surface> surfaces;  ///< in the order of the samples; a triangle may occur again
+  std::vector<Surface> surfaces;  ///< surfaces, in the order of samples; triangles may recur
   std::vector<std::uint32_t> ray; ///< number of the ray; empty unless the samples are rays
   std::vector<double> range;      ///< range, m
   std::vector<double> cosine;     ///< cosine of incidence, in [0, 1]
-  std::vector<double> weight;     ///< share of the pulse's energy that arrives
+  std::vector<double> weight;     ///< share of the pulse's energy that arrives at the sample
 
-  /// Bits of the columns of air in which the sample's rays lie (BeamAir.h); empty: all columns.
+  /// Bits of the columns of air in which a sample's rays lie (BeamAir.h); empty: all columns.
   std::vector<std::uint64_t> columns;
 
-  std::uint32_t rays = 0; ///< number of traced rays, with and without hit
+  std::uint32_t rays = 0; ///< number of traced rays, with or without a hit
   bool coplanar = false;  ///< whether all samples lie on one plane
   double nearest = std::numeric_limits<double>::infinity(); ///< least range, m
   double farthest = 0.0;                                    ///< largest range, m
@@ -69,7 +70,7 @@ struct BeamSamples
     }
   }
 
-  /// True if one plane fills the whole beam, as far as its rays show.
+  /// True if all rays of the beam hit one plane.
   bool onOnePlane() const { return this->coplanar && this->size() == this->rays; }
 
   std::size_t bytes() const
@@ -87,10 +88,10 @@ struct SampleGeometry
   struct Surface
   {
     std::uint32_t triangle;
-    Vec3 normal;   ///< unit, towards the apex
+    Vec3 normal;   ///< unit normal, towards the apex
     double height; ///< distance of the plane from the apex, m
   };
-  std::vector<double> dx, dy, dz;     ///< unit directions
+  std::vector<double> dx, dy, dz;     ///< unit directions from the apex
   std::vector<double> nx, ny, nz;     ///< normals of the surfaces at the samples
   std::vector<std::uint32_t> surface; ///< place in `surfaces` of each sample's surface
   std::vector<Surface> surfaces;

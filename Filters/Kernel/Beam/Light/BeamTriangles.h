@@ -4,16 +4,17 @@
  * @brief The triangles that enter a beam's disc, set up in the beam's plane, nearest first.
  *
  * The beam fills the unit disc of its plane (BeamFrame.h). In this plane a triangle is the
- * intersection of the half-planes of its edge functions (TriangleTest.h), and 1/z of its points is
- * an affine function, with z the distance along the axis. Triangles are set up eight at a time, in
- * SIMD lanes. Two triangles with consecutive numbers become one surface if they form a convex
- * quadrilateral in one plane, but for the rounding of scene coordinates. Triangles that share a
- * plane (CoincidentFaces.h) have the same 1/z, and are sorted by number.
+ * intersection of the half-planes of its edge functions (TriangleTest.h), and 1/z of the triangle's
+ * points is an affine function. Here z is the distance along the axis. Triangles are set up eight
+ * at a time, in SIMD lanes. Two triangles with consecutive numbers become one surface if they form
+ * a convex quadrilateral in one plane, but for the rounding of scene coordinates. Triangles that
+ * share a plane (CoincidentFaces.h) have the same 1/z and are sorted by number.
  *
  * Source: Pineda, "A Parallel Algorithm for Polygon Rasterization", SIGGRAPH 1988, for half-planes.
  * Differs: the plane lies across a beam's axis, and the unit disc takes the place of pixels.
  * Valid: any triangles. The result depends only on the beam and the triangles that enter the disc,
- * not on their order. A triangle that overlaps the disc by less than rounding may be left out.
+ * not on the order of the triangles. A triangle that overlaps the disc by less than rounding may be
+ * left out.
  * Test: TestVisiblePolygons.cxx, TestBeamCells.cxx.
  */
 #ifndef avianlidar_BeamTriangles_h
@@ -46,7 +47,7 @@ struct PlaneLine
 };
 
 /// Radii, in half-beamwidths, of the inscribed and circumscribed circles of an octagon around the
-/// disc; the margin exceeds rounding.
+/// disc. The margin of 1e-6 exceeds rounding.
 constexpr double InRadius = 1.0 + 1e-6;
 constexpr double OutRadius = InRadius * 1.0823922002923940; // 1/cos(pi/8)
 
@@ -54,11 +55,11 @@ constexpr double OutRadius = InRadius * 1.0823922002923940; // 1/cos(pi/8)
 struct PlaneSurface
 {
   std::uint32_t triangle;
-  std::uint32_t other; ///< the other half, or NoTriangle
+  std::uint32_t other; ///< triangle of the other half, or NoTriangle
   PlaneLine diagonal;  ///< side between the halves, negative on the other half
-  PlaneLine inverse;   ///< 1/z, 1/m
+  PlaneLine inverse;   ///< 1/z on the plane, 1/m
   double height;       ///< distance of the plane from the apex, m
-  double leastInverse; ///< lower bound of 1/z, 1/m: no corner is farther
+  double leastInverse; ///< lower bound of 1/z at all corners, 1/m
 
   /// The half that holds a point of the surface.
   std::uint32_t triangleAt(const PlanePoint& p) const
@@ -72,19 +73,20 @@ constexpr double AreaUnknown = -1.0;
 /// A surface that enters the disc.
 struct BeamSurface : PlaneSurface
 {
-  std::uint32_t crosses; ///< bit k: side k of the triangle meets the octagon
+  std::uint32_t crosses; ///< bits of the sides of the triangle that meet the octagon
   int count = 0;         ///< number of `lines`
   PlaneLine lines[4];    ///< sides that meet the octagon; slope 1, positive inside
-  double mostInverse;    ///< upper bound of 1/z in the octagon
+  double mostInverse;    ///< upper bound of 1/z in the octagon, 1/m
   double sortInverse;    ///< key of sort(), 1/m: mostInverse, or the bound of a shared plane
-  double area;           ///< half-beamwidths squared; AreaUnknown if it crosses the rim
+  double area;           ///< area, half-beamwidths squared; AreaUnknown if it crosses the rim
 };
 
-/// Sets up the triangles of one beam after the other. One per thread; the scene must outlive it.
+/// Sets up the triangles of one beam after the other. One object per thread, which the scene must
+/// outlive.
 class BeamTriangles
 {
 public:
-  /// @param most largest number of triangles that are set up; of more only the numbers are kept
+  /// @param most largest number of triangles that are set up; if more enter, only numbers are kept
   explicit BeamTriangles(
     const SceneTriangles& scene, std::size_t most = std::numeric_limits<std::size_t>::max())
     : Scene(scene)
@@ -97,14 +99,16 @@ public:
   /// Add triangles, in any order, each once. Every triangle that may enter the cone must be added.
   void add(const std::uint32_t* triangles, std::size_t count);
 
-  /// Call it after the last triangle. @return number of triangles that enter, if at most `most`
+  /// Must be called after the last triangle. @return number of triangles that enter, if at most
+  /// `most`
   std::size_t finish();
 
-  /// If more than `most` triangles enter, append the numbers of all of these and some others.
+  /// If more than `most` triangles enter, append the numbers of all triangles that enter, and of
+  /// some others.
   void appendNumbers(std::vector<std::uint32_t>& numbers) const;
 
-  /// Join the halves of quadrilaterals, and sort the surfaces, nearest first. Call it after the
-  /// last triangle. @return the surfaces
+  /// Join the halves of quadrilaterals, and sort the surfaces, nearest first. Must be called after
+  /// the last triangle. @return the surfaces
   const std::vector<const BeamSurface*>& sort();
   const std::vector<const BeamSurface*>& nearest() const { return this->Nearest; }
 
@@ -125,7 +129,7 @@ private:
   const std::size_t Most;
   BeamFrame Frame;
   std::vector<std::uint32_t> Waiting; ///< triangles not yet set up
-  std::vector<BeamSurface> Surfaces;  ///< the first `Count` are valid
+  std::vector<BeamSurface> Surfaces;  ///< surfaces, the first `Count` of them valid
   std::size_t Count = 0;
   std::vector<const BeamSurface*> Nearest;
   std::vector<std::uint8_t> Joints; ///< findJoint() of the triangles of the tree

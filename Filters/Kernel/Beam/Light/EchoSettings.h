@@ -28,10 +28,10 @@ namespace avianlidar
 enum class ReturnMode
 {
   All = 0,
-  Strongest = 1, ///< the return with the strongest range unit; the nearest of equal ones
+  Strongest = 1, ///< the return with the strongest range unit; among equal returns the nearest
   First = 2,
   Last = 3,
-  RangeUnits = 4 ///< the paper read literally: a point per perceived range unit, at its centre
+  RangeUnits = 4 ///< a point at the centre of each perceived range unit (paper, read literally)
 };
 
 /// Largest EchoSettings::lightEnergyFraction; equal to MaximumPathsPerBeam.
@@ -44,20 +44,21 @@ constexpr double FewTriangles = 100.0;
 constexpr double ManyTriangles = 200.0;
 constexpr double TrianglesPerRay = 1.0 / 50.0;
 
-/// Rays in the grid of a beam in cells (BeamCells.h), divided by N. Densities come in steps.
+/// Rays in the grid of a beam in cells (BeamCells.h), divided by N. The density of rays changes in
+/// steps.
 constexpr double CellRaysPerRay = 32.0;
 
 /// Grid of a beam in cells: each cell of the last level holds m x m blocks of 16 rays.
-/// MostBlocksAcross gives a million rays; it bounds memory and the time until an abort.
+/// MostBlocksAcross, with a million rays, bounds memory and the time until an abort.
 struct CellDensity
 {
   static constexpr int MostBlocksAcross = 18;
   int levels;          ///< number of times that cells are divided
-  int blocks;          ///< m, blocks of rays across a cell
+  int blocks;          ///< m, number of blocks of rays across a cell
   double rays() const; ///< number of rays in the disc
   /// Least number of rays on a small object. With OnObject rays, the area of a bird has an error of
-  /// 1.5 % rms, and of more than 5 % in one case of 300 (TestBird.cxx). With one level the number
-  /// is a 25th of the grid, but at least 16.
+  /// 1.5 % rms, and of more than 5 % in one case of 300 (TestBird.cxx). With one level the least
+  /// number is a 25th of the rays in the grid, but at least 16.
   double raysOnObject() const;
   static constexpr double OnObject = 256.0;
 };
@@ -73,7 +74,8 @@ constexpr double MaximumPathsPerBeam = 1e8;
 /// Largest number of range units of a beam's paths, which bounds memory (about 60 bytes each).
 constexpr double MaximumUnitsPerBeam = 1e8;
 
-/// Largest attenuation coefficient, 1/m: far beyond any air, but all optical depths stay finite.
+/// Largest attenuation coefficient, 1/m, far above the coefficient of any air. Optical depths stay
+/// finite.
 constexpr double MaximumAttenuation = 1e30;
 
 /// How the direct echo of a beam is found.
@@ -161,11 +163,11 @@ std::string checkUnits(const Sensor& sensor, const EchoSettings& settings);
 enum class EchoPreset
 {
   Custom = 0,    ///< the settings as they are
-  Draft = 1,     ///< for a first overview
-  Standard = 2,  ///< for most uses
-  Reference = 3, ///< converged; the other presets are compared with it
+  Draft = 1,     ///< settings for a first overview
+  Standard = 2,  ///< settings for most uses
+  Reference = 3, ///< converged settings, with which other presets are compared
   Paper = 4,     ///< the method of the paper: N = 100 rays, its constraints, a point per range unit
-  Preview = 5    ///< 100 rays and one reflection: the fastest
+  Preview = 5    ///< the fastest settings: 100 rays and one reflection
 };
 
 /// Apply a preset to the settings of fidelity; Paper also sets the settings that select the method.

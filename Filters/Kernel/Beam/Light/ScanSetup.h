@@ -2,13 +2,13 @@
 /**
  * @file ScanSetup.h
  * @brief Inputs that all beams of a scan share: surfaces, sensor, settings, noise plan, and the
- * parts of the model that the scan needs. They do not change while beams are simulated.
+ * parts of the model that the scan needs. These inputs do not change while beams are simulated.
  *
  * ModelNeeds follow from bounds that hold for all beams: pulse energy, limits, air, aperture and
  * the largest reflectance in the scene. ModelNeeds say whether paths with two reflections can
- * matter, and beyond which range nothing is perceived. The report of a beam lists the parts left
- * out (SkippedPart). With EchoSettings::fullModel no part is left out. Attenuation is always
- * modelled, because its exponential costs the same at any coefficient. Surfaces beyond the
+ * matter, and beyond which range nothing is perceived. The report of a beam lists the parts that
+ * are left out (SkippedPart). With EchoSettings::fullModel no part is left out. Attenuation is
+ * always modelled, because its exponential costs the same at any coefficient. Surfaces beyond the
  * perceivable range are always traced, for two reasons. Hits must not depend on limits and air, so
  * that a scan can be lit again. The report distinguishes a beam that meets only such surfaces from
  * a beam that meets no surface.
@@ -46,7 +46,7 @@ constexpr double SurelyBelow = 1.0 - 1e-9;
 enum SkippedPart : std::uint32_t
 {
   SkippedSecondaryPaths = 1, ///< some or all paths with two reflections
-  SkippedBeam = 2,           ///< the whole beam, as its total energy is not perceived
+  SkippedBeam = 2,           ///< the whole beam, because its total energy is not perceived
   SkippedNoise = 4,          ///< photon noise that cannot matter; set where the report is output
   SkippedBeyondRange = 8,    ///< a SkippedBeam whose surfaces all lie beyond the perceivable range
   SkippedDirectPaths = 16    ///< some direct echoes
@@ -56,17 +56,18 @@ enum SkippedPart : std::uint32_t
 struct ModelNeeds
 {
   /// Range, m, beyond which nothing is perceived, not even a surface that fills the beam and
-  /// returns the most that any surface of the scene can. Infinity if there is no such range.
+  /// returns as much as the scene's brightest surface. Infinity if there is no such range.
   double perceivableRange = 0.0;
-  bool secondaryReflections = false; ///< whether they are asked for and can matter
-  double secondaryBound = 0.0;       ///< bound of all paths of a beam with two reflections, J
-  double furtherBound = 0.0;         ///< bound of all paths with more reflections than asked for, J
+  bool secondaryReflections = false; ///< whether two reflections are asked for and can matter
+  double secondaryBound = 0.0;       ///< bound of a beam's energy by two reflections, J
+  double furtherBound = 0.0;         ///< bound of a beam's energy by more reflections, J
   double lightEnergyBound = 0.0; ///< bound of a range unit's loss by the light-energy constraint, J
-  /// Bound of the energy, J, that a range unit of a beam with an echo loses in all, plus the energy
-  /// that skipped noise might have added.
+  /// Bound of the energy, J, that a range unit of a beam with an echo loses by all omissions, plus
+  /// the energy that skipped noise might have added.
   double skippedEnergyBound = 0.0;
   /// Energy, J, above which all rays of a beam miss an object with a probability below 5 %. A beam
-  /// has N rays, or in cells the rays of the grid, where small objects with their own id get more.
+  /// has N rays, or, if divided into cells, the rays of its grid, with more on small objects that
+  /// have their own id.
   double missedDetailEnergy = 0.0;
 };
 
@@ -79,15 +80,15 @@ struct ScanSetup
   SharedVector<int> materialIds;    ///< one per triangle
   double largestReflectance = 0.0;  ///< largest albedo() of all triangles
   double largestGain = 0.0;         ///< largest apertureGain() of all triangles, 1/sr
-  /// Movers; null if nothing moves. Their triangles count in the two largest values, too.
+  /// Movers; null if nothing moves. The triangles of movers count in the two largest values, too.
   std::shared_ptr<const std::vector<Mover>> movers;
   /// Number of the first triangle of each mover (SceneTriangles.h).
   std::vector<std::uint32_t> firstTriangles;
   Sensor sensor;
-  EchoSettings settings;           ///< settings, with the attenuation coefficient of clear air
-  std::vector<PlacedMedium> media; ///< media; first the ones that fill the scene
+  EchoSettings settings;           ///< settings, including attenuation by the clear air
+  std::vector<PlacedMedium> media; ///< media, first the media that fill the scene
   NoisePlan noise;
-  std::int32_t revolution = 0; ///< number of the sensor's revolution; each has its own noise
+  std::int32_t revolution = 0; ///< number of the sensor's revolution, which selects the noise
   ModelNeeds needs;
 
   /// The clear air and all media of the scene.
@@ -128,10 +129,10 @@ private:
 /// Number the triangles of movers, and include these triangles in the largest reflectance and gain.
 void includeMovers(ScanSetup& setup);
 
-/// Set `noise` and `needs`, which follow from the other members.
+/// Set the members `noise` and `needs` of a setup, which follow from the other members.
 void planModel(ScanSetup& setup);
 
-/// Needs of a setup that is complete except for its needs.
+/// Needs of a setup whose other members are set.
 ModelNeeds needsOf(const ScanSetup& setup);
 
 /// Upper bound of the share of the arriving light that any surface of the scene returns.
@@ -142,7 +143,7 @@ double returnBound(const ScanSetup& setup, double range);
 bool dropsFaintPaths(const EchoSettings& settings);
 
 /// Energy, J, that a range unit may lose by dropped paths with LightEnergyThreshold::ShareOfLimit;
-/// otherwise 0, as the limit itself drops no direct echoes.
+/// otherwise 0, because LightEnergyThreshold::Limit drops no direct echoes.
 double lightEnergyTolerance(const ScanSetup& setup);
 }
 

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file Throughput.h
- * @brief Throughputs of direct echoes: energy received / energy of the pulse, without the air.
+ * @brief Throughputs of direct echoes: energy received / energy of the pulse, without loss in air.
  *
  * The sum of the throughputs and the nearest range bound the energy of all direct echoes together.
- * This bound suffices for most beams below the limit.
+ * This bound suffices to skip most beams below the limit.
  *
  * Source: paper, Eq. 4-9.
- * Differs: see Reflectance.h; the air is applied to the length of the whole path at the end.
- * Valid: bounds are never below what the paths return, except by rounding (SurelyAbove).
+ * Differs: see Reflectance.h; loss in air is applied at the end, to the length of the whole path.
+ * Valid: bounds are never below the energies that paths return, but for rounding (SurelyAbove).
  * Test: TestScan.cxx, TestScanAgain.cxx, TestEchoClosedForms.cxx.
  */
 #ifndef avianlidar_Throughput_h
@@ -25,7 +25,7 @@ namespace avianlidar
 /// Direct echoes of the samples of a beam.
 struct Throughput
 {
-  std::vector<double> reflected; ///< f_direct by sample: share of the arriving energy that returns
+  std::vector<double> reflected; ///< f_direct by sample: share of arriving energy that returns
   double directSum = 0.0;        ///< throughput of all direct echoes together
 
   void measure(const ScanSetup& setup, const BeamSamples& samples);
@@ -35,11 +35,11 @@ struct Throughput
 double directEnergies(const ScanSetup& setup, const BeamSamples& samples,
   const Throughput& throughput, std::vector<double>& energies);
 
-/// Largest transmission of the air along any path of a beam: no path is shorter than the way to the
-/// nearest surface and back. @param nearest range of the nearest surface, m
+/// Largest transmission of the air along any path of a beam. No path is shorter than twice the
+/// nearest range. @param nearest range of the nearest surface, m
 double transmissionBound(double nearest, double attenuation);
 
-/// Largest share of the light leaving a mirror that returns, by both directions of the path
+/// Largest share, of the light that leaves a mirror, that returns by both directions of the path
 /// together. @param nearest lower bound of the ranges of the beam's surfaces, m
 double mirrorReturnBound(const ScanSetup& setup, const BeamShape& shape, double nearest);
 

@@ -1,20 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file ConnectionFinder.h
- * @brief Diffuse connections of a beam (SecondaryReflection.h): which hits are connected, with
- * which weight, and the throughput of each connection without air.
+ * @brief Diffuse connections of a beam (SecondaryReflection.h): the connected hits, their weights,
+ * and the throughput of each connection without attenuation by air.
  *
- * 1. A beam has no connections if no two surfaces each have a hit in front of the plane of the
- * other, as at the outer corner of two walls.
+ * 1. Two surfaces may face each other if each has a hit in front of the plane of the other. A beam
+ * without such a pair, as at the outer corner of two walls, has no connections.
  * 2. The partners of a ray follow from M cyclic shifts of the ray numbers. Rays are stored twice in
- * a row, so that one SIMD loop tests all pairs of a shift, in some thirty operations for a vector
+ * a row, so that one SIMD loop tests all pairs of a shift, with about thirty operations per vector
  * of pairs.
- * 3. Throughputs are computed in SIMD loops, about 5 ns each.
+ * 3. Throughputs are computed in SIMD loops, in about 5 ns per connection.
  *
- * Source: paper, Sec. 3.4; for the shifts, Floyd's algorithm for samples without repetition.
- * Differs: the paper leaves open which secondary directions are followed, and their weight. Here
- * the sum over a ray's connections is an unbiased estimate of the mean over the cone's solid angle;
- * with an aperture it estimates the mean of the form factor, capped at MostFormFactor.
+ * Source: paper, Sec. 3.4; Floyd's algorithm for samples without repetition, for the shifts.
+ * Differs: the paper leaves open which secondary directions are followed, and with which weight.
+ * Here the sum over a ray's connections is an unbiased estimate of the mean over the cone's solid
+ * angle; with an aperture it estimates the mean of the form factor, capped at MostFormFactor.
  * Valid: M from 1 to N - 1. Connected pairs face each other by more than surfaceMargin().
  * Test: TestSecondaryReflection.cxx, TestSecondaryPaths.cxx.
  */
@@ -31,17 +31,18 @@
 
 namespace avianlidar
 {
-/// Finds the connections of one beam after the other. Reusable without allocation; one per thread.
+/// Finds the connections of one beam after the other. Reusable without allocation; one object per
+/// thread.
 class ConnectionFinder
 {
 public:
   explicit ConnectionFinder(const ScanSetup& setup);
 
-  /// Set the connections of the beam's trace. @param partners M, at least 1
+  /// Set the connections in the trace of a beam. @param partners M, at least 1
   void find(const SecondaryBeam& beam, std::uint32_t partners);
 
-  /// Find the pairs of surfaces that may face each other: each has a hit in front of the plane of
-  /// the other. @return false if there are no such pairs
+  /// Find the pairs of surfaces that may face each other: each surface has a hit in front of the
+  /// plane of the other. @return false if there are no such pairs
   bool findFacing(const BeamSamples& hits, const SampleGeometry& geometry);
 
   /// False if a surface certainly faces no other surface. @param surfaces number of all surfaces
@@ -66,13 +67,13 @@ private:
     std::vector<double> px, py, pz, nx, ny, nz, margin;
   };
   RayLanes Rays;
-  std::vector<std::uint64_t> Partners; ///< bits of 64 partners that face a ray, by row and ray
+  std::vector<std::uint64_t> Partners; ///< bits of the partners, 64 in a row, that face a ray
   std::vector<char> Facing;            ///< whether two surfaces may face each other; empty: unknown
   std::vector<double> Heights;         ///< largest heights of surfaces above planes, m
 };
 
 /// Form factor, seen from P1, of the part of a surface in the cone, as if all of the part lay at
-/// P2. It is the solid angle of the part, weighted with cosOut, divided by pi.
+/// P2: the solid angle of the part, weighted with cosOut, divided by pi.
 /// @param cosOut, cosIn cosines of the segment at P1 and P2 @param length distance from P1 to P2, m
 /// @param range range of P2, m @param cosBack cosine of incidence of the lidar's own light at P2
 /// @param solidAngle solid angle of the cone, sr
@@ -83,14 +84,16 @@ AVIANLIDAR_ALWAYS_INLINE double formFactor(
   return cosOut * cosIn * area / (Pi * length * length);
 }
 
-/// Largest form factor of a connection; short paths carry the excess.
+/// Largest form factor of a connection; short paths carry the excess of form factors above this
+/// value.
 constexpr double MostFormFactor = 1.0;
 
-/// Find the throughput of each connection if it is not blocked. @param materials by sample
+/// Find the throughput that each connection has unless blocked. @param materials material of each
+/// sample
 void connectionThroughputs(const ScanSetup& setup, const SecondaryBeam& beam,
   const MaterialLanes& materials, std::vector<double>& throughputs);
 
-/// Scale min(1, B/(g R2)) of a path by way of two surfaces, which keeps the ray within its budget
+/// Scale min(1, B/(g R2)) of a path over two surfaces, which keeps the ray within its budget
 /// (SecondaryReflection.h). @param direct share that the direct echo of the first surface returns
 double secondaryScale(const ScanSetup& setup, const Material& first, const Material& second,
   double cosIncidence, double direct);

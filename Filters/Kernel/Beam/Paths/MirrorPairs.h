@@ -11,14 +11,14 @@
  * 2. a part of the triangle lies in front of the plane of the surface;
  * 3. hits of the surface lie in front of the side of the triangle that faces the apex.
  *
- * One descent of the cone finds the triangles, up to the farthest surface. Paths from a surface
- * without a pair return nothing, whatever the materials.
+ * One descent of the cone, up to the farthest surface, finds the triangles. Paths from a surface
+ * without a pair return nothing, whatever the materials are.
  *
  * Source: paper, Sec. 3.4, the beam constraint, applied to whole surfaces.
  * Differs: the paper tests each ray.
  * Valid: conservative: no path from a surface without pairs arrives. Surfaces that the cone's edge
- * grazes count as having pairs, and so do all surfaces of a beam that meets more than two triangles
- * for each sample.
+ * grazes count as having pairs. All surfaces count as having pairs in a beam that meets more than
+ * two triangles per sample.
  * Test: TestMirrorPairs.cxx, TestSecondaryConstraints.cxx.
  */
 #ifndef avianlidar_MirrorPairs_h
@@ -34,7 +34,7 @@
 
 namespace avianlidar
 {
-/// Finds the pairs of one beam after the other. Reusable without allocation; one per thread.
+/// Finds the pairs of one beam after the other. Reusable without allocation; one object per thread.
 class MirrorPairs
 {
 public:
@@ -53,7 +53,7 @@ private:
     double farthest; ///< bound of the distance from the apex at which paths end, m
     double least;    ///< lower bound of the height above the plane at which paths end, m
     double off;      ///< largest distance of a hit from the plane, m
-    AABB hits;       ///< box of the hits, relative to the apex, m
+    AABB hits;       ///< box around the hits, relative to the apex, m
     bool paired;     ///< true once a path may arrive
   };
   class Search;

@@ -1,25 +1,26 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file MirrorRegions.h
- * @brief Mirror paths of a beam whose visible surfaces are known, sampled in the parts of the beam
- * whose light goes from one surface to another.
+ * @brief Mirror paths of a beam whose visible surfaces are known. Samples lie only in parts of the
+ * beam whose light goes from one surface to another.
  *
  * In the mirror image of the scene behind a plane mirror, a mirror path continues as a straight
- * line. The point on the second surface is therefore a projective function of the ray, and each
- * side of the second surface is a straight line of rays. The rays from one surface to another fill
- * a convex polygon of the beam's plane, a region, which is cut from the polygon of the first
- * surface. Samples lie only in regions, in strata of equal area. They are twice as dense as rays in
- * the disc, and each region has at least two.
+ * line. The point on the second surface is therefore a projective function of the ray, and rays to
+ * a side of the second surface lie on a straight line of the beam's plane. The rays from one
+ * surface to another fill a convex polygon of the plane, called a region, cut from the polygon of
+ * the first surface. Samples lie in strata of equal area, twice as dense as rays in the disc. Each
+ * region has at least two samples; more than 32 regions of a surface have at least 64 together.
  *
- * In an integrated beam all polygons are visible (VisiblePolygons.h), and so are both ends of a
- * path. In a beam in cells the surfaces are whole triangles, and rays from the apex test both ends.
- * A ray through the tree tests the segment between the ends (SecondaryTracer.h).
+ * In an integrated beam all polygons are visible (VisiblePolygons.h), so both ends of a path are
+ * visible. In a beam in cells the surfaces are whole triangles, and rays from the apex test whether
+ * both ends are visible. A ray through the tree tests the segment between the ends
+ * (SecondaryTracer.h).
  *
  * Source: paper, Sec. 3.4, the beam constraint; Heckbert and Hanrahan, "Beam Tracing Polygonal
  * Objects", SIGGRAPH 1984, for the mirror image.
- * Differs: the paper follows rays.
+ * Differs: the paper follows the rays of the beam.
  * Valid: plane surfaces. Regions depend only on the beam and the visible surfaces, not on materials
- * or limits. In a beam in cells paths start and end on surfaces that its grid of rays meets.
+ * or limits. In a beam in cells, paths start and end only on surfaces that rays of the cells meet.
  * Test: TestMirrorRegions.cxx, TestPolygonPaths.cxx.
  */
 #ifndef avianlidar_MirrorRegions_h
@@ -36,16 +37,18 @@
 
 namespace avianlidar
 {
-/// Finds the mirror paths of one beam after the other. Reusable without allocation; one per thread.
+/// Finds the mirror paths of one beam after the other. Reusable without allocation; one object per
+/// thread.
 class MirrorRegions
 {
 public:
   MirrorRegions(const ScanSetup& setup, const SceneTriangles& scene);
 
-  /// False if a beam sees too many polygons.
+  /// False if a beam sees too many polygons for regions.
   static bool takes(const VisiblePolygons& seen);
 
-  /// Begin a beam. @param cells samples of a beam in cells (polygons have hidden parts), or null
+  /// Begin a beam. @param cells samples of a beam in cells, whose polygons have hidden parts; null
+  /// for other beams
   void begin(std::uint64_t beam, const BeamFrame& frame, const VisiblePolygons& seen,
     const BeamSamples* cells);
 
@@ -70,15 +73,15 @@ private:
   struct Surface
   {
     const PlaneSurface* seen;
-    Vec3 normal;                       ///< unit, towards the apex
+    Vec3 normal;                       ///< unit normal, towards the apex
     Vec3 mirror;                       ///< `normal` by BeamFrame::toPlane()
     double height;                     ///< distance of the plane from the apex, m
     PlaneLine along;                   ///< scalar product of `normal` and the direction of a ray
-    PlaneLine inverse;                 ///< 1/z, 1/m
-    std::uint32_t first, end;          ///< its facets
-    Vec3 low{ 1e300 }, high{ -1e300 }; ///< box of their corners, by BeamFrame::toPlane()
+    PlaneLine inverse;                 ///< 1/z on the plane, 1/m
+    std::uint32_t first, end;          ///< numbers of its facets, [first, end)
+    Vec3 low{ 1e300 }, high{ -1e300 }; ///< box of the facets' corners, by BeamFrame::toPlane()
     Box box;
-    double share; ///< share of the pulse that arrives; an upper bound for polygons
+    double share; ///< share of the pulse that arrives; for polygons an upper bound
   };
   /// A convex polygon of a surface.
   struct Facet
@@ -117,8 +120,8 @@ private:
   std::vector<Surface> Surfaces;
   std::vector<Facet> Facets;   ///< sorted by surface
   std::vector<Vec3> Points;    ///< corners of all facets, by BeamFrame::toPlane()
-  std::vector<double> Lanes;   ///< fillLanes(): rows of one value for each surface
-  std::vector<double> Facing;  ///< findFacing() of the surface on which paths start
+  std::vector<double> Lanes;   ///< rows, set by fillLanes(), of one value per surface
+  std::vector<double> Facing;  ///< by surface: result of findFacing() for `Start`
   std::vector<double> Heights; ///< heights of corners above the plane of a mirror, m
   std::vector<Box> Mirrored;   ///< boxes of the mirrored facets of a surface
   std::vector<Region> Regions;
@@ -128,7 +131,7 @@ private:
   BeamFrame Frame;
   const VisiblePolygons* Seen = nullptr;
   double ShareOfArea = 0.0;
-  std::uint32_t Sample = 0; ///< number of the next sample on `Start`; 2k and 2k + 1 are a stratum
+  std::uint32_t Sample = 0; ///< next sample on `Start`; samples 2k and 2k + 1 form a stratum
   std::uint64_t Pair = 0;   ///< pair of surfaces between which paths were placed last
   std::uint64_t Drawn = 0;  ///< number of samples drawn for this pair
   std::uint32_t Start = 0;  ///< surface on which paths start

@@ -23,13 +23,13 @@
 
 namespace avianlidar
 {
-/// Inputs and results of the search.
+/// Inputs and results of the search for paths with two reflections.
 struct SecondaryBeam
 {
   std::uint64_t id;
   const SceneTriangles& scene;
   const BeamFrame& frame;
-  BeamTracer& tracer; ///< tracer whose current beam this is
+  BeamTracer& tracer; ///< tracer set to this beam
   const BeamRays& rays;
   const BeamSamples& samples;     ///< rays from which paths start
   const SampleGeometry& geometry; ///< geometry of `samples`
@@ -37,14 +37,16 @@ struct SecondaryBeam
   const StrataPartition* strata;  ///< strata of `rays`; null for Monte Carlo
   SecondaryTrace& trace;
   double nearest; ///< lower bound of the ranges of the beam's surfaces, m
-  /// Called every 4096 steps; if it returns false, WorkStopped is thrown.
+  /// Function called every StepsBetweenChecks steps; if the function returns false, WorkStopped is
+  /// thrown. Null: the work is never stopped.
   const std::function<bool()>* wanted = nullptr;
   /// Visible surfaces between which mirror paths go (MirrorRegions.h); null: mirror paths start
   /// from `samples`.
   const VisiblePolygons* surfaces = nullptr;
-  const BeamSamples* cells = nullptr; ///< samples of a beam in cells, for `surfaces`; or null
-  BeamAir* air = nullptr;             ///< air along the beam; null: all media fill the scene
-  double silentBelow = 0.0;           ///< energy of all paths, J, below which there is no echo
+  /// Samples of a beam in cells, which give the shares of `surfaces`; null for other beams.
+  const BeamSamples* cells = nullptr;
+  BeamAir* air = nullptr;   ///< air along the beam; null: all media fill the scene
+  double silentBelow = 0.0; ///< energy of all paths, J, below which no echo can arise
 
   /// Throw WorkStopped if the work is no longer wanted. A beam of 100,000 rays takes longer than a
   /// user waits after an abort.
@@ -59,7 +61,7 @@ struct SecondaryBeam
   static constexpr std::size_t StepsBetweenChecks = 4096;
 };
 
-/// Ranges (m), unit directions and normals of the hits of a beam, for SIMD loops.
+/// Ranges, m, unit directions and normals of the hits of a beam, for SIMD loops.
 struct SampleLanes
 {
   const double *range, *dx, *dy, *dz, *nx, *ny, *nz;

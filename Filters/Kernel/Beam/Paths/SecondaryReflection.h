@@ -7,22 +7,22 @@
  * of paths start at a primary hit P1:
  *
  * 1. A mirror path follows the mirror direction of the incident ray, with weight 1 and only f_s at
- * P1. If the visible surfaces are known, mirror paths start from samples of their own
- * (MirrorRegions.h).
- * 2. Diffuse connections lead to the hit points of M other rays of the beam, which the lidar both
- * lights and sees. Only f_d counts at P1 (f_s would count the mirror lobe twice). The partners
- * follow from M random cyclic shifts of the ray numbers. The weighted sum of the connections
- * estimates the mean over the cone's solid angle.
+ * P1. If the visible surfaces are known, MirrorRegions.h places the samples from which mirror paths
+ * start.
+ * 2. Diffuse connections lead to the hit points of M other rays of the beam. The lidar both lights
+ * and sees these points. Only f_d counts at P1 (f_s would count the mirror lobe twice). The
+ * partners follow from M random cyclic shifts of the ray numbers. The weighted sum of the
+ * connections estimates the mean over the cone's solid angle.
  *
  * At P2 both f_d and f_s count. A path counts only if P2 lies in the cone and is visible from the
  * apex, and if the segment leaves P1 and reaches P2 on the sides that face the apex. A path carries
  * Q f(P1) f_sur(P2) exp(-mu length).
  *
- * A ray never returns more than the albedo at P1 times Q. The direct echo leaves the budget B =
- * albedo - f_direct at P1. P1 can pass on at most the share g, and R2 = kd2 + ks2 is the
- * reflectance of the second surface. A path is scaled by min(1, B/(g R2)), which is 1 for the
- * materials of the paper. If the random weights of connections exceed their mean, the excess over
- * the budget is cut.
+ * A ray never returns more than Q times the albedo at P1. The direct echo leaves the budget B =
+ * albedo - f_direct at P1. P1 passes on at most the share g, and R2 = kd2 + ks2 is the reflectance
+ * of the second surface. A path is scaled by min(1, B/(g R2)), which is 1 for the materials of the
+ * paper. The weights of connections are random. Where the weights exceed their mean, the excess
+ * over the budget is cut.
  *
  * With a receiver aperture A > 0, and Omega the solid angle of the cone:
  *
@@ -31,18 +31,18 @@
  * density at P1. The widths of two mirrors' lobes add up where the light arrives.
  * 2. Both reflections of a connection are matt. A connection carries the form factor F = cos(out at
  * P1) cos(in at P2) r2^2 Omega/(pi L^2 cos(lidar's incidence at P2)), at most MostFormFactor = 1.
- * 3. Short paths carry the excess. M of them start at each hit, distributed as its matt light. A
- * path that ends in the cone with F > 1 carries 1 - 1/F. Like connections and mirror paths, such a
- * path takes the cosine of the outgoing direction in f at P2.
+ * 3. Short paths carry the excess of F over 1. M short paths start at each hit, distributed as the
+ * matt light of the hit. A path that ends in the cone with F > 1 carries 1 - 1/F. Like connections
+ * and mirror paths, such a path takes the cosine of the outgoing direction in f at P2.
  *
- * Geometry is found only where energies need it, and stored (BeamTrace.h). Throughputs are computed
- * each time a beam is lit.
+ * Geometry is found only where energies depend on the geometry, and is stored (BeamTrace.h).
+ * Throughputs are computed each time a beam is lit.
  *
  * Source: paper, Sec. 3.4 and Eq. 6. The sum of bounded connections and short paths: Kollig and
  * Keller, "Illumination in the Presence of Weak Singularities", MCQMC 2004.
- * Differs: the paper leaves open how many secondary directions are followed, and their weight. The
- * paper has neither the scale by the budget nor an aperture.
- * Valid: the paths of a ray return at most B together. No range unit loses more than epsilon Qlow
+ * Differs: the paper leaves open how many secondary directions are followed, and with which weight.
+ * The paper has neither the scale by the budget nor an aperture.
+ * Valid: the paths of a ray together return at most B. No range unit loses more than epsilon Qlow
  * by the light-energy constraint (BeamLighting.h).
  * Test: TestSecondaryReflection.cxx, TestSecondaryPaths.cxx, TestSecondaryConstraints.cxx,
  * TestScanAgain.cxx.
@@ -65,31 +65,31 @@ namespace avianlidar
 struct SecondaryPath
 {
   double length;          ///< length of the whole path, m
-  double energy;          ///< J
+  double energy;          ///< energy received, J
   std::uint32_t triangle; ///< triangle of the last reflection
   double cosIncidence;    ///< cosine of incidence at the last reflection
-  std::uint32_t one;      ///< sample at P1; NoSample for mirror paths by regions
-  std::uint32_t two;      ///< sample at P2 or, by regions, of the mirror path; or NoSample
+  std::uint32_t one;      ///< sample at P1; NoSample for mirror paths by MirrorRegions.h
+  std::uint32_t two;      ///< sample at P2; by MirrorRegions.h: key of the sample; or NoSample
   double unsure = 0.0;    ///< share of the energy that the width of a mirror's lobe may change
 };
 
-/// Finds the paths of one beam after the other. One per thread.
+/// Finds the paths of one beam after the other. One object per thread.
 class SecondaryReflection
 {
 public:
   SecondaryReflection(const ScanSetup& setup, const SceneTriangles& scene);
 
-  /// Upper bound of the sum of the throughputs of all paths of a beam, which paths from rays may
-  /// exceed a little by chance. @param samples samples of the direct echo, rays or not
-  /// @param tight false: the bound is the share of the albedo that direct echoes leave
+  /// Upper bound of the sum of the throughputs of all paths of a beam. Paths from rays may exceed
+  /// this bound a little by chance. @param samples samples of the direct echo, from rays or not
+  /// @param tight false: the bound is the part of the albedo that direct echoes leave
   double bound(const BeamSamples& samples, const Throughput& direct, bool tight) const;
 
-  /// The same bound for an integrated beam, which has no samples where no light returns directly.
+  /// The same bound for an integrated beam, which has no samples on surfaces without a direct echo.
   /// @param albedo largest albedo of the beam's surfaces @param nearest lower bound of ranges, m
   double bound(double albedo, double nearest) const;
 
   /// Set the paths of the beam: mirror paths in the order of the samples, connections, short paths.
-  /// @param lost energy, J, to which the bounds of the paths dropped here are added
+  /// @param lost energy, J, increased by the bounds of the paths that are dropped
   /// @return false if all paths together, blocked or not, carry less than
   /// SecondaryBeam::silentBelow; then no path is traced, and `lost` is the bound of all paths
   bool collect(const SecondaryBeam& beam, std::vector<SecondaryPath>& paths, double& lost);
@@ -120,12 +120,12 @@ private:
   MirrorPairs Pairs;
   std::vector<std::uint32_t> Triangles;      ///< triangle of each sample
   MaterialLanes Materials;                   ///< material of each sample
-  std::vector<double> SpecularBounds;        ///< bound of a mirror path's throughput, by sample
+  std::vector<double> SpecularBounds;        ///< bound of the mirror path's throughput, by sample
   double OverMirror = 1.0;                   ///< mirrorReturnBound()
-  double NumberWanted = 0.0;                 ///< number of mirror paths that may matter, both ways
+  double NumberWanted = 0.0;                 ///< number of paths by mirrors that may matter
   std::vector<char> Wanted;                  ///< whether mirror paths may matter, by surface
-  std::vector<double> MirrorThroughputs;     ///< unblocked throughput of mirror paths, both ways
-  std::vector<double> BackThroughputs;       ///< part of MirrorThroughputs by the reverse paths
+  std::vector<double> MirrorThroughputs;     ///< unblocked throughput of mirror and reverse paths
+  std::vector<double> BackThroughputs;       ///< part of MirrorThroughputs by reverse paths
   std::vector<double> ConnectionThroughputs; ///< unblocked throughput of connections
   std::vector<double> Returned;              ///< energy of paths with two reflections, by sample, J
 };

@@ -2,15 +2,15 @@
 /**
  * @file SecondaryTrace.h
  * @brief Geometry of a beam's paths with two reflections: ends of mirror paths and short paths, and
- * connections of hits. It is found when first needed, and kept with the beam.
+ * connections of hits. The geometry is found when first needed, and kept with the beam.
  *
  * A connection is a pair of hits that face each other, with all values but materials on which the
- * energy of its path depends, in SIMD lanes. A beam into a corner has M connections for each ray,
- * which take 81 bytes and some ns each.
+ * energy of its path depends, in SIMD lanes. A beam into a corner has M connections per ray. A
+ * connection takes 81 bytes and a few ns.
  *
- * Source: paper, Sec. 3.4; angles as ReflectionGeometry (Reflectance.h).
+ * Source: paper, Sec. 3.4; angles as in ReflectionGeometry (Reflectance.h).
  * Differs: see SecondaryReflection.h.
- * Valid: for the hits of one beam, and connections for `partners` = M.
+ * Valid: for the hits of one beam; connections for one M (`partners`).
  * Test: TestSecondaryPaths.cxx, TestSecondaryReflection.cxx.
  */
 #ifndef avianlidar_SecondaryTrace_h
@@ -25,7 +25,7 @@
 
 namespace avianlidar
 {
-/// Whether anything blocks the segment of a path.
+/// Whether a surface blocks the segment of a path.
 enum class Visibility : std::uint8_t
 {
   Unknown = 0,
@@ -33,8 +33,9 @@ enum class Visibility : std::uint8_t
   Clear = 2
 };
 
-/// Connections, one value each, in the order of path numbers. The light is reflected first at the
-/// hit P1, then at P2; angles at P2 belong to light from P1 to the apex (ReflectionGeometry).
+/// Connections, one value per connection and member, in the order of path numbers. The light is
+/// reflected first at the hit P1, then at P2; angles at P2 belong to light from P1 to the apex
+/// (ReflectionGeometry).
 struct SecondaryConnections
 {
   std::vector<std::uint32_t> one; ///< hit P1
@@ -45,9 +46,9 @@ struct SecondaryConnections
   std::vector<double> cosOut;        ///< cosine of the segment at P1
   std::vector<double> differenceOne; ///< cos theta_d at P1
   std::vector<double> cosIn;         ///< cosine of the segment at P2
-  std::vector<double> cosLobe;       ///< cosLobe, sin2Lobe and sin2Half at P2
-  std::vector<double> sin2Lobe;
-  std::vector<double> sin2Half;
+  std::vector<double> cosLobe;       ///< ReflectionGeometry::cosLobe at P2
+  std::vector<double> sin2Lobe;      ///< ReflectionGeometry::sin2Lobe at P2
+  std::vector<double> sin2Half;      ///< ReflectionGeometry::sin2Half at P2
   std::vector<double> differenceTwo; ///< cos theta_d at P2
 
   std::size_t size() const { return this->one.size(); }
@@ -57,7 +58,7 @@ struct SecondaryConnections
   /// Reserve memory for a number of connections.
   void reserve(std::size_t connections);
 
-  /// Add P1, P2 and the weight; measure() sets the other values of all.
+  /// Add P1, P2 and the weight of a connection. measure() sets the other values of all connections.
   void add(std::uint32_t hit1, std::uint32_t hit2, double meanWeight);
   void measure(const BeamSamples& hits, const SampleGeometry& geometry);
 };
@@ -73,8 +74,8 @@ enum class MirrorEnd : std::uint8_t
 /// A mirror path that arrives, with all values but materials on which its energy depends.
 struct MirrorPath
 {
-  std::uint32_t start;       ///< by regions: surface on which it starts
-  std::uint32_t one;         ///< hit of the first reflection; by regions: number of the sample
+  std::uint32_t start;       ///< surface of MirrorRegions.h on which the path starts
+  std::uint32_t one;         ///< hit of the first reflection, or sample of MirrorRegions.h
   std::uint32_t first;       ///< triangle of the first reflection
   std::uint32_t triangle;    ///< triangle of the second reflection
   double weight;             ///< share of the pulse's energy
@@ -85,7 +86,7 @@ struct MirrorPath
   double range;              ///< range of the second point, m
   ReflectionGeometry second; ///< angles at the second point
   Vec3 from, end;            ///< the two points relative to the apex, m
-  Visibility visibility;     ///< whether it is blocked
+  Visibility visibility;     ///< whether the path is blocked
 };
 
 /// A path of matt light whose form factor exceeds MostFormFactor (SecondaryReflection.h).
@@ -104,13 +105,13 @@ struct ShortPath
 /// Paths of a beam that have been found.
 struct SecondaryTrace
 {
-  std::vector<MirrorEnd> mirror; ///< one per hit; empty until first needed
-  /// Whether each surface was searched for mirror paths by regions; empty: paths start from hits.
+  std::vector<MirrorEnd> mirror; ///< end of the mirror path of each hit; empty until first needed
+  /// Whether MirrorRegions.h has searched each surface; empty: mirror paths start from hits.
   std::vector<char> searched;
-  std::vector<MirrorPath> mirrorPaths; ///< in the order of hits, or of surfaces
+  std::vector<MirrorPath> mirrorPaths; ///< mirror paths, in the order of hits or surfaces
   SecondaryConnections connections;
   std::uint32_t partners = 0;        ///< M of `connections`
-  std::vector<ShortPath> shortPaths; ///< in the order of hits
+  std::vector<ShortPath> shortPaths; ///< short paths, in the order of hits
   bool shortTraced = false;          ///< true once all short paths have been found
 
   std::size_t bytes() const

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file SecondaryTracer.h
- * @brief Traces paths with two reflections from the hits of a beam (SecondaryReflection.h): where
- * mirror paths and short paths end, and whether connections are blocked.
+ * @brief Traces paths with two reflections from the hits of a beam (SecondaryReflection.h). Finds
+ * where mirror paths and short paths end, and whether connections are blocked.
  *
  * The results are geometry and are stored in the beam's trace. Paths below the caller's threshold
- * are not traced, and neither are mirror paths from samples on surfaces without pairs
- * (MirrorPairs.h).
+ * are not traced. Mirror paths from samples on surfaces without pairs (MirrorPairs.h) are not
+ * traced either.
  *
  * Source: paper, Sec. 3.4.
  * Differs: see SecondaryReflection.h.
@@ -26,22 +26,23 @@
 namespace avianlidar
 {
 /// Trace the mirror paths that are not yet traced and may have a throughput of at least `least`.
-/// @param throughputs upper bounds, by sample @param pairs set here; with the beam constraint no
-/// path is traced from surfaces without pairs
+/// @param throughputs upper bounds of throughputs, by sample @param pairs set here; with the beam
+/// constraint no path is traced from surfaces without pairs
 void traceMirrors(const ScanSetup& setup, const SecondaryBeam& beam,
   const std::vector<double>& throughputs, double least, MirrorPairs& pairs);
 
-/// Find whether mirror paths by regions (MirrorRegions.h) with a throughput of at least `least` are
-/// blocked, unless this is already found. @param throughputs by path, as if not blocked
+/// Find whether the mirror paths of MirrorRegions.h with a throughput of at least `least` are
+/// blocked, unless this is already known. @param throughputs throughput of each path, as if not
+/// blocked
 void traceMirrorPaths(
   const SecondaryBeam& beam, const std::vector<double>& throughputs, double least);
 
-/// Find the short paths of the samples, unless they are already found.
+/// Find the short paths of the samples, unless these paths are already known.
 void traceShortPaths(const ScanSetup& setup, const SecondaryBeam& beam, ConnectionFinder& finder);
 
 /// Find whether connections with a throughput of at least `least` are blocked, unless this is
-/// already found.
-/// @param throughputs by connection, as if not blocked
+/// already known.
+/// @param throughputs throughput of each connection, as if not blocked
 void traceConnections(
   const SecondaryBeam& beam, const std::vector<double>& throughputs, double least);
 }

@@ -4,9 +4,9 @@
  * @brief The part of a convex polygon inside the unit disc, in strips across a direction, with
  * closed forms for the moments of every strip.
  *
- * p is the coordinate along the direction, q the coordinate across it. In a strip each end of the
- * chords lies on a side, q = a + b p, or on an arc, q = +-sqrt(1 - p^2). The moments of both are
- * elementary functions.
+ * Here p is the coordinate along the direction, and q the coordinate across the direction. In a
+ * strip each end of the chords lies on a side, q = a + b p, or on an arc, q = +-sqrt(1 - p^2). The
+ * moments of sides and arcs are elementary functions.
  *
  * Source: none.
  * Valid: moments of all strips together are accurate to 1e-15 of the disc's moments.
@@ -43,17 +43,18 @@ public:
   struct Bound
   {
     bool arc;
-    double a, b; ///< q = a + b p; for an arc `b` is the sign of q
+    double a, b; ///< coefficients of q = a + b p; for an arc `b` is the sign of q
     double at(double p) const;
   };
   struct Strip
   {
-    double from, to; ///< p
+    double from, to; ///< range of p
     Bound upper, lower;
   };
   static constexpr int MostStrips = 3 * PlaneRing::MostCorners + 2;
 
-  /// Set the polygon. @param along direction of p, of any length; zero: any direction
+  /// Set the polygon. @param along direction of p, of any length; a zero vector leaves the choice
+  /// open
   void set(const PlaneRing& ring, const PlanePoint& along);
 
   bool isEmpty() const { return this->Count == 0; }
@@ -62,13 +63,13 @@ public:
   int count() const { return this->Count; }
   const Strip& strip(int k) const { return this->Strips[k]; }
 
-  /// Find the moments of the parts between borders. @param borders p, ascending
+  /// Find the moments of the parts between borders. @param borders values of p, ascending
   void measure(const std::vector<double>& borders, PartMoments& moments);
 
-  /// Ends of the chord at p, which lies in a strip or between two strips.
+  /// Ends of the chord at a p that lies in a strip or between two strips.
   struct Chord
   {
-    double low, high; ///< q
+    double low, high; ///< range of q
   };
   Chord chordAt(double p) const;
 
@@ -77,8 +78,8 @@ private:
 
   Strip Strips[MostStrips];
   int Count = 0;
-  std::vector<double> Places; ///< borders of the parts in a strip, p
-  std::vector<double> Arcs;   ///< primitivesOf() `Places`
+  std::vector<double> Places; ///< values of p at the borders of the parts in a strip
+  std::vector<double> Arcs;   ///< primitivesOf() of `Places`
 };
 
 /// Area of a ring's part in the disc, for any corners. The error is about 1e-16 of the corners'

@@ -4,17 +4,17 @@
  * @brief Integrates the direct echo of a beam over its visible polygons, instead of sampling it.
  *
  * Each polygon gets the samples of its rule (PolygonRule.h), if the beam needs at most MostNodes.
- * Ground seen at a grazing angle spreads little energy over hundreds of range units. With
+ * Ground at a grazing angle spreads little energy over hundreds of range units. With
  * EchoSettings::lightEnergyConstraint such polygons are dropped as long as no unit loses more than
  * half the tolerance of the constraint.
  *
  * Source: paper, Eq. 4-9, and the light-energy constraint of Sec. 3.4.
  * Differs: the paper samples all beams with rays.
- * Valid: boundOf() bounds the error by ErrorOfUnit of the unit's energy, plus the energy that rules
- * may put beyond borders of units and the energy that VisiblePolygons::lost may hide. Units beyond
- * the range gate are not distinguished. A beam does not fit if one of its polygons has no rule, or
- * if it needs more than MostNodes samples. Only geometry decides whether a beam fits, not materials
- * or limits.
+ * Valid: boundOf() bounds the error of a unit's energy. The bound is the sum of three parts:
+ * ErrorOfUnit times the energy, the energy that rules may put beyond borders of units, and the
+ * energy that VisiblePolygons::lost may hide. Units beyond the range gate are not distinguished. A
+ * beam does not fit if one of its polygons has no rule, or if it needs more than MostNodes samples.
+ * Only geometry decides whether a beam fits, not materials or limits.
  * Test: TestEchoClosedForms.cxx, TestPolygonUnits.cxx, TestPolygonEdges.cxx,
  * TestPolygonLimits.cxx, TestPolygonPaths.cxx.
  */
@@ -31,7 +31,7 @@
 
 namespace avianlidar
 {
-/// Largest number of range units over which a polygon is never dropped.
+/// Largest number of range units of a polygon that is never dropped.
 constexpr double FewUnits = 16.0;
 
 /// Largest estimated number of samples of a beam; specular lobes add samples to the estimate.
@@ -40,19 +40,20 @@ constexpr double MostNodes = 2e4;
 /// Relative error of a unit's energy where an aperture gathers all light that a surface returns.
 constexpr double ErrorOfGathered = 1e-2;
 
-/// Integrates one beam after the other. One per thread; the setup must outlive it.
+/// Integrates one beam after the other. One object per thread, which the setup must outlive.
 class PolygonQuadrature
 {
 public:
   explicit PolygonQuadrature(const ScanSetup& setup);
 
-  /// False if a beam that sees these polygons cannot be integrated. @param most number of samples
+  /// False if a beam that sees these polygons cannot be integrated. @param most largest number of
+  /// samples
   bool fits(const VisiblePolygons& seen, double most = MostNodes) const;
 
   /// Begin a beam. The polygons must live until the next call of begin().
   void begin(const BeamFrame& frame, const VisiblePolygons& seen);
 
-  /// Extent and bounds of a beam, found without its nodes.
+  /// Extent and bounds of a beam, found without placing nodes.
   struct Extent
   {
     double nearest;     ///< lower bound of ranges, m
@@ -93,7 +94,8 @@ private:
   const ScanSetup& Setup;
   PolygonRule Rule;
   std::vector<Bounds> Polygons;
-  std::vector<std::pair<double, std::uint32_t>> Faint; ///< energy in a unit, J, and number
+  /// Energy in a unit, J, and number of each faint polygon.
+  std::vector<std::pair<double, std::uint32_t>> Faint;
   PolygonNodes Nodes;
 
   // The current beam.
@@ -101,7 +103,7 @@ private:
   const VisiblePolygons* Seen = nullptr;
   Extent Whole{};
   double Misplaced = 0.0; ///< bound of the share of the pulse that may meet another surface or none
-  double Dropped = 0.0;   ///< dropped(), J
+  double Dropped = 0.0;   ///< result of dropped(), J
   bool Gathers = false;   ///< whether the aperture gathers nearly all light that returns
 };
 }

@@ -3,18 +3,19 @@
  * @file PolygonRule.h
  * @brief Weighted samples of one visible polygon that give its direct echo in each range unit.
  *
- * On a plane at the distance h from the apex the range is r = sqrt(1 + t^2 rho^2)/w and the cosine
- * of incidence h/r. Here w is the affine 1/z, rho the distance from the axis in half-beamwidths,
+ * On a plane at the distance h from the apex, the range is r = sqrt(1 + t^2 rho^2)/w and the cosine
+ * of incidence is h/r. Here w is the affine 1/z, rho the distance from the axis in half-beamwidths,
  * and t = tan(theta0.5).
  *
- * 1. A polygon is cut across the gradient of w where a pulse begins to enter a range unit or to
- * leave it. Between two cuts the unit's share of the pulse is linear in r. Further cuts lie where
- * the range changes by MostStretch or the exponent of the specular lobe by MostFall.
+ * 1. A polygon is cut across the gradient of w where a pulse begins to enter or to leave a range
+ * unit. Between two cuts the unit's share of the pulse is linear in r. Further cuts lie where the
+ * range changes by MostStretch, or where the exponent of the specular lobe changes by MostFall.
  * 2. A part becomes one sample at its mean w and mean rho^2, two samples at its mean w plus and
- * minus the standard deviation, or four with two values of rho^2. All have the exact solid angle
- * (DiscPolygon.h).
+ * minus the standard deviation, or four samples with two values of rho^2. Together the samples have
+ * the exact solid angle of the part (DiscPolygon.h).
  * 3. In wide or Gaussian beams, and where a lobe is not much wider than the beam, a part takes a
- * product of Gauss-Legendre rules instead. These rules are dense only where a narrow lobe is.
+ * product of Gauss-Legendre rules instead. The nodes of these rules are dense only within narrow
+ * lobes.
  *
  * Source: paper, Eq. 4-9; Gauss-Legendre quadrature.
  * Differs: the paper samples all beams with rays.
@@ -44,17 +45,19 @@ constexpr double ErrorOfUnit = 2e-6;
 constexpr double MostCurved = 0.1;
 
 /// Largest relative change of the range within a part of a faint polygon. The relative error of a
-/// unit's energy is a twelfth of it, from the correlation of energy and range within a part.
+/// unit's energy is a twelfth of this change, because energy and range are correlated within a
+/// part.
 constexpr double MostFaintStretch = 1e-2;
 
 /// Samples of a beam, and bounds of their errors.
 struct PolygonNodes
 {
   BeamSamples samples;
-  std::vector<double> uncertain; ///< share of each node's energy that may lie beyond a border
+  std::vector<double> uncertain; ///< share of each node's energy that may lie in another unit
 };
 
-/// Places the samples of one polygon after the other. One per thread; the setup must outlive it.
+/// Places the samples of one polygon after the other. One object per thread, which the setup must
+/// outlive.
 class PolygonRule
 {
 public:
@@ -73,11 +76,11 @@ public:
   /// Bounds of 1/z over a polygon.
   struct Extent
   {
-    double leastInverse, mostInverse; ///< 1/m, at most 1/height
+    double leastInverse, mostInverse; ///< bounds, 1/m, at most 1/height
   };
 
-  /// Begin a polygon of a surface. @param triangle the half of the surface whose material counts
-  /// @param faint whether one sample per part suffices, because no range unit gets much energy
+  /// Begin a polygon of a surface. @param triangle half of the surface whose material is used
+  /// @param faint true if one sample per part suffices, because no range unit gets much energy
   void set(const PlaneSurface& surface, std::uint32_t triangle, const Extent& extent, bool faint);
 
   /// Estimated number of samples of a polygon without a lobe; infinity if it has no rule.
@@ -93,10 +96,10 @@ private:
   {
     std::uint32_t triangle;
     Material material;
-    double height, leastInverse; ///< m, 1/m
-    double base, slope;          ///< w = base + slope p
+    double height, leastInverse; ///< distance of the plane, m; lower bound of 1/z, 1/m
+    double base, slope;          ///< coefficients of w = base + slope p
     double inverseSlope;
-    double width2;  ///< lobeWidth2(), rad2; 0: no lobe that matters
+    double width2;  ///< lobeWidth2(), rad2; 0: the lobe does not matter
     double curved;  ///< curvatureOf(), m
     double rounded; ///< roundingOf(), m
     bool plain;     ///< whether every range unit is short against the range
@@ -107,7 +110,7 @@ private:
   struct Piece
   {
     double from, to;
-    bool lobe; ///< whether the lobe lies there
+    bool lobe; ///< whether the lobe lies in the piece
   };
   void setLobe(double mostInverse);
   void divideAtLobe(double from, double to, double centre, std::vector<Piece>& pieces) const;
@@ -129,19 +132,19 @@ private:
   double uncertainty(double from, double to) const;
 
   const ScanSetup& Setup;
-  const BeamShape Shape;    ///< a round beam
-  const double UnitLength;  ///< m
+  const BeamShape Shape;    ///< shape of a round beam
+  const double UnitLength;  ///< length of a range unit, m
   const double PulseLength; ///< length of the pulse in range, m
   const double LastBorder;  ///< range beyond which nothing is received, m
-  double Offsets[2]; ///< ranges of a pulse that begins or ends at a border, in units, modulo 1
+  double Offsets[2];        ///< range of a pulse that begins or ends at a border, units, modulo 1
   int NumberOfOffsets;
-  double Tangent2 = 0.0; ///< t^2
+  double Tangent2 = 0.0; ///< tan(theta0.5)^2
   double ShareOfArea = 0.0;
   PolygonNodes* Nodes = nullptr;
   Current Now{};
   DiscPolygon Disc;
   std::vector<double> Ranges;
-  std::vector<double> Borders; ///< p of the borders of parts, ascending
+  std::vector<double> Borders; ///< values of p at the borders of parts, ascending
   std::vector<double> OfUnits; ///< 1 for each border of units, 0 for the others
   std::vector<Piece> Along, Across;
   PartMoments Parts;

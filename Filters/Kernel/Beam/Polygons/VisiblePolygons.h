@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file VisiblePolygons.h
- * @brief The surfaces that a beam sees, as convex polygons that partition its disc but for the sky.
+ * @brief Visible surfaces of a beam, as convex polygons that partition the disc except for the sky.
  *
  * In the beam's plane (BeamTriangles.h) the visible surfaces are the upper envelope of 1/z, an
  * affine function on each triangle. Convex pieces partition an octagon around the disc, and
@@ -9,13 +9,14 @@
  * sides and, where the planes cross, by the line of equal 1/z. The search ends when no piece is
  * open and the next triangle lies behind all pieces.
  *
- * A line that passes a corner within Snap does not cut there. Pieces smaller than LeastArea are
- * left out, and their area is summed (VisiblePolygons::lost).
+ * A line that passes a corner within Snap does not cut a side at this corner. Pieces smaller than
+ * LeastArea are left out, and VisiblePolygons::lost is the sum of their areas.
  *
  * Source: Weiler and Atherton, "Hidden Surface Removal Using Polygon Area Sorting", SIGGRAPH 1977.
  * Differs: all pieces are convex and partition the view, so no general clipper is needed.
- * Valid: any triangles. Pieces and `lost` sum up to the octagon within 1e-12 of its area. The
- * result depends only on the beam and the triangles that enter the disc, not on their order.
+ * Valid: any triangles. The areas of pieces and `lost` sum to the area of the octagon within 1e-12
+ * of this area. The result depends only on the beam and the triangles that enter the disc, not on
+ * the order of the triangles.
  * Test: TestVisiblePolygons.cxx, TestPolygonEdges.cxx.
  */
 #ifndef avianlidar_VisiblePolygons_h
@@ -54,7 +55,8 @@ struct PlaneRing
   bool mayBeCut() const { return this->size + 2 <= MostCorners; }
 };
 
-/// Distance from a corner, half-beamwidths, within which a line passes through it.
+/// Distance from a corner, half-beamwidths, within which a line counts as passing through the
+/// corner.
 constexpr double Snap = 1e-11;
 
 /// Side of a line on which a ring lies. A ring on the line lies on the negative side.
@@ -66,15 +68,15 @@ enum class SideOfLine
 };
 
 /// Find on which side of a line a ring lies, and cut the ring if it lies on both sides. @param line
-/// line of slope 1, so that its values are distances
+/// line of slope 1, so that values of the line are distances
 SideOfLine cutRing(
   const PlaneRing& ring, const PlaneLine& line, PlaneRing& positive, PlaneRing& negative);
 
 /// An octagon that contains the disc.
 PlaneRing octagonAround();
 
-/// Keep the part of a ring where a function is positive, or all if it has too many corners to be
-/// cut. @return false if nothing is left
+/// Keep the part of a ring where a function is positive, or the whole ring if it has too many
+/// corners to be cut. @return false if nothing is left
 bool clipRing(PlaneRing& ring, const PlaneLine& line);
 
 /// Visible polygons of a beam. They may extend beyond the disc.
@@ -83,7 +85,7 @@ struct VisiblePolygons
   struct Polygon
   {
     std::uint32_t surface;
-    std::uint32_t end; ///< end of its corners, which begin where the previous polygon's corners end
+    std::uint32_t end; ///< end of its corners, which begin where the previous polygon ends
   };
   std::vector<PlaneSurface> surfaces;
   std::vector<Polygon> polygons;
@@ -128,12 +130,14 @@ enum class SeenByBeam : std::uint8_t
   TooMuch = 2   ///< too many triangles or polygons
 };
 
-/// Finds the polygons of one beam after the other. One per thread; the scene must outlive it.
+/// Finds the polygons of one beam after the other. One object per thread, which the scene must
+/// outlive.
 class PolygonFinder
 {
 public:
-  /// @param mostTriangles largest number of triangles in the disc; polygons: three times as many
-  /// @param mostCandidates largest number of triangles that are set up, if larger
+  /// @param mostTriangles largest number of triangles in the disc; a third of the largest number of
+  /// polygons
+  /// @param mostCandidates largest number of triangles that are set up, if above mostTriangles
   PolygonFinder(
     const SceneTriangles& scene, std::size_t mostTriangles, std::size_t mostCandidates = 0)
     : Entering(scene, std::max(mostTriangles, mostCandidates))
@@ -150,23 +154,25 @@ public:
     this->Entering.add(triangles, count);
   }
 
-  /// @param found set if the result is SeenByBeam::Polygons
+  /// @param found visible polygons, set if the result is SeenByBeam::Polygons
   SeenByBeam find(std::unique_ptr<VisiblePolygons>& found);
 
-  /// The triangles added. After find() they are sorted, unless more than mostCandidates enter.
+  /// The triangles that were added. After find() these triangles are sorted, unless more than
+  /// mostCandidates enter the disc.
   BeamTriangles& entering() { return this->Entering; }
   const std::vector<const BeamSurface*>& candidates() const { return this->Entering.nearest(); }
 
 private:
   using Candidate = BeamSurface;
   static constexpr std::uint32_t Open = 0xffffffffu;
-  /// A piece of the octagon. Each candidate is compared with all pieces, but with few rings.
+  /// A piece of the octagon. Circles limit the comparison of a candidate to a few of the pieces'
+  /// rings.
   struct Piece
   {
     PlanePoint centre; ///< centre of a circle around the piece
     double radius;
     double leastInverse;     ///< lower bound of 1/z, 1/m
-    std::uint32_t candidate; ///< number of the surface seen there, or Open
+    std::uint32_t candidate; ///< number of the surface seen in the piece, or Open
     void findCircle(const PlaneRing& ring);
   };
   /// Corners and plane of a visible surface.
@@ -174,7 +180,7 @@ private:
   {
     Vec3 corners[6];
     int size;
-    Vec3 normal; ///< unit, towards the apex
+    Vec3 normal; ///< unit normal, towards the apex
     double height;
   };
   bool insert(std::uint32_t number);
@@ -194,7 +200,7 @@ private:
   std::vector<PlaneRing> Rings; ///< rings of the pieces
   std::size_t PiecesOpen = 0;
   double LostArea = 0.0;
-  PlaneRing Outside[5]; ///< parts of a piece outside of a candidate
+  PlaneRing Outside[5]; ///< parts of a piece outside a candidate
   int NumberOutside = 0;
   std::vector<std::uint32_t> Numbers;
   std::vector<Facet> Facets;

@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file RaySamples.h
- * @brief Samples from rays: where each ray meets its triangle, and at which angle.
+ * @brief Samples from rays: range and angle of incidence of each ray on the triangle that it hits.
  *
- * Rays are processed surface by surface, in SIMD loops: about 10 ns a ray and 0.2 us a surface.
+ * Rays are processed surface by surface, in SIMD loops, in about 10 ns per ray and 0.2 us per
+ * surface.
  *
  * Source: paper, Eq. 18.
  * Differs: see TriangleTest.h.
- * Valid: ranges and cosines follow from triangle and ray in double precision, and so do not depend
- * on how the hit was found.
+ * Valid: ranges and cosines follow from triangle and ray in double precision, and do not depend on
+ * how the hit was found.
  * Test: TestEchoClosedForms.cxx, TestScan.cxx.
  */
 #ifndef avianlidar_RaySamples_h
@@ -25,8 +26,8 @@
 
 namespace avianlidar
 {
-/// Finds the samples of one beam after the other. Reusable without allocation; one per thread. The
-/// scene must outlive it.
+/// Finds the samples of one beam after the other. Reusable without allocation; one object per
+/// thread, which the scene must outlive.
 class RaySamples
 {
 public:
@@ -56,7 +57,7 @@ private:
   const SceneTriangles& Scene;
   std::vector<std::uint32_t> Left, Sorted; ///< numbers of rays
   std::vector<BeamSamples::Surface> Surfaces;
-  /// Cache of triangles, by number modulo Places: neighbouring beams meet the same triangles.
+  /// Cache of triangles, by number modulo Places. Neighbouring beams meet the same triangles.
   struct Known
   {
     std::uint32_t triangle = NoTriangle;

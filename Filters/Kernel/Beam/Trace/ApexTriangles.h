@@ -2,13 +2,13 @@
 /**
  * @file ApexTriangles.h
  * @brief Triangles seen from one apex, prepared for the single-precision tests of packets: scaled
- * edge vectors and planes, found once and kept in a table.
+ * edge vectors and planes, computed once and kept in a table.
  *
  * All beams of a scan begin at one point, and neighbouring beams meet the same triangles. The table
- * has 8192 places. A triangle's place follows from its position in the tree's order; a later
- * triangle replaces an earlier one. A record fills one cache line, and the table fills a good part
- * of a core's second-level cache. Preparing eight triangles takes about as long as testing 64 rays
- * against a few of them.
+ * has 8192 places. The place of a triangle follows from the triangle's position in the tree's
+ * order. A later triangle replaces an earlier one in the same place. A record fills one cache line,
+ * and the table fills much of a core's second-level cache. Preparing eight triangles takes about as
+ * long as testing 64 rays against a few of them.
  *
  * Source: none; the bounds are derived in RayPacketTriangles.h.
  * Valid: any triangle. Where the bounds decide nothing (`inside` is infinite, or an edge vector is
@@ -29,10 +29,10 @@ namespace avianlidar
 /// A prepared triangle; symbols as in RayPacketTriangles.h.
 struct alignas(64) ApexTriangle
 {
-  float edge[3][3];       ///< scaled edge vectors; a ray with e < -1 misses
-  float w[3];             ///< W of the plane
+  float edge[3][3];       ///< scaled edge vectors E; a ray with e < -1 at one edge misses
+  float w[3];             ///< vector W of the plane
   float error;            ///< bound of the error of w
-  float inside;           ///< a ray with e >= inside at all edges hits; infinity: undecided
+  float inside;           ///< limit: a ray with e >= inside at all edges hits; infinity: none
   std::uint32_t number;   ///< number of the triangle in the mesh
   std::uint32_t position; ///< position in the tree's order
 };
@@ -41,7 +41,7 @@ struct alignas(64) ApexTriangle
 struct alignas(64) ApexCorners
 {
   static constexpr int Width = 8;
-  double corner[3][3][Width] = {}; ///< corner, coordinate
+  double corner[3][3][Width] = {}; ///< coordinates by corner, axis and triangle, m
 };
 
 /// The triangles of a tree seen from one apex.
@@ -50,7 +50,7 @@ class ApexTriangles
 public:
   static constexpr int Batch = ApexCorners::Width;
 
-  /// Clear the table if it belongs to another tree or apex, or to narrower beams only.
+  /// Clear the table if its records are for another tree or apex, or only for narrower beams.
   /// @param widest beam of the packet with the largest half-beamwidth
   void begin(const CollisionTree& tree, const BeamFrame& widest);
 
@@ -64,7 +64,7 @@ public:
   /// Prepare records of `count` triangles, at most Batch, in `fresh`.
   void see(const std::uint32_t* positions, int count, ApexTriangle* fresh);
 
-  /// Put a record into the table; it replaces another in the same place.
+  /// Put a record into the table, in place of any other record there.
   void keep(const ApexTriangle& triangle)
   {
     const std::uint32_t number = triangle.position % Places;

@@ -7,13 +7,14 @@
  * Eight boxes are tested against the planes about the group, then sixteen cones against each box
  * that is left (BoxTests.h). The descent ends where a box is a leaf, where its half diagonal is at
  * most sixteen half-beamwidths, and where at most three beams meet it. A beam without entry points
- * hits nothing, and its rays are never drawn. With smaller entry points, lists are long where all
- * beams hit. With larger ones, every packet descends the upper levels of the tree.
+ * hits nothing, and its rays are never drawn. With smaller entry points, lists of entry points are
+ * long where all beams hit. With larger entry points, every packet descends the upper levels of the
+ * tree.
  *
  * Source: batch collision detection (paper, Sec. 3.2); Z-order curve: Morton, "A Computer Oriented
  * Geodetic Data Base and a New Technique in File Sequencing", 1966.
  * Differs: the paper descends once for the rays of a beam, down to the triangles, as
- * findPotential() does; a group descends once for the rays of sixteen beams, and not as deep.
+ * findPotential() does. A group descends once for the rays of sixteen beams, and less deep.
  * Valid: conservative: no triangle that a ray hits lies outside its beam's entry points. A group
  * whose beams lie too far apart (ConeLanes::setFrustum()) is halved.
  * Test: TestBeamGroup.cxx, TestBeamTracer.cxx.
@@ -32,14 +33,14 @@
 
 namespace avianlidar
 {
-/// True if two beams have one apex and width, and so may descend together.
+/// True if two beams have the same apex and width, and may descend together.
 inline bool areTogether(const BeamFrame& one, const BeamFrame& two)
 {
   return one.origin == two.origin && one.halfBeamwidth == two.halfBeamwidth;
 }
 
-/// Order beams, given by their numbers, so that consecutive ones are neighbours: along a Z-order
-/// curve over the two coordinates in which their axes differ most. `keys` is workspace.
+/// Order beams, given by number, so that consecutive beams are neighbours: along a Z-order curve
+/// over the two coordinates in which the beams' axes differ most. `keys` is workspace.
 void orderBeams(
   const BeamFrame* frames, std::vector<std::uint32_t>& beams, std::vector<std::uint64_t>& keys);
 
@@ -59,7 +60,7 @@ std::int64_t findEntryPoints(const WideTree& tree, const Vec3& apex, GroupWorksp
 struct PotentialTriangles
 {
   std::uint64_t nodesVisited = 0;
-  std::size_t count = 0; ///< number of triangles; beyond `most` the search has stopped
+  std::size_t count = 0; ///< number of triangles; above `most` the search was stopped
 };
 
 /// The triangles that the cone of one beam may meet (S_potential of the paper, Sec. 3.2), as entry

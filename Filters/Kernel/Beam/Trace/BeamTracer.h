@@ -4,9 +4,9 @@
  * @brief Finds the nearest hits of the rays of beams.
  *
  * Acceptance and range of a (ray, triangle) pair come from one function (TriangleTest.h). The hit
- * is the accepted triangle of least range, and of lowest number among equal ranges. A hit therefore
- * has the same bits for any tree and any TraceMode. All geometry is moved to the beam's origin in
- * double precision before anything is rounded.
+ * is the accepted triangle of least range, and of lowest number among equal ranges. A hit is
+ * therefore bitwise identical for any tree and any TraceMode. All geometry is moved to the beam's
+ * origin in double precision before anything is rounded.
  *
  * Source: paper, Sec. 3.2-3.4.
  * Differs: beams and rays descend in groups and packets (BeamGroup.h, RayPacket.h);
@@ -43,21 +43,22 @@ struct Hit
 struct TraceCounters
 {
   std::uint64_t nodesVisited = 0;
-  /// Triangles tested, counted once for each packet of rays; 0 where every ray descends by itself.
+  /// Number of triangles tested, counted once per packet of rays; 0 where every ray descends by
+  /// itself.
   std::uint64_t candidates = 0;
-  std::uint64_t raysTraced = 0; ///< primary rays, mirror rays and visibility segments
+  std::uint64_t raysTraced = 0; ///< number of primary rays, mirror rays and visibility segments
 };
 
-/// Add costs of the same beam; `candidates` becomes the larger of the two numbers.
+/// Add costs of the same beam to a sum; `candidates` becomes the larger of the two numbers.
 void addCounters(const TraceCounters& more, TraceCounters& sum);
 
-/// How beams descend the tree. All modes give the same hits, bit for bit.
+/// How beams descend the tree. All modes give bitwise identical hits.
 enum class TraceMode
 {
   SingleRays = 0, ///< one descent per ray
   Automatic = 1,  ///< groups of neighbouring beams, then packets of their rays
   /// The paper's batch collision detection (Sec. 3.2): every beam descends to the triangles that
-  /// its cone may meet, S_potential; then all its rays are tested against that set.
+  /// its cone may meet, S_potential; then all rays of the beam are tested against S_potential.
   Beams = 2
 };
 
@@ -67,28 +68,28 @@ struct BeamBlock
   const BeamFrame* frames = nullptr;
   std::size_t size = 0;   ///< number of beams
   std::uint32_t rays = 0; ///< rays per beam, at least 1
-  /// Draws the rays of a beam. It is called only if a triangle may meet the beam, because most
-  /// beams of an airport meet no triangle, and drawing rays costs more than a descent. It may be
-  /// called twice. The rays must live until the block is done.
+  /// Function that draws the rays of a beam. The rays must live until the block is done. The
+  /// function is called, maybe twice, only if a triangle may meet the beam: most beams of an
+  /// airport meet no triangle, and drawing rays costs more than a descent.
   std::function<const BeamRays&(std::size_t beam)> source;
-  bool inOrder = false; ///< packets take the rays in the order in which they come
+  bool inOrder = false; ///< whether packets take the rays in the order in which the rays come
 };
 
-/// Number of beams in a block, 1 to 1024: enough neighbours to be traced together, few enough that
-/// their rays and hits stay in the cache. @param raysPerBeam at least 1
+/// Number of beams in a block, 1 to 1024: enough neighbours to be traced together, and few enough
+/// for the block's rays and hits to stay in the cache. @param raysPerBeam at least 1
 std::size_t beamsPerBlock(int raysPerBeam);
 
 /// Triangles that the rays of a block hit. Ranges are found where they are used (RaySamples.h).
 struct BlockHits
 {
-  /// For each beam the nearest triangle of each ray, or NoTriangle; null if no ray of the beam hits
-  /// a triangle.
+  /// By beam: nearest triangle of each ray, or NoTriangle; null if no ray of the beam hits a
+  /// triangle.
   std::vector<const std::uint32_t*> triangles;
-  std::vector<TraceCounters> counters; ///< one per beam
+  std::vector<TraceCounters> counters; ///< cost of each beam
 };
 
-/// Traces blocks of beams, and single rays of the current beam. One per thread; the scene must
-/// outlive it.
+/// Traces blocks of beams, and single rays of the current beam. One object per thread, which the
+/// scene must outlive.
 class BeamTracer
 {
 public:
@@ -100,17 +101,17 @@ public:
   /// Begin a beam: set the frame, and the counters to 0.
   void setBeam(const BeamFrame& frame);
 
-  /// Nearest triangle of every ray of all beams of a block. Neighbouring beams of one apex are
-  /// traced together. Where movers are placed, the block has one beam. The current beam and its
-  /// counters do not change. The result is valid until the next call.
+  /// Find the nearest triangle of every ray of all beams of a block. Neighbouring beams of one apex
+  /// are traced together. Where movers are placed, the block must have one beam. The current beam
+  /// and the beam's counters do not change. The result is valid until the next call.
   const BlockHits& traceBlock(const BeamBlock& block, TraceMode mode);
 
-  /// Nearest hit along `direction` (need not be normalised) from the beam's own apex.
+  /// Nearest hit along `direction` (need not be normalised) from the apex of the current beam.
   Hit traceFromApex(const Vec3& direction);
 
   /// Nearest hit of the ray from `origin` (relative to the apex, m) along `direction` (need not be
   /// normalised) at ranges greater than `minimumRange`, ignoring the triangle `ignore`. Hits beyond
-  /// `maximumRange` need not be found. Ranges are in metres along the normalised direction.
+  /// `maximumRange` may be missed. Ranges are in metres along the normalised direction.
   Hit traceFrom(const Vec3& origin, const Vec3& direction, double minimumRange,
     std::uint32_t ignore, double maximumRange = std::numeric_limits<double>::infinity());
 
@@ -137,7 +138,7 @@ private:
 /// A triangle relative to a beam's apex, prepared for the ranges of its rays.
 struct SeenTriangle
 {
-  Corners corners;     ///< relative to the apex
+  Corners corners;     ///< corners relative to the apex, m
   TrianglePlane plane; ///< plane, shared by faces that coincide (CoincidentFaces.h)
   Vec3 normal{ 0.0 };  ///< unit normal towards the apex; 0 if degenerate
   double height = 0.0; ///< height of the apex above the plane, m

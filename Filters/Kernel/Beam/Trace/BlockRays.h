@@ -4,7 +4,7 @@
  * @brief Traces the rays of a block's beams: in packets from their entry points, or one by one.
  *
  * Source: none.
- * Valid: hits do not depend on packets or order.
+ * Valid: hits depend neither on packets nor on the order of rays.
  * Test: TestBeamGroup.cxx, TestPacketOrder.cxx.
  */
 #ifndef avianlidar_BlockRays_h
@@ -28,7 +28,7 @@ struct BlockRaysWorkspace
   RayPacket packet;
   PacketOrder order;
   BlockHits found;
-  std::vector<std::uint32_t> triangles; ///< hits of the rays of all beams of a block
+  std::vector<std::uint32_t> triangles; ///< triangles that the rays of all beams of a block hit
   std::size_t used = 0;                 ///< entries of `triangles` in use
 };
 
@@ -40,7 +40,7 @@ struct BeamCluster
 };
 
 /// Traces the rays of one block; hits and costs go to `work.found`. The constructor's arguments
-/// must outlive it.
+/// must outlive the object.
 class BlockRays
 {
 public:
@@ -58,7 +58,7 @@ private:
   void packetOfBeams(const BeamCluster& cluster, const EntryPoints* entryPoints);
   void trace(const EntryPoints* entryPoints, std::uint32_t beam);
 
-  /// Memory for the triangles of the next beam, which keep() makes its hits.
+  /// Memory for the hits of the next beam, which commitHits() assigns to a beam.
   std::uint32_t* nextHits() { return this->Work.triangles.data() + this->Work.used; }
   void commitHits(std::uint32_t beam, std::size_t count)
   {

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file BlockTrace.h
- * @brief Traces a block of beams: decides which beams are traced together, and how.
+ * @brief Traces a block of beams: decides which beams are traced together, and in which way.
  *
  * Beams of one apex and width are ordered along a Z-order curve and cut into groups of sixteen
- * clusters. A cluster has as many beams as fill a packet of rays, mostly one. Beams of fewer than
- * eight rays form no groups and fill packets in the order in which they come. A group descends the
- * wide tree (BeamGroup.h); from the entry points of a cluster the cluster's rays go on in packets
- * (BlockRays.h). Without a wide tree each beam's cone descends by itself, and the leaves that it
- * meets are the entry points; TraceMode::Beams does so with any tree.
+ * clusters. A cluster has as many beams as fill a packet of rays, mostly one beam. Beams of fewer
+ * than eight rays form no groups and fill packets in the order in which the beams come. A group
+ * descends the wide tree (BeamGroup.h). From the entry points of a cluster, the cluster's rays
+ * descend further in packets (BlockRays.h). Without a wide tree, and with TraceMode::Beams, each
+ * beam's cone descends by itself, and the leaves that the cone meets are the entry points.
  *
  * Source: paper, Sec. 3.2.
  * Differs: see BeamGroup.h. A cone that meets more than 2048 triangles is traced ray by ray.
@@ -36,8 +36,7 @@ struct BlockWorkspace
   BlockRaysWorkspace rays;
 };
 
-/// Trace a block, without its movers, into `work.rays.found`, which the caller has set to no hits
-/// and no cost.
+/// Trace a block, without movers, into `work.rays.found`, which must have no hits and no cost.
 void traceBlock(
   const SceneTriangles& scene, const BeamBlock& block, TraceMode mode, BlockWorkspace& work);
 }

@@ -1,16 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file Candidates.h
- * @brief First step of tracing a block of beams: the triangles that the cone of each beam may meet.
+ * @brief First step of tracing a block: finds the triangles that the cone of each beam may meet.
  *
- * All surfaces that a beam can meet, that reflect its light a second time or that hide other
- * surfaces lie in the beam's cone, because the cone is convex. Neighbouring beams of one apex
- * descend the tree together (BeamGroup.h). From the entry points of its group each beam descends by
- * itself, down to the leaves. The triangles of movers that the beam may meet follow.
+ * All surfaces that a beam can meet, that reflect its light a second time, or that hide other
+ * surfaces, lie in the beam's cone, because the cone is convex. Neighbouring beams of one apex
+ * descend the tree together (BeamGroup.h). From the entry points of a group, each beam descends by
+ * itself, down to the leaves. Triangles of movers that the beam may meet are then appended.
  *
  * Source: paper, Sec. 3.2, where the list is called S_potential.
  * Differs: the paper descends for each beam from the root.
- * Valid: each list holds every triangle that a ray of its beam may hit, once, and maybe others.
+ * Valid: each list holds every triangle that a ray of the beam may hit, once, and maybe other
+ * triangles.
  * Test: TestBeamGroup.cxx.
  */
 #ifndef avianlidar_Candidates_h
@@ -26,27 +27,27 @@
 namespace avianlidar
 {
 /// Finds the candidates of the beams of a block, one beam after the other. Reusable without
-/// allocation; one per thread.
+/// allocation; one object per thread.
 class BeamCandidates
 {
 public:
-  /// Begin a block. Scene and frames must live until its last beam.
+  /// Begin a block. Scene and frames must live until the last beam of the block.
   /// @param count number of beams; 1 if movers are placed
   /// @param together false: each beam descends by itself from the root
   void begin(
     const SceneTriangles& scene, const BeamFrame* frames, std::size_t count, bool together);
 
-  /// Go on to a beam that may meet a triangle, in no fixed order. @return false after the last
+  /// Go on to a beam that may meet a triangle, in no fixed order. @return false after the last beam
   bool next();
 
   // The current beam.
-  std::size_t beam() const { return this->Beam; } ///< number in the block
+  std::size_t beam() const { return this->Beam; } ///< number of the beam in the block
   const std::vector<std::uint32_t>& triangles() const { return this->Triangles; }
   /// Number of nodes visited, with the beam's share of the nodes that its group visited.
   std::uint64_t nodesVisited() const { return this->NodesVisited; }
 
 private:
-  /// Neighbouring beams, by places in Order.
+  /// Neighbouring beams, given by places in Order.
   struct Group
   {
     std::size_t first, count;
@@ -58,10 +59,10 @@ private:
   const CollisionTree* Tree = nullptr;
   const BeamFrame* Frames = nullptr;
   std::vector<std::uint32_t> Order; ///< numbers of the beams, neighbours together
-  std::vector<Group> Groups;        ///< groups still to descend, the next one last
-  Group Now{ 0, 0 };                ///< the rest of the group that was descended last
-  int Member = 0;                   ///< next member of that group
-  bool FromRoot = false;            ///< whether the group has no entry points
+  std::vector<Group> Groups;        ///< groups that have not descended yet, the next group last
+  Group Now{ 0, 0 };                ///< rest of the group that descended last
+  int Member = 0;                   ///< next member of the group that descended last
+  bool FromRoot = false;            ///< whether this group has no entry points
   std::uint64_t Share = 0;          ///< number of nodes visited for each member
   std::size_t Beam = 0;
   std::vector<std::uint32_t> Triangles;

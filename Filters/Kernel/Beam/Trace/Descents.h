@@ -22,7 +22,7 @@
 
 namespace avianlidar
 {
-/// Makes a TreeLeaves of a visitor with the same members.
+/// Adapts a visitor with the members of TreeLeaves to this interface.
 template <class Visitor>
 class LeavesOf final : public TreeLeaves
 {
@@ -41,8 +41,9 @@ private:
   Visitor& Seen;
 };
 
-/// Descend a tree that is not empty with a beam's cone. @param entryPoints null: from the root,
-/// where trees of other volumes always begin @return nodes visited
+/// Descend a tree that is not empty with a beam's cone. @param entryPoints nodes from which the
+/// descent begins; null: the root, as always in trees of other volumes @return number of nodes
+/// visited
 template <class Visitor>
 std::uint64_t descendCone(const CollisionTree& tree, const BeamFrame& frame, Visitor& visitor,
   TraversalStack& stack, const EntryPoints* entryPoints = nullptr)
@@ -55,8 +56,8 @@ std::uint64_t descendCone(const CollisionTree& tree, const BeamFrame& frame, Vis
   return descendWide(tree, WideCone(tree.wide, frame), visitor, stack, entryPoints);
 }
 
-/// Descend a tree that is not empty with one ray. @param origin relative to the apex, m
-/// @return nodes visited
+/// Descend a tree that is not empty with one ray. @param origin origin relative to the apex, m
+/// @return number of nodes visited
 template <class Visitor>
 std::uint64_t descendRay(const CollisionTree& tree, const Vec3& apex, const Vec3& origin,
   const Vec3& direction, double angularMargin, Visitor& visitor, TraversalStack& stack)
@@ -70,7 +71,7 @@ std::uint64_t descendRay(const CollisionTree& tree, const Vec3& apex, const Vec3
   return descendWide(tree, ray, visitor, stack);
 }
 
-/// Passes leaves of the movers' tree to a visitor, by the numbers of their triangles in the scan.
+/// Passes the leaves of the movers' tree to a visitor, with triangles numbered as in the scan.
 template <class Visitor>
 class MovedLeaves
 {
@@ -92,7 +93,7 @@ private:
   Visitor& Seen;
 };
 
-/// Test one ray against the movers that are placed. @return nodes visited
+/// Test one ray against the movers that are placed. @return number of nodes visited
 template <class Visitor>
 std::uint64_t visitMoved(const SceneTriangles& scene, const Vec3& apex, const Vec3& origin,
   const Vec3& direction, double angularMargin, Visitor& visitor, TraversalStack& stack)
@@ -106,7 +107,7 @@ std::uint64_t visitMoved(const SceneTriangles& scene, const Vec3& apex, const Ve
   return 0;
 }
 
-/// Replace `hit` if the triangle is nearer, or as near with a lower number.
+/// Replace `hit` if the triangle is nearer, or equally near and of lower number.
 inline void keepNearest(Hit& hit, double range, std::uint32_t triangle)
 {
   if (range < hit.range || (range == hit.range && triangle < hit.triangle))
@@ -117,9 +118,9 @@ inline void keepNearest(Hit& hit, double range, std::uint32_t triangle)
 }
 
 /// Range up to which volumes are visited once a hit is found. The hit of a triangle that takes the
-/// plane of another may lie nearer than the triangle's own volumes, by as much as rounding moves
-/// the two triangles apart, and by more along the ray. Rays within 4 degrees of a plane are not
-/// covered.
+/// plane of another may lie nearer than the triangle's own volumes. Across the plane, the
+/// difference is the distance that rounding puts between the two triangles; along the ray, it is
+/// larger. Rays within 4 degrees of a plane are not covered.
 inline double limitOf(const CollisionTree& tree, double range)
 {
   constexpr double alongRay = 16.0;
@@ -178,7 +179,7 @@ private:
   Hit* Nearest = nullptr;
 };
 
-/// Finds the nearest hit of a ray from any point between two ranges, or any hit.
+/// Finds, for a ray from any point, the nearest hit between two ranges, or any hit between them.
 class FreeRayVisitor
 {
 public:

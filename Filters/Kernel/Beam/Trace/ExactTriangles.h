@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file ExactTriangles.h
- * @brief Triangles relative to an apex, as the exact functions need them. Neighbouring rays and
- * beams mostly meet the same triangles, so the last few are kept.
+ * @brief Cache of triangles relative to an apex, for the exact functions. Neighbouring rays and
+ * beams mostly meet the same triangles.
  *
  * Source: none.
  * Valid: for one tree and apex at a time.
@@ -28,7 +28,7 @@ struct ExactTriangle
   TrianglePlane plane;
 };
 
-/// @tparam Remembered number of triangles kept; a triangle's place follows from its number
+/// @tparam Remembered largest number of triangles kept; the place follows from a triangle's number
 template <std::uint32_t Remembered>
 class ExactTriangles
 {
@@ -75,7 +75,7 @@ public:
 private:
   const CollisionTree* Tree = nullptr;
   Vec3 Apex{ 0.0 };
-  std::vector<ExactTriangle> Last; ///< triangles kept; their number is a power of two
+  std::vector<ExactTriangle> Last; ///< triangles kept; the size is 0 or a power of two
   std::vector<std::uint32_t> Used; ///< occupied places
 };
 }

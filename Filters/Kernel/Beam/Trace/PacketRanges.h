@@ -2,10 +2,10 @@
 /**
  * @file PacketRanges.h
  * @brief Applies the exact functions of TriangleTest.h where the bounds of single precision leave
- * open whether a ray of a packet hits a triangle, or which of two triangles it hits first.
+ * open whether a ray of a packet hits a triangle, or which of two triangles the ray hits first.
  *
  * Source: none.
- * Valid: hits equal the hits of single rays, bit for bit.
+ * Valid: hits are bitwise identical to the hits of single rays.
  * Test: TestRayPacket.cxx.
  */
 #ifndef avianlidar_PacketRanges_h
@@ -17,7 +17,7 @@
 
 namespace avianlidar
 {
-/// Exact decisions for one packet during its descent. The packet's state must outlive it.
+/// Exact decisions for one packet during its descent. The packet's state must outlive the object.
 class PacketRanges
 {
 public:

@@ -5,8 +5,8 @@
  * loops.
  *
  * Source: none.
- * Valid: the same bits as unitDirection() and rangeOnPlane() (TriangleTest.h) for every instruction
- * set.
+ * Valid: bitwise identical to unitDirection() and rangeOnPlane() (TriangleTest.h) for every
+ * instruction set.
  * Test: TestTriangleTest.cxx, TestApexTriangles.cxx.
  */
 #ifndef avianlidar_RangeLanes_h
@@ -18,11 +18,12 @@
 
 namespace avianlidar
 {
-/// unitDirection(frame.direction(x, y)) of n rays.
+/// Find unitDirection(frame.direction(x, y)) of n rays.
 void unitDirections(const BeamFrame& frame, const double* x, const double* y, double* dx,
   double* dy, double* dz, std::size_t n);
 
-/// rangeOnPlane() of n rays along unit directions. @param view valid for all of them (viewOfCone())
+/// Find rangeOnPlane() of n rays along unit directions. @param view valid for all n rays
+/// (viewOfCone())
 void planeRanges(PlaneView view, const Corners& corners, const TrianglePlane& plane,
   const double* dx, const double* dy, const double* dz, double* ranges, int* kinds, std::size_t n);
 }

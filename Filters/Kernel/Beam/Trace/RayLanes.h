@@ -5,12 +5,12 @@
  * (Highway, <hwy/highway.h>).
  *
  * Source: none.
- * Valid: single-precision tests with bounds of their error only: sums may be fused with products
- * where the processor can, so no decision may depend on the last bit. Instruction sets whose
- * vectors have no fixed length are excluded.
+ * Valid: only for single-precision tests with bounds of the error. The processor may fuse sums with
+ * products, so no decision may depend on the last bit. Instruction sets whose vectors have no fixed
+ * length are excluded.
  * Test: TestRayPacket.cxx and TestBeamGroup.cxx, for every instruction set of this processor.
  */
-// Read once for every instruction set.
+// This file is included once for every instruction set.
 #if defined(avianlidar_RayLanes_h) == defined(HWY_TARGET_TOGGLE)
 #ifdef avianlidar_RayLanes_h
 #undef avianlidar_RayLanes_h

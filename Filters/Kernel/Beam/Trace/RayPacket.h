@@ -7,17 +7,17 @@
  * Hits that RayPacketTriangles.h leaves undecided go at once to the exact functions
  * (PacketRanges.h). The steps of a node depend on each other, so the time of a node hardly grows
  * with the number of rays. Only groups of sixteen rays that meet a leaf are tested against its
- * triangles. For both reasons packets are wider than a vector. Packets of 128 rays are better for
- * narrow beams and worse for fine meshes. Rays that lie closer together share more nodes; they need
- * not belong to one beam.
+ * triangles. For both reasons packets are wider than a vector. Packets of 128 rays are faster for
+ * narrow beams and slower for fine meshes. Rays that lie closer together share more nodes. The rays
+ * of a packet need not belong to one beam.
  *
  * Source: Wald, Slusallek, Benthin, Wagner, "Interactive Rendering with Coherent Ray Tracing",
  * Computer Graphics Forum 20(3), 2001; frustum: Reshetov, Soupikov, Hurley, "Multi-level Ray
  * Tracing Algorithm", ACM TOG 24(3), 2005.
  * Differs: rays are tested in groups of sixteen within a packet, eight boxes or triangles at a
  * time.
- * Valid: hits equal the hits of single rays, bit for bit. Rays are traced one by one where they lie
- * too far apart, where the apex is too far away, and where the tree has no wide form.
+ * Valid: hits are bitwise identical to the hits of single rays. Rays are traced one by one where
+ * they lie too far apart, where the apex is too far away, and where the tree has no wide form.
  * Test: TestRayPacket.cxx.
  */
 #ifndef avianlidar_RayPacket_h
@@ -42,9 +42,9 @@ struct alignas(64) RayPacket
 
   double x[Width], y[Width];       ///< coordinates in the plane of the ray's beam
   const BeamFrame* beam = nullptr; ///< frame of all rays; null if they belong to several beams
-  const BeamFrame* frame[Width];   ///< frame of each ray, if `beam` is null; all of one origin
-  std::uint32_t triangle[Width];   ///< out: nearest triangle of each ray, or NoTriangle
-  int count = 0;                   ///< number of rays, 1 to Width; lanes beyond may be overwritten
+  const BeamFrame* frame[Width];   ///< frame of each ray, if `beam` is null; all have one origin
+  std::uint32_t triangle[Width];   ///< nearest triangle of each ray (output), or NoTriangle
+  int count = 0;                   ///< number of rays, 1 to Width; other lanes may be overwritten
 
   const BeamFrame& frameOf(int ray) const { return this->beam ? *this->beam : *this->frame[ray]; }
   /// Unit direction of a ray.
@@ -59,7 +59,7 @@ struct PacketState
 {
   RayPacket* packet = nullptr;
   int filled = 0;        ///< number of triangles collected for the next test
-  float farthest = 0.0f; ///< largest of the view's `far`
+  float farthest = 0.0f; ///< largest `far` of the view
   PacketView view = {};
   PacketBest best = {};
   PacketTriangles triangles = {};
@@ -79,8 +79,8 @@ struct PacketWorkspace
 
 struct PacketCost
 {
-  std::uint64_t nodes = 0;     ///< nodes visited
-  std::uint64_t triangles = 0; ///< triangles tested
+  std::uint64_t nodes = 0;     ///< number of nodes visited
+  std::uint64_t triangles = 0; ///< number of triangles tested
 };
 
 /// Find the nearest triangles of the rays of a packet. @param entryPoints boxes that hold all

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file RayPacketTriangles.h
- * @brief Tests the rays of a packet against up to eight triangles, in single precision with bounds
- * of the error, sixteen rays at a time (RayLanes.h).
+ * @brief Tests the rays of a packet, sixteen at a time (RayLanes.h), against up to eight triangles,
+ * in single precision with bounds of the error.
  *
  * All rays of a packet have one apex. Terms that do not depend on the ray are therefore computed
  * once for each triangle (ApexTriangles.h). For a ray along D = axis + tan(theta0.5) (x e1 + y e2),
@@ -16,8 +16,8 @@
  *
  * with u = 2^-24, u_d = 2^-53, R the sum of the coordinates' magnitudes of the farthest corner, L
  * the longest side, G = max(1 + sqrt(2) tan(theta0.5), sec) and K = 128 sec + 12 (8 + 14
- * tan(theta0.5)). E, W and D are computed in double precision and rounded once, after everything
- * has cancelled. Below, the test of TriangleTest.h is called exact, and this test rounded.
+ * tan(theta0.5)). E, W and D are computed in double precision and rounded once, after all
+ * cancellation. Below, *exact* means the test of TriangleTest.h, and *rounded* means this test.
  *
  * - Edges: e >= 1 implies acceptance by the exact test, and e < -1 rejection, with a factor of
  *   three to spare in the first term. The rounded E . D has an error below 5 u |E|_1 sec (one u
@@ -29,11 +29,12 @@
  * - Sign: the bounds above suppose that n . a has one sign in both tests. The error of n . a is 64
  *   u_d L R^2 in the rounded test and below 32 u_d L R^2 in the exact one. Where 128 u_d L R^2 sec
  *   is half of |n . a| or more, e is set to 0 and decides nothing: the apex lies on the triangle,
- *   or in its plane but for rounding. Triangles of |n|_1 <= u_d L^2 keep their e: |n| is at most 3
- *   u_d L^2 in every coordinate in the exact test, and planeOf() accepts no hit below 4 u_d L^2.
+ *   or in its plane but for rounding. Triangles of |n|_1 <= u_d L^2 keep e: in the exact test |n|
+ *   is at most 3 u_d L^2 in every coordinate, and planeOf() accepts no hit below 4 u_d L^2.
  * - Plane: where e >= 1 the plane's range is not clamped (TriangleTest.h). This needs E . d of at
- *   least 64 u_d R^2 (a x b, L <= 2 R) and 42 u_d R^2 for its evaluation in the exact test. Bounds
- *   that decide anything (128 u_d L R^2 / |n . a| < 1e-6) exclude |cos| of incidence below 2^-27.
+ *   least 64 u_d R^2 (a x b, L <= 2 R), and 42 u_d R^2 more for the evaluation of E . d in the
+ *   exact test. Bounds that decide anything (128 u_d L R^2 / |n . a| < 1e-6) exclude |cos| of
+ *   incidence below 2^-27.
  * - Range: `error` bounds the difference of w from the inverse of the exact range along the same
  *   ray. Its parts are 7 u |W|_1 sec for the rounding of w and of w -+ error; 100 u_d L R / |n . a|
  *   for n . d; and, relative to w, 64 u_d L R^2 / |n . a| for n . a, 40 u_d L R^2 / |n . a| for the
@@ -58,7 +59,7 @@
 
 namespace avianlidar
 {
-/// Nearest hits so far: bounds of their inverse ranges, in units of |D|.
+/// Nearest hits so far, with bounds of the inverse ranges in units of |D|.
 struct alignas(64) PacketBest
 {
   float low[PacketWidth], high[PacketWidth];
@@ -70,9 +71,9 @@ struct PacketTriangles
 {
   static constexpr int Width = ApexTriangles::Batch;
   const ApexTriangle* seen[Width];
-  RayBits rays[Width];   ///< rays that meet the leaf; their groups are tested
-  RayBits level[Width];  ///< rays that surely hit, at about the range of their nearest hit so far
-  RayBits unsure[Width]; ///< other rays, which the exact functions decide
+  RayBits rays[Width];   ///< rays that meet the leaf; the groups of these rays are tested
+  RayBits level[Width];  ///< rays that surely hit, at about the range of the nearest hit so far
+  RayBits unsure[Width]; ///< other rays that may hit, for the exact functions to decide
 };
 
 /// Test `count` triangles; nearest hits that are certain go to `best`.
@@ -80,7 +81,8 @@ struct PacketTriangles
 RayBits testTriangles(
   const PacketView& view, int count, PacketTriangles& triangles, PacketBest& best, bool& undecided);
 
-/// Update the ranges beyond which no hit counts, for the groups of the rays in `changed`.
+/// Update the ranges beyond which no hit counts, for all rays of the groups with a ray in
+/// `changed`.
 void shortenRays(const PacketBest& best, RayBits changed, PacketView& view);
 }
 

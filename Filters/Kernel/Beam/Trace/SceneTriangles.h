@@ -2,13 +2,13 @@
 /**
  * @file SceneTriangles.h
  * @brief The triangles that a beam may meet: the triangles of the collision tree, and the triangles
- * of movers in their places when the beam is fired.
+ * of movers at the places that the movers have when the beam is fired.
  *
  * Triangles of the tree keep their numbers. The numbers of all movers' triangles follow, whether
  * the movers are placed or not, so that a number means one triangle throughout a scan.
  *
  * Source: none.
- * Valid: a mover's triangle never takes the plane of another one (CoincidentFaces.h).
+ * Valid: a mover's triangle never takes the plane of another triangle (CoincidentFaces.h).
  * Test: TestMovedBeams.cxx.
  */
 #ifndef avianlidar_SceneTriangles_h
@@ -25,8 +25,8 @@
 
 namespace avianlidar
 {
-/// The tree's triangles, and those of the movers that were placed since the last clear(). One per
-/// thread; the tree must outlive it.
+/// The triangles of the tree, and of the movers that were placed since the last clear(). One object
+/// per thread, which the tree must outlive.
 class SceneTriangles
 {
 public:
@@ -42,16 +42,18 @@ public:
   /// Numbers of the movers' triangles in the beam, in rising order.
   const std::vector<std::uint32_t>& moved() const { return this->Numbers; }
 
-  /// Tree of the triangles in moved(), by their places in moved(); null if there are few.
+  /// Tree of the triangles in moved(), numbered by places in moved(); null if moved() has few
+  /// triangles.
   const CollisionTree* movedTree() const { return this->MovedTree.get(); }
 
   void clear();
 
-  /// Place a mover, after the movers with lower numbers. @param first number of its first triangle
-  /// @param mesh its triangles in scene coordinates, m
+  /// Place a mover, after the movers with lower numbers. @param first number of the mover's first
+  /// triangle
+  /// @param mesh triangles of the mover in scene coordinates, m
   void place(std::uint32_t first, const TriangleMesh& mesh);
 
-  /// Build the tree of the movers' triangles. Call it after the last mover is placed.
+  /// Build the tree of the movers' triangles, after the last mover is placed.
   void finish();
 
   /// True if the triangle belongs to the tree, or to a mover that is placed.
@@ -77,7 +79,7 @@ public:
       this->corner(triangle, 2) - point };
   }
 
-  /// As in CollisionTree.
+  /// Values of CollisionTree; a mover's triangle coincides with no other and owns its plane.
   bool coincides(std::uint32_t triangle) const
   {
     return !this->isMoved(triangle) && this->Tree.coincides(triangle);
@@ -99,7 +101,7 @@ private:
   const CollisionTree& Tree;
   const TriangleMesh& Mesh;
   const std::uint32_t Fixed;              ///< number of triangles in the tree
-  std::vector<std::array<Vec3, 3>> Moved; ///< corners of movers' triangles that were placed
+  std::vector<std::array<Vec3, 3>> Moved; ///< corners of the movers' triangles that were placed, m
   std::vector<std::uint32_t> Numbers;
   std::shared_ptr<const CollisionTree> MovedTree;
 };
