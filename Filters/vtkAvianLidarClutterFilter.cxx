@@ -150,7 +150,7 @@ std::string ReadTable(vtkPolyData* table, const ClutterMap& empty, ClutterMap& m
                                    : ClutterCell{ -1, 0, 0 };
     if (!ClutterMap::holds(grid, cell))
     {
-      return "point " + std::to_string(i) + ": 'clutter_cell' is no cell of the grid";
+      return "point " + std::to_string(i) + ": 'clutter_cell' is not a cell of the grid";
     }
     if (!(shares[i] >= 0.0 && shares[i] <= 1.0))
     {

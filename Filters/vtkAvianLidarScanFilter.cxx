@@ -367,7 +367,7 @@ void vtkAvianLidarScanFilter::PrepareSurfaces(const vtkAvianLidarRanks& ranks, v
         in.Exchange.Fields = input->GetFieldData();
         in.Surfaces = merged;
       }
-      this->SummarizeSurfaces(input, ranks.Rank() == 0);
+      this->SummarizeSurfaces(input, ranks.Rank() == 0 && !given); // the tree has warned
     });
   in.State = std::move(state);
   in.MergedBy = ranks.Group();

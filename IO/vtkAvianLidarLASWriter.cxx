@@ -246,7 +246,7 @@ Frame Place(vtkPointSet* input, int system, int zone, const std::function<void(s
   if (!output.crs.empty() && !IsWkt(output.crs))
   {
     throw FormatError(std::string("the field data '") + CrsName +
-      "' is no WKT, expected a word and a bracket at its beginning, as 'PROJCS['");
+      "' is not WKT, expected a word and a bracket at its beginning, as 'PROJCS['");
   }
   if (system == vtkAvianLidarLASWriter::COORDINATE_SYSTEM_LOCAL || !output.crs.empty())
   {

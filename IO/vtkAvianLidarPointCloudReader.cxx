@@ -52,7 +52,7 @@ bool MoveToOrigin(Cloud& cloud, int zone)
   const std::vector<double>& o = origin->numbers;
   if (!GeodeticFrame::checkOrigin(o[0], o[1], o[2]).empty())
   {
-    throw formats::FormatError("the origin that it says is no place on the Earth");
+    throw formats::FormatError("the origin in the file is not a place on the Earth");
   }
   const Frame from = geocentric ? Frame::ECEF : Frame::UTM;
   GeodeticFrame geodesy;

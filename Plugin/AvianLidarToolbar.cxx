@@ -76,7 +76,7 @@ const Macro Macros[] = { { WizardMacro, "wizard", "Avian Lidar: Scan as You Choo
   { "avian_lidar_birds_over_the_airport", "bird", "Avian Lidar: Scan Birds over an Airport",
     "Gulls, crows and starlings over an airport, in ten scans to play" },
   { "avian_lidar_birds_tracked", "tracker", "Avian Lidar: Track Birds over an Airport",
-    "Birds over an airport, clutter told from them and their tracks, in twenty scans to play",
+    "Birds over an airport, clutter found by a filter, and their tracks, in twenty scans to play",
     false },
   { "avian_lidar_coverage", "coverage", "Avian Lidar: Map Where a Bird Is Seen",
     "Where a lidar at the airport detects a gull, and why not elsewhere" },

@@ -219,7 +219,7 @@ PcdHeader readPcdHeader(ByteSource& source)
   {
     if (!lines.get(line))
     {
-      throw FormatError("it is no PCD file: it has no line DATA");
+      throw FormatError("this is not a PCD file: it has no line DATA");
     }
     std::istringstream text(line);
     std::string key, word;
@@ -233,7 +233,7 @@ PcdHeader readPcdHeader(ByteSource& source)
     key = key == "COLUMNS" ? "FIELDS" : key; // in 0.5
     if (known.count(key) == 0)
     {
-      throw FormatError("it is no PCD file: its header has the line \"" + shown(line) + "\"");
+      throw FormatError("this is not a PCD file: its header has the line \"" + shown(line) + "\"");
     }
     while (text >> word)
     {

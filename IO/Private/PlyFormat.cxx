@@ -83,13 +83,13 @@ std::vector<Element> readLines(ByteSource& source, PlyHeader& header)
   std::uint64_t properties = 0;
   if (!lines.get(line) || line != "ply")
   {
-    throw FormatError("it is no PLY file: it does not begin with a line \"ply\"");
+    throw FormatError("this is not a PLY file: it does not begin with a line \"ply\"");
   }
   for (;;)
   {
     if (!lines.get(line))
     {
-      throw FormatError("it is no PLY file: it has no line end_header");
+      throw FormatError("this is not a PLY file: it has no line end_header");
     }
     std::istringstream text(line);
     std::string key, word;
@@ -127,7 +127,8 @@ std::vector<Element> readLines(ByteSource& source, PlyHeader& header)
     }
     else
     {
-      throw FormatError("it is no PLY file of up to 4096 properties: its header has the line \"" +
+      throw FormatError(
+        "this is not a PLY file of up to 4096 properties: its header has the line \"" +
         shown(line) + "\"");
     }
   }

@@ -16,7 +16,7 @@ from ._properties import snake
 # Of vtkAvianLidarEchoFilter.
 SETTINGS = ("BeamSamples", "RaysPerBeam", "Sampling", "NumberOfReflections", "NumberOfConnections")
 KINDS = ("energy", "range", "missed")  # of errors
-VERDICTS = ("not met", "not told", "met")
+VERDICTS = ("not met", "undecided", "met")
 NOT_MET, UNDECIDED, MET = range(3)
 UNITS = {"seconds_per_beam": "s", "range_error": "m", "range_error_most": "m"}  # of columns; of others "1"
 MOST_ROWS = 12  # of settings beside the scan's own, for a reader

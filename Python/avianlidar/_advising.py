@@ -22,7 +22,7 @@ def errors_in_words(errors: np.ndarray) -> str:
     for kind, name in enumerate(("energy {} rms", "range {} rms", "echoes missed or invented {}")):
         value, most = (f"{one:.3g} m" if kind == 1 else per_cent(one) for one in np.atleast_1d(errors[kind])[[0, -1]])
         if errors.ndim > 1 and np.isinf(errors[kind, 2]):
-            value += " (not told: fewer than 30 beams have an echo of twice the limit)"
+            value += " (undecided: fewer than 30 beams have an echo of twice the limit)"
         elif errors.ndim > 1:
             value += f" (at most {most})"
         words.append(name.format(value))

@@ -122,7 +122,7 @@ def _value(text: str) -> Any:
         except ValueError:
             return {"on": True, "true": True, "yes": True, "off": False, "false": False, "no": False}.get(word.lower(), word)
         if not math.isfinite(value):
-            raise argparse.ArgumentTypeError(f"{text} is no finite number")
+            raise argparse.ArgumentTypeError(f"{text} is not a finite number")
         return int(value) if value.is_integer() and abs(value) < 2**53 else value
     name, equals, value = text.partition("=")
     if not equals or not name:

@@ -126,7 +126,7 @@ def _table(path: pathlib.Path) -> Tuple[Dict[str, str], np.ndarray]:
         if table.shape[1] != len(units):
             raise ValueError(f"rows have {table.shape[1]} cells, the first line {len(units)}")
     except (ValueError, csv.Error) as error:
-        raise ValueError(f"{path}: is no cloud ({error}): expected a first line of names, among them x, y and z (m), some with units, as "
+        raise ValueError(f"{path}: is not a cloud ({error}): expected a first line of names, among them x, y and z (m), some with units, as "
                          "'energy [J]', and numbers below; of .xyz numbers alone, x, y and z (m) first") from None
     return units, table
 
@@ -191,7 +191,7 @@ def load_cloud(file, time: Optional[float] = None, **properties: Any) -> Cloud:
         reader = vtkXMLPolyDataReader()
         with open(path, "rb") as stream:
             if b"<VTKFile" not in stream.read(4096):  # of which VTK says more than one thing
-                raise ValueError(f"{path}: it is no VTK XML file")
+                raise ValueError(f"{path}: this is not a VTK XML file")
     else:
         reader = getattr(_wrapped, READERS[suffix])()
     set_properties(reader, **properties)

@@ -41,7 +41,7 @@ def upstream(algorithm, found: Optional[List[Any]] = None) -> List[Any]:
 def text_of(value: str) -> str:
     """A text that VTK takes as it is: ValueError where it would end it (at NUL) or the process (no UTF-8)."""
     if not isinstance(value, str):
-        raise TypeError(f"{value!r} is no text")
+        raise TypeError(f"{value!r} is not a text")
     value.encode()
     if "\0" in value:
         raise ValueError(f"the text {value!r} holds a NUL")

@@ -304,7 +304,7 @@ class Scene:
             return _read(surfaces, progress, painted, **options)
         for key, value in options.items():
             if value is not None:
-                raise TypeError(f"{key} is for mesh files; scale and turn what is no file before it is added")
+                raise TypeError(f"{key} is for mesh files; scale and turn data before they are added")
         if isinstance(surfaces, vtkAlgorithm):
             surfaces = surfaces.GetOutputPort()
         if isinstance(surfaces, vtkAlgorithmOutput):

@@ -536,7 +536,7 @@ class Wrong(unittest.TestCase):
             one.way([(-600, 0), (600, 0)], aeroway="runway")
         nothing.way([(0, 0), (0, 0)], aeroway="runway")
         files = [(across.write("across.osm"), "cross the meridian of 180 degrees"), (beside.write("beside.osm"), "would reach over the meridian of 180"),
-                 (nothing.write("nothing.osm"), "holds no runway"), (plan.write("none.osm"), "holds no runway"), (FOLDER / "missing.osm", "no such file"), (FOLDER, "is no extract by its name")]
+                 (nothing.write("nothing.osm"), "holds no runway"), (plan.write("none.osm"), "holds no runway"), (FOLDER / "missing.osm", "no such file"), (FOLDER, "is not an extract by its name")]
         for name, content, said in (("text.gpkg", "no map", "GDAL cannot"),
                                     ("cut.geojson", '{"type": "FeatureCollection", "features": [', "GDAL cannot read")):
             (FOLDER / name).write_text(content)

@@ -135,9 +135,9 @@ class Verbs(unittest.TestCase):
                             ("x,y,z,x\n1,2,3,4\n", "'x' is there twice"),
                             ("x,y,z\n1,2,word\n", "word"), ("x,y,z\n1,2\n", "rows have 2 cells"),
                             ("x,y,z\n1,2,\n", "string")):
-            with self.assertRaisesRegex(ValueError, f"others.csv: is no cloud .*{words}"):
+            with self.assertRaisesRegex(ValueError, f"others.csv: is not a cloud .*{words}"):
                 read(text)
-        with self.assertRaisesRegex(ValueError, "others.csv: is no cloud .*decode"):
+        with self.assertRaisesRegex(ValueError, "others.csv: is not a cloud .*decode"):
             read("x,y,z,\u00e4\n1,2,3,4\n", "latin-1")
 
     def test_sensors_and_materials(self):
@@ -163,7 +163,7 @@ class Verbs(unittest.TestCase):
                  (("scan", SCENE, "-o", "none/x.las"), "there is no folder none"), ((*scan, "-o", "./x.las"), "is named twice"),
                  ((*scan, "--scan-set", "rays_per_beam=1e30"), "rays_per_beam|int"),
                  ((*scan, "--scan-set", "attenuation_coefficient=nan"), "no finite number"),
-                 (("info", OUTPUT / "table.csv"), r"table.csv: is no cloud"), (("info", OUTPUT / "fake.vtp"), "fake.vtp"),
+                 (("info", OUTPUT / "table.csv"), r"table.csv: is not a cloud"), (("info", OUTPUT / "fake.vtp"), "fake.vtp"),
                  (("convert", self.files["las"], "x.doc"), "cannot write 'x.doc'"),
                  (("sensors", "VLP99"), "'VLP99' is not known"))
         for arguments, words in cases:

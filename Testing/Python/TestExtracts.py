@@ -405,7 +405,7 @@ class Surveyed(unittest.TestCase):
             self.assertEqual(read(text), (expected, []), text)
         self.assertEqual(read("longitude,latitude,height,unit,kind\n13.302,53.603,,m,mast\n13.302,,45,m,mast\n13.302,99,45,m,mast\n\n")[1], [obstacles.NO_PLACE] * 3)
         for name, text, words in (("obstacles.csv", "a,b,c\n1,2,3\n", "expected the columns longitude"), ("obstacles.csv", "longitude,latitude,height,unit\n1,2,3,furlong\n", "row 2: the unit is 'furlong'"),
-                                  ("bad.xml", "<a>", "cannot be read as AIXM 5.1"), ("other.xml", "<a/>", "holds no VerticalStructure"), ("x.txt", "", "is no file of obstacles by its name")):
+                                  ("bad.xml", "<a>", "cannot be read as AIXM 5.1"), ("other.xml", "<a/>", "holds no VerticalStructure"), ("x.txt", "", "is not a file of obstacles by its name")):
             (ta.FOLDER / name).write_text(text)
             with self.assertRaisesRegex(RuntimeError, words):
                 obstacles.read_obstacles(ta.FOLDER / name, KNOWN)

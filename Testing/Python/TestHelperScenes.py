@@ -129,7 +129,7 @@ class Sources(unittest.TestCase):
                 (TypeError, "float64", lambda: al.Scene(points, faces * 1.0)),
                 (IndexError, "there are 8", lambda: al.Scene(points, faces + 1)),
                 (TypeError, r"\(8, 3\) without faces", lambda: al.Scene(points)),
-                (TypeError, "3 is no text", lambda: al.Scene(WALL, name=3)),
+                (TypeError, "3 is not a text", lambda: al.Scene(WALL, name=3)),
                 (ValueError, "scale is nan", lambda: al.Scene(self.stl, scale=float("nan"))),
                 (TypeError, "scale is for mesh files", lambda: al.Scene(WALL, scale=2)),
                 (al.Error, "up_axis: ", lambda: al.Scene(self.stl, up_axis="x")),

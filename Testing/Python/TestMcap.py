@@ -136,8 +136,8 @@ class TestMcap(unittest.TestCase):
 
         run = self.convert(self.folder)
         self.assertEqual((run.returncode, run.stdout, self.out.exists()), (2, "", False))
-        self.assertIn(f"{self.folder}: is no folder of a sequence", run.stderr)
-        refused("cloud.las: is no folder of a sequence", "cloud.las")
+        self.assertIn(f"{self.folder}: is not a folder of a sequence", run.stderr)
+        refused("cloud.las: is not a folder of a sequence", "cloud.las")
         pose = pose_line(TURN, (0, 0, 0))
         for name, text, words, mended in (
                 ("times.txt", "0\n1\n", "has 3 scans, 2 times and 3 poses", ""), ("times.txt", "0\n1\ntwo\n", "1 in each", ""),

@@ -211,8 +211,8 @@ void vtkAvianLidarBeamSource::vtkInternals::Apply(const vtkAvianLidarSensorFile&
     }
     else
     {
-      file.Fail(
-        entry, "is no property of a sensor, expected one of the beam source's in snake case");
+      file.Fail(entry,
+        "is not a property of a sensor, expected a property of the beam source in snake case");
     }
     if (entry.IsAssumed())
     {

@@ -280,7 +280,7 @@ void vtkAvianLidarPlaces::ReadRegions()
     const double id = ids->GetComponent(i, 0);
     Require(Arrays::IsInt(id)
         ? ""
-        : "point array 'region_id' is no whole number of 32 bits at point " + std::to_string(i));
+        : "point array 'region_id' is not a whole number of 32 bits at point " + std::to_string(i));
     numbers[static_cast<int>(id)] = 0;
   }
   this->Names.clear();

@@ -82,7 +82,7 @@ std::string vtkAvianLidarImageArrays::NoInteger(
   const Arrays::Name& name, const char* port, vtkIdType point)
 {
   return std::string("point array '") + name.name + "' of " + port +
-    " has a value that is no integer, at point " + std::to_string(point);
+    " has a value that is not an integer, at point " + std::to_string(point);
 }
 
 //------------------------------------------------------------------------------

@@ -17,7 +17,7 @@ from ._report import place
 from ._scores import Value
 from ._tables import embedded, render, write_table
 
-TOLD_WORDS = {True: "yes", False: "no", None: "not told"}
+TOLD_WORDS = {True: "yes", False: "no", None: "undecided"}
 
 
 def _cost(study: Study, cost: float) -> str:
@@ -78,7 +78,7 @@ def answers(study: Study) -> List[str]:
         least = min(unsure, key=lambda one: one.cost)
         found.append(f"Of {len(unsure)} {'cheaper ' if study.chosen else ''}{'design' if len(unsure) == 1 else 'designs'}, "
                      f"from {_cost(study, least.cost)} on, the error "
-                     f"does not tell: they lie within {TOLD:g} standard errors of {asked}. More {'scans' if study.measure == 'tracked' else 'places'} would.")
+                     f"does not decide: they lie within {TOLD:g} standard errors of {asked}. More {'scans' if study.measure == 'tracked' else 'places'} would.")
     return found
 
 

@@ -32,14 +32,14 @@ class Formula:
         try:
             tree = ast.parse(text.strip(), mode="eval")
         except (SyntaxError, ValueError, MemoryError, RecursionError) as error:
-            raise ValueError(f"{text}: is no formula ({getattr(error, 'msg', error) or 'it is nested too deeply'})") from None
+            raise ValueError(f"{text}: is not a formula ({getattr(error, 'msg', error) or 'it is nested too deeply'})") from None
         called = [node.func for node in ast.walk(tree) if isinstance(node, ast.Call)]
         for node in ast.walk(tree):
             if not self._may_stand(node):
                 raise ValueError(f"{text}: {ast.unparse(node)[:40]!r} may not stand in a formula, expected numbers, "
                                  "names, + - * / ** ( ) and functions")
             if isinstance(node, ast.Name) and node in called and node.id not in FUNCTIONS:
-                raise ValueError(f"{text}: {node.id!r} is no function here, expected one of {', '.join(FUNCTIONS)}")
+                raise ValueError(f"{text}: {node.id!r} is not a function here, expected one of {', '.join(FUNCTIONS)}")
             if isinstance(node, ast.Name) and node not in called and node.id not in self.names:
                 known = ", ".join(self.names)
                 raise ValueError(f"{text}: {node.id!r} is not known, expected one of the numbers {known}")
@@ -51,7 +51,7 @@ class Formula:
         try:
             self._code = compile(tree, "formula", "eval")
         except RecursionError:
-            raise ValueError(f"{text[:40]}...: is no formula (it is nested too deeply)") from None
+            raise ValueError(f"{text[:40]}...: is not a formula (it is nested too deeply)") from None
 
     @staticmethod
     def _may_stand(node: ast.AST) -> bool:

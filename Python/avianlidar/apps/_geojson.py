@@ -47,7 +47,7 @@ def features_of(path: pathlib.Path) -> List[Dict[str, Any]]:
     document = load_json(path)
     features = document.get("features") if isinstance(document, dict) else None
     if not isinstance(features, list):
-        raise Error(f"{path}: is no GeoJSON file with features")
+        raise Error(f"{path}: is not a GeoJSON file with features")
     for number, feature in enumerate(features):
         if not isinstance(feature, dict):
             raise Error(f"{path}: features[{number}]: is {str(feature)[:40]}, expected an object")
@@ -113,7 +113,7 @@ def read_outlines(file, origin: Sequence[float], attribute: str = "") -> List[An
             with naming(f"{file}: features[{number}]"):
                 polygons = [shape.get("coordinates")] if shape["type"] == "Polygon" else shape.get("coordinates")
                 if not isinstance(polygons, list):
-                    raise ValueError("the coordinates of a MultiPolygon are no list")
+                    raise ValueError("the coordinates of a MultiPolygon are not a list")
                 for rings in polygons:
                     outline = [_ring(ring, origin) for ring in (rings if isinstance(rings, list) else [None])]
                     found += [outline if len(outline) > 1 else outline[0]] if outline else []

@@ -20,7 +20,7 @@ LONGEST = 400  # characters of what a schema says, which may quote a whole list
 def _finite(text: str) -> float:
     value = float(text)  # also of words that are no JSON: NaN, Infinity
     if not math.isfinite(value):
-        raise ValueError(f"{text[:40]} is no finite number")
+        raise ValueError(f"{text[:40]} is not a finite number")
     return value
 
 

@@ -145,7 +145,7 @@ def _table(file: pathlib.Path, columns: int, least: float = -2e9, key: str = "")
 def _scans(folder: pathlib.Path) -> Iterator[Tuple[str, int, np.ndarray, np.ndarray]]:
     """Name, time (ns), pose and points of each scan. A calibration turns poses of a camera to those of the lidar, as in SemanticKITTI."""
     if not (folder / "velodyne").is_dir():
-        raise ValueError(f"{folder}: is no folder of a sequence, expected one with velodyne/, times.txt and poses.txt")
+        raise ValueError(f"{folder}: is not a folder of a sequence, expected one with velodyne/, times.txt and poses.txt")
     files = sorted((folder / "velodyne").glob("*.bin"))
     times, poses = _table(folder / "times.txt", 1, least=0)[:, 0], _table(folder / "poses.txt", 12).reshape(-1, 3, 4)
     if not len(files) == len(times) == len(poses):

@@ -34,7 +34,7 @@ def read_obstacles(file: pathlib.Path, known: Dict[str, Any]) -> Tuple[List[Feat
     only the elevation of the top, that is in `elevation`, m."""
     suffix = file.suffix.lower()
     if suffix not in (".xml", ".csv"):
-        raise Error(f"{file}: is no file of obstacles by its name, expected .xml (AIXM 5.1) or .csv")
+        raise Error(f"{file}: is not a file of obstacles by its name, expected .xml (AIXM 5.1) or .csv")
     found: List[Feature] = []
     left: List[Feature] = []
     for tags, shape in (_aixm if suffix == ".xml" else _csv)(file, read_regular(file)):

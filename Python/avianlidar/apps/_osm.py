@@ -107,7 +107,7 @@ def read_extract(file: pathlib.Path, known: Dict[str, Any]) -> Extract:
     """What the rules know, aerodromes, and what is left out."""
     driver = SUFFIXES.get(file.suffix.lower())
     if not driver:
-        raise Error(f"{file}: is no extract by its name, expected .osm, .osm.pbf, .geojson or .gpkg")
+        raise Error(f"{file}: is not an extract by its name, expected .osm, .osm.pbf, .geojson or .gpkg")
     expect_file(file)
     if file.stat().st_size > LARGEST:
         raise Error(f"{file}: holds {file.stat().st_size >> 20} MiB, expected at most {LARGEST >> 20}: cut it to the airport and some "

@@ -176,7 +176,7 @@ class Sequence(Simulation):
         if not folder.exists():
             return False
         if not (folder / DONE).exists():
-            raise Error(f"{folder}: is there without {DONE}, so it is no whole sequence; choose another folder or remove it")
+            raise Error(f"{folder}: is there without {DONE}, so it is not a whole sequence; choose another folder or remove it")
         content = load_json(folder / DONE)
         known: Dict[str, Any] = content if isinstance(content, dict) else {}
         scans, wanted = known.get("scans"), len(self.span(number))
