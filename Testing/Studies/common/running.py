@@ -4,6 +4,7 @@ import functools
 import os
 import pathlib
 import sys
+import time
 
 import numpy as np
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
@@ -91,6 +92,13 @@ def scanned(beams, tree, **properties):
     lidar.SetSurfacesConnection(tree.GetOutputPort())
     update(set_all(lidar, properties))
     return lidar
+
+
+def seconds_of(work):
+    """How long it takes, s."""
+    begin = time.perf_counter()
+    work()
+    return time.perf_counter() - begin
 
 
 def column(data, name):
