@@ -93,8 +93,6 @@ def clouds(simulated, real):
     comparison.SetInputData(1, room_surface.cloud(real))
     running.update(comparison)
     return {"hausdorff": comparison.GetHausdorffDistance(),
-            "hausdorff_rs": comparison.GetHausdorffReferenceToSimulated(),
-            "hausdorff_sr": comparison.GetHausdorffSimulatedToReference(),
             "density_aware_chamfer": comparison.GetDensityAwareChamferDistance(),
             "rmse_rs": comparison.GetRMSEReferenceToSimulated(), "rmse_sr": comparison.GetRMSESimulatedToReference()}
 
