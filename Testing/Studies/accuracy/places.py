@@ -57,8 +57,8 @@ def costs(subject, turns):
 def judged(subject, options):
     """{setting: (rms error of energy, share of the true echoes that is missed or invented)}, and the reference."""
     reference = trade_runs.Reference(subject, options.reference_rays)
-    seeds = range(options.seeds)
-    return {setting: trade_runs.energy_and_wrong(trade_runs.judged(reference, values, seeds)) for setting, values in JUDGED.items()}, reference
+    return {setting: trade_runs.energy_and_wrong(trade_runs.judged(reference, values, range(options.seeds)))
+            for setting, values in JUDGED.items()}, reference
 
 
 def measure(name, sensor, options):

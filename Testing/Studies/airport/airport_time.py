@@ -14,21 +14,18 @@ import avianlidar as al
 import running
 import tools
 from avianlidar.vtkAvianLidar import vtkAvianLidarEchoFilter
-from running import argument, set_all, study, whole
+from running import BOX, BOX_SIDES, argument, set_all, study, whole
 
 AIRCRAFT = "Aircraft"
 BOXES = ((-2, 2, -19, 19, 2, 6), (-17, 17, -3, 3, 2.5, 3.2), (-0.3, 0.3, -19, -14, 6, 12))  # hull, wings, tail; m
-
-
 PERIOD = 2.0  # s, of a revolution
 
 
 def aircraft():
     """Boxes of the paper's metal, m east and north of the origin of its frame."""
-    corners = np.array([[[box[i], box[2 + j], box[4 + k]] for i in (0, 1) for j in (0, 1) for k in (0, 1)] for box in BOXES])
-    sides = np.array([(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)])
-    faces = (8 * np.arange(len(BOXES))[:, None, None] + np.vstack([sides[:, :3], sides[:, (0, 2, 3)]])).reshape(-1, 3)
-    return al.Scene(corners.reshape(-1, 3), faces, material="Metal", name=AIRCRAFT).surfaces.GetBlock(0)
+    low, high = np.reshape(BOXES, (-1, 1, 3, 2)).transpose(3, 0, 1, 2)
+    faces = (8 * np.arange(len(BOXES))[:, None, None] + BOX_SIDES).reshape(-1, 3)
+    return al.Scene((low + (high - low) * BOX).reshape(-1, 3), faces, material="Metal", name=AIRCRAFT).surfaces.GetBlock(0)
 
 
 def play(scene, options):

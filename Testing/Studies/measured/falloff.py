@@ -236,22 +236,25 @@ class Study:
     planes: list = dataclasses.field(default_factory=list)
 
 
+def beyond_nearest(cloud, *fields):
+    """Points of a cloud but those of the vehicle, their rings, their distances, and fields."""
+    points = np.array(cloud.points, float)
+    distance = np.linalg.norm(points, axis=1)
+    used = distance > NEAREST
+    return points[used], np.array(cloud["laser_id"], int)[used], distance[used], *(np.array(cloud[name], float)[used] for name in fields)
+
+
 def study_of(frame, file, share=FULL):
     cloud = al.load_cloud(file)
-    points = np.array(cloud.points, float)
     for name in (frame.field, "laser_id"):
         if name not in cloud:
             raise ValueError(f"{file}: no field {'ring or channel' if name == 'laser_id' else name}; found {', '.join(cloud)}")
     ring = np.array(cloud["laser_id"], int)
     elevation = [float(np.median(cloud["vertical_angle"][ring == i])) if (ring == i).any() else 90.0
                  for i in range(ring.max() + 1)]
-    used = np.linalg.norm(points, axis=1) > NEAREST
-    points, ring = points[used], ring[used]
-    distance, signal = np.linalg.norm(points, axis=1), np.array(cloud[frame.field], float)[used]
-    result = Study(frame, elevation, distance, signal, ring)
-    scale, full = None, 0.0
+    points, ring, distance, signal, *scale = beyond_nearest(cloud, frame.field, *([frame.scale] if frame.scale else []))
+    result, scale, full = Study(frame, elevation, distance, signal, ring), scale[0] if scale else None, 0.0
     if frame.scale:
-        scale = np.array(cloud[frame.scale], float)[used]
         result.gain = own_gain(distance, signal, scale, frame.top)
         full = result.gain[0][np.argmax(result.gain[1] >= share)]
     for plane in find_planes(points, ring):

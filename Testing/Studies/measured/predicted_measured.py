@@ -48,11 +48,7 @@ def sheets():
 def ground_of(data):
     """Planes of ground of the VLP-16's frame: (plane, distances, cosines, reflectivity in %, rings)."""
     frame = falloff.FRAMES[-1]
-    cloud = al.load_cloud(data / frame.file)
-    points = np.array(cloud.points, float)
-    used = np.linalg.norm(points, axis=1) > falloff.NEAREST
-    points, ring, shown = points[used], np.array(cloud["laser_id"], int)[used], np.array(cloud[frame.field], float)[used]
-    distance = np.linalg.norm(points, axis=1)
+    points, ring, distance, shown = falloff.beyond_nearest(al.load_cloud(data / frame.file), frame.field)
     for plane in falloff.find_planes(points, ring):
         on = plane.points[shown[plane.points] <= DARK]
         if plane.kind == "ground":
@@ -112,9 +108,8 @@ def walls(data):
     return ("frame", "wall (m)", "ranges (m)", "predicted n", "measured n", "within three standard errors"), rows
 
 
-def noise_of_ranges(points, ring):
+def noise_of_ranges(points, ring, distance):
     """Standard deviations (m) of ranges along rings on planes: of second differences of five neighbours and more, by plane."""
-    distance = np.linalg.norm(points, axis=1)
     azimuth = np.arctan2(points[:, 0], points[:, 1])
     found = []
     for plane in falloff.find_planes(points, ring):
@@ -139,10 +134,7 @@ def ranges(data):
     rows = []
     for frame in frames.FRAMES:
         name, preset = frame.name, frame.preset
-        cloud = al.load_cloud(data / frame.file)
-        points, ring = np.array(cloud.points, float), np.array(cloud["laser_id"], int)
-        used = np.linalg.norm(points, axis=1) > falloff.NEAREST
-        found = noise_of_ranges(points[used], ring[used])
+        found = noise_of_ranges(*falloff.beyond_nearest(al.load_cloud(data / frame.file)))
         sheet = al.Sensor(preset).description["data_sheet"] if preset else {}
         said = sheet.get("range_repeatability", sheet.get("range_accuracy", {})).get("value", np.nan)
         quantum = sheet.get("range_resolution", {}).get("value", np.nan)

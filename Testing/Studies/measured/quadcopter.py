@@ -19,7 +19,7 @@ from scipy.spatial.transform import Rotation
 import avianlidar as al
 import tools
 from avianlidar import _sheet
-from running import above_zero, argument, finite, study, whole
+from running import BOX, BOX_SIDES, above_zero, argument, finite, study, whole
 
 ACROSS = 0.4             # m, from motor to motor over the middle
 REFLECTANCE = 0.05, 0.5  # assumed: dark plastic and carbon to light grey
@@ -39,11 +39,8 @@ ARM, MOTOR, LEG = (0.008, 0.006), (0.014, 0.014), (0.006, 0.03)
 
 def box(middle, half, turn=0.0):
     """Corners and triangles of a box that is turned about z."""
-    signs = np.array([(x, y, z) for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)], float)
     c, s = np.cos(turn), np.sin(turn)
-    corners = signs * half @ np.array([(c, s, 0), (-s, c, 0), (0, 0, 1)]) + middle
-    faces = [(0, 1, 3), (0, 3, 2), (4, 6, 7), (4, 7, 5), (0, 4, 5), (0, 5, 1), (2, 3, 7), (2, 7, 6), (0, 2, 6), (0, 6, 4), (1, 5, 7), (1, 7, 3)]
-    return corners, np.array(faces)
+    return (2 * BOX - 1) * half @ np.array([(c, s, 0), (-s, c, 0), (0, 0, 1)]) + middle, BOX_SIDES
 
 
 def quadcopter(thick):
