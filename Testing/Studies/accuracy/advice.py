@@ -95,8 +95,6 @@ def main(options):
     advised = [row for row in rows if row[3] != "none"]
     faster = [row[6] for row in advised if row[6] != "-"]
     hold, fail = sum(row[5] == "yes" for row in advised), sum("fails" in text for text in faster)
-    said = (f"Advised in {len(advised)} of {len(rows)} cases. On the whole scan the settings hold in {hold} of these; "
-            f"the next faster setting fails in {fail} of {len(faster)}.\n")
-    with open(options.out / "table.md", "a", encoding="utf-8") as page:
-        page.write("\n" + said)
+    print(f"Advised in {len(advised)} of {len(rows)} cases. On the whole scan the settings hold in {hold} of these; "
+          f"the next faster setting fails in {fail} of {len(faster)}.")
     return rows
