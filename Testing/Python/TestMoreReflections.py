@@ -35,7 +35,7 @@ class AgainstTheFilter(unittest.TestCase):
 class ToTheLetter(unittest.TestCase):
     def corner(self, **material):
         """Two perpendicular plates with the edge upright."""
-        paint = mr.vtkAvianLidarMaterial()
+        paint = mr.running.vtkAvianLidarMaterial()
         paint.SetInputData(mr.running.quads([[(0, 0, -3), (3, 0, -3), (3, 0, 3), (0, 0, 3)],
                                                     [(0, 0, -3), (0, 3, -3), (0, 3, 3), (0, 0, 3)]]))
         paint.SetMaterialToCustom()

@@ -24,47 +24,33 @@ sys.path += BUILT.read_text(encoding="utf-8").strip().split(":") if BUILT.exists
 import page_tables  # noqa: E402
 import tools  # noqa: E402
 
-# Runs for pages, by name: {picture: name in Documentation/images}.
-RUNS = {
+# Pictures of pages, by study: {picture: name in Documentation/images}; and studies of which pages have tables alone.
+PICTURES = {
     "accuracy_page": {"airport16-energy": "accuracy-airport16-energy"},
-    "advice": {},
     "airport": {"Airport16-top": "airport-top-16"},
     "airport_search": {"tree": "search-tree"},
     "airport_time": {"revolutions": "time-revolutions"},
-    "attenuation": {},
     "beam_shapes": {"shapes": "beams-shapes"},
     "birds": {"species": "birds-species", "detection": "birds-detection"},
     "birds_over_airport": {"from-above": "birds-over-airport"},
     "check_fit": {"silver-metallic-paint": "materials-silver-metallic-paint"},
     "corridor": {"corridor": "corridor-corridor"},
     "design": {"head": "design-head"},
-    "detail": {},
-    "falloff": {},
     "labels": {"labels": "sequences-labels"},
-    "media_time": {},
-    "more_reflections": {},
-    "moved_scenes": {},
-    "multiple_scattering": {},
-    "others": {},
     "paper": {"facade": "paper-facade", "terminal-1": "paper-terminal-1"},
-    "paper_times": {},
     "patterns": {"prisms": "sensors-prisms", "rotors": "sensors-rotors"},
-    "presets": {},
     "predicted_measured": {"least": "measured-least"},
-    "protocol": {},
-    "quadcopter": {},
     "ranges": {"ranges": "coverage-ranges"},
     "render_notebook": {"energy-image": "python-range-image"},
     "report_card": {"scan": "tracks-scan"},
     "room": {"xt32-ranges": "room-xt32-ranges"},
     "screenshots": {"head": "coverage-report"},
-    "second_reflection": {},
-    "sequence_costs": {},
-    "tracked_gulls": {},
-    "vegetation": {},
     "weather": {"weather": "weather"},
     "your_airport": {"airport": "your-airport"},
 }
+TABLES = ("advice", "attenuation", "detail", "falloff", "media_time", "more_reflections", "moved_scenes",
+          "multiple_scattering", "others", "paper_times", "presets", "protocol", "quadcopter", "second_reflection",
+          "sequence_costs", "tracked_gulls", "vegetation")
 LONG = ("accuracy_page", "sequence_costs")  # only when they are named
 
 
@@ -73,11 +59,11 @@ def pages(words):
     folder, run = pathlib.Path("build"), True
     if words[:1] == ["--from"]:
         folder, run, words = pathlib.Path(words[1]), False, words[2:]
-    for name in words or [name for name in RUNS if name not in LONG]:
+    for name in words or [name for name in (*PICTURES, *TABLES) if name not in LONG]:
         out = folder / name
         if run:
             importlib.import_module(name).main(["--out", str(out)])
-        for picture, target in RUNS.get(name, {}).items():
+        for picture, target in PICTURES.get(name, {}).items():
             shutil.copyfile(out / f"{picture}.png", page_tables.DOCUMENTATION / "images" / f"{target}.png")
         for table in out.glob("*.md"):
             page_tables.put(name if table.stem == "table" else table.stem, table.read_text(encoding="utf-8"))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The trade of speed for accuracy on the scenes of Documentation/evidence/accuracy.md, as tables and plots of that page. It takes
+"""The trade of speed for accuracy on the scenes of Documentation/evidence/accuracy.md, as tables and a plot of that page. It takes
 about ten minutes on two cores.
 
     Testing/Studies/run.py pages accuracy_page
@@ -12,10 +12,10 @@ import trade_grid
 import trade_results
 from running import study
 
-# Name in the page, arguments, which plots the page shows.
-RUNS = (("airport16", ["airport", "--sensor", "airport16"], ("energy", "range", "detection")),
-        ("airport32", ["airport", "--sensor", "airport32", "--seeds", "3", "--reference-rays", "15000"], ()),
-        ("corridor", ["corridor"], ("energy",)))
+# Name in the page, and arguments.
+RUNS = (("airport16", ["airport", "--sensor", "airport16"]),
+        ("airport32", ["airport", "--sensor", "airport32", "--seeds", "3", "--reference-rays", "15000"]),
+        ("corridor", ["corridor"]))
 
 
 def in_words(r):
@@ -28,13 +28,11 @@ def in_words(r):
 @study()
 def main(options):
     found = {}
-    for name, arguments, pictures in RUNS:
+    for name, arguments in RUNS:
         subject, _, results, advice = accuracy_speed.main([*arguments, "--out", str(options.out / name)])
         found[f"{subject.name}, {subject.sensor_name}"] = results, advice
-        for part in ("head", "table") if pictures else ("head",):
-            shutil.copyfile(options.out / name / f"{part}.md", options.out / f"trade-{part}-{name}.md")
-        for kind in pictures:
-            shutil.copyfile(options.out / name / f"{kind}.png", options.out / f"{name}-{kind}.png")
+        shutil.copyfile(options.out / name / "table.md", options.out / f"trade-table-{name}.md")
+    shutil.copyfile(options.out / "airport16" / "energy.png", options.out / "airport16-energy.png")
     tools.leave(options.out, "trade-presets", ("preset", *found), [
         (f"`{preset}`", *(in_words(next(r for r in results if r.choice.family == preset)) for results, _ in found.values()))
         for preset in trade_grid.PRESETS])

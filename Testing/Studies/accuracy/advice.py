@@ -31,25 +31,6 @@ NAMES = {"beam_samples": "BeamSamples", "rays_per_beam": "RaysPerBeam", "samplin
          "number_of_reflections": "NumberOfReflections", "number_of_connections": "NumberOfConnections"}
 
 
-class Subject:
-    """A scene and a sensor in it, as trade_runs wants them."""
-
-    def __init__(self, file, sensor):
-        scene = al.Scene(str(file))
-        self.scan = al.Scan(scene, sensor)
-        self.tree, self.sensor = scene.tree, self.scan.sensor.algorithm
-        running.update(self.sensor)
-        fields = self.scan.sensor.beams.fields
-        self.attenuation = self.scan.attenuation_coefficient
-        self.lower_limit = float(fields["lower_energy_limit"])
-        self.unit = trade_runs.HALF_LIGHT_SPEED * float(fields["sampling_interval"])
-        self.tolerance = self.unit + trade_runs.HALF_LIGHT_SPEED * float(fields["pulse_width"])
-
-    @property
-    def number_of_beams(self):
-        return self.sensor.GetOutput().GetNumberOfPoints()
-
-
 def setting_of(advice, row):
     return {NAMES[name]: int(advice.table[name][row]) for name in NAMES}
 
@@ -79,13 +60,13 @@ def holds(errors, asked):
 
 def measure(title, file, sensor, beams):
     """Rows of the table, as cells."""
-    subject = Subject(file, sensor)
+    subject, scan = trade_runs.Subject(file, sensor), al.Scan(al.Scene(str(file)), sensor)
     reference = trade_runs.Reference(subject, REFERENCE, (2000003, 2000029), Filter.BEAM_SAMPLES_CELLS, 8)
     reference.strong &= reference.echoes["secondary_share"] <= GHOST
     rows = []
     for asked in ASKED:
         before = time.process_time()
-        advice = subject.scan.advise(**asked, beams=beams)
+        advice = scan.advise(**asked, beams=beams)
         took = time.process_time() - before
         start = [title, sensor, in_words(tuple(asked.values()))]
         if advice.row < 0:
@@ -114,8 +95,6 @@ def main(options):
     advised = [row for row in rows if row[3] != "none"]
     faster = [row[6] for row in advised if row[6] != "-"]
     hold, fail = sum(row[5] == "yes" for row in advised), sum("fails" in text for text in faster)
-    said = (f"Advised in {len(advised)} of {len(rows)} cases. On the whole scan the settings hold in {hold} of these; "
-            f"the next faster setting fails in {fail} of {len(faster)}.\n")
-    with open(options.out / "table.md", "a", encoding="utf-8") as page:
-        page.write("\n" + said)
+    print(f"Advised in {len(advised)} of {len(rows)} cases. On the whole scan the settings hold in {hold} of these; "
+          f"the next faster setting fails in {fail} of {len(faster)}.")
     return rows

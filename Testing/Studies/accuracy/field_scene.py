@@ -3,11 +3,11 @@
 beam, so that most echoes lie near the lower limit of the receiver: the hardest case for what is seen and what is not.
 Metres; the lidar stands in the origin, 3 m above the ground, of which there is none."""
 import numpy as np
+
 import avianlidar as al
+from running import BOX, BOX_SIDES
 
 LIDAR = (0.0, 0.0, 3.0)
-CORNERS = np.array([[i & 1, i >> 1 & 1, i >> 2] for i in range(8)]) - [0.5, 0.5, 0.0]
-SIDES = np.array([(0, 2, 3), (0, 3, 1), (4, 5, 7), (4, 7, 6), (0, 1, 5), (0, 5, 4), (2, 6, 7), (2, 7, 3), (0, 4, 6), (0, 6, 2), (1, 3, 7), (1, 7, 5)])
 
 
 def build(number=900, seed=7):
@@ -22,9 +22,9 @@ def build(number=900, seed=7):
         size, height = {0: ((thin, thin, random.uniform(4, 30)), 0),
                         1: ((random.uniform(5, 60), thin, thin), random.uniform(0, 20)),
                         2: (random.uniform(0.2, 3, 3), random.uniform(0, 10))}[kind]
-        corner = CORNERS * size
+        corner = (BOX - (0.5, 0.5, 0.0)) * size
         x = corner[:, 0] * np.cos(turn) - corner[:, 1] * np.sin(turn)
         y = corner[:, 0] * np.sin(turn) + corner[:, 1] * np.cos(turn)
         points.append(np.column_stack([x + place[0], y + place[1], corner[:, 2] + height]))
-    sides = (8 * np.arange(number)[:, None, None] + SIDES).reshape(-1, 3)
+    sides = (8 * np.arange(number)[:, None, None] + BOX_SIDES).reshape(-1, 3)
     return al.Scene(np.concatenate(points), sides, material="Wall").surfaces

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """What do polygons and cells buy, and do standard errors hold? Prints tables: for each scene and number of rays the rms error of
 energy, the processor time and the share of the true echoes that is invented or missed, once with `BeamSamples` at `Rays` and
-once at `Cells`; the same of the presets; and how many true energies 1.96 standard errors hold.
+once at `Cells`; and how many true energies 1.96 standard errors hold.
 
     Testing/Studies/run.py front airport airport:airport32 field my.lidarscene.json"""
 import numpy as np
@@ -9,7 +9,6 @@ import numpy as np
 from avianlidar.vtkAvianLidar import vtkAvianLidarEchoFilter as Filter
 
 import tools
-import trade_grid
 import trade_runs
 from running import argument, study, whole
 
@@ -17,21 +16,20 @@ RAYS = (32, 100, 400, 1000, 3000, 10000)
 
 
 def measure(name, sensor, options):
-    """The scene's title, the reference's own error, {(rays, samples) or preset: (rms error of energy, s of one core, share of
+    """The scene's title, the reference's own error, {(rays, samples): (rms error of energy, s of one core, share of
     the true echoes that is missed or invented, share of energies that are held)}. All else is the filter's defaults."""
     subject = trade_runs.Subject(name, sensor)
     reference = trade_runs.Reference(subject, options.reference_rays)
     settings = {(rays, samples): {"RaysPerBeam": rays, "BeamSamples": samples}
                 for rays in options.rays for samples in (Filter.BEAM_SAMPLES_RAYS, Filter.BEAM_SAMPLES_CELLS)}
-    settings.update({name: {"Preset": getattr(Filter, value)} for name, value in trade_grid.PRESETS.items()})
     return [(subject.title, reference.own["energy"], {
         setting: result(reference, values, options.seeds) for setting, values in settings.items()})]
 
 
 def result(reference, values, seeds):
     runs = trade_runs.judged(reference, values, range(seeds))
-    return (trade_runs.rms_of(runs, "energy"), min(run.cpu for _, run in runs), np.mean([trade_runs.wrong(found) for found, _ in runs]),
-            np.mean(np.concatenate([found["held"] for found, _ in runs])))
+    energy, wrong = trade_runs.energy_and_wrong(runs)
+    return energy, min(run.cpu for _, run in runs), wrong, np.mean(np.concatenate([found["held"] for found, _ in runs]))
 
 
 def errors(found):
@@ -52,5 +50,3 @@ def main(options):
         tools.leave(options.out, name, ("scene, sensor", "own error of the reference", *(f"{n:,} rays" for n in options.rays)), [
             (title, f"{100 * own:.2g} %", *(f"{words(found[n, Filter.BEAM_SAMPLES_RAYS])} → {words(found[n, Filter.BEAM_SAMPLES_CELLS])}"
                                             for n in options.rays)) for title, own, found in measured])
-    tools.leave(options.out, "presets", ("scene, sensor", *(f"`{name}`" for name in trade_grid.PRESETS)), [
-        (title, *(errors(found[name]) for name in trade_grid.PRESETS)) for title, _, found in measured])

@@ -57,11 +57,8 @@ def costs(subject, turns):
 def judged(subject, options):
     """{setting: (rms error of energy, share of the true echoes that is missed or invented)}, and the reference."""
     reference = trade_runs.Reference(subject, options.reference_rays)
-    found = {}
-    for setting, values in JUDGED.items():
-        runs = trade_runs.judged(reference, values, range(options.seeds))
-        found[setting] = trade_runs.rms_of(runs, "energy"), np.mean([trade_runs.wrong(one) for one, _ in runs])
-    return found, reference
+    return {setting: trade_runs.energy_and_wrong(trade_runs.judged(reference, values, range(options.seeds)))
+            for setting, values in JUDGED.items()}, reference
 
 
 def measure(name, sensor, options):

@@ -30,8 +30,8 @@ BUILT_IN = "airport", "field", "corridor"
 def measured(subject, reference, settings, seeds):
     """Error of energy, time of one core, and missed and invented echoes as a share of the true ones."""
     runs = trade_runs.judged(reference, {**settings, "ReturnMode": Filter.RETURN_MODE_ALL}, range(seeds), subject)
-    wrong = np.mean([one["missed"] + one["false"] for one, _ in runs]) / len(reference.echoes["beam_id"])
-    return f"{trade_results.amount('energy', trade_runs.rms_of(runs, 'energy'))}, {np.median([run.cpu for _, run in runs]):.2g} s, {100 * wrong:.2g} %"
+    energy, wrong = trade_runs.energy_and_wrong(runs)
+    return f"{trade_results.amount('energy', energy)}, {np.median([run.cpu for _, run in runs]):.2g} s, {100 * wrong:.2g} %"
 
 
 @study(argument("--seeds", type=whole(1, 100), default=3, help="scans to judge, default 3"),

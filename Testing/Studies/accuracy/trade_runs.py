@@ -55,7 +55,8 @@ class Subject:
         scene, position, self.attenuation = self._scene(name)
         position = position if place is None else place
         self.name = name if name in ("airport", "corridor", "field") else pathlib.Path(name).name.split(".")[0]
-        self.sensor_name = SENSORS[sensor or ("corridor" if name == "corridor" else "airport16")]
+        sensor = sensor or ("corridor" if name == "corridor" else "airport16")
+        self.sensor_name = SENSORS.get(sensor, sensor)
         self.tree, self.sensor = vtkAvianLidarCollisionTree(), vtkAvianLidarBeamSource()
         self.tree.SetInputDataObject(scene)
         running.update(self.tree)
@@ -213,3 +214,8 @@ def judged(reference, settings, seeds, subject=None):
 def rms_of(runs, kind):
     """The rms of the differences of all runs."""
     return rms(np.concatenate([found[kind] for found, _ in runs]))
+
+
+def energy_and_wrong(runs):
+    """The rms error of energy, and the share of the true echoes that is missed or made up."""
+    return rms_of(runs, "energy"), np.mean([wrong(found) for found, _ in runs])

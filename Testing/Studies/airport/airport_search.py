@@ -1,10 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Where does a scan look, and what becomes of its beams? Leaves three pictures of a scene: tree.png, the boxes of the
-collision tree at one level, coloured by the number of beams whose axis passes through them; status.png and cost.png, the beam
-report as maps over azimuth and elevation; and a table of levels, search.md.
+"""Where does a scan look? Leaves a picture of a scene, tree.png: the boxes of the collision tree at one level, coloured by the
+number of beams whose axis passes through them.
 
-    airport_search.py --out build/search
-    airport_search.py --level 6 --scene my.lidarscene.json
+    Testing/Studies/run.py airport_search --level 6 --scene my.lidarscene.json
 """
 import math
 
@@ -18,9 +16,8 @@ from vtkmodules.vtkRenderingCore import vtkPolyDataMapper
 import avianlidar as al
 import running
 import tools
+from corridor_pictures import View
 from running import argument, study
-
-LEVELS = (0, 2, 4, 6, 8, 10, 12)
 
 
 def boxes_of(scan, level):
@@ -47,7 +44,6 @@ def beams_through(boxes, beams):
 
 def draw_tree(scan, boxes, beams, options):
     """Boxes in the colours of their beams; those without beams are pale."""
-    from corridor_pictures import View  # only here: numbers need no display
     view, most = View(1400, 780), 4 * math.ceil(math.log2(max(beams.max(), 2)) / 4)
     surfaces = scan.scene.surfaces.GetBlock(0)
     for number, kind in enumerate(tools.strings(surfaces, "object_classes")):
@@ -70,19 +66,8 @@ def draw_tree(scan, boxes, beams, options):
 
 
 @study(argument("--scene", type=running.file, default=running.AIRPORT, help="a .lidarscene.json file; default: Shanghai Hongqiao"),
-       argument("--level", type=running.whole(0, 40), default=8, help="of the tree that is drawn, default 8"),
-       argument("--rays", type=running.whole(1, 1000000), default=100, help="rays per beam, default 100"),
-       argument("--no-pictures", action="store_true", help="needs no display"))
+       argument("--level", type=running.whole(0, 40), default=8, help="of the tree that is drawn, default 8"))
 def main(options):
-    scan = al.Scan(al.Scene(options.scene), rays_per_beam=options.rays)
-    found = [(level, beams_through(boxes_of(scan, level), scan.sensor.beams)) for level in LEVELS]
-    tools.leave(options.out, "search", ("level", "boxes", "most beams through one", "median", "sum"), [
-        (level, len(beams), beams.max(), f"{np.median(beams):.0f}", beams.sum()) for level, beams in found])
-    if not options.no_pictures:
-        boxes = boxes_of(scan, options.level)
-        draw_tree(scan, boxes, beams_through(boxes, scan.sensor.beams), options)
-        for name, array, title, more in (("status", "status", "What became of every beam", {}), (
-                "cost", "nodes_visited", "Nodes of the tree that every beam's search tested", {"norm": LogNorm()})):
-            with tools.figure(options.out / f"{name}.png", figsize=(11, 3.2), dpi=130) as axes:
-                scan.plot_range_image(array, axes, **more)
-                axes.set_title(title, loc="left")
+    scan = al.Scan(al.Scene(options.scene))
+    boxes = boxes_of(scan, options.level)
+    draw_tree(scan, boxes, beams_through(boxes, scan.sensor.beams), options)

@@ -1,13 +1,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """An aircraft rolls past the lidar while that turns: plays a scan in steps, revolution by revolution. The airport stands
-still and is traced once; the aircraft is a mover, which each beam meets where it is at the beam's own time. Leaves one
-.vtp of echoes per step, a table of the revolutions (time.md) and two pictures: sweep.png, a scan that is not finished,
-and revolutions.png, the aircraft's echoes in all revolutions.
+still and is traced once; the aircraft is a mover, which each beam meets where it is at the beam's own time. Leaves a table of
+the revolutions (time.md) and a picture, revolutions.png, of the aircraft's echoes in all of them.
 
     Testing/Studies/run.py airport_time
     Testing/Studies/run.py airport_time --revolutions 10 --steps 36 --speed 70
-
-ParaView opens the files as one series (echoes_..vtp).
 """
 import numpy as np
 from matplotlib.collections import LineCollection
@@ -17,25 +14,22 @@ import avianlidar as al
 import running
 import tools
 from avianlidar.vtkAvianLidar import vtkAvianLidarEchoFilter
-from running import argument, set_all, study, whole
+from running import BOX, BOX_SIDES, argument, set_all, study, whole
 
 AIRCRAFT = "Aircraft"
 BOXES = ((-2, 2, -19, 19, 2, 6), (-17, 17, -3, 3, 2.5, 3.2), (-0.3, 0.3, -19, -14, 6, 12))  # hull, wings, tail; m
-
-
 PERIOD = 2.0  # s, of a revolution
 
 
 def aircraft():
     """Boxes of the paper's metal, m east and north of the origin of its frame."""
-    corners = np.array([[[box[i], box[2 + j], box[4 + k]] for i in (0, 1) for j in (0, 1) for k in (0, 1)] for box in BOXES])
-    sides = np.array([(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)])
-    faces = (8 * np.arange(len(BOXES))[:, None, None] + np.vstack([sides[:, :3], sides[:, (0, 2, 3)]])).reshape(-1, 3)
-    return al.Scene(corners.reshape(-1, 3), faces, material="Metal", name=AIRCRAFT).surfaces.GetBlock(0)
+    low, high = np.reshape(BOXES, (-1, 1, 3, 2)).transpose(3, 0, 1, 2)
+    faces = (8 * np.arange(len(BOXES))[:, None, None] + BOX_SIDES).reshape(-1, 3)
+    return al.Scene((low + (high - low) * BOX).reshape(-1, 3), faces, material="Metal", name=AIRCRAFT).surfaces.GetBlock(0)
 
 
 def play(scene, options):
-    """Every step: (time, echoes, (beams whose static surfaces were traced, beams that the aircraft may touch)); a file of each."""
+    """Every step: (time, echoes, (beams whose static surfaces were traced, beams that the aircraft may touch))."""
     sensor = al.Sensor("Airport16", position=scene.lidar_position, number_of_revolutions=options.revolutions,
                        steps_per_revolution=options.steps)
     x, y = start_of(scene)
@@ -50,7 +44,6 @@ def play(scene, options):
         data = lidar.GetOutput().NewInstance()
         data.DeepCopy(lidar.GetOutput())
         echoes = al.Cloud(data).annotated()
-        al.save(echoes, options.out / f"echoes_{number:04d}.vtp")
         yield time, echoes, (int(lidar.GetNumberOfTracedBeams()), int(lidar.GetNumberOfTouchedBeams()))
 
 
@@ -81,21 +74,15 @@ def rows_of(frames, options):
 
 
 def draw(scene, frames, options):
-    """sweep.png, in the middle of the third revolution or of the last; revolutions.png."""
-    surfaces, words = scene.surfaces.GetBlock(0), f"Airport16, {options.rays} rays per beam"
-    revolution, step = min(2, options.revolutions - 1), max(options.steps * 2 // 3 - 1, 0)
-    time, echoes, _ = frames[revolution * options.steps + step]
+    """The aircraft's echoes in all revolutions, and its outline where it was seen."""
     ends = [frames[(number + 1) * options.steps - 1][1] for number in range(options.revolutions)]
-    with tools.figure(options.out / "sweep.png", figsize=(11, 9)) as axes:
-        tools.from_above(axes, surfaces, echoes, tools.extent(surfaces, ends[revolution]),
-                         f"{time:.2f} s: {step + 1} of {options.steps} steps of revolution {revolution}, {words}")
     x, y = start_of(scene)
     way, shape = options.speed * frames[-1][0], tools.edges(aircraft())
     outline = vtk_to_numpy(shape.GetPoints().GetData())[vtk_to_numpy(shape.GetLines().GetConnectivityArray()).reshape(-1, 2), :2]
     with tools.figure(options.out / "revolutions.png", figsize=(8, 10)) as axes:
         for number, one in enumerate(ends):
             if number == 0:
-                tools.from_above(axes, surfaces, one, ((x - 90, x + 90 + way / 3), (y - 40, y + way + 40)), "")
+                tools.from_above(axes, scene.surfaces.GetBlock(0), one, ((x - 90, x + 90 + way / 3), (y - 40, y + way + 40)), "")
             own = of_aircraft(one)
             axes.scatter(*one.points[own, :2].T, s=8, c=one["rgb"][own] / 255, zorder=3)
             axes.set_title(f"An aircraft at {options.speed:g} m/s in {options.revolutions} revolutions", loc="left")
@@ -112,7 +99,6 @@ def draw(scene, frames, options):
        argument("--speed", type=running.above_zero, default=40.0, help="of the aircraft, m/s, default 40"),
        argument("--rays", type=whole(1, 1000000), default=100, help="rays per beam, default 100"))
 def main(options):
-    options.out.mkdir(parents=True, exist_ok=True)
     scene = al.Scene(options.scene)
     frames = list(play(scene, options))
     tools.leave(options.out, "time", (

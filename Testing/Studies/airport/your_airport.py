@@ -2,7 +2,7 @@
 """The folder that `avianlidar airport` leaves of Neubrandenburg, from raw OSM of the town in the data folder: the picture of
 Documentation/guide/airport.md.
 
-    PYTHONPATH=$(cat build/paraview/python-path) /usr/bin/python3 your_airport.py [--out DIR]
+    Testing/Studies/run.py your_airport
 """
 import bz2
 import pathlib

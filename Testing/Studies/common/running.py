@@ -4,6 +4,7 @@ import functools
 import os
 import pathlib
 import sys
+import time
 
 import numpy as np
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
@@ -12,13 +13,17 @@ from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData
 
 from avianlidar import _pipeline
 from avianlidar._cloud import vertices
-from avianlidar.vtkAvianLidar import vtkAvianLidarEchoFilter, vtkAvianLidarMaterial, vtkAvianLidarSceneReader
+from avianlidar.vtkAvianLidar import vtkAvianLidarCloudComparison, vtkAvianLidarEchoFilter, vtkAvianLidarMaterial, vtkAvianLidarSceneReader
 
 import tools
 from tools import above_zero, file, finite  # noqa: F401  (types of arguments)
 
 AIRPORT = pathlib.Path(__file__).resolve().parents[3] / "Examples" / "airport" / "scene" / "hongqiao.lidarscene.json"
 FOOTPRINTS = AIRPORT.with_name("hongqiao.geojson")
+# Corners and triangles of a box with sides of 1.
+BOX = np.array([(x, y, z) for x in (0, 1) for y in (0, 1) for z in (0, 1)])
+BOX_SIDES = np.array([(0, 1, 3), (0, 3, 2), (4, 6, 7), (4, 7, 5), (0, 4, 5), (0, 5, 1), (2, 3, 7), (2, 7, 6), (0, 2, 6), (0, 6, 4),
+                      (1, 5, 7), (1, 7, 3)])
 
 
 def whole(low, high):
@@ -93,9 +98,25 @@ def scanned(beams, tree, **properties):
     return lidar
 
 
+def seconds_of(work):
+    """How long it takes, s."""
+    begin = time.perf_counter()
+    work()
+    return time.perf_counter() - begin
+
+
 def column(data, name):
     """A copy of a point array."""
     return vtk_to_numpy(data.GetPointData().GetArray(name)).copy()
+
+
+def apart(simulated, actual):
+    """The comparison of two clouds (n x 3, m): Hausdorff distance, RMSE (paper, Eq. 19, 20), density-aware Chamfer distance."""
+    comparison = vtkAvianLidarCloudComparison()
+    comparison.SetInputData(0, vertices(np.asarray(simulated, float)))
+    comparison.SetInputData(1, vertices(np.asarray(actual, float)))
+    update(comparison)
+    return comparison
 
 
 def some_beams(beams, numbers):

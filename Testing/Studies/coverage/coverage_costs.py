@@ -1,11 +1,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """What coverage costs, beside gdal_viewshed on as many cells, and what share of strips and approaches is covered.
 
-    Testing/Studies/run.py coverage_costs --scenes build/paraview/Testing/Scenes --flown flown.csv
+    Testing/Studies/run.py coverage_costs --scenes build/paraview/Testing/Scenes
 
-Scenes: the airport that is shipped, and up to five of a folder. `flown.csv` is what flown.py leaves.
+Scenes: the airport that is shipped, and up to five of a folder.
 """
-import csv
 import json
 import pathlib
 import subprocess
@@ -15,20 +14,12 @@ import time
 import numpy as np
 
 import avianlidar as al
-import flown
-import flown_sensors
 import tools
 from avianlidar import siting
-from running import AIRPORT, FOOTPRINTS, argument, study
+from running import AIRPORT, FOOTPRINTS, argument, seconds_of, study
 
 SPECIES = ("starling", "kestrel", "pigeon", "crow", "herring gull", "Canada goose")
 TURNS = 3
-
-
-def timed(work):
-    begin = time.perf_counter()
-    work()
-    return time.perf_counter() - begin
 
 
 def middle_of(scene):
@@ -38,14 +29,14 @@ def middle_of(scene):
 
 
 def costs(path):
-    """Seconds for 1e7 places, of the first map, of another species and of another air."""
+    """Seconds of the first map, and of another species."""
     scene = al.load_scene(path)
     scene.tree.Update()
     place = scene.lidar_position or middle_of(scene)
     sensor = al.Sensor("Search905", position=place)
     cover = al.Coverage(scene, sensor, bounds=(place[0] - 2000, place[0] + 2000, place[1] - 2000, place[1] + 2000, place[2] - 3,
                                                place[2] + 147), spacing=(10.0, 10.0, 2.4), species="pigeon")
-    first = timed(cover.update)
+    first = seconds_of(cover.update)
     row = {"scene": path.name.split(".")[0], "places": cover.data.GetNumberOfPoints(), "first": first}
     again = []
     for species in ("crow", "starling", "herring gull"):
@@ -54,10 +45,8 @@ def costs(path):
     for _ in range(TURNS):
         for species in ("crow", "starling"):
             cover.species = species
-            again.append(timed(cover.update))
+            again.append(seconds_of(cover.update))
     row["species"] = float(np.median(again))
-    cover.visibility = 10e3
-    row["air"] = timed(cover.update)
     return row
 
 
@@ -84,8 +73,8 @@ def beside_viewshed(folder):
         cover = al.Coverage(scene, al.Sensor("Search905", position=scene.lidar_position), bounds=(-half, half, -half, half, 30, 30),
                             spacing=(cell, cell, 1.0), species="herring gull")
         cover.sensor.beams
-        ours.append(timed(cover.update))
-        theirs.append(timed(lambda: subprocess.run(
+        ours.append(seconds_of(cover.update))
+        theirs.append(seconds_of(lambda: subprocess.run(
             ["gdal_viewshed", "-q", "-ox", "0", "-oy", "0", "-oz", "3", "-tz", "30", "-cc", "0", "-md", "0", str(folder / "dem.tif"),
              str(folder / "seen.tif")], check=True)))
     stats = subprocess.run(["gdalinfo", "-json", "-stats", str(folder / "seen.tif")], check=True, capture_output=True, text=True).stdout
@@ -123,16 +112,14 @@ def search():
     return {"sites": len(sites), "look": looked - begin, "search": time.perf_counter() - looked}
 
 
-@study(argument("--scenes", type=pathlib.Path, required=True, help="folder with .lidarscene.json files"),
-       argument("--flown", type=pathlib.Path, help="what flown left"), argument("--flown-scans", type=int, default=100),
-       argument("--flown-sensors", type=pathlib.Path, help="what flown_sensors left"))
+@study(argument("--scenes", type=pathlib.Path, required=True, help="folder with .lidarscene.json files"))
 def main(options):
     scenes = [AIRPORT]
     for path in sorted(options.scenes.glob("*.lidarscene.json")):
         if len(scenes) < 6 and "osm" not in path.name and "all" not in path.name:
             scenes.append(path)
-    tools.leave(options.out, "coverage-costs", ("scene", "places", "first map, s", "another species, s", "another air, s"), [
-        (row["scene"], f"{row['places']:,}", f"{row['first']:.2f}", f"{row['species']:.2f}", f"{row['air']:.2f}") for row in map(costs, scenes)])
+    tools.leave(options.out, "coverage-costs", ("scene", "places", "first map, s", "another species, s"), [
+        (row["scene"], f"{row['places']:,}", f"{row['first']:.2f}", f"{row['species']:.2f}") for row in map(costs, scenes)])
     with tempfile.TemporaryDirectory() as folder:
         one = beside_viewshed(pathlib.Path(folder))
     found = search()
@@ -143,16 +130,4 @@ def main(options):
     tools.leave(options.out, "coverage-species", ("sensor", *SPECIES), [
         (sensor, *(f"{rows[s]['detection_probability']:.3f} ± {rows[s]['detection_std_error']:.3f}" for s in SPECIES))
         for sensor, rows in shares().items()])
-    if options.flown:
-        with options.flown.open(encoding="utf-8") as file:
-            rows = list(csv.DictReader(file))
-        p, seen = (np.array([float(row[name]) for row in rows]) for name in ("probability", "seen"))
-        result, open_ = flown.compare(p, seen, options.flown_scans), (p > 0.01) & (p < 0.99)
-        beyond = np.abs(seen - p) > 3 * np.sqrt(p * (1 - p) / options.flown_scans)
-        notes += [("flown: places", f"{len(rows):,}"), ("flown: mean probability", f"{p.mean():.4f}"), ("flown: seen", f"{seen.mean():.4f}"),
-                  ("flown: bias", f"{result['bias']:+.4f}"), ("flown: beyond three standard errors, %", f"{100 * result['beyond_3_std_errors']:.2f}"),
-                  ("flown: outside 99.73 % of the binomial law, %", f"{100 * result['outside_99.73_percent']:.2f}"),
-                  ("flown: neither certain nor hopeless", f"{np.count_nonzero(open_)}"), ("flown: beyond three of these, %", f"{100 * beyond[open_].mean():.1f}")]
     tools.leave(options.out, "coverage-notes", ("what", "value"), notes)
-    if options.flown_sensors:
-        tools.leave(options.out, "coverage-flown", flown_sensors.HEAD, flown_sensors.lines_of(options.flown_sensors), 2)

@@ -1,16 +1,11 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Coverage against birds that are flown: at each place a bird of random heading and wing phase, scan after scan through the
-echo filter, detected if it has an echo.
-
-    Testing/Studies/run.py flown scene.lidarscene.json --runways airport.geojson --places 2000 --scans 100 --file flown.csv
+echo filter, detected if it has an echo. flown_sensors.py runs it.
 
 Echoes over two reflections are left out. Ranges vary by one range unit, as coverage is the mean over them. Beams that few triangles enter are integrated; others have
 cells with some 32 rays for each of --rays: with fewer, birds before structures are missed.
 """
-import csv
 import math
-import pathlib
-import sys
 
 import numpy as np
 from scipy.stats import binom
@@ -19,9 +14,7 @@ from vtkmodules.vtkCommonDataModel import vtkPolyData
 
 import avianlidar as al
 import running
-from avianlidar import siting
 from avianlidar.vtkAvianLidar import vtkAvianLidarBirdSource
-from running import argument, study
 
 PHASES = 32
 TOGETHER = 250  # birds in a scan
@@ -73,7 +66,7 @@ def near(beams, places, position, half_beamwidth, reach=1.0):
     return running.some_beams(beams, np.flatnonzero(wanted))
 
 
-def fly(scene, sensor, places, scans, species, air, rays, seed=0, say=lambda done: None):
+def fly(scene, sensor, places, scans, species, air, rays, seed=0):
     """@return of each place the share of scans in which its bird had an echo, and the mean of the probabilities that the
     mover report expects. @param sensor or several that look at the same bird, of which one must see it @param air attenuation
     coefficient, 1/m"""
@@ -86,7 +79,6 @@ def fly(scene, sensor, places, scans, species, air, rays, seed=0, say=lambda don
     seen, expected = np.zeros(len(places)), np.zeros(len(places))
     for one in sensors:
         one.algorithm.Update()
-    done = 0
     for numbers in apart(places, positions):
         lit = [near(one.algorithm.GetOutput(), places[numbers], position, math.sqrt(2) * max(one.half_beamwidth, one.half_beamwidth_across))
                for one, position in zip(sensors, positions)]
@@ -111,8 +103,6 @@ def fly(scene, sensor, places, scans, species, air, rays, seed=0, say=lambda don
                 missed[ids] *= 1.0 - report["detection_probability"]
             seen += found
             expected += 1.0 - missed
-        done += len(numbers)
-        say(done)
     return seen / scans, expected / scans
 
 
@@ -124,34 +114,3 @@ def compare(probability, seen, scans):
     outside = (binom.cdf(times, scans, probability) < RARE) | (binom.sf(times - 1, scans, probability) < RARE)
     return {"bias": float((seen - probability).mean()), "beyond_3_std_errors": float((np.abs(seen - probability) > 3 * error + 1e-9).mean()),
             "outside_99.73_percent": float(np.mean(outside))}
-
-
-@study(argument("scene", type=pathlib.Path), argument("--runways", type=pathlib.Path, required=True, help="GeoJSON"),
-       argument("--sensor", default="Search905"), argument("--species", default="herring gull"), argument("--places", type=int, default=2000),
-       argument("--scans", type=int, default=100), argument("--rays", type=int, default=400),
-       argument("--reach", type=float, default=0.0, help="m: places within this distance of the sensor instead"),
-       argument("--seed", type=int, default=1), argument("--file", type=pathlib.Path, required=True, help="CSV, one row per place"))
-def main(options):
-    scene = al.load_scene(options.scene)
-    sensor = al.Sensor(options.sensor, position=scene.lidar_position)
-    if options.reach:
-        random = np.random.default_rng(options.seed)
-        bearing, away = random.uniform(0, 2 * math.pi, options.places), options.reach * np.sqrt(random.uniform(0.0025, 1, options.places))
-        places = np.column_stack([away * np.sin(bearing), away * np.cos(bearing), random.uniform(0.5, 60.0, options.places)])
-    else:
-        places, _ = siting.strips_and_approaches(
-            siting.read_runways(options.runways, scene.geodetic_origin), options.places, options.seed)
-    cover = al.Coverage(scene, sensor, places=places, species=options.species)
-    probability = cover["detection_probability"].astype(float)
-    air = cover.data.GetFieldData().GetArray("attenuation_coefficient").GetValue(0)
-    seen, expected = fly(scene, sensor, places, options.scans, options.species, air, options.rays, options.seed,
-                         lambda done: print(f"{done} of {options.places} places", file=sys.stderr, flush=True))
-    with options.file.open("w", newline="", encoding="utf-8") as file:
-        writer = csv.writer(file)
-        writer.writerow(["x [m]", "y [m]", "z [m]", "status", "beams", "probability", "seen", "expected by the echo filter"])
-        for row in zip(places, cover["status"], cover["beams_per_scan"], probability, seen, expected):
-            writer.writerow([*(f"{c:.3f}" for c in row[0]), *row[1:3], *(f"{p:.6g}" for p in row[3:])])
-    result = compare(probability, seen, options.scans)
-    print(f"{options.places} places, {options.scans} scans: mean {probability.mean():.4f}, seen {seen.mean():.4f}, bias "
-          f"{result['bias']:+.4f}, beyond 3 standard errors {100 * result['beyond_3_std_errors']:.2f} %, outside 99.73 % of the "
-          f"binomial law {100 * result['outside_99.73_percent']:.2f} %")

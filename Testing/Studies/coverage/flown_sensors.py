@@ -92,4 +92,4 @@ def main(options):
                 for species in options.species:
                     for row in flights(name, species, options.places, options.scans, options.seed):
                         writer.writerow([name, species, options.scans, *(f"{value:.6g}" for value in row)])
-    tools.leave(options.out, "table", HEAD, lines_of(options.flown or options.file), 2)
+    tools.leave(options.out, "coverage-flown", HEAD, lines_of(options.flown or options.file), 2)

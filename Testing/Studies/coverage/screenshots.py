@@ -1,17 +1,11 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The airport's report as pictures: its head, maps, reasons, section, weather and sites, as Chromium shows them.
+"""The head of the airport's report, as Chromium shows it.
 
     Testing/Studies/run.py screenshots --out build/screenshots
 """
 from avianlidar._command import main as avianlidar
 from browser import Browser
 from running import AIRPORT, argument, study
-
-# Name of the picture: the heading that it begins with, and the one before which it ends.
-PARTS = {"head": ("h1", "#full"), "range": ("#range", "#assumptions"), "maps": ("#maps", "#reasons"), "reasons": ("#reasons", "#section"),
-         "section": ("#section", "#clutter"),
-         "clutter": ("#clutter", "#shares"), "weather": ("#weather", "#sites"), "sites": ("#sites", "#limits")}
-
 
 @study(argument("plan", nargs="?", default=str(AIRPORT.parents[2] / "coverage" / "hongqiao.coverage.json")))
 def main(options):
@@ -21,6 +15,5 @@ def main(options):
     if not code:
         with Browser(width=1100) as browser:
             browser.open(page)
-            for name, (first, end) in PARTS.items():
-                browser.picture_between(first, end, options.out / f"{name}.png")
+            browser.picture_between("h1", "#full", options.out / "head.png")
     return code

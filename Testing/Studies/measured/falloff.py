@@ -7,7 +7,7 @@ same beams simulated on the same planes.
 
 Planes are found by random samples (Fischler and Bolles, CACM 24(6), 1981). On a plane at distance h the cosine of incidence
 is h/r, so the signal cos/r^n of a matt plane is h/r^(n + 1): n is the slope of ln signal over ln r with its sign turned,
-less one. Slopes are fitted to medians of bins of range, of each beam and of all beams of a plane. Leaves tables and pictures.
+less one. Slopes are fitted to medians of bins of range, of each beam and of all beams of a plane. Leaves tables.
 
 Documentation/evidence/real-scans.md says what they are and what comes out.
 """
@@ -236,22 +236,25 @@ class Study:
     planes: list = dataclasses.field(default_factory=list)
 
 
+def beyond_nearest(cloud, *fields):
+    """Points of a cloud but those of the vehicle, their rings, their distances, and fields."""
+    points = np.array(cloud.points, float)
+    distance = np.linalg.norm(points, axis=1)
+    used = distance > NEAREST
+    return points[used], np.array(cloud["laser_id"], int)[used], distance[used], *(np.array(cloud[name], float)[used] for name in fields)
+
+
 def study_of(frame, file, share=FULL):
     cloud = al.load_cloud(file)
-    points = np.array(cloud.points, float)
     for name in (frame.field, "laser_id"):
         if name not in cloud:
             raise ValueError(f"{file}: no field {'ring or channel' if name == 'laser_id' else name}; found {', '.join(cloud)}")
     ring = np.array(cloud["laser_id"], int)
     elevation = [float(np.median(cloud["vertical_angle"][ring == i])) if (ring == i).any() else 90.0
                  for i in range(ring.max() + 1)]
-    used = np.linalg.norm(points, axis=1) > NEAREST
-    points, ring = points[used], ring[used]
-    distance, signal = np.linalg.norm(points, axis=1), np.array(cloud[frame.field], float)[used]
-    result = Study(frame, elevation, distance, signal, ring)
-    scale, full = None, 0.0
+    points, ring, distance, signal, *scale = beyond_nearest(cloud, frame.field, *([frame.scale] if frame.scale else []))
+    result, scale, full = Study(frame, elevation, distance, signal, ring), scale[0] if scale else None, 0.0
     if frame.scale:
-        scale = np.array(cloud[frame.scale], float)[used]
         result.gain = own_gain(distance, signal, scale, frame.top)
         full = result.gain[0][np.argmax(result.gain[1] >= share)]
     for plane in find_planes(points, ring):
@@ -313,75 +316,15 @@ def tables(studies):
             "falloff-beams": (("sensor", "plane", "elevation (deg)", "points", "from (m)", "to (m)", "n", "n simulated"), beams)}
 
 
-def plain_ranges(axis):
-    """2, 3, 5, 10, ... instead of powers of ten."""
-    axis.xaxis.set_major_formatter("{x:g}")
-    axis.xaxis.set_minor_formatter(lambda x, _: f"{x:g}" if f"{x:g}"[0] in "235" else "")
-
-
-def draw_plane(axis, one, plane):
-    """Medians of each beam over range, and the simulated fall beside them."""
-    from matplotlib import colormaps
-    on = plane.points
-    high = [one.elevation[i] for i in one.ring[on]]
-    for ring in np.unique(one.ring[on]):
-        chosen = on[one.ring[on] == ring]
-        (x, y), _ = medians(one.distance[chosen], one.signal[chosen])
-        axis.plot(np.exp(x), np.exp(y), ".-", markersize=3, linewidth=0.7,
-                  color=colormaps["viridis"]((one.elevation[ring] - min(high)) / max(np.ptp(high), 1e-9)))
-    (x, y), _ = medians(one.distance[on], one.signal[on])
-    ranges, energy, beam = simulated(plane, one.elevation)
-    same = np.isin(beam, one.ring[on]) & (ranges >= np.exp(x[0])) & (ranges <= np.exp(x[-1]))
-    (u, v), _ = medians(ranges[same], energy[same])
-    level = np.median(y[len(y) // 3:]) - np.median(np.interp(x[len(x) // 3:], u, v))
-    axis.plot(np.exp(u), np.exp(v + level), "r--", linewidth=1.5, label="simulated, scaled")
-    axis.set(xscale="log", yscale="log", title=f"{one.frame.name}: {plane.kind} at {plane.distance:.1f} m", xlabel="range (m)",
-             ylabel=one.frame.field, ylim=(0.5 * np.exp(y.min()), 3 * np.exp(y.max())))
-    plain_ranges(axis)
-    axis.grid(alpha=0.3, which="both")
-    axis.legend(fontsize=8)
-
-
-def draw(studies, folder):
-    shown = [(one, planes[0]) for one in studies for kind in ("wall", "ground")
-             if (planes := [plane for plane, windows in one.planes if plane.kind == kind and windows[0][0][1][1] < 0.5])]
-    rows = max(-(-len(shown) // 3), 1)
-    with tools.figure(folder / "signal.png", rows, 3, figsize=(13, 3.5 * rows), dpi=65) as panels:
-        for axis in np.ravel(panels)[len(shown):]:
-            axis.axis("off")
-        for axis, (one, plane) in zip(np.ravel(panels), shown):
-            draw_plane(axis, one, plane)
-    with tools.figure(folder / "beams.png", 1, 2, figsize=(12, 4.2), dpi=75) as (left, right):
-        for i, one in enumerate(studies):
-            if one.gain:
-                left.plot(*one.gain, ".-", label=one.frame.name, color=f"C{i}")
-            rows = [(one.elevation[ring], *found[:2]) for plane, windows in one.planes if plane.kind == "wall"
-                    for ring, found in of_beams(windows)[0].items() if found[1] < 1]
-            if rows:
-                x, n, error = np.transpose(rows)
-                right.errorbar(x, n, error, fmt="o", markersize=3, linewidth=1, label=one.frame.name, color=f"C{i}")
-        left.set(xscale="log", xlabel="range (m)", ylabel="signal r²/reflectivity, over its largest", ylim=(0, 1.1))
-        plain_ranges(left)
-        right.axhline(2, color="k", linestyle="--", linewidth=1)
-        right.set(xlabel="elevation of the beam (deg)", ylabel="n of the beam on walls, matt", ylim=(-3, 4))
-        for axis in (left, right):
-            axis.grid(alpha=0.3)
-            if axis.get_legend_handles_labels()[0]:
-                axis.legend()
-
-
 @study(argument("--data", type=pathlib.Path, default=pathlib.Path(os.environ.get("AVIANLIDAR_DATA_DIR", "")), help="the data folder"),
        argument("--clouds", nargs="+", type=running.file, help="files to take instead, each one turn in the sensor's frame"),
        argument("--field", default="signal", help="of these files, default signal"),
        argument("--full", type=running.above_zero, default=FULL, help="share of 1/r2 by the sensor's own scale, from which on its far field "
-                f"begins, default {FULL}"),
-       argument("--no-pictures", action="store_true"))
+                f"begins, default {FULL}"))
 def main(options):
     frames = [(Frame(file.stem, file.name, options.field), file) for file in options.clouds or ()] or [
         (frame, options.data / frame.file) for frame in FRAMES]
     studies = [study_of(frame, file, options.full) for frame, file in frames]
     for name, (head, rows) in tables(studies).items():
         tools.leave(options.out, name, head, rows, 2)
-    if not options.no_pictures:
-        draw(studies, options.out)
     return studies

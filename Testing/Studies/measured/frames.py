@@ -222,6 +222,7 @@ def picture(data, folder):
                 axis.plot(distance, middle, color=line[0].get_color())
                 axis.fill_between(distance, *(middle * factor for factor in seen.factors), color=line[0].get_color(), alpha=0.15)
         axis.set(xscale="log", yscale="log", xlabel="distance (m)", ylabel="least reflectivity (%)", ylim=(0.3, 100))
-        falloff.plain_ranges(axis)
+        axis.xaxis.set_major_formatter("{x:g}")  # 2, 3, 5, 10, ... instead of powers of ten
+        axis.xaxis.set_minor_formatter(lambda x, _: f"{x:g}" if f"{x:g}"[0] in "235" else "")
         axis.yaxis.set_major_formatter("{x:g}")
         axis.legend()

@@ -48,11 +48,7 @@ def sheets():
 def ground_of(data):
     """Planes of ground of the VLP-16's frame: (plane, distances, cosines, reflectivity in %, rings)."""
     frame = falloff.FRAMES[-1]
-    cloud = al.load_cloud(data / frame.file)
-    points = np.array(cloud.points, float)
-    used = np.linalg.norm(points, axis=1) > falloff.NEAREST
-    points, ring, shown = points[used], np.array(cloud["laser_id"], int)[used], np.array(cloud[frame.field], float)[used]
-    distance = np.linalg.norm(points, axis=1)
+    points, ring, distance, shown = falloff.beyond_nearest(al.load_cloud(data / frame.file), frame.field)
     for plane in falloff.find_planes(points, ring):
         on = plane.points[shown[plane.points] <= DARK]
         if plane.kind == "ground":
@@ -70,7 +66,7 @@ def fitted_ground(cosine, reflectivity):
     x, y = np.array([(cosine[bins == b].mean(), np.median(reflectivity[bins == b]) / 100) for b in np.unique(bins)
                      if (bins == b).sum() >= 20]).T
     best = least_squares(lambda p: rough(*p, x) / y - 1, (0.2, 0.6), bounds=((0.01, 0), (1, 0.5 * np.pi)))
-    return *best.x, np.sqrt(np.mean(best.fun**2)), x, y
+    return *best.x, np.sqrt(np.mean(best.fun**2))
 
 
 def end_of(plane, material, model):
@@ -84,7 +80,7 @@ def ground(data):
     """Where the ground of the VLP-16's frame ends, and where that of the preset does; the fit of its roughness."""
     planes = list(ground_of(data))
     cosine, shown = (np.concatenate([one[k] for one in planes]) for k in (2, 3))
-    kd, roughness, rms, x, y = fitted_ground(cosine, shown)
+    kd, roughness, rms = fitted_ground(cosine, shown)
     materials = [(name, model, name, model) for name in NAMED for model in MODELS]
     materials.append(("fitted to its reflectivity", "OrenNayar", (kd, 0, 1, roughness), "OrenNayar"))
     rows = []
@@ -96,7 +92,7 @@ def ground(data):
             rows.append((f"{plane.distance:.2f}", f"{tilt:.1f}", name, model, f"{real:.1f}", f"{end:.1f}", f"{end / real:.2f}",
                          frames.verdict(abs(end / real - 1) <= ENDS)))
     header = ("height (m)", "tilt (deg)", "ground", "model", "measured end (m)", "predicted end (m)", "ratio", f"within {100 * ENDS:.0f} %")
-    return header, rows, (kd, roughness, rms, x, y)
+    return header, rows, (kd, roughness, rms)
 
 
 def walls(data):
@@ -112,9 +108,8 @@ def walls(data):
     return ("frame", "wall (m)", "ranges (m)", "predicted n", "measured n", "within three standard errors"), rows
 
 
-def noise_of_ranges(points, ring):
+def noise_of_ranges(points, ring, distance):
     """Standard deviations (m) of ranges along rings on planes: of second differences of five neighbours and more, by plane."""
-    distance = np.linalg.norm(points, axis=1)
     azimuth = np.arctan2(points[:, 0], points[:, 1])
     found = []
     for plane in falloff.find_planes(points, ring):
@@ -139,10 +134,7 @@ def ranges(data):
     rows = []
     for frame in frames.FRAMES:
         name, preset = frame.name, frame.preset
-        cloud = al.load_cloud(data / frame.file)
-        points, ring = np.array(cloud.points, float), np.array(cloud["laser_id"], int)
-        used = np.linalg.norm(points, axis=1) > falloff.NEAREST
-        found = noise_of_ranges(points[used], ring[used])
+        found = noise_of_ranges(*falloff.beyond_nearest(al.load_cloud(data / frame.file)))
         sheet = al.Sensor(preset).description["data_sheet"] if preset else {}
         said = sheet.get("range_repeatability", sheet.get("range_accuracy", {})).get("value", np.nan)
         quantum = sheet.get("range_resolution", {}).get("value", np.nan)
@@ -154,17 +146,6 @@ def ranges(data):
                      f"{100 * quantum:.2f}" if quantum == quantum else "-", f"{100 * said:.1f}" if said == said else "not in a file here",
                      frames.verdict(sigma.max() <= said) if said == said else "-"))
     return ("frame", "planes", "measured deviation (cm)", "step of the sheet (cm)", "the sheet's accuracy (cm)", "not larger"), rows
-
-
-def picture(fit, folder):
-    kd, s, _, x, y = fit
-    at = np.linspace(0, x.max() * 1.05, 100)
-    with tools.figure(folder / "ground.png", figsize=(6, 3.6), dpi=110) as axis:
-        axis.plot(x, 100 * y, "o", label="VLP-16's frame, medians")
-        axis.plot(at, 100 * rough(kd, s, at), label=f"Oren and Nayar: kd {kd:.2f}, roughness {s:.2f} rad")
-        axis.plot(at, 100 * y[-1] / x[-1] * at, "--", label="matt, through the steepest")
-        axis.set(xlabel="cosine of incidence", ylabel="reflectivity (%)", ylim=(0, None), xlim=(0, None))
-        axis.legend()
 
 
 def of_room(data):
@@ -180,12 +161,11 @@ def of_room(data):
 
 @study(data=[frame.file for frame in frames.FRAMES])
 def main(options):
-    header, rows, fit = ground(options.data)
-    found = {"measured-sheets": sheets(), "measured-ground": (header, rows), "measured-ranges": ranges(options.data),
+    *table, fit = ground(options.data)
+    found = {"measured-sheets": sheets(), "measured-ground": table, "measured-ranges": ranges(options.data),
              "measured-walls": walls(options.data), "measured-least": frames.least_reflectance(options.data), "measured-outdoors": lacks.outdoors(options.data),
-             **of_room(options.data), "measured-fit": (("kd", "roughness (rad)", "rms left"), [[f"{value:.3f}" for value in fit[:3]]])}
+             **of_room(options.data), "measured-fit": (("kd", "roughness (rad)", "rms left"), [[f"{value:.3f}" for value in fit]])}
     for name, (header, rows) in found.items():
         tools.leave(options.out, name, header, rows, 2)
-    picture(fit, options.out)
     frames.picture(options.data, options.out)
     return found

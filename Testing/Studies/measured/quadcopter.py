@@ -5,7 +5,7 @@
 
 A quadcopter 0.4 m across, near the sensor's axis, is flown outward; a frame is 0.1 s. Each flight draws, evenly within stated intervals, its
 reflectance, the thickness of its parts, its attitude, where it is off the axis, and the bar of the sensor's ranges. Leaves tables: distance
-of the last return (5 to 95 % of the flights) and points a frame against distance; and a picture. What explains the flights of others, which
+of the last return (5 to 95 % of the flights) and points a frame against distance. What explains the flights of others, which
 were published later:
 
     Testing/Studies/run.py quadcopter --flights 8 --reflectance 0.25 0.5 --off-axis 0.5 --bar 0
@@ -19,7 +19,7 @@ from scipy.spatial.transform import Rotation
 import avianlidar as al
 import tools
 from avianlidar import _sheet
-from running import above_zero, argument, finite, study, whole
+from running import BOX, BOX_SIDES, above_zero, argument, finite, study, whole
 
 ACROSS = 0.4             # m, from motor to motor over the middle
 REFLECTANCE = 0.05, 0.5  # assumed: dark plastic and carbon to light grey
@@ -39,11 +39,8 @@ ARM, MOTOR, LEG = (0.008, 0.006), (0.014, 0.014), (0.006, 0.03)
 
 def box(middle, half, turn=0.0):
     """Corners and triangles of a box that is turned about z."""
-    signs = np.array([(x, y, z) for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)], float)
     c, s = np.cos(turn), np.sin(turn)
-    corners = signs * half @ np.array([(c, s, 0), (-s, c, 0), (0, 0, 1)]) + middle
-    faces = [(0, 1, 3), (0, 3, 2), (4, 6, 7), (4, 7, 5), (0, 4, 5), (0, 5, 1), (2, 3, 7), (2, 7, 6), (0, 2, 6), (0, 6, 4), (1, 5, 7), (1, 7, 3)]
-    return corners, np.array(faces)
+    return (2 * BOX - 1) * half @ np.array([(c, s, 0), (-s, c, 0), (0, 0, 1)]) + middle, BOX_SIDES
 
 
 def quadcopter(thick):
@@ -138,19 +135,6 @@ def tables_of(flights):
             "quadcopter-points": (("light (klx)", "distance (m)", "5 %", "50 %", "95 %", "frames with a point"), rows)}
 
 
-def draw(flights, folder):
-    with tools.figure(folder / "points.png", figsize=(7, 3.8)) as axis:
-        for light, colour in zip(LIGHTS, ("C1", "C0")):
-            own = [flight for flight in flights if flight.light == light]
-            counts = np.array([np.convolve(flight.points, np.ones(3) / 3, "same") for flight in own])
-            low, middle, high = np.percentile(counts, (5, 50, 95), axis=0)
-            axis.fill_between(own[0].distance, low, high, color=colour, alpha=0.2)
-            axis.plot(own[0].distance, middle, color=colour, label=f"{light} klx" if light else "dark")
-        axis.set(xlabel="distance (m)", ylabel="points a frame of 0.1 s", yscale="symlog", ylim=(0, None), xlim=(0, FARTHEST))
-        axis.legend()
-        axis.grid(alpha=0.3)
-
-
 @study(argument("--flights", type=whole(2, 10000), default=40, help="in each light, default 40"),
        argument("--reflectance", type=above_zero, nargs=2, default=REFLECTANCE, metavar=("LOW", "HIGH"), help="default 0.05 0.5"),
        argument("--off-axis", type=above_zero, default=OFF_AXIS, help="deg at most, default 2"),
@@ -165,5 +149,4 @@ def main(options):
         flights += [fly(sensor, windows, light, i, options.reflectance, options.off_axis) for light in LIGHTS]
     for name, (header, rows) in tables_of(flights).items():
         tools.leave(options.out, name, header, rows, 2)
-    draw(flights, options.out)
     return flights

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Which unit may the paper's attenuation coefficient have? Scans the corridor with 0.088 and the airport with 0.035 in every
-unit of a grid, over the way there and back or one way, and leaves a table and a CSV: does the end of the corridor vanish, as
+unit of a grid, over the way there and back or one way, and leaves a table: does the end of the corridor vanish, as
 the text to Fig. 15 says, and is Terminal 1 there, as in Fig. 17?
 
     Testing/Studies/run.py attenuation
@@ -89,6 +89,5 @@ def main(options):
     rows = measure()
     shown = [row for row in rows if row["unit"] == "no air" or row["unit"].removesuffix(", one way") in NAMED]
     tools.leave(options.out, "table", ("", *list(rows[0])[1:]), [list(map(text, row.values())) for row in shown])
-    tools.leave(options.out, "grid", list(rows[0]), [list(map(text, row.values())) for row in rows])
     print(f"{len(rows) - 1} units, of which fit both figures: {len(both(rows))}")
     return rows

@@ -21,7 +21,7 @@ from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonCore import mutable
 from vtkmodules.vtkCommonDataModel import vtkMultiBlockDataSet, vtkStaticCellLocator
 
-from avianlidar.vtkAvianLidar import vtkAvianLidarBeamSource, vtkAvianLidarCollisionTree, vtkAvianLidarMaterial
+from avianlidar.vtkAvianLidar import vtkAvianLidarBeamSource, vtkAvianLidarCollisionTree
 
 import corridor_scene
 import running
@@ -176,11 +176,8 @@ class Subject:
 
 
 def painted(data, material):
-    paint = vtkAvianLidarMaterial()
-    paint.SetInputData(data)
-    getattr(paint, "SetMaterialTo" + material)()
-    running.update(paint)
-    return paint.GetOutputDataObject(0)
+    """All of it of one material."""
+    return running.painted(data, [("*", material)])
 
 
 def subject(name, data, preset, position, attenuation, axis=None):

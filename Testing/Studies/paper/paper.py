@@ -78,8 +78,6 @@ def counts(subject, lidar, returns):
 @study(argument("--seeds", type=whole(1, 100), default=3, help="scans to judge, default 3"),
        argument("--reference-rays", type=whole(100, 1000000), default=10000, help="default 10000"),
        argument("--turns", type=whole(1, 100), default=7, help="of timed scans, default 7"),
-       argument("--seed", type=whole(-2**31, 2**31 - 1), default=0, help="of what is counted and drawn"),
-       argument("--threads", type=whole(0, 4096), default=0, help="default 0: as many as there are cores"),
        argument("--no-pictures", action="store_true", help="tables alone"))
 def main(options):
     columns, scans, shown, ratios = {}, {}, [], {}
@@ -88,8 +86,8 @@ def main(options):
         reference = trade_runs.Reference(subject, options.reference_rays)
         for words, (tree_settings, settings) in CONFIGURATIONS.items():
             mine = configured(subject, tree_settings)
-            returns = scan(mine, {**settings, "ReturnMode": Filter.RETURN_MODE_ALL}, options.seed, options.threads)
-            lidar = scan(mine, settings, options.seed, options.threads)
+            returns = scan(mine, {**settings, "ReturnMode": Filter.RETURN_MODE_ALL}, 0, 0)
+            lidar = scan(mine, settings, 0, 0)
             scans[f"{subject.sensor_name}, {words}"] = mine, lidar
             columns[f"{subject.sensor_name}, {words}"] = [
                 *counts(mine, lidar, returns.GetOutput().GetNumberOfPoints()), ("returns of the reference", len(reference.echoes["beam_id"])),

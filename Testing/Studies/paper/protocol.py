@@ -9,8 +9,7 @@ import fnmatch
 
 import numpy as np
 
-from avianlidar._cloud import vertices
-from avianlidar.vtkAvianLidar import vtkAvianLidarBeamSource, vtkAvianLidarCloudComparison, vtkAvianLidarCollisionTree
+from avianlidar.vtkAvianLidar import vtkAvianLidarBeamSource, vtkAvianLidarCollisionTree
 from avianlidar.vtkAvianLidar import vtkAvianLidarEchoFilter as Filter
 
 import corridor_scene
@@ -54,15 +53,6 @@ def scan(tree, step, yaw, seed, mode):
     return places, beams // sensor.GetNumberOfChannels(), within
 
 
-def compare(simulated, actual):
-    """Hausdorff distance (Eq. 19) and RMSE from the actual to the simulated points (Eq. 20 as corrected), m."""
-    comparison = vtkAvianLidarCloudComparison()
-    comparison.SetInputData(0, vertices(simulated))
-    comparison.SetInputData(1, vertices(actual))
-    running.update(comparison)
-    return comparison.GetHausdorffDistance(), comparison.GetRMSEReferenceToSimulated()
-
-
 def measure(seeds, mode=Filter.RETURN_MODE_ALL):
     """{area: array of (points of the thinned scan, of the simulation, Hausdorff, RMSE), a row for each seed and phase}."""
     tree = vtkAvianLidarCollisionTree()
@@ -76,7 +66,8 @@ def measure(seeds, mode=Filter.RETURN_MODE_ALL):
             there = simulated[of_simulated[area]]
             for phase in range(THINNING):
                 here = dense[of_dense[area] & (column % THINNING == phase)]
-                rows[area].append((len(here), len(there), *compare(there, here)))
+                found = running.apart(there, here)  # Eq. 19, and Eq. 20 as corrected: from the actual to the simulated points
+                rows[area].append((len(here), len(there), found.GetHausdorffDistance(), found.GetRMSEReferenceToSimulated()))
     return {area: np.array(values) for area, values in rows.items()}
 
 

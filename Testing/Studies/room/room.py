@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Against reality: one room seen by four real lidars, or any scans that the point cloud reader reads. For each in turn
 the surface is made from the other scans (of one scan alone, from itself), the scan is simulated from the sensor's real
-place with its real beams, and compared with what it saw. Leaves clouds (.vtp), tables (.csv, .md), plots and pictures.
+place with its real beams, and compared with what it saw. Leaves tables (.csv, .md) and range images.
 
     Testing/Studies/run.py room --data DATA     # default: AVIANLIDAR_DATA_DIR
     Testing/Studies/run.py room --no-pictures --sensors xt32 --only-main
@@ -12,14 +12,12 @@ A scan is a file of one turn in the sensor's frame, or with the sensor's place i
 
 Documentation/evidence/real-scans.md says what they are and what comes out.
 """
-import csv
 import os
 import pathlib
 
 import numpy as np
 from vtkmodules.vtkIOPLY import vtkPLYReader
 
-import avianlidar as al
 import room_compare as compare
 import room_data
 import room_surface as surface
@@ -28,6 +26,7 @@ import tools
 
 DESK = 1.2  # m around the middle of the sensors: what lay there differs from scan to scan
 SAME = 0.1  # m: a beam met the same thing in both scans
+FARTHEST = 9.0  # m, of the colours of the room's ranges
 
 
 def arguments(argv=None):
@@ -224,7 +223,7 @@ def study(room, sensor, options, result):
 
 
 def leave_tables(result, names, folder):
-    """The tables of the page. Regions of intensity are those met by at least 100 beams; intensity.csv has all."""
+    """The tables of the page. Regions of intensity are those met by at least 100 beams."""
     def cm(value):
         return "-" if np.isnan(value) else f"{100 * value:.1f}"
 
@@ -263,24 +262,23 @@ def leave_tables(result, names, folder):
                 **{f"factor {m}": f"factor, {m}" for m in models}))
 
 
-def write_rows(rows, file):
-    with open(file, "w", newline="", encoding="utf-8") as stream:
-        writer = csv.DictWriter(stream, rows[0].keys())
-        writer.writeheader()
-        writer.writerows({k: f"{v:.6g}" if isinstance(v, float) else v for k, v in row.items()} for row in rows)
-
-
-def write_clouds(room, result, folder):
-    """Real and simulated points of each sensor, for ParaView."""
-    for sensor, (main, *_, bright) in result.runs.items():
-        scan, used = room.scans[sensor], room.used[sensor]
-        seen = np.isfinite(main.range)
-        for name, mask, ranges, values in (("real", used, scan.range, {"intensity": scan.intensity[used]}),
-                                           ("simulated", seen, main.range, {"energy": bright.energy[seen],
-                                                                            "object_id": main.region[seen]})):
-            points = scan.origin + ranges[mask, None] * scan.directions()[mask]
-            values = {"distance_m": ranges[mask], "beam_id": np.flatnonzero(mask), **values}
-            al.save(al.Cloud(surface.cloud(points, values)), folder / f"{sensor}-{name}.vtp")
+def draw(room, result, sensor, file):
+    """Real range, simulated range and their difference over azimuth and elevation, beam by beam."""
+    scan, (main, *_) = room.scans[sensor], result.runs[sensor]
+    real = np.where(room.used[sensor], scan.range, np.nan)
+    farthest = FARTHEST if room.published else np.nanpercentile(scan.range, 95)
+    shown = ((real, "what the sensor saw beyond the desk", "viridis", 0, farthest, "range (m)"),
+             (main.range, "simulated from the others", "viridis", 0, farthest, "range (m)"),
+             (main.range - real, "simulated minus real", "RdBu_r", -0.3, 0.3, "difference (m)"))
+    with tools.figure(file, 3, 1, figsize=(13, 8), dpi=90, sharex=True) as axes:
+        for axis, (values, title, colors, low, high, label) in zip(axes, shown):
+            there = np.isfinite(values)
+            dots = axis.scatter(scan.azimuth[there] % 360, scan.elevation[there], c=values[there], s=2.5, marker="s", linewidths=0, cmap=colors,
+                                vmin=low, vmax=high, rasterized=True)
+            axis.set(facecolor="0.93", ylabel="elevation (deg)", xlim=(0, 360))
+            axis.set_title(f"{room.names[sensor]}: {title}", loc="left", fontsize=12)
+            axis.figure.colorbar(dots, ax=axis, label=label, pad=0.01)
+        axis.set_xlabel("azimuth in the sensor's frame (deg)")
 
 
 def main(argv=None):
@@ -288,12 +286,8 @@ def main(argv=None):
     room, result = Room(options), Result()
     for sensor in options.sensors:
         study(room, sensor, options, result)
-    options.out.mkdir(parents=True, exist_ok=True)
-    for name in ("summary", "errors", "clouds", "intensity"):
-        write_rows(getattr(result, name), options.out / f"{name}.csv")
-    write_clouds(room, result, options.out)
     leave_tables(result, room.names, options.out)
     if not options.no_pictures:
-        import room_pictures  # only here: numbers need no display
-        room_pictures.draw(room, result, options.out)
+        for sensor in result.runs:
+            draw(room, result, sensor, options.out / f"{sensor}-ranges.png")
     return room, result

@@ -8,7 +8,7 @@ from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonCore import reference, vtkDoubleArray
 from vtkmodules.vtkCommonDataModel import vtkGenericCell, vtkStaticCellLocator
 
-from avianlidar.vtkAvianLidar import vtkAvianLidarCloudComparison, vtkAvianLidarEchoFilter
+from avianlidar.vtkAvianLidar import vtkAvianLidarEchoFilter
 
 import room_surface
 import running
@@ -88,13 +88,8 @@ def spread_of(errors):
 
 def clouds(simulated, real):
     """Hausdorff distance and RMSE (paper, Eq. 19, 20) both ways, m; density-aware Chamfer distance, 1."""
-    comparison = vtkAvianLidarCloudComparison()
-    comparison.SetInputData(0, room_surface.cloud(simulated))
-    comparison.SetInputData(1, room_surface.cloud(real))
-    running.update(comparison)
+    comparison = running.apart(simulated, real)
     return {"hausdorff": comparison.GetHausdorffDistance(),
-            "hausdorff_rs": comparison.GetHausdorffReferenceToSimulated(),
-            "hausdorff_sr": comparison.GetHausdorffSimulatedToReference(),
             "density_aware_chamfer": comparison.GetDensityAwareChamferDistance(),
             "rmse_rs": comparison.GetRMSEReferenceToSimulated(), "rmse_sr": comparison.GetRMSESimulatedToReference()}
 

@@ -2,7 +2,7 @@
 """The report card of the shipped airport for two receivers, by `avianlidar track`: a table, one by species, one by settings, a picture;
 and an hour of the same airport without birds.
 
-    report_card.py --out build/card
+    Testing/Studies/run.py report_card --out build/card
 """
 import json
 import shutil

@@ -1,28 +1,35 @@
-#!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
 """What paths over two reflections cost at eight places: processor time of a scan with two reflections over that with one.
 
-    second_light.py [--turns N] [--factor F]
+    Testing/Studies/run.py second_light
 
-Airport16 with its columns F times as far apart; the median of N pairs of scans, taken by turns. At four places every surface is
-a mirror as glass or sheet metal is (kd 0.05, ks 0.6, kp 3000; assumed), so that all of them pass light on. PYTHONPATH names the
-Python package of the build; the sceneries that are not part of the repository are scene files in AVIANLIDAR_SCENES_DIR
-(default: build/paraview/Testing/Scenes), and a place without its file is left out, and named."""
-import argparse
+Airport16 with its columns --factor times as far apart; the median of --turns pairs of scans, taken by turns. At four places every
+surface is a mirror as glass or sheet metal is (kd 0.05, ks 0.6, kp 3000; assumed), so that all of them pass light on. The sceneries
+that are not part of the repository are scene files in AVIANLIDAR_SCENES_DIR (default: build/paraview/Testing/Scenes), and a place
+without its file is left out.
+"""
 import pathlib
 import statistics
 import sys
 import time
 
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "Golden"))
-from golden import al, scene_files, surfaces_of  # noqa: E402
-from vtkmodules.vtkCommonDataModel import vtkDataObjectTreeIterator  # noqa: E402
+from vtkmodules.vtkCommonDataModel import vtkDataObjectTreeIterator
 
-# Scene, position of the lidar (m), whether all surfaces are mirrors. Chosen among 48 places drawn at random for the largest factors.
-PLACES = [("shanghai_cbd", (1429.6, -84.3, 3.0), False), ("shanghai_cbd", (1429.6, -84.3, 3.0), True),
-          ("zsss_structures", (0.0, 0.0, 3.0), False), ("zsss_structures", (0.0, 0.0, 3.0), True),
-          ("ingolstadt", (0.0, 0.0, 3.0), False), ("ingolstadt", (0.0, 0.0, 3.0), True),
-          ("zsss_all", (437.2, 659.7, 3.0), False), ("phnl", (0.0, 0.0, 2.82), True)]
+import tools
+from avianlidar import vtkAvianLidar as al
+from running import above_zero, argument, made, study, whole
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "Golden"))
+from golden import scene_files, surfaces_of  # noqa: E402
+
+# Name in the table, scene, position of the lidar (m), whether all surfaces are mirrors. Chosen among 48 places drawn at random for the
+# largest factors.
+PLACES = [(title, scene, position, mirrors) for title, scene, position, materials in (
+    ("Shanghai, centre, (1430, -84) m", "shanghai_cbd", (1429.6, -84.3, 3.0), (False, True)),
+    ("Hongqiao, structures, origin", "zsss_structures", (0.0, 0.0, 3.0), (False, True)),
+    ("Ingolstadt, origin", "ingolstadt", (0.0, 0.0, 3.0), (False, True)),
+    ("Hongqiao, everything, (437, 660) m", "zsss_all", (437.2, 659.7, 3.0), (False,)),
+    ("Honolulu, origin", "phnl", (0.0, 0.0, 2.82), (True,))) for mirrors in materials]
 MIRROR = {"kd": 0.05, "ks": 0.6, "kp": 3000.0}
 
 
@@ -37,13 +44,12 @@ def tree_of(name, file, mirrors):
                 leaves.GetCurrentDataObject().GetCellData().GetArray(array).Fill(value)
             leaves.GoToNextItem()
     tree = al.vtkAvianLidarCollisionTree()
-    tree.SetInputDataObject(surfaces)
-    tree.Update()
+    made(tree, InputDataObject=surfaces)
     return tree
 
 
 def scan(tree, position, reflections, factor):
-    """Seconds of the processor, and echoes."""
+    """Seconds of the processor."""
     source, echoes = al.vtkAvianLidarBeamSource(), al.vtkAvianLidarEchoFilter()
     source.SetPresetToAirport16()
     source.SetAzimuthStep(source.GetAzimuthStep() * factor)
@@ -56,29 +62,18 @@ def scan(tree, position, reflections, factor):
     echoes.AddObserver("WarningEvent", lambda *_: None)  # faces that coincide in what others drew
     begin = time.process_time()
     echoes.Update()
-    return time.process_time() - begin, echoes.GetOutput().GetNumberOfPoints()
+    return time.process_time() - begin
 
 
-def main(argv=None):
-    parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0])
-    parser.add_argument("--turns", type=int, default=5)
-    parser.add_argument("--factor", type=float, default=4.0)
-    options = parser.parse_args(argv)
-    print("scene              place                  mirrors  one, ms  two, ms  factor  echoes")
-    for name, position, mirrors in PLACES:
+@study(argument("--turns", type=whole(1, 1000), default=5, help="pairs of scans of each place, default 5"),
+       argument("--factor", type=above_zero, default=4.0, help="step of azimuth, default 4 times the sensor's"))
+def main(options):
+    rows = []
+    for title, name, position, mirrors in PLACES:
         file = scene_files()[name]
-        if not file.exists():
-            print(f"{name}: left out, {file} is not there")
-            continue
-        tree = tree_of(name, file, mirrors)
-        pairs = []
-        for _ in range(options.turns):
-            one, two = (scan(tree, position, reflections, options.factor) for reflections in (1, 2))
-            pairs.append((two[0] / one[0], one[0], two[0], two[1]))
-        one, two = (1000.0 * min(pair[k] for pair in pairs) for k in (1, 2))
-        print(f"{name:18s} {str(position):22s} {'yes' if mirrors else 'no':7s} {one:8.1f} {two:8.1f} "
-              f"{statistics.median(pair[0] for pair in pairs):7.2f} {pairs[0][3]:7d}", flush=True)
-
-
-if __name__ == "__main__":
-    main()
+        if file.exists():
+            tree = tree_of(name, file, mirrors)
+            pairs = [[scan(tree, position, reflections, options.factor) for reflections in (1, 2)] for _ in range(options.turns)]
+            rows.append((title, "yes" if mirrors else "no", *(f"{1000 * min(times):.0f}" for times in zip(*pairs)),
+                         f"{statistics.median(two / one for one, two in pairs):.1f}"))
+    tools.leave(options.out, "second-light", ("place", "mirrors", "one, ms", "two, ms", "factor"), rows, 2)

@@ -3,7 +3,6 @@
 
     Testing/Studies/run.py media_time --out build/weather-media
 """
-import time
 import warnings
 
 import numpy as np
@@ -12,7 +11,7 @@ from vtkmodules.vtkCommonDataModel import vtkMultiBlockDataSet
 import avianlidar as al
 import tools
 from avianlidar.vtkAvianLidar import vtkAvianLidarCollisionTree, vtkAvianLidarEchoFilter, vtkAvianLidarMedium
-from running import AIRPORT, made, read_scene, set_all, study
+from running import AIRPORT, made, read_scene, seconds_of, set_all, study
 
 SENSOR, RUNS = "Search905", 5
 FOG = {"Kind": 1, "Visibility": 300.0}
@@ -47,12 +46,6 @@ def scan(scene, media, properties):
     return echo
 
 
-def seconds(work):
-    begin = time.perf_counter()
-    work()
-    return time.perf_counter() - begin
-
-
 @study()
 def main(options):
     warnings.simplefilter("ignore", RuntimeWarning)
@@ -62,11 +55,11 @@ def main(options):
     for _ in range(RUNS):  # in turns: all meet the same noise of the machine
         for name, media, properties in CASES:
             echo = scan(reader.GetOutput(), media, properties)
-            times[name][0].append(seconds(echo.Update))
+            times[name][0].append(seconds_of(echo.Update))
             points[name] = echo.GetOutput().GetNumberOfPoints()
             echo.SetAttenuationCoefficient(3.6e-5)
             echo.Modified()
-            times[name][1].append(seconds(echo.Update))
+            times[name][1].append(seconds_of(echo.Update))
     medians = {name: np.median(values, axis=1) for name, values in times.items()}
     clear = medians["clear air"]
     tools.leave(options.out, "weather-media", ("", "points", "first, s", "of clear air", "lit again, s", "of clear air"), [

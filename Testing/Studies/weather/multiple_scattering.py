@@ -84,15 +84,6 @@ def share_kept(view_over_lobe):
     return np.mean(1 - np.exp(-(view_over_lobe / x)**2))
 
 
-def of_a_cloud(half_angle, lobe, extinction, base):
-    """The same for all light of a thick cloud from its base, m, on: more of it, as a ceilometer receives."""
-    depths = (np.arange(600) + 0.5) / 120 / extinction
-    x = (np.arange(400) + 0.5) / 400
-    inside = [np.mean(1 - np.exp(-(half_angle * (base + z) / (lobe * z * x))**2)) for z in depths]
-    single = np.exp(-2 * extinction * depths)
-    return (single * np.exp(extinction * depths * inside)).sum() / single.sum() - 1
-
-
 @study()
 def main(options):
     rows, wide, errors = [], {}, []
