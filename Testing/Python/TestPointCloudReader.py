@@ -10,7 +10,7 @@ import numpy as np
 
 from avianlidar import vtkAvianLidar as al
 from cloudtools import add_array, add_field, cloud, echoes, field, names, points, read, read_error, unit, write
-from echotools import InFolder, Messages, array
+from echotools import InFolder, Messages, array, given
 
 FILE = "TestPointCloudReader.las"
 # Writer, suffix, settings, types that change, and relative and absolute rounding: LAS has intensities of 16 bits, returns in a byte and time in
@@ -239,12 +239,9 @@ class TestPointCloudReader(InFolder):
     def test_moving_points_leaves_no_wrong_system(self):
         write(al.vtkAvianLidarLASWriter(), echoes(), FILE)
         away = read(FILE, LocalCoordinates=False)
-        transform = al.vtkAvianLidarGeodeticTransform()
-        transform.SetInputData(away)
+        transform = given(al.vtkAvianLidarGeodeticTransform(), InputData=away, UseFieldDataOrigin=False, Origin=(31.1979, 121.3363, 3.0))
         transform.SetSourceFrameToUTM()
         transform.SetTargetFrameToENU()
-        transform.UseFieldDataOriginOff()
-        transform.SetOrigin(31.1979, 121.3363, 3.0)
         for move in (False, True):
             transform.SetMovePoints(move)
             transform.Update()
