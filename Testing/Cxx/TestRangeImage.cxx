@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The range image: its grid in degrees, the strongest return of each beam, empty cells, beam
-// reports, and bad input. TestBeamMap.py compares maps with reports of whole scans.
+// reports, and bad input. TestEchoPipeline.py compares maps with reports of whole scans.
 #include "vtkAvianLidarArrays.h"
 #include "vtkAvianLidarBeamSource.h"
 #include "vtkAvianLidarRangeImage.h"

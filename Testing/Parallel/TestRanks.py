@@ -127,11 +127,9 @@ def test_objects_are_numbered_as_alone():
 def test_media_are_those_of_all_ranks():
     """Ground fog, a shower and trees among the surfaces, wherever they are."""
     def medium(kind, shape, **properties):
-        source = al.vtkAvianLidarMedium()
+        source = echotools.given(al.vtkAvianLidarMedium(), **properties)
         getattr(source, "SetKindTo" + kind)()
         getattr(source, "SetShapeTo" + shape)()
-        for name, value in properties.items():
-            getattr(source, "Set" + name)(value)
         source.Update()
         return source.GetOutput()
 
@@ -165,9 +163,7 @@ def test_movers_are_those_of_all_ranks():
     gulls = [gull(i) for i in range(15)]
     for one in gulls:
         cloudtools.add_field(one, "block_name", [])  # a user's own
-    beams = echotools.sensor()
-    beams.SetLowerEnergyLimit(1e-8)
-    beams.SetHalfBeamwidth(1e-2)
+    beams = echotools.given(echotools.sensor(), LowerEnergyLimit=1e-8, HalfBeamwidth=1e-2)
 
     def with_movers(movers):
         echo = echotools.scan(TOWN, beams, **SETTINGS)
@@ -185,13 +181,9 @@ def test_movers_are_those_of_all_ranks():
 
 def test_one_surface_in_pieces():
     """With ghost cells or without. Points on the seams are there twice, so the checksum alone is another one."""
-    ball, paint = vtk.vtkSphereSource(), al.vtkAvianLidarMaterial()
-    ball.SetCenter(60, 0, 0)
-    ball.SetRadius(30)
-    paint.SetInputConnection(ball.GetOutputPort())
-    paint.SetMaterialToMetal()
-    paint.Update()
-    surface = paint.GetOutput()
+    ball = echotools.given(vtk.vtkSphereSource(), Center=(60, 0, 0), Radius=30)
+    ball.Update()
+    surface = echotools.painted(ball.GetOutput(), "Metal")
     expected = alone(surface)
     for ghosts in (0, 1):
         pieces = vtk.vtkExtractPolyDataPiece()

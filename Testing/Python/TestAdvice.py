@@ -16,6 +16,7 @@ from vtkmodules.vtkFiltersSources import vtkSphereSource
 import avianlidar as al
 from avianlidar import _command
 from avianlidar._advising import DEFAULT, DIRECT, UNCONNECTED, Trial, choose
+from echotools import given
 
 SOURCE = pathlib.Path(os.environ["AVIANLIDAR_SOURCE_DIR"])
 SCENE = SOURCE / "Examples" / "airport" / "scene" / "hongqiao.lidarscene.json"
@@ -27,11 +28,7 @@ CORNER = ([(-30, 50, -30), (0, 80, -30), (30, 50, -30), (-30, 50, 30), (0, 80, 3
 
 
 def sphere():
-    source = vtkSphereSource()
-    source.SetCenter(0, 60, 0)
-    source.SetRadius(20)
-    source.SetThetaResolution(32)
-    source.SetPhiResolution(32)
+    source = given(vtkSphereSource(), Center=(0, 60, 0), Radius=20, ThetaResolution=32, PhiResolution=32)
     source.Update()
     return al.Scene(source.GetOutput(), material="Metal")
 

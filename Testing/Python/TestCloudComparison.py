@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Cloud comparison against brute force on clouds of every shape, closed forms of Eq. 19 and 20 and of the
-density-aware Chamfer distance, and bad input."""
+"""Cloud comparison against brute force on clouds of every shape, closed forms of Eq. 19 and 20, and bad input."""
 
 import math
 import unittest
@@ -116,15 +115,6 @@ class ClosedForms(unittest.TestCase):
 
 
 class DensityAware(unittest.TestCase):
-    def test_closed_forms(self):
-        for distance, alpha in ((0.0, 1.0), (0.3, 10.0), (2.0, 0.01), (1e5, 1e6)):
-            for value in chamfer([[1.0, 2.0, 3.0]], [[1.0, 2.0, 3.0 + distance]], alpha):
-                self.assertAlmostEqual(value, 1 - math.exp(-alpha * distance), delta=1e-15 * (1 + 1e3 * alpha))
-        # 1 point at 1 m from 5 in one place: 1 - exp(-1) forth, 1 - exp(-1) / 5 back.
-        _, forth, back = chamfer([[0.0, 0.0, 0.0]], np.tile((1.0, 0.0, 0.0), (5, 1)))
-        self.assertAlmostEqual(forth, 1 - math.exp(-1), delta=1e-15)
-        self.assertAlmostEqual(back, 1 - math.exp(-1) / 5, delta=1e-15)
-
     def test_ties_do_not_depend_on_the_order(self):
         # Whole and half numbers: every distance is exact, and most are those to several places.
         draw = np.random.default_rng(32)

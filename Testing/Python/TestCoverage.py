@@ -17,6 +17,7 @@ import flown
 import flown_sensors
 from avianlidar import siting
 from avianlidar.vtkAvianLidar import vtkAvianLidarCoverage
+from echotools import given
 
 AIRPORT = os.path.join(exampletools.EXAMPLES, "airport", "scene")
 AIR = 8.9e-5  # 1/m
@@ -214,10 +215,7 @@ class Work(unittest.TestCase):
         """Pieces of any output and of both kinds of places count each place once, and the clutter is in the first."""
         scene, sensor = al.Scene(WALL, material="Wall"), al.Sensor("Search905", azimuth_range=(-30.0, 30.0))
         wanted = al.Coverage(scene, sensor, **REGION, **TARGET, number_of_threads=1)["detection_probability"]
-        image = vtkImageData()
-        image.SetDimensions(SHAPE)
-        image.SetOrigin(-200, 20, 0)
-        image.SetSpacing(40, 40, 10)
+        image = given(vtkImageData(), Dimensions=SHAPE, Origin=(-200, 20, 0), Spacing=(40, 40, 10))
         for places, port, ghosts in ((None, 0, 0), (None, 1, 0), (image, 0, 1), (image, 2, 1)):
             cover = al.Coverage(scene, sensor, places=places, **REGION, **TARGET)
             counts, clutter = [], []
@@ -291,12 +289,10 @@ class Work(unittest.TestCase):
 
     def test_places_of_any_kind(self):
         scene, sensor = al.Scene(WALL, material="Wall"), al.Sensor("Search905", azimuth_range=(-30.0, 30.0))
-        grid, plain, image = vtkUnstructuredGrid(), vtkPointSet(), vtkImageData()
+        grid, plain = vtkUnstructuredGrid(), vtkPointSet()
         for data in (grid, plain):
             data.SetPoints(al.places_of([(0, 200, 1), (100, 200, 1)]).GetPoints())
-        image.SetDimensions(2, 1, 1)
-        image.SetOrigin(0, 200, 1)
-        image.SetSpacing(100, 1, 1)
+        image = given(vtkImageData(), Dimensions=(2, 1, 1), Origin=(0, 200, 1), Spacing=(100, 1, 1))
         for places in (grid, image, plain):
             cover = al.Coverage(scene, sensor, places=places, clutter=False, **TARGET)
             self.assertEqual(cover["status"].ravel().tolist(), [4, 7])

@@ -14,8 +14,8 @@ from avianlidar import siting
 from avianlidar._command import main
 from avianlidar.apps._maps import coordinate_system
 from osgeo import osr
+from reporttools import airport, written
 
-PLAN = os.path.join(exampletools.EXAMPLES, "coverage", "hongqiao.coverage.json")
 ORIGIN = (31.1979, 121.3363, 3.0)
 
 
@@ -27,15 +27,8 @@ class Maps(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         cls.folder = exampletools.folder("TestCoverageMaps")
-        with open(PLAN, encoding="utf-8") as file:
-            plan = json.load(file)
-        for name in ("scene", "runways"):
-            plan[name] = os.path.join(os.path.dirname(PLAN), plan[name])
-        cls.plan = {**plan, "compare_with": [], "heights": [30], "extent": [-400, 600, -300, 500], "spacing": 50, "places": 100}
-        cls.file = os.path.join(cls.folder, "small.coverage.json")
-        with open(cls.file, "w", encoding="utf-8") as file:
-            json.dump(cls.plan, file)
-        assert main(["coverage", cls.file, "-o", cls.folder, "--sensor-set", "azimuth_range=0,180", "--coverage-set", "species=crow"]) == 0
+        plan = airport(heights=[30], extent=[-400, 600, -300, 500], spacing=50, places=100)
+        assert main(["coverage", str(written("small", plan)), "-o", cls.folder, "--sensor-set", "azimuth_range=0,180", "--coverage-set", "species=crow"]) == 0
         sensor = al.Sensor("Search905", position=(0, 0, 3), azimuth_range=(0.0, 180.0))
         cls.cover = al.Coverage(plan["scene"], sensor, species="crow", visibility=23000.0,
                                 bounds=(-400, 600, -300, 500, 30, 30), spacing=(50, 50, 1))

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Echoes and trees through files: everything in field data comes back, no tree built twice."""
+"""Echoes and trees through files: everything in field data comes back, no tree built twice. Tables keep units in the names of their
+columns (TestHelperFiles writes CSV files)."""
 
 import os
 import pathlib
@@ -7,11 +8,14 @@ import re
 import subprocess
 import sys
 
+import numpy as np
 import vtk
 
 import avianlidar
 from avianlidar import vtkAvianLidar as al
-from echotools import Messages, assert_same_bits, scan, town
+from avianlidar._cloud import add_array
+from cloudtools import cloud, field, names, points, unit
+from echotools import Messages, array, assert_same_bits, given, scan, town
 
 echo = scan(town())
 echo.Update()
@@ -104,3 +108,33 @@ other.SetSeed(2)
 other.Update()
 assert len(heard.warnings) == 1
 os.remove("TestEchoFiles.vtp")
+
+
+def renamed(source):
+    filter_ = given(al.vtkAvianLidarUnitNames(), InputData=source)
+    filter_.Update()
+    return filter_.GetOutputDataObject(0)
+
+
+# Names in a table get their unit, values are shared, order and input stay.
+table = renamed(echoes)
+for before, after in zip(names(echoes), names(table), strict=True):
+    its = unit(echoes, before)
+    assert after == (f"{before} [{its}]" if its and its != "1" else before), after
+    assert unit(table, after) == its
+    assert np.shares_memory(array(table, after), array(echoes, before))
+assert {"energy [J]", "azimuth [0.01 deg]", "intensity", "beam_id"} < set(names(table)) and "energy" in names(echoes)
+assert field(table, "lower_energy_limit") == field(echoes, "lower_energy_limit")
+np.testing.assert_array_equal(points(table), points(echoes))
+
+for name, its, joined in (("a", "m", "a [m]"), ("a", "1", "a"), ("a", "", "a"), ("", "m", " [m]")):
+    assert al.vtkAvianLidarUnitNames.NameWithUnit(name, its) == joined
+
+# Cells, rows, texts; nothing at all.
+box, rows = cloud([[0, 0, 0]]), vtk.vtkTable()
+for holder in (box.GetCellData(), rows.GetRowData()):
+    add_array(holder, "length", np.zeros(1), "m")
+    add_array(holder, "words", ["x"])
+for holder in (renamed(box).GetCellData(), renamed(rows).GetRowData()):
+    assert holder.HasArray("length [m]") and holder.HasArray("words")
+assert renamed(vtk.vtkPolyData()).GetNumberOfPoints() == 0

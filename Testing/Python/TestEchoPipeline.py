@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The echo filter in a pipeline: the same bits however it is run, progress and abort. And what the tree shows."""
+"""The echo filter in a pipeline: the same bits however it is run, progress and abort. What the tree shows, and the beam
+report as a map: azimuth by elevation of status, cost and what was left out."""
 import unittest
 
 import numpy as np
@@ -7,12 +8,14 @@ import vtk
 from vtk.util import numpy_support
 
 from avianlidar import vtkAvianLidar as al
-from echotools import RAYS, array, arrays, assert_same_bits, copy_of, scan, sensor, town
+from cloudtools import names
+from echotools import RAYS, array, arrays, assert_same_bits, copy_of, given, scan, sensor, town
 
 # By default all beams of this town are integrated, and none needs a ray: what is about rays traces them. Beams that meet the
 # wall, of which more than 100 triangles enter each, have cells.
 SAMPLED = {"BeamSamples": RAYS}
-TOWN = town()
+TOWN, FEW = town(), town(count=20)
+LABELS = ("laser_id", "azimuth", "vertical_angle")
 
 
 def town_with_wall():
@@ -170,6 +173,49 @@ class TreeDisplay(unittest.TestCase):
                 self.assertTrue(held.all())
                 if (volume, level) == (0, 0):
                     np.testing.assert_allclose(shown.GetBounds(), tree.GetOutput().GetBounds(), rtol=1e-6)
+
+
+def image_of(echo, beams):
+    """The range image as {name: rows by columns}; beams are what is given, or the report."""
+    image = al.vtkAvianLidarRangeImage()
+    image.SetInputConnection(0, echo.GetOutputPort())
+    image.SetInputConnection(1, beams)
+    image.Update()
+    return {name: array(image.GetOutput(), name).reshape(4, 90).copy() for name in names(image.GetOutput())}
+
+
+class BeamMap(unittest.TestCase):
+    def test_report_has_the_labels_of_its_beams(self):
+        """And angles of beams that have no labels."""
+        lidar = sensor()
+        lidar.Update()
+        beams = copy_of(lidar.GetOutput())
+        echo = scan(FEW, beams)
+        echo.Update()
+        for name in LABELS:
+            np.testing.assert_array_equal(arrays(echo.GetOutput(1))[name], array(beams, name), name)
+            beams.GetPointData().RemoveArray(name)
+        echo.Update()
+        for name in LABELS[1:]:
+            np.testing.assert_allclose(arrays(echo.GetOutput(1))[name], array(lidar.GetOutput(), name), atol=1e-8)
+
+    def test_map_has_the_image_and_the_report(self):
+        for orientation in ((0.0, 0.0, 0.0), (20.0, 5.0, -3.0)):
+            lidar = given(sensor(), Orientation=orientation)
+            echo = scan(FEW, lidar)
+            plain, found = image_of(echo, lidar.GetOutputPort()), image_of(echo, echo.GetOutputPort(1))
+            self.assertEqual(sorted(plain), ["distance_m", "energy", "object_id"])
+            for name, values in plain.items():
+                self.assertEqual(found[name].tobytes(), values.tobytes(), name)
+            report = arrays(echo.GetOutput(1))
+            columns = {"status", "candidates", "nodes_visited", "rays_traced", "skipped", "skipped_bound"}
+            self.assertEqual(set(found) - set(plain), columns)
+            cell = report["beam_id"] // 4 + 90 * report["laser_id"]
+            for name in columns:
+                np.testing.assert_array_equal(found[name].ravel()[cell], report[name], name)
+            echoes = np.isfinite(found["distance_m"])
+            np.testing.assert_array_equal(echoes, np.isin(found["status"], (0, 3)))
+            self.assertTrue(echoes.any() and not echoes.all())
 
 
 if __name__ == "__main__":

@@ -12,7 +12,7 @@ import numpy as np
 
 from avianlidar import vtkAvianLidar as al
 from cloudtools import add_array, add_field, assert_refused, cloud, echoes, field, geodetic, names, write
-from echotools import InFolder, array
+from echotools import InFolder, array, given
 
 FILE = "TestGeoJSONWriter.geojson"
 # Half of the ninth decimal of a degree and of the fourth of a metre, and a little for the digits.
@@ -66,9 +66,7 @@ class TestGeoJSONWriter(InFolder):
         self.assertEqual([whole["units"].get(name) for name in ("energy", "distance_m", "object_id")], ["J", "m", None])
 
     def test_places_from_the_arrays_of_the_geodetic_transform(self):
-        transform = al.vtkAvianLidarGeodeticTransform()
-        transform.SetInputData(self.data)
-        transform.MovePointsOn()
+        transform = given(al.vtkAvianLidarGeodeticTransform(), InputData=self.data, MovePoints=True)
         transform.SetTargetFrameToUTM()
         transform.Update()
         self.write(transform.GetOutput())

@@ -44,15 +44,9 @@ class Limit:
 
 def ball(resolution=120):
     """About 28,000 triangles around the sensor."""
-    source = vtk.vtkSphereSource()
-    source.SetRadius(50)
-    source.SetThetaResolution(resolution)
-    source.SetPhiResolution(resolution)
-    paint = al.vtkAvianLidarMaterial()
-    paint.SetInputConnection(source.GetOutputPort())
-    paint.SetMaterialToWall()
-    paint.Update()
-    return paint.GetOutput()
+    source = echotools.given(vtk.vtkSphereSource(), Radius=50, ThetaResolution=resolution, PhiResolution=resolution)
+    source.Update()
+    return echotools.painted(source.GetOutput(), "Wall")
 
 
 def on(algorithm, *inputs):
@@ -83,10 +77,7 @@ def way():
         on(writer(name, "r"), data).Write()
 
     def many_beams():
-        source = echotools.sensor(columns=1000, channels=40)
-        source.SetElevationStep(0.1)
-        source.SetFiringInterval(0)
-        return source
+        return echotools.given(echotools.sensor(columns=1000, channels=40), ElevationStep=0.1, FiringInterval=0)
 
     def scene(name):
         return make("SceneReader", FileName=scenetools.write_scene(".", name, {"version": 1, "objects": [

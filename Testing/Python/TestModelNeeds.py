@@ -1,15 +1,21 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """What a scan leaves out stays within the bounds that it states: the examples' own scenes against the full model (that
-of speed and accuracy has the same), other air and limits, dark surfaces. TestModelNeedsScenery.py has the scenes that
-are not in the repository."""
+of speed and accuracy has the same), other air and limits, dark surfaces. What was left out and why stands in field
+data as sentences. TestModelNeedsScenery.py has the scenes that are not in the repository."""
 import math
+import re
 import unittest
 
 import numpy as np
 
 import echotools
+from avianlidar._cloud import field_values
 from echotools import CELLS, RAYS
 from needstools import BEAM, BEYOND, Found, airport_filters, compare_units, corridor_filter, needed_and_full
+
+NOTES = ("note_all_left_out", "note_noise", "note_two_reflections", "note_further_reflections", "note_faint_paths", "note_small_objects",
+         "note_detail_between_rays", "note_planes", "note_perceivable_range")
+TOWN = echotools.town(count=20)
 
 
 class ModelNeeds(unittest.TestCase):
@@ -75,18 +81,58 @@ class ModelNeeds(unittest.TestCase):
         beams.SetLowerEnergyLimit(3.6e-8)
         for samples, kd, modelled in ((CELLS, 2e-4, 0), (CELLS, 5e-4, 1), (RAYS, 2e-4, 0), (RAYS, 5e-4, 1)):
             with self.subTest(samples=samples, kd=kd):
-                paint = echotools.al.vtkAvianLidarMaterial()
-                paint.SetMaterialToCustom()
-                paint.SetKd(kd)
-                paint.SetKs(0.0)
-                paint.SetInputData(echotools.town())
-                paint.Update()
-                lidar = echotools.scan(paint.GetOutputDataObject(0), beams, ReturnMode=4, BeamSamples=samples)
+                dark = echotools.painted(echotools.town(), "Custom", Kd=kd, Ks=0.0)
+                lidar = echotools.scan(dark, beams, ReturnMode=4, BeamSamples=samples)
                 found = Found(lidar)
                 lidar.FullModelOn()
                 full = Found(lidar)
                 self.assertEqual([one.fields["secondary_reflections_modelled"] for one in (found, full)], [modelled, 1])
                 compare_units(self, "a dark town", found, full)
+
+
+def notes_of(echo, port=0):
+    echo.Update()
+    return {name: value[0] for name, value in field_values(echo.GetOutput(port)).items() if name.startswith("note_")}
+
+
+class ModelNotes(unittest.TestCase):
+    def test_numbers_are_those_of_the_fields(self):
+        echo = echotools.scan(TOWN, echotools.given(echotools.sensor(), LowerEnergyLimit=7e-6), LightEnergyFraction=0.25)
+        notes = notes_of(echo)
+        self.assertEqual((tuple(notes), notes_of(echo, 1)), (NOTES, notes))
+        found = field_values(echo.GetOutput())
+        for note, field, unit in (("all_left_out", "skipped_energy_bound", "J"), ("noise", "noise_bound", "J"),
+                                  ("faint_paths", "light_energy_constraint_bound", "J"),
+                                  ("detail_between_rays", "missed_detail_energy", "J"),
+                                  ("perceivable_range", "perceivable_range", "km")):
+            number = float(re.search(rf"([-+.e0-9]+) {unit}\b", notes["note_" + note])[1])
+            number *= 1000.0 if unit == "km" else 1.0
+            self.assertAlmostEqual(number / found[field], 1.0, delta=6e-3, msg=note)
+        self.assertIn("(25 % of the lower energy limit)", notes["note_faint_paths"])
+        self.assertEqual((found["light_energy_constraint_bound"], found["light_energy_fraction"]), (0.25 * 7e-6, 0.25))
+
+    def test_each_setting_changes_its_notes(self):
+        def scanned(sensor=(), **settings):
+            return echotools.scan(TOWN, echotools.given(echotools.sensor(), **dict(sensor)), **settings)
+
+        for echo, expected in (
+                (scanned(), {"all_left_out": "at most", "further_reflections": "not modelled: [^,]*$", "noise": "left out", "two_reflections": "modelled, without", "faint_paths": "left out",
+                             "small_objects": "more rays", "planes": "integrated", "perceivable_range": "nothing beyond .* km"}),
+                # No light over two reflections reaches such a limit.
+                (scanned({"PulseEnergy": 1e-3, "LowerEnergyLimit": 10.0, "UpperEnergyLimit": 20.0}),
+                 {"two_reflections": "left out", "further_reflections": "not modelled: .*, which return at most", "perceivable_range": "nothing beyond 0 m"}),
+                (scanned(AttenuationCoefficient=0.0, FullModel=True),
+                 {"all_left_out": "nothing", "noise": "modelled", "two_reflections": "modelled$", "faint_paths": "followed",
+                  "perceivable_range": "without end"}),
+                # Each faint path is below the limit, but the bound of their sum is far above it.
+                (scanned(LightEnergyThreshold=1), {"all_left_out": "paths over two reflections below the lower energy limit$",
+                                                   "faint_paths": "left out below the lower energy limit$"}),
+                (scanned({"ReceiverAperture": 0.01}, NumberOfReflections=1, Noise=False, BeamSamples=echotools.RAYS),
+                 {"noise": "not modelled", "two_reflections": "not modelled", "further_reflections": "not modelled: paths over two",
+                  "planes": "sampled"})):
+            notes = notes_of(echo)
+            for name, text in expected.items():
+                self.assertRegex(notes["note_" + name], "^" + text, name)
 
 
 if __name__ == "__main__":

@@ -11,7 +11,7 @@ import numpy as np
 import avianlidar
 from avianlidar import vtkAvianLidar as al
 from cloudtools import add_array, add_field, cloud, echoes, field, names, points, read, read_error, unit, write
-from echotools import InFolder, Messages, array
+from echotools import InFolder, Messages, array, given
 from helpertools import WALL
 
 FILE = "TestPointCloudReader.las"
@@ -250,12 +250,9 @@ class TestPointCloudReader(InFolder):
     def test_moving_points_leaves_no_wrong_system(self):
         write(al.vtkAvianLidarLASWriter(), echoes(), FILE)
         away = read(FILE, LocalCoordinates=False)
-        transform = al.vtkAvianLidarGeodeticTransform()
-        transform.SetInputData(away)
+        transform = given(al.vtkAvianLidarGeodeticTransform(), InputData=away, UseFieldDataOrigin=False, Origin=(31.1979, 121.3363, 3.0))
         transform.SetSourceFrameToUTM()
         transform.SetTargetFrameToENU()
-        transform.UseFieldDataOriginOff()
-        transform.SetOrigin(31.1979, 121.3363, 3.0)
         for move in (False, True):
             transform.SetMovePoints(move)
             transform.Update()

@@ -10,7 +10,7 @@ from vtk.util.vtkAlgorithm import VTKPythonAlgorithmBase
 
 from avianlidar import vtkAvianLidar as al
 from cloudtools import field
-from echotools import array, assert_same_bits, box, copy_of, scan, sensor, town
+from echotools import array, assert_same_bits, box, copy_of, given, scan, sensor, town
 
 PIPELINE = vtk.vtkStreamingDemandDrivenPipeline
 
@@ -71,21 +71,13 @@ def sensor_output(columns):
 
 
 def sweeping(columns=36, channels=4, revolutions=3, steps=9, rate=2.0):
-    lidar = sensor(columns, channels)
-    lidar.SetRotationRate(rate)
-    lidar.SetNumberOfRevolutions(revolutions)
-    lidar.SetStepsPerRevolution(steps)
-    return lidar
+    return given(sensor(columns, channels), RotationRate=rate, NumberOfRevolutions=revolutions, StepsPerRevolution=steps)
 
 
 def noisy(lidar):
     """A photon counter: noise shows in every echo."""
     photon = 6.62607015e-34 * 3.313e14
-    lidar.SetLowerEnergyLimit(40 * photon)
-    lidar.SetUpperEnergyLimit(1e6 * photon)
-    lidar.SetPulseEnergy(2e5 * photon)
-    lidar.SetNoisePhotonRate(20 / 5e-9)
-    return lidar
+    return given(lidar, LowerEnergyLimit=40 * photon, UpperEnergyLimit=1e6 * photon, PulseEnergy=2e5 * photon, NoisePhotonRate=20 / 5e-9)
 
 
 class Echoes(unittest.TestCase):
@@ -161,16 +153,10 @@ class MovingScene(unittest.TestCase):
         def transformed(lidar):
             turn = vtk.vtkTransform()
             turn.RotateZ(1)
-            between = vtk.vtkTransformPolyDataFilter()
-            between.SetTransform(turn)
-            between.SetInputConnection(lidar.GetOutputPort())
-            return between
+            return given(vtk.vtkTransformPolyDataFilter(), Transform=turn, InputConnection=lidar.GetOutputPort())
 
         def shifted(lidar):  # steps are changed on the way: the scene has the time itself
-            shift = vtk.vtkTemporalShiftScale()
-            shift.SetPreShift(10)
-            shift.SetInputConnection(lidar.GetOutputPort())
-            return shift
+            return given(vtk.vtkTemporalShiftScale(), PreShift=10, InputConnection=lidar.GetOutputPort())
 
         def one_scan(_=None):  # has its revolutions all the same
             return sweeping(revolutions=1, steps=1, rate=0.5)

@@ -1,10 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Weather in plans and reports: words and properties by hand give the same, years are weighted sums, METAR reports by known
 answers, errors."""
-import json
 import math
-import os
-import pathlib
 import re
 import shutil
 import unittest
@@ -12,7 +9,6 @@ import unittest
 import numpy as np
 
 import avianlidar as al
-import exampletools
 from avianlidar import siting
 from avianlidar._command import main
 from avianlidar.apps import _metar
@@ -22,10 +18,8 @@ from avianlidar.apps._inputs import read_plan
 from avianlidar.apps._report import Report
 from avianlidar.apps._sites import OTHER_PLACES, Sites
 from helpertools import error_of, rows_of
-from reporttools import quick
+from reporttools import HERE, SENSOR, airport, quick, written
 
-HERE = pathlib.Path(os.environ.get("AVIANLIDAR_TEST_OUTPUT_DIR", "/tmp")) / "TestWeatherPlans"
-PLAN = pathlib.Path(exampletools.EXAMPLES) / "coverage" / "hongqiao.coverage.json"
 TARGET = {"species": "", "effective_area": 0.03, "all_species": False}  # m2: quicker than birds
 FOG = {"visibility": 1000, "air_backscatter": True}
 YEAR = [{"weather": ["haze:20000"], "share": 0.8}, {"weather": ["fog:500"], "share": 0.15}, {"weather": ["rain:10"], "share": 0.05}]
@@ -33,16 +27,10 @@ YEAR = [{"weather": ["haze:20000"], "share": 0.8}, {"weather": ["fog:500"], "sha
 
 def plan(name, **changes):
     """The file of the airport's plan, small. A change to None takes away."""
-    wanted = json.loads(PLAN.read_text(encoding="utf-8"))
-    for key in ("scene", "runways"):
-        wanted[key] = str((PLAN.parent / wanted[key]).resolve())
-    wanted["siting"].update(spacing=1000, bounds=[-1200, 1800, -1200, 0], draws=0, sensors=2)
-    wanted.update({"compare_with": [], "coverage": {**TARGET, "visibility": 23000}, "spacing": 300, "places": 40, "heights": [20],
-                   "sensor": {"preset": "Search905", "name": "Search905", "azimuth_step": 1.5}, **changes})
-    HERE.mkdir(parents=True, exist_ok=True)
-    file = HERE / f"{name}.coverage.json"
-    file.write_text(json.dumps({key: value for key, value in wanted.items() if value is not None}), encoding="utf-8")
-    return file
+    siting = {"bounds": [-1200, 1800, -1200, 0], "spacing": 1000, "masts": [5], "sensors": 2, "draws": 0}
+    small = {"siting": siting, "coverage": {**TARGET, "visibility": 23000}, "spacing": 300, "places": 40, "heights": [20],
+             "sensor": SENSOR}
+    return written(name, airport(**{**small, **changes}))
 
 
 class Coverage(unittest.TestCase):

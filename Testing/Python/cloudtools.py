@@ -57,10 +57,8 @@ def assert_extremes(got, rows, kinds):
 
 def echoes(origin=ORIGIN, orientation=(30.0, 2.0, 1.0), columns=90, channels=4, **settings):
     """Echoes of a town of boxes with classes, as from a scene with an origin; a copy to change."""
-    beams = sensor(columns, channels)
-    beams.SetPosition(10.0, 20.0, 3.0)
-    beams.SetOrientation(*orientation)
-    beams.SetHalfBeamwidth(0.03)  # wide enough for several returns
+    beams = given(sensor(columns, channels), Position=(10.0, 20.0, 3.0), Orientation=orientation,
+                  HalfBeamwidth=0.03)  # wide enough for several returns
     filter_ = scan(town(), beams, **settings)
     filter_.Update()
     data = copy_of(filter_.GetOutput())
@@ -141,9 +139,7 @@ def read_error(name):
 
 def geodetic(data, frame):
     """The points in another frame, by the filter that is tested against other programs."""
-    transform = al.vtkAvianLidarGeodeticTransform()
-    transform.SetInputData(data)
-    transform.MovePointsOn()
+    transform = given(al.vtkAvianLidarGeodeticTransform(), InputData=data, MovePoints=True)
     getattr(transform, "SetTargetFrameTo" + frame)()
     transform.Update()
     return points(transform.GetOutput())

@@ -51,22 +51,19 @@ class Messages:
 
 def box(center, half, material=None, name=None):
     """A box as vtkPolyData of quads, with a material if one is named."""
-    source = vtk.vtkCubeSource()
-    source.SetCenter(*center)
-    source.SetXLength(2 * half[0])
-    source.SetYLength(2 * half[1])
-    source.SetZLength(2 * half[2])
-    source.SetOutputPointsPrecision(vtk.vtkAlgorithm.DOUBLE_PRECISION)
-    if material is None:
-        source.Update()
-        return source.GetOutput()
-    paint = al.vtkAvianLidarMaterial()
-    paint.SetInputConnection(source.GetOutputPort())
+    x, y, z = (2 * side for side in half)
+    source = given(vtk.vtkCubeSource(), Center=center, XLength=x, YLength=y, ZLength=z,
+                   OutputPointsPrecision=vtk.vtkAlgorithm.DOUBLE_PRECISION)
+    source.Update()
+    return source.GetOutput() if material is None else painted(source.GetOutput(), material, NameOfObject=name or "")
+
+
+def painted(data, material, **properties):
+    """Surfaces with a material."""
+    paint = given(al.vtkAvianLidarMaterial(), InputDataObject=data, **properties)
     getattr(paint, f"SetMaterialTo{material}")()
-    if name:
-        paint.SetNameOfObject(name)
     paint.Update()
-    return paint.GetOutput()
+    return paint.GetOutputDataObject(0)
 
 
 def group(*parts):
@@ -115,11 +112,7 @@ def bird(**properties):
 
 def sensor(columns=90, channels=4):
     """A beam source of few beams."""
-    beams = al.vtkAvianLidarBeamSource()
-    beams.SetAzimuthStep(360.0 / columns)
-    beams.SetNumberOfChannels(channels)
-    beams.SetElevationStep(1.0)
-    return beams
+    return given(al.vtkAvianLidarBeamSource(), AzimuthStep=360.0 / columns, NumberOfChannels=channels, ElevationStep=1.0)
 
 
 def scan(surfaces, beams=None, **properties):

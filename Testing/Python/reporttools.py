@@ -36,13 +36,18 @@ STEP = 1.5  # degrees, few beams
 SENSOR = {"preset": "Search905", "name": "Search905", "azimuth_step": STEP}
 
 
-def plan(**changes):
-    """The airport's plan, coarse. A change to None takes away."""
+def airport(**changes):
+    """The airport's plan, of one sensor. A change to None takes away."""
     wanted = json.loads(PLAN.read_text(encoding="utf-8"))
     for name in ("scene", "runways"):
         wanted[name] = str((PLAN.parent / wanted[name]).resolve())
-    wanted.update({"spacing": 100, "places": 200, "extent": [-600, 600, -600, 600], "compare_with": None, "sensor": SENSOR, **changes})
+    wanted.update({"compare_with": None, **changes})
     return {name: value for name, value in wanted.items() if value is not None}
+
+
+def plan(**changes):
+    """The same, coarse."""
+    return airport(**{"spacing": 100, "places": 200, "extent": [-600, 600, -600, 600], "sensor": SENSOR, **changes})
 
 
 def written(name, wanted):
