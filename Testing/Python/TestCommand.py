@@ -162,7 +162,7 @@ class Verbs(unittest.TestCase):
                  ((*scan, "--sensor-set", "gate=3"), "'gate' is not known"), ((), "verb"),
                  (("scan", SCENE, "-o", "none/x.las"), "there is no folder none"), ((*scan, "-o", "./x.las"), "is named twice"),
                  ((*scan, "--scan-set", "rays_per_beam=1e30"), "rays_per_beam|int"),
-                 ((*scan, "--scan-set", "attenuation_coefficient=nan"), "no finite number"),
+                 ((*scan, "--scan-set", "attenuation_coefficient=nan"), "not a finite number"),
                  (("info", OUTPUT / "table.csv"), r"table.csv: is not a cloud"), (("info", OUTPUT / "fake.vtp"), "fake.vtp"),
                  (("convert", self.files["las"], "x.doc"), "cannot write 'x.doc'"),
                  (("sensors", "VLP99"), "'VLP99' is not known"))

@@ -171,7 +171,7 @@ class Reader(InFolder):
             self.assertIn(words, read_error(FILE), changes)
         for data in (b"\x89PNG\r\n\x1a\n" + bytes(range(256)) * 10, b""):
             pathlib.Path(FILE).write_bytes(data)
-            self.assertIn("no PCD file", read_error(FILE))
+            self.assertIn("not a PCD file", read_error(FILE))
             self.assertEqual(al.vtkAvianLidarPointCloudReader.CanReadFile(FILE), 0)
 
     def test_rgba(self):

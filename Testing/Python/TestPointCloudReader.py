@@ -245,7 +245,7 @@ class TestPointCloudReader(InFolder):
             whole = file.read()
             file.seek(0)
             file.write(whole.replace(b"[31.0,121.0,3.0]", b"[99.0,121.0,3.0]"))
-        self.assertIn("no place on the Earth", read_error(FILE))
+        self.assertIn("not a place on the Earth", read_error(FILE))
 
     def test_moving_points_leaves_no_wrong_system(self):
         write(al.vtkAvianLidarLASWriter(), echoes(), FILE)
