@@ -217,7 +217,7 @@ class Work(unittest.TestCase):
         self.assertIn(middle.number, [one.number for one in again.undecided()])
         self.assertGreater(again.chosen.cost, middle.cost)
         self.assertEqual([is_told(share, 0.01, 0.5) for share in (0.53, 0.515, 0.485, 0.47)], [True, None, None, False])
-        self.assertRegex(" ".join(_design_page.answers(again)), "the error does not tell: .* within 2 standard errors")
+        self.assertRegex(" ".join(_design_page.answers(again)), "the error does not decide: .* within 2 standard errors")
 
     def test_a_killed_run_goes_on(self):
         where = fresh("killed")
