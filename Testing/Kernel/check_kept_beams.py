@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
 """What a scan keeps of its beams belongs to all that they depend on: whoever adds a member to sensor, settings, needs or
-setup must say so, or the kernel does not compile (a setting has a row that says what it changes). Each is tried with a member more, in copies of the headers."""
+setup must say so, or the kernel does not compile (a setting has a row that says what it changes). Each is tried with a
+member more, in copies of the headers."""
 import argparse
 import json
 import pathlib
