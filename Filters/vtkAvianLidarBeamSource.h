@@ -115,9 +115,9 @@ public:
   /// Later changes of properties do not change the text.
   std::string GetDescription() const { return this->Description; }
 
-  /// Use these beams instead of columns and channels. The points (m) and the point arrays
-  /// `direction` (any length above 0) and, optionally, `timestamp` (us, 0 to 1 / RotationRate;
-  /// default 0) are copied, in the frame of the sensor: Orientation turns them, Position is added.
+  /// Use these beams instead of columns and channels. The points (m), the point array
+  /// `direction` (any length above 0) and the optional array `timestamp` (us, 0 to 1 /
+  /// RotationRate; default 0) are copied. Points and directions are in the frame of the sensor.
   /// `beam_id` is the number of the point, and `laser_id` is 0. Null, a preset or a file restores
   /// columns and channels.
   /// @return false for bad beams, with an error that names the array; then nothing changes
@@ -462,7 +462,10 @@ public:
   ///@}
 
   ///@{
-  /** Walk error of an echo at the lower limit, m, 0 to 1e9; it falls with the energy. Default 0. */
+  /**
+   * Walk error of an echo at the lower limit, m, 0 to 1e9. Stronger echoes have a smaller error.
+   * Default 0.
+   */
   vtkSetMacro(RangeWalk, double);
   vtkGetMacro(RangeWalk, double);
   ///@}
@@ -490,11 +493,11 @@ public:
 
   ///@{
   /**
-   * Set LowerEnergyLimit from a line of a data sheet, and UpperEnergyLimit to the limit
-   * DynamicRange above. The sensor detects a Lambertian surface of `reflectance` (above 0 to 1)
-   * that fills the beam up to `range`, m, in air of `attenuation`, 1/m (default:
-   * GetClearAirAttenuation()). Needs ReceiverAperture and RECEIVER_MODEL_ENERGY_LIMITS. A bad value
-   * changes nothing. Limits from one line are only an estimate
+   * Set LowerEnergyLimit from a line of a data sheet, and UpperEnergyLimit so that it
+   * exceeds LowerEnergyLimit by DynamicRange. The sensor detects a Lambertian surface of
+   * `reflectance` (above 0 to 1) that fills the beam up to `range`, m, in air of `attenuation`, 1/m
+   * (default: GetClearAirAttenuation()). Needs ReceiverAperture and RECEIVER_MODEL_ENERGY_LIMITS. A
+   * bad value changes nothing. Limits from one line are only an estimate
    * (Documentation/reference/sensor-files.md).
    */
   void SetLimitsFromDataSheet(double range, double reflectance);

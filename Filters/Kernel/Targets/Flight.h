@@ -66,7 +66,7 @@ enum class FlightPattern
 struct FlightSettings
 {
   FlightPattern pattern = FlightPattern::Crossings;
-  int numberOfBirds = 10; ///< 0 to 100,000
+  int numberOfBirds = 10; ///< number of birds, 0 to 100,000
   std::int32_t seed = 0;
   std::array<double, 2> timeRange{ 0.0, 60.0 }; ///< begin and end, s
   Vec3 center{ 0.0 };                           ///< centre of the disc, m

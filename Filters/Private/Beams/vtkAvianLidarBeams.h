@@ -25,13 +25,13 @@ struct vtkAvianLidarBeams
   avianlidar::Sensor sensor;
   /// Unit vectors along which echoes are placed, as given; empty: the directions of the beams.
   std::vector<avianlidar::Vec3> reportedDirections;
-  std::vector<int> laserIds; ///< as given, else 0
+  std::vector<int> laserIds; ///< channels of the beams, as given, else 0
   std::vector<double>
     azimuths; ///< azimuths, 0.01 deg clockwise from north, as given, else of the reported direction
   std::vector<double> verticalAngles; ///< elevations, deg, as given, else of the reported direction
   std::vector<double> timestamps;     ///< firing times, us, as given, else 0
   bool isTimed = false;               ///< true if timestamps were given
-  double displayLength = 1000.0;      ///< m
+  double displayLength = 1000.0;      ///< length of the lines that display beams, m
   std::int32_t revolution = 0;        ///< revolution of the sensor, as given, else 0
   std::string problem;                ///< error text of the input; empty: no error
 
