@@ -7,10 +7,10 @@
  * arrays `longitude`, `latitude` and `height`, or else the field data `geodetic_origin` for points
  * in metres east, north and up. Without a geodetic position the writer gives an error.
  *
- * Each echo becomes a point feature, with 9 decimals of a degree and 4 of a metre. Properties are
- * all numeric point arrays of one component, and `object`, `object_class` and `material`, whose
- * names come from the field data. The collection's member `units` gives the units. Without echoes
- * the collection has no features.
+ * Each echo becomes a point feature, with 9 decimals of a degree and 4 of a metre. The properties
+ * of a feature are all numeric point arrays of one component, and `object`, `object_class` and
+ * `material`, whose names come from the field data. The member `units` of the collection gives the
+ * units of the properties. Without echoes the collection has no features.
  *
  * Example: `writer->SetFileName("echoes.geojson"); writer->Write();` Documentation:
  * reference/formats.md.
@@ -30,14 +30,14 @@ public:
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
   ///@{
-  /** Whether field data `lower_energy_limit` give the limit (0 if missing). Default: on. */
+  /** Whether field data `lower_energy_limit`, J (0 if missing), are the limit. Default: on. */
   vtkSetMacro(UseFieldDataLimit, bool);
   vtkGetMacro(UseFieldDataLimit, bool);
   vtkBooleanMacro(UseFieldDataLimit, bool);
   ///@}
 
   ///@{
-  /** Least `energy` of the echoes written if UseFieldDataLimit is off, J. Default 0. */
+  /** Least `energy` of written echoes if UseFieldDataLimit is off, J. Default 0. */
   vtkSetMacro(MinimumEnergy, double);
   vtkGetMacro(MinimumEnergy, double);
   ///@}

@@ -1,18 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class vtkAvianLidarKITTIWriter
- * @brief Writes echoes as a KITTI scan (.bin) and, beside it, SemanticKITTI's labels (.label).
+ * @brief Writes echoes as a KITTI scan (.bin), and labels as a file of SemanticKITTI (.label).
  *
- * Input port 0 is a vtkPointSet. FileName gets x forward, y left, z up (m, in the sensor's frame)
- * and `intensity` / 255 as float32 for each point. The field data `position` and `orientation` give
- * the frame; without them a warning is given, and x is right, y forward.
+ * Input port 0 is a vtkPointSet. For each point the file FileName holds four float32: x forward, y
+ * left and z up in the sensor's frame, m, and `intensity` / 255. The field data `position` and
+ * `orientation` give the sensor's frame. Without `position` the writer gives a warning and takes
+ * the points as coordinates in this frame, with x right and y forward.
  *
- * With WriteLabels a file of the same name with the ending .label gets a uint32 for each point. The
- * lower 16 bits are the class of the object, or 300 + `material_id`; the upper 16 bits are
- * `object_id` + 1. This needs the arrays `object_id` and, for materials, `material_id`. A FileName
- * that ends with .label gives an error.
+ * With WriteLabels a file of the same name with the extension .label holds a uint32 for each point.
+ * The lower 16 bits are the class of the object, or 300 + `material_id`. The upper 16 bits are
+ * `object_id` + 1, or 0 without an object. Labels need the array `object_id` and, if LabelSource is
+ * the material, `material_id`. With WriteLabels a FileName that ends with .label gives an error.
  *
- * Either both files are written as a whole, or neither. Sources: Geiger et al., "Vision meets
+ * The writer writes both files as a whole, or neither. Sources: Geiger et al., "Vision meets
  * Robotics: The KITTI Dataset", IJRR 2013; Behley et al., "SemanticKITTI", ICCV 2019. Classes and
  * rounding: Documentation/reference/formats.md.
  *
@@ -39,14 +40,14 @@ public:
   };
 
   ///@{
-  /** Whether labels are also written. Default: on. */
+  /** Whether the file of labels is also written. Default: on. */
   vtkSetMacro(WriteLabels, bool);
   vtkGetMacro(WriteLabels, bool);
   vtkBooleanMacro(WriteLabels, bool);
   ///@}
 
   ///@{
-  /** Source of the class of a label. Default LABEL_SOURCE_OBJECT_CLASS. */
+  /** Source of the lower 16 bits of a label. Default LABEL_SOURCE_OBJECT_CLASS. */
   vtkSetClampMacro(LabelSource, int, LABEL_SOURCE_OBJECT_CLASS, LABEL_SOURCE_MATERIAL);
   vtkGetMacro(LabelSource, int);
   void SetLabelSourceToObjectClass() { this->SetLabelSource(LABEL_SOURCE_OBJECT_CLASS); }

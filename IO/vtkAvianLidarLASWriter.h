@@ -8,16 +8,17 @@
  * The fields of LAS hold `intensity`, `return_number`, `number_of_returns`, `timestamp`,
  * `vertical_angle` and the class of `object_id`, or the arrays that vtkAvianLidarPointCloudReader
  * makes of a LAS file. All other numeric arrays become extra bytes of their own type. A warning
- * names values that are cut and arrays that are left out.
+ * names arrays with values that are cut and arrays that are left out.
  *
  * With the field data `geodetic_origin` the points are transformed to UTM or geocentric
  * coordinates, and the file names this system in WKT. With the field data `crs_wkt` the points stay
- * in that system. Without either the file names no system, and a warning says so unless
- * CoordinateSystem is local. Coordinates are 32-bit integers with the finest scale, at least 1e-6
- * m, that the extent allows. Field data become one line of JSON.
+ * in the system that `crs_wkt` describes. Without `geodetic_origin` and `crs_wkt` the file names no
+ * system, and a warning says so unless CoordinateSystem is local. Coordinates are 32-bit integers
+ * with the finest scale, at least 1e-6 m, that the extent of the points allows. Field data become
+ * one line of JSON.
  *
- * Errors: those of vtkAvianLidarCloudWriter, LAZ in a build without LASzip, and `crs_wkt` that is
- * not WKT.
+ * The writer gives the errors of vtkAvianLidarCloudWriter, and an error for LAZ in a build without
+ * LASzip or for a `crs_wkt` that is not WKT.
  *
  * @code
  * writer->SetInputConnection(echoes->GetOutputPort());
@@ -50,7 +51,7 @@ public:
   };
 
   ///@{
-  /** Coordinates of the file; local leaves them unchanged. Default COORDINATE_SYSTEM_UTM. */
+  /** Coordinate system of the file; local: that of the points. Default COORDINATE_SYSTEM_UTM. */
   vtkSetClampMacro(CoordinateSystem, int, COORDINATE_SYSTEM_UTM, COORDINATE_SYSTEM_LOCAL);
   vtkGetMacro(CoordinateSystem, int);
   void SetCoordinateSystemToUTM() { this->SetCoordinateSystem(COORDINATE_SYSTEM_UTM); }
@@ -62,13 +63,13 @@ public:
   ///@}
 
   ///@{
-  /** Zone of UTM: 1 to 60 north, -1 to -60 south, 0 the zone of the origin. Default 0. */
+  /** UTM zone: 1 to 60 north, -1 to -60 south; 0: zone of the origin. Default 0. */
   vtkSetClampMacro(UTMZone, int, -60, 60);
   vtkGetMacro(UTMZone, int);
   ///@}
 
   ///@{
-  /** File source id and point source id, 0 (none) to 65535. Default 0. */
+  /** Source id of the file and of each point, 0 (none) to 65535. Default 0. */
   vtkSetClampMacro(SourceId, int, 0, 65535);
   vtkGetMacro(SourceId, int);
   ///@}
@@ -84,7 +85,7 @@ public:
   vtkBooleanMacro(WriteAllArrays, bool);
   ///@}
 
-  /// Largest rounding error of a coordinate of the last file, m; 0 before the first file.
+  /// Largest rounding error of a coordinate in the last file, m; 0 before the first file.
   vtkGetMacro(RoundingBound, double);
 
 protected:

@@ -2,21 +2,22 @@
 /**
  * @class vtkAvianLidarPCDWriter
  * @brief Writes echoes as PCD 0.7, the format of the Point Cloud Library, in rows and columns if
- * the scan has a grid.
+ * the beams of the scan form a grid.
  *
- * Input port 0 is a vtkPointSet. Fields are `x`, `y`, `z` (m), `intensity` (float), every other
- * numeric point array of one component in its own type (64-bit integers as doubles, exact up to
- * 2^53), and `rgb` packed as PCL does. The field data `position` and `orientation` become the
- * VIEWPOINT; units and field data are one line of JSON in a comment. An array whose name is already
- * taken is left out with a warning.
+ * Input port 0 is a vtkPointSet. The file has the fields `x`, `y`, `z` (m), `intensity` (float),
+ * every other numeric point array of one component in the type of the array (64-bit integers as
+ * doubles, exact up to 2^53), and `rgb` packed as in PCL. The field data `position` and
+ * `orientation` become the VIEWPOINT. Units and field data are one line of JSON in a comment. An
+ * array is left out with a warning if another field already has its name.
  *
- * A file is organised (columns and channels, highest channel first; NaN, -1 or 0 in cells without
- * an echo) if the field data of the beam source give the grid, and `beam_id` and `laser_id` agree
- * with it. A cell holds one echo: see Organisation.
+ * An organised file has the columns of the scan, in the order of firing, and a row for each
+ * channel, the highest first. Cells without an echo hold NaN, -1 or 0. Such a file needs field data
+ * of the beam source that give the grid, and arrays `beam_id` and `laser_id` that agree with the
+ * grid. A cell holds one echo: see Organisation.
  *
- * Single precision changes a coordinate by at most 4 micrometres at 100 m and 0.12 mm at 4 km. From
- * 1 mm on there is a warning, and beyond 3.4e38 m an error. Source: The PCD file format,
- * pointclouds.org.
+ * Single precision changes a coordinate by at most 4 micrometres at 100 m and 0.12 mm at 4 km. The
+ * writer gives a warning if a coordinate changes by more than 1 mm, and an error for coordinates
+ * beyond 3.4e38 m. Source: The PCD file format, pointclouds.org.
  *
  * Example: `writer->SetFileName("echoes.pcd"); writer->Write();` Documentation:
  * reference/formats.md.
@@ -55,7 +56,7 @@ public:
   };
 
   ///@{
-  /** Binary, or text with the shortest exact digits. Default FILE_TYPE_BINARY. */
+  /** Binary, or text with the fewest digits that are exact. Default FILE_TYPE_BINARY. */
   vtkSetClampMacro(FileType, int, FILE_TYPE_BINARY, FILE_TYPE_ASCII);
   vtkGetMacro(FileType, int);
   void SetFileTypeToBinary() { this->SetFileType(FILE_TYPE_BINARY); }
@@ -64,9 +65,9 @@ public:
 
   ///@{
   /**
-   * Whether the file has rows and columns: automatic (if no beam has several echoes), organised
-   * (the echo with the most `energy_received` is kept; an error without a grid), or a list. Default
-   * ORGANISATION_AUTOMATIC.
+   * Whether the file has rows and columns. Automatic: if no beam has several echoes. Organised:
+   * always, with the echo of most `energy_received` in each cell; without a grid this is an error.
+   * List: never. Default ORGANISATION_AUTOMATIC.
    */
   vtkSetClampMacro(Organisation, int, ORGANISATION_AUTOMATIC, ORGANISATION_LIST);
   vtkGetMacro(Organisation, int);
@@ -76,7 +77,7 @@ public:
   ///@}
 
   ///@{
-  /** Type of x, y, z; PCL's point types hold only floats. Default PRECISION_SINGLE. */
+  /** Precision of x, y, z; PCL's point types hold only floats. Default PRECISION_SINGLE. */
   vtkSetClampMacro(Precision, int, PRECISION_SINGLE, PRECISION_DOUBLE);
   vtkGetMacro(Precision, int);
   void SetPrecisionToSingle() { this->SetPrecision(PRECISION_SINGLE); }

@@ -4,14 +4,14 @@
  * @brief Writes echoes as the points of a PLY file, and polygons as its faces.
  *
  * Input port 0 is a vtkPointSet. The element `vertex` has `x`, `y`, `z` (m), `intensity` (float),
- * then every other numeric point array in its own type (64-bit integers as doubles, exact up to
- * 2^53). An array of several components becomes `name_0`, `name_1`, ..., and `rgb` becomes `red`,
- * `green`, `blue`. Units and field data are JSON in comments, which vtkAvianLidarPointCloudReader
- * reads back. Polygons become the element `face`.
+ * then every other numeric point array in the type of the array (64-bit integers as doubles, exact
+ * up to 2^53). An array of several components becomes `name_0`, `name_1`, ..., and `rgb` becomes
+ * `red`, `green`, `blue`. Units and field data are JSON in comments, which
+ * vtkAvianLidarPointCloudReader reads back. Polygons become the element `face`.
  *
- * An array of one component whose name is already taken is left out with a warning. An array of
- * several components whose name is taken gives an error, and so do triangle strips. Rounding: see
- * vtkAvianLidarPCDWriter.
+ * An array of one component is left out with a warning if another property already has its name. An
+ * array of several components whose names are taken gives an error, and so do triangle strips.
+ * Coordinates are rounded as in vtkAvianLidarPCDWriter.
  *
  * Example: `writer->SetFileName("echoes.ply"); writer->Write();` Documentation:
  * reference/formats.md. Source: G. Turk, "The PLY Polygon File Format", 1994.
@@ -43,7 +43,7 @@ public:
   };
 
   ///@{
-  /** Binary, or text with the shortest exact digits. Default FILE_TYPE_BINARY. */
+  /** Binary, or text with the fewest digits that are exact. Default FILE_TYPE_BINARY. */
   vtkSetClampMacro(FileType, int, FILE_TYPE_BINARY, FILE_TYPE_ASCII);
   vtkGetMacro(FileType, int);
   void SetFileTypeToBinary() { this->SetFileType(FILE_TYPE_BINARY); }
@@ -51,7 +51,7 @@ public:
   ///@}
 
   ///@{
-  /** Type of x, y and z. Default PRECISION_SINGLE. */
+  /** Precision of x, y and z. Default PRECISION_SINGLE. */
   vtkSetClampMacro(Precision, int, PRECISION_SINGLE, PRECISION_DOUBLE);
   vtkGetMacro(Precision, int);
   void SetPrecisionToSingle() { this->SetPrecision(PRECISION_SINGLE); }

@@ -3,23 +3,24 @@
  * @class vtkAvianLidarPointCloudReader
  * @brief Reads a point cloud, real or simulated, with the array names of this project.
  *
- * The ending of FileName gives the format. Documentation/reference/formats.md lists the formats,
- * and what is read, refused or left out with a warning.
+ * The file extension gives the format. Documentation/reference/formats.md lists the formats and the
+ * parts of each format that the reader reads, refuses or leaves out with a warning.
  *
  * The reader has no input. Output port 0 is vtkPolyData, a vertex for each point, in double
- * precision. Arrays keep their names and types in the file, except that `intensity` (0 to 255),
- * `laser_id`, `distance_m`, `azimuth`, `vertical_angle`, `timestamp`, `return_number`,
- * `number_of_returns`, `rgb`, `semantic_label` and `instance_id` are the same for all formats. A
- * file of this project's writers comes back with its names, units and types. A field with such a
- * name but without a unit gets the prefix `file_`. Active scalars are `energy`, else `intensity`.
+ * precision. The arrays `intensity` (0 to 255), `laser_id`, `distance_m`, `azimuth`,
+ * `vertical_angle`, `timestamp`, `return_number`, `number_of_returns`, `rgb`, `semantic_label` and
+ * `instance_id` are the same for all formats. Other arrays keep the names and types that they have
+ * in the file. Arrays of a file from this project's writers also keep their units. A field gets the
+ * prefix `file_` if this project gives a unit to its name but the file does not. Active scalars are
+ * `energy`, else `intensity`.
  *
- * KITTI's axes become x right, y forward, z up. If LocalCoordinates is on, a LAS file with a
- * `geodetic_origin` comes back in metres east, north and up. Otherwise the field data `crs_wkt` and
- * `utm_zone` give the system. Other field data, if the file has them: `position`, `revolution`,
- * `number_of_revolutions`, `description`, `comment`.
+ * KITTI's axes become x right, y forward, z up. If LocalCoordinates is on, the points of a LAS file
+ * with a `geodetic_origin` are in metres east, north and up. Otherwise the field data `crs_wkt` and
+ * `utm_zone` give the coordinate system. The output has the field data `position`, `revolution`,
+ * `number_of_revolutions`, `description` and `comment` if the file has them.
  *
- * Each revolution of packets is a time step, in seconds since the full hour before the first
- * packet; other files have no time. The whole cloud is piece 0.
+ * Each revolution in a file of packets is a time step, in seconds since the full hour before the
+ * first packet. Other files have no time steps. Piece 0 has the whole cloud.
  *
  * Errors name the file and the fault. The output is empty after an error or an abort.
  *
@@ -48,7 +49,7 @@ public:
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
   ///@{
-  /** The file to read. After a change on disk call Modified(). Default: none, which is an error. */
+  /** Name of the file; call Modified() if the file changes. Default: none, which is an error. */
   vtkSetFilePathMacro(FileName);
   vtkGetFilePathMacro(FileName);
   ///@}
@@ -62,16 +63,16 @@ public:
 
   ///@{
   /**
-   * Sensor to read if packets come from several sensors: its IPv4 address, with the port if only
-   * that differs ("192.168.1.201:2368"). Default: none; packets of several sensors are then an
+   * IPv4 address of the sensor to read if packets come from several sensors, with the port if only
+   * the port differs ("192.168.1.201:2368"). Default: none; packets of several sensors are then an
    * error.
    */
   vtkSetStringMacro(SensorAddress);
   vtkGetStringMacro(SensorAddress);
   ///@}
 
-  /// 1 if the name and the first bytes of a file are right for a cloud (.bin: name and length;
-  /// .ply: also no faces), else 0.
+  /// Returns 1 if the file extension and the first bytes fit a format of point clouds, else 0. A
+  /// .bin file needs a fitting length instead of first bytes, and a .ply file must have no faces.
   static int CanReadFile(VTK_FILEPATH const char* fileName);
 
   vtkAvianLidarErrorsAsDataMacro();

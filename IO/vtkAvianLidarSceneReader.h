@@ -4,15 +4,16 @@
  * @brief Reads a scene file (.lidarscene.json): meshes, building footprints and ground, with
  * positions and materials.
  *
- * Keys, formats (by VTK, Assimp and GDAL), placement and limits:
- * Documentation/reference/scene-files.md. The reader has no input.
+ * Documentation/reference/scene-files.md describes keys, formats (those of VTK, Assimp and GDAL),
+ * placement and limits. The reader has no input.
  *
  * Output port 0 is vtkMultiBlockDataSet: one block per object in the order of the file, or per
  * feature of footprints with `"features": "separate"`. Each block is vtkPolyData of triangles with
- * double points, m, with the cell arrays of vtkAvianLidarMaterial (`object_id` is the index of the
- * block; materials from 4 on are the scene's own) and its own `object_names`, `object_classes` and
- * `material_names`. Field data of the output: the names and classes of all blocks, `attribution`,
- * `scene_report`, and `geodetic_origin` and `lidar_position` where the scene has them.
+ * double points, m. Cell arrays are those of vtkAvianLidarMaterial: `object_id` is the index of the
+ * block, and materials from 4 on are the scene's own. Field data of a block are its `object_names`,
+ * `object_classes` and `material_names`. Field data of the output are the names and classes of all
+ * blocks, `attribution`, `scene_report`, and `geodetic_origin` and `lidar_position` if the scene
+ * has them.
  *
  * Material names of a mesh are mapped by `material_map`; names without a rule become Wall. One
  * warning lists these names, objects farther than 100 km from the origin, and a lidar inside or
@@ -47,21 +48,21 @@ public:
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
   ///@{
-  /** The scene file. After a change on disk call Modified(). Default: none, which is an error. */
+  /** Scene file; call Modified() if the file changes. Default: none, which is an error. */
   vtkSetFilePathMacro(FileName);
   vtkGetFilePathMacro(FileName);
   ///@}
 
   ///@{
   /**
-   * The scene as JSON text instead of the contents of FileName, which need not exist. Messages name
-   * FileName, and other files are sought in its folder. Default: empty.
+   * Scene as JSON text that replaces the contents of FileName, which need not exist. Messages name
+   * FileName, and paths of other files are relative to the folder of FileName. Default: empty.
    */
   vtkSetMacro(Text, std::string);
   vtkGetMacro(Text, std::string);
   ///@}
 
-  /// 1 if the name of a file ends with .lidarscene.json and it can be opened, else 0.
+  /// Returns 1 if the file name ends with .lidarscene.json and the file can be opened, else 0.
   static int CanReadFile(VTK_FILEPATH const char* fileName);
 
   vtkAvianLidarErrorsAsDataMacro();

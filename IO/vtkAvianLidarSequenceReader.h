@@ -1,20 +1,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class vtkAvianLidarSequenceReader
- * @brief Reads a labelled sequence of scans, as `avianlidar sequence` writes it, as one time
+ * @brief Reads a labelled sequence of scans, such as `avianlidar sequence` writes, as a time
  * series.
  *
  * FileName is the `times.txt` (s, rising) of a sequence in SemanticKITTI's layout, with `velodyne`,
- * `labels`, `boxes`, `poses.txt` and `calib.txt` beside it. Each scan is a time step; any other
- * time gives the last scan before that time, or else the first.
+ * `labels`, `boxes`, `poses.txt` and `calib.txt` beside it. Each scan is a time step. Any other
+ * time gives the last scan before this time, or the first scan if no scan is earlier.
  *
- * - Output port 0, points: vtkPolyData as vtkAvianLidarPointCloudReader reads a scan; active
- *   scalars are `semantic_label`, if there are labels.
- * - Output port 1, boxes: vtkPolyData, six quadrilaterals each, with the cell arrays `object`
- *   (class, text) and `object_id`; empty without a file of boxes.
+ * - Output port 0, points: vtkPolyData with the arrays of vtkAvianLidarPointCloudReader; active
+ *   scalars are `semantic_label` if the scan has labels, else `intensity`.
+ * - Output port 1, boxes: vtkPolyData with six quadrilaterals for each box and the cell arrays
+ *   `object` (class, text) and `object_id`; empty if the scan has no file of boxes.
  *
- * Poses and the line `Tr:` transform points to the frame of the poses: east, north and up of the
- * scene's origin for this project's sequences. Without `poses.txt` x is right and y forward.
+ * The poses and the line `Tr:` of `calib.txt` transform points to the frame of the poses. In this
+ * project's sequences this frame is east, north and up of the scene's origin, m. Without
+ * `poses.txt` points stay in the sensor's frame, with x right and y forward.
  *
  * Errors name the file and the fault, and leave empty outputs. Piece 0 has the whole output.
  *
@@ -39,12 +40,12 @@ public:
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
   ///@{
-  /** The `times.txt`. After a change on disk call Modified(). Default: none, which is an error. */
+  /** Path of `times.txt`; call Modified() if a file changes. Default: none, which is an error. */
   vtkSetFilePathMacro(FileName);
   vtkGetFilePathMacro(FileName);
   ///@}
 
-  /// 1 if a file is a `times.txt` with a folder `velodyne` beside it, else 0.
+  /// Returns 1 if the file is a `times.txt` and its folder has a folder `velodyne`, else 0.
   static int CanReadFile(VTK_FILEPATH const char* fileName);
 
   vtkAvianLidarErrorsAsDataMacro();

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class vtkAvianLidarUnitNames
- * @brief Puts the units of arrays into their names, for tables: `energy` becomes `energy [J]`.
+ * @brief Appends units to the names of arrays, for tables: `energy` becomes `energy [J]`.
  *
- * VTK's XML files keep the unit of an array (vtkDataArray::UNITS_LABEL); CSV files have only names.
- * Put this filter before a CSV writer with the precision 15. The brackets are square, because names
- * of arrays may have round ones, as in `speed (mean)`.
+ * VTK's XML files store the unit of an array (vtkDataArray::UNITS_LABEL). CSV files store only the
+ * name. Put this filter before a CSV writer with the precision 15. The brackets are square, because
+ * names of arrays may have round brackets, as in `speed (mean)`.
  *
  * - Input port 0: any vtkDataSet or vtkTable.
- * - Output port 0: a shallow copy with renamed point, cell and row arrays. Arrays without a unit or
- *   with the unit "1" keep their names, and so do field data.
+ * - Output port 0: a shallow copy with renamed point, cell and row arrays. Field data and arrays
+ *   without a unit or with the unit "1" keep their names.
  */
 #ifndef vtkAvianLidarUnitNames_h
 #define vtkAvianLidarUnitNames_h
@@ -27,7 +27,8 @@ public:
   vtkTypeMacro(vtkAvianLidarUnitNames, vtkPassInputTypeAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
-  /// The name with its unit, such as `energy [J]`, or only the name if the unit is empty or "1".
+  /// Returns the name with the unit, such as `energy [J]`, or only the name if the unit is empty or
+  /// "1".
   static std::string NameWithUnit(const std::string& name, const std::string& unit);
 
   vtkAvianLidarErrorsAsDataMacro();

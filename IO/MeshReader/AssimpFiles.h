@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file AssimpFiles.h
- * @brief Lets Assimp read compressed meshes, and materials and buffers beside them.
+ * @brief Lets Assimp read compressed meshes, and the files of materials and buffers that meshes
+ * name.
  */
 #ifndef AvianLidarAssimpFiles_h
 #define AvianLidarAssimpFiles_h
@@ -15,21 +16,21 @@
 namespace avianlidar::scene
 {
 /**
- * All files as they are, except that the mesh itself goes by its name without ".gz" (Assimp finds
- * formats by the ending) and is unpacked as it is read.
+ * File system of Assimp that changes only the mesh: its name has no ".gz", because Assimp finds the
+ * format by the file extension, and its bytes are unpacked while they are read.
  */
 class AssimpFiles : public Assimp::IOSystem
 {
 public:
   explicit AssimpFiles(const std::string& mesh);
 
-  /// The name under which to ask Assimp for the mesh.
+  /// Returns the name under which Assimp opens the mesh.
   const std::string& GetMeshName() const { return this->MeshName; }
 
-  /// Why the mesh could not be opened, as ": <reason>"; empty if no reason is given.
+  /// Returns why the last file could not be opened, as ": <reason>"; empty if no reason is known.
   const std::string& GetReason() const { return this->Reason; }
 
-  /// What must be added to the vertices (MoveObjToOrigin()).
+  /// Returns the vector to be added to the vertices, in the unit of the file (MoveObjToOrigin()).
   const Vec3& GetOffset() const { return this->Offset; }
 
   bool Exists(const char* file) const override;

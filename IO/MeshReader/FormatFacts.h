@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file FormatFacts.h
- * @brief Reads facts from mesh files that Assimp 5.2 ignores and without which the geometry would
- * be wrong.
+ * @brief Reads facts of mesh files without which the geometry would be wrong, and which Assimp 5.2
+ * ignores.
  */
 #ifndef AvianLidarFormatFacts_h
 #define AvianLidarFormatFacts_h
@@ -15,53 +15,55 @@
 namespace avianlidar::scene
 {
 /**
- * Refuses glTF 2.0 files whose geometry depends on extensions that Assimp does not support:
- * required ones (specification, section 3.12), except those of materials, textures and lights, and
- * instances, quantization and the centre of a tile even where they are only used. Refuses positions
- * that are not of single precision, too.
- * @param text of the file, JSON or binary. Throws Error, which names the extension.
- * @return warnings: skins and weights of morph targets are left out
+ * Refuses glTF 2.0 files whose geometry depends on extensions that Assimp does not support. These
+ * are required extensions (specification, section 3.12), except Draco and those of materials,
+ * textures, lights and metadata; and instances, quantization and the centre of a tile, even if the
+ * file does not require them. Also refuses positions that are not of single precision.
+ * @param text contents of the file, JSON or binary. Throws Error, which names the fault.
+ * @return warnings of skins and of weights of morph targets, which are left out
  */
 std::vector<std::string> CheckGltf(const std::string& text);
 
 /**
- * The length of an IFC file's unit, m, where it is a conversion-based unit such as the foot; Assimp
- * supports only the metre with its prefixes, which give 1 here.
- * @param text of the file. Throws Error where the unit cannot be read.
- * @param elements becomes how many elements of each type, such as "IFCWALL", have a shape. What is
- * not solid is left out: spaces, openings, annotations.
+ * Returns the unit of length of an IFC file, m, if it is a conversion-based unit such as the foot,
+ * else 1. Assimp supports only the metre and its prefixes.
+ * @param text contents of the file. Throws Error if the unit cannot be read.
+ * @param elements gets the number of elements with a shape for each type, such as "IFCWALL". Types
+ * that are not solid, such as spaces, openings and annotations, are left out.
  */
 double ReadIfc(const std::string& text, std::map<std::string, std::size_t>& elements);
 
-/// The length of an X3D file's unit, m (version 3.3 and later). @param text XML
+/// Returns the unit of length of an X3D file (version 3.3 and later), m. @param text XML
 double X3dUnit(const std::string& text);
 
-/// The length of an OpenGEX file's unit, m. @param upAxis becomes 'y' or 'z'
+/// Returns the unit of length of an OpenGEX file, m. @param upAxis becomes 'y' or 'z' if given
 double OpenGexUnit(const std::string& text, char& upAxis);
 
 /// Refuses PLY files with triangle strips, which Assimp reads wrong, and files whose header has no
-/// end, which it never ends on. @param text of the file. Throws Error.
+/// end, on which Assimp never stops. @param text contents of the file. Throws Error.
 void CheckPly(const std::string& text);
 
-/// Refuses 3MF files that build an object that they do not hold. @param text XML. Throws Error.
-/// @return warnings: materials of triangles are left out
+/// Refuses 3MF files that name an object that the file does not contain. @param text XML. Throws
+/// Error.
+/// @return warnings of materials of triangles, which are left out
 std::vector<std::string> Check3mf(const std::string& text);
 
 /**
- * The length, m, of the unit that the root element of a 3MF or AMF file names; a millimetre where
- * it names none, as both specifications say.
- * @param text XML. Throws Error where it is another unit.
+ * Returns the unit of length that the root element of a 3MF or AMF file names, m. Without a name
+ * the unit is the millimetre, as the specifications of 3MF and AMF say.
+ * @param text XML. Throws Error if the unit is unknown, or if a 3MF file requires an extension
+ * other than that of materials.
  */
 double PrintUnit(const std::string& text);
 
-/// Refuses AMF files that Assimp reads wrong: it does not turn objects of constellations, and it
-/// keeps only the first volume of a mesh. @param text XML. Throws Error.
+/// Refuses AMF files with turned objects of constellations, or with several volumes in a mesh.
+/// Assimp ignores turns and all volumes but the first. @param text XML. Throws Error.
 void CheckAmf(const std::string& text);
 
 /**
- * Moves the vertices of an OBJ file so that they lie near the origin, since Assimp reads single
- * precision. Only files whose coordinates reach 8192 (there they are kept to 0.001) are changed.
- * @return by how much: to be added to what is read
+ * Moves the vertices of an OBJ file near the origin, because Assimp reads single precision. Files
+ * with coordinates below 8192, which single precision rounds by less than 0.001, stay as they are.
+ * @return vector to be added to the vertices that Assimp reads, in the unit of the file
  */
 Vec3 MoveObjToOrigin(std::vector<char>& bytes);
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file Imports.h
- * @brief The two libraries that read mesh files.
+ * @brief Reads mesh files with Assimp or VTK.
  */
 #ifndef AvianLidarImports_h
 #define AvianLidarImports_h
@@ -14,19 +14,20 @@ class vtkDataSet;
 
 namespace avianlidar::scene
 {
-/// What a file holds, before points are merged. Throws Error or std::bad_alloc.
+/// Returns the mesh of a file, before points are merged. Throws Error or std::bad_alloc.
 Mesh ReadAssimpMesh(const std::string& file);
 Mesh ReadVtkMesh(const std::string& file);
 
 /**
- * Cells must name points that are there, as many as their type has, and a polyhedron's faces too.
- * Cells of variable order (Lagrange, Bezier, parametric) are refused. Grids must have the points
- * that their dimensions say. O(points of cells).
+ * Checks that the cells and the faces of polyhedra name only existing points, that each cell has
+ * the number of points of its type, and that each grid has the number of points of its dimensions.
+ * Refuses cells of variable order (Lagrange, Bezier, parametric). The time is linear in the points
+ * of all cells.
  *
- * Throws Error, which says what is wrong.
+ * Throws Error with the fault.
  */
 void CheckCells(vtkDataSet* data);
-/// The distance between a number of single precision and the next one.
+/// Returns the distance between a number in single precision and the next greater one.
 inline double SpacingAt(double number)
 {
   const auto single = static_cast<float>(std::abs(number));

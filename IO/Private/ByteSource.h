@@ -20,10 +20,11 @@ public:
 
   virtual std::uint64_t size() const = 0;
 
-  /// Copies bytes. Throws FormatError unless all lie inside.
+  /// Copies `count` bytes from `offset` on. Throws FormatError unless all bytes lie inside the
+  /// source.
   virtual void read(std::uint64_t offset, std::uint64_t count, unsigned char* into) = 0;
 
-  /// True if `count` bytes from `offset` on lie inside, without overflow.
+  /// True if `count` bytes from `offset` on lie inside the source; the check cannot overflow.
   bool holds(std::uint64_t offset, std::uint64_t count) const
   {
     return offset <= this->size() && count <= this->size() - offset;
@@ -31,7 +32,7 @@ public:
 
   std::vector<unsigned char> bytes(std::uint64_t offset, std::uint64_t count);
 
-  /// Bytes that stay until the next call. Large pieces are read at once.
+  /// Returns bytes that stay valid until the next call. Large pieces are read at once.
   const unsigned char* at(std::uint64_t offset, std::uint64_t count);
 
 private:
@@ -42,7 +43,7 @@ private:
 class FileSource : public ByteSource
 {
 public:
-  /// Opens the file. Throws FormatError with the reason if it cannot.
+  /// Opens the file. Throws FormatError with the reason if the file cannot be opened.
   explicit FileSource(const std::string& name);
   std::uint64_t size() const override { return this->Size; }
   void read(std::uint64_t offset, std::uint64_t count, unsigned char* into) override;
@@ -52,7 +53,8 @@ private:
   std::uint64_t Size = 0;
 };
 
-/// Calls record(i, bytes) for each of `count` records of `length` bytes; they must lie inside.
+/// Calls record(i, bytes) for each of `count` records of `length` bytes. All records must lie
+/// inside the source.
 template <class F>
 void forEachRecord(
   ByteSource& source, std::uint64_t offset, std::uint64_t length, std::uint64_t count, F record)

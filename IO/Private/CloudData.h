@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file CloudData.h
- * @brief Holds a point cloud between its file and VTK: the result of reading and the input of
- * writing.
+ * @brief Point clouds without VTK: the result of reading a file and the input of writing a file.
  */
 #ifndef AvianLidarCloudData_h
 #define AvianLidarCloudData_h
@@ -29,10 +28,11 @@ public:
   using std::runtime_error::runtime_error;
 };
 
-/// Points between two calls of KeepGoing.
+/// Number of points between two calls of KeepGoing.
 constexpr std::int64_t PointsPerBlock = 16384;
 
-/// Reports the progress at point `done` of `all`, between `from` and `to`; throws WorkStopped.
+/// Reports the progress at point `done` of `all`, between `from` and `to`. Throws WorkStopped if
+/// KeepGoing returns false.
 inline void goOn(
   const KeepGoing& keepGoing, std::int64_t done, std::int64_t all, double from, double to)
 {
@@ -57,7 +57,7 @@ inline std::size_t sizeOf(const Values& values)
 struct Column
 {
   std::string name;
-  std::string unit; ///< empty: not known, or none
+  std::string unit; ///< unit of the values; empty: not known, or none
   int components = 1;
   Values values;
 };
@@ -68,28 +68,28 @@ struct Note
   std::string name;
   std::string unit;
   std::vector<double> numbers;
-  std::vector<std::string> texts; ///< in place of numbers
+  std::vector<std::string> texts; ///< texts of a note without numbers
 };
 
 /// A cloud that was read.
 struct Cloud
 {
-  std::vector<double> points; ///< x, y, z of each, metres
+  std::vector<double> points; ///< x, y, z of each point, m
   std::vector<Column> columns;
   std::vector<Note> notes;
   /// Position of the sensor, m, in the frame of the points; none if the format does not give it.
   std::optional<std::array<double, 3>> sensor;
-  std::string crs;                   ///< WKT, or empty
-  std::vector<std::string> warnings; ///< what was left out or assumed
+  std::string crs;                   ///< coordinate reference system, WKT; empty: not known
+  std::vector<std::string> warnings; ///< sentences on parts left out and on assumptions
 
   std::size_t size() const { return this->points.size() / 3; }
 };
 
-/// Throws MemoryError unless a cloud fits into memory whose points have `length` bytes in the file.
+/// Throws MemoryError unless a cloud fits into memory. `length`: bytes of a point in the file.
 inline void requireMemoryFor(std::uint64_t points, std::uint64_t length)
 {
-  // A point with its vertex, range and angles, both as read and as handed on, and what the file
-  // says of it unpacked, as arrays and handed on.
+  // Bytes of a point: coordinates, vertex, range and angles, in Cloud and in VTK's arrays, and the
+  // fields of the file, unpacked, in Cloud and in VTK's arrays.
   const double bytes = 100.0 + 3.0 * static_cast<double>(length);
   const auto count = static_cast<double>(points);
   requireMemory(count, "points", count * bytes);

@@ -15,19 +15,19 @@ namespace avianlidar::formats
 {
 struct CloudNotes
 {
-  std::map<std::string, std::string> units; ///< units by array
+  std::map<std::string, std::string> units; ///< unit of each array, by name
   std::vector<Note> notes;
 };
 
-/// One line, plain ASCII. If the line has more than `longest` characters, the notes with the
+/// Returns one line of ASCII. If the line has more than `longest` characters, the notes with the
 /// longest texts are left out, and their names are added to `left`.
 std::string toText(const CloudNotes& notes, std::size_t longest, std::vector<std::string>& left);
 
-/// The text with invalid UTF-8 replaced, and without control characters except ends of lines: files
-/// may hold any bytes, but names and field data must be valid.
+/// Returns the text with replacements for invalid UTF-8 and for control characters other than line
+/// feeds. Files may contain any bytes, but names and field data must be valid.
 std::string cleaned(const std::string& text);
 
-/// The notes in a text; false if it holds none (any other text).
+/// Reads the notes in a text. Returns false if the text has no notes.
 bool fromText(const std::string& text, CloudNotes& notes);
 }
 

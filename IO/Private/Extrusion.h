@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file Extrusion.h
- * @brief Footprints to triangles: closed solids with glazed facades, and flat areas.
+ * @brief Raises footprints to triangles: closed solids with glazed facades, and flat areas.
  */
 #ifndef AvianLidarExtrusion_h
 #define AvianLidarExtrusion_h
@@ -12,7 +12,7 @@
 
 namespace avianlidar::scene
 {
-/// Material ids of what an extrusion is made of.
+/// Material ids of the surfaces of a solid.
 struct ExtrusionMaterials
 {
   int facade = 0;
@@ -20,22 +20,24 @@ struct ExtrusionMaterials
   std::optional<Glazing> glazing;
 };
 
-/// A sheet that follows a terrain: pieces with a common edge share its vertices.
+/// Returns the sheet of the pieces of a terrain. Pieces with a common edge share the vertices of
+/// this edge.
 Sheet Join(const std::vector<TerrainPiece>& pieces);
 
 /**
- * Add a solid from `base` to `base + height` above a sheet: roof, floor (of the roof's material, as
- * it is never seen) and facades, normals outwards, closed: every edge belongs to two triangles.
+ * Adds a solid from `base` to `base + height`, m, above a sheet: roof, facades, and a floor of the
+ * roof's material, because beams do not reach the floor. The normals point outwards. The solid is
+ * closed: every edge belongs to two triangles.
  *
- * A glazed facade of length L has n = max(1, round(L / bay)) bays of equal width, each with one
- * centred strip of glass whose area is `share` of the bay's. Plinth and cornice, min(2 %, (1 -
- * share) / 4) of the height each, stay facade, so that the facade meets roof and ground in whole
- * edges. Share 1: all glass; share 0: none.
+ * A glazed facade of length L has n = max(1, round(L / bay)) bays of equal width. Each bay has one
+ * centred strip of glass that covers `share` of its area. Plinth and cornice, each min(2 %, (1 -
+ * share) / 4) of the height, have the facade's material, so that the facade meets roof and ground
+ * in whole edges. With share 1 the facade is all glass; with share 0 it has no glass.
  */
 void AddSolid(
   const Sheet& sheet, double base, double height, const ExtrusionMaterials& materials, Mesh& mesh);
 
-/// Add a sheet, raised, as an area seen from above.
+/// Adds a sheet, raised by `height`, m, as an area that faces up.
 void AddFlat(const Sheet& sheet, double height, int material, Mesh& mesh);
 }
 

@@ -13,16 +13,16 @@
 
 namespace avianlidar::formats
 {
-constexpr std::uint64_t MostFields = 4096; ///< most fields of a table that is read
+constexpr std::uint64_t MostFields = 4096; ///< largest number of fields of a table that is read
 
 struct TableField
 {
   std::string name;
   Scalar type = Scalar::Float32;
-  std::uint64_t count = 1; ///< values
+  std::uint64_t count = 1; ///< number of values
 };
 
-/// Contents of a header.
+/// Fields and points that a header declares.
 struct FieldTable
 {
   std::vector<TableField> fields;
@@ -30,7 +30,7 @@ struct FieldTable
   std::uint64_t begin = 0; ///< offset of the rows, bytes
   bool bigEndian = false;
 
-  /// Bytes of a point.
+  /// Returns the size of a point in binary rows, bytes.
   std::uint64_t length() const;
 
   /// Throws FormatError unless the file is long enough for the points; called before any
@@ -38,16 +38,18 @@ struct FieldTable
   void checkLength(ByteSource& source, bool ascii) const;
 };
 
-/// For each field, how its value `index`, of all points in turn, is stored from its little-endian
-/// bytes.
+/// For each field, a function that stores one value from its little-endian bytes. `index` counts
+/// the values of the field over all points.
 using TableTargets = std::vector<std::function<void(std::uint64_t index, const unsigned char*)>>;
 
-/// x, y, z go to the points, others to columns, which are made; "_" is padding. FormatError without
-/// x, y and z.
+/// Makes the points and columns of a cloud, and the functions that store x, y and z in the points
+/// and all other fields in columns. The field "_" is padding. Throws FormatError without x, y and
+/// z.
 TableTargets targetsOf(const FieldTable& table, Cloud& to);
 
-/// Reads the rows. FormatError: too few, too short or too long, no numbers.
-/// @return where they end in the file
+/// Reads the rows. Throws FormatError if rows are missing, or if a row is too short or too long or
+/// has a word that is not a number.
+/// @return offset of the end of the rows in the file, bytes
 std::uint64_t readAsciiRows(ByteSource& source, const FieldTable& table,
   const TableTargets& targets, const KeepGoing& keepGoing);
 void readBinaryRows(ByteSource& source, const FieldTable& table, const TableTargets& targets,
@@ -56,16 +58,16 @@ void readBinaryRows(ByteSource& source, const FieldTable& table, const TableTarg
 /// Leaves out the points whose coordinates are not finite.
 void dropEmptyCells(Cloud& cloud);
 
-/// What is written.
+/// Rows to be written.
 struct TableOutput
 {
-  /// x, y, z first.
+  /// Fields of a row, first x, y, z.
   std::vector<Field> fields;
-  /// Index of the point in each row, or -1; empty: rows are points.
+  /// Index of the point in each row, or -1 in a row without a point; empty: row i is point i.
   std::vector<std::int64_t> cells;
-  /// Value of a field in a cell without a point.
+  /// Function that gives the value of a field in a cell without a point.
   std::function<double(std::size_t field, std::int64_t cell)> empty;
-  std::string comment; ///< one line
+  std::string comment; ///< text of one line
   bool ascii = false;
 };
 

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file Footprints.h
- * @brief Plans of buildings and pavements, from any vector format of GDAL, raised to triangles.
+ * @brief Reads plans of buildings and pavements from any vector format of GDAL, and raises plans to
+ * triangles.
  */
 #ifndef AvianLidarFootprints_h
 #define AvianLidarFootprints_h
@@ -14,17 +15,18 @@
 namespace avianlidar::scene
 {
 /**
- * Read the features of a `footprints` object and raise them: one part each, or one for all, in
- * metres east, north and up of the origin. Plan positions are exact on the ellipsoid; heights count
- * from the origin's tangent plane, so that a level ground stays level (at 3 km it lies 0.7 m above
- * the ellipsoid's curve). Triangles carry scene material ids.
+ * Reads the features of a `footprints` object and raises each feature to a part, or all features to
+ * one part, in metres east, north and up of the origin. Positions in plan are exact on the
+ * ellipsoid. Heights count from the tangent plane of the origin, so that level ground stays level
+ * (at 3 km the tangent plane lies 0.7 m above the ellipsoid). Triangles have material ids of the
+ * scene.
  *
- * On a terrain, solids stand on the lowest point below them; flat areas, lines and media follow it.
- * What lies beyond it is left out.
+ * On a terrain, a solid stands on the lowest point of the terrain below the solid. Flat areas,
+ * lines and media follow the terrain. Areas beyond the terrain are left out.
  *
- * Notes on what was repaired, skipped or assumed are added to `notes`. Throws Error where the file
- * cannot be read, no feature is left, or one has no height; WorkStopped where keepGoing returns
- * false.
+ * Sentences on repaired or skipped features and on assumed heights are added to `notes`. Throws
+ * Error if the file cannot be read, no feature is left, or a feature has no height; and WorkStopped
+ * if keepGoing returns false.
  */
 std::vector<Part> ReadFootprints(const Object& object, const Scene& scene, const Terrain* terrain,
   std::vector<std::string>& notes, const std::function<bool()>& keepGoing);

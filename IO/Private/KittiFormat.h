@@ -3,13 +3,14 @@
  * @file KittiFormat.h
  * @brief Reads point clouds of KITTI, and the labels of SemanticKITTI.
  *
- * `.bin`: four float32 a point: x forward, y left, z up in metres in the sensor's frame (ours has x
- * right, y forward), and a reflectance in [0, 1]. `.label`: a uint32 a point: the class in the
- * lower 16 bits, the instance in the upper ones. Sources: Geiger et al., "Vision meets Robotics:
- * The KITTI Dataset", IJRR 2013; Behley et al., "SemanticKITTI", ICCV 2019.
+ * A `.bin` file has four float32 per point: x forward, y left and z up in the sensor's frame, m,
+ * and a reflectance in [0, 1]. This project's clouds have x right and y forward instead. A `.label`
+ * file has a uint32 per point, with the class in the lower 16 bits and the instance in the upper 16
+ * bits. Sources: Geiger et al., "Vision meets Robotics: The KITTI Dataset", IJRR 2013; Behley et
+ * al., "SemanticKITTI", ICCV 2019.
  *
- * float32 rounds a coordinate by at most 2^-25 of the next power of two above it: 4 micrometres at
- * 100 m, 0.12 mm at 4 km.
+ * A coordinate in float32 is rounded by at most 2^-25 of the next greater power of two: 4
+ * micrometres at 100 m, 0.12 mm at 4 km.
  */
 #ifndef AvianLidarKittiFormat_h
 #define AvianLidarKittiFormat_h
@@ -19,12 +20,13 @@
 
 namespace avianlidar::formats
 {
-constexpr double KittiGreatestIntensity = 255.0; ///< of a reflectance of 1
+constexpr double KittiGreatestIntensity = 255.0; ///< intensity of the reflectance 1
 
-/// Reads a cloud, and `semantic_label` and `instance_id` if there are labels. Reflectances above 1
-/// are taken for intensities of 0 to 255; points that are not finite are left out; a warning says
-/// either. FormatError: no whole number of points, another layout (five numbers a point, as in
-/// nuScenes), or not as many labels.
+/// Reads a cloud, with the columns `semantic_label` and `instance_id` if `labels` is not null. If a
+/// reflectance is above 1, all are taken as intensities of 0 to 255, with a warning. Points that
+/// are not finite are left out, with a warning. Throws FormatError if the file does not have a
+/// whole number of points, has another layout (such as five numbers per point in nuScenes), or if
+/// points and labels differ in number.
 Cloud readKitti(ByteSource& points, ByteSource* labels, const KeepGoing& keepGoing);
 }
 

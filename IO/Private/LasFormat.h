@@ -4,14 +4,14 @@
  * @brief Reads and writes LAS, the ASPRS exchange format of point clouds.
  *
  * Source: "LAS Specification 1.4 - R15", American Society for Photogrammetry and Remote Sensing
- * (2019). Written: version 1.4, point data record format 6, or 7 with colours. Read: versions 1.0
- * to 1.4, formats 0 to 10, with extra bytes; waveforms (formats 4, 5, 9 and 10) are left out. LAZ
- * is the same with compressed point records, without waveforms, see LazFormat.h.
+ * (2019). The code writes version 1.4, point data record format 6, or 7 with colours. It reads
+ * versions 1.0 to 1.4, formats 0 to 10, with extra bytes, and leaves out waveforms (formats 4, 5, 9
+ * and 10). LAZ files have compressed point records and no waveforms, see LazFormat.h.
  *
  * **Rounding.** Coordinates are 32-bit integers: c = offset + scale * n. chooseAxis() takes the
- * finest scale of 10^-6, 10^-5, ... m that the extent leaves room for, so the error is at most half
- * of it, and the rounding of the double c itself: a cloud of up to 4.2 km is held to 0.5
- * micrometres, one of 42 km to 5.
+ * finest scale of 10^-6, 10^-5, ... m that the extent of the cloud allows. The error is at most
+ * half of the scale, plus the rounding of the double c: 0.5 micrometres for a cloud of up to 4.2
+ * km, and 5 micrometres for a cloud of 42 km.
  */
 #ifndef AvianLidarLasFormat_h
 #define AvianLidarLasFormat_h
@@ -29,13 +29,13 @@ constexpr std::size_t LasVlrHeaderSize = 54;
 constexpr std::size_t LasExtraBytesSize = 192;
 constexpr std::size_t LasLongestVlr = 65535;
 constexpr int LasMostReturns = 15;
-constexpr double LasGreatestCoordinate = 1e15; // m, a tenth of a light year
+constexpr double LasGreatestCoordinate = 1e15; // m, about a tenth of a light year
 constexpr double LasScanAngleStep = 0.006;     // deg
-constexpr double LasIntensityStep = 1.0 / 257; // of 0 to 255, so that 255 is 65535
+constexpr double LasIntensityStep = 1.0 / 257; // so that the intensity 255 is 65535
 constexpr std::size_t LasLongestName = 31;     // bytes
 constexpr std::size_t LasMostExtraFields = LasLongestVlr / LasExtraBytesSize;
 
-// Arrays of what other sensors' files hold in fields of LAS, and no scan of this project has.
+// Arrays of fields of LAS that files of other sensors fill in and scans of this project do not.
 constexpr const char* LasClassification = "classification";
 constexpr const char* LasFlags = "classification_flags";
 constexpr const char* LasUserData = "user_data";
@@ -46,25 +46,25 @@ constexpr const char* LasPointSource = "point_source_id";
 struct LasLayout
 {
   int format = 0;
-  bool extended = false; ///< formats 6 and above
-  std::size_t core = 0;  ///< bytes
-  std::size_t length = 0;
-  int time = -1; ///< offsets, -1: not there
-  int rgb = -1;
-  int nir = -1;
-  bool waveforms = false; ///< in packets behind the rest of the core
+  bool extended = false;  ///< true for the formats 6 to 10
+  std::size_t core = 0;   ///< length of the fields of the format, bytes
+  std::size_t length = 0; ///< length of a record, bytes
+  int time = -1;          ///< offset of the time in a record, bytes; -1: none
+  int rgb = -1;           ///< offset of the colours, bytes; -1: none
+  int nir = -1;           ///< offset of the near infrared, bytes; -1: none
+  bool waveforms = false; ///< whether the core ends with a waveform packet
 };
 
-/// FormatError: a format that is not read, or records that are too short for theirs.
+/// Throws FormatError if the format is not 0 to 10 or if the records are too short for the format.
 LasLayout layoutOf(int format, std::size_t length);
 
 /// One coordinate of the points: offset + scale * integer.
 struct LasAxis
 {
-  double scale = 1e-6;
+  double scale = 1e-6; ///< step between two integers, m or deg
   double offset = 0.0;
-  double low = 0.0; ///< lowest coordinate of the points as read
-  double high = 0.0;
+  double low = 0.0;  ///< lowest coordinate of the points as decoded, m or deg
+  double high = 0.0; ///< highest coordinate, m or deg
 
   std::int32_t encode(double coordinate) const;
   double decode(std::int32_t integer) const { return integer * this->scale + this->offset; }
@@ -72,24 +72,25 @@ struct LasAxis
   double bound() const;
 };
 
-/// Finest scale (a power of ten, at least 1e-6 m) and whole offset for coordinates in that range.
+/// Returns the finest scale (a power of ten, at least 1e-6 m) and a whole offset for coordinates
+/// from low to high, m.
 LasAxis chooseAxis(double low, double high);
 
 /// A field of the core of a point of format 6 or 7.
 struct LasCoreField
 {
-  const char* name; ///< of the array
-  bool ours;        ///< scans of this project have it
-  bool whole;       ///< has whole numbers only
-  double low;       ///< least and greatest values, in the array's unit
-  double high;
-  double step; ///< of the integers that stand for the values
+  const char* name; ///< name of the array
+  bool ours;        ///< whether scans of this project have the array
+  bool whole;       ///< whether all values are whole numbers
+  double low;       ///< least value, in the unit of the array
+  double high;      ///< greatest value, in the unit of the array
+  double step;      ///< value of one unit of the stored number, in the unit of the array
   Scalar type;
-  std::size_t offset; ///< in the record
+  std::size_t offset; ///< offset in the record, bytes
 };
 
 constexpr double LasAnyNumber = std::numeric_limits<double>::max();
-/// Two returns share a byte.
+/// Fields of the core. `return_number` and `number_of_returns` share a byte.
 constexpr LasCoreField LasCore[] = {
   { "intensity", true, false, 0.0, 255.0, LasIntensityStep, Scalar::UInt16, 12 },
   { "return_number", true, true, 0.0, LasMostReturns, 1.0, Scalar::UInt8, 14 },
@@ -115,20 +116,20 @@ enum LasCoreIndex
   LasCoreSize
 };
 
-/// What is written.
+/// Contents of a file to be written.
 struct LasOutput
 {
   std::int64_t size = 0;
   std::function<Point(std::int64_t)> position;
-  /// Values of the core; timestamps in seconds.
+  /// Values of the fields of the core, in the units of the arrays; timestamps in s.
   std::array<std::function<double(std::int64_t)>, LasCoreSize> core;
-  std::function<double(std::int64_t, int)> colour; ///< 0 to 255; empty: no colours
-  bool compressed = false;                         ///< LAZ
-  bool simulated = false; ///< the system that made the points is a simulation
-  int sourceId = 0;       ///< source id of the file
+  std::function<double(std::int64_t, int)> colour; ///< red, green, blue, 0 to 255; empty: none
+  bool compressed = false;                         ///< whether the file is LAZ
+  bool simulated = false;                          ///< whether the points come from a simulation
+  int sourceId = 0;                                ///< source id of the file
   std::string software;
-  std::string crs;         ///< WKT 1, or empty
-  std::string description; ///< goes to a text area; at most LasLongestVlr bytes
+  std::string crs;         ///< coordinate reference system, WKT; empty: none
+  std::string description; ///< text of the text area, at most LasLongestVlr bytes
   std::vector<Field> extra;
 };
 
@@ -136,25 +137,27 @@ struct LasOutput
 struct LasMeasure
 {
   std::array<LasAxis, 3> axes;
-  std::array<std::uint64_t, LasMostReturns> returns{}; ///< points with that return number
+  std::array<std::uint64_t, LasMostReturns> returns{}; ///< number of points of each return number
 };
 
-/// The first pass: scale, offset and bounds of the axes; throws if a coordinate is not finite or
-/// too large.
+/// Makes the first pass, which finds scale, offset and bounds of each axis. Throws FormatError if a
+/// coordinate is not finite or too large.
 LasMeasure measureLas(const LasOutput& output, const KeepGoing& keepGoing);
 
-/// The second pass writes. Points are requested one after the other and not kept.
+/// Makes the second pass, which writes the file. Points are requested one after the other and not
+/// kept.
 void writeLas(
   OutputFile& file, const LasOutput& output, const LasMeasure& measure, const KeepGoing& keepGoing);
 
-/// A name shortened to fit, with an ending, in whole characters of UTF-8.
+/// Returns a name of at most LasLongestName bytes: whole UTF-8 characters of `name`, then `ending`.
 std::string cutName(const std::string& name, const std::string& ending = {});
 
-/// What the description of an array is in the extra bytes of a file: words and [unit], at most 31
-/// characters.
+/// Returns the description of an array for the extra bytes of a file: words and [unit], at most 31
+/// bytes.
 std::string describeExtraBytes(const Field& field);
 
-/// Reads a cloud. FormatError: not a LAS file, another version or format, cut short.
+/// Reads a cloud. Throws FormatError if the file is not a LAS file, has another version or format,
+/// or is cut short.
 Cloud readLas(ByteSource& source, const KeepGoing& keepGoing);
 }
 

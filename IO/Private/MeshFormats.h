@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file MeshFormats.h
- * @brief Which library reads a mesh file, by the ending of its name.
+ * @brief Chooses the library that reads a mesh file by the file extension.
  */
 #ifndef AvianLidarMeshFormats_h
 #define AvianLidarMeshFormats_h
@@ -12,19 +12,19 @@
 
 namespace avianlidar::scene
 {
-/// The ending in lower case with its dot: ".vtp".
+/// Returns the file extension in lower case, with the dot: ".vtp".
 inline std::string EndingOf(const std::string& file)
 {
   return vtksys::SystemTools::LowerCase(vtksys::SystemTools::GetFilenameLastExtension(file));
 }
 
-/// Returns the name without ".gz"; its ending gives the format.
+/// Returns the file name without ".gz". The extension of the result gives the format.
 inline std::string UncompressedName(const std::string& file)
 {
   return EndingOf(file) == ".gz" ? file.substr(0, file.size() - 3) : file;
 }
 
-/// Whether VTK reads the file; Assimp reads all others.
+/// Returns whether VTK reads the file. Assimp reads all other files.
 inline bool IsVtkFile(const std::string& file)
 {
   const std::string ending = EndingOf(file);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file MeshImport.h
- * @brief Mesh files of any format to triangles with named materials.
+ * @brief Reads mesh files of any format as triangles with named materials.
  */
 #ifndef AvianLidarMeshImport_h
 #define AvianLidarMeshImport_h
@@ -13,15 +13,16 @@
 namespace avianlidar::scene
 {
 /**
- * Read a mesh: VTK's own formats (vtp, vtu, vtk, vtm and the like) through VTK, all others through
- * Assimp; ".gz" may follow the latter's endings. Polygons are triangulated, the nodes of a scene
- * graph applied in double precision, and vertices of identical coordinates made one, over all parts
- * of the file. Triangles carry indices in materialNames, which never carry colours.
+ * Reads a mesh: VTK's formats (MeshFormats.h) with VTK, all others with Assimp. Files that Assimp
+ * reads may be compressed, with the extension ".gz". Polygons are triangulated, transformations of
+ * a scene graph are applied in double precision, and vertices with identical coordinates are merged
+ * over all parts of the file. The material of a triangle is an index in materialNames. Colours are
+ * not read.
  *
- * The libraries run in a program of their own, `avianlidar/mesh-reader` beside the library that
- * contains this code: a file on which they crash, never end or take all memory is an error like any
- * other. The program is started by posix_spawn, not by fork: other threads may hold locks.
- * Environment variables set its limits:
+ * VTK and Assimp run in a separate program, `avianlidar/mesh-reader` beside the library that
+ * contains this code. A file on which the program crashes, never ends or takes all memory therefore
+ * gives an Error. The program is started by posix_spawn, not by fork, because other threads may
+ * hold locks. Environment variables set the limits of the program:
  *
  * | variable                  | meaning             | default                         |
  * |---------------------------|---------------------|---------------------------------|
@@ -29,14 +30,14 @@ namespace avianlidar::scene
  * | AVIANLIDAR_MESH_GIGABYTES | most memory, GB     | nine tenths of available memory |
  * | AVIANLIDAR_MESH_READER    | path of the program | the one beside the library      |
  *
- * Throws Error if the file cannot be read, holds no triangle, or has a coordinate that is not
- * finite; std::bad_alloc if the memory does not suffice; WorkStopped if keepGoing returns false,
- * which is called about ten times a second.
+ * Throws Error if the file cannot be read, contains no triangle, or has a coordinate that is not
+ * finite; std::bad_alloc if the memory does not suffice; and WorkStopped if keepGoing returns
+ * false. The function keepGoing is called about ten times a second.
  */
 Mesh ReadMesh(const std::string& file, const std::function<bool()>& keepGoing);
 
-/// Turn what ReadMesh() made of a file so that z is up. `upAxis`: 'y' or 'z', 0 for what the format
-/// says.
+/// Turns a mesh of ReadMesh() so that z is up. `upAxis`: 'y' or 'z', or 0 for the axis that the
+/// file or its format gives.
 void TurnUp(const std::string& file, char upAxis, Mesh& mesh);
 }
 

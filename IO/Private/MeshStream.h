@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file MeshStream.h
- * @brief The program that reads meshes sends through its pipe a mesh, or the reason why it could
- * not read one.
+ * @brief Messages from the program that reads meshes: a mesh, or the reason why a mesh cannot be
+ * read.
  *
- * Both ends run on one machine and are built together, so numbers travel as they lie in memory.
+ * Sender and receiver run on one machine and are built together, so numbers are sent as in memory.
  */
 #ifndef AvianLidarMeshStream_h
 #define AvianLidarMeshStream_h
@@ -15,16 +15,16 @@
 
 namespace avianlidar::scene
 {
-/// Writes `size` bytes; throws where it cannot.
+/// Function that writes `size` bytes, and throws if the bytes cannot be written.
 using WriteBytes = std::function<void(const void* bytes, std::size_t size)>;
-/// Reads `size` bytes; throws where there are fewer.
+/// Function that reads `size` bytes, and throws if fewer bytes are left.
 using ReadBytes = std::function<void(void* bytes, std::size_t size)>;
 
 void SendMesh(const Mesh& mesh, const WriteBytes& write);
 void SendError(const std::string& reason, const WriteBytes& write);
 void SendNoMemory(const WriteBytes& write);
 
-/// The mesh that was sent. Throws Error with the reason that was sent, or std::bad_alloc.
+/// Returns the mesh that was sent. Throws Error with the reason that was sent, or std::bad_alloc.
 Mesh ReceiveMesh(const ReadBytes& read);
 }
 

@@ -3,10 +3,11 @@
  * @file OutputFile.h
  * @brief Writes a file as a whole or not at all.
  *
- * Bytes go to a part beside the file (its name with .avianpart and a number), which takes the
- * wanted name when commit() is called. Without commit() the part is removed, and a file that had
- * the wanted name stays as it was. A part is locked (flock) while it is written. The part of a
- * killed process is not locked, and the next writing of the file removes it.
+ * Bytes are written to a temporary file in the same folder, the part (the name of the file with
+ * .avianpart and a number). commit() gives the part the name of the file. Without commit() the part
+ * is removed, and an older file of that name stays as it was. A part is locked (flock) while it is
+ * written. The part of a killed process is not locked, and the next OutputFile of the same name
+ * removes this part.
  */
 #ifndef AvianLidarOutputFile_h
 #define AvianLidarOutputFile_h
@@ -22,40 +23,42 @@ namespace avianlidar::formats
 class OutputFile
 {
 public:
-  /// A FormatError says why it cannot be made: no such folder, no permission, the name belongs to a
-  /// folder or a device.
+  /// Opens a part. Throws FormatError with the reason if the part cannot be made: the folder is
+  /// missing, there is no permission, or the name belongs to a folder or a device.
   explicit OutputFile(const std::string& name);
   ~OutputFile();
   OutputFile(const OutputFile&) = delete;
   OutputFile& operator=(const OutputFile&) = delete;
 
-  /// Writes on; a FormatError if the disk is full.
+  /// Appends bytes. Throws FormatError if the bytes cannot be written, as on a full disk.
   void write(const void* bytes, std::size_t count);
   void write(std::string_view text) { this->write(text.data(), text.size()); }
   void write(const std::vector<unsigned char>& bytes) { this->write(bytes.data(), bytes.size()); }
 
-  /// Moves to the offset `at` from the beginning for the next write(); a FormatError if it cannot.
+  /// Moves the position of the next write() to the offset `at`, bytes. Throws FormatError on
+  /// failure.
   void seek(std::uint64_t at);
 
-  /// True if the other would take the same name.
+  /// True if the other file has the same name.
   bool isSameAs(const OutputFile& other) const;
 
-  /// Ends the file and gives it its name. It takes the permissions of a file that had the name.
+  /// Ends the part and gives it the name of the file. The part gets the permissions of the file
+  /// that it replaces.
   void commit();
 
-  /// Commits two files: both, or a FormatError and neither. Where the file system cannot exchange
-  /// two names, the error may say that the first is new already.
+  /// Commits two files, or throws FormatError and commits neither. If the file system cannot
+  /// exchange two names, the first file may already be replaced, and the error says so.
   static void commitBoth(OutputFile& first, OutputFile& second);
 
 private:
-  /// Writes what is still buffered.
+  /// Writes the bytes that are still in the buffer.
   void finish();
   void takeName();
 
   std::string Name;
   std::string Part;
-  std::FILE* File = nullptr; ///< the part, locked until it has its name or is removed
-  unsigned int Mode = 0;     ///< st_mode of the file that is replaced, 0 if there is none
+  std::FILE* File = nullptr; ///< the part, locked until it is renamed or removed
+  unsigned int Mode = 0;     ///< st_mode of the file that is replaced; 0 without such a file
 };
 }
 

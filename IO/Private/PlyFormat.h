@@ -3,9 +3,10 @@
  * @file PlyFormat.h
  * @brief Reads and writes the points of PLY, the polygon file format.
  *
- * Source: G. Turk, "The PLY Polygon File Format", 1994. Written: 1.0, binary little endian or
- * ASCII. Read: ASCII, binary little and big endian; only the element `vertex`, which has no lists.
- * A comment that begins with a plus sign continues the one before it.
+ * Source: G. Turk, "The PLY Polygon File Format", 1994. The code writes version 1.0, binary little
+ * endian or ASCII. It reads ASCII, binary little endian and binary big endian, but only the element
+ * `vertex`, and refuses files whose vertices have a list property. A comment that begins with a
+ * plus sign continues the comment before.
  */
 #ifndef AvianLidarPlyFormat_h
 #define AvianLidarPlyFormat_h
@@ -19,24 +20,26 @@ struct PlyHeader : FieldTable
 {
   std::vector<std::string> comments;
   bool ascii = false;
-  bool hasFaces = false; ///< a mesh
+  bool hasFaces = false; ///< whether the file has an element `face` that is not empty
 };
 
-/// The lines up to end_header, checked; what they promise fits the file's length.
+/// Reads and checks the header up to end_header. Throws FormatError if the declared elements do not
+/// fit the length of the file.
 PlyHeader readPlyHeader(ByteSource& source);
 
-/// Reads a cloud; points whose coordinates are not finite are left out. FormatError: not a PLY
-/// file, cut short, no x, y, z.
+/// Reads a cloud, without the points whose coordinates are not finite. Throws FormatError if the
+/// file is not a PLY file, is cut short, or lacks x, y or z.
 Cloud readPly(ByteSource& source, const KeepGoing& keepGoing);
 
-/// Polygons: how many, and the points of each.
+/// Number of polygons, and a function that gives the indices of the points of a polygon.
 struct PlyFaces
 {
   std::int64_t count = 0;
   std::function<void(std::int64_t face, std::vector<std::int64_t>& points)> pointsOf;
 };
 
-/// FormatError for a face of more than 255 points, or a point beyond 2^31 - 1 in one.
+/// Writes a file. Throws FormatError if a face has more than 255 points or an index of a point
+/// above 2^31 - 1.
 void writePly(OutputFile& file, const TableOutput& output, std::uint64_t points,
   const PlyFaces& faces, const KeepGoing& keepGoing);
 }

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file Polygons.h
- * @brief Plane polygons with holes: repair, lines with a width, triangles. A thin cover of GEOS.
+ * @brief Plane polygons with holes: repairs polygons, widens lines and makes triangles, with GEOS.
  *
- * Coordinates in metres. Triangulation is GEOS's constrained Delaunay triangulation: it adds no
- * vertices and drops none, so walls raised on the same rings meet the roof in whole edges.
+ * Coordinates are in metres. GEOS's constrained Delaunay triangulation neither adds nor removes
+ * vertices, so walls raised on the same rings meet the roof in whole edges.
  */
 #ifndef AvianLidarPolygons_h
 #define AvianLidarPolygons_h
@@ -19,17 +19,17 @@
 namespace avianlidar::scene
 {
 using Vec2 = std::array<double, 2>;
-/// Vertices in order; the last is not the first again.
+/// Vertices in order; the first vertex is not repeated at the end.
 using Ring = std::vector<Vec2>;
 
-/// One outer ring and the rings of its holes.
+/// Polygon of one outer ring, which comes first, and the rings of its holes.
 struct Polygon
 {
   std::vector<Ring> rings;
 };
 
-/// Triangles that run anticlockwise in plan, and the edges around them, which have them on their
-/// left.
+/// Triangles that run anticlockwise in plan, and the edges of their outline, with the triangles on
+/// the left.
 struct Sheet
 {
   std::vector<Vec3> points;
@@ -37,7 +37,8 @@ struct Sheet
   std::vector<std::array<std::int64_t, 2>> outline;
 };
 
-/// A context of GEOS. Without handlers GEOS keeps silent and returns null.
+/// Context of GEOS. The context has no handlers, so GEOS prints no errors, and returns null on
+/// failure.
 class Geos
 {
 public:
@@ -95,7 +96,7 @@ public:
     return points;
   }
 
-  /// Every polygon of a geometry, whatever it is nested in.
+  /// Appends every polygon of a geometry, including polygons of nested collections.
   void Collect(const GEOSGeometry* geometry, std::vector<Polygon>& polygons) const
   {
     if (GEOSGeomTypeId_r(this->Get(), geometry) == GEOS_POLYGON)
@@ -129,23 +130,24 @@ private:
   std::unique_ptr<GEOSContextHandle_HS, decltype(&GEOS_finish_r)> Handle;
 };
 
-/// Twice the signed area is the usual sum; positive where the ring runs anticlockwise.
+/// Returns the area of a ring, m2; positive if the ring runs anticlockwise, else negative.
 double SignedArea(const Ring& ring);
-/// Area of the outer ring less that of the holes.
+/// Returns the area of the outer ring minus the areas of the holes, m2.
 double Area(const Polygon& polygon);
 
 /**
- * The same region as valid polygons: repeated vertices are dropped, crossing or overlapping rings
- * resolved (GEOS MakeValid). No polygon where nothing with an area is left. `repaired` is set where
- * more than vertices changed.
+ * Returns the same region as valid polygons, without repeated vertices and without crossing or
+ * overlapping rings (GEOS MakeValid). The result is empty if no region with an area is left.
+ * `repaired` becomes true if more than repeated vertices changed.
  */
 std::vector<Polygon> MakeValid(const Polygon& polygon, bool& repaired);
 
-/// The region within half a width of a line, with flat ends and mitred corners.
+/// Returns the region within half of `width`, m, of a line, with flat ends and mitred corners.
 std::vector<Polygon> WidenLine(const Ring& line, double width);
 
-/// A valid polygon at the height 0. Throws Error if GEOS fails or the areas differ by more than
-/// 1e-9 of the whole and their rounding.
+/// Triangulates a valid polygon at the height 0. Throws Error if GEOS fails, or if the area of the
+/// triangles differs from the area of the polygon by more than 1e-9 of the polygon's area plus
+/// rounding.
 Sheet Triangulate(const Polygon& polygon);
 
 double Perimeter(const Polygon& polygon);

@@ -16,45 +16,47 @@
 
 namespace avianlidar::formats
 {
-/// A format of files. All code gets the formats from cloudFormats(), so a new format is a row
-/// there.
+/// Format of files. All code gets the formats from cloudFormats(), so a new format needs only a row
+/// in that table.
 struct CloudFormat
 {
-  std::vector<std::string> endings; ///< endings of names, in lower case
-  bool (*fits)(ByteSource& file);   ///< by its first bytes; may throw, which is no
+  std::vector<std::string> endings; ///< file extensions, in lower case, with the dot
+  bool (*fits)(ByteSource& file);   ///< check of the first bytes; an exception means false
   Cloud (*read)(ByteSource& file, ByteSource* labels, const KeepGoing& keepGoing);
-  bool hasLabels = false; ///< in a file of their own, see labelFileOf(); else they are null
-  bool hasTurns = false;  ///< packets; read() gives the first revolution
+  bool hasLabels = false; ///< whether labels may lie in a file, see labelFileOf()
+  bool hasTurns = false;  ///< whether files have packets; read() gives the first revolution
 };
 
 const std::vector<CloudFormat>& cloudFormats();
 
-/// All endings, as in ".las, .laz or .pcd".
+/// Returns all file extensions as a text, such as ".las, .laz or .pcd".
 std::string knownEndings();
 
-/// The ending of a name, in lower case: ".las".
+/// Returns the file extension in lower case, with the dot: ".las".
 std::string endingOf(const std::string& fileName);
 
-/// The format by the ending of the name, case aside; null for an unknown ending.
+/// Returns the format of a file extension, in upper or lower case; null for an unknown extension.
 const CloudFormat* formatOf(const std::string& fileName);
 
-/// SemanticKITTI's labels of a .bin file: the same name with .label beside it or in a folder
-/// `labels` beside the one it is in; empty if there are none.
+/// Returns the file of SemanticKITTI's labels of a .bin file: the same name with .label, in the
+/// folder of the .bin file or in a folder `labels` beside that folder. Empty if there is no such
+/// file.
 std::string labelFileOf(const std::string& fileName);
 
-/// Reads the file and its labels or, if the file has packets, the revolution `turn`.
+/// Reads a file and its labels or, if `packets` is not null, the revolution `turn`.
 Cloud readCloud(const std::string& fileName, const KeepGoing& keepGoing,
   const PacketIndex* packets = nullptr, std::size_t turn = 0);
 
-/// Gives arrays the names and units of this project where a format says what they are:
-/// - notes of this project's writers become units of columns and notes of the cloud;
-/// - `ring` and `channel` are `laser_id`;
-/// - a name of this project without a unit in the file (an `azimuth` in any unit) gets the prefix
-///   `file_`;
+/// Gives columns the names and units of this project:
+/// - units and notes that a writer of this project put into a text become units and notes of the
+///   cloud;
+/// - `ring` or `channel` becomes `laser_id` if the cloud has no `laser_id`;
+/// - a column gets the prefix `file_` if its quantity has a unit in this project, such as
+///   `azimuth`, but not in the file, or if another column has its name;
 /// - `distance_m`, `azimuth` and `vertical_angle` are computed where the sensor's place is known
 /// and
 ///   the file does not have them;
-/// - packed colours of PCD and the `red`, `green` and `blue` of PLY become `rgb`.
+/// - packed colours of PCD, and `red`, `green` and `blue` of PLY, become `rgb`.
 void harmonise(Cloud& cloud);
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file Scalars.h
- * @brief Numbers as point cloud files store them: ten types, little endian.
+ * @brief Converts between numbers and the ten types that point cloud files store, little endian.
  */
 #ifndef AvianLidarScalars_h
 #define AvianLidarScalars_h
@@ -27,16 +27,17 @@ enum class Scalar
   Float64
 };
 
-/// Bytes of one value: 1, 2, 4 or 8.
+/// Returns the size of a value: 1, 2, 4 or 8 bytes.
 std::size_t sizeOf(Scalar type);
 
 bool isFloat(Scalar type);
 bool isSigned(Scalar type);
 
-/// The type of a kind ('I', 'U' or 'F') and a size; false if no type has them.
+/// Finds the type of a kind ('I', 'U' or 'F') and a size, bytes. Returns false if no such type
+/// exists.
 bool scalarOf(char kind, std::size_t size, Scalar& type);
 
-/// Calls f with a value of the C++ type that belongs to the scalar.
+/// Calls f with a value of the C++ type of the scalar type.
 template <class F>
 decltype(auto) withType(Scalar type, F f)
 {
@@ -91,7 +92,7 @@ struct Bits<8>
 };
 }
 
-/// The value whose little-endian bytes begin at `bytes`. No alignment is needed.
+/// Returns the value whose little-endian bytes begin at `bytes`. No alignment is needed.
 template <class T>
 T load(const unsigned char* bytes)
 {
@@ -106,7 +107,7 @@ T load(const unsigned char* bytes)
   return value;
 }
 
-/// Writes the value's little-endian bytes to `bytes`.
+/// Writes the little-endian bytes of the value to `bytes`.
 template <class T>
 void store(T value, unsigned char* bytes)
 {
@@ -118,14 +119,14 @@ void store(T value, unsigned char* bytes)
   }
 }
 
-/// The nearest value of that type: rounded and, if need be, moved to the end of the type's range.
+/// Returns the nearest value that the type can hold: rounded, and limited to the range of the type.
 /// NaN becomes 0 if the type is an integer.
 double nearest(Scalar type, double value);
 
-/// store() of nearest(). Exact for integers up to 2^53.
+/// Writes nearest() as store() does. Integers are exact up to 2^53.
 void storeAs(Scalar type, double value, unsigned char* bytes);
 
-/// load() as double.
+/// Reads a value as load() does, and converts the value to double.
 double loadAs(Scalar type, const unsigned char* bytes);
 }
 

@@ -15,26 +15,26 @@ namespace avianlidar::scene
 struct BuiltScene
 {
   Scene description;
-  /// Parts in the order of the file, in metres east, north and up. Triangles carry material ids.
+  /// Parts in the order of the file, in metres east, north and up. Triangles have material ids.
   std::vector<Part> parts;
-  /// Lines on what was read.
+  /// Lines of the report on the parts and the lidar.
   std::vector<std::string> report;
-  /// Sentences on legal input that looks like a mistake.
+  /// Warnings, sentences on legal input that looks like a mistake.
   std::vector<std::string> warnings;
 };
 
 /**
- * Find the parts of a scene without their triangles, for pieces of the scene that are empty. Only
- * footprints that become several parts are read, and the objects on which these footprints stand.
+ * Finds the parts of a scene without their triangles, for pieces of the output that are empty.
+ * Reads only footprints that become several parts, and the objects on which these footprints stand.
  * The report and the warnings are empty. Arguments and errors are those of BuildScene().
  */
 BuiltScene OutlineScene(const std::string& file, const std::function<bool(double)>& progress,
   const std::string& text = {});
 
 /**
- * Read a whole scene, and each mesh file once. `text`, unless empty, replaces the contents of the
- * scene file. `progress` gets the share of the work that is done, and returns false to stop the
- * work. Throws Error (file, key and reason) or WorkStopped.
+ * Reads a whole scene, and each mesh file once. `text`, unless empty, replaces the contents of the
+ * scene file. `progress` gets the share of the work that is done, 0 to 1, and returns false to stop
+ * the work. Throws Error (file, key and reason) or WorkStopped.
  */
 BuiltScene BuildScene(const std::string& file, const std::function<bool(double)>& progress,
   const std::string& text = {});

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file SceneDescription.h
- * @brief A scene file, parsed and checked; Documentation/reference/scene-files.md describes its
- * keys.
+ * @brief Parses and checks a scene file. Documentation/reference/scene-files.md describes the keys.
  */
 #ifndef AvianLidarSceneDescription_h
 #define AvianLidarSceneDescription_h
@@ -12,15 +11,16 @@
 namespace avianlidar::scene
 {
 /**
- * Parse a scene file, or a text in its place if that is not empty. Every fault (an unknown or
- * missing key, a wrong type, a number out of its range, an unknown material, a file that is not
- * there) is an Error that names the file and the key. The four materials of the paper's Table 1
- * have the ids 0 to 3, others follow in the order in which they are written. File names are taken
- * relative to the folder of the scene file and returned absolute.
+ * Parses a scene file. `text`, unless empty, replaces the contents of the file. Throws Error, which
+ * names the file and the key, for an unknown or missing key, a wrong type, a number out of range,
+ * an unknown material or a missing file. The four materials of the paper's Table 1 have the ids 0
+ * to 3. Other materials follow in the order in which the scene file names them. File names are
+ * relative to the folder of the scene file and are returned as absolute names.
  */
 Scene ReadDescription(const std::string& file, const std::string& text = {});
 
-/// Whether a name fits a pattern in which `*` is any run of characters and `?` any one of them.
+/// Returns whether a name fits a pattern, in which `*` stands for any characters and `?` for one
+/// character.
 bool MatchesPattern(const std::string& pattern, const std::string& name);
 }
 

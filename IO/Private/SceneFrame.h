@@ -17,17 +17,17 @@
 namespace avianlidar::scene
 {
 /**
- * Points given in the tangent frame (east, north, up) of a place, in the frame of the origin. Far
- * away the place's up leans from the origin's: by 1 degree in 111 km.
+ * Transforms points from the tangent frame (east, north, up) of a place to the tangent frame of the
+ * origin. The up directions of the two frames differ by 1 degree at a distance of 111 km.
  */
 void MoveToPlace(const Geodetic& origin, const Geodetic& place, std::vector<Vec3>& points);
 
 /**
- * Coordinates of a reference system to metres about an origin. The system is a code ("EPSG:32632"),
- * WKT, PROJJSON or a PROJ string, but not a URL or a file; axes in the order x or longitude, y or
- * latitude; heights are taken as heights above the ellipsoid, which is right wherever the origin's
- * height is of the same kind. Throws Error for an unknown system and for coordinates that it does
- * not hold.
+ * Transforms coordinates of a reference system to metres east, north and up of an origin. The
+ * system is a code ("EPSG:32632"), WKT, PROJJSON or a PROJ string, but not a URL or a file. The
+ * axes have the order x or longitude, y or latitude. Heights are taken as heights above the
+ * ellipsoid, which is right if the height of the origin is of the same kind. Throws Error for an
+ * unknown system and for coordinates outside the range of the system.
  */
 class GeoreferencedPoints
 {
@@ -39,7 +39,7 @@ public:
 
 private:
   GeodeticFrame Frame;
-  /// Null where the coordinates are longitude and latitude on WGS84 already.
+  /// Transformation to longitude and latitude on WGS84; null if the coordinates are such already.
   std::unique_ptr<OGRCoordinateTransformation> ToWgs84;
 };
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file SceneReport.h
- * @brief Reports extents, faults and the place of the lidar before a scene is scanned.
+ * @brief Reports extents, faults and the position of the lidar before a scene is scanned.
  */
 #ifndef AvianLidarSceneReport_h
 #define AvianLidarSceneReport_h
@@ -11,16 +11,17 @@
 namespace avianlidar::scene
 {
 /**
- * A line for every part: triangles, extents, degenerate triangles (two vertices at one place or all
- * three on a line, within rounding: no ray meets them). Warns of parts all of whose triangles are
- * degenerate, and of parts beyond 100 km: a wrong scale, unit, position or reference system.
+ * Adds a line for every part: numbers of triangles and of degenerate triangles, and extents, m. A
+ * triangle is degenerate, and no ray meets it, if its vertices lie on a line or at a point within
+ * rounding. Warns of parts that have only degenerate triangles, and of parts more than 100 km away,
+ * whose scale, unit, position or reference system may be wrong.
  */
 void ReportExtents(BuiltScene& built);
 
 /**
- * Where the lidar stands: surfaces straight above and below, and whether it is inside a part (an
- * odd number of surfaces in all six directions). Warns where it is inside one, unless the scene
- * says `inside`, or where everything is above it.
+ * Adds a line with the numbers of surfaces above and below the lidar, and the part that contains
+ * the lidar (an odd number of surfaces in all six directions). Warns if a part contains the lidar,
+ * unless the scene says `inside`, or if surfaces lie above the lidar and none below.
  */
 void ReportLidar(BuiltScene& built);
 }

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file SceneTypes.h
- * @brief Values of a scene file, checked and with defaults filled in, and the error that reading
- * may throw.
+ * @brief Values of a scene file, checked and with defaults, and the error that reading may throw.
  *
- * Plain values; no VTK, no JSON. Lengths in metres, angles in degrees.
+ * The values need neither VTK nor JSON. Lengths are in metres, angles in degrees.
  */
 #ifndef AvianLidarSceneTypes_h
 #define AvianLidarSceneTypes_h
@@ -25,10 +24,10 @@ using Vec3 = std::array<double, 3>;
 /// Rows of a 3 x 3 matrix, one after the other.
 using Mat3 = std::array<double, 9>;
 
-/// Anything wrong with a scene.
+/// Error about a fault of a scene or of a file of the scene.
 using Error = FileError;
 
-/// Degrees on WGS84 and metres above its ellipsoid.
+/// Position on WGS84: latitude and longitude, deg, and height above the ellipsoid, m.
 struct Geodetic
 {
   double latitude = 0;
@@ -36,22 +35,23 @@ struct Geodetic
   double height = 0;
 };
 
-/// The index in Scene::materials is the material id; coefficients that a scene file leaves out stay
-/// as here.
+/// Material of a scene. Its index in Scene::materials is the material id. A coefficient that the
+/// scene file leaves out has the default given here.
 struct Material
 {
   std::string name;
   avianlidar::Material coefficients{ 0.0, 0.0, 1.0 };
 };
 
-/// A mesh's material whose name fits the pattern (`*`, `?`) is the scene's material.
+/// Rule that replaces the materials of a mesh whose names fit the pattern (`*`, `?`) by a material
+/// of the scene.
 struct MaterialRule
 {
   std::string pattern;
   int material = 0;
 };
 
-/// Where an object stands: p = frame(position + rotation * (scale * v)).
+/// Position, rotation and scale of an object: p = frame(position + rotation * (scale * v)).
 struct Placement
 {
   std::optional<Vec3> position;
@@ -60,15 +60,15 @@ struct Placement
   Vec3 scale{ 1, 1, 1 };
 };
 
-/// Facades with a share of glass: bays of about the given width, each with one centred strip.
+/// Glass of facades: `share` of the area, in bays about `bay` m wide, each with one centred strip.
 struct Glazing
 {
   int material = 1;
-  double share = 0;
-  double bay = 1;
+  double share = 0; ///< share of the area that is glass, 0 to 1
+  double bay = 1;   ///< width of a bay, m
 };
 
-/// An attribute that a feature must have, with a value that fits the pattern.
+/// Condition that a feature has an attribute with a value that fits the pattern.
 struct AttributeFilter
 {
   std::string attribute;
@@ -79,25 +79,25 @@ struct FootprintOptions
 {
   std::string layer;
   std::vector<AttributeFilter> filters;
-  double base = 0;
-  std::optional<double> height;
+  double base = 0;              ///< height of the underside above the ground, m
+  std::optional<double> height; ///< height if no attribute gives one, m
   std::string heightAttribute;
   std::string minHeightAttribute;
   bool flat = false;
-  std::optional<double> width;
+  std::optional<double> width; ///< width of lines and points if no attribute gives one, m
   std::string widthAttribute;
-  int roofMaterial = -1;
+  int roofMaterial = -1; ///< material id of roofs; -1: material of the object
   std::optional<Glazing> glazing;
   bool separate = false;
   std::string nameAttribute = "name";
-  /// Name of the object before it that it stands on; empty: the level of the origin.
+  /// Name of an earlier object on which the footprints stand; empty: the level of the origin.
   std::string on;
 };
 
 struct GroundOptions
 {
-  double sizeEast = 0;
-  double sizeNorth = 0;
+  double sizeEast = 0;  ///< extent from west to east, m
+  double sizeNorth = 0; ///< extent from south to north, m
   double height = 0;
 };
 
@@ -106,28 +106,30 @@ enum class ObjectKind
   Mesh,
   Footprints,
   Ground,
-  Medium ///< a medium with a shape of its own
+  Medium ///< a medium that gives its own shape
 };
 
 struct Object
 {
-  /// Where it stands in the file, as "objects[3]", for messages.
+  /// Key of the object in the scene file for messages, such as "objects[3]".
   std::string key;
   ObjectKind kind = ObjectKind::Mesh;
   std::string file;
   std::string name;
   std::string objectClass;
-  /// Material of the whole object; -1: by the rules, from the mesh's own names.
+  /// Material id of the whole object; -1: the rules choose by the material names of the mesh.
   int material = -1;
   std::vector<MaterialRule> rules;
   Placement placement;
-  /// 'y', 'z', or 0 for what the format says.
+  /// Axis of the file that points up, 'y' or 'z'; 0: the axis that the format gives.
   char upAxis = 0;
-  /// Coordinate reference system of the coordinates; empty: that of the file, or local metres.
+  /// Coordinate reference system of the coordinates; empty: the system of the file, or local
+  /// metres.
   std::string crs;
   FootprintOptions footprints;
   GroundOptions ground;
-  /// JSON of a medium (vtkAvianLidarMedium.h): what fills its surface, or by itself; empty: none.
+  /// JSON of the medium (vtkAvianLidarMedium.h) that fills the surface or gives its own shape;
+  /// empty: none.
   std::string medium;
 };
 
@@ -135,41 +137,41 @@ struct Scene
 {
   std::string file;
   std::optional<Geodetic> origin;
-  std::optional<Vec3> lidar;
-  bool lidarInside = false;
+  std::optional<Vec3> lidar; ///< position of the lidar, m east, north and up
+  bool lidarInside = false;  ///< whether the lidar may be inside a part
   std::vector<Material> materials;
   std::vector<MaterialRule> rules;
   std::vector<Object> objects;
   std::vector<std::string> attribution;
 };
 
-/// Triangles with a material each: an index in materialNames as read from a file, or a scene's
-/// material id.
+/// Triangles, each with a material. The material is an index in materialNames if the mesh was read
+/// from a file, or a material id of the scene.
 struct Mesh
 {
   std::vector<Vec3> points;
   std::vector<std::array<std::int64_t, 3>> triangles;
   std::vector<int> materials;
   std::vector<std::string> materialNames;
-  /// Faces that are points or lines, which no ray hits.
+  /// Number of faces left out because they are points or lines, which no ray hits.
   std::int64_t skippedFaces = 0;
   /// Distance between neighbouring single-precision numbers at the largest coordinate, in the
   /// file's unit; 0 if the reader keeps double precision.
   double rounding = 0.0;
-  /// 'y' or 'z', the axis that points up according to the file; 0 if the file does not say.
+  /// Axis that points up according to the file, 'y' or 'z'; 0 if the file does not say.
   char upAxis = 0;
-  /// Sentences on what was left out.
+  /// Sentences on parts of the file that were left out.
   std::vector<std::string> warnings;
 };
 
-/// One object of the output.
+/// Block of the output: an object, or a feature of footprints.
 struct Part
 {
   std::string name;
   std::string objectClass;
   Mesh mesh;
-  std::string medium{}; ///< JSON; empty: a surface
-  /// Width and height of ellipsoids about the points of the mesh, which has no triangles then.
+  std::string medium{}; ///< medium that fills the part, JSON; empty: none
+  /// Widths and heights, m, of ellipsoids about the points of a mesh without triangles.
   std::vector<std::array<double, 2>> crowns{};
 };
 }

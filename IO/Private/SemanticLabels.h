@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file SemanticLabels.h
- * @brief Gives the LAS point class and the SemanticKITTI label of each class of objects. The table
- * is in Documentation/reference/formats.md, too.
+ * @brief Gives the LAS point class and the SemanticKITTI label of each class of objects.
+ * Documentation/reference/formats.md has the same table.
  */
 #ifndef AvianLidarSemanticLabels_h
 #define AvianLidarSemanticLabels_h
@@ -13,19 +13,20 @@ namespace avianlidar::formats
 {
 struct SemanticLabel
 {
-  int las;   ///< ASPRS standard point class of LAS 1.4
-  int kitti; ///< SemanticKITTI
+  int las;   ///< ASPRS standard point class of LAS 1.4, 0 to 255
+  int kitti; ///< class of SemanticKITTI, the lower 16 bits of a label
 };
 
-/// The labels of an object class, whatever its case; 1 (unclassified) and 0 (unlabeled) for a word
-/// that is not in the table.
+/// Returns the labels of an object class, in upper or lower case; 1 (unclassified) and 0
+/// (unlabeled) for a class that is not in the table.
 SemanticLabel labelOfClass(const std::string& objectClass);
 
-/// The label of echoes without an object: of air that sends light back (object_id -2) those of the
-/// class "air", else 1 and 0.
+/// Returns the labels of echoes without an object: the labels of the class "air" for light from the
+/// air (object_id -2), else 1 and 0.
 SemanticLabel labelWithoutObject(int objectId);
 
-/// Label of SemanticKITTI's free range for a material: 300 + its id, 0 for none.
+/// Returns the label of a material in the free range of SemanticKITTI: 300 + id, or 0 without a
+/// material.
 int labelOfMaterial(int materialId);
 }
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file SensorPose.h
- * @brief Where a sensor stands and how it is turned: points to its own frame, and its rotation as a
- * quaternion.
+ * @brief Position and orientation of a sensor: transforms points to the sensor's frame, and gives
+ * the rotation as a quaternion.
  */
 #ifndef AvianLidarSensorPose_h
 #define AvianLidarSensorPose_h
@@ -15,22 +15,22 @@ namespace avianlidar::formats
 class SensorPose
 {
 public:
-  /// At the origin, unturned.
+  /// Makes a pose at the origin, without rotation.
   SensorPose();
 
-  /// Position in metres; yaw, pitch, roll in degrees as in ScanPattern.h.
+  /// Makes a pose from a position, m, and yaw, pitch and roll, deg, as in ScanPattern.h.
   SensorPose(const Point& position, const Point& orientation);
 
-  /// Scene's frame to the sensor's: x right, y forward, z up.
+  /// Transforms a point from the scene's frame to the sensor's frame: x right, y forward, z up.
   Point toSensor(const Point& point) const;
 
-  /// Position and unit quaternion (w x y z, w >= 0) of the rotation from the sensor's frame to the
-  /// scene's.
+  /// Returns the position, m, and the unit quaternion (w x y z, w >= 0) of the rotation from the
+  /// sensor's frame to the scene's frame.
   std::array<double, 7> viewpoint() const;
 
 private:
   Point Position{};
-  /// The sensor's axes in the scene's frame.
+  /// Axes of the sensor in the scene's frame, unit vectors.
   std::array<Vec3, 3> Axes;
 };
 }

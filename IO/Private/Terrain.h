@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file Terrain.h
- * @brief A surface of triangles that footprints stand on.
+ * @brief Surface of triangles on which footprints stand.
  */
 #ifndef AvianLidarTerrain_h
 #define AvianLidarTerrain_h
@@ -11,8 +11,8 @@
 
 namespace avianlidar::scene
 {
-/// What a polygon and a triangle of a terrain share in plan, and the triangle's plane:
-/// z = a x + b y + c, less `center`.
+/// Common part of a polygon and a triangle of a terrain in plan, and the plane of the triangle: z =
+/// a x + b y + c with x and y relative to `center`.
 struct TerrainPiece
 {
   Polygon polygon;
@@ -26,29 +26,29 @@ struct TerrainPiece
   }
 };
 
-/// Triangles that cover each place in plan once at most; vertical triangles are ignored. GEOS's
-/// tree of boxes finds triangles near a place.
+/// Triangles that cover each place in plan at most once. Vertical triangles are ignored. GEOS's STR
+/// tree finds the triangles near a place.
 class Terrain
 {
 public:
-  /// Throws Error where some triangles face up and others down, as those of a closed body.
+  /// Throws Error if some triangles face up and others face down, as in a closed body.
   Terrain(const std::string& name, const Mesh& mesh);
 
-  /// A valid polygon, cut along the edges of the terrain, without its part beyond the terrain and
-  /// pieces below 1e-6 m2 or narrower than 1e-4 m (area over half the perimeter).
+  /// Cuts a valid polygon along the edges of the terrain. Leaves out the part beyond the terrain,
+  /// and pieces smaller than 1e-6 m2 or narrower than 1e-4 m (area over half the perimeter).
   std::vector<TerrainPiece> Cut(const Polygon& polygon) const;
-  /// The height at a place; none beyond the terrain.
+  /// Returns the height at a place, m; no value beyond the terrain.
   std::optional<double> HeightAt(const Vec2& place) const;
 
 private:
   std::vector<const TerrainPiece*> Near(const GEOSGeometry* place) const;
 
   Geos Context;
-  std::vector<TerrainPiece> Faces; ///< whole triangles, anticlockwise
+  std::vector<TerrainPiece> Faces; ///< whole triangles, anticlockwise in plan
   std::unique_ptr<GEOSSTRtree, std::function<void(GEOSSTRtree*)>> Tree;
 };
 
-/// The lowest point of pieces, of which there is one at least.
+/// Returns the height of the lowest point of the pieces, m. There must be at least one piece.
 double LowestOf(const std::vector<TerrainPiece>& pieces);
 }
 

@@ -14,7 +14,7 @@
 
 namespace avianlidar::formats
 {
-/// The first characters of a word or a line of the file, for a message.
+/// Returns the first 40 characters of a word or line of the file, for a message.
 std::string shown(const std::string& text);
 
 /// Lines of a source, read block by block.
@@ -27,11 +27,11 @@ public:
   {
   }
 
-  /// The next line without its end, the first one without a byte-order mark; false behind the last.
-  /// A line of more than 16 MiB is a FormatError.
+  /// Reads the next line, without its end and without a byte-order mark. Returns false behind the
+  /// last line. Throws FormatError for a line of more than 16 MiB.
   bool get(std::string& line);
 
-  /// Where the next line begins.
+  /// Returns the offset of the next line in the source, bytes.
   std::uint64_t position() const { return this->Next - (this->Block.size() - this->At); }
 
 private:
@@ -43,7 +43,8 @@ private:
   std::size_t At = 0;
 };
 
-/// The number that a word is, in the C locale; otherwise a FormatError that names the key.
+/// Converts a word to a number, in the C locale. Throws FormatError, which names the key, if the
+/// word is not a number.
 template <class T>
 T numberOf(const std::string& word, const char* key)
 {

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file VirtualFiles.h
- * @brief Files, compressed or not, through GDAL's virtual file system, and GDAL's errors as
- * texts.
+ * @brief Lets GDAL read compressed files, without the network, and keeps GDAL's errors as text.
  */
 #ifndef AvianLidarVirtualFiles_h
 #define AvianLidarVirtualFiles_h
@@ -14,14 +13,14 @@
 
 namespace avianlidar::scene
 {
-/// The name under which GDAL reads a file: "/vsigzip/..." for a name that ends in ".gz", else the
-/// name itself.
+/// Returns the name under which GDAL reads a file: "/vsigzip/..." for a name that ends in ".gz",
+/// else the name itself.
 std::string VirtualName(const std::string& file);
 
-/// While an object exists, GDAL does not use the network in this thread, and PROJ in none; PROJ has
-/// one switch for the process, which gets its old value back when the last object ends. GDAL reads
-/// compressed files as they are now: it keeps no state of them for the next opening, which it would
-/// find by the name alone, and writes no file beside them.
+/// While an object exists, GDAL does not use the network in this thread, and PROJ does not use the
+/// network in any thread. PROJ has one switch for the process, which gets its old value back when
+/// the last object ends. GDAL keeps no state of a compressed file, because GDAL would use this
+/// state for a later file of the same name, and writes no file beside a compressed file.
 class OfflineGdal
 {
 public:
@@ -31,21 +30,21 @@ public:
   OfflineGdal& operator=(const OfflineGdal&) = delete;
 
 private:
-  // No URL is the only one allowed.
+  // The only allowed URL is "none", which does not exist.
   CPLConfigOptionSetter AllowedUrls{ "CPL_VSIL_CURL_ALLOWED_FILENAME", "none", false };
   CPLConfigOptionSetter NoState{ "CPL_VSIL_GZIP_SAVE_INFO", "NO", false };
   CPLConfigOptionSetter NoSizes{ "CPL_VSIL_GZIP_WRITE_PROPERTIES", "NO", false };
 };
 
-/// While an object exists, GDAL's messages of this thread are kept instead of printed.
+/// While an object exists, GDAL prints no messages of this thread, and the last error is kept.
 class QuietGdal
 {
 public:
   QuietGdal();
 
-  /// Whether GDAL reported an error, warnings aside.
+  /// Returns whether GDAL reported an error; warnings do not count.
   bool Failed() const { return !this->LastError.empty(); }
-  /// ": <the last error>", or nothing.
+  /// Returns ": <last error>", or an empty text without an error.
   std::string Reason() const { return this->Failed() ? ": " + this->LastError : std::string(); }
 
 private:

@@ -3,7 +3,7 @@
  * @file vtkAvianLidarCloudFields.h
  * @brief Converts between VTK's arrays and the clouds of the file formats. Not installed.
  *
- * A bad input gives a FormatError that names the array.
+ * The functions throw FormatError, which names the array, for bad input.
  */
 #ifndef vtkAvianLidarCloudFields_h
 #define vtkAvianLidarCloudFields_h
@@ -36,80 +36,85 @@ using avianlidar::formats::Field;
 using avianlidar::formats::Point;
 using avianlidar::formats::SensorPose;
 
-/// Throws what vtkAvianLidarArrays finds wrong, unless it is empty.
+/// Throws FormatError with the fault that a check of vtkAvianLidarArrays found, unless `wrong` is
+/// empty.
 void Require(const std::string& wrong);
 
-/// The numeric point array of that name, or null; one of more than one component is an error.
+/// Returns the numeric point array of a name, or null. Throws if the array has several components.
 vtkDataArray* Find(vtkPointSet* input, const char* name);
 
-/// The numeric point array of a name; a missing array is also an error.
+/// Returns what Find() returns. Throws also if the input has points but not the array.
 vtkDataArray* Need(vtkPointSet* input, const char* name);
 
-/// A component of an array as a field, of its own type, with its unit.
+/// Returns a component of an array as a field, with the type and unit of the array.
 Field ToField(vtkDataArray* array, int component = 0);
 
-/// True for 64-bit integers with a value that a double cannot hold, such as checksums.
+/// True if an array of 64-bit integers has a magnitude of 2^53 or more, such as a checksum.
 bool IsTooLongForDouble(vtkDataArray* array);
 
-/// An array has so many components, and a tuple for each point; else it is an error.
+/// Throws unless the array has `components` components and a tuple for each point.
 void RequireShape(vtkDataArray* array, int components, vtkPointSet* input);
 
-/// All numeric point arrays of one component; one without a value for each point is an error.
+/// Returns all numeric point arrays of one component. Throws if an array lacks a value for a point.
 std::vector<vtkDataArray*> ArraysOfOne(vtkPointSet* input);
 
-/// Whether one of the fields has that name.
+/// Returns whether one of the fields has the name.
 bool HasName(const std::vector<Field>& fields, const std::string& name);
 
-/// A field of a table: its name is a word, and integers of 64 bits become doubles.
+/// Returns a field of a table. Blanks in the name become `_`, and 64-bit integers become doubles.
 Field TableField(vtkDataArray* array, int component = 0);
 
-/// x, y, z (as floats with `single`), intensity as float, all other fields of one component, and
-/// the notes as comment. Warnings name what is left out, as another has its name, and coordinates
-/// that are rounded by 1 mm or more.
+/// Returns x, y, z (as floats if `single`), intensity as float, all other fields of one component,
+/// and the notes as comment. A warning names arrays that are left out because another field has
+/// their name. Another warning is given if coordinates are rounded by more than 1 mm.
 avianlidar::formats::TableOutput ToTable(
   vtkPointSet* input, bool single, const std::function<void(const std::string&)>& warn);
 
-/// Value i of an array, or `otherwise` where there is no array. It must be finite.
+/// Returns value i of an array, or `otherwise` if the array is null. Throws if the value is not
+/// finite.
 double ValueOf(vtkDataArray* array, std::int64_t i, double otherwise);
 
-/// The same of whole numbers that an int holds; anything else is an error.
+/// Returns value i of an array, or `otherwise` if the array is null. Throws if the value is not a
+/// whole number of 32 bits.
 int IntegerOf(vtkDataArray* array, std::int64_t i, int otherwise);
 
-/// The colours of `rgb` (three unsigned chars), or null if it is not there or one number; of any
-/// other shape or type it is an error.
+/// Returns the array `rgb` of colours (three unsigned chars), or null if the array is missing or
+/// has one component. Throws if `rgb` has any other shape or type.
 vtkDataArray* FindColours(vtkPointSet* input);
 
-/// Units of the point arrays, numbers and texts of the field data.
+/// Returns the units of the point arrays, and the numbers and texts of the field data.
 CloudNotes ToNotes(vtkPointSet* input);
 
-/// The field data's `geodetic_origin` (latitude deg, longitude deg, height m) if it is there; an
-/// error if it is not what it should be.
+/// Returns the field data `geodetic_origin` (latitude deg, longitude deg, height m), if present.
+/// Throws if the field data are not a valid origin.
 std::optional<Point> FindOrigin(vtkPointSet* input);
 
-/// The field data's texts of that name, or null; of another kind they are an error.
+/// Returns the texts of a name in the field data, or null. Throws if the array is not of texts.
 vtkStringArray* FindTexts(vtkPointSet* input, const char* name);
 
-/// The field data's text of that name, or an empty one.
+/// Returns the first text of a name in the field data, or an empty text.
 std::string FindText(vtkPointSet* input, const char* name);
 
-/// Where the field data's `position` and `orientation` say that the sensor is; nothing without
+/// Returns the pose that the field data `position` and `orientation` give; no value without
 /// `position`.
 std::optional<SensorPose> FindPose(vtkPointSet* input);
 
-/// Point `i` in another frame; one that either frame does not hold is an error.
+/// Transforms point `i` to another frame. Throws if the point is outside the range of either frame.
 Point Carry(const avianlidar::GeodeticFrame& geodesy, avianlidar::Frame from, avianlidar::Frame to,
   const Point& point, std::int64_t i);
 
-/// Publish the times of steps, s, of which there may be none; the whole output is piece 0.
+/// Publishes the times of the time steps, s, which may be empty, and that piece 0 has the whole
+/// output.
 void SetTimes(const std::vector<double>& times, vtkInformation* output);
 
-/// The last step up to the time that is wanted, or the first.
+/// Returns the last step up to the requested time, or the first step.
 std::size_t StepOf(const std::vector<double>& times, vtkInformation* output);
 
-/// Whether another piece than the first is wanted.
+/// Returns whether another piece than the first is requested.
 bool IsOtherPiece(vtkInformation* output);
 
-/// The error text of a step that reads, with the name of the file.
+/// Runs a step of reading. Returns the name of the file and the error of the step, or an empty
+/// text.
 template <class Step>
 std::string ErrorIn(const std::string& fileName, const char* noMemory, Step step)
 {
@@ -132,8 +137,8 @@ std::string ErrorIn(const std::string& fileName, const char* noMemory, Step step
   }
 }
 
-/// A cloud that was read, with a vertex for each point; its values are freed as they are taken
-/// over.
+/// Converts a cloud to vtkPolyData with a vertex for each point. Frees the values of the cloud
+/// meanwhile.
 void ToPolyData(Cloud& cloud, vtkPolyData* output);
 }
 
