@@ -117,9 +117,9 @@ public:
 
   /// Use these beams instead of columns and channels. The points (m), the point array
   /// `direction` (any length above 0) and the optional array `timestamp` (us, 0 to 1 /
-  /// RotationRate; default 0) are copied. Points and directions are in the frame of the sensor.
-  /// `beam_id` is the number of the point, and `laser_id` is 0. Null, a preset or a file restores
-  /// columns and channels.
+  /// RotationRate; default 0) are copied. Points and directions are in the frame of the sensor:
+  /// Orientation turns them, and Position is added to the points. `beam_id` is the number of the
+  /// point, and `laser_id` is 0. Null, a preset or a file restores columns and channels.
   /// @return false for bad beams, with an error that names the array; then nothing changes
   bool SetBeams(vtkPolyData* beams);
 
@@ -508,7 +508,7 @@ public:
   double GetClearAirAttenuation();
 
   ///@{
-  /** Length of port 1's lines, range of report points without echo, m, to 1e30. Default 1000. */
+  /** Length of port 1's lines and range of report points without echo, m, to 1e30. Default 1000. */
   vtkSetMacro(DisplayLength, double);
   vtkGetMacro(DisplayLength, double);
   ///@}

@@ -3,7 +3,7 @@
  * @file BeamSimulator.h
  * @brief Simulates a block of beams, from rays to returns, in three stages.
  *
- * 1. Tracing (ScanBlock.h) finds the surfaces that all beams of the block see, unless these are
+ * 1. Tracing (ScanBlock.h) finds the surfaces that each beam of the block sees, unless these are
  * kept from an earlier run.
  * 2. Lighting (BeamLighting.h) sums the energies of all paths of one beam in range units. Lighting
  *    is skipped where a scan differs from the scan before only in noise (LitBeam.h).
@@ -26,8 +26,8 @@
 
 namespace avianlidar
 {
-/// One object per thread, which setup and beams must outlive. The setup must not change. A beam may
-/// change until it is traced.
+/// Each thread uses an object of its own, which setup and beams must outlive. The setup must not
+/// change. A beam may change until it is traced.
 class BeamSimulator
 {
 public:
@@ -51,8 +51,8 @@ public:
     return this->Tracing.trace(begin, end, traces, leaveOut);
   }
 
-  /// Light beam `beam` of the block traced last: add to its trace, append its echoes, and fill its
-  /// report.
+  /// Sums the energies of beam `beam` of the block traced last: adds to its trace, appends its
+  /// echoes, and fills its report.
   void light(std::size_t beam, BeamTrace& trace, std::vector<Echo>& echoes, BeamReport& report);
 
   /// See BeamLighting::lightAll().

@@ -71,13 +71,14 @@ struct FlightSettings
   std::array<double, 2> timeRange{ 0.0, 60.0 }; ///< begin and end, s
   Vec3 center{ 0.0 };                           ///< centre of the disc, m
   double radius = 500.0; ///< radius of the disc, m; half the approach's length
-  std::array<double, 2> heights{ 10.0, 150.0 }; ///< heights above center, m; unused for approaches
-  Vec3 thresholdPosition{ 0.0 };                ///< threshold of the runway, m
+  std::array<double, 2> heights{ 10.0,
+    150.0 };                     ///< heights above the centre, m; unused for approaches
+  Vec3 thresholdPosition{ 0.0 }; ///< threshold of the runway, m
   double thresholdHeading = 0.0; ///< heading of landings, degrees clockwise from north
 };
 
-/// Returns an empty string, or a sentence that names the wrong setting (as vtkAvianLidarTracks
-/// does) and what is expected.
+/// Returns an empty string, or a sentence that gives the wrong setting, by its name in
+/// vtkAvianLidarTracks, and what is expected.
 std::string checkFlights(const FlightSettings& settings);
 
 /// Makes flights for the whole time range. Bird k, counted from 1, does not depend on the number of
