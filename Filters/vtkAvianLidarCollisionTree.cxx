@@ -32,7 +32,7 @@ vtkInformationKeyMacro(vtkAvianLidarCollisionTree, COLLISION_TREE, ObjectBase);
 struct vtkAvianLidarCollisionTree::vtkInternals
 {
   std::shared_ptr<const avianlidar::CollisionTree> Tree;
-  vtkAvianLidarSurfaceExchange Exchange;                 ///< of surfaces between ranks
+  vtkAvianLidarSurfaceExchange Exchange;                 ///< exchange of surfaces between ranks
   std::shared_ptr<const vtkAvianLidarSurfaces> Surfaces; ///< surfaces merged last
   vtkAvianLidarWarnings Warnings;
   int Builds = 0;

@@ -99,7 +99,7 @@ void Place(Cloud& cloud, bool wantLocal, vtkFieldData* data)
 struct vtkAvianLidarPointCloudReader::vtkInternals
 {
   formats::PacketIndex Packets;
-  std::vector<double> Times; ///< of the revolutions, s
+  std::vector<double> Times; ///< times of the revolutions, s
   std::string Problem;       ///< why packets cannot be read; empty if they can
 };
 

@@ -144,7 +144,7 @@ std::vector<Entity> EntitiesOf(std::string_view text)
   return entities;
 }
 
-/// The first entity of an id; an empty one if there is none.
+/// The first entity with an id; an empty entity if no entity has the id.
 Entity EntityOf(const std::vector<Entity>& entities, const std::string& id)
 {
   const auto found = std::find_if(

@@ -18,7 +18,7 @@ constexpr double DegreesToRadians = 3.14159265358979323846 / 180.0;
 // Printed matrices have rounded digits.
 constexpr double OrthonormalTolerance = 1e-6;
 
-/// The id of a material, case aside; -1 if there is none of that name.
+/// The id of the material with a name, whatever its case; -1 if no material has the name.
 int FindMaterial(const Scene& scene, const std::string& name)
 {
   const std::string wanted = vtksys::SystemTools::LowerCase(name);

@@ -121,7 +121,7 @@ def read_outlines(file, origin: Sequence[float], attribute: str = "") -> List[An
 
 
 def _height(value: Any) -> float:
-    """A height (m) as scenes take it: a number, or a text of it, with or without "m"; 0 for what is none."""
+    """A height (m) as scenes take it: a number, or a text of it, with or without "m"; 0 for any other value."""
     try:
         found = float(re.sub(" ?m$", "", value) if isinstance(value, str) else value)
     except (TypeError, ValueError):

@@ -175,7 +175,7 @@ def design(options) -> None:
         close_bar()
         refused = [one.refused for one in study.candidates if one.refused]
         if refused:
-            warn(f"{len(refused)} of {len(study.candidates)} designs are none, as the sensor refuses them: {refused[0]}")
+            warn(f"{len(refused)} of {len(study.candidates)} designs are left out, because the sensor refuses them: {refused[0]}")
         tell(*answers(study),
              f"{options.out / 'design.html'}: the page; its tables and pictures are beside it")
 
