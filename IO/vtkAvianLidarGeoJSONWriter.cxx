@@ -179,19 +179,21 @@ void vtkAvianLidarGeoJSONWriter::WriteCloud(vtkPointSet* input)
 
   std::vector<formats::Field> numbers;
   json units = json::object();
-  for (vtkDataArray* array : fields::ArraysOfOne(input))
+  for (vtkDataArray* array : fields::NumericArrays(input))
   {
-    const formats::Field field = fields::ToField(array);
-    const bool isPlace = places.FromArrays() &&
-      (field.name == names::Longitude.name || field.name == names::Latitude.name ||
-        field.name == names::Height.name);
-    if (!isPlace)
+    for (const formats::Field& field : fields::ToFields(array))
     {
-      numbers.push_back(field);
-    }
-    if (!isPlace && !field.unit.empty())
-    {
-      units[field.name] = field.unit;
+      const bool isPlace = places.FromArrays() &&
+        (field.name == names::Longitude.name || field.name == names::Latitude.name ||
+          field.name == names::Height.name);
+      if (!isPlace)
+      {
+        numbers.push_back(field);
+      }
+      if (!isPlace && !field.unit.empty())
+      {
+        units[field.name] = field.unit;
+      }
     }
   }
   const std::vector<TextField> texts = TextsOf(input);

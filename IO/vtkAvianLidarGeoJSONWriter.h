@@ -8,9 +8,10 @@
  * in metres east, north and up. Without a geodetic position the writer gives an error.
  *
  * Each echo becomes a point feature, with 9 decimals of a degree and 4 of a metre. The properties
- * of a feature are all numeric point arrays of one component, and `object`, `object_class` and
- * `material`, whose names come from the field data. The member `units` of the collection gives the
- * units of the properties. Without echoes the collection has no features.
+ * of a feature are all numeric point arrays, and `object`, `object_class` and `material`, whose
+ * names come from the field data. An array of several components becomes the properties `name_0`,
+ * `name_1`, ... The member `units` of the collection gives the units of the properties. Without
+ * echoes the collection has no features.
  *
  * Example: `writer->SetFileName("echoes.geojson"); writer->Write();` Documentation:
  * reference/formats.md.

@@ -26,10 +26,10 @@ using formats::Scalar;
 
 namespace
 {
-/// PCL's colours: the bytes of a float.
-Field ColourField(vtkDataArray* colours)
+/// Returns the colours as PCL stores them: in the bytes of a float.
+std::vector<Field> ToPackedColour(vtkDataArray* colours)
 {
-  return { "rgb", "", Scalar::Float32,
+  return { { "rgb", "", Scalar::Float32,
     [colours](std::int64_t i)
     {
       std::uint32_t packed = 0;
@@ -40,7 +40,7 @@ Field ColourField(vtkDataArray* colours)
       unsigned char bytes[4];
       formats::store(packed, bytes);
       return formats::loadAs(Scalar::Float32, bytes);
-    } };
+    } } };
 }
 
 /// The pattern of the scan, from the field data of the beam source; what is missing otherwise.
@@ -197,12 +197,8 @@ vtkStandardNewMacro(vtkAvianLidarPCDWriter);
 void vtkAvianLidarPCDWriter::WriteCloud(vtkPointSet* input)
 {
   formats::PcdOutput output{ fields::ToTable(input, this->Precision == PRECISION_SINGLE,
-    [this](const std::string& text) { this->Warn(text); }) };
+    ToPackedColour, [this](const std::string& text) { this->Warn(text); }) };
   output.ascii = this->FileType == FILE_TYPE_ASCII;
-  if (vtkDataArray* colours = fields::FindColours(input))
-  {
-    output.fields.push_back(ColourField(colours));
-  }
   output.width = static_cast<std::uint64_t>(input->GetNumberOfPoints());
   OrganisedCells cells;
   if (this->Organisation != ORGANISATION_LIST && input->GetNumberOfPoints() > 0)

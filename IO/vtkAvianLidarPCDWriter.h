@@ -5,10 +5,11 @@
  * the beams of the scan form a grid.
  *
  * Input port 0 is a vtkPointSet. The file has the fields `x`, `y`, `z` (m), `intensity` (float),
- * every other numeric point array of one component in the type of the array (64-bit integers as
- * doubles, exact up to 2^53), and `rgb` packed as in PCL. The field data `position` and
- * `orientation` become the VIEWPOINT. Units and field data are one line of JSON in a comment. An
- * array is left out with a warning if another field already has its name.
+ * every other numeric point array in the type of the array (64-bit integers as doubles, exact up to
+ * 2^53), and `rgb` packed as in PCL. An array of several components becomes the fields `name_0`,
+ * `name_1`, ... The field data `position` and `orientation` become the VIEWPOINT. Units and field
+ * data are one line of JSON in a comment. An array is left out with a warning if another field
+ * already has its name.
  *
  * An organised file has the columns of the scan, in the order of firing, and a row for each
  * channel, the highest first. Cells without an echo hold NaN, -1 or 0. Such a file needs field data

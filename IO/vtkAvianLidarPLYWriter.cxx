@@ -17,21 +17,13 @@ namespace formats = avianlidar::formats;
 
 namespace
 {
-/// The components of an array as properties: red, green and blue, or its name and a number.
-void AddComponents(vtkDataArray* array, bool colours, std::vector<formats::Field>& all)
+std::vector<formats::Field> ToRedGreenBlue(vtkDataArray* colours)
 {
-  const char* const names[] = { "red", "green", "blue" };
-  for (int c = 0; c < array->GetNumberOfComponents(); ++c)
-  {
-    formats::Field field = fields::TableField(array, c);
-    field.name = colours ? names[c] : field.name + "_" + std::to_string(c);
-    if (fields::HasName(all, field.name))
-    {
-      throw formats::FormatError("the point arrays '" + field.name + "' and '" + array->GetName() +
-        "' have one name in the file: take away one of them");
-    }
-    all.push_back(field);
-  }
+  std::vector<formats::Field> properties = fields::ToFields(colours);
+  properties[0].name = "red";
+  properties[1].name = "green";
+  properties[2].name = "blue";
+  return properties;
 }
 }
 
@@ -41,18 +33,8 @@ vtkStandardNewMacro(vtkAvianLidarPLYWriter);
 void vtkAvianLidarPLYWriter::WriteCloud(vtkPointSet* input)
 {
   formats::TableOutput output = fields::ToTable(input, this->Precision == PRECISION_SINGLE,
-    [this](const std::string& text) { this->Warn(text); });
+    ToRedGreenBlue, [this](const std::string& text) { this->Warn(text); });
   output.ascii = this->FileType == FILE_TYPE_ASCII;
-  vtkDataArray* colours = fields::FindColours(input);
-  vtkPointData* data = input->GetPointData();
-  for (int i = 0; i < data->GetNumberOfArrays(); ++i)
-  {
-    vtkDataArray* array = data->GetArray(i);
-    if (array && array->GetName() && array->GetNumberOfComponents() > 1)
-    {
-      AddComponents(array, array == colours, output.fields);
-    }
-  }
   formats::PlyFaces faces;
   vtkNew<vtkIdList> ids;
   if (auto* mesh = vtkPolyData::SafeDownCast(input))

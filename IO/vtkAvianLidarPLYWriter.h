@@ -9,9 +9,8 @@
  * `red`, `green`, `blue`. Units and field data are JSON in comments, which
  * vtkAvianLidarPointCloudReader reads back. Polygons become the element `face`.
  *
- * An array of one component is left out with a warning if another property already has its name. An
- * array of several components whose names are taken gives an error, and so do triangle strips.
- * Coordinates are rounded as in vtkAvianLidarPCDWriter.
+ * An array is left out with a warning if another property already has its name. Triangle strips
+ * give an error. Coordinates are rounded as in vtkAvianLidarPCDWriter.
  *
  * Example: `writer->SetFileName("echoes.ply"); writer->Write();` Documentation:
  * reference/formats.md. Source: G. Turk, "The PLY Polygon File Format", 1994.

@@ -214,16 +214,16 @@ Field ToField(vtkDataArray* array, int component)
 }
 
 //------------------------------------------------------------------------------
-std::vector<vtkDataArray*> ArraysOfOne(vtkPointSet* input)
+std::vector<vtkDataArray*> NumericArrays(vtkPointSet* input)
 {
   std::vector<vtkDataArray*> arrays;
   vtkPointData* data = input->GetPointData();
   for (int i = 0; i < data->GetNumberOfArrays(); ++i)
   {
     vtkDataArray* array = data->GetArray(i);
-    if (array && array->GetName() && *array->GetName() && array->GetNumberOfComponents() == 1)
+    if (array && array->GetName() && *array->GetName())
     {
-      RequireShape(array, 1, input);
+      RequireShape(array, array->GetNumberOfComponents(), input);
       arrays.push_back(array);
     }
   }
@@ -231,28 +231,22 @@ std::vector<vtkDataArray*> ArraysOfOne(vtkPointSet* input)
 }
 
 //------------------------------------------------------------------------------
-bool HasName(const std::vector<Field>& fields, const std::string& name)
+std::vector<Field> ToFields(vtkDataArray* array)
 {
-  return std::any_of(
-    fields.begin(), fields.end(), [&](const Field& field) { return field.name == name; });
-}
-
-//------------------------------------------------------------------------------
-Field TableField(vtkDataArray* array, int component)
-{
-  Field field = ToField(array, component);
-  std::replace_if(
-    field.name.begin(), field.name.end(), [](unsigned char c) { return c <= ' '; }, '_');
-  if (field.type == Scalar::Int64 || field.type == Scalar::UInt64)
+  std::vector<Field> fields;
+  const int components = array->GetNumberOfComponents();
+  for (int c = 0; c < components; ++c)
   {
-    field.type = Scalar::Float64;
+    fields.push_back(ToField(array, c));
+    fields.back().name += components > 1 ? "_" + std::to_string(c) : std::string();
   }
-  return field;
+  return fields;
 }
 
 //------------------------------------------------------------------------------
-formats::TableOutput ToTable(
-  vtkPointSet* input, bool single, const std::function<void(const std::string&)>& warn)
+formats::TableOutput ToTable(vtkPointSet* input, bool single,
+  const std::function<std::vector<Field>(vtkDataArray*)>& toColours,
+  const std::function<void(const std::string&)>& warn)
 {
   constexpr double noticeable = 1e-3; // m
   const double rounding = single ? RoundingOf(input) : 0.0;
@@ -275,17 +269,34 @@ formats::TableOutput ToTable(
     all.back().type = Scalar::Float32;
   }
   std::string left;
-  for (vtkDataArray* array : ArraysOfOne(input))
+  const vtkDataArray* colours = FindColours(input);
+  for (vtkDataArray* array : NumericArrays(input))
   {
     const std::string name = array->GetName();
-    const Field field = TableField(array);
-    if (name != names::Intensity.name && HasName(all, field.name))
+    if (name == names::Intensity.name)
+    {
+      continue;
+    }
+    std::vector<Field> fields = array == colours ? toColours(array) : ToFields(array);
+    bool taken = false;
+    for (Field& field : fields)
+    {
+      std::replace_if(
+        field.name.begin(), field.name.end(), [](unsigned char c) { return c <= ' '; }, '_');
+      // Neither format has integers of 64 bits.
+      const bool isLong = field.type == Scalar::Int64 || field.type == Scalar::UInt64;
+      field.type = isLong ? Scalar::Float64 : field.type;
+      taken = taken ||
+        std::any_of(
+          all.begin(), all.end(), [&](const Field& other) { return other.name == field.name; });
+    }
+    if (taken)
     {
       left += (left.empty() ? "'" : ", '") + name + "'";
     }
-    else if (name != names::Intensity.name)
+    else
     {
-      all.push_back(field);
+      all.insert(all.end(), fields.begin(), fields.end());
     }
   }
   if (!left.empty())
@@ -293,7 +304,15 @@ formats::TableOutput ToTable(
     warn(" is without the point arrays " + left + ": another field of the file has the name.");
   }
   std::vector<std::string> cut; // nothing: a comment may be as long as it is
-  output.comment = formats::toText(ToNotes(input), std::numeric_limits<std::size_t>::max(), cut);
+  CloudNotes notes = ToNotes(input);
+  for (std::size_t i = 3; i < all.size(); ++i)
+  {
+    if (!all[i].unit.empty())
+    {
+      notes.units[all[i].name] = all[i].unit;
+    }
+  }
+  output.comment = formats::toText(notes, std::numeric_limits<std::size_t>::max(), cut);
   return output;
 }
 

@@ -55,20 +55,20 @@ bool IsTooLongForDouble(vtkDataArray* array);
 /// Throws unless the array has `components` components and a tuple for each point.
 void RequireShape(vtkDataArray* array, int components, vtkPointSet* input);
 
-/// Returns all numeric point arrays of one component. Throws if an array lacks a value for a point.
-std::vector<vtkDataArray*> ArraysOfOne(vtkPointSet* input);
+/// Returns all numeric point arrays that have a name. Throws if an array lacks a value for a point.
+std::vector<vtkDataArray*> NumericArrays(vtkPointSet* input);
 
-/// Returns whether one of the fields has the name.
-bool HasName(const std::vector<Field>& fields, const std::string& name);
+/// Returns a field for each component of an array. Fields of several components are named `name_0`,
+/// `name_1`, ...
+std::vector<Field> ToFields(vtkDataArray* array);
 
-/// Returns a field of a table. Blanks in the name become `_`, and 64-bit integers become doubles.
-Field TableField(vtkDataArray* array, int component = 0);
-
-/// Returns x, y, z (as floats if `single`), intensity as float, all other fields of one component,
-/// and the notes as comment. A warning names arrays that are left out because another field has
-/// their name. Another warning is given if coordinates are rounded by more than 1 mm.
-avianlidar::formats::TableOutput ToTable(
-  vtkPointSet* input, bool single, const std::function<void(const std::string&)>& warn);
+/// Returns x, y, z (as floats if `single`), intensity as float, the fields of all other numeric
+/// arrays (`toColours` makes those of `rgb`), and the notes as comment. Blanks in names become `_`,
+/// and 64-bit integers become doubles. A warning names arrays that are left out because another
+/// field has their name. Another warning is given if coordinates are rounded by more than 1 mm.
+avianlidar::formats::TableOutput ToTable(vtkPointSet* input, bool single,
+  const std::function<std::vector<Field>(vtkDataArray*)>& toColours,
+  const std::function<void(const std::string&)>& warn);
 
 /// Returns value i of an array, or `otherwise` if the array is null. Throws if the value is not
 /// finite.

@@ -48,6 +48,8 @@ class TestGeoJSONWriter(InFolder):
             self.assertLess(np.abs(column(rows, axis) - values).max(), bound, axis)
 
     def test_every_echo_and_property(self):
+        pair = np.random.default_rng(7).normal(size=(self.data.GetNumberOfPoints(), 2))
+        add_array(self.data, "pair", pair)
         self.write()
         told = self.ogrinfo()
         for words in (f"Feature Count: {self.data.GetNumberOfPoints()}", "Geometry: 3D Point", 'GEOGCRS["WGS 84"', "energy: Real",
@@ -56,7 +58,8 @@ class TestGeoJSONWriter(InFolder):
         rows = features()
         self.assert_places(rows)
         whole = json.loads(pathlib.Path(FILE).read_text(encoding="utf-8"))
-        for name in names(self.data):  # GDAL writes 15 digits; the file has them all
+        np.testing.assert_array_equal([[one["properties"][f"pair_{c}"] for c in (0, 1)] for one in whole["features"]], pair)
+        for name in set(names(self.data)) - {"pair"}:  # GDAL writes 15 digits; the file has them all
             np.testing.assert_allclose(column(rows, name), array(self.data, name), rtol=1e-14, err_msg=name)
             np.testing.assert_array_equal([one["properties"][name] for one in whole["features"]], array(self.data, name), name)
         for name, ids, texts in (("object", "object_id", "object_names"), ("object_class", "object_id", "object_classes"),

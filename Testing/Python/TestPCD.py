@@ -312,6 +312,15 @@ class Written(InFolder):
         self.assertIn("'x', 'two_words'", warning)
         self.assertEqual((parse()[0]["FIELDS"], points(read(FILE)).tolist()), (["x", "y", "z", "two_words"], [[1, 2, 3]]))
 
+    def test_several_components(self):
+        velocity = np.random.default_rng(7).normal(size=(self.data.GetNumberOfPoints(), 3))
+        add_array(self.data, "velocity", velocity, "m/s")
+        self.write()
+        got = read(FILE)
+        for c in range(3):
+            np.testing.assert_array_equal(array(got, f"velocity_{c}"), velocity[:, c])
+            self.assertEqual(unit(got, f"velocity_{c}"), "m/s")
+
 
 if __name__ == "__main__":
     unittest.main()
