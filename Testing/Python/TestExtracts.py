@@ -152,6 +152,23 @@ class Formats(unittest.TestCase):
                                          **({("way", "no nodes"): 2, ("relation", "no ways"): 1} if one is file else {("way", "no nodes"): 1})}, one)
         self.assertIn("a runway is cut by the extract's border", ta.run("airport", file, "-o", ta.fresh("cut"))[1])
 
+    def test_areas_that_enclose_nothing(self):
+        """A way there and back as a building, as the outer way of a wood, and as a hole and a second part of another wood."""
+        text = runway(ta.Map()).write("back.osm").read_text(encoding="utf-8")
+        nodes = "".join(f'<node id="{900 + i}" lat="{53.603 + 1e-4 * x}" lon="{13.301 + 1e-4 * y}"/>' for i, (x, y) in enumerate(
+            ((0, 0), (2, 0), (2, 2), (0, 2), (1, 1), (3, 3))))
+        ways = "".join(f'<way id="{number}">' + "".join(f'<nd ref="{900 + i}"/>' for i in refs) + tag + "</way>" for number, refs, tag in (
+            (910, (0, 1, 2, 1, 0), '<tag k="building" v="yes"/>'), (911, (0, 1, 2, 1, 0), ""), (912, (0, 1, 2, 3, 0), ""), (913, (0, 4, 0), ""),
+            (914, (2, 5, 2), "")))
+        relations = "".join(f'<relation id="{number}">' + "".join(f'<member type="way" ref="{way}" role="{role}"/>' for way, role in members)
+                            + '<tag k="type" v="multipolygon"/><tag k="natural" v="wood"/></relation>' for number, members in (
+                                (920, ((911, "outer"),)), (921, ((912, "outer"), (913, "inner"), (914, "outer")))))
+        file = ta.FOLDER / "back.osm"
+        file.write_text(text.replace("<way", nodes + ways + "<way", 1).replace("</osm>", relations + "</osm>"), encoding="utf-8")
+        self.assertEqual([kind for kind, *_ in things(file)], ["runway", "wood"])
+        self.assertEqual(left(file), {("building", "no nodes"): 1, ("wood", "no nodes"): 1})
+        ta.run("airport", file, "-o", ta.fresh("back"))
+
     def test_what_is_not_a_whole_extract(self):
         whole = fenced().write("whole.osm")
         for name, content, words in (

@@ -12,20 +12,20 @@ import numpy as np
 from osgeo import ogr
 
 from ._features import HEIGHTS, Feature, Table, fits, height_name, length_of, levels_of, properties_of
-from ._gdal import as_area, corners_of, form_of, geometry, is_closed, parts_of, union, valid
+from ._gdal import as_area, corners_of, form_of, geometry, is_closed, parts_of, solid, union, valid
 
 COAST = "coastline"
 UNKNOWN, CUT, TWICE = "unknown kind", "cut by the extract's border", "drawn twice"
 
 
-def _has_extent(corners: np.ndarray, form: str) -> bool:
-    """False of lines and areas of which nodes are missing, or the same."""
+def _has_extent(shape, corners: np.ndarray, form: str) -> bool:
+    """False for lines and areas whose nodes are missing or coincide, and for areas that enclose nothing."""
     if form == "point":
         return True
     away = corners - corners[0]
     far = away[np.argmax(np.hypot(*away.T))]
-    least = 1e-9 * np.hypot(*far)  # of 0.1 mm
-    return least > 0.0 and (form == "line" or bool(np.abs(away[:, 0] * far[1] - away[:, 1] * far[0]).max() > least))
+    least = 1e-9 * np.hypot(*far)  # area of a strip of 0.1 mm
+    return least > 0.0 and (form == "line" or shape.Area() > least)
 
 
 def _as_osm(tags: Dict[str, str], known: Dict[str, Any]) -> Dict[str, str]:
@@ -122,12 +122,10 @@ class Extract:
             self._leave_unknown(one, form, use)
         reason = self._reason(tags) if kinds else None
         for kind, taken in kinds:
-            one = Feature(kind, tags, shape)
-            if reason or not _has_extent(corners, taken):
+            one = Feature(kind, tags, solid(shape) if taken == "area" else shape if taken == form else ogr.ForceToMultiLineString(shape))
+            if reason or not _has_extent(one.shape, corners, taken):
                 self.leave(one, reason or (CUT if tags.get("osm_way_id") in self.cut else "no nodes"))
                 continue
-            if form != taken:
-                one.shape = as_area(shape) if taken == "area" else ogr.ForceToMultiLineString(shape)
             self._keep(one, taken, corners)
 
     def _reason(self, tags: Dict[str, str]) -> Optional[str]:

@@ -114,6 +114,12 @@ def as_area(shape):
     return shape.Clone() if form_of(shape) == "area" else ogr.ForceToPolygon(shape.Clone())
 
 
+def solid(shape):
+    """The polygon in a closed line or an area, without rings that enclose nothing."""
+    area = as_area(shape)
+    return area if area.IsValid() else union([area])
+
+
 def union(areas: List[Any]):
     whole = ogr.Geometry(ogr.wkbMultiPolygon)
     for part in (part for area in areas for part in parts_of(valid(area)) if form_of(part) == "area"):
