@@ -12,8 +12,8 @@
  * Differs: the projected wedge is wider (BeamCone.h), and the two planes in space are added.
  * Valid: conservative, rounding included: if TriangleTest.h finds a hit of the ray, or of any ray
  * of the beam, on a triangle, no volume that holds the triangle is rejected. For this purpose, cone
- * and ray are widened by HitMarginBeam tan(theta0.5) + HitMargin, volumes by HitMargin times their
- * farthest coordinate from the apex. False positives are possible.
+ * and ray are widened by HitMarginBeam tan(theta0.5) + HitMargin. Volumes are widened by HitMargin
+ * times their farthest coordinate from the apex. False positives are possible.
  * Test: TestBeamVolumeTest.cxx, TestGeometryProperties.cxx.
  */
 #ifndef avianlidar_BeamVolumeTest_h
@@ -30,7 +30,8 @@ public:
   /// Test of the cone of one beam, half-beamwidth in (0, pi/3].
   explicit BeamVolumeTest(const BeamFrame& frame);
 
-  /// Test of one ray. @param apex scene coordinates, m; @param origin relative to the apex, m
+  /// Test of one ray. @param apex apex in scene coordinates, m; @param origin relative to the apex,
+  /// m
   /// @param direction unit vector @param angularMargin half-width of the ray, rad, to which
   /// HitMargin is added
   BeamVolumeTest(const Vec3& apex, const Vec3& origin, const Vec3& direction, double angularMargin);

@@ -6,8 +6,8 @@
  * This tree serves to compare the paper's volumes. The kernel's own tree has eight boxes per node.
  *
  * Source: paper, Sec. 3.1 and 3.2, Eq. 14, Algorithm 1.
- * Differs: a leaf holds up to maximumLeafSize triangles (Algorithm 1: one); the descent is front to
- * back.
+ * Differs: a leaf holds up to maximumLeafSize triangles (Algorithm 1: one triangle). The descent is
+ * front to back.
  * Valid: the descent visits every leaf whose volumes the cone or ray meets within the limit. A
  * volume whose lower bound equals the limit is visited because it may hold a hit of equal range and
  * lower triangle number. The code is not optimised for speed.
@@ -33,7 +33,7 @@ using TreeVolumes = std::variant<std::vector<OBB>, std::vector<BoundingSphere>>;
 struct VolumeTree final : public OtherVolumes
 {
   std::vector<BinaryNode> nodes; ///< empty for an empty mesh; numbered as in BinaryTree
-  /// Volume of each node in scene coordinates; it holds all triangles below the node.
+  /// Volume of each node in scene coordinates. A volume holds all triangles below the node.
   TreeVolumes volumes;
 
   std::uint64_t descendCone(const CollisionTree& tree, const BeamFrame& frame, TreeLeaves& leaves,
@@ -44,7 +44,7 @@ struct VolumeTree final : public OtherVolumes
 };
 
 /// Build a tree as buildCollisionTree() does, with any bounding volume. BoundingVolumeType::AABB
-/// gives the kernel's tree with eight boxes per node; every other volume gives a binary tree.
+/// gives the kernel's tree with eight boxes per node. Every other volume gives a binary tree.
 std::shared_ptr<const CollisionTree> buildVolumeTree(std::shared_ptr<const TriangleMesh> mesh,
   const TreeOptions& options, const KeepGoing& keepGoing = {}, int threads = 0);
 

@@ -4,18 +4,19 @@
  * @brief The air of a scene: clear air, haze, fog, rain, snow and foliage, by extinction and
  * backscatter.
  *
- * Air is a list of media, and the attenuation coefficient of the clear air between them. A medium
- * with the extinction mu and the extinction-to-backscatter ratio S has the backscatter mu/S per
- * metre and steradian. A medium fills the scene or a volume (MediumVolume.h). BeamAir.h follows the
- * air along a beam.
+ * Air consists of a list of media and the attenuation coefficient of the clear air between the
+ * media. A medium with the extinction mu and the extinction-to-backscatter ratio S has the
+ * backscatter mu/S per metre and steradian. A medium fills the scene or a volume (MediumVolume.h).
+ * BeamAir.h follows the air along a beam.
  *
- * Fog has so many droplets that their number does not matter. Rain has few drops. The diameters of
- * raindrops are exponential, N(D) = N0 exp(-Lambda D), N0 = 8000/(m3 mm), Lambda = 4.1 R^-0.21/mm,
- * with R the rain rate in mm/h. Each drop takes twice its area from the beam. Half of this light is
- * diffracted into an angle of about lambda/D. Most of the diffracted light stays in the view of a
- * lidar and is not lost (keptInView()). Trees have few leaves, too. All leaves have one size, are
- * Lambertian and face all ways. Drops are drawn anew in each scan, and so is the share of the
- * leaves that the wind moves.
+ * Fog has so many droplets that their number does not matter. Rain has few drops. The diameters D
+ * of raindrops are exponentially distributed, N(D) = N0 exp(-Lambda D), with N0 = 8000/(m3 mm),
+ * Lambda = 4.1 R^-0.21/mm and the rain rate R in mm/h. Each drop removes the light on twice its
+ * area from the beam. Half of this light is diffracted into an angle of about lambda/D, with the
+ * wavelength lambda. Most of the diffracted light remains in the view of a lidar and is not lost
+ * (keptInView()). Trees have few leaves, too. All leaves are Lambertian and of one size, with
+ * random orientations. All drops, and the share of the leaves that the wind moves, are drawn anew
+ * in each scan.
  *
  * Coefficients are in 1/m everywhere. The paper's coefficients 0.088 and 0.035 have no unit and are
  * read as 1/km.
@@ -26,7 +27,7 @@
  * geometric optics; for diffraction M. Born and E. Wolf, Principles of Optics, Sec. 8.5.2 (Airy's
  * pattern).
  * Differs: the paper's air only attenuates.
- * Valid: single scattering, except for diffracted light that stays in view. A transmission that
+ * Valid: single scattering, except for diffracted light that remains in view. A transmission that
  * underflows is 0.
  * Test: TestAir.cxx.
  */
@@ -43,11 +44,12 @@
 namespace avianlidar
 {
 /// Transmission of `length` metres of air: exp(-mu l) (paper, Eq. 9), 0 where this number
-/// underflows. @param attenuation coefficient mu, 1/m, >= 0 @param length l of the whole way, m,
-/// >= 0 (2 r for a direct echo)
+/// underflows. @param attenuation coefficient mu, 1/m, >= 0 @param length length l of the whole
+/// way, m, >= 0 (2 r for a direct echo)
 inline double transmission(double attenuation, double length)
 {
-  // Without attenuation even an infinite length transmits all light; 0 * infinity is NaN.
+  // Air without attenuation transmits all light, also over an infinite length (0 * infinity is
+  // NaN).
   return attenuation > 0.0 ? std::exp(-attenuation * length) : 1.0;
 }
 
@@ -69,18 +71,19 @@ struct Medium
   double renewed = 1.0;   ///< share of the drops that are drawn anew in each scan, 0 to 1
   bool isFollowed = true; ///< true if a threshold may follow the medium's light; false for trees
   int objectId = -2;      ///< object id of the medium's echoes; ObjectOfAir for air
-  /// True if drops are leaves. Light comes back through the gaps that let it in, if its ways out
-  /// and back are closer than a leaf is wide (BeamAir.h). If `drops` is 0, light always does so.
+  /// True if drops are leaves. Light comes back through the gap through which it went out, if its
+  /// ways out and back are closer than a leaf is wide (BeamAir.h). If `drops` is 0, light always
+  /// comes back through this gap.
   bool sharesGaps = false;
 
   /// Backscatter coefficient mu/S, 1/(m sr).
   double backscatter() const { return this->extinction / this->backscatterRatio; }
 };
 
-/// Ratio E[D^4]/E[D^2]^2 of exponential diameters.
+/// Ratio E[D^4]/E[D^2]^2 of exponentially distributed diameters D.
 constexpr double SquareOfDrops = 6.0;
 
-/// Ratio E[cos^4]/E[cos^2]^2 of Lambertian leaves that face all ways.
+/// Ratio E[cos^4]/E[cos^2]^2 of Lambertian leaves with random orientations.
 constexpr double SquareOfLeaves = 1.8;
 
 /// A medium and its volume. By default the medium fills the scene.
@@ -102,14 +105,14 @@ struct Air
   std::vector<PlacedMedium> media; ///< media, with extinctions that exclude the clear air
 };
 
-/// True if a medium does not fill the scene.
+/// True if at least one medium does not fill the scene.
 bool haveVolumes(const std::vector<PlacedMedium>& media);
 
 /// View of a lidar, for light that drops diffract by a small angle.
 struct LidarView
 {
   double wavelength = 905e-9; ///< wavelength of the light, m, above 0
-  double halfAngle = 0.0;     ///< half angle of the view, rad; 0: no diffracted light stays in view
+  double halfAngle = 0.0;     ///< half angle of the view, rad; 0: all diffracted light is lost
 };
 
 inline bool operator==(const LidarView& a, const LidarView& b)
@@ -117,14 +120,14 @@ inline bool operator==(const LidarView& a, const LidarView& b)
   return a.wavelength == b.wavelength && a.halfAngle == b.halfAngle;
 }
 
-/// View of a sensor, with the half angle of a round beam of the sensor's solid angle.
+/// View of a sensor, with the half angle of a round beam that has the sensor's solid angle.
 LidarView viewOf(const Sensor& sensor);
 
-/// Share of the diffracted light that stays in view on the way to a target and back. A drop at a
+/// Share of the diffracted light that remains in view on the way to a target and back. A drop at a
 /// share 1 - u of the way shifts light at the target by u times the angle of diffraction. So the
 /// share is the mean over u of the energy of Airy's pattern within halfAngle/u, weighted with the
-/// areas of the drops. The error of the share is below 6e-4. @param slope Lambda of exponential
-/// diameters, 1/m
+/// areas of the drops. The error of the share is below 6e-4. @param slope Lambda of exponentially
+/// distributed diameters, 1/m
 double keptInView(const LidarView& view, double slope);
 
 /// Rain. @param rate rain rate, mm/h, above 0 @param backscatterRatio twice the drops' areas

@@ -1,43 +1,45 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file BeamAir.h
- * @brief The air along one beam: its transmission, and the light that the air returns in each range
- * unit behind surfaces that take shares of the pulse.
+ * @brief The air along one beam: its transmission, and the light that it returns in each range
+ * unit, less the shares of the pulse that nearer surfaces take.
  *
  * From the range R1 to R2 a medium returns E mu/S times the integral over R of O(R) min(A/R^2, 2
  * pi) exp(-depth(R)). E is the pulse energy, mu/S the backscatter (Air.h), A the aperture, O
  * Sensor::nearRangeShare(), and depth the optical depth of all air there and back. Media that fill
- * the scene have a table of these energies. Only the share of the pulse counts that no nearer
- * surface has met.
+ * the scene have a table of these energies. Only the share of the pulse that no nearer surface has
+ * met counts.
  *
- * The axis represents a beam if all volumes are wider than the beam, and if the rim crosses them at
- * the same ranges and with the same optical depth. Otherwise the beam is divided into columns. A
- * column has a direction, a share of the pulse, and parts that lie in volumes (MediumVolume.h).
- * Columns are the cells of a grid of eight by eight over the beam's plane, or eight rows if all
- * volumes are layers. Samples hold the columns of their rays (BeamSamples::columns). So a tree in
- * half a beam weakens only that half, and a tree behind half a wall returns half of its light.
+ * The axis represents a beam if all volumes are wider than the beam, and if the rim crosses the
+ * volumes at the same ranges and with the same optical depth as the axis. Otherwise the beam is
+ * divided into columns. A column has a direction, a share of the pulse, and parts that lie in
+ * volumes (MediumVolume.h). Columns are the cells of a grid of eight by eight over the beam's
+ * plane, or eight rows if all volumes are layers. Samples hold the columns of their rays
+ * (BeamSamples::columns). So a tree in one half of a beam weakens only this half. A tree that a
+ * wall half hides returns half of its light.
  *
- * Leaves stop light on both ways, but a leaf that would stop the light twice counts once. Light
- * from a range R returns to any point of the aperture, a disc about the apex. If this point lies q
- * from the apex, the way back at a range z lies q (1 - z/R) beside the way there. A disc of
- * diameter d and random orientation stops both of two ways that are x d apart (1 - x)^2 times as
- * often as it stops one way, and never if x exceeds 1. So leaves transmit exp(-mu int (2 -
- * (1 - x)^2) dz) there and back, averaged over the aperture. For a length L this transmission lies
- * between exp(-mu L), if the aperture is much smaller than a leaf, and exp(-2 mu L).
+ * Leaves stop light on the way out and on the way back, but a leaf that would stop the light twice
+ * counts once. Light from a range R returns to any point of the aperture, a disc about the apex. If
+ * this point lies q from the apex, the way back at a range z lies x d = q (1 - z/R) beside the way
+ * out, with d the diameter of a leaf. A leaf of random orientation that stops the way out also
+ * stops the way back with the probability (1 - x)^2, or 0 if x exceeds 1. So leaves transmit
+ * exp(-mu int (2 - (1 - x)^2) dz) there and back, averaged over the aperture. For a length L this
+ * transmission lies between exp(-2 mu L) and exp(-mu L). It is exp(-mu L) if the aperture is much
+ * smaller than a leaf.
  *
- * In the units that their parts meet, media may be perceived without other light if the media
+ * Media may be perceived without other light in the range units that their parts meet, if the media
  * return more than a millionth of the lower limit.
  *
  * Source: the lidar equation, single scattering, e.g. U. Wandinger, in: Lidar, Springer, 2005; the
  * hot spot of leaves: A. Kuusk, Soviet Journal of Remote Sensing 3, 1985 (second-hand).
  * Differs: the paper's air sends nothing back. Kuusk has exp(-x) in place of (1 - x)^2.
- * Valid: the energies of units are right to 1e-6 along each column. With leaves, energies are right
- * to 1e-2, up to an optical depth of 4 one way. The table ends at a million units. Mean energies
- * hold for a short pulse. If a straight border divides a round uniform beam, the share on one side
- * errs by 0.095 at worst and 0.017 rms; at the top of a layer, by 0.093 at worst and 0.037 rms. A
- * border that cuts off less than 0.013 of the beam is ignored. The sum of all shares that surfaces
- * take is exact, unit by unit. The transmitter is a point. Paths with two reflections meet
- * different leaves on each of their three ways.
+ * Valid: along each column the energies of units are right to 2e-6, relative (unit 0 to 1e-3). With
+ * leaves, energies are right to 1e-2, relative, up to an optical depth of 4 one way. The table ends
+ * at a million units. Mean energies hold for a short pulse. If a straight border divides a round
+ * uniform beam, the share on one side errs by 0.095 at worst and 0.017 rms. At the top of a layer,
+ * this share errs by 0.093 at worst and 0.037 rms. A border that cuts off less than 0.013 of the
+ * beam is ignored. The sum of all shares that surfaces take is exact, unit by unit. The transmitter
+ * is a point. Paths with two reflections meet different leaves on each of their three ways.
  * Test: TestAir.cxx, TestBeamAir.cxx, TestWeather.py.
  */
 #ifndef avianlidar_BeamAir_h
@@ -67,12 +69,12 @@ struct MetSurface
 /// The leaf at which a ray of the beam ends.
 struct MetLeaf
 {
-  std::uint32_t medium; ///< see BeamAir::mediumAt()
+  std::uint32_t medium; ///< number of the medium for BeamAir::mediumAt()
   double range;         ///< range of the leaf, m
   double cosine;        ///< cosine of incidence, in [0, 1]
 };
 
-/// Follows the air along one beam at a time. Each thread needs its own object; copies share the
+/// Follows the air along one beam at a time. Each thread needs its own object. Copies share the
 /// table of energies.
 class BeamAir
 {
@@ -88,7 +90,7 @@ public:
     // The point of the aperture to which light returns. Points of neighbouring columns lie far
     // apart.
     std::array<double, 2> towards{}; ///< unit vector from the aperture's middle to this point
-    double nearer = 0.0;             ///< share of the aperture's area that is nearer to the middle
+    double nearer = 0.0;             ///< share of the aperture nearer to its middle than the point
     double open = 1.0;               ///< share of the column's light that no surface has met so far
     std::size_t firstPart = 0;
     std::size_t lastPart = 0; ///< one past the last part
@@ -100,7 +102,8 @@ public:
   /// Begin a beam that meets no volume.
   void beginOutside();
 
-  /// Begin a beam of one direction. @param direction unit vector @param seconds as for begin()
+  /// Begin a beam that has one direction. @param direction unit vector @param seconds as for
+  /// begin()
   void beginRay(const Vec3& origin, const Vec3& direction, double seconds);
 
   /// True if media that fill the scene return light.
@@ -127,7 +130,8 @@ public:
   /// apex, m
   double transmissionBetween(const Vec3& from, const Vec3& to);
 
-  /// Set the surfaces of this beam. Each takes its share of the pulse from the air behind.
+  /// Set the surfaces of this beam. Each surface takes its share of the pulse from the air behind
+  /// the surface.
   void take(std::vector<MetSurface> surfaces);
 
   /// Surfaces of this beam, by range. In a beam that meets no volume, surfaces are merged unit by
@@ -137,11 +141,11 @@ public:
   /// Light that one medium returns in a unit.
   struct Share
   {
-    std::uint32_t medium; ///< see mediumAt()
+    std::uint32_t medium; ///< number of the medium for mediumAt()
     double mean;          ///< mean energy, J
     double drops;         ///< mean number of drops
   };
-  /// Shares of a unit, in an order that does not depend on earlier calls.
+  /// Shares of the media in a unit, in an order that does not depend on earlier calls.
   const std::vector<Share>& sharesOf(std::int64_t unit);
   const Medium& mediumAt(std::uint32_t number) const { return this->All->media[number].medium; }
 
@@ -155,17 +159,18 @@ public:
   /// A medium of leaves, and the ranges between which the beam may meet it.
   struct Leaves
   {
-    std::uint32_t medium; ///< see mediumAt()
+    std::uint32_t medium; ///< number of the medium for mediumAt()
     double begin, end;    ///< ranges, m
   };
-  /// Find all media of leaves with a given size, in the order of their beginnings.
+  /// Find all media whose leaves have a known size, in the order in which the beam first meets
+  /// them.
   void findLeaves(std::vector<Leaves>& all) const;
 
   /// Half widths of the beam at a range of 1 m, and radius of the aperture, m.
   std::array<double, 2> halfWidths() const { return this->HalfWidths; }
   double apertureRadius() const { return this->ApertureRadius; }
 
-  /// Mean transmission of leaves with a given size, to a range, m, and back.
+  /// Mean transmission, to a range, m, and back, of leaves whose size is known.
   double leftByLeaves(double range) const;
 
   /// Cells of the grid that lie in the beam, whether or not the beam is divided.
@@ -178,8 +183,8 @@ public:
   double densityAt(const Column& column, std::uint32_t medium, double range) const;
 
   /// Energy, J, that a leaf returns from a share of the pulse, if no leaf stops this light on the
-  /// way back. Surfaces before the middle of the unit of the last sharesOf() have taken their
-  /// shares.
+  /// way back. Surfaces nearer than the middle of the unit last given to sharesOf() have taken
+  /// their shares.
   double returnedBy(const MetLeaf& leaf, const Column& column, double share) const;
 
   /// Number of cells across the beam, along each axis.
@@ -213,7 +218,7 @@ private:
   /// A part of a column that lies in one volume.
   struct Part
   {
-    std::size_t seen; ///< index of its medium in `Seen`
+    std::size_t seen; ///< index of the part's medium in `Seen`
     MediumCrossing crossing;
     double extinction; ///< extinction on both ways, 1/m; for leaves only on the way out
     double perLeaf;    ///< inverse diameter of a leaf, 1/m; 0: no leaves, or leaves of unknown size
@@ -254,7 +259,7 @@ private:
   double UnitLength;  ///< length of a range unit, m
   double SolidAngle;  ///< solid angle of the beam, sr
   std::int64_t Gate;  ///< number of units inside the gate
-  std::int64_t Reach; ///< units that a drop's pulse reaches before and behind its own
+  std::int64_t Reach; ///< number of units that a drop's pulse reaches on each side of its own
   std::array<double, 2> HalfWidths;
   double ApertureRadius;                            ///< radius of the aperture, m
   std::vector<std::uint32_t> Filling;               ///< media that fill the scene and return light
@@ -271,8 +276,8 @@ private:
   std::vector<Part> Parts; ///< column by column
   /// Units [first, end) in which media may be perceived by themselves if there is enough light.
   std::vector<std::pair<std::int64_t, std::int64_t>> Looked;
-  std::int64_t Dark = 0;   ///< first unit from which on media return no light that matters
-  double MostOfUnit = 0.0; ///< bound of the energy that media return in a unit, J per gathered sr
+  std::int64_t Dark = 0;   ///< unit from which on media return no light that matters
+  double MostOfUnit = 0.0; ///< bound of a unit's energy from media, J per sr of collected()
   std::vector<MetSurface> Surfaces;
   std::size_t Taken = 0;  ///< number of `Surfaces` that have taken their shares
   double TakenTo = 0.0;   ///< range before which surfaces have taken their shares, m

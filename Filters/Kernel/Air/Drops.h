@@ -1,22 +1,24 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file Drops.h
- * @brief Draws the light that the drops of a medium return in a range unit beyond its mean.
+ * @brief Draws the difference between the light of a medium's drops in a range unit and its mean.
  *
  * The number of drops in the unit's part of the beam is Poisson distributed. The energy of a drop
- * is the square of an exponential diameter or of a leaf's cosine (Air.h). Up to FewDrops drops are
- * drawn one by one. The energy of more drops is a gamma variate of equal mean and variance.
+ * is proportional to the square of an exponentially distributed diameter, or of a leaf's cosine of
+ * incidence (Air.h). Up to FewDrops drops are drawn one by one. The energy of more drops is a gamma
+ * variate of equal mean and variance.
  *
  * The pulse of a drop is divided among the units that it overlaps, as for surfaces (RangeUnits.h).
- * So the energy of a unit varies less than with undivided pulses, and neighbouring units vary
- * together. Each of a few drops has its own place in its unit. Many drops all lie at one of two
- * equally likely places. With these two places, units have the variances, covariances and third
- * moments of drops anywhere, if the pulse is no wider than a unit or as wide as whole units.
+ * So the energy of a unit varies less than with undivided pulses. The energies of neighbouring
+ * units are correlated. Each drop that is drawn alone has its own place in its unit. Drops that are
+ * drawn together all lie at one of two equally likely places. With these two places, units have the
+ * variances, covariances and third moments that uniformly distributed places would give, if the
+ * pulse is no wider than a unit or as wide as a whole number of units.
  *
  * Source: G. Marsaglia and W. W. Tsang, ACM Trans. Math. Softw. 26, 2000 (gamma variates).
  * Differs: the paper's air sends nothing back.
- * Valid: the mean energy must change little within a pulse, which is so beyond the first few units.
- * The model illuminates all drops of the beam evenly.
+ * Valid: the mean energy must change little within a pulse. This condition holds beyond the first
+ * few units. The model illuminates all drops of the beam evenly.
  * Test: TestAir.cxx.
  */
 #ifndef avianlidar_Drops_h
@@ -44,7 +46,8 @@ public:
   /// @param place place of the drop in its own unit, 0 to 1
   void add(double energy, double place, double* units) const;
 
-  /// One of the two places of many drops, in [0, 1]. The other place is 1 - placeOfMany().
+  /// One of the two places of drops that are drawn together, as a share of the unit, in [0, 1]. The
+  /// other place is 1 - placeOfMany().
   double placeOfMany() const { return this->Place; }
 
 private:
@@ -53,19 +56,21 @@ private:
   double Place;
 };
 
-/// Largest mean number of drops in a unit that are drawn one by one.
+/// Largest mean number of drops in a unit at which the drops are drawn one by one.
 constexpr double FewDrops = 40.0;
 
-/// Add the light of a unit's drops minus its mean to 2 reach() + 1 units (compound Poisson law).
+/// Add the light of a unit's drops, minus the mean of this light, to 2 reach() + 1 units (compound
+/// Poisson law).
 /// @param number number of the unit, or another unique number @param mean mean energy, J
-/// @param drops mean number of drops @param medium gives `squareOfDrops` and `renewed` @param units
-/// sums, J
+/// @param drops mean number of drops @param medium medium whose `squareOfDrops` and `renewed` are
+/// used @param units sums, J
 void addDropsBeyondMean(std::int32_t seed, std::uint64_t beam, std::uint64_t number,
   std::int32_t revolution, double mean, double drops, const Medium& medium,
   const PulseShares& pulse, double* units);
 
-/// Sums the light of a beam's drops beyond the mean of this light, unit by unit. Requests in
-/// ascending order draw each unit once. Each thread needs its own object.
+/// Sums the light of a beam's drops beyond the mean of this light, unit by unit. If units are
+/// requested in ascending order, the drops of each unit are drawn once. Each thread needs its own
+/// object.
 class SharedDrops
 {
 public:
@@ -79,8 +84,8 @@ public:
   /// Begin a beam.
   void clear() { this->Numbers.assign(this->Numbers.size(), -1); }
 
-  /// Light in a unit, J. @param draw function that adds the drops of a unit to 2 reach() + 1 sums,
-  /// which are 0 before
+  /// Light in a unit beyond its mean, J. @param draw function that adds the light of a unit's drops
+  /// to 2 reach() + 1 sums, which are 0 before the call
   template <class F>
   double in(std::int64_t unit, F draw)
   {
@@ -105,7 +110,7 @@ public:
 private:
   std::int64_t Reach;
   std::vector<std::int64_t> Numbers; ///< units whose drops are drawn
-  std::vector<double> Shares;        ///< light that drops of `Numbers` give 2 Reach + 1 units, J
+  std::vector<double> Shares;        ///< light of the drops of `Numbers` in 2 Reach + 1 units, J
 };
 }
 

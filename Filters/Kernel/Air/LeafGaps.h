@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file LeafGaps.h
- * @brief Leaves that stop a narrow beam one by one: the light that they return and transmit.
+ * @brief Single leaves in a narrow beam: the light that they return and the light that they
+ * transmit.
  *
  * A beam is divided into rays, one through each cell of its grid (BeamAir.h). The light of a ray
  * returns to one point of the aperture. Leaves are discs of one size at random places (Poisson),
@@ -10,7 +11,7 @@
  * way out. So a part of a beam may meet a leaf while the rest passes. A range unit receives the
  * light of the rays that end in this unit. Light from a range behind leaves is scaled by the share
  * of rays that no leaf stops on the way to this range and back, divided by the mean of this share.
- * Beams much wider than a leaf are not divided; the leaves in such beams follow the compound
+ * Beams much wider than a leaf are not divided. The leaves in such beams follow the compound
  * Poisson law of Drops.h.
  *
  * Source: the Boolean model of leaves at random places (Nilson, Agricultural Meteorology 8, 1971).
@@ -37,14 +38,14 @@ public:
   /// Begin a beam that has no leaves or is not divided.
   void clear() { this->Rays.clear(); }
 
-  /// Begin a beam. @param along air of the beam, which must outlive the beam @param solidAngle
-  /// solid angle of the beam, sr
+  /// Begin a beam. `along` must not be destroyed before the next beam. @param along air of the beam
+  /// @param solidAngle solid angle of the beam, sr
   void begin(BeamAir& along, double solidAngle, std::int32_t seed, std::uint64_t beam,
     std::int32_t revolution);
 
   bool any() const { return !this->Rays.empty(); }
 
-  /// Transmission of the leaves to a range, m, and back, divided by its mean.
+  /// Transmission of the leaves to a range, m, and back, divided by the mean transmission.
   double openAt(double range) const;
 
   /// Energy, J, that the leaves of a medium return from ranges [from, to), m. Surfaces take their
@@ -56,8 +57,8 @@ public:
   /// Largest cross-section where leaves of further media begin, in projected leaf areas. This
   /// number limits the number of leaves that are drawn.
   static constexpr double MostLeavesBehind = 4096.0;
-  /// Largest square about all ways out and back, in projected leaf areas. This number limits the
-  /// aperture.
+  /// Largest area of a square about all ways out and back, in projected leaf areas. This number
+  /// limits the aperture.
   static constexpr double MostLeavesAcross = 1000.0;
 
 private:
@@ -67,8 +68,8 @@ private:
     std::array<double, 2> aperture; ///< point of the aperture to which the ray's light returns, m
     double share;                   ///< share of the pulse in the ray
     const BeamAir::Column* column;
-    MetLeaf leaf; ///< leaf at which the ray ends; its range is infinite without a leaf
-    bool isSeen;  ///< true if no leaf stops the light of `leaf` on its way back
+    MetLeaf leaf; ///< leaf at which the ray ends, with an infinite range if there is no such leaf
+    bool isSeen;  ///< true if no leaf stops the light that `leaf` returns
   };
   /// Ranges, m, from which a leaf stops the light of a ray on its way back.
   struct Shadow
@@ -76,13 +77,13 @@ private:
     std::size_t ray;
     double from, to;
   };
-  /// Leaves of a medium, by range: either all that are the same in every scan, or all that are
-  /// drawn anew in each scan.
+  /// Leaves of a medium, by range: either all leaves that are the same in every scan, or all leaves
+  /// that are drawn anew in each scan.
   struct Stream
   {
     BeamAir::Leaves leaves;
     std::int32_t scan; ///< revolution, or a fixed number for leaves that are the same in every scan
-    double perVolume;  ///< number of leaves in a volume, 1/m^3
+    double perVolume;  ///< number of leaves per volume, 1/m^3
     double radius;     ///< radius of a leaf, m
     double rim;        ///< greatest distance from a ray at which a leaf matters, m
     std::uint64_t number; ///< number of the first draw of the next leaf

@@ -9,8 +9,8 @@
  *
  * Source: none.
  * Valid: exact up to rounding. The tree's triangle test decides where a ray crosses a closed
- * surface. Shells face outward, except for holes (closedShells()). The space that a shell encloses
- * is inside.
+ * surface. Shells face outward, except the shells of holes (closedShells()). The space that a shell
+ * encloses is inside the volume, except the space of holes.
  * Test: TestMediumVolume.cxx.
  */
 #ifndef avianlidar_MediumVolume_h
@@ -39,20 +39,20 @@ enum class MediumShape
 struct MediumVolume
 {
   MediumShape shape = MediumShape::Everywhere;
-  /// Centre of a box, an ellipsoid or the box about a closed surface, m; point from which the
-  /// heights of a layer count.
+  /// Centre of a box, an ellipsoid or the box about a closed surface, m; for a layer, the point
+  /// from which heights count, m.
   Vec3 centre{ 0.0 };
   std::array<Vec3, 3> halfAxes{ Vec3(1.0, 0.0, 0.0), Vec3(0.0, 1.0, 0.0), Vec3(0.0, 0.0, 1.0) };
   Vec3 up{ 0.0, 0.0, 1.0 }; ///< upward direction of a layer, unit vector
   double bottom = -std::numeric_limits<double>::infinity(); ///< lowest height of a layer, m
   double top = 0.0;      ///< height up to which a layer is dense, m
-  double softness = 0.0; ///< height above `top` at which the density is 1/e, m; 0: no density there
+  double softness = 0.0; ///< height above `top` at which the density is 1/e, m; 0: no fading part
   std::shared_ptr<const CollisionTree> surface;
-  Vec3 velocity{ 0.0 }; ///< velocity of the volume, m/s; the volume has its given place at time 0
+  Vec3 velocity{ 0.0 }; ///< velocity of the volume from its place at time 0, m/s
 
   bool isBounded() const { return this->shape >= MediumShape::Box; }
   Vec3 centreAt(double seconds) const { return this->centre + seconds * this->velocity; }
-  /// Radius of a ball about the centre that holds a bounded volume, m.
+  /// Radius, m, of a ball about the centre that contains a bounded volume.
   double radius() const;
 };
 
@@ -84,7 +84,7 @@ public:
   struct Hit
   {
     double range; ///< range of the hit, m
-    int entered;  ///< 1 if the ray enters the shell, -1 if it leaves it
+    int entered;  ///< direction: 1 if the ray enters the shell, -1 if the ray leaves the shell
     bool isAmid;  ///< true if the hit does not lie on a side of the triangle
   };
 
@@ -96,8 +96,8 @@ private:
 };
 
 /// True if each half axis of a volume exceeds the beam's width at the volume's far end. Such a
-/// volume does not fit between the axis and the rim of the beam. Always true for layers, never for
-/// closed surfaces.
+/// volume does not fit between the axis and the rim of the beam. The result is always true for
+/// layers and always false for closed surfaces.
 bool isWiderThan(const MediumVolume& volume, const BeamFrame& frame, double far, double seconds);
 
 /// True if a border or the fading part of a volume at rest may lie in a beam. The test is

@@ -5,10 +5,11 @@
  *
  * Source: paper, Sec. 2.1, Eq. 1-3; cells after Beckers and Beckers, Computational Geometry 45(7),
  * 2012.
- * Differs: stratified rays and the Gaussian profile are added (for beams that are not round see
- * BeamShape.h). A ray's radius comes from sin^2(theta/2), not from 1 - cos theta.
- * Valid: half-beamwidth from 1e-9 rad to pi/3, where radii are exact to a few units of round-off.
- * The sum over rays is unbiased for any N.
+ * Differs: stratified rays and the Gaussian profile are added. BeamShape.h describes beams that are
+ * not round. A ray's radius comes from sin^2(theta/2), not from 1 - cos theta, with theta the angle
+ * between ray and axis.
+ * Valid: half-beamwidths from 1e-9 rad to pi/3. In this range radii are exact to a few units of
+ * round-off. The sum over rays is unbiased for any N.
  * Test: TestBeamRays.cxx.
  */
 #ifndef avianlidar_BeamRays_h
@@ -24,8 +25,8 @@ namespace avianlidar
 {
 enum class Sampling
 {
-  MonteCarlo = 0, ///< N independent rays (the paper)
-  Stratified = 1  ///< two independent rays in each of N/2 compact strata; for odd N three in one
+  MonteCarlo = 0, ///< N independent rays, as in the paper
+  Stratified = 1  ///< two independent rays in each of N/2 compact cells (StrataPartition)
 };
 
 /// The rays of one beam in its own plane (see BeamFrame.h), structure of arrays.
@@ -42,22 +43,23 @@ struct BeamRays
 };
 
 /// Compact cells of the unit disc: rings cut into sectors. The energy of a cell is proportional to
-/// the number of its rays (for odd N the last cell, at the rim, is 3/2 as large as the others), so
-/// every ray carries Qs/N and the estimate is unbiased for any N. The cells depend only on N. The
-/// profile is applied when shares of the energy are converted to radii.
+/// the number of the cell's rays. For odd N the last cell, at the rim, has 3/2 of the energy of any
+/// other cell. Every ray has the energy Qs/N, so the estimate is unbiased for any N. The cells
+/// depend only on N. The profile is applied when shares of the energy are converted to radii.
 class StrataPartition
 {
 public:
   struct Cell
   {
-    double v0, v1;     ///< range of the share of the energy that lies nearer to the axis
+    double v0, v1;     ///< range of the share of the energy within a radius
     double phi0, phi1; ///< range of the angle about the axis, rad
   };
-  /// @param numberOfRays N >= 1. A cell has 2 rays; if N is odd, the last cell has 3 (1 if N = 1).
+  /// @param numberOfRays N, at least 1. Each cell has 2 rays. For odd N the last cell has 3 rays,
+  /// or 1 ray if N = 1.
   explicit StrataPartition(std::size_t numberOfRays);
   const std::vector<Cell>& cells() const { return this->Cells; }
   std::size_t numberOfRays() const { return this->NumberOfRays; }
-  /// Cell that ray n lies in, and number of rays in a cell.
+  /// Cell in which ray n lies, and number of rays in a cell.
   std::size_t cellOfRay(std::size_t n) const;
   std::size_t raysInCell(std::size_t cell) const;
 
@@ -65,7 +67,7 @@ public:
   struct RayCells
   {
     std::vector<double> v0, dv;        ///< Cell::v0, and length of the range from v0 to v1
-    std::vector<double> turn0, dturns; ///< begin and length of the range of the angle, full turns
+    std::vector<double> turn0, dturns; ///< begin and length of the range of the angle, turns
   };
   const RayCells& rayCells() const { return this->Lanes; }
 
@@ -80,7 +82,7 @@ struct RadialProfile
 {
   double halfBeamwidth; ///< half-beamwidth, rad
   BeamProfile profile = BeamProfile::Uniform;
-  double truncation = 1.0; ///< k of a Gaussian profile
+  double truncation = 1.0; ///< truncation k of a Gaussian profile (Sensor.h)
 };
 
 /// Density of the rays per solid angle at a point of the beam's plane, divided by its mean: 1 in a
@@ -90,13 +92,15 @@ struct RadialProfile
 double rayDensity(const RadialProfile& profile, double radius2);
 
 /// Draws the rays of a beam, in about 3 ns per ray. A ray depends on (seed, beam, ray) only.
-/// @param strata strata of numberOfRays rays; unused, and may be null, for Sampling::MonteCarlo
+/// @param strata strata of numberOfRays rays; may be null for Sampling::MonteCarlo, which has no
+/// strata
 void sampleBeam(std::int32_t seed, std::uint64_t beam, std::size_t numberOfRays,
   const RadialProfile& profile, Sampling sampling, const StrataPartition* strata, BeamRays& rays);
 
-/// Draws the rays of one of `patterns` (a power of 2) patterns. In a single pattern, a ray may lie
-/// anywhere in its cell. Over all patterns the ray lies once in each of `patterns` parts of its
-/// cell's range of radii, so the patterns add almost no error to means over many beams.
+/// Draws the rays of pattern number `pattern`. The number `patterns` of patterns is a power of 2.
+/// In a single pattern, a ray may lie anywhere in its cell. Over all patterns the ray lies once in
+/// each of `patterns` parts of its cell's range of radii. The patterns therefore add almost no
+/// error to means over many beams.
 void samplePattern(std::int32_t seed, std::size_t pattern, std::size_t patterns,
   const RadialProfile& profile, const StrataPartition& strata, BeamRays& rays);
 

@@ -6,11 +6,11 @@
  * Drawing stratified rays takes longer than tracing them. Beams of up to MostRaysOfAPattern rays
  * therefore share PatternsOfRays patterns: each beam has a random pattern, turned about the axis of
  * the beam by a random angle. Over patterns and angles, the rays of a beam are distributed as if
- * they were drawn only for this beam. Monte Carlo rays (the paper) are drawn for each beam.
+ * the rays were drawn only for this beam. Monte Carlo rays (the paper) are drawn for each beam.
  *
  * Source: none.
  * Valid: as BeamRays.h. Beams that share a pattern differ only by the turn, so these beams are not
- * independent. For means over many beams see samplePattern().
+ * independent. The comment of samplePattern() treats means over many beams.
  * Test: TestBeamRays.cxx.
  */
 #ifndef avianlidar_BeamSampler_h
@@ -28,7 +28,7 @@ namespace avianlidar
 constexpr std::size_t PatternsOfRays = 64;
 constexpr std::uint32_t MostRaysOfAPattern = 512;
 
-/// Draws the rays of beams. One object per thread, for one sensor and seed.
+/// Draws the rays of beams, for one sensor and one seed. Each thread needs its own object.
 class BeamSampler
 {
 public:
@@ -45,7 +45,7 @@ public:
 private:
   const BeamShape Shape;
   const Sampling Method;
-  std::vector<BeamRays> Patterns; ///< patterns of rays, each empty until first needed
+  std::vector<BeamRays> Patterns; ///< patterns of rays; each pattern is empty until first needed
 };
 }
 

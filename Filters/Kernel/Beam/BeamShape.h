@@ -4,15 +4,16 @@
  * @brief Outline and profile of the sensor's beams in the coordinates of their plane (BeamFrame.h).
  *
  * An elliptical beam fills the unit disc of the plane. A rectangular beam fills the square with its
- * corners on the rim of the disc. A beam is wider along x. The energy of a round beam is uniform in
- * solid angle, or falls with the solid angle around the axis. A beam that is not round is narrow.
- * Its energy is uniform over the plane, or falls from the axis as exp(-2 k^2 (x^2 + y^2)) with x
- * and y in half-beamwidths; across a rectangle, x and y go from -1 to 1.
+ * corners on the rim of the disc. Beams are at least as wide along x as along y. Beams that are not
+ * round have half-beamwidths of at most 0.1 rad. The energy of a round beam is uniform in solid
+ * angle or Gaussian (rayDensity()). The energy of any other beam is uniform over the plane or
+ * Gaussian, proportional to exp(-2 k^2 (x^2 + y^2)) with the truncation k and with x and y in
+ * half-beamwidths. Across a rectangle, x and y go from -1 to 1.
  *
  * Source: none.
- * Valid: any sensor that checkSensor() accepts. At 0.1 rad a beam uniform over its plane is 1.5 %
- * brighter per solid angle at its rim (3 % at the corners of a square) than a beam uniform in solid
- * angle.
+ * Valid: any sensor that checkSensor() accepts. At 0.1 rad, a beam that is uniform over its plane
+ * is 1.5 % brighter at the rim (3 % at the corners of a square) than a beam that is uniform in
+ * solid angle.
  * Test: TestBeamShape.cxx.
  */
 #ifndef avianlidar_BeamShape_h
@@ -63,7 +64,8 @@ public:
   /// Profile from which the rays are drawn.
   const RadialProfile& profile() const { return this->Profile; }
 
-  /// Moves rays drawn with profile() to the profile of a rectangle; rays of other outlines stay.
+  /// Moves rays that were drawn with profile() to the profile of a rectangle. Rays of any other
+  /// outline do not change.
   void fit(BeamRays& rays) const;
 
 private:

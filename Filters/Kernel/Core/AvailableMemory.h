@@ -3,8 +3,8 @@
  * @file AvailableMemory.h
  * @brief Memory that the process may still take, and an error for requests that need more.
  *
- * A system that overcommits grants any request and ends the process when the memory is written to.
- * Requests whose size a property or a file decides are therefore estimated first.
+ * A system that overcommits memory grants any request, and ends the process when the memory is
+ * written to. Requests whose size depends on a property or a file are therefore estimated first.
  *
  * Source: none.
  * Valid: on Linux the available memory is the smallest of three numbers: the rest of the address
@@ -21,7 +21,7 @@
 
 namespace avianlidar
 {
-/// Thrown for a request that is larger than the available memory.
+/// Exception for a request that is larger than the available memory.
 class MemoryError : public std::runtime_error
 {
 public:
@@ -35,10 +35,11 @@ double availableMemory();
 /// the call costs no time.
 double availableAddresses();
 
-/// Available memory from the system files below `root` and an address limit, bytes.
+/// Available memory, bytes. @param root folder of the system files @param addressLimit limit of the
+/// address space, bytes
 double availableMemory(const std::string& root, double addressLimit);
 
-/// Throw MemoryError, "100,000,000 beams need about 12 GB, 3 GB are available", unless `bytes` are
+/// Throw MemoryError ("100,000,000 beams need about 12 GB, 3 GB are available") unless `bytes` are
 /// available. Requests below 64 MB are not checked.
 /// @param count number of items @param what items in words, such as "beams" @param bytes memory of
 /// all items, bytes

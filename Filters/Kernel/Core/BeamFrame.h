@@ -3,12 +3,12 @@
  * @file BeamFrame.h
  * @brief A beam: apex, axis, half-beamwidth, and the orthogonal frame about its axis.
  *
- * A ray of the beam is a point (x, y), x^2 + y^2 <= 1, of the beam's own plane at unit distance, in
- * units of tan(theta0.5). The direction of this ray is axis + tan(theta0.5) (x e1 + y e2), not
- * normalised. In a round beam e2 is a unit vector. In other beams the length of e2 is the ratio of
- * the two beamwidths' tangents: an elliptic beam is then the unit disc, too, and a rectangular beam
- * is the square in this disc. The cone of the half-beamwidth holds round, elliptic and rectangular
- * beams.
+ * A ray of the beam is a point (x, y), x^2 + y^2 <= 1, of the plane across the axis at unit
+ * distance. Its coordinates are in units of tan(theta0.5). The direction of this ray is axis +
+ * tan(theta0.5) (x e1 + y e2), not normalised. In a round beam e2 is a unit vector. In other beams
+ * the length of e2 is the ratio of the tangents of the two beamwidths. So an elliptic beam, too, is
+ * the unit disc. A rectangular beam is the square in this disc. The cone of the half-beamwidth
+ * contains round, elliptic and rectangular beams.
  *
  * Source: frame of Duff et al., "Building an Orthonormal Basis, Revisited", JCGT 6(1), 2017.
  * Differs: the axis is normalised twice, so that it is a unit vector to the last bits.
@@ -84,8 +84,8 @@ struct BeamWidth
   }
 };
 
-/// Turn e1 and e2 of a frame to the axes of a beam that is not round. If the beam points along `up`
-/// or against it, e1 itself is turned instead of the horizontal direction.
+/// Turn e1 and e2 of a frame to the axes of a beam that is not round. If the beam points along or
+/// against `up`, e1 itself is turned instead of the horizontal direction.
 inline void setAxes(const BeamWidth& width, BeamFrame& frame)
 {
   const Vec3 across = glm::cross(frame.axis, width.up);
@@ -99,12 +99,13 @@ inline void setAxes(const BeamWidth& width, BeamFrame& frame)
   frame.isRectangle = width.isRectangle;
 }
 
-/// Frame of a beam. @param direction finite and not zero (checked by the caller), of any length
+/// Frame of a beam. @param direction direction of any length, finite and not zero (checked by the
+/// caller)
 inline BeamFrame makeBeamFrame(const Vec3& origin, const Vec3& direction, const BeamWidth& width)
 {
   BeamFrame frame;
   frame.origin = origin;
-  // The second step removes the rounding of the first.
+  // The second normalisation removes the rounding error of the first normalisation.
   frame.axis = unitVector(unitVector(direction));
   const Vec3& n = frame.axis;
   const double sign = std::copysign(1.0, n.z);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file GeodeticFrame.h
- * @brief Positions in four frames on the WGS84 ellipsoid; the only user of GeographicLib.
+ * @brief Positions in four frames on the WGS84 ellipsoid. Only GeodeticFrame uses GeographicLib.
  *
  * | frame    | coordinates                                                                   |
  * |----------|-------------------------------------------------------------------------------|
@@ -47,15 +47,15 @@ public:
   GeodeticFrame(const GeodeticFrame&) = delete;
   GeodeticFrame& operator=(const GeodeticFrame&) = delete;
 
-  /// @return empty if the origin is valid, else the error in words: latitude in [-90, 90] and
-  /// longitude in [-360, 360] degrees, finite height
+  /// @return empty for a latitude in [-90, 90] degrees, a longitude in [-360, 360] degrees and a
+  /// finite height, else the error in words
   static std::string checkOrigin(double latitude, double longitude, double height);
 
   /// Set the origin of ENU, degrees and m (checked by the caller).
   void setOrigin(double latitude, double longitude, double height);
 
   /// UTM zone of a place, 1 to 60, negative in the south, with the exceptions of Norway and
-  /// Svalbard. Near the poles, where UTM ends, only the longitude decides.
+  /// Svalbard. Near the poles, where UTM ends, only the longitude determines the zone.
   static int zoneOf(double latitude, double longitude);
 
   /// Set the zone of UTM, 1 to 60, negative in the south.
@@ -65,7 +65,7 @@ public:
   /// a latitude outside [-90, 90] degrees, an easting or northing outside the reach of UTM
   static std::string checkPoint(Frame frame, const std::array<double, 3>& point);
 
-  /// Convert a point. The result may lie outside the reach of UTM, see checkPoint().
+  /// Convert a point. The result may lie outside the reach of UTM (checkPoint()).
   std::array<double, 3> convert(Frame from, Frame to, const std::array<double, 3>& point) const;
 
 private:

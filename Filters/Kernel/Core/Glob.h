@@ -4,7 +4,7 @@
  * @brief Names selected by a pattern with wildcards.
  *
  * Source: none.
- * Valid: any two strings, compared byte by byte; upper and lower case differ. Time grows at most
+ * Valid: any two strings, compared byte by byte. Upper and lower case differ. Time grows at most
  * with the product of the two lengths.
  * Test: TestGlob.cxx.
  */
@@ -16,13 +16,13 @@
 
 namespace avianlidar
 {
-/// True if the whole of `name` matches `pattern`: `*` stands for any text (also none), `?` for any
-/// one character, every other character for itself.
+/// True if the whole of `name` matches `pattern`, in which `*` stands for any text (also an empty
+/// text) and `?` for any one character.
 inline bool globMatches(const std::string& pattern, const std::string& name)
 {
   std::size_t p = 0;
   std::size_t n = 0;
-  // Where the search resumes after a mismatch: the last star takes one more character.
+  // Place at which the search resumes after a mismatch: the last star takes one more character.
   std::size_t star = std::string::npos;
   std::size_t taken = 0;
   while (n < name.size())

@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file LaneMath.h
- * @brief Elementary functions for loops over independent lanes: no branches, no tables, no calls.
+ * @brief Elementary functions for loops over independent lanes, without branches, tables or calls.
  *
- * A compiler turns a `#pragma omp simd` loop that calls these functions into vector code, which
- * libm's functions do not allow. Every instruction set gives the same bits: only sums, products,
- * quotients, roots and bit patterns are used, in a fixed order (compile with -ffp-contract=off).
+ * A compiler turns a `#pragma omp simd` loop that calls these functions into vector code, unlike a
+ * loop that calls the functions of libm. Every instruction set gives the same bits: only sums,
+ * products, quotients, roots and bit patterns are used, in a fixed order (compile with
+ * -ffp-contract=off).
  *
  * Source: reductions and polynomials of fdlibm (K. C. Ng, Sun Microsystems, 1993: e_exp.c,
  * e_log.c, s_log1p.c, e_acos.c, k_sin.c, k_cos.c).
- * Differs: branches are selections, and cosine and sine take their angle in turns.
+ * Differs: selections replace branches. Cosine and sine take their angle in turns.
  * Valid: errors are below 1.5 units in the last place within the range stated at each function, and
  * below 2.5 for arcsines of numbers above 1/2. Errors of cosine and sine are below 2.5e-16.
  * Test: TestLaneMath.cxx.
@@ -62,11 +63,10 @@ AVIANLIDAR_ALWAYS_INLINE double fromBits(std::uint64_t bits)
   return value;
 }
 
-/// The low bits of the sum of Rounder and a number below 2^51 in magnitude hold the nearest whole
-/// number.
+/// Number whose sum with x, |x| < 2^51, holds the whole number nearest to x in its low bits.
 constexpr double Rounder = 6755399441055744.0; // 1.5 * 2^52
 
-/// 2^n for the whole number in the low bits of `rounded` = n + Rounder, |n| <= 1022.
+/// 2^n for the whole number n in the low bits of `rounded` = n + Rounder, |n| <= 1022.
 AVIANLIDAR_ALWAYS_INLINE double powerOfTwo(double rounded)
 {
   return fromBits((bitsOf(rounded) + 1023u) << 52);
@@ -93,7 +93,7 @@ AVIANLIDAR_ALWAYS_INLINE double exp(double x)
               (6.61375632143793436117e-05 +
                 t * (-1.65339022054652515390e-06 + t * 4.13813679705723846039e-08))));
   const double value = 1.0 - ((low - (r * c) / (2.0 - c)) - high);
-  // In two steps, because 2^n may be too small for a normal number.
+  // 2^n is applied in two steps, because it may be too small for a normal number.
   const double half = 0.5 * n + Rounder;
   const double rest = n - (half - Rounder);
   return value * powerOfTwo(half) * powerOfTwo(rest + Rounder);
@@ -162,7 +162,7 @@ AVIANLIDAR_ALWAYS_INLINE double acos(double x)
   return steep ? 1.57079632679489655800 - (arcsine - 6.12323399573676603587e-17) : 2.0 * arcsine;
 }
 
-/// Angle in [0, pi/2], rad, of a sine in [0, 1]; to full relative precision also where it is small.
+/// Angle in [0, pi/2], rad, of a sine in [0, 1], to full relative precision also for small sines.
 AVIANLIDAR_ALWAYS_INLINE double asin(double x)
 {
   const bool small = x < 0.5;
@@ -177,7 +177,7 @@ AVIANLIDAR_ALWAYS_INLINE void cosSinOfTurns(double turns, double& cosine, double
 {
   const double quarters = 4.0 * turns;
   const double rounded = quarters + Rounder;
-  const double x = (quarters - (rounded - Rounder)) * 1.57079632679489661923; // within pi/4
+  const double x = (quarters - (rounded - Rounder)) * 1.57079632679489661923; // up to pi/4, rad
   const double z = x * x;
   const double s = x +
     x * z *
@@ -201,7 +201,7 @@ AVIANLIDAR_ALWAYS_INLINE void cosSinOfTurns(double turns, double& cosine, double
   const double half = 0.5 * z;
   const double first = 1.0 - half;
   const double c = first + (((1.0 - first) - half) + tail);
-  // Quarter 1 turns (c, s) into (-s, c), and so on.
+  // Each quarter of a turn changes (c, s) into (-s, c).
   const std::uint64_t quarter = bitsOf(rounded);
   const bool odd = (quarter & 1u) != 0;
   const double across = odd ? s : c;

@@ -2,7 +2,7 @@
 /**
  * @file MemberCount.h
  * @brief Number of members of an aggregate at compile time. Code that must name all members of a
- * struct can check the number, so that a forgotten member does not compile.
+ * struct can check the number, so that code without one of the members does not compile.
  *
  * Source: none. An aggregate takes as many initialisers as it has members.
  * Valid: aggregates of C++17 without base classes, arrays or references as members.

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file Multiversion.h
- * @brief Functions compiled for several instruction sets; the best one is chosen at program start.
+ * @brief Functions compiled for several instruction sets, of which the best is chosen at program
+ * start.
  *
  * The macros serve only loops over independent lanes whose results must have the same bits
  * everywhere. The compiler contracts and reassociates nothing, so every version gives the same
@@ -9,11 +10,11 @@
  * (RayLanes.h).
  *
  * The loops are plain C++ because they call the functions that single rays call, such as
- * rangeOnPlane(). The bits therefore agree by construction, and nothing is written twice. In the
+ * rangeOnPlane(). The bits of loops and single rays therefore agree by construction. In the
  * corridor, on a processor with AVX-512, the ranges and cosines of a beam's hits took 8.0 ns per
  * ray, and 13.4 ns without the versions.
  * Source: none.
- * Valid: versions with GCC on x86-64; elsewhere the functions are compiled once.
+ * Valid: GCC on x86-64 compiles all versions. Elsewhere the functions are compiled once.
  * Test: InstructionSets.cxx with compare_instruction_sets.py (the same bits on several
  * processors), check_flags.py.
  */
@@ -27,7 +28,8 @@
 #define AVIANLIDAR_MULTIVERSION
 #endif
 
-/// For functions that such a loop calls, which take its instruction set only if they are inlined.
+/// Attributes of functions that multiversion loops call. Only inlined code has a loop's instruction
+/// set.
 #if defined(__GNUC__)
 #define AVIANLIDAR_ALWAYS_INLINE inline __attribute__((always_inline))
 #define AVIANLIDAR_INLINE_LAMBDA __attribute__((always_inline))

@@ -3,7 +3,7 @@
  * @file ParallelLoop.h
  * @brief The only parallel loop of the project: each thread that is free takes a block of a range.
  *
- * All other code is serial code on a range of items. Which thread gets which block is not
+ * All other code is serial code on a range of items. The assignment of blocks to threads is not
  * determined, so the body must write the result of each item only to the slot of this item.
  *
  * Source: none.
@@ -19,40 +19,41 @@
 
 namespace avianlidar
 {
-/// Work on items [begin, end) as thread number `thread`, 0 <= thread < loopThreads(threads).
+/// Function that processes items [begin, end) as thread number `thread`, 0 <= thread <
+/// loopThreads(threads).
 using LoopBody = std::function<void(std::size_t begin, std::size_t end, int thread)>;
 
-/// Function that receives the fraction done, in [0, 1], which never falls. If the function returns
-/// false, the work stops.
+/// Function that receives the share of the work that is done, in [0, 1], which never decreases. If
+/// the function returns false, the work stops.
 using KeepGoing = std::function<bool(double fraction)>;
 
 /// Progress of a part of the work, from one fraction of the whole to another; empty if `keepGoing`
-/// is empty. The result refers to `keepGoing`, which must outlive the result.
+/// is empty. The result refers to `keepGoing`. `keepGoing` must outlive the result.
 KeepGoing partOf(const KeepGoing& keepGoing, double from, double to);
 
-/// Exception of a body whose result is no longer wanted.
+/// Exception that a body throws if its result is no longer wanted.
 struct WorkStopped : std::exception
 {
   const char* what() const noexcept override { return "stopped"; }
 };
 
 /**
- * Call `body` for all of [0, count) in blocks of `block` items (0 is taken as 1).
+ * Call `body` for all items [0, count) in blocks of `block` items (0 is taken as 1).
  *
- * Thread 0 is the calling thread. Only this thread calls `keepGoing` (which may be empty), before
- * each block of thread 0 and once with 1 at the end, so `keepGoing` may use data of this thread. If
- * `keepGoing` returns false, blocks under way are finished and no further block begins. An
- * exception of `body` or `keepGoing` stops the work in the same way, and the first one is thrown
- * again here.
- * @param threads > 0, or 0 for loopThreads(0)
+ * Thread 0 is the calling thread. Only this thread calls `keepGoing`, before each block of thread 0
+ * and once with 1 at the end. So `keepGoing` may use data of this thread. `keepGoing` may be empty.
+ * If `keepGoing` returns false, running blocks are finished and no further block begins. An
+ * exception of `body` or `keepGoing` stops the work in the same way. parallelFor() throws the first
+ * exception again.
+ * @param threads number of threads, > 0; 0: loopThreads(0)
  * @return true if all items were done and keepGoing never returned false
  */
 bool parallelFor(std::size_t count, std::size_t block, int threads, const LoopBody& body,
   const KeepGoing& keepGoing = {});
 
-/// Largest number of threads of a loop that is asked for `threads`; 0 or less asks for OpenMP's
-/// choice (OMP_NUM_THREADS). The number is at most 64 or four per processor, whichever is larger,
-/// and less if address space is scarce.
+/// Largest number of threads of a loop: at most 64 or four per processor, whichever is larger, and
+/// less if address space is scarce.
+/// @param threads requested number of threads; 0 or less: OpenMP's choice (OMP_NUM_THREADS)
 int loopThreads(int threads);
 }
 

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file Random.h
- * @brief Counter-based random numbers: each is a pure function of (seed, beam, index, purpose).
+ * @brief Counter-based random numbers: each number is a pure function of (seed, beam, index,
+ * purpose).
  *
  * Results thus do not depend on threads, the order of draws, the pieces of a scan, or other draws.
  *
@@ -20,37 +21,37 @@
 
 namespace avianlidar
 {
-/// Purpose of a random number; each purpose has its own stream. Values of former purposes stay
-/// unused.
+/// Purpose of a random number. Each purpose has its own stream. Values of former purposes are not
+/// used again.
 enum class RandomPurpose : std::uint32_t
 {
   Rays = 0,
   Connections = 1,
   Noise = 2,
   FalseAlarms = 3,
-  Patterns = 6, ///< rays of a pattern that beams share; the pattern's number replaces the beam's
-  Turns = 7,    ///< pattern of a beam, and the turn of this pattern
-  MastSway = 9, ///< mast sway; the axis replaces the beam
-  EncoderJitter = 10, ///< encoder jitter; the column replaces the beam
-  Flights = 11,       ///< flights of birds; the bird's number replaces the beam's
-  FlockPlaces = 12,   ///< place of a bird in its flock; the bird's number replaces the beam's
+  Patterns = 6,       ///< rays of a pattern that beams share; `beam` is the number of the pattern
+  Turns = 7,          ///< pattern of a beam, and the turn of this pattern
+  MastSway = 9,       ///< mast sway; `beam` is the axis
+  EncoderJitter = 10, ///< encoder jitter; `beam` is the column
+  Flights = 11,       ///< flights of birds; `beam` is the number of the bird
+  FlockPlaces = 12,   ///< place of a bird in its flock; `beam` is the number of the bird
   RareNoise = 13,     ///< range units with a rare deviate
-  Cells = 14,         ///< cells of jittered rays; the pattern's number replaces the beam's
+  Cells = 14,         ///< cells of jittered rays; `beam` is the number of the pattern
   Mirrors = 15,       ///< rays by way of mirrors
   RangeNoise = 16,    ///< noise of a return's range, by its strongest range unit
   Drops = 17,         ///< rain drops, by range unit
   Leaves = 18,        ///< leaves at which parts of a beam end
-  ShortPaths = 19     ///< directions of paths from a hit to a near one
+  ShortPaths = 19     ///< directions of paths from a hit to a near hit
 };
 
-/// Two independent uniform doubles in the open interval (0, 1), 53 bits each. @param seed any int
+/// Two independent uniform doubles of 53 bits in the open interval (0, 1). @param seed any int
 /// @param beam id of the beam @param index number of the ray, range unit or draw
 std::array<double, 2> uniformPair(
   std::int32_t seed, std::uint64_t beam, std::uint64_t index, RandomPurpose purpose);
 
-/// Two uniform doubles as above that differ between revolutions of the sensor. Revolution 0 has the
-/// stream of the function above.
-/// @param index below 2^52 @param purpose below 4096
+/// Two independent uniform doubles in (0, 1) that differ between revolutions of the sensor.
+/// Revolution 0 has the stream of the function without revolution.
+/// @param index number below 2^52 @param purpose purpose below 4096
 std::array<double, 2> uniformPair(std::int32_t seed, std::uint64_t beam, std::uint64_t index,
   RandomPurpose purpose, std::int32_t revolution);
 

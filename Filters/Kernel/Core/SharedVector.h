@@ -7,7 +7,7 @@
  * so that these data are in memory once and not three times.
  *
  * Source: none.
- * Valid: any elements; shareWith() needs elements that can be copied as bytes, without gaps
+ * Valid: any elements. shareWith() requires elements that can be copied as bytes, without gaps
  * between members.
  * Test: TestScanAgain.cxx (vectors replaced between scans).
  */

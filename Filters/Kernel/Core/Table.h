@@ -6,7 +6,7 @@
  * Empty lines and comments, which begin with #, are skipped. Blanks around values are removed.
  *
  * Source: none.
- * Valid: text of any kind; a UTF-8 byte order mark, as spreadsheets write it, is skipped.
+ * Valid: text of any kind. A UTF-8 byte order mark, which spreadsheets write, is skipped.
  * Test: TestBird.cxx (species), TestFlight.cxx (tracks).
  */
 #ifndef avianlidar_Table_h
@@ -29,8 +29,8 @@ public:
   std::size_t size() const { return this->Cells.size(); }
   const std::string& text(std::size_t column) const { return this->Cells[column]; }
 
-  /// Number in a column. Throws as fail() unless the number is in [least, most]. @param name name
-  /// of the number, for the message
+  /// Number in a column. Throws the error of fail() unless the number is in [least, most].
+  /// @param name name of the number, for the message
   double number(std::size_t column, const char* name, double least, double most) const;
 
   /// Throw std::runtime_error with file and line before the message.

@@ -63,7 +63,7 @@ inline std::string sizeError(
       " values, expected one for each of the " + std::to_string(count) + " " + things;
 }
 
-/// Names as what was expected: "a, b or c".
+/// List of expected names in words: "a, b or c".
 inline std::string anyOf(const std::vector<std::string>& names)
 {
   std::string text;

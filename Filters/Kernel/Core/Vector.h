@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file Vector.h
- * @brief The vector type of the kernel: doubles, right-handed, metres unless said otherwise.
+ * @brief The vector type of the kernel: doubles in right-handed frames, metres unless stated
+ * otherwise.
  *
  * Source: GLM.
  * Differs: safeLength() and unitVector() neither overflow nor underflow, unlike GLM's functions.

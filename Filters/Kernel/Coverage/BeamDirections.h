@@ -7,7 +7,7 @@
  * margin, may contain one of its directions. Larger margins have coarser cells.
  *
  * Source: none.
- * Valid: any directions; half-beamwidth plus margin up to pi/3. On a cone's border, rounding
+ * Valid: any directions; half-beamwidth plus margin up to pi/3 rad. On a cone's border, rounding
  * decides whether the cone contains a direction.
  * Test: TestBeamDirections.cxx (against all beams one by one).
  */
@@ -28,12 +28,14 @@ class BeamDirections
 public:
   /// @param directions directions of the beams, finite and not zero @param halfBeamwidth
   /// half-beamwidth of all beams, rad
-  /// @param margins angles outside a cone up to which forEachNear() finds its beam, rising, rad
+  /// @param margins angles outside a cone up to which forEachNear() finds the cone's beam,
+  /// ascending, rad
   BeamDirections(const std::vector<Vec3>& directions, double halfBeamwidth,
     const std::vector<double>& margins = { 0.0 });
 
-  /// Calls f(number of the beam, cosine of the angle to its axis), in the order of the beams, for
-  /// each beam whose cone, widened by `reach`, contains a direction, and possibly for other beams.
+  /// Calls f(number of a beam, cosine of the angle to its axis) for each beam whose cone, widened
+  /// by `reach`, contains a direction, in the order of the beams. f may also be called for other
+  /// beams.
   /// @param direction unit vector @param reach angle, rad, at most the largest margin
   template <class F>
   void forEachNear(const Vec3& direction, double reach, F f) const
@@ -65,7 +67,7 @@ public:
       grid.beams.begin() + grid.begins[cell], grid.beams.begin() + grid.begins[cell + 1], f);
   }
 
-  /// Upper bound of the number of beams within the least margin of a direction.
+  /// Upper bound of the number of beams within the least margin of any direction.
   std::size_t mostNear() const { return this->Most; }
 
   double leastMargin() const { return this->Grids[0].margin; }       ///< least margin, rad

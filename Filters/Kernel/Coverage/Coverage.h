@@ -1,23 +1,25 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file Coverage.h
- * @brief Where a small target, such as a bird, would be detected, and why it is not detected
- * elsewhere: in closed form, place by place, without tracing the target.
+ * @brief Computes in closed form, for each place, whether a small target, such as a bird, would be
+ * detected, and the reason if not. The target is not traced.
  *
  * A beam sees a place if its cone contains the direction to the place and no surface hides the
- * place (one descent of the tree). The beam is in clutter there if one of the range units that the
- * echo of a point target may overlap has a perceived echo of a surface. The other beams detect the
- * target with the probability of DetectionLaw.h, each beam by the part of the target that the beam
- * lights. Lines of sight are found once and stay valid for another target, air, receiver or
- * clutter.
+ * place (one descent of the tree). A beam is in clutter at a place if a perceived echo of a surface
+ * lies in a range unit that the echo of a point target at the place may overlap. All other beams
+ * that see the place detect the target with the probability of DetectionLaw.h, each beam by the
+ * part of the target that the beam lights. Lines of sight are found once and remain valid for
+ * another target, air, receiver or clutter.
  *
  * Source: none.
- * Differs: a surface that hides the target's middle hides all of the target; others hide nothing.
- * Valid: beams of one origin. Media attenuate along the line to the target's middle; moving media
- * stand as at time 0. A beam does not light a target whose middle is more than WidestTarget or 0.4
- * rad outside its cone. If more than DetectionLaw::MostBeams beams are near, the beams with the
- * nearest axes count, or with the nearest borders if beams are not round. If the threshold follows
- * the air, energies are divided by its growth, and probabilities err by up to 0.03.
+ * Differs: a surface that hides the target's middle hides all of the target. Other surfaces hide
+ * nothing.
+ * Valid: beams of one origin. Media attenuate along the line to the target's middle. Moving media
+ * are at their places at time 0. A beam does not light a target whose middle is more than
+ * WidestTarget or 0.4 rad outside the beam's cone. If more than DetectionLaw::MostBeams beams are
+ * near, only the beams with the nearest axes count (the nearest borders if beams are not round). If
+ * the threshold follows the air, energies are divided by the growth of the threshold. Probabilities
+ * then err by up to 0.03.
  * Test: TestCoverage.cxx, TestBeamShapes.py, TestWeather.py.
  */
 #ifndef avianlidar_Coverage_h
@@ -38,12 +40,12 @@
 
 namespace avianlidar
 {
-/// Why a target is not detected at a place: the first reason that applies.
+/// Reason why a target is not detected at a place: the first reason that applies.
 enum class CoverageStatus : std::uint8_t
 {
   OutsideGate = 0,
-  AboveBand = 1,    ///< above all beams
-  BelowBand = 2,    ///< below all beams
+  AboveBand = 1,    ///< the place lies above all beams
+  BelowBand = 2,    ///< the place lies below all beams
   BetweenBeams = 3, ///< no beam contains the place
   Shadowed = 4,     ///< a surface hides the place
   InClutter = 5,    ///< all beams that contain the place are in clutter there
@@ -53,8 +55,8 @@ enum class CoverageStatus : std::uint8_t
 
 constexpr double WeakProbability = 0.1;
 
-/// Largest distance from the middle of a target to any of its parts, m; parts beyond are ignored.
-/// The widest bird that flies spans 3.5 m.
+/// Largest distance from the middle of a target to any of its parts, m. Parts beyond this distance
+/// are ignored. The widest bird that flies spans 3.5 m.
 constexpr double WidestTarget = 2.0;
 
 /// Visibility of a place, from geometry only.
@@ -74,7 +76,7 @@ struct CoverageValue
   double probability = 0.0;    ///< probability of detection in one scan
   double photoelectrons = 0.0; ///< photoelectrons of the whole target; 0 without a photon receiver
   /// Mean effective area at which half of the targets inside the beams are detected, m^2; infinity
-  /// if half are never detected.
+  /// if half of the targets are never detected.
   double leastArea = std::numeric_limits<double>::infinity();
 };
 
@@ -86,7 +88,8 @@ struct CoverageTarget
   /// @param attenuation extinction coefficient, 1/m
   /// @param area mean effective area (silhouette weighted by cosine), m^2 @param reflectance
   /// reflectance of the target, 0 to 1
-  /// @param views areas relative to the mean @param coverage gives number and elevations of beams
+  /// @param views areas relative to the mean @param coverage coverage whose number and elevations
+  /// of beams are used
   CoverageTarget(const Sensor& sensor, double attenuation, double area, double reflectance,
     const TargetViews& views, const Coverage& coverage);
 
@@ -100,11 +103,11 @@ struct CoverageTarget
   std::size_t headings; ///< number of headings of the views
 };
 
-/// Returns the position of a place by its number, m.
+/// Function that returns the position of a place, m, from the number of the place.
 using PlaceAt = std::function<Vec3(std::size_t)>;
 
-/// Detects targets at places. Setup and beams must outlive the object. Any number of threads may
-/// share the object.
+/// Computes the detection of targets at places. Setup and beams must outlive the object. Any number
+/// of threads may share the object.
 class Coverage
 {
 public:
@@ -112,7 +115,7 @@ public:
   /// @param up unit vector of the vertical, for elevations
   /// @param still scan of the beams without noise, with the return mode RangeUnits
   /// @param directions directions of another coverage with equal beam directions and width; null:
-  /// computed
+  /// new directions are computed
   Coverage(const ScanSetup& setup, const ScanBeams& beams, const Vec3& up, const ScanResult& still,
     std::shared_ptr<const BeamDirections> directions = {});
 
@@ -165,7 +168,7 @@ private:
   double Lowest;                          ///< lowest elevation in any beam, rad
   double Highest;                         ///< highest elevation in any beam, rad
   std::vector<std::size_t> ClutterBegins; ///< first index of each beam in Clutter
-  std::vector<bool> HasClutter;           ///< true if beams of a cell of Directions have clutter
+  std::vector<bool> HasClutter;           ///< true for cells of Directions with clutter in a beam
   std::vector<std::int64_t> Clutter;      ///< range units with echoes of surfaces, by beam
 };
 

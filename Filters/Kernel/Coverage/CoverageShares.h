@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file CoverageShares.h
- * @brief Share of places that is covered: weighted means over places and their standard errors.
+ * @brief Covered share of places: weighted means over places and their standard errors.
  *
  * Source: heights of bird strikes: R. A. Dolbeer, J. Wildl. Manage. 70 (2006).
  * Differs: heights of strikes at or below 500 feet are uniformly distributed.
@@ -21,8 +21,8 @@ namespace avianlidar
 /// A weighted mean of values and its standard error.
 struct WeightedMean
 {
-  std::array<double, 3> weight{}; ///< sums of 1, w, w^2
-  std::array<double, 2> value{};  ///< sums of w v, w^2 v
+  std::array<double, 3> weight{}; ///< sums of 1, w, w^2, with w the weight
+  std::array<double, 2> value{};  ///< sums of w v, w^2 v, with v the value
   double square = 0.0;            ///< sum of w^2 v^2
   void add(double w, double v);
   void add(const WeightedMean& other);
@@ -43,6 +43,7 @@ struct CoverageShares
 };
 
 /// Probability density of the height of bird strikes above ground, 1/m; 0 below ground.
+/// @param height height above ground, m
 double strikeHeightDensity(double height);
 }
 

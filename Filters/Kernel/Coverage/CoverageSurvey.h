@@ -47,10 +47,10 @@ struct SurveyTarget
 /// Rules of track detection (M of N scans) and of the sums over places.
 struct SurveyRules
 {
-  int requiredDetections = 1; ///< M: detections that make a track, 1 to scans
+  int requiredDetections = 1; ///< M: number of detections that make a track, 1 to scans
   int scans = 1;              ///< N: number of scans, 1 to MostScans
   bool strikeHeightWeights = false;
-  std::vector<double> heightLimits; ///< rising borders, m; a band includes its lower border
+  std::vector<double> heightLimits; ///< ascending borders, m, each included in the band above
 
   std::size_t bands() const { return this->heightLimits.size() + 1; }
 };
@@ -62,7 +62,7 @@ class CoverageSurvey
 {
 public:
   /// Function that receives the result of a place and the probability of a track. Any thread may
-  /// call it.
+  /// call the function.
   using EachPlace =
     std::function<void(std::size_t place, const CoverageValue& value, double track)>;
 
@@ -71,15 +71,17 @@ public:
   using PosesOf = std::function<float*(std::size_t place)>;
 
   /// Finds the lines of sight to places. The arguments must outlive the next evaluate().
-  /// @param beams beams of one origin, or empty @param still see Coverage
+  /// @param beams beams of one origin, or empty @param still scan without noise, as for Coverage
   /// @param geometry hash of the surfaces
   /// @return false if keepGoing returned false
   bool look(const ScanSetup& setup, const ScanBeams& beams, const ScanResult& still,
     const SurveyPlaces& places, std::uint64_t geometry, int threads, const KeepGoing& keepGoing);
 
   /// Computes the detection of a target at the places of the last look().
-  /// @param each may be empty @param sums by region, then height band; results are added
-  /// @param posesOf may be empty @return false if keepGoing returned false; sums are then unchanged
+  /// @param each function called for each place; may be empty @param sums sums by region, then
+  /// height band, to which results are added
+  /// @param posesOf function for the probabilities of poses; may be empty @return false if
+  /// keepGoing returned false; sums are then unchanged
   bool evaluate(const SurveyTarget& target, const SurveyRules& rules, int threads,
     const KeepGoing& keepGoing, const EachPlace& each, CoverageShares* sums,
     const PosesOf& posesOf = {});
@@ -108,7 +110,7 @@ private:
   std::vector<KeptTarget> Targets; ///< targets of the last calls
 };
 
-/// Returns the share of scans with noise that perceive each echo of a scan without noise.
+/// Returns, for each echo of a scan without noise, the share of scans with noise that perceive it.
 std::vector<double> shareOfScans(const Sensor& sensor, const std::vector<Echo>& echoes);
 }
 

@@ -2,30 +2,33 @@
 /**
  * @file DetectionLaw.h
  * @brief Probability that one scan detects a target, as a function of the energy that a beam
- * receives from the target and of the number of beams on it.
+ * receives from the target and of the number of beams on the target.
  *
- * A beam receives energy from the part of the target that it lights (Silhouette.h), whether the
- * beam or the target is larger. The echo is a pulse that is lengthened by the depth of this part.
- * Depths are taken as normally distributed. The range units that the echo overlaps share its
+ * A beam receives energy from the part of the target that the beam lights (Silhouette.h), whether
+ * the beam or the target is larger. The echo is a pulse that is lengthened by the depth of this
+ * part. Depths are taken as normally distributed. The range units that the echo overlaps share its
  * energy. The position of the target within a range unit is uniformly distributed and the same for
- * all beams, as they have one origin. A beam detects the target if it perceives one of these units.
- * A photon receiver perceives a unit with the probability of PhotonReceiver.h, any other receiver
- * if the energy exceeds Qlow. Noise is independent from pulse to pulse, while the pose is the same
- * for all beams of a scan. The probability is therefore the mean, over poses and positions in the
- * unit, of 1 - product of (1 - p) over beams. Where K beams contain the whole target, the
+ * all beams, because all beams have one origin. A beam detects the target if it perceives one of
+ * these units. A photon receiver perceives a unit with the probability of PhotonReceiver.h. Any
+ * other receiver perceives a unit if the unit's energy exceeds Qlow. Noise is independent from
+ * pulse to pulse, while the pose is the same for all beams of a scan. The probability is therefore
+ * the mean, over poses and positions in the unit, of 1 - product of (1 - p) over beams, with p the
+ * probability that one beam detects the target. Where K beams contain the whole target, the
  * probability is tabulated over the logarithm of the energy.
  *
  * The silhouette of a target depends on the elevation of the line of sight. Silhouettes are drawn
- * at regular steps of elevation. Between two steps each pose is taken from one step or the other,
- * in linear proportion.
+ * at regular steps of elevation. Between two steps, some poses are taken from the lower step and
+ * the other poses from the upper step. The share of the upper step grows linearly with the
+ * elevation.
  *
  * Each pose represents similar poses, so the energies of a pose are spread by 15 %.
  *
  * Source: none.
  * Differs: the paper perceives a unit at the target's own range if its energy exceeds Qlow.
- * Valid: 1 to MostBeams beams (more count as MostBeams, or as the largest number in the tables).
- * The error is below 3e-4 with a photon receiver where beams contain the whole target; without
- * noise, the energy at which the probability for one area steps is right to 0.8 %.
+ * Valid: 1 to MostBeams beams (more beams count as MostBeams, or as the largest number in the
+ * tables). The error of the probability is below 3e-4 with a photon receiver where beams contain
+ * the whole target. Without noise, the energy at which the probability for one area steps from 0 to
+ * 1 is right to 0.8 %.
  * Test: TestDetectionLaw.cxx.
  */
 #ifndef avianlidar_DetectionLaw_h
@@ -46,18 +49,18 @@ using TargetPoses = std::vector<Silhouette>;
 struct TargetViews
 {
   /// Function that returns the poses at an elevation of the line of sight, rad, positive if the
-  /// target is above the sensor. Each elevation has the same poses in the same order; areas are
+  /// target is above the sensor. Each elevation has the same poses in the same order. Areas are
   /// relative to one mean over all poses.
   std::function<TargetPoses(double elevation)> from;
   double reach = 0.0;    ///< largest distance of any part from the middle, m
   double step = Pi;      ///< step between the elevations that are drawn, rad
   std::size_t poses = 1; ///< number of poses
-  /// Number of headings: successive poses differ by 1/headings of a turn, clockwise; 1 if all
-  /// azimuths give the same silhouettes.
+  /// Number of headings; 1 if all azimuths give the same silhouettes. Successive poses differ by
+  /// 1/headings of a turn, clockwise.
   std::size_t headings = 1;
 };
 
-/// Views of a target that looks the same from all elevations.
+/// Views of a target that has the same silhouettes from all elevations.
 TargetViews viewsOf(TargetPoses poses, double reach = 0.0);
 
 class DetectionLaw
@@ -66,13 +69,13 @@ public:
   static constexpr int MostBeams = 64;
 
   /// @param sensor sensor whose limits are set
-  /// @param lowest, highest elevations of the line of sight, rad; elevations beyond these count as
-  /// the nearest one
+  /// @param lowest, highest elevations of the line of sight, rad; an elevation beyond counts as the
+  /// nearer of the two
   /// @param mostBeams largest number of beams in the tables, 1 to MostBeams
   DetectionLaw(const Sensor& sensor, const TargetViews& views, double lowest = 0.0,
     double highest = 0.0, int mostBeams = MostBeams);
 
-  /// Position of an elevation, rad, between two views.
+  /// Position of an elevation between two views.
   struct Between
   {
     std::size_t below; ///< index of the lower view
@@ -88,15 +91,15 @@ public:
     return energy > 0.0 ? this->probabilityAt(this->stepOf(energy), beams, at) : 0.0;
   }
 
-  /// Position of an energy in the tables, in steps. @param energy J, above 0
+  /// Position of an energy in the tables, in steps. @param energy energy, J, above 0
   double stepOf(double energy) const;
 
-  /// Probability of detection at a position in the tables. @param step from stepOf()
+  /// Probability of detection at a position in the tables. @param step position, from stepOf()
   double probabilityAt(double step, int beams, const Between& at = { 0, 0.0 }) const;
 
   /// Probability of detection where beams light parts of the target.
-  /// @param energy energy of a beam that contains the whole target at its mean area, J
-  /// @param most energy of a beam that the target fills, J
+  /// @param energy energy that a beam receives if it contains the whole target at its mean area, J
+  /// @param most energy that a beam receives if the target fills the beam, J
   /// @param ofPoses receives the probability of each pose; may be null
   double probability(double energy, double most, const BeamAtTarget* beams, std::size_t count,
     const Between& at = { 0, 0.0 }, double* ofPoses = nullptr) const;
@@ -104,7 +107,8 @@ public:
   /// Probability of detection of each pose where `beams` beams contain the whole target.
   void ofPoses(double energy, int beams, const Between& at, double* probabilities) const;
 
-  /// Distance of the target's middle from a beam's border beyond which no part of it is lit, m.
+  /// Distance, m, from a beam's border to the target's middle beyond which the beam lights no part
+  /// of the target.
   double reach() const { return this->Reach; }
 
   std::size_t poses() const { return this->Views[0].size(); }
@@ -114,7 +118,7 @@ public:
 
   /// Least energy at which the probability is `wanted`, J; infinity if no energy reaches this
   /// probability.
-  /// @param wanted above 0 @param view index of an elevation
+  /// @param wanted probability, above 0 @param view index of an elevation
   double energyFor(double wanted, int beams, std::size_t view = 0) const;
 
   std::size_t views() const { return this->Views.size(); }
@@ -143,7 +147,7 @@ private:
   int Most;                       ///< largest number of beams in the tables
   double Limit;                   ///< Qlow, J
   double UnitLength;              ///< length of a range unit, m
-  double Reach;                   ///< see reach(), m
+  double Reach;                   ///< value of reach(), m
   double Deepest;                 ///< standard deviation of the last depth class, m
   double Lowest;                  ///< elevation of the first view, rad
   double Step;                    ///< step from one view to the next, rad
@@ -159,7 +163,7 @@ private:
 constexpr int MostScans = 100;
 
 /// Probability that at least `needed` of `scans` scans detect a target, each with probability `p`.
-/// @param needed 1 to scans @param scans 1 to MostScans
+/// @param needed least number of scans, 1 to scans @param scans number of scans, 1 to MostScans
 double trackProbability(double p, int needed, int scans);
 }
 

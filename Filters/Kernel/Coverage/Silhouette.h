@@ -6,14 +6,15 @@
  *
  * The image is drawn as seen from afar, with a depth buffer and 3 x 3 samples for each pixel, so it
  * includes the shadows of parts on other parts. Coarser images sum the pixels of this image. A beam
- * uses the coarsest image in which its radius spans RadiusInPixels: a round beam costs about fifty
- * pixels, other beams more by the ratio of their length to their width. effectiveArea() draws a
- * finer image and does not keep it.
+ * uses the coarsest image in which its radius spans RadiusInPixels. A round beam costs about fifty
+ * pixels. Other beams cost more, by the ratio of their length to their width. effectiveArea() draws
+ * a finer image and does not keep it.
  *
  * Source: none.
- * Valid: beams wider than 0.02 of the target's longer side; narrower beams are taken as this wide,
- * with the same energy. Areas are wrong by at most 1 % of the target's area. The area that a beam
- * lights is wrong by at most 10 % of the area that fills the beam, or of the target's area.
+ * Valid: beams wider than 0.02 of the target's longer side. A narrower beam is replaced by a beam
+ * of this width and the same energy. Areas are wrong by at most 1 % of the target's area. The area
+ * that a beam lights is wrong by at most 10 % of the area that fills the beam, or of the target's
+ * area.
  * Test: TestSilhouette.cxx, TestEffectiveArea.cxx.
  */
 #ifndef avianlidar_Silhouette_h
@@ -40,7 +41,7 @@ struct Squares
 struct BeamAtTarget
 {
   double radius = 0.0; ///< half the longer side of an ellipse or rectangle, m
-  double x, y;         ///< beam axis to the right of and above the target's middle, m
+  double x, y;         ///< offset of the beam's axis from the target's middle, right and up, m
   BeamProfile profile = BeamProfile::Uniform;
   // For beams that are not round or whose Gaussian does not fall to 1/e^2 at the border:
   double across = radius; ///< half the shorter side, m
@@ -52,7 +53,7 @@ struct BeamAtTarget
 
   bool isRound() const { return !this->isRectangle && this->across == this->radius; }
 
-  /// True if the beam is round, and uniform or 1/e^2 at the border.
+  /// True if the beam is round, and its profile is uniform or falls to 1/e^2 at the border.
   bool isUsual() const { return this->isRound() && this->fall == 2.0; }
 
   /// Squared coordinates of a point along the beam's sides, in units of half the side.
@@ -64,8 +65,8 @@ struct BeamAtTarget
     return { along * along, beside * beside };
   }
 
-  /// Distance of the target's middle outside the border, m; negative inside. For a beam that is not
-  /// round, the magnitude is a lower bound.
+  /// Distance of the target's middle outside the beam's border, m; negative inside the border. For
+  /// a beam that is not round, the magnitude is a lower bound.
   double beyond() const
   {
     if (this->isRound())
@@ -76,7 +77,7 @@ struct BeamAtTarget
     return this->across * (std::sqrt(this->isRectangle ? at.most() : at.sum()) - 1.0);
   }
 
-  /// Irradiance at the target's middle relative to the beam's mean; also defined beyond the border.
+  /// Irradiance at the target's middle, inside or beyond the border, relative to the beam's mean.
   double irradiance() const { return this->irradiance(this->squaresOf(this->x, this->y).sum()); }
 
   /// Irradiance at a point relative to the beam's mean. @param square sum of squaresOf() at the
@@ -138,15 +139,15 @@ private:
   LitPart litByOther(const BeamAtTarget& beam) const;
 
   LitPart All;
-  double Reach = 0.0;        ///< see reach(), m
+  double Reach = 0.0;        ///< value of reach(), m
   std::vector<Image> Images; ///< images, finest first; empty for a point
 };
 
 /// Effective area of an object seen from far away, m^2: the silhouette weighted by the cosine of
 /// incidence. The energy that a lidar receives from a matt object inside one beam is proportional
-/// to this area. The samples are 1/512 of the longer side apart: areas of birds are wrong by at
-/// most 0.2 %. Perspective, which reduces the area of an object of the half angle `a` by about
-/// `a/2`, is ignored.
+/// to this area. The samples are 1/512 of the longer side apart, so areas of birds are wrong by at
+/// most 0.2 %. Perspective, which reduces the area of an object of the half angle a (rad) by a
+/// share of about a/2, is ignored.
 /// @param view unit vector from the observer to the object
 double effectiveArea(const TriangleMesh& mesh, const Vec3& view);
 }

@@ -10,15 +10,15 @@
  *     tilt(t) = a sqrt(2/SwayTones) sum cos(2 pi (f_k t + p_k)).
  *
  * One frequency f_k is drawn in each of SwayTones equal parts of (1 +- SwayBandwidth)
- * SwayFrequency, and the phases p_k are uniformly distributed. The tilt about each axis has the rms
- * a and never exceeds sqrt(2 SwayTones) a. The tilt is a function of (seed, axis, t), so it can be
+ * SwayFrequency. The phases p_k are uniformly distributed. The tilt about each axis has the rms a
+ * and never exceeds sqrt(2 SwayTones) a. The tilt is a function of (seed, axis, t), so it can be
  * computed at any time and in any order.
  *
  * Jitter. All channels of a column share one error of the azimuth, a normal deviate that is a
  * function of (seed, column, revolution).
  *
- * The sensor tilts about its own position. The motion of a sensor on a mast of height h by h times
- * the tilt is not modelled.
+ * The sensor tilts about its own position. On a mast of height h the sensor would also move by h
+ * times the tilt. This motion is not modelled.
  *
  * Source: Rice's sum of sinusoids with random phases (Bell Syst. Tech. J. 23, 1944); Box and
  * Muller's normal deviates.
@@ -39,7 +39,7 @@
 namespace avianlidar
 {
 constexpr int SwayTones = 16;
-constexpr double SwayBandwidth = 0.2; // share of SwayFrequency, to each side
+constexpr double SwayBandwidth = 0.2; // half width of the band, as a share of SwayFrequency
 
 struct PointingErrors
 {
@@ -62,7 +62,7 @@ public:
   /// which the sensor turns
   Pointing(const PointingErrors& errors, const Vec3& rotor);
 
-  /// Tilt about the east and the north axis (right-handed), rad. @param time s
+  /// Tilt about the east and the north axis (right-handed), rad. @param time time, s
   std::array<double, 2> tilt(double time) const;
 
   /// Error of the azimuth of a column, rad, clockwise seen from above.

@@ -8,10 +8,10 @@
  * have no common multiple.
  *
  * A prism has a face perpendicular to the axis and a face inclined by the wedge angle. Light leaves
- * through the inclined face if the wedge angle is above 0, and enters through this face if it is
- * below 0. Snell's law in vector form gives the direction d' behind a face from the unit vector d,
- * the face's unit normal m along the light (d m > 0) and the ratio r of the refractive index before
- * the face to the index behind it:
+ * through the inclined face if the wedge angle is above 0, and enters through this face if the
+ * wedge angle is below 0. Snell's law in vector form gives the direction d' behind a face from the
+ * direction d before the face (a unit vector), the face's unit normal m along the light (d m > 0)
+ * and the ratio r of the refractive index before the face to the index behind it:
  *
  *     d' = r d + (sqrt(1 - r^2 (1 - (d m)^2)) - r d m) m.
  *
@@ -20,8 +20,8 @@
  * The frame of the axis has x to the right, y along the axis and z up. At the phase 0 a prism
  * deflects light upwards. The phase grows clockwise as seen from the sensor, from up to right.
  *
- * Source: Snell's law; thin prisms deflect by (n - 1) times the wedge angle, so that two of them
- * draw a rose curve (Marshall, Proc. SPIE 3787, 1999).
+ * Source: Snell's law; Marshall, Proc. SPIE 3787, 1999, for the rose curve that two thin prisms
+ * draw. A thin prism of the refractive index n deflects light by (n - 1) times the wedge angle.
  * Differs: from Brazeal et al., Sensors 21, 4722 (2021), in that all prisms stand exactly on the
  * axis and have exact angles.
  * Valid: all beams start at the sensor's position, and not where they leave the last prism (some
@@ -40,28 +40,29 @@
 namespace avianlidar
 {
 /// Values of the prisms, in the order in which light passes the prisms. Each vector has one value
-/// per prism; the phases may be empty.
+/// per prism. The vector of phases may be empty.
 struct PrismTrain
 {
   std::vector<double> wedgeAngles;       ///< angles between the two faces, deg, -60 to 60
   std::vector<double> refractiveIndices; ///< refractive indices, 1 to 4 (germanium)
-  std::vector<double> rotationRates;     ///< rotation rates, Hz, -1e6 to 1e6; above 0 clockwise
+  std::vector<double> rotationRates;     ///< rotation rates, Hz, -1e6 to 1e6; above 0: clockwise
   std::vector<double> phases;            ///< phases at time 0, deg; empty: all 0
   double axisElevation = 0.0;            ///< elevation of the axis, deg, -90 to 90
-  /// Rotation rate of the axis and all prisms about the vertical, Hz; above 0 clockwise from above.
+  /// Rotation rate of the axis and all prisms about the vertical, Hz; above 0: clockwise as seen
+  /// from above.
   double axisRotationRate = 0.0;
 
   bool none() const { return this->wedgeAngles.empty(); }
 };
 
-/// The first bad value in words ("PrismWedgeAngles is 70, expected ..."), or an empty string.
-/// @param enters directions of the lasers before the prisms, unit vectors in the frame of the axis;
-/// light must pass for all combinations of the prisms' phases in steps of 30 degrees
+/// The first bad value in words ("PrismWedgeAngles is 70, expected ..."), or an empty string. Light
+/// must pass for all combinations of the prisms' phases in steps of 30 degrees.
+/// @param enters directions of the lasers before the prisms, unit vectors in the frame of the axis
 std::string checkPrisms(const PrismTrain& train, const std::vector<Vec3>& enters);
 
 /// Direction of light behind the prisms, in the sensor's frame. Throws std::runtime_error if no
 /// light passes. Start and time are separate so that times of a scan keep their digits.
-/// @param start start of the scan, s since time 0 @param time s since the start @param enters
+/// @param start start of the scan, s since time 0 @param time time since the start, s @param enters
 /// direction before the prisms, unit vector in the frame of the axis
 Vec3 steer(const PrismTrain& train, double start, double time, const Vec3& enters);
 }

@@ -4,8 +4,8 @@
  * @brief Times of a rotating lidar: revolutions, steps of a revolution, and the beams of a step.
  *
  * Revolution k lasts from k / RotationRate to (k + 1) / RotationRate seconds and is shown in n
- * steps. Step j shows the beams fired before the share (j + 1) / n of the revolution is over. So no
- * step is empty, and the last step has all beams.
+ * steps. Step j shows the beams fired before the share (j + 1) / n of the revolution is over. So
+ * every step has beams, and the last step has all beams.
  *
  * Source: none.
  * Valid: RotationRate from 1e-20 to 1e20 Hz, up to MaximumSteps steps.

@@ -3,15 +3,15 @@
  * @file ScanGrid.h
  * @brief The grid that the beams of a scan form: columns by azimuth, rows by elevation.
  *
- * Three cases, in this order:
- * 1. The angles take few distinct values. Columns and rows are these values, sorted. This is the
- *    case for a full scan, a sector, a piece of a scan or sector, and a table of unequal
- *    elevations. A sector across north stays in one piece.
+ * Three cases are tried in this order:
+ * 1. The angles take few distinct values. Columns and rows are these values, sorted. Case 1 holds
+ *    for a full scan, a sector, a piece of a scan or sector, and a table of unequal elevations. A
+ *    sector across north is not divided.
  * 2. The angles take many values (the sensor is tilted), but every channel is known and has the
  *    same number of beams. Rows are channels, sorted by mean elevation. Columns count the beams of
- *    a channel in the given order. With rotating prisms, each laser has a row and each of its
- *    firings a column, which gives no picture.
- * 3. Otherwise there is no grid.
+ *    a channel in the given order. With rotating prisms, rows are lasers and columns are firings.
+ *    Such a grid does not show a picture.
+ * 3. In all other cases the beams form no grid.
  *
  * Source: none.
  * Valid: angles that differ by less than GridTolerance share a column or row.
@@ -39,14 +39,14 @@ struct ScanGrid
   bool empty() const { return this->azimuths.empty(); }
 };
 
-/// Grid of beams with these angles (deg, azimuths of any turn) and, if given, channels. The result
-/// is empty if the beams form no grid. @param byChannel true if channels have their own azimuths,
-/// so that only case 2 applies
+/// Grid of beams. The result is empty if the beams form no grid. @param azimuths azimuths, deg, of
+/// any turn @param elevations elevations, deg @param channels channels, or empty @param byChannel
+/// true if channels have their own azimuths, so that only case 2 applies
 ScanGrid makeScanGrid(const std::vector<double>& azimuths, const std::vector<double>& elevations,
   const std::vector<int>& channels, bool byChannel = false);
 
-/// Set the first of some values and their spacing, which is 1 for a single value. @return true if
-/// the values are equally spaced to 1e-3 of the spacing
+/// Set `origin` to the first of some values, and `spacing` to their spacing (1 for a single value).
+/// @return true if the values are equally spaced to 1e-3 of the spacing
 bool equallySpaced(const std::vector<double>& values, double& origin, double& spacing);
 }
 

@@ -3,22 +3,22 @@
  * @file ScanPattern.h
  * @brief Directions and times of the beams of a rotating multichannel lidar.
  *
- * The sensor is a rotor that carries C channels at fixed elevations. A scan consists of columns,
- * one per azimuth, and every column of C firings. Beams are numbered column by column, channel by
+ * The sensor is a rotor with C channels at fixed elevations. A scan consists of columns, one per
+ * azimuth. Every column consists of C firings. Beams are numbered column by column, and channel by
  * channel within a column.
  *
- * Frames. The sensor's frame is x right, y forward, z up. If the sensor is not turned, these axes
- * are the scene's east, north and up. Azimuth is measured from north (y), clockwise seen from
- * above, and elevation upwards from the horizontal plane. The orientation is R = yaw * pitch *
- * roll: yaw clockwise from north, pitch nose up, roll to the right. Angles are in degrees, as in
- * specifications.
+ * Frames. In the sensor's frame x points to the right, y forward and z up. If the sensor is not
+ * turned, these axes are the scene's east, north and up. Azimuth is measured from north (y),
+ * clockwise as seen from above. Elevation is measured upwards from the horizontal plane. The
+ * orientation is R = yaw * pitch * roll: yaw clockwise from north, pitch nose up, roll to the
+ * right. Angles are in degrees, as in specifications.
  *
  * Source: paper, Fig. 1 and Sec. 5.3.
  * Differs: with an odd number of channels the staggered order has steps of C/2 rounded up. Tables
  * of azimuth offsets and firing times, and sectors without beams, are added. Rotating prisms
  * (Prisms.h) may replace the rotor. A scan is then a window of 1 / RotationRate seconds in which
- * the lasers fire continuously, a column is one firing of each laser, and the next scan continues
- * where the last one ended. A table of any beams may replace rotor and prisms.
+ * the lasers fire continuously. A column is then one firing of each laser. The next scan continues
+ * where the last scan ended. A table of any beams may replace rotor and prisms.
  * Valid: rotations by multiples of 90 degrees are exact. All channels of a column share its
  * azimuth: the rotor's motion between the firings of one column is not modelled (at most
  * FiringInterval * C * RotationRate of the azimuth range).
@@ -68,16 +68,17 @@ struct ScanPattern
   double azimuthStep = 0.375;     ///< step between columns, deg
   double rotationRate = 0.5;      ///< sweeps across the azimuth range per second, Hz, 1e-20 to 1e20
   double firingInterval = 30e-6;  ///< time between two firings of a column, s
-  /// Optional tables, one value per channel: azimuth of its beam minus the azimuth of the column,
-  /// deg, and time of its firing since the column began, s, instead of the staggered order.
+  /// Optional table: azimuth of each channel's beam minus the azimuth of the column, deg.
   std::vector<double> azimuthOffsets;
+  /// Optional table: time of each channel's firing since the column began, s. Without this table
+  /// the firing order is staggered.
   std::vector<double> firingTimes;
-  /// Optional pairs of azimuths, deg: columns from the first azimuth to below the second do not
-  /// fire.
+  /// Optional pairs of azimuths, deg: columns from the first azimuth of a pair to below the second
+  /// azimuth do not fire.
   std::vector<double> blankedSectors;
-  /// Optional prisms, which replace the columns by azimuth. Elevations and azimuth offsets then
-  /// describe the light of the lasers before the prisms, in the frame of the prisms' axis. A column
-  /// takes channels times firingInterval.
+  /// Optional prisms, which replace the rotor. Elevations and azimuth offsets then describe the
+  /// light of the lasers before the prisms, in the frame of the prisms' axis. A column takes
+  /// channels times firingInterval.
   PrismTrain prisms;
   /// Optional beams, each a column of one channel. The table replaces all values above except yaw,
   /// pitch, roll and rotationRate.
@@ -99,8 +100,8 @@ struct ScanBeam
 int numberOfChannels(const ScanPattern& pattern);
 
 /// Number of columns, at the azimuths start, start + step, ... below the end. A column less than
-/// 1e-9 steps below the end is left out, unless it is the first. With prisms, the number is the
-/// number of columns for which a scan has time.
+/// 1e-9 steps below the end is left out, unless it is the first. With prisms, a scan has as many
+/// columns as fit into its duration.
 std::int64_t numberOfColumns(const ScanPattern& pattern);
 
 /// Number of beams: columns times channels, whether or not a column fires.
@@ -145,7 +146,7 @@ std::array<double, 2> sinCosDegrees(double degrees);
 class ScanGenerator
 {
 public:
-  /// @param revolution number of the scan; with prisms each scan has its own directions
+  /// @param revolution number of the scan, on which directions depend if there are prisms
   explicit ScanGenerator(const ScanPattern& pattern, int revolution = 0);
 
   std::int64_t size() const { return this->Beams; }

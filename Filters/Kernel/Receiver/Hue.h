@@ -4,8 +4,8 @@
  * @brief Colour of an echo in the HSB mode: Qlow is blue, Qhigh is red.
  *
  * Source: paper, Sec. 2.5, Eq. 13.
- * Differs: the paper's sentence before Eq. 13 swaps the two ends; the equation is followed.
- * Valid: all energies; outside the limits the nearer end is taken.
+ * Differs: the paper's sentence before Eq. 13 swaps the two ends. The code follows the equation.
+ * Valid: all energies. An energy outside the limits has the hue of the nearer limit.
  * Test: TestHue.cxx.
  */
 #ifndef avianlidar_Hue_h
@@ -17,10 +17,11 @@
 
 namespace avianlidar
 {
-constexpr double LargestHue = 240.0; // deg, blue, at Qlow
+constexpr double LargestHue = 240.0; // hue of blue, at Qlow, deg
 
-/// Hue in degrees, 240 at the lower limit to 0 at the upper one (paper, Eq. 13). Energies (J)
-/// outside the limits take the nearer end; lower == upper: 0. NaN stays NaN.
+/// Hue, deg, from 240 at the lower limit to 0 at the upper limit (paper, Eq. 13). An energy (J)
+/// outside the limits has the hue of the nearer limit. The hue is 0 if the limits are equal, and
+/// NaN if the energy is NaN.
 inline double hueOfEnergy(double energy, double lower, double upper)
 {
   if (std::isnan(energy))
@@ -34,7 +35,7 @@ inline double hueOfEnergy(double energy, double lower, double upper)
   return (upper - std::clamp(energy, lower, upper)) / (upper - lower) * LargestHue;
 }
 
-/// Red, green, blue in [0, 1] of a hue (degrees, any) at saturation and brightness 1.
+/// Red, green and blue, in [0, 1], of a hue (any angle, deg) at saturation and brightness 1.
 inline std::array<double, 3> colorOfHue(double hue)
 {
   const double turned = std::fmod(hue, 360.0);

@@ -3,15 +3,16 @@
  * @file RangeUnits.h
  * @brief Sums the energies of all paths of a beam in range units (range bins), without the noise.
  *
- * A path of length l arrives after tau = l/c. The energy of the path arrives as a rectangular pulse
- * of width tau_e centred on tau. This energy is divided, exactly and in proportion, among the units
- * m, [m tau_s, (m+1) tau_s), that the pulse overlaps. A width of 0 gives a delta pulse at tau.
- * Energy that would arrive before the pulse is sent, from closer than c tau_e/4, is counted in unit
- * 0. A path shorter than twice the minimum range is not recorded.
+ * Light on a path of length l arrives after the time tau = l/c. The energy of the path arrives as a
+ * rectangular pulse of width tau_e centred on tau. This energy is divided, exactly and in
+ * proportion to the overlap, among the units m, [m tau_s, (m+1) tau_s), that the pulse overlaps. A
+ * width of 0 gives a delta pulse at tau. Energy that would arrive before the pulse is sent, from
+ * closer than c tau_e/4, is counted in the unit m = 0. A path shorter than twice the minimum range
+ * is not recorded.
  *
- * Units are sparse. Memory grows with the number of contributions and of the units that they meet
- * (on average 1 + tau_e/tau_s per contribution), and not with the range. Sums run in the order of
- * the contributions.
+ * Only units with energy are stored. Memory grows with the numbers of contributions and of the
+ * units that they meet (on average 1 + tau_e/tau_s per contribution), and not with the range. Sums
+ * run in the order of the contributions.
  *
  * Source: paper, Eq. 10.
  * Differs: the paper does not place the pulse. A pulse that starts at tau would move every echo c
@@ -36,11 +37,11 @@ struct Contribution
 };
 
 /// Energies that contributions put into some consecutive range units, in the order of the
-/// contributions. Contributions that put nothing there are left out.
+/// contributions. Contributions that put nothing into these units are left out.
 struct RangeShares
 {
   const double* energies = nullptr;            ///< energies of the shares, J, above 0
-  const std::uint32_t* contribution = nullptr; ///< contribution of each share, by number
+  const std::uint32_t* contribution = nullptr; ///< number of the contribution of each share
   std::size_t count = 0;
 };
 
@@ -72,8 +73,8 @@ struct RangeUnit
   std::uint32_t paths = 0; ///< number of contributions with a share
 };
 
-/// An object allocates nothing once its workspace has grown to the largest beam. Each thread needs
-/// its own object.
+/// Sums the contributions of one beam after the other. An object allocates nothing once its
+/// workspace has grown to the largest beam. Each thread needs its own object.
 ///
 /// Pulses are placed in a loop over lanes, and are added one by one to a table of a window of
 /// units. If a beam's units lie farther apart than the table is long, the window moves to the next
@@ -81,25 +82,26 @@ struct RangeUnit
 class RangeUnitAccumulator
 {
 public:
-  /// @param samplingInterval tau_s, s, > 0 @param pulseWidth tau_e, s, in [0, 1000 tau_s]
-  /// @param rangeGate end of the gate, m, > 0; units that begin at or beyond the end are dropped
-  /// @param minimumRange begin of the gate, m; nearer contributions are dropped
+  /// @param samplingInterval sampling interval tau_s, s, > 0 @param pulseWidth width tau_e, s, in
+  /// [0, 1000 tau_s]
+  /// @param rangeGate end of the gate, m, > 0, before which all recorded units begin
+  /// @param minimumRange beginning of the gate, m, before which contributions are dropped
   RangeUnitAccumulator(
     double samplingInterval, double pulseWidth, double rangeGate, double minimumRange = 0.0);
 
   /// Remove the contributions of the previous beam.
   void clear();
 
-  /// Add a path of the beam. Length and energy must be finite, energy >= 0.
+  /// Add a path of the beam. Length and energy must be finite, and the energy at least 0.
   void add(const Contribution& contribution);
 
-  /// Add `count` paths: half their lengths (m) and energies (J).
+  /// Add `count` paths. @param ranges half the length of each path, m @param energies energies, J
   void add(const double* ranges, const double* energies, std::size_t count);
 
   /// Distribute all contributions added since clear() among the units.
   void accumulate();
 
-  /// Units with energy in ascending order of index, each once.
+  /// Units with energy in ascending order of index, each unit once.
   const std::vector<RangeUnit>& units() const { return this->Units; }
 
   /// Shares of the paths in units [first, last), which must lie inside the gate. Requires
@@ -115,10 +117,10 @@ public:
   /// Energy that arrived before the gate, J.
   double energyBeforeGate() const { return this->EnergyBeforeGate; }
 
-  /// Units inside the gate: 0 <= m < gateUnits().
+  /// Number of units m inside the gate: 0 <= m < gateUnits().
   std::int64_t gateUnits() const { return this->GateUnits; }
 
-  /// The last unit that a path of this range can reach; not limited to gateUnits().
+  /// The last unit that a path of this range (m) can reach; not limited to gateUnits().
   double lastUnitOf(double range) const;
 
 private:
@@ -127,8 +129,8 @@ private:
   void findShares(double first, double last);
   const std::vector<std::uint32_t>& contributionsNear(double first, double last);
 
-  double UnitPathLength; // c tau_s: twice a unit's length in range
-  double RelativeWidth;  // tau_e/tau_s
+  double UnitPathLength; // length of path in a unit, c tau_s, m
+  double RelativeWidth;  // width of the pulse, tau_e/tau_s
   std::int64_t GateUnits;
   double LeastLength; // least length of a recorded path, m
   double EnergyBeforeGate = 0.0;

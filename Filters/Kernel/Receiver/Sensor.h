@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file Sensor.h
- * @brief Values of the instrument on which an echo depends, and their check.
+ * @brief Instrument values on which an echo depends, and their check.
  *
  * Source: paper, Table 2; defaults of Sec. 5.3.
  * Differs: the Gaussian profile, beams that are not round, the receiver's aperture and the photon
@@ -23,9 +23,9 @@ namespace avianlidar
 /// Distribution of the emitted energy inside the beam.
 enum class BeamProfile
 {
-  Uniform = 0, ///< uniform in solid angle (paper, Eq. 3); see BeamShape.h for other outlines
-  /// exp(-2 k^2 u), u = (1-cos theta)/(1-cos theta0.5), k the truncation: by default 1/e^2 at the
-  /// half-beamwidth, cut there.
+  Uniform = 0, ///< uniform in solid angle (paper, Eq. 3; other outlines: BeamShape.h)
+  /// exp(-2 k^2 u), u = (1-cos theta)/(1-cos theta0.5), with theta the angle from the axis and k
+  /// the truncation. The profile ends at the half-beamwidth, where it is 1/e^2 by default.
   Gaussian = 1
 };
 
@@ -55,11 +55,11 @@ constexpr double PlanckConstant = 6.626e-34; // J s, the value of the paper's Ta
 
 // Limits of sensorFields(), all far beyond any instrument and far within the range of doubles:
 // products and squares of energies and lengths neither overflow nor vanish.
-constexpr double MaximumHalfBeamwidth = Pi / 3.0;    // rad; wider than 60 degrees is not a beam
-constexpr double MaximumHalfBeamwidthNotRound = 0.1; // rad; both half-beamwidths
+constexpr double MaximumHalfBeamwidth = Pi / 3.0;    // half-beamwidth, rad (60 degrees)
+constexpr double MaximumHalfBeamwidthNotRound = 0.1; // both half-beamwidths, rad
 constexpr double MaximumBeamRatio = 1000.0;          // ratio of the half-beamwidths
 constexpr double MaximumEnergy = 1e50;               // pulse energy and energy limits, J
-constexpr double MaximumRangeGate = 1e30;            // m, as far as coordinates go
+constexpr double MaximumRangeGate = 1e30;            // range gate, m, as for coordinates
 
 /// Largest number of range units inside the gate; exact in double precision.
 constexpr double MaximumGateUnits = 4503599627370496.0; // 2^52
@@ -69,10 +69,10 @@ struct Sensor
 {
   double halfBeamwidth = 5.6e-3; ///< half-beamwidth, rad, 1e-9 to pi/3
   BeamProfile beamProfile = BeamProfile::Uniform;
-  double gaussianTruncation = 1.0; ///< half-beamwidth in 1/e^2 radii of the Gaussian, 0.1 to 3
+  double gaussianTruncation = 1.0; ///< half-beamwidth divided by 1/e^2 radius, 0.1 to 3
   BeamOutline beamOutline = BeamOutline::Ellipse;
-  double halfBeamwidthAcross = 0.0;  ///< second half-beamwidth, rad, 1e-9 to 0.1; 0: the first
-  double beamRotation = 0.0;         ///< angle of the first from the horizontal to `up`, deg
+  double halfBeamwidthAcross = 0.0;  ///< second half-beamwidth, rad, 1e-9 to 0.1; 0: halfBeamwidth
+  double beamRotation = 0.0;         ///< angle of halfBeamwidth from the horizontal to `up`, deg
   Vec3 up{ 0.0, 0.0, 1.0 };          ///< up axis of the sensor, unit vector in scene coordinates
   double pulseEnergy = 3.6e-4;       ///< pulse energy Qs, J, 1e-50 to 1e50
   double pulseWidth = 5e-9;          ///< pulse width tau_e, s, >= 0 and <= 1000 tau_s
@@ -84,7 +84,7 @@ struct Sensor
   double upperEnergyLimit = 6.25e-5; ///< upper limit Qhigh, J, Qlow to 1e50
   double receiverAperture = 0.0; ///< aperture, m^2, 0 to 1e20; 0: the paper's radiometry (no 1/r^2)
 
-  // The photon receiver; the defaults are assumed.
+  // The photon receiver, with assumed defaults.
   ReceiverModel receiverModel = ReceiverModel::EnergyLimits;
   ThresholdLaw thresholdLaw = ThresholdLaw::FollowsAir; ///< law of the photon threshold
   double receiverEfficiency = 0.4;  ///< electrons per photon at the aperture, eta, > 0, <= 1
@@ -93,22 +93,23 @@ struct Sensor
   double amplifierNoise = 60.0;     ///< noise n_a, electrons rms in a range unit, 0 to 1e20
   double excessNoiseFactor = 3.0;   ///< excess noise factor F, 1 to 1e6
 
-  // Daylight on the surfaces in a beam (Background.h); 0: all beams have the background radiance.
+  // Daylight on the surfaces in a beam (Background.h). If `sunlight` is 0, all beams have the
+  // background radiance.
   double sunlight = 0.0;      ///< E, irradiance of surfaces facing the sun, W/(m^2 nm), 0 to 1e10
   double sunAzimuth = 180.0;  ///< azimuth of the sun, clockwise from north, deg
   double sunElevation = 45.0; ///< elevation of the sun, deg, -90 to 90
 
-  // Loss of near echoes in the receiver, see nearRangeShare(); 0: none.
+  // Loss of near echoes in the receiver (nearRangeShare()); 0: no loss.
   double minimumRange = 0.0; ///< least recorded range, m, 0 to rangeGate
   double overlapRange = 0.0; ///< range at which 1 - 1/e of the beam lies in the receiver's view, m
   double defocusRange = 0.0; ///< range at which half of a blurred spot is on the detector, m
 
-  // Errors of ranges (RangeErrors.h); the paper's receiver has none.
+  // Errors of ranges (RangeErrors.h), which the paper's receiver does not have.
   double rangeNoise = 0.0;         ///< b, standard deviation at a signal-to-noise ratio of 1, m
-  double rangeNoiseExponent = 2.0; ///< p, 0 to 10
+  double rangeNoiseExponent = 2.0; ///< exponent p, 0 to 10
   double rangeNoiseFloor = 0.0;    ///< a, standard deviation of the strongest echoes, m
   double rangeWalk = 0.0;          ///< range walk at the lower limit, m
-  double rangeQuantum = 0.0;       ///< step of the ranges, m; 0: none
+  double rangeQuantum = 0.0;       ///< step of the ranges, m; 0: ranges are not rounded
 
   /// Energy of one photon, J.
   double photonEnergy() const { return PlanckConstant * this->frequency; }
@@ -140,14 +141,14 @@ struct Sensor
   bool losesNearRange() const { return this->overlapRange > 0.0 || this->defocusRange > 0.0; }
 
   /// Share of the light from a range, m, that reaches the detector: (1 - exp(-(r/r_o)^2))/(1 +
-  /// (r_d/r)^2), r_o overlapRange, r_d defocusRange.
+  /// (r_d/r)^2), with r_o = overlapRange and r_d = defocusRange.
   double nearRangeShare(double range) const;
 
   /// Length of one range unit, m: c tau_s / 2.
   double rangeUnitLength() const { return 0.5 * SpeedOfLight * this->samplingInterval; }
 };
 
-/// Beams whose input must give a number of the sensor; other inputs have the default.
+/// Beams whose input must contain a number of the sensor. Other inputs have the default.
 enum class NeededOf
 {
   All,
@@ -162,7 +163,7 @@ struct SensorField
   const char* unit; ///< unit; "1": a pure number
   double Sensor::*member;
   double least, most;
-  const char* expected; ///< expected range in words, also where other fields decide on the range
+  const char* expected; ///< expected range in words, also if the range depends on other fields
   NeededOf neededOf;
 };
 
@@ -172,7 +173,7 @@ const std::vector<SensorField>& sensorFields();
 /// Entry of a member in sensorFields().
 const SensorField& sensorField(double Sensor::*member);
 
-/// Range, m, from which echoes arrive after the next pulse has left. @param pulseInterval time
+/// Range, m, beyond which echoes arrive after the next pulse has left. @param pulseInterval time
 /// between two pulses, s
 double unambiguousRange(double pulseInterval);
 

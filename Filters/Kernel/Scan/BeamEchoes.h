@@ -3,15 +3,16 @@
  * @file BeamEchoes.h
  * @brief Third stage of a beam: makes returns, with standard errors and labels.
  *
- * The labels of a return follow from all paths with a share in it: the object and material with the
- * most energy, the mean angle of incidence, and the share of the energy from paths with two
- * reflections.
+ * The labels of a return follow from all paths with a share in the return: the object and material
+ * with the most energy, the mean angle of incidence, and the share of the energy from paths with
+ * two reflections.
  *
  * Source: paper, Eq. 10-12.
  * Differs: the paper gives one point per perceived range unit, without labels. Returns are defined
  * in Receiver.h.
  * Valid: a false alarm has no object, no material and no angle. The standard error is NaN where
- * StandardError.h gives no error. For an integrated beam it is the bound of PolygonQuadrature.h.
+ * StandardError.h gives no error. For an integrated beam the standard error is the bound of
+ * PolygonQuadrature.h.
  * Test: TestScanReport.cxx, TestScan.cxx, TestEchoClosedForms.cxx.
  */
 #ifndef avianlidar_BeamEchoes_h
@@ -28,9 +29,9 @@
 
 namespace avianlidar
 {
-/// Energies of a return by object and material. A beam meets few pairs of object and material, and
-/// most rays meet the pair of the ray before, so a list is faster than a map. Reusable without
-/// allocation; one object per thread.
+/// Energies of a return by object and material. A list is faster than a map, because a beam meets
+/// few pairs of object and material and most rays meet the pair of the ray before. An object is
+/// reused without allocation. Each thread needs its own object.
 class LabelSums
 {
 public:
@@ -63,7 +64,7 @@ public:
     bool is(int o, int m) const { return this->object == o && this->material == m; }
   };
 
-  /// The largest sum. Ties go to the lowest object, then to the lowest material.
+  /// The largest sum. If sums are equal, the lowest object is taken, then the lowest material.
   const Sum& largest() const
   {
     return *std::min_element(this->Sums.begin(), this->Sums.end(),
@@ -90,7 +91,8 @@ private:
   std::size_t Last = 0;
 };
 
-/// Labels of echoes. Reusable without allocation; one object per thread.
+/// Finds the labels of echoes. An object is reused without allocation. Each thread needs its own
+/// object.
 class EchoLabels
 {
 public:
@@ -117,16 +119,16 @@ private:
   std::vector<double> Angles; ///< angles of incidence of the shares, rad
 };
 
-/// Receives one beam after the other. One object per thread, which the constructor's arguments must
-/// outlive.
+/// Receives one beam after the other. Each thread needs its own object. The constructor's arguments
+/// must outlive the object.
 class BeamEchoes
 {
 public:
   BeamEchoes(const ScanSetup& setup, BeamLighting& lighting, BeamReceiver& receiver,
     StandardErrorEstimator& ofRays);
 
-  /// Append the echoes of the beam lit last. @param keep set to the values of the returns that do
-  /// not depend on noise; may be null @param report output: status and range
+  /// Append the echoes of the beam lit last. @param keep output: values of the returns that do not
+  /// depend on noise; may be null @param report output: status and range
   void receive(std::uint64_t beam, LitBeam* keep, std::vector<Echo>& echoes, BeamReport& report);
 
   /// Append the echoes of a beam lit in an earlier scan. @param report output: status, range, lost

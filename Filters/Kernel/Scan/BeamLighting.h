@@ -4,24 +4,25 @@
  * @brief Second stage of a beam: the energies of all its paths, in range units.
  *
  * The paths are the direct echoes of all samples, and the paths with two reflections that the
- * light-energy constraint keeps. With epsilon = EchoSettings::lightEnergyFraction:
+ * light-energy constraint keeps. The constraint has these rules, with epsilon =
+ * EchoSettings::lightEnergyFraction:
  *
- * - A path is dropped if it carries less than epsilon Qlow / (number of paths of the beam). A path
- *   is not traced if an upper bound shows that it would be dropped.
+ * - A path is dropped if its energy is less than epsilon Qlow / (number of paths of the beam). A
+ *   path is not traced if an upper bound shows that it would be dropped.
  * - All secondary paths of a beam are skipped if the sum of their bounds and of the energy already
  *   dropped is less than epsilon Qlow.
  * - No secondary paths of a beam are traced if upper bounds show that the beam would not be
  *   perceived even with all its energy in one range unit (for an integrated beam: with the largest
- *   bound of a unit). The rule needs the constraint, and noise and air too weak to be perceived.
+ *   bound of a unit). This rule applies only if noise and air are too weak to be perceived.
  *
  * The samples of an integrated beam are nodes on its polygons (PolygonQuadrature.h). If the
  * polygons face each other, connections start from rays that meet the polygons. The samples of a
- * beam in cells are its strips (RangeStrips.h), and connections start from the rays of the beam.
- * Mirror paths of integrated beams and of beams in cells come from MirrorRegions.h.
+ * beam in cells are its strips (RangeStrips.h). Connections of such a beam start from the beam's
+ * rays. Mirror paths of integrated beams and of beams in cells come from MirrorRegions.h.
  *
  * Source: paper, Eq. 4-9 and Sec. 3.4.
- * Differs: the constraint compares with the sum of a range unit. To compare each ray with Qlow
- * would remove every wall.
+ * Differs: the constraint limits the energy that a whole range unit loses. To compare each ray with
+ * Qlow would remove every wall.
  * Valid: no range unit loses more than epsilon Qlow. A beam whose secondary paths are not traced
  * would have no echo, unless paths from random rays exceed the bound by chance.
  * Test: TestEchoClosedForms.cxx, TestSecondaryConstraints.cxx, TestScanAgain.cxx.
@@ -42,22 +43,21 @@
 
 namespace avianlidar
 {
-/// Lights one beam after the other. One object per thread, which the constructor's arguments must
-/// outlive.
+/// Computes the light of one beam after the other. Each thread needs its own object. The
+/// constructor's arguments must outlive the object.
 class BeamLighting
 {
 public:
-  /// @param wanted function called every 4096 steps within a beam; a result of false throws
-  /// WorkStopped
+  /// @param wanted function called every 4096 steps within a beam; false: throws WorkStopped
   BeamLighting(const ScanSetup& setup, const SceneTriangles& scene, const ScanBeams& beams,
     BlockBeams& block, BeamSampler& sampler, const BeamReceiver& receiver, BeamAir& air,
     std::function<bool()> wanted);
 
-  /// Light beams even where bounds show that no energy can be perceived.
+  /// Computes the light of beams even where bounds show that no energy can be perceived.
   void lightAll() { this->LightsAll = true; }
 
-  /// Light the samples of a beam of the block, and add new hits and paths to `trace`.
-  /// @return false if nothing of the beam can be perceived; then units and paths are incomplete
+  /// Computes the light of a beam of the block, and adds new hits and paths to `trace`.
+  /// @return false, with incomplete units and paths, if nothing of the beam can be perceived
   bool light(std::size_t beam, BeamTrace& trace);
 
   // Results for the beam lit last.
@@ -70,7 +70,8 @@ public:
   const BeamSamples* starts() const { return this->Starts; }
   bool raysAreLit() const { return this->Lit == this->Starts; }
   const CellSamples* cells() const { return this->Cells; } ///< samples of a beam in cells, or null
-  const PolygonQuadrature& quadrature() const { return this->Quadrature; } ///< for integrated beams
+  /// Quadrature of the beam, if the beam is integrated.
+  const PolygonQuadrature& quadrature() const { return this->Quadrature; }
   /// True if direct echoes arrive, all of them outside the range gate.
   bool isOutsideGate() const;
   BeamAir& air() { return this->Air; }

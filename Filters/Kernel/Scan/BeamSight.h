@@ -4,15 +4,15 @@
  * @brief Finds the triangles that one beam sees, their shares of its solid angle, and their
  * energies.
  *
- * The beam passes the stages of a scan (BeamSimulator.h), without noise and limits, and the samples
- * of the beam are summed by triangle. Movers are placed at their poses at the beam's time. A
+ * The beam passes the stages of a scan (BeamSimulator.h), without noise and limits. The samples of
+ * the beam are then summed by triangle. Movers are placed at their poses at the beam's time. A
  * Gaussian beam has the shares of a uniform beam with the same outline. Energies are sums of direct
  * echoes from all ranges, without paths with two reflections and without light from the air.
  *
  * Source: none.
- * Valid: shares of a round beam are shares of its solid angle, and shares of other beams are shares
- * of the area of the beam's plane (BeamShape.h). Shares are as exact as the samples: a beam of few
- * triangles is integrated, other beams are sampled.
+ * Valid: shares of a round beam are shares of its solid angle. Shares of other beams are shares of
+ * the area of the beam's plane (BeamShape.h). Shares are as exact as the samples: a beam of few
+ * triangles is integrated, and other beams are sampled.
  * Test: Testing/Python/TestBeamView.py.
  */
 #ifndef avianlidar_BeamSight_h
@@ -44,9 +44,8 @@ struct SeenSurface
   double farthest = 0.0; ///< largest range, m
 };
 
-/// Surfaces that beam `beam` sees, in the order of the triangles. @param setup planned
-/// (planModel()) @param wanted function called during the work; a result of false throws
-/// WorkStopped
+/// Surfaces that beam `beam` sees, in the order of the triangles. @param setup setup planned by
+/// planModel() @param wanted function called during the work; false: throws WorkStopped
 std::vector<SeenSurface> sightAlong(const ScanSetup& setup, const ScanBeams& beams,
   std::size_t beam, const std::function<bool()>& wanted = {});
 

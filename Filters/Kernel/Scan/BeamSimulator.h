@@ -3,8 +3,8 @@
  * @file BeamSimulator.h
  * @brief Simulates a block of beams, from rays to returns, in three stages.
  *
- * 1. Tracing (ScanBlock.h) finds the surfaces that each beam of the block sees, unless these are
- * kept from an earlier run.
+ * 1. Tracing (ScanBlock.h) finds the surfaces that each beam of the block sees, unless the surfaces
+ *    are kept from an earlier run.
  * 2. Lighting (BeamLighting.h) sums the energies of all paths of one beam in range units. Lighting
  *    is skipped where a scan differs from the scan before only in noise (LitBeam.h).
  * 3. BeamEchoes.h adds noise and makes returns. A beam without hits skips this stage unless noise
@@ -12,7 +12,7 @@
  *
  * Source: paper, Algorithm 2.
  * Differs: the beams of a block are traced together, and lit from kept hits.
- * Valid: as the three stages.
+ * Valid: see the headers of the three stages.
  * Test: TestScan.cxx, TestEchoClosedForms.cxx.
  */
 #ifndef avianlidar_BeamSimulator_h
@@ -26,21 +26,22 @@
 
 namespace avianlidar
 {
-/// Each thread uses an object of its own, which setup and beams must outlive. The setup must not
+/// Each thread needs its own object. Setup and beams must outlive the object. The setup must not
 /// change. A beam may change until it is traced.
 class BeamSimulator
 {
 public:
   /// @param keepsLight true: keep lit beams where noise matters or surfaces move
   /// @param wanted function called every 4096 steps within a beam, and every 512 units for which
-  /// noise is drawn; a result of false throws WorkStopped
+  /// noise is drawn; false: throws WorkStopped
   /// @param sampler sampler for the sensor, sampling and N of the setup; must outlive the object
   BeamSimulator(const ScanSetup& setup, const ScanBeams& beams, bool keepsLight,
     BeamSampler& sampler, std::function<bool()> wanted = {});
   BeamSimulator(const BeamSimulator&) = delete;
   BeamSimulator& operator=(const BeamSimulator&) = delete;
 
-  /// Triangles that beams may meet. Movers are placed here before a block of one beam is traced.
+  /// Triangles that beams may meet. Movers are added to the triangles before a block of one beam is
+  /// traced.
   SceneTriangles& scene() { return this->Scene; }
   const SceneTriangles& scene() const { return this->Scene; }
 

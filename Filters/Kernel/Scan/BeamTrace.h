@@ -4,9 +4,9 @@
  * @brief Data kept for one beam: the geometry of its rays and paths, which does not depend on
  * energies, and the energies of the beam (LitBeam.h).
  *
- * Each part is computed when first needed. A scan with other coefficients, limits, noise or
- * attenuation does not trace kept parts again. A beam without hits takes 72 bytes, each hit takes
- * 37 bytes, and each connection of two hits takes 81 bytes.
+ * Each part of the data is computed when first needed. A scan with other coefficients, limits,
+ * noise or attenuation does not trace kept parts again. The memory is 72 bytes for a beam without
+ * hits, 37 bytes for each hit, and 81 bytes for each connection of two hits.
  *
  * Source: none.
  * Valid: geometry for one traceKey() (TraceCache.h), `lit` for one LightKey.
@@ -38,7 +38,7 @@ struct EmptyView
 {
 };
 
-/// The view of a beam: alternatives in the order of DirectEcho, whose pointers are not null.
+/// The view of a beam, with alternatives in the order of DirectEcho and pointers that are not null.
 using BeamView = std::variant<std::monostate, EmptyView, std::unique_ptr<VisiblePolygons>,
   std::unique_ptr<CellSamples>, RayView>;
 

@@ -26,7 +26,7 @@
 
 namespace avianlidar
 {
-/// One object per thread, which the constructor's arguments must outlive.
+/// Each thread needs its own object. The constructor's arguments must outlive the object.
 class BlockBeams
 {
 public:
@@ -46,14 +46,14 @@ public:
   void takeHits(std::size_t beam, BeamTrace& trace);
 
   /// Hits from which connections start. The hits of an integrated beam are kept in the trace: one
-  /// for each ray that meets a visible polygon.
+  /// hit for each ray that meets a visible polygon.
   const BeamSamples& pathStartsOf(std::size_t beam, BeamTrace& trace);
 
-  /// Directions and surfaces of the beam's hits. Valid until a call for another beam.
+  /// Directions and surfaces of the beam's hits, valid until a call for another beam.
   const SampleGeometry& geometryOf(std::size_t beam, const BeamSamples& hits);
 
   BeamTracer& tracer() { return this->Tracer; }
-  /// The tracer, set to the beam. Counters begin at 0. Valid until a call for another beam.
+  /// The tracer, set to the beam with counters of 0, valid until a call for another beam.
   BeamTracer& tracerOf(std::size_t beam);
 
   /// Cost of tracing the beam in this run.

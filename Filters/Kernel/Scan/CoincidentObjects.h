@@ -42,12 +42,12 @@ void addSeenPlanes(const CollisionTree& tree, const BeamTrace& trace, std::size_
 /// Sort planes, and keep only the first beam of each plane.
 void sortSeenPlanes(std::vector<SeenPlane>& planes);
 
-/// Coincident triangles that differ in object or material: a visible triangle, and a triangle
-/// hidden by the visible one.
+/// Coincident triangles that differ in object or material: a visible triangle, and a triangle that
+/// the visible triangle hides.
 using CoincidentPair = std::pair<std::uint32_t, std::uint32_t>;
 
-/// One pair of triangles for each pair of objects, in the order of object ids. @param planes sorted
-/// by sortSeenPlanes()
+/// One pair of triangles for each pair of objects, in the order of object ids. @param planes
+/// planes, sorted by sortSeenPlanes()
 std::vector<CoincidentPair> findCoincidentObjects(
   const ScanSetup& setup, const ScanBeams& beams, const std::vector<SeenPlane>& planes);
 }

@@ -3,14 +3,14 @@
  * @file EnergyErrors.h
  * @brief Standard errors of the energies in range units of a lit beam.
  *
- * The error follows from the rays (StandardError.h), or from the cells and the rays on which paths
- * start. For an integrated beam, the error is a bound for the direct echo plus the standard error
- * of the paths. Where an aperture gathers the light of mirrors, the width of the mirrors' lobes
- * adds to the error.
+ * The error follows from the rays (StandardError.h), or from the cells and the rays from which
+ * paths start. For an integrated beam, the error is a bound for the direct echo plus the standard
+ * error of the paths with two reflections. Where an aperture gathers the light of mirrors, the
+ * width of the mirrors' lobes adds to the error.
  *
  * Source: none.
- * Valid: NaN where StandardError.h has no estimate; for integrated beams the bound of
- * PolygonQuadrature.h.
+ * Valid: the error is NaN where StandardError.h has no estimate. For the bound of integrated beams
+ * see PolygonQuadrature.h.
  * Test: TestStandardError.cxx, TestScanReport.cxx, TestCellErrors.cxx, TestPolygonUnits.cxx.
  */
 #ifndef avianlidar_EnergyErrors_h

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file LitBeam.h
- * @brief Energies in range units and returns of a lit beam, kept for scans of the same beams that
- * differ only in noise, or in movers that touch other beams.
+ * @brief Energies in range units and returns of a lit beam, kept for scans that have the same beams
+ * and differ only in noise, or in movers that touch other beams.
  *
- * Noise decides which units form a return. Range, labels and standard error of a return follow from
- * its first, last and strongest unit. The values of the first MostReturns returns with different
- * units are kept. For a further return the beam is lit again.
+ * The units that form a return depend on noise. Range, labels and standard error of a return follow
+ * from its first, last and strongest unit. The values of the first MostReturns returns with
+ * different units are kept. For a further return the beam is lit again.
  *
  * Source: none.
- * Valid: for one LightKey and the samples of one trace. Echoes are bitwise identical without a
- * LitBeam.
+ * Valid: for one LightKey and the samples of one trace. Echoes are bitwise identical with and
+ * without a LitBeam.
  * Test: TestScanAgain.cxx.
  */
 #ifndef avianlidar_LitBeam_h

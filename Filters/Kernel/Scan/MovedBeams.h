@@ -31,8 +31,8 @@
 
 namespace avianlidar
 {
-/// Simulates the beams that movers may touch, block by block. One object per thread, which the
-/// constructor's arguments must outlive.
+/// Simulates the beams that movers may touch, block by block. Each thread needs its own object. The
+/// constructor's arguments must outlive the object.
 class MovedBeams
 {
 public:
@@ -52,7 +52,7 @@ public:
   void simulate(std::size_t beam, std::vector<Echo>& echoes, BeamReport& report,
     std::vector<MoverSight>& sights);
 
-  /// The simulator, which holds the beam simulated last.
+  /// The simulator, with the results for the beam simulated last.
   const BeamSimulator& simulator() const { return this->Simulator; }
 
 private:

@@ -7,16 +7,17 @@
  * **return** is a maximal run of consecutive perceived range units. The range of a return is the
  * mean range (half the path length) of its paths, weighted with the energies that these paths put
  * into the run. A run of false alarms has no paths. In each unit of such a run the noise has a
- * random place (BeamNoise::place()), and the range of the return is the mean of these places,
+ * random place (BeamNoise::place()). The range of the return is then the mean of these places,
  * weighted with the energies of the units.
  *
- * Where the air scatters (BeamAir.h), each unit receives light from the air. A threshold that
- * follows the air subtracts the mean of this light, n_air, and lies as many standard deviations of
- * the noise above this mean as without air: n_T (1 + F n_air/sigma0^2)^(1/2). So every unit has the
- * same probability of a false alarm. Echoes of surfaces, and light of drops above the mean, remain.
- * A fixed threshold subtracts nothing. All light counts for saturation in either case. No threshold
- * follows the leaves of trees: light from leaves is treated like light from surfaces. Behind a
- * surface the light of the air is reduced by the share of the pulse that the surface has met.
+ * Where the air scatters (BeamAir.h), each unit receives light from the air. If the threshold
+ * follows the air, the receiver subtracts the mean n_air of this light. The threshold is then as
+ * many standard deviations of the noise as without air: n_T (1 + F n_air/sigma0^2)^(1/2)
+ * (PhotonReceiver.h). So every unit has the same probability of a false alarm. Echoes of surfaces,
+ * and light of drops above the mean, remain. With a fixed threshold the receiver subtracts nothing.
+ * All light counts for saturation with either threshold. No threshold follows the leaves of trees:
+ * light from leaves is treated like light from surfaces. Behind a surface the light of the air is
+ * reduced by the share of the pulse that the surface has met.
  *
  * Source: paper, Sec. 2.4, Eq. 10-12.
  * Differs: ReturnMode::RangeUnits follows the paper literally, with a point at the centre of each
@@ -67,7 +68,7 @@ struct Return
 {
   std::size_t firstUnit = 0; ///< units [firstUnit, lastUnit) of BeamReceiver::units()
   std::size_t lastUnit = 0;
-  std::size_t strongestUnit = 0; ///< unit of the largest Qrec; ties go to the nearest
+  std::size_t strongestUnit = 0; ///< nearest unit with the largest Qrec
   double energyReceived = 0.0;   ///< Qrec of the strongest unit (Eq. 10), J
   double energy = 0.0;           ///< Qen of the strongest unit (Eq. 12), J
   double returnEnergy = 0.0;     ///< sum of Qrec over the run, J
@@ -82,13 +83,14 @@ struct Return
   int numberOfReturns = 1; ///< number of returns of the beam
 };
 
-/// Receives one beam after the other. Reusable without allocation; one object per thread.
+/// Receives one beam after the other. An object is reused without allocation. Each thread needs its
+/// own object.
 class BeamReceiver
 {
 public:
   /// @param wanted function called every 512 units for which noise is drawn, counted over all
-  /// beams; a result of false throws WorkStopped
-  /// @param air media along each beam, which must outlive the object; null: no light from the air
+  /// beams; false: throws WorkStopped
+  /// @param air media along each beam; must outlive the object; null: no light from the air
   BeamReceiver(const Sensor& sensor, const NoisePlan& noise, std::int32_t seed, ReturnMode mode,
     std::int32_t revolution = 0, std::function<bool()> wanted = {}, BeamAir* air = nullptr);
 
@@ -100,18 +102,18 @@ public:
   double radiance() const { return this->Radiance; }
 
   /// Range of a return, m. For returns without light, and for all returns in the mode RangeUnits,
-  /// this is Return::range. @param accumulator range units of the beam's paths
+  /// the result is Return::range. @param accumulator range units of the beam's paths
   double rangeOf(const Return& run, RangeUnitAccumulator& accumulator) const;
 
   /// The range that the receiver reports for a return at `range`, m: with noise, walk and quantum
   /// (RangeErrors.h), or `range` unchanged in the mode RangeUnits.
   double measured(const Return& run, double range) const;
 
-  /// True if units without paths may be perceived; then no beam can be left out.
+  /// True if units without paths may be perceived. In this case no beam can be left out.
   bool mayAlarm() const { return this->Plan.active || (this->Air && this->Air->fillsScene()); }
 
-  /// Units with light or false alarms, ascending, perceived or not. Units that are too faint to be
-  /// perceived without rare noise are left out.
+  /// Units with light or false alarms, ascending, perceived or not. A unit that is perceived only
+  /// with rare noise is left out unless it has rare noise.
   const std::vector<ReceivedUnit>& units() const { return this->Units; }
 
   /// The returns that the mode selects, nearest first.
@@ -151,7 +153,7 @@ private:
   std::uint64_t Beam = 0;
   LeafGaps Gaps; ///< gaps between leaves along a narrow beam
   PulseShares Pulse;
-  SharedDrops Drops; ///< drops that share their pulses
+  SharedDrops Drops; ///< light of drops, divided among range units
   std::int32_t Seed;
   std::int32_t Revolution;
   ReturnMode Mode;

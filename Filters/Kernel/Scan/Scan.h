@@ -4,7 +4,7 @@
  * @brief Simulates all beams of a scan in parallel and reuses the geometry of earlier runs.
  *
  * Source: paper, Algorithm 2.
- * Differs: blocks of beams run in parallel; geometry and lit beams are kept between runs.
+ * Differs: blocks of beams run in parallel. Geometry and lit beams are kept between runs.
  * Valid: echoes and reports are bitwise identical for any number of threads. Echoes are also
  * bitwise identical for any order and division of the beams, any tree, and any state of the cache.
  * Test: TestScan.cxx, TestScanAgain.cxx, TestScanSweep.cxx, TestScanReport.cxx.
@@ -31,7 +31,7 @@ struct ScanResult
   std::uint64_t raysTraced = 0;           ///< number of rays traced; 0 if all beams were kept
   std::uint64_t beamsTraced = 0;          ///< number of beams whose static surfaces were searched
   std::uint64_t beamsTouched = 0;         ///< number of beams that movers may touch
-  std::vector<MoverSight> sights;         ///< light from movers, by beam; empty unless asked for
+  std::vector<MoverSight> sights;         ///< light from movers, by beam; empty unless requested
   std::vector<CoincidentPair> coincident; ///< result of findCoincidentObjects()
 };
 
@@ -40,7 +40,7 @@ struct ScanResult
  * bound of the energy that the light-energy constraint drops.
  * @param threads number of threads; 0: OpenMP's choice
  * @param cache beams kept from earlier runs; updated by this run
- * @param maximumBytes largest memory for kept beams, bytes; later runs trace all other beams again
+ * @param maximumBytes largest memory, bytes, for the beams that later runs need not trace again
  * @param sights true: find the light that beams receive from each mover, for reportMovers()
  * @return false if keepGoing returned false; result and cache are then empty
  */

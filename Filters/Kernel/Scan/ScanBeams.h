@@ -30,7 +30,7 @@ struct ScanBeams
   std::vector<Vec3> origins;      ///< origins, m, coordinates of at most MaximumCoordinate
   std::vector<Vec3> directions;   ///< directions, finite, not zero, of any length
   std::vector<double> times;      ///< firing times, s; may be empty if nothing moves
-  std::uint64_t checksum = 0;     ///< checksumOf(); 0: not computed yet
+  std::uint64_t checksum = 0;     ///< result of checksumOf(); 0: not computed yet
   std::size_t size() const { return this->ids.size(); }
   double timeOf(std::size_t beam) const { return this->times.empty() ? 0.0 : this->times[beam]; }
 };
@@ -78,14 +78,14 @@ enum class DirectEcho : std::uint8_t
 struct BeamReport
 {
   DirectEcho direct = DirectEcho::Unknown;
-  bool isCrowded = false; ///< whether the rays descended the tree: too many triangles for lists
+  bool isCrowded = false; ///< whether rays descended the tree, as lists would be too long
   BeamStatus status = BeamStatus::NoSurface;
   double range = 0.0;              ///< range of the strongest return, m; NaN without a return
   TraceCounters counters;          ///< cost of tracing all kept parts of the beam
   std::uint64_t raysTracedNow = 0; ///< number of rays traced in this run; 0 if all parts were kept
   std::uint32_t skipped = 0;       ///< bits of SkippedPart, except noise
-  /// Bound of the energy that was left out, J; paths that carry no energy do not count. For a beam
-  /// left out as a whole, this is a bound, below Qlow, of the energy of the strongest range unit.
+  /// Bound of the energy that was left out, J. Paths without energy do not count. For a beam left
+  /// out as a whole, the value is a bound, below Qlow, of the energy of the strongest range unit.
   double lost = 0.0;
 };
 

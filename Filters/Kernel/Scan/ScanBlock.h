@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file ScanBlock.h
- * @brief Finds the surfaces that each beam of a block sees, unless these are kept from an earlier
- * run.
+ * @brief Finds the surfaces that each beam of a block sees, unless the surfaces are kept from an
+ * earlier run.
  *
  * The view of a beam (ViewFinder.h) is found from the triangles that may enter the beam
  * (Candidates.h). Rays are traced through the tree (BeamTracer.h) if the settings or a view require
@@ -10,7 +10,7 @@
  *
  * Source: paper, Algorithm 2 and Sec. 3.2.
  * Differs: see the headers named above.
- * Valid: hits depend only on the beam and the inputs of traceKey(); for views see ViewFinder.h.
+ * Valid: hits depend only on the beam and the inputs of traceKey(). For views see ViewFinder.h.
  * Hits and views are the same for any division of the beams and any state of the cache.
  * Test: TestScan.cxx, TestScanAgain.cxx, TestBeamCells.cxx.
  */
@@ -29,7 +29,8 @@
 
 namespace avianlidar
 {
-/// Traces blocks of beams. One object per thread, which the constructor's arguments must outlive.
+/// Traces blocks of beams. Each thread needs its own object. The constructor's arguments must
+/// outlive the object.
 class ScanBlock
 {
 public:
@@ -38,7 +39,7 @@ public:
 
   /// Find what each beam in [begin, end) sees, unless `traces` (of all beams) already holds it.
   /// @param leaveOut function that is true for beams to skip; empty: no beam is skipped @return
-  /// number of beams that were searched
+  /// number of beams whose surfaces were searched
   std::size_t trace(std::size_t begin, std::size_t end, std::vector<BeamTrace>& traces,
     const std::function<bool(std::size_t)>& leaveOut = {});
 
@@ -54,7 +55,7 @@ private:
   BeamCandidates Candidates;
   ViewFinder Views;
 
-  // Frames and numbers of the beams being traced, then of the beams that need rays.
+  // Frames and numbers of the beams being traced, and of the beams that need rays.
   std::vector<BeamFrame> Frames;
   std::vector<std::size_t> Traced;
   std::vector<BeamFrame> FramesOfRays;

@@ -6,7 +6,7 @@
  * A new vector of materials (32 bytes per triangle) or of ids (8 bytes per triangle) is read once.
  *
  * Source: none.
- * Valid: any scene; equal content gives equal results.
+ * Valid: any scene. Equal content gives equal results.
  * Test: Testing/Prober/same_bits.py.
  */
 #ifndef avianlidar_SceneSummary_h

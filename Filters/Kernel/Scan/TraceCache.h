@@ -4,7 +4,7 @@
  * @brief Beams kept from earlier runs of a scan, and the keys for which they are valid.
  *
  * Source: none.
- * Valid: hits belong to one traceKey(), lit beams to one LightKey. Echoes do not depend on the
+ * Valid: hits belong to one traceKey(), and lit beams to one LightKey. Echoes do not depend on the
  * cache. An aborted run leaves the cache empty.
  * Test: TestScanAgain.cxx, TestScanSweep.cxx.
  */
@@ -45,8 +45,8 @@ struct TraceCache
   std::vector<std::unique_ptr<BeamSampler>> samplers; ///< sampler of each thread
   LightKey light;                                     ///< key of the energies in the last run
 
-  /// Set setup and beams, and keep the beams that remain valid. @param maximumBytes largest memory
-  /// for all beams, bytes; if the beams take more, absent beams are removed
+  /// Set setup and beams, and keep the beams that remain valid. Absent beams are removed if all
+  /// beams take more than `maximumBytes`. @param maximumBytes largest memory for all beams, bytes
   void follow(const ScanSetup& setup, const ScanBeams& scanned, std::size_t maximumBytes);
 
   std::size_t bytes() const;
@@ -60,9 +60,9 @@ private:
 /// Hash of ids, origins and directions, for ScanBeams::checksum.
 std::uint64_t checksumOf(const ScanBeams& beams);
 
-/// Hash of all inputs of a beam's geometry except the beam: mesh, beam shape, borders of media,
-/// source and sampling of samples, N and seed. If beams may be integrated or divided into cells,
-/// range units, gate and object ids are inputs, too.
+/// Hash of all inputs of a beam's geometry except the beam: mesh, beam shape, borders of media, all
+/// settings of rays (such as N and the sampling), and the seed. If beams may be integrated or
+/// divided into cells, range units, gate and object ids are inputs, too.
 std::uint64_t traceKey(const ScanSetup& setup);
 }
 

@@ -27,8 +27,8 @@
 
 namespace avianlidar
 {
-/// Finds the views of one beam after the other. One object per thread, which the constructor's
-/// arguments must outlive.
+/// Finds the view of one beam after the other. Each thread needs its own object. The constructor's
+/// arguments must outlive the object.
 class ViewFinder
 {
 public:

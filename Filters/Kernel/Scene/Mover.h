@@ -4,14 +4,14 @@
  * @brief A moving object: triangles in its own frame, poses of this frame over time, and parts that
  * flap about hinges.
  *
- * Between two poses the position is linear in time, and the orientation is a spherical linear
- * interpolation (slerp). The object is absent before the first pose and after the last one. An
+ * Between two poses the position is linear in time. The orientation is a spherical linear
+ * interpolation (slerp). The object is absent before the first pose and after the last pose. An
  * object without times has one pose and is present at all times. A part turns about its hinge by
  * amplitude sin(2 pi (frequency t + phase)) before the pose is applied.
  *
  * Source: slerp: K. Shoemake, "Animating Rotation with Quaternion Curves", SIGGRAPH 1985.
- * Valid: an object at rest in the scene's frame (position 0, orientation 1) keeps the bits of its
- * points. Positions up to 1e30 m.
+ * Valid: positions up to 1e30 m. An object at rest in the scene's frame (position 0, orientation 1)
+ * keeps the bits of its points.
  * Test: TestMover.cxx.
  */
 #ifndef avianlidar_Mover_h
@@ -32,14 +32,14 @@ struct Pose
 {
   double time = 0.0; ///< time on the clock of the beams, s
   Vec3 position{ 0.0 };
-  glm::dquat orientation{ 1.0, 0.0, 0.0, 0.0 }; ///< unit, from the object's frame to the scene's
+  glm::dquat orientation{ 1.0, 0.0, 0.0, 0.0 }; ///< unit quaternion, from object to scene
 };
 
 /// Flapping of a part, in the object's frame.
 struct Flap
 {
   Vec3 hinge{ 0.0 };          ///< point on the axis, m
-  Vec3 axis{ 1.0, 0.0, 0.0 }; ///< unit vector
+  Vec3 axis{ 1.0, 0.0, 0.0 }; ///< unit vector along the axis
   double amplitude = 0.0;     ///< largest angle about the axis, rad
   double frequency = 0.0;     ///< flaps per second, Hz
   double phase = 0.0;         ///< phase at time 0, turns
@@ -60,7 +60,7 @@ struct Mover
   std::vector<int> objectIds;       ///< object id of each triangle; used by no other object
   std::vector<int> materialIds;     ///< material id of each triangle
   std::vector<Pose> poses;          ///< poses in order of time
-  bool always = false;              ///< true if the one pose holds at any time
+  bool always = false;              ///< true if the only pose holds at any time
   std::vector<Flap> flaps;
   // Set by prepareMover().
   MoverSphere bound;      ///< sphere about the object, in the object's frame
@@ -68,7 +68,7 @@ struct Mover
 };
 
 /// Check an object, normalise its orientations and axes, and find its bound and hash.
-/// @return empty, or what is wrong and what was expected
+/// @return empty, or a sentence that gives what is wrong and what was expected
 std::string prepareMover(Mover& mover);
 
 /// Sort prepared objects by content, so that the order in which they come does not matter.
@@ -82,7 +82,7 @@ bool poseAt(const Mover& mover, double time, Pose& pose);
 /// absent at all these times
 bool sphereBetween(const Mover& mover, double begin, double end, MoverSphere& sphere);
 
-/// Bound of an object in a pose, in scene coordinates.
+/// Sphere about an object in a pose, in scene coordinates.
 MoverSphere sphereAt(const Mover& mover, const Pose& pose);
 
 /// Append the object's points and triangles, at the pose and its time, in scene coordinates.

@@ -5,8 +5,8 @@
  *
  * All models keep the paper's radiometry: f has no 1/pi and no solid angle, and its specular lobe
  * peaks at ks. Let delta be the angle between the outgoing direction and the mirror direction of
- * the incident one (monostatic: delta = 2 theta_i). Cosines are cut off at 0 before they are
- * raised to a power.
+ * the incident direction (monostatic: delta = 2 theta_i, with theta_i the angle of incidence).
+ * Cosines are cut off at 0 before they are raised to a power.
  *
  * - LambertBlinnPhong: f_d = kd cos theta_i, f_s = ks cos^kp delta, and f_s = 0 for cos delta <= 0,
  *   also at kp = 0.
@@ -14,17 +14,17 @@
  * - Microfacet: with h the half vector, theta_h its angle to the normal, theta_d its angle to
  *   either direction, and s = (1 - cos theta_d)^5: f_d = kd (1 - s) cos theta_i, f_s = (ks + kd s)
  *   [a^2/(a^2 cos^2 theta_h + sin^2 theta_h)]^2 G, a^2 = 1/(2 kp + 1) (a Blinn exponent of 4 kp in
- *   a^2 = 2/(exponent + 2)), G = 2 ci co/(co A(ci) + ci A(co)), A(c) = sqrt(a^2 + (1 - a^2) c^2).
- *   The Fresnel term tends to kd + ks, the whole reflectance of the material, and reduces the
- *   diffuse component by as much as it adds to the lobe.
+ *   a^2 = 2/(exponent + 2)), G = 2 ci co/(co A(ci) + ci A(co)), ci = cos theta_i, co = cos theta_o,
+ *   A(c) = sqrt(a^2 + (1 - a^2) c^2). The Fresnel term tends to kd + ks, the whole reflectance of
+ *   the material, and reduces the diffuse component by as much as it adds to the lobe.
  * - OrenNayar: f_d = kd cos theta_i (A + B max(0, cos dphi) sin alpha tan beta), alpha the larger
- *   and beta the smaller of theta_i and theta_o, dphi between the two around the normal, A = 1 -
- *   s^2/(2 s^2 + 0.66), B = 0.45 s^2/(s^2 + 0.09), s the roughness; f_s as LambertBlinnPhong.
- *   Straight back, f_d = kd (A cos theta_i + B sin^2 theta_i): at grazing incidence a rough surface
- *   returns kd B and a smooth surface nothing.
+ *   and beta the smaller of theta_i and the outgoing angle theta_o, dphi the angle between the two
+ *   directions around the normal, A = 1 - s^2/(2 s^2 + 0.66), B = 0.45 s^2/(s^2 + 0.09), s the
+ *   roughness; f_s as LambertBlinnPhong. Straight back, f_d = kd (A cos theta_i + B sin^2 theta_i):
+ *   at grazing incidence a rough surface returns kd B, and a smooth surface returns no light.
  *
- * Each model is a type with inline functions of plain doubles without branches, which both single
- * values and loops over lanes use.
+ * Each model is a type with inline functions of plain doubles, without branches. Single values and
+ * loops over lanes use the same functions.
  *
  * Source: LambertBlinnPhong: paper, Sec. 2.2, Eq. 4-8; its lobe is Phong's (CACM 18(6),
  * 1975). Phong: the modified, reciprocal model of Lafortune and Willems (report CW197, K.U.
@@ -36,8 +36,8 @@
  * has a false glint at grazing incidence for even kp. Phong is scaled to the paper's peak.
  * Microfacet leaves out the factor 1/(4 cos theta_o) of the distribution, as Eq. 7 does. OrenNayar
  * leaves out light that facets send to each other, as Eq. 30 of the source does.
- * Valid: kp from 0 to 1e6; roughness up to pi/2 (Oren and Nayar measured up to 40 degrees). In
- * every model 0 <= f_d <= kd, f_s >= 0 and f_d + f_s <= kd + ks.
+ * Valid: kp from 0 to 1e6; roughness up to pi/2 (Oren and Nayar measured surfaces of up to 40
+ * degrees). In every model 0 <= f_d <= kd, f_s >= 0 and f_d + f_s <= kd + ks.
  * Test: TestReflectance.cxx.
  */
 #ifndef avianlidar_Reflectance_h
@@ -54,7 +54,7 @@
 
 namespace avianlidar
 {
-/// Coefficients of a surface; the defaults are the paper's wall (Table 1).
+/// Coefficients of a surface. The defaults are the paper's wall (Table 1).
 struct Material
 {
   double kd = 0.146; ///< diffuse coefficient, >= 0
@@ -75,10 +75,11 @@ struct Material
   bool operator!=(const Material& other) const { return !(*this == other); }
 };
 
-/// Description of a coefficient of at least 0, for all code except the models of reflectance.
+/// Description of a coefficient whose lower limit is 0, for all code except the models of
+/// reflectance.
 struct MaterialCoefficient
 {
-  const char* name; ///< name of its cell array and key in scene files
+  const char* name; ///< name of the cell array, and key in scene files
   const char* unit; ///< unit; "1": a pure number
   double Material::*member;
   double most;          ///< upper limit of the coefficient
@@ -87,7 +88,7 @@ struct MaterialCoefficient
   /// True if a scene file must give the coefficient, for a material with the preceding
   /// coefficients.
   bool (*isNeeded)(const Material&);
-  bool isOptional; ///< true if surfaces without its cell array have the default of Material
+  bool isOptional; ///< true if surfaces without the cell array have the default of Material
 };
 
 /// All coefficients, in the order in which messages name them.
@@ -142,10 +143,11 @@ private:
 };
 
 /// @return empty if the material is usable, else a sentence that names the value and what was
-/// expected. A sum kd + ks that exceeds 1 by less than 1e-12 passes as a rounded 1.
+/// expected. A sum kd + ks that exceeds 1 by less than 1e-12 counts as a rounded 1.
 std::string checkMaterial(const Material& material);
 
-/// Names of the coefficients whose cell arrays a surface has, all or none: "kd, ks, kp".
+/// Names of the coefficients whose cell arrays a surface must have together or not at all: "kd, ks,
+/// kp".
 std::string namesOfCoefficients();
 
 /// Names and values of the coefficients: "kd 0.146, ks 0.054, kp 112, roughness 0".
@@ -159,7 +161,7 @@ enum class ReflectanceModel
   OrenNayar = 3
 };
 
-/// Angles at one reflection; negative cosines are kept.
+/// Angles at one reflection. Negative cosines are kept.
 struct ReflectionGeometry
 {
   double cosIncidence = 1.0;  ///< cosine between the reversed incident direction and the normal
@@ -172,7 +174,7 @@ struct ReflectionGeometry
 };
 
 /// ReflectionGeometry::roughTerm. @param cosBetween cosine of the angle between the two directions,
-/// both away from the surface
+/// which both point away from the surface
 AVIANLIDAR_ALWAYS_INLINE double roughTermOf(
   double cosIncidence, double cosOutgoing, double cosBetween)
 {
@@ -263,7 +265,7 @@ struct Phong
 
 struct Microfacet
 {
-  /// Schlick's factor s: 0 at a normal, 1 at a grazing difference angle.
+  /// Schlick's factor s: 0 at theta_d = 0, 1 at theta_d = pi/2.
   AVIANLIDAR_ALWAYS_INLINE static double riseOf(ReflectionGeometry g)
   {
     const double fall = 1.0 - lanes::unit(g.cosDifference);
@@ -384,9 +386,9 @@ AVIANLIDAR_ALWAYS_INLINE Reflectance throughAperture(
     gathers ? specular / whole * scale : f.specular };
 }
 
-/// Upper bound, 1/sr, of the share of energy that reaches an aperture of A m2 at r m from a
-/// surface, divided by A/r2. The bound is the gain of the whole albedo on the lobe's axis or of a
-/// diffuse surface, whichever is larger.
+/// Upper bound, 1/sr, of the share of energy that reaches an aperture of A m2 at a distance of r m
+/// from a surface, divided by A/r2. The bound is the gain of the whole albedo on the lobe's axis or
+/// of a diffuse surface, whichever is larger.
 double apertureGain(const Material& material);
 
 /// Squared incidence angle, rad2, at which the lobe straight back has fallen to 1/e; 0 without a

@@ -42,7 +42,7 @@ struct TriangleMesh
     static_assert(sizeof(Vec3) == 3 * sizeof(double), "points must be packed to be hashed");
     static_assert(sizeof(this->triangles[0]) == 3 * sizeof(std::uint32_t),
       "triangles must be packed to be hashed");
-    // The first hash seeds the second, so the result changes if bytes move between arrays.
+    // The first hash seeds the second hash, so the result changes if bytes move between arrays.
     const std::uint64_t ofPoints =
       hashOf(this->points.data(), this->points.size() * sizeof(Vec3), this->points.size());
     return hashOf(

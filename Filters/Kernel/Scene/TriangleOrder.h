@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file TriangleOrder.h
- * @brief An order of triangles that does not depend on the order in which they are given.
+ * @brief An order of triangles that does not depend on the order in which the triangles are given.
  *
  * Ties between coincident faces and the rounding of sums depend on the order of triangles. Sorted
- * in this order, a surface gives the same echoes however it is divided among files, blocks or
+ * in this order, a surface gives equal echoes however it is divided among files, blocks or
  * processes. Triangles are sorted by object and, within an object, by the middle of their longest
  * side along a Morton curve, so neighbours in space are neighbours in memory. The two halves of a
- * rectangle share their longest side, so one follows the other (BeamTriangles.h joins them).
+ * rectangle share their longest side, so one half follows the other half (BeamTriangles.h joins the
+ * halves).
  *
  * Source: G. M. Morton, A Computer Oriented Geodetic Data Base, IBM, 1966.
  * Differs: 21 bits per axis. Triangles at one place of the curve are ordered by the coordinates of
@@ -27,7 +28,7 @@
 namespace avianlidar
 {
 /// Numbers of the triangles in this order; empty if the triangles are sorted already.
-/// @param objectIds, materialIds one number per triangle
+/// @param objectIds, materialIds ids of each triangle
 std::vector<std::uint32_t> triangleOrder(
   const TriangleMesh& mesh, const std::vector<int>& objectIds, const std::vector<int>& materialIds);
 

@@ -5,22 +5,22 @@
  *
  * The body stands for an ellipsoid of revolution, whose length is 0.65 of the bird's length. The
  * frontal area of the body is S_b = 0.0129 M^0.614 m^2 for passerines and 0.00813 M^0.666 m^2 for
- * others, with the mass M in kg. The wings are flat plates with an angle of attack of 6 degrees.
- * Both wings together have 0.85 of the wing area, and the thickness of a wing is 0.001 of its
- * chord. Wings are hinged at the sides of the body, at its middle. Wings flap by 35 degrees as a
- * sine, or are held 5 degrees up in a glide.
+ * other birds, with the mass M in kg. The wings are flat plates with an angle of attack of 6
+ * degrees. Both wings together have 0.85 of the wing area. The thickness of a wing is 0.001 of its
+ * chord. Wings are hinged at the sides of the body, midway along the body. The angle of a flapping
+ * wing is a sine of time with an amplitude of 35 degrees. In a glide, wings are held 5 degrees up.
  *
  * The body is a polyhedron of 48 triangles that has the effective area of the ellipsoid (silhouette
  * weighted by the cosine of incidence) from every direction. For any convex body with a centre this
- * area is half a quadratic form of the direction, so two values are fitted. The wings have 24
- * triangles. With so few triangles, a beam that meets a bird is still integrated over polygons.
+ * area is half a quadratic form of the direction, so a fit of two values suffices. The wings have
+ * 24 triangles. With so few triangles, a beam that meets a bird is still integrated over polygons.
  *
- * Frame of a bird: x right, y forward, z up. The bank (to the right) turns the bird first, then the
- * heading (clockwise from north).
+ * Frame of a bird: x right, y forward, z up. The bird is turned by the bank (to the right) first,
+ * and then by the heading (clockwise from north).
  *
  * Source: S_b: A. Hedenstrom and M. Rosen, J. Avian Biol. 34 (2003); C. J. Pennycuick et al., J.
  * Exp. Biol. 135 (1988). Wingbeats: C. J. Pennycuick, J. Exp. Biol. 199 (1996).
- * Differs: no head, neck, tail or legs. Shares, angles and thickness are assumed.
+ * Differs: the bird has no head, neck, tail or legs. Shares, angles and thickness are assumed.
  * Valid: the effective area of the body is exact. The effective area of the wings is within 1 % of
  * the area of plates. The body is some per cent longer than the ellipsoid.
  * Test: TestBird.cxx.

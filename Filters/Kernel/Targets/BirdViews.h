@@ -23,10 +23,10 @@
 
 namespace avianlidar
 {
-constexpr std::size_t BirdHeadings = 16; ///< headings of a flapping bird
+constexpr std::size_t BirdHeadings = 16; ///< number of headings of a flapping bird
 constexpr std::size_t BirdPhases = 5;
 constexpr std::size_t GlidingHeadings =
-  BirdHeadings * BirdPhases; ///< headings of a gliding bird, which has one phase
+  BirdHeadings * BirdPhases; ///< number of headings of a gliding bird, which has one phase
 
 /// Views of a bird. @param meanArea unit of areas, m^2
 TargetViews birdViews(const BirdShape& shape, bool gliding, double meanArea);

@@ -5,26 +5,29 @@
  *
  * - Crossings: straight, level flights through a disc. Heading, offset from the centre of the disc,
  *   height and time of passage are uniformly distributed.
- * - Circles: gliding in level, banked circles of radius r with tan(bank) = v^2 / (g r), to the left
- *   or to the right, with a bank of 20 to 40 degrees. Centres are uniformly distributed in a disc.
+ * - Circles: gliding in level, banked circles of radius r with tan(bank) = v^2 / (g r), v the speed
+ *   and g gravity, to the left or to the right, with a bank of 20 to 40 degrees. Centres are
+ *   uniformly distributed in a disc.
  * - Flock: birds with one velocity on one straight, level crossing (flockPlaces()).
  * - Approach: birds that descend at 3 degrees in straight lines towards the threshold of a runway,
- *   uniformly distributed within 75 m + 0.15 d to either side, d the distance. This pattern
- *   represents birds that come to feed or roost near the runway and meet arriving aircraft.
- * - Tracks (readFlights()): paths that were measured or computed elsewhere; attitudes follow from
+ *   uniformly distributed within 75 m + 0.15 d to either side, with d the distance from the
+ *   threshold. This pattern represents birds that come to feed or roost near the runway and meet
+ *   arriving aircraft.
+ * - Tracks (readFlights()): paths that were measured or computed elsewhere. Attitudes follow from
  *   the paths.
  *
  * Speeds are normally distributed about the species' airspeed with a standard deviation of 10 %,
- * cut at 30 %. Flight is straight between two poses; in a circle this errs by less than 1 cm.
+ * cut at 30 %. Flight is straight between two poses. In a circle, the error of the position is less
+ * than 1 cm.
  *
  * Source: flocks of starlings: M. Ballerini et al., "Empirical investigation of starling flocks",
  * Animal Behaviour 76 (2008): flocks are thin and flat, with sides of 1 : 2.8 : 5.6 for any size,
- * and are denser at the border. No neighbour is nearer than about a wingspan, and distances of
- * nearest neighbours do not depend on the size.
+ * and are denser at the border. No neighbour is nearer than about a wingspan. Distances of nearest
+ * neighbours do not depend on the size.
  * Differs: a flock is a rigid ellipsoid with its short axis upright. The following is assumed: one
- * bird in (4 wingspans)^3 on average, twice the density at the border as in the middle, and the
- * speeds, banks and spreads above. There is no wind.
- * Valid: coordinates and times up to 1e9 m and s.
+ * bird in (4 wingspans)^3 on average, a density at the border of twice the density in the middle,
+ * and the speeds, banks and spreads above. There is no wind.
+ * Valid: coordinates up to 1e9 m and times up to 1e9 s.
  * Test: TestFlight.cxx.
  */
 #ifndef avianlidar_Flight_h
@@ -70,7 +73,7 @@ struct FlightSettings
   std::int32_t seed = 0;
   std::array<double, 2> timeRange{ 0.0, 60.0 }; ///< begin and end, s
   Vec3 center{ 0.0 };                           ///< centre of the disc, m
-  double radius = 500.0; ///< radius of the disc, m; half the approach's length
+  double radius = 500.0; ///< radius of the disc, or half the length of the approach, m
   std::array<double, 2> heights{ 10.0,
     150.0 };                     ///< heights above the centre, m; unused for approaches
   Vec3 thresholdPosition{ 0.0 }; ///< threshold of the runway, m
@@ -88,7 +91,7 @@ std::vector<Flight> makeFlights(
   const FlightSettings& settings, const BirdSpecies& species, std::size_t index);
 
 /// Positions of birds in a flock relative to its middle, m: x along its longest axis, z upright
-/// along its shortest one. No two birds are nearer than the span.
+/// along its shortest axis. No two birds are nearer to each other than the span.
 /// @param span wingspan, m
 std::vector<Vec3> flockPlaces(std::int32_t seed, std::size_t birds, double span);
 
@@ -105,7 +108,7 @@ double trackWingPhase(std::int32_t seed, std::size_t track);
 /// several tracks may alternate. Throws std::runtime_error naming file, line and column.
 /// @param file name of the file, for messages @param known all species
 /// @param origin origin of the scene: latitude, longitude in degrees, height above the ellipsoid in
-/// m (the caller checks it with GeodeticFrame::checkOrigin())
+/// m (checked by the caller with GeodeticFrame::checkOrigin())
 std::vector<Flight> readFlights(const std::string& text, const std::string& file,
   const std::vector<BirdSpecies>& known, const std::array<double, 3>& origin, std::int32_t seed);
 }

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file MoverReport.h
- * @brief Light that the beams of a scan receive from each mover, and the mover's pose at that time.
+ * @brief Light that the beams of a scan receive from each mover, and the mover's pose at the time
+ * of this light.
  *
  * Source: none.
- * Valid: movers and beams of one scan; the same result for any number of threads.
+ * Valid: movers and beams of one scan. The result does not depend on the number of threads.
  * Test: TestMovedBeams.cxx.
  */
 #ifndef avianlidar_MoverReport_h
@@ -25,24 +26,26 @@ struct MoverReport
 {
   /// True if the mover exists at the time of `pose`. If false, the other members are invalid.
   bool present = false;
-  Pose pose; ///< pose when the beam with most of the mover's light fires; mid-scan if untouched
-  /// Poses when the first and the last of those beams fire that contain the mover's origin or
-  /// receive energy from the mover; `pose` without such beams. Both are a revolution apart if the
-  /// mover crosses from the last column to the first.
+  Pose pose; ///< pose at the time of `beam`, or in the middle of the scan without a beam
+  /// Poses at the times of the first and the last beam that contains the mover's origin or receives
+  /// energy from the mover; `pose` without such beams. The two poses are a revolution apart if the
+  /// mover crosses from the last column to the first column.
   Pose first, last;
   std::size_t beam = 0; ///< beam with most of the mover's light, 0 if no beam may touch the mover
-  Vec3 origin{ 0.0 };   ///< origin of this beam, m
-  double range = 0.0;   ///< range from this origin to `pose`, m
-  double effectiveArea = 0.0; ///< m^2, see Silhouette.h; NaN if the mover's sphere holds `origin`
+  Vec3 origin{ 0.0 };   ///< origin of `beam`, m
+  double range = 0.0;   ///< range from `origin` to `pose`, m
+  double effectiveArea = 0.0; ///< effective area, m^2; NaN if the mover's sphere holds `origin`
   bool touched = false;       ///< true if a beam may touch the mover
   std::uint32_t beams = 0;    ///< number of beams that contain the mover's origin
   double energy = 0.0;        ///< largest of MoverSight::energy, J
   double probability = 0.0;   ///< probability that any beam perceives the mover
 };
 
-/// One report for each mover. Effective areas take most of the time. Throws WorkStopped.
-/// @param sights sights of a scan of these beams @param threads > 0, or 0 for loopThreads(0)
-/// @param wanted called now and then, on the calling thread; the work stops if it returns false
+/// One report for each mover. Effective areas take most of the time. Throws WorkStopped if `wanted`
+/// returns false.
+/// @param sights sights of a scan of these beams @param threads number of threads, > 0; 0:
+/// loopThreads(0)
+/// @param wanted called now and then, on the calling thread; may be empty
 std::vector<MoverReport> reportMovers(const ScanSetup& setup, const ScanBeams& beams,
   const std::vector<MoverSight>& sights, int threads, const std::function<bool()>& wanted = {});
 }

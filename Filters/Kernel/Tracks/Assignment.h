@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file Assignment.h
- * @brief One-to-one assignment of least cost, where only some pairs are allowed and a row may stay
- * unassigned at a cost.
+ * @brief One-to-one assignment of least cost, where only some pairs are allowed, and a row may be
+ * left without a column at a cost.
  *
  * Rows are added one by one. Each row takes the shortest augmenting path that ends at a free column
  * or with a row unassigned (R. Jonker and A. Volgenant, "A shortest augmenting path algorithm for
- * dense and sparse linear assignment problems", Computing 38, 1987). The path stays within the rows
- * and columns that allowed pairs connect to this row.
+ * dense and sparse linear assignment problems", Computing 38, 1987). The path uses only rows and
+ * columns that allowed pairs connect to this row.
  *
  * Source: Jonker and Volgenant, as above.
- * Differs: Dijkstra's algorithm with a heap from the first row on; no initial reduction of columns.
+ * Differs: Dijkstra's algorithm with a heap serves every row. Columns are not reduced first.
  * Valid: finite costs of any sign. The order of the input decides among several best assignments.
  * Test: TestAssignment.cxx against brute force, TestTracker.py against SciPy.
  */

@@ -3,15 +3,16 @@
  * @file Clusters.h
  * @brief Clusters of a scan's points: connected components by a distance that grows with range.
  *
- * Two points are neighbours if they are at most distance + angle (r1 + r2) / 2 apart, with r1 and
- * r2 their ranges. The distance between echoes of one target in neighbouring beams is the angle
+ * Two points are neighbours if they are at most `distance` + `angle` (r1 + r2) / 2 apart, with r1
+ * and r2 their ranges. The distance between echoes of one target in neighbouring beams is the angle
  * between the beams times the range. Points lie in grids whose cells are about as large as the
- * distance of neighbours. The neighbours of a point are taken out of their cells, then the
- * neighbours of each neighbour, until the cluster is complete. Time is about linear in the number
- * of points, also in dense clouds.
+ * distance of neighbours. The neighbours of a point are taken out of their cells. The neighbours of
+ * each neighbour follow, until the cluster is complete. Time is about linear in the number of
+ * points, also in dense clouds.
  *
- * Source: connected components of the graph of neighbours. This is DBSCAN with clusters of one
- * point or more: M. Ester et al., "A density-based algorithm for discovering clusters", KDD 1996.
+ * Source: connected components of the graph of neighbours. The method is DBSCAN with clusters of
+ * one point or more: M. Ester et al., "A density-based algorithm for discovering clusters", KDD
+ * 1996.
  * Valid: coordinates and ranges up to 1e9 m. The order of the points changes no bit.
  * Test: TestClusters.cxx.
  */

@@ -5,13 +5,13 @@
  * elevation and range.
  *
  * With W the window and n the number of scans learned, each scan has q = 1 - 1/W times the weight
- * of the next one. The persistence of a cell is the sum of the weights of scans with an echo in the
- * cell, divided by the sum of all n weights, W (1 - q^n). Cells below persistenceKept() are
- * removed.
+ * of the next scan. The persistence of a cell is the sum of the weights of scans with an echo in
+ * the cell, divided by the sum of all n weights, W (1 - q^n). Cells with a persistence below
+ * persistenceKept() are removed.
  *
  * The map is a sorted list of cells. A new scan is sorted and merged with the list. To find
- * probabilities, a sorted scan passes along the list once for each row of neighbours. Learning
- * takes about p log p + m steps for p points and m cells, as probabilities do.
+ * probabilities, a sorted scan is compared with the list once for each row of neighbours. Learning
+ * a scan and finding probabilities each take about p log p + m steps for p points and m cells.
  *
  * Source: background subtraction by the share of scans, as in Examples/sequence. The exponential
  * window is added.
@@ -30,7 +30,8 @@
 
 namespace avianlidar
 {
-/// Cells about the sensor. Angles are rounded to the nearest multiple of their step, ranges down.
+/// Cells about the sensor. Angles are rounded to the nearest multiple of their step. Ranges are
+/// rounded down.
 struct ClutterGrid
 {
   double rangeStep = 1.5;     ///< length of a cell along the range, m, 0.001 to 1000
@@ -50,12 +51,12 @@ struct ClutterCell
 class ClutterMap
 {
 public:
-  /// Number of a cell; the list of cells is sorted by this number.
+  /// Number of a cell. The list of cells is sorted by this number.
   using Key = std::uint64_t;
 
   static constexpr double LongestWindow = 100000.0;
   static constexpr int MostTolerance = 10;
-  /// Number of cells along the range; the last cell holds all larger ranges.
+  /// Number of cells along the range. The last cell holds all larger ranges.
   static constexpr int MostRanges = (1 << 26) - 2 * MostTolerance - 1;
 
   /// @param window W, in scans, 1 to LongestWindow

@@ -4,9 +4,9 @@
  * @brief Estimates position and velocity of a target from positions with errors: a Kalman filter
  * for constant velocity, or an extended Kalman filter for a coordinated turn.
  *
- * The state is position, velocity and the turn rate w of the horizontal velocity. Between two
- * positions the velocity turns by w dt, and white noise is added to the acceleration and to the
- * derivative of w. Constant velocity is a turn with the rate 0.
+ * The state is position, velocity and the turn rate w of the horizontal velocity. In the time dt
+ * between two positions, the velocity turns by w dt. White noise is added to the acceleration and
+ * to the derivative of w. Constant velocity is a turn with the rate 0.
  *
  * Source: Y. Bar-Shalom, X. R. Li, T. Kirubarajan, "Estimation with Applications to Tracking and
  * Navigation", 2001 (discretised continuous white noise acceleration; coordinated turn with unknown
@@ -48,8 +48,8 @@ struct MotionState
   Vec3 velocity() const { return { this->mean[3], this->mean[4], this->mean[5] }; }
 };
 
-/// Difference between a measured position and the predicted one: its squared length in standard
-/// deviations, and the logarithm of the determinant of its covariance (m6).
+/// Difference between measured and predicted position: the squared length of the difference in
+/// standard deviations, and the logarithm of the determinant of the covariance (m6).
 struct Innovation
 {
   double distanceSquare;

@@ -10,10 +10,10 @@
  * the scan, so that no pair costs more. Unassigned clusters begin tracks.
  *
  * Source: global nearest neighbour tracking with M of N confirmation: S. Blackman and R. Popoli,
- * "Design and Analysis of Modern Tracking Systems", 1999 (second-hand).
+ * "Design and Analysis of Modern Tracking Systems", 1999 (as cited by other authors).
  * Differs: the cost of a track without a cluster is as above. The usual cost requires probabilities
  * of detection and densities of clutter.
- * Valid: each update is a whole scan, later than the one before.
+ * Valid: each update is a whole scan, later than the scan before.
  * Test: TestTracker.cxx, TestTracker.py.
  */
 #ifndef avianlidar_Tracker_h
@@ -61,7 +61,7 @@ struct Track
   bool ended = false;
   int hits = 0;
   int misses = 0;           ///< number of misses in a row
-  std::uint32_t recent = 0; ///< a bit for each of the last scans, 1: hit; the lowest is the latest
+  std::uint32_t recent = 0; ///< bits of the last scans, the lowest bit for the latest scan; 1: hit
   double endTime = 0.0;     ///< time at which the track ended, s
   MotionState state;        ///< state at the time of the last position
   std::vector<TrackPosition> positions; ///< the last historyLength positions
@@ -75,7 +75,7 @@ class Tracker
 {
 public:
   /// Updates the tracks with one more scan. @param time time of the scan, s
-  /// @param goOn called now and then; WorkStopped is thrown if it returns false; may be empty
+  /// @param goOn called now and then; if `goOn` returns false, WorkStopped is thrown; may be empty
   /// @return id of each cluster's track
   std::vector<int> update(const std::vector<Cluster>& clusters, const Vec3& sensor, double time,
     const TrackerSettings& settings, const KeepGoing& goOn = {});

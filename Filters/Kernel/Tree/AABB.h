@@ -18,7 +18,7 @@
 namespace avianlidar
 {
 /// Largest coordinate, m. Larger coordinates are refused, because products of three coordinates
-/// must stay finite.
+/// must be finite.
 constexpr double MaximumCoordinate = 1e30;
 
 struct AABB

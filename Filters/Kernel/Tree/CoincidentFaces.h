@@ -2,18 +2,19 @@
 /**
  * @file CoincidentFaces.h
  * @brief Finds triangles that coincide and gives them one plane, so that rounding does not decide
- * which of them is seen.
+ * which triangle is seen.
  *
  * Two triangles coincide if they overlap and their distance nowhere in the overlap exceeds the sum
  * of their tolerances. A triangle's tolerance is the rounding of its corners: 32 u_d (sixteen
- * roundings to double precision) of its largest coordinate. If all coordinates of the triangle are
- * numbers of single precision, the tolerance grows by 4 u_s of the largest coordinates, projected
- * on the triangle's normal, but by at most half a millimetre.
+ * roundings to double precision) times the largest coordinate, with u_d = 2^-53. If all coordinates
+ * of the triangle are numbers of single precision, the tolerance grows by 4 u_s times the largest
+ * coordinates, projected on the triangle's normal, with u_s = 2^-24. The growth is at most half a
+ * millimetre.
  *
  * Pairs are found by descending the tree against itself. Triangles that coincide, directly or
- * through others, then take the plane of the triangle whose least altitude is largest, because
- * rounding tilts this plane least. The ranges of a ray on coincident triangles are equal bit for
- * bit, and the triangle with the lowest number is seen.
+ * through other triangles, then take the plane of the triangle whose least altitude is largest,
+ * because rounding tilts this plane least. The ranges of a ray on coincident triangles are equal
+ * bit for bit, and the triangle with the lowest number is seen.
  *
  * Source: none.
  * Valid: any triangles. The result depends only on the mesh, not on the tree or the threads. A

@@ -3,13 +3,13 @@
  * @file CollisionTree.h
  * @brief Structure of the collision detection tree.
  *
- * A node has eight boxes (WideTree.h). CollisionTreeBuilder.h builds the tree, Traversal.h descends
- * it. The paper's binary trees of boxes and other volumes are outside the kernel (VolumeTree.h);
- * the structure holds such trees as OtherVolumes.
+ * A node has eight boxes (WideTree.h). CollisionTreeBuilder.h builds the tree. Traversal.h descends
+ * the tree. The paper's binary trees of boxes and other volumes are outside the kernel
+ * (VolumeTree.h). The structure holds such trees as OtherVolumes.
  *
  * Source: paper, Sec. 3.1.
- * Differs: a node has eight children; a leaf holds up to maximumLeafSize triangles (Algorithm 1:
- * one).
+ * Differs: a node has eight children. A leaf holds up to maximumLeafSize triangles (Algorithm 1:
+ * one triangle).
  * Valid: at most 2^31 - 1 triangles.
  * Test: TestCollisionTreeBuilder.cxx.
  */
@@ -57,8 +57,8 @@ struct DescentEntry
   std::uint32_t count;   ///< number of triangles of a leaf of the wide tree; 0 for other nodes
   std::uint64_t members; ///< bits of the rays or beams that meet the volume (wide tree only)
   double nearest;        ///< lower bound of ranges in the volume, m
-  std::uint32_t parent;  ///< node whose child this is (wide tree only)
-  std::uint32_t lane;    ///< lane of the parent that holds this child
+  std::uint32_t parent;  ///< number of the parent node (wide tree only)
+  std::uint32_t lane;    ///< lane of the parent that holds the entry
 };
 
 /// Stack kept between descents, so that a descent does not allocate.
@@ -91,8 +91,8 @@ public:
     TraversalStack& stack) const = 0;
 };
 
-/// The tree of a mesh. A finished tree is immutable, and any number of threads and scans may share
-/// it.
+/// The tree of a mesh. A finished tree is immutable, so any number of threads and scans may share
+/// the tree.
 struct CollisionTree
 {
   std::shared_ptr<const TriangleMesh> mesh;
@@ -100,12 +100,12 @@ struct CollisionTree
   std::vector<std::uint32_t> order; ///< triangle numbers, leaf by leaf; empty for an empty mesh
   std::uint64_t checksum = 0;       ///< checksum of the mesh
   std::uint32_t leaves = 0;         ///< number of leaves
-  /// Depth of the deepest leaf in a binary tree that the rule divides; the root has depth 0.
+  /// Depth of the deepest leaf, with 0 for the root, in a binary tree that the rule divides.
   std::uint32_t depth = 0;
-  WideTree wide; ///< boxes eight at a time in single precision; empty with other volumes
+  WideTree wide; ///< tree of boxes in single precision; empty with other volumes
   std::shared_ptr<const OtherVolumes> other; ///< null if the tree has boxes
   /// For each triangle, the owner of the plane that the triangle takes (CoincidentFaces.h), or
-  /// NoTriangle if it keeps its own plane; empty if no faces coincide.
+  /// NoTriangle for a triangle with its own plane; empty if no faces coincide.
   std::vector<std::uint32_t> planeOwners;
   double planeDepth = 0.0; ///< largest distance that rounding puts between coincident triangles, m
 
@@ -116,14 +116,14 @@ struct CollisionTree
     return !this->planeOwners.empty() && this->planeOwners[triangle] != NoTriangle;
   }
 
-  /// Number of the triangle whose plane a triangle takes: the owner or itself.
+  /// Number of the triangle whose plane a triangle takes: the owner or the triangle itself.
   std::uint32_t planeOwner(std::uint32_t triangle) const
   {
     return this->coincides(triangle) ? this->planeOwners[triangle] : triangle;
   }
 };
 
-/// Plane that a triangle takes, either its own plane or its owner's. @param corners relative to the
+/// Plane that a triangle takes: its own plane or its owner's plane. @param corners relative to the
 /// apex
 TrianglePlane planeOf(
   const CollisionTree& tree, std::uint32_t triangle, const Corners& corners, const Vec3& apex);

@@ -23,8 +23,9 @@ namespace avianlidar
 /// Build a tree over all triangles of `mesh`. Degenerate triangles keep their number and are never
 /// hit. Throws std::invalid_argument that names the option out of range, or the triangle with a
 /// corner that is missing or not finite.
-/// @param keepGoing called on the calling thread with the fraction done; false stops the work
-/// @param threads > 0, or 0 for loopThreads(0)
+/// @param keepGoing called on the calling thread with the fraction done; the work stops if the
+/// result is false
+/// @param threads number of threads, > 0; 0: loopThreads(0)
 /// @return null if `keepGoing` returned false
 std::shared_ptr<const CollisionTree> buildCollisionTree(std::shared_ptr<const TriangleMesh> mesh,
   const TreeOptions& options, const KeepGoing& keepGoing = {}, int threads = 0);

@@ -37,12 +37,12 @@ inline glm::dmat3 principalAxes(const glm::dmat3& moments)
   {
     return glm::dmat3(1.0);
   }
-  // In the plane across the first axis, the angle of the other two has a closed form.
+  // In the plane across the first axis, the angle of the two other axes has a closed form.
   const BeamFrame frame = makeBeamFrame(Vec3(0.0), power[longest], 1.0);
   const Vec3 one = scaled * frame.e1;
   const Vec3 two = scaled * frame.e2;
-  // Half of the angle with this sine and cosine, by square roots only, which have the same bits in
-  // every mathematical library.
+  // Half of the angle with this sine and cosine, from square roots only, because square roots have
+  // equal bits in every mathematical library.
   const double sine = 2.0 * glm::dot(frame.e2, one);
   const double cosine = glm::dot(frame.e1, one) - glm::dot(frame.e2, two);
   const double length = std::sqrt(sine * sine + cosine * cosine);

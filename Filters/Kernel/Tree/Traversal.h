@@ -4,7 +4,7 @@
  * @brief descendWide(), the descent of the wide tree, front to back, for a ray, a cone, a packet of
  * rays or a group of beams.
  *
- * A template argument says what descends: a policy, or a query and a visitor.
+ * Template arguments define the descent: a policy, or a query and a visitor.
  *
  * Source: none.
  * Valid: the descent visits every leaf whose volumes the policy meets within the limit. A volume
@@ -23,11 +23,11 @@
 
 namespace avianlidar
 {
-/// Where a descent of the wide tree begins.
+/// Start of a descent of the wide tree.
 struct DescentStart
 {
   const EntryPoints* entryPoints = nullptr; ///< null: the root of the tree
-  std::uint64_t members = 0;                ///< members with which every entry begins
+  std::uint64_t members = 0;                ///< rays or beams of every entry, one bit each
   float scale = 1.0f; ///< factor from the entry points' distances to the policy's distances
 };
 
@@ -53,7 +53,7 @@ std::uint64_t descendWide(
   // Flag in DescentEntry::node: the node belongs to the entry points, not to the tree.
   constexpr std::uint32_t FromEntryPoints = 0x80000000u;
   const std::size_t beginnings = start.entryPoints ? start.entryPoints->nodes.size() : 1;
-  // Every level leaves at most seven entries behind.
+  // Every level leaves at most seven entries on the stack.
   stack.resize(std::max(stack.size(), Width * (tree.depth + 2) + beginnings));
   DescentEntry* const bottom = stack.data();
   DescentEntry* top = bottom;
@@ -89,7 +89,7 @@ std::uint64_t descendWide(
     DescentEntry* const first = top;
     const auto push = [&](std::uint32_t lane, std::uint64_t members, float nearest)
     {
-      // Entries stay sorted, the nearest on top.
+      // Entries are kept sorted, the nearest entry on top.
       DescentEntry* place = top++;
       while (place != first && place[-1].nearest < nearest)
       {
@@ -104,7 +104,8 @@ std::uint64_t descendWide(
   return visited;
 }
 
-/// Policy of one cone or ray (WideCone or WideRay); a visitor has the members of TreeLeaves.
+/// Policy of one cone or ray (WideCone or WideRay). The visitor must have the members of
+/// TreeLeaves.
 template <class Query, class Visitor>
 class QueryPolicy : public WidePolicy
 {

@@ -9,7 +9,7 @@
  * Source: the primitive references of I. Wald, "On fast Construction of SAH-based Bounding Volume
  * Hierarchies", 2007.
  * Differs: lower coordinates are negated, and a box holds its triangle's number.
- * Valid: finite coordinates up to MaximumCoordinate, at most 2^31 - 1 triangles; other meshes are
+ * Valid: finite coordinates up to MaximumCoordinate, at most 2^31 - 1 triangles. Other meshes are
  * refused. Every box holds its triangle, rounding included.
  * Test: TestSplitRule.cxx, TestWideTree.cxx.
  */
@@ -29,10 +29,10 @@
 namespace avianlidar
 {
 /// Four numbers in one register, on every target of GCC and Clang. Plain loops over four numbers
-/// build the same trees in 1.7 to 1.85 times the time (Hongqiao with everything, rolling ground and
-/// a sphere of a million triangles, one thread and two, GCC 12). Without its dispatch, Highway is
-/// scalar code on plain x86-64. With dispatch, every loop of the builder would need a separate
-/// form.
+/// build the same trees in 1.7 to 1.85 times the time (complete Hongqiao airport, rolling ground
+/// and a sphere of a million triangles, on one thread and on two threads, GCC 12). The library
+/// Highway is scalar code on plain x86-64 without its dispatch. With its dispatch, every loop of
+/// the builder would need a separate form.
 using Lanes = float __attribute__((vector_size(16)));
 
 AVIANLIDAR_ALWAYS_INLINE Lanes larger(Lanes a, Lanes b)
@@ -43,7 +43,7 @@ AVIANLIDAR_ALWAYS_INLINE Lanes larger(Lanes a, Lanes b)
 /// Upper bound of all numbers whose nearest float is `nearest`.
 AVIANLIDAR_ALWAYS_INLINE Lanes roundedUp(Lanes nearest)
 {
-  // The product is one or two units in the last place; the constant covers underflow.
+  // The product is one or two units in the last place. The constant covers underflow.
   const Lanes size = larger(nearest, -nearest);
   return (nearest + size * std::numeric_limits<float>::epsilon()) + 2e-38f;
 }
@@ -123,8 +123,8 @@ struct TriangleBoxes
   Vec3 reference{ 0.0 };    ///< middle of the triangles, m
   double extent = 0.0;      ///< largest coordinate relative to the reference, m
   std::size_t count = 0;    ///< number of triangles
-  LaneBox* boxes = nullptr; ///< boxes by triangle number; null if there are none, or if stopped
-  LaneBox* room = nullptr;  ///< space for as many boxes again
+  LaneBox* boxes = nullptr; ///< boxes by triangle number; null without triangles or if stopped
+  LaneBox* room = nullptr;  ///< workspace for `count` more boxes
   std::unique_ptr<LaneBox, void (*)(void*)> memory{ nullptr, std::free }; ///< owner of both arrays
 
   /// Box of one triangle.
@@ -132,7 +132,7 @@ struct TriangleBoxes
 };
 
 /// Throws std::invalid_argument if there are too many triangles, or if a corner is missing, not
-/// finite or beyond MaximumCoordinate; the message names the first such triangle.
+/// finite or beyond MaximumCoordinate. The message names the first such triangle.
 TriangleBoxes makeTriangleBoxes(
   const TriangleMesh& mesh, int threads, const KeepGoing& keepGoing = {});
 }

@@ -6,7 +6,7 @@
  * - Corners are moved to the apex in double precision. The edge vector of a side is E = (a - b) x
  *   (a + b) = 2 a x b. Exchanging a and b changes the sign of E and no other bit, as long as no
  *   product is fused with a sum (compile with -ffp-contract=off). Triangles that share an edge
- *   therefore agree on E. Unlike a x b, this product is accurate for small triangles far away.
+ *   therefore agree on E. Unlike a x b, the product E is accurate for small triangles far away.
  * - In the beam's own plane the edge function of the ray (x, y) is ex x + ey y + ez with ex =
  *   tan(theta0.5) e1 . E, ey = tan(theta0.5) e2 . E, ez = axis . E. The edge function is linear in
  *   E, so exchanging a and b still changes only its sign.
@@ -14,29 +14,31 @@
  *   u_d the unit round-off of double and spread >= |E|_1 the sum of the magnitudes of the products
  *   in E. The two terms bound the rounding of the evaluation and of E. A ray aimed at an edge or
  *   vertex of a closed surface is therefore always accepted by one of its triangles.
- * - A triangle seen exactly edge-on (n . a = 0) has no solid angle and is not hit. A triangle
- *   thinner than 4 u_d of its longest side is not hit either. Both sides of a triangle can be hit.
- * - The range is n . a / n . d. The normal n, the cross product of two sides, has no cancellation
- *   error (Kahan's difference of products), so the relative error of the range is a few u_d /
- *   cos(incidence angle). The range is clamped to the ranges of the triangle's corners along the
- *   ray. Where the triangle is seen nearly edge-on, the range is clamped to the ranges of the part
- *   beside the ray.
+ * - A triangle seen exactly edge-on (n . a = 0, with n the normal) has no solid angle and is not
+ *   hit. A triangle thinner than 4 u_d of its longest side is not hit either. Both sides of a
+ *   triangle can be hit.
+ * - The range along the unit direction d is n . a / n . d. The normal n, the cross product of two
+ *   sides, has no cancellation error (Kahan's difference of products), so the relative error of the
+ *   range is a few u_d / cos(incidence angle). The range is clamped to the ranges of the triangle's
+ *   corners along the ray. Where the triangle is seen nearly edge-on, the range is clamped to the
+ *   ranges of the part beside the ray.
  * - If a ray passes inside by more than rounding, the range of the plane is taken without clamping.
  *   Every edge function must then be at least 64 u_d L R, with L the longest side and R the
  *   distance of the farthest corner, and |n . d| / |n| at least 2^-30, far above rounding. The hit
  *   then lies on the triangle, for three reasons. First, |n| is within 3 u_d of the cross product
- *   of the rounded sides: to first order, the computed plane is that of a triangle whose corners
- *   lie within sqrt(3) u_d L of the given ones. Second, the rounding of n, n . a, n . d and the
- *   quotient moves the hit off this plane by at most 13 u_d R, which is 13 u_d R / cos(incidence
- *   angle) along the ray. Third, the ray passes every side at a distance of 16.5 u_d R or more,
- *   because an edge function is twice this distance times the side's projected length, with an
- *   error of at most 28 u_d L R. A hit that moves along the ray therefore stays above the triangle.
+ *   of the rounded sides: to first order, the computed plane is the plane of a triangle whose
+ *   corners lie within sqrt(3) u_d L of the given corners. Second, the rounding of n, n . a, n . d
+ *   and the quotient moves the hit off this plane by at most 13 u_d R, which is 13 u_d R /
+ *   cos(incidence angle) along the ray. Third, the ray passes every side at a distance of 16.5 u_d
+ *   R or more, because an edge function is twice this distance times the side's projected length,
+ *   with an error of at most 28 u_d L R. A hit that moves along the ray therefore stays above the
+ *   triangle.
  *
  * Source: paper, Sec. 3.3, Eq. 15-18.
  * Differs: Eq. 16 says that d lies in the tetrahedron OABC if alpha, beta, gamma >= 0. Up to a
  * common factor alpha, beta and gamma are the edge functions d . (p_B x p_C), d . (p_C x p_A), d .
  * (p_A x p_B), which are computed here. Eq. 16 itself divides by the determinant of each triangle
- * and leaks where triangles meet.
+ * and misses rays where triangles meet.
  * Valid: coordinates that are 0 or from 1e-30 to 1e30 m. The distances of an accepted ray and of
  * its hit from the triangle are at most HitMargin times the triangle's farthest coordinate from the
  * apex (plus HitMarginBeam tan(theta0.5) times the distance for rays of a beam).
@@ -57,7 +59,7 @@ namespace avianlidar
 constexpr double RoundOffDouble = 1.0 / 9007199254740992.0; // 2^-53
 constexpr double RoundOffSingle = 1.0 / 16777216.0;         // 2^-24
 
-/// Margins of a hit, see Valid above. Every test of a volume widens volume, ray or cone by these
+/// Margins of a hit (see Valid above). Every test of a volume widens volume, ray or cone by these
 /// margins.
 constexpr double HitMargin = 1.0 / 549755813888.0; // 2^-39
 constexpr double HitMarginBeam = 1.0 / 512.0;
@@ -91,14 +93,14 @@ inline EdgeVector edgeVector(const Vec3& a, const Vec3& b)
   return { plus - minus, size.x + size.y + size.z };
 }
 
-/// Plane of a triangle, for ranges, which is computed only for triangles that a ray hits.
+/// Plane of a triangle, for ranges. The plane is computed only for triangles that a ray hits.
 struct TrianglePlane
 {
   Vec3 normal;           ///< normal whose length is twice the area, m2
-  double height;         ///< normal . a; 0 if edge-on or degenerate
-  double longestSquared; ///< square of the longest side
-  double leastSlope;     ///< least |normal . d| at which the plane's range is accurate
-  double leastEdge;      ///< least edge function of a ray that passes inside by more than rounding
+  double height;         ///< normal . a, m3; 0 if edge-on or degenerate
+  double longestSquared; ///< square of the longest side, m2
+  double leastSlope;     ///< least |normal . d|, m2, at which the plane's range is accurate
+  double leastEdge;      ///< least edge function of a ray well inside the triangle, m2
   EdgeVector sides[3];   ///< edge vectors of ab, bc, ca
 };
 TrianglePlane planeOf(const Corners& corners);
@@ -107,8 +109,8 @@ TrianglePlane planeOf(const Corners& corners);
 TrianglePlane planeOf(const Corners& corners, const TrianglePlane& owner);
 
 /// a b - c d with an error of at most 1.5 units in the last place (Kahan; Jeannerod, Louvet and
-/// Muller, Math. Comp. 82, 2013). std::fma gives the same bits on every machine, which contraction
-/// does not.
+/// Muller, Math. Comp. 82, 2013). Unlike contraction by the compiler, std::fma gives equal bits on
+/// every machine.
 AVIANLIDAR_ALWAYS_INLINE double differenceOfProducts(double a, double b, double c, double d)
 {
   const double cd = c * d;
@@ -132,15 +134,16 @@ AVIANLIDAR_ALWAYS_INLINE Vec3 normalOf(const Corners& t)
 constexpr double NoRange = -1.0;
 
 /// Range of the plane along the unit direction d, m, and its kind. Kind 0 means no hit. Kind 1
-/// means that the range is the triangle's. Kind 2 means that the triangle is a sliver along d, and
-/// rangeOnSliver() must decide. rangeOnPlane() has no branches, for loops over lanes.
+/// means that the range is the range of the triangle. Kind 2 means that the triangle is a sliver
+/// along d, and rangeOnSliver() must decide. rangeOnPlane() has no branches, for loops over lanes.
 struct PlaneRange
 {
   double range;
   int kind;
 };
 
-/// Property of a triangle that all rays of a group share, so that it is not tested for each ray.
+/// Property of a triangle that all rays of a group share, so that no ray needs a test of the
+/// property.
 enum class PlaneView
 {
   Any,
@@ -198,9 +201,10 @@ PlaneView viewOfCone(const TrianglePlane& plane, const Vec3& axis, double sine, 
 double rangeOnSliver(const Corners& t, const Vec3& d, double planeRange, double angularMargin);
 
 /// Range, m, of a ray along the unit direction `d` whose edge functions were accepted. NoRange if
-/// the triangle is edge-on or behind, or if the ray passes beside the end of a needle.
-/// @param angularMargin half-width of the ray, rad: beamRayMargin() for rays of a beam, 0 for
-/// others
+/// the triangle is edge-on or behind the ray's origin, or if the ray passes beside the end of a
+/// needle.
+/// @param angularMargin half-width of the ray, rad: beamRayMargin() for rays of a beam, 0 for other
+/// rays
 double rangeOf(
   const Corners& corners, const TrianglePlane& plane, const Vec3& d, double angularMargin);
 
@@ -294,7 +298,7 @@ struct BeamTriangle
     return this->set(map, t, sides);
   }
 
-  /// As above, with the given edge vectors of the sides (TrianglePlane).
+  /// Set the edge functions from given edge vectors of the sides (TrianglePlane).
   bool set(const BeamPlaneMap& map, const Corners& t, const EdgeVector* sides)
   {
     const double determinant = glm::dot(t.c, sides[0].e);
@@ -317,7 +321,7 @@ struct BeamTriangle
   }
 };
 
-/// BeamTriangle::set() and accepts() for one ray, stopping at the first edge that rejects it.
+/// BeamTriangle::set() and accepts() for one ray, stopping at the first edge that rejects the ray.
 inline bool beamRayAccepted(const BeamPlaneMap& map, const Corners& t, double x, double y)
 {
   const EdgeVector ab = edgeVector(t.a, t.b);
@@ -332,7 +336,7 @@ inline bool beamRayAccepted(const BeamPlaneMap& map, const Corners& t, double x,
     map.edge(edgeVector(t.c, t.a), sign).slack(x, y) >= 0.0;
 }
 
-/// True if a ray, from any point along the unit direction `d`, is accepted. @param t corners
+/// True if the triangle accepts a ray from any point along the unit direction `d`. @param t corners
 /// relative to the ray's origin
 inline bool rayAccepted(const Corners& t, const Vec3& d)
 {

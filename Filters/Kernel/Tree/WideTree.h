@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file WideTree.h
- * @brief A collision tree of axis-aligned boxes with eight children per node, in single precision,
- * for speed; its cone and ray tests; and the entry points at which rays begin their descent.
+ * @brief Collision tree with eight children per node, whose axis-aligned boxes are in single
+ * precision for speed; the tests of cones and rays against the boxes; the entry points at which
+ * rays begin their descent.
  *
  * Eight boxes are tested in one loop over lanes. Boxes are relative to the middle of the scene, and
  * tests widen them by the rounding of single precision.
@@ -11,7 +12,7 @@
  * BeamVolumeTest.h for the other volumes.
  * Differs: packets of rays and groups of beams descend the tree, too.
  * Valid: the tests are conservative. All boxes are met if scene and apex are within
- * LeastWideExtent, or one is beyond LargestWideExtent.
+ * LeastWideExtent, or if scene or apex is beyond LargestWideExtent.
  * Test: TestWideTree.cxx, TestBeamGroup.cxx and TestBeamTracer.cxx (entry points).
  */
 #ifndef avianlidar_WideTree_h
@@ -29,8 +30,8 @@ struct alignas(64) WideNode
   static constexpr int Width = 8;
   float x[Width], y[Width], z[Width];             ///< centres relative to WideTree::reference, m
   float halfX[Width], halfY[Width], halfZ[Width]; ///< half extents, rounded up, m
-  std::uint32_t first[Width]; ///< inner child: its number; leaf: first of its triangles in the
-                              ///< order; or NoChild
+  std::uint32_t first[Width]; ///< number of an inner child, place in the order of the first
+                              ///< triangle of a leaf, or NoChild
   std::uint32_t count[Width]; ///< number of triangles of a leaf; 0 for an inner child
 
   /// Remove all children.
@@ -57,7 +58,7 @@ struct WideTree
 /// Several times the bound of the relative rounding of the single-precision tests.
 constexpr float WideRounding = 2e-6f;
 
-/// Find by how much boxes must be widened for single precision, m, for an apex at `offset` from the
+/// Find the widening of boxes, m, that single precision requires for an apex at `offset` from the
 /// reference.
 /// @return false if the scene or the offset is too large, or both are too small
 bool wideningFor(const WideTree& tree, const Vec3& offset, float& widening);
@@ -105,7 +106,7 @@ struct WideRay
   float widening;
   float spread; ///< half-width of the ray, rad
 
-  bool everywhere; ///< as in WideCone
+  bool everywhere; ///< true if single precision does not suffice: all boxes are met
 
   /// @param origin relative to the apex, m @param direction unit vector @param angularMargin
   /// half-width of the ray, rad

@@ -25,10 +25,10 @@ struct Name
   const char* words = ""; ///< description in LAS files, with the unit at most 31 bytes
 };
 
-// Beams; echoes and beam report have most of these, too (point data).
-/// column * channels + channel, unique among all pieces (vtkIdType)
+// Beams, and mostly also echoes and beam report (point data).
+/// column * channels + channel, unique among all pieces of a scan (vtkIdType)
 constexpr Name BeamId{ "beam_id", "", "index of the beam" };
-/// unit vector of the beam: east, north, up
+/// unit vector along the beam: east, north, up
 constexpr Name Direction{ "direction", "1" };
 /// direction that the sensor reports; only with sway or jitter (3 components)
 constexpr Name ReportedDirection{ "reported_direction", "1" };
@@ -42,21 +42,21 @@ constexpr Name VerticalAngle{ "vertical_angle", "deg", "from the horizon, up" };
 constexpr Name Timestamp{ "timestamp", "us" };
 
 // Sensor (field data of beams and echoes).
-/// air sends light back: 0 no, 1 yes (int)
+/// whether the air sends light back: 0 no, 1 yes (int)
 constexpr Name AirBackscatter{ "air_backscatter", "1" };
 /// rain rate
 constexpr Name RainRate{ "rain_rate", "mm/h" };
-/// 0 ellipse, 1 rectangle (int)
+/// outline of the beam: 0 ellipse, 1 rectangle (int)
 constexpr Name BeamOutline{ "beam_outline", "1" };
-/// threshold in scattering air: 0 fixed, 1 follows the air (int)
+/// threshold in scattering air: 0 fixed, 1 raised by the light of the air (int)
 constexpr Name ThresholdLaw{ "threshold_law", "1" };
-/// 0 uniform, 1 Gaussian (int)
+/// profile of the beam: 0 uniform, 1 Gaussian (int)
 constexpr Name BeamProfile{ "beam_profile", "1" };
-/// Qlow, above which a range unit is perceived
+/// lower limit Qlow, above which a range unit is perceived
 constexpr Name LowerEnergyLimit{ "lower_energy_limit", "J" };
-/// Qhigh, at which the receiver saturates
+/// upper limit Qhigh, at which the receiver saturates
 constexpr Name UpperEnergyLimit{ "upper_energy_limit", "J" };
-/// 0 energy limits, 1 photons (int)
+/// model of the receiver: 0 energy limits, 1 photons (int)
 constexpr Name ReceiverModel{ "receiver_model", "1" };
 /// wavelength of the light
 constexpr Name Wavelength{ "wavelength", "nm" };
@@ -64,33 +64,33 @@ constexpr Name Wavelength{ "wavelength", "nm" };
 constexpr Name FalseAlarmsPerScan{ "false_alarms_per_scan", "1" };
 /// ratio of the upper to the lower limit, 10 log10 of electrons
 constexpr Name DynamicRange{ "dynamic_range", "dB" };
-/// names of assumed values (text)
+/// names of the settings with assumed values (text)
 constexpr Name Assumed{ "assumed", "" };
 
 // Scan pattern (field data of beams and echoes).
 /// position of the sensor: east, north, up
 constexpr Name Position{ "position", "m" };
-/// yaw, pitch, roll
+/// yaw, pitch and roll of the sensor
 constexpr Name Orientation{ "orientation", "deg" };
 /// channels (int)
 constexpr Name NumberOfChannels{ "number_of_channels", "1" };
 /// elevation of channel 0
 constexpr Name MinimumElevation{ "minimum_elevation", "deg" };
-/// elevation between channels
+/// elevation from channel to channel
 constexpr Name ElevationStep{ "elevation_step", "deg" };
 /// elevation of each channel, if tabulated
 constexpr Name ChannelElevations{ "channel_elevations", "deg" };
-/// azimuth of each channel less its column's
+/// azimuth of each channel minus azimuth of the column
 constexpr Name ChannelAzimuthOffsets{ "channel_azimuth_offsets", "deg" };
 /// firing time of each channel in its column
 constexpr Name ChannelFiringTimes{ "channel_firing_times", "s" };
-/// azimuths without beams: from, to, ...
+/// azimuths without beams: first azimuth and excluded end of each sector
 constexpr Name BlankedSectors{ "blanked_sectors", "deg" };
 /// wedge angle of each prism
 constexpr Name PrismWedgeAngles{ "prism_wedge_angles", "deg" };
 /// refractive index of each prism
 constexpr Name PrismRefractiveIndices{ "prism_refractive_indices", "1" };
-/// rotation rate of each prism, clockwise as the sensor sees it
+/// rotation rate of each prism, clockwise seen from the sensor
 constexpr Name PrismRotationRates{ "prism_rotation_rates", "Hz" };
 /// direction of each prism's deflection at time 0: 0 up, 90 right
 constexpr Name PrismPhases{ "prism_phases", "deg" };
@@ -98,9 +98,9 @@ constexpr Name PrismPhases{ "prism_phases", "deg" };
 constexpr Name PrismAxisElevation{ "prism_axis_elevation", "deg" };
 /// rotation rate of the prisms' axis about the vertical, clockwise seen from above
 constexpr Name PrismAxisRotationRate{ "prism_axis_rotation_rate", "Hz" };
-/// first azimuth, excluded end
+/// first azimuth and excluded end
 constexpr Name AzimuthRange{ "azimuth_range", "deg" };
-/// azimuth between columns
+/// azimuth from column to column
 constexpr Name AzimuthStep{ "azimuth_step", "deg" };
 /// scans per second
 constexpr Name RotationRate{ "rotation_rate", "Hz" };
@@ -108,9 +108,9 @@ constexpr Name RotationRate{ "rotation_rate", "Hz" };
 constexpr Name FiringInterval{ "firing_interval", "s" };
 /// revolutions to play (int)
 constexpr Name NumberOfRevolutions{ "number_of_revolutions", "1" };
-/// steps that play a revolution (int)
+/// time steps that play a revolution (int)
 constexpr Name StepsPerRevolution{ "steps_per_revolution", "1" };
-/// revolution of the data (int)
+/// number of the revolution, from 0 (int)
 constexpr Name Revolution{ "revolution", "" };
 /// rms tilt about each horizontal axis
 constexpr Name SwayAmplitude{ "sway_amplitude", "deg" };
@@ -124,11 +124,11 @@ constexpr Name MotionSeed{ "motion_seed", "" };
 constexpr Name DisplayLength{ "display_length", "m" };
 
 // Surfaces (cell data and field data).
-/// part of a mover: 0 rigid, p moves by row p - 1 of `flap_` data (int)
+/// part of a mover: 0 rigid; part p moves by row p - 1 of the `flap_` arrays (int)
 constexpr Name Part{ "part", "" };
-/// object; in echoes -1 false alarm, -2 air (int)
+/// number of the object; in echoes -1 false alarm, -2 air (int)
 constexpr Name ObjectId{ "object_id", "", "index of object_names" };
-/// material; in echoes -1 false alarm or air (int)
+/// number of the material; in echoes -1 false alarm or air (int)
 constexpr Name MaterialId{ "material_id", "", "index of material_names" };
 /// name of each `object_id` (text)
 constexpr Name ObjectNames{ "object_names", "" };
@@ -136,16 +136,16 @@ constexpr Name ObjectNames{ "object_names", "" };
 constexpr Name MaterialNames{ "material_names", "" };
 /// class of each `object_id` (text)
 constexpr Name ObjectClasses{ "object_classes", "" };
-/// JSON of the medium that the surface bounds (text)
+/// medium inside the surface, as JSON (text)
 constexpr Name Medium{ "medium", "" };
-/// JSON of all media of the scene (text)
+/// all media of the scene, as JSON (text)
 constexpr Name Media{ "media", "" };
 constexpr Name SurfaceTexts[] = { ObjectNames, ObjectClasses, MaterialNames, Medium, Media };
-/// latitude, longitude, height above the WGS84 ellipsoid
+/// latitude, longitude, and height above the WGS84 ellipsoid
 constexpr Name GeodeticOrigin{ "geodetic_origin", "deg deg m" };
 /// position of the lidar in the scene file (3 components)
 constexpr Name LidarPosition{ "lidar_position", "m" };
-/// credit that the source of the data demands (text)
+/// credit that the source of the data requires (text)
 constexpr Name Attribution{ "attribution", "" };
 /// size and repairs of each object (text)
 constexpr Name SceneReport{ "scene_report", "" };
@@ -153,11 +153,11 @@ constexpr Name SceneReport{ "scene_report", "" };
 constexpr Name TreeChecksum{ "tree_checksum", "" };
 
 // Movers (field data) and trails (point, cell and field data).
-/// time of each pose, rising, on the beams' clock
+/// time of each pose, rising, since the start of revolution 0
 constexpr Name PoseTime{ "pose_time", "s" };
-/// mover's origin in each pose (3 components)
+/// origin of the mover in each pose (3 components)
 constexpr Name PosePosition{ "pose_position", "m" };
-/// unit quaternion w, x, y, z, mover to scene
+/// unit quaternion w, x, y, z from the mover's frame to the scene's
 constexpr Name PoseOrientation{ "pose_orientation", "1" };
 /// point on each hinge (3 components)
 constexpr Name FlapHinge{ "flap_hinge", "m" };
@@ -169,21 +169,21 @@ constexpr Name FlapAmplitude{ "flap_amplitude", "rad" };
 constexpr Name FlapFrequency{ "flap_frequency", "Hz" };
 /// phase of each part, in turns
 constexpr Name FlapPhase{ "flap_phase", "1" };
-/// species (text)
+/// name of the species (text)
 constexpr Name Species{ "species", "" };
 /// number of the species (int)
 constexpr Name SpeciesId{ "species_id", "" };
 /// name of each `species_id` (text)
 constexpr Name SpeciesNames{ "species_names", "" };
-/// time of a position; in the tracker's field data: time of the cloud
+/// time of a position; in the tracker's field data, time of the cloud
 constexpr Name Time{ "time", "s" };
 
-// All outputs after an error (field data).
+// Every output after an error (field data).
 /// message of the failed execution (text)
 constexpr Name Error{ "error", "" };
 
 // Bounding volumes of the collision tree (cell data).
-/// node (int)
+/// index of the node (int)
 constexpr Name NodeId{ "node_id", "" };
 /// triangles below the node (int)
 constexpr Name Triangles{ "triangles", "1" };
@@ -197,17 +197,17 @@ constexpr Name Energy{ "energy", "J", "within receiver limits" };
 constexpr Name EnergyReceived{ "energy_received", "J", "before the limits" };
 /// energy received in all range units of the return
 constexpr Name ReturnEnergy{ "return_energy", "J", "of the whole return" };
-/// standard error of `energy_received` or, with view 2, a bound; NaN below 8 rays
+/// standard error of `energy_received`, with view 2 a bound of the error; NaN below 8 rays
 constexpr Name EnergyStdError{ "energy_std_error", "J", "of energy_received" };
 /// photoelectrons in the range unit of `energy_received`, with noise; photon receivers only
 constexpr Name Photoelectrons{ "photoelectrons", "1", "of its range unit" };
-/// photoelectrons divided by their standard deviation; photon receivers only
+/// `photoelectrons` divided by their standard deviation; photon receivers only
 constexpr Name SignalToNoise{ "signal_to_noise", "1", "of its range unit" };
 /// spectral radiance of daylight in the beam; photon receivers with sunlight only
 constexpr Name SeenRadiance{ "seen_radiance", "W/(m2 sr nm)", "of what its beam looks at" };
 /// standard deviation of the range, from noise
 constexpr Name DistanceStdError{ "distance_std_error", "m", "of the receiver's noise" };
-/// 0 to 255, linear between the energy limits
+/// intensity, 0 to 255, linear between the energy limits
 constexpr Name Intensity{ "intensity", "1" };
 /// range
 constexpr Name Distance{ "distance_m", "m", "range" };
@@ -215,33 +215,35 @@ constexpr Name Distance{ "distance_m", "m", "range" };
 constexpr Name ReturnNumber{ "return_number", "1" };
 /// returns of the beam (int)
 constexpr Name NumberOfReturns{ "number_of_returns", "1" };
-/// share of the energy from this object and material
+/// share of the energy that comes from the object and material of the echo
 constexpr Name LabelShare{ "label_share", "1", "energy of object_id" };
-/// energy-weighted mean angle at the last surface; NaN for false alarms
+/// energy-weighted mean angle of incidence at the last surface; NaN for false alarms
 constexpr Name IncidenceAngle{ "incidence_angle", "deg", "at the surface" };
 /// share of the energy from paths with two reflections; above 0.5 a ghost
 constexpr Name SecondaryShare{ "secondary_share", "1", "energy of 2 bounces" };
-/// 0 echo, 1 no-surface, 2 below-Qlow, 3 saturated, 4 outside-gate; coverage: `status_names`
+/// status of the beam: 0 echo, 1 no-surface, 2 below-Qlow, 3 saturated, 4 outside-gate; in a
+/// coverage, index of `status_names`
 constexpr Name Status{ "status", "" };
-/// 1 nothing, 2 polygons, 3 cells, 4 rays, 5 cells through the tree (int)
+/// view of the beam: 1 nothing, 2 polygons, 3 cells, 4 rays, 5 cells through the tree (int)
 constexpr Name View{ "view", "" };
-/// triangles tested, each counted once per packet of up to 64 rays
+/// tested triangles, each counted once per packet of up to 64 rays
 constexpr Name Candidates{ "candidates", "1" };
-/// nodes of the tree visited
+/// visited nodes of the tree
 constexpr Name NodesVisited{ "nodes_visited", "1" };
-/// rays traced
+/// traced rays
 constexpr Name RaysTraced{ "rays_traced", "1" };
-/// parts left out, as a sum: 1 reflections, 2 beam, 4 noise, 8 range, 16 direct (int)
+/// sum of codes for parts left out: 1 second reflections, 2 whole beam, 4 noise, 8 surfaces out of
+/// range, 16 direct light (int)
 constexpr Name Skipped{ "skipped", "" };
-/// largest difference of a range unit from the full model
+/// bound of the energy by which a range unit differs from the full model
 constexpr Name SkippedBound{ "skipped_bound", "J" };
 
 // Beam view (cell data; columns of the table).
-/// share of the beam that the surface fills
+/// share of the beam's solid angle that the surface fills
 constexpr Name SolidAngleShare{ "solid_angle_share", "1" };
 /// share of the received energy that the surface returns
 constexpr Name EnergyShare{ "energy_share", "1" };
-/// name of the object (text); sequence reader: class of a box
+/// name of the object (text); in boxes of a sequence, class of the box
 constexpr Name Object{ "object", "" };
 /// name of the material (text)
 constexpr Name Material{ "material", "" };
@@ -251,20 +253,20 @@ constexpr Name NearestRange{ "nearest_m", "m" };
 constexpr Name FarthestRange{ "farthest_m", "m" };
 
 // Mover report (point data).
-/// silhouette weighted by the cosine of incidence; NaN if the mover's bounding sphere holds the
-/// sensor
+/// area of the silhouette, weighted by the cosine of incidence; NaN if the mover's bounding sphere
+/// contains the sensor
 constexpr Name EffectiveArea{ "effective_area", "m2" };
-/// beams whose cones hold the mover's origin (int)
+/// beams whose cones contain the mover's origin (int)
 constexpr Name NumberOfBeams{ "number_of_beams", "1" };
 /// time when the first beam meets the mover
 constexpr Name FirstTimestamp{ "first_timestamp", "us" };
-/// mover's origin at `first_timestamp` (3 components)
+/// origin of the mover at `first_timestamp` (3 components)
 constexpr Name FirstPosition{ "first_position", "m" };
 /// time when the last beam meets the mover
 constexpr Name LastTimestamp{ "last_timestamp", "us" };
-/// mover's origin at `last_timestamp` (3 components)
+/// origin of the mover at `last_timestamp` (3 components)
 constexpr Name LastPosition{ "last_position", "m" };
-/// echoes of the mover; tracker: points of the cluster (int)
+/// echoes of the mover; from the tracker, points of the cluster (int)
 constexpr Name NumberOfEchoes{ "number_of_echoes", "1" };
 /// probability that one scan detects the target or, in the clutter output, perceives the echo
 constexpr Name DetectionProbability{ "detection_probability", "1" };
@@ -272,11 +274,11 @@ constexpr Name DetectionProbability{ "detection_probability", "1" };
 // Tracker (point and cell data).
 /// number of the track; -1 for points without a track (int)
 constexpr Name TrackId{ "track_id", "" };
-/// 1 if the track is confirmed (unsigned char)
+/// 1 if the track of the point is confirmed (unsigned char)
 constexpr Name TrackConfirmed{ "track_confirmed", "1" };
 /// estimated velocity over ground (3 components)
 constexpr Name Velocity{ "velocity", "m/s" };
-/// xx, yy, zz, xy, yz, xz
+/// covariance of the position: xx, yy, zz, xy, yz, xz
 constexpr Name PositionCovariance{ "position_covariance", "m2" };
 /// 1 if the track is confirmed (unsigned char)
 constexpr Name Confirmed{ "confirmed", "1" };
@@ -288,25 +290,25 @@ constexpr Name Hits{ "hits", "1" };
 // Coverage (point data, field data, columns of the table).
 /// probability that enough of several scans detect the bird
 constexpr Name TrackProbability{ "track_probability", "1" };
-/// detection probability in each pose
+/// detection probability in each pose of the bird
 constexpr Name PoseProbabilities{ "pose_probabilities", "1" };
-/// beams that hold the place, at most 255 (int)
+/// beams that meet the place, at most 255 (int)
 constexpr Name BeamsPerScan{ "beams_per_scan", "1" };
 /// effective area at which half of the targets inside the beams would be detected
 constexpr Name MinimumEffectiveArea{ "minimum_effective_area", "m2" };
 /// name of each `status` (text)
 constexpr Name StatusNames{ "status_names", "" };
-/// region of the place (int)
+/// number of the region of the place (int)
 constexpr Name RegionId{ "region_id", "" };
 /// name of each `region_id` (text)
 constexpr Name RegionNames{ "region_names", "" };
-/// region (text)
+/// name of the region (text)
 constexpr Name Region{ "region", "" };
-/// lower limit of the band
+/// lower limit of the band of heights
 constexpr Name HeightFrom{ "height_from", "m" };
-/// upper limit of the band
+/// upper limit of the band of heights
 constexpr Name HeightTo{ "height_to", "m" };
-/// places in the row
+/// places in the region and band
 constexpr Name Places{ "places", "1" };
 /// standard error of the mean `detection_probability`
 constexpr Name DetectionStdError{ "detection_std_error", "1" };
@@ -314,7 +316,7 @@ constexpr Name DetectionStdError{ "detection_std_error", "1" };
 constexpr Name TrackStdError{ "track_std_error", "1" };
 
 // Colours and coordinates (point data, field data).
-/// 240 at Qlow to 0 at Qhigh (Eq. 13)
+/// hue of the colour, from 240 at Qlow to 0 at Qhigh (Eq. 13)
 constexpr Name Hue{ "hue", "deg" };
 /// colour, 0 to 255 (3 unsigned chars)
 constexpr Name Rgb{ "rgb", "1" };
@@ -336,16 +338,16 @@ constexpr Name ColumnAzimuths{ "column_azimuths", "deg" };
 constexpr Name RowElevations{ "row_elevations", "deg" };
 
 // Clutter filter (point data, field data).
-/// weighted share of earlier scans with an echo in the cell; of a point: the largest of the cells
-/// around it
+/// weighted share of earlier scans with an echo in the cell; for a point, the largest share among
+/// the cells around the point
 constexpr Name ClutterProbability{ "clutter_probability", "1" };
-/// 1 clutter, 0 may move (unsigned char)
+/// 1 for clutter, 0 for points that may move (unsigned char)
 constexpr Name IsClutter{ "is_clutter", "1" };
-/// cell of azimuth, elevation, range (3 ints)
+/// cell of the point: indices of azimuth, elevation and range (3 ints)
 constexpr Name ClutterCell{ "clutter_cell", "" };
-/// scans in memory (int)
+/// number of scans in memory (int)
 constexpr Name LearnedScans{ "learned_scans", "1" };
-/// memory in scans
+/// age, in scans, at which a scan weighs 1/e
 constexpr Name ClutterWindow{ "clutter_window", "1" };
 /// clutter probability from which a point is clutter
 constexpr Name ClutterThreshold{ "clutter_threshold", "1" };
@@ -355,15 +357,15 @@ constexpr Name ClutterRangeStep{ "clutter_range_step", "m" };
 constexpr Name ClutterAzimuthStep{ "clutter_azimuth_step", "deg" };
 /// size of the cells in elevation
 constexpr Name ClutterElevationStep{ "clutter_elevation_step", "deg" };
-/// cells nearer and farther than a point's own that count (int)
+/// neighbouring cells in range that count for a point (int)
 constexpr Name ClutterRangeTolerance{ "clutter_range_tolerance", "1" };
-/// cells beside, above and below a point's own that count (int)
+/// neighbouring cells in azimuth and elevation that count for a point (int)
 constexpr Name ClutterAngularTolerance{ "clutter_angular_tolerance", "1" };
-/// first scans in which all points are clutter (int)
+/// number of first scans in which all points are clutter (int)
 constexpr Name ClutterWarmUp{ "clutter_warm_up", "1" };
-/// 1 if scans are learned (int)
+/// 1 if the filter learns from the scans (int)
 constexpr Name ClutterLearning{ "clutter_learning", "1" };
-/// time of a cloud, s; without a unit label, as ParaView writes it
+/// time of a cloud, s; ParaView's array, without a unit label
 constexpr Name TimeValue{ "TimeValue", "" };
 
 // Cloud comparison (point data, field data).
@@ -379,11 +381,11 @@ constexpr Name HausdorffReferenceToSimulated{ "hausdorff_reference_to_simulated"
 constexpr Name RMSESimulatedToReference{ "rmse_simulated_to_reference", "m" };
 /// rms distance from reference to simulated (Eq. 20)
 constexpr Name RMSEReferenceToSimulated{ "rmse_reference_to_simulated", "m" };
-/// mean of the two distances below
+/// mean of both density-aware Chamfer distances
 constexpr Name ChamferDistance{ "density_aware_chamfer_distance", "1" };
-/// Chamfer distance from simulated to reference
+/// density-aware Chamfer distance from simulated to reference
 constexpr Name ChamferSimulatedToReference{ "density_aware_chamfer_simulated_to_reference", "1" };
-/// Chamfer distance from reference to simulated
+/// density-aware Chamfer distance from reference to simulated
 constexpr Name ChamferReferenceToSimulated{ "density_aware_chamfer_reference_to_simulated", "1" };
 
 /// Arrays of the points of a cloud, which readers and writers of files recognise.

@@ -3,22 +3,23 @@
  * @file BeamCells.h
  * @brief Samples of a beam that many triangles enter, from a grid of cells and rays.
  *
- * 1. The disc is divided into 4 x 4 cells, and each cell is divided in the same way. The surfaces
- * in the list of a cell are tested against its sixteen children at once (CellLanes.h). A child
- * keeps a surface unless a side of the surface separates surface and child, or another surface
- * covers the child in front of this surface.
+ * 1. The disc is divided into 4 x 4 cells, and each cell into 4 x 4 smaller cells. The surfaces in
+ * the list of a cell are tested against its sixteen children at once (CellLanes.h). A child keeps a
+ * surface unless a side of the surface separates surface and child, or a nearer surface covers the
+ * child.
  * 2. A cell that one surface covers within one strip (RangeStrips.h) is one exact sample.
- * 3. Every other cell of the last level holds 16 m^2 jittered rays, one in each square of a grid.
- * These rays are tested only against the list of the cell.
+ * 3. Every other cell of the last level holds m x m blocks of 16 jittered rays (CellDensity), one
+ * ray in each square of a grid. These rays are tested only against the list of the cell.
  *
- * N alone fixes the density of rays (densityOfCells()), so surfaces that the first rays miss cause
- * no bias. A cell gets more rays, or is divided further, if it holds an object on which fewer than
- * CellDensity::raysOnObject() rays would fall. A cell that may hold the middle of a specular lobe
- * is also divided further.
+ * The density of rays follows from N (densityOfCells()) and never from hits, so missed surfaces
+ * cause no bias. A cell has more rays, or is divided further, if it holds an object on which fewer
+ * than CellDensity::raysOnObject() rays would fall. A cell that may hold the middle of a specular
+ * lobe is also divided further.
  *
  * Source: Warnock, "A Hidden Surface Algorithm for Computer Generated Halftone Pictures", 1969, for
  * the division; Catmull, 1978, for lists that become shorter in smaller cells.
- * Differs: the smallest cells hold stratified rays, which have a standard error, instead of pixels.
+ * Differs: instead of pixels, the smallest cells hold stratified rays, whose sums have a standard
+ * error.
  * Valid: any triangles. Samples depend only on the beam, and on the triangles that enter its disc
  * and their object ids. Samples do not depend on the order of the triangles, their materials or the
  * tree. Specular lobes are resolved up to exponents of about 1e8 in a beam of 5.6 mrad.
@@ -46,12 +47,12 @@ namespace avianlidar
 /// beams are traced through the tree.
 constexpr std::size_t MostTrianglesOfCells = 2000;
 
-/// Smallest share of the disc that the triangles of an object must cover for the object to get more
-/// rays.
+/// Smallest share of the disc that the triangles of an object must cover for the object to have
+/// more rays.
 constexpr double LeastShareOfObject = 1e-6;
 
-/// Finds the samples of one beam after the other. One object per thread, which setup and scene must
-/// outlive.
+/// Finds the samples of one beam after the other. Each thread needs its own object. Setup and scene
+/// must outlive the object.
 class BeamCells
 {
 public:
@@ -62,27 +63,28 @@ public:
   std::unique_ptr<CellSamples> find(
     std::uint64_t beam, const BeamFrame& frame, const std::vector<const BeamSurface*>& entering);
 
-  /// Keep only the triangles of small objects, which alone decide where the rays of place() lie.
-  /// The input must contain every triangle that enters the beam; often these are millions.
+  /// Keep only the triangles of small objects. No other triangles decide where the rays of place()
+  /// lie. The input must contain every triangle that enters the beam, often millions of triangles.
   void keepSmallObjects(
     std::uint64_t beam, const BeamFrame& frame, std::vector<std::uint32_t>& numbers);
 
-  /// Place the rays of a beam with too many triangles for lists. Its cells are divided as small
-  /// objects require, and its rays must be traced through the tree.
-  /// @param numbers triangles in any order, among them all triangles of small objects; changed
+  /// Place the rays of a beam with too many triangles for lists. The cells of the beam are divided
+  /// as small objects require. The rays must then be traced through the tree.
+  /// @param numbers triangles in any order, among them all triangles of small objects; the list is
+  /// changed
   /// @return the rays, valid until the next beam
   const BeamRays& place(
     std::uint64_t beam, const BeamFrame& frame, std::vector<std::uint32_t>& numbers);
 
-  /// The samples of the rays of place(), or null. @param triangles nearest triangle of each ray, or
-  /// NoTriangle
+  /// The samples of the rays of place(); null if there are too many strips. @param triangles
+  /// nearest triangle of each ray, or NoTriangle
   std::unique_ptr<CellSamples> find(const std::uint32_t* triangles);
 
 private:
   struct Cell
   {
     int level;
-    std::uint32_t column, row; ///< column and row among 4^level
+    std::uint32_t column, row; ///< column and row of the cell, below 4^level
     float occluder;            ///< CellSurface::inverse of the covering surface; 0: not covered
     double x, y, width;        ///< corner and side of the cell, half-beamwidths
     double area;               ///< area of the cell's part in the beam, half-beamwidths squared
@@ -137,7 +139,7 @@ private:
   std::vector<CellSurface> Surfaces;      ///< surfaces of `All` in single precision
   /// Id and area of each small object, after sumObjects().
   std::vector<std::pair<int, std::uint64_t>> Objects;
-  std::vector<int> Large; ///< ids of objects known to be large
+  std::vector<int> Large; ///< ids of objects that are large for certain
   std::vector<Level> Levels;
   std::vector<std::uint64_t> MetIn; ///< by surface: last traced cell in which a ray met the surface
   std::uint64_t Traced = 0;         ///< number of cells traced so far, in all beams
@@ -151,7 +153,7 @@ private:
   BeamRays Rays; ///< rays that lie in the beam
   std::vector<CellRays> Blocks;
   std::size_t MostBlocks = 0;
-  std::vector<double> Shares;         ///< share of the pulse of each ray, by block of rays
+  std::vector<double> Shares;         ///< share of the pulse for each ray, by block of rays
   std::vector<std::uint64_t> Hits;    ///< keyAbove() of triangle and ray
   std::vector<std::uint64_t> Numbers; ///< keyAbove() of triangle and surface
   std::vector<std::int32_t> OfRays;   ///< surface that each ray sees; -1: none

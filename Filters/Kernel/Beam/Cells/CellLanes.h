@@ -8,9 +8,9 @@
  * Differs: single precision in the beam's plane, whose coordinates are at most 1 in the disc. The
  * coefficients of a side that two triangles share have opposite signs in the two triangles, bit for
  * bit, so no ray passes between the triangles.
- * Valid: sides are accurate to 1e-6 half-beamwidths. Surfaces whose 1/z differ by less than
- * CellSurface::slack may be seen in the wrong order. Products are not fused, so all instruction
- * sets give the same bits.
+ * Valid: sides are accurate to 1e-6 half-beamwidths. Surfaces whose 1/z (BeamTriangles.h) differ by
+ * less than CellSurface::slack may be seen in the wrong order. Products are not fused with sums, so
+ * all instruction sets give the same bits.
  * Test: TestBeamCells.cxx, InstructionSets.cxx.
  */
 #ifndef avianlidar_CellLanes_h
@@ -31,7 +31,7 @@ struct CellSurface
   float inverseSlope; ///< |x| + |y| of `inverse`
   float most;         ///< upper bound of `inverse`
   float slack;        ///< bound of the rounding of `inverse`
-  float share;        ///< share of the beam that its small object fills; 0: no small object
+  float share;        ///< share of the beam filled by the surface's small object; 0: not small
   float foot[2];      ///< foot of the perpendicular from the apex (middle of the lobe)
 };
 
@@ -39,11 +39,11 @@ struct CellSurface
 struct CellChildren
 {
   float x, y, width; ///< corner of the first child, and side of a child, half-beamwidths
-  /// CellSurface::inverse of the surface that covers each child and hides all surfaces behind;
-  /// infinity: the child is skipped.
+  /// CellSurface::inverse of the nearest surface that covers each child; infinity: the child is
+  /// skipped.
   float occluders[CellLanes];
   std::uint32_t counts[CellLanes]; ///< lengths of `lists`
-  std::uint32_t* lists[CellLanes]; ///< surfaces of each child; each list has room for all
+  std::uint32_t* lists[CellLanes]; ///< surfaces of each child; each list has room for all surfaces
 };
 
 /// Distribute a list of surfaces, nearest first, over the children in which they may be seen.
@@ -57,7 +57,7 @@ struct CellRays
   std::int32_t seen[CellLanes];     ///< number of the surface that the ray sees; -1: none
 };
 
-/// Find which surface of a list, nearest first, each ray sees.
+/// Find the surface that each ray sees. @param list surfaces, nearest first
 void see(
   const CellSurface* surfaces, const std::uint32_t* list, std::uint32_t count, CellRays& rays);
 }

@@ -10,9 +10,10 @@
  * specular lobes.
  *
  * Source: none.
- * Differs: a stratum of the standard error is a ray and one of its two neighbours in a square of
- * four rays. Neighbours differ more than rays of one stratum, so the estimate tends to be too
- * large. addVariance() accounts for surfaces that no ray of a cell met.
+ * Differs: in the standard error, a stratum consists of a ray and one of the ray's two neighbours
+ * in a square of four rays. Neighbours differ more than two rays in one square of the grid would,
+ * so the estimate tends to be too large. addVariance() accounts for surfaces that no ray of a cell
+ * met.
  * Valid: at most four million strips per beam. Lanes of any width give the same bits.
  * Test: TestBeamCells.cxx, TestCellErrors.cxx.
  */
@@ -45,7 +46,7 @@ struct CellSamples
   std::vector<double> variance;      ///< variance of the weight of each sample
   /// Variance, by sample, of the weight that may move to a neighbouring sample of the same unit.
   std::vector<double> moves;
-  std::vector<double> halves; ///< part of `moves` across diagonals of quadrilaterals; empty: none
+  std::vector<double> halves; ///< part of `moves` across diagonals of quadrilaterals; empty: zero
   /// The surfaces that the beam sees, with hidden parts; null with one reflection.
   std::unique_ptr<VisiblePolygons> surfaces;
   bool isCrowded = false; ///< whether the rays were traced through the tree (MostTrianglesOfCells)
@@ -59,12 +60,12 @@ struct CellSamples
       sizeof(double);
   }
 
-  /// Standard error, J, of the energy in some range units. @param shares shares in the units, in
-  /// which shares of samples come first
+  /// Standard error, J, of the energy in some range units. @param shares shares of the samples in
+  /// these units, before any shares of paths with two reflections
   double errorOf(const RangeShares& shares, const ScanSetup& setup) const;
 };
 
-/// The strips of a surface. Integers are doubles for SIMD lanes.
+/// The strips of a surface. Integers are stored as doubles, for SIMD lanes.
 struct SurfaceStrips
 {
   double number; ///< number of the surface
@@ -77,16 +78,18 @@ struct SurfaceStrips
   double count;          ///< number of strips of each half
 };
 
-/// Sums the rays of one beam after the other. One object per thread, which the setup must outlive.
+/// Sums the rays of one beam after the other. Each thread needs its own object. The setup must
+/// outlive the object.
 class RangeStrips
 {
 public:
   explicit RangeStrips(const ScanSetup& setup);
 
-  /// @param surfaces surfaces that rays may meet, which must live until collect()
+  /// @param surfaces surfaces that rays may meet, which the caller must keep until collect()
   void begin(const BeamFrame& frame, const std::vector<const BeamSurface*>& surfaces);
 
-  /// Add a square inside the disc that one surface covers. @param share share of the pulse
+  /// Add a square that lies inside the disc and that one surface covers. @param share share of the
+  /// pulse
   /// @return false if the square needs more than one sample
   bool addWhole(std::uint32_t surface, const PlanePoint& middle, double width, double share);
 
@@ -94,8 +97,8 @@ public:
   /// @return false if there are too many strips
   bool add(const CellRays& rays, double share);
 
-  /// Add to the variance of the strip of a ray that add() took. @param at point where the ray met
-  /// the surface
+  /// Add `variance` to the strip of a ray that was passed to add(). @param at point where the ray
+  /// met the surface
   void addVariance(std::uint32_t surface, const PlanePoint& at, double variance);
 
   std::unique_ptr<CellSamples> collect();
@@ -115,19 +118,19 @@ private:
   const ScanSetup& Setup;
   const double UnitLength; ///< length of a range unit, m
   const double Gate;       ///< range beyond which nothing is received, m
-  const double Offset;     ///< units between a border and the range at which a pulse enters
+  const double Offset;     ///< range units between a border and the range at which a pulse enters
   const BeamShape Shape;
   double Tangent2 = 0.0;
   double Flatness2 = 1.0; ///< flatness2 of the current beam's BeamFrame
-  const bool HasColumns;  ///< whether samples get columns of air (BeamSamples::columns)
+  const bool HasColumns;  ///< whether samples have columns of air (BeamSamples::columns)
   bool Uneven = false;    ///< whether weights of the rays of a cell differ
   const std::vector<const BeamSurface*>* All = nullptr;
   std::vector<std::uint32_t> Of;      ///< place of each surface in `Visible`, or None
   std::vector<SurfaceStrips> Visible; ///< visible surfaces, in the order of their keys
   double Used = 0.0;                  ///< number of strips of all surfaces so far
   std::vector<Strip> Sums;            ///< strips with rays
-  std::vector<double> Halves;         ///< CellSamples::halves of the first `Sums`; mostly empty
-  std::vector<std::uint32_t> Places;  ///< by key: place in `Sums`, if the strip at it has the key
+  std::vector<double> Halves;         ///< CellSamples::halves of the first entries of `Sums`
+  std::vector<std::uint32_t> Places;  ///< by key: place in `Sums`, if the strip there has the key
   std::vector<std::uint64_t> Keys;    ///< keys of the strips with rays, sorted
 };
 }

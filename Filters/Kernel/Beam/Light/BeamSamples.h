@@ -7,7 +7,7 @@
  * Samples are rays of the beam, nodes of an integral over visible polygons, or strips of cells.
  *
  * Source: none.
- * Valid: weights are shares of the pulse's energy; cosines lie in [0, 1]; range, cosine and weight
+ * Valid: weights are shares of the pulse's energy. Cosines lie in [0, 1]. Range, cosine and weight
  * have one entry per sample.
  * Test: TestEchoClosedForms.cxx, TestPolygonUnits.cxx.
  */
@@ -23,14 +23,14 @@
 
 namespace avianlidar
 {
-/// Distance from a surface, m, below which a point at `range` from the apex counts as on the
-/// surface.
+/// Distance from a surface, m, below which a point at the distance `range` from the apex counts as
+/// lying on the surface.
 constexpr double surfaceMargin(double range)
 {
   return 1e-9 * range;
 }
 
-/// Marks a path that does not end at a sample.
+/// Marker of a path that does not end at a sample.
 constexpr std::uint32_t NoSample = 0xffffffffu;
 
 /// Samples of a beam, with 28 bytes per sample and 8 bytes per surface.
@@ -82,7 +82,8 @@ struct BeamSamples
   }
 };
 
-/// Directions and normals of samples, in their order. Only paths with two reflections need them.
+/// Directions and normals of samples, in the order of the samples. Only paths with two reflections
+/// need this geometry.
 struct SampleGeometry
 {
   struct Surface

@@ -4,11 +4,11 @@
  * @brief The triangles that enter a beam's disc, set up in the beam's plane, nearest first.
  *
  * The beam fills the unit disc of its plane (BeamFrame.h). In this plane a triangle is the
- * intersection of the half-planes of its edge functions (TriangleTest.h), and 1/z of the triangle's
- * points is an affine function. Here z is the distance along the axis. Triangles are set up eight
- * at a time, in SIMD lanes. Two triangles with consecutive numbers become one surface if they form
- * a convex quadrilateral in one plane, but for the rounding of scene coordinates. Triangles that
- * share a plane (CoincidentFaces.h) have the same 1/z and are sorted by number.
+ * intersection of the half-planes of its edge functions (TriangleTest.h). On the triangle, 1/z is
+ * an affine function, with z the distance along the axis. Triangles are set up eight at a time, in
+ * SIMD lanes. Two triangles with consecutive numbers become one surface if they form a convex
+ * quadrilateral in one plane, except for the rounding of scene coordinates. Triangles that share a
+ * plane (CoincidentFaces.h) have the same 1/z and are sorted by number.
  *
  * Source: Pineda, "A Parallel Algorithm for Polygon Rasterization", SIGGRAPH 1988, for half-planes.
  * Differs: the plane lies across a beam's axis, and the unit disc takes the place of pixels.
@@ -38,7 +38,7 @@ struct PlanePoint
   double x, y;
 };
 
-/// An affine function on the beam's plane, or the line where it is 0.
+/// An affine function on the beam's plane, or the line where the function is 0.
 struct PlaneLine
 {
   double x = 0.0, y = 0.0, z = 0.0;
@@ -78,15 +78,16 @@ struct BeamSurface : PlaneSurface
   PlaneLine lines[4];    ///< sides that meet the octagon; slope 1, positive inside
   double mostInverse;    ///< upper bound of 1/z in the octagon, 1/m
   double sortInverse;    ///< key of sort(), 1/m: mostInverse, or the bound of a shared plane
-  double area;           ///< area, half-beamwidths squared; AreaUnknown if it crosses the rim
+  double area;           ///< area, half-beamwidths squared; AreaUnknown for surfaces across the rim
 };
 
-/// Sets up the triangles of one beam after the other. One object per thread, which the scene must
-/// outlive.
+/// Sets up the triangles of one beam after the other. Each thread needs its own object. The scene
+/// must outlive the object.
 class BeamTriangles
 {
 public:
-  /// @param most largest number of triangles that are set up; if more enter, only numbers are kept
+  /// @param most largest number of triangles that are set up; if more triangles enter, only the
+  /// numbers of triangles are kept
   explicit BeamTriangles(
     const SceneTriangles& scene, std::size_t most = std::numeric_limits<std::size_t>::max())
     : Scene(scene)
@@ -96,19 +97,20 @@ public:
 
   void begin(const BeamFrame& frame);
 
-  /// Add triangles, in any order, each once. Every triangle that may enter the cone must be added.
+  /// Add triangles, in any order. Every triangle that may enter the cone must be added exactly
+  /// once.
   void add(const std::uint32_t* triangles, std::size_t count);
 
-  /// Must be called after the last triangle. @return number of triangles that enter, if at most
+  /// Must be called after the last add(). @return number of triangles that enter, exact up to
   /// `most`
   std::size_t finish();
 
   /// If more than `most` triangles enter, append the numbers of all triangles that enter, and of
-  /// some others.
+  /// some other triangles.
   void appendNumbers(std::vector<std::uint32_t>& numbers) const;
 
   /// Join the halves of quadrilaterals, and sort the surfaces, nearest first. Must be called after
-  /// the last triangle. @return the surfaces
+  /// the last add(). @return the surfaces
   const std::vector<const BeamSurface*>& sort();
   const std::vector<const BeamSurface*>& nearest() const { return this->Nearest; }
 
@@ -129,7 +131,7 @@ private:
   const std::size_t Most;
   BeamFrame Frame;
   std::vector<std::uint32_t> Waiting; ///< triangles not yet set up
-  std::vector<BeamSurface> Surfaces;  ///< surfaces, the first `Count` of them valid
+  std::vector<BeamSurface> Surfaces;  ///< surfaces, of which the first `Count` are valid
   std::size_t Count = 0;
   std::vector<const BeamSurface*> Nearest;
   std::vector<std::uint8_t> Joints; ///< findJoint() of the triangles of the tree

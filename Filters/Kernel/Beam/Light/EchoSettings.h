@@ -4,7 +4,7 @@
  * @brief Atmosphere and fidelity of a simulation: all settings that belong neither to the sensor
  * nor to the surfaces, their limits, and their presets.
  *
- * Source: none; the presets follow from the measured trade of time for accuracy
+ * Source: none. The presets follow from the measured trade of time for accuracy
  * (Documentation/evidence/accuracy.md).
  * Valid: checkSettings() and checkUnits() name values out of range.
  * Test: TestScanReport.cxx, TestPresets.py.
@@ -28,7 +28,7 @@ namespace avianlidar
 enum class ReturnMode
 {
   All = 0,
-  Strongest = 1, ///< the return with the strongest range unit; among equal returns the nearest
+  Strongest = 1, ///< the return with the strongest range unit; the nearest of equal returns
   First = 2,
   Last = 3,
   RangeUnits = 4 ///< a point at the centre of each perceived range unit (paper, read literally)
@@ -37,48 +37,50 @@ enum class ReturnMode
 /// Largest EchoSettings::lightEnergyFraction; equal to MaximumPathsPerBeam.
 constexpr double MaximumLightEnergyFraction = 1e8;
 
-/// A beam is integrated if the number of its triangles is at most TrianglesPerRay N, clamped to the
-/// range from FewTriangles to ManyTriangles. With more triangles, cells take less time for the same
-/// error.
+/// A beam is integrated if the number of the beam's triangles is at most TrianglesPerRay times N,
+/// clamped to the range from FewTriangles to ManyTriangles. With more triangles, cells take less
+/// time for the same error.
 constexpr double FewTriangles = 100.0;
 constexpr double ManyTriangles = 200.0;
 constexpr double TrianglesPerRay = 1.0 / 50.0;
 
-/// Rays in the grid of a beam in cells (BeamCells.h), divided by N. The density of rays changes in
-/// steps.
+/// Number of rays in the grid of a beam in cells (BeamCells.h), divided by N. The actual number
+/// changes in steps (densityOfCells()).
 constexpr double CellRaysPerRay = 32.0;
 
 /// Grid of a beam in cells: each cell of the last level holds m x m blocks of 16 rays.
-/// MostBlocksAcross, with a million rays, bounds memory and the time until an abort.
+/// MostBlocksAcross limits the grid to a million rays, and so limits memory and the time until an
+/// abort.
 struct CellDensity
 {
   static constexpr int MostBlocksAcross = 18;
   int levels;          ///< number of times that cells are divided
-  int blocks;          ///< m, number of blocks of rays across a cell
+  int blocks;          ///< number m of blocks of rays across a cell
   double rays() const; ///< number of rays in the disc
   /// Least number of rays on a small object. With OnObject rays, the area of a bird has an error of
-  /// 1.5 % rms, and of more than 5 % in one case of 300 (TestBird.cxx). With one level the least
+  /// 1.5 % rms. The error exceeds 5 % in one case of 300 (TestBird.cxx). With one level the least
   /// number is a 25th of the rays in the grid, but at least 16.
   double raysOnObject() const;
   static constexpr double OnObject = 256.0;
 };
 CellDensity densityOfCells(int raysPerBeam);
 
-/// One ray in RaysPerStart starts connections, and at least LeastStarts do.
+/// One ray in RaysPerStart starts connections, and at least LeastStarts rays do.
 constexpr int RaysPerStart = 4;
 constexpr int LeastStarts = 16;
 
 /// Largest pathsOfABeam(), which bounds memory and the work between two checks for an abort.
 constexpr double MaximumPathsPerBeam = 1e8;
 
-/// Largest number of range units of a beam's paths, which bounds memory (about 60 bytes each).
+/// Largest number of range units of a beam's paths, which bounds memory (about 60 bytes per range
+/// unit).
 constexpr double MaximumUnitsPerBeam = 1e8;
 
-/// Largest attenuation coefficient, 1/m, far above the coefficient of any air. Optical depths stay
-/// finite.
+/// Largest attenuation coefficient, 1/m, far above the coefficient of any air. The limit keeps
+/// optical depths finite.
 constexpr double MaximumAttenuation = 1e30;
 
-/// How the direct echo of a beam is found.
+/// Method that finds the direct echo of a beam.
 enum class BeamSampleSource
 {
   Cells = 0, ///< integral over visible polygons, or a dense grid of rays for many polygons
@@ -95,12 +97,12 @@ enum class LightEnergyThreshold
 struct EchoSettings
 {
   BeamSampleSource beamSamples = BeamSampleSource::Cells;
-  int raysPerBeam = 100;                    ///< N, 1 ... 1e6
-  Sampling sampling = Sampling::Stratified; ///< how rays are drawn; in cells, for connections only
+  int raysPerBeam = 100;                    ///< number of rays of a beam, N, 1 to 1e6
+  Sampling sampling = Sampling::Stratified; ///< sampling of rays; in cells only for connections
   std::int32_t seed = 0;
-  double attenuationCoefficient = 3.5e-5; ///< mu, 1/m, 0 to 1e30
+  double attenuationCoefficient = 3.5e-5; ///< attenuation coefficient mu, 1/m, 0 to 1e30
   ReflectanceModel reflectanceModel = ReflectanceModel::LambertBlinnPhong;
-  int numberOfReflections = 2; ///< 1 or 2
+  int numberOfReflections = 2; ///< largest number of reflections of a path, 1 or 2
   bool beamConstraint = true;
   bool lightEnergyConstraint = true;
   /// epsilon of the light-energy constraint: share of Qlow that a range unit may lose, 0 to 1e8.
@@ -111,15 +113,15 @@ struct EchoSettings
   bool noise = true;
   bool fullModel = false; ///< whether parts of the model that cannot matter are computed, too
   ReturnMode returnMode = ReturnMode::All;
-  int numberOfConnections = 2; ///< M, at least 0, see connectionsOf()
+  int numberOfConnections = 2; ///< connections of each ray, M, at least 0; see connectionsOf()
 };
 
-/// What a setting changes, apart from the time of a scan.
+/// Effect of a setting, apart from the time of a scan.
 enum class SettingEffect
 {
   None,
   Echoes,
-  Rays ///< rays of a beam, so kept beams are traced again; echoes, too
+  Rays ///< new rays, so that kept beams are traced again, and new echoes
 };
 
 /// Description of a setting, for checks, keys, field data and the agreement of ranks.
@@ -127,7 +129,7 @@ struct EchoSetting
 {
   const char* property; ///< name in vtkAvianLidarScanFilter
   const char* name;     ///< name in field data
-  const char* unit;     ///< "1": a pure number; "": not a quantity
+  const char* unit;     ///< unit; "1": a pure number; "": not a quantity
   bool whole;
   SettingEffect effect;
   double least, most;
@@ -144,12 +146,12 @@ std::size_t mostTrianglesIntegrated(const EchoSettings& settings);
 /// Empty if the settings are usable; otherwise a sentence with the value and what was expected.
 std::string checkSettings(const EchoSettings& settings);
 
-/// Number of rays that are traced for a beam: N with BeamSampleSource::Rays, otherwise the rays
-/// that start connections (SecondaryReflection.h).
+/// Number of rays that are traced for a beam: N with BeamSampleSource::Rays, otherwise the number
+/// of rays that start connections (SecondaryReflection.h).
 std::uint32_t tracedRaysOf(const EchoSettings& settings);
 
-/// Number of connections of each ray of tracedRaysOf(): M, but less than the number of these rays;
-/// 0 with one reflection.
+/// Number of connections of each ray of tracedRaysOf(): M, but at most the number of these rays
+/// minus one; 0 with one reflection.
 std::uint32_t connectionsOf(const EchoSettings& settings);
 
 /// Number of paths of a beam with one and two reflections: N (2 + M).
@@ -166,13 +168,14 @@ enum class EchoPreset
   Draft = 1,     ///< settings for a first overview
   Standard = 2,  ///< settings for most uses
   Reference = 3, ///< converged settings, with which other presets are compared
-  Paper = 4,     ///< the method of the paper: N = 100 rays, its constraints, a point per range unit
+  Paper = 4,     ///< the method of the paper: 100 rays, two constraints, a point per range unit
   Preview = 5    ///< the fastest settings: 100 rays and one reflection
 };
 
-/// Apply a preset to the settings of fidelity; Paper also sets the settings that select the method.
-/// @return empty if the preset exists; otherwise a sentence that names the value and what was
-/// expected, and the settings do not change
+/// Apply a preset to the settings of fidelity. The preset Paper also sets the settings that select
+/// the method.
+/// @return empty if the preset exists. Otherwise the settings do not change, and the result is a
+/// sentence that names the value and what was expected.
 std::string applyPreset(EchoPreset preset, EchoSettings& settings);
 }
 

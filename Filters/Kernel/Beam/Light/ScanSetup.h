@@ -4,18 +4,19 @@
  * @brief Inputs that all beams of a scan share: surfaces, sensor, settings, noise plan, and the
  * parts of the model that the scan needs. These inputs do not change while beams are simulated.
  *
- * ModelNeeds follow from bounds that hold for all beams: pulse energy, limits, air, aperture and
- * the largest reflectance in the scene. ModelNeeds say whether paths with two reflections can
+ * ModelNeeds follows from values that hold for all beams: pulse energy, limits, air, aperture and
+ * the largest reflectance in the scene. ModelNeeds says whether paths with two reflections can
  * matter, and beyond which range nothing is perceived. The report of a beam lists the parts that
  * are left out (SkippedPart). With EchoSettings::fullModel no part is left out. Attenuation is
  * always modelled, because its exponential costs the same at any coefficient. Surfaces beyond the
- * perceivable range are always traced, for two reasons. Hits must not depend on limits and air, so
- * that a scan can be lit again. The report distinguishes a beam that meets only such surfaces from
- * a beam that meets no surface.
+ * perceivable range are always traced, for two reasons. First, hits must not depend on limits and
+ * air, so that energies can be computed again from kept hits. Second, the report distinguishes a
+ * beam that meets only such surfaces from a beam that meets no surface.
  *
- * Source: none; derived in Documentation/guide/accuracy.md.
+ * Source: none. Documentation/guide/accuracy.md describes the bounds.
  * Valid: no range unit of a beam with an echo differs from the full model by more than
- * ModelNeeds::skippedEnergyBound. Detail between the rays is not bounded (missedDetailEnergy).
+ * ModelNeeds::skippedEnergyBound. The energy of detail between the rays is not bounded
+ * (missedDetailEnergy).
  * Test: TestSecondaryConstraints.cxx, TestScanReport.cxx, Testing/Stability/TestStabilitySweep.cxx,
  * Testing/Python/TestModelNeeds.py.
  */
@@ -58,7 +59,7 @@ struct ModelNeeds
   /// Range, m, beyond which nothing is perceived, not even a surface that fills the beam and
   /// returns as much as the scene's brightest surface. Infinity if there is no such range.
   double perceivableRange = 0.0;
-  bool secondaryReflections = false; ///< whether two reflections are asked for and can matter
+  bool secondaryReflections = false; ///< whether two reflections are enabled and can matter
   double secondaryBound = 0.0;       ///< bound of a beam's energy by two reflections, J
   double furtherBound = 0.0;         ///< bound of a beam's energy by more reflections, J
   double lightEnergyBound = 0.0; ///< bound of a range unit's loss by the light-energy constraint, J
@@ -66,8 +67,8 @@ struct ModelNeeds
   /// the energy that skipped noise might have added.
   double skippedEnergyBound = 0.0;
   /// Energy, J, above which all rays of a beam miss an object with a probability below 5 %. A beam
-  /// has N rays, or, if divided into cells, the rays of its grid, with more on small objects that
-  /// have their own id.
+  /// in cells has the rays of its grid, and more rays on small objects that have their own id.
+  /// Every other beam has N rays.
   double missedDetailEnergy = 0.0;
 };
 
@@ -75,12 +76,13 @@ struct ModelNeeds
 struct ScanSetup
 {
   std::shared_ptr<const CollisionTree> tree;
-  SharedVector<Material> materials; ///< one per triangle
-  SharedVector<int> objectIds;      ///< one per triangle
-  SharedVector<int> materialIds;    ///< one per triangle
+  SharedVector<Material> materials; ///< material of each triangle
+  SharedVector<int> objectIds;      ///< object id of each triangle
+  SharedVector<int> materialIds;    ///< material id of each triangle
   double largestReflectance = 0.0;  ///< largest albedo() of all triangles
   double largestGain = 0.0;         ///< largest apertureGain() of all triangles, 1/sr
-  /// Movers; null if nothing moves. The triangles of movers count in the two largest values, too.
+  /// Movers; null if nothing moves. `largestReflectance` and `largestGain` include triangles of
+  /// movers.
   std::shared_ptr<const std::vector<Mover>> movers;
   /// Number of the first triangle of each mover (SceneTriangles.h).
   std::vector<std::uint32_t> firstTriangles;
@@ -142,8 +144,8 @@ double returnBound(const ScanSetup& setup, double range);
 /// True if paths that cannot matter are dropped.
 bool dropsFaintPaths(const EchoSettings& settings);
 
-/// Energy, J, that a range unit may lose by dropped paths with LightEnergyThreshold::ShareOfLimit;
-/// otherwise 0, because LightEnergyThreshold::Limit drops no direct echoes.
+/// Energy, J, that a range unit may lose by dropped paths with LightEnergyThreshold::ShareOfLimit.
+/// Otherwise 0, because LightEnergyThreshold::Limit drops no direct echoes.
 double lightEnergyTolerance(const ScanSetup& setup);
 }
 

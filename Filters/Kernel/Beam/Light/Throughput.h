@@ -3,12 +3,12 @@
  * @file Throughput.h
  * @brief Throughputs of direct echoes: energy received / energy of the pulse, without loss in air.
  *
- * The sum of the throughputs and the nearest range bound the energy of all direct echoes together.
- * This bound suffices to skip most beams below the limit.
+ * The sum of the throughputs and the nearest range give an upper bound of the energy of all direct
+ * echoes together. This bound suffices to skip most beams below the limit.
  *
  * Source: paper, Eq. 4-9.
- * Differs: see Reflectance.h; loss in air is applied at the end, to the length of the whole path.
- * Valid: bounds are never below the energies that paths return, but for rounding (SurelyAbove).
+ * Differs: see Reflectance.h. Loss in air is applied at the end, to the length of the whole path.
+ * Valid: bounds are never below the energies that paths return, except for rounding (SurelyAbove).
  * Test: TestScan.cxx, TestScanAgain.cxx, TestEchoClosedForms.cxx.
  */
 #ifndef avianlidar_Throughput_h
@@ -39,8 +39,9 @@ double directEnergies(const ScanSetup& setup, const BeamSamples& samples,
 /// nearest range. @param nearest range of the nearest surface, m
 double transmissionBound(double nearest, double attenuation);
 
-/// Largest share, of the light that leaves a mirror, that returns by both directions of the path
-/// together. @param nearest lower bound of the ranges of the beam's surfaces, m
+/// Upper bound of the light that returns by both directions of a mirror path together, as a share
+/// of the light that leaves the mirror. @param nearest lower bound of the ranges of the beam's
+/// surfaces, m
 double mirrorReturnBound(const ScanSetup& setup, const BeamShape& shape, double nearest);
 
 /// Upper bound of the throughput of a mirror path from a surface. @param returned

@@ -4,8 +4,8 @@
  * @brief Diffuse connections of a beam (SecondaryReflection.h): the connected hits, their weights,
  * and the throughput of each connection without attenuation by air.
  *
- * 1. Two surfaces may face each other if each has a hit in front of the plane of the other. A beam
- * without such a pair, as at the outer corner of two walls, has no connections.
+ * 1. Two surfaces may face each other if each surface has a hit in front of the plane of the other
+ * surface. A beam without such a pair, as at the outer corner of two walls, has no connections.
  * 2. The partners of a ray follow from M cyclic shifts of the ray numbers. Rays are stored twice in
  * a row, so that one SIMD loop tests all pairs of a shift, with about thirty operations per vector
  * of pairs.
@@ -14,7 +14,8 @@
  * Source: paper, Sec. 3.4; Floyd's algorithm for samples without repetition, for the shifts.
  * Differs: the paper leaves open which secondary directions are followed, and with which weight.
  * Here the sum over a ray's connections is an unbiased estimate of the mean over the cone's solid
- * angle; with an aperture it estimates the mean of the form factor, capped at MostFormFactor.
+ * angle. With an aperture, the sum estimates the mean of the form factor, limited to
+ * MostFormFactor.
  * Valid: M from 1 to N - 1. Connected pairs face each other by more than surfaceMargin().
  * Test: TestSecondaryReflection.cxx, TestSecondaryPaths.cxx.
  */
@@ -31,8 +32,8 @@
 
 namespace avianlidar
 {
-/// Finds the connections of one beam after the other. Reusable without allocation; one object per
-/// thread.
+/// Finds the connections of one beam after the other, without allocation for each beam. Each thread
+/// needs its own object.
 class ConnectionFinder
 {
 public:
@@ -42,7 +43,7 @@ public:
   void find(const SecondaryBeam& beam, std::uint32_t partners);
 
   /// Find the pairs of surfaces that may face each other: each surface has a hit in front of the
-  /// plane of the other. @return false if there are no such pairs
+  /// plane of the other surface. @return false if there are no such pairs
   bool findFacing(const BeamSamples& hits, const SampleGeometry& geometry);
 
   /// False if a surface certainly faces no other surface. @param surfaces number of all surfaces
@@ -67,7 +68,7 @@ private:
     std::vector<double> px, py, pz, nx, ny, nz, margin;
   };
   RayLanes Rays;
-  std::vector<std::uint64_t> Partners; ///< bits of the partners, 64 in a row, that face a ray
+  std::vector<std::uint64_t> Partners; ///< bits of the partners that face a ray, 64 in a row
   std::vector<char> Facing;            ///< whether two surfaces may face each other; empty: unknown
   std::vector<double> Heights;         ///< largest heights of surfaces above planes, m
 };
@@ -84,16 +85,16 @@ AVIANLIDAR_ALWAYS_INLINE double formFactor(
   return cosOut * cosIn * area / (Pi * length * length);
 }
 
-/// Largest form factor of a connection; short paths carry the excess of form factors above this
-/// value.
+/// Largest form factor of a connection. Short paths account for the excess of form factors above
+/// this value.
 constexpr double MostFormFactor = 1.0;
 
-/// Find the throughput that each connection has unless blocked. @param materials material of each
-/// sample
+/// Find the throughput that each connection has unless a surface blocks the connection. @param
+/// materials material of each sample
 void connectionThroughputs(const ScanSetup& setup, const SecondaryBeam& beam,
   const MaterialLanes& materials, std::vector<double>& throughputs);
 
-/// Scale min(1, B/(g R2)) of a path over two surfaces, which keeps the ray within its budget
+/// Scale min(1, B/(g R2)) of a path over two surfaces, which keeps the ray within the ray's budget
 /// (SecondaryReflection.h). @param direct share that the direct echo of the first surface returns
 double secondaryScale(const ScanSetup& setup, const Material& first, const Material& second,
   double cosIncidence, double direct);

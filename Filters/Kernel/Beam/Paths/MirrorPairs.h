@@ -12,13 +12,13 @@
  * 3. hits of the surface lie in front of the side of the triangle that faces the apex.
  *
  * One descent of the cone, up to the farthest surface, finds the triangles. Paths from a surface
- * without a pair return nothing, whatever the materials are.
+ * without a pair return no light, whatever the materials are.
  *
  * Source: paper, Sec. 3.4, the beam constraint, applied to whole surfaces.
  * Differs: the paper tests each ray.
- * Valid: conservative: no path from a surface without pairs arrives. Surfaces that the cone's edge
- * grazes count as having pairs. All surfaces count as having pairs in a beam that meets more than
- * two triangles per sample.
+ * Valid: conservative: no path from a surface without pairs arrives. A surface that the cone's edge
+ * grazes counts as having a pair. In a beam that meets more than two triangles per sample, all
+ * surfaces count as having pairs.
  * Test: TestMirrorPairs.cxx, TestSecondaryConstraints.cxx.
  */
 #ifndef avianlidar_MirrorPairs_h
@@ -34,7 +34,8 @@
 
 namespace avianlidar
 {
-/// Finds the pairs of one beam after the other. Reusable without allocation; one object per thread.
+/// Finds the pairs of one beam after the other, without allocation for each beam. Each thread needs
+/// its own object.
 class MirrorPairs
 {
 public:

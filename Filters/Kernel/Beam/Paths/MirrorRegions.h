@@ -5,15 +5,16 @@
  * beam whose light goes from one surface to another.
  *
  * In the mirror image of the scene behind a plane mirror, a mirror path continues as a straight
- * line. The point on the second surface is therefore a projective function of the ray, and rays to
- * a side of the second surface lie on a straight line of the beam's plane. The rays from one
- * surface to another fill a convex polygon of the plane, called a region, cut from the polygon of
- * the first surface. Samples lie in strata of equal area, twice as dense as rays in the disc. Each
- * region has at least two samples; more than 32 regions of a surface have at least 64 together.
+ * line. The point on the second surface is therefore a projective function of the ray. Rays to a
+ * side of the second surface lie on a straight line of the beam's plane. The rays from one surface
+ * to another surface fill a convex polygon of the plane, called a region, cut from the polygon of
+ * the first surface. Samples lie in strata of equal area, twice as dense as rays in the disc. If a
+ * surface has at most 32 regions, each region has at least two samples. More than 32 regions
+ * together have at least 64 samples.
  *
  * In an integrated beam all polygons are visible (VisiblePolygons.h), so both ends of a path are
- * visible. In a beam in cells the surfaces are whole triangles, and rays from the apex test whether
- * both ends are visible. A ray through the tree tests the segment between the ends
+ * visible. In a beam in cells the surfaces are whole triangles. Rays from the apex then test
+ * whether both ends are visible. A ray through the tree tests the segment between the ends
  * (SecondaryTracer.h).
  *
  * Source: paper, Sec. 3.4, the beam constraint; Heckbert and Hanrahan, "Beam Tracing Polygonal
@@ -37,8 +38,8 @@
 
 namespace avianlidar
 {
-/// Finds the mirror paths of one beam after the other. Reusable without allocation; one object per
-/// thread.
+/// Finds the mirror paths of one beam after the other, without allocation for each beam. Each
+/// thread needs its own object.
 class MirrorRegions
 {
 public:
@@ -58,7 +59,7 @@ public:
   /// @param returned mirrorReturnBound()
   double bound(std::size_t surface, double returned) const;
 
-  /// Append the paths that start on a surface. @return number of samples drawn for them
+  /// Append the paths that start on a surface. @return number of samples drawn for these paths
   std::size_t search(std::size_t surface, std::vector<MirrorPath>& paths);
 
 private:
@@ -78,7 +79,7 @@ private:
     double height;                     ///< distance of the plane from the apex, m
     PlaneLine along;                   ///< scalar product of `normal` and the direction of a ray
     PlaneLine inverse;                 ///< 1/z on the plane, 1/m
-    std::uint32_t first, end;          ///< numbers of its facets, [first, end)
+    std::uint32_t first, end;          ///< numbers of the facets, [first, end)
     Vec3 low{ 1e300 }, high{ -1e300 }; ///< box of the facets' corners, by BeamFrame::toPlane()
     Box box;
     double share; ///< share of the pulse that arrives; for polygons an upper bound
@@ -89,15 +90,16 @@ private:
     PlaneRing ring;
     Box box;
     std::uint32_t surface;
-    std::uint32_t firstPoint; ///< place of its first corner in `Points`
+    std::uint32_t firstPoint; ///< place of the first corner in `Points`
   };
-  /// Point (x, y)/z at which a ray reflected by one surface meets another, as functions of the ray.
+  /// Point (x, y)/z at which a ray reflected by one surface meets another surface, as functions of
+  /// the ray.
   struct Image
   {
-    PlaneLine w; ///< 1/z of the second plane, mirrored on the first
+    PlaneLine w; ///< 1/z of the second plane, mirrored on the first plane
     PlaneLine x, y, z;
   };
-  /// Rays that go from one facet to another.
+  /// Rays that go from one facet to another facet.
   struct Region
   {
     std::uint32_t one, two; ///< facets
@@ -133,7 +135,7 @@ private:
   double ShareOfArea = 0.0;
   std::uint32_t Sample = 0; ///< next sample on `Start`; samples 2k and 2k + 1 form a stratum
   std::uint64_t Pair = 0;   ///< pair of surfaces between which paths were placed last
-  std::uint64_t Drawn = 0;  ///< number of samples drawn for this pair
+  std::uint64_t Drawn = 0;  ///< number of samples drawn for `Pair`
   std::uint32_t Start = 0;  ///< surface on which paths start
 };
 }

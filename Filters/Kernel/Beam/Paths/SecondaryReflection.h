@@ -15,28 +15,29 @@
  * connections estimates the mean over the cone's solid angle.
  *
  * At P2 both f_d and f_s count. A path counts only if P2 lies in the cone and is visible from the
- * apex, and if the segment leaves P1 and reaches P2 on the sides that face the apex. A path carries
- * Q f(P1) f_sur(P2) exp(-mu length).
+ * apex, and if the segment leaves P1 and reaches P2 on the sides that face the apex. The energy of
+ * a path is Q f(P1) f_sur(P2) exp(-mu length), with Q the energy of the ray.
  *
  * A ray never returns more than Q times the albedo at P1. The direct echo leaves the budget B =
- * albedo - f_direct at P1. P1 passes on at most the share g, and R2 = kd2 + ks2 is the reflectance
- * of the second surface. A path is scaled by min(1, B/(g R2)), which is 1 for the materials of the
- * paper. The weights of connections are random. Where the weights exceed their mean, the excess
- * over the budget is cut.
+ * albedo - f_direct at P1. P1 passes on at most the share g of the energy. R2 = kd2 + ks2 is the
+ * reflectance of the second surface. A path is scaled by min(1, B/(g R2)), which is 1 for the
+ * materials of the paper. The weights of connections are random. Where the weights exceed their
+ * mean, the excess over the budget is cut.
  *
  * With a receiver aperture A > 0, and Omega the solid angle of the cone:
  *
  * 1. The matt light that a mirror path returns at P2 also comes back by the reverse path, which
  * ends on the mirror. The reverse path is weighted by the beam's density at P2 divided by the
  * density at P1. The widths of two mirrors' lobes add up where the light arrives.
- * 2. Both reflections of a connection are matt. A connection carries the form factor F = cos(out at
- * P1) cos(in at P2) r2^2 Omega/(pi L^2 cos(lidar's incidence at P2)), at most MostFormFactor = 1.
- * 3. Short paths carry the excess of F over 1. M short paths start at each hit, distributed as the
- * matt light of the hit. A path that ends in the cone with F > 1 carries 1 - 1/F. Like connections
- * and mirror paths, such a path takes the cosine of the outgoing direction in f at P2.
+ * 2. Both reflections of a connection are matt. The throughput of a connection contains the form
+ * factor F = cos(out at P1) cos(in at P2) r2^2 Omega/(pi L^2 cos(lidar's incidence at P2)), at most
+ * MostFormFactor = 1.
+ * 3. Short paths account for the excess of F over 1. M short paths start at each hit, distributed
+ * as the matt light of the hit. A path that ends in the cone with F > 1 has the weight 1 - 1/F. For
+ * all kinds of paths, the cosine in f at P2 is the cosine of the outgoing direction.
  *
  * Geometry is found only where energies depend on the geometry, and is stored (BeamTrace.h).
- * Throughputs are computed each time a beam is lit.
+ * Throughputs are computed anew each time energies are computed.
  *
  * Source: paper, Sec. 3.4 and Eq. 6. The sum of bounded connections and short paths: Kollig and
  * Keller, "Illumination in the Presence of Weak Singularities", MCQMC 2004.
@@ -69,11 +70,11 @@ struct SecondaryPath
   std::uint32_t triangle; ///< triangle of the last reflection
   double cosIncidence;    ///< cosine of incidence at the last reflection
   std::uint32_t one;      ///< sample at P1; NoSample for mirror paths by MirrorRegions.h
-  std::uint32_t two;      ///< sample at P2; by MirrorRegions.h: key of the sample; or NoSample
+  std::uint32_t two;      ///< sample at P2, key of a sample of MirrorRegions.h, or NoSample
   double unsure = 0.0;    ///< share of the energy that the width of a mirror's lobe may change
 };
 
-/// Finds the paths of one beam after the other. One object per thread.
+/// Finds the paths of one beam after the other. Each thread needs its own object.
 class SecondaryReflection
 {
 public:
@@ -84,14 +85,16 @@ public:
   /// @param tight false: the bound is the part of the albedo that direct echoes leave
   double bound(const BeamSamples& samples, const Throughput& direct, bool tight) const;
 
-  /// The same bound for an integrated beam, which has no samples on surfaces without a direct echo.
+  /// Upper bound of the sum of the throughputs of all paths of an integrated beam, which has no
+  /// samples on surfaces without a direct echo.
   /// @param albedo largest albedo of the beam's surfaces @param nearest lower bound of ranges, m
   double bound(double albedo, double nearest) const;
 
   /// Set the paths of the beam: mirror paths in the order of the samples, connections, short paths.
   /// @param lost energy, J, increased by the bounds of the paths that are dropped
-  /// @return false if all paths together, blocked or not, carry less than
-  /// SecondaryBeam::silentBelow; then no path is traced, and `lost` is the bound of all paths
+  /// @return false if all paths together, blocked or not, have less energy than
+  /// SecondaryBeam::silentBelow. In this case no path is traced, and `lost` is the bound of all
+  /// paths.
   bool collect(const SecondaryBeam& beam, std::vector<SecondaryPath>& paths, double& lost);
 
 private:

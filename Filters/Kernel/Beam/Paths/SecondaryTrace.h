@@ -4,13 +4,13 @@
  * @brief Geometry of a beam's paths with two reflections: ends of mirror paths and short paths, and
  * connections of hits. The geometry is found when first needed, and kept with the beam.
  *
- * A connection is a pair of hits that face each other, with all values but materials on which the
- * energy of its path depends, in SIMD lanes. A beam into a corner has M connections per ray. A
- * connection takes 81 bytes and a few ns.
+ * A connection is a pair of hits that face each other, with all values except materials on which
+ * the energy of the connection depends, in SIMD lanes. A beam into a corner has M connections per
+ * ray. A connection takes 81 bytes of memory and a few ns of time.
  *
  * Source: paper, Sec. 3.4; angles as in ReflectionGeometry (Reflectance.h).
  * Differs: see SecondaryReflection.h.
- * Valid: for the hits of one beam; connections for one M (`partners`).
+ * Valid: for the hits of one beam. Connections are valid for one M (`partners`).
  * Test: TestSecondaryPaths.cxx, TestSecondaryReflection.cxx.
  */
 #ifndef avianlidar_SecondaryTrace_h
@@ -34,7 +34,7 @@ enum class Visibility : std::uint8_t
 };
 
 /// Connections, one value per connection and member, in the order of path numbers. The light is
-/// reflected first at the hit P1, then at P2; angles at P2 belong to light from P1 to the apex
+/// reflected first at the hit P1, then at P2. Angles at P2 belong to light from P1 to the apex
 /// (ReflectionGeometry).
 struct SecondaryConnections
 {
@@ -71,7 +71,7 @@ enum class MirrorEnd : std::uint8_t
   Arrives = 2
 };
 
-/// A mirror path that arrives, with all values but materials on which its energy depends.
+/// A mirror path that arrives, with all values except materials on which the path's energy depends.
 struct MirrorPath
 {
   std::uint32_t start;       ///< surface of MirrorRegions.h on which the path starts

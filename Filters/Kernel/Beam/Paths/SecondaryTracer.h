@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file SecondaryTracer.h
- * @brief Traces paths with two reflections from the hits of a beam (SecondaryReflection.h). Finds
- * where mirror paths and short paths end, and whether connections are blocked.
+ * @brief Traces paths with two reflections from the hits of a beam (SecondaryReflection.h): finds
+ * where mirror paths and short paths end, and which connections are blocked.
  *
  * The results are geometry and are stored in the beam's trace. Paths below the caller's threshold
- * are not traced. Mirror paths from samples on surfaces without pairs (MirrorPairs.h) are not
- * traced either.
+ * are not traced. Mirror paths from surfaces without pairs (MirrorPairs.h) are not traced either.
  *
  * Source: paper, Sec. 3.4.
  * Differs: see SecondaryReflection.h.
@@ -26,22 +25,21 @@
 namespace avianlidar
 {
 /// Trace the mirror paths that are not yet traced and may have a throughput of at least `least`.
-/// @param throughputs upper bounds of throughputs, by sample @param pairs set here; with the beam
-/// constraint no path is traced from surfaces without pairs
+/// @param throughputs upper bounds of throughputs, by sample @param pairs pairs of the beam, set
+/// here; with the beam constraint, no path from surfaces without pairs is traced
 void traceMirrors(const ScanSetup& setup, const SecondaryBeam& beam,
   const std::vector<double>& throughputs, double least, MirrorPairs& pairs);
 
-/// Find whether the mirror paths of MirrorRegions.h with a throughput of at least `least` are
-/// blocked, unless this is already known. @param throughputs throughput of each path, as if not
-/// blocked
+/// Find which mirror paths of MirrorRegions.h with a throughput of at least `least` are blocked. No
+/// path is tested twice. @param throughputs throughput of each path, as if not blocked
 void traceMirrorPaths(
   const SecondaryBeam& beam, const std::vector<double>& throughputs, double least);
 
-/// Find the short paths of the samples, unless these paths are already known.
+/// Find the short paths of the samples, unless the trace already holds these paths.
 void traceShortPaths(const ScanSetup& setup, const SecondaryBeam& beam, ConnectionFinder& finder);
 
-/// Find whether connections with a throughput of at least `least` are blocked, unless this is
-/// already known.
+/// Find which connections with a throughput of at least `least` are blocked. No connection is
+/// tested twice.
 /// @param throughputs throughput of each connection, as if not blocked
 void traceConnections(
   const SecondaryBeam& beam, const std::vector<double>& throughputs, double least);

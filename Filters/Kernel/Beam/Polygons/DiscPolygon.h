@@ -4,9 +4,10 @@
  * @brief The part of a convex polygon inside the unit disc, in strips across a direction, with
  * closed forms for the moments of every strip.
  *
- * Here p is the coordinate along the direction, and q the coordinate across the direction. In a
- * strip each end of the chords lies on a side, q = a + b p, or on an arc, q = +-sqrt(1 - p^2). The
- * moments of sides and arcs are elementary functions.
+ * Here p is the coordinate along the direction, and q the coordinate across the direction. A chord
+ * is the part of the polygon at one value of p. In a strip each end of the chords lies on a side, q
+ * = a + b p, or on an arc, q = +-sqrt(1 - p^2). The moments of sides and arcs are elementary
+ * functions.
  *
  * Source: none.
  * Valid: moments of all strips together are accurate to 1e-15 of the disc's moments.
@@ -22,11 +23,11 @@
 
 namespace avianlidar
 {
-/// Integrals of 1, p, p^2, q^2 and q^4 over consecutive parts of the disc, in SIMD lanes.
+/// Integrals of 1, p, p^2, q^2 and q^4 over consecutive parts of the polygon, in SIMD lanes.
 struct PartMoments
 {
   std::vector<double> area, p, pp, qq, qqqq;
-  /// Set the number of parts, with moments of 0.
+  /// Set the number of parts, and set all moments to 0.
   void reset(std::size_t parts)
   {
     for (std::vector<double>* lane : { &this->area, &this->p, &this->pp, &this->qq, &this->qqqq })
@@ -82,8 +83,8 @@ private:
   std::vector<double> Arcs;   ///< primitivesOf() of `Places`
 };
 
-/// Area of a ring's part in the disc, for any corners. The error is about 1e-16 of the corners'
-/// distance.
+/// Area of a ring's part in the disc, for any corners. The error is about 1e-16 times the distance
+/// of the corners from the centre.
 double areaInDisc(const PlaneRing& ring);
 }
 

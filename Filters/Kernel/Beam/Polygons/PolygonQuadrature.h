@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file PolygonQuadrature.h
- * @brief Integrates the direct echo of a beam over its visible polygons, instead of sampling it.
+ * @brief Integrates the direct echo of a beam over the visible polygons, instead of sampling the
+ * beam with rays.
  *
- * Each polygon gets the samples of its rule (PolygonRule.h), if the beam needs at most MostNodes.
- * Ground at a grazing angle spreads little energy over hundreds of range units. With
+ * Each polygon has the samples of its rule (PolygonRule.h), if the beam needs at most MostNodes
+ * samples. Ground at a grazing angle spreads little energy over hundreds of range units. With
  * EchoSettings::lightEnergyConstraint such polygons are dropped as long as no unit loses more than
  * half the tolerance of the constraint.
  *
@@ -12,9 +13,9 @@
  * Differs: the paper samples all beams with rays.
  * Valid: boundOf() bounds the error of a unit's energy. The bound is the sum of three parts:
  * ErrorOfUnit times the energy, the energy that rules may put beyond borders of units, and the
- * energy that VisiblePolygons::lost may hide. Units beyond the range gate are not distinguished. A
- * beam does not fit if one of its polygons has no rule, or if it needs more than MostNodes samples.
- * Only geometry decides whether a beam fits, not materials or limits.
+ * energy that VisiblePolygons::lost may hide. Beyond the range gate, energies of single range units
+ * are not valid. A beam does not fit if one of its polygons has no rule, or if it needs more than
+ * MostNodes samples. Whether a beam fits depends only on geometry, not on materials or limits.
  * Test: TestEchoClosedForms.cxx, TestPolygonUnits.cxx, TestPolygonEdges.cxx,
  * TestPolygonLimits.cxx, TestPolygonPaths.cxx.
  */
@@ -34,13 +35,14 @@ namespace avianlidar
 /// Largest number of range units of a polygon that is never dropped.
 constexpr double FewUnits = 16.0;
 
-/// Largest estimated number of samples of a beam; specular lobes add samples to the estimate.
+/// Largest estimated number of samples of a beam. Specular lobes add samples to the estimate.
 constexpr double MostNodes = 2e4;
 
 /// Relative error of a unit's energy where an aperture gathers all light that a surface returns.
 constexpr double ErrorOfGathered = 1e-2;
 
-/// Integrates one beam after the other. One object per thread, which the setup must outlive.
+/// Integrates one beam after the other. Each thread needs its own object. The setup must outlive
+/// the object.
 class PolygonQuadrature
 {
 public:
@@ -50,7 +52,7 @@ public:
   /// samples
   bool fits(const VisiblePolygons& seen, double most = MostNodes) const;
 
-  /// Begin a beam. The polygons must live until the next call of begin().
+  /// Begin a beam. The caller must keep the polygons until the next call of begin().
   void begin(const BeamFrame& frame, const VisiblePolygons& seen);
 
   /// Extent and bounds of a beam, found without placing nodes.
@@ -64,13 +66,13 @@ public:
   };
   const Extent& extent() const { return this->Whole; }
 
-  /// The nodes of a beam that fits. Valid until the next call.
+  /// The nodes of a beam that fits. The nodes are valid until the next call.
   const PolygonNodes& place();
 
   /// Bound of the energy, J, that a range unit loses by dropped and faint polygons.
   double dropped() const { return this->Dropped; }
 
-  /// Bound of the error, J, of the energy that the last nodes put into some range units.
+  /// Bound of the error, J, of the energy that the nodes placed last put into some range units.
   /// @param energies energies of the nodes, J
   double boundOf(const RangeShares& shares, const std::vector<double>& energies) const;
 
@@ -94,7 +96,7 @@ private:
   const ScanSetup& Setup;
   PolygonRule Rule;
   std::vector<Bounds> Polygons;
-  /// Energy in a unit, J, and number of each faint polygon.
+  /// Energy in a range unit, J, and number, for each faint polygon.
   std::vector<std::pair<double, std::uint32_t>> Faint;
   PolygonNodes Nodes;
 
@@ -102,7 +104,7 @@ private:
   BeamFrame Frame;
   const VisiblePolygons* Seen = nullptr;
   Extent Whole{};
-  double Misplaced = 0.0; ///< bound of the share of the pulse that may meet another surface or none
+  double Misplaced = 0.0; ///< bound of the share of the pulse that may miss its surface
   double Dropped = 0.0;   ///< result of dropped(), J
   bool Gathers = false;   ///< whether the aperture gathers nearly all light that returns
 };

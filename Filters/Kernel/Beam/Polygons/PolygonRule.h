@@ -4,8 +4,8 @@
  * @brief Weighted samples of one visible polygon that give its direct echo in each range unit.
  *
  * On a plane at the distance h from the apex, the range is r = sqrt(1 + t^2 rho^2)/w and the cosine
- * of incidence is h/r. Here w is the affine 1/z, rho the distance from the axis in half-beamwidths,
- * and t = tan(theta0.5).
+ * of incidence is h/r. Here w is the affine function 1/z (BeamTriangles.h), rho the distance from
+ * the axis in half-beamwidths, and t = tan(theta0.5).
  *
  * 1. A polygon is cut across the gradient of w where a pulse begins to enter or to leave a range
  * unit. Between two cuts the unit's share of the pulse is linear in r. Further cuts lie where the
@@ -20,9 +20,10 @@
  * Source: paper, Eq. 4-9; Gauss-Legendre quadrature.
  * Differs: the paper samples all beams with rays.
  * Valid: the relative error of a unit's energy is below ErrorOfUnit, with two exceptions. Curved
- * lines of equal range and rounded corners may move energy across borders of units, which each
- * node's `uncertain` bounds. Faint polygons have an error of 1e-3 of their energy. A polygon has no
- * rule if lines of equal range are curved by more than MostCurved range units in it.
+ * lines of equal range and rounded corners may move energy across borders of units. Each node's
+ * `uncertain` bounds this energy. Faint polygons have an error of 1e-3 of their energy. A polygon
+ * has no rule if lines of equal range are curved by more than MostCurved range units in the
+ * polygon.
  * Test: TestEchoClosedForms.cxx, TestPolygonUnits.cxx.
  */
 #ifndef avianlidar_PolygonRule_h
@@ -56,8 +57,8 @@ struct PolygonNodes
   std::vector<double> uncertain; ///< share of each node's energy that may lie in another unit
 };
 
-/// Places the samples of one polygon after the other. One object per thread, which the setup must
-/// outlive.
+/// Places the samples of one polygon after the other. Each thread needs its own object. The setup
+/// must outlive the object.
 class PolygonRule
 {
 public:
@@ -79,8 +80,9 @@ public:
     double leastInverse, mostInverse; ///< bounds, 1/m, at most 1/height
   };
 
-  /// Begin a polygon of a surface. @param triangle half of the surface whose material is used
-  /// @param faint true if one sample per part suffices, because no range unit gets much energy
+  /// Begin a polygon of a surface. @param triangle triangle of the surface, which gives the
+  /// material
+  /// @param faint true if one sample per part suffices, because no range unit receives much energy
   void set(const PlaneSurface& surface, std::uint32_t triangle, const Extent& extent, bool faint);
 
   /// Estimated number of samples of a polygon without a lobe; infinity if it has no rule.
@@ -102,9 +104,9 @@ private:
     double width2;  ///< lobeWidth2(), rad2; 0: the lobe does not matter
     double curved;  ///< curvatureOf(), m
     double rounded; ///< roundingOf(), m
-    bool plain;     ///< whether every range unit is short against the range
+    bool plain;     ///< whether every range unit is short compared with the range
     bool byRules;   ///< whether parts take products of rules
-    bool faint;     ///< whether no range unit gets much energy
+    bool faint;     ///< whether no range unit receives much energy
     double inverse(double p) const;
   };
   struct Piece
@@ -136,7 +138,7 @@ private:
   const double UnitLength;  ///< length of a range unit, m
   const double PulseLength; ///< length of the pulse in range, m
   const double LastBorder;  ///< range beyond which nothing is received, m
-  double Offsets[2];        ///< range of a pulse that begins or ends at a border, units, modulo 1
+  double Offsets[2];        ///< range at which a pulse begins or ends at a border, units, modulo 1
   int NumberOfOffsets;
   double Tangent2 = 0.0; ///< tan(theta0.5)^2
   double ShareOfArea = 0.0;
@@ -145,7 +147,7 @@ private:
   DiscPolygon Disc;
   std::vector<double> Ranges;
   std::vector<double> Borders; ///< values of p at the borders of parts, ascending
-  std::vector<double> OfUnits; ///< 1 for each border of units, 0 for the others
+  std::vector<double> OfUnits; ///< whether borders are of range units: 1, else 0
   std::vector<Piece> Along, Across;
   PartMoments Parts;
 };

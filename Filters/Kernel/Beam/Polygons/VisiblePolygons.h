@@ -4,19 +4,19 @@
  * @brief Visible surfaces of a beam, as convex polygons that partition the disc except for the sky.
  *
  * In the beam's plane (BeamTriangles.h) the visible surfaces are the upper envelope of 1/z, an
- * affine function on each triangle. Convex pieces partition an octagon around the disc, and
- * triangles are taken front to back. A piece that a triangle overlaps is cut by the triangle's
- * sides and, where the planes cross, by the line of equal 1/z. The search ends when no piece is
- * open and the next triangle lies behind all pieces.
+ * affine function on each triangle. Convex pieces partition an octagon around the disc. Triangles
+ * are taken front to back. A piece that a triangle overlaps is cut by the triangle's sides and,
+ * where the planes cross, by the line of equal 1/z. An open piece shows the sky. The search ends
+ * when no piece is open and the next triangle lies behind all pieces.
  *
- * A line that passes a corner within Snap does not cut a side at this corner. Pieces smaller than
- * LeastArea are left out, and VisiblePolygons::lost is the sum of their areas.
+ * A line that passes a corner within Snap does not cut a side at this corner. Pieces with an area
+ * below LeastArea are left out. The sum of the areas of these pieces gives VisiblePolygons::lost.
  *
  * Source: Weiler and Atherton, "Hidden Surface Removal Using Polygon Area Sorting", SIGGRAPH 1977.
  * Differs: all pieces are convex and partition the view, so no general clipper is needed.
- * Valid: any triangles. The areas of pieces and `lost` sum to the area of the octagon within 1e-12
- * of this area. The result depends only on the beam and the triangles that enter the disc, not on
- * the order of the triangles.
+ * Valid: any triangles. The areas of all pieces, including the pieces that are left out, sum to the
+ * area of the octagon within 1e-12 of this area. The result depends only on the beam and the
+ * triangles that enter the disc, not on the order of the triangles.
  * Test: TestVisiblePolygons.cxx, TestPolygonEdges.cxx.
  */
 #ifndef avianlidar_VisiblePolygons_h
@@ -51,7 +51,7 @@ struct PlaneRing
   void add(const PlanePoint& p) { this->corners[this->size++] = p; }
   double area() const { return std::fabs(this->signedArea()); }
   double signedArea() const; ///< positive if counterclockwise
-  /// True if another cut does not exceed MostCorners.
+  /// True if the ring has at most MostCorners corners after one more cut.
   bool mayBeCut() const { return this->size + 2 <= MostCorners; }
 };
 
@@ -59,7 +59,7 @@ struct PlaneRing
 /// corner.
 constexpr double Snap = 1e-11;
 
-/// Side of a line on which a ring lies. A ring on the line lies on the negative side.
+/// Side of a line on which a ring lies. A ring on the line itself counts as Negative.
 enum class SideOfLine
 {
   Positive,
@@ -79,19 +79,19 @@ PlaneRing octagonAround();
 /// corners to be cut. @return false if nothing is left
 bool clipRing(PlaneRing& ring, const PlaneLine& line);
 
-/// Visible polygons of a beam. They may extend beyond the disc.
+/// Visible polygons of a beam, which may extend beyond the disc.
 struct VisiblePolygons
 {
   struct Polygon
   {
     std::uint32_t surface;
-    std::uint32_t end; ///< end of its corners, which begin where the previous polygon ends
+    std::uint32_t end; ///< end of the corners, which begin where the previous polygon ends
   };
   std::vector<PlaneSurface> surfaces;
   std::vector<Polygon> polygons;
   std::vector<PlanePoint> corners;
   double lost = 0.0;   ///< area of the pieces left out / area of the disc
-  bool facing = false; ///< whether light may go from one surface to another
+  bool facing = false; ///< whether light may go between two surfaces
 
   /// Add a surface with one polygon.
   void add(const PlaneSurface& surface, const PlaneRing& ring);
@@ -130,13 +130,13 @@ enum class SeenByBeam : std::uint8_t
   TooMuch = 2   ///< too many triangles or polygons
 };
 
-/// Finds the polygons of one beam after the other. One object per thread, which the scene must
-/// outlive.
+/// Finds the polygons of one beam after the other. Each thread needs its own object. The scene must
+/// outlive the object.
 class PolygonFinder
 {
 public:
-  /// @param mostTriangles largest number of triangles in the disc; a third of the largest number of
-  /// polygons
+  /// @param mostTriangles largest number of triangles in the disc; three times this number is the
+  /// largest number of polygons
   /// @param mostCandidates largest number of triangles that are set up, if above mostTriangles
   PolygonFinder(
     const SceneTriangles& scene, std::size_t mostTriangles, std::size_t mostCandidates = 0)
@@ -148,7 +148,8 @@ public:
 
   void begin(const BeamFrame& frame) { this->Entering.begin(frame); }
 
-  /// Add triangles, in any order, each once. Every triangle that may enter the cone must be added.
+  /// Add triangles, in any order. Every triangle that may enter the cone must be added exactly
+  /// once.
   void add(const std::uint32_t* triangles, std::size_t count)
   {
     this->Entering.add(triangles, count);
@@ -158,7 +159,7 @@ public:
   SeenByBeam find(std::unique_ptr<VisiblePolygons>& found);
 
   /// The triangles that were added. After find() these triangles are sorted, unless more than
-  /// mostCandidates enter the disc.
+  /// mostCandidates triangles enter the disc.
   BeamTriangles& entering() { return this->Entering; }
   const std::vector<const BeamSurface*>& candidates() const { return this->Entering.nearest(); }
 

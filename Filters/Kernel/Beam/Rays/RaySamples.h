@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file RaySamples.h
- * @brief Samples from rays: range and angle of incidence of each ray on the triangle that it hits.
+ * @brief Samples from rays: range and angle of incidence of each ray on the triangle that the ray
+ * hits.
  *
  * Rays are processed surface by surface, in SIMD loops, in about 10 ns per ray and 0.2 us per
  * surface.
@@ -26,8 +27,8 @@
 
 namespace avianlidar
 {
-/// Finds the samples of one beam after the other. Reusable without allocation; one object per
-/// thread, which the scene must outlive.
+/// Finds the samples of one beam after the other, without allocation for each beam. Each thread
+/// needs its own object. The scene must outlive the object.
 class RaySamples
 {
 public:
@@ -41,7 +42,8 @@ public:
   void find(const BeamFrame& frame, const BeamRays& rays,
     const std::vector<std::uint32_t>& triangles, BeamSamples& samples, SampleGeometry& geometry);
 
-  /// Find the geometry of known samples. @param rays all rays, in the order of their numbers
+  /// Find the geometry of samples that were found before. @param rays all rays, in the order of
+  /// their numbers
   void findAgain(const BeamFrame& frame, const BeamRays& rays, const BeamSamples& samples,
     SampleGeometry& geometry);
 

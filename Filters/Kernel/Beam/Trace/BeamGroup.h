@@ -2,21 +2,21 @@
 /**
  * @file BeamGroup.h
  * @brief Up to sixteen neighbouring beams of one apex descend the wide tree together. The descent
- * ends at boxes, called entry points, from which packets of rays go on (RayPacket.h).
+ * ends at boxes, called entry points, from which packets of rays descend further (RayPacket.h).
  *
  * Eight boxes are tested against the planes about the group, then sixteen cones against each box
- * that is left (BoxTests.h). The descent ends where a box is a leaf, where its half diagonal is at
- * most sixteen half-beamwidths, and where at most three beams meet it. A beam without entry points
- * hits nothing, and its rays are never drawn. With smaller entry points, lists of entry points are
- * long where all beams hit. With larger entry points, every packet descends the upper levels of the
- * tree.
+ * that is left (BoxTests.h). The descent ends at a box that is a leaf, at a box whose half diagonal
+ * is at most sixteen half-beamwidths, and at a box that at most three beams meet. A beam without
+ * entry points hits no triangle, so the beam's rays are not drawn. With smaller entry points, lists
+ * of entry points are long where all beams hit triangles. With larger entry points, every packet
+ * descends the upper levels of the tree.
  *
  * Source: batch collision detection (paper, Sec. 3.2); Z-order curve: Morton, "A Computer Oriented
  * Geodetic Data Base and a New Technique in File Sequencing", 1966.
  * Differs: the paper descends once for the rays of a beam, down to the triangles, as
  * findPotential() does. A group descends once for the rays of sixteen beams, and less deep.
- * Valid: conservative: no triangle that a ray hits lies outside its beam's entry points. A group
- * whose beams lie too far apart (ConeLanes::setFrustum()) is halved.
+ * Valid: conservative: every triangle that a ray hits lies in the entry points of the ray's beam. A
+ * group whose beams lie too far apart (ConeLanes::setFrustum()) is halved.
  * Test: TestBeamGroup.cxx, TestBeamTracer.cxx.
  */
 #ifndef avianlidar_BeamGroup_h
@@ -33,7 +33,7 @@
 
 namespace avianlidar
 {
-/// True if two beams have the same apex and width, and may descend together.
+/// True if two beams have one apex and one width, so that the beams may descend together.
 inline bool areTogether(const BeamFrame& one, const BeamFrame& two)
 {
   return one.origin == two.origin && one.halfBeamwidth == two.halfBeamwidth;

@@ -9,9 +9,9 @@
  * origin in double precision before anything is rounded.
  *
  * Source: paper, Sec. 3.2-3.4.
- * Differs: beams and rays descend in groups and packets (BeamGroup.h, RayPacket.h);
+ * Differs: beams and rays descend in groups and packets (BeamGroup.h, RayPacket.h).
  * TraceMode::Beams is the paper's batch.
- * Valid: as TriangleTest.h; a scene moved to UTM or ECEF coordinates keeps its ranges to a
+ * Valid: as TriangleTest.h. Moving a scene to UTM or ECEF coordinates changes ranges by at most a
  * micrometre, except at grazing incidence.
  * Test: TestBeamTracer.cxx, TestWatertight.cxx, TestGeometryProperties.cxx.
  */
@@ -43,22 +43,23 @@ struct Hit
 struct TraceCounters
 {
   std::uint64_t nodesVisited = 0;
-  /// Number of triangles tested, counted once per packet of rays; 0 where every ray descends by
+  /// Number of triangles tested, counted once per packet of rays; 0 if every ray descends by
   /// itself.
   std::uint64_t candidates = 0;
   std::uint64_t raysTraced = 0; ///< number of primary rays, mirror rays and visibility segments
 };
 
-/// Add costs of the same beam to a sum; `candidates` becomes the larger of the two numbers.
+/// Add costs of one beam to a sum of costs of this beam. The sum takes the larger value of
+/// `candidates`.
 void addCounters(const TraceCounters& more, TraceCounters& sum);
 
-/// How beams descend the tree. All modes give bitwise identical hits.
+/// Way in which beams descend the tree. All modes give bitwise identical hits.
 enum class TraceMode
 {
   SingleRays = 0, ///< one descent per ray
   Automatic = 1,  ///< groups of neighbouring beams, then packets of their rays
   /// The paper's batch collision detection (Sec. 3.2): every beam descends to the triangles that
-  /// its cone may meet, S_potential; then all rays of the beam are tested against S_potential.
+  /// its cone may meet, S_potential. All rays of the beam are then tested against S_potential.
   Beams = 2
 };
 
@@ -68,15 +69,15 @@ struct BeamBlock
   const BeamFrame* frames = nullptr;
   std::size_t size = 0;   ///< number of beams
   std::uint32_t rays = 0; ///< rays per beam, at least 1
-  /// Function that draws the rays of a beam. The rays must live until the block is done. The
-  /// function is called, maybe twice, only if a triangle may meet the beam: most beams of an
-  /// airport meet no triangle, and drawing rays costs more than a descent.
+  /// Function that draws the rays of a beam. The rays must be kept until the block is done. The
+  /// function is called, maybe twice, only if a triangle may meet the beam. Most beams of an
+  /// airport meet no triangle. Drawing rays costs more than a descent.
   std::function<const BeamRays&(std::size_t beam)> source;
   bool inOrder = false; ///< whether packets take the rays in the order in which the rays come
 };
 
 /// Number of beams in a block, 1 to 1024: enough neighbours to be traced together, and few enough
-/// for the block's rays and hits to stay in the cache. @param raysPerBeam at least 1
+/// for the block's rays and hits to fit into the cache. @param raysPerBeam at least 1
 std::size_t beamsPerBlock(int raysPerBeam);
 
 /// Triangles that the rays of a block hit. Ranges are found where they are used (RaySamples.h).
@@ -88,8 +89,8 @@ struct BlockHits
   std::vector<TraceCounters> counters; ///< cost of each beam
 };
 
-/// Traces blocks of beams, and single rays of the current beam. One object per thread, which the
-/// scene must outlive.
+/// Traces blocks of beams, and single rays of the current beam. Each thread needs its own object.
+/// The scene must outlive the object.
 class BeamTracer
 {
 public:
@@ -98,7 +99,7 @@ public:
   BeamTracer(const BeamTracer&) = delete;
   BeamTracer& operator=(const BeamTracer&) = delete;
 
-  /// Begin a beam: set the frame, and the counters to 0.
+  /// Begin a beam: set the frame, and set the counters to 0.
   void setBeam(const BeamFrame& frame);
 
   /// Find the nearest triangle of every ray of all beams of a block. Neighbouring beams of one apex
@@ -106,17 +107,17 @@ public:
   /// and the beam's counters do not change. The result is valid until the next call.
   const BlockHits& traceBlock(const BeamBlock& block, TraceMode mode);
 
-  /// Nearest hit along `direction` (need not be normalised) from the apex of the current beam.
+  /// Nearest hit along `direction` (of any length above 0) from the apex of the current beam.
   Hit traceFromApex(const Vec3& direction);
 
-  /// Nearest hit of the ray from `origin` (relative to the apex, m) along `direction` (need not be
-  /// normalised) at ranges greater than `minimumRange`, ignoring the triangle `ignore`. Hits beyond
-  /// `maximumRange` may be missed. Ranges are in metres along the normalised direction.
+  /// Nearest hit of the ray from `origin` (relative to the apex, m) along `direction` (of any
+  /// length above 0) at ranges greater than `minimumRange`, ignoring the triangle `ignore`. Hits
+  /// beyond `maximumRange` may be missed. Ranges are in metres along the normalised direction.
   Hit traceFrom(const Vec3& origin, const Vec3& direction, double minimumRange,
     std::uint32_t ignore, double maximumRange = std::numeric_limits<double>::infinity());
 
-  /// True if a triangle other than the two ignored ones crosses the open segment between the points
-  /// (relative to the apex), further than `margin` metres from either end.
+  /// True if a triangle other than `ignore1` and `ignore2` crosses the segment between the points
+  /// (relative to the apex) at more than `margin` metres from either end.
   bool occluded(
     const Vec3& from, const Vec3& to, double margin, std::uint32_t ignore1, std::uint32_t ignore2);
 
@@ -135,7 +136,7 @@ private:
   std::unique_ptr<Workspace> Work;
 };
 
-/// A triangle relative to a beam's apex, prepared for the ranges of its rays.
+/// A triangle relative to a beam's apex, prepared for the ranges of the beam's rays.
 struct SeenTriangle
 {
   Corners corners;     ///< corners relative to the apex, m
@@ -145,7 +146,7 @@ struct SeenTriangle
 };
 SeenTriangle seeTriangle(const SceneTriangles& scene, std::uint32_t triangle, const Vec3& origin);
 
-/// Range, m, of the ray along the unit direction `d` on a triangle that it hits.
+/// Range, m, of the ray along the unit direction `d` on a triangle that the ray hits.
 double rangeOnTriangle(const SeenTriangle& triangle, const BeamFrame& frame, const Vec3& d);
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file BlockRays.h
- * @brief Traces the rays of a block's beams: in packets from their entry points, or one by one.
+ * @brief Traces the rays of a block's beams: in packets from entry points, or one by one.
  *
  * Source: none.
  * Valid: hits depend neither on packets nor on the order of rays.
@@ -39,8 +39,8 @@ struct BeamCluster
   std::size_t count = 0;
 };
 
-/// Traces the rays of one block; hits and costs go to `work.found`. The constructor's arguments
-/// must outlive the object.
+/// Traces the rays of one block, and puts hits and costs into `work.found`. The constructor's
+/// arguments must outlive the object.
 class BlockRays
 {
 public:

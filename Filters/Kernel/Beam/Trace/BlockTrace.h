@@ -8,7 +8,7 @@
  * than eight rays form no groups and fill packets in the order in which the beams come. A group
  * descends the wide tree (BeamGroup.h). From the entry points of a cluster, the cluster's rays
  * descend further in packets (BlockRays.h). Without a wide tree, and with TraceMode::Beams, each
- * beam's cone descends by itself, and the leaves that the cone meets are the entry points.
+ * beam's cone descends by itself. The leaves that the cone meets are then the entry points.
  *
  * Source: paper, Sec. 3.2.
  * Differs: see BeamGroup.h. A cone that meets more than 2048 triangles is traced ray by ray.

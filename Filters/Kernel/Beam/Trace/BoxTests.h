@@ -4,19 +4,19 @@
  * @brief Tests rays of a packet, or cones of a group of beams, from one apex against the eight
  * boxes of a wide node, in vectors of single precision (RayLanes.h).
  *
- * All directions lie between four planes through the apex, each parallel to one of the two
- * coordinate axes that are not dominant. Eight boxes are tested against these planes in one loop.
- * Each box that is left is tested by slabs against groups of sixteen rays. Where few rays are left,
- * each ray is tested against eight boxes at once. Cones are tested sixteen at a time: by their own
- * four planes, by the plane that touches the cone on the side of the box's centre, and by the plane
- * through the apex across the cone's axis.
+ * All directions lie between four planes through the apex. The dominant axis is the coordinate axis
+ * nearest to the directions. Each plane is parallel to one of the two other axes. Eight boxes are
+ * tested against these planes in one loop. Each box that is left is tested by slabs against groups
+ * of sixteen rays. If few rays are left, each ray is tested against eight boxes at once. Cones are
+ * tested sixteen at a time: by their own four planes, by the plane that touches the cone on the
+ * side of the box's centre, and by the plane through the apex across the cone's axis.
  *
  * Source: frustum of Reshetov, Soupikov and Hurley, 2005 (see RayPacket.h); the tangent plane and
  * the plane across the axis as in BeamVolumeTest.h.
  * Differs: the planes of the frustum are parallel to coordinate axes, and are tested against eight
  * boxes at a time.
- * Valid: conservative, rounding included, with the margins of WideTree.h; cones are widened as in
- * BeamCone.h. setFrustum() fails where the directions do not all lie along one coordinate axis, and
+ * Valid: conservative, rounding included, with the margins of WideTree.h. Cones are widened as in
+ * BeamCone.h. setFrustum() fails if the directions do not all point along one coordinate axis, and
  * outside the range of single precision (wideningFor()).
  * Test: TestRayPacket.cxx, TestBeamGroup.cxx.
  */
@@ -51,7 +51,7 @@ struct Frustum
   float lowU, highU, lowV, highV; ///< slopes of the directions
   float apex[3];                  ///< apex relative to the tree's reference, m
   float widening;                 ///< widening of every box, m
-  float spread = 0.0f;            ///< half-width of the directions, rad
+  float spread = 0.0f;            ///< half-width of each ray, rad
   /// Factor from depth along the dominant axis to a lower bound of the range.
   float shortening = 1.0f - WideRounding;
 
@@ -61,7 +61,7 @@ struct Frustum
   void setAxes(const Vec3& direction);
 };
 
-/// A packet as the tests of boxes and triangles need it. All ranges along a ray, including those of
+/// A packet for the tests of boxes and triangles. All ranges along a ray, including ranges by
 /// Frustum::shortening, are divided by |D|, with D the ray's `direction`.
 struct alignas(64) PacketView
 {
@@ -103,8 +103,8 @@ struct alignas(64) ConeLanes
   void add(const BeamFrame* frames, const std::uint32_t* beams, std::size_t number);
   /// Fill the lanes beyond the last cone with copies of this cone.
   void close();
-  /// Set the planes. @return false if the cones are too wide, too far apart, not all along one
-  /// coordinate axis, or outside the range of single precision (wideningFor())
+  /// Set the planes. @return false if the cones are too wide, are too far apart, do not all point
+  /// along one coordinate axis, or lie outside the range of single precision (wideningFor())
   bool setFrustum(const WideTree& tree, const Vec3& apex);
 };
 

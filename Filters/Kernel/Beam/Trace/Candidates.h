@@ -3,15 +3,16 @@
  * @file Candidates.h
  * @brief First step of tracing a block: finds the triangles that the cone of each beam may meet.
  *
- * All surfaces that a beam can meet, that reflect its light a second time, or that hide other
- * surfaces, lie in the beam's cone, because the cone is convex. Neighbouring beams of one apex
- * descend the tree together (BeamGroup.h). From the entry points of a group, each beam descends by
- * itself, down to the leaves. Triangles of movers that the beam may meet are then appended.
+ * All surfaces that a beam can meet lie in the beam's cone. The cone is convex, so surfaces of the
+ * second reflection and surfaces that hide other surfaces lie in the cone, too. Neighbouring beams
+ * of one apex descend the tree together (BeamGroup.h). From the entry points of a group, each beam
+ * descends by itself, down to the leaves. Triangles of movers that the beam may meet are then
+ * appended.
  *
  * Source: paper, Sec. 3.2, where the list is called S_potential.
  * Differs: the paper descends for each beam from the root.
- * Valid: each list holds every triangle that a ray of the beam may hit, once, and maybe other
- * triangles.
+ * Valid: each list holds every triangle that a ray of the beam may hit. The list may hold other
+ * triangles, too, but no triangle twice.
  * Test: TestBeamGroup.cxx.
  */
 #ifndef avianlidar_Candidates_h
@@ -26,18 +27,19 @@
 
 namespace avianlidar
 {
-/// Finds the candidates of the beams of a block, one beam after the other. Reusable without
-/// allocation; one object per thread.
+/// Finds the candidates of the beams of a block, one beam after the other, without allocation for
+/// each beam. Each thread needs its own object.
 class BeamCandidates
 {
 public:
-  /// Begin a block. Scene and frames must live until the last beam of the block.
+  /// Begin a block. The caller must keep scene and frames until the last beam of the block.
   /// @param count number of beams; 1 if movers are placed
   /// @param together false: each beam descends by itself from the root
   void begin(
     const SceneTriangles& scene, const BeamFrame* frames, std::size_t count, bool together);
 
-  /// Go on to a beam that may meet a triangle, in no fixed order. @return false after the last beam
+  /// Go on to the next beam that may meet a triangle. The order of beams is not fixed. @return
+  /// false after the last beam
   bool next();
 
   // The current beam.
@@ -62,7 +64,7 @@ private:
   std::vector<Group> Groups;        ///< groups that have not descended yet, the next group last
   Group Now{ 0, 0 };                ///< rest of the group that descended last
   int Member = 0;                   ///< next member of the group that descended last
-  bool FromRoot = false;            ///< whether this group has no entry points
+  bool FromRoot = false;            ///< whether the beams of `Now` descend from the root
   std::uint64_t Share = 0;          ///< number of nodes visited for each member
   std::size_t Beam = 0;
   std::vector<std::uint32_t> Triangles;

@@ -2,7 +2,7 @@
 /**
  * @file Descents.h
  * @brief Descents of the tree for a cone or a single ray, and the visitors that test a single ray
- * in its leaves.
+ * in the leaves.
  *
  * Source: paper, Sec. 3.2 and 3.3.
  * Differs: acceptance and range come from TriangleTest.h, which names the differences.
@@ -22,7 +22,7 @@
 
 namespace avianlidar
 {
-/// Adapts a visitor with the members of TreeLeaves to this interface.
+/// Adapts a visitor that has the members of TreeLeaves to the interface of TreeLeaves.
 template <class Visitor>
 class LeavesOf final : public TreeLeaves
 {
@@ -41,9 +41,8 @@ private:
   Visitor& Seen;
 };
 
-/// Descend a tree that is not empty with a beam's cone. @param entryPoints nodes from which the
-/// descent begins; null: the root, as always in trees of other volumes @return number of nodes
-/// visited
+/// Descend a nonempty tree with a beam's cone. @param entryPoints nodes from which the descent
+/// begins; null: the root; ignored in trees of other volumes @return number of nodes visited
 template <class Visitor>
 std::uint64_t descendCone(const CollisionTree& tree, const BeamFrame& frame, Visitor& visitor,
   TraversalStack& stack, const EntryPoints* entryPoints = nullptr)
@@ -56,7 +55,7 @@ std::uint64_t descendCone(const CollisionTree& tree, const BeamFrame& frame, Vis
   return descendWide(tree, WideCone(tree.wide, frame), visitor, stack, entryPoints);
 }
 
-/// Descend a tree that is not empty with one ray. @param origin origin relative to the apex, m
+/// Descend a nonempty tree with one ray. @param origin origin relative to the apex, m
 /// @return number of nodes visited
 template <class Visitor>
 std::uint64_t descendRay(const CollisionTree& tree, const Vec3& apex, const Vec3& origin,
@@ -117,10 +116,10 @@ inline void keepNearest(Hit& hit, double range, std::uint32_t triangle)
   }
 }
 
-/// Range up to which volumes are visited once a hit is found. The hit of a triangle that takes the
-/// plane of another may lie nearer than the triangle's own volumes. Across the plane, the
-/// difference is the distance that rounding puts between the two triangles; along the ray, it is
-/// larger. Rays within 4 degrees of a plane are not covered.
+/// Range up to which volumes are visited once a hit is found. If a triangle takes the plane of
+/// another triangle, a hit may lie nearer than the volumes of the hit triangle. Across the plane,
+/// the difference is the distance that rounding puts between the two triangles. Along the ray, the
+/// difference is larger. Rays within 4 degrees of a plane are not covered.
 inline double limitOf(const CollisionTree& tree, double range)
 {
   constexpr double alongRay = 16.0;
@@ -179,7 +178,8 @@ private:
   Hit* Nearest = nullptr;
 };
 
-/// Finds, for a ray from any point, the nearest hit between two ranges, or any hit between them.
+/// Finds, for a ray from any point, the nearest hit between two ranges, or any hit between the two
+/// ranges.
 class FreeRayVisitor
 {
 public:

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file ExactTriangles.h
- * @brief Cache of triangles relative to an apex, for the exact functions. Neighbouring rays and
- * beams mostly meet the same triangles.
+ * @brief Cache of triangles relative to an apex, for the exact functions of TriangleTest.h.
+ * Neighbouring rays and beams mostly meet the same triangles.
  *
  * Source: none.
  * Valid: for one tree and apex at a time.
@@ -28,7 +28,8 @@ struct ExactTriangle
   TrianglePlane plane;
 };
 
-/// @tparam Remembered largest number of triangles kept; the place follows from a triangle's number
+/// @tparam Remembered largest number of triangles that are kept; a triangle's number gives the
+/// place
 template <std::uint32_t Remembered>
 class ExactTriangles
 {
@@ -54,7 +55,7 @@ public:
     }
   }
 
-  /// The triangle with this number. Valid until the next call.
+  /// The triangle with this number. The reference is valid until the next call.
   const ExactTriangle& operator[](std::uint32_t number)
   {
     const auto at = static_cast<std::uint32_t>(number & (this->Last.size() - 1));

@@ -27,11 +27,12 @@ public:
   {
   }
 
-  /// Keep the nearer hit of rays that surely hit the triangle, at about the range of their nearest
-  /// hit so far. @return rays that hit it
+  /// Compare the ranges of rays whose edge functions were accepted, and keep the nearer hit of each
+  /// ray. @return rays that hit the triangle
   RayBits compare(RayBits rays, std::uint32_t triangle);
 
-  /// Test rays that may hit the triangle, and keep the nearer hit. @return rays that hit it
+  /// Test rays that may hit the triangle, and keep the nearer hit of each ray. @return rays that
+  /// hit the triangle
   RayBits decide(RayBits rays, std::uint32_t triangle);
 
 private:

@@ -4,10 +4,10 @@
  * @brief Up to 64 rays from one apex descend the wide tree together, in single precision with
  * bounds of the error.
  *
- * Hits that RayPacketTriangles.h leaves undecided go at once to the exact functions
- * (PacketRanges.h). The steps of a node depend on each other, so the time of a node hardly grows
- * with the number of rays. Only groups of sixteen rays that meet a leaf are tested against its
- * triangles. For both reasons packets are wider than a vector. Packets of 128 rays are faster for
+ * The exact functions (PacketRanges.h) decide at once the hits that RayPacketTriangles.h leaves
+ * undecided. The steps of a node depend on each other, so the time of a node hardly grows with the
+ * number of rays. Only groups of sixteen rays that meet a leaf are tested against the triangles of
+ * the leaf. For both reasons packets are wider than a vector. Packets of 128 rays are faster for
  * narrow beams and slower for fine meshes. Rays that lie closer together share more nodes. The rays
  * of a packet need not belong to one beam.
  *
@@ -16,8 +16,8 @@
  * Tracing Algorithm", ACM TOG 24(3), 2005.
  * Differs: rays are tested in groups of sixteen within a packet, eight boxes or triangles at a
  * time.
- * Valid: hits are bitwise identical to the hits of single rays. Rays are traced one by one where
- * they lie too far apart, where the apex is too far away, and where the tree has no wide form.
+ * Valid: hits are bitwise identical to the hits of single rays. Rays are traced one by one if they
+ * lie too far apart, if the apex is too far away, or if the tree has no wide form.
  * Test: TestRayPacket.cxx.
  */
 #ifndef avianlidar_RayPacket_h
@@ -42,7 +42,7 @@ struct alignas(64) RayPacket
 
   double x[Width], y[Width];       ///< coordinates in the plane of the ray's beam
   const BeamFrame* beam = nullptr; ///< frame of all rays; null if they belong to several beams
-  const BeamFrame* frame[Width];   ///< frame of each ray, if `beam` is null; all have one origin
+  const BeamFrame* frame[Width];   ///< frame of each ray, if `beam` is null; all of one origin
   std::uint32_t triangle[Width];   ///< nearest triangle of each ray (output), or NoTriangle
   int count = 0;                   ///< number of rays, 1 to Width; other lanes may be overwritten
 

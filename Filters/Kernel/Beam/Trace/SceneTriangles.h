@@ -25,8 +25,8 @@
 
 namespace avianlidar
 {
-/// The triangles of the tree, and of the movers that were placed since the last clear(). One object
-/// per thread, which the tree must outlive.
+/// The triangles of the tree, and of the movers that were placed since the last clear(). Each
+/// thread needs its own object. The tree must outlive the object.
 class SceneTriangles
 {
 public:
@@ -79,7 +79,8 @@ public:
       this->corner(triangle, 2) - point };
   }
 
-  /// Values of CollisionTree; a mover's triangle coincides with no other and owns its plane.
+  /// Values of CollisionTree. A mover's triangle coincides with no other triangle and owns its
+  /// plane.
   bool coincides(std::uint32_t triangle) const
   {
     return !this->isMoved(triangle) && this->Tree.coincides(triangle);
